@@ -1,0 +1,63 @@
+// Picks the subcommand, catches errors once, returns the exit code.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "cli/commands.h"
+#include "core/error.h"
+#include "core/text.h"
+#include "core/version.h"
+
+namespace {
+
+struct Command {
+  const char* name;
+  int (*run)(const std::vector<std::string>&);
+  const char* sentence;
+};
+
+constexpr std::array kCommands = {
+    Command{"run", alcove::run_command, "compute ambient occlusion from a frame's depth and normals"},
+    Command{"presets", alcove::presets_command, "list the presets, or print one"},
+    Command{"devices", alcove::devices_command, "list the Vulkan devices"},
+};
+
+void print_help() {
+  fmt::print("alcove {}: ambient occlusion from rendered depth and normals\n\nUsage: alcove COMMAND [options]\n\n", alcove::kVersion);
+  for (const auto& command : kCommands) fmt::print("  {:<10}{}\n", command.name, command.sentence);
+  fmt::print("\nalcove COMMAND --help tells the rest.\n");
+}
+
+int dispatch(const std::vector<std::string>& arguments) {
+  if (arguments.empty() || arguments[0] == "--help" || arguments[0] == "-h") {
+    print_help();
+    return arguments.empty() ? int(alcove::ErrorKind::usage) : 0;
+  }
+  if (arguments[0] == "--version") {
+    fmt::print("alcove {}\n", alcove::kVersion);
+    return 0;
+  }
+  std::vector<std::string> names;
+  for (const auto& command : kCommands) {
+    if (arguments[0] == command.name) return command.run({arguments.begin() + 1, arguments.end()});
+    names.emplace_back(command.name);
+  }
+  alcove::fail(alcove::ErrorKind::usage, "there is no command {}{}; there is {}", arguments[0], alcove::suggestion(arguments[0], names), alcove::list_of(names));
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return dispatch({argv + 1, argv + argc});
+  } catch (const alcove::Error& error) {
+    fmt::print(stderr, "alcove: error: {}\n", error.what());
+    return int(error.kind());
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "alcove: error: unexpected: {}\n", error.what());
+    return int(alcove::ErrorKind::some_frames_failed);
+  }
+}

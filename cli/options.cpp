@@ -1,0 +1,323 @@
+// The option table and what reads it.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cli/options.h"
+
+#include <CLI/CLI.hpp>
+
+#include <cmath>
+#include <filesystem>
+#include <map>
+
+#include "core/error.h"
+#include "core/file.h"
+#include "core/text.h"
+
+namespace alcove {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A number's allowed range, as text and as a check.
+struct Range {
+  double low, high;
+  bool open_low, open_high;
+  std::string text;
+  bool holds(double x) const { return (open_low ? x > low : x >= low) && (open_high ? x < high : x <= high); }
+};
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+Range above(double low) { return {low, kInfinity, true, true, fmt::format("> {}", low)}; }
+Range between(double low, double high) { return {low, high, false, false, fmt::format("{} to {}", low, high)}; }
+Range below_and_at_least(double low, double high) { return {low, high, false, true, fmt::format("{} to below {}", low, high)}; }
+Range strictly_between(double low, double high) { return {low, high, true, true, fmt::format("above {} to below {}", low, high)}; }
+Range above_to(double low, double high) { return {low, high, true, false, fmt::format("above {} to {}", low, high)}; }
+
+/// A finite number within its range, or CLI11's complaint.
+CLI::Validator check_of(const Range& range) {
+  return CLI::Validator(
+      [range](std::string& text) -> std::string {
+        double value = 0;
+        if (!CLI::detail::lexical_cast(text, value) || !std::isfinite(value)) return fmt::format("{} is not a finite number", text);
+        return range.holds(value) ? std::string() : fmt::format("{} is not {}", text, range.text);
+      },
+      "", range.text);
+}
+
+template <class T>
+const std::map<std::string, T>& names_of();
+template <>
+const std::map<std::string, DepthKind>& names_of() {
+  static const std::map<std::string, DepthKind> names = {
+      {"auto", DepthKind::automatic}, {"planar", DepthKind::planar}, {"ray", DepthKind::ray}, {"inverse", DepthKind::inverse}};
+  return names;
+}
+template <>
+const std::map<std::string, NormalSpace>& names_of() {
+  static const std::map<std::string, NormalSpace> names = {{"auto", NormalSpace::automatic}, {"world", NormalSpace::world}, {"view", NormalSpace::view}};
+  return names;
+}
+template <>
+const std::map<std::string, Falloff>& names_of() {
+  static const std::map<std::string, Falloff> names = {
+      {"none", Falloff::none}, {"linear", Falloff::linear}, {"quadratic", Falloff::quadratic}, {"smooth", Falloff::smooth}};
+  return names;
+}
+template <>
+const std::map<std::string, OutputType>& names_of() {
+  static const std::map<std::string, OutputType> names = {{"half", OutputType::half_float}, {"float", OutputType::single_float}};
+  return names;
+}
+
+template <class Map>
+std::string keys_of(const Map& map) {
+  std::string text;
+  for (const auto& entry : map) text += (text.empty() ? "" : "|") + entry.first;
+  return text;
+}
+
+/// Builds rows of one group after the other.
+class Table {
+ public:
+  std::vector<OptionRow> rows;
+
+  void group(const char* name) { group_ = name; }
+
+  void text(const std::string& name, std::string& value, const char* unit, const std::string& sentence) {
+    row(name, unit, "", sentence, value, [name, &value](CLI::App& app) { return app.add_option(name, value); });
+  }
+
+  void word(const std::string& name, std::string& value, const std::vector<std::string>& words, const std::string& sentence) {
+    const std::string range = fmt::format("{}", fmt::join(words, "|"));
+    row(name, "", range, sentence, value, [name, &value, words](CLI::App& app) { return app.add_option(name, value)->check(CLI::IsMember(words)); });
+  }
+
+  template <class T>
+  void choice(const std::string& name, T& value, const std::string& sentence) {
+    const auto& names = names_of<T>();
+    std::string present;
+    for (const auto& [text, kind] : names)
+      if (kind == value) present = text;
+    row(name, "", keys_of(names), sentence, present, [name, &value, &names, present](CLI::App& app) {
+      // A function option instead of a transformed enum, so that --print-config writes the word and not its number.
+      return app
+          .add_option_function<std::string>(name, [&value, &names](const std::string& text) { value = names.at(text); })
+          ->check(CLI::IsMember(names))
+          ->default_str(present);
+    });
+  }
+
+  template <class T>
+  void number(const std::string& name, T& value, const char* unit, const Range& range, const std::string& sentence) {
+    row(name, unit, range.text, sentence, fmt::format("{}", value),
+        [name, &value, range](CLI::App& app) { return app.add_option(name, value)->check(check_of(range)); });
+  }
+
+  void number(const std::string& name, std::optional<double>& value, const char* unit, const Range& range, const std::string& sentence) {
+    row(name, unit, range.text, sentence, "", [name, &value, range](CLI::App& app) { return app.add_option(name, value)->check(check_of(range)); });
+  }
+
+  void flag(const std::string& name, bool& value, const std::string& sentence) {
+    row(name, "", "", sentence, "", [name, &value](CLI::App& app) { return app.add_flag(name, value); });
+  }
+
+  void row(const std::string& name, const char* unit, const std::string& range, const std::string& sentence, const std::string& default_text,
+           std::function<CLI::Option*(CLI::App&)> add) {
+    rows.push_back({group_, name, unit, range, sentence, default_text, std::move(add)});
+  }
+
+ private:
+  std::string group_;
+};
+
+void add_input_rows(Table& table, InputSettings& s) {
+  table.group("Input");
+  table.text("--depth", s.depth, "FILE", "an EXR of the depth alone; else it is in INPUT");
+  table.text("--normal", s.normal, "FILE", "an EXR of the normals alone");
+  table.text("--beauty", s.beauty, "FILE", "an EXR of the beauty, and of the indirect diffuse light, for --composite");
+  table.text("--depth-channel", s.depth_channel, "NAME", "the depth channel; else found by its usual names");
+  table.text("--normal-channels", s.normal_channels, "LAYER|X,Y,Z", "the normal's layer, or its three channels");
+  table.text("--beauty-channels", s.beauty_channels, "LAYER|R,G,B[,A]", "the beauty's layer, or its channels");
+  table.text("--layer", s.layer, "NAME", "look only at this layer or part");
+  table.choice("--depth-kind", s.depth_kind, "planar: along the optical axis; ray: to the eye; inverse: 1/planar; auto: what the camera file says, else planar");
+  table.number("--depth-scale", s.depth_scale, "", above(0), "scene units a unit of the depth channel");
+  table.number("--sky", s.sky, "file units", above(0), "depth at or beyond it is sky, as are 0, infinity and NaN");
+  table.choice("--normal-space", s.normal_space, "the space of the normals; auto: what the camera file says, else world");
+  table.text("--camera", s.camera, "FILE.json", "the camera; see Cameras in the README");
+  table.number("--fov", s.fov, "degrees", strictly_between(0, 180), "horizontal field of view, instead of a camera file");
+  table.number("--focal", s.focal, "mm", above(0), "focal length, with --aperture, instead of a camera file");
+  table.number("--aperture", s.aperture, "mm", above(0), "width of the film back");
+  table.number("--ortho-width", s.ortho_width, "scene units", above(0), "width of an orthographic view, instead of a camera file");
+}
+
+void add_estimator_rows(Table& table, RunOptions& options) {
+  EstimatorSettings& s = options.settings.estimator;
+  table.group("Estimator");
+  table.row("--preset", "NAME|FILE", "", "settings from a preset; may repeat, later wins, options win over presets", "", [&options](CLI::App& app) {
+    return app.set_config("--preset")->expected(1)->take_all()->transform([](const std::string& name) { return preset_file(name); })->description("");
+  });
+  table.number("--radius", s.radius, "scene units", above_to(0, 1e18), "how far occluders reach; must be given, here or in a preset");
+  table.choice("--falloff", s.falloff, "how a hit's weight fades towards the radius; none: all within it block fully");
+  table.number("--falloff-start", s.falloff_start, "of the radius", below_and_at_least(0, 1), "where the falloff begins");
+  table.number("--slices", s.slices, "a pixel", between(1, 64), "directions that are searched");
+  table.number("--steps", s.steps, "a side", between(1, 4096), "samples to each side of a slice");
+  table.number("--intensity", s.intensity, "", between(0, 100), "factor on the occlusion");
+  table.number("--power", s.power, "", above_to(0, 100), "exponent of the visibility");
+  table.number("--seed", s.seed, "", between(0, 4294967295.0), "shifts the sample noise");
+}
+
+void add_output_rows(Table& table, OutputSettings& s) {
+  table.group("Output");
+  table.row("-o,--output", "FILE.exr", "", "the AO: one channel Y, 1 = open", "", [&s](CLI::App& app) { return app.add_option("-o,--output", s.output); });
+  table.text("--composite", s.composite, "FILE.exr", "the beauty with AO in its ambient light, or in all of it where the parts are missing");
+  table.text("--preview", s.preview, "FILE.png", "a picture of the composite, or of the AO where there is none");
+  table.choice("--type", s.type, "sample type of the AO");
+  table.word("--compression", s.compression, {"none", "rle", "zips", "zip", "piz"}, "of the AO file; a composite keeps OpenEXR's zip");
+  table.text("--ocio", s.ocio, "FILE", "OpenColorIO configuration for the preview; else the OCIO variable, else linear Rec.709 to sRGB");
+}
+
+void add_device_rows(Table& table, DeviceSettings& s) {
+  table.group("Device");
+  table.text("--device", s.device, "auto|cpu|INDEX|NAME|UUID", "where to compute; auto: the first GPU, else the CPU");
+  table.flag("--require-gpu", s.require_gpu, "computing on the CPU is an error");
+  table.flag("--validate", s.validate, "load the Vulkan validation layer; any message is an error");
+  table.row("--no-pipeline-cache", "", "", "keep no compiled kernels in the XDG cache folder", "",
+            [&s](CLI::App& app) { return app.add_flag("!--no-pipeline-cache", s.pipeline_cache); });
+  table.number("--threads", s.threads, "", between(0, 1024), "threads of the CPU device and of the codecs; 0: one a core");
+}
+
+void add_report_rows(Table& table, RunOptions& options) {
+  table.group("Reports");
+  table.text("--stats", options.settings.output.stats, "FILE.json", "times of every pass, counts and totals");
+  table.row("-v,--verbose", "", "", "say more; may repeat", "", [&options](CLI::App& app) { return app.add_flag("-v,--verbose", options.verbose); });
+  table.row("-q,--quiet", "", "", "say nothing but errors", "", [&options](CLI::App& app) { return app.add_flag("-q,--quiet", options.quiet); });
+  table.row("--print-config", "", "", "print the settings as a preset and stop", "",
+            [&options](CLI::App& app) { return app.add_flag("--print-config", options.print_config)->configurable(false); });
+}
+
+std::string help_text(const OptionRow& row) {
+  std::string range = row.range.empty() ? "" : row.range;
+  if (!row.unit.empty() && !range.empty()) range = row.unit + ", " + range;
+  return row.sentence + (range.empty() ? "" : " (" + range + ")");
+}
+
+/// The app with the whole table; help shows unit or words where CLI11 would show a type.
+std::unique_ptr<CLI::App> make_app(RunOptions& options) {
+  auto app = std::make_unique<CLI::App>(
+      "Computes ambient occlusion from the depth and normals of a rendered frame.\n\n"
+      "Examples:\n"
+      "  alcove run frame.exr -o ao.exr --camera camera.json --radius 0.5\n"
+      "  alcove run frame.exr --beauty beauty.exr -o ao.exr --composite out.exr --fov 60 --radius 0.5 --preset production\n",
+      "alcove run");
+  app->allow_config_extras(CLI::config_extras_mode::error);
+  app->get_formatter()->column_width(34);
+  app->add_option("INPUT", options.settings.input.input, "an EXR file with depth and normals")->configurable(false)->type_name("");
+  for (const auto& row : option_table(options)) {
+    CLI::Option* option = row.add(*app);
+    option->group(row.group)->description(help_text(row));
+    if (option->get_items_expected() > 0) option->type_name(row.unit.empty() ? "WORD" : row.unit.find(' ') == row.unit.npos && row.unit[0] >= 'A' ? row.unit : "NUMBER");
+    if (!row.default_text.empty()) option->default_str(row.default_text);
+  }
+  return app;
+}
+
+std::vector<std::string> option_names(RunOptions& options) {
+  std::vector<std::string> names;
+  for (const auto& row : option_table(options)) names.push_back(row.name.substr(row.name.find("--")));
+  return names;
+}
+
+/// CLI11's complaint as one sentence with the nearest names.
+[[noreturn]] void complain(const CLI::App& app, const CLI::ParseError& error, RunOptions& options) {
+  std::string text = error.what();
+  std::ranges::replace(text, '\n', ' ');
+  const auto names = option_names(options);
+  const auto rest = app.remaining();
+  if (dynamic_cast<const CLI::ExtrasError*>(&error) && !rest.empty() && rest.front().rfind("-", 0) == 0)
+    fail(ErrorKind::usage, "there is no option {}{}; see alcove run --help", rest.front(), suggestion(rest.front(), names));
+  if (dynamic_cast<const CLI::ConfigError*>(&error)) {
+    const std::string key = text.substr(text.find_last_of(' ') + 1);
+    fail(ErrorKind::usage, "a preset holds {}, which is no option{}", key, suggestion("--" + key, names));
+  }
+  fail(ErrorKind::usage, "{}; see alcove run --help", text);
+}
+
+/// The folder of the running program.
+fs::path program_folder() {
+  std::error_code error;
+  return fs::read_symlink("/proc/self/exe", error).parent_path();
+}
+
+}  // namespace
+
+std::vector<OptionRow> option_table(RunOptions& options) {
+  Table table;
+  add_input_rows(table, options.settings.input);
+  add_estimator_rows(table, options);
+  add_output_rows(table, options.settings.output);
+  add_device_rows(table, options.settings.device);
+  add_report_rows(table, options);
+  return table.rows;
+}
+
+std::string option_table_markdown() {
+  RunOptions options;
+  std::string text, group;
+  const auto cell = [](std::string value) {
+    for (std::size_t at = 0; (at = value.find('|', at)) != value.npos; at += 2) value.insert(at, "\\");
+    return value;
+  };
+  for (const auto& row : option_table(options)) {
+    if (row.group != group) text += fmt::format("{}| {} | unit, range | default | |\n|---|---|---|---|\n", group.empty() ? "" : "\n", row.group);
+    group = row.group;
+    const std::string range = row.unit + (row.unit.empty() || row.range.empty() ? "" : ", ") + row.range;
+    text += fmt::format("| `{}` | {} | {} | {} |\n", row.name, cell(range), row.default_text, cell(row.sentence));
+  }
+  return text;
+}
+
+bool parse_run_options(const std::vector<std::string>& arguments, RunOptions& options) {
+  const auto app = make_app(options);
+  try {
+    app->parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
+  } catch (const CLI::CallForHelp&) {
+    fmt::print("{}", app->help());
+    return false;
+  } catch (const CLI::ParseError& error) {
+    complain(*app, error, options);
+  }
+  if (options.print_config) {
+    fmt::print("{}", app->config_to_str(true, true));
+    return false;
+  }
+  return true;
+}
+
+std::string preset_folder() {
+  std::vector<fs::path> places;
+  if (const char* variable = std::getenv("ALCOVE_PRESETS"); variable && *variable) places.emplace_back(variable);
+  else places = {program_folder() / "presets", program_folder() / "../presets", program_folder() / "../share/alcove/presets"};
+  std::error_code error;
+  for (const auto& place : places)
+    if (fs::is_directory(place, error)) return fs::weakly_canonical(place).string();
+  fail(ErrorKind::usage, "no folder of presets at {}; the variable ALCOVE_PRESETS names one", places.front().string());
+}
+
+std::vector<std::string> preset_names() {
+  std::vector<std::string> names;
+  const fs::path folder = preset_folder();
+  for (const auto& entry : fs::recursive_directory_iterator(folder))
+    if (entry.path().extension() == ".toml") names.push_back(fs::relative(entry.path(), folder).replace_extension().string());
+  std::ranges::sort(names);
+  return names;
+}
+
+std::string preset_file(const std::string& name) {
+  std::error_code error;
+  if (fs::is_regular_file(name, error)) return name;
+  const auto names = preset_names();
+  if (std::ranges::find(names, name) != names.end()) return preset_folder() + "/" + name + ".toml";
+  fail(ErrorKind::usage, "there is no preset {}{}; there is {}; --preset takes one of them, or a TOML file", name, suggestion(name, names), list_of(names));
+}
+
+}  // namespace alcove

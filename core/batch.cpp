@@ -1,0 +1,273 @@
+// Reads a frame, runs the chain, writes what was asked for.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/batch.h"
+
+#include <sys/resource.h>
+#include <xxhash.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "core/chain.h"
+#include "core/color.h"
+#include "core/error.h"
+#include "core/exr.h"
+#include "core/file.h"
+#include "core/gbuffer.h"
+#include "core/image_io.h"
+#include "core/version.h"
+#include "kernels/prepare.h"
+
+namespace alcove {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Stopwatch {
+ public:
+  double ms() const { return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_).count(); }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+struct OutputFile {
+  const char* option;
+  const std::string* path;
+};
+
+std::vector<OutputFile> outputs_of(const OutputSettings& output) {
+  std::vector<OutputFile> files;
+  for (const OutputFile& file : {OutputFile{"--output", &output.output}, OutputFile{"--composite", &output.composite},
+                                 OutputFile{"--preview", &output.preview}, OutputFile{"--stats", &output.stats}})
+    if (!file.path->empty()) files.push_back(file);
+  return files;
+}
+
+bool same_file(const std::string& a, const std::string& b) {
+  std::error_code error;
+  return fs::weakly_canonical(a, error) == fs::weakly_canonical(b, error) || fs::equivalent(a, b, error);
+}
+
+/// The planes that were found, in upload buffers, and what they mean.
+FrameInputs read_frame(gpu::Recorder& gpu, FrameSource& source, const InputSettings& settings, int frame) {
+  FrameInputs inputs;
+  inputs.view = view_of(source.camera, source.data, source.display);
+  inputs.noise_origin = {source.data.x - source.display.x, source.data.y - source.display.y};
+  inputs.frame = frame;
+  inputs.depth_kind = source.depth_kind;
+  inputs.depth_scale = settings.depth_scale;
+  inputs.sky = settings.sky;
+  const Matrix3 identity{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+  inputs.view_from_normal = source.normal_space == NormalSpace::world ? source.camera.view_from_world.value_or(identity) : identity;
+  inputs.has_alpha = source.beauty.size() == 4;
+
+  std::vector<PlaneRead> reads;
+  const auto upload = [&](const char* name, const std::vector<ChannelRef>& channels) -> gpu::Buffer* {
+    if (channels.empty()) return nullptr;
+    gpu::Buffer& buffer = gpu.buffer(name, channels.size() * source.data.pixels() * sizeof(float), gpu::Use::upload);
+    reads.push_back({&channels, buffer.as<float>().data()});
+    return &buffer;
+  };
+  inputs.depth = upload("raw depth", source.depth);
+  inputs.normal = upload("raw normal", source.normal);
+  inputs.beauty = upload("beauty", source.beauty);
+  inputs.indirect = upload("indirect", source.indirect);
+  inputs.diffuse_color = upload("diffuse color", source.diffuse_color);
+  read_planes(source, reads);
+  return inputs;
+}
+
+ExrOutput output_like(const FrameSource& source, const ChannelRef& like, const std::string& digest, const std::string& device) {
+  ExrOutput output;
+  output.data = source.data;
+  output.display = source.display;
+  output.pixel_aspect = source.pixel_aspect;
+  output.attributes = source.files[like.file].attributes(like.part);
+  output.own_attributes = {{"alcove/version", kVersion},
+                           {"alcove/options", digest},
+                           {"alcove/device", device},
+                           {"alcove/input", fs::path(source.files[source.depth[0].file].path()).filename().string()}};
+  return output;
+}
+
+void write_ao(const FrameSource& source, std::span<const float> ao, const OutputSettings& settings, const std::string& digest, const std::string& device) {
+  ExrOutput output = output_like(source, source.depth[0], digest, device);
+  output.compression = settings.compression;
+  output.planes = {{"Y", settings.type == OutputType::half_float ? SampleType::half_float : SampleType::single_float, ao}};
+  write_exr(settings.output, output);
+}
+
+SampleType type_of(const FrameSource& source, const ChannelRef& ref) {
+  const auto& channels = source.files[ref.file].parts()[std::size_t(ref.part)].channels;
+  const auto found = std::ranges::find(channels, ref.channel, &ExrChannel::name);
+  return found != channels.end() && found->type == SampleType::half_float ? SampleType::half_float : SampleType::single_float;
+}
+
+/// The beauty's alpha is handed on as it was read; colours keep the beauty's precision.
+void write_composite(const FrameSource& source, std::span<const float> rgb, std::span<const float> beauty, const OutputSettings& settings,
+                     const std::string& digest, const std::string& device) {
+  ExrOutput output = output_like(source, source.beauty[0], digest, device);
+  output.own_attributes["alcove/composite"] = source.indirect.empty() ? "multiply: beauty * ao" : "ambient: beauty - D + D * ao, D = indirect diffuse";
+  const char* names[] = {"R", "G", "B", "A"};
+  for (std::size_t c = 0; c < source.beauty.size(); c++) {
+    const auto from = c < 3 ? rgb : beauty;
+    output.planes.push_back({names[c], type_of(source, source.beauty[c]), from.subspan(c * source.data.pixels(), source.data.pixels())});
+  }
+  write_exr(settings.composite, output);
+}
+
+/// The display window of `planes` planes, interleaved; black where there are no pixels.
+std::vector<float> displayed(const FrameSource& source, std::span<const float> pixels, int planes) {
+  const Window &data = source.data, &display = source.display;
+  std::vector<float> interleaved(display.pixels() * std::size_t(planes));
+  for (int y = std::max(data.y, display.y); y < std::min(data.y + data.height, display.y + display.height); y++)
+    for (int x = std::max(data.x, display.x); x < std::min(data.x + data.width, display.x + display.width); x++)
+      for (int c = 0; c < planes; c++)
+        interleaved[(std::size_t(y - display.y) * std::size_t(display.width) + std::size_t(x - display.x)) * std::size_t(planes) + std::size_t(c)] =
+            pixels[std::size_t(c) * data.pixels() + std::size_t(y - data.y) * std::size_t(data.width) + std::size_t(x - data.x)];
+  return interleaved;
+}
+
+/// The composite through the view transform; AO by itself is data, and shown as it is.
+void write_preview(const FrameSource& source, const FrameOutputs& outputs, const OutputSettings& settings) {
+  const int planes = outputs.composite ? 3 : 1;
+  auto pixels = displayed(source, (outputs.composite ? outputs.composite : outputs.ao)->as<float>(), planes);
+  if (outputs.composite) DisplayTransform(settings.ocio).apply(pixels);
+  write_png(settings.preview, source.display.width, source.display.height, planes, pixels);
+}
+
+void note_counts(FrameReport& report, const PrepareCounts& counts, const FrameSource& source) {
+  report.pixels = source.data.pixels();
+  report.sky_pixels = counts.sky;
+  report.repaired_pixels = counts.repaired_depth + counts.repaired_normals;
+  if (counts.repaired_depth) report.notes.push_back(fmt::format("{} pixels had a depth that is NaN or negative; they count as sky", counts.repaired_depth));
+  if (counts.repaired_normals)
+    report.notes.push_back(fmt::format("{} pixels had no usable normal; it was reconstructed from depth", counts.repaired_normals));
+  if (source.normal.empty()) report.notes.push_back("there is no normal channel; normals were reconstructed from depth (--normal, --normal-channels)");
+}
+
+FrameReport run_frame(gpu::Device& device, gpu::Recorder& gpu, const Settings& settings, const std::string& digest) {
+  const Stopwatch total;
+  FrameReport report;
+  report.input = settings.input.input.empty() ? settings.input.depth : settings.input.input;
+  report.output = settings.output.output;
+  report.frame = frame_number_of(report.input);
+
+  const Stopwatch reading;
+  FrameSource source = find_frame(settings.input, !settings.output.composite.empty(), report.frame);
+  const FrameInputs inputs = read_frame(gpu, source, settings.input, report.frame);
+  report.read_ms = reading.ms();
+
+  const FrameOutputs outputs = run_chain(gpu, inputs, settings.estimator);
+  gpu.run();
+  report.passes = gpu.passes();
+  for (const auto& pass : report.passes) report.compute_ms += pass.ms;
+  note_counts(report, outputs.counts->as<PrepareCounts>()[0], source);
+  report.samples_per_pixel = 2.0 * settings.estimator.slices * settings.estimator.steps * double(report.pixels - report.sky_pixels) / double(report.pixels);
+
+  const Stopwatch writing;
+  write_ao(source, outputs.ao->as<float>(), settings.output, digest, device.info().name);
+  if (outputs.composite) {
+    write_composite(source, outputs.composite->as<float>(), inputs.beauty->as<float>(), settings.output, digest, device.info().name);
+    if (source.indirect.empty())
+      report.notes.push_back("the frame has no indirect diffuse part: the composite is the whole beauty times AO, which dims direct light too");
+  }
+  if (!settings.output.preview.empty()) write_preview(source, outputs, settings.output);
+  report.write_ms = writing.ms();
+  report.total_ms = total.ms();
+  return report;
+}
+
+}  // namespace
+
+void check_settings(const Settings& settings) {
+  if (settings.output.output.empty()) fail(ErrorKind::usage, "no output: name the AO file with -o FILE.exr");
+  if (settings.input.input.empty() && settings.input.depth.empty()) fail(ErrorKind::usage, "no input: name an EXR file, or one with --depth");
+  if (!settings.estimator.radius) fail(ErrorKind::usage, "no radius: say with --radius how far occluders reach, in scene units");
+  if (settings.input.focal.has_value() != settings.input.aperture.has_value())
+    fail(ErrorKind::usage, "--focal and --aperture belong together: focal length and width of the film back in mm");
+  if (!settings.input.beauty.empty() && settings.output.composite.empty()) fail(ErrorKind::usage, "--beauty is for a composite: name its file with --composite");
+  const auto outputs = outputs_of(settings.output);
+  for (std::size_t i = 0; i < outputs.size(); i++) {
+    for (const auto* input : {&settings.input.input, &settings.input.depth, &settings.input.normal, &settings.input.beauty, &settings.input.camera})
+      if (!input->empty() && same_file(*input, *outputs[i].path)) fail(ErrorKind::usage, "{}: {} would overwrite an input", *outputs[i].path, outputs[i].option);
+    for (std::size_t j = 0; j < i; j++)
+      if (same_file(*outputs[j].path, *outputs[i].path))
+        fail(ErrorKind::usage, "{}: {} and {} name the same file", *outputs[i].path, outputs[j].option, outputs[i].option);
+  }
+}
+
+std::string options_digest(const Settings& settings) {
+  const auto& e = settings.estimator;
+  const auto& i = settings.input;
+  const std::string text = fmt::format(
+      "{} radius {} falloff {} {} slices {} steps {} intensity {} power {} seed {} depth {} {} {} {} normal {} {} layer {} fov {} focal {} aperture {} ortho {} type {}",
+      kVersion, e.radius.value_or(0), int(e.falloff), e.falloff_start, e.slices, e.steps, e.intensity, e.power, e.seed, i.depth_channel, int(i.depth_kind),
+      i.depth_scale, i.sky, i.normal_channels, int(i.normal_space), i.layer, i.fov.value_or(0), i.focal.value_or(0), i.aperture.value_or(0),
+      i.ortho_width.value_or(0), int(settings.output.type));
+  return fmt::format("{:016x}", XXH3_64bits(text.data(), text.size()));
+}
+
+int frame_number_of(const std::string& path) {
+  const std::string stem = fs::path(path).stem().string();
+  const std::size_t last = stem.find_last_not_of("0123456789");
+  const std::string digits = last == stem.npos ? stem : stem.substr(last + 1);
+  return digits.empty() || digits.size() > 9 ? 0 : std::stoi(digits);
+}
+
+RunReport run_frames(const Settings& settings) {
+  const Stopwatch wall;
+  check_settings(settings);
+  for (const auto& file : outputs_of(settings.output)) require_writable(*file.path, file.option);
+  const int threads = settings.device.threads > 0 ? settings.device.threads : int(std::max(1u, std::thread::hardware_concurrency()));
+  set_exr_threads(threads);
+  if (settings.device.threads > 0) ::setenv("LP_NUM_THREADS", std::to_string(threads).c_str(), 1);  // lavapipe's own variable
+
+  gpu::Device device({settings.device.device, settings.device.require_gpu, settings.device.validate, settings.device.pipeline_cache});
+  RunReport report;
+  report.device = device.info().name;
+  report.options = options_digest(settings);
+  gpu::Recorder gpu(device);
+  report.frames.push_back(run_frame(device, gpu, settings, report.options));
+  if (device.info().type == gpu::DeviceType::cpu && settings.device.device == "auto")
+    report.frames.back().notes.push_back(fmt::format("no GPU found; computed on {}", device.info().name));
+  if (device.validation_messages()) fail(ErrorKind::device, "--validate: the validation layer reported {} messages", device.validation_messages());
+  report.wall_s = wall.ms() / 1000;
+  if (!settings.output.stats.empty()) write_whole(settings.output.stats, stats_json(report));
+  return report;
+}
+
+std::string stats_json(const RunReport& report) {
+  using Json = nlohmann::ordered_json;
+  Json frames = Json::array();
+  for (const auto& frame : report.frames) {
+    Json passes = Json::array();
+    for (const auto& pass : frame.passes) passes.push_back({{"name", pass.name}, {"ms", pass.ms}});
+    frames.push_back({{"frame", frame.frame},
+                      {"input", frame.input},
+                      {"output", frame.output},
+                      {"ms", {{"read", frame.read_ms}, {"compute", frame.compute_ms}, {"write", frame.write_ms}, {"total", frame.total_ms}}},
+                      {"passes", passes},
+                      {"pixels", frame.pixels},
+                      {"sky_pixels", frame.sky_pixels},
+                      {"samples_per_pixel", frame.samples_per_pixel},
+                      {"repaired_pixels", frame.repaired_pixels}});
+  }
+  rusage usage{};
+  ::getrusage(RUSAGE_SELF, &usage);
+  const auto seconds = [](const timeval& time) { return double(time.tv_sec) + 1e-6 * double(time.tv_usec); };
+  const Json totals = {{"frames", report.frames.size()},
+                       {"failed", report.failed},
+                       {"wall_s", report.wall_s},
+                       {"cpu_s", seconds(usage.ru_utime) + seconds(usage.ru_stime)},
+                       {"peak_rss_mb", double(usage.ru_maxrss) / 1024}};
+  const Json stats = {{"device", report.device}, {"options", report.options}, {"frames", frames}, {"totals", totals}};
+  return stats.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";  // file names need not be UTF-8
+}
+
+}  // namespace alcove

@@ -1,0 +1,197 @@
+// Camera JSON, cameras from numbers, and the kernels' view of either.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/camera.h"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "core/error.h"
+#include "core/file.h"
+#include "core/text.h"
+
+namespace alcove {
+namespace {
+
+using Json = nlohmann::json;
+
+/// A camera file being read: every complaint names the file and the field.
+struct CameraFile {
+  std::string path;
+  Json top, frame;  // fields of the frame's own entry win
+
+  const Json* find(const char* field) const {
+    if (frame.contains(field)) return &frame[field];
+    return top.contains(field) ? &top[field] : nullptr;
+  }
+
+  [[noreturn]] void refuse(const char* field, const std::string& why) const {
+    fail(ErrorKind::input, "{}: camera field \"{}\" {}", path, field, why);
+  }
+
+  double number(const char* field) const {
+    const Json* value = find(field);
+    if (!value) refuse(field, "is missing");
+    if (!value->is_number() || !std::isfinite(value->get<double>())) refuse(field, "must be a finite number, not " + value->dump());
+    return value->get<double>();
+  }
+
+  double positive(const char* field) const {
+    const double value = number(field);
+    if (value <= 0) refuse(field, fmt::format("must be above 0, not {}", value));
+    return value;
+  }
+
+  std::string text(const char* field) const {
+    const Json* value = find(field);
+    if (!value) return {};
+    if (!value->is_string()) refuse(field, "must be a string, not " + value->dump());
+    return lower_case(value->get<std::string>());
+  }
+
+  int resolution(int index) const {
+    const Json* value = find("resolution");
+    if (!value) refuse("resolution", "is missing");
+    const bool fine = value->is_array() && value->size() == 2 && (*value)[std::size_t(index)].is_number_integer();
+    const auto count = fine ? (*value)[std::size_t(index)].get<std::int64_t>() : 0;
+    if (count <= 0 || count > (1 << 24)) refuse("resolution", "must be two whole numbers of pixels above 0, not " + value->dump());
+    return int(count);
+  }
+};
+
+bool starts_with(const std::string& text, const char* start) { return text.rfind(start, 0) == 0; }
+
+/// The entry of `frames` with that number; an empty object where the file lists none.
+Json frame_entry(const CameraFile& file, int frame) {
+  if (!file.top.contains("frames")) return Json::object();
+  const Json& frames = file.top["frames"];
+  if (!frames.is_array()) file.refuse("frames", "must be a list");
+  for (const auto& entry : frames) {
+    if (!entry.is_object() || !entry.contains("frame") || !entry["frame"].is_number_integer())
+      file.refuse("frames", "must list objects with a whole number \"frame\"");
+    if (entry["frame"].get<int>() == frame) return entry;
+  }
+  file.refuse("frames", fmt::format("has no frame {}", frame));
+}
+
+/// The rotation in world_to_camera: orthonormal once a uniform scale is divided out.
+std::optional<Matrix3> view_from_world(const CameraFile& file) {
+  const char* field = "world_to_camera";
+  const Json* value = file.find(field);
+  if (!value) return std::nullopt;
+  Matrix3 m{};
+  bool fine = value->is_array() && value->size() == 4;
+  for (std::size_t row = 0; fine && row < 4; row++) {
+    fine = (*value)[row].is_array() && (*value)[row].size() == 4;
+    for (std::size_t column = 0; fine && column < 4; column++) {
+      fine = (*value)[row][column].is_number() && std::isfinite((*value)[row][column].get<double>());
+      if (fine && row < 3 && column < 3) m[row][column] = (*value)[row][column].get<double>();
+    }
+  }
+  if (!fine) file.refuse(field, "must be 4 rows of 4 finite numbers");
+  const auto dot = [&](int a, int b) {
+    return m[std::size_t(a)][0] * m[std::size_t(b)][0] + m[std::size_t(a)][1] * m[std::size_t(b)][1] + m[std::size_t(a)][2] * m[std::size_t(b)][2];
+  };
+  const double squared = dot(0, 0);
+  constexpr double kTolerance = 1e-3;  // matrices come from single precision, and from tools that round
+  for (int a = 0; a < 3; a++)
+    for (int b = 0; b < 3; b++)
+      if (!(squared > 0) || !(std::abs(dot(a, b) / squared - (a == b)) < kTolerance)) file.refuse(field, "is no rotation with a translation");
+  const double determinant = m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) - m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
+                             m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
+  if (determinant < 0) file.refuse(field, "mirrors space; the camera looks along -z with x right and y up, right-handed");
+  for (auto& row : m)
+    for (auto& x : row) x /= std::sqrt(squared);
+  return m;
+}
+
+DepthKind depth_kind(const CameraFile& file) {
+  const char* field = file.find("depth_kind") ? "depth_kind" : "depth";
+  const std::string text = file.text(field);
+  if (text.empty()) return DepthKind::automatic;
+  if (starts_with(text, "planar")) return DepthKind::planar;
+  if (starts_with(text, "ray")) return DepthKind::ray;
+  if (starts_with(text, "inverse")) return DepthKind::inverse;
+  file.refuse(field, fmt::format("must begin with planar, ray or inverse, not \"{}\"", text));
+}
+
+NormalSpace normal_space(const CameraFile& file) {
+  const std::string text = file.text("normal_space");
+  if (text.empty()) return NormalSpace::automatic;
+  if (text == "world") return NormalSpace::world;
+  if (text == "view" || text == "camera") return NormalSpace::view;
+  file.refuse("normal_space", fmt::format("must be world or view, not \"{}\"", text));
+}
+
+/// fx and fy for square tangents: a pixel `aspect` times as wide as high covers that much more in x.
+Camera centred(const Window& display, double fx, double aspect, bool orthographic) {
+  Camera camera;
+  camera.width = display.width;
+  camera.height = display.height;
+  camera.fx = fx;
+  camera.fy = fx * aspect;
+  camera.cx = 0.5 * display.width;
+  camera.cy = 0.5 * display.height;
+  camera.orthographic = orthographic;
+  return camera;
+}
+
+/// The same field of view at the frame's resolution: proxies share their camera with the full size.
+Camera fitted(Camera camera, const Window& display, const std::string& path) {
+  if (camera.width == display.width && camera.height == display.height) return camera;
+  if (std::int64_t(camera.width) * display.height != std::int64_t(camera.height) * display.width)
+    fail(ErrorKind::input, "{}: the camera is for {}x{} pixels, and the frame's display window is {}x{}: give a --camera that fits", path, camera.width,
+         camera.height, display.width, display.height);
+  const double scale = double(display.width) / camera.width;
+  camera.width = display.width;
+  camera.height = display.height;
+  for (double* x : {&camera.fx, &camera.fy, &camera.cx, &camera.cy}) *x *= scale;
+  return camera;
+}
+
+}  // namespace
+
+Camera read_camera(const std::string& path, int frame) {
+  CameraFile file{path, Json::object(), Json::object()};
+  file.top = Json::parse(read_text(path, "camera", "--camera"), nullptr, false);
+  if (!file.top.is_object()) fail(ErrorKind::input, "{}: not a JSON object; --camera takes a camera file", path);
+  file.frame = frame_entry(file, frame);
+
+  Camera camera;
+  camera.width = file.resolution(0);
+  camera.height = file.resolution(1);
+  camera.fx = file.positive("fx");
+  camera.fy = file.positive("fy");
+  camera.cx = file.number("cx");
+  camera.cy = file.number("cy");
+  const std::string projection = file.text("projection");
+  if (!projection.empty() && projection != "perspective" && projection != "orthographic")
+    file.refuse("projection", fmt::format("must be perspective or orthographic, not \"{}\"", projection));
+  camera.orthographic = projection == "orthographic";
+  camera.view_from_world = view_from_world(file);
+  camera.depth_kind = depth_kind(file);
+  camera.normal_space = normal_space(file);
+  if (file.find("pixel_aspect")) file.positive("pixel_aspect");
+  return camera;
+}
+
+Camera camera_for(const InputSettings& settings, const Window& display, double pixel_aspect, int frame) {
+  if (!settings.camera.empty()) return fitted(read_camera(settings.camera, frame), display, settings.camera);
+  const double half_width = 0.5 * display.width;
+  if (settings.fov) return centred(display, half_width / std::tan(*settings.fov * std::numbers::pi / 360), pixel_aspect, false);
+  if (settings.focal && settings.aperture) return centred(display, 2 * half_width * *settings.focal / *settings.aperture, pixel_aspect, false);
+  if (settings.ortho_width) return centred(display, 2 * half_width / *settings.ortho_width, pixel_aspect, true);
+  fail(ErrorKind::usage, "no camera for {}: give --camera FILE.json, or --fov DEGREES, or --focal MM with --aperture MM, or --ortho-width UNITS",
+       settings.input.empty() ? settings.depth : settings.input);
+}
+
+View view_of(const Camera& camera, const Window& data, const Window& display) {
+  View view{};
+  view.size = {data.width, data.height};
+  view.center = {float(camera.cx + display.x - data.x), float(camera.cy + display.y - data.y)};
+  view.tangent_per_pixel = {float(1 / camera.fx), float(-1 / camera.fy)};
+  view.orthographic = camera.orthographic ? 1 : 0;
+  return view;
+}
+
+}  // namespace alcove

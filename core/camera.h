@@ -1,0 +1,41 @@
+// One projection model: pixel <-> view ray, from a camera JSON file or from numbers.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+
+#include "core/image.h"
+#include "core/settings.h"
+#include "kernels/shared.h"
+
+namespace alcove {
+
+/// Rows of a rotation (or any linear map): to = M * from.
+using Matrix3 = std::array<std::array<double, 3>, 3>;
+
+/// Projection onto the display window: view space is right-handed, x right, y up, the camera looks along -z.
+/// A point is seen at (cx + fx x / -z, cy - fy y / -z), or (cx + fx x, cy - fy y) when orthographic.
+struct Camera {
+  int width = 0, height = 0;  // px of the display window it was made for, > 0
+  double fx = 0, fy = 0;      // px (perspective) or px a scene unit (orthographic), > 0
+  double cx = 0, cy = 0;      // px from the display window's upper left corner
+  bool orthographic = false;
+  std::optional<Matrix3> view_from_world;        // rotation only; none where the source does not tell
+  DepthKind depth_kind = DepthKind::automatic;   // what its source says of the frame's depth
+  NormalSpace normal_space = NormalSpace::automatic;
+};
+
+/// Reads a camera JSON file (keys: DESIGN of the command line in README.md); where it lists `frames`, the one of that number.
+/// Fails with ErrorKind::input, naming file and field, on anything missing or senseless.
+Camera read_camera(const std::string& path, int frame);
+
+/// The camera that the settings give for a frame of this display window and pixel aspect (width / height of a pixel):
+/// the file, or fov, or focal and aperture, or ortho_width. Fails with ErrorKind::usage when there is none, ErrorKind::input when it does not fit.
+Camera camera_for(const InputSettings& settings, const Window& display, double pixel_aspect, int frame);
+
+/// The projection as kernels take it, for pixels counted from the data window's upper left corner.
+View view_of(const Camera& camera, const Window& data, const Window& display);
+
+}  // namespace alcove

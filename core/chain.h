@@ -1,0 +1,19 @@
+// The order of the passes.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "core/passes.h"
+
+namespace alcove {
+
+/// What the host reads after the recorder has run; null: not asked for.
+struct FrameOutputs {
+  gpu::Buffer* counts = nullptr;     // one PrepareCounts
+  gpu::Buffer* ao = nullptr;         // a plane: visibility in [0, 1]
+  gpu::Buffer* composite = nullptr;  // planes r, g, b
+};
+
+/// Records the whole chain for one frame. settings.radius must be set.
+FrameOutputs run_chain(gpu::Recorder& gpu, const FrameInputs& frame, const EstimatorSettings& settings);
+
+}  // namespace alcove

@@ -1,0 +1,28 @@
+// Scene-linear colour to display colour, through OpenColorIO.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+
+namespace alcove {
+
+/// The default view of the default display of a configuration: `config` (a file), else what the OCIO variable names, else
+/// a small built-in one (linear Rec.709 to sRGB). Fails with ErrorKind::input when the configuration cannot be used.
+class DisplayTransform {
+ public:
+  explicit DisplayTransform(const std::string& config);
+  ~DisplayTransform();
+  /// Interleaved r, g, b from the role scene_linear to display values, in place.
+  void apply(std::span<float> rgb) const;
+  /// "display / view", for the log.
+  const std::string& description() const { return description_; }
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+  std::string description_;
+};
+
+}  // namespace alcove

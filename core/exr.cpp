@@ -1,0 +1,221 @@
+// OpenEXR's C++ API, wrapped: the only file that includes it.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/exr.h"
+
+#include <ImathBox.h>
+#include <ImfArray.h>
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfIO.h>
+#include <ImfInputPart.h>
+#include <ImfMultiPartInputFile.h>
+#include <ImfOutputFile.h>
+#include <ImfPartType.h>
+#include <ImfStandardAttributes.h>
+#include <ImfStringAttribute.h>
+#include <ImfTestFile.h>
+#include <ImfThreading.h>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <set>
+
+#include "core/error.h"
+#include "core/file.h"
+#include "core/text.h"
+
+namespace alcove {
+
+class ExrAttributes {
+ public:
+  Imf::Header header;
+};
+
+namespace {
+
+Window window_of(const Imath::Box2i& box) { return {box.min.x, box.min.y, box.max.x - box.min.x + 1, box.max.y - box.min.y + 1}; }
+
+Imath::Box2i box_of(const Window& window) {
+  return {{window.x, window.y}, {window.x + window.width - 1, window.y + window.height - 1}};
+}
+
+SampleType type_of(Imf::PixelType type) {
+  return type == Imf::HALF ? SampleType::half_float : type == Imf::FLOAT ? SampleType::single_float : SampleType::integer;
+}
+
+/// What OpenEXR says of an error, on one line.
+std::string one_line(const std::exception& error) {
+  std::string text = error.what();
+  std::ranges::replace(text, '\n', ' ');
+  return text;
+}
+
+ExrPart describe(const Imf::Header& header) {
+  ExrPart part{header.hasName() ? header.name() : std::string(), window_of(header.dataWindow()), {}};
+  for (auto channel = header.channels().begin(); channel != header.channels().end(); ++channel) {
+    const auto& c = channel.channel();
+    part.channels.push_back({channel.name(), type_of(c.type), c.xSampling != 1 || c.ySampling != 1});
+  }
+  return part;
+}
+
+/// An output stream into memory: OpenEXR's own file stream loses the errors of its last bytes.
+class MemoryStream : public Imf::OStream {
+ public:
+  MemoryStream() : Imf::OStream("memory") {}
+  void write(const char data[], int count) override {
+    const std::size_t end = position_ + std::size_t(count);
+    if (bytes_.size() < end) bytes_.resize(end);
+    std::memcpy(bytes_.data() + position_, data, std::size_t(count));
+    position_ = end;
+  }
+  std::uint64_t tellp() override { return position_; }
+  void seekp(std::uint64_t position) override { position_ = position; }
+  std::span<const char> bytes() const { return bytes_; }
+
+ private:
+  std::vector<char> bytes_;
+  std::size_t position_ = 0;
+};
+
+/// Attributes that say how the input is stored or what its channels are; they do not hold for another file.
+bool describes_storage(const std::string& name) {
+  static const std::set<std::string> kNames = {"channels",   "compression",      "dataWindow",         "displayWindow",       "pixelAspectRatio",
+                                               "lineOrder",  "tiles",            "chunkCount",         "type",                "version",
+                                               "name",       "preview",          "dwaCompressionLevel", "zipCompressionLevel", "multiView",
+                                               "deepImageState", "maxSamplesPerPixel", "BlenderMultiChannel"};
+  return kNames.contains(name) || name.rfind("cryptomatte/", 0) == 0;
+}
+
+Imf::Compression compression_of(const std::string& name) {
+  if (name == "none") return Imf::NO_COMPRESSION;
+  if (name == "rle") return Imf::RLE_COMPRESSION;
+  if (name == "zips") return Imf::ZIPS_COMPRESSION;
+  if (name == "piz") return Imf::PIZ_COMPRESSION;
+  return Imf::ZIP_COMPRESSION;
+}
+
+Imf::Header header_of(const ExrOutput& output) {
+  Imf::Header header(box_of(output.display), box_of(output.data), float(output.pixel_aspect));
+  header.compression() = compression_of(output.compression);
+  if (output.attributes)
+    for (auto attribute = output.attributes->header.begin(); attribute != output.attributes->header.end(); ++attribute)
+      if (!describes_storage(attribute.name())) header.insert(attribute.name(), attribute.attribute());
+  for (const auto& [name, value] : output.own_attributes) header.insert(name, Imf::StringAttribute(value));
+  for (const auto& plane : output.planes) header.channels().insert(plane.channel, Imf::Channel(plane.type == SampleType::half_float ? Imf::HALF : Imf::FLOAT));
+  return header;
+}
+
+std::vector<half> to_half(std::span<const float> values) {
+  std::vector<half> halves(values.size());
+  std::ranges::transform(values, halves.begin(), [](float x) { return half(x); });
+  return halves;
+}
+
+}  // namespace
+
+struct ExrFile::Impl {
+  std::string path;
+  std::unique_ptr<Imf::MultiPartInputFile> file;
+  std::vector<ExrPart> parts;
+  Window display;
+  double pixel_aspect = 1;
+};
+
+ExrFile::ExrFile(const std::string& path, const char* option) : impl_(std::make_unique<Impl>()) {
+  require_readable(path, "EXR", option);
+  impl_->path = path;
+  try {
+    if (!Imf::isOpenExrFile(path.c_str())) fail(ErrorKind::input, "{}: not an OpenEXR file ({})", path, option);
+    impl_->file = std::make_unique<Imf::MultiPartInputFile>(path.c_str());
+    for (int part = 0; part < impl_->file->parts(); part++) {
+      const auto& header = impl_->file->header(part);
+      if (header.hasType() && Imf::isDeepData(header.type()))
+        fail(ErrorKind::input, "{}: part {} holds deep data, which has no single depth a pixel; flatten it first", path, part);
+      impl_->parts.push_back(describe(header));
+    }
+    impl_->display = window_of(impl_->file->header(0).displayWindow());
+    impl_->pixel_aspect = impl_->file->header(0).pixelAspectRatio();
+  } catch (const Error&) {
+    throw;
+  } catch (const std::exception& error) {
+    fail(ErrorKind::input, "{}: the EXR header cannot be read: {}", path, one_line(error));
+  }
+}
+
+ExrFile::~ExrFile() = default;
+ExrFile::ExrFile(ExrFile&&) noexcept = default;
+const std::string& ExrFile::path() const { return impl_->path; }
+const std::vector<ExrPart>& ExrFile::parts() const { return impl_->parts; }
+const Window& ExrFile::display() const { return impl_->display; }
+double ExrFile::pixel_aspect() const { return impl_->pixel_aspect; }
+
+std::shared_ptr<const ExrAttributes> ExrFile::attributes(int part) const {
+  auto attributes = std::make_shared<ExrAttributes>();
+  attributes->header = impl_->file->header(part);
+  return attributes;
+}
+
+void ExrFile::read(std::span<const ExrRead> reads) {
+  std::set<int> parts;
+  for (const auto& read : reads) parts.insert(read.part);
+  for (const int part : parts) {
+    const Window& data = impl_->parts[std::size_t(part)].data;
+    const std::size_t row_bytes = sizeof(float) * std::size_t(data.width);
+    Imf::FrameBuffer frame_buffer;
+    for (const auto& read : reads)
+      if (read.part == part)
+        frame_buffer.insert(read.channel, Imf::Slice::Make(Imf::FLOAT, read.to, box_of(data), sizeof(float), row_bytes));
+    try {
+      Imf::InputPart input(*impl_->file, part);
+      input.setFrameBuffer(frame_buffer);
+      input.readPixels(data.y, data.y + data.height - 1);
+    } catch (const std::exception& error) {
+      fail(ErrorKind::input, "{}: the pixels of part {} cannot be read, the file is damaged or incomplete: {}", impl_->path, part, one_line(error));
+    }
+  }
+}
+
+void write_exr(const std::string& path, const ExrOutput& output) {
+  MemoryStream stream;
+  try {
+    std::vector<std::vector<half>> halves;
+    Imf::FrameBuffer frame_buffer;
+    for (const auto& plane : output.planes) {
+      const bool is_half = plane.type == SampleType::half_float;
+      const std::size_t bytes = is_half ? sizeof(half) : sizeof(float);
+      if (is_half) halves.push_back(to_half(plane.pixels));
+      const void* pixels = is_half ? static_cast<const void*>(halves.back().data()) : plane.pixels.data();
+      frame_buffer.insert(plane.channel, Imf::Slice::Make(is_half ? Imf::HALF : Imf::FLOAT, pixels, box_of(output.data), bytes,
+                                                          bytes * std::size_t(output.data.width)));
+    }
+    Imf::OutputFile file(stream, header_of(output));
+    file.setFrameBuffer(frame_buffer);
+    file.writePixels(output.data.height);
+  } catch (const std::exception& error) {
+    fail(ErrorKind::output, "{}: could not be encoded: {}", path, one_line(error));
+  }
+  write_whole(path, stream.bytes());
+}
+
+Image read_exr_image(const std::string& path, const std::vector<std::string>& channels) {
+  ExrFile file(path, "INPUT");
+  const auto has_all = [&](const ExrPart& part) {
+    return std::ranges::all_of(channels, [&](const auto& name) { return std::ranges::find(part.channels, name, &ExrChannel::name) != part.channels.end(); });
+  };
+  const auto part = std::ranges::find_if(file.parts(), has_all);
+  if (part == file.parts().end()) fail(ErrorKind::input, "{}: no part has the channels {}", path, list_of(channels));
+  std::vector<std::string> names = channels;
+  if (names.empty()) std::ranges::transform(part->channels, std::back_inserter(names), &ExrChannel::name);
+  Image image(part->data, file.display(), names);
+  std::vector<ExrRead> reads;
+  for (std::size_t i = 0; i < names.size(); i++) reads.push_back({int(part - file.parts().begin()), names[i], image.plane(i).data()});
+  file.read(reads);
+  return image;
+}
+
+void set_exr_threads(int threads) { Imf::setGlobalThreadCount(threads); }
+
+}  // namespace alcove

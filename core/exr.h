@@ -1,0 +1,90 @@
+// OpenEXR files in and out: headers, chosen channels in one pass, whole files.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/image.h"
+#include "core/settings.h"
+
+namespace alcove {
+
+enum class SampleType { half_float, single_float, integer };
+
+struct ExrChannel {
+  std::string name;
+  SampleType type;
+  bool subsampled;  // fewer samples than pixels: cannot be read as a plane
+};
+
+struct ExrPart {
+  std::string name;  // empty in single-part files
+  Window data;
+  std::vector<ExrChannel> channels;
+};
+
+/// All attributes of one part's header, of every type, to be carried into an output.
+class ExrAttributes;
+
+/// A channel to read, and where to: width x height floats of the part's data window, row by row.
+struct ExrRead {
+  int part;
+  std::string channel;
+  float* to;
+};
+
+/// An EXR file whose header has been read. Every failure is ErrorKind::input and names the file.
+class ExrFile {
+ public:
+  /// Fails on a missing file, a folder, a file that is no EXR, and deep data.
+  explicit ExrFile(const std::string& path, const char* option);
+  ~ExrFile();
+  ExrFile(ExrFile&&) noexcept;
+
+  const std::string& path() const;
+  const std::vector<ExrPart>& parts() const;
+  const Window& display() const;
+  /// Width over height of a pixel.
+  double pixel_aspect() const;
+  std::shared_ptr<const ExrAttributes> attributes(int part) const;
+
+  /// Reads the channels as float, each part decoded once. Fails on truncated or corrupt data.
+  void read(std::span<const ExrRead> reads);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// A plane to write: width x height floats of the data window.
+struct ExrPlane {
+  std::string channel;
+  SampleType type;  // half: rounded to nearest
+  std::span<const float> pixels;
+};
+
+struct ExrOutput {
+  Window data, display;
+  double pixel_aspect = 1;
+  std::string compression = "zip";  // none, rle, zips, zip, piz
+  std::shared_ptr<const ExrAttributes> attributes;     // carried over, but those that describe the input's own channels and storage
+  std::map<std::string, std::string> own_attributes;   // added as strings
+  std::vector<ExrPlane> planes;
+};
+
+/// Writes a single-part scan-line file, whole or not at all. Fails with ErrorKind::output.
+void write_exr(const std::string& path, const ExrOutput& output);
+
+/// Every channel of the file's first part that holds all the named ones (all channels: no names), as an image. Fails with ErrorKind::input.
+Image read_exr_image(const std::string& path, const std::vector<std::string>& channels = {});
+
+/// How many threads the codecs may use, for the whole process; 0: none beside the caller's.
+void set_exr_threads(int threads);
+
+}  // namespace alcove

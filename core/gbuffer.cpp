@@ -1,0 +1,276 @@
+// Channel search by the names that renderers use.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/gbuffer.h"
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <optional>
+
+#include "core/error.h"
+#include "core/text.h"
+
+namespace alcove {
+namespace {
+
+/// A channel under its full name: the part's name stands for a layer where the channel does not repeat it.
+struct NamedChannel {
+  ChannelRef ref;
+  std::string full, lower;
+  bool subsampled;
+};
+
+using Components = std::vector<std::vector<std::string>>;  // sets of last name parts that may spell an AOV
+
+/// An AOV's usual names, lower case, the likeliest first.
+struct AovNames {
+  const char* what;
+  const char* channel_option;
+  std::vector<std::string> layers;
+  Components in_layer;  // below one of the layers
+  Components bare;      // by themselves in any file
+  Components alone;     // by themselves in a file that was given for this AOV only
+};
+
+const AovNames kDepthNames{"depth", "--depth-channel", {"depth", "z", "zdepth", "vrayzdepth", "z-depth"}, {{"z"}, {"depth"}, {"r"}, {"y"}}, {{"z"}, {"depth"}, {"zdepth"}, {"pz"}}, {{"r"}, {"y"}}};
+const AovNames kNormalNames{"normal", "--normal-channels", {"normal", "n", "nn", "normals", "ns"}, {{"x", "y", "z"}, {"r", "g", "b"}}, {{"nx", "ny", "nz"}}, {{"x", "y", "z"}, {"r", "g", "b"}}};
+const AovNames kBeautyNames{"beauty", "--beauty-channels", {"combined", "rgba", "beauty"}, {{"r", "g", "b"}, {"red", "green", "blue"}}, {{"r", "g", "b"}}, {}};
+const AovNames kIndirectNames{"indirect diffuse", "--layer", {"diffind", "diffuse indirect", "diffuse_indirect", "indirectdiffuse", "gi"}, {{"r", "g", "b"}}, {}, {}};
+const AovNames kDiffuseColorNames{"diffuse colour", "--layer", {"diffcol", "diffuse color"}, {{"r", "g", "b"}}, {}, {}};
+
+std::vector<NamedChannel> channels_of(const ExrFile& file, std::size_t index, const std::string& layer) {
+  std::vector<NamedChannel> channels;
+  const std::string wanted = lower_case(layer);
+  for (std::size_t part = 0; part < file.parts().size(); part++) {
+    const auto& p = file.parts()[part];
+    for (const auto& channel : p.channels) {
+      const bool repeats = p.name.empty() || channel.name.rfind(p.name + ".", 0) == 0;
+      NamedChannel named{{index, int(part), channel.name}, repeats ? channel.name : p.name + "." + channel.name, {}, channel.subsampled};
+      named.lower = lower_case(named.full);
+      if (!wanted.empty() && named.lower.rfind(wanted + ".", 0) != 0) continue;
+      if (!wanted.empty()) named.lower = named.lower.substr(wanted.size() + 1);
+      channels.push_back(std::move(named));
+    }
+  }
+  return channels;
+}
+
+std::vector<std::string> full_names(const std::vector<NamedChannel>& channels) {
+  std::vector<std::string> names;
+  std::ranges::transform(channels, std::back_inserter(names), &NamedChannel::full);
+  return names;
+}
+
+/// What stands before `.component` (or "" for the bare component); nothing when the name does not end so.
+std::optional<std::string> prefix_of(const std::string& name, const std::string& component) {
+  if (name == component) return "";
+  const std::string end = "." + component;
+  if (name.size() <= end.size() || name.compare(name.size() - end.size(), end.size(), end) != 0) return std::nullopt;
+  return name.substr(0, name.size() - end.size());
+}
+
+/// Whether a layer path is, or ends in, this layer.
+bool is_layer(const std::string& path, const std::string& layer) { return path == layer || (!layer.empty() && prefix_of(path, layer)); }
+
+/// The channels of one part that spell `layer` with these components: one entry for each place where all are found.
+std::vector<std::vector<const NamedChannel*>> places_of(const std::vector<NamedChannel>& channels, const std::string& layer, const std::vector<std::string>& components) {
+  std::map<std::pair<int, std::string>, std::vector<const NamedChannel*>> places;
+  for (std::size_t i = 0; i < components.size(); i++)
+    for (const auto& channel : channels) {
+      const auto prefix = prefix_of(channel.lower, components[i]);
+      if (!prefix || !is_layer(*prefix, layer)) continue;
+      auto& place = places[{channel.ref.part, *prefix}];
+      if (place.size() == i) place.push_back(&channel);
+    }
+  std::vector<std::vector<const NamedChannel*>> whole;
+  for (auto& [key, place] : places)
+    if (place.size() == components.size()) whole.push_back(std::move(place));
+  return whole;
+}
+
+std::vector<ChannelRef> refs_of(const std::vector<const NamedChannel*>& channels, const ExrFile& file) {
+  std::vector<ChannelRef> refs;
+  for (const auto* channel : channels) {
+    if (channel->subsampled) fail(ErrorKind::input, "{}: channel {} is subsampled; it must have a sample for every pixel", file.path(), channel->full);
+    refs.push_back(channel->ref);
+  }
+  return refs;
+}
+
+/// The AOV at the one place where `layer` holds one of the component sets; empty when there is none. Two places are an error.
+std::vector<ChannelRef> find_in_layer(const ExrFile& file, const std::vector<NamedChannel>& channels, const AovNames& names, const std::string& layer,
+                                      const Components& sets) {
+  for (const auto& components : sets) {
+    const auto places = places_of(channels, layer, components);
+    if (places.size() > 1)
+      fail(ErrorKind::input, "{}: two layers hold a {}: {} and {}; say which with --layer or {}", file.path(), names.what, places[0][0]->full,
+           places[1][0]->full, names.channel_option);
+    if (places.size() == 1) return refs_of(places[0], file);
+  }
+  return {};
+}
+
+/// The AOV under its usual names; empty when there is none.
+std::vector<ChannelRef> find_usual(const ExrFile& file, const std::vector<NamedChannel>& channels, const AovNames& names, bool own_file) {
+  for (const auto& layer : names.layers)
+    if (auto found = find_in_layer(file, channels, names, layer, names.in_layer); !found.empty()) return found;
+  auto found = find_in_layer(file, channels, names, "", names.bare);
+  return found.empty() && own_file ? find_in_layer(file, channels, names, "", names.alone) : found;
+}
+
+std::vector<std::string> split(const std::string& text) {
+  std::vector<std::string> parts(1);
+  for (const char c : text)
+    if (c == ',') parts.emplace_back();
+    else if (c != ' ') parts.back() += c;
+  return parts;
+}
+
+const NamedChannel* find_named(const std::vector<NamedChannel>& channels, const std::string& name) {
+  const std::string lower = lower_case(name);
+  for (const auto& channel : channels)
+    if (lower_case(channel.full) == lower || lower_case(channel.ref.channel) == lower) return &channel;
+  return nullptr;
+}
+
+/// The channels that the user named: each by its full name, or all by their layer.
+std::vector<ChannelRef> find_chosen(const ExrFile& file, const std::vector<NamedChannel>& channels, const AovNames& names, const std::string& chosen) {
+  auto wanted = split(chosen);
+  const std::size_t count = names.in_layer.front().size();
+  if (wanted.size() == 1 && count > 1)
+    for (const auto& components : names.in_layer)
+      if (const auto places = places_of(channels, lower_case(chosen), components); places.size() == 1) return refs_of(places[0], file);
+  if (wanted.size() != count && !(count == 3 && wanted.size() == 4))
+    fail(ErrorKind::input, "{}: no layer {} for {}{}; there is {}; {} takes a layer or {} channel names with commas", file.path(), chosen,
+         names.channel_option, suggestion(chosen, full_names(channels)), list_of(full_names(channels)), names.channel_option, count);
+  std::vector<const NamedChannel*> found;
+  for (const auto& name : wanted) {
+    found.push_back(find_named(channels, name));
+    if (!found.back())
+      fail(ErrorKind::input, "{}: no channel {} for {}{}; there is {}", file.path(), name, names.channel_option, suggestion(name, full_names(channels)),
+           list_of(full_names(channels)));
+  }
+  return refs_of(found, file);
+}
+
+/// Files opened once each, and their channels.
+class Search {
+ public:
+  Search(const InputSettings& settings, std::vector<ExrFile>& files) : settings_(settings), files_(files) {}
+
+  /// The file's place in the list, opened now if it is new.
+  std::size_t open(const std::string& path, const char* option) {
+    if (path.empty()) fail(ErrorKind::usage, "no INPUT and no {} FILE: give one of them", option);
+    const auto known = std::ranges::find(files_, path, &ExrFile::path);
+    if (known != files_.end()) return std::size_t(known - files_.begin());
+    files_.emplace_back(path, path == settings_.input ? "INPUT" : option);
+    channels_.push_back(channels_of(files_.back(), files_.size() - 1, settings_.layer));
+    return files_.size() - 1;
+  }
+
+  /// The AOV by the names that the user chose, or else its usual ones; empty when there is none. `own_file`: the file holds nothing else.
+  std::vector<ChannelRef> find(std::size_t file, const AovNames& names, const std::string& chosen, bool own_file) const {
+    return chosen.empty() ? find_usual(files_[file], channels_[file], names, own_file) : find_chosen(files_[file], channels_[file], names, chosen);
+  }
+
+  /// As find(), but not to find anything is an error. `hint` is the name that near misses are measured by.
+  std::vector<ChannelRef> require(std::size_t file, const AovNames& names, const std::string& chosen, bool own_file, const char* hint) const {
+    auto found = find(file, names, chosen, own_file);
+    if (!found.empty()) return found;
+    const auto all = full_names(channels_[file]);
+    const std::string within = settings_.layer.empty() ? "" : fmt::format(" in layer {}", settings_.layer);
+    fail(ErrorKind::input, "{}: no {} channel found{}{}; there is {}; name it with {}", files_[file].path(), names.what, within, suggestion(hint, all),
+         list_of(all), names.channel_option);
+  }
+
+  /// A channel beside the r, g, b of a beauty, under the same layer.
+  std::vector<ChannelRef> with_alpha(std::vector<ChannelRef> beauty) const {
+    if (beauty.size() != 3) return beauty;
+    const std::string& red = beauty[0].channel;
+    const std::size_t dot = red.rfind('.');
+    const std::string prefix = dot == red.npos ? "" : red.substr(0, dot + 1);
+    for (const auto& channel : channels_[beauty[0].file]) {
+      if (channel.ref.part != beauty[0].part || channel.subsampled) continue;
+      const std::string& name = channel.ref.channel;
+      if (name == prefix + "A" || name == prefix + "a") {
+        beauty.push_back(channel.ref);
+        break;
+      }
+    }
+    return beauty;
+  }
+
+ private:
+  const InputSettings& settings_;
+  std::vector<ExrFile>& files_;
+  std::vector<std::vector<NamedChannel>> channels_;
+};
+
+const ExrPart& part_of(const FrameSource& source, const ChannelRef& ref) { return source.files[ref.file].parts()[std::size_t(ref.part)]; }
+
+/// All planes of a frame lie over the same pixels.
+void require_same_window(const FrameSource& source, const std::vector<ChannelRef>& channels, const char* what, const char* option) {
+  for (const auto& channel : channels) {
+    const Window& data = part_of(source, channel).data;
+    if (data != source.data)
+      fail(ErrorKind::input, "{}: the {} channel {} is {}, and the depth is {}: both must cover the same pixels ({})", source.files[channel.file].path(),
+           what, channel.channel, to_string(data), to_string(source.data), option);
+  }
+}
+
+void find_beauty(FrameSource& source, const Search& search, std::size_t file, const InputSettings& settings) {
+  source.beauty = search.with_alpha(search.require(file, kBeautyNames, settings.beauty_channels, !settings.beauty.empty(), "Combined.R"));
+  source.indirect = search.find(file, kIndirectNames, "", false);
+  source.diffuse_color = search.find(file, kDiffuseColorNames, "", false);
+  // Blender's indirect light is without the surface's colour; without the colour pass the part is unknown. Others' includes it.
+  const bool is_blender = !source.indirect.empty() && lower_case(source.indirect[0].channel).find("diffind") != std::string::npos;
+  if (is_blender && source.diffuse_color.empty()) source.indirect.clear();
+  if (!is_blender) source.diffuse_color.clear();
+  for (const auto* aov : {&source.beauty, &source.indirect, &source.diffuse_color}) require_same_window(source, *aov, "beauty", "--beauty");
+}
+
+}  // namespace
+
+FrameSource find_frame(const InputSettings& settings, bool with_beauty, int frame) {
+  FrameSource source;
+  Search search(settings, source.files);
+  const std::string& depth_path = settings.depth.empty() ? settings.input : settings.depth;
+  const std::string& normal_path = !settings.normal.empty() ? settings.normal : settings.input.empty() ? depth_path : settings.input;
+  const std::string& beauty_path = !settings.beauty.empty() ? settings.beauty : settings.input.empty() ? depth_path : settings.input;
+
+  const std::size_t depth_file = search.open(depth_path, "--depth");
+  source.depth = search.require(depth_file, kDepthNames, settings.depth_channel, !settings.depth.empty(), "Depth.Z");
+  source.data = part_of(source, source.depth[0]).data;
+  source.display = source.files[depth_file].display();
+  source.pixel_aspect = source.files[depth_file].pixel_aspect();
+
+  const std::size_t normal_file = search.open(normal_path, "--normal");
+  source.normal = settings.normal.empty() ? search.find(normal_file, kNormalNames, settings.normal_channels, false)
+                                          : search.require(normal_file, kNormalNames, settings.normal_channels, true, "Normal.X");
+  require_same_window(source, source.normal, "normal", "--normal");
+  if (with_beauty) find_beauty(source, search, search.open(beauty_path, "--beauty"), settings);
+
+  source.camera = camera_for(settings, source.display, source.pixel_aspect, frame);
+  const auto decided = [](auto setting, auto from_camera, auto otherwise) {
+    using Kind = decltype(setting);
+    return setting != Kind::automatic ? setting : from_camera != Kind::automatic ? from_camera : otherwise;
+  };
+  source.depth_kind = decided(settings.depth_kind, source.camera.depth_kind, DepthKind::planar);
+  source.normal_space = decided(settings.normal_space, source.camera.normal_space, NormalSpace::world);
+  if (!source.normal.empty() && source.normal_space == NormalSpace::world && !source.camera.view_from_world)
+    fail(ErrorKind::input, "{}: its normals are in world space, and the camera has no world_to_camera: give a --camera file with it, or --normal-space view",
+         source.files[source.normal[0].file].path());
+  return source;
+}
+
+void read_planes(FrameSource& source, const std::vector<PlaneRead>& reads) {
+  std::vector<std::vector<ExrRead>> by_file(source.files.size());
+  for (const auto& read : reads)
+    for (std::size_t i = 0; i < read.channels->size(); i++) {
+      const auto& channel = (*read.channels)[i];
+      by_file[channel.file].push_back({channel.part, channel.channel, read.to + i * source.data.pixels()});
+    }
+  for (std::size_t file = 0; file < by_file.size(); file++) source.files[file].read(by_file[file]);
+}
+
+}  // namespace alcove

@@ -1,0 +1,51 @@
+// Finds the AOVs of a frame in its files and describes them completely; the only code that knows renderers' names.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/camera.h"
+#include "core/exr.h"
+#include "core/settings.h"
+
+namespace alcove {
+
+/// One channel of one of the frame's files.
+struct ChannelRef {
+  std::size_t file;
+  int part;
+  std::string channel;
+};
+
+/// Where everything is that a frame needs; nothing but headers has been read.
+struct FrameSource {
+  std::vector<ExrFile> files;
+  Window data, display;  // of all channels below
+  double pixel_aspect = 1;
+  std::vector<ChannelRef> depth;          // one
+  std::vector<ChannelRef> normal;         // x, y, z; none: to be reconstructed from depth
+  std::vector<ChannelRef> beauty;         // r, g, b and, where there is one, a; none unless asked for
+  std::vector<ChannelRef> indirect;       // r, g, b: the indirect diffuse light; none where the frame has no such part
+  std::vector<ChannelRef> diffuse_color;  // r, g, b: the colour that it is still to be multiplied by; none where it holds it already
+  DepthKind depth_kind = DepthKind::planar;
+  NormalSpace normal_space = NormalSpace::world;
+  Camera camera;
+};
+
+/// Opens the files that the settings name and finds the channels. `with_beauty` asks for the beauty and its ambient parts too.
+/// Fails with ErrorKind::input, listing what there is and naming the option that decides, when a channel is not found, is
+/// found twice, is subsampled, or has another size than the depth.
+FrameSource find_frame(const InputSettings& settings, bool with_beauty, int frame);
+
+/// A plane, or several one behind the other, and where it goes.
+struct PlaneRead {
+  const std::vector<ChannelRef>* channels;
+  float* to;
+};
+
+/// Reads all planes, every part of every file decoded once.
+void read_planes(FrameSource& source, const std::vector<PlaneRead>& reads);
+
+}  // namespace alcove

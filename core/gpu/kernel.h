@@ -1,0 +1,50 @@
+// A compute pipeline made from embedded SPIR-V, whose bindings and parameter size are read from the code itself.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <set>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/gpu/device.h"
+
+namespace alcove::gpu {
+
+/// The SPIR-V of kernels/STEM.comp, embedded at build time; empty when there is none of that stem.
+std::span<const std::uint32_t> kernel_code(std::string_view stem);
+
+/// What a kernel's SPIR-V says of itself.
+struct Reflection {
+  std::set<std::uint32_t> bindings;     // storage buffers of descriptor set 0
+  std::uint32_t parameter_bytes = 0;    // of the push constant block
+  std::uint32_t group[3] = {1, 1, 1};   // invocations of a workgroup
+  std::set<std::uint32_t> constant_ids; // specialization constants
+};
+/// Fails with ErrorKind::device on code that is no SPIR-V of the kind our kernels compile to.
+Reflection reflect(std::span<const std::uint32_t> code);
+
+class Kernel {
+ public:
+  /// Fails with ErrorKind::device when there is no such kernel, or its specialization constants are not 0 .. n-1.
+  Kernel(Device& device, const std::string& stem, const std::vector<std::uint32_t>& specialization);
+
+  /// Fails with ErrorKind::device, naming kernel and binding, unless host and kernel agree.
+  void require(std::size_t parameter_bytes, const std::set<std::uint32_t>& bindings) const;
+
+  const std::string& stem() const { return stem_; }
+  const Reflection& reflection() const { return reflection_; }
+  VkPipeline pipeline() const { return pipeline_; }
+  VkPipelineLayout layout() const { return layout_; }
+
+ private:
+  std::string stem_;
+  Reflection reflection_;
+  DeviceHandle<VkDescriptorSetLayout, vkDestroyDescriptorSetLayout> set_layout_;
+  DeviceHandle<VkPipelineLayout, vkDestroyPipelineLayout> layout_;
+  DeviceHandle<VkPipeline, vkDestroyPipeline> pipeline_;
+};
+
+}  // namespace alcove::gpu

@@ -1,0 +1,82 @@
+// Records a frame's kernels one after the other, runs them, and says what each took. It also keeps the frame's buffers.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <concepts>
+#include <initializer_list>
+#include <map>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/gpu/buffer.h"
+#include "core/gpu/kernel.h"
+
+namespace alcove::gpu {
+
+struct Binding {
+  std::uint32_t slot;
+  const Buffer& buffer;
+};
+
+/// Invocations in x and y; the recorder rounds up to workgroups.
+struct Extent {
+  std::uint32_t x, y = 1;
+};
+
+/// What one pass took on the device.
+struct PassTime {
+  std::string name;
+  double ms;
+};
+
+template <class T>
+concept KernelParams = std::is_trivially_copyable_v<T> && sizeof(T) <= 128;
+
+/// One frame in flight. Use: buffer() and fill, then dispatch() ..., then run(), then read. Buffers live as long as the recorder.
+class Recorder {
+ public:
+  explicit Recorder(Device& device);
+
+  /// The buffer of that name; made, or made again when size or use changed. Valid until the next call with another size.
+  Buffer& buffer(std::string_view name, std::size_t bytes, Use use);
+
+  /// Fills a buffer with zeros before the next dispatch.
+  void clear(const Buffer& buffer);
+  /// Copies what the host wrote to where kernels read it; nothing to do for mapped buffers.
+  void upload(const Buffer& buffer);
+  /// Copies what kernels wrote to where the host reads it after run(); nothing to do for mapped buffers.
+  void download(const Buffer& buffer);
+
+  /// Runs the kernel of that stem over the extent, after all that was recorded before. Fails unless parameters and bindings are the kernel's.
+  template <KernelParams Params>
+  void dispatch(const std::string& stem, const Params& params, std::initializer_list<Binding> bindings, Extent extent,
+                const std::vector<std::uint32_t>& specialization = {}) {
+    dispatch_bytes(stem, std::as_bytes(std::span(&params, 1)), bindings, extent, specialization);
+  }
+
+  /// Submits what was recorded and waits for it. The recorder is then empty again.
+  void run();
+
+  /// Device time of each pass of the last run, in order; empty on a device without timestamps.
+  const std::vector<PassTime>& passes() const { return passes_; }
+
+ private:
+  void begin();
+  void barrier();
+  void dispatch_bytes(const std::string& stem, std::span<const std::byte> params, std::span<const Binding> bindings, Extent extent,
+                      const std::vector<std::uint32_t>& specialization);
+
+  Device& device_;
+  DeviceHandle<VkCommandPool, vkDestroyCommandPool> pool_;
+  DeviceHandle<VkQueryPool, vkDestroyQueryPool> queries_;
+  DeviceHandle<VkFence, vkDestroyFence> fence_;
+  VkCommandBuffer commands_ = VK_NULL_HANDLE;
+  bool recording_ = false;
+  std::vector<std::string> recorded_;
+  std::vector<PassTime> passes_;
+  std::map<std::string, Buffer, std::less<>> buffers_;
+};
+
+}  // namespace alcove::gpu

@@ -1,0 +1,91 @@
+// Host side of every kernel.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/passes.h"
+
+#include <cmath>
+
+#include "kernels/composite.h"
+#include "kernels/horizon.h"
+#include "kernels/prepare.h"
+#include "kernels/shape.h"
+
+namespace alcove {
+namespace {
+
+std::size_t pixels_of(const View& view) { return std::size_t(view.size.x) * std::size_t(view.size.y); }
+std::size_t plane_bytes(const View& view) { return pixels_of(view) * sizeof(float); }
+gpu::Extent extent_of(const View& view) { return {uint(view.size.x), uint(view.size.y)}; }
+vec3 to_vec3(const std::array<double, 3>& v) { return {float(v[0]), float(v[1]), float(v[2])}; }
+
+uint depth_kind_of(DepthKind kind) {
+  return kind == DepthKind::ray ? kDepthRay : kind == DepthKind::inverse ? kDepthInverse : kDepthPlanar;
+}
+
+/// Where the noise pattern of a frame and seed begins: successive frames take successive points of the R2 sequence, seeds of another.
+vec2 noise_shift(int frame, std::uint32_t seed) {
+  const auto fraction = [](double x) { return x - std::floor(x); };
+  const auto shift = [&](double by_frame, double by_seed) { return float(fraction(0.5 + fraction(frame * by_frame) + fraction(seed * by_seed))); };
+  return {shift(0.75487766624669276, 0.41421356237309505), shift(0.56984029099805327, 0.73205080756887729)};
+}
+
+}  // namespace
+
+GBuffer prepare(gpu::Recorder& gpu, const FrameInputs& frame) {
+  GBuffer gbuffer{frame.view, &gpu.buffer("depth", plane_bytes(frame.view), gpu::Use::device),
+                  &gpu.buffer("normal", 3 * plane_bytes(frame.view), gpu::Use::device),
+                  &gpu.buffer("counts", sizeof(PrepareCounts), gpu::Use::download)};
+  PrepareParams params{};
+  params.view = frame.view;
+  params.view_from_normal_x = to_vec3(frame.view_from_normal[0]);
+  params.view_from_normal_y = to_vec3(frame.view_from_normal[1]);
+  params.view_from_normal_z = to_vec3(frame.view_from_normal[2]);
+  params.depth_scale = float(frame.depth_scale);
+  params.sky_depth = float(frame.sky);
+  params.depth_kind = depth_kind_of(frame.depth_kind);
+  params.has_normals = frame.normal ? 1 : 0;
+  gpu.clear(*gbuffer.counts);
+  gpu.dispatch("prepare", params,
+               {{kPrepareRawDepth, *frame.depth},
+                {kPrepareRawNormal, frame.normal ? *frame.normal : *frame.depth},
+                {kPrepareDepth, *gbuffer.depth},
+                {kPrepareNormal, *gbuffer.normal},
+                {kPrepareCounts, *gbuffer.counts}},
+               extent_of(frame.view));
+  return gbuffer;
+}
+
+gpu::Buffer& horizon(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings) {
+  gpu::Buffer& ao = gpu.buffer("ao", plane_bytes(gbuffer.view), gpu::Use::download);
+  const double radius = settings.radius.value();
+  HorizonParams params{};
+  params.view = gbuffer.view;
+  params.radius = float(radius);
+  params.falloff_start = float(radius * settings.falloff_start);
+  params.noise_origin = frame.noise_origin;
+  params.noise_shift = noise_shift(frame.frame, settings.seed);
+  gpu.dispatch("horizon", params, {{kHorizonDepth, *gbuffer.depth}, {kHorizonNormal, *gbuffer.normal}, {kHorizonAo, ao}}, extent_of(gbuffer.view),
+               {uint(settings.slices), uint(settings.steps), uint(settings.falloff)});
+  return ao;
+}
+
+gpu::Buffer& shape(gpu::Recorder& gpu, const gpu::Buffer& ao, const View& view, const EstimatorSettings& settings) {
+  gpu::Buffer& shaped = gpu.buffer("shaped", plane_bytes(view), gpu::Use::download);
+  const ShapeParams params{view.size, float(settings.intensity), float(settings.power)};
+  gpu.dispatch("shape", params, {{kShapeAo, ao}, {kShapeShaped, shaped}}, extent_of(view));
+  return shaped;
+}
+
+gpu::Buffer& composite(gpu::Recorder& gpu, const gpu::Buffer& ao, const FrameInputs& frame) {
+  gpu::Buffer& result = gpu.buffer("composite", 3 * plane_bytes(frame.view), gpu::Use::download);
+  const CompositeParams params{frame.view.size, frame.has_alpha ? 1u : 0u, frame.indirect ? 1u : 0u, frame.diffuse_color ? 1u : 0u};
+  gpu.dispatch("composite", params,
+               {{kCompositeAo, ao},
+                {kCompositeBeauty, *frame.beauty},
+                {kCompositeIndirect, frame.indirect ? *frame.indirect : *frame.beauty},
+                {kCompositeDiffuseColor, frame.diffuse_color ? *frame.diffuse_color : *frame.beauty},
+                {kCompositeResult, result}},
+               extent_of(frame.view));
+  return result;
+}
+
+}  // namespace alcove

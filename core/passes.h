@@ -1,0 +1,43 @@
+// One short function a kernel: fill its parameters, take its output buffer, dispatch.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "core/camera.h"
+#include "core/gpu/recorder.h"
+#include "core/settings.h"
+
+namespace alcove {
+
+/// A frame's raw planes in upload buffers, and what they mean. Null: the frame has no such plane, or nobody asked for it.
+struct FrameInputs {
+  View view{};
+  ivec2 noise_origin{};              // px: the data window's corner, so that a crop has the noise of the whole
+  int frame = 0;
+  DepthKind depth_kind = DepthKind::planar;  // not automatic
+  double depth_scale = 1;
+  double sky = 1e9;
+  Matrix3 view_from_normal{};        // rotation from the normals' space
+  gpu::Buffer* depth = nullptr;
+  gpu::Buffer* normal = nullptr;         // planes x, y, z
+  gpu::Buffer* beauty = nullptr;         // planes r, g, b, and a where has_alpha
+  gpu::Buffer* indirect = nullptr;       // planes r, g, b
+  gpu::Buffer* diffuse_color = nullptr;  // planes r, g, b
+  bool has_alpha = false;
+};
+
+/// What every estimator relies on: see prepare.comp.
+struct GBuffer {
+  View view{};
+  gpu::Buffer* depth;
+  gpu::Buffer* normal;
+  gpu::Buffer* counts;  // one PrepareCounts, for the host
+};
+
+GBuffer prepare(gpu::Recorder& gpu, const FrameInputs& frame);
+/// Visibility a pixel, for the host.
+gpu::Buffer& horizon(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings);
+gpu::Buffer& shape(gpu::Recorder& gpu, const gpu::Buffer& ao, const View& view, const EstimatorSettings& settings);
+/// Planes r, g, b, for the host.
+gpu::Buffer& composite(gpu::Recorder& gpu, const gpu::Buffer& ao, const FrameInputs& frame);
+
+}  // namespace alcove

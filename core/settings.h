@@ -1,0 +1,72 @@
+// Every number and choice that a user may set, with unit, range, default and reason. No code.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+namespace alcove {
+
+enum class DepthKind { automatic, planar, ray, inverse };
+enum class NormalSpace { automatic, world, view };
+enum class Falloff : std::uint32_t { none, linear, quadratic, smooth };
+enum class OutputType { half_float, single_float };
+
+/// What to read and how to understand it.
+struct InputSettings {
+  std::string input;                             // an EXR file that holds every AOV not named below
+  std::string depth, normal, beauty;             // files of single AOVs; empty: the input
+  std::string depth_channel;                     // a channel's full name; empty: found by its usual names
+  std::string normal_channels, beauty_channels;  // three names with commas, or a layer; empty: found
+  std::string layer;                             // look only at channels of this layer or part
+  DepthKind depth_kind = DepthKind::automatic;   // automatic: what the camera file says, else planar
+  double depth_scale = 1;                        // scene units a unit of the depth channel, > 0
+  double sky = 1e9;                              // depth at or beyond it is sky, in the file's units, > 0; below every known sentinel
+  NormalSpace normal_space = NormalSpace::automatic;  // automatic: what the camera file says, else world
+  std::string camera;                                 // a camera JSON file
+  std::optional<double> fov;                          // horizontal, degrees, 0 to 180 exclusive
+  std::optional<double> focal, aperture;              // mm, > 0: focal length and width of the film back
+  std::optional<double> ortho_width;                  // scene units across the display window, > 0
+};
+
+/// The estimate of ambient occlusion. The defaults are the preset `standard`.
+struct EstimatorSettings {
+  std::optional<double> radius;      // scene units, > 0; no default, since no number fits all scenes
+  Falloff falloff = Falloff::none;   // none: what renderers' own AO passes mean by a distance
+  double falloff_start = 0;          // fraction of the radius where the falloff begins, 0 to 1 exclusive
+  int slices = 3;                    // directions a pixel, 1 to 64; fewer than 3 bias a single pixel
+  int steps = 6;                     // samples to each side of a slice, 1 to 4096
+  double intensity = 1;              // factor on the occlusion, 0 to 100
+  double power = 1;                  // exponent of the visibility, above 0 to 100
+  std::uint32_t seed = 0;            // shifts the noise pattern
+};
+
+/// What to write.
+struct OutputSettings {
+  std::string output;                             // the AO EXR
+  std::string composite;                          // the composite EXR
+  std::string preview;                            // a PNG of the composite, or of the AO where there is none
+  OutputType type = OutputType::half_float;       // of the AO channel
+  std::string compression = "zip";                // of the AO file: none, rle, zips, zip or piz
+  std::string ocio;                               // an OpenColorIO configuration for the preview
+  std::string stats;                              // a JSON file
+};
+
+/// Where to compute.
+struct DeviceSettings {
+  std::string device = "auto";  // auto | cpu | index | name | UUID
+  bool require_gpu = false;
+  bool validate = false;
+  bool pipeline_cache = true;
+  int threads = 0;              // of the CPU device and of the codecs; 0: one a core
+};
+
+struct Settings {
+  InputSettings input;
+  EstimatorSettings estimator;
+  OutputSettings output;
+  DeviceSettings device;
+};
+
+}  // namespace alcove

@@ -1,0 +1,63 @@
+// Case, lists and the nearest of a set of names.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <numeric>
+
+namespace alcove {
+
+std::string lower_case(std::string_view text) {
+  std::string lower(text);
+  std::ranges::transform(lower, lower.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+  return lower;
+}
+
+std::string list_of(std::span<const std::string> names, std::size_t most) {
+  if (names.empty()) return "nothing";
+  std::string text = names[0];
+  for (std::size_t i = 1; i < std::min(names.size(), most); i++) text += ", " + names[i];
+  if (names.size() > most) text += fmt::format(" and {} more", names.size() - most);
+  return text;
+}
+
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  const std::string from = lower_case(a), to = lower_case(b);
+  std::vector<std::size_t> row(to.size() + 1);
+  std::iota(row.begin(), row.end(), 0);
+  for (std::size_t i = 0; i < from.size(); i++) {
+    std::size_t diagonal = row[0]++;
+    for (std::size_t j = 0; j < to.size(); j++) {
+      const std::size_t replaced = diagonal + (from[i] != to[j]);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({replaced, row[j] + 1, row[j + 1] + 1});
+    }
+  }
+  return row.back();
+}
+
+std::vector<std::string> nearest_names(std::string_view name, std::span<const std::string> candidates, std::size_t most) {
+  std::vector<std::pair<std::size_t, std::string>> ranked;
+  for (const auto& candidate : candidates) {
+    // A name that is part of the other is near however long the rest is: "Depth.Z" in "ViewLayer.Depth.Z".
+    const std::string a = lower_case(name), b = lower_case(candidate);
+    const bool contained = a.size() > 1 && b.size() > 1 && (a.find(b) != a.npos || b.find(a) != b.npos);
+    const std::size_t distance = contained ? 1 : edit_distance(name, candidate);
+    if (distance <= std::max<std::size_t>(2, name.size() / 3)) ranked.emplace_back(distance, candidate);
+  }
+  std::ranges::stable_sort(ranked, {}, &std::pair<std::size_t, std::string>::first);
+  std::vector<std::string> names;
+  for (const auto& [distance, candidate] : ranked)
+    if (names.size() < most) names.push_back(candidate);
+  return names;
+}
+
+std::string suggestion(std::string_view name, std::span<const std::string> candidates) {
+  const auto names = nearest_names(name, candidates);
+  return names.empty() ? std::string() : fmt::format(" (did you mean {}?)", fmt::join(names, " or "));
+}
+
+}  // namespace alcove

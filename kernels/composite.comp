@@ -1,0 +1,35 @@
+// Puts AO into a beauty: beauty - D + D f where the ambient part D is known, beauty x f where it is not.
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// In: visibility, beauty, the parts of D. Out: colour; alpha stays as it was.
+// f = 1 - alpha (1 - ao): a pixel at an edge is part background, which the AO of the surface must not dim. The difference
+// form keeps all other light as it is, even where the passes do not sum to the beauty exactly.
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#include "composite.h"
+
+layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
+layout(scalar, push_constant) uniform Push { CompositeParams params; };
+layout(scalar, binding = kCompositeAo) readonly buffer Ao { float ao[]; };
+layout(scalar, binding = kCompositeBeauty) readonly buffer Beauty { float beauty[]; };
+layout(scalar, binding = kCompositeIndirect) readonly buffer Indirect { float indirect[]; };
+layout(scalar, binding = kCompositeDiffuseColor) readonly buffer DiffuseColor { float diffuse_color[]; };
+layout(scalar, binding = kCompositeResult) writeonly buffer Result { float result[]; };
+
+/// Nothing that leaves the tool is NaN or infinite: a broken beauty pixel becomes black, as in `prepare` it would become sky.
+float sane(float x) { return isnan(x) || isinf(x) ? 0.0 : x; }
+
+void main() {
+  const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  if (any(greaterThanEqual(pixel, params.size))) return;
+  const int plane = params.size.x * params.size.y, index = pixel.y * params.size.x + pixel.x;
+  const float alpha = params.has_alpha != 0 ? clamp(sane(beauty[index + 3 * plane]), 0.0, 1.0) : 1.0;
+  const float dimmed = alpha * (1.0 - ao[index]);
+  for (int c = 0; c < 3; c++) {
+    const int i = index + c * plane;
+    const float color = sane(beauty[i]);
+    float ambient = color;
+    if (params.has_ambient != 0) ambient = sane(indirect[i] * (params.has_diffuse_color != 0 ? diffuse_color[i] : 1.0));
+    result[i] = sane(color - ambient * dimmed);
+  }
+}

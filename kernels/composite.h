@@ -1,0 +1,23 @@
+// Parameters and bindings of composite.comp.
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef ALCOVE_COMPOSITE_H
+#define ALCOVE_COMPOSITE_H
+#include "shared.h"
+ALCOVE_BEGIN
+
+ALCOVE_CONSTANT uint kCompositeAo = 0;            // in: float a pixel, visibility
+ALCOVE_CONSTANT uint kCompositeBeauty = 1;        // in: planes R, G, B and, with alpha, A; premultiplied scene-linear colour
+ALCOVE_CONSTANT uint kCompositeIndirect = 2;      // in: planes R, G, B of the indirect diffuse light; not read without ambient parts
+ALCOVE_CONSTANT uint kCompositeDiffuseColor = 3;  // in: planes R, G, B of the diffuse colour that multiplies it; not read without
+ALCOVE_CONSTANT uint kCompositeResult = 4;        // out: planes R, G, B
+
+struct CompositeParams {
+  ivec2 size;              // px
+  uint has_alpha;          // 0: every pixel is wholly covered
+  uint has_ambient;        // 1: only the ambient part is dimmed; 0: the whole beauty is
+  uint has_diffuse_color;  // 1: ambient = indirect x diffuse colour (Blender); 0: indirect already holds it
+};
+ALCOVE_PARAMS(CompositeParams)
+
+ALCOVE_END
+#endif

@@ -1,0 +1,28 @@
+// Low-discrepancy sample noise over a 64 x 64 tile of pixels. Pure: no bindings.
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Neighbours along a Hilbert curve take successive points of the R2 sequence (M. Roberts, "The unreasonable
+// effectiveness of quasirandom sequences", 2018), so any small block of pixels holds a well spread set.
+
+const vec2 kR2 = vec2(0.75487766624669276, 0.56984029099805327);  // 1/g and 1/g^2, g^3 = g + 1
+const float kGolden = 0.61803398874989485;
+
+/// Position along the Hilbert curve that fills a 64 x 64 tile.
+uint hilbert_index(uvec2 p) {
+  p &= 63u;
+  uint index = 0u;
+  for (uint level = 32u; level > 0u; level >>= 1) {
+    const uvec2 quadrant = uvec2(notEqual(p & level, uvec2(0)));
+    index += level * level * ((3u * quadrant.x) ^ quadrant.y);
+    if (quadrant.y == 0u) {
+      if (quadrant.x == 1u) p = 63u - p;
+      p = p.yx;
+    }
+  }
+  return index;
+}
+
+/// Two numbers in [0, 1) for a pixel; `shift` moves the whole pattern (frame and seed).
+vec2 pixel_noise(ivec2 pixel, vec2 shift) {
+  return fract(shift + float(hilbert_index(uvec2(pixel))) * kR2);
+}

@@ -1,0 +1,104 @@
+// Raw depth and normals -> the G-buffer that every later kernel relies on: z > 0 planar or marked sky;
+// unit view-space normals that face the eye; nothing that is not finite. What was repaired is counted.
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// In: raw depth of any kind, raw normals in world or view space. Out: planar z, view normals, counts.
+// A pixel without a usable normal gets the normal of its own plane: 1/z is affine over a plane's image, so on each axis the
+// side whose two neighbours predict this pixel's 1/z best is on the same plane, and its position difference is a tangent.
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#include "prepare.h"
+#include "view.glsl"
+
+layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
+layout(scalar, push_constant) uniform Push { PrepareParams params; };
+layout(scalar, binding = kPrepareRawDepth) readonly buffer RawDepth { float raw_depth[]; };
+layout(scalar, binding = kPrepareRawNormal) readonly buffer RawNormal { float raw_normal[]; };
+layout(scalar, binding = kPrepareDepth) writeonly buffer Depth { float depth[]; };
+layout(scalar, binding = kPrepareNormal) writeonly buffer Normal { vec3 normal[]; };
+layout(scalar, binding = kPrepareCounts) buffer Counts { PrepareCounts counts; };
+
+/// How far a normal is at least turned to the eye, as a cosine. Smaller, and the slices at grazing angles lose their weight to rounding.
+const float kLeastFacing = 1e-3;
+/// Normals shorter than this are no direction at all (a background of zeros).
+const float kLeastLength = 1e-6;
+
+bool finite(float x) { return !isnan(x) && !isinf(x); }
+
+/// Planar depth in scene units, kSkyDepth where there is no surface.
+float planar_depth(ivec2 pixel) {
+  const float raw = raw_depth[index_of(params.view, pixel)];
+  float z = params.depth_kind == kDepthInverse ? 1.0 / raw : raw;
+  if (!(raw > 0.0) || z >= params.sky_depth) return kSkyDepth;
+  const vec2 t = tangent_of(params.view, vec2(pixel) + 0.5);
+  if (params.depth_kind == kDepthRay && params.view.orthographic == 0) z *= inversesqrt(1.0 + dot(t, t));
+  z *= params.depth_scale;
+  return z > 0.0 && z < kSkyDepth ? z : kSkyDepth;
+}
+
+/// What an affine function over the image would be here, going by the two neighbours on one side; orthographic planes are affine in z, others in 1/z.
+float affine_depth(ivec2 pixel) {
+  if (!inside(params.view, pixel)) return -1.0;
+  const float z = planar_depth(pixel);
+  return z >= kSkyDepth ? -1.0 : params.view.orthographic != 0 ? z : 1.0 / z;
+}
+
+/// The change of position along one axis, on the side that predicts this pixel better; zero where neither side has a surface.
+vec3 tangent_along(ivec2 pixel, ivec2 axis, vec3 position, float here) {
+  vec3 tangent = vec3(0);
+  float least = 1e30;
+  for (int side = -1; side <= 1; side += 2) {
+    const float one = affine_depth(pixel + side * axis), two = affine_depth(pixel + 2 * side * axis);
+    if (one <= 0.0) continue;
+    const float error = two > 0.0 ? abs(2.0 * one - two - here) : abs(one - here);
+    if (error >= least) continue;
+    least = error;
+    const float z = params.view.orthographic != 0 ? one : 1.0 / one;
+    tangent = float(side) * (position_of(params.view, vec2(pixel + side * axis) + 0.5, z) - position);
+  }
+  return tangent;
+}
+
+vec3 normal_from_depth(ivec2 pixel, vec3 position, vec3 eye) {
+  const float here = affine_depth(pixel);
+  const vec3 right = tangent_along(pixel, ivec2(1, 0), position, here), down = tangent_along(pixel, ivec2(0, 1), position, here);
+  const vec3 n = cross(down, right);
+  const float length_squared = dot(n, n);
+  if (!(length_squared > 0.0) || isinf(length_squared)) return eye;
+  const vec3 unit = n * inversesqrt(length_squared);
+  return dot(unit, eye) < 0.0 ? -unit : unit;
+}
+
+void main() {
+  const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  if (!inside(params.view, pixel)) return;
+  const int index = index_of(params.view, pixel);
+
+  const float z = planar_depth(pixel);
+  depth[index] = z;
+  if (z >= kSkyDepth) {
+    normal[index] = vec3(0, 0, 1);
+    atomicAdd(counts.sky, 1u);
+    if (isnan(raw_depth[index]) || raw_depth[index] < 0.0) atomicAdd(counts.repaired_depth, 1u);
+    return;
+  }
+
+  const vec3 position = position_of(params.view, vec2(pixel) + 0.5, z), eye = toward_eye(params.view, position);
+  vec3 n = vec3(0);
+  if (params.has_normals != 0) {
+    const int plane = params.view.size.x * params.view.size.y;
+    const vec3 raw = vec3(raw_normal[index], raw_normal[index + plane], raw_normal[index + 2 * plane]);
+    n = vec3(dot(params.view_from_normal_x, raw), dot(params.view_from_normal_y, raw), dot(params.view_from_normal_z, raw));
+  }
+  const float size = length(n);
+  if (finite(size) && size > kLeastLength) {
+    n /= size;
+  } else {
+    n = normal_from_depth(pixel, position, eye);
+    if (params.has_normals != 0) atomicAdd(counts.repaired_normals, 1u);
+  }
+  // A visible surface faces the eye: a shading normal that leans away is bent back just far enough.
+  const float facing = dot(n, eye);
+  if (facing < kLeastFacing) n = normalize(n + (kLeastFacing - facing) * eye);
+  normal[index] = n;
+}

@@ -1,0 +1,52 @@
+// Types and checks that mean the same in C++ and in GLSL, so that a kernel's parameters are written once.
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// A header beside a kernel declares its parameters, bindings and group size with these names; the kernel and
+// core/passes.cpp both include it. Layout is scalar: every member is aligned to 4 bytes, in C++ as in GLSL.
+#ifndef ALCOVE_SHARED_H
+#define ALCOVE_SHARED_H
+
+#ifdef __cplusplus
+
+#include <cstdint>
+#include <type_traits>
+
+namespace alcove {
+using uint = std::uint32_t;
+struct vec2 { float x, y; };
+struct vec3 { float x, y, z; };
+struct ivec2 { int x, y; };
+}  // namespace alcove
+
+#define ALCOVE_BEGIN namespace alcove {
+#define ALCOVE_END }
+#define ALCOVE_CONSTANT inline constexpr
+/// Push constants: at most the 128 bytes that every Vulkan device takes.
+#define ALCOVE_PARAMS(T) static_assert(sizeof(T) <= 128 && alignof(T) == 4 && std::is_trivially_copyable_v<T>);
+
+#else
+
+#extension GL_EXT_scalar_block_layout : require
+#define ALCOVE_BEGIN
+#define ALCOVE_END
+#define ALCOVE_CONSTANT const
+#define ALCOVE_PARAMS(T)
+
+#endif
+
+ALCOVE_BEGIN
+
+ALCOVE_CONSTANT uint kGroupX = 8;  // pixels of a workgroup in x; 8 is lavapipe's subgroup size, so a row is one subgroup
+ALCOVE_CONSTANT uint kGroupY = 8;  // pixels of a workgroup in y
+ALCOVE_CONSTANT float kSkyDepth = 1e30;  // what `prepare` writes for sky: its squared distance overflows to infinity, so no radius reaches it
+
+/// The projection of one frame's data window: pixel <-> view space (x right, y up, the camera looks along -z).
+struct View {
+  ivec2 size;              // px, of the data window
+  vec2 center;             // px from the data window's upper left corner: where the optical axis meets the image
+  vec2 tangent_per_pixel;  // perspective: tangent a pixel; orthographic: scene units a pixel. y is negative: pixels count downwards
+  uint orthographic;       // 0 or 1
+};
+
+ALCOVE_END
+#endif

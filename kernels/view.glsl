@@ -1,0 +1,20 @@
+// Pixel <-> view space, for perspective and orthographic projections. Pure: no bindings.
+// SPDX-License-Identifier: BSD-3-Clause
+
+/// Where the ray of an image point meets the plane at unit depth (perspective), or its place in the plane (orthographic).
+vec2 tangent_of(View view, vec2 point_px) { return (point_px - view.center) * view.tangent_per_pixel; }
+
+/// The view-space position of an image point at planar depth z (> 0, scene units).
+vec3 position_of(View view, vec2 point_px, float z) {
+  const vec2 t = tangent_of(view, point_px);
+  return vec3(view.orthographic != 0 ? t : t * z, -z);
+}
+
+/// The unit vector from a position towards the eye.
+vec3 toward_eye(View view, vec3 position) {
+  return view.orthographic != 0 ? vec3(0, 0, 1) : normalize(-position);
+}
+
+bool inside(View view, ivec2 pixel) { return all(greaterThanEqual(pixel, ivec2(0))) && all(lessThan(pixel, view.size)); }
+
+int index_of(View view, ivec2 pixel) { return pixel.y * view.size.x + pixel.x; }
