@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 #include <map>
+#include <sstream>
 
 #include "core/error.h"
 #include "core/file.h"
@@ -27,7 +28,7 @@ struct Range {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-Range above(double low) { return {low, kInfinity, true, true, fmt::format("> {}", low)}; }
+Range above(double low) { return {low, kInfinity, true, true, fmt::format("above {}", low)}; }
 Range between(double low, double high) { return {low, high, false, false, fmt::format("{} to {}", low, high)}; }
 Range below_and_at_least(double low, double high) { return {low, high, false, true, fmt::format("{} to below {}", low, high)}; }
 Range strictly_between(double low, double high) { return {low, high, true, true, fmt::format("above {} to below {}", low, high)}; }
@@ -42,6 +43,16 @@ CLI::Validator check_of(const Range& range) {
         return range.holds(value) ? std::string() : fmt::format("{} is not {}", text, range.text);
       },
       "", range.text);
+}
+
+/// One of a few words, or a complaint with the nearest of them.
+CLI::Validator check_of(const std::vector<std::string>& words) {
+  return CLI::Validator(
+      [words](std::string& text) {
+        if (std::ranges::find(words, text) != words.end()) return std::string();
+        return fmt::format("{} is none of {}{}", text, list_of(words), suggestion(text, words));
+      },
+      "", "");
 }
 
 template <class T>
@@ -69,13 +80,6 @@ const std::map<std::string, OutputType>& names_of() {
   return names;
 }
 
-template <class Map>
-std::string keys_of(const Map& map) {
-  std::string text;
-  for (const auto& entry : map) text += (text.empty() ? "" : "|") + entry.first;
-  return text;
-}
-
 /// Builds rows of one group after the other.
 class Table {
  public:
@@ -83,47 +87,47 @@ class Table {
 
   void group(const char* name) { group_ = name; }
 
-  void text(const std::string& name, std::string& value, const char* unit, const std::string& sentence) {
-    row(name, unit, "", sentence, value, [name, &value](CLI::App& app) { return app.add_option(name, value); });
+  void text(const std::string& name, std::string& value, const char* what, const std::string& sentence) {
+    row(name, what, "", "", sentence, value, [name, &value](CLI::App& app) { return app.add_option(name, value); });
   }
 
   void word(const std::string& name, std::string& value, const std::vector<std::string>& words, const std::string& sentence) {
-    const std::string range = fmt::format("{}", fmt::join(words, "|"));
-    row(name, "", range, sentence, value, [name, &value, words](CLI::App& app) { return app.add_option(name, value)->check(CLI::IsMember(words)); });
+    row(name, fmt::format("{}", fmt::join(words, "|")), "", "", sentence, value,
+        [name, &value, words](CLI::App& app) { return app.add_option(name, value)->check(check_of(words)); });
   }
 
   template <class T>
   void choice(const std::string& name, T& value, const std::string& sentence) {
     const auto& names = names_of<T>();
+    std::vector<std::string> words;
     std::string present;
-    for (const auto& [text, kind] : names)
-      if (kind == value) present = text;
-    row(name, "", keys_of(names), sentence, present, [name, &value, &names, present](CLI::App& app) {
-      // A function option instead of a transformed enum, so that --print-config writes the word and not its number.
-      return app
-          .add_option_function<std::string>(name, [&value, &names](const std::string& text) { value = names.at(text); })
-          ->check(CLI::IsMember(names))
-          ->default_str(present);
+    for (const auto& [word, kind] : names) {
+      words.push_back(word);
+      if (kind == value) present = word;
+    }
+    // A function option instead of a transformed enum, so that --print-config writes the word and not its number.
+    row(name, fmt::format("{}", fmt::join(words, "|")), "", "", sentence, present, [name, &value, &names, words](CLI::App& app) {
+      return app.add_option_function<std::string>(name, [&value, &names](const std::string& word) { value = names.at(word); })->check(check_of(words));
     });
   }
 
   template <class T>
   void number(const std::string& name, T& value, const char* unit, const Range& range, const std::string& sentence) {
-    row(name, unit, range.text, sentence, fmt::format("{}", value),
+    row(name, "NUMBER", unit, range.text, sentence, fmt::format("{}", value),
         [name, &value, range](CLI::App& app) { return app.add_option(name, value)->check(check_of(range)); });
   }
 
   void number(const std::string& name, std::optional<double>& value, const char* unit, const Range& range, const std::string& sentence) {
-    row(name, unit, range.text, sentence, "", [name, &value, range](CLI::App& app) { return app.add_option(name, value)->check(check_of(range)); });
+    row(name, "NUMBER", unit, range.text, sentence, "", [name, &value, range](CLI::App& app) { return app.add_option(name, value)->check(check_of(range)); });
   }
 
   void flag(const std::string& name, bool& value, const std::string& sentence) {
-    row(name, "", "", sentence, "", [name, &value](CLI::App& app) { return app.add_flag(name, value); });
+    row(name, "", "", "", sentence, "", [name, &value](CLI::App& app) { return app.add_flag(name, value); });
   }
 
-  void row(const std::string& name, const char* unit, const std::string& range, const std::string& sentence, const std::string& default_text,
-           std::function<CLI::Option*(CLI::App&)> add) {
-    rows.push_back({group_, name, unit, range, sentence, default_text, std::move(add)});
+  void row(const std::string& name, const std::string& value, const char* unit, const std::string& range, const std::string& sentence,
+           const std::string& default_text, std::function<CLI::Option*(CLI::App&)> add) {
+    rows.push_back({group_, name, value, unit, range, sentence, default_text, std::move(add)});
   }
 
  private:
@@ -153,7 +157,7 @@ void add_input_rows(Table& table, InputSettings& s) {
 void add_estimator_rows(Table& table, RunOptions& options) {
   EstimatorSettings& s = options.settings.estimator;
   table.group("Estimator");
-  table.row("--preset", "NAME|FILE", "", "settings from a preset; may repeat, later wins, options win over presets", "", [&options](CLI::App& app) {
+  table.row("--preset", "NAME|FILE", "", "", "settings from a preset; may repeat, later wins, options win over presets", "", [&options](CLI::App& app) {
     return app.set_config("--preset")->expected(1)->take_all()->transform([](const std::string& name) { return preset_file(name); })->description("");
   });
   table.number("--radius", s.radius, "scene units", above_to(0, 1e18), "how far occluders reach; must be given, here or in a preset");
@@ -168,7 +172,7 @@ void add_estimator_rows(Table& table, RunOptions& options) {
 
 void add_output_rows(Table& table, OutputSettings& s) {
   table.group("Output");
-  table.row("-o,--output", "FILE.exr", "", "the AO: one channel Y, 1 = open", "", [&s](CLI::App& app) { return app.add_option("-o,--output", s.output); });
+  table.row("-o,--output", "FILE.exr", "", "", "the AO: one channel Y, 1 = open", "", [&s](CLI::App& app) { return app.add_option("-o,--output", s.output); });
   table.text("--composite", s.composite, "FILE.exr", "the beauty with AO in its ambient light, or in all of it where the parts are missing");
   table.text("--preview", s.preview, "FILE.png", "a picture of the composite, or of the AO where there is none");
   table.choice("--type", s.type, "sample type of the AO");
@@ -181,23 +185,24 @@ void add_device_rows(Table& table, DeviceSettings& s) {
   table.text("--device", s.device, "auto|cpu|INDEX|NAME|UUID", "where to compute; auto: the first GPU, else the CPU");
   table.flag("--require-gpu", s.require_gpu, "computing on the CPU is an error");
   table.flag("--validate", s.validate, "load the Vulkan validation layer; any message is an error");
-  table.row("--no-pipeline-cache", "", "", "keep no compiled kernels in the XDG cache folder", "",
-            [&s](CLI::App& app) { return app.add_flag("!--no-pipeline-cache", s.pipeline_cache); });
+  table.row("--no-pipeline-cache", "", "", "", "keep no compiled kernels in the XDG cache folder", "",
+            [&s](CLI::App& app) { return app.add_flag_function("--no-pipeline-cache", [&s](std::int64_t) { s.pipeline_cache = false; }); });
   table.number("--threads", s.threads, "", between(0, 1024), "threads of the CPU device and of the codecs; 0: one a core");
 }
 
 void add_report_rows(Table& table, RunOptions& options) {
   table.group("Reports");
   table.text("--stats", options.settings.output.stats, "FILE.json", "times of every pass, counts and totals");
-  table.row("-v,--verbose", "", "", "say more; may repeat", "", [&options](CLI::App& app) { return app.add_flag("-v,--verbose", options.verbose); });
-  table.row("-q,--quiet", "", "", "say nothing but errors", "", [&options](CLI::App& app) { return app.add_flag("-q,--quiet", options.quiet); });
-  table.row("--print-config", "", "", "print the settings as a preset and stop", "",
+  table.row("-v,--verbose", "", "", "", "say more; may repeat", "", [&options](CLI::App& app) { return app.add_flag("-v,--verbose", options.verbose); });
+  table.row("-q,--quiet", "", "", "", "say nothing but errors", "", [&options](CLI::App& app) { return app.add_flag("-q,--quiet", options.quiet); });
+  table.row("--print-config", "", "", "", "print the settings as a preset and stop", "",
             [&options](CLI::App& app) { return app.add_flag("--print-config", options.print_config)->configurable(false); });
 }
 
+std::string range_text(const OptionRow& row) { return row.unit + (row.unit.empty() || row.range.empty() ? "" : ", ") + row.range; }
+
 std::string help_text(const OptionRow& row) {
-  std::string range = row.range.empty() ? "" : row.range;
-  if (!row.unit.empty() && !range.empty()) range = row.unit + ", " + range;
+  const std::string range = range_text(row);
   return row.sentence + (range.empty() ? "" : " (" + range + ")");
 }
 
@@ -215,7 +220,7 @@ std::unique_ptr<CLI::App> make_app(RunOptions& options) {
   for (const auto& row : option_table(options)) {
     CLI::Option* option = row.add(*app);
     option->group(row.group)->description(help_text(row));
-    if (option->get_items_expected() > 0) option->type_name(row.unit.empty() ? "WORD" : row.unit.find(' ') == row.unit.npos && row.unit[0] >= 'A' ? row.unit : "NUMBER");
+    if (!row.value.empty()) option->type_name(row.value);
     if (!row.default_text.empty()) option->default_str(row.default_text);
   }
   return app;
@@ -242,6 +247,15 @@ std::vector<std::string> option_names(RunOptions& options) {
   fail(ErrorKind::usage, "{}; see alcove run --help", text);
 }
 
+/// The lines of a configuration without those of options that have no value: `name=""` means "not set" to CLI11 only.
+std::string set_lines_of(const std::string& config) {
+  std::istringstream lines(config);
+  std::string text;
+  for (std::string line; std::getline(lines, line);)
+    if (!line.ends_with("=\"\"") && !line.ends_with("=false")) text += line + "\n";
+  return text;
+}
+
 /// The folder of the running program.
 fs::path program_folder() {
   std::error_code error;
@@ -263,15 +277,15 @@ std::vector<OptionRow> option_table(RunOptions& options) {
 std::string option_table_markdown() {
   RunOptions options;
   std::string text, group;
-  const auto cell = [](std::string value) {
+  const auto cell = [](std::string value) {  // a bar ends a cell
     for (std::size_t at = 0; (at = value.find('|', at)) != value.npos; at += 2) value.insert(at, "\\");
     return value;
   };
   for (const auto& row : option_table(options)) {
     if (row.group != group) text += fmt::format("{}| {} | unit, range | default | |\n|---|---|---|---|\n", group.empty() ? "" : "\n", row.group);
     group = row.group;
-    const std::string range = row.unit + (row.unit.empty() || row.range.empty() ? "" : ", ") + row.range;
-    text += fmt::format("| `{}` | {} | {} | {} |\n", row.name, cell(range), row.default_text, cell(row.sentence));
+    text += fmt::format("| `{}`{} | {} | {} | {} |\n", row.name, row.value.empty() ? "" : " " + cell(row.value), cell(range_text(row)), row.default_text,
+                        cell(row.sentence));
   }
   return text;
 }
@@ -287,7 +301,7 @@ bool parse_run_options(const std::vector<std::string>& arguments, RunOptions& op
     complain(*app, error, options);
   }
   if (options.print_config) {
-    fmt::print("{}", app->config_to_str(true, true));
+    fmt::print("{}", set_lines_of(app->config_to_str(true, false)));
     return false;
   }
   return true;
@@ -314,7 +328,7 @@ std::vector<std::string> preset_names() {
 
 std::string preset_file(const std::string& name) {
   std::error_code error;
-  if (fs::is_regular_file(name, error)) return name;
+  if (fs::exists(name, error) && !fs::is_directory(name, error)) return name;
   const auto names = preset_names();
   if (std::ranges::find(names, name) != names.end()) return preset_folder() + "/" + name + ".toml";
   fail(ErrorKind::usage, "there is no preset {}{}; there is {}; --preset takes one of them, or a TOML file", name, suggestion(name, names), list_of(names));

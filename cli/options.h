@@ -18,7 +18,8 @@ namespace alcove {
 /// A row of the table.
 struct OptionRow {
   std::string group, name;   // name: as typed, "--radius"
-  std::string unit, range;   // "" where there is none
+  std::string value;         // what stands behind it in help: FILE, NUMBER, the words to choose from; "" for a flag
+  std::string unit, range;   // of a number; "" where there is none
   std::string sentence;      // ends without a full stop
   std::string default_text;  // "" where there is none
   std::function<CLI::Option*(CLI::App&)> add;  // binds the option to its setting
@@ -40,11 +41,8 @@ std::vector<OptionRow> option_table(RunOptions& options);
 std::string option_table_markdown();
 
 /// Fills `options` from presets and arguments (argv without program and subcommand; later wins over earlier, arguments over presets).
-/// False: --help was asked for and printed. Fails with ErrorKind::usage, naming the nearest options or presets.
+/// False: --help or --print-config was asked for and printed. Fails with ErrorKind::usage, naming the nearest options or presets.
 bool parse_run_options(const std::vector<std::string>& arguments, RunOptions& options);
-
-/// The settings as a preset file.
-std::string config_text(const RunOptions& options);
 
 /// The folder of presets: ALCOVE_PRESETS, else beside the program, above it, or in ../share/alcove. Fails with ErrorKind::usage.
 std::string preset_folder();

@@ -1,0 +1,36 @@
+// A frame in host memory through the whole chain: for tests, benchmarks and programs that link the library.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/camera.h"
+#include "core/gpu/recorder.h"
+#include "core/image.h"
+#include "core/settings.h"
+
+namespace alcove {
+
+/// Depth and normals of one frame, rows from the top, over the data window.
+struct HostFrame {
+  Window data, display;
+  Camera camera;                // for the display window
+  std::vector<float> depth;     // of depth_kind; sky: at or beyond `sky`, or 0, infinite, NaN
+  std::vector<float> normal;    // planes x, y, z in normal_space; empty: reconstructed from depth
+  DepthKind depth_kind = DepthKind::planar;        // not automatic
+  NormalSpace normal_space = NormalSpace::view;    // not automatic; world needs camera.view_from_world
+  double depth_scale = 1, sky = 1e9;
+  int frame = 0;
+};
+
+/// What the chain makes of it.
+struct HostResult {
+  std::vector<float> ao;  // a value a pixel: visibility in [0, 1]
+  std::uint32_t sky_pixels = 0, repaired_depth = 0, repaired_normals = 0;
+};
+
+/// Runs prepare, the estimator and the shaping. settings.radius must be set. Fails with ErrorKind::device.
+HostResult compute_ao(gpu::Recorder& gpu, const HostFrame& frame, const EstimatorSettings& settings);
+
+}  // namespace alcove

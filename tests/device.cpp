@@ -1,0 +1,40 @@
+// The test programs' device, and the check that the validation layer stayed silent.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tests/device.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+namespace alcove::test {
+namespace {
+
+gpu::DeviceOptions options() {
+  gpu::DeviceOptions options;
+  if (const char* name = std::getenv("ALCOVE_TEST_DEVICE"); name && *name) options.choice = name;
+  options.validate = std::getenv("ALCOVE_TEST_VALIDATE") != nullptr;
+  return options;
+}
+
+/// Fails the program when any test made the validation layer speak.
+class SilentValidation : public testing::Environment {
+ public:
+  void TearDown() override {
+    if (options().validate) EXPECT_EQ(device().validation_messages(), 0);
+  }
+};
+const auto* const kSilentValidation = testing::AddGlobalTestEnvironment(new SilentValidation);
+
+}  // namespace
+
+gpu::Device& device() {
+  static gpu::Device device(options());
+  return device;
+}
+
+gpu::Recorder& recorder() {
+  static gpu::Recorder recorder(device());
+  return recorder;
+}
+
+}  // namespace alcove::test

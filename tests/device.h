@@ -1,0 +1,14 @@
+// One device for a whole test program: making one takes longer than most tests.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "core/gpu/recorder.h"
+
+namespace alcove::test {
+
+/// The device that ALCOVE_TEST_DEVICE names, else `auto`; with the validation layer where ALCOVE_TEST_VALIDATE is set.
+gpu::Device& device();
+/// A recorder on it.
+gpu::Recorder& recorder();
+
+}  // namespace alcove::test
