@@ -1,0 +1,145 @@
+// The Vulkan layer: reflection, checks between host and kernel, staging, and errors that name what is wrong.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/error.h"
+#include "core/host_frame.h"
+#include "kernels/composite.h"
+#include "kernels/horizon.h"
+#include "kernels/prepare.h"
+#include "kernels/shape.h"
+#include "tests/device.h"
+
+namespace alcove {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+/// The text of the Error that `work` throws, or "" when it throws none.
+template <class Work>
+std::string error_of(Work work) {
+  try {
+    work();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Reflection, reads_parameter_sizes_that_the_host_sends) {
+  EXPECT_EQ(gpu::reflect(gpu::kernel_code("prepare")).parameter_bytes, sizeof(PrepareParams));
+  EXPECT_EQ(gpu::reflect(gpu::kernel_code("horizon")).parameter_bytes, sizeof(HorizonParams));
+  EXPECT_EQ(gpu::reflect(gpu::kernel_code("shape")).parameter_bytes, sizeof(ShapeParams));
+  EXPECT_EQ(gpu::reflect(gpu::kernel_code("composite")).parameter_bytes, sizeof(CompositeParams));
+}
+
+TEST(Reflection, reads_bindings_groups_and_constants) {
+  const auto horizon = gpu::reflect(gpu::kernel_code("horizon"));
+  EXPECT_THAT(horizon.bindings, ElementsAre(kHorizonDepth, kHorizonNormal, kHorizonAo));
+  EXPECT_THAT(horizon.group, ElementsAre(kGroupX, kGroupY, 1u));
+  EXPECT_THAT(horizon.constant_ids, ElementsAre(kHorizonSlicesId, kHorizonStepsId, kHorizonFalloffId));
+}
+
+TEST(Reflection, refuses_what_is_no_spirv) {
+  const std::uint32_t words[] = {1, 2, 3, 4, 5, 6};
+  EXPECT_THAT(error_of([&] { gpu::reflect(words); }), HasSubstr("no SPIR-V"));
+  const auto code = gpu::kernel_code("shape");
+  EXPECT_THAT(error_of([&] { gpu::reflect(code.first(code.size() - 1)); }), HasSubstr("cut short"));
+}
+
+TEST(Kernel, refuses_parameters_of_another_size) {
+  auto& gpu = test::recorder();
+  auto& buffer = gpu.buffer("test", 256, gpu::Use::device);
+  const PrepareParams wrong{};
+  EXPECT_THAT(error_of([&] { gpu.dispatch("shape", wrong, {{kShapeAo, buffer}, {kShapeShaped, buffer}}, {8, 8}); }), HasSubstr("kernel shape takes"));
+}
+
+TEST(Kernel, refuses_bindings_that_are_not_its_own) {
+  auto& gpu = test::recorder();
+  auto& buffer = gpu.buffer("test", 256, gpu::Use::device);
+  const ShapeParams params{};
+  EXPECT_THAT(error_of([&] { gpu.dispatch("shape", params, {{kShapeAo, buffer}}, {8, 8}); }), HasSubstr("kernel shape has the bindings"));
+}
+
+TEST(Kernel, refuses_missing_constants_and_unknown_stems) {
+  EXPECT_THAT(error_of([] { test::device().kernel("horizon", {1}); }), HasSubstr("specialization constants"));
+  EXPECT_THAT(error_of([] { test::device().kernel("nosuch", {}); }), HasSubstr("there is no kernel nosuch"));
+}
+
+TEST(Buffer, refuses_more_than_the_device_can_bind) {
+  const std::size_t too_many = std::size_t(test::device().info().buffer_bytes) + 1;
+  EXPECT_THAT(error_of([&] { gpu::Buffer(test::device(), too_many, gpu::Use::device); }), HasSubstr("takes"));
+}
+
+TEST(Buffer, keeps_its_place_in_the_pool_until_its_size_changes) {
+  auto& gpu = test::recorder();
+  const auto* first = gpu.buffer("pooled", 1024, gpu::Use::upload).host().data();
+  EXPECT_EQ(gpu.buffer("pooled", 1024, gpu::Use::upload).host().data(), first);
+  EXPECT_EQ(gpu.buffer("pooled", 2048, gpu::Use::upload).bytes(), 2048u);
+}
+
+/// A step: a floor with a block on it, near enough to be dark.
+HostFrame small_frame() {
+  HostFrame frame;
+  frame.data = frame.display = {0, 0, 33, 21};
+  frame.camera.width = 33;
+  frame.camera.height = 21;
+  frame.camera.fx = frame.camera.fy = 30;
+  frame.camera.cx = 16.5;
+  frame.camera.cy = 10.5;
+  for (int y = 0; y < 21; y++)
+    for (int x = 0; x < 33; x++) frame.depth.push_back(x < 15 ? 2.0f : 1.8f);
+  frame.normal.assign(3 * frame.depth.size(), 0.0f);
+  std::fill(frame.normal.begin() + std::ptrdiff_t(2 * frame.depth.size()), frame.normal.end(), 1.0f);
+  return frame;
+}
+
+TEST(Staging, gives_the_bits_that_mapped_memory_gives) {
+  EstimatorSettings settings;
+  settings.radius = 0.5;
+  settings.power = 2;  // one more pass, so that a result is handed on
+  const auto mapped = compute_ao(test::recorder(), small_frame(), settings);
+  gpu::DeviceOptions options = test::device().options();
+  options.map_memory = false;
+  gpu::Device device(options);
+  gpu::Recorder recorder(device);
+  const auto staged = compute_ao(recorder, small_frame(), settings);
+  EXPECT_EQ(mapped.ao, staged.ao);
+  EXPECT_LT(*std::min_element(mapped.ao.begin(), mapped.ao.end()), 0.9f);
+  EXPECT_EQ(device.validation_messages(), 0);
+}
+
+TEST(Recorder, times_every_pass_by_its_stem) {
+  EstimatorSettings settings;
+  settings.radius = 0.5;
+  settings.intensity = 1.5;
+  compute_ao(test::recorder(), small_frame(), settings);
+  std::vector<std::string> names;
+  for (const auto& pass : test::recorder().passes()) {
+    names.push_back(pass.name);
+    EXPECT_GE(pass.ms, 0);
+    EXPECT_LT(pass.ms, 60000);
+  }
+  EXPECT_THAT(names, ElementsAre("prepare", "horizon", "shape"));
+}
+
+TEST(Device, is_found_by_index_name_and_uuid) {
+  const auto devices = gpu::list_devices();
+  ASSERT_FALSE(devices.empty());
+  for (const auto& choice : {std::to_string(devices[0].index), devices[0].name, devices[0].uuid}) {
+    gpu::DeviceOptions options;
+    options.choice = choice;
+    EXPECT_EQ(gpu::Device(options).info().uuid, devices[0].uuid) << choice;
+  }
+}
+
+TEST(Device, names_what_there_is_when_the_choice_fits_none) {
+  gpu::DeviceOptions options;
+  options.choice = "no such device";
+  EXPECT_THAT(error_of([&] { gpu::Device device(options); }), HasSubstr(gpu::list_devices()[0].name));
+}
+
+}  // namespace
+}  // namespace alcove

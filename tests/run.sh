@@ -1,0 +1,14 @@
+#!/usr/bin/env bash
+# Sets up, builds and runs every test; then the chain's tests once more under the Vulkan validation layer, where any message fails.
+#   tests/run.sh [--device NAME]      on another Vulkan device
+# ALCOVE_STRICT=ON makes warnings in our code errors, as continuous integration does.
+# SPDX-License-Identifier: BSD-3-Clause
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+if [ "${1:-}" = --device ]; then
+  export ALCOVE_TEST_DEVICE=${2:?--device NAME}
+fi
+scripts/setup.sh -DALCOVE_STRICT="${ALCOVE_STRICT:-OFF}"
+ctest --test-dir build --output-on-failure -j "$(nproc)"
+ALCOVE_TEST_VALIDATE=1 ctest --test-dir build --output-on-failure -R 'gpu_test|property_test'
