@@ -291,6 +291,10 @@ std::string option_table_markdown() {
 }
 
 bool parse_run_options(const std::vector<std::string>& arguments, RunOptions& options) {
+  if (arguments == std::vector<std::string>{"--help-markdown"}) {
+    fmt::print("{}", option_table_markdown());
+    return false;
+  }
   const auto app = make_app(options);
   try {
     app->parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));

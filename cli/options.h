@@ -37,11 +37,11 @@ struct RunOptions {
 /// The table, bound to `options`, whose present values are the defaults. `options` must outlive it.
 std::vector<OptionRow> option_table(RunOptions& options);
 
-/// The table as README.md shows it.
+/// The table as README.md shows it; `alcove run --help-markdown` prints it.
 std::string option_table_markdown();
 
 /// Fills `options` from presets and arguments (argv without program and subcommand; later wins over earlier, arguments over presets).
-/// False: --help or --print-config was asked for and printed. Fails with ErrorKind::usage, naming the nearest options or presets.
+/// False: --help, --help-markdown or --print-config was asked for and printed. Fails with ErrorKind::usage, naming the nearest options or presets.
 bool parse_run_options(const std::vector<std::string>& arguments, RunOptions& options);
 
 /// The folder of presets: ALCOVE_PRESETS, else beside the program, above it, or in ../share/alcove. Fails with ErrorKind::usage.
