@@ -1,0 +1,273 @@
+// The CPU reference: slices about the view ray, every pixel along them, exact unions of blocked angles.
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Written for reading, not for speed, and apart from the kernels: nothing but the formulas is shared.
+#include "core/reference.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <numbers>
+#include <thread>
+
+#include "core/error.h"
+
+namespace alcove {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+/// Neighbours on a slice whose depth differs by less than this many pixels' worth of slope are one surface.
+constexpr double kRunSlope = 8;
+
+struct Vector {
+  double x = 0, y = 0, z = 0;
+};
+Vector operator+(Vector a, Vector b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+Vector operator-(Vector a, Vector b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+Vector operator*(double s, Vector a) { return {s * a.x, s * a.y, s * a.z}; }
+double dot(Vector a, Vector b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+Vector cross(Vector a, Vector b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
+double length(Vector a) { return std::sqrt(dot(a, a)); }
+Vector normalized(Vector a) { return (1 / length(a)) * a; }
+
+/// The frame in view space, in double.
+class Scene {
+ public:
+  explicit Scene(const HostFrame& frame) : frame_(frame), camera_(frame.camera) {
+    center_x_ = camera_.cx + frame.display.x - frame.data.x;
+    center_y_ = camera_.cy + frame.display.y - frame.data.y;
+  }
+
+  int width() const { return frame_.data.width; }
+  int height() const { return frame_.data.height; }
+  bool orthographic() const { return camera_.orthographic; }
+  double fx() const { return camera_.fx; }
+  double fy() const { return camera_.fy; }
+  bool inside(int x, int y) const { return x >= 0 && y >= 0 && x < width() && y < height(); }
+
+  /// Planar depth; 0 on sky.
+  double depth(int x, int y) const {
+    const double z = frame_.depth[index(x, y)];
+    return std::isfinite(z) && z > 0 && z < frame_.sky ? z * frame_.depth_scale : 0;
+  }
+
+  Vector position(int x, int y, double z) const {
+    const double u = (x + 0.5 - center_x_) / camera_.fx, v = -(y + 0.5 - center_y_) / camera_.fy;
+    return orthographic() ? Vector{u, v, -z} : Vector{u * z, v * z, -z};
+  }
+
+  Vector toward_eye(Vector position) const { return orthographic() ? Vector{0, 0, 1} : normalized(-1 * position); }
+
+  /// The unit shading normal, bent to face the eye where it leans away.
+  Vector normal(int x, int y, Vector eye) const {
+    const std::size_t plane = frame_.data.pixels(), i = index(x, y);
+    Vector n = {frame_.normal[i], frame_.normal[i + plane], frame_.normal[i + 2 * plane]};
+    if (frame_.normal_space == NormalSpace::world) {
+      const auto& m = *camera_.view_from_world;
+      n = {m[0][0] * n.x + m[0][1] * n.y + m[0][2] * n.z, m[1][0] * n.x + m[1][1] * n.y + m[1][2] * n.z, m[2][0] * n.x + m[2][1] * n.y + m[2][2] * n.z};
+    }
+    n = length(n) > 0 ? normalized(n) : eye;
+    constexpr double kLeastFacing = 1e-3;
+    return dot(n, eye) < kLeastFacing ? normalized(n + (kLeastFacing - dot(n, eye)) * eye) : n;
+  }
+
+ private:
+  std::size_t index(int x, int y) const { return std::size_t(y) * std::size_t(width()) + std::size_t(x); }
+
+  const HostFrame& frame_;
+  const Camera& camera_;
+  double center_x_, center_y_;
+};
+
+/// Integral of cos(theta - gamma) |sin(theta)| from 0 to h (Jimenez et al. 2016, equation 7).
+double arc(double h, double gamma) { return 0.25 * (std::cos(gamma) + 2 * h * std::sin(gamma) - std::cos(2 * h - gamma)); }
+
+/// The blocked angles of one side of a slice: disjoint, sorted intervals.
+class Blocked {
+ public:
+  explicit Blocked(double gamma) : gamma_(gamma) {}
+
+  /// Blocks [from, to] and returns the arc integral over what was open of it.
+  double add(double from, double to) {
+    if (!(to > from)) return 0;
+    double fresh = arc(to, gamma_) - arc(from, gamma_);
+    std::vector<std::pair<double, double>> kept;
+    for (const auto& [a, b] : intervals_) {
+      if (b < from || a > to) {
+        kept.emplace_back(a, b);
+        continue;
+      }
+      fresh -= arc(std::min(b, to), gamma_) - arc(std::max(a, from), gamma_);
+      from = std::min(from, a);
+      to = std::max(to, b);
+    }
+    kept.emplace_back(from, to);
+    intervals_ = std::move(kept);
+    return fresh;
+  }
+
+ private:
+  double gamma_;
+  std::vector<std::pair<double, double>> intervals_;
+};
+
+/// One pixel on a slice's image line.
+struct Sample {
+  Vector position;
+  double depth = 0;      // 0: sky
+  double thickness = 0;  // scene units, infinite allowed
+};
+
+struct Receiver {
+  int x, y;
+  double depth;
+  Vector position, eye, normal;
+};
+
+/// One side of a slice at a receiver.
+struct Side {
+  Vector along_t, along_v;  // in-slice coordinates of an offset, moved into the slice parallel to the tangent plane
+  double gamma;
+  double step_x, step_y;  // pixels a step, the longer component +-1
+  double reach;           // steps within the radius; infinite when the sphere of the radius holds the eye
+};
+
+double weight_of(const ReferenceSettings& settings, double distance) {
+  if (settings.falloff == Falloff::none) return 1;
+  const double start = settings.falloff_start * settings.radius;
+  const double x = std::clamp((distance - start) / (settings.radius - start), 0.0, 1.0);
+  if (settings.falloff == Falloff::linear) return 1 - x;
+  if (settings.falloff == Falloff::quadratic) return 1 - x * x;
+  return 1 - x * x * (3 - 2 * x);
+}
+
+bool same_surface(const Scene& scene, const Sample& a, const Sample& b) {
+  if (a.depth == 0 || b.depth == 0) return false;
+  const double pixel = scene.orthographic() ? 1 / scene.fx() : std::min(a.depth, b.depth) / scene.fx();
+  return std::abs(a.depth - b.depth) < kRunSlope * pixel;
+}
+
+/// The samples of a side, the receiver first. With runs to be measured the line goes on until the last run within reach has ended.
+std::vector<Sample> line_of(const Scene& scene, const Receiver& receiver, const Side& side, const ReferenceSettings& settings) {
+  std::vector<Sample> line = {{receiver.position, receiver.depth, 0}};
+  std::size_t run_start = 0;
+  for (int k = 1;; k++) {
+    const int x = receiver.x + int(std::lround(side.step_x * k)), y = receiver.y + int(std::lround(side.step_y * k));
+    if (!scene.inside(x, y)) break;
+    Sample sample;
+    sample.depth = scene.depth(x, y);
+    sample.position = scene.position(x, y, sample.depth);
+    const bool same = same_surface(scene, line.back(), sample);
+    if (!same) run_start = line.size();
+    // Beyond the reach a sample matters only as more of a run's width, and a run wider than the sphere is wide enough.
+    if (k > side.reach && (settings.thickness != ThicknessRule::width || !same || length(sample.position - line[run_start].position) > 2 * settings.radius))
+      break;
+    line.push_back(sample);
+  }
+  return line;
+}
+
+void set_thickness(const Scene& scene, std::vector<Sample>& line, const ReferenceSettings& settings) {
+  if (settings.thickness != ThicknessRule::width) {
+    const double value = settings.thickness == ThicknessRule::infinite ? INFINITY : settings.thickness_length;
+    for (auto& sample : line) sample.thickness = value;
+    return;
+  }
+  for (std::size_t first = 0; first < line.size();) {
+    std::size_t last = first;
+    while (last + 1 < line.size() && same_surface(scene, line[last], line[last + 1])) last++;
+    const double chord = first == 0 ? INFINITY : length(line[last].position - line[first].position);
+    for (std::size_t i = first; i <= last; i++) line[i].thickness = chord;
+    first = last + 1;
+  }
+}
+
+/// The angle of an offset from the view ray, in the slice; negative on the other side.
+double angle_of(const Side& side, Vector offset) { return std::atan2(dot(offset, side.along_t), dot(offset, side.along_v)); }
+
+double blocked_arc(const Scene& scene, const Receiver& receiver, const Side& side, const ReferenceSettings& settings) {
+  auto line = line_of(scene, receiver, side, settings);
+  set_thickness(scene, line, settings);
+  const double limit = side.gamma + kPi / 2;  // the tangent plane
+  Blocked blocked(side.gamma);
+  double sum = 0;
+  for (std::size_t i = 1; i < line.size(); i++) {
+    const Vector offset = line[i].position - receiver.position;
+    const double distance = length(offset);
+    if (line[i].depth == 0 || distance >= settings.radius || distance == 0) continue;
+    const double front = angle_of(side, offset);
+    if (front <= 0 || front >= limit) continue;
+    double back = limit;
+    if (std::isfinite(line[i].thickness)) {
+      const Vector away = scene.orthographic() ? Vector{0, 0, -1} : normalized(line[i].position);
+      const double along = dot(offset, away);
+      const double exit = -along + std::sqrt(std::max(0.0, along * along - distance * distance + settings.radius * settings.radius));
+      const double angle = angle_of(side, offset + std::min(line[i].thickness, exit) * away);
+      back = angle < front ? limit : std::min(angle, limit);  // an angle that wrapped round is beyond the tangent plane
+    }
+    sum += weight_of(settings, distance) * blocked.add(front, back);
+  }
+  return sum;
+}
+
+double visibility(const Scene& scene, const Receiver& receiver, const ReferenceSettings& settings) {
+  const Vector v = receiver.eye;
+  const double a = 1 / (1 + v.z), b = -v.x * v.y * a;
+  const Vector basis_x = {1 - v.x * v.x * a, b, -v.x}, basis_y = {b, 1 - v.y * v.y * a, -v.y};
+  double sum = 0, whole = 0;
+  for (int s = 0; s < settings.slices; s++) {
+    const double azimuth = kPi * (s + 0.5) / settings.slices;
+    const Vector t = std::cos(azimuth) * basis_x + std::sin(azimuth) * basis_y, across = cross(t, v);
+    const double n_t = dot(receiver.normal, t), n_v = dot(receiver.normal, v), n_b = dot(receiver.normal, across);
+    const double weight = std::hypot(n_t, n_v);
+    if (weight < 1e-9) continue;
+    const double gamma = std::atan2(n_t, n_v);
+    whole += weight * (std::cos(gamma) + gamma * std::sin(gamma));
+    const Vector shift = (n_b / (weight * weight)) * across;
+    for (const int sign : {-1, 1}) {
+      const Vector tangent = double(sign) * t;
+      // The image of the tangent at the receiver, and how far along it the sphere of the radius is seen.
+      const double depth = receiver.depth;
+      const double du = scene.orthographic() ? tangent.x : tangent.x + receiver.position.x / depth * tangent.z;
+      const double dv = scene.orthographic() ? tangent.y : tangent.y + receiver.position.y / depth * tangent.z;
+      const double px = du * scene.fx(), py = -dv * scene.fy(), pixels = std::max(std::abs(px), std::abs(py));
+      double reach = settings.radius * pixels;
+      if (!scene.orthographic()) {
+        const double sine = settings.radius / length(receiver.position), cosine = std::sqrt(std::max(0.0, 1 - sine * sine));
+        const double forward = v.z * cosine - tangent.z * sine;
+        reach = sine < 1 && forward > 0 ? sine * pixels / forward : INFINITY;
+      }
+      const Side side{tangent + double(sign) * n_t * shift, v + n_v * shift, sign * gamma, px / pixels, py / pixels, reach};
+      sum += weight * blocked_arc(scene, receiver, side, settings);
+    }
+  }
+  return whole > 0 ? std::clamp(1 - sum / whole, 0.0, 1.0) : 1;
+}
+
+}  // namespace
+
+std::vector<float> reference_ao(const HostFrame& frame, const ReferenceSettings& settings) {
+  if (frame.depth_kind != DepthKind::planar || frame.depth.size() != frame.data.pixels() || frame.normal.size() != 3 * frame.data.pixels())
+    fail(ErrorKind::input, "the reference takes planar depth and normals for every pixel of {}", to_string(frame.data));
+  const Scene scene(frame);
+  std::vector<float> ao(frame.data.pixels(), 1.0f);
+  std::atomic<int> next_row = 0;
+  const auto work = [&] {
+    for (int y = next_row++; y < scene.height(); y = next_row++)
+      for (int x = 0; x < scene.width(); x++) {
+        const double z = scene.depth(x, y);
+        if (z == 0) continue;
+        const Vector position = scene.position(x, y, z), eye = scene.toward_eye(position);
+        ao[std::size_t(y) * std::size_t(scene.width()) + std::size_t(x)] =
+            float(visibility(scene, {x, y, z, position, eye, scene.normal(x, y, eye)}, settings));
+      }
+  };
+  const int count = settings.threads > 0 ? settings.threads : int(std::max(1u, std::thread::hardware_concurrency()));
+  std::vector<std::jthread> threads;
+  for (int i = 1; i < count; i++) threads.emplace_back(work);
+  work();
+  threads.clear();
+  return ao;
+}
+
+}  // namespace alcove

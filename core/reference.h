@@ -1,0 +1,35 @@
+// The estimators again, slow, in double precision, on the CPU: the oracle that kernels are tested against.
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Every pixel along each slice is looked at; there is no noise. The distance of a kernel to it is the *estimator error*; its own distance to
+// ray tracing is the *missing-geometry error*, what one depth layer cannot show.
+#pragma once
+
+#include <vector>
+
+#include "core/host_frame.h"
+#include "core/settings.h"
+
+namespace alcove {
+
+/// How far an occluder goes on behind the surface that the depth buffer shows.
+enum class ThicknessRule {
+  infinite,  // for ever: the horizon
+  constant,  // a length along the sample's own view ray
+  width,     // as deep as wide: the chord of the run of neighbouring pixels along the slice that it belongs to; the receiver's own run is infinite
+};
+
+struct ReferenceSettings {
+  double radius = 0;                // scene units, > 0
+  Falloff falloff = Falloff::none;  // as EstimatorSettings
+  double falloff_start = 0;         // fraction of the radius
+  int slices = 16;                  // per pixel, even in azimuth about the view ray; > 0
+  ThicknessRule thickness = ThicknessRule::infinite;
+  double thickness_length = 0;      // scene units, > 0; with ThicknessRule::constant
+  int threads = 0;                  // 0: one a core
+};
+
+/// Visibility in [0, 1] a pixel, 1 on sky. The frame must have planar depth and normals. Fails with ErrorKind::input otherwise.
+std::vector<float> reference_ao(const HostFrame& frame, const ReferenceSettings& settings);
+
+}  // namespace alcove
