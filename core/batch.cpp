@@ -247,7 +247,7 @@ std::string stats_json(const RunReport& report) {
   Json frames = Json::array();
   for (const auto& frame : report.frames) {
     Json passes = Json::array();
-    for (const auto& pass : frame.passes) passes.push_back({{"name", pass.name}, {"ms", pass.ms}});
+    for (const auto& pass : frame.passes) passes.push_back({{"name", pass.name}, {"ms", pass.ms}, {"bytes_read", pass.bytes_read}, {"bytes_written", pass.bytes_written}});
     frames.push_back({{"frame", frame.frame},
                       {"input", frame.input},
                       {"output", frame.output},

@@ -20,6 +20,8 @@ struct Module {
   std::map<std::uint32_t, std::map<std::uint32_t, std::uint32_t>> member_offsets;
   std::map<std::uint32_t, std::uint32_t> array_stride, constants;
   std::map<std::uint32_t, std::vector<std::uint32_t>> types;  // opcode, then operands
+  std::map<std::uint32_t, std::uint32_t> block_of;  // variable -> struct type
+  std::set<std::uint32_t> not_writable, not_readable;  // struct types with such a member, and variables
   std::uint32_t push_constant_type = 0;
 
   /// Bytes of a type in scalar layout.
@@ -42,6 +44,8 @@ struct Module {
 };
 
 void read_decoration(Module& module, Reflection& reflection, std::span<const std::uint32_t> words) {
+  if (words[2] == spv::DecorationNonWritable) module.not_writable.insert(words[1]);
+  if (words[2] == spv::DecorationNonReadable) module.not_readable.insert(words[1]);
   if (words.size() < 4) return;
   if (words[2] == spv::DecorationBinding) module.binding[words[1]] = words[3];
   if (words[2] == spv::DecorationDescriptorSet) module.set[words[1]] = words[3];
@@ -51,6 +55,7 @@ void read_decoration(Module& module, Reflection& reflection, std::span<const std
 
 void read_variable(Module& module, std::span<const std::uint32_t> words) {
   if (words[3] == spv::StorageClassPushConstant) module.push_constant_type = module.types.at(words[1])[2];
+  if (words[3] == spv::StorageClassStorageBuffer) module.block_of[words[2]] = module.types.at(words[1])[2];
 }
 
 void read_instruction(Module& module, Reflection& reflection, std::span<const std::uint32_t> words) {
@@ -59,6 +64,8 @@ void read_instruction(Module& module, Reflection& reflection, std::span<const st
     case spv::OpDecorate: read_decoration(module, reflection, words); break;
     case spv::OpMemberDecorate:
       if (words[3] == spv::DecorationOffset) module.member_offsets[words[1]][words[2]] = words[4];
+      if (words[3] == spv::DecorationNonWritable) module.not_writable.insert(words[1]);
+      if (words[3] == spv::DecorationNonReadable) module.not_readable.insert(words[1]);
       break;
     case spv::OpExecutionMode:
       if (words[2] == spv::ExecutionModeLocalSize) std::copy_n(words.begin() + 3, 3, reflection.group);
@@ -101,6 +108,9 @@ Reflection reflect(std::span<const std::uint32_t> code) {
   for (const auto& [id, binding] : module.binding) {
     if (module.set[id] != 0) fail(ErrorKind::device, "a kernel binds outside descriptor set 0");
     reflection.bindings.insert(binding);
+    const auto block = module.block_of[id];
+    if (!module.not_readable.contains(id) && !module.not_readable.contains(block)) reflection.read.insert(binding);
+    if (!module.not_writable.contains(id) && !module.not_writable.contains(block)) reflection.written.insert(binding);
   }
   if (module.push_constant_type) reflection.parameter_bytes = module.size_of(module.push_constant_type);
   return reflection;

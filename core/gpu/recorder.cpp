@@ -121,14 +121,18 @@ void Recorder::dispatch_bytes(const std::string& stem, std::span<const std::byte
   vkCmdDispatch(commands_, groups(extent.x, kernel.reflection().group[0]), groups(extent.y, kernel.reflection().group[1]), 1);
   if (device_.has_timestamps()) vkCmdWriteTimestamp(commands_, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, queries_, query + 1);
   barrier();
-  recorded_.push_back(stem);
+  PassTime pass{stem};
+  for (const auto& binding : bindings) {
+    if (kernel.reflection().read.contains(binding.slot)) pass.bytes_read += binding.buffer.bytes();
+    if (kernel.reflection().written.contains(binding.slot)) pass.bytes_written += binding.buffer.bytes();
+  }
+  recorded_.push_back(pass);
 }
 
 void Recorder::run() {
   begin();
   check(vkEndCommandBuffer(commands_), "vkEndCommandBuffer");
   recording_ = false;
-  passes_.clear();
   VkSubmitInfo submit{};
   submit.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;
   submit.commandBufferCount = 1;
@@ -137,14 +141,15 @@ void Recorder::run() {
   check(vkResetFences(device_.handle(), 1, &fence), "vkResetFences");
   check(vkQueueSubmit(device_.queue(), 1, &submit, fence), "vkQueueSubmit");
   check(vkWaitForFences(device_.handle(), 1, &fence, VK_TRUE, UINT64_MAX), "vkWaitForFences");
-  if (!device_.has_timestamps() || recorded_.empty()) return;
-  std::vector<std::uint64_t> ticks(2 * recorded_.size());
+  passes_ = std::move(recorded_);
+  if (!device_.has_timestamps() || passes_.empty()) return;
+  std::vector<std::uint64_t> ticks(2 * passes_.size());
   check(vkGetQueryPoolResults(device_.handle(), queries_, 0, std::uint32_t(ticks.size()), ticks.size() * 8, ticks.data(), 8,
                               VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT),
         "vkGetQueryPoolResults");
-  for (std::size_t i = 0; i < recorded_.size(); i++) {
+  for (std::size_t i = 0; i < passes_.size(); i++) {
     const std::uint64_t elapsed = (ticks[2 * i + 1] - ticks[2 * i]) & device_.timestamp_mask();
-    passes_.push_back({recorded_[i], double(elapsed) * device_.nanoseconds_per_tick() * 1e-6});
+    passes_[i].ms = double(elapsed) * device_.nanoseconds_per_tick() * 1e-6;
   }
 }
 

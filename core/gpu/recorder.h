@@ -25,10 +25,11 @@ struct Extent {
   std::uint32_t x, y = 1;
 };
 
-/// What one pass took on the device.
+/// What one pass took on the device, and the least it must move: each bound buffer once.
 struct PassTime {
   std::string name;
-  double ms;
+  double ms = 0;
+  std::uint64_t bytes_read = 0, bytes_written = 0;
 };
 
 template <class T>
@@ -59,7 +60,7 @@ class Recorder {
   /// Submits what was recorded and waits for it. The recorder is then empty again.
   void run();
 
-  /// Device time of each pass of the last run, in order; empty on a device without timestamps.
+  /// Each pass of the last run, in order; its time is 0 on a device without timestamps.
   const std::vector<PassTime>& passes() const { return passes_; }
 
  private:
@@ -74,8 +75,7 @@ class Recorder {
   DeviceHandle<VkFence, vkDestroyFence> fence_;
   VkCommandBuffer commands_ = VK_NULL_HANDLE;
   bool recording_ = false;
-  std::vector<std::string> recorded_;
-  std::vector<PassTime> passes_;
+  std::vector<PassTime> recorded_, passes_;
   std::map<std::string, Buffer, std::less<>> buffers_;
 };
 
