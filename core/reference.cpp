@@ -176,7 +176,9 @@ void set_thickness(const Scene& scene, std::vector<Sample>& line, const Referenc
   for (std::size_t first = 0; first < line.size();) {
     std::size_t last = first;
     while (last + 1 < line.size() && same_surface(scene, line[last], line[last + 1])) last++;
-    const double chord = first == 0 ? INFINITY : length(line[last].position - line[first].position);
+    // From outer edge to outer edge: n pixels are n wide, and their centres n - 1 apart. Without it single blades of grass vanish.
+    const double pixel = scene.orthographic() ? 1 / scene.fx() : line[first].depth / scene.fx();
+    const double chord = first == 0 ? INFINITY : length(line[last].position - line[first].position) + pixel;
     for (std::size_t i = first; i <= last; i++) line[i].thickness = chord;
     first = last + 1;
   }

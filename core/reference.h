@@ -16,7 +16,7 @@ namespace alcove {
 enum class ThicknessRule {
   infinite,  // for ever: the horizon
   constant,  // a length along the sample's own view ray
-  width,     // as deep as wide: the chord of the run of neighbouring pixels along the slice that it belongs to; the receiver's own run is infinite
+  width,     // as deep as wide: the chord, and one pixel, of the run of neighbours along the slice that it belongs to; the receiver's own run is infinite
 };
 
 struct ReferenceSettings {
