@@ -6,6 +6,7 @@
 
 #include "core/chain.h"
 #include "core/error.h"
+#include "core/gbuffer.h"
 #include "kernels/prepare.h"
 
 namespace alcove {
@@ -19,6 +20,23 @@ gpu::Buffer* upload(gpu::Recorder& gpu, const char* name, std::span<const float>
 }
 
 }  // namespace
+
+HostFrame read_host_frame(const InputSettings& settings, int number) {
+  FrameSource source = find_frame(settings, false, number);
+  HostFrame frame;
+  frame.data = source.data;
+  frame.display = source.display;
+  frame.camera = source.camera;
+  frame.depth_kind = source.depth_kind;
+  frame.normal_space = source.normal_space;
+  frame.depth_scale = settings.depth_scale;
+  frame.sky = settings.sky;
+  frame.frame = number;
+  frame.depth.resize(source.data.pixels());
+  frame.normal.resize(source.normal.size() * source.data.pixels());
+  read_planes(source, {{&source.depth, frame.depth.data()}, {&source.normal, frame.normal.data()}});
+  return frame;
+}
 
 HostResult compute_ao(gpu::Recorder& gpu, const HostFrame& frame, const EstimatorSettings& settings) {
   if (frame.depth.size() != frame.data.pixels() || (!frame.normal.empty() && frame.normal.size() != 3 * frame.data.pixels()))

@@ -24,6 +24,9 @@ struct HostFrame {
   int frame = 0;
 };
 
+/// Finds and reads the depth and normals that the settings name. Fails as find_frame() and read_planes() do.
+HostFrame read_host_frame(const InputSettings& settings, int frame);
+
 /// What the chain makes of it.
 struct HostResult {
   std::vector<float> ao;  // a value a pixel: visibility in [0, 1]

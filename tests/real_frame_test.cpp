@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "core/exr.h"
-#include "core/gbuffer.h"
 #include "core/host_frame.h"
 #include "tests/device.h"
 
@@ -18,20 +17,12 @@ struct Crop {
 };
 
 Crop load(const std::string& scene) {
-  const std::string base = ALCOVE_SOURCE_DIR "/tests/frames/" + scene;
+  const std::string base = ALCOVE_SOURCE_DIR "/examples/bench/" + scene;
   InputSettings settings;
   settings.input = base + ".gbuffer.exr";
   settings.camera = base + ".camera.json";
-  FrameSource source = find_frame(settings, false, 0);
   Crop crop;
-  crop.frame.data = source.data;
-  crop.frame.display = source.display;
-  crop.frame.camera = source.camera;
-  crop.frame.normal_space = source.normal_space;
-  crop.frame.depth_kind = source.depth_kind;
-  crop.frame.depth.resize(source.data.pixels());
-  crop.frame.normal.resize(3 * source.data.pixels());
-  read_planes(source, {{&source.depth, crop.frame.depth.data()}, {&source.normal, crop.frame.normal.data()}});
+  crop.frame = read_host_frame(settings, 0);
   crop.truth_a = read_exr_image(base + ".ao.a.exr").pixels;
   crop.truth_b = read_exr_image(base + ".ao.b.exr").pixels;
   return crop;
