@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <cstdio>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,8 @@ struct Command {
 
 constexpr std::array kCommands = {
     Command{"run", alcove::run_command, "compute ambient occlusion from a frame's depth and normals"},
+    Command{"compare", alcove::compare_command, "measure the error of a result against a reference"},
+    Command{"bench", alcove::bench_command, "measure device time against error"},
     Command{"presets", alcove::presets_command, "list the presets, or print one"},
     Command{"devices", alcove::devices_command, "list the Vulkan devices"},
 };
@@ -52,7 +55,9 @@ int dispatch(const std::vector<std::string>& arguments) {
 
 int main(int argc, char** argv) {
   try {
-    return dispatch({argv + 1, argv + argc});
+    const int code = dispatch({argv + 1, argv + argc});
+    if (std::fflush(stdout) != 0) alcove::fail(alcove::ErrorKind::output, "the standard output cannot be written");
+    return code;
   } catch (const alcove::Error& error) {
     fmt::print(stderr, "alcove: error: {}\n", error.what());
     return int(error.kind());

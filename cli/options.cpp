@@ -2,58 +2,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/options.h"
 
-#include <CLI/CLI.hpp>
-
-#include <cmath>
 #include <filesystem>
 #include <map>
 #include <sstream>
 
+#include "cli/parsing.h"
 #include "core/error.h"
 #include "core/file.h"
+#include "core/flat_toml.h"
 #include "core/text.h"
 
 namespace alcove {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// A number's allowed range, as text and as a check.
-struct Range {
-  double low, high;
-  bool open_low, open_high;
-  std::string text;
-  bool holds(double x) const { return (open_low ? x > low : x >= low) && (open_high ? x < high : x <= high); }
-};
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-Range above(double low) { return {low, kInfinity, true, true, fmt::format("above {}", low)}; }
-Range between(double low, double high) { return {low, high, false, false, fmt::format("{} to {}", low, high)}; }
-Range below_and_at_least(double low, double high) { return {low, high, false, true, fmt::format("{} to below {}", low, high)}; }
-Range strictly_between(double low, double high) { return {low, high, true, true, fmt::format("above {} to below {}", low, high)}; }
-Range above_to(double low, double high) { return {low, high, true, false, fmt::format("above {} to {}", low, high)}; }
-
-/// A finite number within its range, or CLI11's complaint.
-CLI::Validator check_of(const Range& range) {
-  return CLI::Validator(
-      [range](std::string& text) -> std::string {
-        double value = 0;
-        if (!CLI::detail::lexical_cast(text, value) || !std::isfinite(value)) return fmt::format("{} is not a finite number", text);
-        return range.holds(value) ? std::string() : fmt::format("{} is not {}", text, range.text);
-      },
-      "", range.text);
-}
-
-/// One of a few words, or a complaint with the nearest of them.
-CLI::Validator check_of(const std::vector<std::string>& words) {
-  return CLI::Validator(
-      [words](std::string& text) {
-        if (std::ranges::find(words, text) != words.end()) return std::string();
-        return fmt::format("{} is none of {}{}", text, list_of(words), suggestion(text, words));
-      },
-      "", "");
-}
 
 template <class T>
 const std::map<std::string, T>& names_of();
@@ -122,7 +84,7 @@ class Table {
   }
 
   void flag(const std::string& name, bool& value, const std::string& sentence) {
-    row(name, "", "", "", sentence, "", [name, &value](CLI::App& app) { return app.add_flag(name, value); });
+    row(name, "", "", "", sentence, "", [name, &value](CLI::App& app) { return app.add_flag(name, value)->multi_option_policy(CLI::MultiOptionPolicy::TakeLast); });
   }
 
   void row(const std::string& name, const std::string& value, const char* unit, const std::string& range, const std::string& sentence,
@@ -185,16 +147,15 @@ void add_device_rows(Table& table, DeviceSettings& s) {
   table.text("--device", s.device, "auto|cpu|INDEX|NAME|UUID", "where to compute; auto: the first GPU, else the CPU");
   table.flag("--require-gpu", s.require_gpu, "computing on the CPU is an error");
   table.flag("--validate", s.validate, "load the Vulkan validation layer; any message is an error");
-  table.row("--no-pipeline-cache", "", "", "", "keep no compiled kernels in the XDG cache folder", "",
-            [&s](CLI::App& app) { return app.add_flag_function("--no-pipeline-cache", [&s](std::int64_t) { s.pipeline_cache = false; }); });
+  table.flag("--no-pipeline-cache", s.no_pipeline_cache, "keep no compiled kernels in the XDG cache folder");
   table.number("--threads", s.threads, "", between(0, 1024), "threads of the CPU device and of the codecs; 0: one a core");
 }
 
 void add_report_rows(Table& table, RunOptions& options) {
   table.group("Reports");
   table.text("--stats", options.settings.output.stats, "FILE.json", "times of every pass, counts and totals");
-  table.row("-v,--verbose", "", "", "", "say more; may repeat", "", [&options](CLI::App& app) { return app.add_flag("-v,--verbose", options.verbose); });
-  table.row("-q,--quiet", "", "", "", "say nothing but errors", "", [&options](CLI::App& app) { return app.add_flag("-q,--quiet", options.quiet); });
+  table.flag("-v,--verbose", options.verbose, "say more: the time of every pass");
+  table.flag("-q,--quiet", options.quiet, "say nothing but errors");
   table.row("--print-config", "", "", "", "print the settings as a preset and stop", "",
             [&options](CLI::App& app) { return app.add_flag("--print-config", options.print_config)->configurable(false); });
 }
@@ -206,6 +167,20 @@ std::string help_text(const OptionRow& row) {
   return row.sentence + (range.empty() ? "" : " (" + range + ")");
 }
 
+/// Presets are read by a real TOML reader: CLI11's own stumbles over a '#', a comma or a space within quotes.
+class PresetFormat : public CLI::ConfigTOML {
+ public:
+  std::vector<CLI::ConfigItem> from_config(std::istream& input) const override {
+    std::vector<CLI::ConfigItem> items;
+    for (auto& entry : parse_flat_toml(std::string(std::istreambuf_iterator<char>(input), {}))) {
+      items.emplace_back();
+      items.back().name = std::move(entry.key);
+      items.back().inputs = std::move(entry.values);
+    }
+    return items;
+  }
+};
+
 /// The app with the whole table; help shows unit or words where CLI11 would show a type.
 std::unique_ptr<CLI::App> make_app(RunOptions& options) {
   auto app = std::make_unique<CLI::App>(
@@ -214,6 +189,7 @@ std::unique_ptr<CLI::App> make_app(RunOptions& options) {
       "  alcove run frame.exr -o ao.exr --camera camera.json --radius 0.5\n"
       "  alcove run frame.exr --beauty beauty.exr -o ao.exr --composite out.exr --fov 60 --radius 0.5 --preset production\n",
       "alcove run");
+  app->config_formatter(std::make_shared<PresetFormat>());
   app->allow_config_extras(CLI::config_extras_mode::error);
   app->get_formatter()->column_width(34);
   app->add_option("INPUT", options.settings.input.input, "an EXR file with depth and normals")->configurable(false)->type_name("");
@@ -226,34 +202,30 @@ std::unique_ptr<CLI::App> make_app(RunOptions& options) {
   return app;
 }
 
-std::vector<std::string> option_names(RunOptions& options) {
-  std::vector<std::string> names;
-  for (const auto& row : option_table(options)) names.push_back(row.name.substr(row.name.find("--")));
-  return names;
-}
-
-/// CLI11's complaint as one sentence with the nearest names.
-[[noreturn]] void complain(const CLI::App& app, const CLI::ParseError& error, RunOptions& options) {
-  std::string text = error.what();
-  std::ranges::replace(text, '\n', ' ');
-  const auto names = option_names(options);
-  const auto rest = app.remaining();
-  if (dynamic_cast<const CLI::ExtrasError*>(&error) && !rest.empty() && rest.front().rfind("-", 0) == 0)
-    fail(ErrorKind::usage, "there is no option {}{}; see alcove run --help", rest.front(), suggestion(rest.front(), names));
-  if (dynamic_cast<const CLI::ConfigError*>(&error)) {
-    const std::string key = text.substr(text.find_last_of(' ') + 1);
-    fail(ErrorKind::usage, "a preset holds {}, which is no option{}", key, suggestion("--" + key, names));
-  }
-  fail(ErrorKind::usage, "{}; see alcove run --help", text);
-}
-
-/// The lines of a configuration without those of options that have no value: `name=""` means "not set" to CLI11 only.
+/// A configuration as CLI11 prints it, without the options that have no value (`name=""` means "not set" to CLI11 only), and with numbers as they are
+/// printed again when it is read as a preset.
 std::string set_lines_of(const std::string& config) {
   std::istringstream lines(config);
   std::string text;
-  for (std::string line; std::getline(lines, line);)
-    if (!line.ends_with("=\"\"") && !line.ends_with("=false")) text += line + "\n";
+  for (std::string line; std::getline(lines, line);) {
+    const std::size_t equals = line.find('=');
+    if (equals == line.npos || line.ends_with("=\"\"") || line.ends_with("=false")) continue;
+    double number = 0;
+    const bool is_number = CLI::detail::lexical_cast(line.substr(equals + 1), number);
+    text += is_number ? fmt::format("{}={}\n", line.substr(0, equals), number) : line + "\n";
+  }
   return text;
+}
+
+/// Parses a preset by itself, so that what is wrong with it is said with its name.
+void require_good_preset(const std::string& preset) {
+  RunOptions options;
+  const auto app = make_app(options);
+  try {
+    parse_arguments(*app, {"--preset", preset});
+  } catch (const Error& error) {
+    fail(ErrorKind::usage, "{} (--preset): {}", preset, error.what());
+  }
 }
 
 /// The folder of the running program.
@@ -297,12 +269,10 @@ bool parse_run_options(const std::vector<std::string>& arguments, RunOptions& op
   }
   const auto app = make_app(options);
   try {
-    app->parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
-  } catch (const CLI::CallForHelp&) {
-    fmt::print("{}", app->help());
-    return false;
-  } catch (const CLI::ParseError& error) {
-    complain(*app, error, options);
+    if (!parse_arguments(*app, arguments)) return false;
+  } catch (const Error&) {
+    for (const auto& preset : app->get_config_ptr()->results()) require_good_preset(preset);
+    throw;
   }
   if (options.print_config) {
     fmt::print("{}", set_lines_of(app->config_to_str(true, false)));
@@ -331,10 +301,11 @@ std::vector<std::string> preset_names() {
 }
 
 std::string preset_file(const std::string& name) {
-  std::error_code error;
-  if (fs::exists(name, error) && !fs::is_directory(name, error)) return name;
+  // A known name is never a file that happens to lie in the working directory.
   const auto names = preset_names();
   if (std::ranges::find(names, name) != names.end()) return preset_folder() + "/" + name + ".toml";
+  std::error_code error;
+  if (fs::exists(name, error) && !fs::is_directory(name, error)) return name;
   fail(ErrorKind::usage, "there is no preset {}{}; there is {}; --preset takes one of them, or a TOML file", name, suggestion(name, names), list_of(names));
 }
 

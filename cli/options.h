@@ -30,8 +30,7 @@ struct RunOptions {
   Settings settings;
   std::vector<std::string> presets;
   bool print_config = false;
-  int verbose = 0;
-  bool quiet = false;
+  bool verbose = false, quiet = false;
 };
 
 /// The table, bound to `options`, whose present values are the defaults. `options` must outlive it.

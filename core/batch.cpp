@@ -10,6 +10,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <thread>
 
 #include "core/chain.h"
@@ -50,7 +51,17 @@ std::vector<OutputFile> outputs_of(const OutputSettings& output) {
 
 bool same_file(const std::string& a, const std::string& b) {
   std::error_code error;
-  return fs::weakly_canonical(a, error) == fs::weakly_canonical(b, error) || fs::equivalent(a, b, error);
+  if (fs::equivalent(a, b, error)) return true;
+  const fs::path whole_a = fs::weakly_canonical(a, error), whole_b = error ? fs::path() : fs::weakly_canonical(b, error);
+  return error ? a == b : whole_a == whole_b;
+}
+
+/// The largest buffer holds as many planes as the widest AOV has channels.
+void require_room(const FrameSource& source, const gpu::DeviceInfo& device) {
+  for (const auto* aov : {&source.depth, &source.normal, &source.beauty, &source.indirect, &source.diffuse_color})
+    if (const std::uint64_t bytes = aov->size() * source.data.pixels() * sizeof(float); bytes > device.buffer_bytes)
+      fail(ErrorKind::device, "{}: {} pixels of {} channels need a buffer of {} MiB, and {} takes {} MiB: use another --device, or a smaller frame",
+           source.files[aov->front().file].path(), to_string(source.data), aov->size(), bytes >> 20, device.name, device.buffer_bytes >> 20);
 }
 
 /// The planes that were found, in upload buffers, and what they mean.
@@ -108,16 +119,14 @@ SampleType type_of(const FrameSource& source, const ChannelRef& ref) {
   return found != channels.end() && found->type == SampleType::half_float ? SampleType::half_float : SampleType::single_float;
 }
 
-/// The beauty's alpha is handed on as it was read; colours keep the beauty's precision.
-void write_composite(const FrameSource& source, std::span<const float> rgb, std::span<const float> beauty, const OutputSettings& settings,
-                     const std::string& digest, const std::string& device) {
+/// Every channel keeps the beauty's precision.
+void write_composite(const FrameSource& source, std::span<const float> composite, const OutputSettings& settings, const std::string& digest,
+                     const std::string& device) {
   ExrOutput output = output_like(source, source.beauty[0], digest, device);
   output.own_attributes["alcove/composite"] = source.indirect.empty() ? "multiply: beauty * ao" : "ambient: beauty - D + D * ao, D = indirect diffuse";
   const char* names[] = {"R", "G", "B", "A"};
-  for (std::size_t c = 0; c < source.beauty.size(); c++) {
-    const auto from = c < 3 ? rgb : beauty;
-    output.planes.push_back({names[c], type_of(source, source.beauty[c]), from.subspan(c * source.data.pixels(), source.data.pixels())});
-  }
+  for (std::size_t c = 0; c < source.beauty.size(); c++)
+    output.planes.push_back({names[c], type_of(source, source.beauty[c]), composite.subspan(c * source.data.pixels(), source.data.pixels())});
   write_exr(settings.composite, output);
 }
 
@@ -133,25 +142,27 @@ std::vector<float> displayed(const FrameSource& source, std::span<const float> p
   return interleaved;
 }
 
-/// The composite through the view transform; AO by itself is data, and shown as it is.
-void write_preview(const FrameSource& source, const FrameOutputs& outputs, const OutputSettings& settings) {
+/// The composite through the view transform; AO by itself is data, and shown as it is: no transform.
+void write_preview(const FrameSource& source, const FrameOutputs& outputs, const DisplayTransform* transform, const OutputSettings& settings) {
   const int planes = outputs.composite ? 3 : 1;
   auto pixels = displayed(source, (outputs.composite ? outputs.composite : outputs.ao)->as<float>(), planes);
-  if (outputs.composite) DisplayTransform(settings.ocio).apply(pixels);
+  if (transform) transform->apply(pixels);
   write_png(settings.preview, source.display.width, source.display.height, planes, pixels);
 }
 
-void note_counts(FrameReport& report, const PrepareCounts& counts, const FrameSource& source) {
+void note_counts(FrameReport& report, const FrameCounts& counts, const FrameSource& source) {
   report.pixels = source.data.pixels();
   report.sky_pixels = counts.sky;
-  report.repaired_pixels = counts.repaired_depth + counts.repaired_normals;
+  report.repaired_pixels = counts.repaired_depth + counts.repaired_normals + counts.repaired_beauty;
   if (counts.repaired_depth) report.notes.push_back(fmt::format("{} pixels had a depth that is NaN or negative; they count as sky", counts.repaired_depth));
   if (counts.repaired_normals)
     report.notes.push_back(fmt::format("{} pixels had no usable normal; it was reconstructed from depth", counts.repaired_normals));
+  if (counts.repaired_beauty) report.notes.push_back(fmt::format("{} pixels of the beauty were NaN or infinite; they are 0 in the composite", counts.repaired_beauty));
   if (source.normal.empty()) report.notes.push_back("there is no normal channel; normals were reconstructed from depth (--normal, --normal-channels)");
 }
 
-FrameReport run_frame(gpu::Device& device, gpu::Recorder& gpu, const Settings& settings, const std::string& digest) {
+/// `transform`: for the preview of a composite, else null.
+FrameReport run_frame(gpu::Device& device, gpu::Recorder& gpu, const Settings& settings, const DisplayTransform* transform, const std::string& digest) {
   const Stopwatch total;
   FrameReport report;
   report.input = settings.input.input.empty() ? settings.input.depth : settings.input.input;
@@ -160,6 +171,7 @@ FrameReport run_frame(gpu::Device& device, gpu::Recorder& gpu, const Settings& s
 
   const Stopwatch reading;
   FrameSource source = find_frame(settings.input, !settings.output.composite.empty(), report.frame);
+  require_room(source, device.info());
   const FrameInputs inputs = read_frame(gpu, source, settings.input, report.frame);
   report.read_ms = reading.ms();
 
@@ -167,17 +179,17 @@ FrameReport run_frame(gpu::Device& device, gpu::Recorder& gpu, const Settings& s
   gpu.run();
   report.passes = gpu.passes();
   for (const auto& pass : report.passes) report.compute_ms += pass.ms;
-  note_counts(report, outputs.counts->as<PrepareCounts>()[0], source);
+  note_counts(report, outputs.counts->as<FrameCounts>()[0], source);
   report.samples_per_pixel = 2.0 * settings.estimator.slices * settings.estimator.steps * double(report.pixels - report.sky_pixels) / double(report.pixels);
 
   const Stopwatch writing;
   write_ao(source, outputs.ao->as<float>(), settings.output, digest, device.info().name);
   if (outputs.composite) {
-    write_composite(source, outputs.composite->as<float>(), inputs.beauty->as<float>(), settings.output, digest, device.info().name);
+    write_composite(source, outputs.composite->as<float>(), settings.output, digest, device.info().name);
     if (source.indirect.empty())
       report.notes.push_back("the frame has no indirect diffuse part: the composite is the whole beauty times AO, which dims direct light too");
   }
-  if (!settings.output.preview.empty()) write_preview(source, outputs, settings.output);
+  if (!settings.output.preview.empty()) write_preview(source, outputs, transform, settings.output);
   report.write_ms = writing.ms();
   report.total_ms = total.ms();
   return report;
@@ -205,11 +217,15 @@ void check_settings(const Settings& settings) {
 std::string options_digest(const Settings& settings) {
   const auto& e = settings.estimator;
   const auto& i = settings.input;
-  const std::string text = fmt::format(
-      "{} radius {} falloff {} {} slices {} steps {} intensity {} power {} seed {} depth {} {} {} {} normal {} {} layer {} fov {} focal {} aperture {} ortho {} type {}",
-      kVersion, e.radius.value_or(0), int(e.falloff), e.falloff_start, e.slices, e.steps, e.intensity, e.power, e.seed, i.depth_channel, int(i.depth_kind),
-      i.depth_scale, i.sky, i.normal_channels, int(i.normal_space), i.layer, i.fov.value_or(0), i.focal.value_or(0), i.aperture.value_or(0),
-      i.ortho_width.value_or(0), int(settings.output.type));
+  // Every value on a line of its own, so that no two sets of values make one text.
+  std::string text = kVersion;
+  const auto add = [&](const auto&... values) { ((text += fmt::format("\n{}", values)), ...); };
+  add(e.radius.value_or(0), int(e.falloff), e.falloff_start, e.slices, e.steps, e.intensity, e.power, e.seed);
+  // The camera by what it says; where files lie is not part of it, so that a job has the same digest wherever its folder is mounted.
+  add(i.camera.empty() ? std::string() : read_text(i.camera, "camera", "--camera"));
+  add(i.depth_channel, i.normal_channels, i.beauty_channels, i.layer);
+  add(int(i.depth_kind), i.depth_scale, i.sky, int(i.normal_space), i.fov.value_or(0), i.focal.value_or(0), i.aperture.value_or(0), i.ortho_width.value_or(0));
+  add(int(settings.output.type));
   return fmt::format("{:016x}", XXH3_64bits(text.data(), text.size()));
 }
 
@@ -228,12 +244,14 @@ RunReport run_frames(const Settings& settings) {
   set_exr_threads(threads);
   if (settings.device.threads > 0) ::setenv("LP_NUM_THREADS", std::to_string(threads).c_str(), 1);  // lavapipe's own variable
 
-  gpu::Device device({settings.device.device, settings.device.require_gpu, settings.device.validate, settings.device.pipeline_cache});
+  std::optional<DisplayTransform> transform;
+  if (!settings.output.preview.empty() && !settings.output.composite.empty()) transform.emplace(settings.output.ocio);
+  gpu::Device device({settings.device.device, settings.device.require_gpu, settings.device.validate, !settings.device.no_pipeline_cache});
   RunReport report;
   report.device = device.info().name;
   report.options = options_digest(settings);
   gpu::Recorder gpu(device);
-  report.frames.push_back(run_frame(device, gpu, settings, report.options));
+  report.frames.push_back(run_frame(device, gpu, settings, transform ? &*transform : nullptr, report.options));
   if (device.info().type == gpu::DeviceType::cpu && settings.device.device == "auto")
     report.frames.back().notes.push_back(fmt::format("no GPU found; computed on {}", device.info().name));
   if (device.validation_messages()) fail(ErrorKind::device, "--validate: the validation layer reported {} messages", device.validation_messages());

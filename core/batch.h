@@ -33,7 +33,7 @@ struct RunReport {
 /// Opens no input and no device.
 void check_settings(const Settings& settings);
 
-/// 16 hexadecimal digits that change with every setting that changes the result.
+/// 16 hexadecimal digits that change with every setting that changes the result, and with what the camera file says. Fails as reading that file does.
 std::string options_digest(const Settings& settings);
 
 /// The number at the end of a file name before its ending: shot.0042.exr is frame 42; 0 where there is none.

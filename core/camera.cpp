@@ -26,7 +26,7 @@ struct CameraFile {
   }
 
   [[noreturn]] void refuse(const char* field, const std::string& why) const {
-    fail(ErrorKind::input, "{}: camera field \"{}\" {}", path, field, why);
+    fail(ErrorKind::input, "{}: camera field \"{}\" {} (--camera)", path, field, why);
   }
 
   double number(const char* field) const {
@@ -89,6 +89,9 @@ std::optional<Matrix3> view_from_world(const CameraFile& file) {
     }
   }
   if (!fine) file.refuse(field, "must be 4 rows of 4 finite numbers");
+  const Json& last = (*value)[3];
+  for (std::size_t column = 0; column < 4; column++)
+    if (std::abs(last[column].get<double>() - (column == 3)) > 1e-6) file.refuse(field, "must end in the row 0 0 0 1: it is for column vectors");
   const auto dot = [&](int a, int b) {
     return m[std::size_t(a)][0] * m[std::size_t(b)][0] + m[std::size_t(a)][1] * m[std::size_t(b)][1] + m[std::size_t(a)][2] * m[std::size_t(b)][2];
   };

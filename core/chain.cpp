@@ -13,7 +13,7 @@ FrameOutputs run_chain(gpu::Recorder& gpu, const FrameInputs& frame, const Estim
   out.counts = gbuffer.counts;
   out.ao = &horizon(gpu, gbuffer, frame, settings);
   if (settings.intensity != 1 || settings.power != 1) out.ao = &shape(gpu, *out.ao, gbuffer.view, settings);
-  if (frame.beauty) out.composite = &composite(gpu, *out.ao, frame);
+  if (frame.beauty) out.composite = &composite(gpu, gbuffer, *out.ao, frame);
 
   for (const auto* result : {out.counts, out.ao, out.composite})
     if (result) gpu.download(*result);

@@ -8,9 +8,9 @@ namespace alcove {
 
 /// What the host reads after the recorder has run; null: not asked for.
 struct FrameOutputs {
-  gpu::Buffer* counts = nullptr;     // one PrepareCounts
+  gpu::Buffer* counts = nullptr;     // one FrameCounts
   gpu::Buffer* ao = nullptr;         // a plane: visibility in [0, 1]
-  gpu::Buffer* composite = nullptr;  // planes r, g, b
+  gpu::Buffer* composite = nullptr;  // the beauty's planes
 };
 
 /// Records the whole chain for one frame. settings.radius must be set.

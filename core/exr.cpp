@@ -18,8 +18,9 @@
 #include <ImfThreading.h>
 
 #include <algorithm>
-#include <array>
+#include <cmath>
 #include <cstring>
+#include <filesystem>
 #include <set>
 
 #include "core/error.h"
@@ -103,21 +104,25 @@ Imf::Header header_of(const ExrOutput& output) {
   if (output.attributes)
     for (auto attribute = output.attributes->header.begin(); attribute != output.attributes->header.end(); ++attribute)
       if (!describes_storage(attribute.name())) header.insert(attribute.name(), attribute.attribute());
-  for (const auto& [name, value] : output.own_attributes) header.insert(name, Imf::StringAttribute(value));
+  for (const auto& [name, value] : output.own_attributes) {
+    header.erase(name);  // the input's may be of another type
+    header.insert(name, Imf::StringAttribute(value));
+  }
   for (const auto& plane : output.planes) header.channels().insert(plane.channel, Imf::Channel(plane.type == SampleType::half_float ? Imf::HALF : Imf::FLOAT));
   return header;
 }
 
+/// Rounded to nearest; what is beyond half's range becomes its largest value, not infinity.
 std::vector<half> to_half(std::span<const float> values) {
   std::vector<half> halves(values.size());
-  std::ranges::transform(values, halves.begin(), [](float x) { return half(x); });
+  std::ranges::transform(values, halves.begin(), [](float x) { return half(std::abs(x) > HALF_MAX ? std::copysign(HALF_MAX, x) : x); });
   return halves;
 }
 
 }  // namespace
 
 struct ExrFile::Impl {
-  std::string path;
+  std::string path, option;
   std::unique_ptr<Imf::MultiPartInputFile> file;
   std::vector<ExrPart> parts;
   Window display;
@@ -127,13 +132,15 @@ struct ExrFile::Impl {
 ExrFile::ExrFile(const std::string& path, const char* option) : impl_(std::make_unique<Impl>()) {
   require_readable(path, "EXR", option);
   impl_->path = path;
+  impl_->option = option;
+  if (!std::filesystem::is_regular_file(path)) fail(ErrorKind::input, "{}: is no regular file; {} takes an EXR file", path, option);
   try {
     if (!Imf::isOpenExrFile(path.c_str())) fail(ErrorKind::input, "{}: not an OpenEXR file ({})", path, option);
     impl_->file = std::make_unique<Imf::MultiPartInputFile>(path.c_str());
     for (int part = 0; part < impl_->file->parts(); part++) {
       const auto& header = impl_->file->header(part);
       if (header.hasType() && Imf::isDeepData(header.type()))
-        fail(ErrorKind::input, "{}: part {} holds deep data, which has no single depth a pixel; flatten it first", path, part);
+        fail(ErrorKind::input, "{}: part {} holds deep data, which has no single depth a pixel; flatten it first ({})", path, part, option);
       impl_->parts.push_back(describe(header));
     }
     impl_->display = window_of(impl_->file->header(0).displayWindow());
@@ -141,7 +148,7 @@ ExrFile::ExrFile(const std::string& path, const char* option) : impl_(std::make_
   } catch (const Error&) {
     throw;
   } catch (const std::exception& error) {
-    fail(ErrorKind::input, "{}: the EXR header cannot be read: {}", path, one_line(error));
+    fail(ErrorKind::input, "{}: the EXR header cannot be read ({}): {}", path, option, one_line(error));
   }
 }
 
@@ -155,6 +162,10 @@ double ExrFile::pixel_aspect() const { return impl_->pixel_aspect; }
 std::shared_ptr<const ExrAttributes> ExrFile::attributes(int part) const {
   auto attributes = std::make_shared<ExrAttributes>();
   attributes->header = impl_->file->header(part);
+  const Imf::Header& first = impl_->file->header(0);
+  for (auto attribute = first.begin(); attribute != first.end(); ++attribute)
+    if (std::string_view(attribute.name()) != "view" && attributes->header.find(attribute.name()) == attributes->header.end())
+      attributes->header.insert(attribute.name(), attribute.attribute());
   return attributes;
 }
 
@@ -173,7 +184,8 @@ void ExrFile::read(std::span<const ExrRead> reads) {
       input.setFrameBuffer(frame_buffer);
       input.readPixels(data.y, data.y + data.height - 1);
     } catch (const std::exception& error) {
-      fail(ErrorKind::input, "{}: the pixels of part {} cannot be read, the file is damaged or incomplete: {}", impl_->path, part, one_line(error));
+      fail(ErrorKind::input, "{}: the pixels of part {} cannot be read ({}), the file is damaged or incomplete: {}", impl_->path, part, impl_->option,
+           one_line(error));
     }
   }
 }

@@ -29,7 +29,7 @@ struct ExrPart {
   std::vector<ExrChannel> channels;
 };
 
-/// All attributes of one part's header, of every type, to be carried into an output.
+/// All attributes of one part's header, of every type, and those that only the first part has, to be carried into an output.
 class ExrAttributes;
 
 /// A channel to read, and where to: width x height floats of the part's data window, row by row.
@@ -65,7 +65,7 @@ class ExrFile {
 /// A plane to write: width x height floats of the data window.
 struct ExrPlane {
   std::string channel;
-  SampleType type;  // half: rounded to nearest
+  SampleType type;  // half: rounded to nearest, at most +-65504
   std::span<const float> pixels;
 };
 

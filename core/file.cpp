@@ -31,7 +31,7 @@ class Temporary {
   /// Hidden and without the ending of an image, so that folder watchers pass it by; not to be guessed.
   explicit Temporary(const std::string& target)
       : target_(target),
-        path_(folder_of(target) / fmt::format(".{}.alcove-{}-{:08x}.tmp", fs::path(target).filename().string(), ::getpid(), std::random_device()())),
+        path_(folder_of(target) / fmt::format(".alcove-{}-{:08x}.tmp", ::getpid(), std::random_device()())),
         descriptor_(::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666)) {
     if (descriptor_ < 0) give_up("make a temporary file for");
   }
@@ -99,7 +99,10 @@ void require_writable(const std::string& path, const char* option) {
 }
 
 void write_whole(const std::string& path, std::span<const char> bytes) {
-  Temporary file(path);
+  // A link stays a link: what it names is replaced.
+  std::error_code error;
+  const fs::path target = fs::is_symlink(path, error) ? fs::weakly_canonical(path, error) : fs::path(path);
+  Temporary file(error ? path : target.string());
   file.write(bytes);
   file.rename_to_target();
 }

@@ -6,6 +6,7 @@
 #include <array>
 #include <map>
 #include <optional>
+#include <set>
 
 #include "core/error.h"
 #include "core/text.h"
@@ -13,10 +14,11 @@
 namespace alcove {
 namespace {
 
-/// A channel under its full name: the part's name stands for a layer where the channel does not repeat it.
+/// A channel under its full name: among several parts, a part's name stands for a layer where the channel does not repeat it.
 struct NamedChannel {
   ChannelRef ref;
-  std::string full, lower;
+  std::string full;
+  std::vector<std::string> spellings;  // lower case, without the chosen layer: the full name, and the name within the part where that is another
   bool subsampled;
 };
 
@@ -30,26 +32,34 @@ struct AovNames {
   Components in_layer;  // below one of the layers
   Components bare;      // by themselves in any file
   Components alone;     // by themselves in a file that was given for this AOV only
+  bool may_have_alpha = false;
 };
 
 const AovNames kDepthNames{"depth", "--depth-channel", {"depth", "z", "zdepth", "vrayzdepth", "z-depth"}, {{"z"}, {"depth"}, {"r"}, {"y"}}, {{"z"}, {"depth"}, {"zdepth"}, {"pz"}}, {{"r"}, {"y"}}};
 const AovNames kNormalNames{"normal", "--normal-channels", {"normal", "n", "nn", "normals", "ns"}, {{"x", "y", "z"}, {"r", "g", "b"}}, {{"nx", "ny", "nz"}}, {{"x", "y", "z"}, {"r", "g", "b"}}};
-const AovNames kBeautyNames{"beauty", "--beauty-channels", {"combined", "rgba", "beauty"}, {{"r", "g", "b"}, {"red", "green", "blue"}}, {{"r", "g", "b"}}, {}};
+const AovNames kBeautyNames{"beauty", "--beauty-channels", {"combined", "rgba", "beauty"}, {{"r", "g", "b"}, {"red", "green", "blue"}}, {{"r", "g", "b"}}, {}, true};
 const AovNames kIndirectNames{"indirect diffuse", "--layer", {"diffind", "diffuse indirect", "diffuse_indirect", "indirectdiffuse", "gi"}, {{"r", "g", "b"}}, {}, {}};
 const AovNames kDiffuseColorNames{"diffuse colour", "--layer", {"diffcol", "diffuse color"}, {{"r", "g", "b"}}, {}, {}};
 
+/// The name without the layer; nothing when it lies elsewhere. Without a layer: the name.
+std::optional<std::string> within_layer(const std::string& name, const std::string& layer) {
+  if (layer.empty()) return lower_case(name);
+  if (!lower_case(name).starts_with(lower_case(layer) + ".")) return std::nullopt;
+  return lower_case(name).substr(layer.size() + 1);
+}
+
+/// The channels of the chosen layer; all of them without one.
 std::vector<NamedChannel> channels_of(const ExrFile& file, std::size_t index, const std::string& layer) {
   std::vector<NamedChannel> channels;
-  const std::string wanted = lower_case(layer);
   for (std::size_t part = 0; part < file.parts().size(); part++) {
     const auto& p = file.parts()[part];
     for (const auto& channel : p.channels) {
-      const bool repeats = p.name.empty() || channel.name.rfind(p.name + ".", 0) == 0;
-      NamedChannel named{{index, int(part), channel.name}, repeats ? channel.name : p.name + "." + channel.name, {}, channel.subsampled};
-      named.lower = lower_case(named.full);
-      if (!wanted.empty() && named.lower.rfind(wanted + ".", 0) != 0) continue;
-      if (!wanted.empty()) named.lower = named.lower.substr(wanted.size() + 1);
-      channels.push_back(std::move(named));
+      const bool alone = file.parts().size() == 1 || p.name.empty() || channel.name.starts_with(p.name + ".");
+      NamedChannel named{{index, int(part), channel.name}, alone ? channel.name : p.name + "." + channel.name, {}, channel.subsampled};
+      for (const auto& name : {named.full, channel.name})
+        if (const auto spelling = within_layer(name, layer); spelling && (named.spellings.empty() || named.spellings.back() != *spelling))
+          named.spellings.push_back(*spelling);
+      if (!named.spellings.empty()) channels.push_back(std::move(named));
     }
   }
   return channels;
@@ -59,6 +69,14 @@ std::vector<std::string> full_names(const std::vector<NamedChannel>& channels) {
   std::vector<std::string> names;
   std::ranges::transform(channels, std::back_inserter(names), &NamedChannel::full);
   return names;
+}
+
+/// All that stands before a dot in a full name, once each: "ViewLayer", "ViewLayer.Depth" ...
+std::vector<std::string> layers_of(const ExrFile& file) {
+  std::set<std::string> layers;
+  for (const auto& channel : channels_of(file, 0, ""))
+    for (std::size_t dot = channel.full.find('.'); dot != channel.full.npos; dot = channel.full.find('.', dot + 1)) layers.insert(channel.full.substr(0, dot));
+  return {layers.begin(), layers.end()};
 }
 
 /// What stands before `.component` (or "" for the bare component); nothing when the name does not end so.
@@ -76,15 +94,16 @@ bool is_layer(const std::string& path, const std::string& layer) { return path =
 std::vector<std::vector<const NamedChannel*>> places_of(const std::vector<NamedChannel>& channels, const std::string& layer, const std::vector<std::string>& components) {
   std::map<std::pair<int, std::string>, std::vector<const NamedChannel*>> places;
   for (std::size_t i = 0; i < components.size(); i++)
-    for (const auto& channel : channels) {
-      const auto prefix = prefix_of(channel.lower, components[i]);
-      if (!prefix || !is_layer(*prefix, layer)) continue;
-      auto& place = places[{channel.ref.part, *prefix}];
-      if (place.size() == i) place.push_back(&channel);
-    }
+    for (const auto& channel : channels)
+      for (const auto& spelling : channel.spellings) {
+        const auto prefix = prefix_of(spelling, components[i]);
+        if (!prefix || !is_layer(*prefix, layer)) continue;
+        auto& place = places[{channel.ref.part, *prefix}];
+        if (place.size() == i) place.push_back(&channel);
+      }
   std::vector<std::vector<const NamedChannel*>> whole;
   for (auto& [key, place] : places)
-    if (place.size() == components.size()) whole.push_back(std::move(place));
+    if (place.size() == components.size() && std::ranges::find(whole, place) == whole.end()) whole.push_back(std::move(place));
   return whole;
 }
 
@@ -118,11 +137,16 @@ std::vector<ChannelRef> find_usual(const ExrFile& file, const std::vector<NamedC
   return found.empty() && own_file ? find_in_layer(file, channels, names, "", names.alone) : found;
 }
 
+/// The parts between commas, without the spaces around them.
 std::vector<std::string> split(const std::string& text) {
-  std::vector<std::string> parts(1);
-  for (const char c : text)
-    if (c == ',') parts.emplace_back();
-    else if (c != ' ') parts.back() += c;
+  std::vector<std::string> parts;
+  for (std::size_t start = 0; start <= text.size();) {
+    const std::size_t end = std::min(text.find(',', start), text.size());
+    const std::string part = text.substr(start, end - start);
+    const std::size_t first = part.find_first_not_of(' '), last = part.find_last_not_of(' ');
+    parts.push_back(first == part.npos ? "" : part.substr(first, last - first + 1));
+    start = end + 1;
+  }
   return parts;
 }
 
@@ -140,7 +164,7 @@ std::vector<ChannelRef> find_chosen(const ExrFile& file, const std::vector<Named
   if (wanted.size() == 1 && count > 1)
     for (const auto& components : names.in_layer)
       if (const auto places = places_of(channels, lower_case(chosen), components); places.size() == 1) return refs_of(places[0], file);
-  if (wanted.size() != count && !(count == 3 && wanted.size() == 4))
+  if (wanted.size() != count && !(names.may_have_alpha && wanted.size() == count + 1))
     fail(ErrorKind::input, "{}: no layer {} for {}{}; there is {}; {} takes a layer or {} channel names with commas", file.path(), chosen,
          names.channel_option, suggestion(chosen, full_names(channels)), list_of(full_names(channels)), names.channel_option, count);
   std::vector<const NamedChannel*> found;
@@ -177,6 +201,11 @@ class Search {
   std::vector<ChannelRef> require(std::size_t file, const AovNames& names, const std::string& chosen, bool own_file, const char* hint) const {
     auto found = find(file, names, chosen, own_file);
     if (!found.empty()) return found;
+    if (channels_[file].empty() && !settings_.layer.empty()) {
+      const auto layers = layers_of(files_[file]);
+      fail(ErrorKind::input, "{}: there is no layer {}{} for --layer; there is {}", files_[file].path(), settings_.layer, suggestion(settings_.layer, layers),
+           list_of(layers));
+    }
     const auto all = full_names(channels_[file]);
     const std::string within = settings_.layer.empty() ? "" : fmt::format(" in layer {}", settings_.layer);
     fail(ErrorKind::input, "{}: no {} channel found{}{}; there is {}; name it with {}", files_[file].path(), names.what, within, suggestion(hint, all),
@@ -192,7 +221,7 @@ class Search {
     for (const auto& channel : channels_[beauty[0].file]) {
       if (channel.ref.part != beauty[0].part || channel.subsampled) continue;
       const std::string& name = channel.ref.channel;
-      if (name == prefix + "A" || name == prefix + "a") {
+      if (lower_case(name) == lower_case(prefix + "a") || lower_case(name) == lower_case(prefix + "alpha")) {
         beauty.push_back(channel.ref);
         break;
       }
@@ -222,8 +251,10 @@ void find_beauty(FrameSource& source, const Search& search, std::size_t file, co
   source.beauty = search.with_alpha(search.require(file, kBeautyNames, settings.beauty_channels, !settings.beauty.empty(), "Combined.R"));
   source.indirect = search.find(file, kIndirectNames, "", false);
   source.diffuse_color = search.find(file, kDiffuseColorNames, "", false);
-  // Blender's indirect light is without the surface's colour; without the colour pass the part is unknown. Others' includes it.
-  const bool is_blender = !source.indirect.empty() && lower_case(source.indirect[0].channel).find("diffind") != std::string::npos;
+  // Blender's indirect light (DiffInd, from version 5 on Diffuse Indirect) is without the surface's colour; without the colour pass the part is unknown.
+  // Others' includes it.
+  const std::string indirect = source.indirect.empty() ? "" : lower_case(source.indirect[0].channel);
+  const bool is_blender = indirect.find("diffind") != indirect.npos || indirect.find("diffuse indirect") != indirect.npos;
   if (is_blender && source.diffuse_color.empty()) source.indirect.clear();
   if (!is_blender) source.diffuse_color.clear();
   for (const auto* aov : {&source.beauty, &source.indirect, &source.diffuse_color}) require_same_window(source, *aov, "beauty", "--beauty");

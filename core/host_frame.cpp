@@ -56,7 +56,7 @@ HostResult compute_ao(gpu::Recorder& gpu, const HostFrame& frame, const Estimato
   const FrameOutputs outputs = run_chain(gpu, inputs, settings);
   gpu.run();
   const auto ao = outputs.ao->as<float>();
-  const auto& counts = outputs.counts->as<PrepareCounts>()[0];
+  const auto& counts = outputs.counts->as<FrameCounts>()[0];
   return {{ao.begin(), ao.end()}, counts.sky, counts.repaired_depth, counts.repaired_normals};
 }
 

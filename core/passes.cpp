@@ -32,8 +32,8 @@ vec2 noise_shift(int frame, std::uint32_t seed) {
 
 GBuffer prepare(gpu::Recorder& gpu, const FrameInputs& frame) {
   GBuffer gbuffer{frame.view, &gpu.buffer("depth", plane_bytes(frame.view), gpu::Use::device),
-                  &gpu.buffer("normal", 3 * plane_bytes(frame.view), gpu::Use::device),
-                  &gpu.buffer("counts", sizeof(PrepareCounts), gpu::Use::download)};
+                  &gpu.buffer("normal", plane_bytes(frame.view), gpu::Use::device),
+                  &gpu.buffer("counts", sizeof(FrameCounts), gpu::Use::download)};
   PrepareParams params{};
   params.view = frame.view;
   params.view_from_normal_x = to_vec3(frame.view_from_normal[0]);
@@ -75,15 +75,16 @@ gpu::Buffer& shape(gpu::Recorder& gpu, const gpu::Buffer& ao, const View& view, 
   return shaped;
 }
 
-gpu::Buffer& composite(gpu::Recorder& gpu, const gpu::Buffer& ao, const FrameInputs& frame) {
-  gpu::Buffer& result = gpu.buffer("composite", 3 * plane_bytes(frame.view), gpu::Use::download);
+gpu::Buffer& composite(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& ao, const FrameInputs& frame) {
+  gpu::Buffer& result = gpu.buffer("composite", frame.beauty->bytes(), gpu::Use::download);
   const CompositeParams params{frame.view.size, frame.has_alpha ? 1u : 0u, frame.indirect ? 1u : 0u, frame.diffuse_color ? 1u : 0u};
   gpu.dispatch("composite", params,
                {{kCompositeAo, ao},
                 {kCompositeBeauty, *frame.beauty},
                 {kCompositeIndirect, frame.indirect ? *frame.indirect : *frame.beauty},
                 {kCompositeDiffuseColor, frame.diffuse_color ? *frame.diffuse_color : *frame.beauty},
-                {kCompositeResult, result}},
+                {kCompositeResult, result},
+                {kCompositeCounts, *gbuffer.counts}},
                extent_of(frame.view));
   return result;
 }

@@ -30,14 +30,14 @@ struct GBuffer {
   View view{};
   gpu::Buffer* depth;
   gpu::Buffer* normal;
-  gpu::Buffer* counts;  // one PrepareCounts, for the host
+  gpu::Buffer* counts;  // one FrameCounts, for the host
 };
 
 GBuffer prepare(gpu::Recorder& gpu, const FrameInputs& frame);
 /// Visibility a pixel, for the host.
 gpu::Buffer& horizon(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings);
 gpu::Buffer& shape(gpu::Recorder& gpu, const gpu::Buffer& ao, const View& view, const EstimatorSettings& settings);
-/// Planes r, g, b, for the host.
-gpu::Buffer& composite(gpu::Recorder& gpu, const gpu::Buffer& ao, const FrameInputs& frame);
+/// The beauty's planes, for the host.
+gpu::Buffer& composite(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& ao, const FrameInputs& frame);
 
 }  // namespace alcove

@@ -58,7 +58,7 @@ struct DeviceSettings {
   std::string device = "auto";  // auto | cpu | index | name | UUID
   bool require_gpu = false;
   bool validate = false;
-  bool pipeline_cache = true;
+  bool no_pipeline_cache = false;
   int threads = 0;              // of the CPU device and of the codecs; 0: one a core
 };
 

@@ -39,13 +39,31 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return row.back();
 }
 
+namespace {
+
+/// The end of a dotted name with as many parts as `like` has: "Deph.Z" of "ViewLayer.Deph.Z" for "Depth.Z".
+std::string_view tail_like(std::string_view name, std::string_view like) {
+  auto dots = std::ranges::count(like, '.');
+  for (std::size_t at = name.size(); at-- > 0;)
+    if (name[at] == '.' && dots-- == 0) return name.substr(at + 1);
+  return name;
+}
+
+/// An edit distance in which a name below another layer, or one that is part of the other, is near however long the rest is.
+std::size_t distance_of(std::string_view name, std::string_view candidate) {
+  const std::string a = lower_case(name), b = lower_case(candidate);
+  if (a == b) return 0;
+  const bool contained = a.size() > 1 && b.size() > 1 && (a.find(b) != a.npos || b.find(a) != b.npos);
+  const std::size_t below = edit_distance(name, tail_like(candidate, name)) + 1;
+  return contained ? 1 : std::min(edit_distance(name, candidate), below);
+}
+
+}  // namespace
+
 std::vector<std::string> nearest_names(std::string_view name, std::span<const std::string> candidates, std::size_t most) {
   std::vector<std::pair<std::size_t, std::string>> ranked;
   for (const auto& candidate : candidates) {
-    // A name that is part of the other is near however long the rest is: "Depth.Z" in "ViewLayer.Depth.Z".
-    const std::string a = lower_case(name), b = lower_case(candidate);
-    const bool contained = a.size() > 1 && b.size() > 1 && (a.find(b) != a.npos || b.find(a) != b.npos);
-    const std::size_t distance = contained ? 1 : edit_distance(name, candidate);
+    const std::size_t distance = distance_of(name, candidate);
     if (distance <= std::max<std::size_t>(2, name.size() / 3)) ranked.emplace_back(distance, candidate);
   }
   std::ranges::stable_sort(ranked, {}, &std::pair<std::size_t, std::string>::first);

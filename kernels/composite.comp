@@ -1,7 +1,7 @@
 // Puts AO into a beauty: beauty - D + D f where the ambient part D is known, beauty x f where it is not.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// In: visibility, beauty, the parts of D. Out: colour; alpha stays as it was.
+// In: visibility, beauty, the parts of D. Out: colour; alpha as it was.
 // f = 1 - alpha (1 - ao): a pixel at an edge is part background, which the AO of the surface must not dim. The difference
 // form keeps all other light as it is, even where the passes do not sum to the beauty exactly.
 #version 450
@@ -15,16 +15,27 @@ layout(scalar, binding = kCompositeBeauty) readonly buffer Beauty { float beauty
 layout(scalar, binding = kCompositeIndirect) readonly buffer Indirect { float indirect[]; };
 layout(scalar, binding = kCompositeDiffuseColor) readonly buffer DiffuseColor { float diffuse_color[]; };
 layout(scalar, binding = kCompositeResult) writeonly buffer Result { float result[]; };
+layout(scalar, binding = kCompositeCounts) buffer Counts { FrameCounts counts; };
 
-/// Nothing that leaves the tool is NaN or infinite: a broken beauty pixel becomes black, as in `prepare` it would become sky.
-float sane(float x) { return isnan(x) || isinf(x) ? 0.0 : x; }
+bool broken = false;  // this pixel had a value that is NaN or infinite
+
+/// Nothing that leaves the tool is NaN or infinite: such a value becomes 0, and is counted.
+float sane(float x) {
+  if (!isnan(x) && !isinf(x)) return x;
+  broken = true;
+  return 0.0;
+}
 
 void main() {
   const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   if (any(greaterThanEqual(pixel, params.size))) return;
   const int plane = params.size.x * params.size.y, index = pixel.y * params.size.x + pixel.x;
-  const float alpha = params.has_alpha != 0 ? clamp(sane(beauty[index + 3 * plane]), 0.0, 1.0) : 1.0;
-  const float dimmed = alpha * (1.0 - ao[index]);
+  float alpha = 1.0;
+  if (params.has_alpha != 0) {
+    alpha = sane(beauty[index + 3 * plane]);
+    result[index + 3 * plane] = alpha;
+  }
+  const float dimmed = clamp(alpha, 0.0, 1.0) * (1.0 - ao[index]);
   for (int c = 0; c < 3; c++) {
     const int i = index + c * plane;
     const float color = sane(beauty[i]);
@@ -32,4 +43,5 @@ void main() {
     if (params.has_ambient != 0) ambient = sane(indirect[i] * (params.has_diffuse_color != 0 ? diffuse_color[i] : 1.0));
     result[i] = sane(color - ambient * dimmed);
   }
+  if (broken) atomicAdd(counts.repaired_beauty, 1u);
 }

@@ -9,7 +9,8 @@ ALCOVE_CONSTANT uint kCompositeAo = 0;            // in: float a pixel, visibili
 ALCOVE_CONSTANT uint kCompositeBeauty = 1;        // in: planes R, G, B and, with alpha, A; premultiplied scene-linear colour
 ALCOVE_CONSTANT uint kCompositeIndirect = 2;      // in: planes R, G, B of the indirect diffuse light; not read without ambient parts
 ALCOVE_CONSTANT uint kCompositeDiffuseColor = 3;  // in: planes R, G, B of the diffuse colour that multiplies it; not read without
-ALCOVE_CONSTANT uint kCompositeResult = 4;        // out: planes R, G, B
+ALCOVE_CONSTANT uint kCompositeResult = 4;        // out: the beauty's planes, alpha too
+ALCOVE_CONSTANT uint kCompositeCounts = 5;        // in, out: FrameCounts
 
 struct CompositeParams {
   ivec2 size;              // px

@@ -13,6 +13,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "horizon.h"
 #include "view.glsl"
+#include "normal.glsl"
 #include "arcs.glsl"
 #include "noise.glsl"
 
@@ -22,7 +23,7 @@ layout(constant_id = kHorizonStepsId) const uint kSteps = 6;
 layout(constant_id = kHorizonFalloffId) const uint kFalloff = kFalloffNone;
 layout(scalar, push_constant) uniform Push { HorizonParams params; };
 layout(scalar, binding = kHorizonDepth) readonly buffer Depth { float depth[]; };
-layout(scalar, binding = kHorizonNormal) readonly buffer Normal { vec3 normal[]; };
+layout(scalar, binding = kHorizonNormal) readonly buffer Normal { uint normal[]; };
 layout(scalar, binding = kHorizonAo) writeonly buffer Ao { float ao[]; };
 
 /// Slices whose plane the normal is nearly perpendicular to weigh less than this and are left out.
@@ -102,7 +103,7 @@ void main() {
 
   const bool perspective = params.view.orthographic == 0;
   const vec2 tangent = tangent_of(params.view, vec2(pixel) + 0.5);
-  const vec3 position = position_of(params.view, vec2(pixel) + 0.5, z), eye = toward_eye(params.view, position), n = normal[index];
+  const vec3 position = position_of(params.view, vec2(pixel) + 0.5, z), eye = toward_eye(params.view, position), n = unpack_normal(normal[index]);
   const vec2 noise = pixel_noise(pixel + params.noise_origin, params.noise_shift);
   vec3 basis_x, basis_y;
   basis_of(eye, basis_x, basis_y);

@@ -6,7 +6,7 @@
 ALCOVE_BEGIN
 
 ALCOVE_CONSTANT uint kHorizonDepth = 0;   // in: float a pixel, from prepare
-ALCOVE_CONSTANT uint kHorizonNormal = 1;  // in: vec3 a pixel, from prepare
+ALCOVE_CONSTANT uint kHorizonNormal = 1;  // in: uint a pixel, from prepare
 ALCOVE_CONSTANT uint kHorizonAo = 2;      // out: float a pixel, visibility in [0, 1], 1 = open
 
 ALCOVE_CONSTANT uint kHorizonSlicesId = 0;   // specialization: slices a pixel

@@ -9,14 +9,15 @@
 #extension GL_GOOGLE_include_directive : require
 #include "prepare.h"
 #include "view.glsl"
+#include "normal.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 layout(scalar, push_constant) uniform Push { PrepareParams params; };
 layout(scalar, binding = kPrepareRawDepth) readonly buffer RawDepth { float raw_depth[]; };
 layout(scalar, binding = kPrepareRawNormal) readonly buffer RawNormal { float raw_normal[]; };
 layout(scalar, binding = kPrepareDepth) writeonly buffer Depth { float depth[]; };
-layout(scalar, binding = kPrepareNormal) writeonly buffer Normal { vec3 normal[]; };
-layout(scalar, binding = kPrepareCounts) buffer Counts { PrepareCounts counts; };
+layout(scalar, binding = kPrepareNormal) writeonly buffer Normal { uint normal[]; };
+layout(scalar, binding = kPrepareCounts) buffer Counts { FrameCounts counts; };
 
 /// How far a normal is at least turned to the eye, as a cosine. Smaller, and the slices at grazing angles lose their weight to rounding.
 const float kLeastFacing = 1e-3;
@@ -77,7 +78,7 @@ void main() {
   const float z = planar_depth(pixel);
   depth[index] = z;
   if (z >= kSkyDepth) {
-    normal[index] = vec3(0, 0, 1);
+    normal[index] = pack_normal(vec3(0, 0, 1));
     atomicAdd(counts.sky, 1u);
     if (isnan(raw_depth[index]) || raw_depth[index] < 0.0) atomicAdd(counts.repaired_depth, 1u);
     return;
@@ -100,5 +101,5 @@ void main() {
   // A visible surface faces the eye: a shading normal that leans away is bent back just far enough.
   const float facing = dot(n, eye);
   if (facing < kLeastFacing) n = normalize(n + (kLeastFacing - facing) * eye);
-  normal[index] = n;
+  normal[index] = pack_normal(n);
 }

@@ -8,8 +8,8 @@ ALCOVE_BEGIN
 ALCOVE_CONSTANT uint kPrepareRawDepth = 0;   // in: float a pixel, as in the file
 ALCOVE_CONSTANT uint kPrepareRawNormal = 1;  // in: three planes of floats, x, y, z; not read without normals
 ALCOVE_CONSTANT uint kPrepareDepth = 2;      // out: float a pixel, planar z > 0 in scene units, kSkyDepth on sky
-ALCOVE_CONSTANT uint kPrepareNormal = 3;     // out: vec3 a pixel, unit, view space, facing the eye
-ALCOVE_CONSTANT uint kPrepareCounts = 4;     // out: PrepareCounts, zeroed before
+ALCOVE_CONSTANT uint kPrepareNormal = 3;     // out: uint a pixel, see normal.glsl: unit, view space, facing the eye
+ALCOVE_CONSTANT uint kPrepareCounts = 4;     // out: FrameCounts, zeroed before
 
 ALCOVE_CONSTANT uint kDepthPlanar = 0;   // distance along the optical axis
 ALCOVE_CONSTANT uint kDepthRay = 1;      // distance to the eye
@@ -26,12 +26,6 @@ struct PrepareParams {
   uint has_normals;         // 0: all are reconstructed from depth
 };
 ALCOVE_PARAMS(PrepareParams)
-
-struct PrepareCounts {
-  uint sky;               // pixels
-  uint repaired_depth;    // pixels whose depth was NaN or negative: treated as sky
-  uint repaired_normals;  // pixels whose normal was not finite or zero: reconstructed from depth
-};
 
 ALCOVE_END
 #endif

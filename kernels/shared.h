@@ -48,5 +48,13 @@ struct View {
   uint orthographic;       // 0 or 1
 };
 
+/// What the kernels count over a frame.
+struct FrameCounts {
+  uint sky;               // pixels
+  uint repaired_depth;    // pixels whose depth was NaN or negative: treated as sky
+  uint repaired_normals;  // pixels whose normal was not finite or zero: reconstructed from depth
+  uint repaired_beauty;   // pixels of the composite where a colour or alpha was NaN or infinite: 0 instead
+};
+
 ALCOVE_END
 #endif

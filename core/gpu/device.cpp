@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/gpu/device.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cstdlib>
 #include <cstring>
@@ -12,6 +10,7 @@
 #include <iterator>
 
 #include "core/error.h"
+#include "core/file.h"
 #include "core/gpu/kernel.h"
 #include "core/text.h"
 
@@ -136,6 +135,7 @@ bool is_number(const std::string& text) { return !text.empty() && std::ranges::a
 
 /// Whether a device is one that `choice` names.
 bool is_named(const DeviceInfo& device, const std::string& choice) {
+  if (choice.empty()) return false;
   if (choice == "auto") return true;
   if (choice == "cpu") return device.type == DeviceType::cpu;
   if (is_number(choice)) return std::to_string(device.index) == choice;
@@ -268,7 +268,7 @@ void Device::choose_device() {
     if (!best || rank_of(device.info.type) < rank_of(best->info.type)) best = &device;
   }
   if (listed.empty()) fail(ErrorKind::device, "no Vulkan device found; lavapipe computes on the CPU (Debian: mesa-vulkan-drivers)");
-  if (!best) fail(ErrorKind::device, "no usable Vulkan device matches --device {}; there are {}", options_.choice, listed);
+  if (!best) fail(ErrorKind::device, "no usable Vulkan device matches --device \"{}\"; there are {}", options_.choice, listed);
   if (options_.require_gpu && best->info.type == DeviceType::cpu)
     fail(ErrorKind::device, "--require-gpu: no GPU for --device {}; there are {}", options_.choice, listed);
   physical_ = best->handle;
@@ -324,13 +324,13 @@ void Device::save_pipeline_cache() const {
   if (vkGetPipelineCacheData(device_, pipeline_cache_, &size, nullptr) != VK_SUCCESS || size == 0 || size == loaded_cache_bytes_) return;
   std::vector<char> bytes(size);
   if (vkGetPipelineCacheData(device_, pipeline_cache_, &size, bytes.data()) != VK_SUCCESS) return;
-  // A cache that cannot be written costs time, not results: read-only homes are normal on farms.
   std::error_code ignored;
   std::filesystem::create_directories(file.parent_path(), ignored);
-  const auto temporary = fmt::format("{}.{}.tmp", file.string(), ::getpid());
-  std::ofstream(temporary, std::ios::binary).write(bytes.data(), std::streamsize(size));
-  std::filesystem::rename(temporary, file, ignored);
-  if (ignored) std::filesystem::remove(temporary, ignored);
+  try {
+    write_whole(file.string(), bytes);
+  } catch (const Error&) {
+    // A cache that cannot be written costs time, not results: read-only homes are normal on farms.
+  }
 }
 
 const Kernel& Device::kernel(const std::string& stem, const std::vector<std::uint32_t>& specialization) {

@@ -1,0 +1,60 @@
+// Runs the built program as a shell would, and keeps the files of a test in a folder that vanishes.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <iosfwd>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace alcove::test {
+
+/// What a program left behind when it ended.
+struct Finished {
+  int code;  // exit code; 128 + number after a signal; -1 when it was stopped for taking too long
+  std::string out, err;
+};
+std::ostream& operator<<(std::ostream& stream, const Finished& finished);
+
+/// Where the program runs.
+struct Surroundings {
+  std::string folder = "/";  // working directory; not the test's own, so that nothing depends on it
+  std::map<std::string, std::optional<std::string>> environment;  // to set, or to remove where there is no value; all else is inherited
+  double seconds = 60;       // then it is killed
+  std::string program = ALCOVE_PROGRAM;
+};
+
+/// Runs the program with these arguments and waits for its end. It finds the presets of the project unless the surroundings say otherwise.
+Finished run_program(const std::vector<std::string>& arguments, const Surroundings& surroundings = {});
+
+std::vector<std::string> lines_of(const std::string& text);
+
+/// A folder under the system's temporary folder; it goes with all that is in it.
+class TemporaryFolder {
+ public:
+  TemporaryFolder();
+  ~TemporaryFolder();
+  TemporaryFolder(const TemporaryFolder&) = delete;
+
+  const std::string& path() const { return path_; }
+  std::string operator/(const std::string& name) const { return path_ + "/" + name; }
+
+ private:
+  std::string path_;
+};
+
+/// Every name below a folder, hidden ones too, sorted.
+std::vector<std::string> names_in(const std::string& folder);
+
+std::string read_bytes(const std::string& path);
+void write_bytes(const std::string& path, const std::string& bytes);
+
+/// A file system of its own in memory at `folder`, seen by this process and its children only, so that it goes with them.
+/// Options as for mount -o: "size=64k". False where this process may not mount.
+bool mount_memory(const std::string& folder, const std::string& options);
+/// Makes what mount_memory() has mounted there read-only.
+bool make_read_only(const std::string& folder);
+void unmount(const std::string& folder);
+
+}  // namespace alcove::test
