@@ -1,0 +1,25 @@
+// What core/image_io.cpp, a module that is loaded on first use, offers to the program.
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// OpenImageIO brings some 200 shared libraries along (video, GIS, computer vision). To load them costs a fifth of a second, more than
+// all the rest of a small frame, and a plain EXR job needs none of it.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/image.h"
+
+namespace alcove {
+
+/// The functions of core/image_io.h that need OpenImageIO.
+struct ImageIoModule {
+  Image (*read_image)(const std::string& path, const char* option);
+  std::vector<char> (*encode_png)(const std::string& name, int width, int height, int channels, std::span<const float> pixels);
+};
+
+inline constexpr const char* kImageIoFile = "libalcove_image_io.so";
+inline constexpr const char* kImageIoSymbol = "alcove_image_io_module";  // an ImageIoModule
+
+}  // namespace alcove
