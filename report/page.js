@@ -1,0 +1,90 @@
+// The report page: its data, what the three parts share, and the start. Loaded last.
+// SPDX-License-Identifier: BSD-3-Clause
+'use strict';
+
+const report = JSON.parse(document.getElementById('report').textContent);
+const frames = [...new Set(report.rows.map((row) => row.frame))];
+const kMeanLabel = 'mean over frames';
+
+/// Columns that the page knows: heading, hint, decimals where they are fixed, and whether the sign is always shown. The order is the table's.
+const kColumns = {
+  ms: { heading: 'ms', hint: 'compute time on the device in milliseconds' },
+  ms_min: { heading: 'ms min', hint: 'compute time of the fastest run' },
+  ms_max: { heading: 'ms max', hint: 'compute time of the slowest run' },
+  yardsticks: { heading: 'yardsticks', hint: 'compute time over that of the yardstick kernel in the same minute' },
+  rmse: { heading: 'RMSE', hint: 'root of the mean squared error over non-sky pixels', decimals: 4 },
+  mae: { heading: 'MAE', hint: 'mean absolute error', decimals: 4 },
+  bias: { heading: 'bias', hint: 'mean error: below zero is too dark', signed: true, decimals: 4 },
+  p95: { heading: 'p95', hint: '95 of 100 pixels have an absolute error below', decimals: 4 },
+  p99: { heading: 'p99', hint: '99 of 100 pixels have an absolute error below', decimals: 4 },
+  max: { heading: 'max', hint: 'largest absolute error', decimals: 4 },
+  ssim: { heading: 'SSIM', hint: 'structural similarity; 1: the same', decimals: 4 },
+  flip: { heading: 'FLIP', hint: 'mean perceived difference, 0 to 1', decimals: 4 },
+  psnr: { heading: 'PSNR', hint: 'peak signal to noise ratio in dB' },
+  estimator_rmse: { heading: 'estimator RMSE', hint: 'error against an exact search of the same depth buffer: what sampling costs', decimals: 4 },
+  geometry_rmse: { heading: 'geometry RMSE', hint: 'error of that exact search against the truth: what a depth buffer cannot see', decimals: 4 },
+  samples_per_pixel: { heading: 'samples/px', hint: 'depth samples a pixel' },
+};
+
+/// An element with attributes and children; strings become text, never markup.
+function make(tag, attributes, ...children) {
+  const element = document.createElement(tag);
+  for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, value);
+  element.append(...children);
+  return element;
+}
+
+/// Fills a <select> with [value, label] pairs and keeps what was chosen where it is still there.
+function fill_select(select, options) {
+  const before = select.value;
+  select.replaceChildren(...options.map(([value, label]) => make('option', { value }, label)));
+  if (options.some(([value]) => value === before)) select.value = before;
+}
+
+/// The decimals that give the smallest of `values` three digits, at most four.
+function decimals_for(values) {
+  const sizes = values.map(Math.abs).filter((size) => size > 0);
+  if (!sizes.length || values.every(Number.isInteger)) return 0;
+  return Math.min(4, Math.max(0, 2 - Math.floor(Math.log10(Math.min(...sizes)))));
+}
+
+function format(value, decimals, signed = false) {
+  if (!Number.isFinite(value)) return '–';
+  const text = Math.abs(value).toFixed(decimals);
+  const zero = Number(text) === 0;
+  return (value < 0 && !zero ? '−' : signed && !zero ? '+' : '') + text;
+}
+
+/// A candidate or row with its time in yardsticks, where there is a yardstick: its frame's own, or for means the report's.
+function with_yardsticks(row) {
+  const yardstick_ms = report.frames?.find((frame) => frame.name === row.frame)?.yardstick_ms ?? report.yardstick_ms;
+  return yardstick_ms > 0 && Number.isFinite(row.ms) ? { ...row, yardsticks: row.ms / yardstick_ms } : row;
+}
+
+/// A single number of the column `key`.
+function number_text(key, value) {
+  return format(value, kColumns[key]?.decimals ?? decimals_for([value]), kColumns[key]?.signed);
+}
+
+/// [heading, value as text] of every number in `row`, in the table's order, unknown ones last.
+function numbers_of(row) {
+  const keys = [...new Set([...Object.keys(kColumns), ...Object.keys(row)])].filter((key) => Number.isFinite(row[key]));
+  return keys.map((key) => [kColumns[key]?.heading ?? key, number_text(key, row[key])]);
+}
+
+function start_header() {
+  document.title = `${report.title} – Alcove`;
+  document.getElementById('title').textContent = report.title;
+  document.getElementById('kind').textContent = `Alcove ${report.kind}`;
+  const facts = [['Device', report.device], ['Yardstick', report.yardstick_ms && `${number_text('ms', report.yardstick_ms)} ms`],
+    ['Frames', frames.length], ['Candidates', report.candidates.length]];
+  if (report.candidates.length === 1) facts[3] = ['Settings', report.candidates[0].settings];
+  for (const [name, value] of facts) {
+    if (value) document.getElementById('facts').append(make('div', {}, make('dt', {}, name), make('dd', {}, String(value))));
+  }
+}
+
+start_header();
+start_chart();
+start_table();
+start_viewer();

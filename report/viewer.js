@@ -1,0 +1,174 @@
+// The picture viewer: two pictures under a divider that noUiSlider moves, zoom and pan, result or signed error.
+// SPDX-License-Identifier: BSD-3-Clause
+'use strict';
+
+const kTruth = ' truth';  // The value of the choice "truth" on the right; a candidate's name has no leading space.
+const kMaxZoom = 16;
+const kStageWidth = 640;  // Smaller pictures are enlarged to at least this width, by a whole number.
+
+/// What is shown: the picture's size, its scale in CSS pixels a picture pixel and the place of its corner in the stage.
+const view = { width: 1, height: 1, scale: 1, x: 0, y: 0, fitted: true };
+
+const by_id = (id) => document.getElementById(id);
+const picture_of = (frame, candidate) => report.images.find((image) => image.frame === frame && image.candidate === candidate);
+const truth_of = (frame) => report.images.find((image) => image.frame === frame && image.truth)?.truth;
+const showing_error = () => document.querySelector('#viewer-show input:checked').value === 'error';
+
+/// Only pictures that are inside the page are shown.
+function set_picture(layer, url, text) {
+  const image = layer.querySelector('img');
+  layer.hidden = !url?.startsWith('data:image/');
+  image.alt = text;
+  if (layer.hidden) image.removeAttribute('src');
+  else image.src = url;
+}
+
+function fit_scale() {
+  return by_id('stage').clientWidth / view.width;
+}
+
+/// Draws the view: never smaller than fitted (or 1, if that is smaller), never with a gap where the picture could be.
+function draw_view() {
+  const stage = by_id('stage');
+  const fit = fit_scale();
+  view.scale = view.fitted ? fit : Math.min(kMaxZoom, Math.max(Math.min(fit, 1), view.scale));
+  const place = (at, room, size) => (size <= room ? (room - size) / 2 : Math.min(0, Math.max(room - size, at)));
+  view.x = place(view.x, stage.clientWidth, view.width * view.scale);
+  view.y = place(view.y, stage.clientHeight, view.height * view.scale);
+  for (const image of stage.querySelectorAll('img')) {
+    image.style.transform = `translate(${view.x}px, ${view.y}px) scale(${view.scale})`;
+    image.style.imageRendering = view.scale >= 2 ? 'pixelated' : 'auto';
+  }
+  stage.classList.toggle('zoomed', view.scale > fit * 1.001);
+  for (const button of document.querySelectorAll('#viewer-zoom [data-zoom]')) {
+    const zoom = button.dataset.zoom;
+    if (zoom === 'fit' || Number(zoom)) button.setAttribute('aria-pressed', zoom === 'fit' ? view.fitted : !view.fitted && view.scale === Number(zoom));
+  }
+}
+
+/// Sets the scale and keeps the picture's point under (x, y) of the stage where it is.
+function zoom_to(scale, x = by_id('stage').clientWidth / 2, y = by_id('stage').clientHeight / 2) {
+  scale = Math.min(kMaxZoom, Math.max(Math.min(fit_scale(), 1), scale));
+  view.x = x - (x - view.x) * (scale / view.scale);
+  view.y = y - (y - view.y) * (scale / view.scale);
+  view.scale = scale;
+  view.fitted = false;
+  draw_view();
+}
+
+function zoom_fit() {
+  view.fitted = true;
+  draw_view();
+}
+
+/// Zooms by `factor`; reaching the fitted size on the way out means "fit".
+function zoom_by(factor, x, y) {
+  if (factor < 1 && view.scale * factor <= fit_scale()) zoom_fit();
+  else zoom_to(view.scale * factor, x, y);
+}
+
+function pan_by(dx, dy) {
+  view.x += dx;
+  view.y += dy;
+  draw_view();
+}
+
+/// Shows what the boxes above the pictures say.
+function fill_viewer() {
+  const frame = by_id('viewer-frame').value;
+  const left = picture_of(frame, by_id('viewer-left').value);
+  const right = picture_of(frame, by_id('viewer-right').value);
+  const error = showing_error();
+  const right_name = right ? right.candidate : 'truth';
+  set_picture(by_id('layer-left'), error ? left.error : left.result, `${left.candidate}${error ? ', signed error' : ''}`);
+  set_picture(by_id('layer-right'), error ? right?.error : right ? right.result : truth_of(frame), `${right_name}${error ? ', signed error' : ''}`);
+  const divided = !by_id('layer-right').hidden;
+  by_id('stage').classList.toggle('divided', divided);
+  by_id('chip-left').textContent = error ? `${left.candidate}: result − truth` : left.candidate;
+  by_id('chip-right').textContent = error ? `${right_name}: result − truth` : right_name;
+  by_id('legend').hidden = !error;
+  const row = report.rows.find((each) => each.frame === frame && each.candidate === left.candidate);
+  by_id('viewer-numbers').textContent = row ? `${left.candidate}: ${numbers_of(with_yardsticks(row)).map(([heading, text]) => `${heading} ${text}`).join(' · ')}` : '';
+
+  if (left.width !== view.width || left.height !== view.height) Object.assign(view, { width: left.width, height: left.height, fitted: true });
+  const stage = by_id('stage');
+  stage.style.setProperty('--width', `${left.width * Math.max(1, Math.ceil(kStageWidth / left.width))}px`);
+  stage.style.setProperty('--ratio', left.width / left.height);
+  for (const image of stage.querySelectorAll('img')) Object.assign(image, { width: left.width, height: left.height });
+  draw_view();
+}
+
+/// The candidates that have pictures of the chosen frame.
+function fill_choices() {
+  const names = report.images.filter((image) => image.frame === by_id('viewer-frame').value).map((image) => [image.candidate, image.candidate]);
+  fill_select(by_id('viewer-left'), names);
+  fill_select(by_id('viewer-right'), [[kTruth, 'truth'], ...names]);
+  for (const side of ['left', 'right']) by_id(`viewer-${side}`).parentElement.hidden = names.length < 2;
+  fill_viewer();
+}
+
+function start_divider() {
+  const slider = noUiSlider.create(by_id('divider'), {
+    start: 50, range: { min: 0, max: 100 }, behaviour: 'snap', animate: false, keyboardDefaultStep: 50,
+    handleAttributes: [{ 'aria-label': 'Divider between the left and the right picture' }],
+    ariaFormat: { to: (value) => `${Math.round(value)} %`, from: Number },
+  });
+  slider.on('update', (values, handle, numbers) => by_id('stage').style.setProperty('--divider', `${numbers[0]}%`));
+}
+
+/// Dragging pans; the divider's handle lies above and keeps its own drags.
+function start_pan(stage) {
+  let from = null;
+  stage.addEventListener('pointerdown', (event) => {
+    if (event.button !== 0 || !stage.classList.contains('zoomed') || event.target.closest('.noUi-handle')) return;
+    from = { x: event.clientX, y: event.clientY };
+    stage.setPointerCapture(event.pointerId);
+  });
+  stage.addEventListener('pointermove', (event) => {
+    if (!from) return;
+    pan_by(event.clientX - from.x, event.clientY - from.y);
+    from = { x: event.clientX, y: event.clientY };
+  });
+  for (const end of ['pointerup', 'pointercancel']) stage.addEventListener(end, () => { from = null; });
+}
+
+function start_zoom(stage) {
+  by_id('viewer-zoom').addEventListener('click', (event) => {
+    const zoom = event.target.dataset.zoom;
+    if (zoom === 'fit') zoom_fit();
+    else if (zoom === 'in' || zoom === 'out') zoom_by(zoom === 'in' ? 2 : 0.5);
+    else if (zoom) zoom_to(Number(zoom));
+  });
+  stage.addEventListener('wheel', (event) => {
+    if (event.deltaY > 0 && view.fitted) return;  // Nothing left to zoom out of: the page scrolls.
+    event.preventDefault();
+    const box = stage.getBoundingClientRect();
+    const lines = event.deltaMode === WheelEvent.DOM_DELTA_LINE ? 33 : 1;
+    zoom_by(2 ** (-event.deltaY * lines / 240), event.clientX - box.left, event.clientY - box.top);
+  }, { passive: false });
+  stage.addEventListener('keydown', (event) => {
+    if (event.target !== stage || event.ctrlKey || event.metaKey || event.altKey) return;
+    const act = { '+': () => zoom_by(2), '=': () => zoom_by(2), '-': () => zoom_by(0.5), 0: zoom_fit,
+      ArrowLeft: () => pan_by(60, 0), ArrowRight: () => pan_by(-60, 0), ArrowUp: () => pan_by(0, 60), ArrowDown: () => pan_by(0, -60) }[event.key];
+    if (!act) return;
+    event.preventDefault();
+    act();
+  });
+}
+
+function start_viewer() {
+  if (!report.images.length) return;
+  by_id('viewer-section').hidden = false;
+  by_id('viewer-show').hidden = !report.images.some((image) => image.error);
+  const stage = by_id('stage');
+  const shown = [...new Set(report.images.map((image) => image.frame))];
+  fill_select(by_id('viewer-frame'), shown.map((frame) => [frame, frame]));
+  by_id('viewer-frame').parentElement.hidden = shown.length < 2;
+  start_divider();
+  start_pan(stage);
+  start_zoom(stage);
+  fill_choices();
+  by_id('viewer-frame').addEventListener('change', fill_choices);
+  for (const id of ['viewer-left', 'viewer-right', 'viewer-show']) by_id(id).addEventListener('change', fill_viewer);
+  new ResizeObserver(draw_view).observe(stage);
+}
