@@ -253,15 +253,18 @@ std::vector<float> reference_ao(const HostFrame& frame, const ReferenceSettings&
     fail(ErrorKind::input, "the reference takes planar depth and normals for every pixel of {}", to_string(frame.data));
   const Scene scene(frame);
   std::vector<float> ao(frame.data.pixels(), 1.0f);
-  std::atomic<int> next_row = 0;
+  constexpr std::size_t kChunk = 64;  // pixels that a thread takes at a time
+  const std::size_t total = settings.pixels.empty() ? ao.size() : settings.pixels.size();
+  std::atomic<std::size_t> next = 0;
   const auto work = [&] {
-    for (int y = next_row++; y < scene.height(); y = next_row++)
-      for (int x = 0; x < scene.width(); x++) {
+    for (std::size_t first = next.fetch_add(kChunk); first < total; first = next.fetch_add(kChunk))
+      for (std::size_t i = first; i < std::min(total, first + kChunk); i++) {
+        const std::size_t index = settings.pixels.empty() ? i : settings.pixels[i];
+        const int x = int(index % std::size_t(scene.width())), y = int(index / std::size_t(scene.width()));
         const double z = scene.depth(x, y);
         if (z == 0) continue;
         const Vector position = scene.position(x, y, z), eye = scene.toward_eye(position);
-        ao[std::size_t(y) * std::size_t(scene.width()) + std::size_t(x)] =
-            float(visibility(scene, {x, y, z, position, eye, scene.normal(x, y, eye)}, settings));
+        ao[index] = float(visibility(scene, {x, y, z, position, eye, scene.normal(x, y, eye)}, settings));
       }
   };
   const int count = settings.threads > 0 ? settings.threads : int(std::max(1u, std::thread::hardware_concurrency()));

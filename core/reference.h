@@ -27,9 +27,10 @@ struct ReferenceSettings {
   ThicknessRule thickness = ThicknessRule::infinite;
   double thickness_length = 0;      // scene units, > 0; with ThicknessRule::constant
   int threads = 0;                  // 0: one a core
+  std::vector<std::size_t> pixels;  // indices of those to compute; empty: all
 };
 
-/// Visibility in [0, 1] a pixel, 1 on sky. The frame must have planar depth and normals. Fails with ErrorKind::input otherwise.
+/// Visibility in [0, 1] a pixel, 1 on sky and where no pixel was asked for. The frame must have planar depth and normals. Fails with ErrorKind::input otherwise.
 std::vector<float> reference_ao(const HostFrame& frame, const ReferenceSettings& settings);
 
 }  // namespace alcove

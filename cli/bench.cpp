@@ -1,0 +1,98 @@
+// `alcove bench SUITE.toml`: run time against error, as a table, JSON, CSV and a page.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/bench.h"
+
+#include "cli/commands.h"
+#include "cli/options.h"
+#include "cli/parsing.h"
+#include "core/error.h"
+#include "core/file.h"
+
+namespace alcove {
+namespace {
+
+struct BenchArguments {
+  std::string suite, data, json, csv, report, limits, yardstick;
+  gpu::DeviceOptions device;
+  int repeats = 0, reference_slices = -1;
+  bool quiet = false;
+};
+
+/// False: help was asked for.
+bool parse(const std::vector<std::string>& arguments, BenchArguments& a) {
+  CLI::App app(
+      "Measures device time against error for the candidates of a suite.\n\n"
+      "Example:\n  alcove bench examples/bench/suite.toml --report bench.html\n",
+      "alcove bench");
+  app.get_formatter()->column_width(34);
+  app.add_option("SUITE", a.suite, "a suite file (TOML)")->required()->type_name("");
+  app.add_option("--data", a.data, "the folder of the suite's frames; else the suite's own")->type_name("FOLDER");
+  app.add_option("--repeats", a.repeats, "timed runs, instead of the suite's")->check(CLI::Range(1, 1000))->type_name("NUMBER");
+  app.add_option("--reference-slices", a.reference_slices, "of the CPU reference, instead of the suite's; 0: none")->check(CLI::Range(0, 1024))->type_name("NUMBER");
+  app.add_option("--json", a.json, "write all numbers")->type_name("FILE.json");
+  app.add_option("--csv", a.csv, "write a line for every candidate and frame")->type_name("FILE.csv");
+  app.add_option("--report", a.report, "write a self-contained page with chart, table and pictures")->type_name("FILE.html");
+  app.add_option("--limits", a.limits, "a TOML file of largest errors; one that is exceeded ends with exit code 6")->type_name("FILE.toml");
+  app.add_option("--yardstick", a.yardstick, "a program that times a unit of work, run between the candidates as PROGRAM FRAME CAMERA RADIUS RUNS; it prints \"median X ms\"")
+      ->type_name("PROGRAM");
+  app.add_option("--device", a.device.choice, "as for alcove run")->capture_default_str()->type_name("auto|cpu|INDEX|NAME|UUID");
+  app.add_flag("--require-gpu", a.device.require_gpu, "measuring on the CPU is an error");
+  app.add_flag("-q,--quiet", a.quiet, "no progress and no table");
+  return parse_arguments(app, arguments);
+}
+
+/// The candidates' options go the way that alcove run's go.
+std::vector<BenchCandidate> candidates_of(const Suite& suite) {
+  std::vector<BenchCandidate> candidates;
+  for (const auto& candidate : suite.candidates) {
+    RunOptions options;
+    if (!parse_run_options(candidate.arguments, options)) fail(ErrorKind::usage, "candidate {} asks for help", candidate.name);
+    candidates.push_back({candidate.name, fmt::format("{}", fmt::join(candidate.arguments, " ")), options.settings.estimator});
+  }
+  return candidates;
+}
+
+void print_table(const BenchReport& report) {
+  fmt::print("{:<14} {:<24} {:>9} {:>7} {:>8} {:>8} {:>8} {:>9} {:>9}\n", "frame", "candidate", "ms", "yards", "rmse", "bias", "p99", "estimator", "geometry");
+  for (const auto& row : report.rows) {
+    const auto& frame = *std::ranges::find(report.frames, row.frame, &BenchFrame::name);
+    const auto number = [](std::optional<double> value) { return value ? fmt::format("{:.4f}", *value) : "-"; };
+    fmt::print("{:<14} {:<24} {:>9.2f} {:>7} {:>8.4f} {:>+8.4f} {:>8.4f} {:>9} {:>9}\n", row.frame, row.candidate, row.ms,
+               frame.yardstick_ms ? fmt::format("{:.2f}", row.ms / *frame.yardstick_ms) : "-", row.rmse, row.bias, row.p99, number(row.estimator_rmse),
+               number(row.geometry_rmse));
+  }
+}
+
+}  // namespace
+
+int bench_command(const std::vector<std::string>& arguments) {
+  BenchArguments a;
+  if (!parse(arguments, a)) return 0;
+  Suite suite = read_suite(a.suite, a.data);
+  if (a.repeats) suite.repeats = a.repeats;
+  if (a.reference_slices >= 0) suite.reference_slices = a.reference_slices;
+  for (const auto& [path, option] : {std::pair(&a.json, "--json"), std::pair(&a.csv, "--csv"), std::pair(&a.report, "--report")})
+    if (!path->empty()) require_writable(*path, option);
+  const auto limits = a.limits.empty() ? std::vector<Limit>() : read_limits(a.limits);
+  const auto candidates = candidates_of(suite);
+
+  gpu::Device device(a.device);
+  BenchOptions options;
+  options.yardstick = a.yardstick;
+  if (!a.quiet) options.say = [](const std::string& line) { fmt::print(stderr, "{}\n", line); };
+  const BenchReport report = run_bench(device, suite, candidates, options);
+
+  if (!a.quiet) print_table(report);
+  const auto write = [](const std::string& path, const std::string& text) {
+    if (!path.empty()) write_whole(path, text);
+  };
+  write(a.json, bench_json(report));
+  write(a.csv, bench_csv(report));
+  if (!a.report.empty()) write(a.report, bench_page(report));
+  if (a.limits.empty()) return 0;
+  const auto broken = broken_limits(report, limits);
+  for (const auto& sentence : broken) fmt::print(stderr, "alcove: {}\n", sentence);
+  return broken.empty() ? 0 : int(ErrorKind::comparison);
+}
+
+}  // namespace alcove

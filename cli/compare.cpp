@@ -1,0 +1,124 @@
+// `alcove compare RESULT REFERENCE`: how far pictures or sequences are apart, as a table, JSON, a page, and an exit code.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/compare.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "cli/commands.h"
+#include "cli/parsing.h"
+#include "core/error.h"
+#include "core/file.h"
+
+namespace alcove {
+namespace {
+
+struct CompareArguments {
+  CompareSettings settings;
+  CompareLimits limits;
+  std::string report;
+  bool json = false;
+};
+
+void add_options(CLI::App& app, CompareArguments& a) {
+  CompareSettings& s = a.settings;
+  const auto text = [&](const char* name, std::string& value, const char* what, const char* sentence) {
+    return app.add_option(name, value, sentence)->type_name(what);
+  };
+  text("RESULT", s.result, "", "an EXR or any other picture; a pattern such as ao.%04d.exr for a sequence")->required();
+  text("REFERENCE", s.reference, "", "what it should be; a pattern too, or one picture for all frames")->required();
+  text("--reference-b", s.reference_b, "FILE", "a second render of the reference with independent noise: rmse is then free of the noise of both");
+  text("--channel", s.channels, "NAMES", "names with commas, or RESULT=REFERENCE pairs; else the only channel of each, else those of the same name");
+  text("--mask", s.mask, "FILE", "compare only where it is above 0");
+  text("--mask-channel", s.mask_channel, "NAME", "the mask's channel; else its only one, or its alpha");
+  text("--depth", s.depth, "FILE.exr", "leave out the sky, and measure depth edges too");
+  text("--depth-channel", s.depth_channel, "NAME", "the depth channel; else found by its usual names");
+  const auto number = [&](const char* name, double& value, const char* sentence) {
+    app.add_option(name, value, sentence)->check(check_of(above(0)))->capture_default_str()->type_name("NUMBER");
+  };
+  number("--sky", s.sky, "depth at or beyond it is sky, as are 0, infinity and NaN");
+  text("--frames", s.frames, "LIST", "frames such as 1001-1100x2,1200; else those of RESULT on the disk");
+  text("--motion", s.motion, "FILE", "motion for the flicker of a sequence: place in the previous frame minus place here, in pixels, y up");
+  text("--motion-channels", s.motion_channels, "X,Y", "the motion's channels; else Vector.X,Vector.Y");
+  number("--peak", s.peak, "the largest value, for PSNR and SSIM");
+  app.add_flag("--hdr", s.hdr, "the values are scene-linear light: HDR-FLIP instead of FLIP of display values");
+  app.add_flag("--json", a.json, "print JSON");
+  text("--report", a.report, "FILE.html", "write a self-contained page with table and pictures");
+  const auto limit = [&](const char* name, std::optional<double>& value, const Range& range, const char* sentence) {
+    const char* group = "Limits, for every frame; one that is broken ends with exit code 6";
+    app.add_option(name, value, sentence)->check(check_of(range))->type_name("NUMBER")->group(group);
+  };
+  const Range size{0, HUGE_VAL, false, true, "0 or more"};
+  limit("--max-rmse", a.limits.max_rmse, size, "the largest rmse");
+  limit("--max-p99", a.limits.max_p99, size, "the largest 99th percentile of the error's size");
+  limit("--min-ssim", a.limits.min_ssim, between(-1, 1), "the least structural similarity");
+  limit("--max-flip", a.limits.max_flip, between(0, 1), "the largest mean FLIP");
+  limit("--max-bias", a.limits.max_bias, size, "the largest size of the mean error");
+}
+
+/// False: help was asked for.
+bool parse(const std::vector<std::string>& arguments, CompareArguments& a) {
+  CLI::App app(
+      "Measures how far a picture or a sequence is from a reference.\n\n"
+      "Examples:\n"
+      "  alcove compare ao.exr truth.exr --depth frame.exr --max-rmse 0.1\n"
+      "  alcove compare ao.%04d.exr truth.%04d.exr --depth frame.%04d.exr --motion frame.%04d.exr --json\n",
+      "alcove compare");
+  app.get_formatter()->column_width(34);
+  add_options(app, a);
+  return parse_arguments(app, arguments);
+}
+
+std::string optional_number(std::optional<double> value) { return value ? fmt::format("{:.4f}", *value) : "-"; }
+
+void print_part(const std::string& name, const PartErrors& part) {
+  fmt::print("  {:<22} {:>9} values   rmse {:.4f}   bias {:+.4f}\n", name, part.count, part.rmse, part.bias);
+}
+
+void print_picture(const FrameComparison& c) {
+  fmt::print("{} against {}: {}\n", c.result, c.reference, fmt::join(c.channels, ", "));
+  fmt::print("  {} pixels compared, {} masked, {} not finite\n", c.count, c.masked, c.excluded);
+  const PlaneErrors& e = c.errors;
+  fmt::print("  rmse {:.4f}   mae {:.4f}   bias {:+.4f}   max {:.4f}   p95 {:.4f}   p99 {:.4f}\n", e.rmse, e.mae, e.bias, e.max, e.p95, e.p99);
+  fmt::print("  psnr {:.2f} dB   ssim {}   flip {:.4f}\n", c.psnr, optional_number(c.ssim), c.flip);
+  for (const auto& band : c.bands) print_part(fmt::format("reference {:.2f} to {:.2f}", band.from, band.to), band.errors);
+  if (!c.edges) return;
+  print_part("at depth edges", c.edges->at);
+  print_part("away from them", c.edges->away);
+}
+
+void print_sequence(const CompareReport& report) {
+  fmt::print("{} against {}: {}\n", report.result, report.reference, fmt::join(report.frames[0].channels, ", "));
+  fmt::print("{:>7} {:>9} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8}\n", "frame", "pixels", "rmse", "mae", "bias", "p99", "psnr", "ssim", "flip");
+  double sum = 0;
+  for (const auto& c : report.frames) {
+    const PlaneErrors& e = c.errors;
+    fmt::print("{:>7} {:>9} {:>8.4f} {:>8.4f} {:>+8.4f} {:>8.4f} {:>8.2f} {:>8} {:>8.4f}\n", c.frame, c.count, e.rmse, e.mae, e.bias, e.p99, c.psnr,
+               optional_number(c.ssim), c.flip);
+    sum += e.rmse;
+  }
+  const auto& worst = worst_frame(report);
+  fmt::print("worst: frame {}, rmse {:.4f}; mean rmse {:.4f}; flicker {}\n", worst.frame, worst.errors.rmse, sum / double(report.frames.size()),
+             optional_number(report.flicker));
+}
+
+}  // namespace
+
+int compare_command(const std::vector<std::string>& arguments) {
+  CompareArguments a;
+  if (!parse(arguments, a)) return 0;
+  if (!a.report.empty()) require_writable(a.report, "--report");
+  a.settings.pictures = !a.report.empty();
+
+  const CompareReport report = compare_pictures(a.settings);
+  const auto broken = broken_limits(report, a.limits);
+  if (a.json) fmt::print("{}\n", compare_json(report, broken));
+  else if (report.is_sequence) print_sequence(report);
+  else print_picture(report.frames[0]);
+  if (!a.report.empty()) write_whole(a.report, compare_page(report));
+  if (!broken.empty()) fail(ErrorKind::comparison, "{}", fmt::join(broken, "; "));
+  return 0;
+}
+
+}  // namespace alcove

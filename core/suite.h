@@ -1,0 +1,50 @@
+// What `alcove bench` measures: frames with their truth, and candidates, from a TOML file.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace alcove {
+
+struct SuiteFrame {
+  std::string name;
+  std::string input, camera;       // files, below the data folder
+  double radius = 0;               // scene units, of the truth, > 0
+  std::vector<std::string> truth;  // one ray-traced AO image, or two with independent noise
+};
+
+struct SuiteCandidate {
+  std::string name;
+  std::vector<std::string> arguments;  // as for alcove run: "--preset", "draft", "--slices", "2" ...
+};
+
+struct Suite {
+  std::string title;
+  int repeats = 5;            // timed runs of every candidate on every frame, > 0
+  int reference_slices = 16;  // of the CPU reference that splits the error; 0: none
+  std::vector<SuiteFrame> frames;
+  std::vector<SuiteCandidate> candidates;
+};
+
+/// Reads a suite:
+///
+///   title = "..."                     repeats = 5                  reference-slices = 16
+///   [[frame]]      name = "monkeys"   input = "m.exr"   camera = "m.json"   radius = 0.5   truth = ["a.exr", "b.exr"]
+///   [[candidate]]  name = "draft"     preset = "draft"  power = 1.2             # any long option of alcove run
+///   [[sweep]]      slices = [1, 2, 4] steps = [4, 8]    preset = "draft"        # a candidate for every combination
+///
+/// Paths are below `data`, or where that is empty below the suite's folder. Fails with ErrorKind::input, naming file and key.
+Suite read_suite(const std::string& path, const std::string& data);
+
+/// The most that an error may be for a candidate on a frame.
+struct Limit {
+  std::string frame, candidate;
+  std::string measure;  // rmse, mae, p99, bias (its size) or estimator-rmse
+  double most = 0;
+};
+
+/// Reads limits: a list of tables [[limit]] with frame, candidate and one or more measures. Fails with ErrorKind::input, naming file and key.
+std::vector<Limit> read_limits(const std::string& path);
+
+}  // namespace alcove
