@@ -1,9 +1,10 @@
 // What a comparison is written as: JSON, a page; and the check against limits.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
-#include <functional>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "core/compare.h"
@@ -110,7 +111,8 @@ struct Limit {
 std::vector<std::string> broken_limits(const CompareReport& report, const CompareLimits& limits) {
   std::vector<std::string> broken;
   const std::array all{Limit{"rmse", "--max-rmse", limits.max_rmse}, Limit{"p99", "--max-p99", limits.max_p99},
-                       Limit{"ssim", "--min-ssim", limits.min_ssim}, Limit{"flip", "--max-flip", limits.max_flip}, Limit{"bias", "--max-bias", limits.max_bias}};
+                       Limit{"ssim", "--min-ssim", limits.min_ssim}, Limit{"flip", "--max-flip", limits.max_flip},
+                       Limit{"bias", "--max-bias", limits.max_bias}};
   for (const auto& limit : all) {
     if (!limit.value) continue;
     const Measure& measure = *std::ranges::find_if(kMeasures, [&](const auto& m) { return std::string_view(m.name) == limit.measure; });

@@ -199,14 +199,12 @@ double blocked_arc(const Scene& scene, const Receiver& receiver, const Side& sid
     if (line[i].depth == 0 || distance >= settings.radius || distance == 0) continue;
     const double front = angle_of(side, offset);
     if (front <= 0 || front >= limit) continue;
-    double back = limit;
-    if (std::isfinite(line[i].thickness)) {
-      const Vector away = scene.orthographic() ? Vector{0, 0, -1} : normalized(line[i].position);
-      const double along = dot(offset, away);
-      const double exit = -along + std::sqrt(std::max(0.0, along * along - distance * distance + settings.radius * settings.radius));
-      const double angle = angle_of(side, offset + std::min(line[i].thickness, exit) * away);
-      back = angle < front ? limit : std::min(angle, limit);  // an angle that wrapped round is beyond the tangent plane
-    }
+    // What is behind the surface, as seen from the eye, blocks too, as far as it is thick and within the sphere of the radius.
+    const Vector away = scene.orthographic() ? Vector{0, 0, -1} : normalized(line[i].position);
+    const double along = dot(offset, away);
+    const double exit = -along + std::sqrt(std::max(0.0, along * along - distance * distance + settings.radius * settings.radius));
+    const double angle = angle_of(side, offset + std::min(line[i].thickness, exit) * away);
+    const double back = angle < front ? limit : std::min(angle, limit);  // an angle that wrapped round is beyond the tangent plane
     sum += weight_of(settings, distance) * blocked.add(front, back);
   }
   return sum;

@@ -14,7 +14,7 @@ namespace alcove {
 
 /// How far an occluder goes on behind the surface that the depth buffer shows.
 enum class ThicknessRule {
-  infinite,  // for ever: the horizon
+  infinite,  // for ever, within the sphere of the radius
   constant,  // a length along the sample's own view ray
   width,     // as deep as wide: the chord, and one pixel, of the run of neighbours along the slice that it belongs to; the receiver's own run is infinite
 };

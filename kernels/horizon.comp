@@ -7,6 +7,8 @@
 // - The reach is the exact image of the sphere of the radius in the slice, clipped to the image: what is outside is unknown.
 // - A sample lies at a pixel's centre, up to half a pixel beside the slice. It is moved into the slice parallel to the receiver's
 //   tangent plane, which keeps its height above it: a flat surface stays open at every tilt, whatever pixel a step snaps to.
+// - What is blocked ends where the eye's ray through the first sample leaves the sphere of the radius: all that is behind a surface counts as
+//   solid, but nothing beyond the radius blocks. A ceiling leaves the view below it open, as ray tracing does.
 // - Falloff weighs each arc by the distance of the sample that first blocks it ("incremental arcs"), exact for height fields.
 // - Result 1 - (sum of blocked arcs) / (sum of whole arcs): exactly 1 where nothing rises above the tangent plane.
 #version 450
@@ -29,10 +31,20 @@ layout(scalar, binding = kHorizonAo) writeonly buffer Ao { float ao[]; };
 /// Slices whose plane the normal is nearly perpendicular to weigh less than this and are left out.
 const float kLeastWeight = 1e-4;
 
+/// Steps grow with the square of the distance, so that near occluders are not missed. More steps than this are enough to sample all of the reach densely
+/// instead: the exponent is then the one with which the first step is a pixel long.
+const uint kManySteps = 16;
+
+/// Two samples on either side of the sphere of the radius whose squared distances are within this factor of its square are taken for one surface.
+const float kSameSurface = 1.44;
+
+/// The sine of an elevation above the tangent plane below which a sample is the surface itself, raised by rounding: it would block a millionth.
+const float kLeastElevation = 1e-3;
+
 /// One half of a slice: angles grow from the view ray V towards T; gamma is the normal's angle in it.
 struct Side {
   vec3 along_t, along_v;  // in-slice coordinates of an offset, moved into the slice parallel to the tangent plane
-  float gamma, cos_gamma, sin_gamma;
+  float gamma, cos_gamma, sin_gamma, weight;
   vec2 direction_px;  // pixels a step, the longer component +-1
   float reach;        // steps of direction_px within the radius and the image
 };
@@ -60,34 +72,69 @@ float steps_to_border(ivec2 pixel, vec2 direction) {
   return min(steps.x, steps.y);
 }
 
+/// The cosine, in the slice, of where the eye's ray through a sample leaves the sphere of the radius; not above `cosine`.
+float exit_cosine(Side side, vec3 position, vec3 delta, float cosine) {
+  const vec3 away = params.view.orthographic != 0 ? vec3(0, 0, -1) : normalize(position + delta);
+  const float along = dot(delta, away);
+  const vec3 exit = delta + (sqrt(max(0.0, along * along - dot(delta, delta) + params.radius * params.radius)) - along) * away;
+  const vec2 in_slice = vec2(dot(exit, side.along_t), dot(exit, side.along_v));
+  return in_slice.x > 0.0 ? min(cosine, in_slice.y * inversesqrt(dot(in_slice, in_slice))) : -1.0;
+}
+
+/// The integral over the angles of a side between its view ray and this cosine, not beyond the tangent plane.
+float arc_to(Side side, float cosine) {
+  const float clamped = max(cosine, -side.sin_gamma);
+  return arc(clamped > -side.sin_gamma ? min(arc_cosine(clamped), side.gamma + kHalfPi) : side.gamma + kHalfPi, clamped, side.cos_gamma, side.sin_gamma);
+}
+
 /// The blocked part of a side's arc integral.
 float blocked_arc(Side side, ivec2 pixel, vec3 position, float jitter) {
   const uint count = min(kSteps, uint(side.reach));
   const float open_cosine = -side.sin_gamma;  // of the tangent plane's own horizon, gamma + pi/2
-  const float open_arc = arc(side.gamma + kHalfPi, open_cosine, side.cos_gamma, side.sin_gamma);
-  float horizon_cosine = open_cosine, visible_arc = open_arc, blocked = 0.0;
+  // What is blocked lies between the angles of these two cosines; nothing yet. The far end is where the eye's ray through the first sample leaves the
+  // sphere: rays further aside leave it nearer to the eye.
+  float near_cosine = open_cosine, far_cosine = 2.0, blocked = 0.0;
+  vec3 first = vec3(0);
+  float last_cosine = 0.0, last_squared_distance = 1e30;
+  bool was_within = true;
+  const float squared_radius = params.radius * params.radius;
+  const float exponent = clamp(log2(max(side.reach, 1.0)) / log2(float(kSteps)), 1.0, 2.0);
   for (uint k = 0u; k < count; k++) {
-    // Quadratic spacing, but never two samples in one pixel: short reaches are searched pixel by pixel.
-    const float x = (float(k) + jitter) / float(kSteps);
-    const float offset = count < kSteps ? float(k + 1u) : max(float(k + 1u), x * x * side.reach);
+    // Never two samples in one pixel: short reaches are searched pixel by pixel.
+    const float x = (float(k) + jitter) / float(kSteps), spread = kSteps > kManySteps ? pow(x, exponent) : x * x;
+    const float offset = count < kSteps ? float(k + 1u) : max(float(k + 1u), spread * side.reach);
     const ivec2 hit = pixel + ivec2(round(side.direction_px * offset));
     const vec3 delta = position_of(params.view, vec2(hit) + 0.5, depth[index_of(params.view, hit)]) - position;
     const float squared_distance = dot(delta, delta);
     const vec2 in_slice = vec2(dot(delta, side.along_t), dot(delta, side.along_v));
     const float cosine = in_slice.y * inversesqrt(dot(in_slice, in_slice));
-    if (!(squared_distance < params.radius * params.radius) || in_slice.x <= 0.0 || !(cosine > horizon_cosine)) continue;
-    horizon_cosine = cosine;
-    if (kFalloff != kFalloffNone) {
-      const float h = min(arc_cosine(cosine), side.gamma + kHalfPi);
-      const float arc_below = arc(h, cosine, side.cos_gamma, side.sin_gamma);
-      blocked += falloff_weight(sqrt(squared_distance)) * max(visible_arc - arc_below, 0.0);
-      visible_arc = arc_below;
+    const float height = side.weight * (in_slice.y * side.cos_gamma + in_slice.x * side.sin_gamma);  // above the tangent plane
+    const bool above = in_slice.x > 0.0 && height > 0.0 && height * height > kLeastElevation * kLeastElevation * squared_distance;
+    const bool within = squared_distance < squared_radius;
+    if (kFalloff == kFalloffNone) {
+      // A surface that crosses the sphere between two samples blocks up to there; the point lies on the sphere, so it is its own exit.
+      const bool crosses = above && within != was_within && max(squared_distance, last_squared_distance) < kSameSurface * squared_radius &&
+                           min(squared_distance, last_squared_distance) * kSameSurface > squared_radius;
+      const float part = (squared_radius - squared_distance) / (last_squared_distance - squared_distance);
+      const float crossing = crosses ? mix(cosine, last_cosine, part) : -2.0;
+      was_within = within;
+      last_squared_distance = above ? squared_distance : 1e30;
+      last_cosine = cosine;
+      near_cosine = max(near_cosine, max(crossing, above && within ? cosine : -1.0));
+      if (above && within && far_cosine > 1.0) {
+        far_cosine = crosses ? crossing : cosine;
+        first = delta;
+      }
+    } else if (above && within) {
+      // Each arc counts with the weight of the sample that blocks it first.
+      const float weight = falloff_weight(sqrt(squared_distance));
+      if (far_cosine > 1.0) near_cosine = far_cosine = exit_cosine(side, position, delta, cosine);
+      if (cosine > near_cosine) blocked += weight * max(arc_to(side, near_cosine) - arc_to(side, cosine), 0.0);
+      near_cosine = max(near_cosine, cosine);
     }
   }
-  if (kFalloff == kFalloffNone && horizon_cosine > open_cosine) {
-    const float h = min(arc_cosine(horizon_cosine), side.gamma + kHalfPi);
-    blocked = max(open_arc - arc(h, horizon_cosine, side.cos_gamma, side.sin_gamma), 0.0);
-  }
+  if (kFalloff == kFalloffNone && far_cosine <= 1.0)
+    blocked = max(arc_to(side, exit_cosine(side, position, first, far_cosine)) - arc_to(side, near_cosine), 0.0);
   return blocked;
 }
 
@@ -133,6 +180,7 @@ void main() {
       side.gamma = float(sign) * gamma;
       side.cos_gamma = cos_gamma;
       side.sin_gamma = float(sign) * sin_gamma;
+      side.weight = weight;
       side.direction_px = float(sign) / pixels * image_t;
       const float forward = perspective ? eye.z * cos_reach - float(sign) * t.z * sin_reach : 1.0;
       const float reach = perspective ? sin_reach * pixels / forward : params.radius * pixels;

@@ -63,7 +63,10 @@ vec3 tangent_along(ivec2 pixel, ivec2 axis, vec3 position, float here) {
 vec3 normal_from_depth(ivec2 pixel, vec3 position, vec3 eye) {
   const float here = affine_depth(pixel);
   const vec3 right = tangent_along(pixel, ivec2(1, 0), position, here), down = tangent_along(pixel, ivec2(0, 1), position, here);
-  const vec3 n = cross(down, right);
+  // With one tangent only, the surface is taken to be as flat towards the eye as it allows; with none, to face the eye.
+  vec3 n = cross(down, right);
+  const vec3 only = right + down;
+  if (dot(n, n) == 0.0 && dot(only, only) > 0.0) n = eye - only * (dot(eye, only) / dot(only, only));
   const float length_squared = dot(n, n);
   if (!(length_squared > 0.0) || isinf(length_squared)) return eye;
   const vec3 unit = n * inversesqrt(length_squared);

@@ -53,7 +53,8 @@ TEST(FramePattern, a_number_may_be_longer_and_negative) {
 }
 
 TEST(FramePattern, other_names_are_none) {
-  for (const char* name : {"", "shot.0007.exr", "user@host.exr", "50%.exr", "%s.exr", "<f.exr", "a<b>.exr", "%4d.exr", "%0", "$", "$G", "<", "%017d", "#################"})
+  for (const char* name : {"", "shot.0007.exr", "user@host.exr", "50%.exr", "%s.exr", "<f.exr", "a<b>.exr", "%4d.exr",
+                           "%0", "$", "$G", "<", "%017d", "#################"})
     EXPECT_FALSE(frame_pattern(name)) << name;
 }
 
@@ -94,8 +95,8 @@ TEST(ParseFrames, ranges_run_backwards) {
 }
 
 TEST(ParseFrames, anything_else_is_an_error_that_quotes_it) {
-  for (const char* list : {"", "a", "1-", "-", "1-2-3", "1-10x", "1-10y2", "1.5", "1,,2", ",1", "1,", "1-10x2x3", "12345678901", "1-2147483648", "0x10",
-                           "1e3", "1-+3", "99999999999999999999"})
+  for (const char* list : {"", "a", "1-", "-", "1-2-3", "1-10x", "1-10y2", "1.5", "1,,2", ",1", "1,", "1-10x2x3", "12345678901", "1-2147483648",
+                           "0x10", "1e3", "1-+3", "99999999999999999999"})
     EXPECT_THAT(error_of(ErrorKind::usage, [&] { parse_frames(list); }), HasSubstr(list)) << list;
   EXPECT_THAT(error_of(ErrorKind::usage, [] { parse_frames("  "); }), HasSubstr("empty"));
   EXPECT_THAT(error_of(ErrorKind::usage, [] { parse_frames("1-10x0"); }), HasSubstr("step"));
