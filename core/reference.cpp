@@ -159,8 +159,8 @@ std::vector<Sample> line_of(const Scene& scene, const Receiver& receiver, const 
     sample.position = scene.position(x, y, sample.depth);
     const bool same = same_surface(scene, line.back(), sample);
     if (!same) run_start = line.size();
-    // Beyond the reach a sample matters only as more of a run's width, and a run wider than the sphere is wide enough.
-    if (k > side.reach && (settings.thickness != ThicknessRule::width || !same || length(sample.position - line[run_start].position) > 2 * settings.radius))
+    // Beyond the reach a sample matters only as the other end of a crossing and as more of a run's width; a run wider than the sphere is wide enough.
+    if (k > side.reach + 1 && (settings.thickness != ThicknessRule::width || !same || length(sample.position - line[run_start].position) > 2 * settings.radius))
       break;
     line.push_back(sample);
   }
@@ -187,6 +187,23 @@ void set_thickness(const Scene& scene, std::vector<Sample>& line, const Referenc
 /// The angle of an offset from the view ray, in the slice; negative on the other side.
 double angle_of(const Side& side, Vector offset) { return std::atan2(dot(offset, side.along_t), dot(offset, side.along_v)); }
 
+/// Where the line between two offsets, one within the radius and one beyond, leaves the sphere.
+Vector crossing(Vector within, Vector beyond, double radius) {
+  const Vector step = beyond - within;
+  const double a = dot(step, step), b = dot(within, step), c = dot(within, within) - radius * radius;
+  return within + ((std::sqrt(std::max(0.0, b * b - a * c)) - b) / a) * step;
+}
+
+/// The angles that the surface between two neighbouring samples spans, as far as it lies within the radius; empty (first > second) where it does not.
+std::pair<double, double> span_between(const Scene& scene, const Receiver& receiver, const Side& side, const Sample& a, const Sample& b, double radius) {
+  Vector from = a.position - receiver.position, to = b.position - receiver.position;
+  const bool from_within = length(from) < radius, to_within = length(to) < radius;
+  if (!same_surface(scene, a, b) || (!from_within && !to_within)) return {1, 0};
+  if (!to_within) to = crossing(from, to, radius);
+  if (!from_within) from = crossing(to, from, radius);
+  return std::minmax({angle_of(side, from), angle_of(side, to)});
+}
+
 double blocked_arc(const Scene& scene, const Receiver& receiver, const Side& side, const ReferenceSettings& settings) {
   auto line = line_of(scene, receiver, side, settings);
   set_thickness(scene, line, settings);
@@ -196,6 +213,12 @@ double blocked_arc(const Scene& scene, const Receiver& receiver, const Side& sid
   for (std::size_t i = 1; i < line.size(); i++) {
     const Vector offset = line[i].position - receiver.position;
     const double distance = length(offset);
+    if (i > 1) {
+      const auto [low, high] = span_between(scene, receiver, side, line[i - 1], line[i], settings.radius);
+      const double before = length(line[i - 1].position - receiver.position);
+      const double weight = 0.5 * (weight_of(settings, before) + weight_of(settings, distance));
+      if (low > 0) sum += weight * blocked.add(low, std::min(high, limit));
+    }
     if (line[i].depth == 0 || distance >= settings.radius || distance == 0) continue;
     const double front = angle_of(side, offset);
     if (front <= 0 || front >= limit) continue;
