@@ -21,7 +21,7 @@ using test::Plane, test::Polygon, test::Rendering, test::Scene, test::Shot, test
 constexpr double kPi = std::numbers::pi;
 constexpr double kMaxError = 0.02, kMeanError = 0.005;  // at 16 slices of 64 steps
 constexpr double kUnlimited = 1e3;                      // a radius larger than any scene here
-constexpr double kLeastPixels = 16;                     // pixels that a hard radius must span on the receiver: near a horizon no search can resolve it
+constexpr double kLeastPixels = 16;                     // that a radius must span on the receiver: near a horizon no search can resolve it
 
 const Plane kFloor{.point = {}, .normal = {0, 0, 1}}, kWallX{.point = {}, .normal = {1, 0, 0}}, kWallY{.point = {}, .normal = {0, 1, 0}};
 
@@ -39,7 +39,7 @@ using Truth = std::function<std::optional<double>(const test::Hit&)>;
 /// Worst and mean errors over the pictures of one test.
 class ClosedForm : public testing::Test {
  protected:
-  /// Compares the AO of every pixel that has a truth and isn't within a pixel of an edge, or two of a vertex, where an occluder is a corner of a few pixels.
+  /// Compares the AO of every pixel that has a truth and isn't within a pixel of an edge, or two of a vertex, where an occluder is a few pixels.
   void compare(const char* picture, const Scene& scene, const Shot& shot, const EstimatorSettings& settings, const Truth& truth, int least_pixels) {
     const Rendering rendering = test::render(scene, shot);
     const HostResult result = compute_ao(test::recorder(), rendering.frame, settings);
@@ -357,7 +357,8 @@ TEST_F(ClosedForm, groove) {
 TEST_F(ClosedForm, pit) {
   // Four walls seen from over the opening: a trench with ends, and a corner of three planes at each end.
   const double x = 1, y = 1.5, depth = 1;
-  const Polygon floor = test::parallelogram({-x, -y, 0}, {2 * x, 0, 0}, {0, 2 * y, 0}), opening = test::parallelogram({-x, -y, depth}, {2 * x, 0, 0}, {0, 2 * y, 0});
+  const Polygon floor = test::parallelogram({-x, -y, 0}, {2 * x, 0, 0}, {0, 2 * y, 0});
+  const Polygon opening = test::parallelogram({-x, -y, depth}, {2 * x, 0, 0}, {0, 2 * y, 0});
   Scene scene{{floor}};
   for (std::size_t i = 0; i < 4; i++)
     scene.primitives.emplace_back(Polygon{{floor.corners[i], floor.corners[(i + 1) % 4], opening.corners[(i + 1) % 4], opening.corners[i]}});
@@ -475,6 +476,21 @@ class FalloffForm : public ClosedForm {
 TEST_F(FalloffForm, linear) { compare_wall_and_corner(Falloff::linear); }
 TEST_F(FalloffForm, quadratic) { compare_wall_and_corner(Falloff::quadratic); }
 TEST_F(FalloffForm, smooth) { compare_wall_and_corner(Falloff::smooth); }
+
+TEST_F(FalloffForm, ceiling) {
+  reference_mean_error_ = 0.005;
+  const double height = 1;
+  const Scene scene{{kFloor, Plane{.point = {0, 0, height}, .normal = {0, 0, 1}}}};
+  const Shot shot = Shot::perspective({0, 0, 0.5}, {3, 0, 0.5}, 90, 480, 450);
+  for (const Falloff falloff : {Falloff::linear, Falloff::quadratic, Falloff::smooth}) {
+    EstimatorSettings settings = fine(1.3);
+    settings.falloff = falloff;
+    settings.falloff_start = 0.4;
+    const double truth = superpose(settings, [&](double r) { return r <= height ? 1 : height * height / (r * r); });
+    compare(("ceiling, falloff " + std::to_string(int(falloff))).c_str(), scene, shot, settings,
+            [&](const test::Hit& hit) { return shot.sees_ball(hit.position, 1.3) ? std::optional(truth) : std::nullopt; }, 300);
+  }
+}
 
 }  // namespace
 }  // namespace alcove
