@@ -14,11 +14,13 @@
 #include <vector>
 
 #include "tests/device.h"
+#include "tests/difference.h"
 #include "tests/scenes.h"
 
 namespace alcove {
 namespace {
 
+using test::Difference, test::difference, test::place, test::same_bits;
 using test::Plane, test::Rendering, test::Scene, test::Shot, test::Sphere, test::unit, test::Vec3;
 
 constexpr double kRadian = std::numbers::pi / 180;
@@ -34,39 +36,6 @@ EstimatorSettings settings_of(double radius, int slices, int steps) {
 }
 
 HostResult run(const HostFrame& frame, const EstimatorSettings& settings) { return compute_ao(test::recorder(), frame, settings); }
-
-/// How far two results, or a result and a constant, lie apart.
-struct Difference {
-  double max = 0, mean = 0, rmse = 0, bias = 0;
-  std::size_t worst = 0;
-};
-
-Difference difference(const std::vector<float>& a, const std::function<double(std::size_t)>& b) {
-  Difference result;
-  for (std::size_t i = 0; i < a.size(); i++) {
-    const double error = a[i] - b(i);
-    if (!(std::abs(error) <= result.max)) result.max = std::abs(error), result.worst = i;
-    result.mean += std::abs(error) / double(a.size());
-    result.bias += error / double(a.size());
-    result.rmse += error * error / double(a.size());
-  }
-  result.rmse = std::sqrt(result.rmse);
-  return result;
-}
-
-Difference difference(const std::vector<float>& a, const std::vector<float>& b) {
-  return difference(a, [&](std::size_t i) { return double(b[i]); });
-}
-
-bool same_bits(const std::vector<float>& a, const std::vector<float>& b) {
-  return std::ranges::equal(a, b, {}, std::bit_cast<std::uint32_t, float>, std::bit_cast<std::uint32_t, float>);
-}
-
-std::string place(const Difference& d, const HostFrame& frame) {
-  const auto width = std::size_t(frame.data.width);
-  return "worst at pixel " + std::to_string(d.worst % width) + " " + std::to_string(d.worst / width) + ", depth " +
-         std::to_string(frame.depth[d.worst]);
-}
 
 void expect_open(const HostFrame& frame, const EstimatorSettings& settings, double tolerance, const std::string& what) {
   const HostResult result = run(frame, settings);
