@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/options.h"
 
+#include <cmath>
 #include <filesystem>
 #include <map>
 #include <sstream>
@@ -34,6 +35,22 @@ template <>
 const std::map<std::string, Falloff>& names_of() {
   static const std::map<std::string, Falloff> names = {
       {"none", Falloff::none}, {"linear", Falloff::linear}, {"quadratic", Falloff::quadratic}, {"smooth", Falloff::smooth}};
+  return names;
+}
+template <>
+const std::map<std::string, Estimator>& names_of() {
+  static const std::map<std::string, Estimator> names = {
+      {"gtao", Estimator::gtao}, {"bitmask", Estimator::bitmask}, {"hbao", Estimator::hbao}, {"crytek", Estimator::crytek}};
+  return names;
+}
+template <>
+const std::map<std::string, Resolution>& names_of() {
+  static const std::map<std::string, Resolution> names = {{"full", Resolution::full}, {"half", Resolution::half}, {"quarter", Resolution::quarter}};
+  return names;
+}
+template <>
+const std::map<std::string, Denoise>& names_of() {
+  static const std::map<std::string, Denoise> names = {{"none", Denoise::none}, {"bilateral", Denoise::bilateral}, {"box", Denoise::box}};
   return names;
 }
 template <>
@@ -96,6 +113,14 @@ class Table {
   std::string group_;
 };
 
+void read_thickness(const std::string& text, EstimatorSettings& settings) {
+  settings.thickness = text == "auto" ? ThicknessKind::automatic : text == "infinite" ? ThicknessKind::infinite : ThicknessKind::constant;
+  if (settings.thickness != ThicknessKind::constant) return;
+  double length = 0;
+  if (!CLI::detail::lexical_cast(text, length) || !(length > 0) || std::isinf(length)) throw CLI::ValidationError("--thickness", fmt::format("{} is neither auto nor infinite nor a length above 0", text));
+  settings.thickness_length = length;
+}
+
 void add_input_rows(Table& table, InputSettings& s) {
   table.group("Input");
   table.text("--depth", s.depth, "FILE", "an EXR of the depth alone; else it is in INPUT");
@@ -122,11 +147,16 @@ void add_estimator_rows(Table& table, RunOptions& options) {
   table.row("--preset", "NAME|FILE", "", "", "settings from a preset; may repeat, later wins, options win over presets", "", [&options](CLI::App& app) {
     return app.set_config("--preset")->expected(1)->take_all()->transform([](const std::string& name) { return preset_file(name); })->description("");
   });
+  table.choice("--estimator", s.estimator, "gtao: horizons; bitmask: what is blocked between front and back of every occluder");
   table.number("--radius", s.radius, "scene units", above_to(0, 1e18), "how far occluders reach; must be given, here or in a preset");
   table.choice("--falloff", s.falloff, "how a hit's weight fades towards the radius; none: all within it block fully");
   table.number("--falloff-start", s.falloff_start, "of the radius", below_and_at_least(0, 1), "where the falloff begins");
   table.number("--slices", s.slices, "a pixel", between(1, 64), "directions that are searched");
   table.number("--steps", s.steps, "a side", between(1, 4096), "samples to each side of a slice");
+  table.row("--thickness", "auto|infinite|NUMBER", "scene units", "", "how far an occluder goes on behind what is seen of it; auto: as deep as it is wide", "infinite",
+            [&s](CLI::App& app) { return app.add_option_function<std::string>("--thickness", [&s](const std::string& text) { read_thickness(text, s); }); });
+  table.choice("--resolution", s.resolution, "of the estimate");
+  table.choice("--denoise", s.denoise, "smooths the noise of the estimate");
   table.number("--intensity", s.intensity, "", between(0, 100), "factor on the occlusion");
   table.number("--power", s.power, "", above_to(0, 100), "exponent of the visibility");
   table.number("--seed", s.seed, "", between(0, 4294967295.0), "shifts the sample noise");

@@ -220,7 +220,8 @@ std::string options_digest(const Settings& settings) {
   // Every value on a line of its own, so that no two sets of values make one text.
   std::string text = kVersion;
   const auto add = [&](const auto&... values) { ((text += fmt::format("\n{}", values)), ...); };
-  add(e.radius.value_or(0), int(e.falloff), e.falloff_start, e.slices, e.steps, e.intensity, e.power, e.seed);
+  add(int(e.estimator), e.radius.value_or(0), int(e.falloff), e.falloff_start, e.slices, e.steps, e.intensity, e.power, e.seed);
+  add(int(e.thickness), e.thickness_length, int(e.resolution), int(e.denoise));
   // The camera by what it says; where files lie is not part of it, so that a job has the same digest wherever its folder is mounted.
   add(i.camera.empty() ? std::string() : read_text(i.camera, "camera", "--camera"));
   add(i.depth_channel, i.normal_channels, i.beauty_channels, i.layer);

@@ -11,7 +11,7 @@ FrameOutputs run_chain(gpu::Recorder& gpu, const FrameInputs& frame, const Estim
 
   const GBuffer gbuffer = prepare(gpu, frame);
   out.counts = gbuffer.counts;
-  out.ao = &horizon(gpu, gbuffer, frame, settings);
+  out.ao = &estimate(gpu, gbuffer, frame, settings);
   if (settings.intensity != 1 || settings.power != 1) out.ao = &shape(gpu, *out.ao, gbuffer.view, settings);
   if (frame.beauty) out.composite = &composite(gpu, gbuffer, *out.ao, frame);
 

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "core/error.h"
 #include "kernels/composite.h"
 #include "kernels/horizon.h"
 #include "kernels/prepare.h"
@@ -52,6 +53,13 @@ GBuffer prepare(gpu::Recorder& gpu, const FrameInputs& frame) {
                 {kPrepareCounts, *gbuffer.counts}},
                extent_of(frame.view));
   return gbuffer;
+}
+
+gpu::Buffer& estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings) {
+  switch (settings.estimator) {
+    case Estimator::gtao: return horizon(gpu, gbuffer, frame, settings);
+    default: fail(ErrorKind::usage, "estimator not built yet");
+  }
 }
 
 gpu::Buffer& horizon(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings) {

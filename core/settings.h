@@ -11,6 +11,10 @@ namespace alcove {
 enum class DepthKind { automatic, planar, ray, inverse };
 enum class NormalSpace { automatic, world, view };
 enum class Falloff : std::uint32_t { none, linear, quadratic, smooth };
+enum class Estimator { gtao, bitmask, hbao, crytek };
+enum class ThicknessKind { automatic, infinite, constant };
+enum class Resolution { full = 1, half = 2, quarter = 4 };  // pixels of the frame a pixel of the estimate, in x and in y
+enum class Denoise { none, bilateral, box };
 enum class OutputType { half_float, single_float };
 
 /// What to read and how to understand it.
@@ -32,11 +36,16 @@ struct InputSettings {
 
 /// The estimate of ambient occlusion. The defaults are the preset `standard`.
 struct EstimatorSettings {
+  Estimator estimator = Estimator::gtao;
   std::optional<double> radius;      // scene units, > 0; no default, since no number fits all scenes
   Falloff falloff = Falloff::none;   // none: what renderers' own AO passes mean by a distance
   double falloff_start = 0;          // fraction of the radius where the falloff begins, 0 to 1 exclusive
   int slices = 3;                    // directions a pixel, 1 to 64; fewer than 3 bias a single pixel
   int steps = 6;                     // samples to each side of a slice, 1 to 4096
+  ThicknessKind thickness = ThicknessKind::infinite;  // how far an occluder goes on behind what is seen of it; automatic: as deep as it is wide
+  double thickness_length = 0;       // scene units, > 0; with ThicknessKind::constant
+  Resolution resolution = Resolution::full;
+  Denoise denoise = Denoise::none;
   double intensity = 1;              // factor on the occlusion, 0 to 100
   double power = 1;                  // exponent of the visibility, above 0 to 100
   std::uint32_t seed = 0;            // shifts the noise pattern
