@@ -5,6 +5,7 @@
 // effectiveness of quasirandom sequences", 2018), so any small block of pixels holds a well spread set.
 
 const vec2 kR2 = vec2(0.75487766624669276, 0.56984029099805327);  // 1/g and 1/g^2, g^3 = g + 1
+const vec3 kR3 = vec3(0.81917251339616444, 0.67104360670378920, 0.54970047790197026);  // the same in three dimensions: g^4 = g + 1
 const float kGolden = 0.61803398874989485;
 
 /// Position along the Hilbert curve that fills a 64 x 64 tile.
@@ -25,4 +26,9 @@ uint hilbert_index(uvec2 p) {
 /// Two numbers in [0, 1) for a pixel; `shift` moves the whole pattern (frame and seed).
 vec2 pixel_noise(ivec2 pixel, vec2 shift) {
   return fract(shift + float(hilbert_index(uvec2(pixel))) * kR2);
+}
+
+/// Three such numbers, of the R3 sequence.
+vec3 pixel_noise_3(ivec2 pixel, vec2 shift) {
+  return fract(vec3(shift, shift.x + shift.y) + float(hilbert_index(uvec2(pixel))) * kR3);
 }

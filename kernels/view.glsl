@@ -10,6 +10,11 @@ vec3 position_of(View view, vec2 point_px, float z) {
   return vec3(view.orthographic != 0 ? t : t * z, -z);
 }
 
+/// Where a view-space position before the eye is seen on the image, px.
+vec2 image_of(View view, vec3 position) {
+  return view.center + position.xy / (view.orthographic != 0 ? vec2(1) : vec2(-position.z)) / view.tangent_per_pixel;
+}
+
 /// The unit vector from a position towards the eye.
 vec3 toward_eye(View view, vec3 position) {
   return view.orthographic != 0 ? vec3(0, 0, 1) : normalize(-position);
