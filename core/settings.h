@@ -46,7 +46,7 @@ struct EstimatorSettings {
   int slices = 3;                    // directions a pixel, 1 to 64; fewer than 3 bias a single pixel
   int steps = 6;                     // samples to each side of a slice, 1 to 4096
   int samples = 16;                  // of estimator crytek, in the hemisphere, 4 to 64
-  double bias = 0;                   // keeps a surface from blocking itself, >= 0; crytek: scene units of depth; others: sine of the elevation above the tangent plane, below 1
+  double bias = 0;                   // least height that blocks, >= 0; crytek: scene units of depth; others: sine of the elevation above the tangent plane, < 1
   Elevation elevation = Elevation::view;                      // of estimator hbao
   SampleKernel sample_kernel = SampleKernel::clustered;       // of estimator crytek
   RangeCheck range_check = RangeCheck::ratio;                 // of estimator crytek; ratio: full within the radius, so that no hit in reach is lost

@@ -1,4 +1,4 @@
-// Ambient occlusion by samples in the hemisphere above the surface (Crytek 2007, in the hemisphere form that engines use): how much of its volume is hidden.
+// Ambient occlusion by samples in the hemisphere above the surface, as engines do it after Crytek: how much of its volume is hidden.
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // In: planar depth, view normals. Out: visibility, 1 = open.
@@ -7,7 +7,7 @@
 // - A sample is compared with the depth of the pixel that it falls into, on the ray of that pixel's centre: it is moved there parallel to the
 //   receiver's tangent plane, which keeps its height above it. A flat surface stays open at every tilt, with no bias at all.
 // - The basis about the normal is built from the normal alone and turned by the noise, so no noise vector can be parallel to it.
-// - Samples behind the eye and outside the image are unknown and do not count; what is known is divided by their number.
+// - Samples behind the eye, outside the image and before the sky do not count; what is hidden is divided by the number of those that do.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "crytek.h"
@@ -38,7 +38,8 @@ float reach_of(uint i, float random) {
 float range_weight(float depth_difference) {
   if (params.range_check == kRangeNone) return 1.0;
   const float dz = abs(depth_difference);
-  return params.range_check == kRangeRatio ? smoothstep(0.0, 1.0, params.radius / max(dz, 1e-6 * params.radius)) : 1.0 - smoothstep(0.0, params.radius, dz);
+  if (params.range_check == kRangeSmoothstep) return 1.0 - smoothstep(0.0, params.radius, dz);
+  return smoothstep(0.0, 1.0, params.radius / max(dz, 1e-6 * params.radius));  // 1 for dz = 0
 }
 
 void main() {
@@ -68,9 +69,9 @@ void main() {
     const vec2 image = image_of(params.view, at);
     if (!(all(greaterThanEqual(image, vec2(0))) && all(lessThan(image, vec2(params.view.size))))) continue;
     const ivec2 hit = ivec2(image);
-    valid += 1.0;
     const float hit_z = depth[index_of(params.view, hit)];
-    if (hit_z >= kSkyDepth) continue;  // known to be open
+    if (hit_z >= kSkyDepth) continue;
+    valid += 1.0;
 
     const vec3 ray = position_of(params.view, vec2(hit) + 0.5, 1.0) - position_of(params.view, vec2(hit) + 0.5, 0.0);  // of unit depth
     const vec3 offset = position_of(params.view, vec2(hit) + 0.5, hit_z) - position;

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // In: planar depth, view normals. Out: visibility, 1 = open.
-// Bavoil and Sainz, "Image-Space Horizon-Based Ambient Occlusion", 2008: occlusion is the mean over the directions of sin h - sin t, the elevations
-// of horizon and tangent above the plane across the view ray; with attenuation, every rise of sin h counts with the weight W of the sample that
+// Bavoil and Sainz, "Image-Space Horizon-Based Ambient Occlusion", 2008: occlusion is the mean over the directions of sin h - sin t, the
+// elevations of horizon and tangent above the plane across the view ray; with attenuation, every rise of sin h counts with the weight W of the sample that
 // makes it. This is uniform, not cosine-weighted AO: beside a wall whose rim stands at 45 degrees it is 0.75, and GTAO's 0.854. What is particular here:
 // - Off axis even directions of the image are not even about the view ray; each is weighted by the ratio of the two.
 // - Without attenuation whatever is within reach on the image blocks, at any distance: beside an endless wall 1 - acos(d / R) / pi.
