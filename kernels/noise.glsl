@@ -5,7 +5,6 @@
 // effectiveness of quasirandom sequences", 2018), so any small block of pixels holds a well spread set.
 
 const vec2 kR2 = vec2(0.75487766624669276, 0.56984029099805327);  // 1/g and 1/g^2, g^3 = g + 1
-const vec3 kR3 = vec3(0.81917251339616444, 0.67104360670378920, 0.54970047790197026);  // the same in three dimensions: g^4 = g + 1
 const float kGolden = 0.61803398874989485;
 
 /// Position along the Hilbert curve that fills a 64 x 64 tile.
@@ -28,7 +27,9 @@ vec2 pixel_noise(ivec2 pixel, vec2 shift) {
   return fract(shift + float(hilbert_index(uvec2(pixel))) * kR2);
 }
 
-/// Three such numbers, of the R3 sequence.
-vec3 pixel_noise_3(ivec2 pixel, vec2 shift) {
-  return fract(vec3(shift, shift.x + shift.y) + float(hilbert_index(uvec2(pixel))) * kR3);
+/// Point `index` of the R3 sequence (the same in three dimensions, g^4 = g + 1), moved by `shift`, in [0, 1). Where every pixel has n samples, those from
+/// n hilbert_index() on go on where the neighbour's ended. In whole numbers, since floats have too few digits for it.
+vec3 r3_point(uint index, vec2 shift) {
+  const uvec3 step = uvec3(3518319155u, 2882110345u, 2360945575u);  // 2^32 / g, / g^2, / g^3
+  return fract(vec3(index * step >> 8) / 16777216.0 + vec3(shift, shift.x + shift.y));
 }
