@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "core/reference_estimators.h"
+#include "tests/block_scene.h"
 #include "tests/device.h"
 #include "tests/difference.h"
 #include "tests/scenes.h"
@@ -20,6 +21,7 @@
 namespace alcove {
 namespace {
 
+using test::block, test::leaning;
 using test::Difference, test::difference, test::place, test::same_bits;
 using test::Plane, test::Polygon, test::Rendering, test::Scene, test::Shot, test::Sphere, test::unit, test::Vec3;
 
@@ -85,22 +87,6 @@ void expect_mean(const Rendering& rendering, const EstimatorSettings& settings, 
   EXPECT_GE(count, least_pixels) << what;
   EXPECT_LE(std::abs(sum / count), mean_tolerance) << what << ", mean error " << sum / count << " over " << count << " pixels";
   EXPECT_LE(worst, tolerance) << what;
-}
-
-/// A floor, and a block without end in y that rises from it at x = 0 to a height, seen from above the floor's side.
-Scene block(double height) {
-  return {{Plane{.point = {}, .normal = {0, 0, 1}}, test::parallelogram({0, -100, 0}, {0, 200, 0}, {0, 0, height}),
-           test::parallelogram({0, -100, height}, {0, 200, 0}, {-100, 0, 0})}};
-}
-
-/// A parallel view whose direction leans from the floor's normal by an angle, towards the open side; the block's edge is upright in the picture.
-Shot leaning(double tilt_degrees, double units, int width, int height) {
-  const double sine = std::sin(tilt_degrees * kRadian), cosine = std::cos(tilt_degrees * kRadian);
-  const Vec3 target{0.5, 0, 0};
-  Shot shot = Shot::orthographic(target + 60 * Vec3{sine, 0, cosine}, target, units, width, height);
-  shot.right = {cosine, 0, -sine};
-  shot.up = {0, 1, 0};
-  return shot;
 }
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
