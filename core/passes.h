@@ -38,6 +38,8 @@ GBuffer prepare(gpu::Recorder& gpu, const FrameInputs& frame);
 gpu::Buffer& estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings);
 gpu::Buffer& horizon(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings);
 gpu::Buffer& bitmask(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings);
+gpu::Buffer& hbao(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings);
+gpu::Buffer& crytek(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings);
 gpu::Buffer& shape(gpu::Recorder& gpu, const gpu::Buffer& ao, const View& view, const EstimatorSettings& settings);
 /// The beauty's planes, for the host.
 gpu::Buffer& composite(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& ao, const FrameInputs& frame);
