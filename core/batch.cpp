@@ -180,7 +180,8 @@ FrameReport run_frame(gpu::Device& device, gpu::Recorder& gpu, const Settings& s
   report.passes = gpu.passes();
   for (const auto& pass : report.passes) report.compute_ms += pass.ms;
   note_counts(report, outputs.counts->as<FrameCounts>()[0], source);
-  report.samples_per_pixel = 2.0 * settings.estimator.slices * settings.estimator.steps * double(report.pixels - report.sky_pixels) / double(report.pixels);
+  const double block = double(settings.estimator.resolution) * double(settings.estimator.resolution);  // pixels a pixel of the estimate
+  report.samples_per_pixel = 2.0 * settings.estimator.slices * settings.estimator.steps * double(report.pixels - report.sky_pixels) / double(report.pixels) / block;
 
   const Stopwatch writing;
   write_ao(source, outputs.ao->as<float>(), settings.output, digest, device.info().name);
@@ -222,6 +223,7 @@ std::string options_digest(const Settings& settings) {
   const auto add = [&](const auto&... values) { ((text += fmt::format("\n{}", values)), ...); };
   add(int(e.estimator), e.radius.value_or(0), int(e.falloff), e.falloff_start, e.slices, e.steps, e.intensity, e.power, e.seed);
   add(int(e.thickness), e.thickness_length, int(e.resolution), int(e.denoise));
+  add(e.denoise_radius, fmt::format("{}", fmt::join(e.denoise_kernel, ",")), e.denoise_depth_sigma);
   // The camera by what it says; where files lie is not part of it, so that a job has the same digest wherever its folder is mounted.
   add(i.camera.empty() ? std::string() : read_text(i.camera, "camera", "--camera"));
   add(i.depth_channel, i.normal_channels, i.beauty_channels, i.layer);
