@@ -41,9 +41,9 @@ Tap load(ivec2 pixel) {
   tap.scale = perspective ? tap.z : 1.0;
   const vec3 n = unpack_normal(normal[index]);
   const vec2 pixel_step = vec2(params.axis) * params.view.tangent_per_pixel, tangent = tangent_of(params.view, vec2(nearest) + 0.5);
-  const float sigma = kPlaneSigma * (abs(pixel_step.x) + abs(pixel_step.y)) * tap.scale;
-  if (tap.z < kSkyDepth) tap.ahead = (perspective ? dot(n.xy, tangent) - n.z : -n.z) / sigma;
-  if (tap.z < kSkyDepth) tap.across = dot(n.xy, pixel_step) / sigma;
+  const float sigmas = 1.0 / (kPlaneSigma * (abs(pixel_step.x) + abs(pixel_step.y)) * tap.scale);
+  if (tap.z < kSkyDepth) tap.ahead = (perspective ? dot(n.xy, tangent) - n.z : -n.z) * sigmas;
+  tap.across = dot(n.xy, pixel_step) * sigmas;
   return tap;
 }
 
@@ -65,20 +65,18 @@ void main() {
     taps[i] = load(first + (i - kRadius) * params.axis);
     change[i] = 0.0;
     whole[i] = params.weight[0];
-  }
-  for (int i = 0; i < kDenoiseRun + kRadius; i++) {
     for (int apart = 1; apart <= kRadius; apart++) {
-      const int j = i + apart;
-      if (j < kRadius) continue;
-      const float weight = params.weight[apart] * similarity(taps[i], taps[j], float(apart)), difference = weight * (taps[j].ao - taps[i].ao);
-      change[i] += difference;
-      change[j] -= difference;
-      whole[i] += weight;
+      const int j = i - apart;
+      if (j < 0 || i < kRadius || j >= kDenoiseRun + kRadius) continue;
+      const float weight = params.weight[apart] * similarity(taps[j], taps[i], float(apart)), difference = weight * (taps[i].ao - taps[j].ao);
+      change[j] += difference;
+      change[i] -= difference;
       whole[j] += weight;
+      whole[i] += weight;
     }
-  }
-  for (int i = kRadius; i < kDenoiseRun + kRadius; i++) {
-    const ivec2 pixel = first + (i - kRadius) * params.axis;
-    if (inside(params.view, pixel)) result[index_of(params.view, pixel)] = taps[i].z < kSkyDepth ? clamp(taps[i].ao + change[i] / whole[i], 0.0, 1.0) : 1.0;
+    const int done = i - kRadius;
+    const ivec2 pixel = first + (done - kRadius) * params.axis;
+    if (done >= kRadius && inside(params.view, pixel))
+      result[index_of(params.view, pixel)] = taps[done].z < kSkyDepth ? clamp(taps[done].ao + change[done] / whole[done], 0.0, 1.0) : 1.0;
   }
 }

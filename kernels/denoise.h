@@ -14,7 +14,7 @@ ALCOVE_CONSTANT uint kDenoiseRadiusId = 0;    // specialization: pixels to each 
 ALCOVE_CONSTANT uint kDenoiseByDepthId = 1;   // specialization: 1: weighs by depth_sigma instead of by plane distance
 
 ALCOVE_CONSTANT int kDenoiseMostRadius = 8;  // px
-ALCOVE_CONSTANT int kDenoiseRun = 16;        // px along the axis that one invocation computes
+ALCOVE_CONSTANT int kDenoiseRun = 12;        // px along the axis that one invocation computes
 
 struct DenoiseParams {
   View view;
