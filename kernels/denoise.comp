@@ -22,7 +22,7 @@ layout(scalar, binding = kDenoiseNormal) readonly buffer Normal { uint normal[];
 layout(scalar, binding = kDenoiseResult) writeonly buffer Result { float result[]; };
 
 /// Two pixels do not mix when one lies further from the plane of the other than this many pixels are wide there.
-const float kPlaneSigma = 2.0;
+const float kPlaneSigma = 1.0;
 
 struct Tap {
   float ao, z;

@@ -22,7 +22,7 @@ layout(scalar, binding = kUpsampleLowAo) readonly buffer LowAo { float low_ao[];
 layout(scalar, binding = kUpsampleAo) writeonly buffer Ao { float ao[]; };
 
 /// A block whose centre lies further from a pixel's tangent plane than this many pixels are wide there has no part in it.
-const float kPlaneSigma = 4.0;
+const float kPlaneSigma = 2.0;
 /// Weights whose sum is less than this are none.
 const float kLeastWeight = 1e-3;
 
