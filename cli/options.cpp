@@ -172,7 +172,9 @@ void add_estimator_rows(Table& table, RunOptions& options) {
   table.choice("--denoise", s.denoise, "smooths each surface: bilateral: by a Gaussian or --denoise-kernel; box: by an even 4 x 4");
   table.number("--denoise-radius", s.denoise_radius, "pixels of the estimate", between(1, 8), "how far the bilateral denoiser reaches to each side");
   table.row("--denoise-kernel", "W0,W1,...", "", "2 to 9 weights", "of the bilateral denoiser, from the centre outwards, of any sum; they set its radius", "",
-            [&s](CLI::App& app) { return app.add_option_function<std::string>("--denoise-kernel", [&s](const std::string& text) { read_kernel(text, s); }); });
+            [&s](CLI::App& app) {
+              return app.add_option_function<std::string>("--denoise-kernel", [&s](const std::string& text) { read_kernel(text, s); });
+            });
   table.number("--denoise-depth-sigma", s.denoise_depth_sigma, "of the depth", between(0, 100),
                "pixels that far apart weigh 1/e: exp(-|dz| / (SIGMA z)), z the nearer; 0: weighs by the distance from each other's plane");
   table.number("--intensity", s.intensity, "", between(0, 100), "factor on the occlusion");

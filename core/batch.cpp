@@ -180,8 +180,8 @@ FrameReport run_frame(gpu::Device& device, gpu::Recorder& gpu, const Settings& s
   report.passes = gpu.passes();
   for (const auto& pass : report.passes) report.compute_ms += pass.ms;
   note_counts(report, outputs.counts->as<FrameCounts>()[0], source);
-  const double block = double(settings.estimator.resolution) * double(settings.estimator.resolution);  // pixels a pixel of the estimate
-  report.samples_per_pixel = 2.0 * settings.estimator.slices * settings.estimator.steps * double(report.pixels - report.sky_pixels) / double(report.pixels) / block;
+  const double surface = double(report.pixels - report.sky_pixels) / double(report.pixels), factor = double(settings.estimator.resolution);
+  report.samples_per_pixel = 2.0 * settings.estimator.slices * settings.estimator.steps * surface / (factor * factor);
 
   const Stopwatch writing;
   write_ao(source, outputs.ao->as<float>(), settings.output, digest, device.info().name);

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // In: depth and normals of pixels and of blocks, visibility of blocks. Out: visibility of pixels; sky is 1.
-// Kopf et al., "Joint Bilateral Upsampling", 2007: the four blocks about a pixel, by bilinear weights about their centres, as far as their centres lie in the
-// pixel's tangent plane and their normals agree with its own. Where none does, the block of the nearest depth. One invocation computes the pixels that lie
-// between the same four centres.
+// Kopf et al., "Joint Bilateral Upsampling", 2007: the four blocks about a pixel, by bilinear weights between their centres, as far as these lie
+// in the pixel's tangent plane and their normals agree with its own. Where none does, the block of the nearest depth. One invocation computes the
+// pixels that lie between the same four centres.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "upsample.h"

@@ -15,7 +15,8 @@
 namespace alcove {
 namespace {
 
-using test::difference, test::Difference, test::mirrored, test::Plane, test::Rendering, test::same_bits, test::Scene, test::Shot, test::unit, test::Vec3;
+using test::difference, test::Difference, test::mirrored, test::same_bits;
+using test::Plane, test::Rendering, test::Scene, test::Shot, test::unit, test::Vec3;
 
 constexpr double kRadian = std::numbers::pi / 180;
 const Vec3 kForward{1, 0, 0};
@@ -49,13 +50,15 @@ TEST_P(Reduced, plane_is_open_at_every_tilt_and_field_of_view) {
   for (const double tilt : {0.0, 30.0, 60.0, 80.0, 85.0}) {
     for (const double turn : {0.0, 37.0, 90.0, 200.0}) {
       const double sine = std::sin(tilt * kRadian);
-      const Scene scene{{Plane{.point = {5, 0, 0}, .normal = {-std::cos(tilt * kRadian), sine * std::cos(turn * kRadian), sine * std::sin(turn * kRadian)}}}};
+      const Vec3 normal{-std::cos(tilt * kRadian), sine * std::cos(turn * kRadian), sine * std::sin(turn * kRadian)};
+      const Scene scene{{Plane{.point = {5, 0, 0}, .normal = normal}}};
       for (const double fov : {0.0, 10.0, 60.0, 90.0, 120.0}) {
         const Shot shot = fov > 0 ? Shot::perspective({}, kForward, fov, 64, 48) : Shot::orthographic({}, kForward, 0.5, 64, 48);
         const Rendering rendering = test::render(scene, shot);
         const std::string what = "tilt " + std::to_string(tilt) + " turn " + std::to_string(turn) + " fov " + std::to_string(fov);
         for (const double radius : {0.5, 3.0, 1e5})
-          for (const Denoise denoise : {Denoise::none, Denoise::bilateral}) expect_open(rendering.frame, settings_of(radius, 3, 6, resolution(), denoise), what);
+          for (const Denoise denoise : {Denoise::none, Denoise::bilateral})
+            expect_open(rendering.frame, settings_of(radius, 3, 6, resolution(), denoise), what);
       }
     }
   }
@@ -79,7 +82,8 @@ TEST_P(Reduced, ramp_comes_back_where_it_was) {
   for (const Vec3 normal : {Vec3{-1, 0, 0}, unit({-1, 0.7, 0.9})}) {
     const Rendering rendering = test::render({{Plane{.point = {5, 0, 0}, .normal = normal}}}, Shot::perspective({}, kForward, 50, 97, 71));
     const auto ramp = [&](double x, double y) { return 0.4 + by_x * x + by_y * y; };
-    const auto ao = test::upsampled(rendering.frame, [&](int x, int y) { return ramp((x + 0.5) * factor(), (y + 0.5) * factor()); }, settings_of(1, 1, 1, resolution()));
+    const auto at_center = [&](int x, int y) { return ramp((x + 0.5) * factor(), (y + 0.5) * factor()); };
+    const auto ao = test::upsampled(rendering.frame, at_center, settings_of(1, 1, 1, resolution()));
     int compared = 0;
     for (int y = factor(); y < 71 - 2 * factor(); y++) {
       for (int x = factor(); x < 97 - 2 * factor(); x++, compared++)
@@ -99,7 +103,8 @@ std::pair<double, double> shift_of(const std::vector<float>& moved, const std::v
       const auto [source_x, source_y] = source(x, y);
       if (rendering.primitives_within(6, source_x, source_y) > 1) continue;
       const auto at = [&](int u, int v) { return double(still[std::size_t(v * width + u)]); };
-      const double dx = (at(x + 2, y) - at(x - 2, y)) / 4, dy = (at(x, y + 2) - at(x, y - 2)) / 4, error = at(x, y) - moved[std::size_t(y * width + x)];
+      const double dx = (at(x + 2, y) - at(x - 2, y)) / 4, dy = (at(x, y + 2) - at(x, y - 2)) / 4;
+      const double error = at(x, y) - moved[std::size_t(y * width + x)];
       xx += dx * dx, xy += dx * dy, yy += dy * dy, x_error += dx * error, y_error += dy * error;
     }
   }
@@ -107,8 +112,8 @@ std::pair<double, double> shift_of(const std::vector<float>& moved, const std::v
   return {(yy * x_error - xy * y_error) / determinant, (xx * y_error - xy * x_error) / determinant};
 }
 
-// The same through the whole chain, beside a wall. That few pixels see less of the wall looks like a shift away from it; in the mirrored frame that is a
-// shift to the other side, which a real one is not.
+// The same through the whole chain, beside a wall. That few pixels see less of the wall looks like a shift away from it; in the mirrored frame that
+// is a shift to the other side, which a real one is not.
 TEST_P(Reduced, shading_of_a_wall_does_not_shift) {
   const Scene scene{{Plane{.point = {}, .normal = {0, 0, 1}}, Plane{.point = {}, .normal = {1, 0, 0}}}};
   for (const Vec3 eye : {Vec3{4, -1, 3}, Vec3{3, 3, 3}}) {
@@ -118,7 +123,8 @@ TEST_P(Reduced, shading_of_a_wall_does_not_shift) {
       for (const bool flip : {false, true}) {
         const HostFrame frame = flip ? mirrored(rendering.frame, left_right) : rendering.frame;
         const auto source = [&](int x, int y) { return !flip ? std::pair{x, y} : left_right ? std::pair{159 - x, y} : std::pair{x, 119 - y}; };
-        const auto [x, y] = shift_of(run(frame, settings_of(1, 16, 64, resolution())), run(frame, settings_of(1, 16, 64, Resolution::full)), rendering, source);
+        const std::vector<float> low = run(frame, settings_of(1, 16, 64, resolution())), full = run(frame, settings_of(1, 16, 64, Resolution::full));
+        const auto [x, y] = shift_of(low, full, rendering, source);
         sum_x += x, sum_y += y;
       }
       EXPECT_LE(std::abs(left_right ? sum_x : sum_y) / 2, 0.1) << "px in " << (left_right ? "x" : "y");
@@ -194,8 +200,10 @@ TEST_P(Reduced, mirrored_blocks_give_the_mirrored_result) {
 TEST_P(Reduced, is_the_same_to_the_bit_in_units_of_any_power_of_two) {
   const HostFrame frame = test::furnished_room(97, 71).frame;
   const std::vector<float> expected = run(frame, settings_of(0.6, 3, 6, resolution(), Denoise::bilateral));
-  for (const int exponent : {-20, 3, 24})
-    EXPECT_TRUE(same_bits(run(test::scaled(frame, exponent), settings_of(std::ldexp(0.6, exponent), 3, 6, resolution(), Denoise::bilateral)), expected)) << exponent;
+  for (const int exponent : {-20, 3, 24}) {
+    const EstimatorSettings settings = settings_of(std::ldexp(0.6, exponent), 3, 6, resolution(), Denoise::bilateral);
+    EXPECT_TRUE(same_bits(run(test::scaled(frame, exponent), settings), expected)) << exponent;
+  }
 }
 
 }  // namespace
