@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <vector>
 
 #include "core/error.h"
+#include "kernels/bitmask.h"
 #include "kernels/composite.h"
 #include "kernels/denoise.h"
 #include "kernels/downsample.h"
@@ -24,6 +26,13 @@ constexpr double kDenoiseSigma = 0.6;
 
 std::size_t pixels_of(const View& view) { return std::size_t(view.size.x) * std::size_t(view.size.y); }
 std::size_t plane_bytes(const View& view) { return pixels_of(view) * sizeof(float); }
+
+/// As kernels take it: 0 says as deep as wide.
+float thickness_of(const EstimatorSettings& settings) {
+  if (settings.thickness == ThicknessKind::automatic) return 0;
+  return settings.thickness == ThicknessKind::infinite ? std::numeric_limits<float>::infinity() : float(settings.thickness_length);
+}
+
 gpu::Extent extent_of(const View& view) { return {uint(view.size.x), uint(view.size.y)}; }
 vec3 to_vec3(const std::array<double, 3>& v) { return {float(v[0]), float(v[1]), float(v[2])}; }
 
@@ -37,6 +46,21 @@ vec2 noise_shift(int frame, std::uint32_t seed) {
   const auto shift = [&](double by_frame, double by_seed) { return float(fraction(0.5 + fraction(frame * by_frame) + fraction(seed * by_seed))); };
   return {shift(0.75487766624669276, 0.41421356237309505), shift(0.56984029099805327, 0.73205080756887729)};
 }
+
+/// Of the estimators that search slices.
+template <class Params>
+Params slice_parameters(const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings) {
+  const double radius = settings.radius.value();
+  Params params{};
+  params.view = gbuffer.view;
+  params.radius = float(radius);
+  params.falloff_start = float(radius * settings.falloff_start);
+  params.noise_origin = frame.noise_origin;
+  params.noise_shift = noise_shift(frame.frame, settings.seed);
+  params.thickness = thickness_of(settings);
+  return params;
+}
+std::vector<uint> slice_constants(const EstimatorSettings& settings) { return {uint(settings.slices), uint(settings.steps), uint(settings.falloff)}; }
 
 /// The grid of blocks that the pixels of an estimate stand for: it begins at the display window's corner, so that a crop has the blocks of the whole.
 struct BlockGrid {
@@ -115,21 +139,22 @@ gpu::Buffer& estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInp
   frame.noise_origin = block_grid(inputs, settings).origin;
   switch (settings.estimator) {
     case Estimator::gtao: return horizon(gpu, gbuffer, frame, settings);
+    case Estimator::bitmask: return bitmask(gpu, gbuffer, frame, settings);
     default: fail(ErrorKind::usage, "estimator not built yet");
   }
 }
 
 gpu::Buffer& horizon(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings) {
   gpu::Buffer& ao = gpu.buffer("ao", plane_bytes(gbuffer.view), gpu::Use::download);
-  const double radius = settings.radius.value();
-  HorizonParams params{};
-  params.view = gbuffer.view;
-  params.radius = float(radius);
-  params.falloff_start = float(radius * settings.falloff_start);
-  params.noise_origin = frame.noise_origin;
-  params.noise_shift = noise_shift(frame.frame, settings.seed);
-  gpu.dispatch("horizon", params, {{kHorizonDepth, *gbuffer.depth}, {kHorizonNormal, *gbuffer.normal}, {kHorizonAo, ao}}, extent_of(gbuffer.view),
-               {uint(settings.slices), uint(settings.steps), uint(settings.falloff)});
+  gpu.dispatch("horizon", slice_parameters<HorizonParams>(gbuffer, frame, settings),
+               {{kHorizonDepth, *gbuffer.depth}, {kHorizonNormal, *gbuffer.normal}, {kHorizonAo, ao}}, extent_of(gbuffer.view), slice_constants(settings));
+  return ao;
+}
+
+gpu::Buffer& bitmask(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings) {
+  gpu::Buffer& ao = gpu.buffer("ao", plane_bytes(gbuffer.view), gpu::Use::download);
+  gpu.dispatch("bitmask", slice_parameters<BitmaskParams>(gbuffer, frame, settings),
+               {{kBitmaskDepth, *gbuffer.depth}, {kBitmaskNormal, *gbuffer.normal}, {kBitmaskAo, ao}}, extent_of(gbuffer.view), slice_constants(settings));
   return ao;
 }
 

@@ -1,0 +1,101 @@
+// Ambient occlusion by a visibility bitmask in slices through the view ray, cosine weighted.
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// In: planar depth, view normals. Out: visibility, 1 = open.
+// Therrien et al., "Screen Space Indirect Lighting with Visibility Bitmask", 2023: every sample blocks the angles between its front and its back, and bits of
+// a mask say which are blocked. With these differences:
+// - The 64 sectors of a slice, 32 a side, have equal measure of the cosine-weighted arc integral, not equal angles: counting bits is integrating.
+// - An interval begins and ends at floor(32 F + u), with one random u a slice, which is unbiased; rounding outwards would block 1.6 % too much.
+// - The back lies along the sample's own eye ray, clipped to the sphere of the radius.
+// - Between two samples of one surface nothing is open.
+// With occluders that are infinitely thick it is what horizon.comp computes. With `thickness` 0 a sample is as thick as its surface is wide up to there.
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#include "bitmask.h"
+#include "view.glsl"
+#include "normal.glsl"
+#include "arcs.glsl"
+#include "noise.glsl"
+#include "slice.glsl"
+
+layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
+layout(constant_id = kBitmaskSlicesId) const uint kSlices = 3;
+layout(constant_id = kBitmaskStepsId) const uint kSteps = 6;
+layout(constant_id = kBitmaskFalloffId) const uint kFalloff = kFalloffNone;
+layout(scalar, push_constant) uniform Push { BitmaskParams params; };
+layout(scalar, binding = kBitmaskDepth) readonly buffer Depth { float depth[]; };
+layout(scalar, binding = kBitmaskNormal) readonly buffer Normal { uint normal[]; };
+layout(scalar, binding = kBitmaskAo) writeonly buffer Ao { float ao[]; };
+
+const uint kSectors = 32u;  // a side
+
+/// The sectors between V and the angle of a cotangent; V's is the lowest bit.
+uint sectors_to(Side side, float whole, float cot, float shift) {
+  const int n = int(clamp(arc_to(side, max(cot, side.plane_cot)) / whole, 0.0, 1.0) * float(kSectors) + shift);
+  return n >= int(kSectors) ? 0xffffffffu : (1u << uint(n)) - 1u;
+}
+
+/// The blocked part of a side's arc integral.
+float search(Receiver r, Side side, Reach reach, float jitter, float shift) {
+  const int count = min(int(kSteps), int(side.reach));
+  const float whole = arc_to(side, side.plane_cot), endless = 1e30;
+  float last_z = r.z, last_offset = 0.0, last_cot = side.plane_cot, blocked = 0.0;
+  bool own = true, last_blocks = true;
+  vec2 start = vec2(0);
+  uint bits = 0u;
+  for (int k = 0; k < count; k++) {
+    const float offset = step_offset(k, int(kSteps), count, side.reach, jitter);
+    const vec2 beside = round(side.direction_px * offset);
+    const ivec2 hit = r.pixel + ivec2(beside);
+    const float z = depth[hit.y * reach.width + hit.x], scale = r.perspective ? z : 1.0;
+    const vec2 place = place_of(r, side, beside, z, scale);
+    const vec3 delta = offset_to(r, beside, z, scale);
+    const float cot = place.y / place.x, distance_sq = dot(delta, delta);
+    const bool blocks = is_above(r, place, distance_sq, beside, z, scale) ? distance_sq < reach.radius_sq : false;
+    const bool connected = same_surface(r, reach, z, last_z, offset - last_offset);
+    start = connected ? start : place;
+    own = connected ? own : false;
+    if (blocks) {
+      const float width = own ? endless : length(place - start) + reach.pixel_size * scale;
+      const float back = back_cot(r, place, reach.thickness > 0.0 ? reach.thickness : width, reach.radius);
+      const bool joined = connected ? last_blocks : false;
+      const uint before = sectors_to(side, whole, joined ? max(cot, last_cot) : cot, shift);
+      const uint behind = sectors_to(side, whole, min(back, joined ? min(cot, last_cot) : cot), shift);
+      const uint added = behind & ~before & ~bits;
+      bits |= added;
+      blocked += float(bitCount(added)) * falloff_weight(kFalloff, sqrt(distance_sq), reach.falloff_start, reach.radius);
+    }
+    last_blocks = blocks;
+    last_cot = cot;
+    last_z = z;
+    last_offset = offset;
+  }
+  return blocked * whole / float(kSectors);
+}
+
+void main() {
+  const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  const View view = params.view;
+  if (!inside(view, pixel)) return;
+  const int index = index_of(view, pixel);
+  const float z = depth[index];
+  if (z >= kSkyDepth) {
+    ao[index] = 1.0;
+    return;
+  }
+  const Receiver r = receiver_at(view, pixel, z, unpack_normal(normal[index]), params.radius);
+  const Reach reach = reach_of(view, params.radius, params.falloff_start, params.thickness);
+  const vec2 noise = pixel_noise(pixel + params.noise_origin, params.noise_shift);
+  float blocked = 0.0, whole = 0.0;
+  for (uint s = 0u; s < kSlices; s++) {
+    const Slice slice = slice_at(view, r, kPi * (float(s) + noise.x) / float(kSlices));
+    if (slice.weight < kLeastWeight) continue;
+    whole += slice.weight * (slice.cos_gamma + slice.gamma * slice.sin_gamma);
+    const float shift = fract(noise.x * 7.0 + noise.y * 13.0 + kGolden * float(s));
+    for (int sign = -1; sign <= 1; sign += 2) {
+      const float jitter = fract(noise.y + kGolden * float(2u * s + uint(sign > 0)));
+      blocked += slice.weight * search(r, side_of(view, r, slice, float(sign), reach.radius), reach, jitter, shift);
+    }
+  }
+  ao[index] = whole > 0.0 ? clamp(1.0 - blocked / whole, 0.0, 1.0) : 1.0;
+}

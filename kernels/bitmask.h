@@ -1,0 +1,27 @@
+// Parameters and bindings of bitmask.comp.
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef ALCOVE_BITMASK_H
+#define ALCOVE_BITMASK_H
+#include "shared.h"
+ALCOVE_BEGIN
+
+ALCOVE_CONSTANT uint kBitmaskDepth = 0;   // in: float a pixel, from prepare
+ALCOVE_CONSTANT uint kBitmaskNormal = 1;  // in: uint a pixel, from prepare
+ALCOVE_CONSTANT uint kBitmaskAo = 2;      // out: float a pixel, visibility in [0, 1], 1 = open
+
+ALCOVE_CONSTANT uint kBitmaskSlicesId = 0;   // specialization: slices a pixel
+ALCOVE_CONSTANT uint kBitmaskStepsId = 1;    // specialization: steps to each side of a slice
+ALCOVE_CONSTANT uint kBitmaskFalloffId = 2;  // specialization: one of kFalloff* of slice.glsl
+
+struct BitmaskParams {
+  View view;
+  float radius;         // scene units
+  float falloff_start;  // scene units, below the radius
+  ivec2 noise_origin;   // px: what to add to a pixel so that crops and tiles share one noise pattern
+  vec2 noise_shift;     // in [0, 1): the pattern's shift for this frame and seed
+  float thickness;      // scene units; infinite allowed; 0: as deep as wide
+};
+ALCOVE_PARAMS(BitmaskParams)
+
+ALCOVE_END
+#endif

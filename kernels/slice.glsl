@@ -1,0 +1,187 @@
+// A slice through the view ray on the image: its two sides, and how high a sample stands in it. Pure: no bindings.
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// In a slice an angle theta is measured from the direction V to the eye; here it goes by its cotangent, which falls from infinity at V. Coordinates in a slice
+// are (across V, towards the eye) from the receiver. They are linear in the sample's depth and in its offset on the image, so no sample needs a vector in space.
+// A sample lies at the centre of a pixel, up to half a pixel beside the slice. It is moved into the slice parallel to the receiver's tangent plane, which
+// keeps its height above it: a flat surface stays flat at every tilt, whatever pixel a step snaps to.
+
+const float kLeastWeight = 1e-4;     // slices whose plane the normal is nearly perpendicular to weigh less than this and are left out
+const float kLeastElevation = 1e-3;  // sine of the elevation above the tangent plane up to which a sample is the surface itself, raised by rounding
+
+/// Steps grow with the square of the distance, so that near occluders are not missed. More steps than this are enough to sample all of the reach densely
+/// instead: the exponent is then the one with which the first step is a pixel long.
+const int kManySteps = 16;
+
+/// Neighbours on a slice whose depths differ by less than this many pixels' worth of slope, for every step between them, are one surface.
+const float kRunSlope = 8.0;
+
+const uint kFalloffNone = 0;       // whatever is nearer than the radius blocks
+const uint kFalloffLinear = 1;     // from 1 at the start to 0 at the radius
+const uint kFalloffQuadratic = 2;  // 1 - x^2
+const uint kFalloffSmooth = 3;     // 1 - smoothstep
+
+/// What an estimator's loop over samples needs of its parameters: read once, since lavapipe gathers a parameter anew at each use within a loop.
+struct Reach {
+  float radius, radius_sq, falloff_start;  // scene units
+  float thickness;                         // scene units, infinite allowed; 0: as deep as wide
+  float pixel_size;                        // scene units at unit depth (orthographic: at any)
+  int width;                               // of the image, px
+};
+
+struct Receiver {
+  ivec2 pixel;
+  float z;             // planar depth
+  vec3 normal, eye;    // unit, view space; towards the eye
+  vec2 height;         // of a point above the tangent plane: scale * dot(height, offset in pixels) + (z - receiver's z) * depth_height
+  float depth_height;
+  vec2 tangent_per_pixel;
+  float eye_distance;  // scene units
+  float ray_length;    // of the eye's ray at unit depth
+  vec2 tangent;        // of the pixel
+  bool perspective;
+  float sin_reach;     // the sphere of the radius is seen under this angle; 1 and more: it holds the eye, and the image is the only limit
+};
+
+/// A plane through V and a unit vector T across it.
+struct Slice {
+  vec3 t;
+  float weight;                // length of the normal's projection
+  float cos_gamma, sin_gamma;  // gamma: the projected normal's angle, from V towards T
+  float gamma;
+  vec2 image_t;                // the image of T: pixels a unit of length at unit depth
+  vec2 across, toward;         // of the side towards T
+};
+
+/// One half of a slice.
+struct Side {
+  vec2 direction_px;    // pixels a step; the longer component is +-1
+  float reach;          // steps within the radius and the image
+  vec2 across, toward;  // coordinates in the slice: scale * dot(across, offset), ray_length * (receiver's z - z) + scale * dot(toward, offset)
+  float plane_cot;      // cotangent of the tangent plane
+  float gamma, cos_gamma, sin_gamma;
+};
+
+/// Two unit vectors that with v (v.z > 0) form a right-handed basis, smooth over the image (Duff et al., "Building an Orthonormal Basis, Revisited", 2017).
+void basis_of(vec3 v, out vec3 x, out vec3 y) {
+  const float a = 1.0 / (1.0 + v.z), b = -v.x * v.y * a;
+  x = vec3(1.0 - v.x * v.x * a, b, -v.x);
+  y = vec3(b, 1.0 - v.y * v.y * a, -v.y);
+}
+
+Receiver receiver_at(View view, ivec2 pixel, float z, vec3 normal, float radius) {
+  Receiver r;
+  r.pixel = pixel;
+  r.z = z;
+  r.normal = normal;
+  r.perspective = view.orthographic == 0;
+  r.tangent = tangent_of(view, vec2(pixel) + 0.5);
+  r.ray_length = r.perspective ? sqrt(1.0 + dot(r.tangent, r.tangent)) : 1.0;
+  r.eye = r.perspective ? vec3(-r.tangent, 1.0) / r.ray_length : vec3(0, 0, 1);
+  r.eye_distance = z * r.ray_length;
+  r.tangent_per_pixel = view.tangent_per_pixel;
+  r.height = normal.xy * view.tangent_per_pixel;
+  r.depth_height = (r.perspective ? dot(normal.xy, r.tangent) : 0.0) - normal.z;
+  r.sin_reach = r.perspective ? radius / r.eye_distance : 0.0;
+  return r;
+}
+
+Slice slice_at(View view, Receiver r, float azimuth) {
+  vec3 x, y;
+  basis_of(r.eye, x, y);
+  Slice s;
+  s.t = cos(azimuth) * x + sin(azimuth) * y;
+  const float n_t = dot(r.normal, s.t), n_v = dot(r.normal, r.eye);
+  s.weight = sqrt(n_t * n_t + n_v * n_v);
+  s.cos_gamma = n_v / s.weight;
+  s.sin_gamma = n_t / s.weight;
+  s.gamma = angle_of(s.cos_gamma, s.sin_gamma);
+  const vec3 b = cross(s.t, r.eye);
+  const vec2 beside = dot(r.normal, b) / (s.weight * s.weight) * b.xy * view.tangent_per_pixel;
+  s.across = s.t.xy * view.tangent_per_pixel + n_t * beside;
+  s.toward = r.eye.xy * view.tangent_per_pixel + n_v * beside;
+  s.image_t = (r.perspective ? s.t.xy + r.tangent * s.t.z : s.t.xy) / view.tangent_per_pixel;
+  return s;
+}
+
+/// Steps of `direction` that stay on the image, from `pixel`.
+float steps_to_border(View view, ivec2 pixel, vec2 direction) {
+  const vec2 room = mix(vec2(pixel), vec2(view.size - 1 - pixel), greaterThan(direction, vec2(0)));
+  const vec2 steps = room / max(abs(direction), 1e-6);
+  return min(steps.x, steps.y);
+}
+
+/// The side of a slice towards sign * T.
+Side side_of(View view, Receiver r, Slice s, float sign, float radius) {
+  const float pixels = max(abs(s.image_t.x), abs(s.image_t.y));
+  Side side;
+  side.gamma = sign * s.gamma;
+  side.cos_gamma = s.cos_gamma;
+  side.sin_gamma = sign * s.sin_gamma;
+  side.direction_px = sign / pixels * s.image_t;
+  side.across = sign * s.across;
+  side.toward = s.toward;
+  side.plane_cot = -side.sin_gamma / s.cos_gamma;
+  const float cos_reach = sqrt(max(0.0, 1.0 - r.sin_reach * r.sin_reach)), forward = r.eye.z * cos_reach - sign * s.t.z * r.sin_reach;
+  const float reach = r.perspective ? r.sin_reach * pixels / forward : radius * pixels;
+  const float border = steps_to_border(view, r.pixel, side.direction_px);
+  side.reach = r.sin_reach < 1.0 && forward > 0.0 ? min(reach, border) : border;
+  return side;
+}
+
+/// The offset in space from the receiver to a sample of depth z, `offset` pixels away. scale: z, or 1 orthographic.
+vec3 offset_to(Receiver r, vec2 offset, float z, float scale) {
+  return vec3((r.perspective ? z - r.z : 0.0) * r.tangent + scale * r.tangent_per_pixel * offset, r.z - z);
+}
+
+/// Where it is in the slice.
+vec2 place_of(Receiver r, Side side, vec2 offset, float z, float scale) {
+  return vec2(scale * dot(side.across, offset), r.ray_length * (r.z - z) + scale * dot(side.toward, offset));
+}
+
+/// Whether it stands clear of the tangent plane, and before the eye's ray. distance_sq: from the receiver.
+bool is_above(Receiver r, vec2 place, float distance_sq, vec2 offset, float z, float scale) {
+  const float height = scale * dot(r.height, offset) + (z - r.z) * r.depth_height;
+  const bool clear = height > 0.0 ? height * height > kLeastElevation * kLeastElevation * distance_sq : false;
+  return place.x > 0.0 ? clear : false;
+}
+
+Reach reach_of(View view, float radius, float falloff_start, float thickness) {
+  return Reach(radius, radius * radius, falloff_start, thickness, view.tangent_per_pixel.x, view.size.x);
+}
+
+/// Steps from the receiver to sample k of `steps`, of which `count` are pixels apart; never two samples in one pixel: short reaches are searched pixel by pixel.
+float step_offset(int k, int steps, int count, float reach, float jitter) {
+  const float x = (float(k) + jitter) / float(steps);
+  const float exponent = steps > kManySteps ? clamp(log2(max(reach, 1.0)) / log2(float(steps)), 1.0, 2.0) : 2.0;
+  return count < steps ? float(k + 1) : max(float(k + 1), (steps > kManySteps ? pow(x, exponent) : x * x) * reach);
+}
+
+/// Whether two samples `gap` steps apart are taken for one surface.
+bool same_surface(Receiver r, Reach reach, float z, float last_z, float gap) {
+  return abs(z - last_z) < kRunSlope * reach.pixel_size * gap * (r.perspective ? min(z, last_z) : 1.0);
+}
+
+/// How much a hit at this distance blocks.
+float falloff_weight(uint falloff, float distance_to_hit, float start, float radius) {
+  const float x = clamp((distance_to_hit - start) / (radius - start), 0.0, 1.0);
+  if (falloff == kFalloffLinear) return 1.0 - x;
+  if (falloff == kFalloffQuadratic) return 1.0 - x * x;
+  if (falloff == kFalloffSmooth) return 1.0 - x * x * (3.0 - 2.0 * x);
+  return 1.0;
+}
+
+/// The blocked part of a side's arc integral between its view ray and the angle of this cotangent.
+float arc_to(Side side, float cot) {
+  return 0.5 * ((side.cos_gamma - cot * side.sin_gamma) / (1.0 + cot * cot) + angle_of(cot, 1.0) * side.sin_gamma);
+}
+
+/// Cotangent of the back of an occluder whose front is at `front`, (across V, towards the eye) from the receiver: `thickness` further along the eye's own ray,
+/// but not beyond the sphere of the radius.
+float back_cot(Receiver r, vec2 front, float thickness, float radius) {
+  const vec2 ray = front - vec2(0, r.eye_distance), away = r.perspective ? ray * inversesqrt(dot(ray, ray)) : vec2(0, -1);
+  const float along = dot(front, away);
+  const float exit = sqrt(max(0.0, along * along - dot(front, front) + radius * radius)) - along;
+  const vec2 back = front + min(thickness, exit) * away;
+  return back.y / back.x;
+}
