@@ -136,6 +136,19 @@ void read_thickness(const std::string& text, EstimatorSettings& settings) {
   settings.thickness_length = length;
 }
 
+void read_kernel(const std::string& text, EstimatorSettings& settings) {
+  settings.denoise_kernel.clear();
+  for (const auto& word : CLI::detail::split(text, ',')) {
+    double weight = 0;
+    if (!CLI::detail::lexical_cast(word, weight) || !(weight >= 0) || std::isinf(weight))
+      throw CLI::ValidationError("--denoise-kernel", fmt::format("{} is no weight of 0 or more", word));
+    settings.denoise_kernel.push_back(weight);
+  }
+  const std::size_t count = settings.denoise_kernel.size();
+  if (count < 2 || count > 9) throw CLI::ValidationError("--denoise-kernel", fmt::format("{} has {} weights, not 2 to 9", text, count));
+  if (settings.denoise_kernel.front() == 0) throw CLI::ValidationError("--denoise-kernel", fmt::format("{} has no weight at the centre", text));
+}
+
 void add_input_rows(Table& table, InputSettings& s) {
   table.group("Input");
   table.text("--depth", s.depth, "FILE", "an EXR of the depth alone; else it is in INPUT");
@@ -176,8 +189,15 @@ void add_estimator_rows(Table& table, RunOptions& options) {
                "of crytek, by the depth dz between receiver and hit; none: every hit counts fully; ratio: smoothstep(0, 1, radius / dz); smoothstep: 1 - smoothstep(0, radius, dz)");
   table.row("--thickness", "auto|infinite|NUMBER", "scene units", "", "how far an occluder goes on behind what is seen of it; auto: as deep as it is wide", "infinite",
             [&s](CLI::App& app) { return app.add_option_function<std::string>("--thickness", [&s](const std::string& text) { read_thickness(text, s); }); });
-  table.choice("--resolution", s.resolution, "of the estimate");
-  table.choice("--denoise", s.denoise, "smooths the noise of the estimate");
+  table.choice("--resolution", s.resolution, "of the estimate; a half or a quarter takes the nearest surface of every 2 x 2 or 4 x 4 pixels");
+  table.choice("--denoise", s.denoise, "smooths each surface: bilateral: by a Gaussian or --denoise-kernel; box: by an even 4 x 4");
+  table.number("--denoise-radius", s.denoise_radius, "pixels of the estimate", between(1, 8), "how far the bilateral denoiser reaches to each side");
+  table.row("--denoise-kernel", "W0,W1,...", "", "2 to 9 weights", "of the bilateral denoiser, from the centre outwards, of any sum; they set its radius", "",
+            [&s](CLI::App& app) {
+              return app.add_option_function<std::string>("--denoise-kernel", [&s](const std::string& text) { read_kernel(text, s); });
+            });
+  table.number("--denoise-depth-sigma", s.denoise_depth_sigma, "of the depth", between(0, 100),
+               "pixels that far apart weigh 1/e: exp(-|dz| / (SIGMA z)), z the nearer; 0: weighs by the distance from each other's plane");
   table.number("--intensity", s.intensity, "", between(0, 100), "factor on the occlusion");
   table.number("--power", s.power, "", above_to(0, 100), "exponent of the visibility");
   table.number("--seed", s.seed, "", between(0, 4294967295.0), "shifts the sample noise");

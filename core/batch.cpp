@@ -185,7 +185,8 @@ FrameReport run_frame(gpu::Device& device, gpu::Recorder& gpu, const Settings& s
   report.passes = gpu.passes();
   for (const auto& pass : report.passes) report.compute_ms += pass.ms;
   note_counts(report, outputs.counts->as<FrameCounts>()[0], source);
-  report.samples_per_pixel = samples_of(settings.estimator) * double(report.pixels - report.sky_pixels) / double(report.pixels);
+  const double surface = double(report.pixels - report.sky_pixels) / double(report.pixels), factor = double(settings.estimator.resolution);
+  report.samples_per_pixel = samples_of(settings.estimator) * surface / (factor * factor);
 
   const Stopwatch writing;
   write_ao(source, outputs.ao->as<float>(), settings.output, digest, device.info().name);
@@ -230,6 +231,7 @@ std::string options_digest(const Settings& settings) {
   add(int(e.estimator), e.radius.value_or(0), int(e.falloff), e.falloff_start, e.slices, e.steps, e.intensity, e.power, e.seed);
   add(e.samples, e.bias, int(e.elevation), int(e.sample_kernel), int(e.range_check));
   add(int(e.thickness), e.thickness_length, int(e.resolution), int(e.denoise));
+  add(e.denoise_radius, fmt::format("{}", fmt::join(e.denoise_kernel, ",")), e.denoise_depth_sigma);
   // The camera by what it says; where files lie is not part of it, so that a job has the same digest wherever its folder is mounted.
   add(i.camera.empty() ? std::string() : read_text(i.camera, "camera", "--camera"));
   add(i.depth_channel, i.normal_channels, i.beauty_channels, i.layer);

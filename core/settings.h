@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace alcove {
 
@@ -54,6 +55,9 @@ struct EstimatorSettings {
   double thickness_length = 0;       // scene units, > 0; with ThicknessKind::constant
   Resolution resolution = Resolution::full;
   Denoise denoise = Denoise::none;
+  int denoise_radius = 3;            // pixels of the estimate to each side, 1 to 8; with Denoise::bilateral
+  std::vector<double> denoise_kernel;  // instead: 2 to 9 weights from the centre outwards, none negative, the centre's above 0; empty: a Gaussian
+  double denoise_depth_sigma = 0;    // of the depth, 0 to 100: a step by this part weighs 1/e; 0: weighs by plane distance instead
   double intensity = 1;              // factor on the occlusion, 0 to 100
   double power = 1;                  // exponent of the visibility, above 0 to 100
   std::uint32_t seed = 0;            // shifts the noise pattern
