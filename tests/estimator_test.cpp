@@ -309,9 +309,10 @@ TEST(CommandLine, tells_how_many_samples_each_estimator_takes) {
 }
 
 TEST(CommandLine, refuses_a_sine_of_one_and_more_as_a_bias) {
+  const test::TemporaryFolder folder;
   const std::string frame = ALCOVE_SOURCE_DIR "/examples/bench/machine.";
   const test::Finished finished = test::run_program({"run", frame + "gbuffer.exr", "--camera", frame + "camera.json", "--radius", "1", "--estimator", "hbao",
-                                                     "--bias", "1", "-o", "/tmp/never.exr"});
+                                                     "--bias", "1", "-o", folder / "ao.exr"});
   EXPECT_EQ(finished.code, 2) << finished;
   EXPECT_NE(finished.err.find("--bias"), std::string::npos) << finished;
 }
