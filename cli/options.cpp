@@ -44,6 +44,21 @@ const std::map<std::string, Estimator>& names_of() {
   return names;
 }
 template <>
+const std::map<std::string, Elevation>& names_of() {
+  static const std::map<std::string, Elevation> names = {{"view", Elevation::view}, {"surface", Elevation::surface}};
+  return names;
+}
+template <>
+const std::map<std::string, SampleKernel>& names_of() {
+  static const std::map<std::string, SampleKernel> names = {{"clustered", SampleKernel::clustered}, {"uniform", SampleKernel::uniform}};
+  return names;
+}
+template <>
+const std::map<std::string, RangeCheck>& names_of() {
+  static const std::map<std::string, RangeCheck> names = {{"none", RangeCheck::none}, {"ratio", RangeCheck::ratio}, {"smoothstep", RangeCheck::smoothstep}};
+  return names;
+}
+template <>
 const std::map<std::string, Resolution>& names_of() {
   static const std::map<std::string, Resolution> names = {{"full", Resolution::full}, {"half", Resolution::half}, {"quarter", Resolution::quarter}};
   return names;
@@ -160,12 +175,18 @@ void add_estimator_rows(Table& table, RunOptions& options) {
   table.row("--preset", "NAME|FILE", "", "", "settings from a preset; may repeat, later wins, options win over presets", "", [&options](CLI::App& app) {
     return app.set_config("--preset")->expected(1)->take_all()->transform([](const std::string& name) { return preset_file(name); })->description("");
   });
-  table.choice("--estimator", s.estimator, "gtao: horizons; bitmask: what is blocked between front and back of every occluder");
+  table.choice("--estimator", s.estimator, "gtao: horizons; bitmask: what is blocked between front and back of every occluder; hbao: horizons, not cosine weighted; crytek: samples in the hemisphere");
   table.number("--radius", s.radius, "scene units", above_to(0, 1e18), "how far occluders reach; must be given, here or in a preset");
   table.choice("--falloff", s.falloff, "how a hit's weight fades towards the radius; none: all within it block fully");
   table.number("--falloff-start", s.falloff_start, "of the radius", below_and_at_least(0, 1), "where the falloff begins");
   table.number("--slices", s.slices, "a pixel", between(1, 64), "directions that are searched");
   table.number("--steps", s.steps, "a side", between(1, 4096), "samples to each side of a slice");
+  table.number("--samples", s.samples, "a pixel", between(4, 64), "of crytek, in the hemisphere");
+  table.number("--bias", s.bias, "", between(0, 1e18), "keeps a surface from blocking itself; crytek: scene units of depth; others: sine of the elevation above the surface, below 1");
+  table.choice("--elevation", s.elevation, "of hbao; view: the horizon's less the surface's, above the plane across the view ray; surface: the horizon's above the surface");
+  table.choice("--sample-kernel", s.sample_kernel, "of crytek; clustered: more samples near the receiver; uniform: even in volume");
+  table.choice("--range-check", s.range_check,
+               "of crytek, by the depth dz between receiver and hit; none: every hit counts fully; ratio: smoothstep(0, 1, radius / dz); smoothstep: 1 - smoothstep(0, radius, dz)");
   table.row("--thickness", "auto|infinite|NUMBER", "scene units", "", "how far an occluder goes on behind what is seen of it; auto: as deep as it is wide", "infinite",
             [&s](CLI::App& app) { return app.add_option_function<std::string>("--thickness", [&s](const std::string& text) { read_thickness(text, s); }); });
   table.choice("--resolution", s.resolution, "of the estimate; a half or a quarter takes the nearest surface of every 2 x 2 or 4 x 4 pixels");

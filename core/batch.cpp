@@ -161,6 +161,11 @@ void note_counts(FrameReport& report, const FrameCounts& counts, const FrameSour
   if (source.normal.empty()) report.notes.push_back("there is no normal channel; normals were reconstructed from depth (--normal, --normal-channels)");
 }
 
+/// What the settings ask for at a pixel.
+double samples_of(const EstimatorSettings& settings) {
+  return settings.estimator == Estimator::crytek ? settings.samples : 2.0 * settings.slices * settings.steps;
+}
+
 /// `transform`: for the preview of a composite, else null.
 FrameReport run_frame(gpu::Device& device, gpu::Recorder& gpu, const Settings& settings, const DisplayTransform* transform, const std::string& digest) {
   const Stopwatch total;
@@ -181,7 +186,7 @@ FrameReport run_frame(gpu::Device& device, gpu::Recorder& gpu, const Settings& s
   for (const auto& pass : report.passes) report.compute_ms += pass.ms;
   note_counts(report, outputs.counts->as<FrameCounts>()[0], source);
   const double surface = double(report.pixels - report.sky_pixels) / double(report.pixels), factor = double(settings.estimator.resolution);
-  report.samples_per_pixel = 2.0 * settings.estimator.slices * settings.estimator.steps * surface / (factor * factor);
+  report.samples_per_pixel = samples_of(settings.estimator) * surface / (factor * factor);
 
   const Stopwatch writing;
   write_ao(source, outputs.ao->as<float>(), settings.output, digest, device.info().name);
@@ -202,6 +207,8 @@ void check_settings(const Settings& settings) {
   if (settings.output.output.empty()) fail(ErrorKind::usage, "no output: name the AO file with -o FILE.exr");
   if (settings.input.input.empty() && settings.input.depth.empty()) fail(ErrorKind::usage, "no input: name an EXR file, or one with --depth");
   if (!settings.estimator.radius) fail(ErrorKind::usage, "no radius: say with --radius how far occluders reach, in scene units");
+  if (settings.estimator.estimator != Estimator::crytek && settings.estimator.bias >= 1)
+    fail(ErrorKind::usage, "--bias {}: of every estimator but crytek it is the sine of an elevation, below 1", settings.estimator.bias);
   if (settings.input.focal.has_value() != settings.input.aperture.has_value())
     fail(ErrorKind::usage, "--focal and --aperture belong together: focal length and width of the film back in mm");
   if (!settings.input.beauty.empty() && settings.output.composite.empty()) fail(ErrorKind::usage, "--beauty is for a composite: name its file with --composite");
@@ -222,6 +229,7 @@ std::string options_digest(const Settings& settings) {
   std::string text = kVersion;
   const auto add = [&](const auto&... values) { ((text += fmt::format("\n{}", values)), ...); };
   add(int(e.estimator), e.radius.value_or(0), int(e.falloff), e.falloff_start, e.slices, e.steps, e.intensity, e.power, e.seed);
+  add(e.samples, e.bias, int(e.elevation), int(e.sample_kernel), int(e.range_check));
   add(int(e.thickness), e.thickness_length, int(e.resolution), int(e.denoise));
   add(e.denoise_radius, fmt::format("{}", fmt::join(e.denoise_kernel, ",")), e.denoise_depth_sigma);
   // The camera by what it says; where files lie is not part of it, so that a job has the same digest wherever its folder is mounted.

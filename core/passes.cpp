@@ -11,8 +11,10 @@
 #include "core/error.h"
 #include "kernels/bitmask.h"
 #include "kernels/composite.h"
+#include "kernels/crytek.h"
 #include "kernels/denoise.h"
 #include "kernels/downsample.h"
+#include "kernels/hbao.h"
 #include "kernels/horizon.h"
 #include "kernels/prepare.h"
 #include "kernels/shape.h"
@@ -35,6 +37,10 @@ float thickness_of(const EstimatorSettings& settings) {
 
 gpu::Extent extent_of(const View& view) { return {uint(view.size.x), uint(view.size.y)}; }
 vec3 to_vec3(const std::array<double, 3>& v) { return {float(v[0]), float(v[1]), float(v[2])}; }
+
+uint range_check_of(RangeCheck check) {
+  return check == RangeCheck::ratio ? kRangeRatio : check == RangeCheck::smoothstep ? kRangeSmoothstep : kRangeNone;
+}
 
 uint depth_kind_of(DepthKind kind) {
   return kind == DepthKind::ray ? kDepthRay : kind == DepthKind::inverse ? kDepthInverse : kDepthPlanar;
@@ -140,8 +146,10 @@ gpu::Buffer& estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInp
   switch (settings.estimator) {
     case Estimator::gtao: return horizon(gpu, gbuffer, frame, settings);
     case Estimator::bitmask: return bitmask(gpu, gbuffer, frame, settings);
-    default: fail(ErrorKind::usage, "estimator not built yet");
+    case Estimator::hbao: return hbao(gpu, gbuffer, frame, settings);
+    case Estimator::crytek: break;
   }
+  return crytek(gpu, gbuffer, frame, settings);
 }
 
 gpu::Buffer& horizon(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings) {
@@ -155,6 +163,37 @@ gpu::Buffer& bitmask(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInpu
   gpu::Buffer& ao = gpu.buffer("ao", plane_bytes(gbuffer.view), gpu::Use::download);
   gpu.dispatch("bitmask", slice_parameters<BitmaskParams>(gbuffer, frame, settings),
                {{kBitmaskDepth, *gbuffer.depth}, {kBitmaskNormal, *gbuffer.normal}, {kBitmaskAo, ao}}, extent_of(gbuffer.view), slice_constants(settings));
+  return ao;
+}
+
+gpu::Buffer& hbao(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings) {
+  gpu::Buffer& ao = gpu.buffer("ao", plane_bytes(gbuffer.view), gpu::Use::download);
+  const double radius = settings.radius.value();
+  HbaoParams params{};
+  params.view = gbuffer.view;
+  params.radius = float(radius);
+  params.falloff_start = float(radius * settings.falloff_start);
+  params.bias = float(settings.bias);
+  params.from_surface = settings.elevation == Elevation::surface ? 1 : 0;
+  params.noise_origin = frame.noise_origin;
+  params.noise_shift = noise_shift(frame.frame, settings.seed);
+  gpu.dispatch("hbao", params, {{kHbaoDepth, *gbuffer.depth}, {kHbaoNormal, *gbuffer.normal}, {kHbaoAo, ao}}, extent_of(gbuffer.view),
+               {uint(settings.slices), uint(settings.steps), uint(settings.falloff)});
+  return ao;
+}
+
+gpu::Buffer& crytek(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings) {
+  gpu::Buffer& ao = gpu.buffer("ao", plane_bytes(gbuffer.view), gpu::Use::download);
+  CrytekParams params{};
+  params.view = gbuffer.view;
+  params.radius = float(settings.radius.value());
+  params.bias = float(settings.bias);
+  params.uniform_volume = settings.sample_kernel == SampleKernel::uniform ? 1 : 0;
+  params.range_check = range_check_of(settings.range_check);
+  params.noise_origin = frame.noise_origin;
+  params.noise_shift = noise_shift(frame.frame, settings.seed);
+  gpu.dispatch("crytek", params, {{kCrytekDepth, *gbuffer.depth}, {kCrytekNormal, *gbuffer.normal}, {kCrytekAo, ao}}, extent_of(gbuffer.view),
+               {uint(settings.samples)});
   return ao;
 }
 

@@ -13,6 +13,9 @@ enum class DepthKind { automatic, planar, ray, inverse };
 enum class NormalSpace { automatic, world, view };
 enum class Falloff : std::uint32_t { none, linear, quadratic, smooth };
 enum class Estimator { gtao, bitmask, hbao, crytek };
+enum class Elevation { view, surface };              // what HBAO measures a horizon from: the plane across the view ray, or the surface
+enum class SampleKernel { clustered, uniform };      // how Crytek's samples fill the hemisphere: more near the receiver, or even in volume
+enum class RangeCheck { none, ratio, smoothstep };   // how Crytek's hits fade with the difference of depth between receiver and hit
 enum class ThicknessKind { automatic, infinite, constant };
 enum class Resolution { full = 1, half = 2, quarter = 4 };  // pixels of the frame a pixel of the estimate, in x and in y
 enum class Denoise { none, bilateral, box };
@@ -43,6 +46,11 @@ struct EstimatorSettings {
   double falloff_start = 0;          // fraction of the radius where the falloff begins, 0 to 1 exclusive
   int slices = 3;                    // directions a pixel, 1 to 64; fewer than 3 bias a single pixel
   int steps = 6;                     // samples to each side of a slice, 1 to 4096
+  int samples = 16;                  // of estimator crytek, in the hemisphere, 4 to 64
+  double bias = 0;                   // least height that blocks, >= 0; crytek: scene units of depth; others: sine of the elevation above the tangent plane, < 1
+  Elevation elevation = Elevation::view;                      // of estimator hbao
+  SampleKernel sample_kernel = SampleKernel::clustered;       // of estimator crytek
+  RangeCheck range_check = RangeCheck::ratio;                 // of estimator crytek; ratio: full within the radius, so that no hit in reach is lost
   ThicknessKind thickness = ThicknessKind::infinite;  // how far an occluder goes on behind what is seen of it; automatic: as deep as it is wide
   double thickness_length = 0;       // scene units, > 0; with ThicknessKind::constant
   Resolution resolution = Resolution::full;

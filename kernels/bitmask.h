@@ -11,7 +11,7 @@ ALCOVE_CONSTANT uint kBitmaskAo = 2;      // out: float a pixel, visibility in [
 
 ALCOVE_CONSTANT uint kBitmaskSlicesId = 0;   // specialization: slices a pixel
 ALCOVE_CONSTANT uint kBitmaskStepsId = 1;    // specialization: steps to each side of a slice
-ALCOVE_CONSTANT uint kBitmaskFalloffId = 2;  // specialization: one of kFalloff* of slice.glsl
+ALCOVE_CONSTANT uint kBitmaskFalloffId = 2;  // specialization: one of kFalloff* of falloff.glsl
 
 struct BitmaskParams {
   View view;

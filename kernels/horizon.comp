@@ -18,6 +18,7 @@
 #include "normal.glsl"
 #include "arcs.glsl"
 #include "noise.glsl"
+#include "falloff.glsl"
 #include "slice.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;

@@ -11,7 +11,7 @@ ALCOVE_CONSTANT uint kHorizonAo = 2;      // out: float a pixel, visibility in [
 
 ALCOVE_CONSTANT uint kHorizonSlicesId = 0;   // specialization: slices a pixel
 ALCOVE_CONSTANT uint kHorizonStepsId = 1;    // specialization: steps to each side of a slice
-ALCOVE_CONSTANT uint kHorizonFalloffId = 2;  // specialization: one of kFalloff* of slice.glsl
+ALCOVE_CONSTANT uint kHorizonFalloffId = 2;  // specialization: one of kFalloff* of falloff.glsl
 
 struct HorizonParams {
   View view;
