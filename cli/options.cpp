@@ -179,6 +179,7 @@ void add_estimator_rows(Table& table, RunOptions& options) {
   table.number("--radius", s.radius, "scene units", above_to(0, 1e18), "how far occluders reach; must be given, here or in a preset");
   table.choice("--falloff", s.falloff, "how a hit's weight fades towards the radius; none: all within it block fully");
   table.number("--falloff-start", s.falloff_start, "of the radius", below_and_at_least(0, 1), "where the falloff begins");
+  table.number("--falloff-end", s.falloff_end, "of the radius", above_to(0, 1), "where the falloff ends: nothing beyond blocks");
   table.number("--slices", s.slices, "a pixel", between(1, 64), "directions that are searched");
   table.number("--steps", s.steps, "a side", between(1, 4096), "samples to each side of a slice");
   table.number("--samples", s.samples, "a pixel", between(4, 64), "of crytek, in the hemisphere");

@@ -209,6 +209,8 @@ void check_settings(const Settings& settings) {
   if (!settings.estimator.radius) fail(ErrorKind::usage, "no radius: say with --radius how far occluders reach, in scene units");
   if (settings.estimator.estimator != Estimator::crytek && settings.estimator.bias >= 1)
     fail(ErrorKind::usage, "--bias {}: of every estimator but crytek it is the sine of an elevation, below 1", settings.estimator.bias);
+  if (settings.estimator.falloff_end <= settings.estimator.falloff_start)
+    fail(ErrorKind::usage, "--falloff-end {} is not above --falloff-start {}", settings.estimator.falloff_end, settings.estimator.falloff_start);
   if (settings.input.focal.has_value() != settings.input.aperture.has_value())
     fail(ErrorKind::usage, "--focal and --aperture belong together: focal length and width of the film back in mm");
   if (!settings.input.beauty.empty() && settings.output.composite.empty()) fail(ErrorKind::usage, "--beauty is for a composite: name its file with --composite");
@@ -228,7 +230,7 @@ std::string options_digest(const Settings& settings) {
   // Every value on a line of its own, so that no two sets of values make one text.
   std::string text = kVersion;
   const auto add = [&](const auto&... values) { ((text += fmt::format("\n{}", values)), ...); };
-  add(int(e.estimator), e.radius.value_or(0), int(e.falloff), e.falloff_start, e.slices, e.steps, e.intensity, e.power, e.seed);
+  add(int(e.estimator), e.radius.value_or(0), int(e.falloff), e.falloff_start, e.falloff_end, e.slices, e.steps, e.intensity, e.power, e.seed);
   add(e.samples, e.bias, int(e.elevation), int(e.sample_kernel), int(e.range_check));
   add(int(e.thickness), e.thickness_length, int(e.resolution), int(e.denoise));
   add(e.denoise_radius, fmt::format("{}", fmt::join(e.denoise_kernel, ",")), e.denoise_depth_sigma);

@@ -59,11 +59,12 @@ Params slice_parameters(const GBuffer& gbuffer, const FrameInputs& frame, const 
   const double radius = settings.radius.value();
   Params params{};
   params.view = gbuffer.view;
-  params.radius = float(radius);
+  params.radius = float(radius * settings.falloff_end);
   params.falloff_start = float(radius * settings.falloff_start);
   params.noise_origin = frame.noise_origin;
   params.noise_shift = noise_shift(frame.frame, settings.seed);
   params.thickness = thickness_of(settings);
+  params.bias = float(settings.bias);
   return params;
 }
 std::vector<uint> slice_constants(const EstimatorSettings& settings) { return {uint(settings.slices), uint(settings.steps), uint(settings.falloff)}; }
@@ -171,7 +172,7 @@ gpu::Buffer& hbao(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs&
   const double radius = settings.radius.value();
   HbaoParams params{};
   params.view = gbuffer.view;
-  params.radius = float(radius);
+  params.radius = float(radius * settings.falloff_end);
   params.falloff_start = float(radius * settings.falloff_start);
   params.bias = float(settings.bias);
   params.from_surface = settings.elevation == Elevation::surface ? 1 : 0;

@@ -32,7 +32,8 @@ double smooth(double x) {
 
 double attenuation(const EstimatorSettings& settings, double distance) {
   if (settings.falloff == Falloff::none) return 1;
-  const double start = settings.falloff_start * *settings.radius, x = std::clamp((distance - start) / (*settings.radius - start), 0.0, 1.0);
+  const double start = settings.falloff_start * *settings.radius, end = settings.falloff_end * *settings.radius;
+  const double x = std::clamp((distance - start) / (end - start), 0.0, 1.0);
   return settings.falloff == Falloff::linear ? 1 - x : settings.falloff == Falloff::quadratic ? 1 - x * x : 1 - smooth(x);
 }
 
@@ -122,10 +123,7 @@ double crytek_ao(const ReferenceScene& scene, const Receiver& receiver, const Es
 }
 
 std::vector<float> gtao(const HostFrame& frame, const EstimatorSettings& settings, const std::vector<std::size_t>& pixels) {
-  ReferenceSettings reference;
-  reference.radius = *settings.radius;
-  reference.falloff = settings.falloff;
-  reference.falloff_start = settings.falloff_start;
+  ReferenceSettings reference = reference_settings_of(settings);
   reference.slices = kDirections / 2;
   reference.pixels = pixels;
   return reference_ao(frame, reference);

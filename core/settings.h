@@ -44,6 +44,7 @@ struct EstimatorSettings {
   std::optional<double> radius;      // scene units, > 0; no default, since no number fits all scenes
   Falloff falloff = Falloff::none;   // none: what renderers' own AO passes mean by a distance
   double falloff_start = 0;          // fraction of the radius where the falloff begins, 0 to 1 exclusive
+  double falloff_end = 1;            // fraction of the radius where it ends, above the start to 1; nothing beyond blocks
   int slices = 3;                    // directions a pixel, 1 to 64; fewer than 3 bias a single pixel
   int steps = 6;                     // samples to each side of a slice, 1 to 4096
   int samples = 16;                  // of estimator crytek, in the hemisphere, 4 to 64
