@@ -16,8 +16,10 @@ int inspect_command(const std::vector<std::string>& arguments) {
   std::vector<std::string> rest = arguments;
   const bool json = std::erase(rest, "--json") > 0;
   if (std::ranges::any_of(rest, [](const auto& a) { return a == "--help" || a == "-h"; })) {
-    fmt::print("Usage: alcove inspect INPUT [--json] [input options]\n\nSays what the frame's files hold, which channels would be used and how they would be understood, with the evidence,\n"
-               "what is missing, and the command that would run it. Takes the input options of alcove run.\n");
+    fmt::print(
+        "Usage: alcove inspect INPUT [--json] [input options]\n\nSays what the frame's files hold, which channels would be used and how they would "
+        "be understood, with the evidence,\n"
+        "what is missing, and the command that would run it. Takes the input options of alcove run.\n");
     return 0;
   }
   RunOptions options;

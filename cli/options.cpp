@@ -64,6 +64,21 @@ const std::map<std::string, Estimator>& names_of() {
   return names;
 }
 template <>
+const std::map<std::string, Elevation>& names_of() {
+  static const std::map<std::string, Elevation> names = {{"view", Elevation::view}, {"surface", Elevation::surface}};
+  return names;
+}
+template <>
+const std::map<std::string, SampleKernel>& names_of() {
+  static const std::map<std::string, SampleKernel> names = {{"clustered", SampleKernel::clustered}, {"uniform", SampleKernel::uniform}};
+  return names;
+}
+template <>
+const std::map<std::string, RangeCheck>& names_of() {
+  static const std::map<std::string, RangeCheck> names = {{"none", RangeCheck::none}, {"ratio", RangeCheck::ratio}, {"smoothstep", RangeCheck::smoothstep}};
+  return names;
+}
+template <>
 const std::map<std::string, Resolution>& names_of() {
   static const std::map<std::string, Resolution> names = {{"full", Resolution::full}, {"half", Resolution::half}, {"quarter", Resolution::quarter}};
   return names;
@@ -148,6 +163,16 @@ void read_far(const std::string& text, std::optional<double>& far) {
   far = value;
 }
 
+void read_roi(const std::string& text, std::optional<Region>& roi) {
+  const auto words = CLI::detail::split(text, ',');
+  Region region;
+  int* const numbers[] = {&region.x, &region.y, &region.width, &region.height};
+  bool fine = words.size() == 4;
+  for (std::size_t i = 0; fine && i < 4; i++) fine = CLI::detail::lexical_cast(words[i], *numbers[i]);
+  if (!fine || region.width <= 0 || region.height <= 0) throw CLI::ValidationError("--roi", fmt::format("{} is not X,Y,WIDTH,HEIGHT in whole pixels", text));
+  roi = region;
+}
+
 /// --flip-normal: axes, each once at most.
 void read_flips(const std::string& text, NormalFlips& flips) {
   flips = {};
@@ -156,6 +181,19 @@ void read_flips(const std::string& text, NormalFlips& flips) {
     if (!flip || *flip) throw CLI::ValidationError("--flip-normal", fmt::format("{} is none of x, y, z, xy, xz, yz, xyz", text));
     *flip = true;
   }
+}
+
+void read_kernel(const std::string& text, EstimatorSettings& settings) {
+  settings.denoise_kernel.clear();
+  for (const auto& word : CLI::detail::split(text, ',')) {
+    double weight = 0;
+    if (!CLI::detail::lexical_cast(word, weight) || !(weight >= 0) || std::isinf(weight))
+      throw CLI::ValidationError("--denoise-kernel", fmt::format("{} is no weight of 0 or more", word));
+    settings.denoise_kernel.push_back(weight);
+  }
+  const std::size_t count = settings.denoise_kernel.size();
+  if (count < 2 || count > 9) throw CLI::ValidationError("--denoise-kernel", fmt::format("{} has {} weights, not 2 to 9", text, count));
+  if (settings.denoise_kernel.front() == 0) throw CLI::ValidationError("--denoise-kernel", fmt::format("{} has no weight at the centre", text));
 }
 
 void add_input_rows(Table& table, InputSettings& s) {
@@ -170,6 +208,8 @@ void add_input_rows(Table& table, InputSettings& s) {
   table.text("--beauty-channels", s.beauty_channels, "LAYER|R,G,B[,A]", "the beauty's layer, or its channels");
   table.text("--layer", s.layer, "NAME", "look only at this layer or part");
   table.text("--view", s.view, "NAME", "of a stereo file; else its default view");
+  table.row("--roi", "X,Y,WIDTH,HEIGHT", "px of the display window", "", "compute and write only this region; its surroundings are read as far as occluders reach", "",
+            [&s](CLI::App& app) { return app.add_option_function<std::string>("--roi", [&s](const std::string& text) { read_roi(text, s.roi); }); });
   table.choice("--depth-kind", s.depth_kind, "planar: along the optical axis; ray: to the eye; inverse: 1/planar; others: see Inputs in the README; auto: what the camera file says, else what fits the frame");
   table.number("--near", s.depth_range.near, "file units", above(0), "near plane of device or normalized depth; else the camera file's");
   table.row("--far", "NUMBER|inf", "file units", "above 0", "far plane of device, normalized or log depth; else the camera file's", "",
@@ -198,16 +238,30 @@ void add_estimator_rows(Table& table, RunOptions& options) {
   table.row("--preset", "NAME|FILE", "", "", "settings from a preset; may repeat, later wins, options win over presets", "", [&options](CLI::App& app) {
     return app.set_config("--preset")->expected(1)->take_all()->transform([](const std::string& name) { return preset_file(name); })->description("");
   });
-  table.choice("--estimator", s.estimator, "gtao: horizons; bitmask: what is blocked between front and back of every occluder");
+  table.choice("--estimator", s.estimator, "gtao: horizons; bitmask: what is blocked between front and back of every occluder; hbao: horizons, not cosine weighted; crytek: samples in the hemisphere");
   table.number("--radius", s.radius, "scene units", above_to(0, 1e18), "how far occluders reach; must be given, here or in a preset");
   table.choice("--falloff", s.falloff, "how a hit's weight fades towards the radius; none: all within it block fully");
   table.number("--falloff-start", s.falloff_start, "of the radius", below_and_at_least(0, 1), "where the falloff begins");
+  table.number("--falloff-end", s.falloff_end, "of the radius", above_to(0, 1), "where the falloff ends: nothing beyond blocks");
   table.number("--slices", s.slices, "a pixel", between(1, 64), "directions that are searched");
   table.number("--steps", s.steps, "a side", between(1, 4096), "samples to each side of a slice");
+  table.number("--samples", s.samples, "a pixel", between(4, 64), "of crytek, in the hemisphere");
+  table.number("--bias", s.bias, "", between(0, 1e18), "keeps a surface from blocking itself; crytek: scene units of depth; others: sine of the elevation above the surface, below 1");
+  table.choice("--elevation", s.elevation, "of hbao; view: the horizon's less the surface's, above the plane across the view ray; surface: the horizon's above the surface");
+  table.choice("--sample-kernel", s.sample_kernel, "of crytek; clustered: more samples near the receiver; uniform: even in volume");
+  table.choice("--range-check", s.range_check,
+               "of crytek, by the depth dz between receiver and hit; none: every hit counts fully; ratio: smoothstep(0, 1, radius / dz); smoothstep: 1 - smoothstep(0, radius, dz)");
   table.row("--thickness", "auto|infinite|NUMBER", "scene units", "", "how far an occluder goes on behind what is seen of it; auto: as deep as it is wide", "infinite",
             [&s](CLI::App& app) { return app.add_option_function<std::string>("--thickness", [&s](const std::string& text) { read_thickness(text, s); }); });
-  table.choice("--resolution", s.resolution, "of the estimate");
-  table.choice("--denoise", s.denoise, "smooths the noise of the estimate");
+  table.choice("--resolution", s.resolution, "of the estimate; a half or a quarter takes the nearest surface of every 2 x 2 or 4 x 4 pixels");
+  table.choice("--denoise", s.denoise, "smooths each surface: bilateral: by a Gaussian or --denoise-kernel; box: by an even 4 x 4");
+  table.number("--denoise-radius", s.denoise_radius, "pixels of the estimate", between(1, 8), "how far the bilateral denoiser reaches to each side");
+  table.row("--denoise-kernel", "W0,W1,...", "", "2 to 9 weights", "of the bilateral denoiser, from the centre outwards, of any sum; they set its radius", "",
+            [&s](CLI::App& app) {
+              return app.add_option_function<std::string>("--denoise-kernel", [&s](const std::string& text) { read_kernel(text, s); });
+            });
+  table.number("--denoise-depth-sigma", s.denoise_depth_sigma, "of the depth", between(0, 100),
+               "pixels that far apart weigh 1/e: exp(-|dz| / (SIGMA z)), z the nearer; 0: weighs by the distance from each other's plane");
   table.number("--intensity", s.intensity, "", between(0, 100), "factor on the occlusion");
   table.number("--power", s.power, "", above_to(0, 100), "exponent of the visibility");
   table.number("--seed", s.seed, "", between(0, 4294967295.0), "shifts the sample noise");

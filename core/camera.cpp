@@ -130,6 +130,17 @@ std::optional<double> clip_plane(const CameraFile& file, const char* field) {
   return file.positive(field);
 }
 
+/// By its word, or by the last row of the matrix that games have: 0 0 0 1 divides by nothing.
+bool is_orthographic(const CameraFile& file) {
+  const Json* value = file.find("projection");
+  if (value && value->is_array() && value->size() == 4 && (*value)[3].is_array() && (*value)[3].size() == 4 && (*value)[3][3].is_number())
+    return (*value)[3][3].get<double>() == 1;
+  const std::string projection = file.text("projection");
+  if (!projection.empty() && projection != "perspective" && projection != "orthographic")
+    file.refuse("projection", fmt::format("must be perspective or orthographic, not \"{}\"", projection));
+  return projection == "orthographic";
+}
+
 bool truth(const CameraFile& file, const char* field) {
   const Json* value = file.find(field);
   if (value && !value->is_boolean()) file.refuse(field, "must be true or false, not " + value->dump());
@@ -208,10 +219,7 @@ Camera read_camera(const std::string& path, int frame) {
   camera.fy = file.positive("fy");
   camera.cx = file.number("cx");
   camera.cy = file.number("cy");
-  const std::string projection = file.text("projection");
-  if (!projection.empty() && projection != "perspective" && projection != "orthographic")
-    file.refuse("projection", fmt::format("must be perspective or orthographic, not \"{}\"", projection));
-  camera.orthographic = projection == "orthographic";
+  camera.orthographic = is_orthographic(file);
   camera.left_handed = left_handed(file);
   read_view_from_world(file, camera);
   camera.near = clip_plane(file, "near");

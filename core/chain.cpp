@@ -11,7 +11,11 @@ FrameOutputs run_chain(gpu::Recorder& gpu, const FrameInputs& frame, const Estim
 
   const GBuffer gbuffer = prepare(gpu, frame);
   out.counts = gbuffer.counts;
-  out.ao = &estimate(gpu, gbuffer, frame, settings);
+  const bool reduced = settings.resolution != Resolution::full;
+  const GBuffer work = reduced ? downsample(gpu, gbuffer, frame, settings) : gbuffer;
+  out.ao = &estimate(gpu, work, frame, settings);
+  if (settings.denoise != Denoise::none) out.ao = &denoise(gpu, work, *out.ao, settings);
+  if (reduced) out.ao = &upsample(gpu, gbuffer, work, *out.ao, frame, settings);
   if (settings.intensity != 1 || settings.power != 1) out.ao = &shape(gpu, *out.ao, gbuffer.view, settings);
   if (frame.beauty) out.composite = &composite(gpu, gbuffer, *out.ao, frame);
 

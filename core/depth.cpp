@@ -20,7 +20,8 @@ double near_of(DepthKind kind, const DepthRange& range) {
 
 double far_of(DepthKind kind, const DepthRange& range, bool may_be_infinite) {
   if (!range.far)
-    fail(ErrorKind::usage, "{} depth needs the distance of the far plane: give --far{}", name_of(kind), may_be_infinite ? ", --far inf where there is none" : "");
+    fail(ErrorKind::usage, "{} depth needs the distance of the far plane: give --far{}", name_of(kind),
+         may_be_infinite ? ", --far inf where there is none" : "");
   if (std::isinf(*range.far) && !may_be_infinite) fail(ErrorKind::usage, "{} depth needs a finite --far", name_of(kind));
   return *range.far;
 }
@@ -69,7 +70,8 @@ void set_position(DepthMap& map, PositionSpace space, bool negative, const Camer
     map.axis = {0, 0, negative != camera.left_handed ? scale : -scale};
     return;
   }
-  if (!camera.view_from_world) fail(ErrorKind::usage, "world positions need a camera with world_to_camera: give a --camera file with it, or --position-space view");
+  if (!camera.view_from_world)
+    fail(ErrorKind::usage, "world positions need a camera with world_to_camera: give a --camera file with it, or --position-space view");
   for (std::size_t i = 0; i < 3; i++) map.axis[i] = -scale * (*camera.view_from_world)[2][i];
   map.base = -camera.view_from_world_offset[2];
 }
@@ -90,10 +92,18 @@ DepthMap depth_map(DepthKind kind, const DepthRange& range, PositionSpace space,
       if (kind != DepthKind::inverse) map.sky_above = sky;
       if (range.negative) map.sky_below = -map.sky_above, map.sky_above = 0;
       break;
-    case DepthKind::device: set_device(map, range, camera.orthographic, scale); break;
-    case DepthKind::normalized: set_normalized(map, range, scale); break;
-    case DepthKind::log: set_log(map, range, scale); break;
-    case DepthKind::position: set_position(map, space, range.negative, camera, scale); break;
+    case DepthKind::device:
+      set_device(map, range, camera.orthographic, scale);
+      break;
+    case DepthKind::normalized:
+      set_normalized(map, range, scale);
+      break;
+    case DepthKind::log:
+      set_log(map, range, scale);
+      break;
+    case DepthKind::position:
+      set_position(map, space, range.negative, camera, scale);
+      break;
   }
   return map;
 }
@@ -114,14 +124,22 @@ double planar_depth(const DepthMap& map, const std::array<double, 3>& raw, doubl
 
 const char* name_of(DepthKind kind) {
   switch (kind) {
-    case DepthKind::automatic: return "auto";
-    case DepthKind::planar: return "planar";
-    case DepthKind::ray: return "ray";
-    case DepthKind::inverse: return "inverse";
-    case DepthKind::device: return "device";
-    case DepthKind::normalized: return "normalized";
-    case DepthKind::log: return "log";
-    case DepthKind::position: return "position";
+    case DepthKind::automatic:
+      return "auto";
+    case DepthKind::planar:
+      return "planar";
+    case DepthKind::ray:
+      return "ray";
+    case DepthKind::inverse:
+      return "inverse";
+    case DepthKind::device:
+      return "device";
+    case DepthKind::normalized:
+      return "normalized";
+    case DepthKind::log:
+      return "log";
+    case DepthKind::position:
+      return "position";
   }
   return "";
 }

@@ -69,7 +69,7 @@ ValueStatistics statistics_of(std::span<const float> values, std::size_t step) {
     if (std::isnan(x)) s.nan++;
     else if (std::isinf(x)) s.infinite++;
     else {
-      s.negative += x < 0, s.zero += x == 0, s.one += x == 1, s.positive += x > 0;
+      s.negative += x<0, s.zero += x == 0, s.one += x == 1, s.positive += x> 0;
       s.least = std::min(s.least, double(x)), s.most = std::max(s.most, double(x));
     }
   }
@@ -129,7 +129,8 @@ std::vector<float> decoded_normals(std::span<const float> raw, std::size_t pixel
   return decoded;
 }
 
-std::optional<double> reprojection_error(std::span<const float> position, PositionSpace space, bool mirrored, const Camera& camera, const View& view) {
+std::optional<double> reprojection_error(std::span<const float> position, PositionSpace space, bool mirrored, const Camera& camera,
+                                         const View& view) {
   const std::size_t plane = position.size() / 3;
   const int stride = sparseness(view);
   std::vector<double> errors;
@@ -146,7 +147,8 @@ std::optional<double> reprojection_error(std::span<const float> position, Positi
       }
       const Vector t = tangent_at(view, x, y);
       const double scale = view.orthographic ? 1 : -p[2];
-      errors.push_back(!(-p[2] > 0) ? kInfinity : std::hypot((p[0] / scale - t[0]) / view.tangent_per_pixel.x, (p[1] / scale - t[1]) / view.tangent_per_pixel.y));
+      errors.push_back(!(-p[2] > 0) ? kInfinity
+                                    : std::hypot((p[0] / scale - t[0]) / view.tangent_per_pixel.x, (p[1] / scale - t[1]) / view.tangent_per_pixel.y));
     }
   return errors.empty() ? std::nullopt : std::optional(median(errors));
 }
@@ -154,7 +156,7 @@ std::optional<double> reprojection_error(std::span<const float> position, Positi
 std::vector<DepthScore> score_depth(std::span<const float> raw, const View& view, double sky) {
   // Over this many pixels the difference between distance to the eye and to its plane bends 1/z by (reach / focal)^2, far above rounding.
   const int reach = std::max(3, std::max(view.size.x, view.size.y) / 48), stride = sparseness(view);
-  constexpr double kSmooth = 0.02;   // bend of values that are one surface
+  constexpr double kSmooth = 0.02;  // bend of values that are one surface
   std::vector<DepthScore> scores{{DepthKind::planar}, {DepthKind::ray}, {DepthKind::inverse}};
   std::size_t count = 0;
   const auto look = [&](int x, int y, int dx, int dy) {
@@ -167,7 +169,8 @@ std::vector<DepthScore> score_depth(std::span<const float> raw, const View& view
     }
     if (!(bend(1 / value[0], 1 / value[1], 1 / value[2]) < kSmooth)) return;
     count++;
-    const std::array straight{is_straight(1 / value[0], 1 / value[1], 1 / value[2]), is_straight(length[0] / value[0], length[1] / value[1], length[2] / value[2]),
+    const std::array straight{is_straight(1 / value[0], 1 / value[1], 1 / value[2]),
+                              is_straight(length[0] / value[0], length[1] / value[1], length[2] / value[2]),
                               is_straight(value[0], value[1], value[2])};
     if (straight[0] + straight[1] + straight[2] != 1) return;  // curved, or too even to tell
     for (std::size_t k = 0; k < scores.size(); k++) scores[k].straight += straight[k];

@@ -300,6 +300,21 @@ std::vector<ChannelRef> find_depth(const Search& search, std::size_t file, const
   return search.require(file, kDepthNames, settings.depth_channel, !settings.depth.empty(), "Depth.Z");
 }
 
+/// Reads whole planes, since that is how files are stored, and keeps what lies in source.data.
+void read_part(FrameSource& source, const std::vector<PlaneRead>& reads) {
+  const Window part = source.data;
+  source.data = source.file_data;
+  std::vector<std::vector<float>> whole;
+  std::vector<PlaneRead> whole_reads;
+  for (const auto& read : reads) {
+    whole.emplace_back(read.channels->size() * source.data.pixels());
+    whole_reads.push_back({read.channels, whole.back().data()});
+  }
+  read_planes(source, whole_reads);
+  for (std::size_t i = 0; i < reads.size(); i++) std::ranges::copy(cropped(whole[i], source.file_data, part), reads[i].to);
+  source.data = part;
+}
+
 }  // namespace
 
 FrameSource find_frame(const InputSettings& settings, bool with_beauty, int frame) {
@@ -313,7 +328,7 @@ FrameSource find_frame(const InputSettings& settings, bool with_beauty, int fram
   const bool by_position = wants_position || settings.depth_kind == DepthKind::position;
   const std::size_t depth_file = by_position && !settings.position.empty() ? search.open(settings.position, "--position") : search.open(depth_path, "--depth");
   source.depth = find_depth(search, depth_file, settings, by_position);
-  source.data = part_of(source, source.depth[0]).data;
+  source.data = source.file_data = part_of(source, source.depth[0]).data;
   source.display = source.files[depth_file].display();
   source.pixel_aspect = source.files[depth_file].pixel_aspect();
 
@@ -348,6 +363,7 @@ FrameSource find_frame(const InputSettings& settings, bool with_beauty, int fram
 }
 
 void read_planes(FrameSource& source, const std::vector<PlaneRead>& reads) {
+  if (source.data != source.file_data) return read_part(source, reads);
   std::vector<std::vector<ExrRead>> by_file(source.files.size());
   for (const auto& read : reads)
     for (std::size_t i = 0; i < read.channels->size(); i++) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -29,7 +30,10 @@ struct Guess {
 /// Where everything is that a frame needs; nothing but headers has been read.
 struct FrameSource {
   std::vector<ExrFile> files;
-  Window data, display;  // of all channels below
+  Window data, display;  // of all channels below; data may be a part of what the files hold, then no more is read
+  Window file_data;      // what the files hold
+  std::optional<Window> region;  // what is to be written of it; none: all of data
+  bool settled = false;  // see core/settle.h
   double pixel_aspect = 1;
   std::vector<ChannelRef> depth;          // one, or x, y, z of positions
   std::vector<ChannelRef> normal;         // x, y, z, or two of them; none: to be reconstructed from depth
@@ -59,7 +63,7 @@ struct PlaneRead {
   float* to;
 };
 
-/// Reads all planes, every part of every file decoded once.
+/// Reads all planes within source.data, every part of every file decoded once.
 void read_planes(FrameSource& source, const std::vector<PlaneRead>& reads);
 
 }  // namespace alcove

@@ -45,7 +45,7 @@ HostFrame read_host_frame(const InputSettings& settings, int number) {
   return frame;
 }
 
-HostResult compute_ao(gpu::Recorder& gpu, const HostFrame& frame, const EstimatorSettings& settings) {
+FrameInputs upload(gpu::Recorder& gpu, const HostFrame& frame) {
   const std::size_t pixels = frame.data.pixels();
   if (frame.depth.size() != (frame.depth_kind == DepthKind::position ? 3 * pixels : pixels) ||
       (!frame.normal.empty() && frame.normal.size() != 3 * pixels && frame.normal.size() != 2 * pixels))
@@ -60,8 +60,11 @@ HostResult compute_ao(gpu::Recorder& gpu, const HostFrame& frame, const Estimato
   if (!frame.normal.empty()) inputs.view_from_normal = view_from_normal(frame.camera, frame.normal_space, frame.flip_normal);
   inputs.depth = upload(gpu, "raw depth", frame.depth);
   inputs.normal = upload(gpu, "raw normal", frame.normal);
+  return inputs;
+}
 
-  const FrameOutputs outputs = run_chain(gpu, inputs, settings);
+HostResult compute_ao(gpu::Recorder& gpu, const HostFrame& frame, const EstimatorSettings& settings) {
+  const FrameOutputs outputs = run_chain(gpu, upload(gpu, frame), settings);
   gpu.run();
   const auto ao = outputs.ao->as<float>();
   const auto& counts = outputs.counts->as<FrameCounts>()[0];

@@ -32,7 +32,11 @@ Json files_json(const FrameSource& source) {
       const ExrPart& part = file.parts()[p];
       Json channels = Json::array();
       for (const auto& channel : part.channels) channels.push_back({{"name", channel.name}, {"type", name_of(channel.type)}});
-      parts.push_back({{"name", part.name}, {"view", part.view}, {"data_window", to_string(part.data)}, {"channels", channels}, {"attributes", file.attribute_texts(int(p))}});
+      parts.push_back({{"name", part.name},
+                       {"view", part.view},
+                       {"data_window", to_string(part.data)},
+                       {"channels", channels},
+                       {"attributes", file.attribute_texts(int(p))}});
     }
     files.push_back({{"path", file.path()}, {"display_window", to_string(file.display())}, {"pixel_aspect", file.pixel_aspect()}, {"parts", parts}});
   }
@@ -43,22 +47,34 @@ void add_aov(Json& aovs, const char* name, const FrameSource& source, const std:
   if (channels.empty()) return;
   Json names = Json::array();
   for (const auto& channel : channels) names.push_back(channel.channel);
-  aovs[name] = {{"file", source.files[channels[0].file].path()}, {"part", channels[0].part}, {"channels", names}, {"why", chosen ? "named by an option" : "a usual name"}};
+  aovs[name] = {{"file", source.files[channels[0].file].path()},
+                {"part", channels[0].part},
+                {"channels", names},
+                {"why", chosen ? "named by an option" : "a usual name"}};
 }
 
 Json camera_json(const Camera& camera, const InputSettings& settings) {
   const char* from = !settings.camera.empty() ? "--camera" : settings.fov ? "--fov" : settings.focal ? "--focal and --aperture" : "--ortho-width";
   return {{"from", from},
           {"projection", camera.orthographic ? "orthographic" : "perspective"},
-          {"fx", camera.fx}, {"fy", camera.fy}, {"cx", camera.cx}, {"cy", camera.cy},
+          {"fx", camera.fx},
+          {"fy", camera.fy},
+          {"cx", camera.cx},
+          {"cy", camera.cy},
           {"horizontal_fov", camera.orthographic ? Json() : Json(2 * std::atan(0.5 * camera.width / camera.fx) * 180 / std::numbers::pi)},
           {"world_to_camera", camera.view_from_world.has_value()}};
 }
 
 Json depth_json(std::span<const float> raw, const FrameSource& source) {
   const ValueStatistics s = statistics_of(raw);
-  Json depth = {{"kind", alcove::name_of(source.depth_kind)}, {"least", s.least}, {"most", s.most}, {"nan", s.nan}, {"infinite", s.infinite}, {"negative", s.negative},
-                {"zero", s.zero}, {"one", s.one}};
+  Json depth = {{"kind", alcove::name_of(source.depth_kind)},
+                {"least", s.least},
+                {"most", s.most},
+                {"nan", s.nan},
+                {"infinite", s.infinite},
+                {"negative", s.negative},
+                {"zero", s.zero},
+                {"one", s.one}};
   return depth;
 }
 
@@ -77,15 +93,23 @@ void add_planar(Json& depth, std::span<const float> raw, const std::vector<float
       depth["scores"].push_back({{"kind", alcove::name_of(score.kind)}, {"straight", score.straight}});
 }
 
-Json normals_json(std::span<const float> normal, std::span<const float> raw, const std::vector<float>& planar, const FrameSource& source, const InputSettings& settings) {
+Json normals_json(std::span<const float> normal, std::span<const float> raw, const std::vector<float>& planar, const FrameSource& source,
+                  const InputSettings& settings) {
   const NormalStatistics s = normal_statistics(normal, raw, depth_map_of(source, settings));
-  Json json = {{"space", name_of(source.normal_space)}, {"encoding", name_of(source)}, {"flips", to_string(source.flip_normal)}, {"mean_length", s.mean_length},
-               {"unit_share", s.unit_share}, {"least", s.least}, {"most", s.most}, {"scores", Json::array()}};
+  Json json = {{"space", name_of(source.normal_space)},
+               {"encoding", name_of(source)},
+               {"flips", to_string(source.flip_normal)},
+               {"mean_length", s.mean_length},
+               {"unit_share", s.unit_share},
+               {"least", s.least},
+               {"most", s.most},
+               {"scores", Json::array()}};
   const auto decoded = decoded_normals(normal, source.data.pixels(), source.normal_encoding, source.normal_unorm);
   for (const auto& score : score_normals(decoded, planar, source.camera, view_of(source.camera, source.data, source.display))) {
     const Json entry = {{"space", name_of(score.space)}, {"flips", to_string(score.flips)}, {"agreement", score.agreement}, {"facing", score.facing}};
     json["scores"].push_back(entry);
-    if (score.space == source.normal_space && to_string(score.flips) == to_string(source.flip_normal)) json["agreement"] = score.agreement, json["facing"] = score.facing;
+    if (score.space == source.normal_space && to_string(score.flips) == to_string(source.flip_normal))
+      json["agreement"] = score.agreement, json["facing"] = score.facing;
   }
   return json;
 }
@@ -134,12 +158,16 @@ std::string percent(const Json& share) { return fmt::format("{:.1f} %", 100 * sh
 
 std::string text_of(const Json& json) {
   std::string text;
-  const auto line = [&]<class... Args>(fmt::format_string<Args...> format, Args&&... args) { text += fmt::format(format, std::forward<Args>(args)...) + "\n"; };
+  const auto line = [&]<class... Args>(fmt::format_string<Args...> format, Args&&... args) {
+    text += fmt::format(format, std::forward<Args>(args)...) + "\n";
+  };
   for (const auto& file : json["files"]) {
-    line("{}: display window {}, pixel aspect {:.4g}", file["path"].get<std::string>(), file["display_window"].get<std::string>(), file["pixel_aspect"].get<double>());
+    line("{}: display window {}, pixel aspect {:.4g}", file["path"].get<std::string>(), file["display_window"].get<std::string>(),
+         file["pixel_aspect"].get<double>());
     for (const auto& part : file["parts"]) {
       const std::string name = part["name"], view = part["view"];
-      line("  part{}{}: data window {}", name.empty() ? "" : " " + name, view.empty() ? "" : ", view " + view, part["data_window"].get<std::string>());
+      line("  part{}{}: data window {}", name.empty() ? "" : " " + name, view.empty() ? "" : ", view " + view,
+           part["data_window"].get<std::string>());
       for (const auto& channel : part["channels"]) line("    {} ({})", channel["name"].get<std::string>(), channel["type"].get<std::string>());
       for (const auto& [key, value] : part["attributes"].items()) line("    {} = {}", key, value.get<std::string>().substr(0, 100));
     }
@@ -150,22 +178,30 @@ std::string text_of(const Json& json) {
   }
   if (const auto& camera = json["camera"]; !camera.is_null())
     line("camera: {} by {}, {}, {} world_to_camera", camera["projection"].get<std::string>(), camera["from"].get<std::string>(),
-         camera["horizontal_fov"].is_null() ? fmt::format("{:.5g} px a scene unit", camera["fx"].get<double>()) : fmt::format("{:.2f} degrees wide", camera["horizontal_fov"].get<double>()),
+         camera["horizontal_fov"].is_null() ? fmt::format("{:.5g} px a scene unit", camera["fx"].get<double>())
+                                            : fmt::format("{:.2f} degrees wide", camera["horizontal_fov"].get<double>()),
          camera["world_to_camera"] ? "with" : "without");
   if (const auto& depth = json["depth"]; !depth.is_null()) {
-    line("depth: {}, values {:.6g} to {:.6g}; {} NaN, {} infinite, {} negative, {} of 0, {} of 1", depth["kind"].get<std::string>(), depth["least"].get<double>(),
-         depth["most"].get<double>(), depth["nan"].dump(), depth["infinite"].dump(), depth["negative"].dump(), depth["zero"].dump(), depth["one"].dump());
-    if (depth.contains("median")) line("  distances {:.6g} to {:.6g}, median {:.6g}; sky {}", depth["nearest"].get<double>(), depth["farthest"].get<double>(), depth["median"].get<double>(), percent(depth["sky_share"]));
-    for (const auto& score : depth.value("scores", Json::array())) line("  only as {}: 1/z straight on {}", score["kind"].get<std::string>(), percent(score["straight"]));
+    line("depth: {}, values {:.6g} to {:.6g}; {} NaN, {} infinite, {} negative, {} of 0, {} of 1", depth["kind"].get<std::string>(),
+         depth["least"].get<double>(), depth["most"].get<double>(), depth["nan"].dump(), depth["infinite"].dump(), depth["negative"].dump(),
+         depth["zero"].dump(), depth["one"].dump());
+    if (depth.contains("median"))
+      line("  distances {:.6g} to {:.6g}, median {:.6g}; sky {}", depth["nearest"].get<double>(), depth["farthest"].get<double>(),
+           depth["median"].get<double>(), percent(depth["sky_share"]));
+    for (const auto& score : depth.value("scores", Json::array()))
+      line("  only as {}: 1/z straight on {}", score["kind"].get<std::string>(), percent(score["straight"]));
   }
   if (const auto& normals = json["normals"]; !normals.is_null()) {
-    line("normals: {} space, {}, flips {}, mean length {:.4f}, of unit length on {}", normals["space"].get<std::string>(), normals["encoding"].get<std::string>(),
-         normals["flips"].get<std::string>(), normals["mean_length"].get<double>(), percent(normals["unit_share"]));
+    line("normals: {} space, {}, flips {}, mean length {:.4f}, of unit length on {}", normals["space"].get<std::string>(),
+         normals["encoding"].get<std::string>(), normals["flips"].get<std::string>(), normals["mean_length"].get<double>(),
+         percent(normals["unit_share"]));
     for (const auto& score : normals["scores"])
-      line("  as {} with flips {}: {} agree with depth, {} face the camera", score["space"].get<std::string>(), score["flips"].get<std::string>(), percent(score["agreement"]), percent(score["facing"]));
+      line("  as {} with flips {}: {} agree with depth, {} face the camera", score["space"].get<std::string>(), score["flips"].get<std::string>(),
+           percent(score["agreement"]), percent(score["facing"]));
   }
   for (const auto& guess : json["guesses"])
-    line("guess: {} {}, since {} ({})", guess["what"].get<std::string>(), guess["chosen"].get<std::string>(), guess["why"].get<std::string>(), guess["option"].get<std::string>());
+    line("guess: {} {}, since {} ({})", guess["what"].get<std::string>(), guess["chosen"].get<std::string>(), guess["why"].get<std::string>(),
+         guess["option"].get<std::string>());
   for (const auto& note : json["notes"]) line("note: {}", note.get<std::string>());
   for (const auto& missing : json["missing"]) line("missing: {}", missing.get<std::string>());
   line("{}", json["command"].get<std::string>());
@@ -182,7 +218,7 @@ InputSettings with_some_camera(InputSettings settings) {
 }  // namespace
 
 Inspection inspect_frame(const InputSettings& settings, int frame) {
-  Json json = {{"files", Json::array()}, {"aovs", Json::object()}, {"camera", nullptr}, {"depth", nullptr}, {"normals", nullptr},
+  Json json = {{"files", Json::array()},   {"aovs", Json::object()}, {"camera", nullptr},        {"depth", nullptr}, {"normals", nullptr},
                {"guesses", Json::array()}, {"notes", Json::array()}, {"missing", Json::array()}, {"command", ""}};
   FrameSource source;
   const bool has_camera = !settings.camera.empty() || settings.fov || settings.focal || settings.ortho_width;
@@ -200,7 +236,8 @@ Inspection inspect_frame(const InputSettings& settings, int frame) {
     json["missing"].push_back(error.what());
     return finish();
   }
-  add_aov(json["aovs"], source.depth.size() == 3 ? "position" : "depth", source, source.depth, !settings.depth_channel.empty() || !settings.position_channels.empty());
+  add_aov(json["aovs"], source.depth.size() == 3 ? "position" : "depth", source, source.depth,
+          !settings.depth_channel.empty() || !settings.position_channels.empty());
   add_aov(json["aovs"], "normal", source, source.normal, !settings.normal_channels.empty());
   if (source.normal.empty()) json["missing"].push_back("normals: they would be reconstructed from depth; --normal or --normal-channels names them");
   if (has_camera) json["camera"] = camera_json(source.camera, settings);
@@ -216,8 +253,11 @@ Inspection inspect_frame(const InputSettings& settings, int frame) {
     json["command"] = command_of(source, settings, json["depth"], has_camera);
   } catch (const Error& error) {
     json["missing"].push_back(error.what());
+    const bool open = settings.depth_kind == DepthKind::automatic && source.camera.depth_kind == DepthKind::automatic;
+    if (open) json["depth"]["kind"] = "undecided";
   }
-  for (const auto& guess : source.guesses) json["guesses"].push_back({{"what", guess.what}, {"chosen", guess.chosen}, {"why", guess.why}, {"option", guess.option}});
+  for (const auto& guess : source.guesses)
+    json["guesses"].push_back({{"what", guess.what}, {"chosen", guess.chosen}, {"why", guess.why}, {"option", guess.option}});
   json["notes"] = source.notes;
   try {
     const FrameSource beauty = find_frame(reading, true, frame);

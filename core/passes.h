@@ -35,10 +35,19 @@ struct GBuffer {
 };
 
 GBuffer prepare(gpu::Recorder& gpu, const FrameInputs& frame);
-/// Visibility a pixel, by the estimator of the settings.
+/// The G-buffer of the settings' resolution: its pixels are the blocks of whole pixels of the display window.
+GBuffer downsample(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings);
+/// Visibility a pixel of the G-buffer, by the estimator of the settings.
 gpu::Buffer& estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings);
 gpu::Buffer& horizon(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings);
 gpu::Buffer& bitmask(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings);
+gpu::Buffer& hbao(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings);
+gpu::Buffer& crytek(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings);
+/// Both directions of the settings' filter. `gbuffer` is that of `ao`.
+gpu::Buffer& denoise(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& ao, const EstimatorSettings& settings);
+/// From the pixels of `low` to those of `gbuffer`.
+gpu::Buffer& upsample(gpu::Recorder& gpu, const GBuffer& gbuffer, const GBuffer& low, const gpu::Buffer& ao, const FrameInputs& frame,
+                      const EstimatorSettings& settings);
 gpu::Buffer& shape(gpu::Recorder& gpu, const gpu::Buffer& ao, const View& view, const EstimatorSettings& settings);
 /// The beauty's planes, for the host.
 gpu::Buffer& composite(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& ao, const FrameInputs& frame);

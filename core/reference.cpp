@@ -10,7 +10,7 @@
 #include <numbers>
 #include <thread>
 
-#include "core/error.h"
+#include "core/reference_scene.h"
 
 namespace alcove {
 namespace {
@@ -19,65 +19,7 @@ constexpr double kPi = std::numbers::pi;
 /// Neighbours on a slice whose depth differs by less than this many pixels' worth of slope are one surface.
 constexpr double kRunSlope = 8;
 
-struct Vector {
-  double x = 0, y = 0, z = 0;
-};
-Vector operator+(Vector a, Vector b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-Vector operator-(Vector a, Vector b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-Vector operator*(double s, Vector a) { return {s * a.x, s * a.y, s * a.z}; }
-double dot(Vector a, Vector b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-Vector cross(Vector a, Vector b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
-double length(Vector a) { return std::sqrt(dot(a, a)); }
-Vector normalized(Vector a) { return (1 / length(a)) * a; }
-
-/// The frame in view space, in double.
-class Scene {
- public:
-  explicit Scene(const HostFrame& frame) : frame_(frame), camera_(frame.camera) {
-    center_x_ = camera_.cx + frame.display.x - frame.data.x;
-    center_y_ = camera_.cy + frame.display.y - frame.data.y;
-  }
-
-  int width() const { return frame_.data.width; }
-  int height() const { return frame_.data.height; }
-  bool orthographic() const { return camera_.orthographic; }
-  double fx() const { return camera_.fx; }
-  double fy() const { return camera_.fy; }
-  bool inside(int x, int y) const { return x >= 0 && y >= 0 && x < width() && y < height(); }
-
-  /// Planar depth; 0 on sky.
-  double depth(int x, int y) const {
-    const double z = frame_.depth[index(x, y)];
-    return std::isfinite(z) && z > 0 && z < frame_.sky ? z * frame_.depth_scale : 0;
-  }
-
-  Vector position(int x, int y, double z) const {
-    const double u = (x + 0.5 - center_x_) / camera_.fx, v = -(y + 0.5 - center_y_) / camera_.fy;
-    return orthographic() ? Vector{u, v, -z} : Vector{u * z, v * z, -z};
-  }
-
-  Vector toward_eye(Vector position) const { return orthographic() ? Vector{0, 0, 1} : normalized(-1 * position); }
-
-  /// The unit shading normal, bent to face the eye where it leans away.
-  Vector normal(int x, int y, Vector eye) const {
-    const std::size_t plane = frame_.data.pixels(), i = index(x, y);
-    Vector n = {frame_.normal[i], frame_.normal[i + plane], frame_.normal[i + 2 * plane]};
-    if (frame_.normal_space == NormalSpace::world) {
-      const auto& m = *camera_.view_from_world;
-      n = {m[0][0] * n.x + m[0][1] * n.y + m[0][2] * n.z, m[1][0] * n.x + m[1][1] * n.y + m[1][2] * n.z, m[2][0] * n.x + m[2][1] * n.y + m[2][2] * n.z};
-    }
-    n = length(n) > 0 ? normalized(n) : eye;
-    constexpr double kLeastFacing = 1e-3;
-    return dot(n, eye) < kLeastFacing ? normalized(n + (kLeastFacing - dot(n, eye)) * eye) : n;
-  }
-
- private:
-  std::size_t index(int x, int y) const { return std::size_t(y) * std::size_t(width()) + std::size_t(x); }
-
-  const HostFrame& frame_;
-  const Camera& camera_;
-  double center_x_, center_y_;
-};
+using Scene = ReferenceScene;
 
 /// Integral of cos(theta - gamma) |sin(theta)| from 0 to h (Jimenez et al. 2016, equation 7).
 double arc(double h, double gamma) { return 0.25 * (std::cos(gamma) + 2 * h * std::sin(gamma) - std::cos(2 * h - gamma)); }
@@ -207,7 +149,7 @@ std::pair<double, double> span_between(const Scene& scene, const Receiver& recei
 double blocked_arc(const Scene& scene, const Receiver& receiver, const Side& side, const ReferenceSettings& settings) {
   auto line = line_of(scene, receiver, side, settings);
   set_thickness(scene, line, settings);
-  const double limit = side.gamma + kPi / 2;  // the tangent plane
+  const double limit = side.gamma + kPi / 2, lowest = limit - std::asin(settings.bias);  // the tangent plane; and where blocking begins
   Blocked blocked(side.gamma);
   double sum = 0;
   for (std::size_t i = 1; i < line.size(); i++) {
@@ -217,11 +159,11 @@ double blocked_arc(const Scene& scene, const Receiver& receiver, const Side& sid
       const auto [low, high] = span_between(scene, receiver, side, line[i - 1], line[i], settings.radius);
       const double before = length(line[i - 1].position - receiver.position);
       const double weight = 0.5 * (weight_of(settings, before) + weight_of(settings, distance));
-      if (low > 0) sum += weight * blocked.add(low, std::min(high, limit));
+      if (low > 0 && low <= lowest) sum += weight * blocked.add(low, std::min(high, limit));
     }
     if (line[i].depth == 0 || distance >= settings.radius || distance == 0) continue;
     const double front = angle_of(side, offset);
-    if (front <= 0 || front >= limit) continue;
+    if (front <= 0 || front >= lowest) continue;
     // What is behind the surface, as seen from the eye, blocks too, as far as it is thick and within the sphere of the radius.
     const Vector away = scene.orthographic() ? Vector{0, 0, -1} : normalized(line[i].position);
     const double along = dot(offset, away);
@@ -269,9 +211,20 @@ double visibility(const Scene& scene, const Receiver& receiver, const ReferenceS
 
 }  // namespace
 
+ReferenceSettings reference_settings_of(const EstimatorSettings& settings) {
+  ReferenceSettings reference;
+  reference.radius = *settings.radius * settings.falloff_end;
+  reference.falloff = settings.falloff;
+  reference.falloff_start = settings.falloff_start / settings.falloff_end;
+  reference.thickness = settings.thickness == ThicknessKind::automatic  ? ThicknessRule::width
+                        : settings.thickness == ThicknessKind::infinite ? ThicknessRule::infinite
+                                                                        : ThicknessRule::constant;
+  reference.thickness_length = settings.thickness_length;
+  reference.bias = settings.bias;
+  return reference;
+}
+
 std::vector<float> reference_ao(const HostFrame& frame, const ReferenceSettings& settings) {
-  if (frame.depth_kind != DepthKind::planar || frame.depth.size() != frame.data.pixels() || frame.normal.size() != 3 * frame.data.pixels())
-    fail(ErrorKind::input, "the reference takes planar depth and normals for every pixel of {}", to_string(frame.data));
   const Scene scene(frame);
   std::vector<float> ao(frame.data.pixels(), 1.0f);
   constexpr std::size_t kChunk = 64;  // pixels that a thread takes at a time

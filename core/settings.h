@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace alcove {
 
@@ -15,6 +16,9 @@ enum class PositionSpace { automatic, world, view };
 enum class NormalEncoding { automatic, signed_float, unorm, octahedral, spheremap };
 enum class Falloff : std::uint32_t { none, linear, quadratic, smooth };
 enum class Estimator { gtao, bitmask, hbao, crytek };
+enum class Elevation { view, surface };              // what HBAO measures a horizon from: the plane across the view ray, or the surface
+enum class SampleKernel { clustered, uniform };      // how Crytek's samples fill the hemisphere: more near the receiver, or even in volume
+enum class RangeCheck { none, ratio, smoothstep };   // how Crytek's hits fade with the difference of depth between receiver and hit
 enum class ThicknessKind { automatic, infinite, constant };
 enum class Resolution { full = 1, half = 2, quarter = 4 };  // pixels of the frame a pixel of the estimate, in x and in y
 enum class Denoise { none, bilateral, box };
@@ -34,6 +38,11 @@ struct NormalFlips {
   bool x = false, y = false, z = false;
 };
 
+/// Pixels, counted from the display window's upper left corner.
+struct Region {
+  int x = 0, y = 0, width = 0, height = 0;
+};
+
 /// What to read and how to understand it.
 struct InputSettings {
   std::string input;                             // an EXR file that holds every AOV not named below
@@ -43,6 +52,7 @@ struct InputSettings {
   std::string position_channels;                 // three names with commas, or a layer; empty: found
   std::string layer;                             // look only at channels of this layer or part
   std::string view;                              // of a stereo file; empty: its default
+  std::optional<Region> roi;                     // compute and write no more than this; none: the data window
   DepthKind depth_kind = DepthKind::automatic;   // automatic: what the camera file says, else planar
   DepthRange depth_range;                        // near and far: else the camera file's
   double depth_scale = 1;                        // scene units a unit of the depth channel, > 0
@@ -64,12 +74,21 @@ struct EstimatorSettings {
   std::optional<double> radius;      // scene units, > 0; no default, since no number fits all scenes
   Falloff falloff = Falloff::none;   // none: what renderers' own AO passes mean by a distance
   double falloff_start = 0;          // fraction of the radius where the falloff begins, 0 to 1 exclusive
+  double falloff_end = 1;            // fraction of the radius where it ends, above the start to 1; nothing beyond blocks
   int slices = 3;                    // directions a pixel, 1 to 64; fewer than 3 bias a single pixel
   int steps = 6;                     // samples to each side of a slice, 1 to 4096
+  int samples = 16;                  // of estimator crytek, in the hemisphere, 4 to 64
+  double bias = 0;                   // least height that blocks, >= 0; crytek: scene units of depth; others: sine of the elevation above the tangent plane, < 1
+  Elevation elevation = Elevation::view;                      // of estimator hbao
+  SampleKernel sample_kernel = SampleKernel::clustered;       // of estimator crytek
+  RangeCheck range_check = RangeCheck::ratio;                 // of estimator crytek; ratio: full within the radius, so that no hit in reach is lost
   ThicknessKind thickness = ThicknessKind::infinite;  // how far an occluder goes on behind what is seen of it; automatic: as deep as it is wide
   double thickness_length = 0;       // scene units, > 0; with ThicknessKind::constant
   Resolution resolution = Resolution::full;
   Denoise denoise = Denoise::none;
+  int denoise_radius = 3;            // pixels of the estimate to each side, 1 to 8; with Denoise::bilateral
+  std::vector<double> denoise_kernel;  // instead: 2 to 9 weights from the centre outwards, none negative, the centre's above 0; empty: a Gaussian
+  double denoise_depth_sigma = 0;    // of the depth, 0 to 100: a step by this part weighs 1/e; 0: weighs by plane distance instead
   double intensity = 1;              // factor on the occlusion, 0 to 100
   double power = 1;                  // exponent of the visibility, above 0 to 100
   std::uint32_t seed = 0;            // shifts the noise pattern

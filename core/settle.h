@@ -5,6 +5,7 @@
 #include <span>
 
 #include "core/gbuffer.h"
+#include "core/settings.h"
 
 namespace alcove {
 

@@ -11,7 +11,7 @@ ALCOVE_CONSTANT uint kBitmaskAo = 2;      // out: float a pixel, visibility in [
 
 ALCOVE_CONSTANT uint kBitmaskSlicesId = 0;   // specialization: slices a pixel
 ALCOVE_CONSTANT uint kBitmaskStepsId = 1;    // specialization: steps to each side of a slice
-ALCOVE_CONSTANT uint kBitmaskFalloffId = 2;  // specialization: one of kFalloff* of slice.glsl
+ALCOVE_CONSTANT uint kBitmaskFalloffId = 2;  // specialization: one of kFalloff* of falloff.glsl
 
 struct BitmaskParams {
   View view;
@@ -19,6 +19,7 @@ struct BitmaskParams {
   float falloff_start;  // scene units, below the radius
   ivec2 noise_origin;   // px: what to add to a pixel so that crops and tiles share one noise pattern
   vec2 noise_shift;     // in [0, 1): the pattern's shift for this frame and seed
+  float bias;           // sine of the elevation above the tangent plane below which nothing blocks
   float thickness;      // scene units; infinite allowed; 0: as deep as wide
 };
 ALCOVE_PARAMS(BitmaskParams)

@@ -26,3 +26,10 @@ uint hilbert_index(uvec2 p) {
 vec2 pixel_noise(ivec2 pixel, vec2 shift) {
   return fract(shift + float(hilbert_index(uvec2(pixel))) * kR2);
 }
+
+/// Point `index` of the R3 sequence (the same in three dimensions, g^4 = g + 1), moved by `shift`, in [0, 1). Where every pixel has n samples, those from
+/// n hilbert_index() on go on where the neighbour's ended. In whole numbers, since floats have too few digits for it.
+vec3 r3_point(uint index, vec2 shift) {
+  const uvec3 step = uvec3(3518319155u, 2882110345u, 2360945575u);  // 2^32 / g, / g^2, / g^3
+  return fract(vec3(index * step >> 8) / 16777216.0 + vec3(shift, shift.x + shift.y));
+}

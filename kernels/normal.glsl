@@ -18,3 +18,12 @@ vec3 octahedral_direction(vec2 p) {
 }
 
 vec3 unpack_normal(uint word) { return normalize(octahedral_direction(unpackSnorm2x16(word))); }
+
+/// How far a normal is at least turned to the eye, as a cosine. Smaller, and the slices at grazing angles lose their weight to rounding.
+const float kLeastFacing = 1e-3;
+
+/// A visible surface faces the eye: a shading normal that leans away is bent back just far enough.
+vec3 facing(vec3 n, vec3 eye) {
+  const float cosine = dot(n, eye);
+  return cosine < kLeastFacing ? normalize(n + (kLeastFacing - cosine) * eye) : n;
+}

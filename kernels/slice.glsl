@@ -16,15 +16,11 @@ const int kManySteps = 16;
 /// Neighbours on a slice whose depths differ by less than this many pixels' worth of slope, for every step between them, are one surface.
 const float kRunSlope = 8.0;
 
-const uint kFalloffNone = 0;       // whatever is nearer than the radius blocks
-const uint kFalloffLinear = 1;     // from 1 at the start to 0 at the radius
-const uint kFalloffQuadratic = 2;  // 1 - x^2
-const uint kFalloffSmooth = 3;     // 1 - smoothstep
-
 /// What an estimator's loop over samples needs of its parameters: read once, since lavapipe gathers a parameter anew at each use within a loop.
 struct Reach {
   float radius, radius_sq, falloff_start;  // scene units
   float thickness;                         // scene units, infinite allowed; 0: as deep as wide
+  float least_elevation_sq;                // square of the sine of the elevation above the tangent plane below which nothing blocks
   float pixel_size;                        // scene units at unit depth (orthographic: at any)
   int width;                               // of the image, px
 };
@@ -104,13 +100,6 @@ Slice slice_at(View view, Receiver r, float azimuth) {
   return s;
 }
 
-/// Steps of `direction` that stay on the image, from `pixel`.
-float steps_to_border(View view, ivec2 pixel, vec2 direction) {
-  const vec2 room = mix(vec2(pixel), vec2(view.size - 1 - pixel), greaterThan(direction, vec2(0)));
-  const vec2 steps = room / max(abs(direction), 1e-6);
-  return min(steps.x, steps.y);
-}
-
 /// The side of a slice towards sign * T.
 Side side_of(View view, Receiver r, Slice s, float sign, float radius) {
   const float pixels = max(abs(s.image_t.x), abs(s.image_t.y));
@@ -140,14 +129,15 @@ vec2 place_of(Receiver r, Side side, vec2 offset, float z, float scale) {
 }
 
 /// Whether it stands clear of the tangent plane, and before the eye's ray. distance_sq: from the receiver.
-bool is_above(Receiver r, vec2 place, float distance_sq, vec2 offset, float z, float scale) {
+bool is_above(Receiver r, Reach reach, vec2 place, float distance_sq, vec2 offset, float z, float scale) {
   const float height = scale * dot(r.height, offset) + (z - r.z) * r.depth_height;
-  const bool clear = height > 0.0 ? height * height > kLeastElevation * kLeastElevation * distance_sq : false;
+  const bool clear = height > 0.0 ? height * height > reach.least_elevation_sq * distance_sq : false;
   return place.x > 0.0 ? clear : false;
 }
 
-Reach reach_of(View view, float radius, float falloff_start, float thickness) {
-  return Reach(radius, radius * radius, falloff_start, thickness, view.tangent_per_pixel.x, view.size.x);
+Reach reach_of(View view, float radius, float falloff_start, float thickness, float bias) {
+  const float least = max(bias, kLeastElevation);
+  return Reach(radius, radius * radius, falloff_start, thickness, least * least, view.tangent_per_pixel.x, view.size.x);
 }
 
 /// Steps from the receiver to sample k of `steps`, of which `count` are pixels apart; never two samples in one pixel: short reaches are searched pixel by pixel.
@@ -160,15 +150,6 @@ float step_offset(int k, int steps, int count, float reach, float jitter) {
 /// Whether two samples `gap` steps apart are taken for one surface.
 bool same_surface(Receiver r, Reach reach, float z, float last_z, float gap) {
   return abs(z - last_z) < kRunSlope * reach.pixel_size * gap * (r.perspective ? min(z, last_z) : 1.0);
-}
-
-/// How much a hit at this distance blocks.
-float falloff_weight(uint falloff, float distance_to_hit, float start, float radius) {
-  const float x = clamp((distance_to_hit - start) / (radius - start), 0.0, 1.0);
-  if (falloff == kFalloffLinear) return 1.0 - x;
-  if (falloff == kFalloffQuadratic) return 1.0 - x * x;
-  if (falloff == kFalloffSmooth) return 1.0 - x * x * (3.0 - 2.0 * x);
-  return 1.0;
 }
 
 /// The blocked part of a side's arc integral between its view ray and the angle of this cotangent.

@@ -10,6 +10,11 @@ vec3 position_of(View view, vec2 point_px, float z) {
   return vec3(view.orthographic != 0 ? t : t * z, -z);
 }
 
+/// Where a view-space position before the eye is seen on the image, px.
+vec2 image_of(View view, vec3 position) {
+  return view.center + position.xy / (view.orthographic != 0 ? vec2(1) : vec2(-position.z)) / view.tangent_per_pixel;
+}
+
 /// The unit vector from a position towards the eye.
 vec3 toward_eye(View view, vec3 position) {
   return view.orthographic != 0 ? vec3(0, 0, 1) : normalize(-position);
@@ -18,3 +23,10 @@ vec3 toward_eye(View view, vec3 position) {
 bool inside(View view, ivec2 pixel) { return all(greaterThanEqual(pixel, ivec2(0))) && all(lessThan(pixel, view.size)); }
 
 int index_of(View view, ivec2 pixel) { return pixel.y * view.size.x + pixel.x; }
+
+/// Steps of `direction` that stay on the image, from `pixel`.
+float steps_to_border(View view, ivec2 pixel, vec2 direction) {
+  const vec2 room = mix(vec2(pixel), vec2(view.size - 1 - pixel), greaterThan(direction, vec2(0)));
+  const vec2 steps = room / max(abs(direction), 1e-6);
+  return min(steps.x, steps.y);
+}

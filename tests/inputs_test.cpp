@@ -9,6 +9,7 @@
 #include <functional>
 #include <limits>
 
+#include "core/batch.h"
 #include "core/error.h"
 #include "core/evidence.h"
 #include "core/exr.h"
@@ -31,7 +32,8 @@ constexpr float kNan = std::numeric_limits<float>::quiet_NaN(), kInfinite = std:
 Rendering furnished(bool inside = false) {
   const Scene scene{{parallelogram({0, -3, 0}, {4, 0, 0}, {0, 6, 0}), parallelogram({0, -3, 0}, {0, 6, 0}, {0, 0, 1.5}),
                      Sphere{.center = {1.2, 0.4, 0.5}, .radius = 0.5}}};
-  return render(scene, inside ? Shot::perspective({0.3, -0.5, 0.2}, {1, 0.6, 0.3}, 90, 160, 120) : Shot::perspective({4.5, -1.5, 2.4}, {1, 0, 0.6}, 55, 160, 120));
+  return render(scene, inside ? Shot::perspective({0.3, -0.5, 0.2}, {1, 0.6, 0.3}, 90, 160, 120)
+                              : Shot::perspective({4.5, -1.5, 2.4}, {1, 0, 0.6}, 55, 160, 120));
 }
 
 EstimatorSettings settings_of(double radius) {
@@ -85,7 +87,8 @@ TEST(Depth, of_every_z_buffer_is_the_same_scene) {
       for (const bool reversed : {false, true})
         for (const DeviceRange device : {DeviceRange::zero_to_one, DeviceRange::minus_one_to_one}) {
           const float sky = float(device_depth(kInfinite, kInfinite, reversed, device));
-          HostFrame frame = with_depth(rendering, DepthKind::device, [&](const test::Hit& hit) { return device_depth(hit.distance, far, reversed, device, near); }, sky);
+          HostFrame frame = with_depth(
+              rendering, DepthKind::device, [&](const test::Hit& hit) { return device_depth(hit.distance, far, reversed, device, near); }, sky);
           frame.depth_range = between_planes(far, reversed, device, near);
           expect_same_ao(frame, rendering.frame, fmt::format("inside {} far {} reversed {} range {}", inside, far, reversed, int(device)));
           EXPECT_EQ(compute_ao(recorder(), frame, settings_of(1)).sky_pixels, compute_ao(recorder(), rendering.frame, settings_of(1)).sky_pixels);
@@ -96,7 +99,8 @@ TEST(Depth, of_every_z_buffer_is_the_same_scene) {
 TEST(Depth, by_distance_by_inverse_or_between_planes_is_the_same_scene) {
   for (const bool inside : {false, true}) {
     const Rendering rendering = furnished(inside);
-    const auto check = [&](const char* what, DepthKind kind, float sky, const DepthRange& range, const std::function<double(const test::Hit&)>& value) {
+    const auto check = [&](const char* what, DepthKind kind, float sky, const DepthRange& range,
+                           const std::function<double(const test::Hit&)>& value) {
       HostFrame frame = with_depth(rendering, kind, value, sky);
       frame.depth_range = range;
       expect_same_ao(frame, rendering.frame, what);
@@ -109,8 +113,10 @@ TEST(Depth, by_distance_by_inverse_or_between_planes_is_the_same_scene) {
     check("inverse", DepthKind::inverse, 0, {}, [](const test::Hit& hit) { return 1 / hit.distance; });
     check("negative planar", DepthKind::planar, -1e10f, negative, [](const test::Hit& hit) { return -hit.distance; });
     check("negative inverse", DepthKind::inverse, 0, negative, [](const test::Hit& hit) { return -1 / hit.distance; });
-    check("normalized", DepthKind::normalized, 1, between_planes(kFar, false), [](const test::Hit& hit) { return (hit.distance - kNear) / (kFar - kNear); });
-    check("normalized, near 1", DepthKind::normalized, 0, between_planes(kFar, true), [](const test::Hit& hit) { return (kFar - hit.distance) / (kFar - kNear); });
+    check("normalized", DepthKind::normalized, 1, between_planes(kFar, false),
+          [](const test::Hit& hit) { return (hit.distance - kNear) / (kFar - kNear); });
+    check("normalized, near 1", DepthKind::normalized, 0, between_planes(kFar, true),
+          [](const test::Hit& hit) { return (kFar - hit.distance) / (kFar - kNear); });
     check("log", DepthKind::log, 1, log, [&](const test::Hit& hit) { return log_depth(hit.distance); });
     check("log, near 1", DepthKind::log, 0, log_reversed, [&](const test::Hit& hit) { return 1 - log_depth(hit.distance); });
   }
@@ -120,10 +126,13 @@ TEST(Depth, of_an_orthographic_z_buffer_is_linear) {
   const Scene scene{{parallelogram({0, -3, 0}, {4, 0, 0}, {0, 6, 0}), Sphere{.center = {1.2, 0.4, 0.5}, .radius = 0.5}}};
   const Rendering rendering = render(scene, Shot::orthographic({4.5, -1.5, 2.4}, {1, 0, 0.6}, 5, 160, 120));
   for (const bool reversed : {false, true}) {
-    HostFrame frame = with_depth(rendering, DepthKind::device, [&](const test::Hit& hit) {
-      const double d = (hit.distance - kNear) / (kFar - kNear);
-      return reversed ? 1 - d : d;
-    }, reversed ? 0.0f : 1.0f);
+    HostFrame frame = with_depth(
+        rendering, DepthKind::device,
+        [&](const test::Hit& hit) {
+          const double d = (hit.distance - kNear) / (kFar - kNear);
+          return reversed ? 1 - d : d;
+        },
+        reversed ? 0.0f : 1.0f);
     frame.depth_range = between_planes(kFar, reversed);
     expect_same_ao(frame, rendering.frame, reversed ? "reversed" : "standard");
   }
@@ -137,7 +146,8 @@ TEST(Depth, by_position_in_world_or_view_space_is_the_same_scene) {
       HostFrame frame = rendering.frame;
       frame.depth_kind = DepthKind::position;
       frame.position_space = world ? PositionSpace::world : PositionSpace::view;
-      frame.camera.view_from_world = Matrix3{{{shot.right.x, shot.right.y, shot.right.z}, {shot.up.x, shot.up.y, shot.up.z}, {shot.back.x, shot.back.y, shot.back.z}}};
+      frame.camera.view_from_world =
+          Matrix3{{{shot.right.x, shot.right.y, shot.right.z}, {shot.up.x, shot.up.y, shot.up.z}, {shot.back.x, shot.back.y, shot.back.z}}};
       const Vec3 offset = -shot.view_from_world(shot.eye);
       frame.camera.view_from_world_offset = {offset.x, offset.y, offset.z};
       const std::size_t pixels = frame.data.pixels();
@@ -158,7 +168,8 @@ TEST(Depth, by_position_in_world_or_view_space_is_the_same_scene) {
 TEST(Depth, of_every_sentinel_is_sky) {
   const Rendering rendering = furnished();
   const std::vector<float> expected = ao_of(rendering.frame, 0.6);
-  const auto check = [&](DepthKind kind, const DepthRange& range, const std::vector<float>& sentinels, const std::function<double(const test::Hit&)>& value) {
+  const auto check = [&](DepthKind kind, const DepthRange& range, const std::vector<float>& sentinels,
+                         const std::function<double(const test::Hit&)>& value) {
     for (const float sentinel : sentinels) {
       HostFrame frame = with_depth(rendering, kind, value, sentinel);
       frame.depth_range = range;
@@ -174,12 +185,14 @@ TEST(Depth, of_every_sentinel_is_sky) {
   for (const bool reversed : {false, true})
     check(DepthKind::device, between_planes(kFar, reversed), {0, 1, 1e10f, 65504, kInfinite, -kInfinite, kNan, -1},
           [&](const test::Hit& hit) { return device_depth(hit.distance, kFar, reversed, DeviceRange::zero_to_one); });
-  check(DepthKind::normalized, between_planes(kFar, false), {0, 1, 1e10f, kInfinite, kNan, -1}, [](const test::Hit& hit) { return (hit.distance - kNear) / (kFar - kNear); });
+  check(DepthKind::normalized, between_planes(kFar, false), {0, 1, 1e10f, kInfinite, kNan, -1},
+        [](const test::Hit& hit) { return (hit.distance - kNear) / (kFar - kNear); });
 }
 
 TEST(Depth, scale_holds_for_every_kind) {
   const Rendering rendering = furnished();
-  HostFrame frame = with_depth(rendering, DepthKind::device, [](const test::Hit& hit) { return device_depth(hit.distance, kFar, true, DeviceRange::zero_to_one); }, 0);
+  HostFrame frame = with_depth(
+      rendering, DepthKind::device, [](const test::Hit& hit) { return device_depth(hit.distance, kFar, true, DeviceRange::zero_to_one); }, 0);
   frame.depth_range = between_planes(kFar, true);
   const std::vector<float> expected = ao_of(frame, 0.6);
   frame.depth_scale = 128;
@@ -202,7 +215,8 @@ HostFrame with_normals(const Rendering& rendering, int planes, NormalEncoding en
   frame.normal_unorm = unorm;
   for (std::size_t i = 0; i < pixels; i++) {
     const Vec3 n = encode({frame.normal[i], frame.normal[i + pixels], frame.normal[i + 2 * pixels]});
-    for (const auto& [plane, value] : {std::pair{0, n.x}, {1, n.y}, {2, n.z}}) frame.normal[i + std::size_t(plane) * pixels] = float(unorm ? 0.5 + 0.5 * value : value);
+    for (const auto& [plane, value] : {std::pair{0, n.x}, {1, n.y}, {2, n.z}})
+      frame.normal[i + std::size_t(plane) * pixels] = float(unorm ? 0.5 + 0.5 * value : value);
   }
   frame.normal.resize(std::size_t(planes) * pixels);
   return frame;
@@ -244,7 +258,8 @@ TEST(Normals, of_every_encoding_are_the_same) {
 
 TEST(Normals, flips_undo_flips) {
   const Rendering rendering = furnished();
-  for (const NormalFlips flips : {NormalFlips{true, false, false}, NormalFlips{false, true, false}, NormalFlips{false, false, true}, NormalFlips{true, true, true}}) {
+  for (const NormalFlips flips :
+       {NormalFlips{true, false, false}, NormalFlips{false, true, false}, NormalFlips{false, false, true}, NormalFlips{true, true, true}}) {
     HostFrame frame = with_normals(rendering, 3, NormalEncoding::signed_float, false, [&](Vec3 n) {
       return Vec3{flips.x ? -n.x : n.x, flips.y ? -n.y : n.y, flips.z ? -n.z : n.z};
     });
@@ -262,7 +277,8 @@ class Evidence : public testing::Test {
   Evidence() { settings.input = folder / "frame.exr"; }
 
   /// Depth as `value` gives it, normals by `turn`; the camera file says nothing of either.
-  void write(const std::function<double(const test::Hit&)>& value, float sky, const std::function<Vec3(Vec3)>& turn = [](Vec3 n) { return n; }) {
+  void write(
+      const std::function<double(const test::Hit&)>& value, float sky, const std::function<Vec3(Vec3)>& turn = [](Vec3 n) { return n; }) {
     const Shot& shot = rendering.shot;
     FrameFile file{shot.data, shot.display, 1, {}, {}, {}};
     const HostFrame frame = with_depth(rendering, DepthKind::planar, value, sky);
@@ -277,9 +293,16 @@ class Evidence : public testing::Test {
     file.halves = halves;
     file.write(settings.input);
     const Vec3 offset = -shot.view_from_world(shot.eye);
-    const nlohmann::json camera = {{"resolution", {shot.data.width, shot.data.height}}, {"fx", shot.camera.fx}, {"fy", shot.camera.fy}, {"cx", shot.camera.cx}, {"cy", shot.camera.cy},
-                                   {"world_to_camera", {{shot.right.x, shot.right.y, shot.right.z, offset.x}, {shot.up.x, shot.up.y, shot.up.z, offset.y},
-                                                        {shot.back.x, shot.back.y, shot.back.z, offset.z}, {0, 0, 0, 1}}}};
+    const nlohmann::json camera = {{"resolution", {shot.data.width, shot.data.height}},
+                                   {"fx", shot.camera.fx},
+                                   {"fy", shot.camera.fy},
+                                   {"cx", shot.camera.cx},
+                                   {"cy", shot.camera.cy},
+                                   {"world_to_camera",
+                                    {{shot.right.x, shot.right.y, shot.right.z, offset.x},
+                                     {shot.up.x, shot.up.y, shot.up.z, offset.y},
+                                     {shot.back.x, shot.back.y, shot.back.z, offset.z},
+                                     {0, 0, 0, 1}}}};
     settings.camera = folder / "camera.json";
     write_bytes(settings.camera, camera.dump());
   }
@@ -334,7 +357,31 @@ TEST_F(Evidence, a_z_buffer_without_planes_is_refused_and_with_planes_is_read) {
   write([](const test::Hit& hit) { return device_depth(hit.distance, kFar, false, DeviceRange::zero_to_one); }, 1);
   expect_refused({"device", "inverse", "--near", "--far", "frame.exr"});
   settings.depth_range = between_planes(kFar, false);
-  EXPECT_EQ(settled().depth_kind, DepthKind::device);
+  const FrameSource standard = settled();
+  EXPECT_EQ(standard.depth_kind, DepthKind::device);
+  EXPECT_FALSE(standard.depth_range.reversed) << "its sky is 1";
+  write([](const test::Hit& hit) { return device_depth(hit.distance, kFar, true, DeviceRange::zero_to_one); }, 0);
+  const FrameSource reversed = settled();
+  EXPECT_EQ(reversed.depth_kind, DepthKind::device);
+  EXPECT_TRUE(reversed.depth_range.reversed) << "its sky is 0";
+  write([](const test::Hit& hit) { return device_depth(hit.distance, kFar, true, DeviceRange::zero_to_one); }, 0.5f);
+  expect_refused({"--reversed-z"});
+}
+
+TEST_F(Evidence, positions_that_are_not_on_their_pixels_are_refused) {
+  FrameFile file{rendering.shot.data, rendering.shot.display, 1, {}, {}, {}};
+  const char* names[] = {"P.X", "P.Y", "P.Z"};
+  for (const char* name : names) file.planes[name].resize(rendering.hits.size());
+  for (std::size_t i = 0; i < rendering.hits.size(); i++) {
+    if (rendering.hits[i].primitive < 0) continue;
+    const Vec3 p = rendering.hits[i].position;
+    file.planes["P.X"][i] = float(p.x), file.planes["P.Y"][i] = float(p.y), file.planes["P.Z"][i] = float(p.z);
+  }
+  write([](const test::Hit& hit) { return hit.distance; }, 1e10f);  // for its camera
+  file.write(settings.input);
+  EXPECT_EQ(settled().position_space, PositionSpace::world);
+  settings.position_space = PositionSpace::view;
+  expect_refused({"frame.exr", "pixels", "--position-space", "--camera"});
 }
 
 TEST_F(Evidence, finds_the_space_and_the_flips_of_normals) {
@@ -342,7 +389,10 @@ TEST_F(Evidence, finds_the_space_and_the_flips_of_normals) {
   const Shot& shot = rendering.shot;
   write(planar, 1e10f, [&](Vec3 n) { return shot.view_from_world(n); });
   EXPECT_EQ(settled().normal_space, NormalSpace::view);
-  write(planar, 1e10f, [&](Vec3 n) { const Vec3 v = shot.view_from_world(n); return Vec3{v.x, v.y, -v.z}; });
+  write(planar, 1e10f, [&](Vec3 n) {
+    const Vec3 v = shot.view_from_world(n);
+    return Vec3{v.x, v.y, -v.z};
+  });
   const FrameSource source = settled();
   EXPECT_EQ(source.normal_space, NormalSpace::view);
   EXPECT_EQ(to_string(source.flip_normal), "z");
@@ -391,8 +441,35 @@ TEST_F(CommandLine, a_z_buffer_between_planes_is_read) {
   EXPECT_THAT(without.err, HasSubstr("--near"));
 }
 
+TEST_F(CommandLine, the_digest_changes_with_every_setting_of_the_input) {
+  const auto digest = [](const auto& change) {
+    Settings settings;
+    settings.estimator.radius = 1;
+    change(settings.input);
+    return options_digest(settings);
+  };
+  const std::string plain = digest([](InputSettings&) {});
+  const std::pair<const char*, std::string> changed[] = {
+      {"--near", digest([](InputSettings& s) { s.depth_range.near = 1; })},
+      {"--far", digest([](InputSettings& s) { s.depth_range.far = 1; })},
+      {"--reversed-z", digest([](InputSettings& s) { s.depth_range.reversed = true; })},
+      {"--device-range", digest([](InputSettings& s) { s.depth_range.device = DeviceRange::minus_one_to_one; })},
+      {"--log-constant", digest([](InputSettings& s) { s.depth_range.log_constant = 2; })},
+      {"--normal-encoding", digest([](InputSettings& s) { s.normal_encoding = NormalEncoding::unorm; })},
+      {"--flip-normal", digest([](InputSettings& s) { s.flip_normal.y = true; })},
+      {"--position-space", digest([](InputSettings& s) { s.position_space = PositionSpace::world; })},
+      {"--position-channels", digest([](InputSettings& s) { s.position_channels = "P"; })},
+      {"--view", digest([](InputSettings& s) { s.view = "left"; })},
+      {"--roi", digest([](InputSettings& s) {
+         s.roi = Region{0, 0, 1, 1};
+       })},
+  };
+  for (const auto& [option, other] : changed) EXPECT_NE(plain, other) << option;
+}
+
 TEST_F(CommandLine, flips_and_far_are_checked) {
-  for (const std::vector<std::string>& wrong : {std::vector<std::string>{"--flip-normal", "xx"}, {"--flip-normal", "w"}, {"--far", "-1"}, {"--far", "away"}}) {
+  for (const std::vector<std::string>& wrong :
+       {std::vector<std::string>{"--flip-normal", "xx"}, {"--flip-normal", "w"}, {"--far", "-1"}, {"--far", "away"}}) {
     const Finished finished = run(wrong);
     EXPECT_EQ(finished.code, 2) << finished;
     EXPECT_THAT(finished.err, HasSubstr(wrong[0]));

@@ -1,0 +1,85 @@
+// Ambient occlusion by samples in the hemisphere above the surface, as engines do it after Crytek: how much of its volume is hidden.
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// In: planar depth, view normals. Out: visibility, 1 = open.
+// Mittring, "Finding Next Gen: CryEngine 2", 2007. It measures volume, not visibility: beside an infinite wall at distance c R the uniform kernel
+// gives 1 - (1 - c)^2 (2 + c) / 4. What is particular here:
+// - A sample is compared with the depth of the pixel that it falls into, on the ray of that pixel's centre: it is moved there parallel to the
+//   receiver's tangent plane, which keeps its height above it. A flat surface stays open at every tilt, with no bias at all.
+// - The basis about the normal is built from the normal alone and turned by the noise, so no noise vector can be parallel to it.
+// - Samples behind the eye, outside the image and before the sky do not count; what is hidden is divided by the number of those that do.
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#include "crytek.h"
+#include "view.glsl"
+#include "normal.glsl"
+#include "noise.glsl"
+
+layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
+layout(constant_id = kCrytekSamplesId) const uint kSamples = 16;
+layout(scalar, push_constant) uniform Push { CrytekParams params; };
+layout(scalar, binding = kCrytekDepth) readonly buffer Depth { float depth[]; };
+layout(scalar, binding = kCrytekNormal) readonly buffer Normal { uint normal[]; };
+layout(scalar, binding = kCrytekAo) writeonly buffer Ao { float ao[]; };
+
+/// The sine of an elevation above the tangent plane below which the scene is the surface itself, raised by rounding.
+const float kLeastElevation = 1e-3;
+/// How far a pixel's ray must turn towards the tangent plane to meet it at a place worth the name.
+const float kLeastSlope = 1e-4;
+const float kTwoPi = 6.28318530717958648;
+
+/// How far sample i lies from the receiver, in radii, by a random number in [0, 1).
+float reach_of(uint i, float random) {
+  const float x = float(i) / float(kSamples);
+  return params.uniform_volume != 0 ? pow(x + random / float(kSamples), 1.0 / 3.0) : (0.1 + 0.9 * x * x) * random;
+}
+
+/// How much a hit counts whose depth differs by this much from the receiver's.
+float range_weight(float depth_difference) {
+  if (params.range_check == kRangeNone) return 1.0;
+  const float dz = abs(depth_difference);
+  if (params.range_check == kRangeSmoothstep) return 1.0 - smoothstep(0.0, params.radius, dz);
+  return smoothstep(0.0, 1.0, params.radius / max(dz, 1e-6 * params.radius));  // 1 for dz = 0
+}
+
+void main() {
+  const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  if (!inside(params.view, pixel)) return;
+  const int index = index_of(params.view, pixel);
+  const float z = depth[index];
+  if (z >= kSkyDepth) {
+    ao[index] = 1.0;
+    return;
+  }
+
+  const bool perspective = params.view.orthographic == 0;
+  const vec3 position = position_of(params.view, vec2(pixel) + 0.5, z), n = unpack_normal(normal[index]);
+  // Two tangents (Duff et al., "Building an Orthonormal Basis, Revisited", 2017).
+  const float sign_z = n.z < 0.0 ? -1.0 : 1.0, a = -1.0 / (sign_z + n.z), b = n.x * n.y * a;
+  const vec3 tangent = vec3(1.0 + sign_z * n.x * n.x * a, sign_z * b, -sign_z * n.x), bitangent = vec3(b, sign_z + n.y * n.y * a, -n.y);
+
+  const uint first_point = kSamples * hilbert_index(uvec2(pixel + params.noise_origin));
+  float valid = 0.0, blocked = 0.0;
+  for (uint i = 0u; i < kSamples; i++) {
+    const vec3 random = r3_point(first_point + i, params.noise_shift);
+    const float azimuth = kTwoPi * random.x, up = random.y, across = sqrt(1.0 - up * up), reach = params.radius * reach_of(i, random.z);
+    const float height = reach * up;  // above the tangent plane
+    const vec3 at = position + reach * (across * (cos(azimuth) * tangent + sin(azimuth) * bitangent) + up * n);
+    if (perspective && !(-at.z > 0.0)) continue;
+    const vec2 image = image_of(params.view, at);
+    if (!(all(greaterThanEqual(image, vec2(0))) && all(lessThan(image, vec2(params.view.size))))) continue;
+    const ivec2 hit = ivec2(image);
+    const float hit_z = depth[index_of(params.view, hit)];
+    if (hit_z >= kSkyDepth) continue;
+    valid += 1.0;
+
+    const vec3 ray = position_of(params.view, vec2(hit) + 0.5, 1.0) - position_of(params.view, vec2(hit) + 0.5, 0.0);  // of unit depth
+    const vec3 offset = position_of(params.view, vec2(hit) + 0.5, hit_z) - position;
+    const float hit_height = dot(n, offset), slope = -dot(n, ray);
+    // How much deeper than the hit the sample lies on the hit's ray: by height; where that ray does not meet the tangent plane, by depth.
+    const float deeper = slope > kLeastSlope ? min((hit_height - height) / slope, -at.z + params.radius - hit_z) : -at.z - hit_z;
+    const bool above = hit_height > 0.0 && hit_height * hit_height > kLeastElevation * kLeastElevation * dot(offset, offset);
+    if (above && deeper > params.bias) blocked += range_weight(hit_z - z);
+  }
+  ao[index] = valid > 0.0 ? 1.0 - blocked / valid : 1.0;
+}

@@ -1,0 +1,30 @@
+// Parameters and bindings of crytek.comp.
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef ALCOVE_CRYTEK_H
+#define ALCOVE_CRYTEK_H
+#include "shared.h"
+ALCOVE_BEGIN
+
+ALCOVE_CONSTANT uint kCrytekDepth = 0;   // in: float a pixel, from prepare
+ALCOVE_CONSTANT uint kCrytekNormal = 1;  // in: uint a pixel, from prepare
+ALCOVE_CONSTANT uint kCrytekAo = 2;      // out: float a pixel, visibility in [0, 1], 1 = open
+
+ALCOVE_CONSTANT uint kCrytekSamplesId = 0;  // specialization: samples a pixel
+
+ALCOVE_CONSTANT uint kRangeNone = 0;        // every hit counts fully
+ALCOVE_CONSTANT uint kRangeRatio = 1;       // smoothstep(0, 1, radius / dz): fully within the radius, less beyond
+ALCOVE_CONSTANT uint kRangeSmoothstep = 2;  // 1 - smoothstep(0, radius, dz): less from the receiver on, nothing beyond the radius
+
+struct CrytekParams {
+  View view;
+  float radius;         // scene units
+  float bias;           // scene units: by how much a hit must be nearer to the eye than the sample
+  uint uniform_volume;  // 1: samples even in volume; 0: clustered about the receiver
+  uint range_check;     // one of kRange*
+  ivec2 noise_origin;   // px: what to add to a pixel so that crops and tiles share one noise pattern
+  vec2 noise_shift;     // in [0, 1): the pattern's shift for this frame and seed
+};
+ALCOVE_PARAMS(CrytekParams)
+
+ALCOVE_END
+#endif

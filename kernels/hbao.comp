@@ -1,0 +1,117 @@
+// Ambient occlusion by horizons in even directions of the image (HBAO): the part of the hemisphere below them, every direction counting the same.
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// In: planar depth, view normals. Out: visibility, 1 = open.
+// Bavoil and Sainz, "Image-Space Horizon-Based Ambient Occlusion", 2008: occlusion is the mean over the directions of sin h - sin t, the
+// elevations of horizon and tangent above the plane across the view ray; with attenuation, every rise of sin h counts with the weight W of the sample that
+// makes it. This is uniform, not cosine-weighted AO: beside a wall whose rim stands at 45 degrees it is 0.75, and GTAO's 0.854. What is particular here:
+// - Off axis even directions of the image are not even about the view ray; each is weighted by the ratio of the two.
+// - Without attenuation whatever is within reach on the image blocks, at any distance: beside an endless wall 1 - acos(d / R) / pi.
+// - A sample is moved into its slice parallel to the tangent plane, so a flat surface stays open at every tilt.
+// - `from_surface` gives the simpler form of many engines: the sine of the horizon's elevation above the surface itself, which is the cosine of
+//   its angle to the normal. The two are equal where the surface faces the eye.
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#include "hbao.h"
+#include "view.glsl"
+#include "normal.glsl"
+#include "noise.glsl"
+#include "falloff.glsl"
+
+layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
+layout(constant_id = kHbaoSlicesId) const uint kSlices = 3;
+layout(constant_id = kHbaoStepsId) const uint kSteps = 6;
+layout(constant_id = kHbaoFalloffId) const uint kFalloff = kFalloffNone;
+layout(scalar, push_constant) uniform Push { HbaoParams params; };
+layout(scalar, binding = kHbaoDepth) readonly buffer Depth { float depth[]; };
+layout(scalar, binding = kHbaoNormal) readonly buffer Normal { uint normal[]; };
+layout(scalar, binding = kHbaoAo) writeonly buffer Ao { float ao[]; };
+
+/// Slices that the normal is nearly perpendicular to have no tangent to speak of, and are left out.
+const float kLeastWeight = 1e-4;
+/// The sine of an elevation above the tangent plane below which a sample is the surface itself, raised by rounding.
+const float kLeastElevation = 1e-3;
+const float kPi = 3.14159265358979324;
+
+/// One direction on the image and the half-plane of view space that is seen along it.
+struct Side {
+  vec3 along_t, along_v;  // in-slice coordinates of an offset, moved into the slice parallel to the tangent plane
+  vec2 normal;            // the normal in the slice, along T and V; its length is the part of it that lies in the slice
+  vec2 direction_px;      // pixels a step, the longer component +-1
+  float reach;            // steps of direction_px within the radius and the image
+};
+
+/// The occlusion in one direction: sin h - sin t, attenuated.
+float occlusion(Side side, ivec2 pixel, vec3 position, float jitter) {
+  const uint count = min(kSteps, uint(side.reach));
+  const float weight = length(side.normal);
+  // The sine that samples must exceed: of the tangent, raised by the bias, or of the bias alone.
+  const vec2 across = vec2(side.normal.y, -side.normal.x) / weight;  // the tangent, as its own cosine and sine
+  float horizon = params.from_surface != 0 ? params.bias : across.y * sqrt(1.0 - params.bias * params.bias) + across.x * params.bias;
+  float sum = 0.0;
+  for (uint k = 0u; k < count; k++) {
+    const float x = (float(k) + jitter) / float(kSteps);
+    // Dense near the receiver, and never two samples in one pixel.
+    const float step_px = count < kSteps ? float(k + 1u) : max(float(k + 1u), x * x * side.reach);
+    const ivec2 hit = pixel + ivec2(round(side.direction_px * step_px));
+    const float z = depth[index_of(params.view, hit)];
+    if (z >= kSkyDepth) continue;
+    const vec3 delta = position_of(params.view, vec2(hit) + 0.5, z) - position;
+    const vec2 in_slice = vec2(dot(delta, side.along_t), dot(delta, side.along_v));
+    const float unit = inversesqrt(dot(in_slice, in_slice)), squared_distance = dot(delta, delta), height = dot(in_slice, side.normal);
+    const bool above = height > 0.0 && height * height > kLeastElevation * kLeastElevation * squared_distance;
+    const float elevation = unit * (params.from_surface != 0 ? height : in_slice.y);
+    if (!above || in_slice.x <= 0.0 || elevation <= horizon) continue;
+    sum += falloff_weight(kFalloff, sqrt(squared_distance), params.falloff_start, params.radius) * (elevation - horizon);
+    horizon = elevation;
+  }
+  return sum;
+}
+
+void main() {
+  const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  if (!inside(params.view, pixel)) return;
+  const int index = index_of(params.view, pixel);
+  const float z = depth[index];
+  if (z >= kSkyDepth) {
+    ao[index] = 1.0;
+    return;
+  }
+
+  const bool perspective = params.view.orthographic == 0;
+  const vec2 tangent = tangent_of(params.view, vec2(pixel) + 0.5);
+  const vec3 position = position_of(params.view, vec2(pixel) + 0.5, z), eye = toward_eye(params.view, position), n = unpack_normal(normal[index]);
+  const vec2 noise = pixel_noise(pixel + params.noise_origin, params.noise_shift);
+  // The sphere of the radius is seen under this angle; 1 and more: it holds the eye, and the image is the only limit.
+  const float sin_reach = perspective ? params.radius * inversesqrt(dot(position, position)) : 0.0;
+  const float cos_reach = sqrt(max(0.0, 1.0 - sin_reach * sin_reach));
+
+  float blocked = 0.0, whole = 0.0;
+  for (uint s = 0u; s < kSlices; s++) {
+    // An even direction of the image, and the tangent of the view ray that is seen along it.
+    const float angle = kPi * (float(s) + noise.x) / float(kSlices);
+    const vec3 direction = vec3(cos(angle), sin(angle), 0);
+    const float toward = dot(direction, eye), share = 1.0 / (1.0 - toward * toward);  // directions about the view ray for one of the image
+    const vec3 t = (direction - toward * eye) * sqrt(share), b = cross(t, eye);
+    const float n_t = dot(n, t), n_v = dot(n, eye), weight_squared = n_t * n_t + n_v * n_v;
+    whole += 2.0 * share;
+    if (weight_squared < kLeastWeight * kLeastWeight) continue;
+
+    const vec2 image_t = (perspective ? t.xy + tangent * t.z : t.xy) / params.view.tangent_per_pixel;
+    const float pixels = max(abs(image_t.x), abs(image_t.y));
+    const vec3 shift = b * (dot(n, b) / weight_squared);
+    for (int sign = -1; sign <= 1; sign += 2) {
+      Side side;
+      side.along_t = float(sign) * (t + n_t * shift);
+      side.along_v = eye + n_v * shift;
+      side.normal = vec2(float(sign) * n_t, n_v);
+      side.direction_px = float(sign) / pixels * image_t;
+      const float forward = perspective ? eye.z * cos_reach - float(sign) * t.z * sin_reach : 1.0;
+      const float reach = perspective ? sin_reach * pixels / forward : params.radius * pixels;
+      const float border = steps_to_border(params.view, pixel, side.direction_px);
+      side.reach = sin_reach < 1.0 && forward > 0.0 ? min(reach, border) : border;
+      blocked += share * occlusion(side, pixel, position, fract(noise.y + kGolden * float(2u * s + uint(sign > 0))));
+    }
+  }
+  ao[index] = clamp(1.0 - blocked / whole, 0.0, 1.0);
+}

@@ -1,0 +1,28 @@
+// Parameters and bindings of hbao.comp.
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef ALCOVE_HBAO_H
+#define ALCOVE_HBAO_H
+#include "horizon.h"
+ALCOVE_BEGIN
+
+ALCOVE_CONSTANT uint kHbaoDepth = 0;   // in: float a pixel, from prepare
+ALCOVE_CONSTANT uint kHbaoNormal = 1;  // in: uint a pixel, from prepare
+ALCOVE_CONSTANT uint kHbaoAo = 2;      // out: float a pixel, visibility in [0, 1], 1 = open
+
+ALCOVE_CONSTANT uint kHbaoSlicesId = 0;   // specialization: lines through a pixel, each searched to both sides
+ALCOVE_CONSTANT uint kHbaoStepsId = 1;    // specialization: steps to each side
+ALCOVE_CONSTANT uint kHbaoFalloffId = 2;  // specialization: one of kFalloff* of falloff.glsl, the attenuation W
+
+struct HbaoParams {
+  View view;
+  float radius;         // scene units
+  float falloff_start;  // scene units, below the radius
+  float bias;           // sine of the elevation above the tangent plane below which nothing blocks
+  uint from_surface;    // 1: the horizon's elevation above the surface; 0: of horizon and surface above the plane across the view ray
+  ivec2 noise_origin;   // px: what to add to a pixel so that crops and tiles share one noise pattern
+  vec2 noise_shift;     // in [0, 1): the pattern's shift for this frame and seed
+};
+ALCOVE_PARAMS(HbaoParams)
+
+ALCOVE_END
+#endif
