@@ -20,10 +20,10 @@ TEST_F(CommandLine, a_region_is_that_part_of_the_whole) {
   wall_frame(data).write(frame);
   using Options = std::vector<std::string>;
   for (const Options& options : {Options{"--radius", "1"},
-                                 {"--radius", "0.2"},
+                                 {"--radius", "0.5"},
                                  {"--radius", "1", "--resolution", "half"},
-                                 {"--radius", "0.2", "--denoise", "bilateral"},
-                                 {"--radius", "0.2", "--resolution", "quarter", "--denoise", "box"}}) {
+                                 {"--radius", "0.5", "--denoise", "bilateral"},
+                                 {"--radius", "0.5", "--resolution", "quarter", "--denoise", "box"}}) {
     Options arguments{"run", frame, "-o", ao, "--camera", camera, "--type", "float"};
     arguments.insert(arguments.end(), options.begin(), options.end());
     ASSERT_EQ(run_program(arguments).code, 0);
