@@ -44,6 +44,22 @@ Vector value_at(std::span<const float> raw, std::size_t plane, std::size_t i) {
   return raw.size() == 3 * plane ? Vector{raw[i], raw[i + plane], raw[i + 2 * plane]} : Vector{raw[i], 0, 0};
 }
 
+Vector decoded_normal(std::span<const float> raw, std::size_t pixels, std::size_t i, NormalEncoding encoding, bool unorm) {
+  Vector n{};
+  for (std::size_t c = 0; c * pixels < raw.size(); c++) n[c] = unorm ? 2 * raw[c * pixels + i] - 1.0 : raw[c * pixels + i];
+  const double squared = n[0] * n[0] + n[1] * n[1];
+  if (encoding == NormalEncoding::octahedral) {
+    n[2] = 1 - std::abs(n[0]) - std::abs(n[1]);
+    if (n[2] < 0) n = {std::copysign(1 - std::abs(n[1]), n[0]), std::copysign(1 - std::abs(n[0]), n[1]), n[2]};
+  } else if (encoding == NormalEncoding::spheremap) {
+    const double across = 2 * std::sqrt(std::max(1 - squared, 0.0));
+    n = squared <= 1 ? Vector{across * n[0], across * n[1], 2 * squared - 1} : Vector{};
+  } else if (raw.size() < 3 * pixels) {
+    n[2] = std::sqrt(std::max(1 - squared, 0.0));
+  }
+  return n;
+}
+
 /// Relative second difference of three evenly spaced values.
 double bend(double before, double here, double after) { return std::abs(before + after - 2 * here) / std::abs(here); }
 
@@ -112,18 +128,7 @@ std::vector<float> planar_depths(std::span<const float> raw, const DepthMap& map
 std::vector<float> decoded_normals(std::span<const float> raw, std::size_t pixels, NormalEncoding encoding, bool unorm) {
   std::vector<float> decoded(3 * pixels);
   for (std::size_t i = 0; i < pixels; i++) {
-    Vector n{};
-    for (std::size_t c = 0; c * pixels < raw.size(); c++) n[c] = unorm ? 2 * raw[c * pixels + i] - 1.0 : raw[c * pixels + i];
-    const double squared = n[0] * n[0] + n[1] * n[1];
-    if (encoding == NormalEncoding::octahedral) {
-      n[2] = 1 - std::abs(n[0]) - std::abs(n[1]);
-      if (n[2] < 0) n = {std::copysign(1 - std::abs(n[1]), n[0]), std::copysign(1 - std::abs(n[0]), n[1]), n[2]};
-    } else if (encoding == NormalEncoding::spheremap) {
-      const double across = 2 * std::sqrt(std::max(1 - squared, 0.0));
-      n = squared <= 1 ? Vector{across * n[0], across * n[1], 2 * squared - 1} : Vector{};
-    } else if (raw.size() < 3 * pixels) {
-      n[2] = std::sqrt(std::max(1 - squared, 0.0));
-    }
+    const Vector n = decoded_normal(raw, pixels, i, encoding, unorm);
     for (std::size_t c = 0; c < 3; c++) decoded[c * pixels + i] = float(n[c]);
   }
   return decoded;
@@ -183,7 +188,8 @@ std::vector<DepthScore> score_depth(std::span<const float> raw, const View& view
   return scores;
 }
 
-std::vector<NormalScore> score_normals(std::span<const float> normal, std::span<const float> planar, const Camera& camera, const View& view) {
+std::vector<NormalScore> score_normals(std::span<const float> normal, NormalEncoding encoding, bool unorm, std::span<const float> raw, const DepthMap& map,
+                                       const Camera& camera, const View& view) {
   std::vector<NormalScore> scores;
   for (const NormalSpace space : {NormalSpace::world, NormalSpace::view})
     for (const NormalFlips flips : {NormalFlips{}, NormalFlips{false, false, true}, NormalFlips{false, true, false}, NormalFlips{false, true, true}})
@@ -191,26 +197,27 @@ std::vector<NormalScore> score_normals(std::span<const float> normal, std::span<
   std::vector<Matrix3> rotations;
   for (const auto& score : scores) rotations.push_back(view_from_normal(camera, score.space, score.flips));
 
-  const std::size_t plane = planar.size();
+  const std::size_t plane = std::size_t(view.size.x) * std::size_t(view.size.y);
   const int stride = sparseness(view);
   const double least_cosine = std::cos(20 * 3.14159265358979 / 180);
   std::size_t count = 0;
   for (int y = 1; y + 1 < view.size.y; y += stride)
     for (int x = 1; x + 1 < view.size.x; x += stride) {
-      const auto depth = [&](int dx, int dy) { return double(planar[index_of(view, x + dx, y + dy)]); };
+      const auto depth = [&](int dx, int dy) {
+        return planar_depth(map, value_at(raw, plane, index_of(view, x + dx, y + dy)), ray_length(view, x + dx, y + dy));
+      };
       const double left = depth(-1, 0), right = depth(1, 0), up = depth(0, -1), down = depth(0, 1), here = depth(0, 0);
       if (!(bend(1 / left, 1 / here, 1 / right) < 0.005) || !(bend(1 / up, 1 / here, 1 / down) < 0.005)) continue;
       const auto difference = [](const Vector& a, const Vector& b) { return Vector{a[0] - b[0], a[1] - b[1], a[2] - b[2]}; };
       const Vector surface = cross(difference(position_at(view, x, y + 1, down), position_at(view, x, y - 1, up)),
                                    difference(position_at(view, x + 1, y, right), position_at(view, x - 1, y, left)));
       const Vector p = position_at(view, x, y, here), eye = view.orthographic ? Vector{0, 0, 1} : Vector{-p[0], -p[1], -p[2]};
-      const std::size_t i = index_of(view, x, y);
-      const Vector raw{normal[i], normal[i + plane], normal[i + 2 * plane]};
-      const double lengths = std::sqrt(dot(raw, raw) * dot(surface, surface));
+      const Vector vector = decoded_normal(normal, plane, index_of(view, x, y), encoding, unorm);
+      const double lengths = std::sqrt(dot(vector, vector) * dot(surface, surface));
       if (!(lengths > 0) || std::isinf(lengths)) continue;
       count++;
       for (std::size_t k = 0; k < scores.size(); k++) {
-        const Vector n = times(rotations[k], raw);
+        const Vector n = times(rotations[k], vector);
         scores[k].facing += dot(n, eye) > 0;
         scores[k].agreement += dot(n, surface) > least_cosine * lengths;
       }

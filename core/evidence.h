@@ -46,7 +46,7 @@ std::optional<double> reprojection_error(std::span<const float> position, Positi
 /// A way to read depth and how well the frame's flat surfaces agree with it.
 struct DepthScore {
   DepthKind kind;
-  double straight = 0;  // share of the sampled smooth places where by this kind alone 1/z is affine over the image, as it is on every plane
+  double straight = 0;  // share of the smooth places where by this kind alone 1/z is affine over the image, as it is on every plane
 };
 /// planar, ray and inverse (which stands for all that is affine in 1/z: device depth too), the best first. Empty where too little of the frame is smooth.
 std::vector<DepthScore> score_depth(std::span<const float> raw, const View& view, double sky);
@@ -58,9 +58,10 @@ struct NormalScore {
   double facing = 0;     // share that faces the camera, as all that is visible does
   double agreement = 0;  // share within 20 degrees of the normal that depth gives
 };
-/// World space (where the camera knows it) and view space, with flips of y and z, the best agreement first. `normal` is decoded: planes x, y, z of any length.
+/// World space (where the camera knows it) and view space, with flips of y and z, the best agreement first; `normal` and `raw` are as in the file.
 /// Empty where too little of the frame is smooth.
-std::vector<NormalScore> score_normals(std::span<const float> normal, std::span<const float> planar, const Camera& camera, const View& view);
+std::vector<NormalScore> score_normals(std::span<const float> normal, NormalEncoding encoding, bool unorm, std::span<const float> raw, const DepthMap& map,
+                                       const Camera& camera, const View& view);
 
 /// "xz", or "none".
 std::string to_string(const NormalFlips& flips);

@@ -36,8 +36,8 @@ struct AovNames {
   bool may_be_two = false;
 };
 
-const AovNames kDepthNames{"depth", "--depth-channel", {"depth", "z", "zdepth", "vrayzdepth", "z-depth"}, {{"z"}, {"depth"}, {"r"}, {"y"}}, {{"z"}, {"depth"}, {"zdepth"}, {"pz"}}, {{"r"}, {"y"}}};
-const AovNames kNormalNames{"normal", "--normal-channels", {"normal", "n", "nn", "normals", "ns"}, {{"x", "y", "z"}, {"r", "g", "b"}}, {{"nx", "ny", "nz"}}, {{"x", "y", "z"}, {"r", "g", "b"}}, false, true};
+const AovNames kDepthNames{"depth", "--depth-channel", {"depth", "z", "zdepth", "vrayzdepth", "z-depth", "__depth", "cgeometry_zdepth", "finalimagemovierenderqueue_worlddepth"}, {{"z"}, {"depth"}, {"r"}, {"y"}}, {{"z"}, {"depth"}, {"zdepth"}, {"pz"}}, {{"r"}, {"y"}}};
+const AovNames kNormalNames{"normal", "--normal-channels", {"normal", "n", "nn", "normals", "ns", "__nworld", "cgeometry_normalsshading"}, {{"x", "y", "z"}, {"r", "g", "b"}}, {{"nx", "ny", "nz"}}, {{"x", "y", "z"}, {"r", "g", "b"}}, false, true};
 const AovNames kPositionNames{"position", "--position-channels", {"position", "p", "pworld", "__pworld", "worldposition", "cgeometry_worldposition"}, {{"x", "y", "z"}, {"r", "g", "b"}}, {{"px", "py", "pz"}}, {{"x", "y", "z"}, {"r", "g", "b"}}};
 const AovNames kBeautyNames{"beauty", "--beauty-channels", {"combined", "rgba", "beauty"}, {{"r", "g", "b"}, {"red", "green", "blue"}}, {{"r", "g", "b"}}, {}, true};
 const AovNames kIndirectNames{"indirect diffuse", "--layer", {"diffind", "diffuse indirect", "diffuse_indirect", "indirectdiffuse", "gi"}, {{"r", "g", "b"}}, {}, {}};

@@ -93,7 +93,7 @@ void add_planar(Json& depth, std::span<const float> raw, const std::vector<float
       depth["scores"].push_back({{"kind", alcove::name_of(score.kind)}, {"straight", score.straight}});
 }
 
-Json normals_json(std::span<const float> normal, std::span<const float> raw, const std::vector<float>& planar, const FrameSource& source,
+Json normals_json(std::span<const float> normal, std::span<const float> raw, const FrameSource& source,
                   const InputSettings& settings) {
   const NormalStatistics s = normal_statistics(normal, raw, depth_map_of(source, settings));
   Json json = {{"space", name_of(source.normal_space)},
@@ -104,8 +104,9 @@ Json normals_json(std::span<const float> normal, std::span<const float> raw, con
                {"least", s.least},
                {"most", s.most},
                {"scores", Json::array()}};
-  const auto decoded = decoded_normals(normal, source.data.pixels(), source.normal_encoding, source.normal_unorm);
-  for (const auto& score : score_normals(decoded, planar, source.camera, view_of(source.camera, source.data, source.display))) {
+  const View view = view_of(source.camera, source.data, source.display);
+  for (const auto& score :
+       score_normals(normal, source.normal_encoding, source.normal_unorm, raw, depth_map_of(source, settings), source.camera, view)) {
     const Json entry = {{"space", name_of(score.space)}, {"flips", to_string(score.flips)}, {"agreement", score.agreement}, {"facing", score.facing}};
     json["scores"].push_back(entry);
     if (score.space == source.normal_space && to_string(score.flips) == to_string(source.flip_normal))
@@ -249,7 +250,7 @@ Inspection inspect_frame(const InputSettings& settings, int frame) {
     json["depth"]["kind"] = alcove::name_of(source.depth_kind);
     const auto planar = planar_depths(depth, depth_map_of(source, reading), view_of(source.camera, source.data, source.display));
     add_planar(json["depth"], depth, planar, source, reading);
-    if (!normal.empty()) json["normals"] = normals_json(normal, depth, planar, source, reading);
+    if (!normal.empty()) json["normals"] = normals_json(normal, depth, source, reading);
     json["command"] = command_of(source, settings, json["depth"], has_camera);
   } catch (const Error& error) {
     json["missing"].push_back(error.what());

@@ -135,9 +135,7 @@ class Settlement {
   void settle_space() {
     if (settings_.normal_space != NormalSpace::automatic || source_.camera.normal_space != NormalSpace::automatic) return;
     const bool has_world = source_.camera.view_from_world.has_value();
-    const auto planar = planar_depths(depth_, depth_map_of(source_, settings_), view_);
-    auto scores =
-        score_normals(decoded_normals(normal_, source_.data.pixels(), source_.normal_encoding, source_.normal_unorm), planar, source_.camera, view_);
+    auto scores = score_normals(normal_, source_.normal_encoding, source_.normal_unorm, depth_, depth_map_of(source_, settings_), source_.camera, view_);
     const NormalFlips given = settings_.flip_normal;
     if (given.x || given.y || given.z) scores.clear();  // flips were tried on top of none
     const auto usual = std::ranges::find_if(scores, [](const auto& s) { return s.space == NormalSpace::world && to_string(s.flips) == "none"; });

@@ -114,7 +114,8 @@ class GBuffer : public testing::Test {
 
 TEST_F(GBuffer, depth_is_found_under_renderers_names) {
   for (const Names& channels : {Names{"ViewLayer.Depth.Z"}, {"View Layer.Depth.Z"}, {"Z"}, {"z"}, {"depth.Z"}, {"depth"}, {"Depth.R"}, {"DEPTH.Z"},
-                                {"zDepth.Z"}, {"zdepth.R"}, {"VRayZDepth.R"}, {"Z.R"}, {"Pz"}, {"Z-Depth.R"}, {"beauty.depth.Z"}})
+                                {"zDepth.Z"}, {"zdepth.R"}, {"VRayZDepth.R"}, {"Z.R"}, {"Pz"}, {"Z-Depth.R"}, {"beauty.depth.Z"}, {"__depth.r"}, {"CGeometry_ZDepth.R"},
+                                {"FinalImageMovieRenderQueue_WorldDepth.R"}})
     try {
       write(channels);
       EXPECT_EQ(depth(), channels);
@@ -132,7 +133,8 @@ TEST_F(GBuffer, normals_are_found_under_renderers_names) {
   for (const Names& channels : {Names{"ViewLayer.Normal.X", "ViewLayer.Normal.Y", "ViewLayer.Normal.Z"}, {"N.X", "N.Y", "N.Z"}, {"n.x", "n.y", "n.z"},
                                 {"N.R", "N.G", "N.B"}, {"Nn.x", "Nn.y", "Nn.z"}, {"normals.X", "normals.Y", "normals.Z"},
                                 {"NORMAL.x", "NORMAL.y", "NORMAL.z"}, {"Ns.X", "Ns.Y", "Ns.Z"}, {"normal.R", "normal.G", "normal.B"},
-                                {"NX", "NY", "NZ"}}) {
+                                {"NX", "NY", "NZ"}, {"__Nworld.x", "__Nworld.y", "__Nworld.z"},
+                                {"CGeometry_NormalsShading.R", "CGeometry_NormalsShading.G", "CGeometry_NormalsShading.B"}}) {
     Names all = channels;
     all.push_back("Z");
     write(all);
