@@ -112,7 +112,6 @@ GBuffer prepare(gpu::Recorder& gpu, const FrameInputs& frame) {
   params.view_from_normal_z = to_vec3(frame.view_from_normal[2]);
   const DepthMap& map = frame.depth_map;
   params.depth_axis = to_vec3(map.axis);
-  params.depth_form = map.form;
   params.along_ray = map.along_ray ? 1 : 0;
   params.origin = float(map.origin);
   params.base = float(map.base);
@@ -120,7 +119,6 @@ GBuffer prepare(gpu::Recorder& gpu, const FrameInputs& frame) {
   params.sky_below = float(map.sky_below);
   params.sky_above = float(map.sky_above);
   params.sky_depth = float(map.sky_depth);
-  params.normal_form = normal_form_of(frame);
   params.normal_unorm = frame.normal_unorm ? 1 : 0;
   gpu.clear(*gbuffer.counts);
   gpu.dispatch("prepare", params,
@@ -129,7 +127,7 @@ GBuffer prepare(gpu::Recorder& gpu, const FrameInputs& frame) {
                 {kPrepareDepth, *gbuffer.depth},
                 {kPrepareNormal, *gbuffer.normal},
                 {kPrepareCounts, *gbuffer.counts}},
-               extent_of(frame.view));
+               extent_of(frame.view), {map.form, normal_form_of(frame)});
   return gbuffer;
 }
 

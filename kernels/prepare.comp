@@ -13,6 +13,8 @@
 #include "normal.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
+layout(constant_id = kPrepareDepthFormId) const uint kDepthForm = kDepthLinear;
+layout(constant_id = kPrepareNormalFormId) const uint kNormalForm = kNormalVector;
 layout(scalar, push_constant) uniform Push { PrepareParams params; };
 layout(scalar, binding = kPrepareRawDepth) readonly buffer RawDepth { float raw_depth[]; };
 layout(scalar, binding = kPrepareRawNormal) readonly buffer RawNormal { float raw_normal[]; };
@@ -30,7 +32,7 @@ float planar_depth(ivec2 pixel) {
   const int index = index_of(params.view, pixel);
   const float raw = raw_depth[index];
   float z;
-  if (params.depth_form == kDepthPosition) {
+  if (kDepthForm == kDepthPosition) {
     const int plane = params.view.size.x * params.view.size.y;
     const vec3 position = vec3(raw, raw_depth[index + plane], raw_depth[index + 2 * plane]);
     if (position == vec3(0)) return kSkyDepth;
@@ -38,8 +40,8 @@ float planar_depth(ivec2 pixel) {
   } else {
     if (!(raw > params.sky_below && raw < params.sky_above)) return kSkyDepth;
     const float value = params.slope * (raw - params.origin);
-    z = params.depth_form == kDepthReciprocal ? 1.0 / (params.base + value)
-        : params.depth_form == kDepthExponential ? params.base * (exp(value) - 1.0) : params.base + value;
+    z = kDepthForm == kDepthReciprocal ? 1.0 / (params.base + value)
+        : kDepthForm == kDepthExponential ? params.base * (exp(value) - 1.0) : params.base + value;
   }
   if (!(z > 0.0 && z < params.sky_depth)) return kSkyDepth;
   const vec2 t = tangent_of(params.view, vec2(pixel) + 0.5);
@@ -51,10 +53,10 @@ float planar_depth(ivec2 pixel) {
 vec3 decoded_normal(int index) {
   const int plane = params.view.size.x * params.view.size.y;
   vec3 raw = vec3(raw_normal[index], raw_normal[index + plane], 0);
-  if (params.normal_form == kNormalVector) raw.z = raw_normal[index + 2 * plane];
+  if (kNormalForm == kNormalVector) raw.z = raw_normal[index + 2 * plane];
   if (params.normal_unorm != 0) raw = 2.0 * raw - 1.0;
   const float squared = dot(raw.xy, raw.xy);
-  switch (params.normal_form) {
+  switch (kNormalForm) {
     case kNormalXy: return vec3(raw.xy, sqrt(max(1.0 - squared, 0.0)));
     case kNormalOctahedral: return octahedral_direction(raw.xy);
     case kNormalSpheremap: return squared <= 1.0 ? vec3(2.0 * sqrt(1.0 - squared) * raw.xy, 2.0 * squared - 1.0) : vec3(0);
@@ -114,7 +116,7 @@ void main() {
 
   const vec3 position = position_of(params.view, vec2(pixel) + 0.5, z), eye = toward_eye(params.view, position);
   vec3 n = vec3(0);
-  if (params.normal_form != kNormalNone) {
+  if (kNormalForm != kNormalNone) {
     const vec3 raw = decoded_normal(index);
     n = vec3(dot(params.view_from_normal_x, raw), dot(params.view_from_normal_y, raw), dot(params.view_from_normal_z, raw));
   }
@@ -123,7 +125,7 @@ void main() {
     n /= size;
   } else {
     n = normal_from_depth(pixel, position, eye);
-    if (params.normal_form != kNormalNone) atomicAdd(counts.repaired_normals, 1u);
+    if (kNormalForm != kNormalNone) atomicAdd(counts.repaired_normals, 1u);
   }
   normal[index] = pack_normal(facing(n, eye));
 }

@@ -22,19 +22,21 @@ ALCOVE_CONSTANT uint kNormalXy = 2;          // x, y of a unit vector with z >= 
 ALCOVE_CONSTANT uint kNormalOctahedral = 3;  // two coordinates in [-1, 1]
 ALCOVE_CONSTANT uint kNormalSpheremap = 4;   // two coordinates in [-1, 1]
 
+// Specialization constants: with every form in one kernel it takes twice as long on lavapipe, which computes both sides of a choice.
+ALCOVE_CONSTANT uint kPrepareDepthFormId = 0;   // one of kDepth*
+ALCOVE_CONSTANT uint kPrepareNormalFormId = 1;  // one of kNormal*
+
 struct PrepareParams {
   View view;
   vec3 view_from_normal_x;  // rows of the rotation from the normals' space to view space
   vec3 view_from_normal_y;
   vec3 view_from_normal_z;
   vec3 depth_axis;          // scene units a unit of the file, of kDepthPosition
-  uint depth_form;          // one of kDepth*
   uint along_ray;           // 0 or 1: what the form gives is the distance to the eye
   float origin, base, slope;  // see the forms; z in scene units
   float sky_below;          // raw depth at or below it is sky
   float sky_above;          // raw depth at or above it is sky
   float sky_depth;          // a distance at or beyond it is sky, scene units
-  uint normal_form;         // one of kNormal*
   uint normal_unorm;        // 0 or 1: the file holds 0.5 + 0.5 n
 };
 ALCOVE_PARAMS(PrepareParams)
