@@ -81,7 +81,7 @@ void main() {
   const vec2 noise = pixel_noise(pixel + params.noise_origin, params.noise_shift);
   float blocked = 0.0, whole = 0.0;
   for (uint s = 0u; s < kSlices; s++) {
-    const Slice slice = slice_at(view, r, kPi * (float(s) + noise.x) / float(kSlices));
+    const Slice slice = slice_at(view, r, s, kSlices, noise.x);
     if (slice.weight < kLeastWeight) continue;
     whole += slice.share * slice.weight * (slice.cos_gamma + slice.gamma * slice.sin_gamma);
     const float shift = fract(noise.x * 7.0 + noise.y * 13.0 + kGolden * float(s));

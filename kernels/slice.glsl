@@ -84,14 +84,15 @@ Receiver receiver_at(View view, ivec2 pixel, float z, vec3 normal, float radius)
 }
 
 /// The slice of an azimuth. Slices near the normal hold most of the cosine-weighted hemisphere where it is seen aslant: up to tan of its tilt times as much
-/// as those across. They are drawn that much more often, by pulling even azimuths towards the normal as an ellipse does, and weigh the less: with one or two
-/// slices a pixel the ratio of blocked to whole would else be biased.
-Slice slice_at(View view, Receiver r, float azimuth) {
+/// as those across. A lone slice is drawn that much more often there, by pulling its azimuth towards the normal as an ellipse does, and weighs the less: the ratio
+/// of blocked to whole would else be biased. The more slices a pixel has, the less this matters, and the less they are pulled.
+Slice slice_at(View view, Receiver r, uint index, uint slices, float jitter) {
+  const float azimuth = kPi * (float(index) + jitter) / float(slices);
   vec3 x, y;
   basis_of(r.eye, x, y);
   const float cos_tilt = dot(r.normal, r.eye), sin_tilt = sqrt(max(0.0, 1.0 - cos_tilt * cos_tilt));
   const vec3 even = cos(azimuth) * x + sin(azimuth) * y, across = (r.normal - cos_tilt * r.eye) / max(sin_tilt, 1e-3);
-  const float pull = sqrt(cos_tilt / (cos_tilt + angle_of(cos_tilt, sin_tilt) * sin_tilt));
+  const float pull = mix(1.0, sqrt(cos_tilt / (cos_tilt + angle_of(cos_tilt, sin_tilt) * sin_tilt)), 1.0 / float(slices));
   Slice s;
   s.t = normalize(pull * even + (1.0 - pull) * dot(even, across) * across);
   const float along = dot(s.t, across);
