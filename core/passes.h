@@ -3,6 +3,7 @@
 #pragma once
 
 #include "core/camera.h"
+#include "core/debug_view.h"
 #include "core/gpu/recorder.h"
 #include "core/settings.h"
 
@@ -22,6 +23,10 @@ struct FrameInputs {
   gpu::Buffer* beauty = nullptr;         // planes r, g, b, and a where has_alpha
   gpu::Buffer* indirect = nullptr;       // planes r, g, b
   gpu::Buffer* diffuse_color = nullptr;  // planes r, g, b
+  gpu::Buffer* material_ao = nullptr;    // a plane
+  gpu::Buffer* albedo = nullptr;         // planes r, g, b; for multi-bounce
+  double albedo_value = 0;               // where there are no planes of it
+  Matrix3 aov_from_view{};               // rotation to the space of the directions that are written
   bool has_alpha = false;
 };
 
@@ -33,15 +38,33 @@ struct GBuffer {
   gpu::Buffer* counts;  // one FrameCounts, for the host
 };
 
-GBuffer prepare(gpu::Recorder& gpu, const FrameInputs& frame);
+/// `depth_use`: Use::download where the host reads the depth. `prefix`: before the names of its buffers, where there is another G-buffer already.
+GBuffer prepare(gpu::Recorder& gpu, const FrameInputs& frame, gpu::Use depth_use = gpu::Use::device, const std::string& prefix = "");
 /// Visibility a pixel, by the estimator of the settings.
 gpu::Buffer& estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings);
 gpu::Buffer& horizon(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings);
 gpu::Buffer& bitmask(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings);
 gpu::Buffer& hbao(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings);
 gpu::Buffer& crytek(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings);
-gpu::Buffer& shape(gpu::Recorder& gpu, const gpu::Buffer& ao, const View& view, const EstimatorSettings& settings);
-/// The beauty's planes, for the host.
-gpu::Buffer& composite(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& ao, const FrameInputs& frame);
+/// Whether the settings ask for any shaping.
+bool shapes(const EstimatorSettings& settings);
+gpu::Buffer& shape(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& ao, const FrameInputs& frame, const EstimatorSettings& settings);
+/// `bent`: the mean open direction a pixel, packed as the normals are.
+gpu::Buffer& specular_occlusion(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& bent, const gpu::Buffer& ao, const EstimatorSettings& settings);
+/// Visibility for each of red, green and blue.
+gpu::Buffer& multi_bounce(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& ao, const FrameInputs& frame);
+/// The beauty's planes, for the host. `ao`: one plane, or three where output.multi_bounce.
+gpu::Buffer& composite(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& ao, const FrameInputs& frame, const OutputSettings& output);
+/// Packed directions as planes x, y, z of that name, for the host.
+gpu::Buffer& directions(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& packed, const std::string& name, const FrameInputs& frame);
+
+/// A number a pixel for a debug view; kSkyDepth for sky.
+struct DebugPlane {
+  const DebugView* view;
+  ivec2 size;  // px
+  gpu::Buffer* values;
+};
+/// `raw_ao`: a visibility a pixel of the G-buffer; null where the view does not show it.
+DebugPlane debug(gpu::Recorder& gpu, const DebugView& view, const GBuffer& gbuffer, const gpu::Buffer* raw_ao, const FrameInputs& frame);
 
 }  // namespace alcove
