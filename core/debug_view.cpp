@@ -19,12 +19,12 @@ namespace {
 constexpr std::array kViews{
     DebugView{"raw-depth", "raw depth: the channel as the file holds it", kDebugValue, DebugSource::raw_depth, DebugScale::percentile, 0, 0, false},
     DebugView{"linear-depth", "linear depth: distance along the optical axis, scene units", kDebugPlanarDepth, DebugSource::none, DebugScale::percentile, 0, 0, false},
-    DebugView{"view-z", "view z: z in view space, scene units, in equal factors", kDebugViewZ, DebugSource::none, DebugScale::percentile_logarithmic, 0, 0, false},
+    DebugView{"view-z", "view z: z in view space, scene units (logarithmic)", kDebugViewZ, DebugSource::none, DebugScale::percentile_logarithmic, 0, 0, false},
     DebugView{"view-normal-z", "view normal z: 1 faces along the optical axis", kDebugNormalZ, DebugSource::none, DebugScale::fixed, -1, 1, false},
-    DebugView{"reconstruction", "reconstruction: degrees between the normals and those from depth", kDebugNormalAngle, DebugSource::normals_from_depth,
+    DebugView{"reconstruction", "reconstruction: degrees between the normals and those from depth; 30 and more are one", kDebugNormalAngle, DebugSource::normals_from_depth,
               DebugScale::fixed, 0, 30, false},
     DebugView{"raw-ao", "raw AO: as estimated, before any later pass; 1 is open", kDebugValue, DebugSource::raw_ao, DebugScale::fixed, 0, 1, true},
-    DebugView{"edges", "edges: a neighbour's distance from the tangent plane, part of the depth", kDebugEdge, DebugSource::none, DebugScale::fixed_logarithmic, 1e-4f,
+    DebugView{"edges", "edges: a neighbour's distance from the tangent plane, part of the depth (logarithmic)", kDebugEdge, DebugSource::none, DebugScale::fixed_logarithmic, 1e-4f,
               1, false},
 };
 

@@ -54,7 +54,7 @@ std::vector<char> encode_png(const std::string& name, int width, int height, int
 
 constexpr int kLegend = 48, kMargin = 8, kStripX = 110, kStrip = 200, kStripHeight = 14;  // px
 constexpr int kLeastWidth = 560, kLargestPixel = 8;                                       // px
-constexpr std::array kSkyColor{0.55f, 0.35f, 0.6f};                                       // display values; neither grey nor on the ramp
+constexpr std::array kSkyColor{0.74f, 0.4f, 0.36f};                                       // display values; neither grey nor on the ramp
 
 /// Display values of a place on the scale.
 std::array<float, 3> color_at(const OIIO::ImageBuf& ramp, float place, bool is_grey) {
