@@ -152,6 +152,19 @@ void read_albedo(const std::string& text, InputSettings& settings) {
   settings.albedo_value = is_number ? std::optional(value) : std::nullopt;
 }
 
+void read_kernel(const std::string& text, EstimatorSettings& settings) {
+  settings.denoise_kernel.clear();
+  for (const auto& word : CLI::detail::split(text, ',')) {
+    double weight = 0;
+    if (!CLI::detail::lexical_cast(word, weight) || !(weight >= 0) || std::isinf(weight))
+      throw CLI::ValidationError("--denoise-kernel", fmt::format("{} is no weight of 0 or more", word));
+    settings.denoise_kernel.push_back(weight);
+  }
+  const std::size_t count = settings.denoise_kernel.size();
+  if (count < 2 || count > 9) throw CLI::ValidationError("--denoise-kernel", fmt::format("{} has {} weights, not 2 to 9", text, count));
+  if (settings.denoise_kernel.front() == 0) throw CLI::ValidationError("--denoise-kernel", fmt::format("{} has no weight at the centre", text));
+}
+
 void add_input_rows(Table& table, InputSettings& s) {
   table.group("Input");
   table.text("--depth", s.depth, "FILE", "an EXR of the depth alone; else it is in INPUT");
@@ -187,6 +200,7 @@ void add_estimator_rows(Table& table, RunOptions& options) {
   table.number("--radius", s.radius, "scene units", above_to(0, 1e18), "how far occluders reach; must be given, here or in a preset");
   table.choice("--falloff", s.falloff, "how a hit's weight fades towards the radius; none: all within it block fully");
   table.number("--falloff-start", s.falloff_start, "of the radius", below_and_at_least(0, 1), "where the falloff begins");
+  table.number("--falloff-end", s.falloff_end, "of the radius", above_to(0, 1), "where the falloff ends: nothing beyond blocks");
   table.number("--slices", s.slices, "a pixel", between(1, 64), "directions that are searched");
   table.number("--steps", s.steps, "a side", between(1, 4096), "samples to each side of a slice");
   table.number("--samples", s.samples, "a pixel", between(4, 64), "of crytek, in the hemisphere");
@@ -197,8 +211,15 @@ void add_estimator_rows(Table& table, RunOptions& options) {
                "of crytek, by the depth dz between receiver and hit; none: every hit counts fully; ratio: smoothstep(0, 1, radius / dz); smoothstep: 1 - smoothstep(0, radius, dz)");
   table.row("--thickness", "auto|infinite|NUMBER", "scene units", "", "how far an occluder goes on behind what is seen of it; auto: as deep as it is wide", "infinite",
             [&s](CLI::App& app) { return app.add_option_function<std::string>("--thickness", [&s](const std::string& text) { read_thickness(text, s); }); });
-  table.choice("--resolution", s.resolution, "of the estimate");
-  table.choice("--denoise", s.denoise, "smooths the noise of the estimate");
+  table.choice("--resolution", s.resolution, "of the estimate; a half or a quarter takes the nearest surface of every 2 x 2 or 4 x 4 pixels");
+  table.choice("--denoise", s.denoise, "smooths each surface: bilateral: by a Gaussian or --denoise-kernel; box: by an even 4 x 4");
+  table.number("--denoise-radius", s.denoise_radius, "pixels of the estimate", between(1, 8), "how far the bilateral denoiser reaches to each side");
+  table.row("--denoise-kernel", "W0,W1,...", "", "2 to 9 weights", "of the bilateral denoiser, from the centre outwards, of any sum; they set its radius", "",
+            [&s](CLI::App& app) {
+              return app.add_option_function<std::string>("--denoise-kernel", [&s](const std::string& text) { read_kernel(text, s); });
+            });
+  table.number("--denoise-depth-sigma", s.denoise_depth_sigma, "of the depth", between(0, 100),
+               "pixels that far apart weigh 1/e: exp(-|dz| / (SIGMA z)), z the nearer; 0: weighs by the distance from each other's plane");
   table.number("--intensity", s.intensity, "", between(0, 100), "factor on the occlusion");
   table.number("--power", s.power, "", above_to(0, 100), "exponent of the visibility");
   table.number("--fade-start", s.fade_start, "scene units", between(0, 1e30), "depth where the AO begins to fade to 1; with --fade-end");

@@ -217,7 +217,8 @@ FrameReport run_frame(gpu::Device& device, gpu::Recorder& gpu, const Settings& s
   report.passes = gpu.passes();
   for (const auto& pass : report.passes) report.compute_ms += pass.ms;
   note_counts(report, outputs.counts->as<FrameCounts>()[0], source);
-  report.samples_per_pixel = samples_of(settings.estimator) * double(report.pixels - report.sky_pixels) / double(report.pixels);
+  const double surface = double(report.pixels - report.sky_pixels) / double(report.pixels), factor = double(settings.estimator.resolution);
+  report.samples_per_pixel = samples_of(settings.estimator) * surface / (factor * factor);
 
   const Stopwatch writing;
   write_aovs(source, outputs, settings.output, digest, device.info().name);
@@ -255,6 +256,8 @@ void check_settings(const Settings& settings) {
   if (!settings.estimator.radius && needs_ao(settings.output)) fail(ErrorKind::usage, "no radius: say with --radius how far occluders reach, in scene units");
   if (settings.estimator.estimator != Estimator::crytek && settings.estimator.bias >= 1)
     fail(ErrorKind::usage, "--bias {}: of every estimator but crytek it is the sine of an elevation, below 1", settings.estimator.bias);
+  if (settings.estimator.falloff_end <= settings.estimator.falloff_start)
+    fail(ErrorKind::usage, "--falloff-end {} is not above --falloff-start {}", settings.estimator.falloff_end, settings.estimator.falloff_start);
   if (settings.input.focal.has_value() != settings.input.aperture.has_value())
     fail(ErrorKind::usage, "--focal and --aperture belong together: focal length and width of the film back in mm");
   if (!settings.input.beauty.empty() && settings.output.composite.empty()) fail(ErrorKind::usage, "--beauty is for a composite: name its file with --composite");
@@ -276,11 +279,12 @@ std::string options_digest(const Settings& settings) {
   // Every value on a line of its own, so that no two sets of values make one text.
   std::string text = kVersion;
   const auto add = [&](const auto&... values) { ((text += fmt::format("\n{}", values)), ...); };
-  add(int(e.estimator), e.radius.value_or(0), int(e.falloff), e.falloff_start, e.slices, e.steps, e.intensity, e.power, e.seed);
+  add(int(e.estimator), e.radius.value_or(0), int(e.falloff), e.falloff_start, e.falloff_end, e.slices, e.steps, e.intensity, e.power, e.seed);
   add(e.fade_start.value_or(-1), e.fade_end.value_or(-1), e.roughness, settings.output.multi_bounce, i.albedo_value.value_or(-1), settings.output.fog_density);
   add(settings.output.aovs, int(settings.output.ao_channels), int(settings.output.aov_space), i.material_ao.empty(), i.material_ao_channel, i.albedo.empty(), i.albedo_channels);
   add(e.samples, e.bias, int(e.elevation), int(e.sample_kernel), int(e.range_check));
   add(int(e.thickness), e.thickness_length, int(e.resolution), int(e.denoise));
+  add(e.denoise_radius, fmt::format("{}", fmt::join(e.denoise_kernel, ",")), e.denoise_depth_sigma);
   // The camera by what it says; where files lie is not part of it, so that a job has the same digest wherever its folder is mounted.
   add(i.camera.empty() ? std::string() : read_text(i.camera, "camera", "--camera"));
   add(i.depth_channel, i.normal_channels, i.beauty_channels, i.layer);

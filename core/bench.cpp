@@ -105,13 +105,10 @@ class References {
   References(const LoadedFrame& frame, int slices) : frame_(frame), slices_(slices) {}
 
   const std::vector<float>& of(const EstimatorSettings& settings) {
-    auto& reference = made_[{*settings.radius, settings.falloff, settings.falloff_start}];
+    ReferenceSettings wanted = reference_settings_of(settings);
+    wanted.slices = slices_;
+    auto& reference = made_[{wanted.radius, wanted.falloff, wanted.falloff_start, wanted.thickness, wanted.thickness_length, wanted.bias}];
     if (reference.empty()) {
-      ReferenceSettings wanted;
-      wanted.radius = *settings.radius;
-      wanted.falloff = settings.falloff;
-      wanted.falloff_start = settings.falloff_start;
-      wanted.slices = slices_;
       reference = reference_ao(frame_.host, wanted);
     }
     return reference;
@@ -120,7 +117,7 @@ class References {
  private:
   const LoadedFrame& frame_;
   int slices_;
-  std::map<std::tuple<double, Falloff, double>, std::vector<float>> made_;
+  std::map<std::tuple<double, Falloff, double, ThicknessRule, double, double>, std::vector<float>> made_;
 };
 
 /// Over the surfaces, without the truths' noise where there are two.

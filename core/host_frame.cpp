@@ -38,7 +38,7 @@ HostFrame read_host_frame(const InputSettings& settings, int number) {
   return frame;
 }
 
-HostResult compute_ao(gpu::Recorder& gpu, const HostFrame& frame, const EstimatorSettings& settings) {
+FrameInputs upload(gpu::Recorder& gpu, const HostFrame& frame) {
   if (frame.depth.size() != frame.data.pixels() || (!frame.normal.empty() && frame.normal.size() != 3 * frame.data.pixels()))
     fail(ErrorKind::input, "a frame of {} has {} depth and {} normal values", to_string(frame.data), frame.depth.size(), frame.normal.size());
   const Matrix3 identity{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
@@ -52,8 +52,11 @@ HostResult compute_ao(gpu::Recorder& gpu, const HostFrame& frame, const Estimato
   inputs.view_from_normal = frame.normal_space == NormalSpace::world ? frame.camera.view_from_world.value() : identity;
   inputs.depth = upload(gpu, "raw depth", frame.depth);
   inputs.normal = upload(gpu, "raw normal", frame.normal);
+  return inputs;
+}
 
-  const FrameOutputs outputs = run_chain(gpu, inputs, settings);
+HostResult compute_ao(gpu::Recorder& gpu, const HostFrame& frame, const EstimatorSettings& settings) {
+  const FrameOutputs outputs = run_chain(gpu, upload(gpu, frame), settings);
   gpu.run();
   const auto ao = outputs.ao->as<float>();
   const auto& counts = outputs.counts->as<FrameCounts>()[0];

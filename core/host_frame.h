@@ -8,6 +8,7 @@
 #include "core/camera.h"
 #include "core/gpu/recorder.h"
 #include "core/image.h"
+#include "core/passes.h"
 #include "core/settings.h"
 
 namespace alcove {
@@ -26,6 +27,9 @@ struct HostFrame {
 
 /// Finds and reads the depth and normals that the settings name. Fails as find_frame() and read_planes() do.
 HostFrame read_host_frame(const InputSettings& settings, int frame);
+
+/// The frame in upload buffers, as run_chain() takes it. Fails with ErrorKind::input when its planes do not fill its data window.
+FrameInputs upload(gpu::Recorder& gpu, const HostFrame& frame);
 
 /// What the chain makes of it.
 struct HostResult {

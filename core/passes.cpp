@@ -2,24 +2,33 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/passes.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <vector>
 
 #include "core/error.h"
 #include "kernels/bitmask.h"
 #include "kernels/composite.h"
 #include "kernels/crytek.h"
 #include "kernels/debug.h"
+#include "kernels/denoise.h"
 #include "kernels/directions.h"
+#include "kernels/downsample.h"
 #include "kernels/hbao.h"
 #include "kernels/horizon.h"
 #include "kernels/multi_bounce.h"
 #include "kernels/prepare.h"
 #include "kernels/shape.h"
 #include "kernels/specular_occlusion.h"
+#include "kernels/upsample.h"
 
 namespace alcove {
 namespace {
+
+/// The Gaussian's standard deviation, in radii of the denoiser.
+constexpr double kDenoiseSigma = 0.6;
 
 std::size_t pixels_of(const View& view) { return std::size_t(view.size.x) * std::size_t(view.size.y); }
 std::size_t plane_bytes(const View& view) { return pixels_of(view) * sizeof(float); }
@@ -54,14 +63,42 @@ Params slice_parameters(const GBuffer& gbuffer, const FrameInputs& frame, const 
   const double radius = settings.radius.value();
   Params params{};
   params.view = gbuffer.view;
-  params.radius = float(radius);
+  params.radius = float(radius * settings.falloff_end);
   params.falloff_start = float(radius * settings.falloff_start);
   params.noise_origin = frame.noise_origin;
   params.noise_shift = noise_shift(frame.frame, settings.seed);
   params.thickness = thickness_of(settings);
+  params.bias = float(settings.bias);
   return params;
 }
 std::vector<uint> slice_constants(const EstimatorSettings& settings) { return {uint(settings.slices), uint(settings.steps), uint(settings.falloff)}; }
+
+/// The grid of blocks that the pixels of an estimate stand for: it begins at the display window's corner, so that a crop has the blocks of the whole.
+struct BlockGrid {
+  int factor;      // px of a block in x and in y
+  ivec2 origin;    // blocks from the display window's corner to the first one of the data window
+  ivec2 overhang;  // px of that one outside of the data window
+  ivec2 size;      // blocks
+};
+
+BlockGrid block_grid(const FrameInputs& frame, const EstimatorSettings& settings) {
+  const int factor = int(settings.resolution);
+  const auto floored = [&](int px) { return px / factor - (px % factor < 0 ? 1 : 0); };
+  const ivec2 origin{floored(frame.noise_origin.x), floored(frame.noise_origin.y)};
+  const ivec2 overhang{frame.noise_origin.x - factor * origin.x, frame.noise_origin.y - factor * origin.y};
+  return {factor, origin, overhang, {floored(overhang.x + frame.view.size.x + factor - 1), floored(overhang.y + frame.view.size.y + factor - 1)}};
+}
+
+/// The denoiser's weights from the centre outwards; each is as good as any multiple of it.
+std::vector<double> denoise_weights(const EstimatorSettings& settings) {
+  // The mean of the four boxes of 4 x 4 that hold a pixel: 4 wide, and centred.
+  if (settings.denoise == Denoise::box) return {1, 1, 0.5};
+  if (!settings.denoise_kernel.empty()) return settings.denoise_kernel;
+  std::vector<double> weights;
+  const double sigma = kDenoiseSigma * settings.denoise_radius;
+  for (int i = 0; i <= settings.denoise_radius; i++) weights.push_back(std::exp(-0.5 * i * i / (sigma * sigma)));
+  return weights;
+}
 
 }  // namespace
 
@@ -89,7 +126,28 @@ GBuffer prepare(gpu::Recorder& gpu, const FrameInputs& frame, gpu::Use depth_use
   return gbuffer;
 }
 
-gpu::Buffer& estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings) {
+GBuffer downsample(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings) {
+  const BlockGrid grid = block_grid(frame, settings);
+  const auto size = float(grid.factor);
+  GBuffer low = gbuffer;
+  low.view.size = grid.size;
+  low.view.center = {(gbuffer.view.center.x + float(grid.overhang.x)) / size, (gbuffer.view.center.y + float(grid.overhang.y)) / size};
+  low.view.tangent_per_pixel = {gbuffer.view.tangent_per_pixel.x * size, gbuffer.view.tangent_per_pixel.y * size};
+  low.depth = &gpu.buffer("low depth", plane_bytes(low.view), gpu::Use::device);
+  low.normal = &gpu.buffer("low normal", plane_bytes(low.view), gpu::Use::device);
+  const DownsampleParams params{gbuffer.view, grid.size, grid.overhang};
+  gpu.dispatch("downsample", params,
+               {{kDownsampleDepth, *gbuffer.depth},
+                {kDownsampleNormal, *gbuffer.normal},
+                {kDownsampleLowDepth, *low.depth},
+                {kDownsampleLowNormal, *low.normal}},
+               extent_of(low.view), {uint(grid.factor)});
+  return low;
+}
+
+gpu::Buffer& estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& inputs, const EstimatorSettings& settings) {
+  FrameInputs frame = inputs;
+  frame.noise_origin = block_grid(inputs, settings).origin;
   switch (settings.estimator) {
     case Estimator::gtao: return horizon(gpu, gbuffer, frame, settings);
     case Estimator::bitmask: return bitmask(gpu, gbuffer, frame, settings);
@@ -118,7 +176,7 @@ gpu::Buffer& hbao(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs&
   const double radius = settings.radius.value();
   HbaoParams params{};
   params.view = gbuffer.view;
-  params.radius = float(radius);
+  params.radius = float(radius * settings.falloff_end);
   params.falloff_start = float(radius * settings.falloff_start);
   params.bias = float(settings.bias);
   params.from_surface = settings.elevation == Elevation::surface ? 1 : 0;
@@ -141,6 +199,44 @@ gpu::Buffer& crytek(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInput
   params.noise_shift = noise_shift(frame.frame, settings.seed);
   gpu.dispatch("crytek", params, {{kCrytekDepth, *gbuffer.depth}, {kCrytekNormal, *gbuffer.normal}, {kCrytekAo, ao}}, extent_of(gbuffer.view),
                {uint(settings.samples)});
+  return ao;
+}
+
+gpu::Buffer& denoise(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& ao, const EstimatorSettings& settings) {
+  const std::vector<double> weights = denoise_weights(settings);
+  const auto radius = uint(weights.size() - 1);
+  DenoiseParams params{};
+  params.view = gbuffer.view;
+  params.depth_sigma = float(settings.denoise_depth_sigma);
+  const double sum = 2 * std::accumulate(weights.begin(), weights.end(), 0.0) - weights.front();
+  std::ranges::transform(weights, params.weight, [&](double weight) { return float(weight / sum); });
+  gpu::Buffer& rows = gpu.buffer("denoised rows", plane_bytes(gbuffer.view), gpu::Use::device);
+  gpu::Buffer& result = gpu.buffer("denoised", plane_bytes(gbuffer.view), gpu::Use::download);
+  const auto along = [&](ivec2 axis, const gpu::Buffer& from, const gpu::Buffer& to) {
+    params.axis = axis;
+    const int length = axis.x ? gbuffer.view.size.x : gbuffer.view.size.y, others = axis.x ? gbuffer.view.size.y : gbuffer.view.size.x;
+    gpu.dispatch("denoise", params,
+                 {{kDenoiseAo, from}, {kDenoiseDepth, *gbuffer.depth}, {kDenoiseNormal, *gbuffer.normal}, {kDenoiseResult, to}},
+                 {uint(others), uint((length + kDenoiseRun - 1) / kDenoiseRun)}, {radius, settings.denoise_depth_sigma > 0 ? 1u : 0u});
+  };
+  along({1, 0}, ao, rows);
+  along({0, 1}, rows, result);
+  return result;
+}
+
+gpu::Buffer& upsample(gpu::Recorder& gpu, const GBuffer& gbuffer, const GBuffer& low, const gpu::Buffer& low_ao, const FrameInputs& frame,
+                      const EstimatorSettings& settings) {
+  gpu::Buffer& ao = gpu.buffer("upsampled", plane_bytes(gbuffer.view), gpu::Use::download);
+  const BlockGrid grid = block_grid(frame, settings);
+  const UpsampleParams params{gbuffer.view, grid.size, grid.overhang};
+  gpu.dispatch("upsample", params,
+               {{kUpsampleDepth, *gbuffer.depth},
+                {kUpsampleNormal, *gbuffer.normal},
+                {kUpsampleLowDepth, *low.depth},
+                {kUpsampleLowNormal, *low.normal},
+                {kUpsampleLowAo, low_ao},
+                {kUpsampleAo, ao}},
+               {uint(grid.size.x + 1), uint(grid.size.y + 1)}, {uint(grid.factor)});
   return ao;
 }
 
@@ -215,20 +311,22 @@ gpu::Buffer& directions(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::B
   return planes;
 }
 
-DebugPlane debug(gpu::Recorder& gpu, const DebugView& view, const GBuffer& gbuffer, const gpu::Buffer* raw_ao, const FrameInputs& frame) {
-  const gpu::Buffer* values = gbuffer.normal;
+DebugPlane debug(gpu::Recorder& gpu, const DebugView& view, const GBuffer& gbuffer, const DebugStages& stages, const FrameInputs& frame) {
+  const bool is_stage = view.source == DebugSource::raw_ao || view.source == DebugSource::denoised_ao;
+  const GBuffer& shown = is_stage ? stages.gbuffer : gbuffer;
+  const gpu::Buffer* values = shown.normal;
+  if (is_stage) values = view.source == DebugSource::raw_ao ? stages.raw_ao : stages.denoised_ao;
   if (view.source == DebugSource::raw_depth) values = frame.depth;
-  if (view.source == DebugSource::raw_ao) values = raw_ao;
   if (view.source == DebugSource::normals_from_depth) {
     FrameInputs depth_only = frame;
     depth_only.normal = nullptr;
     values = prepare(gpu, depth_only, gpu::Use::device, "debug ").normal;
   }
-  gpu::Buffer& result = gpu.buffer(std::string("debug ") + view.name, plane_bytes(gbuffer.view), gpu::Use::download);
-  const DebugParams params{gbuffer.view, view.kind};
-  gpu.dispatch("debug", params, {{kDebugDepth, *gbuffer.depth}, {kDebugNormal, *gbuffer.normal}, {kDebugValues, *values}, {kDebugResult, result}},
-               extent_of(gbuffer.view));
-  return {&view, gbuffer.view.size, &result};
+  gpu::Buffer& result = gpu.buffer(std::string("debug ") + view.name, plane_bytes(shown.view), gpu::Use::download);
+  const DebugParams params{shown.view, view.kind};
+  gpu.dispatch("debug", params, {{kDebugDepth, *shown.depth}, {kDebugNormal, *shown.normal}, {kDebugValues, *values}, {kDebugResult, result}},
+               extent_of(shown.view));
+  return {&view, shown.view.size, &result};
 }
 
 }  // namespace alcove

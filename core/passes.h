@@ -40,12 +40,19 @@ struct GBuffer {
 
 /// `depth_use`: Use::download where the host reads the depth. `prefix`: before the names of its buffers, where there is another G-buffer already.
 GBuffer prepare(gpu::Recorder& gpu, const FrameInputs& frame, gpu::Use depth_use = gpu::Use::device, const std::string& prefix = "");
-/// Visibility a pixel, by the estimator of the settings.
+/// The G-buffer of the settings' resolution: its pixels are the blocks of whole pixels of the display window.
+GBuffer downsample(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings);
+/// Visibility a pixel of the G-buffer, by the estimator of the settings.
 gpu::Buffer& estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings);
 gpu::Buffer& horizon(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings);
 gpu::Buffer& bitmask(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings);
 gpu::Buffer& hbao(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings);
 gpu::Buffer& crytek(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings);
+/// Both directions of the settings' filter. `gbuffer` is that of `ao`.
+gpu::Buffer& denoise(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& ao, const EstimatorSettings& settings);
+/// From the pixels of `low` to those of `gbuffer`.
+gpu::Buffer& upsample(gpu::Recorder& gpu, const GBuffer& gbuffer, const GBuffer& low, const gpu::Buffer& ao, const FrameInputs& frame,
+                      const EstimatorSettings& settings);
 /// Whether the settings ask for any shaping.
 bool shapes(const EstimatorSettings& settings);
 gpu::Buffer& shape(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& ao, const FrameInputs& frame, const EstimatorSettings& settings);
@@ -64,7 +71,11 @@ struct DebugPlane {
   ivec2 size;  // px
   gpu::Buffer* values;
 };
-/// `raw_ao`: a visibility a pixel of the G-buffer; null where the view does not show it.
-DebugPlane debug(gpu::Recorder& gpu, const DebugView& view, const GBuffer& gbuffer, const gpu::Buffer* raw_ao, const FrameInputs& frame);
+/// The visibility on its way, at the resolution of the estimate; null where there is none.
+struct DebugStages {
+  GBuffer gbuffer{};
+  const gpu::Buffer *raw_ao = nullptr, *denoised_ao = nullptr;
+};
+DebugPlane debug(gpu::Recorder& gpu, const DebugView& view, const GBuffer& gbuffer, const DebugStages& stages, const FrameInputs& frame);
 
 }  // namespace alcove

@@ -149,7 +149,7 @@ std::pair<double, double> span_between(const Scene& scene, const Receiver& recei
 double blocked_arc(const Scene& scene, const Receiver& receiver, const Side& side, const ReferenceSettings& settings) {
   auto line = line_of(scene, receiver, side, settings);
   set_thickness(scene, line, settings);
-  const double limit = side.gamma + kPi / 2;  // the tangent plane
+  const double limit = side.gamma + kPi / 2, lowest = limit - std::asin(settings.bias);  // the tangent plane; and where blocking begins
   Blocked blocked(side.gamma);
   double sum = 0;
   for (std::size_t i = 1; i < line.size(); i++) {
@@ -159,11 +159,11 @@ double blocked_arc(const Scene& scene, const Receiver& receiver, const Side& sid
       const auto [low, high] = span_between(scene, receiver, side, line[i - 1], line[i], settings.radius);
       const double before = length(line[i - 1].position - receiver.position);
       const double weight = 0.5 * (weight_of(settings, before) + weight_of(settings, distance));
-      if (low > 0) sum += weight * blocked.add(low, std::min(high, limit));
+      if (low > 0 && low <= lowest) sum += weight * blocked.add(low, std::min(high, limit));
     }
     if (line[i].depth == 0 || distance >= settings.radius || distance == 0) continue;
     const double front = angle_of(side, offset);
-    if (front <= 0 || front >= limit) continue;
+    if (front <= 0 || front >= lowest) continue;
     // What is behind the surface, as seen from the eye, blocks too, as far as it is thick and within the sphere of the radius.
     const Vector away = scene.orthographic() ? Vector{0, 0, -1} : normalized(line[i].position);
     const double along = dot(offset, away);
@@ -210,6 +210,19 @@ double visibility(const Scene& scene, const Receiver& receiver, const ReferenceS
 }
 
 }  // namespace
+
+ReferenceSettings reference_settings_of(const EstimatorSettings& settings) {
+  ReferenceSettings reference;
+  reference.radius = *settings.radius * settings.falloff_end;
+  reference.falloff = settings.falloff;
+  reference.falloff_start = settings.falloff_start / settings.falloff_end;
+  reference.thickness = settings.thickness == ThicknessKind::automatic  ? ThicknessRule::width
+                        : settings.thickness == ThicknessKind::infinite ? ThicknessRule::infinite
+                                                                        : ThicknessRule::constant;
+  reference.thickness_length = settings.thickness_length;
+  reference.bias = settings.bias;
+  return reference;
+}
 
 std::vector<float> reference_ao(const HostFrame& frame, const ReferenceSettings& settings) {
   const Scene scene(frame);

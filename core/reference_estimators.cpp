@@ -32,7 +32,8 @@ double smooth(double x) {
 
 double attenuation(const EstimatorSettings& settings, double distance) {
   if (settings.falloff == Falloff::none) return 1;
-  const double start = settings.falloff_start * *settings.radius, x = std::clamp((distance - start) / (*settings.radius - start), 0.0, 1.0);
+  const double start = settings.falloff_start * *settings.radius, end = settings.falloff_end * *settings.radius;
+  const double x = std::clamp((distance - start) / (end - start), 0.0, 1.0);
   return settings.falloff == Falloff::linear ? 1 - x : settings.falloff == Falloff::quadratic ? 1 - x * x : 1 - smooth(x);
 }
 
@@ -74,7 +75,7 @@ double hbao_side(const ReferenceScene& scene, const Receiver& receiver, Vector t
   return sum;
 }
 
-double hbao(const ReferenceScene& scene, const Receiver& receiver, const EstimatorSettings& settings) {
+double hbao_ao(const ReferenceScene& scene, const Receiver& receiver, const EstimatorSettings& settings) {
   double sum = 0, whole = 0;
   for (int i = 0; i < kDirections; i++) {
     const double angle = 2 * kPi * (i + 0.5) / kDirections;
@@ -91,7 +92,7 @@ double range_weight(const EstimatorSettings& settings, double dz) {
   return settings.range_check == RangeCheck::ratio ? smooth(*settings.radius / std::abs(dz)) : 1 - smooth(std::abs(dz) / *settings.radius);
 }
 
-double crytek(const ReferenceScene& scene, const Receiver& receiver, const EstimatorSettings& settings) {
+double crytek_ao(const ReferenceScene& scene, const Receiver& receiver, const EstimatorSettings& settings) {
   const Vector n = receiver.normal, x = normalized(cross(std::abs(n.x) < 0.9 ? Vector{1, 0, 0} : Vector{0, 1, 0}, n)), y = cross(n, x);
   const double z = -receiver.position.z;
   double hidden = 0;
@@ -122,10 +123,7 @@ double crytek(const ReferenceScene& scene, const Receiver& receiver, const Estim
 }
 
 std::vector<float> gtao(const HostFrame& frame, const EstimatorSettings& settings, const std::vector<std::size_t>& pixels) {
-  ReferenceSettings reference;
-  reference.radius = *settings.radius;
-  reference.falloff = settings.falloff;
-  reference.falloff_start = settings.falloff_start;
+  ReferenceSettings reference = reference_settings_of(settings);
   reference.slices = kDirections / 2;
   reference.pixels = pixels;
   return reference_ao(frame, reference);
@@ -145,7 +143,7 @@ std::vector<float> reference_estimate(const HostFrame& frame, const EstimatorSet
   if (settings.estimator == Estimator::gtao) {
     ao = gtao(frame, settings, all);
   } else {
-    const auto estimate = settings.estimator == Estimator::hbao ? hbao : crytek;
+    const auto estimate = settings.estimator == Estimator::hbao ? hbao_ao : crytek_ao;
     for (const std::size_t i : all) {
       const int x = int(i % std::size_t(scene.width())), y = int(i / std::size_t(scene.width()));
       const double z = scene.depth(x, y);

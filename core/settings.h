@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace alcove {
 
@@ -48,6 +49,7 @@ struct EstimatorSettings {
   std::optional<double> radius;      // scene units, > 0; no default, since no number fits all scenes
   Falloff falloff = Falloff::none;   // none: what renderers' own AO passes mean by a distance
   double falloff_start = 0;          // fraction of the radius where the falloff begins, 0 to 1 exclusive
+  double falloff_end = 1;            // fraction of the radius where it ends, above the start to 1; nothing beyond blocks
   int slices = 3;                    // directions a pixel, 1 to 64; fewer than 3 bias a single pixel
   int steps = 6;                     // samples to each side of a slice, 1 to 4096
   int samples = 16;                  // of estimator crytek, in the hemisphere, 4 to 64
@@ -59,6 +61,9 @@ struct EstimatorSettings {
   double thickness_length = 0;       // scene units, > 0; with ThicknessKind::constant
   Resolution resolution = Resolution::full;
   Denoise denoise = Denoise::none;
+  int denoise_radius = 3;            // pixels of the estimate to each side, 1 to 8; with Denoise::bilateral
+  std::vector<double> denoise_kernel;  // instead: 2 to 9 weights from the centre outwards, none negative, the centre's above 0; empty: a Gaussian
+  double denoise_depth_sigma = 0;    // of the depth, 0 to 100: a step by this part weighs 1/e; 0: weighs by plane distance instead
   double intensity = 1;              // factor on the occlusion, 0 to 100
   double power = 1;                  // exponent of the visibility, above 0 to 100
   std::optional<double> fade_start, fade_end;  // scene units of planar depth, both or none, 0 <= start < end: the AO fades to 1 from one to the other

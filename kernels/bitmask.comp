@@ -52,7 +52,7 @@ float search(Receiver r, Side side, Reach reach, float jitter, float shift) {
     const vec2 place = place_of(r, side, beside, z, scale);
     const vec3 delta = offset_to(r, beside, z, scale);
     const float cot = place.y / place.x, distance_sq = dot(delta, delta);
-    const bool blocks = is_above(r, place, distance_sq, beside, z, scale) ? distance_sq < reach.radius_sq : false;
+    const bool blocks = is_above(r, reach, place, distance_sq, beside, z, scale) ? distance_sq < reach.radius_sq : false;
     const bool connected = same_surface(r, reach, z, last_z, offset - last_offset);
     start = connected ? start : place;
     own = connected ? own : false;
@@ -85,7 +85,7 @@ void main() {
     return;
   }
   const Receiver r = receiver_at(view, pixel, z, unpack_normal(normal[index]), params.radius);
-  const Reach reach = reach_of(view, params.radius, params.falloff_start, params.thickness);
+  const Reach reach = reach_of(view, params.radius, params.falloff_start, params.thickness, params.bias);
   const vec2 noise = pixel_noise(pixel + params.noise_origin, params.noise_shift);
   float blocked = 0.0, whole = 0.0;
   for (uint s = 0u; s < kSlices; s++) {

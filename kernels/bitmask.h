@@ -19,6 +19,7 @@ struct BitmaskParams {
   float falloff_start;  // scene units, below the radius
   ivec2 noise_origin;   // px: what to add to a pixel so that crops and tiles share one noise pattern
   vec2 noise_shift;     // in [0, 1): the pattern's shift for this frame and seed
+  float bias;           // sine of the elevation above the tangent plane below which nothing blocks
   float thickness;      // scene units; infinite allowed; 0: as deep as wide
 };
 ALCOVE_PARAMS(BitmaskParams)

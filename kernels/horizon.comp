@@ -115,7 +115,7 @@ float search(Receiver r, Side side, Reach reach, float jitter) {
     const vec2 place = place_of(r, side, beside, z, scale);
     const vec3 delta = offset_to(r, beside, z, scale);
     const float cot = place.y / place.x, distance_sq = dot(delta, delta);
-    const bool above = is_above(r, place, distance_sq, beside, z, scale), within = distance_sq < reach.radius_sq;
+    const bool above = is_above(r, reach, place, distance_sq, beside, z, scale), within = distance_sq < reach.radius_sq;
     const bool blocks = both(above, within);
     const float gap = offset - last_offset;
     const bool connected = endless ? true : same_surface(r, reach, z, last_z, gap);
@@ -168,7 +168,7 @@ void main() {
     return;
   }
   const Receiver r = receiver_at(view, pixel, z, unpack_normal(normal[index]), params.radius);
-  const Reach reach = reach_of(view, params.radius, params.falloff_start, params.thickness);
+  const Reach reach = reach_of(view, params.radius, params.falloff_start, params.thickness, params.bias);
   const vec2 noise = pixel_noise(pixel + params.noise_origin, params.noise_shift);
   float blocked = 0.0, whole = 0.0;
   for (uint s = 0u; s < kSlices; s++) {

@@ -16,3 +16,12 @@ vec3 unpack_normal(uint word) {
   if (n.z < 0.0) n.xy = (1.0 - abs(n.yx)) * mix(vec2(-1), vec2(1), greaterThanEqual(n.xy, vec2(0)));
   return normalize(n);
 }
+
+/// How far a normal is at least turned to the eye, as a cosine. Smaller, and the slices at grazing angles lose their weight to rounding.
+const float kLeastFacing = 1e-3;
+
+/// A visible surface faces the eye: a shading normal that leans away is bent back just far enough.
+vec3 facing(vec3 n, vec3 eye) {
+  const float cosine = dot(n, eye);
+  return cosine < kLeastFacing ? normalize(n + (kLeastFacing - cosine) * eye) : n;
+}

@@ -19,8 +19,6 @@ layout(scalar, binding = kPrepareDepth) writeonly buffer Depth { float depth[]; 
 layout(scalar, binding = kPrepareNormal) writeonly buffer Normal { uint normal[]; };
 layout(scalar, binding = kPrepareCounts) buffer Counts { FrameCounts counts; };
 
-/// How far a normal is at least turned to the eye, as a cosine. Smaller, and the slices at grazing angles lose their weight to rounding.
-const float kLeastFacing = 1e-3;
 /// Normals shorter than this are no direction at all (a background of zeros).
 const float kLeastLength = 1e-6;
 
@@ -101,8 +99,5 @@ void main() {
     n = normal_from_depth(pixel, position, eye);
     if (params.has_normals != 0) atomicAdd(counts.repaired_normals, 1u);
   }
-  // A visible surface faces the eye: a shading normal that leans away is bent back just far enough.
-  const float facing = dot(n, eye);
-  if (facing < kLeastFacing) n = normalize(n + (kLeastFacing - facing) * eye);
-  normal[index] = pack_normal(n);
+  normal[index] = pack_normal(facing(n, eye));
 }

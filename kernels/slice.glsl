@@ -20,6 +20,7 @@ const float kRunSlope = 8.0;
 struct Reach {
   float radius, radius_sq, falloff_start;  // scene units
   float thickness;                         // scene units, infinite allowed; 0: as deep as wide
+  float least_elevation_sq;                // square of the sine of the elevation above the tangent plane below which nothing blocks
   float pixel_size;                        // scene units at unit depth (orthographic: at any)
   int width;                               // of the image, px
 };
@@ -128,14 +129,15 @@ vec2 place_of(Receiver r, Side side, vec2 offset, float z, float scale) {
 }
 
 /// Whether it stands clear of the tangent plane, and before the eye's ray. distance_sq: from the receiver.
-bool is_above(Receiver r, vec2 place, float distance_sq, vec2 offset, float z, float scale) {
+bool is_above(Receiver r, Reach reach, vec2 place, float distance_sq, vec2 offset, float z, float scale) {
   const float height = scale * dot(r.height, offset) + (z - r.z) * r.depth_height;
-  const bool clear = height > 0.0 ? height * height > kLeastElevation * kLeastElevation * distance_sq : false;
+  const bool clear = height > 0.0 ? height * height > reach.least_elevation_sq * distance_sq : false;
   return place.x > 0.0 ? clear : false;
 }
 
-Reach reach_of(View view, float radius, float falloff_start, float thickness) {
-  return Reach(radius, radius * radius, falloff_start, thickness, view.tangent_per_pixel.x, view.size.x);
+Reach reach_of(View view, float radius, float falloff_start, float thickness, float bias) {
+  const float least = max(bias, kLeastElevation);
+  return Reach(radius, radius * radius, falloff_start, thickness, least * least, view.tangent_per_pixel.x, view.size.x);
 }
 
 /// Steps from the receiver to sample k of `steps`, of which `count` are pixels apart; never two samples in one pixel: short reaches are searched pixel by pixel.

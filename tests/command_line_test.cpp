@@ -98,7 +98,9 @@ TEST_F(CommandLine, numbers_out_of_range_name_option_and_range) {
   const std::pair<const char*, std::vector<std::string>> cases[] = {{"--radius", {"1e400", "", "1,5", "1 2", "2e18", "-inf"}},
                                                                     {"--fov", {"0", "180", "nan"}}, {"--slices", {"0", "65", "2.5"}},
                                                                     {"--steps", {"0", "4097"}}, {"--falloff-start", {"1", "-0.1"}},
-                                                                    {"--power", {"0", "101"}}, {"--intensity", {"-1", "inf"}},
+                                                                    {"--power", {"0", "101"}}, {"--denoise-radius", {"0", "9", "1.5"}},
+                                                                    {"--denoise-kernel", {"1", "1,-1", "0,1", "1,,2", "1,x", "1,inf", "1,1,1,1,1,1,1,1,1,1"}},
+                                                                    {"--denoise-depth-sigma", {"-1", "101"}}, {"--intensity", {"-1", "inf"}},
                                                                     {"--seed", {"-1", "4294967296", "0.5"}}, {"--sky", {"0"}}, {"--focal", {"0"}},
                                                                     {"--aperture", {"-36"}}, {"--ortho-width", {"0"}}, {"--depth-scale", {"0", "-1"}},
                                                                     {"--threads", {"-1", "1025"}}};
@@ -145,10 +147,10 @@ TEST_F(CommandLine, printed_config_is_a_preset_that_gives_itself) {
   const std::string odd_name = "a b/\"cam\" = ü.json";
   const std::string printed = config({"--radius", "0.1234567890123", "--camera", odd_name, "--falloff", "smooth", "--falloff-start", "0.25",
                                       "--seed", "4294967295", "--sky", "1e10", "--device", "cpu", "--require-gpu", "--no-pipeline-cache",
-                                      "-v", "--normal-channels", "a.X,b.Y,c.Z", "--type", "float", "-o", "out put.exr",
+                                      "--denoise-kernel", "0.5,0.25,0.125", "-v", "--normal-channels", "a.X,b.Y,c.Z", "--type", "float", "-o", "out put.exr",
                                       "--preset", "draft", "--fov", "60"});
   EXPECT_THAT(printed,
-              AllOf(HasSubstr(odd_name), HasSubstr("0.1234567890123"), HasSubstr("out put.exr"), HasSubstr("a.X,b.Y,c.Z"), HasSubstr("require-gpu")));
+              AllOf(HasSubstr(odd_name), HasSubstr("0.1234567890123"), HasSubstr("out put.exr"), HasSubstr("a.X,b.Y,c.Z"), HasSubstr("0.5,0.25,0.125"), HasSubstr("require-gpu")));
   const std::string preset = folder / "printed.toml";
   write_bytes(preset, printed);
   EXPECT_EQ(config({"--preset", preset}), printed);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <numbers>
 #include <numeric>
 #include <random>
@@ -16,6 +17,7 @@
 #include "tests/block_scene.h"
 #include "tests/device.h"
 #include "tests/difference.h"
+#include "tests/program.h"
 #include "tests/scenes.h"
 
 namespace alcove {
@@ -288,6 +290,31 @@ TEST(Crytek, bias_is_a_depth_in_scene_units) {  // what is nearer to the eye tha
     const bool here = hit.primitive == 0 && std::abs(hit.position.x - d) < 0.011 && std::abs(hit.position.y) < 0.4;
     return here ? 1 - hidden / (2 * kPi / 3 * std::pow(radius, 3)) : kNone;
   }, 0.015, 0.1, 20, "beside the block");
+}
+
+// On the command line.
+
+TEST(CommandLine, tells_how_many_samples_each_estimator_takes) {
+  const test::TemporaryFolder folder;
+  const std::string frame = ALCOVE_SOURCE_DIR "/examples/bench/machine.";
+  for (const auto& [estimator, samples] : {std::pair<std::string, double>{"hbao", 2 * 3 * 5}, {"crytek", 9}}) {
+    const test::Finished finished =
+        test::run_program({"run", frame + "gbuffer.exr", "--camera", frame + "camera.json", "--radius", "0.006", "--estimator", estimator, "--slices", "3",
+                           "--steps", "5", "--samples", "9", "-o", folder / (estimator + ".exr"), "--stats", folder / "stats.json"});
+    ASSERT_EQ(finished.code, 0) << finished;
+    const auto stats = nlohmann::json::parse(test::read_bytes(folder / "stats.json"))["frames"][0];
+    const double surfaces = 1 - stats["sky_pixels"].get<double>() / stats["pixels"].get<double>();
+    EXPECT_DOUBLE_EQ(stats["samples_per_pixel"].get<double>(), samples * surfaces) << estimator;
+  }
+}
+
+TEST(CommandLine, refuses_a_sine_of_one_and_more_as_a_bias) {
+  const test::TemporaryFolder folder;
+  const std::string frame = ALCOVE_SOURCE_DIR "/examples/bench/machine.";
+  const test::Finished finished = test::run_program({"run", frame + "gbuffer.exr", "--camera", frame + "camera.json", "--radius", "1", "--estimator", "hbao",
+                                                     "--bias", "1", "-o", folder / "ao.exr"});
+  EXPECT_EQ(finished.code, 2) << finished;
+  EXPECT_NE(finished.err.find("--bias"), std::string::npos) << finished;
 }
 
 // Both, whatever the variant.

@@ -1,0 +1,25 @@
+// Parameters and bindings of upsample.comp.
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef ALCOVE_UPSAMPLE_H
+#define ALCOVE_UPSAMPLE_H
+#include "shared.h"
+ALCOVE_BEGIN
+
+ALCOVE_CONSTANT uint kUpsampleDepth = 0;      // in: float a pixel, from prepare
+ALCOVE_CONSTANT uint kUpsampleNormal = 1;     // in: uint a pixel, from prepare
+ALCOVE_CONSTANT uint kUpsampleLowDepth = 2;   // in: float a block, from downsample
+ALCOVE_CONSTANT uint kUpsampleLowNormal = 3;  // in: uint a block, from downsample
+ALCOVE_CONSTANT uint kUpsampleLowAo = 4;      // in: float a block, visibility
+ALCOVE_CONSTANT uint kUpsampleAo = 5;         // out: float a pixel, visibility in [0, 1]
+
+ALCOVE_CONSTANT uint kUpsampleFactorId = 0;  // specialization: pixels of a block in x and in y
+
+struct UpsampleParams {
+  View view;       // of the pixels
+  ivec2 low_size;  // blocks
+  ivec2 overhang;  // px: how far the first block reaches beyond the left and upper border
+};
+ALCOVE_PARAMS(UpsampleParams)
+
+ALCOVE_END
+#endif
