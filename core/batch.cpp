@@ -82,7 +82,6 @@ FrameInputs read_frame(gpu::Recorder& gpu, FrameSource& source, const InputSetti
   inputs.view_from_normal = source.normal_space == NormalSpace::world ? source.camera.view_from_world.value_or(identity) : identity;
   inputs.has_alpha = source.beauty.size() == 4;
   inputs.albedo_value = settings.albedo_value.value_or(0);
-  inputs.aov_from_view = identity;
   if (in_world(source, output))
     for (std::size_t row = 0; row < 3; row++)
       for (std::size_t column = 0; column < 3; column++) inputs.aov_from_view[row][column] = (*source.camera.view_from_world)[column][row];
@@ -218,7 +217,7 @@ FrameReport run_frame(gpu::Device& device, gpu::Recorder& gpu, const Settings& s
   for (const auto& pass : report.passes) report.compute_ms += pass.ms;
   note_counts(report, outputs.counts->as<FrameCounts>()[0], source);
   const double surface = double(report.pixels - report.sky_pixels) / double(report.pixels), factor = double(settings.estimator.resolution);
-  report.samples_per_pixel = samples_of(settings.estimator) * surface / (factor * factor);
+  report.samples_per_pixel = !outputs.ao ? 0 : samples_of(settings.estimator) * surface / (factor * factor);
 
   const Stopwatch writing;
   write_aovs(source, outputs, settings.output, digest, device.info().name);

@@ -26,7 +26,7 @@ struct FrameInputs {
   gpu::Buffer* material_ao = nullptr;    // a plane
   gpu::Buffer* albedo = nullptr;         // planes r, g, b; for multi-bounce
   double albedo_value = 0;               // where there are no planes of it
-  Matrix3 aov_from_view{};               // rotation to the space of the directions that are written
+  Matrix3 aov_from_view{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};  // rotation to the space of the directions that are written
   bool has_alpha = false;
 };
 

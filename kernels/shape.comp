@@ -20,8 +20,10 @@ void main() {
   const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   if (any(greaterThanEqual(pixel, params.size))) return;
   const int index = pixel.y * params.size.x + pixel.x;
-  const float base = clamp(1.0 - params.intensity * (1.0 - ao[index]), 0.0, 1.0);
-  float value = base > 0.0 ? pow(base, params.power) : 0.0;
+  // What is not asked for leaves every bit as it is.
+  float value = ao[index];
+  if (params.intensity != 1.0) value = clamp(1.0 - params.intensity * (1.0 - value), 0.0, 1.0);
+  if (params.power != 1.0) value = value > 0.0 ? pow(value, params.power) : 0.0;
   if (params.has_fade != 0) value += (1.0 - value) * clamp((depth[index] - params.fade_start) / (params.fade_end - params.fade_start), 0.0, 1.0);
   if (params.has_material != 0 && depth[index] < kSkyDepth) {
     const float own = material[index];
