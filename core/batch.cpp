@@ -124,7 +124,8 @@ void write_aovs(const FrameSource& source, const FrameOutputs& outputs, const Ou
   for (const auto& aov : aovs_of(settings)) {
     const auto planes = (outputs.*aov.planes)->as<float>();
     const SampleType type = settings.type == OutputType::half_float && !aov.is_float ? SampleType::half_float : SampleType::single_float;
-    for (std::size_t c = 0; c < aov.channels.size(); c++) output.planes.push_back({aov.channels[c], type, planes.subspan(planes.size() > pixels ? c * pixels : 0, pixels)});
+    for (std::size_t c = 0; c < aov.channels.size(); c++)
+      output.planes.push_back({aov.channels[c], type, planes.subspan(planes.size() > pixels ? c * pixels : 0, pixels)});
   }
   if (outputs.normal) output.own_attributes["alcove/normal_space"] = in_world(source, settings) ? "world" : "view";
   write_exr(settings.output, output);
@@ -174,7 +175,8 @@ void note_counts(FrameReport& report, const FrameCounts& counts, const FrameSour
   if (counts.repaired_depth) report.notes.push_back(fmt::format("{} pixels had a depth that is NaN or negative; they count as sky", counts.repaired_depth));
   if (counts.repaired_normals)
     report.notes.push_back(fmt::format("{} pixels had no usable normal; it was reconstructed from depth", counts.repaired_normals));
-  if (counts.repaired_material) report.notes.push_back(fmt::format("{} pixels of the material AO were NaN or infinite; they count as 1", counts.repaired_material));
+  if (counts.repaired_material)
+    report.notes.push_back(fmt::format("{} pixels of the material AO were NaN or infinite; they count as 1", counts.repaired_material));
   if (counts.repaired_beauty) report.notes.push_back(fmt::format("{} pixels of the beauty were NaN or infinite; they are 0 in the composite", counts.repaired_beauty));
   if (source.normal.empty()) report.notes.push_back("there is no normal channel; normals were reconstructed from depth (--normal, --normal-channels)");
 }
@@ -193,7 +195,8 @@ void require_for_outputs(const FrameSource& source, const OutputSettings& settin
     fail(ErrorKind::input, "{}: --multi-bounce is for indirect light, and the frame has no indirect diffuse part for the --composite (--beauty)", file);
   for (const auto* view : debug_views_of(settings))
     if (view->source == DebugSource::normals_from_depth && source.normal.empty())
-      fail(ErrorKind::input, "{}: --debug {} compares the frame's normals with those from depth, and there are none (--normal, --normal-channels)", file, view->name);
+      fail(ErrorKind::input, "{}: --debug {} compares the frame's normals with those from depth, and there are none (--normal, --normal-channels)", file,
+           view->name);
 }
 
 /// `transform`: for the preview of a composite, else null.
@@ -263,8 +266,8 @@ void check_settings(const Settings& settings) {
   check_shading(settings);
   const auto outputs = outputs_of(settings.output);
   for (std::size_t i = 0; i < outputs.size(); i++) {
-    for (const auto* input : {&settings.input.input, &settings.input.depth, &settings.input.normal, &settings.input.beauty, &settings.input.camera, &settings.input.material_ao,
-                              &settings.input.albedo})
+    for (const auto* input : {&settings.input.input, &settings.input.depth, &settings.input.normal, &settings.input.beauty, &settings.input.camera,
+                              &settings.input.material_ao, &settings.input.albedo})
       if (!input->empty() && same_file(*input, outputs[i].path)) fail(ErrorKind::usage, "{}: {} would overwrite an input", outputs[i].path, outputs[i].option);
     for (std::size_t j = 0; j < i; j++)
       if (same_file(outputs[j].path, outputs[i].path))
@@ -279,8 +282,10 @@ std::string options_digest(const Settings& settings) {
   std::string text = kVersion;
   const auto add = [&](const auto&... values) { ((text += fmt::format("\n{}", values)), ...); };
   add(int(e.estimator), e.radius.value_or(0), int(e.falloff), e.falloff_start, e.falloff_end, e.slices, e.steps, e.intensity, e.power, e.seed);
-  add(e.fade_start.value_or(-1), e.fade_end.value_or(-1), e.roughness, settings.output.multi_bounce, i.albedo_value.value_or(-1), settings.output.fog_density);
-  add(settings.output.aovs, int(settings.output.ao_channels), int(settings.output.aov_space), i.material_ao.empty(), i.material_ao_channel, i.albedo.empty(), i.albedo_channels);
+  add(e.fade_start.value_or(-1), e.fade_end.value_or(-1), e.roughness, settings.output.fog_density);
+  add(settings.output.multi_bounce, i.albedo_value.value_or(-1));
+  add(settings.output.aovs, int(settings.output.ao_channels), int(settings.output.aov_space));
+  add(i.material_ao.empty(), i.material_ao_channel, i.albedo.empty(), i.albedo_channels);
   add(e.samples, e.bias, int(e.elevation), int(e.sample_kernel), int(e.range_check));
   add(int(e.thickness), e.thickness_length, int(e.resolution), int(e.denoise));
   add(e.denoise_radius, fmt::format("{}", fmt::join(e.denoise_kernel, ",")), e.denoise_depth_sigma);

@@ -18,18 +18,19 @@ namespace {
 
 constexpr std::array kViews{
     DebugView{"raw-depth", "raw depth: the channel as the file holds it", kDebugValue, DebugSource::raw_depth, DebugScale::percentile, 0, 0, false},
-    DebugView{"linear-depth", "linear depth: distance along the optical axis, scene units", kDebugPlanarDepth, DebugSource::none, DebugScale::percentile, 0, 0, false},
+    DebugView{"linear-depth", "linear depth: distance along the optical axis, scene units", kDebugPlanarDepth, DebugSource::none,
+              DebugScale::percentile, 0, 0, false},
     DebugView{"view-z", "view z: z in view space, scene units (logarithmic)", kDebugViewZ, DebugSource::none, DebugScale::percentile_logarithmic, 0, 0, false},
     DebugView{"view-normal-z", "view normal z: 1 faces along the optical axis", kDebugNormalZ, DebugSource::none, DebugScale::fixed, -1, 1, false},
-    DebugView{"reconstruction", "reconstruction: degrees between the normals and those from depth; 30 and more are one", kDebugNormalAngle, DebugSource::normals_from_depth,
-              DebugScale::fixed, 0, 30, false},
+    DebugView{"reconstruction", "reconstruction: degrees between the normals and those from depth; 30 and more are one", kDebugNormalAngle,
+              DebugSource::normals_from_depth, DebugScale::fixed, 0, 30, false},
     DebugView{"raw-ao", "raw AO: as estimated, at its own resolution; 1 is open", kDebugValue, DebugSource::raw_ao, DebugScale::fixed, 0, 1, true},
     DebugView{"denoised-ao", "denoised AO: before upsampling and shaping; 1 is open", kDebugValue, DebugSource::denoised_ao, DebugScale::fixed, 0, 1, true},
-    DebugView{"edges", "edges: a neighbour's distance from the tangent plane, part of the depth (logarithmic)", kDebugEdge, DebugSource::none, DebugScale::fixed_logarithmic, 1e-4f,
-              1, false},
+    DebugView{"edges", "edges: a neighbour's distance from the tangent plane, part of the depth (logarithmic)", kDebugEdge, DebugSource::none,
+              DebugScale::fixed_logarithmic, 1e-4f, 1, false},
 };
 
-/// Part and rank of the numbers, in place.
+/// The number below which this part of them lies; they are put into another order.
 float percentile(std::vector<float>& values, double part) {
   const auto at = values.begin() + std::ptrdiff_t(part * double(values.size() - 1));
   std::ranges::nth_element(values, at);
@@ -87,7 +88,8 @@ std::string debug_path(const OutputSettings& settings, const DebugView& view) {
 
 void write_debug_view(const std::string& path, const DebugView& view, int width, int height, std::span<const float> values) {
   const auto [low, high] = range_of(view, values);
-  write_whole(path, encode_chart(path, {width, height, places_of(view, values, low, high), view.title, fmt::format("{:.4g}", low), fmt::format("{:.4g}", high), view.is_grey}));
+  const auto text = [](float x) { return fmt::format("{:.4g}", x); };
+  write_whole(path, encode_chart(path, {width, height, places_of(view, values, low, high), view.title, text(low), text(high), view.is_grey}));
 }
 
 }  // namespace alcove

@@ -41,8 +41,10 @@ const AovNames kBeautyNames{"beauty", "--beauty-channels", {"combined", "rgba", 
 const AovNames kIndirectNames{"indirect diffuse", "--layer", {"diffind", "diffuse indirect", "diffuse_indirect", "indirectdiffuse", "gi"}, {{"r", "g", "b"}}, {}, {}};
 const AovNames kDiffuseColorNames{"diffuse colour", "--layer", {"diffcol", "diffuse color"}, {{"r", "g", "b"}}, {}, {}};
 
-const AovNames kMaterialNames{"material AO", "--material-ao-channel", {"ao", "occlusion", "ambient occlusion", "materialao"}, {{"y"}, {"r"}, {"ao"}}, {{"ao"}, {"occlusion"}}, {{"y"}, {"r"}}};
-const AovNames kAlbedoNames{"diffuse colour", "--albedo-channels", {"diffcol", "diffuse color", "albedo", "diffuse_albedo"}, {{"r", "g", "b"}}, {}, {{"r", "g", "b"}}};
+const AovNames kMaterialNames{"material AO", "--material-ao-channel", {"ao", "occlusion", "ambient occlusion", "materialao"},
+                              {{"y"}, {"r"}, {"ao"}}, {{"ao"}, {"occlusion"}}, {{"y"}, {"r"}}};
+const AovNames kAlbedoNames{"diffuse colour", "--albedo-channels", {"diffcol", "diffuse color", "albedo", "diffuse_albedo"},
+                            {{"r", "g", "b"}}, {}, {{"r", "g", "b"}}};
 
 /// The name without the layer; nothing when it lies elsewhere. Without a layer: the name.
 std::optional<std::string> within_layer(const std::string& name, const std::string& layer) {

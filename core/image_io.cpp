@@ -82,7 +82,7 @@ void write_text(OIIO::ImageBuf& picture, const std::string& name, int x, int y, 
 }
 
 std::vector<char> encode_chart(const std::string& name, const Chart& chart) {
-  const int zoom = std::clamp(kLeastWidth / chart.width, 1, kLargestPixel), width = std::max(zoom * chart.width, kLeastWidth), top = zoom * chart.height;
+  const int zoom = std::min((kLeastWidth + chart.width - 1) / chart.width, kLargestPixel), width = std::max(zoom * chart.width, kLeastWidth), top = zoom * chart.height;
   OIIO::ImageBuf picture(OIIO::ImageSpec(width, top + kLegend, 3, OIIO::TypeFloat), OIIO::InitializePixels::Yes);
   const OIIO::ImageBuf ramp = make_ramp();
   const auto fill = [&](int x, int y, int w, int h, std::array<float, 3> color) {

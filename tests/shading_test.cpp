@@ -268,7 +268,8 @@ TEST(SpecularOcclusion, of_a_mirror_is_all_or_nothing) {
   int seen = 0, hidden = 0;
   for (std::size_t i = 0; i < ao.size(); i++) {
     if (is_sky(frame, i)) continue;
-    const double cosine = std::clamp(test::dot(mirror_at(rendering, i), normal_at(frame, i)), -1.0, 1.0), beyond = std::acos(cosine) - std::acos(std::sqrt(1 - ao[i]));
+    const double cosine = std::clamp(test::dot(mirror_at(rendering, i), normal_at(frame, i)), -1.0, 1.0);
+    const double beyond = std::acos(cosine) - std::acos(std::sqrt(1 - ao[i]));
     seen += beyond < -lobe;
     hidden += beyond > lobe;
     if (beyond < -lobe) ASSERT_NEAR(result[i], 1, 1e-5);
