@@ -142,6 +142,8 @@ void write_composite(const FrameSource& source, std::span<const float> composite
                      const std::string& device) {
   ExrOutput output = output_like(source, source.beauty[0], digest, device);
   output.own_attributes["alcove/composite"] = source.indirect.empty() ? "multiply: beauty * ao" : "ambient: beauty - D + D * ao, D = indirect diffuse";
+  if (settings.multi_bounce) output.own_attributes["alcove/composite"] += "; ao with multi-bounce";
+  if (settings.fog_density > 0) output.own_attributes["alcove/composite"] += fmt::format("; ao seen through fog of density {}", settings.fog_density);
   const char* names[] = {"R", "G", "B", "A"};
   for (std::size_t c = 0; c < source.beauty.size(); c++)
     output.planes.push_back({names[c], type_of(source, source.beauty[c]), composite.subspan(c * source.data.pixels(), source.data.pixels())});
@@ -262,7 +264,8 @@ void check_settings(const Settings& settings) {
     fail(ErrorKind::usage, "--falloff-end {} is not above --falloff-start {}", settings.estimator.falloff_end, settings.estimator.falloff_start);
   if (settings.input.focal.has_value() != settings.input.aperture.has_value())
     fail(ErrorKind::usage, "--focal and --aperture belong together: focal length and width of the film back in mm");
-  if (!settings.input.beauty.empty() && settings.output.composite.empty()) fail(ErrorKind::usage, "--beauty is for a composite: name its file with --composite");
+  if (!settings.input.beauty.empty() && settings.output.composite.empty() && !settings.output.multi_bounce)
+    fail(ErrorKind::usage, "--beauty is for a composite: name its file with --composite");
   check_shading(settings);
   const auto outputs = outputs_of(settings.output);
   for (std::size_t i = 0; i < outputs.size(); i++) {

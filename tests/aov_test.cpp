@@ -183,6 +183,7 @@ TEST_F(Aovs, multi_bounce_takes_the_albedo_from_a_number_a_file_or_the_frame) {
   expect_albedo({"--albedo", "0.8"}, [](const std::string&, std::size_t) { return 0.8; });
   expect_albedo({"--albedo", other}, [&](const std::string& c, std::size_t i) { return colors.planes[c][i]; });
   expect_albedo({}, [&](const std::string& c, std::size_t i) { return input.planes["ViewLayer.DiffCol." + c][i]; });
+  expect_albedo({"--beauty", frame}, [&](const std::string& c, std::size_t i) { return input.planes["ViewLayer.DiffCol." + c][i]; });
   expect_albedo({"--albedo-channels", "ViewLayer.DiffInd"}, [&](const std::string& c, std::size_t i) { return input.planes["ViewLayer.DiffInd." + c][i]; });
 }
 
@@ -207,6 +208,9 @@ TEST_F(Aovs, composite_dims_each_colour_of_the_indirect_light_by_its_own_ao_and_
   for (const double density : {0.0, 0.3}) {
     const Image plain = good({"--type", "float", "--multi-bounce", "--composite", composite, "--fog-density", std::to_string(density)});
     const Image result = read_exr_image(composite);
+    const std::string how = text_in(read_header(composite), "alcove/composite");
+    EXPECT_THAT(how, HasSubstr("multi-bounce"));
+    EXPECT_EQ(how.find("fog of density 0.3") != how.npos, density > 0) << how;
     for (std::size_t i = 0; i < plain.data.pixels(); i++) {
       const double x = (double(i % 64) + 0.5 - 32) / 60, y = (double(i / 64) + 0.5 - 18) / 60, distance = in("Depth.Z", i) * std::sqrt(1 + x * x + y * y);
       for (const std::string c : {"R", "G", "B"}) {
