@@ -8,6 +8,7 @@
 namespace alcove {
 
 int run_command(const std::vector<std::string>& arguments);
+int inspect_command(const std::vector<std::string>& arguments);
 int compare_command(const std::vector<std::string>& arguments);
 int bench_command(const std::vector<std::string>& arguments);
 int presets_command(const std::vector<std::string>& arguments);

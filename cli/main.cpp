@@ -22,6 +22,7 @@ struct Command {
 
 constexpr std::array kCommands = {
     Command{"run", alcove::run_command, "compute ambient occlusion from a frame's depth and normals"},
+    Command{"inspect", alcove::inspect_command, "say what a frame holds, how it would be read, and what is missing"},
     Command{"compare", alcove::compare_command, "measure the error of a result against a reference"},
     Command{"bench", alcove::bench_command, "measure device time against error"},
     Command{"presets", alcove::presets_command, "list the presets, or print one"},

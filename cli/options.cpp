@@ -25,7 +25,27 @@ const std::map<std::string, T>& names_of();
 template <>
 const std::map<std::string, DepthKind>& names_of() {
   static const std::map<std::string, DepthKind> names = {
-      {"auto", DepthKind::automatic}, {"planar", DepthKind::planar}, {"ray", DepthKind::ray}, {"inverse", DepthKind::inverse}};
+      {"auto", DepthKind::automatic}, {"planar", DepthKind::planar},         {"ray", DepthKind::ray}, {"inverse", DepthKind::inverse},
+      {"device", DepthKind::device},  {"normalized", DepthKind::normalized}, {"log", DepthKind::log}, {"position", DepthKind::position}};
+  return names;
+}
+template <>
+const std::map<std::string, DeviceRange>& names_of() {
+  static const std::map<std::string, DeviceRange> names = {{"0..1", DeviceRange::zero_to_one}, {"-1..1", DeviceRange::minus_one_to_one}};
+  return names;
+}
+template <>
+const std::map<std::string, PositionSpace>& names_of() {
+  static const std::map<std::string, PositionSpace> names = {{"auto", PositionSpace::automatic}, {"world", PositionSpace::world}, {"view", PositionSpace::view}};
+  return names;
+}
+template <>
+const std::map<std::string, NormalEncoding>& names_of() {
+  static const std::map<std::string, NormalEncoding> names = {{"auto", NormalEncoding::automatic},
+                                                              {"signed", NormalEncoding::signed_float},
+                                                              {"unorm", NormalEncoding::unorm},
+                                                              {"octahedral", NormalEncoding::octahedral},
+                                                              {"spheremap", NormalEncoding::spheremap}};
   return names;
 }
 template <>
@@ -152,6 +172,33 @@ void read_albedo(const std::string& text, InputSettings& settings) {
   settings.albedo_value = is_number ? std::optional(value) : std::nullopt;
 }
 
+/// --far: a distance, or inf.
+void read_far(const std::string& text, std::optional<double>& far) {
+  double value = 0;
+  if (!CLI::detail::lexical_cast(text, value) || !(value > 0)) throw CLI::ValidationError("--far", fmt::format("{} is neither a distance above 0 nor inf", text));
+  far = value;
+}
+
+void read_roi(const std::string& text, std::optional<Region>& roi) {
+  const auto words = CLI::detail::split(text, ',');
+  Region region;
+  int* const numbers[] = {&region.x, &region.y, &region.width, &region.height};
+  bool fine = words.size() == 4;
+  for (std::size_t i = 0; fine && i < 4; i++) fine = CLI::detail::lexical_cast(words[i], *numbers[i]);
+  if (!fine || region.width <= 0 || region.height <= 0) throw CLI::ValidationError("--roi", fmt::format("{} is not X,Y,WIDTH,HEIGHT in whole pixels", text));
+  roi = region;
+}
+
+/// --flip-normal: axes, each once at most.
+void read_flips(const std::string& text, NormalFlips& flips) {
+  flips = {};
+  for (const char axis : text) {
+    bool* flip = axis == 'x' ? &flips.x : axis == 'y' ? &flips.y : axis == 'z' ? &flips.z : nullptr;
+    if (!flip || *flip) throw CLI::ValidationError("--flip-normal", fmt::format("{} is none of x, y, z, xy, xz, yz, xyz", text));
+    *flip = true;
+  }
+}
+
 void read_kernel(const std::string& text, EstimatorSettings& settings) {
   settings.denoise_kernel.clear();
   for (const auto& word : CLI::detail::split(text, ',')) {
@@ -169,20 +216,36 @@ void add_input_rows(Table& table, InputSettings& s) {
   table.group("Input");
   table.text("--depth", s.depth, "FILE", "an EXR of the depth alone; else it is in INPUT");
   table.text("--normal", s.normal, "FILE", "an EXR of the normals alone");
+  table.text("--position", s.position, "FILE", "an EXR of the positions, instead of a depth");
   table.text("--beauty", s.beauty, "FILE", "an EXR of the beauty, and of the indirect diffuse light, for --composite");
   table.text("--material-ao", s.material_ao, "FILE", "an EXR of the materials' own AO, multiplied in");
   table.row("--albedo", "FILE|NUMBER", "", "0 to 1", "an EXR of the diffuse colour for --multi-bounce, or one number; else it is in the beauty's file", "",
             [&s](CLI::App& app) { return app.add_option_function<std::string>("--albedo", [&s](const std::string& text) { read_albedo(text, s); }); });
   table.text("--depth-channel", s.depth_channel, "NAME", "the depth channel; else found by its usual names");
-  table.text("--normal-channels", s.normal_channels, "LAYER|X,Y,Z", "the normal's layer, or its three channels");
+  table.text("--normal-channels", s.normal_channels, "LAYER|X,Y[,Z]", "the normal's layer, or its channels; of two, z is rebuilt");
+  table.text("--position-channels", s.position_channels, "LAYER|X,Y,Z", "the position's layer, or its three channels, instead of a depth");
   table.text("--beauty-channels", s.beauty_channels, "LAYER|R,G,B[,A]", "the beauty's layer, or its channels");
   table.text("--material-ao-channel", s.material_ao_channel, "NAME", "the material AO's channel, of --material-ao or else of INPUT");
   table.text("--albedo-channels", s.albedo_channels, "LAYER|R,G,B", "the diffuse colour's layer, or its channels");
   table.text("--layer", s.layer, "NAME", "look only at this layer or part");
-  table.choice("--depth-kind", s.depth_kind, "planar: along the optical axis; ray: to the eye; inverse: 1/planar; auto: what the camera file says, else planar");
+  table.text("--view", s.view, "NAME", "of a stereo file; else its default view");
+  table.row("--roi", "X,Y,WIDTH,HEIGHT", "px of the display window", "", "compute and write only this region; its surroundings are read as far as occluders reach", "",
+            [&s](CLI::App& app) { return app.add_option_function<std::string>("--roi", [&s](const std::string& text) { read_roi(text, s.roi); }); });
+  table.choice("--depth-kind", s.depth_kind, "planar: along the optical axis; ray: to the eye; inverse: 1/planar; others: see Inputs in the README; auto: what the camera file says, else what fits the frame");
+  table.number("--near", s.depth_range.near, "file units", above(0), "near plane of device or normalized depth; else the camera file's");
+  table.row("--far", "NUMBER|inf", "file units", "above 0", "far plane of device, normalized or log depth; else the camera file's", "",
+            [&s](CLI::App& app) { return app.add_option_function<std::string>("--far", [&s](const std::string& text) { read_far(text, s.depth_range.far); }); });
+  table.flag("--reversed-z", s.depth_range.reversed, "device, normalized or log depth is largest at the near plane");
+  table.choice("--device-range", s.depth_range.device, "of device depth between the planes; -1..1: OpenGL's normalized device coordinates");
+  table.number("--log-constant", s.depth_range.log_constant, "1 / file units", above(0), "C of log depth, z = ((1 + C far)^d - 1) / C");
   table.number("--depth-scale", s.depth_scale, "", above(0), "scene units a unit of the depth channel");
   table.number("--sky", s.sky, "file units", above(0), "depth at or beyond it is sky, as are 0, infinity and NaN");
-  table.choice("--normal-space", s.normal_space, "the space of the normals; auto: what the camera file says, else world");
+  table.choice("--normal-space", s.normal_space, "the space of the normals; auto: what the camera file says, else what fits the frame");
+  table.choice("--normal-encoding", s.normal_encoding, "unorm: 0.5 + 0.5 n; octahedral, spheremap: two channels; auto: signed or unorm by their values");
+  table.row("--flip-normal", "xyz", "", "", "axes of the normals that point the other way, in the normals' own space", "",
+            [&s](CLI::App& app) { return app.add_option_function<std::string>("--flip-normal", [&s](const std::string& text) { read_flips(text, s.flip_normal); }); });
+  table.choice("--position-space", s.position_space, "the space of the positions; auto: the one that puts them onto their pixels");
+  table.flag("--strict", s.strict, "what could only be guessed is an error");
   table.text("--camera", s.camera, "FILE.json", "the camera; see Cameras in the README");
   table.number("--fov", s.fov, "degrees", strictly_between(0, 180), "horizontal field of view, instead of a camera file");
   table.number("--focal", s.focal, "mm", above(0), "focal length, with --aperture, instead of a camera file");
@@ -209,7 +272,7 @@ void add_estimator_rows(Table& table, RunOptions& options) {
   table.choice("--sample-kernel", s.sample_kernel, "of crytek; clustered: more samples near the receiver; uniform: even in volume");
   table.choice("--range-check", s.range_check,
                "of crytek, by the depth dz between receiver and hit; none: every hit counts fully; ratio: smoothstep(0, 1, radius / dz); smoothstep: 1 - smoothstep(0, radius, dz)");
-  table.row("--thickness", "auto|infinite|NUMBER", "scene units", "", "how far an occluder goes on behind what is seen of it; auto: as deep as it is wide", "infinite",
+  table.row("--thickness", "auto|infinite|NUMBER", "scene units", "", "how far an occluder goes on behind what is seen of it; auto: as deep as it is wide", "auto",
             [&s](CLI::App& app) { return app.add_option_function<std::string>("--thickness", [&s](const std::string& text) { read_thickness(text, s); }); });
   table.choice("--resolution", s.resolution, "of the estimate; a half or a quarter takes the nearest surface of every 2 x 2 or 4 x 4 pixels");
   table.choice("--denoise", s.denoise, "smooths each surface: bilateral: by a Gaussian or --denoise-kernel; box: by an even 4 x 4");

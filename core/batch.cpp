@@ -8,7 +8,9 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
+#include <deque>
 #include <filesystem>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <thread>
@@ -21,6 +23,8 @@
 #include "core/file.h"
 #include "core/gbuffer.h"
 #include "core/image_io.h"
+#include "core/region.h"
+#include "core/settle.h"
 #include "core/version.h"
 #include "kernels/prepare.h"
 
@@ -75,11 +79,6 @@ FrameInputs read_frame(gpu::Recorder& gpu, FrameSource& source, const InputSetti
   inputs.view = view_of(source.camera, source.data, source.display);
   inputs.noise_origin = {source.data.x - source.display.x, source.data.y - source.display.y};
   inputs.frame = frame;
-  inputs.depth_kind = source.depth_kind;
-  inputs.depth_scale = settings.depth_scale;
-  inputs.sky = settings.sky;
-  const Matrix3 identity{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-  inputs.view_from_normal = source.normal_space == NormalSpace::world ? source.camera.view_from_world.value_or(identity) : identity;
   inputs.has_alpha = source.beauty.size() == 4;
   inputs.albedo_value = settings.albedo_value.value_or(0);
   if (in_world(source, output))
@@ -101,6 +100,11 @@ FrameInputs read_frame(gpu::Recorder& gpu, FrameSource& source, const InputSetti
   inputs.material_ao = upload("material ao", source.material_ao);
   inputs.albedo = upload("albedo", source.albedo);
   read_planes(source, reads);
+  if (!source.settled) settle(source, settings, inputs.depth->as<float>(), inputs.normal ? inputs.normal->as<float>() : std::span<float>());
+  inputs.depth_map = depth_map_of(source, settings);
+  if (inputs.normal) inputs.view_from_normal = view_from_normal(source.camera, source.normal_space, source.flip_normal);
+  inputs.normal_encoding = source.normal_encoding;
+  inputs.normal_unorm = source.normal_unorm;
   return inputs;
 }
 
@@ -117,12 +121,16 @@ ExrOutput output_like(const FrameSource& source, const ChannelRef& like, const s
   return output;
 }
 
-void write_aovs(const FrameSource& source, const FrameOutputs& outputs, const OutputSettings& settings, const std::string& digest, const std::string& device) {
+/// What is written of a buffer's planes: all, or the region; empty for null.
+using Planes = std::function<std::span<const float>(const gpu::Buffer*)>;
+
+void write_aovs(const FrameSource& source, const FrameOutputs& outputs, const Planes& planes_of, const OutputSettings& settings, const std::string& digest,
+                const std::string& device) {
   ExrOutput output = output_like(source, source.depth[0], digest, device);
   output.compression = settings.compression;
   const std::size_t pixels = source.data.pixels();
   for (const auto& aov : aovs_of(settings)) {
-    const auto planes = (outputs.*aov.planes)->as<float>();
+    const auto planes = planes_of(outputs.*aov.planes);
     const SampleType type = settings.type == OutputType::half_float && !aov.is_float ? SampleType::half_float : SampleType::single_float;
     for (std::size_t c = 0; c < aov.channels.size(); c++)
       output.planes.push_back({aov.channels[c], type, planes.subspan(planes.size() > pixels ? c * pixels : 0, pixels)});
@@ -163,9 +171,10 @@ std::vector<float> displayed(const FrameSource& source, std::span<const float> p
 }
 
 /// The composite through the view transform; AO by itself is data, and shown as it is: no transform.
-void write_preview(const FrameSource& source, const FrameOutputs& outputs, const DisplayTransform* transform, const OutputSettings& settings) {
-  const int planes = outputs.composite ? 3 : 1;
-  auto pixels = displayed(source, (outputs.composite ? outputs.composite : outputs.ao)->as<float>(), planes);
+void write_preview(const FrameSource& source, std::span<const float> ao, std::span<const float> composite, const DisplayTransform* transform,
+                   const OutputSettings& settings) {
+  const int planes = composite.empty() ? 1 : 3;
+  auto pixels = displayed(source, composite.empty() ? ao : composite, planes);
   if (transform) transform->apply(pixels);
   write_png(settings.preview, source.display.width, source.display.height, planes, pixels);
 }
@@ -195,22 +204,26 @@ void require_for_outputs(const FrameSource& source, const OutputSettings& settin
     fail(ErrorKind::input, "{}: --aov-space world needs a camera with world_to_camera: give a --camera file with it", file);
   if (settings.multi_bounce && !source.beauty.empty() && source.indirect.empty())
     fail(ErrorKind::input, "{}: --multi-bounce is for indirect light, and the frame has no indirect diffuse part for the --composite (--beauty)", file);
-  for (const auto* view : debug_views_of(settings))
+  for (const auto* view : debug_views_of(settings)) {
+    if (view->source == DebugSource::raw_depth && source.depth.size() > 1)
+      fail(ErrorKind::input, "{}: --debug {} shows a depth, and the frame has positions: name one with --depth-channel, or see linear-depth", file, view->name);
     if (view->source == DebugSource::normals_from_depth && source.normal.empty())
       fail(ErrorKind::input, "{}: --debug {} compares the frame's normals with those from depth, and there are none (--normal, --normal-channels)", file,
            view->name);
+  }
 }
 
 /// `transform`: for the preview of a composite, else null.
 FrameReport run_frame(gpu::Device& device, gpu::Recorder& gpu, const Settings& settings, const DisplayTransform* transform, const std::string& digest) {
   const Stopwatch total;
   FrameReport report;
-  report.input = settings.input.input.empty() ? settings.input.depth : settings.input.input;
+  report.input = !settings.input.input.empty() ? settings.input.input : settings.input.depth.empty() ? settings.input.position : settings.input.depth;
   report.output = settings.output.output;
   report.frame = frame_number_of(report.input);
 
   const Stopwatch reading;
   FrameSource source = find_frame(settings.input, !settings.output.composite.empty(), report.frame, settings.output.multi_bounce && !settings.input.albedo_value);
+  if (settings.input.roi) restrict_to_region(source, settings);
   require_for_outputs(source, settings.output);
   require_room(source, device.info());
   const FrameInputs inputs = read_frame(gpu, source, settings.input, settings.output, report.frame);
@@ -219,19 +232,27 @@ FrameReport run_frame(gpu::Device& device, gpu::Recorder& gpu, const Settings& s
   const FrameOutputs outputs = run_chain(gpu, inputs, settings.estimator, settings.output);
   gpu.run();
   report.passes = gpu.passes();
+  report.notes = source.notes;
   for (const auto& pass : report.passes) report.compute_ms += pass.ms;
   note_counts(report, outputs.counts->as<FrameCounts>()[0], source);
   const double surface = double(report.pixels - report.sky_pixels) / double(report.pixels), factor = double(settings.estimator.resolution);
   report.samples_per_pixel = !outputs.ao ? 0 : samples_of(settings.estimator) * surface / (factor * factor);
 
   const Stopwatch writing;
-  write_aovs(source, outputs, settings.output, digest, device.info().name);
+  const Window computed = source.data;
+  if (source.region) source.data = *source.region;
+  std::deque<std::vector<float>> regions;
+  const Planes planes = [&](const gpu::Buffer* buffer) {
+    const auto all = buffer ? buffer->as<float>() : std::span<float>();
+    return source.region ? std::span<const float>(regions.emplace_back(cropped(all, computed, *source.region))) : all;
+  };
+  write_aovs(source, outputs, planes, settings.output, digest, device.info().name);
   if (outputs.composite) {
-    write_composite(source, outputs.composite->as<float>(), settings.output, digest, device.info().name);
+    write_composite(source, planes(outputs.composite), settings.output, digest, device.info().name);
     if (source.indirect.empty())
       report.notes.push_back("the frame has no indirect diffuse part: the composite is the whole beauty times AO, which dims direct light too");
   }
-  if (!settings.output.preview.empty()) write_preview(source, outputs, transform, settings.output);
+  if (!settings.output.preview.empty()) write_preview(source, planes(outputs.ao), planes(outputs.composite), transform, settings.output);
   for (const auto& plane : outputs.debug)
     write_debug_view(debug_path(settings.output, *plane.view), *plane.view, plane.size.x, plane.size.y, plane.values->as<float>());
   report.write_ms = writing.ms();
@@ -256,7 +277,9 @@ void check_shading(const Settings& settings) {
 
 void check_settings(const Settings& settings) {
   if (settings.output.output.empty()) fail(ErrorKind::usage, "no output: name the AO file with -o FILE.exr");
-  if (settings.input.input.empty() && settings.input.depth.empty()) fail(ErrorKind::usage, "no input: name an EXR file, or one with --depth");
+  if (settings.input.input.empty() && settings.input.depth.empty() && settings.input.position.empty())
+    fail(ErrorKind::usage, "no input: name an EXR file, or one with --depth or --position");
+  if (!settings.input.depth.empty() && !settings.input.position.empty()) fail(ErrorKind::usage, "--depth and --position are two ways to say the same: give one");
   if (!settings.estimator.radius && needs_ao(settings.output)) fail(ErrorKind::usage, "no radius: say with --radius how far occluders reach, in scene units");
   if (settings.estimator.estimator != Estimator::crytek && settings.estimator.bias >= 1)
     fail(ErrorKind::usage, "--bias {}: of every estimator but crytek it is the sine of an elevation, below 1", settings.estimator.bias);
@@ -269,8 +292,8 @@ void check_settings(const Settings& settings) {
   check_shading(settings);
   const auto outputs = outputs_of(settings.output);
   for (std::size_t i = 0; i < outputs.size(); i++) {
-    for (const auto* input : {&settings.input.input, &settings.input.depth, &settings.input.normal, &settings.input.beauty, &settings.input.camera,
-                              &settings.input.material_ao, &settings.input.albedo})
+    for (const auto* input : {&settings.input.input, &settings.input.depth, &settings.input.normal, &settings.input.position, &settings.input.beauty,
+                              &settings.input.camera, &settings.input.material_ao, &settings.input.albedo})
       if (!input->empty() && same_file(*input, outputs[i].path)) fail(ErrorKind::usage, "{}: {} would overwrite an input", outputs[i].path, outputs[i].option);
     for (std::size_t j = 0; j < i; j++)
       if (same_file(outputs[j].path, outputs[i].path))
@@ -294,8 +317,13 @@ std::string options_digest(const Settings& settings) {
   add(e.denoise_radius, fmt::format("{}", fmt::join(e.denoise_kernel, ",")), e.denoise_depth_sigma);
   // The camera by what it says; where files lie is not part of it, so that a job has the same digest wherever its folder is mounted.
   add(i.camera.empty() ? std::string() : read_text(i.camera, "camera", "--camera"));
-  add(i.depth_channel, i.normal_channels, i.beauty_channels, i.layer);
+  add(i.depth_channel, i.normal_channels, i.beauty_channels, i.layer, i.view);
   add(int(i.depth_kind), i.depth_scale, i.sky, int(i.normal_space), i.fov.value_or(0), i.focal.value_or(0), i.aperture.value_or(0), i.ortho_width.value_or(0));
+  const DepthRange& range = i.depth_range;
+  add(range.near.value_or(0), range.far.value_or(0), range.reversed, int(range.device), range.log_constant);
+  const Region roi = i.roi.value_or(Region{});
+  add(roi.x, roi.y, roi.width, roi.height);
+  add(int(i.normal_encoding), i.flip_normal.x, i.flip_normal.y, i.flip_normal.z, i.position_channels, int(i.position_space), i.position.empty());
   add(int(settings.output.type));
   return fmt::format("{:016x}", XXH3_64bits(text.data(), text.size()));
 }

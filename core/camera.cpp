@@ -3,6 +3,7 @@
 #include "core/camera.h"
 
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
@@ -74,18 +75,27 @@ Json frame_entry(const CameraFile& file, int frame) {
   file.refuse("frames", fmt::format("has no frame {}", frame));
 }
 
-/// The rotation in world_to_camera: orthonormal once a uniform scale is divided out.
-std::optional<Matrix3> view_from_world(const CameraFile& file) {
+/// Whether the file says that its camera space is left-handed, looking along +z.
+bool left_handed(const CameraFile& file) {
+  const std::string text = file.text("camera_space");
+  if (text.empty() || starts_with(text, "right-handed")) return false;
+  if (starts_with(text, "left-handed")) return true;
+  file.refuse("camera_space", fmt::format("must begin with right-handed (looks along -z) or left-handed (looks along +z), not \"{}\"", text));
+}
+
+/// Fills in the rotation and offset of world_to_camera: orthonormal once a uniform scale is divided out.
+void read_view_from_world(const CameraFile& file, Camera& camera) {
   const char* field = "world_to_camera";
   const Json* value = file.find(field);
-  if (!value) return std::nullopt;
+  if (!value) return;
   Matrix3 m{};
+  std::array<double, 3> offset{};
   bool fine = value->is_array() && value->size() == 4;
   for (std::size_t row = 0; fine && row < 4; row++) {
     fine = (*value)[row].is_array() && (*value)[row].size() == 4;
     for (std::size_t column = 0; fine && column < 4; column++) {
       fine = (*value)[row][column].is_number() && std::isfinite((*value)[row][column].get<double>());
-      if (fine && row < 3 && column < 3) m[row][column] = (*value)[row][column].get<double>();
+      if (fine && row < 3) (column < 3 ? m[row][column] : offset[row]) = (*value)[row][column].get<double>();
     }
   }
   if (!fine) file.refuse(field, "must be 4 rows of 4 finite numbers");
@@ -102,10 +112,39 @@ std::optional<Matrix3> view_from_world(const CameraFile& file) {
       if (!(squared > 0) || !(std::abs(dot(a, b) / squared - (a == b)) < kTolerance)) file.refuse(field, "is no rotation with a translation");
   const double determinant = m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) - m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
                              m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
-  if (determinant < 0) file.refuse(field, "mirrors space; the camera looks along -z with x right and y up, right-handed");
-  for (auto& row : m)
-    for (auto& x : row) x /= std::sqrt(squared);
-  return m;
+  if (determinant < 0 && !camera.left_handed)
+    file.refuse(field, "mirrors space; the camera looks along -z with x right and y up, right-handed, unless \"camera_space\" says left-handed");
+  for (std::size_t row = 0; row < 3; row++) {
+    const double scale = (camera.left_handed && row == 2 ? -1 : 1) / std::sqrt(squared);
+    for (auto& x : m[row]) x *= scale;
+    camera.view_from_world_offset[row] = offset[row] * scale;
+  }
+  camera.view_from_world = m;
+}
+
+/// Near or far; "inf" is a far plane that is none.
+std::optional<double> clip_plane(const CameraFile& file, const char* field) {
+  const Json* value = file.find(field);
+  if (!value || value->is_null()) return std::nullopt;
+  if (value->is_string() && starts_with(file.text(field), "inf")) return std::numeric_limits<double>::infinity();
+  return file.positive(field);
+}
+
+/// By its word, or by the last row of the matrix that games have: 0 0 0 1 divides by nothing.
+bool is_orthographic(const CameraFile& file) {
+  const Json* value = file.find("projection");
+  if (value && value->is_array() && value->size() == 4 && (*value)[3].is_array() && (*value)[3].size() == 4 && (*value)[3][3].is_number())
+    return (*value)[3][3].get<double>() == 1;
+  const std::string projection = file.text("projection");
+  if (!projection.empty() && projection != "perspective" && projection != "orthographic")
+    file.refuse("projection", fmt::format("must be perspective or orthographic, not \"{}\"", projection));
+  return projection == "orthographic";
+}
+
+bool truth(const CameraFile& file, const char* field) {
+  const Json* value = file.find(field);
+  if (value && !value->is_boolean()) file.refuse(field, "must be true or false, not " + value->dump());
+  return value && value->get<bool>();
 }
 
 DepthKind depth_kind(const CameraFile& file) {
@@ -115,7 +154,10 @@ DepthKind depth_kind(const CameraFile& file) {
   if (starts_with(text, "planar")) return DepthKind::planar;
   if (starts_with(text, "ray")) return DepthKind::ray;
   if (starts_with(text, "inverse")) return DepthKind::inverse;
-  file.refuse(field, fmt::format("must begin with planar, ray or inverse, not \"{}\"", text));
+  if (starts_with(text, "device")) return DepthKind::device;
+  if (starts_with(text, "normalized")) return DepthKind::normalized;
+  if (starts_with(text, "log")) return DepthKind::log;
+  file.refuse(field, fmt::format("must begin with planar, ray, inverse, device, normalized or log, not \"{}\"", text));
 }
 
 NormalSpace normal_space(const CameraFile& file) {
@@ -124,6 +166,16 @@ NormalSpace normal_space(const CameraFile& file) {
   if (text == "world") return NormalSpace::world;
   if (text == "view" || text == "camera") return NormalSpace::view;
   file.refuse("normal_space", fmt::format("must be world or view, not \"{}\"", text));
+}
+
+NormalEncoding normal_encoding(const CameraFile& file) {
+  const std::string text = file.text("normal_encoding");
+  if (text.empty()) return NormalEncoding::automatic;
+  if (starts_with(text, "signed")) return NormalEncoding::signed_float;
+  if (starts_with(text, "unorm")) return NormalEncoding::unorm;
+  if (starts_with(text, "octahedral")) return NormalEncoding::octahedral;
+  if (starts_with(text, "spheremap")) return NormalEncoding::spheremap;
+  file.refuse("normal_encoding", fmt::format("must begin with signed, unorm, octahedral or spheremap, not \"{}\"", text));
 }
 
 /// fx and fy for square tangents: a pixel `aspect` times as wide as high covers that much more in x.
@@ -167,13 +219,15 @@ Camera read_camera(const std::string& path, int frame) {
   camera.fy = file.positive("fy");
   camera.cx = file.number("cx");
   camera.cy = file.number("cy");
-  const std::string projection = file.text("projection");
-  if (!projection.empty() && projection != "perspective" && projection != "orthographic")
-    file.refuse("projection", fmt::format("must be perspective or orthographic, not \"{}\"", projection));
-  camera.orthographic = projection == "orthographic";
-  camera.view_from_world = view_from_world(file);
+  camera.orthographic = is_orthographic(file);
+  camera.left_handed = left_handed(file);
+  read_view_from_world(file, camera);
+  camera.near = clip_plane(file, "near");
+  camera.far = clip_plane(file, "far");
+  camera.reversed_z = truth(file, "reversed_z");
   camera.depth_kind = depth_kind(file);
   camera.normal_space = normal_space(file);
+  camera.normal_encoding = normal_encoding(file);
   if (file.find("pixel_aspect")) file.positive("pixel_aspect");
   return camera;
 }
@@ -185,7 +239,17 @@ Camera camera_for(const InputSettings& settings, const Window& display, double p
   if (settings.focal && settings.aperture) return centred(display, 2 * half_width * *settings.focal / *settings.aperture, pixel_aspect, false);
   if (settings.ortho_width) return centred(display, 2 * half_width / *settings.ortho_width, pixel_aspect, true);
   fail(ErrorKind::usage, "no camera for {}: give --camera FILE.json, or --fov DEGREES, or --focal MM with --aperture MM, or --ortho-width UNITS",
-       settings.input.empty() ? settings.depth : settings.input);
+       !settings.input.empty() ? settings.input : settings.depth.empty() ? settings.position : settings.depth);
+}
+
+Matrix3 view_from_normal(const Camera& camera, NormalSpace space, const NormalFlips& flips) {
+  Matrix3 m = space == NormalSpace::world ? camera.view_from_world.value() : Matrix3{{{1, 0, 0}, {0, 1, 0}, {0, 0, camera.left_handed ? -1.0 : 1.0}}};
+  for (auto& row : m) {
+    if (flips.x) row[0] = -row[0];
+    if (flips.y) row[1] = -row[1];
+    if (flips.z) row[2] = -row[2];
+  }
+  return m;
 }
 
 View view_of(const Camera& camera, const Window& data, const Window& display) {

@@ -87,6 +87,7 @@ std::vector<float> read_depth(const CompareSettings& settings, const Window& dat
   input.depth = settings.depth;
   input.depth_channel = settings.depth_channel;
   input.sky = settings.sky;
+  input.depth_kind = DepthKind::planar;
   input.fov = 90;  // the search for channels asks for a camera, which depth alone has no use for
   input.normal_space = NormalSpace::view;
   FrameSource source = find_frame(input, false, 0);

@@ -8,7 +8,11 @@
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
 #include <ImfIO.h>
+#include <ImfFloatAttribute.h>
+#include <ImfDoubleAttribute.h>
 #include <ImfInputPart.h>
+#include <ImfIntAttribute.h>
+#include <ImfMatrixAttribute.h>
 #include <ImfMultiPartInputFile.h>
 #include <ImfOutputFile.h>
 #include <ImfPartType.h>
@@ -54,7 +58,8 @@ std::string one_line(const std::exception& error) {
 }
 
 ExrPart describe(const Imf::Header& header) {
-  ExrPart part{header.hasName() ? header.name() : std::string(), window_of(header.dataWindow()), {}};
+  ExrPart part{header.hasName() ? header.name() : std::string(), header.hasView() ? header.view() : std::string(), {}, window_of(header.dataWindow()), {}};
+  if (Imf::hasMultiView(header)) part.multi_view = Imf::multiView(header);
   for (auto channel = header.channels().begin(); channel != header.channels().end(); ++channel) {
     const auto& c = channel.channel();
     part.channels.push_back({channel.name(), type_of(c.type), c.xSampling != 1 || c.ySampling != 1});
@@ -88,6 +93,18 @@ bool describes_storage(const std::string& name) {
                                                "name",       "preview",          "dwaCompressionLevel", "zipCompressionLevel", "multiView",
                                                "deepImageState", "maxSamplesPerPixel", "BlenderMultiChannel"};
   return kNames.contains(name) || name.rfind("cryptomatte/", 0) == 0;
+}
+
+std::string text_of(const Imf::Attribute& attribute) {
+  if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&attribute)) return text->value();
+  if (const auto* number = dynamic_cast<const Imf::FloatAttribute*>(&attribute)) return fmt::format("{}", number->value());
+  if (const auto* number = dynamic_cast<const Imf::DoubleAttribute*>(&attribute)) return fmt::format("{}", number->value());
+  if (const auto* number = dynamic_cast<const Imf::IntAttribute*>(&attribute)) return fmt::format("{}", number->value());
+  if (const auto* matrix = dynamic_cast<const Imf::M44fAttribute*>(&attribute)) {
+    const auto values = std::span(matrix->value().getValue(), 16);
+    return fmt::format("{}", fmt::join(values, " "));
+  }
+  return std::string("(") + attribute.typeName() + ")";
 }
 
 Imf::Compression compression_of(const std::string& name) {
@@ -167,6 +184,14 @@ std::shared_ptr<const ExrAttributes> ExrFile::attributes(int part) const {
     if (std::string_view(attribute.name()) != "view" && attributes->header.find(attribute.name()) == attributes->header.end())
       attributes->header.insert(attribute.name(), attribute.attribute());
   return attributes;
+}
+
+std::map<std::string, std::string> ExrFile::attribute_texts(int part) const {
+  const Imf::Header& header = impl_->file->header(part);
+  std::map<std::string, std::string> texts;
+  for (auto entry = header.begin(); entry != header.end(); ++entry)
+    if (!describes_storage(entry.name())) texts[entry.name()] = text_of(entry.attribute());
+  return texts;
 }
 
 void ExrFile::read(std::span<const ExrRead> reads) {

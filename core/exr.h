@@ -25,6 +25,8 @@ struct ExrChannel {
 
 struct ExrPart {
   std::string name;  // empty in single-part files
+  std::string view;  // of stereo files with a part a view; empty: none
+  std::vector<std::string> multi_view;  // of stereo files whose channels name their view, the default first; empty: none
   Window data;
   std::vector<ExrChannel> channels;
 };
@@ -53,6 +55,8 @@ class ExrFile {
   /// Width over height of a pixel.
   double pixel_aspect() const;
   std::shared_ptr<const ExrAttributes> attributes(int part) const;
+  /// The attributes of a part that do not describe its storage, as text: numbers, strings and matrices by value, all else by type.
+  std::map<std::string, std::string> attribute_texts(int part) const;
 
   /// Reads the channels as float, each part decoded once. Fails on truncated or corrupt data.
   void read(std::span<const ExrRead> reads);

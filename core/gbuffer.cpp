@@ -33,10 +33,12 @@ struct AovNames {
   Components bare;      // by themselves in any file
   Components alone;     // by themselves in a file that was given for this AOV only
   bool may_have_alpha = false;
+  bool may_be_two = false;
 };
 
-const AovNames kDepthNames{"depth", "--depth-channel", {"depth", "z", "zdepth", "vrayzdepth", "z-depth"}, {{"z"}, {"depth"}, {"r"}, {"y"}}, {{"z"}, {"depth"}, {"zdepth"}, {"pz"}}, {{"r"}, {"y"}}};
-const AovNames kNormalNames{"normal", "--normal-channels", {"normal", "n", "nn", "normals", "ns"}, {{"x", "y", "z"}, {"r", "g", "b"}}, {{"nx", "ny", "nz"}}, {{"x", "y", "z"}, {"r", "g", "b"}}};
+const AovNames kDepthNames{"depth", "--depth-channel", {"depth", "z", "zdepth", "vrayzdepth", "z-depth", "__depth", "cgeometry_zdepth", "finalimagemovierenderqueue_worlddepth"}, {{"z"}, {"depth"}, {"r"}, {"y"}}, {{"z"}, {"depth"}, {"zdepth"}, {"pz"}}, {{"r"}, {"y"}}};
+const AovNames kNormalNames{"normal", "--normal-channels", {"normal", "n", "nn", "normals", "ns", "__nworld", "cgeometry_normalsshading"}, {{"x", "y", "z"}, {"r", "g", "b"}}, {{"nx", "ny", "nz"}}, {{"x", "y", "z"}, {"r", "g", "b"}}, false, true};
+const AovNames kPositionNames{"position", "--position-channels", {"position", "p", "pworld", "__pworld", "worldposition", "cgeometry_worldposition"}, {{"x", "y", "z"}, {"r", "g", "b"}}, {{"px", "py", "pz"}}, {{"x", "y", "z"}, {"r", "g", "b"}}};
 const AovNames kBeautyNames{"beauty", "--beauty-channels", {"combined", "rgba", "beauty"}, {{"r", "g", "b"}, {"red", "green", "blue"}}, {{"r", "g", "b"}}, {}, true};
 const AovNames kIndirectNames{"indirect diffuse", "--layer", {"diffind", "diffuse indirect", "diffuse_indirect", "indirectdiffuse", "gi"}, {{"r", "g", "b"}}, {}, {}};
 const AovNames kDiffuseColorNames{"diffuse colour", "--layer", {"diffcol", "diffuse color"}, {{"r", "g", "b"}}, {}, {}};
@@ -53,15 +55,41 @@ std::optional<std::string> within_layer(const std::string& name, const std::stri
   return lower_case(name).substr(layer.size() + 1);
 }
 
-/// The channels of the chosen layer; all of them without one.
-std::vector<NamedChannel> channels_of(const ExrFile& file, std::size_t index, const std::string& layer) {
+/// The views of a stereo file, the default first; none of any other file.
+std::vector<std::string> views_of(const ExrFile& file) {
+  std::vector<std::string> views;
+  for (const auto& part : file.parts())
+    for (const auto& view : part.multi_view.empty() ? std::vector{part.view} : part.multi_view)
+      if (!view.empty() && std::ranges::find(views, view) == views.end()) views.push_back(view);
+  return views;
+}
+
+/// The name without its view, which stands before the last name part ("depth.right.Z", "right.R"); nothing where it is of another view.
+/// Channels that name no view belong to the first.
+std::optional<std::string> within_view(const std::string& name, const std::vector<std::string>& views, const std::string& view) {
+  if (views.empty()) return name;
+  const std::size_t last = name.rfind('.'), before = last == name.npos || last == 0 ? name.npos : name.rfind('.', last - 1);
+  const std::size_t begin = before == name.npos ? 0 : before + 1;
+  const std::string named = last == name.npos ? "" : name.substr(begin, last - begin);
+  if (std::ranges::find(views, named) == views.end()) return lower_case(view) == lower_case(views.front()) ? std::optional(name) : std::nullopt;
+  if (lower_case(named) != lower_case(view)) return std::nullopt;
+  return name.substr(0, begin) + name.substr(last + 1);
+}
+
+/// The channels of the chosen view and layer; all of them without a layer.
+std::vector<NamedChannel> channels_of(const ExrFile& file, std::size_t index, const std::string& layer, const std::string& chosen_view) {
+  const auto views = views_of(file);
+  const std::string view = chosen_view.empty() && !views.empty() ? views.front() : chosen_view;
   std::vector<NamedChannel> channels;
   for (std::size_t part = 0; part < file.parts().size(); part++) {
     const auto& p = file.parts()[part];
+    if (!p.view.empty() && !view.empty() && lower_case(p.view) != lower_case(view)) continue;
     for (const auto& channel : p.channels) {
+      const auto plain = within_view(channel.name, p.multi_view, view);
+      if (!plain) continue;
       const bool alone = file.parts().size() == 1 || p.name.empty() || channel.name.starts_with(p.name + ".");
       NamedChannel named{{index, int(part), channel.name}, alone ? channel.name : p.name + "." + channel.name, {}, channel.subsampled};
-      for (const auto& name : {named.full, channel.name})
+      for (const auto& name : plain != channel.name ? std::vector{*plain} : std::vector{named.full, channel.name})
         if (const auto spelling = within_layer(name, layer); spelling && (named.spellings.empty() || named.spellings.back() != *spelling))
           named.spellings.push_back(*spelling);
       if (!named.spellings.empty()) channels.push_back(std::move(named));
@@ -79,7 +107,7 @@ std::vector<std::string> full_names(const std::vector<NamedChannel>& channels) {
 /// All that stands before a dot in a full name, once each: "ViewLayer", "ViewLayer.Depth" ...
 std::vector<std::string> layers_of(const ExrFile& file) {
   std::set<std::string> layers;
-  for (const auto& channel : channels_of(file, 0, ""))
+  for (const auto& channel : channels_of(file, 0, "", ""))
     for (std::size_t dot = channel.full.find('.'); dot != channel.full.npos; dot = channel.full.find('.', dot + 1)) layers.insert(channel.full.substr(0, dot));
   return {layers.begin(), layers.end()};
 }
@@ -156,7 +184,7 @@ std::vector<ChannelRef> find_chosen(const ExrFile& file, const std::vector<Named
   if (wanted.size() == 1 && count > 1)
     for (const auto& components : names.in_layer)
       if (const auto places = places_of(channels, lower_case(chosen), components); places.size() == 1) return refs_of(places[0], file);
-  if (wanted.size() != count && !(names.may_have_alpha && wanted.size() == count + 1))
+  if (wanted.size() != count && !(names.may_have_alpha && wanted.size() == count + 1) && !(names.may_be_two && wanted.size() == 2))
     fail(ErrorKind::input, "{}: no layer {} for {}{}; there is {}; {} takes a layer or {} channel names with commas", file.path(), chosen,
          names.channel_option, suggestion(chosen, full_names(channels)), list_of(full_names(channels)), names.channel_option, count);
   std::vector<const NamedChannel*> found;
@@ -180,7 +208,11 @@ class Search {
     const auto known = std::ranges::find(files_, path, &ExrFile::path);
     if (known != files_.end()) return std::size_t(known - files_.begin());
     files_.emplace_back(path, path == settings_.input ? "INPUT" : option);
-    channels_.push_back(channels_of(files_.back(), files_.size() - 1, settings_.layer));
+    const auto views = views_of(files_.back());
+    const auto same = [&](const std::string& view) { return lower_case(view) == lower_case(settings_.view); };
+    if (!settings_.view.empty() && !views.empty() && std::ranges::none_of(views, same))
+      fail(ErrorKind::input, "{}: there is no view {}{} for --view; there is {}", path, settings_.view, suggestion(settings_.view, views), list_of(views));
+    channels_.push_back(channels_of(files_.back(), files_.size() - 1, settings_.layer, settings_.view));
     return files_.size() - 1;
   }
 
@@ -270,18 +302,43 @@ void find_albedo(FrameSource& source, Search& search, const std::string& beauty_
   require_same_window(source, source.albedo, "diffuse colour", "--albedo");
 }
 
+/// The depth channel; the position's where the settings say so, or where there is no depth.
+std::vector<ChannelRef> find_depth(const Search& search, std::size_t file, const InputSettings& settings, bool by_position) {
+  if (by_position) return search.require(file, kPositionNames, settings.position_channels, !settings.position.empty(), "Position.X");
+  if (settings.depth_kind == DepthKind::automatic && settings.depth_channel.empty() && search.find(file, kDepthNames, "", !settings.depth.empty()).empty())
+    if (auto position = search.find(file, kPositionNames, "", false); !position.empty()) return position;
+  return search.require(file, kDepthNames, settings.depth_channel, !settings.depth.empty(), "Depth.Z");
+}
+
+/// Reads whole planes, since that is how files are stored, and keeps what lies in source.data.
+void read_part(FrameSource& source, const std::vector<PlaneRead>& reads) {
+  const Window part = source.data;
+  source.data = source.file_data;
+  std::vector<std::vector<float>> whole;
+  std::vector<PlaneRead> whole_reads;
+  for (const auto& read : reads) {
+    whole.emplace_back(read.channels->size() * source.data.pixels());
+    whole_reads.push_back({read.channels, whole.back().data()});
+  }
+  read_planes(source, whole_reads);
+  for (std::size_t i = 0; i < reads.size(); i++) std::ranges::copy(cropped(whole[i], source.file_data, part), reads[i].to);
+  source.data = part;
+}
+
 }  // namespace
 
 FrameSource find_frame(const InputSettings& settings, bool with_beauty, int frame, bool with_albedo) {
   FrameSource source;
   Search search(settings, source.files);
-  const std::string& depth_path = settings.depth.empty() ? settings.input : settings.depth;
+  const std::string& depth_path = !settings.depth.empty() ? settings.depth : settings.input.empty() ? settings.position : settings.input;
   const std::string& normal_path = !settings.normal.empty() ? settings.normal : settings.input.empty() ? depth_path : settings.input;
   const std::string& beauty_path = !settings.beauty.empty() ? settings.beauty : settings.input.empty() ? depth_path : settings.input;
 
-  const std::size_t depth_file = search.open(depth_path, "--depth");
-  source.depth = search.require(depth_file, kDepthNames, settings.depth_channel, !settings.depth.empty(), "Depth.Z");
-  source.data = part_of(source, source.depth[0]).data;
+  const bool wants_position = !settings.position.empty() || !settings.position_channels.empty();
+  const bool by_position = wants_position || settings.depth_kind == DepthKind::position;
+  const std::size_t depth_file = by_position && !settings.position.empty() ? search.open(settings.position, "--position") : search.open(depth_path, "--depth");
+  source.depth = find_depth(search, depth_file, settings, by_position);
+  source.data = source.file_data = part_of(source, source.depth[0]).data;
   source.display = source.files[depth_file].display();
   source.pixel_aspect = source.files[depth_file].pixel_aspect();
 
@@ -293,20 +350,32 @@ FrameSource find_frame(const InputSettings& settings, bool with_beauty, int fram
   if (with_albedo) find_albedo(source, search, beauty_path, settings);
   find_material(source, search, settings);
 
+  const auto views = views_of(source.files[depth_file]);
+  if (settings.view.empty() && views.size() > 1) source.notes.push_back(fmt::format("of the views {} this is {} (--view)", list_of(views), views.front()));
   source.camera = camera_for(settings, source.display, source.pixel_aspect, frame);
   const auto decided = [](auto setting, auto from_camera, auto otherwise) {
     using Kind = decltype(setting);
     return setting != Kind::automatic ? setting : from_camera != Kind::automatic ? from_camera : otherwise;
   };
-  source.depth_kind = decided(settings.depth_kind, source.camera.depth_kind, DepthKind::planar);
+  source.depth_kind = source.depth.size() == 3 ? DepthKind::position : decided(settings.depth_kind, source.camera.depth_kind, DepthKind::planar);
+  source.depth_range = settings.depth_range;
+  if (!source.depth_range.near) source.depth_range.near = source.camera.near;
+  if (!source.depth_range.far) source.depth_range.far = source.camera.far;
+  source.depth_range.reversed = settings.depth_range.reversed || source.camera.reversed_z;
+  source.position_space = settings.position_space != PositionSpace::automatic ? settings.position_space
+                          : source.camera.view_from_world ? PositionSpace::world : PositionSpace::view;
+  source.normal_encoding = decided(settings.normal_encoding, source.camera.normal_encoding, NormalEncoding::signed_float);
+  source.flip_normal = settings.flip_normal;
   source.normal_space = decided(settings.normal_space, source.camera.normal_space, NormalSpace::world);
-  if (!source.normal.empty() && source.normal_space == NormalSpace::world && !source.camera.view_from_world)
+  const bool says_world = settings.normal_space == NormalSpace::world || source.camera.normal_space == NormalSpace::world;
+  if (!source.normal.empty() && source.normal_space == NormalSpace::world && says_world && !source.camera.view_from_world)
     fail(ErrorKind::input, "{}: its normals are in world space, and the camera has no world_to_camera: give a --camera file with it, or --normal-space view",
          source.files[source.normal[0].file].path());
   return source;
 }
 
 void read_planes(FrameSource& source, const std::vector<PlaneRead>& reads) {
+  if (source.data != source.file_data) return read_part(source, reads);
   std::vector<std::vector<ExrRead>> by_file(source.files.size());
   std::map<ChannelRef, float*> first;  // a channel that serves two purposes is decoded to the first place, and copied from there
   std::vector<std::pair<float*, float*>> copies;

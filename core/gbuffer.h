@@ -3,10 +3,13 @@
 #pragma once
 
 #include <memory>
+#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "core/camera.h"
+#include "core/depth.h"
 #include "core/exr.h"
 #include "core/settings.h"
 
@@ -20,21 +23,36 @@ struct ChannelRef {
   auto operator<=>(const ChannelRef&) const = default;
 };
 
+/// Something that neither settings nor camera say.
+struct Guess {
+  std::string what, chosen, why, option;  // option: what says it
+};
+
 /// Where everything is that a frame needs; nothing but headers has been read.
 struct FrameSource {
   std::vector<ExrFile> files;
-  Window data, display;  // of all channels below
+  Window data, display;  // of all channels below; data may be a part of what the files hold, then no more is read
+  Window file_data;      // what the files hold
+  std::optional<Window> region;  // what is to be written of it; none: all of data
+  bool settled = false;  // see core/settle.h
   double pixel_aspect = 1;
-  std::vector<ChannelRef> depth;          // one
-  std::vector<ChannelRef> normal;         // x, y, z; none: to be reconstructed from depth
+  std::vector<ChannelRef> depth;          // one, or x, y, z of positions
+  std::vector<ChannelRef> normal;         // x, y, z, or two of them; none: to be reconstructed from depth
   std::vector<ChannelRef> beauty;         // r, g, b and, where there is one, a; none unless asked for
   std::vector<ChannelRef> indirect;       // r, g, b: the indirect diffuse light; none where the frame has no such part
   std::vector<ChannelRef> diffuse_color;  // r, g, b: the colour that it is still to be multiplied by; none where it holds it already
   std::vector<ChannelRef> material_ao;    // one; none unless the settings name it
   std::vector<ChannelRef> albedo;         // r, g, b: the diffuse colour; none unless asked for
   DepthKind depth_kind = DepthKind::planar;
+  DepthRange depth_range;
+  PositionSpace position_space = PositionSpace::world;
   NormalSpace normal_space = NormalSpace::world;
+  NormalEncoding normal_encoding = NormalEncoding::signed_float;
+  bool normal_unorm = false;  // the values are 0.5 + 0.5 n, of any encoding
+  NormalFlips flip_normal;
   Camera camera;
+  std::vector<Guess> guesses;
+  std::vector<std::string> notes;  // what the user should know: guesses that are unusual, and what harms; a sentence each
 };
 
 /// Opens the files that the settings name and finds the channels. `with_beauty` asks for the beauty and its ambient parts too, `with_albedo` for the
@@ -49,7 +67,7 @@ struct PlaneRead {
   float* to;
 };
 
-/// Reads all planes, every part of every file decoded once.
+/// Reads all planes within source.data, every part of every file decoded once.
 void read_planes(FrameSource& source, const std::vector<PlaneRead>& reads);
 
 }  // namespace alcove

@@ -7,6 +7,7 @@
 #include "core/chain.h"
 #include "core/error.h"
 #include "core/gbuffer.h"
+#include "core/settle.h"
 #include "kernels/prepare.h"
 
 namespace alcove {
@@ -27,29 +28,36 @@ HostFrame read_host_frame(const InputSettings& settings, int number) {
   frame.data = source.data;
   frame.display = source.display;
   frame.camera = source.camera;
-  frame.depth_kind = source.depth_kind;
-  frame.normal_space = source.normal_space;
   frame.depth_scale = settings.depth_scale;
   frame.sky = settings.sky;
   frame.frame = number;
-  frame.depth.resize(source.data.pixels());
+  frame.depth.resize(source.depth.size() * source.data.pixels());
   frame.normal.resize(source.normal.size() * source.data.pixels());
   read_planes(source, {{&source.depth, frame.depth.data()}, {&source.normal, frame.normal.data()}});
+  settle(source, settings, frame.depth, frame.normal);
+  frame.depth_kind = source.depth_kind;
+  frame.depth_range = source.depth_range;
+  frame.position_space = source.position_space;
+  frame.normal_space = source.normal_space;
+  frame.normal_encoding = source.normal_encoding;
+  frame.normal_unorm = source.normal_unorm;
+  frame.flip_normal = source.flip_normal;
   return frame;
 }
 
 FrameInputs upload(gpu::Recorder& gpu, const HostFrame& frame) {
-  if (frame.depth.size() != frame.data.pixels() || (!frame.normal.empty() && frame.normal.size() != 3 * frame.data.pixels()))
+  const std::size_t pixels = frame.data.pixels();
+  if (frame.depth.size() != (frame.depth_kind == DepthKind::position ? 3 * pixels : pixels) ||
+      (!frame.normal.empty() && frame.normal.size() != 3 * pixels && frame.normal.size() != 2 * pixels))
     fail(ErrorKind::input, "a frame of {} has {} depth and {} normal values", to_string(frame.data), frame.depth.size(), frame.normal.size());
-  const Matrix3 identity{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
   FrameInputs inputs;
   inputs.view = view_of(frame.camera, frame.data, frame.display);
   inputs.noise_origin = {frame.data.x - frame.display.x, frame.data.y - frame.display.y};
   inputs.frame = frame.frame;
-  inputs.depth_kind = frame.depth_kind;
-  inputs.depth_scale = frame.depth_scale;
-  inputs.sky = frame.sky;
-  inputs.view_from_normal = frame.normal_space == NormalSpace::world ? frame.camera.view_from_world.value() : identity;
+  inputs.depth_map = depth_map(frame.depth_kind, frame.depth_range, frame.position_space, frame.camera, frame.depth_scale, frame.sky);
+  inputs.normal_encoding = frame.normal_encoding;
+  inputs.normal_unorm = frame.normal_unorm;
+  if (!frame.normal.empty()) inputs.view_from_normal = view_from_normal(frame.camera, frame.normal_space, frame.flip_normal);
   inputs.depth = upload(gpu, "raw depth", frame.depth);
   inputs.normal = upload(gpu, "raw normal", frame.normal);
   return inputs;

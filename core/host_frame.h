@@ -17,11 +17,16 @@ namespace alcove {
 struct HostFrame {
   Window data, display;
   Camera camera;                // for the display window
-  std::vector<float> depth;     // of depth_kind; sky: at or beyond `sky`, or 0, infinite, NaN
-  std::vector<float> normal;    // planes x, y, z in normal_space; empty: reconstructed from depth
+  std::vector<float> depth;     // of depth_kind, positions: planes x, y, z; sky: at or beyond `sky`, or 0, infinite, NaN
+  std::vector<float> normal;    // planes x, y, z (or two, see kernels/prepare.h) in normal_space; empty: reconstructed from depth
   DepthKind depth_kind = DepthKind::planar;        // not automatic
   NormalSpace normal_space = NormalSpace::view;    // not automatic; world needs camera.view_from_world
   double depth_scale = 1, sky = 1e9;
+  DepthRange depth_range;
+  PositionSpace position_space = PositionSpace::view;  // not automatic; world needs camera.view_from_world
+  NormalEncoding normal_encoding = NormalEncoding::signed_float;  // not automatic
+  bool normal_unorm = false;    // the values are 0.5 + 0.5 n
+  NormalFlips flip_normal;
   int frame = 0;
 };
 

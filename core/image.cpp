@@ -11,6 +11,17 @@ namespace alcove {
 
 std::string to_string(const Window& window) { return fmt::format("{}x{} at ({}, {})", window.width, window.height, window.x, window.y); }
 
+std::vector<float> cropped(std::span<const float> planes, const Window& from, const Window& to) {
+  std::vector<float> part;
+  part.reserve(planes.size() / from.pixels() * to.pixels());
+  for (std::size_t plane = 0; plane < planes.size(); plane += from.pixels())
+    for (int y = to.y; y < to.y + to.height; y++) {
+      const auto row = planes.begin() + std::ptrdiff_t(plane + std::size_t(y - from.y) * std::size_t(from.width) + std::size_t(to.x - from.x));
+      part.insert(part.end(), row, row + to.width);
+    }
+  return part;
+}
+
 Image::Image(const Window& data_window, const Window& display_window, std::vector<std::string> plane_names)
     : data(data_window), display(display_window), names(std::move(plane_names)), pixels(data.pixels() * names.size()) {}
 

@@ -18,6 +18,9 @@ struct Window {
 };
 std::string to_string(const Window& window);
 
+/// The part of planes over `from` that lies over `to`, which is within it.
+std::vector<float> cropped(std::span<const float> planes, const Window& from, const Window& to);
+
 struct Image {
   Window data;     // where there are pixels
   Window display;  // what the picture shows; the projection refers to it

@@ -42,12 +42,15 @@ float thickness_of(const EstimatorSettings& settings) {
 gpu::Extent extent_of(const View& view) { return {uint(view.size.x), uint(view.size.y)}; }
 vec3 to_vec3(const std::array<double, 3>& v) { return {float(v[0]), float(v[1]), float(v[2])}; }
 
-uint range_check_of(RangeCheck check) {
-  return check == RangeCheck::ratio ? kRangeRatio : check == RangeCheck::smoothstep ? kRangeSmoothstep : kRangeNone;
+uint normal_form_of(const FrameInputs& frame) {
+  if (!frame.normal) return kNormalNone;
+  if (frame.normal_encoding == NormalEncoding::octahedral) return kNormalOctahedral;
+  if (frame.normal_encoding == NormalEncoding::spheremap) return kNormalSpheremap;
+  return frame.normal->bytes() < 3 * plane_bytes(frame.view) ? kNormalXy : kNormalVector;
 }
 
-uint depth_kind_of(DepthKind kind) {
-  return kind == DepthKind::ray ? kDepthRay : kind == DepthKind::inverse ? kDepthInverse : kDepthPlanar;
+uint range_check_of(RangeCheck check) {
+  return check == RangeCheck::ratio ? kRangeRatio : check == RangeCheck::smoothstep ? kRangeSmoothstep : kRangeNone;
 }
 
 /// Where the noise pattern of a frame and seed begins: successive frames take successive points of the R2 sequence, seeds of another.
@@ -111,10 +114,16 @@ GBuffer prepare(gpu::Recorder& gpu, const FrameInputs& frame, gpu::Use depth_use
   params.view_from_normal_x = to_vec3(frame.view_from_normal[0]);
   params.view_from_normal_y = to_vec3(frame.view_from_normal[1]);
   params.view_from_normal_z = to_vec3(frame.view_from_normal[2]);
-  params.depth_scale = float(frame.depth_scale);
-  params.sky_depth = float(frame.sky);
-  params.depth_kind = depth_kind_of(frame.depth_kind);
-  params.has_normals = frame.normal ? 1 : 0;
+  const DepthMap& map = frame.depth_map;
+  params.depth_axis = to_vec3(map.axis);
+  params.along_ray = map.along_ray ? 1 : 0;
+  params.origin = float(map.origin);
+  params.base = float(map.base);
+  params.slope = float(map.slope);
+  params.sky_below = float(map.sky_below);
+  params.sky_above = float(map.sky_above);
+  params.sky_depth = float(map.sky_depth);
+  params.normal_unorm = frame.normal_unorm ? 1 : 0;
   gpu.clear(*gbuffer.counts);
   gpu.dispatch("prepare", params,
                {{kPrepareRawDepth, *frame.depth},
@@ -122,7 +131,7 @@ GBuffer prepare(gpu::Recorder& gpu, const FrameInputs& frame, gpu::Use depth_use
                 {kPrepareDepth, *gbuffer.depth},
                 {kPrepareNormal, *gbuffer.normal},
                 {kPrepareCounts, *gbuffer.counts}},
-               extent_of(frame.view));
+               extent_of(frame.view), {map.form, normal_form_of(frame)});
   return gbuffer;
 }
 

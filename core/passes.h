@@ -4,6 +4,7 @@
 
 #include "core/camera.h"
 #include "core/debug_view.h"
+#include "core/depth.h"
 #include "core/gpu/recorder.h"
 #include "core/settings.h"
 
@@ -14,12 +15,12 @@ struct FrameInputs {
   View view{};
   ivec2 noise_origin{};              // px: the data window's corner, so that a crop has the noise of the whole
   int frame = 0;
-  DepthKind depth_kind = DepthKind::planar;  // not automatic
-  double depth_scale = 1;
-  double sky = 1e9;
-  Matrix3 view_from_normal{};        // rotation from the normals' space
-  gpu::Buffer* depth = nullptr;
-  gpu::Buffer* normal = nullptr;         // planes x, y, z
+  DepthMap depth_map;
+  NormalEncoding normal_encoding = NormalEncoding::signed_float;  // not automatic
+  bool normal_unorm = false;         // the values are 0.5 + 0.5 n, of any encoding
+  Matrix3 view_from_normal{};        // rotation from the normals' space, and flips
+  gpu::Buffer* depth = nullptr;          // a plane; of positions x, y, z
+  gpu::Buffer* normal = nullptr;         // planes x, y, z, or only the first two
   gpu::Buffer* beauty = nullptr;         // planes r, g, b, and a where has_alpha
   gpu::Buffer* indirect = nullptr;       // planes r, g, b
   gpu::Buffer* diffuse_color = nullptr;  // planes r, g, b

@@ -9,8 +9,11 @@
 
 namespace alcove {
 
-enum class DepthKind { automatic, planar, ray, inverse };
+enum class DepthKind { automatic, planar, ray, inverse, device, normalized, log, position };
+enum class DeviceRange { zero_to_one, minus_one_to_one };  // of device depth between the near and the far plane: Vulkan, Direct3D; OpenGL
 enum class NormalSpace { automatic, world, view };
+enum class PositionSpace { automatic, world, view };
+enum class NormalEncoding { automatic, signed_float, unorm, octahedral, spheremap };
 enum class Falloff : std::uint32_t { none, linear, quadratic, smooth };
 enum class Estimator { gtao, bitmask, hbao, crytek };
 enum class Elevation { view, surface };              // what HBAO measures a horizon from: the plane across the view ray, or the surface
@@ -22,21 +25,48 @@ enum class Denoise { none, bilateral, box };
 enum class AoChannels { mono, rgb };
 enum class OutputType { half_float, single_float };
 
+/// What device, normalized and log depth are counted between.
+struct DepthRange {
+  std::optional<double> near, far;  // distance of the planes, in the file's units, 0 < near < far; far may be infinite (device only)
+  bool reversed = false;            // the near plane has the largest value
+  DeviceRange device = DeviceRange::zero_to_one;
+  double log_constant = 1;          // C of z = ((1 + C far)^d - 1) / C, 1 / the file's units, > 0
+  bool negative = false;            // planar, ray and inverse depth: the values are below 0; view positions: their z is not as the camera's
+};
+
+/// Axes of the normals that point the other way.
+struct NormalFlips {
+  bool x = false, y = false, z = false;
+};
+
+/// Pixels, counted from the display window's upper left corner.
+struct Region {
+  int x = 0, y = 0, width = 0, height = 0;
+};
+
 /// What to read and how to understand it.
 struct InputSettings {
   std::string input;                             // an EXR file that holds every AOV not named below
-  std::string depth, normal, beauty;             // files of single AOVs; empty: the input
+  std::string depth, normal, position, beauty;   // files of single AOVs; empty: the input
   std::string depth_channel;                     // a channel's full name; empty: found by its usual names
-  std::string normal_channels, beauty_channels;  // three names with commas, or a layer; empty: found
+  std::string normal_channels, beauty_channels;  // three names with commas, or a layer; empty: found. Normals may have two
+  std::string position_channels;                 // three names with commas, or a layer; empty: found
   std::string material_ao;                       // a file of the materials' own AO; empty: the input, where material_ao_channel is set
   std::string material_ao_channel;               // a channel's full name; empty: the only channel, or the usual names, of material_ao
   std::string albedo, albedo_channels;           // the diffuse colour for multi-bounce: a file; empty: the beauty's. Three names, or a layer; empty: found
   std::optional<double> albedo_value;            // instead: one for all surfaces, 0 to 1
   std::string layer;                             // look only at channels of this layer or part
+  std::string view;                              // of a stereo file; empty: its default
+  std::optional<Region> roi;                     // compute and write no more than this; none: the data window
   DepthKind depth_kind = DepthKind::automatic;   // automatic: what the camera file says, else planar
+  DepthRange depth_range;                        // near and far: else the camera file's
   double depth_scale = 1;                        // scene units a unit of the depth channel, > 0
   double sky = 1e9;                              // depth at or beyond it is sky, in the file's units, > 0; below every known sentinel
   NormalSpace normal_space = NormalSpace::automatic;  // automatic: what the camera file says, else world
+  NormalEncoding normal_encoding = NormalEncoding::automatic;  // automatic: what the camera file says, else signed or unorm by their values
+  NormalFlips flip_normal;                            // in the normals' own space, before anything else
+  PositionSpace position_space = PositionSpace::automatic;  // automatic: the one whose points lie on the rays of their pixels
+  bool strict = false;                                // what only a guess could decide is an error
   std::string camera;                                 // a camera JSON file
   std::optional<double> fov;                          // horizontal, degrees, 0 to 180 exclusive
   std::optional<double> focal, aperture;              // mm, > 0: focal length and width of the film back
@@ -50,17 +80,17 @@ struct EstimatorSettings {
   Falloff falloff = Falloff::none;   // none: what renderers' own AO passes mean by a distance
   double falloff_start = 0;          // fraction of the radius where the falloff begins, 0 to 1 exclusive
   double falloff_end = 1;            // fraction of the radius where it ends, above the start to 1; nothing beyond blocks
-  int slices = 3;                    // directions a pixel, 1 to 64; fewer than 3 bias a single pixel
-  int steps = 6;                     // samples to each side of a slice, 1 to 4096
+  int slices = 1;                    // directions a pixel, 1 to 64; with fewer than 3 a pixel by itself is biased, and the denoiser must share its neighbours'
+  int steps = 12;                    // samples to each side of a slice, 1 to 4096; they matter more than slices
   int samples = 16;                  // of estimator crytek, in the hemisphere, 4 to 64
   double bias = 0;                   // least height that blocks, >= 0; crytek: scene units of depth; others: sine of the elevation above the tangent plane, < 1
   Elevation elevation = Elevation::view;                      // of estimator hbao
   SampleKernel sample_kernel = SampleKernel::clustered;       // of estimator crytek
   RangeCheck range_check = RangeCheck::ratio;                 // of estimator crytek; ratio: full within the radius, so that no hit in reach is lost
-  ThicknessKind thickness = ThicknessKind::infinite;  // how far an occluder goes on behind what is seen of it; automatic: as deep as it is wide
+  ThicknessKind thickness = ThicknessKind::automatic;  // how far an occluder goes on behind what is seen of it; automatic: as deep as it is wide
   double thickness_length = 0;       // scene units, > 0; with ThicknessKind::constant
   Resolution resolution = Resolution::full;
-  Denoise denoise = Denoise::none;
+  Denoise denoise = Denoise::bilateral;
   int denoise_radius = 3;            // pixels of the estimate to each side, 1 to 8; with Denoise::bilateral
   std::vector<double> denoise_kernel;  // instead: 2 to 9 weights from the centre outwards, none negative, the centre's above 0; empty: a Gaussian
   double denoise_depth_sigma = 0;    // of the depth, 0 to 100: a step by this part weighs 1/e; 0: weighs by plane distance instead

@@ -28,18 +28,10 @@ layout(scalar, binding = kBitmaskDepth) readonly buffer Depth { float depth[]; }
 layout(scalar, binding = kBitmaskNormal) readonly buffer Normal { uint normal[]; };
 layout(scalar, binding = kBitmaskAo) writeonly buffer Ao { float ao[]; };
 
-const uint kSectors = 32u;  // a side
-
-/// The sectors between V and the angle of a cotangent; V's is the lowest bit.
-uint sectors_to(Side side, float whole, float cot, float shift) {
-  const int n = int(clamp(arc_to(side, max(cot, side.plane_cot)) / whole, 0.0, 1.0) * float(kSectors) + shift);
-  return n >= int(kSectors) ? 0xffffffffu : (1u << uint(n)) - 1u;
-}
-
 /// The blocked part of a side's arc integral.
 float search(Receiver r, Side side, Reach reach, float jitter, float shift) {
   const int count = min(int(kSteps), int(side.reach));
-  const float whole = arc_to(side, side.plane_cot), endless = 1e30;
+  const float whole = whole_arc(side), endless = 1e30;
   float last_z = r.z, last_offset = 0.0, last_cot = side.plane_cot, blocked = 0.0;
   bool own = true, last_blocks = true;
   vec2 start = vec2(0);
@@ -91,11 +83,11 @@ void main() {
   for (uint s = 0u; s < kSlices; s++) {
     const Slice slice = slice_at(view, r, kPi * (float(s) + noise.x) / float(kSlices));
     if (slice.weight < kLeastWeight) continue;
-    whole += slice.weight * (slice.cos_gamma + slice.gamma * slice.sin_gamma);
+    whole += slice.share * slice.weight * (slice.cos_gamma + slice.gamma * slice.sin_gamma);
     const float shift = fract(noise.x * 7.0 + noise.y * 13.0 + kGolden * float(s));
     for (int sign = -1; sign <= 1; sign += 2) {
       const float jitter = fract(noise.y + kGolden * float(2u * s + uint(sign > 0)));
-      blocked += slice.weight * search(r, side_of(view, r, slice, float(sign), reach.radius), reach, jitter, shift);
+      blocked += slice.share * slice.weight * search(r, side_of(view, r, slice, float(sign), reach.radius), reach, jitter, shift);
     }
   }
   ao[index] = whole > 0.0 ? clamp(1.0 - blocked / whole, 0.0, 1.0) : 1.0;

@@ -8,7 +8,7 @@
 // - The samples of a side form runs of one surface. The run that goes on from the receiver is its own surface: it blocks all below its horizon. Every other run
 //   blocks from its front to its back, which lies as much further along the eye's ray as the run is wide ("width as thickness": a blade of grass is as thin
 //   as it is narrow, a column as thick as it is broad), or as the user says. Nothing beyond the radius blocks. What is blocked is a union of intervals:
-//   exact for the own surface and two more; further ones join the second.
+//   exact for the own surface and three more. What overlaps none of these joins the third or, with many steps, is counted in 32 sectors.
 // - Falloff weighs each arc by the distance of the sample that first blocks it ("incremental arcs"), exact for height fields.
 // - Result 1 - (sum of blocked arcs) / (sum of whole arcs): exactly 1 where nothing rises above the tangent plane.
 #version 450
@@ -36,6 +36,7 @@ const float kGapShare = 0.5;
 /// Two samples on either side of the sphere of the radius whose squared distances are within this factor of its square are taken for one surface.
 const float kSameSurface = 1.44;
 
+const bool kDense = kSteps > uint(kManySteps);
 const float kNone = 1e30;
 const vec2 kEmpty = vec2(kNone, -kNone);
 
@@ -50,7 +51,9 @@ struct Run {
 /// What is blocked: intervals of cotangents (low, high), empty where low > high. The own surface's goes down to the tangent plane.
 struct Blocked {
   float own;
-  vec2 a, b;
+  vec2 a, b, c;
+  uint sectors;
+  float shift;  // of the sectors' boundaries
 };
 
 // Logic without branches: `&&` and `||` would jump.
@@ -67,21 +70,36 @@ float arc_within(Side side, vec2 interval) { return interval.x < interval.y ? ar
 
 /// The arc integral over all that is blocked.
 float blocked_arc(Side side, Blocked blocked) {
-  vec2 own = vec2(side.plane_cot, blocked.own), a = max(blocked.a, side.plane_cot), b = max(blocked.b, side.plane_cot);
+  vec2 own = vec2(side.plane_cot, blocked.own), a = max(blocked.a, side.plane_cot), b = max(blocked.b, side.plane_cot), c = max(blocked.c, side.plane_cot);
   a = joins(own, a) ? kEmpty : a;
   b = joins(own, b) ? kEmpty : b;
   b = joins(a, b) ? kEmpty : b;
-  float sum = arc_within(side, own);
-  if (a.x < a.y) sum += arc_within(side, a);
-  if (b.x < b.y) sum += arc_within(side, b);
-  return sum;
+  c = joins(own, c) ? kEmpty : c;
+  c = joins(a, c) ? kEmpty : c;
+  c = joins(b, c) ? kEmpty : c;
+  const float sum = arc_within(side, own) + arc_within(side, a) + arc_within(side, b) + arc_within(side, c);
+  if (!kDense) return sum;
+  const float whole = whole_arc(side);
+  uint others = blocked.sectors & sectors_to(side, whole, own.y, blocked.shift);
+  others &= a.x < a.y ? sectors_to(side, whole, a.y, blocked.shift) | ~sectors_to(side, whole, a.x, blocked.shift) : ~0u;
+  others &= b.x < b.y ? sectors_to(side, whole, b.y, blocked.shift) | ~sectors_to(side, whole, b.x, blocked.shift) : ~0u;
+  others &= c.x < c.y ? sectors_to(side, whole, c.y, blocked.shift) | ~sectors_to(side, whole, c.x, blocked.shift) : ~0u;
+  return sum + whole * float(bitCount(others)) / float(kSectors);
 }
 
-void block(inout Blocked blocked, vec2 span) {
-  const bool in_a = joins(blocked.a, span), in_b = joins(blocked.b, in_a ? kEmpty : span), done = in_a ? true : in_b;
-  const bool to_a = both(!done, blocked.a.y < blocked.a.x), to_b = both(!done, !to_a);
+void block(Side side, inout Blocked blocked, vec2 span) {
+  const bool real = span.x <= span.y, in_a = joins(blocked.a, span), in_b = joins(blocked.b, span), in_c = joins(blocked.c, span);
+  const bool left = both(real, both(both(!in_a, !in_b), !in_c));
+  const bool to_a = both(left, blocked.a.y < blocked.a.x), to_b = both(both(left, !to_a), blocked.b.y < blocked.b.x);
+  const bool rest = both(left, both(!to_a, !to_b)), to_c = both(rest, kDense ? blocked.c.y < blocked.c.x : true);
   blocked.a = to_a ? span : blocked.a;
-  blocked.b = to_b ? vec2(min(blocked.b.x, span.x), max(blocked.b.y, span.y)) : blocked.b;
+  blocked.b = to_b ? span : blocked.b;
+  blocked.c = to_c ? vec2(min(blocked.c.x, span.x), max(blocked.c.y, span.y)) : blocked.c;
+  if (kDense) {
+    const float whole = whole_arc(side);
+    const uint sectors = sectors_to(side, whole, span.x, blocked.shift) & ~sectors_to(side, whole, span.y, blocked.shift);
+    blocked.sectors |= both(rest, !to_c) ? sectors : 0u;
+  }
 }
 
 /// Ends a run: what it blocks is known now. Returns the weighted arc that is newly blocked, 0 without falloff, where the union is integrated at the end.
@@ -91,11 +109,11 @@ float end_run(Receiver r, Side side, Reach reach, Run run, float z, float gap_be
   const float back = back_cot(r, run.first, reach.thickness > 0.0 ? reach.thickness : width, reach.radius);
   const vec2 span = run.near >= run.far ? vec2(min(back, run.far), run.near) : kEmpty;
   if (kFalloff == kFalloffNone) {
-    block(blocked, span);
+    block(side, blocked, span);
     return 0.0;
   }
   const float before = blocked_arc(side, blocked);
-  block(blocked, span);
+  block(side, blocked, span);
   return run.near >= run.far ? falloff_weight(kFalloff, length(run.first), reach.falloff_start, reach.radius) * (blocked_arc(side, blocked) - before) : 0.0;
 }
 
@@ -105,7 +123,7 @@ float search(Receiver r, Side side, Reach reach, float jitter) {
   float last_z = r.z, last_offset = 0.0, last_cot = 0.0, last_distance_sq = kNone, sum = 0.0;
   const bool endless = isinf(reach.thickness);  // then all is one run: what is behind a surface is solid
   bool own = !endless, was_within = true, last_blocks = false;
-  Blocked blocked = Blocked(side.plane_cot, kEmpty, kEmpty);
+  Blocked blocked = Blocked(side.plane_cot, kEmpty, kEmpty, kEmpty, 0u, fract(11.0 * jitter));
   Run run = Run(vec2(0), vec2(0), 0.0, -kNone, kNone, vec2(1, 0));
   for (int k = 0; k < count; k++) {
     const float offset = step_offset(k, int(kSteps), count, side.reach, jitter);
@@ -174,10 +192,10 @@ void main() {
   for (uint s = 0u; s < kSlices; s++) {
     const Slice slice = slice_at(view, r, kPi * (float(s) + noise.x) / float(kSlices));
     if (slice.weight < kLeastWeight) continue;
-    whole += slice.weight * (slice.cos_gamma + slice.gamma * slice.sin_gamma);
+    whole += slice.share * slice.weight * (slice.cos_gamma + slice.gamma * slice.sin_gamma);
     for (int sign = -1; sign <= 1; sign += 2) {
       const float jitter = fract(noise.y + kGolden * float(2u * s + uint(sign > 0)));
-      blocked += slice.weight * search(r, side_of(view, r, slice, float(sign), reach.radius), reach, jitter);
+      blocked += slice.share * slice.weight * search(r, side_of(view, r, slice, float(sign), reach.radius), reach, jitter);
     }
   }
   ao[index] = whole > 0.0 ? clamp(1.0 - blocked / whole, 0.0, 1.0) : 1.0;

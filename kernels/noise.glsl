@@ -5,6 +5,7 @@
 // effectiveness of quasirandom sequences", 2018), so any small block of pixels holds a well spread set.
 
 const vec2 kR2 = vec2(0.75487766624669276, 0.56984029099805327);  // 1/g and 1/g^2, g^3 = g + 1
+const vec2 kRoots = vec2(0.41421356237309505, 0.73205080756887729);  // of 2 and 3, less 1: independent of the former over the rationals
 const float kGolden = 0.61803398874989485;
 
 /// Position along the Hilbert curve that fills a 64 x 64 tile.
@@ -22,9 +23,10 @@ uint hilbert_index(uvec2 p) {
   return index;
 }
 
-/// Two numbers in [0, 1) for a pixel; `shift` moves the whole pattern (frame and seed).
+/// Two numbers in [0, 1) for a pixel, each a lattice over the tile; `shift` moves the whole pattern (frame and seed).
 vec2 pixel_noise(ivec2 pixel, vec2 shift) {
-  return fract(shift + float(hilbert_index(uvec2(pixel))) * kR2);
+  const vec2 p = vec2(pixel & 63);
+  return fract(shift + vec2(dot(p, kR2), dot(p, kRoots)));
 }
 
 /// Point `index` of the R3 sequence (the same in three dimensions, g^4 = g + 1), moved by `shift`, in [0, 1). Where every pixel has n samples, those from

@@ -10,12 +10,14 @@ uint pack_normal(vec3 n) {
   return packSnorm2x16(p);
 }
 
-vec3 unpack_normal(uint word) {
-  const vec2 p = unpackSnorm2x16(word);
+/// Of any length.
+vec3 octahedral_direction(vec2 p) {
   vec3 n = vec3(p, 1.0 - abs(p.x) - abs(p.y));
   if (n.z < 0.0) n.xy = (1.0 - abs(n.yx)) * mix(vec2(-1), vec2(1), greaterThanEqual(n.xy, vec2(0)));
-  return normalize(n);
+  return n;
 }
+
+vec3 unpack_normal(uint word) { return normalize(octahedral_direction(unpackSnorm2x16(word))); }
 
 /// How far a normal is at least turned to the eye, as a cosine. Smaller, and the slices at grazing angles lose their weight to rounding.
 const float kLeastFacing = 1e-3;

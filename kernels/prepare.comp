@@ -2,7 +2,8 @@
 // unit view-space normals that face the eye; nothing that is not finite. What was repaired is counted.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// In: raw depth of any kind, raw normals in world or view space. Out: planar z, view normals, counts.
+// In: raw depth of any kind or positions, raw normals of any encoding in world or view space. Out: planar z, view normals, counts.
+// Spheremap: the equal-area map about -z (Mittring, "A bit more Deferred - CryEngine 3", 2009); octahedral: see normal.glsl.
 // A pixel without a usable normal gets the normal of its own plane: 1/z is affine over a plane's image, so on each axis the
 // side whose two neighbours predict this pixel's 1/z best is on the same plane, and its position difference is a tangent.
 #version 450
@@ -12,6 +13,8 @@
 #include "normal.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
+layout(constant_id = kPrepareDepthFormId) const uint kDepthForm = kDepthLinear;
+layout(constant_id = kPrepareNormalFormId) const uint kNormalForm = kNormalVector;
 layout(scalar, push_constant) uniform Push { PrepareParams params; };
 layout(scalar, binding = kPrepareRawDepth) readonly buffer RawDepth { float raw_depth[]; };
 layout(scalar, binding = kPrepareRawNormal) readonly buffer RawNormal { float raw_normal[]; };
@@ -26,13 +29,39 @@ bool finite(float x) { return !isnan(x) && !isinf(x); }
 
 /// Planar depth in scene units, kSkyDepth where there is no surface.
 float planar_depth(ivec2 pixel) {
-  const float raw = raw_depth[index_of(params.view, pixel)];
-  float z = params.depth_kind == kDepthInverse ? 1.0 / raw : raw;
-  if (!(raw > 0.0) || z >= params.sky_depth) return kSkyDepth;
+  const int index = index_of(params.view, pixel);
+  const float raw = raw_depth[index];
+  float z;
+  if (kDepthForm == kDepthPosition) {
+    const int plane = params.view.size.x * params.view.size.y;
+    const vec3 position = vec3(raw, raw_depth[index + plane], raw_depth[index + 2 * plane]);
+    if (position == vec3(0)) return kSkyDepth;
+    z = params.base + dot(params.depth_axis, position);
+  } else {
+    if (!(raw > params.sky_below && raw < params.sky_above)) return kSkyDepth;
+    const float value = params.slope * (raw - params.origin);
+    z = kDepthForm == kDepthReciprocal ? 1.0 / (params.base + value)
+        : kDepthForm == kDepthExponential ? params.base * (exp(value) - 1.0) : params.base + value;
+  }
+  if (!(z > 0.0 && z < params.sky_depth)) return kSkyDepth;
   const vec2 t = tangent_of(params.view, vec2(pixel) + 0.5);
-  if (params.depth_kind == kDepthRay && params.view.orthographic == 0) z *= inversesqrt(1.0 + dot(t, t));
-  z *= params.depth_scale;
-  return z > 0.0 && z < kSkyDepth ? z : kSkyDepth;
+  if (params.along_ray != 0) z *= inversesqrt(1.0 + dot(t, t));
+  return z < kSkyDepth ? z : kSkyDepth;
+}
+
+/// The file's normal as a vector, in its own space and of any length; zero where it is none.
+vec3 decoded_normal(int index) {
+  const int plane = params.view.size.x * params.view.size.y;
+  vec3 raw = vec3(raw_normal[index], raw_normal[index + plane], 0);
+  if (kNormalForm == kNormalVector) raw.z = raw_normal[index + 2 * plane];
+  if (params.normal_unorm != 0) raw = 2.0 * raw - 1.0;
+  const float squared = dot(raw.xy, raw.xy);
+  switch (kNormalForm) {
+    case kNormalXy: return vec3(raw.xy, sqrt(max(1.0 - squared, 0.0)));
+    case kNormalOctahedral: return octahedral_direction(raw.xy);
+    case kNormalSpheremap: return squared <= 1.0 ? vec3(2.0 * sqrt(1.0 - squared) * raw.xy, 2.0 * squared - 1.0) : vec3(0);
+    default: return raw;
+  }
 }
 
 /// What an affine function over the image would be here, going by the two neighbours on one side; orthographic planes are affine in z, others in 1/z.
@@ -81,15 +110,14 @@ void main() {
   if (z >= kSkyDepth) {
     normal[index] = pack_normal(vec3(0, 0, 1));
     atomicAdd(counts.sky, 1u);
-    if (isnan(raw_depth[index]) || raw_depth[index] < 0.0) atomicAdd(counts.repaired_depth, 1u);
+    if (isnan(raw_depth[index]) || raw_depth[index] < params.sky_below) atomicAdd(counts.repaired_depth, 1u);
     return;
   }
 
   const vec3 position = position_of(params.view, vec2(pixel) + 0.5, z), eye = toward_eye(params.view, position);
   vec3 n = vec3(0);
-  if (params.has_normals != 0) {
-    const int plane = params.view.size.x * params.view.size.y;
-    const vec3 raw = vec3(raw_normal[index], raw_normal[index + plane], raw_normal[index + 2 * plane]);
+  if (kNormalForm != kNormalNone) {
+    const vec3 raw = decoded_normal(index);
     n = vec3(dot(params.view_from_normal_x, raw), dot(params.view_from_normal_y, raw), dot(params.view_from_normal_z, raw));
   }
   const float size = length(n);
@@ -97,7 +125,7 @@ void main() {
     n /= size;
   } else {
     n = normal_from_depth(pixel, position, eye);
-    if (params.has_normals != 0) atomicAdd(counts.repaired_normals, 1u);
+    if (kNormalForm != kNormalNone) atomicAdd(counts.repaired_normals, 1u);
   }
   normal[index] = pack_normal(facing(n, eye));
 }

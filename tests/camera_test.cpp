@@ -76,6 +76,38 @@ TEST_F(CameraFiles, a_camera_is_read_as_it_is_written) {
   EXPECT_EQ(*camera.view_from_world, (Matrix3{{{1, 0, 0}, {0, 0, 1}, {0, -1, 0}}}));
 }
 
+TEST_F(CameraFiles, clip_planes_and_the_conventions_of_games_are_read) {
+  json fields = wall_camera();
+  fields["depth_kind"] = "device";
+  fields["near"] = 0.25;
+  fields["far"] = "inf";
+  fields["reversed_z"] = true;
+  fields["normal_encoding"] = "spheremap (two channels)";
+  fields["projection"] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 0, 0.25}, {0, 0, 1, 0}};
+  const Camera camera = read(fields);
+  EXPECT_EQ(camera.depth_kind, DepthKind::device);
+  EXPECT_EQ(camera.near, 0.25);
+  EXPECT_TRUE(camera.far && std::isinf(*camera.far));
+  EXPECT_TRUE(camera.reversed_z);
+  EXPECT_EQ(camera.normal_encoding, NormalEncoding::spheremap);
+  EXPECT_FALSE(camera.orthographic);
+  fields["projection"][3] = {0, 0, 0, 1};
+  EXPECT_TRUE(read(fields).orthographic);
+  for (const char* field : {"near", "far"}) expect_field_refused(field, -1);
+  for (const char* field : {"reversed_z", "normal_encoding", "depth_kind", "camera_space"}) expect_field_refused(field, "nonsense");
+}
+
+TEST_F(CameraFiles, a_left_handed_camera_space_is_turned_to_look_along_minus_z) {
+  json fields = wall_camera();
+  fields["world_to_camera"] = {{1, 0, 0, 1}, {0, 1, 0, 2}, {0, 0, -1, 3}, {0, 0, 0, 1}};
+  expect_refused(fields.dump(), "world_to_camera");
+  fields["camera_space"] = "left-handed: x right, y up, z forward";
+  const Camera camera = read(fields);
+  EXPECT_EQ(*camera.view_from_world, (Matrix3{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}));
+  EXPECT_EQ(camera.view_from_world_offset, (std::array<double, 3>{1, 2, -3}));
+  EXPECT_EQ(view_from_normal(camera, NormalSpace::view, {}), (Matrix3{{{1, 0, 0}, {0, 1, 0}, {0, 0, -1}}}));
+}
+
 TEST_F(CameraFiles, optional_fields_may_be_missing) {
   const Camera camera = read(json{{"resolution", {64, 36}}, {"fx", 60}, {"fy", 60}, {"cx", 32}, {"cy", 18}});
   EXPECT_FALSE(camera.orthographic);

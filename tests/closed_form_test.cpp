@@ -26,7 +26,7 @@ constexpr double kLeastPixels = 16;                     // that a radius must sp
 const Plane kFloor{.point = {}, .normal = {0, 0, 1}}, kWallX{.point = {}, .normal = {1, 0, 0}}, kWallY{.point = {}, .normal = {0, 1, 0}};
 
 EstimatorSettings fine(double radius) {
-  EstimatorSettings settings;
+  EstimatorSettings settings = test::plain_settings();
   settings.radius = radius;
   settings.slices = 16;
   settings.steps = 64;

@@ -78,7 +78,7 @@ TEST_F(DebugViews, sky_has_a_colour_that_no_number_has) {
 
 TEST_F(DebugViews, raw_ao_is_grey_as_the_ao_is_before_shaping) {
   const Image picture = view("raw-ao", {"--power", "3"});
-  ASSERT_EQ(run({"--type", "float"}).code, 0);
+  ASSERT_EQ(run({"--type", "float", "--denoise", "none"}).code, 0);
   const Image plain = read_exr_image(ao);
   for (int y = 0; y < 36; y++)
     for (int x = 0; x < 64; x++) {
@@ -155,6 +155,9 @@ TEST_F(DebugViews, what_cannot_be_shown_or_written_is_refused_before_any_work) {
   std::erase_if(input.planes, [](const auto& plane) { return plane.first.find("Normal") != plane.first.npos; });
   input.write(frame);
   expect_refused(3, {"wall.0042.exr", "--debug reconstruction", "--normal"}, {"--debug", "reconstruction"});
+  for (const char* c : {"X", "Y", "Z"}) input.planes["ViewLayer.Position." + std::string(c)] = input.planes["ViewLayer.Depth.Z"];
+  input.write(frame);
+  expect_refused(3, {"wall.0042.exr", "--debug raw-depth", "--depth-channel"}, {"--debug", "raw-depth", "--position-channels", "ViewLayer.Position", "--depth-kind", "position"});
   std::filesystem::create_directory(folder / "ao.edges.png");
   expect_refused(4, {"ao.edges.png", "--debug"}, {"--debug", "edges"});
 }

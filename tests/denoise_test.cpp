@@ -22,7 +22,7 @@ constexpr double kRadian = std::numbers::pi / 180;
 const Vec3 kForward{1, 0, 0};
 
 EstimatorSettings bilateral(int radius) {
-  EstimatorSettings settings;
+  EstimatorSettings settings = test::plain_settings();
   settings.radius = 1;
   settings.denoise = Denoise::bilateral;
   settings.denoise_radius = radius;

@@ -37,4 +37,11 @@ gpu::Recorder& recorder() {
   return recorder;
 }
 
+EstimatorSettings plain_settings() {
+  EstimatorSettings settings;
+  settings.thickness = ThicknessKind::infinite;
+  settings.denoise = Denoise::none;
+  return settings;
+}
+
 }  // namespace alcove::test

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "core/gpu/recorder.h"
+#include "core/settings.h"
 
 namespace alcove::test {
 
@@ -10,5 +11,7 @@ namespace alcove::test {
 gpu::Device& device();
 /// A recorder on it.
 gpu::Recorder& recorder();
+/// GTAO and no more: every pixel by itself, occluders solid as far as the radius.
+EstimatorSettings plain_settings();
 
 }  // namespace alcove::test

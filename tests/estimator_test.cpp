@@ -30,7 +30,7 @@ using test::Plane, test::Polygon, test::Rendering, test::Scene, test::Shot, test
 constexpr double kPi = std::numbers::pi, kRadian = kPi / 180;
 
 EstimatorSettings hbao(double radius, int slices = 16, int steps = 128) {
-  EstimatorSettings settings;
+  EstimatorSettings settings = test::plain_settings();
   settings.estimator = Estimator::hbao;
   settings.radius = radius;
   settings.slices = slices;
@@ -39,7 +39,7 @@ EstimatorSettings hbao(double radius, int slices = 16, int steps = 128) {
 }
 
 EstimatorSettings crytek(double radius, SampleKernel kernel = SampleKernel::uniform, RangeCheck check = RangeCheck::none) {
-  EstimatorSettings settings;
+  EstimatorSettings settings = test::plain_settings();
   settings.estimator = Estimator::crytek;
   settings.radius = radius;
   settings.samples = 64;

@@ -11,11 +11,9 @@
 #include <ImfOutputFile.h>
 #include <ImfOutputPart.h>
 #include <ImfPartType.h>
-#include <ImfTiledOutputFile.h>
+#include <ImfStandardAttributes.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-
-#include <numeric>
 
 #include "core/error.h"
 #include "tests/program.h"
@@ -37,6 +35,8 @@ struct Part {
   std::string name;
   Names channels;
   int width = kWidth;
+  std::string view = {};
+  Names multi_view = {};
 };
 
 /// The channel's value in every pixel, told from all others by its place.
@@ -46,6 +46,8 @@ Imf::Header header_of(const Part& part) {
   Imf::Header header(Imath::Box2i({0, 0}, {kWidth - 1, kHeight - 1}), Imath::Box2i({0, 0}, {part.width - 1, kHeight - 1}));
   header.setType(Imf::SCANLINEIMAGE);
   if (!part.name.empty()) header.setName(part.name);
+  if (!part.view.empty()) header.setView(part.view);
+  if (!part.multi_view.empty()) Imf::addMultiView(header, part.multi_view);
   for (const auto& channel : part.channels) header.channels().insert(channel, Imf::Channel(Imf::FLOAT));
   return header;
 }
@@ -112,7 +114,8 @@ class GBuffer : public testing::Test {
 
 TEST_F(GBuffer, depth_is_found_under_renderers_names) {
   for (const Names& channels : {Names{"ViewLayer.Depth.Z"}, {"View Layer.Depth.Z"}, {"Z"}, {"z"}, {"depth.Z"}, {"depth"}, {"Depth.R"}, {"DEPTH.Z"},
-                                {"zDepth.Z"}, {"zdepth.R"}, {"VRayZDepth.R"}, {"Z.R"}, {"Pz"}, {"Z-Depth.R"}, {"beauty.depth.Z"}})
+                                {"zDepth.Z"}, {"zdepth.R"}, {"VRayZDepth.R"}, {"Z.R"}, {"Pz"}, {"Z-Depth.R"}, {"beauty.depth.Z"}, {"__depth.r"}, {"CGeometry_ZDepth.R"},
+                                {"FinalImageMovieRenderQueue_WorldDepth.R"}})
     try {
       write(channels);
       EXPECT_EQ(depth(), channels);
@@ -130,7 +133,8 @@ TEST_F(GBuffer, normals_are_found_under_renderers_names) {
   for (const Names& channels : {Names{"ViewLayer.Normal.X", "ViewLayer.Normal.Y", "ViewLayer.Normal.Z"}, {"N.X", "N.Y", "N.Z"}, {"n.x", "n.y", "n.z"},
                                 {"N.R", "N.G", "N.B"}, {"Nn.x", "Nn.y", "Nn.z"}, {"normals.X", "normals.Y", "normals.Z"},
                                 {"NORMAL.x", "NORMAL.y", "NORMAL.z"}, {"Ns.X", "Ns.Y", "Ns.Z"}, {"normal.R", "normal.G", "normal.B"},
-                                {"NX", "NY", "NZ"}}) {
+                                {"NX", "NY", "NZ"}, {"__Nworld.x", "__Nworld.y", "__Nworld.z"},
+                                {"CGeometry_NormalsShading.R", "CGeometry_NormalsShading.G", "CGeometry_NormalsShading.B"}}) {
     Names all = channels;
     all.push_back("Z");
     write(all);
@@ -181,7 +185,7 @@ TEST_F(GBuffer, beauty_is_read_only_when_asked_for) {
 
 TEST_F(GBuffer, a_picture_is_neither_depth_nor_normals) {
   for (const Names& channels : {Names{"R", "G", "B", "A"}, {"R", "G", "B"}, {"Y"}, {"beauty.R", "beauty.G", "beauty.B"}, {"X", "Y"},
-                                {"P.X", "P.Y", "P.Z"}, {"Position.X", "Position.Y", "Position.Z"}}) {
+                                {"Vector.X", "Vector.Y", "Vector.Z"}}) {
     write(channels);
     expect_error({"frame.exr", "no depth channel", "--depth-channel", channels[0]});
   }
@@ -189,6 +193,43 @@ TEST_F(GBuffer, a_picture_is_neither_depth_nor_normals) {
   EXPECT_THAT(normal(), IsEmpty());
   write(Names{"Z", "P.X", "P.Y", "P.Z", "Vector.X", "Vector.Y", "Vector.Z"});
   EXPECT_THAT(normal(), IsEmpty());
+}
+
+TEST_F(GBuffer, positions_stand_in_for_a_depth_that_is_missing) {
+  for (const Names& channels : {Names{"P.X", "P.Y", "P.Z"}, {"ViewLayer.Position.X", "ViewLayer.Position.Y", "ViewLayer.Position.Z"}}) {
+    write(channels);
+    EXPECT_EQ(depth(), channels);
+    EXPECT_EQ(find().depth_kind, DepthKind::position);
+    settings.depth_kind = DepthKind::planar;
+    expect_error({"frame.exr", "no depth channel", "--depth-channel", channels[0]});
+    settings.depth_kind = DepthKind::automatic;
+  }
+  write(Names{"Z", "P.X", "P.Y", "P.Z"});
+  EXPECT_THAT(depth(), ElementsAre("Z"));
+  settings.depth_kind = DepthKind::position;
+  EXPECT_THAT(depth(), ElementsAre("P.X", "P.Y", "P.Z"));
+}
+
+TEST_F(GBuffer, a_part_a_view_is_chosen_by_its_name) {
+  write_parts(settings.input, {{"left", {"Z"}, kWidth, "left"}, {"right", {"Z"}, kWidth, "right"}});
+  EXPECT_THAT(depth(), ElementsAre("Z"));
+  EXPECT_THAT(find().notes, ElementsAre(AllOf(HasSubstr("left, right"), HasSubstr("--view"))));
+  settings.view = "right";
+  EXPECT_THAT(depth(), ElementsAre("1:Z"));
+  EXPECT_THAT(find().notes, IsEmpty());
+  settings.view = "middle";
+  expect_error({"frame.exr", "middle", "--view", "left, right"});
+}
+
+TEST_F(GBuffer, channels_that_name_their_view_are_chosen_by_it) {
+  Part stereo{"", {"Z", "N.X", "N.Y", "N.Z", "right.Z", "N.right.X", "N.right.Y", "N.right.Z"}};
+  stereo.multi_view = {"left", "right"};
+  write(std::vector<Part>{stereo});
+  EXPECT_THAT(depth(), ElementsAre("Z"));
+  EXPECT_THAT(normal(), ElementsAre("N.X", "N.Y", "N.Z"));
+  settings.view = "Right";
+  EXPECT_THAT(depth(), ElementsAre("right.Z"));
+  EXPECT_THAT(normal(), ElementsAre("N.right.X", "N.right.Y", "N.right.Z"));
 }
 
 TEST_F(GBuffer, layers_whose_names_only_contain_the_word_are_others) {
@@ -261,7 +302,7 @@ TEST_F(GBuffer, chosen_channels_that_are_not_there_are_errors) {
   settings.depth_channel = "ZZ";
   expect_error({"frame.exr", "ZZ", "--depth-channel", "N.X"});
   settings.depth_channel = "";
-  for (const char* chosen : {"N.X,N.Y", "N.X,N.Y,N.Q", "M", "N.X,N.Y,N.Z,Z", "N.X,,N.Z"}) {
+  for (const char* chosen : {"N.X,N.Q", "N.X,N.Y,N.Q", "M", "N.X,N.Y,N.Z,Z", "N.X,,N.Z"}) {
     settings.normal_channels = chosen;
     expect_error({"frame.exr", "--normal-channels", "N.X"});
   }
@@ -402,65 +443,6 @@ TEST_F(GBuffer, deep_data_is_refused) {
     file.writePixels(1);
   }
   expect_error({"frame.exr", "deep"});
-}
-
-/// Writes Z = 1, 2, 3 ... over a data window that does not begin at 0, in some layout; the planes that are read must be these.
-class Layouts : public GBuffer {
- protected:
-  static constexpr int kX = -3, kY = 5, kColumns = 7, kRows = 40;
-  Layouts() { std::iota(values.begin(), values.end(), 1.0f); }
-  Imf::Header header() const {
-    const Imath::Box2i window({kX, kY}, {kX + kColumns - 1, kY + kRows - 1});
-    Imf::Header header(window, window);
-    header.channels().insert("Z", Imf::Channel(Imf::FLOAT));
-    return header;
-  }
-  Imf::FrameBuffer pixels() {
-    Imf::FrameBuffer pixels;
-    pixels.insert("Z", Imf::Slice::Make(Imf::FLOAT, values.data(), header().dataWindow(), sizeof(float), kColumns * sizeof(float)));
-    return pixels;
-  }
-  void expect_pixels() const {
-    FrameSource source = find();
-    EXPECT_EQ(source.data, (Window{kX, kY, kColumns, kRows}));
-    std::vector<float> read(values.size());
-    read_planes(source, {{&source.depth, read.data()}});
-    EXPECT_EQ(read, values);
-  }
-  std::vector<float> values = std::vector<float>(kColumns * kRows);
-};
-
-TEST_F(Layouts, any_line_order_and_compression_is_read) {
-  for (const auto order : {Imf::INCREASING_Y, Imf::DECREASING_Y})
-    for (const auto compression : {Imf::NO_COMPRESSION, Imf::RLE_COMPRESSION, Imf::ZIPS_COMPRESSION, Imf::ZIP_COMPRESSION, Imf::PIZ_COMPRESSION}) {
-      Imf::Header header = this->header();
-      header.lineOrder() = order;
-      header.compression() = compression;
-      {
-        Imf::OutputFile file(settings.input.c_str(), header);
-        file.setFrameBuffer(pixels());
-        file.writePixels(kRows);
-      }
-      expect_pixels();
-    }
-}
-
-TEST_F(Layouts, tiles_are_read_at_full_resolution) {
-  for (const auto mode : {Imf::ONE_LEVEL, Imf::MIPMAP_LEVELS}) {
-    Imf::Header header = this->header();
-    header.setTileDescription(Imf::TileDescription(4, 16, mode));
-    {
-      Imf::TiledOutputFile file(settings.input.c_str(), header);
-      file.setFrameBuffer(pixels());
-      file.writeTiles(0, file.numXTiles(0) - 1, 0, file.numYTiles(0) - 1, 0);
-      std::vector<float> wrong(values.size(), -1);
-      Imf::FrameBuffer other;
-      other.insert("Z", Imf::Slice::Make(Imf::FLOAT, wrong.data(), header.dataWindow(), sizeof(float), kColumns * sizeof(float)));
-      file.setFrameBuffer(other);
-      for (int level = 1; level < file.numLevels(); level++) file.writeTiles(0, file.numXTiles(level) - 1, 0, file.numYTiles(level) - 1, level);
-    }
-    expect_pixels();
-  }
 }
 
 // What the settings and the camera say together.

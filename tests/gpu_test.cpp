@@ -97,7 +97,7 @@ HostFrame small_frame() {
 }
 
 TEST(Staging, gives_the_bits_that_mapped_memory_gives) {
-  EstimatorSettings settings;
+  EstimatorSettings settings = test::plain_settings();
   settings.radius = 0.5;
   settings.power = 2;  // one more pass, so that a result is handed on
   const auto mapped = compute_ao(test::recorder(), small_frame(), settings);
@@ -112,7 +112,7 @@ TEST(Staging, gives_the_bits_that_mapped_memory_gives) {
 }
 
 TEST(Recorder, times_every_pass_by_its_stem) {
-  EstimatorSettings settings;
+  EstimatorSettings settings = test::plain_settings();
   settings.radius = 0.5;
   settings.intensity = 1.5;
   compute_ao(test::recorder(), small_frame(), settings);

@@ -52,7 +52,7 @@ using test::Difference, test::difference, test::place, test::same_bits;
 using test::Plane, test::Rendering, test::Scene, test::Shot, test::Sphere, test::unit, test::Vec3;
 
 EstimatorSettings settings_of(Estimator estimator, double radius, int slices = 16, int steps = 64) {
-  EstimatorSettings settings;
+  EstimatorSettings settings = test::plain_settings();
   settings.estimator = estimator;
   settings.radius = radius;
   settings.slices = slices;

@@ -28,7 +28,7 @@ constexpr float kNan = std::numeric_limits<float>::quiet_NaN(), kInfinity = std:
 const Vec3 kForward{1, 0, 0};  // where the cameras of flat scenes look
 
 EstimatorSettings settings_of(double radius, int slices, int steps) {
-  EstimatorSettings settings;
+  EstimatorSettings settings = test::plain_settings();
   settings.radius = radius;
   settings.slices = slices;
   settings.steps = steps;

@@ -41,7 +41,7 @@ double unbiased_rmse(const Crop& crop, const std::vector<float>& result) {
 }
 
 EstimatorSettings eight_by_sixteen(double radius) {
-  EstimatorSettings settings;
+  EstimatorSettings settings = test::plain_settings();
   settings.radius = radius;
   settings.slices = 8;
   settings.steps = 16;

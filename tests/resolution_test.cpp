@@ -22,7 +22,7 @@ constexpr double kRadian = std::numbers::pi / 180;
 const Vec3 kForward{1, 0, 0};
 
 EstimatorSettings settings_of(double radius, int slices, int steps, Resolution resolution, Denoise denoise = Denoise::none) {
-  EstimatorSettings settings;
+  EstimatorSettings settings = test::plain_settings();
   settings.radius = radius;
   settings.slices = slices;
   settings.steps = steps;

@@ -1,0 +1,200 @@
+// Hypotheses, their scores, and which of them is taken.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/settle.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.h"
+#include "core/evidence.h"
+
+namespace alcove {
+namespace {
+
+constexpr double kAsGood = 0.8;          // of the best score: the usual reading stays where it does about as well
+constexpr double kClear = 2;             // times the second best: another reading is taken only when it is that much better
+constexpr double kLeastStraight = 0.02;  // of the smooth places; below it the frame has no flat surfaces that could tell
+constexpr double kLeastAgreement = 0.4;  // of the normals with depth
+constexpr double kLargestError = 2;      // px, median: farther off, positions are not what they are taken for
+constexpr std::size_t kSparse = 31;      // every so many pixels are enough for statistics; a prime, so that no column is favoured
+
+class Settlement {
+ public:
+  Settlement(FrameSource& source, const InputSettings& settings, std::span<const float> depth, std::span<const float> normal)
+      : source_(source),
+        settings_(settings),
+        depth_(depth),
+        normal_(normal),
+        view_(view_of(source.camera, source.data, source.display)),
+        values_(statistics_of(depth, kSparse)) {}
+
+  void run() {
+    if (source_.depth_kind == DepthKind::position) settle_position();
+    else settle_depth();
+    if (source_.normal.empty()) return;
+    settle_encoding();
+    settle_space();
+  }
+
+ private:
+  const std::string& depth_path() const { return source_.files[source_.depth[0].file].path(); }
+  const std::string& normal_path() const { return source_.files[source_.normal[0].file].path(); }
+
+  void guess(const std::string& what, const std::string& chosen, const std::string& why, const std::string& option, bool unusual) {
+    if (settings_.strict)
+      fail(ErrorKind::input, "{}: --strict, and nothing says the {}; it would be {} ({}): give {}", depth_path(), what, chosen, why, option);
+    source_.guesses.push_back({what, chosen, why, option});
+    if (unusual) source_.notes.push_back(fmt::format("{} taken as {}: {} ({} says otherwise)", what, chosen, why, option));
+  }
+
+  void settle_depth() {
+    const bool open = settings_.depth_kind == DepthKind::automatic && source_.camera.depth_kind == DepthKind::automatic;
+    if (open) settle_kind();
+    const bool signed_kind =
+        source_.depth_kind == DepthKind::planar || source_.depth_kind == DepthKind::ray || source_.depth_kind == DepthKind::inverse;
+    if (!signed_kind || values_.positive || !values_.negative || values_.least == values_.most) return;
+    source_.depth_range.negative = true;
+    source_.notes.push_back("all depth values are negative: their distance from 0 is the depth");
+  }
+
+  void settle_kind() {
+    const auto scores = score_depth(depth_, view_, settings_.sky);
+    const std::string option = "--depth-kind";
+    if (scores.empty()) return guess("depth kind", "planar", "too little of the frame is smooth to tell", option, false);
+    const auto straight = [](const DepthScore& score) {
+      return fmt::format("1/z is straight on {:.0f} % only as {}", 100 * score.straight, name_of(score.kind));
+    };
+    const auto& planar = *std::ranges::find(scores, DepthKind::planar, &DepthScore::kind);
+    const std::string why = fmt::format("{}, {}, {}", straight(scores[0]), straight(scores[1]), straight(scores[2]));
+    const DepthScore &best = scores[0], &second = scores[1];
+    if (best.straight < kLeastStraight) return guess("depth kind", "planar", "the frame has no flat surfaces that tell: " + why, option, false);
+    if (planar.straight >= kAsGood * best.straight) return guess("depth kind", "planar", why, option, false);
+    if (best.straight < kClear * second.straight)
+      fail(ErrorKind::input, "{}: the depth may be {} or {} ({}): say which with --depth-kind {} or --depth-kind {}", depth_path(),
+           name_of(best.kind), name_of(second.kind), why, name_of(best.kind), name_of(second.kind));
+    source_.depth_kind = best.kind;
+    if (best.kind == DepthKind::inverse && values_.least >= 0 && values_.most <= 1) return settle_device(why);
+    guess("depth kind", name_of(best.kind), why, option, true);
+  }
+
+  /// Inverse depth and that of a z-buffer are both affine in 1/z; what tells them apart is that somebody knows a near plane. Sky is at the far one.
+  void settle_device(const std::string& why) {
+    const bool reversed = source_.depth_range.reversed || (values_.zero && !values_.one);
+    if (!settings_.depth_range.near || !source_.depth_range.far || !(reversed || values_.one))
+      fail(ErrorKind::input,
+           "{}: the depth may be device or inverse (all in 0 to 1, {}): say --depth-kind device with --near and --far (inf where there is none) and, "
+           "where near is 1, --reversed-z; or --depth-kind inverse",
+           depth_path(), why);
+    source_.depth_range.reversed = reversed;
+    source_.depth_kind = DepthKind::device;
+    guess("depth kind", reversed ? "device with --reversed-z" : "device", "all in 0 to 1, --near is given, and " + why, "--depth-kind", true);
+  }
+
+  void settle_position() {
+    struct Candidate {
+      PositionSpace space;
+      bool forward;  // the camera looks along +z
+      std::optional<double> error;
+    };
+    std::vector<Candidate> candidates;
+    for (const PositionSpace space : {PositionSpace::world, PositionSpace::view})
+      for (const bool forward : {false, true})
+        if ((settings_.position_space == PositionSpace::automatic || settings_.position_space == space) &&
+            (space == PositionSpace::view || (source_.camera.view_from_world && !forward)))
+          candidates.push_back({space, forward, reprojection_error(depth_, space, forward, source_.camera, view_)});
+    if (candidates.empty() || !candidates[0].error) return;  // no world matrix, which the map complains about; or nothing but sky
+    const auto best = std::ranges::min_element(candidates, {}, &Candidate::error);
+    if (!(*best->error <= kLargestError))
+      fail(ErrorKind::input,
+           "{}: its positions lie {:.1f} pixels (median) from the pixels that hold them, in every space: check --position-space and --camera",
+           depth_path(), *best->error);
+    source_.position_space = best->space;
+    source_.depth_range.negative = best->forward;
+    if (settings_.position_space == PositionSpace::automatic)
+      guess("position space", best->space == PositionSpace::world ? "world" : "view",
+            fmt::format("positions lie {:.3f} pixels (median) from the pixels that hold them", *best->error), "--position-space", false);
+  }
+
+  void settle_encoding() {
+    const bool open = settings_.normal_encoding == NormalEncoding::automatic && source_.camera.normal_encoding == NormalEncoding::automatic;
+    const NormalStatistics n = normal_statistics(normal_, depth_, depth_map_of(source_, settings_), kSparse);
+    const bool in_unit_range = n.count && n.least >= 0 && n.most <= 1;
+    if (source_.normal_encoding == NormalEncoding::octahedral || source_.normal_encoding == NormalEncoding::spheremap || source_.normal.size() == 2) {
+      source_.normal_unorm =
+          source_.normal_encoding == NormalEncoding::unorm || (in_unit_range && (open || source_.normal_encoding != NormalEncoding::signed_float));
+    } else if (open && in_unit_range && n.unorm_unit_share > 0.5 && n.unit_share < 0.5 * n.unorm_unit_share) {
+      source_.normal_unorm = true;
+      guess("normal encoding", "unorm", fmt::format("all in 0 to 1, and 2 n - 1 is of unit length on {:.0f} %", 100 * n.unorm_unit_share),
+            "--normal-encoding", true);
+    } else {
+      source_.normal_unorm = source_.normal_encoding == NormalEncoding::unorm;
+      if (open) guess("normal encoding", "signed", fmt::format("of unit length on {:.0f} %", 100 * n.unit_share), "--normal-encoding", false);
+    }
+  }
+
+  void settle_space() {
+    if (settings_.normal_space != NormalSpace::automatic || source_.camera.normal_space != NormalSpace::automatic) return;
+    const bool has_world = source_.camera.view_from_world.has_value();
+    auto scores = score_normals(normal_, source_.normal_encoding, source_.normal_unorm, depth_, depth_map_of(source_, settings_), source_.camera, view_);
+    const NormalFlips given = settings_.flip_normal;
+    if (given.x || given.y || given.z) scores.clear();  // flips were tried on top of none
+    const auto usual = std::ranges::find_if(scores, [](const auto& s) { return s.space == NormalSpace::world && to_string(s.flips) == "none"; });
+    const auto said = [](const NormalScore& s) {
+      return fmt::format("{} with flips {}: {:.0f} % agree with depth, {:.0f} % face the camera", s.space == NormalSpace::world ? "world" : "view",
+                         to_string(s.flips), 100 * s.agreement, 100 * s.facing);
+    };
+    const bool tells = !scores.empty() && scores[0].agreement >= kLeastAgreement;
+    if (has_world && (!tells || usual->agreement >= kAsGood * scores[0].agreement))
+      return guess("normal space", "world", tells ? said(*usual) : "the frame does not tell", "--normal-space", false);
+    if (!tells)
+      fail(ErrorKind::input,
+           "{}: its normals are in world space, and the camera has no world_to_camera: give a --camera file with it, or --normal-space view",
+           normal_path());
+    const auto other = std::ranges::find_if(scores, [&](const auto& s) { return s.space != scores[0].space; });
+    if (other != scores.end() && other->agreement >= kAsGood * scores[0].agreement)
+      fail(ErrorKind::input, "{}: its normals may be in {} or in {} space ({}; {}): say which with --normal-space, and --flip-normal", normal_path(),
+           scores[0].space == NormalSpace::world ? "world" : "view", other->space == NormalSpace::world ? "world" : "view", said(scores[0]),
+           said(*other));
+    source_.normal_space = scores[0].space;
+    source_.flip_normal = scores[0].flips;
+    guess("normal space", source_.normal_space == NormalSpace::world ? "world" : "view", said(scores[0]), "--normal-space with --flip-normal",
+          has_world || to_string(scores[0].flips) != "none");
+  }
+
+  FrameSource& source_;
+  const InputSettings& settings_;
+  std::span<const float> depth_, normal_;
+  View view_;
+  ValueStatistics values_;
+};
+
+/// Half floats step by a 1024th of the power of two below the value.
+void note_half(FrameSource& source, std::span<const float> depth) {
+  const auto& channels = source.files[source.depth[0].file].parts()[std::size_t(source.depth[0].part)].channels;
+  const auto channel = std::ranges::find(channels, source.depth[0].channel, &ExrChannel::name);
+  if (channel == channels.end() || channel->type != SampleType::half_float) return;
+  std::vector<float> values;
+  for (std::size_t i = 0; i < source.data.pixels(); i += kSparse)
+    if (std::isfinite(depth[i]) && depth[i] != 0 && std::abs(depth[i]) < 65504) values.push_back(std::abs(depth[i]));
+  if (values.empty()) return;
+  const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  const double step = std::exp2(std::floor(std::log2(*middle)) - 10);
+  source.notes.push_back(
+      fmt::format("{} is stored as half float: at its median {:.4g} it changes in steps of {:.2g}, which AO shows as bands; write it as float",
+                  source.depth[0].channel, *middle, step));
+}
+
+}  // namespace
+
+void settle(FrameSource& source, const InputSettings& settings, std::span<const float> depth, std::span<const float> normal) {
+  Settlement(source, settings, depth, normal).run();
+  note_half(source, depth);
+  source.settled = true;
+}
+
+DepthMap depth_map_of(const FrameSource& source, const InputSettings& settings) {
+  return depth_map(source.depth_kind, source.depth_range, source.position_space, source.camera, settings.depth_scale, settings.sky);
+}
+
+}  // namespace alcove

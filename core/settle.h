@@ -1,0 +1,20 @@
+// Decides by the pixels what settings and camera leave open about a frame: kind and sign of depth, space and encoding of normals.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <span>
+
+#include "core/gbuffer.h"
+#include "core/settings.h"
+
+namespace alcove {
+
+/// Settles what is open in `source`, from the planes of source.depth and source.normal as they were read, and adds to its guesses and notes.
+/// What the settings or the camera file say is never overruled. Fails with ErrorKind::input where the pixels speak for two ways or against all,
+/// naming the options that decide; under settings.strict, wherever there is a guess. Near or far that are missing are ErrorKind::usage.
+void settle(FrameSource& source, const InputSettings& settings, std::span<const float> depth, std::span<const float> normal);
+
+/// The map to planar depth, for a settled frame.
+DepthMap depth_map_of(const FrameSource& source, const InputSettings& settings);
+
+}  // namespace alcove
