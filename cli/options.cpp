@@ -8,6 +8,8 @@
 #include <sstream>
 
 #include "cli/parsing.h"
+#include "core/aov.h"
+#include "core/debug_view.h"
 #include "core/error.h"
 #include "core/file.h"
 #include "core/flat_toml.h"
@@ -89,6 +91,11 @@ const std::map<std::string, Denoise>& names_of() {
   return names;
 }
 template <>
+const std::map<std::string, AoChannels>& names_of() {
+  static const std::map<std::string, AoChannels> names = {{"mono", AoChannels::mono}, {"rgb", AoChannels::rgb}};
+  return names;
+}
+template <>
 const std::map<std::string, OutputType>& names_of() {
   static const std::map<std::string, OutputType> names = {{"half", OutputType::half_float}, {"float", OutputType::single_float}};
   return names;
@@ -156,6 +163,15 @@ void read_thickness(const std::string& text, EstimatorSettings& settings) {
   settings.thickness_length = length;
 }
 
+/// --albedo: a number is the albedo of all surfaces, all else a file.
+void read_albedo(const std::string& text, InputSettings& settings) {
+  double value = 0;
+  const bool is_number = CLI::detail::lexical_cast(text, value);
+  if (is_number && !(value >= 0 && value <= 1)) throw CLI::ValidationError("--albedo", fmt::format("{} is neither a file nor a number from 0 to 1", text));
+  settings.albedo = is_number ? "" : text;
+  settings.albedo_value = is_number ? std::optional(value) : std::nullopt;
+}
+
 /// --far: a distance, or inf.
 void read_far(const std::string& text, std::optional<double>& far) {
   double value = 0;
@@ -202,10 +218,15 @@ void add_input_rows(Table& table, InputSettings& s) {
   table.text("--normal", s.normal, "FILE", "an EXR of the normals alone");
   table.text("--position", s.position, "FILE", "an EXR of the positions, instead of a depth");
   table.text("--beauty", s.beauty, "FILE", "an EXR of the beauty, and of the indirect diffuse light, for --composite");
+  table.text("--material-ao", s.material_ao, "FILE", "an EXR of the materials' own AO, multiplied in");
+  table.row("--albedo", "FILE|NUMBER", "", "0 to 1", "an EXR of the diffuse colour for --multi-bounce, or one number; else it is in the beauty's file", "",
+            [&s](CLI::App& app) { return app.add_option_function<std::string>("--albedo", [&s](const std::string& text) { read_albedo(text, s); }); });
   table.text("--depth-channel", s.depth_channel, "NAME", "the depth channel; else found by its usual names");
   table.text("--normal-channels", s.normal_channels, "LAYER|X,Y[,Z]", "the normal's layer, or its channels; of two, z is rebuilt");
   table.text("--position-channels", s.position_channels, "LAYER|X,Y,Z", "the position's layer, or its three channels, instead of a depth");
   table.text("--beauty-channels", s.beauty_channels, "LAYER|R,G,B[,A]", "the beauty's layer, or its channels");
+  table.text("--material-ao-channel", s.material_ao_channel, "NAME", "the material AO's channel, of --material-ao or else of INPUT");
+  table.text("--albedo-channels", s.albedo_channels, "LAYER|R,G,B", "the diffuse colour's layer, or its channels");
   table.text("--layer", s.layer, "NAME", "look only at this layer or part");
   table.text("--view", s.view, "NAME", "of a stereo file; else its default view");
   table.row("--roi", "X,Y,WIDTH,HEIGHT", "px of the display window", "", "compute and write only this region; its surroundings are read as far as occluders reach", "",
@@ -264,15 +285,25 @@ void add_estimator_rows(Table& table, RunOptions& options) {
                "pixels that far apart weigh 1/e: exp(-|dz| / (SIGMA z)), z the nearer; 0: weighs by the distance from each other's plane");
   table.number("--intensity", s.intensity, "", between(0, 100), "factor on the occlusion");
   table.number("--power", s.power, "", above_to(0, 100), "exponent of the visibility");
+  table.number("--fade-start", s.fade_start, "scene units", between(0, 1e30), "depth where the AO begins to fade to 1; with --fade-end");
+  table.number("--fade-end", s.fade_end, "scene units", above_to(0, 1e30), "depth from which the AO is 1");
+  table.number("--roughness", s.roughness, "", between(0, 1), "of all surfaces, for specular-occlusion");
   table.number("--seed", s.seed, "", between(0, 4294967295.0), "shifts the sample noise");
 }
 
 void add_output_rows(Table& table, OutputSettings& s) {
   table.group("Output");
-  table.row("-o,--output", "FILE.exr", "", "", "the AO: one channel Y, 1 = open", "", [&s](CLI::App& app) { return app.add_option("-o,--output", s.output); });
+  table.row("-o,--output", "FILE.exr", "", "", "the AO, 1 = open, and what else --aov names", "", [&s](CLI::App& app) { return app.add_option("-o,--output", s.output); });
+  table.row("--aov", "LIST", "", "", fmt::format("what OUTPUT holds, with commas: {}", fmt::join(aov_names(), ", ")), s.aovs,
+            [&s](CLI::App& app) { return app.add_option("--aov", s.aovs); });
+  table.choice("--ao-channels", s.ao_channels, "mono: Y; rgb: R, G, B");
+  table.choice("--aov-space", s.aov_space, "the space of the normals in OUTPUT; auto: world where the camera has world_to_camera, else view");
+  table.flag("--multi-bounce", s.multi_bounce, "light between coloured surfaces brightens the rgb AO and the composite's indirect light; needs a diffuse colour");
   table.text("--composite", s.composite, "FILE.exr", "the beauty with AO in its ambient light, or in all of it where the parts are missing");
+  table.number("--fog-density", s.fog_density, "1 / scene units", between(0, 1e30), "of exponential fog in the beauty, which hides the AO of what lies behind it");
   table.text("--preview", s.preview, "FILE.png", "a picture of the composite, or of the AO where there is none");
-  table.choice("--type", s.type, "sample type of the AO");
+  table.text("--debug", s.debug, "LIST", fmt::format("pictures beside OUTPUT, ao.exr -> ao.VIEW.png, with commas: {}", fmt::join(debug_view_names(), ", ")));
+  table.choice("--type", s.type, "sample type of OUTPUT; depth is always float");
   table.word("--compression", s.compression, {"none", "rle", "zips", "zip", "piz"}, "of the AO file; a composite keeps OpenEXR's zip");
   table.text("--ocio", s.ocio, "FILE", "OpenColorIO configuration for the preview; else the OCIO variable, else linear Rec.709 to sRGB");
 }

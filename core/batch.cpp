@@ -8,11 +8,14 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
+#include <deque>
 #include <filesystem>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <thread>
 
+#include "core/aov.h"
 #include "core/chain.h"
 #include "core/color.h"
 #include "core/error.h"
@@ -40,14 +43,13 @@ class Stopwatch {
 
 struct OutputFile {
   const char* option;
-  const std::string* path;
+  std::string path;
 };
 
 std::vector<OutputFile> outputs_of(const OutputSettings& output) {
-  std::vector<OutputFile> files;
-  for (const OutputFile& file : {OutputFile{"--output", &output.output}, OutputFile{"--composite", &output.composite},
-                                 OutputFile{"--preview", &output.preview}, OutputFile{"--stats", &output.stats}})
-    if (!file.path->empty()) files.push_back(file);
+  std::vector<OutputFile> files{{"--output", output.output}, {"--composite", output.composite}, {"--preview", output.preview}, {"--stats", output.stats}};
+  for (const auto* view : debug_views_of(output)) files.push_back({"--debug", debug_path(output, *view)});
+  std::erase_if(files, [](const OutputFile& file) { return file.path.empty(); });
   return files;
 }
 
@@ -60,19 +62,28 @@ bool same_file(const std::string& a, const std::string& b) {
 
 /// The largest buffer holds as many planes as the widest AOV has channels.
 void require_room(const FrameSource& source, const gpu::DeviceInfo& device) {
-  for (const auto* aov : {&source.depth, &source.normal, &source.beauty, &source.indirect, &source.diffuse_color})
+  for (const auto* aov : {&source.depth, &source.normal, &source.beauty, &source.indirect, &source.diffuse_color, &source.albedo, &source.material_ao})
     if (const std::uint64_t bytes = aov->size() * source.data.pixels() * sizeof(float); bytes > device.buffer_bytes)
       fail(ErrorKind::device, "{}: {} pixels of {} channels need a buffer of {} MiB, and {} takes {} MiB: use another --device, or a smaller frame",
            source.files[aov->front().file].path(), to_string(source.data), aov->size(), bytes >> 20, device.name, device.buffer_bytes >> 20);
 }
 
+/// Whether the directions that are written are in world space.
+bool in_world(const FrameSource& source, const OutputSettings& settings) {
+  return settings.aov_space != NormalSpace::view && source.camera.view_from_world.has_value();
+}
+
 /// The planes that were found, in upload buffers, and what they mean.
-FrameInputs read_frame(gpu::Recorder& gpu, FrameSource& source, const InputSettings& settings, int frame) {
+FrameInputs read_frame(gpu::Recorder& gpu, FrameSource& source, const InputSettings& settings, const OutputSettings& output, int frame) {
   FrameInputs inputs;
   inputs.view = view_of(source.camera, source.data, source.display);
   inputs.noise_origin = {source.data.x - source.display.x, source.data.y - source.display.y};
   inputs.frame = frame;
   inputs.has_alpha = source.beauty.size() == 4;
+  inputs.albedo_value = settings.albedo_value.value_or(0);
+  if (in_world(source, output))
+    for (std::size_t row = 0; row < 3; row++)
+      for (std::size_t column = 0; column < 3; column++) inputs.aov_from_view[row][column] = (*source.camera.view_from_world)[column][row];
 
   std::vector<PlaneRead> reads;
   const auto upload = [&](const char* name, const std::vector<ChannelRef>& channels) -> gpu::Buffer* {
@@ -86,6 +97,8 @@ FrameInputs read_frame(gpu::Recorder& gpu, FrameSource& source, const InputSetti
   inputs.beauty = upload("beauty", source.beauty);
   inputs.indirect = upload("indirect", source.indirect);
   inputs.diffuse_color = upload("diffuse color", source.diffuse_color);
+  inputs.material_ao = upload("material ao", source.material_ao);
+  inputs.albedo = upload("albedo", source.albedo);
   read_planes(source, reads);
   if (!source.settled) settle(source, settings, inputs.depth->as<float>(), inputs.normal ? inputs.normal->as<float>() : std::span<float>());
   inputs.depth_map = depth_map_of(source, settings);
@@ -108,10 +121,21 @@ ExrOutput output_like(const FrameSource& source, const ChannelRef& like, const s
   return output;
 }
 
-void write_ao(const FrameSource& source, std::span<const float> ao, const OutputSettings& settings, const std::string& digest, const std::string& device) {
+/// What is written of a buffer's planes: all, or the region; empty for null.
+using Planes = std::function<std::span<const float>(const gpu::Buffer*)>;
+
+void write_aovs(const FrameSource& source, const FrameOutputs& outputs, const Planes& planes_of, const OutputSettings& settings, const std::string& digest,
+                const std::string& device) {
   ExrOutput output = output_like(source, source.depth[0], digest, device);
   output.compression = settings.compression;
-  output.planes = {{"Y", settings.type == OutputType::half_float ? SampleType::half_float : SampleType::single_float, ao}};
+  const std::size_t pixels = source.data.pixels();
+  for (const auto& aov : aovs_of(settings)) {
+    const auto planes = planes_of(outputs.*aov.planes);
+    const SampleType type = settings.type == OutputType::half_float && !aov.is_float ? SampleType::half_float : SampleType::single_float;
+    for (std::size_t c = 0; c < aov.channels.size(); c++)
+      output.planes.push_back({aov.channels[c], type, planes.subspan(planes.size() > pixels ? c * pixels : 0, pixels)});
+  }
+  if (outputs.normal) output.own_attributes["alcove/normal_space"] = in_world(source, settings) ? "world" : "view";
   write_exr(settings.output, output);
 }
 
@@ -126,6 +150,8 @@ void write_composite(const FrameSource& source, std::span<const float> composite
                      const std::string& device) {
   ExrOutput output = output_like(source, source.beauty[0], digest, device);
   output.own_attributes["alcove/composite"] = source.indirect.empty() ? "multiply: beauty * ao" : "ambient: beauty - D + D * ao, D = indirect diffuse";
+  if (settings.multi_bounce) output.own_attributes["alcove/composite"] += "; ao with multi-bounce";
+  if (settings.fog_density > 0) output.own_attributes["alcove/composite"] += fmt::format("; ao seen through fog of density {}", settings.fog_density);
   const char* names[] = {"R", "G", "B", "A"};
   for (std::size_t c = 0; c < source.beauty.size(); c++)
     output.planes.push_back({names[c], type_of(source, source.beauty[c]), composite.subspan(c * source.data.pixels(), source.data.pixels())});
@@ -156,10 +182,12 @@ void write_preview(const FrameSource& source, std::span<const float> ao, std::sp
 void note_counts(FrameReport& report, const FrameCounts& counts, const FrameSource& source) {
   report.pixels = source.data.pixels();
   report.sky_pixels = counts.sky;
-  report.repaired_pixels = counts.repaired_depth + counts.repaired_normals + counts.repaired_beauty;
+  report.repaired_pixels = counts.repaired_depth + counts.repaired_normals + counts.repaired_material + counts.repaired_beauty;
   if (counts.repaired_depth) report.notes.push_back(fmt::format("{} pixels had a depth that is NaN or negative; they count as sky", counts.repaired_depth));
   if (counts.repaired_normals)
     report.notes.push_back(fmt::format("{} pixels had no usable normal; it was reconstructed from depth", counts.repaired_normals));
+  if (counts.repaired_material)
+    report.notes.push_back(fmt::format("{} pixels of the material AO were NaN or infinite; they count as 1", counts.repaired_material));
   if (counts.repaired_beauty) report.notes.push_back(fmt::format("{} pixels of the beauty were NaN or infinite; they are 0 in the composite", counts.repaired_beauty));
   if (source.normal.empty()) report.notes.push_back("there is no normal channel; normals were reconstructed from depth (--normal, --normal-channels)");
 }
@@ -167,6 +195,22 @@ void note_counts(FrameReport& report, const FrameCounts& counts, const FrameSour
 /// What the settings ask for at a pixel.
 double samples_of(const EstimatorSettings& settings) {
   return settings.estimator == Estimator::crytek ? settings.samples : 2.0 * settings.slices * settings.steps;
+}
+
+/// Fails with ErrorKind::input where a frame lacks what an output is made from.
+void require_for_outputs(const FrameSource& source, const OutputSettings& settings) {
+  const std::string& file = source.files[source.depth[0].file].path();
+  if (settings.aov_space == NormalSpace::world && !source.camera.view_from_world)
+    fail(ErrorKind::input, "{}: --aov-space world needs a camera with world_to_camera: give a --camera file with it", file);
+  if (settings.multi_bounce && !source.beauty.empty() && source.indirect.empty())
+    fail(ErrorKind::input, "{}: --multi-bounce is for indirect light, and the frame has no indirect diffuse part for the --composite (--beauty)", file);
+  for (const auto* view : debug_views_of(settings)) {
+    if (view->source == DebugSource::raw_depth && source.depth.size() > 1)
+      fail(ErrorKind::input, "{}: --debug {} shows a depth, and the frame has positions: name one with --depth-channel, or see linear-depth", file, view->name);
+    if (view->source == DebugSource::normals_from_depth && source.normal.empty())
+      fail(ErrorKind::input, "{}: --debug {} compares the frame's normals with those from depth, and there are none (--normal, --normal-channels)", file,
+           view->name);
+  }
 }
 
 /// `transform`: for the preview of a composite, else null.
@@ -178,39 +222,55 @@ FrameReport run_frame(gpu::Device& device, gpu::Recorder& gpu, const Settings& s
   report.frame = frame_number_of(report.input);
 
   const Stopwatch reading;
-  FrameSource source = find_frame(settings.input, !settings.output.composite.empty(), report.frame);
+  FrameSource source = find_frame(settings.input, !settings.output.composite.empty(), report.frame, settings.output.multi_bounce && !settings.input.albedo_value);
   if (settings.input.roi) restrict_to_region(source, settings);
+  require_for_outputs(source, settings.output);
   require_room(source, device.info());
-  const FrameInputs inputs = read_frame(gpu, source, settings.input, report.frame);
+  const FrameInputs inputs = read_frame(gpu, source, settings.input, settings.output, report.frame);
   report.read_ms = reading.ms();
 
-  const FrameOutputs outputs = run_chain(gpu, inputs, settings.estimator);
+  const FrameOutputs outputs = run_chain(gpu, inputs, settings.estimator, settings.output);
   gpu.run();
   report.passes = gpu.passes();
   report.notes = source.notes;
   for (const auto& pass : report.passes) report.compute_ms += pass.ms;
   note_counts(report, outputs.counts->as<FrameCounts>()[0], source);
   const double surface = double(report.pixels - report.sky_pixels) / double(report.pixels), factor = double(settings.estimator.resolution);
-  report.samples_per_pixel = samples_of(settings.estimator) * surface / (factor * factor);
+  report.samples_per_pixel = !outputs.ao ? 0 : samples_of(settings.estimator) * surface / (factor * factor);
 
   const Stopwatch writing;
-  std::span<const float> ao = outputs.ao->as<float>(), composite = outputs.composite ? outputs.composite->as<float>() : std::span<float>();
-  std::vector<float> ao_region, composite_region;
-  if (source.region) {
-    ao = ao_region = cropped(ao, source.data, *source.region);
-    composite = composite_region = cropped(composite, source.data, *source.region);
-    source.data = *source.region;
-  }
-  write_ao(source, ao, settings.output, digest, device.info().name);
+  const Window computed = source.data;
+  if (source.region) source.data = *source.region;
+  std::deque<std::vector<float>> regions;
+  const Planes planes = [&](const gpu::Buffer* buffer) {
+    const auto all = buffer ? buffer->as<float>() : std::span<float>();
+    return source.region ? std::span<const float>(regions.emplace_back(cropped(all, computed, *source.region))) : all;
+  };
+  write_aovs(source, outputs, planes, settings.output, digest, device.info().name);
   if (outputs.composite) {
-    write_composite(source, composite, settings.output, digest, device.info().name);
+    write_composite(source, planes(outputs.composite), settings.output, digest, device.info().name);
     if (source.indirect.empty())
       report.notes.push_back("the frame has no indirect diffuse part: the composite is the whole beauty times AO, which dims direct light too");
   }
-  if (!settings.output.preview.empty()) write_preview(source, ao, composite, transform, settings.output);
+  if (!settings.output.preview.empty()) write_preview(source, planes(outputs.ao), planes(outputs.composite), transform, settings.output);
+  for (const auto& plane : outputs.debug)
+    write_debug_view(debug_path(settings.output, *plane.view), *plane.view, plane.size.x, plane.size.y, plane.values->as<float>());
   report.write_ms = writing.ms();
   report.total_ms = total.ms();
   return report;
+}
+
+/// What goes into the shading of the AO.
+void check_shading(const Settings& settings) {
+  const auto& e = settings.estimator;
+  const auto& o = settings.output;
+  if (e.fade_start.has_value() != e.fade_end.has_value()) fail(ErrorKind::usage, "--fade-start and --fade-end belong together: depths in scene units");
+  if (e.fade_end && *e.fade_end <= *e.fade_start) fail(ErrorKind::usage, "--fade-end {} is not beyond --fade-start {}", *e.fade_end, *e.fade_start);
+  const bool has_albedo = !settings.input.albedo.empty() || settings.input.albedo_value || !settings.input.albedo_channels.empty();
+  if (has_albedo && !o.multi_bounce) fail(ErrorKind::usage, "--albedo and --albedo-channels are for --multi-bounce: give it too");
+  if (o.multi_bounce && o.composite.empty() && !wants(o, &FrameOutputs::color_ao))
+    fail(ErrorKind::usage, "--multi-bounce shows in the AO with --ao-channels rgb, and in a --composite: ask for one of them");
+  if (o.fog_density > 0 && o.composite.empty()) fail(ErrorKind::usage, "--fog-density is for a composite: name its file with --composite");
 }
 
 }  // namespace
@@ -220,22 +280,24 @@ void check_settings(const Settings& settings) {
   if (settings.input.input.empty() && settings.input.depth.empty() && settings.input.position.empty())
     fail(ErrorKind::usage, "no input: name an EXR file, or one with --depth or --position");
   if (!settings.input.depth.empty() && !settings.input.position.empty()) fail(ErrorKind::usage, "--depth and --position are two ways to say the same: give one");
-  if (!settings.estimator.radius) fail(ErrorKind::usage, "no radius: say with --radius how far occluders reach, in scene units");
+  if (!settings.estimator.radius && needs_ao(settings.output)) fail(ErrorKind::usage, "no radius: say with --radius how far occluders reach, in scene units");
   if (settings.estimator.estimator != Estimator::crytek && settings.estimator.bias >= 1)
     fail(ErrorKind::usage, "--bias {}: of every estimator but crytek it is the sine of an elevation, below 1", settings.estimator.bias);
   if (settings.estimator.falloff_end <= settings.estimator.falloff_start)
     fail(ErrorKind::usage, "--falloff-end {} is not above --falloff-start {}", settings.estimator.falloff_end, settings.estimator.falloff_start);
   if (settings.input.focal.has_value() != settings.input.aperture.has_value())
     fail(ErrorKind::usage, "--focal and --aperture belong together: focal length and width of the film back in mm");
-  if (!settings.input.beauty.empty() && settings.output.composite.empty()) fail(ErrorKind::usage, "--beauty is for a composite: name its file with --composite");
+  if (!settings.input.beauty.empty() && settings.output.composite.empty() && !settings.output.multi_bounce)
+    fail(ErrorKind::usage, "--beauty is for a composite: name its file with --composite");
+  check_shading(settings);
   const auto outputs = outputs_of(settings.output);
   for (std::size_t i = 0; i < outputs.size(); i++) {
     for (const auto* input : {&settings.input.input, &settings.input.depth, &settings.input.normal, &settings.input.position, &settings.input.beauty,
-                              &settings.input.camera})
-      if (!input->empty() && same_file(*input, *outputs[i].path)) fail(ErrorKind::usage, "{}: {} would overwrite an input", *outputs[i].path, outputs[i].option);
+                              &settings.input.camera, &settings.input.material_ao, &settings.input.albedo})
+      if (!input->empty() && same_file(*input, outputs[i].path)) fail(ErrorKind::usage, "{}: {} would overwrite an input", outputs[i].path, outputs[i].option);
     for (std::size_t j = 0; j < i; j++)
-      if (same_file(*outputs[j].path, *outputs[i].path))
-        fail(ErrorKind::usage, "{}: {} and {} name the same file", *outputs[i].path, outputs[j].option, outputs[i].option);
+      if (same_file(outputs[j].path, outputs[i].path))
+        fail(ErrorKind::usage, "{}: {} and {} name the same file", outputs[i].path, outputs[j].option, outputs[i].option);
   }
 }
 
@@ -246,6 +308,10 @@ std::string options_digest(const Settings& settings) {
   std::string text = kVersion;
   const auto add = [&](const auto&... values) { ((text += fmt::format("\n{}", values)), ...); };
   add(int(e.estimator), e.radius.value_or(0), int(e.falloff), e.falloff_start, e.falloff_end, e.slices, e.steps, e.intensity, e.power, e.seed);
+  add(e.fade_start.value_or(-1), e.fade_end.value_or(-1), e.roughness, settings.output.fog_density);
+  add(settings.output.multi_bounce, i.albedo_value.value_or(-1));
+  add(settings.output.aovs, int(settings.output.ao_channels), int(settings.output.aov_space));
+  add(i.material_ao.empty(), i.material_ao_channel, i.albedo.empty(), i.albedo_channels);
   add(e.samples, e.bias, int(e.elevation), int(e.sample_kernel), int(e.range_check));
   add(int(e.thickness), e.thickness_length, int(e.resolution), int(e.denoise));
   add(e.denoise_radius, fmt::format("{}", fmt::join(e.denoise_kernel, ",")), e.denoise_depth_sigma);
@@ -272,7 +338,7 @@ int frame_number_of(const std::string& path) {
 RunReport run_frames(const Settings& settings) {
   const Stopwatch wall;
   check_settings(settings);
-  for (const auto& file : outputs_of(settings.output)) require_writable(*file.path, file.option);
+  for (const auto& file : outputs_of(settings.output)) require_writable(file.path, file.option);
   const int threads = settings.device.threads > 0 ? settings.device.threads : int(std::max(1u, std::thread::hardware_concurrency()));
   set_exr_threads(threads);
   if (settings.device.threads > 0) ::setenv("LP_NUM_THREADS", std::to_string(threads).c_str(), 1);  // lavapipe's own variable

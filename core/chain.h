@@ -10,10 +10,18 @@ namespace alcove {
 struct FrameOutputs {
   gpu::Buffer* counts = nullptr;     // one FrameCounts
   gpu::Buffer* ao = nullptr;         // a plane: visibility in [0, 1]
+  gpu::Buffer* color_ao = nullptr;   // planes r, g, b: the visibility with multi-bounce
   gpu::Buffer* composite = nullptr;  // the beauty's planes
+  gpu::Buffer* normal = nullptr;     // planes x, y, z; 0 for sky
+  gpu::Buffer* depth = nullptr;      // a plane: planar, scene units; kSkyDepth for sky
+  gpu::Buffer* specular_occlusion = nullptr;  // a plane, in [0, 1], 1 = open
+  std::vector<DebugPlane> debug;
 };
 
-/// Records the whole chain for one frame. settings.radius must be set.
-FrameOutputs run_chain(gpu::Recorder& gpu, const FrameInputs& frame, const EstimatorSettings& settings);
+/// Records for one frame what `output` asks for, and the composite where the frame has a beauty. settings.radius must be set where that needs AO.
+FrameOutputs run_chain(gpu::Recorder& gpu, const FrameInputs& frame, const EstimatorSettings& settings, const OutputSettings& output = {});
+
+/// Whether any of it is AO or made from it.
+bool needs_ao(const OutputSettings& output);
 
 }  // namespace alcove

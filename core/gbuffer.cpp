@@ -43,6 +43,11 @@ const AovNames kBeautyNames{"beauty", "--beauty-channels", {"combined", "rgba", 
 const AovNames kIndirectNames{"indirect diffuse", "--layer", {"diffind", "diffuse indirect", "diffuse_indirect", "indirectdiffuse", "gi"}, {{"r", "g", "b"}}, {}, {}};
 const AovNames kDiffuseColorNames{"diffuse colour", "--layer", {"diffcol", "diffuse color"}, {{"r", "g", "b"}}, {}, {}};
 
+const AovNames kMaterialNames{"material AO", "--material-ao-channel", {"ao", "occlusion", "ambient occlusion", "materialao"},
+                              {{"y"}, {"r"}, {"ao"}}, {{"ao"}, {"occlusion"}}, {{"y"}, {"r"}}};
+const AovNames kAlbedoNames{"diffuse colour", "--albedo-channels", {"diffcol", "diffuse color", "albedo", "diffuse_albedo"},
+                            {{"r", "g", "b"}}, {}, {{"r", "g", "b"}}};
+
 /// The name without the layer; nothing when it lies elsewhere. Without a layer: the name.
 std::optional<std::string> within_layer(const std::string& name, const std::string& layer) {
   if (layer.empty()) return lower_case(name);
@@ -165,19 +170,6 @@ std::vector<ChannelRef> find_usual(const ExrFile& file, const std::vector<NamedC
   return found.empty() && own_file ? find_in_layer(file, channels, names, "", names.alone) : found;
 }
 
-/// The parts between commas, without the spaces around them.
-std::vector<std::string> split(const std::string& text) {
-  std::vector<std::string> parts;
-  for (std::size_t start = 0; start <= text.size();) {
-    const std::size_t end = std::min(text.find(',', start), text.size());
-    const std::string part = text.substr(start, end - start);
-    const std::size_t first = part.find_first_not_of(' '), last = part.find_last_not_of(' ');
-    parts.push_back(first == part.npos ? "" : part.substr(first, last - first + 1));
-    start = end + 1;
-  }
-  return parts;
-}
-
 const NamedChannel* find_named(const std::vector<NamedChannel>& channels, const std::string& name) {
   const std::string lower = lower_case(name);
   for (const auto& channel : channels)
@@ -292,6 +284,24 @@ void find_beauty(FrameSource& source, const Search& search, std::size_t file, co
   for (const auto* aov : {&source.beauty, &source.indirect, &source.diffuse_color}) require_same_window(source, *aov, "beauty", "--beauty");
 }
 
+/// What is multiplied in, where the settings name a file or a channel of it.
+void find_material(FrameSource& source, Search& search, const InputSettings& settings) {
+  if (settings.material_ao.empty() && settings.material_ao_channel.empty()) return;
+  const std::size_t file = search.open(settings.material_ao.empty() ? settings.input : settings.material_ao, "--material-ao");
+  source.material_ao = search.require(file, kMaterialNames, settings.material_ao_channel, !settings.material_ao.empty(), "AO");
+  require_same_window(source, source.material_ao, "material AO", "--material-ao");
+}
+
+/// The colour that light takes at the surfaces.
+void find_albedo(FrameSource& source, Search& search, const std::string& beauty_path, const InputSettings& settings) {
+  const std::size_t file = search.open(settings.albedo.empty() ? beauty_path : settings.albedo, "--albedo");
+  source.albedo = search.find(file, kAlbedoNames, settings.albedo_channels, !settings.albedo.empty());
+  if (source.albedo.empty())
+    fail(ErrorKind::input, "{}: no diffuse colour found for --multi-bounce: name its channels with --albedo-channels, or give --albedo a file or a number",
+         source.files[file].path());
+  require_same_window(source, source.albedo, "diffuse colour", "--albedo");
+}
+
 /// The depth channel; the position's where the settings say so, or where there is no depth.
 std::vector<ChannelRef> find_depth(const Search& search, std::size_t file, const InputSettings& settings, bool by_position) {
   if (by_position) return search.require(file, kPositionNames, settings.position_channels, !settings.position.empty(), "Position.X");
@@ -317,7 +327,7 @@ void read_part(FrameSource& source, const std::vector<PlaneRead>& reads) {
 
 }  // namespace
 
-FrameSource find_frame(const InputSettings& settings, bool with_beauty, int frame) {
+FrameSource find_frame(const InputSettings& settings, bool with_beauty, int frame, bool with_albedo) {
   FrameSource source;
   Search search(settings, source.files);
   const std::string& depth_path = !settings.depth.empty() ? settings.depth : settings.input.empty() ? settings.position : settings.input;
@@ -337,6 +347,8 @@ FrameSource find_frame(const InputSettings& settings, bool with_beauty, int fram
                                           : search.require(normal_file, kNormalNames, settings.normal_channels, true, "Normal.X");
   require_same_window(source, source.normal, "normal", "--normal");
   if (with_beauty) find_beauty(source, search, search.open(beauty_path, "--beauty"), settings);
+  if (with_albedo) find_albedo(source, search, beauty_path, settings);
+  find_material(source, search, settings);
 
   const auto views = views_of(source.files[depth_file]);
   if (settings.view.empty() && views.size() > 1) source.notes.push_back(fmt::format("of the views {} this is {} (--view)", list_of(views), views.front()));
@@ -365,12 +377,17 @@ FrameSource find_frame(const InputSettings& settings, bool with_beauty, int fram
 void read_planes(FrameSource& source, const std::vector<PlaneRead>& reads) {
   if (source.data != source.file_data) return read_part(source, reads);
   std::vector<std::vector<ExrRead>> by_file(source.files.size());
+  std::map<ChannelRef, float*> first;  // a channel that serves two purposes is decoded to the first place, and copied from there
+  std::vector<std::pair<float*, float*>> copies;
   for (const auto& read : reads)
     for (std::size_t i = 0; i < read.channels->size(); i++) {
       const auto& channel = (*read.channels)[i];
-      by_file[channel.file].push_back({channel.part, channel.channel, read.to + i * source.data.pixels()});
+      float* to = read.to + i * source.data.pixels();
+      if (const auto [known, is_new] = first.try_emplace(channel, to); is_new) by_file[channel.file].push_back({channel.part, channel.channel, to});
+      else copies.emplace_back(known->second, to);
     }
   for (std::size_t file = 0; file < by_file.size(); file++) source.files[file].read(by_file[file]);
+  for (const auto& [from, to] : copies) std::copy_n(from, source.data.pixels(), to);
 }
 
 }  // namespace alcove

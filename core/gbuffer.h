@@ -20,6 +20,7 @@ struct ChannelRef {
   std::size_t file;
   int part;
   std::string channel;
+  auto operator<=>(const ChannelRef&) const = default;
 };
 
 /// Something that neither settings nor camera say.
@@ -40,6 +41,8 @@ struct FrameSource {
   std::vector<ChannelRef> beauty;         // r, g, b and, where there is one, a; none unless asked for
   std::vector<ChannelRef> indirect;       // r, g, b: the indirect diffuse light; none where the frame has no such part
   std::vector<ChannelRef> diffuse_color;  // r, g, b: the colour that it is still to be multiplied by; none where it holds it already
+  std::vector<ChannelRef> material_ao;    // one; none unless the settings name it
+  std::vector<ChannelRef> albedo;         // r, g, b: the diffuse colour; none unless asked for
   DepthKind depth_kind = DepthKind::planar;
   DepthRange depth_range;
   PositionSpace position_space = PositionSpace::world;
@@ -52,10 +55,11 @@ struct FrameSource {
   std::vector<std::string> notes;  // what the user should know: guesses that are unusual, and what harms; a sentence each
 };
 
-/// Opens the files that the settings name and finds the channels. `with_beauty` asks for the beauty and its ambient parts too.
+/// Opens the files that the settings name and finds the channels. `with_beauty` asks for the beauty and its ambient parts too, `with_albedo` for the
+/// diffuse colour.
 /// Fails with ErrorKind::input, listing what there is and naming the option that decides, when a channel is not found, is
 /// found twice, is subsampled, or has another size than the depth.
-FrameSource find_frame(const InputSettings& settings, bool with_beauty, int frame);
+FrameSource find_frame(const InputSettings& settings, bool with_beauty, int frame, bool with_albedo = false);
 
 /// A plane, or several one behind the other, and where it goes.
 struct PlaneRead {

@@ -3,9 +3,12 @@
 #include "core/image_io_module.h"
 
 #include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imagebuf.h>
+#include <OpenImageIO/imagebufalgo.h>
 #include <OpenImageIO/imageio.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -49,8 +52,59 @@ std::vector<char> encode_png(const std::string& name, int width, int height, int
   return {encoded.begin(), encoded.end()};
 }
 
+constexpr int kLegend = 48, kMargin = 8, kStripX = 110, kStrip = 200, kStripHeight = 14;  // px
+constexpr int kLeastWidth = 560, kLargestPixel = 8;                                       // px
+constexpr std::array kSkyColor{0.74f, 0.4f, 0.36f};                                       // display values; neither grey nor on the ramp
+
+/// Display values of a place on the scale.
+std::array<float, 3> color_at(const OIIO::ImageBuf& ramp, float place, bool is_grey) {
+  if (std::isnan(place)) return kSkyColor;
+  if (is_grey) return {place, place, place};
+  std::array<float, 3> color{};
+  ramp.getpixel(int(std::lround(place * float(ramp.spec().width - 1))), 0, color.data(), 3);
+  for (float& c : color) c = c <= 0.0031308f ? 12.92f * c : 1.055f * std::pow(c, 1 / 2.4f) - 0.055f;  // OpenImageIO's ramps are linear light
+  return color;
+}
+
+/// The colour ramp, one row.
+OIIO::ImageBuf make_ramp() {
+  OIIO::ImageBuf places(OIIO::ImageSpec(256, 1, 1, OIIO::TypeFloat));
+  for (int x = 0; x < 256; x++) {
+    const float place = float(x) / 255;
+    places.setpixel(x, 0, &place, 1);
+  }
+  return OIIO::ImageBufAlgo::color_map(places, 0, "viridis");
+}
+
+void write_text(OIIO::ImageBuf& picture, const std::string& name, int x, int y, const std::string& text) {
+  if (!OIIO::ImageBufAlgo::render_text(picture, x, y, text, 15, "DejaVuSans", {0.9f, 0.9f, 0.9f}))
+    fail(ErrorKind::output, "{}: its texts need the font DejaVu Sans (Debian package fonts-dejavu-core): {}", name, one_line(picture.geterror()));
+}
+
+std::vector<char> encode_chart(const std::string& name, const Chart& chart) {
+  const int zoom = std::min((kLeastWidth + chart.width - 1) / chart.width, kLargestPixel), width = std::max(zoom * chart.width, kLeastWidth), top = zoom * chart.height;
+  OIIO::ImageBuf picture(OIIO::ImageSpec(width, top + kLegend, 3, OIIO::TypeFloat), OIIO::InitializePixels::Yes);
+  const OIIO::ImageBuf ramp = make_ramp();
+  const auto fill = [&](int x, int y, int w, int h, std::array<float, 3> color) {
+    OIIO::ImageBufAlgo::fill(picture, OIIO::cspan<float>(color.data(), 3), OIIO::ROI(x, x + w, y, y + h));
+  };
+  for (int y = 0; y < top; y++)
+    for (int x = 0; x < zoom * chart.width; x++)
+      picture.setpixel(x, y, color_at(ramp, chart.places[std::size_t(y / zoom) * std::size_t(chart.width) + std::size_t(x / zoom)], chart.is_grey).data(), 3);
+  const int strip = top + kLegend - kStripHeight - kMargin, baseline = strip + kStripHeight - 2, right = kStripX + kStrip + kMargin;
+  for (int x = 0; x < kStrip; x++) fill(kStripX + x, strip, 1, kStripHeight, color_at(ramp, float(x) / float(kStrip - 1), chart.is_grey));
+  write_text(picture, name, kMargin, top + 18, chart.title);
+  write_text(picture, name, kMargin, baseline, chart.low);
+  write_text(picture, name, right, baseline, chart.high);
+  fill(right + 110, strip, kStripHeight, kStripHeight, kSkyColor);
+  write_text(picture, name, right + 110 + kStripHeight + kMargin, baseline, "sky");
+  std::vector<float> pixels(std::size_t(width) * std::size_t(top + kLegend) * 3);
+  picture.get_pixels(picture.roi(), OIIO::TypeFloat, pixels.data());
+  return encode_png(name, width, top + kLegend, 3, pixels);
+}
+
 }  // namespace
 
-extern "C" __attribute__((visibility("default"))) const ImageIoModule alcove_image_io_module = {read_image, encode_png};
+extern "C" __attribute__((visibility("default"))) const ImageIoModule alcove_image_io_module = {read_image, encode_png, encode_chart};
 
 }  // namespace alcove

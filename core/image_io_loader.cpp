@@ -28,6 +28,8 @@ std::vector<char> encode_png(const std::string& name, int width, int height, int
   return module().encode_png(name, width, height, channels, pixels);
 }
 
+std::vector<char> encode_chart(const std::string& name, const Chart& chart) { return module().encode_chart(name, chart); }
+
 void write_png(const std::string& path, int width, int height, int channels, std::span<const float> pixels) {
   write_whole(path, encode_png(path, width, height, channels, pixels));
 }

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "core/chart.h"
 #include "core/image.h"
 
 namespace alcove {
@@ -17,6 +18,7 @@ namespace alcove {
 struct ImageIoModule {
   Image (*read_image)(const std::string& path, const char* option);
   std::vector<char> (*encode_png)(const std::string& name, int width, int height, int channels, std::span<const float> pixels);
+  std::vector<char> (*encode_chart)(const std::string& name, const Chart& chart);
 };
 
 inline constexpr const char* kImageIoFile = "libalcove_image_io.so";

@@ -12,12 +12,16 @@
 #include "kernels/bitmask.h"
 #include "kernels/composite.h"
 #include "kernels/crytek.h"
+#include "kernels/debug.h"
 #include "kernels/denoise.h"
+#include "kernels/directions.h"
 #include "kernels/downsample.h"
 #include "kernels/hbao.h"
 #include "kernels/horizon.h"
+#include "kernels/multi_bounce.h"
 #include "kernels/prepare.h"
 #include "kernels/shape.h"
+#include "kernels/specular_occlusion.h"
 #include "kernels/upsample.h"
 
 namespace alcove {
@@ -101,10 +105,10 @@ std::vector<double> denoise_weights(const EstimatorSettings& settings) {
 
 }  // namespace
 
-GBuffer prepare(gpu::Recorder& gpu, const FrameInputs& frame) {
-  GBuffer gbuffer{frame.view, &gpu.buffer("depth", plane_bytes(frame.view), gpu::Use::device),
-                  &gpu.buffer("normal", plane_bytes(frame.view), gpu::Use::device),
-                  &gpu.buffer("counts", sizeof(FrameCounts), gpu::Use::download)};
+GBuffer prepare(gpu::Recorder& gpu, const FrameInputs& frame, gpu::Use depth_use, const std::string& prefix) {
+  GBuffer gbuffer{frame.view, &gpu.buffer(prefix + "depth", plane_bytes(frame.view), depth_use),
+                  &gpu.buffer(prefix + "normal", plane_bytes(frame.view), gpu::Use::device),
+                  &gpu.buffer(prefix + "counts", sizeof(FrameCounts), gpu::Use::download)};
   PrepareParams params{};
   params.view = frame.view;
   params.view_from_normal_x = to_vec3(frame.view_from_normal[0]);
@@ -245,25 +249,93 @@ gpu::Buffer& upsample(gpu::Recorder& gpu, const GBuffer& gbuffer, const GBuffer&
   return ao;
 }
 
-gpu::Buffer& shape(gpu::Recorder& gpu, const gpu::Buffer& ao, const View& view, const EstimatorSettings& settings) {
-  gpu::Buffer& shaped = gpu.buffer("shaped", plane_bytes(view), gpu::Use::download);
-  const ShapeParams params{view.size, float(settings.intensity), float(settings.power)};
-  gpu.dispatch("shape", params, {{kShapeAo, ao}, {kShapeShaped, shaped}}, extent_of(view));
+bool shapes(const EstimatorSettings& settings) { return settings.intensity != 1 || settings.power != 1 || settings.fade_end; }
+
+gpu::Buffer& shape(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& ao, const FrameInputs& frame, const EstimatorSettings& settings) {
+  gpu::Buffer& shaped = gpu.buffer("shaped", plane_bytes(gbuffer.view), gpu::Use::download);
+  ShapeParams params{};
+  params.size = gbuffer.view.size;
+  params.intensity = float(settings.intensity);
+  params.power = float(settings.power);
+  params.fade_start = float(settings.fade_start.value_or(0));
+  params.fade_end = float(settings.fade_end.value_or(0));
+  params.has_fade = settings.fade_end ? 1 : 0;
+  params.has_material = frame.material_ao ? 1 : 0;
+  gpu.dispatch("shape", params,
+               {{kShapeAo, ao},
+                {kShapeShaped, shaped},
+                {kShapeDepth, *gbuffer.depth},
+                {kShapeMaterial, frame.material_ao ? *frame.material_ao : ao},
+                {kShapeCounts, *gbuffer.counts}},
+               extent_of(gbuffer.view));
   return shaped;
 }
 
-gpu::Buffer& composite(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& ao, const FrameInputs& frame) {
+gpu::Buffer& specular_occlusion(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& bent, const gpu::Buffer& ao, const EstimatorSettings& settings) {
+  gpu::Buffer& result = gpu.buffer("specular occlusion", plane_bytes(gbuffer.view), gpu::Use::download);
+  const SpecularOcclusionParams params{gbuffer.view, float(settings.roughness)};
+  gpu.dispatch("specular_occlusion", params,
+               {{kSpecularOcclusionDepth, *gbuffer.depth},
+                {kSpecularOcclusionNormal, *gbuffer.normal},
+                {kSpecularOcclusionBent, bent},
+                {kSpecularOcclusionAo, ao},
+                {kSpecularOcclusionResult, result}},
+               extent_of(gbuffer.view));
+  return result;
+}
+
+gpu::Buffer& multi_bounce(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& ao, const FrameInputs& frame) {
+  gpu::Buffer& result = gpu.buffer("color ao", 3 * plane_bytes(gbuffer.view), gpu::Use::download);
+  const MultiBounceParams params{gbuffer.view.size, frame.albedo ? 1u : 0u, float(frame.albedo_value)};
+  gpu.dispatch("multi_bounce", params, {{kMultiBounceAo, ao}, {kMultiBounceAlbedo, frame.albedo ? *frame.albedo : ao}, {kMultiBounceResult, result}},
+               extent_of(gbuffer.view));
+  return result;
+}
+
+gpu::Buffer& composite(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& ao, const FrameInputs& frame, const OutputSettings& output) {
   gpu::Buffer& result = gpu.buffer("composite", frame.beauty->bytes(), gpu::Use::download);
-  const CompositeParams params{frame.view.size, frame.has_alpha ? 1u : 0u, frame.indirect ? 1u : 0u, frame.diffuse_color ? 1u : 0u};
+  CompositeParams params{};
+  params.view = frame.view;
+  params.has_alpha = frame.has_alpha ? 1 : 0;
+  params.has_ambient = frame.indirect ? 1 : 0;
+  params.has_diffuse_color = frame.diffuse_color ? 1 : 0;
+  params.has_color = output.multi_bounce ? 1 : 0;
+  params.fog_density = float(output.fog_density);
   gpu.dispatch("composite", params,
                {{kCompositeAo, ao},
                 {kCompositeBeauty, *frame.beauty},
                 {kCompositeIndirect, frame.indirect ? *frame.indirect : *frame.beauty},
                 {kCompositeDiffuseColor, frame.diffuse_color ? *frame.diffuse_color : *frame.beauty},
                 {kCompositeResult, result},
-                {kCompositeCounts, *gbuffer.counts}},
+                {kCompositeCounts, *gbuffer.counts},
+                {kCompositeDepth, *gbuffer.depth}},
                extent_of(frame.view));
   return result;
+}
+
+gpu::Buffer& directions(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& packed, const std::string& name, const FrameInputs& frame) {
+  gpu::Buffer& planes = gpu.buffer(name, 3 * plane_bytes(gbuffer.view), gpu::Use::download);
+  const DirectionsParams params{gbuffer.view.size, to_vec3(frame.aov_from_view[0]), to_vec3(frame.aov_from_view[1]), to_vec3(frame.aov_from_view[2])};
+  gpu.dispatch("directions", params, {{kDirectionsDepth, *gbuffer.depth}, {kDirectionsPacked, packed}, {kDirectionsPlanes, planes}}, extent_of(gbuffer.view));
+  return planes;
+}
+
+DebugPlane debug(gpu::Recorder& gpu, const DebugView& view, const GBuffer& gbuffer, const DebugStages& stages, const FrameInputs& frame) {
+  const bool is_stage = view.source == DebugSource::raw_ao || view.source == DebugSource::denoised_ao;
+  const GBuffer& shown = is_stage ? stages.gbuffer : gbuffer;
+  const gpu::Buffer* values = shown.normal;
+  if (is_stage) values = view.source == DebugSource::raw_ao ? stages.raw_ao : stages.denoised_ao;
+  if (view.source == DebugSource::raw_depth) values = frame.depth;
+  if (view.source == DebugSource::normals_from_depth) {
+    FrameInputs depth_only = frame;
+    depth_only.normal = nullptr;
+    values = prepare(gpu, depth_only, gpu::Use::device, "debug ").normal;
+  }
+  gpu::Buffer& result = gpu.buffer(std::string("debug ") + view.name, plane_bytes(shown.view), gpu::Use::download);
+  const DebugParams params{shown.view, view.kind};
+  gpu.dispatch("debug", params, {{kDebugDepth, *shown.depth}, {kDebugNormal, *shown.normal}, {kDebugValues, *values}, {kDebugResult, result}},
+               extent_of(shown.view));
+  return {&view, shown.view.size, &result};
 }
 
 }  // namespace alcove

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "core/camera.h"
+#include "core/debug_view.h"
 #include "core/depth.h"
 #include "core/gpu/recorder.h"
 #include "core/settings.h"
@@ -23,6 +24,10 @@ struct FrameInputs {
   gpu::Buffer* beauty = nullptr;         // planes r, g, b, and a where has_alpha
   gpu::Buffer* indirect = nullptr;       // planes r, g, b
   gpu::Buffer* diffuse_color = nullptr;  // planes r, g, b
+  gpu::Buffer* material_ao = nullptr;    // a plane
+  gpu::Buffer* albedo = nullptr;         // planes r, g, b; for multi-bounce
+  double albedo_value = 0;               // where there are no planes of it
+  Matrix3 aov_from_view{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};  // rotation to the space of the directions that are written
   bool has_alpha = false;
 };
 
@@ -34,7 +39,8 @@ struct GBuffer {
   gpu::Buffer* counts;  // one FrameCounts, for the host
 };
 
-GBuffer prepare(gpu::Recorder& gpu, const FrameInputs& frame);
+/// `depth_use`: Use::download where the host reads the depth. `prefix`: before the names of its buffers, where there is another G-buffer already.
+GBuffer prepare(gpu::Recorder& gpu, const FrameInputs& frame, gpu::Use depth_use = gpu::Use::device, const std::string& prefix = "");
 /// The G-buffer of the settings' resolution: its pixels are the blocks of whole pixels of the display window.
 GBuffer downsample(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings);
 /// Visibility a pixel of the G-buffer, by the estimator of the settings.
@@ -48,8 +54,29 @@ gpu::Buffer& denoise(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buff
 /// From the pixels of `low` to those of `gbuffer`.
 gpu::Buffer& upsample(gpu::Recorder& gpu, const GBuffer& gbuffer, const GBuffer& low, const gpu::Buffer& ao, const FrameInputs& frame,
                       const EstimatorSettings& settings);
-gpu::Buffer& shape(gpu::Recorder& gpu, const gpu::Buffer& ao, const View& view, const EstimatorSettings& settings);
-/// The beauty's planes, for the host.
-gpu::Buffer& composite(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& ao, const FrameInputs& frame);
+/// Whether the settings ask for any shaping.
+bool shapes(const EstimatorSettings& settings);
+gpu::Buffer& shape(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& ao, const FrameInputs& frame, const EstimatorSettings& settings);
+/// `bent`: the mean open direction a pixel, packed as the normals are.
+gpu::Buffer& specular_occlusion(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& bent, const gpu::Buffer& ao, const EstimatorSettings& settings);
+/// Visibility for each of red, green and blue.
+gpu::Buffer& multi_bounce(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& ao, const FrameInputs& frame);
+/// The beauty's planes, for the host. `ao`: one plane, or three where output.multi_bounce.
+gpu::Buffer& composite(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& ao, const FrameInputs& frame, const OutputSettings& output);
+/// Packed directions as planes x, y, z of that name, for the host.
+gpu::Buffer& directions(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& packed, const std::string& name, const FrameInputs& frame);
+
+/// A number a pixel for a debug view; kSkyDepth for sky.
+struct DebugPlane {
+  const DebugView* view;
+  ivec2 size;  // px
+  gpu::Buffer* values;
+};
+/// The visibility on its way, at the resolution of the estimate; null where there is none.
+struct DebugStages {
+  GBuffer gbuffer{};
+  const gpu::Buffer *raw_ao = nullptr, *denoised_ao = nullptr;
+};
+DebugPlane debug(gpu::Recorder& gpu, const DebugView& view, const GBuffer& gbuffer, const DebugStages& stages, const FrameInputs& frame);
 
 }  // namespace alcove

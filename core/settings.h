@@ -22,6 +22,7 @@ enum class RangeCheck { none, ratio, smoothstep };   // how Crytek's hits fade w
 enum class ThicknessKind { automatic, infinite, constant };
 enum class Resolution { full = 1, half = 2, quarter = 4 };  // pixels of the frame a pixel of the estimate, in x and in y
 enum class Denoise { none, bilateral, box };
+enum class AoChannels { mono, rgb };
 enum class OutputType { half_float, single_float };
 
 /// What device, normalized and log depth are counted between.
@@ -50,6 +51,10 @@ struct InputSettings {
   std::string depth_channel;                     // a channel's full name; empty: found by its usual names
   std::string normal_channels, beauty_channels;  // three names with commas, or a layer; empty: found. Normals may have two
   std::string position_channels;                 // three names with commas, or a layer; empty: found
+  std::string material_ao;                       // a file of the materials' own AO; empty: the input, where material_ao_channel is set
+  std::string material_ao_channel;               // a channel's full name; empty: the only channel, or the usual names, of material_ao
+  std::string albedo, albedo_channels;           // the diffuse colour for multi-bounce: a file; empty: the beauty's. Three names, or a layer; empty: found
+  std::optional<double> albedo_value;            // instead: one for all surfaces, 0 to 1
   std::string layer;                             // look only at channels of this layer or part
   std::string view;                              // of a stereo file; empty: its default
   std::optional<Region> roi;                     // compute and write no more than this; none: the data window
@@ -91,6 +96,8 @@ struct EstimatorSettings {
   double denoise_depth_sigma = 0;    // of the depth, 0 to 100: a step by this part weighs 1/e; 0: weighs by plane distance instead
   double intensity = 1;              // factor on the occlusion, 0 to 100
   double power = 1;                  // exponent of the visibility, above 0 to 100
+  std::optional<double> fade_start, fade_end;  // scene units of planar depth, both or none, 0 <= start < end: the AO fades to 1 from one to the other
+  double roughness = 0.5;            // of the surface, for specular occlusion, 0 to 1; perceptual, half way by default, as engines' own default materials
   std::uint32_t seed = 0;            // shifts the noise pattern
 };
 
@@ -99,7 +106,13 @@ struct OutputSettings {
   std::string output;                             // the AO EXR
   std::string composite;                          // the composite EXR
   std::string preview;                            // a PNG of the composite, or of the AO where there is none
-  OutputType type = OutputType::half_float;       // of the AO channel
+  std::string aovs = "ao";                        // what the file of `output` holds: names of core/aov.h with commas
+  AoChannels ao_channels = AoChannels::mono;      // mono: Y; rgb: R, G, B, as compositors' shuffles expect, and coloured with multi_bounce
+  NormalSpace aov_space = NormalSpace::automatic;  // of directions; automatic: world where the camera has world_to_camera, else view
+  bool multi_bounce = false;                      // light thrown back by the occluders brightens the rgb AO, and the composite's ambient light
+  double fog_density = 0;                         // 1 / scene units, >= 0: of the exponential fog in the beauty, which hides AO from the composite
+  std::string debug;                              // names of core/debug_view.h with commas: a picture of each beside `output`
+  OutputType type = OutputType::half_float;       // of all channels of `output` but depth, which is float
   std::string compression = "zip";                // of the AO file: none, rle, zips, zip or piz
   std::string ocio;                               // an OpenColorIO configuration for the preview
   std::string stats;                              // a JSON file

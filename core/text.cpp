@@ -16,6 +16,18 @@ std::string lower_case(std::string_view text) {
   return lower;
 }
 
+std::vector<std::string> split(const std::string& text) {
+  std::vector<std::string> parts;
+  for (std::size_t start = 0; start <= text.size();) {
+    const std::size_t end = std::min(text.find(',', start), text.size());
+    const std::string part = text.substr(start, end - start);
+    const std::size_t first = part.find_first_not_of(' '), last = part.find_last_not_of(' ');
+    parts.push_back(first == part.npos ? "" : part.substr(first, last - first + 1));
+    start = end + 1;
+  }
+  return parts;
+}
+
 std::string list_of(std::span<const std::string> names, std::size_t most) {
   if (names.empty()) return "nothing";
   std::string text = names[0];

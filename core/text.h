@@ -11,6 +11,9 @@ namespace alcove {
 
 std::string lower_case(std::string_view text);
 
+/// The parts between commas, without the spaces around them. One, empty, for an empty text.
+std::vector<std::string> split(const std::string& text);
+
 /// "a, b, c"; at most `most` names, then "and N more". "nothing" for none.
 std::string list_of(std::span<const std::string> names, std::size_t most = 24);
 

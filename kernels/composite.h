@@ -5,18 +5,21 @@
 #include "shared.h"
 ALCOVE_BEGIN
 
-ALCOVE_CONSTANT uint kCompositeAo = 0;            // in: float a pixel, visibility
+ALCOVE_CONSTANT uint kCompositeAo = 0;            // in: float a pixel, visibility; with has_color planes R, G, B
 ALCOVE_CONSTANT uint kCompositeBeauty = 1;        // in: planes R, G, B and, with alpha, A; premultiplied scene-linear colour
 ALCOVE_CONSTANT uint kCompositeIndirect = 2;      // in: planes R, G, B of the indirect diffuse light; not read without ambient parts
 ALCOVE_CONSTANT uint kCompositeDiffuseColor = 3;  // in: planes R, G, B of the diffuse colour that multiplies it; not read without
 ALCOVE_CONSTANT uint kCompositeResult = 4;        // out: the beauty's planes, alpha too
 ALCOVE_CONSTANT uint kCompositeCounts = 5;        // in, out: FrameCounts
+ALCOVE_CONSTANT uint kCompositeDepth = 6;         // in: float a pixel, planar depth, kSkyDepth for sky; not read without fog
 
 struct CompositeParams {
-  ivec2 size;              // px
+  View view;
   uint has_alpha;          // 0: every pixel is wholly covered
   uint has_ambient;        // 1: only the ambient part is dimmed; 0: the whole beauty is
   uint has_diffuse_color;  // 1: ambient = indirect x diffuse colour (Blender); 0: indirect already holds it
+  uint has_color;          // 1: the visibility has a plane a colour
+  float fog_density;       // of the beauty's fog, 1 / scene units, >= 0; 0: none
 };
 ALCOVE_PARAMS(CompositeParams)
 

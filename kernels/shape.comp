@@ -1,7 +1,9 @@
-// Artistic shaping of the visibility: max(0, 1 - intensity (1 - ao)) ^ power. 1 stays 1.
+// What the user makes of the visibility: m (v + (1 - v) f), with v = max(0, 1 - intensity (1 - ao)) ^ power, f how far the distance fade has
+// come, from 0 to 1, and m the material's own AO. Without fade and material 1 stays 1; sky is 1 in any case.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// In: visibility. Out: visibility.
+// In: visibility; planar depth and material AO where they are asked for. Out: visibility, and how many values of the material AO were repaired.
+// The fade is of the screen-space AO alone: what a material's own AO holds is as true far away as nearby.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "shape.h"
@@ -9,12 +11,24 @@
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 layout(scalar, push_constant) uniform Push { ShapeParams params; };
 layout(scalar, binding = kShapeAo) readonly buffer Ao { float ao[]; };
+layout(scalar, binding = kShapeDepth) readonly buffer Depth { float depth[]; };
+layout(scalar, binding = kShapeMaterial) readonly buffer Material { float material[]; };
 layout(scalar, binding = kShapeShaped) writeonly buffer Shaped { float shaped[]; };
+layout(scalar, binding = kShapeCounts) buffer Counts { FrameCounts counts; };
 
 void main() {
   const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   if (any(greaterThanEqual(pixel, params.size))) return;
   const int index = pixel.y * params.size.x + pixel.x;
-  const float base = clamp(1.0 - params.intensity * (1.0 - ao[index]), 0.0, 1.0);
-  shaped[index] = base > 0.0 ? pow(base, params.power) : 0.0;
+  // What is not asked for leaves every bit as it is.
+  float value = ao[index];
+  if (params.intensity != 1.0) value = clamp(1.0 - params.intensity * (1.0 - value), 0.0, 1.0);
+  if (params.power != 1.0) value = value > 0.0 ? pow(value, params.power) : 0.0;
+  if (params.has_fade != 0) value += (1.0 - value) * clamp((depth[index] - params.fade_start) / (params.fade_end - params.fade_start), 0.0, 1.0);
+  if (params.has_material != 0 && depth[index] < kSkyDepth) {
+    const float own = material[index];
+    if (isnan(own) || isinf(own)) atomicAdd(counts.repaired_material, 1u);
+    else value *= clamp(own, 0.0, 1.0);
+  }
+  shaped[index] = value;
 }

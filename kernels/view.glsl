@@ -20,6 +20,12 @@ vec3 toward_eye(View view, vec3 position) {
   return view.orthographic != 0 ? vec3(0, 0, 1) : normalize(-position);
 }
 
+/// How far the surface of a pixel is from the eye (perspective), or from the eye's plane.
+float eye_distance(View view, ivec2 pixel, float z) {
+  const vec2 t = tangent_of(view, vec2(pixel) + 0.5);
+  return view.orthographic != 0 ? z : z * sqrt(1.0 + dot(t, t));
+}
+
 bool inside(View view, ivec2 pixel) { return all(greaterThanEqual(pixel, ivec2(0))) && all(lessThan(pixel, view.size)); }
 
 int index_of(View view, ivec2 pixel) { return pixel.y * view.size.x + pixel.x; }

@@ -1,0 +1,27 @@
+// Parameters and bindings of debug.comp.
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef ALCOVE_DEBUG_H
+#define ALCOVE_DEBUG_H
+#include "shared.h"
+ALCOVE_BEGIN
+
+ALCOVE_CONSTANT uint kDebugDepth = 0;   // in: float a pixel, planar depth, kSkyDepth for sky
+ALCOVE_CONSTANT uint kDebugNormal = 1;  // in: uint a pixel, unit vector in view space, see normal.glsl
+ALCOVE_CONSTANT uint kDebugValues = 2;  // in: float a pixel (kDebugValue) or a second set of normals (kDebugNormalAngle); not read by others
+ALCOVE_CONSTANT uint kDebugResult = 3;  // out: float a pixel
+
+ALCOVE_CONSTANT uint kDebugValue = 0;        // the values as they are
+ALCOVE_CONSTANT uint kDebugPlanarDepth = 1;  // scene units
+ALCOVE_CONSTANT uint kDebugViewZ = 2;        // z in view space, scene units, below 0
+ALCOVE_CONSTANT uint kDebugNormalZ = 3;      // z of the normal in view space
+ALCOVE_CONSTANT uint kDebugNormalAngle = 4;  // degrees between the two sets of normals
+ALCOVE_CONSTANT uint kDebugEdge = 5;         // distance of a neighbour from the tangent plane, part of the depth
+
+struct DebugParams {
+  View view;
+  uint kind;  // one of kDebug*
+};
+ALCOVE_PARAMS(DebugParams)
+
+ALCOVE_END
+#endif
