@@ -92,7 +92,7 @@ Slice slice_at(View view, Receiver r, uint index, uint slices, float jitter) {
   basis_of(r.eye, x, y);
   const float cos_tilt = dot(r.normal, r.eye), sin_tilt = sqrt(max(0.0, 1.0 - cos_tilt * cos_tilt));
   const vec3 even = cos(azimuth) * x + sin(azimuth) * y, across = (r.normal - cos_tilt * r.eye) / max(sin_tilt, 1e-3);
-  const float pull = mix(1.0, sqrt(cos_tilt / (cos_tilt + angle_of(cos_tilt, sin_tilt) * sin_tilt)), 1.0 / float(slices));
+  const float pull = mix(1.0, sqrt(cos_tilt / (cos_tilt + angle_of(cos_tilt, sin_tilt) * sin_tilt)), 1.0 / float(slices * slices));
   Slice s;
   s.t = normalize(pull * even + (1.0 - pull) * dot(even, across) * across);
   const float along = dot(s.t, across);
