@@ -12,6 +12,8 @@ ALCOVE_CONSTANT uint kHorizonAo = 2;      // out: float a pixel, visibility in [
 ALCOVE_CONSTANT uint kHorizonSlicesId = 0;   // specialization: slices a pixel
 ALCOVE_CONSTANT uint kHorizonStepsId = 1;    // specialization: steps to each side of a slice
 ALCOVE_CONSTANT uint kHorizonFalloffId = 2;  // specialization: one of kFalloff* of falloff.glsl
+ALCOVE_CONSTANT uint kHorizonStrideId = 3;   // specialization: one pixel of so many in a row, 1, 2 or 4: see stride.glsl
+ALCOVE_CONSTANT uint kHorizonEndlessId = 4;  // specialization: 1: the thickness is infinite
 
 struct HorizonParams {
   View view;
