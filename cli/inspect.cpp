@@ -6,9 +6,9 @@
 
 #include "cli/commands.h"
 #include "cli/options.h"
-#include "core/batch.h"
 #include "core/error.h"
 #include "core/inspect.h"
+#include "core/plan.h"
 
 namespace alcove {
 

@@ -3,7 +3,6 @@
 #include "cli/options.h"
 
 #include <cmath>
-#include <filesystem>
 #include <map>
 #include <sstream>
 
@@ -17,8 +16,6 @@
 
 namespace alcove {
 namespace {
-
-namespace fs = std::filesystem;
 
 template <class T>
 const std::map<std::string, T>& names_of();
@@ -100,6 +97,11 @@ const std::map<std::string, OutputType>& names_of() {
   static const std::map<std::string, OutputType> names = {{"half", OutputType::half_float}, {"float", OutputType::single_float}};
   return names;
 }
+template <>
+const std::map<std::string, Missing>& names_of() {
+  static const std::map<std::string, Missing> names = {{"error", Missing::error}, {"skip", Missing::skip}};
+  return names;
+}
 
 /// Builds rows of one group after the other.
 class Table {
@@ -179,6 +181,13 @@ void read_far(const std::string& text, std::optional<double>& far) {
   far = value;
 }
 
+/// --chunk I/N.
+void read_chunk(const std::string& text, FrameSettings& frames) {
+  const auto words = CLI::detail::split(text, '/');
+  const bool fine = words.size() == 2 && CLI::detail::lexical_cast(words[0], frames.chunk) && CLI::detail::lexical_cast(words[1], frames.chunks);
+  if (!fine || frames.chunk < 1 || frames.chunk > frames.chunks) throw CLI::ValidationError("--chunk", fmt::format("{} is not I/N, with I from 1 to N", text));
+}
+
 void read_roi(const std::string& text, std::optional<Region>& roi) {
   const auto words = CLI::detail::split(text, ',');
   Region region;
@@ -253,6 +262,21 @@ void add_input_rows(Table& table, InputSettings& s) {
   table.number("--ortho-width", s.ortho_width, "scene units", above(0), "width of an orthographic view, instead of a camera file");
 }
 
+void add_frame_rows(Table& table, RunOptions& options) {
+  FrameSettings& s = options.settings.frames;
+  table.group("Frames");
+  table.text("--frames", s.frames, "LIST", "such as 1001-1100x2,1200; else those of INPUT on the disk");
+  table.number("--output-offset", s.output_offset, "frames", between(-1e9, 1e9), "from the numbers of the inputs to those of the outputs");
+  table.row("--chunk", "I/N", "", "I from 1 to N", "compute only this part of the frames", "",
+            [&s](CLI::App& app) { return app.add_option_function<std::string>("--chunk", [&s](const std::string& text) { read_chunk(text, s); }); });
+  table.choice("--missing", s.missing, "what a frame without its input is: an error before any work, or left out");
+  table.flag("--keep-going", s.keep_going, "a frame that fails does not end the run; the exit code is then 1");
+  table.flag("--resume", s.resume, "compute only frames whose outputs are missing, broken, older than their inputs or made with other options");
+  table.flag("--overwrite", s.overwrite, "compute all frames and replace their outputs, whatever --resume says; without --resume that is so anyway");
+  table.row("--dry-run", "", "", "", "print frames, files and memory, and stop", "",
+            [&options](CLI::App& app) { return app.add_flag("--dry-run", options.dry_run)->configurable(false); });
+}
+
 void add_estimator_rows(Table& table, RunOptions& options) {
   EstimatorSettings& s = options.settings.estimator;
   table.group("Estimator");
@@ -316,14 +340,20 @@ void add_device_rows(Table& table, DeviceSettings& s) {
   table.flag("--require-gpu", s.require_gpu, "computing on the CPU is an error");
   table.flag("--validate", s.validate, "load the Vulkan validation layer; any message is an error");
   table.flag("--no-pipeline-cache", s.no_pipeline_cache, "keep no compiled kernels in the XDG cache folder");
+  table.row("--memory", "SIZE", "bytes, or with K, M, G", "", "of the whole process; larger frames are computed in tiles; else half of what is free", "", [&s](CLI::App& app) {
+    return app.add_option_function<std::string>("--memory", [&s](const std::string& text) { s.memory = read_size("--memory", text); });
+  });
   table.number("--threads", s.threads, "", between(0, 1024), "threads of the CPU device and of the codecs; 0: one a core");
 }
 
 void add_report_rows(Table& table, RunOptions& options) {
   table.group("Reports");
   table.text("--stats", options.settings.output.stats, "FILE.json", "times of every pass, counts and totals");
-  table.flag("-v,--verbose", options.verbose, "say more: the time of every pass");
-  table.flag("-q,--quiet", options.quiet, "say nothing but errors");
+  table.word("--progress", options.progress.kind, {"auto", "bar", "plain", "percent", "openjd", "none"},
+             "plain: a line a frame; percent, openjd: on standard output, as farms read it; auto: a bar on a terminal, else plain");
+  table.text("--log-json", options.progress.log_json, "FILE|-", "a JSON object a line for the beginning, every frame and the end");
+  table.flag("-v,--verbose", options.progress.verbose, "say more: the time of every pass");
+  table.flag("-q,--quiet", options.progress.quiet, "say nothing but errors");
   table.row("--print-config", "", "", "", "print the settings as a preset and stop", "",
             [&options](CLI::App& app) { return app.add_flag("--print-config", options.print_config)->configurable(false); });
 }
@@ -355,12 +385,13 @@ std::unique_ptr<CLI::App> make_app(RunOptions& options) {
       "Computes ambient occlusion from the depth and normals of a rendered frame.\n\n"
       "Examples:\n"
       "  alcove run frame.exr -o ao.exr --camera camera.json --radius 0.5\n"
+      "  alcove run frame.%04d.exr -o ao.%04d.exr --frames 1001-1100 --camera camera.json --radius 0.5 --resume\n"
       "  alcove run frame.exr --beauty beauty.exr -o ao.exr --composite out.exr --fov 60 --radius 0.5 --preset production\n",
       "alcove run");
   app->config_formatter(std::make_shared<PresetFormat>());
   app->allow_config_extras(CLI::config_extras_mode::error);
   app->get_formatter()->column_width(34);
-  app->add_option("INPUT", options.settings.input.input, "an EXR file with depth and normals")->configurable(false)->type_name("");
+  app->add_option("INPUT", options.settings.input.input, "an EXR file with depth and normals, or a pattern such as frame.%04d.exr")->configurable(false)->type_name("");
   for (const auto& row : option_table(options)) {
     CLI::Option* option = row.add(*app);
     option->group(row.group)->description(help_text(row));
@@ -396,17 +427,12 @@ void require_good_preset(const std::string& preset) {
   }
 }
 
-/// The folder of the running program.
-fs::path program_folder() {
-  std::error_code error;
-  return fs::read_symlink("/proc/self/exe", error).parent_path();
-}
-
 }  // namespace
 
 std::vector<OptionRow> option_table(RunOptions& options) {
   Table table;
   add_input_rows(table, options.settings.input);
+  add_frame_rows(table, options);
   add_estimator_rows(table, options);
   add_output_rows(table, options.settings.output);
   add_device_rows(table, options.settings.device);
@@ -447,34 +473,6 @@ bool parse_run_options(const std::vector<std::string>& arguments, RunOptions& op
     return false;
   }
   return true;
-}
-
-std::string preset_folder() {
-  std::vector<fs::path> places;
-  if (const char* variable = std::getenv("ALCOVE_PRESETS"); variable && *variable) places.emplace_back(variable);
-  else places = {program_folder() / "presets", program_folder() / "../presets", program_folder() / "../share/alcove/presets"};
-  std::error_code error;
-  for (const auto& place : places)
-    if (fs::is_directory(place, error)) return fs::weakly_canonical(place).string();
-  fail(ErrorKind::usage, "no folder of presets at {}; the variable ALCOVE_PRESETS names one", places.front().string());
-}
-
-std::vector<std::string> preset_names() {
-  std::vector<std::string> names;
-  const fs::path folder = preset_folder();
-  for (const auto& entry : fs::recursive_directory_iterator(folder))
-    if (entry.path().extension() == ".toml") names.push_back(fs::relative(entry.path(), folder).replace_extension().string());
-  std::ranges::sort(names);
-  return names;
-}
-
-std::string preset_file(const std::string& name) {
-  // A known name is never a file that happens to lie in the working directory.
-  const auto names = preset_names();
-  if (std::ranges::find(names, name) != names.end()) return preset_folder() + "/" + name + ".toml";
-  std::error_code error;
-  if (fs::exists(name, error) && !fs::is_directory(name, error)) return name;
-  fail(ErrorKind::usage, "there is no preset {}{}; there is {}; --preset takes one of them, or a TOML file", name, suggestion(name, names), list_of(names));
 }
 
 }  // namespace alcove

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/progress.h"
 #include "core/settings.h"
 
 namespace CLI {
@@ -30,7 +31,8 @@ struct RunOptions {
   Settings settings;
   std::vector<std::string> presets;
   bool print_config = false;
-  bool verbose = false, quiet = false;
+  bool dry_run = false;
+  ProgressOptions progress;
 };
 
 /// The table, bound to `options`, whose present values are the defaults. `options` must outlive it.

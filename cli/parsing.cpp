@@ -65,6 +65,18 @@ CLI::Validator check_of(const std::vector<std::string>& words) {
       "", "");
 }
 
+std::uint64_t read_size(const char* option, const std::string& text) {
+  const std::size_t end = std::min(text.find_first_not_of("0123456789."), text.size());
+  std::string unit = CLI::detail::to_lower(text.substr(end));
+  if (unit.ends_with("b")) unit.pop_back();
+  if (unit.ends_with("i")) unit.pop_back();
+  const std::size_t power = unit.empty() ? 0 : std::string("kmgt").find(unit) + 1;
+  double number = 0;
+  if (unit.size() > 1 || (!unit.empty() && power == 0) || !CLI::detail::lexical_cast(text.substr(0, end), number) || !(number > 0) || number > 1e15)
+    throw CLI::ValidationError(option, text + " is no size such as 512M or 4G");
+  return std::uint64_t(number * double(1ull << (10 * power)));
+}
+
 bool parse_arguments(CLI::App& app, const std::vector<std::string>& arguments) {
   try {
     app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));

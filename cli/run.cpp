@@ -1,26 +1,46 @@
 // `alcove run`: options in, frames out, one line of summary.
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
+#include <csignal>
+
 #include "cli/commands.h"
 #include "cli/options.h"
 #include "core/batch.h"
-
-#include <fmt/format.h>
+#include "core/plan.h"
 
 namespace alcove {
+namespace {
+
+volatile std::sig_atomic_t caught_signal = 0;
+
+/// The first signal ends the run in order; a second one of its kind ends the process.
+void catch_signals() {
+  struct sigaction action{};
+  action.sa_handler = [](int number) { caught_signal = number; };
+  action.sa_flags = int(SA_RESETHAND);
+  for (const int number : {SIGINT, SIGTERM}) ::sigaction(number, &action, nullptr);
+}
+
+}  // namespace
 
 int run_command(const std::vector<std::string>& arguments) {
   RunOptions options;
   if (!parse_run_options(arguments, options)) return 0;
-  const RunReport report = run_frames(options.settings);
-  if (options.quiet) return 0;
-  for (const auto& frame : report.frames) {
-    for (const auto& note : frame.notes) fmt::print(stderr, "{}: {}\n", frame.input, note);
-    if (options.verbose)
-      for (const auto& pass : frame.passes) fmt::print(stderr, "{}: {} {:.3f} ms\n", frame.input, pass.name, pass.ms);
-    fmt::print(stderr, "{} -> {}: read {:.0f} ms, compute {:.1f} ms on {}, write {:.0f} ms\n", frame.input, frame.output, frame.read_ms, frame.compute_ms,
-               report.device, frame.write_ms);
+  if (options.dry_run) {
+    fmt::print("{}", plan_text(options.settings));
+    return 0;
   }
-  return 0;
+  catch_signals();
+  Progress progress(options.progress);
+  const RunReport report = run_frames(options.settings, {[&](const RunReport& begun, int frames) { progress.begin(begun, frames); },
+                                                         [&](const FrameReport& frame) { progress.frame(frame); }, [] { return caught_signal != 0; }});
+  progress.end(report);
+  if (report.stop && !report.is_sequence) throw *report.stop;
+  if (report.stop && report.failed == 0) fmt::print(stderr, "alcove: error: {}\n", report.stop->what());
+  if (report.stop) return int(report.stop->kind());
+  if (caught_signal) return 128 + caught_signal;
+  return report.failed ? int(ErrorKind::some_frames_failed) : 0;
 }
 
 }  // namespace alcove

@@ -1,257 +1,39 @@
-// Reads a frame, runs the chain, writes what was asked for.
+// Checks, the order of a run, and what ends it.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/batch.h"
 
-#include <sys/resource.h>
 #include <xxhash.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdlib>
-#include <deque>
 #include <filesystem>
-#include <functional>
-#include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 #include <thread>
+#include <unordered_map>
 
 #include "core/aov.h"
 #include "core/chain.h"
 #include "core/color.h"
 #include "core/error.h"
-#include "core/exr.h"
 #include "core/file.h"
-#include "core/gbuffer.h"
-#include "core/image_io.h"
-#include "core/region.h"
+#include "core/pipeline.h"
+#include "core/resume.h"
 #include "core/settle.h"
 #include "core/version.h"
-#include "kernels/prepare.h"
 
 namespace alcove {
 namespace {
 
 namespace fs = std::filesystem;
 
-class Stopwatch {
- public:
-  double ms() const { return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_).count(); }
-
- private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
-
-struct OutputFile {
-  const char* option;
-  std::string path;
-};
-
-std::vector<OutputFile> outputs_of(const OutputSettings& output) {
-  std::vector<OutputFile> files{{"--output", output.output}, {"--composite", output.composite}, {"--preview", output.preview}, {"--stats", output.stats}};
-  for (const auto* view : debug_views_of(output)) files.push_back({"--debug", debug_path(output, *view)});
-  std::erase_if(files, [](const OutputFile& file) { return file.path.empty(); });
-  return files;
-}
+constexpr int kSpareLanes = 2;  // on a GPU, beyond the threads: frames that wait for it while others are read and written
 
 bool same_file(const std::string& a, const std::string& b) {
   std::error_code error;
   if (fs::equivalent(a, b, error)) return true;
   const fs::path whole_a = fs::weakly_canonical(a, error), whole_b = error ? fs::path() : fs::weakly_canonical(b, error);
   return error ? a == b : whole_a == whole_b;
-}
-
-/// The largest buffer holds as many planes as the widest AOV has channels.
-void require_room(const FrameSource& source, const gpu::DeviceInfo& device) {
-  for (const auto* aov : {&source.depth, &source.normal, &source.beauty, &source.indirect, &source.diffuse_color, &source.albedo, &source.material_ao})
-    if (const std::uint64_t bytes = aov->size() * source.data.pixels() * sizeof(float); bytes > device.buffer_bytes)
-      fail(ErrorKind::device, "{}: {} pixels of {} channels need a buffer of {} MiB, and {} takes {} MiB: use another --device, or a smaller frame",
-           source.files[aov->front().file].path(), to_string(source.data), aov->size(), bytes >> 20, device.name, device.buffer_bytes >> 20);
-}
-
-/// Whether the directions that are written are in world space.
-bool in_world(const FrameSource& source, const OutputSettings& settings) {
-  return settings.aov_space != NormalSpace::view && source.camera.view_from_world.has_value();
-}
-
-/// The planes that were found, in upload buffers, and what they mean.
-FrameInputs read_frame(gpu::Recorder& gpu, FrameSource& source, const InputSettings& settings, const OutputSettings& output, int frame) {
-  FrameInputs inputs;
-  inputs.view = view_of(source.camera, source.data, source.display);
-  inputs.noise_origin = {source.data.x - source.display.x, source.data.y - source.display.y};
-  inputs.frame = frame;
-  inputs.has_alpha = source.beauty.size() == 4;
-  inputs.albedo_value = settings.albedo_value.value_or(0);
-  if (in_world(source, output))
-    for (std::size_t row = 0; row < 3; row++)
-      for (std::size_t column = 0; column < 3; column++) inputs.aov_from_view[row][column] = (*source.camera.view_from_world)[column][row];
-
-  std::vector<PlaneRead> reads;
-  const auto upload = [&](const char* name, const std::vector<ChannelRef>& channels) -> gpu::Buffer* {
-    if (channels.empty()) return nullptr;
-    gpu::Buffer& buffer = gpu.buffer(name, channels.size() * source.data.pixels() * sizeof(float), gpu::Use::upload);
-    reads.push_back({&channels, buffer.as<float>().data()});
-    return &buffer;
-  };
-  inputs.depth = upload("raw depth", source.depth);
-  inputs.normal = upload("raw normal", source.normal);
-  inputs.beauty = upload("beauty", source.beauty);
-  inputs.indirect = upload("indirect", source.indirect);
-  inputs.diffuse_color = upload("diffuse color", source.diffuse_color);
-  inputs.material_ao = upload("material ao", source.material_ao);
-  inputs.albedo = upload("albedo", source.albedo);
-  read_planes(source, reads);
-  if (!source.settled) settle(source, settings, inputs.depth->as<float>(), inputs.normal ? inputs.normal->as<float>() : std::span<float>());
-  inputs.depth_map = depth_map_of(source, settings);
-  if (inputs.normal) inputs.view_from_normal = view_from_normal(source.camera, source.normal_space, source.flip_normal);
-  inputs.normal_encoding = source.normal_encoding;
-  inputs.normal_unorm = source.normal_unorm;
-  return inputs;
-}
-
-ExrOutput output_like(const FrameSource& source, const ChannelRef& like, const std::string& digest, const std::string& device) {
-  ExrOutput output;
-  output.data = source.data;
-  output.display = source.display;
-  output.pixel_aspect = source.pixel_aspect;
-  output.attributes = source.files[like.file].attributes(like.part);
-  output.own_attributes = {{"alcove/version", kVersion},
-                           {"alcove/options", digest},
-                           {"alcove/device", device},
-                           {"alcove/input", fs::path(source.files[source.depth[0].file].path()).filename().string()}};
-  return output;
-}
-
-/// What is written of a buffer's planes: all, or the region; empty for null.
-using Planes = std::function<std::span<const float>(const gpu::Buffer*)>;
-
-void write_aovs(const FrameSource& source, const FrameOutputs& outputs, const Planes& planes_of, const OutputSettings& settings, const std::string& digest,
-                const std::string& device) {
-  ExrOutput output = output_like(source, source.depth[0], digest, device);
-  output.compression = settings.compression;
-  const std::size_t pixels = source.data.pixels();
-  for (const auto& aov : aovs_of(settings)) {
-    const auto planes = planes_of(outputs.*aov.planes);
-    const SampleType type = settings.type == OutputType::half_float && !aov.is_float ? SampleType::half_float : SampleType::single_float;
-    for (std::size_t c = 0; c < aov.channels.size(); c++)
-      output.planes.push_back({aov.channels[c], type, planes.subspan(planes.size() > pixels ? c * pixels : 0, pixels)});
-  }
-  if (outputs.normal) output.own_attributes["alcove/normal_space"] = in_world(source, settings) ? "world" : "view";
-  write_exr(settings.output, output);
-}
-
-SampleType type_of(const FrameSource& source, const ChannelRef& ref) {
-  const auto& channels = source.files[ref.file].parts()[std::size_t(ref.part)].channels;
-  const auto found = std::ranges::find(channels, ref.channel, &ExrChannel::name);
-  return found != channels.end() && found->type == SampleType::half_float ? SampleType::half_float : SampleType::single_float;
-}
-
-/// Every channel keeps the beauty's precision.
-void write_composite(const FrameSource& source, std::span<const float> composite, const OutputSettings& settings, const std::string& digest,
-                     const std::string& device) {
-  ExrOutput output = output_like(source, source.beauty[0], digest, device);
-  output.own_attributes["alcove/composite"] = source.indirect.empty() ? "multiply: beauty * ao" : "ambient: beauty - D + D * ao, D = indirect diffuse";
-  if (settings.multi_bounce) output.own_attributes["alcove/composite"] += "; ao with multi-bounce";
-  if (settings.fog_density > 0) output.own_attributes["alcove/composite"] += fmt::format("; ao seen through fog of density {}", settings.fog_density);
-  const char* names[] = {"R", "G", "B", "A"};
-  for (std::size_t c = 0; c < source.beauty.size(); c++)
-    output.planes.push_back({names[c], type_of(source, source.beauty[c]), composite.subspan(c * source.data.pixels(), source.data.pixels())});
-  write_exr(settings.composite, output);
-}
-
-/// The display window of `planes` planes, interleaved; black where there are no pixels.
-std::vector<float> displayed(const FrameSource& source, std::span<const float> pixels, int planes) {
-  const Window &data = source.data, &display = source.display;
-  std::vector<float> interleaved(display.pixels() * std::size_t(planes));
-  for (int y = std::max(data.y, display.y); y < std::min(data.y + data.height, display.y + display.height); y++)
-    for (int x = std::max(data.x, display.x); x < std::min(data.x + data.width, display.x + display.width); x++)
-      for (int c = 0; c < planes; c++)
-        interleaved[(std::size_t(y - display.y) * std::size_t(display.width) + std::size_t(x - display.x)) * std::size_t(planes) + std::size_t(c)] =
-            pixels[std::size_t(c) * data.pixels() + std::size_t(y - data.y) * std::size_t(data.width) + std::size_t(x - data.x)];
-  return interleaved;
-}
-
-/// The composite through the view transform; AO by itself is data, and shown as it is: no transform.
-void write_preview(const FrameSource& source, std::span<const float> ao, std::span<const float> composite, const DisplayTransform* transform,
-                   const OutputSettings& settings) {
-  const int planes = composite.empty() ? 1 : 3;
-  auto pixels = displayed(source, composite.empty() ? ao : composite, planes);
-  if (transform) transform->apply(pixels);
-  write_png(settings.preview, source.display.width, source.display.height, planes, pixels);
-}
-
-void note_counts(FrameReport& report, const FrameCounts& counts, const FrameSource& source) {
-  report.pixels = source.data.pixels();
-  report.sky_pixels = counts.sky;
-  report.repaired_pixels = counts.repaired_depth + counts.repaired_normals + counts.repaired_material + counts.repaired_beauty;
-  if (counts.repaired_depth) report.notes.push_back(fmt::format("{} pixels had a depth that is NaN or negative; they count as sky", counts.repaired_depth));
-  if (counts.repaired_normals)
-    report.notes.push_back(fmt::format("{} pixels had no usable normal; it was reconstructed from depth", counts.repaired_normals));
-  if (counts.repaired_material)
-    report.notes.push_back(fmt::format("{} pixels of the material AO were NaN or infinite; they count as 1", counts.repaired_material));
-  if (counts.repaired_beauty) report.notes.push_back(fmt::format("{} pixels of the beauty were NaN or infinite; they are 0 in the composite", counts.repaired_beauty));
-  if (source.normal.empty()) report.notes.push_back("there is no normal channel; normals were reconstructed from depth (--normal, --normal-channels)");
-}
-
-/// Fails with ErrorKind::input where a frame lacks what an output is made from.
-void require_for_outputs(const FrameSource& source, const OutputSettings& settings) {
-  const std::string& file = source.files[source.depth[0].file].path();
-  if (settings.aov_space == NormalSpace::world && !source.camera.view_from_world)
-    fail(ErrorKind::input, "{}: --aov-space world needs a camera with world_to_camera: give a --camera file with it", file);
-  if (settings.multi_bounce && !source.beauty.empty() && source.indirect.empty())
-    fail(ErrorKind::input, "{}: --multi-bounce is for indirect light, and the frame has no indirect diffuse part for the --composite (--beauty)", file);
-  for (const auto* view : debug_views_of(settings)) {
-    if (view->source == DebugSource::raw_depth && source.depth.size() > 1)
-      fail(ErrorKind::input, "{}: --debug {} shows a depth, and the frame has positions: name one with --depth-channel, or see linear-depth", file, view->name);
-    if (view->source == DebugSource::normals_from_depth && source.normal.empty())
-      fail(ErrorKind::input, "{}: --debug {} compares the frame's normals with those from depth, and there are none (--normal, --normal-channels)", file,
-           view->name);
-  }
-}
-
-/// `transform`: for the preview of a composite, else null.
-FrameReport run_frame(gpu::Device& device, gpu::Recorder& gpu, const Settings& settings, const DisplayTransform* transform, const std::string& digest) {
-  const Stopwatch total;
-  FrameReport report;
-  report.input = !settings.input.input.empty() ? settings.input.input : settings.input.depth.empty() ? settings.input.position : settings.input.depth;
-  report.output = settings.output.output;
-  report.frame = frame_number_of(report.input);
-
-  const Stopwatch reading;
-  FrameSource source = find_frame(settings.input, !settings.output.composite.empty(), report.frame, settings.output.multi_bounce && !settings.input.albedo_value);
-  if (settings.input.roi) restrict_to_region(source, settings);
-  require_for_outputs(source, settings.output);
-  require_room(source, device.info());
-  const FrameInputs inputs = read_frame(gpu, source, settings.input, settings.output, report.frame);
-  report.read_ms = reading.ms();
-
-  const FrameOutputs outputs = run_chain(gpu, inputs, settings.estimator, settings.output);
-  gpu.run();
-  report.passes = gpu.passes();
-  report.notes = source.notes;
-  for (const auto& pass : report.passes) report.compute_ms += pass.ms;
-  note_counts(report, outputs.counts->as<FrameCounts>()[0], source);
-  if (outputs.ao) report.samples_per_pixel = samples_per_pixel(settings.estimator) * double(report.pixels - report.sky_pixels) / double(report.pixels);
-
-  const Stopwatch writing;
-  const Window computed = source.data;
-  if (source.region) source.data = *source.region;
-  std::deque<std::vector<float>> regions;
-  const Planes planes = [&](const gpu::Buffer* buffer) {
-    const auto all = buffer ? buffer->as<float>() : std::span<float>();
-    return source.region ? std::span<const float>(regions.emplace_back(cropped(all, computed, *source.region))) : all;
-  };
-  write_aovs(source, outputs, planes, settings.output, digest, device.info().name);
-  if (outputs.composite) {
-    write_composite(source, planes(outputs.composite), settings.output, digest, device.info().name);
-    if (source.indirect.empty())
-      report.notes.push_back("the frame has no indirect diffuse part: the composite is the whole beauty times AO, which dims direct light too");
-  }
-  if (!settings.output.preview.empty()) write_preview(source, planes(outputs.ao), planes(outputs.composite), transform, settings.output);
-  for (const auto& plane : outputs.debug)
-    write_debug_view(debug_path(settings.output, *plane.view), *plane.view, plane.size.x, plane.size.y, plane.values->as<float>());
-  report.write_ms = writing.ms();
-  report.total_ms = total.ms();
-  return report;
 }
 
 /// What goes into the shading of the AO.
@@ -265,6 +47,68 @@ void check_shading(const Settings& settings) {
   if (o.multi_bounce && o.composite.empty() && !wants(o, &FrameOutputs::color_ao))
     fail(ErrorKind::usage, "--multi-bounce shows in the AO with --ao-channels rgb, and in a --composite: ask for one of them");
   if (o.fog_density > 0 && o.composite.empty()) fail(ErrorKind::usage, "--fog-density is for a composite: name its file with --composite");
+}
+
+/// No output is an input, or another output.
+void check_files(const Settings& settings) {
+  auto outputs = outputs_of(settings.output);
+  if (!settings.output.stats.empty()) outputs.push_back({"--stats", settings.output.stats});
+  for (std::size_t i = 0; i < outputs.size(); i++) {
+    for (const auto* input : {&settings.input.input, &settings.input.depth, &settings.input.normal, &settings.input.position, &settings.input.beauty,
+                              &settings.input.camera, &settings.input.material_ao, &settings.input.albedo})
+      if (!input->empty() && same_file(*input, outputs[i].path)) fail(ErrorKind::usage, "{}: {} would overwrite an input", outputs[i].path, outputs[i].option);
+    for (std::size_t j = 0; j < i; j++)
+      if (same_file(outputs[j].path, outputs[i].path))
+        fail(ErrorKind::usage, "{}: {} and {} name the same file", outputs[i].path, outputs[j].option, outputs[i].option);
+  }
+}
+
+/// All files that the run will write can be made; what killed runs have left beside them goes.
+void prepare_outputs(const FramePlan& plan, const Settings& settings) {
+  std::set<std::string> folders;
+  for (const int frame : plan.frames())
+    for (const auto& file : outputs_of(plan.at(frame).output)) {
+      require_writable(file.path, file.option);
+      folders.insert(folder_of(file.path));
+    }
+  if (!settings.output.stats.empty()) require_writable(settings.output.stats, "--stats");
+  for (const auto& folder : folders) remove_unfinished(folder);
+}
+
+/// One frame of the sequence, settled: as which all others are read. The first that shows what is left open; null where none can be read.
+std::optional<FrameSource> settle_sequence(const FramePlan& plan) {
+  std::optional<FrameSource> best;
+  for (const int frame : plan.evidence()) {
+    try {
+      const Settings settings = plan.at(frame);
+      FrameSource source = open_frame(settings, frame);
+      settle_by_rows(source, settings.input);
+      if (!best || source.has_evidence) best = std::move(source);
+      if (best->has_evidence) break;
+    } catch (const Error&) {
+      // It is computed as all others are, and what is wrong with it is said then.
+    }
+  }
+  return best;
+}
+
+int thread_count(const DeviceSettings& settings) {
+  return settings.threads > 0 ? settings.threads : int(std::max(1u, std::thread::hardware_concurrency()));
+}
+
+/// Frames that memory allows at once, of those that are left and at most `most`.
+int frames_at_once(const std::optional<FrameSource>& source, const Settings& settings, std::size_t frames, int most) {
+  if (!source || frames < 2) return 1;
+  const std::uint64_t frame_bytes = pixel_memory(*source, settings).bytes * source->file_data.pixels();
+  return int(std::clamp<std::uint64_t>(memory_for_frames(settings.device) / std::max<std::uint64_t>(1, frame_bytes), 1, std::min<std::uint64_t>(std::uint64_t(most), frames)));
+}
+
+/// Cores that a frame's own threads may take.
+void share_cores(int threads, int lanes, bool is_chosen) {
+  set_exr_threads(lanes == 1 ? threads : std::max(0, threads - lanes));
+  // lavapipe's own variable; 0: no threads beside the one that submits.
+  const int of_a_frame = threads / lanes;
+  if (lanes > 1 || is_chosen) ::setenv("LP_NUM_THREADS", std::to_string(of_a_frame > 1 || lanes == 1 ? of_a_frame : 0).c_str(), 1);
 }
 
 }  // namespace
@@ -286,15 +130,7 @@ void check_settings(const Settings& settings) {
   if (!settings.input.beauty.empty() && settings.output.composite.empty() && !settings.output.multi_bounce)
     fail(ErrorKind::usage, "--beauty is for a composite: name its file with --composite");
   check_shading(settings);
-  const auto outputs = outputs_of(settings.output);
-  for (std::size_t i = 0; i < outputs.size(); i++) {
-    for (const auto* input : {&settings.input.input, &settings.input.depth, &settings.input.normal, &settings.input.position, &settings.input.beauty,
-                              &settings.input.camera, &settings.input.material_ao, &settings.input.albedo})
-      if (!input->empty() && same_file(*input, outputs[i].path)) fail(ErrorKind::usage, "{}: {} would overwrite an input", outputs[i].path, outputs[i].option);
-    for (std::size_t j = 0; j < i; j++)
-      if (same_file(outputs[j].path, outputs[i].path))
-        fail(ErrorKind::usage, "{}: {} and {} name the same file", outputs[i].path, outputs[j].option, outputs[i].option);
-  }
+  if (settings.frames.chunk > settings.frames.chunks) fail(ErrorKind::usage, "--chunk {}/{}: there is no such chunk", settings.frames.chunk, settings.frames.chunks);
 }
 
 std::string options_digest(const Settings& settings) {
@@ -324,63 +160,118 @@ std::string options_digest(const Settings& settings) {
   return fmt::format("{:016x}", XXH3_64bits(text.data(), text.size()));
 }
 
-int frame_number_of(const std::string& path) {
-  const std::string stem = fs::path(path).stem().string();
-  const std::size_t last = stem.find_last_not_of("0123456789");
-  const std::string digits = last == stem.npos ? stem : stem.substr(last + 1);
-  return digits.empty() || digits.size() > 9 ? 0 : std::stoi(digits);
-}
+namespace {
 
-RunReport run_frames(const Settings& settings) {
-  const Stopwatch wall;
-  check_settings(settings);
-  for (const auto& file : outputs_of(settings.output)) require_writable(file.path, file.option);
-  const int threads = settings.device.threads > 0 ? settings.device.threads : int(std::max(1u, std::thread::hardware_concurrency()));
-  set_exr_threads(threads);
-  if (settings.device.threads > 0) ::setenv("LP_NUM_THREADS", std::to_string(threads).c_str(), 1);  // lavapipe's own variable
+/// A run from its plan to its report.
+class Batch {
+ public:
+  Batch(const Settings& settings, const RunWatch& watch) : settings_(settings), watch_(watch), plan_(settings) {}
 
-  std::optional<DisplayTransform> transform;
-  if (!settings.output.preview.empty() && !settings.output.composite.empty()) transform.emplace(settings.output.ocio);
-  gpu::Device device({settings.device.device, settings.device.require_gpu, settings.device.validate, !settings.device.no_pipeline_cache});
-  RunReport report;
-  report.device = device.info().name;
-  report.options = options_digest(settings);
-  gpu::Recorder gpu(device);
-  report.frames.push_back(run_frame(device, gpu, settings, transform ? &*transform : nullptr, report.options));
-  if (device.info().type == gpu::DeviceType::cpu && settings.device.device == "auto")
-    report.frames.back().notes.push_back(fmt::format("no GPU found; computed on {}", device.info().name));
-  if (device.validation_messages()) fail(ErrorKind::device, "--validate: the validation layer reported {} messages", device.validation_messages());
-  report.wall_s = wall.ms() / 1000;
-  if (!settings.output.stats.empty()) write_whole(settings.output.stats, stats_json(report));
-  return report;
-}
-
-std::string stats_json(const RunReport& report) {
-  using Json = nlohmann::ordered_json;
-  Json frames = Json::array();
-  for (const auto& frame : report.frames) {
-    Json passes = Json::array();
-    for (const auto& pass : frame.passes) passes.push_back({{"name", pass.name}, {"ms", pass.ms}, {"bytes_read", pass.bytes_read}, {"bytes_written", pass.bytes_written}});
-    frames.push_back({{"frame", frame.frame},
-                      {"input", frame.input},
-                      {"output", frame.output},
-                      {"ms", {{"read", frame.read_ms}, {"compute", frame.compute_ms}, {"write", frame.write_ms}, {"total", frame.total_ms}}},
-                      {"passes", passes},
-                      {"pixels", frame.pixels},
-                      {"sky_pixels", frame.sky_pixels},
-                      {"samples_per_pixel", frame.samples_per_pixel},
-                      {"repaired_pixels", frame.repaired_pixels}});
+  RunReport run() {
+    const Stopwatch wall;
+    report_.is_sequence = plan_.is_sequence();
+    report_.missing = plan_.missing();
+    if (!plan_.frames().empty()) {
+      const Settings first = plan_.at(plan_.frames().front());
+      check_files(first);
+      prepare_outputs(plan_, settings_);
+      report_.options = options_digest(first);
+      first_camera_ = first.input.camera;
+    }
+    const std::vector<int> wanted = without_whole();
+    if (watch_.begin) watch_.begin(report_, int(wanted.size()) + report_.kept);
+    for (const auto& frame : report_.frames)
+      if (watch_.frame) watch_.frame(frame);
+    if (!wanted.empty()) compute(wanted);
+    std::unordered_map<int, std::size_t> place;
+    for (const int frame : plan_.frames()) place.emplace(frame, place.size());
+    std::ranges::sort(report_.frames, {}, [&](const FrameReport& frame) { return place.at(frame.frame); });
+    report_.dropped = int(plan_.frames().size()) - report_.done - report_.failed - report_.kept;
+    report_.wall_s = wall.ms() / 1000;
+    if (!settings_.output.stats.empty()) write_whole(settings_.output.stats, stats_json(report_));
+    return std::move(report_);
   }
-  rusage usage{};
-  ::getrusage(RUSAGE_SELF, &usage);
-  const auto seconds = [](const timeval& time) { return double(time.tv_sec) + 1e-6 * double(time.tv_usec); };
-  const Json totals = {{"frames", report.frames.size()},
-                       {"failed", report.failed},
-                       {"wall_s", report.wall_s},
-                       {"cpu_s", seconds(usage.ru_utime) + seconds(usage.ru_stime)},
-                       {"peak_rss_mb", double(usage.ru_maxrss) / 1024}};
-  const Json stats = {{"device", report.device}, {"options", report.options}, {"frames", frames}, {"totals", totals}};
-  return stats.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";  // file names need not be UTF-8
+
+ private:
+  /// The frames that are left to compute; the others are in the report.
+  std::vector<int> without_whole() {
+    if (!settings_.frames.resume || settings_.frames.overwrite) return plan_.frames();
+    std::vector<int> wanted;
+    for (const int frame : plan_.frames()) {
+      const Settings settings = plan_.at(frame);
+      if (!has_whole_outputs(settings, settings.input.camera == first_camera_ ? report_.options : options_digest(settings))) {
+        wanted.push_back(frame);
+        continue;
+      }
+      FrameReport report;
+      report.frame = frame;
+      report.state = FrameState::kept;
+      report.input = main_input(settings.input);
+      report.output = settings.output.output;
+      report_.frames.push_back(report);
+      report_.kept++;
+    }
+    return wanted;
+  }
+
+  void compute(const std::vector<int>& frames) {
+    const auto settled = plan_.is_sequence() ? settle_sequence(plan_) : std::nullopt;
+    const int threads = thread_count(settings_.device);
+    const int count = frames_at_once(settled, settings_, frames.size(), threads), gpu_count = frames_at_once(settled, settings_, frames.size(), threads + kSpareLanes);
+    share_cores(threads, count, settings_.device.threads > 0);
+    std::optional<DisplayTransform> transform;
+    if (!settings_.output.preview.empty() && !settings_.output.composite.empty()) transform.emplace(settings_.output.ocio);
+    RunContext run{plan_, settled ? &*settled : nullptr, transform ? &*transform : nullptr, {report_.options, ""}, {}, watch_.stop};
+    run_on_device(run, frames, count, gpu_count);
+    if (!lost_) return;
+    const Error loss = *std::exchange(lost_, std::nullopt);
+    std::vector<int> left;
+    std::ranges::copy_if(frames, std::back_inserter(left), [&](int frame) { return std::ranges::find(report_.frames, frame, &FrameReport::frame) == report_.frames.end(); });
+    run_on_device(run, left, count, gpu_count);
+    if (lost_) report_.stop = Error(ErrorKind::device, fmt::format("{}, and so was a fresh one: {}", loss.what(), lost_->what()));
+  }
+
+  void run_on_device(RunContext& run, const std::vector<int>& frames, int count, int gpu_count) {
+    const DeviceSettings& d = settings_.device;
+    Lanes lanes({d.device, d.require_gpu, d.validate, !d.no_pipeline_cache}, count, gpu_count);
+    const gpu::DeviceInfo& device = lanes.device().info();
+    report_.device = run.provenance.device = device.name;
+    report_.on_cpu_by_default = device.type == gpu::DeviceType::cpu && d.device == "auto";
+    report_.at_once = lanes.count();
+    run.room = {memory_for_frames(d) / std::uint64_t(lanes.count()), device.buffer_bytes};
+    run_pipeline(lanes, run, frames, [&](FrameReport&& frame) { return take(std::move(frame)); });
+    if (lanes.validation_messages()) fail(ErrorKind::device, "--validate: the validation layer reported {} messages", lanes.validation_messages());
+  }
+
+  /// Whether the run goes on.
+  bool take(FrameReport&& frame) {
+    if (frame.device_lost) lost_ = frame.error;
+    if (frame.state == FrameState::dropped || frame.device_lost) return !lost_;
+    if (frame.state == FrameState::done) report_.done++;
+    if (frame.state == FrameState::failed) {
+      report_.failed++;
+      report_.failed_frames.push_back(frame.frame);
+      if (!settings_.frames.keep_going && !report_.stop) report_.stop = frame.error;
+    }
+    if (watch_.frame) watch_.frame(frame);
+    if (settings_.output.stats.empty()) frame.passes.clear(), frame.passes.shrink_to_fit();
+    report_.frames.push_back(std::move(frame));
+    return !report_.stop && !lost_;
+  }
+
+  const Settings& settings_;
+  const RunWatch& watch_;
+  const FramePlan plan_;
+  std::string first_camera_;
+  std::optional<Error> lost_;  // the device
+  RunReport report_;
+};
+
+}  // namespace
+
+RunReport run_frames(const Settings& settings, const RunWatch& watch) {
+  check_settings(settings);
+  return Batch(settings, watch).run();
 }
 
 }  // namespace alcove

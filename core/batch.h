@@ -1,48 +1,31 @@
-// Frames from files to files: read, compute, write; and what each of them took.
+// A run: frames from files to files.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <cstdint>
+#include <functional>
 #include <string>
-#include <vector>
 
-#include "core/gpu/recorder.h"
+#include "core/run_report.h"
 #include "core/settings.h"
 
 namespace alcove {
 
-/// What happened to one frame.
-struct FrameReport {
-  int frame = 0;
-  std::string input, output;
-  double read_ms = 0, compute_ms = 0, write_ms = 0, total_ms = 0;  // compute: the sum of the passes' device time
-  std::vector<gpu::PassTime> passes;
-  std::uint64_t pixels = 0, sky_pixels = 0, repaired_pixels = 0;
-  double samples_per_pixel = 0;    // depth samples that the settings ask for, averaged over all pixels; sky asks for none
-  std::vector<std::string> notes;  // what the user should know, a sentence each
-};
-
-struct RunReport {
-  std::string device, options;  // options: the digest that the outputs carry
-  std::vector<FrameReport> frames;
-  int failed = 0;
-  double wall_s = 0;
-};
-
-/// Fails with ErrorKind::usage on settings that contradict each other, ErrorKind::output on outputs that cannot be made.
+/// Fails with ErrorKind::usage on settings that contradict each other.
 /// Opens no input and no device.
 void check_settings(const Settings& settings);
 
 /// 16 hexadecimal digits that change with every setting that changes the result, and with what the camera file says. Fails as reading that file does.
 std::string options_digest(const Settings& settings);
 
-/// The number at the end of a file name before its ending: shot.0042.exr is frame 42; 0 where there is none.
-int frame_number_of(const std::string& path);
+/// Who follows a run; each may be empty.
+struct RunWatch {
+  std::function<void(const RunReport&, int)> begin;  // before the first frame: the run as it is known then, and how many frames it has
+  std::function<void(const FrameReport&)> frame;     // one frame after the other, in their order; those of a device that was lost come once more, later
+  std::function<bool()> stop;                        // true: no frame is begun any more, and those in flight are dropped before their next step
+};
 
-/// Computes the frame that the settings name and writes its outputs. Checks the settings first.
-RunReport run_frames(const Settings& settings);
-
-/// `--stats`: see the README for the fields.
-std::string stats_json(const RunReport& report);
+/// Computes the frames that the settings name and writes their outputs. After the loss of its device it goes on with a fresh one, once. Fails on what is wrong before the first of them; what is wrong with a frame is in its
+/// report, and ends the run unless the settings say to keep going.
+RunReport run_frames(const Settings& settings, const RunWatch& watch = {});
 
 }  // namespace alcove

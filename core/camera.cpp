@@ -255,7 +255,10 @@ Matrix3 view_from_normal(const Camera& camera, NormalSpace space, const NormalFl
 View view_of(const Camera& camera, const Window& data, const Window& display) {
   View view{};
   view.size = {data.width, data.height};
-  view.center = {float(camera.cx + display.x - data.x), float(camera.cy + display.y - data.y)};
+  // Rounded so that differences of pixels and the centre are exact floats, whatever part of a frame is looked at: 1/4096 px for displays up to 1024 wide.
+  const double steps = std::exp2(22 - std::ceil(std::log2(std::max(display.width, display.height))));
+  const auto rounded = [&](double px) { return std::round(px * steps) / steps; };
+  view.center = {float(rounded(camera.cx) + display.x - data.x), float(rounded(camera.cy) + display.y - data.y)};
   view.tangent_per_pixel = {float(1 / camera.fx), float(-1 / camera.fy)};
   view.orthographic = camera.orthographic ? 1 : 0;
   return view;

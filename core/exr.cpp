@@ -20,10 +20,11 @@
 #include <ImfStringAttribute.h>
 #include <ImfTestFile.h>
 #include <ImfThreading.h>
+#include <openexr.h>
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
+#include <deque>
 #include <filesystem>
 #include <set>
 
@@ -67,23 +68,28 @@ ExrPart describe(const Imf::Header& header) {
   return part;
 }
 
-/// An output stream into memory: OpenEXR's own file stream loses the errors of its last bytes.
-class MemoryStream : public Imf::OStream {
+/// An output stream into a file in the making. OpenEXR swallows what fails while it closes a file; failed() keeps it.
+class FileStream : public Imf::OStream {
  public:
-  MemoryStream() : Imf::OStream("memory") {}
+  explicit FileStream(const std::string& path) : Imf::OStream(path.c_str()), file_(path) {}
   void write(const char data[], int count) override {
-    const std::size_t end = position_ + std::size_t(count);
-    if (bytes_.size() < end) bytes_.resize(end);
-    std::memcpy(bytes_.data() + position_, data, std::size_t(count));
-    position_ = end;
+    try {
+      file_.write_at(position_, {data, std::size_t(count)});
+    } catch (const Error& error) {
+      if (!failure_) failure_ = error;
+      throw;
+    }
+    position_ += std::uint64_t(count);
   }
   std::uint64_t tellp() override { return position_; }
   void seekp(std::uint64_t position) override { position_ = position; }
-  std::span<const char> bytes() const { return bytes_; }
+  const std::optional<Error>& failure() const { return failure_; }
+  void commit() { file_.commit(); }
 
  private:
-  std::vector<char> bytes_;
-  std::size_t position_ = 0;
+  NewFile file_;
+  std::uint64_t position_ = 0;
+  std::optional<Error> failure_;
 };
 
 /// Attributes that say how the input is stored or what its channels are; they do not hold for another file.
@@ -195,10 +201,17 @@ std::map<std::string, std::string> ExrFile::attribute_texts(int part) const {
 }
 
 void ExrFile::read(std::span<const ExrRead> reads) {
+  // All parts that are read together cover the same pixels.
+  if (!reads.empty()) read(reads, 0, impl_->parts[std::size_t(reads[0].part)].data.height);
+}
+
+void ExrFile::read(std::span<const ExrRead> reads, int first, int rows) {
   std::set<int> parts;
   for (const auto& read : reads) parts.insert(read.part);
   for (const int part : parts) {
-    const Window& data = impl_->parts[std::size_t(part)].data;
+    Window data = impl_->parts[std::size_t(part)].data;
+    data.y += first;
+    data.height = rows;
     const std::size_t row_bytes = sizeof(float) * std::size_t(data.width);
     Imf::FrameBuffer frame_buffer;
     for (const auto& read : reads)
@@ -215,26 +228,65 @@ void ExrFile::read(std::span<const ExrRead> reads) {
   }
 }
 
-void write_exr(const std::string& path, const ExrOutput& output) {
-  MemoryStream stream;
-  try {
-    std::vector<std::vector<half>> halves;
-    Imf::FrameBuffer frame_buffer;
-    for (const auto& plane : output.planes) {
-      const bool is_half = plane.type == SampleType::half_float;
-      const std::size_t bytes = is_half ? sizeof(half) : sizeof(float);
-      if (is_half) halves.push_back(to_half(plane.pixels));
-      const void* pixels = is_half ? static_cast<const void*>(halves.back().data()) : plane.pixels.data();
-      frame_buffer.insert(plane.channel, Imf::Slice::Make(is_half ? Imf::HALF : Imf::FLOAT, pixels, box_of(output.data), bytes,
-                                                          bytes * std::size_t(output.data.width)));
+struct ExrWriter::Impl {
+  std::string path;
+  Window data;
+  std::vector<ExrPlane> planes;
+  FileStream stream;
+  std::unique_ptr<Imf::OutputFile> file;
+  int rows = 0;  // that are written
+
+  Impl(const std::string& path_, const ExrOutput& output) : path(path_), data(output.data), planes(output.planes), stream(path_) {}
+
+  /// What the stream says is why OpenEXR failed.
+  template <class Function>
+  void run(Function&& function) {
+    try {
+      function();
+    } catch (const std::exception& error) {
+      if (!stream.failure()) fail(ErrorKind::output, "{}: could not be encoded: {}", path, one_line(error));
     }
-    Imf::OutputFile file(stream, header_of(output));
-    file.setFrameBuffer(frame_buffer);
-    file.writePixels(output.data.height);
-  } catch (const std::exception& error) {
-    fail(ErrorKind::output, "{}: could not be encoded: {}", path, one_line(error));
+    if (stream.failure()) throw *stream.failure();
   }
-  write_whole(path, stream.bytes());
+};
+
+ExrWriter::ExrWriter(const std::string& path, const ExrOutput& output) : impl_(std::make_unique<Impl>(path, output)) {
+  impl_->run([&] { impl_->file = std::make_unique<Imf::OutputFile>(impl_->stream, header_of(output)); });
+}
+ExrWriter::~ExrWriter() = default;
+ExrWriter::ExrWriter(ExrWriter&&) noexcept = default;
+
+void ExrWriter::write(std::span<const std::span<const float>> planes) {
+  Window band = impl_->data;
+  band.y += impl_->rows;
+  band.height = int(planes[0].size() / std::size_t(band.width));
+  std::deque<std::vector<half>> halves;
+  Imf::FrameBuffer frame_buffer;
+  for (std::size_t i = 0; i < planes.size(); i++) {
+    const bool is_half = impl_->planes[i].type == SampleType::half_float;
+    const std::size_t bytes = is_half ? sizeof(half) : sizeof(float);
+    const void* pixels = is_half ? static_cast<const void*>(halves.emplace_back(to_half(planes[i])).data()) : planes[i].data();
+    frame_buffer.insert(impl_->planes[i].channel,
+                        Imf::Slice::Make(is_half ? Imf::HALF : Imf::FLOAT, pixels, box_of(band), bytes, bytes * std::size_t(band.width)));
+  }
+  impl_->run([&] {
+    impl_->file->setFrameBuffer(frame_buffer);
+    impl_->file->writePixels(band.height);
+  });
+  impl_->rows += band.height;
+}
+
+void ExrWriter::finish() {
+  impl_->run([&] { impl_->file.reset(); });
+  impl_->stream.commit();
+}
+
+void write_exr(const std::string& path, const ExrOutput& output) {
+  ExrWriter writer(path, output);
+  std::vector<std::span<const float>> planes;
+  for (const auto& plane : output.planes) planes.push_back(plane.pixels);
+  writer.write(planes);
+  writer.finish();
 }
 
 Image read_exr_image(const std::string& path, const std::vector<std::string>& channels) {
@@ -251,6 +303,27 @@ Image read_exr_image(const std::string& path, const std::vector<std::string>& ch
   for (std::size_t i = 0; i < names.size(); i++) reads.push_back({int(part - file.parts().begin()), names[i], image.plane(i).data()});
   file.read(reads);
   return image;
+}
+
+std::optional<std::string> attribute_of_whole_exr(const std::string& path, const std::string& name) {
+  exr_context_initializer_t quiet = EXR_DEFAULT_CONTEXT_INITIALIZER;
+  quiet.error_handler_fn = [](exr_const_context_t, exr_result_t, const char*) {};
+  exr_context_t raw = nullptr;
+  if (exr_start_read(&raw, path.c_str(), &quiet) != EXR_ERR_SUCCESS) return std::nullopt;
+  const std::unique_ptr<std::remove_pointer_t<exr_context_t>, void (*)(exr_context_t)> file(raw, [](exr_context_t context) { exr_finish(&context); });
+  exr_attr_box2i_t data;
+  int32_t rows = 0, length = 0;
+  const char* text = nullptr;
+  if (exr_get_data_window(raw, 0, &data) != EXR_ERR_SUCCESS || exr_get_scanlines_per_chunk(raw, 0, &rows) != EXR_ERR_SUCCESS || rows <= 0 ||
+      exr_attr_get_string(raw, 0, name.c_str(), &length, &text) != EXR_ERR_SUCCESS)
+    return std::nullopt;
+  std::error_code error;
+  const std::uint64_t size = std::filesystem::file_size(path, error);
+  for (std::int64_t y = data.min.y; y <= data.max.y; y += rows) {
+    exr_chunk_info_t chunk;
+    if (error || exr_read_scanline_chunk_info(raw, 0, int(y), &chunk) != EXR_ERR_SUCCESS || chunk.data_offset + chunk.packed_size > size) return std::nullopt;
+  }
+  return std::string(text, std::size_t(length));
 }
 
 void set_exr_threads(int threads) { Imf::setGlobalThreadCount(threads); }

@@ -34,7 +34,7 @@ struct ExrPart {
 /// All attributes of one part's header, of every type, and those that only the first part has, to be carried into an output.
 class ExrAttributes;
 
-/// A channel to read, and where to: width x height floats of the part's data window, row by row.
+/// A channel to read, and where to: width x height floats of the part's data window, or of some of its rows, row by row.
 struct ExrRead {
   int part;
   std::string channel;
@@ -60,6 +60,8 @@ class ExrFile {
 
   /// Reads the channels as float, each part decoded once. Fails on truncated or corrupt data.
   void read(std::span<const ExrRead> reads);
+  /// Only `rows` rows of the parts' data windows, from the `first` one on.
+  void read(std::span<const ExrRead> reads, int first, int rows);
 
  private:
   struct Impl;
@@ -82,11 +84,33 @@ struct ExrOutput {
   std::vector<ExrPlane> planes;
 };
 
-/// Writes a single-part scan-line file, whole or not at all. Fails with ErrorKind::output.
+/// A single-part scan-line file, written from top to bottom: there once it is finished, else not at all. Fails with ErrorKind::output.
+class ExrWriter {
+ public:
+  /// The pixels of output.planes are not looked at.
+  ExrWriter(const std::string& path, const ExrOutput& output);
+  ~ExrWriter();
+  ExrWriter(ExrWriter&&) noexcept;
+
+  /// The next rows of every plane, as wide as the data window.
+  void write(std::span<const std::span<const float>> planes);
+  /// After the last row.
+  void finish();
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// The same at once, with the pixels of output.planes.
 void write_exr(const std::string& path, const ExrOutput& output);
 
 /// Every channel of the file's first part that holds all the named ones (all channels: no names), as an image. Fails with ErrorKind::input.
 Image read_exr_image(const std::string& path, const std::vector<std::string>& channels = {});
+
+/// A text attribute of a file that is whole: every chunk of its first part lies within it, which a file cut short does not show otherwise.
+/// Nothing where it is not, where it is no EXR, and where there is no such attribute.
+std::optional<std::string> attribute_of_whole_exr(const std::string& path, const std::string& name);
 
 /// How many threads the codecs may use, for the whole process; 0: none beside the caller's.
 void set_exr_threads(int threads);

@@ -3,6 +3,7 @@
 #include "core/file.h"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -20,54 +21,20 @@ namespace {
 
 namespace fs = std::filesystem;
 
-fs::path folder_of(const std::string& path) {
-  const fs::path folder = fs::path(path).parent_path();
-  return folder.empty() ? fs::path(".") : folder;
+constexpr const char* kUnfinishedPrefix = ".alcove-";
+constexpr const char* kUnfinishedSuffix = ".tmp";
+
+/// Takes the lock that says "somebody is writing this". On file systems without locks nothing is locked.
+bool lock(int descriptor, bool wait) {
+  while (::flock(descriptor, LOCK_EX | (wait ? 0 : LOCK_NB)) != 0)
+    if (errno != EINTR) return wait && errno != EWOULDBLOCK;
+  return true;
 }
 
-/// A file under a name of its own that vanishes unless it is renamed.
-class Temporary {
- public:
-  /// Hidden and without the ending of an image, so that folder watchers pass it by; not to be guessed.
-  explicit Temporary(const std::string& target)
-      : target_(target),
-        path_(folder_of(target) / fmt::format(".alcove-{}-{:08x}.tmp", ::getpid(), std::random_device()())),
-        descriptor_(::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666)) {
-    if (descriptor_ < 0) give_up("make a temporary file for");
-  }
-  ~Temporary() {
-    if (descriptor_ >= 0) ::close(descriptor_);
-    if (!renamed_ && !path_.empty()) ::unlink(path_.c_str());
-  }
-  Temporary(const Temporary&) = delete;
-
-  void write(std::span<const char> bytes) {
-    while (!bytes.empty()) {
-      const ssize_t written = ::write(descriptor_, bytes.data(), bytes.size());
-      if (written < 0 && errno == EINTR) continue;
-      if (written <= 0) give_up("write");
-      bytes = bytes.subspan(std::size_t(written));
-    }
-  }
-
-  void rename_to_target() {
-    const int closed = ::close(std::exchange(descriptor_, -1));
-    if (closed != 0) give_up("write");
-    if (::rename(path_.c_str(), target_.c_str()) != 0) give_up("rename the finished file to");
-    renamed_ = true;
-  }
-
- private:
-  [[noreturn]] void give_up(const char* what) const {
-    const int error = errno;
-    fail(ErrorKind::output, "{}: could not {} it: {}", target_, what, std::strerror(error));
-  }
-
-  std::string target_;
-  fs::path path_;
-  int descriptor_;
-  bool renamed_ = false;
-};
+bool is_removed(int descriptor) {
+  struct stat status{};
+  return ::fstat(descriptor, &status) == 0 && status.st_nlink == 0;
+}
 
 }  // namespace
 
@@ -98,13 +65,67 @@ void require_writable(const std::string& path, const char* option) {
   if (fs::exists(status) && !fs::is_regular_file(status)) fail(ErrorKind::output, "{}: is no regular file; {} names the file to write", path, option);
 }
 
-void write_whole(const std::string& path, std::span<const char> bytes) {
-  // A link stays a link: what it names is replaced.
+NewFile::NewFile(const std::string& path) : target_(path) {
   std::error_code error;
-  const fs::path target = fs::is_symlink(path, error) ? fs::weakly_canonical(path, error) : fs::path(path);
-  Temporary file(error ? path : target.string());
-  file.write(bytes);
-  file.rename_to_target();
+  if (const auto linked = fs::weakly_canonical(path, error); fs::is_symlink(path, error) && !linked.empty()) target_ = linked.string();
+  // Whoever cleans up may take the file in the moment before it is locked.
+  do {
+    if (descriptor_ >= 0) ::close(descriptor_);
+    temporary_ = (fs::path(folder_of(target_)) / fmt::format("{}{}-{:08x}{}", kUnfinishedPrefix, ::getpid(), std::random_device()(), kUnfinishedSuffix)).string();
+    descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (descriptor_ < 0) give_up("make a temporary file for", errno);
+  } while (lock(descriptor_, true) && is_removed(descriptor_));
+}
+
+NewFile::~NewFile() {
+  if (descriptor_ < 0) return;
+  ::unlink(temporary_.c_str());
+  ::close(descriptor_);
+}
+
+void NewFile::write_at(std::uint64_t offset, std::span<const char> bytes) {
+  while (!bytes.empty()) {
+    const ssize_t written = ::pwrite(descriptor_, bytes.data(), bytes.size(), off_t(offset));
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) give_up("write", written < 0 ? errno : ENOSPC);
+    bytes = bytes.subspan(std::size_t(written));
+    offset += std::uint64_t(written);
+  }
+}
+
+void NewFile::commit() {
+  // What a file system reports only when a file is closed must be known before it has its name; the lock stays with the second descriptor.
+  const int second = ::fcntl(descriptor_, F_DUPFD_CLOEXEC, 0);
+  if (second < 0 || ::close(std::exchange(descriptor_, second)) != 0) give_up("write", errno);
+  if (::rename(temporary_.c_str(), target_.c_str()) != 0) give_up("rename the finished file to", errno);
+  ::close(std::exchange(descriptor_, -1));
+}
+
+void NewFile::give_up(const char* what, int error) const { fail(ErrorKind::output, "{}: could not {} it: {}", target_, what, std::strerror(error)); }
+
+void write_whole(const std::string& path, std::span<const char> bytes) {
+  NewFile file(path);
+  file.write_at(0, bytes);
+  file.commit();
+}
+
+int remove_unfinished(const std::string& folder) {
+  int removed = 0;
+  std::error_code error;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    const std::string name = entry->path().filename().string();
+    if (!name.starts_with(kUnfinishedPrefix) || !name.ends_with(kUnfinishedSuffix)) continue;
+    const int descriptor = ::open(entry->path().c_str(), O_WRONLY | O_CLOEXEC | O_NOFOLLOW);
+    if (descriptor < 0) continue;
+    removed += lock(descriptor, false) && ::unlink(entry->path().c_str()) == 0;
+    ::close(descriptor);
+  }
+  return removed;
+}
+
+std::string folder_of(const std::string& path) {
+  const fs::path folder = fs::path(path).parent_path();
+  return folder.empty() ? "." : folder.string();
 }
 
 }  // namespace alcove

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <string>
 
@@ -17,8 +18,33 @@ std::string read_text(const std::string& path, const char* what, const char* opt
 /// a regular file stands there. Called before any work, so that a long job does not fail at its end.
 void require_writable(const std::string& path, const char* option);
 
-/// Writes a temporary file beside `path` and renames it when it is complete. On failure (ErrorKind::output) nothing of it
-/// is left and what was at `path` is as it was.
+/// A file in the making. It has a hidden name beside `path` that does not end as images do, so that folder watchers pass it by, and a lock for as long as
+/// its process lives. Unless it is committed nothing of it is left, and what was at `path` is as it was. All failures are ErrorKind::output.
+class NewFile {
+ public:
+  explicit NewFile(const std::string& path);
+  ~NewFile();
+  NewFile(const NewFile&) = delete;
+
+  void write_at(std::uint64_t offset, std::span<const char> bytes);
+  /// Gives it its name. A link at `path` stays a link: what it names is replaced.
+  void commit();
+
+ private:
+  [[noreturn]] void give_up(const char* what, int error) const;
+
+  std::string target_, temporary_;
+  int descriptor_ = -1;
+};
+
+/// The same for what is whole already.
 void write_whole(const std::string& path, std::span<const char> bytes);
+
+/// Removes the unfinished files that processes which were killed have left in a folder, not those of living ones on any machine. Returns their number.
+/// Never fails: what cannot be removed stays.
+int remove_unfinished(const std::string& folder);
+
+/// The folder that a file lies in.
+std::string folder_of(const std::string& path);
 
 }  // namespace alcove

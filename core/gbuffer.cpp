@@ -310,18 +310,18 @@ std::vector<ChannelRef> find_depth(const Search& search, std::size_t file, const
   return search.require(file, kDepthNames, settings.depth_channel, !settings.depth.empty(), "Depth.Z");
 }
 
-/// Reads whole planes, since that is how files are stored, and keeps what lies in source.data.
+/// Reads whole rows, since that is how files are stored, and keeps what lies in source.data.
 void read_part(FrameSource& source, const std::vector<PlaneRead>& reads) {
-  const Window part = source.data;
-  source.data = source.file_data;
+  const Window part = source.data, rows{source.file_data.x, part.y, source.file_data.width, part.height};
+  source.data = rows;
   std::vector<std::vector<float>> whole;
   std::vector<PlaneRead> whole_reads;
   for (const auto& read : reads) {
-    whole.emplace_back(read.channels->size() * source.data.pixels());
+    whole.emplace_back(read.channels->size() * rows.pixels());
     whole_reads.push_back({read.channels, whole.back().data()});
   }
   read_planes(source, whole_reads);
-  for (std::size_t i = 0; i < reads.size(); i++) std::ranges::copy(cropped(whole[i], source.file_data, part), reads[i].to);
+  for (std::size_t i = 0; i < reads.size(); i++) std::ranges::copy(cropped(whole[i], rows, part), reads[i].to);
   source.data = part;
 }
 
@@ -375,7 +375,7 @@ FrameSource find_frame(const InputSettings& settings, bool with_beauty, int fram
 }
 
 void read_planes(FrameSource& source, const std::vector<PlaneRead>& reads) {
-  if (source.data != source.file_data) return read_part(source, reads);
+  if (source.data.width != source.file_data.width) return read_part(source, reads);
   std::vector<std::vector<ExrRead>> by_file(source.files.size());
   std::map<ChannelRef, float*> first;  // a channel that serves two purposes is decoded to the first place, and copied from there
   std::vector<std::pair<float*, float*>> copies;
@@ -386,7 +386,7 @@ void read_planes(FrameSource& source, const std::vector<PlaneRead>& reads) {
       if (const auto [known, is_new] = first.try_emplace(channel, to); is_new) by_file[channel.file].push_back({channel.part, channel.channel, to});
       else copies.emplace_back(known->second, to);
     }
-  for (std::size_t file = 0; file < by_file.size(); file++) source.files[file].read(by_file[file]);
+  for (std::size_t file = 0; file < by_file.size(); file++) source.files[file].read(by_file[file], source.data.y - source.file_data.y, source.data.height);
   for (const auto& [from, to] : copies) std::copy_n(from, source.data.pixels(), to);
 }
 

@@ -35,6 +35,7 @@ struct FrameSource {
   Window file_data;      // what the files hold
   std::optional<Window> region;  // what is to be written of it; none: all of data
   bool settled = false;  // see core/settle.h
+  bool has_evidence = true;  // false: its pixels did not show what was left open
   double pixel_aspect = 1;
   std::vector<ChannelRef> depth;          // one, or x, y, z of positions
   std::vector<ChannelRef> normal;         // x, y, z, or two of them; none: to be reconstructed from depth

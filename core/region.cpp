@@ -1,4 +1,4 @@
-// The region, and its surroundings by the nearest depth in it.
+// Regions, and their surroundings by the nearest depth in them.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/region.h"
 
@@ -12,6 +12,7 @@
 namespace alcove {
 namespace {
 
+constexpr int kBlock = 64;  // px of a block of pixels whose nearest depth is kept
 constexpr int kGrid = 4;  // px: windows begin on the grid of the coarsest resolution, so that its pixels are the same ones
 
 Window grown(const Window& window, int margin_x, int margin_y, const Window& within) {
@@ -39,32 +40,58 @@ double sphere_reach(double radius, double nearest, double tangent, double pixels
 
 }  // namespace
 
-void restrict_to_region(FrameSource& source, const Settings& settings) {
-  const Region& roi = *settings.input.roi;
+Window region_of(const FrameSource& source, const Region& roi) {
   const Window all = source.file_data, region{source.display.x + roi.x, source.display.y + roi.y, roi.width, roi.height};
   const bool inside = region.x >= all.x && region.y >= all.y && std::int64_t(region.x) + region.width <= std::int64_t(all.x) + all.width &&
                       std::int64_t(region.y) + region.height <= std::int64_t(all.y) + all.height;
   if (!inside)
     fail(ErrorKind::usage, "{}: --roi is {}, and the data window is {}: give a region within it", source.files[source.depth[0].file].path(),
          to_string(region), to_string(all));
-  std::vector<float> depth(source.depth.size() * all.pixels()), normal(source.normal.size() * all.pixels());
-  read_planes(source, {{&source.depth, depth.data()}, {&source.normal, normal.data()}});
-  settle(source, settings.input, depth, normal);
+  return region;
+}
 
-  const View view = view_of(source.camera, all, source.display);
-  const auto planar = planar_depths(depth, depth_map_of(source, settings.input), view);
-  const int filters = filter_reach(settings.estimator);
-  const Window filtered = grown(region, filters, filters, all);
-  const auto receivers = cropped(planar, all, filtered);
-  const double nearest = *std::ranges::min_element(receivers), radius = settings.estimator.radius.value_or(0);
+Surroundings::Surroundings(FrameSource& source, const Settings& settings, const Window& whole)
+    : file_data_(source.file_data),
+      read_(grown(whole, filter_reach(settings.estimator), filter_reach(settings.estimator), source.file_data)),
+      columns_((read_.width + kBlock - 1) / kBlock),
+      nearest_(std::size_t(columns_) * std::size_t((read_.height + kBlock - 1) / kBlock), kSkyDepth),
+      view_(view_of(source.camera, source.file_data, source.display)),
+      orthographic_(source.camera.orthographic),
+      radius_(settings.estimator.radius.value_or(0)),
+      filters_(filter_reach(settings.estimator)) {
+  const Window data = source.data;
+  const DepthMap map = depth_map_of(source, settings.input);
+  for (int top = 0; top < read_.height; top += kBlock) {
+    source.data = {read_.x, read_.y + top, read_.width, std::min(kBlock, read_.height - top)};
+    std::vector<float> depth(source.depth.size() * source.data.pixels());
+    read_planes(source, {{&source.depth, depth.data()}});
+    const auto planar = planar_depths(depth, map, view_of(source.camera, source.data, source.display));
+    for (std::size_t i = 0; i < planar.size(); i++) {
+      float& nearest = nearest_[std::size_t(top / kBlock * columns_) + i % std::size_t(read_.width) / kBlock];
+      nearest = std::min(nearest, planar[i]);
+    }
+  }
+  source.data = data;
+}
+
+double Surroundings::nearest_in(const Window& window) const {
+  float nearest = kSkyDepth;
+  for (int y = (window.y - read_.y) / kBlock; y <= (window.y + window.height - 1 - read_.y) / kBlock; y++)
+    for (int x = (window.x - read_.x) / kBlock; x <= (window.x + window.width - 1 - read_.x) / kBlock; x++)
+      nearest = std::min(nearest, nearest_[std::size_t(y * columns_ + x)]);
+  return nearest;
+}
+
+Window Surroundings::around(const Window& part) const {
+  const Window filtered = grown(part, filters_, filters_, file_data_);
+  const double nearest = nearest_in(filtered);
   const auto margin = [&](double low, double high, double center, double tangent_per_pixel) {
     const double tangent = std::max(std::abs(low - center), std::abs(high - center)) * std::abs(tangent_per_pixel);
-    return int(std::ceil(std::min(sphere_reach(radius, nearest, tangent, 1 / std::abs(tangent_per_pixel), source.camera.orthographic), 1e6))) + 2;
+    return int(std::ceil(std::min(sphere_reach(radius_, nearest, tangent, 1 / std::abs(tangent_per_pixel), orthographic_), 1e6))) + 2;
   };
-  const int margin_x = margin(filtered.x - all.x, filtered.x - all.x + filtered.width, view.center.x, view.tangent_per_pixel.x);
-  const int margin_y = margin(filtered.y - all.y, filtered.y - all.y + filtered.height, view.center.y, view.tangent_per_pixel.y);
-  source.data = grown(filtered, margin_x, margin_y, all);
-  source.region = region;
+  const int left = filtered.x - file_data_.x, top = filtered.y - file_data_.y;
+  return grown(filtered, margin(left, left + filtered.width, view_.center.x, view_.tangent_per_pixel.x),
+               margin(top, top + filtered.height, view_.center.y, view_.tangent_per_pixel.y), file_data_);
 }
 
 }  // namespace alcove

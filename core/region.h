@@ -7,9 +7,29 @@
 
 namespace alcove {
 
-/// Settles the frame by all of its pixels, then narrows source.data to settings.input.roi and as much around it as occluders, and the filters of the
-/// settings, can reach; source.region is what is to be written. Within it AO is what it is without a region.
-/// Fails with ErrorKind::usage where the region is not within the data window.
-void restrict_to_region(FrameSource& source, const Settings& settings);
+/// The region in pixels of the file. Fails with ErrorKind::usage where it is not within the data window.
+Window region_of(const FrameSource& source, const Region& roi);
+
+/// How far around the parts of a frame its results reach back, by the nearest depth in them: occluders of the radius, and the filters of the settings.
+class Surroundings {
+ public:
+  /// Reads the depth of all rows of a settled frame that results within `whole` depend on directly, a few at a time.
+  Surroundings(FrameSource& source, const Settings& settings, const Window& whole);
+
+  /// The window to compute for the results in `part` of `whole` to be, to the bit, what they are in the whole frame.
+  Window around(const Window& part) const;
+
+ private:
+  double nearest_in(const Window& window) const;
+
+  const Window file_data_;
+  Window read_;                  // what the grid of nearest depths covers
+  int columns_ = 0;              // of that grid
+  std::vector<float> nearest_;   // of every block of it
+  View view_;
+  bool orthographic_;
+  double radius_;
+  int filters_;                  // px that filters reach
+};
 
 }  // namespace alcove

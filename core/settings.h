@@ -24,6 +24,7 @@ enum class Resolution { full = 1, half = 2, quarter = 4 };  // pixels of the fra
 enum class Denoise { none, bilateral, box };
 enum class AoChannels { mono, rgb };
 enum class OutputType { half_float, single_float };
+enum class Missing { error, skip };  // what a frame without its input is
 
 /// What device, normalized and log depth are counted between.
 struct DepthRange {
@@ -42,6 +43,17 @@ struct NormalFlips {
 /// Pixels, counted from the display window's upper left corner.
 struct Region {
   int x = 0, y = 0, width = 0, height = 0;
+};
+
+/// Which frames of a sequence, and what becomes of those that cannot or need not be computed.
+struct FrameSettings {
+  std::string frames;               // a list for core/sequence.h; empty: those of the first input with a pattern that lie on the disk
+  int output_offset = 0;            // frames from an input's number to its outputs'
+  int chunk = 1, chunks = 1;        // compute only the chunk-th of as many parts of the frames, 1 <= chunk <= chunks; all of nearly equal length
+  Missing missing = Missing::error;
+  bool keep_going = false;          // a frame that fails does not end the run
+  bool resume = false;              // compute only frames whose outputs are missing, broken, older than their inputs, or made with other options
+  bool overwrite = false;           // compute all of them whatever `resume` says
 };
 
 /// What to read and how to understand it.
@@ -126,9 +138,11 @@ struct DeviceSettings {
   bool validate = false;
   bool no_pipeline_cache = false;
   int threads = 0;              // of the CPU device and of the codecs; 0: one a core
+  std::uint64_t memory = 0;     // bytes that the process may take; 0: half of what is free
 };
 
 struct Settings {
+  FrameSettings frames;
   InputSettings input;
   EstimatorSettings estimator;
   OutputSettings output;

@@ -29,6 +29,9 @@ class Settlement {
         values_(statistics_of(depth, kSparse)) {}
 
   void run() {
+    const auto is_near = [&](std::size_t i) { return std::isfinite(depth_[i]) && depth_[i] != 0 && std::abs(depth_[i]) < settings_.sky; };
+    source_.has_evidence = false;
+    for (std::size_t i = 0; i < depth_.size() && !source_.has_evidence; i += kSparse) source_.has_evidence = is_near(i);
     if (source_.depth_kind == DepthKind::position) settle_position();
     else settle_depth();
     if (source_.normal.empty()) return;
@@ -60,6 +63,7 @@ class Settlement {
   void settle_kind() {
     const auto scores = score_depth(depth_, view_, settings_.sky);
     const std::string option = "--depth-kind";
+    if (scores.empty()) source_.has_evidence = false;
     if (scores.empty()) return guess("depth kind", "planar", "too little of the frame is smooth to tell", option, false);
     const auto straight = [](const DepthScore& score) {
       return fmt::format("1/z is straight on {:.0f} % only as {}", 100 * score.straight, name_of(score.kind));
@@ -67,6 +71,7 @@ class Settlement {
     const auto& planar = *std::ranges::find(scores, DepthKind::planar, &DepthScore::kind);
     const std::string why = fmt::format("{}, {}, {}", straight(scores[0]), straight(scores[1]), straight(scores[2]));
     const DepthScore &best = scores[0], &second = scores[1];
+    if (best.straight < kLeastStraight) source_.has_evidence = false;
     if (best.straight < kLeastStraight) return guess("depth kind", "planar", "the frame has no flat surfaces that tell: " + why, option, false);
     if (planar.straight >= kAsGood * best.straight) return guess("depth kind", "planar", why, option, false);
     if (best.straight < kClear * second.straight)
@@ -144,6 +149,7 @@ class Settlement {
                          to_string(s.flips), 100 * s.agreement, 100 * s.facing);
     };
     const bool tells = !scores.empty() && scores[0].agreement >= kLeastAgreement;
+    if (!tells) source_.has_evidence = false;
     if (has_world && (!tells || usual->agreement >= kAsGood * scores[0].agreement))
       return guess("normal space", "world", tells ? said(*usual) : "the frame does not tell", "--normal-space", false);
     if (!tells)
@@ -191,6 +197,31 @@ void settle(FrameSource& source, const InputSettings& settings, std::span<const 
   Settlement(source, settings, depth, normal).run();
   note_half(source, depth);
   source.settled = true;
+}
+
+void settle_by_rows(FrameSource& source, const InputSettings& settings) {
+  const Window data = source.data, all = source.file_data;
+  if (std::size_t(all.width) > kEvidencePixels)
+    fail(ErrorKind::device, "{}: rows of {} pixels are more than Alcove takes on any --device", source.files[source.depth[0].file].path(), all.width);
+  const int rows = int(std::clamp<std::size_t>(kEvidencePixels / std::size_t(all.width), 1, std::size_t(all.height)));
+  source.data = {all.x, all.y + (all.height - rows) / 2, all.width, rows};
+  std::vector<float> depth(source.depth.size() * source.data.pixels()), normal(source.normal.size() * source.data.pixels());
+  read_planes(source, {{&source.depth, depth.data()}, {&source.normal, normal.data()}});
+  settle(source, settings, depth, normal);
+  source.data = data;
+}
+
+bool settle_like(FrameSource& source, const FrameSource& settled) {
+  if (source.depth.size() != settled.depth.size() || source.normal.size() != settled.normal.size()) return false;
+  source.depth_kind = settled.depth_kind;
+  source.depth_range.reversed = settled.depth_range.reversed;
+  source.depth_range.negative = settled.depth_range.negative;
+  source.position_space = settled.position_space;
+  source.normal_space = settled.normal_space;
+  source.normal_encoding = settled.normal_encoding;
+  source.normal_unorm = settled.normal_unorm;
+  source.flip_normal = settled.flip_normal;
+  return source.settled = true;
 }
 
 DepthMap depth_map_of(const FrameSource& source, const InputSettings& settings) {

@@ -68,9 +68,8 @@ void main() {
     const float height = reach * up;  // above the tangent plane
     const vec3 at = position + reach * (across * (cos(azimuth) * tangent + sin(azimuth) * bitangent) + up * n);
     if (perspective && !(-at.z > 0.0)) continue;
-    const vec2 image = image_of(params.view, at);
-    if (!(all(greaterThanEqual(image, vec2(0))) && all(lessThan(image, vec2(params.view.size))))) continue;
-    const ivec2 hit = ivec2(image);
+    const ivec2 hit = pixel_of(params.view, at);
+    if (!inside(params.view, hit)) continue;
     const float hit_z = depth[index_of(params.view, hit)];
     if (hit_z >= kSkyDepth) continue;
     valid += 1.0;

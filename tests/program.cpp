@@ -102,6 +102,7 @@ Finished run_program(const std::vector<std::string>& arguments, const Surroundin
   errno = ::posix_spawn(&child, surroundings.program.c_str(), &actions, nullptr, pointers_to(words).data(), pointers_to(variables).data());
   posix_spawn_file_actions_destroy(&actions);
   require(errno == 0, surroundings.program.c_str());
+  if (surroundings.meanwhile) surroundings.meanwhile(child);
   const int code = wait_for(child, surroundings.seconds);
   return {code, out.text(), err.text()};
 }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <functional>
 #include <iosfwd>
 #include <map>
 #include <optional>
@@ -23,6 +24,7 @@ struct Surroundings {
   std::map<std::string, std::optional<std::string>> environment;  // to set, or to remove where there is no value; all else is inherited
   double seconds = 60;       // then it is killed
   std::string program = ALCOVE_PROGRAM;
+  std::function<void(int)> meanwhile = {};  // called with its process id while it runs
 };
 
 /// Runs the program with these arguments and waits for its end. It finds the presets of the project unless the surroundings say otherwise.

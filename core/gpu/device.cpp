@@ -188,7 +188,7 @@ std::filesystem::path cache_file(const DeviceInfo& info) {
 
 void check(VkResult result, const char* call) {
   if (result == VK_SUCCESS) return;
-  if (result == VK_ERROR_DEVICE_LOST) fail(ErrorKind::device, "the device was lost in {}", call);
+  if (result == VK_ERROR_DEVICE_LOST) throw DeviceLost(ErrorKind::device, fmt::format("the device was lost in {}", call));
   if (result == VK_ERROR_OUT_OF_DEVICE_MEMORY || result == VK_ERROR_OUT_OF_HOST_MEMORY)
     fail(ErrorKind::device, "out of memory in {}", call);
   fail(ErrorKind::device, "{} failed with Vulkan error {}", call, int(result));
@@ -334,9 +334,15 @@ void Device::save_pipeline_cache() const {
 }
 
 const Kernel& Device::kernel(const std::string& stem, const std::vector<std::uint32_t>& specialization) {
+  const std::lock_guard lock(mutex_);
   auto& slot = kernels_[{stem, specialization}];
   if (!slot) slot = std::make_unique<Kernel>(*this, stem, specialization);
   return *slot;
+}
+
+void Device::submit(const VkSubmitInfo& work, VkFence fence) {
+  const std::lock_guard lock(mutex_);
+  check(vkQueueSubmit(queue_, 1, &work, fence), "vkQueueSubmit");
 }
 
 }  // namespace alcove::gpu

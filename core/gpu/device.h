@@ -8,15 +8,24 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <utility>
 #include <vector>
+
+#include "core/error.h"
 
 namespace alcove::gpu {
 
 class Kernel;
 
-/// Fails with ErrorKind::device and the name of the call unless `result` is VK_SUCCESS.
+/// The device is gone, and all that was on it; another may be made in its place.
+class DeviceLost : public Error {
+ public:
+  using Error::Error;
+};
+
+/// Fails with ErrorKind::device (DeviceLost where it is that) and the name of the call unless `result` is VK_SUCCESS.
 void check(VkResult result, const char* call);
 
 /// Owns one Vulkan handle that a device (or instance) destroys; moves, never copies.
@@ -67,7 +76,7 @@ struct DeviceOptions {
   bool map_memory = true;       // false: always copy through staging buffers, as on a device whose memory the host cannot map
 };
 
-/// A logical device with one compute queue. Not movable: everything made on it refers to it.
+/// A logical device with one compute queue. Not movable: everything made on it refers to it. Several threads may use it, each with its own recorder.
 class Device {
  public:
   /// Fails with ErrorKind::device when no device fits, naming those that there are.
@@ -87,7 +96,8 @@ class Device {
   const Kernel& kernel(const std::string& stem, const std::vector<std::uint32_t>& specialization);
 
   VkDevice handle() const { return device_; }
-  VkQueue queue() const { return queue_; }
+  /// Hands work to the queue; `fence` tells when it is done.
+  void submit(const VkSubmitInfo& work, VkFence fence);
   std::uint32_t queue_family() const { return queue_family_; }
   VkPipelineCache pipeline_cache() const { return pipeline_cache_; }
   const VkPhysicalDeviceMemoryProperties& memory() const { return memory_; }
@@ -114,6 +124,7 @@ class Device {
   double nanoseconds_per_tick_ = 1;
   DeviceHandle<VkPipelineCache, vkDestroyPipelineCache> pipeline_cache_;
   std::size_t loaded_cache_bytes_ = 0;
+  std::mutex mutex_;  // of the queue and the kernels
   std::map<std::pair<std::string, std::vector<std::uint32_t>>, std::unique_ptr<Kernel>> kernels_;
 };
 

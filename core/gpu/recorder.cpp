@@ -142,7 +142,7 @@ void Recorder::run() {
   submit.pCommandBuffers = &commands_;
   const VkFence fence = fence_;
   check(vkResetFences(device_.handle(), 1, &fence), "vkResetFences");
-  check(vkQueueSubmit(device_.queue(), 1, &submit, fence), "vkQueueSubmit");
+  device_.submit(submit, fence);
   check(vkWaitForFences(device_.handle(), 1, &fence, VK_TRUE, UINT64_MAX), "vkWaitForFences");
   passes_ = std::move(recorded_);
   if (!device_.has_timestamps() || passes_.empty()) return;

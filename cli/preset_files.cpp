@@ -1,0 +1,52 @@
+// Where presets lie, and what they are called.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+
+#include "cli/options.h"
+#include "core/error.h"
+#include "core/text.h"
+
+namespace alcove {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The folder of the running program.
+fs::path program_folder() {
+  std::error_code error;
+  return fs::read_symlink("/proc/self/exe", error).parent_path();
+}
+
+}  // namespace
+
+std::string preset_folder() {
+  std::vector<fs::path> places;
+  if (const char* variable = std::getenv("ALCOVE_PRESETS"); variable && *variable) places.emplace_back(variable);
+  else places = {program_folder() / "presets", program_folder() / "../presets", program_folder() / "../share/alcove/presets"};
+  std::error_code error;
+  for (const auto& place : places)
+    if (fs::is_directory(place, error)) return fs::weakly_canonical(place).string();
+  fail(ErrorKind::usage, "no folder of presets at {}; the variable ALCOVE_PRESETS names one", places.front().string());
+}
+
+std::vector<std::string> preset_names() {
+  std::vector<std::string> names;
+  const fs::path folder = preset_folder();
+  for (const auto& entry : fs::recursive_directory_iterator(folder))
+    if (entry.path().extension() == ".toml") names.push_back(fs::relative(entry.path(), folder).replace_extension().string());
+  std::ranges::sort(names);
+  return names;
+}
+
+std::string preset_file(const std::string& name) {
+  // A known name is never a file that happens to lie in the working directory.
+  const auto names = preset_names();
+  if (std::ranges::find(names, name) != names.end()) return preset_folder() + "/" + name + ".toml";
+  std::error_code error;
+  if (fs::exists(name, error) && !fs::is_directory(name, error)) return name;
+  fail(ErrorKind::usage, "there is no preset {}{}; there is {}; --preset takes one of them, or a TOML file", name, suggestion(name, names), list_of(names));
+}
+
+}  // namespace alcove

@@ -1,0 +1,102 @@
+// Bar, lines, records.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cli/progress.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+
+#include "core/file.h"
+
+namespace alcove {
+namespace {
+
+constexpr int kBarWidth = 30;
+
+std::string clock_text(double seconds) {
+  const int s = int(seconds);
+  return s < 3600 ? fmt::format("{}:{:02}", s / 60, s % 60) : fmt::format("{}:{:02}:{:02}", s / 3600, s / 60 % 60, s % 60);
+}
+
+}  // namespace
+
+Progress::Progress(const ProgressOptions& options) : options_(options) {
+  if (options_.kind == "auto") options_.kind = ::isatty(STDERR_FILENO) ? "bar" : "plain";
+  if (options_.log_json.empty()) return;
+  if (options_.log_json == "-") {
+    log_ = stdout;
+    return;
+  }
+  require_writable(options_.log_json, "--log-json");
+  file_.reset(std::fopen(options_.log_json.c_str(), "we"));
+  if (!file_) fail(ErrorKind::output, "{}: cannot be written: {} (--log-json)", options_.log_json, std::strerror(errno));
+  log_ = file_.get();
+}
+
+void Progress::say(const std::string& line) {
+  const bool over_bar = options_.kind == "bar" && is_sequence_ && !options_.quiet;
+  fmt::print(stderr, "{}{}\n", over_bar ? "\r\x1b[K" : "", line);
+}
+
+void Progress::log(const std::string& event, const std::string& members) {
+  if (!log_) return;
+  const double now = std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+  fmt::print(log_, "{{\"event\":\"{}\",\"time\":{:.3f},{}}}\n", event, now, members);
+  if (std::fflush(log_) != 0) fail(ErrorKind::output, "{}: cannot be written: {} (--log-json)", options_.log_json, std::strerror(errno));
+}
+
+void Progress::begin(const RunReport& report, int frames) {
+  is_sequence_ = report.is_sequence;
+  frames_ = frames;
+  log("begin", fmt::format("\"frames\":{},\"options\":\"{}\"", frames, report.options));
+}
+
+std::string Progress::rate_text() const {
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(), each = seconds / std::max(1, computed_);
+  return fmt::format("{} of {}, {:.2f} frames/s, {} left", ended_, frames_, 1 / each, clock_text(each * (frames_ - ended_)));
+}
+
+void Progress::show_bar() {
+  const int full = kBarWidth * ended_ / std::max(1, frames_);
+  fmt::print(stderr, "\r\x1b[K[{:#<{}}{:.<{}}] {}", "", full, "", kBarWidth - full, rate_text());
+  std::fflush(stderr);
+}
+
+void Progress::frame(const FrameReport& frame) {
+  ended_++;
+  computed_ += frame.state != FrameState::kept;
+  const std::string record = frame_json(frame);
+  log("frame", record.substr(1, record.size() - 2));
+  if (frame.error && is_sequence_) say(fmt::format("alcove: error: frame {}: {}", frame.frame, frame.error->what()));
+  if (options_.quiet) return;
+  for (const auto& note : frame.notes) say(fmt::format("{}: {}", frame.input, note));
+  if (options_.verbose)
+    for (const auto& pass : frame.passes) say(fmt::format("{}: {} {:.3f} ms", frame.input, pass.name, pass.ms));
+  const double percent = 100.0 * ended_ / std::max(1, frames_);
+  if (options_.kind == "plain" || (options_.kind == "bar" && !is_sequence_)) {
+    const std::string place = is_sequence_ ? fmt::format(" ({})", rate_text()) : "";
+    if (frame.state == FrameState::kept) say(fmt::format("{}: whole, kept{}", frame.output, place));
+    if (frame.state == FrameState::done)
+      say(fmt::format("{} -> {}: read {:.0f} ms, compute {:.1f} ms, write {:.0f} ms{}", frame.input, frame.output, frame.read_ms, frame.compute_ms, frame.write_ms, place));
+  }
+  if (options_.kind == "bar" && is_sequence_) show_bar();
+  if (options_.kind == "percent") fmt::print("Progress: {:.0f}%\n", std::floor(percent));
+  if (options_.kind == "openjd") fmt::print("openjd_progress: {:.1f}\nopenjd_status: frame {} {}\n", percent, frame.frame, name_of(frame.state));
+  std::fflush(stdout);
+}
+
+void Progress::end(const RunReport& report) {
+  const std::string summary = summary_of(report);
+  log("end", fmt::format("\"done\":{},\"kept\":{},\"failed\":{},\"dropped\":{},\"missing\":{},\"wall_s\":{:.3f}", report.done, report.kept, report.failed,
+                         report.dropped, report.missing.size(), report.wall_s));
+  if (options_.quiet) return;
+  if (options_.kind == "openjd" && (report.failed || report.stop)) fmt::print("openjd_fail: {}\n", summary);
+  std::fflush(stdout);
+  if (report.on_cpu_by_default) say(fmt::format("no GPU found; computed on {}", report.device));
+  if (is_sequence_) say("alcove: " + summary);
+}
+
+}  // namespace alcove

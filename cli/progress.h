@@ -1,0 +1,47 @@
+// What a run tells while it goes on: a bar for people, lines for logs, and the words that farms look for.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <chrono>
+#include <cstdio>
+#include <memory>
+#include <string>
+
+#include "core/run_report.h"
+
+namespace alcove {
+
+struct ProgressOptions {
+  std::string kind = "auto";  // auto, bar, plain, percent, openjd or none; auto: a bar on a terminal, else plain
+  std::string log_json;       // a file, or - for the standard output
+  bool verbose = false, quiet = false;
+};
+
+/// Messages go to the standard error; "Progress: 42%" and "openjd_progress: 42" to the standard output. Every line is whole and flushed.
+class Progress {
+ public:
+  /// Fails with ErrorKind::output where the log cannot be made.
+  explicit Progress(const ProgressOptions& options);
+
+  void begin(const RunReport& report, int frames);
+  void frame(const FrameReport& frame);
+  void end(const RunReport& report);
+
+ private:
+  struct CloseFile {
+    void operator()(std::FILE* file) const { std::fclose(file); }
+  };
+  void say(const std::string& line);
+  void show_bar();
+  void log(const std::string& event, const std::string& members);
+  std::string rate_text() const;
+
+  ProgressOptions options_;
+  std::unique_ptr<std::FILE, CloseFile> file_;
+  std::FILE* log_ = nullptr;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  bool is_sequence_ = false;
+  int frames_ = 0, ended_ = 0, computed_ = 0;
+};
+
+}  // namespace alcove
