@@ -95,7 +95,7 @@ void Progress::end(const RunReport& report) {
   if (options_.quiet) return;
   if (options_.kind == "openjd" && (report.failed || report.stop)) fmt::print("openjd_fail: {}\n", summary);
   std::fflush(stdout);
-  if (report.on_cpu_by_default) say(fmt::format("no GPU found; computed on {}", report.device));
+  if (report.on_cpu_by_default && report.done) say(fmt::format("no GPU found; computed on {}", report.device));
   if (is_sequence_) say("alcove: " + summary);
 }
 
