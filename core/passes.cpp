@@ -193,7 +193,9 @@ gpu::Buffer& estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInp
 gpu::Buffer& horizon(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings) {
   gpu::Buffer& ao = ao_buffer(gpu, gbuffer, settings);
   std::vector<uint> constants = slice_constants(settings);
-  constants.push_back(settings.thickness == ThicknessKind::infinite ? 1 : 0);
+  constants.push_back(settings.thickness == ThicknessKind::automatic  ? kThicknessWidth
+                      : settings.thickness == ThicknessKind::constant ? kThicknessLength
+                                                                      : kThicknessEndless);
   gpu.dispatch("horizon", slice_parameters<HorizonParams>(gbuffer, frame, settings),
                {{kHorizonDepth, *gbuffer.depth}, {kHorizonNormal, *gbuffer.normal}, {kHorizonAo, ao}}, estimated_extent(gbuffer.view, settings), constants);
   return ao;

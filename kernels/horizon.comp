@@ -27,7 +27,7 @@ layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 layout(constant_id = kHorizonSlicesId) const uint kSlices = 3;
 layout(constant_id = kHorizonStepsId) const uint kSteps = 6;
 layout(constant_id = kHorizonFalloffId) const uint kFalloff = kFalloffNone;
-layout(constant_id = kHorizonEndlessId) const bool kEndless = false;
+layout(constant_id = kHorizonThicknessId) const uint kThickness = kThicknessWidth;
 layout(constant_id = kHorizonStrideId) const int kStride = 1;
 layout(scalar, push_constant) uniform Push { HorizonParams params; };
 layout(scalar, binding = kHorizonDepth) readonly buffer Depth { float depth[]; };
@@ -37,7 +37,8 @@ layout(scalar, binding = kHorizonAo) writeonly buffer Ao { float ao[]; };
 /// A run is wider than the distance of its outer samples by a pixel and, on average, by this part of the gaps to the samples before and behind it.
 const float kGapShare = 0.5;
 
-/// Two samples on either side of the sphere of the radius whose squared distances are within this factor of its square are taken for one surface.
+
+/// All that is endless is one surface. Two samples of it on either side of the sphere are neighbours if their squared distances are within this factor of its.
 const float kSameSurface = 1.44;
 
 const float kNone = 1e30;
@@ -62,14 +63,15 @@ bool both(bool a, bool b) { return a ? b : false; }
 float blocked_arc(Side side, Blocked blocked, float shift) {
   const float plane = slope_of(side.ahead), far = max(blocked.far, plane);
   const float own = blocked.near > far ? arc_to(side, place_at(far)) - arc_to(side, place_at(blocked.near)) : 0.0;
-  return kEndless ? own : own + arc_of(side, blocked.sectors & ~sectors_below(max(blocked.near, plane), shift));
+  return kThickness == kThicknessEndless ? own : own + arc_of(side, blocked.sectors & ~sectors_below(max(blocked.near, plane), shift));
 }
 
 /// What a run blocks that is `gap_behind` steps wide of the sample behind it.
 uint sectors_of(Receiver r, Reach reach, Run run, float z, float gap_behind, float shift) {
   const float pixel = reach.pixel_size * (r.perspective ? z : 1.0);
   const float width = length(run.end - run.start) + pixel * (1.0 + kGapShare * (run.gap + gap_behind));
-  const float back = slope_of(back_of(r, run.start, reach.thickness > 0.0 ? reach.thickness : width, reach.radius));
+  // What is as deep as wide is not clipped to the sphere: no difference in the error, and it takes a tenth off the time.
+  const float back = slope_of(kThickness == kThicknessWidth ? run.start + width * away_from_eye(r, run.start) : back_of(r, run.start, reach.thickness, reach.radius));
   return run.near >= run.far ? sectors_below(run.near, shift) & ~sectors_below(min(back, run.far), shift) : 0u;
 }
 
@@ -80,7 +82,7 @@ float search(Receiver r, Side side, Reach reach, float jitter) {
   const bool hard = kFalloff == kFalloffNone;
   float last_z = r.z, last_offset = 0.0, last_slope = 0.0, last_distance_sq = kNone, last_arc = 0.0, sum = 0.0;
   bool own = true, was_within = true;
-  Blocked blocked = Blocked(-1.0, kEndless ? 1.0 : -1.0, 0u);
+  Blocked blocked = Blocked(-1.0, kThickness == kThicknessEndless ? 1.0 : -1.0, 0u);
   Run run = Run(vec2(0), vec2(0), 0.0, -1.0, 1.0);
   for (int k = 0; k < count; k++) {
     const float offset = step_offset(k, int(kSteps), count, side.reach, jitter), gap = offset - last_offset;
@@ -91,12 +93,14 @@ float search(Receiver r, Side side, Reach reach, float jitter) {
     const float slope = slope_of(place), distance_sq = dot(place, place);
     const bool above = is_above(r, reach, place, distance_sq, beside, z, scale), within = distance_sq < reach.radius_sq;
     const bool blocks = both(above, within);
-    // A surface that crosses the sphere between two samples blocks up to there.
-    const bool crosses = hard ? both(above, both(within != was_within,
-        both(max(distance_sq, last_distance_sq) < kSameSurface * reach.radius_sq, min(distance_sq, last_distance_sq) * kSameSurface > reach.radius_sq))) : false;
-    const float crossing = mix(slope, last_slope, (reach.radius_sq - distance_sq) / (last_distance_sq - distance_sq));
+    // A surface that crosses the sphere between two samples blocks up to there; that of a run, half way.
+    const bool connected = kThickness == kThicknessEndless
+        ? both(max(distance_sq, last_distance_sq) < kSameSurface * reach.radius_sq, min(distance_sq, last_distance_sq) * kSameSurface > reach.radius_sq)
+        : same_surface(r, reach, z, last_z, gap);
+    const bool crosses = hard ? both(both(above, connected), within != was_within) : false;
+    const float crossing = mix(slope, last_slope, kThickness == kThicknessEndless ? (reach.radius_sq - distance_sq) / (last_distance_sq - distance_sq) : 0.5);
     const float near = max(blocks ? slope : -1.0, crosses ? crossing : -1.0), far = min(blocks ? slope : 1.0, crosses ? crossing : 1.0);
-    if (!kEndless && !same_surface(r, reach, z, last_z, gap)) {
+    if (kThickness != kThicknessEndless && !connected) {
       if (hard) blocked.sectors |= sectors_of(r, reach, run, last_z, gap, shift);
       run = Run(place, place, gap, -1.0, 1.0);
       own = false;
@@ -104,7 +108,7 @@ float search(Receiver r, Side side, Reach reach, float jitter) {
     run.end = place;
     if (own) {
       blocked.near = max(blocked.near, near);
-      if (kEndless) blocked.far = min(blocked.far, blocks ? min(far, slope_of(back_of(r, place, reach.thickness, reach.radius))) : far);
+      if (kThickness == kThicknessEndless) blocked.far = min(blocked.far, blocks ? min(far, slope_of(back_of(r, place, reach.thickness, reach.radius))) : far);
     } else {
       run.near = max(run.near, near);
       run.far = min(run.far, far);
@@ -116,8 +120,8 @@ float search(Receiver r, Side side, Reach reach, float jitter) {
       last_arc = arc;
     }
     was_within = within;
-    last_distance_sq = above ? distance_sq : kNone;
     last_slope = slope;
+    last_distance_sq = above ? distance_sq : kNone;
     last_z = z;
     last_offset = offset;
   }

@@ -193,9 +193,15 @@ uint sectors_to(Side side, float whole, float cot, float shift) {
   return n >= int(kSectors) ? 0xffffffffu : (1u << uint(n)) - 1u;
 }
 
+/// The direction of the eye's own ray at a place.
+vec2 away_from_eye(Receiver r, vec2 place) {
+  const vec2 ray = place - vec2(0, r.eye_distance);
+  return r.perspective ? ray * inversesqrt(dot(ray, ray)) : vec2(0, -1);
+}
+
 /// The back of an occluder whose front is at `front`: `thickness` further along the eye's own ray, but not beyond the sphere of the radius.
 vec2 back_of(Receiver r, vec2 front, float thickness, float radius) {
-  const vec2 ray = front - vec2(0, r.eye_distance), away = r.perspective ? ray * inversesqrt(dot(ray, ray)) : vec2(0, -1);
+  const vec2 away = away_from_eye(r, front);
   const float along = dot(front, away);
   const float exit = sqrt(max(0.0, along * along - dot(front, front) + radius * radius)) - along;
   return front + min(thickness, exit) * away;
