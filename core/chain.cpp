@@ -29,7 +29,7 @@ FrameOutputs run_chain(gpu::Recorder& gpu, const FrameInputs& frame, const Estim
   if (frame.beauty) out.composite = &composite(gpu, gbuffer, out.color_ao ? *out.color_ao : *out.ao, frame, output);
   if (wants(output, &FrameOutputs::normal)) out.normal = &directions(gpu, gbuffer, *gbuffer.normal, "normal planes", frame);
   if (wants(output, &FrameOutputs::depth)) out.depth = gbuffer.depth;
-  for (const auto* view : debug_views_of(output)) out.debug.push_back(debug(gpu, *view, gbuffer, stages, frame));
+  for (const auto* view : debug_views_of(output)) out.debug.push_back(debug(gpu, *view, gbuffer, stages, frame, settings));
 
   for (const auto* result : {out.counts, out.ao, out.color_ao, out.composite, out.normal, out.depth, out.specular_occlusion})
     if (result) gpu.download(*result);
@@ -39,7 +39,7 @@ FrameOutputs run_chain(gpu::Recorder& gpu, const FrameInputs& frame, const Estim
 
 double samples_per_pixel(const EstimatorSettings& settings) {
   const double factor = double(settings.resolution), samples = settings.estimator == Estimator::crytek ? settings.samples : 2 * settings.slices * settings.steps;
-  return samples / (factor * factor * settings.stride);
+  return samples / (factor * factor * stride_of(settings));
 }
 
 bool needs_ao(const OutputSettings& output) {

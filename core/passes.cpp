@@ -77,17 +77,12 @@ Params slice_parameters(const GBuffer& gbuffer, const FrameInputs& frame, const 
   return params;
 }
 std::vector<uint> slice_constants(const EstimatorSettings& settings) {
-  return {uint(settings.slices), uint(settings.steps), uint(settings.falloff), uint(settings.stride)};
+  return {uint(settings.slices), uint(settings.steps), uint(settings.falloff), uint(stride_of(settings))};
 }
 
-/// The buffer for an estimate, and the invocations that make it: one for each pixel that the stride does not leave out.
-gpu::Buffer& ao_buffer(gpu::Recorder& gpu, const GBuffer& gbuffer, const EstimatorSettings& settings) {
-  gpu::Buffer& ao = gpu.buffer("ao", plane_bytes(gbuffer.view), gpu::Use::download);
-  if (settings.stride > 1) gpu.clear(ao);
-  return ao;
-}
+/// The invocations of an estimate: one for each pixel that the stride does not leave out.
 gpu::Extent estimated_extent(const View& view, const EstimatorSettings& settings) {
-  const auto stride = uint(settings.stride);
+  const auto stride = uint(stride_of(settings));
   return {(uint(view.size.x) + stride - 1) / stride, uint(view.size.y)};
 }
 
@@ -178,6 +173,12 @@ GBuffer downsample(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs
   return low;
 }
 
+int stride_of(const EstimatorSettings& settings) {
+  if (settings.stride > 0) return settings.stride;
+  const bool shared = settings.denoise == Denoise::bilateral && settings.resolution == Resolution::full && settings.slices <= 2;
+  return shared && settings.estimator == Estimator::gtao ? 4 : 1;
+}
+
 gpu::Buffer& estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& inputs, const EstimatorSettings& settings) {
   FrameInputs frame = inputs;
   frame.noise_origin = block_grid(inputs, settings).origin;
@@ -191,7 +192,7 @@ gpu::Buffer& estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInp
 }
 
 gpu::Buffer& horizon(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings) {
-  gpu::Buffer& ao = ao_buffer(gpu, gbuffer, settings);
+  gpu::Buffer& ao = gpu.buffer("ao", plane_bytes(gbuffer.view), gpu::Use::download);
   std::vector<uint> constants = slice_constants(settings);
   constants.push_back(settings.thickness == ThicknessKind::automatic  ? kThicknessWidth
                       : settings.thickness == ThicknessKind::constant ? kThicknessLength
@@ -202,7 +203,7 @@ gpu::Buffer& horizon(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInpu
 }
 
 gpu::Buffer& bitmask(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings) {
-  gpu::Buffer& ao = ao_buffer(gpu, gbuffer, settings);
+  gpu::Buffer& ao = gpu.buffer("ao", plane_bytes(gbuffer.view), gpu::Use::download);
   gpu.dispatch("bitmask", slice_parameters<BitmaskParams>(gbuffer, frame, settings),
                {{kBitmaskDepth, *gbuffer.depth}, {kBitmaskNormal, *gbuffer.normal}, {kBitmaskAo, ao}}, estimated_extent(gbuffer.view, settings),
                slice_constants(settings));
@@ -210,7 +211,7 @@ gpu::Buffer& bitmask(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInpu
 }
 
 gpu::Buffer& hbao(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings) {
-  gpu::Buffer& ao = ao_buffer(gpu, gbuffer, settings);
+  gpu::Buffer& ao = gpu.buffer("ao", plane_bytes(gbuffer.view), gpu::Use::download);
   const double radius = settings.radius.value();
   HbaoParams params{};
   params.view = gbuffer.view;
@@ -226,7 +227,7 @@ gpu::Buffer& hbao(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs&
 }
 
 gpu::Buffer& crytek(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings) {
-  gpu::Buffer& ao = ao_buffer(gpu, gbuffer, settings);
+  gpu::Buffer& ao = gpu.buffer("ao", plane_bytes(gbuffer.view), gpu::Use::download);
   CrytekParams params{};
   params.view = gbuffer.view;
   params.radius = float(settings.radius.value());
@@ -236,7 +237,7 @@ gpu::Buffer& crytek(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInput
   params.noise_origin = frame.noise_origin;
   params.noise_shift = noise_shift(frame.frame, settings.seed);
   gpu.dispatch("crytek", params, {{kCrytekDepth, *gbuffer.depth}, {kCrytekNormal, *gbuffer.normal}, {kCrytekAo, ao}},
-               estimated_extent(gbuffer.view, settings), {uint(settings.samples), uint(settings.stride)});
+               estimated_extent(gbuffer.view, settings), {uint(settings.samples), uint(stride_of(settings))});
   return ao;
 }
 
@@ -258,8 +259,8 @@ gpu::Buffer& denoise(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buff
                  {{kDenoiseAo, from}, {kDenoiseDepth, *gbuffer.depth}, {kDenoiseNormal, *gbuffer.normal}, {kDenoiseResult, to}},
                  {others, (length + stride - 1 + kDenoiseRun - 1) / kDenoiseRun}, {radius, settings.denoise_depth_sigma > 0 ? 1u : 0u, sparse, stride});
   };
-  const bool dense = settings.stride == 1;
-  along({1, 0}, ao, rows, dense ? kDenoiseDense : kDenoiseSparseRows, uint(settings.stride));
+  const bool dense = stride_of(settings) == 1;
+  along({1, 0}, ao, rows, dense ? kDenoiseDense : kDenoiseSparseRows, uint(stride_of(settings)));
   along({0, 1}, rows, result, dense ? kDenoiseDense : kDenoiseSparseColumns, 1);
   return result;
 }
@@ -351,7 +352,8 @@ gpu::Buffer& directions(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::B
   return planes;
 }
 
-DebugPlane debug(gpu::Recorder& gpu, const DebugView& view, const GBuffer& gbuffer, const DebugStages& stages, const FrameInputs& frame) {
+DebugPlane debug(gpu::Recorder& gpu, const DebugView& view, const GBuffer& gbuffer, const DebugStages& stages, const FrameInputs& frame,
+                 const EstimatorSettings& settings) {
   const bool is_stage = view.source == DebugSource::raw_ao || view.source == DebugSource::denoised_ao;
   const GBuffer& shown = is_stage ? stages.gbuffer : gbuffer;
   const gpu::Buffer* values = shown.normal;
@@ -365,7 +367,8 @@ DebugPlane debug(gpu::Recorder& gpu, const DebugView& view, const GBuffer& gbuff
     values = from_depth.normal;
   }
   gpu::Buffer& result = gpu.buffer(std::string("debug ") + view.name, plane_bytes(shown.view), gpu::Use::download);
-  const DebugParams params{shown.view, view.kind};
+  const int stride = view.source == DebugSource::raw_ao ? stride_of(settings) : 1;
+  const DebugParams params{shown.view, view.kind, stride, block_grid(frame, settings).origin};
   gpu.dispatch("debug", params, {{kDebugDepth, *shown.depth}, {kDebugNormal, *shown.normal}, {kDebugValues, *values}, {kDebugResult, result}},
                extent_of(shown.view));
   return {&view, shown.view.size, &result};

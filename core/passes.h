@@ -46,7 +46,10 @@ GBuffer prepare(gpu::Recorder& gpu, const FrameInputs& frame, gpu::Use depth_use
 void reconstruct(gpu::Recorder& gpu, const GBuffer& gbuffer);
 /// The G-buffer of the settings' resolution: its pixels are the blocks of whole pixels of the display window.
 GBuffer downsample(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings);
-/// Visibility a pixel of the G-buffer, by the estimator of the settings.
+/// Of how many pixels in a row one has an estimate. Where the settings leave it open: 4 for the estimator that this was measured with, gtao, at full
+/// resolution, with so few slices that the denoiser must share them among neighbours anyway; else 1.
+int stride_of(const EstimatorSettings& settings);
+/// Visibility a pixel of the G-buffer, or of those that the stride leaves, by the estimator of the settings.
 gpu::Buffer& estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings);
 gpu::Buffer& horizon(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings);
 gpu::Buffer& bitmask(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings);
@@ -80,6 +83,7 @@ struct DebugStages {
   GBuffer gbuffer{};
   const gpu::Buffer *raw_ao = nullptr, *denoised_ao = nullptr;
 };
-DebugPlane debug(gpu::Recorder& gpu, const DebugView& view, const GBuffer& gbuffer, const DebugStages& stages, const FrameInputs& frame);
+DebugPlane debug(gpu::Recorder& gpu, const DebugView& view, const GBuffer& gbuffer, const DebugStages& stages, const FrameInputs& frame,
+                 const EstimatorSettings& settings);
 
 }  // namespace alcove
