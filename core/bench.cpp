@@ -104,7 +104,19 @@ class References {
  public:
   References(const LoadedFrame& frame, int slices) : frame_(frame), slices_(slices) {}
 
-  const std::vector<float>& of(const EstimatorSettings& settings) {
+  /// Of several radii the mean, as the estimate is.
+  std::vector<float> of(EstimatorSettings settings) {
+    const auto radii = radii_of(settings);
+    std::vector<float> mean(frame_.host.depth.size());
+    for (const double radius : radii) {
+      settings.radius = radius;
+      std::ranges::transform(mean, of_one_radius(settings), mean.begin(), [&](float sum, float ao) { return sum + ao / float(radii.size()); });
+    }
+    return mean;
+  }
+
+ private:
+  const std::vector<float>& of_one_radius(const EstimatorSettings& settings) {
     ReferenceSettings wanted = reference_settings_of(settings);
     wanted.slices = slices_;
     auto& reference = made_[{wanted.radius, wanted.falloff, wanted.falloff_start, wanted.thickness, wanted.thickness_length, wanted.bias}];
@@ -114,7 +126,6 @@ class References {
     return reference;
   }
 
- private:
   const LoadedFrame& frame_;
   int slices_;
   std::map<std::tuple<double, Falloff, double, ThicknessRule, double, double>, std::vector<float>> made_;
@@ -132,7 +143,7 @@ void measure(BenchRow& row, const LoadedFrame& frame, const EstimatorSettings& s
   row.bias = errors.bias;
   row.p99 = errors.p99;
   if (!references) return;
-  const auto& reference = references->of(settings);
+  const auto reference = references->of(settings);
   row.estimator_rmse = compare_planes(row.ao, reference, frame.surface).rmse;
   row.geometry_rmse = against_truth(reference, frame).rmse;
 }
@@ -167,7 +178,7 @@ BenchReport run_bench(gpu::Device& device, const Suite& suite, const std::vector
       row.candidate = candidates[c].name;
       row.ao = std::move(results[c].ao);
       timings[c].summarize(row);
-      row.samples_per_pixel = 2.0 * settings.slices * settings.steps * (1 - double(results[c].sky_pixels) / double(loaded.host.depth.size()));
+      row.samples_per_pixel = 2.0 * double(1 + settings.further_radii.size()) * settings.slices * settings.steps * (1 - double(results[c].sky_pixels) / double(loaded.host.depth.size()));
       measure(row, loaded, settings, suite.reference_slices ? &references : nullptr);
       report.rows.push_back(std::move(row));
     }

@@ -1,7 +1,7 @@
 // Smooths the visibility along one axis, over each surface by itself; rows, then columns, make the separable filter.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// In: visibility, depth, normals. Out: visibility; constant stays exactly constant, sky stays 1 and is never mixed in.
+// In: planes of visibility, depth, normals. Out: as many planes; constant stays exactly constant, sky stays 1 and is never mixed in.
 // Tomasi & Manduchi, "Bilateral Filtering for Gray and Color Images", 1998, with the distance from the other pixel's tangent plane in the place of
 // colour. Two pixels mix as far as each lies in the plane of the other, which sees edges, steps and creases alike and leaves a plane whole at every
 // tilt: the weight is max(0, 1 - (h / sigma)^2), h the larger of both distances, in pixels' widths there. It is the same for both, so it is
@@ -15,6 +15,7 @@
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 layout(constant_id = kDenoiseRadiusId) const int kRadius = 3;
 layout(constant_id = kDenoiseByDepthId) const uint kByDepth = 0;
+layout(constant_id = kDenoisePlanesId) const int kPlanes = 1;
 layout(scalar, push_constant) uniform Push { DenoiseParams params; };
 layout(scalar, binding = kDenoiseAo) readonly buffer Ao { float ao[]; };
 layout(scalar, binding = kDenoiseDepth) readonly buffer Depth { float depth[]; };
@@ -24,8 +25,11 @@ layout(scalar, binding = kDenoiseResult) writeonly buffer Result { float result[
 /// Two pixels do not mix when one lies further from the plane of the other than this many pixels are wide there.
 const float kPlaneSigma = 1.0;
 
+/// Pixels that one invocation looks at.
+const int kCount = kDenoiseRun + 2 * kRadius;
+
 struct Tap {
-  float ao, z;
+  float z;
   float scale;          // scene units a unit of tangent_of(): z, or 1 where the view is orthographic
   float ahead, across;  // height above this tap's plane, in sigmas, of what is a unit further away, and a pixel along the axis at scale 1
 };
@@ -35,7 +39,7 @@ Tap load(ivec2 pixel) {
   const bool known = inside(params.view, pixel);
   const ivec2 nearest = clamp(pixel, ivec2(0), params.view.size - 1);
   const int index = index_of(params.view, nearest);
-  Tap tap = Tap(ao[index], known ? depth[index] : kSkyDepth, 1.0, kSkyDepth, 0.0);
+  Tap tap = Tap(known ? depth[index] : kSkyDepth, 1.0, kSkyDepth, 0.0);
   if (kByDepth != 0) return tap;
   const bool perspective = params.view.orthographic == 0;
   tap.scale = perspective ? tap.z : 1.0;
@@ -59,24 +63,34 @@ void main() {
   const ivec2 first = int(gl_GlobalInvocationID.x) * params.axis.yx + kDenoiseRun * int(gl_GlobalInvocationID.y) * params.axis;
   if (!inside(params.view, first)) return;
 
-  Tap taps[kDenoiseRun + 2 * kRadius];
-  float change[kDenoiseRun + 2 * kRadius], whole[kDenoiseRun + 2 * kRadius];
-  for (int i = 0; i < kDenoiseRun + 2 * kRadius; i++) {
-    taps[i] = load(first + (i - kRadius) * params.axis);
-    change[i] = 0.0;
+  const int plane = params.view.size.x * params.view.size.y;
+  Tap taps[kCount];
+  float whole[kCount], values[kPlanes * kCount], change[kPlanes * kCount];  // plane by plane
+  for (int i = 0; i < kCount; i++) {
+    const ivec2 here = first + (i - kRadius) * params.axis;
+    taps[i] = load(here);
+    for (int p = 0; p < kPlanes * kCount; p += kCount) {
+      values[p + i] = ao[index_of(params.view, clamp(here, ivec2(0), params.view.size - 1)) + p / kCount * plane];
+      change[p + i] = 0.0;
+    }
     whole[i] = params.weight[0];
     for (int apart = 1; apart <= kRadius; apart++) {
       const int j = i - apart;
       if (j < 0 || i < kRadius || j >= kDenoiseRun + kRadius) continue;
-      const float weight = params.weight[apart] * similarity(taps[j], taps[i], float(apart)), difference = weight * (taps[i].ao - taps[j].ao);
-      change[j] += difference;
-      change[i] -= difference;
+      const float weight = params.weight[apart] * similarity(taps[j], taps[i], float(apart));
+      for (int p = 0; p < kPlanes * kCount; p += kCount) {
+        const float difference = weight * (values[p + i] - values[p + j]);
+        change[p + j] += difference;
+        change[p + i] -= difference;
+      }
       whole[j] += weight;
       whole[i] += weight;
     }
     const int done = i - kRadius;
     const ivec2 pixel = first + (done - kRadius) * params.axis;
-    if (done >= kRadius && inside(params.view, pixel))
-      result[index_of(params.view, pixel)] = taps[done].z < kSkyDepth ? clamp(taps[done].ao + change[done] / whole[done], 0.0, 1.0) : 1.0;
+    if (done < kRadius || !inside(params.view, pixel)) continue;
+    for (int p = 0; p < kPlanes * kCount; p += kCount)
+      result[index_of(params.view, pixel) + p / kCount * plane] =
+          taps[done].z < kSkyDepth ? clamp(values[p + done] + change[p + done] / whole[done], 0.0, 1.0) : 1.0;
   }
 }

@@ -5,13 +5,14 @@
 #include "shared.h"
 ALCOVE_BEGIN
 
-ALCOVE_CONSTANT uint kDenoiseAo = 0;      // in: float a pixel, visibility
+ALCOVE_CONSTANT uint kDenoiseAo = 0;      // in: planes of floats in [0, 1], visibility or the like; each by itself
 ALCOVE_CONSTANT uint kDenoiseDepth = 1;   // in: float a pixel, of the G-buffer of that visibility
 ALCOVE_CONSTANT uint kDenoiseNormal = 2;  // in: uint a pixel, of the same; not read with a depth sigma
-ALCOVE_CONSTANT uint kDenoiseResult = 3;  // out: float a pixel, visibility in [0, 1]
+ALCOVE_CONSTANT uint kDenoiseResult = 3;  // out: as many planes, in [0, 1]
 
 ALCOVE_CONSTANT uint kDenoiseRadiusId = 0;    // specialization: pixels to each side, 1 to kDenoiseMostRadius
 ALCOVE_CONSTANT uint kDenoiseByDepthId = 1;   // specialization: 1: weighs by depth_sigma instead of by plane distance
+ALCOVE_CONSTANT uint kDenoisePlanesId = 2;    // specialization: how many planes; they share their weights
 
 ALCOVE_CONSTANT int kDenoiseMostRadius = 8;  // px
 ALCOVE_CONSTANT int kDenoiseRun = 12;        // px along the axis that one invocation computes

@@ -1,7 +1,7 @@
 // Ambient occlusion by horizon search in slices through the view ray (GTAO), cosine weighted, with occluders of finite thickness.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// In: planar depth, view normals. Out: visibility, 1 = open.
+// In: planar depth, view normals. Out: visibility, 1 = open; the mean open direction (see bent.glsl) where it is asked for.
 // Jimenez et al., "Practical Realtime Strategies for Accurate Indirect Occlusion", 2016, with these differences:
 // - Slices are even in azimuth about the view ray, not on the screen, so that no Jacobian is owed off axis.
 // - The reach is the exact image of the sphere of the radius in the slice, clipped to the image: what is outside is unknown.
@@ -19,16 +19,21 @@
 #include "arcs.glsl"
 #include "noise.glsl"
 #include "falloff.glsl"
+#include "bent.glsl"
 #include "slice.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 layout(constant_id = kHorizonSlicesId) const uint kSlices = 3;
 layout(constant_id = kHorizonStepsId) const uint kSteps = 6;
-layout(constant_id = kHorizonFalloffId) const uint kFalloff = kFalloffNone;
+layout(constant_id = kHorizonModeId) const uint kMode = kFalloffNone;
 layout(scalar, push_constant) uniform Push { HorizonParams params; };
 layout(scalar, binding = kHorizonDepth) readonly buffer Depth { float depth[]; };
 layout(scalar, binding = kHorizonNormal) readonly buffer Normal { uint normal[]; };
 layout(scalar, binding = kHorizonAo) writeonly buffer Ao { float ao[]; };
+layout(scalar, binding = kHorizonBent) writeonly buffer Bent { float bent[]; };
+
+const uint kFalloff = kMode & ~kWithBent;
+const bool kBent = (kMode & kWithBent) != 0u;
 
 /// A run is wider than the distance of its outer samples by a pixel and, on average, by this part of the gaps to the samples before and behind it.
 const float kGapShare = 0.5;
@@ -66,10 +71,17 @@ bool joins(inout vec2 a, vec2 x) {
   return overlap;
 }
 
-float arc_within(Side side, vec2 interval) { return interval.x < interval.y ? arc_to(side, interval.x) - arc_to(side, interval.y) : 0.0; }
+/// arc_to() and, with bent normals, bent_to().
+vec3 arcs_to(Side side, float cot) {
+  if (!kBent) return vec3(arc_to(side, cot), 0, 0);
+  const float sine = inversesqrt(1.0 + cot * cot);
+  return vec3(arc_to(side, cot), bent_to(cot * sine, sine, side.cos_gamma, side.sin_gamma));
+}
 
-/// The arc integral over all that is blocked.
-float blocked_arc(Side side, Blocked blocked) {
+vec3 arcs_within(Side side, vec2 interval) { return interval.x < interval.y ? arcs_to(side, interval.x) - arcs_to(side, interval.y) : vec3(0); }
+
+/// These integrals over all that is blocked.
+vec3 blocked_arcs(Side side, Blocked blocked) {
   vec2 own = vec2(side.plane_cot, blocked.own), a = max(blocked.a, side.plane_cot), b = max(blocked.b, side.plane_cot), c = max(blocked.c, side.plane_cot);
   a = joins(own, a) ? kEmpty : a;
   b = joins(own, b) ? kEmpty : b;
@@ -77,14 +89,14 @@ float blocked_arc(Side side, Blocked blocked) {
   c = joins(own, c) ? kEmpty : c;
   c = joins(a, c) ? kEmpty : c;
   c = joins(b, c) ? kEmpty : c;
-  const float sum = arc_within(side, own) + arc_within(side, a) + arc_within(side, b) + arc_within(side, c);
+  const vec3 sum = arcs_within(side, own) + arcs_within(side, a) + arcs_within(side, b) + arcs_within(side, c);
   if (!kDense) return sum;
   const float whole = whole_arc(side);
   uint others = blocked.sectors & sectors_to(side, whole, own.y, blocked.shift);
   others &= a.x < a.y ? sectors_to(side, whole, a.y, blocked.shift) | ~sectors_to(side, whole, a.x, blocked.shift) : ~0u;
   others &= b.x < b.y ? sectors_to(side, whole, b.y, blocked.shift) | ~sectors_to(side, whole, b.x, blocked.shift) : ~0u;
   others &= c.x < c.y ? sectors_to(side, whole, c.y, blocked.shift) | ~sectors_to(side, whole, c.x, blocked.shift) : ~0u;
-  return sum + whole * float(bitCount(others)) / float(kSectors);
+  return sum + vec3(whole * float(bitCount(others)) / float(kSectors), kBent ? bent_of_sectors(side, others, blocked.shift) : vec2(0));
 }
 
 void block(Side side, inout Blocked blocked, vec2 span) {
@@ -102,25 +114,26 @@ void block(Side side, inout Blocked blocked, vec2 span) {
   }
 }
 
-/// Ends a run: what it blocks is known now. Returns the weighted arc that is newly blocked, 0 without falloff, where the union is integrated at the end.
-float end_run(Receiver r, Side side, Reach reach, Run run, float z, float gap_behind, inout Blocked blocked) {
+/// Ends a run: what it blocks is known now. Returns the weighted arcs that are newly blocked, 0 without falloff, where the union is integrated at the end.
+vec3 end_run(Receiver r, Side side, Reach reach, Run run, float z, float gap_behind, inout Blocked blocked) {
   const float pixel = reach.pixel_size * (r.perspective ? z : 1.0);
   const float width = length(run.end - run.start) + pixel * (1.0 + kGapShare * (run.gap + gap_behind));
   const float back = back_cot(r, run.first, reach.thickness > 0.0 ? reach.thickness : width, reach.radius);
   const vec2 span = run.near >= run.far ? vec2(min(back, run.far), run.near) : kEmpty;
   if (kFalloff == kFalloffNone) {
     block(side, blocked, span);
-    return 0.0;
+    return vec3(0);
   }
-  const float before = blocked_arc(side, blocked);
+  const vec3 before = blocked_arcs(side, blocked);
   block(side, blocked, span);
-  return run.near >= run.far ? falloff_weight(kFalloff, length(run.first), reach.falloff_start, reach.radius) * (blocked_arc(side, blocked) - before) : 0.0;
+  return run.near >= run.far ? falloff_weight(kFalloff, length(run.first), reach.falloff_start, reach.radius) * (blocked_arcs(side, blocked) - before) : vec3(0);
 }
 
-/// The blocked part of a side's arc integral.
-float search(Receiver r, Side side, Reach reach, float jitter) {
+/// The blocked part of a side's integrals.
+vec3 search(Receiver r, Side side, Reach reach, float jitter) {
   const int count = min(int(kSteps), int(side.reach));
-  float last_z = r.z, last_offset = 0.0, last_cot = 0.0, last_distance_sq = kNone, sum = 0.0;
+  float last_z = r.z, last_offset = 0.0, last_cot = 0.0, last_distance_sq = kNone;
+  vec3 sum = vec3(0);
   const bool endless = isinf(reach.thickness);  // then all is one run: what is behind a surface is solid
   bool own = !endless, was_within = true, last_blocks = false;
   Blocked blocked = Blocked(side.plane_cot, kEmpty, kEmpty, kEmpty, 0u, fract(11.0 * jitter));
@@ -155,7 +168,7 @@ float search(Receiver r, Side side, Reach reach, float jitter) {
     if (own) {
       const float horizon = max(blocks ? cot : -kNone, kFalloff == kFalloffNone && crosses ? crossing : -kNone);
       if (kFalloff != kFalloffNone && horizon > blocked.own)
-        sum += falloff_weight(kFalloff, sqrt(distance_sq), reach.falloff_start, reach.radius) * (arc_to(side, blocked.own) - arc_to(side, horizon));
+        sum += falloff_weight(kFalloff, sqrt(distance_sq), reach.falloff_start, reach.radius) * (arcs_to(side, blocked.own) - arcs_to(side, horizon));
       blocked.own = max(blocked.own, horizon);
     } else {
       const bool begins = both(run.near < run.far, blocks);
@@ -172,31 +185,41 @@ float search(Receiver r, Side side, Reach reach, float jitter) {
     last_offset = offset;
   }
   sum += end_run(r, side, reach, run, last_z, 1.0, blocked);
-  return kFalloff == kFalloffNone ? blocked_arc(side, blocked) : sum;
+  return kFalloff == kFalloffNone ? blocked_arcs(side, blocked) : sum;
+}
+
+void write_bent(int index, int plane, vec3 b) {
+  for (int c = 0; c < 3; c++) bent[index + c * plane] = stored_bent(b)[c];
 }
 
 void main() {
   const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   const View view = params.view;
   if (!inside(view, pixel)) return;
-  const int index = index_of(view, pixel);
+  const int index = index_of(view, pixel), plane = view.size.x * view.size.y, ao_index = index + int(params.plane) * plane;
   const float z = depth[index];
   if (z >= kSkyDepth) {
-    ao[index] = 1.0;
+    ao[ao_index] = 1.0;
+    if (kBent) write_bent(index, plane, vec3(0));
     return;
   }
   const Receiver r = receiver_at(view, pixel, z, unpack_normal(normal[index]), params.radius);
   const Reach reach = reach_of(view, params.radius, params.falloff_start, params.thickness, params.bias);
   const vec2 noise = pixel_noise(pixel + params.noise_origin, params.noise_shift);
   float blocked = 0.0, whole = 0.0;
+  vec3 bent_blocked = vec3(0);
   for (uint s = 0u; s < kSlices; s++) {
     const Slice slice = slice_at(view, r, s, kSlices, noise.x);
     if (slice.weight < kLeastWeight) continue;
     whole += slice.share * slice.weight * (slice.cos_gamma + slice.gamma * slice.sin_gamma);
     for (int sign = -1; sign <= 1; sign += 2) {
       const float jitter = fract(noise.y + kGolden * float(2u * s + uint(sign > 0)));
-      blocked += slice.share * slice.weight * search(r, side_of(view, r, slice, float(sign), reach.radius), reach, jitter);
+      const vec3 side = slice.share * slice.weight * search(r, side_of(view, r, slice, float(sign), reach.radius), reach, jitter);
+      blocked += side.x;
+      if (kBent) bent_blocked += side.y * float(sign) * slice.t + side.z * r.eye;
     }
   }
-  ao[index] = whole > 0.0 ? clamp(1.0 - blocked / whole, 0.0, 1.0) : 1.0;
+  ao[ao_index] = whole > 0.0 ? clamp(1.0 - blocked / whole, 0.0, 1.0) : 1.0;
+  // The open hemisphere gives 2/3 of the normal whatever slices are drawn.
+  if (kBent) write_bent(index, plane, whole > 0.0 ? 2.0 / 3.0 * r.normal - bent_blocked / whole : r.normal);
 }
