@@ -12,6 +12,7 @@ FrameOutputs run_chain(gpu::Recorder& gpu, const FrameInputs& frame, const Estim
     if (plane) gpu.upload(*plane);
 
   const GBuffer gbuffer = prepare(gpu, frame, wants(output, &FrameOutputs::depth) ? gpu::Use::download : gpu::Use::device);
+  reconstruct(gpu, gbuffer);
   out.counts = gbuffer.counts;
   DebugStages stages;
   const gpu::Buffer* open = gbuffer.normal;  // the mean open direction; the normal where the estimator does not find it
@@ -24,9 +25,9 @@ FrameOutputs run_chain(gpu::Recorder& gpu, const FrameInputs& frame, const Estim
     out.ao = several ? &combine(gpu, work, *ao) : ao;
     stages = {work, out.ao, out.ao};
     if (settings.denoise != Denoise::none) {
-      stages.denoised_ao = out.ao = &denoise(gpu, work, *out.ao, settings);
-      if (each) out.scales = &denoise(gpu, work, *out.scales, settings, "scales ");
-      if (bent) bent = &denoise(gpu, work, *bent, settings, "bent ");
+      stages.denoised_ao = out.ao = &denoise(gpu, work, *out.ao, frame, settings);
+      if (each) out.scales = &denoise(gpu, work, *out.scales, frame, settings, "scales ");
+      if (bent) bent = &denoise(gpu, work, *bent, frame, settings, "bent ");
     }
     if (reduced) {
       out.ao = &upsample(gpu, gbuffer, work, *out.ao, frame, settings);
@@ -52,6 +53,11 @@ FrameOutputs run_chain(gpu::Recorder& gpu, const FrameInputs& frame, const Estim
     if (result) gpu.download(*result);
   for (const auto& plane : out.debug) gpu.download(*plane.values);
   return out;
+}
+
+double samples_per_pixel(const EstimatorSettings& settings) {
+  const double factor = double(settings.resolution), samples = settings.estimator == Estimator::crytek ? settings.samples : 2 * settings.slices * settings.steps;
+  return samples * double(1 + settings.further_radii.size()) / (factor * factor * settings.stride);
 }
 
 bool needs_ao(const OutputSettings& output) {

@@ -22,6 +22,7 @@
 #include "kernels/horizon.h"
 #include "kernels/multi_bounce.h"
 #include "kernels/prepare.h"
+#include "kernels/reconstruct.h"
 #include "kernels/shape.h"
 #include "kernels/specular_occlusion.h"
 #include "kernels/upsample.h"
@@ -43,6 +44,7 @@ float thickness_of(const EstimatorSettings& settings) {
 }
 
 gpu::Extent extent_of(const View& view) { return {uint(view.size.x), uint(view.size.y)}; }
+uint groups_of(int pixels, uint size) { return (uint(pixels) + size - 1) / size; }
 vec3 to_vec3(const std::array<double, 3>& v) { return {float(v[0]), float(v[1]), float(v[2])}; }
 
 uint normal_form_of(const FrameInputs& frame) {
@@ -78,8 +80,14 @@ Params slice_parameters(const GBuffer& gbuffer, const FrameInputs& frame, const 
   params.plane = plane;
   return params;
 }
-std::vector<uint> slice_constants(const EstimatorSettings& settings, const Estimate& out) {
-  return {uint(settings.slices), uint(settings.steps), uint(settings.falloff) | (out.bent ? kWithBent : 0)};
+std::vector<uint> slice_constants(const EstimatorSettings& settings, const gpu::Buffer* bent = nullptr) {
+  return {uint(settings.slices), uint(settings.steps), uint(settings.falloff) | (bent ? kWithBent : 0), uint(settings.stride)};
+}
+
+/// The invocations that make an estimate: one for each pixel that the stride does not leave out.
+gpu::Extent estimated_extent(const View& view, const EstimatorSettings& settings) {
+  const auto stride = uint(settings.stride);
+  return {(uint(view.size.x) + stride - 1) / stride, uint(view.size.y)};
 }
 
 /// The grid of blocks that the pixels of an estimate stand for: it begins at the display window's corner, so that a crop has the blocks of the whole.
@@ -114,7 +122,8 @@ std::vector<double> denoise_weights(const EstimatorSettings& settings) {
 GBuffer prepare(gpu::Recorder& gpu, const FrameInputs& frame, gpu::Use depth_use, const std::string& prefix) {
   GBuffer gbuffer{frame.view, &gpu.buffer(prefix + "depth", plane_bytes(frame.view), depth_use),
                   &gpu.buffer(prefix + "normal", plane_bytes(frame.view), gpu::Use::device),
-                  &gpu.buffer(prefix + "counts", sizeof(FrameCounts), gpu::Use::download)};
+                  &gpu.buffer(prefix + "counts", sizeof(FrameCounts), gpu::Use::download),
+                  &gpu.buffer(prefix + "missing", sizeof(GroupCount), gpu::Use::upload)};
   PrepareParams params{};
   params.view = frame.view;
   params.view_from_normal_x = to_vec3(frame.view_from_normal[0]);
@@ -131,14 +140,22 @@ GBuffer prepare(gpu::Recorder& gpu, const FrameInputs& frame, gpu::Use depth_use
   params.sky_depth = float(map.sky_depth);
   params.normal_unorm = frame.normal_unorm ? 1 : 0;
   gpu.clear(*gbuffer.counts);
+  gbuffer.missing->as<GroupCount>()[0] = {groups_of(frame.view.size.x, kGroupX), groups_of(frame.view.size.y, kGroupY), 0};
+  gpu.upload(*gbuffer.missing);
   gpu.dispatch("prepare", params,
                {{kPrepareRawDepth, *frame.depth},
                 {kPrepareRawNormal, frame.normal ? *frame.normal : *frame.depth},
                 {kPrepareDepth, *gbuffer.depth},
                 {kPrepareNormal, *gbuffer.normal},
-                {kPrepareCounts, *gbuffer.counts}},
+                {kPrepareCounts, *gbuffer.counts},
+                {kPrepareMissing, *gbuffer.missing}},
                extent_of(frame.view), {map.form, normal_form_of(frame)});
   return gbuffer;
+}
+
+void reconstruct(gpu::Recorder& gpu, const GBuffer& gbuffer) {
+  gpu.dispatch("reconstruct", ReconstructParams{gbuffer.view}, {{kReconstructDepth, *gbuffer.depth}, {kReconstructNormal, *gbuffer.normal}},
+               gpu::Extent(*gbuffer.missing));
 }
 
 GBuffer downsample(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings) {
@@ -175,6 +192,8 @@ Estimate estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs&
   const auto radii = radii_of(settings);
   Estimate all{&gpu.buffer("ao", radii.size() * plane_bytes(gbuffer.view), gpu::Use::download)};
   if (with_bent) all.bent = &gpu.buffer("bent", 3 * plane_bytes(gbuffer.view), gpu::Use::download);
+  for (const auto* planes : {all.ao, all.bent})
+    if (planes && settings.stride > 1) gpu.clear(*planes);
   for (uint plane = 0; plane < radii.size(); plane++) {
     EstimatorSettings one = settings;
     one.radius = radii[plane];
@@ -190,15 +209,19 @@ Estimate estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs&
 }
 
 void horizon(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings, const Estimate& out, uint plane) {
+  std::vector<uint> constants = slice_constants(settings, out.bent);
+  constants.push_back(settings.thickness == ThicknessKind::automatic  ? kThicknessWidth
+                      : settings.thickness == ThicknessKind::constant ? kThicknessLength
+                                                                      : kThicknessEndless);
   gpu.dispatch("horizon", slice_parameters<HorizonParams>(gbuffer, frame, settings, plane),
-               {{kHorizonDepth, *gbuffer.depth}, {kHorizonNormal, *gbuffer.normal}, {kHorizonAo, *out.ao}, {kHorizonBent, out.bent ? *out.bent : *out.ao}}, extent_of(gbuffer.view),
-               slice_constants(settings, out));
+               {{kHorizonDepth, *gbuffer.depth}, {kHorizonNormal, *gbuffer.normal}, {kHorizonAo, *out.ao}, {kHorizonBent, out.bent ? *out.bent : *out.ao}},
+               estimated_extent(gbuffer.view, settings), constants);
 }
 
 void bitmask(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings, const Estimate& out, uint plane) {
   gpu.dispatch("bitmask", slice_parameters<BitmaskParams>(gbuffer, frame, settings, plane),
-               {{kBitmaskDepth, *gbuffer.depth}, {kBitmaskNormal, *gbuffer.normal}, {kBitmaskAo, *out.ao}, {kBitmaskBent, out.bent ? *out.bent : *out.ao}}, extent_of(gbuffer.view),
-               slice_constants(settings, out));
+               {{kBitmaskDepth, *gbuffer.depth}, {kBitmaskNormal, *gbuffer.normal}, {kBitmaskAo, *out.ao}, {kBitmaskBent, out.bent ? *out.bent : *out.ao}},
+               estimated_extent(gbuffer.view, settings), slice_constants(settings, out.bent));
 }
 
 void hbao(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings, const Estimate& out, uint plane) {
@@ -212,8 +235,8 @@ void hbao(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, 
   params.noise_origin = frame.noise_origin;
   params.noise_shift = noise_shift(frame.frame, settings.seed);
   params.plane = plane;
-  gpu.dispatch("hbao", params, {{kHbaoDepth, *gbuffer.depth}, {kHbaoNormal, *gbuffer.normal}, {kHbaoAo, *out.ao}}, extent_of(gbuffer.view),
-               {uint(settings.slices), uint(settings.steps), uint(settings.falloff)});
+  gpu.dispatch("hbao", params, {{kHbaoDepth, *gbuffer.depth}, {kHbaoNormal, *gbuffer.normal}, {kHbaoAo, *out.ao}},
+               estimated_extent(gbuffer.view, settings), slice_constants(settings));
 }
 
 void crytek(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings, const Estimate& out, uint plane) {
@@ -226,8 +249,8 @@ void crytek(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame
   params.noise_origin = frame.noise_origin;
   params.noise_shift = noise_shift(frame.frame, settings.seed);
   params.plane = plane;
-  gpu.dispatch("crytek", params, {{kCrytekDepth, *gbuffer.depth}, {kCrytekNormal, *gbuffer.normal}, {kCrytekAo, *out.ao}}, extent_of(gbuffer.view),
-               {uint(settings.samples)});
+  gpu.dispatch("crytek", params, {{kCrytekDepth, *gbuffer.depth}, {kCrytekNormal, *gbuffer.normal}, {kCrytekAo, *out.ao}},
+               estimated_extent(gbuffer.view, settings), {uint(settings.samples), uint(settings.stride)});
 }
 
 gpu::Buffer& combine(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& scales) {
@@ -236,25 +259,29 @@ gpu::Buffer& combine(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buff
   return ao;
 }
 
-gpu::Buffer& denoise(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& ao, const EstimatorSettings& settings, const std::string& prefix) {
+gpu::Buffer& denoise(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& ao, const FrameInputs& frame, const EstimatorSettings& settings,
+                     const std::string& prefix) {
   const std::vector<double> weights = denoise_weights(settings);
   const auto radius = uint(weights.size() - 1);
   DenoiseParams params{};
   params.view = gbuffer.view;
+  params.origin = block_grid(frame, settings).origin;
   params.depth_sigma = float(settings.denoise_depth_sigma);
   const double sum = 2 * std::accumulate(weights.begin(), weights.end(), 0.0) - weights.front();
   std::ranges::transform(weights, params.weight, [&](double weight) { return float(weight / sum); });
   gpu::Buffer& rows = gpu.buffer(prefix + "denoised rows", ao.bytes(), gpu::Use::device);
   gpu::Buffer& result = gpu.buffer(prefix + "denoised", ao.bytes(), gpu::Use::download);
-  const auto along = [&](ivec2 axis, const gpu::Buffer& from, const gpu::Buffer& to) {
+  const auto along = [&](ivec2 axis, const gpu::Buffer& from, const gpu::Buffer& to, uint sparse, uint stride) {
     params.axis = axis;
-    const int length = axis.x ? gbuffer.view.size.x : gbuffer.view.size.y, others = axis.x ? gbuffer.view.size.y : gbuffer.view.size.x;
+    const uint length = uint(axis.x ? gbuffer.view.size.x : gbuffer.view.size.y), others = uint(axis.x ? gbuffer.view.size.y : gbuffer.view.size.x);
     gpu.dispatch("denoise", params,
                  {{kDenoiseAo, from}, {kDenoiseDepth, *gbuffer.depth}, {kDenoiseNormal, *gbuffer.normal}, {kDenoiseResult, to}},
-                 {uint(others), uint((length + kDenoiseRun - 1) / kDenoiseRun)}, {radius, settings.denoise_depth_sigma > 0 ? 1u : 0u, planes_in(ao, gbuffer.view)});
+                 {others, (length + stride - 1 + kDenoiseRun - 1) / kDenoiseRun},
+                 {radius, settings.denoise_depth_sigma > 0 ? 1u : 0u, sparse, stride, planes_in(ao, gbuffer.view)});
   };
-  along({1, 0}, ao, rows);
-  along({0, 1}, rows, result);
+  const bool dense = settings.stride == 1;
+  along({1, 0}, ao, rows, dense ? kDenoiseDense : kDenoiseSparseRows, uint(settings.stride));
+  along({0, 1}, rows, result, dense ? kDenoiseDense : kDenoiseSparseColumns, 1);
   return result;
 }
 
@@ -365,7 +392,9 @@ DebugPlane debug(gpu::Recorder& gpu, const DebugView& view, const GBuffer& gbuff
   if (view.source == DebugSource::normals_from_depth) {
     FrameInputs depth_only = frame;
     depth_only.normal = nullptr;
-    values = prepare(gpu, depth_only, gpu::Use::device, "debug ").normal;
+    const GBuffer from_depth = prepare(gpu, depth_only, gpu::Use::device, "debug ");
+    reconstruct(gpu, from_depth);
+    values = from_depth.normal;
   }
   gpu::Buffer& result = gpu.buffer(std::string("debug ") + view.name, plane_bytes(shown.view), gpu::Use::download);
   const DebugParams params{shown.view, view.kind};

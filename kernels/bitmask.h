@@ -13,6 +13,7 @@ ALCOVE_CONSTANT uint kBitmaskBent = 3;    // out: planes x, y, z of the mean ope
 ALCOVE_CONSTANT uint kBitmaskSlicesId = 0;   // specialization: slices a pixel
 ALCOVE_CONSTANT uint kBitmaskStepsId = 1;    // specialization: steps to each side of a slice
 ALCOVE_CONSTANT uint kBitmaskModeId = 2;     // specialization: one of kFalloff* of falloff.glsl, and kWithBent or not
+ALCOVE_CONSTANT uint kBitmaskStrideId = 3;   // specialization: one pixel of so many in a row, 1, 2 or 4: see stride.glsl
 
 struct BitmaskParams {
   View view;

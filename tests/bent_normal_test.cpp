@@ -60,7 +60,9 @@ std::vector<Vec3> raw_bent(const HostFrame& frame, const EstimatorSettings& sett
   const FrameInputs inputs = upload(gpu, frame);
   for (const auto* plane : {inputs.depth, inputs.normal})
     if (plane) gpu.upload(*plane);
-  const Estimate result = estimate(gpu, prepare(gpu, inputs), inputs, settings, true);
+  const GBuffer gbuffer = prepare(gpu, inputs);
+  reconstruct(gpu, gbuffer);
+  const Estimate result = estimate(gpu, gbuffer, inputs, settings, true);
   gpu.download(*result.bent);
   gpu.run();
   return vectors_in(result.bent->as<float>(), 2, -1);
