@@ -16,7 +16,7 @@ ALCOVE_CONSTANT uint kHorizonModeId = 2;     // specialization: one of kFalloff*
 ALCOVE_CONSTANT uint kHorizonStrideId = 3;   // specialization: one pixel of so many in a row, 1, 2 or 4: see stride.glsl
 ALCOVE_CONSTANT uint kHorizonThicknessId = 4;  // specialization: one of these, of what is not connected to the receiver
 
-ALCOVE_CONSTANT uint kWithBent = 4;          // bent normals too
+ALCOVE_CONSTANT uint kWithBent = 4;          // a bit beside kFalloff*: bent normals too
 ALCOVE_CONSTANT uint kThicknessWidth = 0;    // as deep as wide
 ALCOVE_CONSTANT uint kThicknessLength = 1;   // as HorizonParams says
 ALCOVE_CONSTANT uint kThicknessEndless = 2;  // solid as far as the sphere of the radius

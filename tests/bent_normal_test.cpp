@@ -91,8 +91,9 @@ TEST(BentNormals, of_an_open_plane_are_its_normal_and_two_thirds_long_at_every_t
             for (std::size_t i = 0; i < raw.size(); i++)
               if (frame.depth[i] < frame.sky) ASSERT_LE(length(raw[i] - (2.0 / 3) * normal_at(frame, i)), 1e-3) << name_of(settings) << " tilt " << tilt << " fov " << fov;
             settings.denoise = Denoise::bilateral;
-            for (const Resolution resolution : {Resolution::full, Resolution::half, Resolution::quarter}) {
+            for (const auto& [resolution, stride] : {std::pair{Resolution::full, 1}, {Resolution::full, 4}, {Resolution::half, 2}, {Resolution::quarter, 1}}) {
               settings.resolution = resolution;
+              settings.stride = stride;
               const auto bent = bent_normals(frame, settings);
               for (std::size_t i = 0; i < bent.size(); i++)
                 if (frame.depth[i] < frame.sky) ASSERT_LE(length(bent[i] - normal_at(frame, i)), 1e-3) << name_of(settings) << " tilt " << tilt << " fov " << fov;
@@ -248,10 +249,11 @@ TEST(BentNormals, are_unit_vectors_above_the_surface_and_0_on_the_sky_through_ev
   const Rendering room = test::furnished_room(121, 83);
   for (const Estimator estimator : {Estimator::gtao, Estimator::bitmask})
     for (const Resolution resolution : {Resolution::full, Resolution::half, Resolution::quarter})
-      for (const Denoise denoise : {Denoise::none, Denoise::bilateral, Denoise::box}) {
+      for (const auto& [denoise, stride] : {std::pair{Denoise::none, 1}, {Denoise::bilateral, 1}, {Denoise::box, 1}, {Denoise::bilateral, 2}, {Denoise::bilateral, 4}}) {
         EstimatorSettings settings = settings_of(estimator, 0.6, 1, 12);
         settings.resolution = resolution;
         settings.denoise = denoise;
+        settings.stride = stride;
         const auto bent = bent_normals(room.frame, settings);
         for (std::size_t i = 0; i < bent.size(); i++) {
           const bool sky = room.hits[i].primitive < 0;

@@ -57,10 +57,11 @@ TEST(Scales, each_is_the_run_with_that_radius_alone_whatever_the_chain) {
   const std::vector<double> radii{0.1, 0.6, 2};
   for (const Estimator estimator : {Estimator::gtao, Estimator::bitmask, Estimator::hbao, Estimator::crytek})
     for (const Resolution resolution : {Resolution::full, Resolution::half})
-      for (const Denoise denoise : {Denoise::none, Denoise::bilateral}) {
+      for (const auto& [denoise, stride] : {std::pair{Denoise::none, 1}, {Denoise::bilateral, 1}, {Denoise::bilateral, 2}}) {
         EstimatorSettings several = settings_of(radii, estimator);
         several.resolution = resolution;
         several.denoise = denoise;
+        several.stride = stride;
         several.power = 1.5;
         const Result result = run(frame, several, "ao,ao-scales");
         ASSERT_EQ(result.scales.size(), 3 * frame.data.pixels());
