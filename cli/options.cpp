@@ -163,6 +163,11 @@ void read_thickness(const std::string& text, EstimatorSettings& settings) {
   settings.thickness_length = length;
 }
 
+void read_radii(const std::vector<double>& radii, EstimatorSettings& settings) {
+  settings.radius = radii.front();
+  settings.further_radii.assign(radii.begin() + 1, radii.end());
+}
+
 /// --albedo: a number is the albedo of all surfaces, all else a file.
 void read_albedo(const std::string& text, InputSettings& settings) {
   double value = 0;
@@ -260,7 +265,12 @@ void add_estimator_rows(Table& table, RunOptions& options) {
     return app.set_config("--preset")->expected(1)->take_all()->transform([](const std::string& name) { return preset_file(name); })->description("");
   });
   table.choice("--estimator", s.estimator, "gtao: horizons; bitmask: what is blocked between front and back of every occluder; hbao: horizons, not cosine weighted; crytek: samples in the hemisphere");
-  table.number("--radius", s.radius, "scene units", above_to(0, 1e18), "how far occluders reach; must be given, here or in a preset");
+  const Range reach = above_to(0, 1e18);
+  table.row("--radius", "NUMBER", "scene units", reach.text, "how far occluders reach; must be given, here or in a preset. May repeat: the AO is the mean of all scales, see ao-scales", "",
+            [&s, reach](CLI::App& app) {
+              return app.add_option_function<std::vector<double>>("--radius", [&s](const std::vector<double>& radii) { read_radii(radii, s); })
+                  ->expected(1)->take_all()->allow_extra_args(false)->check(check_of(reach));
+            });
   table.choice("--falloff", s.falloff, "how a hit's weight fades towards the radius; none: all within it block fully");
   table.number("--falloff-start", s.falloff_start, "of the radius", below_and_at_least(0, 1), "where the falloff begins");
   table.number("--falloff-end", s.falloff_end, "of the radius", above_to(0, 1), "where the falloff ends: nothing beyond blocks");

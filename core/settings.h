@@ -77,6 +77,7 @@ struct InputSettings {
 struct EstimatorSettings {
   Estimator estimator = Estimator::gtao;
   std::optional<double> radius;      // scene units, > 0; no default, since no number fits all scenes
+  std::vector<double> further_radii;  // scene units, > 0: more scales. The AO is the mean of all: that is AO itself, with a falloff that drops by a step at each radius
   Falloff falloff = Falloff::none;   // none: what renderers' own AO passes mean by a distance
   double falloff_start = 0;          // fraction of the radius where the falloff begins, 0 to 1 exclusive
   double falloff_end = 1;            // fraction of the radius where it ends, above the start to 1; nothing beyond blocks

@@ -73,10 +73,10 @@ float occlusion(Side side, ivec2 pixel, vec3 position, float jitter) {
 void main() {
   const ivec2 pixel = estimated_pixel(gl_GlobalInvocationID.xy, params.noise_origin, kStride);
   if (!inside(params.view, pixel)) return;
-  const int index = index_of(params.view, pixel);
+  const int index = index_of(params.view, pixel), ao_index = index + int(params.plane) * params.view.size.x * params.view.size.y;
   const float z = depth[index];
   if (z >= kSkyDepth) {
-    ao[index] = 1.0;
+    ao[ao_index] = 1.0;
     return;
   }
 
@@ -115,5 +115,5 @@ void main() {
       blocked += share * occlusion(side, pixel, position, fract(noise.y + kGolden * float(2u * s + uint(sign > 0))));
     }
   }
-  ao[index] = clamp(1.0 - blocked / whole, 0.0, 1.0);
+  ao[ao_index] = clamp(1.0 - blocked / whole, 0.0, 1.0);
 }
