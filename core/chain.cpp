@@ -47,7 +47,7 @@ FrameOutputs run_chain(gpu::Recorder& gpu, const FrameInputs& frame, const Estim
   if (wants(output, &FrameOutputs::normal)) out.normal = &directions(gpu, gbuffer, *gbuffer.normal, "normal planes", frame);
   if (wants(output, &FrameOutputs::bent_normal)) out.bent_normal = &directions(gpu, gbuffer, *open, "bent normal planes", frame);
   if (wants(output, &FrameOutputs::depth)) out.depth = gbuffer.depth;
-  for (const auto* view : debug_views_of(output)) out.debug.push_back(debug(gpu, *view, gbuffer, stages, frame));
+  for (const auto* view : debug_views_of(output)) out.debug.push_back(debug(gpu, *view, gbuffer, stages, frame, settings));
 
   for (const auto* result : {out.counts, out.ao, out.scales, out.color_ao, out.composite, out.normal, out.bent_normal, out.depth, out.specular_occlusion})
     if (result) gpu.download(*result);
@@ -57,7 +57,7 @@ FrameOutputs run_chain(gpu::Recorder& gpu, const FrameInputs& frame, const Estim
 
 double samples_per_pixel(const EstimatorSettings& settings) {
   const double factor = double(settings.resolution), samples = settings.estimator == Estimator::crytek ? settings.samples : 2 * settings.slices * settings.steps;
-  return samples * double(1 + settings.further_radii.size()) / (factor * factor * settings.stride);
+  return samples * double(1 + settings.further_radii.size()) / (factor * factor * stride_of(settings));
 }
 
 bool needs_ao(const OutputSettings& output) {

@@ -24,7 +24,7 @@ constexpr std::array kViews{
     DebugView{"view-normal-z", "view normal z: 1 faces along the optical axis", kDebugNormalZ, DebugSource::none, DebugScale::fixed, -1, 1, false},
     DebugView{"reconstruction", "reconstruction: degrees between the normals and those from depth; 30 and more are one", kDebugNormalAngle,
               DebugSource::normals_from_depth, DebugScale::fixed, 0, 30, false},
-    DebugView{"raw-ao", "raw AO: as estimated, at its own resolution; 1 is open; 0 where --stride left it out", kDebugValue, DebugSource::raw_ao, DebugScale::fixed, 0, 1, true},
+    DebugView{"raw-ao", "raw AO: as estimated, at its own resolution; 1 is open", kDebugValue, DebugSource::raw_ao, DebugScale::fixed, 0, 1, true},
     DebugView{"denoised-ao", "denoised AO: before upsampling and shaping; 1 is open", kDebugValue, DebugSource::denoised_ao, DebugScale::fixed, 0, 1, true},
     DebugView{"edges", "edges: a neighbour's distance from the tangent plane, part of the depth (logarithmic)", kDebugEdge, DebugSource::none,
               DebugScale::fixed_logarithmic, 1e-4f, 1, false},

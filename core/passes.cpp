@@ -81,12 +81,12 @@ Params slice_parameters(const GBuffer& gbuffer, const FrameInputs& frame, const 
   return params;
 }
 std::vector<uint> slice_constants(const EstimatorSettings& settings, const gpu::Buffer* bent = nullptr) {
-  return {uint(settings.slices), uint(settings.steps), uint(settings.falloff) | (bent ? kWithBent : 0), uint(settings.stride)};
+  return {uint(settings.slices), uint(settings.steps), uint(settings.falloff) | (bent ? kWithBent : 0), uint(stride_of(settings))};
 }
 
-/// The invocations that make an estimate: one for each pixel that the stride does not leave out.
+/// The invocations of an estimate: one for each pixel that the stride does not leave out.
 gpu::Extent estimated_extent(const View& view, const EstimatorSettings& settings) {
-  const auto stride = uint(settings.stride);
+  const auto stride = uint(stride_of(settings));
   return {(uint(view.size.x) + stride - 1) / stride, uint(view.size.y)};
 }
 
@@ -177,6 +177,12 @@ GBuffer downsample(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs
   return low;
 }
 
+int stride_of(const EstimatorSettings& settings) {
+  if (settings.stride > 0) return settings.stride;
+  const bool shared = settings.denoise == Denoise::bilateral && settings.resolution == Resolution::full && settings.slices <= 2;
+  return shared && settings.estimator == Estimator::gtao ? 4 : 1;
+}
+
 std::vector<double> radii_of(const EstimatorSettings& settings) {
   std::vector<double> radii = settings.further_radii;
   radii.push_back(settings.radius.value());
@@ -192,8 +198,6 @@ Estimate estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs&
   const auto radii = radii_of(settings);
   Estimate all{&gpu.buffer("ao", radii.size() * plane_bytes(gbuffer.view), gpu::Use::download)};
   if (with_bent) all.bent = &gpu.buffer("bent", 3 * plane_bytes(gbuffer.view), gpu::Use::download);
-  for (const auto* planes : {all.ao, all.bent})
-    if (planes && settings.stride > 1) gpu.clear(*planes);
   for (uint plane = 0; plane < radii.size(); plane++) {
     EstimatorSettings one = settings;
     one.radius = radii[plane];
@@ -250,7 +254,7 @@ void crytek(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame
   params.noise_shift = noise_shift(frame.frame, settings.seed);
   params.plane = plane;
   gpu.dispatch("crytek", params, {{kCrytekDepth, *gbuffer.depth}, {kCrytekNormal, *gbuffer.normal}, {kCrytekAo, *out.ao}},
-               estimated_extent(gbuffer.view, settings), {uint(settings.samples), uint(settings.stride)});
+               estimated_extent(gbuffer.view, settings), {uint(settings.samples), uint(stride_of(settings))});
 }
 
 gpu::Buffer& combine(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& scales) {
@@ -279,8 +283,8 @@ gpu::Buffer& denoise(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buff
                  {others, (length + stride - 1 + kDenoiseRun - 1) / kDenoiseRun},
                  {radius, settings.denoise_depth_sigma > 0 ? 1u : 0u, sparse, stride, planes_in(ao, gbuffer.view)});
   };
-  const bool dense = settings.stride == 1;
-  along({1, 0}, ao, rows, dense ? kDenoiseDense : kDenoiseSparseRows, uint(settings.stride));
+  const bool dense = stride_of(settings) == 1;
+  along({1, 0}, ao, rows, dense ? kDenoiseDense : kDenoiseSparseRows, uint(stride_of(settings)));
   along({0, 1}, rows, result, dense ? kDenoiseDense : kDenoiseSparseColumns, 1);
   return result;
 }
@@ -383,7 +387,8 @@ gpu::Buffer& directions(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::B
   return planes;
 }
 
-DebugPlane debug(gpu::Recorder& gpu, const DebugView& view, const GBuffer& gbuffer, const DebugStages& stages, const FrameInputs& frame) {
+DebugPlane debug(gpu::Recorder& gpu, const DebugView& view, const GBuffer& gbuffer, const DebugStages& stages, const FrameInputs& frame,
+                 const EstimatorSettings& settings) {
   const bool is_stage = view.source == DebugSource::raw_ao || view.source == DebugSource::denoised_ao;
   const GBuffer& shown = is_stage ? stages.gbuffer : gbuffer;
   const gpu::Buffer* values = shown.normal;
@@ -397,7 +402,8 @@ DebugPlane debug(gpu::Recorder& gpu, const DebugView& view, const GBuffer& gbuff
     values = from_depth.normal;
   }
   gpu::Buffer& result = gpu.buffer(std::string("debug ") + view.name, plane_bytes(shown.view), gpu::Use::download);
-  const DebugParams params{shown.view, view.kind};
+  const int stride = view.source == DebugSource::raw_ao ? stride_of(settings) : 1;
+  const DebugParams params{shown.view, view.kind, stride, block_grid(frame, settings).origin};
   gpu.dispatch("debug", params, {{kDebugDepth, *shown.depth}, {kDebugNormal, *shown.normal}, {kDebugValues, *values}, {kDebugResult, result}},
                extent_of(shown.view));
   return {&view, shown.view.size, &result};

@@ -46,11 +46,14 @@ GBuffer prepare(gpu::Recorder& gpu, const FrameInputs& frame, gpu::Use depth_use
 void reconstruct(gpu::Recorder& gpu, const GBuffer& gbuffer);
 /// The G-buffer of the settings' resolution: its pixels are the blocks of whole pixels of the display window.
 GBuffer downsample(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings);
+/// Of how many pixels in a row one has an estimate. Where the settings leave it open: 4 for the estimator that this was measured with, gtao, at full
+/// resolution, with so few slices that the denoiser must share them among neighbours anyway; else 1.
+int stride_of(const EstimatorSettings& settings);
 /// All radii of the settings, from the smallest on; one of them must be set.
 std::vector<double> radii_of(const EstimatorSettings& settings);
 /// Whether the estimator finds open directions too.
 bool has_bent_normals(Estimator estimator);
-/// What an estimator gives for every pixel of the G-buffer.
+/// What an estimator gives for every pixel of the G-buffer, or for those that the stride leaves.
 struct Estimate {
   gpu::Buffer* ao;              // a plane of visibility a radius, from the smallest on
   gpu::Buffer* bent = nullptr;  // planes x, y, z, of the largest radius: see horizon.h; null: not asked for
@@ -97,6 +100,7 @@ struct DebugStages {
   GBuffer gbuffer{};
   const gpu::Buffer *raw_ao = nullptr, *denoised_ao = nullptr;
 };
-DebugPlane debug(gpu::Recorder& gpu, const DebugView& view, const GBuffer& gbuffer, const DebugStages& stages, const FrameInputs& frame);
+DebugPlane debug(gpu::Recorder& gpu, const DebugView& view, const GBuffer& gbuffer, const DebugStages& stages, const FrameInputs& frame,
+                 const EstimatorSettings& settings);
 
 }  // namespace alcove

@@ -83,7 +83,7 @@ void main() {
   const bool perspective = params.view.orthographic == 0;
   const vec2 tangent = tangent_of(params.view, vec2(pixel) + 0.5);
   const vec3 position = position_of(params.view, vec2(pixel) + 0.5, z), eye = toward_eye(params.view, position), n = unpack_normal(normal[index]);
-  const vec2 noise = pixel_noise(pixel + params.noise_origin, params.noise_shift);
+  const vec2 noise = pixel_noise(packed_place(pixel + params.noise_origin, kStride), params.noise_shift);
   // The sphere of the radius is seen under this angle; 1 and more: it holds the eye, and the image is the only limit.
   const float sin_reach = perspective ? params.radius * inversesqrt(dot(position, position)) : 0.0;
   const float cos_reach = sqrt(max(0.0, 1.0 - sin_reach * sin_reach));

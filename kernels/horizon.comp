@@ -159,7 +159,7 @@ void main() {
   }
   const Receiver r = receiver_at(view, pixel, z, unpack_normal(normal[index]), params.radius);
   const Reach reach = reach_of(view, params.radius, params.falloff_start, params.thickness, params.bias);
-  const vec2 noise = pixel_noise(sparse_place(pixel + params.noise_origin, kStride), params.noise_shift);
+  const vec2 noise = pixel_noise(packed_place(pixel + params.noise_origin, kStride), params.noise_shift);
   float blocked = 0.0, whole = 0.0;
   vec3 bent_blocked = vec3(0);
   for (uint s = 0u; s < kSlices; s++) {
