@@ -231,6 +231,7 @@ void add_input_rows(Table& table, InputSettings& s) {
   table.text("--view", s.view, "NAME", "of a stereo file; else its default view");
   table.row("--roi", "X,Y,WIDTH,HEIGHT", "px of the display window", "", "compute and write only this region; its surroundings are read as far as occluders reach", "",
             [&s](CLI::App& app) { return app.add_option_function<std::string>("--roi", [&s](const std::string& text) { read_roi(text, s.roi); }); });
+  table.text("--source", s.source, "auto|NAME", "the program that wrote the frame, of presets/input; auto: by its header and channels");
   table.choice("--depth-kind", s.depth_kind, "planar: along the optical axis; ray: to the eye; inverse: 1/planar; others: see Inputs in the README; auto: what the camera file says, else what fits the frame");
   table.number("--near", s.depth_range.near, "file units", above(0), "near plane of device or normalized depth; else the camera file's");
   table.row("--far", "NUMBER|inf", "file units", "above 0", "far plane of device, normalized or log depth; else the camera file's", "",
@@ -338,7 +339,11 @@ class PresetFormat : public CLI::ConfigTOML {
  public:
   std::vector<CLI::ConfigItem> from_config(std::istream& input) const override {
     std::vector<CLI::ConfigItem> items;
-    for (auto& entry : parse_flat_toml(std::string(std::istreambuf_iterator<char>(input), {}))) {
+    auto entries = parse_flat_toml(std::string(std::istreambuf_iterator<char>(input), {}));
+    // The rules of presets/input are known to the program: such a preset is its --source and no more.
+    if (std::ranges::any_of(entries, [](const auto& entry) { return entry.key == "detect"; }))
+      std::erase_if(entries, [](const auto& entry) { return entry.key != "source"; });
+    for (auto& entry : entries) {
       items.emplace_back();
       items.back().name = std::move(entry.key);
       items.back().inputs = std::move(entry.values);
