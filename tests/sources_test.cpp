@@ -33,10 +33,11 @@ using testing::HasSubstr;
 
 constexpr double kFov = 60, kFar = 50;
 
-/// A floor, a wall and a ball under sky.
+/// A floor, two walls and a ball under sky.
 const Rendering& rendering() {
   static const Rendering made = render(
-      Scene{{parallelogram({0, -3, 0}, {4, 0, 0}, {0, 6, 0}), parallelogram({0, -3, 0}, {0, 6, 0}, {0, 0, 1.5}), Sphere{.center = {1.2, 0.4, 0.5}, .radius = 0.5}}},
+      Scene{{parallelogram({0, -3, 0}, {4, 0, 0}, {0, 6, 0}), parallelogram({0, -3, 0}, {0, 6, 0}, {0, 0, 1.5}),
+             parallelogram({0, 2, 0}, {4, 0, 0}, {0, 0, 1.5}), Sphere{.center = {1.2, 0.4, 0.5}, .radius = 0.5}}},
       Shot::perspective({4.5, -1.5, 2.4}, {1, 0, 0.6}, kFov, 160, 120));
   return made;
 }
