@@ -214,8 +214,8 @@ void read_kernel(const std::string& text, EstimatorSettings& settings) {
 
 void add_input_rows(Table& table, InputSettings& s) {
   table.group("Input");
-  table.text("--depth", s.depth, "FILE", "an EXR of the depth alone; else it is in INPUT");
-  table.text("--normal", s.normal, "FILE", "an EXR of the normals alone");
+  table.text("--depth", s.depth, "FILE", "an EXR, DDS or TIFF of the depth alone; else it is in INPUT");
+  table.text("--normal", s.normal, "FILE", "an EXR, DDS, TIFF or PNG of the normals alone");
   table.text("--position", s.position, "FILE", "an EXR of the positions, instead of a depth");
   table.text("--beauty", s.beauty, "FILE", "an EXR of the beauty, and of the indirect diffuse light, for --composite");
   table.text("--material-ao", s.material_ao, "FILE", "an EXR of the materials' own AO, multiplied in");

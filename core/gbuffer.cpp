@@ -215,15 +215,6 @@ std::pair<std::vector<ChannelRef>, const AovCandidate*> find_candidate(const Exr
   return {};
 }
 
-/// An EXR, a texture of RenderDoc, or any other picture.
-ExrFile open_file(const std::string& path, const char* option) {
-  if (is_dds(path)) return {path, option, read_dds(path, option)};
-  const std::string ending = lower_case(path.substr(std::min(path.rfind('.'), path.size())));
-  for (const char* other : {".png", ".tif", ".tiff", ".tga", ".bmp", ".hdr"})
-    if (ending == other) return {path, option, read_image(path, option)};
-  return ExrFile(path, option);
-}
-
 /// Files opened once each, and their channels.
 class Search {
  public:
@@ -460,6 +451,14 @@ FrameSource find_frame(const InputSettings& settings, bool with_beauty, int fram
     fail(ErrorKind::input, "{}: its normals are in world space, and the camera has no world_to_camera: give a --camera file with it, or --normal-space view",
          source.files[source.normal[0].file].path());
   return source;
+}
+
+ExrFile open_file(const std::string& path, const char* option) {
+  if (is_dds(path)) return {path, option, read_dds(path, option)};
+  const std::string ending = lower_case(path.substr(std::min(path.rfind('.'), path.size())));
+  for (const char* other : {".png", ".tif", ".tiff", ".tga", ".bmp", ".hdr"})
+    if (ending == other) return {path, option, read_image(path, option)};
+  return ExrFile(path, option);
 }
 
 bool header_has_camera(const InputSettings& settings) {

@@ -247,7 +247,7 @@ Inspection inspect_frame(const InputSettings& settings, int frame) {
     source = find_frame(reading, false, frame);
   } catch (const Error& error) {
     for (const std::string& path : {settings.input, settings.depth, settings.normal, settings.position})
-      if (!path.empty()) source.files.emplace_back(path, "INPUT");  // what cannot be read fails here
+      if (!path.empty()) source.files.push_back(open_file(path, "INPUT"));  // what cannot be read fails here
     json["missing"].push_back(error.what());
     return finish();
   }
