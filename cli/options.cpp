@@ -276,6 +276,8 @@ void add_estimator_rows(Table& table, RunOptions& options) {
   table.row("--thickness", "auto|infinite|NUMBER", "scene units", "", "how far an occluder goes on behind what is seen of it; auto: as deep as it is wide", "auto",
             [&s](CLI::App& app) { return app.add_option_function<std::string>("--thickness", [&s](const std::string& text) { read_thickness(text, s); }); });
   table.choice("--resolution", s.resolution, "of the estimate; a half or a quarter takes the nearest surface of every 2 x 2 or 4 x 4 pixels");
+  table.row("--stride", "1|2|4", "", "", "estimate one pixel of so many in a row, staggered from row to row; the bilateral denoiser gives the others theirs", fmt::format("{}", s.stride),
+            [&s](CLI::App& app) { return app.add_option("--stride", s.stride)->check(CLI::IsMember({1, 2, 4})); });
   table.choice("--denoise", s.denoise, "smooths each surface: bilateral: by a Gaussian or --denoise-kernel; box: by an even 4 x 4");
   table.number("--denoise-radius", s.denoise_radius, "pixels of the estimate", between(1, 8), "how far the bilateral denoiser reaches to each side");
   table.row("--denoise-kernel", "W0,W1,...", "", "2 to 9 weights", "of the bilateral denoiser, from the centre outwards, of any sum; they set its radius", "",

@@ -192,11 +192,6 @@ void note_counts(FrameReport& report, const FrameCounts& counts, const FrameSour
   if (source.normal.empty()) report.notes.push_back("there is no normal channel; normals were reconstructed from depth (--normal, --normal-channels)");
 }
 
-/// What the settings ask for at a pixel.
-double samples_of(const EstimatorSettings& settings) {
-  return settings.estimator == Estimator::crytek ? settings.samples : 2.0 * settings.slices * settings.steps;
-}
-
 /// Fails with ErrorKind::input where a frame lacks what an output is made from.
 void require_for_outputs(const FrameSource& source, const OutputSettings& settings) {
   const std::string& file = source.files[source.depth[0].file].path();
@@ -235,8 +230,7 @@ FrameReport run_frame(gpu::Device& device, gpu::Recorder& gpu, const Settings& s
   report.notes = source.notes;
   for (const auto& pass : report.passes) report.compute_ms += pass.ms;
   note_counts(report, outputs.counts->as<FrameCounts>()[0], source);
-  const double surface = double(report.pixels - report.sky_pixels) / double(report.pixels), factor = double(settings.estimator.resolution);
-  report.samples_per_pixel = !outputs.ao ? 0 : samples_of(settings.estimator) * surface / (factor * factor);
+  if (outputs.ao) report.samples_per_pixel = samples_per_pixel(settings.estimator) * double(report.pixels - report.sky_pixels) / double(report.pixels);
 
   const Stopwatch writing;
   const Window computed = source.data;
@@ -285,6 +279,8 @@ void check_settings(const Settings& settings) {
     fail(ErrorKind::usage, "--bias {}: of every estimator but crytek it is the sine of an elevation, below 1", settings.estimator.bias);
   if (settings.estimator.falloff_end <= settings.estimator.falloff_start)
     fail(ErrorKind::usage, "--falloff-end {} is not above --falloff-start {}", settings.estimator.falloff_end, settings.estimator.falloff_start);
+  if (settings.estimator.stride > 1 && settings.estimator.denoise != Denoise::bilateral)
+    fail(ErrorKind::usage, "--stride {} leaves pixels to the denoiser: give --denoise bilateral, or --stride 1", settings.estimator.stride);
   if (settings.input.focal.has_value() != settings.input.aperture.has_value())
     fail(ErrorKind::usage, "--focal and --aperture belong together: focal length and width of the film back in mm");
   if (!settings.input.beauty.empty() && settings.output.composite.empty() && !settings.output.multi_bounce)
@@ -313,7 +309,7 @@ std::string options_digest(const Settings& settings) {
   add(settings.output.aovs, int(settings.output.ao_channels), int(settings.output.aov_space));
   add(i.material_ao.empty(), i.material_ao_channel, i.albedo.empty(), i.albedo_channels);
   add(e.samples, e.bias, int(e.elevation), int(e.sample_kernel), int(e.range_check));
-  add(int(e.thickness), e.thickness_length, int(e.resolution), int(e.denoise));
+  add(int(e.thickness), e.thickness_length, int(e.resolution), e.stride, int(e.denoise));
   add(e.denoise_radius, fmt::format("{}", fmt::join(e.denoise_kernel, ",")), e.denoise_depth_sigma);
   // The camera by what it says; where files lie is not part of it, so that a job has the same digest wherever its folder is mounted.
   add(i.camera.empty() ? std::string() : read_text(i.camera, "camera", "--camera"));

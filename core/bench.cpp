@@ -10,6 +10,7 @@
 #include <memory>
 #include <tuple>
 
+#include "core/chain.h"
 #include "core/error.h"
 #include "core/exr.h"
 #include "core/host_frame.h"
@@ -167,7 +168,7 @@ BenchReport run_bench(gpu::Device& device, const Suite& suite, const std::vector
       row.candidate = candidates[c].name;
       row.ao = std::move(results[c].ao);
       timings[c].summarize(row);
-      row.samples_per_pixel = 2.0 * settings.slices * settings.steps * (1 - double(results[c].sky_pixels) / double(loaded.host.depth.size()));
+      row.samples_per_pixel = samples_per_pixel(settings) * (1 - double(results[c].sky_pixels) / double(loaded.host.depth.size()));
       measure(row, loaded, settings, suite.reference_slices ? &references : nullptr);
       report.rows.push_back(std::move(row));
     }

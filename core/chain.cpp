@@ -12,6 +12,7 @@ FrameOutputs run_chain(gpu::Recorder& gpu, const FrameInputs& frame, const Estim
     if (plane) gpu.upload(*plane);
 
   const GBuffer gbuffer = prepare(gpu, frame, wants(output, &FrameOutputs::depth) ? gpu::Use::download : gpu::Use::device);
+  reconstruct(gpu, gbuffer);
   out.counts = gbuffer.counts;
   DebugStages stages;
   if (needs_ao(output) || frame.beauty) {
@@ -19,7 +20,7 @@ FrameOutputs run_chain(gpu::Recorder& gpu, const FrameInputs& frame, const Estim
     const GBuffer work = reduced ? downsample(gpu, gbuffer, frame, settings) : gbuffer;
     out.ao = &estimate(gpu, work, frame, settings);
     stages = {work, out.ao, out.ao};
-    if (settings.denoise != Denoise::none) stages.denoised_ao = out.ao = &denoise(gpu, work, *out.ao, settings);
+    if (settings.denoise != Denoise::none) stages.denoised_ao = out.ao = &denoise(gpu, work, *out.ao, frame, settings);
     if (reduced) out.ao = &upsample(gpu, gbuffer, work, *out.ao, frame, settings);
     if (shapes(settings) || frame.material_ao) out.ao = &shape(gpu, gbuffer, *out.ao, frame, settings);
   }
@@ -34,6 +35,11 @@ FrameOutputs run_chain(gpu::Recorder& gpu, const FrameInputs& frame, const Estim
     if (result) gpu.download(*result);
   for (const auto& plane : out.debug) gpu.download(*plane.values);
   return out;
+}
+
+double samples_per_pixel(const EstimatorSettings& settings) {
+  const double factor = double(settings.resolution), samples = settings.estimator == Estimator::crytek ? settings.samples : 2 * settings.slices * settings.steps;
+  return samples / (factor * factor * settings.stride);
 }
 
 bool needs_ao(const OutputSettings& output) {

@@ -20,6 +20,7 @@
 #include "kernels/horizon.h"
 #include "kernels/multi_bounce.h"
 #include "kernels/prepare.h"
+#include "kernels/reconstruct.h"
 #include "kernels/shape.h"
 #include "kernels/specular_occlusion.h"
 #include "kernels/upsample.h"
@@ -40,6 +41,7 @@ float thickness_of(const EstimatorSettings& settings) {
 }
 
 gpu::Extent extent_of(const View& view) { return {uint(view.size.x), uint(view.size.y)}; }
+uint groups_of(int pixels, uint size) { return (uint(pixels) + size - 1) / size; }
 vec3 to_vec3(const std::array<double, 3>& v) { return {float(v[0]), float(v[1]), float(v[2])}; }
 
 uint normal_form_of(const FrameInputs& frame) {
@@ -74,7 +76,20 @@ Params slice_parameters(const GBuffer& gbuffer, const FrameInputs& frame, const 
   params.bias = float(settings.bias);
   return params;
 }
-std::vector<uint> slice_constants(const EstimatorSettings& settings) { return {uint(settings.slices), uint(settings.steps), uint(settings.falloff)}; }
+std::vector<uint> slice_constants(const EstimatorSettings& settings) {
+  return {uint(settings.slices), uint(settings.steps), uint(settings.falloff), uint(settings.stride)};
+}
+
+/// The buffer for an estimate, and the invocations that make it: one for each pixel that the stride does not leave out.
+gpu::Buffer& ao_buffer(gpu::Recorder& gpu, const GBuffer& gbuffer, const EstimatorSettings& settings) {
+  gpu::Buffer& ao = gpu.buffer("ao", plane_bytes(gbuffer.view), gpu::Use::download);
+  if (settings.stride > 1) gpu.clear(ao);
+  return ao;
+}
+gpu::Extent estimated_extent(const View& view, const EstimatorSettings& settings) {
+  const auto stride = uint(settings.stride);
+  return {(uint(view.size.x) + stride - 1) / stride, uint(view.size.y)};
+}
 
 /// The grid of blocks that the pixels of an estimate stand for: it begins at the display window's corner, so that a crop has the blocks of the whole.
 struct BlockGrid {
@@ -108,7 +123,8 @@ std::vector<double> denoise_weights(const EstimatorSettings& settings) {
 GBuffer prepare(gpu::Recorder& gpu, const FrameInputs& frame, gpu::Use depth_use, const std::string& prefix) {
   GBuffer gbuffer{frame.view, &gpu.buffer(prefix + "depth", plane_bytes(frame.view), depth_use),
                   &gpu.buffer(prefix + "normal", plane_bytes(frame.view), gpu::Use::device),
-                  &gpu.buffer(prefix + "counts", sizeof(FrameCounts), gpu::Use::download)};
+                  &gpu.buffer(prefix + "counts", sizeof(FrameCounts), gpu::Use::download),
+                  &gpu.buffer(prefix + "missing", sizeof(GroupCount), gpu::Use::upload)};
   PrepareParams params{};
   params.view = frame.view;
   params.view_from_normal_x = to_vec3(frame.view_from_normal[0]);
@@ -125,14 +141,22 @@ GBuffer prepare(gpu::Recorder& gpu, const FrameInputs& frame, gpu::Use depth_use
   params.sky_depth = float(map.sky_depth);
   params.normal_unorm = frame.normal_unorm ? 1 : 0;
   gpu.clear(*gbuffer.counts);
+  gbuffer.missing->as<GroupCount>()[0] = {groups_of(frame.view.size.x, kGroupX), groups_of(frame.view.size.y, kGroupY), 0};
+  gpu.upload(*gbuffer.missing);
   gpu.dispatch("prepare", params,
                {{kPrepareRawDepth, *frame.depth},
                 {kPrepareRawNormal, frame.normal ? *frame.normal : *frame.depth},
                 {kPrepareDepth, *gbuffer.depth},
                 {kPrepareNormal, *gbuffer.normal},
-                {kPrepareCounts, *gbuffer.counts}},
+                {kPrepareCounts, *gbuffer.counts},
+                {kPrepareMissing, *gbuffer.missing}},
                extent_of(frame.view), {map.form, normal_form_of(frame)});
   return gbuffer;
+}
+
+void reconstruct(gpu::Recorder& gpu, const GBuffer& gbuffer) {
+  gpu.dispatch("reconstruct", ReconstructParams{gbuffer.view}, {{kReconstructDepth, *gbuffer.depth}, {kReconstructNormal, *gbuffer.normal}},
+               gpu::Extent(*gbuffer.missing));
 }
 
 GBuffer downsample(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings) {
@@ -167,21 +191,26 @@ gpu::Buffer& estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInp
 }
 
 gpu::Buffer& horizon(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings) {
-  gpu::Buffer& ao = gpu.buffer("ao", plane_bytes(gbuffer.view), gpu::Use::download);
+  gpu::Buffer& ao = ao_buffer(gpu, gbuffer, settings);
+  std::vector<uint> constants = slice_constants(settings);
+  constants.push_back(settings.thickness == ThicknessKind::automatic  ? kThicknessWidth
+                      : settings.thickness == ThicknessKind::constant ? kThicknessLength
+                                                                      : kThicknessEndless);
   gpu.dispatch("horizon", slice_parameters<HorizonParams>(gbuffer, frame, settings),
-               {{kHorizonDepth, *gbuffer.depth}, {kHorizonNormal, *gbuffer.normal}, {kHorizonAo, ao}}, extent_of(gbuffer.view), slice_constants(settings));
+               {{kHorizonDepth, *gbuffer.depth}, {kHorizonNormal, *gbuffer.normal}, {kHorizonAo, ao}}, estimated_extent(gbuffer.view, settings), constants);
   return ao;
 }
 
 gpu::Buffer& bitmask(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings) {
-  gpu::Buffer& ao = gpu.buffer("ao", plane_bytes(gbuffer.view), gpu::Use::download);
+  gpu::Buffer& ao = ao_buffer(gpu, gbuffer, settings);
   gpu.dispatch("bitmask", slice_parameters<BitmaskParams>(gbuffer, frame, settings),
-               {{kBitmaskDepth, *gbuffer.depth}, {kBitmaskNormal, *gbuffer.normal}, {kBitmaskAo, ao}}, extent_of(gbuffer.view), slice_constants(settings));
+               {{kBitmaskDepth, *gbuffer.depth}, {kBitmaskNormal, *gbuffer.normal}, {kBitmaskAo, ao}}, estimated_extent(gbuffer.view, settings),
+               slice_constants(settings));
   return ao;
 }
 
 gpu::Buffer& hbao(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings) {
-  gpu::Buffer& ao = gpu.buffer("ao", plane_bytes(gbuffer.view), gpu::Use::download);
+  gpu::Buffer& ao = ao_buffer(gpu, gbuffer, settings);
   const double radius = settings.radius.value();
   HbaoParams params{};
   params.view = gbuffer.view;
@@ -191,13 +220,13 @@ gpu::Buffer& hbao(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs&
   params.from_surface = settings.elevation == Elevation::surface ? 1 : 0;
   params.noise_origin = frame.noise_origin;
   params.noise_shift = noise_shift(frame.frame, settings.seed);
-  gpu.dispatch("hbao", params, {{kHbaoDepth, *gbuffer.depth}, {kHbaoNormal, *gbuffer.normal}, {kHbaoAo, ao}}, extent_of(gbuffer.view),
-               {uint(settings.slices), uint(settings.steps), uint(settings.falloff)});
+  gpu.dispatch("hbao", params, {{kHbaoDepth, *gbuffer.depth}, {kHbaoNormal, *gbuffer.normal}, {kHbaoAo, ao}},
+               estimated_extent(gbuffer.view, settings), slice_constants(settings));
   return ao;
 }
 
 gpu::Buffer& crytek(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings) {
-  gpu::Buffer& ao = gpu.buffer("ao", plane_bytes(gbuffer.view), gpu::Use::download);
+  gpu::Buffer& ao = ao_buffer(gpu, gbuffer, settings);
   CrytekParams params{};
   params.view = gbuffer.view;
   params.radius = float(settings.radius.value());
@@ -206,30 +235,32 @@ gpu::Buffer& crytek(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInput
   params.range_check = range_check_of(settings.range_check);
   params.noise_origin = frame.noise_origin;
   params.noise_shift = noise_shift(frame.frame, settings.seed);
-  gpu.dispatch("crytek", params, {{kCrytekDepth, *gbuffer.depth}, {kCrytekNormal, *gbuffer.normal}, {kCrytekAo, ao}}, extent_of(gbuffer.view),
-               {uint(settings.samples)});
+  gpu.dispatch("crytek", params, {{kCrytekDepth, *gbuffer.depth}, {kCrytekNormal, *gbuffer.normal}, {kCrytekAo, ao}},
+               estimated_extent(gbuffer.view, settings), {uint(settings.samples), uint(settings.stride)});
   return ao;
 }
 
-gpu::Buffer& denoise(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& ao, const EstimatorSettings& settings) {
+gpu::Buffer& denoise(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& ao, const FrameInputs& frame, const EstimatorSettings& settings) {
   const std::vector<double> weights = denoise_weights(settings);
   const auto radius = uint(weights.size() - 1);
   DenoiseParams params{};
   params.view = gbuffer.view;
+  params.origin = block_grid(frame, settings).origin;
   params.depth_sigma = float(settings.denoise_depth_sigma);
   const double sum = 2 * std::accumulate(weights.begin(), weights.end(), 0.0) - weights.front();
   std::ranges::transform(weights, params.weight, [&](double weight) { return float(weight / sum); });
   gpu::Buffer& rows = gpu.buffer("denoised rows", plane_bytes(gbuffer.view), gpu::Use::device);
   gpu::Buffer& result = gpu.buffer("denoised", plane_bytes(gbuffer.view), gpu::Use::download);
-  const auto along = [&](ivec2 axis, const gpu::Buffer& from, const gpu::Buffer& to) {
+  const auto along = [&](ivec2 axis, const gpu::Buffer& from, const gpu::Buffer& to, uint sparse, uint stride) {
     params.axis = axis;
-    const int length = axis.x ? gbuffer.view.size.x : gbuffer.view.size.y, others = axis.x ? gbuffer.view.size.y : gbuffer.view.size.x;
+    const uint length = uint(axis.x ? gbuffer.view.size.x : gbuffer.view.size.y), others = uint(axis.x ? gbuffer.view.size.y : gbuffer.view.size.x);
     gpu.dispatch("denoise", params,
                  {{kDenoiseAo, from}, {kDenoiseDepth, *gbuffer.depth}, {kDenoiseNormal, *gbuffer.normal}, {kDenoiseResult, to}},
-                 {uint(others), uint((length + kDenoiseRun - 1) / kDenoiseRun)}, {radius, settings.denoise_depth_sigma > 0 ? 1u : 0u});
+                 {others, (length + stride - 1 + kDenoiseRun - 1) / kDenoiseRun}, {radius, settings.denoise_depth_sigma > 0 ? 1u : 0u, sparse, stride});
   };
-  along({1, 0}, ao, rows);
-  along({0, 1}, rows, result);
+  const bool dense = settings.stride == 1;
+  along({1, 0}, ao, rows, dense ? kDenoiseDense : kDenoiseSparseRows, uint(settings.stride));
+  along({0, 1}, rows, result, dense ? kDenoiseDense : kDenoiseSparseColumns, 1);
   return result;
 }
 
@@ -329,7 +360,9 @@ DebugPlane debug(gpu::Recorder& gpu, const DebugView& view, const GBuffer& gbuff
   if (view.source == DebugSource::normals_from_depth) {
     FrameInputs depth_only = frame;
     depth_only.normal = nullptr;
-    values = prepare(gpu, depth_only, gpu::Use::device, "debug ").normal;
+    const GBuffer from_depth = prepare(gpu, depth_only, gpu::Use::device, "debug ");
+    reconstruct(gpu, from_depth);
+    values = from_depth.normal;
   }
   gpu::Buffer& result = gpu.buffer(std::string("debug ") + view.name, plane_bytes(shown.view), gpu::Use::download);
   const DebugParams params{shown.view, view.kind};

@@ -31,16 +31,19 @@ struct FrameInputs {
   bool has_alpha = false;
 };
 
-/// What every estimator relies on: see prepare.comp.
+/// What every estimator relies on: see prepare.comp and reconstruct.comp.
 struct GBuffer {
   View view{};
   gpu::Buffer* depth;
   gpu::Buffer* normal;
-  gpu::Buffer* counts;  // one FrameCounts, for the host
+  gpu::Buffer* counts;   // one FrameCounts, for the host
+  gpu::Buffer* missing;  // the GroupCount of reconstruct
 };
 
 /// `depth_use`: Use::download where the host reads the depth. `prefix`: before the names of its buffers, where there is another G-buffer already.
 GBuffer prepare(gpu::Recorder& gpu, const FrameInputs& frame, gpu::Use depth_use = gpu::Use::device, const std::string& prefix = "");
+/// Puts normals where prepare found none.
+void reconstruct(gpu::Recorder& gpu, const GBuffer& gbuffer);
 /// The G-buffer of the settings' resolution: its pixels are the blocks of whole pixels of the display window.
 GBuffer downsample(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings);
 /// Visibility a pixel of the G-buffer, by the estimator of the settings.
@@ -50,7 +53,7 @@ gpu::Buffer& bitmask(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInpu
 gpu::Buffer& hbao(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings);
 gpu::Buffer& crytek(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings);
 /// Both directions of the settings' filter. `gbuffer` is that of `ao`.
-gpu::Buffer& denoise(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& ao, const EstimatorSettings& settings);
+gpu::Buffer& denoise(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& ao, const FrameInputs& frame, const EstimatorSettings& settings);
 /// From the pixels of `low` to those of `gbuffer`.
 gpu::Buffer& upsample(gpu::Recorder& gpu, const GBuffer& gbuffer, const GBuffer& low, const gpu::Buffer& ao, const FrameInputs& frame,
                       const EstimatorSettings& settings);

@@ -91,6 +91,7 @@ struct EstimatorSettings {
   ThicknessKind thickness = ThicknessKind::automatic;  // how far an occluder goes on behind what is seen of it; automatic: as deep as it is wide
   double thickness_length = 0;       // scene units, > 0; with ThicknessKind::constant
   Resolution resolution = Resolution::full;
+  int stride = 1;                    // the estimate is made for one pixel of so many in a row, 1, 2 or 4; the bilateral denoiser gives the others theirs
   Denoise denoise = Denoise::bilateral;
   int denoise_radius = 3;            // pixels of the estimate to each side, 1 to 8; with Denoise::bilateral
   std::vector<double> denoise_kernel;  // instead: 2 to 9 weights from the centre outwards, none negative, the centre's above 0; empty: a Gaussian

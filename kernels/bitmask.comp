@@ -16,6 +16,7 @@
 #include "normal.glsl"
 #include "arcs.glsl"
 #include "noise.glsl"
+#include "stride.glsl"
 #include "falloff.glsl"
 #include "slice.glsl"
 
@@ -23,6 +24,7 @@ layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 layout(constant_id = kBitmaskSlicesId) const uint kSlices = 3;
 layout(constant_id = kBitmaskStepsId) const uint kSteps = 6;
 layout(constant_id = kBitmaskFalloffId) const uint kFalloff = kFalloffNone;
+layout(constant_id = kBitmaskStrideId) const int kStride = 1;
 layout(scalar, push_constant) uniform Push { BitmaskParams params; };
 layout(scalar, binding = kBitmaskDepth) readonly buffer Depth { float depth[]; };
 layout(scalar, binding = kBitmaskNormal) readonly buffer Normal { uint normal[]; };
@@ -50,7 +52,8 @@ float search(Receiver r, Side side, Reach reach, float jitter, float shift) {
     own = connected ? own : false;
     if (blocks) {
       const float width = own ? endless : length(place - start) + reach.pixel_size * scale;
-      const float back = back_cot(r, place, reach.thickness > 0.0 ? reach.thickness : width, reach.radius);
+      const vec2 back_place = back_of(r, place, reach.thickness > 0.0 ? reach.thickness : width, reach.radius);
+      const float back = back_place.y / back_place.x;
       const bool joined = connected ? last_blocks : false;
       const uint before = sectors_to(side, whole, joined ? max(cot, last_cot) : cot, shift);
       const uint behind = sectors_to(side, whole, min(back, joined ? min(cot, last_cot) : cot), shift);
@@ -67,7 +70,7 @@ float search(Receiver r, Side side, Reach reach, float jitter, float shift) {
 }
 
 void main() {
-  const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  const ivec2 pixel = estimated_pixel(gl_GlobalInvocationID.xy, params.noise_origin, kStride);
   const View view = params.view;
   if (!inside(view, pixel)) return;
   const int index = index_of(view, pixel);
@@ -87,7 +90,7 @@ void main() {
     const float shift = fract(noise.x * 7.0 + noise.y * 13.0 + kGolden * float(s));
     for (int sign = -1; sign <= 1; sign += 2) {
       const float jitter = fract(noise.y + kGolden * float(2u * s + uint(sign > 0)));
-      blocked += slice.share * slice.weight * search(r, side_of(view, r, slice, float(sign), reach.radius), reach, jitter, shift);
+      blocked += slice.share * slice.weight * search(r, side_of(view, r, slice, float(sign), reach), reach, jitter, shift);
     }
   }
   ao[index] = whole > 0.0 ? clamp(1.0 - blocked / whole, 0.0, 1.0) : 1.0;

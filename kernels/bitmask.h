@@ -12,6 +12,7 @@ ALCOVE_CONSTANT uint kBitmaskAo = 2;      // out: float a pixel, visibility in [
 ALCOVE_CONSTANT uint kBitmaskSlicesId = 0;   // specialization: slices a pixel
 ALCOVE_CONSTANT uint kBitmaskStepsId = 1;    // specialization: steps to each side of a slice
 ALCOVE_CONSTANT uint kBitmaskFalloffId = 2;  // specialization: one of kFalloff* of falloff.glsl
+ALCOVE_CONSTANT uint kBitmaskStrideId = 3;   // specialization: one pixel of so many in a row, 1, 2 or 4: see stride.glsl
 
 struct BitmaskParams {
   View view;

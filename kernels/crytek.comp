@@ -14,9 +14,11 @@
 #include "view.glsl"
 #include "normal.glsl"
 #include "noise.glsl"
+#include "stride.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 layout(constant_id = kCrytekSamplesId) const uint kSamples = 16;
+layout(constant_id = kCrytekStrideId) const int kStride = 1;
 layout(scalar, push_constant) uniform Push { CrytekParams params; };
 layout(scalar, binding = kCrytekDepth) readonly buffer Depth { float depth[]; };
 layout(scalar, binding = kCrytekNormal) readonly buffer Normal { uint normal[]; };
@@ -43,7 +45,7 @@ float range_weight(float depth_difference) {
 }
 
 void main() {
-  const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  const ivec2 pixel = estimated_pixel(gl_GlobalInvocationID.xy, params.noise_origin, kStride);
   if (!inside(params.view, pixel)) return;
   const int index = index_of(params.view, pixel);
   const float z = depth[index];

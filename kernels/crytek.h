@@ -10,6 +10,7 @@ ALCOVE_CONSTANT uint kCrytekNormal = 1;  // in: uint a pixel, from prepare
 ALCOVE_CONSTANT uint kCrytekAo = 2;      // out: float a pixel, visibility in [0, 1], 1 = open
 
 ALCOVE_CONSTANT uint kCrytekSamplesId = 0;  // specialization: samples a pixel
+ALCOVE_CONSTANT uint kCrytekStrideId = 1;   // specialization: one pixel of so many in a row, 1, 2 or 4: see stride.glsl
 
 ALCOVE_CONSTANT uint kRangeNone = 0;        // every hit counts fully
 ALCOVE_CONSTANT uint kRangeRatio = 1;       // smoothstep(0, 1, radius / dz): fully within the radius, less beyond

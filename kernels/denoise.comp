@@ -1,7 +1,8 @@
 // Smooths the visibility along one axis, over each surface by itself; rows, then columns, make the separable filter.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// In: visibility, depth, normals. Out: visibility; constant stays exactly constant, sky stays 1 and is never mixed in.
+// In: visibility, depth, normals. Out: visibility; constant stays exactly constant, sky stays 1 and is never mixed in. Where one pixel of `stride` has an
+// estimate, rows give every pixel the mean of those in reach and how much they weigh together, by which columns then weigh the rows.
 // Tomasi & Manduchi, "Bilateral Filtering for Gray and Color Images", 1998, with the distance from the other pixel's tangent plane in the place of
 // colour. Two pixels mix as far as each lies in the plane of the other, which sees edges, steps and creases alike and leaves a plane whole at every
 // tilt: the weight is max(0, 1 - (h / sigma)^2), h the larger of both distances, in pixels' widths there. It is the same for both, so it is
@@ -11,31 +12,48 @@
 #include "denoise.h"
 #include "view.glsl"
 #include "normal.glsl"
+#include "stride.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 layout(constant_id = kDenoiseRadiusId) const int kRadius = 3;
 layout(constant_id = kDenoiseByDepthId) const uint kByDepth = 0;
+layout(constant_id = kDenoiseSparseId) const uint kSparse = kDenoiseDense;
+layout(constant_id = kDenoiseStrideId) const int kStride = 1;
 layout(scalar, push_constant) uniform Push { DenoiseParams params; };
-layout(scalar, binding = kDenoiseAo) readonly buffer Ao { float ao[]; };
+layout(scalar, binding = kDenoiseAo) readonly buffer Ao { uint ao[]; };
 layout(scalar, binding = kDenoiseDepth) readonly buffer Depth { float depth[]; };
 layout(scalar, binding = kDenoiseNormal) readonly buffer Normal { uint normal[]; };
-layout(scalar, binding = kDenoiseResult) writeonly buffer Result { float result[]; };
+layout(scalar, binding = kDenoiseResult) writeonly buffer Result { uint result[]; };
 
 /// Two pixels do not mix when one lies further from the plane of the other than this many pixels are wide there.
 const float kPlaneSigma = 1.0;
 
+/// Pixels without an estimate of their own need some: where nothing alike is in reach, they get what is least unlike, for it weighs this over its height squared.
+const float kLeastSimilarity = 1e-4;
+
 struct Tap {
-  float ao, z;
+  float ao, weight, z;
   float scale;          // scene units a unit of tangent_of(): z, or 1 where the view is orthographic
   float ahead, across;  // height above this tap's plane, in sigmas, of what is a unit further away, and a pixel along the axis at scale 1
 };
 
+/// The mean of a row, and how much its pixels weigh together: what rows hand to columns where the estimate is sparse.
+uint pack_mean(float mean, float weight) { return packUnorm2x16(vec2(mean, sqrt(weight))); }
+
+/// Whether tap i of a run has visibility to give.
+bool is_known(int i) { return (i + (kStride - 1) * kRadius) % kStride == 0; }
+
 /// What lies outside the image is as sky: infinitely far from every plane.
-Tap load(ivec2 pixel) {
+Tap load(ivec2 pixel, bool has_ao) {
   const bool known = inside(params.view, pixel);
   const ivec2 nearest = clamp(pixel, ivec2(0), params.view.size - 1);
   const int index = index_of(params.view, nearest);
-  Tap tap = Tap(ao[index], known ? depth[index] : kSkyDepth, 1.0, kSkyDepth, 0.0);
+  Tap tap = Tap(0.0, 0.0, known ? depth[index] : kSkyDepth, 1.0, kSkyDepth, 0.0);
+  if (has_ao) {
+    const vec2 mean = kSparse == kDenoiseSparseColumns ? unpackUnorm2x16(ao[index]) : vec2(uintBitsToFloat(ao[index]), 1.0);
+    tap.ao = mean.x;
+    tap.weight = mean.y * mean.y;
+  }
   if (kByDepth != 0) return tap;
   const bool perspective = params.view.orthographic == 0;
   tap.scale = perspective ? tap.z : 1.0;
@@ -52,31 +70,38 @@ float similarity(Tap a, Tap b, float pixels) {
   const float further = b.z - a.z;
   if (kByDepth != 0) return exp(-abs(further) / (params.depth_sigma * min(a.z, b.z)));
   const float above_a = a.ahead * further + a.across * pixels * b.scale, above_b = b.ahead * further + b.across * pixels * a.scale;
-  return max(0.0, 1.0 - max(above_a * above_a, above_b * above_b));
+  const float above_sq = max(above_a * above_a, above_b * above_b);
+  return max(kSparse == kDenoiseDense ? 0.0 : kLeastSimilarity / (1.0 + above_sq), 1.0 - above_sq);
 }
 
 void main() {
-  const ivec2 first = int(gl_GlobalInvocationID.x) * params.axis.yx + kDenoiseRun * int(gl_GlobalInvocationID.y) * params.axis;
-  if (!inside(params.view, first)) return;
+  // Runs of a sparse estimate begin where it has a pixel.
+  const int line = int(gl_GlobalInvocationID.x), known = first_estimated(line, params.origin, kStride);
+  const ivec2 first = line * params.axis.yx + (kDenoiseRun * int(gl_GlobalInvocationID.y) + known - (known > 0 ? kStride : 0)) * params.axis;
+  if (any(greaterThanEqual(first, params.view.size))) return;
 
   Tap taps[kDenoiseRun + 2 * kRadius];
   float change[kDenoiseRun + 2 * kRadius], whole[kDenoiseRun + 2 * kRadius];
   for (int i = 0; i < kDenoiseRun + 2 * kRadius; i++) {
-    taps[i] = load(first + (i - kRadius) * params.axis);
+    taps[i] = load(first + (i - kRadius) * params.axis, is_known(i));
     change[i] = 0.0;
-    whole[i] = params.weight[0];
+    whole[i] = params.weight[0] * taps[i].weight;
+    if (kSparse == kDenoiseSparseRows) change[i] = whole[i] * taps[i].ao;
     for (int apart = 1; apart <= kRadius; apart++) {
       const int j = i - apart;
-      if (j < 0 || i < kRadius || j >= kDenoiseRun + kRadius) continue;
-      const float weight = params.weight[apart] * similarity(taps[j], taps[i], float(apart)), difference = weight * (taps[i].ao - taps[j].ao);
-      change[j] += difference;
-      change[i] -= difference;
-      whole[j] += weight;
-      whole[i] += weight;
+      if (j < 0 || i < kRadius || j >= kDenoiseRun + kRadius || !(is_known(i) || is_known(j))) continue;
+      const float weight = params.weight[apart] * similarity(taps[j], taps[i], float(apart)), to_j = weight * taps[i].weight, to_i = weight * taps[j].weight;
+      // Changes of a pixel's own visibility, so that what is constant stays so to the bit; in sparse rows, which have none, of 0.
+      change[j] += to_j * (kSparse == kDenoiseSparseRows ? taps[i].ao : taps[i].ao - taps[j].ao);
+      change[i] += to_i * (kSparse == kDenoiseSparseRows ? taps[j].ao : taps[j].ao - taps[i].ao);
+      whole[j] += to_j;
+      whole[i] += to_i;
     }
     const int done = i - kRadius;
     const ivec2 pixel = first + (done - kRadius) * params.axis;
-    if (done >= kRadius && inside(params.view, pixel))
-      result[index_of(params.view, pixel)] = taps[done].z < kSkyDepth ? clamp(taps[done].ao + change[done] / whole[done], 0.0, 1.0) : 1.0;
+    if (done < kRadius || !inside(params.view, pixel)) continue;
+    const float own = kSparse == kDenoiseSparseRows ? 0.0 : taps[done].ao;
+    const float mean = taps[done].z < kSkyDepth && whole[done] > 0.0 ? clamp(own + change[done] / whole[done], 0.0, 1.0) : 1.0;
+    result[index_of(params.view, pixel)] = kSparse == kDenoiseSparseRows ? pack_mean(mean, whole[done]) : floatBitsToUint(mean);
   }
 }

@@ -16,12 +16,14 @@
 #include "view.glsl"
 #include "normal.glsl"
 #include "noise.glsl"
+#include "stride.glsl"
 #include "falloff.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 layout(constant_id = kHbaoSlicesId) const uint kSlices = 3;
 layout(constant_id = kHbaoStepsId) const uint kSteps = 6;
 layout(constant_id = kHbaoFalloffId) const uint kFalloff = kFalloffNone;
+layout(constant_id = kHbaoStrideId) const int kStride = 1;
 layout(scalar, push_constant) uniform Push { HbaoParams params; };
 layout(scalar, binding = kHbaoDepth) readonly buffer Depth { float depth[]; };
 layout(scalar, binding = kHbaoNormal) readonly buffer Normal { uint normal[]; };
@@ -69,7 +71,7 @@ float occlusion(Side side, ivec2 pixel, vec3 position, float jitter) {
 }
 
 void main() {
-  const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  const ivec2 pixel = estimated_pixel(gl_GlobalInvocationID.xy, params.noise_origin, kStride);
   if (!inside(params.view, pixel)) return;
   const int index = index_of(params.view, pixel);
   const float z = depth[index];

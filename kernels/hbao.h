@@ -12,6 +12,7 @@ ALCOVE_CONSTANT uint kHbaoAo = 2;      // out: float a pixel, visibility in [0, 
 ALCOVE_CONSTANT uint kHbaoSlicesId = 0;   // specialization: lines through a pixel, each searched to both sides
 ALCOVE_CONSTANT uint kHbaoStepsId = 1;    // specialization: steps to each side
 ALCOVE_CONSTANT uint kHbaoFalloffId = 2;  // specialization: one of kFalloff* of falloff.glsl, the attenuation W
+ALCOVE_CONSTANT uint kHbaoStrideId = 3;   // specialization: one pixel of so many in a row, 1, 2 or 4: see stride.glsl
 
 struct HbaoParams {
   View view;

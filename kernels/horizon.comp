@@ -18,13 +18,17 @@
 #include "normal.glsl"
 #include "arcs.glsl"
 #include "noise.glsl"
+#include "stride.glsl"
 #include "falloff.glsl"
 #include "slice.glsl"
+#include "sectors.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 layout(constant_id = kHorizonSlicesId) const uint kSlices = 3;
 layout(constant_id = kHorizonStepsId) const uint kSteps = 6;
 layout(constant_id = kHorizonFalloffId) const uint kFalloff = kFalloffNone;
+layout(constant_id = kHorizonThicknessId) const uint kThickness = kThicknessWidth;
+layout(constant_id = kHorizonStrideId) const int kStride = 1;
 layout(scalar, push_constant) uniform Push { HorizonParams params; };
 layout(scalar, binding = kHorizonDepth) readonly buffer Depth { float depth[]; };
 layout(scalar, binding = kHorizonNormal) readonly buffer Normal { uint normal[]; };
@@ -33,150 +37,100 @@ layout(scalar, binding = kHorizonAo) writeonly buffer Ao { float ao[]; };
 /// A run is wider than the distance of its outer samples by a pixel and, on average, by this part of the gaps to the samples before and behind it.
 const float kGapShare = 0.5;
 
-/// Two samples on either side of the sphere of the radius whose squared distances are within this factor of its square are taken for one surface.
+
+/// All that is endless is one surface. Two samples of it on either side of the sphere are neighbours if their squared distances are within this factor of its.
 const float kSameSurface = 1.44;
 
-const bool kDense = kSteps > uint(kManySteps);
 const float kNone = 1e30;
-const vec2 kEmpty = vec2(kNone, -kNone);
 
-/// A run of samples that is not the receiver's own surface. Places are (across V, towards the eye) from the receiver.
+/// A run of samples that is not the receiver's own surface. Angles go by slope_of(); where far > near nothing of it blocks.
 struct Run {
-  vec2 start, end;       // its outer samples
-  float gap;             // steps from the sample before it
-  float near, far;       // largest and smallest cotangent of the samples that block
-  vec2 first;            // the first of these
+  vec2 start, end;  // its outer samples
+  float gap;        // steps from the sample before it
+  float near, far;  // largest and smallest of the samples that block
 };
 
-/// What is blocked: intervals of cotangents (low, high), empty where low > high. The own surface's goes down to the tangent plane.
+/// What is blocked: from `far` to `near`, by the receiver's own surface or all that is endless, and the sectors of runs.
 struct Blocked {
-  float own;
-  vec2 a, b, c;
+  float near, far;
   uint sectors;
-  float shift;  // of the sectors' boundaries
 };
 
 // Logic without branches: `&&` and `||` would jump.
 bool both(bool a, bool b) { return a ? b : false; }
 
-/// Adds x to a if they overlap.
-bool joins(inout vec2 a, vec2 x) {
-  const bool overlap = both(x.x <= a.y, x.y >= a.x);
-  a = overlap ? vec2(min(a.x, x.x), max(a.y, x.y)) : a;
-  return overlap;
+/// The arc integral over what is blocked.
+float blocked_arc(Side side, Blocked blocked, float shift) {
+  const float plane = slope_of(side.ahead), far = max(blocked.far, plane);
+  const float own = blocked.near > far ? arc_to(side, place_at(far)) - arc_to(side, place_at(blocked.near)) : 0.0;
+  return kThickness == kThicknessEndless ? own : own + arc_of(side, blocked.sectors & ~sectors_below(max(blocked.near, plane), shift));
 }
 
-float arc_within(Side side, vec2 interval) { return interval.x < interval.y ? arc_to(side, interval.x) - arc_to(side, interval.y) : 0.0; }
-
-/// The arc integral over all that is blocked.
-float blocked_arc(Side side, Blocked blocked) {
-  vec2 own = vec2(side.plane_cot, blocked.own), a = max(blocked.a, side.plane_cot), b = max(blocked.b, side.plane_cot), c = max(blocked.c, side.plane_cot);
-  a = joins(own, a) ? kEmpty : a;
-  b = joins(own, b) ? kEmpty : b;
-  b = joins(a, b) ? kEmpty : b;
-  c = joins(own, c) ? kEmpty : c;
-  c = joins(a, c) ? kEmpty : c;
-  c = joins(b, c) ? kEmpty : c;
-  const float sum = arc_within(side, own) + arc_within(side, a) + arc_within(side, b) + arc_within(side, c);
-  if (!kDense) return sum;
-  const float whole = whole_arc(side);
-  uint others = blocked.sectors & sectors_to(side, whole, own.y, blocked.shift);
-  others &= a.x < a.y ? sectors_to(side, whole, a.y, blocked.shift) | ~sectors_to(side, whole, a.x, blocked.shift) : ~0u;
-  others &= b.x < b.y ? sectors_to(side, whole, b.y, blocked.shift) | ~sectors_to(side, whole, b.x, blocked.shift) : ~0u;
-  others &= c.x < c.y ? sectors_to(side, whole, c.y, blocked.shift) | ~sectors_to(side, whole, c.x, blocked.shift) : ~0u;
-  return sum + whole * float(bitCount(others)) / float(kSectors);
-}
-
-void block(Side side, inout Blocked blocked, vec2 span) {
-  const bool real = span.x <= span.y, in_a = joins(blocked.a, span), in_b = joins(blocked.b, span), in_c = joins(blocked.c, span);
-  const bool left = both(real, both(both(!in_a, !in_b), !in_c));
-  const bool to_a = both(left, blocked.a.y < blocked.a.x), to_b = both(both(left, !to_a), blocked.b.y < blocked.b.x);
-  const bool rest = both(left, both(!to_a, !to_b)), to_c = both(rest, kDense ? blocked.c.y < blocked.c.x : true);
-  blocked.a = to_a ? span : blocked.a;
-  blocked.b = to_b ? span : blocked.b;
-  blocked.c = to_c ? vec2(min(blocked.c.x, span.x), max(blocked.c.y, span.y)) : blocked.c;
-  if (kDense) {
-    const float whole = whole_arc(side);
-    const uint sectors = sectors_to(side, whole, span.x, blocked.shift) & ~sectors_to(side, whole, span.y, blocked.shift);
-    blocked.sectors |= both(rest, !to_c) ? sectors : 0u;
-  }
-}
-
-/// Ends a run: what it blocks is known now. Returns the weighted arc that is newly blocked, 0 without falloff, where the union is integrated at the end.
-float end_run(Receiver r, Side side, Reach reach, Run run, float z, float gap_behind, inout Blocked blocked) {
+/// What a run blocks that is `gap_behind` steps wide of the sample behind it.
+uint sectors_of(Receiver r, Reach reach, Run run, float z, float gap_behind, float shift) {
   const float pixel = reach.pixel_size * (r.perspective ? z : 1.0);
   const float width = length(run.end - run.start) + pixel * (1.0 + kGapShare * (run.gap + gap_behind));
-  const float back = back_cot(r, run.first, reach.thickness > 0.0 ? reach.thickness : width, reach.radius);
-  const vec2 span = run.near >= run.far ? vec2(min(back, run.far), run.near) : kEmpty;
-  if (kFalloff == kFalloffNone) {
-    block(side, blocked, span);
-    return 0.0;
-  }
-  const float before = blocked_arc(side, blocked);
-  block(side, blocked, span);
-  return run.near >= run.far ? falloff_weight(kFalloff, length(run.first), reach.falloff_start, reach.radius) * (blocked_arc(side, blocked) - before) : 0.0;
+  // What is as deep as wide is not clipped to the sphere: no difference in the error, and it takes a tenth off the time.
+  const float back = slope_of(kThickness == kThicknessWidth ? run.start + width * away_from_eye(r, run.start) : back_of(r, run.start, reach.thickness, reach.radius));
+  return run.near >= run.far ? sectors_below(run.near, shift) & ~sectors_below(min(back, run.far), shift) : 0u;
 }
 
 /// The blocked part of a side's arc integral.
 float search(Receiver r, Side side, Reach reach, float jitter) {
   const int count = min(int(kSteps), int(side.reach));
-  float last_z = r.z, last_offset = 0.0, last_cot = 0.0, last_distance_sq = kNone, sum = 0.0;
-  const bool endless = isinf(reach.thickness);  // then all is one run: what is behind a surface is solid
-  bool own = !endless, was_within = true, last_blocks = false;
-  Blocked blocked = Blocked(side.plane_cot, kEmpty, kEmpty, kEmpty, 0u, fract(11.0 * jitter));
-  Run run = Run(vec2(0), vec2(0), 0.0, -kNone, kNone, vec2(1, 0));
+  const float shift = fract(11.0 * jitter);
+  const bool hard = kFalloff == kFalloffNone;
+  float last_z = r.z, last_offset = 0.0, last_slope = 0.0, last_distance_sq = kNone, last_arc = 0.0, sum = 0.0;
+  bool own = true, was_within = true;
+  Blocked blocked = Blocked(-1.0, kThickness == kThicknessEndless ? 1.0 : -1.0, 0u);
+  Run run = Run(vec2(0), vec2(0), 0.0, -1.0, 1.0);
   for (int k = 0; k < count; k++) {
-    const float offset = step_offset(k, int(kSteps), count, side.reach, jitter);
+    const float offset = step_offset(k, int(kSteps), count, side.reach, jitter), gap = offset - last_offset;
     const vec2 beside = round(side.direction_px * offset);
     const ivec2 hit = r.pixel + ivec2(beside);
     const float z = depth[hit.y * reach.width + hit.x], scale = r.perspective ? z : 1.0;
     const vec2 place = place_of(r, side, beside, z, scale);
-    const vec3 delta = offset_to(r, beside, z, scale);
-    const float cot = place.y / place.x, distance_sq = dot(delta, delta);
+    const float slope = slope_of(place), distance_sq = dot(place, place);
     const bool above = is_above(r, reach, place, distance_sq, beside, z, scale), within = distance_sq < reach.radius_sq;
     const bool blocks = both(above, within);
-    const float gap = offset - last_offset;
-    const bool connected = endless ? true : same_surface(r, reach, z, last_z, gap);
-    // A surface that crosses the sphere between two samples blocks up to there.
-    const bool crosses = both(above, both(within != was_within,
-        both(max(distance_sq, last_distance_sq) < kSameSurface * reach.radius_sq, min(distance_sq, last_distance_sq) * kSameSurface > reach.radius_sq)));
-    const float crossing = mix(cot, last_cot, (reach.radius_sq - distance_sq) / (last_distance_sq - distance_sq));
-    if (kFalloff == kFalloffNone ? !connected : true) {
-      sum += end_run(r, side, reach, run, last_z, gap, blocked);
-      if (connected) {  // falloff: each sample is weighted by itself, and goes on where the last one ended
-        run.near = last_blocks ? last_cot : -kNone;
-        run.far = last_blocks ? last_cot : kNone;
-        run.first = run.end;
-      } else {
-        own = false;
-        run = Run(place, place, gap, -kNone, kNone, vec2(1, 0));
-      }
-    }
-    if (own) {
-      const float horizon = max(blocks ? cot : -kNone, kFalloff == kFalloffNone && crosses ? crossing : -kNone);
-      if (kFalloff != kFalloffNone && horizon > blocked.own)
-        sum += falloff_weight(kFalloff, sqrt(distance_sq), reach.falloff_start, reach.radius) * (arc_to(side, blocked.own) - arc_to(side, horizon));
-      blocked.own = max(blocked.own, horizon);
-    } else {
-      const bool begins = both(run.near < run.far, blocks);
-      run.first = begins ? place : run.first;
-      run.near = max(run.near, max(blocks ? cot : -kNone, crosses ? crossing : -kNone));
-      run.far = min(run.far, min(blocks ? cot : kNone, crosses ? crossing : kNone));
+    // A surface that crosses the sphere between two samples blocks up to there; that of a run, half way.
+    const bool connected = kThickness == kThicknessEndless
+        ? both(max(distance_sq, last_distance_sq) < kSameSurface * reach.radius_sq, min(distance_sq, last_distance_sq) * kSameSurface > reach.radius_sq)
+        : same_surface(r, reach, z, last_z, gap);
+    const bool crosses = hard ? both(both(above, connected), within != was_within) : false;
+    const float crossing = mix(slope, last_slope, kThickness == kThicknessEndless ? (reach.radius_sq - distance_sq) / (last_distance_sq - distance_sq) : 0.5);
+    const float near = max(blocks ? slope : -1.0, crosses ? crossing : -1.0), far = min(blocks ? slope : 1.0, crosses ? crossing : 1.0);
+    if (kThickness != kThicknessEndless && !connected) {
+      if (hard) blocked.sectors |= sectors_of(r, reach, run, last_z, gap, shift);
+      run = Run(place, place, gap, -1.0, 1.0);
+      own = false;
     }
     run.end = place;
-    last_blocks = both(blocks, !own);
+    if (own) {
+      blocked.near = max(blocked.near, near);
+      if (kThickness == kThicknessEndless) blocked.far = min(blocked.far, blocks ? min(far, slope_of(back_of(r, place, reach.thickness, reach.radius))) : far);
+    } else {
+      run.near = max(run.near, near);
+      run.far = min(run.far, far);
+    }
+    if (!hard) {
+      blocked.sectors |= sectors_of(r, reach, run, z, 1.0, shift);
+      const float arc = blocked_arc(side, blocked, shift);
+      sum += falloff_weight(kFalloff, sqrt(distance_sq), reach.falloff_start, reach.radius) * (arc - last_arc);
+      last_arc = arc;
+    }
     was_within = within;
+    last_slope = slope;
     last_distance_sq = above ? distance_sq : kNone;
-    last_cot = cot;
     last_z = z;
     last_offset = offset;
   }
-  sum += end_run(r, side, reach, run, last_z, 1.0, blocked);
-  return kFalloff == kFalloffNone ? blocked_arc(side, blocked) : sum;
+  if (hard) blocked.sectors |= sectors_of(r, reach, run, last_z, 1.0, shift);
+  return hard ? blocked_arc(side, blocked, shift) : sum;
 }
 
 void main() {
-  const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  const ivec2 pixel = estimated_pixel(gl_GlobalInvocationID.xy, params.noise_origin, kStride);
   const View view = params.view;
   if (!inside(view, pixel)) return;
   const int index = index_of(view, pixel);
@@ -187,7 +141,7 @@ void main() {
   }
   const Receiver r = receiver_at(view, pixel, z, unpack_normal(normal[index]), params.radius);
   const Reach reach = reach_of(view, params.radius, params.falloff_start, params.thickness, params.bias);
-  const vec2 noise = pixel_noise(pixel + params.noise_origin, params.noise_shift);
+  const vec2 noise = pixel_noise(sparse_place(pixel + params.noise_origin, kStride), params.noise_shift);
   float blocked = 0.0, whole = 0.0;
   for (uint s = 0u; s < kSlices; s++) {
     const Slice slice = slice_at(view, r, s, kSlices, noise.x);
@@ -195,7 +149,7 @@ void main() {
     whole += slice.share * slice.weight * (slice.cos_gamma + slice.gamma * slice.sin_gamma);
     for (int sign = -1; sign <= 1; sign += 2) {
       const float jitter = fract(noise.y + kGolden * float(2u * s + uint(sign > 0)));
-      blocked += slice.share * slice.weight * search(r, side_of(view, r, slice, float(sign), reach.radius), reach, jitter);
+      blocked += slice.share * slice.weight * search(r, side_of(view, r, slice, float(sign), reach), reach, jitter);
     }
   }
   ao[index] = whole > 0.0 ? clamp(1.0 - blocked / whole, 0.0, 1.0) : 1.0;

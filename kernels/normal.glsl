@@ -4,6 +4,9 @@
 // Cigolle et al., "A Survey of Efficient Representations for Independent Unit Vectors", 2014. One word instead of three floats, since
 // what a kernel costs is mostly its loads and stores.
 
+/// No direction packs to this.
+const uint kNoNormal = 0x80008000u;
+
 uint pack_normal(vec3 n) {
   vec2 p = n.xy / (abs(n.x) + abs(n.y) + abs(n.z));
   if (n.z < 0.0) p = (1.0 - abs(p.yx)) * mix(vec2(-1), vec2(1), greaterThanEqual(p, vec2(0)));

@@ -8,8 +8,9 @@ ALCOVE_BEGIN
 ALCOVE_CONSTANT uint kPrepareRawDepth = 0;   // in: float a pixel, as in the file; of positions three planes
 ALCOVE_CONSTANT uint kPrepareRawNormal = 1;  // in: planes of floats, as many as normal_form needs; not read without normals
 ALCOVE_CONSTANT uint kPrepareDepth = 2;      // out: float a pixel, planar z > 0 in scene units, kSkyDepth on sky
-ALCOVE_CONSTANT uint kPrepareNormal = 3;     // out: uint a pixel, see normal.glsl: unit, view space, facing the eye
+ALCOVE_CONSTANT uint kPrepareNormal = 3;     // out: uint a pixel, see normal.glsl: unit, view space, facing the eye; kNoNormal where there is none
 ALCOVE_CONSTANT uint kPrepareCounts = 4;     // out: FrameCounts, zeroed before
+ALCOVE_CONSTANT uint kPrepareMissing = 5;    // out: GroupCount of reconstruct: z becomes 1 where a normal is missing
 
 ALCOVE_CONSTANT uint kDepthLinear = 0;       // z = base + slope * (raw - origin)
 ALCOVE_CONSTANT uint kDepthReciprocal = 1;   // z = 1 / (base + slope * (raw - origin)): 1/z, and the z-buffer of any perspective projection

@@ -48,6 +48,11 @@ struct View {
   uint orthographic;       // 0 or 1
 };
 
+/// Workgroups of a dispatch whose number a kernel decides.
+struct GroupCount {
+  uint x, y, z;
+};
+
 /// What the kernels count over a frame.
 struct FrameCounts {
   uint sky;               // pixels

@@ -4,7 +4,8 @@
 // In a slice an angle theta is measured from the direction V to the eye; here it goes by its cotangent, which falls from infinity at V. Coordinates in a slice
 // are (across V, towards the eye) from the receiver. They are linear in the sample's depth and in its offset on the image, so no sample needs a vector in space.
 // A sample lies at the centre of a pixel, up to half a pixel beside the slice. It is moved into the slice parallel to the receiver's tangent plane, which
-// keeps its height above it: a flat surface stays flat at every tilt, whatever pixel a step snaps to.
+// keeps its height above it: a flat surface stays flat at every tilt, whatever pixel a step snaps to. Where that plane is so steep across the slice that the
+// sample would move by more than it lies beside it, it moves only so far.
 
 const float kLeastWeight = 1e-4;     // slices whose plane the normal is nearly perpendicular to weigh less than this and are left out
 const float kLeastElevation = 1e-3;  // sine of the elevation above the tangent plane up to which a sample is the surface itself, raised by rounding
@@ -56,6 +57,7 @@ struct Side {
   float reach;          // steps within the radius and the image
   vec2 across, toward;  // coordinates in the slice: scale * dot(across, offset), ray_length * (receiver's z - z) + scale * dot(toward, offset)
   float plane_cot;      // cotangent of the tangent plane
+  vec2 ahead;           // a place on the tangent plane
   float gamma, cos_gamma, sin_gamma;
 };
 
@@ -103,7 +105,8 @@ Slice slice_at(View view, Receiver r, uint index, uint slices, float jitter) {
   s.sin_gamma = n_t / s.weight;
   s.gamma = angle_of(s.cos_gamma, s.sin_gamma);
   const vec3 b = cross(s.t, r.eye);
-  const vec2 beside = dot(r.normal, b) / (s.weight * s.weight) * b.xy * view.tangent_per_pixel;
+  const float turn = dot(r.normal, b) / s.weight;
+  const vec2 beside = turn / (s.weight * max(1.0, abs(turn))) * b.xy * view.tangent_per_pixel;
   s.across = s.t.xy * view.tangent_per_pixel + n_t * beside;
   s.toward = r.eye.xy * view.tangent_per_pixel + n_v * beside;
   s.image_t = (r.perspective ? s.t.xy + r.tangent * s.t.z : s.t.xy) / view.tangent_per_pixel;
@@ -111,7 +114,7 @@ Slice slice_at(View view, Receiver r, uint index, uint slices, float jitter) {
 }
 
 /// The side of a slice towards sign * T.
-Side side_of(View view, Receiver r, Slice s, float sign, float radius) {
+Side side_of(View view, Receiver r, Slice s, float sign, Reach reach) {
   const float pixels = max(abs(s.image_t.x), abs(s.image_t.y));
   Side side;
   side.gamma = sign * s.gamma;
@@ -121,10 +124,11 @@ Side side_of(View view, Receiver r, Slice s, float sign, float radius) {
   side.across = sign * s.across;
   side.toward = s.toward;
   side.plane_cot = -side.sin_gamma / s.cos_gamma;
+  side.ahead = vec2(side.cos_gamma, -side.sin_gamma);
   const float cos_reach = sqrt(max(0.0, 1.0 - r.sin_reach * r.sin_reach)), forward = r.eye.z * cos_reach - sign * s.t.z * r.sin_reach;
-  const float reach = r.perspective ? r.sin_reach * pixels / forward : radius * pixels;
+  const float steps = r.perspective ? r.sin_reach * pixels / forward : reach.radius * pixels;
   const float border = steps_to_border(view, r.pixel, side.direction_px);
-  side.reach = r.sin_reach < 1.0 && forward > 0.0 ? min(reach, border) : border;
+  side.reach = r.sin_reach < 1.0 && forward > 0.0 ? min(steps, border) : border;
   return side;
 }
 
@@ -144,6 +148,12 @@ bool is_above(Receiver r, Reach reach, vec2 place, float distance_sq, vec2 offse
   const bool clear = height > 0.0 ? height * height > reach.least_elevation_sq * distance_sq : false;
   return place.x > 0.0 ? clear : false;
 }
+
+/// An angle by a number that is cheaper than its cotangent and falls as that does, from 1 at V to -1.
+float slope_of(vec2 place) { return place.y / (place.x + abs(place.y)); }
+
+/// A place at the angle of a slope.
+vec2 place_at(float slope) { return vec2(1.0 - abs(slope), slope); }
 
 Reach reach_of(View view, float radius, float falloff_start, float thickness, float bias) {
   const float least = max(bias, kLeastElevation);
@@ -170,6 +180,11 @@ float arc_to(Side side, float cot) {
   return 0.5 * ((side.cos_gamma - cot * side.sin_gamma) / (1.0 + cot * cot) + angle_of(cot, 1.0) * side.sin_gamma);
 }
 
+/// The same for the angle of a place.
+float arc_to(Side side, vec2 place) {
+  return 0.5 * (place.x * (place.x * side.cos_gamma - place.y * side.sin_gamma) / dot(place, place) + angle_of(place.y, place.x) * side.sin_gamma);
+}
+
 const uint kSectors = 32u;  // of a side, of equal measure of its arc integral
 
 /// The sectors between V and the angle of a cotangent, V's as the lowest bit. A boundary falls at floor(F + shift): unbiased where shifts are even in [0, 1).
@@ -178,12 +193,16 @@ uint sectors_to(Side side, float whole, float cot, float shift) {
   return n >= int(kSectors) ? 0xffffffffu : (1u << uint(n)) - 1u;
 }
 
-/// Cotangent of the back of an occluder whose front is at `front`, (across V, towards the eye) from the receiver: `thickness` further along the eye's own ray,
-/// but not beyond the sphere of the radius.
-float back_cot(Receiver r, vec2 front, float thickness, float radius) {
-  const vec2 ray = front - vec2(0, r.eye_distance), away = r.perspective ? ray * inversesqrt(dot(ray, ray)) : vec2(0, -1);
+/// The direction of the eye's own ray at a place.
+vec2 away_from_eye(Receiver r, vec2 place) {
+  const vec2 ray = place - vec2(0, r.eye_distance);
+  return r.perspective ? ray * inversesqrt(dot(ray, ray)) : vec2(0, -1);
+}
+
+/// The back of an occluder whose front is at `front`: `thickness` further along the eye's own ray, but not beyond the sphere of the radius.
+vec2 back_of(Receiver r, vec2 front, float thickness, float radius) {
+  const vec2 away = away_from_eye(r, front);
   const float along = dot(front, away);
   const float exit = sqrt(max(0.0, along * along - dot(front, front) + radius * radius)) - along;
-  const vec2 back = front + min(thickness, exit) * away;
-  return back.y / back.x;
+  return front + min(thickness, exit) * away;
 }

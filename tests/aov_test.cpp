@@ -121,14 +121,14 @@ TEST_F(Aovs, normals_of_the_sky_are_0) {
 
 TEST_F(Aovs, only_what_was_asked_for_is_computed) {
   good({"--aov", "depth", "--stats", stats});
-  EXPECT_THAT(passes(), ElementsAre("prepare"));
+  EXPECT_THAT(passes(), ElementsAre("prepare", "reconstruct"));
   EXPECT_EQ(nlohmann::json::parse(read_bytes(stats)).at("frames")[0].at("samples_per_pixel"), 0);
   good({"--aov", "normal", "--stats", stats});
-  EXPECT_THAT(passes(), ElementsAre("prepare", "directions"));
+  EXPECT_THAT(passes(), ElementsAre("prepare", "reconstruct", "directions"));
   good({"--aov", "specular-occlusion", "--denoise", "none", "--stats", stats});
-  EXPECT_THAT(passes(), ElementsAre("prepare", "horizon", "specular_occlusion"));
+  EXPECT_THAT(passes(), ElementsAre("prepare", "reconstruct", "horizon", "specular_occlusion"));
   good({"--denoise", "none", "--stats", stats});
-  EXPECT_THAT(passes(), ElementsAre("prepare", "horizon"));
+  EXPECT_THAT(passes(), ElementsAre("prepare", "reconstruct", "horizon"));
 }
 
 TEST_F(Aovs, a_region_holds_what_the_whole_holds_there) {

@@ -144,7 +144,7 @@ TEST_F(DebugViews, without_ao_only_its_own_passes_run) {
   const auto stats = nlohmann::json::parse(read_bytes(folder / "stats.json"));
   std::vector<std::string> names;
   for (const auto& pass : stats.at("frames")[0].at("passes")) names.push_back(pass.at("name"));
-  EXPECT_THAT(names, testing::ElementsAre("prepare", "debug"));
+  EXPECT_THAT(names, testing::ElementsAre("prepare", "reconstruct", "debug"));
 }
 
 TEST_F(DebugViews, what_cannot_be_shown_or_written_is_refused_before_any_work) {

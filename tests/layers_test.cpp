@@ -166,7 +166,7 @@ TEST(Kernels, variants_are_specialization_constants) {
   const auto in_kernels = [](const SourceFile& file) { return file.is_in("kernels") && file.name != "kernels/shared.h"; };
   for (const auto& line : matches(product(), R"(#\s*(if|ifdef|elif|else)\b)", in_kernels)) ADD_FAILURE() << line;
   for (const auto& file : product())
-    if (file.name.ends_with(".comp")) EXPECT_LE(matches({file}, "constant_id", [](const auto&) { return true; }).size(), 3) << file.name;
+    if (file.name.ends_with(".comp")) EXPECT_LE(matches({file}, "constant_id", [](const auto&) { return true; }).size(), 5) << file.name;
 }
 
 // Form.

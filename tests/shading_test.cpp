@@ -45,6 +45,7 @@ Planes pass(const HostFrame& frame, const std::function<gpu::Buffer&(const GBuff
   for (const auto* plane : {inputs.depth, inputs.normal})
     if (plane) gpu.upload(*plane);
   const GBuffer gbuffer = prepare(gpu, inputs);
+  reconstruct(gpu, gbuffer);
   const gpu::Buffer& result = record(gbuffer, inputs);
   gpu.download(result);
   gpu.download(*gbuffer.counts);

@@ -39,13 +39,17 @@ std::vector<float> finished(const gpu::Buffer& result) {
 }  // namespace
 
 std::vector<float> denoised(const HostFrame& frame, const std::vector<float>& ao, const EstimatorSettings& settings) {
-  const GBuffer gbuffer = prepare(recorder(), uploaded(frame));
-  return finished(denoise(recorder(), gbuffer, visibility(ao), settings));
+  const FrameInputs inputs = uploaded(frame);
+  const GBuffer gbuffer = prepare(recorder(), inputs);
+  reconstruct(recorder(), gbuffer);
+  return finished(denoise(recorder(), gbuffer, visibility(ao), inputs, settings));
 }
 
 std::vector<float> upsampled(const HostFrame& frame, const std::function<double(int, int)>& ao_of_block, const EstimatorSettings& settings) {
   const FrameInputs inputs = uploaded(frame);
-  const GBuffer gbuffer = prepare(recorder(), inputs), low = downsample(recorder(), gbuffer, inputs, settings);
+  const GBuffer gbuffer = prepare(recorder(), inputs);
+  reconstruct(recorder(), gbuffer);
+  const GBuffer low = downsample(recorder(), gbuffer, inputs, settings);
   std::vector<float> ao;
   for (int y = 0; y < low.view.size.y; y++)
     for (int x = 0; x < low.view.size.x; x++) ao.push_back(float(ao_of_block(x, y)));

@@ -65,7 +65,7 @@ void Recorder::barrier() {
   memory.srcAccessMask = VK_ACCESS_MEMORY_WRITE_BIT;
   memory.dstAccessMask = VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT;
   const VkPipelineStageFlags stages = VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT | VK_PIPELINE_STAGE_HOST_BIT;
-  vkCmdPipelineBarrier(commands_, stages, stages, 0, 1, &memory, 0, nullptr, 0, nullptr);
+  vkCmdPipelineBarrier(commands_, stages, stages | VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT, 0, 1, &memory, 0, nullptr, 0, nullptr);
 }
 
 void Recorder::clear(const Buffer& buffer) {
@@ -118,7 +118,10 @@ void Recorder::dispatch_bytes(const std::string& stem, std::span<const std::byte
   vkCmdBindPipeline(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.pipeline());
   device_.push_descriptors(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.layout(), 0, std::uint32_t(writes.size()), writes.data());
   vkCmdPushConstants(commands_, kernel.layout(), VK_SHADER_STAGE_COMPUTE_BIT, 0, std::uint32_t(params.size()), params.data());
-  vkCmdDispatch(commands_, groups(extent.x, kernel.reflection().group[0]), groups(extent.y, kernel.reflection().group[1]), 1);
+  if (extent.group_count)
+    vkCmdDispatchIndirect(commands_, extent.group_count->handle(), 0);
+  else
+    vkCmdDispatch(commands_, groups(extent.x, kernel.reflection().group[0]), groups(extent.y, kernel.reflection().group[1]), 1);
   if (device_.has_timestamps()) vkCmdWriteTimestamp(commands_, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, queries_, query + 1);
   barrier();
   PassTime pass{stem};

@@ -22,7 +22,12 @@ struct Binding {
 
 /// Invocations in x and y; the recorder rounds up to workgroups.
 struct Extent {
-  std::uint32_t x, y = 1;
+  Extent(std::uint32_t width, std::uint32_t height = 1) : x(width), y(height) {}
+  /// As many workgroups as the three numbers at the beginning of this buffer say when the pass begins.
+  explicit Extent(const Buffer& groups) : group_count(&groups) {}
+
+  std::uint32_t x = 0, y = 0;
+  const Buffer* group_count = nullptr;
 };
 
 /// What one pass took on the device, and the least it must move: each bound buffer once.

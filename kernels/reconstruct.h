@@ -1,0 +1,17 @@
+// Parameters and bindings of reconstruct.comp.
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef ALCOVE_RECONSTRUCT_H
+#define ALCOVE_RECONSTRUCT_H
+#include "shared.h"
+ALCOVE_BEGIN
+
+ALCOVE_CONSTANT uint kReconstructDepth = 0;   // in: float a pixel, from prepare
+ALCOVE_CONSTANT uint kReconstructNormal = 1;  // in and out: uint a pixel, see normal.glsl: kNoNormal is replaced
+
+struct ReconstructParams {
+  View view;
+};
+ALCOVE_PARAMS(ReconstructParams)
+
+ALCOVE_END
+#endif

@@ -1,0 +1,25 @@
+// A set of angles of a side of a slice, as bits: even in slope_of(), the bits of the largest slopes highest. Pure: no bindings; after slice.glsl.
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The boundaries of what is added move by a `shift` in [0, 1) that is even over pixels: then the expected arc is the exact one, read linearly in each sector.
+
+const int kSectorCount = 24;
+
+/// The part of the arc integral in each sector, times cos gamma and times sin gamma: the differences of sin^2(theta) / 2 and (theta - sin(theta) cos(theta)) / 2
+/// between its ends, the slopes -1 + 2 k / 24.
+const vec2 kSectorArc[kSectorCount] = vec2[](
+    vec2(-0.00409836, 0.00024798), vec2(-0.01513241, 0.00229596), vec2(-0.03076923, 0.00833134), vec2(-0.05000000, 0.02094853),
+    vec2(-0.06891892, 0.04181445), vec2(-0.08108108, 0.06906083), vec2(-0.08108108, 0.09608785), vec2(-0.06891892, 0.11478742),
+    vec2(-0.05000000, 0.12094853), vec2(-0.03076923, 0.11602365), vec2(-0.01513241, 0.10443972), vec2(-0.00409836, 0.09041191),
+    vec2(0.00409836, 0.09041191), vec2(0.01513241, 0.10443972), vec2(0.03076923, 0.11602365), vec2(0.05000000, 0.12094853),
+    vec2(0.06891892, 0.11478742), vec2(0.08108108, 0.09608785), vec2(0.08108108, 0.06906083), vec2(0.06891892, 0.04181445),
+    vec2(0.05000000, 0.02094853), vec2(0.03076923, 0.00833134), vec2(0.01513241, 0.00229596), vec2(0.00409836, 0.00024798));
+
+uint sectors_below(float slope, float shift) { return (1u << uint(0.5 * float(kSectorCount) * (slope + 1.0) + shift)) - 1u; }
+
+/// The arc integral over a set.
+float arc_of(Side side, uint sectors) {
+  vec2 sum = vec2(0);
+  for (int k = 0; k < kSectorCount; k++) sum += float((sectors >> k) & 1u) * kSectorArc[k];
+  return sum.x * side.cos_gamma + sum.y * side.sin_gamma;
+}

@@ -1,0 +1,19 @@
+// Which pixels an estimate is made for, where it is not made for all. Pure: no bindings.
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// One pixel of `stride` (1, 2 or 4) in every row, at places that go from row to row in bit-reversed order, so that every row, every column and every block
+// of stride x stride pixels has its share. They are counted from the display window's corner, `origin` pixels before the image's: a crop has those of the whole.
+
+/// The first such pixel of a row.
+int first_estimated(int row, ivec2 origin, int stride) {
+  if (stride == 1) return 0;
+  const uint place = bitfieldReverse(uint(row + origin.y)) >> uint(32 - findMSB(stride));
+  return (int(place) - origin.x) & (stride - 1);
+}
+
+ivec2 estimated_pixel(uvec2 invocation, ivec2 origin, int stride) {
+  const int row = int(invocation.y);
+  return ivec2(stride * int(invocation.x) + first_estimated(row, origin, stride), row);
+}
+
+ivec2 sparse_place(ivec2 pixel, int stride) { return ivec2(pixel.x >> findMSB(stride), pixel.y); }
