@@ -13,6 +13,7 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "core/flat_toml.h"
+#include "core/input_rules.h"
 #include "core/text.h"
 
 namespace alcove {
@@ -212,6 +213,12 @@ void read_kernel(const std::string& text, EstimatorSettings& settings) {
   if (settings.denoise_kernel.front() == 0) throw CLI::ValidationError("--denoise-kernel", fmt::format("{} has no weight at the centre", text));
 }
 
+std::vector<std::string> source_names() {
+  std::vector<std::string> names{"auto"};
+  for (const auto& rules : all_input_rules()) names.push_back(rules.name);
+  return names;
+}
+
 void add_input_rows(Table& table, InputSettings& s) {
   table.group("Input");
   table.text("--depth", s.depth, "FILE", "an EXR, DDS or TIFF of the depth alone; else it is in INPUT");
@@ -231,7 +238,7 @@ void add_input_rows(Table& table, InputSettings& s) {
   table.text("--view", s.view, "NAME", "of a stereo file; else its default view");
   table.row("--roi", "X,Y,WIDTH,HEIGHT", "px of the display window", "", "compute and write only this region; its surroundings are read as far as occluders reach", "",
             [&s](CLI::App& app) { return app.add_option_function<std::string>("--roi", [&s](const std::string& text) { read_roi(text, s.roi); }); });
-  table.text("--source", s.source, "auto|NAME", "the program that wrote the frame, of presets/input; auto: by its header and channels");
+  table.word("--source", s.source, source_names(), "the program that wrote the frame, of presets/input; auto: by its header and channels");
   table.choice("--depth-kind", s.depth_kind, "planar: along the optical axis; ray: to the eye; inverse: 1/planar; others: see Inputs in the README; auto: what the camera file says, else what fits the frame");
   table.number("--near", s.depth_range.near, "file units", above(0), "near plane of device or normalized depth; else the camera file's");
   table.row("--far", "NUMBER|inf", "file units", "above 0", "far plane of device, normalized or log depth; else the camera file's", "",

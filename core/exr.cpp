@@ -30,6 +30,7 @@
 #include <set>
 
 #include "core/error.h"
+#include "core/exr_header.h"
 #include "core/file.h"
 #include "core/text.h"
 
@@ -42,8 +43,7 @@ class ExrAttributes {
 
 namespace {
 
-constexpr int kMostSide = 1 << 17;                  // px: what headers may ask for before anything of it is believed
-constexpr std::size_t kMostPixels = std::size_t(1) << 28;  // a gigabyte a channel
+constexpr std::size_t kMostPixels = std::size_t(1) << 28;  // in host memory: a gigabyte a channel
 
 Window window_of(const Imath::Box2i& box) { return {box.min.x, box.min.y, box.max.x - box.min.x + 1, box.max.y - box.min.y + 1}; }
 
@@ -165,8 +165,7 @@ ExrFile::ExrFile(const std::string& path, const char* option) : impl_(std::make_
   if (!std::filesystem::is_regular_file(path)) fail(ErrorKind::input, "{}: is no regular file; {} takes an EXR file", path, option);
   try {
     if (!Imf::isOpenExrFile(path.c_str())) fail(ErrorKind::input, "{}: not an OpenEXR file ({})", path, option);
-    Imf::Header::setMaxImageSize(kMostSide, kMostSide);
-    Imf::Header::setMaxTileSize(kMostSide, kMostSide);
+    require_sane_header(path, option);
     impl_->file = std::make_unique<Imf::MultiPartInputFile>(path.c_str());
     for (int part = 0; part < impl_->file->parts(); part++) {
       const auto& header = impl_->file->header(part);
@@ -174,8 +173,6 @@ ExrFile::ExrFile(const std::string& path, const char* option) : impl_(std::make_
         fail(ErrorKind::input, "{}: part {} holds deep data, which has no single depth a pixel; flatten it first ({})", path, part, option);
       impl_->parts.push_back(describe(header));
       if (impl_->parts.back().channels.empty()) fail(ErrorKind::input, "{}: part {} has no channels ({})", path, part, option);
-      if (impl_->parts.back().data.pixels() > kMostPixels)
-        fail(ErrorKind::input, "{}: part {} is {}: more pixels than can be read ({})", path, part, to_string(impl_->parts.back().data), option);
     }
     impl_->display = window_of(impl_->file->header(0).displayWindow());
     impl_->pixel_aspect = impl_->file->header(0).pixelAspectRatio();
@@ -193,6 +190,10 @@ ExrFile::ExrFile(const std::string& path, const char* option, Image image) : imp
   impl_->parts.push_back({"", "", {}, image.data, {}, false});
   for (const auto& name : image.names) impl_->parts[0].channels.push_back({name, SampleType::single_float, false});
   impl_->image = std::move(image);
+}
+
+void require_host_room(const std::string& path, const Window& data) {
+  if (data.pixels() > kMostPixels) fail(ErrorKind::input, "{}: {} are more pixels than are read as a whole; use a smaller frame", path, to_string(data));
 }
 
 ExrFile::~ExrFile() = default;
@@ -278,6 +279,7 @@ Image read_exr_image(const std::string& path, const std::vector<std::string>& ch
   if (part == file.parts().end()) fail(ErrorKind::input, "{}: no part has the channels {}", path, list_of(channels));
   std::vector<std::string> names = channels;
   if (names.empty()) std::ranges::transform(part->channels, std::back_inserter(names), &ExrChannel::name);
+  require_host_room(path, part->data);
   Image image(part->data, file.display(), names);
   std::vector<ExrRead> reads;
   for (std::size_t i = 0; i < names.size(); i++) reads.push_back({int(part - file.parts().begin()), names[i], image.plane(i).data()});

@@ -257,6 +257,7 @@ Inspection inspect_frame(const InputSettings& settings, int frame) {
   add_aov(json["aovs"], "normal", source, source.normal, !settings.normal_channels.empty());
   if (source.normal.empty()) json["missing"].push_back("normals: they would be reconstructed from depth; --normal or --normal-channels names them");
   if (has_camera) json["camera"] = camera_json(source, settings);
+  require_host_room(source.files[source.depth[0].file].path(), source.data);
   std::vector<float> depth(source.depth.size() * source.data.pixels()), normal(source.normal.size() * source.data.pixels());
   read_planes(source, {{&source.depth, depth.data()}, {&source.normal, normal.data()}});
   json["depth"] = depth_json(depth, source);
