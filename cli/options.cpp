@@ -164,6 +164,11 @@ void read_thickness(const std::string& text, EstimatorSettings& settings) {
   settings.thickness_length = length;
 }
 
+void read_radii(const std::vector<double>& radii, EstimatorSettings& settings) {
+  settings.radius = radii.front();
+  settings.further_radii.assign(radii.begin() + 1, radii.end());
+}
+
 /// --albedo: a number is the albedo of all surfaces, all else a file.
 void read_albedo(const std::string& text, InputSettings& settings) {
   double value = 0;
@@ -268,7 +273,12 @@ void add_estimator_rows(Table& table, RunOptions& options) {
     return app.set_config("--preset")->expected(1)->take_all()->transform([](const std::string& name) { return preset_file(name); })->description("");
   });
   table.choice("--estimator", s.estimator, "gtao: horizons; bitmask: what is blocked between front and back of every occluder; hbao: horizons, not cosine weighted; crytek: samples in the hemisphere");
-  table.number("--radius", s.radius, "scene units", above_to(0, 1e18), "how far occluders reach; must be given, here or in a preset");
+  const Range reach = above_to(0, 1e18);
+  table.row("--radius", "NUMBER", "scene units", reach.text, "how far occluders reach; must be given, here or in a preset. May repeat: the AO is the mean of all scales, see ao-scales", "",
+            [&s, reach](CLI::App& app) {
+              return app.add_option_function<std::vector<double>>("--radius", [&s](const std::vector<double>& radii) { read_radii(radii, s); })
+                  ->expected(1)->take_all()->allow_extra_args(false)->check(check_of(reach));
+            });
   table.choice("--falloff", s.falloff, "how a hit's weight fades towards the radius; none: all within it block fully");
   table.number("--falloff-start", s.falloff_start, "of the radius", below_and_at_least(0, 1), "where the falloff begins");
   table.number("--falloff-end", s.falloff_end, "of the radius", above_to(0, 1), "where the falloff ends: nothing beyond blocks");
@@ -283,8 +293,11 @@ void add_estimator_rows(Table& table, RunOptions& options) {
   table.row("--thickness", "auto|infinite|NUMBER", "scene units", "", "how far an occluder goes on behind what is seen of it; auto: as deep as it is wide", "auto",
             [&s](CLI::App& app) { return app.add_option_function<std::string>("--thickness", [&s](const std::string& text) { read_thickness(text, s); }); });
   table.choice("--resolution", s.resolution, "of the estimate; a half or a quarter takes the nearest surface of every 2 x 2 or 4 x 4 pixels");
-  table.row("--stride", "1|2|4", "", "", "estimate one pixel of so many in a row, staggered from row to row; the bilateral denoiser gives the others theirs", fmt::format("{}", s.stride),
-            [&s](CLI::App& app) { return app.add_option("--stride", s.stride)->check(CLI::IsMember({1, 2, 4})); });
+  table.row("--stride", "auto|1|2|4", "", "", "estimate one pixel of so many in a row, staggered, and let the bilateral denoiser give the others theirs; auto: 4 for gtao with 1 or 2 slices at full resolution, else 1",
+            "auto", [&s](CLI::App& app) {
+              return app.add_option_function<std::string>("--stride", [&s](const std::string& text) { s.stride = text == "auto" ? 0 : std::stoi(text); })
+                  ->check(CLI::IsMember({"auto", "1", "2", "4"}));
+            });
   table.choice("--denoise", s.denoise, "smooths each surface: bilateral: by a Gaussian or --denoise-kernel; box: by an even 4 x 4");
   table.number("--denoise-radius", s.denoise_radius, "pixels of the estimate", between(1, 8), "how far the bilateral denoiser reaches to each side");
   table.row("--denoise-kernel", "W0,W1,...", "", "2 to 9 weights", "of the bilateral denoiser, from the centre outwards, of any sum; they set its radius", "",

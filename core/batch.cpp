@@ -33,6 +33,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::size_t kMostRadii = 8;
+
 class Stopwatch {
  public:
   double ms() const { return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_).count(); }
@@ -61,7 +63,11 @@ bool same_file(const std::string& a, const std::string& b) {
 }
 
 /// The largest buffer holds as many planes as the widest AOV has channels.
-void require_room(const FrameSource& source, const gpu::DeviceInfo& device) {
+void require_room(const FrameSource& source, const Settings& settings, const gpu::DeviceInfo& device) {
+  const std::size_t planes = std::max<std::size_t>(1 + settings.estimator.further_radii.size(), needs_bent(settings.estimator, settings.output) ? 3 : 1);
+  if (const std::uint64_t bytes = planes * source.data.pixels() * sizeof(float); bytes > device.buffer_bytes)
+    fail(ErrorKind::device, "{}: {} planes of {} pixels need a buffer of {} MiB, and {} takes {} MiB: use another --device, fewer --radius, or a smaller frame",
+         source.files[source.depth[0].file].path(), planes, source.data.pixels(), bytes >> 20, device.name, device.buffer_bytes >> 20);
   for (const auto* aov : {&source.depth, &source.normal, &source.beauty, &source.indirect, &source.diffuse_color, &source.albedo, &source.material_ao})
     if (const std::uint64_t bytes = aov->size() * source.data.pixels() * sizeof(float); bytes > device.buffer_bytes)
       fail(ErrorKind::device, "{}: {} pixels of {} channels need a buffer of {} MiB, and {} takes {} MiB: use another --device, or a smaller frame",
@@ -124,18 +130,20 @@ ExrOutput output_like(const FrameSource& source, const ChannelRef& like, const s
 /// What is written of a buffer's planes: all, or the region; empty for null.
 using Planes = std::function<std::span<const float>(const gpu::Buffer*)>;
 
-void write_aovs(const FrameSource& source, const FrameOutputs& outputs, const Planes& planes_of, const OutputSettings& settings, const std::string& digest,
-                const std::string& device) {
+void write_aovs(const FrameSource& source, const FrameOutputs& outputs, const Planes& planes_of, const EstimatorSettings& estimator,
+                const OutputSettings& settings, const std::string& digest, const std::string& device) {
   ExrOutput output = output_like(source, source.depth[0], digest, device);
   output.compression = settings.compression;
   const std::size_t pixels = source.data.pixels();
   for (const auto& aov : aovs_of(settings)) {
     const auto planes = planes_of(outputs.*aov.planes);
     const SampleType type = settings.type == OutputType::half_float && !aov.is_float ? SampleType::half_float : SampleType::single_float;
-    for (std::size_t c = 0; c < aov.channels.size(); c++)
-      output.planes.push_back({aov.channels[c], type, planes.subspan(planes.size() > pixels ? c * pixels : 0, pixels)});
+    const auto channels = channels_of(aov, planes.size() / pixels);
+    for (std::size_t c = 0; c < channels.size(); c++)
+      output.planes.push_back({channels[c], type, planes.subspan(planes.size() > pixels ? c * pixels : 0, pixels)});
   }
-  if (outputs.normal) output.own_attributes["alcove/normal_space"] = in_world(source, settings) ? "world" : "view";
+  if (outputs.scales) output.own_attributes["alcove/radii"] = fmt::format("{}", fmt::join(radii_of(estimator), " "));
+  if (outputs.normal || outputs.bent_normal) output.own_attributes["alcove/normal_space"] = in_world(source, settings) ? "world" : "view";
   write_exr(settings.output, output);
 }
 
@@ -220,7 +228,7 @@ FrameReport run_frame(gpu::Device& device, gpu::Recorder& gpu, const Settings& s
   FrameSource source = find_frame(settings.input, !settings.output.composite.empty(), report.frame, settings.output.multi_bounce && !settings.input.albedo_value);
   if (settings.input.roi) restrict_to_region(source, settings);
   require_for_outputs(source, settings.output);
-  require_room(source, device.info());
+  require_room(source, settings, device.info());
   const FrameInputs inputs = read_frame(gpu, source, settings.input, settings.output, report.frame);
   report.read_ms = reading.ms();
 
@@ -240,7 +248,7 @@ FrameReport run_frame(gpu::Device& device, gpu::Recorder& gpu, const Settings& s
     const auto all = buffer ? buffer->as<float>() : std::span<float>();
     return source.region ? std::span<const float>(regions.emplace_back(cropped(all, computed, *source.region))) : all;
   };
-  write_aovs(source, outputs, planes, settings.output, digest, device.info().name);
+  write_aovs(source, outputs, planes, settings.estimator, settings.output, digest, device.info().name);
   if (outputs.composite) {
     write_composite(source, planes(outputs.composite), settings.output, digest, device.info().name);
     if (source.indirect.empty())
@@ -252,6 +260,17 @@ FrameReport run_frame(gpu::Device& device, gpu::Recorder& gpu, const Settings& s
   report.write_ms = writing.ms();
   report.total_ms = total.ms();
   return report;
+}
+
+/// Several radii, and what only some estimators give.
+void check_scales(const Settings& settings) {
+  const auto& e = settings.estimator;
+  if (wants(settings.output, &FrameOutputs::bent_normal) && !has_bent_normals(e.estimator))
+    fail(ErrorKind::usage, "--aov bent-normal: --estimator {} finds no open directions; gtao and bitmask do", e.estimator == Estimator::hbao ? "hbao" : "crytek");
+  if (e.further_radii.empty()) return;
+  const auto radii = radii_of(e);
+  if (radii.size() > kMostRadii) fail(ErrorKind::usage, "--radius: there are {}, and at most {} scales", radii.size(), kMostRadii);
+  if (const auto twice = std::ranges::adjacent_find(radii); twice != radii.end()) fail(ErrorKind::usage, "--radius {} is there twice: give each scale once", *twice);
 }
 
 /// What goes into the shading of the AO.
@@ -275,6 +294,7 @@ void check_settings(const Settings& settings) {
     fail(ErrorKind::usage, "no input: name an EXR file, or one with --depth or --position");
   if (!settings.input.depth.empty() && !settings.input.position.empty()) fail(ErrorKind::usage, "--depth and --position are two ways to say the same: give one");
   if (!settings.estimator.radius && needs_ao(settings.output)) fail(ErrorKind::usage, "no radius: say with --radius how far occluders reach, in scene units");
+  check_scales(settings);
   if (settings.estimator.estimator != Estimator::crytek && settings.estimator.bias >= 1)
     fail(ErrorKind::usage, "--bias {}: of every estimator but crytek it is the sine of an elevation, below 1", settings.estimator.bias);
   if (settings.estimator.falloff_end <= settings.estimator.falloff_start)
@@ -303,7 +323,7 @@ std::string options_digest(const Settings& settings) {
   // Every value on a line of its own, so that no two sets of values make one text.
   std::string text = kVersion;
   const auto add = [&](const auto&... values) { ((text += fmt::format("\n{}", values)), ...); };
-  add(int(e.estimator), e.radius.value_or(0), int(e.falloff), e.falloff_start, e.falloff_end, e.slices, e.steps, e.intensity, e.power, e.seed);
+  add(int(e.estimator), e.radius ? fmt::format("{}", fmt::join(radii_of(e), ",")) : "", int(e.falloff), e.falloff_start, e.falloff_end, e.slices, e.steps, e.intensity, e.power, e.seed);
   add(e.fade_start.value_or(-1), e.fade_end.value_or(-1), e.roughness, settings.output.fog_density);
   add(settings.output.multi_bounce, i.albedo_value.value_or(-1));
   add(settings.output.aovs, int(settings.output.ao_channels), int(settings.output.aov_space));

@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "core/evidence.h"
+#include "core/passes.h"
 #include "core/settle.h"
 
 namespace alcove {
@@ -57,7 +58,7 @@ void restrict_to_region(FrameSource& source, const Settings& settings) {
   const int filters = filter_reach(settings.estimator);
   const Window filtered = grown(region, filters, filters, all);
   const auto receivers = cropped(planar, all, filtered);
-  const double nearest = *std::ranges::min_element(receivers), radius = settings.estimator.radius.value_or(0);
+  const double nearest = *std::ranges::min_element(receivers), radius = settings.estimator.radius ? radii_of(settings.estimator).back() : 0;
   const auto margin = [&](double low, double high, double center, double tangent_per_pixel) {
     const double tangent = std::max(std::abs(low - center), std::abs(high - center)) * std::abs(tangent_per_pixel);
     return int(std::ceil(std::min(sphere_reach(radius, nearest, tangent, 1 / std::abs(tangent_per_pixel), source.camera.orthographic), 1e6))) + 2;

@@ -149,6 +149,9 @@ bool is_above(Receiver r, Reach reach, vec2 place, float distance_sq, vec2 offse
   return place.x > 0.0 ? clear : false;
 }
 
+/// What the estimators store of a mean open direction: in [0, 1], so that filters of visibility take it as it is.
+vec3 stored_bent(vec3 bent) { return 0.5 + 0.5 * bent; }
+
 /// An angle by a number that is cheaper than its cotangent and falls as that does, from 1 at V to -1.
 float slope_of(vec2 place) { return place.y / (place.x + abs(place.y)); }
 
@@ -191,6 +194,19 @@ const uint kSectors = 32u;  // of a side, of equal measure of its arc integral
 uint sectors_to(Side side, float whole, float cot, float shift) {
   const int n = int(clamp(arc_to(side, max(cot, side.plane_cot)) / whole, 0.0, 1.0) * float(kSectors) + shift);
   return n >= int(kSectors) ? 0xffffffffu : (1u << uint(n)) - 1u;
+}
+
+/// bent_to() over sectors. As boundaries fall at floor(F + shift), a sector that begins at share F stands on average for what begins at F + 1/2 - shift.
+vec2 bent_of_sectors(Side side, uint sectors, float shift) {
+  const float whole = side.gamma + kHalfPi;
+  vec2 sum = sectors >> (kSectors - 1u) != 0u ? bent_to(-side.sin_gamma, side.cos_gamma, side.cos_gamma, side.sin_gamma) : vec2(0);
+  for (uint changes = (sectors ^ (sectors << 1)) & ~1u; changes != 0u; changes &= changes - 1u) {
+    const int k = findLSB(changes);
+    const float theta = angle_of_share((float(k) + 0.5 - shift) / float(kSectors), whole, side.cos_gamma, side.sin_gamma);
+    const vec2 bent = bent_to(cos(theta), sin(theta), side.cos_gamma, side.sin_gamma);
+    sum += (sectors >> uint(k) & 1u) != 0u ? -bent : bent;
+  }
+  return sum;
 }
 
 /// The direction of the eye's own ray at a place.
