@@ -13,6 +13,7 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "core/flat_toml.h"
+#include "core/input_rules.h"
 #include "core/text.h"
 
 namespace alcove {
@@ -217,10 +218,16 @@ void read_kernel(const std::string& text, EstimatorSettings& settings) {
   if (settings.denoise_kernel.front() == 0) throw CLI::ValidationError("--denoise-kernel", fmt::format("{} has no weight at the centre", text));
 }
 
+std::vector<std::string> source_names() {
+  std::vector<std::string> names{"auto"};
+  for (const auto& rules : all_input_rules()) names.push_back(rules.name);
+  return names;
+}
+
 void add_input_rows(Table& table, InputSettings& s) {
   table.group("Input");
-  table.text("--depth", s.depth, "FILE", "an EXR of the depth alone; else it is in INPUT");
-  table.text("--normal", s.normal, "FILE", "an EXR of the normals alone");
+  table.text("--depth", s.depth, "FILE", "an EXR, DDS or TIFF of the depth alone; else it is in INPUT");
+  table.text("--normal", s.normal, "FILE", "an EXR, DDS, TIFF or PNG of the normals alone");
   table.text("--position", s.position, "FILE", "an EXR of the positions, instead of a depth");
   table.text("--beauty", s.beauty, "FILE", "an EXR of the beauty, and of the indirect diffuse light, for --composite");
   table.text("--material-ao", s.material_ao, "FILE", "an EXR of the materials' own AO, multiplied in");
@@ -236,6 +243,7 @@ void add_input_rows(Table& table, InputSettings& s) {
   table.text("--view", s.view, "NAME", "of a stereo file; else its default view");
   table.row("--roi", "X,Y,WIDTH,HEIGHT", "px of the display window", "", "compute and write only this region; its surroundings are read as far as occluders reach", "",
             [&s](CLI::App& app) { return app.add_option_function<std::string>("--roi", [&s](const std::string& text) { read_roi(text, s.roi); }); });
+  table.word("--source", s.source, source_names(), "the program that wrote the frame, of presets/input; auto: by its header and channels");
   table.choice("--depth-kind", s.depth_kind, "planar: along the optical axis; ray: to the eye; inverse: 1/planar; others: see Inputs in the README; auto: what the camera file says, else what fits the frame");
   table.number("--near", s.depth_range.near, "file units", above(0), "near plane of device or normalized depth; else the camera file's");
   table.row("--far", "NUMBER|inf", "file units", "above 0", "far plane of device, normalized or log depth; else the camera file's", "",
@@ -353,7 +361,11 @@ class PresetFormat : public CLI::ConfigTOML {
  public:
   std::vector<CLI::ConfigItem> from_config(std::istream& input) const override {
     std::vector<CLI::ConfigItem> items;
-    for (auto& entry : parse_flat_toml(std::string(std::istreambuf_iterator<char>(input), {}))) {
+    auto entries = parse_flat_toml(std::string(std::istreambuf_iterator<char>(input), {}));
+    // The rules of presets/input are known to the program: such a preset is its --source and no more.
+    if (std::ranges::any_of(entries, [](const auto& entry) { return entry.key == "detect"; }))
+      std::erase_if(entries, [](const auto& entry) { return entry.key != "source"; });
+    for (auto& entry : entries) {
       items.emplace_back();
       items.back().name = std::move(entry.key);
       items.back().inputs = std::move(entry.values);

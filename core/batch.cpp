@@ -333,7 +333,7 @@ std::string options_digest(const Settings& settings) {
   add(e.denoise_radius, fmt::format("{}", fmt::join(e.denoise_kernel, ",")), e.denoise_depth_sigma);
   // The camera by what it says; where files lie is not part of it, so that a job has the same digest wherever its folder is mounted.
   add(i.camera.empty() ? std::string() : read_text(i.camera, "camera", "--camera"));
-  add(i.depth_channel, i.normal_channels, i.beauty_channels, i.layer, i.view);
+  add(i.depth_channel, i.normal_channels, i.beauty_channels, i.layer, i.view, i.source);
   add(int(i.depth_kind), i.depth_scale, i.sky, int(i.normal_space), i.fov.value_or(0), i.focal.value_or(0), i.aperture.value_or(0), i.ortho_width.value_or(0));
   const DepthRange& range = i.depth_range;
   add(range.near.value_or(0), range.far.value_or(0), range.reversed, int(range.device), range.log_constant);

@@ -48,6 +48,7 @@ void restrict_to_region(FrameSource& source, const Settings& settings) {
   if (!inside)
     fail(ErrorKind::usage, "{}: --roi is {}, and the data window is {}: give a region within it", source.files[source.depth[0].file].path(),
          to_string(region), to_string(all));
+  require_host_room(source.files[source.depth[0].file].path(), all);
   std::vector<float> depth(source.depth.size() * all.pixels()), normal(source.normal.size() * all.pixels());
   read_planes(source, {{&source.depth, depth.data()}, {&source.normal, normal.data()}});
   settle(source, settings.input, depth, normal);

@@ -58,6 +58,7 @@ struct InputSettings {
   std::string layer;                             // look only at channels of this layer or part
   std::string view;                              // of a stereo file; empty: its default
   std::optional<Region> roi;                     // compute and write no more than this; none: the data window
+  std::string source = "auto";                   // the program that wrote the frame, of presets/input; auto: by its header and channels
   DepthKind depth_kind = DepthKind::automatic;   // automatic: what the camera file says, else planar
   DepthRange depth_range;                        // near and far: else the camera file's
   double depth_scale = 1;                        // scene units a unit of the depth channel, > 0

@@ -14,6 +14,9 @@ namespace alcove {
 /// naming the options that decide; under settings.strict, wherever there is a guess. Near or far that are missing are ErrorKind::usage.
 void settle(FrameSource& source, const InputSettings& settings, std::span<const float> depth, std::span<const float> normal);
 
+/// Of the depth channel as it is stored: see score_depth().
+double depth_rounding(const FrameSource& source);
+
 /// The map to planar depth, for a settled frame.
 DepthMap depth_map_of(const FrameSource& source, const InputSettings& settings);
 
