@@ -1,4 +1,4 @@
-// `alcove inspect INPUT [--json] [input options of run]`: what a frame holds and how it would be read.
+// `alcove inspect INPUT [--json] [--preview FILE.png] [input options of run]`: what a frame holds and how it would be read.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 
@@ -6,6 +6,7 @@
 
 #include "cli/commands.h"
 #include "cli/options.h"
+#include "core/contact_sheet.h"
 #include "core/error.h"
 #include "core/inspect.h"
 #include "core/plan.h"
@@ -17,9 +18,9 @@ int inspect_command(const std::vector<std::string>& arguments) {
   const bool json = std::erase(rest, "--json") > 0;
   if (std::ranges::any_of(rest, [](const auto& a) { return a == "--help" || a == "-h"; })) {
     fmt::print(
-        "Usage: alcove inspect INPUT [--json] [input options]\n\nSays what the frame's files hold, which channels would be used and how they would "
+        "Usage: alcove inspect INPUT [--json] [--preview FILE.png] [input options]\n\nSays what the frame's files hold, which channels would be used and how they would "
         "be understood, with the evidence,\n"
-        "what is missing, and the command that would run it. Takes the input options of alcove run.\n");
+        "what is suspicious or missing, and the command that would run it. --preview shows depth, normals and AO in a picture. Takes the input options of alcove run.\n");
     return 0;
   }
   RunOptions options;
@@ -29,6 +30,7 @@ int inspect_command(const std::vector<std::string>& arguments) {
   if (path.empty()) fail(ErrorKind::usage, "no input: name an EXR file, or one with --depth or --position");
   const Inspection inspection = inspect_frame(input, frame_number_of(path));
   fmt::print("{}", json ? inspection.json : inspection.text);
+  if (!options.settings.output.preview.empty()) write_contact_sheet(options.settings, frame_number_of(path));
   return 0;
 }
 

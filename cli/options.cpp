@@ -6,102 +6,18 @@
 #include <map>
 #include <sstream>
 
+#include "cli/option_words.h"
 #include "cli/parsing.h"
 #include "core/aov.h"
 #include "core/debug_view.h"
 #include "core/error.h"
 #include "core/file.h"
 #include "core/flat_toml.h"
+#include "core/input_rules.h"
 #include "core/text.h"
 
 namespace alcove {
 namespace {
-
-template <class T>
-const std::map<std::string, T>& names_of();
-template <>
-const std::map<std::string, DepthKind>& names_of() {
-  static const std::map<std::string, DepthKind> names = {
-      {"auto", DepthKind::automatic}, {"planar", DepthKind::planar},         {"ray", DepthKind::ray}, {"inverse", DepthKind::inverse},
-      {"device", DepthKind::device},  {"normalized", DepthKind::normalized}, {"log", DepthKind::log}, {"position", DepthKind::position}};
-  return names;
-}
-template <>
-const std::map<std::string, DeviceRange>& names_of() {
-  static const std::map<std::string, DeviceRange> names = {{"0..1", DeviceRange::zero_to_one}, {"-1..1", DeviceRange::minus_one_to_one}};
-  return names;
-}
-template <>
-const std::map<std::string, PositionSpace>& names_of() {
-  static const std::map<std::string, PositionSpace> names = {{"auto", PositionSpace::automatic}, {"world", PositionSpace::world}, {"view", PositionSpace::view}};
-  return names;
-}
-template <>
-const std::map<std::string, NormalEncoding>& names_of() {
-  static const std::map<std::string, NormalEncoding> names = {{"auto", NormalEncoding::automatic},
-                                                              {"signed", NormalEncoding::signed_float},
-                                                              {"unorm", NormalEncoding::unorm},
-                                                              {"octahedral", NormalEncoding::octahedral},
-                                                              {"spheremap", NormalEncoding::spheremap}};
-  return names;
-}
-template <>
-const std::map<std::string, NormalSpace>& names_of() {
-  static const std::map<std::string, NormalSpace> names = {{"auto", NormalSpace::automatic}, {"world", NormalSpace::world}, {"view", NormalSpace::view}};
-  return names;
-}
-template <>
-const std::map<std::string, Falloff>& names_of() {
-  static const std::map<std::string, Falloff> names = {
-      {"none", Falloff::none}, {"linear", Falloff::linear}, {"quadratic", Falloff::quadratic}, {"smooth", Falloff::smooth}};
-  return names;
-}
-template <>
-const std::map<std::string, Estimator>& names_of() {
-  static const std::map<std::string, Estimator> names = {
-      {"gtao", Estimator::gtao}, {"bitmask", Estimator::bitmask}, {"hbao", Estimator::hbao}, {"crytek", Estimator::crytek}};
-  return names;
-}
-template <>
-const std::map<std::string, Elevation>& names_of() {
-  static const std::map<std::string, Elevation> names = {{"view", Elevation::view}, {"surface", Elevation::surface}};
-  return names;
-}
-template <>
-const std::map<std::string, SampleKernel>& names_of() {
-  static const std::map<std::string, SampleKernel> names = {{"clustered", SampleKernel::clustered}, {"uniform", SampleKernel::uniform}};
-  return names;
-}
-template <>
-const std::map<std::string, RangeCheck>& names_of() {
-  static const std::map<std::string, RangeCheck> names = {{"none", RangeCheck::none}, {"ratio", RangeCheck::ratio}, {"smoothstep", RangeCheck::smoothstep}};
-  return names;
-}
-template <>
-const std::map<std::string, Resolution>& names_of() {
-  static const std::map<std::string, Resolution> names = {{"full", Resolution::full}, {"half", Resolution::half}, {"quarter", Resolution::quarter}};
-  return names;
-}
-template <>
-const std::map<std::string, Denoise>& names_of() {
-  static const std::map<std::string, Denoise> names = {{"none", Denoise::none}, {"bilateral", Denoise::bilateral}, {"box", Denoise::box}};
-  return names;
-}
-template <>
-const std::map<std::string, AoChannels>& names_of() {
-  static const std::map<std::string, AoChannels> names = {{"mono", AoChannels::mono}, {"rgb", AoChannels::rgb}};
-  return names;
-}
-template <>
-const std::map<std::string, OutputType>& names_of() {
-  static const std::map<std::string, OutputType> names = {{"half", OutputType::half_float}, {"float", OutputType::single_float}};
-  return names;
-}
-template <>
-const std::map<std::string, Missing>& names_of() {
-  static const std::map<std::string, Missing> names = {{"error", Missing::error}, {"skip", Missing::skip}};
-  return names;
-}
 
 /// Builds rows of one group after the other.
 class Table {
@@ -165,6 +81,11 @@ void read_thickness(const std::string& text, EstimatorSettings& settings) {
   settings.thickness_length = length;
 }
 
+void read_radii(const std::vector<double>& radii, EstimatorSettings& settings) {
+  settings.radius = radii.front();
+  settings.further_radii.assign(radii.begin() + 1, radii.end());
+}
+
 /// --albedo: a number is the albedo of all surfaces, all else a file.
 void read_albedo(const std::string& text, InputSettings& settings) {
   double value = 0;
@@ -221,10 +142,16 @@ void read_kernel(const std::string& text, EstimatorSettings& settings) {
   if (settings.denoise_kernel.front() == 0) throw CLI::ValidationError("--denoise-kernel", fmt::format("{} has no weight at the centre", text));
 }
 
+std::vector<std::string> source_names() {
+  std::vector<std::string> names{"auto"};
+  for (const auto& rules : all_input_rules()) names.push_back(rules.name);
+  return names;
+}
+
 void add_input_rows(Table& table, InputSettings& s) {
   table.group("Input");
-  table.text("--depth", s.depth, "FILE", "an EXR of the depth alone; else it is in INPUT");
-  table.text("--normal", s.normal, "FILE", "an EXR of the normals alone");
+  table.text("--depth", s.depth, "FILE", "an EXR, DDS or TIFF of the depth alone; else it is in INPUT");
+  table.text("--normal", s.normal, "FILE", "an EXR, DDS, TIFF or PNG of the normals alone");
   table.text("--position", s.position, "FILE", "an EXR of the positions, instead of a depth");
   table.text("--beauty", s.beauty, "FILE", "an EXR of the beauty, and of the indirect diffuse light, for --composite");
   table.text("--material-ao", s.material_ao, "FILE", "an EXR of the materials' own AO, multiplied in");
@@ -240,6 +167,7 @@ void add_input_rows(Table& table, InputSettings& s) {
   table.text("--view", s.view, "NAME", "of a stereo file; else its default view");
   table.row("--roi", "X,Y,WIDTH,HEIGHT", "px of the display window", "", "compute and write only this region; its surroundings are read as far as occluders reach", "",
             [&s](CLI::App& app) { return app.add_option_function<std::string>("--roi", [&s](const std::string& text) { read_roi(text, s.roi); }); });
+  table.word("--source", s.source, source_names(), "the program that wrote the frame, of presets/input; auto: by its header and channels");
   table.choice("--depth-kind", s.depth_kind, "planar: along the optical axis; ray: to the eye; inverse: 1/planar; others: see Inputs in the README; auto: what the camera file says, else what fits the frame");
   table.number("--near", s.depth_range.near, "file units", above(0), "near plane of device or normalized depth; else the camera file's");
   table.row("--far", "NUMBER|inf", "file units", "above 0", "far plane of device, normalized or log depth; else the camera file's", "",
@@ -284,7 +212,12 @@ void add_estimator_rows(Table& table, RunOptions& options) {
     return app.set_config("--preset")->expected(1)->take_all()->transform([](const std::string& name) { return preset_file(name); })->description("");
   });
   table.choice("--estimator", s.estimator, "gtao: horizons; bitmask: what is blocked between front and back of every occluder; hbao: horizons, not cosine weighted; crytek: samples in the hemisphere");
-  table.number("--radius", s.radius, "scene units", above_to(0, 1e18), "how far occluders reach; must be given, here or in a preset");
+  const Range reach = above_to(0, 1e18);
+  table.row("--radius", "NUMBER", "scene units", reach.text, "how far occluders reach; must be given, here or in a preset. May repeat: the AO is the mean of all scales, see ao-scales", "",
+            [&s, reach](CLI::App& app) {
+              return app.add_option_function<std::vector<double>>("--radius", [&s](const std::vector<double>& radii) { read_radii(radii, s); })
+                  ->expected(1)->take_all()->allow_extra_args(false)->check(check_of(reach));
+            });
   table.choice("--falloff", s.falloff, "how a hit's weight fades towards the radius; none: all within it block fully");
   table.number("--falloff-start", s.falloff_start, "of the radius", below_and_at_least(0, 1), "where the falloff begins");
   table.number("--falloff-end", s.falloff_end, "of the radius", above_to(0, 1), "where the falloff ends: nothing beyond blocks");
@@ -299,8 +232,11 @@ void add_estimator_rows(Table& table, RunOptions& options) {
   table.row("--thickness", "auto|infinite|NUMBER", "scene units", "", "how far an occluder goes on behind what is seen of it; auto: as deep as it is wide", "auto",
             [&s](CLI::App& app) { return app.add_option_function<std::string>("--thickness", [&s](const std::string& text) { read_thickness(text, s); }); });
   table.choice("--resolution", s.resolution, "of the estimate; a half or a quarter takes the nearest surface of every 2 x 2 or 4 x 4 pixels");
-  table.row("--stride", "1|2|4", "", "", "estimate one pixel of so many in a row, staggered from row to row; the bilateral denoiser gives the others theirs", fmt::format("{}", s.stride),
-            [&s](CLI::App& app) { return app.add_option("--stride", s.stride)->check(CLI::IsMember({1, 2, 4})); });
+  table.row("--stride", "auto|1|2|4", "", "", "estimate one pixel of so many in a row, staggered, and let the bilateral denoiser give the others theirs; auto: 4 for gtao with 1 or 2 slices at full resolution, else 1",
+            "auto", [&s](CLI::App& app) {
+              return app.add_option_function<std::string>("--stride", [&s](const std::string& text) { s.stride = text == "auto" ? 0 : std::stoi(text); })
+                  ->check(CLI::IsMember({"auto", "1", "2", "4"}));
+            });
   table.choice("--denoise", s.denoise, "smooths each surface: bilateral: by a Gaussian or --denoise-kernel; box: by an even 4 x 4");
   table.number("--denoise-radius", s.denoise_radius, "pixels of the estimate", between(1, 8), "how far the bilateral denoiser reaches to each side");
   table.row("--denoise-kernel", "W0,W1,...", "", "2 to 9 weights", "of the bilateral denoiser, from the centre outwards, of any sum; they set its radius", "",
@@ -370,7 +306,11 @@ class PresetFormat : public CLI::ConfigTOML {
  public:
   std::vector<CLI::ConfigItem> from_config(std::istream& input) const override {
     std::vector<CLI::ConfigItem> items;
-    for (auto& entry : parse_flat_toml(std::string(std::istreambuf_iterator<char>(input), {}))) {
+    auto entries = parse_flat_toml(std::string(std::istreambuf_iterator<char>(input), {}));
+    // The rules of presets/input are known to the program: such a preset is its --source and no more.
+    if (std::ranges::any_of(entries, [](const auto& entry) { return entry.key == "detect"; }))
+      std::erase_if(entries, [](const auto& entry) { return entry.key != "source"; });
+    for (auto& entry : entries) {
       items.emplace_back();
       items.back().name = std::move(entry.key);
       items.back().inputs = std::move(entry.values);

@@ -13,7 +13,9 @@ namespace alcove {
 std::span<const Aov> aov_table() {
   static const std::vector<Aov> rows{
       {"ao", {"Y"}, &FrameOutputs::ao},
+      {"ao-scales", {"scale1.Y"}, &FrameOutputs::scales},
       {"normal", {"normal.X", "normal.Y", "normal.Z"}, &FrameOutputs::normal},
+      {"bent-normal", {"bent.X", "bent.Y", "bent.Z"}, &FrameOutputs::bent_normal},
       {"depth", {"Z"}, &FrameOutputs::depth, true},
       {"specular-occlusion", {"specular.Y"}, &FrameOutputs::specular_occlusion},
   };
@@ -39,6 +41,13 @@ std::vector<Aov> aovs_of(const OutputSettings& settings) {
     if (settings.multi_bounce) aovs.back().planes = &FrameOutputs::color_ao;
   }
   return aovs;
+}
+
+std::vector<std::string> channels_of(const Aov& aov, std::size_t planes) {
+  if (aov.planes != &FrameOutputs::scales) return aov.channels;
+  std::vector<std::string> channels;
+  for (std::size_t i = 1; i <= planes; i++) channels.push_back(fmt::format("scale{}.Y", i));
+  return channels;
 }
 
 bool wants(const OutputSettings& settings, gpu::Buffer* FrameOutputs::*planes) {

@@ -27,6 +27,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::size_t kMostRadii = 8;
 constexpr int kSpareLanes = 2;  // on a GPU, beyond the threads: frames that wait for it while others are read and written
 
 bool same_file(const std::string& a, const std::string& b) {
@@ -34,6 +35,17 @@ bool same_file(const std::string& a, const std::string& b) {
   if (fs::equivalent(a, b, error)) return true;
   const fs::path whole_a = fs::weakly_canonical(a, error), whole_b = error ? fs::path() : fs::weakly_canonical(b, error);
   return error ? a == b : whole_a == whole_b;
+}
+
+/// Several radii, and what only some estimators give.
+void check_scales(const Settings& settings) {
+  const auto& e = settings.estimator;
+  if (wants(settings.output, &FrameOutputs::bent_normal) && !has_bent_normals(e.estimator))
+    fail(ErrorKind::usage, "--aov bent-normal: --estimator {} finds no open directions; gtao and bitmask do", e.estimator == Estimator::hbao ? "hbao" : "crytek");
+  if (e.further_radii.empty()) return;
+  const auto radii = radii_of(e);
+  if (radii.size() > kMostRadii) fail(ErrorKind::usage, "--radius: there are {}, and at most {} scales", radii.size(), kMostRadii);
+  if (const auto twice = std::ranges::adjacent_find(radii); twice != radii.end()) fail(ErrorKind::usage, "--radius {} is there twice: give each scale once", *twice);
 }
 
 /// What goes into the shading of the AO.
@@ -119,6 +131,7 @@ void check_settings(const Settings& settings) {
     fail(ErrorKind::usage, "no input: name an EXR file, or one with --depth or --position");
   if (!settings.input.depth.empty() && !settings.input.position.empty()) fail(ErrorKind::usage, "--depth and --position are two ways to say the same: give one");
   if (!settings.estimator.radius && needs_ao(settings.output)) fail(ErrorKind::usage, "no radius: say with --radius how far occluders reach, in scene units");
+  check_scales(settings);
   if (settings.estimator.estimator != Estimator::crytek && settings.estimator.bias >= 1)
     fail(ErrorKind::usage, "--bias {}: of every estimator but crytek it is the sine of an elevation, below 1", settings.estimator.bias);
   if (settings.estimator.falloff_end <= settings.estimator.falloff_start)
@@ -139,7 +152,7 @@ std::string options_digest(const Settings& settings) {
   // Every value on a line of its own, so that no two sets of values make one text.
   std::string text = kVersion;
   const auto add = [&](const auto&... values) { ((text += fmt::format("\n{}", values)), ...); };
-  add(int(e.estimator), e.radius.value_or(0), int(e.falloff), e.falloff_start, e.falloff_end, e.slices, e.steps, e.intensity, e.power, e.seed);
+  add(int(e.estimator), e.radius ? fmt::format("{}", fmt::join(radii_of(e), ",")) : "", int(e.falloff), e.falloff_start, e.falloff_end, e.slices, e.steps, e.intensity, e.power, e.seed);
   add(e.fade_start.value_or(-1), e.fade_end.value_or(-1), e.roughness, settings.output.fog_density);
   add(settings.output.multi_bounce, i.albedo_value.value_or(-1));
   add(settings.output.aovs, int(settings.output.ao_channels), int(settings.output.aov_space));
@@ -149,7 +162,7 @@ std::string options_digest(const Settings& settings) {
   add(e.denoise_radius, fmt::format("{}", fmt::join(e.denoise_kernel, ",")), e.denoise_depth_sigma);
   // The camera by what it says; where files lie is not part of it, so that a job has the same digest wherever its folder is mounted.
   add(i.camera.empty() ? std::string() : read_text(i.camera, "camera", "--camera"));
-  add(i.depth_channel, i.normal_channels, i.beauty_channels, i.layer, i.view);
+  add(i.depth_channel, i.normal_channels, i.beauty_channels, i.layer, i.view, i.source);
   add(int(i.depth_kind), i.depth_scale, i.sky, int(i.normal_space), i.fov.value_or(0), i.focal.value_or(0), i.aperture.value_or(0), i.ortho_width.value_or(0));
   const DepthRange& range = i.depth_range;
   add(range.near.value_or(0), range.far.value_or(0), range.reversed, int(range.device), range.log_constant);

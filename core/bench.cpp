@@ -105,7 +105,19 @@ class References {
  public:
   References(const LoadedFrame& frame, int slices) : frame_(frame), slices_(slices) {}
 
-  const std::vector<float>& of(const EstimatorSettings& settings) {
+  /// Of several radii the mean, as the estimate is.
+  std::vector<float> of(EstimatorSettings settings) {
+    const auto radii = radii_of(settings);
+    std::vector<float> mean(frame_.host.depth.size());
+    for (const double radius : radii) {
+      settings.radius = radius;
+      std::ranges::transform(mean, of_one_radius(settings), mean.begin(), [&](float sum, float ao) { return sum + ao / float(radii.size()); });
+    }
+    return mean;
+  }
+
+ private:
+  const std::vector<float>& of_one_radius(const EstimatorSettings& settings) {
     ReferenceSettings wanted = reference_settings_of(settings);
     wanted.slices = slices_;
     auto& reference = made_[{wanted.radius, wanted.falloff, wanted.falloff_start, wanted.thickness, wanted.thickness_length, wanted.bias}];
@@ -115,7 +127,6 @@ class References {
     return reference;
   }
 
- private:
   const LoadedFrame& frame_;
   int slices_;
   std::map<std::tuple<double, Falloff, double, ThicknessRule, double, double>, std::vector<float>> made_;
@@ -133,7 +144,7 @@ void measure(BenchRow& row, const LoadedFrame& frame, const EstimatorSettings& s
   row.bias = errors.bias;
   row.p99 = errors.p99;
   if (!references) return;
-  const auto& reference = references->of(settings);
+  const auto reference = references->of(settings);
   row.estimator_rmse = compare_planes(row.ao, reference, frame.surface).rmse;
   row.geometry_rmse = against_truth(reference, frame).rmse;
 }

@@ -141,6 +141,16 @@ bool is_orthographic(const CameraFile& file) {
   return projection == "orthographic";
 }
 
+/// Where a projection for 0..1, not reversed, has z = 0: -B / A of its third row A z + B.
+std::optional<double> matrix_near(const CameraFile& file) {
+  const Json* value = file.find("projection");
+  if (!value || !value->is_array() || value->size() != 4 || !(*value)[2].is_array() || (*value)[2].size() != 4) return std::nullopt;
+  const Json &slope = (*value)[2][2], &offset = (*value)[2][3];
+  if (!slope.is_number() || !offset.is_number() || slope.get<double>() == 0) return std::nullopt;
+  const double near = std::abs(offset.get<double>() / slope.get<double>());
+  return near > 0 && std::isfinite(near) ? std::optional(near) : std::nullopt;
+}
+
 bool truth(const CameraFile& file, const char* field) {
   const Json* value = file.find(field);
   if (value && !value->is_boolean()) file.refuse(field, "must be true or false, not " + value->dump());
@@ -224,6 +234,7 @@ Camera read_camera(const std::string& path, int frame) {
   read_view_from_world(file, camera);
   camera.near = clip_plane(file, "near");
   camera.far = clip_plane(file, "far");
+  camera.matrix_near = matrix_near(file);
   camera.reversed_z = truth(file, "reversed_z");
   camera.depth_kind = depth_kind(file);
   camera.normal_space = normal_space(file);

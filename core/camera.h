@@ -27,6 +27,7 @@ struct Camera {
   bool left_handed = false;                      // the source's own camera space looks along +z: so do its view-space normals and positions
   std::optional<double> near, far;               // clip planes, scene units; far may be infinite
   bool reversed_z = false;
+  std::optional<double> matrix_near;             // where the source's projection matrix puts depth 0, were its z the depth itself
   DepthKind depth_kind = DepthKind::automatic;   // what its source says of the frame's depth
   NormalSpace normal_space = NormalSpace::automatic;
   NormalEncoding normal_encoding = NormalEncoding::automatic;

@@ -15,23 +15,41 @@ FrameOutputs run_chain(gpu::Recorder& gpu, const FrameInputs& frame, const Estim
   reconstruct(gpu, gbuffer);
   out.counts = gbuffer.counts;
   DebugStages stages;
+  const gpu::Buffer* open = gbuffer.normal;  // the mean open direction; the normal where the estimator does not find it
   if (needs_ao(output) || frame.beauty) {
     const bool reduced = settings.resolution != Resolution::full;
     const GBuffer work = reduced ? downsample(gpu, gbuffer, frame, settings) : gbuffer;
-    out.ao = &estimate(gpu, work, frame, settings);
+    auto [ao, bent] = estimate(gpu, work, frame, settings, needs_bent(settings, output));
+    const bool several = !settings.further_radii.empty(), each = several && wants(output, &FrameOutputs::scales);
+    if (each) out.scales = ao;
+    out.ao = several ? &combine(gpu, work, *ao) : ao;
     stages = {work, out.ao, out.ao};
-    if (settings.denoise != Denoise::none) stages.denoised_ao = out.ao = &denoise(gpu, work, *out.ao, frame, settings);
-    if (reduced) out.ao = &upsample(gpu, gbuffer, work, *out.ao, frame, settings);
-    if (shapes(settings) || frame.material_ao) out.ao = &shape(gpu, gbuffer, *out.ao, frame, settings);
+    if (settings.denoise != Denoise::none) {
+      stages.denoised_ao = out.ao = &denoise(gpu, work, *out.ao, frame, settings);
+      if (each) out.scales = &denoise(gpu, work, *out.scales, frame, settings, "scales ");
+      if (bent) bent = &denoise(gpu, work, *bent, frame, settings, "bent ");
+    }
+    if (reduced) {
+      out.ao = &upsample(gpu, gbuffer, work, *out.ao, frame, settings);
+      if (each) out.scales = &upsample(gpu, gbuffer, work, *out.scales, frame, settings, "scales ");
+      if (bent) bent = &upsample(gpu, gbuffer, work, *bent, frame, settings, "bent ");
+    }
+    if (bent) open = &bent_normal(gpu, gbuffer, *bent);
+    if (shapes(settings) || frame.material_ao) {
+      out.ao = &shape(gpu, gbuffer, *out.ao, frame, settings);
+      if (each) out.scales = &shape(gpu, gbuffer, *out.scales, frame, settings, "scales ");
+    }
+    if (!several && wants(output, &FrameOutputs::scales)) out.scales = out.ao;
   }
-  if (wants(output, &FrameOutputs::specular_occlusion)) out.specular_occlusion = &specular_occlusion(gpu, gbuffer, *gbuffer.normal, *out.ao, settings);
+  if (wants(output, &FrameOutputs::specular_occlusion)) out.specular_occlusion = &specular_occlusion(gpu, gbuffer, *open, *out.ao, settings);
   if (output.multi_bounce) out.color_ao = &multi_bounce(gpu, gbuffer, *out.ao, frame);
   if (frame.beauty) out.composite = &composite(gpu, gbuffer, out.color_ao ? *out.color_ao : *out.ao, frame, output);
   if (wants(output, &FrameOutputs::normal)) out.normal = &directions(gpu, gbuffer, *gbuffer.normal, "normal planes", frame);
+  if (wants(output, &FrameOutputs::bent_normal)) out.bent_normal = &directions(gpu, gbuffer, *open, "bent normal planes", frame);
   if (wants(output, &FrameOutputs::depth)) out.depth = gbuffer.depth;
-  for (const auto* view : debug_views_of(output)) out.debug.push_back(debug(gpu, *view, gbuffer, stages, frame));
+  for (const auto* view : debug_views_of(output)) out.debug.push_back(debug(gpu, *view, gbuffer, stages, frame, settings));
 
-  for (const auto* result : {out.counts, out.ao, out.color_ao, out.composite, out.normal, out.depth, out.specular_occlusion})
+  for (const auto* result : {out.counts, out.ao, out.scales, out.color_ao, out.composite, out.normal, out.bent_normal, out.depth, out.specular_occlusion})
     if (result) gpu.download(*result);
   for (const auto& plane : out.debug) gpu.download(*plane.values);
   return out;
@@ -39,14 +57,18 @@ FrameOutputs run_chain(gpu::Recorder& gpu, const FrameInputs& frame, const Estim
 
 double samples_per_pixel(const EstimatorSettings& settings) {
   const double factor = double(settings.resolution), samples = settings.estimator == Estimator::crytek ? settings.samples : 2 * settings.slices * settings.steps;
-  return samples / (factor * factor * settings.stride);
+  return samples * double(1 + settings.further_radii.size()) / (factor * factor * stride_of(settings));
 }
 
 bool needs_ao(const OutputSettings& output) {
   for (const auto* view : debug_views_of(output))
     if (view->source == DebugSource::raw_ao || view->source == DebugSource::denoised_ao) return true;
   return output.multi_bounce || !output.composite.empty() || !output.preview.empty() || wants(output, &FrameOutputs::ao) ||
-         wants(output, &FrameOutputs::specular_occlusion);
+         wants(output, &FrameOutputs::scales) || wants(output, &FrameOutputs::bent_normal) || wants(output, &FrameOutputs::specular_occlusion);
+}
+
+bool needs_bent(const EstimatorSettings& settings, const OutputSettings& output) {
+  return has_bent_normals(settings.estimator) && (wants(output, &FrameOutputs::bent_normal) || wants(output, &FrameOutputs::specular_occlusion));
 }
 
 }  // namespace alcove

@@ -9,10 +9,12 @@ namespace alcove {
 /// What the host reads after the recorder has run; null: not asked for.
 struct FrameOutputs {
   gpu::Buffer* counts = nullptr;     // one FrameCounts
-  gpu::Buffer* ao = nullptr;         // a plane: visibility in [0, 1]
+  gpu::Buffer* ao = nullptr;         // a plane: visibility in [0, 1]; of several radii the mean
+  gpu::Buffer* scales = nullptr;     // a plane a radius, from the smallest on
   gpu::Buffer* color_ao = nullptr;   // planes r, g, b: the visibility with multi-bounce
   gpu::Buffer* composite = nullptr;  // the beauty's planes
   gpu::Buffer* normal = nullptr;     // planes x, y, z; 0 for sky
+  gpu::Buffer* bent_normal = nullptr;  // planes x, y, z; 0 for sky
   gpu::Buffer* depth = nullptr;      // a plane: planar, scene units; kSkyDepth for sky
   gpu::Buffer* specular_occlusion = nullptr;  // a plane, in [0, 1], 1 = open
   std::vector<DebugPlane> debug;
@@ -26,5 +28,8 @@ double samples_per_pixel(const EstimatorSettings& settings);
 
 /// Whether any of it is AO or made from it.
 bool needs_ao(const OutputSettings& output);
+
+/// Whether any of it is made from open directions, by an estimator that finds them.
+bool needs_bent(const EstimatorSettings& settings, const OutputSettings& output);
 
 }  // namespace alcove

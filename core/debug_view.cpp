@@ -30,6 +30,9 @@ constexpr std::array kViews{
               DebugScale::fixed_logarithmic, 1e-4f, 1, false},
 };
 
+/// The part of the surfaces beyond either end of a percentile scale: so much may lie beyond a window without hiding the room.
+constexpr double kEnds = 0.03;
+
 /// The number below which this part of them lies; they are put into another order.
 float percentile(std::vector<float>& values, double part) {
   const auto at = values.begin() + std::ptrdiff_t(part * double(values.size() - 1));
@@ -43,7 +46,7 @@ std::pair<float, float> range_of(const DebugView& view, std::span<const float> v
   std::vector<float> surfaces;
   std::ranges::copy_if(values, std::back_inserter(surfaces), [](float x) { return x < kSkyDepth; });
   if (surfaces.empty()) return {0, 1};
-  return {percentile(surfaces, 0.01), percentile(surfaces, 0.99)};
+  return {percentile(surfaces, kEnds), percentile(surfaces, 1 - kEnds)};
 }
 
 /// Where each number stands on the scale, 0 to 1; sky is NaN.
@@ -88,8 +91,9 @@ std::string debug_path(const OutputSettings& settings, const DebugView& view) {
 
 void write_debug_view(const std::string& path, const DebugView& view, int width, int height, std::span<const float> values) {
   const auto [low, high] = range_of(view, values);
-  const auto text = [](float x) { return fmt::format("{:.4g}", x); };
-  write_whole(path, encode_chart(path, {width, height, places_of(view, values, low, high), view.title, text(low), text(high), view.is_grey}));
+  const bool is_open = view.scale == DebugScale::percentile || view.scale == DebugScale::percentile_logarithmic;
+  const auto text = [&](const char* beyond, float x) { return fmt::format("{}{:.4g}", is_open ? beyond : "", x); };
+  write_whole(path, encode_chart(path, {width, height, places_of(view, values, low, high), view.title, text("<= ", low), text(">= ", high), view.is_grey}));
 }
 
 }  // namespace alcove

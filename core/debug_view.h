@@ -20,7 +20,7 @@ struct DebugView {
   const char* title;   // what the picture shows, and its unit
   uint kind;           // of kernels/debug.h
   DebugSource source;
-  DebugScale scale;    // percentile: from the 1st to the 99th of the frame's surfaces; logarithmic: equal factors are equal steps, by the numbers' sizes
+  DebugScale scale;    // percentile: from the 3rd to the 97th of the frame's surfaces; logarithmic: equal factors are equal steps, by the numbers' sizes
   float low, high;     // of fixed scales; what is beyond has the colour of the end
   bool is_grey;        // black to white instead of the colour ramp
 };

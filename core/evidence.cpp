@@ -63,9 +63,9 @@ Vector decoded_normal(std::span<const float> raw, std::size_t pixels, std::size_
 /// Relative second difference of three evenly spaced values.
 double bend(double before, double here, double after) { return std::abs(before + after - 2 * here) / std::abs(here); }
 
-/// Three values of single precision on one line, but for their rounding.
-bool is_straight(double before, double here, double after) {
-  return std::abs(before + after - 2 * here) < 1e-4 * std::abs(after - before) + 3e-7 * std::abs(here);
+/// Three values on one line, but for their rounding.
+bool is_straight(double before, double here, double after, double rounding) {
+  return std::abs(before + after - 2 * here) < 1e-4 * std::abs(after - before) + rounding * std::abs(here);
 }
 
 double median(std::vector<double>& values) {
@@ -158,7 +158,7 @@ std::optional<double> reprojection_error(std::span<const float> position, Positi
   return errors.empty() ? std::nullopt : std::optional(median(errors));
 }
 
-std::vector<DepthScore> score_depth(std::span<const float> raw, const View& view, double sky) {
+std::vector<DepthScore> score_depth(std::span<const float> raw, const View& view, double sky, double rounding) {
   // Over this many pixels the difference between distance to the eye and to its plane bends 1/z by (reach / focal)^2, far above rounding.
   const int reach = std::max(3, std::max(view.size.x, view.size.y) / 48), stride = sparseness(view);
   constexpr double kSmooth = 0.02;  // bend of values that are one surface
@@ -174,9 +174,9 @@ std::vector<DepthScore> score_depth(std::span<const float> raw, const View& view
     }
     if (!(bend(1 / value[0], 1 / value[1], 1 / value[2]) < kSmooth)) return;
     count++;
-    const std::array straight{is_straight(1 / value[0], 1 / value[1], 1 / value[2]),
-                              is_straight(length[0] / value[0], length[1] / value[1], length[2] / value[2]),
-                              is_straight(value[0], value[1], value[2])};
+    const std::array straight{is_straight(1 / value[0], 1 / value[1], 1 / value[2], rounding),
+                              is_straight(length[0] / value[0], length[1] / value[1], length[2] / value[2], rounding),
+                              is_straight(value[0], value[1], value[2], rounding)};
     if (straight[0] + straight[1] + straight[2] != 1) return;  // curved, or too even to tell
     for (std::size_t k = 0; k < scores.size(); k++) scores[k].straight += straight[k];
   };
@@ -192,8 +192,9 @@ std::vector<NormalScore> score_normals(std::span<const float> normal, NormalEnco
                                        const Camera& camera, const View& view) {
   std::vector<NormalScore> scores;
   for (const NormalSpace space : {NormalSpace::world, NormalSpace::view})
-    for (const NormalFlips flips : {NormalFlips{}, NormalFlips{false, false, true}, NormalFlips{false, true, false}, NormalFlips{false, true, true}})
-      if (space == NormalSpace::view || camera.view_from_world) scores.push_back({space, flips});
+    for (const bool x : {false, true})
+      for (const NormalFlips flips : {NormalFlips{x, false, false}, NormalFlips{x, false, true}, NormalFlips{x, true, false}, NormalFlips{x, true, true}})
+        if (space == NormalSpace::view || camera.view_from_world) scores.push_back({space, flips});
   std::vector<Matrix3> rotations;
   for (const auto& score : scores) rotations.push_back(view_from_normal(camera, score.space, score.flips));
 

@@ -43,13 +43,16 @@ std::vector<float> planar_depths(std::span<const float> raw, const DepthMap& map
 /// `mirrored`: view positions whose z has the other sign than the camera's.
 std::optional<double> reprojection_error(std::span<const float> position, PositionSpace space, bool mirrored, const Camera& camera, const View& view);
 
+constexpr double kFloatRounding = 3e-7, kHalfRounding = 2e-3;  // of the second difference of three values, relative to one of them
+
 /// A way to read depth and how well the frame's flat surfaces agree with it.
 struct DepthScore {
   DepthKind kind;
   double straight = 0;  // share of the smooth places where by this kind alone 1/z is affine over the image, as it is on every plane
 };
 /// planar, ray and inverse (which stands for all that is affine in 1/z: device depth too), the best first. Empty where too little of the frame is smooth.
-std::vector<DepthScore> score_depth(std::span<const float> raw, const View& view, double sky);
+/// `rounding`: of the values, relative.
+std::vector<DepthScore> score_depth(std::span<const float> raw, const View& view, double sky, double rounding = kFloatRounding);
 
 /// A way to read normals and how well the frame agrees with it.
 struct NormalScore {
@@ -58,7 +61,7 @@ struct NormalScore {
   double facing = 0;     // share that faces the camera, as all that is visible does
   double agreement = 0;  // share within 20 degrees of the normal that depth gives
 };
-/// World space (where the camera knows it) and view space, with flips of y and z, the best agreement first; `normal` and `raw` are as in the file.
+/// World space (where the camera knows it) and view space, with all flips, the best agreement first; `normal` and `raw` are as in the file.
 /// Empty where too little of the frame is smooth.
 std::vector<NormalScore> score_normals(std::span<const float> normal, NormalEncoding encoding, bool unorm, std::span<const float> raw, const DepthMap& map,
                                        const Camera& camera, const View& view);

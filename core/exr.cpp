@@ -6,6 +6,7 @@
 #include <ImfArray.h>
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
+#include <ImfFloatVectorAttribute.h>
 #include <ImfHeader.h>
 #include <ImfIO.h>
 #include <ImfFloatAttribute.h>
@@ -20,6 +21,7 @@
 #include <ImfStringAttribute.h>
 #include <ImfTestFile.h>
 #include <ImfThreading.h>
+#include <ImfVecAttribute.h>
 #include <openexr.h>
 
 #include <algorithm>
@@ -29,6 +31,7 @@
 #include <set>
 
 #include "core/error.h"
+#include "core/exr_header.h"
 #include "core/file.h"
 #include "core/text.h"
 
@@ -40,6 +43,8 @@ class ExrAttributes {
 };
 
 namespace {
+
+constexpr std::size_t kMostPixels = std::size_t(1) << 28;  // in host memory: a gigabyte a channel
 
 Window window_of(const Imath::Box2i& box) { return {box.min.x, box.min.y, box.max.x - box.min.x + 1, box.max.y - box.min.y + 1}; }
 
@@ -60,6 +65,7 @@ std::string one_line(const std::exception& error) {
 
 ExrPart describe(const Imf::Header& header) {
   ExrPart part{header.hasName() ? header.name() : std::string(), header.hasView() ? header.view() : std::string(), {}, window_of(header.dataWindow()), {}};
+  part.dwa = header.compression() == Imf::DWAA_COMPRESSION || header.compression() == Imf::DWAB_COMPRESSION;
   if (Imf::hasMultiView(header)) part.multi_view = Imf::multiView(header);
   for (auto channel = header.channels().begin(); channel != header.channels().end(); ++channel) {
     const auto& c = channel.channel();
@@ -110,6 +116,11 @@ std::string text_of(const Imf::Attribute& attribute) {
     const auto values = std::span(matrix->value().getValue(), 16);
     return fmt::format("{}", fmt::join(values, " "));
   }
+  if (const auto* pair = dynamic_cast<const Imf::V2fAttribute*>(&attribute)) return fmt::format("{} {}", pair->value().x, pair->value().y);
+  if (const auto* pair = dynamic_cast<const Imf::V2dAttribute*>(&attribute)) return fmt::format("{} {}", pair->value().x, pair->value().y);
+  if (const auto* numbers = dynamic_cast<const Imf::FloatVectorAttribute*>(&attribute)) return fmt::format("{}", fmt::join(numbers->value(), " "));
+  if (const auto* matrix = dynamic_cast<const Imf::M44dAttribute*>(&attribute))
+    return fmt::format("{}", fmt::join(std::span(matrix->value().getValue(), 16), " "));
   return std::string("(") + attribute.typeName() + ")";
 }
 
@@ -150,6 +161,7 @@ struct ExrFile::Impl {
   std::vector<ExrPart> parts;
   Window display;
   double pixel_aspect = 1;
+  Image image;  // where there is no file
 };
 
 ExrFile::ExrFile(const std::string& path, const char* option) : impl_(std::make_unique<Impl>()) {
@@ -159,12 +171,14 @@ ExrFile::ExrFile(const std::string& path, const char* option) : impl_(std::make_
   if (!std::filesystem::is_regular_file(path)) fail(ErrorKind::input, "{}: is no regular file; {} takes an EXR file", path, option);
   try {
     if (!Imf::isOpenExrFile(path.c_str())) fail(ErrorKind::input, "{}: not an OpenEXR file ({})", path, option);
+    require_sane_header(path, option);
     impl_->file = std::make_unique<Imf::MultiPartInputFile>(path.c_str());
     for (int part = 0; part < impl_->file->parts(); part++) {
       const auto& header = impl_->file->header(part);
       if (header.hasType() && Imf::isDeepData(header.type()))
         fail(ErrorKind::input, "{}: part {} holds deep data, which has no single depth a pixel; flatten it first ({})", path, part, option);
       impl_->parts.push_back(describe(header));
+      if (impl_->parts.back().channels.empty()) fail(ErrorKind::input, "{}: part {} has no channels ({})", path, part, option);
     }
     impl_->display = window_of(impl_->file->header(0).displayWindow());
     impl_->pixel_aspect = impl_->file->header(0).pixelAspectRatio();
@@ -173,6 +187,19 @@ ExrFile::ExrFile(const std::string& path, const char* option) : impl_(std::make_
   } catch (const std::exception& error) {
     fail(ErrorKind::input, "{}: the EXR header cannot be read ({}): {}", path, option, one_line(error));
   }
+}
+
+ExrFile::ExrFile(const std::string& path, const char* option, Image image) : impl_(std::make_unique<Impl>()) {
+  impl_->path = path;
+  impl_->option = option;
+  impl_->display = image.display;
+  impl_->parts.push_back({"", "", {}, image.data, {}, false});
+  for (const auto& name : image.names) impl_->parts[0].channels.push_back({name, SampleType::single_float, false});
+  impl_->image = std::move(image);
+}
+
+void require_host_room(const std::string& path, const Window& data) {
+  if (data.pixels() > kMostPixels) fail(ErrorKind::input, "{}: {} are more pixels than are read as a whole; use a smaller frame", path, to_string(data));
 }
 
 ExrFile::~ExrFile() = default;
@@ -184,6 +211,7 @@ double ExrFile::pixel_aspect() const { return impl_->pixel_aspect; }
 
 std::shared_ptr<const ExrAttributes> ExrFile::attributes(int part) const {
   auto attributes = std::make_shared<ExrAttributes>();
+  if (!impl_->file) return attributes;
   attributes->header = impl_->file->header(part);
   const Imf::Header& first = impl_->file->header(0);
   for (auto attribute = first.begin(); attribute != first.end(); ++attribute)
@@ -193,8 +221,9 @@ std::shared_ptr<const ExrAttributes> ExrFile::attributes(int part) const {
 }
 
 std::map<std::string, std::string> ExrFile::attribute_texts(int part) const {
-  const Imf::Header& header = impl_->file->header(part);
   std::map<std::string, std::string> texts;
+  if (!impl_->file) return texts;
+  const Imf::Header& header = impl_->file->header(part);
   for (auto entry = header.begin(); entry != header.end(); ++entry)
     if (!describes_storage(entry.name())) texts[entry.name()] = text_of(entry.attribute());
   return texts;
@@ -206,6 +235,11 @@ void ExrFile::read(std::span<const ExrRead> reads) {
 }
 
 void ExrFile::read(std::span<const ExrRead> reads, int first, int rows) {
+  if (!impl_->file) {
+    const std::size_t width = std::size_t(impl_->image.data.width);
+    for (const auto& read : reads) std::ranges::copy(impl_->image.plane(read.channel).subspan(std::size_t(first) * width, std::size_t(rows) * width), read.to);
+    return;
+  }
   std::set<int> parts;
   for (const auto& read : reads) parts.insert(read.part);
   for (const int part : parts) {
@@ -298,6 +332,7 @@ Image read_exr_image(const std::string& path, const std::vector<std::string>& ch
   if (part == file.parts().end()) fail(ErrorKind::input, "{}: no part has the channels {}", path, list_of(channels));
   std::vector<std::string> names = channels;
   if (names.empty()) std::ranges::transform(part->channels, std::back_inserter(names), &ExrChannel::name);
+  require_host_room(path, part->data);
   Image image(part->data, file.display(), names);
   std::vector<ExrRead> reads;
   for (std::size_t i = 0; i < names.size(); i++) reads.push_back({int(part - file.parts().begin()), names[i], image.plane(i).data()});

@@ -29,6 +29,7 @@ struct ExrPart {
   std::vector<std::string> multi_view;  // of stereo files whose channels name their view, the default first; empty: none
   Window data;
   std::vector<ExrChannel> channels;
+  bool dwa = false;  // compressed by DWAA or DWAB, which are lossy for channels whose name ends in R, G, B, Y, RY or BY
 };
 
 /// All attributes of one part's header, of every type, and those that only the first part has, to be carried into an output.
@@ -44,8 +45,10 @@ struct ExrRead {
 /// An EXR file whose header has been read. Every failure is ErrorKind::input and names the file.
 class ExrFile {
  public:
-  /// Fails on a missing file, a folder, a file that is no EXR, and deep data.
+  /// Fails on a missing file, a folder, a file that is no EXR, deep data, no channels, and headers that ask for more than their file can hold.
   explicit ExrFile(const std::string& path, const char* option);
+  /// A picture of another format that has been read already, with the same face.
+  ExrFile(const std::string& path, const char* option, Image image);
   ~ExrFile();
   ExrFile(ExrFile&&) noexcept;
 
@@ -67,6 +70,9 @@ class ExrFile {
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
+
+/// Fails with ErrorKind::input where planes of that window are too much for host memory; before they are made, since a header may say anything.
+void require_host_room(const std::string& path, const Window& data);
 
 /// A plane to write: width x height floats of the data window.
 struct ExrPlane {

@@ -41,14 +41,17 @@ SampleType type_of(const FrameSource& source, const ChannelRef& ref) {
 }
 
 /// The AO file, without pixels.
-ExrOutput aov_file(const FrameSource& source, const OutputSettings& settings, const Provenance& provenance) {
+ExrOutput aov_file(const FrameSource& source, const EstimatorSettings& estimator, const OutputSettings& settings, const Provenance& provenance) {
   ExrOutput output = output_like(source, source.depth[0], provenance);
   output.compression = settings.compression;
+  const auto radii = estimator.radius ? radii_of(estimator) : std::vector<double>();
   for (const auto& aov : aovs_of(settings)) {
     const SampleType type = settings.type == OutputType::half_float && !aov.is_float ? SampleType::half_float : SampleType::single_float;
-    for (const auto& channel : aov.channels) output.planes.push_back({channel, type, {}});
+    for (const auto& channel : channels_of(aov, radii.size())) output.planes.push_back({channel, type, {}});
   }
-  if (wants(settings, &FrameOutputs::normal)) output.own_attributes["alcove/normal_space"] = in_world(source, settings) ? "world" : "view";
+  if (wants(settings, &FrameOutputs::scales)) output.own_attributes["alcove/radii"] = fmt::format("{}", fmt::join(radii, " "));
+  if (wants(settings, &FrameOutputs::normal) || wants(settings, &FrameOutputs::bent_normal))
+    output.own_attributes["alcove/normal_space"] = in_world(source, settings) ? "world" : "view";
   return output;
 }
 
@@ -145,19 +148,21 @@ std::vector<std::span<const float>> result_planes(const FrameOutputs& outputs, c
   const std::size_t pixels = computed.pixels();
   for (const auto& aov : aovs_of(settings)) {
     const auto planes = (outputs.*aov.planes)->as<const float>();
-    for (std::size_t c = 0; c < aov.channels.size(); c++) results.push_back(planes.subspan(planes.size() > pixels ? c * pixels : 0, pixels));
+    const std::size_t channels = channels_of(aov, planes.size() / pixels).size();
+    for (std::size_t c = 0; c < channels; c++) results.push_back(planes.subspan(planes.size() > pixels ? c * pixels : 0, pixels));
   }
   const auto composite = outputs.composite ? outputs.composite->as<const float>() : std::span<const float>();
   for (std::size_t at = 0; at < composite.size(); at += pixels) results.push_back(composite.subspan(at, pixels));
   return results;
 }
 
-FrameWriter::FrameWriter(const FrameSource& source, const OutputSettings& settings, const Provenance& provenance) {
+FrameWriter::FrameWriter(const FrameSource& source, const Settings& all, const Provenance& provenance) {
+  const OutputSettings& settings = all.output;
   const auto add = [&](const std::string& path, const ExrOutput& output) {
     files_.emplace_back(path, output);
     planes_.push_back(output.planes.size());
   };
-  add(settings.output, aov_file(source, settings, provenance));
+  add(settings.output, aov_file(source, all.estimator, settings, provenance));
   if (!settings.composite.empty()) add(settings.composite, composite_file(source, settings, provenance));
 }
 

@@ -35,7 +35,7 @@ std::vector<std::span<const float>> result_planes(const FrameOutputs& outputs, c
 /// The AO file and the composite, written from top to bottom, each whole or not at all. Fails with ErrorKind::output.
 class FrameWriter {
  public:
-  FrameWriter(const FrameSource& source, const OutputSettings& settings, const Provenance& provenance);
+  FrameWriter(const FrameSource& source, const Settings& settings, const Provenance& provenance);
 
   /// The next rows of result_planes(), as wide as what is written.
   void write(std::span<const std::span<const float>> planes);

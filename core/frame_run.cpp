@@ -98,7 +98,7 @@ class FrameRun {
     auto planes = result_planes(outputs, source.data, settings_.output);
     for (auto& plane : planes)
       if (source.region) plane = kept.emplace_back(cropped(plane, source.data, *source.region));
-    FrameWriter writer(source, settings_.output, provenance());
+    FrameWriter writer(source, settings_, provenance());
     writer.write(planes);
     write_pictures(source, outputs, run_.transform, settings_.output);
     writer.finish();
@@ -115,7 +115,7 @@ class FrameRun {
     const Surroundings surroundings(source, settings_, whole);
     report_.read_ms += reading.ms();
     const auto rows = tiles_of(whole, surroundings, pixel, run_.room, source);
-    FrameWriter writer(source, settings_.output, provenance());
+    FrameWriter writer(source, settings_, provenance());
     report_.tiles = 0;
     for (const auto& row : rows) {
       std::vector<std::vector<float>> planes;

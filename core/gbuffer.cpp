@@ -8,7 +8,10 @@
 #include <optional>
 #include <set>
 
+#include "core/dds.h"
 #include "core/error.h"
+#include "core/header_camera.h"
+#include "core/image_io.h"
 #include "core/text.h"
 
 namespace alcove {
@@ -135,8 +138,9 @@ std::vector<std::vector<const NamedChannel*>> places_of(const std::vector<NamedC
         if (place.size() == i) place.push_back(&channel);
       }
   std::vector<std::vector<const NamedChannel*>> whole;
+  std::set<std::vector<const NamedChannel*>> known;
   for (auto& [key, place] : places)
-    if (place.size() == components.size() && std::ranges::find(whole, place) == whole.end()) whole.push_back(std::move(place));
+    if (place.size() == components.size() && known.insert(place).second) whole.push_back(std::move(place));
   return whole;
 }
 
@@ -197,6 +201,20 @@ std::vector<ChannelRef> find_chosen(const ExrFile& file, const std::vector<Named
   return refs_of(found, file);
 }
 
+/// Where the first of the candidates is, in the order of the rules; a name is a layer, or else a channel. Null: none is there.
+std::pair<std::vector<ChannelRef>, const AovCandidate*> find_candidate(const ExrFile& file, const std::vector<NamedChannel>& channels,
+                                                                       const AovNames& names, const std::vector<AovCandidate>& candidates) {
+  for (const auto& candidate : candidates) {
+    auto found = find_in_layer(file, channels, names, candidate.name, names.in_layer);
+    const std::size_t dot = candidate.name.rfind('.');
+    if (found.empty() && names.in_layer.front().size() == 1)
+      found = find_in_layer(file, channels, names, dot == std::string::npos ? "" : candidate.name.substr(0, dot),
+                            {{dot == std::string::npos ? candidate.name : candidate.name.substr(dot + 1)}});
+    if (!found.empty()) return {std::move(found), &candidate};
+  }
+  return {};
+}
+
 /// Files opened once each, and their channels.
 class Search {
  public:
@@ -207,7 +225,7 @@ class Search {
     if (path.empty()) fail(ErrorKind::usage, "no INPUT and no {} FILE: give one of them", option);
     const auto known = std::ranges::find(files_, path, &ExrFile::path);
     if (known != files_.end()) return std::size_t(known - files_.begin());
-    files_.emplace_back(path, path == settings_.input ? "INPUT" : option);
+    files_.push_back(open_file(path, path == settings_.input ? "INPUT" : option));
     const auto views = views_of(files_.back());
     const auto same = [&](const std::string& view) { return lower_case(view) == lower_case(settings_.view); };
     if (!settings_.view.empty() && !views.empty() && std::ranges::none_of(views, same))
@@ -219,6 +237,12 @@ class Search {
   /// The AOV by the names that the user chose, or else its usual ones; empty when there is none. `own_file`: the file holds nothing else.
   std::vector<ChannelRef> find(std::size_t file, const AovNames& names, const std::string& chosen, bool own_file) const {
     return chosen.empty() ? find_usual(files_[file], channels_[file], names, own_file) : find_chosen(files_[file], channels_[file], names, chosen);
+  }
+
+  /// As the rules name it; empty when the user chose, or none is there.
+  std::pair<std::vector<ChannelRef>, const AovCandidate*> find_by_rules(std::size_t file, const AovNames& names, const std::string& chosen,
+                                                                        const std::vector<AovCandidate>& candidates) const {
+    return chosen.empty() ? find_candidate(files_[file], channels_[file], names, candidates) : std::pair<std::vector<ChannelRef>, const AovCandidate*>{};
   }
 
   /// As find(), but not to find anything is an error. `hint` is the name that near misses are measured by.
@@ -302,12 +326,81 @@ void find_albedo(FrameSource& source, Search& search, const std::string& beauty_
   require_same_window(source, source.albedo, "diffuse colour", "--albedo");
 }
 
+/// The rules that the settings name, or those of the file.
+void find_rules(FrameSource& source, std::size_t file, const InputSettings& settings) {
+  const bool detects = settings.source.empty() || settings.source == "auto";
+  const DetectedRules found = detects ? detect_rules(source.files[file]) : DetectedRules{&input_rules(settings.source), "--source"};
+  source.rules = found.rules, source.rules_by = found.by, source.rules_said = !detects;
+}
+
 /// The depth channel; the position's where the settings say so, or where there is no depth.
-std::vector<ChannelRef> find_depth(const Search& search, std::size_t file, const InputSettings& settings, bool by_position) {
+std::vector<ChannelRef> find_depth(FrameSource& source, const Search& search, std::size_t file, const InputSettings& settings, bool by_position) {
+  source.usual_depth_kind = source.rules->depth_kind != DepthKind::automatic ? source.rules->depth_kind : DepthKind::planar;
+  if (by_position)
+    if (auto [found, candidate] = search.find_by_rules(file, kPositionNames, settings.position_channels, source.rules->position); candidate) return found;
+  if (!by_position)
+    if (auto [found, candidate] = search.find_by_rules(file, kDepthNames, settings.depth_channel, source.rules->depth); candidate) {
+      if (candidate->kind != DepthKind::automatic) source.usual_depth_kind = candidate->kind;
+      return found;
+    }
   if (by_position) return search.require(file, kPositionNames, settings.position_channels, !settings.position.empty(), "Position.X");
   if (settings.depth_kind == DepthKind::automatic && settings.depth_channel.empty() && search.find(file, kDepthNames, "", !settings.depth.empty()).empty())
     if (auto position = search.find(file, kPositionNames, "", false); !position.empty()) return position;
   return search.require(file, kDepthNames, settings.depth_channel, !settings.depth.empty(), "Depth.Z");
+}
+
+/// The normals, none where there are none; and what the rules say of their space.
+std::vector<ChannelRef> find_normal(FrameSource& source, const Search& search, std::size_t file, const InputSettings& settings) {
+  if (source.rules->normal_space != NormalSpace::automatic) source.usual_normal_space = source.rules->normal_space;
+  if (auto [found, candidate] = search.find_by_rules(file, kNormalNames, settings.normal_channels, source.rules->normal); candidate) {
+    if (candidate->space != NormalSpace::automatic) source.usual_normal_space = candidate->space;
+    return found;
+  }
+  return settings.normal.empty() ? search.find(file, kNormalNames, settings.normal_channels, false)
+                                 : search.require(file, kNormalNames, settings.normal_channels, true, "Normal.X");
+}
+
+bool names_a_camera(const InputSettings& settings) { return !settings.camera.empty() || settings.fov || settings.focal || settings.ortho_width; }
+
+/// The settings' camera, or else the header's.
+void find_camera(FrameSource& source, const InputSettings& settings, const ChannelRef& depth, int frame) {
+  const ExrFile& file = source.files[depth.file];
+  const auto attributes = file.attribute_texts(depth.part);
+  require_no_panorama(attributes, file.path());
+  if (!names_a_camera(settings))
+    if (auto found = header_camera(attributes, source.display, source.file_data, source.pixel_aspect)) {
+      source.camera = found->camera;
+      source.camera_from = found->from;
+      return;
+    }
+  source.camera = camera_for(settings, source.display, source.pixel_aspect, frame);
+}
+
+/// What of the meaning of depth and normals is said, and by whom; the rest is open.
+void find_meaning(FrameSource& source, const InputSettings& settings) {
+  const InputRules& rules = *source.rules;
+  const auto decided = [](auto setting, auto from_camera, auto otherwise) {
+    using Kind = decltype(setting);
+    return setting != Kind::automatic ? setting : from_camera != Kind::automatic ? from_camera : otherwise;
+  };
+  const auto is_open = [&](auto setting, auto from_camera, bool in_rules) {
+    using Kind = decltype(setting);
+    return setting == Kind::automatic && from_camera == Kind::automatic && !(source.rules_said && in_rules);
+  };
+  source.depth_kind_open = is_open(settings.depth_kind, source.camera.depth_kind, rules.depth_kind != DepthKind::automatic);
+  source.normal_space_open = is_open(settings.normal_space, source.camera.normal_space, rules.normal_space != NormalSpace::automatic);
+  source.normal_encoding_open = is_open(settings.normal_encoding, source.camera.normal_encoding, rules.normal_encoding != NormalEncoding::automatic);
+  source.depth_kind = source.depth.size() == 3 ? DepthKind::position : decided(settings.depth_kind, source.camera.depth_kind, source.usual_depth_kind);
+  source.depth_range = settings.depth_range;
+  if (!source.depth_range.near) source.depth_range.near = source.camera.near ? source.camera.near : rules.depth_range.near;
+  if (!source.depth_range.far) source.depth_range.far = source.camera.far ? source.camera.far : rules.depth_range.far;
+  source.depth_range.reversed = settings.depth_range.reversed || source.camera.reversed_z || rules.depth_range.reversed;
+  source.position_space = settings.position_space != PositionSpace::automatic ? settings.position_space
+                          : source.camera.view_from_world ? PositionSpace::world : PositionSpace::view;
+  const bool has_encoding = source.rules_said && rules.normal_encoding != NormalEncoding::automatic;
+  source.normal_encoding = decided(settings.normal_encoding, source.camera.normal_encoding, has_encoding ? rules.normal_encoding : NormalEncoding::signed_float);
+  source.flip_normal = settings.flip_normal;
+  source.normal_space = decided(settings.normal_space, source.camera.normal_space, source.usual_normal_space);
 }
 
 /// Reads whole rows, since that is how files are stored, and keeps what lies in source.data.
@@ -337,14 +430,14 @@ FrameSource find_frame(const InputSettings& settings, bool with_beauty, int fram
   const bool wants_position = !settings.position.empty() || !settings.position_channels.empty();
   const bool by_position = wants_position || settings.depth_kind == DepthKind::position;
   const std::size_t depth_file = by_position && !settings.position.empty() ? search.open(settings.position, "--position") : search.open(depth_path, "--depth");
-  source.depth = find_depth(search, depth_file, settings, by_position);
+  find_rules(source, depth_file, settings);
+  source.depth = find_depth(source, search, depth_file, settings, by_position);
   source.data = source.file_data = part_of(source, source.depth[0]).data;
   source.display = source.files[depth_file].display();
   source.pixel_aspect = source.files[depth_file].pixel_aspect();
 
   const std::size_t normal_file = search.open(normal_path, "--normal");
-  source.normal = settings.normal.empty() ? search.find(normal_file, kNormalNames, settings.normal_channels, false)
-                                          : search.require(normal_file, kNormalNames, settings.normal_channels, true, "Normal.X");
+  source.normal = find_normal(source, search, normal_file, settings);
   require_same_window(source, source.normal, "normal", "--normal");
   if (with_beauty) find_beauty(source, search, search.open(beauty_path, "--beauty"), settings);
   if (with_albedo) find_albedo(source, search, beauty_path, settings);
@@ -352,26 +445,27 @@ FrameSource find_frame(const InputSettings& settings, bool with_beauty, int fram
 
   const auto views = views_of(source.files[depth_file]);
   if (settings.view.empty() && views.size() > 1) source.notes.push_back(fmt::format("of the views {} this is {} (--view)", list_of(views), views.front()));
-  source.camera = camera_for(settings, source.display, source.pixel_aspect, frame);
-  const auto decided = [](auto setting, auto from_camera, auto otherwise) {
-    using Kind = decltype(setting);
-    return setting != Kind::automatic ? setting : from_camera != Kind::automatic ? from_camera : otherwise;
-  };
-  source.depth_kind = source.depth.size() == 3 ? DepthKind::position : decided(settings.depth_kind, source.camera.depth_kind, DepthKind::planar);
-  source.depth_range = settings.depth_range;
-  if (!source.depth_range.near) source.depth_range.near = source.camera.near;
-  if (!source.depth_range.far) source.depth_range.far = source.camera.far;
-  source.depth_range.reversed = settings.depth_range.reversed || source.camera.reversed_z;
-  source.position_space = settings.position_space != PositionSpace::automatic ? settings.position_space
-                          : source.camera.view_from_world ? PositionSpace::world : PositionSpace::view;
-  source.normal_encoding = decided(settings.normal_encoding, source.camera.normal_encoding, NormalEncoding::signed_float);
-  source.flip_normal = settings.flip_normal;
-  source.normal_space = decided(settings.normal_space, source.camera.normal_space, NormalSpace::world);
-  const bool says_world = settings.normal_space == NormalSpace::world || source.camera.normal_space == NormalSpace::world;
-  if (!source.normal.empty() && source.normal_space == NormalSpace::world && says_world && !source.camera.view_from_world)
+  find_camera(source, settings, source.depth[0], frame);
+  find_meaning(source, settings);
+  if (!source.normal.empty() && source.normal_space == NormalSpace::world && !source.normal_space_open && !source.camera.view_from_world)
     fail(ErrorKind::input, "{}: its normals are in world space, and the camera has no world_to_camera: give a --camera file with it, or --normal-space view",
          source.files[source.normal[0].file].path());
   return source;
+}
+
+ExrFile open_file(const std::string& path, const char* option) {
+  if (is_dds(path)) return {path, option, read_dds(path, option)};
+  const std::string ending = lower_case(path.substr(std::min(path.rfind('.'), path.size())));
+  for (const char* other : {".png", ".tif", ".tiff", ".tga", ".bmp", ".hdr"})
+    if (ending == other) return {path, option, read_image(path, option)};
+  return ExrFile(path, option);
+}
+
+bool header_has_camera(const InputSettings& settings) {
+  const ExrFile file = open_file(!settings.depth.empty() ? settings.depth : settings.input.empty() ? settings.position : settings.input, "INPUT");
+  for (std::size_t part = 0; part < file.parts().size(); part++)
+    if (header_camera(file.attribute_texts(int(part)), file.display(), file.parts()[part].data, file.pixel_aspect())) return true;
+  return false;
 }
 
 void read_planes(FrameSource& source, const std::vector<PlaneRead>& reads) {

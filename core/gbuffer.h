@@ -11,6 +11,7 @@
 #include "core/camera.h"
 #include "core/depth.h"
 #include "core/exr.h"
+#include "core/input_rules.h"
 #include "core/settings.h"
 
 namespace alcove {
@@ -51,7 +52,14 @@ struct FrameSource {
   NormalEncoding normal_encoding = NormalEncoding::signed_float;
   bool normal_unorm = false;  // the values are 0.5 + 0.5 n, of any encoding
   NormalFlips flip_normal;
+  const InputRules* rules = nullptr;  // of the program that wrote the frame
+  std::string rules_by;               // the attribute or channel, or the option, that told; empty: nothing did
+  bool rules_said = false;            // by an option: what they say is no guess
+  DepthKind usual_depth_kind = DepthKind::planar;        // by the rules, for what is open
+  NormalSpace usual_normal_space = NormalSpace::world;
+  bool depth_kind_open = false, normal_space_open = false, normal_encoding_open = false;  // nobody says it; the pixels decide
   Camera camera;
+  std::string camera_from;            // the attributes that gave it; empty: the settings did
   std::vector<Guess> guesses;
   std::vector<std::string> notes;  // what the user should know: guesses that are unusual, and what harms; a sentence each
 };
@@ -61,6 +69,12 @@ struct FrameSource {
 /// Fails with ErrorKind::input, listing what there is and naming the option that decides, when a channel is not found, is
 /// found twice, is subsampled, or has another size than the depth.
 FrameSource find_frame(const InputSettings& settings, bool with_beauty, int frame, bool with_albedo = false);
+
+/// Opens an EXR, a DDS, or another picture by its ending (png, tif, tiff, tga, bmp, hdr). Fails with ErrorKind::input.
+ExrFile open_file(const std::string& path, const char* option);
+
+/// Whether the header of the frame's depth or position file has a camera. Fails as opening it does.
+bool header_has_camera(const InputSettings& settings);
 
 /// A plane, or several one behind the other, and where it goes.
 struct PlaneRead {

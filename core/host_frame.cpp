@@ -24,6 +24,7 @@ gpu::Buffer* upload(gpu::Recorder& gpu, const char* name, std::span<const float>
 
 HostFrame read_host_frame(const InputSettings& settings, int number) {
   FrameSource source = find_frame(settings, false, number);
+  require_host_room(source.files[source.depth[0].file].path(), source.data);
   HostFrame frame;
   frame.data = source.data;
   frame.display = source.display;

@@ -9,12 +9,15 @@
 
 #include "core/error.h"
 #include "core/evidence.h"
+#include "core/findings.h"
 #include "core/settle.h"
 
 namespace alcove {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+constexpr std::size_t kShownScores = 8;  // in the text; all are in the JSON
 
 const char* name_of(SampleType type) { return type == SampleType::half_float ? "half" : type == SampleType::single_float ? "float" : "integer"; }
 const char* name_of(NormalSpace space) { return space == NormalSpace::world ? "world" : "view"; }
@@ -53,8 +56,9 @@ void add_aov(Json& aovs, const char* name, const FrameSource& source, const std:
                 {"why", chosen ? "named by an option" : "a usual name"}};
 }
 
-Json camera_json(const Camera& camera, const InputSettings& settings) {
-  const char* from = !settings.camera.empty() ? "--camera" : settings.fov ? "--fov" : settings.focal ? "--focal and --aperture" : "--ortho-width";
+Json camera_json(const FrameSource& source, const InputSettings& settings) {
+  const Camera& camera = source.camera;
+  const std::string from = !source.camera_from.empty() ? "the header's " + source.camera_from : !settings.camera.empty() ? "--camera" : settings.fov ? "--fov" : settings.focal ? "--focal and --aperture" : "--ortho-width";
   return {{"from", from},
           {"projection", camera.orthographic ? "orthographic" : "perspective"},
           {"fx", camera.fx},
@@ -89,7 +93,7 @@ void add_planar(Json& depth, std::span<const float> raw, const std::vector<float
   }
   depth["scores"] = Json::array();
   if (source.depth_kind != DepthKind::position)
-    for (const auto& score : score_depth(raw, view_of(source.camera, source.data, source.display), settings.sky))
+    for (const auto& score : score_depth(raw, view_of(source.camera, source.data, source.display), settings.sky, depth_rounding(source)))
       depth["scores"].push_back({{"kind", alcove::name_of(score.kind)}, {"straight", score.straight}});
 }
 
@@ -134,6 +138,7 @@ std::string command_of(const FrameSource& source, const InputSettings& s, const 
   };
   if (!s.input.empty()) text += " " + quoted(s.input);
   add("--depth", s.depth), add("--normal", s.normal), add("--position", s.position), add("--layer", s.layer), add("--view", s.view);
+  if (source.rules_said) add("--source", s.source);
   add("--depth-channel", s.depth_channel), add("--normal-channels", s.normal_channels), add("--position-channels", s.position_channels);
   text += fmt::format(" -o ao.exr --depth-kind {}", alcove::name_of(source.depth_kind));
   const bool has_planes = source.depth_kind == DepthKind::device || source.depth_kind == DepthKind::normalized || source.depth_kind == DepthKind::log;
@@ -173,6 +178,8 @@ std::string text_of(const Json& json) {
       for (const auto& [key, value] : part["attributes"].items()) line("    {} = {}", key, value.get<std::string>().substr(0, 100));
     }
   }
+  if (const auto& program = json["source"]; !program.is_null())
+    line("source: {}{}", program["name"].get<std::string>(), program["by"].empty() || program["by"] == "" ? "" : " (" + program["by"].get<std::string>() + ")");
   for (const auto& [name, aov] : json["aovs"].items()) {
     std::vector<std::string> channels = aov["channels"];
     line("{}: {} ({})", name, fmt::join(channels, ", "), aov["why"].get<std::string>());
@@ -196,14 +203,17 @@ std::string text_of(const Json& json) {
     line("normals: {} space, {}, flips {}, mean length {:.4f}, of unit length on {}", normals["space"].get<std::string>(),
          normals["encoding"].get<std::string>(), normals["flips"].get<std::string>(), normals["mean_length"].get<double>(),
          percent(normals["unit_share"]));
-    for (const auto& score : normals["scores"])
+    for (std::size_t i = 0; i < std::min<std::size_t>(normals["scores"].size(), kShownScores); i++) {
+      const auto& score = normals["scores"][i];
       line("  as {} with flips {}: {} agree with depth, {} face the camera", score["space"].get<std::string>(), score["flips"].get<std::string>(),
            percent(score["agreement"]), percent(score["facing"]));
+    }
   }
   for (const auto& guess : json["guesses"])
     line("guess: {} {}, since {} ({})", guess["what"].get<std::string>(), guess["chosen"].get<std::string>(), guess["why"].get<std::string>(),
          guess["option"].get<std::string>());
   for (const auto& note : json["notes"]) line("note: {}", note.get<std::string>());
+  for (const auto& finding : json["suspicious"]) line("suspicious: {}", finding.get<std::string>());
   for (const auto& missing : json["missing"]) line("missing: {}", missing.get<std::string>());
   line("{}", json["command"].get<std::string>());
   return text;
@@ -219,10 +229,14 @@ InputSettings with_some_camera(InputSettings settings) {
 }  // namespace
 
 Inspection inspect_frame(const InputSettings& settings, int frame) {
-  Json json = {{"files", Json::array()},   {"aovs", Json::object()}, {"camera", nullptr},        {"depth", nullptr}, {"normals", nullptr},
-               {"guesses", Json::array()}, {"notes", Json::array()}, {"missing", Json::array()}, {"command", ""}};
+  Json json = {{"files", Json::array()},   {"source", nullptr}, {"aovs", Json::object()}, {"camera", nullptr},        {"depth", nullptr}, {"normals", nullptr},
+               {"guesses", Json::array()}, {"notes", Json::array()}, {"suspicious", Json::array()}, {"missing", Json::array()}, {"command", ""}};
   FrameSource source;
-  const bool has_camera = !settings.camera.empty() || settings.fov || settings.focal || settings.ortho_width;
+  bool has_camera = !settings.camera.empty() || settings.fov || settings.focal || settings.ortho_width;
+  try {
+    has_camera = has_camera || header_has_camera(settings);
+  } catch (const Error&) {  // said below, with all that is missing
+  }
   const InputSettings reading = has_camera ? settings : with_some_camera(settings);
   const auto finish = [&] {
     json["files"] = files_json(source);
@@ -233,15 +247,17 @@ Inspection inspect_frame(const InputSettings& settings, int frame) {
     source = find_frame(reading, false, frame);
   } catch (const Error& error) {
     for (const std::string& path : {settings.input, settings.depth, settings.normal, settings.position})
-      if (!path.empty()) source.files.emplace_back(path, "INPUT");  // what cannot be read fails here
+      if (!path.empty()) source.files.push_back(open_file(path, "INPUT"));  // what cannot be read fails here
     json["missing"].push_back(error.what());
     return finish();
   }
+  json["source"] = {{"name", source.rules->name}, {"by", source.rules_by}};
   add_aov(json["aovs"], source.depth.size() == 3 ? "position" : "depth", source, source.depth,
           !settings.depth_channel.empty() || !settings.position_channels.empty());
   add_aov(json["aovs"], "normal", source, source.normal, !settings.normal_channels.empty());
   if (source.normal.empty()) json["missing"].push_back("normals: they would be reconstructed from depth; --normal or --normal-channels names them");
-  if (has_camera) json["camera"] = camera_json(source.camera, settings);
+  if (has_camera) json["camera"] = camera_json(source, settings);
+  require_host_room(source.files[source.depth[0].file].path(), source.data);
   std::vector<float> depth(source.depth.size() * source.data.pixels()), normal(source.normal.size() * source.data.pixels());
   read_planes(source, {{&source.depth, depth.data()}, {&source.normal, normal.data()}});
   json["depth"] = depth_json(depth, source);
@@ -251,11 +267,11 @@ Inspection inspect_frame(const InputSettings& settings, int frame) {
     const auto planar = planar_depths(depth, depth_map_of(source, reading), view_of(source.camera, source.data, source.display));
     add_planar(json["depth"], depth, planar, source, reading);
     if (!normal.empty()) json["normals"] = normals_json(normal, depth, source, reading);
+    json["suspicious"] = findings(source, reading, depth, normal);
     json["command"] = command_of(source, settings, json["depth"], has_camera);
   } catch (const Error& error) {
     json["missing"].push_back(error.what());
-    const bool open = settings.depth_kind == DepthKind::automatic && source.camera.depth_kind == DepthKind::automatic;
-    if (open) json["depth"]["kind"] = "undecided";
+    if (source.depth_kind_open) json["depth"]["kind"] = "undecided";
   }
   for (const auto& guess : source.guesses)
     json["guesses"].push_back({{"what", guess.what}, {"chosen", guess.chosen}, {"why", guess.why}, {"option", guess.option}});

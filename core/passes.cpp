@@ -9,7 +9,9 @@
 #include <vector>
 
 #include "core/error.h"
+#include "kernels/bent_normal.h"
 #include "kernels/bitmask.h"
+#include "kernels/combine.h"
 #include "kernels/composite.h"
 #include "kernels/crytek.h"
 #include "kernels/debug.h"
@@ -33,6 +35,7 @@ constexpr double kDenoiseSigma = 0.6;
 
 std::size_t pixels_of(const View& view) { return std::size_t(view.size.x) * std::size_t(view.size.y); }
 std::size_t plane_bytes(const View& view) { return pixels_of(view) * sizeof(float); }
+uint planes_in(const gpu::Buffer& buffer, const View& view) { return uint(buffer.bytes() / plane_bytes(view)); }
 
 /// As kernels take it: 0 says as deep as wide.
 float thickness_of(const EstimatorSettings& settings) {
@@ -64,7 +67,7 @@ vec2 noise_shift(int frame, std::uint32_t seed) {
 
 /// Of the estimators that search slices.
 template <class Params>
-Params slice_parameters(const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings) {
+Params slice_parameters(const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings, uint plane) {
   const double radius = settings.radius.value();
   Params params{};
   params.view = gbuffer.view;
@@ -74,20 +77,16 @@ Params slice_parameters(const GBuffer& gbuffer, const FrameInputs& frame, const 
   params.noise_shift = noise_shift(frame.frame, settings.seed);
   params.thickness = thickness_of(settings);
   params.bias = float(settings.bias);
+  params.plane = plane;
   return params;
 }
-std::vector<uint> slice_constants(const EstimatorSettings& settings) {
-  return {uint(settings.slices), uint(settings.steps), uint(settings.falloff), uint(settings.stride)};
+std::vector<uint> slice_constants(const EstimatorSettings& settings, const gpu::Buffer* bent = nullptr) {
+  return {uint(settings.slices), uint(settings.steps), uint(settings.falloff) | (bent ? kWithBent : 0), uint(stride_of(settings))};
 }
 
-/// The buffer for an estimate, and the invocations that make it: one for each pixel that the stride does not leave out.
-gpu::Buffer& ao_buffer(gpu::Recorder& gpu, const GBuffer& gbuffer, const EstimatorSettings& settings) {
-  gpu::Buffer& ao = gpu.buffer("ao", plane_bytes(gbuffer.view), gpu::Use::download);
-  if (settings.stride > 1) gpu.clear(ao);
-  return ao;
-}
+/// The invocations that make an estimate: one for each pixel that the stride does not leave out.
 gpu::Extent estimated_extent(const View& view, const EstimatorSettings& settings) {
-  const auto stride = uint(settings.stride);
+  const auto stride = uint(stride_of(settings));
   return {(uint(view.size.x) + stride - 1) / stride, uint(view.size.y)};
 }
 
@@ -178,37 +177,58 @@ GBuffer downsample(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs
   return low;
 }
 
-gpu::Buffer& estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& inputs, const EstimatorSettings& settings) {
+int stride_of(const EstimatorSettings& settings) {
+  if (settings.stride > 0) return settings.stride;
+  const bool shared = settings.denoise == Denoise::bilateral && settings.resolution == Resolution::full && settings.slices <= 2;
+  return shared && settings.estimator == Estimator::gtao ? 4 : 1;
+}
+
+std::vector<double> radii_of(const EstimatorSettings& settings) {
+  std::vector<double> radii = settings.further_radii;
+  radii.push_back(settings.radius.value());
+  std::ranges::sort(radii);
+  return radii;
+}
+
+bool has_bent_normals(Estimator estimator) { return estimator == Estimator::gtao || estimator == Estimator::bitmask; }
+
+Estimate estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& inputs, const EstimatorSettings& settings, bool with_bent) {
   FrameInputs frame = inputs;
   frame.noise_origin = block_grid(inputs, settings).origin;
-  switch (settings.estimator) {
-    case Estimator::gtao: return horizon(gpu, gbuffer, frame, settings);
-    case Estimator::bitmask: return bitmask(gpu, gbuffer, frame, settings);
-    case Estimator::hbao: return hbao(gpu, gbuffer, frame, settings);
-    case Estimator::crytek: break;
+  const auto radii = radii_of(settings);
+  Estimate all{&gpu.buffer("ao", radii.size() * plane_bytes(gbuffer.view), gpu::Use::download)};
+  if (with_bent) all.bent = &gpu.buffer("bent", 3 * plane_bytes(gbuffer.view), gpu::Use::download);
+  for (uint plane = 0; plane < radii.size(); plane++) {
+    EstimatorSettings one = settings;
+    one.radius = radii[plane];
+    const Estimate out{all.ao, plane + 1 == radii.size() ? all.bent : nullptr};
+    switch (settings.estimator) {
+      case Estimator::gtao: horizon(gpu, gbuffer, frame, one, out, plane); break;
+      case Estimator::bitmask: bitmask(gpu, gbuffer, frame, one, out, plane); break;
+      case Estimator::hbao: hbao(gpu, gbuffer, frame, one, out, plane); break;
+      case Estimator::crytek: crytek(gpu, gbuffer, frame, one, out, plane); break;
+    }
   }
-  return crytek(gpu, gbuffer, frame, settings);
+  return all;
 }
 
-gpu::Buffer& horizon(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings) {
-  gpu::Buffer& ao = ao_buffer(gpu, gbuffer, settings);
-  std::vector<uint> constants = slice_constants(settings);
-  constants.push_back(settings.thickness == ThicknessKind::infinite ? 1 : 0);
-  gpu.dispatch("horizon", slice_parameters<HorizonParams>(gbuffer, frame, settings),
-               {{kHorizonDepth, *gbuffer.depth}, {kHorizonNormal, *gbuffer.normal}, {kHorizonAo, ao}}, estimated_extent(gbuffer.view, settings), constants);
-  return ao;
+void horizon(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings, const Estimate& out, uint plane) {
+  std::vector<uint> constants = slice_constants(settings, out.bent);
+  constants.push_back(settings.thickness == ThicknessKind::automatic  ? kThicknessWidth
+                      : settings.thickness == ThicknessKind::constant ? kThicknessLength
+                                                                      : kThicknessEndless);
+  gpu.dispatch("horizon", slice_parameters<HorizonParams>(gbuffer, frame, settings, plane),
+               {{kHorizonDepth, *gbuffer.depth}, {kHorizonNormal, *gbuffer.normal}, {kHorizonAo, *out.ao}, {kHorizonBent, out.bent ? *out.bent : *out.ao}},
+               estimated_extent(gbuffer.view, settings), constants);
 }
 
-gpu::Buffer& bitmask(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings) {
-  gpu::Buffer& ao = ao_buffer(gpu, gbuffer, settings);
-  gpu.dispatch("bitmask", slice_parameters<BitmaskParams>(gbuffer, frame, settings),
-               {{kBitmaskDepth, *gbuffer.depth}, {kBitmaskNormal, *gbuffer.normal}, {kBitmaskAo, ao}}, estimated_extent(gbuffer.view, settings),
-               slice_constants(settings));
-  return ao;
+void bitmask(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings, const Estimate& out, uint plane) {
+  gpu.dispatch("bitmask", slice_parameters<BitmaskParams>(gbuffer, frame, settings, plane),
+               {{kBitmaskDepth, *gbuffer.depth}, {kBitmaskNormal, *gbuffer.normal}, {kBitmaskAo, *out.ao}, {kBitmaskBent, out.bent ? *out.bent : *out.ao}},
+               estimated_extent(gbuffer.view, settings), slice_constants(settings, out.bent));
 }
 
-gpu::Buffer& hbao(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings) {
-  gpu::Buffer& ao = ao_buffer(gpu, gbuffer, settings);
+void hbao(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings, const Estimate& out, uint plane) {
   const double radius = settings.radius.value();
   HbaoParams params{};
   params.view = gbuffer.view;
@@ -218,13 +238,12 @@ gpu::Buffer& hbao(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs&
   params.from_surface = settings.elevation == Elevation::surface ? 1 : 0;
   params.noise_origin = frame.noise_origin;
   params.noise_shift = noise_shift(frame.frame, settings.seed);
-  gpu.dispatch("hbao", params, {{kHbaoDepth, *gbuffer.depth}, {kHbaoNormal, *gbuffer.normal}, {kHbaoAo, ao}},
+  params.plane = plane;
+  gpu.dispatch("hbao", params, {{kHbaoDepth, *gbuffer.depth}, {kHbaoNormal, *gbuffer.normal}, {kHbaoAo, *out.ao}},
                estimated_extent(gbuffer.view, settings), slice_constants(settings));
-  return ao;
 }
 
-gpu::Buffer& crytek(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings) {
-  gpu::Buffer& ao = ao_buffer(gpu, gbuffer, settings);
+void crytek(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings, const Estimate& out, uint plane) {
   CrytekParams params{};
   params.view = gbuffer.view;
   params.radius = float(settings.radius.value());
@@ -233,12 +252,19 @@ gpu::Buffer& crytek(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInput
   params.range_check = range_check_of(settings.range_check);
   params.noise_origin = frame.noise_origin;
   params.noise_shift = noise_shift(frame.frame, settings.seed);
-  gpu.dispatch("crytek", params, {{kCrytekDepth, *gbuffer.depth}, {kCrytekNormal, *gbuffer.normal}, {kCrytekAo, ao}},
-               estimated_extent(gbuffer.view, settings), {uint(settings.samples), uint(settings.stride)});
+  params.plane = plane;
+  gpu.dispatch("crytek", params, {{kCrytekDepth, *gbuffer.depth}, {kCrytekNormal, *gbuffer.normal}, {kCrytekAo, *out.ao}},
+               estimated_extent(gbuffer.view, settings), {uint(settings.samples), uint(stride_of(settings))});
+}
+
+gpu::Buffer& combine(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& scales) {
+  gpu::Buffer& ao = gpu.buffer("combined", plane_bytes(gbuffer.view), gpu::Use::download);
+  gpu.dispatch("combine", CombineParams{gbuffer.view.size, planes_in(scales, gbuffer.view)}, {{kCombineScales, scales}, {kCombineAo, ao}}, extent_of(gbuffer.view));
   return ao;
 }
 
-gpu::Buffer& denoise(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& ao, const FrameInputs& frame, const EstimatorSettings& settings) {
+gpu::Buffer& denoise(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& ao, const FrameInputs& frame, const EstimatorSettings& settings,
+                     const std::string& prefix) {
   const std::vector<double> weights = denoise_weights(settings);
   const auto radius = uint(weights.size() - 1);
   DenoiseParams params{};
@@ -247,24 +273,26 @@ gpu::Buffer& denoise(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buff
   params.depth_sigma = float(settings.denoise_depth_sigma);
   const double sum = 2 * std::accumulate(weights.begin(), weights.end(), 0.0) - weights.front();
   std::ranges::transform(weights, params.weight, [&](double weight) { return float(weight / sum); });
-  gpu::Buffer& rows = gpu.buffer("denoised rows", plane_bytes(gbuffer.view), gpu::Use::device);
-  gpu::Buffer& result = gpu.buffer("denoised", plane_bytes(gbuffer.view), gpu::Use::download);
+  gpu::Buffer& rows = gpu.buffer(prefix + "denoised rows", ao.bytes(), gpu::Use::device);
+  gpu::Buffer& result = gpu.buffer(prefix + "denoised", ao.bytes(), gpu::Use::download);
   const auto along = [&](ivec2 axis, const gpu::Buffer& from, const gpu::Buffer& to, uint sparse, uint stride) {
     params.axis = axis;
     const uint length = uint(axis.x ? gbuffer.view.size.x : gbuffer.view.size.y), others = uint(axis.x ? gbuffer.view.size.y : gbuffer.view.size.x);
     gpu.dispatch("denoise", params,
                  {{kDenoiseAo, from}, {kDenoiseDepth, *gbuffer.depth}, {kDenoiseNormal, *gbuffer.normal}, {kDenoiseResult, to}},
-                 {others, (length + stride - 1 + kDenoiseRun - 1) / kDenoiseRun}, {radius, settings.denoise_depth_sigma > 0 ? 1u : 0u, sparse, stride});
+                 {others, (length + stride - 1 + kDenoiseRun - 1) / kDenoiseRun},
+                 {radius, settings.denoise_depth_sigma > 0 ? 1u : 0u, sparse, stride, planes_in(ao, gbuffer.view)});
   };
-  const bool dense = settings.stride == 1;
-  along({1, 0}, ao, rows, dense ? kDenoiseDense : kDenoiseSparseRows, uint(settings.stride));
+  const bool dense = stride_of(settings) == 1;
+  along({1, 0}, ao, rows, dense ? kDenoiseDense : kDenoiseSparseRows, uint(stride_of(settings)));
   along({0, 1}, rows, result, dense ? kDenoiseDense : kDenoiseSparseColumns, 1);
   return result;
 }
 
 gpu::Buffer& upsample(gpu::Recorder& gpu, const GBuffer& gbuffer, const GBuffer& low, const gpu::Buffer& low_ao, const FrameInputs& frame,
-                      const EstimatorSettings& settings) {
-  gpu::Buffer& ao = gpu.buffer("upsampled", plane_bytes(gbuffer.view), gpu::Use::download);
+                      const EstimatorSettings& settings, const std::string& prefix) {
+  const uint planes = planes_in(low_ao, low.view);
+  gpu::Buffer& ao = gpu.buffer(prefix + "upsampled", planes * plane_bytes(gbuffer.view), gpu::Use::download);
   const BlockGrid grid = block_grid(frame, settings);
   const UpsampleParams params{gbuffer.view, grid.size, grid.overhang};
   gpu.dispatch("upsample", params,
@@ -274,14 +302,22 @@ gpu::Buffer& upsample(gpu::Recorder& gpu, const GBuffer& gbuffer, const GBuffer&
                 {kUpsampleLowNormal, *low.normal},
                 {kUpsampleLowAo, low_ao},
                 {kUpsampleAo, ao}},
-               {uint(grid.size.x + 1), uint(grid.size.y + 1)}, {uint(grid.factor)});
+               {uint(grid.size.x + 1), uint(grid.size.y + 1)}, {uint(grid.factor), planes});
   return ao;
+}
+
+gpu::Buffer& bent_normal(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& bent) {
+  gpu::Buffer& result = gpu.buffer("bent normal", plane_bytes(gbuffer.view), gpu::Use::download);
+  gpu.dispatch("bent_normal", BentNormalParams{gbuffer.view.size},
+               {{kBentNormalNormal, *gbuffer.normal}, {kBentNormalBent, bent}, {kBentNormalResult, result}}, extent_of(gbuffer.view));
+  return result;
 }
 
 bool shapes(const EstimatorSettings& settings) { return settings.intensity != 1 || settings.power != 1 || settings.fade_end; }
 
-gpu::Buffer& shape(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& ao, const FrameInputs& frame, const EstimatorSettings& settings) {
-  gpu::Buffer& shaped = gpu.buffer("shaped", plane_bytes(gbuffer.view), gpu::Use::download);
+gpu::Buffer& shape(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& ao, const FrameInputs& frame, const EstimatorSettings& settings,
+                   const std::string& prefix) {
+  gpu::Buffer& shaped = gpu.buffer(prefix + "shaped", ao.bytes(), gpu::Use::download);
   ShapeParams params{};
   params.size = gbuffer.view.size;
   params.intensity = float(settings.intensity);
@@ -290,6 +326,8 @@ gpu::Buffer& shape(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer
   params.fade_end = float(settings.fade_end.value_or(0));
   params.has_fade = settings.fade_end ? 1 : 0;
   params.has_material = frame.material_ao ? 1 : 0;
+  params.planes = planes_in(ao, gbuffer.view);
+  params.counts_repaired = prefix.empty() ? 1 : 0;
   gpu.dispatch("shape", params,
                {{kShapeAo, ao},
                 {kShapeShaped, shaped},
@@ -349,7 +387,8 @@ gpu::Buffer& directions(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::B
   return planes;
 }
 
-DebugPlane debug(gpu::Recorder& gpu, const DebugView& view, const GBuffer& gbuffer, const DebugStages& stages, const FrameInputs& frame) {
+DebugPlane debug(gpu::Recorder& gpu, const DebugView& view, const GBuffer& gbuffer, const DebugStages& stages, const FrameInputs& frame,
+                 const EstimatorSettings& settings) {
   const bool is_stage = view.source == DebugSource::raw_ao || view.source == DebugSource::denoised_ao;
   const GBuffer& shown = is_stage ? stages.gbuffer : gbuffer;
   const gpu::Buffer* values = shown.normal;
@@ -363,7 +402,8 @@ DebugPlane debug(gpu::Recorder& gpu, const DebugView& view, const GBuffer& gbuff
     values = from_depth.normal;
   }
   gpu::Buffer& result = gpu.buffer(std::string("debug ") + view.name, plane_bytes(shown.view), gpu::Use::download);
-  const DebugParams params{shown.view, view.kind};
+  const int stride = view.source == DebugSource::raw_ao ? stride_of(settings) : 1;
+  const DebugParams params{shown.view, view.kind, stride, block_grid(frame, settings).origin};
   gpu.dispatch("debug", params, {{kDebugDepth, *shown.depth}, {kDebugNormal, *shown.normal}, {kDebugValues, *values}, {kDebugResult, result}},
                extent_of(shown.view));
   return {&view, shown.view.size, &result};

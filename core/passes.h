@@ -46,20 +46,40 @@ GBuffer prepare(gpu::Recorder& gpu, const FrameInputs& frame, gpu::Use depth_use
 void reconstruct(gpu::Recorder& gpu, const GBuffer& gbuffer);
 /// The G-buffer of the settings' resolution: its pixels are the blocks of whole pixels of the display window.
 GBuffer downsample(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings);
-/// Visibility a pixel of the G-buffer, by the estimator of the settings.
-gpu::Buffer& estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings);
-gpu::Buffer& horizon(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings);
-gpu::Buffer& bitmask(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings);
-gpu::Buffer& hbao(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings);
-gpu::Buffer& crytek(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings);
-/// Both directions of the settings' filter. `gbuffer` is that of `ao`.
-gpu::Buffer& denoise(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& ao, const FrameInputs& frame, const EstimatorSettings& settings);
-/// From the pixels of `low` to those of `gbuffer`.
+/// All radii of the settings, from the smallest on; one of them must be set.
+std::vector<double> radii_of(const EstimatorSettings& settings);
+/// Whether the estimator finds open directions too.
+bool has_bent_normals(Estimator estimator);
+/// What an estimator gives for every pixel of the G-buffer, or for those that the stride leaves.
+struct Estimate {
+  gpu::Buffer* ao;              // a plane of visibility a radius, from the smallest on
+  gpu::Buffer* bent = nullptr;  // planes x, y, z, of the largest radius: see horizon.h; null: not asked for
+};
+/// Of how many pixels in a row one has an estimate. Where the settings leave it open: 4 for the estimator that this was measured with, gtao, at full
+/// resolution, with so few slices that the denoiser must share them among neighbours anyway; else 1.
+int stride_of(const EstimatorSettings& settings);
+/// By the estimator of the settings, for each of their radii.
+Estimate estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings, bool with_bent = false);
+/// These write one plane of `out`, for settings.radius.
+void horizon(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings, const Estimate& out, uint plane);
+void bitmask(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings, const Estimate& out, uint plane);
+void hbao(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings, const Estimate& out, uint plane);
+void crytek(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings, const Estimate& out, uint plane);
+/// The mean of the planes.
+gpu::Buffer& combine(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& scales);
+/// Both directions of the settings' filter, on any number of planes. `gbuffer` is that of `ao`. `prefix`: before the names of its buffers, where others are filtered too.
+gpu::Buffer& denoise(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& ao, const FrameInputs& frame, const EstimatorSettings& settings,
+                     const std::string& prefix = "");
+/// From the pixels of `low` to those of `gbuffer`, any number of planes.
 gpu::Buffer& upsample(gpu::Recorder& gpu, const GBuffer& gbuffer, const GBuffer& low, const gpu::Buffer& ao, const FrameInputs& frame,
-                      const EstimatorSettings& settings);
+                      const EstimatorSettings& settings, const std::string& prefix = "");
+/// Planes of mean open directions as unit vectors, packed as the normals are.
+gpu::Buffer& bent_normal(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& bent);
 /// Whether the settings ask for any shaping.
 bool shapes(const EstimatorSettings& settings);
-gpu::Buffer& shape(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& ao, const FrameInputs& frame, const EstimatorSettings& settings);
+/// Any number of planes. What it repairs is counted with the first `ao` of a frame, whose prefix is empty.
+gpu::Buffer& shape(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& ao, const FrameInputs& frame, const EstimatorSettings& settings,
+                   const std::string& prefix = "");
 /// `bent`: the mean open direction a pixel, packed as the normals are.
 gpu::Buffer& specular_occlusion(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& bent, const gpu::Buffer& ao, const EstimatorSettings& settings);
 /// Visibility for each of red, green and blue.
@@ -80,6 +100,7 @@ struct DebugStages {
   GBuffer gbuffer{};
   const gpu::Buffer *raw_ao = nullptr, *denoised_ao = nullptr;
 };
-DebugPlane debug(gpu::Recorder& gpu, const DebugView& view, const GBuffer& gbuffer, const DebugStages& stages, const FrameInputs& frame);
+DebugPlane debug(gpu::Recorder& gpu, const DebugView& view, const GBuffer& gbuffer, const DebugStages& stages, const FrameInputs& frame,
+                 const EstimatorSettings& settings);
 
 }  // namespace alcove

@@ -104,6 +104,7 @@ std::size_t Picture::find(const std::string& name, const char* option) const {
 
 std::vector<float> Picture::read(std::span<const std::size_t> channels) {
   const Window& data = channels_[channels[0]].data;
+  require_host_room(path_, data);
   std::vector<float> planes(channels.size() * data.pixels());
   std::vector<ExrRead> reads;
   for (std::size_t i = 0; i < channels.size(); i++) {

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <thread>
 
@@ -24,22 +25,34 @@ using Scene = ReferenceScene;
 /// Integral of cos(theta - gamma) |sin(theta)| from 0 to h (Jimenez et al. 2016, equation 7).
 double arc(double h, double gamma) { return 0.25 * (std::cos(gamma) + 2 * h * std::sin(gamma) - std::cos(2 * h - gamma)); }
 
+/// Integral of cos(theta - gamma) sin(theta) (sin(theta), cos(theta)) by Simpson's rule.
+Vector bent_between(double from, double to, double gamma) {
+  const int parts = 2 * (1 + int(8 * (to - from)));
+  const double width = (to - from) / parts;
+  Vector sum;
+  for (int i = 0; i <= parts; i++) {
+    const double theta = from + i * width, weight = (i == 0 || i == parts ? 1 : i % 2 ? 4 : 2) * width / 3 * std::cos(theta - gamma) * std::sin(theta);
+    sum = sum + weight * Vector{0, std::sin(theta), std::cos(theta)};
+  }
+  return sum;
+}
+
 /// The blocked angles of one side of a slice: disjoint, sorted intervals.
 class Blocked {
  public:
-  explicit Blocked(double gamma) : gamma_(gamma) {}
+  Blocked(double gamma, bool with_bent) : gamma_(gamma), with_bent_(with_bent) {}
 
-  /// Blocks [from, to] and returns the arc integral over what was open of it.
-  double add(double from, double to) {
-    if (!(to > from)) return 0;
-    double fresh = arc(to, gamma_) - arc(from, gamma_);
+  /// Blocks [from, to] and returns the integrals over what was open of it: the arc's, and the bent normal's along T and V.
+  Vector add(double from, double to) {
+    if (!(to > from)) return {};
+    Vector fresh = integrals(from, to);
     std::vector<std::pair<double, double>> kept;
     for (const auto& [a, b] : intervals_) {
       if (b < from || a > to) {
         kept.emplace_back(a, b);
         continue;
       }
-      fresh -= arc(std::min(b, to), gamma_) - arc(std::max(a, from), gamma_);
+      fresh = fresh - integrals(std::max(a, from), std::min(b, to));
       from = std::min(from, a);
       to = std::max(to, b);
     }
@@ -49,7 +62,13 @@ class Blocked {
   }
 
  private:
+  Vector integrals(double from, double to) const {
+    const Vector arcs{arc(to, gamma_) - arc(from, gamma_), 0, 0};
+    return with_bent_ ? arcs + bent_between(from, to, gamma_) : arcs;
+  }
+
   double gamma_;
+  bool with_bent_;
   std::vector<std::pair<double, double>> intervals_;
 };
 
@@ -146,12 +165,12 @@ std::pair<double, double> span_between(const Scene& scene, const Receiver& recei
   return std::minmax({angle_of(side, from), angle_of(side, to)});
 }
 
-double blocked_arc(const Scene& scene, const Receiver& receiver, const Side& side, const ReferenceSettings& settings) {
+Vector blocked_arcs(const Scene& scene, const Receiver& receiver, const Side& side, const ReferenceSettings& settings, bool with_bent) {
   auto line = line_of(scene, receiver, side, settings);
   set_thickness(scene, line, settings);
   const double limit = side.gamma + kPi / 2, lowest = limit - std::asin(settings.bias);  // the tangent plane; and where blocking begins
-  Blocked blocked(side.gamma);
-  double sum = 0;
+  Blocked blocked(side.gamma, with_bent);
+  Vector sum;
   for (std::size_t i = 1; i < line.size(); i++) {
     const Vector offset = line[i].position - receiver.position;
     const double distance = length(offset);
@@ -159,7 +178,7 @@ double blocked_arc(const Scene& scene, const Receiver& receiver, const Side& sid
       const auto [low, high] = span_between(scene, receiver, side, line[i - 1], line[i], settings.radius);
       const double before = length(line[i - 1].position - receiver.position);
       const double weight = 0.5 * (weight_of(settings, before) + weight_of(settings, distance));
-      if (low > 0 && low <= lowest) sum += weight * blocked.add(low, std::min(high, limit));
+      if (low > 0 && low <= lowest) sum = sum + weight * blocked.add(low, std::min(high, limit));
     }
     if (line[i].depth == 0 || distance >= settings.radius || distance == 0) continue;
     const double front = angle_of(side, offset);
@@ -170,16 +189,22 @@ double blocked_arc(const Scene& scene, const Receiver& receiver, const Side& sid
     const double exit = -along + std::sqrt(std::max(0.0, along * along - distance * distance + settings.radius * settings.radius));
     const double angle = angle_of(side, offset + std::min(line[i].thickness, exit) * away);
     const double back = angle < front ? limit : std::min(angle, limit);  // an angle that wrapped round is beyond the tangent plane
-    sum += weight_of(settings, distance) * blocked.add(front, back);
+    sum = sum + weight_of(settings, distance) * blocked.add(front, back);
   }
   return sum;
 }
 
-double visibility(const Scene& scene, const Receiver& receiver, const ReferenceSettings& settings) {
+struct Openness {
+  double visibility = 1;
+  Vector bent;  // the mean open direction
+};
+
+Openness openness(const Scene& scene, const Receiver& receiver, const ReferenceSettings& settings, bool with_bent) {
   const Vector v = receiver.eye;
   const double a = 1 / (1 + v.z), b = -v.x * v.y * a;
   const Vector basis_x = {1 - v.x * v.x * a, b, -v.x}, basis_y = {b, 1 - v.y * v.y * a, -v.y};
   double sum = 0, whole = 0;
+  Vector bent;
   for (int s = 0; s < settings.slices; s++) {
     const double azimuth = kPi * (s + 0.5) / settings.slices;
     const Vector t = std::cos(azimuth) * basis_x + std::sin(azimuth) * basis_y, across = cross(t, v);
@@ -203,10 +228,16 @@ double visibility(const Scene& scene, const Receiver& receiver, const ReferenceS
         reach = sine < 1 && forward > 0 ? sine * pixels / forward : INFINITY;
       }
       const Side side{tangent + double(sign) * n_t * shift, v + n_v * shift, sign * gamma, px / pixels, py / pixels, reach};
-      sum += weight * blocked_arc(scene, receiver, side, settings);
+      const Vector blocked = blocked_arcs(scene, receiver, side, settings, with_bent);
+      sum += weight * blocked.x;
+      if (with_bent) {
+        const double end = side.gamma + kPi / 2;
+        const Vector open = bent_between(0, end, side.gamma) - blocked;
+        bent = bent + weight * (open.y * tangent + open.z * v);
+      }
     }
   }
-  return whole > 0 ? std::clamp(1 - sum / whole, 0.0, 1.0) : 1;
+  return whole > 0 ? Openness{std::clamp(1 - sum / whole, 0.0, 1.0), (1 / whole) * bent} : Openness{};
 }
 
 }  // namespace
@@ -224,11 +255,13 @@ ReferenceSettings reference_settings_of(const EstimatorSettings& settings) {
   return reference;
 }
 
-std::vector<float> reference_ao(const HostFrame& frame, const ReferenceSettings& settings) {
+namespace {
+
+/// Calls `take` with the index and the openness of every pixel that was asked for and is no sky, from several threads.
+void for_pixels(const HostFrame& frame, const ReferenceSettings& settings, bool with_bent, const std::function<void(std::size_t, const Openness&)>& take) {
   const Scene scene(frame);
-  std::vector<float> ao(frame.data.pixels(), 1.0f);
   constexpr std::size_t kChunk = 64;  // pixels that a thread takes at a time
-  const std::size_t total = settings.pixels.empty() ? ao.size() : settings.pixels.size();
+  const std::size_t total = settings.pixels.empty() ? frame.data.pixels() : settings.pixels.size();
   std::atomic<std::size_t> next = 0;
   const auto work = [&] {
     for (std::size_t first = next.fetch_add(kChunk); first < total; first = next.fetch_add(kChunk))
@@ -238,7 +271,7 @@ std::vector<float> reference_ao(const HostFrame& frame, const ReferenceSettings&
         const double z = scene.depth(x, y);
         if (z == 0) continue;
         const Vector position = scene.position(x, y, z), eye = scene.toward_eye(position);
-        ao[index] = float(visibility(scene, {x, y, z, position, eye, scene.normal(x, y, eye)}, settings));
+        take(index, openness(scene, {x, y, z, position, eye, scene.normal(x, y, eye)}, settings, with_bent));
       }
   };
   const int count = settings.threads > 0 ? settings.threads : int(std::max(1u, std::thread::hardware_concurrency()));
@@ -246,7 +279,23 @@ std::vector<float> reference_ao(const HostFrame& frame, const ReferenceSettings&
   for (int i = 1; i < count; i++) threads.emplace_back(work);
   work();
   threads.clear();
+}
+
+}  // namespace
+
+std::vector<float> reference_ao(const HostFrame& frame, const ReferenceSettings& settings) {
+  std::vector<float> ao(frame.data.pixels(), 1.0f);
+  for_pixels(frame, settings, false, [&](std::size_t i, const Openness& open) { ao[i] = float(open.visibility); });
   return ao;
+}
+
+std::vector<float> reference_bent(const HostFrame& frame, const ReferenceSettings& settings) {
+  const std::size_t pixels = frame.data.pixels();
+  std::vector<float> bent(3 * pixels, 0.0f);
+  for_pixels(frame, settings, true, [&](std::size_t i, const Openness& open) {
+    bent[i] = float(open.bent.x), bent[i + pixels] = float(open.bent.y), bent[i + 2 * pixels] = float(open.bent.z);
+  });
+  return bent;
 }
 
 }  // namespace alcove

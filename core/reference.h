@@ -37,4 +37,7 @@ ReferenceSettings reference_settings_of(const EstimatorSettings& settings);
 /// Visibility in [0, 1] a pixel, 1 on sky and where no pixel was asked for. The frame must have planar depth and normals. Fails with ErrorKind::input otherwise.
 std::vector<float> reference_ao(const HostFrame& frame, const ReferenceSettings& settings);
 
+/// The mean open direction in view space, cosine weighted, as planes x, y, z: 2/3 of the normal where nothing is blocked; 0 on sky and where no pixel was asked for.
+std::vector<float> reference_bent(const HostFrame& frame, const ReferenceSettings& settings);
+
 }  // namespace alcove

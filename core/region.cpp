@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "core/evidence.h"
+#include "core/passes.h"
 #include "core/settle.h"
 
 namespace alcove {
@@ -57,7 +58,7 @@ Surroundings::Surroundings(FrameSource& source, const Settings& settings, const 
       nearest_(std::size_t(columns_) * std::size_t((read_.height + kBlock - 1) / kBlock), kSkyDepth),
       view_(view_of(source.camera, source.file_data, source.display)),
       orthographic_(source.camera.orthographic),
-      radius_(settings.estimator.radius.value_or(0)),
+      radius_(settings.estimator.radius ? radii_of(settings.estimator).back() : 0),
       filters_(filter_reach(settings.estimator)) {
   const Window data = source.data;
   const DepthMap map = depth_map_of(source, settings.input);

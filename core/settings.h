@@ -70,6 +70,7 @@ struct InputSettings {
   std::string layer;                             // look only at channels of this layer or part
   std::string view;                              // of a stereo file; empty: its default
   std::optional<Region> roi;                     // compute and write no more than this; none: the data window
+  std::string source = "auto";                   // the program that wrote the frame, of presets/input; auto: by its header and channels
   DepthKind depth_kind = DepthKind::automatic;   // automatic: what the camera file says, else planar
   DepthRange depth_range;                        // near and far: else the camera file's
   double depth_scale = 1;                        // scene units a unit of the depth channel, > 0
@@ -89,11 +90,12 @@ struct InputSettings {
 struct EstimatorSettings {
   Estimator estimator = Estimator::gtao;
   std::optional<double> radius;      // scene units, > 0; no default, since no number fits all scenes
+  std::vector<double> further_radii;  // scene units, > 0: more scales. The AO is the mean of all: that is AO itself, with a falloff that drops by a step at each radius
   Falloff falloff = Falloff::none;   // none: what renderers' own AO passes mean by a distance
   double falloff_start = 0;          // fraction of the radius where the falloff begins, 0 to 1 exclusive
   double falloff_end = 1;            // fraction of the radius where it ends, above the start to 1; nothing beyond blocks
-  int slices = 1;                    // directions a pixel, 1 to 64; with fewer than 3 a pixel by itself is biased, and the denoiser must share its neighbours'
-  int steps = 12;                    // samples to each side of a slice, 1 to 4096; they matter more than slices
+  int slices = 2;                    // directions a pixel, 1 to 64; with fewer than 3 a pixel by itself is noisy, and the denoiser must share its neighbours'
+  int steps = 16;                    // samples to each side of a slice, 1 to 4096; they matter more than slices
   int samples = 16;                  // of estimator crytek, in the hemisphere, 4 to 64
   double bias = 0;                   // least height that blocks, >= 0; crytek: scene units of depth; others: sine of the elevation above the tangent plane, < 1
   Elevation elevation = Elevation::view;                      // of estimator hbao
@@ -102,9 +104,9 @@ struct EstimatorSettings {
   ThicknessKind thickness = ThicknessKind::automatic;  // how far an occluder goes on behind what is seen of it; automatic: as deep as it is wide
   double thickness_length = 0;       // scene units, > 0; with ThicknessKind::constant
   Resolution resolution = Resolution::full;
-  int stride = 1;                    // the estimate is made for one pixel of so many in a row, 1, 2 or 4; the bilateral denoiser gives the others theirs
+  int stride = 0;                    // one pixel of so many in a row has an estimate, 1, 2 or 4, and gives it to the others in the bilateral denoiser; 0: see stride_of
   Denoise denoise = Denoise::bilateral;
-  int denoise_radius = 3;            // pixels of the estimate to each side, 1 to 8; with Denoise::bilateral
+  int denoise_radius = 4;            // pixels of the estimate to each side, 1 to 8; with Denoise::bilateral
   std::vector<double> denoise_kernel;  // instead: 2 to 9 weights from the centre outwards, none negative, the centre's above 0; empty: a Gaussian
   double denoise_depth_sigma = 0;    // of the depth, 0 to 100: a step by this part weighs 1/e; 0: weighs by plane distance instead
   double intensity = 1;              // factor on the occlusion, 0 to 100

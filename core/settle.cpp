@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "core/error.h"
 #include "core/evidence.h"
@@ -14,6 +15,8 @@ namespace {
 constexpr double kAsGood = 0.8;          // of the best score: the usual reading stays where it does about as well
 constexpr double kClear = 2;             // times the second best: another reading is taken only when it is that much better
 constexpr double kLeastStraight = 0.02;  // of the smooth places; below it the frame has no flat surfaces that could tell
+constexpr double kNoBetter = 0.95;       // of the best agreement: below it another reading of the normals is worth a note
+constexpr double kSurelyStraight = 0.1;  // of the smooth places; from there on flat surfaces speak for a kind by themselves
 constexpr double kLeastAgreement = 0.4;  // of the normals with depth
 constexpr double kLargestError = 2;      // px, median: farther off, positions are not what they are taken for
 constexpr std::size_t kSparse = 31;      // every so many pixels are enough for statistics; a prime, so that no column is favoured
@@ -51,8 +54,9 @@ class Settlement {
   }
 
   void settle_depth() {
-    const bool open = settings_.depth_kind == DepthKind::automatic && source_.camera.depth_kind == DepthKind::automatic;
-    if (open) settle_kind();
+    if (source_.depth_kind_open) settle_kind();
+    else doubt_kind();
+    compare_planes();
     const bool signed_kind =
         source_.depth_kind == DepthKind::planar || source_.depth_kind == DepthKind::ray || source_.depth_kind == DepthKind::inverse;
     if (!signed_kind || values_.positive || !values_.negative || values_.least == values_.most) return;
@@ -60,26 +64,60 @@ class Settlement {
     source_.notes.push_back("all depth values are negative: their distance from 0 is the depth");
   }
 
+  static std::string straight(const DepthScore& score) {
+    return fmt::format("1/z is straight on {:.0f} % only as {}", 100 * score.straight, name_of(score.kind));
+  }
+
+  /// What the program that wrote the frame, or most programs, write; no guess where the user named the program.
+  void take_usual(const std::string& why) {
+    source_.depth_kind = source_.usual_depth_kind;
+    const std::string by = source_.rules_by.empty() ? "" : fmt::format("{} writes it ({}); ", source_.rules->name, source_.rules_by);
+    guess("depth kind", name_of(source_.depth_kind), by + why, "--depth-kind", false);
+  }
+
   void settle_kind() {
-    const auto scores = score_depth(depth_, view_, settings_.sky);
-    const std::string option = "--depth-kind";
-    if (scores.empty()) source_.has_evidence = false;
-    if (scores.empty()) return guess("depth kind", "planar", "too little of the frame is smooth to tell", option, false);
-    const auto straight = [](const DepthScore& score) {
-      return fmt::format("1/z is straight on {:.0f} % only as {}", 100 * score.straight, name_of(score.kind));
-    };
-    const auto& planar = *std::ranges::find(scores, DepthKind::planar, &DepthScore::kind);
+    const DepthKind usual = source_.usual_depth_kind;
+    const bool between_planes = usual == DepthKind::device || usual == DepthKind::normalized || usual == DepthKind::log;
+    if (between_planes && values_.least >= 0 && values_.most <= 1) return take_usual("all in 0 to 1");
+    if (between_planes) source_.usual_depth_kind = source_.depth_kind = DepthKind::planar;
+    const auto scores = score_depth(depth_, view_, settings_.sky, depth_rounding(source_));
+    if (scores.empty() || scores[0].straight < kLeastStraight) source_.has_evidence = false;
+    if (scores.empty()) return take_usual("too little of the frame is smooth to tell");
+    const auto& expected = *std::ranges::find(scores, source_.usual_depth_kind, &DepthScore::kind);
     const std::string why = fmt::format("{}, {}, {}", straight(scores[0]), straight(scores[1]), straight(scores[2]));
     const DepthScore &best = scores[0], &second = scores[1];
-    if (best.straight < kLeastStraight) source_.has_evidence = false;
-    if (best.straight < kLeastStraight) return guess("depth kind", "planar", "the frame has no flat surfaces that tell: " + why, option, false);
-    if (planar.straight >= kAsGood * best.straight) return guess("depth kind", "planar", why, option, false);
+    if (best.straight < kLeastStraight) return take_usual("the frame has no flat surfaces that tell: " + why);
+    if (expected.straight >= kAsGood * best.straight) return take_usual(why);
     if (best.straight < kClear * second.straight)
       fail(ErrorKind::input, "{}: the depth may be {} or {} ({}): say which with --depth-kind {} or --depth-kind {}", depth_path(),
            name_of(best.kind), name_of(second.kind), why, name_of(best.kind), name_of(second.kind));
     source_.depth_kind = best.kind;
     if (best.kind == DepthKind::inverse && values_.least >= 0 && values_.most <= 1) return settle_device(why);
-    guess("depth kind", name_of(best.kind), why, option, true);
+    guess("depth kind", name_of(best.kind), why, "--depth-kind", true);
+  }
+
+  /// A projection matrix made for another depth range than the buffer's scales all distances, which no pixel shows.
+  void compare_planes() {
+    const auto near = source_.depth_range.near, by_matrix = source_.camera.matrix_near;
+    if (source_.depth_kind != DepthKind::device || source_.depth_range.reversed || source_.depth_range.device != DeviceRange::zero_to_one) return;
+    constexpr double kSame = 0.01;  // matrices are rounded
+    if (!near || !by_matrix || std::abs(*by_matrix / *near - 1) < kSame) return;
+    source_.notes.push_back(
+        fmt::format("the near plane is {:.4g}, but the camera file's projection, read with z = depth, has it at {:.4g}: so read, distances would be {:.3g} "
+                    "times as large; trust the one that was measured (--near, --device-range)",
+                    *near, *by_matrix, *by_matrix / *near));
+  }
+
+  /// A kind that is said, and that the pixels speak against, is taken and noted.
+  void doubt_kind() {
+    const DepthKind said = source_.depth_kind == DepthKind::device && !source_.camera.orthographic ? DepthKind::inverse : source_.depth_kind;
+    const auto scores = score_depth(depth_, view_, settings_.sky, depth_rounding(source_));
+    const auto chosen = std::ranges::find(scores, said, &DepthScore::kind);
+    const bool linear = chosen == scores.end();  // normalized or log depth is affine in neither z nor 1/z, unless it is another kind
+    if (scores.empty() || scores[0].straight < kLeastStraight || (!linear && kClear * chosen->straight > scores[0].straight)) return;
+    if (linear && scores[0].straight < kSurelyStraight) return;
+    source_.notes.push_back(fmt::format("depth is read as {}, as --depth-kind or the camera file says, but {}: is it {}?", name_of(source_.depth_kind),
+                                        straight(scores[0]), scores[0].kind == DepthKind::inverse ? "inverse or device" : name_of(scores[0].kind)));
   }
 
   /// Inverse depth and that of a z-buffer are both affine in 1/z; what tells them apart is that somebody knows a near plane. Sky is at the far one.
@@ -121,8 +159,9 @@ class Settlement {
   }
 
   void settle_encoding() {
-    const bool open = settings_.normal_encoding == NormalEncoding::automatic && source_.camera.normal_encoding == NormalEncoding::automatic;
+    const bool open = source_.normal_encoding_open;
     const NormalStatistics n = normal_statistics(normal_, depth_, depth_map_of(source_, settings_), kSparse);
+    if (!open) doubt_encoding(n);
     const bool in_unit_range = n.count && n.least >= 0 && n.most <= 1;
     if (source_.normal_encoding == NormalEncoding::octahedral || source_.normal_encoding == NormalEncoding::spheremap || source_.normal.size() == 2) {
       source_.normal_unorm =
@@ -137,21 +176,33 @@ class Settlement {
     }
   }
 
+  /// Vectors by their lengths, whatever they are taken for.
+  void doubt_encoding(const NormalStatistics& n) {
+    constexpr double kMost = 0.9, kFew = 0.5;  // of the normals
+    if (source_.normal.size() != 3) return;
+    const bool is_signed = n.unit_share > kMost && n.unorm_unit_share < kFew, is_unorm = n.unorm_unit_share > kMost && n.unit_share < kFew;
+    if (is_signed && source_.normal_encoding != NormalEncoding::signed_float)
+      source_.notes.push_back(fmt::format("the normals are signed vectors by their lengths (of 1 on {:.0f} %), and --normal-encoding or the camera file says otherwise",
+                                          100 * n.unit_share));
+    if (is_unorm && source_.normal_encoding == NormalEncoding::signed_float)
+      source_.notes.push_back(fmt::format("2 n - 1 of the normals is of unit length on {:.0f} %: are they unorm (--normal-encoding)?", 100 * n.unorm_unit_share));
+  }
+
   void settle_space() {
-    if (settings_.normal_space != NormalSpace::automatic || source_.camera.normal_space != NormalSpace::automatic) return;
-    const bool has_world = source_.camera.view_from_world.has_value();
+    const bool has_world = source_.camera.view_from_world.has_value(), usually_view = source_.usual_normal_space == NormalSpace::view;
     auto scores = score_normals(normal_, source_.normal_encoding, source_.normal_unorm, depth_, depth_map_of(source_, settings_), source_.camera, view_);
+    if (!source_.normal_space_open) return doubt_normals(scores);
     const NormalFlips given = settings_.flip_normal;
     if (given.x || given.y || given.z) scores.clear();  // flips were tried on top of none
-    const auto usual = std::ranges::find_if(scores, [](const auto& s) { return s.space == NormalSpace::world && to_string(s.flips) == "none"; });
-    const auto said = [](const NormalScore& s) {
-      return fmt::format("{} with flips {}: {:.0f} % agree with depth, {:.0f} % face the camera", s.space == NormalSpace::world ? "world" : "view",
-                         to_string(s.flips), 100 * s.agreement, 100 * s.facing);
-    };
+    const auto usual =
+        std::ranges::find_if(scores, [&](const auto& s) { return s.space == source_.usual_normal_space && to_string(s.flips) == "none"; });
     const bool tells = !scores.empty() && scores[0].agreement >= kLeastAgreement;
     if (!tells) source_.has_evidence = false;
-    if (has_world && (!tells || usual->agreement >= kAsGood * scores[0].agreement))
-      return guess("normal space", "world", tells ? said(*usual) : "the frame does not tell", "--normal-space", false);
+    if ((has_world || usually_view) && (!tells || usual->agreement >= kAsGood * scores[0].agreement)) {
+      source_.normal_space = source_.usual_normal_space;
+      guess("normal space", name_of(source_.normal_space), tells ? said(*usual) : "the frame does not tell", "--normal-space", false);
+      return doubt_normals(scores);
+    }
     if (!tells)
       fail(ErrorKind::input,
            "{}: its normals are in world space, and the camera has no world_to_camera: give a --camera file with it, or --normal-space view",
@@ -159,12 +210,32 @@ class Settlement {
     const auto other = std::ranges::find_if(scores, [&](const auto& s) { return s.space != scores[0].space; });
     if (other != scores.end() && other->agreement >= kAsGood * scores[0].agreement)
       fail(ErrorKind::input, "{}: its normals may be in {} or in {} space ({}; {}): say which with --normal-space, and --flip-normal", normal_path(),
-           scores[0].space == NormalSpace::world ? "world" : "view", other->space == NormalSpace::world ? "world" : "view", said(scores[0]),
-           said(*other));
+           name_of(scores[0].space), name_of(other->space), said(scores[0]), said(*other));
     source_.normal_space = scores[0].space;
     source_.flip_normal = scores[0].flips;
-    guess("normal space", source_.normal_space == NormalSpace::world ? "world" : "view", said(scores[0]), "--normal-space with --flip-normal",
-          has_world || to_string(scores[0].flips) != "none");
+    guess("normal space", name_of(source_.normal_space), said(scores[0]), "--normal-space with --flip-normal",
+          source_.normal_space != source_.usual_normal_space || has_world || to_string(scores[0].flips) != "none");
+  }
+
+  static const char* name_of(NormalSpace space) { return space == NormalSpace::world ? "world" : "view"; }
+  static const char* name_of(DepthKind kind) { return alcove::name_of(kind); }
+  static std::string said(const NormalScore& s) {
+    return fmt::format("{} with flips {}: {:.0f} % agree with depth, {:.0f} % face the camera", name_of(s.space), to_string(s.flips), 100 * s.agreement,
+                       100 * s.facing);
+  }
+
+  /// Normals as they are taken, where depth speaks against them.
+  void doubt_normals(const std::vector<NormalScore>& scores) {
+    const auto chosen = std::ranges::find_if(
+        scores, [&](const auto& s) { return s.space == source_.normal_space && to_string(s.flips) == to_string(source_.flip_normal); });
+    if (chosen == scores.end()) return;
+    const bool another = scores[0].agreement >= kLeastAgreement && chosen->agreement < kNoBetter * scores[0].agreement;
+    if (another)
+      source_.notes.push_back(fmt::format("normals are read as {}; better fits {} (--normal-space, --flip-normal)", said(*chosen), said(scores[0])));
+    else if (chosen->agreement < kLeastAgreement)
+      source_.notes.push_back(fmt::format(
+          "only {:.0f} % of the normals agree with depth in any space: check --normal-encoding, --depth-kind with --near and --far, and the camera",
+          100 * scores[0].agreement));
   }
 
   FrameSource& source_;
@@ -174,11 +245,24 @@ class Settlement {
   ValueStatistics values_;
 };
 
+/// Depth as a grey picture has no more than 256 distances.
+void refuse_8_bits(const FrameSource& source, std::span<const float> depth) {
+  if (source.depth.size() != 1) return;
+  constexpr std::size_t kLeastLevels = 16;  // fewer may be a few walls that happen to lie there
+  std::set<double> levels;
+  for (std::size_t i = 0; i < depth.size(); i += kSparse) {
+    const double level = 255.0 * depth[i];
+    if (!(level >= 0 && level <= 255) || std::abs(level - std::round(level)) > 1e-4) return;
+    levels.insert(std::round(level));
+  }
+  if (levels.size() >= kLeastLevels)
+    fail(ErrorKind::input, "{}: {} holds only values of 8 bits, too few distances for AO: save depth as EXR, or as DDS (--depth)",
+         source.files[source.depth[0].file].path(), source.depth[0].channel);
+}
+
 /// Half floats step by a 1024th of the power of two below the value.
 void note_half(FrameSource& source, std::span<const float> depth) {
-  const auto& channels = source.files[source.depth[0].file].parts()[std::size_t(source.depth[0].part)].channels;
-  const auto channel = std::ranges::find(channels, source.depth[0].channel, &ExrChannel::name);
-  if (channel == channels.end() || channel->type != SampleType::half_float) return;
+  if (depth_rounding(source) != kHalfRounding) return;
   std::vector<float> values;
   for (std::size_t i = 0; i < source.data.pixels(); i += kSparse)
     if (std::isfinite(depth[i]) && depth[i] != 0 && std::abs(depth[i]) < 65504) values.push_back(std::abs(depth[i]));
@@ -194,9 +278,16 @@ void note_half(FrameSource& source, std::span<const float> depth) {
 }  // namespace
 
 void settle(FrameSource& source, const InputSettings& settings, std::span<const float> depth, std::span<const float> normal) {
+  refuse_8_bits(source, depth);
   Settlement(source, settings, depth, normal).run();
   note_half(source, depth);
   source.settled = true;
+}
+
+double depth_rounding(const FrameSource& source) {
+  const auto& channels = source.files[source.depth[0].file].parts()[std::size_t(source.depth[0].part)].channels;
+  const auto channel = std::ranges::find(channels, source.depth[0].channel, &ExrChannel::name);
+  return channel != channels.end() && channel->type == SampleType::half_float ? kHalfRounding : kFloatRounding;
 }
 
 void settle_by_rows(FrameSource& source, const InputSettings& settings) {

@@ -24,6 +24,9 @@ void settle_by_rows(FrameSource& source, const InputSettings& settings);
 /// Settles a frame as another one of its sequence is. False: it has other planes, so it must be settled by itself.
 bool settle_like(FrameSource& source, const FrameSource& settled);
 
+/// Of the depth channel as it is stored: see score_depth().
+double depth_rounding(const FrameSource& source);
+
 /// The map to planar depth, for a settled frame.
 DepthMap depth_map_of(const FrameSource& source, const InputSettings& settings);
 

@@ -23,12 +23,14 @@ constexpr int kFewBorders = 4;                         // a row of tiles is halv
 std::size_t chain_planes(const FrameSource& source, const Settings& settings) {
   const auto& e = settings.estimator;
   const auto& o = settings.output;
-  std::size_t planes = 3;                                                 // depth, normals, AO
-  planes += e.denoise == Denoise::none ? 0 : 2;                           // rows, columns
-  planes += e.resolution == Resolution::full ? 0 : 3;                     // smaller ones of all these, and the whole AO
-  planes += e.fade_end || e.intensity != 1 || e.power != 1 || !source.material_ao.empty() ? 1 : 0;
+  const std::size_t scales = 1 + e.further_radii.size(), bent = needs_bent(e, o) ? 3 : 0, estimated = scales + bent + (scales > 1 ? 1 : 0);
+  std::size_t planes = 2 + estimated;                                     // depth, normals, the estimate
+  planes += e.denoise == Denoise::none ? 0 : 2 * estimated;               // rows, columns
+  planes += e.resolution == Resolution::full ? 0 : 2 + estimated;         // smaller ones of all these, and the whole estimate
+  planes += e.fade_end || e.intensity != 1 || e.power != 1 || !source.material_ao.empty() ? 1 + scales : 0;
+  planes += bent ? 1 : 0;
   planes += (o.multi_bounce ? 3 : 0) + source.beauty.size() + debug_views_of(o).size();
-  for (const auto& aov : aovs_of(o)) planes += aov.channels.size();
+  for (const auto& aov : aovs_of(o)) planes += channels_of(aov, scales).size();
   return planes;
 }
 
@@ -98,14 +100,15 @@ class Cutter {
 }  // namespace
 
 PixelMemory pixel_memory(const FrameSource& source, const Settings& settings) {
-  std::size_t read = 0, widest = 1;
+  const std::size_t scales = 1 + settings.estimator.further_radii.size();
+  std::size_t read = 0, widest = std::max<std::size_t>(scales, needs_bent(settings.estimator, settings.output) ? 3 : 1);
   for (const auto* aov : {&source.depth, &source.normal, &source.beauty, &source.indirect, &source.diffuse_color, &source.albedo, &source.material_ao}) {
     read += aov->size();
     widest = std::max(widest, aov->size());
   }
   std::size_t written = source.beauty.size();
   for (const auto& aov : aovs_of(settings.output)) {
-    written += aov.channels.size();
+    written += channels_of(aov, scales).size();
     widest = std::max(widest, aov.channels.size());
   }
   const std::size_t pictures = settings.output.preview.empty() ? 0 : 6;  // planes as shown, once more interleaved

@@ -1,7 +1,7 @@
 // Ambient occlusion by a visibility bitmask in slices through the view ray, cosine weighted.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// In: planar depth, view normals. Out: visibility, 1 = open.
+// In: planar depth, view normals. Out: visibility, 1 = open; the mean open direction (see bent.glsl) where it is asked for.
 // Therrien et al., "Screen Space Indirect Lighting with Visibility Bitmask", 2023: every sample blocks the angles between its front and its back, and bits of
 // a mask say which are blocked. With these differences:
 // - The 64 sectors of a slice, 32 a side, have equal measure of the cosine-weighted arc integral, not equal angles: counting bits is integrating.
@@ -18,25 +18,30 @@
 #include "noise.glsl"
 #include "stride.glsl"
 #include "falloff.glsl"
+#include "bent.glsl"
 #include "slice.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 layout(constant_id = kBitmaskSlicesId) const uint kSlices = 3;
 layout(constant_id = kBitmaskStepsId) const uint kSteps = 6;
-layout(constant_id = kBitmaskFalloffId) const uint kFalloff = kFalloffNone;
+layout(constant_id = kBitmaskModeId) const uint kMode = kFalloffNone;
 layout(constant_id = kBitmaskStrideId) const int kStride = 1;
 layout(scalar, push_constant) uniform Push { BitmaskParams params; };
 layout(scalar, binding = kBitmaskDepth) readonly buffer Depth { float depth[]; };
 layout(scalar, binding = kBitmaskNormal) readonly buffer Normal { uint normal[]; };
 layout(scalar, binding = kBitmaskAo) writeonly buffer Ao { float ao[]; };
+layout(scalar, binding = kBitmaskBent) writeonly buffer Bent { float bent[]; };
 
-/// The blocked part of a side's arc integral.
-float search(Receiver r, Side side, Reach reach, float jitter, float shift) {
+const uint kFalloff = kMode & ~kWithBent;
+const bool kBent = (kMode & kWithBent) != 0u;
+
+/// The blocked part of a side's arc integral and, with bent normals, of bent_to().
+vec3 search(Receiver r, Side side, Reach reach, float jitter, float shift) {
   const int count = min(int(kSteps), int(side.reach));
   const float whole = whole_arc(side), endless = 1e30;
   float last_z = r.z, last_offset = 0.0, last_cot = side.plane_cot, blocked = 0.0;
   bool own = true, last_blocks = true;
-  vec2 start = vec2(0);
+  vec2 start = vec2(0), bent_blocked = vec2(0);
   uint bits = 0u;
   for (int k = 0; k < count; k++) {
     const float offset = step_offset(k, int(kSteps), count, side.reach, jitter);
@@ -59,30 +64,39 @@ float search(Receiver r, Side side, Reach reach, float jitter, float shift) {
       const uint behind = sectors_to(side, whole, min(back, joined ? min(cot, last_cot) : cot), shift);
       const uint added = behind & ~before & ~bits;
       bits |= added;
-      blocked += float(bitCount(added)) * falloff_weight(kFalloff, sqrt(distance_sq), reach.falloff_start, reach.radius);
+      const float weight = falloff_weight(kFalloff, sqrt(distance_sq), reach.falloff_start, reach.radius);
+      blocked += float(bitCount(added)) * weight;
+      if (kBent && kFalloff != kFalloffNone) bent_blocked += weight * bent_of_sectors(side, added, shift);
     }
     last_blocks = blocks;
     last_cot = cot;
     last_z = z;
     last_offset = offset;
   }
-  return blocked * whole / float(kSectors);
+  if (kBent && kFalloff == kFalloffNone) bent_blocked = bent_of_sectors(side, bits, shift);
+  return vec3(blocked * whole / float(kSectors), bent_blocked);
+}
+
+void write_bent(int index, int plane, vec3 b) {
+  for (int c = 0; c < 3; c++) bent[index + c * plane] = stored_bent(b)[c];
 }
 
 void main() {
   const ivec2 pixel = estimated_pixel(gl_GlobalInvocationID.xy, params.noise_origin, kStride);
   const View view = params.view;
   if (!inside(view, pixel)) return;
-  const int index = index_of(view, pixel);
+  const int index = index_of(view, pixel), plane = view.size.x * view.size.y, ao_index = index + int(params.plane) * plane;
   const float z = depth[index];
   if (z >= kSkyDepth) {
-    ao[index] = 1.0;
+    ao[ao_index] = 1.0;
+    if (kBent) write_bent(index, plane, vec3(0));
     return;
   }
   const Receiver r = receiver_at(view, pixel, z, unpack_normal(normal[index]), params.radius);
   const Reach reach = reach_of(view, params.radius, params.falloff_start, params.thickness, params.bias);
-  const vec2 noise = pixel_noise(pixel + params.noise_origin, params.noise_shift);
+  const vec2 noise = pixel_noise(packed_place(pixel + params.noise_origin, kStride), params.noise_shift);
   float blocked = 0.0, whole = 0.0;
+  vec3 bent_blocked = vec3(0);
   for (uint s = 0u; s < kSlices; s++) {
     const Slice slice = slice_at(view, r, s, kSlices, noise.x);
     if (slice.weight < kLeastWeight) continue;
@@ -90,8 +104,12 @@ void main() {
     const float shift = fract(noise.x * 7.0 + noise.y * 13.0 + kGolden * float(s));
     for (int sign = -1; sign <= 1; sign += 2) {
       const float jitter = fract(noise.y + kGolden * float(2u * s + uint(sign > 0)));
-      blocked += slice.share * slice.weight * search(r, side_of(view, r, slice, float(sign), reach), reach, jitter, shift);
+      const vec3 side = slice.share * slice.weight * search(r, side_of(view, r, slice, float(sign), reach), reach, jitter, shift);
+      blocked += side.x;
+      if (kBent) bent_blocked += side.y * float(sign) * slice.t + side.z * r.eye;
     }
   }
-  ao[index] = whole > 0.0 ? clamp(1.0 - blocked / whole, 0.0, 1.0) : 1.0;
+  ao[ao_index] = whole > 0.0 ? clamp(1.0 - blocked / whole, 0.0, 1.0) : 1.0;
+  // The open hemisphere gives 2/3 of the normal whatever slices are drawn.
+  if (kBent) write_bent(index, plane, 2.0 / 3.0 * r.normal - (whole > 0.0 ? bent_blocked / whole : vec3(0)));
 }

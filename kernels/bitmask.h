@@ -2,16 +2,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #ifndef ALCOVE_BITMASK_H
 #define ALCOVE_BITMASK_H
-#include "shared.h"
+#include "horizon.h"
 ALCOVE_BEGIN
 
 ALCOVE_CONSTANT uint kBitmaskDepth = 0;   // in: float a pixel, from prepare
 ALCOVE_CONSTANT uint kBitmaskNormal = 1;  // in: uint a pixel, from prepare
-ALCOVE_CONSTANT uint kBitmaskAo = 2;      // out: float a pixel, visibility in [0, 1], 1 = open
+ALCOVE_CONSTANT uint kBitmaskAo = 2;      // out: float a pixel, visibility in [0, 1], 1 = open; the plane of the parameters
+ALCOVE_CONSTANT uint kBitmaskBent = 3;    // out: planes x, y, z of the mean open direction b in view space as 0.5 + 0.5 b; only with kWithBent
 
 ALCOVE_CONSTANT uint kBitmaskSlicesId = 0;   // specialization: slices a pixel
 ALCOVE_CONSTANT uint kBitmaskStepsId = 1;    // specialization: steps to each side of a slice
-ALCOVE_CONSTANT uint kBitmaskFalloffId = 2;  // specialization: one of kFalloff* of falloff.glsl
+ALCOVE_CONSTANT uint kBitmaskModeId = 2;     // specialization: one of kFalloff* of falloff.glsl, and kWithBent or not
 ALCOVE_CONSTANT uint kBitmaskStrideId = 3;   // specialization: one pixel of so many in a row, 1, 2 or 4: see stride.glsl
 
 struct BitmaskParams {
@@ -22,6 +23,7 @@ struct BitmaskParams {
   vec2 noise_shift;     // in [0, 1): the pattern's shift for this frame and seed
   float bias;           // sine of the elevation above the tangent plane below which nothing blocks
   float thickness;      // scene units; infinite allowed; 0: as deep as wide
+  uint plane;           // of the output, which has one a radius
 };
 ALCOVE_PARAMS(BitmaskParams)
 

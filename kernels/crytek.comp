@@ -47,10 +47,10 @@ float range_weight(float depth_difference) {
 void main() {
   const ivec2 pixel = estimated_pixel(gl_GlobalInvocationID.xy, params.noise_origin, kStride);
   if (!inside(params.view, pixel)) return;
-  const int index = index_of(params.view, pixel);
+  const int index = index_of(params.view, pixel), ao_index = index + int(params.plane) * params.view.size.x * params.view.size.y;
   const float z = depth[index];
   if (z >= kSkyDepth) {
-    ao[index] = 1.0;
+    ao[ao_index] = 1.0;
     return;
   }
 
@@ -82,5 +82,5 @@ void main() {
     const bool above = hit_height > 0.0 && hit_height * hit_height > kLeastElevation * kLeastElevation * dot(offset, offset);
     if (above && deeper > params.bias) blocked += range_weight(hit_z - z);
   }
-  ao[index] = valid > 0.0 ? 1.0 - blocked / valid : 1.0;
+  ao[ao_index] = valid > 0.0 ? 1.0 - blocked / valid : 1.0;
 }

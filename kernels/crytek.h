@@ -7,7 +7,7 @@ ALCOVE_BEGIN
 
 ALCOVE_CONSTANT uint kCrytekDepth = 0;   // in: float a pixel, from prepare
 ALCOVE_CONSTANT uint kCrytekNormal = 1;  // in: uint a pixel, from prepare
-ALCOVE_CONSTANT uint kCrytekAo = 2;      // out: float a pixel, visibility in [0, 1], 1 = open
+ALCOVE_CONSTANT uint kCrytekAo = 2;      // out: float a pixel, visibility in [0, 1], 1 = open; the plane of the parameters
 
 ALCOVE_CONSTANT uint kCrytekSamplesId = 0;  // specialization: samples a pixel
 ALCOVE_CONSTANT uint kCrytekStrideId = 1;   // specialization: one pixel of so many in a row, 1, 2 or 4: see stride.glsl
@@ -24,6 +24,7 @@ struct CrytekParams {
   uint range_check;     // one of kRange*
   ivec2 noise_origin;   // px: what to add to a pixel so that crops and tiles share one noise pattern
   vec2 noise_shift;     // in [0, 1): the pattern's shift for this frame and seed
+  uint plane;           // of the output, which has one a radius
 };
 ALCOVE_PARAMS(CrytekParams)
 

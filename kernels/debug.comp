@@ -9,6 +9,7 @@
 #include "view.glsl"
 #include "normal.glsl"
 #include "arcs.glsl"
+#include "stride.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 layout(scalar, push_constant) uniform Push { DebugParams params; };
@@ -31,6 +32,12 @@ float edge(ivec2 pixel, float z, vec3 n) {
   return farthest;
 }
 
+/// The value of a pixel; where only one of the stride has any, that to its left.
+float value_at(ivec2 pixel) {
+  const int begin = first_estimated(pixel.y, params.origin, params.stride), at = pixel.x - ((pixel.x - begin) & (params.stride - 1));
+  return uintBitsToFloat(values[index_of(params.view, ivec2(at < 0 ? begin : at, pixel.y))]);
+}
+
 void main() {
   const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   if (!inside(params.view, pixel)) return;
@@ -42,7 +49,7 @@ void main() {
   }
   const vec3 n = unpack_normal(normal[index]);
   float value = z;
-  if (params.kind == kDebugValue) value = uintBitsToFloat(values[index]);
+  if (params.kind == kDebugValue) value = value_at(pixel);
   if (params.kind == kDebugViewZ) value = -z;
   if (params.kind == kDebugNormalZ) value = n.z;
   if (params.kind == kDebugEdge) value = edge(pixel, z, n);

@@ -19,7 +19,9 @@ ALCOVE_CONSTANT uint kDebugEdge = 5;         // distance of a neighbour from the
 
 struct DebugParams {
   View view;
-  uint kind;  // one of kDebug*
+  uint kind;     // one of kDebug*
+  int stride;    // of kDebugValue: one pixel of so many in a row has a value, see stride.glsl
+  ivec2 origin;  // px from the display window's corner to the image's
 };
 ALCOVE_PARAMS(DebugParams)
 

@@ -1,7 +1,7 @@
 // Smooths the visibility along one axis, over each surface by itself; rows, then columns, make the separable filter.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// In: visibility, depth, normals. Out: visibility; constant stays exactly constant, sky stays 1 and is never mixed in. Where one pixel of `stride` has an
+// In: planes of visibility, depth, normals. Out: as many planes; constant stays exactly constant, sky stays 1 and is never mixed in. Where one pixel of `stride` has an
 // estimate, rows give every pixel the mean of those in reach and how much they weigh together, by which columns then weigh the rows.
 // Tomasi & Manduchi, "Bilateral Filtering for Gray and Color Images", 1998, with the distance from the other pixel's tangent plane in the place of
 // colour. Two pixels mix as far as each lies in the plane of the other, which sees edges, steps and creases alike and leaves a plane whole at every
@@ -19,6 +19,7 @@ layout(constant_id = kDenoiseRadiusId) const int kRadius = 3;
 layout(constant_id = kDenoiseByDepthId) const uint kByDepth = 0;
 layout(constant_id = kDenoiseSparseId) const uint kSparse = kDenoiseDense;
 layout(constant_id = kDenoiseStrideId) const int kStride = 1;
+layout(constant_id = kDenoisePlanesId) const int kPlanes = 1;
 layout(scalar, push_constant) uniform Push { DenoiseParams params; };
 layout(scalar, binding = kDenoiseAo) readonly buffer Ao { uint ao[]; };
 layout(scalar, binding = kDenoiseDepth) readonly buffer Depth { float depth[]; };
@@ -31,14 +32,19 @@ const float kPlaneSigma = 1.0;
 /// Pixels without an estimate of their own need some: where nothing alike is in reach, they get what is least unlike, for it weighs this over its height squared.
 const float kLeastSimilarity = 1e-4;
 
+/// Pixels that one invocation looks at.
+const int kCount = kDenoiseRun + 2 * kRadius;
+
 struct Tap {
-  float ao, weight, z;
+  float weight, z;
   float scale;          // scene units a unit of tangent_of(): z, or 1 where the view is orthographic
   float ahead, across;  // height above this tap's plane, in sigmas, of what is a unit further away, and a pixel along the axis at scale 1
 };
 
 /// The mean of a row, and how much its pixels weigh together: what rows hand to columns where the estimate is sparse.
 uint pack_mean(float mean, float weight) { return packUnorm2x16(vec2(mean, sqrt(weight))); }
+
+float square(float x) { return x * x; }
 
 /// Whether tap i of a run has visibility to give.
 bool is_known(int i) { return (i + (kStride - 1) * kRadius) % kStride == 0; }
@@ -48,12 +54,8 @@ Tap load(ivec2 pixel, bool has_ao) {
   const bool known = inside(params.view, pixel);
   const ivec2 nearest = clamp(pixel, ivec2(0), params.view.size - 1);
   const int index = index_of(params.view, nearest);
-  Tap tap = Tap(0.0, 0.0, known ? depth[index] : kSkyDepth, 1.0, kSkyDepth, 0.0);
-  if (has_ao) {
-    const vec2 mean = kSparse == kDenoiseSparseColumns ? unpackUnorm2x16(ao[index]) : vec2(uintBitsToFloat(ao[index]), 1.0);
-    tap.ao = mean.x;
-    tap.weight = mean.y * mean.y;
-  }
+  Tap tap = Tap(0.0, known ? depth[index] : kSkyDepth, 1.0, kSkyDepth, 0.0);
+  if (has_ao) tap.weight = kSparse == kDenoiseSparseColumns ? square(unpackUnorm2x16(ao[index]).y) : 1.0;
   if (kByDepth != 0) return tap;
   const bool perspective = params.view.orthographic == 0;
   tap.scale = perspective ? tap.z : 1.0;
@@ -63,6 +65,13 @@ Tap load(ivec2 pixel, bool has_ao) {
   if (tap.z < kSkyDepth) tap.ahead = (perspective ? dot(n.xy, tangent) - n.z : -n.z) * sigmas;
   tap.across = dot(n.xy, pixel_step) * sigmas;
   return tap;
+}
+
+/// What a pixel holds in the plane that begins at this index. Outside 0, since 0 times what was never written may not be 0.
+float value_at(ivec2 pixel, int plane) {
+  const uint word = ao[plane + index_of(params.view, clamp(pixel, ivec2(0), params.view.size - 1))];
+  const float value = kSparse == kDenoiseSparseColumns ? unpackUnorm2x16(word).x : uintBitsToFloat(word);
+  return inside(params.view, pixel) ? value : 0.0;
 }
 
 /// How far two taps mix that lie this many pixels apart.
@@ -80,28 +89,38 @@ void main() {
   const ivec2 first = line * params.axis.yx + (kDenoiseRun * int(gl_GlobalInvocationID.y) + known - (known > 0 ? kStride : 0)) * params.axis;
   if (any(greaterThanEqual(first, params.view.size))) return;
 
-  Tap taps[kDenoiseRun + 2 * kRadius];
-  float change[kDenoiseRun + 2 * kRadius], whole[kDenoiseRun + 2 * kRadius];
-  for (int i = 0; i < kDenoiseRun + 2 * kRadius; i++) {
-    taps[i] = load(first + (i - kRadius) * params.axis, is_known(i));
-    change[i] = 0.0;
+  const int plane = params.view.size.x * params.view.size.y;
+  Tap taps[kCount];
+  float whole[kCount], values[kPlanes * kCount], change[kPlanes * kCount];  // plane by plane
+  for (int i = 0; i < kCount; i++) {
+    const ivec2 here = first + (i - kRadius) * params.axis;
+    taps[i] = load(here, is_known(i));
     whole[i] = params.weight[0] * taps[i].weight;
-    if (kSparse == kDenoiseSparseRows) change[i] = whole[i] * taps[i].ao;
+    for (int p = 0; p < kPlanes; p++) {
+      // What has no estimate may hold anything, NaN too, which no weight of 0 takes away.
+      const float value = is_known(i) && inside(params.view, here) ? value_at(here, p * plane) : 0.0;
+      values[p * kCount + i] = value;
+      change[p * kCount + i] = kSparse == kDenoiseSparseRows ? whole[i] * value : 0.0;
+    }
     for (int apart = 1; apart <= kRadius; apart++) {
       const int j = i - apart;
       if (j < 0 || i < kRadius || j >= kDenoiseRun + kRadius || !(is_known(i) || is_known(j))) continue;
       const float weight = params.weight[apart] * similarity(taps[j], taps[i], float(apart)), to_j = weight * taps[i].weight, to_i = weight * taps[j].weight;
       // Changes of a pixel's own visibility, so that what is constant stays so to the bit; in sparse rows, which have none, of 0.
-      change[j] += to_j * (kSparse == kDenoiseSparseRows ? taps[i].ao : taps[i].ao - taps[j].ao);
-      change[i] += to_i * (kSparse == kDenoiseSparseRows ? taps[j].ao : taps[j].ao - taps[i].ao);
+      for (int p = 0; p < kPlanes * kCount; p += kCount) {
+        change[p + j] += to_j * (kSparse == kDenoiseSparseRows ? values[p + i] : values[p + i] - values[p + j]);
+        change[p + i] += to_i * (kSparse == kDenoiseSparseRows ? values[p + j] : values[p + j] - values[p + i]);
+      }
       whole[j] += to_j;
       whole[i] += to_i;
     }
     const int done = i - kRadius;
     const ivec2 pixel = first + (done - kRadius) * params.axis;
     if (done < kRadius || !inside(params.view, pixel)) continue;
-    const float own = kSparse == kDenoiseSparseRows ? 0.0 : taps[done].ao;
-    const float mean = taps[done].z < kSkyDepth && whole[done] > 0.0 ? clamp(own + change[done] / whole[done], 0.0, 1.0) : 1.0;
-    result[index_of(params.view, pixel)] = kSparse == kDenoiseSparseRows ? pack_mean(mean, whole[done]) : floatBitsToUint(mean);
+    for (int p = 0; p < kPlanes; p++) {
+      const float own = kSparse == kDenoiseSparseRows ? 0.0 : values[p * kCount + done];
+      const float mean = taps[done].z < kSkyDepth && whole[done] > 0.0 ? clamp(own + change[p * kCount + done] / whole[done], 0.0, 1.0) : 1.0;
+      result[index_of(params.view, pixel) + p * plane] = kSparse == kDenoiseSparseRows ? pack_mean(mean, whole[done]) : floatBitsToUint(mean);
+    }
   }
 }

@@ -5,16 +5,17 @@
 #include "shared.h"
 ALCOVE_BEGIN
 
-ALCOVE_CONSTANT uint kDenoiseAo = 0;      // in: float a pixel, visibility
+ALCOVE_CONSTANT uint kDenoiseAo = 0;      // in: planes of floats in [0, 1], visibility or the like; each by itself
 ALCOVE_CONSTANT uint kDenoiseDepth = 1;   // in: float a pixel, of the G-buffer of that visibility
 ALCOVE_CONSTANT uint kDenoiseNormal = 2;  // in: uint a pixel, of the same; not read with a depth sigma
-ALCOVE_CONSTANT uint kDenoiseResult = 3;  // out: float a pixel, visibility in [0, 1]; of sparse rows: see pack_mean
+ALCOVE_CONSTANT uint kDenoiseResult = 3;  // out: as many planes, in [0, 1]; of sparse rows: see pack_mean
 
 ALCOVE_CONSTANT uint kDenoiseRadiusId = 0;    // specialization: pixels to each side, 1 to kDenoiseMostRadius
 ALCOVE_CONSTANT uint kDenoiseByDepthId = 1;   // specialization: 1: weighs by depth_sigma instead of by plane distance
 
 ALCOVE_CONSTANT uint kDenoiseSparseId = 2;    // specialization: one of these
 ALCOVE_CONSTANT uint kDenoiseStrideId = 3;    // specialization: of sparse rows, 2 or 4: see stride.glsl; else 1
+ALCOVE_CONSTANT uint kDenoisePlanesId = 4;    // specialization: how many planes; they share their weights
 
 ALCOVE_CONSTANT uint kDenoiseDense = 0;          // every pixel has an estimate
 ALCOVE_CONSTANT uint kDenoiseSparseRows = 1;     // one pixel of the stride has

@@ -73,17 +73,17 @@ float occlusion(Side side, ivec2 pixel, vec3 position, float jitter) {
 void main() {
   const ivec2 pixel = estimated_pixel(gl_GlobalInvocationID.xy, params.noise_origin, kStride);
   if (!inside(params.view, pixel)) return;
-  const int index = index_of(params.view, pixel);
+  const int index = index_of(params.view, pixel), ao_index = index + int(params.plane) * params.view.size.x * params.view.size.y;
   const float z = depth[index];
   if (z >= kSkyDepth) {
-    ao[index] = 1.0;
+    ao[ao_index] = 1.0;
     return;
   }
 
   const bool perspective = params.view.orthographic == 0;
   const vec2 tangent = tangent_of(params.view, vec2(pixel) + 0.5);
   const vec3 position = position_of(params.view, vec2(pixel) + 0.5, z), eye = toward_eye(params.view, position), n = unpack_normal(normal[index]);
-  const vec2 noise = pixel_noise(pixel + params.noise_origin, params.noise_shift);
+  const vec2 noise = pixel_noise(packed_place(pixel + params.noise_origin, kStride), params.noise_shift);
   // The sphere of the radius is seen under this angle; 1 and more: it holds the eye, and the image is the only limit.
   const float sin_reach = perspective ? params.radius * inversesqrt(dot(position, position)) : 0.0;
   const float cos_reach = sqrt(max(0.0, 1.0 - sin_reach * sin_reach));
@@ -115,5 +115,5 @@ void main() {
       blocked += share * occlusion(side, pixel, position, fract(noise.y + kGolden * float(2u * s + uint(sign > 0))));
     }
   }
-  ao[index] = clamp(1.0 - blocked / whole, 0.0, 1.0);
+  ao[ao_index] = clamp(1.0 - blocked / whole, 0.0, 1.0);
 }

@@ -7,7 +7,7 @@ ALCOVE_BEGIN
 
 ALCOVE_CONSTANT uint kHbaoDepth = 0;   // in: float a pixel, from prepare
 ALCOVE_CONSTANT uint kHbaoNormal = 1;  // in: uint a pixel, from prepare
-ALCOVE_CONSTANT uint kHbaoAo = 2;      // out: float a pixel, visibility in [0, 1], 1 = open
+ALCOVE_CONSTANT uint kHbaoAo = 2;      // out: float a pixel, visibility in [0, 1], 1 = open; the plane of the parameters
 
 ALCOVE_CONSTANT uint kHbaoSlicesId = 0;   // specialization: lines through a pixel, each searched to both sides
 ALCOVE_CONSTANT uint kHbaoStepsId = 1;    // specialization: steps to each side
@@ -22,6 +22,7 @@ struct HbaoParams {
   uint from_surface;    // 1: the horizon's elevation above the surface; 0: of horizon and surface above the plane across the view ray
   ivec2 noise_origin;   // px: what to add to a pixel so that crops and tiles share one noise pattern
   vec2 noise_shift;     // in [0, 1): the pattern's shift for this frame and seed
+  uint plane;           // of the output, which has one a radius
 };
 ALCOVE_PARAMS(HbaoParams)
 

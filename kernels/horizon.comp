@@ -1,7 +1,7 @@
 // Ambient occlusion by horizon search in slices through the view ray (GTAO), cosine weighted, with occluders of finite thickness.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// In: planar depth, view normals. Out: visibility, 1 = open.
+// In: planar depth, view normals. Out: visibility, 1 = open; the mean open direction (see bent.glsl) where it is asked for.
 // Jimenez et al., "Practical Realtime Strategies for Accurate Indirect Occlusion", 2016, with these differences:
 // - Slices are even in azimuth about the view ray, not on the screen, so that no Jacobian is owed off axis.
 // - The reach is the exact image of the sphere of the radius in the slice, clipped to the image: what is outside is unknown.
@@ -20,24 +20,29 @@
 #include "noise.glsl"
 #include "stride.glsl"
 #include "falloff.glsl"
+#include "bent.glsl"
 #include "slice.glsl"
 #include "sectors.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 layout(constant_id = kHorizonSlicesId) const uint kSlices = 3;
 layout(constant_id = kHorizonStepsId) const uint kSteps = 6;
-layout(constant_id = kHorizonFalloffId) const uint kFalloff = kFalloffNone;
-layout(constant_id = kHorizonEndlessId) const bool kEndless = false;
+layout(constant_id = kHorizonModeId) const uint kMode = kFalloffNone;
+layout(constant_id = kHorizonThicknessId) const uint kThickness = kThicknessWidth;
 layout(constant_id = kHorizonStrideId) const int kStride = 1;
 layout(scalar, push_constant) uniform Push { HorizonParams params; };
 layout(scalar, binding = kHorizonDepth) readonly buffer Depth { float depth[]; };
 layout(scalar, binding = kHorizonNormal) readonly buffer Normal { uint normal[]; };
 layout(scalar, binding = kHorizonAo) writeonly buffer Ao { float ao[]; };
+layout(scalar, binding = kHorizonBent) writeonly buffer Bent { float bent[]; };
+
+const uint kFalloff = kMode & ~kWithBent;
+const bool kBent = (kMode & kWithBent) != 0u;
 
 /// A run is wider than the distance of its outer samples by a pixel and, on average, by this part of the gaps to the samples before and behind it.
 const float kGapShare = 0.5;
 
-/// Two samples on either side of the sphere of the radius whose squared distances are within this factor of its square are taken for one surface.
+/// All that is endless is one surface. Two samples of it on either side of the sphere are neighbours if their squared distances are within this factor of its.
 const float kSameSurface = 1.44;
 
 const float kNone = 1e30;
@@ -58,29 +63,39 @@ struct Blocked {
 // Logic without branches: `&&` and `||` would jump.
 bool both(bool a, bool b) { return a ? b : false; }
 
-/// The arc integral over what is blocked.
-float blocked_arc(Side side, Blocked blocked, float shift) {
+/// arc_to() and, with bent normals, bent_to().
+vec3 arcs_to(Side side, vec2 place) {
+  const vec2 direction = place * inversesqrt(dot(place, place));
+  return vec3(arc_to(side, place), kBent ? bent_to(direction.y, direction.x, side.cos_gamma, side.sin_gamma) : vec2(0));
+}
+
+/// These integrals over what is blocked.
+vec3 blocked_arcs(Side side, Blocked blocked, float shift) {
   const float plane = slope_of(side.ahead), far = max(blocked.far, plane);
-  const float own = blocked.near > far ? arc_to(side, place_at(far)) - arc_to(side, place_at(blocked.near)) : 0.0;
-  return kEndless ? own : own + arc_of(side, blocked.sectors & ~sectors_below(max(blocked.near, plane), shift));
+  const vec3 own = blocked.near > far ? arcs_to(side, place_at(far)) - arcs_to(side, place_at(blocked.near)) : vec3(0);
+  if (kThickness == kThicknessEndless) return own;
+  const uint others = blocked.sectors & ~sectors_below(max(blocked.near, plane), shift);
+  return own + vec3(arc_of(side, others), kBent ? bent_of(side, others) : vec2(0));
 }
 
 /// What a run blocks that is `gap_behind` steps wide of the sample behind it.
 uint sectors_of(Receiver r, Reach reach, Run run, float z, float gap_behind, float shift) {
   const float pixel = reach.pixel_size * (r.perspective ? z : 1.0);
   const float width = length(run.end - run.start) + pixel * (1.0 + kGapShare * (run.gap + gap_behind));
-  const float back = slope_of(back_of(r, run.start, reach.thickness > 0.0 ? reach.thickness : width, reach.radius));
+  // What is as deep as wide is not clipped to the sphere: no difference in the error, and it takes a tenth off the time.
+  const float back = slope_of(kThickness == kThicknessWidth ? run.start + width * away_from_eye(r, run.start) : back_of(r, run.start, reach.thickness, reach.radius));
   return run.near >= run.far ? sectors_below(run.near, shift) & ~sectors_below(min(back, run.far), shift) : 0u;
 }
 
-/// The blocked part of a side's arc integral.
-float search(Receiver r, Side side, Reach reach, float jitter) {
+/// The blocked part of a side's integrals.
+vec3 search(Receiver r, Side side, Reach reach, float jitter) {
   const int count = min(int(kSteps), int(side.reach));
   const float shift = fract(11.0 * jitter);
   const bool hard = kFalloff == kFalloffNone;
-  float last_z = r.z, last_offset = 0.0, last_slope = 0.0, last_distance_sq = kNone, last_arc = 0.0, sum = 0.0;
+  float last_z = r.z, last_offset = 0.0, last_slope = 0.0, last_distance_sq = kNone;
+  vec3 last_arcs = vec3(0), sum = vec3(0);
   bool own = true, was_within = true;
-  Blocked blocked = Blocked(-1.0, kEndless ? 1.0 : -1.0, 0u);
+  Blocked blocked = Blocked(-1.0, kThickness == kThicknessEndless ? 1.0 : -1.0, 0u);
   Run run = Run(vec2(0), vec2(0), 0.0, -1.0, 1.0);
   for (int k = 0; k < count; k++) {
     const float offset = step_offset(k, int(kSteps), count, side.reach, jitter), gap = offset - last_offset;
@@ -91,12 +106,14 @@ float search(Receiver r, Side side, Reach reach, float jitter) {
     const float slope = slope_of(place), distance_sq = dot(place, place);
     const bool above = is_above(r, reach, place, distance_sq, beside, z, scale), within = distance_sq < reach.radius_sq;
     const bool blocks = both(above, within);
-    // A surface that crosses the sphere between two samples blocks up to there.
-    const bool crosses = hard ? both(above, both(within != was_within,
-        both(max(distance_sq, last_distance_sq) < kSameSurface * reach.radius_sq, min(distance_sq, last_distance_sq) * kSameSurface > reach.radius_sq))) : false;
-    const float crossing = mix(slope, last_slope, (reach.radius_sq - distance_sq) / (last_distance_sq - distance_sq));
+    // A surface that crosses the sphere between two samples blocks up to there; that of a run, half way.
+    const bool connected = kThickness == kThicknessEndless
+        ? both(max(distance_sq, last_distance_sq) < kSameSurface * reach.radius_sq, min(distance_sq, last_distance_sq) * kSameSurface > reach.radius_sq)
+        : same_surface(r, reach, z, last_z, gap);
+    const bool crosses = hard ? both(both(above, connected), within != was_within) : false;
+    const float crossing = mix(slope, last_slope, kThickness == kThicknessEndless ? (reach.radius_sq - distance_sq) / (last_distance_sq - distance_sq) : 0.5);
     const float near = max(blocks ? slope : -1.0, crosses ? crossing : -1.0), far = min(blocks ? slope : 1.0, crosses ? crossing : 1.0);
-    if (!kEndless && !same_surface(r, reach, z, last_z, gap)) {
+    if (kThickness != kThicknessEndless && !connected) {
       if (hard) blocked.sectors |= sectors_of(r, reach, run, last_z, gap, shift);
       run = Run(place, place, gap, -1.0, 1.0);
       own = false;
@@ -104,49 +121,59 @@ float search(Receiver r, Side side, Reach reach, float jitter) {
     run.end = place;
     if (own) {
       blocked.near = max(blocked.near, near);
-      if (kEndless) blocked.far = min(blocked.far, blocks ? min(far, slope_of(back_of(r, place, reach.thickness, reach.radius))) : far);
+      if (kThickness == kThicknessEndless) blocked.far = min(blocked.far, blocks ? min(far, slope_of(back_of(r, place, reach.thickness, reach.radius))) : far);
     } else {
       run.near = max(run.near, near);
       run.far = min(run.far, far);
     }
     if (!hard) {
       blocked.sectors |= sectors_of(r, reach, run, z, 1.0, shift);
-      const float arc = blocked_arc(side, blocked, shift);
-      sum += falloff_weight(kFalloff, sqrt(distance_sq), reach.falloff_start, reach.radius) * (arc - last_arc);
-      last_arc = arc;
+      const vec3 arcs = blocked_arcs(side, blocked, shift);
+      sum += falloff_weight(kFalloff, sqrt(distance_sq), reach.falloff_start, reach.radius) * (arcs - last_arcs);
+      last_arcs = arcs;
     }
     was_within = within;
-    last_distance_sq = above ? distance_sq : kNone;
     last_slope = slope;
+    last_distance_sq = above ? distance_sq : kNone;
     last_z = z;
     last_offset = offset;
   }
   if (hard) blocked.sectors |= sectors_of(r, reach, run, last_z, 1.0, shift);
-  return hard ? blocked_arc(side, blocked, shift) : sum;
+  return hard ? blocked_arcs(side, blocked, shift) : sum;
+}
+
+void write_bent(int index, int plane, vec3 b) {
+  for (int c = 0; c < 3; c++) bent[index + c * plane] = stored_bent(b)[c];
 }
 
 void main() {
   const ivec2 pixel = estimated_pixel(gl_GlobalInvocationID.xy, params.noise_origin, kStride);
   const View view = params.view;
   if (!inside(view, pixel)) return;
-  const int index = index_of(view, pixel);
+  const int index = index_of(view, pixel), plane = view.size.x * view.size.y, ao_index = index + int(params.plane) * plane;
   const float z = depth[index];
   if (z >= kSkyDepth) {
-    ao[index] = 1.0;
+    ao[ao_index] = 1.0;
+    if (kBent) write_bent(index, plane, vec3(0));
     return;
   }
   const Receiver r = receiver_at(view, pixel, z, unpack_normal(normal[index]), params.radius);
   const Reach reach = reach_of(view, params.radius, params.falloff_start, params.thickness, params.bias);
-  const vec2 noise = pixel_noise(sparse_place(pixel + params.noise_origin, kStride), params.noise_shift);
+  const vec2 noise = pixel_noise(packed_place(pixel + params.noise_origin, kStride), params.noise_shift);
   float blocked = 0.0, whole = 0.0;
+  vec3 bent_blocked = vec3(0);
   for (uint s = 0u; s < kSlices; s++) {
     const Slice slice = slice_at(view, r, s, kSlices, noise.x);
     if (slice.weight < kLeastWeight) continue;
     whole += slice.share * slice.weight * (slice.cos_gamma + slice.gamma * slice.sin_gamma);
     for (int sign = -1; sign <= 1; sign += 2) {
       const float jitter = fract(noise.y + kGolden * float(2u * s + uint(sign > 0)));
-      blocked += slice.share * slice.weight * search(r, side_of(view, r, slice, float(sign), reach), reach, jitter);
+      const vec3 side = slice.share * slice.weight * search(r, side_of(view, r, slice, float(sign), reach), reach, jitter);
+      blocked += side.x;
+      if (kBent) bent_blocked += side.y * float(sign) * slice.t + side.z * r.eye;
     }
   }
-  ao[index] = whole > 0.0 ? clamp(1.0 - blocked / whole, 0.0, 1.0) : 1.0;
+  ao[ao_index] = whole > 0.0 ? clamp(1.0 - blocked / whole, 0.0, 1.0) : 1.0;
+  // The open hemisphere gives 2/3 of the normal whatever slices are drawn.
+  if (kBent) write_bent(index, plane, 2.0 / 3.0 * r.normal - (whole > 0.0 ? bent_blocked / whole : vec3(0)));
 }

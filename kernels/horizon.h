@@ -7,13 +7,19 @@ ALCOVE_BEGIN
 
 ALCOVE_CONSTANT uint kHorizonDepth = 0;   // in: float a pixel, from prepare
 ALCOVE_CONSTANT uint kHorizonNormal = 1;  // in: uint a pixel, from prepare
-ALCOVE_CONSTANT uint kHorizonAo = 2;      // out: float a pixel, visibility in [0, 1], 1 = open
+ALCOVE_CONSTANT uint kHorizonAo = 2;      // out: float a pixel, visibility in [0, 1], 1 = open; the plane of the parameters
+ALCOVE_CONSTANT uint kHorizonBent = 3;    // out: planes x, y, z of the mean open direction b in view space as 0.5 + 0.5 b; only with kWithBent
 
 ALCOVE_CONSTANT uint kHorizonSlicesId = 0;   // specialization: slices a pixel
 ALCOVE_CONSTANT uint kHorizonStepsId = 1;    // specialization: steps to each side of a slice
-ALCOVE_CONSTANT uint kHorizonFalloffId = 2;  // specialization: one of kFalloff* of falloff.glsl
+ALCOVE_CONSTANT uint kHorizonModeId = 2;     // specialization: one of kFalloff* of falloff.glsl, and kWithBent or not
 ALCOVE_CONSTANT uint kHorizonStrideId = 3;   // specialization: one pixel of so many in a row, 1, 2 or 4: see stride.glsl
-ALCOVE_CONSTANT uint kHorizonEndlessId = 4;  // specialization: 1: the thickness is infinite
+ALCOVE_CONSTANT uint kHorizonThicknessId = 4;  // specialization: one of these, of what is not connected to the receiver
+
+ALCOVE_CONSTANT uint kWithBent = 4;          // a bit beside kFalloff*: bent normals too
+ALCOVE_CONSTANT uint kThicknessWidth = 0;    // as deep as wide
+ALCOVE_CONSTANT uint kThicknessLength = 1;   // as HorizonParams says
+ALCOVE_CONSTANT uint kThicknessEndless = 2;  // solid as far as the sphere of the radius
 
 struct HorizonParams {
   View view;
@@ -22,7 +28,8 @@ struct HorizonParams {
   ivec2 noise_origin;   // px: what to add to a pixel so that crops and tiles share one noise pattern
   vec2 noise_shift;     // in [0, 1): the pattern's shift for this frame and seed
   float bias;           // sine of the elevation above the tangent plane below which nothing blocks
-  float thickness;      // scene units, of what is not connected to the receiver; infinite allowed; 0: as deep as wide
+  float thickness;      // scene units, of kThicknessLength; infinite of kThicknessEndless
+  uint plane;           // of the output, which has one a radius
 };
 ALCOVE_PARAMS(HorizonParams)
 

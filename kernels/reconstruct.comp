@@ -3,7 +3,8 @@
 //
 // In: planar depth; normals, marked where they are missing. Out: those normals. Runs where `prepare` has marked any.
 // A pixel without a usable normal gets the normal of its own plane: 1/z is affine over a plane's image, so on each axis the
-// side whose two neighbours predict this pixel's 1/z best is on the same plane, and its position difference is a tangent.
+// side whose two neighbours predict this pixel's 1/z best is on the same plane, and its position difference is a tangent. Where
+// both sides are on one surface, flat or curved, the difference over both is the better tangent: its error is of second order.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "reconstruct.h"
@@ -15,6 +16,10 @@ layout(scalar, push_constant) uniform Push { ReconstructParams params; };
 layout(scalar, binding = kReconstructDepth) readonly buffer Depth { float depth[]; };
 layout(scalar, binding = kReconstructNormal) buffer Normal { uint normal[]; };
 
+/// All of 1/z: how much a large change counts against a side, beside its bend; the difference of the two sides' changes, in such errors and
+/// in parts of 1/z (rounding), up to which they are the same surface; and the largest change of one surface. Tuned on rendered scenes.
+const float kNearness = 0.1, kSameSurface = 4.0, kRounding = 1e-6, kOneSurface = 0.01;
+
 /// What an affine function over the image would be here, going by the two neighbours on one side; orthographic planes are affine in z, others in 1/z.
 float affine_depth(ivec2 pixel) {
   if (!inside(params.view, pixel)) return -1.0;
@@ -22,20 +27,26 @@ float affine_depth(ivec2 pixel) {
   return z >= kSkyDepth ? -1.0 : params.view.orthographic != 0 ? z : 1.0 / z;
 }
 
-/// The change of position along one axis, on the side that predicts this pixel better; zero where neither side has a surface.
+/// The change of position along one axis: on the side that predicts this pixel better, or over both where they are the same surface. Zero where neither
+/// side has a surface.
 vec3 tangent_along(ivec2 pixel, ivec2 axis, vec3 position, float here) {
-  vec3 tangent = vec3(0);
-  float least = 1e30;
+  vec3 tangent = vec3(0), other = vec3(0);
+  float least = 1e30, step = 0.0, other_step = 1e30;
   for (int side = -1; side <= 1; side += 2) {
     const float one = affine_depth(pixel + side * axis), two = affine_depth(pixel + 2 * side * axis);
     if (one <= 0.0) continue;
-    const float error = two > 0.0 ? abs(2.0 * one - two - here) : abs(one - here);
-    if (error >= least) continue;
-    least = error;
-    const float z = params.view.orthographic != 0 ? one : 1.0 / one;
-    tangent = float(side) * (position_of(params.view, vec2(pixel + side * axis) + 0.5, z) - position);
+    const float change = float(side) * (one - here), bend = two > 0.0 ? abs(2.0 * one - two - here) : abs(change);
+    const float error = bend + kNearness * abs(change), z = params.view.orthographic != 0 ? one : 1.0 / one;
+    const vec3 along = float(side) * (position_of(params.view, vec2(pixel + side * axis) + 0.5, z) - position);
+    if (error < least) {
+      other = tangent, other_step = least < 1e30 ? step : 1e30;
+      tangent = along, step = change, least = error;
+    } else {
+      other = along, other_step = change;
+    }
   }
-  return tangent;
+  const bool same = abs(step - other_step) <= kSameSurface * least + kRounding * here && max(abs(step), abs(other_step)) < kOneSurface * here;
+  return same ? tangent + other : tangent;
 }
 
 vec3 normal_from_depth(ivec2 pixel, vec3 position, vec3 eye) {

@@ -2,7 +2,7 @@
 // come, from 0 to 1, and m the material's own AO. Without fade and material 1 stays 1; sky is 1 in any case.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// In: visibility; planar depth and material AO where they are asked for. Out: visibility, and how many values of the material AO were repaired.
+// In: planes of visibility, each by itself; planar depth and material AO where they are asked for. Out: visibility, and how many values of the material AO were repaired.
 // The fade is of the screen-space AO alone: what a material's own AO holds is as true far away as nearby.
 #version 450
 #extension GL_GOOGLE_include_directive : require
@@ -16,19 +16,23 @@ layout(scalar, binding = kShapeMaterial) readonly buffer Material { float materi
 layout(scalar, binding = kShapeShaped) writeonly buffer Shaped { float shaped[]; };
 layout(scalar, binding = kShapeCounts) buffer Counts { FrameCounts counts; };
 
-void main() {
-  const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-  if (any(greaterThanEqual(pixel, params.size))) return;
-  const int index = pixel.y * params.size.x + pixel.x;
-  // What is not asked for leaves every bit as it is.
-  float value = ao[index];
+/// The shaped visibility of the pixel of that index. What is not asked for leaves every bit as it is.
+float shaped_of(float value, int index) {
   if (params.intensity != 1.0) value = clamp(1.0 - params.intensity * (1.0 - value), 0.0, 1.0);
   if (params.power != 1.0) value = value > 0.0 ? pow(value, params.power) : 0.0;
   if (params.has_fade != 0) value += (1.0 - value) * clamp((depth[index] - params.fade_start) / (params.fade_end - params.fade_start), 0.0, 1.0);
   if (params.has_material != 0 && depth[index] < kSkyDepth) {
     const float own = material[index];
-    if (isnan(own) || isinf(own)) atomicAdd(counts.repaired_material, 1u);
-    else value *= clamp(own, 0.0, 1.0);
+    if (!isnan(own) && !isinf(own)) value *= clamp(own, 0.0, 1.0);
   }
-  shaped[index] = value;
+  return value;
+}
+
+void main() {
+  const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  if (any(greaterThanEqual(pixel, params.size))) return;
+  const int index = pixel.y * params.size.x + pixel.x, plane = params.size.x * params.size.y;
+  for (int p = 0; p < int(params.planes); p++) shaped[index + p * plane] = shaped_of(ao[index + p * plane], index);
+  if (params.has_material == 0 || params.counts_repaired == 0 || depth[index] >= kSkyDepth) return;
+  if (isnan(material[index]) || isinf(material[index])) atomicAdd(counts.repaired_material, 1u);
 }

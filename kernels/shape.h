@@ -5,8 +5,8 @@
 #include "shared.h"
 ALCOVE_BEGIN
 
-ALCOVE_CONSTANT uint kShapeAo = 0;        // in: float a pixel, visibility in [0, 1]
-ALCOVE_CONSTANT uint kShapeShaped = 1;    // out: float a pixel, visibility in [0, 1]
+ALCOVE_CONSTANT uint kShapeAo = 0;        // in: planes of visibility in [0, 1]
+ALCOVE_CONSTANT uint kShapeShaped = 1;    // out: as many planes, in [0, 1]
 ALCOVE_CONSTANT uint kShapeDepth = 2;     // in: float a pixel, planar depth, kSkyDepth for sky; not read without fade and material
 ALCOVE_CONSTANT uint kShapeMaterial = 3;  // in: float a pixel, visibility; not read without
 ALCOVE_CONSTANT uint kShapeCounts = 4;    // in, out: FrameCounts
@@ -19,6 +19,8 @@ struct ShapeParams {
   float fade_end;     // scene units, > fade_start: where it is 1
   uint has_fade;      // 0 or 1
   uint has_material;  // 0 or 1
+  uint planes;        // how many
+  uint counts_repaired;  // 0: the frame's material AO has been counted
 };
 ALCOVE_PARAMS(ShapeParams)
 

@@ -149,6 +149,9 @@ bool is_above(Receiver r, Reach reach, vec2 place, float distance_sq, vec2 offse
   return place.x > 0.0 ? clear : false;
 }
 
+/// What the estimators store of a mean open direction: in [0, 1], so that filters of visibility take it as it is.
+vec3 stored_bent(vec3 bent) { return 0.5 + 0.5 * bent; }
+
 /// An angle by a number that is cheaper than its cotangent and falls as that does, from 1 at V to -1.
 float slope_of(vec2 place) { return place.y / (place.x + abs(place.y)); }
 
@@ -193,9 +196,28 @@ uint sectors_to(Side side, float whole, float cot, float shift) {
   return n >= int(kSectors) ? 0xffffffffu : (1u << uint(n)) - 1u;
 }
 
+/// bent_to() over sectors. As boundaries fall at floor(F + shift), a sector that begins at share F stands on average for what begins at F + 1/2 - shift.
+vec2 bent_of_sectors(Side side, uint sectors, float shift) {
+  const float whole = side.gamma + kHalfPi;
+  vec2 sum = sectors >> (kSectors - 1u) != 0u ? bent_to(-side.sin_gamma, side.cos_gamma, side.cos_gamma, side.sin_gamma) : vec2(0);
+  for (uint changes = (sectors ^ (sectors << 1)) & ~1u; changes != 0u; changes &= changes - 1u) {
+    const int k = findLSB(changes);
+    const float theta = angle_of_share((float(k) + 0.5 - shift) / float(kSectors), whole, side.cos_gamma, side.sin_gamma);
+    const vec2 bent = bent_to(cos(theta), sin(theta), side.cos_gamma, side.sin_gamma);
+    sum += (sectors >> uint(k) & 1u) != 0u ? -bent : bent;
+  }
+  return sum;
+}
+
+/// The direction of the eye's own ray at a place.
+vec2 away_from_eye(Receiver r, vec2 place) {
+  const vec2 ray = place - vec2(0, r.eye_distance);
+  return r.perspective ? ray * inversesqrt(dot(ray, ray)) : vec2(0, -1);
+}
+
 /// The back of an occluder whose front is at `front`: `thickness` further along the eye's own ray, but not beyond the sphere of the radius.
 vec2 back_of(Receiver r, vec2 front, float thickness, float radius) {
-  const vec2 ray = front - vec2(0, r.eye_distance), away = r.perspective ? ray * inversesqrt(dot(ray, ray)) : vec2(0, -1);
+  const vec2 away = away_from_eye(r, front);
   const float along = dot(front, away);
   const float exit = sqrt(max(0.0, along * along - dot(front, front) + radius * radius)) - along;
   return front + min(thickness, exit) * away;

@@ -16,4 +16,5 @@ ivec2 estimated_pixel(uvec2 invocation, ivec2 origin, int stride) {
   return ivec2(stride * int(invocation.x) + first_estimated(row, origin, stride), row);
 }
 
-ivec2 sparse_place(ivec2 pixel, int stride) { return ivec2(pixel.x >> findMSB(stride), pixel.y); }
+/// The pixels of an estimate, moved together: neighbours of these take successive points of the noise, not every second or fourth.
+ivec2 packed_place(ivec2 pixel, int stride) { return ivec2(pixel.x >> findMSB(stride), pixel.y); }

@@ -1,7 +1,7 @@
 // Visibility at a half or a quarter of the resolution back to all pixels, each surface by itself.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// In: depth and normals of pixels and of blocks, visibility of blocks. Out: visibility of pixels; sky is 1.
+// In: depth and normals of pixels and of blocks, planes of visibility of blocks. Out: as many planes of pixels; sky is 1.
 // Kopf et al., "Joint Bilateral Upsampling", 2007: the four blocks about a pixel, by bilinear weights between their centres, as far as these lie
 // in the pixel's tangent plane and their normals agree with its own. Where none does, the block of the nearest depth. One invocation computes the
 // pixels that lie between the same four centres.
@@ -13,6 +13,7 @@
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 layout(constant_id = kUpsampleFactorId) const int kFactor = 2;
+layout(constant_id = kUpsamplePlanesId) const int kPlanes = 1;
 layout(scalar, push_constant) uniform Push { UpsampleParams params; };
 layout(scalar, binding = kUpsampleDepth) readonly buffer Depth { float depth[]; };
 layout(scalar, binding = kUpsampleNormal) readonly buffer Normal { uint normal[]; };
@@ -27,7 +28,8 @@ const float kPlaneSigma = 2.0;
 const float kLeastWeight = 1e-3;
 
 struct Block {
-  float ao, z;  // z: kSkyDepth outside the image
+  int index;
+  float z;  // kSkyDepth outside the image
   vec3 position, normal;
 };
 
@@ -36,27 +38,28 @@ Block load(ivec2 block) {
   const int index = nearest.y * params.low_size.x + nearest.x;
   const float z = block == nearest ? low_depth[index] : kSkyDepth;
   const vec2 center = float(kFactor) * (vec2(block) + 0.5) - vec2(params.overhang);
-  return Block(low_ao[index], z, position_of(params.view, center, z), unpack_normal(low_normal[index]));
+  return Block(index, z, position_of(params.view, center, z), unpack_normal(low_normal[index]));
 }
 
-/// The visibility of a pixel `between` the centres of the first and the last of four blocks, in parts of their distance.
-float mix_of(Block blocks[4], vec2 between, ivec2 pixel, float z, vec3 n) {
+/// The parts of four blocks in a pixel `between` the centres of the first and the last of them, in parts of their distance.
+vec4 parts_of(Block blocks[4], vec2 between, ivec2 pixel, float z, vec3 n) {
   const vec3 position = position_of(params.view, vec2(pixel) + 0.5, z);
   const vec2 across = abs(params.view.tangent_per_pixel);
   const float sigma = kPlaneSigma * 0.5 * (across.x + across.y) * (params.view.orthographic != 0 ? 1.0 : z);
-  float whole = 0.0, change = 0.0, least = kSkyDepth, closest = 1.0;
+  float whole = 0.0, least = kSkyDepth;
+  vec4 parts = vec4(0), closest = vec4(0);
   for (int i = 0; i < 4; i++) {
     if (blocks[i].z >= kSkyDepth) continue;
     const float off_plane = dot(n, blocks[i].position - position) / sigma, alike = max(0.0, dot(n, blocks[i].normal)), squared = alike * alike;
     const vec2 bilinear = mix(1.0 - between, between, bvec2(i & 1, i & 2));
     const float weight = bilinear.x * bilinear.y * max(0.0, 1.0 - off_plane * off_plane) * squared * squared;
     whole += weight;
-    change += weight * (blocks[i].ao - blocks[0].ao);
+    parts[i] = weight;
     const float further = abs(blocks[i].z - z);
-    if (further < least) closest = blocks[i].ao;
+    if (further < least) closest = vec4(i == 0, i == 1, i == 2, i == 3);
     least = min(least, further);
   }
-  return whole > kLeastWeight ? clamp(blocks[0].ao + change / whole, 0.0, 1.0) : closest;
+  return whole > kLeastWeight ? parts / whole : closest;
 }
 
 void main() {
@@ -66,13 +69,21 @@ void main() {
 
   Block blocks[4];
   for (int i = 0; i < 4; i++) blocks[i] = load(block + ivec2(i & 1, i >> 1));
+  const int plane = params.view.size.x * params.view.size.y, low_plane = params.low_size.x * params.low_size.y;
+  vec4 values[kPlanes];  // of the blocks
+  for (int p = 0; p < kPlanes; p++)
+    for (int i = 0; i < 4; i++) values[p][i] = low_ao[blocks[i].index + p * low_plane];
   for (int y = 0; y < kFactor; y++) {
     for (int x = 0; x < kFactor; x++) {
       const ivec2 pixel = first + ivec2(x, y);
       if (!inside(params.view, pixel)) continue;
       const int index = index_of(params.view, pixel);
       const float z = depth[index];
-      ao[index] = z < kSkyDepth ? mix_of(blocks, (vec2(x, y) + 0.5) / float(kFactor), pixel, z, unpack_normal(normal[index])) : 1.0;
+      const vec4 parts = parts_of(blocks, (vec2(x, y) + 0.5) / float(kFactor), pixel, z, unpack_normal(normal[index]));
+      for (int p = 0; p < kPlanes; p++) {
+        const vec4 change = values[p] - values[p].x;
+        ao[index + p * plane] = z < kSkyDepth ? clamp(values[p].x + dot(parts, change), 0.0, 1.0) : 1.0;
+      }
     }
   }
 }

@@ -126,13 +126,13 @@ TEST_F(Aovs, only_what_was_asked_for_is_computed) {
   good({"--aov", "normal", "--stats", stats});
   EXPECT_THAT(passes(), ElementsAre("prepare", "reconstruct", "directions"));
   good({"--aov", "specular-occlusion", "--denoise", "none", "--stats", stats});
-  EXPECT_THAT(passes(), ElementsAre("prepare", "reconstruct", "horizon", "specular_occlusion"));
+  EXPECT_THAT(passes(), ElementsAre("prepare", "reconstruct", "horizon", "bent_normal", "specular_occlusion"));
   good({"--denoise", "none", "--stats", stats});
   EXPECT_THAT(passes(), ElementsAre("prepare", "reconstruct", "horizon"));
 }
 
 TEST_F(Aovs, a_region_holds_what_the_whole_holds_there) {
-  const std::vector<std::string> all{"--aov", "ao,normal,depth,specular-occlusion", "--ao-channels", "rgb", "--multi-bounce", "--albedo", "0.7"};
+  const std::vector<std::string> all{"--aov", "ao,normal,bent-normal,depth,specular-occlusion", "--ao-channels", "rgb", "--multi-bounce", "--albedo", "0.7"};
   const Image whole = good(all);
   auto region = all;
   region.insert(region.end(), {"--roi", "20,10,9,20"});
@@ -152,8 +152,8 @@ TEST_F(Aovs, without_ao_no_radius_is_needed) {
 }
 
 TEST_F(Aovs, unknown_ones_are_answered_with_all_there_are) {
-  for (const char* list : {"nromal", "ao,nromal", "bent-normal", "ao,,depth", ""})
-    expect_refused(2, {"--aov", "ao, normal, depth, specular-occlusion"}, {"--aov", list});
+  for (const char* list : {"nromal", "ao,nromal", "bent", "ao,,depth", ""})
+    expect_refused(2, {"--aov", "ao, ao-scales, normal, bent-normal, depth, specular-occlusion"}, {"--aov", list});
   expect_refused(2, {"did you mean normal?"}, {"--aov", "nromal"});
 }
 

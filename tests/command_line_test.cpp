@@ -419,7 +419,7 @@ TEST_F(CommandLine, stats_have_the_documented_fields_and_add_up) {
   FrameFile input = wall_frame();
   for (std::size_t i = 0; i < 64; i++) input.planes["ViewLayer.Depth.Z"][i] = 1e10f;  // one line of 36 is sky
   input.write(frame);
-  ASSERT_EQ(run({"--stats", stats_file, "--slices", "2", "--steps", "5", "--power", "1.5"}).code, 0);
+  ASSERT_EQ(run({"--stats", stats_file, "--slices", "2", "--steps", "5", "--stride", "2", "--power", "1.5"}).code, 0);
   const json stats = json::parse(read_bytes(stats_file)), one = stats.at("frames").at(0), totals = stats.at("totals");
   EXPECT_TRUE(stats.at("device").is_string());
   EXPECT_EQ(stats.at("options"), text_in(read_header(ao), "alcove/options"));
@@ -439,7 +439,7 @@ TEST_F(CommandLine, stats_have_the_documented_fields_and_add_up) {
   EXPECT_NEAR(ms.at("compute"), sum, 1e-9 * sum);
   for (const char* name : {"read", "compute", "write"}) EXPECT_GT(ms.at(name), 0) << name;
   EXPECT_GE(ms.at("total").get<double>(), ms.at("read").get<double>() + ms.at("write").get<double>());
-  EXPECT_NEAR(one.at("samples_per_pixel"), 2 * 2 * 5 * 35.0 / 36, 1e-9);
+  EXPECT_NEAR(one.at("samples_per_pixel"), 2 * 2 * 5 / 2.0 * 35.0 / 36, 1e-9);
   EXPECT_EQ(one.at("repaired_pixels"), 0);
   EXPECT_EQ(totals.at("frames"), 1);
   EXPECT_EQ(totals.at("failed"), 0);

@@ -77,7 +77,7 @@ TEST_F(DebugViews, sky_has_a_colour_that_no_number_has) {
 }
 
 TEST_F(DebugViews, raw_ao_is_grey_as_the_ao_is_before_shaping) {
-  const Image picture = view("raw-ao", {"--power", "3"});
+  const Image picture = view("raw-ao", {"--power", "3", "--stride", "1"});
   ASSERT_EQ(run({"--type", "float", "--denoise", "none"}).code, 0);
   const Image plain = read_exr_image(ao);
   for (int y = 0; y < 36; y++)

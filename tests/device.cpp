@@ -41,6 +41,7 @@ EstimatorSettings plain_settings() {
   EstimatorSettings settings;
   settings.thickness = ThicknessKind::infinite;
   settings.denoise = Denoise::none;
+  settings.stride = 1;
   return settings;
 }
 

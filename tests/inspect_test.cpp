@@ -123,6 +123,28 @@ TEST_F(Inspect, text_and_json_say_the_same) {
   EXPECT_THAT(text, HasSubstr("normals: world space, signed"));
 }
 
+TEST_F(Inspect, says_which_program_wrote_the_frame) {
+  EXPECT_EQ(inspected({"--camera", camera})["source"]["name"], "cycles");
+  const json said = inspected({"--camera", camera, "--preset", "input/generic"});
+  EXPECT_EQ(said["source"]["name"], "generic");
+  EXPECT_EQ(said["source"]["by"], "--source");
+  EXPECT_THAT(said["command"].get<std::string>(), HasSubstr("--source generic"));
+  const Finished finished = inspect({"--source", "blendr5"});
+  EXPECT_EQ(finished.code, 2);
+  EXPECT_THAT(finished.err, HasSubstr("blender5"));
+}
+
+TEST_F(Inspect, what_is_suspicious_is_said) {
+  EXPECT_EQ(inspected({"--camera", camera})["suspicious"].size(), 0);
+  FrameFile file = wall_frame({-4, 0, 72, 36});
+  for (const char* name : {"ViewLayer.Normal.X", "ViewLayer.Normal.Y", "ViewLayer.Normal.Z"})
+    for (std::size_t i = 0; i < file.planes[name].size(); i += 4) file.planes[name][i] *= 0.5f;
+  file.write(frame);
+  const std::string suspicious = inspected({"--camera", camera})["suspicious"].dump();
+  EXPECT_THAT(suspicious, HasSubstr("25 % of the normals"));
+  EXPECT_THAT(suspicious, HasSubstr("data window is 72x36"));
+}
+
 TEST_F(Inspect, bad_files_and_arguments_have_their_exit_codes) {
   EXPECT_EQ(run_program({"inspect", folder / "missing.exr"}).code, 3);
   write_bytes(folder / "text.exr", "no image");

@@ -109,7 +109,7 @@ TEST(Layers, only_the_command_line_prints_and_reads_arguments) {
 std::string chain_source() {
   const std::string passes = read_bytes(ALCOVE_SOURCE_DIR "/core/passes.cpp");
   std::smatch choice;
-  const bool found = std::regex_search(passes, choice, std::regex(R"(\ngpu::Buffer& estimate\([^]*?\n\})"));
+  const bool found = std::regex_search(passes, choice, std::regex(R"(\nEstimate estimate\([^]*?\n\})"));
   return found ? std::regex_replace(read_bytes(ALCOVE_SOURCE_DIR "/core/chain.cpp"), std::regex(R"(\bestimate\()"), choice.str()) : "";
 }
 

@@ -21,7 +21,7 @@ namespace {
 
 /// The kernels' own function, compiled as C++.
 namespace glsl {
-using std::cos, std::sin;
+using std::acos, std::clamp, std::cos, std::max, std::sin;
 #include "kernels/bent.glsl"
 }  // namespace glsl
 
@@ -281,23 +281,39 @@ TEST(SpecularOcclusion, of_a_mirror_is_all_or_nothing) {
 
 // The bent normal of a slice.
 
-TEST(BentNormal, of_a_slice_is_its_integral) {
+/// The integral over one side of a slice up to an angle, by the kernels' function.
+vec2 bent_to(double theta, double gamma) {
+  return glsl::bent_to(float(std::cos(theta)), float(std::sin(theta)), float(std::cos(gamma)), float(std::sin(gamma)));
+}
+
+TEST(BentNormal, of_a_side_is_its_integral) {
   for (double gamma = -1.5; gamma <= 1.5; gamma += 0.25) {
-    for (double part0 = 0; part0 <= 1; part0 += 0.25) {
-      for (double part1 = 0; part1 <= 1; part1 += 0.25) {
-        const double h0 = part0 * (gamma - kPi / 2), h1 = part1 * (gamma + kPi / 2);
-        double across = 0, toward = 0;
-        constexpr int kSteps = 2000;
-        for (const double h : {h0, h1})  // each side by itself: |sin| has its kink between them
-          for (int i = 0; i < kSteps; i++) {
-            const double theta = h * (i + 0.5) / kSteps, weight = std::cos(theta - gamma) * std::abs(std::sin(theta)) * std::abs(h) / kSteps;
-            across += weight * std::sin(theta);
-            toward += weight * std::cos(theta);
-          }
-        const vec2 result = glsl::bent_arc(float(h0), float(h1), float(gamma));
-        ASSERT_NEAR(result.x, across, 2e-6) << gamma << " " << h0 << " " << h1;
-        ASSERT_NEAR(result.y, toward, 2e-6) << gamma << " " << h0 << " " << h1;
+    for (double part = 0; part <= 1; part += 0.125) {
+      const double h = part * (gamma + kPi / 2);
+      double across = 0, toward = 0;
+      constexpr int kSteps = 2000;
+      for (int i = 0; i < kSteps; i++) {
+        const double theta = h * (i + 0.5) / kSteps, weight = std::cos(theta - gamma) * std::sin(theta) * h / kSteps;
+        across += weight * std::sin(theta);
+        toward += weight * std::cos(theta);
       }
+      const vec2 result = bent_to(h, gamma);
+      ASSERT_NEAR(result.x, across, 2e-6) << gamma << " " << h;
+      ASSERT_NEAR(result.y, toward, 2e-6) << gamma << " " << h;
+    }
+  }
+}
+
+TEST(BentNormal, share_of_a_side_gives_the_angle_back) {
+  for (double gamma = -1.5; gamma <= 1.5; gamma += 0.125) {
+    const double whole = gamma + kPi / 2, end = std::cos(gamma) + whole * std::sin(gamma);
+    const auto arc = [&](double theta) {
+      return std::cos(gamma) * std::sin(theta) * std::sin(theta) + std::sin(gamma) * (theta - std::sin(theta) * std::cos(theta));
+    };
+    for (int k = 1; k < 64; k++) {
+      double low = 0, high = whole;  // by bisection
+      for (int i = 0; i < 50; i++) (arc(0.5 * (low + high)) < k / 64.0 * end ? low : high) = 0.5 * (low + high);
+      ASSERT_NEAR(glsl::angle_of_share(k / 64.0f, float(whole), float(std::cos(gamma)), float(std::sin(gamma))), low, 2e-3) << gamma << " " << k;
     }
   }
 }
@@ -311,8 +327,8 @@ Vec3 mean_open_direction(Vec3 normal, const std::function<double(double azimuth,
     const Vec3 t{std::cos(azimuth), std::sin(azimuth), 0};
     const double n_t = test::dot(normal, t), weight = std::hypot(n_t, normal.z), gamma = std::atan2(n_t, normal.z);
     const double h1 = side(azimuth, gamma + kPi / 2), h0 = -side(azimuth + kPi, kPi / 2 - gamma);
-    const vec2 arc = glsl::bent_arc(float(h0), float(h1), float(gamma));
-    sum = sum + (weight / kSlices) * (arc.x * t + Vec3{0, 0, arc.y});
+    const vec2 towards_t = bent_to(h1, gamma), away = bent_to(-h0, -gamma);
+    sum = sum + (weight / kSlices) * (double(towards_t.x - away.x) * t + Vec3{0, 0, towards_t.y + away.y});
   }
   return sum;
 }

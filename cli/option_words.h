@@ -1,0 +1,98 @@
+// The words that options take, and what each of them stands for.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "core/settings.h"
+
+namespace alcove {
+
+template <class T>
+const std::map<std::string, T>& names_of();
+template <>
+inline const std::map<std::string, DepthKind>& names_of() {
+  static const std::map<std::string, DepthKind> names = {
+      {"auto", DepthKind::automatic}, {"planar", DepthKind::planar},         {"ray", DepthKind::ray}, {"inverse", DepthKind::inverse},
+      {"device", DepthKind::device},  {"normalized", DepthKind::normalized}, {"log", DepthKind::log}, {"position", DepthKind::position}};
+  return names;
+}
+template <>
+inline const std::map<std::string, DeviceRange>& names_of() {
+  static const std::map<std::string, DeviceRange> names = {{"0..1", DeviceRange::zero_to_one}, {"-1..1", DeviceRange::minus_one_to_one}};
+  return names;
+}
+template <>
+inline const std::map<std::string, PositionSpace>& names_of() {
+  static const std::map<std::string, PositionSpace> names = {{"auto", PositionSpace::automatic}, {"world", PositionSpace::world}, {"view", PositionSpace::view}};
+  return names;
+}
+template <>
+inline const std::map<std::string, NormalEncoding>& names_of() {
+  static const std::map<std::string, NormalEncoding> names = {{"auto", NormalEncoding::automatic},
+                                                              {"signed", NormalEncoding::signed_float},
+                                                              {"unorm", NormalEncoding::unorm},
+                                                              {"octahedral", NormalEncoding::octahedral},
+                                                              {"spheremap", NormalEncoding::spheremap}};
+  return names;
+}
+template <>
+inline const std::map<std::string, NormalSpace>& names_of() {
+  static const std::map<std::string, NormalSpace> names = {{"auto", NormalSpace::automatic}, {"world", NormalSpace::world}, {"view", NormalSpace::view}};
+  return names;
+}
+template <>
+inline const std::map<std::string, Falloff>& names_of() {
+  static const std::map<std::string, Falloff> names = {
+      {"none", Falloff::none}, {"linear", Falloff::linear}, {"quadratic", Falloff::quadratic}, {"smooth", Falloff::smooth}};
+  return names;
+}
+template <>
+inline const std::map<std::string, Estimator>& names_of() {
+  static const std::map<std::string, Estimator> names = {
+      {"gtao", Estimator::gtao}, {"bitmask", Estimator::bitmask}, {"hbao", Estimator::hbao}, {"crytek", Estimator::crytek}};
+  return names;
+}
+template <>
+inline const std::map<std::string, Elevation>& names_of() {
+  static const std::map<std::string, Elevation> names = {{"view", Elevation::view}, {"surface", Elevation::surface}};
+  return names;
+}
+template <>
+inline const std::map<std::string, SampleKernel>& names_of() {
+  static const std::map<std::string, SampleKernel> names = {{"clustered", SampleKernel::clustered}, {"uniform", SampleKernel::uniform}};
+  return names;
+}
+template <>
+inline const std::map<std::string, RangeCheck>& names_of() {
+  static const std::map<std::string, RangeCheck> names = {{"none", RangeCheck::none}, {"ratio", RangeCheck::ratio}, {"smoothstep", RangeCheck::smoothstep}};
+  return names;
+}
+template <>
+inline const std::map<std::string, Resolution>& names_of() {
+  static const std::map<std::string, Resolution> names = {{"full", Resolution::full}, {"half", Resolution::half}, {"quarter", Resolution::quarter}};
+  return names;
+}
+template <>
+inline const std::map<std::string, Denoise>& names_of() {
+  static const std::map<std::string, Denoise> names = {{"none", Denoise::none}, {"bilateral", Denoise::bilateral}, {"box", Denoise::box}};
+  return names;
+}
+template <>
+inline const std::map<std::string, AoChannels>& names_of() {
+  static const std::map<std::string, AoChannels> names = {{"mono", AoChannels::mono}, {"rgb", AoChannels::rgb}};
+  return names;
+}
+template <>
+inline const std::map<std::string, OutputType>& names_of() {
+  static const std::map<std::string, OutputType> names = {{"half", OutputType::half_float}, {"float", OutputType::single_float}};
+  return names;
+}
+template <>
+inline const std::map<std::string, Missing>& names_of() {
+  static const std::map<std::string, Missing> names = {{"error", Missing::error}, {"skip", Missing::skip}};
+  return names;
+}
+
+}  // namespace alcove

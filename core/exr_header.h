@@ -1,0 +1,13 @@
+// A look at an EXR's header before OpenEXR believes what it says.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+namespace alcove {
+
+/// Walks the attributes of all parts, allocating nothing by their sizes. Fails with ErrorKind::input where an attribute is larger than the file, or a part
+/// has more lines or tiles than the file has room for their offsets: OpenEXR would make room for both.
+void require_sane_header(const std::string& path, const char* option);
+
+}  // namespace alcove

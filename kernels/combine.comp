@@ -1,0 +1,23 @@
+// Several radii in one AO: the mean of the visibilities.
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// In: planes of visibility, one a radius. Out: visibility.
+// The mean, and neither the product nor the least: it is itself ambient occlusion, that of a falloff which drops by an equal step at each radius. The occlusion
+// with a falloff W is the integral of -W'(r) times the occlusion with the hard radius r (superposition), which for steps is a mean.
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#include "combine.h"
+
+layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
+layout(scalar, push_constant) uniform Push { CombineParams params; };
+layout(scalar, binding = kCombineScales) readonly buffer Scales { float scales[]; };
+layout(scalar, binding = kCombineAo) writeonly buffer Ao { float ao[]; };
+
+void main() {
+  const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy), size = params.size;
+  if (any(greaterThanEqual(pixel, size))) return;
+  const int index = pixel.y * size.x + pixel.x, plane = size.x * size.y, count = int(params.count);
+  float sum = 0.0;
+  for (int p = 0; p < count; p++) sum += scales[index + p * plane];
+  ao[index] = sum / float(count);
+}
