@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/bench.h"
 
+#include <algorithm>
+
 #include "cli/commands.h"
 #include "cli/options.h"
 #include "cli/parsing.h"
@@ -47,6 +49,7 @@ std::vector<BenchCandidate> candidates_of(const Suite& suite) {
   for (const auto& candidate : suite.candidates) {
     RunOptions options;
     if (!parse_run_options(candidate.arguments, options)) fail(ErrorKind::usage, "candidate {} asks for help", candidate.name);
+    if (std::ranges::find(candidate.arguments, "--radius") == candidate.arguments.end()) options.settings.estimator.radius.reset();  // a preset's: truths have one
     candidates.push_back({candidate.name, fmt::format("{}", fmt::join(candidate.arguments, " ")), options.settings.estimator});
   }
   return candidates;

@@ -50,7 +50,7 @@ GBuffer downsample(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs
 std::vector<double> radii_of(const EstimatorSettings& settings);
 /// Whether the estimator finds open directions too.
 bool has_bent_normals(Estimator estimator);
-/// What an estimator gives for every pixel of the G-buffer.
+/// What an estimator gives for every pixel of the G-buffer, or for those that the stride leaves.
 struct Estimate {
   gpu::Buffer* ao;              // a plane of visibility a radius, from the smallest on
   gpu::Buffer* bent = nullptr;  // planes x, y, z, of the largest radius: see horizon.h; null: not asked for

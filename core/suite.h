@@ -34,7 +34,8 @@ struct Suite {
 ///   [[candidate]]  name = "draft"     preset = "draft"  power = 1.2             # any long option of alcove run
 ///   [[sweep]]      slices = [1, 2, 4] steps = [4, 8]    preset = "draft"        # a candidate for every combination
 ///
-/// Paths are below `data`, or where that is empty below the suite's folder. Fails with ErrorKind::input, naming file and key.
+/// A candidate that does not name a radius has that of each frame's truth, whatever its preset says. Paths are below `data`, or where that is empty below
+/// the suite's folder. Fails with ErrorKind::input, naming file and key.
 Suite read_suite(const std::string& path, const std::string& data);
 
 /// The most that an error may be for a candidate on a frame.

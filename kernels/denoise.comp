@@ -97,7 +97,8 @@ void main() {
     taps[i] = load(here, is_known(i));
     whole[i] = params.weight[0] * taps[i].weight;
     for (int p = 0; p < kPlanes; p++) {
-      const float value = is_known(i) ? value_at(here, p * plane) : 0.0;
+      // What has no estimate may hold anything, NaN too, which no weight of 0 takes away.
+      const float value = is_known(i) && inside(params.view, here) ? value_at(here, p * plane) : 0.0;
       values[p * kCount + i] = value;
       change[p * kCount + i] = kSparse == kDenoiseSparseRows ? whole[i] * value : 0.0;
     }

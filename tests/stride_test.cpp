@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/host_frame.h"
 #include "core/passes.h"
@@ -39,6 +40,14 @@ TEST_P(Sparse, every_pixel_of_a_plane_is_open_at_any_size_and_filter) {
       const Rendering plane = render(Scene{{parallelogram({-50, -50, 0}, {100, 0, 0}, {0, 100, 0})}}, Shot::perspective({0, -3, 2}, {0, 0, 0}, 50, width, height));
       for (const float value : run(plane.frame, sparse_settings(1, GetParam(), radius))) ASSERT_EQ(value, 1.0f) << width << " x " << height << ", radius " << radius;
     }
+}
+
+// What the estimate leaves out is never read, whatever the memory held before.
+TEST_P(Sparse, pixels_without_an_estimate_may_hold_anything) {
+  const Rendering room = furnished_room(31, 17);
+  const std::vector<float> expected = run(room.frame, sparse_settings(1, GetParam()));
+  for (float& value : recorder().buffer("ao", expected.size() * sizeof(float), gpu::Use::download).as<float>()) value = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_TRUE(same_bits(run(room.frame, sparse_settings(1, GetParam())), expected));
 }
 
 // Nothing is left without an estimate, be it alone on its surface or beside the sky.
