@@ -142,12 +142,6 @@ void read_kernel(const std::string& text, EstimatorSettings& settings) {
   if (settings.denoise_kernel.front() == 0) throw CLI::ValidationError("--denoise-kernel", fmt::format("{} has no weight at the centre", text));
 }
 
-std::vector<std::string> source_names() {
-  std::vector<std::string> names{"auto"};
-  for (const auto& rules : all_input_rules()) names.push_back(rules.name);
-  return names;
-}
-
 void add_input_rows(Table& table, InputSettings& s) {
   table.group("Input");
   table.text("--depth", s.depth, "FILE", "an EXR, DDS or TIFF of the depth alone; else it is in INPUT");

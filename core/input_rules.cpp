@@ -115,12 +115,17 @@ const std::vector<InputRules>& all_input_rules() {
   return all;
 }
 
+std::vector<std::string> source_names() {
+  std::vector<std::string> names{"auto"};
+  for (const auto& rules : all_input_rules()) names.push_back(rules.name);
+  return names;
+}
+
 const InputRules& input_rules(const std::string& name) {
   const auto found = std::ranges::find(all_input_rules(), name, &InputRules::name);
   if (found != all_input_rules().end()) return *found;
-  std::vector<std::string> names;
-  for (const auto& rules : all_input_rules()) names.push_back(rules.name);
-  fail(ErrorKind::usage, "there is no source {}{}; --source takes auto, {}", name, suggestion(name, names), list_of(names));
+  const auto names = source_names();
+  fail(ErrorKind::usage, "there is no source {}{}; --source takes {}", name, suggestion(name, names), list_of(names));
 }
 
 DetectedRules detect_rules(const ExrFile& file) {

@@ -37,6 +37,9 @@ struct InputRules {
 /// All of them, by name.
 const std::vector<InputRules>& all_input_rules();
 
+/// `auto` and their names: the words of --source.
+std::vector<std::string> source_names();
+
 /// Those of that name. Fails with ErrorKind::usage, naming the nearest.
 const InputRules& input_rules(const std::string& name);
 
