@@ -1,6 +1,7 @@
 // `alcove bench SUITE.toml`: run time against error, as a table, JSON, CSV and a page.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/bench.h"
+#include "core/bench_batch.h"
 
 #include <algorithm>
 
@@ -16,7 +17,7 @@ namespace {
 struct BenchArguments {
   std::string suite, data, json, csv, report, limits, yardstick;
   gpu::DeviceOptions device;
-  int repeats = 0, reference_slices = -1;
+  int repeats = 0, reference_slices = -1, batch = 0;
   bool quiet = false;
 };
 
@@ -29,6 +30,8 @@ bool parse(const std::vector<std::string>& arguments, BenchArguments& a) {
   app.get_formatter()->column_width(34);
   app.add_option("SUITE", a.suite, "a suite file (TOML)")->required()->type_name("");
   app.add_option("--data", a.data, "the folder of the suite's frames; else the suite's own")->type_name("FOLDER");
+  app.add_option("--batch", a.batch, "instead: time a run of so many frames against its files alone and its kernels alone, for the first candidate")
+      ->expected(0, 1)->default_str("240")->check(CLI::Range(1, 100000))->type_name("FRAMES");
   app.add_option("--repeats", a.repeats, "timed runs, instead of the suite's")->check(CLI::Range(1, 1000))->type_name("NUMBER");
   app.add_option("--reference-slices", a.reference_slices, "of the CPU reference, instead of the suite's; 0: none")->check(CLI::Range(0, 1024))->type_name("NUMBER");
   app.add_option("--json", a.json, "write all numbers")->type_name("FILE.json");
@@ -55,6 +58,24 @@ std::vector<BenchCandidate> candidates_of(const Suite& suite) {
   return candidates;
 }
 
+/// Runs of the first candidate, on every frame.
+void time_batches(const Suite& suite, const BenchArguments& a) {
+  for (const auto& frame : suite.frames) {
+    RunOptions options;
+    if (!parse_run_options(suite.candidates.front().arguments, options)) fail(ErrorKind::usage, "candidate {} asks for help", suite.candidates.front().name);
+    Settings& settings = options.settings;
+    settings.input.input = frame.input;
+    settings.input.camera = frame.camera;
+    if (!settings.estimator.radius) settings.estimator.radius = frame.radius;
+    settings.device.device = a.device.choice;
+    settings.device.require_gpu = a.device.require_gpu;
+    const BatchTimes times = time_batch(settings, a.batch);
+    fmt::print("{}: {} frames, {} at once: {:.2f} s; files alone {:.2f} s, kernels alone {:.2f} s: {:.2f} of their sum\n", frame.name, times.frames, times.at_once,
+               times.run_s, times.files_s, times.compute_s, times.run_s / (times.files_s + times.compute_s));
+    std::fflush(stdout);
+  }
+}
+
 void print_table(const BenchReport& report) {
   fmt::print("{:<14} {:<24} {:>9} {:>7} {:>8} {:>8} {:>8} {:>9} {:>9}\n", "frame", "candidate", "ms", "yards", "rmse", "bias", "p99", "estimator", "geometry");
   for (const auto& row : report.rows) {
@@ -74,6 +95,10 @@ int bench_command(const std::vector<std::string>& arguments) {
   Suite suite = read_suite(a.suite, a.data);
   if (a.repeats) suite.repeats = a.repeats;
   if (a.reference_slices >= 0) suite.reference_slices = a.reference_slices;
+  if (a.batch) {
+    time_batches(suite, a);
+    return 0;
+  }
   for (const auto& [path, option] : {std::pair(&a.json, "--json"), std::pair(&a.csv, "--csv"), std::pair(&a.report, "--report")})
     if (!path->empty()) require_writable(*path, option);
   const auto limits = a.limits.empty() ? std::vector<Limit>() : read_limits(a.limits);

@@ -212,6 +212,17 @@ TEST_F(Batch, memory_does_not_grow_with_the_frames) {
   EXPECT_LT(peak("1-200"), peak("1-20") + 6);
 }
 
+TEST_F(Batch, bench_times_a_run_against_its_parts) {
+  Surroundings patient;
+  patient.seconds = 200;
+  const Finished finished = run_program({"bench", ALCOVE_SOURCE_DIR "/examples/bench/suite.toml", "--batch", "2"}, patient);
+  EXPECT_EQ(finished.code, 0) << finished;
+  const auto lines = lines_of(finished.out);
+  ASSERT_GE(lines.size(), 2);
+  for (const auto& line : lines)
+    EXPECT_THAT(line, testing::MatchesRegex("[a-z]+: 2 frames, [0-9]+ at once: [0-9.]+ s; files alone [0-9.]+ s, kernels alone [0-9.]+ s: [0-9.]+ of their sum"));
+}
+
 TEST_F(Batch, senseless_options_are_refused) {
   write_frames(1, 1);
   for (const std::vector<std::string>& arguments : {std::vector<std::string>{"--chunk", "0/2"}, {"--chunk", "3/2"}, {"--chunk", "2"}, {"--chunk", "a/b"}, {"--frames", "1-x"},
