@@ -19,7 +19,8 @@ FrameOutputs run_chain(gpu::Recorder& gpu, const FrameInputs& frame, const Estim
   if (needs_ao(output) || frame.beauty) {
     const bool reduced = settings.resolution != Resolution::full;
     const GBuffer work = reduced ? downsample(gpu, gbuffer, frame, settings) : gbuffer;
-    auto [ao, bent] = estimate(gpu, work, frame, settings, needs_bent(settings, output));
+    auto [ao, bent, listed] = estimate(gpu, work, frame, settings, needs_bent(settings, output));
+    out.tiles = listed.counts;
     const bool several = !settings.further_radii.empty(), each = several && wants(output, &FrameOutputs::scales);
     if (each) out.scales = ao;
     out.ao = several ? &combine(gpu, work, *ao) : ao;
@@ -49,7 +50,7 @@ FrameOutputs run_chain(gpu::Recorder& gpu, const FrameInputs& frame, const Estim
   if (wants(output, &FrameOutputs::depth)) out.depth = gbuffer.depth;
   for (const auto* view : debug_views_of(output)) out.debug.push_back(debug(gpu, *view, gbuffer, stages, frame, settings));
 
-  for (const auto* result : {out.counts, out.ao, out.scales, out.color_ao, out.composite, out.normal, out.bent_normal, out.depth, out.specular_occlusion})
+  for (const auto* result : {out.counts, out.tiles, out.ao, out.scales, out.color_ao, out.composite, out.normal, out.bent_normal, out.depth, out.specular_occlusion})
     if (result) gpu.download(*result);
   for (const auto& plane : out.debug) gpu.download(*plane.values);
   return out;

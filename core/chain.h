@@ -9,6 +9,7 @@ namespace alcove {
 /// What the host reads after the recorder has run; null: not asked for.
 struct FrameOutputs {
   gpu::Buffer* counts = nullptr;     // one FrameCounts
+  gpu::Buffer* tiles = nullptr;      // one TileCounts, where there is an estimate
   gpu::Buffer* ao = nullptr;         // a plane: visibility in [0, 1]; of several radii the mean
   gpu::Buffer* scales = nullptr;     // a plane a radius, from the smallest on
   gpu::Buffer* color_ao = nullptr;   // planes r, g, b: the visibility with multi-bounce

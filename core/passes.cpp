@@ -11,6 +11,8 @@
 #include "core/error.h"
 #include "kernels/bent_normal.h"
 #include "kernels/bitmask.h"
+#include "kernels/bounds.h"
+#include "kernels/classify.h"
 #include "kernels/combine.h"
 #include "kernels/composite.h"
 #include "kernels/crytek.h"
@@ -86,10 +88,8 @@ std::vector<uint> slice_constants(const EstimatorSettings& settings, const gpu::
 }
 
 /// The invocations that make an estimate: one for each pixel that the stride does not leave out.
-gpu::Extent estimated_extent(const View& view, const EstimatorSettings& settings) {
-  const auto stride = uint(stride_of(settings));
-  return {(uint(view.size.x) + stride - 1) / stride, uint(view.size.y)};
-}
+/// Tiles in x and y.
+gpu::Extent tile_extent(const View& view) { return {groups_of(view.size.x, uint(kTile)), groups_of(view.size.y, uint(kTile))}; }
 
 /// The grid of blocks that the pixels of an estimate stand for: it begins at the display window's corner, so that a crop has the blocks of the whole.
 struct BlockGrid {
@@ -199,10 +199,12 @@ Estimate estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs&
   const auto radii = radii_of(settings);
   Estimate all{&gpu.buffer("ao", radii.size() * plane_bytes(gbuffer.view), gpu::Use::download)};
   if (with_bent) all.bent = &gpu.buffer("bent", 3 * plane_bytes(gbuffer.view), gpu::Use::download);
+  const gpu::Buffer& tiles = bounds(gpu, gbuffer, frame, settings);
   for (uint plane = 0; plane < radii.size(); plane++) {
     EstimatorSettings one = settings;
     one.radius = radii[plane];
-    const Estimate out{all.ao, plane + 1 == radii.size() ? all.bent : nullptr};
+    Estimate out{all.ao, plane + 1 == radii.size() ? all.bent : nullptr};
+    all.listed = out.listed = classify(gpu, gbuffer, frame, one, tiles, out, plane);
     switch (settings.estimator) {
       case Estimator::gtao: horizon(gpu, gbuffer, frame, one, out, plane); break;
       case Estimator::bitmask: bitmask(gpu, gbuffer, frame, one, out, plane); break;
@@ -213,20 +215,48 @@ Estimate estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs&
   return all;
 }
 
+gpu::Buffer& bounds(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings) {
+  const gpu::Extent tiles = tile_extent(gbuffer.view);
+  gpu::Buffer& bounds = gpu.buffer("bounds", sizeof(TileBounds) * tiles.x * tiles.y, gpu::Use::device);
+  if (settings.skip)
+    gpu.dispatch("bounds", BoundsParams{gbuffer.view, frame.noise_origin},
+                 {{kBoundsDepth, *gbuffer.depth}, {kBoundsNormal, *gbuffer.normal}, {kBoundsTiles, bounds}}, tiles, {uint(stride_of(settings))});
+  return bounds;
+}
+
+TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings, const gpu::Buffer& bounds,
+                  const Estimate& out, uint plane) {
+  const gpu::Extent tiles = tile_extent(gbuffer.view);
+  const TileList list{&gpu.buffer("tiles", sizeof(ListedTile) * tiles.x * tiles.y, gpu::Use::device), &gpu.buffer("tile counts", sizeof(TileCounts), gpu::Use::download)};
+  gpu.clear(*list.counts);
+  const bool ranged = settings.estimator == Estimator::gtao || settings.estimator == Estimator::bitmask;
+  const ClassifyParams params{gbuffer.view, frame.noise_origin, float(settings.radius.value() * settings.falloff_end), to_vec3(frame.depth_precision.at), plane};
+  gpu.dispatch("classify", params,
+               {{kClassifyBounds, bounds},
+                {kClassifyDepth, *gbuffer.depth},
+                {kClassifyNormal, *gbuffer.normal},
+                {kClassifyList, *list.tiles},
+                {kClassifyCounts, *list.counts},
+                {kClassifyAo, *out.ao},
+                {kClassifyBent, out.bent ? *out.bent : *out.ao}},
+               tiles, {uint(stride_of(settings)), (settings.skip ? kClassifySkips : 0) | (ranged ? kClassifyRanged : 0) | (out.bent ? kClassifyWithBent : 0)});
+  return list;
+}
+
 void horizon(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings, const Estimate& out, uint plane) {
   std::vector<uint> constants = slice_constants(settings, out.bent);
   constants.push_back(settings.thickness == ThicknessKind::automatic  ? kThicknessWidth
                       : settings.thickness == ThicknessKind::constant ? kThicknessLength
                                                                       : kThicknessEndless);
   gpu.dispatch("horizon", slice_parameters<HorizonParams>(gbuffer, frame, settings, plane),
-               {{kHorizonDepth, *gbuffer.depth}, {kHorizonNormal, *gbuffer.normal}, {kHorizonAo, *out.ao}, {kHorizonBent, out.bent ? *out.bent : *out.ao}},
-               estimated_extent(gbuffer.view, settings), constants);
+               {{kHorizonDepth, *gbuffer.depth}, {kHorizonNormal, *gbuffer.normal}, {kHorizonAo, *out.ao}, {kHorizonBent, out.bent ? *out.bent : *out.ao}, {kHorizonList, *out.listed.tiles}, {kHorizonCounts, *out.listed.counts}},
+               gpu::Extent(*out.listed.counts), constants);
 }
 
 void bitmask(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings, const Estimate& out, uint plane) {
   gpu.dispatch("bitmask", slice_parameters<BitmaskParams>(gbuffer, frame, settings, plane),
-               {{kBitmaskDepth, *gbuffer.depth}, {kBitmaskNormal, *gbuffer.normal}, {kBitmaskAo, *out.ao}, {kBitmaskBent, out.bent ? *out.bent : *out.ao}},
-               estimated_extent(gbuffer.view, settings), slice_constants(settings, out.bent));
+               {{kBitmaskDepth, *gbuffer.depth}, {kBitmaskNormal, *gbuffer.normal}, {kBitmaskAo, *out.ao}, {kBitmaskBent, out.bent ? *out.bent : *out.ao}, {kBitmaskList, *out.listed.tiles}, {kBitmaskCounts, *out.listed.counts}},
+               gpu::Extent(*out.listed.counts), slice_constants(settings, out.bent));
 }
 
 void hbao(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings, const Estimate& out, uint plane) {
@@ -241,8 +271,8 @@ void hbao(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, 
   params.noise_shift = noise_shift(frame.frame, settings.seed);
   params.plane = plane;
   params.depth_precision = to_vec3(frame.depth_precision.at);
-  gpu.dispatch("hbao", params, {{kHbaoDepth, *gbuffer.depth}, {kHbaoNormal, *gbuffer.normal}, {kHbaoAo, *out.ao}},
-               estimated_extent(gbuffer.view, settings), slice_constants(settings));
+  gpu.dispatch("hbao", params, {{kHbaoDepth, *gbuffer.depth}, {kHbaoNormal, *gbuffer.normal}, {kHbaoAo, *out.ao}, {kHbaoList, *out.listed.tiles}, {kHbaoCounts, *out.listed.counts}},
+               gpu::Extent(*out.listed.counts), slice_constants(settings));
 }
 
 void crytek(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings, const Estimate& out, uint plane) {
@@ -256,8 +286,8 @@ void crytek(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame
   params.noise_shift = noise_shift(frame.frame, settings.seed);
   params.plane = plane;
   params.depth_precision = to_vec3(frame.depth_precision.at);
-  gpu.dispatch("crytek", params, {{kCrytekDepth, *gbuffer.depth}, {kCrytekNormal, *gbuffer.normal}, {kCrytekAo, *out.ao}},
-               estimated_extent(gbuffer.view, settings), {uint(settings.samples), uint(stride_of(settings))});
+  gpu.dispatch("crytek", params, {{kCrytekDepth, *gbuffer.depth}, {kCrytekNormal, *gbuffer.normal}, {kCrytekAo, *out.ao}, {kCrytekList, *out.listed.tiles}, {kCrytekCounts, *out.listed.counts}},
+               gpu::Extent(*out.listed.counts), {uint(settings.samples), uint(stride_of(settings))});
 }
 
 gpu::Buffer& combine(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& scales) {

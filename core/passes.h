@@ -51,17 +51,27 @@ GBuffer downsample(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs
 std::vector<double> radii_of(const EstimatorSettings& settings);
 /// Whether the estimator finds open directions too.
 bool has_bent_normals(Estimator estimator);
+/// Tiles of a G-buffer that an estimator has something to do for.
+struct TileList {
+  gpu::Buffer *tiles, *counts;  // ListedTile each; one TileCounts
+};
 /// What an estimator gives for every pixel of the G-buffer, or for those that the stride leaves.
 struct Estimate {
   gpu::Buffer* ao;              // a plane of visibility a radius, from the smallest on
   gpu::Buffer* bent = nullptr;  // planes x, y, z, of the largest radius: see horizon.h; null: not asked for
+  TileList listed{};            // of the largest radius
 };
+/// TileBounds of every tile; without settings.skip left as they are.
+gpu::Buffer& bounds(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings);
+/// For settings.radius. What an estimate would be that is not made, it writes into a plane of `out`.
+TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings, const gpu::Buffer& bounds,
+                  const Estimate& out, uint plane);
 /// Of how many pixels in a row one has an estimate. Where the settings leave it open: 4 for the estimator that this was measured with, gtao, at full
 /// resolution, with so few slices that the denoiser must share them among neighbours anyway; else 1.
 int stride_of(const EstimatorSettings& settings);
 /// By the estimator of the settings, for each of their radii.
 Estimate estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings, bool with_bent = false);
-/// These write one plane of `out`, for settings.radius.
+/// These write one plane of `out`, for settings.radius, in its listed tiles.
 void horizon(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings, const Estimate& out, uint plane);
 void bitmask(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings, const Estimate& out, uint plane);
 void hbao(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings, const Estimate& out, uint plane);

@@ -17,6 +17,7 @@
 #include "arcs.glsl"
 #include "noise.glsl"
 #include "stride.glsl"
+#include "tiles.glsl"
 #include "falloff.glsl"
 #include "bent.glsl"
 #include "clearance.glsl"
@@ -31,14 +32,16 @@ layout(scalar, push_constant) uniform Push { BitmaskParams params; };
 layout(scalar, binding = kBitmaskDepth) readonly buffer Depth { float depth[]; };
 layout(scalar, binding = kBitmaskNormal) readonly buffer Normal { uint normal[]; };
 layout(scalar, binding = kBitmaskAo) writeonly buffer Ao { float ao[]; };
+layout(scalar, binding = kBitmaskList) readonly buffer List { ListedTile list[]; };
+layout(scalar, binding = kBitmaskCounts) readonly buffer Counts { TileCounts counts; };
 layout(scalar, binding = kBitmaskBent) writeonly buffer Bent { float bent[]; };
 
 const uint kFalloff = kMode & ~kWithBent;
 const bool kBent = (kMode & kWithBent) != 0u;
 
 /// The blocked part of a side's arc integral and, with bent normals, of bent_to().
-vec3 search(Receiver r, Side side, Reach reach, float jitter, float shift) {
-  const int count = min(int(kSteps), int(side.reach));
+vec3 search(Receiver r, Side side, Reach reach, float jitter, float shift, uint sectors) {
+  const int count = (sectors & sector_of(side.direction_px)) != 0u ? min(int(kSteps), int(side.reach)) : 0;
   const float whole = whole_arc(side), endless = 1e30;
   float last_z = r.z, last_offset = 0.0, last_cot = side.plane_cot, blocked = 0.0;
   bool own = true, last_blocks = true;
@@ -83,7 +86,10 @@ void write_bent(int index, int plane, vec3 b) {
 }
 
 void main() {
-  const ivec2 pixel = estimated_pixel(gl_GlobalInvocationID.xy, params.noise_origin, kStride);
+  const ListedPlace place = listed_place(gl_WorkGroupID.xy, gl_LocalInvocationIndex, kStride);
+  if (place.tile >= counts.listed) return;
+  const ListedTile tile = list[place.tile];
+  const ivec2 pixel = pixel_of_tile(unpack_tile(tile.place), place.pixel, params.noise_origin, kStride);
   const View view = params.view;
   if (!inside(view, pixel)) return;
   const int index = index_of(view, pixel), plane = view.size.x * view.size.y, ao_index = index + int(params.plane) * plane;
@@ -105,12 +111,11 @@ void main() {
     const float shift = fract(noise.x * 7.0 + noise.y * 13.0 + kGolden * float(s));
     for (int sign = -1; sign <= 1; sign += 2) {
       const float jitter = fract(noise.y + kGolden * float(2u * s + uint(sign > 0)));
-      const vec3 side = slice.share * slice.weight * search(r, side_of(view, r, slice, float(sign), reach), reach, jitter, shift);
+      const vec3 side = slice.share * slice.weight * search(r, side_of(view, r, slice, float(sign), reach), reach, jitter, shift, tile.sectors);
       blocked += side.x;
       if (kBent) bent_blocked += side.y * float(sign) * slice.t + side.z * r.eye;
     }
   }
   ao[ao_index] = whole > 0.0 ? clamp(1.0 - blocked / whole, 0.0, 1.0) : 1.0;
-  // The open hemisphere gives 2/3 of the normal whatever slices are drawn.
-  if (kBent) write_bent(index, plane, 2.0 / 3.0 * r.normal - (whole > 0.0 ? bent_blocked / whole : vec3(0)));
+  if (kBent) write_bent(index, plane, open_bent(r.normal) - (whole > 0.0 ? bent_blocked / whole : vec3(0)));
 }

@@ -9,6 +9,8 @@ ALCOVE_CONSTANT uint kBitmaskDepth = 0;   // in: float a pixel, from prepare
 ALCOVE_CONSTANT uint kBitmaskNormal = 1;  // in: uint a pixel, from prepare
 ALCOVE_CONSTANT uint kBitmaskAo = 2;      // out: float a pixel, visibility in [0, 1], 1 = open; the plane of the parameters
 ALCOVE_CONSTANT uint kBitmaskBent = 3;    // out: planes x, y, z of the mean open direction b in view space as 0.5 + 0.5 b; only with kWithBent
+ALCOVE_CONSTANT uint kBitmaskList = 4;    // in: ListedTile a tile, from classify: what to estimate
+ALCOVE_CONSTANT uint kBitmaskCounts = 5;  // in: TileCounts
 
 ALCOVE_CONSTANT uint kBitmaskSlicesId = 0;   // specialization: slices a pixel
 ALCOVE_CONSTANT uint kBitmaskStepsId = 1;    // specialization: steps to each side of a slice

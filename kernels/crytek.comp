@@ -15,6 +15,7 @@
 #include "normal.glsl"
 #include "noise.glsl"
 #include "stride.glsl"
+#include "tiles.glsl"
 #include "clearance.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
@@ -24,6 +25,8 @@ layout(scalar, push_constant) uniform Push { CrytekParams params; };
 layout(scalar, binding = kCrytekDepth) readonly buffer Depth { float depth[]; };
 layout(scalar, binding = kCrytekNormal) readonly buffer Normal { uint normal[]; };
 layout(scalar, binding = kCrytekAo) writeonly buffer Ao { float ao[]; };
+layout(scalar, binding = kCrytekList) readonly buffer List { ListedTile list[]; };
+layout(scalar, binding = kCrytekCounts) readonly buffer Counts { TileCounts counts; };
 
 /// How far a pixel's ray must turn towards the tangent plane to meet it at a place worth the name.
 const float kLeastSlope = 1e-4;
@@ -44,7 +47,10 @@ float range_weight(float depth_difference) {
 }
 
 void main() {
-  const ivec2 pixel = estimated_pixel(gl_GlobalInvocationID.xy, params.noise_origin, kStride);
+  const ListedPlace place = listed_place(gl_WorkGroupID.xy, gl_LocalInvocationIndex, kStride);
+  if (place.tile >= counts.listed) return;
+  const ListedTile tile = list[place.tile];
+  const ivec2 pixel = pixel_of_tile(unpack_tile(tile.place), place.pixel, params.noise_origin, kStride);
   if (!inside(params.view, pixel)) return;
   const int index = index_of(params.view, pixel), ao_index = index + int(params.plane) * params.view.size.x * params.view.size.y;
   const float z = depth[index];

@@ -8,6 +8,8 @@ ALCOVE_BEGIN
 ALCOVE_CONSTANT uint kCrytekDepth = 0;   // in: float a pixel, from prepare
 ALCOVE_CONSTANT uint kCrytekNormal = 1;  // in: uint a pixel, from prepare
 ALCOVE_CONSTANT uint kCrytekAo = 2;      // out: float a pixel, visibility in [0, 1], 1 = open; the plane of the parameters
+ALCOVE_CONSTANT uint kCrytekList = 3;    // in: ListedTile a tile, from classify: what to estimate
+ALCOVE_CONSTANT uint kCrytekCounts = 4;  // in: TileCounts
 
 ALCOVE_CONSTANT uint kCrytekSamplesId = 0;  // specialization: samples a pixel
 ALCOVE_CONSTANT uint kCrytekStrideId = 1;   // specialization: one pixel of so many in a row, 1, 2 or 4: see stride.glsl

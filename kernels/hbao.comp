@@ -17,6 +17,7 @@
 #include "normal.glsl"
 #include "noise.glsl"
 #include "stride.glsl"
+#include "tiles.glsl"
 #include "falloff.glsl"
 #include "clearance.glsl"
 
@@ -29,6 +30,8 @@ layout(scalar, push_constant) uniform Push { HbaoParams params; };
 layout(scalar, binding = kHbaoDepth) readonly buffer Depth { float depth[]; };
 layout(scalar, binding = kHbaoNormal) readonly buffer Normal { uint normal[]; };
 layout(scalar, binding = kHbaoAo) writeonly buffer Ao { float ao[]; };
+layout(scalar, binding = kHbaoList) readonly buffer List { ListedTile list[]; };
+layout(scalar, binding = kHbaoCounts) readonly buffer Counts { TileCounts counts; };
 
 /// Slices that the normal is nearly perpendicular to have no tangent to speak of, and are left out.
 const float kLeastWeight = 1e-4;
@@ -44,8 +47,8 @@ struct Side {
 };
 
 /// The occlusion in one direction: sin h - sin t, attenuated.
-float occlusion(Side side, ivec2 pixel, vec3 position, float jitter) {
-  const uint count = min(kSteps, uint(side.reach));
+float occlusion(Side side, ivec2 pixel, vec3 position, float jitter, uint sectors) {
+  const uint count = (sectors & sector_of(side.direction_px)) != 0u ? min(kSteps, uint(side.reach)) : 0u;
   const float weight = length(side.normal);
   // The sine that samples must exceed: of the tangent, raised by the bias, or of the bias alone.
   const vec2 across = vec2(side.normal.y, -side.normal.x) / weight;  // the tangent, as its own cosine and sine
@@ -72,7 +75,10 @@ float occlusion(Side side, ivec2 pixel, vec3 position, float jitter) {
 }
 
 void main() {
-  const ivec2 pixel = estimated_pixel(gl_GlobalInvocationID.xy, params.noise_origin, kStride);
+  const ListedPlace place = listed_place(gl_WorkGroupID.xy, gl_LocalInvocationIndex, kStride);
+  if (place.tile >= counts.listed) return;
+  const ListedTile tile = list[place.tile];
+  const ivec2 pixel = pixel_of_tile(unpack_tile(tile.place), place.pixel, params.noise_origin, kStride);
   if (!inside(params.view, pixel)) return;
   const int index = index_of(params.view, pixel), ao_index = index + int(params.plane) * params.view.size.x * params.view.size.y;
   const float z = depth[index];
@@ -116,7 +122,7 @@ void main() {
       const float reach = perspective ? sin_reach * pixels / forward : params.radius * pixels;
       const float border = steps_to_border(params.view, pixel, side.direction_px);
       side.reach = sin_reach < 1.0 && forward > 0.0 ? min(reach, border) : border;
-      blocked += share * occlusion(side, pixel, position, fract(noise.y + kGolden * float(2u * s + uint(sign > 0))));
+      blocked += share * occlusion(side, pixel, position, fract(noise.y + kGolden * float(2u * s + uint(sign > 0))), tile.sectors);
     }
   }
   ao[ao_index] = clamp(1.0 - blocked / whole, 0.0, 1.0);

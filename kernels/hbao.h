@@ -8,6 +8,8 @@ ALCOVE_BEGIN
 ALCOVE_CONSTANT uint kHbaoDepth = 0;   // in: float a pixel, from prepare
 ALCOVE_CONSTANT uint kHbaoNormal = 1;  // in: uint a pixel, from prepare
 ALCOVE_CONSTANT uint kHbaoAo = 2;      // out: float a pixel, visibility in [0, 1], 1 = open; the plane of the parameters
+ALCOVE_CONSTANT uint kHbaoList = 3;    // in: ListedTile a tile, from classify: what to estimate
+ALCOVE_CONSTANT uint kHbaoCounts = 4;  // in: TileCounts
 
 ALCOVE_CONSTANT uint kHbaoSlicesId = 0;   // specialization: lines through a pixel, each searched to both sides
 ALCOVE_CONSTANT uint kHbaoStepsId = 1;    // specialization: steps to each side

@@ -19,6 +19,7 @@
 #include "arcs.glsl"
 #include "noise.glsl"
 #include "stride.glsl"
+#include "tiles.glsl"
 #include "falloff.glsl"
 #include "bent.glsl"
 #include "clearance.glsl"
@@ -35,6 +36,8 @@ layout(scalar, push_constant) uniform Push { HorizonParams params; };
 layout(scalar, binding = kHorizonDepth) readonly buffer Depth { float depth[]; };
 layout(scalar, binding = kHorizonNormal) readonly buffer Normal { uint normal[]; };
 layout(scalar, binding = kHorizonAo) writeonly buffer Ao { float ao[]; };
+layout(scalar, binding = kHorizonList) readonly buffer List { ListedTile list[]; };
+layout(scalar, binding = kHorizonCounts) readonly buffer Counts { TileCounts counts; };
 layout(scalar, binding = kHorizonBent) writeonly buffer Bent { float bent[]; };
 
 const uint kFalloff = kMode & ~kWithBent;
@@ -88,9 +91,9 @@ uint sectors_of(Receiver r, Reach reach, Run run, float z, float gap_behind, flo
   return run.near >= run.far ? sectors_below(run.near, shift) & ~sectors_below(min(back, run.far), shift) : 0u;
 }
 
-/// The blocked part of a side's integrals.
-vec3 search(Receiver r, Side side, Reach reach, float jitter) {
-  const int count = min(int(kSteps), int(side.reach));
+/// The blocked part of a side's integrals. `sectors`: where something may block.
+vec3 search(Receiver r, Side side, Reach reach, float jitter, uint sectors) {
+  const int count = (sectors & sector_of(side.direction_px)) != 0u ? min(int(kSteps), int(side.reach)) : 0;
   const float shift = fract(11.0 * jitter);
   const bool hard = kFalloff == kFalloffNone;
   float last_z = r.z, last_offset = 0.0, last_slope = 0.0, last_distance_sq = kNone;
@@ -149,7 +152,10 @@ void write_bent(int index, int plane, vec3 b) {
 }
 
 void main() {
-  const ivec2 pixel = estimated_pixel(gl_GlobalInvocationID.xy, params.noise_origin, kStride);
+  const ListedPlace place = listed_place(gl_WorkGroupID.xy, gl_LocalInvocationIndex, kStride);
+  if (place.tile >= counts.listed) return;
+  const ListedTile tile = list[place.tile];
+  const ivec2 pixel = pixel_of_tile(unpack_tile(tile.place), place.pixel, params.noise_origin, kStride);
   const View view = params.view;
   if (!inside(view, pixel)) return;
   const int index = index_of(view, pixel), plane = view.size.x * view.size.y, ao_index = index + int(params.plane) * plane;
@@ -170,12 +176,11 @@ void main() {
     whole += slice.share * slice.weight * (slice.cos_gamma + slice.gamma * slice.sin_gamma);
     for (int sign = -1; sign <= 1; sign += 2) {
       const float jitter = fract(noise.y + kGolden * float(2u * s + uint(sign > 0)));
-      const vec3 side = slice.share * slice.weight * search(r, side_of(view, r, slice, float(sign), reach), reach, jitter);
+      const vec3 side = slice.share * slice.weight * search(r, side_of(view, r, slice, float(sign), reach), reach, jitter, tile.sectors);
       blocked += side.x;
       if (kBent) bent_blocked += side.y * float(sign) * slice.t + side.z * r.eye;
     }
   }
   ao[ao_index] = whole > 0.0 ? clamp(1.0 - blocked / whole, 0.0, 1.0) : 1.0;
-  // The open hemisphere gives 2/3 of the normal whatever slices are drawn.
-  if (kBent) write_bent(index, plane, 2.0 / 3.0 * r.normal - (whole > 0.0 ? bent_blocked / whole : vec3(0)));
+  if (kBent) write_bent(index, plane, open_bent(r.normal) - (whole > 0.0 ? bent_blocked / whole : vec3(0)));
 }

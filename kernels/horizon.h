@@ -9,6 +9,8 @@ ALCOVE_CONSTANT uint kHorizonDepth = 0;   // in: float a pixel, from prepare
 ALCOVE_CONSTANT uint kHorizonNormal = 1;  // in: uint a pixel, from prepare
 ALCOVE_CONSTANT uint kHorizonAo = 2;      // out: float a pixel, visibility in [0, 1], 1 = open; the plane of the parameters
 ALCOVE_CONSTANT uint kHorizonBent = 3;    // out: planes x, y, z of the mean open direction b in view space as 0.5 + 0.5 b; only with kWithBent
+ALCOVE_CONSTANT uint kHorizonList = 4;    // in: ListedTile a tile, from classify: what to estimate
+ALCOVE_CONSTANT uint kHorizonCounts = 5;  // in: TileCounts
 
 ALCOVE_CONSTANT uint kHorizonSlicesId = 0;   // specialization: slices a pixel
 ALCOVE_CONSTANT uint kHorizonStepsId = 1;    // specialization: steps to each side of a slice

@@ -53,6 +53,33 @@ struct GroupCount {
   uint x, y, z;
 };
 
+ALCOVE_CONSTANT int kTile = 16;       // px a side of the tiles by which work is skipped
+ALCOVE_CONSTANT uint kTilePlanes = 6;  // of TileBounds
+
+/// The surfaces seen in a tile, from the eye's side. They are told by their nearness: 1 / z, or -z orthographic, in which planes are affine in the pixel.
+struct TileBounds {
+  vec2 gradient;             // nearness a pixel, from corner to corner of the tile
+  float plane[kTilePlanes];  // at the tile's centre, of planes that no surface is before: with its own gradient, those of the tiles left, right, above, below; level
+  float farthest;            // least nearness; above the level plane where the tile is all sky
+  uint normal;               // of its receivers, packed; kNoNormal: they have none in common
+  float turned;              // length of the largest difference of a receiver's normal to it
+  float lowest, highest;     // of -dot(normal, position) over the receivers
+};
+
+/// A tile that is to be estimated.
+struct ListedTile {
+  uint place;    // column + (row << 16), in tiles
+  uint sectors;  // of the directions on the image in which something may block: see tiles.glsl
+};
+
+/// How many there are, and why the others are not.
+struct TileCounts {
+  GroupCount groups;  // that hold the listed ones
+  uint listed;
+  uint sky;
+  uint open;          // proved to be
+};
+
 /// What the kernels count over a frame.
 struct FrameCounts {
   uint sky;               // pixels

@@ -151,9 +151,6 @@ bool is_above(Receiver r, Reach reach, vec2 place, float distance_sq, float step
   return place.x > 0.0 ? clear : false;
 }
 
-/// What the estimators store of a mean open direction: in [0, 1], so that filters of visibility take it as it is.
-vec3 stored_bent(vec3 bent) { return 0.5 + 0.5 * bent; }
-
 /// An angle by a number that is cheaper than its cotangent and falls as that does, from 1 at V to -1.
 float slope_of(vec2 place) { return place.y / (place.x + abs(place.y)); }
 

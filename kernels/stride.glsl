@@ -11,10 +11,5 @@ int first_estimated(int row, ivec2 origin, int stride) {
   return (int(place) - origin.x) & (stride - 1);
 }
 
-ivec2 estimated_pixel(uvec2 invocation, ivec2 origin, int stride) {
-  const int row = int(invocation.y);
-  return ivec2(stride * int(invocation.x) + first_estimated(row, origin, stride), row);
-}
-
 /// The pixels of an estimate, moved together: neighbours of these take successive points of the noise, not every second or fourth.
 ivec2 packed_place(ivec2 pixel, int stride) { return ivec2(pixel.x >> findMSB(stride), pixel.y); }

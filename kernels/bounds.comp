@@ -1,0 +1,82 @@
+// What surfaces a tile of 8 x 8 pixels shows: planes that none of them is before, and the plane of its receivers where they have one in common.
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// In: planar depth, view normals. Out: bounds of every tile, for `classify`.
+// A pyramid of depths alone cannot tell a floor from what stands on it, for within a tile the floor itself comes nearer. In 1 / z (orthographic: in z) planes
+// are affine in the pixel, so a tile is bounded by planes: by one along its own surface, and, as an edge in it may be the end of a neighbour's surface,
+// by ones along theirs. Each is pushed towards the eye until no pixel is before it, so that all are true whatever their gradient.
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#include "bounds.h"
+#include "view.glsl"
+#include "normal.glsl"
+#include "stride.glsl"
+#include "tiles.glsl"
+
+layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
+layout(constant_id = kBoundsStrideId) const int kStride = 1;
+layout(scalar, push_constant) uniform Push { BoundsParams params; };
+layout(scalar, binding = kBoundsDepth) readonly buffer Depth { float depth[]; };
+layout(scalar, binding = kBoundsNormal) readonly buffer Normal { uint normal[]; };
+layout(scalar, binding = kBoundsTiles) writeonly buffer Tiles { TileBounds tiles[]; };
+
+/// Receivers whose normals differ more than this share no plane.
+const float kLeastTurn = 2e-3;
+
+const float kFar = 1e30;
+
+float nearness(float z) { return params.view.orthographic != 0 ? -z : z < kSkyDepth ? 1.0 / z : 0.0; }
+
+/// From corner to corner of a tile; of one beside the image, that of the nearest.
+vec2 gradient_of(ivec2 tile, ivec2 size) {
+  const ivec2 first = clamp(tile, ivec2(0), tiles_of(size) - 1) * kTile, last = min(first + kTile, size) - 1;
+  const float a = nearness(depth[first.y * size.x + first.x]), b = nearness(depth[first.y * size.x + last.x]);
+  const float c = nearness(depth[last.y * size.x + first.x]), d = nearness(depth[last.y * size.x + last.x]);
+  return 0.5 * vec2(b - a + d - c, c - a + d - b) / vec2(max(last - first, ivec2(1)));
+}
+
+void main() {
+  const View view = params.view;
+  const ivec2 tile = ivec2(gl_GlobalInvocationID.xy), size = view.size, count = tiles_of(size);
+  if (any(greaterThanEqual(tile, count))) return;
+  const ivec2 first = tile * kTile, end = min(first + kTile, size);
+  const vec2 middle = vec2(first) + 0.5 * float(kTile - 1);
+  const vec2 own = gradient_of(tile, size), left = gradient_of(tile - ivec2(1, 0), size), right = gradient_of(tile + ivec2(1, 0), size);
+  const vec2 above = gradient_of(tile - ivec2(0, 1), size), below = gradient_of(tile + ivec2(0, 1), size);
+  float along_own = -kFar, along_left = -kFar, along_right = -kFar, along_above = -kFar, along_below = -kFar, level = -kFar, farthest = kFar;
+  for (int y = first.y; y < end.y; y++)
+    for (int x = first.x; x < end.x; x++) {
+      const float z = depth[y * size.x + x], near = z < kSkyDepth ? nearness(z) : -kFar;
+      const vec2 from_middle = vec2(x, y) - middle;
+      along_own = max(along_own, near - dot(own, from_middle));
+      along_left = max(along_left, near - dot(left, from_middle));
+      along_right = max(along_right, near - dot(right, from_middle));
+      along_above = max(along_above, near - dot(above, from_middle));
+      along_below = max(along_below, near - dot(below, from_middle));
+      level = max(level, near);
+      farthest = min(farthest, z < kSkyDepth ? near : kFar);
+    }
+
+  const ivec2 centre = min(first + kTile / 2, size - 1);
+  uint word = kNoNormal;
+  float turned = 0.0, lowest = kFar, highest = -kFar;
+  const uint central = normal[centre.y * size.x + centre.x];
+  const vec3 n = unpack_normal(central);
+  const bool is_surface = depth[centre.y * size.x + centre.x] < kSkyDepth;
+  const uint receivers = is_surface ? uint(kTile * kTile / kStride) : 0u;
+  for (uint i = 0u; i < receivers; i++) {
+    const ivec2 pixel = pixel_of_tile(tile, i, params.origin, kStride);
+    const int index = min(pixel.y, size.y - 1) * size.x + min(pixel.x, size.x - 1);
+    const float z = depth[index];
+    const bool counts = inside(view, pixel) ? z < kSkyDepth : false;
+    const vec3 difference = unpack_normal(normal[index]) - n;
+    const float height = -dot(n, position_of(view, vec2(pixel) + 0.5, z));
+    turned = max(turned, counts ? dot(difference, difference) : 0.0);
+    lowest = min(lowest, counts ? height : kFar);
+    highest = max(highest, counts ? height : -kFar);
+  }
+  turned = sqrt(turned);
+  if (is_surface && turned < kLeastTurn) word = central;
+  tiles[tile.y * count.x + tile.x] =
+      TileBounds(own, float[kTilePlanes](along_own, along_left, along_right, along_above, along_below, level), farthest, word, turned, lowest, highest);
+}

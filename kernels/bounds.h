@@ -1,0 +1,21 @@
+// Parameters and bindings of bounds.comp.
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef ALCOVE_BOUNDS_H
+#define ALCOVE_BOUNDS_H
+#include "shared.h"
+ALCOVE_BEGIN
+
+ALCOVE_CONSTANT uint kBoundsDepth = 0;   // in: float a pixel, from prepare
+ALCOVE_CONSTANT uint kBoundsNormal = 1;  // in: uint a pixel, from prepare
+ALCOVE_CONSTANT uint kBoundsTiles = 2;   // out: TileBounds a tile, rows of tiles from the upper left corner
+
+ALCOVE_CONSTANT uint kBoundsStrideId = 0;  // specialization: one pixel of so many in a row is a receiver, 1, 2 or 4: see stride.glsl
+
+struct BoundsParams {
+  View view;
+  ivec2 origin;  // px: from the display window's corner to the image's, as estimators count
+};
+ALCOVE_PARAMS(BoundsParams)
+
+ALCOVE_END
+#endif

@@ -1,0 +1,33 @@
+// Parameters and bindings of classify.comp.
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef ALCOVE_CLASSIFY_H
+#define ALCOVE_CLASSIFY_H
+#include "shared.h"
+ALCOVE_BEGIN
+
+ALCOVE_CONSTANT uint kClassifyBounds = 0;  // in: TileBounds a tile, from bounds
+ALCOVE_CONSTANT uint kClassifyDepth = 1;   // in: float a pixel, from prepare
+ALCOVE_CONSTANT uint kClassifyNormal = 2;  // in: uint a pixel, from prepare
+ALCOVE_CONSTANT uint kClassifyList = 3;    // out: ListedTile a tile, as many as are counted, in no order
+ALCOVE_CONSTANT uint kClassifyCounts = 4;  // in, out: TileCounts, zeros
+ALCOVE_CONSTANT uint kClassifyAo = 5;      // out: float a pixel, 1 at receivers of tiles that are not listed; the plane of the parameters
+ALCOVE_CONSTANT uint kClassifyBent = 6;    // out: planes x, y, z as estimators write them, for the same; only with kClassifyWithBent
+
+ALCOVE_CONSTANT uint kClassifyStrideId = 0;  // specialization: one pixel of so many in a row is a receiver, 1, 2 or 4: see stride.glsl
+ALCOVE_CONSTANT uint kClassifyModeId = 1;    // specialization: bits of kClassify*
+
+ALCOVE_CONSTANT uint kClassifySkips = 1;     // else every tile is listed
+ALCOVE_CONSTANT uint kClassifyRanged = 2;    // nothing beyond the radius blocks
+ALCOVE_CONSTANT uint kClassifyWithBent = 4;
+
+struct ClassifyParams {
+  View view;
+  ivec2 origin;          // px: from the display window's corner to the image's, as estimators count
+  float radius;          // scene units: the farthest at which anything blocks
+  vec3 depth_precision;  // how far a depth z may be from the surface's: x + y z + z z^2, scene units
+  uint plane;            // of the AO
+};
+ALCOVE_PARAMS(ClassifyParams)
+
+ALCOVE_END
+#endif

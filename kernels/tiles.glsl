@@ -1,0 +1,68 @@
+// Tiles of pixels by which work is skipped, and directions on the image. Pure: no bindings.
+// SPDX-License-Identifier: BSD-3-Clause
+
+/// Groups of a row of a dispatch over listed tiles.
+const uint kListedRow = 256u;
+
+ivec2 tiles_of(ivec2 size) { return (size + kTile - 1) / kTile; }
+
+uint pack_tile(ivec2 tile) { return uint(tile.x) | uint(tile.y) << 16; }
+ivec2 unpack_tile(uint place) { return ivec2(place & 0xffffu, place >> 16); }
+
+/// Which of the listed tiles an invocation is for, and which of its pixels with an estimate; see stride.glsl.
+struct ListedPlace {
+  uint tile;  // in the list, or beyond its end
+  uint pixel;
+};
+
+/// Invocations a tile.
+uint receivers_of_tile(int stride) { return uint(kTile * kTile) >> findMSB(stride); }
+
+/// Rows of groups that hold so many tiles.
+uint rows_of_groups(uint tiles, int stride) { return (tiles * receivers_of_tile(stride) - 1u) / (kGroupX * kGroupY * kListedRow) + 1u; }
+
+ListedPlace listed_place(uvec2 group, uint invocation, int stride) {
+  const uint each = receivers_of_tile(stride), place = (group.y * kListedRow + group.x) * (kGroupX * kGroupY) + invocation;
+  return ListedPlace(place / each, place % each);
+}
+
+ivec2 pixel_of_tile(ivec2 tile, uint pixel, ivec2 origin, int stride) {
+  const uint columns = uint(kTile) >> findMSB(stride);
+  const int row = tile.y * kTile + int(pixel / columns);
+  // Where the first estimated pixel of a row lies does not change from tile to tile, as their width is a multiple of any stride.
+  return ivec2(tile.x * kTile + stride * int(pixel % columns) + first_estimated(row, origin, stride), row);
+}
+
+/// What the estimators store of a mean open direction: in [0, 1], so that filters of visibility take it as it is.
+vec3 stored_bent(vec3 bent) { return 0.5 + 0.5 * bent; }
+
+/// The mean open direction of an open hemisphere, whatever slices are drawn.
+vec3 open_bent(vec3 normal) { return 2.0 / 3.0 * normal; }
+
+/// Sixteen sectors of directions on the image, by a number that grows with the angle as that does: 0 to 4 for a whole turn.
+const uint kSectorsOfTurn = 16u;
+const uint kEverySector = 0xffffu;
+
+float turn_of(vec2 direction) {
+  const float y = direction.y / (abs(direction.x) + abs(direction.y));
+  return direction.x >= 0.0 ? (y >= 0.0 ? y : 4.0 + y) : 2.0 - y;
+}
+
+uint sector_of(vec2 direction) { return 1u << (uint(turn_of(direction) * float(kSectorsOfTurn / 4u)) & (kSectorsOfTurn - 1u)); }
+
+/// The sectors in which a rectangle of offsets is seen, from all of them where it holds the origin.
+uint sectors_of_offsets(vec2 least, vec2 most) {
+  if (all(lessThanEqual(least, vec2(0))) && all(greaterThanEqual(most, vec2(0)))) return kEverySector;
+  const float middle = turn_of(0.5 * (least + most));
+  float first = 0.0, last = 0.0;
+  for (int corner = 0; corner < 4; corner++) {
+    const float turn = turn_of(vec2((corner & 1) != 0 ? most.x : least.x, (corner & 2) != 0 ? most.y : least.y)) - middle;
+    const float wrapped = turn - 4.0 * round(0.25 * turn);
+    first = min(first, wrapped);
+    last = max(last, wrapped);
+  }
+  const float sectors = float(kSectorsOfTurn / 4u);
+  const int begin = int(floor((middle + first) * sectors)), end = int(floor((middle + last) * sectors));
+  const uint seen = ((2u << uint(end - begin)) - 1u) << (uint(begin) & (kSectorsOfTurn - 1u));
+  return (seen | seen >> kSectorsOfTurn) & kEverySector;
+}
