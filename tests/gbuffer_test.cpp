@@ -394,6 +394,8 @@ TEST_F(GBuffer, every_aov_may_have_a_file_of_its_own) {
   write_parts(settings.normal, {{"", {"X", "Y", "Z"}}});
   EXPECT_THAT(normal(), ElementsAre("X", "Y", "Z"));
   write_parts(settings.normal, {{"", {"R", "G"}}});
+  EXPECT_THAT(normal(), ElementsAre("R", "G"));
+  write_parts(settings.normal, {{"", {"R"}}});
   expect_error({"n.exr", "no normal channel", "--normal-channels"});
 }
 

@@ -299,7 +299,7 @@ TEST_F(Sources, unreal_in_its_left_handed_world_and_half_depth) {
                                                     {"unreal/camera/FinalImage/fov", kFov}};
   for (const auto& [name, value] : numbers) header.insert(name, Imf::StringAttribute(fmt::format("{}", value)));
   expect_same("unreal", 0.03, 100);  // half floats step by 0.25 cm here, and AO shows it
-  EXPECT_THAT(settled().notes, testing::Contains(HasSubstr("half float")));
+  EXPECT_THAT(settled().suspicious, testing::ElementsAre(HasSubstr("half float")));
 }
 
 TEST_F(Sources, nuke_with_inverse_depth) {
