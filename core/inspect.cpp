@@ -11,6 +11,7 @@
 #include "core/evidence.h"
 #include "core/findings.h"
 #include "core/settle.h"
+#include "core/text.h"
 
 namespace alcove {
 namespace {
@@ -165,7 +166,7 @@ std::string percent(const Json& share) { return fmt::format("{:.1f} %", 100 * sh
 std::string text_of(const Json& json) {
   std::string text;
   const auto line = [&]<class... Args>(fmt::format_string<Args...> format, Args&&... args) {
-    text += fmt::format(format, std::forward<Args>(args)...) + "\n";
+    text += printable(fmt::format(format, std::forward<Args>(args)...)) + "\n";
   };
   for (const auto& file : json["files"]) {
     line("{}: display window {}, pixel aspect {:.4g}", file["path"].get<std::string>(), file["display_window"].get<std::string>(),
@@ -197,7 +198,8 @@ std::string text_of(const Json& json) {
       line("  distances {:.6g} to {:.6g}, median {:.6g}; sky {}", depth["nearest"].get<double>(), depth["farthest"].get<double>(),
            depth["median"].get<double>(), percent(depth["sky_share"]));
     for (const auto& score : depth.value("scores", Json::array()))
-      line("  only as {}: 1/z straight on {}", score["kind"].get<std::string>(), percent(score["straight"]));
+      line("  only as {}: {} straight on {}", score["kind"].get<std::string>(), json["camera"].value("projection", "") == "orthographic" ? "z" : "1/z",
+           percent(score["straight"]));
   }
   if (const auto& normals = json["normals"]; !normals.is_null()) {
     const std::string lengths =

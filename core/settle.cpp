@@ -67,8 +67,8 @@ class Settlement {
     source_.notes.push_back("all depth values are negative: their distance from 0 is the depth");
   }
 
-  static std::string straight(const DepthScore& score) {
-    return fmt::format("1/z is straight on {:.0f} % only as {}", 100 * score.straight, name_of(score.kind));
+  std::string straight(const DepthScore& score) const {
+    return fmt::format("{} is straight on {:.0f} % only as {}", source_.camera.orthographic ? "z" : "1/z", 100 * score.straight, name_of(score.kind));
   }
 
   /// What the program that wrote the frame, or most programs, write; no guess where the user named the program.
@@ -111,9 +111,12 @@ class Settlement {
 
   /// A projection matrix made for another depth range than the buffer's scales all distances, which no pixel shows.
   void compare_planes() {
-    const auto near = source_.depth_range.near, by_matrix = source_.camera.matrix_near;
-    if (source_.depth_kind != DepthKind::device || source_.depth_range.reversed || source_.depth_range.device != DeviceRange::zero_to_one) return;
+    const auto near = source_.depth_range.near, by_file = source_.camera.near, by_matrix = source_.camera.matrix_near;
     constexpr double kSame = 0.01;  // matrices are rounded
+    if (source_.depth_kind == DepthKind::device && settings_.depth_range.near && by_file && std::abs(*near / *by_file - 1) >= kSame)
+      source_.notes.push_back(fmt::format("--near is {:.4g}, and the camera file's near plane is at {:.4g}: distances are {:.3g} times what they are by that", *near,
+                                          *by_file, *near / *by_file));
+    if (source_.depth_kind != DepthKind::device || source_.depth_range.reversed || source_.depth_range.device != DeviceRange::zero_to_one) return;
     if (!near || !by_matrix || std::abs(*by_matrix / *near - 1) < kSame) return;
     source_.notes.push_back(
         fmt::format("the near plane is {:.4g}, but the camera file's projection, read with z = depth, has it at {:.4g}: so read, distances would be {:.3g} "
