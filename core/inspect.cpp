@@ -151,7 +151,8 @@ std::string command_of(const FrameSource& source, const InputSettings& s, const 
   if (s.depth_scale != 1) add_number("--depth-scale", s.depth_scale);
   if (s.sky != 1e9) add_number("--sky", s.sky);
   if (!source.normal.empty()) {
-    text += fmt::format(" --normal-space {} --normal-encoding {}", name_of(source.normal_space), name_of(source));
+    if (has_camera || s.normal_space != NormalSpace::automatic) add("--normal-space", name_of(source.normal_space));
+    add("--normal-encoding", name_of(source));
     if (to_string(source.flip_normal) != "none") add("--flip-normal", to_string(source.flip_normal));
   }
   add("--camera", s.camera);
@@ -190,6 +191,7 @@ std::string text_of(const Json& json) {
          camera["horizontal_fov"].is_null() ? fmt::format("{:.5g} px a scene unit", camera["fx"].get<double>())
                                             : fmt::format("{:.2f} degrees wide", camera["horizontal_fov"].get<double>()),
          camera["world_to_camera"] ? "with" : "without");
+  const char* straight = !json["camera"].is_null() && json["camera"]["projection"] == "orthographic" ? "z" : "1/z";
   if (const auto& depth = json["depth"]; !depth.is_null()) {
     line("depth: {}, values {:.6g} to {:.6g}; {} NaN, {} infinite, {} negative, {} of 0, {} of 1", depth["kind"].get<std::string>(),
          depth["least"].get<double>(), depth["most"].get<double>(), depth["nan"].dump(), depth["infinite"].dump(), depth["negative"].dump(),
@@ -198,8 +200,7 @@ std::string text_of(const Json& json) {
       line("  distances {:.6g} to {:.6g}, median {:.6g}; sky {}", depth["nearest"].get<double>(), depth["farthest"].get<double>(),
            depth["median"].get<double>(), percent(depth["sky_share"]));
     for (const auto& score : depth.value("scores", Json::array()))
-      line("  only as {}: {} straight on {}", score["kind"].get<std::string>(), json["camera"].value("projection", "") == "orthographic" ? "z" : "1/z",
-           percent(score["straight"]));
+      line("  only as {}: {} straight on {}", score["kind"].get<std::string>(), straight, percent(score["straight"]));
   }
   if (const auto& normals = json["normals"]; !normals.is_null()) {
     const std::string lengths =
@@ -271,11 +272,17 @@ Inspection inspect_frame(const InputSettings& settings, int frame) {
   }
   json["depth"] = depth_json(depth, source);
   try {
+    const auto notes = source.notes;
     settle(source, reading, depth, normal);
+    if (!has_camera) {  // a camera that nobody gave has nothing to say
+      source.notes = notes;
+      if (settings.normal_space == NormalSpace::automatic) source.normal_space = source.usual_normal_space;
+    }
     json["depth"]["kind"] = alcove::name_of(source.depth_kind);
     const auto planar = planar_depths(depth, depth_map_of(source, reading), view_of(source.camera, source.data, source.display));
     add_planar(json["depth"], depth, planar, source, reading);
     if (!normal.empty()) json["normals"] = normals_json(normal, depth, source, reading);
+    if (!normal.empty() && !has_camera) json["normals"]["scores"].clear(), json["normals"].erase("agreement"), json["normals"].erase("angle"), json["normals"].erase("facing");
     json["suspicious"] = source.suspicious;
     for (const auto& finding : findings(source, reading, depth, normal)) json["suspicious"].push_back(finding);
     json["command"] = command_of(source, settings, json["depth"], has_camera);

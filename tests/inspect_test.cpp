@@ -166,6 +166,17 @@ TEST_F(Inspect, a_file_cut_short_is_suspicious_and_its_header_is_shown) {
   EXPECT_EQ(all["command"], "");
 }
 
+TEST_F(Inspect, without_a_camera_nothing_is_said_that_needs_one) {
+  const json all = inspected({});
+  EXPECT_EQ(all["camera"], nullptr);
+  EXPECT_EQ(all["normals"]["space"], "world") << "as Blender writes them";
+  EXPECT_EQ(all["normals"]["scores"].size(), 0);
+  EXPECT_FALSE(all["normals"].contains("agreement"));
+  EXPECT_EQ(all["notes"].size(), 0) << all["notes"];
+  EXPECT_THAT(all["command"].get<std::string>(), testing::AllOf(HasSubstr("--camera CAMERA.json"), testing::Not(HasSubstr("--normal-space"))));
+  EXPECT_THAT(inspect().out, HasSubstr("missing: camera"));
+}
+
 TEST_F(Inspect, lengths_are_of_vectors_only) {
   EXPECT_EQ(inspected({"--camera", camera})["normals"]["mean_length"], 1);
   const json all = inspected({"--camera", camera, "--normal-encoding", "spheremap"})["normals"];
