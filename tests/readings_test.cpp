@@ -86,6 +86,7 @@ class Readings : public testing::Test {
       file.planes["N.X"].push_back(float(n.x)), file.planes["N.Y"].push_back(float(n.y)), file.planes["N.Z"].push_back(float(n.z));
     }
     file.halves = halves;
+    file.attributes = attributes;
     file.write(settings.input);
     const Vec3 offset = -shot.view_from_world(shot.eye);
     camera = {{"resolution", {160, 120}}, {"fx", shot.camera.fx}, {"fy", shot.camera.fy}, {"cx", shot.camera.cx}, {"cy", shot.camera.cy},
@@ -121,6 +122,7 @@ class Readings : public testing::Test {
   }
 
   std::set<std::string> halves;
+  std::map<std::string, std::string> attributes;
   TemporaryFolder folder;
   InputSettings settings;
   json camera;
@@ -252,6 +254,17 @@ TEST_F(Readings, in_every_space_with_every_flip_are_found_and_by_every_other_are
           else EXPECT_THAT(said(), testing::Contains(HasSubstr("--normal-space"))) << flips << as_view << x;
         }
     }
+}
+
+TEST_F(Readings, that_do_equally_well_are_refused_with_what_decides) {
+  attributes["Software"] = "Octane";  // which writes distances along the ray
+  write({DepthKind::planar, false, [](double z, double) { return z < 4.5 ? z : 40 / z; }, 1e10f});
+  EXPECT_THAT(said(), testing::ElementsAre(testing::AllOf(HasSubstr("frame.exr"), HasSubstr("--depth-kind planar"), HasSubstr("--depth-kind inverse"))));
+  attributes.clear();
+  write(kPlanar, as_it_is, true);
+  camera["world_to_camera"] = {{-1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, -1, 0}, {0, 0, 0, 1}};  // so that one space is the other with flips
+  write_bytes(settings.camera, camera.dump());
+  EXPECT_THAT(said(), testing::ElementsAre(testing::AllOf(HasSubstr("view"), HasSubstr("world"), HasSubstr("flips xz"), HasSubstr("--normal-space"), HasSubstr("--flip-normal"))));
 }
 
 TEST_F(Readings, with_a_flip_and_no_space_are_noted_too) {
