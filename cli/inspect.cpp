@@ -30,6 +30,7 @@ int inspect_command(const std::vector<std::string>& arguments) {
   if (path.empty()) fail(ErrorKind::usage, "no input: name an EXR file, or one with --depth or --position");
   const Inspection inspection = inspect_frame(input, frame_number_of(path));
   fmt::print("{}", json ? inspection.json : inspection.text);
+  if (inspection.unreadable) throw *inspection.unreadable;
   if (!options.settings.output.preview.empty()) write_contact_sheet(options.settings, frame_number_of(path));
   return 0;
 }

@@ -60,7 +60,7 @@ int main(int argc, char** argv) {
     if (std::fflush(stdout) != 0) alcove::fail(alcove::ErrorKind::output, "the standard output cannot be written");
     return code;
   } catch (const alcove::Error& error) {
-    fmt::print(stderr, "alcove: error: {}\n", error.what());
+    fmt::print(stderr, "alcove: error: {}\n", alcove::printable(error.what()));
     return int(error.kind());
   } catch (const std::exception& error) {
     fmt::print(stderr, "alcove: error: unexpected: {}\n", error.what());

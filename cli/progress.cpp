@@ -10,6 +10,7 @@
 #include <cstring>
 
 #include "core/file.h"
+#include "core/text.h"
 
 namespace alcove {
 namespace {
@@ -70,9 +71,9 @@ void Progress::frame(const FrameReport& frame) {
   computed_ += frame.state != FrameState::kept;
   const std::string record = frame_json(frame);
   log("frame", record.substr(1, record.size() - 2));
-  if (frame.error && is_sequence_) say(fmt::format("alcove: error: frame {}: {}", frame.frame, frame.error->what()));
+  if (frame.error && is_sequence_) say(printable(fmt::format("alcove: error: frame {}: {}", frame.frame, frame.error->what())));
   if (options_.quiet) return;
-  for (const auto& note : frame.notes) say(fmt::format("{}: {}", frame.input, note));
+  for (const auto& note : frame.notes) say(printable(fmt::format("{}: {}", frame.input, note)));
   if (options_.verbose)
     for (const auto& pass : frame.passes) say(fmt::format("{}: {} {:.3f} ms", frame.input, pass.name, pass.ms));
   const double percent = 100.0 * ended_ / std::max(1, frames_);

@@ -229,6 +229,8 @@ class Batch {
 
   void compute(const std::vector<int>& frames) {
     const auto settled = plan_.is_sequence() ? settle_sequence(plan_) : std::nullopt;
+    if (settled)
+      for (const auto* said : {&settled->suspicious, &settled->notes}) notes_of_all_.insert(notes_of_all_.end(), said->begin(), said->end());
     const int threads = thread_count(settings_.device);
     const int count = frames_at_once(settled, settings_, frames.size(), threads), gpu_count = frames_at_once(settled, settings_, frames.size(), threads + kSpareLanes);
     share_cores(threads, count, settings_.device.threads > 0);
@@ -260,7 +262,11 @@ class Batch {
   bool take(FrameReport&& frame) {
     if (frame.device_lost) lost_ = frame.error;
     if (frame.state == FrameState::dropped || frame.device_lost) return !lost_;
-    if (frame.state == FrameState::done) report_.done++;
+    if (frame.state == FrameState::done) {
+      report_.done++;
+      for (const auto& note : std::exchange(notes_of_all_, {}))
+        if (std::ranges::find(frame.notes, note) == frame.notes.end()) frame.notes.push_back(note);
+    }
     if (frame.state == FrameState::failed) {
       report_.failed++;
       report_.failed_frames.push_back(frame.frame);
@@ -277,6 +283,7 @@ class Batch {
   const FramePlan plan_;
   std::string first_camera_;
   std::optional<Error> lost_;  // the device
+  std::vector<std::string> notes_of_all_;  // of how a sequence is read; the first frame that is done carries them
   RunReport report_;
 };
 

@@ -90,7 +90,7 @@ DepthMap depth_map(DepthKind kind, const DepthRange& range, PositionSpace space,
       map.along_ray = kind == DepthKind::ray && !camera.orthographic;
       map.slope = (range.negative ? -1 : 1) * (kind == DepthKind::inverse ? 1 / scale : scale);
       if (kind != DepthKind::inverse) map.sky_above = sky;
-      if (range.negative) map.sky_below = -map.sky_above, map.sky_above = 0;
+      if (range.negative) map.sky_below = -kInfinity, map.sky_above = 0;  // what is beyond the sky is by its distance
       break;
     case DepthKind::device:
       set_device(map, range, camera.orthographic, scale);

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "kernels/prepare.h"
 
@@ -68,10 +69,10 @@ bool is_straight(double before, double here, double after, double rounding) {
   return std::abs(before + after - 2 * here) < 1e-4 * std::abs(after - before) + rounding * std::abs(here);
 }
 
-double median(std::vector<double>& values) {
-  const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+double quantile(std::vector<double>& values, double share) {
+  const auto at = values.begin() + std::ptrdiff_t(share * double(values.size()));
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
 }
 
 }  // namespace
@@ -105,12 +106,13 @@ NormalStatistics normal_statistics(std::span<const float> normal, std::span<cons
     if (!(length > 0) || std::isinf(length)) continue;
     s.count++;
     s.mean_length += length;
+    s.unorm_mean_length += unorm_length;
     s.unit_share += std::abs(length - 1) < 0.05;
     s.unorm_unit_share += std::abs(unorm_length - 1) < 0.05;
     for (std::size_t c = 0; c < components; c++) s.least = std::min(s.least, n[c]), s.most = std::max(s.most, n[c]);
   }
   if (!s.count) return {};
-  for (double* share : {&s.mean_length, &s.unit_share, &s.unorm_unit_share}) *share /= double(s.count);
+  for (double* share : {&s.mean_length, &s.unorm_mean_length, &s.unit_share, &s.unorm_unit_share}) *share /= double(s.count);
   return s;
 }
 
@@ -155,7 +157,7 @@ std::optional<double> reprojection_error(std::span<const float> position, Positi
       errors.push_back(!(-p[2] > 0) ? kInfinity
                                     : std::hypot((p[0] / scale - t[0]) / view.tangent_per_pixel.x, (p[1] / scale - t[1]) / view.tangent_per_pixel.y));
     }
-  return errors.empty() ? std::nullopt : std::optional(median(errors));
+  return errors.empty() ? std::nullopt : std::optional(quantile(errors, 0.5));
 }
 
 std::vector<DepthScore> score_depth(std::span<const float> raw, const View& view, double sky, double rounding) {
@@ -174,9 +176,11 @@ std::vector<DepthScore> score_depth(std::span<const float> raw, const View& view
     }
     if (!(bend(1 / value[0], 1 / value[1], 1 / value[2]) < kSmooth)) return;
     count++;
-    const std::array straight{is_straight(1 / value[0], 1 / value[1], 1 / value[2], rounding),
-                              is_straight(length[0] / value[0], length[1] / value[1], length[2] / value[2], rounding),
-                              is_straight(value[0], value[1], value[2], rounding)};
+    const bool value_is = is_straight(value[0], value[1], value[2], rounding);
+    const bool inverse_is = is_straight(1 / value[0], 1 / value[1], 1 / value[2], rounding);
+    const std::array straight{view.orthographic ? value_is : inverse_is,
+                              !view.orthographic && is_straight(length[0] / value[0], length[1] / value[1], length[2] / value[2], rounding),
+                              view.orthographic ? inverse_is : value_is};
     if (straight[0] + straight[1] + straight[2] != 1) return;  // curved, or too even to tell
     for (std::size_t k = 0; k < scores.size(); k++) scores[k].straight += straight[k];
   };
@@ -200,8 +204,9 @@ std::vector<NormalScore> score_normals(std::span<const float> normal, NormalEnco
 
   const std::size_t plane = std::size_t(view.size.x) * std::size_t(view.size.y);
   const int stride = sparseness(view);
-  const double least_cosine = std::cos(20 * 3.14159265358979 / 180);
+  const double least_cosine = std::cos(20 * std::numbers::pi / 180);
   std::size_t count = 0;
+  std::vector<std::vector<double>> cosines(scores.size());
   for (int y = 1; y + 1 < view.size.y; y += stride)
     for (int x = 1; x + 1 < view.size.x; x += stride) {
       const auto depth = [&](int dx, int dy) {
@@ -220,11 +225,15 @@ std::vector<NormalScore> score_normals(std::span<const float> normal, NormalEnco
       for (std::size_t k = 0; k < scores.size(); k++) {
         const Vector n = times(rotations[k], vector);
         scores[k].facing += dot(n, eye) > 0;
-        scores[k].agreement += dot(n, surface) > least_cosine * lengths;
+        cosines[k].push_back(std::min(1.0, dot(n, surface) / lengths));
+        scores[k].agreement += cosines[k].back() > least_cosine;
       }
     }
   if (count < kLeastSamples) return {};
-  for (auto& score : scores) score.facing /= double(count), score.agreement /= double(count);
+  for (std::size_t k = 0; k < scores.size(); k++) {
+    scores[k].facing /= double(count), scores[k].agreement /= double(count);
+    scores[k].angle = std::acos(std::max(-1.0, quantile(cosines[k], 0.75))) * 180 / std::numbers::pi;
+  }
   std::ranges::stable_sort(scores, std::greater(), &NormalScore::agreement);
   return scores;
 }

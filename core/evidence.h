@@ -27,6 +27,7 @@ struct NormalStatistics {
   std::uint64_t count = 0;
   double least = 0, most = 0;   // of all components
   double mean_length = 0;       // 1 for signed normals
+  double unorm_mean_length = 0;  // the same of 2 n - 1
   double unit_share = 0;        // whose length is 1 within 5 %
   double unorm_unit_share = 0;  // the same of 2 n - 1
 };
@@ -48,9 +49,10 @@ constexpr double kFloatRounding = 3e-7, kHalfRounding = 2e-3;  // of the second 
 /// A way to read depth and how well the frame's flat surfaces agree with it.
 struct DepthScore {
   DepthKind kind;
-  double straight = 0;  // share of the smooth places where by this kind alone 1/z is affine over the image, as it is on every plane
+  double straight = 0;  // share of the smooth places where by this kind alone 1/z (orthographic: z) is affine over the image, as it is on every plane
 };
 /// planar, ray and inverse (which stands for all that is affine in 1/z: device depth too), the best first. Empty where too little of the frame is smooth.
+/// Orthographic: planar stands for ray and device depth too, and inverse for itself.
 /// `rounding`: of the values, relative.
 std::vector<DepthScore> score_depth(std::span<const float> raw, const View& view, double sky, double rounding = kFloatRounding);
 
@@ -60,6 +62,7 @@ struct NormalScore {
   NormalFlips flips;
   double facing = 0;     // share that faces the camera, as all that is visible does
   double agreement = 0;  // share within 20 degrees of the normal that depth gives
+  double angle = 0;      // degrees to it, of the best quarter at most
 };
 /// World space (where the camera knows it) and view space, with all flips, the best agreement first; `normal` and `raw` are as in the file.
 /// Empty where too little of the frame is smooth.

@@ -44,6 +44,7 @@ class ExrAttributes {
 
 namespace {
 
+constexpr std::size_t kLongestText = std::size_t(1) << 16;  // of an attribute that is looked at
 constexpr std::size_t kMostPixels = std::size_t(1) << 28;  // in host memory: a gigabyte a channel
 
 Window window_of(const Imath::Box2i& box) { return {box.min.x, box.min.y, box.max.x - box.min.x + 1, box.max.y - box.min.y + 1}; }
@@ -108,7 +109,7 @@ bool describes_storage(const std::string& name) {
 }
 
 std::string text_of(const Imf::Attribute& attribute) {
-  if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&attribute)) return text->value();
+  if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&attribute)) return text->value().substr(0, kLongestText);
   if (const auto* number = dynamic_cast<const Imf::FloatAttribute*>(&attribute)) return fmt::format("{}", number->value());
   if (const auto* number = dynamic_cast<const Imf::DoubleAttribute*>(&attribute)) return fmt::format("{}", number->value());
   if (const auto* number = dynamic_cast<const Imf::IntAttribute*>(&attribute)) return fmt::format("{}", number->value());

@@ -58,7 +58,7 @@ class ExrFile {
   /// Width over height of a pixel.
   double pixel_aspect() const;
   std::shared_ptr<const ExrAttributes> attributes(int part) const;
-  /// The attributes of a part that do not describe its storage, as text: numbers, strings and matrices by value, all else by type.
+  /// The attributes of a part that do not describe its storage, as text: numbers, strings and matrices by value, all else by type; the first 64 KiB.
   std::map<std::string, std::string> attribute_texts(int part) const;
 
   /// Reads the channels as float, each part decoded once. Fails on truncated or corrupt data.

@@ -17,6 +17,7 @@ constexpr std::size_t kLongestName = 255;
 constexpr std::uint32_t kMultiPart = 0x1000;     // of the version's flags
 constexpr std::uint64_t kLinesAChunk = 256;      // at most, of any compression
 constexpr std::uint64_t kOffset = 8;             // bytes of a chunk's place in the file
+constexpr std::uint64_t kMostBytes = 32 << 20;   // of a header: ten times what programs write, and small beside a frame; it is held several times
 
 struct Reader {
   std::ifstream file;
@@ -63,6 +64,7 @@ void require_sane_header(const std::string& path, const char* option) {
     const auto size = reader.word();
     if (!type || !size || *size > reader.left()) return refuse(fmt::format("attribute {} is larger than the file", *name));
     const auto next = reader.file.tellg() + std::streamoff(*size);
+    if (std::uint64_t(next) > kMostBytes) return refuse(fmt::format("it is longer than {} MiB", kMostBytes >> 20));
     if (*name == "dataWindow" && *size == 16) {
       std::array<std::int64_t, 4> window{};
       for (auto& x : window) x = std::int32_t(*reader.word());

@@ -29,7 +29,29 @@ bool is_lossy(const FrameSource& source, const ChannelRef& ref) {
   return source.files[ref.file].parts()[std::size_t(ref.part)].dwa && kNames.contains(last);
 }
 
+/// Parts whose first or last rows cannot be read: of a file that was cut short, where the frame's own parts stand before the cut.
+std::vector<std::string> cut_parts(ExrFile& file) {
+  std::vector<std::string> found;
+  for (std::size_t p = 0; p < file.parts().size(); p++) {
+    const ExrPart& part = file.parts()[p];
+    const auto channel = std::ranges::find(part.channels, false, &ExrChannel::subsampled);
+    if (channel == part.channels.end()) continue;
+    std::vector<float> row(std::size_t(part.data.width));
+    const ExrRead read{int(p), channel->name, row.data()};
+    try {
+      for (const int y : {0, part.data.height - 1}) file.read({&read, 1}, y, 1);
+    } catch (const Error& error) {
+      found.push_back(error.what());
+    }
+  }
+  return found;
+}
+
 }  // namespace
+
+bool has_lengths(const FrameSource& source) {
+  return source.normal.size() == 3 && (source.normal_encoding == NormalEncoding::signed_float || source.normal_encoding == NormalEncoding::unorm);
+}
 
 double blended_edges(std::span<const float> planar, int width) {
   int sharp = 0, blended = 0;
@@ -47,15 +69,14 @@ double blended_edges(std::span<const float> planar, int width) {
   return sharp + blended < kLeastEdges ? 0 : double(blended) / (sharp + blended);
 }
 
-std::vector<std::string> findings(const FrameSource& source, const InputSettings& settings, std::span<const float> depth, std::span<const float> normal) {
+std::vector<std::string> findings(FrameSource& source, const InputSettings& settings, std::span<const float> depth, std::span<const float> normal) {
   std::vector<std::string> found;
   const DepthMap map = depth_map_of(source, settings);
   const double blended = blended_edges(planar_depths(depth, map, view_of(source.camera, source.data, source.display)), source.data.width);
   if (blended > kMostBlended)
     found.push_back(fmt::format("{:.0f} % of the depth's edges have a pixel in between: the depth is anti-aliased, and AO shows seams there; render it without filtering",
                                 100 * blended));
-  const bool has_lengths = source.normal.size() == 3 && (source.normal_encoding == NormalEncoding::signed_float || source.normal_encoding == NormalEncoding::unorm);
-  if (has_lengths) {
+  if (has_lengths(source)) {
     const NormalStatistics s = normal_statistics(normal, depth, map);
     const double unit = source.normal_unorm ? s.unorm_unit_share : s.unit_share;
     if (s.count && unit < 1 - kMostShortened)
@@ -64,6 +85,8 @@ std::vector<std::string> findings(const FrameSource& source, const InputSettings
   for (const auto* channels : {&source.depth, &source.normal})
     for (const auto& channel : *channels)
       if (is_lossy(source, channel)) found.push_back(fmt::format("{} is compressed by DWA, which is lossy for a channel of that name; write data with zip", channel.channel));
+  for (auto& file : source.files)
+    for (auto& sentence : cut_parts(file)) found.push_back(std::move(sentence));
   const std::size_t file = source.depth[0].file;
   for (const auto& part : source.files[file].parts())
     if (part.data != source.file_data) {

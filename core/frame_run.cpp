@@ -32,7 +32,7 @@ class FrameRun {
     else run_tiles(source, pixel);
     report_.pixels = report_.pixels ? report_.pixels : source.data.pixels();
     note_counts(source);
-    report_.notes.insert(report_.notes.begin(), source.notes.begin(), source.notes.end());
+    for (const auto* said : {&source.suspicious, &source.notes}) report_.notes.insert(report_.notes.begin(), said->begin(), said->end());
     report_.total_ms = total.ms();
   }
 

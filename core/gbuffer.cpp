@@ -40,7 +40,7 @@ struct AovNames {
 };
 
 const AovNames kDepthNames{"depth", "--depth-channel", {"depth", "z", "zdepth", "vrayzdepth", "z-depth", "__depth", "cgeometry_zdepth", "finalimagemovierenderqueue_worlddepth"}, {{"z"}, {"depth"}, {"r"}, {"y"}}, {{"z"}, {"depth"}, {"zdepth"}, {"pz"}}, {{"r"}, {"y"}}};
-const AovNames kNormalNames{"normal", "--normal-channels", {"normal", "n", "nn", "normals", "ns", "__nworld", "cgeometry_normalsshading"}, {{"x", "y", "z"}, {"r", "g", "b"}}, {{"nx", "ny", "nz"}}, {{"x", "y", "z"}, {"r", "g", "b"}}, false, true};
+const AovNames kNormalNames{"normal", "--normal-channels", {"normal", "n", "nn", "normals", "ns", "__nworld", "cgeometry_normalsshading"}, {{"x", "y", "z"}, {"r", "g", "b"}}, {{"nx", "ny", "nz"}}, {{"x", "y", "z"}, {"r", "g", "b"}, {"x", "y"}, {"r", "g"}}, false, true};
 const AovNames kPositionNames{"position", "--position-channels", {"position", "p", "pworld", "__pworld", "worldposition", "cgeometry_worldposition"}, {{"x", "y", "z"}, {"r", "g", "b"}}, {{"px", "py", "pz"}}, {{"x", "y", "z"}, {"r", "g", "b"}}};
 const AovNames kBeautyNames{"beauty", "--beauty-channels", {"combined", "rgba", "beauty"}, {{"r", "g", "b"}, {"red", "green", "blue"}}, {{"r", "g", "b"}}, {}, true};
 const AovNames kIndirectNames{"indirect diffuse", "--layer", {"diffind", "diffuse indirect", "diffuse_indirect", "indirectdiffuse", "gi"}, {{"r", "g", "b"}}, {}, {}};
@@ -87,11 +87,13 @@ std::vector<NamedChannel> channels_of(const ExrFile& file, std::size_t index, co
   for (std::size_t part = 0; part < file.parts().size(); part++) {
     const auto& p = file.parts()[part];
     if (!p.view.empty() && !view.empty() && lower_case(p.view) != lower_case(view)) continue;
+    // "depth.left" of view "left" is the layer "depth".
+    const std::string part_name = !p.view.empty() && p.name.ends_with("." + p.view) ? p.name.substr(0, p.name.size() - p.view.size() - 1) : p.name;
     for (const auto& channel : p.channels) {
       const auto plain = within_view(channel.name, p.multi_view, view);
       if (!plain) continue;
-      const bool alone = file.parts().size() == 1 || p.name.empty() || channel.name.starts_with(p.name + ".");
-      NamedChannel named{{index, int(part), channel.name}, alone ? channel.name : p.name + "." + channel.name, {}, channel.subsampled};
+      const bool alone = file.parts().size() == 1 || part_name.empty() || channel.name.starts_with(part_name + ".");
+      NamedChannel named{{index, int(part), channel.name}, alone ? channel.name : part_name + "." + channel.name, {}, channel.subsampled};
       for (const auto& name : plain != channel.name ? std::vector{*plain} : std::vector{named.full, channel.name})
         if (const auto spelling = within_layer(name, layer); spelling && (named.spellings.empty() || named.spellings.back() != *spelling))
           named.spellings.push_back(*spelling);
@@ -356,8 +358,13 @@ std::vector<ChannelRef> find_normal(FrameSource& source, const Search& search, s
     if (candidate->space != NormalSpace::automatic) source.usual_normal_space = candidate->space;
     return found;
   }
-  return settings.normal.empty() ? search.find(file, kNormalNames, settings.normal_channels, false)
-                                 : search.require(file, kNormalNames, settings.normal_channels, true, "Normal.X");
+  if (!settings.normal.empty()) return search.require(file, kNormalNames, settings.normal_channels, true, "Normal.X");
+  auto found = search.find(file, kNormalNames, settings.normal_channels, false);
+  const bool of_two = settings.normal_encoding == NormalEncoding::octahedral || settings.normal_encoding == NormalEncoding::spheremap;
+  if (!found.empty() || !of_two) return found;
+  AovNames two = kNormalNames;
+  two.in_layer = {{"x", "y"}, {"r", "g"}};
+  return search.find(file, two, "", false);
 }
 
 bool names_a_camera(const InputSettings& settings) { return !settings.camera.empty() || settings.fov || settings.focal || settings.ortho_width; }

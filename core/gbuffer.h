@@ -61,7 +61,8 @@ struct FrameSource {
   Camera camera;
   std::string camera_from;            // the attributes that gave it; empty: the settings did
   std::vector<Guess> guesses;
-  std::vector<std::string> notes;  // what the user should know: guesses that are unusual, and what harms; a sentence each
+  std::vector<std::string> notes;       // what the user should know: guesses that are unusual, options that the pixels speak against; a sentence each
+  std::vector<std::string> suspicious;  // what harms AO
 };
 
 /// Opens the files that the settings name and finds the channels. `with_beauty` asks for the beauty and its ambient parts too, `with_albedo` for the

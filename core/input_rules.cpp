@@ -91,6 +91,7 @@ InputRules parse_input_rules(const std::string& name, const std::string& text) {
     };
     if (key == "source") known(word == name ? std::optional(0) : std::nullopt);
     else if (key == "detect") rules.detect = values;
+    else if (key == "last") rules.last = word == "true";
     else if (key == "depth-channel") rules.depth = candidates_of(values);
     else if (key == "normal-channels") rules.normal = candidates_of(values);
     else if (key == "position-channels") rules.position = candidates_of(values);
@@ -130,10 +131,12 @@ const InputRules& input_rules(const std::string& name) {
 
 DetectedRules detect_rules(const ExrFile& file) {
   const auto marks = marks_of(file);
-  for (const auto& rules : all_input_rules())
-    for (const auto& pattern : rules.detect)
-      if (const auto mark = std::ranges::find_if(marks, [wanted = lower_case(pattern)](const auto& m) { return fits(m, wanted); }); mark != marks.end())
-        return {&rules, *mark};
+  for (const bool last : {false, true})
+    for (const auto& rules : all_input_rules())
+      for (const auto& pattern : rules.detect)
+        if (const auto mark = std::ranges::find_if(marks, [wanted = lower_case(pattern)](const auto& m) { return fits(m, wanted); });
+            rules.last == last && mark != marks.end())
+          return {&rules, *mark};
   return {&input_rules("generic"), ""};
 }
 

@@ -11,6 +11,7 @@
 #include "core/evidence.h"
 #include "core/findings.h"
 #include "core/settle.h"
+#include "core/text.h"
 
 namespace alcove {
 namespace {
@@ -103,18 +104,18 @@ Json normals_json(std::span<const float> normal, std::span<const float> raw, con
   Json json = {{"space", name_of(source.normal_space)},
                {"encoding", name_of(source)},
                {"flips", to_string(source.flip_normal)},
-               {"mean_length", s.mean_length},
-               {"unit_share", s.unit_share},
+               {"mean_length", has_lengths(source) ? Json(source.normal_unorm ? s.unorm_mean_length : s.mean_length) : Json()},
+               {"unit_share", has_lengths(source) ? Json(source.normal_unorm ? s.unorm_unit_share : s.unit_share) : Json()},
                {"least", s.least},
                {"most", s.most},
                {"scores", Json::array()}};
   const View view = view_of(source.camera, source.data, source.display);
   for (const auto& score :
        score_normals(normal, source.normal_encoding, source.normal_unorm, raw, depth_map_of(source, settings), source.camera, view)) {
-    const Json entry = {{"space", name_of(score.space)}, {"flips", to_string(score.flips)}, {"agreement", score.agreement}, {"facing", score.facing}};
+    const Json entry = {{"space", name_of(score.space)}, {"flips", to_string(score.flips)}, {"agreement", score.agreement}, {"angle", score.angle}, {"facing", score.facing}};
     json["scores"].push_back(entry);
     if (score.space == source.normal_space && to_string(score.flips) == to_string(source.flip_normal))
-      json["agreement"] = score.agreement, json["facing"] = score.facing;
+      json["agreement"] = score.agreement, json["angle"] = score.angle, json["facing"] = score.facing;
   }
   return json;
 }
@@ -150,14 +151,15 @@ std::string command_of(const FrameSource& source, const InputSettings& s, const 
   if (s.depth_scale != 1) add_number("--depth-scale", s.depth_scale);
   if (s.sky != 1e9) add_number("--sky", s.sky);
   if (!source.normal.empty()) {
-    text += fmt::format(" --normal-space {} --normal-encoding {}", name_of(source.normal_space), name_of(source));
+    if (has_camera || s.normal_space != NormalSpace::automatic) add("--normal-space", name_of(source.normal_space));
+    add("--normal-encoding", name_of(source));
     if (to_string(source.flip_normal) != "none") add("--flip-normal", to_string(source.flip_normal));
   }
   add("--camera", s.camera);
   add_number("--fov", s.fov), add_number("--focal", s.focal), add_number("--aperture", s.aperture), add_number("--ortho-width", s.ortho_width);
   if (!has_camera) text += " --camera CAMERA.json";
   // A tenth of the median distance, by one figure: as much as a guess at a radius deserves.
-  return text + (depth.contains("median") ? fmt::format(" --radius {:.1g}", 0.1 * depth["median"].get<double>()) : std::string(" --radius RADIUS"));
+  return text + (depth.contains("median") ? fmt::format(" --radius {}", std::stod(fmt::format("{:.1g}", 0.1 * depth["median"].get<double>()))) : std::string(" --radius RADIUS"));
 }
 
 std::string percent(const Json& share) { return fmt::format("{:.1f} %", 100 * share.get<double>()); }
@@ -165,7 +167,7 @@ std::string percent(const Json& share) { return fmt::format("{:.1f} %", 100 * sh
 std::string text_of(const Json& json) {
   std::string text;
   const auto line = [&]<class... Args>(fmt::format_string<Args...> format, Args&&... args) {
-    text += fmt::format(format, std::forward<Args>(args)...) + "\n";
+    text += printable(fmt::format(format, std::forward<Args>(args)...)) + "\n";
   };
   for (const auto& file : json["files"]) {
     line("{}: display window {}, pixel aspect {:.4g}", file["path"].get<std::string>(), file["display_window"].get<std::string>(),
@@ -189,6 +191,7 @@ std::string text_of(const Json& json) {
          camera["horizontal_fov"].is_null() ? fmt::format("{:.5g} px a scene unit", camera["fx"].get<double>())
                                             : fmt::format("{:.2f} degrees wide", camera["horizontal_fov"].get<double>()),
          camera["world_to_camera"] ? "with" : "without");
+  const char* straight = !json["camera"].is_null() && json["camera"]["projection"] == "orthographic" ? "z" : "1/z";
   if (const auto& depth = json["depth"]; !depth.is_null()) {
     line("depth: {}, values {:.6g} to {:.6g}; {} NaN, {} infinite, {} negative, {} of 0, {} of 1", depth["kind"].get<std::string>(),
          depth["least"].get<double>(), depth["most"].get<double>(), depth["nan"].dump(), depth["infinite"].dump(), depth["negative"].dump(),
@@ -197,16 +200,16 @@ std::string text_of(const Json& json) {
       line("  distances {:.6g} to {:.6g}, median {:.6g}; sky {}", depth["nearest"].get<double>(), depth["farthest"].get<double>(),
            depth["median"].get<double>(), percent(depth["sky_share"]));
     for (const auto& score : depth.value("scores", Json::array()))
-      line("  only as {}: 1/z straight on {}", score["kind"].get<std::string>(), percent(score["straight"]));
+      line("  only as {}: {} straight on {}", score["kind"].get<std::string>(), straight, percent(score["straight"]));
   }
   if (const auto& normals = json["normals"]; !normals.is_null()) {
-    line("normals: {} space, {}, flips {}, mean length {:.4f}, of unit length on {}", normals["space"].get<std::string>(),
-         normals["encoding"].get<std::string>(), normals["flips"].get<std::string>(), normals["mean_length"].get<double>(),
-         percent(normals["unit_share"]));
+    const std::string lengths =
+        normals["mean_length"].is_null() ? "" : fmt::format(", mean length {:.4f}, of unit length on {}", normals["mean_length"].get<double>(), percent(normals["unit_share"]));
+    line("normals: {} space, {}, flips {}{}", normals["space"].get<std::string>(), normals["encoding"].get<std::string>(), normals["flips"].get<std::string>(), lengths);
     for (std::size_t i = 0; i < std::min<std::size_t>(normals["scores"].size(), kShownScores); i++) {
       const auto& score = normals["scores"][i];
-      line("  as {} with flips {}: {} agree with depth, {} face the camera", score["space"].get<std::string>(), score["flips"].get<std::string>(),
-           percent(score["agreement"]), percent(score["facing"]));
+      line("  as {} with flips {}: {} agree with depth, a quarter within {:.1f} degrees, {} face the camera", score["space"].get<std::string>(),
+           score["flips"].get<std::string>(), percent(score["agreement"]), score["angle"].get<double>(), percent(score["facing"]));
     }
   }
   for (const auto& guess : json["guesses"])
@@ -215,7 +218,7 @@ std::string text_of(const Json& json) {
   for (const auto& note : json["notes"]) line("note: {}", note.get<std::string>());
   for (const auto& finding : json["suspicious"]) line("suspicious: {}", finding.get<std::string>());
   for (const auto& missing : json["missing"]) line("missing: {}", missing.get<std::string>());
-  line("{}", json["command"].get<std::string>());
+  if (json["command"] != "") line("{}", json["command"].get<std::string>());
   return text;
 }
 
@@ -240,7 +243,7 @@ Inspection inspect_frame(const InputSettings& settings, int frame) {
   const InputSettings reading = has_camera ? settings : with_some_camera(settings);
   const auto finish = [&] {
     json["files"] = files_json(source);
-    return Inspection{text_of(json), json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n"};
+    return Inspection{text_of(json), json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n", std::nullopt};
   };
   if (!has_camera) json["missing"].push_back("camera: --camera FILE.json, or --fov, or --focal with --aperture, or --ortho-width");
   try {
@@ -259,15 +262,29 @@ Inspection inspect_frame(const InputSettings& settings, int frame) {
   if (has_camera) json["camera"] = camera_json(source, settings);
   require_host_room(source.files[source.depth[0].file].path(), source.data);
   std::vector<float> depth(source.depth.size() * source.data.pixels()), normal(source.normal.size() * source.data.pixels());
-  read_planes(source, {{&source.depth, depth.data()}, {&source.normal, normal.data()}});
+  try {
+    read_planes(source, {{&source.depth, depth.data()}, {&source.normal, normal.data()}});
+  } catch (const Error& error) {
+    json["suspicious"].push_back(error.what());
+    Inspection inspection = finish();
+    inspection.unreadable = error;
+    return inspection;
+  }
   json["depth"] = depth_json(depth, source);
   try {
+    const auto notes = source.notes;
     settle(source, reading, depth, normal);
+    if (!has_camera) {  // a camera that nobody gave has nothing to say
+      source.notes = notes;
+      if (settings.normal_space == NormalSpace::automatic) source.normal_space = source.usual_normal_space;
+    }
     json["depth"]["kind"] = alcove::name_of(source.depth_kind);
     const auto planar = planar_depths(depth, depth_map_of(source, reading), view_of(source.camera, source.data, source.display));
     add_planar(json["depth"], depth, planar, source, reading);
     if (!normal.empty()) json["normals"] = normals_json(normal, depth, source, reading);
-    json["suspicious"] = findings(source, reading, depth, normal);
+    if (!normal.empty() && !has_camera) json["normals"]["scores"].clear(), json["normals"].erase("agreement"), json["normals"].erase("angle"), json["normals"].erase("facing");
+    json["suspicious"] = source.suspicious;
+    for (const auto& finding : findings(source, reading, depth, normal)) json["suspicious"].push_back(finding);
     json["command"] = command_of(source, settings, json["depth"], has_camera);
   } catch (const Error& error) {
     json["missing"].push_back(error.what());

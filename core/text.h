@@ -23,6 +23,9 @@ std::size_t edit_distance(std::string_view a, std::string_view b);
 /// Up to `most` of the candidates that resemble `name`, the nearest first; none where all are far off.
 std::vector<std::string> nearest_names(std::string_view name, std::span<const std::string> candidates, std::size_t most = 3);
 
+/// The text with ? in the place of each control character, since names in files may hold what a terminal would obey.
+std::string printable(std::string text);
+
 /// " (did you mean a or b?)", or nothing: to be put behind a message.
 std::string suggestion(std::string_view name, std::span<const std::string> candidates);
 

@@ -158,6 +158,17 @@ TEST_F(Batch, guesses_are_made_once_by_the_first_frame_that_shows_anything) {
   EXPECT_NE(pixels(read_bytes(output(3))), pixels(guessed.at("ao.0003.exr"))) << "or else the frames of this test show nothing";
 }
 
+TEST_F(Batch, what_is_noted_of_all_frames_is_said_once) {
+  FrameFile file = wall_frame();
+  file.halves = {"ViewLayer.Depth.Z"};
+  for (const int frame : {1, 2, 3}) file.write(input(frame));
+  const Finished finished = run({"--frames", "1-3"});
+  ASSERT_EQ(finished.code, 0) << finished;
+  const std::size_t first = finished.err.find("half float");
+  EXPECT_NE(first, std::string::npos) << finished;
+  EXPECT_EQ(finished.err.find("half float", first + 1), std::string::npos) << finished;
+}
+
 TEST_F(Batch, progress_for_farms_goes_to_the_standard_output) {
   write_frames(1, 4);
   EXPECT_EQ(run({"--progress", "percent"}).out, "Progress: 25%\nProgress: 50%\nProgress: 75%\nProgress: 100%\n");

@@ -130,19 +130,30 @@ TEST_F(Formats, textures_of_renderdoc_are_read) {
   ASSERT_EQ(run({"--type", "float"}).code, 0);
   const auto expected = read_exr_image(ao).pixels;
   const FrameFile file = wall_frame();
+  const auto normal = [&](const char* axis) { return file.planes.at(std::string("ViewLayer.Normal.") + axis); };
   std::vector<float> device;
-  for (const float z : file.planes.at("ViewLayer.Depth.Z")) device.push_back(0.1f / z);
-  std::vector<std::uint32_t> packed;
+  std::vector<std::uint16_t> device16, halves;
+  std::vector<std::uint32_t> device24, packed;
   const auto ten = [](float x) { return std::uint32_t(std::lround(1023 * (0.5f + 0.5f * x))); };
-  for (std::size_t i = 0; i < device.size(); i++)
-    packed.push_back(ten(file.planes.at("ViewLayer.Normal.X")[i]) | ten(file.planes.at("ViewLayer.Normal.Y")[i]) << 10 |
-                     ten(file.planes.at("ViewLayer.Normal.Z")[i]) << 20);
-  write_bytes(folder / "depth.0042.dds", dds(64, 36, 41, bytes_of(device)));
-  write_bytes(folder / "normal.dds", dds(64, 36, 24, words(packed)));
-  const Finished finished = run_program({"run", "--depth", folder / "depth.0042.dds", "--normal", folder / "normal.dds", "-o", ao, "--camera", camera, "--radius", "1", "--type",
-                                         "float", "--preset", "input/renderdoc", "--depth-kind", "device", "--near", "0.1", "--far", "inf", "--reversed-z"});
-  ASSERT_EQ(finished.code, 0) << finished;
-  EXPECT_LE(difference(read_exr_image(ao).pixels, expected).rmse, 0.01) << "10 bits a component";
+  const auto half_of = [](float x) { return std::uint16_t(x == 0 ? 0 : x > 0 ? 0x3c00 : 0xbc00); };  // of -1, 0 and 1, and all normals here are these
+  for (std::size_t i = 0; i < file.data.pixels(); i++) {
+    const float d = 0.5f / file.planes.at("ViewLayer.Depth.Z")[i], x = normal("X")[i], y = normal("Y")[i], z = normal("Z")[i];
+    device.push_back(d), device16.push_back(std::uint16_t(std::lround(65535 * d))), device24.push_back(0xab000000 | std::uint32_t(std::lround(0xffffff * d)));
+    packed.push_back(ten(x) | ten(y) << 10 | ten(z) << 20);
+    for (const float n : {x, y, z, 1.0f}) halves.push_back(half_of(n));
+  }
+  write_bytes(folder / "r10g10b10a2.dds", dds(64, 36, 24, words(packed)));
+  write_bytes(folder / "rgba16f.dds", dds(64, 36, 10, bytes_of(halves)));
+  const std::string depth = folder / "depth.0042.dds";
+  for (const auto& [name, bytes, tolerance] : {std::tuple{"R32F", dds(64, 36, 41, bytes_of(device)), 1e-3}, {"D24", dds(64, 36, 45, words(device24)), 1e-3},
+                                               {"R16", dds(64, 36, 56, bytes_of(device16)), 0.01}})
+    for (const auto& [normals, more] : {std::pair{"rgba16f.dds", 0.0}, {"r10g10b10a2.dds", 0.01}}) {
+      write_bytes(depth, bytes);
+      const Finished finished = run_program({"run", "--depth", depth, "--normal", folder / normals, "-o", ao, "--camera", camera, "--radius", "1", "--type", "float",
+                                             "--preset", "input/renderdoc", "--depth-kind", "device", "--near", "0.5", "--far", "inf", "--reversed-z"});
+      ASSERT_EQ(finished.code, 0) << finished;
+      EXPECT_LE(difference(read_exr_image(ao).pixels, expected).rmse, tolerance + more) << name << " " << normals;
+    }
 }
 
 TEST_F(Formats, depth_of_8_bits_is_refused) {
@@ -233,6 +244,36 @@ TEST_F(Formats, hostile_headers_are_errors) {
   absurd.add("Software", "string", std::string(1000000, '*'));
   write_bytes(frame, absurd.bytes + '\0');
   EXPECT_EQ(run({}).code, 3);
+}
+
+TEST_F(Formats, a_header_cut_off_at_any_byte_is_an_error) {
+  FrameFile file = wall_frame();
+  file.attributes = {{"Software", "x"}, {"Camera", "Camera.001"}};
+  file.write(frame);
+  const std::string whole = read_bytes(frame), cut = folder / "cut.exr";
+  const std::size_t end = std::min<std::size_t>(whole.size(), 2000);  // beyond the header and the table of offsets
+  for (std::size_t size = 0; size < end; size++) {
+    write_bytes(cut, whole.substr(0, size));
+    try {
+      ExrFile exr(cut, "INPUT");
+      std::vector<float> row(std::size_t(file.data.width));
+      const ExrRead read{0, exr.parts().at(0).channels.at(0).name, row.data()};
+      exr.read({&read, 1}, file.data.height - 1, 1);
+      ADD_FAILURE() << "accepted " << size << " bytes";
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::input) << size;
+      EXPECT_THAT(error.what(), HasSubstr("cut.exr")) << size;
+    }
+  }
+}
+
+TEST_F(Formats, a_header_longer_than_any_program_writes_is_an_error) {
+  RawExr absurd = raw_exr(channel("Z"), {0, 0, 63, 35});
+  absurd.add("comments", "string", std::string(40 << 20, 'x'));
+  write_bytes(frame, absurd.bytes + '\0');
+  const Finished finished = run({});
+  EXPECT_EQ(finished.code, 3);
+  EXPECT_THAT(finished.err, HasSubstr("longer than"));
 }
 
 TEST_F(Formats, a_header_of_many_pixels_takes_no_memory) {

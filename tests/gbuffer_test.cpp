@@ -221,6 +221,16 @@ TEST_F(GBuffer, a_part_a_view_is_chosen_by_its_name) {
   expect_error({"frame.exr", "middle", "--view", "left, right"});
 }
 
+TEST_F(GBuffer, parts_may_name_their_view_behind_their_layer) {
+  write_parts(settings.input, {{"depth.left", {"Z"}, kWidth, "left"}, {"N.left", {"X", "Y", "Z"}, kWidth, "left"},
+                               {"depth.right", {"Z"}, kWidth, "right"}, {"N.right", {"X", "Y", "Z"}, kWidth, "right"}});
+  EXPECT_THAT(depth(), ElementsAre("Z"));
+  EXPECT_THAT(normal(), ElementsAre("1:X", "1:Y", "1:Z"));
+  settings.view = "right";
+  EXPECT_THAT(depth(), ElementsAre("2:Z"));
+  EXPECT_THAT(normal(), ElementsAre("3:X", "3:Y", "3:Z"));
+}
+
 TEST_F(GBuffer, channels_that_name_their_view_are_chosen_by_it) {
   Part stereo{"", {"Z", "N.X", "N.Y", "N.Z", "right.Z", "N.right.X", "N.right.Y", "N.right.Z"}};
   stereo.multi_view = {"left", "right"};
@@ -248,6 +258,18 @@ TEST_F(GBuffer, half_a_normal_is_none) {
   EXPECT_THAT(normal(), IsEmpty());
   write(Names{"Z", "N.X", "N.Y", "Normal.Z"});
   EXPECT_THAT(normal(), IsEmpty()) << "components of two layers are no normal";
+}
+
+TEST_F(GBuffer, half_a_normal_is_a_whole_one_in_encodings_of_two_coordinates) {
+  for (const Names& names : {Names{"Z", "N.X", "N.Y"}, {"Z", "normal.R", "normal.G"}}) {
+    write(names);
+    for (const auto encoding : {NormalEncoding::octahedral, NormalEncoding::spheremap}) {
+      settings.normal_encoding = encoding;
+      EXPECT_THAT(normal(), ElementsAre(names[1], names[2]));
+    }
+    settings.normal_encoding = NormalEncoding::automatic;
+    EXPECT_THAT(normal(), IsEmpty());
+  }
 }
 
 TEST_F(GBuffer, two_places_are_ambiguous_and_layer_decides) {
@@ -394,6 +416,8 @@ TEST_F(GBuffer, every_aov_may_have_a_file_of_its_own) {
   write_parts(settings.normal, {{"", {"X", "Y", "Z"}}});
   EXPECT_THAT(normal(), ElementsAre("X", "Y", "Z"));
   write_parts(settings.normal, {{"", {"R", "G"}}});
+  EXPECT_THAT(normal(), ElementsAre("R", "G"));
+  write_parts(settings.normal, {{"", {"R"}}});
   expect_error({"n.exr", "no normal channel", "--normal-channels"});
 }
 

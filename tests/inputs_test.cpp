@@ -430,7 +430,7 @@ TEST_F(Evidence, half_depth_is_noted_with_its_step) {
   halves = {"Z"};
   settings.depth_kind = DepthKind::planar;
   write([](const test::Hit& hit) { return hit.distance; }, 65504);
-  EXPECT_THAT(settled().notes, testing::ElementsAre(testing::AllOf(HasSubstr("half float"), HasSubstr("0.0039"))));
+  EXPECT_THAT(settled().suspicious, testing::ElementsAre(testing::AllOf(HasSubstr("half float"), HasSubstr("0.0039"))));
 }
 
 // The command line.

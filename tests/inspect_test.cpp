@@ -145,6 +145,58 @@ TEST_F(Inspect, what_is_suspicious_is_said) {
   EXPECT_THAT(suspicious, HasSubstr("data window is 72x36"));
 }
 
+TEST_F(Inspect, half_depth_and_lossy_channels_are_suspicious) {
+  FrameFile file = wall_frame();
+  file.halves = {"ViewLayer.Depth.Z"};
+  file.write(frame);
+  const json suspicious = inspected({"--camera", camera})["suspicious"];
+  ASSERT_EQ(suspicious.size(), 1) << suspicious;
+  EXPECT_THAT(suspicious[0].get<std::string>(), testing::AllOf(HasSubstr("half float"), HasSubstr("steps of")));
+}
+
+TEST_F(Inspect, a_file_cut_short_is_suspicious_and_its_header_is_shown) {
+  const std::string whole = read_bytes(frame);
+  write_bytes(frame, whole.substr(0, whole.size() / 2));
+  const Finished finished = inspect({"--camera", camera, "--json"});
+  EXPECT_EQ(finished.code, 3);
+  EXPECT_THAT(finished.err, HasSubstr("damaged or incomplete"));
+  const json all = json::parse(finished.out);
+  EXPECT_EQ(all["files"][0]["parts"][0]["channels"].size(), 4);
+  EXPECT_THAT(all["suspicious"].dump(), HasSubstr("damaged or incomplete"));
+  EXPECT_EQ(all["command"], "");
+}
+
+TEST_F(Inspect, without_a_camera_nothing_is_said_that_needs_one) {
+  const json all = inspected({});
+  EXPECT_EQ(all["camera"], nullptr);
+  EXPECT_EQ(all["normals"]["space"], "world") << "as Blender writes them";
+  EXPECT_EQ(all["normals"]["scores"].size(), 0);
+  EXPECT_FALSE(all["normals"].contains("agreement"));
+  EXPECT_EQ(all["notes"].size(), 0) << all["notes"];
+  EXPECT_THAT(all["command"].get<std::string>(), testing::AllOf(HasSubstr("--camera CAMERA.json"), testing::Not(HasSubstr("--normal-space"))));
+  EXPECT_THAT(inspect().out, HasSubstr("missing: camera"));
+}
+
+TEST_F(Inspect, lengths_are_of_vectors_only) {
+  EXPECT_EQ(inspected({"--camera", camera})["normals"]["mean_length"], 1);
+  const json all = inspected({"--camera", camera, "--normal-encoding", "spheremap"})["normals"];
+  EXPECT_EQ(all["encoding"], "spheremap");
+  EXPECT_EQ(all["mean_length"], nullptr);
+  EXPECT_EQ(inspect({"--camera", camera, "--normal-encoding", "spheremap"}).out.find("mean length"), std::string::npos);
+}
+
+TEST_F(Inspect, what_a_terminal_would_obey_is_not_printed) {
+  FrameFile file = wall_frame();
+  file.planes["\x1b[31mred"] = file.planes["ViewLayer.Depth.Z"];
+  file.attributes["Camera"] = "a\x1b[2Jb\nc";
+  file.write(frame);
+  const Finished finished = inspect({"--camera", camera});
+  EXPECT_EQ(finished.out.find('\x1b'), std::string::npos);
+  EXPECT_THAT(finished.out, HasSubstr("a?[2Jb?c"));
+  const Finished refused = inspect({"--camera", camera, "--depth-channel", "none"});
+  EXPECT_EQ((refused.out + refused.err).find('\x1b'), std::string::npos);
+}
+
 TEST_F(Inspect, bad_files_and_arguments_have_their_exit_codes) {
   EXPECT_EQ(run_program({"inspect", folder / "missing.exr"}).code, 3);
   write_bytes(folder / "text.exr", "no image");

@@ -299,7 +299,7 @@ TEST_F(Sources, unreal_in_its_left_handed_world_and_half_depth) {
                                                     {"unreal/camera/FinalImage/fov", kFov}};
   for (const auto& [name, value] : numbers) header.insert(name, Imf::StringAttribute(fmt::format("{}", value)));
   expect_same("unreal", 0.03, 100);  // half floats step by 0.25 cm here, and AO shows it
-  EXPECT_THAT(settled().notes, testing::Contains(HasSubstr("half float")));
+  EXPECT_THAT(settled().suspicious, testing::ElementsAre(HasSubstr("half float")));
 }
 
 TEST_F(Sources, nuke_with_inverse_depth) {
@@ -344,6 +344,28 @@ TEST_F(Sources, attributes_that_went_through_nuke_are_known) {
   header.insert("exr/worldToNDC", matrix(world_to_ndc(true), true));
   header.insert("exr/arnold/version", Imf::StringAttribute("7"));
   expect_same("arnold");
+}
+
+TEST_F(Sources, what_went_through_nuke_is_not_nukes) {
+  depth("Z", planar, 1e12f);
+  header.insert("nuke/version", Imf::StringAttribute("13.2"));
+  settings.fov = kFov;
+  write(settings.input);
+  EXPECT_EQ(find_frame(settings, false, 0).rules->name, "nuke");
+  for (const auto& [attribute, program] : {std::pair{"exr/vrayInfo/camera", "vray"}, {"nuke/exr/rs/camera/aspect", "redshift"}, {"exr/unreal/frame", "unreal"}}) {
+    const Imf::Header before = header;
+    header.insert(attribute, Imf::StringAttribute("1"));
+    write(settings.input);
+    EXPECT_EQ(find_frame(settings, false, 0).rules->name, program);
+    header = before;
+  }
+}
+
+TEST_F(Sources, an_info_pass_of_octane_is_no_pass_of_blender) {
+  depth("Z-Depth.R", ray, 1e10f);
+  vectors("Ambient occlusion", "RGB", world_normal);
+  give_camera();
+  expect_same("octane", 0.1);
 }
 
 TEST_F(Sources, standard_attributes_give_a_camera) {
@@ -441,6 +463,8 @@ TEST_F(Sources, a_matrix_for_another_depth_range_is_noted) {
   write_bytes(settings.camera, text);
   write(settings.input);
   EXPECT_THAT(settled().notes, testing::Contains(HasSubstr("2 times as large")));
+  settings.depth_range.near = 1;
+  EXPECT_THAT(settled().notes, testing::Contains(testing::AllOf(HasSubstr("--near"), HasSubstr("2 times"))));
 }
 
 TEST(InputRules, all_names_are_there_and_unknown_ones_name_the_nearest) {
