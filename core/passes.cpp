@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <numeric>
 #include <vector>
 
@@ -18,10 +19,12 @@
 #include "kernels/denoise.h"
 #include "kernels/directions.h"
 #include "kernels/downsample.h"
+#include "kernels/exact.h"
 #include "kernels/hbao.h"
 #include "kernels/horizon.h"
 #include "kernels/multi_bounce.h"
 #include "kernels/prepare.h"
+#include "kernels/profile.h"
 #include "kernels/reconstruct.h"
 #include "kernels/shape.h"
 #include "kernels/specular_occlusion.h"
@@ -88,6 +91,27 @@ std::vector<uint> slice_constants(const EstimatorSettings& settings, const gpu::
 gpu::Extent estimated_extent(const View& view, const EstimatorSettings& settings) {
   const auto stride = uint(stride_of(settings));
   return {(uint(view.size.x) + stride - 1) / stride, uint(view.size.y)};
+}
+
+/// How far a profile may leave a pixel's depth, in the pixel's own widths: less costs more vertices.
+constexpr float kProfileTolerance = 0.15f;
+
+/// Directions of an exact search over a frame: each pixel takes all of them, or a quarter where a denoiser mixes those of its block of 2 x 2.
+int directions_of(const EstimatorSettings& settings) { return settings.slices * (settings.denoise == Denoise::none ? 1 : 4); }
+
+/// Pixels that lines have moved across at a step: as in lines.glsl.
+int shift_at(const Lines& lines, int step) { return (lines.slope * (lines.origin.x + step) + kSlopeUnit / 2) >> kSlopeBits; }
+
+/// The lines of a direction, even in angle where the view's pixels are made square; those of a few directions never follow an axis of the image.
+Lines lines_of(const View& view, ivec2 origin, int direction, int directions) {
+  const double angle = std::numbers::pi * (direction + 0.5) / directions;
+  const double x = std::cos(angle) / view.tangent_per_pixel.x, y = std::sin(angle) / view.tangent_per_pixel.y;
+  const bool steep = std::abs(y) > std::abs(x);
+  Lines lines{steep ? 1u : 0u, int(std::lround(kSlopeUnit * (steep ? x / y : y / x))), steep ? ivec2{origin.y, origin.x} : origin, 0};
+  const int across = steep ? view.size.x : view.size.y;
+  const int most = std::max(std::abs(shift_at(lines, 0)), std::abs(shift_at(lines, steep ? view.size.y : view.size.x)));
+  lines.wrap = (most / across + 1) * across;
+  return lines;
 }
 
 /// The grid of blocks that the pixels of an estimate stand for: it begins at the display window's corner, so that a crop has the blocks of the whole.
@@ -177,7 +201,10 @@ GBuffer downsample(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs
   return low;
 }
 
+bool searches_exactly(const EstimatorSettings& settings) { return settings.estimator == Estimator::gtao && settings.search != SliceSearch::steps; }
+
 int stride_of(const EstimatorSettings& settings) {
+  if (searches_exactly(settings)) return 1;
   if (settings.stride > 0) return settings.stride;
   const bool shared = settings.denoise == Denoise::bilateral && settings.resolution == Resolution::full && settings.slices <= 2;
   return shared && settings.estimator == Estimator::gtao ? 4 : 1;
@@ -190,7 +217,9 @@ std::vector<double> radii_of(const EstimatorSettings& settings) {
   return radii;
 }
 
-bool has_bent_normals(Estimator estimator) { return estimator == Estimator::gtao || estimator == Estimator::bitmask; }
+bool has_bent_normals(const EstimatorSettings& settings) {
+  return settings.estimator == Estimator::bitmask || (settings.estimator == Estimator::gtao && !searches_exactly(settings));
+}
 
 Estimate estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& inputs, const EstimatorSettings& settings, bool with_bent) {
   FrameInputs frame = inputs;
@@ -203,7 +232,11 @@ Estimate estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs&
     one.radius = radii[plane];
     const Estimate out{all.ao, plane + 1 == radii.size() ? all.bent : nullptr};
     switch (settings.estimator) {
-      case Estimator::gtao: horizon(gpu, gbuffer, frame, one, out, plane); break;
+      case Estimator::gtao:
+        if (!searches_exactly(one)) horizon(gpu, gbuffer, frame, one, out, plane);
+        for (int direction = 0; searches_exactly(one) && direction < directions_of(one); direction++)
+          exact(gpu, gbuffer, profile(gpu, gbuffer, frame, one, direction), one, out, plane);
+        break;
       case Estimator::bitmask: bitmask(gpu, gbuffer, frame, one, out, plane); break;
       case Estimator::hbao: hbao(gpu, gbuffer, frame, one, out, plane); break;
       case Estimator::crytek: crytek(gpu, gbuffer, frame, one, out, plane); break;
@@ -220,6 +253,53 @@ void horizon(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& fram
   gpu.dispatch("horizon", slice_parameters<HorizonParams>(gbuffer, frame, settings, plane),
                {{kHorizonDepth, *gbuffer.depth}, {kHorizonNormal, *gbuffer.normal}, {kHorizonAo, *out.ao}, {kHorizonBent, out.bent ? *out.bent : *out.ao}},
                estimated_extent(gbuffer.view, settings), constants);
+}
+
+Profile profile(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings, int direction) {
+  const std::size_t bytes = plane_bytes(gbuffer.view);
+  const Lines lines = lines_of(gbuffer.view, frame.noise_origin, direction, directions_of(settings));
+  const Profile result{direction, lines, &gpu.buffer("profile vertex", bytes, gpu::Use::device), &gpu.buffer("profile mark", bytes, gpu::Use::device),
+                       &gpu.buffer("profile neighbor", bytes, gpu::Use::device)};
+  const ivec2 size = gbuffer.view.size;
+  const auto [least, most] = std::minmax({shift_at(lines, 0), shift_at(lines, (lines.steep ? size.y : size.x) - 1)});
+  const ProfileParams params{gbuffer.view, lines, -most, uint((lines.steep ? size.x : size.y) + most - least), kProfileTolerance};
+  gpu.dispatch("profile", params,
+               {{kProfileDepth, *gbuffer.depth},
+                {kProfileVertex, *result.vertex},
+                {kProfileMark, *result.mark},
+                {kProfileNeighbor, *result.neighbor}},
+               {params.count}, {settings.search == SliceSearch::every_pixel ? 1u : 0u});
+  return result;
+}
+
+void exact(gpu::Recorder& gpu, const GBuffer& gbuffer, const Profile& profile, const EstimatorSettings& settings, const Estimate& out, uint plane) {
+  const Lines& lines = profile.lines;
+  const int directions = directions_of(settings), takers = directions / settings.slices;
+  ExactParams params{};
+  params.view = gbuffer.view;
+  params.lines = lines;
+  params.stride = takers > 1 ? 2 : 1;
+  // Neighbouring directions go to opposite corners of a block; blocks are those of the display window.
+  constexpr ivec2 kCorners[] = {{0, 0}, {1, 1}, {1, 0}, {0, 1}};
+  const ivec2 corner = kCorners[profile.direction % takers];
+  if (takers > 1) params.first = {(corner.x + lines.origin.x) & 1, (corner.y + lines.origin.y) & 1};
+  params.direction = uint(profile.direction);
+  params.is_first = profile.direction < takers ? 1 : 0;
+  params.is_last = profile.direction >= directions - takers ? 1 : 0;
+  params.radius = float(settings.radius.value() * settings.falloff_end);
+  params.thickness = thickness_of(settings);
+  params.bias = float(settings.bias);
+  params.plane = plane;
+  const ivec2 size = gbuffer.view.size, taken{(size.x + params.stride - 1) / params.stride, (size.y + params.stride - 1) / params.stride};
+  gpu.dispatch("exact", params,
+               {{kExactDepth, *gbuffer.depth},
+                {kExactNormal, *gbuffer.normal},
+                {kExactVertex, *profile.vertex},
+                {kExactMark, *profile.mark},
+                {kExactNeighbor, *profile.neighbor},
+                {kExactWhole, gpu.buffer("whole arcs", plane_bytes(gbuffer.view), gpu::Use::device)},
+                {kExactAo, *out.ao}},
+               lines.steep ? gpu::Extent{uint(taken.y), uint(taken.x)} : gpu::Extent{uint(taken.x), uint(taken.y)});
 }
 
 void bitmask(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings, const Estimate& out, uint plane) {
