@@ -234,8 +234,10 @@ Estimate estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs&
     switch (settings.estimator) {
       case Estimator::gtao:
         if (!searches_exactly(one)) horizon(gpu, gbuffer, frame, one, out, plane);
-        for (int direction = 0; searches_exactly(one) && direction < directions_of(one); direction++)
-          exact(gpu, gbuffer, profile(gpu, gbuffer, frame, one, direction), one, out, plane);
+        for (int direction = 0; searches_exactly(one) && direction < directions_of(one); direction++) {
+          const Profile lines = profile(gpu, gbuffer, frame, one, direction);
+          exact(gpu, gbuffer, lines, one, out, plane);
+        }
         break;
       case Estimator::bitmask: bitmask(gpu, gbuffer, frame, one, out, plane); break;
       case Estimator::hbao: hbao(gpu, gbuffer, frame, one, out, plane); break;

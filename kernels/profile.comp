@@ -8,7 +8,7 @@
 // - A run is a row of steps whose depths go on from each other. Its width, from outer edge to outer edge, is known at both its ends.
 // - Disparity 1/z (orthographic: z) along a line is to a slice through the eye what a projective map is: straight stays straight. A stroke is drawn on as
 //   long as it keeps within the tolerance of all it passes ("swinging door", Bristol, "Swinging Door Trending", 1990); vertices are steps themselves.
-// - One vertex every kRestart pixels at the least, so that crops have the vertices of the whole.
+// - One vertex every kProfileRestart pixels at the least, so that crops have the vertices of the whole.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "profile.h"
@@ -25,8 +25,6 @@ layout(scalar, binding = kProfileDepth) readonly buffer Depth { float depth[]; }
 layout(scalar, binding = kProfileVertex) writeonly buffer Vertex { float vertex[]; };
 layout(scalar, binding = kProfileMark) writeonly buffer Mark { uint mark[]; };
 layout(scalar, binding = kProfileNeighbor) writeonly buffer Neighbor { uint neighbor[]; };
-
-const int kRestart = 64;
 
 /// Three pixels across a line whose values change by amounts that differ by less than this part are one surface however steep: a floor seen aslant.
 const float kStraight = 0.25;
@@ -82,7 +80,7 @@ void main() {
     const bool surface = nearest < kSkyDepth && t < end;
     const bool goes_on = open && surface && connected(perspective, pixel, z, last_z);
     const float gap = float(t - anchor), slope = (next_value - anchor_value) / gap;
-    const bool fits = goes_on && kEveryPixel == 0u && slope >= low && slope <= high && ((t - 1 + lines.origin.x) & (kRestart - 1)) != 0;
+    const bool fits = goes_on && kEveryPixel == 0u && slope >= low && slope <= high && ((t - 1 + lines.origin.x) & (kProfileRestart - 1)) != 0;
     const vec2 place = place_at(view, plane, t, z);
 
     // Loops, not ifs: lavapipe goes through an if in any case.

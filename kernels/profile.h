@@ -12,7 +12,8 @@ ALCOVE_CONSTANT uint kProfileNeighbor = 3;  // out: uint a step: the columns of 
 
 ALCOVE_CONSTANT uint kProfileEveryPixelId = 0;  // specialization: 1: every pixel is a vertex
 
-ALCOVE_CONSTANT uint kProfileGroup = 32;  // lines of a workgroup
+ALCOVE_CONSTANT uint kProfileGroup = 32;   // lines of a workgroup
+ALCOVE_CONSTANT int kProfileRestart = 64;  // px: a run has a vertex at every multiple along the line, so that a crop has those of the whole; a power of 2
 
 ALCOVE_CONSTANT uint kVertexBegins = 1;  // its run, where one looks along the line
 ALCOVE_CONSTANT uint kVertexEnds = 2;
