@@ -8,7 +8,7 @@
 // - The receiver is moved onto its line's plane along its tangent plane, by half a pixel at most: a flat surface stays flat.
 // - Every stroke is cut to what the sphere holds of it, and blocks from its front to its back: as far along the eye's ray as its run is wide ("width as thickness").
 //   What goes on from the receiver is its own surface: it blocks all below its horizon.
-// - What is blocked is a union of intervals: exact for what joins the horizon and for the one interval at hand; others are counted in 32 sectors of equal measure.
+// - What is blocked is a union of intervals: exact for what joins the horizon; all others are counted in 24 sectors (sectors.glsl).
 // - Result 1 - (sum of blocked arcs) / (sum of whole arcs).
 #version 450
 #extension GL_GOOGLE_include_directive : require
@@ -19,6 +19,7 @@
 #include "noise.glsl"
 #include "bent.glsl"
 #include "slice.glsl"
+#include "sectors.glsl"
 #include "lines.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
@@ -45,7 +46,7 @@ struct Point {
 struct Search {
   vec2 across;      // unit, to that side of the eye's ray
   vec2 leaving;     // unit normal of the eye's ray that touches the sphere of the radius, in (across, toward): what is further along it is beyond the sphere
-  float lowest;     // cotangent of where blocking begins
+  float lowest;     // slope_of() where blocking begins
   int step;         // of columns, to that side
   uint begins, last;  // the flags of vertices to that side
 };
@@ -64,27 +65,21 @@ Point point_of(View view, LinePlane plane, vec2 tangent, float z, vec3 normal) {
   return point;
 }
 
-bool joins(inout vec2 a, vec2 x) {
-  const bool overlap = x.x <= a.y && x.y >= a.x;
-  a = overlap ? vec2(min(a.x, x.x), max(a.y, x.y)) : a;
-  return overlap;
-}
-
-/// Cotangent of the back of an occluder, `thickness` further along the eye's ray through its front (across, toward), but not beyond the sphere.
+/// slope_of() the back of an occluder, `thickness` further along the eye's ray through its front (across, toward), but not beyond the sphere.
 float back_of(vec2 front, float eye_distance, float thickness, float radius_sq) {
   const vec2 ray = eye_distance < kNone ? front - vec2(0, eye_distance) : vec2(0, -1), direction = ray * inversesqrt(dot(ray, ray));
   const float middle = dot(front, direction);
   const float leaves = sqrt(max(0.0, middle * middle - dot(front, front) + radius_sq)) - middle;
   const vec2 back = front + min(thickness, leaves) * direction;
-  return back.y / back.x;
+  return slope_of(back);
 }
 
 /// The blocked part of a side's arc integral.
 float blocked_arc(View view, LinePlane plane, Side side, Search search, Point point, float radius, float thickness, int at, float shift) {
-  const float radius_sq = radius * radius, whole = whole_arc(side);
+  const float radius_sq = radius * radius;
   const bool measured = thickness == 0.0;
-  float own = side.plane_cot, thick = thickness;
-  vec2 current = kEmpty, last = vec2(0);
+  float own = slope_of(side.ahead), thick = thickness;
+  vec2 last = vec2(0);
   uint sectors = 0u;
   bool is_own = true, starts = true;
   for (bool goes = true; goes; at += search.step) {
@@ -100,29 +95,19 @@ float blocked_arc(View view, LinePlane plane, Side side, Search search, Point po
     const float inside_sq = a * radius_sq - beside * beside, inside = sqrt(max(inside_sq, 0.0)), scale = 1.0 / a;
     const float enters = max(0.0, (-middle - inside) * scale), leaves = min(1.0, (inside - middle) * scale);
     const vec2 near = from + enters * stroke, far = from + leaves * stroke;
-    const float near_cot = near.y / near.x, far_cot = far.y / far.x, high = max(near_cot, far_cot);
+    const float near_slope = slope_of(near), far_slope = slope_of(far), high = max(near_slope, far_slope);
     const bool within = inside_sq > 0.0 ? enters <= leaves : false, rises = min(near.x, far.x) > 0.0 ? high > search.lowest : false;
-    const float top = within ? rises ? high : -kNone : -kNone;
-    // What it blocks, into the union.
-    const float bottom = is_own ? -kNone : min(min(near_cot, far_cot), back_of(far, point.eye_distance, thick, radius_sq));
+    const float top = within ? rises ? high : -1.0 : -1.0;
+    // What it blocks: more of what the receiver's own surface does, or a set apart.
+    const float bottom = is_own ? -1.0 : min(min(near_slope, far_slope), back_of(far, point.eye_distance, thick, radius_sq));
     const bool onto_own = bottom <= own;
+    sectors |= onto_own || top < bottom ? 0u : sectors_below(top, shift) & ~sectors_below(bottom, shift);
     own = onto_own ? max(own, top) : own;
-    const vec2 span = onto_own ? kEmpty : vec2(top > -kNone ? bottom : kNone, top);
-    const bool joined = joins(current, span);
-    for (bool parts = joined ? false : span.x < span.y; parts; parts = false) {
-      sectors |= sectors_to(side, whole, current.x, shift) & ~sectors_to(side, whole, current.y, shift);
-      current = span;
-    }
-    const bool sinks = current.x <= own;
-    own = sinks ? max(own, current.y) : own;
-    current = sinks ? kEmpty : current;
     goes = (marked & search.last) == 0u ? dot(place, search.leaving) < radius : false;
     last = place;
     starts = false;
   }
-  const uint rest = sectors & sectors_to(side, whole, own, shift) & (sectors_to(side, whole, current.y, shift) | ~sectors_to(side, whole, current.x, shift));
-  const float at_hand = current.x < current.y ? arc_to(side, current.x) - arc_to(side, current.y) : 0.0;
-  return whole - arc_to(side, own) + at_hand + whole * float(bitCount(rest)) / float(kSectors);
+  return whole_arc(side) - arc_to(side, place_at(own)) + arc_of(side, sectors & ~sectors_below(own, shift));
 }
 
 void main() {
@@ -153,11 +138,11 @@ void main() {
       side.cos_gamma = facing / weight;
       side.sin_gamma = float(sign) * dot(point.normal, across_eye) / weight;
       side.gamma = angle_of(side.cos_gamma, side.sin_gamma);
-      side.plane_cot = -side.sin_gamma / side.cos_gamma;
+      side.ahead = vec2(side.cos_gamma, -side.sin_gamma);
       Search search;
       search.across = float(sign) * across_eye;
       search.leaving = sine < 1.0 ? vec2(cosine, sine) : vec2(0);
-      search.lowest = (lift * side.cos_gamma - level * side.sin_gamma) / (level * side.cos_gamma + lift * side.sin_gamma);
+      search.lowest = slope_of(vec2(level * side.cos_gamma + lift * side.sin_gamma, lift * side.cos_gamma - level * side.sin_gamma));
       search.step = sign;
       search.begins = sign > 0 ? kVertexBegins : kVertexEnds;
       search.last = sign > 0 ? kVertexLast : kVertexFirst;
