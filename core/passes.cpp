@@ -94,7 +94,7 @@ gpu::Extent estimated_extent(const View& view, const EstimatorSettings& settings
 }
 
 /// How far a profile may leave a pixel's depth, in the pixel's own widths: less costs more vertices.
-constexpr float kProfileTolerance = 0.15f;
+constexpr float kProfileTolerance = 0.2f;
 
 /// Directions of an exact search over a frame: each pixel takes all of them, or a quarter where a denoiser mixes those of its block of 2 x 2.
 int directions_of(const EstimatorSettings& settings) { return settings.slices * (settings.denoise == Denoise::none ? 1 : 4); }

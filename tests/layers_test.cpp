@@ -134,6 +134,22 @@ TEST(Kernels, a_stem_is_found_everywhere) {
   }
 }
 
+int count_of(const std::string& text, const std::string& part) {
+  int count = 0;
+  for (auto at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) count++;
+  return count;
+}
+
+TEST(Presets, each_of_ours_has_limits_on_every_frame_of_the_suite) {
+  const std::string folder = ALCOVE_SOURCE_DIR "/examples/bench/", suite = read_bytes(folder + "suite.toml"), limits = read_bytes(folder + "limits.toml");
+  for (const auto& file : names_in(ALCOVE_SOURCE_DIR "/presets")) {
+    if (file.find('/') != std::string::npos || !file.ends_with(".toml")) continue;
+    const std::string name = fs::path(file).stem().string();
+    EXPECT_THAT(suite, HasSubstr("preset = \"" + name + "\""));
+    EXPECT_EQ(count_of(limits, "candidate = \"" + name + "\""), count_of(suite, "[[frame]]")) << name;
+  }
+}
+
 TEST(Kernels, every_header_belongs_to_a_kernel) {
   const Names stems = kernel_stems();
   for (const auto& file : product())
