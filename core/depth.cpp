@@ -122,6 +122,19 @@ double planar_depth(const DepthMap& map, const std::array<double, 3>& raw, doubl
   return map.along_ray ? z / ray_length : z;
 }
 
+DepthPrecision depth_precision(const DepthMap& map, double raw_precision) {
+  constexpr double kRenderers = 0x1p-17;
+  const double slope = std::abs(map.slope), rest = raw_precision * std::abs(map.slope * map.origin - map.base);
+  DepthPrecision precision;
+  precision.at[1] = std::max(kRenderers, raw_precision);
+  switch (map.form) {
+    case kDepthReciprocal: precision.at[2] = rest; break;
+    case kDepthExponential: precision.at[0] = raw_precision * map.base * slope, precision.at[1] = std::max(kRenderers, raw_precision * slope); break;
+    default: precision.at[0] = rest;
+  }
+  return precision;
+}
+
 const char* name_of(DepthKind kind) {
   switch (kind) {
     case DepthKind::automatic:

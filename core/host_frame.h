@@ -22,6 +22,7 @@ struct HostFrame {
   DepthKind depth_kind = DepthKind::planar;        // not automatic
   NormalSpace normal_space = NormalSpace::view;    // not automatic; world needs camera.view_from_world
   double depth_scale = 1, sky = 1e9;
+  bool depth_is_half = false;   // the values were rounded to half floats
   DepthRange depth_range;
   PositionSpace position_space = PositionSpace::view;  // not automatic; world needs camera.view_from_world
   NormalEncoding normal_encoding = NormalEncoding::signed_float;  // not automatic

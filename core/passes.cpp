@@ -81,6 +81,7 @@ Params slice_parameters(const GBuffer& gbuffer, const FrameInputs& frame, const 
   params.thickness = thickness_of(settings);
   params.bias = float(settings.bias);
   params.plane = plane;
+  params.depth_precision = to_vec3(frame.depth_precision.at);
   return params;
 }
 std::vector<uint> slice_constants(const EstimatorSettings& settings, const gpu::Buffer* bent = nullptr) {
@@ -321,6 +322,7 @@ void hbao(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, 
   params.noise_origin = frame.noise_origin;
   params.noise_shift = noise_shift(frame.frame, settings.seed);
   params.plane = plane;
+  params.depth_precision = to_vec3(frame.depth_precision.at);
   gpu.dispatch("hbao", params, {{kHbaoDepth, *gbuffer.depth}, {kHbaoNormal, *gbuffer.normal}, {kHbaoAo, *out.ao}},
                estimated_extent(gbuffer.view, settings), slice_constants(settings));
 }
@@ -335,6 +337,7 @@ void crytek(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame
   params.noise_origin = frame.noise_origin;
   params.noise_shift = noise_shift(frame.frame, settings.seed);
   params.plane = plane;
+  params.depth_precision = to_vec3(frame.depth_precision.at);
   gpu.dispatch("crytek", params, {{kCrytekDepth, *gbuffer.depth}, {kCrytekNormal, *gbuffer.normal}, {kCrytekAo, *out.ao}},
                estimated_extent(gbuffer.view, settings), {uint(settings.samples), uint(stride_of(settings))});
 }

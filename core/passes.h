@@ -17,6 +17,7 @@ struct FrameInputs {
   ivec2 noise_origin{};              // px: the data window's corner, so that a crop has the noise of the whole
   int frame = 0;
   DepthMap depth_map;
+  DepthPrecision depth_precision{};  // of the planar depth that it gives
   NormalEncoding normal_encoding = NormalEncoding::signed_float;  // not automatic
   bool normal_unorm = false;         // the values are 0.5 + 0.5 n, of any encoding
   Matrix3 view_from_normal{};        // rotation from the normals' space, and flips

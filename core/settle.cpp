@@ -284,11 +284,13 @@ void settle(FrameSource& source, const InputSettings& settings, std::span<const 
   source.settled = true;
 }
 
-double depth_rounding(const FrameSource& source) {
+bool has_half_depth(const FrameSource& source) {
   const auto& channels = source.files[source.depth[0].file].parts()[std::size_t(source.depth[0].part)].channels;
   const auto channel = std::ranges::find(channels, source.depth[0].channel, &ExrChannel::name);
-  return channel != channels.end() && channel->type == SampleType::half_float ? kHalfRounding : kFloatRounding;
+  return channel != channels.end() && channel->type == SampleType::half_float;
 }
+
+double depth_rounding(const FrameSource& source) { return has_half_depth(source) ? kHalfRounding : kFloatRounding; }
 
 void settle_by_rows(FrameSource& source, const InputSettings& settings) {
   const Window data = source.data, all = source.file_data;

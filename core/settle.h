@@ -29,5 +29,7 @@ double depth_rounding(const FrameSource& source);
 
 /// The map to planar depth, for a settled frame.
 DepthMap depth_map_of(const FrameSource& source, const InputSettings& settings);
+/// Whether the depth channel is stored as half float.
+bool has_half_depth(const FrameSource& source);
 
 }  // namespace alcove

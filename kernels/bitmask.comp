@@ -19,6 +19,7 @@
 #include "stride.glsl"
 #include "falloff.glsl"
 #include "bent.glsl"
+#include "clearance.glsl"
 #include "slice.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
@@ -51,7 +52,7 @@ vec3 search(Receiver r, Side side, Reach reach, float jitter, float shift) {
     const vec2 place = place_of(r, side, beside, z, scale);
     const vec3 delta = offset_to(r, beside, z, scale);
     const float cot = place.y / place.x, distance_sq = dot(delta, delta);
-    const bool blocks = is_above(r, reach, place, distance_sq, beside, z, scale) ? distance_sq < reach.radius_sq : false;
+    const bool blocks = is_above(r, reach, place, distance_sq, offset, beside, z, scale) ? distance_sq < reach.radius_sq : false;
     const bool connected = same_surface(r, reach, z, last_z, offset - last_offset);
     start = connected ? start : place;
     own = connected ? own : false;
@@ -92,7 +93,7 @@ void main() {
     if (kBent) write_bent(index, plane, vec3(0));
     return;
   }
-  const Receiver r = receiver_at(view, pixel, z, unpack_normal(normal[index]), params.radius);
+  const Receiver r = receiver_at(view, pixel, z, unpack_normal(normal[index]), params.radius, params.depth_precision);
   const Reach reach = reach_of(view, params.radius, params.falloff_start, params.thickness, params.bias);
   const vec2 noise = pixel_noise(packed_place(pixel + params.noise_origin, kStride), params.noise_shift);
   float blocked = 0.0, whole = 0.0;

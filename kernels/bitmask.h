@@ -24,6 +24,7 @@ struct BitmaskParams {
   float bias;           // sine of the elevation above the tangent plane below which nothing blocks
   float thickness;      // scene units; infinite allowed; 0: as deep as wide
   uint plane;           // of the output, which has one a radius
+  vec3 depth_precision; // how far a depth z may be from the surface's: x + y z + z z^2, scene units
 };
 ALCOVE_PARAMS(BitmaskParams)
 

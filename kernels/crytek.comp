@@ -15,6 +15,7 @@
 #include "normal.glsl"
 #include "noise.glsl"
 #include "stride.glsl"
+#include "clearance.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 layout(constant_id = kCrytekSamplesId) const uint kSamples = 16;
@@ -24,8 +25,6 @@ layout(scalar, binding = kCrytekDepth) readonly buffer Depth { float depth[]; };
 layout(scalar, binding = kCrytekNormal) readonly buffer Normal { uint normal[]; };
 layout(scalar, binding = kCrytekAo) writeonly buffer Ao { float ao[]; };
 
-/// The sine of an elevation above the tangent plane below which the scene is the surface itself, raised by rounding.
-const float kLeastElevation = 1e-3;
 /// How far a pixel's ray must turn towards the tangent plane to meet it at a place worth the name.
 const float kLeastSlope = 1e-4;
 const float kTwoPi = 6.28318530717958648;
@@ -61,6 +60,7 @@ void main() {
   const vec3 tangent = vec3(1.0 + sign_z * n.x * n.x * a, sign_z * b, -sign_z * n.x), bitangent = vec3(b, sign_z + n.y * n.y * a, -n.y);
 
   const uint first_point = kSamples * hilbert_index(uvec2(pixel + params.noise_origin));
+  const float clearance = least_height(params.depth_precision, z, (perspective ? dot(n.xy, tangent_of(params.view, vec2(pixel) + 0.5)) : 0.0) - n.z);
   float valid = 0.0, blocked = 0.0;
   for (uint i = 0u; i < kSamples; i++) {
     const vec3 random = r3_point(first_point + i, params.noise_shift);
@@ -79,7 +79,9 @@ void main() {
     const float hit_height = dot(n, offset), slope = -dot(n, ray);
     // How much deeper than the hit the sample lies on the hit's ray: by height; where that ray does not meet the tangent plane, by depth.
     const float deeper = slope > kLeastSlope ? min((hit_height - height) / slope, -at.z + params.radius - hit_z) : -at.z - hit_z;
-    const bool above = hit_height > 0.0 && hit_height * hit_height > kLeastElevation * kLeastElevation * dot(offset, offset);
+    const ivec2 aside = abs(hit - pixel);
+    const bool clear = hit_height > clearance + least_rise(params.view) * float(max(aside.x, aside.y)) * (perspective ? hit_z : 1.0);
+    const bool above = clear && hit_height * hit_height > kLeastElevation * kLeastElevation * dot(offset, offset);
     if (above && deeper > params.bias) blocked += range_weight(hit_z - z);
   }
   ao[ao_index] = valid > 0.0 ? 1.0 - blocked / valid : 1.0;

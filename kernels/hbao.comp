@@ -18,6 +18,7 @@
 #include "noise.glsl"
 #include "stride.glsl"
 #include "falloff.glsl"
+#include "clearance.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 layout(constant_id = kHbaoSlicesId) const uint kSlices = 3;
@@ -31,8 +32,6 @@ layout(scalar, binding = kHbaoAo) writeonly buffer Ao { float ao[]; };
 
 /// Slices that the normal is nearly perpendicular to have no tangent to speak of, and are left out.
 const float kLeastWeight = 1e-4;
-/// The sine of an elevation above the tangent plane below which a sample is the surface itself, raised by rounding.
-const float kLeastElevation = 1e-3;
 const float kPi = 3.14159265358979324;
 
 /// One direction on the image and the half-plane of view space that is seen along it.
@@ -41,6 +40,7 @@ struct Side {
   vec2 normal;            // the normal in the slice, along T and V; its length is the part of it that lies in the slice
   vec2 direction_px;      // pixels a step, the longer component +-1
   float reach;            // steps of direction_px within the radius and the image
+  float least_height;     // of a sample: see clearance.glsl
 };
 
 /// The occlusion in one direction: sin h - sin t, attenuated.
@@ -61,7 +61,8 @@ float occlusion(Side side, ivec2 pixel, vec3 position, float jitter) {
     const vec3 delta = position_of(params.view, vec2(hit) + 0.5, z) - position;
     const vec2 in_slice = vec2(dot(delta, side.along_t), dot(delta, side.along_v));
     const float unit = inversesqrt(dot(in_slice, in_slice)), squared_distance = dot(delta, delta), height = dot(in_slice, side.normal);
-    const bool above = height > 0.0 && height * height > kLeastElevation * kLeastElevation * squared_distance;
+    const bool clear = height > side.least_height + least_rise(params.view) * step_px * (params.view.orthographic == 0 ? z : 1.0);
+    const bool above = clear && height * height > kLeastElevation * kLeastElevation * squared_distance;
     const float elevation = unit * (params.from_surface != 0 ? height : in_slice.y);
     if (!above || in_slice.x <= 0.0 || elevation <= horizon) continue;
     sum += falloff_weight(kFalloff, sqrt(squared_distance), params.falloff_start, params.radius) * (elevation - horizon);
@@ -88,6 +89,8 @@ void main() {
   const float sin_reach = perspective ? params.radius * inversesqrt(dot(position, position)) : 0.0;
   const float cos_reach = sqrt(max(0.0, 1.0 - sin_reach * sin_reach));
 
+  const float clearance = least_height(params.depth_precision, z, (perspective ? dot(n.xy, tangent) : 0.0) - n.z);
+
   float blocked = 0.0, whole = 0.0;
   for (uint s = 0u; s < kSlices; s++) {
     // An even direction of the image, and the tangent of the view ray that is seen along it.
@@ -108,6 +111,7 @@ void main() {
       side.along_v = eye + n_v * shift;
       side.normal = vec2(float(sign) * n_t, n_v);
       side.direction_px = float(sign) / pixels * image_t;
+      side.least_height = clearance;
       const float forward = perspective ? eye.z * cos_reach - float(sign) * t.z * sin_reach : 1.0;
       const float reach = perspective ? sin_reach * pixels / forward : params.radius * pixels;
       const float border = steps_to_border(params.view, pixel, side.direction_px);

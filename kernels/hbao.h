@@ -23,6 +23,7 @@ struct HbaoParams {
   ivec2 noise_origin;   // px: what to add to a pixel so that crops and tiles share one noise pattern
   vec2 noise_shift;     // in [0, 1): the pattern's shift for this frame and seed
   uint plane;           // of the output, which has one a radius
+  vec3 depth_precision; // how far a depth z may be from the surface's: x + y z + z z^2, scene units
 };
 ALCOVE_PARAMS(HbaoParams)
 

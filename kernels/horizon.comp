@@ -21,6 +21,7 @@
 #include "stride.glsl"
 #include "falloff.glsl"
 #include "bent.glsl"
+#include "clearance.glsl"
 #include "slice.glsl"
 #include "sectors.glsl"
 
@@ -94,7 +95,7 @@ vec3 search(Receiver r, Side side, Reach reach, float jitter) {
   const bool hard = kFalloff == kFalloffNone;
   float last_z = r.z, last_offset = 0.0, last_slope = 0.0, last_distance_sq = kNone;
   vec3 last_arcs = vec3(0), sum = vec3(0);
-  bool own = true, was_within = true;
+  bool own = true, was_within = true, was_above = true;
   Blocked blocked = Blocked(-1.0, kThickness == kThicknessEndless ? 1.0 : -1.0, 0u);
   Run run = Run(vec2(0), vec2(0), 0.0, -1.0, 1.0);
   for (int k = 0; k < count; k++) {
@@ -104,13 +105,13 @@ vec3 search(Receiver r, Side side, Reach reach, float jitter) {
     const float z = depth[hit.y * reach.width + hit.x], scale = r.perspective ? z : 1.0;
     const vec2 place = place_of(r, side, beside, z, scale);
     const float slope = slope_of(place), distance_sq = dot(place, place);
-    const bool above = is_above(r, reach, place, distance_sq, beside, z, scale), within = distance_sq < reach.radius_sq;
+    const bool above = is_above(r, reach, place, distance_sq, offset, beside, z, scale), within = distance_sq < reach.radius_sq;
     const bool blocks = both(above, within);
     // A surface that crosses the sphere between two samples blocks up to there; that of a run, half way.
     const bool connected = kThickness == kThicknessEndless
         ? both(max(distance_sq, last_distance_sq) < kSameSurface * reach.radius_sq, min(distance_sq, last_distance_sq) * kSameSurface > reach.radius_sq)
         : same_surface(r, reach, z, last_z, gap);
-    const bool crosses = hard ? both(both(above, connected), within != was_within) : false;
+    const bool crosses = hard ? both(both(above, was_above), both(connected, within != was_within)) : false;
     const float crossing = mix(slope, last_slope, kThickness == kThicknessEndless ? (reach.radius_sq - distance_sq) / (last_distance_sq - distance_sq) : 0.5);
     const float near = max(blocks ? slope : -1.0, crosses ? crossing : -1.0), far = min(blocks ? slope : 1.0, crosses ? crossing : 1.0);
     if (kThickness != kThicknessEndless && !connected) {
@@ -133,6 +134,7 @@ vec3 search(Receiver r, Side side, Reach reach, float jitter) {
       last_arcs = arcs;
     }
     was_within = within;
+    was_above = above;
     last_slope = slope;
     last_distance_sq = above ? distance_sq : kNone;
     last_z = z;
@@ -157,7 +159,7 @@ void main() {
     if (kBent) write_bent(index, plane, vec3(0));
     return;
   }
-  const Receiver r = receiver_at(view, pixel, z, unpack_normal(normal[index]), params.radius);
+  const Receiver r = receiver_at(view, pixel, z, unpack_normal(normal[index]), params.radius, params.depth_precision);
   const Reach reach = reach_of(view, params.radius, params.falloff_start, params.thickness, params.bias);
   const vec2 noise = pixel_noise(packed_place(pixel + params.noise_origin, kStride), params.noise_shift);
   float blocked = 0.0, whole = 0.0;

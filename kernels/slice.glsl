@@ -8,7 +8,6 @@
 // sample would move by more than it lies beside it, it moves only so far.
 
 const float kLeastWeight = 1e-4;     // slices whose plane the normal is nearly perpendicular to weigh less than this and are left out
-const float kLeastElevation = 1e-3;  // sine of the elevation above the tangent plane up to which a sample is the surface itself, raised by rounding
 
 /// Steps grow with the square of the distance, so that near occluders are not missed. More steps than this are enough to sample all of the reach densely
 /// instead: the exponent is then the one with which the first step is a pixel long.
@@ -22,6 +21,7 @@ struct Reach {
   float radius, radius_sq, falloff_start;  // scene units
   float thickness;                         // scene units, infinite allowed; 0: as deep as wide
   float least_elevation_sq;                // square of the sine of the elevation above the tangent plane below which nothing blocks
+  float least_rise;                        // of a sample: see clearance.glsl
   float pixel_size;                        // scene units at unit depth (orthographic: at any)
   int width;                               // of the image, px
 };
@@ -32,6 +32,7 @@ struct Receiver {
   vec3 normal, eye;    // unit, view space; towards the eye
   vec2 height;         // of a point above the tangent plane: scale * dot(height, offset in pixels) + (z - receiver's z) * depth_height
   float depth_height;
+  float least_height;  // of a sample: see clearance.glsl
   vec2 tangent_per_pixel;
   float eye_distance;  // scene units
   float ray_length;    // of the eye's ray at unit depth
@@ -68,7 +69,7 @@ void basis_of(vec3 v, out vec3 x, out vec3 y) {
   y = vec3(b, 1.0 - v.y * v.y * a, -v.y);
 }
 
-Receiver receiver_at(View view, ivec2 pixel, float z, vec3 normal, float radius) {
+Receiver receiver_at(View view, ivec2 pixel, float z, vec3 normal, float radius, vec3 depth_precision) {
   Receiver r;
   r.pixel = pixel;
   r.z = z;
@@ -81,6 +82,7 @@ Receiver receiver_at(View view, ivec2 pixel, float z, vec3 normal, float radius)
   r.tangent_per_pixel = view.tangent_per_pixel;
   r.height = normal.xy * view.tangent_per_pixel;
   r.depth_height = (r.perspective ? dot(normal.xy, r.tangent) : 0.0) - normal.z;
+  r.least_height = least_height(depth_precision, z, r.depth_height);
   r.sin_reach = r.perspective ? radius / r.eye_distance : 0.0;
   return r;
 }
@@ -142,10 +144,10 @@ vec2 place_of(Receiver r, Side side, vec2 offset, float z, float scale) {
   return vec2(scale * dot(side.across, offset), r.ray_length * (r.z - z) + scale * dot(side.toward, offset));
 }
 
-/// Whether it stands clear of the tangent plane, and before the eye's ray. distance_sq: from the receiver.
-bool is_above(Receiver r, Reach reach, vec2 place, float distance_sq, vec2 offset, float z, float scale) {
+/// Whether it stands clear of the tangent plane, and before the eye's ray. distance_sq: from the receiver. steps: to it.
+bool is_above(Receiver r, Reach reach, vec2 place, float distance_sq, float steps, vec2 offset, float z, float scale) {
   const float height = scale * dot(r.height, offset) + (z - r.z) * r.depth_height;
-  const bool clear = height > 0.0 ? height * height > reach.least_elevation_sq * distance_sq : false;
+  const bool clear = height > r.least_height + scale * (reach.least_rise * steps) ? height * height > reach.least_elevation_sq * distance_sq : false;
   return place.x > 0.0 ? clear : false;
 }
 
@@ -160,7 +162,7 @@ vec2 place_at(float slope) { return vec2(1.0 - abs(slope), slope); }
 
 Reach reach_of(View view, float radius, float falloff_start, float thickness, float bias) {
   const float least = max(bias, kLeastElevation);
-  return Reach(radius, radius * radius, falloff_start, thickness, least * least, view.tangent_per_pixel.x, view.size.x);
+  return Reach(radius, radius * radius, falloff_start, thickness, least * least, least_rise(view), view.tangent_per_pixel.x, view.size.x);
 }
 
 /// Steps from the receiver to sample k of `steps`, of which `count` are pixels apart; never two samples in one pixel: short reaches are searched pixel by pixel.
