@@ -237,7 +237,7 @@ Estimate estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs&
         if (!searches_exactly(one)) horizon(gpu, gbuffer, frame, one, out, plane);
         for (int direction = 0; searches_exactly(one) && direction < directions_of(one); direction++) {
           const Profile lines = profile(gpu, gbuffer, frame, one, direction);
-          exact(gpu, gbuffer, lines, one, out, plane);
+          exact(gpu, gbuffer, lines, frame, one, out, plane);
         }
         break;
       case Estimator::bitmask: bitmask(gpu, gbuffer, frame, one, out, plane); break;
@@ -275,7 +275,8 @@ Profile profile(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& f
   return result;
 }
 
-void exact(gpu::Recorder& gpu, const GBuffer& gbuffer, const Profile& profile, const EstimatorSettings& settings, const Estimate& out, uint plane) {
+void exact(gpu::Recorder& gpu, const GBuffer& gbuffer, const Profile& profile, const FrameInputs& frame, const EstimatorSettings& settings, const Estimate& out,
+           uint plane) {
   const Lines& lines = profile.lines;
   const int directions = directions_of(settings), takers = directions / settings.slices;
   ExactParams params{};
@@ -292,6 +293,7 @@ void exact(gpu::Recorder& gpu, const GBuffer& gbuffer, const Profile& profile, c
   params.radius = float(settings.radius.value() * settings.falloff_end);
   params.thickness = thickness_of(settings);
   params.bias = float(settings.bias);
+  params.depth_precision = to_vec3(frame.depth_precision.at);
   params.plane = plane;
   const ivec2 size = gbuffer.view.size, taken{(size.x + params.stride - 1) / params.stride, (size.y + params.stride - 1) / params.stride};
   gpu.dispatch("exact", params,

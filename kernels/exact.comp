@@ -18,6 +18,7 @@
 #include "arcs.glsl"
 #include "noise.glsl"
 #include "bent.glsl"
+#include "clearance.glsl"
 #include "slice.glsl"
 #include "sectors.glsl"
 #include "lines.glsl"
@@ -46,7 +47,10 @@ struct Point {
 struct Search {
   vec2 across;      // unit, to that side of the eye's ray
   vec2 leaving;     // unit normal of the eye's ray that touches the sphere of the radius, in (across, toward): what is further along it is beyond the sphere
+  vec2 normal;      // the normal's projection, in (across, toward)
   float lowest;     // slope_of() where blocking begins
+  float least_height, least_rise;  // of what blocks: see clearance.glsl
+  int from;         // the receiver's step
   int step;         // of columns, to that side
   uint begins, last;  // the flags of vertices to that side
 };
@@ -84,7 +88,9 @@ float blocked_arc(View view, LinePlane plane, Side side, Search search, Point po
   bool is_own = true, starts = true;
   for (bool goes = true; goes; at += search.step) {
     const uint marked = mark[at];
-    const vec2 offset = place_at(view, plane, int(marked >> 16), vertex[at]) - point.place;
+    const int to = int(marked >> 16);
+    const float z = vertex[at], least = search.least_height + (view.orthographic != 0 ? 1.0 : z) * search.least_rise * float(abs(to - search.from));
+    const vec2 offset = place_at(view, plane, to, z) - point.place;
     const vec2 place = vec2(dot(offset, search.across), dot(offset, point.eye));
     const bool begins = (marked & search.begins) != 0u;
     is_own = begins ? false : is_own;
@@ -97,7 +103,8 @@ float blocked_arc(View view, LinePlane plane, Side side, Search search, Point po
     const vec2 near = from + enters * stroke, far = from + leaves * stroke;
     const float near_slope = slope_of(near), far_slope = slope_of(far), high = max(near_slope, far_slope);
     const bool within = inside_sq > 0.0 ? enters <= leaves : false, rises = min(near.x, far.x) > 0.0 ? high > search.lowest : false;
-    const float top = within ? rises ? high : -1.0 : -1.0;
+    const bool clear = rises ? max(dot(near, search.normal), dot(far, search.normal)) > least : false;
+    const float top = within ? clear ? high : -1.0 : -1.0;
     // What it blocks: more of what the receiver's own surface does, or a set apart.
     const float bottom = is_own ? -1.0 : min(min(near_slope, far_slope), back_of(far, point.eye_distance, thick, radius_sq));
     const bool onto_own = bottom <= own;
@@ -124,7 +131,10 @@ void main() {
   }
   const int line = at.y - shift_at(lines, at.x), row = row_of(lines, line, extent.y) * extent.x;
   const LinePlane plane = plane_of(view, lines, line);
-  const Point point = point_of(view, plane, tangent_at(view, lines, at + lines.origin), z, unpack_normal(normal[index]));
+  const vec3 n = unpack_normal(normal[index]);
+  const vec2 tangent = tangent_at(view, lines, at + lines.origin);
+  const Point point = point_of(view, plane, tangent, z, n);
+  const float clearance = least_height(params.depth_precision, z, (view.orthographic != 0 ? 0.0 : dot(n.xy, tangent)) - n.z);
   const float radius = params.radius, weight = length(point.normal), facing = max(dot(point.normal, point.eye), kLeastWeight);
   const uint neighbors = neighbor[row + at.x];
   float blocked = 0.0, whole = 0.0;
@@ -132,7 +142,7 @@ void main() {
     const vec2 across_eye = vec2(-point.eye.y, point.eye.x);
     const float sine = radius / point.eye_distance, cosine = sqrt(max(0.0, 1.0 - sine * sine));
     const float share = 1.0 / (plane.ray_length * -point.eye.y);
-    const float lift = params.bias, level = sqrt(1.0 - lift * lift), thickness = params.thickness;
+    const float lift = max(params.bias, kLeastElevation), level = sqrt(1.0 - lift * lift), thickness = params.thickness;
     for (int sign = -1; sign <= 1; sign += 2) {
       Side side;
       side.cos_gamma = facing / weight;
@@ -143,6 +153,10 @@ void main() {
       search.across = float(sign) * across_eye;
       search.leaving = sine < 1.0 ? vec2(cosine, sine) : vec2(0);
       search.lowest = slope_of(vec2(level * side.cos_gamma + lift * side.sin_gamma, lift * side.cos_gamma - level * side.sin_gamma));
+      search.normal = weight * vec2(side.sin_gamma, side.cos_gamma);
+      search.least_height = clearance;
+      search.least_rise = least_rise(view);
+      search.from = at.x;
       search.step = sign;
       search.begins = sign > 0 ? kVertexBegins : kVertexEnds;
       search.last = sign > 0 ? kVertexLast : kVertexFirst;

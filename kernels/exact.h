@@ -23,6 +23,7 @@ struct ExactParams {
   float radius;     // scene units
   float thickness;  // scene units, of what is not connected to the receiver; infinite allowed; 0: as deep as wide
   uint plane;       // of the output: one a radius
+  vec3 depth_precision;  // of planar depth: see clearance.glsl
   float bias;       // sine of the elevation above the tangent plane below which nothing blocks
 };
 ALCOVE_PARAMS(ExactParams)

@@ -15,6 +15,7 @@
 #include "view.glsl"
 #include "arcs.glsl"
 #include "bent.glsl"
+#include "clearance.glsl"
 #include "slice.glsl"
 #include "lines.glsl"
 
