@@ -34,7 +34,6 @@ layout(scalar, binding = kExactWhole) buffer Whole { float whole_arcs[]; };
 layout(scalar, binding = kExactAo) buffer Ao { float ao[]; };
 
 const float kNone = 1e30;
-const vec2 kEmpty = vec2(kNone, -kNone);
 
 /// The receiver in the plane of its line, as the profile has its vertices.
 struct Point {
