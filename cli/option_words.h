@@ -55,6 +55,11 @@ inline const std::map<std::string, Estimator>& names_of() {
   return names;
 }
 template <>
+inline const std::map<std::string, SliceSearch>& names_of() {
+  static const std::map<std::string, SliceSearch> names = {{"steps", SliceSearch::steps}, {"exact", SliceSearch::exact}, {"every-pixel", SliceSearch::every_pixel}};
+  return names;
+}
+template <>
 inline const std::map<std::string, Elevation>& names_of() {
   static const std::map<std::string, Elevation> names = {{"view", Elevation::view}, {"surface", Elevation::surface}};
   return names;

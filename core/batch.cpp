@@ -37,10 +37,20 @@ bool same_file(const std::string& a, const std::string& b) {
   return error ? a == b : whole_a == whole_b;
 }
 
+/// What an exact search leaves to the others.
+void check_search(const Settings& settings) {
+  const auto& e = settings.estimator;
+  if (!searches_exactly(e)) return;
+  if (wants(settings.output, &FrameOutputs::bent_normal)) fail(ErrorKind::usage, "--aov bent-normal: an exact search finds no open directions; --search steps does");
+  if (e.falloff != Falloff::none)
+    fail(ErrorKind::usage, "--falloff: in an exact search all within the radius blocks fully; give --falloff none or --search steps");
+  if (e.stride > 1) fail(ErrorKind::usage, "--stride {}: an exact search is made at every pixel; give --stride 1 or --search steps", e.stride);
+}
+
 /// Several radii, and what only some estimators give.
 void check_scales(const Settings& settings) {
   const auto& e = settings.estimator;
-  if (wants(settings.output, &FrameOutputs::bent_normal) && !has_bent_normals(e.estimator))
+  if (wants(settings.output, &FrameOutputs::bent_normal) && !has_bent_normals(e))
     fail(ErrorKind::usage, "--aov bent-normal: --estimator {} finds no open directions; gtao and bitmask do", e.estimator == Estimator::hbao ? "hbao" : "crytek");
   if (e.further_radii.empty()) return;
   const auto radii = radii_of(e);
@@ -131,6 +141,7 @@ void check_settings(const Settings& settings) {
     fail(ErrorKind::usage, "no input: name an EXR file, or one with --depth or --position");
   if (!settings.input.depth.empty() && !settings.input.position.empty()) fail(ErrorKind::usage, "--depth and --position are two ways to say the same: give one");
   if (!settings.estimator.radius && needs_ao(settings.output)) fail(ErrorKind::usage, "no radius: say with --radius how far occluders reach, in scene units");
+  check_search(settings);
   check_scales(settings);
   if (settings.estimator.estimator != Estimator::crytek && settings.estimator.bias >= 1)
     fail(ErrorKind::usage, "--bias {}: of every estimator but crytek it is the sine of an elevation, below 1", settings.estimator.bias);
@@ -157,7 +168,7 @@ std::string options_digest(const Settings& settings) {
   add(settings.output.multi_bounce, i.albedo_value.value_or(-1));
   add(settings.output.aovs, int(settings.output.ao_channels), int(settings.output.aov_space));
   add(i.material_ao.empty(), i.material_ao_channel, i.albedo.empty(), i.albedo_channels);
-  add(e.samples, e.bias, int(e.elevation), int(e.sample_kernel), int(e.range_check));
+  add(int(e.search), e.samples, e.bias, int(e.elevation), int(e.sample_kernel), int(e.range_check));
   add(int(e.thickness), e.thickness_length, int(e.resolution), e.stride, int(e.denoise));
   add(e.denoise_radius, fmt::format("{}", fmt::join(e.denoise_kernel, ",")), e.denoise_depth_sigma);
   // The camera by what it says; where files lie is not part of it, so that a job has the same digest wherever its folder is mounted.

@@ -57,6 +57,7 @@ FrameOutputs run_chain(gpu::Recorder& gpu, const FrameInputs& frame, const Estim
 }
 
 double samples_per_pixel(const EstimatorSettings& settings) {
+  if (searches_exactly(settings)) return 0;
   const double factor = double(settings.resolution), samples = settings.estimator == Estimator::crytek ? settings.samples : 2 * settings.slices * settings.steps;
   return samples * double(1 + settings.further_radii.size()) / (factor * factor * stride_of(settings));
 }
@@ -69,7 +70,7 @@ bool needs_ao(const OutputSettings& output) {
 }
 
 bool needs_bent(const EstimatorSettings& settings, const OutputSettings& output) {
-  return has_bent_normals(settings.estimator) && (wants(output, &FrameOutputs::bent_normal) || wants(output, &FrameOutputs::specular_occlusion));
+  return has_bent_normals(settings) && (wants(output, &FrameOutputs::bent_normal) || wants(output, &FrameOutputs::specular_occlusion));
 }
 
 }  // namespace alcove

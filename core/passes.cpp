@@ -1,27 +1,18 @@
-// Host side of every kernel.
+// Host side of every kernel but the estimators'.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/passes.h"
-
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <vector>
 
-#include "core/error.h"
+#include "core/pass_common.h"
 #include "kernels/bent_normal.h"
-#include "kernels/bitmask.h"
-#include "kernels/bounds.h"
-#include "kernels/classify.h"
 #include "kernels/combine.h"
 #include "kernels/composite.h"
-#include "kernels/crytek.h"
 #include "kernels/debug.h"
 #include "kernels/denoise.h"
 #include "kernels/directions.h"
 #include "kernels/downsample.h"
-#include "kernels/hbao.h"
-#include "kernels/horizon.h"
 #include "kernels/multi_bounce.h"
 #include "kernels/prepare.h"
 #include "kernels/reconstruct.h"
@@ -35,76 +26,11 @@ namespace {
 /// The Gaussian's standard deviation, in radii of the denoiser.
 constexpr double kDenoiseSigma = 0.6;
 
-std::size_t pixels_of(const View& view) { return std::size_t(view.size.x) * std::size_t(view.size.y); }
-std::size_t plane_bytes(const View& view) { return pixels_of(view) * sizeof(float); }
-uint planes_in(const gpu::Buffer& buffer, const View& view) { return uint(buffer.bytes() / plane_bytes(view)); }
-
-/// As kernels take it: 0 says as deep as wide.
-float thickness_of(const EstimatorSettings& settings) {
-  if (settings.thickness == ThicknessKind::automatic) return 0;
-  return settings.thickness == ThicknessKind::infinite ? std::numeric_limits<float>::infinity() : float(settings.thickness_length);
-}
-
-gpu::Extent extent_of(const View& view) { return {uint(view.size.x), uint(view.size.y)}; }
-uint groups_of(int pixels, uint size) { return (uint(pixels) + size - 1) / size; }
-vec3 to_vec3(const std::array<double, 3>& v) { return {float(v[0]), float(v[1]), float(v[2])}; }
-
 uint normal_form_of(const FrameInputs& frame) {
   if (!frame.normal) return kNormalNone;
   if (frame.normal_encoding == NormalEncoding::octahedral) return kNormalOctahedral;
   if (frame.normal_encoding == NormalEncoding::spheremap) return kNormalSpheremap;
   return frame.normal->bytes() < 3 * plane_bytes(frame.view) ? kNormalXy : kNormalVector;
-}
-
-uint range_check_of(RangeCheck check) {
-  return check == RangeCheck::ratio ? kRangeRatio : check == RangeCheck::smoothstep ? kRangeSmoothstep : kRangeNone;
-}
-
-/// Where the noise pattern of a frame and seed begins: successive frames take successive points of the R2 sequence, seeds of another.
-vec2 noise_shift(int frame, std::uint32_t seed) {
-  const auto fraction = [](double x) { return x - std::floor(x); };
-  const auto shift = [&](double by_frame, double by_seed) { return float(fraction(0.5 + fraction(frame * by_frame) + fraction(seed * by_seed))); };
-  return {shift(0.75487766624669276, 0.41421356237309505), shift(0.56984029099805327, 0.73205080756887729)};
-}
-
-/// Of the estimators that search slices.
-template <class Params>
-Params slice_parameters(const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings, uint plane) {
-  const double radius = settings.radius.value();
-  Params params{};
-  params.view = gbuffer.view;
-  params.radius = float(radius * settings.falloff_end);
-  params.falloff_start = float(radius * settings.falloff_start);
-  params.noise_origin = frame.noise_origin;
-  params.noise_shift = noise_shift(frame.frame, settings.seed);
-  params.thickness = thickness_of(settings);
-  params.bias = float(settings.bias);
-  params.plane = plane;
-  params.depth_precision = to_vec3(frame.depth_precision.at);
-  return params;
-}
-std::vector<uint> slice_constants(const EstimatorSettings& settings, const gpu::Buffer* bent = nullptr) {
-  return {uint(settings.slices), uint(settings.steps), uint(settings.falloff) | (bent ? kWithBent : 0), uint(stride_of(settings))};
-}
-
-/// The invocations that make an estimate: one for each pixel that the stride does not leave out.
-/// Tiles in x and y.
-gpu::Extent tile_extent(const View& view) { return {groups_of(view.size.x, uint(kTile)), groups_of(view.size.y, uint(kTile))}; }
-
-/// The grid of blocks that the pixels of an estimate stand for: it begins at the display window's corner, so that a crop has the blocks of the whole.
-struct BlockGrid {
-  int factor;      // px of a block in x and in y
-  ivec2 origin;    // blocks from the display window's corner to the first one of the data window
-  ivec2 overhang;  // px of that one outside of the data window
-  ivec2 size;      // blocks
-};
-
-BlockGrid block_grid(const FrameInputs& frame, const EstimatorSettings& settings) {
-  const int factor = int(settings.resolution);
-  const auto floored = [&](int px) { return px / factor - (px % factor < 0 ? 1 : 0); };
-  const ivec2 origin{floored(frame.noise_origin.x), floored(frame.noise_origin.y)};
-  const ivec2 overhang{frame.noise_origin.x - factor * origin.x, frame.noise_origin.y - factor * origin.y};
-  return {factor, origin, overhang, {floored(overhang.x + frame.view.size.x + factor - 1), floored(overhang.y + frame.view.size.y + factor - 1)}};
 }
 
 /// The denoiser's weights from the centre outwards; each is as good as any multiple of it.
@@ -119,6 +45,14 @@ std::vector<double> denoise_weights(const EstimatorSettings& settings) {
 }
 
 }  // namespace
+
+BlockGrid block_grid(const FrameInputs& frame, const EstimatorSettings& settings) {
+  const int factor = int(settings.resolution);
+  const auto floored = [&](int px) { return px / factor - (px % factor < 0 ? 1 : 0); };
+  const ivec2 origin{floored(frame.noise_origin.x), floored(frame.noise_origin.y)};
+  const ivec2 overhang{frame.noise_origin.x - factor * origin.x, frame.noise_origin.y - factor * origin.y};
+  return {factor, origin, overhang, {floored(overhang.x + frame.view.size.x + factor - 1), floored(overhang.y + frame.view.size.y + factor - 1)}};
+}
 
 GBuffer prepare(gpu::Recorder& gpu, const FrameInputs& frame, gpu::Use depth_use, const std::string& prefix) {
   GBuffer gbuffer{frame.view, &gpu.buffer(prefix + "depth", plane_bytes(frame.view), depth_use),
@@ -176,118 +110,6 @@ GBuffer downsample(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs
                 {kDownsampleLowNormal, *low.normal}},
                extent_of(low.view), {uint(grid.factor)});
   return low;
-}
-
-int stride_of(const EstimatorSettings& settings) {
-  if (settings.stride > 0) return settings.stride;
-  const bool shared = settings.denoise == Denoise::bilateral && settings.resolution == Resolution::full && settings.slices <= 2;
-  return shared && settings.estimator == Estimator::gtao ? 4 : 1;
-}
-
-std::vector<double> radii_of(const EstimatorSettings& settings) {
-  std::vector<double> radii = settings.further_radii;
-  radii.push_back(settings.radius.value());
-  std::ranges::sort(radii);
-  return radii;
-}
-
-bool has_bent_normals(Estimator estimator) { return estimator == Estimator::gtao || estimator == Estimator::bitmask; }
-
-Estimate estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& inputs, const EstimatorSettings& settings, bool with_bent) {
-  FrameInputs frame = inputs;
-  frame.noise_origin = block_grid(inputs, settings).origin;
-  const auto radii = radii_of(settings);
-  Estimate all{&gpu.buffer("ao", radii.size() * plane_bytes(gbuffer.view), gpu::Use::download)};
-  if (with_bent) all.bent = &gpu.buffer("bent", 3 * plane_bytes(gbuffer.view), gpu::Use::download);
-  const gpu::Buffer& tiles = bounds(gpu, gbuffer, frame, settings);
-  for (uint plane = 0; plane < radii.size(); plane++) {
-    EstimatorSettings one = settings;
-    one.radius = radii[plane];
-    Estimate out{all.ao, plane + 1 == radii.size() ? all.bent : nullptr};
-    all.listed = out.listed = classify(gpu, gbuffer, frame, one, tiles, out, plane);
-    switch (settings.estimator) {
-      case Estimator::gtao: horizon(gpu, gbuffer, frame, one, out, plane); break;
-      case Estimator::bitmask: bitmask(gpu, gbuffer, frame, one, out, plane); break;
-      case Estimator::hbao: hbao(gpu, gbuffer, frame, one, out, plane); break;
-      case Estimator::crytek: crytek(gpu, gbuffer, frame, one, out, plane); break;
-    }
-  }
-  return all;
-}
-
-gpu::Buffer& bounds(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings) {
-  const gpu::Extent tiles = tile_extent(gbuffer.view);
-  gpu::Buffer& bounds = gpu.buffer("bounds", sizeof(TileBounds) * tiles.x * tiles.y, gpu::Use::device);
-  if (settings.skip)
-    gpu.dispatch("bounds", BoundsParams{gbuffer.view, frame.noise_origin},
-                 {{kBoundsDepth, *gbuffer.depth}, {kBoundsNormal, *gbuffer.normal}, {kBoundsTiles, bounds}}, tiles, {uint(stride_of(settings))});
-  return bounds;
-}
-
-TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings, const gpu::Buffer& bounds,
-                  const Estimate& out, uint plane) {
-  const gpu::Extent tiles = tile_extent(gbuffer.view);
-  const TileList list{&gpu.buffer("tiles", sizeof(ListedTile) * tiles.x * tiles.y, gpu::Use::device), &gpu.buffer("tile counts", sizeof(TileCounts), gpu::Use::download)};
-  gpu.clear(*list.counts);
-  const bool ranged = settings.estimator == Estimator::gtao || settings.estimator == Estimator::bitmask;
-  const ClassifyParams params{gbuffer.view, frame.noise_origin, float(settings.radius.value() * settings.falloff_end), to_vec3(frame.depth_precision.at), plane};
-  gpu.dispatch("classify", params,
-               {{kClassifyBounds, bounds},
-                {kClassifyDepth, *gbuffer.depth},
-                {kClassifyNormal, *gbuffer.normal},
-                {kClassifyList, *list.tiles},
-                {kClassifyCounts, *list.counts},
-                {kClassifyAo, *out.ao},
-                {kClassifyBent, out.bent ? *out.bent : *out.ao}},
-               tiles, {uint(stride_of(settings)), (settings.skip ? kClassifySkips : 0) | (ranged ? kClassifyRanged : 0) | (out.bent ? kClassifyWithBent : 0)});
-  return list;
-}
-
-void horizon(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings, const Estimate& out, uint plane) {
-  std::vector<uint> constants = slice_constants(settings, out.bent);
-  constants.push_back(settings.thickness == ThicknessKind::automatic  ? kThicknessWidth
-                      : settings.thickness == ThicknessKind::constant ? kThicknessLength
-                                                                      : kThicknessEndless);
-  gpu.dispatch("horizon", slice_parameters<HorizonParams>(gbuffer, frame, settings, plane),
-               {{kHorizonDepth, *gbuffer.depth}, {kHorizonNormal, *gbuffer.normal}, {kHorizonAo, *out.ao}, {kHorizonBent, out.bent ? *out.bent : *out.ao}, {kHorizonList, *out.listed.tiles}, {kHorizonCounts, *out.listed.counts}},
-               gpu::Extent(*out.listed.counts), constants);
-}
-
-void bitmask(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings, const Estimate& out, uint plane) {
-  gpu.dispatch("bitmask", slice_parameters<BitmaskParams>(gbuffer, frame, settings, plane),
-               {{kBitmaskDepth, *gbuffer.depth}, {kBitmaskNormal, *gbuffer.normal}, {kBitmaskAo, *out.ao}, {kBitmaskBent, out.bent ? *out.bent : *out.ao}, {kBitmaskList, *out.listed.tiles}, {kBitmaskCounts, *out.listed.counts}},
-               gpu::Extent(*out.listed.counts), slice_constants(settings, out.bent));
-}
-
-void hbao(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings, const Estimate& out, uint plane) {
-  const double radius = settings.radius.value();
-  HbaoParams params{};
-  params.view = gbuffer.view;
-  params.radius = float(radius * settings.falloff_end);
-  params.falloff_start = float(radius * settings.falloff_start);
-  params.bias = float(settings.bias);
-  params.from_surface = settings.elevation == Elevation::surface ? 1 : 0;
-  params.noise_origin = frame.noise_origin;
-  params.noise_shift = noise_shift(frame.frame, settings.seed);
-  params.plane = plane;
-  params.depth_precision = to_vec3(frame.depth_precision.at);
-  gpu.dispatch("hbao", params, {{kHbaoDepth, *gbuffer.depth}, {kHbaoNormal, *gbuffer.normal}, {kHbaoAo, *out.ao}, {kHbaoList, *out.listed.tiles}, {kHbaoCounts, *out.listed.counts}},
-               gpu::Extent(*out.listed.counts), slice_constants(settings));
-}
-
-void crytek(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings, const Estimate& out, uint plane) {
-  CrytekParams params{};
-  params.view = gbuffer.view;
-  params.radius = float(settings.radius.value());
-  params.bias = float(settings.bias);
-  params.uniform_volume = settings.sample_kernel == SampleKernel::uniform ? 1 : 0;
-  params.range_check = range_check_of(settings.range_check);
-  params.noise_origin = frame.noise_origin;
-  params.noise_shift = noise_shift(frame.frame, settings.seed);
-  params.plane = plane;
-  params.depth_precision = to_vec3(frame.depth_precision.at);
-  gpu.dispatch("crytek", params, {{kCrytekDepth, *gbuffer.depth}, {kCrytekNormal, *gbuffer.normal}, {kCrytekAo, *out.ao}, {kCrytekList, *out.listed.tiles}, {kCrytekCounts, *out.listed.counts}},
-               gpu::Extent(*out.listed.counts), {uint(settings.samples), uint(stride_of(settings))});
 }
 
 gpu::Buffer& combine(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& scales) {

@@ -7,6 +7,7 @@
 #include "core/depth.h"
 #include "core/gpu/recorder.h"
 #include "core/settings.h"
+#include "kernels/profile.h"
 
 namespace alcove {
 
@@ -49,8 +50,10 @@ void reconstruct(gpu::Recorder& gpu, const GBuffer& gbuffer);
 GBuffer downsample(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings);
 /// All radii of the settings, from the smallest on; one of them must be set.
 std::vector<double> radii_of(const EstimatorSettings& settings);
+/// Whether slices are searched by profile and exact, and not by horizon.
+bool searches_exactly(const EstimatorSettings& settings);
 /// Whether the estimator finds open directions too.
-bool has_bent_normals(Estimator estimator);
+bool has_bent_normals(const EstimatorSettings& settings);
 /// Tiles of a G-buffer that an estimator has something to do for.
 struct TileList {
   gpu::Buffer *tiles, *counts;  // ListedTile each; one TileCounts
@@ -73,6 +76,16 @@ int stride_of(const EstimatorSettings& settings);
 Estimate estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings, bool with_bent = false);
 /// These write one plane of `out`, for settings.radius, in its listed tiles.
 void horizon(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings, const Estimate& out, uint plane);
+/// The depth along all lines of one direction: see profile.comp.
+struct Profile {
+  int direction;  // which one of all that the settings ask for
+  Lines lines;
+  gpu::Buffer *vertex, *mark, *neighbor;
+};
+Profile profile(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings, int direction);
+/// Adds a direction to the plane, which the last one completes.
+void exact(gpu::Recorder& gpu, const GBuffer& gbuffer, const Profile& profile, const FrameInputs& frame, const EstimatorSettings& settings, const Estimate& out,
+           uint plane);
 void bitmask(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings, const Estimate& out, uint plane);
 void hbao(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings, const Estimate& out, uint plane);
 void crytek(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings, const Estimate& out, uint plane);

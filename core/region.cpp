@@ -9,6 +9,7 @@
 #include "core/evidence.h"
 #include "core/passes.h"
 #include "core/settle.h"
+#include "kernels/profile.h"
 
 namespace alcove {
 namespace {
@@ -29,6 +30,12 @@ int filter_reach(const EstimatorSettings& settings) {
   const int denoised = settings.denoise == Denoise::none ? 0 : std::max({4, settings.denoise_radius, int(settings.denoise_kernel.size())});
   return int(settings.resolution) * (denoised + (settings.resolution == Resolution::full ? 0 : 2));
 }
+
+/// How far lines of an exact search reach on beyond the sphere of the radius until they have the vertices of the whole frame; 0 without one.
+int line_reach(const EstimatorSettings& settings) { return searches_exactly(settings) ? int(settings.resolution) * (kProfileRestart + 2) : 0; }
+
+/// Of a run that begins within reach of a receiver; a wider one is as good as endless, also as exact.comp rounds widths.
+constexpr double kWidestRun = 2.1;  // radii
 
 /// Pixels on one axis that the image of a sphere of this radius reaches from its centre's, where centres are no nearer than `nearest` and no farther
 /// off axis than `tangent`.
@@ -53,13 +60,14 @@ Window region_of(const FrameSource& source, const Region& roi) {
 
 Surroundings::Surroundings(FrameSource& source, const Settings& settings, const Window& whole)
     : file_data_(source.file_data),
-      read_(grown(whole, filter_reach(settings.estimator), filter_reach(settings.estimator), source.file_data)),
+      read_(searches_exactly(settings.estimator) ? file_data_ : grown(whole, filter_reach(settings.estimator), filter_reach(settings.estimator), file_data_)),
       columns_((read_.width + kBlock - 1) / kBlock),
       nearest_(std::size_t(columns_) * std::size_t((read_.height + kBlock - 1) / kBlock), kSkyDepth),
       view_(view_of(source.camera, source.file_data, source.display)),
       orthographic_(source.camera.orthographic),
       radius_(settings.estimator.radius ? radii_of(settings.estimator).back() : 0),
-      filters_(filter_reach(settings.estimator)) {
+      filters_(filter_reach(settings.estimator)),
+      lines_(line_reach(settings.estimator)) {
   const Window data = source.data;
   const DepthMap map = depth_map_of(source, settings.input);
   for (int top = 0; top < read_.height; top += kBlock) {
@@ -83,16 +91,20 @@ double Surroundings::nearest_in(const Window& window) const {
   return nearest;
 }
 
-Window Surroundings::around(const Window& part) const {
-  const Window filtered = grown(part, filters_, filters_, file_data_);
-  const double nearest = nearest_in(filtered);
+Window Surroundings::within(double distance, const Window& window) const {
+  const double nearest = nearest_in(window);
   const auto margin = [&](double low, double high, double center, double tangent_per_pixel) {
     const double tangent = std::max(std::abs(low - center), std::abs(high - center)) * std::abs(tangent_per_pixel);
-    return int(std::ceil(std::min(sphere_reach(radius_, nearest, tangent, 1 / std::abs(tangent_per_pixel), orthographic_), 1e6))) + 2;
+    return int(std::ceil(std::min(sphere_reach(distance, nearest, tangent, 1 / std::abs(tangent_per_pixel), orthographic_), 1e6))) + 2;
   };
-  const int left = filtered.x - file_data_.x, top = filtered.y - file_data_.y;
-  return grown(filtered, margin(left, left + filtered.width, view_.center.x, view_.tangent_per_pixel.x),
-               margin(top, top + filtered.height, view_.center.y, view_.tangent_per_pixel.y), file_data_);
+  const int left = window.x - file_data_.x, top = window.y - file_data_.y;
+  return grown(window, margin(left, left + window.width, view_.center.x, view_.tangent_per_pixel.x),
+               margin(top, top + window.height, view_.center.y, view_.tangent_per_pixel.y), file_data_);
+}
+
+Window Surroundings::around(const Window& part) const {
+  const Window occluders = within(radius_, grown(part, filters_, filters_, file_data_));
+  return lines_ == 0 ? occluders : within(kWidestRun * radius_, grown(occluders, lines_, lines_, file_data_));
 }
 
 }  // namespace alcove

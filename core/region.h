@@ -21,6 +21,8 @@ class Surroundings {
 
  private:
   double nearest_in(const Window& window) const;
+  /// What may be seen within this distance of anything that a window shows.
+  Window within(double distance, const Window& window) const;
 
   const Window file_data_;
   Window read_;                  // what the grid of nearest depths covers
@@ -30,6 +32,7 @@ class Surroundings {
   bool orthographic_;
   double radius_;
   int filters_;                  // px that filters reach
+  int lines_;                    // px that the lines of an exact search need beyond the radius
 };
 
 }  // namespace alcove

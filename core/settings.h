@@ -16,6 +16,7 @@ enum class PositionSpace { automatic, world, view };
 enum class NormalEncoding { automatic, signed_float, unorm, octahedral, spheremap };
 enum class Falloff : std::uint32_t { none, linear, quadratic, smooth };
 enum class Estimator { gtao, bitmask, hbao, crytek };
+enum class SliceSearch { steps, exact, every_pixel };  // how gtao looks along a slice: at so many steps; at all pixels, by their outlines; at each of them
 enum class Elevation { view, surface };              // what HBAO measures a horizon from: the plane across the view ray, or the surface
 enum class SampleKernel { clustered, uniform };      // how Crytek's samples fill the hemisphere: more near the receiver, or even in volume
 enum class RangeCheck { none, ratio, smoothstep };   // how Crytek's hits fade with the difference of depth between receiver and hit
@@ -96,6 +97,7 @@ struct EstimatorSettings {
   double falloff_end = 1;            // fraction of the radius where it ends, above the start to 1; nothing beyond blocks
   int slices = 2;                    // directions a pixel, 1 to 64; with fewer than 3 a pixel by itself is noisy, and the denoiser must share its neighbours'
   int steps = 16;                    // samples to each side of a slice, 1 to 4096; they matter more than slices
+  SliceSearch search = SliceSearch::steps;  // of estimator gtao; but for `steps`, the falloff must be none and the stride 1
   int samples = 16;                  // of estimator crytek, in the hemisphere, 4 to 64
   double bias = 0;                   // least height that blocks, >= 0; crytek: scene units of depth; others: sine of the elevation above the tangent plane, < 1
   Elevation elevation = Elevation::view;                      // of estimator hbao

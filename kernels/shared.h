@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // A header beside a kernel declares its parameters, bindings and group size with these names; the kernel and
-// core/passes.cpp both include it. Layout is scalar: every member is aligned to 4 bytes, in C++ as in GLSL.
+// its host function in core/passes.cpp or core/estimate.cpp both include it. Layout is scalar: every member is aligned to 4 bytes, in C++ as in GLSL.
 #ifndef ALCOVE_SHARED_H
 #define ALCOVE_SHARED_H
 
@@ -53,7 +53,7 @@ struct GroupCount {
   uint x, y, z;
 };
 
-ALCOVE_CONSTANT int kTile = 16;       // px a side of the tiles by which work is skipped
+ALCOVE_CONSTANT int kTile = 8;        // px a side of the tiles by which work is skipped
 ALCOVE_CONSTANT uint kTilePlanes = 6;  // of TileBounds
 
 /// The surfaces seen in a tile, from the eye's side. They are told by their nearness: 1 / z, or -z orthographic, in which planes are affine in the pixel.

@@ -107,7 +107,7 @@ TEST(Layers, only_the_command_line_prints_and_reads_arguments) {
 
 /// core/chain.cpp, with the estimators that estimate() chooses from in its place.
 std::string chain_source() {
-  const std::string passes = read_bytes(ALCOVE_SOURCE_DIR "/core/passes.cpp");
+  const std::string passes = read_bytes(ALCOVE_SOURCE_DIR "/core/estimate.cpp");
   std::smatch choice;
   const bool found = std::regex_search(passes, choice, std::regex(R"(\nEstimate estimate\([^]*?\n\})"));
   return found ? std::regex_replace(read_bytes(ALCOVE_SOURCE_DIR "/core/chain.cpp"), std::regex(R"(\bestimate\()"), choice.str()) : "";
@@ -123,7 +123,7 @@ Names kernel_stems() {
 TEST(Kernels, a_stem_is_found_everywhere) {
   const Names stems = kernel_stems();
   const std::string readme = read_bytes(ALCOVE_SOURCE_DIR "/README.md"), passes = read_bytes(ALCOVE_SOURCE_DIR "/core/passes.h"),
-                    passes_source = read_bytes(ALCOVE_SOURCE_DIR "/core/passes.cpp"), chain = chain_source();
+                    passes_source = read_bytes(ALCOVE_SOURCE_DIR "/core/passes.cpp") + read_bytes(ALCOVE_SOURCE_DIR "/core/estimate.cpp"), chain = chain_source();
   EXPECT_GE(stems.size(), 4);
   for (const auto& stem : stems) {
     EXPECT_TRUE(fs::exists(ALCOVE_SOURCE_DIR "/kernels/" + stem + ".h")) << stem;
@@ -131,6 +131,22 @@ TEST(Kernels, a_stem_is_found_everywhere) {
     EXPECT_THAT(passes_source, HasSubstr("gpu.dispatch(\"" + stem + "\"")) << "its label in the timing report";
     EXPECT_TRUE(std::regex_search(chain, std::regex("\\b" + stem + "\\("))) << stem << " is not in core/chain.cpp";
     EXPECT_THAT(readme, HasSubstr("[" + stem + "](kernels/" + stem + ".comp)")) << "the README's chain";
+  }
+}
+
+int count_of(const std::string& text, const std::string& part) {
+  int count = 0;
+  for (auto at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) count++;
+  return count;
+}
+
+TEST(Presets, each_of_ours_has_limits_on_every_frame_of_the_suite) {
+  const std::string folder = ALCOVE_SOURCE_DIR "/examples/bench/", suite = read_bytes(folder + "suite.toml"), limits = read_bytes(folder + "limits.toml");
+  for (const auto& file : names_in(ALCOVE_SOURCE_DIR "/presets")) {
+    if (file.find('/') != std::string::npos || !file.ends_with(".toml")) continue;
+    const std::string name = fs::path(file).stem().string();
+    EXPECT_THAT(suite, HasSubstr("preset = \"" + name + "\""));
+    EXPECT_EQ(count_of(limits, "candidate = \"" + name + "\""), count_of(suite, "[[frame]]")) << name;
   }
 }
 

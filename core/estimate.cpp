@@ -1,0 +1,259 @@
+// Host side of the estimators, and of what they leave out.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include "core/error.h"
+#include "core/pass_common.h"
+#include "kernels/bitmask.h"
+#include "kernels/bounds.h"
+#include "kernels/classify.h"
+#include "kernels/crytek.h"
+#include "kernels/exact.h"
+#include "kernels/hbao.h"
+#include "kernels/horizon.h"
+#include "kernels/profile.h"
+
+namespace alcove {
+namespace {
+
+/// As kernels take it: 0 says as deep as wide.
+float thickness_of(const EstimatorSettings& settings) {
+  if (settings.thickness == ThicknessKind::automatic) return 0;
+  return settings.thickness == ThicknessKind::infinite ? std::numeric_limits<float>::infinity() : float(settings.thickness_length);
+}
+
+uint range_check_of(RangeCheck check) {
+  return check == RangeCheck::ratio ? kRangeRatio : check == RangeCheck::smoothstep ? kRangeSmoothstep : kRangeNone;
+}
+
+/// Where the noise pattern of a frame and seed begins: successive frames take successive points of the R2 sequence, seeds of another.
+vec2 noise_shift(int frame, std::uint32_t seed) {
+  const auto fraction = [](double x) { return x - std::floor(x); };
+  const auto shift = [&](double by_frame, double by_seed) { return float(fraction(0.5 + fraction(frame * by_frame) + fraction(seed * by_seed))); };
+  return {shift(0.75487766624669276, 0.41421356237309505), shift(0.56984029099805327, 0.73205080756887729)};
+}
+
+/// Of the estimators that search slices.
+template <class Params>
+Params slice_parameters(const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings, uint plane) {
+  const double radius = settings.radius.value();
+  Params params{};
+  params.view = gbuffer.view;
+  params.radius = float(radius * settings.falloff_end);
+  params.falloff_start = float(radius * settings.falloff_start);
+  params.noise_origin = frame.noise_origin;
+  params.noise_shift = noise_shift(frame.frame, settings.seed);
+  params.thickness = thickness_of(settings);
+  params.bias = float(settings.bias);
+  params.plane = plane;
+  params.depth_precision = to_vec3(frame.depth_precision.at);
+  return params;
+}
+std::vector<uint> slice_constants(const EstimatorSettings& settings, const gpu::Buffer* bent = nullptr) {
+  return {uint(settings.slices), uint(settings.steps), uint(settings.falloff) | (bent ? kWithBent : 0), uint(stride_of(settings))};
+}
+
+/// The invocations that make an estimate: one for each pixel that the stride does not leave out.
+/// Tiles in x and y.
+gpu::Extent tile_extent(const View& view) { return {groups_of(view.size.x, uint(kTile)), groups_of(view.size.y, uint(kTile))}; }
+
+/// How far a profile may leave a pixel's depth, in the pixel's own widths: less costs more vertices.
+constexpr float kProfileTolerance = 0.2f;
+
+/// Directions of an exact search over a frame: each pixel takes all of them, or a quarter where a denoiser mixes those of its block of 2 x 2.
+int directions_of(const EstimatorSettings& settings) { return settings.slices * (settings.denoise == Denoise::none ? 1 : 4); }
+
+/// Pixels that lines have moved across at a step: as in lines.glsl.
+int shift_at(const Lines& lines, int step) { return (lines.slope * (lines.origin.x + step) + kSlopeUnit / 2) >> kSlopeBits; }
+
+/// The lines of a direction, even in angle where the view's pixels are made square; those of a few directions never follow an axis of the image.
+Lines lines_of(const View& view, ivec2 origin, int direction, int directions) {
+  const double angle = std::numbers::pi * (direction + 0.5) / directions;
+  const double x = std::cos(angle) / view.tangent_per_pixel.x, y = std::sin(angle) / view.tangent_per_pixel.y;
+  const bool steep = std::abs(y) > std::abs(x);
+  Lines lines{steep ? 1u : 0u, int(std::lround(kSlopeUnit * (steep ? x / y : y / x))), steep ? ivec2{origin.y, origin.x} : origin, 0};
+  const int across = steep ? view.size.x : view.size.y;
+  const int most = std::max(std::abs(shift_at(lines, 0)), std::abs(shift_at(lines, steep ? view.size.y : view.size.x)));
+  lines.wrap = (most / across + 1) * across;
+  return lines;
+}
+
+}  // namespace
+
+bool searches_exactly(const EstimatorSettings& settings) { return settings.estimator == Estimator::gtao && settings.search != SliceSearch::steps; }
+
+int stride_of(const EstimatorSettings& settings) {
+  if (searches_exactly(settings)) return 1;
+  if (settings.stride > 0) return settings.stride;
+  const bool shared = settings.denoise == Denoise::bilateral && settings.resolution == Resolution::full && settings.slices <= 2;
+  return shared && settings.estimator == Estimator::gtao ? 4 : 1;
+}
+
+std::vector<double> radii_of(const EstimatorSettings& settings) {
+  std::vector<double> radii = settings.further_radii;
+  radii.push_back(settings.radius.value());
+  std::ranges::sort(radii);
+  return radii;
+}
+
+bool has_bent_normals(const EstimatorSettings& settings) {
+  return settings.estimator == Estimator::bitmask || (settings.estimator == Estimator::gtao && !searches_exactly(settings));
+}
+
+Estimate estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& inputs, const EstimatorSettings& settings, bool with_bent) {
+  FrameInputs frame = inputs;
+  frame.noise_origin = block_grid(inputs, settings).origin;
+  const auto radii = radii_of(settings);
+  Estimate all{&gpu.buffer("ao", radii.size() * plane_bytes(gbuffer.view), gpu::Use::download)};
+  if (with_bent) all.bent = &gpu.buffer("bent", 3 * plane_bytes(gbuffer.view), gpu::Use::download);
+  const gpu::Buffer* tiles = searches_exactly(settings) ? nullptr : &bounds(gpu, gbuffer, frame, settings);
+  for (uint plane = 0; plane < radii.size(); plane++) {
+    EstimatorSettings one = settings;
+    one.radius = radii[plane];
+    Estimate out{all.ao, plane + 1 == radii.size() ? all.bent : nullptr};
+    if (tiles) all.listed = out.listed = classify(gpu, gbuffer, frame, one, *tiles, out, plane);
+    switch (settings.estimator) {
+      case Estimator::gtao:
+        if (!searches_exactly(one)) horizon(gpu, gbuffer, frame, one, out, plane);
+        for (int direction = 0; searches_exactly(one) && direction < directions_of(one); direction++) {
+          const Profile lines = profile(gpu, gbuffer, frame, one, direction);
+          exact(gpu, gbuffer, lines, frame, one, out, plane);
+        }
+        break;
+      case Estimator::bitmask: bitmask(gpu, gbuffer, frame, one, out, plane); break;
+      case Estimator::hbao: hbao(gpu, gbuffer, frame, one, out, plane); break;
+      case Estimator::crytek: crytek(gpu, gbuffer, frame, one, out, plane); break;
+    }
+  }
+  return all;
+}
+
+gpu::Buffer& bounds(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings) {
+  const gpu::Extent tiles = tile_extent(gbuffer.view);
+  gpu::Buffer& bounds = gpu.buffer("bounds", sizeof(TileBounds) * tiles.x * tiles.y, gpu::Use::device);
+  if (settings.skip)
+    gpu.dispatch("bounds", BoundsParams{gbuffer.view, frame.noise_origin},
+                 {{kBoundsDepth, *gbuffer.depth}, {kBoundsNormal, *gbuffer.normal}, {kBoundsTiles, bounds}}, tiles, {uint(stride_of(settings))});
+  return bounds;
+}
+
+TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings, const gpu::Buffer& bounds,
+                  const Estimate& out, uint plane) {
+  const gpu::Extent tiles = tile_extent(gbuffer.view);
+  const TileList list{&gpu.buffer("tiles", sizeof(ListedTile) * tiles.x * tiles.y, gpu::Use::device), &gpu.buffer("tile counts", sizeof(TileCounts), gpu::Use::download)};
+  gpu.clear(*list.counts);
+  const bool ranged = settings.estimator == Estimator::gtao || settings.estimator == Estimator::bitmask;
+  const ClassifyParams params{gbuffer.view, frame.noise_origin, float(settings.radius.value() * settings.falloff_end), to_vec3(frame.depth_precision.at), plane};
+  gpu.dispatch("classify", params,
+               {{kClassifyBounds, bounds},
+                {kClassifyDepth, *gbuffer.depth},
+                {kClassifyNormal, *gbuffer.normal},
+                {kClassifyList, *list.tiles},
+                {kClassifyCounts, *list.counts},
+                {kClassifyAo, *out.ao},
+                {kClassifyBent, out.bent ? *out.bent : *out.ao}},
+               tiles, {uint(stride_of(settings)), (settings.skip ? kClassifySkips : 0) | (ranged ? kClassifyRanged : 0) | (out.bent ? kClassifyWithBent : 0)});
+  return list;
+}
+
+void horizon(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings, const Estimate& out, uint plane) {
+  std::vector<uint> constants = slice_constants(settings, out.bent);
+  constants.push_back(settings.thickness == ThicknessKind::automatic  ? kThicknessWidth
+                      : settings.thickness == ThicknessKind::constant ? kThicknessLength
+                                                                      : kThicknessEndless);
+  gpu.dispatch("horizon", slice_parameters<HorizonParams>(gbuffer, frame, settings, plane),
+               {{kHorizonDepth, *gbuffer.depth}, {kHorizonNormal, *gbuffer.normal}, {kHorizonAo, *out.ao}, {kHorizonBent, out.bent ? *out.bent : *out.ao}, {kHorizonList, *out.listed.tiles}, {kHorizonCounts, *out.listed.counts}},
+               gpu::Extent(*out.listed.counts), constants);
+}
+
+Profile profile(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings, int direction) {
+  const std::size_t bytes = plane_bytes(gbuffer.view);
+  const Lines lines = lines_of(gbuffer.view, frame.noise_origin, direction, directions_of(settings));
+  const Profile result{direction, lines, &gpu.buffer("profile vertex", bytes, gpu::Use::device), &gpu.buffer("profile mark", bytes, gpu::Use::device),
+                       &gpu.buffer("profile neighbor", bytes, gpu::Use::device)};
+  const ivec2 size = gbuffer.view.size;
+  const auto [least, most] = std::minmax({shift_at(lines, 0), shift_at(lines, (lines.steep ? size.y : size.x) - 1)});
+  const ProfileParams params{gbuffer.view, lines, -most, uint((lines.steep ? size.x : size.y) + most - least), kProfileTolerance};
+  gpu.dispatch("profile", params,
+               {{kProfileDepth, *gbuffer.depth},
+                {kProfileVertex, *result.vertex},
+                {kProfileMark, *result.mark},
+                {kProfileNeighbor, *result.neighbor}},
+               {params.count}, {settings.search == SliceSearch::every_pixel ? 1u : 0u});
+  return result;
+}
+
+void exact(gpu::Recorder& gpu, const GBuffer& gbuffer, const Profile& profile, const FrameInputs& frame, const EstimatorSettings& settings, const Estimate& out,
+           uint plane) {
+  const Lines& lines = profile.lines;
+  const int directions = directions_of(settings), takers = directions / settings.slices;
+  ExactParams params{};
+  params.view = gbuffer.view;
+  params.lines = lines;
+  params.stride = takers > 1 ? 2 : 1;
+  // Neighbouring directions go to opposite corners of a block; blocks are those of the display window.
+  constexpr ivec2 kCorners[] = {{0, 0}, {1, 1}, {1, 0}, {0, 1}};
+  const ivec2 corner = kCorners[profile.direction % takers];
+  if (takers > 1) params.first = {(corner.x + lines.origin.x) & 1, (corner.y + lines.origin.y) & 1};
+  params.direction = uint(profile.direction);
+  params.is_first = profile.direction < takers ? 1 : 0;
+  params.is_last = profile.direction >= directions - takers ? 1 : 0;
+  params.radius = float(settings.radius.value() * settings.falloff_end);
+  params.thickness = thickness_of(settings);
+  params.bias = float(settings.bias);
+  params.depth_precision = to_vec3(frame.depth_precision.at);
+  params.plane = plane;
+  const ivec2 size = gbuffer.view.size, taken{(size.x + params.stride - 1) / params.stride, (size.y + params.stride - 1) / params.stride};
+  gpu.dispatch("exact", params,
+               {{kExactDepth, *gbuffer.depth},
+                {kExactNormal, *gbuffer.normal},
+                {kExactVertex, *profile.vertex},
+                {kExactMark, *profile.mark},
+                {kExactNeighbor, *profile.neighbor},
+                {kExactWhole, gpu.buffer("whole arcs", plane_bytes(gbuffer.view), gpu::Use::device)},
+                {kExactAo, *out.ao}},
+               lines.steep ? gpu::Extent{uint(taken.y), uint(taken.x)} : gpu::Extent{uint(taken.x), uint(taken.y)});
+}
+
+void bitmask(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings, const Estimate& out, uint plane) {
+  gpu.dispatch("bitmask", slice_parameters<BitmaskParams>(gbuffer, frame, settings, plane),
+               {{kBitmaskDepth, *gbuffer.depth}, {kBitmaskNormal, *gbuffer.normal}, {kBitmaskAo, *out.ao}, {kBitmaskBent, out.bent ? *out.bent : *out.ao}, {kBitmaskList, *out.listed.tiles}, {kBitmaskCounts, *out.listed.counts}},
+               gpu::Extent(*out.listed.counts), slice_constants(settings, out.bent));
+}
+
+void hbao(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings, const Estimate& out, uint plane) {
+  const double radius = settings.radius.value();
+  HbaoParams params{};
+  params.view = gbuffer.view;
+  params.radius = float(radius * settings.falloff_end);
+  params.falloff_start = float(radius * settings.falloff_start);
+  params.bias = float(settings.bias);
+  params.from_surface = settings.elevation == Elevation::surface ? 1 : 0;
+  params.noise_origin = frame.noise_origin;
+  params.noise_shift = noise_shift(frame.frame, settings.seed);
+  params.plane = plane;
+  params.depth_precision = to_vec3(frame.depth_precision.at);
+  gpu.dispatch("hbao", params, {{kHbaoDepth, *gbuffer.depth}, {kHbaoNormal, *gbuffer.normal}, {kHbaoAo, *out.ao}, {kHbaoList, *out.listed.tiles}, {kHbaoCounts, *out.listed.counts}},
+               gpu::Extent(*out.listed.counts), slice_constants(settings));
+}
+
+void crytek(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings, const Estimate& out, uint plane) {
+  CrytekParams params{};
+  params.view = gbuffer.view;
+  params.radius = float(settings.radius.value());
+  params.bias = float(settings.bias);
+  params.uniform_volume = settings.sample_kernel == SampleKernel::uniform ? 1 : 0;
+  params.range_check = range_check_of(settings.range_check);
+  params.noise_origin = frame.noise_origin;
+  params.noise_shift = noise_shift(frame.frame, settings.seed);
+  params.plane = plane;
+  params.depth_precision = to_vec3(frame.depth_precision.at);
+  gpu.dispatch("crytek", params, {{kCrytekDepth, *gbuffer.depth}, {kCrytekNormal, *gbuffer.normal}, {kCrytekAo, *out.ao}, {kCrytekList, *out.listed.tiles}, {kCrytekCounts, *out.listed.counts}},
+               gpu::Extent(*out.listed.counts), {uint(settings.samples), uint(stride_of(settings))});
+}
+
+}  // namespace alcove

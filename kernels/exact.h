@@ -1,0 +1,32 @@
+// Parameters and bindings of exact.comp.
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef ALCOVE_EXACT_H
+#define ALCOVE_EXACT_H
+#include "profile.h"
+ALCOVE_BEGIN
+
+ALCOVE_CONSTANT uint kExactDepth = 0;     // in: float a pixel, from prepare
+ALCOVE_CONSTANT uint kExactNormal = 1;    // in: uint a pixel, from prepare
+ALCOVE_CONSTANT uint kExactVertex = 2;    // in: from profile
+ALCOVE_CONSTANT uint kExactMark = 3;      // in: from profile
+ALCOVE_CONSTANT uint kExactNeighbor = 4;  // in: from profile
+ALCOVE_CONSTANT uint kExactWhole = 5;     // in and out: float a pixel, sum of whole arcs
+ALCOVE_CONSTANT uint kExactAo = 6;        // in and out: float a pixel, sum of blocked arcs; after the last slice visibility in [0, 1], 1 = open
+
+struct ExactParams {
+  View view;
+  Lines lines;      // as the profile's
+  int stride;       // px: from one pixel that takes this slice to the next, along and across: 1, or 2 where those of a block of 2 x 2 take others
+  ivec2 first;      // px, along and across: the first pixel that takes it
+  uint direction;   // which one it is
+  uint is_first, is_last;  // 0 or 1: of those that a pixel takes
+  float radius;     // scene units
+  float thickness;  // scene units, of what is not connected to the receiver; infinite allowed; 0: as deep as wide
+  uint plane;       // of the output: one a radius
+  vec3 depth_precision;  // of planar depth: see clearance.glsl
+  float bias;       // sine of the elevation above the tangent plane below which nothing blocks
+};
+ALCOVE_PARAMS(ExactParams)
+
+ALCOVE_END
+#endif

@@ -1,0 +1,46 @@
+// Parameters and bindings of profile.comp, and the lines that it shares with exact.comp.
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef ALCOVE_PROFILE_H
+#define ALCOVE_PROFILE_H
+#include "shared.h"
+ALCOVE_BEGIN
+
+ALCOVE_CONSTANT uint kProfileDepth = 0;     // in: float a pixel, from prepare
+ALCOVE_CONSTANT uint kProfileVertex = 1;    // out: float a vertex, its planar depth
+ALCOVE_CONSTANT uint kProfileMark = 2;      // out: uint a vertex: its step in the high half, its run's width (pack_width()) and kVertex* in the low
+ALCOVE_CONSTANT uint kProfileNeighbor = 3;  // out: uint a step: the columns of the vertices before (low half) and after it; kNoVertex: none
+
+ALCOVE_CONSTANT uint kProfileEveryPixelId = 0;  // specialization: 1: every pixel is a vertex
+
+ALCOVE_CONSTANT uint kProfileGroup = 32;   // lines of a workgroup
+ALCOVE_CONSTANT int kProfileRestart = 64;  // px: a run has a vertex at every multiple along the line, so that a crop has those of the whole; a power of 2
+
+ALCOVE_CONSTANT uint kVertexBegins = 1;  // its run, where one looks along the line
+ALCOVE_CONSTANT uint kVertexEnds = 2;
+ALCOVE_CONSTANT uint kVertexLast = 4;    // of the line
+ALCOVE_CONSTANT uint kVertexFirst = 8;
+ALCOVE_CONSTANT uint kVertexFlags = 15;
+ALCOVE_CONSTANT uint kNoVertex = 0xffff;
+
+ALCOVE_CONSTANT int kSlopeBits = 14;  // so that products with 100,000 pixels are no larger than an int
+ALCOVE_CONSTANT int kSlopeUnit = 1 << kSlopeBits;
+
+/// The lines of one direction over the image.
+struct Lines {
+  uint steep;    // 1: a step is a pixel in y; 0: in x
+  int slope;     // pixels across a step, in 1/kSlopeUnit, -kSlopeUnit to kSlopeUnit
+  ivec2 origin;  // px, along and across: what to add to those of the image, so that a crop has the lines of the whole
+  int wrap;      // lines to add to a number so that it is not negative: a multiple of the pixels across
+};
+
+struct ProfileParams {
+  View view;
+  Lines lines;
+  int first;        // number of the first line: the pixel across at step 0 were it not for the origin
+  uint count;       // lines
+  float tolerance;  // px: how far in depth a pixel may be from the profile, in its own widths
+};
+ALCOVE_PARAMS(ProfileParams)
+
+ALCOVE_END
+#endif
