@@ -218,6 +218,7 @@ void add_estimator_rows(Table& table, RunOptions& options) {
   table.number("--slices", s.slices, "a pixel", between(1, 64), "directions that are searched");
   table.number("--steps", s.steps, "a side", between(1, 4096), "samples to each side of a slice");
   table.choice("--search", s.search, "of gtao, along a slice; steps: as many samples as --steps; exact: all pixels, by the outlines of surfaces; every-pixel: the same one by one, slowly");
+  table.number("--tolerance", s.tolerance, "0 to 1", between(0, 1), "of gtao, RMS error of the AO by its search: as many directions of an exact search, tile by tile, as that takes, without a denoiser; 0: as many as --slices");
   table.number("--samples", s.samples, "a pixel", between(4, 64), "of crytek, in the hemisphere");
   table.number("--bias", s.bias, "", between(0, 1e18), "keeps a surface from blocking itself; crytek: scene units of depth; others: sine of the elevation above the surface, below 1");
   table.choice("--elevation", s.elevation, "of hbao; view: the horizon's less the surface's, above the plane across the view ray; surface: the horizon's above the surface");

@@ -37,6 +37,17 @@ bool same_file(const std::string& a, const std::string& b) {
   return error ? a == b : whole_a == whole_b;
 }
 
+/// What an estimate by its error asks for.
+void check_tolerance(const Settings& settings) {
+  const auto& e = settings.estimator;
+  if (e.tolerance == 0) {
+    if (wants(settings.output, &FrameOutputs::error)) fail(ErrorKind::usage, "--aov error: only an estimate with a --tolerance knows its error");
+    return;
+  }
+  if (e.estimator != Estimator::gtao) fail(ErrorKind::usage, "--tolerance: only of --estimator gtao");
+  if (e.resolution != Resolution::full) fail(ErrorKind::usage, "--tolerance: the error is that of every pixel: give --resolution full");
+}
+
 /// What an exact search leaves to the others.
 void check_search(const Settings& settings) {
   const auto& e = settings.estimator;
@@ -143,6 +154,7 @@ void check_settings(const Settings& settings) {
     fail(ErrorKind::usage, "no input: name an EXR file, or one with --depth or --position");
   if (!settings.input.depth.empty() && !settings.input.position.empty()) fail(ErrorKind::usage, "--depth and --position are two ways to say the same: give one");
   if (!settings.estimator.radius && needs_ao(settings.output)) fail(ErrorKind::usage, "no radius: say with --radius how far occluders reach, in scene units");
+  check_tolerance(settings);
   check_search(settings);
   check_scales(settings);
   if (settings.estimator.estimator != Estimator::crytek && settings.estimator.bias >= 1)
@@ -171,7 +183,7 @@ std::string options_digest(const Settings& settings) {
   add(settings.output.aovs, int(settings.output.ao_channels), int(settings.output.aov_space));
   add(i.material_ao.empty(), i.material_ao_channel, i.albedo.empty(), i.albedo_channels);
   add(int(e.search), e.samples, e.bias, int(e.elevation), int(e.sample_kernel), int(e.range_check));
-  add(int(e.thickness), e.thickness_length, int(e.resolution), e.stride, int(e.denoise));
+  add(int(e.thickness), e.thickness_length, e.tolerance, int(e.resolution), e.stride, int(e.denoise));
   add(e.denoise_radius, fmt::format("{}", fmt::join(e.denoise_kernel, ",")), e.denoise_depth_sigma);
   // The camera by what it says; where files lie is not part of it, so that a job has the same digest wherever its folder is mounted.
   add(i.camera.empty() ? std::string() : read_text(i.camera, "camera", "--camera"));

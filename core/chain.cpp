@@ -19,13 +19,15 @@ FrameOutputs run_chain(gpu::Recorder& gpu, const FrameInputs& frame, const Estim
   if (needs_ao(output) || frame.beauty) {
     const bool reduced = settings.resolution != Resolution::full;
     const GBuffer work = reduced ? downsample(gpu, gbuffer, frame, settings) : gbuffer;
-    auto [ao, bent, listed] = estimate(gpu, work, frame, settings, needs_bent(settings, output));
+    auto [ao, bent, listed, error, squares] = estimate(gpu, work, frame, settings, needs_bent(settings, output));
     out.tiles = listed.counts;
+    out.error = wants(output, &FrameOutputs::error) ? error : nullptr;
+    out.squares = squares;
     const bool several = !settings.further_radii.empty(), each = several && wants(output, &FrameOutputs::scales);
     if (each) out.scales = ao;
     out.ao = several ? &combine(gpu, work, *ao) : ao;
     stages = {work, out.ao, out.ao, listed.sectors};
-    if (settings.denoise != Denoise::none) {
+    if (settings.denoise != Denoise::none && settings.tolerance == 0) {
       stages.denoised_ao = out.ao = &denoise(gpu, work, *out.ao, frame, settings);
       if (each) out.scales = &denoise(gpu, work, *out.scales, frame, settings, "scales ");
       if (bent) bent = &denoise(gpu, work, *bent, frame, settings, "bent ");
@@ -50,7 +52,7 @@ FrameOutputs run_chain(gpu::Recorder& gpu, const FrameInputs& frame, const Estim
   if (wants(output, &FrameOutputs::depth)) out.depth = gbuffer.depth;
   for (const auto* view : debug_views_of(output)) out.debug.push_back(debug(gpu, *view, gbuffer, stages, frame, settings));
 
-  for (const auto* result : {out.counts, out.tiles, out.ao, out.scales, out.color_ao, out.composite, out.normal, out.bent_normal, out.depth, out.specular_occlusion})
+  for (const auto* result : {out.counts, out.tiles, out.error, out.squares, out.ao, out.scales, out.color_ao, out.composite, out.normal, out.bent_normal, out.depth, out.specular_occlusion})
     if (result) gpu.download(*result);
   for (const auto& plane : out.debug) gpu.download(*plane.values);
   return out;
@@ -59,7 +61,7 @@ FrameOutputs run_chain(gpu::Recorder& gpu, const FrameInputs& frame, const Estim
 bool needs_ao(const OutputSettings& output) {
   for (const auto* view : debug_views_of(output))
     if (view->source == DebugSource::raw_ao || view->source == DebugSource::denoised_ao || view->source == DebugSource::tiles) return true;
-  return output.multi_bounce || !output.composite.empty() || !output.preview.empty() || wants(output, &FrameOutputs::ao) ||
+  return output.multi_bounce || wants(output, &FrameOutputs::error) || !output.composite.empty() || !output.preview.empty() || wants(output, &FrameOutputs::ao) ||
          wants(output, &FrameOutputs::scales) || wants(output, &FrameOutputs::bent_normal) || wants(output, &FrameOutputs::specular_occlusion);
 }
 

@@ -10,6 +10,8 @@ namespace alcove {
 struct FrameOutputs {
   gpu::Buffer* counts = nullptr;     // one FrameCounts
   gpu::Buffer* tiles = nullptr;      // one TileCounts, where there is an estimate
+  gpu::Buffer* error = nullptr;      // a plane: with settings.tolerance, the estimated error of the visibility
+  gpu::Buffer* squares = nullptr;    // with settings.tolerance, vec2 a tile: sum of its squares, and receivers
   gpu::Buffer* ao = nullptr;         // a plane: visibility in [0, 1]; of several radii the mean
   gpu::Buffer* scales = nullptr;     // a plane a radius, from the smallest on
   gpu::Buffer* color_ao = nullptr;   // planes r, g, b: the visibility with multi-bounce

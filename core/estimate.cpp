@@ -1,6 +1,7 @@
 // Host side of the estimators, and of what they leave out.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -11,6 +12,7 @@
 #include "kernels/bitmask.h"
 #include "kernels/bounds.h"
 #include "kernels/classify.h"
+#include "kernels/converge.h"
 #include "kernels/crytek.h"
 #include "kernels/exact.h"
 #include "kernels/hbao.h"
@@ -64,6 +66,16 @@ gpu::Extent tile_extent(const View& view) { return {groups_of(view.size.x, uint(
 /// Samples a pixel from which on a proof that tiles are open costs less than it saves: it costs as much as 6 of them, and most frames are open in a tenth.
 constexpr double kWorthProving = 48;
 
+/// Directions of an estimate by error: at the least, where it has no other estimate to compare with, and at the most; powers of 2.
+constexpr int kLeastDirections = 2, kMostDirections = 64;
+
+/// In this order 2, 4, 8 ... of the most directions are even.
+int bit_reversed(int i) {
+  int reversed = 0;
+  for (int bit = 1; bit < kMostDirections; bit *= 2) reversed = 2 * reversed + (i / bit & 1);
+  return reversed;
+}
+
 /// How far a profile may leave a pixel's depth, in the pixel's own widths: less costs more vertices.
 constexpr float kProfileTolerance = 0.2f;
 
@@ -85,9 +97,43 @@ Lines lines_of(const View& view, ivec2 origin, int direction, int directions) {
   return lines;
 }
 
+/// The visibility that the sums of so many directions give, its error, and for sums.listed the tiles that need more; of 0 directions: all with surfaces.
+void compare_directions(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings, Estimate& sums, Estimate& all, uint plane,
+                        int directions) {
+  const ivec2 size = gbuffer.view.size, origin = frame.noise_origin;
+  const auto tiles_in = [](int pixels, int begin) { return groups_of(pixels + (begin & (kTile - 1)), uint(kTile)); };
+  const uint columns = tiles_in(size.x, origin.x), tiles = columns * tiles_in(size.y, origin.y);
+  const std::string name = "converge " + std::to_string(directions) + " ";
+  const TileList next{&gpu.buffer(name + "tiles", sizeof(ListedTile) * tiles, gpu::Use::device), &gpu.buffer(name + "counts", sizeof(TileCounts), gpu::Use::download),
+                      nullptr, &gpu.buffer(name + "lines", sizeof(GroupCount), gpu::Use::upload)};
+  gpu.clear(*next.counts);
+  next.lines->as<GroupCount>()[0] = {groups_of(2 * (size.x + size.y), kProfileGroup), 1, 0};
+  gpu.upload(*next.lines);
+  all.error = &gpu.buffer("error", plane_bytes(gbuffer.view), gpu::Use::download);
+  all.squares = &gpu.buffer("error squares", sizeof(vec2) * tiles, gpu::Use::download);
+  const ConvergeParams params{gbuffer.view, origin, float(settings.tolerance), uint(directions), directions > kLeastDirections ? 1u : 0u, plane};
+  const bool begins = directions == 0;
+  gpu.dispatch("converge", params,
+               {{kConvergeDepth, *gbuffer.depth},
+                {kConvergeBlocked, *sums.ao},
+                {kConvergeWhole, gpu.buffer("whole arcs", plane_bytes(gbuffer.view), gpu::Use::device)},
+                {kConvergeAo, *all.ao},
+                {kConvergeError, *all.error},
+                {kConvergeSquares, *all.squares},
+                {kConvergeList, begins ? *next.tiles : *sums.listed.tiles},
+                {kConvergeCounts, begins ? *next.counts : *sums.listed.counts},
+                {kConvergeNextList, *next.tiles},
+                {kConvergeNextCounts, *next.counts},
+                {kConvergeNextLines, *next.lines}},
+               {columns, tiles / columns});
+  sums.listed = next;
+}
+
 }  // namespace
 
-bool searches_exactly(const EstimatorSettings& settings) { return settings.estimator == Estimator::gtao && settings.search != SliceSearch::steps; }
+bool searches_exactly(const EstimatorSettings& settings) {
+  return settings.estimator == Estimator::gtao && (settings.search != SliceSearch::steps || settings.tolerance > 0);
+}
 
 int stride_of(const EstimatorSettings& settings) {
   if (searches_exactly(settings)) return 1;
@@ -122,10 +168,11 @@ Estimate estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs&
     switch (settings.estimator) {
       case Estimator::gtao:
         if (!searches_exactly(one)) horizon(gpu, gbuffer, frame, one, out, plane);
-        for (int direction = 0; searches_exactly(one) && direction < directions_of(one); direction++) {
+        for (int direction = 0; searches_exactly(one) && one.tolerance == 0 && direction < directions_of(one); direction++) {
           const Profile lines = profile(gpu, gbuffer, frame, one, direction);
           exact(gpu, gbuffer, lines, frame, one, out, plane);
         }
+        if (one.tolerance > 0) all.listed = converge(gpu, gbuffer, frame, one, all, plane);
         break;
       case Estimator::bitmask: bitmask(gpu, gbuffer, frame, one, out, plane); break;
       case Estimator::hbao: hbao(gpu, gbuffer, frame, one, out, plane); break;
@@ -185,7 +232,22 @@ void horizon(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& fram
                gpu::Extent(*out.listed.counts), constants);
 }
 
-Profile profile(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings, int direction) {
+TileList converge(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings, Estimate& all, uint plane) {
+  EstimatorSettings every = settings;
+  every.slices = kMostDirections;
+  every.denoise = Denoise::none;
+  if (every.search == SliceSearch::steps) every.search = SliceSearch::exact;
+  Estimate sums{&gpu.buffer("blocked arcs", plane_bytes(gbuffer.view), gpu::Use::device)};
+  compare_directions(gpu, gbuffer, frame, settings, sums, all, plane, 0);
+  const TileList first = sums.listed;
+  for (int i = 0; i < kMostDirections; i++) {
+    exact(gpu, gbuffer, profile(gpu, gbuffer, frame, every, bit_reversed(i), sums.listed.lines), frame, every, sums, 0);
+    if (i + 1 >= kLeastDirections && std::has_single_bit(uint(i + 1))) compare_directions(gpu, gbuffer, frame, settings, sums, all, plane, i + 1);
+  }
+  return first;
+}
+
+Profile profile(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings, int direction, const gpu::Buffer* groups) {
   const std::size_t bytes = plane_bytes(gbuffer.view);
   const Lines lines = lines_of(gbuffer.view, frame.noise_origin, direction, directions_of(settings));
   const Profile result{direction, lines, &gpu.buffer("profile vertex", bytes, gpu::Use::device), &gpu.buffer("profile mark", bytes, gpu::Use::device),
@@ -198,7 +260,7 @@ Profile profile(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& f
                 {kProfileVertex, *result.vertex},
                 {kProfileMark, *result.mark},
                 {kProfileNeighbor, *result.neighbor}},
-               {params.count}, {settings.search == SliceSearch::every_pixel ? 1u : 0u});
+               groups ? gpu::Extent(*groups) : gpu::Extent(params.count), {settings.search == SliceSearch::every_pixel ? 1u : 0u});
   return result;
 }
 
@@ -216,7 +278,7 @@ void exact(gpu::Recorder& gpu, const GBuffer& gbuffer, const Profile& profile, c
   if (takers > 1) params.first = {(corner.x + lines.origin.x) & 1, (corner.y + lines.origin.y) & 1};
   params.direction = uint(profile.direction);
   params.is_first = profile.direction < takers ? 1 : 0;
-  params.is_last = profile.direction >= directions - takers ? 1 : 0;
+  params.is_last = !out.listed.counts && profile.direction >= directions - takers ? 1 : 0;
   params.radius = float(settings.radius.value() * settings.falloff_end);
   params.thickness = thickness_of(settings);
   params.bias = float(settings.bias);
@@ -230,8 +292,11 @@ void exact(gpu::Recorder& gpu, const GBuffer& gbuffer, const Profile& profile, c
                 {kExactMark, *profile.mark},
                 {kExactNeighbor, *profile.neighbor},
                 {kExactWhole, gpu.buffer("whole arcs", plane_bytes(gbuffer.view), gpu::Use::device)},
-                {kExactAo, *out.ao}},
-               lines.steep ? gpu::Extent{uint(taken.y), uint(taken.x)} : gpu::Extent{uint(taken.x), uint(taken.y)});
+                {kExactAo, *out.ao},
+                {kExactList, out.listed.tiles ? *out.listed.tiles : *out.ao},
+                {kExactCounts, out.listed.counts ? *out.listed.counts : *out.ao}},
+               out.listed.counts ? gpu::Extent(*out.listed.counts) : lines.steep ? gpu::Extent{uint(taken.y), uint(taken.x)} : gpu::Extent{uint(taken.x), uint(taken.y)},
+               {out.listed.counts ? 1u : 0u});
 }
 
 void bitmask(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings, const Estimate& out, uint plane) {

@@ -71,6 +71,8 @@ class FrameRun {
     counts_.repaired_beauty += counts.repaired_beauty;
     report_.pixels += source.data.pixels();
     has_ao_ = outputs.ao;
+    if (outputs.squares)
+      for (const vec2& tile : outputs.squares->as<const vec2>()) report_.error_squares += tile.x, report_.error_pixels += tile.y;
     if (outputs.tiles) {
       const auto tiles = outputs.tiles->as<TileCounts>()[0];
       report_.tiles.sky += tiles.sky;

@@ -56,13 +56,16 @@ bool searches_exactly(const EstimatorSettings& settings);
 bool has_bent_normals(const EstimatorSettings& settings);
 /// Tiles of a G-buffer that an estimator has something to do for.
 struct TileList {
-  gpu::Buffer *tiles = nullptr, *counts = nullptr, *sectors = nullptr;  // ListedTile each; one TileCounts; of all tiles: see classify.h
+  gpu::Buffer *tiles = nullptr, *counts = nullptr;  // ListedTile each; one TileCounts
+  gpu::Buffer* sectors = nullptr;                   // of all tiles, from classify
+  gpu::Buffer* lines = nullptr;                     // GroupCount of profile, from converge
 };
 /// What an estimator gives for every pixel of the G-buffer, or for those that the stride leaves.
 struct Estimate {
   gpu::Buffer* ao;              // a plane of visibility a radius, from the smallest on
   gpu::Buffer* bent = nullptr;  // planes x, y, z, of the largest radius: see horizon.h; null: not asked for
   TileList listed{};            // of the largest radius
+  gpu::Buffer *error = nullptr, *squares = nullptr;  // with a tolerance, of the largest radius: see converge.h
 };
 /// Whether tiles are proved to be open, or only sky is left out.
 bool proves(const EstimatorSettings& settings);
@@ -86,10 +89,14 @@ struct Profile {
   Lines lines;
   gpu::Buffer *vertex, *mark, *neighbor;
 };
-Profile profile(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings, int direction);
+/// `groups`: how many of its groups there are, from converge; null: all.
+Profile profile(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings, int direction,
+                const gpu::Buffer* groups = nullptr);
 /// Adds a direction to the plane, which the last one completes.
 void exact(gpu::Recorder& gpu, const GBuffer& gbuffer, const Profile& profile, const FrameInputs& frame, const EstimatorSettings& settings, const Estimate& out,
            uint plane);
+/// As many directions as settings.tolerance takes. Returns the tiles that have surfaces.
+TileList converge(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings, Estimate& all, uint plane);
 void bitmask(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings, const Estimate& out, uint plane);
 void hbao(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings, const Estimate& out, uint plane);
 void crytek(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings, const Estimate& out, uint plane);

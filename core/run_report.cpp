@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/run_report.h"
 
+#include <cmath>
+
 #include <sys/resource.h>
 
 #include <nlohmann/json.hpp>
@@ -28,6 +30,7 @@ Json json_of(const FrameReport& frame) {
                {"tiles", {{"total", frame.tiles.sky + frame.tiles.proved + frame.tiles.computed}, {"sky", frame.tiles.sky}, {"proved", frame.tiles.proved}, {"computed", frame.tiles.computed}}},
                {"samples_per_pixel", frame.samples_per_pixel},
                {"repaired_pixels", frame.repaired_pixels}};
+  if (frame.error_pixels > 0) json["error_estimate"] = std::sqrt(frame.error_squares / frame.error_pixels);
   if (frame.error) json["error"] = frame.error->what();
   return json;
 }

@@ -27,6 +27,7 @@ struct FrameReport {
   struct Tiles {
     std::uint64_t sky = 0, proved = 0, computed = 0;  // of 8 x 8 pixels: all sky, proved to be open, estimated
   } tiles;
+  double error_squares = 0, error_pixels = 0;  // of an estimate with a tolerance
   double samples_per_pixel = 0;    // depth samples that the settings ask for, averaged over all pixels; sky asks for none
   std::vector<std::string> notes;  // what the user should know, a sentence each
   std::optional<Error> error;      // why it failed

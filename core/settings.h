@@ -97,6 +97,7 @@ struct EstimatorSettings {
   double falloff_end = 1;            // fraction of the radius where it ends, above the start to 1; nothing beyond blocks
   int slices = 2;                    // directions a pixel, 1 to 64; with fewer than 3 a pixel by itself is noisy, and the denoiser must share its neighbours'
   int steps = 16;                    // samples to each side of a slice, 1 to 4096; they matter more than slices
+  double tolerance = 0;              // of gtao, RMS error of the visibility by the search, 0 to 1: as many directions of an exact search as that takes, tile by tile; 0: as the settings say
   SliceSearch search = SliceSearch::steps;  // of estimator gtao; but for `steps`, the falloff must be none and the stride 1
   int samples = 16;                  // of estimator crytek, in the hemisphere, 4 to 64
   double bias = 0;                   // least height that blocks, >= 0; crytek: scene units of depth; others: sine of the elevation above the tangent plane, < 1

@@ -18,12 +18,15 @@
 #include "arcs.glsl"
 #include "noise.glsl"
 #include "bent.glsl"
+#include "stride.glsl"
+#include "tiles.glsl"
 #include "clearance.glsl"
 #include "slice.glsl"
 #include "sectors.glsl"
 #include "lines.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
+layout(constant_id = kExactListedId) const uint kListed = 0;
 layout(scalar, push_constant) uniform Push { ExactParams params; };
 layout(scalar, binding = kExactDepth) readonly buffer Depth { float depth[]; };
 layout(scalar, binding = kExactNormal) readonly buffer Normal { uint normal[]; };
@@ -32,6 +35,8 @@ layout(scalar, binding = kExactMark) readonly buffer Mark { uint mark[]; };
 layout(scalar, binding = kExactNeighbor) readonly buffer Neighbor { uint neighbor[]; };
 layout(scalar, binding = kExactWhole) buffer Whole { float whole_arcs[]; };
 layout(scalar, binding = kExactAo) buffer Ao { float ao[]; };
+layout(scalar, binding = kExactList) readonly buffer List { ListedTile list[]; };
+layout(scalar, binding = kExactCounts) readonly buffer Counts { TileCounts counts; };
 
 const float kNone = 1e30;
 
@@ -119,7 +124,16 @@ float blocked_arc(View view, LinePlane plane, Side side, Search search, Point po
 void main() {
   const View view = params.view;
   const Lines lines = params.lines;
-  const ivec2 extent = extent_of(view, lines), at = params.first + params.stride * ivec2(gl_GlobalInvocationID.xy);  // along and across
+  const ivec2 extent = extent_of(view, lines);
+  ivec2 at = params.first + params.stride * ivec2(gl_GlobalInvocationID.xy);  // along and across
+  if (kListed != 0u) {
+    const ListedPlace place = listed_place(gl_WorkGroupID.xy, gl_LocalInvocationIndex, 1);
+    if (place.tile >= counts.listed) return;
+    const ivec2 origin = lines.steep != 0 ? lines.origin.yx : lines.origin;
+    const ivec2 listed = pixel_of_anchored_tile(unpack_tile(list[place.tile].place), place.pixel, origin);
+    if (!inside(view, listed)) return;
+    at = lines.steep != 0 ? listed.yx : listed;
+  }
   if (at.x >= extent.x || at.y >= extent.y) return;
   const ivec2 pixel = lines.steep != 0 ? at.yx : at;
   const int index = index_of(view, pixel), ao_index = index + int(params.plane) * view.size.x * view.size.y;

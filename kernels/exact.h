@@ -12,6 +12,10 @@ ALCOVE_CONSTANT uint kExactMark = 3;      // in: from profile
 ALCOVE_CONSTANT uint kExactNeighbor = 4;  // in: from profile
 ALCOVE_CONSTANT uint kExactWhole = 5;     // in and out: float a pixel, sum of whole arcs
 ALCOVE_CONSTANT uint kExactAo = 6;        // in and out: float a pixel, sum of blocked arcs; after the last slice visibility in [0, 1], 1 = open
+ALCOVE_CONSTANT uint kExactList = 7;      // in: ListedTile a tile, from converge; only with kExactListedId
+ALCOVE_CONSTANT uint kExactCounts = 8;    // in: TileCounts; only with kExactListedId
+
+ALCOVE_CONSTANT uint kExactListedId = 0;  // specialization: 1: the pixels of listed tiles take the slice, and no sum is ever completed; see stride, first, is_last
 
 struct ExactParams {
   View view;

@@ -36,6 +36,13 @@ ivec2 pixel_of_tile(ivec2 tile, uint pixel, ivec2 origin, int stride) {
   return ivec2(tile.x * kTile + stride * int(pixel % columns) + first_estimated(row, origin, stride), row);
 }
 
+/// Tiles that count from the display window's corner, `origin` pixels before the image's, so that a crop has those of the whole.
+ivec2 anchored_tiles_of(ivec2 size, ivec2 origin) { return tiles_of(size + (origin & (kTile - 1))); }
+
+ivec2 pixel_of_anchored_tile(ivec2 tile, uint pixel, ivec2 origin) {
+  return tile * kTile - (origin & (kTile - 1)) + ivec2(pixel % uint(kTile), pixel / uint(kTile));
+}
+
 /// What the estimators store of a mean open direction: in [0, 1], so that filters of visibility take it as it is.
 vec3 stored_bent(vec3 bent) { return 0.5 + 0.5 * bent; }
 

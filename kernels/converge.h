@@ -1,0 +1,31 @@
+// Parameters and bindings of converge.comp.
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef ALCOVE_CONVERGE_H
+#define ALCOVE_CONVERGE_H
+#include "shared.h"
+ALCOVE_BEGIN
+
+ALCOVE_CONSTANT uint kConvergeDepth = 0;       // in: float a pixel, from prepare
+ALCOVE_CONSTANT uint kConvergeBlocked = 1;     // in: float a pixel, sum of blocked arcs, from exact
+ALCOVE_CONSTANT uint kConvergeWhole = 2;       // in: float a pixel, sum of whole arcs, from exact
+ALCOVE_CONSTANT uint kConvergeAo = 3;          // in and out: float a pixel, visibility by half of the directions, then by all; the plane of the parameters
+ALCOVE_CONSTANT uint kConvergeError = 4;       // out: float a pixel, the estimated error of its tile
+ALCOVE_CONSTANT uint kConvergeSquares = 5;     // out: vec2 a tile, sum of the squared errors of its receivers, and their number
+ALCOVE_CONSTANT uint kConvergeList = 6;        // in: ListedTile a tile that had more directions
+ALCOVE_CONSTANT uint kConvergeCounts = 7;      // in: TileCounts
+ALCOVE_CONSTANT uint kConvergeNextList = 8;    // out: ListedTile a tile that needs more still
+ALCOVE_CONSTANT uint kConvergeNextCounts = 9;  // in, out: TileCounts, zeros
+ALCOVE_CONSTANT uint kConvergeNextLines = 10;  // in, out: GroupCount of profile, whose z is 0; it becomes 1 where any tile needs more
+
+struct ConvergeParams {
+  View view;
+  ivec2 origin;     // px: from the display window's corner to the image's; tiles count from the former
+  float tolerance;  // RMS error of a tile's visibility
+  uint directions;  // so far; 0: all tiles with surfaces are listed, and nothing else is read
+  uint decides;     // 0: all tiles of the list stay, since there is no estimate to compare with
+  uint plane;       // of the visibility
+};
+ALCOVE_PARAMS(ConvergeParams)
+
+ALCOVE_END
+#endif
