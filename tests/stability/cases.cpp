@@ -214,6 +214,7 @@ HostFrame stored(HostFrame frame, Storage storage, double room_depth) {
     const double at = frame.camera.orthographic ? (z - near) / (far - near) : (1 / near - 1 / z) / (1 / near - 1 / far), value = std::clamp(reversed ? 1 - at : at, 0.0, 1.0);
     z = float(std::round(value * steps) / steps);
   }
+  frame.depth_step = step_of(frame.depth);
   return frame;
 }
 
