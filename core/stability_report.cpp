@@ -30,7 +30,7 @@ std::string breaks_text(const StabilityAxis& axis, const StabilityCurve& curve) 
 }
 
 constexpr std::array kColors{"#2f6fb0", "#d1495b", "#e3963e", "#2a9d6f", "#7b5ea7", "#8a6a4f", "#4aa3b5"};
-constexpr double kWidth = 520, kHeight = 210, kLeft = 46, kRight = 12, kTop = 10, kBottom = 34, kMost = 0.4;
+constexpr double kWidth = 520, kHeight = 210, kLeft = 46, kRight = 26, kTop = 10, kBottom = 34, kMost = 0.4;
 
 struct Drawing {
   const StabilityAxis& axis;
