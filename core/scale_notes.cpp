@@ -9,7 +9,8 @@
 namespace alcove {
 namespace {
 
-constexpr std::size_t kSampled = 4096;  // pixels of a window
+constexpr std::size_t kSampled = 4096;     // pixels of a window
+constexpr double kFullPrecision = 0x1p-16;  // of the depth: no file of floats is worse
 
 }  // namespace
 
@@ -39,7 +40,7 @@ std::vector<std::string> DepthSample::notes(const EstimatorSettings& settings, i
   const double least = radii_of(settings).front(), most = radii_of(settings).back();
   if (least < kLeastPrecisions * precision)
     said.push_back(fmt::format("radius {:.3g} is {:.2g} times the depth's precision of {:.2g} at the median depth {:.3g}: occluders are lost in its rounding; "
-                               "give a larger --radius, or write depth with more bits", least, least / precision, precision, z));
+                               "give a larger --radius{}", least, least / precision, precision, z, precision > kFullPrecision * z ? ", or write depth with more bits" : ""));
   const auto below = double(std::ranges::count_if(depths, [&](double depth) { return least < pixel_at(depth); })) / double(depths.size());
   if (below > 0.5)
     said.push_back(fmt::format("radius {:.3g} is less than a pixel over {:.0f} % of the surfaces, where nothing can block: give a larger --radius", least, 100 * below));

@@ -58,7 +58,7 @@ const std::vector<Axis>& axes() {
       axis(&Spec::normals, {N::missing, N::grazing, N::axis, N::zero, N::nan, N::infinite, N::denormal, N::huge, N::backfacing, N::random}),
       axis(&Spec::depth, {DepthDefect::zero, DepthDefect::negative, DepthDefect::denormal, DepthDefect::infinite, DepthDefect::nan, DepthDefect::largest,
                           DepthDefect::near_plane, DepthDefect::any_bits}),
-      axis(&Spec::storage, {Storage::half_float, Storage::bits_16, Storage::bits_24, Storage::bits_24_reversed}),
+      axis(&Spec::storage, {Storage::half_float, Storage::bits_16, Storage::bits_24, Storage::bits_24_reversed, Storage::far_positions}),
       axis(&Spec::place, {Place::corner})};
   return all;
 }
@@ -119,6 +119,24 @@ double rounded(double x, int bits) {
   int exponent = 0;
   const double mantissa = std::frexp(x, &exponent);
   return std::ldexp(std::round(std::ldexp(mantissa, bits)), exponent - bits);
+}
+
+HostFrame as_far_positions(HostFrame frame, double far) {
+  frame.depth_kind = DepthKind::position;
+  frame.position_space = PositionSpace::world;
+  frame.camera.view_from_world = Matrix3{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+  frame.camera.view_from_world_offset = {-far, -far, -far};
+  const std::size_t pixels = frame.data.pixels();
+  std::vector<float> positions(3 * pixels);
+  for (std::size_t i = 0; i < pixels; i++) {
+    const double z = frame.depth[i], scale = frame.camera.orthographic ? 1 : z;
+    if (!(std::abs(z) < frame.sky)) continue;
+    positions[i] = float(scale * (double(i % std::size_t(frame.data.width)) + 0.5 - frame.camera.cx) / frame.camera.fx + far);
+    positions[i + pixels] = float(scale * (frame.camera.cy - double(i / std::size_t(frame.data.width)) - 0.5) / frame.camera.fy + far);
+    positions[i + 2 * pixels] = float(far - z);
+  }
+  frame.depth = positions;
+  return frame;
 }
 
 }  // namespace
@@ -201,6 +219,7 @@ Rendering room(double fov, double aspect, double shift, int width, int height) {
 
 HostFrame stored(HostFrame frame, Storage storage, double room_depth) {
   if (storage == Storage::single_float) return frame;
+  if (storage == Storage::far_positions) return as_far_positions(std::move(frame), 1e7 * room_depth);
   if (storage == Storage::half_float) {
     for (float& z : frame.depth) z = z < 65504 ? float(rounded(z, 11)) : kInfinity;
     frame.depth_is_half = true;

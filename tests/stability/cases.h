@@ -23,7 +23,7 @@ std::vector<Variant> variants();
 
 enum class NormalDefect { none, missing, grazing, axis, zero, nan, infinite, denormal, huge, backfacing, random };
 enum class DepthDefect { none, zero, negative, denormal, infinite, nan, largest, near_plane, any_bits };
-enum class Storage { single_float, half_float, bits_16, bits_24, bits_24_reversed };
+enum class Storage { single_float, half_float, bits_16, bits_24, bits_24_reversed, far_positions };
 enum class Place { room, corner };
 
 /// A frame of a room, and what is extreme about it. The values of each member are those of the axis.
@@ -56,7 +56,7 @@ Case made(const Spec& spec);
 /// The room from that far; see Spec::fov.
 Rendering room(double fov, double aspect, double shift, int width, int height);
 
-/// The frame with its depth as that storage holds it. Near and far are 0.1 and 1000 times the room's depth.
+/// The frame with its depth as that storage holds it; far positions are 1e7 times the room's depth from their origin. Near and far are 0.1 and 1000 times the room's depth.
 HostFrame stored(HostFrame frame, Storage storage, double room_depth);
 
 EstimatorSettings with_radius(EstimatorSettings settings, double radius);
