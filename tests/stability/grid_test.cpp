@@ -23,7 +23,7 @@ std::string complaint(const Case& made, const Variant& variant) {
   const HostResult result = compute_ao(recorder(), made.frame, settings);
   for (std::size_t i = 0; i < result.ao.size(); i++)
     if (!(result.ao[i] >= 0 && result.ao[i] <= 1)) return fmt::format("AO {} at pixel {}", result.ao[i], i);
-  settings.skip = false;
+  settings.no_skip = true;
   const std::vector<float> all = compute_ao(recorder(), made.frame, settings).ao;
   const Difference d = difference(result.ao, all);
   return same_bits(result.ao, all) ? "" : fmt::format("skipping changes pixel {} by {}", d.worst, d.max);
@@ -59,10 +59,10 @@ TEST(Grid, all_axes_at_once) {
 TEST(Grid, estimators_write_their_own_plane_and_all_of_it) {
   for (const auto& [width, height] : {std::pair{1, 1}, {1, 37}, {37, 1}, {3, 5}, {47, 43}, {16383, 1}, {1, 16383}})
     for (const auto& variant : estimators())
-      for (const bool skip : {true, false}) {
+      for (const bool no_skip : {true, false}) {
         const Case made = test::made({.width = width, .height = height});
         EstimatorSettings settings = with_radius(variant.settings, made.radius);
-        settings.skip = skip;
+        settings.no_skip = no_skip;
         gpu::Recorder& gpu = recorder();
         const FrameInputs inputs = upload(gpu, made.frame);
         for (const auto* plane : {inputs.depth, inputs.normal}) gpu.upload(*plane);
