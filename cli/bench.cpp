@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/bench.h"
 #include "core/bench_batch.h"
+#include "core/stability.h"
 
 #include <algorithm>
 
@@ -18,7 +19,7 @@ struct BenchArguments {
   std::string suite, data, json, csv, report, limits, yardstick;
   gpu::DeviceOptions device;
   int repeats = 0, reference_slices = -1, batch = 0;
-  bool quiet = false;
+  bool quiet = false, stability = false;
 };
 
 /// False: help was asked for.
@@ -28,10 +29,11 @@ bool parse(const std::vector<std::string>& arguments, BenchArguments& a) {
       "Example:\n  alcove bench examples/bench/suite.toml --report bench.html\n",
       "alcove bench");
   app.get_formatter()->column_width(34);
-  app.add_option("SUITE", a.suite, "a suite file (TOML)")->required()->type_name("");
+  app.add_option("SUITE", a.suite, "a suite file (TOML); all but --stability needs one")->type_name("");
   app.add_option("--data", a.data, "the folder of the suite's frames; else the suite's own")->type_name("FOLDER");
   app.add_option("--batch", a.batch, "instead: time a run of so many frames against its files alone and its kernels alone, for the first candidate")
       ->expected(0, 1)->default_str("240")->check(CLI::Range(1, 100000))->type_name("FRAMES");
+  app.add_flag("--stability", a.stability, "instead: measure where each estimator's numbers fail, along depth, radius, field of view, tilt, bits and world offset; no suite");
   app.add_option("--repeats", a.repeats, "timed runs, instead of the suite's")->check(CLI::Range(1, 1000))->type_name("NUMBER");
   app.add_option("--reference-slices", a.reference_slices, "of the CPU reference, instead of the suite's; 0: none")->check(CLI::Range(0, 1024))->type_name("NUMBER");
   app.add_option("--json", a.json, "write all numbers")->type_name("FILE.json");
@@ -43,7 +45,9 @@ bool parse(const std::vector<std::string>& arguments, BenchArguments& a) {
   app.add_option("--device", a.device.choice, "as for alcove run")->capture_default_str()->type_name("auto|cpu|INDEX|NAME|UUID");
   app.add_flag("--require-gpu", a.device.require_gpu, "measuring on the CPU is an error");
   app.add_flag("-q,--quiet", a.quiet, "no progress and no table");
-  return parse_arguments(app, arguments);
+  if (!parse_arguments(app, arguments)) return false;
+  if (a.suite.empty() && !a.stability) fail(ErrorKind::usage, "alcove bench: SUITE is required; try alcove bench --help");
+  return true;
 }
 
 /// The candidates' options go the way that alcove run's go.
@@ -87,11 +91,29 @@ void print_table(const BenchReport& report) {
   }
 }
 
+void write(const std::string& path, const std::string& text) {
+  if (!path.empty()) write_whole(path, text);
+}
+
+int report_stability(const BenchArguments& a) {
+  for (const auto& [path, option] : {std::pair(&a.json, "--json"), std::pair(&a.report, "--report")})
+    if (!path->empty()) require_writable(*path, option);
+  gpu::Device device(a.device);
+  const StabilityReport report = run_stability(device, [&](const std::string& line) {
+    if (!a.quiet) fmt::print(stderr, "{}\n", line);
+  });
+  if (!a.quiet) fmt::print("{}", stability_text(report));
+  write(a.json, stability_json(report));
+  write(a.report, stability_page(report));
+  return 0;
+}
+
 }  // namespace
 
 int bench_command(const std::vector<std::string>& arguments) {
   BenchArguments a;
   if (!parse(arguments, a)) return 0;
+  if (a.stability) return report_stability(a);
   Suite suite = read_suite(a.suite, a.data);
   if (a.repeats) suite.repeats = a.repeats;
   if (a.reference_slices >= 0) suite.reference_slices = a.reference_slices;
@@ -111,9 +133,6 @@ int bench_command(const std::vector<std::string>& arguments) {
   const BenchReport report = run_bench(device, suite, candidates, options);
 
   if (!a.quiet) print_table(report);
-  const auto write = [](const std::string& path, const std::string& text) {
-    if (!path.empty()) write_whole(path, text);
-  };
   write(a.json, bench_json(report));
   write(a.csv, bench_csv(report));
   if (!a.report.empty()) write(a.report, bench_page(report));

@@ -74,6 +74,8 @@ void set_position(DepthMap& map, PositionSpace space, bool negative, const Camer
     fail(ErrorKind::usage, "world positions need a camera with world_to_camera: give a --camera file with it, or --position-space view");
   for (std::size_t i = 0; i < 3; i++) map.axis[i] = -scale * (*camera.view_from_world)[2][i];
   map.base = -camera.view_from_world_offset[2];
+  const auto& offset = camera.view_from_world_offset;
+  map.eye_distance = std::hypot(offset[0], offset[1], offset[2]);
 }
 
 }  // namespace
@@ -122,14 +124,38 @@ double planar_depth(const DepthMap& map, const std::array<double, 3>& raw, doubl
   return map.along_ray ? z / ray_length : z;
 }
 
-DepthPrecision depth_precision(const DepthMap& map, double raw_precision) {
+double step_of(std::span<const float> raw) {
+  constexpr std::size_t kSampled = 4096, kLeastValues = 64;
+  constexpr double kExact = 0.02;  // of a step: how near to a level a float is that can tell
+  const std::size_t sparse = raw.size() / kSampled + 1;
+  for (const int bits : {16, 24}) {
+    const double levels = std::exp2(bits) - 1;
+    std::size_t values = 0;
+    bool all = true;
+    for (std::size_t i = 0; i < raw.size() && all; i += sparse) {
+      const double level = raw[i] * levels;
+      if (!(raw[i] > 0 && raw[i] < 1) || level * kFloatPrecision > 0.5 * kExact) continue;
+      all = std::abs(level - std::round(level)) < kExact;
+      values++;
+    }
+    if (all && values >= kLeastValues) return 1 / levels;
+  }
+  return 0;
+}
+
+DepthPrecision depth_precision(const DepthMap& map, double raw_precision, double step) {
   constexpr double kRenderers = 0x1p-17;
-  const double slope = std::abs(map.slope), rest = raw_precision * std::abs(map.slope * map.origin - map.base);
+  // A position's coordinates, each known to a part of itself, and their products are added up.
+  const double from_origin = map.form == kDepthPosition ? 2 * map.eye_distance : 0;
+  const double slope = std::abs(map.slope), rest = raw_precision * std::max(from_origin, std::abs(map.slope * map.origin - map.base)) + 0.5 * step * slope;
   DepthPrecision precision;
   precision.at[1] = std::max(kRenderers, raw_precision);
   switch (map.form) {
     case kDepthReciprocal: precision.at[2] = rest; break;
-    case kDepthExponential: precision.at[0] = raw_precision * map.base * slope, precision.at[1] = std::max(kRenderers, raw_precision * slope); break;
+    case kDepthExponential:
+      precision.at[0] = (raw_precision + 0.5 * step) * map.base * slope;
+      precision.at[1] = std::max(kRenderers, (raw_precision + 0.5 * step) * slope);
+      break;
     default: precision.at[0] = rest;
   }
   return precision;

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <limits>
+#include <span>
 
 #include "core/camera.h"
 #include "core/settings.h"
@@ -18,6 +19,7 @@ struct DepthMap {
   double sky_below = 0, sky_above = std::numeric_limits<double>::infinity();  // raw depth at or beyond them is sky
   double sky_depth = 1e9;                                                     // scene units
   std::array<double, 3> axis{};                                               // of positions
+  double eye_distance = 0;                                                    // of positions: from their origin to the eye, scene units
 };
 
 /// How far a planar depth z may be from the surface's: at[0] + at[1] z + at[2] z^2, scene units.
@@ -38,9 +40,13 @@ double planar_depth(const DepthMap& map, const std::array<double, 3>& raw, doubl
 /// Relative to a raw value: half a step of floats, and of half floats.
 constexpr double kFloatPrecision = 0x1p-24, kHalfPrecision = 0x1p-11;
 
-/// What becomes of raw values that are known to this part of themselves. Never less than renderers' own arithmetic loses: 2^-17 of the depth, as where
+/// The step of device, normalized or log depth that was rounded to 16 or 24 bits; 0: it was not. Of 24 bits only small values tell, and matter: others are
+/// floats as coarse.
+double step_of(std::span<const float> raw);
+
+/// What becomes of raw values that are known to this part of themselves, and rounded to multiples of `step`. Never less than renderers' own arithmetic loses: 2^-17 of the depth, as where
 /// surfaces 1000 units across are seen from a few units (measured: 8e-6).
-DepthPrecision depth_precision(const DepthMap& map, double raw_precision);
+DepthPrecision depth_precision(const DepthMap& map, double raw_precision, double step = 0);
 
 /// The word for it on the command line.
 const char* name_of(DepthKind kind);

@@ -6,6 +6,7 @@
 
 #include "core/batch.h"
 #include "core/error.h"
+#include "core/scale_notes.h"
 #include "core/settle.h"
 
 namespace alcove {
@@ -58,6 +59,7 @@ class FrameRun {
   FrameOutputs compute(FrameSource& source, const OutputSettings& output) {
     const Stopwatch reading;
     const FrameInputs inputs = load_frame(gpu_, source, settings_, frame_);
+    sample_.add(inputs);
     report_.read_ms += reading.ms();
     go_on();
     const FrameOutputs outputs = run_chain(gpu_, inputs, settings_.estimator, output);
@@ -156,6 +158,7 @@ class FrameRun {
 
   void note_counts(const FrameSource& source) {
     auto& notes = report_.notes;
+    if (has_ao_) notes = sample_.notes(settings_.estimator, source.file_data.width, source.file_data.height);
     report_.sky_pixels = counts_.sky;
     report_.repaired_pixels = counts_.repaired_depth + counts_.repaired_normals + counts_.repaired_material + counts_.repaired_beauty;
     if (has_ao_) report_.samples_per_pixel = samples_per_pixel(settings_.estimator) * double(report_.pixels - report_.sky_pixels) / double(report_.pixels);
@@ -174,6 +177,7 @@ class FrameRun {
   Settings settings_;
   FrameReport& report_;
   FrameCounts counts_{};
+  DepthSample sample_;
   bool has_ao_ = false;
 };
 

@@ -36,6 +36,7 @@ struct FrameSource {
   Window file_data;      // what the files hold
   std::optional<Window> region;  // what is to be written of it; none: all of data
   bool settled = false;  // see core/settle.h
+  double depth_step = 0;  // see step_of()
   bool has_evidence = true;  // false: its pixels did not show what was left open
   double pixel_aspect = 1;
   std::vector<ChannelRef> depth;          // one, or x, y, z of positions

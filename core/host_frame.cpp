@@ -37,6 +37,7 @@ HostFrame read_host_frame(const InputSettings& settings, int number) {
   read_planes(source, {{&source.depth, frame.depth.data()}, {&source.normal, frame.normal.data()}});
   settle(source, settings, frame.depth, frame.normal);
   frame.depth_is_half = has_half_depth(source);
+  frame.depth_step = source.depth_step;
   frame.depth_kind = source.depth_kind;
   frame.depth_range = source.depth_range;
   frame.position_space = source.position_space;
@@ -57,7 +58,7 @@ FrameInputs upload(gpu::Recorder& gpu, const HostFrame& frame) {
   inputs.noise_origin = {frame.data.x - frame.display.x, frame.data.y - frame.display.y};
   inputs.frame = frame.frame;
   inputs.depth_map = depth_map(frame.depth_kind, frame.depth_range, frame.position_space, frame.camera, frame.depth_scale, frame.sky);
-  inputs.depth_precision = depth_precision(inputs.depth_map, frame.depth_is_half ? kHalfPrecision : kFloatPrecision);
+  inputs.depth_precision = depth_precision(inputs.depth_map, frame.depth_is_half ? kHalfPrecision : kFloatPrecision, frame.depth_step);
   inputs.normal_encoding = frame.normal_encoding;
   inputs.normal_unorm = frame.normal_unorm;
   if (!frame.normal.empty()) inputs.view_from_normal = view_from_normal(frame.camera, frame.normal_space, frame.flip_normal);

@@ -23,6 +23,7 @@ struct HostFrame {
   NormalSpace normal_space = NormalSpace::view;    // not automatic; world needs camera.view_from_world
   double depth_scale = 1, sky = 1e9;
   bool depth_is_half = false;   // the values were rounded to half floats
+  double depth_step = 0;        // see step_of()
   DepthRange depth_range;
   PositionSpace position_space = PositionSpace::view;  // not automatic; world needs camera.view_from_world
   NormalEncoding normal_encoding = NormalEncoding::signed_float;  // not automatic

@@ -356,6 +356,8 @@ void settle(FrameSource& source, const InputSettings& settings, std::span<const 
   refuse_8_bits(source, depth);
   Settlement(source, settings, depth, normal).run();
   note_half(source, depth);
+  const bool is_fraction = source.depth_kind == DepthKind::device || source.depth_kind == DepthKind::normalized || source.depth_kind == DepthKind::log;
+  source.depth_step = is_fraction ? step_of(depth) : 0;
   source.settled = true;
 }
 
@@ -389,6 +391,7 @@ bool settle_like(FrameSource& source, const FrameSource& settled) {
   source.normal_encoding = settled.normal_encoding;
   source.normal_unorm = settled.normal_unorm;
   source.flip_normal = settled.flip_normal;
+  source.depth_step = settled.depth_step;
   return source.settled = true;
 }
 

@@ -99,8 +99,9 @@ float blocked_arc(View view, LinePlane plane, Side side, Search search, Point po
     const bool begins = (marked & search.begins) != 0u;
     is_own = begins ? false : is_own;
     thick = begins && measured ? unpack_width(marked) : thick;
-    // The stroke from the last vertex, or the vertex alone as one towards the receiver; cut to the sphere.
-    const vec2 from = begins ? 0.999 * place : starts ? 1e-3 * place : last, stroke = place - from;
+    // The stroke from the last vertex; to the first one from the next pixel on, as nothing is seen before it; the vertex alone as a short one. Cut to the sphere.
+    const float next_pixel = min(0.999, 1.0 / float(abs(to - search.from)));
+    const vec2 from = begins ? 0.999 * place : starts ? next_pixel * place : last, stroke = place - from;
     const float a = dot(stroke, stroke), middle = dot(from, stroke), beside = from.x * stroke.y - from.y * stroke.x;
     const float inside_sq = a * radius_sq - beside * beside, inside = sqrt(max(inside_sq, 0.0)), scale = 1.0 / a;
     const float enters = max(0.0, (-middle - inside) * scale), leaves = min(1.0, (inside - middle) * scale);

@@ -30,6 +30,9 @@ layout(scalar, binding = kProfileNeighbor) writeonly buffer Neighbor { uint neig
 /// Three pixels across a line whose values change by amounts that differ by less than this part are one surface however steep: a floor seen aslant.
 const float kStraight = 0.25;
 
+/// Beside a pixel near the horizon a plane may go on behind it: then this part of the pixel's disparity stands for it.
+const float kLeastNearness = 0.02;
+
 bool connected(bool perspective, float pixel, float a, float b) { return abs(a - b) < kRunSlope * pixel * (perspective ? min(a, b) : 1.0); }
 
 /// What is straight along a line where the surface is: disparity, or orthographic depth.
@@ -74,10 +77,16 @@ void main() {
     const bool same = known && connected(perspective, pixel, nearest, other);
     float change = same ? ahead : 0.0;
     for (bool looks = !same && nearest < kSkyDepth; looks; looks = false) {
-      const float third = depth[index_at(view, lines, min(t, end - 1), clamp(across - side, 0, extent.y - 1))], behind = here - value_of(perspective, third);
-      change = known && abs(ahead - behind) < kStraight * abs(ahead) ? ahead : connected(perspective, pixel, nearest, third) ? behind : 0.0;
+      // The change before it on the same straight: at the image's border, where a pixel is missing, the one after it.
+      const bool first = uint(across - side) >= uint(extent.y);
+      const int column = min(t, end - 1), back = clamp(known || first ? across - side : across - 2 * side, 0, extent.y - 1);
+      const float third = depth[index_at(view, lines, column, clamp(across - side, 0, extent.y - 1))], behind = here - value_of(perspective, third);
+      const float fourth = depth[index_at(view, lines, column, first ? clamp(across + 2 * side, 0, extent.y - 1) : back)];
+      const float next_to = first ? value_of(perspective, fourth) - value_of(perspective, other) : known ? behind : value_of(perspective, third) - value_of(perspective, fourth);
+      const float straight = known ? ahead : behind;
+      change = abs(straight - next_to) < kStraight * abs(straight) ? straight : connected(perspective, pixel, nearest, third) ? behind : 0.0;
     }
-    const float next_value = max(here + abs(rest) * change, 0.5 * here), z = perspective ? 1.0 / next_value : next_value;
+    const float between = here + abs(rest) * change, next_value = perspective ? max(between, kLeastNearness * here) : between, z = perspective ? 1.0 / next_value : next_value;
     const bool surface = nearest < kSkyDepth && t < end;
     const bool goes_on = open && surface && connected(perspective, pixel, z, last_z);
     const float gap = float(t - anchor), slope = (next_value - anchor_value) / gap;

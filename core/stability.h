@@ -1,0 +1,52 @@
+// Where each estimator's numbers fail: its error against the double-precision reference along every axis, and whether a run would say so.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/gpu/recorder.h"
+
+namespace alcove {
+
+/// An estimator breaks down where its RMSE is this much above that of the plain room, which is what its samples leave.
+constexpr double kBreakdown = 0.05;
+
+struct StabilityPoint {
+  double at = 0;
+  std::vector<std::string> notes = {};  // what `alcove run` says of this frame and radius
+};
+
+/// An estimator along an axis.
+struct StabilityCurve {
+  std::string estimator;
+  std::vector<double> rmse;         // at each of the axis' points, over the surfaces
+  std::vector<std::size_t> breaks;  // the points nearest to the plain room, to each side of it, that break down; none: nowhere
+  bool said = false;                // at all of them a run says so
+};
+
+struct StabilityAxis {
+  std::string name, unit;
+  bool logarithmic = true;
+  std::vector<StabilityPoint> points;
+  std::vector<StabilityCurve> curves;
+};
+
+struct StabilityReport {
+  std::string device;
+  std::vector<std::pair<std::string, double>> plain;  // each estimator and its RMSE in the plain room
+  std::vector<StabilityAxis> axes;
+};
+
+/// Measures all axes, in a minute or so on a CPU. `say`: progress, a line each; may be empty.
+StabilityReport run_stability(gpu::Device& device, const std::function<void(const std::string&)>& say);
+
+/// A line for every axis and estimator: the worst error and where it breaks down.
+std::string stability_text(const StabilityReport& report);
+/// {"device", "breakdown", "plain": [{"estimator", "rmse"}], "axes": [{"name", "unit", "points": [{"at", "notes"}], "curves": [{"estimator", "rmse", "breaks_at": [...], "said"}]}]}.
+std::string stability_json(const StabilityReport& report);
+/// A self-contained page without scripts.
+std::string stability_page(const StabilityReport& report);
+
+}  // namespace alcove

@@ -1,0 +1,91 @@
+// Whatever the numbers: every estimator, preset and resolution gives an AO from 0 to 1, 1 on sky, the same with and without skipping, and writes nothing else.
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// ALCOVE_STABILITY_DRAWS=N takes N random draws of all axes at once instead of a few; ALCOVE_STABILITY_SEED=S repeats those of a run. Both are printed.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <iostream>
+
+#include "core/pass_common.h"
+#include "tests/device.h"
+#include "tests/difference.h"
+#include "tests/stability/cases.h"
+
+namespace alcove {
+namespace {
+
+using namespace test;
+
+/// "": all is well.
+std::string complaint(const Case& made, const Variant& variant) {
+  EstimatorSettings settings = with_radius(variant.settings, made.radius);
+  const HostResult result = compute_ao(recorder(), made.frame, settings);
+  for (std::size_t i = 0; i < result.ao.size(); i++)
+    if (!(result.ao[i] >= 0 && result.ao[i] <= 1)) return fmt::format("AO {} at pixel {}", result.ao[i], i);
+  settings.no_skip = true;
+  const std::vector<float> all = compute_ao(recorder(), made.frame, settings).ao;
+  const Difference d = difference(result.ao, all);
+  return same_bits(result.ao, all) ? "" : fmt::format("skipping changes pixel {} by {}", d.worst, d.max);
+}
+
+void expect_sound(const Spec& spec, const std::vector<Variant>& all) {
+  const Case made = test::made(spec);
+  for (const auto& variant : all) {
+    const std::string said = complaint(made, variant);
+    EXPECT_EQ(said, "") << variant.name << ": " << to_string(spec);
+  }
+}
+
+TEST(Grid, every_axis_by_itself) {
+  const auto all = variants();
+  for (const Spec& spec : sweeps()) expect_sound(spec, all);
+}
+
+TEST(Grid, all_axes_at_once) {
+  const char *draws = std::getenv("ALCOVE_STABILITY_DRAWS"), *seed = std::getenv("ALCOVE_STABILITY_SEED");
+  const unsigned first = seed ? unsigned(std::strtoul(seed, nullptr, 10)) : draws ? std::random_device()() : 0;
+  const int count = draws ? std::atoi(draws) : 24;
+  if (draws) std::cout << "ALCOVE_STABILITY_DRAWS=" << count << " ALCOVE_STABILITY_SEED=" << first << std::endl;
+  const auto all = variants();
+  for (int i = 0; i < count; i++) {
+    std::mt19937 random(first + unsigned(i));
+    expect_sound(drawn(random), all);
+    if (HasFailure()) FAIL() << "repeat with ALCOVE_STABILITY_DRAWS=1 ALCOVE_STABILITY_SEED=" << first + unsigned(i);
+  }
+}
+
+// Each estimator writes the middle one of three planes; the other two, before and behind it, stay at 0.
+TEST(Grid, estimators_write_their_own_plane_and_all_of_it) {
+  for (const auto& [width, height] : {std::pair{1, 1}, {1, 37}, {37, 1}, {3, 5}, {47, 43}, {16383, 1}, {1, 16383}})
+    for (const auto& variant : estimators())
+      for (const bool no_skip : {true, false}) {
+        const Case made = test::made({.width = width, .height = height});
+        EstimatorSettings settings = with_radius(variant.settings, made.radius);
+        settings.no_skip = no_skip;
+        gpu::Recorder& gpu = recorder();
+        const FrameInputs inputs = upload(gpu, made.frame);
+        for (const auto* plane : {inputs.depth, inputs.normal}) gpu.upload(*plane);
+        const GBuffer gbuffer = prepare(gpu, inputs);
+        reconstruct(gpu, gbuffer);
+        const std::size_t pixels = made.frame.data.pixels();
+        gpu::Buffer& planes = gpu.buffer("three planes", 3 * pixels * sizeof(float), gpu::Use::download);
+        gpu.clear(planes);
+        Estimate out{&planes};
+        out.listed = classify(gpu, gbuffer, inputs, settings, bounds(gpu, gbuffer, inputs, settings), out, 1);
+        if (searches_exactly(settings)) {
+          for (int direction = 0; direction < settings.slices; direction++) exact(gpu, gbuffer, profile(gpu, gbuffer, inputs, settings, direction), inputs, settings, out, 1);
+        } else {
+          const auto estimator = std::array{&horizon, &bitmask, &hbao, &crytek}[std::size_t(settings.estimator)];
+          estimator(gpu, gbuffer, inputs, settings, out, 1);
+        }
+        gpu.download(planes);
+        gpu.run();
+        const auto values = planes.as<float>();
+        for (std::size_t i = 0; i < 3 * pixels; i++)
+          ASSERT_TRUE(i / pixels == 1 ? values[i] > 0 && values[i] <= 1 : values[i] == 0) << variant.name << " " << width << "x" << height << " value " << i << ": " << values[i];
+      }
+}
+
+}  // namespace
+}  // namespace alcove
