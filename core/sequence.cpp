@@ -70,7 +70,7 @@ std::optional<Range> range_of(const std::string& text) {
   const auto number = [&](long& value) {
     const auto [stop, error] = std::from_chars(at, end, value);
     at = stop;
-    return error == std::errc() && std::abs(value) < kFrameLimit;
+    return error == std::errc() && -kFrameLimit < value && value < kFrameLimit;
   };
   Range range;
   if (!number(range.first)) return std::nullopt;
