@@ -55,7 +55,8 @@ void require_sane_header(const std::string& path, const char* option) {
     if (name->empty()) {
       const std::uint64_t offsets = tile_width ? ((width + tile_width - 1) / tile_width) * ((height + tile_height - 1) / tile_height)
                                                : (height + kLinesAChunk - 1) / kLinesAChunk;
-      if (in_part && (offsets > reader.left() / kOffset || (height && width > kPixelsAByte * reader.size / height))) return refuse(fmt::format("{} x {} pixels in a file of {} bytes", width, height, reader.size));
+      const bool too_many = offsets > reader.left() / kOffset || (height > 0 && width > kPixelsAByte * reader.size / height);
+      if (in_part && too_many) return refuse(fmt::format("{} x {} pixels in a file of {} bytes", width, height, reader.size));
       if (!in_part || !(*version & kMultiPart)) return;
       in_part = false, width = height = tile_width = tile_height = 0;
       continue;

@@ -87,7 +87,8 @@ TEST_F(Hostile, the_command_that_inspect_proposes_quotes_what_a_shell_would_run)
   fs::rename(frame, name);
   const Finished inspected = run_program({"inspect", name, "--camera", camera, "--json"});
   ASSERT_EQ(inspected.code, 0) << inspected;
-  const std::string command = json::parse(inspected.out)["command"], echo = "cd " + folder.path() + " && set -- " + command.substr(std::strlen("alcove ")) + " && printf %s \"$2\"";
+  const std::string command = json::parse(inspected.out)["command"];
+  const std::string echo = "cd " + folder.path() + " && set -- " + command.substr(std::strlen("alcove ")) + " && printf %s \"$2\"";
   Surroundings shell;
   shell.program = "/bin/sh";
   EXPECT_EQ(run_program({"-c", echo}, shell).out, name);
@@ -143,6 +144,12 @@ TEST_F(Hostile, a_frame_of_a_camera_is_the_number_that_is_written) {
 TEST_F(Hostile, a_frame_number_beyond_all_numbers_is_refused) {
   for (const char* list : {"-9223372036854775808", "9223372036854775807", "0-9223372036854775807x4611686018427387904", "1--9223372036854775808"})
     EXPECT_THROW(parse_frames(list), Error) << list;
+}
+
+TEST_F(Hostile, a_short_list_that_repeats_many_frames_is_refused) {
+  std::string list = "1-999999";
+  for (int i = 0; i < 1000; i++) list += ",1-999999";
+  EXPECT_THROW(parse_frames(list), Error);
 }
 
 TEST_F(Hostile, a_zero_byte_in_a_preset_is_refused) {  // or it would end a file's name early

@@ -32,7 +32,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   fuzz::accepts([&] {
     const Inspection inspection = inspect_frame(settings, 1);
     fuzz::require(nlohmann::json::accept(inspection.json), "the JSON is JSON");
-    fuzz::require(std::ranges::none_of(inspection.text, [](unsigned char c) { return (c < 0x20 && c != '\n') || c == 0x7f; }), "a terminal shows text only");
+    const bool commands = std::ranges::any_of(inspection.text, [](unsigned char c) { return (c < 0x20 && c != '\n') || c == 0x7f; });
+    fuzz::require(!commands, "a terminal shows text only");
   });
   return 0;
 }
