@@ -35,7 +35,8 @@ has_clang() {
 }
 
 step "address and undefined behaviour"
-export ASAN_OPTIONS=detect_stack_use_after_return=1 UBSAN_OPTIONS=print_stacktrace=1 LSAN_OPTIONS=suppressions=$PWD/tests/sanitizers/leaks.txt:print_suppressions=0
+# Leaks are not looked for: what lavapipe and OpenEXR lose cannot be told apart, as their libraries are gone by then. Memory over many frames is a test.
+export ASAN_OPTIONS=detect_leaks=0:detect_stack_use_after_return=1 UBSAN_OPTIONS=print_stacktrace=1
 build build-asan -DALCOVE_SANITIZE=address,undefined -- "${tests[@]}"
 selected=$(printf '|%s' "${tests[@]}")
 [ "${1:-}" != all ] || selected='|.'
