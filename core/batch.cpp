@@ -42,6 +42,8 @@ void check_search(const Settings& settings) {
   const auto& e = settings.estimator;
   if (!searches_exactly(e)) return;
   if (wants(settings.output, &FrameOutputs::bent_normal)) fail(ErrorKind::usage, "--aov bent-normal: an exact search finds no open directions; --search steps does");
+  for (const auto* view : debug_views_of(settings.output))
+    if (view->source == DebugSource::tiles) fail(ErrorKind::usage, "--debug tiles: an exact search leaves out none; --search steps does");
   if (e.falloff != Falloff::none)
     fail(ErrorKind::usage, "--falloff: in an exact search all within the radius blocks fully; give --falloff none or --search steps");
   if (e.stride > 1) fail(ErrorKind::usage, "--stride {}: an exact search is made at every pixel; give --stride 1 or --search steps", e.stride);

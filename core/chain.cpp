@@ -24,7 +24,7 @@ FrameOutputs run_chain(gpu::Recorder& gpu, const FrameInputs& frame, const Estim
     const bool several = !settings.further_radii.empty(), each = several && wants(output, &FrameOutputs::scales);
     if (each) out.scales = ao;
     out.ao = several ? &combine(gpu, work, *ao) : ao;
-    stages = {work, out.ao, out.ao};
+    stages = {work, out.ao, out.ao, listed.sectors};
     if (settings.denoise != Denoise::none) {
       stages.denoised_ao = out.ao = &denoise(gpu, work, *out.ao, frame, settings);
       if (each) out.scales = &denoise(gpu, work, *out.scales, frame, settings, "scales ");
@@ -56,15 +56,9 @@ FrameOutputs run_chain(gpu::Recorder& gpu, const FrameInputs& frame, const Estim
   return out;
 }
 
-double samples_per_pixel(const EstimatorSettings& settings) {
-  if (searches_exactly(settings)) return 0;
-  const double factor = double(settings.resolution), samples = settings.estimator == Estimator::crytek ? settings.samples : 2 * settings.slices * settings.steps;
-  return samples * double(1 + settings.further_radii.size()) / (factor * factor * stride_of(settings));
-}
-
 bool needs_ao(const OutputSettings& output) {
   for (const auto* view : debug_views_of(output))
-    if (view->source == DebugSource::raw_ao || view->source == DebugSource::denoised_ao) return true;
+    if (view->source == DebugSource::raw_ao || view->source == DebugSource::denoised_ao || view->source == DebugSource::tiles) return true;
   return output.multi_bounce || !output.composite.empty() || !output.preview.empty() || wants(output, &FrameOutputs::ao) ||
          wants(output, &FrameOutputs::scales) || wants(output, &FrameOutputs::bent_normal) || wants(output, &FrameOutputs::specular_occlusion);
 }

@@ -24,9 +24,6 @@ struct FrameOutputs {
 /// Records for one frame what `output` asks for, and the composite where the frame has a beauty. settings.radius must be set where that needs AO.
 FrameOutputs run_chain(gpu::Recorder& gpu, const FrameInputs& frame, const EstimatorSettings& settings, const OutputSettings& output = {});
 
-/// Depth samples that the settings ask for at a pixel of a surface, on average.
-double samples_per_pixel(const EstimatorSettings& settings);
-
 /// Whether any of it is AO or made from it.
 bool needs_ao(const OutputSettings& output);
 

@@ -12,7 +12,7 @@
 namespace alcove {
 
 enum class DebugScale { fixed, fixed_logarithmic, percentile, percentile_logarithmic };
-enum class DebugSource { none, raw_depth, raw_ao, denoised_ao, normals_from_depth };  // what kernels/debug.comp takes beside the G-buffer
+enum class DebugSource { none, raw_depth, raw_ao, denoised_ao, normals_from_depth, tiles };  // what kernels/debug.comp takes beside the G-buffer
 
 /// A row of the table.
 struct DebugView {

@@ -61,6 +61,9 @@ std::vector<uint> slice_constants(const EstimatorSettings& settings, const gpu::
 /// Tiles in x and y.
 gpu::Extent tile_extent(const View& view) { return {groups_of(view.size.x, uint(kTile)), groups_of(view.size.y, uint(kTile))}; }
 
+/// Samples a pixel from which on a proof that tiles are open costs less than it saves: it costs as much as 6 of them, and most frames are open in a tenth.
+constexpr double kWorthProving = 48;
+
 /// How far a profile may leave a pixel's depth, in the pixel's own widths: less costs more vertices.
 constexpr float kProfileTolerance = 0.2f;
 
@@ -132,10 +135,20 @@ Estimate estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs&
   return all;
 }
 
+double samples_per_pixel(const EstimatorSettings& settings) {
+  if (searches_exactly(settings)) return 0;
+  const double factor = double(settings.resolution), samples = settings.estimator == Estimator::crytek ? settings.samples : 2 * settings.slices * settings.steps;
+  return samples * double(1 + settings.further_radii.size()) / (factor * factor * stride_of(settings));
+}
+
+bool proves(const EstimatorSettings& settings) {
+  return !settings.no_skip && samples_per_pixel(settings) >= kWorthProving * double(1 + settings.further_radii.size());
+}
+
 gpu::Buffer& bounds(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings) {
   const gpu::Extent tiles = tile_extent(gbuffer.view);
   gpu::Buffer& bounds = gpu.buffer("bounds", sizeof(TileBounds) * tiles.x * tiles.y, gpu::Use::device);
-  if (settings.skip)
+  if (proves(settings))
     gpu.dispatch("bounds", BoundsParams{gbuffer.view, frame.noise_origin},
                  {{kBoundsDepth, *gbuffer.depth}, {kBoundsNormal, *gbuffer.normal}, {kBoundsTiles, bounds}}, tiles, {uint(stride_of(settings))});
   return bounds;
@@ -144,7 +157,8 @@ gpu::Buffer& bounds(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInput
 TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings, const gpu::Buffer& bounds,
                   const Estimate& out, uint plane) {
   const gpu::Extent tiles = tile_extent(gbuffer.view);
-  const TileList list{&gpu.buffer("tiles", sizeof(ListedTile) * tiles.x * tiles.y, gpu::Use::device), &gpu.buffer("tile counts", sizeof(TileCounts), gpu::Use::download)};
+  const TileList list{&gpu.buffer("tiles", sizeof(ListedTile) * tiles.x * tiles.y, gpu::Use::device), &gpu.buffer("tile counts", sizeof(TileCounts), gpu::Use::download),
+                      &gpu.buffer("tile sectors", sizeof(uint) * tiles.x * tiles.y, gpu::Use::device)};
   gpu.clear(*list.counts);
   const bool ranged = settings.estimator == Estimator::gtao || settings.estimator == Estimator::bitmask;
   const ClassifyParams params{gbuffer.view, frame.noise_origin, float(settings.radius.value() * settings.falloff_end), to_vec3(frame.depth_precision.at), plane};
@@ -154,9 +168,10 @@ TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs&
                 {kClassifyNormal, *gbuffer.normal},
                 {kClassifyList, *list.tiles},
                 {kClassifyCounts, *list.counts},
+                {kClassifySectors, *list.sectors},
                 {kClassifyAo, *out.ao},
                 {kClassifyBent, out.bent ? *out.bent : *out.ao}},
-               tiles, {uint(stride_of(settings)), (settings.skip ? kClassifySkips : 0) | (ranged ? kClassifyRanged : 0) | (out.bent ? kClassifyWithBent : 0)});
+               {groups_of(int(tiles.x), 2 * kGroupY) * kGroupX, groups_of(int(tiles.y), 2) * kGroupY}, {uint(stride_of(settings)), (settings.no_skip ? 0 : kClassifySkips) | (proves(settings) ? kClassifyProves : 0) | (ranged ? kClassifyRanged : 0) | (out.bent ? kClassifyWithBent : 0)});
   return list;
 }
 

@@ -71,6 +71,12 @@ class FrameRun {
     counts_.repaired_beauty += counts.repaired_beauty;
     report_.pixels += source.data.pixels();
     has_ao_ = outputs.ao;
+    if (outputs.tiles) {
+      const auto tiles = outputs.tiles->as<TileCounts>()[0];
+      report_.tiles.sky += tiles.sky;
+      report_.tiles.proved += tiles.open;
+      report_.tiles.computed += tiles.listed;
+    }
     go_on();
     return outputs;
   }
@@ -116,13 +122,13 @@ class FrameRun {
     report_.read_ms += reading.ms();
     const auto rows = tiles_of(whole, surroundings, pixel, run_.room, source);
     FrameWriter writer(source, settings_, provenance());
-    report_.tiles = 0;
+    report_.parts = 0;
     for (const auto& row : rows) {
       std::vector<std::vector<float>> planes;
       for (const auto& tile : row) {
         source.data = surroundings.around(tile);
         add_tile(result_planes(compute(source, settings_.output), source.data, settings_.output), source.data, tile, row, planes);
-        report_.tiles++;
+        report_.parts++;
       }
       const Stopwatch writing;
       writer.write(std::vector<std::span<const float>>(planes.begin(), planes.end()));

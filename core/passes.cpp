@@ -244,10 +244,11 @@ gpu::Buffer& directions(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::B
 
 DebugPlane debug(gpu::Recorder& gpu, const DebugView& view, const GBuffer& gbuffer, const DebugStages& stages, const FrameInputs& frame,
                  const EstimatorSettings& settings) {
-  const bool is_stage = view.source == DebugSource::raw_ao || view.source == DebugSource::denoised_ao;
+  const bool is_stage = view.source == DebugSource::raw_ao || view.source == DebugSource::denoised_ao || view.source == DebugSource::tiles;
   const GBuffer& shown = is_stage ? stages.gbuffer : gbuffer;
   const gpu::Buffer* values = shown.normal;
   if (is_stage) values = view.source == DebugSource::raw_ao ? stages.raw_ao : stages.denoised_ao;
+  if (view.source == DebugSource::tiles) values = stages.sectors;
   if (view.source == DebugSource::raw_depth) values = frame.depth;
   if (view.source == DebugSource::normals_from_depth) {
     FrameInputs depth_only = frame;

@@ -56,7 +56,7 @@ bool searches_exactly(const EstimatorSettings& settings);
 bool has_bent_normals(const EstimatorSettings& settings);
 /// Tiles of a G-buffer that an estimator has something to do for.
 struct TileList {
-  gpu::Buffer *tiles, *counts;  // ListedTile each; one TileCounts
+  gpu::Buffer *tiles = nullptr, *counts = nullptr, *sectors = nullptr;  // ListedTile each; one TileCounts; of all tiles: see classify.h
 };
 /// What an estimator gives for every pixel of the G-buffer, or for those that the stride leaves.
 struct Estimate {
@@ -64,7 +64,11 @@ struct Estimate {
   gpu::Buffer* bent = nullptr;  // planes x, y, z, of the largest radius: see horizon.h; null: not asked for
   TileList listed{};            // of the largest radius
 };
-/// TileBounds of every tile; without settings.skip left as they are.
+/// Whether tiles are proved to be open, or only sky is left out.
+bool proves(const EstimatorSettings& settings);
+/// Depth samples that the settings ask for at a pixel of a surface, on average.
+double samples_per_pixel(const EstimatorSettings& settings);
+/// TileBounds of every tile; left as they are where nothing is proved.
 gpu::Buffer& bounds(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings);
 /// For settings.radius. What an estimate would be that is not made, it writes into a plane of `out`.
 TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings, const gpu::Buffer& bounds,
@@ -123,6 +127,7 @@ struct DebugPlane {
 struct DebugStages {
   GBuffer gbuffer{};
   const gpu::Buffer *raw_ao = nullptr, *denoised_ao = nullptr;
+  const gpu::Buffer* sectors = nullptr;  // of the tiles
 };
 DebugPlane debug(gpu::Recorder& gpu, const DebugView& view, const GBuffer& gbuffer, const DebugStages& stages, const FrameInputs& frame,
                  const EstimatorSettings& settings);

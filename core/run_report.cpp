@@ -24,7 +24,8 @@ Json json_of(const FrameReport& frame) {
                {"passes", passes},
                {"pixels", frame.pixels},
                {"sky_pixels", frame.sky_pixels},
-               {"tiles", frame.tiles},
+               {"parts", frame.parts},
+               {"tiles", {{"total", frame.tiles.sky + frame.tiles.proved + frame.tiles.computed}, {"sky", frame.tiles.sky}, {"proved", frame.tiles.proved}, {"computed", frame.tiles.computed}}},
                {"samples_per_pixel", frame.samples_per_pixel},
                {"repaired_pixels", frame.repaired_pixels}};
   if (frame.error) json["error"] = frame.error->what();

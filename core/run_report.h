@@ -23,7 +23,10 @@ struct FrameReport {
   double read_ms = 0, compute_ms = 0, write_ms = 0, total_ms = 0;  // compute: the sum of the passes' device time
   std::vector<gpu::PassTime> passes;
   std::uint64_t pixels = 0, sky_pixels = 0, repaired_pixels = 0;
-  int tiles = 1;                   // that it was computed in; what they share is counted in each
+  int parts = 1;                   // that it was computed in; what they share is counted in each
+  struct Tiles {
+    std::uint64_t sky = 0, proved = 0, computed = 0;  // of 8 x 8 pixels: all sky, proved to be open, estimated
+  } tiles;
   double samples_per_pixel = 0;    // depth samples that the settings ask for, averaged over all pixels; sky asks for none
   std::vector<std::string> notes;  // what the user should know, a sentence each
   std::optional<Error> error;      // why it failed

@@ -116,7 +116,7 @@ struct EstimatorSettings {
   std::optional<double> fade_start, fade_end;  // scene units of planar depth, both or none, 0 <= start < end: the AO fades to 1 from one to the other
   double roughness = 0.5;            // of the surface, for specular occlusion, 0 to 1; perceptual, half way by default, as engines' own default materials
   std::uint32_t seed = 0;            // shifts the noise pattern
-  bool skip = true;                  // no estimate where it is proved to be 1; the result is the same
+  bool no_skip = false;              // estimate sky too, and what is proved to be open; the result is the same
 };
 
 /// What to write.

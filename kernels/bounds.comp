@@ -23,7 +23,11 @@ layout(scalar, binding = kBoundsTiles) writeonly buffer Tiles { TileBounds tiles
 /// Receivers whose normals differ more than this share no plane.
 const float kLeastTurn = 2e-3;
 
+/// Surfaces are one plane if they leave it by no more than this part of their nearness.
+const float kFlat = 4e-6;
+
 const float kFar = 1e30;
+const int kNeighbors = 8;
 
 float nearness(float z) { return params.view.orthographic != 0 ? -z : z < kSkyDepth ? 1.0 / z : 0.0; }
 
@@ -41,23 +45,26 @@ void main() {
   if (any(greaterThanEqual(tile, count))) return;
   const ivec2 first = tile * kTile, end = min(first + kTile, size);
   const vec2 middle = vec2(first) + 0.5 * float(kTile - 1);
-  const vec2 own = gradient_of(tile, size), left = gradient_of(tile - ivec2(1, 0), size), right = gradient_of(tile + ivec2(1, 0), size);
-  const vec2 above = gradient_of(tile - ivec2(0, 1), size), below = gradient_of(tile + ivec2(0, 1), size);
-  float along_own = -kFar, along_left = -kFar, along_right = -kFar, along_above = -kFar, along_below = -kFar, level = -kFar, farthest = kFar;
+  const vec2 own = gradient_of(tile, size);
+  vec2 gradient[kNeighbors];
+  float plane[kNeighbors];
+  for (int k = 0; k < kNeighbors; k++) gradient[k] = gradient_of(tile + neighbor_step(k), size), plane[k] = -kFar;
+  const float along_first = nearness(depth[first.y * size.x + first.x]) + dot(own, middle - vec2(first));
+  float along_own = -kFar, level = -kFar, farthest = kFar, deepest = 0.0;
   for (int y = first.y; y < end.y; y++)
     for (int x = first.x; x < end.x; x++) {
       const float z = depth[y * size.x + x], near = z < kSkyDepth ? nearness(z) : -kFar;
       const vec2 from_middle = vec2(x, y) - middle;
-      along_own = max(along_own, near - dot(own, from_middle));
-      along_left = max(along_left, near - dot(left, from_middle));
-      along_right = max(along_right, near - dot(right, from_middle));
-      along_above = max(along_above, near - dot(above, from_middle));
-      along_below = max(along_below, near - dot(below, from_middle));
+      const float over_own = near - dot(own, from_middle);
+      along_own = max(along_own, over_own);
+      deepest = min(deepest, z < kSkyDepth ? over_own - along_first : 0.0);
+      for (int k = 0; k < kNeighbors; k++) plane[k] = max(plane[k], near - dot(gradient[k], from_middle));
       level = max(level, near);
       farthest = min(farthest, z < kSkyDepth ? near : kFar);
     }
 
   const ivec2 centre = min(first + kTile / 2, size - 1);
+  const bool mixed = max(along_own - along_first, -deepest) > kFlat * abs(along_first);
   uint word = kNoNormal;
   float turned = 0.0, lowest = kFar, highest = -kFar;
   const uint central = normal[centre.y * size.x + centre.x];
@@ -77,6 +84,16 @@ void main() {
   }
   turned = sqrt(turned);
   if (is_surface && turned < kLeastTurn) word = central;
-  tiles[tile.y * count.x + tile.x] =
-      TileBounds(own, float[kTilePlanes](along_own, along_left, along_right, along_above, along_below, level), farthest, word, turned, lowest, highest);
+  TileBounds result;
+  result.gradient = own;
+  result.plane[0] = along_own;
+  for (int k = 0; k < kNeighbors; k++) result.plane[k + 1] = plane[k];
+  result.plane[kTilePlanes - 1u] = level;
+  result.farthest = farthest;
+  result.mixed = mixed ? 1u : 0u;
+  result.normal = word;
+  result.turned = turned;
+  result.lowest = lowest;
+  result.highest = highest;
+  tiles[tile.y * count.x + tile.x] = result;
 }

@@ -12,11 +12,13 @@ ALCOVE_CONSTANT uint kClassifyList = 3;    // out: ListedTile a tile, as many as
 ALCOVE_CONSTANT uint kClassifyCounts = 4;  // in, out: TileCounts, zeros
 ALCOVE_CONSTANT uint kClassifyAo = 5;      // out: float a pixel, 1 at receivers of tiles that are not listed; the plane of the parameters
 ALCOVE_CONSTANT uint kClassifyBent = 6;    // out: planes x, y, z as estimators write them, for the same; only with kClassifyWithBent
+ALCOVE_CONSTANT uint kClassifySectors = 7;  // out: uint a tile, as in ListedTile; 0: not listed
 
 ALCOVE_CONSTANT uint kClassifyStrideId = 0;  // specialization: one pixel of so many in a row is a receiver, 1, 2 or 4: see stride.glsl
 ALCOVE_CONSTANT uint kClassifyModeId = 1;    // specialization: bits of kClassify*
 
 ALCOVE_CONSTANT uint kClassifySkips = 1;     // else every tile is listed
+ALCOVE_CONSTANT uint kClassifyProves = 8;    // with kClassifySkips: reads the bounds; else only sky is left out
 ALCOVE_CONSTANT uint kClassifyRanged = 2;    // nothing beyond the radius blocks
 ALCOVE_CONSTANT uint kClassifyWithBent = 4;
 

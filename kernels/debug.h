@@ -7,7 +7,7 @@ ALCOVE_BEGIN
 
 ALCOVE_CONSTANT uint kDebugDepth = 0;   // in: float a pixel, planar depth, kSkyDepth for sky
 ALCOVE_CONSTANT uint kDebugNormal = 1;  // in: uint a pixel, unit vector in view space, see normal.glsl
-ALCOVE_CONSTANT uint kDebugValues = 2;  // in: float a pixel (kDebugValue) or a second set of normals (kDebugNormalAngle); not read by others
+ALCOVE_CONSTANT uint kDebugValues = 2;  // in: float a pixel (kDebugValue) or a second set of normals (kDebugNormalAngle), or the sectors of tiles (kDebugTile); not read by others
 ALCOVE_CONSTANT uint kDebugResult = 3;  // out: float a pixel
 
 ALCOVE_CONSTANT uint kDebugValue = 0;        // the values as they are
@@ -16,6 +16,7 @@ ALCOVE_CONSTANT uint kDebugViewZ = 2;        // z in view space, scene units, be
 ALCOVE_CONSTANT uint kDebugNormalZ = 3;      // z of the normal in view space
 ALCOVE_CONSTANT uint kDebugNormalAngle = 4;  // degrees between the two sets of normals
 ALCOVE_CONSTANT uint kDebugEdge = 5;         // distance of a neighbour from the tangent plane, part of the depth
+ALCOVE_CONSTANT uint kDebugTile = 6;         // share of the directions that are searched, of the pixel's tile
 
 struct DebugParams {
   View view;

@@ -54,13 +54,14 @@ struct GroupCount {
 };
 
 ALCOVE_CONSTANT int kTile = 8;        // px a side of the tiles by which work is skipped
-ALCOVE_CONSTANT uint kTilePlanes = 6;  // of TileBounds
+ALCOVE_CONSTANT uint kTilePlanes = 10;  // of TileBounds
 
 /// The surfaces seen in a tile, from the eye's side. They are told by their nearness: 1 / z, or -z orthographic, in which planes are affine in the pixel.
 struct TileBounds {
   vec2 gradient;             // nearness a pixel, from corner to corner of the tile
-  float plane[kTilePlanes];  // at the tile's centre, of planes that no surface is before: with its own gradient, those of the tiles left, right, above, below; level
+  float plane[kTilePlanes];  // at the tile's centre, of planes that no surface is before: with its own gradient, those of its neighbours, see tiles.glsl; level
   float farthest;            // least nearness; above the level plane where the tile is all sky
+  uint mixed;                // 1: its surfaces leave the plane with its own gradient, so that another one may be lower
   uint normal;               // of its receivers, packed; kNoNormal: they have none in common
   float turned;              // length of the largest difference of a receiver's normal to it
   float lowest, highest;     // of -dot(normal, position) over the receivers

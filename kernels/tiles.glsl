@@ -6,6 +6,9 @@ const uint kListedRow = 256u;
 
 ivec2 tiles_of(ivec2 size) { return (size + kTile - 1) / kTile; }
 
+/// The neighbours of a tile, k of 8.
+ivec2 neighbor_step(int k) { return k < 3 ? ivec2(k - 1, -1) : k < 6 ? ivec2(k - 4, 1) : ivec2(k * 2 - 13, 0); }
+
 uint pack_tile(ivec2 tile) { return uint(tile.x) | uint(tile.y) << 16; }
 ivec2 unpack_tile(uint place) { return ivec2(place & 0xffffu, place >> 16); }
 

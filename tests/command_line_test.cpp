@@ -434,13 +434,15 @@ TEST_F(CommandLine, stats_have_the_documented_fields_and_add_up) {
     EXPECT_GT(pass.at("ms"), 0);
     passes.push_back(pass.at("name"));
   }
-  EXPECT_THAT(passes, ElementsAre("prepare", "reconstruct", "horizon", "denoise", "denoise", "shape"));
+  EXPECT_THAT(passes, ElementsAre("prepare", "reconstruct", "classify", "horizon", "denoise", "denoise", "shape"));
   const json& ms = one.at("ms");
   EXPECT_NEAR(ms.at("compute"), sum, 1e-9 * sum);
   for (const char* name : {"read", "compute", "write"}) EXPECT_GT(ms.at(name), 0) << name;
   EXPECT_GE(ms.at("total").get<double>(), ms.at("read").get<double>() + ms.at("write").get<double>());
   EXPECT_NEAR(one.at("samples_per_pixel"), 2 * 2 * 5 / 2.0 * 35.0 / 36, 1e-9);
   EXPECT_EQ(one.at("repaired_pixels"), 0);
+  EXPECT_EQ(one.at("parts"), 1);
+  EXPECT_EQ(one.at("tiles"), json({{"total", 40}, {"sky", 0}, {"proved", 0}, {"computed", 40}}));  // of 64 x 36 pixels
   EXPECT_EQ(totals.at("frames"), 1);
   EXPECT_EQ(totals.at("failed"), 0);
   for (const char* name : {"wall_s", "cpu_s", "peak_rss_mb"}) EXPECT_GT(totals.at(name), 0) << name;

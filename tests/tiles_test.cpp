@@ -32,7 +32,7 @@ class Tiles : public CommandLine {
     if (in_tiles) arguments.insert(arguments.end(), {"--memory", "1M"});
     const Finished finished = run_program(arguments);
     EXPECT_EQ(finished.code, 0) << finished;
-    const int tiles = json::parse(read_bytes(folder / "stats.json"))["frames"][0]["tiles"];
+    const int tiles = json::parse(read_bytes(folder / "stats.json"))["frames"][0]["parts"];
     const bool has_composite = std::ranges::find(more, "--composite") != more.end();
     return {read_bytes(ao) + (has_composite ? read_bytes(folder / "composite.exr") : ""), tiles};
   }

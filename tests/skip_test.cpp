@@ -1,0 +1,189 @@
+// What is left out because a proof says so has the bits of what is computed.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <numbers>
+#include <random>
+
+#include "core/chain.h"
+#include "tests/device.h"
+#include "tests/difference.h"
+#include "tests/scenes.h"
+#include "tests/single_pass.h"
+
+namespace alcove {
+namespace {
+
+using namespace test;
+
+struct Outcome {
+  std::vector<float> values;  // AO of all scales, and the bent normals
+  TileCounts tiles{};
+};
+
+Outcome run(const HostFrame& frame, EstimatorSettings settings, bool no_skip) {
+  settings.no_skip = no_skip;
+  OutputSettings output;
+  output.aovs = has_bent_normals(settings) ? "ao,bent-normal,ao-scales" : "ao,ao-scales";
+  const FrameOutputs outputs = run_chain(recorder(), upload(recorder(), frame), settings, output);
+  recorder().run();
+  Outcome outcome;
+  for (const auto* planes : {outputs.ao, outputs.scales, outputs.bent_normal}) {
+    if (!planes) continue;
+    const auto values = planes->as<float>();
+    outcome.values.insert(outcome.values.end(), values.begin(), values.end());
+  }
+  outcome.tiles = outputs.tiles->as<TileCounts>()[0];
+  return outcome;
+}
+
+/// So many samples that proofs are worth their cost.
+EstimatorSettings proving(Estimator estimator, double radius, ThicknessKind thickness = ThicknessKind::automatic) {
+  EstimatorSettings settings = plain_settings();
+  settings.estimator = estimator;
+  settings.radius = radius;
+  settings.thickness = thickness;
+  settings.thickness_length = radius / 4;
+  settings.slices = 3;
+  settings.steps = 8;
+  settings.samples = 64;
+  EXPECT_TRUE(proves(settings));
+  return settings;
+}
+
+/// Returns the tiles that were proved to be open.
+std::uint32_t expect_same(const HostFrame& frame, const EstimatorSettings& settings, const std::string& what) {
+  const Outcome skipped = run(frame, settings, false), whole = run(frame, settings, true);
+  EXPECT_EQ(whole.tiles.sky + whole.tiles.open, 0u) << what;
+  EXPECT_EQ(skipped.tiles.sky + skipped.tiles.open + skipped.tiles.listed, whole.tiles.listed) << what;
+  EXPECT_TRUE(same_bits(skipped.values, whole.values)) << what;
+  return skipped.tiles.open;
+}
+
+constexpr Estimator kEstimators[] = {Estimator::gtao, Estimator::bitmask, Estimator::hbao, Estimator::crytek};
+
+TEST(Skip, a_floor_is_open_but_where_something_stands_on_it) {
+  const Scene scene{{parallelogram({-20, -20, 0}, {40, 0, 0}, {0, 40, 0}), Sphere{.center = {0, 0, 0.2}, .radius = 0.2}}};
+  const Rendering floor = render(scene, Shot::perspective({0, -3, 2}, {0, 0, 0}, 50, 160, 120));
+  for (const Estimator estimator : kEstimators) {
+    const auto proved = expect_same(floor.frame, proving(estimator, 0.3), "estimator " + std::to_string(int(estimator)));
+    EXPECT_GT(proved, 100u) << "of 300, estimator " << int(estimator);
+    EXPECT_LT(proved, 295u);
+  }
+}
+
+TEST(Skip, thicknesses_falloffs_scales_strides_and_resolutions) {
+  const Rendering room = furnished_room(157, 119);
+  for (const auto thickness : {ThicknessKind::automatic, ThicknessKind::infinite, ThicknessKind::constant})
+    for (const auto falloff : {Falloff::none, Falloff::smooth}) {
+      EstimatorSettings settings = proving(Estimator::gtao, 0.4, thickness);
+      settings.falloff = falloff;
+      expect_same(room.frame, settings, "thickness " + std::to_string(int(thickness)));
+    }
+  EstimatorSettings settings = proving(Estimator::gtao, 0.4);
+  settings.further_radii = {0.1, 0.02};
+  expect_same(room.frame, settings, "scales");
+  settings = proving(Estimator::gtao, 0.4);
+  settings.denoise = Denoise::bilateral;
+  settings.steps = 64;
+  for (const int stride : {2, 4}) {
+    settings.stride = stride;
+    expect_same(room.frame, settings, "stride " + std::to_string(stride));
+  }
+  settings.stride = 1;
+  settings.steps = 128;
+  for (const auto resolution : {Resolution::half, Resolution::quarter}) {
+    settings.resolution = resolution;
+    expect_same(room.frame, settings, "resolution " + std::to_string(int(resolution)));
+  }
+}
+
+TEST(Skip, sky_is_left_out_whatever_the_samples_cost) {
+  HostFrame frame = furnished_room(160, 120).frame;
+  EstimatorSettings settings = plain_settings();
+  settings.radius = 0.3;
+  settings.slices = settings.steps = 2;
+  ASSERT_FALSE(proves(settings));
+  expect_same(frame, settings, "few samples");
+  std::ranges::fill(frame.depth, kSky);
+  const Outcome sky = run(frame, settings, false);
+  EXPECT_EQ(sky.tiles.listed, 0u);
+  EXPECT_EQ(sky.tiles.sky, 300u);
+  for (std::size_t i = 0; i < frame.data.pixels(); i++) ASSERT_EQ(sky.values[i], 1.0f);
+}
+
+TEST(Skip, any_bits_as_input) {
+  for (unsigned seed = 0; seed < 60; seed++) {
+    const int width = 1 + int(seed * 7 % 90), height = 1 + int(seed * 13 % 50);
+    const HostFrame frame = random_bits(width, height, seed);
+    for (const Estimator estimator : kEstimators) expect_same(frame, proving(estimator, 0.5), "seed " + std::to_string(seed));
+  }
+}
+
+/// A scene of a few flat and round things, seen from anywhere, also from within a corner.
+class RandomScenes {
+ public:
+  explicit RandomScenes(unsigned seed) : random_(seed) {}
+
+  HostFrame next() {
+    Scene scene;
+    scene.primitives.push_back(Plane{{0, 0, 0}, {0, 0, 1}});
+    if (number(0, 1) < 0.5) scene.primitives.push_back(Plane{{0, number(1, 5), 0}, unit({number(-1, 1), -1, number(-0.3, 0.3)})});
+    if (number(0, 1) < 0.3) scene.primitives.push_back(Plane{{number(-3, -1), 0, 0}, {1, 0, 0}});
+    const int things = int(number(0, 6));
+    for (int i = 0; i < things; i++) {
+      const Vec3 at{number(-3, 3), number(-2, 4), number(0, 1)};
+      if (number(0, 1) < 0.5) scene.primitives.push_back(Sphere{.center = at, .radius = number(0.02, 0.5)});
+      else scene.primitives.push_back(parallelogram(at, vector(0.6), vector(0.6)));
+    }
+    const Vec3 eye{number(-0.8, 0.8), number(-4, 0.5), std::exp(number(-4, 1.5))}, target{number(-1, 1), number(0, 3), number(-0.5, 0.5)};
+    const int width = int(number(8, 97)), height = int(number(8, 65));
+    Shot shot = number(0, 1) < 0.8 ? Shot::perspective(eye, target, number(5, 150), width, height) : Shot::orthographic(eye, target, number(0.5, 8), width, height);
+    if (number(0, 1) < 0.3) shot.camera.cx += number(-1, 1) * width, shot.camera.fy *= number(0.4, 2.5);
+    HostFrame frame = render(scene, shot).frame;
+    const double kind = number(0, 1);
+    if (kind < 0.15) {
+      frame.depth_is_half = true;
+      for (float& z : frame.depth) z = std::ldexp(std::round(std::ldexp(z, 10 - std::ilogb(z))), std::ilogb(z) - 10);
+    } else if (kind < 0.3) {
+      for (float& n : frame.normal) n = std::round(n * 2048) / 2048;
+    } else if (kind < 0.4) {
+      frame.normal.clear();
+    }
+    return frame;
+  }
+  double radius() { return std::exp(number(-5, 1.5)); }
+  Estimator estimator() { return kEstimators[int(number(0, 4)) & 3]; }
+  ThicknessKind thickness() { return ThicknessKind(int(number(0, 3)) % 3); }
+
+ private:
+  double number(double least, double most) { return std::uniform_real_distribution(least, most)(random_); }
+  Vec3 vector(double size) { return {number(-size, size), number(-size, size), number(-size, size)}; }
+
+  std::mt19937 random_;
+};
+
+// ALCOVE_TEST_SEED: other scenes.
+TEST(Skip, thousands_of_random_scenes) {
+  const char* seed = std::getenv("ALCOVE_TEST_SEED");
+  RandomScenes scenes(seed ? unsigned(std::atoi(seed)) : 20261121);
+  std::uint64_t proved = 0;
+  int some = 0;
+  for (int i = 0; i < 2000 && !HasFailure(); i++) {
+    const HostFrame frame = scenes.next();
+    const double radius = scenes.radius();
+    const Estimator estimator = scenes.estimator();
+    const auto open = expect_same(frame, proving(estimator, radius, scenes.thickness()),
+                                  "scene " + std::to_string(i) + ", radius " + std::to_string(radius) + ", estimator " + std::to_string(int(estimator)));
+    proved += open;
+    some += open > 0;
+  }
+  EXPECT_GT(some, 200) << "scenes in which anything was proved";
+  EXPECT_GT(proved, 2000u) << "tiles";
+}
+
+}  // namespace
+}  // namespace alcove
