@@ -8,7 +8,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-readers=(core/exr_header.cpp core/dds.cpp core/camera.cpp core/sequence.cpp core/flat_toml.cpp core/file.cpp core/text.cpp core/header_camera.cpp)
+readers=(core/exr_header.cpp core/dds.cpp core/camera.cpp core/sequence.cpp core/file.cpp core/text.cpp)
 tests=(file_test camera_test gbuffer_test text_test sequence_test layouts_test sources_test capture_formats_test hostile_test bad_input_test
        {exr,dds,camera,frames,toml,preset,inspect}_fuzz)
 if [ "${1:-}" = all ]; then
