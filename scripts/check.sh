@@ -45,7 +45,7 @@ ctest --test-dir build-asan --output-on-failure -j "$(nproc)" -R "^(${selected:1
 step "threads"
 build build-tsan -DALCOVE_SANITIZE=thread -- alcove batch_test
 export TSAN_OPTIONS="suppressions=$PWD/tests/sanitizers/threads.txt ignore_noninstrumented_modules=1"
-build-tsan/tests/batch_test --gtest_brief=1 --gtest_filter='*threads_chunks*:*one_by_one*:*guesses*:*log*'
+build-tsan/tests/batch_test --gtest_brief=1 --gtest_filter='*threads_chunks*:*one_by_one*'
 
 if has_clang clang-tidy; then
   step "clang-tidy"
