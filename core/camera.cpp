@@ -16,6 +16,8 @@ namespace {
 
 using Json = nlohmann::json;
 
+constexpr int kDeepest = 64;  // lists and objects within each other: to copy and to quote them recurses
+
 /// A camera file being read: every complaint names the file and the field.
 struct CameraFile {
   std::string path;
@@ -70,7 +72,7 @@ Json frame_entry(const CameraFile& file, int frame) {
   for (const auto& entry : frames) {
     if (!entry.is_object() || !entry.contains("frame") || !entry["frame"].is_number_integer())
       file.refuse("frames", "must list objects with a whole number \"frame\"");
-    if (entry["frame"].get<int>() == frame) return entry;
+    if (entry["frame"] == frame) return entry;
   }
   file.refuse("frames", fmt::format("has no frame {}", frame));
 }
@@ -218,7 +220,11 @@ Camera fitted(Camera camera, const Window& display, const std::string& path) {
 
 Camera read_camera(const std::string& path, int frame) {
   CameraFile file{path, Json::object(), Json::object()};
-  file.top = Json::parse(read_text(path, "camera", "--camera"), nullptr, false);
+  const auto bounded = [&](int depth, Json::parse_event_t, Json&) {
+    if (depth > kDeepest) fail(ErrorKind::input, "{}: JSON that nests deeper than {}; --camera takes a camera file", path, kDeepest);
+    return true;
+  };
+  file.top = Json::parse(read_text(path, "camera", "--camera"), bounded, false);
   if (!file.top.is_object()) fail(ErrorKind::input, "{}: not a JSON object; --camera takes a camera file", path);
   file.frame = frame_entry(file, frame);
 

@@ -17,6 +17,7 @@ constexpr std::size_t kLongestName = 255;
 constexpr std::uint32_t kMultiPart = 0x1000;     // of the version's flags
 constexpr std::uint64_t kLinesAChunk = 256;      // at most, of any compression
 constexpr std::uint64_t kOffset = 8;             // bytes of a chunk's place in the file
+constexpr std::uint64_t kPixelsAByte = 65536;    // at most: DWA keeps 2 bytes of a constant block of 64 pixels, and deflates these 1032:1
 constexpr std::uint64_t kMostBytes = 32 << 20;   // of a header: ten times what programs write, and small beside a frame; it is held several times
 
 struct Reader {
@@ -54,7 +55,8 @@ void require_sane_header(const std::string& path, const char* option) {
     if (name->empty()) {
       const std::uint64_t offsets = tile_width ? ((width + tile_width - 1) / tile_width) * ((height + tile_height - 1) / tile_height)
                                                : (height + kLinesAChunk - 1) / kLinesAChunk;
-      if (in_part && offsets > reader.left() / kOffset) return refuse(fmt::format("{} x {} pixels in a file of {} bytes", width, height, reader.size));
+      const bool too_many = offsets > reader.left() / kOffset || (height > 0 && width > kPixelsAByte * reader.size / height);
+      if (in_part && too_many) return refuse(fmt::format("{} x {} pixels in a file of {} bytes", width, height, reader.size));
       if (!in_part || !(*version & kMultiPart)) return;
       in_part = false, width = height = tile_width = tile_height = 0;
       continue;

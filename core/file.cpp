@@ -66,8 +66,6 @@ void require_writable(const std::string& path, const char* option) {
 }
 
 NewFile::NewFile(const std::string& path) : target_(path) {
-  std::error_code error;
-  if (const auto linked = fs::weakly_canonical(path, error); fs::is_symlink(path, error) && !linked.empty()) target_ = linked.string();
   // Whoever cleans up may take the file in the moment before it is locked.
   do {
     if (descriptor_ >= 0) ::close(descriptor_);
@@ -115,7 +113,8 @@ int remove_unfinished(const std::string& folder) {
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
     const std::string name = entry->path().filename().string();
     if (!name.starts_with(kUnfinishedPrefix) || !name.ends_with(kUnfinishedSuffix)) continue;
-    const int descriptor = ::open(entry->path().c_str(), O_WRONLY | O_CLOEXEC | O_NOFOLLOW);
+    if (!fs::is_regular_file(entry->symlink_status(error))) continue;
+    const int descriptor = ::open(entry->path().c_str(), O_WRONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
     if (descriptor < 0) continue;
     removed += lock(descriptor, false) && ::unlink(entry->path().c_str()) == 0;
     ::close(descriptor);

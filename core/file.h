@@ -27,7 +27,8 @@ class NewFile {
   NewFile(const NewFile&) = delete;
 
   void write_at(std::uint64_t offset, std::span<const char> bytes);
-  /// Gives it its name. A link at `path` stays a link: what it names is replaced.
+  /// Gives it its name. A symbolic link at `path` is replaced and what it names stays as it was, so that nobody who can write into a folder sends what
+  /// is written there elsewhere; links among the folders of the path are followed.
   void commit();
 
  private:
@@ -41,6 +42,7 @@ class NewFile {
 void write_whole(const std::string& path, std::span<const char> bytes);
 
 /// Removes the unfinished files that processes which were killed have left in a folder, not those of living ones on any machine. Returns their number.
+/// Only regular files are looked at: no link is followed, no pipe waited for.
 /// Never fails: what cannot be removed stays.
 int remove_unfinished(const std::string& folder);
 

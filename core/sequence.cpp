@@ -70,7 +70,7 @@ std::optional<Range> range_of(const std::string& text) {
   const auto number = [&](long& value) {
     const auto [stop, error] = std::from_chars(at, end, value);
     at = stop;
-    return error == std::errc() && std::abs(value) < kFrameLimit;
+    return error == std::errc() && -kFrameLimit < value && value < kFrameLimit;
   };
   Range range;
   if (!number(range.first)) return std::nullopt;
@@ -82,8 +82,8 @@ std::optional<Range> range_of(const std::string& text) {
   return range;
 }
 
-/// Adds one part of a list, which is for messages.
-void add_part(const std::string& text, const std::string& list, std::vector<int>& frames, std::unordered_set<int>& known) {
+/// Adds one part of a list, which is for messages. `listed` counts frames as often as they are there.
+void add_part(const std::string& text, const std::string& list, std::vector<int>& frames, std::unordered_set<int>& known, long& listed) {
   const auto range = range_of(text);
   if (!range)
     fail(ErrorKind::usage, "--frames {}: \"{}\" is no frame and no range; write 1001, 1001-1100 or 1001-1100x2, with commas between", list, text);
@@ -91,11 +91,10 @@ void add_part(const std::string& text, const std::string& list, std::vector<int>
   if (step == 0) fail(ErrorKind::usage, "--frames {}: the step of {} is 0", list, text);
   if (step < 0 && last > first) fail(ErrorKind::usage, "--frames {}: {} runs forwards, and its step backwards", list, text);
   const long stride = last >= first ? step : -std::abs(step);
-  if (std::abs(last - first) / std::abs(stride) >= kMostFrames)
-    fail(ErrorKind::usage, "--frames {}: {} has more than {} frames", list, text, kMostFrames);
+  listed += std::abs(last - first) / std::abs(stride) + 1;
+  if (listed > kMostFrames) fail(ErrorKind::usage, "--frames {}: with {} there are more than {} frames", list, text, kMostFrames);
   for (long frame = first; stride > 0 ? frame <= last : frame >= last; frame += stride)
     if (known.insert(int(frame)).second) frames.push_back(int(frame));
-  if (long(frames.size()) > kMostFrames) fail(ErrorKind::usage, "--frames {}: there are more than {} frames", list, kMostFrames);
 }
 
 /// The frame whose path this is.
@@ -125,12 +124,13 @@ std::optional<FramePattern> frame_pattern(const std::string& path) {
 std::vector<int> parse_frames(const std::string& list) {
   std::vector<int> frames;
   std::unordered_set<int> known;
+  long listed = 0;
   std::istringstream parts(list + ",");
   for (std::string part; std::getline(parts, part, ',');) {
     std::istringstream words(part);
     std::string word;
     if (!(words >> word)) fail(ErrorKind::usage, "--frames {}: the list is empty, or has nothing between two commas", list);
-    do add_part(word, list, frames, known);
+    do add_part(word, list, frames, known, listed);
     while (words >> word);
   }
   return frames;

@@ -25,7 +25,7 @@ std::optional<FramePattern> frame_pattern(const std::string& path);
 
 /// The frames of a list such as "1001-1100x2,1200": single numbers, ranges a-b, ranges with a step a-bxS or a-b:S, with commas, blanks or
 /// both between them. Numbers may be negative (-5--1), ranges may run backwards (10-1, 10-1x2). In the order of the list, no frame twice.
-/// Fails with ErrorKind::usage, quoting the part, on anything else, on a step of 0, and on more than 1,000,000 frames.
+/// Fails with ErrorKind::usage, quoting the part, on anything else, on a step of 0, and on more than 1,000,000 frames, repeated ones counted.
 std::vector<int> parse_frames(const std::string& list);
 
 /// The shortest such list, in rising order: "1003, 1010-1012".

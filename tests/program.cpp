@@ -8,6 +8,7 @@
 #include <spawn.h>
 #include <sys/mman.h>
 #include <sys/mount.h>
+#include <sys/resource.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -68,8 +69,8 @@ std::vector<char*> pointers_to(std::vector<std::string>& texts) {
   return pointers;
 }
 
-/// The exit code as a shell tells it; -1 when the child had to be killed.
-int wait_for(pid_t child, double seconds) {
+/// The exit code as a shell tells it; -1 when the child had to be killed. What it used goes into `usage`.
+int wait_for(pid_t child, double seconds, rusage& usage) {
   const int descriptor = int(::syscall(SYS_pidfd_open, child, 0));
   require(descriptor >= 0, "pidfd_open");
   pollfd event{descriptor, POLLIN, 0};
@@ -77,7 +78,7 @@ int wait_for(pid_t child, double seconds) {
   ::close(descriptor);
   if (!ended) ::kill(child, SIGKILL);
   int status = 0;
-  require(::waitpid(child, &status, 0) == child, "waitpid");
+  require(::wait4(child, &status, 0, &usage) == child, "wait4");
   if (!ended) return -1;
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
@@ -103,8 +104,9 @@ Finished run_program(const std::vector<std::string>& arguments, const Surroundin
   posix_spawn_file_actions_destroy(&actions);
   require(errno == 0, surroundings.program.c_str());
   if (surroundings.meanwhile) surroundings.meanwhile(child);
-  const int code = wait_for(child, surroundings.seconds);
-  return {code, out.text(), err.text()};
+  rusage usage{};
+  const int code = wait_for(child, surroundings.seconds, usage);
+  return {code, out.text(), err.text(), usage.ru_maxrss >> 10};
 }
 
 std::vector<std::string> lines_of(const std::string& text) {

@@ -15,6 +15,7 @@ namespace alcove::test {
 struct Finished {
   int code;  // exit code; 128 + number after a signal; -1 when it was stopped for taking too long
   std::string out, err;
+  long peak_mib = 0;  // of memory, at any moment
 };
 std::ostream& operator<<(std::ostream& stream, const Finished& finished);
 

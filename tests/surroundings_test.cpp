@@ -9,6 +9,7 @@
 #include <fstream>
 
 #include "core/exr.h"
+#include "core/file.h"
 #include "tests/command_line.h"
 #include "tests/exr_header.h"
 
@@ -170,13 +171,33 @@ TEST_F(SurroundingsTest, an_output_has_the_permissions_that_the_umask_leaves) {
   }
 }
 
-TEST_F(SurroundingsTest, an_output_that_is_a_symbolic_link_stays_one) {
+TEST_F(SurroundingsTest, an_output_that_is_a_symbolic_link_is_replaced_and_not_followed) {
+  const std::string preview = folder / "p.png", stats = folder / "s.json";
+  for (const std::string& link : {ao, folder / "ao.edges.png", preview, stats}) {
+    write_bytes(link + ".named", "before");
+    fs::create_symlink(link + ".named", link);
+  }
+  result({"--debug", "edges", "--preview", preview, "--stats", stats});
+  for (const std::string& file : {ao, folder / "ao.edges.png", preview, stats}) {
+    EXPECT_TRUE(!fs::is_symlink(file) && fs::file_size(file) > 100) << file;
+    EXPECT_EQ(read_bytes(file + ".named"), "before") << file;
+  }
+}
+
+TEST_F(SurroundingsTest, a_folder_that_is_a_symbolic_link_is_followed) {
   fs::create_directory(folder / "v2");
-  write_bytes(folder / "v2/ao.exr", "before");
-  fs::create_symlink("v2/ao.exr", ao);
-  EXPECT_EQ(result({}).substr(0, 4), "\x76\x2f\x31\x01");
-  EXPECT_TRUE(fs::is_symlink(ao));
-  EXPECT_EQ(read_bytes(folder / "v2/ao.exr").substr(0, 4), "\x76\x2f\x31\x01");
+  fs::create_directory_symlink("v2", folder / "latest");
+  EXPECT_EQ(run_program({"run", frame, "-o", folder / "latest/ao.exr", "--camera", camera, "--radius", "1"}).code, 0);
+  EXPECT_THAT(names_in(folder / "v2"), testing::ElementsAre("ao.exr"));
+}
+
+TEST_F(SurroundingsTest, what_poses_as_an_unfinished_file_is_neither_followed_nor_waited_for) {
+  const std::string pipe = folder / ".alcove-1-0000000a.tmp", link = folder / ".alcove-1-0000000b.tmp";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  fs::create_symlink(camera, link);
+  write_bytes(folder / ".alcove-1-0000000c.tmp", "left by a process that was killed");
+  EXPECT_EQ(remove_unfinished(folder.path()), 1);
+  EXPECT_TRUE(fs::exists(pipe) && fs::exists(link) && fs::exists(camera));
 }
 
 TEST_F(SurroundingsTest, a_run_replaces_what_was_there_and_leaves_nothing_else) {
