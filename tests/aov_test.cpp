@@ -126,9 +126,9 @@ TEST_F(Aovs, only_what_was_asked_for_is_computed) {
   good({"--aov", "normal", "--stats", stats});
   EXPECT_THAT(passes(), ElementsAre("prepare", "reconstruct", "directions"));
   good({"--aov", "specular-occlusion", "--denoise", "none", "--stats", stats});
-  EXPECT_THAT(passes(), ElementsAre("prepare", "reconstruct", "horizon", "bent_normal", "specular_occlusion"));
+  EXPECT_THAT(passes(), ElementsAre("prepare", "reconstruct", "bounds", "classify", "horizon", "bent_normal", "specular_occlusion"));
   good({"--denoise", "none", "--stats", stats});
-  EXPECT_THAT(passes(), ElementsAre("prepare", "reconstruct", "horizon"));
+  EXPECT_THAT(passes(), ElementsAre("prepare", "reconstruct", "bounds", "classify", "horizon"));
 }
 
 TEST_F(Aovs, a_region_holds_what_the_whole_holds_there) {
@@ -153,7 +153,7 @@ TEST_F(Aovs, without_ao_no_radius_is_needed) {
 
 TEST_F(Aovs, unknown_ones_are_answered_with_all_there_are) {
   for (const char* list : {"nromal", "ao,nromal", "bent", "ao,,depth", ""})
-    expect_refused(2, {"--aov", "ao, ao-scales, normal, bent-normal, depth, specular-occlusion"}, {"--aov", list});
+    expect_refused(2, {"--aov", "ao, ao-scales, normal, bent-normal, depth, error, specular-occlusion"}, {"--aov", list});
   expect_refused(2, {"did you mean normal?"}, {"--aov", "nromal"});
 }
 

@@ -37,7 +37,7 @@ TEST(Reflection, reads_parameter_sizes_that_the_host_sends) {
 
 TEST(Reflection, reads_bindings_groups_and_constants) {
   const auto horizon = gpu::reflect(gpu::kernel_code("horizon"));
-  EXPECT_THAT(horizon.bindings, ElementsAre(kHorizonDepth, kHorizonNormal, kHorizonAo, kHorizonBent));
+  EXPECT_THAT(horizon.bindings, ElementsAre(kHorizonDepth, kHorizonNormal, kHorizonAo, kHorizonBent, kHorizonList, kHorizonCounts));
   EXPECT_THAT(horizon.group, ElementsAre(kGroupX, kGroupY, 1u));
   EXPECT_THAT(horizon.constant_ids, ElementsAre(kHorizonSlicesId, kHorizonStepsId, kHorizonModeId, kHorizonStrideId, kHorizonThicknessId));
 }
@@ -122,7 +122,7 @@ TEST(Recorder, times_every_pass_by_its_stem) {
     EXPECT_GE(pass.ms, 0);
     EXPECT_LT(pass.ms, 60000);
   }
-  EXPECT_THAT(names, ElementsAre("prepare", "reconstruct", "horizon", "shape"));
+  EXPECT_THAT(names, ElementsAre("prepare", "reconstruct", "bounds", "classify", "horizon", "shape"));
 }
 
 TEST(Device, is_found_by_index_name_and_uuid) {

@@ -129,10 +129,10 @@ TEST(Scales, bent_normals_are_those_of_the_largest) {
 
 TEST(Scales, share_all_passes_but_the_search) {
   const HostFrame frame = furnished_room(61, 47).frame;
-  EXPECT_THAT(run(frame, settings_of({0.1, 0.6, 2}), "ao").passes, ElementsAre("prepare", "reconstruct", "horizon", "horizon", "horizon", "combine", "denoise", "denoise"));
+  EXPECT_THAT(run(frame, settings_of({0.1, 0.6, 2}), "ao").passes, ElementsAre("prepare", "reconstruct", "classify", "horizon", "classify", "horizon", "classify", "horizon", "combine", "denoise", "denoise"));
   EXPECT_THAT(run(frame, settings_of({0.1, 0.6, 2}), "ao,ao-scales").passes,
-              ElementsAre("prepare", "reconstruct", "horizon", "horizon", "horizon", "combine", "denoise", "denoise", "denoise", "denoise"));
-  EXPECT_THAT(run(frame, settings_of({0.6}), "ao,ao-scales").passes, ElementsAre("prepare", "reconstruct", "horizon", "denoise", "denoise"));
+              ElementsAre("prepare", "reconstruct", "classify", "horizon", "classify", "horizon", "classify", "horizon", "combine", "denoise", "denoise", "denoise", "denoise"));
+  EXPECT_THAT(run(frame, settings_of({0.6}), "ao,ao-scales").passes, ElementsAre("prepare", "reconstruct", "classify", "horizon", "denoise", "denoise"));
 }
 
 TEST(Scales, of_one_radius_are_the_ao) {
