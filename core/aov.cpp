@@ -17,6 +17,7 @@ std::span<const Aov> aov_table() {
       {"normal", {"normal.X", "normal.Y", "normal.Z"}, &FrameOutputs::normal},
       {"bent-normal", {"bent.X", "bent.Y", "bent.Z"}, &FrameOutputs::bent_normal},
       {"depth", {"Z"}, &FrameOutputs::depth, true},
+      {"confidence", {"confidence.Y"}, &FrameOutputs::confidence},
       {"error", {"error.Y"}, &FrameOutputs::error},
       {"specular-occlusion", {"specular.Y"}, &FrameOutputs::specular_occlusion},
   };

@@ -37,6 +37,7 @@ FrameOutputs run_chain(gpu::Recorder& gpu, const FrameInputs& frame, const Estim
       if (each) out.scales = &upsample(gpu, gbuffer, work, *out.scales, frame, settings, "scales ");
       if (bent) bent = &upsample(gpu, gbuffer, work, *bent, frame, settings, "bent ");
     }
+    if (wants(output, &FrameOutputs::confidence)) out.confidence = &confidence(gpu, gbuffer, frame, settings);
     if (bent) open = &bent_normal(gpu, gbuffer, *bent);
     if (shapes(settings) || frame.material_ao) {
       out.ao = &shape(gpu, gbuffer, *out.ao, frame, settings);
@@ -52,7 +53,7 @@ FrameOutputs run_chain(gpu::Recorder& gpu, const FrameInputs& frame, const Estim
   if (wants(output, &FrameOutputs::depth)) out.depth = gbuffer.depth;
   for (const auto* view : debug_views_of(output)) out.debug.push_back(debug(gpu, *view, gbuffer, stages, frame, settings));
 
-  for (const auto* result : {out.counts, out.tiles, out.error, out.squares, out.ao, out.scales, out.color_ao, out.composite, out.normal, out.bent_normal, out.depth, out.specular_occlusion})
+  for (const auto* result : {out.counts, out.tiles, out.error, out.squares, out.confidence, out.ao, out.scales, out.color_ao, out.composite, out.normal, out.bent_normal, out.depth, out.specular_occlusion})
     if (result) gpu.download(*result);
   for (const auto& plane : out.debug) gpu.download(*plane.values);
   return out;
@@ -61,7 +62,7 @@ FrameOutputs run_chain(gpu::Recorder& gpu, const FrameInputs& frame, const Estim
 bool needs_ao(const OutputSettings& output) {
   for (const auto* view : debug_views_of(output))
     if (view->source == DebugSource::raw_ao || view->source == DebugSource::denoised_ao || view->source == DebugSource::tiles) return true;
-  return output.multi_bounce || wants(output, &FrameOutputs::error) || !output.composite.empty() || !output.preview.empty() || wants(output, &FrameOutputs::ao) ||
+  return output.multi_bounce || wants(output, &FrameOutputs::error) || wants(output, &FrameOutputs::confidence) || !output.composite.empty() || !output.preview.empty() || wants(output, &FrameOutputs::ao) ||
          wants(output, &FrameOutputs::scales) || wants(output, &FrameOutputs::bent_normal) || wants(output, &FrameOutputs::specular_occlusion);
 }
 

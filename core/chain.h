@@ -10,6 +10,7 @@ namespace alcove {
 struct FrameOutputs {
   gpu::Buffer* counts = nullptr;     // one FrameCounts
   gpu::Buffer* tiles = nullptr;      // one TileCounts, where there is an estimate
+  gpu::Buffer* confidence = nullptr;  // a plane, in [0, 1]
   gpu::Buffer* error = nullptr;      // a plane: with settings.tolerance, the estimated error of the visibility
   gpu::Buffer* squares = nullptr;    // with settings.tolerance, vec2 a tile: sum of its squares, and receivers
   gpu::Buffer* ao = nullptr;         // a plane: visibility in [0, 1]; of several radii the mean

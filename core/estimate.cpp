@@ -12,6 +12,7 @@
 #include "kernels/bitmask.h"
 #include "kernels/bounds.h"
 #include "kernels/classify.h"
+#include "kernels/confidence.h"
 #include "kernels/converge.h"
 #include "kernels/crytek.h"
 #include "kernels/exact.h"
@@ -75,6 +76,9 @@ int bit_reversed(int i) {
   for (int bit = 1; bit < kMostDirections; bit *= 2) reversed = 2 * reversed + (i / bit & 1);
   return reversed;
 }
+
+/// Thickness of thin occluders, in radii.
+constexpr double kThin = 0.02;
 
 /// How far a profile may leave a pixel's depth, in the pixel's own widths: less costs more vertices.
 constexpr float kProfileTolerance = 0.2f;
@@ -153,18 +157,18 @@ bool has_bent_normals(const EstimatorSettings& settings) {
   return settings.estimator == Estimator::bitmask || (settings.estimator == Estimator::gtao && !searches_exactly(settings));
 }
 
-Estimate estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& inputs, const EstimatorSettings& settings, bool with_bent) {
+Estimate estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& inputs, const EstimatorSettings& settings, bool with_bent, const std::string& prefix) {
   FrameInputs frame = inputs;
   frame.noise_origin = block_grid(inputs, settings).origin;
   const auto radii = radii_of(settings);
-  Estimate all{&gpu.buffer("ao", radii.size() * plane_bytes(gbuffer.view), gpu::Use::download)};
+  Estimate all{&gpu.buffer(prefix + "ao", radii.size() * plane_bytes(gbuffer.view), gpu::Use::download)};
   if (with_bent) all.bent = &gpu.buffer("bent", 3 * plane_bytes(gbuffer.view), gpu::Use::download);
   const gpu::Buffer* tiles = searches_exactly(settings) ? nullptr : &bounds(gpu, gbuffer, frame, settings);
   for (uint plane = 0; plane < radii.size(); plane++) {
     EstimatorSettings one = settings;
     one.radius = radii[plane];
     Estimate out{all.ao, plane + 1 == radii.size() ? all.bent : nullptr};
-    if (tiles) all.listed = out.listed = classify(gpu, gbuffer, frame, one, *tiles, out, plane);
+    if (tiles) all.listed = out.listed = classify(gpu, gbuffer, frame, one, *tiles, out, plane, prefix);
     switch (settings.estimator) {
       case Estimator::gtao:
         if (!searches_exactly(one)) horizon(gpu, gbuffer, frame, one, out, plane);
@@ -202,10 +206,10 @@ gpu::Buffer& bounds(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInput
 }
 
 TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings, const gpu::Buffer& bounds,
-                  const Estimate& out, uint plane) {
+                  const Estimate& out, uint plane, const std::string& prefix) {
   const gpu::Extent tiles = tile_extent(gbuffer.view);
-  const TileList list{&gpu.buffer("tiles", sizeof(ListedTile) * tiles.x * tiles.y, gpu::Use::device), &gpu.buffer("tile counts", sizeof(TileCounts), gpu::Use::download),
-                      &gpu.buffer("tile sectors", sizeof(uint) * tiles.x * tiles.y, gpu::Use::device)};
+  const TileList list{&gpu.buffer("tiles", sizeof(ListedTile) * tiles.x * tiles.y, gpu::Use::device), &gpu.buffer(prefix + "tile counts", sizeof(TileCounts), gpu::Use::download),
+                      &gpu.buffer(prefix + "tile sectors", sizeof(uint) * tiles.x * tiles.y, gpu::Use::device)};
   gpu.clear(*list.counts);
   const bool ranged = settings.estimator == Estimator::gtao || settings.estimator == Estimator::bitmask;
   const ClassifyParams params{gbuffer.view, frame.noise_origin, float(settings.radius.value() * settings.falloff_end), to_vec3(frame.depth_precision.at), plane};
@@ -334,6 +338,33 @@ void crytek(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame
   params.depth_precision = to_vec3(frame.depth_precision.at);
   gpu.dispatch("crytek", params, {{kCrytekDepth, *gbuffer.depth}, {kCrytekNormal, *gbuffer.normal}, {kCrytekAo, *out.ao}, {kCrytekList, *out.listed.tiles}, {kCrytekCounts, *out.listed.counts}},
                gpu::Extent(*out.listed.counts), {uint(settings.samples), uint(stride_of(settings))});
+}
+
+gpu::Buffer& confidence(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings) {
+  EstimatorSettings bracket = settings;
+  bracket.estimator = Estimator::gtao;
+  bracket.search = SliceSearch::steps;
+  bracket.tolerance = 0;
+  bracket.resolution = Resolution::full;
+  bracket.further_radii.clear();
+  bracket.radius = radii_of(settings).back();
+  const auto visibility = [&](ThicknessKind thickness, const std::string& prefix) -> const gpu::Buffer& {
+    bracket.thickness = thickness;
+    bracket.thickness_length = kThin * *bracket.radius;
+    const gpu::Buffer& ao = *estimate(gpu, gbuffer, frame, bracket, false, prefix).ao;
+    return bracket.denoise == Denoise::none ? ao : denoise(gpu, gbuffer, ao, frame, bracket, prefix);
+  };
+  const gpu::Buffer &thin = visibility(ThicknessKind::constant, "thin "), &solid = visibility(ThicknessKind::infinite, "solid ");
+  gpu::Buffer& result = gpu.buffer("confidence", plane_bytes(gbuffer.view), gpu::Use::download);
+  const ConfidenceParams params{gbuffer.view, float(*bracket.radius), to_vec3(frame.depth_precision.at)};
+  gpu.dispatch("confidence", params,
+               {{kConfidenceDepth, *gbuffer.depth},
+                {kConfidenceNormal, *gbuffer.normal},
+                {kConfidenceThin, thin},
+                {kConfidenceSolid, solid},
+                {kConfidenceResult, result}},
+               extent_of(gbuffer.view));
+  return result;
 }
 
 }  // namespace alcove

@@ -75,12 +75,13 @@ double samples_per_pixel(const EstimatorSettings& settings);
 gpu::Buffer& bounds(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings);
 /// For settings.radius. What an estimate would be that is not made, it writes into a plane of `out`.
 TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings, const gpu::Buffer& bounds,
-                  const Estimate& out, uint plane);
+                  const Estimate& out, uint plane, const std::string& prefix = "");
 /// Of how many pixels in a row one has an estimate. Where the settings leave it open: 4 for the estimator that this was measured with, gtao, at full
 /// resolution, with so few slices that the denoiser must share them among neighbours anyway; else 1.
 int stride_of(const EstimatorSettings& settings);
 /// By the estimator of the settings, for each of their radii.
-Estimate estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings, bool with_bent = false);
+Estimate estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings, bool with_bent = false,
+                  const std::string& prefix = "");
 /// These write one plane of `out`, for settings.radius, in its listed tiles.
 void horizon(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings, const Estimate& out, uint plane);
 /// The depth along all lines of one direction: see profile.comp.
@@ -100,6 +101,8 @@ TileList converge(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs&
 void bitmask(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings, const Estimate& out, uint plane);
 void hbao(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings, const Estimate& out, uint plane);
 void crytek(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings, const Estimate& out, uint plane);
+/// In [0, 1], of the largest radius, whatever the estimator: see confidence.comp.
+gpu::Buffer& confidence(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings);
 /// The mean of the planes.
 gpu::Buffer& combine(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& scales);
 /// Both directions of the settings' filter, on any number of planes. `gbuffer` is that of `ao`. `prefix`: before the names of its buffers, where others are filtered too.

@@ -30,6 +30,7 @@ std::size_t chain_planes(const FrameSource& source, const Settings& settings) {
   planes += e.resolution == Resolution::full ? 0 : 2 + estimated;         // smaller ones of all these, and the whole estimate
   planes += e.fade_end || e.intensity != 1 || e.power != 1 || !source.material_ao.empty() ? 1 + scales : 0;
   planes += bent ? 1 : 0;
+  planes += wants(o, &FrameOutputs::confidence) ? 2 * 3 : 0;              // thin and solid: estimates, rows, columns
   planes += searches_exactly(e) ? 4 : 0;                                  // vertices, marks, neighbours, whole arcs
   planes += (o.multi_bounce ? 3 : 0) + source.beauty.size() + debug_views_of(o).size();
   for (const auto& aov : aovs_of(o)) planes += channels_of(aov, scales).size();

@@ -153,7 +153,7 @@ TEST_F(Aovs, without_ao_no_radius_is_needed) {
 
 TEST_F(Aovs, unknown_ones_are_answered_with_all_there_are) {
   for (const char* list : {"nromal", "ao,nromal", "bent", "ao,,depth", ""})
-    expect_refused(2, {"--aov", "ao, ao-scales, normal, bent-normal, depth, error, specular-occlusion"}, {"--aov", list});
+    expect_refused(2, {"--aov", "ao, ao-scales, normal, bent-normal, depth, confidence, error, specular-occlusion"}, {"--aov", list});
   expect_refused(2, {"did you mean normal?"}, {"--aov", "nromal"});
 }
 
