@@ -60,9 +60,14 @@ std::vector<uint> slice_constants(const EstimatorSettings& settings, const gpu::
   return {uint(settings.slices), uint(settings.steps), uint(settings.falloff) | (bent ? kWithBent : 0), uint(stride_of(settings))};
 }
 
-/// The invocations that make an estimate: one for each pixel that the stride does not leave out.
 /// Tiles in x and y.
 gpu::Extent tile_extent(const View& view) { return {groups_of(view.size.x, uint(kTile)), groups_of(view.size.y, uint(kTile))}; }
+
+/// Of one radius, on average over the pixels of a surface.
+double samples_of_a_radius(const EstimatorSettings& settings) {
+  const double factor = double(settings.resolution), samples = settings.estimator == Estimator::crytek ? settings.samples : 2 * settings.slices * settings.steps;
+  return samples / (factor * factor * stride_of(settings));
+}
 
 /// Samples a pixel from which on a proof that tiles are open costs less than it saves: it costs as much as 6 of them, and most frames are open in a tenth.
 constexpr double kWorthProving = 48;
@@ -187,13 +192,11 @@ Estimate estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs&
 }
 
 double samples_per_pixel(const EstimatorSettings& settings) {
-  if (searches_exactly(settings)) return 0;
-  const double factor = double(settings.resolution), samples = settings.estimator == Estimator::crytek ? settings.samples : 2 * settings.slices * settings.steps;
-  return samples * double(1 + settings.further_radii.size()) / (factor * factor * stride_of(settings));
+  return searches_exactly(settings) ? 0 : samples_of_a_radius(settings) * double(1 + settings.further_radii.size());
 }
 
 bool proves(const EstimatorSettings& settings) {
-  return !settings.no_skip && samples_per_pixel(settings) >= kWorthProving * double(1 + settings.further_radii.size());
+  return !settings.no_skip && !searches_exactly(settings) && samples_of_a_radius(settings) >= kWorthProving;
 }
 
 gpu::Buffer& bounds(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings) {
@@ -212,6 +215,8 @@ TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs&
                       &gpu.buffer(prefix + "tile sectors", sizeof(uint) * tiles.x * tiles.y, gpu::Use::device)};
   gpu.clear(*list.counts);
   const bool ranged = settings.estimator == Estimator::gtao || settings.estimator == Estimator::bitmask;
+  const uint mode = (settings.no_skip ? 0 : kClassifySkips) | (proves(settings) ? kClassifyProves : 0) | (ranged ? kClassifyRanged : 0) |
+                    (out.bent ? kClassifyWithBent : 0);
   const ClassifyParams params{gbuffer.view, frame.noise_origin, float(settings.radius.value() * settings.falloff_end), to_vec3(frame.depth_precision.at), plane};
   gpu.dispatch("classify", params,
                {{kClassifyBounds, bounds},
@@ -222,7 +227,7 @@ TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs&
                 {kClassifySectors, *list.sectors},
                 {kClassifyAo, *out.ao},
                 {kClassifyBent, out.bent ? *out.bent : *out.ao}},
-               {groups_of(int(tiles.x), 2 * kGroupY) * kGroupX, groups_of(int(tiles.y), 2) * kGroupY}, {uint(stride_of(settings)), (settings.no_skip ? 0 : kClassifySkips) | (proves(settings) ? kClassifyProves : 0) | (ranged ? kClassifyRanged : 0) | (out.bent ? kClassifyWithBent : 0)});
+               {groups_of(int(tiles.x), 2 * kGroupY) * kGroupX, groups_of(int(tiles.y), 2) * kGroupY}, {uint(stride_of(settings)), mode});
   return list;
 }
 
@@ -232,7 +237,8 @@ void horizon(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& fram
                       : settings.thickness == ThicknessKind::constant ? kThicknessLength
                                                                       : kThicknessEndless);
   gpu.dispatch("horizon", slice_parameters<HorizonParams>(gbuffer, frame, settings, plane),
-               {{kHorizonDepth, *gbuffer.depth}, {kHorizonNormal, *gbuffer.normal}, {kHorizonAo, *out.ao}, {kHorizonBent, out.bent ? *out.bent : *out.ao}, {kHorizonList, *out.listed.tiles}, {kHorizonCounts, *out.listed.counts}},
+               {{kHorizonDepth, *gbuffer.depth}, {kHorizonNormal, *gbuffer.normal}, {kHorizonAo, *out.ao}, {kHorizonBent, out.bent ? *out.bent : *out.ao},
+                {kHorizonList, *out.listed.tiles}, {kHorizonCounts, *out.listed.counts}},
                gpu::Extent(*out.listed.counts), constants);
 }
 
@@ -305,7 +311,8 @@ void exact(gpu::Recorder& gpu, const GBuffer& gbuffer, const Profile& profile, c
 
 void bitmask(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings, const Estimate& out, uint plane) {
   gpu.dispatch("bitmask", slice_parameters<BitmaskParams>(gbuffer, frame, settings, plane),
-               {{kBitmaskDepth, *gbuffer.depth}, {kBitmaskNormal, *gbuffer.normal}, {kBitmaskAo, *out.ao}, {kBitmaskBent, out.bent ? *out.bent : *out.ao}, {kBitmaskList, *out.listed.tiles}, {kBitmaskCounts, *out.listed.counts}},
+               {{kBitmaskDepth, *gbuffer.depth}, {kBitmaskNormal, *gbuffer.normal}, {kBitmaskAo, *out.ao}, {kBitmaskBent, out.bent ? *out.bent : *out.ao},
+                {kBitmaskList, *out.listed.tiles}, {kBitmaskCounts, *out.listed.counts}},
                gpu::Extent(*out.listed.counts), slice_constants(settings, out.bent));
 }
 

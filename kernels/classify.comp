@@ -39,10 +39,11 @@ const int kBlock = 2;
 shared uint found[kGroupY], surfaces[kGroupY];
 const uint kAllTiles = (1u << (kBlock * kBlock)) - 1u;
 
-
 const uint kLevel = kTilePlanes - 1u;
 const float kFar = 1e30;
 const float kHalfTile = 0.5 * float(kTile - 1);
+
+ivec2 tile_of_block(ivec2 first, int i) { return first + ivec2(i % kBlock, i / kBlock); }
 
 struct Box {
   vec3 least, most;  // tangents times depth, and depth
@@ -183,7 +184,7 @@ Shared shared_by(ivec2 tile, ivec2 count) {
   Shared all = Shared(-kFar, kFar, kNoNormal, 0.0, kFar, -kFar);
   bool agree = true;
   for (int i = 0; i < kBlock * kBlock; i++) {
-    const ivec2 part = tile + ivec2(i % kBlock, i / kBlock);
+    const ivec2 part = tile_of_block(tile, i);
     const int index = min(part.y, count.y - 1) * count.x + min(part.x, count.x - 1);
     const float level = bounds[index].plane[kLevel], farthest = bounds[index].farthest;
     if (any(greaterThanEqual(part, count)) || farthest > level) continue;
@@ -208,7 +209,7 @@ void main() {
   barrier();
   for (int i = 0; i < kTile * kBlock * kBlock && surfaces[row] != kAllTiles; i++) {
     const int part = i % (kBlock * kBlock);
-    const ivec2 at = (tile + ivec2(part % kBlock, part / kBlock)) * kTile + ivec2(gl_LocalInvocationID.x, i / (kBlock * kBlock));
+    const ivec2 at = tile_of_block(tile, part) * kTile + ivec2(gl_LocalInvocationID.x, i / (kBlock * kBlock));
     if (depth[index_of(view, min(at, view.size - 1))] < kSkyDepth) atomicOr(surfaces[row], 1u << uint(part));
   }
   Shared own = Shared(0.0, 0.0, kNoNormal, 0.0, 0.0, 0.0);
@@ -220,7 +221,7 @@ void main() {
   if (tile == ivec2(0)) counts.groups.x = kListedRow, counts.groups.z = 1u;
   const uint sectors = found[row];
   for (int i = 0; i < kBlock * kBlock; i++) {
-    const ivec2 part = tile + ivec2(i % kBlock, i / kBlock);
+    const ivec2 part = tile_of_block(tile, i);
     if (any(greaterThanEqual(part, count))) continue;
     const bool is_sky = (surfaces[row] >> uint(i) & 1u) == 0u;
     if (gl_LocalInvocationID.x == 0u) sectors_of_tile[part.y * count.x + part.x] = is_sky ? 0u : sectors;
