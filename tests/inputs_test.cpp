@@ -18,6 +18,7 @@
 #include "tests/device.h"
 #include "tests/difference.h"
 #include "tests/scenes.h"
+#include "tests/settled.h"
 
 namespace alcove {
 namespace {
@@ -315,13 +316,7 @@ class Evidence : public testing::Test {
     write_bytes(settings.camera, camera.dump());
   }
 
-  FrameSource settled() const {
-    FrameSource source = find_frame(settings, false, 0);
-    std::vector<float> depth(source.depth.size() * source.data.pixels()), normal(source.normal.size() * source.data.pixels());
-    read_planes(source, {{&source.depth, depth.data()}, {&source.normal, normal.data()}});
-    settle(source, settings, depth, normal);
-    return source;
-  }
+  FrameSource settled() const { return test::settled(settings); }
 
   void expect_refused(const std::vector<std::string>& words) const {
     try {

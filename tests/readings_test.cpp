@@ -13,6 +13,7 @@
 #include "core/settle.h"
 #include "tests/program.h"
 #include "tests/scenes.h"
+#include "tests/settled.h"
 #include "tests/wall_frame.h"
 
 namespace alcove {
@@ -104,13 +105,7 @@ class Readings : public testing::Test {
     settings.depth_range.reversed = depth.reversed, settings.depth_range.log_constant = 0.5;
   }
 
-  FrameSource settled() const {
-    FrameSource source = find_frame(settings, false, 0);
-    std::vector<float> depth(source.depth.size() * source.data.pixels()), normal(source.normal.size() * source.data.pixels());
-    read_planes(source, {{&source.depth, depth.data()}, {&source.normal, normal.data()}});
-    settle(source, settings, depth, normal);
-    return source;
-  }
+  FrameSource settled() const { return test::settled(settings); }
 
   /// What is noted, or what the refusal says.
   std::vector<std::string> said() const {

@@ -24,6 +24,7 @@
 #include "tests/difference.h"
 #include "tests/program.h"
 #include "tests/scenes.h"
+#include "tests/settled.h"
 
 namespace alcove {
 namespace {
@@ -139,13 +140,7 @@ class Sources : public testing::Test {
     write_bytes(settings.camera, text + "]}");
   }
 
-  FrameSource settled() const {
-    FrameSource source = find_frame(settings, false, 0);
-    std::vector<float> depth(source.depth.size() * source.data.pixels()), normal(source.normal.size() * source.data.pixels());
-    read_planes(source, {{&source.depth, depth.data()}, {&source.normal, normal.data()}});
-    settle(source, settings, depth, normal);
-    return source;
-  }
+  FrameSource settled() const { return test::settled(settings); }
 
   static std::vector<float> ao_of(const HostFrame& frame, double scale) {
     EstimatorSettings estimator = plain_settings();
