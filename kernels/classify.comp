@@ -39,7 +39,7 @@ layout(scalar, binding = kClassifySectors) writeonly buffer Sectors { uint secto
 const int kMostGroups = 512;
 const uint kGroupWords = uint(kMostGroups) / 32u;
 
-/// px from the block: as steps grow with the distance, groups farther than this need not be searched tile by tile.
+/// px from the block to groups that are far.
 const int kFarGroup = 32;
 
 /// Receivers are taken together in blocks of so many tiles in x and y where all lie on one plane. A row of invocations has a block, and shares what it finds.
@@ -157,6 +157,12 @@ bool is_settled(Receivers r, ivec2 group, ivec2 groups_in_x) {
   return b.farthest > b.level ? true : above <= limit;
 }
 
+/// Whether nothing in a square of pixels blocks, as far as it is.
+bool is_too_far(View view, Receivers r, ivec2 first_pixel, int side, float level, float farthest) {
+  if ((kMode & kClassifyRanged) == 0u) return false;
+  return distance_sq(r.box, box_of(view, first_pixel / kTile, side / kTile, depth_of(view, level), depth_of(view, farthest))) > r.reach_sq;
+}
+
 /// Adds a square of pixels, in which something stands above, to the sectors and steps at which something may block.
 void mark(View view, Receivers r, ivec2 first_pixel, int side, float level, float farthest, bool is_near) {
   const uint row = gl_LocalInvocationID.y;
@@ -164,9 +170,7 @@ void mark(View view, Receivers r, ivec2 first_pixel, int side, float level, floa
   const vec2 offset = vec2(first_pixel - r.tile * kTile);
   const uint sectors = sectors_of_offsets(offset - float(kBlock * kTile), offset + float(side));
   // What stands above, but too far to block, may yet go on as something that does.
-  const Box box = box_of(view, first_pixel / kTile, side / kTile, depth_of(view, level), depth_of(view, farthest));
-  const bool too_far = (kMode & kClassifyRanged) != 0u ? distance_sq(r.box, box) > r.reach_sq : false;
-  if (!too_far) atomicOr(found[row], sectors);
+  if (!is_too_far(view, r, first_pixel, side, level, farthest)) atomicOr(found[row], sectors);
   if (is_near) atomicOr(beside[row], sectors);
   for (uint left = sectors; left != 0u; left &= left - 1u) {
     const uint k = row * kSectorsOfTurn + uint(findLSB(left));
@@ -227,6 +231,29 @@ Receivers receivers_of(View view, ivec2 tile, Shared own) {
   return r;
 }
 
+/// Searches the first `count` groups within reach, of those that are unsettled and near or far, with all invocations of the row.
+void search_groups(View view, Receivers r, int count, bool is_far) {
+  const uint row = gl_LocalInvocationID.y;
+  const int side = kTile * kTileGroup, groups_in_x = groups_of_tiles(view.size).x;
+  const ivec2 last_tile = tiles_of(view.size) - 1;
+  const float per_row = 1.0 / float(r.extent.x);  // times a number up to kMostGroups: whole divisions are slow
+  for (int word = 0; word * 32 < count; word++)
+    for (uint bits = unsettled[row * kGroupWords + uint(word)]; bits != 0u; bits &= bits - 1u) {
+      const int i = word * 32 + findLSB(bits), line = int((float(i) + 0.5) * per_row);
+      const ivec2 group = r.from + ivec2(i - line * r.extent.x, line), offset = (group * kTileGroup - r.tile) * kTile;
+      for (bool is_next = (distances_px(r, group * side, side).x >= kFarGroup) == is_far; is_next; is_next = false) {
+        // As steps grow with the distance, it does not matter where in a far group something stands, if it stands in no other sector than what is found.
+        const bool is_coarse = is_far ? (sectors_of_offsets(vec2(offset) - float(kBlock * kTile), vec2(offset) + float(side)) & ~found[row]) == 0u : false;
+        for (bool marks = is_coarse && gl_LocalInvocationID.x == 0u; marks; marks = false)
+          mark(view, r, group * side, side, groups[group.y * groups_in_x + group.x].level, groups[group.y * groups_in_x + group.x].farthest, false);
+        for (int k = int(gl_LocalInvocationID.x); k < kTileGroup * kTileGroup && !is_coarse; k += int(kGroupX)) {
+          const ivec2 other = group * kTileGroup + ivec2(k % kTileGroup, k / kTileGroup);
+          if (all(lessThanEqual(other, last_tile))) search_tile(view, r, other, false);
+        }
+      }
+    }
+}
+
 /// Finds the sectors and steps at which something may block a receiver of the block, with all invocations of its row. All rows take part, as they wait for each other.
 void find_sectors(View view, Receivers r) {
   const uint row = gl_LocalInvocationID.y, lane = gl_LocalInvocationID.x;
@@ -247,22 +274,17 @@ void find_sectors(View view, Receivers r) {
   for (int i = int(lane); i < left; i += int(kGroupX)) {
     const int line = int((float(i) + 0.5) * per_row);
     const ivec2 group = r.from + ivec2(i - line * r.extent.x, line);
-    const int apart = distances_px(r, group * kTile * kTileGroup, kTile * kTileGroup).x;
-    const bool settled = is_settled(r, group, count), is_far = apart >= kFarGroup;
-    for (bool marks = !settled && is_far; marks; marks = false)
-      mark(view, r, group * kTile * kTileGroup, kTile * kTileGroup, groups[group.y * count.x + group.x].level, groups[group.y * count.x + group.x].farthest, false);
-    if (!settled && !is_far) atomicOr(unsettled[row * kGroupWords + uint(i) / 32u], 1u << (uint(i) & 31u));
+    const bool settled = is_settled(r, group, count);
+    const int side = kTile * kTileGroup;
+    const GroupBounds b = groups[group.y * count.x + group.x];
+    const bool too_far = is_too_far(view, r, group * side, side, b.level, b.farthest);
+    for (bool marks = !settled && too_far; marks; marks = false) mark(view, r, group * side, side, b.level, b.farthest, false);
+    if (!settled && !too_far) atomicOr(unsettled[row * kGroupWords + uint(i) / 32u], 1u << (uint(i) & 31u));
   }
   barrier();
-  for (int word = 0; word * 32 < left; word++)
-    for (uint bits = unsettled[row * kGroupWords + uint(word)]; bits != 0u; bits &= bits - 1u) {
-      const int i = word * 32 + findLSB(bits), line = int((float(i) + 0.5) * per_row);
-      const ivec2 corner = (r.from + ivec2(i - line * r.extent.x, line)) * kTileGroup;
-      for (int k = int(lane); k < kTileGroup * kTileGroup; k += int(kGroupX)) {
-        const ivec2 other = corner + ivec2(k % kTileGroup, k / kTileGroup);
-        if (all(lessThanEqual(other, last_tile))) search_tile(view, r, other, false);
-      }
-    }
+  search_groups(view, r, left, false);
+  barrier();
+  search_groups(view, r, left, true);
   barrier();
 }
 
