@@ -16,6 +16,7 @@ namespace {
 
 using Json = nlohmann::json;
 
+constexpr double kMost = 1e30;  // and 1 / kMost: what is beyond them is none of a camera, and no float once it is divided by another
 constexpr int kDeepest = 64;  // lists and objects within each other: to copy and to quote them recurses
 
 /// A camera file being read: every complaint names the file and the field.
@@ -35,13 +36,14 @@ struct CameraFile {
   double number(const char* field) const {
     const Json* value = find(field);
     if (!value) refuse(field, "is missing");
-    if (!value->is_number() || !std::isfinite(value->get<double>())) refuse(field, "must be a finite number, not " + value->dump());
+    if (!value->is_number() || !(std::abs(value->get<double>()) <= kMost)) refuse(field, fmt::format("must be a number of at most {}, not {}", kMost, value->dump()));
     return value->get<double>();
   }
 
   double positive(const char* field) const {
     const double value = number(field);
     if (value <= 0) refuse(field, fmt::format("must be above 0, not {}", value));
+    if (value < 1 / kMost) refuse(field, fmt::format("must be at least {}, not {}", 1 / kMost, value));
     return value;
   }
 
@@ -197,6 +199,9 @@ Camera centred(const Window& display, double fx, double aspect, bool orthographi
   camera.height = display.height;
   camera.fx = fx;
   camera.fy = fx * aspect;
+  for (const double length : {camera.fx, camera.fy})
+    if (!(length >= 1 / kMost && length <= kMost))
+      fail(ErrorKind::usage, "--fov, --focal with --aperture, or --ortho-width: a pixel would cover 1/{:g} of the unit distance, or of a scene unit", length);
   camera.cx = 0.5 * display.width;
   camera.cy = 0.5 * display.height;
   camera.orthographic = orthographic;

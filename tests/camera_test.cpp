@@ -217,6 +217,11 @@ TEST_F(CameraFiles, a_wide_pixel_covers_more_in_x) {
   expect_near(camera, 32, 64, 32, 18);
 }
 
+TEST_F(CameraFiles, a_pixel_that_covers_nothing_is_refused) {
+  EXPECT_THROW(camera_for(with_fov(1e-40), kDisplay, 1, 0), Error);
+  EXPECT_NO_THROW(camera_for(with_fov(1e-20), kDisplay, 1, 0));
+}
+
 TEST_F(CameraFiles, focal_and_aperture_are_a_fov) {
   InputSettings settings;
   settings.focal = 25;
