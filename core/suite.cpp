@@ -56,7 +56,8 @@ std::string argument_of(const Table& table, std::string_view key, const toml::no
   if (const auto text = node.value_exact<std::string>()) return *text;
   if (const auto number = node.value_exact<std::int64_t>()) return fmt::format("{}", *number);
   if (const auto number = node.value_exact<double>()) return fmt::format("{}", *number);
-  table.refuse(key, "must be a string or a number");
+  if (const auto flag = node.value_exact<bool>(); flag && *flag) return "true";
+  table.refuse(key, "must be a string, a number or true");
 }
 
 std::vector<std::string> paths_of(const Table& table, const fs::path& folder) {
@@ -78,8 +79,7 @@ SuiteCandidate candidate_of(const Table& table) {
   SuiteCandidate candidate{table.text("name"), {}};
   for (const auto& [key, value] : table.values)
     if (key.str() != "name") {
-      candidate.arguments.push_back("--" + std::string(key.str()));
-      candidate.arguments.push_back(argument_of(table, key.str(), value));
+      candidate.arguments.push_back(fmt::format("--{}={}", key.str(), argument_of(table, key.str(), value)));
     }
   return candidate;
 }
@@ -99,7 +99,7 @@ std::vector<SuiteCandidate> candidates_of_sweep(const Table& table) {
       for (const auto& choice : choices) {
         longer.push_back(candidate);
         longer.back().name += fmt::format("{}{} {}", candidate.name.empty() ? "" : ", ", key.str(), choice);
-        longer.back().arguments.insert(longer.back().arguments.end(), {"--" + std::string(key.str()), choice});
+        longer.back().arguments.push_back(fmt::format("--{}={}", key.str(), choice));
       }
     candidates = std::move(longer);
   }
