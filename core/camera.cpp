@@ -16,7 +16,12 @@ namespace {
 
 using Json = nlohmann::json;
 
+// What kernels keep as floats, and square, stays finite and above 0: far beyond any lens.
+constexpr double kLeastScale = 1e-18, kMostScale = 1e18;  // fx and fy
+constexpr double kMostCenter = 1e9;                       // px: cx and cy, to either side
 constexpr int kDeepest = 64;  // lists and objects within each other: to copy and to quote them recurses
+
+bool is_scale(double pixels) { return pixels >= kLeastScale && pixels <= kMostScale; }
 
 /// A camera file being read: every complaint names the file and the field.
 struct CameraFile {
@@ -42,6 +47,18 @@ struct CameraFile {
   double positive(const char* field) const {
     const double value = number(field);
     if (value <= 0) refuse(field, fmt::format("must be above 0, not {}", value));
+    return value;
+  }
+
+  double scale(const char* field) const {
+    const double value = positive(field);
+    if (!is_scale(value)) refuse(field, fmt::format("must be from {:g} to {:g}, not {}", kLeastScale, kMostScale, value));
+    return value;
+  }
+
+  double center(const char* field) const {
+    const double value = number(field);
+    if (std::abs(value) > kMostCenter) refuse(field, fmt::format("must be from {:g} to {:g}, not {}", -kMostCenter, kMostCenter, value));
     return value;
   }
 
@@ -200,6 +217,8 @@ Camera centred(const Window& display, double fx, double aspect, bool orthographi
   camera.cx = 0.5 * display.width;
   camera.cy = 0.5 * display.height;
   camera.orthographic = orthographic;
+  if (!is_scale(camera.fx) || !is_scale(camera.fy))
+    fail(ErrorKind::usage, "a camera of {:g} pixels a unit sees nothing: give another --fov, --focal with --aperture, or --ortho-width", fx);
   return camera;
 }
 
@@ -231,10 +250,10 @@ Camera read_camera(const std::string& path, int frame) {
   Camera camera;
   camera.width = file.resolution(0);
   camera.height = file.resolution(1);
-  camera.fx = file.positive("fx");
-  camera.fy = file.positive("fy");
-  camera.cx = file.number("cx");
-  camera.cy = file.number("cy");
+  camera.fx = file.scale("fx");
+  camera.fy = file.scale("fy");
+  camera.cx = file.center("cx");
+  camera.cy = file.center("cy");
   camera.orthographic = is_orthographic(file);
   camera.left_handed = left_handed(file);
   read_view_from_world(file, camera);

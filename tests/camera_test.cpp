@@ -168,6 +168,10 @@ TEST_F(CameraFiles, senseless_fields_are_refused) {
     for (const json& value : wrong_numbers) expect_field_refused(field, value);
   for (const char* field : {"fx", "fy", "pixel_aspect"})
     for (const double value : {0.0, -1.0}) expect_field_refused(field, value);
+  for (const char* field : {"fx", "fy"})
+    for (const double value : {1e-40, 1e40}) expect_field_refused(field, value);
+  for (const char* field : {"cx", "cy"})
+    for (const double value : {-1e10, 1e300}) expect_field_refused(field, value);
   for (const json& value : {json{0, 5}, json{64, -36}, json{64}, json{64, 36, 1}, json{64.5, 36}, json{"64", "36"}, json("64x36"), json(64),
                             json{64, 1 << 30}, json{9e99, 1}})
     expect_field_refused("resolution", value);
@@ -274,6 +278,22 @@ TEST_F(CameraFiles, no_camera_is_a_usage_error) {
   } catch (const Error& error) {
     EXPECT_EQ(error.kind(), ErrorKind::usage);
     for (const char* option : {"--camera", "--fov", "--focal", "--aperture", "--ortho-width"}) EXPECT_THAT(error.what(), HasSubstr(option));
+  }
+}
+
+TEST_F(CameraFiles, a_camera_that_floats_cannot_hold_is_a_usage_error) {
+  InputSettings narrow, flat, small;
+  narrow.fov = 1e-300;
+  flat.focal = 1e30, flat.aperture = 1e-30;
+  small.ortho_width = 1e-200;
+  for (const auto& settings : {narrow, flat, small}) {
+    try {
+      camera_for(settings, kDisplay, 1, 0);
+      ADD_FAILURE();
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::usage);
+      for (const char* option : {"--fov", "--focal", "--aperture", "--ortho-width"}) EXPECT_THAT(error.what(), HasSubstr(option));
+    }
   }
 }
 
