@@ -38,11 +38,12 @@ has_clang() {
 
 if [ "${1:-}" = coverage ]; then
   step "coverage"
+  [ -x "$(command -v gcovr)" ] || { echo "there is no gcovr (Debian package gcovr)"; exit 1; }
   build build-coverage -DALCOVE_COVERAGE=ON -- all
   find build-coverage -name '*.gcda' -delete
   ctest --test-dir build-coverage --output-on-failure -j "$(nproc)"
   for branches in "" --branches; do
-    gcovr --root . --object-directory build-coverage --filter core/ --filter cli/ --exclude-throw-branches --exclude-unreachable-branches $branches
+    gcovr --root . --filter core/ --filter cli/ --exclude-throw-branches $branches build-coverage
   done
   exit
 fi
