@@ -62,7 +62,7 @@ class FrameRun {
     sample_.add(inputs);
     report_.read_ms += reading.ms();
     go_on();
-    const FrameOutputs outputs = run_chain(gpu_, inputs, settings_.estimator, output);
+    FrameOutputs outputs = run_chain(gpu_, inputs, settings_.estimator, output);
     gpu_.run();
     add_passes();
     const auto counts = outputs.counts->as<FrameCounts>()[0];
