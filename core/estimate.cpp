@@ -12,6 +12,7 @@
 #include "kernels/bitmask.h"
 #include "kernels/bounds.h"
 #include "kernels/classify.h"
+#include "kernels/coarsen.h"
 #include "kernels/confidence.h"
 #include "kernels/converge.h"
 #include "kernels/crytek.h"
@@ -62,6 +63,9 @@ std::vector<uint> slice_constants(const EstimatorSettings& settings, const gpu::
 
 /// Tiles in x and y.
 gpu::Extent tile_extent(const View& view) { return {groups_of(view.size.x, uint(kTile)), groups_of(view.size.y, uint(kTile))}; }
+
+/// Groups of tiles in x and y.
+gpu::Extent group_extent(const View& view) { return {groups_of(view.size.x, uint(kTile * kTileGroup)), groups_of(view.size.y, uint(kTile * kTileGroup))}; }
 
 /// Of one radius, on average over the pixels of a surface.
 double samples_of_a_radius(const EstimatorSettings& settings) {
@@ -168,12 +172,13 @@ Estimate estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs&
   const auto radii = radii_of(settings);
   Estimate all{&gpu.buffer(prefix + "ao", radii.size() * plane_bytes(gbuffer.view), gpu::Use::download)};
   if (with_bent) all.bent = &gpu.buffer("bent", 3 * plane_bytes(gbuffer.view), gpu::Use::download);
-  const gpu::Buffer* tiles = searches_exactly(settings) ? nullptr : &bounds(gpu, gbuffer, frame, settings);
+  const Bounds surfaces = bounds(gpu, gbuffer, frame, settings);
+  if (surfaces.tiles) coarsen(gpu, gbuffer, surfaces);
   for (uint plane = 0; plane < radii.size(); plane++) {
     EstimatorSettings one = settings;
     one.radius = radii[plane];
     Estimate out{all.ao, plane + 1 == radii.size() ? all.bent : nullptr};
-    if (tiles) all.listed = out.listed = classify(gpu, gbuffer, frame, one, *tiles, out, plane, prefix);
+    if (!searches_exactly(one)) all.listed = out.listed = classify(gpu, gbuffer, frame, one, surfaces, out, plane, prefix);
     switch (settings.estimator) {
       case Estimator::gtao:
         if (!searches_exactly(one)) horizon(gpu, gbuffer, frame, one, out, plane);
@@ -199,16 +204,21 @@ bool proves(const EstimatorSettings& settings) {
   return !settings.no_skip && !searches_exactly(settings) && samples_of_a_radius(settings) >= kWorthProving;
 }
 
-gpu::Buffer& bounds(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings) {
-  const gpu::Extent tiles = tile_extent(gbuffer.view);
-  gpu::Buffer& bounds = gpu.buffer("bounds", sizeof(TileBounds) * tiles.x * tiles.y, gpu::Use::device);
-  if (proves(settings))
-    gpu.dispatch("bounds", BoundsParams{gbuffer.view, frame.noise_origin},
-                 {{kBoundsDepth, *gbuffer.depth}, {kBoundsNormal, *gbuffer.normal}, {kBoundsTiles, bounds}}, tiles, {uint(stride_of(settings))});
-  return bounds;
+Bounds bounds(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings) {
+  if (!proves(settings)) return {};
+  const gpu::Extent tiles = tile_extent(gbuffer.view), groups = group_extent(gbuffer.view);
+  const Bounds result{&gpu.buffer("bounds", sizeof(TileBounds) * tiles.x * tiles.y, gpu::Use::device),
+                      &gpu.buffer("group bounds", sizeof(GroupBounds) * groups.x * groups.y, gpu::Use::device)};
+  gpu.dispatch("bounds", BoundsParams{gbuffer.view, frame.noise_origin},
+               {{kBoundsDepth, *gbuffer.depth}, {kBoundsNormal, *gbuffer.normal}, {kBoundsTiles, *result.tiles}}, tiles, {uint(stride_of(settings))});
+  return result;
 }
 
-TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings, const gpu::Buffer& bounds,
+void coarsen(gpu::Recorder& gpu, const GBuffer& gbuffer, const Bounds& bounds) {
+  gpu.dispatch("coarsen", CoarsenParams{gbuffer.view.size}, {{kCoarsenTiles, *bounds.tiles}, {kCoarsenGroups, *bounds.groups}}, group_extent(gbuffer.view));
+}
+
+TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings, const Bounds& bounds,
                   const Estimate& out, uint plane, const std::string& prefix) {
   const gpu::Extent tiles = tile_extent(gbuffer.view);
   const TileList list{&gpu.buffer("tiles", sizeof(ListedTile) * tiles.x * tiles.y, gpu::Use::device), &gpu.buffer(prefix + "tile counts", sizeof(TileCounts), gpu::Use::download),
@@ -219,7 +229,8 @@ TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs&
                     (out.bent ? kClassifyWithBent : 0);
   const ClassifyParams params{gbuffer.view, frame.noise_origin, float(settings.radius.value() * settings.falloff_end), to_vec3(frame.depth_precision.at), plane};
   gpu.dispatch("classify", params,
-               {{kClassifyBounds, bounds},
+               {{kClassifyBounds, bounds.tiles ? *bounds.tiles : *list.tiles},
+                {kClassifyGroups, bounds.groups ? *bounds.groups : *list.tiles},
                 {kClassifyDepth, *gbuffer.depth},
                 {kClassifyNormal, *gbuffer.normal},
                 {kClassifyList, *list.tiles},

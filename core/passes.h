@@ -71,10 +71,15 @@ struct Estimate {
 bool proves(const EstimatorSettings& settings);
 /// Depth samples that the settings ask for at a pixel of a surface, on average.
 double samples_per_pixel(const EstimatorSettings& settings);
-/// TileBounds of every tile; left as they are where nothing is proved.
-gpu::Buffer& bounds(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings);
+/// What surfaces tiles show.
+struct Bounds {
+  gpu::Buffer *tiles = nullptr, *groups = nullptr;  // TileBounds a tile, GroupBounds a group of them; null: nothing is proved
+};
+Bounds bounds(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings);
+/// Puts the bounds of the groups.
+void coarsen(gpu::Recorder& gpu, const GBuffer& gbuffer, const Bounds& bounds);
 /// For settings.radius. What an estimate would be that is not made, it writes into a plane of `out`.
-TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings, const gpu::Buffer& bounds,
+TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings, const Bounds& bounds,
                   const Estimate& out, uint plane, const std::string& prefix = "");
 /// Of how many pixels in a row one has an estimate. Where the settings leave it open: 4 for the estimator that this was measured with, gtao, at full
 /// resolution, with so few slices that the denoiser must share them among neighbours anyway; else 1.

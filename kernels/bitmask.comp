@@ -40,8 +40,8 @@ const uint kFalloff = kMode & ~kWithBent;
 const bool kBent = (kMode & kWithBent) != 0u;
 
 /// The blocked part of a side's arc integral and, with bent normals, of bent_to().
-vec3 search(Receiver r, Side side, Reach reach, float jitter, float shift, uint sectors) {
-  const int count = (sectors & sector_of(side.direction_px)) != 0u ? min(int(kSteps), int(side.reach)) : 0;
+vec3 search(Receiver r, Side side, Reach reach, float jitter, float shift, uint range) {
+  const int count = range != 0u ? min(int(kSteps), int(side.reach)) : 0;
   const float whole = whole_arc(side), endless = 1e30;
   float last_z = r.z, last_offset = 0.0, last_cot = side.plane_cot, blocked = 0.0;
   bool own = true, last_blocks = true;
@@ -88,8 +88,7 @@ void write_bent(int index, int plane, vec3 b) {
 void main() {
   const ListedPlace place = listed_place(gl_WorkGroupID.xy, gl_LocalInvocationIndex, kStride);
   if (place.tile >= counts.listed) return;
-  const ListedTile tile = list[place.tile];
-  const ivec2 pixel = pixel_of_tile(unpack_tile(tile.place), place.pixel, params.noise_origin, kStride);
+  const ivec2 pixel = pixel_of_tile(unpack_tile(list[place.tile].place), place.pixel, params.noise_origin, kStride);
   const View view = params.view;
   if (!inside(view, pixel)) return;
   const int index = index_of(view, pixel), plane = view.size.x * view.size.y, ao_index = index + int(params.plane) * plane;
@@ -111,9 +110,10 @@ void main() {
     const float shift = fract(noise.x * 7.0 + noise.y * 13.0 + kGolden * float(s));
     for (int sign = -1; sign <= 1; sign += 2) {
       const float jitter = fract(noise.y + kGolden * float(2u * s + uint(sign > 0)));
-      const vec3 side = slice.share * slice.weight * search(r, side_of(view, r, slice, float(sign), reach), reach, jitter, shift, tile.sectors);
-      blocked += side.x;
-      if (kBent) bent_blocked += side.y * float(sign) * slice.t + side.z * r.eye;
+      const Side side = side_of(view, r, slice, float(sign), reach);
+      const vec3 arcs = slice.share * slice.weight * search(r, side, reach, jitter, shift, list[place.tile].ranges[sector_of(side.direction_px)]);
+      blocked += arcs.x;
+      if (kBent) bent_blocked += arcs.y * float(sign) * slice.t + arcs.z * r.eye;
     }
   }
   ao[ao_index] = whole > 0.0 ? clamp(1.0 - blocked / whole, 0.0, 1.0) : 1.0;

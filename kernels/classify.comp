@@ -1,12 +1,13 @@
-// Tiles by what an estimator has to do for them: nothing for sky, nothing where nothing can block, else the directions in which something may.
+// Tiles by what an estimator has to do for them: nothing for sky, nothing where nothing can block, else the directions and steps at which something may.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// In: bounds of the tiles. Out: a list of the tiles that are left, and the visibility of the others' receivers, which is 1.
+// In: bounds of the tiles and of groups of them. Out: a list of the tiles that are left, and the visibility of the others' receivers, which is 1.
 // The proof. Let a receiver p of a tile have the normal N and -N.P <= c. A surface point Q with depth z and N.Q = z m, m affine in the pixel, stands h = N.Q - N.P
 // <= c + z m above p's tangent plane, so h / z <= c / z + m. Nothing blocks that rises by no more than `least` + z `rise` a pixel aside (clearance.glsl), that
 // is, where (c - least) / z + m <= rise. With 1 / z below a plane of the other tile's bounds the left side is affine, and largest at a corner of it. Receivers
 // whose normals are turned by d against N see d |Q - P| more at most. (Orthographic: -z for 1 / z, and no division.) What is farther than the radius from all
 // receivers does not block either, where the estimator says so: by the distance of the boxes in space that hold the surfaces of both tiles.
+// A group of tiles is searched tile by tile only where its own bounds do not settle it.
 // Constants below 1 and pads leave room for rounding.
 #version 450
 #extension GL_GOOGLE_include_directive : require
@@ -23,6 +24,7 @@ layout(constant_id = kClassifyModeId) const uint kMode = kClassifySkips;
 const bool kSkips = (kMode & kClassifySkips) != 0u, kProves = (kMode & kClassifyProves) != 0u;
 layout(scalar, push_constant) uniform Push { ClassifyParams params; };
 layout(scalar, binding = kClassifyBounds) readonly buffer Bounds { TileBounds bounds[]; };
+layout(scalar, binding = kClassifyGroups) readonly buffer Groups { GroupBounds groups[]; };
 layout(scalar, binding = kClassifyDepth) readonly buffer Depth { float depth[]; };
 layout(scalar, binding = kClassifyNormal) readonly buffer Normal { uint normal[]; };
 layout(scalar, binding = kClassifyList) writeonly buffer List { ListedTile list[]; };
@@ -31,12 +33,18 @@ layout(scalar, binding = kClassifyAo) writeonly buffer Ao { float ao[]; };
 layout(scalar, binding = kClassifyBent) writeonly buffer Bent { float bent[]; };
 layout(scalar, binding = kClassifySectors) writeonly buffer Sectors { uint sectors_of_tile[]; };
 
-/// With more tiles within reach than these, the search costs more than it saves.
-const int kMostTiles = 1024;
+/// With more groups of tiles within reach than these, the search costs more than it saves.
+const int kMostGroups = 512;
+const uint kGroupWords = uint(kMostGroups) / 32u;
+
+/// px from the block: as steps grow with the distance, groups farther than this need not be searched tile by tile.
+const int kFarGroup = 32;
 
 /// Receivers are taken together in blocks of so many tiles in x and y where all lie on one plane. A row of invocations has a block, and shares what it finds.
 const int kBlock = 2;
-shared uint found[kGroupY], surfaces[kGroupY];
+shared uint found[kGroupY], beside[kGroupY], surfaces[kGroupY], place[kGroupY];
+shared uint unsettled[kGroupY * kGroupWords];  // bits of groups
+shared uint first[kGroupY * kSectorsOfTurn], last[kGroupY * kSectorsOfTurn];  // steps, of the sectors that are found or not
 const uint kAllTiles = (1u << (kBlock * kBlock)) - 1u;
 
 const uint kLevel = kTilePlanes - 1u;
@@ -72,95 +80,176 @@ struct Shared {
 };
 
 struct Receivers {
+  ivec2 tile;              // first of the block
+  Box box;
+  float reach, reach_sq;   // of samples, from their pixels' centres
+  float rise;              // harmless, for every pixel aside
+  ivec2 from, extent;      // groups within reach; more than kMostGroups: not searched
   vec2 along;              // of the affine part, a pixel
   float nearness, affine;  // factor of 1 / z: (c - least), or orthographic of -z: N.z; the affine part at pixel (0, 0)
   float turned;            // times the farthest that anything that may block is from a receiver, in units of the left side
   float turned_by_nearness;
 };
 
-/// The most that anything in a tile before a plane rises above the receivers' tangent planes.
-float most_above(Receivers r, vec2 centre, vec2 gradient, float at_centre) {
+/// The most that anything before a plane rises above the receivers' tangent planes, in a square of pixels.
+float most_above(Receivers r, vec2 centre, float half_side, vec2 gradient, float at_centre) {
   const vec2 along = r.nearness * gradient + r.along;
-  return r.nearness * at_centre + r.affine + dot(r.along, centre) + kHalfTile * (abs(along.x) + abs(along.y));
+  return r.nearness * at_centre + r.affine + dot(r.along, centre) + half_side * (abs(along.x) + abs(along.y));
 }
 
-/// Finds the sectors in which something may block a receiver of the block, with all invocations of its row.
-void find_sectors(View view, ivec2 tile, Shared own) {
+/// Pixels from the block to a square of them, and to its farthest.
+ivec2 distances_px(Receivers r, ivec2 first_pixel, int side) {
+  const ivec2 offset = first_pixel - r.tile * kTile;
+  const ivec2 least = max(-offset - side + 1, offset - kBlock * kTile + 1), most = max(abs(offset - kBlock * kTile + 1), abs(offset + side - 1));
+  return ivec2(max(max(least.x, least.y), 0), max(most.x, most.y));
+}
+
+/// How much may stand above the tangent planes and yet not block, with nearness at most `level`.
+float harmless_height(Receivers r, int distance_px, float level) {
+  const float aside = max(float(distance_px) - 0.5, 0.5);
+  return r.rise * aside - 2e-6 * abs(r.nearness * level) - r.turned - r.turned_by_nearness * level;
+}
+
+bool is_settled(Receivers r, ivec2 group, ivec2 groups_in_x) {
+  const int index = group.y * groups_in_x.x + group.x, side = kTile * kTileGroup;
+  const GroupBounds b = groups[index];
+  const float limit = harmless_height(r, distances_px(r, group * side, side).x, b.level), half_side = 0.5 * float(side - 1);
+  const vec2 centre = vec2(group * side) + half_side;
+  const float above = min(most_above(r, centre, half_side, vec2(0), b.level), most_above(r, centre, half_side, b.gradient, b.plane));
+  return b.farthest > b.level ? true : above <= limit;
+}
+
+/// Adds a square of pixels, in which something stands above, to the sectors and steps at which something may block.
+void mark(View view, Receivers r, ivec2 first_pixel, int side, float level, float farthest, bool is_near) {
   const uint row = gl_LocalInvocationID.y;
-  const ivec2 count = tiles_of(view.size), last = count - 1;
+  const ivec2 apart = distances_px(r, first_pixel, side);
+  const vec2 offset = vec2(first_pixel - r.tile * kTile);
+  const uint sectors = sectors_of_offsets(offset - float(kBlock * kTile), offset + float(side));
+  // What stands above, but too far to block, may yet go on as something that does.
+  const Box box = box_of(view, first_pixel / kTile, side / kTile, depth_of(view, level), depth_of(view, farthest));
+  const bool too_far = (kMode & kClassifyRanged) != 0u ? distance_sq(r.box, box) > r.reach_sq : false;
+  if (!too_far) atomicOr(found[row], sectors);
+  if (is_near) atomicOr(beside[row], sectors);
+  for (uint left = sectors; left != 0u; left &= left - 1u) {
+    const uint k = row * kSectorsOfTurn + uint(findLSB(left));
+    atomicMin(first[k], uint(apart.x));
+    atomicMax(last[k], uint(apart.y));
+  }
+}
+
+/// Adds a tile to the sectors and steps at which something may block, if something in it may.
+void search_tile(View view, Receivers r, ivec2 other, bool is_near) {
+  const uint row = gl_LocalInvocationID.y;
+  const ivec2 count = tiles_of(view.size), last_tile = count - 1;
+  const int index = other.y * count.x + other.x;
+  const float level = bounds[index].plane[kLevel], farthest = bounds[index].farthest;
+  const ivec2 apart = distances_px(r, other * kTile, kTile);
+  const float limit = harmless_height(r, apart.x, level);
+  const vec2 centre = vec2(other * kTile) + kHalfTile;
+  const float above = min(most_above(r, centre, kHalfTile, vec2(0), level), most_above(r, centre, kHalfTile, bounds[index].gradient, bounds[index].plane[0]));
+  bool below = farthest > level ? true : above <= limit;
+  // An edge in it may be the end of a neighbour's surface.
+  const int planes = below ? 0 : int(bounds[index].mixed) * 8;
+  for (int k = 0; k < planes && !below; k++) {
+    const ivec2 neighbor = clamp(other + neighbor_step(k), ivec2(0), last_tile);
+    below = most_above(r, centre, kHalfTile, bounds[neighbor.y * count.x + neighbor.x].gradient, bounds[index].plane[k + 1]) <= limit;
+  }
+  for (bool marks = !below; marks; marks = false) mark(view, r, other * kTile, kTile, level, farthest, is_near);
+}
+
+Receivers receivers_of(View view, ivec2 tile, Shared own) {
   const bool perspective = view.orthographic == 0, ranged = (kMode & kClassifyRanged) != 0u;
   const vec3 n = unpack_normal(own.normal);
   const float near = depth_of(view, own.nearest), far = depth_of(view, own.farthest);
-  const Box box = box_of(view, tile, kBlock, near, far);
   const vec2 widest = max(abs(tangent_of(view, vec2(0))), abs(tangent_of(view, vec2(view.size))));
   const float longest_ray = perspective ? sqrt(1.0 + dot(widest, widest)) : 1.0;
   // A sample lies up to half a pixel beside its slice, and is moved into it.
   const float pixel = max(abs(view.tangent_per_pixel.x), abs(view.tangent_per_pixel.y)), reach = params.radius + 2.0 * pixel * (perspective ? far + params.radius : 1.0);
-  const float reach_sq = reach * reach;
+  Receivers r;
+  r.tile = tile;
+  r.box = box_of(view, tile, kBlock, near, far);
+  r.reach = reach;
+  r.reach_sq = reach * reach;
+  r.rise = 0.9 * least_rise(view);
 
   // A unit of depth is at least so much height at every receiver: their normals differ.
   const float height = (perspective ? own.lowest / far : n.z) - own.turned * longest_ray;
   const float least = 0.9 * least_height(params.depth_precision, near, max(height, 0.0));
-  Receivers r;
   r.along = n.xy * view.tangent_per_pixel;
   r.nearness = perspective ? own.highest - least : n.z;
   r.affine = dot(n.xy, tangent_of(view, vec2(0.5))) + (perspective ? -n.z : own.highest - least);
   // |Q - P| is at most the reach, or, where nothing is too far to block, |Q| + |P|; over z in perspective.
   r.turned = own.turned * (perspective ? (ranged ? 0.0 : longest_ray) : reach);
   r.turned_by_nearness = own.turned * (perspective ? (ranged ? reach : longest_ray * far) : 0.0);
-  if (!perspective && !ranged && own.turned > 0.0) {
-    found[row] = kEverySector;
-    return;
-  }
 
   // The part of the image in which the sphere about any receiver is seen: all of it where one holds the eye.
-  ivec2 from = ivec2(0), to = last;
+  const ivec2 last_group = groups_of_tiles(view.size) - 1;
+  ivec2 to = last_group;
+  r.from = ivec2(0);
   const float nearest = near - reach, farthest = far + reach;
   if (!perspective || nearest > 0.01 * near) {
-    const vec2 least_at = box.least.xy - reach, most_at = box.most.xy + reach;
+    const vec2 least_at = r.box.least.xy - reach, most_at = r.box.most.xy + reach;
     const vec2 a = perspective ? min(least_at / nearest, least_at / farthest) : least_at, b = perspective ? max(most_at / nearest, most_at / farthest) : most_at;
     const vec2 p = view.center + a / view.tangent_per_pixel, q = view.center + b / view.tangent_per_pixel;
-    from = ivec2(clamp(floor((min(p, q) - 1.0) / float(kTile)), vec2(0), vec2(last)));
-    to = ivec2(clamp(floor((max(p, q) + 1.0) / float(kTile)), vec2(0), vec2(last)));
+    const float side = float(kTile * kTileGroup);
+    r.from = ivec2(clamp(floor((min(p, q) - 1.0) / side), vec2(0), vec2(last_group)));
+    to = ivec2(clamp(floor((max(p, q) + 1.0) / side), vec2(0), vec2(last_group)));
   }
-  const ivec2 extent = to - from + 1;
-  if (extent.x * extent.y > kMostTiles) {
-    found[row] = kEverySector;
-    return;
-  }
-
-  // First the block and its neighbours, which decide most; then all, row by row.
-  const float per_row = 1.0 / float(extent.x);  // times a number below kMostTiles: whole divisions are slow
-  const float rise = 0.9 * least_rise(view);
-  for (int i = int(gl_LocalInvocationID.x); i < 16 + extent.x * extent.y && found[row] != kEverySector; i += int(kGroupX)) {
-    const int line = int((float(i - 16) + 0.5) * per_row);
-    const ivec2 other = i < 16 ? clamp(tile - 1 + ivec2(i & 3, i >> 2), ivec2(0), last) : from + ivec2(i - 16 - line * extent.x, line);
-    const int index = other.y * count.x + other.x;
-    const float level = bounds[index].plane[kLevel], other_farthest = bounds[index].farthest;
-    const ivec2 apart = max(tile - other, other - tile - (kBlock - 1));
-    const float aside = max(float(kTile * (max(apart.x, apart.y) - 1)) + 0.5, 0.5);
-    const float limit = rise * aside - 2e-6 * abs(r.nearness * level) - r.turned - r.turned_by_nearness * level;
-    const vec2 centre = vec2(other * kTile) + kHalfTile;
-    const float above = min(most_above(r, centre, vec2(0), level), most_above(r, centre, bounds[index].gradient, bounds[index].plane[0]));
-    const bool too_far = ranged ? distance_sq(box, box_of(view, other, 1, depth_of(view, level), depth_of(view, other_farthest))) > reach_sq : false;
-    bool harmless = other_farthest > level ? true : too_far ? true : above <= limit;
-    // An edge in it may be the end of a neighbour's surface.
-    const int planes = harmless ? 0 : int(bounds[index].mixed) * 8;
-    for (int k = 0; k < planes && !harmless; k++) {
-      const ivec2 beside = clamp(other + neighbor_step(k), ivec2(0), last);
-      harmless = most_above(r, centre, bounds[beside.y * count.x + beside.x].gradient, bounds[index].plane[k + 1]) <= limit;
-    }
-    for (bool marks = !harmless; marks; marks = false) {
-      const vec2 offset = vec2((other - tile) * kTile);
-      atomicOr(found[row], sectors_of_offsets(offset - float(kBlock * kTile), offset + float(kTile)));
-    }
-  }
+  r.extent = to - r.from + 1;
+  // Orthographic, nothing bounds how much higher above another normal's plane a far place may be.
+  if (own.normal == kNoNormal || r.extent.x * r.extent.y > kMostGroups || (!perspective && !ranged && own.turned > 0.0)) r.extent = ivec2(0);
+  return r;
 }
 
-void list_tile(ivec2 tile, uint sectors) {
-  const uint place = atomicAdd(counts.listed, 1u);
-  list[place] = ListedTile(pack_tile(tile), sectors);
-  atomicMax(counts.groups.y, rows_of_groups(place + 1u, kStride));
+/// Finds the sectors and steps at which something may block a receiver of the block, with all invocations of its row. All rows take part, as they wait for each other.
+void find_sectors(View view, Receivers r) {
+  const uint row = gl_LocalInvocationID.y, lane = gl_LocalInvocationID.x;
+  const ivec2 count = groups_of_tiles(view.size), last_tile = tiles_of(view.size) - 1;
+  const int searched = r.extent.x * r.extent.y, around = kBlock + 2;
+  if (lane == 0u) found[row] = 0u, beside[row] = searched > 0 ? 0u : kEverySector;
+  for (uint k = lane; k < kSectorsOfTurn; k += kGroupX) first[row * kSectorsOfTurn + k] = ~0u, last[row * kSectorsOfTurn + k] = 0u;
+  for (uint k = lane; k < kGroupWords; k += kGroupX) unsettled[row * kGroupWords + k] = 0u;
+  barrier();
+  // The block and its neighbours decide most.
+  for (int i = int(lane); i < around * around && searched > 0; i += int(kGroupX)) {
+    const int line = int((float(i) + 0.5) / float(around));
+    search_tile(view, r, clamp(r.tile - 1 + ivec2(i - around * line, line), ivec2(0), last_tile), true);
+  }
+  barrier();
+  const int left = beside[row] != kEverySector ? searched : 0;
+  const float per_row = 1.0 / float(r.extent.x);  // times a number up to kMostGroups: whole divisions are slow
+  for (int i = int(lane); i < left; i += int(kGroupX)) {
+    const int line = int((float(i) + 0.5) * per_row);
+    const ivec2 group = r.from + ivec2(i - line * r.extent.x, line);
+    const int apart = distances_px(r, group * kTile * kTileGroup, kTile * kTileGroup).x;
+    const bool settled = is_settled(r, group, count), is_far = apart >= kFarGroup;
+    for (bool marks = !settled && is_far; marks; marks = false)
+      mark(view, r, group * kTile * kTileGroup, kTile * kTileGroup, groups[group.y * count.x + group.x].level, groups[group.y * count.x + group.x].farthest, false);
+    if (!settled && !is_far) atomicOr(unsettled[row * kGroupWords + uint(i) / 32u], 1u << (uint(i) & 31u));
+  }
+  barrier();
+  for (int word = 0; word * 32 < left; word++)
+    for (uint bits = unsettled[row * kGroupWords + uint(word)]; bits != 0u; bits &= bits - 1u) {
+      const int i = word * 32 + findLSB(bits), line = int((float(i) + 0.5) * per_row);
+      const ivec2 corner = (r.from + ivec2(i - line * r.extent.x, line)) * kTileGroup;
+      for (int k = int(lane); k < kTileGroup * kTileGroup; k += int(kGroupX)) {
+        const ivec2 other = corner + ivec2(k % kTileGroup, k / kTileGroup);
+        if (all(lessThanEqual(other, last_tile))) search_tile(view, r, other, false);
+      }
+    }
+  barrier();
+}
+
+/// By all invocations of a row, which put down the ranges of their own sectors.
+void list_tile(uint at, ivec2 tile, bool is_whole) {
+  const uint row = gl_LocalInvocationID.y;
+  for (uint k = gl_LocalInvocationID.x; k < kSectorsOfTurn; k += kGroupX) {
+    const bool is_found = (found[row] >> k & 1u) != 0u;
+    list[at].ranges[k] = is_whole ? kWholeRange : is_found ? pack_range(first[row * kSectorsOfTurn + k], last[row * kSectorsOfTurn + k]) : 0u;
+  }
+  if (gl_LocalInvocationID.x != 0u) return;
+  list[at].place = pack_tile(tile);
+  atomicMax(counts.groups.y, rows_of_groups(at + 1u, kStride));
 }
 
 /// What estimators write where nothing blocks, by all invocations of a row.
@@ -212,20 +301,20 @@ void main() {
     const ivec2 at = tile_of_block(tile, part) * kTile + ivec2(gl_LocalInvocationID.x, i / (kBlock * kBlock));
     if (depth[index_of(view, min(at, view.size - 1))] < kSkyDepth) atomicOr(surfaces[row], 1u << uint(part));
   }
-  Shared own = Shared(0.0, 0.0, kNoNormal, 0.0, 0.0, 0.0);
+  Shared own = Shared(1.0, 1.0, kNoNormal, 0.0, 0.0, 0.0);
   if (kProves && tile.x < count.x) own = shared_by(tile, count);
-  if (gl_LocalInvocationID.x == 0u) found[row] = own.normal != kNoNormal ? 0u : kEverySector;
-  barrier();
-  if (own.normal != kNoNormal) find_sectors(view, tile, own);
-  barrier();
+  find_sectors(view, receivers_of(view, tile, own));
   if (tile == ivec2(0)) counts.groups.x = kListedRow, counts.groups.z = 1u;
-  const uint sectors = found[row];
+  const bool is_whole = beside[row] == kEverySector;
+  const uint sectors = is_whole ? kEverySector : found[row];
   for (int i = 0; i < kBlock * kBlock; i++) {
     const ivec2 part = tile_of_block(tile, i);
-    if (any(greaterThanEqual(part, count))) continue;
-    const bool is_sky = (surfaces[row] >> uint(i) & 1u) == 0u;
-    if (gl_LocalInvocationID.x == 0u) sectors_of_tile[part.y * count.x + part.x] = is_sky ? 0u : sectors;
-    if (is_sky || sectors == 0u) write_open(view, part, is_sky);
-    else if (gl_LocalInvocationID.x == 0u) list_tile(part, sectors);
+    const bool is_inside = all(lessThan(part, count)), is_sky = (surfaces[row] >> uint(i) & 1u) == 0u, is_listed = is_inside && !is_sky && sectors != 0u;
+    if (gl_LocalInvocationID.x == 0u && is_inside) sectors_of_tile[part.y * count.x + part.x] = is_sky ? 0u : sectors;
+    if (gl_LocalInvocationID.x == 0u && is_listed) place[row] = atomicAdd(counts.listed, 1u);
+    barrier();
+    if (is_listed) list_tile(place[row], part, is_whole);
+    if (is_inside && !is_listed) write_open(view, part, is_sky);
+    barrier();
   }
 }

@@ -12,7 +12,8 @@ ALCOVE_CONSTANT uint kClassifyList = 3;    // out: ListedTile a tile, as many as
 ALCOVE_CONSTANT uint kClassifyCounts = 4;  // in, out: TileCounts, zeros
 ALCOVE_CONSTANT uint kClassifyAo = 5;      // out: float a pixel, 1 at receivers of tiles that are not listed; the plane of the parameters
 ALCOVE_CONSTANT uint kClassifyBent = 6;    // out: planes x, y, z as estimators write them, for the same; only with kClassifyWithBent
-ALCOVE_CONSTANT uint kClassifySectors = 7;  // out: uint a tile, as in ListedTile; 0: not listed
+ALCOVE_CONSTANT uint kClassifySectors = 7;  // out: uint a tile, a bit for every sector of directions in which something may block; 0: not listed
+ALCOVE_CONSTANT uint kClassifyGroups = 8;   // in: GroupBounds a group of tiles, from coarsen
 
 ALCOVE_CONSTANT uint kClassifyStrideId = 0;  // specialization: one pixel of so many in a row is a receiver, 1, 2 or 4: see stride.glsl
 ALCOVE_CONSTANT uint kClassifyModeId = 1;    // specialization: bits of kClassify*

@@ -32,7 +32,7 @@ const float kErrorShare = 0.75;
 
 void needs_more(uint place) {
   const uint at = atomicAdd(next_counts.listed, 1u);
-  next[at] = ListedTile(place, kEverySector);
+  next[at].place = place;
   next_counts.groups.x = kListedRow;
   next_counts.groups.z = 1u;
   atomicMax(next_counts.groups.y, rows_of_groups(at + 1u, 1));

@@ -49,8 +49,7 @@ float range_weight(float depth_difference) {
 void main() {
   const ListedPlace place = listed_place(gl_WorkGroupID.xy, gl_LocalInvocationIndex, kStride);
   if (place.tile >= counts.listed) return;
-  const ListedTile tile = list[place.tile];
-  const ivec2 pixel = pixel_of_tile(unpack_tile(tile.place), place.pixel, params.noise_origin, kStride);
+  const ivec2 pixel = pixel_of_tile(unpack_tile(list[place.tile].place), place.pixel, params.noise_origin, kStride);
   if (!inside(params.view, pixel)) return;
   const int index = index_of(params.view, pixel), ao_index = index + int(params.plane) * params.view.size.x * params.view.size.y;
   const float z = depth[index];

@@ -47,8 +47,8 @@ struct Side {
 };
 
 /// The occlusion in one direction: sin h - sin t, attenuated.
-float occlusion(Side side, ivec2 pixel, vec3 position, float jitter, uint sectors) {
-  const uint count = (sectors & sector_of(side.direction_px)) != 0u ? min(kSteps, uint(side.reach)) : 0u;
+float occlusion(Side side, ivec2 pixel, vec3 position, float jitter, uint range) {
+  const uint count = range != 0u ? min(kSteps, uint(side.reach)) : 0u;
   const float weight = length(side.normal);
   // The sine that samples must exceed: of the tangent, raised by the bias, or of the bias alone.
   const vec2 across = vec2(side.normal.y, -side.normal.x) / weight;  // the tangent, as its own cosine and sine
@@ -77,8 +77,7 @@ float occlusion(Side side, ivec2 pixel, vec3 position, float jitter, uint sector
 void main() {
   const ListedPlace place = listed_place(gl_WorkGroupID.xy, gl_LocalInvocationIndex, kStride);
   if (place.tile >= counts.listed) return;
-  const ListedTile tile = list[place.tile];
-  const ivec2 pixel = pixel_of_tile(unpack_tile(tile.place), place.pixel, params.noise_origin, kStride);
+  const ivec2 pixel = pixel_of_tile(unpack_tile(list[place.tile].place), place.pixel, params.noise_origin, kStride);
   if (!inside(params.view, pixel)) return;
   const int index = index_of(params.view, pixel), ao_index = index + int(params.plane) * params.view.size.x * params.view.size.y;
   const float z = depth[index];
@@ -122,7 +121,7 @@ void main() {
       const float reach = perspective ? sin_reach * pixels / forward : params.radius * pixels;
       const float border = steps_to_border(params.view, pixel, side.direction_px);
       side.reach = sin_reach < 1.0 && forward > 0.0 ? min(reach, border) : border;
-      blocked += share * occlusion(side, pixel, position, fract(noise.y + kGolden * float(2u * s + uint(sign > 0))), tile.sectors);
+      blocked += share * occlusion(side, pixel, position, fract(noise.y + kGolden * float(2u * s + uint(sign > 0))), list[place.tile].ranges[sector_of(side.direction_px)]);
     }
   }
   ao[ao_index] = clamp(1.0 - blocked / whole, 0.0, 1.0);

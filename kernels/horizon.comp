@@ -5,10 +5,11 @@
 // Jimenez et al., "Practical Realtime Strategies for Accurate Indirect Occlusion", 2016, with these differences:
 // - Slices are even in azimuth about the view ray, not on the screen, so that no Jacobian is owed off axis.
 // - The reach is the exact image of the sphere of the radius in the slice, clipped to the image: what is outside is unknown.
-// - The samples of a side form runs of one surface. The run that goes on from the receiver is its own surface: it blocks all below its horizon. Every other run
-//   blocks from its front to its back, which lies as much further along the eye's ray as the run is wide ("width as thickness": a blade of grass is as thin
-//   as it is narrow, a column as thick as it is broad), or as the user says. Nothing beyond the radius blocks. What is blocked is a union of intervals:
-//   exact for the own surface and three more. What overlaps none of these joins the third or, with many steps, is counted in 32 sectors.
+// - The samples of a side form runs of one surface. What goes on from the receiver, or from any place below its tangent plane, is its own surface: it blocks all
+//   below its horizon. A sample that is not above that plane says nothing else, so it may be left out where `classify` knows of it. Every other run blocks from
+//   its front to its back, which lies as much further along the eye's ray as the run is wide ("width as thickness": a blade of grass is as thin as it is
+//   narrow, a column as thick as it is broad), or as the user says. Nothing beyond the radius blocks. What is blocked is an interval, exact, of the own
+//   surface's, and 24 sectors (sectors.glsl) of all others'.
 // - Falloff weighs each arc by the distance of the sample that first blocks it ("incremental arcs"), exact for height fields.
 // - Result 1 - (sum of blocked arcs) / (sum of whole arcs): exactly 1 where nothing rises above the tangent plane.
 #version 450
@@ -91,9 +92,10 @@ uint sectors_of(Receiver r, Reach reach, Run run, float z, float gap_behind, flo
   return run.near >= run.far ? sectors_below(run.near, shift) & ~sectors_below(min(back, run.far), shift) : 0u;
 }
 
-/// The blocked part of a side's integrals. `sectors`: where something may block.
-vec3 search(Receiver r, Side side, Reach reach, float jitter, uint sectors) {
-  const int count = (sectors & sector_of(side.direction_px)) != 0u ? min(int(kSteps), int(side.reach)) : 0;
+/// The blocked part of a side's integrals. `range`: the steps at which something may stand above the tangent plane.
+vec3 search(Receiver r, Side side, Reach reach, float jitter, uint range) {
+  const int count = range != 0u ? min(int(kSteps), int(side.reach)) : 0;
+  const float last_step = float(last_of_range(range)) + 0.5;
   const float shift = fract(11.0 * jitter);
   const bool hard = kFalloff == kFalloffNone;
   float last_z = r.z, last_offset = 0.0, last_slope = 0.0, last_distance_sq = kNone;
@@ -101,7 +103,7 @@ vec3 search(Receiver r, Side side, Reach reach, float jitter, uint sectors) {
   bool own = true, was_within = true, was_above = true;
   Blocked blocked = Blocked(-1.0, kThickness == kThicknessEndless ? 1.0 : -1.0, 0u);
   Run run = Run(vec2(0), vec2(0), 0.0, -1.0, 1.0);
-  for (int k = 0; k < count; k++) {
+  for (int k = first_sample(float(first_of_range(range)), int(kSteps), count, side.reach, jitter); k < count && last_offset <= last_step; k++) {
     const float offset = step_offset(k, int(kSteps), count, side.reach, jitter), gap = offset - last_offset;
     const vec2 beside = round(side.direction_px * offset);
     const ivec2 hit = r.pixel + ivec2(beside);
@@ -117,12 +119,12 @@ vec3 search(Receiver r, Side side, Reach reach, float jitter, uint sectors) {
     const bool crosses = hard ? both(both(above, was_above), both(connected, within != was_within)) : false;
     const float crossing = mix(slope, last_slope, kThickness == kThicknessEndless ? (reach.radius_sq - distance_sq) / (last_distance_sq - distance_sq) : 0.5);
     const float near = max(blocks ? slope : -1.0, crosses ? crossing : -1.0), far = min(blocks ? slope : 1.0, crosses ? crossing : 1.0);
-    if (kThickness != kThicknessEndless && !connected) {
+    if (connected) run.end = place;
+    if (kThickness != kThicknessEndless && (!connected || !above)) {
       if (hard) blocked.sectors |= sectors_of(r, reach, run, last_z, gap, shift);
       run = Run(place, place, gap, -1.0, 1.0);
-      own = false;
+      own = !above;
     }
-    run.end = place;
     if (own) {
       blocked.near = max(blocked.near, near);
       if (kThickness == kThicknessEndless) blocked.far = min(blocked.far, blocks ? min(far, slope_of(back_of(r, place, reach.thickness, reach.radius))) : far);
@@ -154,8 +156,7 @@ void write_bent(int index, int plane, vec3 b) {
 void main() {
   const ListedPlace place = listed_place(gl_WorkGroupID.xy, gl_LocalInvocationIndex, kStride);
   if (place.tile >= counts.listed) return;
-  const ListedTile tile = list[place.tile];
-  const ivec2 pixel = pixel_of_tile(unpack_tile(tile.place), place.pixel, params.noise_origin, kStride);
+  const ivec2 pixel = pixel_of_tile(unpack_tile(list[place.tile].place), place.pixel, params.noise_origin, kStride);
   const View view = params.view;
   if (!inside(view, pixel)) return;
   const int index = index_of(view, pixel), plane = view.size.x * view.size.y, ao_index = index + int(params.plane) * plane;
@@ -176,9 +177,10 @@ void main() {
     whole += slice.share * slice.weight * (slice.cos_gamma + slice.gamma * slice.sin_gamma);
     for (int sign = -1; sign <= 1; sign += 2) {
       const float jitter = fract(noise.y + kGolden * float(2u * s + uint(sign > 0)));
-      const vec3 side = slice.share * slice.weight * search(r, side_of(view, r, slice, float(sign), reach), reach, jitter, tile.sectors);
-      blocked += side.x;
-      if (kBent) bent_blocked += side.y * float(sign) * slice.t + side.z * r.eye;
+      const Side side = side_of(view, r, slice, float(sign), reach);
+      const vec3 arcs = slice.share * slice.weight * search(r, side, reach, jitter, list[place.tile].ranges[sector_of(side.direction_px)]);
+      blocked += arcs.x;
+      if (kBent) bent_blocked += arcs.y * float(sign) * slice.t + arcs.z * r.eye;
     }
   }
   ao[ao_index] = whole > 0.0 ? clamp(1.0 - blocked / whole, 0.0, 1.0) : 1.0;

@@ -54,7 +54,9 @@ struct GroupCount {
 };
 
 ALCOVE_CONSTANT int kTile = 8;        // px a side of the tiles by which work is skipped
+ALCOVE_CONSTANT int kTileGroup = 4;     // tiles a side of the groups by which they are searched
 ALCOVE_CONSTANT uint kTilePlanes = 10;  // of TileBounds
+ALCOVE_CONSTANT uint kSectorsOfTurn = 16;  // of directions on the image: see tiles.glsl
 
 /// The surfaces seen in a tile, from the eye's side. They are told by their nearness: 1 / z, or -z orthographic, in which planes are affine in the pixel.
 struct TileBounds {
@@ -67,10 +69,17 @@ struct TileBounds {
   float lowest, highest;     // of -dot(normal, position) over the receivers
 };
 
+/// The same of a group of tiles, less tightly.
+struct GroupBounds {
+  vec2 gradient;      // nearness a pixel
+  float plane, level;  // at the group's centre, of planes that no surface is before: with that gradient, and with none
+  float farthest;     // as of a tile
+};
+
 /// A tile that is to be estimated.
 struct ListedTile {
-  uint place;    // column + (row << 16), in tiles
-  uint sectors;  // of the directions on the image in which something may block: see tiles.glsl
+  uint place;  // column + (row << 16), in tiles
+  uint ranges[kSectorsOfTurn];  // of each sector of directions on the image, the steps at which something may stand above, first + (last << 16); 0: nothing blocks
 };
 
 /// How many there are, and why the others are not.

@@ -169,6 +169,14 @@ float step_offset(int k, int steps, int count, float reach, float jitter) {
   return count < steps ? float(k + 1) : max(float(k + 1), (steps > kManySteps ? pow(x, exponent) : x * x) * reach);
 }
 
+/// A sample with which a search can begin whose first samples, at offsets of less than `step` - 1/2, are known not to stand above the tangent plane: one of them.
+int first_sample(float step, int steps, int count, float reach, float jitter) {
+  const float far = step - 1.0, exponent = steps > kManySteps ? clamp(log2(max(reach, 1.0)) / log2(float(steps)), 1.0, 2.0) : 2.0;
+  const float share = max(far, 0.0) / reach;
+  const float k = float(steps) * (steps > kManySteps ? pow(share, 1.0 / exponent) : sqrt(share)) - jitter - 0.01;
+  return max(int(floor(count < steps ? far - 1.0 : min(far - 1.0, k))), 0);
+}
+
 /// Whether two samples `gap` steps apart are taken for one surface.
 bool same_surface(Receiver r, Reach reach, float z, float last_z, float gap) {
   return abs(z - last_z) < kRunSlope * reach.pixel_size * gap * (r.perspective ? min(z, last_z) : 1.0);

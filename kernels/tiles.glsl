@@ -6,6 +6,8 @@ const uint kListedRow = 256u;
 
 ivec2 tiles_of(ivec2 size) { return (size + kTile - 1) / kTile; }
 
+ivec2 groups_of_tiles(ivec2 size) { return (tiles_of(size) + kTileGroup - 1) / kTileGroup; }
+
 /// The neighbours of a tile, k of 8.
 ivec2 neighbor_step(int k) { return k < 3 ? ivec2(k - 1, -1) : k < 6 ? ivec2(k - 4, 1) : ivec2(k * 2 - 13, 0); }
 
@@ -50,7 +52,6 @@ vec3 stored_bent(vec3 bent) { return 0.5 + 0.5 * bent; }
 vec3 open_bent(vec3 normal) { return 2.0 / 3.0 * normal; }
 
 /// Sixteen sectors of directions on the image, by a number that grows with the angle as that does: 0 to 4 for a whole turn.
-const uint kSectorsOfTurn = 16u;
 const uint kEverySector = 0xffffu;
 
 float turn_of(vec2 direction) {
@@ -58,7 +59,13 @@ float turn_of(vec2 direction) {
   return direction.x >= 0.0 ? (y >= 0.0 ? y : 4.0 + y) : 2.0 - y;
 }
 
-uint sector_of(vec2 direction) { return 1u << (uint(turn_of(direction) * float(kSectorsOfTurn / 4u)) & (kSectorsOfTurn - 1u)); }
+uint sector_of(vec2 direction) { return uint(turn_of(direction) * float(kSectorsOfTurn / 4u)) & (kSectorsOfTurn - 1u); }
+
+/// A range of a ListedTile: its first and last step. A step is a pixel along the longer axis; a sample lies up to half of one beside its offset.
+uint pack_range(uint first, uint last) { return min(first, 0xffffu) | min(last, 0xffffu) << 16; }
+uint first_of_range(uint range) { return range & 0xffffu; }
+uint last_of_range(uint range) { return range >> 16; }
+const uint kWholeRange = 0xffff0000u;
 
 /// The sectors in which a rectangle of offsets is seen, from all of them where it holds the origin.
 uint sectors_of_offsets(vec2 least, vec2 most) {
