@@ -85,6 +85,11 @@ inline const std::map<std::string, Denoise>& names_of() {
   return names;
 }
 template <>
+inline const std::map<std::string, Noise>& names_of() {
+  static const std::map<std::string, Noise> names{{"fixed", Noise::fixed}, {"animated", Noise::animated}};
+  return names;
+}
+template <>
 inline const std::map<std::string, AoChannels>& names_of() {
   static const std::map<std::string, AoChannels> names = {{"mono", AoChannels::mono}, {"rgb", AoChannels::rgb}};
   return names;

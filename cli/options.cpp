@@ -246,6 +246,7 @@ void add_estimator_rows(Table& table, RunOptions& options) {
   table.number("--fade-start", s.fade_start, "scene units", between(0, 1e30), "depth where the AO begins to fade to 1; with --fade-end");
   table.number("--fade-end", s.fade_end, "scene units", above_to(0, 1e30), "depth from which the AO is 1");
   table.number("--roughness", s.roughness, "", between(0, 1), "of all surfaces, for specular-occlusion");
+  table.choice("--noise", s.noise, "fixed: every frame has the same pattern of sample noise, so that what stands still does not flicker; animated: one of its own");
   table.number("--seed", s.seed, "", between(0, 4294967295.0), "shifts the sample noise");
   table.flag("--no-skip", s.no_skip, "estimate sky too, and tiles that are proved to be open; slower, the same bits");
 }

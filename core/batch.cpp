@@ -177,7 +177,7 @@ std::string options_digest(const Settings& settings) {
   // Every value on a line of its own, so that no two sets of values make one text.
   std::string text = kVersion;
   const auto add = [&](const auto&... values) { ((text += fmt::format("\n{}", values)), ...); };
-  add(int(e.estimator), e.radius ? fmt::format("{}", fmt::join(radii_of(e), ",")) : "", int(e.falloff), e.falloff_start, e.falloff_end, e.slices, e.steps, e.intensity, e.power, e.seed);
+  add(int(e.estimator), e.radius ? fmt::format("{}", fmt::join(radii_of(e), ",")) : "", int(e.falloff), e.falloff_start, e.falloff_end, e.slices, e.steps, e.intensity, e.power, e.seed, int(e.noise));
   add(e.fade_start.value_or(-1), e.fade_end.value_or(-1), e.roughness, settings.output.fog_density);
   add(settings.output.multi_bounce, i.albedo_value.value_or(-1));
   add(settings.output.aovs, int(settings.output.ao_channels), int(settings.output.aov_space));

@@ -54,6 +54,7 @@ BatchTimes time_batch(Settings settings, int frames) {
   const ScratchFolder folder;
   settings.output.output = folder.pattern();
   settings.frames.frames = fmt::format("1-{}", frames);
+  settings.estimator.noise = Noise::animated;  // else all of these frames would be the first one
   const RunReport report = run_frames(settings);
   if (report.stop) throw *report.stop;
   BatchTimes times{frames, report.at_once, report.wall_s};
@@ -74,7 +75,8 @@ BatchTimes time_batch(Settings settings, int frames) {
   const int each = (frames + report.at_once - 1) / report.at_once;
   std::atomic<double> device_ms = 0;
   seconds_of(report.at_once, report.at_once, [&](int) {
-    lanes.with([&](gpu::Recorder& gpu) {
+    lanes.with([&](Lane& lane) {
+      gpu::Recorder& gpu = lane.gpu;
       FrameSource source = open_frame(settings, 1);
       const FrameInputs inputs = load_frame(gpu, source, settings, 1);
       const Stopwatch computing;

@@ -2,12 +2,28 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/chain.h"
 
+#include <algorithm>
+
 #include "core/aov.h"
 
 namespace alcove {
+namespace {
+
+/// Whether nothing is asked for but AO that is made from depth and normals alone.
+bool is_only_visibility(const FrameInputs& frame, const OutputSettings& output) {
+  const bool has_others = std::ranges::any_of(aovs_of(output), [](const Aov& aov) { return aov.planes != &FrameOutputs::ao && aov.planes != &FrameOutputs::scales; });
+  return !has_others && needs_ao(output) && !output.multi_bounce && !frame.beauty && !frame.material_ao && debug_views_of(output).empty();
+}
+
+}  // namespace
 
 FrameOutputs run_chain(gpu::Recorder& gpu, const FrameInputs& frame, const EstimatorSettings& settings, const OutputSettings& output) {
   FrameOutputs out;
+  if (frame.is_sky && !settings.no_skip && is_only_visibility(frame, output)) {
+    const OpenSky sky = open_sky(gpu, frame, settings);
+    out.counts = sky.counts, out.tiles = sky.tiles, out.ao = sky.ao, out.scales = sky.scales;
+    return out;
+  }
   for (const auto* plane : {frame.depth, frame.normal, frame.beauty, frame.indirect, frame.diffuse_color, frame.material_ao, frame.albedo})
     if (plane) gpu.upload(*plane);
 

@@ -26,7 +26,7 @@ constexpr std::array kViews{
               DebugSource::normals_from_depth, DebugScale::fixed, 0, 30, false},
     DebugView{"raw-ao", "raw AO: as estimated, at its own resolution; 1 is open", kDebugValue, DebugSource::raw_ao, DebugScale::fixed, 0, 1, true},
     DebugView{"denoised-ao", "denoised AO: before upsampling and shaping; 1 is open", kDebugValue, DebugSource::denoised_ao, DebugScale::fixed, 0, 1, true},
-    DebugView{"tiles", "tiles: share of the directions in which something may block; 0 is proved open", kDebugTile, DebugSource::tiles, DebugScale::fixed, 0, 1, false},
+    DebugView{"tiles", "tiles: share of the directions in which something may block; 0 is proved open, or as in the frame before", kDebugTile, DebugSource::tiles, DebugScale::fixed, 0, 1, false},
     DebugView{"edges", "edges: a neighbour's distance from the tangent plane, part of the depth (logarithmic)", kDebugEdge, DebugSource::none,
               DebugScale::fixed_logarithmic, 1e-4f, 1, false},
 };

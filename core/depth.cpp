@@ -124,6 +124,12 @@ double planar_depth(const DepthMap& map, const std::array<double, 3>& raw, doubl
   return map.along_ray ? z / ray_length : z;
 }
 
+bool is_all_sky(const DepthMap& map, std::span<const float> raw) {
+  if (map.form == kDepthPosition) return std::ranges::all_of(raw, [](float x) { return x == 0; });
+  const float below = float(map.sky_below), above = float(map.sky_above);
+  return std::ranges::all_of(raw, [&](float x) { return x >= above || x == below; });
+}
+
 double step_of(std::span<const float> raw) {
   constexpr std::size_t kSampled = 4096, kLeastValues = 64;
   constexpr double kExact = 0.02;  // of a step: how near to a level a float is that can tell

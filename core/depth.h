@@ -34,6 +34,9 @@ struct DepthPrecision {
 /// Fails with ErrorKind::usage where the kind needs a plane, a world matrix or a perspective that is not there.
 DepthMap depth_map(DepthKind kind, const DepthRange& range, PositionSpace space, const Camera& camera, double scale, double sky);
 
+/// Whether every raw value plainly says that there is no surface: none is one, or has to be repaired to be none. Of positions: x, y and z are 0.
+bool is_all_sky(const DepthMap& map, std::span<const float> raw);
+
 /// Planar depth of a raw value, or of a position; `ray_length` is that of the pixel's ray at unit depth. Infinite: sky.
 double planar_depth(const DepthMap& map, const std::array<double, 3>& raw, double ray_length);
 

@@ -34,7 +34,7 @@ uint range_check_of(RangeCheck check) {
   return check == RangeCheck::ratio ? kRangeRatio : check == RangeCheck::smoothstep ? kRangeSmoothstep : kRangeNone;
 }
 
-/// Where the noise pattern of a frame and seed begins: successive frames take successive points of the R2 sequence, seeds of another.
+/// Where the noise pattern begins: successive frames, where it is animated, take successive points of the R2 sequence, seeds of another.
 vec2 noise_shift(int frame, std::uint32_t seed) {
   const auto fraction = [](double x) { return x - std::floor(x); };
   const auto shift = [&](double by_frame, double by_seed) { return float(fraction(0.5 + fraction(frame * by_frame) + fraction(seed * by_seed))); };
@@ -50,7 +50,7 @@ Params slice_parameters(const GBuffer& gbuffer, const FrameInputs& frame, const 
   params.radius = float(radius * settings.falloff_end);
   params.falloff_start = float(radius * settings.falloff_start);
   params.noise_origin = frame.noise_origin;
-  params.noise_shift = noise_shift(frame.frame, settings.seed);
+  params.noise_shift = noise_shift(settings.noise == Noise::animated ? frame.frame : 0, settings.seed);
   params.thickness = thickness_of(settings);
   params.bias = float(settings.bias);
   params.plane = plane;
@@ -167,8 +167,9 @@ bool has_bent_normals(const EstimatorSettings& settings) {
 }
 
 Estimate estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& inputs, const EstimatorSettings& settings, bool with_bent, const std::string& prefix) {
+  const BlockGrid grid = block_grid(inputs, settings);
   FrameInputs frame = inputs;
-  frame.noise_origin = block_grid(inputs, settings).origin;
+  frame.noise_origin = grid.origin;
   const auto radii = radii_of(settings);
   Estimate all{&gpu.buffer(prefix + "ao", radii.size() * plane_bytes(gbuffer.view), gpu::Use::download)};
   if (with_bent) all.bent = &gpu.buffer("bent", 3 * plane_bytes(gbuffer.view), gpu::Use::download);
@@ -178,7 +179,7 @@ Estimate estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs&
     EstimatorSettings one = settings;
     one.radius = radii[plane];
     Estimate out{all.ao, plane + 1 == radii.size() ? all.bent : nullptr};
-    if (!searches_exactly(one)) all.listed = out.listed = classify(gpu, gbuffer, frame, one, surfaces, out, plane, prefix);
+    if (!searches_exactly(one)) all.listed = out.listed = classify(gpu, gbuffer, frame, grid, one, surfaces, out, plane, prefix);
     switch (settings.estimator) {
       case Estimator::gtao:
         if (!searches_exactly(one)) horizon(gpu, gbuffer, frame, one, out, plane);
@@ -218,19 +219,21 @@ void coarsen(gpu::Recorder& gpu, const GBuffer& gbuffer, const Bounds& bounds) {
   gpu.dispatch("coarsen", CoarsenParams{gbuffer.view.size}, {{kCoarsenTiles, *bounds.tiles}, {kCoarsenGroups, *bounds.groups}}, group_extent(gbuffer.view));
 }
 
-TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings, const Bounds& bounds,
-                  const Estimate& out, uint plane, const std::string& prefix) {
+TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const BlockGrid& grid, const EstimatorSettings& settings,
+                  const Bounds& bounds, const Estimate& out, uint plane, const std::string& prefix) {
   const gpu::Extent tiles = tile_extent(gbuffer.view);
   const TileList list{&gpu.buffer("tiles", sizeof(ListedTile) * tiles.x * tiles.y, gpu::Use::device), &gpu.buffer(prefix + "tile counts", sizeof(TileCounts), gpu::Use::download),
                       &gpu.buffer(prefix + "tile sectors", sizeof(uint) * tiles.x * tiles.y, gpu::Use::device)};
   gpu.clear(*list.counts);
   const bool ranged = settings.estimator == Estimator::gtao || settings.estimator == Estimator::bitmask;
   const uint mode = (settings.no_skip ? 0 : kClassifySkips) | (proves(settings) ? kClassifyProves : 0) | (ranged ? kClassifyRanged : 0) |
-                    (out.bent ? kClassifyWithBent : 0);
-  const ClassifyParams params{gbuffer.view, frame.noise_origin, float(settings.radius.value() * settings.falloff_end), to_vec3(frame.depth_precision.at), plane};
+                    (out.bent ? kClassifyWithBent : 0) | (frame.changes && !settings.no_skip ? kClassifyReuses : 0);
+  const ClassifyParams params{gbuffer.view, frame.noise_origin, float(settings.radius.value() * settings.falloff_end), to_vec3(frame.depth_precision.at), plane,
+                              frame.view.size, grid.overhang, grid.factor};
   gpu.dispatch("classify", params,
                {{kClassifyBounds, bounds.tiles ? *bounds.tiles : *list.tiles},
                 {kClassifyGroups, bounds.groups ? *bounds.groups : *list.tiles},
+                {kClassifyChanges, frame.changes ? *frame.changes : *list.tiles},
                 {kClassifyDepth, *gbuffer.depth},
                 {kClassifyNormal, *gbuffer.normal},
                 {kClassifyList, *list.tiles},
@@ -336,7 +339,7 @@ void hbao(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, 
   params.bias = float(settings.bias);
   params.from_surface = settings.elevation == Elevation::surface ? 1 : 0;
   params.noise_origin = frame.noise_origin;
-  params.noise_shift = noise_shift(frame.frame, settings.seed);
+  params.noise_shift = noise_shift(settings.noise == Noise::animated ? frame.frame : 0, settings.seed);
   params.plane = plane;
   params.depth_precision = to_vec3(frame.depth_precision.at);
   gpu.dispatch("hbao", params, {{kHbaoDepth, *gbuffer.depth}, {kHbaoNormal, *gbuffer.normal}, {kHbaoAo, *out.ao}, {kHbaoList, *out.listed.tiles}, {kHbaoCounts, *out.listed.counts}},
@@ -351,7 +354,7 @@ void crytek(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame
   params.uniform_volume = settings.sample_kernel == SampleKernel::uniform ? 1 : 0;
   params.range_check = range_check_of(settings.range_check);
   params.noise_origin = frame.noise_origin;
-  params.noise_shift = noise_shift(frame.frame, settings.seed);
+  params.noise_shift = noise_shift(settings.noise == Noise::animated ? frame.frame : 0, settings.seed);
   params.plane = plane;
   params.depth_precision = to_vec3(frame.depth_precision.at);
   gpu.dispatch("crytek", params, {{kCrytekDepth, *gbuffer.depth}, {kCrytekNormal, *gbuffer.normal}, {kCrytekAo, *out.ao}, {kCrytekList, *out.listed.tiles}, {kCrytekCounts, *out.listed.counts}},

@@ -137,6 +137,7 @@ FrameInputs load_frame(gpu::Recorder& gpu, FrameSource& source, const Settings& 
   if (!source.settled)
     settle(source, settings, inputs.depth->as<float>(), inputs.normal ? inputs.normal->as<float>() : std::span<float>());
   inputs.depth_map = depth_map_of(source, settings);
+  inputs.is_sky = is_all_sky(inputs.depth_map, inputs.depth->as<const float>());
   inputs.depth_precision = depth_precision(inputs.depth_map, has_half_depth(source) ? kHalfPrecision : kFloatPrecision, source.depth_step);
   if (inputs.normal) inputs.view_from_normal = view_from_normal(source.camera, source.normal_space, source.flip_normal);
   inputs.normal_encoding = source.normal_encoding;

@@ -17,8 +17,8 @@ struct Dropped {};
 
 class FrameRun {
  public:
-  FrameRun(gpu::Recorder& gpu, const RunContext& run, int frame, FrameReport& report)
-      : gpu_(gpu), run_(run), frame_(frame), settings_(run.plan.at(frame)), report_(report) {
+  FrameRun(Lane& lane, const RunContext& run, int frame, FrameReport& report)
+      : gpu_(lane.gpu), last_(lane.last), run_(run), frame_(frame), settings_(run.plan.at(frame)), report_(report) {
     report.frame = frame;
     report.input = main_input(settings_.input);
     report.output = settings_.output.output;
@@ -55,16 +55,21 @@ class FrameRun {
     return source;
   }
 
-  /// Reads and computes source.data.
-  FrameOutputs compute(FrameSource& source, const OutputSettings& output) {
+  /// Reads and computes source.data. reuses: what is as in the frame before is not computed again.
+  FrameOutputs compute(FrameSource& source, const OutputSettings& output, bool reuses) {
     const Stopwatch reading;
-    const FrameInputs inputs = load_frame(gpu_, source, settings_, frame_);
+    FrameInputs inputs = load_frame(gpu_, source, settings_, frame_);
     sample_.add(inputs);
+    const bool is_same = reuses && last_.is_same(gpu_, inputs, settings_.estimator);
+    if (!reuses) last_.forget();
     report_.read_ms += reading.ms();
     go_on();
-    FrameOutputs outputs = run_chain(gpu_, inputs, settings_.estimator, output);
-    gpu_.run();
-    add_passes();
+    FrameOutputs outputs = is_same ? last_.outputs() : run_chain(gpu_, inputs, settings_.estimator, output);
+    if (!is_same) {
+      gpu_.run();
+      add_passes();
+    }
+    if (reuses) last_.keep(outputs);
     const auto counts = outputs.counts->as<FrameCounts>()[0];
     counts_.sky += counts.sky;
     counts_.repaired_depth += counts.repaired_depth;
@@ -79,7 +84,8 @@ class FrameRun {
       const auto tiles = outputs.tiles->as<TileCounts>()[0];
       report_.tiles.sky += tiles.sky;
       report_.tiles.proved += tiles.open;
-      report_.tiles.computed += tiles.listed;
+      report_.tiles.kept += tiles.kept + (is_same ? tiles.listed : 0);
+      report_.tiles.computed += is_same ? 0 : tiles.listed;
     }
     go_on();
     return outputs;
@@ -102,7 +108,7 @@ class FrameRun {
   }
 
   void run_whole(FrameSource& source) {
-    const FrameOutputs outputs = compute(source, settings_.output);
+    const FrameOutputs outputs = compute(source, settings_.output, run_.plan.frames().size() > 1 && !settings_.estimator.no_skip);
     const Stopwatch writing;
     std::vector<std::vector<float>> kept;
     auto planes = result_planes(outputs, source.data, settings_.output);
@@ -131,7 +137,7 @@ class FrameRun {
       std::vector<std::vector<float>> planes;
       for (const auto& tile : row) {
         source.data = surroundings.around(tile);
-        add_tile(result_planes(compute(source, settings_.output), source.data, settings_.output), source.data, tile, row, planes);
+        add_tile(result_planes(compute(source, settings_.output, false), source.data, settings_.output), source.data, tile, row, planes);
         report_.parts++;
       }
       const Stopwatch writing;
@@ -172,6 +178,7 @@ class FrameRun {
   }
 
   gpu::Recorder& gpu_;
+  LastFrame& last_;
   const RunContext& run_;
   int frame_;
   Settings settings_;
@@ -183,10 +190,10 @@ class FrameRun {
 
 }  // namespace
 
-FrameReport run_frame(gpu::Recorder& gpu, const RunContext& run, int frame) {
+FrameReport run_frame(Lane& lane, const RunContext& run, int frame) {
   FrameReport report;
   try {
-    FrameRun(gpu, run, frame, report).run();
+    FrameRun(lane, run, frame, report).run();
     report.state = FrameState::done;
   } catch (const Dropped&) {
     report.state = FrameState::dropped;

@@ -8,6 +8,7 @@
 #include "core/color.h"
 #include "core/frame_files.h"
 #include "core/plan.h"
+#include "core/reuse.h"
 #include "core/run_report.h"
 #include "core/tiles.h"
 
@@ -23,8 +24,16 @@ struct RunContext {
   std::function<bool()> stop = {};               // asked between steps: true drops the frame
 };
 
+/// Where one frame after the other is computed: buffers, and what they still hold.
+struct Lane {
+  explicit Lane(gpu::Device& device) : gpu(device) {}
+
+  gpu::Recorder gpu;
+  LastFrame last;
+};
+
 /// Never fails: what went wrong is in the report.
-FrameReport run_frame(gpu::Recorder& gpu, const RunContext& run, int frame);
+FrameReport run_frame(Lane& lane, const RunContext& run, int frame);
 
 class Stopwatch {
  public:

@@ -62,6 +62,7 @@ FrameInputs upload(gpu::Recorder& gpu, const HostFrame& frame) {
   inputs.normal_encoding = frame.normal_encoding;
   inputs.normal_unorm = frame.normal_unorm;
   if (!frame.normal.empty()) inputs.view_from_normal = view_from_normal(frame.camera, frame.normal_space, frame.flip_normal);
+  inputs.is_sky = is_all_sky(inputs.depth_map, frame.depth);
   inputs.depth = upload(gpu, "raw depth", frame.depth);
   inputs.normal = upload(gpu, "raw normal", frame.normal);
   return inputs;

@@ -15,13 +15,4 @@ inline gpu::Extent extent_of(const View& view) { return {uint(view.size.x), uint
 inline uint groups_of(int pixels, uint size) { return (uint(pixels) + size - 1) / size; }
 inline vec3 to_vec3(const std::array<double, 3>& v) { return {float(v[0]), float(v[1]), float(v[2])}; }
 
-/// The grid of blocks that the pixels of an estimate stand for: it begins at the display window's corner, so that a crop has the blocks of the whole.
-struct BlockGrid {
-  int factor;      // px of a block in x and in y
-  ivec2 origin;    // blocks from the display window's corner to the first one of the data window
-  ivec2 overhang;  // px of that one outside of the data window
-  ivec2 size;      // blocks
-};
-BlockGrid block_grid(const FrameInputs& frame, const EstimatorSettings& settings);
-
 }  // namespace alcove

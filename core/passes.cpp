@@ -54,6 +54,17 @@ BlockGrid block_grid(const FrameInputs& frame, const EstimatorSettings& settings
   return {factor, origin, overhang, {floored(overhang.x + frame.view.size.x + factor - 1), floored(overhang.y + frame.view.size.y + factor - 1)}};
 }
 
+OpenSky open_sky(gpu::Recorder& gpu, const FrameInputs& frame, const EstimatorSettings& settings) {
+  const ivec2 size = block_grid(frame, settings).size;
+  const OpenSky sky{&gpu.buffer("counts", sizeof(FrameCounts), gpu::Use::download), &gpu.buffer("tile counts", sizeof(TileCounts), gpu::Use::download),
+                    &gpu.buffer("open sky", plane_bytes(frame.view), gpu::Use::download),
+                    &gpu.buffer("open sky scales", radii_of(settings).size() * plane_bytes(frame.view), gpu::Use::download)};
+  sky.counts->as<FrameCounts>()[0] = {uint(pixels_of(frame.view)), 0, 0, 0, 0};
+  sky.tiles->as<TileCounts>()[0] = {{}, 0, groups_of(size.x, uint(kTile)) * groups_of(size.y, uint(kTile)), 0, 0};
+  for (const auto* planes : {sky.ao, sky.scales}) std::ranges::fill(planes->as<float>(), 1.0f);
+  return sky;
+}
+
 GBuffer prepare(gpu::Recorder& gpu, const FrameInputs& frame, gpu::Use depth_use, const std::string& prefix) {
   GBuffer gbuffer{frame.view, &gpu.buffer(prefix + "depth", plane_bytes(frame.view), depth_use),
                   &gpu.buffer(prefix + "normal", plane_bytes(frame.view), gpu::Use::device),

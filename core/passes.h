@@ -31,6 +31,8 @@ struct FrameInputs {
   double albedo_value = 0;               // where there are no planes of it
   Matrix3 aov_from_view{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};  // rotation to the space of the directions that are written
   bool has_alpha = false;
+  bool is_sky = false;                   // no pixel shows a surface, and none had to be repaired for that
+  const gpu::Buffer* changes = nullptr;  // of blocks against the frame before, whose estimate its buffers still hold: see classify.h; null: there is none
 };
 
 /// What every estimator relies on: see prepare.comp and reconstruct.comp.
@@ -42,8 +44,22 @@ struct GBuffer {
   gpu::Buffer* missing;  // the GroupCount of reconstruct
 };
 
+/// The grid of blocks that the pixels of an estimate stand for: it begins at the display window's corner, so that a crop has the blocks of the whole.
+struct BlockGrid {
+  int factor;      // px of a block in x and in y
+  ivec2 origin;    // blocks from the display window's corner to the first one of the data window
+  ivec2 overhang;  // px of that one outside of the data window
+  ivec2 size;      // blocks
+};
+BlockGrid block_grid(const FrameInputs& frame, const EstimatorSettings& settings);
+
 /// `depth_use`: Use::download where the host reads the depth. `prefix`: before the names of its buffers, where there is another G-buffer already.
 GBuffer prepare(gpu::Recorder& gpu, const FrameInputs& frame, gpu::Use depth_use = gpu::Use::device, const std::string& prefix = "");
+/// What the chain leaves of a frame without surfaces: counts, TileCounts, a plane of 1, and one of each radius.
+struct OpenSky {
+  gpu::Buffer *counts, *tiles, *ao, *scales;
+};
+OpenSky open_sky(gpu::Recorder& gpu, const FrameInputs& frame, const EstimatorSettings& settings);
 /// Puts normals where prepare found none.
 void reconstruct(gpu::Recorder& gpu, const GBuffer& gbuffer);
 /// The G-buffer of the settings' resolution: its pixels are the blocks of whole pixels of the display window.
@@ -79,8 +95,8 @@ Bounds bounds(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& fra
 /// Puts the bounds of the groups.
 void coarsen(gpu::Recorder& gpu, const GBuffer& gbuffer, const Bounds& bounds);
 /// For settings.radius. What an estimate would be that is not made, it writes into a plane of `out`.
-TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings, const Bounds& bounds,
-                  const Estimate& out, uint plane, const std::string& prefix = "");
+TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const BlockGrid& grid, const EstimatorSettings& settings,
+                  const Bounds& bounds, const Estimate& out, uint plane, const std::string& prefix = "");
 /// Of how many pixels in a row one has an estimate. Where the settings leave it open: 4 for the estimator that this was measured with, gtao, at full
 /// resolution, with so few slices that the denoiser must share them among neighbours anyway; else 1.
 int stride_of(const EstimatorSettings& settings);

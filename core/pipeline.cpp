@@ -31,7 +31,7 @@ class Pipeline {
     try {
       while (const auto place = begin()) {
         FrameReport report;
-        lanes_.with([&](gpu::Recorder& gpu) { report = run_frame(gpu, run_, frames_[*place]); });
+        lanes_.with([&](Lane& lane) { report = run_frame(lane, run_, frames_[*place]); });
         finish(*place, std::move(report));
       }
     } catch (...) {
@@ -84,23 +84,23 @@ int Lanes::validation_messages() const {
   return messages;
 }
 
-std::unique_ptr<gpu::Recorder> Lanes::take() {
+std::unique_ptr<Lane> Lanes::take() {
   const std::lock_guard lock(mutex_);
   if (!free_.empty()) {
-    auto recorder = std::move(free_.back());
+    auto lane = std::move(free_.back());
     free_.pop_back();
-    return recorder;
+    return lane;
   }
   if (made_ > 0 && device().info().type == gpu::DeviceType::cpu) devices_.push_back(std::make_unique<gpu::Device>(options_));
   made_++;
-  return std::make_unique<gpu::Recorder>(*devices_.back());
+  return std::make_unique<Lane>(*devices_.back());
 }
 
-void Lanes::with(const std::function<void(gpu::Recorder&)>& function) {
-  auto recorder = take();
-  function(*recorder);
+void Lanes::with(const std::function<void(Lane&)>& function) {
+  auto lane = take();
+  function(*lane);
   const std::lock_guard lock(mutex_);
-  free_.push_back(std::move(recorder));
+  free_.push_back(std::move(lane));
 }
 
 void run_pipeline(Lanes& lanes, const RunContext& run, std::span<const int> frames, const std::function<bool(FrameReport&&)>& next) {

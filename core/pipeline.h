@@ -23,18 +23,18 @@ class Lanes {
   int count() const { return count_; }
   int validation_messages() const;
 
-  /// Runs the function with a recorder that nobody else uses. Not more than count() at once.
-  void with(const std::function<void(gpu::Recorder&)>& function);
+  /// Runs the function with a lane that nobody else uses. Not more than count() at once.
+  void with(const std::function<void(Lane&)>& function);
 
  private:
-  std::unique_ptr<gpu::Recorder> take();
+  std::unique_ptr<Lane> take();
 
   gpu::DeviceOptions options_;
   int count_;
   std::mutex mutex_;
   std::vector<std::unique_ptr<gpu::Device>> devices_;
-  std::vector<std::unique_ptr<gpu::Recorder>> free_;
-  std::size_t made_ = 0;  // recorders
+  std::vector<std::unique_ptr<Lane>> free_;
+  std::size_t made_ = 0;  // lanes
 };
 
 /// Runs the frames on the lanes, in any order, and hands on their reports in theirs. After `next` has answered false no frame is begun.

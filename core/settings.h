@@ -23,6 +23,7 @@ enum class RangeCheck { none, ratio, smoothstep };   // how Crytek's hits fade w
 enum class ThicknessKind { automatic, infinite, constant };
 enum class Resolution { full = 1, half = 2, quarter = 4 };  // pixels of the frame a pixel of the estimate, in x and in y
 enum class Denoise { none, bilateral, box };
+enum class Noise { fixed, animated };  // whether frames share one pattern of sample noise
 enum class AoChannels { mono, rgb };
 enum class OutputType { half_float, single_float };
 enum class Missing { error, skip };  // what a frame without its input is
@@ -117,6 +118,7 @@ struct EstimatorSettings {
   std::optional<double> fade_start, fade_end;  // scene units of planar depth, both or none, 0 <= start < end: the AO fades to 1 from one to the other
   double roughness = 0.5;            // of the surface, for specular occlusion, 0 to 1; perceptual, half way by default, as engines' own default materials
   std::uint32_t seed = 0;            // shifts the noise pattern
+  Noise noise = Noise::fixed;        // fixed: what stands still does not flicker, and may be used again; animated: for a mean over frames, which takes its noise away
   bool no_skip = false;              // estimate sky too, and what is proved to be open; the result is the same
 };
 

@@ -1,13 +1,14 @@
 // Tiles by what an estimator has to do for them: nothing for sky, nothing where nothing can block, else the directions and steps at which something may.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// In: bounds of the tiles and of groups of them. Out: a list of the tiles that are left, and the visibility of the others' receivers, which is 1.
+// In: bounds of the tiles and of groups of them. Out: a list of the tiles that are left, and the visibility of the others' receivers, which is 1, or what it was.
 // The proof. Let a receiver p of a tile have the normal N and -N.P <= c. A surface point Q with depth z and N.Q = z m, m affine in the pixel, stands h = N.Q - N.P
 // <= c + z m above p's tangent plane, so h / z <= c / z + m. Nothing blocks that rises by no more than `least` + z `rise` a pixel aside (clearance.glsl), that
 // is, where (c - least) / z + m <= rise. With 1 / z below a plane of the other tile's bounds the left side is affine, and largest at a corner of it. Receivers
 // whose normals are turned by d against N see d |Q - P| more at most. (Orthographic: -z for 1 / z, and no division.) What is farther than the radius from all
 // receivers does not block either, where the estimator says so: by the distance of the boxes in space that hold the surfaces of both tiles.
 // A group of tiles is searched tile by tile only where its own bounds do not settle it.
+// Where another frame's estimates still lie and nothing within reach is other than it was, they stay.
 // Constants below 1 and pads leave room for rounding.
 #version 450
 #extension GL_GOOGLE_include_directive : require
@@ -21,10 +22,11 @@
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 layout(constant_id = kClassifyStrideId) const int kStride = 1;
 layout(constant_id = kClassifyModeId) const uint kMode = kClassifySkips;
-const bool kSkips = (kMode & kClassifySkips) != 0u, kProves = (kMode & kClassifyProves) != 0u;
+const bool kSkips = (kMode & kClassifySkips) != 0u, kProves = (kMode & kClassifyProves) != 0u, kReuses = (kMode & kClassifyReuses) != 0u;
 layout(scalar, push_constant) uniform Push { ClassifyParams params; };
 layout(scalar, binding = kClassifyBounds) readonly buffer Bounds { TileBounds bounds[]; };
 layout(scalar, binding = kClassifyGroups) readonly buffer Groups { GroupBounds groups[]; };
+layout(scalar, binding = kClassifyChanges) readonly buffer Changes { uint changes[]; };
 layout(scalar, binding = kClassifyDepth) readonly buffer Depth { float depth[]; };
 layout(scalar, binding = kClassifyNormal) readonly buffer Normal { uint normal[]; };
 layout(scalar, binding = kClassifyList) writeonly buffer List { ListedTile list[]; };
@@ -43,6 +45,7 @@ const int kFarGroup = 32;
 /// Receivers are taken together in blocks of so many tiles in x and y where all lie on one plane. A row of invocations has a block, and shares what it finds.
 const int kBlock = 2;
 shared uint found[kGroupY], beside[kGroupY], surfaces[kGroupY], place[kGroupY];
+shared uint nearest[kGroupY], farthest[kGroupY];  // bits of depths: of positive floats, in their order
 shared uint unsettled[kGroupY * kGroupWords];  // bits of groups
 shared uint first[kGroupY * kSectorsOfTurn], last[kGroupY * kSectorsOfTurn];  // steps, of the sectors that are found or not
 const uint kAllTiles = (1u << (kBlock * kBlock)) - 1u;
@@ -71,6 +74,41 @@ float distance_sq(Box a, Box b) {
 
 /// Nearness as depth.
 float depth_of(View view, float nearness) { return view.orthographic != 0 ? -nearness : 1.0 / nearness; }
+
+/// From pixels' centres to the samples of receivers up to this depth: one lies up to half a pixel beside its slice, and is moved into it.
+float reach_of_samples(View view, float far) {
+  const float pixel = max(abs(view.tangent_per_pixel.x), abs(view.tangent_per_pixel.y));
+  return params.radius + 2.0 * pixel * (view.orthographic != 0 ? 1.0 : far + params.radius);
+}
+
+struct Rect {
+  vec2 least, most;  // px
+};
+
+/// The part of the image in which a sphere about anything in a box is seen: all of it where one may hold the eye.
+Rect image_of_reach(View view, Box box, float reach) {
+  const bool perspective = view.orthographic == 0;
+  const float near = box.least.z - reach, far = box.most.z + reach;
+  if (perspective && !(near > 0.01 * box.least.z)) return Rect(vec2(0), vec2(view.size - 1));
+  const vec2 least = box.least.xy - reach, most = box.most.xy + reach;
+  const vec2 a = perspective ? min(least / near, least / far) : least, b = perspective ? max(most / near, most / far) : most;
+  const vec2 p = view.center + a / view.tangent_per_pixel, q = view.center + b / view.tangent_per_pixel;
+  return Rect(clamp(min(p, q) - 1.0, vec2(0), vec2(view.size - 1)), clamp(max(p, q) + 1.0, vec2(0), vec2(view.size - 1)));
+}
+
+/// Pixels of the frame beyond the reach whose depth may decide a normal that was reconstructed, or which surface a pixel of a smaller image shows.
+const int kChangeMargin = 8;
+
+uint changes_at(ivec2 corner, ivec2 blocks) { return changes[corner.y * (blocks.x + 1) + corner.x]; }
+
+/// Whether all that the estimates of a block of tiles are made from is as it was in the frame before.
+bool is_as_before(View view, ivec2 tile, float near, float far) {
+  const Rect rect = image_of_reach(view, box_of(view, tile, kBlock, near, far), reach_of_samples(view, far));
+  const ivec2 most = params.frame_size - 1, blocks = (params.frame_size + kChangeBlock - 1) / kChangeBlock;
+  const ivec2 from = clamp(ivec2(rect.least) * params.factor - params.overhang - kChangeMargin, ivec2(0), most) / kChangeBlock;
+  const ivec2 to = clamp(ivec2(rect.most + 1.0) * params.factor - params.overhang + kChangeMargin, ivec2(0), most) / kChangeBlock + 1;
+  return changes_at(to, blocks) + changes_at(from, blocks) == changes_at(ivec2(from.x, to.y), blocks) + changes_at(ivec2(to.x, from.y), blocks);
+}
 
 /// Of the receivers of a block, as of those of a tile.
 struct Shared {
@@ -162,9 +200,7 @@ Receivers receivers_of(View view, ivec2 tile, Shared own) {
   const vec3 n = unpack_normal(own.normal);
   const float near = depth_of(view, own.nearest), far = depth_of(view, own.farthest);
   const vec2 widest = max(abs(tangent_of(view, vec2(0))), abs(tangent_of(view, vec2(view.size))));
-  const float longest_ray = perspective ? sqrt(1.0 + dot(widest, widest)) : 1.0;
-  // A sample lies up to half a pixel beside its slice, and is moved into it.
-  const float pixel = max(abs(view.tangent_per_pixel.x), abs(view.tangent_per_pixel.y)), reach = params.radius + 2.0 * pixel * (perspective ? far + params.radius : 1.0);
+  const float longest_ray = perspective ? sqrt(1.0 + dot(widest, widest)) : 1.0, reach = reach_of_samples(view, far);
   Receivers r;
   r.tile = tile;
   r.box = box_of(view, tile, kBlock, near, far);
@@ -182,20 +218,10 @@ Receivers receivers_of(View view, ivec2 tile, Shared own) {
   r.turned = own.turned * (perspective ? (ranged ? 0.0 : longest_ray) : reach);
   r.turned_by_nearness = own.turned * (perspective ? (ranged ? reach : longest_ray * far) : 0.0);
 
-  // The part of the image in which the sphere about any receiver is seen: all of it where one holds the eye.
-  const ivec2 last_group = groups_of_tiles(view.size) - 1;
-  ivec2 to = last_group;
-  r.from = ivec2(0);
-  const float nearest = near - reach, farthest = far + reach;
-  if (!perspective || nearest > 0.01 * near) {
-    const vec2 least_at = r.box.least.xy - reach, most_at = r.box.most.xy + reach;
-    const vec2 a = perspective ? min(least_at / nearest, least_at / farthest) : least_at, b = perspective ? max(most_at / nearest, most_at / farthest) : most_at;
-    const vec2 p = view.center + a / view.tangent_per_pixel, q = view.center + b / view.tangent_per_pixel;
-    const float side = float(kTile * kTileGroup);
-    r.from = ivec2(clamp(floor((min(p, q) - 1.0) / side), vec2(0), vec2(last_group)));
-    to = ivec2(clamp(floor((max(p, q) + 1.0) / side), vec2(0), vec2(last_group)));
-  }
-  r.extent = to - r.from + 1;
+  const Rect rect = image_of_reach(view, r.box, reach);
+  const float side = float(kTile * kTileGroup);
+  r.from = ivec2(rect.least / side);
+  r.extent = ivec2(rect.most / side) - r.from + 1;
   // Orthographic, nothing bounds how much higher above another normal's plane a far place may be.
   if (own.normal == kNoNormal || r.extent.x * r.extent.y > kMostGroups || (!perspective && !ranged && own.turned > 0.0)) r.extent = ivec2(0);
   return r;
@@ -293,28 +319,35 @@ void main() {
   const View view = params.view;
   const ivec2 count = tiles_of(view.size), tile = kBlock * ivec2(gl_WorkGroupID.x * kGroupY + gl_LocalInvocationID.y, gl_WorkGroupID.y);
   const uint row = gl_LocalInvocationID.y;
-  // A surface in any of the tiles, as far as it must be known.
-  if (gl_LocalInvocationID.x == 0u) surfaces[row] = kSkips ? 0u : kAllTiles;
+  if (gl_LocalInvocationID.x == 0u) surfaces[row] = kSkips ? 0u : kAllTiles, nearest[row] = floatBitsToUint(kSkyDepth), farthest[row] = 0u;
   barrier();
-  for (int i = 0; i < kTile * kBlock * kBlock && surfaces[row] != kAllTiles; i++) {
+  // A surface in any of the tiles, as far as it must be known.
+  for (int i = 0; i < kTile * kBlock * kBlock && (kReuses || surfaces[row] != kAllTiles); i++) {
     const int part = i % (kBlock * kBlock);
     const ivec2 at = tile_of_block(tile, part) * kTile + ivec2(gl_LocalInvocationID.x, i / (kBlock * kBlock));
-    if (depth[index_of(view, min(at, view.size - 1))] < kSkyDepth) atomicOr(surfaces[row], 1u << uint(part));
+    const float z = depth[index_of(view, min(at, view.size - 1))];
+    if (z >= kSkyDepth) continue;
+    atomicOr(surfaces[row], 1u << uint(part));
+    if (kReuses) atomicMin(nearest[row], floatBitsToUint(z)), atomicMax(farthest[row], floatBitsToUint(z));
   }
+  barrier();
+  const bool is_kept = kReuses && surfaces[row] != 0u ? is_as_before(view, tile, uintBitsToFloat(nearest[row]), uintBitsToFloat(farthest[row])) : false;
   Shared own = Shared(1.0, 1.0, kNoNormal, 0.0, 0.0, 0.0);
-  if (kProves && tile.x < count.x) own = shared_by(tile, count);
+  if (kProves && tile.x < count.x && !is_kept) own = shared_by(tile, count);
   find_sectors(view, receivers_of(view, tile, own));
   if (tile == ivec2(0)) counts.groups.x = kListedRow, counts.groups.z = 1u;
   const bool is_whole = beside[row] == kEverySector;
   const uint sectors = is_whole ? kEverySector : found[row];
   for (int i = 0; i < kBlock * kBlock; i++) {
     const ivec2 part = tile_of_block(tile, i);
-    const bool is_inside = all(lessThan(part, count)), is_sky = (surfaces[row] >> uint(i) & 1u) == 0u, is_listed = is_inside && !is_sky && sectors != 0u;
-    if (gl_LocalInvocationID.x == 0u && is_inside) sectors_of_tile[part.y * count.x + part.x] = is_sky ? 0u : sectors;
+    const bool is_inside = all(lessThan(part, count)), is_sky = (surfaces[row] >> uint(i) & 1u) == 0u, keeps = is_inside && !is_sky && is_kept;
+    const bool is_listed = is_inside && !is_sky && !is_kept && sectors != 0u;
+    if (gl_LocalInvocationID.x == 0u && is_inside) sectors_of_tile[part.y * count.x + part.x] = is_sky || is_kept ? 0u : sectors;
+    if (gl_LocalInvocationID.x == 0u && keeps) atomicAdd(counts.kept, 1u);
     if (gl_LocalInvocationID.x == 0u && is_listed) place[row] = atomicAdd(counts.listed, 1u);
     barrier();
     if (is_listed) list_tile(place[row], part, is_whole);
-    if (is_inside && !is_listed) write_open(view, part, is_sky);
+    if (is_inside && !is_listed && !keeps) write_open(view, part, is_sky);
     barrier();
   }
 }

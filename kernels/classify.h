@@ -15,6 +15,8 @@ ALCOVE_CONSTANT uint kClassifyBent = 6;    // out: planes x, y, z as estimators 
 ALCOVE_CONSTANT uint kClassifySectors = 7;  // out: uint a tile, a bit for every sector of directions in which something may block; 0: not listed
 ALCOVE_CONSTANT uint kClassifyGroups = 8;   // in: GroupBounds a group of tiles, from coarsen
 
+ALCOVE_CONSTANT uint kClassifyChanges = 9;  // in: uint a corner of blocks, (columns + 1) x (rows + 1): the changed blocks above and left of it
+
 ALCOVE_CONSTANT uint kClassifyStrideId = 0;  // specialization: one pixel of so many in a row is a receiver, 1, 2 or 4: see stride.glsl
 ALCOVE_CONSTANT uint kClassifyModeId = 1;    // specialization: bits of kClassify*
 
@@ -22,6 +24,9 @@ ALCOVE_CONSTANT uint kClassifySkips = 1;     // else every tile is listed
 ALCOVE_CONSTANT uint kClassifyProves = 8;    // with kClassifySkips: reads the bounds; else only sky is left out
 ALCOVE_CONSTANT uint kClassifyRanged = 2;    // nothing beyond the radius blocks
 ALCOVE_CONSTANT uint kClassifyWithBent = 4;
+ALCOVE_CONSTANT uint kClassifyReuses = 16;   // with kClassifySkips: reads the changes, and leaves as they are tiles within whose reach nothing has changed
+
+ALCOVE_CONSTANT int kChangeBlock = 32;       // px of the frame a side of the blocks whose changes are known
 
 struct ClassifyParams {
   View view;
@@ -29,6 +34,9 @@ struct ClassifyParams {
   float radius;          // scene units: the farthest at which anything blocks
   vec3 depth_precision;  // how far a depth z may be from the surface's: x + y z + z z^2, scene units
   uint plane;            // of the AO
+  ivec2 frame_size;      // px; the frame is the image, or `factor` times as large
+  ivec2 overhang;        // px of the first pixel of the image that are outside of the frame
+  int factor;
 };
 ALCOVE_PARAMS(ClassifyParams)
 

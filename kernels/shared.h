@@ -88,6 +88,7 @@ struct TileCounts {
   uint listed;
   uint sky;
   uint open;          // proved to be
+  uint kept;          // as the frame before has them
 };
 
 /// What the kernels count over a frame.

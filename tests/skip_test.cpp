@@ -5,12 +5,11 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
-#include <numbers>
-#include <random>
 
 #include "core/chain.h"
 #include "tests/device.h"
 #include "tests/difference.h"
+#include "tests/random_scenes.h"
 #include "tests/scenes.h"
 #include "tests/single_pass.h"
 
@@ -63,8 +62,6 @@ std::uint32_t expect_same(const HostFrame& frame, const EstimatorSettings& setti
   return skipped.tiles.open;
 }
 
-constexpr Estimator kEstimators[] = {Estimator::gtao, Estimator::bitmask, Estimator::hbao, Estimator::crytek};
-
 TEST(Skip, a_floor_is_open_but_where_something_stands_on_it) {
   const Scene scene{{parallelogram({-20, -20, 0}, {40, 0, 0}, {0, 40, 0}), Sphere{.center = {0, 0, 0.2}, .radius = 0.2}}};
   const Rendering floor = render(scene, Shot::perspective({0, -3, 2}, {0, 0, 0}, 50, 160, 120));
@@ -115,6 +112,36 @@ TEST(Skip, sky_is_left_out_whatever_the_samples_cost) {
   for (std::size_t i = 0; i < frame.data.pixels(); i++) ASSERT_EQ(sky.values[i], 1.0f);
 }
 
+TEST(Skip, a_frame_of_sky_needs_no_kernel) {
+  HostFrame frame = furnished_room(70, 50).frame;
+  EstimatorSettings settings = plain_settings();
+  settings.radius = 0.3;
+  settings.further_radii = {0.1};
+  settings.power = 1.4;
+  settings.denoise = Denoise::bilateral;
+  for (const auto resolution : {Resolution::full, Resolution::quarter}) {
+    settings.resolution = resolution;
+    for (const float sky : {0.0f, 1e9f, std::numeric_limits<float>::infinity()}) {
+      std::ranges::fill(frame.depth, sky);
+      const HostResult skipped = compute_ao(recorder(), frame, settings);
+      EXPECT_TRUE(recorder().passes().empty());
+      settings.no_skip = true;
+      const HostResult whole = compute_ao(recorder(), frame, settings);
+      settings.no_skip = false;
+      EXPECT_FALSE(recorder().passes().empty());
+      EXPECT_TRUE(same_bits(skipped.ao, whole.ao));
+      EXPECT_EQ(skipped.sky_pixels, whole.sky_pixels);
+    }
+    for (const float other : {std::numeric_limits<float>::quiet_NaN(), -1.0f, 5.0f}) {
+      frame.depth[1234] = other;
+      const HostResult result = compute_ao(recorder(), frame, settings);
+      EXPECT_FALSE(recorder().passes().empty()) << other;
+      EXPECT_EQ(result.sky_pixels, other > 0 ? 3499u : 3500u);
+      EXPECT_EQ(result.repaired_depth, other > 0 ? 0u : 1u);
+    }
+  }
+}
+
 TEST(Skip, any_bits_as_input) {
   for (unsigned seed = 0; seed < 60; seed++) {
     const int width = 1 + int(seed * 7 % 90), height = 1 + int(seed * 13 % 50);
@@ -122,49 +149,6 @@ TEST(Skip, any_bits_as_input) {
     for (const Estimator estimator : kEstimators) expect_same(frame, proving(estimator, 0.5), "seed " + std::to_string(seed));
   }
 }
-
-/// A scene of a few flat and round things, seen from anywhere, also from within a corner.
-class RandomScenes {
- public:
-  explicit RandomScenes(unsigned seed) : random_(seed) {}
-
-  HostFrame next() {
-    Scene scene;
-    scene.primitives.push_back(Plane{{0, 0, 0}, {0, 0, 1}});
-    if (number(0, 1) < 0.5) scene.primitives.push_back(Plane{{0, number(1, 5), 0}, unit({number(-1, 1), -1, number(-0.3, 0.3)})});
-    if (number(0, 1) < 0.3) scene.primitives.push_back(Plane{{number(-3, -1), 0, 0}, {1, 0, 0}});
-    const int things = int(number(0, 6));
-    for (int i = 0; i < things; i++) {
-      const Vec3 at{number(-3, 3), number(-2, 4), number(0, 1)};
-      if (number(0, 1) < 0.5) scene.primitives.push_back(Sphere{.center = at, .radius = number(0.02, 0.5)});
-      else scene.primitives.push_back(parallelogram(at, vector(0.6), vector(0.6)));
-    }
-    const Vec3 eye{number(-0.8, 0.8), number(-4, 0.5), std::exp(number(-4, 1.5))}, target{number(-1, 1), number(0, 3), number(-0.5, 0.5)};
-    const int width = int(number(8, 97)), height = int(number(8, 65));
-    Shot shot = number(0, 1) < 0.8 ? Shot::perspective(eye, target, number(5, 150), width, height) : Shot::orthographic(eye, target, number(0.5, 8), width, height);
-    if (number(0, 1) < 0.3) shot.camera.cx += number(-1, 1) * width, shot.camera.fy *= number(0.4, 2.5);
-    HostFrame frame = render(scene, shot).frame;
-    const double kind = number(0, 1);
-    if (kind < 0.15) {
-      frame.depth_is_half = true;
-      for (float& z : frame.depth) z = std::ldexp(std::round(std::ldexp(z, 10 - std::ilogb(z))), std::ilogb(z) - 10);
-    } else if (kind < 0.3) {
-      for (float& n : frame.normal) n = std::round(n * 2048) / 2048;
-    } else if (kind < 0.4) {
-      frame.normal.clear();
-    }
-    return frame;
-  }
-  double radius() { return std::exp(number(-5, 1.5)); }
-  Estimator estimator() { return kEstimators[int(number(0, 4)) & 3]; }
-  ThicknessKind thickness() { return ThicknessKind(int(number(0, 3)) % 3); }
-
- private:
-  double number(double least, double most) { return std::uniform_real_distribution(least, most)(random_); }
-  Vec3 vector(double size) { return {number(-size, size), number(-size, size), number(-size, size)}; }
-
-  std::mt19937 random_;
-};
 
 // ALCOVE_TEST_SEED: other scenes.
 TEST(Skip, thousands_of_random_scenes) {

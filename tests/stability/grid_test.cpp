@@ -88,7 +88,7 @@ TEST(Grid, estimators_write_their_own_plane_and_all_of_it) {
         gpu::Buffer& planes = gpu.buffer("three planes", 3 * pixels * sizeof(float), gpu::Use::download);
         gpu.clear(planes);
         Estimate out{&planes};
-        if (!searches_exactly(settings)) out.listed = classify(gpu, gbuffer, inputs, settings, bounds(gpu, gbuffer, inputs, settings), out, 1);
+        if (!searches_exactly(settings)) out.listed = classify(gpu, gbuffer, inputs, block_grid(inputs, settings), settings, bounds(gpu, gbuffer, inputs, settings), out, 1);
         if (searches_exactly(settings)) {
           for (int direction = 0; direction < settings.slices; direction++) exact(gpu, gbuffer, profile(gpu, gbuffer, inputs, settings, direction), inputs, settings, out, 1);
         } else {
