@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 
+#include <atomic>
 #include <csignal>
 
 #include "cli/commands.h"
@@ -12,7 +13,7 @@
 namespace alcove {
 namespace {
 
-volatile std::sig_atomic_t caught_signal = 0;
+std::atomic<int> caught_signal = 0;  // read by every thread
 
 /// The first signal ends the run in order; a second one of its kind ends the process.
 void catch_signals() {

@@ -16,8 +16,12 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr double kMost = 1e30;  // and 1 / kMost: what is beyond them is none of a camera, and no float once it is divided by another
+// What kernels keep as floats, and square, stays finite and above 0: far beyond any lens.
+constexpr double kLeastScale = 1e-18, kMostScale = 1e18;  // fx and fy
+constexpr double kMostCenter = 1e9;                       // px: cx and cy, to either side
 constexpr int kDeepest = 64;  // lists and objects within each other: to copy and to quote them recurses
+
+bool is_scale(double pixels) { return pixels >= kLeastScale && pixels <= kMostScale; }
 
 /// A camera file being read: every complaint names the file and the field.
 struct CameraFile {
@@ -36,14 +40,25 @@ struct CameraFile {
   double number(const char* field) const {
     const Json* value = find(field);
     if (!value) refuse(field, "is missing");
-    if (!value->is_number() || !(std::abs(value->get<double>()) <= kMost)) refuse(field, fmt::format("must be a number of at most {}, not {}", kMost, value->dump()));
+    if (!value->is_number() || !std::isfinite(value->get<double>())) refuse(field, "must be a finite number, not " + value->dump());
     return value->get<double>();
   }
 
   double positive(const char* field) const {
     const double value = number(field);
     if (value <= 0) refuse(field, fmt::format("must be above 0, not {}", value));
-    if (value < 1 / kMost) refuse(field, fmt::format("must be at least {}, not {}", 1 / kMost, value));
+    return value;
+  }
+
+  double scale(const char* field) const {
+    const double value = positive(field);
+    if (!is_scale(value)) refuse(field, fmt::format("must be from {:g} to {:g}, not {}", kLeastScale, kMostScale, value));
+    return value;
+  }
+
+  double center(const char* field) const {
+    const double value = number(field);
+    if (std::abs(value) > kMostCenter) refuse(field, fmt::format("must be from {:g} to {:g}, not {}", -kMostCenter, kMostCenter, value));
     return value;
   }
 
@@ -199,12 +214,11 @@ Camera centred(const Window& display, double fx, double aspect, bool orthographi
   camera.height = display.height;
   camera.fx = fx;
   camera.fy = fx * aspect;
-  for (const double length : {camera.fx, camera.fy})
-    if (!(length >= 1 / kMost && length <= kMost))
-      fail(ErrorKind::usage, "--fov, --focal with --aperture, or --ortho-width: a pixel would cover 1/{:g} of the unit distance, or of a scene unit", length);
   camera.cx = 0.5 * display.width;
   camera.cy = 0.5 * display.height;
   camera.orthographic = orthographic;
+  if (!is_scale(camera.fx) || !is_scale(camera.fy))
+    fail(ErrorKind::usage, "a camera of {:g} pixels a unit sees nothing: give another --fov, --focal with --aperture, or --ortho-width", fx);
   return camera;
 }
 
@@ -236,10 +250,10 @@ Camera read_camera(const std::string& path, int frame) {
   Camera camera;
   camera.width = file.resolution(0);
   camera.height = file.resolution(1);
-  camera.fx = file.positive("fx");
-  camera.fy = file.positive("fy");
-  camera.cx = file.number("cx");
-  camera.cy = file.number("cy");
+  camera.fx = file.scale("fx");
+  camera.fy = file.scale("fy");
+  camera.cx = file.center("cx");
+  camera.cy = file.center("cy");
   camera.orthographic = is_orthographic(file);
   camera.left_handed = left_handed(file);
   read_view_from_world(file, camera);

@@ -42,12 +42,12 @@ colorspaces:
 )";
 
 OCIO::ConstConfigRcPtr open_config(const std::string& path) {
-  const char* variable = std::getenv("OCIO");
-  if (path.empty() && (!variable || !*variable)) {
+  const char* variable = path.empty() ? std::getenv("OCIO") : nullptr;
+  const std::string file = variable ? variable : path;
+  if (file.empty()) {
     std::istringstream text(kBuiltinConfig);
     return OCIO::Config::CreateFromStream(text);
   }
-  const std::string file = path.empty() ? variable : path;
   require_readable(file, "OpenColorIO configuration", path.empty() ? "the OCIO variable" : "--ocio");
   return OCIO::Config::CreateFromFile(file.c_str());
 }

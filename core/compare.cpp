@@ -43,7 +43,7 @@ std::vector<int> frames_of(const CompareSettings& settings) {
   if (!result)
     fail(ErrorKind::usage, "{}: it has no place for a frame number, such as %04d or ####; the other files or --frames ask for a sequence",
          settings.result);
-  const std::vector<int> frames = settings.frames.empty() ? frames_on_disk(*result, "RESULT") : parse_frames(settings.frames);
+  std::vector<int> frames = settings.frames.empty() ? frames_on_disk(*result, "RESULT") : parse_frames(settings.frames);
   for (const std::string* path : {&settings.result, &settings.reference, &settings.reference_b, &settings.mask, &settings.depth, &settings.motion}) {
     const auto pattern = pattern_of(*path);
     std::vector<int> missing;

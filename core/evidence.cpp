@@ -168,8 +168,8 @@ std::vector<DepthScore> score_depth(std::span<const float> raw, const View& view
   std::size_t count = 0;
   const auto look = [&](int x, int y, int dx, int dy) {
     std::array<double, 3> value{}, length{};
-    for (int side = -1; side <= 1; side++) {
-      const std::size_t k = std::size_t(side + 1);
+    for (std::size_t k = 0; k < 3; k++) {
+      const int side = int(k) - 1;
       value[k] = std::abs(raw[index_of(view, x + side * dx, y + side * dy)]);
       length[k] = ray_length(view, x + side * dx, y + side * dy);
       if (!(value[k] > 0 && value[k] < sky)) return;

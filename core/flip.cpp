@@ -159,10 +159,10 @@ Features features_of(int width, int height, const Plane& lightness, double pixel
   const int radius = int(std::ceil(3 * sigma));
   const auto gaussian = gaussian_kernel(sigma, radius);
   std::vector<double> first, second;
-  for (int x = -radius; x <= radius; x++) {
-    const double g = gaussian[std::size_t(x + radius)];
+  for (int x = -radius; const double g : gaussian) {
     first.push_back(-x * g);
     second.push_back((x * x / (sigma * sigma) - 1) * g);
+    x++;
   }
   const auto length = [&](const std::vector<double>& derivative) {
     Plane x = convolve(width, height, lightness, derivative, gaussian);

@@ -64,7 +64,7 @@ class FrameRun {
     if (!reuses) last_.forget();
     report_.read_ms += reading.ms();
     go_on();
-    const FrameOutputs outputs = is_same ? last_.outputs() : run_chain(gpu_, inputs, settings_.estimator, output);
+    FrameOutputs outputs = is_same ? last_.outputs() : run_chain(gpu_, inputs, settings_.estimator, output);
     if (!is_same) {
       gpu_.run();
       add_passes();

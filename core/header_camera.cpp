@@ -244,8 +244,8 @@ std::optional<HeaderCamera> header_camera(const AttributeTexts& attributes, cons
   if (!found) found = by_unreal(a, display, data, pixel_aspect);
   if (!found) found = by_vray(a, display, pixel_aspect);
   if (!found) found = by_standard(a, display, pixel_aspect);
-  const auto fine = [](double x) { return std::isfinite(x) && x > 1e-6 && x < 1e12; };
-  return found && fine(found->camera.fx) && fine(found->camera.fy) ? found : std::nullopt;
+  const auto fine = [](double scale, double center) { return scale > 1e-6 && scale < 1e12 && std::abs(center) < 1e9; };  // of numbers only: NaN is not
+  return found && fine(found->camera.fx, found->camera.cx) && fine(found->camera.fy, found->camera.cy) ? found : std::nullopt;
 }
 
 void require_no_panorama(const AttributeTexts& attributes, const std::string& path) {

@@ -87,7 +87,7 @@ double Surroundings::nearest_in(const Window& window) const {
   float nearest = kSkyDepth;
   for (int y = (window.y - read_.y) / kBlock; y <= (window.y + window.height - 1 - read_.y) / kBlock; y++)
     for (int x = (window.x - read_.x) / kBlock; x <= (window.x + window.width - 1 - read_.x) / kBlock; x++)
-      nearest = std::min(nearest, nearest_[std::size_t(y * columns_ + x)]);
+      nearest = std::min(nearest, nearest_[std::size_t(y) * std::size_t(columns_) + std::size_t(x)]);
   return nearest;
 }
 

@@ -91,7 +91,7 @@ HostFrame room(double fov) {
   return frame;
 }
 
-Trial trial(const std::string& picture, HostFrame frame, double radius) { return {frame, frame, radius, radius, picture}; }
+Trial trial(const std::string& picture, const HostFrame& frame, double radius) { return {frame, frame, radius, radius, picture}; }
 
 Trial at_scale(double scale) {
   Trial made = trial(fmt::format("room {}", kFov), room(kFov), kRadius);

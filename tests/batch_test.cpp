@@ -215,6 +215,9 @@ TEST_F(Batch, the_log_has_an_object_a_line) {
 }
 
 TEST_F(Batch, memory_does_not_grow_with_the_frames) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "the address sanitizer keeps what is freed";
+#endif
   write_frames(1, 200);
   const auto peak = [&](const char* frames) {
     const std::string stats = folder / "stats.json";
@@ -225,9 +228,7 @@ TEST_F(Batch, memory_does_not_grow_with_the_frames) {
 }
 
 TEST_F(Batch, bench_times_a_run_against_its_parts) {
-  Surroundings patient;
-  patient.seconds = 200;
-  const Finished finished = run_program({"bench", ALCOVE_SOURCE_DIR "/examples/bench/suite.toml", "--batch", "2"}, patient);
+  const Finished finished = run_program({"bench", ALCOVE_SOURCE_DIR "/examples/bench/suite.toml", "--batch", "2"});
   EXPECT_EQ(finished.code, 0) << finished;
   const auto lines = lines_of(finished.out);
   ASSERT_GE(lines.size(), 2);

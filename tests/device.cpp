@@ -9,9 +9,12 @@
 namespace alcove::test {
 namespace {
 
+constexpr std::size_t kGuardBytes = 4096;
+
 gpu::DeviceOptions options() {
   gpu::DeviceOptions options;
   if (const char* name = std::getenv("ALCOVE_TEST_DEVICE"); name && *name) options.choice = name;
+  options.guard_bytes = kGuardBytes;
   options.validate = std::getenv("ALCOVE_TEST_VALIDATE") != nullptr;
   return options;
 }

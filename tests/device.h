@@ -7,7 +7,7 @@
 
 namespace alcove::test {
 
-/// The device that ALCOVE_TEST_DEVICE names, else `auto`; with the validation layer where ALCOVE_TEST_VALIDATE is set.
+/// The device that ALCOVE_TEST_DEVICE names, else `auto`; with the validation layer where ALCOVE_TEST_VALIDATE is set. Its buffers are guarded.
 gpu::Device& device();
 /// A recorder on it.
 gpu::Recorder& recorder();

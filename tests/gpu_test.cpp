@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "core/error.h"
 #include "core/host_frame.h"
 #include "kernels/composite.h"
@@ -80,6 +82,33 @@ TEST(Buffer, keeps_its_place_in_the_pool_until_its_size_changes) {
   EXPECT_EQ(gpu.buffer("pooled", 2048, gpu::Use::upload).bytes(), 2048u);
 }
 
+/// Copies 64 values from a buffer of so many to one of so many.
+std::span<const float> copied_64(std::size_t from, std::size_t to) {
+  auto& gpu = test::recorder();
+  auto &source = gpu.buffer("source", from * sizeof(float), gpu::Use::upload), &copy = gpu.buffer("copy", to * sizeof(float), gpu::Use::download);
+  auto& unread = gpu.buffer("unread", 256, gpu::Use::device);
+  std::ranges::fill(source.as<float>(), 0.5f);
+  gpu.upload(source);
+  ShapeParams params{};
+  params.size = {64, 1};
+  params.intensity = params.power = params.planes = 1;
+  gpu.dispatch("shape", params,
+               {{kShapeAo, source}, {kShapeShaped, copy}, {kShapeDepth, unread}, {kShapeMaterial, unread}, {kShapeCounts, unread}}, {64, 1});
+  gpu.download(copy);
+  gpu.run();
+  return copy.as<const float>();
+}
+
+TEST(Guards, who_writes_beside_a_buffer_fails_the_run_by_its_name) {
+  EXPECT_EQ(error_of([] { copied_64(64, 64); }), "");
+  EXPECT_THAT(error_of([] { copied_64(64, 60); }), HasSubstr("beside the buffer \"copy\""));
+}
+
+TEST(Guards, what_is_read_behind_a_buffer_is_no_number) {
+  const auto values = copied_64(60, 64);
+  for (std::size_t i = 0; i < 64; i++) EXPECT_EQ(std::isnan(values[i]), i >= 60) << i;
+}
+
 /// A step: a floor with a block on it, near enough to be dark.
 HostFrame small_frame() {
   HostFrame frame;
@@ -103,6 +132,7 @@ TEST(Staging, gives_the_bits_that_mapped_memory_gives) {
   const auto mapped = compute_ao(test::recorder(), small_frame(), settings);
   gpu::DeviceOptions options = test::device().options();
   options.map_memory = false;
+  options.guard_bytes = 0;
   gpu::Device device(options);
   gpu::Recorder recorder(device);
   const auto staged = compute_ao(recorder, small_frame(), settings);

@@ -28,6 +28,10 @@ class Buffer {
   }
 
   VkBuffer handle() const { return device_side_.buffer; }
+  /// The part of it that kernels get: its bytes, and the guard behind them, so that whoever reads on gets NaN.
+  VkDescriptorBufferInfo bound() const { return {handle(), guard_, bytes_ + guard_}; }
+  /// False when something was written beside its bytes. Always true without guards: see DeviceOptions.
+  bool guards_hold() const;
   /// The staging twin; null where the host maps the buffer itself.
   VkBuffer staging() const { return staging_side_.buffer; }
 
@@ -40,10 +44,10 @@ class Buffer {
   bool allocate(Device& device, VkMemoryPropertyFlags wanted, Allocation& allocation) const;
   void map(Device& device, const Allocation& allocation);
 
-  std::size_t bytes_;
+  std::size_t bytes_, guard_;
   Use use_;
   Allocation device_side_, staging_side_;
-  std::span<std::byte> host_;
+  std::span<std::byte> host_, guarded_;  // guarded_: with the guards; empty without
 };
 
 }  // namespace alcove::gpu

@@ -70,7 +70,8 @@ void Recorder::barrier() {
 
 void Recorder::clear(const Buffer& buffer) {
   begin();
-  vkCmdFillBuffer(commands_, buffer.handle(), 0, VK_WHOLE_SIZE, 0);
+  const VkDescriptorBufferInfo bound = buffer.bound();
+  vkCmdFillBuffer(commands_, bound.buffer, bound.offset, buffer.bytes(), 0);
   barrier();
 }
 
@@ -101,7 +102,7 @@ void Recorder::dispatch_bytes(const std::string& stem, std::span<const std::byte
   infos.reserve(bindings.size());
   for (const auto& binding : bindings) {
     slots.insert(binding.slot);
-    infos.push_back({binding.buffer.handle(), 0, VK_WHOLE_SIZE});
+    infos.push_back(binding.buffer.bound());
     VkWriteDescriptorSet write{};
     write.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
     write.dstBinding = binding.slot;
@@ -119,7 +120,7 @@ void Recorder::dispatch_bytes(const std::string& stem, std::span<const std::byte
   device_.push_descriptors(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.layout(), 0, std::uint32_t(writes.size()), writes.data());
   vkCmdPushConstants(commands_, kernel.layout(), VK_SHADER_STAGE_COMPUTE_BIT, 0, std::uint32_t(params.size()), params.data());
   if (extent.group_count)
-    vkCmdDispatchIndirect(commands_, extent.group_count->handle(), 0);
+    vkCmdDispatchIndirect(commands_, extent.group_count->bound().buffer, extent.group_count->bound().offset);
   else
     vkCmdDispatch(commands_, groups(extent.x, kernel.reflection().group[0]), groups(extent.y, kernel.reflection().group[1]), 1);
   if (device_.has_timestamps()) vkCmdWriteTimestamp(commands_, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, queries_, query + 1);
@@ -144,6 +145,8 @@ void Recorder::run() {
   check(vkResetFences(device_.handle(), 1, &fence), "vkResetFences");
   device_.submit(submit, fence);
   check(vkWaitForFences(device_.handle(), 1, &fence, VK_TRUE, UINT64_MAX), "vkWaitForFences");
+  for (const auto& [name, buffer] : buffers_)
+    if (!buffer.guards_hold()) fail(ErrorKind::device, "something was written beside the buffer \"{}\"", name);
   passes_ = std::move(recorded_);
   if (!device_.has_timestamps() || passes_.empty()) return;
   std::vector<std::uint64_t> ticks(2 * passes_.size());

@@ -1,6 +1,9 @@
 // EXR files: headers, attributes, the camera and the program they tell of, and the pixels of every channel.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/exr.h"
+
+#include <cmath>
+
 #include "core/header_camera.h"
 #include "core/input_rules.h"
 #include "tests/fuzz/fuzz.h"
@@ -36,8 +39,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       file.attributes(int(part));
       const auto texts = file.attribute_texts(int(part));
       fuzz::accepts([&] { require_no_panorama(texts, input.path()); });
-      if (const auto found = header_camera(texts, file.display(), file.parts()[part].data, file.pixel_aspect()))
+      if (const auto found = header_camera(texts, file.display(), file.parts()[part].data, file.pixel_aspect())) {
         fuzz::require(found->camera.fx > 0 && found->camera.fy > 0, "a camera has a field of view");
+        for (const double x : {found->camera.cx, found->camera.cy}) fuzz::require(std::isfinite(float(x)), "a camera has a centre");
+      }
       read_pixels(file, part);
     }
   });

@@ -55,6 +55,22 @@ TEST(Grid, all_axes_at_once) {
   }
 }
 
+// The recorder of all tests has NaN beside every buffer, and in it until it is written: see DeviceOptions::guard_bytes.
+TEST(Grid, what_lies_beside_buffers_and_in_new_ones_changes_no_bit) {
+  gpu::DeviceOptions options = device().options();
+  options.guard_bytes = 0;
+  gpu::Device plain(options);
+  gpu::Recorder unguarded(plain);
+  const auto all = variants();
+  for (const auto& [width, height] : {std::pair{1, 1}, {37, 1}, {3, 5}, {47, 43}})
+    for (const auto& variant : all) {
+      const Case made = test::made({.width = width, .height = height});
+      const EstimatorSettings settings = with_radius(variant.settings, made.radius);
+      const std::vector<float> ao = compute_ao(recorder(), made.frame, settings).ao;
+      EXPECT_TRUE(same_bits(ao, compute_ao(unguarded, made.frame, settings).ao)) << variant.name << " " << width << "x" << height;
+    }
+}
+
 // Each estimator writes the middle one of three planes; the other two, before and behind it, stay at 0.
 TEST(Grid, estimators_write_their_own_plane_and_all_of_it) {
   for (const auto& [width, height] : {std::pair{1, 1}, {1, 37}, {37, 1}, {3, 5}, {47, 43}, {16383, 1}, {1, 16383}})
