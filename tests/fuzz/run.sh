@@ -26,7 +26,7 @@ fuzz() {
   fi
   mkdir -p "$corpus"
   if ! ALCOVE_PRESETS=$PWD/presets "${at_fixed_addresses[@]}" "build-fuzz/tests/fuzz/${target}_fuzz" -seed="$seed" -max_total_time="$seconds" \
-    -max_len=8192 -timeout=20 -rss_limit_mb=3000 -detect_leaks=0 -artifact_prefix="build-fuzz/found/$target-" -print_final_stats=1 "$corpus" "$seeds" >"build-fuzz/$target.log" 2>&1; then
+    -max_len=8192 -timeout=60 -rss_limit_mb=3000 -detect_leaks=0 -artifact_prefix="build-fuzz/found/$target-" -print_final_stats=1 "$corpus" "$seeds" >"build-fuzz/$target.log" 2>&1; then
     tail -n 60 "build-fuzz/$target.log"
     return 1
   fi
