@@ -30,6 +30,7 @@ ExrOutput output_like(const FrameSource& source, const ChannelRef& like, const P
   output.own_attributes = {{"alcove/version", kVersion},
                            {"alcove/options", provenance.options},
                            {"alcove/device", provenance.device},
+                           {"alcove/inputs", provenance.inputs},
                            {"alcove/input", fs::path(source.files[source.depth[0].file].path()).filename().string()}};
   return output;
 }

@@ -27,6 +27,7 @@ FrameInputs load_frame(gpu::Recorder& gpu, FrameSource& source, const Settings& 
 /// What the header of an output says of its making.
 struct Provenance {
   std::string options, device;  // the digest of the settings, and the device's name
+  std::string inputs = {};      // see identity_of_inputs()
 };
 
 /// What was computed over a window, plane by plane: the AO file's channels, then the composite's.

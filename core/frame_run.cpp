@@ -6,6 +6,7 @@
 
 #include "core/batch.h"
 #include "core/error.h"
+#include "core/resume.h"
 #include "core/scale_notes.h"
 #include "core/settle.h"
 
@@ -104,7 +105,7 @@ class FrameRun {
 
   Provenance provenance() const {
     const bool has_own_camera = settings_.input.camera != run_.plan.at(run_.plan.frames().front()).input.camera;
-    return has_own_camera ? Provenance{options_digest(settings_), run_.provenance.device} : run_.provenance;
+    return {has_own_camera ? options_digest(settings_) : run_.provenance.options, run_.provenance.device, identity_of_inputs(settings_)};
   }
 
   void run_whole(FrameSource& source) {

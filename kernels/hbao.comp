@@ -46,18 +46,19 @@ struct Side {
   float least_height;     // of a sample: see clearance.glsl
 };
 
-/// The occlusion in one direction: sin h - sin t, attenuated.
+/// The occlusion in one direction: sin h - sin t, attenuated. `range`: the steps at which something may stand above the tangent plane.
 float occlusion(Side side, ivec2 pixel, vec3 position, float jitter, uint range) {
-  const uint count = range != 0u ? min(kSteps, uint(side.reach)) : 0u;
+  const int steps = int(kSteps), count = range != 0u ? min(steps, int(side.reach)) : 0;
+  const float last_step = float(last_of_range(range)) + 0.5;
   const float weight = length(side.normal);
   // The sine that samples must exceed: of the tangent, raised by the bias, or of the bias alone.
   const vec2 across = vec2(side.normal.y, -side.normal.x) / weight;  // the tangent, as its own cosine and sine
   float horizon = params.from_surface != 0 ? params.bias : across.y * sqrt(1.0 - params.bias * params.bias) + across.x * params.bias;
-  float sum = 0.0;
-  for (uint k = 0u; k < count; k++) {
-    const float x = (float(k) + jitter) / float(kSteps);
+  float sum = 0.0, step_px = 0.0;
+  for (int k = first_sample(range, steps, count, side.reach, jitter, 2.0); k < count && step_px <= last_step; k++) {
+    const float x = (float(k) + jitter) / float(steps);
     // Dense near the receiver, and never two samples in one pixel.
-    const float step_px = count < kSteps ? float(k + 1u) : max(float(k + 1u), x * x * side.reach);
+    step_px = count < steps ? float(k + 1) : max(float(k + 1), x * x * side.reach);
     const ivec2 hit = pixel + ivec2(round(side.direction_px * step_px));
     const float z = depth[index_of(params.view, hit)];
     if (z >= kSkyDepth) continue;

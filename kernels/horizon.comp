@@ -103,7 +103,7 @@ vec3 search(Receiver r, Side side, Reach reach, float jitter, uint range) {
   bool own = true, was_within = true, was_above = true;
   Blocked blocked = Blocked(-1.0, kThickness == kThicknessEndless ? 1.0 : -1.0, 0u);
   Run run = Run(vec2(0), vec2(0), 0.0, -1.0, 1.0);
-  for (int k = first_sample(float(first_of_range(range)), int(kSteps), count, side.reach, jitter); k < count && last_offset <= last_step; k++) {
+  for (int k = first_sample(range, int(kSteps), count, side.reach, jitter, step_exponent(int(kSteps), side.reach)); k < count && last_offset <= last_step; k++) {
     const float offset = step_offset(k, int(kSteps), count, side.reach, jitter), gap = offset - last_offset;
     const vec2 beside = round(side.direction_px * offset);
     const ivec2 hit = r.pixel + ivec2(beside);

@@ -162,19 +162,13 @@ Reach reach_of(View view, float radius, float falloff_start, float thickness, fl
   return Reach(radius, radius * radius, falloff_start, thickness, least * least, least_rise(view), view.tangent_per_pixel.x, view.size.x);
 }
 
+/// Of the distance by the sample's number.
+float step_exponent(int steps, float reach) { return steps > kManySteps ? clamp(log2(max(reach, 1.0)) / log2(float(steps)), 1.0, 2.0) : 2.0; }
+
 /// Steps from the receiver to sample k of `steps`, of which `count` are pixels apart; never two samples in one pixel: short reaches are searched pixel by pixel.
 float step_offset(int k, int steps, int count, float reach, float jitter) {
   const float x = (float(k) + jitter) / float(steps);
-  const float exponent = steps > kManySteps ? clamp(log2(max(reach, 1.0)) / log2(float(steps)), 1.0, 2.0) : 2.0;
-  return count < steps ? float(k + 1) : max(float(k + 1), (steps > kManySteps ? pow(x, exponent) : x * x) * reach);
-}
-
-/// A sample with which a search can begin whose first samples, at offsets of less than `step` - 1/2, are known not to stand above the tangent plane: one of them.
-int first_sample(float step, int steps, int count, float reach, float jitter) {
-  const float far = step - 1.0, exponent = steps > kManySteps ? clamp(log2(max(reach, 1.0)) / log2(float(steps)), 1.0, 2.0) : 2.0;
-  const float share = max(far, 0.0) / reach;
-  const float k = float(steps) * (steps > kManySteps ? pow(share, 1.0 / exponent) : sqrt(share)) - jitter - 0.01;
-  return max(int(floor(count < steps ? far - 1.0 : min(far - 1.0, k))), 0);
+  return count < steps ? float(k + 1) : max(float(k + 1), (steps > kManySteps ? pow(x, step_exponent(steps, reach)) : x * x) * reach);
 }
 
 /// Whether two samples `gap` steps apart are taken for one surface.

@@ -67,6 +67,14 @@ uint first_of_range(uint range) { return range & 0xffffu; }
 uint last_of_range(uint range) { return range >> 16; }
 const uint kWholeRange = 0xffff0000u;
 
+/// The sample with which a search may begin: one of those before the first step of the range, which stand above nothing. The offsets of samples are k + 1, or where there
+/// are as many as wanted, so many pixels or ((k + jitter) / steps)^exponent times the reach, if that is more.
+int first_sample(uint range, int steps, int count, float reach, float jitter, float exponent) {
+  const float before = float(first_of_range(range)) - 1.0, share = max(before, 0.0) / reach;
+  const float k = float(steps) * (exponent == 2.0 ? sqrt(share) : pow(share, 1.0 / exponent)) - jitter - 0.01;
+  return max(int(floor(count < steps ? before - 1.0 : min(before - 1.0, k))), 0);
+}
+
 /// The sectors in which a rectangle of offsets is seen, from all of them where it holds the origin.
 uint sectors_of_offsets(vec2 least, vec2 most) {
   if (all(lessThanEqual(least, vec2(0))) && all(greaterThanEqual(most, vec2(0)))) return kEverySector;

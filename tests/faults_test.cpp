@@ -125,6 +125,21 @@ TEST_F(Faults, resume_redoes_what_is_missing_stale_or_broken) {
   EXPECT_THAT(run({"--resume", "--overwrite", "--radius", "2"}).err, HasSubstr("8 frames done"));
 }
 
+TEST_F(Faults, resume_redoes_what_has_another_input_of_any_age) {
+  write_frames(1, 3);
+  ASSERT_EQ(run().code, 0);
+  const std::string before = read_bytes(output(2));
+  FrameFile other = wall_frame();
+  for (auto& [name, plane] : other.planes)
+    if (name.find("Depth") != std::string::npos)
+      for (float& z : plane) z *= 1.5f;
+  other.write(input(2));
+  fs::last_write_time(input(2), fs::last_write_time(output(2)) - std::chrono::hours(1));
+  EXPECT_THAT(run({"--resume"}).err, HasSubstr("1 frames done, 2 kept"));
+  EXPECT_NE(read_bytes(output(2)), before);
+  EXPECT_THAT(run({"--resume"}).err, HasSubstr("0 frames done, 3 kept"));
+}
+
 TEST_F(Faults, resume_looks_at_every_output) {
   write_frames(1, 2);
   const std::vector<std::string> more{"--preview", out + "/p.%04d.png", "--resume"};
