@@ -47,7 +47,8 @@ vec3 search(Receiver r, Side side, Reach reach, float jitter, float shift, uint 
   bool own = true, last_blocks = true;
   vec2 start = vec2(0), bent_blocked = vec2(0);
   uint bits = 0u;
-  for (int k = 0; k < count; k++) {
+  const float last_step = float(last_of_range(range)) + 0.5;
+  for (int k = first_sample(range, int(kSteps), count, side.reach, jitter, step_exponent(int(kSteps), side.reach)); k < count && last_offset <= last_step; k++) {
     const float offset = step_offset(k, int(kSteps), count, side.reach, jitter);
     const vec2 beside = round(side.direction_px * offset);
     const ivec2 hit = r.pixel + ivec2(beside);
@@ -55,10 +56,11 @@ vec3 search(Receiver r, Side side, Reach reach, float jitter, float shift, uint 
     const vec2 place = place_of(r, side, beside, z, scale);
     const vec3 delta = offset_to(r, beside, z, scale);
     const float cot = place.y / place.x, distance_sq = dot(delta, delta);
-    const bool blocks = is_above(r, reach, place, distance_sq, offset, beside, z, scale) ? distance_sq < reach.radius_sq : false;
+    const bool above = is_above(r, reach, place, distance_sq, offset, beside, z, scale), blocks = above ? distance_sq < reach.radius_sq : false;
     const bool connected = same_surface(r, reach, z, last_z, offset - last_offset);
-    start = connected ? start : place;
-    own = connected ? own : false;
+    // What rises from below the tangent plane is as the receiver's own surface.
+    start = connected && above ? start : place;
+    own = above ? (connected ? own : false) : true;
     if (blocks) {
       const float width = own ? endless : length(place - start) + reach.pixel_size * scale;
       const vec2 back_place = back_of(r, place, reach.thickness > 0.0 ? reach.thickness : width, reach.radius);
