@@ -202,7 +202,7 @@ void add_frame_rows(Table& table, RunOptions& options) {
 void add_estimator_rows(Table& table, RunOptions& options) {
   EstimatorSettings& s = options.settings.estimator;
   table.group("Estimator");
-  table.row("--preset", "NAME|FILE", "", "", "settings from a preset; may repeat, later wins, options win over presets", "", [&options](CLI::App& app) {
+  table.row("--preset", "NAME|FILE", "", "", "settings from a preset; may repeat, later wins, options win over presets", "", [](CLI::App& app) {
     return app.set_config("--preset")->expected(1)->take_all()->transform([](const std::string& name) { return preset_file(name); })->description("");
   });
   table.choice("--estimator", s.estimator, "gtao: horizons; bitmask: what is blocked between front and back of every occluder; hbao: horizons, not cosine weighted; crytek: samples in the hemisphere");
