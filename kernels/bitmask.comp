@@ -7,7 +7,8 @@
 // - The 64 sectors of a slice, 32 a side, have equal measure of the cosine-weighted arc integral, not equal angles: counting bits is integrating.
 // - An interval begins and ends at floor(32 F + u), with one random u a slice, which is unbiased; rounding outwards would block 1.6 % too much.
 // - The back lies along the sample's own eye ray, clipped to the sphere of the radius.
-// - Between two samples of one surface nothing is open.
+// - Between two samples of one surface nothing is open. A sample that is not above the tangent plane says nothing else, so that it may be left out; what rises
+//   from there is as the receiver's own surface.
 // With occluders that are infinitely thick it is what horizon.comp computes. With `thickness` 0 a sample is as thick as its surface is wide up to there.
 #version 450
 #extension GL_GOOGLE_include_directive : require
