@@ -150,7 +150,7 @@ double step_of(std::span<const float> raw) {
 }
 
 DepthPrecision depth_precision(const DepthMap& map, double raw_precision, double step) {
-  constexpr double kRenderers = 0x1p-17;
+  constexpr double kRenderers = 0x1p-16;  // measured: up to 8e-6; with room for what bounds of tiles lose
   // A position's coordinates, each known to a part of itself, and their products are added up.
   const double from_origin = map.form == kDepthPosition ? 2 * map.eye_distance : 0;
   const double slope = std::abs(map.slope), rest = raw_precision * std::max(from_origin, std::abs(map.slope * map.origin - map.base)) + 0.5 * step * slope;

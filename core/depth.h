@@ -47,7 +47,7 @@ constexpr double kFloatPrecision = 0x1p-24, kHalfPrecision = 0x1p-11;
 /// floats as coarse.
 double step_of(std::span<const float> raw);
 
-/// What becomes of raw values that are known to this part of themselves, and rounded to multiples of `step`. Never less than renderers' own arithmetic loses: 2^-17 of the depth, as where
+/// What becomes of raw values that are known to this part of themselves, and rounded to multiples of `step`. Never less than twice what renderers' own arithmetic loses: 2^-16 of the depth, as where
 /// surfaces 1000 units across are seen from a few units (measured: 8e-6).
 DepthPrecision depth_precision(const DepthMap& map, double raw_precision, double step = 0);
 
