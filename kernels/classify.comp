@@ -53,6 +53,7 @@ const uint kAllTiles = (1u << (kBlock * kBlock)) - 1u;
 const uint kLevel = kTilePlanes - 1u;
 const float kFar = 1e30;
 const float kHalfTile = 0.5 * float(kTile - 1);
+const int kGroupSide = kTile * kTileGroup;  // px
 
 ivec2 tile_of_block(ivec2 first, int i) { return first + ivec2(i % kBlock, i / kBlock); }
 
@@ -148,11 +149,17 @@ float harmless_height(Receivers r, int distance_px, float level) {
   return r.rise * aside - 2e-6 * abs(r.nearness * level) - r.turned - r.turned_by_nearness * level;
 }
 
-bool is_settled(Receivers r, ivec2 group, ivec2 groups_in_x) {
-  const int index = group.y * groups_in_x.x + group.x, side = kTile * kTileGroup;
-  const GroupBounds b = groups[index];
-  const float limit = harmless_height(r, distances_px(r, group * side, side).x, b.level), half_side = 0.5 * float(side - 1);
-  const vec2 centre = vec2(group * side) + half_side;
+/// Group i of those within reach, row by row.
+ivec2 group_at(Receivers r, int i) {
+  const int line = int((float(i) + 0.5) * (1.0 / float(r.extent.x)));  // of numbers up to kMostGroups: whole divisions are slow
+  return r.from + ivec2(i - line * r.extent.x, line);
+}
+
+GroupBounds bounds_of(View view, ivec2 group) { return groups[group.y * groups_of_tiles(view.size).x + group.x]; }
+
+bool is_settled(Receivers r, ivec2 group, GroupBounds b) {
+  const float limit = harmless_height(r, distances_px(r, group * kGroupSide, kGroupSide).x, b.level), half_side = 0.5 * float(kGroupSide - 1);
+  const vec2 centre = vec2(group * kGroupSide) + half_side;
   const float above = min(most_above(r, centre, half_side, vec2(0), b.level), most_above(r, centre, half_side, b.gradient, b.plane));
   return b.farthest > b.level ? true : above <= limit;
 }
@@ -223,9 +230,8 @@ Receivers receivers_of(View view, ivec2 tile, Shared own) {
   r.turned_by_nearness = own.turned * (perspective ? (ranged ? reach : longest_ray * far) : 0.0);
 
   const Rect rect = image_of_reach(view, r.box, reach);
-  const float side = float(kTile * kTileGroup);
-  r.from = ivec2(rect.least / side);
-  r.extent = ivec2(rect.most / side) - r.from + 1;
+  r.from = ivec2(rect.least / float(kGroupSide));
+  r.extent = ivec2(rect.most / float(kGroupSide)) - r.from + 1;
   // Orthographic, nothing bounds how much higher above another normal's plane a far place may be.
   if (own.normal == kNoNormal || r.extent.x * r.extent.y > kMostGroups || (!perspective && !ranged && own.turned > 0.0)) r.extent = ivec2(0);
   return r;
@@ -234,18 +240,15 @@ Receivers receivers_of(View view, ivec2 tile, Shared own) {
 /// Searches the first `count` groups within reach, of those that are unsettled and near or far, with all invocations of the row.
 void search_groups(View view, Receivers r, int count, bool is_far) {
   const uint row = gl_LocalInvocationID.y;
-  const int side = kTile * kTileGroup, groups_in_x = groups_of_tiles(view.size).x;
   const ivec2 last_tile = tiles_of(view.size) - 1;
-  const float per_row = 1.0 / float(r.extent.x);  // times a number up to kMostGroups: whole divisions are slow
   for (int word = 0; word * 32 < count; word++)
     for (uint bits = unsettled[row * kGroupWords + uint(word)]; bits != 0u; bits &= bits - 1u) {
-      const int i = word * 32 + findLSB(bits), line = int((float(i) + 0.5) * per_row);
-      const ivec2 group = r.from + ivec2(i - line * r.extent.x, line), offset = (group * kTileGroup - r.tile) * kTile;
-      for (bool is_next = (distances_px(r, group * side, side).x >= kFarGroup) == is_far; is_next; is_next = false) {
+      const ivec2 group = group_at(r, word * 32 + findLSB(bits)), offset = (group * kTileGroup - r.tile) * kTile;
+      for (bool is_next = (distances_px(r, group * kGroupSide, kGroupSide).x >= kFarGroup) == is_far; is_next; is_next = false) {
         // As steps grow with the distance, it does not matter where in a far group something stands, if it stands in no other sector than what is found.
-        const bool is_coarse = is_far ? (sectors_of_offsets(vec2(offset) - float(kBlock * kTile), vec2(offset) + float(side)) & ~found[row]) == 0u : false;
+        const bool is_coarse = is_far ? (sectors_of_offsets(vec2(offset) - float(kBlock * kTile), vec2(offset) + float(kGroupSide)) & ~found[row]) == 0u : false;
         for (bool marks = is_coarse && gl_LocalInvocationID.x == 0u; marks; marks = false)
-          mark(view, r, group * side, side, groups[group.y * groups_in_x + group.x].level, groups[group.y * groups_in_x + group.x].farthest, false);
+          mark(view, r, group * kGroupSide, kGroupSide, bounds_of(view, group).level, bounds_of(view, group).farthest, false);
         for (int k = int(gl_LocalInvocationID.x); k < kTileGroup * kTileGroup && !is_coarse; k += int(kGroupX)) {
           const ivec2 other = group * kTileGroup + ivec2(k % kTileGroup, k / kTileGroup);
           if (all(lessThanEqual(other, last_tile))) search_tile(view, r, other, false);
@@ -257,7 +260,7 @@ void search_groups(View view, Receivers r, int count, bool is_far) {
 /// Finds the sectors and steps at which something may block a receiver of the block, with all invocations of its row. All rows take part, as they wait for each other.
 void find_sectors(View view, Receivers r) {
   const uint row = gl_LocalInvocationID.y, lane = gl_LocalInvocationID.x;
-  const ivec2 count = groups_of_tiles(view.size), last_tile = tiles_of(view.size) - 1;
+  const ivec2 last_tile = tiles_of(view.size) - 1;
   const int searched = r.extent.x * r.extent.y, around = kBlock + 2;
   if (lane == 0u) found[row] = 0u, beside[row] = searched > 0 ? 0u : kEverySector;
   for (uint k = lane; k < kSectorsOfTurn; k += kGroupX) first[row * kSectorsOfTurn + k] = ~0u, last[row * kSectorsOfTurn + k] = 0u;
@@ -270,15 +273,11 @@ void find_sectors(View view, Receivers r) {
   }
   barrier();
   const int left = beside[row] != kEverySector ? searched : 0;
-  const float per_row = 1.0 / float(r.extent.x);  // times a number up to kMostGroups: whole divisions are slow
   for (int i = int(lane); i < left; i += int(kGroupX)) {
-    const int line = int((float(i) + 0.5) * per_row);
-    const ivec2 group = r.from + ivec2(i - line * r.extent.x, line);
-    const bool settled = is_settled(r, group, count);
-    const int side = kTile * kTileGroup;
-    const GroupBounds b = groups[group.y * count.x + group.x];
-    const bool too_far = is_too_far(view, r, group * side, side, b.level, b.farthest);
-    for (bool marks = !settled && too_far; marks; marks = false) mark(view, r, group * side, side, b.level, b.farthest, false);
+    const ivec2 group = group_at(r, i);
+    const GroupBounds b = bounds_of(view, group);
+    const bool settled = is_settled(r, group, b), too_far = is_too_far(view, r, group * kGroupSide, kGroupSide, b.level, b.farthest);
+    for (bool marks = !settled && too_far; marks; marks = false) mark(view, r, group * kGroupSide, kGroupSide, b.level, b.farthest, false);
     if (!settled && !too_far) atomicOr(unsettled[row * kGroupWords + uint(i) / 32u], 1u << (uint(i) & 31u));
   }
   barrier();
