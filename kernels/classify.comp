@@ -312,7 +312,8 @@ void list_tile(uint at, ivec2 tile, bool is_whole) {
   }
   if (gl_LocalInvocationID.x != 0u) return;
   list[at].place = pack_tile(tile);
-  atomicMax(counts.groups.y, rows_of_groups(at + 1u, kStride));
+  const uvec2 groups = dispatch_of_tiles(at + 1u, kStride);
+  atomicMax(counts.groups.x, groups.x), atomicMax(counts.groups.y, groups.y);
 }
 
 /// What estimators write where nothing blocks, by all invocations of a row.
@@ -372,14 +373,14 @@ void main() {
   Shared own = Shared(1.0, 1.0, kNoNormal, 0.0, 0.0, 0.0);
   if (kProves && tile.x < count.x && !is_kept) own = shared_by(tile, count);
   find_sectors(view, receivers_of(view, tile, own));
-  if (tile == ivec2(0)) counts.groups.x = kListedRow, counts.groups.z = 1u;
+  if (tile == ivec2(0)) counts.groups.z = 1u;
   const bool is_whole = beside[row] == kEverySector;
   const uint sectors = is_whole ? kEverySector : risen[row] != 0u ? found[row] : 0u;
   for (int i = 0; i < kBlock * kBlock; i++) {
     const ivec2 part = tile_of_block(tile, i);
     const bool is_inside = all(lessThan(part, count)), is_sky = (surfaces[row] >> uint(i) & 1u) == 0u, keeps = is_inside && !is_sky && is_kept;
     const bool is_listed = is_inside && !is_sky && !is_kept && sectors != 0u;
-    if (gl_LocalInvocationID.x == 0u && is_inside) sectors_of_tile[part.y * count.x + part.x] = is_sky || is_kept ? 0u : sectors;
+    if (gl_LocalInvocationID.x == 0u && is_inside) sectors_of_tile[part.y * count.x + part.x] = is_sky ? kTileOpen : is_kept ? kTileKept : sectors;
     if (gl_LocalInvocationID.x == 0u && keeps) atomicAdd(counts.kept, 1u);
     if (gl_LocalInvocationID.x == 0u && is_listed) place[row] = atomicAdd(counts.listed, 1u);
     barrier();

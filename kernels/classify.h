@@ -12,7 +12,7 @@ ALCOVE_CONSTANT uint kClassifyList = 3;    // out: ListedTile a tile, as many as
 ALCOVE_CONSTANT uint kClassifyCounts = 4;  // in, out: TileCounts, zeros
 ALCOVE_CONSTANT uint kClassifyAo = 5;      // out: float a pixel, 1 at receivers of tiles that are not listed; the plane of the parameters
 ALCOVE_CONSTANT uint kClassifyBent = 6;    // out: planes x, y, z as estimators write them, for the same; only with kClassifyWithBent
-ALCOVE_CONSTANT uint kClassifySectors = 7;  // out: uint a tile, a bit for every sector of directions in which something may block; 0: not listed
+ALCOVE_CONSTANT uint kClassifySectors = 7;  // out: uint a tile: kTileOpen, kTileKept, or a bit for every sector of directions in which something may block
 ALCOVE_CONSTANT uint kClassifyGroups = 8;   // in: GroupBounds a group of tiles, from coarsen
 
 ALCOVE_CONSTANT uint kClassifyChanges = 9;  // in: uint a corner of blocks, (columns + 1) x (rows + 1): the changed blocks above and left of it

@@ -147,7 +147,11 @@ TEST(Skip, any_bits_as_input) {
   for (unsigned seed = 0; seed < 60; seed++) {
     const int width = 1 + int(seed * 7 % 90), height = 1 + int(seed * 13 % 50);
     const HostFrame frame = random_bits(width, height, seed);
-    for (const Estimator estimator : kEstimators) expect_same(frame, proving(estimator, 0.5), "seed " + std::to_string(seed));
+    for (const Estimator estimator : kEstimators) {
+      EstimatorSettings settings = proving(estimator, 0.5);
+      settings.denoise = seed % 2 ? Denoise::bilateral : Denoise::none;
+      expect_same(frame, settings, "seed " + std::to_string(seed));
+    }
   }
 }
 
@@ -201,7 +205,14 @@ TEST(Skip, thousands_of_random_scenes) {
     const HostFrame frame = scenes.next();
     const double radius = scenes.radius();
     const Estimator estimator = scenes.estimator();
-    const auto open = expect_same(frame, proving(estimator, radius, scenes.thickness()),
+    EstimatorSettings settings = proving(estimator, radius, scenes.thickness());
+    if (i % 2) {
+      settings.denoise = i % 4 == 1 ? Denoise::bilateral : Denoise::box;
+      settings.denoise_radius = scenes.whole(1, 8);
+      settings.denoise_depth_sigma = i % 8 == 1 ? 0.1 : 0;
+    }
+    if (i % 16 == 5) settings.steps *= settings.stride = 1 << scenes.whole(1, 2);
+    const auto open = expect_same(frame, settings,
                                   "scene " + std::to_string(i) + ", radius " + std::to_string(radius) + ", estimator " + std::to_string(int(estimator)));
     proved += open;
     some += open > 0;
