@@ -360,19 +360,23 @@ void main() {
   if (gl_LocalInvocationID.x == 0u) surfaces[row] = kSkips ? 0u : kAllTiles, nearest[row] = floatBitsToUint(kSkyDepth), farthest[row] = 0u;
   barrier();
   // A surface in any of the tiles, as far as it must be known.
+  float near = kSkyDepth, far = 0.0;
   for (int i = 0; i < kTile * kBlock * kBlock && (kReuses || surfaces[row] != kAllTiles); i++) {
     const int part = i % (kBlock * kBlock);
     const ivec2 at = tile_of_block(tile, part) * kTile + ivec2(gl_LocalInvocationID.x, i / (kBlock * kBlock));
     const float z = depth[index_of(view, min(at, view.size - 1))];
     if (z >= kSkyDepth) continue;
     atomicOr(surfaces[row], 1u << uint(part));
-    if (kReuses) atomicMin(nearest[row], floatBitsToUint(z)), atomicMax(farthest[row], floatBitsToUint(z));
+    near = min(near, z), far = max(far, z);
   }
+  if (kReuses) atomicMin(nearest[row], floatBitsToUint(near)), atomicMax(farthest[row], floatBitsToUint(far));
   barrier();
   const bool is_kept = kReuses && surfaces[row] != 0u ? is_as_before(view, tile, uintBitsToFloat(nearest[row]), uintBitsToFloat(farthest[row])) : false;
   Shared own = Shared(1.0, 1.0, kNoNormal, 0.0, 0.0, 0.0);
   if (kProves && tile.x < count.x && !is_kept) own = shared_by(tile, count);
-  find_sectors(view, receivers_of(view, tile, own));
+  if (kProves) find_sectors(view, receivers_of(view, tile, own));
+  else if (gl_LocalInvocationID.x == 0u) beside[row] = kEverySector;
+  barrier();
   if (tile == ivec2(0)) counts.groups.z = 1u;
   const bool is_whole = beside[row] == kEverySector;
   const uint sectors = is_whole ? kEverySector : risen[row] != 0u ? found[row] : 0u;
