@@ -47,7 +47,7 @@ const int kFarGroup = 32;
 
 /// Receivers are taken together in blocks of so many tiles in x and y where all lie on one plane. A row of invocations has a block, and shares what it finds.
 const int kBlock = 2;
-shared uint found[kGroupY], beside[kGroupY], risen[kGroupY], surfaces[kGroupY], place[kGroupY];
+shared uint found[kGroupY], beside[kGroupY], risen[kGroupY], surfaces[kGroupY], place[kGroupY * kBlock * kBlock];
 shared uint nearest[kGroupY], farthest[kGroupY];  // bits of depths: of positive floats, in their order
 shared uint unsettled[kGroupY * kGroupWords];  // bits of groups
 shared uint first[kGroupY * kSectorsOfTurn], last[kGroupY * kSectorsOfTurn];  // steps, of the sectors that are found or not
@@ -380,16 +380,22 @@ void main() {
   if (tile == ivec2(0)) counts.groups.z = 1u;
   const bool is_whole = beside[row] == kEverySector;
   const uint sectors = is_whole ? kEverySector : risen[row] != 0u ? found[row] : 0u;
+  const uint first_place = row * uint(kBlock * kBlock);
+  for (int i = int(gl_LocalInvocationID.x); i < kBlock * kBlock; i += int(kGroupX)) {
+    const ivec2 part = tile_of_block(tile, i);
+    if (any(greaterThanEqual(part, count))) continue;
+    const bool is_sky = (surfaces[row] >> uint(i) & 1u) == 0u, keeps = is_kept && !is_sky;
+    const uint word = is_sky ? kTileOpen : is_kept ? kTileKept : sectors;
+    sectors_of_tile[part.y * count.x + part.x] = word;
+    if (keeps) atomicAdd(counts.kept, 1u);
+    if (!keeps && word != kTileOpen) place[first_place + uint(i)] = atomicAdd(counts.listed, 1u);
+  }
+  barrier();
   for (int i = 0; i < kBlock * kBlock; i++) {
     const ivec2 part = tile_of_block(tile, i);
-    const bool is_inside = all(lessThan(part, count)), is_sky = (surfaces[row] >> uint(i) & 1u) == 0u, keeps = is_inside && !is_sky && is_kept;
-    const bool is_listed = is_inside && !is_sky && !is_kept && sectors != 0u;
-    if (gl_LocalInvocationID.x == 0u && is_inside) sectors_of_tile[part.y * count.x + part.x] = is_sky ? kTileOpen : is_kept ? kTileKept : sectors;
-    if (gl_LocalInvocationID.x == 0u && keeps) atomicAdd(counts.kept, 1u);
-    if (gl_LocalInvocationID.x == 0u && is_listed) place[row] = atomicAdd(counts.listed, 1u);
-    barrier();
-    if (is_listed) list_tile(place[row], part, is_whole);
-    if (is_inside && !is_listed && !keeps) write_open(view, part, is_sky);
-    barrier();
+    const bool is_inside = all(lessThan(part, count)), is_sky = (surfaces[row] >> uint(i) & 1u) == 0u;
+    const bool is_open = is_sky || !is_kept && sectors == 0u;
+    if (is_inside && is_open) write_open(view, part, is_sky);
+    if (is_inside && !is_open && !is_kept) list_tile(place[first_place + uint(i)], part, is_whole);
   }
 }
