@@ -47,6 +47,8 @@ std::vector<double> denoise_weights(const EstimatorSettings& settings) {
 
 gpu::Buffer& denoised(gpu::Recorder& gpu, const std::string& prefix, std::size_t bytes) { return gpu.buffer(prefix + "denoised", bytes, gpu::Use::download); }
 
+gpu::Buffer& upsampled(gpu::Recorder& gpu, const std::string& prefix, std::size_t bytes) { return gpu.buffer(prefix + "upsampled", bytes, gpu::Use::download); }
+
 }  // namespace
 
 BlockGrid block_grid(const FrameInputs& frame, const EstimatorSettings& settings) {
@@ -135,22 +137,30 @@ gpu::Buffer& combine(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buff
 FilterRuns dilate(gpu::Recorder& gpu, const GBuffer& gbuffer, const TileList& tiles, const FrameInputs& frame, const EstimatorSettings& settings) {
   // A list costs as much as a twentieth of the filter: it pays where more than sky is left out.
   if (!tiles.sectors || settings.no_skip || !(frame.changes || proves(settings))) return {};
-  const int radius = int(denoise_weights(settings).size()) - 1, stride = stride_of(settings);
-  const gpu::Buffer& result = denoised(gpu, "", plane_bytes(gbuffer.view));
+  const bool denoises = settings.denoise != Denoise::none, upsamples = settings.resolution != Resolution::full;
+  const int radius = denoises ? int(denoise_weights(settings).size()) - 1 : 0, stride = stride_of(settings);
+  if (!denoises && !upsamples) return {};
+  const BlockGrid grid = block_grid(frame, settings);
   const auto [width, height] = std::pair(gbuffer.view.size.x, gbuffer.view.size.y);
   const auto whole = [](int pixels, int each) { return int(groups_of(pixels, uint(each))); };
   const int in_column = whole(height, kDenoiseRun), in_row = whole(width + stride - 1, kDenoiseRun);
   const gpu::Buffer& columns = gpu.buffer("runs along columns", sizeof(uint) * std::size_t(in_column * whole(width, kTile)), gpu::Use::device);
-  const auto list = [&](const std::string& name, int runs, int lines, uint along) {
+  const auto list = [&](const std::string& name, int runs, int lines, uint mode, const gpu::Buffer& result) {
     const RunList out{&gpu.buffer(name, sizeof(uint) * std::size_t(runs * lines), gpu::Use::device), &gpu.buffer(name + " counts", sizeof(RunCounts), gpu::Use::device)};
     gpu.clear(*out.counts);
-    gpu.dispatch("dilate", DilateParams{gbuffer.view.size, runs, lines, in_column},
+    gpu.dispatch("dilate", DilateParams{gbuffer.view.size, runs, lines, in_column, frame.view.size, grid.overhang, grid.factor},
                  {{kDilateTiles, *tiles.sectors}, {kDilateColumns, columns}, {kDilateList, *out.runs}, {kDilateCounts, *out.counts}, {kDilateResult, result}},
-                 {uint(runs), uint(lines)}, {uint(radius), uint(stride), along});
+                 {uint(runs), uint(lines)}, {uint(radius), uint(stride), mode});
     return out;
   };
-  const RunList listed_columns = list("listed columns", in_column, whole(width, kTile), kDilateAlongColumns);
-  return {list("listed rows", in_row, whole(height, kTile), kDilateAlongRows), listed_columns};
+  FilterRuns all;
+  if (denoises) {
+    const gpu::Buffer& result = denoised(gpu, "", plane_bytes(gbuffer.view));
+    all.columns = list("listed columns", in_column, whole(width, kTile), kDilateAlongColumns, result);
+    all.rows = list("listed rows", in_row, whole(height, kTile), kDilateAlongRows, result);
+  }
+  if (upsamples) all.blocks = list("listed blocks", whole(width + 1, kGroupX), whole(height + 1, kGroupY), kDilateUpsample, upsampled(gpu, "", plane_bytes(frame.view)));
+  return all;
 }
 
 gpu::Buffer& denoise(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& ao, const FrameInputs& frame, const EstimatorSettings& settings,
@@ -185,9 +195,10 @@ gpu::Buffer& denoise(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buff
 }
 
 gpu::Buffer& upsample(gpu::Recorder& gpu, const GBuffer& gbuffer, const GBuffer& low, const gpu::Buffer& low_ao, const FrameInputs& frame,
-                      const EstimatorSettings& settings, const std::string& prefix) {
+                      const EstimatorSettings& settings, const std::string& prefix, const FilterRuns& runs) {
   const uint planes = planes_in(low_ao, low.view);
-  gpu::Buffer& ao = gpu.buffer(prefix + "upsampled", planes * plane_bytes(gbuffer.view), gpu::Use::download);
+  gpu::Buffer& ao = upsampled(gpu, prefix, planes * plane_bytes(gbuffer.view));
+  const RunList& listed = runs.blocks;
   const BlockGrid grid = block_grid(frame, settings);
   const UpsampleParams params{gbuffer.view, grid.size, grid.overhang};
   gpu.dispatch("upsample", params,
@@ -196,8 +207,11 @@ gpu::Buffer& upsample(gpu::Recorder& gpu, const GBuffer& gbuffer, const GBuffer&
                 {kUpsampleLowDepth, *low.depth},
                 {kUpsampleLowNormal, *low.normal},
                 {kUpsampleLowAo, low_ao},
-                {kUpsampleAo, ao}},
-               {uint(grid.size.x + 1), uint(grid.size.y + 1)}, {uint(grid.factor), planes});
+                {kUpsampleAo, ao},
+                {kUpsampleList, listed.runs ? *listed.runs : low_ao},
+                {kUpsampleCounts, listed.counts ? *listed.counts : low_ao}},
+               listed.counts ? gpu::Extent(*listed.counts) : gpu::Extent(uint(grid.size.x + 1), uint(grid.size.y + 1)),
+               {uint(grid.factor), planes, listed.runs ? 1u : 0u});
   return ao;
 }
 
