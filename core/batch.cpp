@@ -41,6 +41,15 @@ void check_tolerance(const Settings& settings) {
   if (e.resolution != Resolution::full) fail(ErrorKind::usage, "--tolerance: the error is that of every pixel: give --resolution full");
 }
 
+void check_skipping(const Settings& settings) {
+  const auto& e = settings.estimator;
+  if (e.skip_tolerance == 0) return;
+  if (searches_exactly(e)) fail(ErrorKind::usage, "--skip-tolerance: an exact search leaves out nothing; --search steps does");
+  if (e.estimator != Estimator::gtao && e.estimator != Estimator::bitmask)
+    fail(ErrorKind::usage, "--skip-tolerance: only of --estimator gtao and bitmask, whose AO is weighted by the cosine");
+  if (e.no_skip) fail(ErrorKind::usage, "--skip-tolerance and --no-skip: give only one of them");
+}
+
 /// What an exact search leaves to the others.
 void check_search(const Settings& settings) {
   const auto& e = settings.estimator;
@@ -153,6 +162,7 @@ void check_settings(const Settings& settings) {
   if (!settings.input.depth.empty() && !settings.input.position.empty()) fail(ErrorKind::usage, "--depth and --position are two ways to say the same: give one");
   if (!settings.estimator.radius && needs_ao(settings.output)) fail(ErrorKind::usage, "no radius: say with --radius how far occluders reach, in scene units");
   check_tolerance(settings);
+  check_skipping(settings);
   check_search(settings);
   check_scales(settings);
   if (settings.estimator.estimator != Estimator::crytek && settings.estimator.bias >= 1)
@@ -181,7 +191,7 @@ std::string options_digest(const Settings& settings) {
   add(settings.output.aovs, int(settings.output.ao_channels), int(settings.output.aov_space));
   add(i.material_ao.empty(), i.material_ao_channel, i.albedo.empty(), i.albedo_channels);
   add(int(e.search), e.samples, e.bias, int(e.elevation), int(e.sample_kernel), int(e.range_check));
-  add(int(e.thickness), e.thickness_length, e.tolerance, int(e.resolution), e.stride, int(e.denoise));
+  add(int(e.thickness), e.thickness_length, e.tolerance, e.skip_tolerance, int(e.resolution), e.stride, int(e.denoise));
   add(e.denoise_radius, fmt::format("{}", fmt::join(e.denoise_kernel, ",")), e.denoise_depth_sigma);
   // The camera by what it says; where files lie is not part of it, so that a job has the same digest wherever its folder is mounted.
   add(i.camera.empty() ? std::string() : read_text(i.camera, "camera", "--camera"));

@@ -44,7 +44,8 @@ FrameOutputs run_chain(gpu::Recorder& gpu, const FrameInputs& frame, const Estim
     out.ao = several ? &combine(gpu, work, *ao) : ao;
     stages = {work, out.ao, out.ao, listed.sectors};
     if (settings.denoise != Denoise::none && settings.tolerance == 0) {
-      stages.denoised_ao = out.ao = &denoise(gpu, work, *out.ao, frame, settings);
+      const FilterRuns runs = several ? FilterRuns{} : dilate(gpu, work, listed, frame, settings);
+      stages.denoised_ao = out.ao = &denoise(gpu, work, *out.ao, frame, settings, "", runs);
       if (each) out.scales = &denoise(gpu, work, *out.scales, frame, settings, "scales ");
       if (bent) bent = &denoise(gpu, work, *bent, frame, settings, "bent ");
     }
