@@ -333,7 +333,17 @@ TEST_F(Suites, truths_yardsticks_and_scratch_folders_that_are_none) {
   expect_refused(4, {folder / "none/x", "--json"}, {"bench", "--stability", "--json", folder / "none/x"});
 }
 
-// The module of pictures.
+// Pictures, and the module of them.
+
+TEST_F(Refusals, a_picture_that_is_cut_short_is_an_input_that_cannot_be_read) {
+  const std::string picture = folder / "p.png";
+  ASSERT_EQ(run({"--preview", picture}).code, 0);
+  ASSERT_EQ(run_program({"compare", picture, picture}).code, 0);
+  fs::resize_file(picture, fs::file_size(picture) / 2);
+  const Finished finished = run_program({"compare", picture, picture});
+  EXPECT_EQ(finished.code, 3) << finished;
+  EXPECT_THAT(lines_of(finished.err).back(), AllOf(HasSubstr(picture), HasSubstr("damaged or incomplete"), HasSubstr("RESULT")));  // libpng has said a line of its own
+}
 
 TEST_F(Refusals, a_broken_module_of_pictures_is_named_and_leaves_no_output) {
 #ifdef __SANITIZE_ADDRESS__
