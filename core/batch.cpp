@@ -30,13 +30,6 @@ namespace fs = std::filesystem;
 constexpr std::size_t kMostRadii = 8;
 constexpr int kSpareLanes = 2;  // on a GPU, beyond the threads: frames that wait for it while others are read and written
 
-bool same_file(const std::string& a, const std::string& b) {
-  std::error_code error;
-  if (fs::equivalent(a, b, error)) return true;
-  const fs::path whole_a = fs::weakly_canonical(a, error), whole_b = error ? fs::path() : fs::weakly_canonical(b, error);
-  return error ? a == b : whole_a == whole_b;
-}
-
 /// What an estimate by its error asks for.
 void check_tolerance(const Settings& settings) {
   const auto& e = settings.estimator;
@@ -96,11 +89,10 @@ void check_shading(const Settings& settings) {
 /// No output is an input, or another output.
 void check_files(const Settings& settings) {
   auto outputs = outputs_of(settings.output);
-  if (!settings.output.stats.empty()) outputs.push_back({"--stats", settings.output.stats});
+  const auto reports = reports_of(settings.output);
+  outputs.insert(outputs.end(), reports.begin(), reports.end());
   for (std::size_t i = 0; i < outputs.size(); i++) {
-    for (const auto* input : {&settings.input.input, &settings.input.depth, &settings.input.normal, &settings.input.position, &settings.input.beauty,
-                              &settings.input.camera, &settings.input.material_ao, &settings.input.albedo})
-      if (!input->empty() && same_file(*input, outputs[i].path)) fail(ErrorKind::usage, "{}: {} would overwrite an input", outputs[i].path, outputs[i].option);
+    require_no_input(outputs[i].path, outputs[i].option, input_files(settings.input));
     for (std::size_t j = 0; j < i; j++)
       if (same_file(outputs[j].path, outputs[i].path))
         fail(ErrorKind::usage, "{}: {} and {} name the same file", outputs[i].path, outputs[j].option, outputs[i].option);
@@ -110,12 +102,18 @@ void check_files(const Settings& settings) {
 /// All files that the run will write can be made; what killed runs have left beside them goes.
 void prepare_outputs(const FramePlan& plan, const Settings& settings) {
   std::set<std::string> folders;
+  std::unordered_map<std::string, const char*> options;  // by name
+  const auto prepare = [&](const OutputFile& file) {
+    if (const auto [known, is_new] = options.try_emplace(file.path, file.option); !is_new)
+      fail(ErrorKind::usage, "{}: {} and {} of two frames name the same file", file.path, known->second, file.option);
+    require_writable(file.path, file.option);
+  };
   for (const int frame : plan.frames())
     for (const auto& file : outputs_of(plan.at(frame).output)) {
-      require_writable(file.path, file.option);
+      prepare(file);
       folders.insert(folder_of(file.path));
     }
-  if (!settings.output.stats.empty()) require_writable(settings.output.stats, "--stats");
+  for (const auto& file : reports_of(settings.output)) prepare(file);
   for (const auto& folder : folders) remove_unfinished(folder);
 }
 

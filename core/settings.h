@@ -138,6 +138,7 @@ struct OutputSettings {
   std::string compression = "zip";                // of the AO file: none, rle, zips, zip or piz
   std::string ocio;                               // an OpenColorIO configuration for the preview
   std::string stats;                              // a JSON file
+  std::string log_json;                           // a file of JSON objects, a line each, or - for the standard output: whoever watches the run writes it
 };
 
 /// Where to compute.
