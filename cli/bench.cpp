@@ -9,6 +9,8 @@
 #include "cli/commands.h"
 #include "cli/options.h"
 #include "cli/parsing.h"
+#include "cli/print.h"
+#include "core/batch.h"
 #include "core/error.h"
 #include "core/file.h"
 
@@ -50,14 +52,30 @@ bool parse(const std::vector<std::string>& arguments, BenchArguments& a) {
   return true;
 }
 
-/// The candidates' options go the way that alcove run's go.
-std::vector<BenchCandidate> candidates_of(const Suite& suite) {
+/// The candidate's settings for a frame: its options go the way that alcove run's go.
+Settings settings_of(const SuiteCandidate& candidate, const SuiteFrame& frame, const std::string& suite) {
+  RunOptions options;
+  Settings& settings = options.settings;
+  try {
+    if (!parse_run_options(candidate.arguments, options)) fail(ErrorKind::usage, "it asks for what only alcove run prints");
+    settings.input.input = frame.input;
+    settings.input.camera = frame.camera;
+    Settings checked = settings;
+    checked.output.output = "ao.exr";
+    if (!checked.estimator.radius) checked.estimator.radius = frame.radius;
+    check_settings(checked);
+  } catch (const Error& error) {
+    fail(error.kind(), "{}: candidate {}: {}", suite, candidate.name, error.what());
+  }
+  return settings;
+}
+
+std::vector<BenchCandidate> candidates_of(const Suite& suite, const std::string& path) {
   std::vector<BenchCandidate> candidates;
   for (const auto& candidate : suite.candidates) {
-    RunOptions options;
-    if (!parse_run_options(candidate.arguments, options)) fail(ErrorKind::usage, "candidate {} asks for help", candidate.name);
-    if (std::ranges::find(candidate.arguments, "--radius") == candidate.arguments.end()) options.settings.estimator.radius.reset();  // a preset's: truths have one
-    candidates.push_back({candidate.name, fmt::format("{}", fmt::join(candidate.arguments, " ")), options.settings.estimator});
+    EstimatorSettings estimator = settings_of(candidate, suite.frames.front(), path).estimator;
+    if (std::ranges::find(candidate.arguments, "--radius") == candidate.arguments.end()) estimator.radius.reset();  // a preset's: truths have one
+    candidates.push_back({candidate.name, fmt::format("{}", fmt::join(candidate.arguments, " ")), estimator});
   }
   return candidates;
 }
@@ -65,11 +83,7 @@ std::vector<BenchCandidate> candidates_of(const Suite& suite) {
 /// Runs of the first candidate, on every frame.
 void time_batches(const Suite& suite, const BenchArguments& a) {
   for (const auto& frame : suite.frames) {
-    RunOptions options;
-    if (!parse_run_options(suite.candidates.front().arguments, options)) fail(ErrorKind::usage, "candidate {} asks for help", suite.candidates.front().name);
-    Settings& settings = options.settings;
-    settings.input.input = frame.input;
-    settings.input.camera = frame.camera;
+    Settings settings = settings_of(suite.candidates.front(), frame, a.suite);
     if (!settings.estimator.radius) settings.estimator.radius = frame.radius;
     settings.device.device = a.device.choice;
     settings.device.require_gpu = a.device.require_gpu;
@@ -100,7 +114,7 @@ int report_stability(const BenchArguments& a) {
     if (!path->empty()) require_writable(*path, option);
   gpu::Device device(a.device);
   const StabilityReport report = run_stability(device, [&](const std::string& line) {
-    if (!a.quiet) fmt::print(stderr, "{}\n", line);
+    if (!a.quiet) print_error("{}\n", line);
   });
   if (!a.quiet) fmt::print("{}", stability_text(report));
   write(a.json, stability_json(report));
@@ -121,15 +135,24 @@ int bench_command(const std::vector<std::string>& arguments) {
     time_batches(suite, a);
     return 0;
   }
-  for (const auto& [path, option] : {std::pair(&a.json, "--json"), std::pair(&a.csv, "--csv"), std::pair(&a.report, "--report")})
-    if (!path->empty()) require_writable(*path, option);
+  std::vector<std::string> inputs{a.suite, a.limits};
+  for (const auto& frame : suite.frames) {
+    inputs.insert(inputs.end(), {frame.input, frame.camera});
+    inputs.insert(inputs.end(), frame.truth.begin(), frame.truth.end());
+  }
+  for (const auto& [path, option] : {std::pair(&a.json, "--json"), std::pair(&a.csv, "--csv"), std::pair(&a.report, "--report")}) {
+    if (path->empty()) continue;
+    require_no_input(*path, option, inputs);
+    require_writable(*path, option);
+  }
   const auto limits = a.limits.empty() ? std::vector<Limit>() : read_limits(a.limits);
-  const auto candidates = candidates_of(suite);
+  require_known(limits, suite, a.limits);
+  const auto candidates = candidates_of(suite, a.suite);
 
   gpu::Device device(a.device);
   BenchOptions options;
   options.yardstick = a.yardstick;
-  if (!a.quiet) options.say = [](const std::string& line) { fmt::print(stderr, "{}\n", line); };
+  if (!a.quiet) options.say = [](const std::string& line) { print_error("{}\n", line); };
   const BenchReport report = run_bench(device, suite, candidates, options);
 
   if (!a.quiet) print_table(report);
@@ -138,7 +161,7 @@ int bench_command(const std::vector<std::string>& arguments) {
   if (!a.report.empty()) write(a.report, bench_page(report));
   if (a.limits.empty()) return 0;
   const auto broken = broken_limits(report, limits);
-  for (const auto& sentence : broken) fmt::print(stderr, "alcove: {}\n", sentence);
+  for (const auto& sentence : broken) print_error("alcove: {}\n", sentence);
   return broken.empty() ? 0 : int(ErrorKind::comparison);
 }
 

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 
 #include "cli/commands.h"
@@ -108,7 +109,11 @@ void print_sequence(const CompareReport& report) {
 int compare_command(const std::vector<std::string>& arguments) {
   CompareArguments a;
   if (!parse(arguments, a)) return 0;
-  if (!a.report.empty()) require_writable(a.report, "--report");
+  if (!a.report.empty()) {
+    const CompareSettings& s = a.settings;
+    require_no_input(a.report, "--report", std::array{s.result, s.reference, s.reference_b, s.mask, s.depth, s.motion});
+    require_writable(a.report, "--report");
+  }
   a.settings.pictures = !a.report.empty();
 
   const CompareReport report = compare_pictures(a.settings);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cli/commands.h"
+#include "cli/print.h"
 #include "core/error.h"
 #include "core/text.h"
 #include "core/version.h"
@@ -57,13 +58,15 @@ int dispatch(const std::vector<std::string>& arguments) {
 int main(int argc, char** argv) {
   try {
     const int code = dispatch({argv + 1, argv + argc});
-    if (std::fflush(stdout) != 0) alcove::fail(alcove::ErrorKind::output, "the standard output cannot be written");
+    if (std::fflush(stdout) != 0 || std::ferror(stdout)) alcove::fail(alcove::ErrorKind::output, "the standard output cannot be written");
     return code;
   } catch (const alcove::Error& error) {
-    fmt::print(stderr, "alcove: error: {}\n", alcove::printable(error.what()));
+    alcove::print_error("alcove: error: {}\n", alcove::printable(error.what()));
     return int(error.kind());
   } catch (const std::exception& error) {
-    fmt::print(stderr, "alcove: error: unexpected: {}\n", error.what());
+    const bool is_output = std::ferror(stdout) != 0;  // which fmt tells by an exception of its own
+    alcove::print_error("alcove: error: {}{}\n", is_output ? "the standard output: " : "unexpected: ", alcove::printable(error.what()));
+    if (is_output) return int(alcove::ErrorKind::output);
     return int(alcove::ErrorKind::some_frames_failed);
   }
 }

@@ -249,6 +249,7 @@ void add_estimator_rows(Table& table, RunOptions& options) {
   table.choice("--noise", s.noise, "fixed: every frame has the same pattern of sample noise, so that what stands still does not flicker; animated: one of its own");
   table.number("--seed", s.seed, "", between(0, 4294967295.0), "shifts the sample noise");
   table.flag("--no-skip", s.no_skip, "estimate sky too, and tiles that are proved to be open; slower, the same bits");
+  table.number("--skip-tolerance", s.skip_tolerance, "0 to 0.1", between(0, 0.1), "of gtao and bitmask: also leave out, as open, tiles whose AO is proved to be at least 1 less this, whatever the noise of few samples; 0: the same bits as --no-skip");
 }
 
 void add_output_rows(Table& table, OutputSettings& s) {
@@ -285,7 +286,7 @@ void add_report_rows(Table& table, RunOptions& options) {
   table.text("--stats", options.settings.output.stats, "FILE.json", "times of every pass, counts and totals");
   table.word("--progress", options.progress.kind, {"auto", "bar", "plain", "percent", "openjd", "none"},
              "plain: a line a frame; percent, openjd: on standard output, as farms read it; auto: a bar on a terminal, else plain");
-  table.text("--log-json", options.progress.log_json, "FILE|-", "a JSON object a line for the beginning, every frame and the end");
+  table.text("--log-json", options.settings.output.log_json, "FILE|-", "a JSON object a line for the beginning, every frame and the end");
   table.flag("-v,--verbose", options.progress.verbose, "say more: the time of every pass");
   table.flag("-q,--quiet", options.progress.quiet, "say nothing but errors");
   table.row("--print-config", "", "", "", "print the settings as a preset and stop", "",
@@ -304,7 +305,8 @@ class PresetFormat : public CLI::ConfigTOML {
  public:
   std::vector<CLI::ConfigItem> from_config(std::istream& input) const override {
     std::vector<CLI::ConfigItem> items;
-    auto entries = parse_flat_toml(std::string(std::istreambuf_iterator<char>(input), {}));
+    auto entries = parse_flat_toml(read_rest(input));
+    if (input.bad()) fail(ErrorKind::input, "it cannot be read to its end");
     // The rules of presets/input are known to the program: such a preset is its --source and no more.
     if (std::ranges::any_of(entries, [](const auto& entry) { return entry.key == "detect"; }))
       std::erase_if(entries, [](const auto& entry) { return entry.key != "source"; });
@@ -361,7 +363,7 @@ void require_good_preset(const std::string& preset) {
   try {
     parse_arguments(*app, {"--preset", preset});
   } catch (const Error& error) {
-    fail(ErrorKind::usage, "{} (--preset): {}", preset, error.what());
+    fail(error.kind(), "{} (--preset): {}", preset, error.what());
   }
 }
 

@@ -29,9 +29,12 @@ std::vector<std::string> option_names(const CLI::App& app) {
   std::ranges::replace(text, '\n', ' ');
   const auto names = option_names(app);
   const auto rest = app.remaining();
-  if (dynamic_cast<const CLI::ExtrasError*>(&error) && !rest.empty() && rest.front().rfind("-", 0) == 0)
-    fail(ErrorKind::usage, "there is no option {}{}; see {} --help", rest.front(), suggestion(rest.front(), names), app.get_name());
+  if (dynamic_cast<const CLI::ExtrasError*>(&error) && !rest.empty() && rest.front().rfind("-", 0) == 0) {
+    const std::string option = rest.front().substr(0, rest.front().find('='));
+    fail(ErrorKind::usage, "there is no option {}{}; see {} --help", option, suggestion(option, names), app.get_name());
+  }
   if (dynamic_cast<const CLI::ConfigError*>(&error)) {
+    if (const std::size_t colon = text.find(": "); colon != text.npos) fail(ErrorKind::usage, "{} is an option of the command line only", text.substr(0, colon));
     const std::string key = text.substr(text.find_last_of(' ') + 1);
     fail(ErrorKind::usage, "{} is no option{}", key, suggestion("--" + key, names));
   }

@@ -9,7 +9,8 @@
 #include <cmath>
 #include <cstring>
 
-#include "core/file.h"
+#include "cli/print.h"
+#include "core/error.h"
 #include "core/text.h"
 
 namespace alcove {
@@ -24,34 +25,33 @@ std::string clock_text(double seconds) {
 
 }  // namespace
 
-Progress::Progress(const ProgressOptions& options) : options_(options) {
+Progress::Progress(const ProgressOptions& options, const std::string& log_json) : options_(options), log_path_(log_json) {
   if (options_.kind == "auto") options_.kind = ::isatty(STDERR_FILENO) ? "bar" : "plain";
-  if (options_.log_json.empty()) return;
-  if (options_.log_json == "-") {
-    log_ = stdout;
-    return;
-  }
-  require_writable(options_.log_json, "--log-json");
-  file_.reset(std::fopen(options_.log_json.c_str(), "we"));
-  if (!file_) fail(ErrorKind::output, "{}: cannot be written: {} (--log-json)", options_.log_json, std::strerror(errno));
-  log_ = file_.get();
+}
+
+void Progress::open_log() {
+  if (log_path_.empty()) return;
+  if (log_path_ != "-") file_.reset(std::fopen(log_path_.c_str(), "we"));
+  log_ = log_path_ == "-" ? stdout : file_.get();
+  if (!log_) fail(ErrorKind::output, "{}: cannot be written: {} (--log-json)", log_path_, std::strerror(errno));
 }
 
 void Progress::say(const std::string& line) {
   const bool over_bar = options_.kind == "bar" && is_sequence_ && !options_.quiet;
-  fmt::print(stderr, "{}{}\n", over_bar ? "\r\x1b[K" : "", line);
+  print_error("{}{}\n", over_bar ? "\r\x1b[K" : "", line);
 }
 
 void Progress::log(const std::string& event, const std::string& members) {
   if (!log_) return;
   const double now = std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
-  fmt::print(log_, "{{\"event\":\"{}\",\"time\":{:.3f},{}}}\n", event, now, members);
-  if (std::fflush(log_) != 0) fail(ErrorKind::output, "{}: cannot be written: {} (--log-json)", options_.log_json, std::strerror(errno));
+  const std::string line = fmt::format("{{\"event\":\"{}\",\"time\":{:.3f},{}}}\n", event, now, members);
+  if (std::fputs(line.c_str(), log_) < 0 || std::fflush(log_) != 0) fail(ErrorKind::output, "{}: cannot be written: {} (--log-json)", log_path_, std::strerror(errno));
 }
 
 void Progress::begin(const RunReport& report, int frames) {
   is_sequence_ = report.is_sequence;
   frames_ = frames;
+  open_log();  // now that the run's checks have let it through
   log("begin", fmt::format("\"frames\":{},\"options\":\"{}\"", frames, report.options));
 }
 
@@ -62,7 +62,7 @@ std::string Progress::rate_text() const {
 
 void Progress::show_bar() {
   const int full = kBarWidth * ended_ / std::max(1, frames_);
-  fmt::print(stderr, "\r\x1b[K[{:#<{}}{:.<{}}] {}", "", full, "", kBarWidth - full, rate_text());
+  print_error("\r\x1b[K[{:#<{}}{:.<{}}] {}", "", full, "", kBarWidth - full, rate_text());
   std::fflush(stderr);
 }
 

@@ -13,15 +13,14 @@ namespace alcove {
 
 struct ProgressOptions {
   std::string kind = "auto";  // auto, bar, plain, percent, openjd or none; auto: a bar on a terminal, else plain
-  std::string log_json;       // a file, or - for the standard output
   bool verbose = false, quiet = false;
 };
 
 /// Messages go to the standard error; "Progress: 42%" and "openjd_progress: 42" to the standard output. Every line is whole and flushed.
 class Progress {
  public:
-  /// Fails with ErrorKind::output where the log cannot be made.
-  explicit Progress(const ProgressOptions& options);
+  /// log_json: a file, or - for the standard output; empty: none. Whatever tells fails with ErrorKind::output where it cannot be written.
+  Progress(const ProgressOptions& options, const std::string& log_json);
 
   void begin(const RunReport& report, int frames);
   void frame(const FrameReport& frame);
@@ -31,12 +30,14 @@ class Progress {
   struct CloseFile {
     void operator()(std::FILE* file) const { std::fclose(file); }
   };
+  void open_log();
   void say(const std::string& line);
   void show_bar();
   void log(const std::string& event, const std::string& members);
   std::string rate_text() const;
 
   ProgressOptions options_;
+  const std::string log_path_;
   std::unique_ptr<std::FILE, CloseFile> file_;
   std::FILE* log_ = nullptr;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();

@@ -7,6 +7,7 @@
 
 #include "cli/commands.h"
 #include "cli/options.h"
+#include "cli/print.h"
 #include "core/batch.h"
 #include "core/plan.h"
 
@@ -33,12 +34,12 @@ int run_command(const std::vector<std::string>& arguments) {
     return 0;
   }
   catch_signals();
-  Progress progress(options.progress);
+  Progress progress(options.progress, options.settings.output.log_json);
   const RunReport report = run_frames(options.settings, {[&](const RunReport& begun, int frames) { progress.begin(begun, frames); },
                                                          [&](const FrameReport& frame) { progress.frame(frame); }, [] { return caught_signal != 0; }});
   progress.end(report);
   if (report.stop && !report.is_sequence) throw *report.stop;
-  if (report.stop && report.failed == 0) fmt::print(stderr, "alcove: error: {}\n", report.stop->what());
+  if (report.stop && report.failed == 0) print_error("alcove: error: {}\n", report.stop->what());
   if (report.stop) return int(report.stop->kind());
   if (caught_signal) return 128 + caught_signal;
   return report.failed ? int(ErrorKind::some_frames_failed) : 0;

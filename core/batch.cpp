@@ -30,13 +30,6 @@ namespace fs = std::filesystem;
 constexpr std::size_t kMostRadii = 8;
 constexpr int kSpareLanes = 2;  // on a GPU, beyond the threads: frames that wait for it while others are read and written
 
-bool same_file(const std::string& a, const std::string& b) {
-  std::error_code error;
-  if (fs::equivalent(a, b, error)) return true;
-  const fs::path whole_a = fs::weakly_canonical(a, error), whole_b = error ? fs::path() : fs::weakly_canonical(b, error);
-  return error ? a == b : whole_a == whole_b;
-}
-
 /// What an estimate by its error asks for.
 void check_tolerance(const Settings& settings) {
   const auto& e = settings.estimator;
@@ -46,6 +39,15 @@ void check_tolerance(const Settings& settings) {
   }
   if (e.estimator != Estimator::gtao) fail(ErrorKind::usage, "--tolerance: only of --estimator gtao");
   if (e.resolution != Resolution::full) fail(ErrorKind::usage, "--tolerance: the error is that of every pixel: give --resolution full");
+}
+
+void check_skipping(const Settings& settings) {
+  const auto& e = settings.estimator;
+  if (e.skip_tolerance == 0) return;
+  if (searches_exactly(e)) fail(ErrorKind::usage, "--skip-tolerance: an exact search leaves out nothing; --search steps does");
+  if (e.estimator != Estimator::gtao && e.estimator != Estimator::bitmask)
+    fail(ErrorKind::usage, "--skip-tolerance: only of --estimator gtao and bitmask, whose AO is weighted by the cosine");
+  if (e.no_skip) fail(ErrorKind::usage, "--skip-tolerance and --no-skip: give only one of them");
 }
 
 /// What an exact search leaves to the others.
@@ -87,11 +89,10 @@ void check_shading(const Settings& settings) {
 /// No output is an input, or another output.
 void check_files(const Settings& settings) {
   auto outputs = outputs_of(settings.output);
-  if (!settings.output.stats.empty()) outputs.push_back({"--stats", settings.output.stats});
+  const auto reports = reports_of(settings.output);
+  outputs.insert(outputs.end(), reports.begin(), reports.end());
   for (std::size_t i = 0; i < outputs.size(); i++) {
-    for (const auto* input : {&settings.input.input, &settings.input.depth, &settings.input.normal, &settings.input.position, &settings.input.beauty,
-                              &settings.input.camera, &settings.input.material_ao, &settings.input.albedo})
-      if (!input->empty() && same_file(*input, outputs[i].path)) fail(ErrorKind::usage, "{}: {} would overwrite an input", outputs[i].path, outputs[i].option);
+    require_no_input(outputs[i].path, outputs[i].option, input_files(settings.input));
     for (std::size_t j = 0; j < i; j++)
       if (same_file(outputs[j].path, outputs[i].path))
         fail(ErrorKind::usage, "{}: {} and {} name the same file", outputs[i].path, outputs[j].option, outputs[i].option);
@@ -101,12 +102,18 @@ void check_files(const Settings& settings) {
 /// All files that the run will write can be made; what killed runs have left beside them goes.
 void prepare_outputs(const FramePlan& plan, const Settings& settings) {
   std::set<std::string> folders;
+  std::unordered_map<std::string, const char*> options;  // by name
+  const auto prepare = [&](const OutputFile& file) {
+    if (const auto [known, is_new] = options.try_emplace(file.path, file.option); !is_new)
+      fail(ErrorKind::usage, "{}: {} and {} of two frames name the same file", file.path, known->second, file.option);
+    require_writable(file.path, file.option);
+  };
   for (const int frame : plan.frames())
     for (const auto& file : outputs_of(plan.at(frame).output)) {
-      require_writable(file.path, file.option);
+      prepare(file);
       folders.insert(folder_of(file.path));
     }
-  if (!settings.output.stats.empty()) require_writable(settings.output.stats, "--stats");
+  for (const auto& file : reports_of(settings.output)) prepare(file);
   for (const auto& folder : folders) remove_unfinished(folder);
 }
 
@@ -155,6 +162,7 @@ void check_settings(const Settings& settings) {
   if (!settings.input.depth.empty() && !settings.input.position.empty()) fail(ErrorKind::usage, "--depth and --position are two ways to say the same: give one");
   if (!settings.estimator.radius && needs_ao(settings.output)) fail(ErrorKind::usage, "no radius: say with --radius how far occluders reach, in scene units");
   check_tolerance(settings);
+  check_skipping(settings);
   check_search(settings);
   check_scales(settings);
   if (settings.estimator.estimator != Estimator::crytek && settings.estimator.bias >= 1)
@@ -183,7 +191,7 @@ std::string options_digest(const Settings& settings) {
   add(settings.output.aovs, int(settings.output.ao_channels), int(settings.output.aov_space));
   add(i.material_ao.empty(), i.material_ao_channel, i.albedo.empty(), i.albedo_channels);
   add(int(e.search), e.samples, e.bias, int(e.elevation), int(e.sample_kernel), int(e.range_check));
-  add(int(e.thickness), e.thickness_length, e.tolerance, int(e.resolution), e.stride, int(e.denoise));
+  add(int(e.thickness), e.thickness_length, e.tolerance, e.skip_tolerance, int(e.resolution), e.stride, int(e.denoise));
   add(e.denoise_radius, fmt::format("{}", fmt::join(e.denoise_kernel, ",")), e.denoise_depth_sigma);
   // The camera by what it says; where files lie is not part of it, so that a job has the same digest wherever its folder is mounted.
   add(i.camera.empty() ? std::string() : read_text(i.camera, "camera", "--camera"));

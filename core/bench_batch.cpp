@@ -5,6 +5,9 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <thread>
 
@@ -21,17 +24,19 @@ namespace fs = std::filesystem;
 /// A folder that goes with all that is in it.
 class ScratchFolder {
  public:
-  ScratchFolder() : path_(fs::temp_directory_path() / fmt::format("alcove-bench-{}", ::getpid())) { fs::create_directory(path_); }
+  ScratchFolder() : path_((fs::path(std::getenv("TMPDIR") ? std::getenv("TMPDIR") : "/tmp") / "alcove-bench-XXXXXX").string()) {
+    if (!::mkdtemp(path_.data())) fail(ErrorKind::output, "{}: no folder for the frames can be made: {}; the variable TMPDIR names another place", path_, std::strerror(errno));
+  }
   ~ScratchFolder() {
     std::error_code ignored;
     fs::remove_all(path_, ignored);
   }
   ScratchFolder(const ScratchFolder&) = delete;
-  std::string file(int frame) const { return (path_ / fmt::format("ao.{:04}.exr", frame)).string(); }
-  std::string pattern() const { return (path_ / "ao.%04d.exr").string(); }
+  std::string file(int frame) const { return fmt::format("{}/ao.{:04}.exr", path_, frame); }
+  std::string pattern() const { return path_ + "/ao.%04d.exr"; }
 
  private:
-  fs::path path_;
+  std::string path_;
 };
 
 /// Seconds for the function to be called with 0 to count - 1, by so many threads.

@@ -43,13 +43,14 @@ FrameOutputs run_chain(gpu::Recorder& gpu, const FrameInputs& frame, const Estim
     if (each) out.scales = ao;
     out.ao = several ? &combine(gpu, work, *ao) : ao;
     stages = {work, out.ao, out.ao, listed.sectors};
+    const FilterRuns runs = several ? FilterRuns{} : dilate(gpu, work, listed, frame, settings);
     if (settings.denoise != Denoise::none && settings.tolerance == 0) {
-      stages.denoised_ao = out.ao = &denoise(gpu, work, *out.ao, frame, settings);
+      stages.denoised_ao = out.ao = &denoise(gpu, work, *out.ao, frame, settings, "", runs);
       if (each) out.scales = &denoise(gpu, work, *out.scales, frame, settings, "scales ");
       if (bent) bent = &denoise(gpu, work, *bent, frame, settings, "bent ");
     }
     if (reduced) {
-      out.ao = &upsample(gpu, gbuffer, work, *out.ao, frame, settings);
+      out.ao = &upsample(gpu, gbuffer, work, *out.ao, frame, settings, "", runs);
       if (each) out.scales = &upsample(gpu, gbuffer, work, *out.scales, frame, settings, "scales ");
       if (bent) bent = &upsample(gpu, gbuffer, work, *bent, frame, settings, "bent ");
     }

@@ -12,6 +12,7 @@
 #include "core/file.h"
 #include "core/host_frame.h"
 #include "core/image_io.h"
+#include "core/plan.h"
 
 namespace alcove {
 namespace {
@@ -33,6 +34,7 @@ std::array<double, 3> percentiles(std::span<const float> depth) {
 
 void write_contact_sheet(const Settings& settings, int number) {
   const std::string& path = settings.output.preview;
+  require_no_input(path, "--preview", input_files(settings.input));
   require_writable(path, "--preview");
   const HostFrame frame = read_host_frame(settings.input, number);
   gpu::Device device({settings.device.device, settings.device.require_gpu, settings.device.validate, !settings.device.no_pipeline_cache});

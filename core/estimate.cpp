@@ -227,9 +227,9 @@ TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs&
   gpu.clear(*list.counts);
   const bool ranged = settings.estimator == Estimator::gtao || settings.estimator == Estimator::bitmask;
   const uint mode = (settings.no_skip ? 0 : kClassifySkips) | (proves(settings) ? kClassifyProves : 0) | (ranged ? kClassifyRanged : 0) |
-                    (out.bent ? kClassifyWithBent : 0) | (frame.changes && !settings.no_skip ? kClassifyReuses : 0);
-  const ClassifyParams params{gbuffer.view, frame.noise_origin, float(settings.radius.value() * settings.falloff_end), to_vec3(frame.depth_precision.at), plane,
-                              frame.view.size, grid.overhang, grid.factor};
+                    (out.bent ? kClassifyWithBent : 0) | (frame.changes && !settings.no_skip ? kClassifyReuses : 0) | (settings.skip_tolerance > 0 ? kClassifyTolerates : 0);
+  const ClassifyParams params{gbuffer.view, frame.noise_origin, float(settings.radius.value() * settings.falloff_end), float(std::sqrt(settings.skip_tolerance)),
+                              to_vec3(frame.depth_precision.at), plane, frame.view.size, grid.overhang, grid.factor};
   gpu.dispatch("classify", params,
                {{kClassifyBounds, bounds.tiles ? *bounds.tiles : *list.tiles},
                 {kClassifyGroups, bounds.groups ? *bounds.groups : *list.tiles},

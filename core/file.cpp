@@ -7,11 +7,11 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <random>
 
 #include "core/error.h"
@@ -41,16 +41,25 @@ bool is_removed(int descriptor) {
 void require_readable(const std::string& path, const char* what, const char* option) {
   std::error_code error;
   const auto status = fs::status(path, error);
+  if (status.type() == fs::file_type::none) fail(ErrorKind::input, "{}: {} file cannot be reached: {} ({})", path, what, error.message(), option);
   if (!fs::exists(status)) fail(ErrorKind::input, "{}: {} file not found ({})", path, what, option);
   if (fs::is_directory(status)) fail(ErrorKind::input, "{}: is a folder; {} takes a {} file", path, option, what);
-  if (::access(path.c_str(), R_OK) != 0) fail(ErrorKind::input, "{}: {} file cannot be read: {}", path, what, std::strerror(errno));
+  if (::access(path.c_str(), R_OK) != 0) fail(ErrorKind::input, "{}: {} file cannot be read: {} ({})", path, what, std::strerror(errno), option);
+}
+
+std::string read_rest(std::istream& stream) {
+  // Block by block: an iterator over the stream would throw the library's own exception where the disk fails.
+  std::string text;
+  std::array<char, 1 << 14> block;
+  while (stream.read(block.data(), block.size()) || stream.gcount() > 0) text.append(block.data(), std::size_t(stream.gcount()));
+  return text;
 }
 
 std::string read_text(const std::string& path, const char* what, const char* option) {
   require_readable(path, what, option);
   std::ifstream file(path, std::ios::binary);
-  std::string text((std::istreambuf_iterator<char>(file)), {});
-  if (file.bad()) fail(ErrorKind::input, "{}: {} file cannot be read", path, what);
+  std::string text = read_rest(file);
+  if (file.bad()) fail(ErrorKind::input, "{}: {} file cannot be read to its end ({})", path, what, option);
   return text;
 }
 
@@ -58,11 +67,24 @@ void require_writable(const std::string& path, const char* option) {
   std::error_code error;
   const fs::path folder = folder_of(path);
   const auto folder_status = fs::status(folder, error);
+  if (folder_status.type() == fs::file_type::none) fail(ErrorKind::output, "{}: its folder cannot be reached: {} ({})", path, error.message(), option);
   if (!fs::exists(folder_status)) fail(ErrorKind::output, "{}: its folder {} does not exist ({})", path, folder.string(), option);
   if (!fs::is_directory(folder_status)) fail(ErrorKind::output, "{}: {} is not a folder ({})", path, folder.string(), option);
   if (::access(folder.c_str(), W_OK | X_OK) != 0) fail(ErrorKind::output, "{}: its folder cannot be written: {} ({})", path, std::strerror(errno), option);
   const auto status = fs::status(path, error);
   if (fs::exists(status) && !fs::is_regular_file(status)) fail(ErrorKind::output, "{}: is no regular file; {} names the file to write", path, option);
+}
+
+bool same_file(const std::string& a, const std::string& b) {
+  std::error_code error;
+  if (fs::equivalent(a, b, error)) return true;
+  const fs::path whole_a = fs::weakly_canonical(a, error), whole_b = error ? fs::path() : fs::weakly_canonical(b, error);
+  return error ? a == b : whole_a == whole_b;
+}
+
+void require_no_input(const std::string& path, const char* option, std::span<const std::string> inputs) {
+  for (const auto& input : inputs)
+    if (!input.empty() && same_file(input, path)) fail(ErrorKind::usage, "{}: {} would overwrite an input", path, option);
 }
 
 NewFile::NewFile(const std::string& path) : target_(path) {

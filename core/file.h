@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <iosfwd>
 #include <span>
 #include <string>
 
@@ -11,12 +12,21 @@ namespace alcove {
 /// Fails with ErrorKind::input unless `path` is a readable file; `what` and `option` are for the message ("camera", "--camera").
 void require_readable(const std::string& path, const char* what, const char* option);
 
+/// What is left in a stream; where it cannot be read to its end, the stream is bad() then.
+std::string read_rest(std::istream& stream);
+
 /// The whole file. Fails with ErrorKind::input.
 std::string read_text(const std::string& path, const char* what, const char* option);
 
 /// Fails with ErrorKind::output unless a file can be made at `path`: its folder exists and is writable, and nothing but
 /// a regular file stands there. Called before any work, so that a long job does not fail at its end.
 void require_writable(const std::string& path, const char* option);
+
+/// Whether two names are, or would be, one file, whatever dots and links are in them.
+bool same_file(const std::string& a, const std::string& b);
+
+/// Fails with ErrorKind::usage where `path`, which is to be written, is one of the inputs. Empty names are none.
+void require_no_input(const std::string& path, const char* option, std::span<const std::string> inputs);
 
 /// A file in the making. It has a hidden name beside `path` that does not end as images do, so that folder watchers pass it by, and a lock for as long as
 /// its process lives. Unless it is committed nothing of it is left, and what was at `path` is as it was. All failures are ErrorKind::output.

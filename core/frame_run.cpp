@@ -3,6 +3,7 @@
 #include "core/frame_run.h"
 
 #include <algorithm>
+#include <string_view>
 
 #include "core/batch.h"
 #include "core/error.h"
@@ -193,6 +194,7 @@ class FrameRun {
 
 FrameReport run_frame(Lane& lane, const RunContext& run, int frame) {
   FrameReport report;
+  lane.gpu.abandon();  // what a frame that failed has left
   try {
     FrameRun(lane, run, frame, report).run();
     report.state = FrameState::done;
@@ -204,7 +206,10 @@ FrameReport run_frame(Lane& lane, const RunContext& run, int frame) {
     report.device_lost = true;
   } catch (const Error& error) {
     report.state = FrameState::failed;
-    report.error = error;
+    // Devices and numbers know of no file.
+    const bool may_be_without = error.kind() == ErrorKind::device || error.kind() == ErrorKind::usage;
+    const bool is_named = !may_be_without || std::string_view(error.what()).find(report.input) != std::string_view::npos;
+    report.error = is_named ? error : Error(error.kind(), fmt::format("{}: {}", report.input, error.what()));
   } catch (const std::exception& error) {
     report.state = FrameState::failed;
     report.error = Error(ErrorKind::some_frames_failed, fmt::format("{}: {}", report.input, error.what()));

@@ -33,7 +33,7 @@ Image read_image(const std::string& path, const char* option) {
   if (spec.deep || spec.depth > 1) fail(ErrorKind::input, "{}: a deep or volume picture, which has no single value a pixel ({})", path, option);
   std::vector<float> interleaved(spec.image_pixels() * std::size_t(spec.nchannels));
   if (!reader->read_image(0, 0, 0, spec.nchannels, OIIO::TypeFloat, interleaved.data()))
-    fail(ErrorKind::input, "{}: the pixels cannot be read, the file is damaged or incomplete: {}", path, one_line(reader->geterror()));
+    fail(ErrorKind::input, "{}: the pixels cannot be read, the file is damaged or incomplete ({}): {}", path, option, one_line(reader->geterror()));
   Image image({spec.x, spec.y, spec.width, spec.height}, {spec.full_x, spec.full_y, spec.full_width, spec.full_height}, spec.channelnames);
   for (std::size_t c = 0; c < image.names.size(); c++)
     for (std::size_t i = 0; i < image.data.pixels(); i++) image.plane(c)[i] = interleaved[i * image.names.size() + c];

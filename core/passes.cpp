@@ -11,6 +11,7 @@
 #include "kernels/composite.h"
 #include "kernels/debug.h"
 #include "kernels/denoise.h"
+#include "kernels/dilate.h"
 #include "kernels/directions.h"
 #include "kernels/downsample.h"
 #include "kernels/multi_bounce.h"
@@ -43,6 +44,10 @@ std::vector<double> denoise_weights(const EstimatorSettings& settings) {
   for (int i = 0; i <= settings.denoise_radius; i++) weights.push_back(std::exp(-0.5 * i * i / (sigma * sigma)));
   return weights;
 }
+
+gpu::Buffer& denoised(gpu::Recorder& gpu, const std::string& prefix, std::size_t bytes) { return gpu.buffer(prefix + "denoised", bytes, gpu::Use::download); }
+
+gpu::Buffer& upsampled(gpu::Recorder& gpu, const std::string& prefix, std::size_t bytes) { return gpu.buffer(prefix + "upsampled", bytes, gpu::Use::download); }
 
 }  // namespace
 
@@ -129,8 +134,37 @@ gpu::Buffer& combine(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buff
   return ao;
 }
 
+FilterRuns dilate(gpu::Recorder& gpu, const GBuffer& gbuffer, const TileList& tiles, const FrameInputs& frame, const EstimatorSettings& settings) {
+  // A list costs as much as a twentieth of the filter: it pays where more than sky is left out.
+  if (!tiles.sectors || settings.no_skip || !(frame.changes || proves(settings))) return {};
+  const bool denoises = settings.denoise != Denoise::none, upsamples = settings.resolution != Resolution::full;
+  const int radius = denoises ? int(denoise_weights(settings).size()) - 1 : 0, stride = stride_of(settings);
+  if (!denoises && !upsamples) return {};
+  const BlockGrid grid = block_grid(frame, settings);
+  const auto [width, height] = std::pair(gbuffer.view.size.x, gbuffer.view.size.y);
+  const auto whole = [](int pixels, int each) { return int(groups_of(pixels, uint(each))); };
+  const int in_column = whole(height, kDenoiseRun), in_row = whole(width + stride - 1, kDenoiseRun);
+  const gpu::Buffer& columns = gpu.buffer("runs along columns", sizeof(uint) * std::size_t(in_column * whole(width, kTile)), gpu::Use::device);
+  const auto list = [&](const std::string& name, int runs, int lines, uint mode, const gpu::Buffer& result) {
+    const RunList out{&gpu.buffer(name, sizeof(uint) * std::size_t(runs * lines), gpu::Use::device), &gpu.buffer(name + " counts", sizeof(RunCounts), gpu::Use::device)};
+    gpu.clear(*out.counts);
+    gpu.dispatch("dilate", DilateParams{gbuffer.view.size, runs, lines, in_column, frame.view.size, grid.overhang, grid.factor},
+                 {{kDilateTiles, *tiles.sectors}, {kDilateColumns, columns}, {kDilateList, *out.runs}, {kDilateCounts, *out.counts}, {kDilateResult, result}},
+                 {uint(runs), uint(lines)}, {uint(radius), uint(stride), mode});
+    return out;
+  };
+  FilterRuns all;
+  if (denoises) {
+    const gpu::Buffer& result = denoised(gpu, "", plane_bytes(gbuffer.view));
+    all.columns = list("listed columns", in_column, whole(width, kTile), kDilateAlongColumns, result);
+    all.rows = list("listed rows", in_row, whole(height, kTile), kDilateAlongRows, result);
+  }
+  if (upsamples) all.blocks = list("listed blocks", whole(width + 1, kGroupX), whole(height + 1, kGroupY), kDilateUpsample, upsampled(gpu, "", plane_bytes(frame.view)));
+  return all;
+}
+
 gpu::Buffer& denoise(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& ao, const FrameInputs& frame, const EstimatorSettings& settings,
-                     const std::string& prefix) {
+                     const std::string& prefix, const FilterRuns& runs) {
   const std::vector<double> weights = denoise_weights(settings);
   const auto radius = uint(weights.size() - 1);
   DenoiseParams params{};
@@ -140,25 +174,31 @@ gpu::Buffer& denoise(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buff
   const double sum = 2 * std::accumulate(weights.begin(), weights.end(), 0.0) - weights.front();
   std::ranges::transform(weights, params.weight, [&](double weight) { return float(weight / sum); });
   gpu::Buffer& rows = gpu.buffer(prefix + "denoised rows", ao.bytes(), gpu::Use::device);
-  gpu::Buffer& result = gpu.buffer(prefix + "denoised", ao.bytes(), gpu::Use::download);
-  const auto along = [&](ivec2 axis, const gpu::Buffer& from, const gpu::Buffer& to, uint sparse, uint stride) {
+  gpu::Buffer& result = denoised(gpu, prefix, ao.bytes());
+  const auto along = [&](ivec2 axis, const RunList& listed, const gpu::Buffer& from, const gpu::Buffer& to, uint sparse, uint stride) {
     params.axis = axis;
     const uint length = uint(axis.x ? gbuffer.view.size.x : gbuffer.view.size.y), others = uint(axis.x ? gbuffer.view.size.y : gbuffer.view.size.x);
     gpu.dispatch("denoise", params,
-                 {{kDenoiseAo, from}, {kDenoiseDepth, *gbuffer.depth}, {kDenoiseNormal, *gbuffer.normal}, {kDenoiseResult, to}},
-                 {others, (length + stride - 1 + kDenoiseRun - 1) / kDenoiseRun},
-                 {radius, settings.denoise_depth_sigma > 0 ? 1u : 0u, sparse, stride, planes_in(ao, gbuffer.view)});
+                 {{kDenoiseAo, from},
+                  {kDenoiseDepth, *gbuffer.depth},
+                  {kDenoiseNormal, *gbuffer.normal},
+                  {kDenoiseResult, to},
+                  {kDenoiseList, listed.runs ? *listed.runs : from},
+                  {kDenoiseCounts, listed.counts ? *listed.counts : from}},
+                 listed.counts ? gpu::Extent(*listed.counts) : gpu::Extent(others, (length + stride - 1 + kDenoiseRun - 1) / kDenoiseRun),
+                 {radius, settings.denoise_depth_sigma > 0 ? 1u : 0u, sparse | (listed.runs ? kDenoiseListed : 0), stride, planes_in(ao, gbuffer.view)});
   };
   const bool dense = stride_of(settings) == 1;
-  along({1, 0}, ao, rows, dense ? kDenoiseDense : kDenoiseSparseRows, uint(stride_of(settings)));
-  along({0, 1}, rows, result, dense ? kDenoiseDense : kDenoiseSparseColumns, 1);
+  along({1, 0}, runs.rows, ao, rows, dense ? kDenoiseDense : kDenoiseSparseRows, uint(stride_of(settings)));
+  along({0, 1}, runs.columns, rows, result, dense ? kDenoiseDense : kDenoiseSparseColumns, 1);
   return result;
 }
 
 gpu::Buffer& upsample(gpu::Recorder& gpu, const GBuffer& gbuffer, const GBuffer& low, const gpu::Buffer& low_ao, const FrameInputs& frame,
-                      const EstimatorSettings& settings, const std::string& prefix) {
+                      const EstimatorSettings& settings, const std::string& prefix, const FilterRuns& runs) {
   const uint planes = planes_in(low_ao, low.view);
-  gpu::Buffer& ao = gpu.buffer(prefix + "upsampled", planes * plane_bytes(gbuffer.view), gpu::Use::download);
+  gpu::Buffer& ao = upsampled(gpu, prefix, planes * plane_bytes(gbuffer.view));
+  const RunList& listed = runs.blocks;
   const BlockGrid grid = block_grid(frame, settings);
   const UpsampleParams params{gbuffer.view, grid.size, grid.overhang};
   gpu.dispatch("upsample", params,
@@ -167,8 +207,11 @@ gpu::Buffer& upsample(gpu::Recorder& gpu, const GBuffer& gbuffer, const GBuffer&
                 {kUpsampleLowDepth, *low.depth},
                 {kUpsampleLowNormal, *low.normal},
                 {kUpsampleLowAo, low_ao},
-                {kUpsampleAo, ao}},
-               {uint(grid.size.x + 1), uint(grid.size.y + 1)}, {uint(grid.factor), planes});
+                {kUpsampleAo, ao},
+                {kUpsampleList, listed.runs ? *listed.runs : low_ao},
+                {kUpsampleCounts, listed.counts ? *listed.counts : low_ao}},
+               listed.counts ? gpu::Extent(*listed.counts) : gpu::Extent(uint(grid.size.x + 1), uint(grid.size.y + 1)),
+               {uint(grid.factor), planes, listed.runs ? 1u : 0u});
   return ao;
 }
 

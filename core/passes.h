@@ -126,12 +126,22 @@ void crytek(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame
 gpu::Buffer& confidence(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings);
 /// The mean of the planes.
 gpu::Buffer& combine(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& scales);
+/// Runs or groups of pixels that a filter has work in; see dilate.comp.
+struct RunList {
+  gpu::Buffer *runs = nullptr, *counts = nullptr;  // null: all
+};
+struct FilterRuns {
+  RunList rows, columns, blocks;  // of denoise, and of upsample
+};
+/// For the filters, whose results this writes wherever they have nothing to do. `gbuffer` is that of the estimate. Nothing is listed where that would not pay.
+FilterRuns dilate(gpu::Recorder& gpu, const GBuffer& gbuffer, const TileList& tiles, const FrameInputs& frame, const EstimatorSettings& settings);
 /// Both directions of the settings' filter, on any number of planes. `gbuffer` is that of `ao`. `prefix`: before the names of its buffers, where others are filtered too.
+/// `runs`: from dilate, of the same visibility; else all.
 gpu::Buffer& denoise(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& ao, const FrameInputs& frame, const EstimatorSettings& settings,
-                     const std::string& prefix = "");
-/// From the pixels of `low` to those of `gbuffer`, any number of planes.
+                     const std::string& prefix = "", const FilterRuns& runs = {});
+/// From the pixels of `low` to those of `gbuffer`, any number of planes; `runs` as for denoise.
 gpu::Buffer& upsample(gpu::Recorder& gpu, const GBuffer& gbuffer, const GBuffer& low, const gpu::Buffer& ao, const FrameInputs& frame,
-                      const EstimatorSettings& settings, const std::string& prefix = "");
+                      const EstimatorSettings& settings, const std::string& prefix = "", const FilterRuns& runs = {});
 /// Planes of mean open directions as unit vectors, packed as the normals are.
 gpu::Buffer& bent_normal(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& bent);
 /// Whether the settings ask for any shaping.

@@ -89,6 +89,8 @@ void FramePlan::refuse_shared_files(const std::vector<int>& all) const {
     for (const int frame : all)
       if (const auto path = pattern.name.path(frame + settings_.frames.output_offset); pattern.path.is_output && inputs.contains(path))
         fail(ErrorKind::usage, "{}: {} of frame {} would overwrite an input", path, pattern.path.option, frame);
+  for (const auto& report : reports_of(settings_.output))
+    if (inputs.contains(report.path)) fail(ErrorKind::usage, "{}: {} would overwrite an input", report.path, report.option);
 }
 
 bool FramePlan::has_inputs(int frame) const {
@@ -134,6 +136,16 @@ std::vector<OutputFile> outputs_of(const OutputSettings& output) {
   for (const auto* view : debug_views_of(output)) files.push_back({"--debug", debug_path(output, *view)});
   std::erase_if(files, [](const OutputFile& file) { return file.path.empty(); });
   return files;
+}
+
+std::vector<OutputFile> reports_of(const OutputSettings& output) {
+  std::vector<OutputFile> files{{"--stats", output.stats}, {"--log-json", output.log_json == "-" ? "" : output.log_json}};
+  std::erase_if(files, [](const OutputFile& file) { return file.path.empty(); });
+  return files;
+}
+
+std::vector<std::string> input_files(const InputSettings& input) {
+  return {input.input, input.depth, input.normal, input.position, input.beauty, input.camera, input.material_ao, input.albedo};
 }
 
 std::vector<int> chunk_of(const std::vector<int>& frames, int chunk, int chunks) {

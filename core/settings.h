@@ -120,6 +120,7 @@ struct EstimatorSettings {
   std::uint32_t seed = 0;            // shifts the noise pattern
   Noise noise = Noise::fixed;        // fixed: what stands still does not flicker, and may be used again; animated: for a mean over frames, which takes its noise away
   bool no_skip = false;              // estimate sky too, and what is proved to be open; the result is the same
+  double skip_tolerance = 0;         // of gtao and bitmask, 0 to 0.1: also leave out, as open, what is proved to have a visibility of at least 1 less this
 };
 
 /// What to write.
@@ -137,6 +138,7 @@ struct OutputSettings {
   std::string compression = "zip";                // of the AO file: none, rle, zips, zip or piz
   std::string ocio;                               // an OpenColorIO configuration for the preview
   std::string stats;                              // a JSON file
+  std::string log_json;                           // a file of JSON objects, a line each, or - for the standard output: whoever watches the run writes it
 };
 
 /// Where to compute.

@@ -1,12 +1,15 @@
-// Benchmark suites from TOML; the only file that includes toml++.
+// Benchmark suites from TOML.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/suite.h"
 
 #include <toml++/toml.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <iterator>
 #include <set>
+#include <tuple>
 
 #include "core/error.h"
 #include "core/file.h"
@@ -63,7 +66,11 @@ std::string argument_of(const Table& table, std::string_view key, const toml::no
 std::vector<std::string> paths_of(const Table& table, const fs::path& folder) {
   std::vector<std::string> paths;
   if (const auto* list = table.values["truth"].as_array())
-    for (const auto& entry : *list) paths.push_back((folder / entry.value<std::string>().value_or("")).string());
+    for (const auto& entry : *list) {
+      const auto name = entry.value<std::string>();
+      if (!name || name->empty()) table.refuse("truth", "must be one file or two");
+      paths.push_back((folder / *name).string());
+    }
   else
     paths.push_back((folder / table.text("truth")).string());
   if (paths.empty() || paths.size() > 2) table.refuse("truth", "must be one file or two");
@@ -169,8 +176,21 @@ std::vector<Limit> read_limits(const std::string& path) {
     for (const auto& measure : measures)
       if (table.values.contains(measure)) limits.push_back({table.text("frame"), table.text("candidate"), measure, table.positive(measure)});
   });
-  if (limits.empty()) fail(ErrorKind::input, "{}: there is no [[limit]] with a measure", path);
+  if (limits.empty()) fail(ErrorKind::input, "{}: there is no [[limit]] with a measure (--limits)", path);
   return limits;
+}
+
+void require_known(const std::vector<Limit>& limits, const Suite& suite, const std::string& path) {
+  std::vector<std::string> frames, candidates;
+  std::ranges::transform(suite.frames, std::back_inserter(frames), &SuiteFrame::name);
+  std::ranges::transform(suite.candidates, std::back_inserter(candidates), &SuiteCandidate::name);
+  for (const auto& limit : limits) {
+    if (limit.measure == "estimator-rmse" && suite.reference_slices == 0)
+      fail(ErrorKind::usage, "{}: a limit for estimator-rmse needs --reference-slices above 0 (--limits)", path);
+    for (const auto& [what, name, names] : {std::tuple("frame", &limit.frame, &frames), {"candidate", &limit.candidate, &candidates}})
+      if (std::ranges::find(*names, *name) == names->end())
+        fail(ErrorKind::input, "{}: the suite has no {} {}{} (--limits)", path, what, *name, suggestion(*name, *names));
+  }
 }
 
 }  // namespace alcove

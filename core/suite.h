@@ -45,6 +45,10 @@ struct Limit {
   double most = 0;
 };
 
+/// Fails with ErrorKind::input where a limit is for a frame or a candidate that the suite has not, with ErrorKind::usage where it is for what is not
+/// measured. `path` is for the message.
+void require_known(const std::vector<Limit>& limits, const Suite& suite, const std::string& path);
+
 /// Reads limits: a list of tables [[limit]] with frame, candidate and one or more measures. Fails with ErrorKind::input, naming file and key.
 std::vector<Limit> read_limits(const std::string& path);
 

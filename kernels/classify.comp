@@ -7,6 +7,8 @@
 // is, where (c - least) / z + m <= rise. With 1 / z below a plane of the other tile's bounds the left side is affine, and largest at a corner of it. Receivers
 // whose normals are turned by d against N see d |Q - P| more at most. (Orthographic: -z for 1 / z, and no division.) What is farther than the radius from all
 // receivers does not block either, where the estimator says so: by the distance of the boxes in space that hold the surfaces of both tiles.
+// With a tolerance a tile is left out, too, where nothing within the radius rises more than an angle: what is that low takes at most the squared sine of the
+// angle from the visibility. The proof is the same with another height: |Q - P| / z is at least the distance on the image over the length of p's ray.
 // A group of tiles is searched tile by tile only where its own bounds do not settle it.
 // Where another frame's estimates still lie and nothing within reach is other than it was, they stay.
 // Constants below 1 and pads leave room for rounding.
@@ -23,6 +25,7 @@ layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 layout(constant_id = kClassifyStrideId) const int kStride = 1;
 layout(constant_id = kClassifyModeId) const uint kMode = kClassifySkips;
 const bool kSkips = (kMode & kClassifySkips) != 0u, kProves = (kMode & kClassifyProves) != 0u, kReuses = (kMode & kClassifyReuses) != 0u;
+const bool kTolerates = (kMode & kClassifyTolerates) != 0u;
 layout(scalar, push_constant) uniform Push { ClassifyParams params; };
 layout(scalar, binding = kClassifyBounds) readonly buffer Bounds { TileBounds bounds[]; };
 layout(scalar, binding = kClassifyGroups) readonly buffer Groups { GroupBounds groups[]; };
@@ -44,7 +47,7 @@ const int kFarGroup = 32;
 
 /// Receivers are taken together in blocks of so many tiles in x and y where all lie on one plane. A row of invocations has a block, and shares what it finds.
 const int kBlock = 2;
-shared uint found[kGroupY], beside[kGroupY], surfaces[kGroupY], place[kGroupY];
+shared uint found[kGroupY], beside[kGroupY], risen[kGroupY], surfaces[kGroupY], place[kGroupY * kBlock * kBlock];
 shared uint nearest[kGroupY], farthest[kGroupY];  // bits of depths: of positive floats, in their order
 shared uint unsettled[kGroupY * kGroupWords];  // bits of groups
 shared uint first[kGroupY * kSectorsOfTurn], last[kGroupY * kSectorsOfTurn];  // steps, of the sectors that are found or not
@@ -122,7 +125,8 @@ struct Receivers {
   ivec2 tile;              // first of the block
   Box box;
   float reach, reach_sq;   // of samples, from their pixels' centres
-  float rise;              // harmless, for every pixel aside
+  float rise, tolerated;   // harmless, and with a tolerance, for every pixel aside
+  float least;             // in units of depth, or orthographic of height: what the left side leaves out
   ivec2 from, extent;      // groups within reach; more than kMostGroups: not searched
   vec2 along;              // of the affine part, a pixel
   float nearness, affine;  // factor of 1 / z: (c - least), or orthographic of -z: N.z; the affine part at pixel (0, 0)
@@ -144,9 +148,16 @@ ivec2 distances_px(Receivers r, ivec2 first_pixel, int side) {
 }
 
 /// How much may stand above the tangent planes and yet not block, with nearness at most `level`.
-float harmless_height(Receivers r, int distance_px, float level) {
+float harmless_height(Receivers r, float rise, int distance_px, float level) {
   const float aside = max(float(distance_px) - 0.5, 0.5);
-  return r.rise * aside - 2e-6 * abs(r.nearness * level) - r.turned - r.turned_by_nearness * level;
+  return rise * aside - 2e-6 * abs(r.nearness * level) - r.turned - r.turned_by_nearness * level;
+}
+
+float harmless_height(Receivers r, int distance_px, float level) { return harmless_height(r, r.rise, distance_px, level); }
+
+/// How much of the left side, at most, takes no more of the visibility than the tolerance.
+float tolerated_height(View view, Receivers r, int distance_px, float level) {
+  return harmless_height(r, r.tolerated, distance_px, level) - r.least * (view.orthographic != 0 ? 1.0 : level);
 }
 
 /// Group i of those within reach, row by row.
@@ -171,14 +182,16 @@ bool is_too_far(View view, Receivers r, ivec2 first_pixel, int side, float level
 }
 
 /// Adds a square of pixels, in which something stands above, to the sectors and steps at which something may block.
-void mark(View view, Receivers r, ivec2 first_pixel, int side, float level, float farthest, bool is_near) {
+void mark(View view, Receivers r, ivec2 first_pixel, int side, float level, float farthest, bool is_near, bool rises) {
   const uint row = gl_LocalInvocationID.y;
   const ivec2 apart = distances_px(r, first_pixel, side);
   const vec2 offset = vec2(first_pixel - r.tile * kTile);
   const uint sectors = sectors_of_offsets(offset - float(kBlock * kTile), offset + float(side));
   // What stands above, but too far to block, may yet go on as something that does.
-  if (!is_too_far(view, r, first_pixel, side, level, farthest)) atomicOr(found[row], sectors);
-  if (is_near) atomicOr(beside[row], sectors);
+  const bool too_far = is_too_far(view, r, first_pixel, side, level, farthest);
+  if (!too_far) atomicOr(found[row], sectors);
+  if (!too_far && rises) atomicOr(risen[row], 1u);
+  if (is_near && rises) atomicOr(beside[row], sectors);
   for (uint left = sectors; left != 0u; left &= left - 1u) {
     const uint k = row * kSectorsOfTurn + uint(findLSB(left));
     atomicMin(first[k], uint(apart.x));
@@ -195,15 +208,16 @@ void search_tile(View view, Receivers r, ivec2 other, bool is_near) {
   const ivec2 apart = distances_px(r, other * kTile, kTile);
   const float limit = harmless_height(r, apart.x, level);
   const vec2 centre = vec2(other * kTile) + kHalfTile;
-  const float above = min(most_above(r, centre, kHalfTile, vec2(0), level), most_above(r, centre, kHalfTile, bounds[index].gradient, bounds[index].plane[0]));
-  bool below = farthest > level ? true : above <= limit;
+  float above = farthest > level ? -kFar
+      : min(most_above(r, centre, kHalfTile, vec2(0), level), most_above(r, centre, kHalfTile, bounds[index].gradient, bounds[index].plane[0]));
   // An edge in it may be the end of a neighbour's surface.
-  const int planes = below ? 0 : int(bounds[index].mixed) * 8;
-  for (int k = 0; k < planes && !below; k++) {
+  const int planes = above <= limit ? 0 : int(bounds[index].mixed) * 8;
+  for (int k = 0; k < planes && above > limit; k++) {
     const ivec2 neighbor = clamp(other + neighbor_step(k), ivec2(0), last_tile);
-    below = most_above(r, centre, kHalfTile, bounds[neighbor.y * count.x + neighbor.x].gradient, bounds[index].plane[k + 1]) <= limit;
+    above = min(above, most_above(r, centre, kHalfTile, bounds[neighbor.y * count.x + neighbor.x].gradient, bounds[index].plane[k + 1]));
   }
-  for (bool marks = !below; marks; marks = false) mark(view, r, other * kTile, kTile, level, farthest, is_near);
+  const bool rises = kTolerates ? above > tolerated_height(view, r, apart.x, level) : true;
+  for (bool marks = above > limit; marks; marks = false) mark(view, r, other * kTile, kTile, level, farthest, is_near, rises);
 }
 
 Receivers receivers_of(View view, ivec2 tile, Shared own) {
@@ -218,12 +232,14 @@ Receivers receivers_of(View view, ivec2 tile, Shared own) {
   r.reach = reach;
   r.reach_sq = reach * reach;
   r.rise = 0.9 * least_rise(view);
+  r.tolerated = 0.99 * params.tolerated / longest_ray * min(abs(view.tangent_per_pixel.x), abs(view.tangent_per_pixel.y));
 
   // A unit of depth is at least so much height at every receiver: their normals differ.
   const float height = (perspective ? own.lowest / far : n.z) - own.turned * longest_ray;
   const float least = 0.9 * least_height(params.depth_precision, near, max(height, 0.0));
+  r.least = least;
   r.along = n.xy * view.tangent_per_pixel;
-  r.nearness = perspective ? own.highest - least : n.z;
+  r.nearness = perspective ? max(own.highest - least, 0.0) : n.z;
   r.affine = dot(n.xy, tangent_of(view, vec2(0.5))) + (perspective ? -n.z : own.highest - least);
   // |Q - P| is at most the reach, or, where nothing is too far to block, |Q| + |P|; over z in perspective.
   r.turned = own.turned * (perspective ? (ranged ? 0.0 : longest_ray) : reach);
@@ -246,9 +262,9 @@ void search_groups(View view, Receivers r, int count, bool is_far) {
       const ivec2 group = group_at(r, word * 32 + findLSB(bits)), offset = (group * kTileGroup - r.tile) * kTile;
       for (bool is_next = (distances_px(r, group * kGroupSide, kGroupSide).x >= kFarGroup) == is_far; is_next; is_next = false) {
         // As steps grow with the distance, it does not matter where in a far group something stands, if it stands in no other sector than what is found.
-        const bool is_coarse = is_far ? (sectors_of_offsets(vec2(offset) - float(kBlock * kTile), vec2(offset) + float(kGroupSide)) & ~found[row]) == 0u : false;
+        const bool is_coarse = is_far && risen[row] != 0u ? (sectors_of_offsets(vec2(offset) - float(kBlock * kTile), vec2(offset) + float(kGroupSide)) & ~found[row]) == 0u : false;
         for (bool marks = is_coarse && gl_LocalInvocationID.x == 0u; marks; marks = false)
-          mark(view, r, group * kGroupSide, kGroupSide, bounds_of(view, group).level, bounds_of(view, group).farthest, false);
+          mark(view, r, group * kGroupSide, kGroupSide, bounds_of(view, group).level, bounds_of(view, group).farthest, false, true);
         for (int k = int(gl_LocalInvocationID.x); k < kTileGroup * kTileGroup && !is_coarse; k += int(kGroupX)) {
           const ivec2 other = group * kTileGroup + ivec2(k % kTileGroup, k / kTileGroup);
           if (all(lessThanEqual(other, last_tile))) search_tile(view, r, other, false);
@@ -262,7 +278,7 @@ void find_sectors(View view, Receivers r) {
   const uint row = gl_LocalInvocationID.y, lane = gl_LocalInvocationID.x;
   const ivec2 last_tile = tiles_of(view.size) - 1;
   const int searched = r.extent.x * r.extent.y, around = kBlock + 2;
-  if (lane == 0u) found[row] = 0u, beside[row] = searched > 0 ? 0u : kEverySector;
+  if (lane == 0u) found[row] = 0u, risen[row] = searched > 0 ? 0u : 1u, beside[row] = searched > 0 ? 0u : kEverySector;
   for (uint k = lane; k < kSectorsOfTurn; k += kGroupX) first[row * kSectorsOfTurn + k] = ~0u, last[row * kSectorsOfTurn + k] = 0u;
   for (uint k = lane; k < kGroupWords; k += kGroupX) unsettled[row * kGroupWords + k] = 0u;
   barrier();
@@ -277,7 +293,7 @@ void find_sectors(View view, Receivers r) {
     const ivec2 group = group_at(r, i);
     const GroupBounds b = bounds_of(view, group);
     const bool settled = is_settled(r, group, b), too_far = is_too_far(view, r, group * kGroupSide, kGroupSide, b.level, b.farthest);
-    for (bool marks = !settled && too_far; marks; marks = false) mark(view, r, group * kGroupSide, kGroupSide, b.level, b.farthest, false);
+    for (bool marks = !settled && too_far; marks; marks = false) mark(view, r, group * kGroupSide, kGroupSide, b.level, b.farthest, false, true);
     if (!settled && !too_far) atomicOr(unsettled[row * kGroupWords + uint(i) / 32u], 1u << (uint(i) & 31u));
   }
   barrier();
@@ -296,7 +312,8 @@ void list_tile(uint at, ivec2 tile, bool is_whole) {
   }
   if (gl_LocalInvocationID.x != 0u) return;
   list[at].place = pack_tile(tile);
-  atomicMax(counts.groups.y, rows_of_groups(at + 1u, kStride));
+  const uvec2 groups = dispatch_of_tiles(at + 1u, kStride);
+  atomicMax(counts.groups.x, groups.x), atomicMax(counts.groups.y, groups.y);
 }
 
 /// What estimators write where nothing blocks, by all invocations of a row.
@@ -343,32 +360,42 @@ void main() {
   if (gl_LocalInvocationID.x == 0u) surfaces[row] = kSkips ? 0u : kAllTiles, nearest[row] = floatBitsToUint(kSkyDepth), farthest[row] = 0u;
   barrier();
   // A surface in any of the tiles, as far as it must be known.
+  float near = kSkyDepth, far = 0.0;
   for (int i = 0; i < kTile * kBlock * kBlock && (kReuses || surfaces[row] != kAllTiles); i++) {
     const int part = i % (kBlock * kBlock);
     const ivec2 at = tile_of_block(tile, part) * kTile + ivec2(gl_LocalInvocationID.x, i / (kBlock * kBlock));
     const float z = depth[index_of(view, min(at, view.size - 1))];
     if (z >= kSkyDepth) continue;
     atomicOr(surfaces[row], 1u << uint(part));
-    if (kReuses) atomicMin(nearest[row], floatBitsToUint(z)), atomicMax(farthest[row], floatBitsToUint(z));
+    near = min(near, z), far = max(far, z);
   }
+  if (kReuses) atomicMin(nearest[row], floatBitsToUint(near)), atomicMax(farthest[row], floatBitsToUint(far));
   barrier();
   const bool is_kept = kReuses && surfaces[row] != 0u ? is_as_before(view, tile, uintBitsToFloat(nearest[row]), uintBitsToFloat(farthest[row])) : false;
   Shared own = Shared(1.0, 1.0, kNoNormal, 0.0, 0.0, 0.0);
   if (kProves && tile.x < count.x && !is_kept) own = shared_by(tile, count);
-  find_sectors(view, receivers_of(view, tile, own));
-  if (tile == ivec2(0)) counts.groups.x = kListedRow, counts.groups.z = 1u;
+  if (kProves) find_sectors(view, receivers_of(view, tile, own));
+  else if (gl_LocalInvocationID.x == 0u) beside[row] = kEverySector;
+  barrier();
+  if (tile == ivec2(0)) counts.groups.z = 1u;
   const bool is_whole = beside[row] == kEverySector;
-  const uint sectors = is_whole ? kEverySector : found[row];
+  const uint sectors = is_whole ? kEverySector : risen[row] != 0u ? found[row] : 0u;
+  const uint first_place = row * uint(kBlock * kBlock);
+  for (int i = int(gl_LocalInvocationID.x); i < kBlock * kBlock; i += int(kGroupX)) {
+    const ivec2 part = tile_of_block(tile, i);
+    if (any(greaterThanEqual(part, count))) continue;
+    const bool is_sky = (surfaces[row] >> uint(i) & 1u) == 0u, keeps = is_kept && !is_sky;
+    const uint word = is_sky ? kTileOpen : is_kept ? kTileKept : sectors;
+    sectors_of_tile[part.y * count.x + part.x] = word;
+    if (keeps) atomicAdd(counts.kept, 1u);
+    if (!keeps && word != kTileOpen) place[first_place + uint(i)] = atomicAdd(counts.listed, 1u);
+  }
+  barrier();
   for (int i = 0; i < kBlock * kBlock; i++) {
     const ivec2 part = tile_of_block(tile, i);
-    const bool is_inside = all(lessThan(part, count)), is_sky = (surfaces[row] >> uint(i) & 1u) == 0u, keeps = is_inside && !is_sky && is_kept;
-    const bool is_listed = is_inside && !is_sky && !is_kept && sectors != 0u;
-    if (gl_LocalInvocationID.x == 0u && is_inside) sectors_of_tile[part.y * count.x + part.x] = is_sky || is_kept ? 0u : sectors;
-    if (gl_LocalInvocationID.x == 0u && keeps) atomicAdd(counts.kept, 1u);
-    if (gl_LocalInvocationID.x == 0u && is_listed) place[row] = atomicAdd(counts.listed, 1u);
-    barrier();
-    if (is_listed) list_tile(place[row], part, is_whole);
-    if (is_inside && !is_listed && !keeps) write_open(view, part, is_sky);
-    barrier();
+    const bool is_inside = all(lessThan(part, count)), is_sky = (surfaces[row] >> uint(i) & 1u) == 0u;
+    const bool is_open = is_sky || !is_kept && sectors == 0u;
+    if (is_inside && is_open) write_open(view, part, is_sky);
+    if (is_inside && !is_open && !is_kept) list_tile(place[first_place + uint(i)], part, is_whole);
   }
 }

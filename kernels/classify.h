@@ -12,7 +12,7 @@ ALCOVE_CONSTANT uint kClassifyList = 3;    // out: ListedTile a tile, as many as
 ALCOVE_CONSTANT uint kClassifyCounts = 4;  // in, out: TileCounts, zeros
 ALCOVE_CONSTANT uint kClassifyAo = 5;      // out: float a pixel, 1 at receivers of tiles that are not listed; the plane of the parameters
 ALCOVE_CONSTANT uint kClassifyBent = 6;    // out: planes x, y, z as estimators write them, for the same; only with kClassifyWithBent
-ALCOVE_CONSTANT uint kClassifySectors = 7;  // out: uint a tile, a bit for every sector of directions in which something may block; 0: not listed
+ALCOVE_CONSTANT uint kClassifySectors = 7;  // out: uint a tile: kTileOpen, kTileKept, or a bit for every sector of directions in which something may block
 ALCOVE_CONSTANT uint kClassifyGroups = 8;   // in: GroupBounds a group of tiles, from coarsen
 
 ALCOVE_CONSTANT uint kClassifyChanges = 9;  // in: uint a corner of blocks, (columns + 1) x (rows + 1): the changed blocks above and left of it
@@ -25,6 +25,7 @@ ALCOVE_CONSTANT uint kClassifyProves = 8;    // with kClassifySkips: reads the b
 ALCOVE_CONSTANT uint kClassifyRanged = 2;    // nothing beyond the radius blocks
 ALCOVE_CONSTANT uint kClassifyWithBent = 4;
 ALCOVE_CONSTANT uint kClassifyReuses = 16;   // with kClassifySkips: reads the changes, and leaves as they are tiles within whose reach nothing has changed
+ALCOVE_CONSTANT uint kClassifyTolerates = 32;  // with kClassifyProves
 
 ALCOVE_CONSTANT int kChangeBlock = 32;       // px of the frame a side of the blocks whose changes are known
 
@@ -32,6 +33,7 @@ struct ClassifyParams {
   View view;
   ivec2 origin;          // px: from the display window's corner to the image's, as estimators count
   float radius;          // scene units: the farthest at which anything blocks
+  float tolerated;       // with kClassifyTolerates: sine of the elevation above a tangent plane up to which a tile is left out
   vec3 depth_precision;  // how far a depth z may be from the surface's: x + y z + z z^2, scene units
   uint plane;            // of the AO
   ivec2 frame_size;      // px; the frame is the image, or `factor` times as large

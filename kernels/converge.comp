@@ -33,9 +33,9 @@ const float kErrorShare = 0.75;
 void needs_more(uint place) {
   const uint at = atomicAdd(next_counts.listed, 1u);
   next[at].place = place;
-  next_counts.groups.x = kListedRow;
   next_counts.groups.z = 1u;
-  atomicMax(next_counts.groups.y, rows_of_groups(at + 1u, 1));
+  const uvec2 groups = dispatch_of_tiles(at + 1u, 1);
+  atomicMax(next_counts.groups.x, groups.x), atomicMax(next_counts.groups.y, groups.y);
   next_lines.z = 1u;
 }
 

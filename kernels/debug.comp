@@ -53,7 +53,7 @@ void main() {
   if (params.kind == kDebugValue) value = value_at(pixel);
   if (params.kind == kDebugViewZ) value = -z;
   if (params.kind == kDebugNormalZ) value = n.z;
-  if (params.kind == kDebugTile) value = float(bitCount(values[(pixel.y / kTile) * tiles_of(params.view.size).x + pixel.x / kTile])) / float(kSectorsOfTurn);
+  if (params.kind == kDebugTile) value = float(bitCount(values[(pixel.y / kTile) * tiles_of(params.view.size).x + pixel.x / kTile] & kEverySector)) / float(kSectorsOfTurn);
   if (params.kind == kDebugEdge) value = edge(pixel, z, n);
   if (params.kind == kDebugNormalAngle) {
     const vec3 other = unpack_normal(values[index]);

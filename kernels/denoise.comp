@@ -13,18 +13,23 @@
 #include "view.glsl"
 #include "normal.glsl"
 #include "stride.glsl"
+#include "tiles.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 layout(constant_id = kDenoiseRadiusId) const int kRadius = 3;
 layout(constant_id = kDenoiseByDepthId) const uint kByDepth = 0;
-layout(constant_id = kDenoiseSparseId) const uint kSparse = kDenoiseDense;
+layout(constant_id = kDenoiseSparseId) const uint kMode = kDenoiseDense;
 layout(constant_id = kDenoiseStrideId) const int kStride = 1;
 layout(constant_id = kDenoisePlanesId) const int kPlanes = 1;
+const uint kSparse = kMode & ~kDenoiseListed;
+const bool kListed = (kMode & kDenoiseListed) != 0u;
 layout(scalar, push_constant) uniform Push { DenoiseParams params; };
 layout(scalar, binding = kDenoiseAo) readonly buffer Ao { uint ao[]; };
 layout(scalar, binding = kDenoiseDepth) readonly buffer Depth { float depth[]; };
 layout(scalar, binding = kDenoiseNormal) readonly buffer Normal { uint normal[]; };
 layout(scalar, binding = kDenoiseResult) writeonly buffer Result { uint result[]; };
+layout(scalar, binding = kDenoiseList) readonly buffer List { uint list[]; };
+layout(scalar, binding = kDenoiseCounts) readonly buffer Counts { RunCounts counts; };
 
 /// Two pixels do not mix when one lies further from the plane of the other than this many pixels are wide there.
 const float kPlaneSigma = 1.0;
@@ -84,9 +89,12 @@ float similarity(Tap a, Tap b, float pixels) {
 }
 
 void main() {
+  const uint at = (gl_WorkGroupID.y * kListedRow + gl_WorkGroupID.x) * kGroupY + gl_LocalInvocationID.y;
+  if (kListed && at >= counts.listed) return;
+  const ivec2 run = kListed ? unpack_run(list[at]) : ivec2(gl_WorkGroupID.x, gl_GlobalInvocationID.y);
   // Runs of a sparse estimate begin where it has a pixel.
-  const int line = int(gl_GlobalInvocationID.x), known = first_estimated(line, params.origin, kStride);
-  const ivec2 first = line * params.axis.yx + (kDenoiseRun * int(gl_GlobalInvocationID.y) + known - (known > 0 ? kStride : 0)) * params.axis;
+  const int line = run.x * int(kGroupX) + int(gl_LocalInvocationID.x), known = first_estimated(line, params.origin, kStride);
+  const ivec2 first = line * params.axis.yx + (kDenoiseRun * run.y + known - (known > 0 ? kStride : 0)) * params.axis;
   if (any(greaterThanEqual(first, params.view.size))) return;
 
   const int plane = params.view.size.x * params.view.size.y;

@@ -91,6 +91,16 @@ struct TileCounts {
   uint kept;          // as the frame before has them
 };
 
+/// Of runs of pixels that a filter is for.
+struct RunCounts {
+  GroupCount groups;
+  uint listed;
+};
+
+/// What classify says of a tile: a bit for every sector of directions in which something may block, or
+ALCOVE_CONSTANT uint kTileOpen = 0;        // its visibility is 1: nothing blocks, or it is sky
+ALCOVE_CONSTANT uint kTileKept = 1 << 16;  // its visibility is as in the frame before, and so are its depth and normals
+
 /// What the kernels count over a frame.
 struct FrameCounts {
   uint sky;               // pixels

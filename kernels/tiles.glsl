@@ -1,8 +1,11 @@
 // Tiles of pixels by which work is skipped, and directions on the image. Pure: no bindings.
 // SPDX-License-Identifier: BSD-3-Clause
 
-/// Groups of a row of a dispatch over listed tiles.
-const uint kListedRow = 256u;
+/// Groups of a row of a dispatch over a list: as many as every device takes, since drivers share out whole rows, with the empty groups at the end of the last.
+const uint kListedRow = 0xffffu;
+
+/// A dispatch of so many groups, in x and y.
+uvec2 dispatch_of(uint groups) { return uvec2(min(groups, kListedRow), (groups + kListedRow - 1u) / kListedRow); }
 
 ivec2 tiles_of(ivec2 size) { return (size + kTile - 1) / kTile; }
 
@@ -23,13 +26,17 @@ struct ListedPlace {
 /// Invocations a tile.
 uint receivers_of_tile(int stride) { return uint(kTile * kTile) >> findMSB(stride); }
 
-/// Rows of groups that hold so many tiles.
-uint rows_of_groups(uint tiles, int stride) { return (tiles * receivers_of_tile(stride) - 1u) / (kGroupX * kGroupY * kListedRow) + 1u; }
+/// A dispatch over so many tiles.
+uvec2 dispatch_of_tiles(uint tiles, int stride) { return dispatch_of((tiles * receivers_of_tile(stride) - 1u) / (kGroupX * kGroupY) + 1u); }
 
 ListedPlace listed_place(uvec2 group, uint invocation, int stride) {
   const uint each = receivers_of_tile(stride), place = (group.y * kListedRow + group.x) * (kGroupX * kGroupY) + invocation;
   return ListedPlace(place / each, place % each);
 }
+
+/// A run of pixels that an invocation of a filter computes, in kGroupX lines: which such lines, and which of their runs.
+uint pack_run(int lines, int run) { return uint(lines) | uint(run) << 16; }
+ivec2 unpack_run(uint packed) { return ivec2(packed & 0xffffu, packed >> 16); }
 
 ivec2 pixel_of_tile(ivec2 tile, uint pixel, ivec2 origin, int stride) {
   const uint columns = uint(kTile) >> findMSB(stride);

@@ -10,10 +10,13 @@
 #include "upsample.h"
 #include "view.glsl"
 #include "normal.glsl"
+#include "stride.glsl"
+#include "tiles.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 layout(constant_id = kUpsampleFactorId) const int kFactor = 2;
 layout(constant_id = kUpsamplePlanesId) const int kPlanes = 1;
+layout(constant_id = kUpsampleListedId) const uint kListed = 0;
 layout(scalar, push_constant) uniform Push { UpsampleParams params; };
 layout(scalar, binding = kUpsampleDepth) readonly buffer Depth { float depth[]; };
 layout(scalar, binding = kUpsampleNormal) readonly buffer Normal { uint normal[]; };
@@ -21,6 +24,8 @@ layout(scalar, binding = kUpsampleLowDepth) readonly buffer LowDepth { float low
 layout(scalar, binding = kUpsampleLowNormal) readonly buffer LowNormal { uint low_normal[]; };
 layout(scalar, binding = kUpsampleLowAo) readonly buffer LowAo { float low_ao[]; };
 layout(scalar, binding = kUpsampleAo) writeonly buffer Ao { float ao[]; };
+layout(scalar, binding = kUpsampleList) readonly buffer List { uint list[]; };
+layout(scalar, binding = kUpsampleCounts) readonly buffer Counts { RunCounts counts; };
 
 /// A block whose centre lies further from a pixel's tangent plane than this many pixels are wide there has no part in it.
 const float kPlaneSigma = 2.0;
@@ -63,7 +68,10 @@ vec4 parts_of(Block blocks[4], vec2 between, ivec2 pixel, float z, vec3 n) {
 }
 
 void main() {
-  const ivec2 invocation = ivec2(gl_GlobalInvocationID.xy), block = invocation - 1;
+  const uint at = gl_WorkGroupID.y * kListedRow + gl_WorkGroupID.x;
+  if (kListed != 0u && at >= counts.listed) return;
+  const ivec2 group = kListed != 0u ? unpack_run(list[at]).yx : ivec2(gl_WorkGroupID.xy);
+  const ivec2 invocation = group * ivec2(kGroupX, kGroupY) + ivec2(gl_LocalInvocationID.xy), block = invocation - 1;
   const ivec2 first = kFactor * block + kFactor / 2 - params.overhang;
   if (any(greaterThanEqual(first, params.view.size))) return;
 

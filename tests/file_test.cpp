@@ -18,6 +18,7 @@
 #include <OpenImageIO/imageio.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <bit>
 #include <cmath>
@@ -103,6 +104,51 @@ TEST_F(Files, read_text_tells_what_is_no_file) {
   expect_error(ErrorKind::input, {"missing", "camera", "--camera"}, [&] { read_text(folder / "missing", "camera", "--camera"); });
   expect_error(ErrorKind::input, {folder.path(), "camera", "--camera"}, [&] { read_text(folder.path(), "camera", "--camera"); });
   expect_error(ErrorKind::input, {"camera", "--camera"}, [&] { read_text("", "camera", "--camera"); });
+}
+
+TEST_F(Files, read_text_tells_that_the_disk_fails) {  // as page 0 of a process does
+  expect_error(ErrorKind::input, {"/proc/self/mem", "camera", "--camera"}, [] { read_text("/proc/self/mem", "camera", "--camera"); });
+}
+
+/// Who may not read everything; root again at the end.
+struct Nobody {
+  Nobody() { if (is_root) EXPECT_EQ(::setresuid(65534, 65534, 0), 0); }
+  ~Nobody() { if (is_root) EXPECT_EQ(::setresuid(0, 0, 0), 0); }
+  const bool is_root = ::geteuid() == 0;
+};
+
+TEST_F(Files, what_may_not_be_read_or_written_is_said_with_the_reason) {
+  fs::permissions(folder.path(), fs::perms(0755));
+  fs::create_directory(folder / "locked");
+  write_bytes(folder / "locked/a.exr", "kept");
+  write_bytes(path, "kept");
+  fs::permissions(path, fs::perms::none);
+  fs::permissions(folder / "locked", fs::perms::none);
+  fs::create_directory(folder / "shown");
+  fs::permissions(folder / "shown", fs::perms(0555));
+  {
+    const Nobody nobody;
+    expect_error(ErrorKind::input, {path, "Permission denied", "--camera"}, [&] { require_readable(path, "camera", "--camera"); });
+    expect_error(ErrorKind::input, {"locked/a.exr", "cannot be reached", "Permission denied", "--camera"}, [&] { require_readable(folder / "locked/a.exr", "camera", "--camera"); });
+    expect_error(ErrorKind::output, {"shown/b.exr", "Permission denied", "--output"}, [&] { require_writable(folder / "shown/b.exr", "--output"); });
+    expect_error(ErrorKind::output, {"locked/b/c.exr", "cannot be reached", "Permission denied", "--output"}, [&] { require_writable(folder / "locked/b/c.exr", "--output"); });
+    expect_error(ErrorKind::output, {"shown/b.exr", "temporary file", "Permission denied"}, [&] { write_whole(folder / "shown/b.exr", std::string("x")); });
+  }
+  for (const char* name : {"locked", "shown", "a.exr"}) fs::permissions(folder / name, fs::perms::owner_all);
+  EXPECT_EQ(read_bytes(folder / "locked/a.exr"), "kept");
+  EXPECT_THAT(names_in(folder / "shown"), IsEmpty());
+}
+
+TEST_F(Files, names_of_one_file_are_told_from_those_of_two) {
+  write_bytes(path, "x");
+  fs::create_symlink(path, folder / "link.exr");
+  for (const std::string& name : {path, folder / "./a.exr", folder / "link.exr", folder / "none/../a.exr"}) EXPECT_TRUE(same_file(path, name)) << name;
+  EXPECT_TRUE(same_file(folder / "none.exr", folder / "./none.exr"));  // that is not there yet
+  EXPECT_FALSE(same_file(path, folder / "b.exr"));
+  EXPECT_FALSE(same_file(folder / "b.exr", folder / "c.exr"));
+  const std::vector<std::string> inputs{"", path};
+  expect_error(ErrorKind::usage, {"link.exr", "--stats", "overwrite"}, [&] { require_no_input(folder / "link.exr", "--stats", inputs); });
+  EXPECT_NO_THROW(require_no_input(folder / "b.exr", "--stats", inputs));
 }
 
 // EXR.

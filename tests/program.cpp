@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/program.h"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <poll.h>
 #include <sched.h>
@@ -98,6 +99,8 @@ Finished run_program(const std::vector<std::string>& arguments, const Surroundin
   posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", 0, 0);
   posix_spawn_file_actions_adddup2(&actions, out.descriptor(), 1);
   posix_spawn_file_actions_adddup2(&actions, err.descriptor(), 2);
+  for (const auto& [number, path] : {std::pair(1, &surroundings.out), {2, &surroundings.err}})
+    if (!path->empty()) posix_spawn_file_actions_addopen(&actions, number, path->c_str(), O_WRONLY, 0);
   posix_spawn_file_actions_addchdir_np(&actions, surroundings.folder.c_str());
   pid_t child = -1;
   errno = ::posix_spawn(&child, surroundings.program.c_str(), &actions, nullptr, pointers_to(words).data(), pointers_to(variables).data());

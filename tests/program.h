@@ -22,9 +22,10 @@ std::ostream& operator<<(std::ostream& stream, const Finished& finished);
 /// Where the program runs.
 struct Surroundings {
   std::string folder = "/";  // working directory; not the test's own, so that nothing depends on it
-  std::map<std::string, std::optional<std::string>> environment;  // to set, or to remove where there is no value; all else is inherited
+  std::map<std::string, std::optional<std::string>> environment = {};  // to set, or to remove where there is no value; all else is inherited
   double seconds = 300;      // then it is killed; under sanitizers, beside other work, frames take many
   std::string program = ALCOVE_PROGRAM;
+  std::string out = {}, err = {};  // files that stand for the standard output and the standard error, instead of Finished's texts
   std::function<void(int)> meanwhile = {};  // called with its process id while it runs
 };
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
+#include <numbers>
 
 #include "core/chain.h"
 #include "tests/device.h"
@@ -146,8 +147,52 @@ TEST(Skip, any_bits_as_input) {
   for (unsigned seed = 0; seed < 60; seed++) {
     const int width = 1 + int(seed * 7 % 90), height = 1 + int(seed * 13 % 50);
     const HostFrame frame = random_bits(width, height, seed);
-    for (const Estimator estimator : kEstimators) expect_same(frame, proving(estimator, 0.5), "seed " + std::to_string(seed));
+    for (const Estimator estimator : kEstimators) {
+      EstimatorSettings settings = proving(estimator, 0.5);
+      settings.denoise = seed % 2 ? Denoise::bilateral : Denoise::none;
+      expect_same(frame, settings, "seed " + std::to_string(seed));
+    }
   }
+}
+
+/// A flat ground of radius 1, and around it one that lies so much higher.
+Scene pit(double depth) {
+  constexpr int kSides = 24;
+  const auto around = [](int i, double radius, double height) {
+    const double angle = 2 * std::numbers::pi * i / kSides;
+    return Vec3{radius * std::cos(angle), radius * std::sin(angle), height};
+  };
+  Scene scene{{Plane{{0, 0, -depth}, {0, 0, 1}}}};
+  for (int i = 0; i < kSides; i++) {
+    scene.primitives.push_back(Polygon{{around(i, 1, 0), around(i + 1, 1, 0), around(i + 1, 9, 0), around(i, 9, 0)}});
+    scene.primitives.push_back(Polygon{{around(i, 1, 0), around(i + 1, 1, 0), around(i + 1, 1, -depth), around(i, 1, -depth)}});
+  }
+  return scene;
+}
+
+TEST(Skip, a_tolerance_takes_no_more_than_it_says) {
+  const Shot shots[] = {Shot::perspective({0, 0, 3}, {0.01, 0, 0}, 50, 240, 240), Shot::perspective({0, -1.5, 2}, {0, 0, 0}, 60, 240, 200),
+                        Shot::orthographic({0, -1, 4}, {0, 0, 0}, 2.6, 240, 240)};
+  for (const Shot& shot : shots)
+    for (const double tolerance : {1.0 / 1024, 0.01}) {
+      std::uint32_t open = 0, proved = 0;
+      // In the middle the edge takes depth^2.
+      for (const double share : {0.05, 0.3, 1.3}) {
+        const HostFrame frame = render(pit(std::sqrt(share * tolerance)), shot).frame;
+        EstimatorSettings settings = proving(Estimator::gtao, 1.5, ThicknessKind::infinite);
+        settings.slices = 4;
+        settings.steps = 24;
+        const Outcome exact = run(frame, settings, false);
+        settings.skip_tolerance = tolerance;
+        const Outcome tolerant = run(frame, settings, false);
+        double worst = 0;
+        for (std::size_t k = 0; k < frame.data.pixels(); k++) worst = std::max(worst, double(std::abs(tolerant.values[k] - exact.values[k])));
+        EXPECT_LE(worst, tolerance) << "tolerance " << tolerance << ", share " << share;
+        open += tolerant.tiles.open;
+        proved += exact.tiles.open;
+      }
+      EXPECT_GT(open, proved) << "tolerance " << tolerance;
+    }
 }
 
 // ALCOVE_TEST_SEED: other scenes.
@@ -160,7 +205,14 @@ TEST(Skip, thousands_of_random_scenes) {
     const HostFrame frame = scenes.next();
     const double radius = scenes.radius();
     const Estimator estimator = scenes.estimator();
-    const auto open = expect_same(frame, proving(estimator, radius, scenes.thickness()),
+    EstimatorSettings settings = proving(estimator, radius, scenes.thickness());
+    if (i % 2) {
+      settings.denoise = i % 4 == 1 ? Denoise::bilateral : Denoise::box;
+      settings.denoise_radius = scenes.whole(1, 8);
+      settings.denoise_depth_sigma = i % 8 == 1 ? 0.1 : 0;
+    }
+    if (i % 16 == 5) settings.steps *= settings.stride = 1 << scenes.whole(1, 2);
+    const auto open = expect_same(frame, settings,
                                   "scene " + std::to_string(i) + ", radius " + std::to_string(radius) + ", estimator " + std::to_string(int(estimator)));
     proved += open;
     some += open > 0;

@@ -65,6 +65,9 @@ class Recorder {
   /// Submits what was recorded and waits for it. The recorder is then empty again.
   void run();
 
+  /// Drops what was recorded and not run: its buffers may go.
+  void abandon() { recording_ = false; }
+
   /// Each pass of the last run, in order; its time is 0 on a device without timestamps.
   const std::vector<PassTime>& passes() const { return passes_; }
 

@@ -1,0 +1,18 @@
+// Messages to the standard error.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <utility>
+
+namespace alcove {
+
+/// Whatever becomes of them: a log on a full disk ends no run.
+template <class... Args>
+void print_error(fmt::format_string<Args...> format, Args&&... args) {
+  std::fputs(fmt::format(format, std::forward<Args>(args)...).c_str(), stderr);
+}
+
+}  // namespace alcove

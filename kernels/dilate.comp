@@ -1,0 +1,97 @@
+// Where a filter has work: within its reach of an estimate that is not proved to be 1.
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// In: tiles by what classify found. Out: lists for `denoise` and `upsample`, and what they would write everywhere else, where that is not there already.
+// Of nothing but 1 a filter makes 1. Where nothing within its reach is other than in the frame before, what it made then still lies in its place.
+// Denoising is listed by runs: 8 lines wide, and as long as an invocation looks along one. Columns are filtered last, so theirs decide what rows must make.
+// Upsampling is listed by workgroups: 8 x 8 squares between the centres of blocks.
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#include "dilate.h"
+#include "denoise.h"
+#include "stride.glsl"
+#include "tiles.glsl"
+
+layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
+layout(constant_id = kDilateRadiusId) const int kRadius = 4;
+layout(constant_id = kDilateStrideId) const int kStride = 1;
+layout(constant_id = kDilateModeId) const uint kMode = kDilateAlongColumns;
+layout(scalar, push_constant) uniform Push { DilateParams params; };
+layout(scalar, binding = kDilateTiles) readonly buffer Tiles { uint tiles[]; };
+layout(scalar, binding = kDilateColumns) buffer Columns { uint columns[]; };
+layout(scalar, binding = kDilateList) writeonly buffer List { uint list[]; };
+layout(scalar, binding = kDilateCounts) buffer Counts { RunCounts counts; };
+layout(scalar, binding = kDilateResult) writeonly buffer Result { float result[]; };
+
+/// Of a workgroup: how many runs it lists, and where.
+shared uint listed_here, begin;
+
+struct Within {
+  bool estimated, changed;  // some tile may be other than 1, or than it was
+};
+
+/// What lies within reach of a rectangle of pixels.
+Within reach_of(ivec2 first, ivec2 end) {
+  const ivec2 count = tiles_of(params.size), from = max(first - kRadius, ivec2(0)) / kTile, to = min((end - 1 + kRadius) / kTile, count - 1);
+  Within within = Within(false, false);
+  for (int y = from.y; y <= to.y; y++)
+    for (int x = from.x; x <= to.x; x++) {
+      const uint tile = tiles[y * count.x + x];
+      within.estimated = within.estimated || tile != kTileOpen;
+      within.changed = within.changed || tile != kTileKept;
+    }
+  return within;
+}
+
+/// Whether a rectangle has work; writes what the filter makes where it has none, of these pixels of the result.
+bool lists(Within within, ivec2 first, ivec2 end, int width) {
+  for (int y = first.y; y < end.y && !within.estimated; y++)
+    for (int x = first.x; x < end.x; x++) result[y * width + x] = 1.0;
+  return within.estimated && within.changed;
+}
+
+bool lists_columns(int lines, int run) {
+  const ivec2 first = ivec2(lines * kTile, run * kDenoiseRun), end = min(first + ivec2(kTile, kDenoiseRun), params.size);
+  return lists(reach_of(first, end), first, end, params.size.x);
+}
+
+bool lists_upsampling(ivec2 group) {
+  const ivec2 block = group * ivec2(kGroupX, kGroupY) - 1, full = params.factor * block + params.factor / 2 - params.overhang;
+  const Within within = reach_of(max(block, ivec2(0)), min(block + ivec2(kGroupX, kGroupY) + 1, params.size));
+  return lists(within, max(full, ivec2(0)), min(full + params.factor * ivec2(kGroupX, kGroupY), params.full_size), params.full_size.x);
+}
+
+/// Whether a run along rows is read by one along columns that has work.
+bool lists_rows(int lines, int run) {
+  const int first = max(run * kDenoiseRun - kStride + 1, 0) / kTile, last = min((run + 1) * kDenoiseRun - 1, params.size.x - 1) / kTile;
+  const int above = max(lines * kTile - kRadius, 0) / kDenoiseRun, below = min((lines + 1) * kTile - 1 + kRadius, params.size.y - 1) / kDenoiseRun;
+  bool is_read = false;
+  for (int x = first; x <= last; x++)
+    for (int y = above; y <= below; y++) is_read = is_read || columns[x * params.runs_in_column + y] != 0u;
+  return is_read;
+}
+
+void main() {
+  const int run = int(gl_GlobalInvocationID.x), lines = int(gl_GlobalInvocationID.y);
+  const bool inside = run < params.runs && lines < params.lines, first = gl_LocalInvocationIndex == 0u;
+  bool listed = false;
+  if (inside && kMode == kDilateAlongColumns) listed = lists_columns(lines, run);
+  if (inside && kMode == kDilateAlongRows) listed = lists_rows(lines, run);
+  if (inside && kMode == kDilateUpsample) listed = lists_upsampling(ivec2(run, lines));
+  if (inside && kMode == kDilateAlongColumns) columns[lines * params.runs + run] = listed ? 1u : 0u;
+  // Neighbours stay together in the list, as they read the same pixels.
+  if (first) listed_here = 0u;
+  barrier();
+  uint at = 0u;
+  if (listed) at = atomicAdd(listed_here, 1u);
+  barrier();
+  if (first) {
+    begin = atomicAdd(counts.listed, listed_here);
+    const uint each = kMode == kDilateUpsample ? 1u : kGroupY;
+    const uvec2 groups = dispatch_of((begin + listed_here + each - 1u) / each);
+    atomicMax(counts.groups.x, groups.x), atomicMax(counts.groups.y, groups.y);
+    counts.groups.z = 1u;
+  }
+  barrier();
+  if (listed) list[begin + at] = pack_run(lines, run);
+}
