@@ -12,7 +12,7 @@ cd "$(dirname "$0")/.."
 
 readers=(core/exr_header.cpp core/dds.cpp core/camera.cpp core/sequence.cpp core/file.cpp core/text.cpp)
 tests=(file_test camera_test gbuffer_test text_test sequence_test layouts_test sources_test capture_formats_test hostile_test bad_input_test
-       gpu_test property_test {exr,dds,camera,frames,toml,preset,inspect}_fuzz)
+       gpu_test property_test reuse_test dilate_test inspect_test region_test {exr,dds,camera,frames,toml,preset,inspect}_fuzz)
 if [ "${1:-}" = all ]; then
   readers=(core/*.cpp core/gpu/*.cpp cli/*.cpp)
   tests=(all)
