@@ -90,7 +90,7 @@ void time_batches(const Suite& suite, const BenchArguments& a) {
     const BatchTimes times = time_batch(settings, a.batch);
     fmt::print("{}: {} frames, {} at once: {:.2f} s; files alone {:.2f} s, kernels alone {:.2f} s: {:.2f} of their sum\n", frame.name, times.frames, times.at_once,
                times.run_s, times.files_s, times.compute_s, times.run_s / (times.files_s + times.compute_s));
-    std::fflush(stdout);
+    (void)std::fflush(stdout);
   }
 }
 

@@ -12,7 +12,7 @@ namespace alcove {
 /// Whatever becomes of them: a log on a full disk ends no run.
 template <class... Args>
 void print_error(fmt::format_string<Args...> format, Args&&... args) {
-  std::fputs(fmt::format(format, std::forward<Args>(args)...).c_str(), stderr);
+  (void)std::fputs(fmt::format(format, std::forward<Args>(args)...).c_str(), stderr);
 }
 
 }  // namespace alcove

@@ -28,7 +28,7 @@ class Progress {
 
  private:
   struct CloseFile {
-    void operator()(std::FILE* file) const { std::fclose(file); }
+    void operator()(std::FILE* file) const { (void)std::fclose(file); }
   };
   void open_log();
   void say(const std::string& line);

@@ -169,7 +169,7 @@ VkInstance make_instance(bool validate) {
 VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
                                           const VkDebugUtilsMessengerCallbackDataEXT* data, void* counter) {
   ++*static_cast<std::atomic<int>*>(counter);
-  std::fputs(fmt::format("vulkan validation: {}\n", data->pMessage).c_str(), stderr);  // no exception goes through a driver
+  (void)std::fputs(fmt::format("vulkan validation: {}\n", data->pMessage).c_str(), stderr);  // no exception goes through a driver
   return VK_FALSE;
 }
 
