@@ -29,7 +29,7 @@ std::vector<std::string> option_names(const CLI::App& app) {
   std::ranges::replace(text, '\n', ' ');
   const auto names = option_names(app);
   const auto rest = app.remaining();
-  if (dynamic_cast<const CLI::ExtrasError*>(&error) && !rest.empty() && rest.front().rfind("-", 0) == 0) {
+  if (dynamic_cast<const CLI::ExtrasError*>(&error) && !rest.empty() && rest.front().starts_with('-')) {
     const std::string option = rest.front().substr(0, rest.front().find('='));
     fail(ErrorKind::usage, "there is no option {}{}; see {} --help", option, suggestion(option, names), app.get_name());
   }
