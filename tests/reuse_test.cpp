@@ -160,7 +160,8 @@ TEST_F(ReuseOfFrames, equal_frames_are_computed_once_a_thread) {
   }
   const auto reused = outputs();
   ASSERT_EQ(run({"--threads", "1", "--no-skip", "--overwrite", "--stats", path}).code, 0);
-  for (const auto& frame : stats(path)["frames"]) EXPECT_FALSE(frame["passes"].empty());
+  const json computed = stats(path);
+  for (const auto& frame : computed["frames"]) EXPECT_FALSE(frame["passes"].empty());
   EXPECT_EQ(reused.size(), 6);
   EXPECT_TRUE(outputs() == reused);
 }
