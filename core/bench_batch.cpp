@@ -6,6 +6,7 @@
 
 #include <atomic>
 #include <cerrno>
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
@@ -21,10 +22,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Where files are kept for a while: std::filesystem::temp_directory_path() would not say which place it cannot use.
+fs::path folder_of_scratch() {
+  const char* variable = std::getenv("TMPDIR");
+  return variable && *variable ? variable : P_tmpdir;
+}
+
 /// A folder that goes with all that is in it.
 class ScratchFolder {
  public:
-  ScratchFolder() : path_((fs::path(std::getenv("TMPDIR") ? std::getenv("TMPDIR") : "/tmp") / "alcove-bench-XXXXXX").string()) {
+  ScratchFolder() : path_((folder_of_scratch() / "alcove-bench-XXXXXX").string()) {
     if (!::mkdtemp(path_.data())) fail(ErrorKind::output, "{}: no folder for the frames can be made: {}; the variable TMPDIR names another place", path_, std::strerror(errno));
   }
   ~ScratchFolder() {
