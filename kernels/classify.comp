@@ -47,6 +47,7 @@ const int kFarGroup = 32;
 
 /// Receivers are taken together in blocks of so many tiles in x and y where all lie on one plane. A row of invocations has a block, and shares what it finds.
 const int kBlock = 2;
+// risen: whether something within the radius rises more than the tolerance; without one, more than is harmless.
 shared uint found[kGroupY], beside[kGroupY], risen[kGroupY], surfaces[kGroupY], place[kGroupY * kBlock * kBlock];
 shared uint nearest[kGroupY], farthest[kGroupY];  // bits of depths: of positive floats, in their order
 shared uint unsettled[kGroupY * kGroupWords];  // bits of groups
@@ -357,7 +358,12 @@ void main() {
   const View view = params.view;
   const ivec2 count = tiles_of(view.size), tile = kBlock * ivec2(gl_WorkGroupID.x * kGroupY + gl_LocalInvocationID.y, gl_WorkGroupID.y);
   const uint row = gl_LocalInvocationID.y;
-  if (gl_LocalInvocationID.x == 0u) surfaces[row] = kSkips ? 0u : kAllTiles, nearest[row] = floatBitsToUint(kSkyDepth), farthest[row] = 0u;
+  if (gl_LocalInvocationID.x == 0u) {
+    surfaces[row] = kSkips ? 0u : kAllTiles;
+    nearest[row] = floatBitsToUint(kSkyDepth);
+    farthest[row] = 0u;
+    beside[row] = kEverySector;  // unless a search finds less
+  }
   barrier();
   // A surface in any of the tiles, as far as it must be known.
   float near = kSkyDepth, far = 0.0;
@@ -375,8 +381,6 @@ void main() {
   Shared own = Shared(1.0, 1.0, kNoNormal, 0.0, 0.0, 0.0);
   if (kProves && tile.x < count.x && !is_kept) own = shared_by(tile, count);
   if (kProves) find_sectors(view, receivers_of(view, tile, own));
-  else if (gl_LocalInvocationID.x == 0u) beside[row] = kEverySector;
-  barrier();
   if (tile == ivec2(0)) counts.groups.z = 1u;
   const bool is_whole = beside[row] == kEverySector;
   const uint sectors = is_whole ? kEverySector : risen[row] != 0u ? found[row] : 0u;
