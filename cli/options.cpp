@@ -218,7 +218,7 @@ void add_estimator_rows(Table& table, RunOptions& options) {
   table.number("--slices", s.slices, "a pixel", between(1, 64), "directions that are searched");
   table.number("--steps", s.steps, "a side", between(1, 4096), "samples to each side of a slice");
   table.choice("--search", s.search, "of gtao, along a slice; steps: as many samples as --steps; exact: all pixels, by the outlines of surfaces; every-pixel: the same one by one, slowly");
-  table.number("--tolerance", s.tolerance, "0 to 1", between(0, 1), "of gtao, RMS error of the AO by its search: as many directions of an exact search, tile by tile, as that takes, without a denoiser; 0: as many as --slices");
+  table.number("--tolerance", s.tolerance, "", between(0, 1), "of gtao, RMS error of the AO by its search: as many directions of an exact search, tile by tile, as that takes, without a denoiser; 0: as many as --slices");
   table.number("--samples", s.samples, "a pixel", between(4, 64), "of crytek, in the hemisphere");
   table.number("--bias", s.bias, "", between(0, 1e18), "keeps a surface from blocking itself; crytek: scene units of depth; others: sine of the elevation above the surface, below 1");
   table.choice("--elevation", s.elevation, "of hbao; view: the horizon's less the surface's, above the plane across the view ray; surface: the horizon's above the surface");
@@ -249,7 +249,7 @@ void add_estimator_rows(Table& table, RunOptions& options) {
   table.choice("--noise", s.noise, "fixed: every frame has the same pattern of sample noise, so that what stands still does not flicker; animated: one of its own");
   table.number("--seed", s.seed, "", between(0, 4294967295.0), "shifts the sample noise");
   table.flag("--no-skip", s.no_skip, "estimate sky too, and tiles that are proved to be open; slower, the same bits");
-  table.number("--skip-tolerance", s.skip_tolerance, "0 to 0.1", between(0, 0.1), "of gtao and bitmask: also leave out, as open, tiles whose AO is proved to be at least 1 less this, whatever the noise of few samples; 0: the same bits as --no-skip");
+  table.number("--skip-tolerance", s.skip_tolerance, "", between(0, 0.1), "of gtao and bitmask: also leave out, as open, tiles whose AO is proved to be at least 1 less this, whatever the noise of few samples; 0: the same bits as --no-skip");
 }
 
 void add_output_rows(Table& table, OutputSettings& s) {
