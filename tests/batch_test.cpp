@@ -41,8 +41,7 @@ TEST_F(Batch, threads_chunks_and_order_change_no_bit) {
   ASSERT_EQ(run({"--threads", "1"}).code, 0);
   const auto one_thread = outputs();
   const auto again = [&](const std::vector<std::vector<std::string>>& runs) {
-    fs::remove_all(out);
-    fs::create_directory(out);
+    remove_outputs();
     for (const auto& arguments : runs) EXPECT_EQ(run(arguments).code, 0);
     EXPECT_TRUE(outputs() == one_thread) << testing::PrintToString(runs);
   };

@@ -74,8 +74,7 @@ TEST_F(Faults, signals_end_the_run_and_leave_whole_files_only) {
   ASSERT_EQ(run().code, 0);
   const auto whole = outputs();
   for (const auto& [signal, code] : {std::pair(SIGTERM, 143), std::pair(SIGINT, 130)}) {
-    fs::remove_all(out);
-    fs::create_directory(out);
+    remove_outputs();
     const Finished finished = run({}, signalled(out, 3, signal));
     EXPECT_EQ(finished.code, code) << finished;
     EXPECT_THAT(lines_of(finished.err).back(), HasSubstr("not begun or dropped"));
@@ -88,8 +87,7 @@ TEST_F(Faults, a_kill_at_any_moment_leaves_whole_files_and_what_is_cleaned_next_
   write_frames(1, 40);
   ASSERT_EQ(run().code, 0);
   const auto whole = outputs();
-  fs::remove_all(out);
-  fs::create_directory(out);
+  remove_outputs();
   for (int i = 0; i < 12; i++) {
     Surroundings surroundings;
     surroundings.meanwhile = [&](int process) {
@@ -174,8 +172,7 @@ TEST_F(Faults, a_lost_device_is_replaced_once) {
   const std::vector<std::string> every_frame{"--threads", "1", "--keep-going", "--noise", "animated"};  // computes it, though they are equal
   ASSERT_EQ(run(every_frame).code, 0);
   const auto whole = outputs();
-  fs::remove_all(out);
-  fs::create_directory(out);
+  remove_outputs();
   const auto losing = [](const char* times) { return Surroundings{.environment = {{"LD_PRELOAD", ALCOVE_LOST_DEVICE}, {"ALCOVE_LOSSES", times}}}; };
   const Finished once = run(every_frame, losing("1"));
   EXPECT_EQ(once.code, 0) << once;

@@ -46,8 +46,7 @@ TEST_F(Streams, progress_and_a_log_that_nobody_takes_end_with_4_and_leave_whole_
   write_frames(1, 2);
   ASSERT_EQ(run().code, 0);
   const auto whole = outputs();
-  fs::remove_all(out);
-  fs::create_directory(out);
+  remove_outputs();
   for (const std::vector<std::string>& more : {std::vector<std::string>{"--progress", "percent"}, {"--log-json", "-"}}) {
     const Finished finished = run(more, {.out = "/dev/full"});
     EXPECT_EQ(finished.code, 4) << finished;
@@ -403,8 +402,7 @@ TEST_F(Streams, a_frame_that_finds_no_memory_leaves_nothing_to_the_next) {
   ASSERT_EQ(run({"--no-skip", "--threads", "1"}).code, 0);
   const auto whole = outputs();
   for (const char* number : {"3", "4", "6", "8"}) {
-    fs::remove_all(out);
-    fs::create_directory(out);
+    remove_outputs();
     const std::string stats = folder / "stats.json";
     const Finished finished = run({"--no-skip", "--threads", "1", "--keep-going", "--stats", stats},
                                   {.environment = {{"LD_PRELOAD", ALCOVE_POOR_DEVICE}, {"ALCOVE_ALLOCATION", number}}});

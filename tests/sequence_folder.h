@@ -37,6 +37,11 @@ class SequenceFolder : public testing::Test {
     return run_program(arguments, surroundings);
   }
 
+  void remove_outputs() const {
+    std::filesystem::remove_all(out);
+    std::filesystem::create_directory(out);
+  }
+
   /// The bytes of every output, by name.
   std::map<std::string, std::string> outputs() const {
     std::map<std::string, std::string> files;
