@@ -3,6 +3,7 @@
 #include "core/tiles.h"
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <limits>
 
@@ -18,23 +19,35 @@ namespace {
 constexpr std::uint64_t kProgramBytes = 192ull << 20;  // the process without frames: libraries, drivers, compiled kernels
 constexpr std::uint64_t kLeastBytes = 16ull << 20;     // for frames, however little the user allows
 constexpr int kLeastRows = 16, kLeastColumns = 64;     // px of a tile: rows that most files compress together
+constexpr std::size_t kTileLists = 8;                  // words a tile: sectors, bounds of groups, runs of the filters, and how the frame before differs
+constexpr std::size_t kConvergeLists = 7;              // one after each power of two directions
 constexpr int kFewBorders = 4;                         // a row of tiles is halved only while it is this many times as high as what it needs around it
 
-/// Planes that passes leave in buffers of a frame: what core/chain.cpp makes.
-std::size_t chain_planes(const FrameSource& source, const Settings& settings) {
+/// At most so many groups of `each` pixels a pixel along a side of the frame, however it is cut into tiles.
+double groups_a_pixel(int side, int each, int least) {
+  const int pixels = std::min(side, least);
+  return double((pixels + 2 * each - 2) / each) / pixels;
+}
+
+/// What passes leave in buffers of a frame, in bytes a pixel: what core/chain.cpp makes.
+std::uint64_t chain_bytes(const FrameSource& source, const Settings& settings) {
   const auto& e = settings.estimator;
   const auto& o = settings.output;
+  const auto groups = [&](int each) { return groups_a_pixel(source.file_data.width, each, kLeastColumns) * groups_a_pixel(source.file_data.height, each, kLeastRows); };
   const std::size_t scales = 1 + e.further_radii.size(), bent = needs_bent(e, o) ? 3 : 0, estimated = scales + bent + (scales > 1 ? 1 : 0);
-  std::size_t planes = 2 + estimated;                                     // depth, normals, the estimate
-  planes += e.denoise == Denoise::none ? 0 : 2 * estimated;               // rows, columns
-  planes += e.resolution == Resolution::full ? 0 : 2 + estimated;         // smaller ones of all these, and the whole estimate
-  planes += e.fade_end || e.intensity != 1 || e.power != 1 || !source.material_ao.empty() ? 1 + scales : 0;
+  const bool reduced = e.resolution != Resolution::full, converges = e.tolerance > 0;
+  std::size_t low = estimated + (reduced ? 2 : 0);                        // of the estimate's resolution: it, and its depth and normals
+  low += e.denoise == Denoise::none || converges ? 0 : 2 * estimated;     // rows, columns
+  low += searches_exactly(e) ? 4 : 0;                                     // vertices, marks, neighbours, whole arcs
+  low += converges ? 2 : 0;                                               // blocked arcs, error
+  std::size_t planes = 2 + (reduced ? estimated : 0);                     // depth, normals, the whole estimate
+  planes += shapes(e) || !source.material_ao.empty() ? 1 + scales : 0;
   planes += bent ? 1 : 0;
   planes += wants(o, &FrameOutputs::confidence) ? 2 * 3 : 0;              // thin and solid: estimates, rows, columns
-  planes += searches_exactly(e) ? 4 : 0;                                  // vertices, marks, neighbours, whole arcs
   planes += (o.multi_bounce ? 3 : 0) + source.beauty.size() + debug_views_of(o).size();
   for (const auto& aov : aovs_of(o)) planes += channels_of(aov, scales).size();
-  return planes;
+  const double tiles = double(sizeof(TileBounds) + kTileLists * sizeof(uint) + (converges ? kConvergeLists : 1) * sizeof(ListedTile)) * groups(kTile * int(e.resolution));
+  return std::uint64_t(std::ceil(double(sizeof(float)) * (double(planes) + double(low) * groups(int(e.resolution))) + tiles));
 }
 
 /// The number behind a word in a file of the kernel's, in bytes.
@@ -120,7 +133,7 @@ PixelMemory pixel_memory(const FrameSource& source, const Settings& settings) {
   memory.written_bytes = written * sizeof(float);
   memory.widest = widest * sizeof(float);
   // What is written may be there once more: cropped to a region, or as half.
-  memory.bytes = memory.read_bytes + (chain_planes(source, settings) + pictures) * sizeof(float) + memory.written_bytes;
+  memory.bytes = memory.read_bytes + chain_bytes(source, settings) + pictures * sizeof(float) + memory.written_bytes;
   return memory;
 }
 

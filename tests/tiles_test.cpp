@@ -51,7 +51,7 @@ TEST_F(Tiles, give_the_bits_of_the_whole) {
                                  {"--radius", "0.1", "--stride", "4"},
                                  {"--radius", "0.1", "--preset", "reference"},
                                  {"--radius", "0.1", "--preset", "reference", "--denoise", "none", "--thickness", "0.05"},
-                                 {"--radius", "0.1", "--tolerance", "0.03", "--aov", "ao,error"},
+                                 {"--radius", "0.04", "--tolerance", "0.03", "--aov", "ao,error"},
                                  {"--radius", "0.1", "--roi", "3,5,900,500", "--falloff", "smooth"}}) {
     const auto [whole, one] = computed(options, false);
     const auto [tiled, many] = computed(options, true);

@@ -68,6 +68,12 @@ void Recorder::barrier() {
   vkCmdPipelineBarrier(commands_, stages, stages | VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT, 0, 1, &memory, 0, nullptr, 0, nullptr);
 }
 
+std::size_t Recorder::bytes() const {
+  std::size_t sum = 0;
+  for (const auto& [name, buffer] : buffers_) sum += buffer.bytes();
+  return sum;
+}
+
 void Recorder::clear(const Buffer& buffer) {
   begin();
   const VkDescriptorBufferInfo bound = buffer.bound();

@@ -71,6 +71,9 @@ class Recorder {
   /// Each pass of the last run, in order; its time is 0 on a device without timestamps.
   const std::vector<PassTime>& passes() const { return passes_; }
 
+  /// Of all its buffers.
+  std::size_t bytes() const;
+
  private:
   void begin();
   void barrier();
