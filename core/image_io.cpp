@@ -20,10 +20,8 @@
 namespace alcove {
 namespace {
 
-std::string one_line(std::string text) {
-  std::ranges::replace(text, '\n', ' ');
-  return text;
-}
+/// Decoders go on after an error and tell the next one.
+std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
 
 constexpr std::uint64_t kDensest = 4096;         // bytes of pixels that a byte of a file may stand for where formats pack them: twice what deflate can
 constexpr std::size_t kBlockBytes = 1 << 20;     // of pixels that are decoded at once, or one row
@@ -35,7 +33,7 @@ class OiioReader : public PictureReader {
     OIIO::ImageSpec as_stored;
     as_stored["oiio:UnassociatedAlpha"] = 1;
     input_ = OIIO::ImageInput::open(path, &as_stored);
-    if (!input_) fail(ErrorKind::input, "{}: not a picture that can be read ({}): {}", path, option, one_line(OIIO::geterror()));
+    if (!input_) fail(ErrorKind::input, "{}: not a picture that can be read ({}): {}", path, option, first_line(OIIO::geterror()));
     const OIIO::ImageSpec& spec = input_->spec();
     if (spec.deep || spec.depth > 1) fail(ErrorKind::input, "{}: a deep or volume picture, which has no single value a pixel ({})", path, option);
     data = {spec.x, spec.y, spec.width, spec.height};
@@ -56,7 +54,8 @@ class OiioReader : public PictureReader {
       const int end = std::min(begin + block, data.height), top = data.y + begin, bottom = data.y + end;
       const bool is_read = spec.tile_width ? input_->read_tiles(0, 0, data.x, data.x + data.width, top, bottom, 0, 1, 0, int(stride), OIIO::TypeFloat, interleaved.data())
                                            : input_->read_scanlines(0, 0, top, bottom, 0, 0, int(stride), OIIO::TypeFloat, interleaved.data());
-      if (!is_read) fail(ErrorKind::input, "{}: the pixels cannot be read, the file is damaged or incomplete ({}): {}", path_, option_, one_line(input_->geterror()));
+      // That of TIFF says that all went well, and gives zeros, where the file ends too early.
+      if (!is_read || input_->has_error()) fail(ErrorKind::input, "{}: the pixels cannot be read, the file is damaged or incomplete ({}): {}", path_, option_, first_line(input_->geterror()));
       for (const Channel& channel : channels)
         for (int row = std::max(begin, first); row < std::min(end, first + rows); row++)
           for (std::size_t x = 0; x < width; x++)
@@ -110,7 +109,7 @@ OIIO::ImageBuf make_ramp() {
 
 void write_text(OIIO::ImageBuf& picture, const std::string& name, int x, int y, const std::string& text) {
   if (!OIIO::ImageBufAlgo::render_text(picture, x, y, text, 15, "DejaVuSans", {0.9f, 0.9f, 0.9f}))
-    fail(ErrorKind::output, "{}: its texts need the font DejaVu Sans (Debian package fonts-dejavu-core): {}", name, one_line(picture.geterror()));
+    fail(ErrorKind::output, "{}: its texts need the font DejaVu Sans (Debian package fonts-dejavu-core): {}", name, first_line(picture.geterror()));
 }
 
 std::vector<char> encode_chart(const std::string& name, const Chart& chart) {
