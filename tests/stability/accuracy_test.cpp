@@ -164,8 +164,9 @@ TEST(Accuracy, about_normals_that_are_not_the_surfaces) {
     expect({.normals = normals}, "gtao constant");
 }
 
-TEST(Accuracy, beside_depths_that_are_none) {
+TEST(Accuracy, beside_depths_that_are_none_or_next_to_the_eye) {
   for (const DepthDefect depth : {DepthDefect::zero, DepthDefect::negative, DepthDefect::infinite, DepthDefect::nan, DepthDefect::largest}) expect({.depth = depth});
+  expect({.depth = DepthDefect::near_plane}, "crytek");  // whose sphere holds the eye: few of its samples are seen
 }
 
 TEST(Accuracy, of_depth_stored_with_few_bits) {

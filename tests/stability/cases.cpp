@@ -140,7 +140,7 @@ float spoilt(float z, DepthDefect defect, std::mt19937& random) {
     case DepthDefect::infinite: return random() % 2 ? kInfinity : -kInfinity;
     case DepthDefect::nan: return kNan;
     case DepthDefect::largest: return random() % 2 ? std::numeric_limits<float>::max() : 1e30f;
-    case DepthDefect::near_plane: return 1e-4f * z;
+    case DepthDefect::near_plane: return z < 1e24f ? 1e-4f * z : z;
     case DepthDefect::any_bits: return std::bit_cast<float>(std::uint32_t(random()));
   }
   return z;
