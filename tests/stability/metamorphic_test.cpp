@@ -160,7 +160,8 @@ TEST(Metamorphic, every_kind_of_depth_says_the_same) {
   std::vector<HostFrame> frames{said(rendering, DepthKind::ray), said(rendering, DepthKind::inverse), said(rendering, DepthKind::position),
                                 said(rendering, DepthKind::position, {}, PositionSpace::world)};
   for (const bool reversed : {false, true}) {
-    for (const DepthKind kind : {DepthKind::device, DepthKind::normalized, DepthKind::log}) frames.push_back(said(rendering, kind, {.near = kNear, .far = kFar, .reversed = reversed}));
+    for (const DepthKind kind : {DepthKind::device, DepthKind::normalized, DepthKind::log})
+      frames.push_back(said(rendering, kind, {.near = kNear, .far = kFar, .reversed = reversed}));
     for (const double far : {kFar, kEndless})
       frames.push_back(said(rendering, DepthKind::device, {.near = kNear, .far = far, .reversed = reversed, .device = DeviceRange::minus_one_to_one}));
     frames.push_back(said(rendering, DepthKind::device, {.near = kNear, .far = kEndless, .reversed = reversed}));
@@ -242,7 +243,7 @@ TEST(Metamorphic, a_convex_body_alone_is_open) {
       for (const auto& variant : estimators())
         for (const double radius : {1e-6, 0.05, 1.0, 1e6}) {
           const Difference d = difference(run(frame, with_radius(variant.settings, radius)), [](std::size_t) { return 1.0; });
-          // The strokes of an exact search keep to the surface within a fifth of a pixel, which is most at the rim of a ball, and at an edge more than that in few pixels.
+          // The strokes of an exact search keep to the surface within a fifth of a pixel, which is most at the rim of a ball and at a box's edges.
           const bool exact = searches_exactly(variant.settings);
           EXPECT_LE(d.max, !exact ? 1e-4 : scene.primitives.size() > 1 ? 0.2 : 0.01) << variant.name << " fov " << fov << " radius " << radius << " " << place(d, frame);
           EXPECT_LE(d.rmse, exact ? 0.01 : 1e-5) << variant.name << " fov " << fov << " radius " << radius;
