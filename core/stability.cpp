@@ -193,6 +193,7 @@ std::vector<Axis> all_axes() {
           {"tilt of the surface", "degrees", false, 0, {0, 30, 60, 75, 80, 85, 88, 89, 89.9, 89.99}, tilted},
           {"half depth", "field of view of 48 pixels, degrees", true, kFov, {0.02, 0.05, 0.15, 0.5, 1.5, 5, 15, kFov}, in_half},
           {"16 bits of device depth", "median depth over near plane", true, 3, over_near, [](double x) { return in_bits(16, false, x); }},
+          {"16 bits of reversed depth", "median depth over near plane", true, 3, over_near, [](double x) { return in_bits(16, true, x); }},
           {"24 bits of device depth", "median depth over near plane", true, 3, over_near, [](double x) { return in_bits(24, false, x); }},
           {"24 bits of reversed depth", "median depth over near plane", true, 3, over_near, [](double x) { return in_bits(24, true, x); }},
           {"float reversed depth", "median depth over near plane", true, 3, over_near, [](double x) { return in_bits(32, true, x); }},

@@ -19,7 +19,7 @@ TEST(StabilityReport, says_where_each_estimator_breaks_down_and_that_a_run_notes
   int lines = 0;
   const StabilityReport report = run_stability(test::device(), [&](const std::string&) { lines++; });
   EXPECT_EQ(lines, int(report.axes.size()));
-  ASSERT_EQ(report.axes.size(), 12);
+  ASSERT_EQ(report.axes.size(), 13);
   ASSERT_EQ(report.plain.size(), 7);
   for (const auto& [estimator, rmse] : report.plain) EXPECT_LT(rmse, 0.06) << estimator;
   std::set<std::string> names;
