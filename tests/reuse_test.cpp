@@ -248,7 +248,8 @@ TEST_F(ReuseOfFrames, other_light_over_the_same_surfaces_is_composed_anew) {
     frame.write(input(int(i) + 1));
   }
   const std::string path = folder / "stats.json";
-  const std::vector<std::string> options{"--composite", out + "/comp.%04d.exr", "--aov", "ao,confidence,specular-occlusion,bent-normal", "--radius", "0.3", "--threads", "1", "--stats", path};
+  const std::vector<std::string> options{"--composite", out + "/comp.%04d.exr", "--aov", "ao,confidence,specular-occlusion,bent-normal",
+                                         "--radius", "0.3", "--threads", "1", "--stats", path};
   ASSERT_EQ(run(options).code, 0);
   std::vector<int> kept, passes;
   const json statistics = stats(path);

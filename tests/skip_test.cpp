@@ -116,6 +116,34 @@ TEST(Skip, sky_is_left_out_whatever_the_samples_cost) {
   for (std::size_t i = 0; i < frame.data.pixels(); i++) ASSERT_EQ(sky.values[i], 1.0f);
 }
 
+// An estimate by its error leaves out sky by itself; beside it stand the estimates of confidence, and a frame of sky.
+TEST(Skip, estimates_by_their_error) {
+  HostFrame frame = furnished_room(80, 60).frame;
+  EstimatorSettings settings;
+  settings.radius = 0.3;
+  settings.slices = 3;
+  settings.tolerance = 0.05;
+  OutputSettings output;
+  const auto planes = [&](bool no_skip) {
+    settings.no_skip = no_skip;
+    const FrameOutputs outputs = run_chain(recorder(), upload(recorder(), frame), settings, output);
+    recorder().run();
+    std::vector<float> values;
+    for (const auto* plane : {outputs.ao, outputs.scales, outputs.error, outputs.confidence})
+      if (plane) values.insert(values.end(), plane->as<float>().begin(), plane->as<float>().end());
+    return values;
+  };
+  for (const bool is_sky : {false, true}) {
+    if (is_sky) std::ranges::fill(frame.depth, kSky);
+    for (const std::string aovs : {"ao,ao-scales", "ao,error,confidence"}) {
+      output.aovs = aovs;
+      const std::vector<float> skipped = planes(false);
+      EXPECT_EQ(recorder().passes().empty(), is_sky && aovs == "ao,ao-scales") << aovs;
+      EXPECT_TRUE(same_bits(skipped, planes(true))) << aovs << (is_sky ? " of sky" : "");
+    }
+  }
+}
+
 TEST(Skip, a_frame_of_sky_needs_no_kernel) {
   HostFrame frame = furnished_room(70, 50).frame;
   EstimatorSettings settings = plain_settings();
@@ -236,8 +264,10 @@ EstimatorSettings any_proving(RandomScenes& random) {
   settings.sample_kernel = one_of(SampleKernel::clustered, SampleKernel::uniform);
   settings.range_check = one_of(RangeCheck::none, RangeCheck::ratio, RangeCheck::smoothstep);
   settings.samples = 64;
-  std::tie(settings.slices, settings.steps, settings.stride, settings.denoise_radius) = one_of(std::tuple(1, 10, 0, 6), std::tuple(2, 16, 0, 4), std::tuple(3, 16, 1, 2), std::tuple(2, 16, 2, 3));
-  if (settings.estimator != Estimator::crytek) settings.resolution = one_of(Resolution::full, Resolution::full, Resolution::full, Resolution::half, Resolution::quarter);
+  std::tie(settings.slices, settings.steps, settings.stride, settings.denoise_radius) =
+      one_of(std::tuple(1, 10, 0, 6), std::tuple(2, 16, 0, 4), std::tuple(3, 16, 1, 2), std::tuple(2, 16, 2, 3));
+  if (settings.estimator != Estimator::crytek)
+    settings.resolution = one_of(Resolution::full, Resolution::full, Resolution::full, Resolution::half, Resolution::quarter);
   settings.denoise = one_of(Denoise::none, Denoise::bilateral, Denoise::bilateral, Denoise::bilateral, Denoise::box);
   settings.denoise_depth_sigma = one_of(0.0, 0.0, 0.1);
   if (settings.denoise != Denoise::bilateral || settings.resolution != Resolution::full || settings.estimator == Estimator::crytek) settings.stride = 1;
@@ -287,7 +317,8 @@ TEST(Skip, a_tolerance_opens_only_what_is_nearly_open) {
     const Outcome exact = run(frame, settings, false);
     settings.skip_tolerance = tolerance;
     const Outcome tolerant = run(frame, settings, false);
-    const std::string kind = "estimator " + std::to_string(int(estimator)) + ", thickness " + std::to_string(int(thickness)), what = "scene " + std::to_string(i) + ", " + kind;
+    const std::string kind = "estimator " + std::to_string(int(estimator)) + ", thickness " + std::to_string(int(thickness));
+    const std::string what = "scene " + std::to_string(i) + ", " + kind;
     // The scales; they lie behind the AO, which is their mean.
     const std::size_t begin = frame.data.pixels(), end = begin * (2 + settings.further_radii.size());
     double least = 1;
