@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdio>
+#include <new>
 #include <string>
 #include <vector>
 
@@ -63,6 +64,9 @@ int main(int argc, char** argv) {
   } catch (const alcove::Error& error) {
     alcove::print_error("alcove: error: {}\n", alcove::printable(error.what()));
     return int(error.kind());
+  } catch (const std::bad_alloc&) {
+    alcove::print_error("alcove: error: no memory is left: let a run take less by --memory, and other commands have smaller pictures\n");
+    return int(alcove::ErrorKind::device);
   } catch (const std::exception& error) {
     const bool is_output = std::ferror(stdout) != 0;  // which fmt tells by an exception of its own
     alcove::print_error("alcove: error: {}{}\n", is_output ? "the standard output: " : "unexpected: ", alcove::printable(error.what()));

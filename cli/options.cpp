@@ -249,7 +249,7 @@ void add_estimator_rows(Table& table, RunOptions& options) {
   table.choice("--noise", s.noise, "fixed: every frame has the same pattern of sample noise, so that what stands still does not flicker; animated: one of its own");
   table.number("--seed", s.seed, "", between(0, 4294967295.0), "shifts the sample noise");
   table.flag("--no-skip", s.no_skip, "estimate sky too, and tiles that are proved to be open; slower, the same bits");
-  table.number("--skip-tolerance", s.skip_tolerance, "", between(0, 0.1), "of gtao and bitmask: also leave out, as open, tiles whose AO is proved to be at least 1 less this, whatever the noise of few samples; 0: the same bits as --no-skip");
+  table.number("--skip-tolerance", s.skip_tolerance, "", between(0, 0.1), "of gtao and bitmask: also leave out, as open, tiles whose AO, before --intensity and --power, is proved to be at least 1 less this, whatever the noise of few samples; 0: the same bits as --no-skip");
 }
 
 void add_output_rows(Table& table, OutputSettings& s) {

@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <cmath>
 #include <cstring>
+#include <filesystem>
 
 #include "cli/print.h"
 #include "core/error.h"
@@ -31,6 +32,9 @@ Progress::Progress(const ProgressOptions& options, const std::string& log_json) 
 
 void Progress::open_log() {
   if (log_path_.empty()) return;
+  // A symbolic link is replaced and not followed, as all outputs are; a log begins anew.
+  std::error_code none;
+  if (log_path_ != "-" && std::filesystem::is_symlink(log_path_, none)) std::filesystem::remove(log_path_, none);
   if (log_path_ != "-") file_.reset(std::fopen(log_path_.c_str(), "we"));
   log_ = log_path_ == "-" ? stdout : file_.get();
   if (!log_) fail(ErrorKind::output, "{}: cannot be written: {} (--log-json)", log_path_, std::strerror(errno));
@@ -63,7 +67,7 @@ std::string Progress::rate_text() const {
 void Progress::show_bar() {
   const int full = kBarWidth * ended_ / std::max(1, frames_);
   print_error("\r\x1b[K[{:#<{}}{:.<{}}] {}", "", full, "", kBarWidth - full, rate_text());
-  std::fflush(stderr);
+  (void)std::fflush(stderr);
 }
 
 void Progress::frame(const FrameReport& frame) {
@@ -75,18 +79,19 @@ void Progress::frame(const FrameReport& frame) {
   if (options_.quiet) return;
   for (const auto& note : frame.notes) say(printable(fmt::format("{}: {}", frame.input, note)));
   if (options_.verbose)
-    for (const auto& pass : frame.passes) say(fmt::format("{}: {} {:.3f} ms", frame.input, pass.name, pass.ms));
+    for (const auto& pass : frame.passes) say(printable(fmt::format("{}: {} {:.3f} ms", frame.input, pass.name, pass.ms)));
   const double percent = 100.0 * ended_ / std::max(1, frames_);
   if (options_.kind == "plain" || (options_.kind == "bar" && !is_sequence_)) {
     const std::string place = is_sequence_ ? fmt::format(" ({})", rate_text()) : "";
-    if (frame.state == FrameState::kept) say(fmt::format("{}: whole, kept{}", frame.output, place));
+    if (frame.state == FrameState::kept) say(printable(fmt::format("{}: whole, kept{}", frame.output, place)));
     if (frame.state == FrameState::done)
-      say(fmt::format("{} -> {}: read {:.0f} ms, compute {:.1f} ms, write {:.0f} ms{}", frame.input, frame.output, frame.read_ms, frame.compute_ms, frame.write_ms, place));
+      say(printable(fmt::format("{} -> {}: read {:.0f} ms, compute {:.1f} ms, write {:.0f} ms{}", frame.input, frame.output, frame.read_ms, frame.compute_ms,
+                                frame.write_ms, place)));
   }
   if (options_.kind == "bar" && is_sequence_) show_bar();
   if (options_.kind == "percent") fmt::print("Progress: {:.0f}%\n", std::floor(percent));
   if (options_.kind == "openjd") fmt::print("openjd_progress: {:.1f}\nopenjd_status: frame {} {}\n", percent, frame.frame, name_of(frame.state));
-  std::fflush(stdout);
+  (void)std::fflush(stdout);
 }
 
 void Progress::end(const RunReport& report) {
@@ -95,9 +100,9 @@ void Progress::end(const RunReport& report) {
                          report.dropped, report.missing.size(), report.wall_s));
   if (options_.quiet) return;
   if (options_.kind == "openjd" && (report.failed || report.stop)) fmt::print("openjd_fail: {}\n", summary);
-  std::fflush(stdout);
+  (void)std::fflush(stdout);
   if (report.on_cpu_by_default && report.done) say(fmt::format("no GPU found; computed on {}", report.device));
-  if (is_sequence_) say("alcove: " + summary);
+  if (is_sequence_) say(printable("alcove: " + summary));
 }
 
 }  // namespace alcove

@@ -90,11 +90,12 @@ std::string debug_path(const OutputSettings& settings, const DebugView& view) {
   return (output.ends_with(".exr") ? output.substr(0, output.size() - 4) : output) + "." + view.name + ".png";
 }
 
-void write_debug_view(const std::string& path, const DebugView& view, int width, int height, std::span<const float> values) {
+void write_debug_view(const std::string& path, const DebugView& view, int width, int height, std::span<const float> values, const std::string& made_by) {
   const auto [low, high] = range_of(view, values);
   const bool is_open = view.scale == DebugScale::percentile || view.scale == DebugScale::percentile_logarithmic;
   const auto text = [&](const char* beyond, float x) { return fmt::format("{}{:.4g}", is_open ? beyond : "", x); };
-  write_whole(path, encode_chart(path, {width, height, places_of(view, values, low, high), view.title, text("<= ", low), text(">= ", high), view.is_grey}));
+  const Chart chart{width, height, places_of(view, values, low, high), view.title, text("<= ", low), text(">= ", high), made_by, view.is_grey};
+  write_whole(path, encode_chart(path, chart));
 }
 
 }  // namespace alcove

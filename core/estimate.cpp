@@ -202,7 +202,7 @@ double samples_per_pixel(const EstimatorSettings& settings) {
 }
 
 bool proves(const EstimatorSettings& settings) {
-  return !settings.no_skip && !searches_exactly(settings) && samples_of_a_radius(settings) >= kWorthProving;
+  return !settings.no_skip && !searches_exactly(settings) && (settings.skip_tolerance > 0 || samples_of_a_radius(settings) >= kWorthProving);
 }
 
 Bounds bounds(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings) {

@@ -33,6 +33,7 @@
 #include "core/error.h"
 #include "core/exr_header.h"
 #include "core/file.h"
+#include "core/picture_reader.h"
 #include "core/text.h"
 
 namespace alcove {
@@ -162,7 +163,15 @@ struct ExrFile::Impl {
   std::vector<ExrPart> parts;
   Window display;
   double pixel_aspect = 1;
-  Image image;  // where there is no file
+  std::unique_ptr<PictureReader> picture;  // where there is no file
+  Image image;                             // where there is no picture either
+
+  /// One part with these channels.
+  Impl(const std::string& path_, const char* option_, const Window& data, const Window& display_, const std::vector<std::string>& names)
+      : path(path_), option(option_), parts{{"", "", {}, data, {}, false}}, display(display_) {
+    for (const auto& name : names) parts[0].channels.push_back({name, SampleType::single_float, false});
+  }
+  Impl() = default;
 };
 
 ExrFile::ExrFile(const std::string& path, const char* option) : impl_(std::make_unique<Impl>()) {
@@ -190,12 +199,12 @@ ExrFile::ExrFile(const std::string& path, const char* option) : impl_(std::make_
   }
 }
 
-ExrFile::ExrFile(const std::string& path, const char* option, Image image) : impl_(std::make_unique<Impl>()) {
-  impl_->path = path;
-  impl_->option = option;
-  impl_->display = image.display;
-  impl_->parts.push_back({"", "", {}, image.data, {}, false});
-  for (const auto& name : image.names) impl_->parts[0].channels.push_back({name, SampleType::single_float, false});
+ExrFile::ExrFile(const std::string& path, const char* option, std::unique_ptr<PictureReader> picture)
+    : impl_(std::make_unique<Impl>(path, option, picture->data, picture->display, picture->names)) {
+  impl_->picture = std::move(picture);
+}
+
+ExrFile::ExrFile(const std::string& path, const char* option, Image image) : impl_(std::make_unique<Impl>(path, option, image.data, image.display, image.names)) {
   impl_->image = std::move(image);
 }
 
@@ -236,6 +245,12 @@ void ExrFile::read(std::span<const ExrRead> reads) {
 }
 
 void ExrFile::read(std::span<const ExrRead> reads, int first, int rows) {
+  if (impl_->picture) {
+    const auto& names = impl_->picture->names;
+    std::vector<PictureReader::Channel> channels;
+    for (const auto& read : reads) channels.push_back({std::size_t(std::ranges::find(names, read.channel) - names.begin()), read.to});
+    return impl_->picture->read(first, rows, channels);
+  }
   if (!impl_->file) {
     const std::size_t width = std::size_t(impl_->image.data.width);
     for (const auto& read : reads) std::ranges::copy(impl_->image.plane(read.channel).subspan(std::size_t(first) * width, std::size_t(rows) * width), read.to);

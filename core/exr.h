@@ -34,6 +34,7 @@ struct ExrPart {
 
 /// All attributes of one part's header, of every type, and those that only the first part has, to be carried into an output.
 class ExrAttributes;
+class PictureReader;
 
 /// A channel to read, and where to: width x height floats of the part's data window, or of some of its rows, row by row.
 struct ExrRead {
@@ -47,7 +48,8 @@ class ExrFile {
  public:
   /// Fails on a missing file, a folder, a file that is no EXR, deep data, no channels, and headers that ask for more than their file can hold.
   explicit ExrFile(const std::string& path, const char* option);
-  /// A picture of another format that has been read already, with the same face.
+  /// Pictures of other formats with the same face: one whose header has been read, and one that has been read whole.
+  ExrFile(const std::string& path, const char* option, std::unique_ptr<PictureReader> picture);
   ExrFile(const std::string& path, const char* option, Image image);
   ~ExrFile();
   ExrFile(ExrFile&&) noexcept;

@@ -7,12 +7,14 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <random>
+#include <string_view>
 
 #include "core/error.h"
 
@@ -29,6 +31,16 @@ bool lock(int descriptor, bool wait) {
   while (::flock(descriptor, LOCK_EX | (wait ? 0 : LOCK_NB)) != 0)
     if (errno != EINTR) return wait && errno != EWOULDBLOCK;
   return true;
+}
+
+/// Whether a name is one that NewFile gives: a process, eight digits.
+bool is_unfinished(std::string_view name) {
+  if (!name.starts_with(kUnfinishedPrefix) || !name.ends_with(kUnfinishedSuffix)) return false;
+  name.remove_prefix(std::string_view(kUnfinishedPrefix).size());
+  name.remove_suffix(std::string_view(kUnfinishedSuffix).size());
+  const std::size_t dash = name.find('-');
+  const auto all_of = [](std::string_view text, const char* digits) { return !text.empty() && text.find_first_not_of(digits) == text.npos; };
+  return dash != name.npos && all_of(name.substr(0, dash), "0123456789") && name.size() - dash == 9 && all_of(name.substr(dash + 1), "0123456789abcdef");
 }
 
 bool is_removed(int descriptor) {
@@ -70,6 +82,10 @@ void require_writable(const std::string& path, const char* option) {
   if (folder_status.type() == fs::file_type::none) fail(ErrorKind::output, "{}: its folder cannot be reached: {} ({})", path, error.message(), option);
   if (!fs::exists(folder_status)) fail(ErrorKind::output, "{}: its folder {} does not exist ({})", path, folder.string(), option);
   if (!fs::is_directory(folder_status)) fail(ErrorKind::output, "{}: {} is not a folder ({})", path, folder.string(), option);
+  // What stands there is renamed over: a device's name, such as /dev/stdout, would be gone for everybody.
+  const std::string whole = fs::canonical(folder, error).string() + "/";
+  const bool is_systems = std::ranges::any_of(std::array{"/dev/", "/proc/", "/sys/"}, [&](const char* root) { return whole.starts_with(root); });
+  if (is_systems && !whole.starts_with("/dev/shm/")) fail(ErrorKind::output, "{}: {} is no place for files; {} names the file to write", path, folder.string(), option);
   if (::access(folder.c_str(), W_OK | X_OK) != 0) fail(ErrorKind::output, "{}: its folder cannot be written: {} ({})", path, std::strerror(errno), option);
   const auto status = fs::status(path, error);
   if (fs::exists(status) && !fs::is_regular_file(status)) fail(ErrorKind::output, "{}: is no regular file; {} names the file to write", path, option);
@@ -134,7 +150,7 @@ int remove_unfinished(const std::string& folder) {
   std::error_code error;
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
     const std::string name = entry->path().filename().string();
-    if (!name.starts_with(kUnfinishedPrefix) || !name.ends_with(kUnfinishedSuffix)) continue;
+    if (!is_unfinished(name)) continue;
     if (!fs::is_regular_file(entry->symlink_status(error))) continue;
     const int descriptor = ::open(entry->path().c_str(), O_WRONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
     if (descriptor < 0) continue;

@@ -180,16 +180,19 @@ void FrameWriter::finish() {
   for (auto& file : files_) file.finish();
 }
 
-void write_pictures(const FrameSource& source, const FrameOutputs& outputs, const DisplayTransform* transform, const OutputSettings& settings) {
+std::string made_by(const std::string& options, const std::string& inputs) { return options + " " + inputs; }
+
+void write_pictures(const FrameSource& source, const FrameOutputs& outputs, const DisplayTransform* transform, const OutputSettings& settings, const Provenance& provenance) {
+  const std::string text = made_by(provenance.options, provenance.inputs);
   for (const auto& plane : outputs.debug)
-    write_debug_view(debug_path(settings, *plane.view), *plane.view, plane.size.x, plane.size.y, plane.values->as<float>());
+    write_debug_view(debug_path(settings, *plane.view), *plane.view, plane.size.x, plane.size.y, plane.values->as<float>(), text);
   if (settings.preview.empty()) return;
   // The composite through the view transform; AO by itself is data, and shown as it is.
   const int planes = outputs.composite ? 3 : 1;
   const auto shown = cropped((outputs.composite ? outputs.composite : outputs.ao)->as<float>(), source.data, written_of(source));
   auto pixels = displayed(source, shown, planes);
   if (transform) transform->apply(pixels);
-  write_png(settings.preview, source.display.width, source.display.height, planes, pixels);
+  write_png(settings.preview, source.display.width, source.display.height, planes, pixels, text);
 }
 
 }  // namespace alcove

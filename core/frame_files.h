@@ -30,6 +30,9 @@ struct Provenance {
   std::string inputs = {};      // see identity_of_inputs()
 };
 
+/// The same of what a picture says: whoever finds it there need not make the picture again.
+std::string made_by(const std::string& options, const std::string& inputs);
+
 /// What was computed over a window, plane by plane: the AO file's channels, then the composite's.
 std::vector<std::span<const float>> result_planes(const FrameOutputs& outputs, const Window& computed, const OutputSettings& settings);
 
@@ -48,6 +51,6 @@ class FrameWriter {
 };
 
 /// Preview and debug views of a frame that was computed at once, over source.data. transform: for a composite; may be null.
-void write_pictures(const FrameSource& source, const FrameOutputs& outputs, const DisplayTransform* transform, const OutputSettings& settings);
+void write_pictures(const FrameSource& source, const FrameOutputs& outputs, const DisplayTransform* transform, const OutputSettings& settings, const Provenance& provenance);
 
 }  // namespace alcove

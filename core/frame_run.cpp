@@ -3,6 +3,7 @@
 #include "core/frame_run.h"
 
 #include <algorithm>
+#include <new>
 #include <string_view>
 
 #include "core/batch.h"
@@ -86,6 +87,7 @@ class FrameRun {
       const auto tiles = outputs.tiles->as<TileCounts>()[0];
       report_.tiles.sky += tiles.sky;
       report_.tiles.proved += tiles.open;
+      report_.tiles.tolerated += tiles.tolerated;
       report_.tiles.kept += tiles.kept + (is_same ? tiles.listed : 0);
       report_.tiles.computed += is_same ? 0 : tiles.listed;
     }
@@ -116,9 +118,10 @@ class FrameRun {
     auto planes = result_planes(outputs, source.data, settings_.output);
     for (auto& plane : planes)
       if (source.region) plane = kept.emplace_back(cropped(plane, source.data, *source.region));
-    FrameWriter writer(source, settings_, provenance());
+    const Provenance by = provenance();
+    FrameWriter writer(source, settings_, by);
     writer.write(planes);
-    write_pictures(source, outputs, run_.transform, settings_.output);
+    write_pictures(source, outputs, run_.transform, settings_.output, by);
     writer.finish();
     report_.write_ms += writing.ms();
   }
@@ -210,6 +213,9 @@ FrameReport run_frame(Lane& lane, const RunContext& run, int frame) {
     const bool may_be_without = error.kind() == ErrorKind::device || error.kind() == ErrorKind::usage;
     const bool is_named = !may_be_without || std::string_view(error.what()).find(report.input) != std::string_view::npos;
     report.error = is_named ? error : Error(error.kind(), fmt::format("{}: {}", report.input, error.what()));
+  } catch (const std::bad_alloc&) {
+    report.state = FrameState::failed;
+    report.error = Error(ErrorKind::device, fmt::format("{}: no memory is left for it: let a run take less by --memory", report.input));
   } catch (const std::exception& error) {
     report.state = FrameState::failed;
     report.error = Error(ErrorKind::some_frames_failed, fmt::format("{}: {}", report.input, error.what()));

@@ -464,7 +464,7 @@ ExrFile open_file(const std::string& path, const char* option) {
   if (is_dds(path)) return {path, option, read_dds(path, option)};
   const std::string ending = lower_case(path.substr(std::min(path.rfind('.'), path.size())));
   for (const char* other : {".png", ".tif", ".tiff", ".tga", ".bmp", ".hdr"})
-    if (ending == other) return {path, option, read_image(path, option)};
+    if (ending == other) return {path, option, open_picture(path, option)};
   return ExrFile(path, option);
 }
 

@@ -10,6 +10,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
+#include <string_view>
 #include <vector>
 
 #include "core/error.h"
@@ -18,34 +20,63 @@
 namespace alcove {
 namespace {
 
-std::string one_line(std::string text) {
-  std::ranges::replace(text, '\n', ' ');
-  return text;
-}
+/// Decoders go on after an error and tell the next one.
+std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
 
-Image read_image(const std::string& path, const char* option) {
-  require_readable(path, "picture", option);
-  OIIO::ImageSpec as_stored;
-  as_stored["oiio:UnassociatedAlpha"] = 1;
-  const auto reader = OIIO::ImageInput::open(path, &as_stored);
-  if (!reader) fail(ErrorKind::input, "{}: not a picture that can be read ({}): {}", path, option, one_line(OIIO::geterror()));
-  const OIIO::ImageSpec spec = reader->spec();
-  if (spec.deep || spec.depth > 1) fail(ErrorKind::input, "{}: a deep or volume picture, which has no single value a pixel ({})", path, option);
-  std::vector<float> interleaved(spec.image_pixels() * std::size_t(spec.nchannels));
-  if (!reader->read_image(0, 0, 0, spec.nchannels, OIIO::TypeFloat, interleaved.data()))
-    fail(ErrorKind::input, "{}: the pixels cannot be read, the file is damaged or incomplete ({}): {}", path, option, one_line(reader->geterror()));
-  Image image({spec.x, spec.y, spec.width, spec.height}, {spec.full_x, spec.full_y, spec.full_width, spec.full_height}, spec.channelnames);
-  for (std::size_t c = 0; c < image.names.size(); c++)
-    for (std::size_t i = 0; i < image.data.pixels(); i++) image.plane(c)[i] = interleaved[i * image.names.size() + c];
-  return image;
-}
+constexpr std::uint64_t kDensest = 4096;         // bytes of pixels that a byte of a file may stand for where formats pack them: twice what deflate can
+constexpr std::size_t kBlockBytes = 1 << 20;     // of pixels that are decoded at once, or one row
 
-std::vector<char> encode_png(const std::string& name, int width, int height, int channels, std::span<const float> pixels) {
+class OiioReader : public PictureReader {
+ public:
+  OiioReader(const std::string& path, const char* option) : path_(path), option_(option) {
+    require_readable(path, "picture", option);
+    OIIO::ImageSpec as_stored;
+    as_stored["oiio:UnassociatedAlpha"] = 1;
+    input_ = OIIO::ImageInput::open(path, &as_stored);
+    if (!input_) fail(ErrorKind::input, "{}: not a picture that can be read ({}): {}", path, option, first_line(OIIO::geterror()));
+    const OIIO::ImageSpec& spec = input_->spec();
+    if (spec.deep || spec.depth > 1) fail(ErrorKind::input, "{}: a deep or volume picture, which has no single value a pixel ({})", path, option);
+    data = {spec.x, spec.y, spec.width, spec.height};
+    display = {spec.full_x, spec.full_y, spec.full_width, spec.full_height};
+    names = spec.channelnames;
+    // TIFF alone is always decoded strip by strip, and may pack one colour without end.
+    if (spec.image_bytes(true) / kDensest > OIIO::Filesystem::file_size(path) && std::string_view(input_->format_name()) != "tiff")
+      fail(ErrorKind::input, "{}: its header claims {} pixels, which its {} bytes cannot hold ({})", path, to_string(data), OIIO::Filesystem::file_size(path), option);
+  }
+
+  void read(int first, int rows, std::span<const Channel> channels) override {
+    const OIIO::ImageSpec& spec = input_->spec();
+    const int together = std::max(1, spec.tile_height);  // rows
+    const std::size_t width = std::size_t(data.width), stride = names.size(), row_bytes = width * stride * sizeof(float) * std::size_t(together);
+    const int block = together * int(std::clamp<std::size_t>(kBlockBytes / std::max<std::size_t>(1, row_bytes), 1, std::size_t(data.height)));
+    std::vector<float> interleaved(width * stride * std::size_t(std::min(block, data.height)));
+    for (int begin = first / together * together; begin < first + rows; begin += block) {
+      const int end = std::min(begin + block, data.height), top = data.y + begin, bottom = data.y + end;
+      const bool is_read = spec.tile_width ? input_->read_tiles(0, 0, data.x, data.x + data.width, top, bottom, 0, 1, 0, int(stride), OIIO::TypeFloat, interleaved.data())
+                                           : input_->read_scanlines(0, 0, top, bottom, 0, 0, int(stride), OIIO::TypeFloat, interleaved.data());
+      // That of TIFF says that all went well, and gives zeros, where the file ends too early.
+      if (!is_read || input_->has_error()) fail(ErrorKind::input, "{}: the pixels cannot be read, the file is damaged or incomplete ({}): {}", path_, option_, first_line(input_->geterror()));
+      for (const Channel& channel : channels)
+        for (int row = std::max(begin, first); row < std::min(end, first + rows); row++)
+          for (std::size_t x = 0; x < width; x++)
+            channel.to[std::size_t(row - first) * width + x] = interleaved[(std::size_t(row - begin) * width + x) * stride + channel.index];
+    }
+  }
+
+ private:
+  std::string path_, option_;
+  std::unique_ptr<OIIO::ImageInput> input_;
+};
+
+std::unique_ptr<PictureReader> open_picture(const std::string& path, const char* option) { return std::make_unique<OiioReader>(path, option); }
+
+std::vector<char> encode_png(const std::string& name, int width, int height, int channels, std::span<const float> pixels, const std::string& made_by) {
   std::vector<unsigned char> bytes(pixels.size());
   std::ranges::transform(pixels, bytes.begin(), [](float x) { return static_cast<unsigned char>(std::lround(255 * std::clamp(x, 0.0f, 1.0f))); });
   std::vector<unsigned char> encoded;
   OIIO::Filesystem::IOVecOutput memory(encoded);
   OIIO::ImageSpec spec(width, height, channels, OIIO::TypeUInt8);
+  if (!made_by.empty()) spec.attribute(kMadeBy, made_by);
   const auto writer = OIIO::ImageOutput::create("png", &memory);
   if (!writer || !writer->open(name, spec) || !writer->write_image(OIIO::TypeUInt8, bytes.data()) || !writer->close())
     fail(ErrorKind::output, "{}: could not be encoded as PNG: {}", name, writer ? writer->geterror() : OIIO::geterror());
@@ -78,7 +109,7 @@ OIIO::ImageBuf make_ramp() {
 
 void write_text(OIIO::ImageBuf& picture, const std::string& name, int x, int y, const std::string& text) {
   if (!OIIO::ImageBufAlgo::render_text(picture, x, y, text, 15, "DejaVuSans", {0.9f, 0.9f, 0.9f}))
-    fail(ErrorKind::output, "{}: its texts need the font DejaVu Sans (Debian package fonts-dejavu-core): {}", name, one_line(picture.geterror()));
+    fail(ErrorKind::output, "{}: its texts need the font DejaVu Sans (Debian package fonts-dejavu-core): {}", name, first_line(picture.geterror()));
 }
 
 std::vector<char> encode_chart(const std::string& name, const Chart& chart) {
@@ -100,11 +131,11 @@ std::vector<char> encode_chart(const std::string& name, const Chart& chart) {
   write_text(picture, name, right + 110 + kStripHeight + kMargin, baseline, "sky");
   std::vector<float> pixels(std::size_t(width) * std::size_t(top + kLegend) * 3);
   picture.get_pixels(picture.roi(), OIIO::TypeFloat, pixels.data());
-  return encode_png(name, width, top + kLegend, 3, pixels);
+  return encode_png(name, width, top + kLegend, 3, pixels, chart.made_by);
 }
 
 }  // namespace
 
-extern "C" __attribute__((visibility("default"))) const ImageIoModule alcove_image_io_module = {read_image, encode_png, encode_chart};
+extern "C" __attribute__((visibility("default"))) const ImageIoModule alcove_image_io_module = {open_picture, encode_png, encode_chart};
 
 }  // namespace alcove

@@ -5,22 +5,24 @@
 // all the rest of a small frame, and a plain EXR job needs none of it.
 #pragma once
 
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "core/chart.h"
-#include "core/image.h"
+#include "core/picture_reader.h"
 
 namespace alcove {
 
 /// The functions of core/image_io.h that need OpenImageIO.
 struct ImageIoModule {
-  Image (*read_image)(const std::string& path, const char* option);
-  std::vector<char> (*encode_png)(const std::string& name, int width, int height, int channels, std::span<const float> pixels);
+  std::unique_ptr<PictureReader> (*open_picture)(const std::string& path, const char* option);
+  std::vector<char> (*encode_png)(const std::string& name, int width, int height, int channels, std::span<const float> pixels, const std::string& made_by);
   std::vector<char> (*encode_chart)(const std::string& name, const Chart& chart);
 };
 
+inline constexpr const char* kMadeBy = "alcove";  // the keyword of a PNG's text
 inline constexpr const char* kImageIoFile = "libalcove_image_io.so";
 inline constexpr const char* kImageIoSymbol = "alcove_image_io_module";  // an ImageIoModule
 

@@ -65,7 +65,7 @@ OpenSky open_sky(gpu::Recorder& gpu, const FrameInputs& frame, const EstimatorSe
                     &gpu.buffer("open sky", plane_bytes(frame.view), gpu::Use::download),
                     &gpu.buffer("open sky scales", radii_of(settings).size() * plane_bytes(frame.view), gpu::Use::download)};
   sky.counts->as<FrameCounts>()[0] = {uint(pixels_of(frame.view)), 0, 0, 0, 0};
-  sky.tiles->as<TileCounts>()[0] = {{}, 0, groups_of(size.x, uint(kTile)) * groups_of(size.y, uint(kTile)), 0, 0};
+  sky.tiles->as<TileCounts>()[0] = {{}, 0, groups_of(size.x, uint(kTile)) * groups_of(size.y, uint(kTile)), 0, 0, 0};
   for (const auto* planes : {sky.ao, sky.scales}) std::ranges::fill(planes->as<float>(), 1.0f);
   return sky;
 }

@@ -22,18 +22,14 @@ bool is_exr(const std::string& path, const char* option) {
   return magic == std::array<char, 4>{0x76, 0x2f, 0x31, 0x01};
 }
 
-std::variant<Image, ExrFile> open(const std::string& path, const char* option) {
+ExrFile open(const std::string& path, const char* option) {
   if (is_exr(path, option)) return ExrFile(path, option);
-  return read_image(path, option);
+  return {path, option, open_picture(path, option)};
 }
 
-std::vector<PictureChannel> channels_of(const std::variant<Image, ExrFile>& file) {
+std::vector<PictureChannel> channels_of(const ExrFile& file) {
   std::vector<PictureChannel> channels;
-  if (const auto* image = std::get_if<Image>(&file)) {
-    for (const auto& name : image->names) channels.push_back({name, image->data, 0, name});
-    return channels;
-  }
-  const auto& parts = std::get<ExrFile>(file).parts();
+  const auto& parts = file.parts();
   for (std::size_t part = 0; part < parts.size(); part++)
     for (const auto& channel : parts[part].channels) {
       const bool repeats = parts[part].name.empty() || parts.size() == 1 || channel.name.starts_with(parts[part].name + ".");
@@ -114,11 +110,7 @@ std::vector<float> Picture::read(std::span<const std::size_t> channels) {
            channels_[channels[0]].name, to_string(data), channel.name, to_string(channel.data));
     reads.push_back({channel.part, channel.name_in_part, planes.data() + i * data.pixels()});
   }
-  if (auto* exr = std::get_if<ExrFile>(&file_)) {
-    exr->read(reads);
-  } else {
-    for (std::size_t i = 0; i < channels.size(); i++) std::ranges::copy(std::as_const(std::get<Image>(file_)).plane(channels[i]), reads[i].to);
-  }
+  file_.read(reads);
   return planes;
 }
 

@@ -4,7 +4,6 @@
 
 #include <span>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "core/exr.h"
@@ -40,7 +39,7 @@ class Picture {
 
  private:
   std::string path_;
-  std::variant<Image, ExrFile> file_;
+  ExrFile file_;
   std::vector<PictureChannel> channels_;
 };
 

@@ -12,6 +12,8 @@
 #include <vector>
 
 #include "core/exr.h"
+#include "core/frame_files.h"
+#include "core/image_io.h"
 #include "core/plan.h"
 
 namespace alcove {
@@ -26,15 +28,6 @@ std::vector<std::string> inputs_of(const Settings& frame) {
 
 /// Of a file's beginning and of its end.
 constexpr std::streamoff kLooked = 1 << 16;  // bytes
-
-/// The last chunk of a PNG file, behind the four bytes of its length.
-constexpr std::string_view kPngEnd("IEND\xae\x42\x60\x82");
-
-bool is_whole_png(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::string end(kPngEnd.size(), '\0');
-  return file.seekg(-std::streamoff(end.size()), std::ios::end) && file.read(end.data(), std::streamsize(end.size())) && end == kPngEnd;
-}
 
 std::optional<fs::file_time_type> time_of(const std::string& path) {
   std::error_code error;
@@ -69,7 +62,7 @@ bool has_whole_outputs(const Settings& frame, const std::string& options_digest)
     const auto time = time_of(output.path);
     if (!time || *time < newest_input) return false;
     const bool is_picture = output.path != frame.output.output && output.path != frame.output.composite;
-    if (is_picture) return is_whole_png(output.path);
+    if (is_picture) return is_whole_png(output.path, made_by(options_digest, inputs));
     return attribute_of_whole_exr(output.path, "alcove/options") == options_digest && attribute_of_whole_exr(output.path, "alcove/inputs") == inputs;
   });
 }

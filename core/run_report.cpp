@@ -27,7 +27,7 @@ Json json_of(const FrameReport& frame) {
                {"pixels", frame.pixels},
                {"sky_pixels", frame.sky_pixels},
                {"parts", frame.parts},
-               {"tiles", {{"total", frame.tiles.sky + frame.tiles.proved + frame.tiles.kept + frame.tiles.computed}, {"sky", frame.tiles.sky}, {"proved", frame.tiles.proved}, {"kept", frame.tiles.kept}, {"computed", frame.tiles.computed}}},
+               {"tiles", {{"total", frame.tiles.sky + frame.tiles.proved + frame.tiles.kept + frame.tiles.computed}, {"sky", frame.tiles.sky}, {"proved", frame.tiles.proved}, {"tolerated", frame.tiles.tolerated}, {"kept", frame.tiles.kept}, {"computed", frame.tiles.computed}}},
                {"samples_per_pixel", frame.samples_per_pixel},
                {"repaired_pixels", frame.repaired_pixels}};
   if (frame.error_pixels > 0) json["error_estimate"] = std::sqrt(frame.error_squares / frame.error_pixels);

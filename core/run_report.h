@@ -26,6 +26,7 @@ struct FrameReport {
   int parts = 1;                   // that it was computed in; what they share is counted in each
   struct Tiles {
     std::uint64_t sky = 0, proved = 0, kept = 0, computed = 0;  // of 8 x 8 pixels: all sky, proved to be open, the same as in a frame before, estimated
+    std::uint64_t tolerated = 0;                                // of those proved, by the tolerance alone
   } tiles;
   double error_squares = 0, error_pixels = 0;  // of an estimate with a tolerance
   double samples_per_pixel = 0;    // depth samples that the settings ask for, averaged over all pixels; sky asks for none

@@ -318,8 +318,12 @@ void list_tile(uint at, ivec2 tile, bool is_whole) {
 }
 
 /// What estimators write where nothing blocks, by all invocations of a row.
-void write_open(View view, ivec2 tile, bool is_sky) {
-  if (gl_LocalInvocationID.x == 0u) atomicAdd(counts.sky, is_sky ? 1u : 0u), atomicAdd(counts.open, is_sky ? 0u : 1u);
+void write_open(View view, ivec2 tile, bool is_sky, bool is_tolerated) {
+  if (gl_LocalInvocationID.x == 0u) {
+    atomicAdd(counts.sky, is_sky ? 1u : 0u);
+    atomicAdd(counts.open, is_sky ? 0u : 1u);
+    atomicAdd(counts.tolerated, !is_sky && is_tolerated ? 1u : 0u);
+  }
   const int plane = view.size.x * view.size.y;
   for (uint i = gl_LocalInvocationID.x; i < uint(kTile * kTile / kStride); i += kGroupX) {
     const ivec2 pixel = pixel_of_tile(tile, i, params.origin, kStride);
@@ -399,7 +403,7 @@ void main() {
     const ivec2 part = tile_of_block(tile, i);
     const bool is_inside = all(lessThan(part, count)), is_sky = (surfaces[row] >> uint(i) & 1u) == 0u;
     const bool is_open = is_sky || !is_kept && sectors == 0u;
-    if (is_inside && is_open) write_open(view, part, is_sky);
+    if (is_inside && is_open) write_open(view, part, is_sky, kTolerates && found[row] != 0u);
     if (is_inside && !is_open && !is_kept) list_tile(place[first_place + uint(i)], part, is_whole);
   }
 }

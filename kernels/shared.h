@@ -88,6 +88,7 @@ struct TileCounts {
   uint listed;
   uint sky;
   uint open;          // proved to be
+  uint tolerated;     // of them, those that are so only within the tolerance
   uint kept;          // as the frame before has them
 };
 

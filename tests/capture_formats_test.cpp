@@ -6,11 +6,13 @@
 
 #include <cmath>
 #include <cstring>
+#include <filesystem>
 
 #include "core/dds.h"
 #include "core/error.h"
 #include "core/exr.h"
 #include "core/findings.h"
+#include "core/gbuffer.h"
 #include "tests/command_line.h"
 #include "tests/difference.h"
 
@@ -164,6 +166,52 @@ TEST_F(Formats, depth_of_8_bits_is_refused) {
   const Finished finished = run({"--depth", folder / "depth.png"});
   EXPECT_EQ(finished.code, 3);
   EXPECT_THAT(finished.err, HasSubstr("8 bits"));
+}
+
+TEST_F(Formats, pictures_give_any_rows_in_any_order_however_they_are_stored) {
+  constexpr int kWide = 701, kHigh = 907;  // some megabytes: several blocks
+  std::vector<float> interleaved(std::size_t(3 * kWide) * kHigh);
+  for (std::size_t i = 0; i < interleaved.size(); i++) interleaved[i] = float(i * 7919 % 65536) / 65535;
+  struct Stored { const char* name; int tile; bool separate; OIIO::TypeDesc type; double step; };
+  for (const auto& stored : {Stored{"rows.tif", 0, false, OIIO::TypeFloat, 0}, {"tiles.tif", 64, false, OIIO::TypeFloat, 0}, {"planes.tif", 0, true, OIIO::TypeFloat, 0},
+                             {"tiled-planes.tif", 32, true, OIIO::TypeUInt16, 1e-7}, {"rows.png", 0, false, OIIO::TypeUInt16, 1e-7}, {"rows.tga", 0, false, OIIO::TypeUInt8, 0.002}}) {
+    const std::string path = folder / stored.name;
+    OIIO::ImageSpec spec(kWide, kHigh, 3, stored.type);
+    spec.tile_width = spec.tile_height = stored.tile;
+    if (stored.separate) spec.attribute("planarconfig", "separate");
+    const auto out = OIIO::ImageOutput::create(path);
+    ASSERT_TRUE(out->open(path, spec) && out->write_image(OIIO::TypeFloat, interleaved.data()) && out->close()) << path << out->geterror();
+    ExrFile file = open_file(path, "--normal");
+    ASSERT_EQ(file.parts().at(0).channels.size(), 3u) << path;
+    for (const auto& [first, rows] : {std::pair(0, kHigh), {600, 307}, {63, 2}, {0, 1}, {906, 1}}) {
+      std::vector<float> green(std::size_t(kWide * rows)), red(green.size());
+      const ExrRead reads[] = {{0, file.parts()[0].channels[1].name, green.data()}, {0, file.parts()[0].channels[0].name, red.data()}};
+      file.read(reads, first, rows);
+      for (std::size_t i = 0; i < green.size(); i++) {
+        const std::size_t at = 3 * (std::size_t(first) * kWide + i);
+        ASSERT_NEAR(green[i], interleaved[at + 1], stored.step) << path << " rows from " << first << " pixel " << i;
+        ASSERT_NEAR(red[i], interleaved[at], stored.step) << path << " rows from " << first << " pixel " << i;
+      }
+    }
+  }
+}
+
+TEST_F(Formats, a_picture_that_is_cut_short_is_named) {
+  std::uint32_t random = 1;
+  std::vector<float> noise(3 * 64 * 36);
+  for (float& value : noise) value = float((random = random * 1664525u + 1013904223u) >> 24) / 255;
+  for (const char* name : {"normal.png", "normal.tif", "normal.tga", "normal.bmp", "normal.hdr"}) {
+    const std::string path = folder / name;
+    const auto out = OIIO::ImageOutput::create(path);
+    ASSERT_TRUE(out->open(path, OIIO::ImageSpec(64, 36, 3, out->format_name() == std::string("hdr") ? OIIO::TypeFloat : OIIO::TypeUInt8)) &&
+                out->write_image(OIIO::TypeFloat, noise.data()) && out->close()) << path;
+    const std::string whole = read_bytes(path);
+    write_bytes(path, whole.substr(0, whole.size() / 2));
+    const Finished finished = run({"--normal", path, "--normal-space", "view"});
+    EXPECT_EQ(finished.code, 3) << finished;
+    EXPECT_THAT(finished.err, testing::AllOf(HasSubstr(path), HasSubstr("damaged or incomplete"), HasSubstr("--normal"))) << name;
+    EXPECT_FALSE(std::filesystem::exists(ao)) << name;
+  }
 }
 
 TEST_F(Formats, inspect_draws_a_contact_sheet) {

@@ -21,13 +21,22 @@ using testing::HasSubstr;
 /// Pixels of the frame are drawn 8 x 8 here; the scale lies below.
 constexpr int kZoom = 8, kLegend = 48;
 
+Image picture_of(const std::string& path) {
+  const auto file = open_picture(path, "INPUT");
+  Image image(file->data, file->display, file->names);
+  std::vector<PictureReader::Channel> channels;
+  for (std::size_t i = 0; i < image.names.size(); i++) channels.push_back({i, image.plane(i).data()});
+  file->read(0, image.data.height, channels);
+  return image;
+}
+
 class DebugViews : public CommandLine {
  protected:
   Image view(const std::string& name, std::vector<std::string> more = {}) {
     more.insert(more.end(), {"--debug", name});
     const Finished finished = run(more);
     EXPECT_EQ(finished.code, 0) << finished;
-    return read_image(folder / ("ao." + name + ".png"), "INPUT");
+    return picture_of(folder / ("ao." + name + ".png"));
   }
   static std::array<int, 3> color(const Image& picture, int x, int y) {
     std::array<int, 3> bytes{};
@@ -52,7 +61,7 @@ TEST_F(DebugViews, every_one_is_a_picture_beside_the_output_with_a_scale_below) 
   for (const auto& name : debug_view_names()) all += (all.empty() ? "" : ",") + name;
   ASSERT_EQ(run({"--debug", all, "--resolution", "full"}).code, 0);
   for (const auto& name : debug_view_names()) {
-    const Image picture = read_image(folder / ("ao." + name + ".png"), "INPUT");
+    const Image picture = picture_of(folder / ("ao." + name + ".png"));
     EXPECT_EQ(picture.data.width, 560) << name << ": texts need the room";
     EXPECT_EQ(picture.data.height, 36 * kZoom + kLegend) << name;
     int lit = 0;  // the texts

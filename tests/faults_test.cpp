@@ -145,6 +145,13 @@ TEST_F(Faults, resume_looks_at_every_output) {
   EXPECT_THAT(run(more).err, HasSubstr("2 kept"));
   cut_short(out + "/p.0002.png");
   EXPECT_THAT(run(more).err, HasSubstr("1 frames done, 1 kept"));
+  const std::string picture = read_bytes(out + "/p.0001.png");
+  ASSERT_EQ(run({"--radius", "0.5"}).code, 0) << "which leaves the pictures as they are";
+  std::vector<std::string> other = more;
+  other.insert(other.end(), {"--radius", "0.5"});
+  EXPECT_THAT(run(other).err, HasSubstr("2 frames done, in")) << "pictures of another radius";
+  EXPECT_NE(read_bytes(out + "/p.0001.png"), picture);
+  EXPECT_THAT(run(other).err, HasSubstr("0 frames done, 2 kept"));
 }
 
 TEST_F(Faults, a_full_disk_leaves_nothing_half) {
@@ -173,7 +180,7 @@ TEST_F(Faults, a_lost_device_is_replaced_once) {
   ASSERT_EQ(run(every_frame).code, 0);
   const auto whole = outputs();
   remove_outputs();
-  const auto losing = [](const char* times) { return Surroundings{.environment = {{"LD_PRELOAD", ALCOVE_LOST_DEVICE}, {"ALCOVE_LOSSES", times}}}; };
+  const auto losing = [](const char* times) { return Surroundings{.environment = {{"ALCOVE_LOSSES", times}}, .preload = ALCOVE_LOST_DEVICE}; };
   const Finished once = run(every_frame, losing("1"));
   EXPECT_EQ(once.code, 0) << once;
   EXPECT_TRUE(outputs() == whole);

@@ -24,6 +24,7 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
+#include <set>
 
 #include "core/error.h"
 #include "core/exr.h"
@@ -149,6 +150,17 @@ TEST_F(Files, names_of_one_file_are_told_from_those_of_two) {
   const std::vector<std::string> inputs{"", path};
   expect_error(ErrorKind::usage, {"link.exr", "--stats", "overwrite"}, [&] { require_no_input(folder / "link.exr", "--stats", inputs); });
   EXPECT_NO_THROW(require_no_input(folder / "b.exr", "--stats", inputs));
+}
+
+TEST_F(Files, nobody_can_tell_the_name_of_an_unfinished_file_beforehand) {
+  std::set<std::string> drawn;  // behind the process's number, which anybody can see
+  for (int i = 0; i < 64; i++) {
+    const NewFile file(path);
+    const auto names = names_in(folder.path());
+    ASSERT_EQ(names.size(), 1u);
+    drawn.insert(names[0].substr(names[0].find('-', 8)));
+  }
+  EXPECT_EQ(drawn.size(), 64u);
 }
 
 // EXR.

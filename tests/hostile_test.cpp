@@ -10,6 +10,7 @@
 #include "core/camera.h"
 #include "core/error.h"
 #include "core/exr.h"
+#include "core/image_io.h"
 #include "core/sequence.h"
 #include "core/settle.h"
 #include "tests/command_line.h"
@@ -25,6 +26,20 @@ using testing::HasSubstr;
 using testing::Not;
 
 constexpr const char* kScript = "<script>alert(1)</script>";
+
+/// A grey PNG of 8 bits without pixels.
+std::string png_claiming(std::uint32_t width, std::uint32_t height) {
+  const auto word = [](std::uint32_t x) { return std::string{char(x >> 24), char(x >> 16), char(x >> 8), char(x)}; };
+  const auto chunk = [&](const std::string& body) {
+    std::uint32_t sum = ~0u;
+    for (const unsigned char byte : body) {
+      sum ^= byte;
+      for (int bit = 0; bit < 8; bit++) sum = sum >> 1 ^ (sum & 1 ? 0xedb88320u : 0u);
+    }
+    return word(std::uint32_t(body.size() - 4)) + body + word(~sum);
+  };
+  return "\x89PNG\r\n\x1a\n" + chunk("IHDR" + word(width) + word(height) + std::string("\x08\0\0\0\0", 5)) + chunk("IDAT") + chunk("IEND");
+}
 
 class Hostile : public CommandLine {
  protected:
@@ -82,6 +97,20 @@ TEST_F(Hostile, inspect_prints_names_of_headers_as_text_that_no_terminal_obeys) 
   EXPECT_THAT(quoted.out, Not(testing::ContainsRegex("[\x01-\x09\x0b-\x1f\x7f]")));
 }
 
+TEST_F(Hostile, a_frame_s_name_is_printed_as_text_that_no_terminal_obeys) {
+  const std::string name = folder / "a\nopenjd_fail: \x1b[2J\u009b2J\u202etxt.exr";
+  fs::rename(frame, name);
+  for (const std::vector<std::string>& more : {std::vector<std::string>{"-v"}, {"--resume"}, {"--depth", folder / "none\n\u009b.exr"}}) {
+    std::vector<std::string> arguments{"run", name, "-o", name + ".ao.exr", "--camera", camera, "--radius", "1", "--progress", "plain"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Finished finished = run_program(arguments);
+    EXPECT_EQ(finished.code, more[0] == "--depth" ? 3 : 0) << finished;
+    EXPECT_THAT(finished.err, Not(testing::ContainsRegex("[\x01-\x09\x0b-\x1f\x7f]"))) << finished;
+    EXPECT_THAT(finished.err, AllOf(Not(HasSubstr("\nopenjd_fail")), Not(HasSubstr("\u009b")), Not(HasSubstr("\u202e")))) << finished;
+    EXPECT_THAT(finished.err, HasSubstr(more[0] == "--depth" ? "none??.exr" : "a?openjd_fail: ?[2J?2J?txt.exr")) << "or nothing is proved";
+  }
+}
+
 TEST_F(Hostile, the_command_that_inspect_proposes_quotes_what_a_shell_would_run) {
   const std::string name = folder / "$(touch x)`touch x`'; touch x; '.exr";
   fs::rename(frame, name);
@@ -116,6 +145,29 @@ TEST_F(Hostile, no_header_makes_a_run_take_more_memory_than_it_may) {
       EXPECT_LT(finished.peak_mib, plain + 64 + evidence) << width << " x " << height << finished;
     }
   }
+}
+
+TEST_F(Hostile, no_picture_makes_a_run_take_more_memory_than_its_rows) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "the address sanitizer takes memory of its own";
+#endif
+  const std::string claim = folder / "claim.png", black = folder / "black.png", fits = folder / "fits.png";
+  write_bytes(claim, png_claiming(30000, 30000));
+  write_png(black, 6000, 6000, 3, std::vector<float>(3 * 6000 * 6000));
+  write_png(fits, 64, 36, 3, std::vector<float>(3 * 64 * 36, 0.5f));
+  const auto with_normal = [&](const std::string& picture) { return run({"--memory", "64M", "--normal", picture, "--normal-space", "view"}); };
+  const Finished plain = with_normal(fits);
+  ASSERT_EQ(plain.code, 0) << plain;
+  ASSERT_LT(fs::file_size(black), 600'000);
+  for (const std::string& picture : {claim, black}) {
+    const Finished finished = with_normal(picture);
+    EXPECT_EQ(finished.code, 3) << finished;
+    EXPECT_THAT(finished.err, AllOf(HasSubstr(picture), HasSubstr(picture == claim ? "cannot hold" : "6000x6000")));
+    EXPECT_LT(finished.peak_mib, plain.peak_mib + 32) << finished;
+  }
+  const Finished compared = run_program({"compare", claim, claim});
+  EXPECT_EQ(compared.code, 3) << compared;
+  EXPECT_LT(compared.peak_mib, plain.peak_mib + 32) << compared;
 }
 
 TEST_F(Hostile, a_header_of_more_pixels_than_its_bytes_can_stand_for_is_refused) {

@@ -51,8 +51,14 @@ class Capture {
 };
 
 /// Our environment with the changes.
-std::vector<std::string> environment_with(std::map<std::string, std::optional<std::string>> changes) {
+std::vector<std::string> environment_with(const Surroundings& surroundings) {
+  auto changes = surroundings.environment;
   changes.try_emplace("ALCOVE_PRESETS", ALCOVE_SOURCE_DIR "/presets");  // a build folder may lie anywhere
+  if (!surroundings.preload.empty()) {
+    changes["LD_PRELOAD"] = surroundings.preload;
+    const char* before = std::getenv("ASAN_OPTIONS");
+    changes["ASAN_OPTIONS"] = std::string(before ? before : "") + ":verify_asan_link_order=0";  // which asks to be the first itself
+  }
   std::vector<std::string> variables;
   for (char** variable = environ; *variable; variable++) {
     const std::string text = *variable;
@@ -101,7 +107,7 @@ std::ostream& operator<<(std::ostream& stream, const Finished& finished) {
 
 Finished run_program(const std::vector<std::string>& arguments, const Surroundings& surroundings) {
   const Capture out("stdout"), err("stderr");
-  std::vector<std::string> words = on_test_device(arguments), variables = environment_with(surroundings.environment);
+  std::vector<std::string> words = on_test_device(arguments), variables = environment_with(surroundings);
   words.insert(words.begin(), surroundings.program);
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);

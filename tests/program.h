@@ -23,6 +23,7 @@ std::ostream& operator<<(std::ostream& stream, const Finished& finished);
 struct Surroundings {
   std::string folder = "/";  // working directory; not the test's own, so that nothing depends on it
   std::map<std::string, std::optional<std::string>> environment = {};  // to set, or to remove where there is no value; all else is inherited
+  std::string preload = {};  // a library that stands before all others
   double seconds = 300;      // then it is killed; under sanitizers, beside other work, frames take many
   std::string program = ALCOVE_PROGRAM;
   std::string out = {}, err = {};  // files that stand for the standard output and the standard error, instead of Finished's texts

@@ -363,7 +363,7 @@ TEST_F(Refusals, a_broken_module_of_pictures_is_named_and_leaves_no_output) {
 
 // Devices.
 
-Surroundings lacking(const std::string& what) { return {.environment = {{"LD_PRELOAD", ALCOVE_POOR_DEVICE}, {"ALCOVE_LACKS", what}}}; }
+Surroundings lacking(const std::string& what) { return {.environment = {{"ALCOVE_LACKS", what}}, .preload = ALCOVE_POOR_DEVICE}; }
 
 TEST_F(Refusals, a_device_that_lacks_what_kernels_need_is_listed_with_what_and_not_used) {
   for (const std::string what : {"Vulkan 1.2", "a compute queue", "VK_KHR_push_descriptor", "scalar block layout"}) {
@@ -405,7 +405,7 @@ TEST_F(Streams, a_frame_that_finds_no_memory_leaves_nothing_to_the_next) {
     remove_outputs();
     const std::string stats = folder / "stats.json";
     const Finished finished = run({"--no-skip", "--threads", "1", "--keep-going", "--stats", stats},
-                                  {.environment = {{"LD_PRELOAD", ALCOVE_POOR_DEVICE}, {"ALCOVE_ALLOCATION", number}}});
+                                  {.environment = {{"ALCOVE_ALLOCATION", number}}, .preload = ALCOVE_POOR_DEVICE});
     EXPECT_EQ(finished.code, 1) << finished;
     EXPECT_THAT(finished.err, AllOf(HasSubstr("frame 1: "), HasSubstr(input(1)), HasSubstr("--memory")));
     EXPECT_THAT(names_in(out), testing::ElementsAre("ao.0002.exr", "ao.0003.exr"));

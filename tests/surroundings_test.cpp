@@ -172,16 +172,26 @@ TEST_F(SurroundingsTest, an_output_has_the_permissions_that_the_umask_leaves) {
 }
 
 TEST_F(SurroundingsTest, an_output_that_is_a_symbolic_link_is_replaced_and_not_followed) {
-  const std::string preview = folder / "p.png", stats = folder / "s.json";
-  for (const std::string& link : {ao, folder / "ao.edges.png", preview, stats}) {
+  const std::string preview = folder / "p.png", stats = folder / "s.json", log = folder / "l.jsonl";
+  for (const std::string& link : {ao, folder / "ao.edges.png", preview, stats, log}) {
     write_bytes(link + ".named", "before");
     fs::create_symlink(link + ".named", link);
   }
-  result({"--debug", "edges", "--preview", preview, "--stats", stats});
-  for (const std::string& file : {ao, folder / "ao.edges.png", preview, stats}) {
+  result({"--debug", "edges", "--preview", preview, "--stats", stats, "--log-json", log});
+  for (const std::string& file : {ao, folder / "ao.edges.png", preview, stats, log}) {
     EXPECT_TRUE(!fs::is_symlink(file) && fs::file_size(file) > 100) << file;
     EXPECT_EQ(read_bytes(file + ".named"), "before") << file;
   }
+}
+
+TEST_F(SurroundingsTest, names_of_devices_are_never_replaced) {
+  // In /dev itself only the error would show what is wrong, and a mistake would harm the machine: /proc stands for it, where nothing can be replaced.
+  for (const std::string path : {"/proc/self/fd/1", "/proc/self/none.json"}) {
+    const Finished finished = run_program({"run", frame, "-o", ao, "--camera", camera, "--radius", "1", "--stats", path});
+    EXPECT_EQ(finished.code, 4) << finished;
+    EXPECT_THAT(finished.err, AllOf(HasSubstr(path), HasSubstr("no place for files"), HasSubstr("--stats")));
+  }
+  EXPECT_FALSE(fs::exists(ao));
 }
 
 TEST_F(SurroundingsTest, a_folder_that_is_a_symbolic_link_is_followed) {
@@ -196,7 +206,10 @@ TEST_F(SurroundingsTest, what_poses_as_an_unfinished_file_is_neither_followed_no
   ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
   fs::create_symlink(camera, link);
   write_bytes(folder / ".alcove-1-0000000c.tmp", "left by a process that was killed");
+  const std::vector<std::string> others{".alcove-notes.tmp", ".alcove-1-0000000c.tmp.exr", ".alcove-1-c.tmp", ".alcove--0000000c.tmp", ".alcove-x1-0000000c.tmp"};
+  for (const auto& name : others) write_bytes(folder / name, "somebody's own");
   EXPECT_EQ(remove_unfinished(folder.path()), 1);
+  for (const auto& name : others) EXPECT_TRUE(fs::exists(folder / name)) << name;
   EXPECT_TRUE(fs::exists(pipe) && fs::exists(link) && fs::exists(camera));
 }
 

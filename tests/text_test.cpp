@@ -21,6 +21,19 @@ TEST(Text, lower_case_changes_ascii_letters_only) {
   EXPECT_EQ(lower_case("\xc3\x9c"), "\xc3\x9c") << "bytes of UTF-8 stay";
 }
 
+TEST(Text, printable_leaves_no_control_and_nothing_that_turns_the_direction_of_writing) {
+  for (char32_t c = 0; c < 0x2100; c++) {
+    std::string text;
+    if (c < 0x80) text = {char(c)};
+    else if (c < 0x800) text = {char(0xc0 | c >> 6), char(0x80 | (c & 63))};
+    else text = {char(0xe0 | c >> 12), char(0x80 | (c >> 6 & 63)), char(0x80 | (c & 63))};
+    const bool is_control = c < 0x20 || (c >= 0x7f && c < 0xa0);
+    const bool turns = c == 0x61c || c == 0x200e || c == 0x200f || (c >= 0x202a && c <= 0x202e) || (c >= 0x2066 && c <= 0x2069);
+    EXPECT_EQ(printable("a" + text + "b"), "a" + (is_control || turns ? "?" : text) + "b") << std::hex << unsigned(c);
+  }
+  EXPECT_EQ(printable("cut short \xe2\x80"), "cut short \xe2\x80");
+}
+
 TEST(Text, a_list_ends_with_how_many_more) {
   EXPECT_EQ(list_of(Names{}), "nothing");
   EXPECT_EQ(list_of(Names{"a"}), "a");
