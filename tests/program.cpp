@@ -76,6 +76,15 @@ std::vector<char*> pointers_to(std::vector<std::string>& texts) {
   return pointers;
 }
 
+/// The arguments with the device that ALCOVE_TEST_DEVICE names, for commands that compute and where they name none themselves.
+std::vector<std::string> on_test_device(std::vector<std::string> arguments) {
+  const char* device = std::getenv("ALCOVE_TEST_DEVICE");
+  const bool computes = !arguments.empty() && (arguments[0] == "run" || arguments[0] == "bench");
+  const auto names_one = [](const std::string& word) { return word.starts_with("--device") || word == "--require-gpu"; };
+  if (device && *device && computes && std::ranges::none_of(arguments, names_one)) arguments.insert(arguments.begin() + 1, {"--device", device});
+  return arguments;
+}
+
 /// The exit code as a shell tells it; -1 when the child had to be killed. What it used goes into `usage`.
 int wait_for(pid_t child, double seconds, rusage& usage) {
   const int descriptor = int(::syscall(SYS_pidfd_open, child, 0));
@@ -98,8 +107,8 @@ std::ostream& operator<<(std::ostream& stream, const Finished& finished) {
 
 Finished run_program(const std::vector<std::string>& arguments, const Surroundings& surroundings) {
   const Capture out("stdout"), err("stderr");
-  std::vector<std::string> words{surroundings.program}, variables = environment_with(surroundings);
-  words.insert(words.end(), arguments.begin(), arguments.end());
+  std::vector<std::string> words = on_test_device(arguments), variables = environment_with(surroundings);
+  words.insert(words.begin(), surroundings.program);
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", 0, 0);

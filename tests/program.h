@@ -30,7 +30,8 @@ struct Surroundings {
   std::function<void(int)> meanwhile = {};  // called with its process id while it runs
 };
 
-/// Runs the program with these arguments and waits for its end. It finds the presets of the project unless the surroundings say otherwise.
+/// Runs the program with these arguments and waits for its end. It finds the presets of the project unless the surroundings say otherwise, and computes on the
+/// device that ALCOVE_TEST_DEVICE names unless the arguments do.
 Finished run_program(const std::vector<std::string>& arguments, const Surroundings& surroundings = {});
 
 std::vector<std::string> lines_of(const std::string& text);

@@ -2,10 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <limits>
+#include <map>
 #include <numbers>
+#include <tuple>
 
 #include "core/chain.h"
 #include "tests/device.h"
@@ -54,20 +57,20 @@ EstimatorSettings proving(Estimator estimator, double radius, ThicknessKind thic
   return settings;
 }
 
-/// Returns the tiles that were proved to be open.
-std::uint32_t expect_same(const HostFrame& frame, const EstimatorSettings& settings, const std::string& what) {
+/// Returns what became of the tiles.
+TileCounts expect_same(const HostFrame& frame, const EstimatorSettings& settings, const std::string& what) {
   const Outcome skipped = run(frame, settings, false), whole = run(frame, settings, true);
   EXPECT_EQ(whole.tiles.sky + whole.tiles.open, 0u) << what;
   EXPECT_EQ(skipped.tiles.sky + skipped.tiles.open + skipped.tiles.listed, whole.tiles.listed) << what;
   EXPECT_TRUE(same_bits(skipped.values, whole.values)) << what;
-  return skipped.tiles.open;
+  return skipped.tiles;
 }
 
 TEST(Skip, a_floor_is_open_but_where_something_stands_on_it) {
   const Scene scene{{parallelogram({-20, -20, 0}, {40, 0, 0}, {0, 40, 0}), Sphere{.center = {0, 0, 0.2}, .radius = 0.2}}};
   const Rendering floor = render(scene, Shot::perspective({0, -3, 2}, {0, 0, 0}, 50, 160, 120));
   for (const Estimator estimator : kEstimators) {
-    const auto proved = expect_same(floor.frame, proving(estimator, 0.3), "estimator " + std::to_string(int(estimator)));
+    const auto proved = expect_same(floor.frame, proving(estimator, 0.3), "estimator " + std::to_string(int(estimator))).open;
     EXPECT_GT(proved, 100u) << "of 300, estimator " << int(estimator);
     EXPECT_LT(proved, 295u);
   }
@@ -113,6 +116,34 @@ TEST(Skip, sky_is_left_out_whatever_the_samples_cost) {
   for (std::size_t i = 0; i < frame.data.pixels(); i++) ASSERT_EQ(sky.values[i], 1.0f);
 }
 
+// An estimate by its error leaves out sky by itself; beside it stand the estimates of confidence, and a frame of sky.
+TEST(Skip, estimates_by_their_error) {
+  HostFrame frame = furnished_room(80, 60).frame;
+  EstimatorSettings settings;
+  settings.radius = 0.3;
+  settings.slices = 3;
+  settings.tolerance = 0.05;
+  OutputSettings output;
+  const auto planes = [&](bool no_skip) {
+    settings.no_skip = no_skip;
+    const FrameOutputs outputs = run_chain(recorder(), upload(recorder(), frame), settings, output);
+    recorder().run();
+    std::vector<float> values;
+    for (const auto* plane : {outputs.ao, outputs.scales, outputs.error, outputs.confidence})
+      if (plane) values.insert(values.end(), plane->as<float>().begin(), plane->as<float>().end());
+    return values;
+  };
+  for (const bool is_sky : {false, true}) {
+    if (is_sky) std::ranges::fill(frame.depth, kSky);
+    for (const std::string aovs : {"ao,ao-scales", "ao,error,confidence"}) {
+      output.aovs = aovs;
+      const std::vector<float> skipped = planes(false);
+      EXPECT_EQ(recorder().passes().empty(), is_sky && aovs == "ao,ao-scales") << aovs;
+      EXPECT_TRUE(same_bits(skipped, planes(true))) << aovs << (is_sky ? " of sky" : "");
+    }
+  }
+}
+
 TEST(Skip, a_frame_of_sky_needs_no_kernel) {
   HostFrame frame = furnished_room(70, 50).frame;
   EstimatorSettings settings = plain_settings();
@@ -151,6 +182,21 @@ TEST(Skip, any_bits_as_input) {
       EstimatorSettings settings = proving(estimator, 0.5);
       settings.denoise = seed % 2 ? Denoise::bilateral : Denoise::none;
       expect_same(frame, settings, "seed " + std::to_string(seed));
+    }
+  }
+}
+
+// At a radius that suits the frame few tiles are open, and proofs tell in which directions to look; at a small one some are.
+TEST(Skip, rendered_frames) {
+  for (const auto& [scene, radius, small] : {std::tuple<std::string, double, double>("monkeys", 0.5, 0.02), {"colonnade", 0.75, 0.1}, {"machine", 0.006, 0.003}}) {
+    InputSettings input;
+    input.input = ALCOVE_SOURCE_DIR "/examples/bench/" + scene + ".gbuffer.exr";
+    input.camera = ALCOVE_SOURCE_DIR "/examples/bench/" + scene + ".camera.json";
+    const HostFrame frame = read_host_frame(input, 0);
+    for (const Estimator estimator : kEstimators) {
+      const std::string what = scene + ", estimator " + std::to_string(int(estimator));
+      expect_same(frame, proving(estimator, radius), what);
+      EXPECT_GE(expect_same(frame, proving(estimator, small), what + ", small radius").open, 4u) << what;
     }
   }
 }
@@ -196,9 +242,100 @@ TEST(Skip, a_tolerance_takes_no_more_than_it_says) {
 }
 
 // ALCOVE_TEST_SEED: other scenes.
-TEST(Skip, thousands_of_random_scenes) {
+unsigned seed_or(unsigned usual) {
   const char* seed = std::getenv("ALCOVE_TEST_SEED");
-  RandomScenes scenes(seed ? unsigned(std::atoi(seed)) : 20261121);
+  return seed ? unsigned(std::atoi(seed)) : usual;
+}
+
+/// Any settings with so many samples that proofs are worth their cost: the presets', with more steps. What is compiled for them alone is as few as will do.
+EstimatorSettings any_proving(RandomScenes& random) {
+  const auto one_of = [&](auto... values) { return std::array{values...}[std::size_t(random.whole(0, int(sizeof...(values)) - 1))]; };
+  EstimatorSettings settings;
+  settings.estimator = random.estimator();
+  settings.radius = random.radius();
+  for (int more = random.whole(-2, 2); more > 0; more--) settings.further_radii.push_back(random.radius());
+  settings.falloff = one_of(Falloff::none, Falloff::smooth);
+  settings.falloff_start = one_of(0.0, 0.5);
+  settings.falloff_end = settings.estimator == Estimator::crytek ? 1 : one_of(1.0, 0.6);
+  settings.thickness = random.thickness();
+  settings.thickness_length = *settings.radius / random.whole(1, 20);
+  settings.bias = settings.estimator == Estimator::crytek ? one_of(0.0, 0.01) : one_of(0.0, 0.0, 0.1);
+  settings.elevation = one_of(Elevation::view, Elevation::surface);
+  settings.sample_kernel = one_of(SampleKernel::clustered, SampleKernel::uniform);
+  settings.range_check = one_of(RangeCheck::none, RangeCheck::ratio, RangeCheck::smoothstep);
+  settings.samples = 64;
+  std::tie(settings.slices, settings.steps, settings.stride, settings.denoise_radius) =
+      one_of(std::tuple(1, 10, 0, 6), std::tuple(2, 16, 0, 4), std::tuple(3, 16, 1, 2), std::tuple(2, 16, 2, 3));
+  if (settings.estimator != Estimator::crytek)
+    settings.resolution = one_of(Resolution::full, Resolution::full, Resolution::full, Resolution::half, Resolution::quarter);
+  settings.denoise = one_of(Denoise::none, Denoise::bilateral, Denoise::bilateral, Denoise::bilateral, Denoise::box);
+  settings.denoise_depth_sigma = one_of(0.0, 0.0, 0.1);
+  if (settings.denoise != Denoise::bilateral || settings.resolution != Resolution::full || settings.estimator == Estimator::crytek) settings.stride = 1;
+  settings.seed = unsigned(random.whole(0, 3));
+  while (!proves(settings)) settings.steps *= 2;
+  return settings;
+}
+
+TEST(Skip, hundreds_of_random_settings) {
+  RandomScenes scenes(seed_or(20261122));
+  struct Proved {
+    double open = 0, all = 0;  // tiles with surfaces
+  };
+  std::map<std::string, Proved> proved;
+  for (int i = 0; i < 260 && !HasFailure(); i++) {
+    const EstimatorSettings settings = any_proving(scenes);
+    HostFrame frame = scenes.next(settings.resolution == Resolution::full ? 1 : 2);
+    if (scenes.whole(0, 1)) {  // a crop: its blocks and its noise begin outside of it
+      const int x = scenes.whole(0, 9), y = scenes.whole(0, 9);
+      frame.data.x += x, frame.data.y += y, frame.camera.cx += x, frame.camera.cy += y;
+    }
+    const std::string estimator = "estimator " + std::to_string(int(settings.estimator)), resolution = "resolution " + std::to_string(int(settings.resolution)),
+                      stride = "stride " + std::to_string(stride_of(settings)), thickness = "thickness " + std::to_string(int(settings.thickness));
+    const TileCounts tiles = expect_same(frame, settings, "scene " + std::to_string(i) + ", " + estimator + ", " + resolution + ", " + stride + ", " + thickness);
+    for (const auto& kind : {estimator, resolution, stride, thickness}) proved[kind].open += tiles.open, proved[kind].all += tiles.open + tiles.listed;
+  }
+  EXPECT_EQ(proved.size(), 4 + 3 + 3 + 3);
+  for (const auto& [kind, tiles] : proved) {
+    EXPECT_GT(tiles.open, 0.04 * tiles.all) << kind;
+    EXPECT_LT(tiles.open, 0.9 * tiles.all) << kind;
+  }
+}
+
+// Of two estimators, and all kinds of thickness.
+TEST(Skip, a_tolerance_opens_only_what_is_nearly_open) {
+  RandomScenes scenes(seed_or(20261123));
+  std::map<std::string, std::uint32_t> opened;
+  for (int i = 0; i < 180 && !HasFailure(); i++) {
+    const Estimator estimator = i % 2 ? Estimator::gtao : Estimator::bitmask;
+    const ThicknessKind thickness = ThicknessKind(i / 2 % 3);
+    const double tolerance = std::array{1.0 / 1024, 0.01, 0.1}[std::size_t(i / 6 % 3)];
+    EstimatorSettings settings = proving(estimator, scenes.radius(), thickness);
+    settings.slices = 4;
+    settings.steps = 24;
+    if (scenes.whole(0, 3) == 0) settings.further_radii = {scenes.radius()};
+    const HostFrame frame = scenes.next();
+    const Outcome exact = run(frame, settings, false);
+    settings.skip_tolerance = tolerance;
+    const Outcome tolerant = run(frame, settings, false);
+    const std::string kind = "estimator " + std::to_string(int(estimator)) + ", thickness " + std::to_string(int(thickness));
+    const std::string what = "scene " + std::to_string(i) + ", " + kind;
+    // The scales; they lie behind the AO, which is their mean.
+    const std::size_t begin = frame.data.pixels(), end = begin * (2 + settings.further_radii.size());
+    double least = 1;
+    for (std::size_t k = begin; k < end; k++) {
+      if (tolerant.values[k] == exact.values[k]) continue;
+      EXPECT_EQ(tolerant.values[k], 1.0f) << what;
+      least = std::min(least, double(exact.values[k]));
+    }
+    EXPECT_GE(least, 1 - tolerance) << what;
+    opened[kind] += tolerant.tiles.open - exact.tiles.open;
+  }
+  EXPECT_EQ(opened.size(), 6u);
+  for (const auto& [kind, tiles] : opened) EXPECT_GT(tiles, 10u) << kind;
+}
+
+TEST(Skip, thousands_of_random_scenes) {
+  RandomScenes scenes(seed_or(20261121));
   std::uint64_t proved = 0;
   int some = 0;
   for (int i = 0; i < 2000 && !HasFailure(); i++) {
@@ -213,7 +350,7 @@ TEST(Skip, thousands_of_random_scenes) {
     }
     if (i % 16 == 5) settings.steps *= settings.stride = 1 << scenes.whole(1, 2);
     const auto open = expect_same(frame, settings,
-                                  "scene " + std::to_string(i) + ", radius " + std::to_string(radius) + ", estimator " + std::to_string(int(estimator)));
+                                  "scene " + std::to_string(i) + ", radius " + std::to_string(radius) + ", estimator " + std::to_string(int(estimator))).open;
     proved += open;
     some += open > 0;
   }
