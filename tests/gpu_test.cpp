@@ -109,6 +109,23 @@ TEST(Guards, what_is_read_behind_a_buffer_is_no_number) {
   for (std::size_t i = 0; i < 64; i++) EXPECT_EQ(std::isnan(values[i]), i >= 60) << i;
 }
 
+TEST(Buffer, that_is_replaced_lives_until_what_was_recorded_has_run) {
+  auto& gpu = test::recorder();
+  auto &source = gpu.buffer("source", 64 * sizeof(float), gpu::Use::upload), &copy = gpu.buffer("copy", 64 * sizeof(float), gpu::Use::download);
+  auto& unread = gpu.buffer("unread", 256, gpu::Use::device);
+  std::ranges::fill(source.as<float>(), 0.5f);
+  gpu.upload(source);
+  ShapeParams params{};
+  params.size = {64, 1};
+  params.intensity = params.power = params.planes = 1;
+  gpu.dispatch("shape", params,
+               {{kShapeAo, source}, {kShapeShaped, copy}, {kShapeDepth, unread}, {kShapeMaterial, unread}, {kShapeCounts, unread}}, {64, 1});
+  gpu.download(copy);
+  for (std::size_t others = 60; others < 64; others++) std::ranges::fill(gpu.buffer("source", others * sizeof(float), gpu::Use::upload).as<float>(), 0.25f);
+  gpu.run();
+  for (const float value : copy.as<const float>()) ASSERT_EQ(value, 0.5f);
+}
+
 /// A step: a floor with a block on it, near enough to be dark.
 HostFrame small_frame() {
   HostFrame frame;

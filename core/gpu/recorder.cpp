@@ -43,7 +43,10 @@ Recorder::Recorder(Device& device) : device_(device) {
 Buffer& Recorder::buffer(std::string_view name, std::size_t bytes, Use use) {
   auto found = buffers_.find(name);
   if (found != buffers_.end() && found->second.bytes() == bytes && found->second.use() == use) return found->second;
-  if (found != buffers_.end()) buffers_.erase(found);
+  if (found != buffers_.end()) {
+    if (recording_) replaced_.push_back(std::move(found->second));
+    buffers_.erase(found);
+  }
   return buffers_.emplace(std::string(name), Buffer(device_, bytes, use)).first->second;
 }
 
@@ -153,6 +156,7 @@ void Recorder::run() {
   check(vkWaitForFences(device_.handle(), 1, &fence, VK_TRUE, UINT64_MAX), "vkWaitForFences");
   for (const auto& [name, buffer] : buffers_)
     if (!buffer.guards_hold()) fail(ErrorKind::device, "something was written beside the buffer \"{}\"", name);
+  replaced_.clear();
   passes_ = std::move(recorded_);
   if (!device_.has_timestamps() || passes_.empty()) return;
   std::vector<std::uint64_t> ticks(2 * passes_.size());

@@ -45,7 +45,8 @@ class Recorder {
  public:
   explicit Recorder(Device& device);
 
-  /// The buffer of that name; made, or made again when size or use changed. Valid until the next call with another size.
+  /// The buffer of that name; made, or made again when size or use changed. Valid until the next call with another size;
+  /// what was recorded before keeps its own.
   Buffer& buffer(std::string_view name, std::size_t bytes, Use use);
 
   /// Fills a buffer with zeros before the next dispatch.
@@ -66,7 +67,10 @@ class Recorder {
   void run();
 
   /// Drops what was recorded and not run: its buffers may go.
-  void abandon() { recording_ = false; }
+  void abandon() {
+    recording_ = false;
+    replaced_.clear();
+  }
 
   /// Each pass of the last run, in order; its time is 0 on a device without timestamps.
   const std::vector<PassTime>& passes() const { return passes_; }
@@ -88,6 +92,7 @@ class Recorder {
   bool recording_ = false;
   std::vector<PassTime> recorded_, passes_;
   std::map<std::string, Buffer, std::less<>> buffers_;
+  std::vector<Buffer> replaced_;  // by others of their names, but used by what is recorded
 };
 
 }  // namespace alcove::gpu
