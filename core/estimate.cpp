@@ -41,14 +41,18 @@ vec2 noise_shift(int frame, std::uint32_t seed) {
   return {shift(0.75487766624669276, 0.41421356237309505), shift(0.56984029099805327, 0.73205080756887729)};
 }
 
+/// How far from a receiver anything blocks. Crytek's samples fill the sphere of the radius whatever the falloff.
+double reach_of(const EstimatorSettings& settings) {
+  return settings.radius.value() * (settings.estimator == Estimator::crytek ? 1 : settings.falloff_end);
+}
+
 /// Of the estimators that search slices.
 template <class Params>
 Params slice_parameters(const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings, uint plane) {
-  const double radius = settings.radius.value();
   Params params{};
   params.view = gbuffer.view;
-  params.radius = float(radius * settings.falloff_end);
-  params.falloff_start = float(radius * settings.falloff_start);
+  params.radius = float(reach_of(settings));
+  params.falloff_start = float(settings.radius.value() * settings.falloff_start);
   params.noise_origin = frame.noise_origin;
   params.noise_shift = noise_shift(settings.noise == Noise::animated ? frame.frame : 0, settings.seed);
   params.thickness = thickness_of(settings);
@@ -228,7 +232,7 @@ TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs&
   const bool ranged = settings.estimator == Estimator::gtao || settings.estimator == Estimator::bitmask;
   const uint mode = (settings.no_skip ? 0 : kClassifySkips) | (proves(settings) ? kClassifyProves : 0) | (ranged ? kClassifyRanged : 0) |
                     (out.bent ? kClassifyWithBent : 0) | (frame.changes && !settings.no_skip ? kClassifyReuses : 0) | (settings.skip_tolerance > 0 ? kClassifyTolerates : 0);
-  const ClassifyParams params{gbuffer.view, frame.noise_origin, float(settings.radius.value() * settings.falloff_end), float(std::sqrt(settings.skip_tolerance)),
+  const ClassifyParams params{gbuffer.view, frame.noise_origin, float(reach_of(settings)), float(std::sqrt(settings.skip_tolerance)),
                               to_vec3(frame.depth_precision.at), plane, frame.view.size, grid.overhang, grid.factor};
   gpu.dispatch("classify", params,
                {{kClassifyBounds, bounds.tiles ? *bounds.tiles : *list.tiles},
@@ -303,7 +307,7 @@ void exact(gpu::Recorder& gpu, const GBuffer& gbuffer, const Profile& profile, c
   params.direction = uint(profile.direction);
   params.is_first = profile.direction < takers ? 1 : 0;
   params.is_last = !out.listed.counts && profile.direction >= directions - takers ? 1 : 0;
-  params.radius = float(settings.radius.value() * settings.falloff_end);
+  params.radius = float(reach_of(settings));
   params.thickness = thickness_of(settings);
   params.bias = float(settings.bias);
   params.depth_precision = to_vec3(frame.depth_precision.at);
@@ -331,11 +335,10 @@ void bitmask(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& fram
 }
 
 void hbao(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings, const Estimate& out, uint plane) {
-  const double radius = settings.radius.value();
   HbaoParams params{};
   params.view = gbuffer.view;
-  params.radius = float(radius * settings.falloff_end);
-  params.falloff_start = float(radius * settings.falloff_start);
+  params.radius = float(reach_of(settings));
+  params.falloff_start = float(settings.radius.value() * settings.falloff_start);
   params.bias = float(settings.bias);
   params.from_surface = settings.elevation == Elevation::surface ? 1 : 0;
   params.noise_origin = frame.noise_origin;
@@ -349,7 +352,7 @@ void hbao(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, 
 void crytek(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings, const Estimate& out, uint plane) {
   CrytekParams params{};
   params.view = gbuffer.view;
-  params.radius = float(settings.radius.value());
+  params.radius = float(reach_of(settings));
   params.bias = float(settings.bias);
   params.uniform_volume = settings.sample_kernel == SampleKernel::uniform ? 1 : 0;
   params.range_check = range_check_of(settings.range_check);

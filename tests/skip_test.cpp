@@ -256,7 +256,7 @@ EstimatorSettings any_proving(RandomScenes& random) {
   for (int more = random.whole(-2, 2); more > 0; more--) settings.further_radii.push_back(random.radius());
   settings.falloff = one_of(Falloff::none, Falloff::smooth);
   settings.falloff_start = one_of(0.0, 0.5);
-  settings.falloff_end = settings.estimator == Estimator::crytek ? 1 : one_of(1.0, 0.6);
+  settings.falloff_end = one_of(1.0, 0.6);
   settings.thickness = random.thickness();
   settings.thickness_length = *settings.radius / random.whole(1, 20);
   settings.bias = settings.estimator == Estimator::crytek ? one_of(0.0, 0.01) : one_of(0.0, 0.0, 0.1);
