@@ -1,7 +1,9 @@
 // What is left out because a proof says so has the bits of what is computed.
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdlib>
@@ -170,6 +172,30 @@ TEST(Skip, a_frame_of_sky_needs_no_kernel) {
       EXPECT_FALSE(recorder().passes().empty()) << other;
       EXPECT_EQ(result.sky_pixels, other > 0 ? 3499u : 3500u);
       EXPECT_EQ(result.repaired_depth, other > 0 ? 0u : 1u);
+    }
+  }
+}
+
+// A floor seen aslant stands above the tangent plane of a receiver whose normal is turned a little, however flat it is.
+TEST(Skip, receivers_whose_normals_differ_a_little) {
+  for (const double tilt : {70.0, 80.0, 86.0}) {
+    const double t = tilt * std::numbers::pi / 180;
+    const Plane floor{.point = {5, 0, 0}, .normal = {-std::cos(t), 0, std::sin(t)}};
+    HostFrame frame = render({{floor}}, Shot::perspective({}, {1, 0, 0}, 12, 160, 120)).frame;
+    const std::size_t pixels = frame.data.pixels();
+    for (std::size_t i = 0; i < pixels; i++) {
+      const bool is_central = i % 160 % kTile == kTile / 2 && i / 160 % kTile == kTile / 2;
+      const double turn = is_central ? 0 : 1.9e-3 * double(i * 2654435761u % 1000) / 1000;
+      const double n[] = {frame.normal[i], frame.normal[i + pixels], frame.normal[i + 2 * pixels]};
+      frame.normal[i + pixels] = float(n[1] * std::cos(turn) - n[2] * std::sin(turn));  // about the horizontal axis
+      frame.normal[i + 2 * pixels] = float(n[1] * std::sin(turn) + n[2] * std::cos(turn));
+    }
+    for (const Estimator estimator : {Estimator::gtao, Estimator::bitmask, Estimator::hbao}) {
+      const std::string what = fmt::format("estimator {} tilt {}", int(estimator), tilt);
+      EstimatorSettings settings = proving(estimator, 2);
+      expect_same(frame, settings, what);
+      const auto values = run(frame, settings, true).values;
+      EXPECT_TRUE(estimator == Estimator::hbao || std::ranges::any_of(values, [](float x) { return x < 1; })) << what << ": or else all is open, and nothing proved";
     }
   }
 }
