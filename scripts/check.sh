@@ -12,8 +12,8 @@ cd "$(dirname "$0")/.."
 
 readers=(core/exr_header.cpp core/header_camera.cpp core/dds.cpp core/image_io.cpp core/camera.cpp core/sequence.cpp core/file.cpp core/text.cpp)
 tests=(file_test camera_test gbuffer_test text_test color_test sequence_test layouts_test sources_test capture_formats_test hostile_test bad_input_test
-       refusals_test inputs_test readings_test compare_test inspect_test region_test memory_test
-       gpu_test property_test reuse_test dilate_test bounds_test confidence_test tolerance_test real_frame_test {exr,dds,camera,frames,toml,preset,inspect}_fuzz)
+       refusals_test inputs_test readings_test compare_test inspect_test region_test
+       gpu_test property_test bounds_test confidence_test tolerance_test real_frame_test {exr,dds,camera,frames,toml,preset,inspect}_fuzz)
 if [ "${1:-}" = all ]; then
   readers=(core/*.cpp core/gpu/*.cpp cli/*.cpp)
   tests=(all)
