@@ -31,7 +31,7 @@ fs::path folder_of_scratch() {
 /// A folder that goes with all that is in it.
 class ScratchFolder {
  public:
-  ScratchFolder() : path_((folder_of_scratch() / "alcove-bench-XXXXXX").string()) {
+  ScratchFolder() : path_((folder_of_scratch() / ("alcove-bench-" + std::string(6, 'X'))).string()) {  // mkdtemp draws the six letters
     if (!::mkdtemp(path_.data())) fail(ErrorKind::output, "{}: no folder for the frames can be made: {}; the variable TMPDIR names another place", path_, std::strerror(errno));
   }
   ~ScratchFolder() {

@@ -82,8 +82,8 @@ TEST(Buffer, keeps_its_place_in_the_pool_until_its_size_changes) {
   EXPECT_EQ(gpu.buffer("pooled", 2048, gpu::Use::upload).bytes(), 2048u);
 }
 
-/// Copies 64 values from a buffer of so many to one of so many.
-std::span<const float> copied_64(std::size_t from, std::size_t to) {
+/// Records a copy of 64 values, 0.5 each, from the buffer "source" of so many to one of so many.
+const gpu::Buffer& record_copy_of_64(std::size_t from, std::size_t to) {
   auto& gpu = test::recorder();
   auto &source = gpu.buffer("source", from * sizeof(float), gpu::Use::upload), &copy = gpu.buffer("copy", to * sizeof(float), gpu::Use::download);
   auto& unread = gpu.buffer("unread", 256, gpu::Use::device);
@@ -95,7 +95,12 @@ std::span<const float> copied_64(std::size_t from, std::size_t to) {
   gpu.dispatch("shape", params,
                {{kShapeAo, source}, {kShapeShaped, copy}, {kShapeDepth, unread}, {kShapeMaterial, unread}, {kShapeCounts, unread}}, {64, 1});
   gpu.download(copy);
-  gpu.run();
+  return copy;
+}
+
+std::span<const float> copied_64(std::size_t from, std::size_t to) {
+  const gpu::Buffer& copy = record_copy_of_64(from, to);
+  test::recorder().run();
   return copy.as<const float>();
 }
 
@@ -111,16 +116,7 @@ TEST(Guards, what_is_read_behind_a_buffer_is_no_number) {
 
 TEST(Buffer, that_is_replaced_lives_until_what_was_recorded_has_run) {
   auto& gpu = test::recorder();
-  auto &source = gpu.buffer("source", 64 * sizeof(float), gpu::Use::upload), &copy = gpu.buffer("copy", 64 * sizeof(float), gpu::Use::download);
-  auto& unread = gpu.buffer("unread", 256, gpu::Use::device);
-  std::ranges::fill(source.as<float>(), 0.5f);
-  gpu.upload(source);
-  ShapeParams params{};
-  params.size = {64, 1};
-  params.intensity = params.power = params.planes = 1;
-  gpu.dispatch("shape", params,
-               {{kShapeAo, source}, {kShapeShaped, copy}, {kShapeDepth, unread}, {kShapeMaterial, unread}, {kShapeCounts, unread}}, {64, 1});
-  gpu.download(copy);
+  const gpu::Buffer& copy = record_copy_of_64(64, 64);
   for (std::size_t others = 60; others < 64; others++) std::ranges::fill(gpu.buffer("source", others * sizeof(float), gpu::Use::upload).as<float>(), 0.25f);
   gpu.run();
   for (const float value : copy.as<const float>()) ASSERT_EQ(value, 0.5f);
