@@ -1,8 +1,8 @@
 // `alcove bench SUITE.toml`: run time against error, as a table, JSON, CSV and a page.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/bench.h"
-#include "core/bench_batch.h"
-#include "core/stability.h"
+#include "core/bench/bench.h"
+#include "core/bench/bench_batch.h"
+#include "core/bench/stability.h"
 
 #include <algorithm>
 
@@ -10,9 +10,9 @@
 #include "cli/options.h"
 #include "cli/parsing.h"
 #include "cli/print.h"
-#include "core/batch.h"
-#include "core/error.h"
-#include "core/file.h"
+#include "core/run/batch.h"
+#include "core/base/error.h"
+#include "core/base/file.h"
 
 namespace alcove {
 namespace {

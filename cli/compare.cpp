@@ -1,6 +1,6 @@
 // `alcove compare RESULT REFERENCE`: how far pictures or sequences are apart, as a table, JSON, a page, and an exit code.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/compare.h"
+#include "core/measure/compare.h"
 
 #include <fmt/format.h>
 
@@ -9,8 +9,8 @@
 
 #include "cli/commands.h"
 #include "cli/parsing.h"
-#include "core/error.h"
-#include "core/file.h"
+#include "core/base/error.h"
+#include "core/base/file.h"
 
 namespace alcove {
 namespace {

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/commands.h"
-#include "core/error.h"
+#include "core/base/error.h"
 #include "core/gpu/device.h"
 
 namespace alcove {

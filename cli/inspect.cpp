@@ -6,10 +6,10 @@
 
 #include "cli/commands.h"
 #include "cli/options.h"
-#include "core/contact_sheet.h"
-#include "core/error.h"
-#include "core/inspect.h"
-#include "core/plan.h"
+#include "core/inspect/contact_sheet.h"
+#include "core/base/error.h"
+#include "core/inspect/inspect.h"
+#include "core/run/plan.h"
 
 namespace alcove {
 

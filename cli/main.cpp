@@ -10,9 +10,9 @@
 
 #include "cli/commands.h"
 #include "cli/print.h"
-#include "core/error.h"
-#include "core/text.h"
-#include "core/version.h"
+#include "core/base/error.h"
+#include "core/base/text.h"
+#include "core/base/version.h"
 
 namespace {
 

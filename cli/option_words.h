@@ -5,7 +5,7 @@
 #include <map>
 #include <string>
 
-#include "core/settings.h"
+#include "core/base/settings.h"
 
 namespace alcove {
 

@@ -8,13 +8,13 @@
 
 #include "cli/option_words.h"
 #include "cli/parsing.h"
-#include "core/aov.h"
-#include "core/debug_view.h"
-#include "core/error.h"
-#include "core/file.h"
-#include "core/flat_toml.h"
-#include "core/input_rules.h"
-#include "core/text.h"
+#include "core/chain/aov.h"
+#include "core/chain/debug_view.h"
+#include "core/base/error.h"
+#include "core/base/file.h"
+#include "core/base/flat_toml.h"
+#include "core/frame/input_rules.h"
+#include "core/base/text.h"
 
 namespace alcove {
 namespace {

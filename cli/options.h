@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "cli/progress.h"
-#include "core/settings.h"
+#include "core/base/settings.h"
 
 namespace CLI {
 class App;

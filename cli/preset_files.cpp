@@ -5,8 +5,8 @@
 #include <filesystem>
 
 #include "cli/options.h"
-#include "core/error.h"
-#include "core/text.h"
+#include "core/base/error.h"
+#include "core/base/text.h"
 
 namespace alcove {
 namespace {

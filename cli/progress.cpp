@@ -11,8 +11,8 @@
 #include <filesystem>
 
 #include "cli/print.h"
-#include "core/error.h"
-#include "core/text.h"
+#include "core/base/error.h"
+#include "core/base/text.h"
 
 namespace alcove {
 namespace {

@@ -7,7 +7,7 @@
 #include <memory>
 #include <string>
 
-#include "core/run_report.h"
+#include "core/run/run_report.h"
 
 namespace alcove {
 

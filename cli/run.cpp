@@ -8,8 +8,8 @@
 #include "cli/commands.h"
 #include "cli/options.h"
 #include "cli/print.h"
-#include "core/batch.h"
-#include "core/plan.h"
+#include "core/run/batch.h"
+#include "core/run/plan.h"
 
 namespace alcove {
 namespace {

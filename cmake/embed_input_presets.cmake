@@ -8,6 +8,6 @@ foreach(file ${files})
   string(APPEND texts "      {\"${stem}\", R\"toml(${text})toml\"},\n")
 endforeach()
 file(WRITE "${OUTPUT}"
-  "// Generated from presets/input/*.toml by cmake/embed_input_presets.cmake.\n#include \"core/input_rules.h\"\n\nnamespace alcove {\n\n"
+  "// Generated from presets/input/*.toml by cmake/embed_input_presets.cmake.\n#include \"core/frame/input_rules.h\"\n\nnamespace alcove {\n\n"
   "const std::vector<std::pair<std::string, std::string>>& input_preset_texts() {\n"
   "  static const std::vector<std::pair<std::string, std::string>> texts = {\n${texts}  };\n  return texts;\n}\n\n}  // namespace alcove\n")

@@ -10,7 +10,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-readers=(core/exr_header.cpp core/header_camera.cpp core/dds.cpp core/image_io.cpp core/camera.cpp core/sequence.cpp core/file.cpp core/text.cpp)
+readers=(core/formats/exr_header.cpp core/frame/header_camera.cpp core/formats/dds.cpp core/formats/image_io.cpp core/frame/camera.cpp core/formats/sequence.cpp core/base/file.cpp core/base/text.cpp)
 tests=(file_test camera_test gbuffer_test text_test color_test sequence_test layouts_test sources_test capture_formats_test hostile_test bad_input_test
        refusals_test inputs_test readings_test compare_test inspect_test region_test
        gpu_test property_test bounds_test confidence_test tolerance_test real_frame_test {exr,dds,camera,frames,toml,preset,inspect}_fuzz)

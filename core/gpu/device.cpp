@@ -10,10 +10,10 @@
 #include <fstream>
 #include <iterator>
 
-#include "core/error.h"
-#include "core/file.h"
+#include "core/base/error.h"
+#include "core/base/file.h"
 #include "core/gpu/kernel.h"
-#include "core/text.h"
+#include "core/base/text.h"
 
 namespace alcove::gpu {
 namespace {

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/gpu/recorder.h"
 
-#include "core/error.h"
+#include "core/base/error.h"
 
 namespace alcove::gpu {
 namespace {

@@ -1,6 +1,6 @@
 // DDS textures: header and pixels.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/dds.h"
+#include "core/formats/dds.h"
 #include "tests/fuzz/fuzz.h"
 
 using namespace alcove;

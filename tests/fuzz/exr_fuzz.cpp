@@ -1,11 +1,11 @@
 // EXR files: headers, attributes, the camera and the program they tell of, and the pixels of every channel.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/exr.h"
+#include "core/formats/exr.h"
 
 #include <cmath>
 
-#include "core/header_camera.h"
-#include "core/input_rules.h"
+#include "core/frame/header_camera.h"
+#include "core/frame/input_rules.h"
 #include "tests/fuzz/fuzz.h"
 
 using namespace alcove;

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 
-#include "core/plan.h"
-#include "core/sequence.h"
+#include "core/run/plan.h"
+#include "core/formats/sequence.h"
 #include "tests/fuzz/fuzz.h"
 
 using namespace alcove;

@@ -1,11 +1,11 @@
 // A whole frame as `alcove inspect` reads it: the search for AOVs, what the pixels say of their meaning, and the report.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/inspect.h"
+#include "core/inspect/inspect.h"
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "core/exr.h"
+#include "core/formats/exr.h"
 #include "tests/fuzz/fuzz.h"
 
 using namespace alcove;

@@ -1,8 +1,8 @@
 // TOML: rules of input presets, suites and limits of the benchmark.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/flat_toml.h"
-#include "core/input_rules.h"
-#include "core/suite.h"
+#include "core/base/flat_toml.h"
+#include "core/frame/input_rules.h"
+#include "core/bench/suite.h"
 #include "tests/fuzz/fuzz.h"
 
 using namespace alcove;

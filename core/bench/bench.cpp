@@ -1,0 +1,191 @@
+// Measuring: interleaved timing, errors and their two parts.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/bench/bench.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <memory>
+#include <tuple>
+
+#include "core/chain/chain.h"
+#include "core/base/error.h"
+#include "core/formats/exr.h"
+#include "core/chain/host_frame.h"
+#include "core/measure/metrics.h"
+#include "core/reference/reference.h"
+
+namespace alcove {
+namespace {
+
+/// A suite's frame, loaded.
+struct LoadedFrame {
+  HostFrame host;
+  std::vector<std::vector<float>> truths;
+  std::vector<float> truth;                // their mean
+  std::vector<std::uint8_t> surface;       // 1 where there is no sky: what is measured
+};
+
+LoadedFrame load(const SuiteFrame& frame) {
+  InputSettings settings;
+  settings.input = frame.input;
+  settings.camera = frame.camera;
+  LoadedFrame loaded{read_host_frame(settings, 0), {}, {}, {}};
+  const auto& host = loaded.host;
+  for (const float z : host.depth) loaded.surface.push_back(std::isfinite(z) && z > 0 && z < host.sky);
+  loaded.truth.assign(host.depth.size(), 0.0f);
+  for (const auto& path : frame.truth) {
+    const Image image = read_exr_image(path);
+    if (image.data != host.data || image.names.size() != 1)
+      fail(ErrorKind::input, "{}: the truth has {} channels over {}, and must have one over {}", path, image.names.size(), to_string(image.data), to_string(host.data));
+    loaded.truths.push_back(image.pixels);
+  }
+  for (std::size_t i = 0; i < loaded.truth.size(); i++) {
+    for (const auto& truth : loaded.truths) loaded.truth[i] += truth[i] / float(loaded.truths.size());
+    if (!loaded.surface[i]) loaded.truth[i] = 1;
+  }
+  return loaded;
+}
+
+EstimatorSettings settings_for(const BenchCandidate& candidate, const SuiteFrame& frame) {
+  EstimatorSettings settings = candidate.estimator;
+  if (!settings.radius) settings.radius = frame.radius;
+  return settings;
+}
+
+double median(std::vector<double> values) {
+  std::ranges::sort(values);
+  return values[values.size() / 2];
+}
+
+/// The timings of one candidate on one frame, run by run.
+struct Timings {
+  std::vector<std::vector<gpu::PassTime>> runs;
+
+  void summarize(BenchRow& row) const {
+    std::vector<double> totals;
+    for (const auto& run : runs) {
+      double total = 0;
+      for (const auto& pass : run) total += pass.ms;
+      totals.push_back(total);
+    }
+    row.ms = median(totals);
+    const auto [least, most] = std::ranges::minmax(totals);
+    row.ms_min = least;
+    row.ms_max = most;
+    for (std::size_t pass = 0; pass < runs[0].size(); pass++) {
+      std::vector<double> times;
+      for (const auto& run : runs) times.push_back(run[pass].ms);
+      row.passes.push_back({runs[0][pass].name, median(times), *std::ranges::min_element(times), runs[0][pass].bytes_read, runs[0][pass].bytes_written});
+    }
+  }
+};
+
+/// The median that the yardstick program prints for a frame.
+double run_yardstick(const std::string& program, const SuiteFrame& frame, int runs) {
+  const auto quoted = [](std::string text) {
+    for (std::size_t at = 0; (at = text.find('\'', at)) != text.npos; at += 4) text.replace(at, 1, "'\\''");
+    return "'" + text + "'";
+  };
+  const std::string command = fmt::format("{} {} {} {} {}", quoted(program), quoted(frame.input), quoted(frame.camera), frame.radius, runs);
+  const std::unique_ptr<FILE, int (*)(FILE*)> pipe(::popen(command.c_str(), "r"), ::pclose);
+  std::string text;
+  std::array<char, 256> line;
+  while (pipe && std::fgets(line.data(), int(line.size()), pipe.get())) text += line.data();
+  const std::size_t at = text.find("median ");
+  const double ms = at == text.npos ? 0 : std::atof(text.c_str() + at + 7);
+  if (!(ms > 0)) fail(ErrorKind::usage, "--yardstick {}: it printed no \"median X ms\" for {}", program, frame.input);
+  return ms;
+}
+
+/// References by what they depend on, so that candidates that differ in samples only share one.
+class References {
+ public:
+  References(const LoadedFrame& frame, int slices) : frame_(frame), slices_(slices) {}
+
+  /// Of several radii the mean, as the estimate is.
+  std::vector<float> of(EstimatorSettings settings) {
+    const auto radii = radii_of(settings);
+    std::vector<float> mean(frame_.host.depth.size());
+    for (const double radius : radii) {
+      settings.radius = radius;
+      std::ranges::transform(mean, of_one_radius(settings), mean.begin(), [&](float sum, float ao) { return sum + ao / float(radii.size()); });
+    }
+    return mean;
+  }
+
+ private:
+  const std::vector<float>& of_one_radius(const EstimatorSettings& settings) {
+    ReferenceSettings wanted = reference_settings_of(settings);
+    wanted.slices = slices_;
+    auto& reference = made_[{wanted.radius, wanted.falloff, wanted.falloff_start, wanted.thickness, wanted.thickness_length, wanted.bias}];
+    if (reference.empty()) {
+      reference = reference_ao(frame_.host, wanted);
+    }
+    return reference;
+  }
+
+  const LoadedFrame& frame_;
+  int slices_;
+  std::map<std::tuple<double, Falloff, double, ThicknessRule, double, double>, std::vector<float>> made_;
+};
+
+/// Over the surfaces, without the truths' noise where there are two.
+PlaneErrors against_truth(const std::vector<float>& result, const LoadedFrame& frame) {
+  return compare_planes(result, frame.truths[0], frame.surface, frame.truths.size() == 2 ? Values(frame.truths[1]) : Values());
+}
+
+void measure(BenchRow& row, const LoadedFrame& frame, const EstimatorSettings& settings, References* references) {
+  const PlaneErrors errors = against_truth(row.ao, frame);
+  row.rmse = errors.rmse;
+  row.mae = errors.mae;
+  row.bias = errors.bias;
+  row.p99 = errors.p99;
+  if (!references) return;
+  const auto reference = references->of(settings);
+  row.estimator_rmse = compare_planes(row.ao, reference, frame.surface).rmse;
+  row.geometry_rmse = against_truth(reference, frame).rmse;
+}
+
+}  // namespace
+
+BenchReport run_bench(gpu::Device& device, const Suite& suite, const std::vector<BenchCandidate>& candidates, const BenchOptions& options) {
+  BenchReport report{suite.title, device.info().name, suite.repeats, {}, candidates, {}};
+  gpu::Recorder gpu(device);
+  for (const auto& frame : suite.frames) {
+    const LoadedFrame loaded = load(frame);
+    BenchFrame described{frame.name, loaded.host.data.width, loaded.host.data.height, {}, loaded.host.depth, loaded.truth};
+    std::vector<Timings> timings(candidates.size());
+    std::vector<HostResult> results(candidates.size());
+    std::vector<double> yardsticks;
+    // Round by round, so that a machine that slows down slows all candidates alike; the first round only warms up.
+    for (int round = 0; round <= suite.repeats; round++) {
+      if (options.say) options.say(fmt::format("{}: round {} of {}", frame.name, round, suite.repeats));
+      if (!options.yardstick.empty() && round > 0) yardsticks.push_back(run_yardstick(options.yardstick, frame, 3));
+      for (std::size_t c = 0; c < candidates.size(); c++) {
+        results[c] = compute_ao(gpu, loaded.host, settings_for(candidates[c], frame));
+        if (round > 0) timings[c].runs.push_back(gpu.passes());
+      }
+    }
+    if (!yardsticks.empty()) described.yardstick_ms = median(yardsticks);
+    if (options.say && suite.reference_slices) options.say(fmt::format("{}: CPU reference", frame.name));
+    References references(loaded, suite.reference_slices);
+    for (std::size_t c = 0; c < candidates.size(); c++) {
+      const auto settings = settings_for(candidates[c], frame);
+      BenchRow row;
+      row.frame = frame.name;
+      row.candidate = candidates[c].name;
+      row.ao = std::move(results[c].ao);
+      timings[c].summarize(row);
+      row.samples_per_pixel = samples_per_pixel(settings) * (1 - double(results[c].sky_pixels) / double(loaded.host.depth.size()));
+      measure(row, loaded, settings, suite.reference_slices ? &references : nullptr);
+      report.rows.push_back(std::move(row));
+    }
+    report.frames.push_back(std::move(described));
+  }
+  return report;
+}
+
+}  // namespace alcove

@@ -1,0 +1,73 @@
+// Run time against error: every candidate of a suite on every frame, interleaved.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/gpu/recorder.h"
+#include "core/base/settings.h"
+#include "core/bench/suite.h"
+
+namespace alcove {
+
+/// A candidate with its settings worked out; a radius of its own, or the frame's.
+struct BenchCandidate {
+  std::string name, settings_text;
+  EstimatorSettings estimator;
+};
+
+struct BenchPass {
+  std::string name;
+  double ms = 0, ms_min = 0;  // median and least over the repeats
+  std::uint64_t bytes_read = 0, bytes_written = 0;
+};
+
+/// One candidate on one frame. Errors are over the surfaces, against the mean of the truths; with two truths rmse is without their noise.
+struct BenchRow {
+  std::string frame, candidate;
+  double ms = 0, ms_min = 0, ms_max = 0;  // device time of all passes: median, least, most
+  std::vector<BenchPass> passes;
+  double samples_per_pixel = 0;
+  double rmse = 0, mae = 0, bias = 0, p99 = 0;
+  std::optional<double> estimator_rmse;  // against the CPU reference at the same radius and falloff
+  std::optional<double> geometry_rmse;   // of the CPU reference against the truth
+  std::vector<float> ao;                 // the result, for pictures
+};
+
+struct BenchFrame {
+  std::string name;
+  int width = 0, height = 0;
+  std::optional<double> yardstick_ms;
+  std::vector<float> depth, truth;  // truth: the mean; 1 on sky
+};
+
+struct BenchReport {
+  std::string title, device;
+  int repeats = 0;
+  std::vector<BenchFrame> frames;
+  std::vector<BenchCandidate> candidates;
+  std::vector<BenchRow> rows;  // frame by frame, candidates in order
+};
+
+struct BenchOptions {
+  std::string yardstick;                               // a program to be run as PROGRAM FRAME CAMERA RADIUS RUNS that prints "median X ms"; empty: none
+  std::function<void(const std::string&)> say = {};    // progress, a line each; may be empty
+};
+
+/// Times and measures. Fails as reading and computing do, and with ErrorKind::input when a truth is not the frame's size.
+BenchReport run_bench(gpu::Device& device, const Suite& suite, const std::vector<BenchCandidate>& candidates, const BenchOptions& options);
+
+/// {"title", "device", "repeats", "frames": [{"name", "width", "height", "yardstick_ms"}], "candidates": [{"name", "settings", means over frames}], "rows": [...]}.
+std::string bench_json(const BenchReport& report);
+/// A line a row, with a heading.
+std::string bench_csv(const BenchReport& report);
+/// The page of core/measure/report.h, with pictures.
+std::string bench_page(const BenchReport& report);
+
+/// What is above its limit, a sentence each. A limit for a row that was not measured is an Error of kind usage.
+std::vector<std::string> broken_limits(const BenchReport& report, const std::vector<Limit>& limits);
+
+}  // namespace alcove

@@ -1,0 +1,106 @@
+// The run, and its parts by themselves.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/bench/bench_batch.h"
+
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <thread>
+
+#include "core/run/batch.h"
+#include "core/base/error.h"
+#include "core/run/frame_files.h"
+#include "core/run/pipeline.h"
+
+namespace alcove {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Where files are kept for a while: std::filesystem::temp_directory_path() would not say which place it cannot use.
+fs::path folder_of_scratch() {
+  const char* variable = std::getenv("TMPDIR");
+  return variable && *variable ? variable : P_tmpdir;
+}
+
+/// A folder that goes with all that is in it.
+class ScratchFolder {
+ public:
+  ScratchFolder() : path_((folder_of_scratch() / ("alcove-bench-" + std::string(6, 'X'))).string()) {  // mkdtemp draws the six letters
+    if (!::mkdtemp(path_.data())) fail(ErrorKind::output, "{}: no folder for the frames can be made: {}; the variable TMPDIR names another place", path_, std::strerror(errno));
+  }
+  ~ScratchFolder() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  }
+  ScratchFolder(const ScratchFolder&) = delete;
+  std::string file(int frame) const { return fmt::format("{}/ao.{:04}.exr", path_, frame); }
+  std::string pattern() const { return path_ + "/ao.%04d.exr"; }
+
+ private:
+  std::string path_;
+};
+
+/// Seconds for the function to be called with 0 to count - 1, by so many threads.
+template <class Function>
+double seconds_of(int threads, int count, const Function& function) {
+  const Stopwatch watch;
+  std::atomic<int> next = 0;
+  std::vector<std::jthread> workers;
+  for (int i = 0; i < threads; i++)
+    workers.emplace_back([&] {
+      for (int frame = next++; frame < count; frame = next++) function(frame);
+    });
+  workers.clear();
+  return watch.ms() / 1000;
+}
+
+}  // namespace
+
+BatchTimes time_batch(Settings settings, int frames) {
+  const ScratchFolder folder;
+  settings.output.output = folder.pattern();
+  settings.frames.frames = fmt::format("1-{}", frames);
+  settings.estimator.noise = Noise::animated;  // else all of these frames would be the first one
+  const RunReport report = run_frames(settings);
+  if (report.stop) throw *report.stop;
+  BatchTimes times{frames, report.at_once, report.wall_s};
+
+  times.files_s = seconds_of(report.at_once, frames, [&](int frame) {
+    FrameSource source = open_frame(settings, frame);
+    std::vector<float> depth(source.depth.size() * source.data.pixels()), normal(source.normal.size() * source.data.pixels());
+    read_planes(source, {{&source.depth, depth.data()}, {&source.normal, normal.data()}});
+    Settings one = settings;
+    one.output.output = folder.file(frame);
+    FrameWriter writer(source, one, {report.options, report.device});
+    writer.write(std::vector{std::span<const float>(depth).first(source.data.pixels())});
+    writer.finish();
+  });
+
+  const DeviceSettings& d = settings.device;
+  Lanes lanes({d.device, d.require_gpu, d.validate, !d.no_pipeline_cache}, report.at_once, report.at_once);
+  const int each = (frames + report.at_once - 1) / report.at_once;
+  std::atomic<double> device_ms = 0;
+  seconds_of(report.at_once, report.at_once, [&](int) {
+    lanes.with([&](Lane& lane) {
+      gpu::Recorder& gpu = lane.gpu;
+      FrameSource source = open_frame(settings, 1);
+      const FrameInputs inputs = load_frame(gpu, source, settings, 1);
+      const Stopwatch computing;
+      for (int i = 0; i < each; i++) {
+        run_chain(gpu, inputs, settings.estimator, settings.output);
+        gpu.run();
+      }
+      for (double most = device_ms, ms = computing.ms(); ms > most && !device_ms.compare_exchange_weak(most, ms);) continue;
+    });
+  });
+  times.compute_s = device_ms / 1000;
+  return times;
+}
+
+}  // namespace alcove

@@ -1,0 +1,318 @@
+// A room and a step, seen in every extreme way.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/bench/stability.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numbers>
+
+#include "core/reference/reference.h"
+#include "core/reference/reference_estimators.h"
+#include "core/reference/reference_scene.h"
+#include "core/run/scale_notes.h"
+
+namespace alcove {
+namespace {
+
+constexpr int kWidth = 48, kHeight = 36;
+constexpr double kRoomWidth = 4.5, kRadius = 0.65, kFov = 55, kNarrowFov = 1.5;  // narrow: pixels as small as in a picture 1920 wide
+constexpr float kSky = 1e25f;
+constexpr std::size_t kCompared = 3;  // every so many pixels
+
+/// A frame, and the one that its reference is computed from: the same picture without what the axis does to it.
+struct Trial {
+  HostFrame exact, tried;
+  double exact_radius = kRadius, radius = kRadius;  // scene units of each
+  std::string picture;                              // a name for the exact frame
+};
+
+/// A floor, a wall and a ball. The parameter of the nearest hit, infinite: none.
+double hit_of(Vector o, Vector d, Vector& normal) {
+  double nearest = std::numeric_limits<double>::infinity();
+  const auto take = [&](double t, bool covers, Vector n) {
+    if (t > 1e-9 && t < nearest && covers) nearest = t, normal = n;
+  };
+  const double floor = -o.z / d.z, wall = -o.x / d.x;
+  const Vector on_floor = o + floor * d, on_wall = o + wall * d;
+  take(floor, on_floor.x >= 0 && on_floor.x <= 4 && std::abs(on_floor.y) <= 3, {0, 0, 1});
+  take(wall, on_wall.z >= 0 && on_wall.z <= 1.5 && std::abs(on_wall.y) <= 3, {1, 0, 0});
+  const Vector center{1.2, 0.4, 0.5}, off = o - center;
+  const double a = dot(d, d), b = dot(off, d), inside = b * b - a * (dot(off, off) - 0.25);
+  const double ball = (-b - std::sqrt(std::max(0.0, inside))) / a;
+  take(ball, inside > 0, 2.0 * (off + ball * d));
+  return nearest;
+}
+
+HostFrame empty_frame() {
+  HostFrame frame;
+  frame.data = frame.display = {0, 0, kWidth, kHeight};
+  frame.camera.width = kWidth;
+  frame.camera.height = kHeight;
+  frame.camera.cx = 0.5 * kWidth;
+  frame.camera.cy = 0.5 * kHeight;
+  frame.sky = 1e24;
+  frame.depth.assign(frame.data.pixels(), kSky);
+  frame.normal.assign(3 * frame.data.pixels(), 0);
+  return frame;
+}
+
+void set_pixel(HostFrame& frame, std::size_t i, double z, Vector n) {
+  const std::size_t pixels = frame.data.pixels();
+  frame.depth[i] = float(z);
+  frame.normal[i] = float(n.x), frame.normal[i + pixels] = float(n.y), frame.normal[i + 2 * pixels] = float(n.z);
+}
+
+const Vector kTarget{1, 0, 0.6};
+
+struct Axes {
+  Vector right, up, back;
+};
+Axes axes_of_view() {
+  const Vector back = normalized({3.5, -1.5, 1.8}), right = normalized(cross({0, 0, 1}, back));
+  return {right, cross(back, right), back};
+}
+double distance_of(double fov) { return 0.5 * kRoomWidth / std::tan(fov * std::numbers::pi / 360); }
+
+/// The room from so far that it fills a picture of this field of view.
+HostFrame room(double fov) {
+  HostFrame frame = empty_frame();
+  frame.camera.fx = frame.camera.fy = 0.5 * kWidth / std::tan(fov * std::numbers::pi / 360);
+  const Axes view = axes_of_view();
+  const Vector eye = kTarget + distance_of(fov) * view.back;
+  for (std::size_t i = 0; i < frame.data.pixels(); i++) {
+    const double x = (double(i % kWidth) + 0.5 - frame.camera.cx) / frame.camera.fx, y = (frame.camera.cy - double(i / kWidth) - 0.5) / frame.camera.fy;
+    Vector n;
+    const double z = hit_of(eye, x * view.right + y * view.up - view.back, n);
+    if (std::isfinite(z)) set_pixel(frame, i, z, {dot(n, view.right), dot(n, view.up), dot(n, view.back)});
+  }
+  return frame;
+}
+
+Trial trial(const std::string& picture, const HostFrame& frame, double radius) { return {frame, frame, radius, radius, picture}; }
+
+Trial at_scale(double scale) {
+  Trial made = trial(fmt::format("room {}", kFov), room(kFov), kRadius);
+  for (float& z : made.tried.depth) z = z < kSky ? float(z * scale) : kSky;
+  made.radius *= scale;
+  return made;
+}
+
+Trial before_background(double range) {
+  HostFrame frame = room(kFov);
+  for (std::size_t i = 0; i < frame.depth.size(); i++)
+    if (frame.depth[i] >= kSky) set_pixel(frame, i, distance_of(kFov) * 2 * range, {0, 0, 1});
+  return trial(fmt::format("background {}", range), frame, kRadius);
+}
+
+/// A plane, parallel projection, tilted to the right; its right half is a step nearer. The radius is seen 8 pixels wide along the tilt.
+Trial tilted(double degrees) {
+  HostFrame frame = empty_frame();
+  const double cosine = std::cos(degrees * std::numbers::pi / 180), sine = std::sin(degrees * std::numbers::pi / 180), pixel = 0.1, radius = 8 * pixel / cosine;
+  frame.camera.orthographic = true;
+  frame.camera.fx = frame.camera.fy = 1 / pixel;
+  for (std::size_t i = 0; i < frame.data.pixels(); i++) {
+    const double x = (double(i % kWidth) + 0.5 - 0.5 * kWidth) * pixel;
+    set_pixel(frame, i, (10 * radius) + x * sine / cosine - (x > 0 ? 0.4 * radius / std::max(cosine, 0.1) : 0), {sine, 0, cosine});
+  }
+  return trial(fmt::format("tilt {}", degrees), frame, radius);
+}
+
+Trial with_radius(double radius) { return trial(fmt::format("room {}", kFov), room(kFov), radius); }
+
+/// Rounded to so many bits of mantissa.
+double rounded(double x, int bits) {
+  int exponent = 0;
+  const double mantissa = std::frexp(x, &exponent);
+  return std::ldexp(std::round(std::ldexp(mantissa, bits)), exponent - bits);
+}
+
+Trial in_half(double fov) {
+  Trial made = trial(fmt::format("room {}", fov), room(fov), kRadius);
+  for (float& z : made.tried.depth) z = z < 65504 ? float(rounded(z, 11)) : kSky;
+  made.tried.depth_is_half = true;
+  return made;
+}
+
+/// Device depth of so many bits; the far plane is 10^5 times as far as the near plane, and the room `over_near` times.
+Trial in_bits(int bits, bool reversed, double over_near) {
+  Trial made = trial(fmt::format("room {}", kNarrowFov), room(kNarrowFov), kRadius);
+  const double near = distance_of(kNarrowFov) / over_near, far = 1e5 * near, steps = std::exp2(bits) - 1;
+  HostFrame& frame = made.tried;
+  frame.depth_kind = DepthKind::device;
+  frame.depth_range = {.near = near, .far = far, .reversed = reversed};
+  for (float& z : frame.depth) {
+    const double at = std::min(1.0, (1 / near - 1 / z) / (1 / near - 1 / far)), value = reversed ? 1 - at : at;
+    z = bits > 24 ? float(value) : float(std::round(value * steps) / steps);
+  }
+  frame.depth_step = step_of(frame.depth);
+  return made;
+}
+
+/// World positions, so many room widths from the origin.
+Trial far_out(double widths) {
+  Trial made = trial(fmt::format("room {}", kFov), room(kFov), kRadius);
+  HostFrame& frame = made.tried;
+  const Axes view = axes_of_view();
+  const Vector out = widths * kRoomWidth * normalized(view.right + 0.1 * view.up), eye = kTarget + distance_of(kFov) * view.back + out;
+  frame.depth_kind = DepthKind::position;
+  frame.position_space = PositionSpace::world;
+  const auto row = [](Vector v) { return std::array{v.x, v.y, v.z}; };
+  frame.camera.view_from_world = Matrix3{row(view.right), row(view.up), row(view.back)};
+  frame.camera.view_from_world_offset = {-dot(view.right, eye), -dot(view.up, eye), -dot(view.back, eye)};
+  const std::size_t pixels = frame.data.pixels();
+  frame.depth.assign(3 * pixels, 0);
+  for (std::size_t i = 0; i < pixels; i++) {
+    const double z = made.exact.depth[i];
+    if (z >= kSky) continue;
+    const double x = (double(i % kWidth) + 0.5 - frame.camera.cx) / frame.camera.fx, y = (frame.camera.cy - double(i / kWidth) - 0.5) / frame.camera.fy;
+    const Vector at = eye + z * (x * view.right + y * view.up - view.back);
+    frame.depth[i] = float(at.x), frame.depth[i + pixels] = float(at.y), frame.depth[i + 2 * pixels] = float(at.z);
+  }
+  return made;
+}
+
+struct Axis {
+  const char *name, *unit;
+  bool logarithmic;
+  double plain;  // the value of the plain room, or what is nearest to it
+  std::vector<double> values;
+  std::function<Trial(double)> make;
+};
+
+std::vector<Axis> all_axes() {
+  const std::vector<double> over_near{3, 10, 30, 100, 300, 1e3, 3e3, 1e4};
+  const double depth = distance_of(kFov), pixel = depth * 2 * std::tan(kFov * std::numbers::pi / 360) / kWidth;
+  return {{"depth scale", "scene units a unit of the room", true, 1, {1e-6, 1e-4, 1e-2, 1, 1e2, 1e4, 1e6, 1e9}, at_scale},
+          {"depth range", "farthest over nearest depth", true, 1, {1, 10, 1e2, 1e3, 1e4, 1e5, 1e6}, before_background},
+          {"field of view", "degrees", true, kFov, {0.5, 2, 10, 30, kFov, 90, 120, 150, 170}, [](double fov) { return trial(fmt::format("room {}", fov), room(fov), kRadius); }},
+          {"radius in the scene", "of the median depth", true, kRadius / depth, {1e-9, 1e-6, 1e-3, 1e-2, 0.05, 0.15, 0.5, 2, 10, 1e2, 1e4, 1e9}, [=](double r) { return with_radius(r * depth); }},
+          {"radius in pixels", "px at the median depth", true, kRadius / pixel, {0.25, 0.5, 1, 1.5, 2, 3, 4, 6, 8, 16, 32, 64, 128}, [=](double r) { return with_radius(r * pixel); }},
+          {"tilt of the surface", "degrees", false, 0, {0, 30, 60, 75, 80, 85, 88, 89, 89.9, 89.99}, tilted},
+          {"half depth", "field of view of 48 pixels, degrees", true, kFov, {0.02, 0.05, 0.15, 0.5, 1.5, 5, 15, kFov}, in_half},
+          {"16 bits of device depth", "median depth over near plane", true, 3, over_near, [](double x) { return in_bits(16, false, x); }},
+          {"16 bits of reversed depth", "median depth over near plane", true, 3, over_near, [](double x) { return in_bits(16, true, x); }},
+          {"24 bits of device depth", "median depth over near plane", true, 3, over_near, [](double x) { return in_bits(24, false, x); }},
+          {"24 bits of reversed depth", "median depth over near plane", true, 3, over_near, [](double x) { return in_bits(24, true, x); }},
+          {"float reversed depth", "median depth over near plane", true, 3, over_near, [](double x) { return in_bits(32, true, x); }},
+          {"world offset", "widths of the room, of position files", true, 1, {1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7}, far_out}};
+}
+
+struct Candidate {
+  std::string name;
+  EstimatorSettings settings;
+};
+
+/// So many samples that what is left is numbers.
+std::vector<Candidate> candidates() {
+  EstimatorSettings plain;
+  plain.slices = 16;
+  plain.steps = plain.samples = 64;
+  plain.stride = 1;
+  plain.denoise = Denoise::none;
+  std::vector<Candidate> all;
+  const auto add = [&](const char* name, Estimator estimator, ThicknessKind thickness, SliceSearch search = SliceSearch::steps) {
+    EstimatorSettings& settings = all.emplace_back(Candidate{name, plain}).settings;
+    settings.estimator = estimator;
+    settings.thickness = thickness;
+    settings.search = search;
+  };
+  add("gtao", Estimator::gtao, ThicknessKind::automatic);
+  add("gtao, infinite", Estimator::gtao, ThicknessKind::infinite);
+  add("gtao, constant", Estimator::gtao, ThicknessKind::constant);
+  add("gtao, exact", Estimator::gtao, ThicknessKind::automatic, SliceSearch::exact);
+  add("bitmask", Estimator::bitmask, ThicknessKind::automatic);
+  add("hbao", Estimator::hbao, ThicknessKind::infinite);
+  add("crytek", Estimator::crytek, ThicknessKind::infinite);
+  return all;
+}
+
+EstimatorSettings with(EstimatorSettings settings, double radius) {
+  settings.radius = radius;
+  settings.thickness_length = radius / 4;
+  return settings;
+}
+
+class Bench {
+ public:
+  explicit Bench(gpu::Device& device) : gpu_(device) {}
+
+  double rmse(const Trial& trial, const Candidate& candidate) {
+    std::vector<std::size_t> pixels;
+    for (std::size_t i = 0; i < trial.exact.depth.size(); i += kCompared)
+      if (trial.exact.depth[i] < kSky) pixels.push_back(i);
+    const auto& reference = reference_of(trial, candidate, pixels);
+    const std::vector<float> ao = compute_ao(gpu_, trial.tried, with(candidate.settings, trial.radius)).ao;
+    double sum = 0;
+    for (const std::size_t i : pixels) sum += (ao[i] - reference[i]) * (ao[i] - reference[i]) / double(pixels.size());
+    return std::sqrt(sum);
+  }
+
+  std::vector<std::string> notes(const Trial& trial) {
+    DepthSample sample;
+    sample.add(upload(gpu_, trial.tried));
+    return sample.notes(with(EstimatorSettings(), trial.radius), kWidth, kHeight);
+  }
+
+ private:
+  /// Shared by frames of one picture and by candidates of one definition.
+  const std::vector<float>& reference_of(const Trial& trial, const Candidate& candidate, const std::vector<std::size_t>& pixels) {
+    const EstimatorSettings settings = with(candidate.settings, trial.exact_radius);
+    const bool by_slices = settings.estimator == Estimator::gtao || settings.estimator == Estimator::bitmask;
+    auto& made = made_[fmt::format("{} {} {} {}", trial.picture, trial.exact_radius, by_slices ? -1 : int(settings.estimator), int(settings.thickness))];
+    if (!made.empty()) return made;
+    ReferenceSettings reference = reference_settings_of(settings);
+    reference.pixels = pixels;
+    return made = by_slices ? reference_ao(trial.exact, reference) : reference_estimate(trial.exact, settings, pixels);
+  }
+
+  gpu::Recorder gpu_;
+  std::map<std::string, std::vector<float>> made_;
+};
+
+/// The nearest points to the plain room, to each side, that break down.
+std::vector<std::size_t> breaks_of(const std::vector<double>& rmse, std::size_t plain_point, double plain) {
+  const auto breaks = [&](std::size_t i) { return !(rmse[i] <= plain + kBreakdown); };
+  std::vector<std::size_t> places;
+  for (std::size_t i = plain_point + 1; i-- > 0;)
+    if (breaks(i)) {
+      places.push_back(i);
+      break;
+    }
+  for (std::size_t i = plain_point + 1; i < rmse.size(); i++)
+    if (breaks(i)) {
+      places.push_back(i);
+      break;
+    }
+  return places;
+}
+
+}  // namespace
+
+StabilityReport run_stability(gpu::Device& device, const std::function<void(const std::string&)>& say) {
+  StabilityReport report{device.info().name, {}, {}};
+  Bench bench(device);
+  const auto all = candidates();
+  for (const auto& candidate : all) report.plain.emplace_back(candidate.name, bench.rmse(at_scale(1), candidate));
+  for (const Axis& axis : all_axes()) {
+    if (say) say(fmt::format("{}: {} points", axis.name, axis.values.size()));
+    StabilityAxis& measured = report.axes.emplace_back(StabilityAxis{axis.name, axis.unit, axis.logarithmic, {}, {}});
+    for (const auto& candidate : all) measured.curves.push_back({candidate.name, {}, {}, false});
+    for (const double value : axis.values) {
+      const Trial trial = axis.make(value);
+      measured.points.push_back({value, bench.notes(trial)});
+      for (std::size_t c = 0; c < all.size(); c++) measured.curves[c].rmse.push_back(bench.rmse(trial, all[c]));
+    }
+    const auto nearest = std::ranges::min_element(axis.values, {}, [&](double value) { return axis.logarithmic ? std::abs(std::log(value / axis.plain)) : std::abs(value - axis.plain); });
+    for (std::size_t c = 0; c < all.size(); c++) {
+      StabilityCurve& curve = measured.curves[c];
+      curve.breaks = breaks_of(curve.rmse, std::size_t(nearest - axis.values.begin()), report.plain[c].second);
+      curve.said = std::ranges::all_of(curve.breaks, [&](std::size_t i) { return !measured.points[i].notes.empty(); });
+    }
+  }
+  return report;
+}
+
+}  // namespace alcove

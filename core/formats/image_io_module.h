@@ -1,0 +1,29 @@
+// What core/formats/image_io.cpp, a module that is loaded on first use, offers to the program.
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// OpenImageIO brings some 200 shared libraries along (video, GIS, computer vision). To load them costs a fifth of a second, more than
+// all the rest of a small frame, and a plain EXR job needs none of it.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/formats/chart.h"
+#include "core/formats/picture_reader.h"
+
+namespace alcove {
+
+/// The functions of core/formats/image_io.h that need OpenImageIO.
+struct ImageIoModule {
+  std::unique_ptr<PictureReader> (*open_picture)(const std::string& path, const char* option);
+  std::vector<char> (*encode_png)(const std::string& name, int width, int height, int channels, std::span<const float> pixels, const std::string& made_by);
+  std::vector<char> (*encode_chart)(const std::string& name, const Chart& chart);
+};
+
+inline constexpr const char* kMadeBy = "alcove";  // the keyword of a PNG's text
+inline constexpr const char* kImageIoFile = "libalcove_image_io.so";
+inline constexpr const char* kImageIoSymbol = "alcove_image_io_module";  // an ImageIoModule
+
+}  // namespace alcove

@@ -1,0 +1,135 @@
+// Channels by name, in one file and in two.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/formats/picture.h"
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <sstream>
+
+#include "core/base/error.h"
+#include "core/base/file.h"
+#include "core/formats/image_io.h"
+#include "core/base/text.h"
+
+namespace alcove {
+namespace {
+
+bool is_exr(const std::string& path, const char* option) {
+  require_readable(path, "picture", option);
+  std::array<char, 4> magic{};
+  std::ifstream(path, std::ios::binary).read(magic.data(), magic.size());
+  return magic == std::array<char, 4>{0x76, 0x2f, 0x31, 0x01};
+}
+
+ExrFile open(const std::string& path, const char* option) {
+  if (is_exr(path, option)) return ExrFile(path, option);
+  return {path, option, open_picture(path, option)};
+}
+
+std::vector<PictureChannel> channels_of(const ExrFile& file) {
+  std::vector<PictureChannel> channels;
+  const auto& parts = file.parts();
+  for (std::size_t part = 0; part < parts.size(); part++)
+    for (const auto& channel : parts[part].channels) {
+      const bool repeats = parts[part].name.empty() || parts.size() == 1 || channel.name.starts_with(parts[part].name + ".");
+      const std::string full = repeats ? channel.name : parts[part].name + "." + channel.name;
+      if (!channel.subsampled) channels.push_back({full, parts[part].data, int(part), channel.name});
+    }
+  return channels;
+}
+
+std::string last_part(const std::string& name) { return lower_case(name.substr(name.rfind('.') + 1)); }
+
+/// Whether `name` is all of `full`, or the end of it after a dot; both in lower case.
+bool is_end_of(const std::string& name, const std::string& full) { return full == name || full.ends_with("." + name); }
+
+std::string both_lists(const Picture& result, const Picture& reference) {
+  return fmt::format("{} has {}; {} has {}", result.path(), list_of(result.names()), reference.path(), list_of(reference.names()));
+}
+
+std::vector<ChannelPair> chosen_pairs(const Picture& result, const Picture& reference, const std::string& chosen) {
+  std::vector<ChannelPair> pairs;
+  std::istringstream list(chosen);
+  for (std::string name; std::getline(list, name, ',');) {
+    const std::size_t equals = name.find('=');
+    const std::string in_reference = equals == name.npos ? name : name.substr(equals + 1);
+    pairs.push_back({result.find(name.substr(0, equals), "--channel"), reference.find(in_reference, "--channel")});
+  }
+  return pairs;
+}
+
+/// The pairs of channels whose names are the same after `key`.
+template <class Key>
+std::vector<ChannelPair> same_names(const Picture& result, const Picture& reference, const Key& key) {
+  std::vector<ChannelPair> pairs;
+  for (std::size_t r = 0; r < result.channels().size(); r++)
+    for (std::size_t f = 0; f < reference.channels().size(); f++)
+      if (key(result.channels()[r].name) == key(reference.channels()[f].name)) pairs.push_back({r, f});
+  return pairs;
+}
+
+}  // namespace
+
+Picture::Picture(const std::string& path, const char* option) : path_(path), file_(open(path, option)), channels_(channels_of(file_)) {
+  if (channels_.empty()) fail(ErrorKind::input, "{}: it has no channel with a sample for every pixel ({})", path, option);
+}
+
+std::vector<std::string> Picture::names() const {
+  std::vector<std::string> names;
+  std::ranges::transform(channels_, std::back_inserter(names), &PictureChannel::name);
+  return names;
+}
+
+std::size_t Picture::find(const std::string& name, const char* option) const {
+  const std::string wanted = lower_case(name);
+  std::vector<std::string> found;
+  std::size_t index = 0;
+  for (std::size_t i = 0; i < channels_.size(); i++) {
+    const std::string full = lower_case(channels_[i].name);
+    if (full == wanted) return i;
+    if (!is_end_of(wanted, full)) continue;
+    found.push_back(channels_[i].name);
+    index = i;
+  }
+  if (found.size() > 1) fail(ErrorKind::input, "{}: {} may be {}; give {} a longer name", path_, name, list_of(found), option);
+  if (found.empty())
+    fail(ErrorKind::input, "{}: no channel {} for {}{}; there is {}", path_, name, option, suggestion(name, names()), list_of(names()));
+  return index;
+}
+
+std::vector<float> Picture::read(std::span<const std::size_t> channels) {
+  const Window& data = channels_[channels[0]].data;
+  require_host_room(path_, data);
+  std::vector<float> planes(channels.size() * data.pixels());
+  std::vector<ExrRead> reads;
+  for (std::size_t i = 0; i < channels.size(); i++) {
+    const auto& channel = channels_[channels[i]];
+    if (channel.data != data)
+      fail(ErrorKind::input, "{}: channel {} is {}, and channel {} is {}: they do not cover the same pixels; choose with --channel", path_,
+           channels_[channels[0]].name, to_string(data), channel.name, to_string(channel.data));
+    reads.push_back({channel.part, channel.name_in_part, planes.data() + i * data.pixels()});
+  }
+  file_.read(reads);
+  return planes;
+}
+
+std::vector<ChannelPair> match_channels(const Picture& result, const Picture& reference, const std::string& chosen) {
+  if (!chosen.empty()) return chosen_pairs(result, reference, chosen);
+  if (result.channels().size() == 1 && reference.channels().size() == 1) return {{0, 0}};
+  auto pairs = same_names(result, reference, lower_case);
+  if (pairs.empty()) pairs = same_names(result, reference, last_part);
+  if (pairs.empty())
+    fail(ErrorKind::input, "the pictures share no channel: {}; say what to compare with --channel RESULT=REFERENCE", both_lists(result, reference));
+  std::vector<std::size_t> seen_result, seen_reference;
+  for (const auto& pair : pairs) {
+    if (std::ranges::count(seen_result, pair.result) || std::ranges::count(seen_reference, pair.reference))
+      fail(ErrorKind::input, "channel {} could be compared with several: {}; say which with --channel RESULT=REFERENCE",
+           result.channels()[pair.result].name, both_lists(result, reference));
+    seen_result.push_back(pair.result);
+    seen_reference.push_back(pair.reference);
+  }
+  return pairs;
+}
+
+}  // namespace alcove

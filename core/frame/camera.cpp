@@ -1,0 +1,303 @@
+// Camera JSON, cameras from numbers, and the kernels' view of either.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/frame/camera.h"
+
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "core/base/error.h"
+#include "core/base/file.h"
+#include "core/base/text.h"
+
+namespace alcove {
+namespace {
+
+using Json = nlohmann::json;
+
+// What kernels keep as floats, and square, stays finite and above 0: far beyond any lens.
+constexpr double kLeastScale = 1e-18, kMostScale = 1e18;  // fx and fy
+constexpr double kMostCenter = 1e9;                       // px: cx and cy, to either side
+constexpr int kDeepest = 64;  // lists and objects within each other: to copy and to quote them recurses
+
+bool is_scale(double pixels) { return pixels >= kLeastScale && pixels <= kMostScale; }
+
+/// A camera file being read: every complaint names the file and the field.
+struct CameraFile {
+  std::string path;
+  Json top, frame;  // fields of the frame's own entry win
+
+  const Json* find(const char* field) const {
+    if (frame.contains(field)) return &frame[field];
+    return top.contains(field) ? &top[field] : nullptr;
+  }
+
+  [[noreturn]] void refuse(const char* field, const std::string& why) const {
+    fail(ErrorKind::input, "{}: camera field \"{}\" {} (--camera)", path, field, why);
+  }
+
+  double number(const char* field) const {
+    const Json* value = find(field);
+    if (!value) refuse(field, "is missing");
+    if (!value->is_number() || !std::isfinite(value->get<double>())) refuse(field, "must be a finite number, not " + value->dump());
+    return value->get<double>();
+  }
+
+  double positive(const char* field) const {
+    const double value = number(field);
+    if (value <= 0) refuse(field, fmt::format("must be above 0, not {}", value));
+    return value;
+  }
+
+  double scale(const char* field) const {
+    const double value = positive(field);
+    if (!is_scale(value)) refuse(field, fmt::format("must be from {:g} to {:g}, not {}", kLeastScale, kMostScale, value));
+    return value;
+  }
+
+  double center(const char* field) const {
+    const double value = number(field);
+    if (std::abs(value) > kMostCenter) refuse(field, fmt::format("must be from {:g} to {:g}, not {}", -kMostCenter, kMostCenter, value));
+    return value;
+  }
+
+  std::string text(const char* field) const {
+    const Json* value = find(field);
+    if (!value) return {};
+    if (!value->is_string()) refuse(field, "must be a string, not " + value->dump());
+    return lower_case(value->get<std::string>());
+  }
+
+  int resolution(int index) const {
+    const Json* value = find("resolution");
+    if (!value) refuse("resolution", "is missing");
+    const bool fine = value->is_array() && value->size() == 2 && (*value)[std::size_t(index)].is_number_integer();
+    const auto count = fine ? (*value)[std::size_t(index)].get<std::int64_t>() : 0;
+    if (count <= 0 || count > (1 << 24)) refuse("resolution", "must be two whole numbers of pixels above 0, not " + value->dump());
+    return int(count);
+  }
+};
+
+bool starts_with(const std::string& text, const char* start) { return text.rfind(start, 0) == 0; }
+
+/// The entry of `frames` with that number; an empty object where the file lists none.
+Json frame_entry(const CameraFile& file, int frame) {
+  if (!file.top.contains("frames")) return Json::object();
+  const Json& frames = file.top["frames"];
+  if (!frames.is_array()) file.refuse("frames", "must be a list");
+  for (const auto& entry : frames) {
+    if (!entry.is_object() || !entry.contains("frame") || !entry["frame"].is_number_integer())
+      file.refuse("frames", "must list objects with a whole number \"frame\"");
+    if (entry["frame"] == frame) return entry;
+  }
+  file.refuse("frames", fmt::format("has no frame {}", frame));
+}
+
+/// Whether the file says that its camera space is left-handed, looking along +z.
+bool left_handed(const CameraFile& file) {
+  const std::string text = file.text("camera_space");
+  if (text.empty() || starts_with(text, "right-handed")) return false;
+  if (starts_with(text, "left-handed")) return true;
+  file.refuse("camera_space", fmt::format("must begin with right-handed (looks along -z) or left-handed (looks along +z), not \"{}\"", text));
+}
+
+/// Fills in the rotation and offset of world_to_camera: orthonormal once a uniform scale is divided out.
+void read_view_from_world(const CameraFile& file, Camera& camera) {
+  const char* field = "world_to_camera";
+  const Json* value = file.find(field);
+  if (!value) return;
+  Matrix3 m{};
+  std::array<double, 3> offset{};
+  bool fine = value->is_array() && value->size() == 4;
+  for (std::size_t row = 0; fine && row < 4; row++) {
+    fine = (*value)[row].is_array() && (*value)[row].size() == 4;
+    for (std::size_t column = 0; fine && column < 4; column++) {
+      fine = (*value)[row][column].is_number() && std::isfinite((*value)[row][column].get<double>());
+      if (fine && row < 3) (column < 3 ? m[row][column] : offset[row]) = (*value)[row][column].get<double>();
+    }
+  }
+  if (!fine) file.refuse(field, "must be 4 rows of 4 finite numbers");
+  const Json& last = (*value)[3];
+  for (std::size_t column = 0; column < 4; column++)
+    if (std::abs(last[column].get<double>() - (column == 3)) > 1e-6) file.refuse(field, "must end in the row 0 0 0 1: it is for column vectors");
+  const auto dot = [&](int a, int b) {
+    return m[std::size_t(a)][0] * m[std::size_t(b)][0] + m[std::size_t(a)][1] * m[std::size_t(b)][1] + m[std::size_t(a)][2] * m[std::size_t(b)][2];
+  };
+  const double squared = dot(0, 0);
+  constexpr double kTolerance = 1e-3;  // matrices come from single precision, and from tools that round
+  for (int a = 0; a < 3; a++)
+    for (int b = 0; b < 3; b++)
+      if (!(squared > 0) || !(std::abs(dot(a, b) / squared - (a == b)) < kTolerance)) file.refuse(field, "is no rotation with a translation");
+  const double determinant = m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) - m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
+                             m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
+  if (determinant < 0 && !camera.left_handed)
+    file.refuse(field, "mirrors space; the camera looks along -z with x right and y up, right-handed, unless \"camera_space\" says left-handed");
+  for (std::size_t row = 0; row < 3; row++) {
+    const double scale = (camera.left_handed && row == 2 ? -1 : 1) / std::sqrt(squared);
+    for (auto& x : m[row]) x *= scale;
+    camera.view_from_world_offset[row] = offset[row] * scale;
+  }
+  camera.view_from_world = m;
+}
+
+/// Near or far; "inf" is a far plane that is none.
+std::optional<double> clip_plane(const CameraFile& file, const char* field) {
+  const Json* value = file.find(field);
+  if (!value || value->is_null()) return std::nullopt;
+  if (value->is_string() && starts_with(file.text(field), "inf")) return std::numeric_limits<double>::infinity();
+  return file.positive(field);
+}
+
+/// By its word, or by the last row of the matrix that games have: 0 0 0 1 divides by nothing.
+bool is_orthographic(const CameraFile& file) {
+  const Json* value = file.find("projection");
+  if (value && value->is_array() && value->size() == 4 && (*value)[3].is_array() && (*value)[3].size() == 4 && (*value)[3][3].is_number())
+    return (*value)[3][3].get<double>() == 1;
+  const std::string projection = file.text("projection");
+  if (!projection.empty() && projection != "perspective" && projection != "orthographic")
+    file.refuse("projection", fmt::format("must be perspective or orthographic, not \"{}\"", projection));
+  return projection == "orthographic";
+}
+
+/// Where a projection for 0..1, not reversed, has z = 0: -B / A of its third row A z + B.
+std::optional<double> matrix_near(const CameraFile& file) {
+  const Json* value = file.find("projection");
+  if (!value || !value->is_array() || value->size() != 4 || !(*value)[2].is_array() || (*value)[2].size() != 4) return std::nullopt;
+  const Json &slope = (*value)[2][2], &offset = (*value)[2][3];
+  if (!slope.is_number() || !offset.is_number() || slope.get<double>() == 0) return std::nullopt;
+  const double near = std::abs(offset.get<double>() / slope.get<double>());
+  return near > 0 && std::isfinite(near) ? std::optional(near) : std::nullopt;
+}
+
+bool truth(const CameraFile& file, const char* field) {
+  const Json* value = file.find(field);
+  if (value && !value->is_boolean()) file.refuse(field, "must be true or false, not " + value->dump());
+  return value && value->get<bool>();
+}
+
+DepthKind depth_kind(const CameraFile& file) {
+  const char* field = file.find("depth_kind") ? "depth_kind" : "depth";
+  const std::string text = file.text(field);
+  if (text.empty()) return DepthKind::automatic;
+  if (starts_with(text, "planar")) return DepthKind::planar;
+  if (starts_with(text, "ray")) return DepthKind::ray;
+  if (starts_with(text, "inverse")) return DepthKind::inverse;
+  if (starts_with(text, "device")) return DepthKind::device;
+  if (starts_with(text, "normalized")) return DepthKind::normalized;
+  if (starts_with(text, "log")) return DepthKind::log;
+  file.refuse(field, fmt::format("must begin with planar, ray, inverse, device, normalized or log, not \"{}\"", text));
+}
+
+NormalSpace normal_space(const CameraFile& file) {
+  const std::string text = file.text("normal_space");
+  if (text.empty()) return NormalSpace::automatic;
+  if (text == "world") return NormalSpace::world;
+  if (text == "view" || text == "camera") return NormalSpace::view;
+  file.refuse("normal_space", fmt::format("must be world or view, not \"{}\"", text));
+}
+
+NormalEncoding normal_encoding(const CameraFile& file) {
+  const std::string text = file.text("normal_encoding");
+  if (text.empty()) return NormalEncoding::automatic;
+  if (starts_with(text, "signed")) return NormalEncoding::signed_float;
+  if (starts_with(text, "unorm")) return NormalEncoding::unorm;
+  if (starts_with(text, "octahedral")) return NormalEncoding::octahedral;
+  if (starts_with(text, "spheremap")) return NormalEncoding::spheremap;
+  file.refuse("normal_encoding", fmt::format("must begin with signed, unorm, octahedral or spheremap, not \"{}\"", text));
+}
+
+/// fx and fy for square tangents: a pixel `aspect` times as wide as high covers that much more in x.
+Camera centred(const Window& display, double fx, double aspect, bool orthographic) {
+  Camera camera;
+  camera.width = display.width;
+  camera.height = display.height;
+  camera.fx = fx;
+  camera.fy = fx * aspect;
+  camera.cx = 0.5 * display.width;
+  camera.cy = 0.5 * display.height;
+  camera.orthographic = orthographic;
+  if (!is_scale(camera.fx) || !is_scale(camera.fy))
+    fail(ErrorKind::usage, "a camera of {:g} pixels a unit sees nothing: give another --fov, --focal with --aperture, or --ortho-width", fx);
+  return camera;
+}
+
+/// The same field of view at the frame's resolution: proxies share their camera with the full size.
+Camera fitted(Camera camera, const Window& display, const std::string& path) {
+  if (camera.width == display.width && camera.height == display.height) return camera;
+  if (std::int64_t(camera.width) * display.height != std::int64_t(camera.height) * display.width)
+    fail(ErrorKind::input, "{}: the camera is for {}x{} pixels, and the frame's display window is {}x{}: give a --camera that fits", path, camera.width,
+         camera.height, display.width, display.height);
+  const double scale = double(display.width) / camera.width;
+  camera.width = display.width;
+  camera.height = display.height;
+  for (double* x : {&camera.fx, &camera.fy, &camera.cx, &camera.cy}) *x *= scale;
+  return camera;
+}
+
+}  // namespace
+
+Camera read_camera(const std::string& path, int frame) {
+  CameraFile file{path, Json::object(), Json::object()};
+  const auto bounded = [&](int depth, Json::parse_event_t, Json&) {
+    if (depth > kDeepest) fail(ErrorKind::input, "{}: JSON that nests deeper than {}; --camera takes a camera file", path, kDeepest);
+    return true;
+  };
+  file.top = Json::parse(read_text(path, "camera", "--camera"), bounded, false);
+  if (!file.top.is_object()) fail(ErrorKind::input, "{}: not a JSON object; --camera takes a camera file", path);
+  file.frame = frame_entry(file, frame);
+
+  Camera camera;
+  camera.width = file.resolution(0);
+  camera.height = file.resolution(1);
+  camera.fx = file.scale("fx");
+  camera.fy = file.scale("fy");
+  camera.cx = file.center("cx");
+  camera.cy = file.center("cy");
+  camera.orthographic = is_orthographic(file);
+  camera.left_handed = left_handed(file);
+  read_view_from_world(file, camera);
+  camera.near = clip_plane(file, "near");
+  camera.far = clip_plane(file, "far");
+  camera.matrix_near = matrix_near(file);
+  camera.reversed_z = truth(file, "reversed_z");
+  camera.depth_kind = depth_kind(file);
+  camera.normal_space = normal_space(file);
+  camera.normal_encoding = normal_encoding(file);
+  if (file.find("pixel_aspect")) file.positive("pixel_aspect");
+  return camera;
+}
+
+Camera camera_for(const InputSettings& settings, const Window& display, double pixel_aspect, int frame) {
+  if (!settings.camera.empty()) return fitted(read_camera(settings.camera, frame), display, settings.camera);
+  const double half_width = 0.5 * display.width;
+  if (settings.fov) return centred(display, half_width / std::tan(*settings.fov * std::numbers::pi / 360), pixel_aspect, false);
+  if (settings.focal && settings.aperture) return centred(display, 2 * half_width * *settings.focal / *settings.aperture, pixel_aspect, false);
+  if (settings.ortho_width) return centred(display, 2 * half_width / *settings.ortho_width, pixel_aspect, true);
+  fail(ErrorKind::usage, "no camera for {}: give --camera FILE.json, or --fov DEGREES, or --focal MM with --aperture MM, or --ortho-width UNITS",
+       !settings.input.empty() ? settings.input : settings.depth.empty() ? settings.position : settings.depth);
+}
+
+Matrix3 view_from_normal(const Camera& camera, NormalSpace space, const NormalFlips& flips) {
+  Matrix3 m = space == NormalSpace::world ? camera.view_from_world.value() : Matrix3{{{1, 0, 0}, {0, 1, 0}, {0, 0, camera.left_handed ? -1.0 : 1.0}}};
+  for (auto& row : m) {
+    if (flips.x) row[0] = -row[0];
+    if (flips.y) row[1] = -row[1];
+    if (flips.z) row[2] = -row[2];
+  }
+  return m;
+}
+
+View view_of(const Camera& camera, const Window& data, const Window& display) {
+  View view{};
+  view.size = {data.width, data.height};
+  // Rounded so that differences of pixels and the centre are exact floats, whatever part of a frame is looked at: 1/4096 px for displays up to 1024 wide.
+  const double steps = std::exp2(22 - std::ceil(std::log2(std::max(display.width, display.height))));
+  const auto rounded = [&](double px) { return std::round(px * steps) / steps; };
+  view.center = {float(rounded(camera.cx) + display.x - data.x), float(rounded(camera.cy) + display.y - data.y)};
+  view.tangent_per_pixel = {float(1 / camera.fx), float(-1 / camera.fy)};
+  view.orthographic = camera.orthographic ? 1 : 0;
+  return view;
+}
+
+}  // namespace alcove

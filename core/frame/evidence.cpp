@@ -1,0 +1,246 @@
+// Statistics over pixels, and hypotheses tried on them.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/frame/evidence.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "kernels/prepare.h"
+
+namespace alcove {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr std::size_t kLeastSamples = 200;  // fewer smooth places tell nothing
+constexpr int kSamplesAcross = 160;         // places that are looked at in x and in y: enough for shares to a percent
+
+using Vector = std::array<double, 3>;
+
+double dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+Vector cross(const Vector& a, const Vector& b) { return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]}; }
+Vector times(const Matrix3& m, const Vector& v) { return {dot(m[0], v), dot(m[1], v), dot(m[2], v)}; }
+
+int sparseness(const View& view) { return std::max(1, std::max(view.size.x, view.size.y) / kSamplesAcross); }
+std::size_t index_of(const View& view, int x, int y) { return std::size_t(y) * std::size_t(view.size.x) + std::size_t(x); }
+
+/// Where the pixel's ray meets the plane at unit depth; orthographic: its place in the plane.
+Vector tangent_at(const View& view, int x, int y) {
+  return {(x + 0.5 - view.center.x) * view.tangent_per_pixel.x, (y + 0.5 - view.center.y) * view.tangent_per_pixel.y, -1};
+}
+
+double ray_length(const View& view, int x, int y) {
+  const Vector t = tangent_at(view, x, y);
+  return view.orthographic ? 1 : std::sqrt(dot(t, t));
+}
+
+Vector position_at(const View& view, int x, int y, double z) {
+  const Vector t = tangent_at(view, x, y);
+  return view.orthographic ? Vector{t[0], t[1], -z} : Vector{t[0] * z, t[1] * z, -z};
+}
+
+Vector value_at(std::span<const float> raw, std::size_t plane, std::size_t i) {
+  return raw.size() == 3 * plane ? Vector{raw[i], raw[i + plane], raw[i + 2 * plane]} : Vector{raw[i], 0, 0};
+}
+
+Vector decoded_normal(std::span<const float> raw, std::size_t pixels, std::size_t i, NormalEncoding encoding, bool unorm) {
+  Vector n{};
+  for (std::size_t c = 0; c * pixels < raw.size(); c++) n[c] = unorm ? 2 * raw[c * pixels + i] - 1.0 : raw[c * pixels + i];
+  const double squared = n[0] * n[0] + n[1] * n[1];
+  if (encoding == NormalEncoding::octahedral) {
+    n[2] = 1 - std::abs(n[0]) - std::abs(n[1]);
+    if (n[2] < 0) n = {std::copysign(1 - std::abs(n[1]), n[0]), std::copysign(1 - std::abs(n[0]), n[1]), n[2]};
+  } else if (encoding == NormalEncoding::spheremap) {
+    const double across = 2 * std::sqrt(std::max(1 - squared, 0.0));
+    n = squared <= 1 ? Vector{across * n[0], across * n[1], 2 * squared - 1} : Vector{};
+  } else if (raw.size() < 3 * pixels) {
+    n[2] = std::sqrt(std::max(1 - squared, 0.0));
+  }
+  return n;
+}
+
+/// Relative second difference of three evenly spaced values.
+double bend(double before, double here, double after) { return std::abs(before + after - 2 * here) / std::abs(here); }
+
+/// Three values on one line, but for their rounding.
+bool is_straight(double before, double here, double after, double rounding) {
+  return std::abs(before + after - 2 * here) < 1e-4 * std::abs(after - before) + rounding * std::abs(here);
+}
+
+double quantile(std::vector<double>& values, double share) {
+  const auto at = values.begin() + std::ptrdiff_t(share * double(values.size()));
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
+}  // namespace
+
+ValueStatistics statistics_of(std::span<const float> values, std::size_t step) {
+  ValueStatistics s;
+  s.least = kInfinity, s.most = -kInfinity;
+  for (std::size_t i = 0; i < values.size(); i += step) {
+    const float x = values[i];
+    s.pixels++;
+    if (std::isnan(x)) s.nan++;
+    else if (std::isinf(x)) s.infinite++;
+    else {
+      s.negative += x<0, s.zero += x == 0, s.one += x == 1, s.positive += x> 0;
+      s.least = std::min(s.least, double(x)), s.most = std::max(s.most, double(x));
+    }
+  }
+  if (s.least > s.most) s.least = s.most = 0;
+  return s;
+}
+
+NormalStatistics normal_statistics(std::span<const float> normal, std::span<const float> raw, const DepthMap& map, std::size_t step) {
+  NormalStatistics s;
+  const std::size_t plane = map.form == kDepthPosition ? raw.size() / 3 : raw.size(), components = normal.size() / plane;
+  s.least = kInfinity, s.most = -kInfinity;
+  for (std::size_t i = 0; i < plane; i += step) {
+    if (std::isinf(planar_depth(map, value_at(raw, plane, i), 1))) continue;
+    Vector n{}, unorm{};
+    for (std::size_t c = 0; c < components; c++) n[c] = normal[c * plane + i], unorm[c] = 2 * n[c] - 1;
+    const double length = std::sqrt(dot(n, n)), unorm_length = std::sqrt(dot(unorm, unorm));
+    if (!(length > 0) || std::isinf(length)) continue;
+    s.count++;
+    s.mean_length += length;
+    s.unorm_mean_length += unorm_length;
+    s.unit_share += std::abs(length - 1) < 0.05;
+    s.unorm_unit_share += std::abs(unorm_length - 1) < 0.05;
+    for (std::size_t c = 0; c < components; c++) s.least = std::min(s.least, n[c]), s.most = std::max(s.most, n[c]);
+  }
+  if (!s.count) return {};
+  for (double* share : {&s.mean_length, &s.unorm_mean_length, &s.unit_share, &s.unorm_unit_share}) *share /= double(s.count);
+  return s;
+}
+
+std::vector<float> planar_depths(std::span<const float> raw, const DepthMap& map, const View& view) {
+  const std::size_t plane = std::size_t(view.size.x) * std::size_t(view.size.y);
+  std::vector<float> planar(plane);
+  for (int y = 0; y < view.size.y; y++)
+    for (int x = 0; x < view.size.x; x++) {
+      const std::size_t i = index_of(view, x, y);
+      planar[i] = float(planar_depth(map, value_at(raw, plane, i), ray_length(view, x, y)));
+    }
+  return planar;
+}
+
+std::vector<float> decoded_normals(std::span<const float> raw, std::size_t pixels, NormalEncoding encoding, bool unorm) {
+  std::vector<float> decoded(3 * pixels);
+  for (std::size_t i = 0; i < pixels; i++) {
+    const Vector n = decoded_normal(raw, pixels, i, encoding, unorm);
+    for (std::size_t c = 0; c < 3; c++) decoded[c * pixels + i] = float(n[c]);
+  }
+  return decoded;
+}
+
+std::optional<double> reprojection_error(std::span<const float> position, PositionSpace space, bool mirrored, const Camera& camera,
+                                         const View& view) {
+  const std::size_t plane = position.size() / 3;
+  const int stride = sparseness(view);
+  std::vector<double> errors;
+  for (int y = 0; y < view.size.y; y += stride)
+    for (int x = 0; x < view.size.x; x += stride) {
+      const std::size_t i = index_of(view, x, y);
+      Vector p{position[i], position[i + plane], position[i + 2 * plane]};
+      if (!(dot(p, p) > 0) || !(dot(p, p) < 1e18)) continue;
+      if (space == PositionSpace::world) {
+        p = times(*camera.view_from_world, p);
+        for (std::size_t c = 0; c < 3; c++) p[c] += camera.view_from_world_offset[c];
+      } else if (camera.left_handed != mirrored) {
+        p[2] = -p[2];
+      }
+      const Vector t = tangent_at(view, x, y);
+      const double scale = view.orthographic ? 1 : -p[2];
+      errors.push_back(!(-p[2] > 0) ? kInfinity
+                                    : std::hypot((p[0] / scale - t[0]) / view.tangent_per_pixel.x, (p[1] / scale - t[1]) / view.tangent_per_pixel.y));
+    }
+  return errors.empty() ? std::nullopt : std::optional(quantile(errors, 0.5));
+}
+
+std::vector<DepthScore> score_depth(std::span<const float> raw, const View& view, double sky, double rounding) {
+  // Over this many pixels the difference between distance to the eye and to its plane bends 1/z by (reach / focal)^2, far above rounding.
+  const int reach = std::max(3, std::max(view.size.x, view.size.y) / 48), stride = sparseness(view);
+  constexpr double kSmooth = 0.02;  // bend of values that are one surface
+  std::vector<DepthScore> scores{{DepthKind::planar}, {DepthKind::ray}, {DepthKind::inverse}};
+  std::size_t count = 0;
+  const auto look = [&](int x, int y, int dx, int dy) {
+    std::array<double, 3> value{}, length{};
+    for (std::size_t k = 0; k < 3; k++) {
+      const int side = int(k) - 1;
+      value[k] = std::abs(raw[index_of(view, x + side * dx, y + side * dy)]);
+      length[k] = ray_length(view, x + side * dx, y + side * dy);
+      if (!(value[k] > 0 && value[k] < sky)) return;
+    }
+    if (!(bend(1 / value[0], 1 / value[1], 1 / value[2]) < kSmooth)) return;
+    count++;
+    const bool value_is = is_straight(value[0], value[1], value[2], rounding);
+    const bool inverse_is = is_straight(1 / value[0], 1 / value[1], 1 / value[2], rounding);
+    const std::array straight{view.orthographic ? value_is : inverse_is,
+                              !view.orthographic && is_straight(length[0] / value[0], length[1] / value[1], length[2] / value[2], rounding),
+                              view.orthographic ? inverse_is : value_is};
+    if (straight[0] + straight[1] + straight[2] != 1) return;  // curved, or too even to tell
+    for (std::size_t k = 0; k < scores.size(); k++) scores[k].straight += straight[k];
+  };
+  for (int y = reach; y + reach < view.size.y; y += stride)
+    for (int x = reach; x + reach < view.size.x; x += stride) look(x, y, reach, 0), look(x, y, 0, reach);
+  if (count < kLeastSamples) return {};
+  for (auto& score : scores) score.straight /= double(count);
+  std::ranges::stable_sort(scores, std::greater(), &DepthScore::straight);
+  return scores;
+}
+
+std::vector<NormalScore> score_normals(std::span<const float> normal, NormalEncoding encoding, bool unorm, std::span<const float> raw, const DepthMap& map,
+                                       const Camera& camera, const View& view) {
+  std::vector<NormalScore> scores;
+  for (const NormalSpace space : {NormalSpace::world, NormalSpace::view})
+    for (const bool x : {false, true})
+      for (const NormalFlips flips : {NormalFlips{x, false, false}, NormalFlips{x, false, true}, NormalFlips{x, true, false}, NormalFlips{x, true, true}})
+        if (space == NormalSpace::view || camera.view_from_world) scores.push_back({space, flips});
+  std::vector<Matrix3> rotations;
+  for (const auto& score : scores) rotations.push_back(view_from_normal(camera, score.space, score.flips));
+
+  const std::size_t plane = std::size_t(view.size.x) * std::size_t(view.size.y);
+  const int stride = sparseness(view);
+  const double least_cosine = std::cos(20 * std::numbers::pi / 180);
+  std::size_t count = 0;
+  std::vector<std::vector<double>> cosines(scores.size());
+  for (int y = 1; y + 1 < view.size.y; y += stride)
+    for (int x = 1; x + 1 < view.size.x; x += stride) {
+      const auto depth = [&](int dx, int dy) {
+        return planar_depth(map, value_at(raw, plane, index_of(view, x + dx, y + dy)), ray_length(view, x + dx, y + dy));
+      };
+      const double left = depth(-1, 0), right = depth(1, 0), up = depth(0, -1), down = depth(0, 1), here = depth(0, 0);
+      if (!(bend(1 / left, 1 / here, 1 / right) < 0.005) || !(bend(1 / up, 1 / here, 1 / down) < 0.005)) continue;
+      const auto difference = [](const Vector& a, const Vector& b) { return Vector{a[0] - b[0], a[1] - b[1], a[2] - b[2]}; };
+      const Vector surface = cross(difference(position_at(view, x, y + 1, down), position_at(view, x, y - 1, up)),
+                                   difference(position_at(view, x + 1, y, right), position_at(view, x - 1, y, left)));
+      const Vector p = position_at(view, x, y, here), eye = view.orthographic ? Vector{0, 0, 1} : Vector{-p[0], -p[1], -p[2]};
+      const Vector vector = decoded_normal(normal, plane, index_of(view, x, y), encoding, unorm);
+      const double lengths = std::sqrt(dot(vector, vector) * dot(surface, surface));
+      if (!(lengths > 0) || std::isinf(lengths)) continue;
+      count++;
+      for (std::size_t k = 0; k < scores.size(); k++) {
+        const Vector n = times(rotations[k], vector);
+        scores[k].facing += dot(n, eye) > 0;
+        cosines[k].push_back(std::min(1.0, dot(n, surface) / lengths));
+        scores[k].agreement += cosines[k].back() > least_cosine;
+      }
+    }
+  if (count < kLeastSamples) return {};
+  for (std::size_t k = 0; k < scores.size(); k++) {
+    scores[k].facing /= double(count), scores[k].agreement /= double(count);
+    scores[k].angle = std::acos(std::max(-1.0, quantile(cosines[k], 0.75))) * 180 / std::numbers::pi;
+  }
+  std::ranges::stable_sort(scores, std::greater(), &NormalScore::agreement);
+  return scores;
+}
+
+std::string to_string(const NormalFlips& flips) {
+  const std::string text = std::string(flips.x ? "x" : "") + (flips.y ? "y" : "") + (flips.z ? "z" : "");
+  return text.empty() ? "none" : text;
+}
+
+}  // namespace alcove

@@ -1,0 +1,143 @@
+// Reads the rules, and matches them with headers.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/frame/input_rules.h"
+
+#include <algorithm>
+#include <cstdlib>
+
+#include "core/frame/depth.h"
+#include "core/base/error.h"
+#include "core/base/flat_toml.h"
+#include "core/base/text.h"
+
+namespace alcove {
+namespace {
+
+std::optional<DepthKind> depth_kind_of(const std::string& word) {
+  for (const DepthKind kind : {DepthKind::planar, DepthKind::ray, DepthKind::inverse, DepthKind::device, DepthKind::normalized, DepthKind::log})
+    if (word == name_of(kind)) return kind;
+  return std::nullopt;
+}
+
+std::optional<NormalSpace> normal_space_of(const std::string& word) {
+  return word == "world" ? std::optional(NormalSpace::world) : word == "view" ? std::optional(NormalSpace::view) : std::nullopt;
+}
+
+std::optional<NormalEncoding> normal_encoding_of(const std::string& word) {
+  if (word == "signed") return NormalEncoding::signed_float;
+  if (word == "unorm") return NormalEncoding::unorm;
+  if (word == "octahedral") return NormalEncoding::octahedral;
+  return word == "spheremap" ? std::optional(NormalEncoding::spheremap) : std::nullopt;
+}
+
+std::vector<AovCandidate> candidates_of(const std::vector<std::string>& words) {
+  std::vector<AovCandidate> candidates;
+  for (const auto& word : words) {
+    const std::size_t colon = word.rfind(':');
+    const std::string before = word.substr(0, colon), after = colon == word.npos ? "" : word.substr(colon + 1);
+    const auto kind = depth_kind_of(after);
+    const auto space = normal_space_of(after);
+    candidates.push_back({lower_case(kind || space ? before : word), kind.value_or(DepthKind::automatic), space.value_or(NormalSpace::automatic)});
+  }
+  return candidates;
+}
+
+/// Whether a text fits a pattern, in which * stands for any text; case is ignored.
+bool fits(std::string_view text, std::string_view pattern) {
+  std::size_t t = 0, p = 0, star = pattern.npos, resume = 0;
+  while (t < text.size()) {
+    if (p < pattern.size() && pattern[p] == '*') star = p++, resume = t;
+    else if (p < pattern.size() && pattern[p] == text[t]) p++, t++;
+    else if (star != pattern.npos) p = star + 1, t = ++resume;
+    else return false;
+  }
+  return pattern.find_first_not_of('*', p) == pattern.npos;
+}
+
+/// What identifies a file: attributes as "name" and "name=value", channels as "channel:name"; in lower case. Nuke puts prefixes before others' attributes.
+std::vector<std::string> marks_of(const ExrFile& file) {
+  constexpr std::size_t kLongest = 200;  // characters of a mark that count
+  std::vector<std::string> marks;
+  for (std::size_t p = 0; p < file.parts().size(); p++) {
+    for (const auto& [name, value] : file.attribute_texts(int(p))) {
+      std::string plain = name.substr(0, kLongest);
+      if (plain.starts_with("nuke/exr/")) plain.erase(0, 9);
+      if (plain.starts_with("exr/")) plain.erase(0, 4);
+      marks.push_back(lower_case(plain));
+      marks.push_back(lower_case(plain + "=" + value.substr(0, kLongest)));
+    }
+    for (const auto& channel : file.parts()[p].channels) {
+      marks.push_back("channel:" + lower_case(channel.name.substr(0, kLongest)));
+      if (!file.parts()[p].name.empty()) marks.push_back("channel:" + lower_case((file.parts()[p].name + "." + channel.name).substr(0, kLongest)));
+    }
+  }
+  return marks;
+}
+
+}  // namespace
+
+InputRules parse_input_rules(const std::string& name, const std::string& text) {
+  InputRules rules;
+  rules.name = name;
+  for (const auto& [key, values] : parse_flat_toml(text)) {
+    const std::string word = values.empty() ? "" : values[0];
+    const auto known = [&, &key = key](const auto& value) {
+      if (!value) fail(ErrorKind::usage, "presets/input/{}.toml: {} = {} means nothing", name, key, word);
+      return *value;
+    };
+    const auto distance = [&] {
+      const double value = std::strtod(word.c_str(), nullptr);
+      return known(value > 0 ? std::optional(value) : std::nullopt);
+    };
+    if (key == "source") known(word == name ? std::optional(0) : std::nullopt);
+    else if (key == "detect") rules.detect = values;
+    else if (key == "last") rules.last = word == "true";
+    else if (key == "depth-channel") rules.depth = candidates_of(values);
+    else if (key == "normal-channels") rules.normal = candidates_of(values);
+    else if (key == "position-channels") rules.position = candidates_of(values);
+    else if (key == "depth-kind") rules.depth_kind = known(depth_kind_of(word));
+    else if (key == "near") rules.depth_range.near = distance();
+    else if (key == "far") rules.depth_range.far = distance();
+    else if (key == "reversed-z") rules.depth_range.reversed = word == "true";
+    else if (key == "normal-space") rules.normal_space = known(normal_space_of(word));
+    else if (key == "normal-encoding") rules.normal_encoding = known(normal_encoding_of(word));
+    else fail(ErrorKind::usage, "presets/input/{}.toml: there is no key {}", name, key);
+  }
+  return rules;
+}
+
+const std::vector<InputRules>& all_input_rules() {
+  static const std::vector<InputRules> all = [] {
+    std::vector<InputRules> rules;
+    for (const auto& [name, text] : input_preset_texts()) rules.push_back(parse_input_rules(name, text));
+    std::ranges::sort(rules, {}, &InputRules::name);
+    return rules;
+  }();
+  return all;
+}
+
+std::vector<std::string> source_names() {
+  std::vector<std::string> names{"auto"};
+  for (const auto& rules : all_input_rules()) names.push_back(rules.name);
+  return names;
+}
+
+const InputRules& input_rules(const std::string& name) {
+  const auto found = std::ranges::find(all_input_rules(), name, &InputRules::name);
+  if (found != all_input_rules().end()) return *found;
+  const auto names = source_names();
+  fail(ErrorKind::usage, "there is no source {}{}; --source takes {}", name, suggestion(name, names), list_of(names));
+}
+
+DetectedRules detect_rules(const ExrFile& file) {
+  const auto marks = marks_of(file);
+  for (const bool last : {false, true})
+    for (const auto& rules : all_input_rules())
+      for (const auto& pattern : rules.detect)
+        if (const auto mark = std::ranges::find_if(marks, [wanted = lower_case(pattern)](const auto& m) { return fits(m, wanted); });
+            rules.last == last && mark != marks.end())
+          return {&rules, *mark};
+  return {&input_rules("generic"), ""};
+}
+
+}  // namespace alcove

@@ -1,0 +1,308 @@
+// Files to planes to numbers, frame by frame.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/measure/compare.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <functional>
+#include <utility>
+
+#include "core/base/error.h"
+#include "core/measure/flicker.h"
+#include "core/measure/flip.h"
+#include "core/frame/gbuffer.h"
+#include "core/formats/picture.h"
+#include "core/measure/report_images.h"
+#include "core/formats/sequence.h"
+#include "core/base/text.h"
+
+namespace alcove {
+namespace {
+
+/// A path's pattern; a file of that very name is none.
+std::optional<FramePattern> pattern_of(const std::string& path) {
+  std::error_code error;
+  return std::filesystem::exists(path, error) ? std::nullopt : frame_pattern(path);
+}
+
+std::string path_of(const std::string& path, int frame) {
+  const auto pattern = pattern_of(path);
+  return pattern ? pattern->path(frame) : path;
+}
+
+CompareSettings settings_of_frame(CompareSettings settings, int frame) {
+  for (std::string* path : {&settings.result, &settings.reference, &settings.reference_b, &settings.mask, &settings.depth, &settings.motion})
+    *path = path_of(*path, frame);
+  return settings;
+}
+
+/// The frames of the comparison; all their files are there.
+std::vector<int> frames_of(const CompareSettings& settings) {
+  const auto result = pattern_of(settings.result);
+  if (!result)
+    fail(ErrorKind::usage, "{}: it has no place for a frame number, such as %04d or ####; the other files or --frames ask for a sequence",
+         settings.result);
+  std::vector<int> frames = settings.frames.empty() ? frames_on_disk(*result, "RESULT") : parse_frames(settings.frames);
+  for (const std::string* path : {&settings.result, &settings.reference, &settings.reference_b, &settings.mask, &settings.depth, &settings.motion}) {
+    const auto pattern = pattern_of(*path);
+    std::vector<int> missing;
+    if (pattern)
+      std::ranges::copy_if(frames, std::back_inserter(missing), [&](int frame) { return !std::filesystem::exists(pattern->path(frame)); });
+    if (!missing.empty()) fail(ErrorKind::input, "{}: frames are missing: {}", *path, frames_text(missing));
+  }
+  return frames;
+}
+
+bool is_sequence(const CompareSettings& settings) {
+  if (!settings.frames.empty()) return true;
+  for (const std::string* path : {&settings.result, &settings.reference, &settings.reference_b, &settings.mask, &settings.depth, &settings.motion})
+    if (!path->empty() && pattern_of(*path)) return true;
+  return false;
+}
+
+std::string message_name(const CompareSettings& settings) { return fmt::format("{} against {}", settings.result, settings.reference); }
+
+void require_same_pixels(const Window& window, const std::string& path, const Window& wanted, const std::string& result) {
+  if (window != wanted)
+    fail(ErrorKind::input, "{} is {}, and {} is {}: they must cover the same pixels", result, to_string(wanted), path, to_string(window));
+}
+
+/// A frame's planes, and what they mean.
+struct Planes {
+  Window data;
+  std::vector<std::string> channels;  // names in the result
+  Comparable values;
+  std::vector<float> depth;             // empty: none
+  std::vector<float> motion_x, motion_y;
+
+  std::span<const float> plane(const std::vector<float>& planes, std::size_t index) const {
+    return std::span(planes).subspan(index * data.pixels(), data.pixels());
+  }
+};
+
+std::vector<float> read_depth(const CompareSettings& settings, const Window& data) {
+  if (settings.depth.empty()) return {};
+  InputSettings input;
+  input.depth = settings.depth;
+  input.depth_channel = settings.depth_channel;
+  input.sky = settings.sky;
+  input.depth_kind = DepthKind::planar;
+  input.fov = 90;  // the search for channels asks for a camera, which depth alone has no use for
+  input.normal_space = NormalSpace::view;
+  FrameSource source = find_frame(input, false, 0);
+  require_same_pixels(source.data, settings.depth, data, settings.result);
+  std::vector<float> depth(data.pixels());
+  read_planes(source, {{&source.depth, depth.data()}});
+  return depth;
+}
+
+std::size_t mask_channel_of(const Picture& picture, const std::string& chosen) {
+  if (!chosen.empty()) return picture.find(chosen, "--mask-channel");
+  if (picture.channels().size() == 1) return 0;
+  for (std::size_t i = 0; i < picture.channels().size(); i++) {
+    const std::string name = lower_case(picture.channels()[i].name);
+    if (name == "a" || name == "alpha" || name.ends_with(".a") || name.ends_with(".alpha")) return i;
+  }
+  fail(ErrorKind::input, "{}: which channel is the mask? There is {}; say which with --mask-channel", picture.path(), list_of(picture.names()));
+}
+
+/// Where pixels are to be compared: by the mask's file and the depth's sky; empty for everywhere.
+std::vector<std::uint8_t> read_mask(const CompareSettings& settings, const Window& data, Values depth) {
+  std::vector<std::uint8_t> mask = surfaces(depth, settings.sky);
+  if (settings.mask.empty()) return mask;
+  Picture picture(settings.mask, "--mask");
+  const std::size_t channel = mask_channel_of(picture, settings.mask_channel);
+  require_same_pixels(picture.channels()[channel].data, settings.mask, data, settings.result);
+  const auto values = picture.read(std::array{channel});
+  if (mask.empty()) mask.assign(values.size(), 1);
+  for (std::size_t i = 0; i < mask.size(); i++) mask[i] = mask[i] && values[i] > 0;
+  return mask;
+}
+
+void read_motion(const CompareSettings& settings, Planes& planes) {
+  if (settings.motion.empty()) return;
+  Picture picture(settings.motion, "--motion");
+  const std::string names = settings.motion_channels.empty() ? "Vector.X,Vector.Y" : settings.motion_channels;
+  const std::size_t comma = names.find(',');
+  if (comma == names.npos) fail(ErrorKind::usage, "--motion-channels {}: give two names, X,Y", names);
+  const std::array channels{picture.find(names.substr(0, comma), "--motion-channels"), picture.find(names.substr(comma + 1), "--motion-channels")};
+  require_same_pixels(picture.channels()[channels[0]].data, settings.motion, planes.data, settings.result);
+  const auto both = picture.read(channels);
+  planes.motion_x.assign(both.begin(), both.begin() + std::ptrdiff_t(planes.data.pixels()));
+  planes.motion_y.assign(both.begin() + std::ptrdiff_t(planes.data.pixels()), both.end());
+}
+
+Planes read_planes_of(const CompareSettings& settings) {
+  Picture result(settings.result, "RESULT"), reference(settings.reference, "REFERENCE");
+  const auto pairs = match_channels(result, reference, settings.channels);
+  std::vector<std::size_t> of_result, of_reference;
+  Planes planes;
+  for (const auto& pair : pairs) {
+    of_result.push_back(pair.result);
+    of_reference.push_back(pair.reference);
+    planes.channels.push_back(result.channels()[pair.result].name);
+  }
+  planes.data = result.channels()[of_result[0]].data;
+  require_same_pixels(reference.channels()[of_reference[0]].data, settings.reference, planes.data, settings.result);
+  const auto result_planes = result.read(of_result), reference_planes = reference.read(of_reference);
+  std::vector<float> reference_b;
+  if (!settings.reference_b.empty()) {
+    Picture second(settings.reference_b, "--reference-b");
+    std::vector<std::size_t> of_second;
+    for (const std::size_t channel : of_reference) of_second.push_back(second.find(reference.channels()[channel].name, "--reference-b"));
+    require_same_pixels(second.channels()[of_second[0]].data, settings.reference_b, planes.data, settings.result);
+    reference_b = second.read(of_second);
+  }
+  planes.depth = read_depth(settings, planes.data);
+  const auto mask = read_mask(settings, planes.data, planes.depth);
+  planes.values = make_comparable(message_name(settings), planes.data.pixels(), result_planes, reference_planes, reference_b, mask);
+  read_motion(settings, planes);
+  return planes;
+}
+
+using Color = std::array<std::size_t, 3>;
+
+/// The indices of red, green and blue of every layer that has them.
+std::vector<Color> color_layers(const std::vector<std::string>& names) {
+  const auto index = [&](const std::string& name) {
+    const auto found = std::ranges::find_if(names, [&](const std::string& other) { return lower_case(other) == name; });
+    return std::size_t(found - names.begin());
+  };
+  std::vector<Color> colors;
+  for (std::size_t red = 0; red < names.size(); red++) {
+    const std::string name = lower_case(names[red]), layer = name.substr(0, name.rfind('.') + 1);  // npos + 1 is 0
+    const Color color{red, index(layer + "g"), index(layer + "b")};
+    if (name == layer + "r" && std::ranges::max(color) < names.size()) colors.push_back(color);
+  }
+  return colors;
+}
+
+/// FLIP of the colours of every layer, averaged; without colours, of every channel as grey.
+double mean_flip(const Planes& planes, const std::vector<float>& reference, bool hdr) {
+  double sum = 0;
+  std::size_t count = 0;
+  const auto add = [&](const Color& channels) {
+    ColorPlanes a, b;
+    for (std::size_t c = 0; c < 3; c++) {
+      a[c] = planes.plane(planes.values.result, channels[c]);
+      b[c] = planes.plane(reference, channels[c]);
+    }
+    const auto map = (hdr ? hdr_flip : ldr_flip)(planes.data.width, planes.data.height, a, b, kFlipPixelsPerDegree);
+    for (std::size_t i = 0; i < map.size(); i++)
+      if (planes.values.mask[i]) {
+        sum += map[i];
+        count++;
+      }
+  };
+  const auto colors = color_layers(planes.channels);
+  for (const auto& color : colors) add(color);
+  for (std::size_t c = 0; c < planes.channels.size() && colors.empty(); c++) add({c, c, c});
+  return sum / double(count);
+}
+
+double srgb_from_linear(double x) { return x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055; }
+
+/// The first layer's colours where there are any; else the first channel as grey. Scene-linear values are shown as a display would.
+ComparePictures pictures_of(const Planes& planes, const std::vector<float>& reference, bool hdr) {
+  const int width = planes.data.width, height = planes.data.height;
+  const auto colors = color_layers(planes.channels);
+  const auto shown = [&](float x) { return hdr ? float(srgb_from_linear(x)) : x; };
+  const auto picture = [&](const std::vector<float>& values) {
+    std::vector<float> pixels;
+    for (std::size_t i = 0; i < planes.data.pixels(); i++)
+      for (std::size_t c = 0; c < (colors.empty() ? 1 : 3); c++) pixels.push_back(shown(planes.plane(values, colors.empty() ? 0 : colors[0][c])[i]));
+    return colors.empty() ? grey_picture(width, height, pixels) : color_picture(width, height, pixels);
+  };
+  const auto mean = [&](const std::vector<float>& values) {
+    std::vector<float> pixels(planes.data.pixels());
+    for (std::size_t i = 0; i < values.size(); i++) pixels[i % pixels.size()] += values[i] / float(planes.channels.size());
+    return pixels;
+  };
+  return {picture(planes.values.result), picture(reference), error_picture(width, height, mean(planes.values.result), mean(reference))};
+}
+
+FrameComparison measure(const CompareSettings& settings, const Planes& planes, int frame) {
+  const auto& values = planes.values;
+  const int width = planes.data.width, height = planes.data.height;
+  const auto reference = values.mean_reference();
+  FrameComparison c;
+  c.frame = frame;
+  c.result = settings.result;
+  c.reference = settings.reference;
+  c.channels = planes.channels;
+  c.width = width;
+  c.height = height;
+  c.count = values.count;
+  c.excluded = values.excluded;
+  c.masked = values.masked;
+  c.errors = compare_planes(values.result, values.reference, values.mask, values.reference_b);
+  c.psnr = psnr(c.errors.rmse, settings.peak);
+  c.ssim = ssim(width, height, values.result, reference, values.mask, settings.peak);
+  c.flip = mean_flip(planes, reference, settings.hdr);
+  c.bands = darkness_bands(values.result, values.reference, values.mask, values.reference_b);
+  if (!planes.depth.empty())
+    c.edges = edge_errors(depth_edges(width, height, planes.depth, settings.sky), values.result, values.reference, values.mask, values.reference_b);
+  if (settings.pictures) c.pictures = pictures_of(planes, reference, settings.hdr);
+  return c;
+}
+
+ErrorFrame error_frame(Planes planes) {
+  const auto difference = [&](const std::vector<float>& reference) {
+    std::vector<float> error(reference.size());
+    std::ranges::transform(planes.values.result, reference, error.begin(), std::minus());
+    return error;
+  };
+  ErrorFrame frame;
+  frame.width = planes.data.width;
+  frame.height = planes.data.height;
+  frame.error = difference(planes.values.reference);
+  if (!planes.values.reference_b.empty()) frame.error_b = difference(planes.values.reference_b);
+  frame.mask = std::move(planes.values.mask);
+  frame.depth = std::move(planes.depth);
+  frame.motion_x = std::move(planes.motion_x);
+  frame.motion_y = std::move(planes.motion_y);
+  return frame;
+}
+
+/// Drops the pictures of the frame with the least error when there are too many.
+void limit_pictures(std::vector<FrameComparison>& frames) {
+  std::vector<FrameComparison*> pictured;
+  for (auto& frame : frames)
+    if (frame.pictures) pictured.push_back(&frame);
+  if (pictured.size() <= kMostPicturedFrames) return;
+  (*std::ranges::min_element(pictured, {}, [](auto* frame) { return frame->errors.rmse; }))->pictures.reset();
+}
+
+CompareReport compare_sequence(const CompareSettings& settings) {
+  CompareReport report{settings.result, settings.reference, true, {}, {}};
+  Flicker flicker;
+  std::optional<ErrorFrame> previous;
+  for (const int frame : frames_of(settings)) {
+    const CompareSettings here = settings_of_frame(settings, frame);
+    Planes planes = read_planes_of(here);
+    const bool follows = previous && report.frames.back().frame == frame - 1;
+    report.frames.push_back(measure(here, planes, frame));
+    limit_pictures(report.frames);
+    ErrorFrame errors = error_frame(std::move(planes));
+    if (follows && previous->error.size() == errors.error.size() && previous->width == errors.width) flicker.add(*previous, errors);
+    previous = std::move(errors);
+  }
+  if (flicker.count()) report.flicker = flicker.rms();
+  return report;
+}
+
+}  // namespace
+
+CompareReport compare_pictures(const CompareSettings& settings) {
+  if (is_sequence(settings)) return compare_sequence(settings);
+  if (!settings.motion.empty())
+    fail(ErrorKind::usage, "--motion {}: it is for the flicker of a sequence, and RESULT is one picture", settings.motion);
+  return {settings.result, settings.reference, false, {measure(settings, read_planes_of(settings), 0)}, {}};
+}
+
+const FrameComparison& worst_frame(const CompareReport& report) {
+  return *std::ranges::max_element(report.frames, {}, [](const auto& frame) { return frame.errors.rmse; });
+}
+
+}  // namespace alcove

@@ -1,0 +1,81 @@
+// Compares pictures and sequences of pictures: what `alcove compare` measures, and what it is written as.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/measure/metrics.h"
+
+namespace alcove {
+
+/// Every file may be an EXR or any other picture (depth: EXR only), and a pattern of core/formats/sequence.h; one that is none serves all frames.
+struct CompareSettings {
+  std::string result, reference;
+  std::string reference_b;                    // a second render of the reference with independent noise; empty: none
+  std::string channels;                       // see match_channels(); empty: those that both have
+  std::string mask, mask_channel;             // pixels where it is above 0 are compared; without a channel name: its only one, or its alpha
+  std::string depth, depth_channel;           // where it is sky is not compared; gives the edges
+  double sky = 1e9;                           // depth at or beyond it is sky, as are 0, infinity and NaN; > 0
+  std::string motion, motion_channels;        // "X,Y"; empty: Vector.X, Vector.Y. See ErrorFrame for the convention
+  std::string frames;                         // a list; empty: those of the result that are on the disk
+  double peak = 1;                            // the largest value, for PSNR and SSIM; > 0
+  bool hdr = false;                           // scene-linear values: HDR-FLIP
+  bool pictures = false;                      // keep pictures for the report
+};
+
+/// Data URLs of the report.
+struct ComparePictures {
+  std::string result, reference, error;
+};
+
+struct FrameComparison {
+  int frame = 0;
+  std::string result, reference;  // files
+  std::vector<std::string> channels;
+  int width = 0, height = 0;
+  std::size_t count = 0, excluded = 0, masked = 0;  // pixels; see Comparable
+  PlaneErrors errors;
+  double psnr = 0;            // infinite for equal pictures
+  std::optional<double> ssim; // nothing where no compared pixel is 5 pixels from all borders
+  double flip = 0;
+  std::array<BandErrors, 4> bands;
+  std::optional<EdgeErrors> edges;  // with depth
+  std::optional<ComparePictures> pictures;
+};
+
+struct CompareReport {
+  std::string result, reference;        // as given
+  bool is_sequence = false;
+  std::vector<FrameComparison> frames;  // one, if it is no sequence
+  std::optional<double> flicker;        // where two frames follow each other
+};
+
+/// Of a sequence this many frames keep their pictures, those with the largest rmse.
+inline constexpr std::size_t kMostPicturedFrames = 12;
+
+/// Fails with ErrorKind::usage on settings that contradict each other, and with ErrorKind::input on missing and unreadable files, on pictures that
+/// do not cover the same pixels or share no channel, and when no pixel is left to compare.
+CompareReport compare_pictures(const CompareSettings& settings);
+
+/// The frame with the largest rmse.
+const FrameComparison& worst_frame(const CompareReport& report);
+
+/// Each holds for every frame of a sequence.
+struct CompareLimits {
+  std::optional<double> max_rmse, max_p99, min_ssim, max_flip;
+  std::optional<double> max_bias;  // of its size
+};
+
+/// A sentence for each limit that is broken: what was measured, where, and what was allowed.
+std::vector<std::string> broken_limits(const CompareReport& report, const CompareLimits& limits);
+
+/// See the README for the fields.
+std::string compare_json(const CompareReport& report, const std::vector<std::string>& broken);
+
+/// The page of core/measure/report.h.
+std::string compare_page(const CompareReport& report);
+
+}  // namespace alcove

@@ -1,0 +1,170 @@
+// What a comparison is written as: JSON, a page; and the check against limits.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "core/measure/compare.h"
+#include "core/base/error.h"
+#include "core/measure/report.h"
+
+namespace alcove {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// JSON has no infinity and no NaN.
+Json number(std::optional<double> value) { return value && std::isfinite(*value) ? Json(*value) : Json(nullptr); }
+
+std::string dump(const Json& json) { return json.dump(1, ' ', false, Json::error_handler_t::replace); }
+
+/// One measure of a frame; NaN where it could not be taken.
+struct Measure {
+  const char* name;
+  double (*of)(const FrameComparison&);
+  double (*badness)(double);  // larger is worse
+};
+
+double as_it_is(double x) { return x; }
+double negative(double x) { return -x; }
+double size(double x) { return std::abs(x); }
+
+constexpr std::array kMeasures = {
+    Measure{"rmse", [](const FrameComparison& f) { return f.errors.rmse; }, as_it_is},
+    Measure{"mae", [](const FrameComparison& f) { return f.errors.mae; }, as_it_is},
+    Measure{"bias", [](const FrameComparison& f) { return f.errors.bias; }, size},
+    Measure{"max", [](const FrameComparison& f) { return f.errors.max; }, as_it_is},
+    Measure{"p95", [](const FrameComparison& f) { return f.errors.p95; }, as_it_is},
+    Measure{"p99", [](const FrameComparison& f) { return f.errors.p99; }, as_it_is},
+    Measure{"psnr", [](const FrameComparison& f) { return f.psnr; }, negative},
+    Measure{"ssim", [](const FrameComparison& f) { return f.ssim.value_or(NAN); }, negative},
+    Measure{"flip", [](const FrameComparison& f) { return f.flip; }, as_it_is},
+};
+
+/// The frame where a measure is worst; one where it could not be taken is worse than any other.
+const FrameComparison& worst_in(const CompareReport& report, const Measure& measure) {
+  return *std::ranges::max_element(report.frames, {}, [&](const auto& frame) {
+    const double value = measure.of(frame);
+    return std::isnan(value) ? std::numeric_limits<double>::infinity() : measure.badness(value);
+  });
+}
+
+Json part_json(const PartErrors& part) { return {{"count", part.count}, {"rmse", part.rmse}, {"bias", part.bias}}; }
+
+/// Bands and edges of a frame.
+void add_parts(Json& json, const FrameComparison& frame) {
+  Json bands = Json::array();
+  for (const auto& band : frame.bands) {
+    Json entry = {{"from", band.from}, {"to", band.to}};
+    entry.update(part_json(band.errors));
+    bands.push_back(std::move(entry));
+  }
+  json["bands"] = std::move(bands);
+  json["edges"] = frame.edges ? Json{{"at", part_json(frame.edges->at)}, {"away", part_json(frame.edges->away)}} : Json(nullptr);
+}
+
+void add_measures(Json& json, const FrameComparison& frame) {
+  json.update({{"count", frame.count}, {"excluded", frame.excluded}, {"masked", frame.masked}});
+  for (const auto& measure : kMeasures) json[measure.name] = number(measure.of(frame));
+}
+
+Json frame_json(const FrameComparison& frame) {
+  Json json = {{"frame", frame.frame}, {"result", frame.result}, {"reference", frame.reference}};
+  add_measures(json, frame);
+  add_parts(json, frame);
+  return json;
+}
+
+/// A sequence's own numbers: each is the worst of all frames, the counts are sums.
+void add_worst_measures(Json& json, const CompareReport& report) {
+  std::size_t count = 0, excluded = 0, masked = 0;
+  for (const auto& frame : report.frames) {
+    count += frame.count;
+    excluded += frame.excluded;
+    masked += frame.masked;
+  }
+  json.update({{"count", count}, {"excluded", excluded}, {"masked", masked}});
+  for (const auto& measure : kMeasures) json[measure.name] = number(measure.of(worst_in(report, measure)));
+}
+
+Json mean_json(const CompareReport& report) {
+  Json json;
+  for (const auto& measure : kMeasures) {
+    double sum = 0;
+    for (const auto& frame : report.frames) sum += measure.of(frame);
+    json[measure.name] = number(sum / double(report.frames.size()));
+  }
+  return json;
+}
+
+struct Limit {
+  const char* measure;
+  const char* option;
+  std::optional<double> value;
+};
+
+}  // namespace
+
+std::vector<std::string> broken_limits(const CompareReport& report, const CompareLimits& limits) {
+  std::vector<std::string> broken;
+  const std::array all{Limit{"rmse", "--max-rmse", limits.max_rmse}, Limit{"p99", "--max-p99", limits.max_p99},
+                       Limit{"ssim", "--min-ssim", limits.min_ssim}, Limit{"flip", "--max-flip", limits.max_flip},
+                       Limit{"bias", "--max-bias", limits.max_bias}};
+  for (const auto& limit : all) {
+    if (!limit.value) continue;
+    const Measure& measure = *std::ranges::find_if(kMeasures, [&](const auto& m) { return std::string_view(m.name) == limit.measure; });
+    const FrameComparison& worst = worst_in(report, measure);
+    const double value = measure.of(worst);
+    if (measure.badness(value) <= measure.badness(*limit.value)) continue;
+    const std::string where = report.is_sequence ? fmt::format("frame {}: ", worst.frame) : "";
+    const std::string what = std::isnan(value) ? "cannot be measured: no compared pixel is 5 pixels from all borders"
+                                              : fmt::format("is {:.6g}", value);
+    broken.push_back(fmt::format("{}{} {}, and {} is {:.6g}", where, limit.measure, what, limit.option, *limit.value));
+  }
+  return broken;
+}
+
+std::string compare_json(const CompareReport& report, const std::vector<std::string>& broken) {
+  Json json = {{"result", report.result}, {"reference", report.reference}, {"channels", report.frames[0].channels}};
+  if (report.is_sequence) {
+    add_worst_measures(json, report);
+    const auto& worst = worst_frame(report);
+    json["worst"] = {{"frame", worst.frame}, {"rmse", worst.errors.rmse}};
+    json["mean"] = mean_json(report);
+    json["flicker"] = number(report.flicker);
+  } else {
+    add_measures(json, report.frames[0]);
+    add_parts(json, report.frames[0]);
+  }
+  json["pass"] = broken.empty();
+  json["broken"] = broken;
+  if (report.is_sequence)
+    for (const auto& frame : report.frames) json["frames"].push_back(frame_json(frame));
+  return dump(json);
+}
+
+std::string compare_page(const CompareReport& report) {
+  const std::string name = std::filesystem::path(report.result).filename().string();
+  Json candidate = {{"name", name}, {"settings", "against " + report.reference}, {"ms", nullptr}, {"ms_min", nullptr}};
+  candidate.update(mean_json(report));
+  if (report.flicker) candidate["flicker"] = *report.flicker;
+  Json rows = Json::array(), images = Json::array();
+  for (const auto& frame : report.frames) {
+    const std::string label = report.is_sequence ? std::to_string(frame.frame) : std::filesystem::path(frame.reference).filename().string();
+    Json row = {{"frame", label}, {"candidate", name}, {"ms", nullptr}, {"ms_min", nullptr}, {"estimator_rmse", nullptr}, {"geometry_rmse", nullptr},
+                {"samples_per_pixel", nullptr}};
+    for (const auto& measure : kMeasures) row[measure.name] = number(measure.of(frame));
+    rows.push_back(std::move(row));
+    if (frame.pictures)
+      images.push_back({{"frame", label}, {"candidate", name}, {"width", frame.width}, {"height", frame.height}, {"result", frame.pictures->result},
+                        {"truth", frame.pictures->reference}, {"error", frame.pictures->error}});
+  }
+  const std::string title = name + " against " + std::filesystem::path(report.reference).filename().string();
+  return report_page(dump({{"title", title}, {"kind", "compare"}, {"device", nullptr}, {"yardstick_ms", nullptr},
+                           {"candidates", Json::array({candidate})}, {"rows", rows}, {"images", images}}));
+}
+
+}  // namespace alcove

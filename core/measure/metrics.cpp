@@ -1,0 +1,204 @@
+// Error sums, percentiles, structural similarity, depth edges.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/measure/metrics.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/measure/convolution.h"
+#include "core/base/error.h"
+
+namespace alcove {
+namespace {
+
+bool counts(Mask mask, std::size_t i) { return mask.empty() || mask[i % mask.size()]; }
+
+/// One value's error, and its share in the mean square: free of the references' noise where there are two.
+struct ValueError {
+  double reference, error, square;
+
+  ValueError(double t, double a) : reference(a), error(t - a), square(error * error) {}
+  ValueError(double t, double a, double b) : reference(0.5 * (a + b)), error(t - reference), square((t - a) * (t - b)) {}
+  bool finite() const { return std::isfinite(error) && std::isfinite(square); }
+};
+
+/// The errors of a plane, value by value.
+struct Errors {
+  Values result, reference, reference_b;
+
+  ValueError operator[](std::size_t i) const {
+    return reference_b.empty() ? ValueError(result[i], reference[i]) : ValueError(result[i], reference[i], reference_b[i]);
+  }
+};
+
+struct Sums {
+  std::size_t count = 0;
+  double error = 0, size = 0, square = 0;
+
+  void add(const ValueError& e) {
+    count++;
+    error += e.error;
+    size += std::abs(e.error);
+    square += e.square;
+  }
+  double mean(double sum) const { return count ? sum / double(count) : 0; }
+  double rmse() const { return std::sqrt(std::max(0.0, mean(square))); }
+  PartErrors part() const { return {count, rmse(), mean(error)}; }
+};
+
+/// numpy.percentile's default: linear between the two nearest ranks. Reorders the values.
+double percentile(std::vector<double>& values, double part) {
+  const double rank = part * double(values.size() - 1);
+  const auto low = values.begin() + std::ptrdiff_t(rank);
+  std::nth_element(values.begin(), low, values.end());
+  if (low + 1 == values.end()) return *low;
+  const double next = *std::min_element(low + 1, values.end());
+  return *low + (rank - std::floor(rank)) * (next - *low);
+}
+
+/// The mean of one plane's SSIM map over the pixels that count, as a sum and a count.
+void add_ssim(int width, int height, Values result, Values reference, Mask mask, double peak, double& sum, std::size_t& count) {
+  constexpr int kRadius = 5;
+  static const std::vector<double> window = gaussian_kernel(1.5, kRadius);
+  const auto mean_of = [&](auto&& value) {
+    std::vector<double> plane(result.size());
+    for (std::size_t i = 0; i < plane.size(); i++) plane[i] = value(double(result[i]), double(reference[i]));
+    return convolve(width, height, plane, window, window);
+  };
+  const auto x = mean_of([](double a, double) { return a; }), y = mean_of([](double, double b) { return b; });
+  const auto xx = mean_of([](double a, double) { return a * a; }), yy = mean_of([](double, double b) { return b * b; });
+  const auto xy = mean_of([](double a, double b) { return a * b; });
+  const double c1 = std::pow(0.01 * peak, 2), c2 = std::pow(0.03 * peak, 2);
+  for (int row = kRadius; row < height - kRadius; row++)
+    for (int column = kRadius; column < width - kRadius; column++) {
+      const std::size_t i = std::size_t(row) * std::size_t(width) + std::size_t(column);
+      if (!counts(mask, i)) continue;
+      const double variance_x = xx[i] - x[i] * x[i], variance_y = yy[i] - y[i] * y[i], covariance = xy[i] - x[i] * y[i];
+      sum += (2 * x[i] * y[i] + c1) * (2 * covariance + c2) / ((x[i] * x[i] + y[i] * y[i] + c1) * (variance_x + variance_y + c2));
+      count++;
+    }
+}
+
+bool is_surface(float depth, double sky) { return std::isfinite(depth) && depth > 0 && depth < sky; }
+
+bool is_step(float a, float b, double sky) {
+  if (is_surface(a, sky) != is_surface(b, sky)) return true;
+  return is_surface(a, sky) && std::abs(double(a) - b) > kDepthStep * std::min(a, b);
+}
+
+}  // namespace
+
+PlaneErrors compare_planes(Values result, Values reference, Mask mask, Values reference_b) {
+  const Errors errors{result, reference, reference_b};
+  PlaneErrors total;
+  Sums sums;
+  std::vector<double> sizes;
+  for (std::size_t i = 0; i < result.size(); i++) {
+    if (!counts(mask, i)) continue;
+    const ValueError error = errors[i];
+    if (!error.finite()) {
+      total.excluded++;
+      continue;
+    }
+    sums.add(error);
+    sizes.push_back(std::abs(error.error));
+  }
+  if (sizes.empty()) fail(ErrorKind::input, "there is no value to compare: {} are NaN or infinite, and the mask leaves out the rest", total.excluded);
+  total.count = sums.count;
+  total.rmse = sums.rmse();
+  total.mae = sums.mean(sums.size);
+  total.bias = sums.mean(sums.error);
+  total.max = *std::ranges::max_element(sizes);
+  total.p95 = percentile(sizes, 0.95);
+  total.p99 = percentile(sizes, 0.99);
+  return total;
+}
+
+double unbiased_rmse(Values result, Values reference_a, Values reference_b, Mask mask) {
+  return compare_planes(result, reference_a, mask, reference_b).rmse;
+}
+
+double psnr(double rmse, double peak) { return 20 * std::log10(peak / rmse); }
+
+std::vector<float> Comparable::mean_reference() const {
+  if (reference_b.empty()) return reference;
+  std::vector<float> mean(reference.size());
+  std::ranges::transform(reference, reference_b, mean.begin(), [](double a, double b) { return float(0.5 * (a + b)); });
+  return mean;
+}
+
+Comparable make_comparable(const std::string& what, std::size_t pixels, Values result, Values reference, Values reference_b, Mask mask) {
+  const auto copy = [](Values values) { return std::vector<float>(values.begin(), values.end()); };
+  Comparable c{copy(result), copy(reference), copy(reference_b), std::vector<std::uint8_t>(pixels, 1)};
+  for (std::size_t i = 0; i < result.size(); i++) {
+    const bool finite = std::isfinite(result[i]) && std::isfinite(reference[i]) && (reference_b.empty() || std::isfinite(reference_b[i]));
+    if (!finite) c.mask[i % pixels] = 0;
+  }
+  for (std::size_t pixel = 0; pixel < pixels; pixel++) {
+    (!counts(mask, pixel) ? c.masked : c.mask[pixel] ? c.count : c.excluded)++;
+    if (!counts(mask, pixel)) c.mask[pixel] = 0;
+  }
+  if (c.count == 0)
+    fail(ErrorKind::input, "{}: there is no pixel to compare: of {}, {} are left out by the mask and {} are NaN or infinite", what, pixels, c.masked,
+         c.excluded);
+  for (std::size_t i = 0; i < result.size(); i++) {
+    if (c.mask[i % pixels]) continue;
+    c.reference[i] = c.result[i] = std::isfinite(reference[i]) ? reference[i] : 0;
+    if (!reference_b.empty()) c.reference_b[i] = c.reference[i];
+  }
+  return c;
+}
+
+std::optional<double> ssim(int width, int height, Values result, Values reference, Mask mask, double peak) {
+  const std::size_t pixels = std::size_t(width) * std::size_t(height);
+  double sum = 0;
+  std::size_t count = 0;
+  for (std::size_t plane = 0; plane < result.size(); plane += pixels)
+    add_ssim(width, height, result.subspan(plane, pixels), reference.subspan(plane, pixels), mask, peak, sum, count);
+  return count ? std::optional(sum / double(count)) : std::nullopt;
+}
+
+std::array<BandErrors, 4> darkness_bands(Values result, Values reference, Mask mask, Values reference_b) {
+  const Errors errors{result, reference, reference_b};
+  std::array<Sums, 4> sums;
+  for (std::size_t i = 0; i < result.size(); i++) {
+    const ValueError error = errors[i];
+    if (counts(mask, i) && error.finite()) sums[std::size_t(std::clamp(4 * error.reference, 0.0, 3.0))].add(error);
+  }
+  std::array<BandErrors, 4> bands;
+  for (std::size_t i = 0; i < bands.size(); i++) bands[i] = {0.25 * double(i), 0.25 * double(i + 1), sums[i].part()};
+  return bands;
+}
+
+std::vector<std::uint8_t> surfaces(Values depth, double sky) {
+  std::vector<std::uint8_t> mask(depth.size());
+  std::ranges::transform(depth, mask.begin(), [&](float z) { return is_surface(z, sky); });
+  return mask;
+}
+
+std::vector<std::uint8_t> depth_edges(int width, int height, Values depth, double sky) {
+  std::vector<std::uint8_t> edges(depth.size());
+  const auto at = [&](int x, int y) { return std::size_t(y) * std::size_t(width) + std::size_t(x); };
+  const auto mark = [&](int left, int top, int right, int bottom) {  // what is in reach of the step between two pixels
+    for (int y = std::max(top - kEdgeReach_px, 0); y <= std::min(bottom + kEdgeReach_px, height - 1); y++)
+      for (int x = std::max(left - kEdgeReach_px, 0); x <= std::min(right + kEdgeReach_px, width - 1); x++) edges[at(x, y)] = 1;
+  };
+  for (int y = 0; y < height; y++)
+    for (int x = 0; x < width; x++) {
+      if (x + 1 < width && is_step(depth[at(x, y)], depth[at(x + 1, y)], sky)) mark(x, y, x + 1, y);
+      if (y + 1 < height && is_step(depth[at(x, y)], depth[at(x, y + 1)], sky)) mark(x, y, x, y + 1);
+    }
+  return edges;
+}
+
+EdgeErrors edge_errors(Mask edges, Values result, Values reference, Mask mask, Values reference_b) {
+  const Errors errors{result, reference, reference_b};
+  Sums at, away;
+  for (std::size_t i = 0; i < result.size(); i++) {
+    const ValueError error = errors[i];
+    if (counts(mask, i) && error.finite()) (counts(edges, i) ? at : away).add(error);
+  }
+  return {at.part(), away.part()};
+}
+
+}  // namespace alcove

@@ -1,0 +1,50 @@
+// Depth, normals and camera of a frame, in double.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/reference/reference_scene.h"
+
+#include <cmath>
+
+#include "core/base/error.h"
+
+namespace alcove {
+
+double length(Vector a) { return std::sqrt(dot(a, a)); }
+Vector normalized(Vector a) { return (1 / length(a)) * a; }
+
+ReferenceScene::ReferenceScene(const HostFrame& frame) : frame_(frame), camera_(frame.camera) {
+  if (frame.depth_kind != DepthKind::planar || frame.depth.size() != frame.data.pixels() || frame.normal.size() != 3 * frame.data.pixels())
+    fail(ErrorKind::input, "the reference takes planar depth and normals for every pixel of {}", to_string(frame.data));
+  center_x_ = camera_.cx + frame.display.x - frame.data.x;
+  center_y_ = camera_.cy + frame.display.y - frame.data.y;
+}
+
+double ReferenceScene::depth(int x, int y) const {
+  const double z = frame_.depth[index(x, y)];
+  return std::isfinite(z) && z > 0 && z < frame_.sky ? z * frame_.depth_scale : 0;
+}
+
+Vector ReferenceScene::position(int x, int y, double z) const {
+  const double u = (x + 0.5 - center_x_) / camera_.fx, v = -(y + 0.5 - center_y_) / camera_.fy;
+  return orthographic() ? Vector{u, v, -z} : Vector{u * z, v * z, -z};
+}
+
+Vector ReferenceScene::toward_eye(Vector position) const { return orthographic() ? Vector{0, 0, 1} : normalized(-1 * position); }
+
+std::pair<double, double> ReferenceScene::image_of(Vector position) const {
+  const double z = orthographic() ? 1 : -position.z;
+  return {center_x_ + camera_.fx * position.x / z, center_y_ - camera_.fy * position.y / z};
+}
+
+Vector ReferenceScene::normal(int x, int y, Vector eye) const {
+  const std::size_t plane = frame_.data.pixels(), i = index(x, y);
+  Vector n = {frame_.normal[i], frame_.normal[i + plane], frame_.normal[i + 2 * plane]};
+  if (frame_.normal_space == NormalSpace::world) {
+    const auto& m = *camera_.view_from_world;
+    n = {m[0][0] * n.x + m[0][1] * n.y + m[0][2] * n.z, m[1][0] * n.x + m[1][1] * n.y + m[1][2] * n.z, m[2][0] * n.x + m[2][1] * n.y + m[2][2] * n.z};
+  }
+  n = length(n) > 0 ? normalized(n) : eye;
+  constexpr double kLeastFacing = 1e-3;
+  return dot(n, eye) < kLeastFacing ? normalized(n + (kLeastFacing - dot(n, eye)) * eye) : n;
+}
+
+}  // namespace alcove

@@ -1,0 +1,89 @@
+// JSON and the summary.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/run/run_report.h"
+
+#include <cmath>
+
+#include <sys/resource.h>
+
+#include <nlohmann/json.hpp>
+
+#include "core/formats/sequence.h"
+
+namespace alcove {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json json_of(const FrameReport& frame) {
+  Json passes = Json::array();
+  for (const auto& pass : frame.passes) passes.push_back({{"name", pass.name}, {"ms", pass.ms}, {"bytes_read", pass.bytes_read}, {"bytes_written", pass.bytes_written}});
+  Json json = {{"frame", frame.frame},
+               {"state", name_of(frame.state)},
+               {"input", frame.input},
+               {"output", frame.output},
+               {"ms", {{"read", frame.read_ms}, {"compute", frame.compute_ms}, {"write", frame.write_ms}, {"total", frame.total_ms}}},
+               {"passes", passes},
+               {"pixels", frame.pixels},
+               {"sky_pixels", frame.sky_pixels},
+               {"parts", frame.parts},
+               {"tiles", {{"total", frame.tiles.sky + frame.tiles.proved + frame.tiles.kept + frame.tiles.computed}, {"sky", frame.tiles.sky}, {"proved", frame.tiles.proved}, {"tolerated", frame.tiles.tolerated}, {"kept", frame.tiles.kept}, {"computed", frame.tiles.computed}}},
+               {"samples_per_pixel", frame.samples_per_pixel},
+               {"repaired_pixels", frame.repaired_pixels}};
+  if (frame.error_pixels > 0) json["error_estimate"] = std::sqrt(frame.error_squares / frame.error_pixels);
+  if (frame.error) json["error"] = frame.error->what();
+  return json;
+}
+
+std::string text_of(const Json& json, int indent) { return json.dump(indent, ' ', false, Json::error_handler_t::replace); }  // names need not be UTF-8
+
+rusage usage() {
+  rusage usage{};
+  ::getrusage(RUSAGE_SELF, &usage);
+  return usage;
+}
+
+}  // namespace
+
+const char* name_of(FrameState state) {
+  switch (state) {
+    case FrameState::done: return "done";
+    case FrameState::failed: return "failed";
+    case FrameState::kept: return "kept";
+    case FrameState::dropped: break;
+  }
+  return "dropped";
+}
+
+double peak_memory_mib() { return double(usage().ru_maxrss) / 1024; }
+
+std::string stats_json(const RunReport& report) {
+  Json frames = Json::array();
+  for (const auto& frame : report.frames) frames.push_back(json_of(frame));
+  const auto seconds = [](const timeval& time) { return double(time.tv_sec) + 1e-6 * double(time.tv_usec); };
+  const rusage used = usage();
+  const Json totals = {{"frames", report.done + report.failed + report.kept},
+                       {"failed", report.failed},
+                       {"kept", report.kept},
+                       {"dropped", report.dropped},
+                       {"missing", report.missing},
+                       {"at_once", report.at_once},
+                       {"wall_s", report.wall_s},
+                       {"cpu_s", seconds(used.ru_utime) + seconds(used.ru_stime)},
+                       {"peak_rss_mb", peak_memory_mib()}};
+  return text_of({{"device", report.device}, {"options", report.options}, {"frames", frames}, {"totals", totals}}, 1) + "\n";
+}
+
+std::string frame_json(const FrameReport& frame) { return text_of(json_of(frame), -1); }
+
+std::string summary_of(const RunReport& report) {
+  std::string text = fmt::format("{} frames done", report.done);
+  if (report.kept) text += fmt::format(", {} kept", report.kept);
+  if (!report.missing.empty()) text += fmt::format(", {} missing ({})", report.missing.size(), frames_text(report.missing));
+  if (report.failed) text += fmt::format(", {} failed ({})", report.failed, frames_text(report.failed_frames));
+  if (report.dropped) text += fmt::format(", {} not begun or dropped", report.dropped);
+  return text + fmt::format(", in {:.1f} s on {}, {} at once, peak memory {:.0f} MiB", report.wall_s, report.device.empty() ? "no device" : report.device,
+                            report.at_once, peak_memory_mib());
+}
+
+}  // namespace alcove

@@ -1,0 +1,63 @@
+// What happened to the frames of a run: for people, for farms, and as JSON.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/base/error.h"
+#include "core/gpu/recorder.h"
+
+namespace alcove {
+
+enum class FrameState { done, failed, kept, dropped };  // kept: its outputs were whole already; dropped: the run ended before it
+const char* name_of(FrameState state);
+
+/// What happened to one frame.
+struct FrameReport {
+  int frame = 0;
+  FrameState state = FrameState::dropped;
+  std::string input, output;
+  double read_ms = 0, compute_ms = 0, write_ms = 0, total_ms = 0;  // compute: the sum of the passes' device time
+  std::vector<gpu::PassTime> passes;
+  std::uint64_t pixels = 0, sky_pixels = 0, repaired_pixels = 0;
+  int parts = 1;                   // that it was computed in; what they share is counted in each
+  struct Tiles {
+    std::uint64_t sky = 0, proved = 0, kept = 0, computed = 0;  // of 8 x 8 pixels: all sky, proved to be open, the same as in a frame before, estimated
+    std::uint64_t tolerated = 0;                                // of those proved, by the tolerance alone
+  } tiles;
+  double error_squares = 0, error_pixels = 0;  // of an estimate with a tolerance
+  double samples_per_pixel = 0;    // depth samples that the settings ask for, averaged over all pixels; sky asks for none
+  std::vector<std::string> notes;  // what the user should know, a sentence each
+  std::optional<Error> error;      // why it failed
+  bool device_lost = false;        // that is why
+};
+
+struct RunReport {
+  bool is_sequence = false;
+  std::string device, options;      // options: the digest that the outputs carry
+  bool on_cpu_by_default = false;   // nobody asked for the CPU, and there is no GPU
+  int at_once = 0;                  // frames in flight
+  std::vector<FrameReport> frames;  // in order, without the dropped ones
+  std::vector<int> missing;         // frames that were left out, since an input is missing
+  int done = 0, failed = 0, kept = 0, dropped = 0;
+  std::vector<int> failed_frames;
+  std::optional<Error> stop;        // why the run ended early
+  double wall_s = 0;
+};
+
+/// `--stats`: see the README for the fields.
+std::string stats_json(const RunReport& report);
+
+/// The same of one frame, on one line.
+std::string frame_json(const FrameReport& frame);
+
+/// One sentence on the whole run, the same words every time, for those who search logs.
+std::string summary_of(const RunReport& report);
+
+/// The most memory that the process has had, MiB.
+double peak_memory_mib();
+
+}  // namespace alcove

@@ -1,0 +1,119 @@
+// Whatever the numbers: every estimator, preset and resolution gives an AO from 0 to 1, 1 on sky, the same with and without skipping, and writes nothing else.
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// ALCOVE_STABILITY_DRAWS=N takes N random draws of all axes at once instead of a round; ALCOVE_STABILITY_SEED=S, the number of the first, repeats those of a run. Both are printed.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <iostream>
+#include <random>
+
+#include "core/chain/pass_common.h"
+#include "tests/support/device.h"
+#include "tests/support/difference.h"
+#include "tests/bench/stability/cases.h"
+
+namespace alcove {
+namespace {
+
+using namespace test;
+
+/// "": all is well.
+std::string complaint(const Case& made, const Variant& variant) {
+  EstimatorSettings settings = with_radius(variant.settings, made.radius);
+  const HostResult result = compute_ao(recorder(), made.frame, settings);
+  for (std::size_t i = 0; i < result.ao.size(); i++)
+    if (!(result.ao[i] >= 0 && result.ao[i] <= 1) || (made.sky[i] && result.ao[i] != 1)) return fmt::format("AO {} at pixel {}{}", result.ao[i], i, made.sky[i] ? ", which is sky" : "");
+  settings.no_skip = true;
+  const std::vector<float> all = compute_ao(recorder(), made.frame, settings).ao;
+  const Difference d = difference(result.ao, all);
+  return same_bits(result.ao, all) ? "" : fmt::format("skipping changes pixel {} by {}", d.worst, d.max);
+}
+
+void expect_sound(const Spec& spec, const std::vector<Variant>& all) {
+  const Case made = test::made(spec);
+  for (const auto& variant : all) {
+    const std::string said = complaint(made, variant);
+    EXPECT_EQ(said, "") << variant.name << ": " << to_string(spec);
+  }
+}
+
+TEST(Grid, every_axis_by_itself) {
+  const auto all = variants();
+  for (const Spec& spec : sweeps()) expect_sound(spec, all);
+}
+
+TEST(Grid, all_axes_at_once) {
+  const char *draws = std::getenv("ALCOVE_STABILITY_DRAWS"), *seed = std::getenv("ALCOVE_STABILITY_SEED");
+  const unsigned first = seed ? unsigned(std::strtoul(seed, nullptr, 10)) : draws ? std::random_device()() : 0;
+  const int count = draws ? std::atoi(draws) : int(kRound);
+  if (draws) std::cout << "ALCOVE_STABILITY_DRAWS=" << count << " ALCOVE_STABILITY_SEED=" << first << std::endl;
+  const auto all = variants();
+  for (int i = 0; i < count; i++) {
+    expect_sound(drawn(first + unsigned(i)), all);
+    if (HasFailure()) FAIL() << "repeat with ALCOVE_STABILITY_DRAWS=1 ALCOVE_STABILITY_SEED=" << first + unsigned(i);
+  }
+}
+
+// The near plane's own value is sky; a third of the depths are next to it, the others before the far plane.
+TEST(Grid, what_is_next_to_the_near_plane_is_a_surface) {
+  for (const Storage storage : {Storage::bits_16, Storage::bits_16_reversed, Storage::bits_24, Storage::bits_24_reversed, Storage::device_reversed}) {
+    const Case made = test::made({.range = 50, .depth = DepthDefect::near_plane, .storage = storage});
+    const float at_near = made.frame.depth_range.reversed ? 1 : 0, next = std::abs(*std::ranges::min_element(made.frame.depth, {}, [&](float x) { return std::abs(x - at_near); }) - at_near);
+    EXPECT_TRUE(next > 0 && next < 2e-5) << next;
+    EXPECT_EQ(compute_ao(recorder(), made.frame, with_radius(plain_settings(), made.radius)).sky_pixels, 0u) << int(storage);
+  }
+}
+
+// The recorder of all tests has NaN beside every buffer, and in it until it is written: see DeviceOptions::guard_bytes.
+TEST(Grid, what_lies_beside_buffers_and_in_new_ones_changes_no_bit) {
+  gpu::DeviceOptions options = device().options();
+  options.guard_bytes = 0;
+  gpu::Device plain(options);
+  gpu::Recorder unguarded(plain);
+  const auto all = variants();
+  for (const auto& [width, height] : {std::pair{1, 1}, {37, 1}, {3, 5}, {47, 43}})
+    for (const auto& variant : all) {
+      const Case made = test::made({.width = width, .height = height});
+      const EstimatorSettings settings = with_radius(variant.settings, made.radius);
+      const std::vector<float> ao = compute_ao(recorder(), made.frame, settings).ao;
+      EXPECT_TRUE(same_bits(ao, compute_ao(unguarded, made.frame, settings).ao)) << variant.name << " " << width << "x" << height;
+    }
+}
+
+// Each estimator writes the middle one of three planes; the other two, before and behind it, stay at 0.
+TEST(Grid, estimators_write_their_own_plane_and_all_of_it) {
+  for (const auto& [width, height] : {std::pair{1, 1}, {1, 37}, {37, 1}, {3, 5}, {47, 43}, {16383, 1}, {1, 16383}})
+    for (const auto& variant : estimators())
+      for (const bool no_skip : {true, false}) {
+        const Case made = test::made({.width = width, .height = height});
+        EstimatorSettings settings = with_radius(variant.settings, made.radius);
+        settings.no_skip = no_skip;
+        gpu::Recorder& gpu = recorder();
+        const FrameInputs inputs = upload(gpu, made.frame);
+        for (const auto* plane : {inputs.depth, inputs.normal}) gpu.upload(*plane);
+        const GBuffer gbuffer = prepare(gpu, inputs);
+        reconstruct(gpu, gbuffer);
+        const std::size_t pixels = made.frame.data.pixels();
+        gpu::Buffer& planes = gpu.buffer("three planes", 3 * pixels * sizeof(float), gpu::Use::download);
+        gpu.clear(planes);
+        Estimate out{&planes};
+        if (!searches_exactly(settings)) out.listed = classify(gpu, gbuffer, inputs, block_grid(inputs, settings), settings, bounds(gpu, gbuffer, inputs, settings), out, 1);
+        if (searches_exactly(settings)) {
+          for (int direction = 0; direction < settings.slices; direction++) exact(gpu, gbuffer, profile(gpu, gbuffer, inputs, settings, direction), inputs, settings, out, 1);
+        } else {
+          const auto estimator = std::array{&horizon, &bitmask, &hbao, &crytek}[std::size_t(settings.estimator)];
+          estimator(gpu, gbuffer, inputs, settings, out, 1);
+        }
+        gpu.download(planes);
+        gpu.run();
+        const auto values = planes.as<float>();
+        for (std::size_t i = 0; i < 3 * pixels; i++)
+          ASSERT_TRUE(i / pixels == 1 ? values[i] > 0 && values[i] <= 1 : values[i] == 0) << variant.name << " " << width << "x" << height << " value " << i << ": " << values[i];
+      }
+}
+
+}  // namespace
+}  // namespace alcove

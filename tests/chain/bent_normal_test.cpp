@@ -1,0 +1,339 @@
+// Bent normals: closed forms, the CPU reference, symmetries, and what the filters make of them.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <optional>
+#include <string>
+
+#include "core/chain/chain.h"
+#include "core/reference/reference.h"
+#include "tests/support/device.h"
+#include "tests/support/difference.h"
+#include "tests/support/single_pass.h"
+
+namespace alcove {
+namespace {
+
+using test::dot, test::length, test::unit;
+using test::Plane, test::Rendering, test::Scene, test::Shot, test::Vec3;
+
+constexpr double kPi = std::numbers::pi;
+
+EstimatorSettings settings_of(Estimator estimator, double radius, int slices, int steps) {
+  EstimatorSettings settings = test::plain_settings();
+  settings.estimator = estimator;
+  settings.radius = radius;
+  settings.slices = slices;
+  settings.steps = steps;
+  return settings;
+}
+
+std::string name_of(const EstimatorSettings& s) {
+  return std::string(s.estimator == Estimator::gtao ? "gtao " : "bitmask ") + std::to_string(s.slices) + " x " + std::to_string(s.steps) + ", thickness " +
+         std::to_string(int(s.thickness)) + ", falloff " + std::to_string(int(s.falloff)) + ", resolution 1/" + std::to_string(int(s.resolution));
+}
+
+std::vector<Vec3> vectors_in(std::span<const float> planes, double scale = 1, double offset = 0) {
+  const std::size_t pixels = planes.size() / 3;
+  std::vector<Vec3> vectors(pixels);
+  for (std::size_t i = 0; i < pixels; i++)
+    vectors[i] = {scale * planes[i] + offset, scale * planes[i + pixels] + offset, scale * planes[i + 2 * pixels] + offset};
+  return vectors;
+}
+
+/// The AOV: unit vectors in view space.
+std::vector<Vec3> bent_normals(const HostFrame& frame, const EstimatorSettings& settings) {
+  OutputSettings output;
+  output.aovs = "bent-normal";
+  const FrameOutputs outputs = run_chain(test::recorder(), upload(test::recorder(), frame), settings, output);
+  test::recorder().run();
+  return vectors_in(outputs.bent_normal->as<float>());
+}
+
+/// The mean open directions in view space, as the estimator leaves them.
+std::vector<Vec3> raw_bent(const HostFrame& frame, const EstimatorSettings& settings) {
+  gpu::Recorder& gpu = test::recorder();
+  const FrameInputs inputs = upload(gpu, frame);
+  for (const auto* plane : {inputs.depth, inputs.normal})
+    if (plane) gpu.upload(*plane);
+  const GBuffer gbuffer = prepare(gpu, inputs);
+  reconstruct(gpu, gbuffer);
+  const Estimate result = estimate(gpu, gbuffer, inputs, settings, true);
+  gpu.download(*result.bent);
+  gpu.run();
+  return vectors_in(result.bent->as<float>(), 2, -1);
+}
+
+Vec3 normal_at(const HostFrame& frame, std::size_t i) {
+  const std::size_t pixels = frame.data.pixels();
+  return {frame.normal[i], frame.normal[i + pixels], frame.normal[i + 2 * pixels]};
+}
+
+double degrees_between(Vec3 a, Vec3 b) { return std::atan2(length(test::cross(a, b)), dot(a, b)) * 180 / kPi; }
+
+// Closed forms.
+
+TEST(BentNormals, of_an_open_plane_are_its_normal_and_two_thirds_long_at_every_tilt) {
+  for (const double tilt : {0.0, 40.0, 75.0, 85.0}) {
+    for (const double turn : {0.0, 37.0, 200.0}) {
+      const double sine = std::sin(tilt * kPi / 180);
+      const Scene scene{{Plane{.point = {5, 0, 0}, .normal = {-std::cos(tilt * kPi / 180), sine * std::cos(turn * kPi / 180), sine * std::sin(turn * kPi / 180)}}}};
+      for (const double fov : {0.0, 60.0, 110.0}) {
+        const HostFrame frame = test::render(scene, fov > 0 ? Shot::perspective({}, {1, 0, 0}, fov, 64, 48) : Shot::orthographic({}, {1, 0, 0}, 0.5, 64, 48)).frame;
+        for (const Estimator estimator : {Estimator::gtao, Estimator::bitmask}) {
+          for (const auto& [slices, steps] : {std::pair{1, 4}, {3, 40}}) {
+            EstimatorSettings settings = settings_of(estimator, 1, slices, steps);
+            const auto raw = raw_bent(frame, settings);
+            for (std::size_t i = 0; i < raw.size(); i++)
+              if (frame.depth[i] < frame.sky) ASSERT_LE(length(raw[i] - (2.0 / 3) * normal_at(frame, i)), 1e-3) << name_of(settings) << " tilt " << tilt << " fov " << fov;
+            settings.denoise = Denoise::bilateral;
+            for (const auto& [resolution, stride] : {std::pair{Resolution::full, 1}, {Resolution::full, 4}, {Resolution::half, 2}, {Resolution::quarter, 1}}) {
+              settings.resolution = resolution;
+              settings.stride = stride;
+              const auto bent = bent_normals(frame, settings);
+              for (std::size_t i = 0; i < bent.size(); i++)
+                if (frame.depth[i] < frame.sky) ASSERT_LE(length(bent[i] - normal_at(frame, i)), 1e-3) << name_of(settings) << " tilt " << tilt << " fov " << fov;
+            }
+          }
+        }
+      }
+    }
+  }
+}
+
+/// The cosine-weighted mean over the open directions of the hemisphere about z: even points of the unit disk below it.
+Vec3 mean_open(const std::function<bool(Vec3)>& is_open) {
+  constexpr int kRings = 100, kTurns = 200;
+  Vec3 sum;
+  for (int r = 0; r < kRings; r++)
+    for (int t = 0; t < kTurns; t++) {
+      const double squared = (r + 0.5) / kRings, turn = 2 * kPi * (t + 0.5) / kTurns;
+      const Vec3 direction{std::sqrt(squared) * std::cos(turn), std::sqrt(squared) * std::sin(turn), std::sqrt(1 - squared)};
+      if (is_open(direction)) sum = sum + (1.0 / (kRings * kTurns)) * direction;
+    }
+  return sum;
+}
+
+TEST(MeanOpen, is_the_closed_form_beside_a_wall) {  // the quadrature that the rest goes by
+  const Vec3 endless = mean_open([](Vec3 w) { return w.x > 0; }), corner = mean_open([](Vec3 w) { return w.x > 0 && w.y > 0; });
+  EXPECT_NEAR(std::atan2(endless.x, endless.z), std::atan(2 / kPi), 3e-3);
+  EXPECT_LE(length(corner - Vec3{1 / (3 * kPi), 1 / (3 * kPi), 1.0 / 6}), 3e-3);
+  const double c = 0.4;
+  const Vec3 near = mean_open([&](Vec3 w) { return w.x > -c; });
+  EXPECT_LE(length(near - Vec3{2.0 / (3 * kPi) * std::pow(1 - c * c, 1.5), 0, 2.0 / 3 - 0.5 * (2.0 / 3 - c + c * c * c / 3)}), 3e-3);
+}
+
+/// The floor z = 0 before one wall, or two.
+Scene walls(int count) {
+  Scene scene{{Plane{.point = {}, .normal = {0, 0, 1}}, Plane{.point = {}, .normal = {1, 0, 0}}}};
+  if (count > 1) scene.primitives.push_back(Plane{.point = {}, .normal = {0, 1, 0}});
+  return scene;
+}
+
+/// Compares the estimate with the truth on the floor, wherever the picture shows all that is within the radius.
+void expect_walls(int count, const Shot& shot, const EstimatorSettings& settings, double radius, const std::string& what) {
+  const Rendering rendering = test::render(walls(count), shot);
+  const auto raw = raw_bent(rendering.frame, settings);
+  int compared = 0, seen = 0;
+  double worst = 0, sum = 0;
+  for (std::size_t i = 0; i < raw.size(); i++) {
+    const auto& hit = rendering.hits[i];
+    const int x = int(i % std::size_t(shot.data.width)), y = int(i / std::size_t(shot.data.width));
+    if (hit.primitive != 0 || rendering.primitives_within(2, x, y) > 1 || 12 * rendering.footprint(x, y) > radius || !shot.sees_ball(hit.position, radius) ||
+        hit.position.x > 0.9 * radius)
+      continue;
+    if (++seen % 13) continue;  // spread over the floor
+    const Vec3 p = hit.position;
+    const Vec3 truth = mean_open([&](Vec3 w) { return w.x > -p.x / radius && (count < 2 || w.y > -p.y / radius); });
+    const double error = length(raw[i] - shot.view_from_world(truth));
+    worst = std::max(worst, error);
+    sum += error;
+    compared++;
+  }
+  EXPECT_GE(compared, 30) << what;
+  const double tolerance = settings.steps < 64 ? 0.018 : 0.006;  // so few steps miss as much of the visibility
+  EXPECT_LE(worst, 3 * tolerance) << what;
+  EXPECT_LE(sum / compared, tolerance) << what;
+}
+
+TEST(BentNormals, beside_walls_are_the_closed_form_from_every_camera) {
+  for (const int count : {1, 2}) {
+    for (const double roll : {0.0, 50.0, 190.0}) {
+      Shot shot = Shot::perspective({2.4, 1.9, 2.6}, {0.3, 0.3, 0.1}, 50, 180, 135);
+      const Vec3 right = shot.right, up = shot.up;
+      shot.right = std::cos(roll * kPi / 180) * right + std::sin(roll * kPi / 180) * up;
+      shot.up = std::cos(roll * kPi / 180) * up - std::sin(roll * kPi / 180) * right;
+      for (const Estimator estimator : {Estimator::gtao, Estimator::bitmask})
+        for (const int steps : {16, 64})
+          expect_walls(count, shot, settings_of(estimator, 0.6, 16, steps), 0.6,
+                       name_of(settings_of(estimator, 0.6, 16, steps)) + ", walls " + std::to_string(count) + ", roll " + std::to_string(roll));
+    }
+  }
+}
+
+// The reference.
+
+TEST(BentNormals, are_those_of_the_cpu_reference) {
+  const Rendering room = test::furnished_room(120, 90);
+  for (const Estimator estimator : {Estimator::gtao, Estimator::bitmask}) {
+    for (const ThicknessKind thickness : {ThicknessKind::infinite, ThicknessKind::constant, ThicknessKind::automatic}) {
+      for (const Falloff falloff : {Falloff::none, Falloff::quadratic}) {
+        for (const int steps : {16, 96}) {
+          EstimatorSettings settings = settings_of(estimator, 0.6, 24, steps);
+          settings.thickness = thickness;
+          settings.thickness_length = 0.15;
+          settings.falloff = falloff;
+          ReferenceSettings reference = reference_settings_of(settings);
+          for (std::size_t i = 11; i < room.hits.size(); i += 37)
+            if (room.hits[i].primitive >= 0) reference.pixels.push_back(i);
+          const auto expected = vectors_in(reference_bent(room.frame, reference)), raw = raw_bent(room.frame, settings);
+          const auto expected_ao = reference_ao(room.frame, reference), ao = compute_ao(test::recorder(), room.frame, settings).ao;
+          double error = 0, ao_error = 0;
+          Vec3 bias;
+          for (const std::size_t i : reference.pixels) {
+            error += length(raw[i] - expected[i]) / double(reference.pixels.size());
+            ao_error += std::abs(ao[i] - expected_ao[i]) / double(reference.pixels.size());
+            bias = bias + 1.0 / double(reference.pixels.size()) * (raw[i] - expected[i]);
+          }
+          // As far from the reference as the visibility by the same samples is, and no farther.
+          EXPECT_LE(error, 1.25 * ao_error + 0.003) << name_of(settings) << ", visibility " << ao_error;
+          EXPECT_LE(length(bias), ao_error + 0.002) << name_of(settings);
+        }
+      }
+    }
+  }
+}
+
+TEST(BentNormals, of_one_slice_are_right_in_the_mean_over_seeds) {
+  const Rendering room = test::furnished_room(64, 48);
+  for (const Estimator estimator : {Estimator::gtao, Estimator::bitmask}) {
+    EstimatorSettings settings = settings_of(estimator, 0.6, 1, 16);
+    std::vector<Vec3> mean(room.hits.size());
+    constexpr int kSeeds = 256;
+    for (settings.seed = 0; settings.seed < kSeeds; settings.seed++) {
+      const auto raw = raw_bent(room.frame, settings);
+      for (std::size_t i = 0; i < raw.size(); i++) mean[i] = mean[i] + 1.0 / kSeeds * raw[i];
+    }
+    const auto many = raw_bent(room.frame, settings_of(estimator, 0.6, 64, 16));
+    double error = 0, surfaces = 0;
+    for (std::size_t i = 0; i < many.size(); i++)
+      if (room.hits[i].primitive >= 0) error += length(mean[i] - many[i]), surfaces++;
+    EXPECT_LE(error / surfaces, 0.012) << name_of(settings);
+  }
+}
+
+// Symmetry, filters and limits.
+
+TEST(BentNormals, of_the_mirrored_frame_are_mirrored) {
+  const Rendering room = test::furnished_room(120, 90);
+  const EstimatorSettings settings = settings_of(Estimator::gtao, 0.6, 32, 64);
+  const auto upright = raw_bent(room.frame, settings);
+  for (const bool left_right : {true, false}) {
+    const auto raw = raw_bent(test::mirrored(room.frame, left_right), settings);
+    double error = 0;
+    for (int y = 0; y < 90; y++)
+      for (int x = 0; x < 120; x++) {
+        Vec3 expected = upright[std::size_t(left_right ? y * 120 + 119 - x : (89 - y) * 120 + x)];
+        (left_right ? expected.x : expected.y) *= -1;
+        error += length(raw[std::size_t(y * 120 + x)] - expected) / (120 * 90);
+      }
+    EXPECT_LE(error, 0.01) << left_right;
+  }
+}
+
+TEST(BentNormals, are_unit_vectors_above_the_surface_and_0_on_the_sky_through_every_filter) {
+  const Rendering room = test::furnished_room(121, 83);
+  for (const Estimator estimator : {Estimator::gtao, Estimator::bitmask})
+    for (const Resolution resolution : {Resolution::full, Resolution::half, Resolution::quarter})
+      for (const auto& [denoise, stride] : {std::pair{Denoise::none, 1}, {Denoise::bilateral, 1}, {Denoise::box, 1}, {Denoise::bilateral, 2}, {Denoise::bilateral, 4}}) {
+        EstimatorSettings settings = settings_of(estimator, 0.6, 1, 12);
+        settings.resolution = resolution;
+        settings.denoise = denoise;
+        settings.stride = stride;
+        const auto bent = bent_normals(room.frame, settings);
+        for (std::size_t i = 0; i < bent.size(); i++) {
+          const bool sky = room.hits[i].primitive < 0;
+          ASSERT_NEAR(length(bent[i]), sky ? 0 : 1, 1e-3) << name_of(settings) << " " << i;
+          if (!sky) ASSERT_GE(dot(bent[i], normal_at(room.frame, i)), -1e-3) << name_of(settings) << " " << i;
+        }
+      }
+}
+
+TEST(BentNormals, are_smoothed_towards_the_truth_without_mixing_surfaces) {
+  const Rendering room = test::furnished_room(160, 120);
+  EstimatorSettings one = settings_of(Estimator::gtao, 0.6, 1, 12);
+  const auto truth = bent_normals(room.frame, settings_of(Estimator::gtao, 0.6, 64, 12)), noisy = bent_normals(room.frame, one);
+  one.denoise = Denoise::bilateral;
+  const auto smooth = bent_normals(room.frame, one);
+  double before = 0, after = 0;
+  for (std::size_t i = 0; i < truth.size(); i++)
+    if (room.hits[i].primitive >= 0) before += degrees_between(noisy[i], truth[i]), after += degrees_between(smooth[i], truth[i]);
+  EXPECT_LT(after, 0.4 * before) << "mean degrees before " << before / double(truth.size()) << ", after " << after / double(truth.size());
+}
+
+TEST(BentNormals, fall_back_to_the_normal_where_nothing_is_open) {
+  const Rendering room = test::furnished_room(40, 30);
+  gpu::Recorder& gpu = test::recorder();
+  const FrameInputs inputs = upload(gpu, room.frame);
+  for (const auto* plane : {inputs.depth, inputs.normal}) gpu.upload(*plane);
+  const GBuffer gbuffer = prepare(gpu, inputs);
+  gpu::Buffer& closed = gpu.buffer("closed", 3 * room.frame.depth.size() * sizeof(float), gpu::Use::upload);
+  std::ranges::fill(closed.as<float>(), 0.5f);
+  gpu.upload(closed);
+  const gpu::Buffer& planes = directions(gpu, gbuffer, bent_normal(gpu, gbuffer, closed), "test directions", inputs);
+  gpu.download(planes);
+  gpu.run();
+  const auto bent = vectors_in(planes.as<float>());
+  for (std::size_t i = 0; i < bent.size(); i++)
+    if (room.hits[i].primitive >= 0) ASSERT_LE(length(bent[i] - normal_at(room.frame, i)), 1e-3) << i;
+}
+
+TEST(BentNormals, leave_every_bit_of_the_visibility) {
+  const HostFrame frame = test::furnished_room(121, 83).frame;
+  for (const Estimator estimator : {Estimator::gtao, Estimator::bitmask})
+    for (const int steps : {6, 40})
+      for (const Falloff falloff : {Falloff::none, Falloff::linear}) {
+        EstimatorSettings settings = settings_of(estimator, 0.6, 2, steps);
+        settings.thickness = ThicknessKind::automatic;
+        settings.denoise = Denoise::bilateral;
+        settings.falloff = falloff;
+        OutputSettings output;
+        output.aovs = "ao,bent-normal";
+        const auto plain = compute_ao(test::recorder(), frame, settings).ao;
+        const FrameOutputs outputs = run_chain(test::recorder(), upload(test::recorder(), frame), settings, output);
+        test::recorder().run();
+        const auto ao = outputs.ao->as<float>();
+        EXPECT_TRUE(test::same_bits({ao.begin(), ao.end()}, plain)) << name_of(settings);
+      }
+}
+
+// Reflections towards the wall are hidden and those away from it open, though the visibility is the same: the cone of what is seen leans away from the wall.
+TEST(SpecularOcclusion, follows_the_bent_normal) {
+  const auto at_floor = [](Estimator estimator, double side) {
+    const Scene scene{{Plane{.point = {}, .normal = {0, 0, 1}}, test::parallelogram({0, -6, 0}, {0, 12, 0}, {0, 0, 1.5})}};
+    const Shot shot = Shot::orthographic({0.4 + side * 20, 0, 20}, {0.4, 0, 0}, 3, 90, 60);
+    const Rendering rendering = test::render(scene, shot);
+    EstimatorSettings settings = settings_of(estimator, 1, 16, 32);
+    settings.roughness = 0.3;
+    OutputSettings output;
+    output.aovs = "specular-occlusion";
+    const FrameOutputs outputs = run_chain(test::recorder(), upload(test::recorder(), rendering.frame), settings, output);
+    test::recorder().run();
+    double sum = 0;
+    int count = 0;
+    for (std::size_t i = 0; i < rendering.hits.size(); i++) {
+      const auto& hit = rendering.hits[i];
+      if (hit.primitive == 0 && std::abs(hit.position.x - 0.4) < 0.05) sum += outputs.specular_occlusion->as<float>()[i], count++;
+    }
+    EXPECT_GT(count, 20);
+    return sum / count;
+  };
+  EXPECT_LT(at_floor(Estimator::gtao, 1), at_floor(Estimator::hbao, 1) - 0.05) << "seen from the open side the reflection meets the wall";
+}
+
+}  // namespace
+}  // namespace alcove

@@ -1,0 +1,175 @@
+// The debug views: a picture each, with a scale, whole or not at all, and right where what it must show is known.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "core/chain/debug_view.h"
+#include "core/formats/exr.h"
+#include "core/formats/image_io.h"
+#include "tests/support/command_line.h"
+
+namespace alcove {
+namespace {
+
+using namespace test;
+using testing::HasSubstr;
+
+/// Pixels of the frame are drawn 8 x 8 here; the scale lies below.
+constexpr int kZoom = 8, kLegend = 48;
+
+Image picture_of(const std::string& path) {
+  const auto file = open_picture(path, "INPUT");
+  Image image(file->data, file->display, file->names);
+  std::vector<PictureReader::Channel> channels;
+  for (std::size_t i = 0; i < image.names.size(); i++) channels.push_back({i, image.plane(i).data()});
+  file->read(0, image.data.height, channels);
+  return image;
+}
+
+class DebugViews : public CommandLine {
+ protected:
+  Image view(const std::string& name, std::vector<std::string> more = {}) {
+    more.insert(more.end(), {"--debug", name});
+    const Finished finished = run(more);
+    EXPECT_EQ(finished.code, 0) << finished;
+    return picture_of(folder / ("ao." + name + ".png"));
+  }
+  static std::array<int, 3> color(const Image& picture, int x, int y) {
+    std::array<int, 3> bytes{};
+    const std::size_t i = std::size_t(y) * std::size_t(picture.data.width) + std::size_t(x);
+    for (std::size_t c = 0; c < 3; c++) bytes[c] = int(std::lround(255 * picture.plane(c)[i]));
+    return bytes;
+  }
+  /// Of a pixel of the frame.
+  static std::array<int, 3> shown(const Image& picture, int x, int y, int zoom = kZoom) { return color(picture, x * zoom + zoom / 2, y * zoom + zoom / 2); }
+
+  void expect_refused(int code, const std::vector<std::string>& words, const std::vector<std::string>& more) {
+    const auto before = names_in(folder.path());
+    const Finished finished = run(more);
+    EXPECT_EQ(finished.code, code) << testing::PrintToString(more) << finished;
+    for (const auto& word : words) EXPECT_THAT(finished.err, HasSubstr(word)) << testing::PrintToString(more);
+    EXPECT_EQ(names_in(folder.path()), before) << testing::PrintToString(more);
+  }
+};
+
+TEST_F(DebugViews, every_one_is_a_picture_beside_the_output_with_a_scale_below) {
+  std::string all;
+  for (const auto& name : debug_view_names()) all += (all.empty() ? "" : ",") + name;
+  ASSERT_EQ(run({"--debug", all, "--resolution", "full"}).code, 0);
+  for (const auto& name : debug_view_names()) {
+    const Image picture = picture_of(folder / ("ao." + name + ".png"));
+    EXPECT_EQ(picture.data.width, 560) << name << ": texts need the room";
+    EXPECT_EQ(picture.data.height, 36 * kZoom + kLegend) << name;
+    int lit = 0;  // the texts
+    for (int y = 36 * kZoom; y < picture.data.height; y++)
+      for (int x = 0; x < 100; x++) lit += color(picture, x, y)[0] > 150;
+    EXPECT_GT(lit, 60) << name;
+  }
+}
+
+TEST_F(DebugViews, sky_has_a_colour_that_no_number_has) {
+  FrameFile input = wall_frame();
+  input.planes["ViewLayer.Depth.Z"][3 * 64 + 5] = 1e10f;
+  input.write(frame);
+  for (const auto& name : debug_view_names()) {
+    const Image picture = view(name);
+    const auto sky = shown(picture, 5, 3);
+    EXPECT_GT(sky[0], sky[1] + 60) << name;
+    for (int y = 0; y < 36; y++)
+      for (int x = 0; x < 64; x++)
+        if (x != 5 || y != 3) ASSERT_NE(shown(picture, x, y), sky) << name << " " << x << " " << y;
+  }
+}
+
+TEST_F(DebugViews, raw_ao_is_grey_as_the_ao_is_before_shaping) {
+  const Image picture = view("raw-ao", {"--power", "3", "--stride", "1"});
+  ASSERT_EQ(run({"--type", "float", "--denoise", "none"}).code, 0);
+  const Image plain = read_exr_image(ao);
+  for (int y = 0; y < 36; y++)
+    for (int x = 0; x < 64; x++) {
+      const int grey = int(std::lround(255 * plain.plane("Y")[std::size_t(y * 64 + x)]));
+      ASSERT_EQ(shown(picture, x, y), (std::array{grey, grey, grey})) << x << " " << y;
+    }
+}
+
+TEST_F(DebugViews, estimates_are_shown_at_their_own_resolution) {
+  for (const char* name : {"raw-ao", "denoised-ao"}) {
+    const Image picture = view(name, {"--resolution", "half", "--denoise", "bilateral"});
+    EXPECT_EQ(picture.data.height, 18 * kZoom + kLegend) << name;
+  }
+  EXPECT_NE(read_bytes(folder / "ao.raw-ao.png"), read_bytes(folder / "ao.denoised-ao.png"));
+}
+
+TEST_F(DebugViews, linear_depth_brightens_with_the_distance_and_view_z_darkens) {
+  // Luma of the ramp rises from end to end. Column 0 of the wall frame: the wall above, then the floor towards the eye.
+  const auto luma = [](const std::array<int, 3>& c) { return 0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2]; };
+  for (const auto& [name, sign] : {std::pair{"raw-depth", 1}, {"linear-depth", 1}, {"view-z", -1}}) {
+    const Image picture = view(name);
+    EXPECT_GT(sign * (luma(shown(picture, 0, 0)) - luma(shown(picture, 0, 35))), 100) << name;
+    for (int y = 30; y < 35; y++) EXPECT_GE(sign * (luma(shown(picture, 0, y)) - luma(shown(picture, 0, y + 1))), 0) << name << " " << y;
+  }
+}
+
+TEST_F(DebugViews, reconstruction_tells_wrong_normals_from_right_ones) {
+  const Image right = view("reconstruction");
+  FrameFile input = wall_frame();
+  for (std::size_t i = 0; i < 64 * 4; i++) {  // the upper rows of the wall lean by 60 degrees
+    input.planes["ViewLayer.Normal.X"][i] = float(std::sqrt(0.75));
+    input.planes["ViewLayer.Normal.Y"][i] = -0.5f;
+  }
+  input.write(frame);
+  const Image wrong = view("reconstruction");
+  const auto end = color(right, 110 + 199, 36 * kZoom + kLegend - 15), start = color(right, 110, 36 * kZoom + kLegend - 15);
+  for (int x = 0; x < 64; x++) {
+    ASSERT_EQ(shown(right, x, 1), start) << x;
+    ASSERT_EQ(shown(wrong, x, 1), end) << x;
+    ASSERT_EQ(shown(wrong, x, 8), start) << x;
+  }
+}
+
+TEST_F(DebugViews, edges_are_where_the_surface_bends_or_ends) {
+  FrameFile input = wall_frame();
+  input.planes["ViewLayer.Depth.Z"][10 * 64 + 20] = 3;  // a speck before the wall
+  input.write(frame);
+  const Image picture = view("edges");
+  const auto none = shown(picture, 40, 3);
+  EXPECT_EQ(color(picture, 110, 36 * kZoom + kLegend - 15), none) << "flat: the low end of the scale";
+  for (const auto& [x, y] : {std::pair{20, 10}, {21, 10}, {20, 9}}) EXPECT_NE(shown(picture, x, y), none) << x << " " << y;
+  EXPECT_EQ(shown(picture, 22, 10), none);
+}
+
+TEST_F(DebugViews, view_normal_z_shows_the_wall_facing_and_the_floor_across) {
+  const Image picture = view("view-normal-z");
+  EXPECT_EQ(shown(picture, 9, 2), color(picture, 110 + 199, 36 * kZoom + kLegend - 15)) << "1: the high end";
+  EXPECT_NE(shown(picture, 9, 34), shown(picture, 9, 2));
+}
+
+TEST_F(DebugViews, without_ao_only_its_own_passes_run) {
+  ASSERT_EQ(run({"--aov", "depth", "--debug", "edges", "--stats", folder / "stats.json"}).code, 0);
+  const auto stats = nlohmann::json::parse(read_bytes(folder / "stats.json"));
+  std::vector<std::string> names;
+  for (const auto& pass : stats.at("frames")[0].at("passes")) names.push_back(pass.at("name"));
+  EXPECT_THAT(names, testing::ElementsAre("prepare", "reconstruct", "debug"));
+}
+
+TEST_F(DebugViews, what_cannot_be_shown_or_written_is_refused_before_any_work) {
+  expect_refused(2, {"--debug", "did you mean edges?", "raw-depth, linear-depth"}, {"--debug", "edgse"});
+  expect_refused(2, {"--debug", "raw-depth"}, {"--debug", "raw-depth,"});
+  expect_refused(2, {"--debug", "--preview", "same file"}, {"--debug", "edges", "--preview", folder / "ao.edges.png"});
+  FrameFile input = wall_frame();
+  std::erase_if(input.planes, [](const auto& plane) { return plane.first.find("Normal") != plane.first.npos; });
+  input.write(frame);
+  expect_refused(3, {"wall.0042.exr", "--debug reconstruction", "--normal"}, {"--debug", "reconstruction"});
+  for (const char* c : {"X", "Y", "Z"}) input.planes["ViewLayer.Position." + std::string(c)] = input.planes["ViewLayer.Depth.Z"];
+  input.write(frame);
+  expect_refused(3, {"wall.0042.exr", "--debug raw-depth", "--depth-channel"}, {"--debug", "raw-depth", "--position-channels", "ViewLayer.Position", "--depth-kind", "position"});
+  std::filesystem::create_directory(folder / "ao.edges.png");
+  expect_refused(4, {"ao.edges.png", "--debug"}, {"--debug", "edges"});
+}
+
+}  // namespace
+}  // namespace alcove

@@ -1,0 +1,298 @@
+// What a frame has in common with the one before it is not computed again, and has the bits of what is.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <functional>
+#include <nlohmann/json.hpp>
+
+#include "core/formats/exr.h"
+#include "core/run/frame_run.h"
+#include "tests/support/device.h"
+#include "tests/support/difference.h"
+#include "tests/support/random_scenes.h"
+#include "tests/support/sequence_folder.h"
+#include "tests/support/single_pass.h"
+
+namespace alcove {
+namespace {
+
+using namespace test;
+using nlohmann::json;
+
+std::vector<float> values_of(const FrameOutputs& outputs) {
+  std::vector<float> values;
+  for (const auto* planes : {outputs.ao, outputs.scales, outputs.bent_normal, outputs.confidence, outputs.specular_occlusion}) {
+    if (!planes) continue;
+    const auto plane = planes->as<float>();
+    values.insert(values.end(), plane.begin(), plane.end());
+  }
+  return values;
+}
+
+/// all: also what is made of the AO, and by other estimates beside it.
+OutputSettings outputs_for(const EstimatorSettings& settings, bool all) {
+  OutputSettings output;
+  output.aovs = has_bent_normals(settings) ? "ao,bent-normal,ao-scales" : "ao,ao-scales";
+  if (all) output.aovs += ",confidence,specular-occlusion";
+  return output;
+}
+
+struct Outcome {
+  std::vector<float> values;
+  bool is_same = false;
+  std::uint32_t kept = 0, listed = 0;
+};
+
+/// The next frame of a lane.
+Outcome next_of(Lane& lane, const HostFrame& frame, const EstimatorSettings& settings, bool all = false) {
+  FrameInputs inputs = upload(lane.gpu, frame);
+  Outcome outcome;
+  outcome.is_same = lane.last.is_same(lane.gpu, inputs, settings);
+  const FrameOutputs outputs = outcome.is_same ? lane.last.outputs() : run_chain(lane.gpu, inputs, settings, outputs_for(settings, all));
+  if (!outcome.is_same) lane.gpu.run();
+  lane.last.keep(outputs);
+  outcome.values = values_of(outputs);
+  const auto tiles = outputs.tiles->as<TileCounts>()[0];
+  outcome.kept = tiles.kept;
+  outcome.listed = tiles.listed;
+  return outcome;
+}
+
+std::vector<float> alone(const HostFrame& frame, const EstimatorSettings& settings, bool all = false) {
+  const FrameOutputs outputs = run_chain(recorder(), upload(recorder(), frame), settings, outputs_for(settings, all));
+  recorder().run();
+  return values_of(outputs);
+}
+
+/// Something is put into a rectangle of a frame, is taken from it, or turns its normals.
+void change(HostFrame& frame, RandomScenes& random) {
+  const int x0 = random.whole(0, frame.data.width - 1), y0 = random.whole(0, frame.data.height - 1);
+  const int x1 = std::min(frame.data.width, x0 + random.whole(1, 12)), y1 = std::min(frame.data.height, y0 + random.whole(1, 12)), kind = random.whole(0, 3);
+  for (int y = y0; y < y1; y++)
+    for (int x = x0; x < x1; x++) {
+      const std::size_t i = std::size_t(y) * std::size_t(frame.data.width) + std::size_t(x);
+      if (kind == 0) frame.depth[i] *= 0.7f;
+      if (kind == 1) frame.depth[i] = 2e9f;
+      if (kind == 2) frame.depth[i] = 1.0f;
+      if (kind == 3 && !frame.normal.empty()) frame.normal[i] += 0.2f;
+    }
+}
+
+// ALCOVE_TEST_SEED: other scenes.
+TEST(Reuse, of_parts_and_of_whole_frames_changes_no_bit) {
+  const char* seed = std::getenv("ALCOVE_TEST_SEED");
+  RandomScenes random(seed ? unsigned(std::atoi(seed)) : 61121);
+  std::uint64_t kept = 0, same = 0;
+  for (int i = 0; i < 120 && !HasFailure(); i++) {
+    HostFrame frame = random.next(3);
+    EstimatorSettings settings = plain_settings();
+    settings.estimator = random.estimator();
+    settings.radius = random.radius() / 10;
+    settings.thickness = random.thickness();
+    settings.thickness_length = *settings.radius / 4;
+    settings.slices = random.whole(1, 4);
+    settings.steps = settings.samples = random.whole(4, 20);
+    if (random.whole(0, 3) == 0) settings.further_radii = {*settings.radius / 3};
+    if (random.whole(0, 2) == 0) settings.resolution = random.whole(0, 1) == 0 ? Resolution::half : Resolution::quarter;
+    settings.denoise = std::array{Denoise::none, Denoise::bilateral, Denoise::bilateral, Denoise::box}[std::size_t(random.whole(0, 3))];
+    if (random.whole(0, 3) == 0) settings.power = 1.5;
+    const bool all = random.whole(0, 3) == 0;
+    if (settings.denoise == Denoise::bilateral && settings.resolution == Resolution::full) settings.stride = 1 << random.whole(0, 2);
+    Lane lane(device());
+    for (int shot = 0; shot < 4; shot++) {
+      if (shot > 0 && random.whole(0, 3) > 0) change(frame, random);
+      frame.frame = shot;
+      const Outcome next = next_of(lane, frame, settings, all);
+      EXPECT_TRUE(same_bits(next.values, alone(frame, settings, all))) << "scene " << i << " frame " << shot << " estimator " << int(settings.estimator);
+      kept += next.is_same ? 0 : next.kept;
+      same += next.is_same;
+    }
+  }
+  EXPECT_GT(kept, 2000u) << "tiles";
+  EXPECT_GT(same, 50u) << "frames";
+}
+
+TEST(Reuse, is_of_what_was_computed_in_the_same_way) {
+  const HostFrame room = furnished_room(96, 64).frame;
+  EstimatorSettings settings = plain_settings();
+  settings.radius = 0.1;
+  Lane lane(device());
+  next_of(lane, room, settings);
+  EXPECT_TRUE(next_of(lane, room, settings).is_same);
+  HostFrame other = room;
+  other.camera.cx += 1;
+  EXPECT_FALSE(next_of(lane, other, settings).is_same);
+  EXPECT_EQ(next_of(lane, room, settings).kept, 0u) << "the camera is another again";
+  other = room;
+  other.frame = 7;
+  EXPECT_TRUE(next_of(lane, other, settings).is_same);
+  settings.noise = Noise::animated;
+  EXPECT_FALSE(next_of(lane, room, settings).is_same);
+  EXPECT_FALSE(next_of(lane, other, settings).is_same);
+  EXPECT_TRUE(next_of(lane, other, settings).is_same);
+}
+
+/// A frame with device depth between planes at 0.5 and 50, and normals in world space, of a camera that is turned by a quarter.
+HostFrame device_frame() {
+  HostFrame frame = furnished_room(96, 64).frame;
+  frame.depth_kind = DepthKind::device;
+  frame.depth_range.near = 0.5, frame.depth_range.far = 50;
+  for (float& z : frame.depth) z = z < kSky ? float((1 / 0.5 - 1 / double(z)) / (1 / 0.5 - 1 / 50.0)) : 1.0f;
+  frame.camera.view_from_world = {{{0, 1, 0}, {-1, 0, 0}, {0, 0, 1}}};
+  frame.normal_space = NormalSpace::world;
+  const auto pixels = std::ptrdiff_t(frame.data.pixels());
+  std::rotate(frame.normal.begin(), frame.normal.begin() + pixels, frame.normal.begin() + 2 * pixels);
+  for (std::ptrdiff_t i = 0; i < pixels; i++) frame.normal[std::size_t(i)] = -frame.normal[std::size_t(i)];
+  return frame;
+}
+
+TEST(Reuse, is_not_of_the_same_planes_under_another_camera_or_reading) {
+  const HostFrame frame = device_frame();
+  const std::pair<const char*, std::function<void(HostFrame&)>> changes[] = {
+      {"fx", [](HostFrame& f) { f.camera.fx *= 1.1; }},
+      {"fy", [](HostFrame& f) { f.camera.fy *= 1.1; }},
+      {"cy", [](HostFrame& f) { f.camera.cy += 3; }},
+      {"orthographic", [](HostFrame& f) { f.camera.orthographic = true, f.camera.fx = f.camera.fy = 20; }},
+      {"world to camera", [](HostFrame& f) { f.camera.view_from_world = {{{0.6, 0.8, 0}, {-0.8, 0.6, 0}, {0, 0, 1}}}; }},
+      {"flipped normals", [](HostFrame& f) { f.flip_normal.x = true; }},
+      {"normals in view space", [](HostFrame& f) { f.normal_space = NormalSpace::view; }},
+      {"normals' encoding", [](HostFrame& f) { f.normal_unorm = true; }},
+      {"no normals", [](HostFrame& f) { f.normal.clear(); }},
+      {"depth scale", [](HostFrame& f) { f.depth_scale = 1.5; }},
+      {"near", [](HostFrame& f) { f.depth_range.near = 0.6; }},
+      {"far", [](HostFrame& f) { f.depth_range.far = 20; }},
+      {"reversed", [](HostFrame& f) { f.depth_range.reversed = true; }},
+      {"kind of depth", [](HostFrame& f) { f.depth_kind = DepthKind::normalized; }},
+      {"sky", [](HostFrame& f) { f.sky = 4; }},
+      {"half depth", [](HostFrame& f) { f.depth_is_half = true; }},
+      {"noise", [](HostFrame& f) { f.data.x += 5, f.camera.cx += 5; }},
+  };
+  EstimatorSettings settings = plain_settings();
+  settings.radius = 0.3;
+  settings.denoise = Denoise::box;
+  const std::vector<float> before = alone(frame, settings, true);
+  for (const auto& [what, change] : changes) {
+    HostFrame other = frame;
+    change(other);
+    const std::vector<float> after = alone(other, settings, true);
+    EXPECT_FALSE(same_bits(before, after)) << what << " tells nothing";
+    Lane lane(device());
+    next_of(lane, frame, settings, true);
+    const Outcome there = next_of(lane, other, settings, true), back = next_of(lane, frame, settings, true);
+    EXPECT_TRUE(same_bits(there.values, after)) << what;
+    EXPECT_TRUE(same_bits(back.values, before)) << what << ", and back";
+    EXPECT_EQ(there.kept + back.kept, 0u) << what;
+    EXPECT_FALSE(there.is_same || back.is_same) << what;
+  }
+}
+
+TEST(Reuse, leaves_most_of_a_frame_in_which_little_moves) {
+  HostFrame room = furnished_room(320, 240).frame;
+  EstimatorSettings settings = plain_settings();
+  settings.radius = 0.05;
+  Lane lane(device());
+  const auto listed = next_of(lane, room, settings).listed;
+  for (int y = 100; y < 110; y++)
+    for (int x = 200; x < 210; x++) room.depth[std::size_t(y * 320 + x)] *= 0.9f;
+  const Outcome next = next_of(lane, room, settings);
+  EXPECT_LT(next.listed, listed / 3);
+  EXPECT_GT(next.kept, 2 * listed / 3);
+}
+
+using ReuseOfFrames = SequenceFolder;
+
+json stats(const std::string& path) { return json::parse(read_bytes(path)); }
+
+TEST_F(ReuseOfFrames, equal_frames_are_computed_once_a_thread) {
+  write_frames(1, 6);
+  const std::string path = folder / "stats.json";
+  ASSERT_EQ(run({"--threads", "1", "--stats", path}).code, 0);
+  const json frames = stats(path)["frames"];
+  ASSERT_EQ(frames.size(), 6);
+  EXPECT_FALSE(frames[0]["passes"].empty());
+  for (std::size_t i = 1; i < 6; i++) {
+    EXPECT_TRUE(frames[i]["passes"].empty());
+    EXPECT_EQ(frames[i]["ms"]["compute"], 0);
+    EXPECT_EQ(frames[i]["tiles"]["computed"], 0);
+    EXPECT_EQ(frames[i]["tiles"]["kept"], frames[0]["tiles"]["computed"]);
+    EXPECT_EQ(frames[i]["tiles"]["total"], frames[0]["tiles"]["total"]);
+  }
+  const auto reused = outputs();
+  ASSERT_EQ(run({"--threads", "1", "--no-skip", "--overwrite", "--stats", path}).code, 0);
+  const json computed = stats(path);
+  for (const auto& frame : computed["frames"]) EXPECT_FALSE(frame["passes"].empty());
+  EXPECT_EQ(reused.size(), 6);
+  EXPECT_TRUE(outputs() == reused);
+}
+
+/// Values that are other in the frame of that number.
+void brighten(FrameFile& frame, const std::string& channel, int number) {
+  for (float& value : frame.planes.at("ViewLayer." + channel)) value *= 1 + 0.125f * float(number);
+}
+
+TEST_F(ReuseOfFrames, other_light_over_the_same_surfaces_is_composed_anew) {
+  FrameFile frame = wall_frame();
+  add_beauty(frame);
+  // In turn: all anew, the beauty, the same again, the indirect light, the beauty and a part of the depth, the diffuse colour.
+  const std::vector<std::function<void()>> changes = {[] {}, [&] { brighten(frame, "Combined.G", 1); }, [] {}, [&] { brighten(frame, "DiffInd.R", 3); },
+                                                      [&] {
+                                                        brighten(frame, "Combined.B", 2);
+                                                        for (std::size_t i = 0; i < 9; i++) frame.planes.at("ViewLayer.Depth.Z")[64 * 33 + i] *= 0.95f;
+                                                      },
+                                                      [&] { brighten(frame, "DiffCol.R", 1); }};
+  for (std::size_t i = 0; i < changes.size(); i++) {
+    changes[i]();
+    frame.write(input(int(i) + 1));
+  }
+  const std::string path = folder / "stats.json";
+  const std::vector<std::string> options{"--composite", out + "/comp.%04d.exr", "--aov", "ao,confidence,specular-occlusion,bent-normal",
+                                         "--radius", "0.3", "--threads", "1", "--stats", path};
+  ASSERT_EQ(run(options).code, 0);
+  std::vector<int> kept, passes;
+  const json statistics = stats(path);
+  for (const auto& report : statistics["frames"]) {
+    kept.push_back(report["tiles"]["kept"].get<int>());
+    passes.push_back(int(report["passes"].size()));
+  }
+  const int all = kept[2];
+  EXPECT_THAT(kept, testing::ElementsAre(0, all, all, all, testing::AllOf(testing::Gt(0), testing::Lt(all)), all));
+  EXPECT_THAT(passes, testing::ElementsAre(testing::Gt(0), testing::Gt(0), 0, testing::Gt(0), testing::Gt(0), testing::Gt(0)));
+  const auto reused = outputs();
+  std::vector<std::string> without = options;
+  without.insert(without.end(), {"--no-skip", "--overwrite"});
+  ASSERT_EQ(run(without).code, 0);
+  ASSERT_EQ(reused.size(), 12);
+  for (const auto& [name, bytes] : outputs()) EXPECT_TRUE(reused.at(name) == bytes) << name;
+}
+
+TEST_F(ReuseOfFrames, a_camera_that_turns_turns_the_directions) {
+  write_frames(1, 4);
+  json cameras = wall_camera();
+  for (int frame = 1; frame <= 4; frame++) {
+    json entry{{"frame", frame}, {"world_to_camera", cameras["world_to_camera"]}};
+    // The third frame is seen from elsewhere: the planes are the same, and mean other directions.
+    if (frame == 3) entry["world_to_camera"] = {{0, -1, 0, 0.5}, {0, 0, 1, -2}, {-1, 0, 0, 3}, {0, 0, 0, 1}};
+    cameras["frames"].push_back(entry);
+  }
+  write_bytes(camera, cameras.dump());
+  for (const std::string space : {"world", "view"}) {
+    const std::vector<std::string> options{"--aov", "ao,normal,bent-normal", "--normal-space", space, "--threads", "1", "--overwrite"};
+    ASSERT_EQ(run(options).code, 0);
+    const auto reused = outputs();
+    std::vector<std::string> without = options;
+    without.push_back("--no-skip");
+    ASSERT_EQ(run(without).code, 0);
+    ASSERT_EQ(reused.size(), 4);
+    for (const auto& [name, bytes] : outputs()) EXPECT_TRUE(reused.at(name) == bytes) << name << ", normals in " << space;
+    // Normals in world space turn the other way in the view, and are as they were when they are written.
+    const std::string told = space == "world" ? "Y" : "normal.X";
+    const Image before = read_exr_image(output(2)), after = read_exr_image(output(3));
+    EXPECT_FALSE(std::ranges::equal(before.plane(told), after.plane(told))) << space;
+  }
+}
+
+}  // namespace
+}  // namespace alcove

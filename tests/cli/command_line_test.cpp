@@ -1,0 +1,495 @@
+// The command line as an interface: help, presets, devices, and what a good run leaves behind. Refusals: bad_input_test.cpp.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <functional>
+#include <nlohmann/json.hpp>
+
+#include "cli/options.h"
+#include "core/run/batch.h"
+#include "core/base/error.h"
+#include "core/formats/exr.h"
+#include "tests/support/command_line.h"
+#include "tests/support/exr_header.h"
+
+namespace alcove {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace test;
+using nlohmann::json;
+using testing::AllOf;
+using testing::Contains;
+using testing::Each;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+using testing::StartsWith;
+
+std::string config(const std::vector<std::string>& more) {
+  std::vector<std::string> arguments{"run", "--print-config"};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  const Finished finished = run_program(arguments);
+  EXPECT_EQ(finished.code, 0) << finished;
+  EXPECT_THAT(finished.err, IsEmpty());
+  return finished.out;
+}
+
+void expect_usage_error(const std::vector<std::string>& arguments, const std::vector<std::string>& words) {
+  const Finished finished = run_program(arguments);
+  EXPECT_EQ(finished.code, 2) << testing::PrintToString(arguments) << " " << finished;
+  EXPECT_EQ(lines_of(finished.err).size(), 1) << finished;
+  for (const auto& word : words) EXPECT_THAT(finished.err, HasSubstr(word)) << testing::PrintToString(arguments);
+}
+
+TEST_F(CommandLine, no_arguments_give_the_help_and_code_2) {
+  const Finished finished = run_program({});
+  EXPECT_EQ(finished.code, 2);
+  EXPECT_THAT(finished.out + finished.err, AllOf(HasSubstr("Usage"), HasSubstr("run"), HasSubstr("presets"), HasSubstr("devices")));
+}
+
+TEST_F(CommandLine, help_and_version_give_code_0) {
+  for (const std::vector<std::string>& arguments :
+       {std::vector<std::string>{"--help"}, {"run", "--help"}, {"run", "-h"}, {"presets", "--help"}, {"devices", "-h"}}) {
+    const Finished finished = run_program(arguments);
+    EXPECT_EQ(finished.code, 0) << testing::PrintToString(arguments) << finished;
+    EXPECT_THAT(finished.out, HasSubstr("Usage")) << testing::PrintToString(arguments);
+    EXPECT_THAT(finished.err, IsEmpty());
+  }
+  const Finished finished = run_program({"--version"});
+  EXPECT_EQ(finished.code, 0);
+  EXPECT_THAT(finished.out, testing::MatchesRegex("alcove [0-9]+\\.[0-9]+\\.[0-9]+\n"));
+}
+
+TEST_F(CommandLine, help_of_run_prints_every_default) {
+  const std::string help = run_program({"run", "--help"}).out;
+  for (const char* text :
+       {"=auto", "=1000000000", "=none", "=half", "=zip", "--slices NUMBER=", "--steps NUMBER=", "--seed NUMBER=0", "--threads NUMBER=0"})
+    EXPECT_THAT(help, HasSubstr(text));
+}
+
+TEST_F(CommandLine, misspelt_words_are_answered_with_the_nearest) {
+  expect_usage_error({"rnu"}, {"rnu", "did you mean run?"});
+  expect_usage_error({"preset"}, {"preset", "did you mean presets"});
+  expect_usage_error({"presets", "standrad"}, {"standrad", "did you mean standard?"});
+  expect_usage_error({"run", frame, "--radis", "1"}, {"--radis", "did you mean --radius"});
+  expect_usage_error({"run", frame, "--preset", "prodction"}, {"prodction", "did you mean production?"});
+  expect_usage_error({"run", frame, "--falloff", "quadradic"}, {"--falloff", "quadradic", "did you mean quadratic?"});
+  expect_usage_error({"run", frame, "--compression", "zipp"}, {"--compression", "zipp", "did you mean zip"});
+  expect_usage_error({"run", frame, "--depth-kind", "plannar"}, {"--depth-kind", "plannar", "did you mean planar?"});
+}
+
+TEST_F(CommandLine, unexpected_words_are_usage_errors) {
+  expect_usage_error({"run", frame, "another.exr", "-o", ao}, {"another.exr"});
+  expect_usage_error({"presets", "draft", "standard"}, {"presets"});
+  expect_usage_error({"devices", "--jsn"}, {"--jsn"});
+  expect_usage_error({"run"}, {"-o"});
+  expect_usage_error({"run", frame, "-o"}, {"-o"});
+}
+
+TEST_F(CommandLine, numbers_out_of_range_name_option_and_range) {
+  for (const char* value : {"0", "-1", "nan", "inf", "wide"}) expect_usage_error({"run", frame, "-o", ao, "--radius", value}, {"--radius"});
+  const std::pair<const char*, std::vector<std::string>> cases[] = {{"--radius", {"1e400", "", "1,5", "1 2", "2e18", "-inf"}},
+                                                                    {"--fov", {"0", "180", "nan"}}, {"--slices", {"0", "65", "2.5"}},
+                                                                    {"--steps", {"0", "4097"}}, {"--falloff-start", {"1", "-0.1"}},
+                                                                    {"--power", {"0", "101"}}, {"--denoise-radius", {"0", "9", "1.5"}},
+                                                                    {"--denoise-kernel", {"1", "1,-1", "0,1", "1,,2", "1,x", "1,inf", "1,1,1,1,1,1,1,1,1,1"}},
+                                                                    {"--denoise-depth-sigma", {"-1", "101"}}, {"--intensity", {"-1", "inf"}},
+                                                                    {"--seed", {"-1", "4294967296", "0.5"}}, {"--sky", {"0"}}, {"--focal", {"0"}},
+                                                                    {"--aperture", {"-36"}}, {"--ortho-width", {"0"}}, {"--depth-scale", {"0", "-1"}},
+                                                                    {"--threads", {"-1", "1025"}}};
+  for (const auto& [option, values] : cases)
+    for (const auto& value : values) {
+      RunOptions options;
+      try {
+        parse_run_options({frame, "-o", ao, option, value}, options);
+        ADD_FAILURE() << option << " " << value << " was accepted";
+      } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::usage);
+        EXPECT_THAT(error.what(), HasSubstr(option));
+      }
+    }
+}
+
+TEST_F(CommandLine, presets_are_listed_and_printed) {
+  const Finished list = run_program({"presets"});
+  EXPECT_EQ(list.code, 0);
+  EXPECT_THAT(lines_of(list.out), testing::IsSupersetOf({"draft", "production", "standard"}));
+  for (const auto& name : lines_of(list.out)) {
+    EXPECT_EQ(run_program({"presets", name}).out, read_bytes(ALCOVE_SOURCE_DIR "/presets/" + name + ".toml"));
+    EXPECT_NE(config({"--preset", name}), "") << name;
+  }
+}
+
+TEST_F(CommandLine, standard_is_what_no_preset_gives) {
+  EXPECT_EQ(config({"--preset", "standard"}), config({}));
+  EXPECT_NE(config({"--preset", "draft"}), config({}));
+  EXPECT_NE(config({"--preset", "production"}), config({}));
+}
+
+TEST_F(CommandLine, later_presets_win_and_options_win_over_presets) {
+  EXPECT_EQ(config({"--preset", "draft", "--preset", "production"}), config({"--preset", "production"}));
+  write_bytes(folder / "first.toml", "radius = 2\nslices = 5\n");
+  write_bytes(folder / "second.toml", "slices = 7\n");
+  const std::string both = config({"--preset", folder / "first.toml", "--preset", folder / "second.toml"});
+  EXPECT_THAT(lines_of(both), AllOf(Contains("radius=2"), Contains("slices=7")));
+  for (const auto& arguments : {std::vector<std::string>{"--slices", "9", "--preset", "draft"}, {"--preset", "draft", "--slices", "9"}})
+    EXPECT_THAT(lines_of(config(arguments)), Contains("slices=9"));
+}
+
+TEST_F(CommandLine, printed_config_is_a_preset_that_gives_itself) {
+  const std::string odd_name = "a b/\"cam\" = ü.json";
+  const std::string printed = config({"--radius", "0.1234567890123", "--camera", odd_name, "--falloff", "smooth", "--falloff-start", "0.25",
+                                      "--seed", "4294967295", "--sky", "1e10", "--device", "cpu", "--require-gpu", "--no-pipeline-cache",
+                                      "--denoise-kernel", "0.5,0.25,0.125", "-v", "--normal-channels", "a.X,b.Y,c.Z", "--type", "float", "-o", "out put.exr",
+                                      "--preset", "draft", "--fov", "60"});
+  EXPECT_THAT(printed,
+              AllOf(HasSubstr(odd_name), HasSubstr("0.1234567890123"), HasSubstr("out put.exr"), HasSubstr("a.X,b.Y,c.Z"), HasSubstr("0.5,0.25,0.125"), HasSubstr("require-gpu")));
+  const std::string preset = folder / "printed.toml";
+  write_bytes(preset, printed);
+  EXPECT_EQ(config({"--preset", preset}), printed);
+  write_bytes(preset, config({}));
+  EXPECT_EQ(config({"--preset", preset}), config({}));
+}
+
+TEST_F(CommandLine, a_hash_within_a_name_begins_no_comment_of_a_preset) {
+  write_bytes(folder / "shot.toml", "camera = \"shot #1.json\"  # the first\n");
+  EXPECT_THAT(lines_of(config({"--preset", folder / "shot.toml"})), Contains("camera=\"shot #1.json\""));
+}
+
+TEST_F(CommandLine, a_switch_given_twice_is_printed_as_a_preset_can_hold_it) {
+  const std::string printed = config({"-v", "-v"});
+  write_bytes(folder / "printed.toml", printed);
+  EXPECT_EQ(config({"--preset", folder / "printed.toml"}), printed);
+}
+
+TEST_F(CommandLine, a_wrong_preset_is_a_usage_error_that_names_it) {
+  const std::string preset = folder / "shot.toml";
+  const std::pair<const char*, const char*> cases[] = {
+      {"radios = 1\n", "radios"}, {"radius = -1\n", "radius"}, {"falloff = \"cubic\"\n", "cubic"}, {"[radius]\nx = 1\n", "radius"}};
+  for (const auto& [text, word] : cases) {
+    write_bytes(preset, text);
+    expect_usage_error({"run", frame, "-o", ao, "--preset", preset}, {word, "shot.toml"});
+  }
+  write_bytes(preset, "radios = 1\n");
+  expect_usage_error({"run", frame, "-o", ao, "--preset", preset}, {"did you mean --radius"});
+  expect_usage_error({"run", frame, "-o", ao, "--preset", folder / "missing.toml"}, {"missing.toml", "--preset"});
+  expect_usage_error({"run", frame, "-o", ao, "--preset", folder.path()}, {folder.path(), "--preset"});
+}
+
+TEST_F(CommandLine, a_file_in_the_working_directory_is_not_taken_for_a_preset_of_that_name) {
+  write_bytes(folder / "production", "slices = 1\n");
+  const Finished finished = run_program({"run", "--preset", "production", "--print-config"}, {.folder = folder.path(), .environment = {}});
+  EXPECT_EQ(finished.out, config({"--preset", "production"})) << finished;
+}
+
+TEST_F(CommandLine, a_switch_that_a_preset_turns_off_is_off) {
+  write_bytes(folder / "on.toml", "no-pipeline-cache = false\nrequire-gpu = false\nvalidate = false\nquiet = false\n");
+  const Surroundings surroundings{.environment = {{"XDG_CACHE_HOME", folder / "cache"}}};
+  const Finished finished = run({"--preset", folder / "on.toml"}, surroundings);
+  EXPECT_EQ(finished.code, 0) << finished;
+  EXPECT_THAT(names_in(folder / "cache"), Contains(StartsWith("alcove/pipelines-"))) << "no-pipeline-cache = false keeps the cache";
+  fs::remove_all(folder / "cache");
+  EXPECT_EQ(run({"--no-pipeline-cache"}, surroundings).code, 0);
+  EXPECT_FALSE(fs::exists(folder / "cache/alcove"));
+}
+
+TEST_F(CommandLine, presets_of_another_folder_have_their_path_as_name) {
+  fs::create_directories(folder / "presets/show");
+  write_bytes(folder / "presets/show/day.toml", "slices = 11\n");
+  const Surroundings surroundings{.environment = {{"ALCOVE_PRESETS", folder / "presets"}}};
+  EXPECT_EQ(run_program({"presets"}, surroundings).out, "show/day\n");
+  EXPECT_THAT(lines_of(run_program({"run", "--preset", "show/day", "--print-config"}, surroundings).out), Contains("slices=11"));
+}
+
+TEST_F(CommandLine, devices_are_listed_as_text_and_json) {
+  const Finished text = run_program({"devices"}), finished = run_program({"devices", "--json"});
+  EXPECT_EQ(text.code, 0) << text;
+  ASSERT_EQ(finished.code, 0) << finished;
+  const json devices = json::parse(finished.out);
+  EXPECT_EQ(lines_of(text.out).size(), devices.size());
+  ASSERT_FALSE(devices.empty());
+  for (const auto& device : devices) {
+    for (const char* field : {"index", "name", "type", "uuid", "driver", "api_version", "memory_bytes", "buffer_bytes", "usable"})
+      EXPECT_TRUE(device.contains(field)) << field;
+    EXPECT_THAT(text.out, HasSubstr(device["name"].get<std::string>()));
+  }
+  const std::string uuid = devices[0]["uuid"], name = devices[0]["name"];
+  for (const std::string& choice : {std::string("0"), uuid, name}) EXPECT_EQ(run({"--device", choice}).code, 0) << choice;
+}
+
+// What a good run writes.
+
+TEST_F(CommandLine, ao_is_one_half_channel_with_the_windows_and_attributes_of_the_input) {
+  const Window display{0, 0, 64, 36};
+  for (const Window& data : {display, Window{-8, -4, 80, 44}, Window{10, 6, 40, 24}})
+    for (const double aspect : {1.0, 2.0}) {
+      FrameFile input = wall_frame(data, display, aspect);
+      input.attributes = {{"owner", "a studio"}, {"sceneTimeCode", "01:02:03:04"}, {"comments", "ü"}};
+      input.write(frame);
+      write_bytes(camera, wall_camera(display, aspect).dump());
+      const Finished finished = run({});
+      ASSERT_EQ(finished.code, 0) << to_string(data) << finished;
+
+      ExrHeader header = read_header(ao);
+      const ExrHeader before = read_header(frame);
+      EXPECT_THAT(channels_in(header), ElementsAre(HeaderChannel{"Y", 1}));
+      EXPECT_EQ(header["compression"].bytes, std::string(1, 3)) << "3: ZIP";
+      EXPECT_EQ(header["lineOrder"].bytes, std::string(1, 0)) << "0: increasing";
+      EXPECT_EQ(text_in(header, "alcove/input"), "wall.0042.exr");
+      EXPECT_THAT(text_in(header, "alcove/version"), testing::MatchesRegex("[0-9]+\\.[0-9]+\\.[0-9]+"));
+      EXPECT_THAT(text_in(header, "alcove/options"), testing::MatchesRegex("[0-9a-f]{16}"));
+      EXPECT_NE(text_in(header, "alcove/device"), "(none)");
+      for (const auto& [name, attribute] : before)
+        if (name != "channels") EXPECT_EQ(header[name].bytes, attribute.bytes) << name << " over " << to_string(data);
+      for (const auto& [name, attribute] : header) EXPECT_TRUE(before.contains(name) || name.starts_with("alcove/")) << name << " is new";
+    }
+}
+
+TEST_F(CommandLine, ao_is_open_above_and_dark_in_the_corner_whatever_the_data_window) {
+  for (const Window& data : {kWallWindow, Window{-8, -4, 80, 44}, Window{10, 6, 40, 26}}) {
+    wall_frame(data).write(frame);
+    const Finished finished = run({"--type", "float"});
+    ASSERT_EQ(finished.code, 0) << finished;
+    const Image image = read_exr_image(ao);
+    const auto at = [&](int x, int y) { return image.pixels[std::size_t(y - data.y) * std::size_t(data.width) + std::size_t(x - data.x)]; };
+    EXPECT_NEAR(at(32, 12), 1, 1e-3) << "the open wall, " << to_string(data);
+    EXPECT_LT(at(32, 27), 0.75) << "the wall just above the floor, " << to_string(data);
+    EXPECT_GT(at(32, 27), 0.3) << to_string(data);
+    for (const float value : image.pixels) EXPECT_TRUE(value >= 0 && value <= 1) << value;
+  }
+}
+
+TEST_F(CommandLine, type_and_compression_are_as_asked) {
+  ASSERT_EQ(run({"--type", "float", "--compression", "none"}).code, 0);
+  ExrHeader header = read_header(ao);
+  EXPECT_THAT(channels_in(header), ElementsAre(HeaderChannel{"Y", 2}));
+  EXPECT_EQ(header["compression"].bytes, std::string(1, 0));
+  const Image exact = read_exr_image(ao);
+  ASSERT_EQ(run({"--compression", "piz"}).code, 0);
+  EXPECT_EQ(read_header(ao)["compression"].bytes, std::string(1, 4));
+  const Image rounded = read_exr_image(ao);
+  for (std::size_t i = 0; i < exact.pixels.size(); i++) ASSERT_NEAR(rounded.pixels[i], exact.pixels[i], 0x1p-12) << i;
+}
+
+/// A frame with beauty, its AO as float and its composite.
+struct Composite {
+  Image input, ao, result;
+  std::span<const float> in(const std::string& name) const { return input.plane("ViewLayer." + name); }
+};
+
+/// The largest error of the composite against `ambient`, in units of what half precision allows; alpha must be the same bits.
+void expect_composite(const Composite& frame, const std::function<double(const std::string& component, std::size_t pixel)>& ambient,
+                      double precision) {
+  const auto alpha = frame.in("Combined.A"), ao = frame.ao.plane("Y"), alpha_after = frame.result.plane("A");
+  EXPECT_EQ(std::memcmp(alpha.data(), alpha_after.data(), alpha.size_bytes()), 0) << "alpha has changed";
+  for (const std::string component : {"R", "G", "B"}) {
+    const auto beauty = frame.in("Combined." + component), result = frame.result.plane(component);
+    for (std::size_t i = 0; i < beauty.size(); i++) {
+      const double f = 1 - double(alpha[i]) * (1 - double(ao[i])), light = ambient(component, i), expected = beauty[i] - light + light * f;
+      ASSERT_NEAR(result[i], expected, precision * (std::abs(expected) + 1))
+          << component << " of pixel " << i << ", ao " << ao[i] << ", alpha " << alpha[i];
+    }
+  }
+}
+
+class Composites : public CommandLine {
+ protected:
+  Composite compute(const FrameFile& input, std::vector<std::string> more = {}) {
+    input.write(frame);
+    const std::string composite = folder / "composite.exr";
+    more.insert(more.end(), {"--composite", composite, "--type", "float", "--compression", "none"});
+    const Finished finished = run(more);
+    EXPECT_EQ(finished.code, 0) << finished;
+    return {read_exr_image(frame), read_exr_image(ao), read_exr_image(composite)};
+  }
+  std::string how() const { return text_in(read_header(folder / "composite.exr"), "alcove/composite"); }
+};
+
+TEST_F(Composites, composite_dims_only_the_ambient_part) {
+  FrameFile input = wall_frame();
+  add_beauty(input);
+  for (const bool is_half : {false, true}) {
+    if (is_half)
+      for (const auto& [name, plane] : input.planes)
+        if (!name.ends_with("Depth.Z")) input.halves.insert(name);
+    const Composite frame = compute(input);
+    expect_composite(frame, [&](const std::string& c, std::size_t i) { return double(frame.in("DiffInd." + c)[i]) * frame.in("DiffCol." + c)[i]; },
+                     is_half ? 0x1p-11 : 1e-6);
+    EXPECT_THAT(how(), StartsWith("ambient"));
+    const int type = is_half ? 1 : 2;
+    EXPECT_THAT(channels_in(read_header(folder / "composite.exr")),
+                ElementsAre(HeaderChannel{"A", type}, HeaderChannel{"B", type}, HeaderChannel{"G", type}, HeaderChannel{"R", type}));
+  }
+}
+
+TEST_F(Composites, blender_5_names_mean_the_same_light) {
+  FrameFile input = wall_frame();
+  add_beauty(input);
+  const Composite old_names = compute(input);
+  for (const std::string c : {".R", ".G", ".B"}) {
+    input.rename("ViewLayer.DiffInd" + c, "ViewLayer.Diffuse Indirect" + c);
+    input.rename("ViewLayer.DiffCol" + c, "ViewLayer.Diffuse Color" + c);
+  }
+  const Composite new_names = compute(input);
+  EXPECT_EQ(old_names.result.pixels, new_names.result.pixels) << "the indirect light of Blender is without the surface's colour, under either name";
+}
+
+TEST_F(Composites, arnold_indirect_light_holds_the_colour_already) {
+  FrameFile input = wall_frame();
+  add_beauty(input);
+  for (const std::string c : {".R", ".G", ".B"}) input.rename("ViewLayer.DiffInd" + c, "ViewLayer.diffuse_indirect" + c);
+  const Composite frame = compute(input);
+  expect_composite(frame, [&](const std::string& c, std::size_t i) { return double(frame.in("diffuse_indirect." + c)[i]); }, 1e-6);
+}
+
+TEST_F(Composites, composite_without_parts_is_a_multiply_and_says_so) {
+  FrameFile input = wall_frame();
+  add_beauty(input);
+  std::erase_if(input.planes, [](const auto& plane) { return plane.first.find(".Diff") != std::string::npos; });
+  const Composite frame = compute(input);
+  expect_composite(frame, [&](const std::string& c, std::size_t i) { return double(frame.in("Combined." + c)[i]); }, 1e-6);
+  EXPECT_THAT(how(), StartsWith("multiply"));
+}
+
+TEST_F(Composites, beauty_of_its_own_file_keeps_that_files_attributes) {
+  FrameFile beauty = wall_frame();
+  add_beauty(beauty);
+  std::erase_if(beauty.planes, [](const auto& plane) { return plane.first.find("Combined") == std::string::npos; });
+  for (const std::string c : {"R", "G", "B", "A"}) beauty.rename("ViewLayer.Combined." + c, c);
+  beauty.attributes = {{"grade", "none"}};
+  beauty.write(folder / "beauty.exr");
+  const std::string composite = folder / "composite.exr";
+  const Finished finished = run({"--beauty", folder / "beauty.exr", "--composite", composite});
+  ASSERT_EQ(finished.code, 0) << finished;
+  EXPECT_EQ(text_in(read_header(composite), "grade"), "none");
+  EXPECT_EQ(text_in(read_header(ao), "grade"), "(none)");
+  const Image before = read_exr_image(folder / "beauty.exr", {"A"}), after = read_exr_image(composite, {"A"});
+  EXPECT_EQ(std::memcmp(before.pixels.data(), after.pixels.data(), 4 * before.pixels.size()), 0);
+}
+
+TEST_F(Composites, nothing_that_leaves_is_nan_or_infinite_and_repairs_are_counted) {
+  FrameFile input = wall_frame();
+  add_beauty(input);
+  const float nan = std::nanf(""), inf = INFINITY;
+  const auto spoil = [&](const char* name, std::size_t pixel, float value) { input.planes.at(std::string("ViewLayer.") + name)[pixel] = value; };
+  spoil("Depth.Z", 100, nan);
+  spoil("Depth.Z", 101, -1);
+  spoil("Normal.X", 202, nan);
+  spoil("Combined.R", 1900, nan);
+  spoil("Combined.G", 1901, inf);
+  spoil("DiffInd.B", 1902, -inf);
+  spoil("Combined.A", 1903, nan);
+  const Composite frame = compute(input, {"--stats", folder / "stats.json"});
+  for (const Image* image : {&frame.ao, &frame.result})
+    for (std::size_t i = 0; i < image->pixels.size(); i++)
+      EXPECT_TRUE(std::isfinite(image->pixels[i])) << image->pixels[i] << " in " << image->names[i / kWallWindow.pixels()] << " of pixel "
+                                                   << i % kWallWindow.pixels();
+  EXPECT_EQ(json::parse(read_bytes(folder / "stats.json"))["frames"][0]["repaired_pixels"], 7) << "pixels 100, 101, 202 and 1900 to 1903";
+}
+
+TEST_F(Composites, a_composite_beyond_half_stays_finite) {
+  FrameFile input = wall_frame();
+  add_beauty(input);
+  for (const char* name : {"ViewLayer.DiffInd.R", "ViewLayer.DiffCol.R"}) input.planes[name].assign(kWallWindow.pixels(), 60000);
+  for (const auto& [name, plane] : input.planes)
+    if (!name.ends_with("Depth.Z")) input.halves.insert(name);
+  const Composite frame = compute(input);
+  for (const float value : frame.result.pixels) ASSERT_TRUE(std::isfinite(value)) << value;
+}
+
+TEST_F(CommandLine, preview_is_a_png_of_the_display_windows_size) {
+  wall_frame({-8, -4, 80, 44}).write(frame);
+  ASSERT_EQ(run({"--preview", folder / "preview.png"}).code, 0);
+  const std::string png = read_bytes(folder / "preview.png");
+  ASSERT_GT(png.size(), 33);
+  EXPECT_EQ(png.substr(0, 8), "\x89PNG\r\n\x1a\n");
+  EXPECT_EQ(png.substr(12, 4), "IHDR");
+  EXPECT_EQ(png.substr(16, 10), std::string("\0\0\0\x40\0\0\0\x24\x08\0", 10)) << "64 x 36, 8 bits, grey";
+}
+
+TEST_F(CommandLine, stats_have_the_documented_fields_and_add_up) {
+  const std::string stats_file = folder / "stats.json";
+  FrameFile input = wall_frame();
+  for (std::size_t i = 0; i < 64; i++) input.planes["ViewLayer.Depth.Z"][i] = 1e10f;  // one line of 36 is sky
+  input.write(frame);
+  ASSERT_EQ(run({"--stats", stats_file, "--slices", "2", "--steps", "5", "--stride", "2", "--power", "1.5"}).code, 0);
+  const json stats = json::parse(read_bytes(stats_file)), one = stats.at("frames").at(0), totals = stats.at("totals");
+  EXPECT_TRUE(stats.at("device").is_string());
+  EXPECT_EQ(stats.at("options"), text_in(read_header(ao), "alcove/options"));
+  EXPECT_EQ(stats.at("frames").size(), 1);
+  EXPECT_EQ(one.at("frame"), 42);
+  EXPECT_EQ(one.at("input"), frame);
+  EXPECT_EQ(one.at("output"), ao);
+  double sum = 0;
+  std::vector<std::string> passes;
+  for (const auto& pass : one.at("passes")) {
+    sum += pass.at("ms").get<double>();
+    EXPECT_GT(pass.at("ms"), 0);
+    passes.push_back(pass.at("name"));
+  }
+  EXPECT_THAT(passes, ElementsAre("prepare", "reconstruct", "classify", "horizon", "denoise", "denoise", "shape"));
+  const json& ms = one.at("ms");
+  EXPECT_NEAR(ms.at("compute"), sum, 1e-9 * sum);
+  for (const char* name : {"read", "compute", "write"}) EXPECT_GT(ms.at(name), 0) << name;
+  EXPECT_GE(ms.at("total").get<double>(), ms.at("read").get<double>() + ms.at("write").get<double>());
+  EXPECT_NEAR(one.at("samples_per_pixel"), 2 * 2 * 5 / 2.0 * 35.0 / 36, 1e-9);
+  EXPECT_EQ(one.at("repaired_pixels"), 0);
+  EXPECT_EQ(one.at("parts"), 1);
+  EXPECT_EQ(one.at("tiles"), json({{"total", 40}, {"sky", 0}, {"proved", 0}, {"tolerated", 0}, {"kept", 0}, {"computed", 40}}));  // of 64 x 36 pixels
+  EXPECT_EQ(totals.at("frames"), 1);
+  EXPECT_EQ(totals.at("failed"), 0);
+  for (const char* name : {"wall_s", "cpu_s", "peak_rss_mb"}) EXPECT_GT(totals.at(name), 0) << name;
+}
+
+TEST_F(CommandLine, digest_changes_with_every_setting_that_changes_the_result) {
+  const auto digest = [](const auto& change) {
+    Settings settings;
+    settings.estimator.radius = 1;
+    change(settings);
+    return options_digest(settings);
+  };
+  const std::string plain = digest([](Settings&) {});
+  const std::pair<const char*, std::string> changed[] = {
+      {"--radius", digest([](Settings& s) { s.estimator.radius = 1 + 1e-9; })},
+      {"--slices", digest([](Settings& s) { s.estimator.slices++; })},
+      {"--steps", digest([](Settings& s) { s.estimator.steps++; })},
+      {"--falloff", digest([](Settings& s) { s.estimator.falloff = Falloff::linear; })},
+      {"--intensity", digest([](Settings& s) { s.estimator.intensity = 2; })},
+      {"--power", digest([](Settings& s) { s.estimator.power = 2; })},
+      {"--seed", digest([](Settings& s) { s.estimator.seed = 1; })},
+      {"--type", digest([](Settings& s) { s.output.type = OutputType::single_float; })},
+      {"--fov", digest([](Settings& s) { s.input.fov = 60; })},
+      {"--sky", digest([](Settings& s) { s.input.sky = 100; })},
+      {"--depth-kind", digest([](Settings& s) { s.input.depth_kind = DepthKind::ray; })},
+      {"--layer", digest([](Settings& s) { s.input.layer = "a"; })},
+      {"--beauty-channels", digest([](Settings& s) { s.input.beauty_channels = "other"; })},
+  };
+  for (const auto& [option, other] : changed) EXPECT_NE(plain, other) << option;
+  EXPECT_EQ(plain, digest([](Settings& s) { s.device.threads = 3; }));
+}
+
+TEST_F(CommandLine, digest_follows_what_the_camera_says_and_not_where_it_lies) {
+  const auto digest = [&] {
+    EXPECT_EQ(run({}).code, 0);
+    return text_in(read_header(ao), "alcove/options");
+  };
+  const std::string before = digest();
+  nlohmann::json fields = wall_camera();
+  fields["fx"] = 59;
+  write_bytes(camera, fields.dump());
+  EXPECT_NE(digest(), before) << "another focal length";
+  fs::create_directory(folder / "moved");
+  write_bytes(folder / "moved/camera.json", wall_camera().dump());
+  EXPECT_EQ(run_program({"run", frame, "-o", ao, "--camera", folder / "moved/camera.json", "--radius", "1"}).code, 0);
+  EXPECT_EQ(text_in(read_header(ao), "alcove/options"), before) << "the same camera in another folder";
+}
+
+}  // namespace
+}  // namespace alcove

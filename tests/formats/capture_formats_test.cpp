@@ -1,0 +1,355 @@
+// Pictures that are no EXR: textures of RenderDoc, and normals of 8 and 16 bits; and files made to do harm.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <OpenImageIO/imageio.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+
+#include "core/formats/dds.h"
+#include "core/base/error.h"
+#include "core/formats/exr.h"
+#include "core/inspect/findings.h"
+#include "core/frame/gbuffer.h"
+#include "tests/support/command_line.h"
+#include "tests/support/difference.h"
+
+namespace alcove {
+namespace {
+
+using namespace test;
+using testing::HasSubstr;
+
+std::string words(const std::vector<std::uint32_t>& values) {
+  return {reinterpret_cast<const char*>(values.data()), 4 * values.size()};
+}
+
+/// A DDS file with the newer header.
+std::string dds(std::uint32_t width, std::uint32_t height, std::uint32_t format, const std::string& pixels) {
+  std::vector<std::uint32_t> header(32 + 5);
+  std::memcpy(header.data(), "DDS ", 4);
+  header[1] = 124, header[3] = height, header[4] = width, header[19] = 32;
+  std::memcpy(&header[21], "DX10", 4);
+  header[32] = format, header[33] = 3, header[35] = 1;
+  return words(header) + pixels;
+}
+
+template <class T>
+std::string bytes_of(const std::vector<T>& values) {
+  return {reinterpret_cast<const char*>(values.data()), sizeof(T) * values.size()};
+}
+
+class Dds : public testing::Test {
+ protected:
+  Image read(std::uint32_t format, const std::string& pixels, std::uint32_t width = 2, std::uint32_t height = 1) const {
+    write_bytes(path, dds(width, height, format, pixels));
+    return read_dds(path, "--depth");
+  }
+  void expect_refused(const std::string& bytes, const char* word) const {
+    write_bytes(path, bytes);
+    try {
+      read_dds(path, "--depth");
+      ADD_FAILURE() << "accepted";
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::input);
+      for (const char* part : {word, "texture.dds", "--depth"}) EXPECT_THAT(error.what(), HasSubstr(part));
+    }
+  }
+  TemporaryFolder folder;
+  const std::string path = folder / "texture.dds";
+};
+
+TEST_F(Dds, of_every_format_is_read) {
+  using testing::ElementsAre;
+  EXPECT_THAT(read(41, bytes_of<float>({0.25f, 3e7f})).pixels, ElementsAre(0.25f, 3e7f));
+  EXPECT_THAT(read(40, bytes_of<float>({0.25f, 1})).names, ElementsAre("R"));
+  EXPECT_THAT(read(56, bytes_of<std::uint16_t>({0, 65535})).pixels, ElementsAre(0, 1));
+  EXPECT_THAT(read(54, bytes_of<std::uint16_t>({0x3c00, 0xb800})).pixels, ElementsAre(1, -0.5f));
+  EXPECT_THAT(read(46, words({0xab000000, 0xcdffffff})).pixels, ElementsAre(0, 1)) << "the upper 8 bits are the stencil";
+  const Image half = read(10, bytes_of<std::uint16_t>({0x3c00, 0x4000, 0x0001, 0x7bff, 0x7c00, 0xfc00, 0x8000, 0x3555}));
+  EXPECT_THAT(half.names, ElementsAre("R", "G", "B", "A"));
+  EXPECT_THAT(half.pixels, ElementsAre(1, INFINITY, 2, -INFINITY, std::ldexp(1.0f, -24), -0.0f, 65504, testing::FloatNear(1 / 3.0f, 1e-3f)));
+  const Image packed = read(24, words({1023u | 0u << 10 | 341u << 20 | 3u << 30, 0}));
+  EXPECT_THAT(packed.pixels, ElementsAre(1, 0, 0, 0, testing::FloatNear(1 / 3.0f, 1e-6f), 0, 1, 0));
+  EXPECT_THAT(read(28, words({0xff008000, 0})).pixels, ElementsAre(0, 0, testing::FloatNear(128 / 255.0f, 1e-6f), 0, 0, 0, 1, 0));
+  EXPECT_TRUE(is_dds(path));
+}
+
+TEST_F(Dds, of_the_older_header_is_read) {
+  std::string bytes = dds(2, 1, 0, "");
+  bytes.resize(128);
+  const std::uint32_t letters = 114;  // D3DFMT_R32F
+  std::memcpy(&bytes[84], &letters, 4);
+  write_bytes(path, bytes + bytes_of<float>({4, 5}));
+  EXPECT_THAT(read_dds(path, "--depth").pixels, testing::ElementsAre(4, 5));
+}
+
+TEST_F(Dds, that_makes_no_sense_is_refused) {
+  const std::string good = dds(2, 1, 41, bytes_of<float>({1, 2}));
+  expect_refused(good.substr(0, good.size() - 1), "ends too early");
+  for (const std::size_t size : {4u, 100u, 130u}) expect_refused(good.substr(0, size), "ends too early");
+  for (const std::uint32_t side : {0u, 0x80000000u, 0xffffffffu, 65537u}) {
+    expect_refused(dds(side, 1, 41, ""), "header");
+    expect_refused(dds(1, side, 41, ""), "header");
+  }
+  expect_refused(dds(65536, 65536, 2, ""), "ends too early");
+  expect_refused(dds(2, 1, 98, bytes_of<float>({1, 2, 3, 4})), "format 98");
+  std::string sizes = good;
+  sizes[4] = 0;
+  expect_refused(sizes, "header");
+}
+
+// In the place of EXRs.
+
+class Formats : public CommandLine {
+ protected:
+  /// The normals in 0..1 as a picture of 8 or 16 bits.
+  void write_normals(const std::string& path, OIIO::TypeDesc type) const {
+    const FrameFile file = wall_frame();
+    std::vector<float> pixels;
+    for (std::size_t i = 0; i < file.data.pixels(); i++)
+      for (const char* axis : {"X", "Y", "Z"}) pixels.push_back(0.5f + 0.5f * file.planes.at(std::string("ViewLayer.Normal.") + axis)[i]);
+    const auto out = OIIO::ImageOutput::create(path);
+    ASSERT_TRUE(out && out->open(path, OIIO::ImageSpec(file.data.width, file.data.height, 3, type)));
+    ASSERT_TRUE(out->write_image(OIIO::TypeFloat, pixels.data()) && out->close());
+  }
+};
+
+TEST_F(Formats, normals_of_8_and_16_bits_are_read) {
+  ASSERT_EQ(run({"--type", "float"}).code, 0);
+  const auto expected = read_exr_image(ao).pixels;
+  for (const auto& [name, type, tolerance] : {std::tuple{"normal.png", OIIO::TypeUInt8, 0.01}, {"normal.tif", OIIO::TypeUInt16, 2e-3}}) {
+    write_normals(folder / name, type);
+    const Finished finished = run({"--type", "float", "--normal", folder / name});
+    ASSERT_EQ(finished.code, 0) << finished;
+    EXPECT_LE(difference(read_exr_image(ao).pixels, expected).rmse, tolerance) << name << ": single samples fall in or out of the radius";
+  }
+}
+
+TEST_F(Formats, textures_of_renderdoc_are_read) {
+  ASSERT_EQ(run({"--type", "float"}).code, 0);
+  const auto expected = read_exr_image(ao).pixels;
+  const FrameFile file = wall_frame();
+  const auto normal = [&](const char* axis) { return file.planes.at(std::string("ViewLayer.Normal.") + axis); };
+  std::vector<float> device;
+  std::vector<std::uint16_t> device16, halves;
+  std::vector<std::uint32_t> device24, packed;
+  const auto ten = [](float x) { return std::uint32_t(std::lround(1023 * (0.5f + 0.5f * x))); };
+  const auto half_of = [](float x) { return std::uint16_t(x == 0 ? 0 : x > 0 ? 0x3c00 : 0xbc00); };  // of -1, 0 and 1, and all normals here are these
+  for (std::size_t i = 0; i < file.data.pixels(); i++) {
+    const float d = 0.5f / file.planes.at("ViewLayer.Depth.Z")[i], x = normal("X")[i], y = normal("Y")[i], z = normal("Z")[i];
+    device.push_back(d), device16.push_back(std::uint16_t(std::lround(65535 * d))), device24.push_back(0xab000000 | std::uint32_t(std::lround(0xffffff * d)));
+    packed.push_back(ten(x) | ten(y) << 10 | ten(z) << 20);
+    for (const float n : {x, y, z, 1.0f}) halves.push_back(half_of(n));
+  }
+  write_bytes(folder / "r10g10b10a2.dds", dds(64, 36, 24, words(packed)));
+  write_bytes(folder / "rgba16f.dds", dds(64, 36, 10, bytes_of(halves)));
+  const std::string depth = folder / "depth.0042.dds";
+  for (const auto& [name, bytes, tolerance] : {std::tuple{"R32F", dds(64, 36, 41, bytes_of(device)), 1e-3}, {"D24", dds(64, 36, 45, words(device24)), 1e-3},
+                                               {"R16", dds(64, 36, 56, bytes_of(device16)), 0.01}})
+    for (const auto& [normals, more] : {std::pair{"rgba16f.dds", 0.0}, {"r10g10b10a2.dds", 0.01}}) {
+      write_bytes(depth, bytes);
+      const Finished finished = run_program({"run", "--depth", depth, "--normal", folder / normals, "-o", ao, "--camera", camera, "--radius", "1", "--type", "float",
+                                             "--preset", "input/renderdoc", "--depth-kind", "device", "--near", "0.5", "--far", "inf", "--reversed-z"});
+      ASSERT_EQ(finished.code, 0) << finished;
+      EXPECT_LE(difference(read_exr_image(ao).pixels, expected).rmse, tolerance + more) << name << " " << normals;
+    }
+}
+
+TEST_F(Formats, depth_of_8_bits_is_refused) {
+  const auto out = OIIO::ImageOutput::create("depth.png");
+  std::vector<std::uint8_t> bytes(64 * 36);
+  for (std::size_t i = 0; i < bytes.size(); i++) bytes[i] = std::uint8_t(i * 7);
+  ASSERT_TRUE(out->open(folder / "depth.png", OIIO::ImageSpec(64, 36, 1, OIIO::TypeUInt8)) && out->write_image(OIIO::TypeUInt8, bytes.data()) && out->close());
+  const Finished finished = run({"--depth", folder / "depth.png"});
+  EXPECT_EQ(finished.code, 3);
+  EXPECT_THAT(finished.err, HasSubstr("8 bits"));
+}
+
+TEST_F(Formats, pictures_give_any_rows_in_any_order_however_they_are_stored) {
+  constexpr int kWide = 701, kHigh = 907;  // some megabytes: several blocks
+  std::vector<float> interleaved(std::size_t(3 * kWide) * kHigh);
+  for (std::size_t i = 0; i < interleaved.size(); i++) interleaved[i] = float(i * 7919 % 65536) / 65535;
+  struct Stored { const char* name; int tile; bool separate; OIIO::TypeDesc type; double step; };
+  for (const auto& stored : {Stored{"rows.tif", 0, false, OIIO::TypeFloat, 0}, {"tiles.tif", 64, false, OIIO::TypeFloat, 0}, {"planes.tif", 0, true, OIIO::TypeFloat, 0},
+                             {"tiled-planes.tif", 32, true, OIIO::TypeUInt16, 1e-7}, {"rows.png", 0, false, OIIO::TypeUInt16, 1e-7}, {"rows.tga", 0, false, OIIO::TypeUInt8, 0.002}}) {
+    const std::string path = folder / stored.name;
+    OIIO::ImageSpec spec(kWide, kHigh, 3, stored.type);
+    spec.tile_width = spec.tile_height = stored.tile;
+    if (stored.separate) spec.attribute("planarconfig", "separate");
+    const auto out = OIIO::ImageOutput::create(path);
+    ASSERT_TRUE(out->open(path, spec) && out->write_image(OIIO::TypeFloat, interleaved.data()) && out->close()) << path << out->geterror();
+    ExrFile file = open_file(path, "--normal");
+    ASSERT_EQ(file.parts().at(0).channels.size(), 3u) << path;
+    for (const auto& [first, rows] : {std::pair(0, kHigh), {600, 307}, {63, 2}, {0, 1}, {906, 1}}) {
+      std::vector<float> green(std::size_t(kWide * rows)), red(green.size());
+      const ExrRead reads[] = {{0, file.parts()[0].channels[1].name, green.data()}, {0, file.parts()[0].channels[0].name, red.data()}};
+      file.read(reads, first, rows);
+      for (std::size_t i = 0; i < green.size(); i++) {
+        const std::size_t at = 3 * (std::size_t(first) * kWide + i);
+        ASSERT_NEAR(green[i], interleaved[at + 1], stored.step) << path << " rows from " << first << " pixel " << i;
+        ASSERT_NEAR(red[i], interleaved[at], stored.step) << path << " rows from " << first << " pixel " << i;
+      }
+    }
+  }
+}
+
+TEST_F(Formats, a_picture_that_is_cut_short_is_named) {
+  std::uint32_t random = 1;
+  std::vector<float> noise(3 * 64 * 36);
+  for (float& value : noise) value = float((random = random * 1664525u + 1013904223u) >> 24) / 255;
+  for (const char* name : {"normal.png", "normal.tif", "normal.tga", "normal.bmp", "normal.hdr"}) {
+    const std::string path = folder / name;
+    const auto out = OIIO::ImageOutput::create(path);
+    ASSERT_TRUE(out->open(path, OIIO::ImageSpec(64, 36, 3, out->format_name() == std::string("hdr") ? OIIO::TypeFloat : OIIO::TypeUInt8)) &&
+                out->write_image(OIIO::TypeFloat, noise.data()) && out->close()) << path;
+    const std::string whole = read_bytes(path);
+    write_bytes(path, whole.substr(0, whole.size() / 2));
+    const Finished finished = run({"--normal", path, "--normal-space", "view"});
+    EXPECT_EQ(finished.code, 3) << finished;
+    EXPECT_THAT(finished.err, testing::AllOf(HasSubstr(path), HasSubstr("damaged or incomplete"), HasSubstr("--normal"))) << name;
+    EXPECT_FALSE(std::filesystem::exists(ao)) << name;
+  }
+}
+
+TEST_F(Formats, inspect_draws_a_contact_sheet) {
+  const std::string sheet = folder / "sheet.png";
+  const Finished finished = run_program({"inspect", frame, "--camera", camera, "--preview", sheet});
+  ASSERT_EQ(finished.code, 0) << finished;
+  const auto in = OIIO::ImageInput::open(sheet);
+  ASSERT_TRUE(in);
+  EXPECT_EQ(in->spec().width, 3 * 64);
+  EXPECT_EQ(in->spec().height, 36);
+  std::vector<std::uint8_t> pixels(3 * 64 * 36 * 3);
+  ASSERT_TRUE(in->read_image(0, 0, 0, 3, OIIO::TypeUInt8, pixels.data()));
+  const auto at = [&](int panel, int x, int y) { return &pixels[std::size_t(3 * (y * 3 * 64 + panel * 64 + x))]; };
+  EXPECT_GT(at(0, 32, 35)[0], at(0, 32, 5)[0]) << "the floor before the eye is nearer than the wall";
+  EXPECT_GT(at(1, 32, 35)[1], 250) << "the floor's normal points up";
+  EXPECT_GT(at(1, 32, 5)[2], 250) << "the wall's to the camera";
+  EXPECT_GT(at(2, 32, 2)[0], at(2, 32, 28)[0]) << "the corner is darker than the wall far above it";
+}
+
+// Hostile headers.
+
+/// An EXR header made of attributes, byte by byte.
+struct RawExr {
+  std::string bytes{"\x76\x2f\x31\x01\x02\x00\x00\x00", 8};
+  void add(const std::string& name, const std::string& type, const std::string& value) {
+    bytes += name + '\0' + type + '\0' + words({std::uint32_t(value.size())}) + value;
+  }
+};
+
+std::string channel(const std::string& name) { return name + '\0' + words({2, 0, 1, 1}); }
+
+RawExr raw_exr(const std::string& channels, const std::vector<std::uint32_t>& data_window) {
+  RawExr exr;
+  exr.add("channels", "chlist", channels + '\0');
+  exr.add("compression", "compression", std::string(1, '\0'));
+  exr.add("dataWindow", "box2i", words(data_window));
+  exr.add("displayWindow", "box2i", words({0, 0, 63, 35}));
+  exr.add("lineOrder", "lineOrder", std::string(1, '\0'));
+  exr.add("pixelAspectRatio", "float", bytes_of<float>({1}));
+  exr.add("screenWindowCenter", "v2f", bytes_of<float>({0, 0}));
+  exr.add("screenWindowWidth", "float", bytes_of<float>({1}));
+  return exr;
+}
+
+TEST_F(Formats, hostile_headers_are_errors) {
+  const std::uint32_t most = 0x7fffffff, least = 0x80000000;
+  const std::vector<std::vector<std::uint32_t>> windows{{0, 0, most, most},     {least, least, most, most}, {0, 0, 0x3ffffffe, 0x3ffffffe}, {10, 10, 5, 5},
+                                                        {0, 0, 131071, 131071}, {0, 0, 63, most},           {most, most, least, least},     {0, 0, 63, 35}};
+  for (const auto& window : windows) {
+    RawExr exr = raw_exr(channel("Z"), window);
+    write_bytes(frame, exr.bytes + '\0');
+    for (const char* command : {"run", "inspect"}) {
+      const Finished finished = std::string(command) == "run" ? run({}) : run_program({command, frame, "--camera", camera});
+      EXPECT_EQ(finished.code, 3) << command << " " << testing::PrintToString(window) << finished;
+      EXPECT_THAT(finished.err, HasSubstr("wall.0042.exr"));
+    }
+  }
+  RawExr tiled = raw_exr(channel("Z"), {0, 0, 0x3ffffffe, 0x3ffffffe});
+  tiled.add("tiles", "tiledesc", words({1, 1}) + '\0');
+  tiled.bytes[5] = 0x02;  // the flag of tiles
+  write_bytes(frame, tiled.bytes + '\0');
+  EXPECT_EQ(run({}).code, 3);
+  RawExr endless = raw_exr(channel("Z"), {0, 0, 63, 35});
+  endless.bytes += std::string("comments\0string\0", 16) + words({most}) + "short";
+  write_bytes(frame, endless.bytes);
+  const Finished finished = run({});
+  EXPECT_EQ(finished.code, 3);
+  EXPECT_THAT(finished.err, HasSubstr("comments"));
+  write_bytes(frame, raw_exr("", {0, 0, 63, 35}).bytes + '\0');
+  EXPECT_EQ(run({}).code, 3);
+  std::string many;
+  for (int i = 0; i < 100000; i++) many += channel(fmt::format("{:06}.depth.Z", i));
+  write_bytes(frame, raw_exr(many, {0, 0, 63, 35}).bytes + '\0' + std::string(36 * 8, '\0'));
+  EXPECT_EQ(run({}).code, 3);
+  RawExr absurd = raw_exr(channel("Z") + channel(std::string(200, '.')), {0, 0, 63, 35});
+  absurd.add("worldToCamera", "string", std::string(1000000, '9'));
+  absurd.add("worldToNDC", "m44f", bytes_of<float>(std::vector<float>(16, NAN)));
+  absurd.add("Software", "string", std::string(1000000, '*'));
+  write_bytes(frame, absurd.bytes + '\0');
+  EXPECT_EQ(run({}).code, 3);
+}
+
+TEST_F(Formats, a_header_cut_off_at_any_byte_is_an_error) {
+  FrameFile file = wall_frame();
+  file.attributes = {{"Software", "x"}, {"Camera", "Camera.001"}};
+  file.write(frame);
+  const std::string whole = read_bytes(frame), cut = folder / "cut.exr";
+  const std::size_t end = std::min<std::size_t>(whole.size(), 2000);  // beyond the header and the table of offsets
+  for (std::size_t size = 0; size < end; size++) {
+    write_bytes(cut, whole.substr(0, size));
+    try {
+      ExrFile exr(cut, "INPUT");
+      std::vector<float> row(std::size_t(file.data.width));
+      const ExrRead read{0, exr.parts().at(0).channels.at(0).name, row.data()};
+      exr.read({&read, 1}, file.data.height - 1, 1);
+      ADD_FAILURE() << "accepted " << size << " bytes";
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::input) << size;
+      EXPECT_THAT(error.what(), HasSubstr("cut.exr")) << size;
+    }
+  }
+}
+
+TEST_F(Formats, a_header_longer_than_any_program_writes_is_an_error) {
+  RawExr absurd = raw_exr(channel("Z"), {0, 0, 63, 35});
+  absurd.add("comments", "string", std::string(40 << 20, 'x'));
+  write_bytes(frame, absurd.bytes + '\0');
+  const Finished finished = run({});
+  EXPECT_EQ(finished.code, 3);
+  EXPECT_THAT(finished.err, HasSubstr("longer than"));
+}
+
+TEST_F(Formats, a_header_of_many_pixels_takes_no_memory) {
+  std::string bytes = read_bytes(frame);
+  const std::size_t window = bytes.find("dataWindow") + sizeof("dataWindow") + sizeof("box2i") + 4;
+  bytes.replace(window + 8, 4, words({0x0fffffff}));  // its right border; as many lines as before
+  write_bytes(frame, bytes);
+  for (const std::vector<std::string>& more : {std::vector<std::string>{"inspect", frame}, {"inspect", frame, "--preview", folder / "sheet.png"}, {"compare", frame, frame}}) {
+    std::vector<std::string> arguments = more;
+    if (more[0] == "inspect") arguments.insert(arguments.end(), {"--camera", camera});
+    const Finished finished = run_program(arguments);
+    EXPECT_EQ(finished.code, 3) << more[0] << finished;
+    EXPECT_THAT(finished.err, HasSubstr("pixels")) << more[0];
+  }
+}
+
+TEST(Findings, blended_edges_tell_averaged_depth_from_point_samples) {
+  constexpr int kWidth = 64;
+  std::vector<float> sharp, blended;
+  for (int y = 0; y < 64; y++)
+    for (int x = 0; x < kWidth; x++) {
+      const int phase = x % 16;
+      sharp.push_back(phase < 8 ? 1.0f : 3.0f);
+      blended.push_back(phase == 8 || phase == 0 ? 2.0f : sharp.back());
+    }
+  EXPECT_EQ(blended_edges(sharp, kWidth), 0);
+  EXPECT_GT(blended_edges(blended, kWidth), 0.9);
+}
+
+}  // namespace
+}  // namespace alcove

@@ -1,0 +1,409 @@
+// Files as wholes: written completely or not at all; EXR and PNG out and in again; every truncation of an EXR.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/base/file.h"
+
+#include <ImfChannelList.h>
+#include <ImfChromaticitiesAttribute.h>
+#include <ImfFloatAttribute.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfMatrixAttribute.h>
+#include <ImfOutputFile.h>
+#include <ImfRationalAttribute.h>
+#include <ImfStandardAttributes.h>
+#include <ImfStringAttribute.h>
+#include <ImfStringVectorAttribute.h>
+#include <ImfTimeCodeAttribute.h>
+#include <ImfVecAttribute.h>
+#include <OpenImageIO/imageio.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <set>
+
+#include "core/base/error.h"
+#include "core/formats/exr.h"
+#include "core/formats/image_io.h"
+#include "tests/support/exr_header.h"
+#include "tests/support/program.h"
+
+namespace alcove {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace test;
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+
+/// `action` must fail with this kind, in one line that holds the words.
+template <class Action>
+void expect_error(ErrorKind kind, const std::vector<std::string>& words, const Action& action) {
+  try {
+    action();
+    ADD_FAILURE() << "no error; expected one that tells of " << testing::PrintToString(words);
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), kind) << error.what();
+    EXPECT_THAT(error.what(), Not(HasSubstr("\n")));
+    for (const auto& word : words) EXPECT_THAT(error.what(), HasSubstr(word));
+  }
+}
+
+class Files : public testing::Test {
+ protected:
+  TemporaryFolder folder;
+  const std::string path = folder / "a.exr";
+};
+
+// Wholes.
+
+TEST_F(Files, write_whole_writes_exactly_these_bytes) {
+  for (const std::string& bytes : {std::string(), std::string("a"), std::string("\0\n\xff", 3), std::string(3 << 20, 'x')}) {
+    write_whole(path, bytes);
+    EXPECT_TRUE(read_bytes(path) == bytes) << bytes.size() << " bytes";
+    EXPECT_TRUE(read_text(path, "test", "--test") == bytes) << bytes.size() << " bytes";
+    EXPECT_THAT(names_in(folder.path()), ElementsAre("a.exr"));
+  }
+}
+
+TEST_F(Files, write_whole_takes_every_name_that_the_file_system_takes) {
+  for (const std::string& name : {std::string(255, 'n'), std::string(240, 'n') + ".exr", std::string("{} %s")}) {
+    EXPECT_NO_THROW(write_whole(folder / name, std::string("whole"))) << name.size() << " characters";
+    EXPECT_TRUE(fs::exists(folder / name));
+  }
+}
+
+TEST_F(Files, a_failed_write_leaves_everything_as_it_was) {
+  expect_error(ErrorKind::output, {"missing/a.exr"}, [&] { write_whole(folder / "missing/a.exr", std::string("x")); });
+  fs::create_directory(folder / "folder");
+  write_bytes(folder / "folder/inside", "kept");
+  expect_error(ErrorKind::output, {"folder"}, [&] { write_whole(folder / "folder", std::string("x")); });
+  EXPECT_THAT(names_in(folder.path()), ElementsAre("folder", "folder/inside"));
+}
+
+TEST_F(Files, require_writable_tells_what_stands_in_the_way) {
+  EXPECT_NO_THROW(require_writable(path, "--output"));
+  EXPECT_THAT(names_in(folder.path()), IsEmpty()) << "it only looks";
+  write_bytes(path, "kept");
+  EXPECT_NO_THROW(require_writable(path, "--output"));
+  EXPECT_EQ(read_bytes(path), "kept");
+  expect_error(ErrorKind::output, {"missing/a.exr", "--output"}, [&] { require_writable(folder / "missing/a.exr", "--output"); });
+  expect_error(ErrorKind::output, {"a.exr/b.exr", "--output"}, [&] { require_writable(path + "/b.exr", "--output"); });
+  expect_error(ErrorKind::output, {folder.path(), "--output"}, [&] { require_writable(folder.path(), "--output"); });
+  expect_error(ErrorKind::output, {"/dev/full", "--output"}, [&] { require_writable("/dev/full", "--output"); });
+  expect_error(ErrorKind::output, {"--output"}, [&] { require_writable(folder.path() + "/", "--output"); });
+}
+
+TEST_F(Files, read_text_tells_what_is_no_file) {
+  expect_error(ErrorKind::input, {"missing", "camera", "--camera"}, [&] { read_text(folder / "missing", "camera", "--camera"); });
+  expect_error(ErrorKind::input, {folder.path(), "camera", "--camera"}, [&] { read_text(folder.path(), "camera", "--camera"); });
+  expect_error(ErrorKind::input, {"camera", "--camera"}, [&] { read_text("", "camera", "--camera"); });
+}
+
+TEST_F(Files, read_text_tells_that_the_disk_fails) {  // as page 0 of a process does
+  expect_error(ErrorKind::input, {"/proc/self/mem", "camera", "--camera"}, [] { read_text("/proc/self/mem", "camera", "--camera"); });
+}
+
+/// Who may not read everything; root again at the end.
+struct Nobody {
+  Nobody() { if (is_root) EXPECT_EQ(::setresuid(65534, 65534, 0), 0); }
+  ~Nobody() { if (is_root) EXPECT_EQ(::setresuid(0, 0, 0), 0); }
+  const bool is_root = ::geteuid() == 0;
+};
+
+TEST_F(Files, what_may_not_be_read_or_written_is_said_with_the_reason) {
+  fs::permissions(folder.path(), fs::perms(0755));
+  fs::create_directory(folder / "locked");
+  write_bytes(folder / "locked/a.exr", "kept");
+  write_bytes(path, "kept");
+  fs::permissions(path, fs::perms::none);
+  fs::permissions(folder / "locked", fs::perms::none);
+  fs::create_directory(folder / "shown");
+  fs::permissions(folder / "shown", fs::perms(0555));
+  {
+    const Nobody nobody;
+    expect_error(ErrorKind::input, {path, "Permission denied", "--camera"}, [&] { require_readable(path, "camera", "--camera"); });
+    expect_error(ErrorKind::input, {"locked/a.exr", "cannot be reached", "Permission denied", "--camera"}, [&] { require_readable(folder / "locked/a.exr", "camera", "--camera"); });
+    expect_error(ErrorKind::output, {"shown/b.exr", "Permission denied", "--output"}, [&] { require_writable(folder / "shown/b.exr", "--output"); });
+    expect_error(ErrorKind::output, {"locked/b/c.exr", "cannot be reached", "Permission denied", "--output"}, [&] { require_writable(folder / "locked/b/c.exr", "--output"); });
+    expect_error(ErrorKind::output, {"shown/b.exr", "temporary file", "Permission denied"}, [&] { write_whole(folder / "shown/b.exr", std::string("x")); });
+  }
+  for (const char* name : {"locked", "shown", "a.exr"}) fs::permissions(folder / name, fs::perms::owner_all);
+  EXPECT_EQ(read_bytes(folder / "locked/a.exr"), "kept");
+  EXPECT_THAT(names_in(folder / "shown"), IsEmpty());
+}
+
+TEST_F(Files, names_of_one_file_are_told_from_those_of_two) {
+  write_bytes(path, "x");
+  fs::create_symlink(path, folder / "link.exr");
+  for (const std::string& name : {path, folder / "./a.exr", folder / "link.exr", folder / "none/../a.exr"}) EXPECT_TRUE(same_file(path, name)) << name;
+  EXPECT_TRUE(same_file(folder / "none.exr", folder / "./none.exr"));  // that is not there yet
+  EXPECT_FALSE(same_file(path, folder / "b.exr"));
+  EXPECT_FALSE(same_file(folder / "b.exr", folder / "c.exr"));
+  const std::vector<std::string> inputs{"", path};
+  expect_error(ErrorKind::usage, {"link.exr", "--stats", "overwrite"}, [&] { require_no_input(folder / "link.exr", "--stats", inputs); });
+  EXPECT_NO_THROW(require_no_input(folder / "b.exr", "--stats", inputs));
+}
+
+TEST_F(Files, nobody_can_tell_the_name_of_an_unfinished_file_beforehand) {
+  std::set<std::string> drawn;  // behind the process's number, which anybody can see
+  for (int i = 0; i < 64; i++) {
+    const NewFile file(path);
+    const auto names = names_in(folder.path());
+    ASSERT_EQ(names.size(), 1u);
+    drawn.insert(names[0].substr(names[0].find('-', 8)));
+  }
+  EXPECT_EQ(drawn.size(), 64u);
+}
+
+// EXR.
+
+/// Values that conversions get wrong: denormals of both types, the largest, infinities, NaN, both zeros.
+std::vector<float> difficult_values() {
+  return {0.0f,      -0.0f,     1.0f,          -1.0f,     0x1p-24f,        0x1.8p-25f,        0x1p-25f,
+          0x1p-149f, 65504.0f,  65519.0f,      -65504.0f, 1.0f + 0x1p-11f, 1.0f + 0x1.8p-10f, 3.4e38f,
+          INFINITY,  -INFINITY, std::nanf(""), 0.333333f};
+}
+
+/// The finite half nearest to x, ties to even, from the definition of the format; NaN stays NaN.
+float nearest_half(float x) {
+  if (std::isnan(x) || x == 0) return x;
+  if (std::abs(x) > 65504) return std::copysign(65504.0f, x);
+  const int exponent = std::max(std::ilogb(x), -14);
+  const double step = std::ldexp(1.0, exponent - 10), rounded = std::nearbyint(double(x) / step) * step;
+  return std::copysign(float(rounded), x);
+}
+
+ExrOutput output_of(const Window& data, const Window& display) {
+  ExrOutput output;
+  output.data = data;
+  output.display = display;
+  return output;
+}
+
+bool same(float a, float b) { return std::bit_cast<std::uint32_t>(a) == std::bit_cast<std::uint32_t>(b) || (std::isnan(a) && std::isnan(b)); }
+
+TEST_F(Files, floats_come_back_bit_by_bit_and_halves_as_the_nearest_that_is_finite) {
+  const auto values = difficult_values();
+  const Window window{0, 0, int(values.size()), 1};
+  for (const char* compression : {"none", "rle", "zips", "zip", "piz"}) {
+    ExrOutput output = output_of(window, window);
+    output.compression = compression;
+    output.planes = {{"F", SampleType::single_float, values}, {"H", SampleType::half_float, values}};
+    write_exr(path, output);
+    const Image image = read_exr_image(path);
+    for (std::size_t i = 0; i < values.size(); i++) {
+      EXPECT_TRUE(same(image.plane("F")[i], values[i])) << compression << " " << values[i] << " came back as " << image.plane("F")[i];
+      EXPECT_TRUE(same(image.plane("H")[i], nearest_half(values[i]))) << compression << " " << values[i] << " became " << image.plane("H")[i];
+    }
+  }
+}
+
+TEST_F(Files, windows_come_back_wherever_they_are) {
+  for (const Window& data : {Window{0, 0, 1, 1}, Window{-5, -7, 4, 3}, Window{1000000, -1000000, 2, 5}, Window{3, 2, 1, 33}}) {
+    const Window display{-2, 3, 17, 9};
+    std::vector<float> values(data.pixels());
+    for (std::size_t i = 0; i < values.size(); i++) values[i] = float(i);
+    ExrOutput output = output_of(data, display);
+    output.pixel_aspect = 0.75;
+    output.planes = {{"Y", SampleType::single_float, values}};
+    write_exr(path, output);
+    const ExrFile file(path, "INPUT");
+    EXPECT_EQ(file.display(), display) << to_string(file.display());
+    EXPECT_EQ(file.parts().at(0).data, data) << to_string(file.parts()[0].data);
+    EXPECT_EQ(file.pixel_aspect(), 0.75);
+    EXPECT_EQ(read_exr_image(path).pixels, values) << to_string(data);
+  }
+}
+
+TEST_F(Files, channels_of_chosen_names_are_read_in_the_order_asked_for) {
+  const std::vector<float> one{1, 2}, two{3, 4};
+  ExrOutput output = output_of({0, 0, 2, 1}, {0, 0, 2, 1});
+  output.planes = {{"b", SampleType::single_float, one}, {"a.x", SampleType::half_float, two}};
+  write_exr(path, output);
+  EXPECT_EQ(read_exr_image(path, {"b", "a.x"}).pixels, (std::vector<float>{1, 2, 3, 4}));
+  EXPECT_EQ(read_exr_image(path, {"a.x"}).pixels, two);
+  expect_error(ErrorKind::input, {"a.exr", "missing"}, [&] { read_exr_image(path, {"missing"}); });
+  expect_error(ErrorKind::input, {"missing"}, [&] { read_exr_image(path).plane("missing"); });
+}
+
+TEST_F(Files, attributes_of_every_type_are_carried_over_but_those_of_storage) {
+  Imf::Header header(4, 2);
+  header.insert("owner", Imf::StringAttribute("a studio"));
+  header.insert("worldToCamera", Imf::M44fAttribute({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 5, 6, 7, 1}));
+  header.insert("cameraFov", Imf::FloatAttribute(54.5f));
+  header.insert("aThreeVector", Imf::V3fAttribute({1, 2, 3}));
+  header.insert("someNames", Imf::StringVectorAttribute(Imf::StringVector{"a", "b"}));
+  header.insert("a name that is longer than thirty-one characters", Imf::StringAttribute("kept"));
+  Imf::addTimeCode(header, Imf::TimeCode(1, 2, 3, 4));
+  Imf::addFramesPerSecond(header, Imf::Rational(24000, 1001));
+  Imf::addChromaticities(header, Imf::Chromaticities());
+  header.screenWindowWidth() = 1.25f;
+  header.screenWindowCenter() = {0.125f, -0.5f};
+  const auto kept = [&] {
+    ExrHeader all = read_header(path);
+    for (const char* name : {"channels", "compression", "dataWindow", "displayWindow", "pixelAspectRatio", "lineOrder"}) all.erase(name);
+    return all;
+  };
+  for (const char* name : {"BlenderMultiChannel", "cryptomatte/123abcd/name", "cryptomatte/123abcd/manifest"})
+    header.insert(name, Imf::StringAttribute("dropped"));
+  header.insert("multiView", Imf::StringVectorAttribute(Imf::StringVector{"left", "right"}));
+  header.insert("dwaCompressionLevel", Imf::FloatAttribute(45));
+  header.lineOrder() = Imf::DECREASING_Y;
+  header.channels().insert("Z", Imf::Channel(Imf::FLOAT));
+  header.channels().insert("Y", Imf::Channel(Imf::HALF));
+  {
+    const std::vector<float> values(8);
+    Imf::FrameBuffer pixels;
+    pixels.insert("Z", Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(const_cast<float*>(values.data())), sizeof(float), 4 * sizeof(float)));
+    Imf::OutputFile file(path.c_str(), header);
+    file.setFrameBuffer(pixels);
+    file.writePixels(2);
+  }
+  ExrHeader before = kept();
+  const std::vector<float> values(8, 0.5f);
+  ExrOutput output = output_of({0, 0, 4, 2}, {0, 0, 4, 2});
+  output.attributes = ExrFile(path, "INPUT").attributes(0);
+  output.own_attributes = {{"alcove/version", "1"}, {"owner", "another"}};
+  output.planes = {{"Y", SampleType::half_float, values}};
+  write_exr(path, output);
+  for (const char* name : {"BlenderMultiChannel", "cryptomatte/123abcd/name", "cryptomatte/123abcd/manifest", "multiView", "dwaCompressionLevel"})
+    EXPECT_EQ(before.erase(name), 1) << name << " was in the input";
+  before["alcove/version"] = {"string", "1"};
+  before["owner"] = {"string", "another"};
+  const ExrHeader after = kept();
+  for (const auto& [name, attribute] : before) EXPECT_TRUE(after.contains(name) && after.at(name) == attribute) << name;
+  for (const auto& [name, attribute] : after) EXPECT_TRUE(before.contains(name)) << name << " should be gone";
+  EXPECT_EQ(read_header(path)["lineOrder"].bytes, std::string(1, 0)) << "increasing";
+}
+
+TEST_F(Files, our_attributes_replace_those_of_another_type) {
+  Imf::Header header(1, 1);
+  header.insert("alcove/version", Imf::FloatAttribute(3));
+  header.channels().insert("Z", Imf::Channel(Imf::FLOAT));
+  {
+    Imf::OutputFile file(path.c_str(), header);
+    file.setFrameBuffer(Imf::FrameBuffer());
+    file.writePixels(1);
+  }
+  const std::vector<float> value(1);
+  ExrOutput output = output_of({0, 0, 1, 1}, {0, 0, 1, 1});
+  output.attributes = ExrFile(path, "INPUT").attributes(0);
+  output.own_attributes = {{"alcove/version", "1"}};
+  output.planes = {{"Y", SampleType::half_float, value}};
+  EXPECT_NO_THROW(write_exr(path, output));
+  EXPECT_EQ(text_in(read_header(path), "alcove/version"), "1");
+}
+
+TEST_F(Files, what_is_no_exr_is_an_input_error) {
+  expect_error(ErrorKind::input, {"a.exr", "--depth"}, [&] { ExrFile(path, "--depth"); });
+  expect_error(ErrorKind::input, {folder.path(), "--depth"}, [&] { ExrFile(folder.path(), "--depth"); });
+  for (const std::string& bytes :
+       {std::string(), std::string("v/1\x01"), std::string("P6 1 1 255\n"), std::string("\x76\x2f\x31\x01\x02\0\0\0", 8), std::string(4096, '\0')}) {
+    write_bytes(path, bytes);
+    expect_error(ErrorKind::input, {"a.exr"}, [&] { ExrFile(path, "--depth"); });
+  }
+}
+
+/// A small EXR as bytes, and its pixels.
+std::pair<std::string, std::vector<float>> small_exr(const std::string& path, const char* compression) {
+  std::vector<float> one(35), two(35);
+  for (std::size_t i = 0; i < one.size(); i++) {
+    one[i] = float(i);
+    two[i] = float(i % 7) / 8;
+  }
+  ExrOutput output = output_of({-2, 1, 7, 5}, {0, 0, 9, 9});
+  output.compression = compression;
+  output.planes = {{"A", SampleType::half_float, two}, {"Z", SampleType::single_float, one}};
+  write_exr(path, output);
+  std::vector<float> both = two;
+  both.insert(both.end(), one.begin(), one.end());
+  return {read_bytes(path), both};
+}
+
+TEST_F(Files, every_truncation_is_an_input_error_or_gives_the_right_pixels) {
+  for (const char* compression : {"none", "rle", "zips", "zip", "piz"}) {
+    const auto [whole, pixels] = small_exr(path, compression);
+    EXPECT_EQ(read_exr_image(path).pixels, pixels);
+    for (std::size_t length = 0; length < whole.size(); length++) {
+      write_bytes(path, whole.substr(0, length));
+      try {
+        EXPECT_EQ(read_exr_image(path).pixels, pixels) << compression << " cut to " << length << " of " << whole.size() << " bytes";
+      } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::input) << error.what();
+        EXPECT_THAT(error.what(), AllOf(HasSubstr("a.exr"), Not(HasSubstr("\n"))));
+      }
+    }
+  }
+}
+
+TEST_F(Files, every_damaged_byte_is_an_input_error_or_gives_some_pixels) {
+  for (const char* compression : {"none", "zip"}) {
+    const std::string whole = small_exr(path, compression).first;
+    const std::size_t window = whole.find("dataWindow") + sizeof("dataWindow") + sizeof("box2i") + 4;
+    for (std::size_t at = 0; at < whole.size(); at++) {
+      if (at >= window && at < window + 16) continue;  // another window may be a whole, but huge image
+      for (const char mask : {'\x01', '\xff'}) {
+        std::string damaged = whole;
+        damaged[at] = char(damaged[at] ^ mask);
+        write_bytes(path, damaged);
+        try {
+          EXPECT_FALSE(read_exr_image(path).pixels.empty());
+        } catch (const Error& error) {
+          EXPECT_EQ(error.kind(), ErrorKind::input) << error.what();
+          EXPECT_THAT(error.what(), HasSubstr("a.exr")) << "byte " << at;
+        }
+      }
+    }
+  }
+}
+
+TEST_F(Files, an_exr_that_cannot_be_written_leaves_the_old_one) {
+  write_bytes(path, "before");
+  const std::vector<float> value(1);
+  ExrOutput output = output_of({0, 0, 1, 1}, {0, 0, 1, 1});
+  output.planes = {{"", SampleType::half_float, value}};  // a channel must have a name
+  expect_error(ErrorKind::output, {"a.exr"}, [&] { write_exr(path, output); });
+  output = output_of({0, 0, 0, 0}, {0, 0, 1, 1});
+  expect_error(ErrorKind::output, {"a.exr"}, [&] { write_exr(path, output); });
+  EXPECT_EQ(read_bytes(path), "before");
+  EXPECT_THAT(names_in(folder.path()), ElementsAre("a.exr"));
+}
+
+// PNG.
+
+TEST_F(Files, a_png_holds_the_nearest_of_256_values) {
+  const std::string png = folder / "a.png";
+  const std::vector<float> values{0, 1, 0.5f, -1, 2, 1 / 255.0f, 0.4f / 255, 0.6f / 255, 254.6f / 255, INFINITY, -INFINITY, 0.25f};
+  const std::vector<int> expected{0, 255, 128, 0, 255, 1, 0, 1, 255, 255, 0, 64};
+  for (const int channels : {1, 3}) {
+    write_png(png, 4, 3 / channels, channels, values);
+    const auto file = OIIO::ImageInput::open(png);
+    ASSERT_TRUE(file) << OIIO::geterror();
+    EXPECT_EQ(file->spec().width, 4);
+    EXPECT_EQ(file->spec().height, 3 / channels);
+    EXPECT_EQ(file->spec().nchannels, channels);
+    EXPECT_EQ(file->spec().format, OIIO::TypeUInt8);
+    std::vector<unsigned char> pixels(values.size());
+    EXPECT_TRUE(file->read_image(0, 0, 0, channels, OIIO::TypeUInt8, pixels.data()));
+    EXPECT_EQ(std::vector<int>(pixels.begin(), pixels.end()), expected) << channels << " channels";
+  }
+  EXPECT_THAT(names_in(folder.path()), ElementsAre("a.png"));
+}
+
+TEST_F(Files, a_png_that_cannot_be_written_is_an_output_error) {
+  const std::vector<float> value(1);
+  expect_error(ErrorKind::output, {"missing/a.png"}, [&] { write_png(folder / "missing/a.png", 1, 1, 1, value); });
+  expect_error(ErrorKind::output, {"a.png"}, [&] { write_png(folder / "a.png", 0, 0, 1, {}); });
+  EXPECT_THAT(names_in(folder.path()), IsEmpty());
+}
+
+}  // namespace
+}  // namespace alcove

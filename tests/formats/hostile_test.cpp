@@ -1,0 +1,218 @@
+// Files made to do harm: what they say is neither believed nor run, and takes no memory that was not allowed.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <filesystem>
+
+#include "core/frame/camera.h"
+#include "core/base/error.h"
+#include "core/formats/exr.h"
+#include "core/formats/image_io.h"
+#include "core/formats/sequence.h"
+#include "core/frame/settle.h"
+#include "tests/support/command_line.h"
+
+namespace alcove {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace test;
+using nlohmann::json;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+constexpr const char* kScript = "<script>alert(1)</script>";
+
+/// A grey PNG of 8 bits without pixels.
+std::string png_claiming(std::uint32_t width, std::uint32_t height) {
+  const auto word = [](std::uint32_t x) { return std::string{char(x >> 24), char(x >> 16), char(x >> 8), char(x)}; };
+  const auto chunk = [&](const std::string& body) {
+    std::uint32_t sum = ~0u;
+    for (const unsigned char byte : body) {
+      sum ^= byte;
+      for (int bit = 0; bit < 8; bit++) sum = sum >> 1 ^ (sum & 1 ? 0xedb88320u : 0u);
+    }
+    return word(std::uint32_t(body.size() - 4)) + body + word(~sum);
+  };
+  return "\x89PNG\r\n\x1a\n" + chunk("IHDR" + word(width) + word(height) + std::string("\x08\0\0\0\0", 5)) + chunk("IDAT") + chunk("IEND");
+}
+
+class Hostile : public CommandLine {
+ protected:
+  /// A page that the program wrote: the script is there, as text only.
+  void expect_text_only(const std::string& page) const {
+    const std::string html = read_bytes(page);
+    EXPECT_FALSE(html.find(kScript) != html.npos) << page;
+    EXPECT_TRUE(html.find("\\u003cscript>alert(1)\\u003c/script>") != html.npos) << page;
+  }
+
+  /// The frame, claiming another data window in its header.
+  std::string claiming(int width, int height, std::size_t bytes) const {
+    std::string file = read_bytes(frame);
+    const std::int32_t right_and_bottom[] = {width - 1, height - 1};
+    for (const char* name : {"dataWindow", "displayWindow"})
+      file.replace(file.find(name) + std::strlen(name) + sizeof("box2i") + 13, 8, reinterpret_cast<const char*>(right_and_bottom), 8);
+    file.resize(bytes);
+    write_bytes(folder / "claim.exr", file);
+    return folder / "claim.exr";
+  }
+};
+
+// Reports.
+
+TEST_F(Hostile, a_channel_and_a_file_called_script_stay_text_in_the_report_of_compare) {
+  FrameFile file = wall_frame();
+  file.rename("ViewLayer.Depth.Z", std::string(kScript) + ".Y");
+  const std::string name = folder / kScript;  // its slash makes a folder of the first half
+  fs::create_directories(fs::path(name).parent_path());
+  file.write(name);
+  const Finished finished = run_program({"compare", name, name, "--channel", std::string(kScript) + ".Y", "--report", folder / "page.html"});
+  ASSERT_EQ(finished.code, 0) << finished;
+  expect_text_only(folder / "page.html");
+}
+
+TEST_F(Hostile, a_frame_and_a_candidate_called_script_stay_text_in_the_report_of_bench) {
+  run({});
+  const std::string suite = folder / "suite.toml";
+  write_bytes(suite, fmt::format("title = \"{0}\"\nrepeats = 1\nreference-slices = 0\n[[frame]]\nname = \"{0}\"\ninput = \"wall.0042.exr\"\ncamera = \"camera.json\"\n"
+                                 "radius = 1\ntruth = [\"ao.exr\"]\n[[candidate]]\nname = \"{0}\"\npreset = \"draft\"\n", kScript));
+  const Finished finished = run_program({"bench", suite, "--report", folder / "page.html"});
+  ASSERT_EQ(finished.code, 0) << finished;
+  expect_text_only(folder / "page.html");
+}
+
+TEST_F(Hostile, inspect_prints_names_of_headers_as_text_that_no_terminal_obeys) {
+  FrameFile file = wall_frame();
+  file.rename("ViewLayer.Depth.Z", std::string(kScript) + "\x1b[2J.Z");
+  file.attributes = {{"Software", "\x1b]0;title\x07\r\n`touch x`"}};
+  file.write(frame);
+  const Finished text = run_program({"inspect", frame, "--camera", camera}), quoted = run_program({"inspect", frame, "--camera", camera, "--json"});
+  EXPECT_EQ(text.code, 0) << text;
+  EXPECT_THAT(text.out, AllOf(HasSubstr(kScript), HasSubstr("touch x"), Not(testing::ContainsRegex("[\x01-\x09\x0b-\x1f\x7f]"))));
+  EXPECT_TRUE(json::accept(quoted.out)) << quoted;
+  EXPECT_THAT(quoted.out, Not(testing::ContainsRegex("[\x01-\x09\x0b-\x1f\x7f]")));
+}
+
+TEST_F(Hostile, a_frame_s_name_is_printed_as_text_that_no_terminal_obeys) {
+  const std::string name = folder / "a\nopenjd_fail: \x1b[2J\u009b2J\u202etxt.exr";
+  fs::rename(frame, name);
+  for (const std::vector<std::string>& more : {std::vector<std::string>{"-v"}, {"--resume"}, {"--depth", folder / "none\n\u009b.exr"}}) {
+    std::vector<std::string> arguments{"run", name, "-o", name + ".ao.exr", "--camera", camera, "--radius", "1", "--progress", "plain"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Finished finished = run_program(arguments);
+    EXPECT_EQ(finished.code, more[0] == "--depth" ? 3 : 0) << finished;
+    EXPECT_THAT(finished.err, Not(testing::ContainsRegex("[\x01-\x09\x0b-\x1f\x7f]"))) << finished;
+    EXPECT_THAT(finished.err, AllOf(Not(HasSubstr("\nopenjd_fail")), Not(HasSubstr("\u009b")), Not(HasSubstr("\u202e")))) << finished;
+    EXPECT_THAT(finished.err, HasSubstr(more[0] == "--depth" ? "none??.exr" : "a?openjd_fail: ?[2J?2J?txt.exr")) << "or nothing is proved";
+  }
+}
+
+TEST_F(Hostile, the_command_that_inspect_proposes_quotes_what_a_shell_would_run) {
+  const std::string name = folder / "$(touch x)`touch x`'; touch x; '.exr";
+  fs::rename(frame, name);
+  const Finished inspected = run_program({"inspect", name, "--camera", camera, "--json"});
+  ASSERT_EQ(inspected.code, 0) << inspected;
+  const std::string command = json::parse(inspected.out)["command"];
+  const std::string echo = "cd " + folder.path() + " && set -- " + command.substr(std::strlen("alcove ")) + " && printf %s \"$2\"";
+  Surroundings shell;
+  shell.program = "/bin/sh";
+  EXPECT_EQ(run_program({"-c", echo}, shell).out, name);
+  EXPECT_FALSE(fs::exists(folder / "x"));
+}
+
+// Memory.
+
+TEST_F(Hostile, no_header_makes_a_run_take_more_memory_than_it_may) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "the address sanitizer takes memory of its own";
+#endif
+  const long plain = run({"--memory", "64M"}).peak_mib;
+  constexpr long evidence = (4 * sizeof(float) * kEvidencePixels) >> 20;  // depth and normals, while it is settled what they mean
+  ASSERT_GT(plain, 0);
+  // Each with as many bytes as its table of offsets needs, and as may stand for so many pixels.
+  for (const auto& [width, height, bytes] : {std::tuple(16384, 16384, 5000), {1 << 26, 1, 2000}, {1, 100000, 60000}, {1 << 20, 64, 3000}}) {
+    const std::string claim = claiming(width, height, std::size_t(bytes));
+    for (const std::vector<std::string>& more : {std::vector<std::string>{}, {"--roi", "0,0,1,1"}, {"--preview", folder / "p.png"}}) {
+      std::vector<std::string> arguments{"run", claim, "-o", ao, "--fov", "60", "--normal-space", "view", "--radius", "1", "--memory", "64M"};
+      arguments.insert(arguments.end(), more.begin(), more.end());
+      const Finished finished = run_program(arguments);
+      EXPECT_TRUE(finished.code == 3 || finished.code == 5) << finished;
+      EXPECT_EQ(lines_of(finished.err).size(), 1) << finished;
+      EXPECT_LT(finished.peak_mib, plain + 64 + evidence) << width << " x " << height << finished;
+    }
+  }
+}
+
+TEST_F(Hostile, no_picture_makes_a_run_take_more_memory_than_its_rows) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "the address sanitizer takes memory of its own";
+#endif
+  const std::string claim = folder / "claim.png", black = folder / "black.png", fits = folder / "fits.png";
+  write_bytes(claim, png_claiming(30000, 30000));
+  write_png(black, 6000, 6000, 3, std::vector<float>(3 * 6000 * 6000));
+  write_png(fits, 64, 36, 3, std::vector<float>(3 * 64 * 36, 0.5f));
+  const auto with_normal = [&](const std::string& picture) { return run({"--memory", "64M", "--normal", picture, "--normal-space", "view"}); };
+  const Finished plain = with_normal(fits);
+  ASSERT_EQ(plain.code, 0) << plain;
+  ASSERT_LT(fs::file_size(black), 600'000);
+  for (const std::string& picture : {claim, black}) {
+    const Finished finished = with_normal(picture);
+    EXPECT_EQ(finished.code, 3) << finished;
+    EXPECT_THAT(finished.err, AllOf(HasSubstr(picture), HasSubstr(picture == claim ? "cannot hold" : "6000x6000")));
+    EXPECT_LT(finished.peak_mib, plain.peak_mib + 32) << finished;
+  }
+  const Finished compared = run_program({"compare", claim, claim});
+  EXPECT_EQ(compared.code, 3) << compared;
+  EXPECT_LT(compared.peak_mib, plain.peak_mib + 32) << compared;
+}
+
+TEST_F(Hostile, a_header_of_more_pixels_than_its_bytes_can_stand_for_is_refused) {
+  try {
+    ExrFile file(claiming(1 << 14, 1 << 14, 3000), "INPUT");
+    FAIL() << "accepted";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), AllOf(HasSubstr("16384 x 16384 pixels"), HasSubstr("3000 bytes")));
+  }
+}
+
+// Text.
+
+TEST_F(Hostile, a_camera_that_nests_without_end_is_refused) {
+  const std::string deep = std::string(200000, '[') + std::string(200000, ']');
+  for (const std::string& text : {"{\"fx\": " + deep + "}", "{\"frames\": [{\"frame\": 1, \"fx\": " + deep + "}]}", deep}) {
+    write_bytes(camera, text);
+    EXPECT_THROW(read_camera(camera, 1), Error);
+  }
+}
+
+TEST_F(Hostile, a_frame_of_a_camera_is_the_number_that_is_written) {
+  json fields = wall_camera();
+  fields["frames"] = {{{"frame", 4294967297}}};  // 1 in 32 bits
+  write_bytes(camera, fields.dump());
+  EXPECT_THROW(read_camera(camera, 1), Error);
+}
+
+TEST_F(Hostile, a_frame_number_beyond_all_numbers_is_refused) {
+  for (const char* list : {"-9223372036854775808", "9223372036854775807", "0-9223372036854775807x4611686018427387904", "1--9223372036854775808"})
+    EXPECT_THROW(parse_frames(list), Error) << list;
+}
+
+TEST_F(Hostile, a_short_list_that_repeats_many_frames_is_refused) {
+  std::string list = "1-999999";
+  for (int i = 0; i < 1000; i++) list += ",1-999999";
+  EXPECT_THROW(parse_frames(list), Error);
+}
+
+TEST_F(Hostile, a_zero_byte_in_a_preset_is_refused) {  // or it would end a file's name early
+  write_bytes(folder / "p.toml", "depth = \"" + frame + "\\u0000.exr\"\n");
+  const Finished finished = run({"--preset", folder / "p.toml"});
+  EXPECT_EQ(finished.code, 2) << finished;
+  EXPECT_THAT(finished.err, HasSubstr("zero byte"));
+}
+
+}  // namespace
+}  // namespace alcove

@@ -1,0 +1,146 @@
+// Patterns, frame lists and listings of the disk.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/formats/sequence.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "core/base/error.h"
+#include "tests/support/program.h"
+
+namespace alcove {
+namespace {
+
+using namespace test;
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+template <class Function>
+std::string error_of(ErrorKind kind, Function&& function) {
+  try {
+    function();
+  } catch (const Error& error) {
+    EXPECT_EQ(int(error.kind()), int(kind));
+    return error.what();
+  }
+  ADD_FAILURE() << "no error";
+  return "";
+}
+
+std::string path_of(const std::string& pattern, int frame) { return frame_pattern(pattern).value().path(frame); }
+
+TEST(FramePattern, every_token_is_understood) {
+  EXPECT_EQ(path_of("shot.%04d.exr", 7), "shot.0007.exr");
+  EXPECT_EQ(path_of("shot.%d.exr", 7), "shot.7.exr");
+  EXPECT_EQ(path_of("shot.%010d.exr", 7), "shot.0000000007.exr");
+  EXPECT_EQ(path_of("shot.#.exr", 7), "shot.0007.exr");
+  EXPECT_EQ(path_of("shot.##.exr", 7), "shot.07.exr");
+  EXPECT_EQ(path_of("shot.######.exr", 7), "shot.000007.exr");
+  EXPECT_EQ(path_of("shot.@@@.exr", 7), "shot.007.exr");
+  EXPECT_EQ(path_of("shot.$F4.exr", 7), "shot.0007.exr");
+  EXPECT_EQ(path_of("shot.$F.exr", 7), "shot.7.exr");
+  EXPECT_EQ(path_of("shot.<f4>.exr", 7), "shot.0007.exr");
+  EXPECT_EQ(path_of("shot.<F>.exr", 7), "shot.7.exr");
+}
+
+TEST(FramePattern, a_number_may_be_longer_and_negative) {
+  EXPECT_EQ(path_of("a.%04d.exr", 123456), "a.123456.exr");
+  EXPECT_EQ(path_of("a.%04d.exr", -7), "a.-007.exr");
+  EXPECT_EQ(path_of("a.%d.exr", -7), "a.-7.exr");
+}
+
+TEST(FramePattern, other_names_are_none) {
+  for (const char* name : {"", "shot.0007.exr", "user@host.exr", "50%.exr", "%s.exr", "<f.exr", "a<b>.exr", "%4d.exr",
+                           "%0", "$", "$G", "<", "%017d", "#################"})
+    EXPECT_FALSE(frame_pattern(name)) << name;
+}
+
+TEST(FramePattern, two_tokens_are_an_error) {
+  EXPECT_THAT(error_of(ErrorKind::usage, [] { frame_pattern("%04d/shot.####.exr"); }), AllOf(HasSubstr("%04d and ####"), HasSubstr("two places")));
+}
+
+TEST(FramePattern, expands_in_the_order_of_the_frames) {
+  EXPECT_THAT(expand(*frame_pattern("a.##.exr"), std::vector{3, -1, 100}), ElementsAre("a.03.exr", "a.-1.exr", "a.100.exr"));
+}
+
+TEST(ParseFrames, numbers_ranges_and_steps) {
+  EXPECT_THAT(parse_frames("7"), ElementsAre(7));
+  EXPECT_THAT(parse_frames("1001-1003"), ElementsAre(1001, 1002, 1003));
+  EXPECT_THAT(parse_frames("1-10x3"), ElementsAre(1, 4, 7, 10));
+  EXPECT_THAT(parse_frames("1-10:4"), ElementsAre(1, 5, 9));
+  EXPECT_THAT(parse_frames("5-5"), ElementsAre(5));
+  EXPECT_THAT(parse_frames("0007"), ElementsAre(7));
+}
+
+TEST(ParseFrames, lists_with_commas_and_blanks) {
+  EXPECT_THAT(parse_frames("1,5-6, 9"), ElementsAre(1, 5, 6, 9));
+  EXPECT_THAT(parse_frames(" 1 5-6 "), ElementsAre(1, 5, 6));
+  EXPECT_THAT(parse_frames("3,1-4,3"), ElementsAre(3, 1, 2, 4)) << "no frame twice";
+}
+
+TEST(ParseFrames, negative_frames) {
+  EXPECT_THAT(parse_frames("-3"), ElementsAre(-3));
+  EXPECT_THAT(parse_frames("-5--3"), ElementsAre(-5, -4, -3));
+  EXPECT_THAT(parse_frames("-1-1"), ElementsAre(-1, 0, 1));
+  EXPECT_THAT(parse_frames("1--1"), ElementsAre(1, 0, -1));
+}
+
+TEST(ParseFrames, ranges_run_backwards) {
+  EXPECT_THAT(parse_frames("3-1"), ElementsAre(3, 2, 1));
+  EXPECT_THAT(parse_frames("10-1x4"), ElementsAre(10, 6, 2));
+  EXPECT_THAT(parse_frames("10-1x-4"), ElementsAre(10, 6, 2));
+}
+
+TEST(ParseFrames, anything_else_is_an_error_that_quotes_it) {
+  for (const char* list : {"", "a", "1-", "-", "1-2-3", "1-10x", "1-10y2", "1.5", "1,,2", ",1", "1,", "1-10x2x3", "12345678901", "1-2147483648",
+                           "0x10", "1e3", "1-+3", "99999999999999999999"})
+    EXPECT_THAT(error_of(ErrorKind::usage, [&] { parse_frames(list); }), HasSubstr(list)) << list;
+  EXPECT_THAT(error_of(ErrorKind::usage, [] { parse_frames("  "); }), HasSubstr("empty"));
+  EXPECT_THAT(error_of(ErrorKind::usage, [] { parse_frames("1-10x0"); }), HasSubstr("step"));
+  EXPECT_THAT(error_of(ErrorKind::usage, [] { parse_frames("1-10x-2"); }), HasSubstr("backwards"));
+  EXPECT_THAT(error_of(ErrorKind::usage, [] { parse_frames("1-100000000"); }), HasSubstr("more than 1000000 frames"));
+  EXPECT_THAT(error_of(ErrorKind::usage, [] { parse_frames("1-900000,1000001-1900000"); }), HasSubstr("more than 1000000 frames"));
+}
+
+TEST(FramesText, is_short_and_means_the_same) {
+  EXPECT_EQ(frames_text({1010, 1003, 1012, 1011}), "1003, 1010-1012");
+  EXPECT_EQ(frames_text({-2, -1, 1}), "-2--1, 1");
+  EXPECT_EQ(frames_text({}), "");
+  EXPECT_EQ(parse_frames(frames_text({5, 1, 2, 3, -7})), (std::vector{-7, 1, 2, 3, 5}));
+}
+
+class OnDisk : public testing::Test {
+ protected:
+  std::vector<int> frames(const std::string& name) const { return frames_on_disk(frame_pattern(folder / name).value(), "RESULT"); }
+  void touch(const std::vector<std::string>& names) const {
+    for (const auto& name : names) write_bytes(folder / name, "");
+  }
+  TemporaryFolder folder;
+};
+
+TEST_F(OnDisk, frames_are_found_in_rising_order) {
+  touch({"a.0010.exr", "a.0002.exr", "a.12345.exr", "a.-003.exr"});
+  EXPECT_THAT(frames("a.%04d.exr"), ElementsAre(-3, 2, 10, 12345));
+}
+
+TEST_F(OnDisk, other_names_are_passed_by) {
+  touch({"a.0001.exr", "a.00002.exr", "a.3.exr", "a..exr", "a.0004.png", "b.0005.exr", "a.0006.exr.tmp",
+         "a.x007.exr", "a.+008.exr", "a.99999999999.exr"});
+  EXPECT_THAT(frames("a.####.exr"), ElementsAre(1));
+  EXPECT_THAT(frames("a.%d.exr"), ElementsAre(3));
+}
+
+TEST_F(OnDisk, none_is_an_error) {
+  EXPECT_THAT(error_of(ErrorKind::input, [&] { frames("a.%04d.exr"); }), AllOf(HasSubstr("RESULT"), HasSubstr("a.0001.exr")));
+  EXPECT_THAT(error_of(ErrorKind::input, [&] { frames("missing/a.%04d.exr"); }), HasSubstr("cannot be read"));
+}
+
+TEST_F(OnDisk, a_token_in_a_folders_name_needs_a_list) {
+  EXPECT_THAT(error_of(ErrorKind::usage, [&] { frames("f%04d/a.exr"); }), HasSubstr("--frames"));
+}
+
+}  // namespace
+}  // namespace alcove

@@ -1,0 +1,333 @@
+// Camera files, cameras from numbers, and the projection that kernels are given.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/frame/camera.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "core/base/error.h"
+#include "tests/support/program.h"
+#include "tests/support/wall_frame.h"
+
+namespace alcove {
+namespace {
+
+using namespace test;
+using nlohmann::json;
+using testing::HasSubstr;
+
+constexpr Window kDisplay{0, 0, 64, 36};
+
+class CameraFiles : public testing::Test {
+ protected:
+  Camera read(const std::string& text, int frame = 0) const {
+    write_bytes(file, text);
+    return read_camera(file, frame);
+  }
+  Camera read(const json& fields, int frame = 0) const { return read(fields.dump(), frame); }
+
+  /// Reading must fail with ErrorKind::input, in one line that names the file and this.
+  void expect_refused(const std::string& text, const std::string& word, int frame = 0) const {
+    try {
+      read(text, frame);
+      ADD_FAILURE() << "accepted: " << text;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::input) << error.what();
+      EXPECT_THAT(error.what(), testing::AllOf(HasSubstr("camera.json"), HasSubstr(word), testing::Not(HasSubstr("\n")))) << text;
+    }
+  }
+
+  /// As above, with one field of a good camera replaced.
+  void expect_field_refused(const char* field, const json& value) const {
+    json fields = wall_camera();
+    fields[field] = value;
+    expect_refused(fields.dump(), field);
+  }
+
+  TemporaryFolder folder;
+  const std::string file = folder / "camera.json";
+};
+
+void expect_near(const Camera& camera, double fx, double fy, double cx, double cy) {
+  EXPECT_NEAR(camera.fx, fx, 1e-9 * fx);
+  EXPECT_NEAR(camera.fy, fy, 1e-9 * fy);
+  EXPECT_NEAR(camera.cx, cx, 1e-9);
+  EXPECT_NEAR(camera.cy, cy, 1e-9);
+}
+
+TEST_F(CameraFiles, a_camera_is_read_as_it_is_written) {
+  json fields = wall_camera();
+  fields["cx"] = 30.25;
+  fields["cy"] = -4;
+  fields["depth"] = "Ray, from the eye";
+  fields["normal_space"] = "camera";
+  const Camera camera = read(fields);
+  EXPECT_EQ(camera.width, 64);
+  EXPECT_EQ(camera.height, 36);
+  expect_near(camera, 60, 60, 30.25, -4);
+  EXPECT_FALSE(camera.orthographic);
+  EXPECT_EQ(camera.depth_kind, DepthKind::ray);
+  EXPECT_EQ(camera.normal_space, NormalSpace::view);
+  ASSERT_TRUE(camera.view_from_world);
+  EXPECT_EQ(*camera.view_from_world, (Matrix3{{{1, 0, 0}, {0, 0, 1}, {0, -1, 0}}}));
+}
+
+TEST_F(CameraFiles, clip_planes_and_the_conventions_of_games_are_read) {
+  json fields = wall_camera();
+  fields["depth_kind"] = "device";
+  fields["near"] = 0.25;
+  fields["far"] = "inf";
+  fields["reversed_z"] = true;
+  fields["normal_encoding"] = "spheremap (two channels)";
+  fields["projection"] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 0, 0.25}, {0, 0, 1, 0}};
+  const Camera camera = read(fields);
+  EXPECT_EQ(camera.depth_kind, DepthKind::device);
+  EXPECT_EQ(camera.near, 0.25);
+  EXPECT_TRUE(camera.far && std::isinf(*camera.far));
+  EXPECT_TRUE(camera.reversed_z);
+  EXPECT_EQ(camera.normal_encoding, NormalEncoding::spheremap);
+  EXPECT_FALSE(camera.orthographic);
+  fields["projection"][3] = {0, 0, 0, 1};
+  EXPECT_TRUE(read(fields).orthographic);
+  for (const char* field : {"near", "far"}) expect_field_refused(field, -1);
+  for (const char* field : {"reversed_z", "normal_encoding", "depth_kind", "camera_space"}) expect_field_refused(field, "nonsense");
+}
+
+TEST_F(CameraFiles, a_left_handed_camera_space_is_turned_to_look_along_minus_z) {
+  json fields = wall_camera();
+  fields["world_to_camera"] = {{1, 0, 0, 1}, {0, 1, 0, 2}, {0, 0, -1, 3}, {0, 0, 0, 1}};
+  expect_refused(fields.dump(), "world_to_camera");
+  fields["camera_space"] = "left-handed: x right, y up, z forward";
+  const Camera camera = read(fields);
+  EXPECT_EQ(*camera.view_from_world, (Matrix3{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}));
+  EXPECT_EQ(camera.view_from_world_offset, (std::array<double, 3>{1, 2, -3}));
+  EXPECT_EQ(view_from_normal(camera, NormalSpace::view, {}), (Matrix3{{{1, 0, 0}, {0, 1, 0}, {0, 0, -1}}}));
+}
+
+TEST_F(CameraFiles, optional_fields_may_be_missing) {
+  const Camera camera = read(json{{"resolution", {64, 36}}, {"fx", 60}, {"fy", 60}, {"cx", 32}, {"cy", 18}});
+  EXPECT_FALSE(camera.orthographic);
+  EXPECT_FALSE(camera.view_from_world);
+  EXPECT_EQ(camera.depth_kind, DepthKind::automatic);
+  EXPECT_EQ(camera.normal_space, NormalSpace::automatic);
+}
+
+TEST_F(CameraFiles, a_uniform_scale_is_divided_out_of_the_rotation) {
+  json fields = wall_camera();
+  fields["world_to_camera"] = {{0, 100, 0, 7}, {0, 0, 100, 8}, {100, 0, 0, 9}, {0, 0, 0, 1}};
+  const Camera camera = read(fields);
+  ASSERT_TRUE(camera.view_from_world);
+  EXPECT_EQ(*camera.view_from_world, (Matrix3{{{0, 1, 0}, {0, 0, 1}, {1, 0, 0}}}));
+}
+
+TEST_F(CameraFiles, a_rotation_in_single_precision_is_a_rotation) {
+  json fields = wall_camera();
+  const double c = float(std::cos(0.3)), s = float(std::sin(0.3));
+  fields["world_to_camera"] = {{c, s, 0, 0}, {-s, c, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}};
+  EXPECT_NO_THROW(read(fields));
+}
+
+TEST_F(CameraFiles, the_frames_own_entry_wins) {
+  json fields = wall_camera();
+  fields["frames"] = {{{"frame", 7}, {"fx", 70}}, {{"frame", -8}, {"fx", 80}, {"projection", "orthographic"}}};
+  EXPECT_EQ(read(fields, 7).fx, 70);
+  EXPECT_EQ(read(fields, 7).fy, 60) << "what the entry does not say stands above";
+  EXPECT_EQ(read(fields, -8).fx, 80);
+  EXPECT_TRUE(read(fields, -8).orthographic);
+  expect_refused(fields.dump(), "frames", 9);
+  for (const auto* field : {"fx", "fy", "cx", "cy", "resolution"}) {
+    fields["frames"][0][field] = fields[field];
+    fields.erase(field);
+  }
+  EXPECT_EQ(read(fields, 7).fx, 60) << "an entry may say everything";
+  expect_refused(fields.dump(), "missing", -8);
+}
+
+TEST_F(CameraFiles, text_that_is_no_camera_is_refused) {
+  for (const char* text : {"", " ", "{", "{}x", "[]", "7", "null", "\"fx\"", "{\"fx\": NaN}", "{\"fx\": 1e999, \"fy\": 1}", "{'fx': 1}", "\xff\xfe{}",
+                           "{\"fx\": \"\xff\"}"})
+    expect_refused(text, "JSON");
+  expect_refused(std::string(100000, '['), "JSON");
+}
+
+TEST_F(CameraFiles, a_required_field_must_be_there) {
+  for (const char* field : {"resolution", "fx", "fy", "cx", "cy"}) {
+    json fields = wall_camera();
+    fields.erase(field);
+    expect_refused(fields.dump(), field);
+  }
+}
+
+TEST_F(CameraFiles, senseless_fields_are_refused) {
+  const json wrong_numbers[] = {"NaN", "60", nullptr, true, json::array({60}), json::object()};
+  for (const char* field : {"fx", "fy", "cx", "cy"})
+    for (const json& value : wrong_numbers) expect_field_refused(field, value);
+  for (const char* field : {"fx", "fy", "pixel_aspect"})
+    for (const double value : {0.0, -1.0}) expect_field_refused(field, value);
+  for (const char* field : {"fx", "fy"})
+    for (const double value : {1e-40, 1e40}) expect_field_refused(field, value);
+  for (const char* field : {"cx", "cy"})
+    for (const double value : {-1e10, 1e300}) expect_field_refused(field, value);
+  for (const json& value : {json{0, 5}, json{64, -36}, json{64}, json{64, 36, 1}, json{64.5, 36}, json{"64", "36"}, json("64x36"), json(64),
+                            json{64, 1 << 30}, json{9e99, 1}})
+    expect_field_refused("resolution", value);
+  for (const json& value : {json("panoramic"), json(1), json("persp")}) expect_field_refused("projection", value);
+  for (const json& value : {json("deep"), json(1)}) expect_field_refused("depth", value);
+  for (const json& value : {json("tangent"), json(false)}) expect_field_refused("normal_space", value);
+  for (const json& value : {json("1-10"), json(7), json{1, 2}, json{{{"fx", 1}}}, json{{{"frame", "1"}}}, json{{{"frame", 0.5}}}, json::array()})
+    expect_field_refused("frames", value);
+}
+
+TEST_F(CameraFiles, only_a_rotation_with_a_translation_is_a_world_to_camera) {
+  const json ok = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}};
+  for (const json& value :
+       {json(nullptr), json("identity"), json::array(), json{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}, json{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}})
+    expect_field_refused("world_to_camera", value);
+  const auto with = [&](std::size_t row, std::size_t column, const json& entry) {
+    json matrix = ok;
+    matrix[row][column] = entry;
+    return matrix;
+  };
+  for (const json& value : {with(0, 0, 0), with(0, 0, -1), with(0, 1, 0.01), with(1, 1, 2), with(2, 2, "1"), with(0, 3, nullptr), with(2, 2, 0.99)})
+    expect_field_refused("world_to_camera", value);
+  // With the translation in the last row it is the transposed matrix of row vectors: its rotation would be turned round.
+  expect_field_refused("world_to_camera", {{0, 1, 0, 0}, {0, 0, 1, 0}, {1, 0, 0, 0}, {5, 6, 7, 1}});
+  expect_field_refused("world_to_camera", with(3, 3, 0));
+}
+
+// A camera for a frame.
+
+InputSettings with_fov(double degrees) {
+  InputSettings settings;
+  settings.fov = degrees;
+  return settings;
+}
+
+TEST_F(CameraFiles, fov_is_horizontal_over_the_display_window) {
+  const Camera camera = camera_for(with_fov(90), kDisplay, 1, 0);
+  expect_near(camera, 32, 32, 32, 18);
+  EXPECT_FALSE(camera.orthographic);
+  EXPECT_FALSE(camera.view_from_world);
+  EXPECT_NEAR(camera_for(with_fov(60), kDisplay, 1, 0).fx, 32 / std::tan(std::numbers::pi / 6), 1e-9);
+}
+
+TEST_F(CameraFiles, a_wide_pixel_covers_more_in_x) {
+  // Pixels twice as wide as high: a tangent has half as many of them in x as in y.
+  const Camera camera = camera_for(with_fov(90), kDisplay, 2, 0);
+  expect_near(camera, 32, 64, 32, 18);
+}
+
+TEST_F(CameraFiles, focal_and_aperture_are_a_fov) {
+  InputSettings settings;
+  settings.focal = 25;
+  settings.aperture = 36;
+  const Camera camera = camera_for(settings, kDisplay, 2, 0),
+               same = camera_for(with_fov(2 * std::atan(18.0 / 25) * 180 / std::numbers::pi), kDisplay, 2, 0);
+  expect_near(camera, same.fx, same.fy, same.cx, same.cy);
+  expect_near(camera, 64 * 25 / 36.0, 2 * 64 * 25 / 36.0, 32, 18);
+}
+
+TEST_F(CameraFiles, ortho_width_spans_the_display_window) {
+  InputSettings settings;
+  settings.ortho_width = 16;
+  const Camera camera = camera_for(settings, kDisplay, 0.5, 0);
+  expect_near(camera, 4, 2, 32, 18);
+  EXPECT_TRUE(camera.orthographic);
+}
+
+TEST_F(CameraFiles, a_proxy_shares_the_camera_of_the_full_size) {
+  json fields = wall_camera();
+  fields["cx"] = 30;
+  fields["fy"] = 66;
+  read(fields);
+  InputSettings settings;
+  settings.camera = file;
+  expect_near(camera_for(settings, {0, 0, 64, 36}, 1, 0), 60, 66, 30, 18);
+  expect_near(camera_for(settings, {0, 0, 32, 18}, 1, 0), 30, 33, 15, 9);
+  expect_near(camera_for(settings, {100, -50, 160, 90}, 1, 0), 150, 165, 75, 45);
+  fields["projection"] = "orthographic";
+  read(fields);
+  expect_near(camera_for(settings, {0, 0, 32, 18}, 1, 0), 30, 33, 15, 9);
+}
+
+TEST_F(CameraFiles, another_aspect_does_not_fit) {
+  read(wall_camera());
+  InputSettings settings;
+  settings.camera = file;
+  for (const Window& display : {Window{0, 0, 64, 48}, Window{0, 0, 36, 64}, Window{0, 0, 1, 1}}) {
+    try {
+      camera_for(settings, display, 1, 0);
+      ADD_FAILURE() << to_string(display);
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::input);
+      EXPECT_THAT(error.what(), testing::AllOf(HasSubstr("camera.json"), HasSubstr("64x36"), HasSubstr("--camera")));
+    }
+  }
+}
+
+TEST_F(CameraFiles, no_camera_is_a_usage_error) {
+  InputSettings settings;
+  settings.input = "frame.exr";
+  try {
+    camera_for(settings, kDisplay, 1, 0);
+    ADD_FAILURE();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::usage);
+    for (const char* option : {"--camera", "--fov", "--focal", "--aperture", "--ortho-width"}) EXPECT_THAT(error.what(), HasSubstr(option));
+  }
+}
+
+TEST_F(CameraFiles, a_camera_that_floats_cannot_hold_is_a_usage_error) {
+  InputSettings narrow, flat, small;
+  narrow.fov = 1e-300;
+  flat.focal = 1e30, flat.aperture = 1e-30;
+  small.ortho_width = 1e-200;
+  for (const auto& settings : {narrow, flat, small}) {
+    try {
+      camera_for(settings, kDisplay, 1, 0);
+      ADD_FAILURE();
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::usage);
+      for (const char* option : {"--fov", "--focal", "--aperture", "--ortho-width"}) EXPECT_THAT(error.what(), HasSubstr(option));
+    }
+  }
+}
+
+// What kernels are given.
+
+/// The image point of a view-space position, in pixels from the display window's corner, by the camera's own definition.
+std::array<double, 2> seen_at(const Camera& camera, double x, double y, double z) {
+  const double w = camera.orthographic ? 1 : -z;
+  return {camera.cx + camera.fx * x / w, camera.cy - camera.fy * y / w};
+}
+
+TEST_F(CameraFiles, view_is_the_inverse_of_the_projection_in_every_data_window) {
+  InputSettings ortho;
+  ortho.ortho_width = 16;
+  Camera off_axis = camera_for(with_fov(70), {0, 0, 64, 36}, 1.5, 0);
+  off_axis.cx = 11.5;
+  off_axis.cy = 40;
+  for (const Camera& camera : {camera_for(with_fov(70), {0, 0, 64, 36}, 1.5, 0), off_axis, camera_for(ortho, {0, 0, 64, 36}, 2, 0)})
+    for (const Window& display : {Window{0, 0, 64, 36}, Window{-7, 100, 64, 36}})
+      for (const Window& data : {display, Window{display.x - 8, display.y - 4, 80, 44}, Window{display.x + 10, display.y + 6, 40, 24}}) {
+        const View view = view_of(camera, data, display);
+        EXPECT_EQ(view.size.x, data.width);
+        EXPECT_EQ(view.size.y, data.height);
+        EXPECT_EQ(view.orthographic, camera.orthographic ? 1u : 0u);
+        const double x = 0.3, y = -0.7, depth = 5;
+        const auto seen = seen_at(camera, x, y, -depth);
+        // The same point counted from the data window's corner, taken back to view space.
+        const double back_x = (seen[0] + display.x - data.x - view.center.x) * view.tangent_per_pixel.x;
+        const double back_y = (seen[1] + display.y - data.y - view.center.y) * view.tangent_per_pixel.y;
+        const double scale = camera.orthographic ? 1 : depth;
+        EXPECT_NEAR(back_x * scale, x, 1e-4) << to_string(data) << " in " << to_string(display);
+        EXPECT_NEAR(back_y * scale, y, 1e-4) << to_string(data) << " in " << to_string(display);
+      }
+}
+
+}  // namespace
+}  // namespace alcove

@@ -1,0 +1,483 @@
+// Every way to say depth and normals gives the same AO; what pixels tell of them is found, and what they do not tell is refused.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "core/run/batch.h"
+#include "core/base/error.h"
+#include "core/frame/evidence.h"
+#include "core/formats/exr.h"
+#include "core/frame/settle.h"
+#include "tests/support/command_line.h"
+#include "tests/support/device.h"
+#include "tests/support/difference.h"
+#include "tests/support/scenes.h"
+#include "tests/support/settled.h"
+
+namespace alcove {
+namespace {
+
+using namespace test;
+using testing::HasSubstr;
+
+constexpr double kNear = 0.1, kFar = 100;
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN(), kInfinite = std::numeric_limits<float>::infinity();
+
+/// A floor, a wall and a ball, from outside or from within a corner, with sky.
+Rendering furnished(bool inside = false) {
+  const Scene scene{{parallelogram({0, -3, 0}, {4, 0, 0}, {0, 6, 0}), parallelogram({0, -3, 0}, {0, 6, 0}, {0, 0, 1.5}),
+                     Sphere{.center = {1.2, 0.4, 0.5}, .radius = 0.5}}};
+  return render(scene, inside ? Shot::perspective({0.3, -0.5, 0.2}, {1, 0.6, 0.3}, 90, 160, 120)
+                              : Shot::perspective({4.5, -1.5, 2.4}, {1, 0, 0.6}, 55, 160, 120));
+}
+
+EstimatorSettings settings_of(double radius) {
+  EstimatorSettings settings;
+  settings.radius = radius;
+  settings.slices = 3;
+  settings.steps = 12;
+  return settings;
+}
+
+std::vector<float> ao_of(const HostFrame& frame, double radius, ThicknessKind thickness = ThicknessKind::infinite) {
+  EstimatorSettings settings = settings_of(radius);
+  settings.thickness = thickness;
+  return compute_ao(recorder(), frame, settings).ao;
+}
+
+/// The frame with each depth of a surface replaced, and all sky by `sky`.
+HostFrame with_depth(const Rendering& rendering, DepthKind kind, const std::function<double(const test::Hit&)>& value, float sky) {
+  HostFrame frame = rendering.frame;
+  frame.depth_kind = kind;
+  for (std::size_t i = 0; i < frame.depth.size(); i++) frame.depth[i] = rendering.hits[i].primitive < 0 ? sky : float(value(rendering.hits[i]));
+  return frame;
+}
+
+/// With no radius that samples could fall in or out of by rounding, and occluders that have no width, every pixel agrees; else all but single samples do.
+void expect_same_ao(const HostFrame& frame, const HostFrame& planar, const std::string& what) {
+  const auto compared = [&](double radius, ThicknessKind thickness) { return difference(ao_of(frame, radius, thickness), ao_of(planar, radius, thickness)); };
+  const Difference whole = compared(1e3, ThicknessKind::infinite);
+  EXPECT_LE(whole.max, 1e-4) << what << ", " << place(whole, frame);
+  for (const double radius : {1e3, 0.6}) {
+    const Difference near = compared(radius, ThicknessKind::automatic);
+    EXPECT_LE(near.rmse, 1e-4) << what << ", radius " << radius << ", " << place(near, frame);
+  }
+}
+
+DepthRange between_planes(double far, bool reversed, DeviceRange device = DeviceRange::zero_to_one, double near = kNear) {
+  DepthRange range;
+  range.near = near;
+  range.far = far;
+  range.reversed = reversed;
+  range.device = device;
+  return range;
+}
+
+/// The z-buffer by its projection matrix: the third row over the fourth, for a camera that looks along -z.
+double device_depth(double z, double far, bool reversed, DeviceRange device, double near = kNear) {
+  const double zero_to_one = std::isinf(far) ? 1 - near / z : (far / (far - near)) * (1 - near / z);
+  const double d = reversed ? 1 - zero_to_one : zero_to_one;
+  return device == DeviceRange::zero_to_one ? d : 2 * d - 1;
+}
+
+// Depth.
+
+TEST(Depth, of_every_z_buffer_is_the_same_scene) {
+  for (const bool inside : {false, true}) {
+    const Rendering rendering = furnished(inside);
+    const double near = inside ? 0.1 : 1;  // as near as the scene allows: standard z is coarse beyond some hundred times that
+    for (const double far : {kFar, double(kInfinite)})
+      for (const bool reversed : {false, true})
+        for (const DeviceRange device : {DeviceRange::zero_to_one, DeviceRange::minus_one_to_one}) {
+          const float sky = float(device_depth(kInfinite, kInfinite, reversed, device));
+          HostFrame frame = with_depth(
+              rendering, DepthKind::device, [&](const test::Hit& hit) { return device_depth(hit.distance, far, reversed, device, near); }, sky);
+          frame.depth_range = between_planes(far, reversed, device, near);
+          expect_same_ao(frame, rendering.frame, fmt::format("inside {} far {} reversed {} range {}", inside, far, reversed, int(device)));
+          EXPECT_EQ(compute_ao(recorder(), frame, settings_of(1)).sky_pixels, compute_ao(recorder(), rendering.frame, settings_of(1)).sky_pixels);
+        }
+  }
+}
+
+TEST(Depth, by_distance_by_inverse_or_between_planes_is_the_same_scene) {
+  for (const bool inside : {false, true}) {
+    const Rendering rendering = furnished(inside);
+    const auto check = [&](const char* what, DepthKind kind, float sky, const DepthRange& range,
+                           const std::function<double(const test::Hit&)>& value) {
+      HostFrame frame = with_depth(rendering, kind, value, sky);
+      frame.depth_range = range;
+      expect_same_ao(frame, rendering.frame, what);
+    };
+    DepthRange negative, log = between_planes(kFar, false), log_reversed = between_planes(kFar, true);
+    negative.negative = true;
+    log.log_constant = log_reversed.log_constant = 0.5;
+    const auto log_depth = [](double z) { return std::log1p(0.5 * z) / std::log1p(0.5 * kFar); };
+    check("ray", DepthKind::ray, 1e30f, {}, [&](const test::Hit& hit) { return length(hit.position - rendering.shot.eye); });
+    check("inverse", DepthKind::inverse, 0, {}, [](const test::Hit& hit) { return 1 / hit.distance; });
+    check("negative planar", DepthKind::planar, -1e10f, negative, [](const test::Hit& hit) { return -hit.distance; });
+    check("negative inverse", DepthKind::inverse, 0, negative, [](const test::Hit& hit) { return -1 / hit.distance; });
+    check("normalized", DepthKind::normalized, 1, between_planes(kFar, false),
+          [](const test::Hit& hit) { return (hit.distance - kNear) / (kFar - kNear); });
+    check("normalized, near 1", DepthKind::normalized, 0, between_planes(kFar, true),
+          [](const test::Hit& hit) { return (kFar - hit.distance) / (kFar - kNear); });
+    check("log", DepthKind::log, 1, log, [&](const test::Hit& hit) { return log_depth(hit.distance); });
+    check("log, near 1", DepthKind::log, 0, log_reversed, [&](const test::Hit& hit) { return 1 - log_depth(hit.distance); });
+  }
+}
+
+TEST(Depth, of_an_orthographic_z_buffer_is_linear) {
+  const Scene scene{{parallelogram({0, -3, 0}, {4, 0, 0}, {0, 6, 0}), Sphere{.center = {1.2, 0.4, 0.5}, .radius = 0.5}}};
+  const Rendering rendering = render(scene, Shot::orthographic({4.5, -1.5, 2.4}, {1, 0, 0.6}, 5, 160, 120));
+  for (const bool reversed : {false, true}) {
+    HostFrame frame = with_depth(
+        rendering, DepthKind::device,
+        [&](const test::Hit& hit) {
+          const double d = (hit.distance - kNear) / (kFar - kNear);
+          return reversed ? 1 - d : d;
+        },
+        reversed ? 0.0f : 1.0f);
+    frame.depth_range = between_planes(kFar, reversed);
+    expect_same_ao(frame, rendering.frame, reversed ? "reversed" : "standard");
+  }
+}
+
+TEST(Depth, by_position_in_world_or_view_space_is_the_same_scene) {
+  for (const bool inside : {false, true}) {
+    const Rendering rendering = furnished(inside);
+    const Shot& shot = rendering.shot;
+    for (const bool world : {false, true}) {
+      HostFrame frame = rendering.frame;
+      frame.depth_kind = DepthKind::position;
+      frame.position_space = world ? PositionSpace::world : PositionSpace::view;
+      frame.camera.view_from_world =
+          Matrix3{{{shot.right.x, shot.right.y, shot.right.z}, {shot.up.x, shot.up.y, shot.up.z}, {shot.back.x, shot.back.y, shot.back.z}}};
+      const Vec3 offset = -shot.view_from_world(shot.eye);
+      frame.camera.view_from_world_offset = {offset.x, offset.y, offset.z};
+      const std::size_t pixels = frame.data.pixels();
+      frame.depth.assign(3 * pixels, 0);
+      for (std::size_t i = 0; i < pixels; i++) {
+        if (rendering.hits[i].primitive < 0) continue;
+        const Vec3 p = world ? rendering.hits[i].position : shot.view_from_world(rendering.hits[i].position - shot.eye);
+        frame.depth[i] = float(p.x), frame.depth[i + pixels] = float(p.y), frame.depth[i + 2 * pixels] = float(p.z);
+      }
+      expect_same_ao(frame, rendering.frame, world ? "world" : "view");
+      const View view = view_of(frame.camera, frame.data, frame.display);
+      EXPECT_LT(reprojection_error(frame.depth, frame.position_space, false, frame.camera, view).value(), 1e-3);
+      EXPECT_GT(reprojection_error(frame.depth, world ? PositionSpace::view : PositionSpace::world, false, frame.camera, view).value(), 10);
+    }
+  }
+}
+
+TEST(Depth, of_every_sentinel_is_sky) {
+  const Rendering rendering = furnished();
+  const std::vector<float> expected = ao_of(rendering.frame, 0.6, ThicknessKind::automatic);
+  const auto check = [&](DepthKind kind, const DepthRange& range, const std::vector<float>& sentinels,
+                         const std::function<double(const test::Hit&)>& value) {
+    for (const float sentinel : sentinels) {
+      HostFrame frame = with_depth(rendering, kind, value, sentinel);
+      frame.depth_range = range;
+      const HostResult result = compute_ao(recorder(), frame, settings_of(0.6));
+      EXPECT_LE(difference(result.ao, expected).rmse, 1e-4) << name_of(kind) << " " << sentinel;
+      EXPECT_EQ(result.sky_pixels, compute_ao(recorder(), rendering.frame, settings_of(0.6)).sky_pixels) << name_of(kind) << " " << sentinel;
+    }
+  };
+  const auto distance = [](const test::Hit& hit) { return hit.distance; };
+  check(DepthKind::planar, {}, {0, 1e9f, 1e10f, 1e30f, 1e38f, kInfinite, -kInfinite, kNan, -1}, distance);
+  check(DepthKind::ray, {}, {0, 1e10f, kInfinite, kNan, -1}, [&](const test::Hit& hit) { return length(hit.position - rendering.shot.eye); });
+  check(DepthKind::inverse, {}, {0, 1e-10f, -1, kNan, -kInfinite, kInfinite}, [](const test::Hit& hit) { return 1 / hit.distance; });
+  for (const bool reversed : {false, true})
+    check(DepthKind::device, between_planes(kFar, reversed), {0, 1, 1e10f, 65504, kInfinite, -kInfinite, kNan, -1},
+          [&](const test::Hit& hit) { return device_depth(hit.distance, kFar, reversed, DeviceRange::zero_to_one); });
+  check(DepthKind::normalized, between_planes(kFar, false), {0, 1, 1e10f, kInfinite, kNan, -1},
+        [](const test::Hit& hit) { return (hit.distance - kNear) / (kFar - kNear); });
+}
+
+TEST(Depth, scale_holds_for_every_kind) {
+  const Rendering rendering = furnished();
+  HostFrame frame = with_depth(
+      rendering, DepthKind::device, [](const test::Hit& hit) { return device_depth(hit.distance, kFar, true, DeviceRange::zero_to_one); }, 0);
+  frame.depth_range = between_planes(kFar, true);
+  const std::vector<float> expected = ao_of(frame, 0.6);
+  frame.depth_scale = 128;
+  EXPECT_LE(difference(ao_of(frame, 128 * 0.6), expected).rmse, 1e-5);
+}
+
+TEST(Depth, the_host_and_the_kernel_agree_on_what_is_sky) {
+  const DepthMap map = depth_map(DepthKind::device, between_planes(kFar, false), PositionSpace::view, {}, 1, 1e9);
+  EXPECT_NEAR(planar_depth(map, {device_depth(7, kFar, false, DeviceRange::zero_to_one), 0, 0}, 1), 7, 1e-9);
+  for (const double sky : {0.0, 1.0, -1.0, 1e30}) EXPECT_TRUE(std::isinf(planar_depth(map, {sky, 0, 0}, 1))) << sky;
+}
+
+// Normals.
+
+/// The frame with the view normal of each surface written in other planes.
+HostFrame with_normals(const Rendering& rendering, int planes, NormalEncoding encoding, bool unorm, const std::function<Vec3(Vec3)>& encode) {
+  HostFrame frame = rendering.frame;
+  const std::size_t pixels = frame.data.pixels();
+  frame.normal_encoding = encoding;
+  frame.normal_unorm = unorm;
+  for (std::size_t i = 0; i < pixels; i++) {
+    const Vec3 n = encode({frame.normal[i], frame.normal[i + pixels], frame.normal[i + 2 * pixels]});
+    for (const auto& [plane, value] : {std::pair{0, n.x}, {1, n.y}, {2, n.z}})
+      frame.normal[i + std::size_t(plane) * pixels] = float(unorm ? 0.5 + 0.5 * value : value);
+  }
+  frame.normal.resize(std::size_t(planes) * pixels);
+  return frame;
+}
+
+Vec3 octahedral(Vec3 n) {
+  const double sum = std::abs(n.x) + std::abs(n.y) + std::abs(n.z), x = n.x / sum, y = n.y / sum;
+  return n.z >= 0 ? Vec3{x, y, 0} : Vec3{std::copysign(1 - std::abs(y), x), std::copysign(1 - std::abs(x), y), 0};
+}
+
+/// Of a camera space whose z points away from the camera.
+Vec3 spheremap(Vec3 n) {
+  const double across = std::hypot(n.x, n.y), radius = std::sqrt(0.5 - 0.5 * n.z);
+  return across > 0 ? Vec3{n.x / across * radius, n.y / across * radius, 0} : Vec3{};
+}
+
+TEST(Normals, of_every_encoding_are_the_same) {
+  const Rendering rendering = furnished();
+  const auto check = [&](const char* what, HostFrame frame) {
+    EXPECT_LE(difference(ao_of(frame, 1e3), ao_of(rendering.frame, 1e3)).max, 2e-4) << what;
+    const HostResult result = compute_ao(recorder(), frame, settings_of(1));
+    EXPECT_EQ(result.repaired_normals, 0u) << what;
+    frame.normal = decoded_normals(frame.normal, frame.data.pixels(), frame.normal_encoding, frame.normal_unorm);
+    frame.normal_encoding = NormalEncoding::signed_float;
+    frame.normal_unorm = false;
+    EXPECT_LE(difference(ao_of(frame, 1e3), ao_of(rendering.frame, 1e3)).max, 2e-4) << what << " decoded on the host";
+  };
+  const auto same = [](Vec3 n) { return n; };
+  check("unorm", with_normals(rendering, 3, NormalEncoding::signed_float, true, same));
+  check("two components", with_normals(rendering, 2, NormalEncoding::signed_float, false, same));
+  check("two components, unorm", with_normals(rendering, 2, NormalEncoding::signed_float, true, same));
+  check("of half the length", with_normals(rendering, 3, NormalEncoding::signed_float, false, [](Vec3 n) { return 0.5 * n; }));
+  for (const bool unorm : {false, true})
+    for (const int planes : {2, 3}) check("octahedral", with_normals(rendering, planes, NormalEncoding::octahedral, unorm, octahedral));
+  HostFrame sphere = with_normals(rendering, 2, NormalEncoding::spheremap, true, spheremap);
+  sphere.flip_normal.z = true;
+  EXPECT_LE(difference(ao_of(sphere, 1e3), ao_of(rendering.frame, 1e3)).max, 2e-3) << "spheremap is steep at its rim";
+}
+
+TEST(Normals, flips_undo_flips) {
+  const Rendering rendering = furnished();
+  for (const NormalFlips flips :
+       {NormalFlips{true, false, false}, NormalFlips{false, true, false}, NormalFlips{false, false, true}, NormalFlips{true, true, true}}) {
+    HostFrame frame = with_normals(rendering, 3, NormalEncoding::signed_float, false, [&](Vec3 n) {
+      return Vec3{flips.x ? -n.x : n.x, flips.y ? -n.y : n.y, flips.z ? -n.z : n.z};
+    });
+    EXPECT_GT(difference(ao_of(frame, 1), ao_of(rendering.frame, 1)).max, 0.1) << to_string(flips);
+    frame.flip_normal = flips;
+    EXPECT_TRUE(same_bits(ao_of(frame, 1), ao_of(rendering.frame, 1))) << to_string(flips);
+  }
+}
+
+// What the pixels tell.
+
+/// A rendering as a file, with the camera that made it.
+class Evidence : public testing::Test {
+ protected:
+  Evidence() { settings.input = folder / "frame.exr"; }
+
+  /// Depth as `value` gives it, normals by `turn`; the camera file says nothing of either.
+  void write(
+      const std::function<double(const test::Hit&)>& value, float sky, const std::function<Vec3(Vec3)>& turn = [](Vec3 n) { return n; }) {
+    const Shot& shot = rendering.shot;
+    FrameFile file{shot.data, shot.display, 1, {}, {}, {}};
+    const HostFrame frame = with_depth(rendering, DepthKind::planar, value, sky);
+    file.planes["Z"] = frame.depth;
+    const char* names[] = {"N.X", "N.Y", "N.Z"};
+    for (std::size_t c = 0; c < 3; c++) file.planes[names[c]].resize(frame.depth.size());
+    for (std::size_t i = 0; i < frame.depth.size(); i++) {
+      if (rendering.hits[i].primitive < 0) continue;
+      const Vec3 n = turn(rendering.hits[i].normal);
+      file.planes["N.X"][i] = float(n.x), file.planes["N.Y"][i] = float(n.y), file.planes["N.Z"][i] = float(n.z);
+    }
+    file.halves = halves;
+    file.write(settings.input);
+    const Vec3 offset = -shot.view_from_world(shot.eye);
+    const nlohmann::json camera = {{"resolution", {shot.data.width, shot.data.height}},
+                                   {"fx", shot.camera.fx},
+                                   {"fy", shot.camera.fy},
+                                   {"cx", shot.camera.cx},
+                                   {"cy", shot.camera.cy},
+                                   {"world_to_camera",
+                                    {{shot.right.x, shot.right.y, shot.right.z, offset.x},
+                                     {shot.up.x, shot.up.y, shot.up.z, offset.y},
+                                     {shot.back.x, shot.back.y, shot.back.z, offset.z},
+                                     {0, 0, 0, 1}}}};
+    settings.camera = folder / "camera.json";
+    write_bytes(settings.camera, camera.dump());
+  }
+
+  FrameSource settled() const { return test::settled(settings); }
+
+  void expect_refused(const std::vector<std::string>& words) const {
+    try {
+      settled();
+      ADD_FAILURE() << "accepted";
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::input);
+      for (const auto& word : words) EXPECT_THAT(error.what(), HasSubstr(word));
+    }
+  }
+
+  double ray_of(const test::Hit& hit) const { return length(hit.position - rendering.shot.eye); }
+
+  Rendering rendering = furnished();
+  std::set<std::string> halves;
+  TemporaryFolder folder;
+  InputSettings settings;
+};
+
+TEST_F(Evidence, tells_planar_ray_and_inverse_apart) {
+  write([](const test::Hit& hit) { return hit.distance; }, 1e10f);
+  FrameSource source = settled();
+  EXPECT_EQ(source.depth_kind, DepthKind::planar);
+  EXPECT_EQ(source.normal_space, NormalSpace::world);
+  EXPECT_THAT(source.notes, testing::IsEmpty()) << "nothing unusual";
+  write([&](const test::Hit& hit) { return ray_of(hit); }, 1e10f);
+  source = settled();
+  EXPECT_EQ(source.depth_kind, DepthKind::ray);
+  EXPECT_THAT(source.notes, testing::ElementsAre(HasSubstr("--depth-kind")));
+  write([](const test::Hit& hit) { return 30 / hit.distance; }, 0);
+  EXPECT_EQ(settled().depth_kind, DepthKind::inverse);
+}
+
+TEST_F(Evidence, is_not_asked_where_the_user_speaks) {
+  write([&](const test::Hit& hit) { return ray_of(hit); }, 1e10f);
+  settings.depth_kind = DepthKind::planar;
+  EXPECT_EQ(settled().depth_kind, DepthKind::planar);
+}
+
+TEST_F(Evidence, a_z_buffer_without_planes_is_refused_and_with_planes_is_read) {
+  write([](const test::Hit& hit) { return device_depth(hit.distance, kFar, false, DeviceRange::zero_to_one); }, 1);
+  expect_refused({"device", "inverse", "--near", "--far", "frame.exr"});
+  settings.depth_range = between_planes(kFar, false);
+  const FrameSource standard = settled();
+  EXPECT_EQ(standard.depth_kind, DepthKind::device);
+  EXPECT_FALSE(standard.depth_range.reversed) << "its sky is 1";
+  write([](const test::Hit& hit) { return device_depth(hit.distance, kFar, true, DeviceRange::zero_to_one); }, 0);
+  const FrameSource reversed = settled();
+  EXPECT_EQ(reversed.depth_kind, DepthKind::device);
+  EXPECT_TRUE(reversed.depth_range.reversed) << "its sky is 0";
+  write([](const test::Hit& hit) { return device_depth(hit.distance, kFar, true, DeviceRange::zero_to_one); }, 0.5f);
+  expect_refused({"--reversed-z"});
+}
+
+TEST_F(Evidence, positions_that_are_not_on_their_pixels_are_refused) {
+  FrameFile file{rendering.shot.data, rendering.shot.display, 1, {}, {}, {}};
+  const char* names[] = {"P.X", "P.Y", "P.Z"};
+  for (const char* name : names) file.planes[name].resize(rendering.hits.size());
+  for (std::size_t i = 0; i < rendering.hits.size(); i++) {
+    if (rendering.hits[i].primitive < 0) continue;
+    const Vec3 p = rendering.hits[i].position;
+    file.planes["P.X"][i] = float(p.x), file.planes["P.Y"][i] = float(p.y), file.planes["P.Z"][i] = float(p.z);
+  }
+  write([](const test::Hit& hit) { return hit.distance; }, 1e10f);  // for its camera
+  file.write(settings.input);
+  EXPECT_EQ(settled().position_space, PositionSpace::world);
+  settings.position_space = PositionSpace::view;
+  expect_refused({"frame.exr", "pixels", "--position-space", "--camera"});
+}
+
+TEST_F(Evidence, finds_the_space_and_the_flips_of_normals) {
+  const auto planar = [](const test::Hit& hit) { return hit.distance; };
+  const Shot& shot = rendering.shot;
+  write(planar, 1e10f, [&](Vec3 n) { return shot.view_from_world(n); });
+  EXPECT_EQ(settled().normal_space, NormalSpace::view);
+  write(planar, 1e10f, [&](Vec3 n) {
+    const Vec3 v = shot.view_from_world(n);
+    return Vec3{v.x, v.y, -v.z};
+  });
+  const FrameSource source = settled();
+  EXPECT_EQ(source.normal_space, NormalSpace::view);
+  EXPECT_EQ(to_string(source.flip_normal), "z");
+  EXPECT_THAT(source.notes, testing::ElementsAre(HasSubstr("--flip-normal")));
+}
+
+TEST_F(Evidence, finds_normals_between_0_and_1) {
+  write([](const test::Hit& hit) { return hit.distance; }, 1e10f, [](Vec3 n) { return Vec3{0.5 + 0.5 * n.x, 0.5 + 0.5 * n.y, 0.5 + 0.5 * n.z}; });
+  const FrameSource source = settled();
+  EXPECT_TRUE(source.normal_unorm);
+  EXPECT_EQ(source.normal_space, NormalSpace::world);
+}
+
+TEST_F(Evidence, strict_turns_a_guess_into_an_error) {
+  write([](const test::Hit& hit) { return hit.distance; }, 1e10f);
+  settings.strict = true;
+  expect_refused({"--strict", "--depth-kind", "planar"});
+  settings.depth_kind = DepthKind::planar;
+  expect_refused({"--strict", "--normal-encoding", "signed"});
+  settings.normal_encoding = NormalEncoding::signed_float;
+  expect_refused({"--strict", "--normal-space", "world"});
+  settings.normal_space = NormalSpace::world;
+  EXPECT_NO_THROW(settled());
+}
+
+TEST_F(Evidence, half_depth_is_noted_with_its_step) {
+  halves = {"Z"};
+  settings.depth_kind = DepthKind::planar;
+  write([](const test::Hit& hit) { return hit.distance; }, 65504);
+  EXPECT_THAT(settled().suspicious, testing::ElementsAre(testing::AllOf(HasSubstr("half float"), HasSubstr("0.0039"))));
+}
+
+// The command line.
+
+TEST_F(CommandLine, a_z_buffer_between_planes_is_read) {
+  ASSERT_EQ(run({"--type", "float"}).code, 0);
+  const auto planar = read_exr_image(ao).pixels;
+  FrameFile file = wall_frame();
+  for (float& z : file.planes["ViewLayer.Depth.Z"]) z = float(device_depth(z, kInfinite, true, DeviceRange::zero_to_one));
+  file.write(frame);
+  const Finished finished = run({"--type", "float", "--depth-kind", "device", "--near", "0.1", "--far", "inf", "--reversed-z"});
+  ASSERT_EQ(finished.code, 0) << finished;
+  EXPECT_LE(difference(read_exr_image(ao).pixels, planar).rmse, 1e-4);
+  const Finished without = run({"--depth-kind", "device"});
+  EXPECT_EQ(without.code, 2);
+  EXPECT_THAT(without.err, HasSubstr("--near"));
+}
+
+TEST_F(CommandLine, the_digest_changes_with_every_setting_of_the_input) {
+  const auto digest = [](const auto& change) {
+    Settings settings;
+    settings.estimator.radius = 1;
+    change(settings.input);
+    return options_digest(settings);
+  };
+  const std::string plain = digest([](InputSettings&) {});
+  const std::pair<const char*, std::string> changed[] = {
+      {"--near", digest([](InputSettings& s) { s.depth_range.near = 1; })},
+      {"--far", digest([](InputSettings& s) { s.depth_range.far = 1; })},
+      {"--reversed-z", digest([](InputSettings& s) { s.depth_range.reversed = true; })},
+      {"--device-range", digest([](InputSettings& s) { s.depth_range.device = DeviceRange::minus_one_to_one; })},
+      {"--log-constant", digest([](InputSettings& s) { s.depth_range.log_constant = 2; })},
+      {"--normal-encoding", digest([](InputSettings& s) { s.normal_encoding = NormalEncoding::unorm; })},
+      {"--flip-normal", digest([](InputSettings& s) { s.flip_normal.y = true; })},
+      {"--position-space", digest([](InputSettings& s) { s.position_space = PositionSpace::world; })},
+      {"--position-channels", digest([](InputSettings& s) { s.position_channels = "P"; })},
+      {"--view", digest([](InputSettings& s) { s.view = "left"; })},
+      {"--roi", digest([](InputSettings& s) {
+         s.roi = Region{0, 0, 1, 1};
+       })},
+  };
+  for (const auto& [option, other] : changed) EXPECT_NE(plain, other) << option;
+}
+
+TEST_F(CommandLine, flips_and_far_are_checked) {
+  for (const std::vector<std::string>& wrong :
+       {std::vector<std::string>{"--flip-normal", "xx"}, {"--flip-normal", "w"}, {"--far", "-1"}, {"--far", "away"}}) {
+    const Finished finished = run(wrong);
+    EXPECT_EQ(finished.code, 2) << finished;
+    EXPECT_THAT(finished.err, HasSubstr(wrong[0]));
+  }
+}
+
+}  // namespace
+}  // namespace alcove

@@ -1,0 +1,188 @@
+// The Vulkan layer: reflection, checks between host and kernel, staging, and errors that name what is wrong.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/base/error.h"
+#include "core/chain/host_frame.h"
+#include "kernels/composite.h"
+#include "kernels/horizon.h"
+#include "kernels/prepare.h"
+#include "kernels/shape.h"
+#include "tests/support/device.h"
+
+namespace alcove {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+/// The text of the Error that `work` throws, or "" when it throws none.
+template <class Work>
+std::string error_of(Work work) {
+  try {
+    work();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Reflection, reads_parameter_sizes_that_the_host_sends) {
+  EXPECT_EQ(gpu::reflect(gpu::kernel_code("prepare")).parameter_bytes, sizeof(PrepareParams));
+  EXPECT_EQ(gpu::reflect(gpu::kernel_code("horizon")).parameter_bytes, sizeof(HorizonParams));
+  EXPECT_EQ(gpu::reflect(gpu::kernel_code("shape")).parameter_bytes, sizeof(ShapeParams));
+  EXPECT_EQ(gpu::reflect(gpu::kernel_code("composite")).parameter_bytes, sizeof(CompositeParams));
+}
+
+TEST(Reflection, reads_bindings_groups_and_constants) {
+  const auto horizon = gpu::reflect(gpu::kernel_code("horizon"));
+  EXPECT_THAT(horizon.bindings, ElementsAre(kHorizonDepth, kHorizonNormal, kHorizonAo, kHorizonBent, kHorizonList, kHorizonCounts));
+  EXPECT_THAT(horizon.group, ElementsAre(kGroupX, kGroupY, 1u));
+  EXPECT_THAT(horizon.constant_ids, ElementsAre(kHorizonSlicesId, kHorizonStepsId, kHorizonModeId, kHorizonStrideId, kHorizonThicknessId));
+}
+
+TEST(Reflection, refuses_what_is_no_spirv) {
+  const std::uint32_t words[] = {1, 2, 3, 4, 5, 6};
+  EXPECT_THAT(error_of([&] { gpu::reflect(words); }), HasSubstr("no SPIR-V"));
+  const auto code = gpu::kernel_code("shape");
+  EXPECT_THAT(error_of([&] { gpu::reflect(code.first(6)); }), HasSubstr("cut short"));
+}
+
+TEST(Kernel, refuses_parameters_of_another_size) {
+  auto& gpu = test::recorder();
+  auto& buffer = gpu.buffer("test", 256, gpu::Use::device);
+  const PrepareParams wrong{};
+  EXPECT_THAT(error_of([&] { gpu.dispatch("shape", wrong, {{kShapeAo, buffer}, {kShapeShaped, buffer}}, {8, 8}); }), HasSubstr("kernel shape takes"));
+}
+
+TEST(Kernel, refuses_bindings_that_are_not_its_own) {
+  auto& gpu = test::recorder();
+  auto& buffer = gpu.buffer("test", 256, gpu::Use::device);
+  const ShapeParams params{};
+  EXPECT_THAT(error_of([&] { gpu.dispatch("shape", params, {{kShapeAo, buffer}}, {8, 8}); }), HasSubstr("kernel shape has the bindings"));
+}
+
+TEST(Kernel, refuses_missing_constants_and_unknown_stems) {
+  EXPECT_THAT(error_of([] { test::device().kernel("horizon", {1}); }), HasSubstr("specialization constants"));
+  EXPECT_THAT(error_of([] { test::device().kernel("nosuch", {}); }), HasSubstr("there is no kernel nosuch"));
+}
+
+TEST(Buffer, refuses_more_than_the_device_can_bind) {
+  const std::size_t too_many = std::size_t(test::device().info().buffer_bytes) + 1;
+  EXPECT_THAT(error_of([&] { gpu::Buffer(test::device(), too_many, gpu::Use::device); }), HasSubstr("takes"));
+}
+
+TEST(Buffer, keeps_its_place_in_the_pool_until_its_size_changes) {
+  auto& gpu = test::recorder();
+  const auto* first = gpu.buffer("pooled", 1024, gpu::Use::upload).host().data();
+  EXPECT_EQ(gpu.buffer("pooled", 1024, gpu::Use::upload).host().data(), first);
+  EXPECT_EQ(gpu.buffer("pooled", 2048, gpu::Use::upload).bytes(), 2048u);
+}
+
+/// Records a copy of 64 values, 0.5 each, from the buffer "source" of so many to one of so many.
+const gpu::Buffer& record_copy_of_64(std::size_t from, std::size_t to) {
+  auto& gpu = test::recorder();
+  auto &source = gpu.buffer("source", from * sizeof(float), gpu::Use::upload), &copy = gpu.buffer("copy", to * sizeof(float), gpu::Use::download);
+  auto& unread = gpu.buffer("unread", 256, gpu::Use::device);
+  std::ranges::fill(source.as<float>(), 0.5f);
+  gpu.upload(source);
+  ShapeParams params{};
+  params.size = {64, 1};
+  params.intensity = params.power = params.planes = 1;
+  gpu.dispatch("shape", params,
+               {{kShapeAo, source}, {kShapeShaped, copy}, {kShapeDepth, unread}, {kShapeMaterial, unread}, {kShapeCounts, unread}}, {64, 1});
+  gpu.download(copy);
+  return copy;
+}
+
+std::span<const float> copied_64(std::size_t from, std::size_t to) {
+  const gpu::Buffer& copy = record_copy_of_64(from, to);
+  test::recorder().run();
+  return copy.as<const float>();
+}
+
+TEST(Guards, who_writes_beside_a_buffer_fails_the_run_by_its_name) {
+  EXPECT_EQ(error_of([] { copied_64(64, 64); }), "");
+  EXPECT_THAT(error_of([] { copied_64(64, 60); }), HasSubstr("beside the buffer \"copy\""));
+}
+
+TEST(Guards, what_is_read_behind_a_buffer_is_no_number) {
+  const auto values = copied_64(60, 64);
+  for (std::size_t i = 0; i < 64; i++) EXPECT_EQ(std::isnan(values[i]), i >= 60) << i;
+}
+
+TEST(Buffer, that_is_replaced_lives_until_what_was_recorded_has_run) {
+  auto& gpu = test::recorder();
+  const gpu::Buffer& copy = record_copy_of_64(64, 64);
+  for (std::size_t others = 60; others < 64; others++) std::ranges::fill(gpu.buffer("source", others * sizeof(float), gpu::Use::upload).as<float>(), 0.25f);
+  gpu.run();
+  for (const float value : copy.as<const float>()) ASSERT_EQ(value, 0.5f);
+}
+
+/// A step: a floor with a block on it, near enough to be dark.
+HostFrame small_frame() {
+  HostFrame frame;
+  frame.data = frame.display = {0, 0, 33, 21};
+  frame.camera.width = 33;
+  frame.camera.height = 21;
+  frame.camera.fx = frame.camera.fy = 30;
+  frame.camera.cx = 16.5;
+  frame.camera.cy = 10.5;
+  for (int y = 0; y < 21; y++)
+    for (int x = 0; x < 33; x++) frame.depth.push_back(x < 15 ? 2.0f : 1.8f);
+  frame.normal.assign(3 * frame.depth.size(), 0.0f);
+  std::fill(frame.normal.begin() + std::ptrdiff_t(2 * frame.depth.size()), frame.normal.end(), 1.0f);
+  return frame;
+}
+
+TEST(Staging, gives_the_bits_that_mapped_memory_gives) {
+  EstimatorSettings settings = test::plain_settings();
+  settings.radius = 0.5;
+  settings.power = 2;  // one more pass, so that a result is handed on
+  const auto mapped = compute_ao(test::recorder(), small_frame(), settings);
+  gpu::DeviceOptions options = test::device().options();
+  options.map_memory = false;
+  options.guard_bytes = 0;
+  gpu::Device device(options);
+  gpu::Recorder recorder(device);
+  const auto staged = compute_ao(recorder, small_frame(), settings);
+  EXPECT_EQ(mapped.ao, staged.ao);
+  EXPECT_LT(*std::min_element(mapped.ao.begin(), mapped.ao.end()), 0.9f);
+  EXPECT_EQ(device.validation_messages(), 0);
+}
+
+TEST(Recorder, times_every_pass_by_its_stem) {
+  EstimatorSettings settings = test::plain_settings();
+  settings.radius = 0.5;
+  settings.intensity = 1.5;
+  compute_ao(test::recorder(), small_frame(), settings);
+  std::vector<std::string> names;
+  for (const auto& pass : test::recorder().passes()) {
+    names.push_back(pass.name);
+    EXPECT_GE(pass.ms, 0);
+    EXPECT_LT(pass.ms, 60000);
+  }
+  EXPECT_THAT(names, ElementsAre("prepare", "reconstruct", "bounds", "coarsen", "classify", "horizon", "shape"));
+}
+
+TEST(Device, is_found_by_index_name_and_uuid) {
+  const auto devices = gpu::list_devices();
+  ASSERT_FALSE(devices.empty());
+  for (const auto& choice : {std::to_string(devices[0].index), devices[0].name, devices[0].uuid}) {
+    gpu::DeviceOptions options;
+    options.choice = choice;
+    EXPECT_EQ(gpu::Device(options).info().uuid, devices[0].uuid) << choice;
+  }
+}
+
+TEST(Device, names_what_there_is_when_the_choice_fits_none) {
+  gpu::DeviceOptions options;
+  options.choice = "no such device";
+  EXPECT_THAT(error_of([&] { gpu::Device device(options); }), HasSubstr(gpu::list_devices()[0].name));
+}
+
+}  // namespace
+}  // namespace alcove

@@ -1,0 +1,105 @@
+// Every kernel once under the Vulkan validation layer, which checks their synchronization too: tests/CMakeLists.txt asks it to.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <set>
+
+#include "core/chain/chain.h"
+#include "core/chain/host_frame.h"
+#include "tests/support/device.h"
+#include "tests/support/single_pass.h"
+
+namespace alcove {
+namespace {
+
+using namespace test;
+
+/// Runs the chain on a small room in light, and returns the kernels that it took. Nothing is compared: other tests do.
+std::set<std::string> kernels_of(gpu::Recorder& gpu, const EstimatorSettings& settings, const OutputSettings& output, bool has_normals = true) {
+  HostFrame frame = furnished_room(70, 45).frame;
+  if (!has_normals) frame.normal.clear();
+  FrameInputs inputs = upload(gpu, frame);
+  const auto planes = [&](const char* name, std::size_t count) {
+    gpu::Buffer& buffer = gpu.buffer(name, count * frame.data.pixels() * sizeof(float), gpu::Use::upload);
+    std::ranges::fill(buffer.as<float>(), 0.5f);
+    return &buffer;
+  };
+  if (!output.composite.empty()) {
+    inputs.beauty = planes("raw beauty", 4), inputs.has_alpha = true;
+    inputs.indirect = planes("raw indirect", 3), inputs.diffuse_color = planes("raw diffuse color", 3);
+    inputs.albedo = planes("raw albedo", 3), inputs.material_ao = planes("raw material ao", 1);
+  }
+  run_chain(gpu, inputs, settings, output);
+  gpu.run();
+  std::set<std::string> names;
+  for (const auto& pass : gpu.passes()) names.insert(pass.name);
+  return names;
+}
+
+std::set<std::string> kernels_of_all_settings(gpu::Recorder& gpu) {
+  EstimatorSettings settings;
+  settings.radius = 0.4;
+  settings.slices = 3, settings.steps = 16, settings.samples = 64;
+  std::set<std::string> names = kernels_of(gpu, settings, {}, false);
+  const auto add = [&](const OutputSettings& output) { names.merge(kernels_of(gpu, settings, output)); };
+
+  OutputSettings everything;
+  everything.aovs = "ao,ao-scales,normal,bent-normal,depth,specular-occlusion,confidence";
+  everything.composite = "composite.exr";
+  everything.multi_bounce = true;
+  everything.fog_density = 0.1;
+  for (const auto& view : debug_view_names()) everything.debug += (everything.debug.empty() ? "" : ",") + view;
+  settings.power = 1.5;
+  add(everything);
+  settings.further_radii = {0.1};
+  add(everything);
+  settings.resolution = Resolution::half;
+  add(everything);
+  settings.further_radii.clear();
+  settings.steps = 64;
+  add(everything);  // lists for upsampling
+  settings.resolution = Resolution::full;
+
+  for (const auto estimator : {Estimator::bitmask, Estimator::hbao, Estimator::crytek}) {
+    settings.estimator = estimator;
+    add({});
+  }
+  settings.estimator = Estimator::gtao;
+  settings.search = SliceSearch::exact;
+  settings.slices = 2;
+  add({});
+  settings.tolerance = 0.05;
+  OutputSettings error;
+  error.aovs = "ao,error";
+  add(error);
+  return names;
+}
+
+std::set<std::string> kernels_there_are() {
+  std::set<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(ALCOVE_SOURCE_DIR "/kernels"))
+    if (entry.path().extension() == ".comp") names.insert(entry.path().stem().string());
+  return names;
+}
+
+TEST(Validation, is_silent_about_every_kernel) {
+  ASSERT_TRUE(device().options().validate) << "ALCOVE_TEST_VALIDATE is not set";
+  ASSERT_TRUE(std::getenv("VK_LAYER_ENABLES")) << "nobody checks synchronization";
+  EXPECT_EQ(kernels_of_all_settings(recorder()), kernels_there_are());
+  EXPECT_EQ(device().validation_messages(), 0);
+}
+
+TEST(Validation, is_silent_about_copies) {
+  gpu::DeviceOptions options = device().options();
+  options.map_memory = false;
+  options.guard_bytes = 0;
+  gpu::Device staged(options);
+  gpu::Recorder gpu(staged);
+  EXPECT_EQ(kernels_of_all_settings(gpu), kernels_there_are());
+  EXPECT_EQ(staged.validation_messages(), 0);
+}
+
+}  // namespace
+}  // namespace alcove

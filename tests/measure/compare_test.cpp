@@ -1,0 +1,389 @@
+// `alcove compare` as scripts see it: files in, JSON and exit code out.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <regex>
+
+#include "core/formats/image_io.h"
+#include "tests/support/formula_images.h"
+#include "tests/support/program.h"
+#include "tests/support/wall_frame.h"
+
+namespace alcove {
+namespace {
+
+using namespace test;
+using nlohmann::json;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using Plane = std::vector<float>;
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr Window kWindow{0, 0, kFormulaWidth, kFormulaHeight};
+
+class Compare : public testing::Test {
+ protected:
+  /// Writes an EXR and gives its path.
+  std::string exr(const std::string& name, const std::map<std::string, Plane>& planes, const Window& data = kWindow) const {
+    FrameFile file;
+    file.data = file.display = data;
+    file.planes = planes;
+    file.write(folder / name);
+    return folder / name;
+  }
+
+  Finished compare(const std::vector<std::string>& more) const {
+    std::vector<std::string> arguments{"compare"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_program(arguments);
+  }
+
+  json measured(std::vector<std::string> more, int code = 0) const {
+    more.push_back("--json");
+    const Finished finished = compare(more);
+    EXPECT_EQ(finished.code, code) << finished;
+    return json::parse(finished.out);
+  }
+
+  void expect_error(int code, const std::vector<std::string>& arguments, const std::vector<std::string>& words) const {
+    const Finished finished = compare(arguments);
+    EXPECT_EQ(finished.code, code) << finished;
+    EXPECT_EQ(lines_of(finished.err).size(), 1) << finished;
+    for (const auto& word : words) EXPECT_THAT(finished.err, HasSubstr(word));
+  }
+
+  TemporaryFolder folder;
+  const Plane ramp = ramp_plane(0, 1), box = ramp_with_box();
+};
+
+/// Half of the pixels (the left ones) get another value.
+Plane with_left(Plane plane, float value) {
+  for (std::size_t i = 0; i < plane.size(); i++)
+    if (i % kFormulaWidth < kFormulaWidth / 2) plane[i] = value;
+  return plane;
+}
+
+Plane constant(float value) { return Plane(kWindow.pixels(), value); }
+
+// One picture.
+
+TEST_F(Compare, a_picture_with_itself) {
+  const auto a = exr("a.exr", {{"Y", box}});
+  const json j = measured({a, a, "--max-rmse", "0", "--max-p99", "0", "--min-ssim", "1", "--max-flip", "0", "--max-bias", "0"});
+  for (const char* key : {"rmse", "mae", "bias", "max", "p95", "p99", "flip"}) EXPECT_EQ(j[key], 0) << key;
+  EXPECT_EQ(j["count"], kWindow.pixels());
+  EXPECT_EQ(j["excluded"], 0);
+  EXPECT_DOUBLE_EQ(j["ssim"], 1);
+  EXPECT_TRUE(j["psnr"].is_null()) << "infinite";
+  EXPECT_EQ(j["pass"], true);
+  EXPECT_THAT(j["broken"], IsEmpty());
+}
+
+TEST_F(Compare, known_differences) {
+  const json j = measured({exr("a.exr", {{"Y", with_left(constant(0.5f), 0.75f)}}), exr("b.exr", {{"Y", constant(0.5f)}})});
+  EXPECT_DOUBLE_EQ(j["rmse"], std::sqrt(0.5 * 0.0625));
+  EXPECT_DOUBLE_EQ(j["mae"], 0.125);
+  EXPECT_DOUBLE_EQ(j["bias"], 0.125);
+  EXPECT_DOUBLE_EQ(j["max"], 0.25);
+  EXPECT_DOUBLE_EQ(j["p99"], 0.25);
+  EXPECT_DOUBLE_EQ(j["psnr"], -10 * std::log10(0.5 * 0.0625));
+  EXPECT_EQ(j["channels"], json::array({"Y"}));
+  EXPECT_EQ(j["bands"][2]["count"], kWindow.pixels());
+  EXPECT_DOUBLE_EQ(j["bands"][2]["bias"], 0.125);
+  EXPECT_EQ(j["bands"][0]["count"], 0);
+  EXPECT_TRUE(j["edges"].is_null());
+}
+
+TEST_F(Compare, the_box_has_the_stored_ssim_and_flip) {
+  const auto a = exr("a.exr", {{"Y", box}}), b = exr("b.exr", {{"Y", ramp}});
+  const json j = measured({a, b});
+  EXPECT_NEAR(j["ssim"], 0.707282647151, 1e-11);
+  EXPECT_NEAR(j["flip"], 0.110418082, 1e-6);
+  EXPECT_NEAR(measured({a, b, "--peak", "2"})["ssim"], 0.751035250255, 1e-11);
+  EXPECT_NE(measured({a, b, "--hdr"})["flip"], j["flip"]);
+}
+
+TEST_F(Compare, flip_of_colours_is_that_of_the_colours_not_of_each_channel) {
+  const auto result = noise_result(), reference = noise_reference();
+  const auto a = exr("a.exr", {{"R", result[0]}, {"G", result[1]}, {"B", result[2]}});
+  const auto b = exr("b.exr", {{"R", reference[0]}, {"G", reference[1]}, {"B", reference[2]}});
+  EXPECT_NEAR(measured({a, b})["flip"], 0.323722805, 1e-6);
+  const json two = measured({exr("c.exr", {{"x.R", result[0]}, {"x.G", result[1]}, {"x.B", result[2]}, {"y.R", ramp}, {"y.G", ramp}, {"y.B", ramp}}),
+                             exr("d.exr", {{"x.R", reference[0]}, {"x.G", reference[1]}, {"x.B", reference[2]},
+                                           {"y.R", ramp}, {"y.G", ramp}, {"y.B", ramp}})});
+  EXPECT_NEAR(two["flip"], 0.323722805 / 2, 1e-6) << "the mean of the layers";
+}
+
+TEST_F(Compare, a_second_reference_takes_the_noise_out) {
+  Plane result, a, b;
+  for (std::size_t i = 0; i < kWindow.pixels(); i++) {
+    result.push_back(0.5f + (i & 1 ? 0.125f : -0.125f));
+    a.push_back(0.5f + (i & 2 ? 0.25f : -0.25f));
+    b.push_back(0.5f + (i & 4 ? 0.5f : -0.5f));
+  }
+  const json j = measured({exr("t.exr", {{"Y", result}}), exr("a.exr", {{"AO", a}}), "--reference-b", exr("b.exr", {{"AO", b}})});
+  EXPECT_DOUBLE_EQ(j["rmse"], 0.125);
+  EXPECT_DOUBLE_EQ(j["psnr"], -20 * std::log10(0.125));
+}
+
+TEST_F(Compare, the_table_tells_the_same) {
+  const Finished finished = compare({exr("a.exr", {{"Y", with_left(constant(0.5f), 0.75f)}}), exr("b.exr", {{"Y", constant(0.5f)}})});
+  EXPECT_EQ(finished.code, 0) << finished;
+  EXPECT_THAT(finished.out, AllOf(HasSubstr("rmse 0.1768"), HasSubstr("bias +0.1250"), HasSubstr("psnr 15.05 dB"), HasSubstr("1920 pixels")));
+}
+
+// Channels and formats.
+
+TEST_F(Compare, single_channels_are_compared_whatever_their_names) {
+  EXPECT_EQ(measured({exr("a.exr", {{"Y", ramp}}), exr("b.exr", {{"AO", ramp}})})["rmse"], 0);
+}
+
+TEST_F(Compare, channels_match_by_name_then_by_its_last_part) {
+  const auto a = exr("a.exr", {{"R", ramp}, {"G", box}, {"B", ramp}});
+  const std::string layer = "ViewLayer.Combined.";
+  const json j = measured({a, exr("b.exr", {{layer + "R", ramp}, {layer + "G", box}, {layer + "B", ramp}, {layer + "A", box}})});
+  EXPECT_EQ(j["rmse"], 0);
+  EXPECT_EQ(j["channels"], json::array({"B", "G", "R"}));
+  expect_error(3, {a, exr("c.exr", {{"x.R", ramp}, {"y.R", box}})}, {"channel R could be compared with several", "--channel"});
+  EXPECT_EQ(measured({a, folder / "c.exr", "--channel", "R=x.R,G=y.R"})["rmse"], 0);
+}
+
+TEST_F(Compare, no_common_channel_is_an_error_that_lists_both) {
+  expect_error(3, {exr("a.exr", {{"Y", ramp}}), exr("b.exr", {{"U", ramp}, {"V", ramp}})}, {"a.exr has Y", "b.exr has U, V", "--channel"});
+  expect_error(3, {folder / "a.exr", folder / "b.exr", "--channel", "Y=W"}, {"no channel W"});
+}
+
+TEST_F(Compare, a_png_is_compared_as_it_is_stored) {
+  Plane rgb;
+  for (std::size_t i = 0; i < kWindow.pixels(); i++) rgb.insert(rgb.end(), {float(i % 256) / 255, 0.2f, 1});
+  write_png(folder / "a.png", kWindow.width, kWindow.height, 3, rgb);
+  std::map<std::string, Plane> planes{{"R", {}}, {"G", {}}, {"B", {}}};
+  for (std::size_t i = 0; i < rgb.size(); i++) planes[std::string(1, "RGB"[i % 3])].push_back(rgb[i]);
+  const json j = measured({folder / "a.png", exr("b.exr", planes)});
+  EXPECT_LT(j["max"], 1e-7);
+  EXPECT_EQ(j["count"], kWindow.pixels());
+  write_png(folder / "grey.png", kWindow.width, kWindow.height, 1, ramp);
+  EXPECT_LT(measured({folder / "grey.png", exr("c.exr", {{"AO", ramp}})})["max"], 0.5 / 255 + 1e-6);
+}
+
+// Which pixels.
+
+TEST_F(Compare, nan_pixels_are_left_out_and_counted) {
+  Plane broken = ramp;
+  broken[7] = kNan;
+  broken[100] = std::numeric_limits<float>::infinity();
+  const json j = measured({exr("a.exr", {{"Y", broken}}), exr("b.exr", {{"Y", ramp}})});
+  EXPECT_EQ(j["excluded"], 2);
+  EXPECT_EQ(j["count"], kWindow.pixels() - 2);
+  EXPECT_EQ(j["rmse"], 0);
+  EXPECT_EQ(j["flip"], 0);
+  EXPECT_DOUBLE_EQ(j["ssim"], 1);
+}
+
+TEST_F(Compare, a_mask_from_a_file_from_alpha_and_from_depth) {
+  const auto a = exr("a.exr", {{"Y", with_left(ramp, 0.9f)}}), b = exr("b.exr", {{"Y", ramp}});
+  const auto mask = exr("mask.exr", {{"m", with_left(constant(0.1f), 0)}});
+  const auto alpha = exr("alpha.exr", {{"R", ramp}, {"A", with_left(constant(1), 0)}});
+  const auto depth = exr("depth.exr", {{"ViewLayer.Depth.Z", with_left(constant(5), 1e10f)}});
+  const std::vector<std::vector<std::string>> ways{{"--mask", mask}, {"--mask", alpha}, {"--depth", depth}, {"--mask", alpha, "--mask-channel", "A"}};
+  for (const auto& arguments : ways) {
+    std::vector<std::string> all{a, b};
+    all.insert(all.end(), arguments.begin(), arguments.end());
+    const json j = measured(all);
+    EXPECT_EQ(j["masked"], kWindow.pixels() / 2) << arguments[0];
+    EXPECT_EQ(j["rmse"], 0);
+    EXPECT_EQ(j["flip"], 0) << "what is left out must not shine over";
+    EXPECT_DOUBLE_EQ(j["ssim"], 1);
+  }
+  expect_error(3, {a, b, "--mask", exr("two.exr", {{"u", ramp}, {"v", ramp}})}, {"which channel is the mask", "u, v", "--mask-channel"});
+}
+
+TEST_F(Compare, errors_at_depth_edges_and_away_from_them) {
+  Plane result = ramp, depth = constant(10);
+  for (std::size_t i = 0; i < depth.size(); i++) {
+    if (i % kFormulaWidth >= 24) depth[i] = 12;
+    if (i % kFormulaWidth >= 22 && i % kFormulaWidth < 26) result[i] += 0.5f;  // two of the three columns that each side of the edge has
+  }
+  const json j = measured({exr("a.exr", {{"Y", result}}), exr("b.exr", {{"Y", ramp}}), "--depth", exr("z.exr", {{"Z", depth}})});
+  EXPECT_EQ(j["edges"]["at"]["count"], 6 * kFormulaHeight);
+  EXPECT_NEAR(j["edges"]["at"]["bias"], 0.5 * 4 / 6, 1e-6);
+  EXPECT_EQ(j["edges"]["away"]["rmse"], 0);
+}
+
+TEST_F(Compare, nothing_to_compare_is_an_error) {
+  const auto a = exr("a.exr", {{"Y", ramp}});
+  expect_error(3, {a, exr("nan.exr", {{"Y", constant(kNan)}})}, {"nan.exr", "no pixel to compare", "1920 are NaN"});
+  expect_error(3, {a, a, "--mask", exr("empty.exr", {{"Y", constant(0)}})}, {"no pixel to compare", "1920 are left out by the mask"});
+}
+
+TEST_F(Compare, other_pixels_are_an_error_that_names_both_windows) {
+  const auto a = exr("a.exr", {{"Y", ramp}});
+  const auto small = exr("b.exr", {{"Y", Plane(100)}}, {0, 0, 10, 10}), moved = exr("c.exr", {{"Y", ramp}}, {5, 0, kFormulaWidth, kFormulaHeight});
+  expect_error(3, {a, small}, {to_string(kWindow), to_string({0, 0, 10, 10}), "a.exr", "b.exr"});
+  expect_error(3, {a, moved}, {to_string(kWindow), to_string({5, 0, kFormulaWidth, kFormulaHeight})});
+  expect_error(3, {a, a, "--mask", small}, {"b.exr"});
+  expect_error(3, {a, a, "--reference-b", small}, {"b.exr"});
+  expect_error(3, {a, a, "--depth", exr("z.exr", {{"Z", Plane(100, 1)}}, {0, 0, 10, 10})}, {"z.exr"});
+}
+
+TEST_F(Compare, a_picture_too_small_for_ssim_has_none) {
+  const Plane one{0.5f};
+  const auto a = exr("a.exr", {{"Y", one}}, {0, 0, 1, 1});
+  EXPECT_TRUE(measured({a, a})["ssim"].is_null());
+  expect_error(6, {a, a, "--min-ssim", "0.5"}, {"ssim cannot be measured"});
+}
+
+// Limits and mistakes.
+
+TEST_F(Compare, a_broken_limit_ends_with_6_and_says_which) {
+  const auto a = exr("a.exr", {{"Y", with_left(constant(0.5f), 0.25f)}}), b = exr("b.exr", {{"Y", constant(0.5f)}});
+  EXPECT_EQ(compare({a, b, "--max-rmse", "0.1768", "--max-bias", "0.1251", "--max-p99", "0.25"}).code, 0);
+  expect_error(6, {a, b, "--max-rmse", "0.17"}, {"rmse is 0.176777, and --max-rmse is 0.17"});
+  expect_error(6, {a, b, "--max-bias", "0.1"}, {"bias is -0.125, and --max-bias is 0.1"});
+  expect_error(6, {a, b, "--max-p99", "0.2"}, {"p99 is 0.25, and --max-p99 is 0.2"});
+  expect_error(6, {a, b, "--min-ssim", "0.99"}, {"--min-ssim is 0.99"});
+  expect_error(6, {a, b, "--max-flip", "0.001", "--max-rmse", "0.1"}, {"--max-flip is 0.001", "; ", "--max-rmse is 0.1"});
+  const json j = measured({a, b, "--max-rmse", "0.1"}, 6);
+  EXPECT_EQ(j["pass"], false);
+  EXPECT_EQ(j["broken"].size(), 1);
+}
+
+TEST_F(Compare, mistakes_on_the_command_line_end_with_2) {
+  const auto a = exr("a.exr", {{"Y", ramp}});
+  expect_error(2, {}, {"RESULT is required"});
+  expect_error(2, {a}, {"REFERENCE is required"});
+  expect_error(2, {a, a, a}, {"not expected"});
+  expect_error(2, {a, a, "--max-rms", "1"}, {"--max-rms", "did you mean --max-rmse"});
+  expect_error(2, {a, a, "--max-rmse", "nan"}, {"--max-rmse", "nan is not a finite number"});
+  expect_error(2, {a, a, "--max-rmse", "-1"}, {"--max-rmse", "0 or more"});
+  expect_error(2, {a, a, "--peak", "0"}, {"--peak", "above 0"});
+  expect_error(2, {a, a, "--frames", "1-3"}, {"a.exr", "%04d"});
+  expect_error(2, {a, a, "--motion", a}, {"--motion"});
+  expect_error(2, {folder / "a.%04d.exr", a, "--frames", "1-x"}, {"1-x"});
+  const Finished help = compare({"--help"});
+  EXPECT_EQ(help.code, 0);
+  EXPECT_THAT(help.out, AllOf(HasSubstr("--reference-b"), HasSubstr("--max-flip"), HasSubstr("exit code 6")));
+}
+
+TEST_F(Compare, files_that_cannot_be_read_end_with_3) {
+  const auto a = exr("a.exr", {{"Y", ramp}});
+  expect_error(3, {a, folder / "missing.exr"}, {"missing.exr", "REFERENCE"});
+  expect_error(3, {folder / "missing.png", a}, {"missing.png", "RESULT"});
+  write_bytes(folder / "text.png", "no picture");
+  expect_error(3, {folder / "text.png", a}, {"text.png"});
+  write_bytes(folder / "cut.exr", read_bytes(a).substr(0, read_bytes(a).size() - 100));
+  expect_error(3, {folder / "cut.exr", a}, {"cut.exr", "damaged or incomplete"});
+  expect_error(3, {a, a, "--depth", exr("normal.exr", {{"N.X", ramp}, {"N.Y", ramp}})}, {"normal.exr", "no depth channel", "--depth-channel"});
+}
+
+// Sequences.
+
+class CompareSequence : public Compare {
+ protected:
+  CompareSequence() {
+    for (int frame = 1; frame <= 4; frame++) {
+      const std::string number = "000" + std::to_string(frame);
+      exr("ao." + number + ".exr", {{"Y", constant(frame == 3 ? 0.75f : 0.5f)}});
+      exr("truth." + number + ".exr", {{"AO", constant(0.5f)}});
+    }
+  }
+  const std::string result = folder / "ao.%04d.exr", reference = folder / "truth.####.exr";
+};
+
+TEST_F(CompareSequence, tells_every_frame_the_worst_the_mean_and_the_flicker) {
+  const json j = measured({result, reference});
+  ASSERT_EQ(j["frames"].size(), 4);
+  EXPECT_EQ(j["frames"][2]["frame"], 3);
+  EXPECT_EQ(j["frames"][2]["rmse"], 0.25);
+  EXPECT_EQ(j["frames"][1]["rmse"], 0);
+  EXPECT_EQ(j["worst"]["frame"], 3);
+  EXPECT_EQ(j["mean"]["rmse"], 0.0625);
+  EXPECT_EQ(j["rmse"], 0.25) << "the worst of any frame";
+  EXPECT_EQ(j["count"], 4 * kWindow.pixels());
+  EXPECT_DOUBLE_EQ(j["flicker"], std::sqrt((0 + 0.0625 + 0.0625) / 3));
+  EXPECT_EQ(j["pass"], true);
+}
+
+TEST_F(CompareSequence, limits_hold_for_every_frame) {
+  EXPECT_EQ(compare({result, reference, "--max-rmse", "0.25"}).code, 0);
+  expect_error(6, {result, reference, "--max-rmse", "0.2"}, {"frame 3: rmse is 0.25, and --max-rmse is 0.2"});
+}
+
+TEST_F(CompareSequence, a_list_chooses_the_frames) {
+  const json j = measured({result, reference, "--frames", "4,1-2"});
+  EXPECT_EQ(j["frames"].size(), 3);
+  EXPECT_EQ(j["frames"][0]["frame"], 4);
+  EXPECT_EQ(j["rmse"], 0);
+  EXPECT_TRUE(measured({result, reference, "--frames", "1-3x2"})["flicker"].is_null()) << "no two frames follow each other";
+}
+
+TEST_F(CompareSequence, one_reference_serves_all_frames) { EXPECT_EQ(measured({result, folder / "truth.0001.exr"})["frames"].size(), 4); }
+
+TEST_F(CompareSequence, missing_frames_are_listed_before_any_work) {
+  exr("ao.0007.exr", {{"Y", ramp}});
+  exr("ao.0008.exr", {{"Y", ramp}});
+  expect_error(3, {result, reference}, {"truth.####.exr", "frames are missing: 7-8"});
+  expect_error(3, {result, reference, "--frames", "1-10"}, {"ao.%04d.exr", "5-6, 9-10"});
+  expect_error(3, {folder / "none.%04d.exr", reference}, {"none.0001.exr"});
+}
+
+TEST_F(CompareSequence, an_error_that_moves_with_its_surface_does_not_flicker) {
+  for (int frame = 1; frame <= 3; frame++) {  // an error of the result moves to the right by 3 pixels a frame, and up by 2
+    Plane plane = constant(0.25f);
+    for (int y = 0; y < kFormulaHeight; y++)
+      for (int x = 0; x < kFormulaWidth; x++)
+        if (((x - 3 * frame + 90) % 5 == 0) != ((y + 2 * frame) % 7 == 0)) plane[std::size_t(y * kFormulaWidth + x)] += 0.25f;
+    exr("moving." + std::to_string(frame) + ".exr", {{"Y", plane}});
+    exr("still." + std::to_string(frame) + ".exr", {{"Y", constant(0.25f)}});
+    // Blender's: place in the previous frame minus place here, y up.
+    exr("vector." + std::to_string(frame) + ".exr",
+        {{"ViewLayer.Vector.X", constant(-3)}, {"ViewLayer.Vector.Y", constant(-2)}, {"ViewLayer.Vector.Z", constant(0)}});
+  }
+  const std::vector<std::string> pictures{folder / "moving.%d.exr", folder / "still.%d.exr"};
+  EXPECT_GT(measured(pictures)["flicker"], 0.1);
+  EXPECT_EQ(measured({pictures[0], pictures[1], "--motion", folder / "vector.%d.exr"})["flicker"], 0);
+  EXPECT_GT(measured({pictures[0], pictures[1], "--motion", folder / "vector.%d.exr", "--motion-channels", "Vector.Y,Vector.X"})["flicker"], 0.1);
+}
+
+// Documents.
+
+TEST(CompareReadme, every_option_and_every_field_is_told) {
+  const std::string readme = read_bytes(ALCOVE_SOURCE_DIR "/README.md"), help = run_program({"compare", "--help"}).out;
+  const std::size_t begin = readme.find("## alcove compare"), end = readme.find("\n## ", begin);
+  ASSERT_NE(begin, readme.npos);
+  const std::string section = readme.substr(begin, end - begin);
+  const std::regex option("\n  (-h,)?(--[a-z0-9-]+)");
+  int count = 0;
+  for (auto match = std::sregex_iterator(help.begin(), help.end(), option); match != std::sregex_iterator(); ++match, count++)
+    if ((*match)[2] != "--help") EXPECT_TRUE(std::regex_search(section, std::regex((*match)[2].str() + "[^a-z-]"))) << (*match)[2];
+  EXPECT_GE(count, 20);
+}
+
+TEST_F(CompareSequence, every_field_is_told) {
+  const std::string readme = read_bytes(ALCOVE_SOURCE_DIR "/README.md");
+  for (const json& object : {measured({result, reference}), measured({folder / "ao.0001.exr", folder / "truth.0001.exr"})})
+    for (const auto& [key, value] : object.items())
+      EXPECT_TRUE(readme.find("\"" + key + "\"") != readme.npos || readme.find("`" + key + "`") != readme.npos) << key;
+}
+
+// The page.
+
+TEST_F(CompareSequence, the_report_is_one_page_with_pictures) {
+  const std::string page = folder / "page.html";
+  EXPECT_EQ(compare({result, reference, "--report", page, "--max-rmse", "0.2"}).code, 6);
+  const std::string html = read_bytes(page);
+  EXPECT_THAT(html, AllOf(HasSubstr("<html"), HasSubstr("\"kind\": \"compare\""), HasSubstr("data:image/png;base64,")));
+  EXPECT_THAT(html, HasSubstr("ao.%04d.exr against truth.####.exr"));
+}
+
+TEST_F(CompareSequence, a_page_that_cannot_be_written_ends_with_4_before_any_work) {
+  expect_error(4, {result, reference, "--report", folder / "none/page.html"}, {"none/page.html", "--report"});
+}
+
+}  // namespace
+}  // namespace alcove

@@ -1,0 +1,67 @@
+// The report page as text: nothing in the data can end its block, nothing in the page would be fetched.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/measure/report.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <regex>
+
+using alcove::report_page;
+using testing::HasSubstr;
+using testing::Not;
+
+namespace {
+
+/// The JSON block of a page, as the browser sees it: up to the first closing tag.
+std::string json_block(const std::string& page) {
+  const std::string open = "<script id=\"report\" type=\"application/json\">";
+  const std::size_t begin = page.find(open);
+  EXPECT_NE(begin, std::string::npos);
+  return page.substr(begin + open.size(), page.find("</script>", begin) - begin - open.size());
+}
+
+nlohmann::json small_report(const std::string& name) {
+  return {{"title", name}, {"kind", "compare"}, {"device", nullptr}, {"yardstick_ms", nullptr}, {"candidates", nlohmann::json::array()},
+          {"rows", nlohmann::json::array()}, {"images", nlohmann::json::array()}};
+}
+
+/// What `expression` finds in the page without its data: the first capture of each match.
+std::vector<std::string> found(const char* expression) {
+  const std::string page = report_page(small_report("title").dump());
+  const std::regex pattern(expression, std::regex::icase);
+  std::vector<std::string> matches;
+  for (std::sregex_iterator at(page.begin(), page.end(), pattern), end; at != end; ++at) matches.push_back((*at)[1]);
+  return matches;
+}
+
+}  // namespace
+
+TEST(Report, hostile_strings_come_back_from_the_block_as_they_went_in) {
+  for (const char* name : {"<script>alert(1)</script>", "</SCRIPT >", "<!-- <script>", "\"\\u003c", "a\nb\tc", "]]>", "{{page.js}}", "{{report.json}}", "\u00e9\u2028"}) {
+    const nlohmann::json report = small_report(name);
+    EXPECT_EQ(nlohmann::json::parse(json_block(report_page(report.dump()))), report) << name;
+  }
+}
+
+TEST(Report, the_block_holds_no_less_than_sign) {
+  EXPECT_THAT(json_block(report_page(small_report("<a><!--</script>").dump())), Not(HasSubstr("<")));
+}
+
+TEST(Report, all_marks_are_filled) { EXPECT_THAT(found("(\\{\\{[a-z_]+\\.[a-z.]+\\}\\})"), testing::IsEmpty()); }
+
+TEST(Report, nothing_would_be_fetched) {
+  EXPECT_THAT(found("<script[^>]*\\s(src)"), testing::IsEmpty());
+  EXPECT_THAT(found("<link[^>]*\\shref\\s*=\\s*[\"']?([^\"'>\\s]*)"), testing::Each(testing::StartsWith("data:")));
+  EXPECT_THAT(found("<(?:img|iframe|object|embed|video|audio|source|base|form)\\b[^>]*\\s(?:src|data|href|action)\\s*=\\s*[\"']?([^\"'>\\s]*)"), testing::IsEmpty());
+  EXPECT_THAT(found("(@import)"), testing::IsEmpty());
+  EXPECT_THAT(found("\\burl\\(([^)]*)\\)"), testing::IsEmpty());
+  EXPECT_THAT(found("(sourceMappingURL)"), testing::IsEmpty());
+}
+
+TEST(Report, the_browser_is_told_to_fetch_nothing) {
+  EXPECT_THAT(report_page("{}"), HasSubstr("http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src data:;"));
+}
+
+TEST(Report, the_page_is_below_half_a_megabyte) { EXPECT_LT(report_page("{}").size(), 500'000U); }

@@ -1,0 +1,237 @@
+// The layers hold: who includes what, who prints, what has a kernel's name, how long files are, what the README shows.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <functional>
+#include <regex>
+
+#include "cli/options.h"
+#include "tests/support/program.h"
+
+namespace alcove {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace test;
+using testing::HasSubstr;
+using Names = std::vector<std::string>;
+
+struct SourceFile {
+  std::string name;  // from the project's root
+  Names lines;
+
+  bool is_in(const std::string& folder) const { return name.starts_with(folder + "/"); }
+};
+
+/// Our sources below a folder.
+std::vector<SourceFile> sources_in(const std::string& folder) {
+  static const Names kEndings{".h", ".cpp", ".comp", ".glsl", ".in"};
+  std::vector<SourceFile> files;
+  for (const auto& name : names_in(ALCOVE_SOURCE_DIR "/" + folder))
+    if (std::ranges::find(kEndings, fs::path(name).extension().string()) != kEndings.end())
+      files.push_back({folder + "/" + name, lines_of(read_bytes(ALCOVE_SOURCE_DIR "/" + folder + "/" + name))});
+  return files;
+}
+
+std::vector<SourceFile> all_sources() {
+  std::vector<SourceFile> files;
+  for (const char* folder : {"cli", "core", "kernels", "tests"})
+    for (auto& file : sources_in(folder)) files.push_back(std::move(file));
+  return files;
+}
+
+/// Every line that matches, as "file:line: text"; comments do not count.
+Names matches(const std::vector<SourceFile>& files, const std::string& pattern, const std::function<bool(const SourceFile&)>& where) {
+  const std::regex wanted(pattern), comment("//.*");
+  Names found;
+  for (const auto& file : files) {
+    if (!where(file)) continue;
+    for (std::size_t i = 0; i < file.lines.size(); i++) {
+      // The text of an include is looked at, that of a comment is not.
+      if (std::regex_search(std::regex_replace(file.lines[i], comment, ""), wanted))
+        found.push_back(file.name + ":" + std::to_string(i + 1) + ": " + file.lines[i]);
+    }
+  }
+  return found;
+}
+
+const std::vector<SourceFile>& product() {
+  static const std::vector<SourceFile> files = [] {
+    auto all = all_sources();
+    std::erase_if(all, [](const auto& file) { return file.is_in("tests"); });
+    return all;
+  }();
+  return files;
+}
+
+TEST(Layers, the_search_sees_the_sources) {  // or else all below proves nothing
+  for (const char* folder : {"cli", "core", "core/gpu", "kernels"})
+    EXPECT_TRUE(std::ranges::any_of(product(), [&](const auto& file) { return file.is_in(folder); })) << folder;
+  EXPECT_FALSE(matches(product(), "#include <vulkan", [](const auto&) { return true; }).empty());
+  EXPECT_FALSE(matches(product(), "#include <Imf", [](const auto&) { return true; }).empty());
+}
+
+TEST(Layers, only_core_gpu_names_vulkan) {
+  const auto elsewhere = [](const SourceFile& file) { return !file.is_in("core/gpu"); };
+  EXPECT_EQ(matches(product(), R"(\bVk[A-Z]\w+|\bvk[A-Z]\w+|\bVK_\w+|#include [<"]vulkan)", elsewhere), Names{});
+}
+
+TEST(Layers, only_one_file_includes_each_library) {
+  const auto unless = [](const char* name) { return [name](const SourceFile& file) { return file.name != name; }; };
+  EXPECT_EQ(matches(product(), R"(#include [<"](OpenEXR/|Imath/)?(Imf|Imath|Iex|Ilm|half\.h|openexr))", unless("core/formats/exr.cpp")), Names{});
+  EXPECT_EQ(matches(product(), R"(#include [<"]OpenImageIO)", unless("core/formats/image_io.cpp")), Names{});
+  EXPECT_EQ(matches(product(), R"(#include [<"]OpenColorIO)", unless("core/formats/color.cpp")), Names{});
+}
+
+TEST(Layers, includes_point_one_way) {
+  const auto in = [](const char* folder) { return [folder](const SourceFile& file) { return file.is_in(folder); }; };
+  EXPECT_EQ(matches(product(), R"(#include "(cli|tests)/)", in("core")), Names{});
+  EXPECT_EQ(matches(product(), R"(#include "(kernels|tests)/)", in("cli")), Names{});
+  EXPECT_EQ(matches(product(), R"(#include "core/(?!gpu/|error\.h|text\.h|file\.h))", in("core/gpu")), Names{});
+  EXPECT_EQ(matches(product(), R"(#include "[^"]*/)", in("kernels")), Names{}) << "kernels include only what is beside them";
+  EXPECT_EQ(matches(product(), R"(#include <(?!cstdint>|type_traits>))", in("kernels")), Names{});
+}
+
+TEST(Layers, only_the_command_line_prints_and_reads_arguments) {
+  const auto core = [](const SourceFile& file) { return file.is_in("core"); };
+  Names printing = matches(product(), R"(fmt::print|std::cout|std::cerr|std::clog|\bf?printf\(|\bputs\(|spdlog)", core);
+  std::erase_if(printing, [](const auto& line) { return line.starts_with("core/gpu/device.cpp:") && line.find("vulkan validation") != line.npos; });
+  EXPECT_EQ(printing, Names{});
+  EXPECT_EQ(matches(product(), R"(\bargv\b|\bstd::exit\(|\b_exit\(|\babort\()", core), Names{});
+}
+
+// Kernels.
+
+/// core/chain/chain.cpp, with the estimators that estimate() chooses from in its place.
+std::string chain_source() {
+  const std::string passes = read_bytes(ALCOVE_SOURCE_DIR "/core/chain/estimate.cpp");
+  std::smatch choice;
+  const bool found = std::regex_search(passes, choice, std::regex(R"(\nEstimate estimate\([^]*?\n\})"));
+  return found ? std::regex_replace(read_bytes(ALCOVE_SOURCE_DIR "/core/chain/chain.cpp"), std::regex(R"(\bestimate\()"), choice.str()) : "";
+}
+
+Names kernel_stems() {
+  Names stems;
+  for (const auto& file : product())
+    if (file.name.ends_with(".comp")) stems.push_back(fs::path(file.name).stem().string());
+  return stems;
+}
+
+TEST(Kernels, a_stem_is_found_everywhere) {
+  const Names stems = kernel_stems();
+  const std::string readme = read_bytes(ALCOVE_SOURCE_DIR "/README.md"), passes = read_bytes(ALCOVE_SOURCE_DIR "/core/chain/passes.h"),
+                    passes_source = read_bytes(ALCOVE_SOURCE_DIR "/core/chain/passes.cpp") + read_bytes(ALCOVE_SOURCE_DIR "/core/chain/estimate.cpp"), chain = chain_source();
+  EXPECT_GE(stems.size(), 4);
+  for (const auto& stem : stems) {
+    EXPECT_TRUE(fs::exists(ALCOVE_SOURCE_DIR "/kernels/" + stem + ".h")) << stem;
+    EXPECT_TRUE(std::regex_search(passes, std::regex("\\b" + stem + "\\(gpu::Recorder&"))) << stem << " is no function of core/chain/passes.h";
+    EXPECT_THAT(passes_source, HasSubstr("gpu.dispatch(\"" + stem + "\"")) << "its label in the timing report";
+    EXPECT_TRUE(std::regex_search(chain, std::regex("\\b" + stem + "\\("))) << stem << " is not in core/chain/chain.cpp";
+    EXPECT_THAT(readme, HasSubstr("[" + stem + "](kernels/" + stem + ".comp)")) << "the README's chain";
+  }
+}
+
+int count_of(const std::string& text, const std::string& part) {
+  int count = 0;
+  for (auto at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) count++;
+  return count;
+}
+
+TEST(Presets, each_of_ours_has_limits_on_every_frame_of_the_suite) {
+  const std::string folder = ALCOVE_SOURCE_DIR "/examples/bench/", suite = read_bytes(folder + "suite.toml"), limits = read_bytes(folder + "limits.toml");
+  for (const auto& file : names_in(ALCOVE_SOURCE_DIR "/presets")) {
+    if (file.find('/') != std::string::npos || !file.ends_with(".toml")) continue;
+    const std::string name = fs::path(file).stem().string();
+    EXPECT_THAT(suite, HasSubstr("preset = \"" + name + "\""));
+    EXPECT_EQ(count_of(limits, "candidate = \"" + name + "\""), count_of(suite, "[[frame]]")) << name;
+  }
+}
+
+TEST(Kernels, every_header_belongs_to_a_kernel) {
+  const Names stems = kernel_stems();
+  for (const auto& file : product())
+    if (file.is_in("kernels") && file.name.ends_with(".h") && file.name != "kernels/shared.h")
+      EXPECT_THAT(stems, testing::Contains(fs::path(file.name).stem().string())) << file.name;
+}
+
+TEST(Kernels, the_readme_lists_the_passes_in_the_order_of_the_chain) {
+  const std::string readme = read_bytes(ALCOVE_SOURCE_DIR "/README.md"), chain = chain_source();
+  std::vector<std::pair<std::size_t, std::size_t>> places;
+  for (const auto& stem : kernel_stems()) {
+    std::smatch call;
+    ASSERT_TRUE(std::regex_search(chain, call, std::regex("\\b" + stem + "\\("))) << stem;
+    places.emplace_back(call.position(), readme.find("(kernels/" + stem + ".comp)"));
+  }
+  std::ranges::sort(places);
+  EXPECT_TRUE(std::ranges::is_sorted(places, {}, &std::pair<std::size_t, std::size_t>::second));
+}
+
+TEST(Kernels, main_fits_in_120_lines) {
+  for (const auto& file : product()) {
+    if (!file.name.ends_with(".comp")) continue;
+    const auto begin = std::ranges::find(file.lines, "void main() {"), end = std::find(begin, file.lines.end(), "}");
+    ASSERT_NE(end, file.lines.end()) << file.name;
+    EXPECT_LE(end - begin + 1, 120) << file.name;
+  }
+}
+
+TEST(Kernels, variants_are_specialization_constants) {
+  const auto in_kernels = [](const SourceFile& file) { return file.is_in("kernels") && file.name != "kernels/shared.h"; };
+  for (const auto& line : matches(product(), R"(#\s*(if|ifdef|elif|else)\b)", in_kernels)) ADD_FAILURE() << line;
+  for (const auto& file : product())
+    if (file.name.ends_with(".comp")) EXPECT_LE(matches({file}, "constant_id", [](const auto&) { return true; }).size(), 5) << file.name;
+}
+
+// Form.
+
+TEST(Form, files_begin_with_what_they_are_for_and_the_licence) {
+  for (const auto& file : all_sources()) {
+    ASSERT_GE(file.lines.size(), 2) << file.name;
+    EXPECT_TRUE(file.lines[0].starts_with("// ") && file.lines[0].find("SPDX") == std::string::npos) << file.name << ": " << file.lines[0];
+    const auto end = file.lines.begin() + std::min<std::ptrdiff_t>(3, std::ssize(file.lines));
+    EXPECT_NE(std::find(file.lines.begin(), end, "// SPDX-License-Identifier: BSD-3-Clause"), end) << file.name;
+  }
+}
+
+TEST(Form, files_are_short) {
+  for (const auto& file : all_sources()) EXPECT_LT(file.lines.size(), file.name.ends_with(".h") ? 200 : 500) << file.name;
+}
+
+TEST(Form, no_history_and_nothing_unfinished_is_left_in_comments) {
+  const std::string words = std::string("TO") + "DO|FIX" + "ME|XX" + "X|HA" + "CK";  // in pieces, so that this line is none
+  const std::regex wanted("\\b(" + words + ")\\b");
+  for (const auto& file : all_sources())
+    for (const auto& line : file.lines) EXPECT_FALSE(std::regex_search(line, wanted)) << file.name << ": " << line;
+}
+
+// Documents.
+
+TEST(Readme, the_table_of_options_is_the_programs) {
+  const std::string readme = read_bytes(ALCOVE_SOURCE_DIR "/README.md"), begin = "<!-- options -->\n", end = "<!-- /options -->";
+  const std::size_t from = readme.find(begin), to = readme.find(end);
+  ASSERT_NE(from, readme.npos);
+  ASSERT_NE(to, readme.npos);
+  EXPECT_EQ(readme.substr(from + begin.size(), to - from - begin.size()), option_table_markdown());
+}
+
+TEST(Readme, every_option_of_help_is_in_the_table) {
+  const std::string help = run_program({"run", "--help"}).out, table = option_table_markdown();
+  const std::regex option("\n  (-[a-z],)?(--[a-z-]+)");
+  int count = 0;
+  for (auto match = std::sregex_iterator(help.begin(), help.end(), option); match != std::sregex_iterator(); ++match, count++)
+    if ((*match)[2] != "--help") EXPECT_THAT(table, HasSubstr((*match)[2].str() + "`"));
+  EXPECT_GT(count, 20);
+}
+
+TEST(Readme, every_local_link_leads_somewhere) {
+  const std::string readme = read_bytes(ALCOVE_SOURCE_DIR "/README.md");
+  const std::regex link("\\]\\(([^)#:]+)\\)");
+  for (auto match = std::sregex_iterator(readme.begin(), readme.end(), link); match != std::sregex_iterator(); ++match)
+    EXPECT_TRUE(fs::exists(ALCOVE_SOURCE_DIR "/" + (*match)[1].str())) << (*match)[1];
+}
+
+}  // namespace
+}  // namespace alcove

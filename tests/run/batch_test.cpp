@@ -1,0 +1,246 @@
+// Sequences: which frames are computed, from and to which files, and what is told of them.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gmock/gmock.h>
+
+#include "core/run/plan.h"
+#include "tests/support/sequence_folder.h"
+
+namespace alcove {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace test;
+using nlohmann::json;
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+using testing::StartsWith;
+
+using Batch = SequenceFolder;
+
+/// What is behind a file's header, which has the digest of the options.
+std::string pixels(const std::string& bytes) { return bytes.substr(bytes.size() - 300); }
+
+TEST_F(Batch, a_sequence_is_its_frames_one_by_one) {
+  write_frames(8, 12);
+  ASSERT_EQ(run({"--noise", "animated"}).code, 0);
+  const auto together = outputs();
+  EXPECT_EQ(together.size(), 5);
+  EXPECT_NE(pixels(together.at("ao.0008.exr")), pixels(together.at("ao.0009.exr"))) << "or else frames share their noise";
+  for (int frame = 8; frame <= 12; frame++) {
+    const std::string alone = folder / "alone.exr";
+    ASSERT_EQ(run_program({"run", input(frame), "-o", alone, "--camera", camera, "--radius", "1", "--noise", "animated"}).code, 0);
+    EXPECT_TRUE(read_bytes(alone) == read_bytes(output(frame))) << frame;
+  }
+}
+
+TEST_F(Batch, threads_chunks_and_order_change_no_bit) {
+  write_frames(1, 7);
+  ASSERT_EQ(run({"--threads", "1"}).code, 0);
+  const auto one_thread = outputs();
+  const auto again = [&](const std::vector<std::vector<std::string>>& runs) {
+    remove_outputs();
+    for (const auto& arguments : runs) EXPECT_EQ(run(arguments).code, 0);
+    EXPECT_TRUE(outputs() == one_thread) << testing::PrintToString(runs);
+  };
+  again({{"--threads", "5"}});
+  again({{"--chunk", "3/3"}, {"--chunk", "1/3"}, {"--chunk", "2/3"}});
+  again({{"--frames", "7-1"}});
+  again({{"--frames", "1-7x2"}, {"--frames", "2-6:2"}});
+}
+
+TEST(Chunks, share_the_frames_evenly) {
+  const std::vector<int> frames{5, 6, 7, 8, 9, 10, 11};
+  std::vector<int> all;
+  for (int chunk = 1; chunk <= 3; chunk++) {
+    const auto part = chunk_of(frames, chunk, 3);
+    EXPECT_TRUE(part.size() == 2 || part.size() == 3);
+    all.insert(all.end(), part.begin(), part.end());
+  }
+  EXPECT_EQ(all, frames);
+  EXPECT_THAT(chunk_of({1}, 1, 2), IsEmpty());
+  EXPECT_THAT(chunk_of({1}, 2, 2), ElementsAre(1));
+}
+
+TEST_F(Batch, every_file_has_a_pattern_of_its_own) {
+  FrameFile depth = wall_frame(), normal = depth;
+  std::erase_if(depth.planes, [](const auto& plane) { return plane.first.find("Depth") == std::string::npos; });
+  std::erase_if(normal.planes, [](const auto& plane) { return plane.first.find("Normal") == std::string::npos; });
+  for (const char* frame : {"-02", "-01", "000"}) depth.write(in + "/d" + frame + ".exr");
+  for (const char* frame : {"-2", "-1", "0"}) normal.write(in + "/n." + frame + ".exr");
+  const Finished finished = run_program({"run", "--depth", in + "/d@@@.exr", "--normal", in + "/n.$F.exr", "-o", out + "/<f4>.exr", "--output-offset", "100",
+                                         "--camera", camera, "--radius", "1", "--frames", "-2-0"});
+  EXPECT_EQ(finished.code, 0) << finished;
+  EXPECT_THAT(names_in(out), ElementsAre("0098.exr", "0099.exr", "0100.exr"));
+}
+
+TEST_F(Batch, a_static_input_serves_all_frames) {
+  wall_frame().write(folder / "still.exr");
+  const Finished finished =
+      run_program({"run", folder / "still.exr", "-o", out + "/ao.#.exr", "--camera", camera, "--radius", "1", "--frames", "3,5"});
+  EXPECT_EQ(finished.code, 0) << finished;
+  EXPECT_THAT(names_in(out), ElementsAre("ao.0003.exr", "ao.0005.exr"));
+}
+
+TEST_F(Batch, every_frame_has_its_camera) {
+  write_frames(1, 2);
+  json moving = wall_camera();
+  moving["frames"] = {{{"frame", 1}}, {{"frame", 2}, {"fx", 80.0}, {"fy", 80.0}}};
+  write_bytes(folder / "moving.json", moving.dump());
+  ASSERT_EQ(run({"--camera", folder / "moving.json"}).code, 0);
+  json zoomed = wall_camera();
+  zoomed["fx"] = zoomed["fy"] = 80.0;
+  write_bytes(folder / "zoom.0002.json", zoomed.dump());
+  write_bytes(folder / "zoom.0001.json", wall_camera().dump());
+  const auto moved = read_bytes(output(2));
+  ASSERT_EQ(run({"--camera", folder / "zoom.####.json"}).code, 0);
+  EXPECT_EQ(pixels(read_bytes(output(2))), pixels(moved)) << "headers differ by the digest of the camera file";
+  ASSERT_EQ(run().code, 0);
+  EXPECT_NE(pixels(read_bytes(output(2))), pixels(moved));
+}
+
+TEST_F(Batch, missing_frames_are_listed_before_any_work) {
+  write_frames(1, 8);
+  for (const int frame : {3, 5, 6}) fs::remove(input(frame));
+  const Finished finished = run({"--frames", "1-8"});
+  EXPECT_EQ(finished.code, 3);
+  EXPECT_THAT(finished.err, AllOf(HasSubstr("3 of 8 frames are missing: 3, 5-6"), HasSubstr("f.0003.exr"), HasSubstr("--missing skip")));
+  EXPECT_THAT(names_in(out), IsEmpty());
+  const Finished skipped = run({"--frames", "1-8", "--missing", "skip"});
+  EXPECT_EQ(skipped.code, 0) << skipped;
+  EXPECT_THAT(skipped.err, HasSubstr("3 missing (3, 5-6)"));
+  EXPECT_THAT(names_in(out), ElementsAre("ao.0001.exr", "ao.0002.exr", "ao.0004.exr", "ao.0007.exr", "ao.0008.exr"));
+  EXPECT_EQ(run({"--frames", "3,5", "--missing", "skip"}).code, 3) << "nothing is left";
+}
+
+TEST_F(Batch, no_frame_at_all_is_an_error) {
+  const Finished finished = run();
+  EXPECT_EQ(finished.code, 3);
+  EXPECT_THAT(finished.err, AllOf(HasSubstr("f.0001.exr"), HasSubstr("INPUT")));
+}
+
+TEST_F(Batch, files_that_frames_would_share_are_refused) {
+  write_frames(1, 3);
+  const Finished one = run_program({"run", in + "/f.%04d.exr", "-o", out + "/ao.exr", "--camera", camera, "--radius", "1"});
+  EXPECT_EQ(one.code, 2) << one;
+  EXPECT_THAT(one.err, AllOf(HasSubstr("ao.exr"), HasSubstr("all 3 frames"), HasSubstr("%04d")));
+  const Finished over = run_program({"run", in + "/f.%04d.exr", "-o", in + "/f.%04d.exr", "--output-offset", "2", "--camera", camera, "--radius", "1"});
+  EXPECT_EQ(over.code, 2) << over;
+  EXPECT_THAT(over.err, AllOf(HasSubstr("f.0003.exr"), HasSubstr("overwrite an input")));
+}
+
+TEST_F(Batch, a_dry_run_tells_the_plan_and_does_nothing) {
+  write_frames(1, 4);
+  const Finished finished = run({"--dry-run", "--frames", "1-4"});
+  EXPECT_EQ(finished.code, 0) << finished;
+  EXPECT_THAT(finished.out, AllOf(HasSubstr("4: 1-4"), HasSubstr("f.0001.exr to "), HasSubstr("ao.0004.exr"), HasSubstr("64x36"), HasSubstr("Depth"), HasSubstr("MiB")));
+  EXPECT_THAT(names_in(out), IsEmpty());
+}
+
+TEST_F(Batch, guesses_are_made_once_by_the_first_frame_that_shows_anything) {
+  const auto change = [](FrameFile frame, const char* planes, const auto& function) {
+    for (auto& [name, values] : frame.planes)
+      if (name.find(planes) != name.npos) std::ranges::transform(values, values.begin(), function);
+    return frame;
+  };
+  const FrameFile coded = change(wall_frame(), "Normal", [](float n) { return 0.5f + 0.5f * n; });
+  change(coded, "Depth", [](float) { return 1e10f; }).write(input(1));
+  coded.write(input(2));
+  // By itself it would be taken for signed; every normal of it is of unit length either way.
+  change(coded, "Normal", [](float n) { return n > 0.9f ? 1.0f : 0.0f; }).write(input(3));
+  ASSERT_EQ(run({"--frames", "1-3", "--normal-space", "view"}).code, 0);
+  const auto guessed = outputs();
+  ASSERT_EQ(run({"--frames", "1-3", "--normal-space", "view", "--normal-encoding", "unorm"}).code, 0);
+  for (const auto& [name, bytes] : outputs()) EXPECT_EQ(pixels(bytes), pixels(guessed.at(name))) << name;
+  ASSERT_EQ(run({"--frames", "3", "--normal-space", "view"}).code, 0);
+  EXPECT_NE(pixels(read_bytes(output(3))), pixels(guessed.at("ao.0003.exr"))) << "or else the frames of this test show nothing";
+}
+
+TEST_F(Batch, what_is_noted_of_all_frames_is_said_once) {
+  FrameFile file = wall_frame();
+  file.halves = {"ViewLayer.Depth.Z"};
+  for (const int frame : {1, 2, 3}) file.write(input(frame));
+  const Finished finished = run({"--frames", "1-3"});
+  ASSERT_EQ(finished.code, 0) << finished;
+  const std::size_t first = finished.err.find("half float");
+  EXPECT_NE(first, std::string::npos) << finished;
+  EXPECT_EQ(finished.err.find("half float", first + 1), std::string::npos) << finished;
+}
+
+TEST_F(Batch, progress_for_farms_goes_to_the_standard_output) {
+  write_frames(1, 4);
+  EXPECT_EQ(run({"--progress", "percent"}).out, "Progress: 25%\nProgress: 50%\nProgress: 75%\nProgress: 100%\n");
+  const auto lines = lines_of(run({"--progress", "openjd"}).out);
+  ASSERT_EQ(lines.size(), 8);
+  EXPECT_EQ(lines[0], "openjd_progress: 25.0");
+  EXPECT_THAT(lines[1], StartsWith("openjd_status: frame 1"));
+  EXPECT_EQ(lines[6], "openjd_progress: 100.0");
+}
+
+TEST_F(Batch, plain_progress_is_whole_lines_and_a_summary_at_the_end) {
+  write_frames(1, 3);
+  const Finished finished = run();
+  EXPECT_THAT(finished.out, IsEmpty());
+  EXPECT_THAT(finished.err, AllOf(HasSubstr("(1 of 3, "), HasSubstr("frames/s"), HasSubstr("0:00 left"), Not(HasSubstr("\r"))));
+  EXPECT_THAT(lines_of(finished.err).back(), StartsWith("alcove: 3 frames done, in "));
+  EXPECT_THAT(run({"-q"}).err, IsEmpty());
+  EXPECT_THAT(run({"--progress", "bar"}).err, HasSubstr("\r"));
+  EXPECT_EQ(lines_of(run({"--progress", "none"}).err).back().substr(0, 21), "alcove: 3 frames done");
+}
+
+TEST_F(Batch, the_log_has_an_object_a_line) {
+  write_frames(1, 3);
+  const std::string log = folder / "log.jsonl", stats = folder / "stats.json";
+  ASSERT_EQ(run({"--log-json", log, "--stats", stats, "--threads", "2"}).code, 0);
+  const auto lines = lines_of(read_bytes(log));
+  ASSERT_EQ(lines.size(), 5);
+  EXPECT_EQ(json::parse(lines[0])["event"], "begin");
+  EXPECT_EQ(json::parse(lines[0])["frames"], 3);
+  for (int i = 1; i <= 3; i++) {
+    const json frame = json::parse(lines[std::size_t(i)]);
+    EXPECT_EQ(frame["frame"], i);
+    EXPECT_EQ(frame["state"], "done");
+    EXPECT_GT(frame["ms"]["total"], 0);
+    EXPECT_GT(frame["time"], 1.6e9);
+  }
+  EXPECT_EQ(json::parse(lines[4])["done"], 3);
+  const json totals = json::parse(read_bytes(stats))["totals"];
+  EXPECT_EQ(totals["frames"], 3);
+  EXPECT_EQ(totals["at_once"], 2);
+  EXPECT_THAT(run({"--log-json", "-", "--progress", "none"}).out, StartsWith("{\"event\":\"begin\""));
+  EXPECT_EQ(run({"--log-json", folder / "none/log"}).code, 4);
+}
+
+TEST_F(Batch, memory_does_not_grow_with_the_frames) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "the address sanitizer keeps what is freed";
+#endif
+  write_frames(1, 200);
+  const auto peak = [&](const char* frames) {
+    const std::string stats = folder / "stats.json";
+    EXPECT_EQ(run({"--frames", frames, "--threads", "2", "--stats", stats, "-q"}).code, 0);
+    return json::parse(read_bytes(stats))["totals"]["peak_rss_mb"].get<double>();
+  };
+  EXPECT_LT(peak("1-200"), peak("1-20") + 6);
+}
+
+TEST_F(Batch, bench_times_a_run_against_its_parts) {
+  const Finished finished = run_program({"bench", ALCOVE_SOURCE_DIR "/examples/bench/suite.toml", "--batch", "2"});
+  EXPECT_EQ(finished.code, 0) << finished;
+  const auto lines = lines_of(finished.out);
+  ASSERT_GE(lines.size(), 2);
+  for (const auto& line : lines)
+    EXPECT_THAT(line, testing::MatchesRegex("[a-z]+: 2 frames, [0-9]+ at once: [0-9.]+ s; files alone [0-9.]+ s, kernels alone [0-9.]+ s: [0-9.]+ of their sum"));
+}
+
+TEST_F(Batch, senseless_options_are_refused) {
+  write_frames(1, 1);
+  for (const std::vector<std::string>& arguments : {std::vector<std::string>{"--chunk", "0/2"}, {"--chunk", "3/2"}, {"--chunk", "2"}, {"--chunk", "a/b"}, {"--frames", "1-x"},
+                                                    {"--memory", "4X"}, {"--memory", "-1G"}, {"--missing", "hold"}, {"--progress", "loud"}})
+    EXPECT_EQ(run(arguments).code, 2) << testing::PrintToString(arguments);
+}
+
+}  // namespace
+}  // namespace alcove

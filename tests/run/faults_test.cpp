@@ -1,0 +1,193 @@
+// What goes wrong in long runs, done for real: damaged and vanished files, full disks, signals, a lost device; and what --resume makes good.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gmock/gmock.h>
+#include <signal.h>
+
+#include <chrono>
+#include <thread>
+
+#include "tests/support/sequence_folder.h"
+
+namespace alcove {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace test;
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+using testing::StartsWith;
+
+using Faults = SequenceFolder;
+
+void sleep_ms(double ms) { std::this_thread::sleep_for(std::chrono::duration<double, std::milli>(ms)); }
+
+/// Waits for the program to have written that many files, then signals it.
+Surroundings signalled(const std::string& out, std::size_t files, int signal) {
+  Surroundings surroundings;
+  surroundings.meanwhile = [=](int process) {
+    for (int i = 0; i < 3000 && names_in(out).size() < files; i++) sleep_ms(10);
+    ::kill(process, signal);
+  };
+  return surroundings;
+}
+
+void cut_short(const std::string& path) { fs::resize_file(path, fs::file_size(path) - 10); }
+
+TEST_F(Faults, a_damaged_frame_ends_the_run_by_name) {
+  write_frames(1, 6);
+  cut_short(input(3));
+  const Finished finished = run({"--threads", "1"});
+  EXPECT_EQ(finished.code, 3) << finished;
+  EXPECT_THAT(finished.err, AllOf(HasSubstr("error: frame 3: "), HasSubstr("f.0003.exr")));
+  EXPECT_THAT(lines_of(finished.err).back(), StartsWith("alcove: 2 frames done, 1 failed (3), 3 not begun"));
+  EXPECT_THAT(names_in(out), ElementsAre("ao.0001.exr", "ao.0002.exr"));
+}
+
+TEST_F(Faults, keep_going_computes_all_others) {
+  write_frames(1, 6);
+  cut_short(input(1));
+  write_bytes(input(4), "no EXR");
+  const Finished finished = run({"--keep-going"});
+  EXPECT_EQ(finished.code, 1) << finished;
+  EXPECT_THAT(lines_of(finished.err).back(), StartsWith("alcove: 4 frames done, 2 failed (1, 4)"));
+  EXPECT_THAT(names_in(out), ElementsAre("ao.0002.exr", "ao.0003.exr", "ao.0005.exr", "ao.0006.exr"));
+}
+
+TEST_F(Faults, an_input_that_vanishes_is_a_failed_frame) {
+  write_frames(1, 60);
+  Surroundings surroundings;
+  surroundings.meanwhile = [&](int) {
+    for (int i = 0; i < 3000 && names_in(out).empty(); i++) sleep_ms(10);
+    fs::remove(input(60));
+  };
+  const Finished finished = run({"--keep-going"}, surroundings);
+  EXPECT_EQ(finished.code, 1) << finished;
+  EXPECT_THAT(finished.err, HasSubstr("1 failed (60)"));
+  EXPECT_THAT(names_in(out), SizeIs(59));
+}
+
+TEST_F(Faults, signals_end_the_run_and_leave_whole_files_only) {
+  write_frames(1, 150);
+  ASSERT_EQ(run().code, 0);
+  const auto whole = outputs();
+  for (const auto& [signal, code] : {std::pair(SIGTERM, 143), std::pair(SIGINT, 130)}) {
+    remove_outputs();
+    const Finished finished = run({}, signalled(out, 3, signal));
+    EXPECT_EQ(finished.code, code) << finished;
+    EXPECT_THAT(lines_of(finished.err).back(), HasSubstr("not begun or dropped"));
+    EXPECT_LT(outputs().size(), 150);
+    for (const auto& [name, bytes] : outputs()) EXPECT_TRUE(whole.contains(name) && whole.at(name) == bytes) << name;
+  }
+}
+
+TEST_F(Faults, a_kill_at_any_moment_leaves_whole_files_and_what_is_cleaned_next_time) {
+  write_frames(1, 40);
+  ASSERT_EQ(run().code, 0);
+  const auto whole = outputs();
+  remove_outputs();
+  for (int i = 0; i < 12; i++) {
+    Surroundings surroundings;
+    surroundings.meanwhile = [&](int process) {
+      sleep_ms(40 + 37 * i);
+      ::kill(process, SIGKILL);
+    };
+    run({"--resume"}, surroundings);
+    for (const auto& [name, bytes] : outputs())
+      if (!name.starts_with(".alcove-")) EXPECT_TRUE(whole.at(name) == bytes) << name;
+  }
+  write_bytes(out + "/.alcove-1-deadbeef.tmp", "left by a process that was killed");
+  EXPECT_EQ(run({"--resume"}).code, 0);
+  EXPECT_TRUE(outputs() == whole) << testing::PrintToString(names_in(out));
+}
+
+TEST_F(Faults, resume_redoes_what_is_missing_stale_or_broken) {
+  write_frames(1, 8);
+  ASSERT_EQ(run().code, 0);
+  const auto whole = outputs();
+  EXPECT_THAT(run({"--resume"}).err, HasSubstr("0 frames done, 8 kept"));
+  fs::remove(output(2));
+  cut_short(output(4));
+  fs::last_write_time(input(5), fs::last_write_time(output(5)) + std::chrono::seconds(1));
+  write_bytes(output(7), "no EXR");
+  const Finished finished = run({"--resume"});
+  EXPECT_EQ(finished.code, 0) << finished;
+  EXPECT_THAT(finished.err, HasSubstr("4 frames done, 4 kept"));
+  for (const int frame : {1, 3, 6, 8}) EXPECT_THAT(finished.err, HasSubstr(output(frame) + ": whole, kept"));
+  EXPECT_TRUE(outputs() == whole);
+  fs::last_write_time(input(5), fs::last_write_time(output(1)));
+  EXPECT_THAT(run({"--resume", "--radius", "2"}).err, HasSubstr("8 frames done"));
+  EXPECT_THAT(run({"--resume", "--radius", "2"}).err, HasSubstr("8 kept"));
+  EXPECT_THAT(run({"--resume", "--overwrite", "--radius", "2"}).err, HasSubstr("8 frames done"));
+}
+
+TEST_F(Faults, resume_redoes_what_has_another_input_of_any_age) {
+  write_frames(1, 3);
+  ASSERT_EQ(run().code, 0);
+  const std::string before = read_bytes(output(2));
+  FrameFile other = wall_frame();
+  for (auto& [name, plane] : other.planes)
+    if (name.find("Depth") != std::string::npos)
+      for (float& z : plane) z *= 1.5f;
+  other.write(input(2));
+  fs::last_write_time(input(2), fs::last_write_time(output(2)) - std::chrono::hours(1));
+  EXPECT_THAT(run({"--resume"}).err, HasSubstr("1 frames done, 2 kept"));
+  EXPECT_NE(read_bytes(output(2)), before);
+  EXPECT_THAT(run({"--resume"}).err, HasSubstr("0 frames done, 3 kept"));
+}
+
+TEST_F(Faults, resume_looks_at_every_output) {
+  write_frames(1, 2);
+  const std::vector<std::string> more{"--preview", out + "/p.%04d.png", "--resume"};
+  ASSERT_EQ(run(more).code, 0);
+  EXPECT_THAT(run(more).err, HasSubstr("2 kept"));
+  cut_short(out + "/p.0002.png");
+  EXPECT_THAT(run(more).err, HasSubstr("1 frames done, 1 kept"));
+  const std::string picture = read_bytes(out + "/p.0001.png");
+  ASSERT_EQ(run({"--radius", "0.5"}).code, 0) << "which leaves the pictures as they are";
+  std::vector<std::string> other = more;
+  other.insert(other.end(), {"--radius", "0.5"});
+  EXPECT_THAT(run(other).err, HasSubstr("2 frames done, in")) << "pictures of another radius";
+  EXPECT_NE(read_bytes(out + "/p.0001.png"), picture);
+  EXPECT_THAT(run(other).err, HasSubstr("0 frames done, 2 kept"));
+}
+
+TEST_F(Faults, a_full_disk_leaves_nothing_half) {
+  write_frames(1, 40);
+  ASSERT_EQ(run().code, 0);
+  const auto whole = outputs();
+  const std::string disk = folder / "disk";
+  fs::create_directory(disk);
+  if (!mount_memory(disk, "size=48k")) GTEST_SKIP() << "this process may not mount";
+  const Finished stopped = run({"-o", disk + "/ao.%04d.exr"});
+  const Finished went_on = run({"-o", disk + "/ao.%04d.exr", "--keep-going"});
+  const auto names = names_in(disk);
+  for (const auto& name : names) EXPECT_TRUE(whole.contains(name) && read_bytes(disk + "/" + name) == whole.at(name)) << name;
+  EXPECT_EQ(stopped.code, 4) << stopped;
+  EXPECT_THAT(stopped.err, HasSubstr("No space left"));
+  EXPECT_EQ(went_on.code, 1) << went_on;
+  EXPECT_THAT(names.size(), AllOf(testing::Gt(1), testing::Lt(40)));
+  ASSERT_TRUE(make_read_only(disk));
+  EXPECT_EQ(run({"-o", disk + "/ao.%04d.exr"}).code, 4);
+  unmount(disk);
+}
+
+TEST_F(Faults, a_lost_device_is_replaced_once) {
+  write_frames(1, 6);
+  const std::vector<std::string> every_frame{"--threads", "1", "--keep-going", "--noise", "animated"};  // computes it, though they are equal
+  ASSERT_EQ(run(every_frame).code, 0);
+  const auto whole = outputs();
+  remove_outputs();
+  const auto losing = [](const char* times) { return Surroundings{.environment = {{"ALCOVE_LOSSES", times}}, .preload = ALCOVE_LOST_DEVICE}; };
+  const Finished once = run(every_frame, losing("1"));
+  EXPECT_EQ(once.code, 0) << once;
+  EXPECT_TRUE(outputs() == whole);
+  const Finished always = run(every_frame, losing("100"));
+  EXPECT_EQ(always.code, 5) << always;
+  EXPECT_THAT(always.err, AllOf(HasSubstr("the device was lost"), HasSubstr("fresh one")));
+}
+
+}  // namespace
+}  // namespace alcove

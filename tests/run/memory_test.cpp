@@ -1,0 +1,99 @@
+// What a frame is said to take, before its pixels are read, is no less than what its buffers then take.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include "core/run/frame_files.h"
+#include "core/run/tiles.h"
+#include "tests/support/device.h"
+#include "tests/support/program.h"
+#include "tests/support/wall_frame.h"
+
+namespace alcove {
+namespace {
+
+using namespace test;
+
+class Memory : public testing::Test {
+ protected:
+  Memory() {
+    FrameFile frame = wall_frame(window, window);
+    add_beauty(frame);
+    frame.planes["material"] = std::vector<float>(window.pixels(), 0.5f);
+    frame.write(folder / "frame.exr");
+    write_bytes(folder / "camera.json", wall_camera(window).dump());
+    all.input.input = folder / "frame.exr";
+    all.input.camera = folder / "camera.json";
+    all.estimator.radius = 1;
+    all.output.output = folder / "ao.exr";
+  }
+
+  /// Compares the bytes a pixel of all buffers with those that were expected.
+  void expect_enough(const Settings& settings, const std::string& what) const {
+    gpu::Recorder gpu(device());
+    FrameSource source = open_frame(settings, 0);
+    const PixelMemory expected = pixel_memory(source, settings);
+    const FrameInputs inputs = load_frame(gpu, source, settings, 0);
+    run_chain(gpu, inputs, settings.estimator, settings.output);
+    gpu.run();
+    const double taken = double(gpu.bytes()) / double(window.pixels());
+    // The copy of what is written is made when the chain has run, and pictures are.
+    EXPECT_LE(taken, double(expected.bytes - expected.written_bytes)) << what;
+    EXPECT_GE(taken, 0.5 * double(expected.bytes - expected.written_bytes)) << what << ": so much is never used";
+  }
+
+  const Window window{0, 0, 320, 180};
+  TemporaryFolder folder;
+  Settings all;
+};
+
+TEST_F(Memory, is_expected_of_every_estimator_search_and_resolution) {
+  for (const Estimator estimator : {Estimator::gtao, Estimator::crytek})
+    for (const Resolution resolution : {Resolution::full, Resolution::half, Resolution::quarter})
+      for (const Denoise denoise : {Denoise::none, Denoise::bilateral})
+        for (const char* aovs : {"ao", "ao,ao-scales", "ao,confidence,normal,depth,specular-occlusion"})
+          for (const std::vector<double>& further : {std::vector<double>{}, {0.5, 2}}) {
+            Settings settings = all;
+            settings.estimator.estimator = estimator;
+            settings.estimator.resolution = resolution;
+            settings.estimator.steps = 64;  // for which proofs are worth their price
+            settings.estimator.denoise = denoise;
+            settings.estimator.further_radii = further;
+            settings.output.aovs = aovs;
+            expect_enough(settings, fmt::format("estimator {} resolution {} denoise {} {} radii {}", int(estimator), int(resolution), int(denoise), aovs, 1 + further.size()));
+          }
+}
+
+TEST_F(Memory, is_expected_of_exact_searches) {
+  for (const SliceSearch search : {SliceSearch::steps, SliceSearch::exact, SliceSearch::every_pixel})
+    for (const double tolerance : {0.0, 0.03})
+      for (const Denoise denoise : {Denoise::none, Denoise::bilateral})
+        for (const char* aovs : {"ao", "ao,error", "ao,ao-scales"}) {
+          if (tolerance == 0 && std::string(aovs) == "ao,error") continue;
+          Settings settings = all;
+          settings.estimator.search = search;
+          settings.estimator.tolerance = tolerance;
+          settings.estimator.denoise = denoise;
+          settings.output.aovs = aovs;
+          expect_enough(settings, fmt::format("search {} tolerance {} denoise {} {}", int(search), tolerance, int(denoise), aovs));
+        }
+}
+
+TEST_F(Memory, is_expected_of_every_output) {
+  Settings settings = all;
+  settings.output.composite = folder / "composite.exr";
+  expect_enough(settings, "composite");
+  settings.output.multi_bounce = true;
+  settings.output.ao_channels = AoChannels::rgb;
+  expect_enough(settings, "multi-bounce");
+  settings.input.material_ao_channel = "material";
+  expect_enough(settings, "material AO");
+  settings.output.debug = "tiles,raw-ao,denoised-ao";
+  expect_enough(settings, "debug views");
+  settings.output.aovs = "ao,bent-normal,normal,depth,confidence,specular-occlusion,ao-scales";
+  settings.estimator.resolution = Resolution::half;
+  settings.estimator.power = 2;
+  expect_enough(settings, "all at half the resolution");
+}
+
+}  // namespace
+}  // namespace alcove

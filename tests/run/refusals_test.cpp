@@ -1,0 +1,419 @@
+// How commands end that cannot do what they are asked: standard streams that nobody takes, reports that would overwrite inputs, presets, suites and limits
+// that make no sense, devices and modules that are not there. Refused frames: bad_input_test.cpp.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gmock/gmock.h>
+
+#include <filesystem>
+
+#include "tests/support/command_line.h"
+#include "tests/support/sequence_folder.h"
+
+namespace alcove {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace test;
+using testing::AllOf;
+using testing::HasSubstr;
+
+/// Runs the program, which must end with this code and one line on stderr that has the words.
+void expect_refused(int code, const std::vector<std::string>& words, const std::vector<std::string>& arguments, const Surroundings& surroundings = {}) {
+  const Finished finished = run_program(arguments, surroundings);
+  EXPECT_EQ(finished.code, code) << testing::PrintToString(arguments) << finished;
+  EXPECT_EQ(lines_of(finished.err).size(), 1) << testing::PrintToString(arguments) << finished;
+  for (const auto& word : words) EXPECT_THAT(finished.err, HasSubstr(word)) << testing::PrintToString(arguments);
+}
+
+// The standard streams.
+
+TEST(StandardOutput, that_is_full_ends_with_4_however_much_is_said) {
+  for (const std::vector<std::string>& arguments : {std::vector<std::string>{"--version"}, {"run", "--help"}, {"run", "--help-markdown"}, {"presets"}, {"devices"}})
+    expect_refused(4, {"standard output"}, arguments, {.out = "/dev/full"});
+}
+
+using Streams = SequenceFolder;
+
+TEST_F(Streams, an_error_stream_that_is_full_changes_nothing_else) {
+  write_frames(1, 2);
+  const Surroundings full{.err = "/dev/full"};
+  EXPECT_EQ(run({}, full).code, 0);
+  EXPECT_THAT(names_in(out), testing::ElementsAre("ao.0001.exr", "ao.0002.exr"));
+  EXPECT_EQ(run({"--progress", "bar"}, full).code, 0);
+  EXPECT_EQ(run({"--radius", "-1"}, full).code, 2);
+}
+
+TEST_F(Streams, progress_and_a_log_that_nobody_takes_end_with_4_and_leave_whole_files) {
+  write_frames(1, 2);
+  ASSERT_EQ(run().code, 0);
+  const auto whole = outputs();
+  remove_outputs();
+  for (const std::vector<std::string>& more : {std::vector<std::string>{"--progress", "percent"}, {"--log-json", "-"}}) {
+    const Finished finished = run(more, {.out = "/dev/full"});
+    EXPECT_EQ(finished.code, 4) << finished;
+    EXPECT_THAT(finished.err, HasSubstr(more[0] == "--log-json" ? "--log-json" : "standard output"));
+    for (const auto& [name, bytes] : outputs()) EXPECT_TRUE(whole.contains(name) && whole.at(name) == bytes) << name;
+  }
+}
+
+TEST_F(Streams, a_log_on_a_full_disk_ends_with_4) {
+  write_frames(1, 2);
+  const std::string disk = folder / "disk";
+  fs::create_directory(disk);
+  if (!mount_memory(disk, "size=4k")) GTEST_SKIP() << "this process may not mount";
+  write_bytes(disk + "/ballast", std::string(4096, 'x'));
+  const Finished finished = run({"--log-json", disk + "/log"});
+  EXPECT_EQ(finished.code, 4) << finished;
+  EXPECT_THAT(finished.err, AllOf(HasSubstr(disk + "/log"), HasSubstr("No space"), HasSubstr("--log-json")));
+  unmount(disk);
+}
+
+// Reports and inputs.
+
+TEST_F(Streams, no_report_overwrites_a_file_of_any_frame) {
+  write_frames(1, 3);
+  ASSERT_EQ(run().code, 0);
+  const std::string camera_before = read_bytes(camera), input_before = read_bytes(input(3)), output_before = read_bytes(output(3));
+  for (const char* option : {"--stats", "--log-json"})
+    for (const std::string& path : {camera, input(1), input(3), output(1), output(3)}) {
+      const Finished finished = run({option, path});
+      EXPECT_EQ(finished.code, 2) << path << finished;
+      EXPECT_THAT(finished.err, AllOf(HasSubstr(path), HasSubstr(option), testing::ContainsRegex("would overwrite an input|name the same file")));
+    }
+  EXPECT_EQ(run({"--stats", folder / "one", "--log-json", folder / "one"}).code, 2);
+  EXPECT_EQ(read_bytes(camera), camera_before);
+  EXPECT_TRUE(read_bytes(input(3)) == input_before && read_bytes(output(3)) == output_before);
+}
+
+TEST_F(Streams, two_outputs_that_are_one_file_in_a_later_frame_are_refused) {
+  for (const int frame : {9, 10}) {
+    FrameFile file = wall_frame();
+    add_beauty(file);
+    file.write(input(frame));
+  }
+  const Finished finished = run({"-o", out + "/a.%d.exr", "--composite", out + "/a.%02d.exr"});
+  EXPECT_EQ(finished.code, 2) << finished;
+  EXPECT_THAT(finished.err, AllOf(HasSubstr("a.10.exr"), HasSubstr("--output"), HasSubstr("--composite")));
+  EXPECT_TRUE(names_in(out).empty());
+}
+
+using Refusals = CommandLine;
+
+TEST_F(Refusals, a_log_of_a_run_that_is_refused_stays_as_it_was) {
+  write_bytes(folder / "log", "before");
+  EXPECT_EQ(run({"--log-json", folder / "log", "--aov", "nosuch"}).code, 2);
+  EXPECT_EQ(run({"--log-json", folder / "log", "--depth", folder / "missing.%04d.exr"}).code, 3);
+  EXPECT_EQ(read_bytes(folder / "log"), "before");
+  EXPECT_EQ(run({"--log-json", folder / "log"}).code, 0);
+  EXPECT_THAT(read_bytes(folder / "log"), testing::StartsWith("{\"event\":\"begin\""));
+}
+
+TEST_F(Refusals, reports_of_inspect_compare_and_bench_overwrite_no_input) {
+  const std::string before = read_bytes(frame), camera_before = read_bytes(camera);
+  expect_refused(2, {frame, "--preview", "overwrite"}, {"inspect", frame, "--camera", camera, "--preview", frame, "-q"});
+  fs::create_symlink(frame, folder / "link.html");
+  for (const std::string& path : {frame, folder / "link.html"}) expect_refused(2, {path, "--report", "overwrite"}, {"compare", frame, frame, "--report", path});
+  const std::string suite = folder / "suite.toml", text =
+      "title = \"x\"\n[[frame]]\nname = \"wall\"\ninput = \"wall.0042.exr\"\ncamera = \"camera.json\"\nradius = 1\ntruth = \"wall.0042.exr\"\n"
+      "[[candidate]]\nname = \"draft\"\npreset = \"draft\"\n";
+  write_bytes(suite, text);
+  for (const std::string& path : {suite, frame, camera})
+    for (const char* option : {"--json", "--csv", "--report"}) expect_refused(2, {path, option, "overwrite"}, {"bench", suite, option, path});
+  expect_refused(4, {folder / "none/x", "--csv"}, {"bench", suite, "--csv", folder / "none/x"});
+  EXPECT_TRUE(read_bytes(frame) == before);
+  EXPECT_EQ(read_bytes(camera), camera_before);
+  EXPECT_EQ(read_bytes(suite), text);
+}
+
+// Settings that contradict each other, or the frame.
+
+TEST_F(Refusals, settings_that_contradict_each_other_name_what_mends_them) {
+  const std::pair<std::vector<std::string>, std::vector<std::string>> cases[] = {
+      {{"--tolerance", "0.1", "--estimator", "hbao"}, {"--tolerance", "--estimator gtao"}},
+      {{"--tolerance", "0.1", "--resolution", "half"}, {"--tolerance", "--resolution full"}},
+      {{"--aov", "ao,error"}, {"--aov error", "--tolerance"}},
+      {{"--skip-tolerance", "0.01", "--estimator", "hbao"}, {"--skip-tolerance", "gtao and bitmask"}},
+      {{"--skip-tolerance", "0.01", "--search", "exact"}, {"--skip-tolerance", "--search steps"}},
+      {{"--skip-tolerance", "0.01", "--no-skip"}, {"--skip-tolerance", "--no-skip"}},
+      {{"--search", "exact", "--debug", "tiles"}, {"--debug tiles", "--search steps"}},
+      {{"--falloff-start", "0.5", "--falloff-end", "0.4"}, {"--falloff-end 0.4", "--falloff-start 0.5"}},
+      {{"--stride", "4", "--denoise", "none"}, {"--stride 4", "--denoise bilateral"}},
+      {{"--bias", "1"}, {"--bias 1", "below 1"}},
+      {{"--aov", "bent-normal", "--estimator", "crytek"}, {"--aov bent-normal", "--estimator crytek", "gtao"}},
+      {{"--radius", "1"}, {"--radius 1 is there twice"}},
+      {{"--radius", "2", "--radius", "3", "--radius", "4", "--radius", "5", "--radius", "6", "--radius", "7", "--radius", "8", "--radius", "9"}, {"--radius", "at most 8"}},
+      {{"--fade-start", "1"}, {"--fade-start and --fade-end"}},
+      {{"--fade-start", "2", "--fade-end", "2"}, {"--fade-end 2", "--fade-start 2"}},
+      {{"--albedo", "0.5"}, {"--albedo", "--multi-bounce"}},
+      {{"--multi-bounce"}, {"--multi-bounce", "--ao-channels rgb", "--composite"}},
+      {{"--fog-density", "1"}, {"--fog-density", "--composite"}},
+      {{"--depth", frame, "--position", frame}, {"--depth and --position"}},
+      {{"--debug", "raw-dpth"}, {"--debug", "did you mean raw-depth"}},
+      {{"--aov", "bent"}, {"--aov", "bent", "did you mean"}},
+      {{"--thickness", "-1"}, {"--thickness", "-1 is neither auto nor infinite"}},
+      {{"--thickness", "inf"}, {"--thickness", "inf is neither"}},
+      {{"--albedo", "2", "--multi-bounce"}, {"--albedo", "0 to 1"}},
+      {{"--denoise-kernel", "1"}, {"--denoise-kernel", "not 2 to 9"}},
+      {{"--denoise-kernel", "0,1"}, {"--denoise-kernel", "no weight at the centre"}},
+      {{"--denoise-kernel", "1,x"}, {"--denoise-kernel", "x is no weight"}},
+      {{"--roi", "0,0,8"}, {"--roi", "X,Y,WIDTH,HEIGHT"}},
+      {{"--roi", "100,0,8,8"}, {frame, "--roi", "data window"}},
+      {{"--slcies=2"}, {"there is no option --slcies (did you mean --slices"}},
+      {{"--source", "bledner"}, {"--source", "bledner"}},
+  };
+  const std::string before = read_bytes(frame);
+  for (const auto& [more, words] : cases) {
+    std::vector<std::string> arguments{"run", frame, "-o", ao, "--camera", camera, "--radius", "1"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    expect_refused(2, words, arguments);
+  }
+  EXPECT_THAT(names_in(folder.path()), testing::ElementsAre("camera.json", "wall.0042.exr"));
+}
+
+TEST_F(Refusals, outputs_that_the_frame_has_nothing_for_name_what_gives_it) {
+  FrameFile plain = wall_frame();
+  for (const char* axis : {"X", "Y", "Z"}) plain.planes.erase(std::string("ViewLayer.Normal.") + axis);
+  plain.write(folder / "plain.exr");
+  FrameFile positions;
+  for (const char* axis : {"X", "Y", "Z"}) positions.planes[std::string("Position.") + axis] = std::vector<float>(kWallWindow.pixels(), -2.0f);
+  positions.write(folder / "positions.exr");
+  const auto refused = [&](int code, const std::string& input, std::vector<std::string> more, std::vector<std::string> words) {
+    more.insert(more.begin(), {"run", folder / input, "-o", ao, "--radius", "1"});
+    words.push_back(folder / input);
+    expect_refused(code, words, more);
+  };
+  refused(3, "plain.exr", {"--fov", "60", "--debug", "reconstruction"}, {"--debug reconstruction", "--normal"});
+  refused(3, "plain.exr", {"--fov", "60", "--aov", "normal", "--aov-space", "world"}, {"--aov-space world", "world_to_camera", "--camera"});
+  refused(3, "positions.exr", {"--fov", "60", "--debug", "raw-depth"}, {"--debug raw-depth", "--depth-channel"});
+  refused(2, "positions.exr", {"--fov", "60", "--position-space", "world"}, {"world_to_camera", "--camera", "--position-space view"});
+  for (const std::string kind : {"device", "log"}) refused(2, "plain.exr", {"--fov", "60", "--depth-kind", kind}, {kind, kind == "log" ? "--far" : "--near"});
+  refused(2, "plain.exr", {"--fov", "60", "--depth-kind", "device", "--near", "2", "--far", "1"}, {"--near 2", "--far 1"});
+  EXPECT_FALSE(fs::exists(ao));
+}
+
+TEST_F(Refusals, folders_of_presets_and_layers_that_are_not_there) {
+  expect_refused(2, {folder / "none", "ALCOVE_PRESETS"}, {"presets"}, {.environment = {{"ALCOVE_PRESETS", folder / "none"}}});
+  expect_refused(5, {"--validate", "vulkan-validationlayers"}, {"run", frame, "-o", ao, "--camera", camera, "--radius", "1", "--validate"},
+                 {.environment = {{"VK_LAYER_PATH", folder / "none"}}});
+  EXPECT_FALSE(fs::exists(ao));
+}
+
+// Presets.
+
+TEST_F(Refusals, presets_of_the_wrong_types_are_named_with_line_and_key) {
+  const std::string preset = folder / "my.toml";
+  const std::pair<const char*, std::vector<std::string>> cases[] = {
+      {"radius = {a = 1}\n", {"line 1", "radius must be"}},
+      {"\nradius = [1, [2]]\n", {"line 2", "radius must be"}},
+      {"radius = 1979-05-27\n", {"line 1", "radius must be"}},
+      {"[steps]\na = 1\n", {"line 1", "steps must be"}},
+      {"steps = 1.5\n", {"--steps", "1.5"}},
+      {"steps = true\n", {"--steps", "true is not a finite number"}},
+      {"steps = []\n", {"--steps", "At least 1"}},
+      {"keep-going = \"perhaps\"\n", {"--keep-going", "perhaps"}},
+      {"steps = \n", {"line 1"}},
+      {"denoise = \"boxx\"\n", {"--denoise", "boxx", "did you mean box"}},
+      {"slcies = 2\n", {"slcies is no option", "did you mean --slices"}},
+      {"dry-run = true\n", {"dry-run is an option of the command line only"}},
+      {"preset = \"standard\"\n", {"preset is an option of the command line only"}},
+  };
+  for (const auto& [text, words] : cases) {
+    write_bytes(preset, text);
+    std::vector<std::string> all{preset, "--preset"};
+    all.insert(all.end(), words.begin(), words.end());
+    expect_refused(2, all, {"run", frame, "-o", ao, "--camera", camera, "--radius", "1", "--preset", preset});
+  }
+  EXPECT_FALSE(fs::exists(ao));
+}
+
+TEST_F(Refusals, a_preset_or_a_camera_on_a_disk_that_fails_ends_with_3) {
+  const std::string failing = "/proc/self/mem";  // nothing can be read at its beginning
+  expect_refused(3, {failing, "--preset", "cannot be read"}, {"run", frame, "-o", ao, "--camera", camera, "--radius", "1", "--preset", failing});
+  expect_refused(3, {failing, "cannot be read"}, {"presets", failing});
+  expect_refused(3, {failing, "--camera", "cannot be read"}, {"run", frame, "-o", ao, "--camera", failing, "--radius", "1"});
+  expect_refused(3, {failing, "SUITE", "cannot be read"}, {"bench", failing});
+}
+
+// Suites and limits.
+
+class Suites : public CommandLine {
+ protected:
+  /// A suite of the frame, with other text for one of its parts.
+  std::string suite_with(const std::string& part, const std::string& text) const {
+    std::map<std::string, std::string> parts{{"top", "title = \"x\"\nrepeats = 1\nreference-slices = 0\n"},
+                                             {"frame", "[[frame]]\nname = \"wall\"\ninput = \"wall.0042.exr\"\ncamera = \"camera.json\"\nradius = 1\ntruth = \"ao.exr\"\n"},
+                                             {"candidate", "[[candidate]]\nname = \"draft\"\npreset = \"draft\"\n"}};
+    parts[part] = text;
+    write_bytes(folder / "suite.toml", parts["top"] + parts["frame"] + parts["candidate"]);
+    return folder / "suite.toml";
+  }
+};
+
+TEST_F(Suites, of_the_wrong_types_are_refused_by_file_table_and_key) {
+  const std::string frame_start = "[[frame]]\nname = \"wall\"\ninput = \"wall.0042.exr\"\ncamera = \"camera.json\"\n";
+  const std::tuple<const char*, std::string, std::vector<std::string>> cases[] = {
+      {"top", "title = 3\n", {"\"title\"", "must be a string"}},
+      {"top", "title = \"x\"\nrepeats = 0\n", {"\"repeats\"", "whole number"}},
+      {"top", "title = \"x\"\nrepeats = \"many\"\n", {"\"repeats\"", "whole number"}},
+      {"top", "title = \"x\"\nreference-slices = -1\n", {"\"reference-slices\""}},
+      {"top", "title = \"x\"\nrepaets = 1\n", {"repaets", "did you mean repeats"}},
+      {"top", "title = \"x\n", {"line 1"}},
+      {"frame", "", {"there is no [[frame]]"}},
+      {"frame", "frame = 1\n", {"[[frame]] must be a list of tables"}},
+      {"frame", "frame = [1]\n", {"[[frame]] must be a list of tables"}},
+      {"frame", frame_start + "radius = 0\ntruth = \"ao.exr\"\n", {"[[frame]] 1", "\"radius\"", "above 0"}},
+      {"frame", frame_start + "radius = \"1\"\ntruth = \"ao.exr\"\n", {"\"radius\"", "above 0"}},
+      {"frame", frame_start + "radius = inf\ntruth = \"ao.exr\"\n", {"\"radius\"", "above 0"}},
+      {"frame", frame_start + "radius = 1\n", {"\"truth\"", "must be a string"}},
+      {"frame", frame_start + "radius = 1\ntruth = []\n", {"\"truth\"", "one file or two"}},
+      {"frame", frame_start + "radius = 1\ntruth = [1]\n", {"\"truth\"", "one file or two"}},
+      {"frame", frame_start + "radius = 1\ntruth = [\"a\", \"b\", \"c\"]\n", {"\"truth\"", "one file or two"}},
+      {"candidate", "", {"there is no [[candidate]]"}},
+      {"candidate", "[[candidate]]\nname = \"a\"\n[[candidate]]\nname = \"a\"\n", {"two candidates are called a"}},
+      {"candidate", "[[candidate]]\nname = \"a\"\nslices = [1, 2]\n", {"[[candidate]] 1", "\"slices\"", "a string, a number or true"}},
+      {"candidate", "[[candidate]]\nname = \"a\"\nno-skip = false\n", {"\"no-skip\"", "a string, a number or true"}},
+      {"candidate", "[[sweep]]\nslices = []\n", {"[[sweep]] 1", "\"slices\"", "must not be empty"}},
+      {"candidate", "[[sweep]]\nslices = [{a = 1}]\n", {"[[sweep]] 1", "\"slices\""}},
+  };
+  for (const auto& [part, text, words] : cases) {
+    const std::string suite = suite_with(part, text);
+    std::vector<std::string> all{suite};
+    all.insert(all.end(), words.begin(), words.end());
+    expect_refused(3, all, {"bench", suite});
+  }
+}
+
+TEST_F(Suites, candidates_whose_options_make_no_sense_are_refused_by_name) {
+  const std::pair<const char*, std::vector<std::string>> cases[] = {
+      {"slcies = 2", {"--slcies", "did you mean --slices"}}, {"slices = 65", {"--slices", "65"}}, {"preset = \"drat\"", {"drat", "did you mean draft"}},
+      {"help = true", {"alcove run"}}, {"tolerance = 0.1\nestimator = \"hbao\"", {"--tolerance", "gtao"}}, {"stride = \"4\"\ndenoise = \"none\"", {"--stride 4", "--denoise"}}};
+  for (const auto& [text, words] : cases) {
+    std::vector<std::string> all{"suite.toml", "candidate odd"};
+    all.insert(all.end(), words.begin(), words.end());
+    expect_refused(2, all, {"bench", suite_with("candidate", std::string("[[candidate]]\nname = \"odd\"\n") + text + "\n")});
+  }
+}
+
+TEST_F(Suites, limits_that_fit_no_candidate_are_refused_before_anything_is_measured) {
+  ASSERT_EQ(run({}).code, 0);
+  const std::string suite = suite_with("", ""), limits = folder / "limits.toml";
+  const auto limit = [](const std::string& frame, const std::string& candidate, const std::string& measure) {
+    return fmt::format("[[limit]]\nframe = \"{}\"\ncandidate = \"{}\"\n{}\n", frame, candidate, measure);
+  };
+  const std::pair<std::string, std::vector<std::string>> cases[] = {
+      {"", {"there is no [[limit]]"}},
+      {limit("wall", "draft", ""), {"there is no [[limit]]"}},
+      {limit("wall", "draft", "rms = 1"), {"rms", "did you mean"}},
+      {limit("wall", "draft", "rmse = \"x\""), {"\"rmse\"", "above 0"}},
+      {limit("wall", "draft", "estimator-rmse = 1"), {"estimator-rmse", "--reference-slices"}},
+      {limit("wal", "draft", "rmse = 1"), {"no frame wal", "did you mean wall"}},
+      {limit("wall", "drft", "rmse = 1"), {"no candidate drft", "did you mean draft"}},
+  };
+  for (const auto& [text, words] : cases) {
+    write_bytes(limits, text);
+    std::vector<std::string> all{limits, "--limits"};
+    if (words[0] == "rms" || words[0] == "\"rmse\"") all.pop_back();
+    all.insert(all.end(), words.begin(), words.end());
+    expect_refused(words[0] == "estimator-rmse" ? 2 : 3, all, {"bench", suite, "--limits", limits, "--json", folder / "bench.json"});
+  }
+  EXPECT_FALSE(fs::exists(folder / "bench.json"));
+  write_bytes(limits, limit("wall", "draft", "rmse = 1e-9\nmae = 1\np99 = 1\nbias = 1"));
+  const Finished broken = run_program({"bench", suite, "--limits", limits, "-q"});
+  EXPECT_EQ(broken.code, 6) << broken;
+  EXPECT_THAT(lines_of(broken.err), testing::ElementsAre(testing::StartsWith("alcove: draft on wall: rmse is ")));
+}
+
+TEST_F(Suites, truths_yardsticks_and_scratch_folders_that_are_none) {
+  ASSERT_EQ(run({}).code, 0);
+  const std::string start = "[[frame]]\nname = \"wall\"\ninput = \"wall.0042.exr\"\ncamera = \"camera.json\"\nradius = 1\n";
+  expect_refused(3, {frame, "4 channels", "must have one"}, {"bench", suite_with("frame", start + "truth = \"wall.0042.exr\"\n"), "-q"});
+  expect_refused(3, {"none.exr", "not found"}, {"bench", suite_with("frame", start + "truth = \"none.exr\"\n"), "-q"});
+  const std::string suite = suite_with("", "");
+  expect_refused(2, {"--yardstick true", "median X ms"}, {"bench", suite, "--yardstick", "true", "-q"});
+  expect_refused(4, {folder / "none", "TMPDIR"}, {"bench", suite, "--batch", "2", "-q"}, {.environment = {{"TMPDIR", folder / "none"}}});
+  expect_refused(5, {"nosuch", "--device"}, {"bench", suite, "--device", "nosuch", "-q"});
+  expect_refused(2, {"SUITE"}, {"bench"});
+  expect_refused(4, {folder / "none/x", "--json"}, {"bench", "--stability", "--json", folder / "none/x"});
+}
+
+// Pictures, and the module of them.
+
+TEST_F(Refusals, a_picture_that_is_cut_short_is_an_input_that_cannot_be_read) {
+  const std::string picture = folder / "p.png";
+  ASSERT_EQ(run({"--preview", picture}).code, 0);
+  ASSERT_EQ(run_program({"compare", picture, picture}).code, 0);
+  fs::resize_file(picture, fs::file_size(picture) / 2);
+  const Finished finished = run_program({"compare", picture, picture});
+  EXPECT_EQ(finished.code, 3) << finished;
+  EXPECT_THAT(lines_of(finished.err).back(), AllOf(HasSubstr(picture), HasSubstr("damaged or incomplete"), HasSubstr("RESULT")));  // libpng has said a line of its own
+}
+
+TEST_F(Refusals, a_broken_module_of_pictures_is_named_and_leaves_no_output) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "the program's own folder comes before LD_LIBRARY_PATH";
+#endif
+  fs::create_directory(folder / "lib");
+  write_bytes(folder / "lib/libalcove_image_io.so", "no library");
+  const Surroundings broken{.environment = {{"LD_LIBRARY_PATH", folder / "lib"}}};
+  expect_refused(4, {folder / "p.png", "libalcove_image_io.so beside the program"}, {"run", frame, "-o", ao, "--preview", folder / "p.png", "--camera", camera, "--radius", "1"}, broken);
+  write_bytes(folder / "a.png", "x");
+  expect_refused(3, {folder / "a.png", "libalcove_image_io.so"}, {"compare", folder / "a.png", frame}, broken);
+  EXPECT_FALSE(fs::exists(ao));
+  EXPECT_EQ(run({}, broken).code, 0) << "an EXR needs no module";
+}
+
+// Devices.
+
+Surroundings lacking(const std::string& what) { return {.environment = {{"ALCOVE_LACKS", what}}, .preload = ALCOVE_POOR_DEVICE}; }
+
+TEST_F(Refusals, a_device_that_lacks_what_kernels_need_is_listed_with_what_and_not_used) {
+  for (const std::string what : {"Vulkan 1.2", "a compute queue", "VK_KHR_push_descriptor", "scalar block layout"}) {
+    const Finished listed = run_program({"devices"}, lacking(what));
+    EXPECT_EQ(listed.code, 0) << listed;
+    EXPECT_THAT(listed.out, HasSubstr("not usable: it lacks " + what));
+    expect_refused(5, {"--device", "it lacks " + what}, {"run", frame, "-o", ao, "--camera", camera, "--radius", "1"}, lacking(what));
+  }
+  EXPECT_EQ(run({}, lacking("nothing")).code, 0);  // or else all of this proves nothing
+}
+
+TEST_F(Refusals, a_driver_without_devices_or_one_that_fails_ends_with_5) {
+  expect_refused(5, {"no Vulkan device found"}, {"devices"}, lacking("any device"));
+  expect_refused(5, {"no Vulkan device found"}, {"run", frame, "-o", ao, "--camera", camera, "--radius", "1"}, lacking("any device"));
+  expect_refused(5, {"vkCreateDevice"}, {"run", frame, "-o", ao, "--camera", camera, "--radius", "1"}, lacking("a driver that works"));
+  expect_refused(5, {"out of memory in vkCreateComputePipelines"}, {"run", frame, "-o", ao, "--camera", camera, "--radius", "1"}, lacking("memory for kernels"));
+  expect_refused(5, {"no room for a buffer", "--memory"}, {"run", frame, "-o", ao, "--camera", camera, "--radius", "1"}, lacking("memory"));
+  EXPECT_THAT(names_in(folder.path()), testing::Each(testing::AnyOf("camera.json", "wall.0042.exr")));
+  EXPECT_THAT(run_program({"devices"}, lacking("a known type")).out, HasSubstr("  other  "));
+}
+
+TEST_F(Refusals, a_device_without_timestamps_gives_the_same_without_times) {
+  ASSERT_EQ(run({}).code, 0);
+  const std::string with = read_bytes(ao);
+  fs::remove(ao);
+  ASSERT_EQ(run({"--stats", folder / "stats.json"}, lacking("timestamps")).code, 0);
+  EXPECT_TRUE(read_bytes(ao) == with);
+  EXPECT_EQ(nlohmann::json::parse(read_bytes(folder / "stats.json"))["frames"][0]["ms"]["compute"], 0);
+}
+
+TEST_F(Streams, a_frame_that_finds_no_memory_leaves_nothing_to_the_next) {
+  // Of another size, so that the buffers of the first frame go.
+  wall_frame().write(input(1));
+  wall_frame({0, 0, 32, 18}, {0, 0, 32, 18}).write(input(2));
+  wall_frame().write(input(3));
+  ASSERT_EQ(run({"--no-skip", "--threads", "1"}).code, 0);
+  const auto whole = outputs();
+  for (const char* number : {"3", "4", "6", "8"}) {
+    remove_outputs();
+    const std::string stats = folder / "stats.json";
+    const Finished finished = run({"--no-skip", "--threads", "1", "--keep-going", "--stats", stats},
+                                  {.environment = {{"ALCOVE_ALLOCATION", number}}, .preload = ALCOVE_POOR_DEVICE});
+    EXPECT_EQ(finished.code, 1) << finished;
+    EXPECT_THAT(finished.err, AllOf(HasSubstr("frame 1: "), HasSubstr(input(1)), HasSubstr("--memory")));
+    EXPECT_THAT(names_in(out), testing::ElementsAre("ao.0002.exr", "ao.0003.exr"));
+    for (const auto& [name, bytes] : outputs()) EXPECT_TRUE(whole.at(name) == bytes) << name << " after allocation " << number;
+    const auto frames = nlohmann::json::parse(read_bytes(stats))["frames"];
+    EXPECT_EQ(frames[1]["passes"].size(), frames[2]["passes"].size()) << "passes of the frame that failed";
+  }
+}
+
+}  // namespace
+}  // namespace alcove
