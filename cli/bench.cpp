@@ -10,9 +10,9 @@
 #include "cli/options.h"
 #include "cli/parsing.h"
 #include "cli/print.h"
-#include "core/run/batch.h"
 #include "core/base/error.h"
 #include "core/base/file.h"
+#include "core/run/batch.h"
 
 namespace alcove {
 namespace {
@@ -33,22 +33,40 @@ bool parse(const std::vector<std::string>& arguments, BenchArguments& a) {
   app.get_formatter()->column_width(34);
   app.add_option("SUITE", a.suite, "a suite file (TOML); all but --stability needs one")->type_name("");
   app.add_option("--data", a.data, "the folder of the suite's frames; else the suite's own")->type_name("FOLDER");
-  app.add_option("--batch", a.batch, "instead: time a run of so many frames against its files alone and its kernels alone, for the first candidate")
-      ->expected(0, 1)->default_str("240")->check(CLI::Range(1, 100000))->type_name("FRAMES");
-  app.add_flag("--stability", a.stability, "instead: measure where each estimator's numbers fail, along depth, radius, field of view, tilt, bits and world offset; no suite");
-  app.add_option("--repeats", a.repeats, "timed runs, instead of the suite's")->check(CLI::Range(1, 1000))->type_name("NUMBER");
-  app.add_option("--reference-slices", a.reference_slices, "of the CPU reference, instead of the suite's; 0: none")->check(CLI::Range(0, 1024))->type_name("NUMBER");
+  app.add_option(
+         "--batch", a.batch,
+         "instead: time a run of so many frames against its files alone and its kernels alone, for the first candidate")
+      ->expected(0, 1)
+      ->default_str("240")
+      ->check(CLI::Range(1, 100000))
+      ->type_name("FRAMES");
+  app.add_flag("--stability", a.stability,
+               "instead: measure where each estimator's numbers fail, along depth, radius, field of view, tilt, bits "
+               "and world offset; no suite");
+  app.add_option("--repeats", a.repeats, "timed runs, instead of the suite's")
+      ->check(CLI::Range(1, 1000))
+      ->type_name("NUMBER");
+  app.add_option("--reference-slices", a.reference_slices, "of the CPU reference, instead of the suite's; 0: none")
+      ->check(CLI::Range(0, 1024))
+      ->type_name("NUMBER");
   app.add_option("--json", a.json, "write all numbers")->type_name("FILE.json");
   app.add_option("--csv", a.csv, "write a line for every candidate and frame")->type_name("FILE.csv");
-  app.add_option("--report", a.report, "write a self-contained page with chart, table and pictures")->type_name("FILE.html");
-  app.add_option("--limits", a.limits, "a TOML file of largest errors; one that is exceeded ends with exit code 6")->type_name("FILE.toml");
-  app.add_option("--yardstick", a.yardstick, "a program that times a unit of work, run between the candidates as PROGRAM FRAME CAMERA RADIUS RUNS; it prints \"median X ms\"")
+  app.add_option("--report", a.report, "write a self-contained page with chart, table and pictures")
+      ->type_name("FILE.html");
+  app.add_option("--limits", a.limits, "a TOML file of largest errors; one that is exceeded ends with exit code 6")
+      ->type_name("FILE.toml");
+  app.add_option("--yardstick", a.yardstick,
+                 "a program that times a unit of work, run between the candidates as PROGRAM FRAME CAMERA RADIUS RUNS; "
+                 "it prints \"median X ms\"")
       ->type_name("PROGRAM");
-  app.add_option("--device", a.device.choice, "as for alcove run")->capture_default_str()->type_name("auto|cpu|INDEX|NAME|UUID");
+  app.add_option("--device", a.device.choice, "as for alcove run")
+      ->capture_default_str()
+      ->type_name("auto|cpu|INDEX|NAME|UUID");
   app.add_flag("--require-gpu", a.device.require_gpu, "measuring on the CPU is an error");
   app.add_flag("-q,--quiet", a.quiet, "no progress and no table");
   if (!parse_arguments(app, arguments)) return false;
-  if (a.suite.empty() && !a.stability) fail(ErrorKind::usage, "alcove bench: SUITE is required; try alcove bench --help");
+  if (a.suite.empty() && !a.stability)
+    fail(ErrorKind::usage, "alcove bench: SUITE is required; try alcove bench --help");
   return true;
 }
 
@@ -57,7 +75,8 @@ Settings settings_of(const SuiteCandidate& candidate, const SuiteFrame& frame, c
   RunOptions options;
   Settings& settings = options.settings;
   try {
-    if (!parse_run_options(candidate.arguments, options)) fail(ErrorKind::usage, "it asks for what only alcove run prints");
+    if (!parse_run_options(candidate.arguments, options))
+      fail(ErrorKind::usage, "it asks for what only alcove run prints");
     settings.input.input = frame.input;
     settings.input.camera = frame.camera;
     Settings checked = settings;
@@ -74,7 +93,8 @@ std::vector<BenchCandidate> candidates_of(const Suite& suite, const std::string&
   std::vector<BenchCandidate> candidates;
   for (const auto& candidate : suite.candidates) {
     EstimatorSettings estimator = settings_of(candidate, suite.frames.front(), path).estimator;
-    if (std::ranges::find(candidate.arguments, "--radius") == candidate.arguments.end()) estimator.radius.reset();  // a preset's: truths have one
+    // a preset's: truths have one
+    if (std::ranges::find(candidate.arguments, "--radius") == candidate.arguments.end()) estimator.radius.reset();
     candidates.push_back({candidate.name, fmt::format("{}", fmt::join(candidate.arguments, " ")), estimator});
   }
   return candidates;
@@ -88,20 +108,23 @@ void time_batches(const Suite& suite, const BenchArguments& a) {
     settings.device.device = a.device.choice;
     settings.device.require_gpu = a.device.require_gpu;
     const BatchTimes times = time_batch(settings, a.batch);
-    fmt::print("{}: {} frames, {} at once: {:.2f} s; files alone {:.2f} s, kernels alone {:.2f} s: {:.2f} of their sum\n", frame.name, times.frames, times.at_once,
-               times.run_s, times.files_s, times.compute_s, times.run_s / (times.files_s + times.compute_s));
+    fmt::print(
+        "{}: {} frames, {} at once: {:.2f} s; files alone {:.2f} s, kernels alone {:.2f} s: {:.2f} of their sum\n",
+        frame.name, times.frames, times.at_once, times.run_s, times.files_s, times.compute_s,
+        times.run_s / (times.files_s + times.compute_s));
     (void)std::fflush(stdout);
   }
 }
 
 void print_table(const BenchReport& report) {
-  fmt::print("{:<14} {:<24} {:>9} {:>7} {:>8} {:>8} {:>8} {:>9} {:>9}\n", "frame", "candidate", "ms", "yards", "rmse", "bias", "p99", "estimator", "geometry");
+  fmt::print("{:<14} {:<24} {:>9} {:>7} {:>8} {:>8} {:>8} {:>9} {:>9}\n", "frame", "candidate", "ms", "yards", "rmse",
+             "bias", "p99", "estimator", "geometry");
   for (const auto& row : report.rows) {
     const auto& frame = *std::ranges::find(report.frames, row.frame, &BenchFrame::name);
     const auto number = [](std::optional<double> value) { return value ? fmt::format("{:.4f}", *value) : "-"; };
-    fmt::print("{:<14} {:<24} {:>9.2f} {:>7} {:>8.4f} {:>+8.4f} {:>8.4f} {:>9} {:>9}\n", row.frame, row.candidate, row.ms,
-               frame.yardstick_ms ? fmt::format("{:.2f}", row.ms / *frame.yardstick_ms) : "-", row.rmse, row.bias, row.p99, number(row.estimator_rmse),
-               number(row.geometry_rmse));
+    fmt::print("{:<14} {:<24} {:>9.2f} {:>7} {:>8.4f} {:>+8.4f} {:>8.4f} {:>9} {:>9}\n", row.frame, row.candidate,
+               row.ms, frame.yardstick_ms ? fmt::format("{:.2f}", row.ms / *frame.yardstick_ms) : "-", row.rmse,
+               row.bias, row.p99, number(row.estimator_rmse), number(row.geometry_rmse));
   }
 }
 
@@ -140,7 +163,8 @@ int bench_command(const std::vector<std::string>& arguments) {
     inputs.insert(inputs.end(), {frame.input, frame.camera});
     inputs.insert(inputs.end(), frame.truth.begin(), frame.truth.end());
   }
-  for (const auto& [path, option] : {std::pair(&a.json, "--json"), std::pair(&a.csv, "--csv"), std::pair(&a.report, "--report")}) {
+  for (const auto& [path, option] :
+       {std::pair(&a.json, "--json"), std::pair(&a.csv, "--csv"), std::pair(&a.report, "--report")}) {
     if (path->empty()) continue;
     require_no_input(*path, option, inputs);
     require_writable(*path, option);

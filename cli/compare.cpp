@@ -1,4 +1,5 @@
-// `alcove compare RESULT REFERENCE`: how far pictures or sequences are apart, as a table, JSON, a page, and an exit code.
+// `alcove compare RESULT REFERENCE`: how far pictures or sequences are apart, as a table, JSON, a page, and an exit
+// code.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/measure/compare.h"
 
@@ -29,8 +30,10 @@ void add_options(CLI::App& app, CompareArguments& a) {
   };
   text("RESULT", s.result, "", "an EXR or any other picture; a pattern such as ao.%04d.exr for a sequence")->required();
   text("REFERENCE", s.reference, "", "what it should be; a pattern too, or one picture for all frames")->required();
-  text("--reference-b", s.reference_b, "FILE", "a second render of the reference with independent noise: rmse is then free of the noise of both");
-  text("--channel", s.channels, "NAMES", "names with commas, or RESULT=REFERENCE pairs; else the only channel of each, else those of the same name");
+  text("--reference-b", s.reference_b, "FILE",
+       "a second render of the reference with independent noise: rmse is then free of the noise of both");
+  text("--channel", s.channels, "NAMES",
+       "names with commas, or RESULT=REFERENCE pairs; else the only channel of each, else those of the same name");
   text("--mask", s.mask, "FILE", "compare only where it is above 0");
   text("--mask-channel", s.mask_channel, "NAME", "the mask's channel; else its only one, or its alpha");
   text("--depth", s.depth, "FILE.exr", "leave out the sky, and measure depth edges too");
@@ -40,7 +43,8 @@ void add_options(CLI::App& app, CompareArguments& a) {
   };
   number("--sky", s.sky, "depth at or beyond it is sky, as are 0, infinity and NaN");
   text("--frames", s.frames, "LIST", "frames such as 1001-1100x2,1200; else those of RESULT on the disk");
-  text("--motion", s.motion, "FILE", "motion for the flicker of a sequence: place in the previous frame minus place here, in pixels, y up");
+  text("--motion", s.motion, "FILE",
+       "motion for the flicker of a sequence: place in the previous frame minus place here, in pixels, y up");
   text("--motion-channels", s.motion_channels, "X,Y", "the motion's channels; else Vector.X,Vector.Y");
   number("--peak", s.peak, "the largest value, for PSNR and SSIM");
   app.add_flag("--hdr", s.hdr, "the values are scene-linear light: HDR-FLIP instead of FLIP of display values");
@@ -81,9 +85,11 @@ void print_picture(const FrameComparison& c) {
   fmt::print("{} against {}: {}\n", c.result, c.reference, fmt::join(c.channels, ", "));
   fmt::print("  {} pixels compared, {} masked, {} not finite\n", c.count, c.masked, c.excluded);
   const PlaneErrors& e = c.errors;
-  fmt::print("  rmse {:.4f}   mae {:.4f}   bias {:+.4f}   max {:.4f}   p95 {:.4f}   p99 {:.4f}\n", e.rmse, e.mae, e.bias, e.max, e.p95, e.p99);
+  fmt::print("  rmse {:.4f}   mae {:.4f}   bias {:+.4f}   max {:.4f}   p95 {:.4f}   p99 {:.4f}\n", e.rmse, e.mae,
+             e.bias, e.max, e.p95, e.p99);
   fmt::print("  psnr {:.2f} dB   ssim {}   flip {:.4f}\n", c.psnr, optional_number(c.ssim), c.flip);
-  for (const auto& band : c.bands) print_part(fmt::format("reference {:.2f} to {:.2f}", band.from, band.to), band.errors);
+  for (const auto& band : c.bands)
+    print_part(fmt::format("reference {:.2f} to {:.2f}", band.from, band.to), band.errors);
   if (!c.edges) return;
   print_part("at depth edges", c.edges->at);
   print_part("away from them", c.edges->away);
@@ -91,17 +97,18 @@ void print_picture(const FrameComparison& c) {
 
 void print_sequence(const CompareReport& report) {
   fmt::print("{} against {}: {}\n", report.result, report.reference, fmt::join(report.frames[0].channels, ", "));
-  fmt::print("{:>7} {:>9} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8}\n", "frame", "pixels", "rmse", "mae", "bias", "p99", "psnr", "ssim", "flip");
+  fmt::print("{:>7} {:>9} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8}\n", "frame", "pixels", "rmse", "mae", "bias", "p99",
+             "psnr", "ssim", "flip");
   double sum = 0;
   for (const auto& c : report.frames) {
     const PlaneErrors& e = c.errors;
-    fmt::print("{:>7} {:>9} {:>8.4f} {:>8.4f} {:>+8.4f} {:>8.4f} {:>8.2f} {:>8} {:>8.4f}\n", c.frame, c.count, e.rmse, e.mae, e.bias, e.p99, c.psnr,
-               optional_number(c.ssim), c.flip);
+    fmt::print("{:>7} {:>9} {:>8.4f} {:>8.4f} {:>+8.4f} {:>8.4f} {:>8.2f} {:>8} {:>8.4f}\n", c.frame, c.count, e.rmse,
+               e.mae, e.bias, e.p99, c.psnr, optional_number(c.ssim), c.flip);
     sum += e.rmse;
   }
   const auto& worst = worst_frame(report);
-  fmt::print("worst: frame {}, rmse {:.4f}; mean rmse {:.4f}; flicker {}\n", worst.frame, worst.errors.rmse, sum / double(report.frames.size()),
-             optional_number(report.flicker));
+  fmt::print("worst: frame {}, rmse {:.4f}; mean rmse {:.4f}; flicker {}\n", worst.frame, worst.errors.rmse,
+             sum / double(report.frames.size()), optional_number(report.flicker));
 }
 
 }  // namespace
@@ -118,9 +125,12 @@ int compare_command(const std::vector<std::string>& arguments) {
 
   const CompareReport report = compare_pictures(a.settings);
   const auto broken = broken_limits(report, a.limits);
-  if (a.json) fmt::print("{}\n", compare_json(report, broken));
-  else if (report.is_sequence) print_sequence(report);
-  else print_picture(report.frames[0]);
+  if (a.json)
+    fmt::print("{}\n", compare_json(report, broken));
+  else if (report.is_sequence)
+    print_sequence(report);
+  else
+    print_picture(report.frames[0]);
   if (!a.report.empty()) write_whole(a.report, compare_page(report));
   if (!broken.empty()) fail(ErrorKind::comparison, "{}", fmt::join(broken, "; "));
   return 0;

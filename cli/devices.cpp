@@ -14,7 +14,9 @@ int devices_command(const std::vector<std::string>& arguments) {
   bool json = false;
   for (const auto& argument : arguments) {
     if (argument == "--help" || argument == "-h") {
-      fmt::print("Usage: alcove devices [--json]\n\nLists the Vulkan devices; --device of alcove run takes an index, a name or a UUID.\n");
+      fmt::print(
+          "Usage: alcove devices [--json]\n\nLists the Vulkan devices; --device of alcove run takes an index, a name "
+          "or a UUID.\n");
       return 0;
     }
     if (argument != "--json") fail(ErrorKind::usage, "alcove devices takes only --json, not {}", argument);
@@ -23,14 +25,24 @@ int devices_command(const std::vector<std::string>& arguments) {
   const auto devices = gpu::list_devices();
   auto list = nlohmann::ordered_json::array();
   for (const auto& d : devices) {
-    list.push_back({{"index", d.index}, {"name", d.name}, {"type", gpu::name_of(d.type)}, {"uuid", d.uuid}, {"driver", d.driver}, {"api_version", d.api_version},
-                    {"memory_bytes", d.memory_bytes}, {"buffer_bytes", d.buffer_bytes}, {"usable", d.unusable.empty()}, {"reason", d.unusable}});
+    list.push_back({{"index", d.index},
+                    {"name", d.name},
+                    {"type", gpu::name_of(d.type)},
+                    {"uuid", d.uuid},
+                    {"driver", d.driver},
+                    {"api_version", d.api_version},
+                    {"memory_bytes", d.memory_bytes},
+                    {"buffer_bytes", d.buffer_bytes},
+                    {"usable", d.unusable.empty()},
+                    {"reason", d.unusable}});
     if (!json)
-      fmt::print("{}  {}  {}  {}  Vulkan {}  {:.1f} GiB  {}{}\n", d.index, d.name, gpu::name_of(d.type), d.driver, d.api_version, double(d.memory_bytes) / (1 << 30),
-                 d.uuid, d.unusable.empty() ? "" : "  not usable: " + d.unusable);
+      fmt::print("{}  {}  {}  {}  Vulkan {}  {:.1f} GiB  {}{}\n", d.index, d.name, gpu::name_of(d.type), d.driver,
+                 d.api_version, double(d.memory_bytes) / (1 << 30), d.uuid,
+                 d.unusable.empty() ? "" : "  not usable: " + d.unusable);
   }
   if (json) fmt::print("{}\n", list.dump(1));
-  if (devices.empty()) fail(ErrorKind::device, "no Vulkan device found; lavapipe computes on the CPU (Debian: mesa-vulkan-drivers)");
+  if (devices.empty())
+    fail(ErrorKind::device, "no Vulkan device found; lavapipe computes on the CPU (Debian: mesa-vulkan-drivers)");
   return 0;
 }
 

@@ -1,4 +1,5 @@
-// `alcove inspect INPUT [--json] [--preview FILE.png] [input options of run]`: what a frame holds and how it would be read.
+// `alcove inspect INPUT [--json] [--preview FILE.png] [input options of run]`: what a frame holds and how it would be
+// read.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 
@@ -6,8 +7,8 @@
 
 #include "cli/commands.h"
 #include "cli/options.h"
-#include "core/inspect/contact_sheet.h"
 #include "core/base/error.h"
+#include "core/inspect/contact_sheet.h"
 #include "core/inspect/inspect.h"
 #include "core/run/plan.h"
 
@@ -18,9 +19,11 @@ int inspect_command(const std::vector<std::string>& arguments) {
   const bool json = std::erase(rest, "--json") > 0;
   if (std::ranges::any_of(rest, [](const auto& a) { return a == "--help" || a == "-h"; })) {
     fmt::print(
-        "Usage: alcove inspect INPUT [--json] [--preview FILE.png] [input options]\n\nSays what the frame's files hold, which channels would be used and how they would "
+        "Usage: alcove inspect INPUT [--json] [--preview FILE.png] [input options]\n\nSays what the frame's files "
+        "hold, which channels would be used and how they would "
         "be understood, with the evidence,\n"
-        "what is suspicious or missing, and the command that would run it. --preview shows depth, normals and AO in a picture. Takes the input options of alcove run.\n");
+        "what is suspicious or missing, and the command that would run it. --preview shows depth, normals and AO in a "
+        "picture. Takes the input options of alcove run.\n");
     return 0;
   }
   RunOptions options;

@@ -32,7 +32,8 @@ constexpr std::array kCommands = {
 };
 
 void print_help() {
-  fmt::print("alcove {}: ambient occlusion from rendered depth and normals\n\nUsage: alcove COMMAND [options]\n\n", alcove::kVersion);
+  fmt::print("alcove {}: ambient occlusion from rendered depth and normals\n\nUsage: alcove COMMAND [options]\n\n",
+             alcove::kVersion);
   for (const auto& command : kCommands) fmt::print("  {:<10}{}\n", command.name, command.sentence);
   fmt::print("\nalcove COMMAND --help tells the rest.\n");
 }
@@ -51,7 +52,8 @@ int dispatch(const std::vector<std::string>& arguments) {
     if (arguments[0] == command.name) return command.run({arguments.begin() + 1, arguments.end()});
     names.emplace_back(command.name);
   }
-  alcove::fail(alcove::ErrorKind::usage, "there is no command {}{}; there is {}", arguments[0], alcove::suggestion(arguments[0], names), alcove::list_of(names));
+  alcove::fail(alcove::ErrorKind::usage, "there is no command {}{}; there is {}", arguments[0],
+               alcove::suggestion(arguments[0], names), alcove::list_of(names));
 }
 
 }  // namespace
@@ -59,17 +61,21 @@ int dispatch(const std::vector<std::string>& arguments) {
 int main(int argc, char** argv) {
   try {
     const int code = dispatch({argv + 1, argv + argc});
-    if (std::fflush(stdout) != 0 || std::ferror(stdout)) alcove::fail(alcove::ErrorKind::output, "the standard output cannot be written");
+    if (std::fflush(stdout) != 0 || std::ferror(stdout))
+      alcove::fail(alcove::ErrorKind::output, "the standard output cannot be written");
     return code;
   } catch (const alcove::Error& error) {
     alcove::print_error("alcove: error: {}\n", alcove::printable(error.what()));
     return int(error.kind());
   } catch (const std::bad_alloc&) {
-    alcove::print_error("alcove: error: no memory is left: let a run take less by --memory, and other commands have smaller pictures\n");
+    alcove::print_error(
+        "alcove: error: no memory is left: let a run take less by --memory, and other commands have smaller "
+        "pictures\n");
     return int(alcove::ErrorKind::device);
   } catch (const std::exception& error) {
     const bool is_output = std::ferror(stdout) != 0;  // which fmt tells by an exception of its own
-    alcove::print_error("alcove: error: {}{}\n", is_output ? "the standard output: " : "unexpected: ", alcove::printable(error.what()));
+    alcove::print_error("alcove: error: {}{}\n",
+                        is_output ? "the standard output: " : "unexpected: ", alcove::printable(error.what()));
     if (is_output) return int(alcove::ErrorKind::output);
     return int(alcove::ErrorKind::some_frames_failed);
   }

@@ -14,18 +14,21 @@ const std::map<std::string, T>& names_of();
 template <>
 inline const std::map<std::string, DepthKind>& names_of() {
   static const std::map<std::string, DepthKind> names = {
-      {"auto", DepthKind::automatic}, {"planar", DepthKind::planar},         {"ray", DepthKind::ray}, {"inverse", DepthKind::inverse},
-      {"device", DepthKind::device},  {"normalized", DepthKind::normalized}, {"log", DepthKind::log}, {"position", DepthKind::position}};
+      {"auto", DepthKind::automatic},  {"planar", DepthKind::planar},    {"ray", DepthKind::ray},
+      {"inverse", DepthKind::inverse}, {"device", DepthKind::device},    {"normalized", DepthKind::normalized},
+      {"log", DepthKind::log},         {"position", DepthKind::position}};
   return names;
 }
 template <>
 inline const std::map<std::string, DeviceRange>& names_of() {
-  static const std::map<std::string, DeviceRange> names = {{"0..1", DeviceRange::zero_to_one}, {"-1..1", DeviceRange::minus_one_to_one}};
+  static const std::map<std::string, DeviceRange> names = {{"0..1", DeviceRange::zero_to_one},
+                                                           {"-1..1", DeviceRange::minus_one_to_one}};
   return names;
 }
 template <>
 inline const std::map<std::string, PositionSpace>& names_of() {
-  static const std::map<std::string, PositionSpace> names = {{"auto", PositionSpace::automatic}, {"world", PositionSpace::world}, {"view", PositionSpace::view}};
+  static const std::map<std::string, PositionSpace> names = {
+      {"auto", PositionSpace::automatic}, {"world", PositionSpace::world}, {"view", PositionSpace::view}};
   return names;
 }
 template <>
@@ -39,24 +42,30 @@ inline const std::map<std::string, NormalEncoding>& names_of() {
 }
 template <>
 inline const std::map<std::string, NormalSpace>& names_of() {
-  static const std::map<std::string, NormalSpace> names = {{"auto", NormalSpace::automatic}, {"world", NormalSpace::world}, {"view", NormalSpace::view}};
+  static const std::map<std::string, NormalSpace> names = {
+      {"auto", NormalSpace::automatic}, {"world", NormalSpace::world}, {"view", NormalSpace::view}};
   return names;
 }
 template <>
 inline const std::map<std::string, Falloff>& names_of() {
-  static const std::map<std::string, Falloff> names = {
-      {"none", Falloff::none}, {"linear", Falloff::linear}, {"quadratic", Falloff::quadratic}, {"smooth", Falloff::smooth}};
+  static const std::map<std::string, Falloff> names = {{"none", Falloff::none},
+                                                       {"linear", Falloff::linear},
+                                                       {"quadratic", Falloff::quadratic},
+                                                       {"smooth", Falloff::smooth}};
   return names;
 }
 template <>
 inline const std::map<std::string, Estimator>& names_of() {
-  static const std::map<std::string, Estimator> names = {
-      {"gtao", Estimator::gtao}, {"bitmask", Estimator::bitmask}, {"hbao", Estimator::hbao}, {"crytek", Estimator::crytek}};
+  static const std::map<std::string, Estimator> names = {{"gtao", Estimator::gtao},
+                                                         {"bitmask", Estimator::bitmask},
+                                                         {"hbao", Estimator::hbao},
+                                                         {"crytek", Estimator::crytek}};
   return names;
 }
 template <>
 inline const std::map<std::string, SliceSearch>& names_of() {
-  static const std::map<std::string, SliceSearch> names = {{"steps", SliceSearch::steps}, {"exact", SliceSearch::exact}, {"every-pixel", SliceSearch::every_pixel}};
+  static const std::map<std::string, SliceSearch> names = {
+      {"steps", SliceSearch::steps}, {"exact", SliceSearch::exact}, {"every-pixel", SliceSearch::every_pixel}};
   return names;
 }
 template <>
@@ -66,22 +75,26 @@ inline const std::map<std::string, Elevation>& names_of() {
 }
 template <>
 inline const std::map<std::string, SampleKernel>& names_of() {
-  static const std::map<std::string, SampleKernel> names = {{"clustered", SampleKernel::clustered}, {"uniform", SampleKernel::uniform}};
+  static const std::map<std::string, SampleKernel> names = {{"clustered", SampleKernel::clustered},
+                                                            {"uniform", SampleKernel::uniform}};
   return names;
 }
 template <>
 inline const std::map<std::string, RangeCheck>& names_of() {
-  static const std::map<std::string, RangeCheck> names = {{"none", RangeCheck::none}, {"ratio", RangeCheck::ratio}, {"smoothstep", RangeCheck::smoothstep}};
+  static const std::map<std::string, RangeCheck> names = {
+      {"none", RangeCheck::none}, {"ratio", RangeCheck::ratio}, {"smoothstep", RangeCheck::smoothstep}};
   return names;
 }
 template <>
 inline const std::map<std::string, Resolution>& names_of() {
-  static const std::map<std::string, Resolution> names = {{"full", Resolution::full}, {"half", Resolution::half}, {"quarter", Resolution::quarter}};
+  static const std::map<std::string, Resolution> names = {
+      {"full", Resolution::full}, {"half", Resolution::half}, {"quarter", Resolution::quarter}};
   return names;
 }
 template <>
 inline const std::map<std::string, Denoise>& names_of() {
-  static const std::map<std::string, Denoise> names = {{"none", Denoise::none}, {"bilateral", Denoise::bilateral}, {"box", Denoise::box}};
+  static const std::map<std::string, Denoise> names = {
+      {"none", Denoise::none}, {"bilateral", Denoise::bilateral}, {"box", Denoise::box}};
   return names;
 }
 template <>
@@ -96,7 +109,8 @@ inline const std::map<std::string, AoChannels>& names_of() {
 }
 template <>
 inline const std::map<std::string, OutputType>& names_of() {
-  static const std::map<std::string, OutputType> names = {{"half", OutputType::half_float}, {"float", OutputType::single_float}};
+  static const std::map<std::string, OutputType> names = {{"half", OutputType::half_float},
+                                                          {"float", OutputType::single_float}};
   return names;
 }
 template <>

@@ -41,11 +41,13 @@ std::vector<OptionRow> option_table(RunOptions& options);
 /// The table as README.md shows it; `alcove run --help-markdown` prints it.
 std::string option_table_markdown();
 
-/// Fills `options` from presets and arguments (argv without program and subcommand; later wins over earlier, arguments over presets).
-/// False: --help, --help-markdown or --print-config was asked for and printed. Fails with ErrorKind::usage, naming the nearest options or presets.
+/// Fills `options` from presets and arguments (argv without program and subcommand; later wins over earlier, arguments
+/// over presets). False: --help, --help-markdown or --print-config was asked for and printed. Fails with
+/// ErrorKind::usage, naming the nearest options or presets.
 bool parse_run_options(const std::vector<std::string>& arguments, RunOptions& options);
 
-/// The folder of presets: ALCOVE_PRESETS, else beside the program, above it, or in ../share/alcove. Fails with ErrorKind::usage.
+/// The folder of presets: ALCOVE_PRESETS, else beside the program, above it, or in ../share/alcove. Fails with
+/// ErrorKind::usage.
 std::string preset_folder();
 /// Names below the folder without .toml, sorted.
 std::vector<std::string> preset_names();

@@ -34,7 +34,8 @@ std::vector<std::string> option_names(const CLI::App& app) {
     fail(ErrorKind::usage, "there is no option {}{}; see {} --help", option, suggestion(option, names), app.get_name());
   }
   if (dynamic_cast<const CLI::ConfigError*>(&error)) {
-    if (const std::size_t colon = text.find(": "); colon != text.npos) fail(ErrorKind::usage, "{} is an option of the command line only", text.substr(0, colon));
+    if (const std::size_t colon = text.find(": "); colon != text.npos)
+      fail(ErrorKind::usage, "{} is an option of the command line only", text.substr(0, colon));
     const std::string key = text.substr(text.find_last_of(' ') + 1);
     fail(ErrorKind::usage, "{} is no option{}", key, suggestion("--" + key, names));
   }
@@ -45,15 +46,20 @@ std::vector<std::string> option_names(const CLI::App& app) {
 
 Range above(double low) { return {low, kInfinity, true, true, fmt::format("above {}", low)}; }
 Range between(double low, double high) { return {low, high, false, false, fmt::format("{} to {}", low, high)}; }
-Range below_and_at_least(double low, double high) { return {low, high, false, true, fmt::format("{} to below {}", low, high)}; }
-Range strictly_between(double low, double high) { return {low, high, true, true, fmt::format("above {} to below {}", low, high)}; }
+Range below_and_at_least(double low, double high) {
+  return {low, high, false, true, fmt::format("{} to below {}", low, high)};
+}
+Range strictly_between(double low, double high) {
+  return {low, high, true, true, fmt::format("above {} to below {}", low, high)};
+}
 Range above_to(double low, double high) { return {low, high, true, false, fmt::format("above {} to {}", low, high)}; }
 
 CLI::Validator check_of(const Range& range) {
   return CLI::Validator(
       [range](std::string& text) -> std::string {
         double value = 0;
-        if (!CLI::detail::lexical_cast(text, value) || !std::isfinite(value)) return fmt::format("{} is not a finite number", text);
+        if (!CLI::detail::lexical_cast(text, value) || !std::isfinite(value))
+          return fmt::format("{} is not a finite number", text);
         return range.holds(value) ? std::string() : fmt::format("{} is not {}", text, range.text);
       },
       "", range.text);
@@ -75,7 +81,8 @@ std::uint64_t read_size(const char* option, const std::string& text) {
   if (unit.ends_with("i")) unit.pop_back();
   const std::size_t power = unit.empty() ? 0 : std::string("kmgt").find(unit) + 1;
   double number = 0;
-  if (unit.size() > 1 || (!unit.empty() && power == 0) || !CLI::detail::lexical_cast(text.substr(0, end), number) || !(number > 0) || number > 1e15)
+  if (unit.size() > 1 || (!unit.empty() && power == 0) || !CLI::detail::lexical_cast(text.substr(0, end), number) ||
+      !(number > 0) || number > 1e15)
     throw CLI::ValidationError(option, text + " is no size such as 512M or 4G");
   return std::uint64_t(number * double(1ull << (10 * power)));
 }

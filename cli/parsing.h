@@ -32,8 +32,8 @@ CLI::Validator check_of(const std::vector<std::string>& words);
 /// Bytes: "512M", "4G", "1.5GiB", "100000"; K, M, G and T are powers of 1024. Else CLI11's complaint.
 std::uint64_t read_size(const char* option, const std::string& text);
 
-/// Parses; false: --help was asked for and printed. Fails with ErrorKind::usage in one sentence, with the nearest of the app's options
-/// where one is misspelt. The app's name is the whole command, such as "alcove run".
+/// Parses; false: --help was asked for and printed. Fails with ErrorKind::usage in one sentence, with the nearest of
+/// the app's options where one is misspelt. The app's name is the whole command, such as "alcove run".
 bool parse_arguments(CLI::App& app, const std::vector<std::string>& arguments);
 
 }  // namespace alcove

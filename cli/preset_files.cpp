@@ -23,8 +23,11 @@ fs::path program_folder() {
 
 std::string preset_folder() {
   std::vector<fs::path> places;
-  if (const char* variable = std::getenv("ALCOVE_PRESETS"); variable && *variable) places.emplace_back(variable);
-  else places = {program_folder() / "presets", program_folder() / "../presets", program_folder() / "../share/alcove/presets"};
+  if (const char* variable = std::getenv("ALCOVE_PRESETS"); variable && *variable)
+    places.emplace_back(variable);
+  else
+    places = {program_folder() / "presets", program_folder() / "../presets",
+              program_folder() / "../share/alcove/presets"};
   std::error_code error;
   for (const auto& place : places)
     if (fs::is_directory(place, error)) return fs::weakly_canonical(place).string();
@@ -35,7 +38,8 @@ std::vector<std::string> preset_names() {
   std::vector<std::string> names;
   const fs::path folder = preset_folder();
   for (const auto& entry : fs::recursive_directory_iterator(folder))
-    if (entry.path().extension() == ".toml") names.push_back(fs::relative(entry.path(), folder).replace_extension().string());
+    if (entry.path().extension() == ".toml")
+      names.push_back(fs::relative(entry.path(), folder).replace_extension().string());
   std::ranges::sort(names);
   return names;
 }
@@ -46,7 +50,8 @@ std::string preset_file(const std::string& name) {
   if (std::ranges::find(names, name) != names.end()) return preset_folder() + "/" + name + ".toml";
   std::error_code error;
   if (fs::exists(name, error) && !fs::is_directory(name, error)) return name;
-  fail(ErrorKind::usage, "there is no preset {}{}; there is {}; --preset takes one of them, or a TOML file", name, suggestion(name, names), list_of(names));
+  fail(ErrorKind::usage, "there is no preset {}{}; there is {}; --preset takes one of them, or a TOML file", name,
+       suggestion(name, names), list_of(names));
 }
 
 }  // namespace alcove

@@ -21,12 +21,14 @@ constexpr int kBarWidth = 30;
 
 std::string clock_text(double seconds) {
   const int s = int(seconds);
-  return s < 3600 ? fmt::format("{}:{:02}", s / 60, s % 60) : fmt::format("{}:{:02}:{:02}", s / 3600, s / 60 % 60, s % 60);
+  return s < 3600 ? fmt::format("{}:{:02}", s / 60, s % 60)
+                  : fmt::format("{}:{:02}:{:02}", s / 3600, s / 60 % 60, s % 60);
 }
 
 }  // namespace
 
-Progress::Progress(const ProgressOptions& options, const std::string& log_json) : options_(options), log_path_(log_json) {
+Progress::Progress(const ProgressOptions& options, const std::string& log_json)
+    : options_(options), log_path_(log_json) {
   if (options_.kind == "auto") options_.kind = ::isatty(STDERR_FILENO) ? "bar" : "plain";
 }
 
@@ -49,7 +51,8 @@ void Progress::log(const std::string& event, const std::string& members) {
   if (!log_) return;
   const double now = std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
   const std::string line = fmt::format("{{\"event\":\"{}\",\"time\":{:.3f},{}}}\n", event, now, members);
-  if (std::fputs(line.c_str(), log_) < 0 || std::fflush(log_) != 0) fail(ErrorKind::output, "{}: cannot be written: {} (--log-json)", log_path_, std::strerror(errno));
+  if (std::fputs(line.c_str(), log_) < 0 || std::fflush(log_) != 0)
+    fail(ErrorKind::output, "{}: cannot be written: {} (--log-json)", log_path_, std::strerror(errno));
 }
 
 void Progress::begin(const RunReport& report, int frames) {
@@ -60,8 +63,10 @@ void Progress::begin(const RunReport& report, int frames) {
 }
 
 std::string Progress::rate_text() const {
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(), each = seconds / std::max(1, computed_);
-  return fmt::format("{} of {}, {:.2f} frames/s, {} left", ended_, frames_, 1 / each, clock_text(each * (frames_ - ended_)));
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(),
+               each = seconds / std::max(1, computed_);
+  return fmt::format("{} of {}, {:.2f} frames/s, {} left", ended_, frames_, 1 / each,
+                     clock_text(each * (frames_ - ended_)));
 }
 
 void Progress::show_bar() {
@@ -75,29 +80,33 @@ void Progress::frame(const FrameReport& frame) {
   computed_ += frame.state != FrameState::kept;
   const std::string record = frame_json(frame);
   log("frame", record.substr(1, record.size() - 2));
-  if (frame.error && is_sequence_) say(printable(fmt::format("alcove: error: frame {}: {}", frame.frame, frame.error->what())));
+  if (frame.error && is_sequence_)
+    say(printable(fmt::format("alcove: error: frame {}: {}", frame.frame, frame.error->what())));
   if (options_.quiet) return;
   for (const auto& note : frame.notes) say(printable(fmt::format("{}: {}", frame.input, note)));
   if (options_.verbose)
-    for (const auto& pass : frame.passes) say(printable(fmt::format("{}: {} {:.3f} ms", frame.input, pass.name, pass.ms)));
+    for (const auto& pass : frame.passes)
+      say(printable(fmt::format("{}: {} {:.3f} ms", frame.input, pass.name, pass.ms)));
   const double percent = 100.0 * ended_ / std::max(1, frames_);
   if (options_.kind == "plain" || (options_.kind == "bar" && !is_sequence_)) {
     const std::string place = is_sequence_ ? fmt::format(" ({})", rate_text()) : "";
     if (frame.state == FrameState::kept) say(printable(fmt::format("{}: whole, kept{}", frame.output, place)));
     if (frame.state == FrameState::done)
-      say(printable(fmt::format("{} -> {}: read {:.0f} ms, compute {:.1f} ms, write {:.0f} ms{}", frame.input, frame.output, frame.read_ms, frame.compute_ms,
-                                frame.write_ms, place)));
+      say(printable(fmt::format("{} -> {}: read {:.0f} ms, compute {:.1f} ms, write {:.0f} ms{}", frame.input,
+                                frame.output, frame.read_ms, frame.compute_ms, frame.write_ms, place)));
   }
   if (options_.kind == "bar" && is_sequence_) show_bar();
   if (options_.kind == "percent") fmt::print("Progress: {:.0f}%\n", std::floor(percent));
-  if (options_.kind == "openjd") fmt::print("openjd_progress: {:.1f}\nopenjd_status: frame {} {}\n", percent, frame.frame, name_of(frame.state));
+  if (options_.kind == "openjd")
+    fmt::print("openjd_progress: {:.1f}\nopenjd_status: frame {} {}\n", percent, frame.frame, name_of(frame.state));
   (void)std::fflush(stdout);
 }
 
 void Progress::end(const RunReport& report) {
   const std::string summary = summary_of(report);
-  log("end", fmt::format("\"done\":{},\"kept\":{},\"failed\":{},\"dropped\":{},\"missing\":{},\"wall_s\":{:.3f}", report.done, report.kept, report.failed,
-                         report.dropped, report.missing.size(), report.wall_s));
+  log("end",
+      fmt::format("\"done\":{},\"kept\":{},\"failed\":{},\"dropped\":{},\"missing\":{},\"wall_s\":{:.3f}", report.done,
+                  report.kept, report.failed, report.dropped, report.missing.size(), report.wall_s));
   if (options_.quiet) return;
   if (options_.kind == "openjd" && (report.failed || report.stop)) fmt::print("openjd_fail: {}\n", summary);
   (void)std::fflush(stdout);

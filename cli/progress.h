@@ -16,10 +16,12 @@ struct ProgressOptions {
   bool verbose = false, quiet = false;
 };
 
-/// Messages go to the standard error; "Progress: 42%" and "openjd_progress: 42" to the standard output. Every line is whole and flushed.
+/// Messages go to the standard error; "Progress: 42%" and "openjd_progress: 42" to the standard output. Every line is
+/// whole and flushed.
 class Progress {
  public:
-  /// log_json: a file, or - for the standard output; empty: none. Whatever tells fails with ErrorKind::output where it cannot be written.
+  /// log_json: a file, or - for the standard output; empty: none. Whatever tells fails with ErrorKind::output where it
+  /// cannot be written.
   Progress(const ProgressOptions& options, const std::string& log_json);
 
   void begin(const RunReport& report, int frames);

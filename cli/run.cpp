@@ -18,7 +18,7 @@ std::atomic<int> caught_signal = 0;  // read by every thread
 
 /// The first signal ends the run in order; a second one of its kind ends the process.
 void catch_signals() {
-  struct sigaction action{};
+  struct sigaction action {};
   action.sa_handler = [](int number) { caught_signal = number; };
   action.sa_flags = int(SA_RESETHAND);
   for (const int number : {SIGINT, SIGTERM}) ::sigaction(number, &action, nullptr);
@@ -35,8 +35,9 @@ int run_command(const std::vector<std::string>& arguments) {
   }
   catch_signals();
   Progress progress(options.progress, options.settings.output.log_json);
-  const RunReport report = run_frames(options.settings, {[&](const RunReport& begun, int frames) { progress.begin(begun, frames); },
-                                                         [&](const FrameReport& frame) { progress.frame(frame); }, [] { return caught_signal != 0; }});
+  const RunReport report = run_frames(
+      options.settings, {[&](const RunReport& begun, int frames) { progress.begin(begun, frames); },
+                         [&](const FrameReport& frame) { progress.frame(frame); }, [] { return caught_signal != 0; }});
   progress.end(report);
   if (report.stop && !report.is_sequence) throw *report.stop;
   if (report.stop && report.failed == 0) print_error("alcove: error: {}\n", report.stop->what());

@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Jimenez et al., "Practical Realtime Strategies for Accurate Indirect Occlusion", 2016: a slice is the plane of the
-// direction V to the eye and a tangent T; angles are measured from V; gamma is the angle of the normal projected into it.
+// direction V to the eye and a tangent T; angles are measured from V; gamma is the angle of the normal projected into
+// it.
 
 const float kHalfPi = 1.57079632679489662;
 const float kPi = 3.14159265358979324;
@@ -16,4 +17,3 @@ float angle_of(float cosine, float sine) {
   if (cosine < 0.0) a = kPi - a;
   return sine < 0.0 ? -a : a;
 }
-

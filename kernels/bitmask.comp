@@ -1,15 +1,18 @@
 // Ambient occlusion by a visibility bitmask in slices through the view ray, cosine weighted.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// In: planar depth, view normals. Out: visibility, 1 = open; the mean open direction (see bent.glsl) where it is asked for.
-// Therrien et al., "Screen Space Indirect Lighting with Visibility Bitmask", 2023: every sample blocks the angles between its front and its back, and bits of
-// a mask say which are blocked. With these differences:
-// - The 64 sectors of a slice, 32 a side, have equal measure of the cosine-weighted arc integral, not equal angles: counting bits is integrating.
-// - An interval begins and ends at floor(32 F + u), with one random u a slice, which is unbiased; rounding outwards would block 1.6 % too much.
+// In: planar depth, view normals. Out: visibility, 1 = open; the mean open direction (see bent.glsl) where it is asked
+// for. Therrien et al., "Screen Space Indirect Lighting with Visibility Bitmask", 2023: every sample blocks the angles
+// between its front and its back, and bits of a mask say which are blocked. With these differences:
+// - The 64 sectors of a slice, 32 a side, have equal measure of the cosine-weighted arc integral, not equal angles:
+//   counting bits is integrating.
+// - An interval begins and ends at floor(32 F + u), with one random u a slice, which is unbiased; rounding outwards
+//   would block 1.6 % too much.
 // - The back lies along the sample's own eye ray, clipped to the sphere of the radius.
-// - Between two samples of one surface nothing is open. A sample that is not above the tangent plane says nothing else, so that it may be left out; what rises
-//   from there is as the receiver's own surface.
-// With occluders that are infinitely thick it is what horizon.comp computes. With `thickness` 0 a sample is as thick as its surface is wide up to there.
+// - Between two samples of one surface nothing is open. A sample that is not above the tangent plane says nothing else,
+//   so that it may be left out; what rises from there is as the receiver's own surface.
+// With occluders that are infinitely thick it is what horizon.comp computes. With `thickness` 0 a sample is as thick as
+// its surface is wide up to there.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "bitmask.h"
@@ -49,7 +52,8 @@ vec3 search(Receiver r, Side side, Reach reach, float jitter, float shift, uint 
   vec2 start = vec2(0), bent_blocked = vec2(0);
   uint bits = 0u;
   const float last_step = float(last_of_range(range)) + 0.5;
-  for (int k = first_sample(range, int(kSteps), count, side.reach, jitter, step_exponent(int(kSteps), side.reach)); k < count && last_offset <= last_step; k++) {
+  for (int k = first_sample(range, int(kSteps), count, side.reach, jitter, step_exponent(int(kSteps), side.reach));
+       k < count && last_offset <= last_step; k++) {
     const float offset = step_offset(k, int(kSteps), count, side.reach, jitter);
     const vec2 beside = round(side.direction_px * offset);
     const ivec2 hit = r.pixel + ivec2(beside);
@@ -57,7 +61,8 @@ vec3 search(Receiver r, Side side, Reach reach, float jitter, float shift, uint 
     const vec2 place = place_of(r, side, beside, z, scale);
     const vec3 delta = offset_to(r, beside, z, scale);
     const float cot = place.y / place.x, distance_sq = dot(delta, delta);
-    const bool above = is_above(r, reach, place, distance_sq, offset, beside, z, scale), blocks = above ? distance_sq < reach.radius_sq : false;
+    const bool above = is_above(r, reach, place, distance_sq, offset, beside, z, scale),
+               blocks = above ? distance_sq < reach.radius_sq : false;
     const bool connected = same_surface(r, reach, z, last_z, offset - last_offset);
     // What rises from below the tangent plane is as the receiver's own surface.
     start = connected && above ? start : place;
@@ -94,7 +99,8 @@ void main() {
   const ivec2 pixel = pixel_of_tile(unpack_tile(list[place.tile].place), place.pixel, params.noise_origin, kStride);
   const View view = params.view;
   if (!inside(view, pixel)) return;
-  const int index = index_of(view, pixel), plane = view.size.x * view.size.y, ao_index = index + int(params.plane) * plane;
+  const int index = index_of(view, pixel), plane = view.size.x * view.size.y,
+            ao_index = index + int(params.plane) * plane;
   const float z = depth[index];
   if (z >= kSkyDepth) {
     ao[ao_index] = 1.0;
@@ -114,7 +120,8 @@ void main() {
     for (int sign = -1; sign <= 1; sign += 2) {
       const float jitter = fract(noise.y + kGolden * float(2u * s + uint(sign > 0)));
       const Side side = side_of(view, r, slice, float(sign), reach);
-      const vec3 arcs = slice.share * slice.weight * search(r, side, reach, jitter, shift, list[place.tile].ranges[sector_of(side.direction_px)]);
+      const vec3 arcs = slice.share * slice.weight *
+                        search(r, side, reach, jitter, shift, list[place.tile].ranges[sector_of(side.direction_px)]);
       blocked += arcs.x;
       if (kBent) bent_blocked += arcs.y * float(sign) * slice.t + arcs.z * r.eye;
     }

@@ -1,10 +1,12 @@
-// What surfaces a tile of 8 x 8 pixels shows: planes that none of them is before, and the plane of its receivers where they have one in common.
+// What surfaces a tile of 8 x 8 pixels shows: planes that none of them is before, and the plane of its receivers where
+// they have one in common.
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // In: planar depth, view normals. Out: bounds of every tile, for `classify`.
-// A pyramid of depths alone cannot tell a floor from what stands on it, for within a tile the floor itself comes nearer. In 1 / z (orthographic: in z) planes
-// are affine in the pixel, so a tile is bounded by planes: by one along its own surface, and, as an edge in it may be the end of a neighbour's surface,
-// by ones along theirs. Each is pushed towards the eye until no pixel is before it, so that all are true whatever their gradient.
+// A pyramid of depths alone cannot tell a floor from what stands on it, for within a tile the floor itself comes
+// nearer. In 1 / z (orthographic: in z) planes are affine in the pixel, so a tile is bounded by planes: by one along
+// its own surface, and, as an edge in it may be the end of a neighbour's surface, by ones along theirs. Each is pushed
+// towards the eye until no pixel is before it, so that all are true whatever their gradient.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "bounds.h"

@@ -9,7 +9,8 @@ ALCOVE_CONSTANT uint kBoundsDepth = 0;   // in: float a pixel, from prepare
 ALCOVE_CONSTANT uint kBoundsNormal = 1;  // in: uint a pixel, from prepare
 ALCOVE_CONSTANT uint kBoundsTiles = 2;   // out: TileBounds a tile, rows of tiles from the upper left corner
 
-ALCOVE_CONSTANT uint kBoundsStrideId = 0;  // specialization: one pixel of so many in a row is a receiver, 1, 2 or 4: see stride.glsl
+// specialization: one pixel of so many in a row is a receiver, 1, 2 or 4: see stride.glsl
+ALCOVE_CONSTANT uint kBoundsStrideId = 0;
 
 struct BoundsParams {
   View view;

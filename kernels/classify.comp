@@ -1,15 +1,19 @@
-// Tiles by what an estimator has to do for them: nothing for sky, nothing where nothing can block, else the directions and steps at which something may.
+// Tiles by what an estimator has to do for them: nothing for sky, nothing where nothing can block, else the directions
+// and steps at which something may.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// In: bounds of the tiles and of groups of them. Out: a list of the tiles that are left, and the visibility of the others' receivers, which is 1, or what it was.
-// The proof. Let a receiver p of a tile have the normal N and -N.P <= c. A surface point Q with depth z and N.Q = z m, m affine in the pixel, stands h = N.Q - N.P
-// <= c + z m above p's tangent plane, so h / z <= c / z + m. Nothing blocks that rises by no more than `least` + z `rise` a pixel aside (clearance.glsl), that
-// is, where (c - least) / z + m <= rise. With 1 / z below a plane of the other tile's bounds the left side is affine, and largest at a corner of it. Receivers
-// whose normals are turned by d against N see d |Q - P| more at most. (Orthographic: -z for 1 / z, and no division.) What is farther than the radius from all
-// receivers does not block either, where the estimator says so: by the distance of the boxes in space that hold the surfaces of both tiles.
-// With a tolerance a tile is left out, too, where nothing within the radius rises more than an angle: what is that low takes at most the squared sine of the
-// angle from the visibility. The proof is the same with another height: |Q - P| / z is at least the distance on the image over the length of p's ray.
-// A group of tiles is searched tile by tile only where its own bounds do not settle it.
+// In: bounds of the tiles and of groups of them. Out: a list of the tiles that are left, and the visibility of the
+// others' receivers, which is 1, or what it was. The proof. Let a receiver p of a tile have the normal N and -N.P <= c.
+// A surface point Q with depth z and N.Q = z m, m affine in the pixel, stands h = N.Q - N.P <= c + z m above p's
+// tangent plane, so h / z <= c / z + m. Nothing blocks that rises by no more than `least` + z `rise` a pixel aside
+// (clearance.glsl), that is, where (c - least) / z + m <= rise. With 1 / z below a plane of the other tile's bounds the
+// left side is affine, and largest at a corner of it. Receivers whose normals are turned by d against N see d |Q - P|
+// more at most. (Orthographic: -z for 1 / z, and no division.) What is farther than the radius from all receivers does
+// not block either, where the estimator says so: by the distance of the boxes in space that hold the surfaces of both
+// tiles. With a tolerance a tile is left out, too, where nothing within the radius rises more than an angle: what is
+// that low takes at most the squared sine of the angle from the visibility. The proof is the same with another height:
+// |Q - P| / z is at least the distance on the image over the length of p's ray. A group of tiles is searched tile by
+// tile only where its own bounds do not settle it.
 // Where another frame's estimates still lie and nothing within reach is other than it was, they stay.
 // Constants below 1 and pads leave room for rounding.
 #version 450
@@ -24,7 +28,8 @@
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 layout(constant_id = kClassifyStrideId) const int kStride = 1;
 layout(constant_id = kClassifyModeId) const uint kMode = kClassifySkips;
-const bool kSkips = (kMode & kClassifySkips) != 0u, kProves = (kMode & kClassifyProves) != 0u, kReuses = (kMode & kClassifyReuses) != 0u;
+const bool kSkips = (kMode & kClassifySkips) != 0u, kProves = (kMode & kClassifyProves) != 0u,
+           kReuses = (kMode & kClassifyReuses) != 0u;
 const bool kTolerates = (kMode & kClassifyTolerates) != 0u;
 layout(scalar, push_constant) uniform Push { ClassifyParams params; };
 layout(scalar, binding = kClassifyBounds) readonly buffer Bounds { TileBounds bounds[]; };
@@ -45,13 +50,15 @@ const uint kGroupWords = uint(kMostGroups) / 32u;
 /// px from the block to groups that are far.
 const int kFarGroup = 32;
 
-/// Receivers are taken together in blocks of so many tiles in x and y where all lie on one plane. A row of invocations has a block, and shares what it finds.
+/// Receivers are taken together in blocks of so many tiles in x and y where all lie on one plane. A row of invocations
+/// has a block, and shares what it finds.
 const int kBlock = 2;
 // risen: whether something within the radius rises more than the tolerance; without one, more than is harmless.
 shared uint found[kGroupY], beside[kGroupY], risen[kGroupY], surfaces[kGroupY], place[kGroupY * kBlock * kBlock];
 shared uint nearest[kGroupY], farthest[kGroupY];  // bits of depths: of positive floats, in their order
-shared uint unsettled[kGroupY * kGroupWords];  // bits of groups
-shared uint first[kGroupY * kSectorsOfTurn], last[kGroupY * kSectorsOfTurn];  // steps, of the sectors that are found or not
+shared uint unsettled[kGroupY * kGroupWords];     // bits of groups
+// steps, of the sectors that are found or not
+shared uint first[kGroupY * kSectorsOfTurn], last[kGroupY * kSectorsOfTurn];
 const uint kAllTiles = (1u << (kBlock * kBlock)) - 1u;
 
 const uint kLevel = kTilePlanes - 1u;
@@ -67,7 +74,8 @@ struct Box {
 
 /// That holds what is seen in so many tiles in x and y between two depths.
 Box box_of(View view, ivec2 tile, int tiles, float near, float far) {
-  const vec2 a = tangent_of(view, vec2(tile * kTile) + 0.5), b = tangent_of(view, vec2(min((tile + tiles) * kTile, view.size)) - 0.5);
+  const vec2 a = tangent_of(view, vec2(tile * kTile) + 0.5),
+             b = tangent_of(view, vec2(min((tile + tiles) * kTile, view.size)) - 0.5);
   const vec2 least = min(a, b), most = max(a, b), scale = view.orthographic != 0 ? vec2(1) : vec2(near, far);
   return Box(vec3(min(least * scale.x, least * scale.y), near), vec3(max(most * scale.x, most * scale.y), far));
 }
@@ -80,7 +88,8 @@ float distance_sq(Box a, Box b) {
 /// Nearness as depth.
 float depth_of(View view, float nearness) { return view.orthographic != 0 ? -nearness : 1.0 / nearness; }
 
-/// From pixels' centres to the samples of receivers up to this depth: one lies up to half a pixel beside its slice, and is moved into it.
+/// From pixels' centres to the samples of receivers up to this depth: one lies up to half a pixel beside its slice, and
+/// is moved into it.
 float reach_of_samples(View view, float far) {
   const float pixel = max(abs(view.tangent_per_pixel.x), abs(view.tangent_per_pixel.y));
   return params.radius + 2.0 * pixel * (view.orthographic != 0 ? 1.0 : far + params.radius);
@@ -96,12 +105,15 @@ Rect image_of_reach(View view, Box box, float reach) {
   const float near = box.least.z - reach, far = box.most.z + reach;
   if (perspective && !(near > 0.01 * box.least.z)) return Rect(vec2(0), vec2(view.size - 1));
   const vec2 least = box.least.xy - reach, most = box.most.xy + reach;
-  const vec2 a = perspective ? min(least / near, least / far) : least, b = perspective ? max(most / near, most / far) : most;
+  const vec2 a = perspective ? min(least / near, least / far) : least,
+             b = perspective ? max(most / near, most / far) : most;
   const vec2 p = view.center + a / view.tangent_per_pixel, q = view.center + b / view.tangent_per_pixel;
-  return Rect(clamp(min(p, q) - 1.0, vec2(0), vec2(view.size - 1)), clamp(max(p, q) + 1.0, vec2(0), vec2(view.size - 1)));
+  return Rect(clamp(min(p, q) - 1.0, vec2(0), vec2(view.size - 1)),
+              clamp(max(p, q) + 1.0, vec2(0), vec2(view.size - 1)));
 }
 
-/// Pixels of the frame beyond the reach whose depth may decide a normal that was reconstructed, or which surface a pixel of a smaller image shows.
+/// Pixels of the frame beyond the reach whose depth may decide a normal that was reconstructed, or which surface a
+/// pixel of a smaller image shows.
 const int kChangeMargin = 8;
 
 uint changes_at(ivec2 corner, ivec2 blocks) { return changes[corner.y * (blocks.x + 1) + corner.x]; }
@@ -110,9 +122,13 @@ uint changes_at(ivec2 corner, ivec2 blocks) { return changes[corner.y * (blocks.
 bool is_as_before(View view, ivec2 tile, float near, float far) {
   const Rect rect = image_of_reach(view, box_of(view, tile, kBlock, near, far), reach_of_samples(view, far));
   const ivec2 most = params.frame_size - 1, blocks = (params.frame_size + kChangeBlock - 1) / kChangeBlock;
-  const ivec2 from = clamp(ivec2(rect.least) * params.factor - params.overhang - kChangeMargin, ivec2(0), most) / kChangeBlock;
-  const ivec2 to = clamp(ivec2(rect.most + 1.0) * params.factor - params.overhang + kChangeMargin, ivec2(0), most) / kChangeBlock + 1;
-  return changes_at(to, blocks) + changes_at(from, blocks) == changes_at(ivec2(from.x, to.y), blocks) + changes_at(ivec2(to.x, from.y), blocks);
+  const ivec2 from =
+      clamp(ivec2(rect.least) * params.factor - params.overhang - kChangeMargin, ivec2(0), most) / kChangeBlock;
+  const ivec2 to =
+      clamp(ivec2(rect.most + 1.0) * params.factor - params.overhang + kChangeMargin, ivec2(0), most) / kChangeBlock +
+      1;
+  return changes_at(to, blocks) + changes_at(from, blocks) ==
+         changes_at(ivec2(from.x, to.y), blocks) + changes_at(ivec2(to.x, from.y), blocks);
 }
 
 /// Of the receivers of a block, as of those of a tile.
@@ -123,7 +139,7 @@ struct Shared {
 };
 
 struct Receivers {
-  ivec2 tile;              // first of the block
+  ivec2 tile;  // first of the block
   Box box;
   float reach, reach_sq;   // of samples, from their pixels' centres
   float rise, tolerated;   // harmless, and with a tolerance, for every pixel aside
@@ -131,7 +147,8 @@ struct Receivers {
   ivec2 from, extent;      // groups within reach; more than kMostGroups: not searched
   vec2 along;              // of the affine part, a pixel
   float nearness, affine;  // factor of 1 / z: (c - least), or orthographic of -z: N.z; the affine part at pixel (0, 0)
-  float turned;            // times the farthest that anything that may block is from a receiver, in units of the left side
+  // times the farthest that anything that may block is from a receiver, in units of the left side
+  float turned;
   float turned_by_nearness;
 };
 
@@ -144,7 +161,8 @@ float most_above(Receivers r, vec2 centre, float half_side, vec2 gradient, float
 /// Pixels from the block to a square of them, and to its farthest.
 ivec2 distances_px(Receivers r, ivec2 first_pixel, int side) {
   const ivec2 offset = first_pixel - r.tile * kTile;
-  const ivec2 least = max(-offset - side + 1, offset - kBlock * kTile + 1), most = max(abs(offset - kBlock * kTile + 1), abs(offset + side - 1));
+  const ivec2 least = max(-offset - side + 1, offset - kBlock * kTile + 1),
+              most = max(abs(offset - kBlock * kTile + 1), abs(offset + side - 1));
   return ivec2(max(max(least.x, least.y), 0), max(most.x, most.y));
 }
 
@@ -154,7 +172,9 @@ float harmless_height(Receivers r, float rise, int distance_px, float level) {
   return rise * aside - 2e-6 * abs(r.nearness * level) - r.turned - r.turned_by_nearness * level;
 }
 
-float harmless_height(Receivers r, int distance_px, float level) { return harmless_height(r, r.rise, distance_px, level); }
+float harmless_height(Receivers r, int distance_px, float level) {
+  return harmless_height(r, r.rise, distance_px, level);
+}
 
 /// How much of the left side, at most, takes no more of the visibility than the tolerance.
 float tolerated_height(View view, Receivers r, int distance_px, float level) {
@@ -163,23 +183,27 @@ float tolerated_height(View view, Receivers r, int distance_px, float level) {
 
 /// Group i of those within reach, row by row.
 ivec2 group_at(Receivers r, int i) {
-  const int line = int((float(i) + 0.5) * (1.0 / float(r.extent.x)));  // of numbers up to kMostGroups: whole divisions are slow
+  // of numbers up to kMostGroups: whole divisions are slow
+  const int line = int((float(i) + 0.5) * (1.0 / float(r.extent.x)));
   return r.from + ivec2(i - line * r.extent.x, line);
 }
 
 GroupBounds bounds_of(View view, ivec2 group) { return groups[group.y * groups_of_tiles(view.size).x + group.x]; }
 
 bool is_settled(Receivers r, ivec2 group, GroupBounds b) {
-  const float limit = harmless_height(r, distances_px(r, group * kGroupSide, kGroupSide).x, b.level), half_side = 0.5 * float(kGroupSide - 1);
+  const float limit = harmless_height(r, distances_px(r, group * kGroupSide, kGroupSide).x, b.level),
+              half_side = 0.5 * float(kGroupSide - 1);
   const vec2 centre = vec2(group * kGroupSide) + half_side;
-  const float above = min(most_above(r, centre, half_side, vec2(0), b.level), most_above(r, centre, half_side, b.gradient, b.plane));
+  const float above =
+      min(most_above(r, centre, half_side, vec2(0), b.level), most_above(r, centre, half_side, b.gradient, b.plane));
   return b.farthest > b.level ? true : above <= limit;
 }
 
 /// Whether nothing in a square of pixels blocks, as far as it is.
 bool is_too_far(View view, Receivers r, ivec2 first_pixel, int side, float level, float farthest) {
   if ((kMode & kClassifyRanged) == 0u) return false;
-  return distance_sq(r.box, box_of(view, first_pixel / kTile, side / kTile, depth_of(view, level), depth_of(view, farthest))) > r.reach_sq;
+  return distance_sq(r.box, box_of(view, first_pixel / kTile, side / kTile, depth_of(view, level),
+                                   depth_of(view, farthest))) > r.reach_sq;
 }
 
 /// Adds a square of pixels, in which something stands above, to the sectors and steps at which something may block.
@@ -209,16 +233,20 @@ void search_tile(View view, Receivers r, ivec2 other, bool is_near) {
   const ivec2 apart = distances_px(r, other * kTile, kTile);
   const float limit = harmless_height(r, apart.x, level);
   const vec2 centre = vec2(other * kTile) + kHalfTile;
-  float above = farthest > level ? -kFar
-      : min(most_above(r, centre, kHalfTile, vec2(0), level), most_above(r, centre, kHalfTile, bounds[index].gradient, bounds[index].plane[0]));
+  float above = farthest > level
+                    ? -kFar
+                    : min(most_above(r, centre, kHalfTile, vec2(0), level),
+                          most_above(r, centre, kHalfTile, bounds[index].gradient, bounds[index].plane[0]));
   // An edge in it may be the end of a neighbour's surface.
   const int planes = above <= limit ? 0 : int(bounds[index].mixed) * 8;
   for (int k = 0; k < planes && above > limit; k++) {
     const ivec2 neighbor = clamp(other + neighbor_step(k), ivec2(0), last_tile);
-    above = min(above, most_above(r, centre, kHalfTile, bounds[neighbor.y * count.x + neighbor.x].gradient, bounds[index].plane[k + 1]));
+    above = min(above, most_above(r, centre, kHalfTile, bounds[neighbor.y * count.x + neighbor.x].gradient,
+                                  bounds[index].plane[k + 1]));
   }
   const bool rises = kTolerates ? above > tolerated_height(view, r, apart.x, level) : true;
-  for (bool marks = above > limit; marks; marks = false) mark(view, r, other * kTile, kTile, level, farthest, is_near, rises);
+  for (bool marks = above > limit; marks; marks = false)
+    mark(view, r, other * kTile, kTile, level, farthest, is_near, rises);
 }
 
 Receivers receivers_of(View view, ivec2 tile, Shared own) {
@@ -233,7 +261,8 @@ Receivers receivers_of(View view, ivec2 tile, Shared own) {
   r.reach = reach;
   r.reach_sq = reach * reach;
   r.rise = 0.9 * least_rise(view);
-  r.tolerated = 0.99 * params.tolerated / longest_ray * min(abs(view.tangent_per_pixel.x), abs(view.tangent_per_pixel.y));
+  r.tolerated =
+      0.99 * params.tolerated / longest_ray * min(abs(view.tangent_per_pixel.x), abs(view.tangent_per_pixel.y));
 
   // A unit of depth is at least so much height at every receiver: their normals differ.
   const float height = (perspective ? own.lowest / far : n.z) - own.turned * longest_ray;
@@ -250,22 +279,31 @@ Receivers receivers_of(View view, ivec2 tile, Shared own) {
   r.from = ivec2(rect.least / float(kGroupSide));
   r.extent = ivec2(rect.most / float(kGroupSide)) - r.from + 1;
   // Orthographic, nothing bounds how much higher above another normal's plane a far place may be.
-  if (own.normal == kNoNormal || r.extent.x * r.extent.y > kMostGroups || (!perspective && !ranged && own.turned > 0.0)) r.extent = ivec2(0);
+  if (own.normal == kNoNormal || r.extent.x * r.extent.y > kMostGroups || (!perspective && !ranged && own.turned > 0.0))
+    r.extent = ivec2(0);
   return r;
 }
 
-/// Searches the first `count` groups within reach, of those that are unsettled and near or far, with all invocations of the row.
+/// Searches the first `count` groups within reach, of those that are unsettled and near or far, with all invocations of
+/// the row.
 void search_groups(View view, Receivers r, int count, bool is_far) {
   const uint row = gl_LocalInvocationID.y;
   const ivec2 last_tile = tiles_of(view.size) - 1;
   for (int word = 0; word * 32 < count; word++)
     for (uint bits = unsettled[row * kGroupWords + uint(word)]; bits != 0u; bits &= bits - 1u) {
       const ivec2 group = group_at(r, word * 32 + findLSB(bits)), offset = (group * kTileGroup - r.tile) * kTile;
-      for (bool is_next = (distances_px(r, group * kGroupSide, kGroupSide).x >= kFarGroup) == is_far; is_next; is_next = false) {
-        // As steps grow with the distance, it does not matter where in a far group something stands, if it stands in no other sector than what is found.
-        const bool is_coarse = is_far && risen[row] != 0u ? (sectors_of_offsets(vec2(offset) - float(kBlock * kTile), vec2(offset) + float(kGroupSide)) & ~found[row]) == 0u : false;
+      for (bool is_next = (distances_px(r, group * kGroupSide, kGroupSide).x >= kFarGroup) == is_far; is_next;
+           is_next = false) {
+        // As steps grow with the distance, it does not matter where in a far group something stands, if it stands in no
+        // other sector than what is found.
+        const bool is_coarse =
+            is_far && risen[row] != 0u
+                ? (sectors_of_offsets(vec2(offset) - float(kBlock * kTile), vec2(offset) + float(kGroupSide)) &
+                   ~found[row]) == 0u
+                : false;
         for (bool marks = is_coarse && gl_LocalInvocationID.x == 0u; marks; marks = false)
-          mark(view, r, group * kGroupSide, kGroupSide, bounds_of(view, group).level, bounds_of(view, group).farthest, false, true);
+          mark(view, r, group * kGroupSide, kGroupSide, bounds_of(view, group).level, bounds_of(view, group).farthest,
+               false, true);
         for (int k = int(gl_LocalInvocationID.x); k < kTileGroup * kTileGroup && !is_coarse; k += int(kGroupX)) {
           const ivec2 other = group * kTileGroup + ivec2(k % kTileGroup, k / kTileGroup);
           if (all(lessThanEqual(other, last_tile))) search_tile(view, r, other, false);
@@ -274,13 +312,15 @@ void search_groups(View view, Receivers r, int count, bool is_far) {
     }
 }
 
-/// Finds the sectors and steps at which something may block a receiver of the block, with all invocations of its row. All rows take part, as they wait for each other.
+/// Finds the sectors and steps at which something may block a receiver of the block, with all invocations of its row.
+/// All rows take part, as they wait for each other.
 void find_sectors(View view, Receivers r) {
   const uint row = gl_LocalInvocationID.y, lane = gl_LocalInvocationID.x;
   const ivec2 last_tile = tiles_of(view.size) - 1;
   const int searched = r.extent.x * r.extent.y, around = kBlock + 2;
   if (lane == 0u) found[row] = 0u, risen[row] = searched > 0 ? 0u : 1u, beside[row] = searched > 0 ? 0u : kEverySector;
-  for (uint k = lane; k < kSectorsOfTurn; k += kGroupX) first[row * kSectorsOfTurn + k] = ~0u, last[row * kSectorsOfTurn + k] = 0u;
+  for (uint k = lane; k < kSectorsOfTurn; k += kGroupX)
+    first[row * kSectorsOfTurn + k] = ~0u, last[row * kSectorsOfTurn + k] = 0u;
   for (uint k = lane; k < kGroupWords; k += kGroupX) unsettled[row * kGroupWords + k] = 0u;
   barrier();
   // The block and its neighbours decide most.
@@ -293,8 +333,10 @@ void find_sectors(View view, Receivers r) {
   for (int i = int(lane); i < left; i += int(kGroupX)) {
     const ivec2 group = group_at(r, i);
     const GroupBounds b = bounds_of(view, group);
-    const bool settled = is_settled(r, group, b), too_far = is_too_far(view, r, group * kGroupSide, kGroupSide, b.level, b.farthest);
-    for (bool marks = !settled && too_far; marks; marks = false) mark(view, r, group * kGroupSide, kGroupSide, b.level, b.farthest, false, true);
+    const bool settled = is_settled(r, group, b),
+               too_far = is_too_far(view, r, group * kGroupSide, kGroupSide, b.level, b.farthest);
+    for (bool marks = !settled && too_far; marks; marks = false)
+      mark(view, r, group * kGroupSide, kGroupSide, b.level, b.farthest, false, true);
     if (!settled && !too_far) atomicOr(unsettled[row * kGroupWords + uint(i) / 32u], 1u << (uint(i) & 31u));
   }
   barrier();
@@ -309,7 +351,9 @@ void list_tile(uint at, ivec2 tile, bool is_whole) {
   const uint row = gl_LocalInvocationID.y;
   for (uint k = gl_LocalInvocationID.x; k < kSectorsOfTurn; k += kGroupX) {
     const bool is_found = (found[row] >> k & 1u) != 0u;
-    list[at].ranges[k] = is_whole ? kWholeRange : is_found ? pack_range(first[row * kSectorsOfTurn + k], last[row * kSectorsOfTurn + k]) : 0u;
+    list[at].ranges[k] = is_whole   ? kWholeRange
+                         : is_found ? pack_range(first[row * kSectorsOfTurn + k], last[row * kSectorsOfTurn + k])
+                                    : 0u;
   }
   if (gl_LocalInvocationID.x != 0u) return;
   list[at].place = pack_tile(tile);
@@ -331,7 +375,8 @@ void write_open(View view, ivec2 tile, bool is_sky, bool is_tolerated) {
     const int index = index_of(view, pixel);
     ao[index + int(params.plane) * plane] = 1.0;
     if ((kMode & kClassifyWithBent) != 0u) {
-      const vec3 stored = depth[index] >= kSkyDepth ? stored_bent(vec3(0)) : stored_bent(open_bent(unpack_normal(normal[index])));
+      const vec3 stored =
+          depth[index] >= kSkyDepth ? stored_bent(vec3(0)) : stored_bent(open_bent(unpack_normal(normal[index])));
       for (int c = 0; c < 3; c++) bent[index + c * plane] = stored[c];
     }
   }
@@ -360,7 +405,8 @@ Shared shared_by(ivec2 tile, ivec2 count) {
 
 void main() {
   const View view = params.view;
-  const ivec2 count = tiles_of(view.size), tile = kBlock * ivec2(gl_WorkGroupID.x * kGroupY + gl_LocalInvocationID.y, gl_WorkGroupID.y);
+  const ivec2 count = tiles_of(view.size),
+              tile = kBlock * ivec2(gl_WorkGroupID.x * kGroupY + gl_LocalInvocationID.y, gl_WorkGroupID.y);
   const uint row = gl_LocalInvocationID.y;
   if (gl_LocalInvocationID.x == 0u) {
     surfaces[row] = kSkips ? 0u : kAllTiles;
@@ -381,7 +427,9 @@ void main() {
   }
   if (kReuses) atomicMin(nearest[row], floatBitsToUint(near)), atomicMax(farthest[row], floatBitsToUint(far));
   barrier();
-  const bool is_kept = kReuses && surfaces[row] != 0u ? is_as_before(view, tile, uintBitsToFloat(nearest[row]), uintBitsToFloat(farthest[row])) : false;
+  const bool is_kept = kReuses && surfaces[row] != 0u
+                           ? is_as_before(view, tile, uintBitsToFloat(nearest[row]), uintBitsToFloat(farthest[row]))
+                           : false;
   Shared own = Shared(1.0, 1.0, kNoNormal, 0.0, 0.0, 0.0);
   if (kProves && tile.x < count.x && !is_kept) own = shared_by(tile, count);
   if (kProves) find_sectors(view, receivers_of(view, tile, own));

@@ -10,30 +10,37 @@ ALCOVE_CONSTANT uint kClassifyDepth = 1;   // in: float a pixel, from prepare
 ALCOVE_CONSTANT uint kClassifyNormal = 2;  // in: uint a pixel, from prepare
 ALCOVE_CONSTANT uint kClassifyList = 3;    // out: ListedTile a tile, as many as are counted, in no order
 ALCOVE_CONSTANT uint kClassifyCounts = 4;  // in, out: TileCounts, zeros
-ALCOVE_CONSTANT uint kClassifyAo = 5;      // out: float a pixel, 1 at receivers of tiles that are not listed; the plane of the parameters
-ALCOVE_CONSTANT uint kClassifyBent = 6;    // out: planes x, y, z as estimators write them, for the same; only with kClassifyWithBent
-ALCOVE_CONSTANT uint kClassifySectors = 7;  // out: uint a tile: kTileOpen, kTileKept, or a bit for every sector of directions in which something may block
-ALCOVE_CONSTANT uint kClassifyGroups = 8;   // in: GroupBounds a group of tiles, from coarsen
+// out: float a pixel, 1 at receivers of tiles that are not listed; the plane of the parameters
+ALCOVE_CONSTANT uint kClassifyAo = 5;
+// out: planes x, y, z as estimators write them, for the same; only with kClassifyWithBent
+ALCOVE_CONSTANT uint kClassifyBent = 6;
+// out: uint a tile: kTileOpen, kTileKept, or a bit for every sector of directions in which something may block
+ALCOVE_CONSTANT uint kClassifySectors = 7;
+ALCOVE_CONSTANT uint kClassifyGroups = 8;  // in: GroupBounds a group of tiles, from coarsen
 
-ALCOVE_CONSTANT uint kClassifyChanges = 9;  // in: uint a corner of blocks, (columns + 1) x (rows + 1): the changed blocks above and left of it
+// in: uint a corner of blocks, (columns + 1) x (rows + 1): the changed blocks above and left of it
+ALCOVE_CONSTANT uint kClassifyChanges = 9;
 
-ALCOVE_CONSTANT uint kClassifyStrideId = 0;  // specialization: one pixel of so many in a row is a receiver, 1, 2 or 4: see stride.glsl
-ALCOVE_CONSTANT uint kClassifyModeId = 1;    // specialization: bits of kClassify*
+// specialization: one pixel of so many in a row is a receiver, 1, 2 or 4: see stride.glsl
+ALCOVE_CONSTANT uint kClassifyStrideId = 0;
+ALCOVE_CONSTANT uint kClassifyModeId = 1;  // specialization: bits of kClassify*
 
-ALCOVE_CONSTANT uint kClassifySkips = 1;     // else every tile is listed
-ALCOVE_CONSTANT uint kClassifyProves = 8;    // with kClassifySkips: reads the bounds; else only sky is left out
-ALCOVE_CONSTANT uint kClassifyRanged = 2;    // nothing beyond the radius blocks
+ALCOVE_CONSTANT uint kClassifySkips = 1;   // else every tile is listed
+ALCOVE_CONSTANT uint kClassifyProves = 8;  // with kClassifySkips: reads the bounds; else only sky is left out
+ALCOVE_CONSTANT uint kClassifyRanged = 2;  // nothing beyond the radius blocks
 ALCOVE_CONSTANT uint kClassifyWithBent = 4;
-ALCOVE_CONSTANT uint kClassifyReuses = 16;   // with kClassifySkips: reads the changes, and leaves as they are tiles within whose reach nothing has changed
+// with kClassifySkips: reads the changes, and leaves as they are tiles within whose reach nothing has changed
+ALCOVE_CONSTANT uint kClassifyReuses = 16;
 ALCOVE_CONSTANT uint kClassifyTolerates = 32;  // with kClassifyProves
 
-ALCOVE_CONSTANT int kChangeBlock = 32;       // px of the frame a side of the blocks whose changes are known
+ALCOVE_CONSTANT int kChangeBlock = 32;  // px of the frame a side of the blocks whose changes are known
 
 struct ClassifyParams {
   View view;
-  ivec2 origin;          // px: from the display window's corner to the image's, as estimators count
-  float radius;          // scene units: the farthest at which anything blocks
-  float tolerated;       // with kClassifyTolerates: sine of the elevation above a tangent plane up to which a tile is left out
+  ivec2 origin;  // px: from the display window's corner to the image's, as estimators count
+  float radius;  // scene units: the farthest at which anything blocks
+  // with kClassifyTolerates: sine of the elevation above a tangent plane up to which a tile is left out
+  float tolerated;
   vec3 depth_precision;  // how far a depth z may be from the surface's: x + y z + z z^2, scene units
   uint plane;            // of the AO
   ivec2 frame_size;      // px; the frame is the image, or `factor` times as large

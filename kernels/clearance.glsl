@@ -1,14 +1,17 @@
-// What stands clear of a receiver's tangent plane: one rule, for every estimator and for the proof that nothing does. Pure: no bindings.
+// What stands clear of a receiver's tangent plane: one rule, for every estimator and for the proof that nothing does.
+// Pure: no bindings.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Depth is known to a precision only, and normals are rounded: on a plane each pixel would see some of its neighbours rise a little. So nothing blocks that
-// rises by less than two depths' errors can feign, and kLeastRise pixels for every pixel that it lies aside; nor, seen aslant, what is not kLeastElevation
-// above the plane. By that no visibility changes by more than the square of this angle, 1.6e-5, once two depths' errors are small beside a pixel.
+// Depth is known to a precision only, and normals are rounded: on a plane each pixel would see some of its neighbours
+// rise a little. So nothing blocks that rises by less than two depths' errors can feign, and kLeastRise pixels for
+// every pixel that it lies aside; nor, seen aslant, what is not kLeastElevation above the plane. By that no visibility
+// changes by more than the square of this angle, 1.6e-5, once two depths' errors are small beside a pixel.
 
 const float kLeastRise = 4e-3;
 const float kLeastElevation = 1e-3;  // sine
 
-/// The height above a tangent plane that the errors of two depths near z can feign. depth_height: how much height a unit of depth is.
+/// The height above a tangent plane that the errors of two depths near z can feign. depth_height: how much height a
+/// unit of depth is.
 float least_height(vec3 depth_precision, float z, float depth_height) {
   return 2.0 * abs(depth_height) * (depth_precision.x + z * (depth_precision.y + z * depth_precision.z));
 }

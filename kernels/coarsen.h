@@ -5,8 +5,9 @@
 #include "shared.h"
 ALCOVE_BEGIN
 
-ALCOVE_CONSTANT uint kCoarsenTiles = 0;   // in: TileBounds a tile, from bounds
-ALCOVE_CONSTANT uint kCoarsenGroups = 1;  // out: GroupBounds a group of tiles, rows of groups from the upper left corner
+ALCOVE_CONSTANT uint kCoarsenTiles = 0;  // in: TileBounds a tile, from bounds
+// out: GroupBounds a group of tiles, rows of groups from the upper left corner
+ALCOVE_CONSTANT uint kCoarsenGroups = 1;
 
 struct CoarsenParams {
   ivec2 size;  // px, of the image

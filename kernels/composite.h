@@ -5,13 +5,17 @@
 #include "shared.h"
 ALCOVE_BEGIN
 
-ALCOVE_CONSTANT uint kCompositeAo = 0;            // in: float a pixel, visibility; with has_color planes R, G, B
-ALCOVE_CONSTANT uint kCompositeBeauty = 1;        // in: planes R, G, B and, with alpha, A; premultiplied scene-linear colour
-ALCOVE_CONSTANT uint kCompositeIndirect = 2;      // in: planes R, G, B of the indirect diffuse light; not read without ambient parts
-ALCOVE_CONSTANT uint kCompositeDiffuseColor = 3;  // in: planes R, G, B of the diffuse colour that multiplies it; not read without
-ALCOVE_CONSTANT uint kCompositeResult = 4;        // out: the beauty's planes, alpha too
-ALCOVE_CONSTANT uint kCompositeCounts = 5;        // in, out: FrameCounts
-ALCOVE_CONSTANT uint kCompositeDepth = 6;         // in: float a pixel, planar depth, kSkyDepth for sky; not read without fog
+ALCOVE_CONSTANT uint kCompositeAo = 0;  // in: float a pixel, visibility; with has_color planes R, G, B
+// in: planes R, G, B and, with alpha, A; premultiplied scene-linear colour
+ALCOVE_CONSTANT uint kCompositeBeauty = 1;
+// in: planes R, G, B of the indirect diffuse light; not read without ambient parts
+ALCOVE_CONSTANT uint kCompositeIndirect = 2;
+// in: planes R, G, B of the diffuse colour that multiplies it; not read without
+ALCOVE_CONSTANT uint kCompositeDiffuseColor = 3;
+ALCOVE_CONSTANT uint kCompositeResult = 4;  // out: the beauty's planes, alpha too
+ALCOVE_CONSTANT uint kCompositeCounts = 5;  // in, out: FrameCounts
+// in: float a pixel, planar depth, kSkyDepth for sky; not read without fog
+ALCOVE_CONSTANT uint kCompositeDepth = 6;
 
 struct CompositeParams {
   View view;

@@ -1,12 +1,14 @@
 // How far the visibility of a pixel follows from what the frame shows, and is no guess.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// In: the visibilities with thin and with endless occluders. Out: confidence, the product of four, each 1 where nothing is unknown:
+// In: the visibilities with thin and with endless occluders. Out: confidence, the product of four, each 1 where nothing
+// is unknown:
 // - the backs of what is seen are not: the truth lies between both visibilities, so 1 - their distance;
 // - no estimate of what blocks is exact: 1 - half of what endless occluders block;
-// - what is beyond the border is not seen: of the disc in which the sphere of the radius is seen the part outside of the image, counted by a fifth of the same,
-//   since what is there blocks where what is here does;
-// - depth is known to a precision: below it no occluder can be told from noise, so 1 less a multiple of the height that two depths' errors can feign, in radii.
+// - what is beyond the border is not seen: of the disc in which the sphere of the radius is seen the part outside of
+//   the image, counted by a fifth of the same, since what is there blocks where what is here does;
+// - depth is known to a precision: below it no occluder can be told from noise, so 1 less a multiple of the height that
+//   two depths' errors can feign, in radii.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "confidence.h"
@@ -24,7 +26,8 @@ layout(scalar, binding = kConfidenceResult) writeonly buffer Result { float resu
 
 const int kDirections = 16;
 const float kTwoPi = 6.28318530717958648;
-const float kBlockedShare = 0.5, kBorderShare = 0.2;  // fitted on rendered frames, where the error falls with confidence
+// fitted on rendered frames, where the error falls with confidence
+const float kBlockedShare = 0.5, kBorderShare = 0.2;
 /// A radius of so many feigned heights is worth nothing.
 const float kLeastRadius = 8.0;
 
@@ -54,8 +57,11 @@ void main() {
   const vec3 n = unpack_normal(normal[index]);
   const float known_backs = 1.0 - clamp(thin[index] - solid[index], 0.0, 1.0);
   const float blocked = 1.0 - clamp(solid[index], 0.0, 1.0);
-  const float seen = 1.0 - kBorderShare * blocked * part_outside(view, pixel, params.radius / (view.tangent_per_pixel.x * (perspective ? z : 1.0)));
+  const float seen =
+      1.0 - kBorderShare * blocked *
+                part_outside(view, pixel, params.radius / (view.tangent_per_pixel.x * (perspective ? z : 1.0)));
   const vec2 tangent = perspective ? tangent_of(view, vec2(pixel) + 0.5) : vec2(0);
-  const float fine = 1.0 - min(kLeastRadius * least_height(params.depth_precision, z, dot(n.xy, tangent) - n.z) / params.radius, 1.0);
+  const float fine =
+      1.0 - min(kLeastRadius * least_height(params.depth_precision, z, dot(n.xy, tangent) - n.z) / params.radius, 1.0);
   result[index] = known_backs * (1.0 - kBlockedShare * blocked) * seen * fine;
 }

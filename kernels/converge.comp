@@ -1,11 +1,12 @@
 // Which tiles need more directions: the estimate of all directions so far is compared with that of every other one.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// In: the sums of an exact search over directions in bit-reversed order, so that 2, 4, 8 ... of them are even over the half turn. Out: visibility, its estimated
-// error, and the tiles where that is larger than the tolerance.
-// What is integrated over directions is smooth but for the edges of occluders, so the error of n even directions falls about as 1 / n (with a jump; faster
-// without). The estimate of n / 2 then errs by twice as much, their difference by about as much as the estimate of n. As it is a random number for a pixel, it
-// is taken as the root of its mean square over a tile of 8 x 8 pixels.
+// In: the sums of an exact search over directions in bit-reversed order, so that 2, 4, 8 ... of them are even over the
+// half turn. Out: visibility, its estimated error, and the tiles where that is larger than the tolerance.
+// What is integrated over directions is smooth but for the edges of occluders, so the error of n even directions falls
+// about as 1 / n (with a jump; faster without). The estimate of n / 2 then errs by twice as much, their difference by
+// about as much as the estimate of n. As it is a random number for a pixel, it is taken as the root of its mean square
+// over a tile of 8 x 8 pixels.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "converge.h"

@@ -1,13 +1,17 @@
-// Ambient occlusion by samples in the hemisphere above the surface, as engines do it after Crytek: how much of its volume is hidden.
+// Ambient occlusion by samples in the hemisphere above the surface, as engines do it after Crytek: how much of its
+// volume is hidden.
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // In: planar depth, view normals. Out: visibility, 1 = open.
-// Mittring, "Finding Next Gen: CryEngine 2", 2007. It measures volume, not visibility: beside an infinite wall at distance c R the uniform kernel
-// gives 1 - (1 - c)^2 (2 + c) / 4. What is particular here:
-// - A sample is compared with the depth of the pixel that it falls into, on the ray of that pixel's centre: it is moved there parallel to the
-//   receiver's tangent plane, which keeps its height above it. A flat surface stays open at every tilt, with no bias at all.
-// - The basis about the normal is built from the normal alone and turned by the noise, so no noise vector can be parallel to it.
-// - Samples behind the eye, outside the image and before the sky do not count; what is hidden is divided by the number of those that do.
+// Mittring, "Finding Next Gen: CryEngine 2", 2007. It measures volume, not visibility: beside an infinite wall at
+// distance c R the uniform kernel gives 1 - (1 - c)^2 (2 + c) / 4. What is particular here:
+// - A sample is compared with the depth of the pixel that it falls into, on the ray of that pixel's centre: it is moved
+//   there parallel to the receiver's tangent plane, which keeps its height above it. A flat surface stays open at every
+//   tilt, with no bias at all.
+// - The basis about the normal is built from the normal alone and turned by the noise, so no noise vector can be
+//   parallel to it.
+// - Samples behind the eye, outside the image and before the sky do not count; what is hidden is divided by the number
+//   of those that do.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "crytek.h"
@@ -51,7 +55,8 @@ void main() {
   if (place.tile >= counts.listed) return;
   const ivec2 pixel = pixel_of_tile(unpack_tile(list[place.tile].place), place.pixel, params.noise_origin, kStride);
   if (!inside(params.view, pixel)) return;
-  const int index = index_of(params.view, pixel), ao_index = index + int(params.plane) * params.view.size.x * params.view.size.y;
+  const int index = index_of(params.view, pixel),
+            ao_index = index + int(params.plane) * params.view.size.x * params.view.size.y;
   const float z = depth[index];
   if (z >= kSkyDepth) {
     ao[ao_index] = 1.0;
@@ -62,14 +67,17 @@ void main() {
   const vec3 position = position_of(params.view, vec2(pixel) + 0.5, z), n = unpack_normal(normal[index]);
   // Two tangents (Duff et al., "Building an Orthonormal Basis, Revisited", 2017).
   const float sign_z = n.z < 0.0 ? -1.0 : 1.0, a = -1.0 / (sign_z + n.z), b = n.x * n.y * a;
-  const vec3 tangent = vec3(1.0 + sign_z * n.x * n.x * a, sign_z * b, -sign_z * n.x), bitangent = vec3(b, sign_z + n.y * n.y * a, -n.y);
+  const vec3 tangent = vec3(1.0 + sign_z * n.x * n.x * a, sign_z * b, -sign_z * n.x),
+             bitangent = vec3(b, sign_z + n.y * n.y * a, -n.y);
 
   const uint first_point = kSamples * hilbert_index(uvec2(pixel + params.noise_origin));
-  const float clearance = least_height(params.depth_precision, z, (perspective ? dot(n.xy, tangent_of(params.view, vec2(pixel) + 0.5)) : 0.0) - n.z);
+  const float clearance = least_height(
+      params.depth_precision, z, (perspective ? dot(n.xy, tangent_of(params.view, vec2(pixel) + 0.5)) : 0.0) - n.z);
   float valid = 0.0, blocked = 0.0;
   for (uint i = 0u; i < kSamples; i++) {
     const vec3 random = r3_point(first_point + i, params.noise_shift);
-    const float azimuth = kTwoPi * random.x, up = random.y, across = sqrt(1.0 - up * up), reach = params.radius * reach_of(i, random.z);
+    const float azimuth = kTwoPi * random.x, up = random.y, across = sqrt(1.0 - up * up),
+                reach = params.radius * reach_of(i, random.z);
     const float height = reach * up;  // above the tangent plane
     const vec3 at = position + reach * (across * (cos(azimuth) * tangent + sin(azimuth) * bitangent) + up * n);
     if (perspective && !(-at.z > 0.0)) continue;
@@ -79,13 +87,17 @@ void main() {
     if (hit_z >= kSkyDepth) continue;
     valid += 1.0;
 
-    const vec3 ray = position_of(params.view, vec2(hit) + 0.5, 1.0) - position_of(params.view, vec2(hit) + 0.5, 0.0);  // of unit depth
+    // of unit depth
+    const vec3 ray = position_of(params.view, vec2(hit) + 0.5, 1.0) - position_of(params.view, vec2(hit) + 0.5, 0.0);
     const vec3 offset = position_of(params.view, vec2(hit) + 0.5, hit_z) - position;
     const float hit_height = dot(n, offset), slope = -dot(n, ray);
-    // How much deeper than the hit the sample lies on the hit's ray: by height; where that ray does not meet the tangent plane, by depth.
-    const float deeper = slope > kLeastSlope ? min((hit_height - height) / slope, -at.z + params.radius - hit_z) : -at.z - hit_z;
+    // How much deeper than the hit the sample lies on the hit's ray: by height; where that ray does not meet the
+    // tangent plane, by depth.
+    const float deeper =
+        slope > kLeastSlope ? min((hit_height - height) / slope, -at.z + params.radius - hit_z) : -at.z - hit_z;
     const ivec2 aside = abs(hit - pixel);
-    const bool clear = hit_height > clearance + least_rise(params.view) * float(max(aside.x, aside.y)) * (perspective ? hit_z : 1.0);
+    const bool clear =
+        hit_height > clearance + least_rise(params.view) * float(max(aside.x, aside.y)) * (perspective ? hit_z : 1.0);
     const bool above = clear && hit_height * hit_height > kLeastElevation * kLeastElevation * dot(offset, offset);
     if (above && deeper > params.bias) blocked += range_weight(hit_z - z);
   }

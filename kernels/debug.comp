@@ -35,7 +35,8 @@ float edge(ivec2 pixel, float z, vec3 n) {
 
 /// The value of a pixel; where only one of the stride has any, that to its left.
 float value_at(ivec2 pixel) {
-  const int begin = first_estimated(pixel.y, params.origin, params.stride), at = pixel.x - ((pixel.x - begin) & (params.stride - 1));
+  const int begin = first_estimated(pixel.y, params.origin, params.stride),
+            at = pixel.x - ((pixel.x - begin) & (params.stride - 1));
   return uintBitsToFloat(values[index_of(params.view, ivec2(at < 0 ? begin : at, pixel.y))]);
 }
 
@@ -53,7 +54,9 @@ void main() {
   if (params.kind == kDebugValue) value = value_at(pixel);
   if (params.kind == kDebugViewZ) value = -z;
   if (params.kind == kDebugNormalZ) value = n.z;
-  if (params.kind == kDebugTile) value = float(bitCount(values[(pixel.y / kTile) * tiles_of(params.view.size).x + pixel.x / kTile] & kEverySector)) / float(kSectorsOfTurn);
+  if (params.kind == kDebugTile)
+    value = float(bitCount(values[(pixel.y / kTile) * tiles_of(params.view.size).x + pixel.x / kTile] & kEverySector)) /
+            float(kSectorsOfTurn);
   if (params.kind == kDebugEdge) value = edge(pixel, z, n);
   if (params.kind == kDebugNormalAngle) {
     const vec3 other = unpack_normal(values[index]);

@@ -13,12 +13,12 @@ ALCOVE_CONSTANT uint kDenoiseResult = 3;  // out: as many planes, in [0, 1]; of 
 ALCOVE_CONSTANT uint kDenoiseList = 4;    // in: uint a run, from dilate; only with kDenoiseListed
 ALCOVE_CONSTANT uint kDenoiseCounts = 5;  // in: RunCounts of it
 
-ALCOVE_CONSTANT uint kDenoiseRadiusId = 0;    // specialization: pixels to each side, 1 to kDenoiseMostRadius
-ALCOVE_CONSTANT uint kDenoiseByDepthId = 1;   // specialization: 1: weighs by depth_sigma instead of by plane distance
+ALCOVE_CONSTANT uint kDenoiseRadiusId = 0;   // specialization: pixels to each side, 1 to kDenoiseMostRadius
+ALCOVE_CONSTANT uint kDenoiseByDepthId = 1;  // specialization: 1: weighs by depth_sigma instead of by plane distance
 
-ALCOVE_CONSTANT uint kDenoiseSparseId = 2;    // specialization: one of these, and kDenoiseListed
-ALCOVE_CONSTANT uint kDenoiseStrideId = 3;    // specialization: of sparse rows, 2 or 4: see stride.glsl; else 1
-ALCOVE_CONSTANT uint kDenoisePlanesId = 4;    // specialization: how many planes; they share their weights
+ALCOVE_CONSTANT uint kDenoiseSparseId = 2;  // specialization: one of these, and kDenoiseListed
+ALCOVE_CONSTANT uint kDenoiseStrideId = 3;  // specialization: of sparse rows, 2 or 4: see stride.glsl; else 1
+ALCOVE_CONSTANT uint kDenoisePlanesId = 4;  // specialization: how many planes; they share their weights
 
 ALCOVE_CONSTANT uint kDenoiseDense = 0;          // every pixel has an estimate
 ALCOVE_CONSTANT uint kDenoiseSparseRows = 1;     // one pixel of the stride has

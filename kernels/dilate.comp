@@ -1,10 +1,11 @@
 // Where a filter has work: within its reach of an estimate that is not proved to be 1.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// In: tiles by what classify found. Out: lists for `denoise` and `upsample`, and what they would write everywhere else, where that is not there already.
-// Of nothing but 1 a filter makes 1. Where nothing within its reach is other than in the frame before, what it made then still lies in its place.
-// Denoising is listed by runs: 8 lines wide, and as long as an invocation looks along one. Columns are filtered last, so theirs decide what rows must make.
-// Upsampling is listed by workgroups: 8 x 8 squares between the centres of blocks.
+// In: tiles by what classify found. Out: lists for `denoise` and `upsample`, and what they would write everywhere else,
+// where that is not there already. Of nothing but 1 a filter makes 1. Where nothing within its reach is other than in
+// the frame before, what it made then still lies in its place. Denoising is listed by runs: 8 lines wide, and as long
+// as an invocation looks along one. Columns are filtered last, so theirs decide what rows must make. Upsampling is
+// listed by workgroups: 8 x 8 squares between the centres of blocks.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "dilate.h"
@@ -32,7 +33,8 @@ struct Within {
 
 /// What lies within reach of a rectangle of pixels.
 Within reach_of(ivec2 first, ivec2 end) {
-  const ivec2 count = tiles_of(params.size), from = max(first - kRadius, ivec2(0)) / kTile, to = min((end - 1 + kRadius) / kTile, count - 1);
+  const ivec2 count = tiles_of(params.size), from = max(first - kRadius, ivec2(0)) / kTile,
+              to = min((end - 1 + kRadius) / kTile, count - 1);
   Within within = Within(false, false);
   for (int y = from.y; y <= to.y; y++)
     for (int x = from.x; x <= to.x; x++) {
@@ -51,20 +53,25 @@ bool lists(Within within, ivec2 first, ivec2 end, int width) {
 }
 
 bool lists_columns(int lines, int run) {
-  const ivec2 first = ivec2(lines * kTile, run * kDenoiseRun), end = min(first + ivec2(kTile, kDenoiseRun), params.size);
+  const ivec2 first = ivec2(lines * kTile, run * kDenoiseRun),
+              end = min(first + ivec2(kTile, kDenoiseRun), params.size);
   return lists(reach_of(first, end), first, end, params.size.x);
 }
 
 bool lists_upsampling(ivec2 group) {
-  const ivec2 block = group * ivec2(kGroupX, kGroupY) - 1, full = params.factor * block + params.factor / 2 - params.overhang;
+  const ivec2 block = group * ivec2(kGroupX, kGroupY) - 1,
+              full = params.factor * block + params.factor / 2 - params.overhang;
   const Within within = reach_of(max(block, ivec2(0)), min(block + ivec2(kGroupX, kGroupY) + 1, params.size));
-  return lists(within, max(full, ivec2(0)), min(full + params.factor * ivec2(kGroupX, kGroupY), params.full_size), params.full_size.x);
+  return lists(within, max(full, ivec2(0)), min(full + params.factor * ivec2(kGroupX, kGroupY), params.full_size),
+               params.full_size.x);
 }
 
 /// Whether a run along rows is read by one along columns that has work.
 bool lists_rows(int lines, int run) {
-  const int first = max(run * kDenoiseRun - kStride + 1, 0) / kTile, last = min((run + 1) * kDenoiseRun - 1, params.size.x - 1) / kTile;
-  const int above = max(lines * kTile - kRadius, 0) / kDenoiseRun, below = min((lines + 1) * kTile - 1 + kRadius, params.size.y - 1) / kDenoiseRun;
+  const int first = max(run * kDenoiseRun - kStride + 1, 0) / kTile,
+            last = min((run + 1) * kDenoiseRun - 1, params.size.x - 1) / kTile;
+  const int above = max(lines * kTile - kRadius, 0) / kDenoiseRun,
+            below = min((lines + 1) * kTile - 1 + kRadius, params.size.y - 1) / kDenoiseRun;
   bool is_read = false;
   for (int x = first; x <= last; x++)
     for (int y = above; y <= below; y++) is_read = is_read || columns[x * params.runs_in_column + y] != 0u;

@@ -5,15 +5,18 @@
 #include "shared.h"
 ALCOVE_BEGIN
 
-ALCOVE_CONSTANT uint kDilateTiles = 0;    // in: uint a tile, from classify
-ALCOVE_CONSTANT uint kDilateColumns = 1;  // uint a run along columns, line by line: 1 if it is listed; out: along columns, in: along rows
-ALCOVE_CONSTANT uint kDilateList = 2;     // out: uint a run or group that is listed, see pack_run
-ALCOVE_CONSTANT uint kDilateCounts = 3;   // in, out: RunCounts, zeros
-ALCOVE_CONSTANT uint kDilateResult = 4;   // out: float a pixel of the filter's result, where it is neither computed nor kept: 1; not along rows
+ALCOVE_CONSTANT uint kDilateTiles = 0;  // in: uint a tile, from classify
+// uint a run along columns, line by line: 1 if it is listed; out: along columns, in: along rows
+ALCOVE_CONSTANT uint kDilateColumns = 1;
+ALCOVE_CONSTANT uint kDilateList = 2;    // out: uint a run or group that is listed, see pack_run
+ALCOVE_CONSTANT uint kDilateCounts = 3;  // in, out: RunCounts, zeros
+// out: float a pixel of the filter's result, where it is neither computed nor kept: 1; not along rows
+ALCOVE_CONSTANT uint kDilateResult = 4;
 
 ALCOVE_CONSTANT uint kDilateRadiusId = 0;  // specialization: the denoiser's, px; 0: there is none
-ALCOVE_CONSTANT uint kDilateStrideId = 1;  // specialization: of rows of a sparse estimate, as the denoiser has it; else 1
-ALCOVE_CONSTANT uint kDilateModeId = 2;    // specialization: one of these
+// specialization: of rows of a sparse estimate, as the denoiser has it; else 1
+ALCOVE_CONSTANT uint kDilateStrideId = 1;
+ALCOVE_CONSTANT uint kDilateModeId = 2;  // specialization: one of these
 
 ALCOVE_CONSTANT uint kDilateAlongColumns = 0;  // runs whose result may be other than 1 or than it was; before the rows
 ALCOVE_CONSTANT uint kDilateAlongRows = 1;     // runs that those read

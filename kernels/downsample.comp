@@ -1,10 +1,11 @@
-// The G-buffer at a half or a quarter of the resolution: of each block of pixels the nearest surface, with its own normal.
+// The G-buffer at a half or a quarter of the resolution: of each block of pixels the nearest surface, with its own
+// normal.
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // In: depth and normals. Out: depth and normals a block.
-// A block stands for its centre, where no pixel lies. The nearest pixel's surface is followed along its own plane to the centre's ray: a plane
-// stays that plane at every tilt, and nothing shifts by part of a pixel. Where the plane would leave the range of depths that the block shows (a
-// curved rim, a horizon) the range wins.
+// A block stands for its centre, where no pixel lies. The nearest pixel's surface is followed along its own plane to
+// the centre's ray: a plane stays that plane at every tilt, and nothing shifts by part of a pixel. Where the plane
+// would leave the range of depths that the block shows (a curved rim, a horizon) the range wins.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "downsample.h"
@@ -19,7 +20,8 @@ layout(scalar, binding = kDownsampleNormal) readonly buffer Normal { uint normal
 layout(scalar, binding = kDownsampleLowDepth) writeonly buffer LowDepth { float low_depth[]; };
 layout(scalar, binding = kDownsampleLowNormal) writeonly buffer LowNormal { uint low_normal[]; };
 
-/// The depth at which the ray of image point `to` meets the plane with normal n through image point `from` at depth z; beyond all where it does not.
+/// The depth at which the ray of image point `to` meets the plane with normal n through image point `from` at depth z;
+/// beyond all where it does not.
 float follow_plane(vec3 n, vec2 from, float z, vec2 to) {
   const float moved = dot(n.xy, (to - from) * params.view.tangent_per_pixel);
   if (params.view.orthographic != 0) return z + moved / n.z;
@@ -58,7 +60,8 @@ void main() {
   const uint word = normal[index_of(params.view, chosen)];
   const vec3 n = unpack_normal(word);
   const vec2 center = vec2(corner) + 0.5 * float(kFactor);
-  const float z = clamp(follow_plane(n, vec2(chosen) + 0.5, nearest, center), whole ? nearest : 0.5 * nearest, whole ? farthest : 2.0 * nearest);
+  const float z = clamp(follow_plane(n, vec2(chosen) + 0.5, nearest, center), whole ? nearest : 0.5 * nearest,
+                        whole ? farthest : 2.0 * nearest);
   low_depth[low_index] = z;
   if (z >= kSkyDepth) return;
   const vec3 eye = toward_eye(params.view, position_of(params.view, center, z));

@@ -13,9 +13,9 @@ ALCOVE_CONSTANT uint kDownsampleLowNormal = 3;  // out: uint a block
 ALCOVE_CONSTANT uint kDownsampleFactorId = 0;  // specialization: pixels of a block in x and in y
 
 struct DownsampleParams {
-  View view;        // of the pixels
-  ivec2 low_size;   // blocks
-  ivec2 overhang;   // px: how far the first block reaches beyond the left and upper border
+  View view;       // of the pixels
+  ivec2 low_size;  // blocks
+  ivec2 overhang;  // px: how far the first block reaches beyond the left and upper border
 };
 ALCOVE_PARAMS(DownsampleParams)
 

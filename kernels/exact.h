@@ -11,24 +11,29 @@ ALCOVE_CONSTANT uint kExactVertex = 2;    // in: from profile
 ALCOVE_CONSTANT uint kExactMark = 3;      // in: from profile
 ALCOVE_CONSTANT uint kExactNeighbor = 4;  // in: from profile
 ALCOVE_CONSTANT uint kExactWhole = 5;     // in and out: float a pixel, sum of whole arcs
-ALCOVE_CONSTANT uint kExactAo = 6;        // in and out: float a pixel, sum of blocked arcs; after the last slice visibility in [0, 1], 1 = open
-ALCOVE_CONSTANT uint kExactList = 7;      // in: ListedTile a tile, from converge; only with kExactListedId
-ALCOVE_CONSTANT uint kExactCounts = 8;    // in: TileCounts; only with kExactListedId
+// in and out: float a pixel, sum of blocked arcs; after the last slice visibility in [0, 1], 1 = open
+ALCOVE_CONSTANT uint kExactAo = 6;
+ALCOVE_CONSTANT uint kExactList = 7;    // in: ListedTile a tile, from converge; only with kExactListedId
+ALCOVE_CONSTANT uint kExactCounts = 8;  // in: TileCounts; only with kExactListedId
 
-ALCOVE_CONSTANT uint kExactListedId = 0;  // specialization: 1: the pixels of listed tiles take the slice, and no sum is ever completed; see stride, first, is_last
+// specialization: 1: the pixels of listed tiles take the slice, and no sum is ever completed; see stride, first,
+// is_last
+ALCOVE_CONSTANT uint kExactListedId = 0;
 
 struct ExactParams {
   View view;
-  Lines lines;      // as the profile's
-  int stride;       // px: from one pixel that takes this slice to the next, along and across: 1, or 2 where those of a block of 2 x 2 take others
-  ivec2 first;      // px, along and across: the first pixel that takes it
-  uint direction;   // which one it is
+  Lines lines;  // as the profile's
+  // px: from one pixel that takes this slice to the next, along and across: 1, or 2 where those of a block of 2 x 2
+  // take others
+  int stride;
+  ivec2 first;             // px, along and across: the first pixel that takes it
+  uint direction;          // which one it is
   uint is_first, is_last;  // 0 or 1: of those that a pixel takes
-  float radius;     // scene units
-  float thickness;  // scene units, of what is not connected to the receiver; infinite allowed; 0: as deep as wide
-  uint plane;       // of the output: one a radius
+  float radius;            // scene units
+  float thickness;       // scene units, of what is not connected to the receiver; infinite allowed; 0: as deep as wide
+  uint plane;            // of the output: one a radius
   vec3 depth_precision;  // of planar depth: see clearance.glsl
-  float bias;       // sine of the elevation above the tangent plane below which nothing blocks
+  float bias;            // sine of the elevation above the tangent plane below which nothing blocks
 };
 ALCOVE_PARAMS(ExactParams)
 

@@ -1,15 +1,18 @@
-// Ambient occlusion by horizons in even directions of the image (HBAO): the part of the hemisphere below them, every direction counting the same.
+// Ambient occlusion by horizons in even directions of the image (HBAO): the part of the hemisphere below them, every
+// direction counting the same.
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // In: planar depth, view normals. Out: visibility, 1 = open.
-// Bavoil and Sainz, "Image-Space Horizon-Based Ambient Occlusion", 2008: occlusion is the mean over the directions of sin h - sin t, the
-// elevations of horizon and tangent above the plane across the view ray; with attenuation, every rise of sin h counts with the weight W of the sample that
-// makes it. This is uniform, not cosine-weighted AO: beside a wall whose rim stands at 45 degrees it is 0.75, and GTAO's 0.854. What is particular here:
+// Bavoil and Sainz, "Image-Space Horizon-Based Ambient Occlusion", 2008: occlusion is the mean over the directions of
+// sin h - sin t, the elevations of horizon and tangent above the plane across the view ray; with attenuation, every
+// rise of sin h counts with the weight W of the sample that makes it. This is uniform, not cosine-weighted AO: beside a
+// wall whose rim stands at 45 degrees it is 0.75, and GTAO's 0.854. What is particular here:
 // - Off axis even directions of the image are not even about the view ray; each is weighted by the ratio of the two.
-// - Without attenuation whatever is within reach on the image blocks, at any distance: beside an endless wall 1 - acos(d / R) / pi.
+// - Without attenuation whatever is within reach on the image blocks, at any distance: beside an endless wall 1 -
+//   acos(d / R) / pi.
 // - A sample is moved into its slice parallel to the tangent plane, so a flat surface stays open at every tilt.
-// - `from_surface` gives the simpler form of many engines: the sine of the horizon's elevation above the surface itself, which is the cosine of
-//   its angle to the normal. The two are equal where the surface faces the eye.
+// - `from_surface` gives the simpler form of many engines: the sine of the horizon's elevation above the surface
+//   itself, which is the cosine of its angle to the normal. The two are equal where the surface faces the eye.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "hbao.h"
@@ -46,14 +49,16 @@ struct Side {
   float least_height;     // of a sample: see clearance.glsl
 };
 
-/// The occlusion in one direction: sin h - sin t, attenuated. `range`: the steps at which something may stand above the tangent plane.
+/// The occlusion in one direction: sin h - sin t, attenuated. `range`: the steps at which something may stand above the
+/// tangent plane.
 float occlusion(Side side, ivec2 pixel, vec3 position, float jitter, uint range) {
   const int steps = int(kSteps), count = range != 0u ? min(steps, int(side.reach)) : 0;
   const float last_step = float(last_of_range(range)) + 0.5;
   const float weight = length(side.normal);
   // The sine that samples must exceed: of the tangent, raised by the bias, or of the bias alone.
   const vec2 across = vec2(side.normal.y, -side.normal.x) / weight;  // the tangent, as its own cosine and sine
-  float horizon = params.from_surface != 0 ? params.bias : across.y * sqrt(1.0 - params.bias * params.bias) + across.x * params.bias;
+  float horizon = params.from_surface != 0 ? params.bias
+                                           : across.y * sqrt(1.0 - params.bias * params.bias) + across.x * params.bias;
   float sum = 0.0, step_px = 0.0;
   for (int k = first_sample(range, steps, count, side.reach, jitter, 2.0); k < count && step_px <= last_step; k++) {
     const float x = (float(k) + jitter) / float(steps);
@@ -64,12 +69,15 @@ float occlusion(Side side, ivec2 pixel, vec3 position, float jitter, uint range)
     if (z >= kSkyDepth) continue;
     const vec3 delta = position_of(params.view, vec2(hit) + 0.5, z) - position;
     const vec2 in_slice = vec2(dot(delta, side.along_t), dot(delta, side.along_v));
-    const float unit = inversesqrt(dot(in_slice, in_slice)), squared_distance = dot(delta, delta), height = dot(in_slice, side.normal);
-    const bool clear = height > side.least_height + least_rise(params.view) * step_px * (params.view.orthographic == 0 ? z : 1.0);
+    const float unit = inversesqrt(dot(in_slice, in_slice)), squared_distance = dot(delta, delta),
+                height = dot(in_slice, side.normal);
+    const bool clear =
+        height > side.least_height + least_rise(params.view) * step_px * (params.view.orthographic == 0 ? z : 1.0);
     const bool above = clear && height * height > kLeastElevation * kLeastElevation * squared_distance;
     const float elevation = unit * (params.from_surface != 0 ? height : in_slice.y);
     if (!above || in_slice.x <= 0.0 || elevation <= horizon) continue;
-    sum += falloff_weight(kFalloff, sqrt(squared_distance), params.falloff_start, params.radius) * (elevation - horizon);
+    sum +=
+        falloff_weight(kFalloff, sqrt(squared_distance), params.falloff_start, params.radius) * (elevation - horizon);
     horizon = elevation;
   }
   return sum;
@@ -80,7 +88,8 @@ void main() {
   if (place.tile >= counts.listed) return;
   const ivec2 pixel = pixel_of_tile(unpack_tile(list[place.tile].place), place.pixel, params.noise_origin, kStride);
   if (!inside(params.view, pixel)) return;
-  const int index = index_of(params.view, pixel), ao_index = index + int(params.plane) * params.view.size.x * params.view.size.y;
+  const int index = index_of(params.view, pixel),
+            ao_index = index + int(params.plane) * params.view.size.x * params.view.size.y;
   const float z = depth[index];
   if (z >= kSkyDepth) {
     ao[ao_index] = 1.0;
@@ -89,7 +98,8 @@ void main() {
 
   const bool perspective = params.view.orthographic == 0;
   const vec2 tangent = tangent_of(params.view, vec2(pixel) + 0.5);
-  const vec3 position = position_of(params.view, vec2(pixel) + 0.5, z), eye = toward_eye(params.view, position), n = unpack_normal(normal[index]);
+  const vec3 position = position_of(params.view, vec2(pixel) + 0.5, z), eye = toward_eye(params.view, position),
+             n = unpack_normal(normal[index]);
   const vec2 noise = pixel_noise(packed_place(pixel + params.noise_origin, kStride), params.noise_shift);
   // The sphere of the radius is seen under this angle; 1 and more: it holds the eye, and the image is the only limit.
   const float sin_reach = perspective ? params.radius * inversesqrt(dot(position, position)) : 0.0;
@@ -102,7 +112,8 @@ void main() {
     // An even direction of the image, and the tangent of the view ray that is seen along it.
     const float angle = kPi * (float(s) + noise.x) / float(kSlices);
     const vec3 direction = vec3(cos(angle), sin(angle), 0);
-    const float toward = dot(direction, eye), share = 1.0 / (1.0 - toward * toward);  // directions about the view ray for one of the image
+    // directions about the view ray for one of the image
+    const float toward = dot(direction, eye), share = 1.0 / (1.0 - toward * toward);
     const vec3 t = (direction - toward * eye) * sqrt(share), b = cross(t, eye);
     const float n_t = dot(n, t), n_v = dot(n, eye), weight_squared = n_t * n_t + n_v * n_v;
     whole += 2.0 * share;
@@ -122,7 +133,8 @@ void main() {
       const float reach = perspective ? sin_reach * pixels / forward : params.radius * pixels;
       const float border = steps_to_border(params.view, pixel, side.direction_px);
       side.reach = sin_reach < 1.0 && forward > 0.0 ? min(reach, border) : border;
-      blocked += share * occlusion(side, pixel, position, fract(noise.y + kGolden * float(2u * s + uint(sign > 0))), list[place.tile].ranges[sector_of(side.direction_px)]);
+      blocked += share * occlusion(side, pixel, position, fract(noise.y + kGolden * float(2u * s + uint(sign > 0))),
+                                   list[place.tile].ranges[sector_of(side.direction_px)]);
     }
   }
   ao[ao_index] = clamp(1.0 - blocked / whole, 0.0, 1.0);

@@ -7,7 +7,8 @@ ALCOVE_BEGIN
 
 ALCOVE_CONSTANT uint kHbaoDepth = 0;   // in: float a pixel, from prepare
 ALCOVE_CONSTANT uint kHbaoNormal = 1;  // in: uint a pixel, from prepare
-ALCOVE_CONSTANT uint kHbaoAo = 2;      // out: float a pixel, visibility in [0, 1], 1 = open; the plane of the parameters
+// out: float a pixel, visibility in [0, 1], 1 = open; the plane of the parameters
+ALCOVE_CONSTANT uint kHbaoAo = 2;
 ALCOVE_CONSTANT uint kHbaoList = 3;    // in: ListedTile a tile, from classify: what to estimate
 ALCOVE_CONSTANT uint kHbaoCounts = 4;  // in: TileCounts
 
@@ -21,11 +22,12 @@ struct HbaoParams {
   float radius;         // scene units
   float falloff_start;  // scene units, below the radius
   float bias;           // sine of the elevation above the tangent plane below which nothing blocks
-  uint from_surface;    // 1: the horizon's elevation above the surface; 0: of horizon and surface above the plane across the view ray
-  ivec2 noise_origin;   // px: what to add to a pixel so that crops and tiles share one noise pattern
-  vec2 noise_shift;     // in [0, 1): the pattern's shift for this frame and seed
-  uint plane;           // of the output, which has one a radius
-  vec3 depth_precision; // how far a depth z may be from the surface's: x + y z + z z^2, scene units
+  // 1: the horizon's elevation above the surface; 0: of horizon and surface above the plane across the view ray
+  uint from_surface;
+  ivec2 noise_origin;    // px: what to add to a pixel so that crops and tiles share one noise pattern
+  vec2 noise_shift;      // in [0, 1): the pattern's shift for this frame and seed
+  uint plane;            // of the output, which has one a radius
+  vec3 depth_precision;  // how far a depth z may be from the surface's: x + y z + z z^2, scene units
 };
 ALCOVE_PARAMS(HbaoParams)
 

@@ -1,16 +1,20 @@
-// Ambient occlusion by horizon search in slices through the view ray (GTAO), cosine weighted, with occluders of finite thickness.
+// Ambient occlusion by horizon search in slices through the view ray (GTAO), cosine weighted, with occluders of finite
+// thickness.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// In: planar depth, view normals. Out: visibility, 1 = open; the mean open direction (see bent.glsl) where it is asked for.
-// Jimenez et al., "Practical Realtime Strategies for Accurate Indirect Occlusion", 2016, with these differences:
+// In: planar depth, view normals. Out: visibility, 1 = open; the mean open direction (see bent.glsl) where it is asked
+// for. Jimenez et al., "Practical Realtime Strategies for Accurate Indirect Occlusion", 2016, with these differences:
 // - Slices are even in azimuth about the view ray, not on the screen, so that no Jacobian is owed off axis.
-// - The reach is the exact image of the sphere of the radius in the slice, clipped to the image: what is outside is unknown.
-// - The samples of a side form runs of one surface. What goes on from the receiver, or from any place below its tangent plane, is its own surface: it blocks all
-//   below its horizon. A sample that is not above that plane says nothing else, so it may be left out where `classify` knows of it. Every other run blocks from
-//   its front to its back, which lies as much further along the eye's ray as the run is wide ("width as thickness": a blade of grass is as thin as it is
-//   narrow, a column as thick as it is broad), or as the user says. Nothing beyond the radius blocks. What is blocked is an interval, exact, of the own
-//   surface's, and 24 sectors (sectors.glsl) of all others'.
-// - Falloff weighs each arc by the distance of the sample that first blocks it ("incremental arcs"), exact for height fields.
+// - The reach is the exact image of the sphere of the radius in the slice, clipped to the image: what is outside is
+//   unknown.
+// - The samples of a side form runs of one surface. What goes on from the receiver, or from any place below its tangent
+//   plane, is its own surface: it blocks all below its horizon. A sample that is not above that plane says nothing
+//   else, so it may be left out where `classify` knows of it. Every other run blocks from its front to its back, which
+//   lies as much further along the eye's ray as the run is wide ("width as thickness": a blade of grass is as thin as
+//   it is narrow, a column as thick as it is broad), or as the user says. Nothing beyond the radius blocks. What is
+//   blocked is an interval, exact, of the own surface's, and 24 sectors (sectors.glsl) of all others'.
+// - Falloff weighs each arc by the distance of the sample that first blocks it ("incremental arcs"), exact for height
+//   fields.
 // - Result 1 - (sum of blocked arcs) / (sum of whole arcs): exactly 1 where nothing rises above the tangent plane.
 #version 450
 #extension GL_GOOGLE_include_directive : require
@@ -44,22 +48,26 @@ layout(scalar, binding = kHorizonBent) writeonly buffer Bent { float bent[]; };
 const uint kFalloff = kMode & ~kWithBent;
 const bool kBent = (kMode & kWithBent) != 0u;
 
-/// A run is wider than the distance of its outer samples by a pixel and, on average, by this part of the gaps to the samples before and behind it.
+/// A run is wider than the distance of its outer samples by a pixel and, on average, by this part of the gaps to the
+/// samples before and behind it.
 const float kGapShare = 0.5;
 
-/// All that is endless is one surface. Two samples of it on either side of the sphere are neighbours if their squared distances are within this factor of its.
+/// All that is endless is one surface. Two samples of it on either side of the sphere are neighbours if their squared
+/// distances are within this factor of its.
 const float kSameSurface = 1.44;
 
 const float kNone = 1e30;
 
-/// A run of samples that is not the receiver's own surface. Angles go by slope_of(); where far > near nothing of it blocks.
+/// A run of samples that is not the receiver's own surface. Angles go by slope_of(); where far > near nothing of it
+/// blocks.
 struct Run {
   vec2 start, end;  // its outer samples
   float gap;        // steps from the sample before it
   float near, far;  // largest and smallest of the samples that block
 };
 
-/// What is blocked: from `far` to `near`, by the receiver's own surface or all that is endless, and the sectors of runs.
+/// What is blocked: from `far` to `near`, by the receiver's own surface or all that is endless, and the sectors of
+/// runs.
 struct Blocked {
   float near, far;
   uint sectors;
@@ -87,8 +95,10 @@ vec3 blocked_arcs(Side side, Blocked blocked, float shift) {
 uint sectors_of(Receiver r, Reach reach, Run run, float z, float gap_behind, float shift) {
   const float pixel = reach.pixel_size * (r.perspective ? z : 1.0);
   const float width = length(run.end - run.start) + pixel * (1.0 + kGapShare * (run.gap + gap_behind));
-  // What is as deep as wide is not clipped to the sphere: no difference in the error, and it takes a tenth off the time.
-  const float back = slope_of(kThickness == kThicknessWidth ? run.start + width * away_from_eye(r, run.start) : back_of(r, run.start, reach.thickness, reach.radius));
+  // What is as deep as wide is not clipped to the sphere: no difference in the error, and it takes a tenth off the
+  // time.
+  const float back = slope_of(kThickness == kThicknessWidth ? run.start + width * away_from_eye(r, run.start)
+                                                            : back_of(r, run.start, reach.thickness, reach.radius));
   return run.near >= run.far ? sectors_below(run.near, shift) & ~sectors_below(min(back, run.far), shift) : 0u;
 }
 
@@ -103,22 +113,28 @@ vec3 search(Receiver r, Side side, Reach reach, float jitter, uint range) {
   bool own = true, was_within = true, was_above = true;
   Blocked blocked = Blocked(-1.0, kThickness == kThicknessEndless ? 1.0 : -1.0, 0u);
   Run run = Run(vec2(0), vec2(0), 0.0, -1.0, 1.0);
-  for (int k = first_sample(range, int(kSteps), count, side.reach, jitter, step_exponent(int(kSteps), side.reach)); k < count && last_offset <= last_step; k++) {
+  for (int k = first_sample(range, int(kSteps), count, side.reach, jitter, step_exponent(int(kSteps), side.reach));
+       k < count && last_offset <= last_step; k++) {
     const float offset = step_offset(k, int(kSteps), count, side.reach, jitter), gap = offset - last_offset;
     const vec2 beside = round(side.direction_px * offset);
     const ivec2 hit = r.pixel + ivec2(beside);
     const float z = depth[hit.y * reach.width + hit.x], scale = r.perspective ? z : 1.0;
     const vec2 place = place_of(r, side, beside, z, scale);
     const float slope = slope_of(place), distance_sq = dot(place, place);
-    const bool above = is_above(r, reach, place, distance_sq, offset, beside, z, scale), within = distance_sq < reach.radius_sq;
+    const bool above = is_above(r, reach, place, distance_sq, offset, beside, z, scale),
+               within = distance_sq < reach.radius_sq;
     const bool blocks = both(above, within);
     // A surface that crosses the sphere between two samples blocks up to there; that of a run, half way.
     const bool connected = kThickness == kThicknessEndless
-        ? both(max(distance_sq, last_distance_sq) < kSameSurface * reach.radius_sq, min(distance_sq, last_distance_sq) * kSameSurface > reach.radius_sq)
-        : same_surface(r, reach, z, last_z, gap);
+                               ? both(max(distance_sq, last_distance_sq) < kSameSurface * reach.radius_sq,
+                                      min(distance_sq, last_distance_sq) * kSameSurface > reach.radius_sq)
+                               : same_surface(r, reach, z, last_z, gap);
     const bool crosses = hard ? both(both(above, was_above), both(connected, within != was_within)) : false;
-    const float crossing = mix(slope, last_slope, kThickness == kThicknessEndless ? (reach.radius_sq - distance_sq) / (last_distance_sq - distance_sq) : 0.5);
-    const float near = max(blocks ? slope : -1.0, crosses ? crossing : -1.0), far = min(blocks ? slope : 1.0, crosses ? crossing : 1.0);
+    const float crossing =
+        mix(slope, last_slope,
+            kThickness == kThicknessEndless ? (reach.radius_sq - distance_sq) / (last_distance_sq - distance_sq) : 0.5);
+    const float near = max(blocks ? slope : -1.0, crosses ? crossing : -1.0),
+                far = min(blocks ? slope : 1.0, crosses ? crossing : 1.0);
     if (connected) run.end = place;
     if (kThickness != kThicknessEndless && (!connected || !above)) {
       if (hard) blocked.sectors |= sectors_of(r, reach, run, last_z, gap, shift);
@@ -127,7 +143,9 @@ vec3 search(Receiver r, Side side, Reach reach, float jitter, uint range) {
     }
     if (own) {
       blocked.near = max(blocked.near, near);
-      if (kThickness == kThicknessEndless) blocked.far = min(blocked.far, blocks ? min(far, slope_of(back_of(r, place, reach.thickness, reach.radius))) : far);
+      if (kThickness == kThicknessEndless)
+        blocked.far =
+            min(blocked.far, blocks ? min(far, slope_of(back_of(r, place, reach.thickness, reach.radius))) : far);
     } else {
       run.near = max(run.near, near);
       run.far = min(run.far, far);
@@ -159,7 +177,8 @@ void main() {
   const ivec2 pixel = pixel_of_tile(unpack_tile(list[place.tile].place), place.pixel, params.noise_origin, kStride);
   const View view = params.view;
   if (!inside(view, pixel)) return;
-  const int index = index_of(view, pixel), plane = view.size.x * view.size.y, ao_index = index + int(params.plane) * plane;
+  const int index = index_of(view, pixel), plane = view.size.x * view.size.y,
+            ao_index = index + int(params.plane) * plane;
   const float z = depth[index];
   if (z >= kSkyDepth) {
     ao[ao_index] = 1.0;
@@ -178,7 +197,8 @@ void main() {
     for (int sign = -1; sign <= 1; sign += 2) {
       const float jitter = fract(noise.y + kGolden * float(2u * s + uint(sign > 0)));
       const Side side = side_of(view, r, slice, float(sign), reach);
-      const vec3 arcs = slice.share * slice.weight * search(r, side, reach, jitter, list[place.tile].ranges[sector_of(side.direction_px)]);
+      const vec3 arcs = slice.share * slice.weight *
+                        search(r, side, reach, jitter, list[place.tile].ranges[sector_of(side.direction_px)]);
       blocked += arcs.x;
       if (kBent) bent_blocked += arcs.y * float(sign) * slice.t + arcs.z * r.eye;
     }

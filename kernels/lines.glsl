@@ -1,17 +1,20 @@
-// The lines of one direction over the image, and the plane through the eye that each of them is seen in. Pure: no bindings.
+// The lines of one direction over the image, and the plane through the eye that each of them is seen in. Pure: no
+// bindings.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Lines go along one axis of the image, a pixel a step, and are sheared across it by at most a pixel a step: every pixel is on exactly one line, no further
-// than half a pixel beside it. Slopes are whole numbers of 1/kSlopeUnit pixel, so that all kernels and devices agree on which. Two lines that are as many pixels apart
-// as the image is wide across never share a step; so the lines of an image fill a sheared image of the same size, in which each lies in one row.
+// Lines go along one axis of the image, a pixel a step, and are sheared across it by at most a pixel a step: every
+// pixel is on exactly one line, no further than half a pixel beside it. Slopes are whole numbers of 1/kSlopeUnit pixel,
+// so that all kernels and devices agree on which. Two lines that are as many pixels apart as the image is wide across
+// never share a step; so the lines of an image fill a sheared image of the same size, in which each lies in one row.
 //
-// The plane of a line is spanned by the ray through the line's point that is nearest to the optical axis, and the line. A point of planar depth z is in it at
-// (scale * place along the line, z * length of that ray), scale z in perspective, 1 orthographic: straight in space is straight there.
+// The plane of a line is spanned by the ray through the line's point that is nearest to the optical axis, and the line.
+// A point of planar depth z is in it at (scale * place along the line, z * length of that ray), scale z in perspective,
+// 1 orthographic: straight in space is straight there.
 
 struct LinePlane {
-  vec2 along;    // unit vector along the line, in units of tangent_of()
-  vec2 foot;     // the point of the line that is nearest to the optical axis
-  float ray_length;  // of the ray through the foot at unit depth; orthographic: 1
+  vec2 along;         // unit vector along the line, in units of tangent_of()
+  vec2 foot;          // the point of the line that is nearest to the optical axis
+  float ray_length;   // of the ray through the foot at unit depth; orthographic: 1
   int origin;         // what to add to a step of the image
   float start, step;  // place along the line of step 0, and what a step adds
 };
@@ -19,11 +22,15 @@ struct LinePlane {
 /// Steps of a line that goes over the whole image, and lines side by side.
 ivec2 extent_of(View view, Lines lines) { return lines.steep != 0 ? view.size.yx : view.size; }
 
-int index_at(View view, Lines lines, int step, int across) { return lines.steep != 0 ? step * view.size.x + across : across * view.size.x + step; }
+int index_at(View view, Lines lines, int step, int across) {
+  return lines.steep != 0 ? step * view.size.x + across : across * view.size.x + step;
+}
 
 /// Whole pixels that lines have moved across at a step, and the rest, in [-0.5, 0.5).
 int shift_at(Lines lines, int step) { return (lines.slope * (lines.origin.x + step) + kSlopeUnit / 2) >> kSlopeBits; }
-float rest_at(Lines lines, int step) { return float(lines.slope * (lines.origin.x + step) - (shift_at(lines, step) << kSlopeBits)) / float(kSlopeUnit); }
+float rest_at(Lines lines, int step) {
+  return float(lines.slope * (lines.origin.x + step) - (shift_at(lines, step) << kSlopeBits)) / float(kSlopeUnit);
+}
 
 /// A line's row in the sheared image: its number modulo the rows.
 int row_of(Lines lines, int line, int rows) { return (line + lines.wrap) % rows; }
@@ -34,12 +41,15 @@ float unpack_width(uint mark) { return uintBitsToFloat((mark & 0xfff0u) << 15); 
 
 /// Where a point of the line is in its plane.
 vec2 place_at(View view, LinePlane plane, int step, float z) {
-  return vec2((view.orthographic != 0 ? 1.0 : z) * (plane.start + float(plane.origin + step) * plane.step), z * plane.ray_length);
+  return vec2((view.orthographic != 0 ? 1.0 : z) * (plane.start + float(plane.origin + step) * plane.step),
+              z * plane.ray_length);
 }
 
-/// tangent_of() the centre of a pixel, counted along and across from the display window's corner, so that it is the same in a crop.
+/// tangent_of() the centre of a pixel, counted along and across from the display window's corner, so that it is the
+/// same in a crop.
 vec2 tangent_at(View view, Lines lines, ivec2 along_and_across) {
-  const ivec2 origin = lines.steep != 0 ? lines.origin.yx : lines.origin, pixel = lines.steep != 0 ? along_and_across.yx : along_and_across;
+  const ivec2 origin = lines.steep != 0 ? lines.origin.yx : lines.origin,
+              pixel = lines.steep != 0 ? along_and_across.yx : along_and_across;
   return (vec2(pixel) + 0.5 - (view.center + vec2(origin))) * view.tangent_per_pixel;
 }
 

@@ -1,8 +1,8 @@
 // Unit vectors in 32 bits: the octahedral map, 16 bits a coordinate, within 4e-5 rad. Pure: no bindings.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Cigolle et al., "A Survey of Efficient Representations for Independent Unit Vectors", 2014. One word instead of three floats, since
-// what a kernel costs is mostly its loads and stores.
+// Cigolle et al., "A Survey of Efficient Representations for Independent Unit Vectors", 2014. One word instead of three
+// floats, since what a kernel costs is mostly its loads and stores.
 
 /// No direction packs to this.
 const uint kNoNormal = 0x80008000u;
@@ -22,7 +22,8 @@ vec3 octahedral_direction(vec2 p) {
 
 vec3 unpack_normal(uint word) { return normalize(octahedral_direction(unpackSnorm2x16(word))); }
 
-/// How far a normal is at least turned to the eye, as a cosine. Smaller, and the slices at grazing angles lose their weight to rounding.
+/// How far a normal is at least turned to the eye, as a cosine. Smaller, and the slices at grazing angles lose their
+/// weight to rounding.
 const float kLeastFacing = 1e-3;
 
 /// A visible surface faces the eye: a shading normal that leans away is bent back just far enough.

@@ -1,9 +1,11 @@
-// Raw depth and normals -> the G-buffer that every later kernel relies on: z > 0 planar or marked sky; unit view-space normals that face the eye, those
-// that are unusable marked for `reconstruct`; nothing that is not finite. What was repaired is counted.
+// Raw depth and normals -> the G-buffer that every later kernel relies on: z > 0 planar or marked sky; unit view-space
+// normals that face the eye, those that are unusable marked for `reconstruct`; nothing that is not finite. What was
+// repaired is counted.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// In: raw depth of any kind or positions, raw normals of any encoding in world or view space. Out: planar z, view normals, counts.
-// Spheremap: the equal-area map about -z (Mittring, "A bit more Deferred - CryEngine 3", 2009); octahedral: see normal.glsl.
+// In: raw depth of any kind or positions, raw normals of any encoding in world or view space. Out: planar z, view
+// normals, counts. Spheremap: the equal-area map about -z (Mittring, "A bit more Deferred - CryEngine 3", 2009);
+// octahedral: see normal.glsl.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "prepare.h"
@@ -39,8 +41,9 @@ float planar_depth(ivec2 pixel) {
   } else {
     if (!(raw > params.sky_below && raw < params.sky_above)) return kSkyDepth;
     const float value = params.slope * (raw - params.origin);
-    z = kDepthForm == kDepthReciprocal ? 1.0 / (params.base + value)
-        : kDepthForm == kDepthExponential ? params.base * (exp(value) - 1.0) : params.base + value;
+    z = kDepthForm == kDepthReciprocal    ? 1.0 / (params.base + value)
+        : kDepthForm == kDepthExponential ? params.base * (exp(value) - 1.0)
+                                          : params.base + value;
   }
   if (!(z > 0.0 && z < params.sky_depth)) return kSkyDepth;
   const vec2 t = tangent_of(params.view, vec2(pixel) + 0.5);
@@ -58,7 +61,8 @@ vec3 decoded_normal(int index) {
   switch (kNormalForm) {
     case kNormalXy: return vec3(raw.xy, sqrt(max(1.0 - squared, 0.0)));
     case kNormalOctahedral: return octahedral_direction(raw.xy);
-    case kNormalSpheremap: return squared <= 1.0 ? vec3(2.0 * sqrt(1.0 - squared) * raw.xy, 2.0 * squared - 1.0) : vec3(0);
+    case kNormalSpheremap:
+      return squared <= 1.0 ? vec3(2.0 * sqrt(1.0 - squared) * raw.xy, 2.0 * squared - 1.0) : vec3(0);
     default: return raw;
   }
 }
@@ -80,7 +84,8 @@ void main() {
   vec3 n = vec3(0);
   if (kNormalForm != kNormalNone) {
     const vec3 raw = decoded_normal(index);
-    n = vec3(dot(params.view_from_normal_x, raw), dot(params.view_from_normal_y, raw), dot(params.view_from_normal_z, raw));
+    n = vec3(dot(params.view_from_normal_x, raw), dot(params.view_from_normal_y, raw),
+             dot(params.view_from_normal_z, raw));
   }
   const float size = length(n);
   const bool usable = finite(size) && size > kLeastLength;

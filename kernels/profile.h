@@ -5,19 +5,22 @@
 #include "shared.h"
 ALCOVE_BEGIN
 
-ALCOVE_CONSTANT uint kProfileDepth = 0;     // in: float a pixel, from prepare
-ALCOVE_CONSTANT uint kProfileVertex = 1;    // out: float a vertex, its planar depth
-ALCOVE_CONSTANT uint kProfileMark = 2;      // out: uint a vertex: its step in the high half, its run's width (pack_width()) and kVertex* in the low
-ALCOVE_CONSTANT uint kProfileNeighbor = 3;  // out: uint a step: the columns of the vertices before (low half) and after it; kNoVertex: none
+ALCOVE_CONSTANT uint kProfileDepth = 0;   // in: float a pixel, from prepare
+ALCOVE_CONSTANT uint kProfileVertex = 1;  // out: float a vertex, its planar depth
+// out: uint a vertex: its step in the high half, its run's width (pack_width()) and kVertex* in the low
+ALCOVE_CONSTANT uint kProfileMark = 2;
+// out: uint a step: the columns of the vertices before (low half) and after it; kNoVertex: none
+ALCOVE_CONSTANT uint kProfileNeighbor = 3;
 
 ALCOVE_CONSTANT uint kProfileEveryPixelId = 0;  // specialization: 1: every pixel is a vertex
 
-ALCOVE_CONSTANT uint kProfileGroup = 32;   // lines of a workgroup
-ALCOVE_CONSTANT int kProfileRestart = 64;  // px: a run has a vertex at every multiple along the line, so that a crop has those of the whole; a power of 2
+ALCOVE_CONSTANT uint kProfileGroup = 32;  // lines of a workgroup
+// px: a run has a vertex at every multiple along the line, so that a crop has those of the whole; a power of 2
+ALCOVE_CONSTANT int kProfileRestart = 64;
 
 ALCOVE_CONSTANT uint kVertexBegins = 1;  // its run, where one looks along the line
 ALCOVE_CONSTANT uint kVertexEnds = 2;
-ALCOVE_CONSTANT uint kVertexLast = 4;    // of the line
+ALCOVE_CONSTANT uint kVertexLast = 4;  // of the line
 ALCOVE_CONSTANT uint kVertexFirst = 8;
 ALCOVE_CONSTANT uint kVertexFlags = 15;
 ALCOVE_CONSTANT uint kNoVertex = 0xffff;

@@ -1,10 +1,11 @@
 // Normals from depth, where the frame has none that is usable.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// In: planar depth; normals, marked where they are missing. Out: those normals. Runs where `prepare` has marked any.
-// A pixel without a usable normal gets the normal of its own plane: 1/z is affine over a plane's image, so on each axis the
-// side whose two neighbours predict this pixel's 1/z best is on the same plane, and its position difference is a tangent. Where
-// both sides are on one surface, flat or curved, the difference over both is the better tangent: its error is of second order.
+// In: planar depth; normals, marked where they are missing. Out: those normals. Runs where `prepare` has marked any. A
+// pixel without a usable normal gets the normal of its own plane: 1/z is affine over a plane's image, so on each axis
+// the side whose two neighbours predict this pixel's 1/z best is on the same plane, and its position difference is a
+// tangent. Where both sides are on one surface, flat or curved, the difference over both is the better tangent: its
+// error is of second order.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "reconstruct.h"
@@ -16,19 +17,21 @@ layout(scalar, push_constant) uniform Push { ReconstructParams params; };
 layout(scalar, binding = kReconstructDepth) readonly buffer Depth { float depth[]; };
 layout(scalar, binding = kReconstructNormal) buffer Normal { uint normal[]; };
 
-/// All of 1/z: how much a large change counts against a side, beside its bend; the difference of the two sides' changes, in such errors and
-/// in parts of 1/z (rounding), up to which they are the same surface; and the largest change of one surface. Tuned on rendered scenes.
+/// All of 1/z: how much a large change counts against a side, beside its bend; the difference of the two sides'
+/// changes, in such errors and in parts of 1/z (rounding), up to which they are the same surface; and the largest
+/// change of one surface. Tuned on rendered scenes.
 const float kNearness = 0.1, kSameSurface = 4.0, kRounding = 1e-6, kOneSurface = 0.01;
 
-/// What an affine function over the image would be here, going by the two neighbours on one side; orthographic planes are affine in z, others in 1/z.
+/// What an affine function over the image would be here, going by the two neighbours on one side; orthographic planes
+/// are affine in z, others in 1/z.
 float affine_depth(ivec2 pixel) {
   if (!inside(params.view, pixel)) return -1.0;
   const float z = depth[index_of(params.view, pixel)];
   return z >= kSkyDepth ? -1.0 : params.view.orthographic != 0 ? z : 1.0 / z;
 }
 
-/// The change of position along one axis: on the side that predicts this pixel better, or over both where they are the same surface. Zero where neither
-/// side has a surface.
+/// The change of position along one axis: on the side that predicts this pixel better, or over both where they are the
+/// same surface. Zero where neither side has a surface.
 vec3 tangent_along(ivec2 pixel, ivec2 axis, vec3 position, float here) {
   vec3 tangent = vec3(0), other = vec3(0);
   float least = 1e30, step = 0.0, other_step = 1e30;
@@ -45,13 +48,15 @@ vec3 tangent_along(ivec2 pixel, ivec2 axis, vec3 position, float here) {
       other = along, other_step = change;
     }
   }
-  const bool same = abs(step - other_step) <= kSameSurface * least + kRounding * here && max(abs(step), abs(other_step)) < kOneSurface * here;
+  const bool same = abs(step - other_step) <= kSameSurface * least + kRounding * here &&
+                    max(abs(step), abs(other_step)) < kOneSurface * here;
   return same ? tangent + other : tangent;
 }
 
 vec3 normal_from_depth(ivec2 pixel, vec3 position, vec3 eye) {
   const float here = affine_depth(pixel);
-  const vec3 right = tangent_along(pixel, ivec2(1, 0), position, here), down = tangent_along(pixel, ivec2(0, 1), position, here);
+  const vec3 right = tangent_along(pixel, ivec2(1, 0), position, here),
+             down = tangent_along(pixel, ivec2(0, 1), position, here);
   // With one tangent only, the surface is taken to be as flat towards the eye as it allows; with none, to face the eye.
   vec3 n = cross(down, right);
   const vec3 only = right + down;
@@ -67,6 +72,7 @@ void main() {
   if (!inside(params.view, pixel)) return;
   const int index = index_of(params.view, pixel);
   if (normal[index] != kNoNormal) return;
-  const vec3 position = position_of(params.view, vec2(pixel) + 0.5, depth[index]), eye = toward_eye(params.view, position);
+  const vec3 position = position_of(params.view, vec2(pixel) + 0.5, depth[index]),
+             eye = toward_eye(params.view, position);
   normal[index] = pack_normal(facing(normal_from_depth(pixel, position, eye), eye));
 }

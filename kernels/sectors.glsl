@@ -1,32 +1,43 @@
-// A set of angles of a side of a slice, as bits: even in slope_of(), the bits of the largest slopes highest. Pure: no bindings; after slice.glsl.
+// A set of angles of a side of a slice, as bits: even in slope_of(), the bits of the largest slopes highest. Pure: no
+// bindings; after slice.glsl.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The boundaries of what is added move by a `shift` in [0, 1) that is even over pixels: then the expected arc is the exact one, read linearly in each sector.
+// The boundaries of what is added move by a `shift` in [0, 1) that is even over pixels: then the expected arc is the
+// exact one, read linearly in each sector.
 
 const int kSectorCount = 24;
 
-/// The part of the arc integral in each sector, times cos gamma and times sin gamma: the differences of sin^2(theta) / 2 and (theta - sin(theta) cos(theta)) / 2
-/// between its ends, the slopes -1 + 2 k / 24.
-const vec2 kSectorArc[kSectorCount] = vec2[](
-    vec2(-0.00409836, 0.00024798), vec2(-0.01513241, 0.00229596), vec2(-0.03076923, 0.00833134), vec2(-0.05000000, 0.02094853),
-    vec2(-0.06891892, 0.04181445), vec2(-0.08108108, 0.06906083), vec2(-0.08108108, 0.09608785), vec2(-0.06891892, 0.11478742),
-    vec2(-0.05000000, 0.12094853), vec2(-0.03076923, 0.11602365), vec2(-0.01513241, 0.10443972), vec2(-0.00409836, 0.09041191),
-    vec2(0.00409836, 0.09041191), vec2(0.01513241, 0.10443972), vec2(0.03076923, 0.11602365), vec2(0.05000000, 0.12094853),
-    vec2(0.06891892, 0.11478742), vec2(0.08108108, 0.09608785), vec2(0.08108108, 0.06906083), vec2(0.06891892, 0.04181445),
-    vec2(0.05000000, 0.02094853), vec2(0.03076923, 0.00833134), vec2(0.01513241, 0.00229596), vec2(0.00409836, 0.00024798));
+/// The part of the arc integral in each sector, times cos gamma and times sin gamma: the differences of sin^2(theta) /
+/// 2 and (theta - sin(theta) cos(theta)) / 2 between its ends, the slopes -1 + 2 k / 24.
+const vec2 kSectorArc[kSectorCount] =
+    vec2[](vec2(-0.00409836, 0.00024798), vec2(-0.01513241, 0.00229596), vec2(-0.03076923, 0.00833134),
+           vec2(-0.05000000, 0.02094853), vec2(-0.06891892, 0.04181445), vec2(-0.08108108, 0.06906083),
+           vec2(-0.08108108, 0.09608785), vec2(-0.06891892, 0.11478742), vec2(-0.05000000, 0.12094853),
+           vec2(-0.03076923, 0.11602365), vec2(-0.01513241, 0.10443972), vec2(-0.00409836, 0.09041191),
+           vec2(0.00409836, 0.09041191), vec2(0.01513241, 0.10443972), vec2(0.03076923, 0.11602365),
+           vec2(0.05000000, 0.12094853), vec2(0.06891892, 0.11478742), vec2(0.08108108, 0.09608785),
+           vec2(0.08108108, 0.06906083), vec2(0.06891892, 0.04181445), vec2(0.05000000, 0.02094853),
+           vec2(0.03076923, 0.00833134), vec2(0.01513241, 0.00229596), vec2(0.00409836, 0.00024798));
 
-/// The same of bent_to(): the differences of what its terms in cos gamma and sin gamma have of sin^3 / 3, (1 - cos)^2 (2 + cos) / 3 and (1 - cos^3) / 3.
-const vec3 kSectorBent[kSectorCount] = vec3[](
-    vec3(-0.00024737, 0.00001684, 0.00408995), vec3(-0.00226694, 0.00035783, 0.01495470), vec3(-0.00802662, 0.00221369, 0.02968369),
-    vec3(-0.01927331, 0.00816504, 0.04609107), vec3(-0.03564051, 0.02178764, 0.05890608), vec3(-0.05239638, 0.04486998, 0.06175671),
-    vec3(-0.06175671, 0.07347221, 0.05239638), vec3(-0.05890608, 0.09838409, 0.03564051), vec3(-0.04609107, 0.11171252, 0.01927331),
-    vec3(-0.02968369, 0.11208501, 0.00802662), vec3(-0.01495470, 0.10331345, 0.00226694), vec3(-0.00408995, 0.09028838, 0.00024737),
-    vec3(0.00408995, 0.09028838, 0.00024737), vec3(0.01495470, 0.10331345, 0.00226694), vec3(0.02968369, 0.11208501, 0.00802662),
-    vec3(0.04609107, 0.11171252, 0.01927331), vec3(0.05890608, 0.09838409, 0.03564051), vec3(0.06175671, 0.07347221, 0.05239638),
-    vec3(0.05239638, 0.04486998, 0.06175671), vec3(0.03564051, 0.02178764, 0.05890608), vec3(0.01927331, 0.00816504, 0.04609107),
-    vec3(0.00802662, 0.00221369, 0.02968369), vec3(0.00226694, 0.00035783, 0.01495470), vec3(0.00024737, 0.00001684, 0.00408995));
+/// The same of bent_to(): the differences of what its terms in cos gamma and sin gamma have of sin^3 / 3, (1 - cos)^2
+/// (2 + cos) / 3 and (1 - cos^3) / 3.
+const vec3 kSectorBent[kSectorCount] =
+    vec3[](vec3(-0.00024737, 0.00001684, 0.00408995), vec3(-0.00226694, 0.00035783, 0.01495470),
+           vec3(-0.00802662, 0.00221369, 0.02968369), vec3(-0.01927331, 0.00816504, 0.04609107),
+           vec3(-0.03564051, 0.02178764, 0.05890608), vec3(-0.05239638, 0.04486998, 0.06175671),
+           vec3(-0.06175671, 0.07347221, 0.05239638), vec3(-0.05890608, 0.09838409, 0.03564051),
+           vec3(-0.04609107, 0.11171252, 0.01927331), vec3(-0.02968369, 0.11208501, 0.00802662),
+           vec3(-0.01495470, 0.10331345, 0.00226694), vec3(-0.00408995, 0.09028838, 0.00024737),
+           vec3(0.00408995, 0.09028838, 0.00024737), vec3(0.01495470, 0.10331345, 0.00226694),
+           vec3(0.02968369, 0.11208501, 0.00802662), vec3(0.04609107, 0.11171252, 0.01927331),
+           vec3(0.05890608, 0.09838409, 0.03564051), vec3(0.06175671, 0.07347221, 0.05239638),
+           vec3(0.05239638, 0.04486998, 0.06175671), vec3(0.03564051, 0.02178764, 0.05890608),
+           vec3(0.01927331, 0.00816504, 0.04609107), vec3(0.00802662, 0.00221369, 0.02968369),
+           vec3(0.00226694, 0.00035783, 0.01495470), vec3(0.00024737, 0.00001684, 0.00408995));
 
-uint sectors_below(float slope, float shift) { return (1u << uint(0.5 * float(kSectorCount) * (slope + 1.0) + shift)) - 1u; }
+uint sectors_below(float slope, float shift) {
+  return (1u << uint(0.5 * float(kSectorCount) * (slope + 1.0) + shift)) - 1u;
+}
 
 /// The arc integral over a set.
 float arc_of(Side side, uint sectors) {

@@ -1,9 +1,11 @@
-// What the user makes of the visibility: m (v + (1 - v) f), with v = max(0, 1 - intensity (1 - ao)) ^ power, f how far the distance fade has
-// come, from 0 to 1, and m the material's own AO. Without fade and material 1 stays 1; sky is 1 in any case.
+// What the user makes of the visibility: m (v + (1 - v) f), with v = max(0, 1 - intensity (1 - ao)) ^ power, f how far
+// the distance fade has come, from 0 to 1, and m the material's own AO. Without fade and material 1 stays 1; sky is 1
+// in any case.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// In: planes of visibility, each by itself; planar depth and material AO where they are asked for. Out: visibility, and how many values of the material AO were repaired.
-// The fade is of the screen-space AO alone: what a material's own AO holds is as true far away as nearby.
+// In: planes of visibility, each by itself; planar depth and material AO where they are asked for. Out: visibility, and
+// how many values of the material AO were repaired. The fade is of the screen-space AO alone: what a material's own AO
+// holds is as true far away as nearby.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "shape.h"
@@ -20,7 +22,9 @@ layout(scalar, binding = kShapeCounts) buffer Counts { FrameCounts counts; };
 float shaped_of(float value, int index) {
   if (params.intensity != 1.0) value = clamp(1.0 - params.intensity * (1.0 - value), 0.0, 1.0);
   if (params.power != 1.0) value = value > 0.0 ? pow(value, params.power) : 0.0;
-  if (params.has_fade != 0) value += (1.0 - value) * clamp((depth[index] - params.fade_start) / (params.fade_end - params.fade_start), 0.0, 1.0);
+  if (params.has_fade != 0)
+    value +=
+        (1.0 - value) * clamp((depth[index] - params.fade_start) / (params.fade_end - params.fade_start), 0.0, 1.0);
   if (params.has_material != 0 && depth[index] < kSkyDepth) {
     const float own = material[index];
     if (!isnan(own) && !isinf(own)) value *= clamp(own, 0.0, 1.0);

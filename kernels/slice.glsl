@@ -1,36 +1,42 @@
 // A slice through the view ray on the image: its two sides, and how high a sample stands in it. Pure: no bindings.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// In a slice an angle theta is measured from the direction V to the eye; here it goes by its cotangent, which falls from infinity at V. Coordinates in a slice
-// are (across V, towards the eye) from the receiver. They are linear in the sample's depth and in its offset on the image, so no sample needs a vector in space.
-// A sample lies at the centre of a pixel, up to half a pixel beside the slice. It is moved into the slice parallel to the receiver's tangent plane, which
-// keeps its height above it: a flat surface stays flat at every tilt, whatever pixel a step snaps to. Where that plane is so steep across the slice that the
-// sample would move by more than it lies beside it, it moves only so far.
+// In a slice an angle theta is measured from the direction V to the eye; here it goes by its cotangent, which falls
+// from infinity at V. Coordinates in a slice are (across V, towards the eye) from the receiver. They are linear in the
+// sample's depth and in its offset on the image, so no sample needs a vector in space. A sample lies at the centre of a
+// pixel, up to half a pixel beside the slice. It is moved into the slice parallel to the receiver's tangent plane,
+// which keeps its height above it: a flat surface stays flat at every tilt, whatever pixel a step snaps to. Where that
+// plane is so steep across the slice that the sample would move by more than it lies beside it, it moves only so far.
 
-const float kLeastWeight = 1e-4;     // slices whose plane the normal is nearly perpendicular to weigh less than this and are left out
+// slices whose plane the normal is nearly perpendicular to weigh less than this and are left out
+const float kLeastWeight = 1e-4;
 
-/// Steps grow with the square of the distance, so that near occluders are not missed. More steps than this are enough to sample all of the reach densely
-/// instead: the exponent is then the one with which the first step is a pixel long.
+/// Steps grow with the square of the distance, so that near occluders are not missed. More steps than this are enough
+/// to sample all of the reach densely instead: the exponent is then the one with which the first step is a pixel long.
 const int kManySteps = 16;
 
-/// Neighbours on a slice whose depths differ by less than this many pixels' worth of slope, for every step between them, are one surface.
+/// Neighbours on a slice whose depths differ by less than this many pixels' worth of slope, for every step between
+/// them, are one surface.
 const float kRunSlope = 8.0;
 
-/// What an estimator's loop over samples needs of its parameters: read once, since lavapipe gathers a parameter anew at each use within a loop.
+/// What an estimator's loop over samples needs of its parameters: read once, since lavapipe gathers a parameter anew at
+/// each use within a loop.
 struct Reach {
   float radius, radius_sq, falloff_start;  // scene units
   float thickness;                         // scene units, infinite allowed; 0: as deep as wide
-  float least_elevation_sq;                // square of the sine of the elevation above the tangent plane below which nothing blocks
-  float least_rise;                        // of a sample: see clearance.glsl
-  float pixel_size;                        // scene units at unit depth (orthographic: at any)
-  int width;                               // of the image, px
+  // square of the sine of the elevation above the tangent plane below which nothing blocks
+  float least_elevation_sq;
+  float least_rise;  // of a sample: see clearance.glsl
+  float pixel_size;  // scene units at unit depth (orthographic: at any)
+  int width;         // of the image, px
 };
 
 struct Receiver {
   ivec2 pixel;
-  float z;             // planar depth
-  vec3 normal, eye;    // unit, view space; towards the eye
-  vec2 height;         // of a point above the tangent plane: scale * dot(height, offset in pixels) + (z - receiver's z) * depth_height
+  float z;           // planar depth
+  vec3 normal, eye;  // unit, view space; towards the eye
+  // of a point above the tangent plane: scale * dot(height, offset in pixels) + (z - receiver's z) * depth_height
+  vec2 height;
   float depth_height;
   float least_height;  // of a sample: see clearance.glsl
   vec2 tangent_per_pixel;
@@ -38,7 +44,8 @@ struct Receiver {
   float ray_length;    // of the eye's ray at unit depth
   vec2 tangent;        // of the pixel
   bool perspective;
-  float sin_reach;     // the sphere of the radius is seen under this angle; 1 and more: it holds the eye, and the image is the only limit
+  // the sphere of the radius is seen under this angle; 1 and more: it holds the eye, and the image is the only limit
+  float sin_reach;
 };
 
 /// A plane through V and a unit vector T across it.
@@ -48,21 +55,24 @@ struct Slice {
   float weight;                // length of the normal's projection
   float cos_gamma, sin_gamma;  // gamma: the projected normal's angle, from V towards T
   float gamma;
-  vec2 image_t;                // the image of T: pixels a unit of length at unit depth
-  vec2 across, toward;         // of the side towards T
+  vec2 image_t;         // the image of T: pixels a unit of length at unit depth
+  vec2 across, toward;  // of the side towards T
 };
 
 /// One half of a slice.
 struct Side {
-  vec2 direction_px;    // pixels a step; the longer component is +-1
-  float reach;          // steps within the radius and the image
-  vec2 across, toward;  // coordinates in the slice: scale * dot(across, offset), ray_length * (receiver's z - z) + scale * dot(toward, offset)
-  float plane_cot;      // cotangent of the tangent plane
-  vec2 ahead;           // a place on the tangent plane
+  vec2 direction_px;  // pixels a step; the longer component is +-1
+  float reach;        // steps within the radius and the image
+  // coordinates in the slice: scale * dot(across, offset), ray_length * (receiver's z - z) + scale * dot(toward,
+  // offset)
+  vec2 across, toward;
+  float plane_cot;  // cotangent of the tangent plane
+  vec2 ahead;       // a place on the tangent plane
   float gamma, cos_gamma, sin_gamma;
 };
 
-/// Two unit vectors that with v (v.z > 0) form a right-handed basis, smooth over the image (Duff et al., "Building an Orthonormal Basis, Revisited", 2017).
+/// Two unit vectors that with v (v.z > 0) form a right-handed basis, smooth over the image (Duff et al., "Building an
+/// Orthonormal Basis, Revisited", 2017).
 void basis_of(vec3 v, out vec3 x, out vec3 y) {
   const float a = 1.0 / (1.0 + v.z), b = -v.x * v.y * a;
   x = vec3(1.0 - v.x * v.x * a, b, -v.x);
@@ -87,16 +97,18 @@ Receiver receiver_at(View view, ivec2 pixel, float z, vec3 normal, float radius,
   return r;
 }
 
-/// The slice of an azimuth. Slices near the normal hold most of the cosine-weighted hemisphere where it is seen aslant: up to tan of its tilt times as much
-/// as those across. A lone slice is drawn that much more often there, by pulling its azimuth towards the normal as an ellipse does, and weighs the less: the ratio
-/// of blocked to whole would else be biased. The more slices a pixel has, the less this matters, and the less they are pulled.
+/// The slice of an azimuth. Slices near the normal hold most of the cosine-weighted hemisphere where it is seen aslant:
+/// up to tan of its tilt times as much as those across. A lone slice is drawn that much more often there, by pulling
+/// its azimuth towards the normal as an ellipse does, and weighs the less: the ratio of blocked to whole would else be
+/// biased. The more slices a pixel has, the less this matters, and the less they are pulled.
 Slice slice_at(View view, Receiver r, uint index, uint slices, float jitter) {
   const float azimuth = kPi * (float(index) + jitter) / float(slices);
   vec3 x, y;
   basis_of(r.eye, x, y);
   const float cos_tilt = dot(r.normal, r.eye), sin_tilt = sqrt(max(0.0, 1.0 - cos_tilt * cos_tilt));
   const vec3 even = cos(azimuth) * x + sin(azimuth) * y, across = (r.normal - cos_tilt * r.eye) / max(sin_tilt, 1e-3);
-  const float pull = mix(1.0, sqrt(cos_tilt / (cos_tilt + angle_of(cos_tilt, sin_tilt) * sin_tilt)), 1.0 / float(slices * slices));
+  const float pull =
+      mix(1.0, sqrt(cos_tilt / (cos_tilt + angle_of(cos_tilt, sin_tilt) * sin_tilt)), 1.0 / float(slices * slices));
   Slice s;
   s.t = normalize(pull * even + (1.0 - pull) * dot(even, across) * across);
   const float along = dot(s.t, across);
@@ -127,7 +139,8 @@ Side side_of(View view, Receiver r, Slice s, float sign, Reach reach) {
   side.toward = s.toward;
   side.plane_cot = -side.sin_gamma / s.cos_gamma;
   side.ahead = vec2(side.cos_gamma, -side.sin_gamma);
-  const float cos_reach = sqrt(max(0.0, 1.0 - r.sin_reach * r.sin_reach)), forward = r.eye.z * cos_reach - sign * s.t.z * r.sin_reach;
+  const float cos_reach = sqrt(max(0.0, 1.0 - r.sin_reach * r.sin_reach)),
+              forward = r.eye.z * cos_reach - sign * s.t.z * r.sin_reach;
   const float steps = r.perspective ? r.sin_reach * pixels / forward : reach.radius * pixels;
   const float border = steps_to_border(view, r.pixel, side.direction_px);
   side.reach = r.sin_reach < 1.0 && forward > 0.0 ? min(steps, border) : border;
@@ -144,10 +157,13 @@ vec2 place_of(Receiver r, Side side, vec2 offset, float z, float scale) {
   return vec2(scale * dot(side.across, offset), r.ray_length * (r.z - z) + scale * dot(side.toward, offset));
 }
 
-/// Whether it stands clear of the tangent plane, and before the eye's ray. distance_sq: from the receiver. steps: to it.
+/// Whether it stands clear of the tangent plane, and before the eye's ray. distance_sq: from the receiver. steps: to
+/// it.
 bool is_above(Receiver r, Reach reach, vec2 place, float distance_sq, float steps, vec2 offset, float z, float scale) {
   const float height = scale * dot(r.height, offset) + (z - r.z) * r.depth_height;
-  const bool clear = height > r.least_height + scale * (reach.least_rise * steps) ? height * height > reach.least_elevation_sq * distance_sq : false;
+  const bool clear = height > r.least_height + scale * (reach.least_rise * steps)
+                         ? height * height > reach.least_elevation_sq * distance_sq
+                         : false;
   return place.x > 0.0 ? clear : false;
 }
 
@@ -159,16 +175,21 @@ vec2 place_at(float slope) { return vec2(1.0 - abs(slope), slope); }
 
 Reach reach_of(View view, float radius, float falloff_start, float thickness, float bias) {
   const float least = max(bias, kLeastElevation);
-  return Reach(radius, radius * radius, falloff_start, thickness, least * least, least_rise(view), view.tangent_per_pixel.x, view.size.x);
+  return Reach(radius, radius * radius, falloff_start, thickness, least * least, least_rise(view),
+               view.tangent_per_pixel.x, view.size.x);
 }
 
 /// Of the distance by the sample's number.
-float step_exponent(int steps, float reach) { return steps > kManySteps ? clamp(log2(max(reach, 1.0)) / log2(float(steps)), 1.0, 2.0) : 2.0; }
+float step_exponent(int steps, float reach) {
+  return steps > kManySteps ? clamp(log2(max(reach, 1.0)) / log2(float(steps)), 1.0, 2.0) : 2.0;
+}
 
-/// Steps from the receiver to sample k of `steps`, of which `count` are pixels apart; never two samples in one pixel: short reaches are searched pixel by pixel.
+/// Steps from the receiver to sample k of `steps`, of which `count` are pixels apart; never two samples in one pixel:
+/// short reaches are searched pixel by pixel.
 float step_offset(int k, int steps, int count, float reach, float jitter) {
   const float x = (float(k) + jitter) / float(steps);
-  return count < steps ? float(k + 1) : max(float(k + 1), (steps > kManySteps ? pow(x, step_exponent(steps, reach)) : x * x) * reach);
+  return count < steps ? float(k + 1)
+                       : max(float(k + 1), (steps > kManySteps ? pow(x, step_exponent(steps, reach)) : x * x) * reach);
 }
 
 /// Whether two samples `gap` steps apart are taken for one surface.
@@ -186,24 +207,29 @@ float arc_to(Side side, float cot) {
 
 /// The same for the angle of a place.
 float arc_to(Side side, vec2 place) {
-  return 0.5 * (place.x * (place.x * side.cos_gamma - place.y * side.sin_gamma) / dot(place, place) + angle_of(place.y, place.x) * side.sin_gamma);
+  return 0.5 * (place.x * (place.x * side.cos_gamma - place.y * side.sin_gamma) / dot(place, place) +
+                angle_of(place.y, place.x) * side.sin_gamma);
 }
 
 const uint kSectors = 32u;  // of a side, of equal measure of its arc integral
 
-/// The sectors between V and the angle of a cotangent, V's as the lowest bit. A boundary falls at floor(F + shift): unbiased where shifts are even in [0, 1).
+/// The sectors between V and the angle of a cotangent, V's as the lowest bit. A boundary falls at floor(F + shift):
+/// unbiased where shifts are even in [0, 1).
 uint sectors_to(Side side, float whole, float cot, float shift) {
   const int n = int(clamp(arc_to(side, max(cot, side.plane_cot)) / whole, 0.0, 1.0) * float(kSectors) + shift);
   return n >= int(kSectors) ? 0xffffffffu : (1u << uint(n)) - 1u;
 }
 
-/// bent_to() over sectors. As boundaries fall at floor(F + shift), a sector that begins at share F stands on average for what begins at F + 1/2 - shift.
+/// bent_to() over sectors. As boundaries fall at floor(F + shift), a sector that begins at share F stands on average
+/// for what begins at F + 1/2 - shift.
 vec2 bent_of_sectors(Side side, uint sectors, float shift) {
   const float whole = side.gamma + kHalfPi;
-  vec2 sum = sectors >> (kSectors - 1u) != 0u ? bent_to(-side.sin_gamma, side.cos_gamma, side.cos_gamma, side.sin_gamma) : vec2(0);
+  vec2 sum = sectors >> (kSectors - 1u) != 0u ? bent_to(-side.sin_gamma, side.cos_gamma, side.cos_gamma, side.sin_gamma)
+                                              : vec2(0);
   for (uint changes = (sectors ^ (sectors << 1)) & ~1u; changes != 0u; changes &= changes - 1u) {
     const int k = findLSB(changes);
-    const float theta = angle_of_share((float(k) + 0.5 - shift) / float(kSectors), whole, side.cos_gamma, side.sin_gamma);
+    const float theta =
+        angle_of_share((float(k) + 0.5 - shift) / float(kSectors), whole, side.cos_gamma, side.sin_gamma);
     const vec2 bent = bent_to(cos(theta), sin(theta), side.cos_gamma, side.sin_gamma);
     sum += (sectors >> uint(k) & 1u) != 0u ? -bent : bent;
   }
@@ -216,7 +242,8 @@ vec2 away_from_eye(Receiver r, vec2 place) {
   return r.perspective ? ray * inversesqrt(dot(ray, ray)) : vec2(0, -1);
 }
 
-/// The back of an occluder whose front is at `front`: `thickness` further along the eye's own ray, but not beyond the sphere of the radius.
+/// The back of an occluder whose front is at `front`: `thickness` further along the eye's own ray, but not beyond the
+/// sphere of the radius.
 vec2 back_of(Receiver r, vec2 front, float thickness, float radius) {
   const vec2 away = away_from_eye(r, front);
   const float along = dot(front, away);

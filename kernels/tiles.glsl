@@ -1,7 +1,8 @@
 // Tiles of pixels by which work is skipped, and directions on the image. Pure: no bindings.
 // SPDX-License-Identifier: BSD-3-Clause
 
-/// Groups of a row of a dispatch over a list: as many as every device takes, since drivers share out whole rows, with the empty groups at the end of the last.
+/// Groups of a row of a dispatch over a list: as many as every device takes, since drivers share out whole rows, with
+/// the empty groups at the end of the last.
 const uint kListedRow = 0xffffu;
 
 /// A dispatch of so many groups, in x and y.
@@ -27,25 +28,31 @@ struct ListedPlace {
 uint receivers_of_tile(int stride) { return uint(kTile * kTile) >> findMSB(stride); }
 
 /// A dispatch over so many tiles.
-uvec2 dispatch_of_tiles(uint tiles, int stride) { return dispatch_of((tiles * receivers_of_tile(stride) - 1u) / (kGroupX * kGroupY) + 1u); }
+uvec2 dispatch_of_tiles(uint tiles, int stride) {
+  return dispatch_of((tiles * receivers_of_tile(stride) - 1u) / (kGroupX * kGroupY) + 1u);
+}
 
 ListedPlace listed_place(uvec2 group, uint invocation, int stride) {
-  const uint each = receivers_of_tile(stride), place = (group.y * kListedRow + group.x) * (kGroupX * kGroupY) + invocation;
+  const uint each = receivers_of_tile(stride),
+             place = (group.y * kListedRow + group.x) * (kGroupX * kGroupY) + invocation;
   return ListedPlace(place / each, place % each);
 }
 
-/// A run of pixels that an invocation of a filter computes, in kGroupX lines: which such lines, and which of their runs.
+/// A run of pixels that an invocation of a filter computes, in kGroupX lines: which such lines, and which of their
+/// runs.
 uint pack_run(int lines, int run) { return uint(lines) | uint(run) << 16; }
 ivec2 unpack_run(uint packed) { return ivec2(packed & 0xffffu, packed >> 16); }
 
 ivec2 pixel_of_tile(ivec2 tile, uint pixel, ivec2 origin, int stride) {
   const uint columns = uint(kTile) >> findMSB(stride);
   const int row = tile.y * kTile + int(pixel / columns);
-  // Where the first estimated pixel of a row lies does not change from tile to tile, as their width is a multiple of any stride.
+  // Where the first estimated pixel of a row lies does not change from tile to tile, as their width is a multiple of
+  // any stride.
   return ivec2(tile.x * kTile + stride * int(pixel % columns) + first_estimated(row, origin, stride), row);
 }
 
-/// Tiles that count from the display window's corner, `origin` pixels before the image's, so that a crop has those of the whole.
+/// Tiles that count from the display window's corner, `origin` pixels before the image's, so that a crop has those of
+/// the whole.
 ivec2 anchored_tiles_of(ivec2 size, ivec2 origin) { return tiles_of(size + (origin & (kTile - 1))); }
 
 ivec2 pixel_of_anchored_tile(ivec2 tile, uint pixel, ivec2 origin) {
@@ -58,7 +65,8 @@ vec3 stored_bent(vec3 bent) { return 0.5 + 0.5 * bent; }
 /// The mean open direction of an open hemisphere, whatever slices are drawn.
 vec3 open_bent(vec3 normal) { return 2.0 / 3.0 * normal; }
 
-/// Sixteen sectors of directions on the image, by a number that grows with the angle as that does: 0 to 4 for a whole turn.
+/// Sixteen sectors of directions on the image, by a number that grows with the angle as that does: 0 to 4 for a whole
+/// turn.
 const uint kEverySector = 0xffffu;
 
 float turn_of(vec2 direction) {
@@ -68,14 +76,16 @@ float turn_of(vec2 direction) {
 
 uint sector_of(vec2 direction) { return uint(turn_of(direction) * float(kSectorsOfTurn / 4u)) & (kSectorsOfTurn - 1u); }
 
-/// A range of a ListedTile: its first and last step. A step is a pixel along the longer axis; a sample lies up to half of one beside its offset.
+/// A range of a ListedTile: its first and last step. A step is a pixel along the longer axis; a sample lies up to half
+/// of one beside its offset.
 uint pack_range(uint first, uint last) { return min(first, 0xffffu) | min(last, 0xffffu) << 16; }
 uint first_of_range(uint range) { return range & 0xffffu; }
 uint last_of_range(uint range) { return range >> 16; }
 const uint kWholeRange = 0xffff0000u;
 
-/// The sample with which a search may begin: one of those before the first step of the range, which stand above nothing. The offsets of samples are k + 1, or where there
-/// are as many as wanted, so many pixels or ((k + jitter) / steps)^exponent times the reach, if that is more.
+/// The sample with which a search may begin: one of those before the first step of the range, which stand above
+/// nothing. The offsets of samples are k + 1, or where there are as many as wanted, so many pixels or ((k + jitter) /
+/// steps)^exponent times the reach, if that is more.
 int first_sample(uint range, int steps, int count, float reach, float jitter, float exponent) {
   const float before = float(first_of_range(range)) - 1.0, share = max(before, 0.0) / reach;
   const float k = float(steps) * (exponent == 2.0 ? sqrt(share) : pow(share, 1.0 / exponent)) - jitter - 0.01;
@@ -88,7 +98,8 @@ uint sectors_of_offsets(vec2 least, vec2 most) {
   const float middle = turn_of(0.5 * (least + most));
   float first = 0.0, last = 0.0;
   for (int corner = 0; corner < 4; corner++) {
-    const float turn = turn_of(vec2((corner & 1) != 0 ? most.x : least.x, (corner & 2) != 0 ? most.y : least.y)) - middle;
+    const float turn =
+        turn_of(vec2((corner & 1) != 0 ? most.x : least.x, (corner & 2) != 0 ? most.y : least.y)) - middle;
     const float wrapped = turn - 4.0 * round(0.25 * turn);
     first = min(first, wrapped);
     last = max(last, wrapped);

@@ -1,10 +1,10 @@
 // Visibility at a half or a quarter of the resolution back to all pixels, each surface by itself.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// In: depth and normals of pixels and of blocks, planes of visibility of blocks. Out: as many planes of pixels; sky is 1.
-// Kopf et al., "Joint Bilateral Upsampling", 2007: the four blocks about a pixel, by bilinear weights between their centres, as far as these lie
-// in the pixel's tangent plane and their normals agree with its own. Where none does, the block of the nearest depth. One invocation computes the
-// pixels that lie between the same four centres.
+// In: depth and normals of pixels and of blocks, planes of visibility of blocks. Out: as many planes of pixels; sky is
+// 1. Kopf et al., "Joint Bilateral Upsampling", 2007: the four blocks about a pixel, by bilinear weights between their
+// centres, as far as these lie in the pixel's tangent plane and their normals agree with its own. Where none does, the
+// block of the nearest depth. One invocation computes the pixels that lie between the same four centres.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "upsample.h"
@@ -27,7 +27,8 @@ layout(scalar, binding = kUpsampleAo) writeonly buffer Ao { float ao[]; };
 layout(scalar, binding = kUpsampleList) readonly buffer List { uint list[]; };
 layout(scalar, binding = kUpsampleCounts) readonly buffer Counts { RunCounts counts; };
 
-/// A block whose centre lies further from a pixel's tangent plane than this many pixels are wide there has no part in it.
+/// A block whose centre lies further from a pixel's tangent plane than this many pixels are wide there has no part in
+/// it.
 const float kPlaneSigma = 2.0;
 /// Weights whose sum is less than this are none.
 const float kLeastWeight = 1e-3;
@@ -46,7 +47,8 @@ Block load(ivec2 block) {
   return Block(index, z, position_of(params.view, center, z), unpack_normal(low_normal[index]));
 }
 
-/// The parts of four blocks in a pixel `between` the centres of the first and the last of them, in parts of their distance.
+/// The parts of four blocks in a pixel `between` the centres of the first and the last of them, in parts of their
+/// distance.
 vec4 parts_of(Block blocks[4], vec2 between, ivec2 pixel, float z, vec3 n) {
   const vec3 position = position_of(params.view, vec2(pixel) + 0.5, z);
   const vec2 across = abs(params.view.tangent_per_pixel);
@@ -55,7 +57,8 @@ vec4 parts_of(Block blocks[4], vec2 between, ivec2 pixel, float z, vec3 n) {
   vec4 parts = vec4(0), closest = vec4(0);
   for (int i = 0; i < 4; i++) {
     if (blocks[i].z >= kSkyDepth) continue;
-    const float off_plane = dot(n, blocks[i].position - position) / sigma, alike = max(0.0, dot(n, blocks[i].normal)), squared = alike * alike;
+    const float off_plane = dot(n, blocks[i].position - position) / sigma, alike = max(0.0, dot(n, blocks[i].normal)),
+                squared = alike * alike;
     const vec2 bilinear = mix(1.0 - between, between, bvec2(i & 1, i & 2));
     const float weight = bilinear.x * bilinear.y * max(0.0, 1.0 - off_plane * off_plane) * squared * squared;
     whole += weight;

@@ -9,7 +9,8 @@
 
 namespace alcove {
 
-/// Fails with ErrorKind::input unless `path` is a readable file; `what` and `option` are for the message ("camera", "--camera").
+/// Fails with ErrorKind::input unless `path` is a readable file; `what` and `option` are for the message ("camera",
+/// "--camera").
 void require_readable(const std::string& path, const char* what, const char* option);
 
 /// What is left in a stream; where it cannot be read to its end, the stream is bad() then.
@@ -28,8 +29,9 @@ bool same_file(const std::string& a, const std::string& b);
 /// Fails with ErrorKind::usage where `path`, which is to be written, is one of the inputs. Empty names are none.
 void require_no_input(const std::string& path, const char* option, std::span<const std::string> inputs);
 
-/// A file in the making. It has a hidden name beside `path` that does not end as images do, so that folder watchers pass it by, and a lock for as long as
-/// its process lives. Unless it is committed nothing of it is left, and what was at `path` is as it was. All failures are ErrorKind::output.
+/// A file in the making. It has a hidden name beside `path` that does not end as images do, so that folder watchers
+/// pass it by, and a lock for as long as its process lives. Unless it is committed nothing of it is left, and what was
+/// at `path` is as it was. All failures are ErrorKind::output.
 class NewFile {
  public:
   explicit NewFile(const std::string& path);
@@ -37,8 +39,8 @@ class NewFile {
   NewFile(const NewFile&) = delete;
 
   void write_at(std::uint64_t offset, std::span<const char> bytes);
-  /// Gives it its name. A symbolic link at `path` is replaced and what it names stays as it was, so that nobody who can write into a folder sends what
-  /// is written there elsewhere; links among the folders of the path are followed.
+  /// Gives it its name. A symbolic link at `path` is replaced and what it names stays as it was, so that nobody who can
+  /// write into a folder sends what is written there elsewhere; links among the folders of the path are followed.
   void commit();
 
  private:
@@ -51,8 +53,8 @@ class NewFile {
 /// The same for what is whole already.
 void write_whole(const std::string& path, std::span<const char> bytes);
 
-/// Removes the unfinished files that processes which were killed have left in a folder, not those of living ones on any machine. Returns their number.
-/// Only regular files are looked at: no link is followed, no pipe waited for.
+/// Removes the unfinished files that processes which were killed have left in a folder, not those of living ones on any
+/// machine. Returns their number. Only regular files are looked at: no link is followed, no pipe waited for.
 /// Never fails: what cannot be removed stays.
 int remove_unfinished(const std::string& folder);
 

@@ -14,7 +14,8 @@ std::string typed(const std::string& key, const toml::node& node) {
   if (const auto number = node.value_exact<std::int64_t>()) return fmt::format("{}", *number);
   if (const auto number = node.value_exact<double>()) return fmt::format("{}", *number);
   if (const auto flag = node.value_exact<bool>()) return *flag ? "true" : "false";
-  fail(ErrorKind::usage, "line {}: {} must be a string without a zero byte, a number, true, false or a list of them", node.source().begin.line, key);
+  fail(ErrorKind::usage, "line {}: {} must be a string without a zero byte, a number, true, false or a list of them",
+       node.source().begin.line, key);
 }
 
 }  // namespace

@@ -13,7 +13,8 @@ struct FlatEntry {
   std::vector<std::string> values;
 };
 
-/// The entries in the order of the file's keys. Fails with ErrorKind::usage, with line and reason, on text that is no TOML and on tables.
+/// The entries in the order of the file's keys. Fails with ErrorKind::usage, with line and reason, on text that is no
+/// TOML and on tables.
 std::vector<FlatEntry> parse_flat_toml(const std::string& text);
 
 }  // namespace alcove

@@ -9,14 +9,17 @@
 
 namespace alcove {
 
-std::string to_string(const Window& window) { return fmt::format("{}x{} at ({}, {})", window.width, window.height, window.x, window.y); }
+std::string to_string(const Window& window) {
+  return fmt::format("{}x{} at ({}, {})", window.width, window.height, window.x, window.y);
+}
 
 std::vector<float> cropped(std::span<const float> planes, const Window& from, const Window& to) {
   std::vector<float> part;
   part.reserve(planes.size() / from.pixels() * to.pixels());
   for (std::size_t plane = 0; plane < planes.size(); plane += from.pixels())
     for (int y = to.y; y < to.y + to.height; y++) {
-      const auto row = planes.begin() + std::ptrdiff_t(plane + std::size_t(y - from.y) * std::size_t(from.width) + std::size_t(to.x - from.x));
+      const auto row = planes.begin() + std::ptrdiff_t(plane + std::size_t(y - from.y) * std::size_t(from.width) +
+                                                       std::size_t(to.x - from.x));
       part.insert(part.end(), row, row + to.width);
     }
   return part;
@@ -30,7 +33,9 @@ Image::Image(int width, int height, std::vector<std::string> plane_names)
 
 std::span<float> Image::plane(std::size_t index) { return {pixels.data() + index * data.pixels(), data.pixels()}; }
 
-std::span<const float> Image::plane(std::size_t index) const { return {pixels.data() + index * data.pixels(), data.pixels()}; }
+std::span<const float> Image::plane(std::size_t index) const {
+  return {pixels.data() + index * data.pixels(), data.pixels()};
+}
 
 std::span<const float> Image::plane(std::string_view name) const {
   const auto found = std::ranges::find(names, name);

@@ -22,8 +22,8 @@ std::string to_string(const Window& window);
 std::vector<float> cropped(std::span<const float> planes, const Window& from, const Window& to);
 
 struct Image {
-  Window data;     // where there are pixels
-  Window display;  // what the picture shows; the projection refers to it
+  Window data;                     // where there are pixels
+  Window display;                  // what the picture shows; the projection refers to it
   std::vector<std::string> names;  // one a plane, full channel names
   std::vector<float> pixels;       // plane by plane, row by row from the top
 

@@ -10,18 +10,24 @@
 namespace alcove {
 
 enum class DepthKind { automatic, planar, ray, inverse, device, normalized, log, position };
-enum class DeviceRange { zero_to_one, minus_one_to_one };  // of device depth between the near and the far plane: Vulkan, Direct3D; OpenGL
+// of device depth between the near and the far plane: Vulkan, Direct3D; OpenGL
+enum class DeviceRange { zero_to_one, minus_one_to_one };
 enum class NormalSpace { automatic, world, view };
 enum class PositionSpace { automatic, world, view };
 enum class NormalEncoding { automatic, signed_float, unorm, octahedral, spheremap };
 enum class Falloff : std::uint32_t { none, linear, quadratic, smooth };
 enum class Estimator { gtao, bitmask, hbao, crytek };
-enum class SliceSearch { steps, exact, every_pixel };  // how gtao looks along a slice: at so many steps; at all pixels, by their outlines; at each of them
-enum class Elevation { view, surface };              // what HBAO measures a horizon from: the plane across the view ray, or the surface
-enum class SampleKernel { clustered, uniform };      // how Crytek's samples fill the hemisphere: more near the receiver, or even in volume
-enum class RangeCheck { none, ratio, smoothstep };   // how Crytek's hits fade with the difference of depth between receiver and hit
+// how gtao looks along a slice: at so many steps; at all pixels, by their outlines; at each of them
+enum class SliceSearch { steps, exact, every_pixel };
+// what HBAO measures a horizon from: the plane across the view ray, or the surface
+enum class Elevation { view, surface };
+// how Crytek's samples fill the hemisphere: more near the receiver, or even in volume
+enum class SampleKernel { clustered, uniform };
+// how Crytek's hits fade with the difference of depth between receiver and hit
+enum class RangeCheck { none, ratio, smoothstep };
 enum class ThicknessKind { automatic, infinite, constant };
-enum class Resolution { full = 1, half = 2, quarter = 4 };  // pixels of the frame a pixel of the estimate, in x and in y
+// pixels of the frame a pixel of the estimate, in x and in y
+enum class Resolution { full = 1, half = 2, quarter = 4 };
 enum class Denoise { none, bilateral, box };
 enum class Noise { fixed, animated };  // whether frames share one pattern of sample noise
 enum class AoChannels { mono, rgb };
@@ -30,11 +36,13 @@ enum class Missing { error, skip };  // what a frame without its input is
 
 /// What device, normalized and log depth are counted between.
 struct DepthRange {
-  std::optional<double> near, far;  // distance of the planes, in the file's units, 0 < near < far; far may be infinite (device only)
-  bool reversed = false;            // the near plane has the largest value
+  // distance of the planes, in the file's units, 0 < near < far; far may be infinite (device only)
+  std::optional<double> near, far;
+  bool reversed = false;  // the near plane has the largest value
   DeviceRange device = DeviceRange::zero_to_one;
-  double log_constant = 1;          // C of z = ((1 + C far)^d - 1) / C, 1 / the file's units, > 0
-  bool negative = false;            // planar, ray and inverse depth: the values are below 0; view positions: their z is not as the camera's
+  double log_constant = 1;  // C of z = ((1 + C far)^d - 1) / C, 1 / the file's units, > 0
+  // planar, ray and inverse depth: the values are below 0; view positions: their z is not as the camera's
+  bool negative = false;
 };
 
 /// Axes of the normals that point the other way.
@@ -49,96 +57,135 @@ struct Region {
 
 /// Which frames of a sequence, and what becomes of those that cannot or need not be computed.
 struct FrameSettings {
-  std::string frames;               // a list for core/formats/sequence.h; empty: those of the first input with a pattern that lie on the disk
-  int output_offset = 0;            // frames from an input's number to its outputs'
-  int chunk = 1, chunks = 1;        // compute only the chunk-th of as many parts of the frames, 1 <= chunk <= chunks; all of nearly equal length
+  // a list for core/formats/sequence.h; empty: those of the first input with a pattern that lie on the disk
+  std::string frames;
+  int output_offset = 0;  // frames from an input's number to its outputs'
+  // compute only the chunk-th of as many parts of the frames, 1 <= chunk <= chunks; all of nearly equal length
+  int chunk = 1, chunks = 1;
   Missing missing = Missing::error;
-  bool keep_going = false;          // a frame that fails does not end the run
-  bool resume = false;              // compute only frames whose outputs are missing, broken, older than their inputs, or made with other options
-  bool overwrite = false;           // compute all of them whatever `resume` says
+  bool keep_going = false;  // a frame that fails does not end the run
+  // compute only frames whose outputs are missing, broken, older than their inputs, or made with other options
+  bool resume = false;
+  bool overwrite = false;  // compute all of them whatever `resume` says
 };
 
 /// What to read and how to understand it.
 struct InputSettings {
-  std::string input;                             // an EXR file that holds every AOV not named below
-  std::string depth, normal, position, beauty;   // files of single AOVs; empty: the input
-  std::string depth_channel;                     // a channel's full name; empty: found by its usual names
-  std::string normal_channels, beauty_channels;  // three names with commas, or a layer; empty: found. Normals may have two
-  std::string position_channels;                 // three names with commas, or a layer; empty: found
-  std::string material_ao;                       // a file of the materials' own AO; empty: the input, where material_ao_channel is set
-  std::string material_ao_channel;               // a channel's full name; empty: the only channel, or the usual names, of material_ao
-  std::string albedo, albedo_channels;           // the diffuse colour for multi-bounce: a file; empty: the beauty's. Three names, or a layer; empty: found
-  std::optional<double> albedo_value;            // instead: one for all surfaces, 0 to 1
-  std::string layer;                             // look only at channels of this layer or part
-  std::string view;                              // of a stereo file; empty: its default
-  std::optional<Region> roi;                     // compute and write no more than this; none: the data window
-  std::string source = "auto";                   // the program that wrote the frame, of presets/input; auto: by its header and channels
-  DepthKind depth_kind = DepthKind::automatic;   // automatic: what the camera file says, else planar
-  DepthRange depth_range;                        // near and far: else the camera file's
-  double depth_scale = 1;                        // scene units a unit of the depth channel, > 0
-  double sky = 1e9;                              // depth at or beyond it is sky, in the file's units, > 0; below every known sentinel
+  std::string input;                            // an EXR file that holds every AOV not named below
+  std::string depth, normal, position, beauty;  // files of single AOVs; empty: the input
+  std::string depth_channel;                    // a channel's full name; empty: found by its usual names
+  // three names with commas, or a layer; empty: found. Normals may have two
+  std::string normal_channels, beauty_channels;
+  std::string position_channels;  // three names with commas, or a layer; empty: found
+  // a file of the materials' own AO; empty: the input, where material_ao_channel is set
+  std::string material_ao;
+  // a channel's full name; empty: the only channel, or the usual names, of material_ao
+  std::string material_ao_channel;
+  // the diffuse colour for multi-bounce: a file; empty: the beauty's. Three names, or a layer; empty: found
+  std::string albedo, albedo_channels;
+  std::optional<double> albedo_value;  // instead: one for all surfaces, 0 to 1
+  std::string layer;                   // look only at channels of this layer or part
+  std::string view;                    // of a stereo file; empty: its default
+  std::optional<Region> roi;           // compute and write no more than this; none: the data window
+  // the program that wrote the frame, of presets/input; auto: by its header and channels
+  std::string source = "auto";
+  DepthKind depth_kind = DepthKind::automatic;  // automatic: what the camera file says, else planar
+  DepthRange depth_range;                       // near and far: else the camera file's
+  double depth_scale = 1;                       // scene units a unit of the depth channel, > 0
+  // depth at or beyond it is sky, in the file's units, > 0; below every known sentinel
+  double sky = 1e9;
   NormalSpace normal_space = NormalSpace::automatic;  // automatic: what the camera file says, else world
-  NormalEncoding normal_encoding = NormalEncoding::automatic;  // automatic: what the camera file says, else signed or unorm by their values
-  NormalFlips flip_normal;                            // in the normals' own space, before anything else
-  PositionSpace position_space = PositionSpace::automatic;  // automatic: the one whose points lie on the rays of their pixels
-  bool strict = false;                                // what only a guess could decide is an error
-  std::string camera;                                 // a camera JSON file
-  std::optional<double> fov;                          // horizontal, degrees, 0 to 180 exclusive
-  std::optional<double> focal, aperture;              // mm, > 0: focal length and width of the film back
-  std::optional<double> ortho_width;                  // scene units across the display window, > 0
+  // automatic: what the camera file says, else signed or unorm by their values
+  NormalEncoding normal_encoding = NormalEncoding::automatic;
+  NormalFlips flip_normal;  // in the normals' own space, before anything else
+  // automatic: the one whose points lie on the rays of their pixels
+  PositionSpace position_space = PositionSpace::automatic;
+  bool strict = false;                    // what only a guess could decide is an error
+  std::string camera;                     // a camera JSON file
+  std::optional<double> fov;              // horizontal, degrees, 0 to 180 exclusive
+  std::optional<double> focal, aperture;  // mm, > 0: focal length and width of the film back
+  std::optional<double> ortho_width;      // scene units across the display window, > 0
 };
 
 /// The estimate of ambient occlusion. The defaults are the preset `standard`.
 struct EstimatorSettings {
   Estimator estimator = Estimator::gtao;
-  std::optional<double> radius;      // scene units, > 0; no default, since no number fits all scenes
-  std::vector<double> further_radii;  // scene units, > 0: more scales. The AO is the mean of all: that is AO itself, with a falloff that drops by a step at each radius
-  Falloff falloff = Falloff::none;   // none: what renderers' own AO passes mean by a distance
-  double falloff_start = 0;          // fraction of the radius where the falloff begins, 0 to 1 exclusive
-  double falloff_end = 1;            // fraction of the radius where it ends, above the start to 1; nothing beyond blocks
-  int slices = 2;                    // directions a pixel, 1 to 64; with fewer than 3 a pixel by itself is noisy, and the denoiser must share its neighbours'
-  int steps = 16;                    // samples to each side of a slice, 1 to 4096; they matter more than slices
-  double tolerance = 0;              // of gtao, RMS error of the visibility by the search, 0 to 1: as many directions of an exact search as that takes, tile by tile; 0: as the settings say
-  SliceSearch search = SliceSearch::steps;  // of estimator gtao; but for `steps`, the falloff must be none and the stride 1
-  int samples = 16;                  // of estimator crytek, in the hemisphere, 4 to 64
-  double bias = 0;                   // least height that blocks, >= 0; crytek: scene units of depth; others: sine of the elevation above the tangent plane, < 1
-  Elevation elevation = Elevation::view;                      // of estimator hbao
-  SampleKernel sample_kernel = SampleKernel::clustered;       // of estimator crytek
-  RangeCheck range_check = RangeCheck::ratio;                 // of estimator crytek; ratio: full within the radius, so that no hit in reach is lost
-  ThicknessKind thickness = ThicknessKind::automatic;  // how far an occluder goes on behind what is seen of it; automatic: as deep as it is wide
-  double thickness_length = 0;       // scene units, > 0; with ThicknessKind::constant
+  std::optional<double> radius;  // scene units, > 0; no default, since no number fits all scenes
+  // scene units, > 0: more scales. The AO is the mean of all: that is AO itself, with a falloff that drops by a step at
+  // each radius
+  std::vector<double> further_radii;
+  Falloff falloff = Falloff::none;  // none: what renderers' own AO passes mean by a distance
+  double falloff_start = 0;         // fraction of the radius where the falloff begins, 0 to 1 exclusive
+  // fraction of the radius where it ends, above the start to 1; nothing beyond blocks
+  double falloff_end = 1;
+  // directions a pixel, 1 to 64; with fewer than 3 a pixel by itself is noisy, and the denoiser must share its
+  // neighbours'
+  int slices = 2;
+  int steps = 16;  // samples to each side of a slice, 1 to 4096; they matter more than slices
+  // of gtao, RMS error of the visibility by the search, 0 to 1: as many directions of an exact search as that takes,
+  // tile by tile; 0: as the settings say
+  double tolerance = 0;
+  // of estimator gtao; but for `steps`, the falloff must be none and the stride 1
+  SliceSearch search = SliceSearch::steps;
+  int samples = 16;  // of estimator crytek, in the hemisphere, 4 to 64
+  // least height that blocks, >= 0; crytek: scene units of depth; others: sine of the elevation above the tangent
+  // plane, < 1
+  double bias = 0;
+  Elevation elevation = Elevation::view;                 // of estimator hbao
+  SampleKernel sample_kernel = SampleKernel::clustered;  // of estimator crytek
+  // of estimator crytek; ratio: full within the radius, so that no hit in reach is lost
+  RangeCheck range_check = RangeCheck::ratio;
+  // how far an occluder goes on behind what is seen of it; automatic: as deep as it is wide
+  ThicknessKind thickness = ThicknessKind::automatic;
+  double thickness_length = 0;  // scene units, > 0; with ThicknessKind::constant
   Resolution resolution = Resolution::full;
-  int stride = 0;                    // one pixel of so many in a row has an estimate, 1, 2 or 4, and gives it to the others in the bilateral denoiser; 0: see stride_of
+  // one pixel of so many in a row has an estimate, 1, 2 or 4, and gives it to the others in the bilateral denoiser; 0:
+  // see stride_of
+  int stride = 0;
   Denoise denoise = Denoise::bilateral;
-  int denoise_radius = 4;            // pixels of the estimate to each side, 1 to 8; with Denoise::bilateral
-  std::vector<double> denoise_kernel;  // instead: 2 to 9 weights from the centre outwards, none negative, the centre's above 0; empty: a Gaussian
-  double denoise_depth_sigma = 0;    // of the depth, 0 to 100: a step by this part weighs 1/e; 0: weighs by plane distance instead
-  double intensity = 1;              // factor on the occlusion, 0 to 100
-  double power = 1;                  // exponent of the visibility, above 0 to 100
-  std::optional<double> fade_start, fade_end;  // scene units of planar depth, both or none, 0 <= start < end: the AO fades to 1 from one to the other
-  double roughness = 0.5;            // of the surface, for specular occlusion, 0 to 1; perceptual, half way by default, as engines' own default materials
-  std::uint32_t seed = 0;            // shifts the noise pattern
-  Noise noise = Noise::fixed;        // fixed: what stands still does not flicker, and may be used again; animated: for a mean over frames, which takes its noise away
-  bool no_skip = false;              // estimate sky too, and what is proved to be open; the result is the same
-  double skip_tolerance = 0;         // of gtao and bitmask, 0 to 0.1: also leave out, as open, what is proved to have a visibility of at least 1 less this
+  int denoise_radius = 4;  // pixels of the estimate to each side, 1 to 8; with Denoise::bilateral
+  // instead: 2 to 9 weights from the centre outwards, none negative, the centre's above 0; empty: a Gaussian
+  std::vector<double> denoise_kernel;
+  // of the depth, 0 to 100: a step by this part weighs 1/e; 0: weighs by plane distance instead
+  double denoise_depth_sigma = 0;
+  double intensity = 1;  // factor on the occlusion, 0 to 100
+  double power = 1;      // exponent of the visibility, above 0 to 100
+  // scene units of planar depth, both or none, 0 <= start < end: the AO fades to 1 from one to the other
+  std::optional<double> fade_start, fade_end;
+  // of the surface, for specular occlusion, 0 to 1; perceptual, half way by default, as engines' own default materials
+  double roughness = 0.5;
+  std::uint32_t seed = 0;  // shifts the noise pattern
+  // fixed: what stands still does not flicker, and may be used again; animated: for a mean over frames, which takes its
+  // noise away
+  Noise noise = Noise::fixed;
+  bool no_skip = false;  // estimate sky too, and what is proved to be open; the result is the same
+  // of gtao and bitmask, 0 to 0.1: also leave out, as open, what is proved to have a visibility of at least 1 less this
+  double skip_tolerance = 0;
 };
 
 /// What to write.
 struct OutputSettings {
-  std::string output;                             // the AO EXR
-  std::string composite;                          // the composite EXR
-  std::string preview;                            // a PNG of the composite, or of the AO where there is none
-  std::string aovs = "ao";                        // what the file of `output` holds: names of core/chain/aov.h with commas
-  AoChannels ao_channels = AoChannels::mono;      // mono: Y; rgb: R, G, B, as compositors' shuffles expect, and coloured with multi_bounce
-  NormalSpace aov_space = NormalSpace::automatic;  // of directions; automatic: world where the camera has world_to_camera, else view
-  bool multi_bounce = false;                      // light thrown back by the occluders brightens the rgb AO, and the composite's ambient light
-  double fog_density = 0;                         // 1 / scene units, >= 0: of the exponential fog in the beauty, which hides AO from the composite
-  std::string debug;                              // names of core/chain/debug_view.h with commas: a picture of each beside `output`
-  OutputType type = OutputType::half_float;       // of all channels of `output` but depth, which is float
-  std::string compression = "zip";                // of the AO file: none, rle, zips, zip or piz
-  std::string ocio;                               // an OpenColorIO configuration for the preview
-  std::string stats;                              // a JSON file
-  std::string log_json;                           // a file of JSON objects, a line each, or - for the standard output: whoever watches the run writes it
+  std::string output;     // the AO EXR
+  std::string composite;  // the composite EXR
+  std::string preview;    // a PNG of the composite, or of the AO where there is none
+  // what the file of `output` holds: names of core/chain/aov.h with commas
+  std::string aovs = "ao";
+  // mono: Y; rgb: R, G, B, as compositors' shuffles expect, and coloured with multi_bounce
+  AoChannels ao_channels = AoChannels::mono;
+  // of directions; automatic: world where the camera has world_to_camera, else view
+  NormalSpace aov_space = NormalSpace::automatic;
+  // light thrown back by the occluders brightens the rgb AO, and the composite's ambient light
+  bool multi_bounce = false;
+  // 1 / scene units, >= 0: of the exponential fog in the beauty, which hides AO from the composite
+  double fog_density = 0;
+  // names of core/chain/debug_view.h with commas: a picture of each beside `output`
+  std::string debug;
+  OutputType type = OutputType::half_float;  // of all channels of `output` but depth, which is float
+  std::string compression = "zip";           // of the AO file: none, rle, zips, zip or piz
+  std::string ocio;                          // an OpenColorIO configuration for the preview
+  std::string stats;                         // a JSON file
+  // a file of JSON objects, a line each, or - for the standard output: whoever watches the run writes it
+  std::string log_json;
 };
 
 /// Where to compute.
@@ -147,8 +194,8 @@ struct DeviceSettings {
   bool require_gpu = false;
   bool validate = false;
   bool no_pipeline_cache = false;
-  int threads = 0;              // of the CPU device and of the codecs; 0: one a core
-  std::uint64_t memory = 0;     // bytes that the process may take; 0: half of what is free
+  int threads = 0;           // of the CPU device and of the codecs; 0: one a core
+  std::uint64_t memory = 0;  // bytes that the process may take; 0: half of what is free
 };
 
 struct Settings {

@@ -17,15 +17,19 @@ std::string lower_case(std::string_view text) {
 }
 
 std::string printable(std::string text) {
-  std::ranges::replace_if(text, [](unsigned char c) { return c < 0x20 || c == 0x7f; }, '?');
-  // In UTF-8: the controls U+0080 to U+009F, of which terminals obey some, and what turns the direction of writing: U+061C, U+200E, U+200F, U+202A to
-  // U+202E, U+2066 to U+2069.
+  std::ranges::replace_if(
+      text, [](unsigned char c) { return c < 0x20 || c == 0x7f; }, '?');
+  // In UTF-8: the controls U+0080 to U+009F, of which terminals obey some, and what turns the direction of writing:
+  // U+061C, U+200E, U+200F, U+202A to U+202E, U+2066 to U+2069.
   std::string shown;
   for (std::size_t i = 0; i < text.size(); i++) {
-    const auto byte = [&](std::size_t at) { return i + at < text.size() ? static_cast<unsigned char>(text[i + at]) : 0u; };
+    const auto byte = [&](std::size_t at) {
+      return i + at < text.size() ? static_cast<unsigned char>(text[i + at]) : 0u;
+    };
     const unsigned two = byte(0) << 8 | byte(1), three = two << 8 | byte(2);
     const bool is_control = (two >= 0xc280 && two <= 0xc29f) || two == 0xd89c;
-    const bool turns = three == 0xe2808e || three == 0xe2808f || (three >= 0xe280aa && three <= 0xe280ae) || (three >= 0xe281a6 && three <= 0xe281a9);
+    const bool turns = three == 0xe2808e || three == 0xe2808f || (three >= 0xe280aa && three <= 0xe280ae) ||
+                       (three >= 0xe281a6 && three <= 0xe281a9);
     shown += is_control || turns ? '?' : text[i];
     i += turns ? 2 : is_control ? 1 : 0;
   }
@@ -77,7 +81,8 @@ std::string_view tail_like(std::string_view name, std::string_view like) {
   return name;
 }
 
-/// An edit distance in which a name below another layer, or one that is part of the other, is near however long the rest is.
+/// An edit distance in which a name below another layer, or one that is part of the other, is near however long the
+/// rest is.
 std::size_t distance_of(std::string_view name, std::string_view candidate) {
   const std::string a = lower_case(name), b = lower_case(candidate);
   if (a == b) return 0;
@@ -88,7 +93,8 @@ std::size_t distance_of(std::string_view name, std::string_view candidate) {
 
 }  // namespace
 
-std::vector<std::string> nearest_names(std::string_view name, std::span<const std::string> candidates, std::size_t most) {
+std::vector<std::string> nearest_names(std::string_view name, std::span<const std::string> candidates,
+                                       std::size_t most) {
   std::vector<std::pair<std::size_t, std::string>> ranked;
   for (const auto& candidate : candidates) {
     const std::size_t distance = distance_of(name, candidate);

@@ -21,7 +21,8 @@ std::string list_of(std::span<const std::string> names, std::size_t most = 24);
 std::size_t edit_distance(std::string_view a, std::string_view b);
 
 /// Up to `most` of the candidates that resemble `name`, the nearest first; none where all are far off.
-std::vector<std::string> nearest_names(std::string_view name, std::span<const std::string> candidates, std::size_t most = 3);
+std::vector<std::string> nearest_names(std::string_view name, std::span<const std::string> candidates,
+                                       std::size_t most = 3);
 
 /// The text with ? in the place of each control character, since names in files may hold what a terminal would obey.
 std::string printable(std::string text);

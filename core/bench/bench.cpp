@@ -10,10 +10,10 @@
 #include <memory>
 #include <tuple>
 
-#include "core/chain/chain.h"
 #include "core/base/error.h"
-#include "core/formats/exr.h"
+#include "core/chain/chain.h"
 #include "core/chain/host_frame.h"
+#include "core/formats/exr.h"
 #include "core/measure/metrics.h"
 #include "core/reference/reference.h"
 
@@ -24,8 +24,8 @@ namespace {
 struct LoadedFrame {
   HostFrame host;
   std::vector<std::vector<float>> truths;
-  std::vector<float> truth;                // their mean
-  std::vector<std::uint8_t> surface;       // 1 where there is no sky: what is measured
+  std::vector<float> truth;           // their mean
+  std::vector<std::uint8_t> surface;  // 1 where there is no sky: what is measured
 };
 
 LoadedFrame load(const SuiteFrame& frame) {
@@ -39,7 +39,8 @@ LoadedFrame load(const SuiteFrame& frame) {
   for (const auto& path : frame.truth) {
     const Image image = read_exr_image(path);
     if (image.data != host.data || image.names.size() != 1)
-      fail(ErrorKind::input, "{}: the truth has {} channels over {}, and must have one over {}", path, image.names.size(), to_string(image.data), to_string(host.data));
+      fail(ErrorKind::input, "{}: the truth has {} channels over {}, and must have one over {}", path,
+           image.names.size(), to_string(image.data), to_string(host.data));
     loaded.truths.push_back(image.pixels);
   }
   for (std::size_t i = 0; i < loaded.truth.size(); i++) {
@@ -78,7 +79,8 @@ struct Timings {
     for (std::size_t pass = 0; pass < runs[0].size(); pass++) {
       std::vector<double> times;
       for (const auto& run : runs) times.push_back(run[pass].ms);
-      row.passes.push_back({runs[0][pass].name, median(times), *std::ranges::min_element(times), runs[0][pass].bytes_read, runs[0][pass].bytes_written});
+      row.passes.push_back({runs[0][pass].name, median(times), *std::ranges::min_element(times),
+                            runs[0][pass].bytes_read, runs[0][pass].bytes_written});
     }
   }
 };
@@ -89,7 +91,8 @@ double run_yardstick(const std::string& program, const SuiteFrame& frame, int ru
     for (std::size_t at = 0; (at = text.find('\'', at)) != text.npos; at += 4) text.replace(at, 1, "'\\''");
     return "'" + text + "'";
   };
-  const std::string command = fmt::format("{} {} {} {} {}", quoted(program), quoted(frame.input), quoted(frame.camera), frame.radius, runs);
+  const std::string command =
+      fmt::format("{} {} {} {} {}", quoted(program), quoted(frame.input), quoted(frame.camera), frame.radius, runs);
   const std::unique_ptr<FILE, int (*)(FILE*)> pipe(::popen(command.c_str(), "r"), ::pclose);
   std::string text;
   std::array<char, 256> line;
@@ -111,7 +114,8 @@ class References {
     std::vector<float> mean(frame_.host.depth.size());
     for (const double radius : radii) {
       settings.radius = radius;
-      std::ranges::transform(mean, of_one_radius(settings), mean.begin(), [&](float sum, float ao) { return sum + ao / float(radii.size()); });
+      std::ranges::transform(mean, of_one_radius(settings), mean.begin(),
+                             [&](float sum, float ao) { return sum + ao / float(radii.size()); });
     }
     return mean;
   }
@@ -120,7 +124,8 @@ class References {
   const std::vector<float>& of_one_radius(const EstimatorSettings& settings) {
     ReferenceSettings wanted = reference_settings_of(settings);
     wanted.slices = slices_;
-    auto& reference = made_[{wanted.radius, wanted.falloff, wanted.falloff_start, wanted.thickness, wanted.thickness_length, wanted.bias}];
+    auto& reference = made_[{wanted.radius, wanted.falloff, wanted.falloff_start, wanted.thickness,
+                             wanted.thickness_length, wanted.bias}];
     if (reference.empty()) {
       reference = reference_ao(frame_.host, wanted);
     }
@@ -134,7 +139,8 @@ class References {
 
 /// Over the surfaces, without the truths' noise where there are two.
 PlaneErrors against_truth(const std::vector<float>& result, const LoadedFrame& frame) {
-  return compare_planes(result, frame.truths[0], frame.surface, frame.truths.size() == 2 ? Values(frame.truths[1]) : Values());
+  return compare_planes(result, frame.truths[0], frame.surface,
+                        frame.truths.size() == 2 ? Values(frame.truths[1]) : Values());
 }
 
 void measure(BenchRow& row, const LoadedFrame& frame, const EstimatorSettings& settings, References* references) {
@@ -151,12 +157,14 @@ void measure(BenchRow& row, const LoadedFrame& frame, const EstimatorSettings& s
 
 }  // namespace
 
-BenchReport run_bench(gpu::Device& device, const Suite& suite, const std::vector<BenchCandidate>& candidates, const BenchOptions& options) {
+BenchReport run_bench(gpu::Device& device, const Suite& suite, const std::vector<BenchCandidate>& candidates,
+                      const BenchOptions& options) {
   BenchReport report{suite.title, device.info().name, suite.repeats, {}, candidates, {}};
   gpu::Recorder gpu(device);
   for (const auto& frame : suite.frames) {
     const LoadedFrame loaded = load(frame);
-    BenchFrame described{frame.name, loaded.host.data.width, loaded.host.data.height, {}, loaded.host.depth, loaded.truth};
+    BenchFrame described{frame.name, loaded.host.data.width, loaded.host.data.height,
+                         {},         loaded.host.depth,      loaded.truth};
     std::vector<Timings> timings(candidates.size());
     std::vector<HostResult> results(candidates.size());
     std::vector<double> yardsticks;
@@ -179,7 +187,8 @@ BenchReport run_bench(gpu::Device& device, const Suite& suite, const std::vector
       row.candidate = candidates[c].name;
       row.ao = std::move(results[c].ao);
       timings[c].summarize(row);
-      row.samples_per_pixel = samples_per_pixel(settings) * (1 - double(results[c].sky_pixels) / double(loaded.host.depth.size()));
+      row.samples_per_pixel =
+          samples_per_pixel(settings) * (1 - double(results[c].sky_pixels) / double(loaded.host.depth.size()));
       measure(row, loaded, settings, suite.reference_slices ? &references : nullptr);
       report.rows.push_back(std::move(row));
     }

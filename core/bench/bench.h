@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "core/gpu/recorder.h"
 #include "core/base/settings.h"
 #include "core/bench/suite.h"
+#include "core/gpu/recorder.h"
 
 namespace alcove {
 
@@ -25,7 +25,8 @@ struct BenchPass {
   std::uint64_t bytes_read = 0, bytes_written = 0;
 };
 
-/// One candidate on one frame. Errors are over the surfaces, against the mean of the truths; with two truths rmse is without their noise.
+/// One candidate on one frame. Errors are over the surfaces, against the mean of the truths; with two truths rmse is
+/// without their noise.
 struct BenchRow {
   std::string frame, candidate;
   double ms = 0, ms_min = 0, ms_max = 0;  // device time of all passes: median, least, most
@@ -53,14 +54,18 @@ struct BenchReport {
 };
 
 struct BenchOptions {
-  std::string yardstick;                               // a program to be run as PROGRAM FRAME CAMERA RADIUS RUNS that prints "median X ms"; empty: none
-  std::function<void(const std::string&)> say = {};    // progress, a line each; may be empty
+  // a program to be run as PROGRAM FRAME CAMERA RADIUS RUNS that prints "median X ms"; empty: none
+  std::string yardstick;
+  std::function<void(const std::string&)> say = {};  // progress, a line each; may be empty
 };
 
-/// Times and measures. Fails as reading and computing do, and with ErrorKind::input when a truth is not the frame's size.
-BenchReport run_bench(gpu::Device& device, const Suite& suite, const std::vector<BenchCandidate>& candidates, const BenchOptions& options);
+/// Times and measures. Fails as reading and computing do, and with ErrorKind::input when a truth is not the frame's
+/// size.
+BenchReport run_bench(gpu::Device& device, const Suite& suite, const std::vector<BenchCandidate>& candidates,
+                      const BenchOptions& options);
 
-/// {"title", "device", "repeats", "frames": [{"name", "width", "height", "yardstick_ms"}], "candidates": [{"name", "settings", means over frames}], "rows": [...]}.
+/// {"title", "device", "repeats", "frames": [{"name", "width", "height", "yardstick_ms"}], "candidates": [{"name",
+/// "settings", means over frames}], "rows": [...]}.
 std::string bench_json(const BenchReport& report);
 /// A line a row, with a heading.
 std::string bench_csv(const BenchReport& report);

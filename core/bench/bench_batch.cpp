@@ -12,8 +12,8 @@
 #include <filesystem>
 #include <thread>
 
-#include "core/run/batch.h"
 #include "core/base/error.h"
+#include "core/run/batch.h"
 #include "core/run/frame_files.h"
 #include "core/run/pipeline.h"
 
@@ -31,8 +31,11 @@ fs::path folder_of_scratch() {
 /// A folder that goes with all that is in it.
 class ScratchFolder {
  public:
-  ScratchFolder() : path_((folder_of_scratch() / ("alcove-bench-" + std::string(6, 'X'))).string()) {  // mkdtemp draws the six letters
-    if (!::mkdtemp(path_.data())) fail(ErrorKind::output, "{}: no folder for the frames can be made: {}; the variable TMPDIR names another place", path_, std::strerror(errno));
+  // mkdtemp draws the six letters
+  ScratchFolder() : path_((folder_of_scratch() / ("alcove-bench-" + std::string(6, 'X'))).string()) {
+    if (!::mkdtemp(path_.data()))
+      fail(ErrorKind::output, "{}: no folder for the frames can be made: {}; the variable TMPDIR names another place",
+           path_, std::strerror(errno));
   }
   ~ScratchFolder() {
     std::error_code ignored;
@@ -73,7 +76,8 @@ BatchTimes time_batch(Settings settings, int frames) {
 
   times.files_s = seconds_of(report.at_once, frames, [&](int frame) {
     FrameSource source = open_frame(settings, frame);
-    std::vector<float> depth(source.depth.size() * source.data.pixels()), normal(source.normal.size() * source.data.pixels());
+    std::vector<float> depth(source.depth.size() * source.data.pixels()),
+        normal(source.normal.size() * source.data.pixels());
     read_planes(source, {{&source.depth, depth.data()}, {&source.normal, normal.data()}});
     Settings one = settings;
     one.output.output = folder.file(frame);
@@ -96,7 +100,8 @@ BatchTimes time_batch(Settings settings, int frames) {
         run_chain(gpu, inputs, settings.estimator, settings.output);
         gpu.run();
       }
-      for (double most = device_ms, ms = computing.ms(); ms > most && !device_ms.compare_exchange_weak(most, ms);) continue;
+      for (double most = device_ms, ms = computing.ms(); ms > most && !device_ms.compare_exchange_weak(most, ms);)
+        continue;
     });
   });
   times.compute_s = device_ms / 1000;

@@ -8,8 +8,9 @@ namespace alcove {
 
 struct BatchTimes {
   int frames = 0, at_once = 0;
-  double run_s = 0;      // of `alcove run` over them
-  double files_s = 0;    // reading the same channels and writing the same file, with nothing in between, on as many threads
+  double run_s = 0;  // of `alcove run` over them
+  // reading the same channels and writing the same file, with nothing in between, on as many threads
+  double files_s = 0;
   double compute_s = 0;  // the kernels alone, on frames that are there already, as many at once
 };
 

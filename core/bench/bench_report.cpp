@@ -18,10 +18,24 @@ Json number(std::optional<double> value) { return value && std::isfinite(*value)
 Json to_json(const BenchRow& row) {
   Json passes = Json::array();
   for (const auto& pass : row.passes)
-    passes.push_back({{"name", pass.name}, {"ms", pass.ms}, {"ms_min", pass.ms_min}, {"bytes_read", pass.bytes_read}, {"bytes_written", pass.bytes_written}});
-  return {{"frame", row.frame}, {"candidate", row.candidate}, {"ms", row.ms}, {"ms_min", row.ms_min}, {"ms_max", row.ms_max},
-          {"samples_per_pixel", row.samples_per_pixel}, {"rmse", row.rmse}, {"mae", row.mae}, {"bias", row.bias}, {"p99", row.p99},
-          {"estimator_rmse", number(row.estimator_rmse)}, {"geometry_rmse", number(row.geometry_rmse)}, {"passes", passes}};
+    passes.push_back({{"name", pass.name},
+                      {"ms", pass.ms},
+                      {"ms_min", pass.ms_min},
+                      {"bytes_read", pass.bytes_read},
+                      {"bytes_written", pass.bytes_written}});
+  return {{"frame", row.frame},
+          {"candidate", row.candidate},
+          {"ms", row.ms},
+          {"ms_min", row.ms_min},
+          {"ms_max", row.ms_max},
+          {"samples_per_pixel", row.samples_per_pixel},
+          {"rmse", row.rmse},
+          {"mae", row.mae},
+          {"bias", row.bias},
+          {"p99", row.p99},
+          {"estimator_rmse", number(row.estimator_rmse)},
+          {"geometry_rmse", number(row.geometry_rmse)},
+          {"passes", passes}};
 }
 
 /// A candidate's means over the frames.
@@ -48,10 +62,14 @@ Json to_json(const BenchCandidate& candidate, const BenchReport& report) {
 Json to_json(const BenchReport& report) {
   Json frames = Json::array(), candidates = Json::array(), rows = Json::array();
   for (const auto& frame : report.frames)
-    frames.push_back({{"name", frame.name}, {"width", frame.width}, {"height", frame.height}, {"yardstick_ms", number(frame.yardstick_ms)}});
+    frames.push_back({{"name", frame.name},
+                      {"width", frame.width},
+                      {"height", frame.height},
+                      {"yardstick_ms", number(frame.yardstick_ms)}});
   for (const auto& candidate : report.candidates) candidates.push_back(to_json(candidate, report));
   for (const auto& row : report.rows) rows.push_back(to_json(row));
-  return {{"title", report.title}, {"device", report.device}, {"repeats", report.repeats}, {"frames", frames}, {"candidates", candidates}, {"rows", rows}};
+  return {{"title", report.title}, {"device", report.device},  {"repeats", report.repeats},
+          {"frames", frames},      {"candidates", candidates}, {"rows", rows}};
 }
 
 std::string dump(const Json& json) { return json.dump(1, ' ', false, Json::error_handler_t::replace); }
@@ -77,7 +95,9 @@ double measured(const BenchRow& row, const std::string& measure) {
 std::string bench_json(const BenchReport& report) { return dump(to_json(report)) + "\n"; }
 
 std::string bench_csv(const BenchReport& report) {
-  std::string text = "frame,candidate,ms,ms_min,ms_max,yardsticks,samples_per_pixel,rmse,mae,bias,p99,estimator_rmse,geometry_rmse,bytes_read,bytes_written\n";
+  std::string text =
+      "frame,candidate,ms,ms_min,ms_max,yardsticks,samples_per_pixel,rmse,mae,bias,p99,estimator_rmse,geometry_rmse,"
+      "bytes_read,bytes_written\n";
   const auto optional = [](std::optional<double> value) { return value ? fmt::format("{}", *value) : ""; };
   for (const auto& row : report.rows) {
     const auto& frame = *std::ranges::find(report.frames, row.frame, &BenchFrame::name);
@@ -86,9 +106,10 @@ std::string bench_csv(const BenchReport& report) {
       read += pass.bytes_read;
       written += pass.bytes_written;
     }
-    text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", field(row.frame), field(row.candidate), row.ms, row.ms_min, row.ms_max,
-                        frame.yardstick_ms ? fmt::format("{}", row.ms / *frame.yardstick_ms) : "", row.samples_per_pixel, row.rmse, row.mae, row.bias, row.p99,
-                        optional(row.estimator_rmse), optional(row.geometry_rmse), read, written);
+    text += fmt::format(
+        "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", field(row.frame), field(row.candidate), row.ms, row.ms_min,
+        row.ms_max, frame.yardstick_ms ? fmt::format("{}", row.ms / *frame.yardstick_ms) : "", row.samples_per_pixel,
+        row.rmse, row.mae, row.bias, row.p99, optional(row.estimator_rmse), optional(row.geometry_rmse), read, written);
   }
   return text;
 }
@@ -104,7 +125,10 @@ std::string bench_page(const BenchReport& report) {
   for (const auto& row : report.rows) {
     const auto& frame = *std::ranges::find(report.frames, row.frame, &BenchFrame::name);
     const bool first = row.candidate == report.candidates.front().name;
-    images.push_back({{"frame", row.frame}, {"candidate", row.candidate}, {"width", frame.width}, {"height", frame.height},
+    images.push_back({{"frame", row.frame},
+                      {"candidate", row.candidate},
+                      {"width", frame.width},
+                      {"height", frame.height},
                       {"result", grey_picture(frame.width, frame.height, row.ao)},
                       {"truth", first ? Json(grey_picture(frame.width, frame.height, frame.truth)) : Json(nullptr)},
                       {"error", error_picture(frame.width, frame.height, row.ao, frame.truth)}});
@@ -116,10 +140,12 @@ std::string bench_page(const BenchReport& report) {
 std::vector<std::string> broken_limits(const BenchReport& report, const std::vector<Limit>& limits) {
   std::vector<std::string> broken;
   for (const auto& limit : limits) {
-    const auto row = std::ranges::find_if(report.rows, [&](const auto& r) { return r.frame == limit.frame && r.candidate == limit.candidate; });
+    const auto row = std::ranges::find_if(
+        report.rows, [&](const auto& r) { return r.frame == limit.frame && r.candidate == limit.candidate; });
     const double value = measured(*row, limit.measure);
     if (!(value <= limit.most))
-      broken.push_back(fmt::format("{} on {}: {} is {:.4f}, and may be {:.4f}", limit.candidate, limit.frame, limit.measure, value, limit.most));
+      broken.push_back(fmt::format("{} on {}: {} is {:.4f}, and may be {:.4f}", limit.candidate, limit.frame,
+                                   limit.measure, value, limit.most));
   }
   return broken;
 }

@@ -18,7 +18,8 @@ namespace alcove {
 namespace {
 
 constexpr int kWidth = 48, kHeight = 36;
-constexpr double kRoomWidth = 4.5, kRadius = 0.65, kFov = 55, kNarrowFov = 1.5;  // narrow: pixels as small as in a picture 1920 wide
+// narrow: pixels as small as in a picture 1920 wide
+constexpr double kRoomWidth = 4.5, kRadius = 0.65, kFov = 55, kNarrowFov = 1.5;
 constexpr float kSky = 1e25f;
 constexpr std::size_t kCompared = 3;  // every so many pixels
 
@@ -83,7 +84,8 @@ HostFrame room(double fov) {
   const Axes view = axes_of_view();
   const Vector eye = kTarget + distance_of(fov) * view.back;
   for (std::size_t i = 0; i < frame.data.pixels(); i++) {
-    const double x = (double(i % kWidth) + 0.5 - frame.camera.cx) / frame.camera.fx, y = (frame.camera.cy - double(i / kWidth) - 0.5) / frame.camera.fy;
+    const double x = (double(i % kWidth) + 0.5 - frame.camera.cx) / frame.camera.fx,
+                 y = (frame.camera.cy - double(i / kWidth) - 0.5) / frame.camera.fy;
     Vector n;
     const double z = hit_of(eye, x * view.right + y * view.up - view.back, n);
     if (std::isfinite(z)) set_pixel(frame, i, z, {dot(n, view.right), dot(n, view.up), dot(n, view.back)});
@@ -91,7 +93,9 @@ HostFrame room(double fov) {
   return frame;
 }
 
-Trial trial(const std::string& picture, const HostFrame& frame, double radius) { return {frame, frame, radius, radius, picture}; }
+Trial trial(const std::string& picture, const HostFrame& frame, double radius) {
+  return {frame, frame, radius, radius, picture};
+}
 
 Trial at_scale(double scale) {
   Trial made = trial(fmt::format("room {}", kFov), room(kFov), kRadius);
@@ -107,15 +111,18 @@ Trial before_background(double range) {
   return trial(fmt::format("background {}", range), frame, kRadius);
 }
 
-/// A plane, parallel projection, tilted to the right; its right half is a step nearer. The radius is seen 8 pixels wide along the tilt.
+/// A plane, parallel projection, tilted to the right; its right half is a step nearer. The radius is seen 8 pixels wide
+/// along the tilt.
 Trial tilted(double degrees) {
   HostFrame frame = empty_frame();
-  const double cosine = std::cos(degrees * std::numbers::pi / 180), sine = std::sin(degrees * std::numbers::pi / 180), pixel = 0.1, radius = 8 * pixel / cosine;
+  const double cosine = std::cos(degrees * std::numbers::pi / 180), sine = std::sin(degrees * std::numbers::pi / 180),
+               pixel = 0.1, radius = 8 * pixel / cosine;
   frame.camera.orthographic = true;
   frame.camera.fx = frame.camera.fy = 1 / pixel;
   for (std::size_t i = 0; i < frame.data.pixels(); i++) {
     const double x = (double(i % kWidth) + 0.5 - 0.5 * kWidth) * pixel;
-    set_pixel(frame, i, (10 * radius) + x * sine / cosine - (x > 0 ? 0.4 * radius / std::max(cosine, 0.1) : 0), {sine, 0, cosine});
+    set_pixel(frame, i, (10 * radius) + x * sine / cosine - (x > 0 ? 0.4 * radius / std::max(cosine, 0.1) : 0),
+              {sine, 0, cosine});
   }
   return trial(fmt::format("tilt {}", degrees), frame, radius);
 }
@@ -156,7 +163,8 @@ Trial far_out(double widths) {
   Trial made = trial(fmt::format("room {}", kFov), room(kFov), kRadius);
   HostFrame& frame = made.tried;
   const Axes view = axes_of_view();
-  const Vector out = widths * kRoomWidth * normalized(view.right + 0.1 * view.up), eye = kTarget + distance_of(kFov) * view.back + out;
+  const Vector out = widths * kRoomWidth * normalized(view.right + 0.1 * view.up),
+               eye = kTarget + distance_of(kFov) * view.back + out;
   frame.depth_kind = DepthKind::position;
   frame.position_space = PositionSpace::world;
   const auto row = [](Vector v) { return std::array{v.x, v.y, v.z}; };
@@ -167,7 +175,8 @@ Trial far_out(double widths) {
   for (std::size_t i = 0; i < pixels; i++) {
     const double z = made.exact.depth[i];
     if (z >= kSky) continue;
-    const double x = (double(i % kWidth) + 0.5 - frame.camera.cx) / frame.camera.fx, y = (frame.camera.cy - double(i / kWidth) - 0.5) / frame.camera.fy;
+    const double x = (double(i % kWidth) + 0.5 - frame.camera.cx) / frame.camera.fx,
+                 y = (frame.camera.cy - double(i / kWidth) - 0.5) / frame.camera.fy;
     const Vector at = eye + z * (x * view.right + y * view.up - view.back);
     frame.depth[i] = float(at.x), frame.depth[i + pixels] = float(at.y), frame.depth[i + 2 * pixels] = float(at.z);
   }
@@ -185,19 +194,45 @@ struct Axis {
 std::vector<Axis> all_axes() {
   const std::vector<double> over_near{3, 10, 30, 100, 300, 1e3, 3e3, 1e4};
   const double depth = distance_of(kFov), pixel = depth * 2 * std::tan(kFov * std::numbers::pi / 360) / kWidth;
-  return {{"depth scale", "scene units a unit of the room", true, 1, {1e-6, 1e-4, 1e-2, 1, 1e2, 1e4, 1e6, 1e9}, at_scale},
-          {"depth range", "farthest over nearest depth", true, 1, {1, 10, 1e2, 1e3, 1e4, 1e5, 1e6}, before_background},
-          {"field of view", "degrees", true, kFov, {0.5, 2, 10, 30, kFov, 90, 120, 150, 170}, [](double fov) { return trial(fmt::format("room {}", fov), room(fov), kRadius); }},
-          {"radius in the scene", "of the median depth", true, kRadius / depth, {1e-9, 1e-6, 1e-3, 1e-2, 0.05, 0.15, 0.5, 2, 10, 1e2, 1e4, 1e9}, [=](double r) { return with_radius(r * depth); }},
-          {"radius in pixels", "px at the median depth", true, kRadius / pixel, {0.25, 0.5, 1, 1.5, 2, 3, 4, 6, 8, 16, 32, 64, 128}, [=](double r) { return with_radius(r * pixel); }},
-          {"tilt of the surface", "degrees", false, 0, {0, 30, 60, 75, 80, 85, 88, 89, 89.9, 89.99}, tilted},
-          {"half depth", "field of view of 48 pixels, degrees", true, kFov, {0.02, 0.05, 0.15, 0.5, 1.5, 5, 15, kFov}, in_half},
-          {"16 bits of device depth", "median depth over near plane", true, 3, over_near, [](double x) { return in_bits(16, false, x); }},
-          {"16 bits of reversed depth", "median depth over near plane", true, 3, over_near, [](double x) { return in_bits(16, true, x); }},
-          {"24 bits of device depth", "median depth over near plane", true, 3, over_near, [](double x) { return in_bits(24, false, x); }},
-          {"24 bits of reversed depth", "median depth over near plane", true, 3, over_near, [](double x) { return in_bits(24, true, x); }},
-          {"float reversed depth", "median depth over near plane", true, 3, over_near, [](double x) { return in_bits(32, true, x); }},
-          {"world offset", "widths of the room, of position files", true, 1, {1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7}, far_out}};
+  return {
+      {"depth scale", "scene units a unit of the room", true, 1, {1e-6, 1e-4, 1e-2, 1, 1e2, 1e4, 1e6, 1e9}, at_scale},
+      {"depth range", "farthest over nearest depth", true, 1, {1, 10, 1e2, 1e3, 1e4, 1e5, 1e6}, before_background},
+      {"field of view",
+       "degrees",
+       true,
+       kFov,
+       {0.5, 2, 10, 30, kFov, 90, 120, 150, 170},
+       [](double fov) { return trial(fmt::format("room {}", fov), room(fov), kRadius); }},
+      {"radius in the scene",
+       "of the median depth",
+       true,
+       kRadius / depth,
+       {1e-9, 1e-6, 1e-3, 1e-2, 0.05, 0.15, 0.5, 2, 10, 1e2, 1e4, 1e9},
+       [=](double r) { return with_radius(r * depth); }},
+      {"radius in pixels",
+       "px at the median depth",
+       true,
+       kRadius / pixel,
+       {0.25, 0.5, 1, 1.5, 2, 3, 4, 6, 8, 16, 32, 64, 128},
+       [=](double r) { return with_radius(r * pixel); }},
+      {"tilt of the surface", "degrees", false, 0, {0, 30, 60, 75, 80, 85, 88, 89, 89.9, 89.99}, tilted},
+      {"half depth",
+       "field of view of 48 pixels, degrees",
+       true,
+       kFov,
+       {0.02, 0.05, 0.15, 0.5, 1.5, 5, 15, kFov},
+       in_half},
+      {"16 bits of device depth", "median depth over near plane", true, 3, over_near,
+       [](double x) { return in_bits(16, false, x); }},
+      {"16 bits of reversed depth", "median depth over near plane", true, 3, over_near,
+       [](double x) { return in_bits(16, true, x); }},
+      {"24 bits of device depth", "median depth over near plane", true, 3, over_near,
+       [](double x) { return in_bits(24, false, x); }},
+      {"24 bits of reversed depth", "median depth over near plane", true, 3, over_near,
+       [](double x) { return in_bits(24, true, x); }},
+      {"float reversed depth", "median depth over near plane", true, 3, over_near,
+       [](double x) { return in_bits(32, true, x); }},
+      {"world offset", "widths of the room, of position files", true, 1, {1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7}, far_out}};
 }
 
 struct Candidate {
@@ -213,7 +248,8 @@ std::vector<Candidate> candidates() {
   plain.stride = 1;
   plain.denoise = Denoise::none;
   std::vector<Candidate> all;
-  const auto add = [&](const char* name, Estimator estimator, ThicknessKind thickness, SliceSearch search = SliceSearch::steps) {
+  const auto add = [&](const char* name, Estimator estimator, ThicknessKind thickness,
+                       SliceSearch search = SliceSearch::steps) {
     EstimatorSettings& settings = all.emplace_back(Candidate{name, plain}).settings;
     settings.estimator = estimator;
     settings.thickness = thickness;
@@ -258,10 +294,12 @@ class Bench {
 
  private:
   /// Shared by frames of one picture and by candidates of one definition.
-  const std::vector<float>& reference_of(const Trial& trial, const Candidate& candidate, const std::vector<std::size_t>& pixels) {
+  const std::vector<float>& reference_of(const Trial& trial, const Candidate& candidate,
+                                         const std::vector<std::size_t>& pixels) {
     const EstimatorSettings settings = with(candidate.settings, trial.exact_radius);
     const bool by_slices = settings.estimator == Estimator::gtao || settings.estimator == Estimator::bitmask;
-    auto& made = made_[fmt::format("{} {} {} {}", trial.picture, trial.exact_radius, by_slices ? -1 : int(settings.estimator), int(settings.thickness))];
+    auto& made = made_[fmt::format("{} {} {} {}", trial.picture, trial.exact_radius,
+                                   by_slices ? -1 : int(settings.estimator), int(settings.thickness))];
     if (!made.empty()) return made;
     ReferenceSettings reference = reference_settings_of(settings);
     reference.pixels = pixels;
@@ -305,7 +343,9 @@ StabilityReport run_stability(gpu::Device& device, const std::function<void(cons
       measured.points.push_back({value, bench.notes(trial)});
       for (std::size_t c = 0; c < all.size(); c++) measured.curves[c].rmse.push_back(bench.rmse(trial, all[c]));
     }
-    const auto nearest = std::ranges::min_element(axis.values, {}, [&](double value) { return axis.logarithmic ? std::abs(std::log(value / axis.plain)) : std::abs(value - axis.plain); });
+    const auto nearest = std::ranges::min_element(axis.values, {}, [&](double value) {
+      return axis.logarithmic ? std::abs(std::log(value / axis.plain)) : std::abs(value - axis.plain);
+    });
     for (std::size_t c = 0; c < all.size(); c++) {
       StabilityCurve& curve = measured.curves[c];
       curve.breaks = breaks_of(curve.rmse, std::size_t(nearest - axis.values.begin()), report.plain[c].second);

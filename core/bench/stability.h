@@ -1,4 +1,5 @@
-// Where each estimator's numbers fail: its error against the double-precision reference along every axis, and whether a run would say so.
+// Where each estimator's numbers fail: its error against the double-precision reference along every axis, and whether a
+// run would say so.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -21,9 +22,10 @@ struct StabilityPoint {
 /// An estimator along an axis.
 struct StabilityCurve {
   std::string estimator;
-  std::vector<double> rmse;         // at each of the axis' points, over the surfaces
-  std::vector<std::size_t> breaks;  // the points nearest to the plain room, to each side of it, that break down; none: nowhere
-  bool said = false;                // at all of them a run says so
+  std::vector<double> rmse;  // at each of the axis' points, over the surfaces
+  // the points nearest to the plain room, to each side of it, that break down; none: nowhere
+  std::vector<std::size_t> breaks;
+  bool said = false;  // at all of them a run says so
 };
 
 struct StabilityAxis {
@@ -44,7 +46,8 @@ StabilityReport run_stability(gpu::Device& device, const std::function<void(cons
 
 /// A line for every axis and estimator: the worst error and where it breaks down.
 std::string stability_text(const StabilityReport& report);
-/// {"device", "breakdown", "plain": [{"estimator", "rmse"}], "axes": [{"name", "unit", "points": [{"at", "notes"}], "curves": [{"estimator", "rmse", "breaks_at": [...], "said"}]}]}.
+/// {"device", "breakdown", "plain": [{"estimator", "rmse"}], "axes": [{"name", "unit", "points": [{"at", "notes"}],
+/// "curves": [{"estimator", "rmse", "breaks_at": [...], "said"}]}]}.
 std::string stability_json(const StabilityReport& report);
 /// A self-contained page without scripts.
 std::string stability_page(const StabilityReport& report);

@@ -1,10 +1,10 @@
 // The stability report as text, JSON and a page with a drawing for each axis.
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include "core/bench/stability.h"
@@ -16,7 +16,8 @@ using Json = nlohmann::ordered_json;
 
 std::string escaped(const std::string& text) {
   std::string safe;
-  for (const char c : text) safe += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '>' ? "&gt;" : c == '"' ? "&quot;" : std::string(1, c);
+  for (const char c : text)
+    safe += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '>' ? "&gt;" : c == '"' ? "&quot;" : std::string(1, c);
   return safe;
 }
 
@@ -36,45 +37,66 @@ struct Drawing {
   const StabilityAxis& axis;
 
   double x(std::size_t i) const {
-    const auto place = [&](std::size_t k) { return axis.logarithmic ? std::log10(axis.points[k].at) : axis.points[k].at; };
+    const auto place = [&](std::size_t k) {
+      return axis.logarithmic ? std::log10(axis.points[k].at) : axis.points[k].at;
+    };
     const double least = place(0), most = place(axis.points.size() - 1);
     return kLeft + (place(i) - least) / (most - least) * (kWidth - kLeft - kRight);
   }
-  static double y(double rmse) { return kTop + (1 - std::sqrt(std::min(rmse, kMost) / kMost)) * (kHeight - kTop - kBottom); }
+  static double y(double rmse) {
+    return kTop + (1 - std::sqrt(std::min(rmse, kMost) / kMost)) * (kHeight - kTop - kBottom);
+  }
 
   std::string svg() const {
-    std::string out = fmt::format("<svg viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"RMSE against {}\">", kWidth, kHeight, escaped(axis.name));
+    std::string out = fmt::format("<svg viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"RMSE against {}\">", kWidth,
+                                  kHeight, escaped(axis.name));
     for (const double level : {0.0, 0.01, 0.05, 0.1, 0.2, 0.4})
-      out += fmt::format("<line class=\"grid\" x1=\"{0}\" x2=\"{1}\" y1=\"{2:.1f}\" y2=\"{2:.1f}\"/><text x=\"{3}\" y=\"{4:.1f}\" text-anchor=\"end\">{5:g}</text>", kLeft,
-                         kWidth - kRight, y(level), kLeft - 5, y(level) + 4, level);
+      out += fmt::format(
+          "<line class=\"grid\" x1=\"{0}\" x2=\"{1}\" y1=\"{2:.1f}\" y2=\"{2:.1f}\"/><text x=\"{3}\" y=\"{4:.1f}\" "
+          "text-anchor=\"end\">{5:g}</text>",
+          kLeft, kWidth - kRight, y(level), kLeft - 5, y(level) + 4, level);
     double last = -100;
     for (std::size_t i = 0; i < axis.points.size(); i++) {
-      if (!axis.points[i].notes.empty()) out += fmt::format("<rect class=\"said\" x=\"{:.1f}\" y=\"{}\" width=\"8\" height=\"{}\"><title>{}</title></rect>", x(i) - 4, kTop,
-                                                            kHeight - kTop - kBottom, escaped(fmt::format("{}", fmt::join(axis.points[i].notes, "; "))));
+      if (!axis.points[i].notes.empty())
+        out += fmt::format(
+            "<rect class=\"said\" x=\"{:.1f}\" y=\"{}\" width=\"8\" height=\"{}\"><title>{}</title></rect>", x(i) - 4,
+            kTop, kHeight - kTop - kBottom, escaped(fmt::format("{}", fmt::join(axis.points[i].notes, "; "))));
       if (x(i) - last < 40) continue;
       last = x(i);
-      out += fmt::format("<text x=\"{:.1f}\" y=\"{}\" text-anchor=\"middle\">{:g}</text>", x(i), kHeight - 20, axis.points[i].at);
+      out += fmt::format("<text x=\"{:.1f}\" y=\"{}\" text-anchor=\"middle\">{:g}</text>", x(i), kHeight - 20,
+                         axis.points[i].at);
     }
-    out += fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"end\">{}</text>", kWidth - kRight, kHeight - 4, escaped(axis.unit));
+    out += fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"end\">{}</text>", kWidth - kRight, kHeight - 4,
+                       escaped(axis.unit));
     for (std::size_t c = 0; c < axis.curves.size(); c++) {
       const StabilityCurve& curve = axis.curves[c];
       std::string points;
-      for (std::size_t i = 0; i < curve.rmse.size(); i++) points += fmt::format("{:.1f},{:.1f} ", x(i), y(curve.rmse[i]));
-      out += fmt::format("<polyline points=\"{}\" stroke=\"{}\"><title>{}</title></polyline>", points, kColors[c % kColors.size()], escaped(curve.estimator));
+      for (std::size_t i = 0; i < curve.rmse.size(); i++)
+        points += fmt::format("{:.1f},{:.1f} ", x(i), y(curve.rmse[i]));
+      out += fmt::format("<polyline points=\"{}\" stroke=\"{}\"><title>{}</title></polyline>", points,
+                         kColors[c % kColors.size()], escaped(curve.estimator));
       for (const std::size_t i : curve.breaks)
-        out += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"4\" fill=\"{}\"><title>{} breaks down at {:g}, RMSE {:.3f}</title></circle>", x(i), y(curve.rmse[i]),
-                           kColors[c % kColors.size()], escaped(curve.estimator), axis.points[i].at, curve.rmse[i]);
+        out += fmt::format(
+            "<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"4\" fill=\"{}\"><title>{} breaks down at {:g}, RMSE "
+            "{:.3f}</title></circle>",
+            x(i), y(curve.rmse[i]), kColors[c % kColors.size()], escaped(curve.estimator), axis.points[i].at,
+            curve.rmse[i]);
     }
     return out + "</svg>";
   }
 
   std::string table() const {
-    std::string out = "<table><tr><th>estimator</th><th>worst RMSE</th><th>breaks down at</th><th>a run says so</th></tr>";
+    std::string out =
+        "<table><tr><th>estimator</th><th>worst RMSE</th><th>breaks down at</th><th>a run says so</th></tr>";
     for (const auto& curve : axis.curves) {
       std::vector<std::string> places;
       for (const std::size_t i : curve.breaks) places.push_back(fmt::format("{:g}", axis.points[i].at));
-      out += fmt::format("<tr><td>{}</td><td>{:.4f}</td><td>{}</td><td{}>{}</td></tr>", escaped(curve.estimator), worst_of(curve), places.empty() ? "&ndash;" : fmt::format("{}", fmt::join(places, ", ")),
-                         curve.said || places.empty() ? "" : " class=\"silent\"", places.empty() ? "&ndash;" : curve.said ? "yes" : "no");
+      out += fmt::format("<tr><td>{}</td><td>{:.4f}</td><td>{}</td><td{}>{}</td></tr>", escaped(curve.estimator),
+                         worst_of(curve), places.empty() ? "&ndash;" : fmt::format("{}", fmt::join(places, ", ")),
+                         curve.said || places.empty() ? "" : " class=\"silent\"",
+                         places.empty() ? "&ndash;"
+                         : curve.said   ? "yes"
+                                        : "no");
     }
     return out + "</table>";
   }
@@ -102,14 +124,17 @@ th, td { text-align: left; padding: .12rem .5rem .12rem 0; border-bottom: 1px so
 std::string stability_text(const StabilityReport& report) {
   std::string text = fmt::format("{:<28} {:<16} {:>10} {}\n", "axis", "estimator", "worst", "breaks down at");
   for (const auto& axis : report.axes)
-    for (const auto& curve : axis.curves) text += fmt::format("{:<28} {:<16} {:>10.4f} {}\n", axis.name, curve.estimator, worst_of(curve), breaks_text(axis, curve));
+    for (const auto& curve : axis.curves)
+      text += fmt::format("{:<28} {:<16} {:>10.4f} {}\n", axis.name, curve.estimator, worst_of(curve),
+                          breaks_text(axis, curve));
   return text;
 }
 
 std::string stability_json(const StabilityReport& report) {
   const auto number = [](double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); };
   Json plain = Json::array(), axes = Json::array();
-  for (const auto& [estimator, rmse] : report.plain) plain.push_back({{"estimator", estimator}, {"rmse", number(rmse)}});
+  for (const auto& [estimator, rmse] : report.plain)
+    plain.push_back({{"estimator", estimator}, {"rmse", number(rmse)}});
   for (const auto& axis : report.axes) {
     Json points = Json::array(), curves = Json::array();
     for (const auto& point : axis.points) points.push_back({{"at", point.at}, {"notes", point.notes}});
@@ -121,17 +146,26 @@ std::string stability_json(const StabilityReport& report) {
     }
     axes.push_back({{"name", axis.name}, {"unit", axis.unit}, {"points", points}, {"curves", curves}});
   }
-  return Json{{"device", report.device}, {"breakdown", kBreakdown}, {"plain", plain}, {"axes", axes}}.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+  return Json{{"device", report.device}, {"breakdown", kBreakdown}, {"plain", plain}, {"axes", axes}}.dump(
+             1, ' ', false, Json::error_handler_t::replace) +
+         "\n";
 }
 
 std::string stability_page(const StabilityReport& report) {
   std::string page = kHead;
-  page += fmt::format("<h1>Alcove stability</h1><p>{}. RMSE of each estimator against the reference in double precision, in a room of 48 x 36 pixels. A dot is where it breaks down: "
-                      "{:g} above its error in the plain room. Bands are where <code>alcove run</code> says so (point at them).</p><p class=\"key\">", escaped(report.device), kBreakdown);
+  page += fmt::format(
+      "<h1>Alcove stability</h1><p>{}. RMSE of each estimator against the reference in double precision, in a room of "
+      "48 x 36 pixels. A dot is where it breaks down: "
+      "{:g} above its error in the plain room. Bands are where <code>alcove run</code> says so (point at them).</p><p "
+      "class=\"key\">",
+      escaped(report.device), kBreakdown);
   for (std::size_t c = 0; c < report.plain.size(); c++)
-    page += fmt::format("<i style=\"background:{}\"></i>{} {:.3f}", kColors[c % kColors.size()], escaped(report.plain[c].first), report.plain[c].second);
+    page += fmt::format("<i style=\"background:{}\"></i>{} {:.3f}", kColors[c % kColors.size()],
+                        escaped(report.plain[c].first), report.plain[c].second);
   page += "</p><main>\n";
-  for (const auto& axis : report.axes) page += fmt::format("<section><h2>{}</h2>{}{}</section>\n", escaped(axis.name), Drawing{axis}.svg(), Drawing{axis}.table());
+  for (const auto& axis : report.axes)
+    page += fmt::format("<section><h2>{}</h2>{}{}</section>\n", escaped(axis.name), Drawing{axis}.svg(),
+                        Drawing{axis}.table());
   return page + "</main></body></html>\n";
 }
 

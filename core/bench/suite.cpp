@@ -25,7 +25,9 @@ struct Table {
   std::string path, name;
   const toml::table& values;
 
-  [[noreturn]] void refuse(std::string_view key, const char* why) const { fail(ErrorKind::input, "{}: \"{}\" of {} {}", path, key, name, why); }
+  [[noreturn]] void refuse(std::string_view key, const char* why) const {
+    fail(ErrorKind::input, "{}: \"{}\" of {} {}", path, key, name, why);
+  }
 
   std::string text(std::string_view key) const {
     const auto value = values[key].value<std::string>();
@@ -79,7 +81,8 @@ std::vector<std::string> paths_of(const Table& table, const fs::path& folder) {
 
 SuiteFrame frame_of(const Table& table, const fs::path& folder) {
   table.require_keys({"name", "input", "camera", "radius", "truth"});
-  return {table.text("name"), (folder / table.text("input")).string(), (folder / table.text("camera")).string(), table.positive("radius"), paths_of(table, folder)};
+  return {table.text("name"), (folder / table.text("input")).string(), (folder / table.text("camera")).string(),
+          table.positive("radius"), paths_of(table, folder)};
 }
 
 SuiteCandidate candidate_of(const Table& table) {
@@ -174,7 +177,8 @@ std::vector<Limit> read_limits(const std::string& path) {
     known.insert({"frame", "candidate"});
     table.require_keys(known);
     for (const auto& measure : measures)
-      if (table.values.contains(measure)) limits.push_back({table.text("frame"), table.text("candidate"), measure, table.positive(measure)});
+      if (table.values.contains(measure))
+        limits.push_back({table.text("frame"), table.text("candidate"), measure, table.positive(measure)});
   });
   if (limits.empty()) fail(ErrorKind::input, "{}: there is no [[limit]] with a measure (--limits)", path);
   return limits;
@@ -187,7 +191,8 @@ void require_known(const std::vector<Limit>& limits, const Suite& suite, const s
   for (const auto& limit : limits) {
     if (limit.measure == "estimator-rmse" && suite.reference_slices == 0)
       fail(ErrorKind::usage, "{}: a limit for estimator-rmse needs --reference-slices above 0 (--limits)", path);
-    for (const auto& [what, name, names] : {std::tuple("frame", &limit.frame, &frames), {"candidate", &limit.candidate, &candidates}})
+    for (const auto& [what, name, names] :
+         {std::tuple("frame", &limit.frame, &frames), {"candidate", &limit.candidate, &candidates}})
       if (std::ranges::find(*names, *name) == names->end())
         fail(ErrorKind::input, "{}: the suite has no {} {}{} (--limits)", path, what, *name, suggestion(*name, *names));
   }

@@ -34,8 +34,8 @@ struct Suite {
 ///   [[candidate]]  name = "draft"     preset = "draft"  power = 1.2             # any long option of alcove run
 ///   [[sweep]]      slices = [1, 2, 4] steps = [4, 8]    preset = "draft"        # a candidate for every combination
 ///
-/// A candidate that does not name a radius has that of each frame's truth, whatever its preset says. Paths are below `data`, or where that is empty below
-/// the suite's folder. Fails with ErrorKind::input, naming file and key.
+/// A candidate that does not name a radius has that of each frame's truth, whatever its preset says. Paths are below
+/// `data`, or where that is empty below the suite's folder. Fails with ErrorKind::input, naming file and key.
 Suite read_suite(const std::string& path, const std::string& data);
 
 /// The most that an error may be for a candidate on a frame.
@@ -45,11 +45,12 @@ struct Limit {
   double most = 0;
 };
 
-/// Fails with ErrorKind::input where a limit is for a frame or a candidate that the suite has not, with ErrorKind::usage where it is for what is not
-/// measured. `path` is for the message.
+/// Fails with ErrorKind::input where a limit is for a frame or a candidate that the suite has not, with
+/// ErrorKind::usage where it is for what is not measured. `path` is for the message.
 void require_known(const std::vector<Limit>& limits, const Suite& suite, const std::string& path);
 
-/// Reads limits: a list of tables [[limit]] with frame, candidate and one or more measures. Fails with ErrorKind::input, naming file and key.
+/// Reads limits: a list of tables [[limit]] with frame, candidate and one or more measures. Fails with
+/// ErrorKind::input, naming file and key.
 std::vector<Limit> read_limits(const std::string& path);
 
 }  // namespace alcove

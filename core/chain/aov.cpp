@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
-#include "core/chain/chain.h"
 #include "core/base/error.h"
 #include "core/base/text.h"
+#include "core/chain/chain.h"
 
 namespace alcove {
 
@@ -35,7 +35,8 @@ std::vector<Aov> aovs_of(const OutputSettings& settings) {
   for (const auto& name : split(settings.aovs)) {
     const auto found = std::ranges::find(aov_table(), name, &Aov::name);
     if (found == aov_table().end())
-      fail(ErrorKind::usage, "--aov: there is no AOV \"{}\"{}; there is {}", name, suggestion(name, aov_names()), list_of(aov_names()));
+      fail(ErrorKind::usage, "--aov: there is no AOV \"{}\"{}; there is {}", name, suggestion(name, aov_names()),
+           list_of(aov_names()));
     if (std::ranges::find(aovs, name, &Aov::name) != aovs.end()) continue;
     aovs.push_back(*found);
     if (name != "ao" || settings.ao_channels == AoChannels::mono) continue;

@@ -25,7 +25,8 @@ struct Aov {
 std::span<const Aov> aov_table();
 std::vector<std::string> aov_names();
 
-/// The rows that the settings ask for, each once, in their order. Fails with ErrorKind::usage on a name that is not in the table, listing what is.
+/// The rows that the settings ask for, each once, in their order. Fails with ErrorKind::usage on a name that is not in
+/// the table, listing what is.
 std::vector<Aov> aovs_of(const OutputSettings& settings);
 
 /// The channels of an AOV that has so many planes: ao-scales has one a radius, scale1.Y of the smallest.

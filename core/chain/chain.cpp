@@ -11,23 +11,29 @@ namespace {
 
 /// Whether nothing is asked for but AO that is made from depth and normals alone.
 bool is_only_visibility(const FrameInputs& frame, const OutputSettings& output) {
-  const bool has_others = std::ranges::any_of(aovs_of(output), [](const Aov& aov) { return aov.planes != &FrameOutputs::ao && aov.planes != &FrameOutputs::scales; });
-  return !has_others && needs_ao(output) && !output.multi_bounce && !frame.beauty && !frame.material_ao && debug_views_of(output).empty();
+  const bool has_others = std::ranges::any_of(aovs_of(output), [](const Aov& aov) {
+    return aov.planes != &FrameOutputs::ao && aov.planes != &FrameOutputs::scales;
+  });
+  return !has_others && needs_ao(output) && !output.multi_bounce && !frame.beauty && !frame.material_ao &&
+         debug_views_of(output).empty();
 }
 
 }  // namespace
 
-FrameOutputs run_chain(gpu::Recorder& gpu, const FrameInputs& frame, const EstimatorSettings& settings, const OutputSettings& output) {
+FrameOutputs run_chain(gpu::Recorder& gpu, const FrameInputs& frame, const EstimatorSettings& settings,
+                       const OutputSettings& output) {
   FrameOutputs out;
   if (frame.is_sky && !settings.no_skip && is_only_visibility(frame, output)) {
     const OpenSky sky = open_sky(gpu, frame, settings);
     out.counts = sky.counts, out.tiles = sky.tiles, out.ao = sky.ao, out.scales = sky.scales;
     return out;
   }
-  for (const auto* plane : {frame.depth, frame.normal, frame.beauty, frame.indirect, frame.diffuse_color, frame.material_ao, frame.albedo})
+  for (const auto* plane :
+       {frame.depth, frame.normal, frame.beauty, frame.indirect, frame.diffuse_color, frame.material_ao, frame.albedo})
     if (plane) gpu.upload(*plane);
 
-  const GBuffer gbuffer = prepare(gpu, frame, wants(output, &FrameOutputs::depth) ? gpu::Use::download : gpu::Use::device);
+  const GBuffer gbuffer =
+      prepare(gpu, frame, wants(output, &FrameOutputs::depth) ? gpu::Use::download : gpu::Use::device);
   reconstruct(gpu, gbuffer);
   out.counts = gbuffer.counts;
   DebugStages stages;
@@ -62,15 +68,21 @@ FrameOutputs run_chain(gpu::Recorder& gpu, const FrameInputs& frame, const Estim
     }
     if (!several && wants(output, &FrameOutputs::scales)) out.scales = out.ao;
   }
-  if (wants(output, &FrameOutputs::specular_occlusion)) out.specular_occlusion = &specular_occlusion(gpu, gbuffer, *open, *out.ao, settings);
+  if (wants(output, &FrameOutputs::specular_occlusion))
+    out.specular_occlusion = &specular_occlusion(gpu, gbuffer, *open, *out.ao, settings);
   if (output.multi_bounce) out.color_ao = &multi_bounce(gpu, gbuffer, *out.ao, frame);
   if (frame.beauty) out.composite = &composite(gpu, gbuffer, out.color_ao ? *out.color_ao : *out.ao, frame, output);
-  if (wants(output, &FrameOutputs::normal)) out.normal = &directions(gpu, gbuffer, *gbuffer.normal, "normal planes", frame);
-  if (wants(output, &FrameOutputs::bent_normal)) out.bent_normal = &directions(gpu, gbuffer, *open, "bent normal planes", frame);
+  if (wants(output, &FrameOutputs::normal))
+    out.normal = &directions(gpu, gbuffer, *gbuffer.normal, "normal planes", frame);
+  if (wants(output, &FrameOutputs::bent_normal))
+    out.bent_normal = &directions(gpu, gbuffer, *open, "bent normal planes", frame);
   if (wants(output, &FrameOutputs::depth)) out.depth = gbuffer.depth;
-  for (const auto* view : debug_views_of(output)) out.debug.push_back(debug(gpu, *view, gbuffer, stages, frame, settings));
+  for (const auto* view : debug_views_of(output))
+    out.debug.push_back(debug(gpu, *view, gbuffer, stages, frame, settings));
 
-  for (const auto* result : {out.counts, out.tiles, out.error, out.squares, out.confidence, out.ao, out.scales, out.color_ao, out.composite, out.normal, out.bent_normal, out.depth, out.specular_occlusion})
+  for (const auto* result :
+       {out.counts, out.tiles, out.error, out.squares, out.confidence, out.ao, out.scales, out.color_ao, out.composite,
+        out.normal, out.bent_normal, out.depth, out.specular_occlusion})
     if (result) gpu.download(*result);
   for (const auto& plane : out.debug) gpu.download(*plane.values);
   return out;
@@ -78,13 +90,18 @@ FrameOutputs run_chain(gpu::Recorder& gpu, const FrameInputs& frame, const Estim
 
 bool needs_ao(const OutputSettings& output) {
   for (const auto* view : debug_views_of(output))
-    if (view->source == DebugSource::raw_ao || view->source == DebugSource::denoised_ao || view->source == DebugSource::tiles) return true;
-  return output.multi_bounce || wants(output, &FrameOutputs::error) || wants(output, &FrameOutputs::confidence) || !output.composite.empty() || !output.preview.empty() || wants(output, &FrameOutputs::ao) ||
-         wants(output, &FrameOutputs::scales) || wants(output, &FrameOutputs::bent_normal) || wants(output, &FrameOutputs::specular_occlusion);
+    if (view->source == DebugSource::raw_ao || view->source == DebugSource::denoised_ao ||
+        view->source == DebugSource::tiles)
+      return true;
+  return output.multi_bounce || wants(output, &FrameOutputs::error) || wants(output, &FrameOutputs::confidence) ||
+         !output.composite.empty() || !output.preview.empty() || wants(output, &FrameOutputs::ao) ||
+         wants(output, &FrameOutputs::scales) || wants(output, &FrameOutputs::bent_normal) ||
+         wants(output, &FrameOutputs::specular_occlusion);
 }
 
 bool needs_bent(const EstimatorSettings& settings, const OutputSettings& output) {
-  return has_bent_normals(settings) && (wants(output, &FrameOutputs::bent_normal) || wants(output, &FrameOutputs::specular_occlusion));
+  return has_bent_normals(settings) &&
+         (wants(output, &FrameOutputs::bent_normal) || wants(output, &FrameOutputs::specular_occlusion));
 }
 
 }  // namespace alcove

@@ -1,4 +1,5 @@
-// Pictures that explain themselves: ONE table of what --debug shows, and how numbers become colours with a scale below them.
+// Pictures that explain themselves: ONE table of what --debug shows, and how numbers become colours with a scale below
+// them.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -12,17 +13,20 @@
 namespace alcove {
 
 enum class DebugScale { fixed, fixed_logarithmic, percentile, percentile_logarithmic };
-enum class DebugSource { none, raw_depth, raw_ao, denoised_ao, normals_from_depth, tiles };  // what kernels/debug.comp takes beside the G-buffer
+// what kernels/debug.comp takes beside the G-buffer
+enum class DebugSource { none, raw_depth, raw_ao, denoised_ao, normals_from_depth, tiles };
 
 /// A row of the table.
 struct DebugView {
-  const char* name;    // as --debug takes it
-  const char* title;   // what the picture shows, and its unit
-  uint kind;           // of kernels/debug.h
+  const char* name;   // as --debug takes it
+  const char* title;  // what the picture shows, and its unit
+  uint kind;          // of kernels/debug.h
   DebugSource source;
-  DebugScale scale;    // percentile: from the 3rd to the 97th of the frame's surfaces; logarithmic: equal factors are equal steps, by the numbers' sizes
-  float low, high;     // of fixed scales; what is beyond has the colour of the end
-  bool is_grey;        // black to white instead of the colour ramp
+  // percentile: from the 3rd to the 97th of the frame's surfaces; logarithmic: equal factors are equal steps, by the
+  // numbers' sizes
+  DebugScale scale;
+  float low, high;  // of fixed scales; what is beyond has the colour of the end
+  bool is_grey;     // black to white instead of the colour ramp
 };
 std::span<const DebugView> debug_view_table();
 std::vector<std::string> debug_view_names();
@@ -33,7 +37,9 @@ std::vector<const DebugView*> debug_views_of(const OutputSettings& settings);
 /// Where the picture of a view goes: beside the AO, ao.exr -> ao.raw-depth.png.
 std::string debug_path(const OutputSettings& settings, const DebugView& view);
 
-/// Writes the picture, whole or not at all. `values`: a number a pixel, kSkyDepth for sky. made_by: see encode_png(). Fails with ErrorKind::output.
-void write_debug_view(const std::string& path, const DebugView& view, int width, int height, std::span<const float> values, const std::string& made_by);
+/// Writes the picture, whole or not at all. `values`: a number a pixel, kSkyDepth for sky. made_by: see encode_png().
+/// Fails with ErrorKind::output.
+void write_debug_view(const std::string& path, const DebugView& view, int width, int height,
+                      std::span<const float> values, const std::string& made_by);
 
 }  // namespace alcove

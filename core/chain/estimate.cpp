@@ -27,17 +27,21 @@ namespace {
 /// As kernels take it: 0 says as deep as wide.
 float thickness_of(const EstimatorSettings& settings) {
   if (settings.thickness == ThicknessKind::automatic) return 0;
-  return settings.thickness == ThicknessKind::infinite ? std::numeric_limits<float>::infinity() : float(settings.thickness_length);
+  return settings.thickness == ThicknessKind::infinite ? std::numeric_limits<float>::infinity()
+                                                       : float(settings.thickness_length);
 }
 
 uint range_check_of(RangeCheck check) {
   return check == RangeCheck::ratio ? kRangeRatio : check == RangeCheck::smoothstep ? kRangeSmoothstep : kRangeNone;
 }
 
-/// Where the noise pattern begins: successive frames, where it is animated, take successive points of the R2 sequence, seeds of another.
+/// Where the noise pattern begins: successive frames, where it is animated, take successive points of the R2 sequence,
+/// seeds of another.
 vec2 noise_shift(int frame, std::uint32_t seed) {
   const auto fraction = [](double x) { return x - std::floor(x); };
-  const auto shift = [&](double by_frame, double by_seed) { return float(fraction(0.5 + fraction(frame * by_frame) + fraction(seed * by_seed))); };
+  const auto shift = [&](double by_frame, double by_seed) {
+    return float(fraction(0.5 + fraction(frame * by_frame) + fraction(seed * by_seed)));
+  };
   return {shift(0.75487766624669276, 0.41421356237309505), shift(0.56984029099805327, 0.73205080756887729)};
 }
 
@@ -48,7 +52,8 @@ double reach_of(const EstimatorSettings& settings) {
 
 /// Of the estimators that search slices.
 template <class Params>
-Params slice_parameters(const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings, uint plane) {
+Params slice_parameters(const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings,
+                        uint plane) {
   Params params{};
   params.view = gbuffer.view;
   params.radius = float(reach_of(settings));
@@ -62,25 +67,34 @@ Params slice_parameters(const GBuffer& gbuffer, const FrameInputs& frame, const 
   return params;
 }
 std::vector<uint> slice_constants(const EstimatorSettings& settings, const gpu::Buffer* bent = nullptr) {
-  return {uint(settings.slices), uint(settings.steps), uint(settings.falloff) | (bent ? kWithBent : 0), uint(stride_of(settings))};
+  return {uint(settings.slices), uint(settings.steps), uint(settings.falloff) | (bent ? kWithBent : 0),
+          uint(stride_of(settings))};
 }
 
 /// Tiles in x and y.
-gpu::Extent tile_extent(const View& view) { return {groups_of(view.size.x, uint(kTile)), groups_of(view.size.y, uint(kTile))}; }
+gpu::Extent tile_extent(const View& view) {
+  return {groups_of(view.size.x, uint(kTile)), groups_of(view.size.y, uint(kTile))};
+}
 
 /// Groups of tiles in x and y.
-gpu::Extent group_extent(const View& view) { return {groups_of(view.size.x, uint(kTile * kTileGroup)), groups_of(view.size.y, uint(kTile * kTileGroup))}; }
+gpu::Extent group_extent(const View& view) {
+  return {groups_of(view.size.x, uint(kTile * kTileGroup)), groups_of(view.size.y, uint(kTile * kTileGroup))};
+}
 
 /// Of one radius, on average over the pixels of a surface.
 double samples_of_a_radius(const EstimatorSettings& settings) {
-  const double factor = double(settings.resolution), samples = settings.estimator == Estimator::crytek ? settings.samples : 2 * settings.slices * settings.steps;
+  const double factor = double(settings.resolution), samples = settings.estimator == Estimator::crytek
+                                                                   ? settings.samples
+                                                                   : 2 * settings.slices * settings.steps;
   return samples / (factor * factor * stride_of(settings));
 }
 
-/// Samples a pixel from which on a proof that tiles are open costs less than it saves: it costs as much as 6 of them, and most frames are open in a tenth.
+/// Samples a pixel from which on a proof that tiles are open costs less than it saves: it costs as much as 6 of them,
+/// and most frames are open in a tenth.
 constexpr double kWorthProving = 48;
 
-/// Directions of an estimate by error: at the least, where it has no other estimate to compare with, and at the most; powers of 2.
+/// Directions of an estimate by error: at the least, where it has no other estimate to compare with, and at the most;
+/// powers of 2.
 constexpr int kLeastDirections = 2, kMostDirections = 64;
 
 /// In this order 2, 4, 8 ... of the most directions are even.
@@ -96,39 +110,50 @@ constexpr double kThin = 0.02;
 /// How far a profile may leave a pixel's depth, in the pixel's own widths: less costs more vertices.
 constexpr float kProfileTolerance = 0.2f;
 
-/// Directions of an exact search over a frame: each pixel takes all of them, or a quarter where a denoiser mixes those of its block of 2 x 2.
-int directions_of(const EstimatorSettings& settings) { return settings.slices * (settings.denoise == Denoise::none ? 1 : 4); }
+/// Directions of an exact search over a frame: each pixel takes all of them, or a quarter where a denoiser mixes those
+/// of its block of 2 x 2.
+int directions_of(const EstimatorSettings& settings) {
+  return settings.slices * (settings.denoise == Denoise::none ? 1 : 4);
+}
 
 /// Pixels that lines have moved across at a step: as in lines.glsl.
-int shift_at(const Lines& lines, int step) { return (lines.slope * (lines.origin.x + step) + kSlopeUnit / 2) >> kSlopeBits; }
+int shift_at(const Lines& lines, int step) {
+  return (lines.slope * (lines.origin.x + step) + kSlopeUnit / 2) >> kSlopeBits;
+}
 
-/// The lines of a direction, even in angle where the view's pixels are made square; those of a few directions never follow an axis of the image.
+/// The lines of a direction, even in angle where the view's pixels are made square; those of a few directions never
+/// follow an axis of the image.
 Lines lines_of(const View& view, ivec2 origin, int direction, int directions) {
   const double angle = std::numbers::pi * (direction + 0.5) / directions;
   const double x = std::cos(angle) / view.tangent_per_pixel.x, y = std::sin(angle) / view.tangent_per_pixel.y;
   const bool steep = std::abs(y) > std::abs(x);
-  Lines lines{steep ? 1u : 0u, int(std::lround(kSlopeUnit * (steep ? x / y : y / x))), steep ? ivec2{origin.y, origin.x} : origin, 0};
+  Lines lines{steep ? 1u : 0u, int(std::lround(kSlopeUnit * (steep ? x / y : y / x))),
+              steep ? ivec2{origin.y, origin.x} : origin, 0};
   const int across = steep ? view.size.x : view.size.y;
   const int most = std::max(std::abs(shift_at(lines, 0)), std::abs(shift_at(lines, steep ? view.size.y : view.size.x)));
   lines.wrap = (most / across + 1) * across;
   return lines;
 }
 
-/// The visibility that the sums of so many directions give, its error, and for sums.listed the tiles that need more; of 0 directions: all with surfaces.
-void compare_directions(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings, Estimate& sums, Estimate& all, uint plane,
-                        int directions) {
+/// The visibility that the sums of so many directions give, its error, and for sums.listed the tiles that need more; of
+/// 0 directions: all with surfaces.
+void compare_directions(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame,
+                        const EstimatorSettings& settings, Estimate& sums, Estimate& all, uint plane, int directions) {
   const ivec2 size = gbuffer.view.size, origin = frame.noise_origin;
   const auto tiles_in = [](int pixels, int begin) { return groups_of(pixels + (begin & (kTile - 1)), uint(kTile)); };
   const uint columns = tiles_in(size.x, origin.x), tiles = columns * tiles_in(size.y, origin.y);
   const std::string name = "converge " + std::to_string(directions) + " ";
-  const TileList next{&gpu.buffer(name + "tiles", sizeof(ListedTile) * tiles, gpu::Use::device), &gpu.buffer(name + "counts", sizeof(TileCounts), gpu::Use::download),
-                      nullptr, &gpu.buffer(name + "lines", sizeof(GroupCount), gpu::Use::upload)};
+  const TileList next{&gpu.buffer(name + "tiles", sizeof(ListedTile) * tiles, gpu::Use::device),
+                      &gpu.buffer(name + "counts", sizeof(TileCounts), gpu::Use::download), nullptr,
+                      &gpu.buffer(name + "lines", sizeof(GroupCount), gpu::Use::upload)};
   gpu.clear(*next.counts);
   next.lines->as<GroupCount>()[0] = {groups_of(2 * (size.x + size.y), kProfileGroup), 1, 0};
   gpu.upload(*next.lines);
   all.error = &gpu.buffer("error", plane_bytes(gbuffer.view), gpu::Use::download);
   all.squares = &gpu.buffer("error squares", sizeof(vec2) * tiles, gpu::Use::download);
-  const ConvergeParams params{gbuffer.view, origin, float(settings.tolerance), uint(directions), directions > kLeastDirections ? 1u : 0u, plane};
+  const ConvergeParams params{
+      gbuffer.view, origin, float(settings.tolerance), uint(directions), directions > kLeastDirections ? 1u : 0u,
+      plane};
   const bool begins = directions == 0;
   gpu.dispatch("converge", params,
                {{kConvergeDepth, *gbuffer.depth},
@@ -155,7 +180,8 @@ bool searches_exactly(const EstimatorSettings& settings) {
 int stride_of(const EstimatorSettings& settings) {
   if (searches_exactly(settings)) return 1;
   if (settings.stride > 0) return settings.stride;
-  const bool shared = settings.denoise == Denoise::bilateral && settings.resolution == Resolution::full && settings.slices <= 2;
+  const bool shared =
+      settings.denoise == Denoise::bilateral && settings.resolution == Resolution::full && settings.slices <= 2;
   return shared && settings.estimator == Estimator::gtao ? 4 : 1;
 }
 
@@ -167,10 +193,12 @@ std::vector<double> radii_of(const EstimatorSettings& settings) {
 }
 
 bool has_bent_normals(const EstimatorSettings& settings) {
-  return settings.estimator == Estimator::bitmask || (settings.estimator == Estimator::gtao && !searches_exactly(settings));
+  return settings.estimator == Estimator::bitmask ||
+         (settings.estimator == Estimator::gtao && !searches_exactly(settings));
 }
 
-Estimate estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& inputs, const EstimatorSettings& settings, bool with_bent, const std::string& prefix) {
+Estimate estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& inputs,
+                  const EstimatorSettings& settings, bool with_bent, const std::string& prefix) {
   const BlockGrid grid = block_grid(inputs, settings);
   FrameInputs frame = inputs;
   frame.noise_origin = grid.origin;
@@ -183,11 +211,13 @@ Estimate estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs&
     EstimatorSettings one = settings;
     one.radius = radii[plane];
     Estimate out{all.ao, plane + 1 == radii.size() ? all.bent : nullptr};
-    if (!searches_exactly(one)) all.listed = out.listed = classify(gpu, gbuffer, frame, grid, one, surfaces, out, plane, prefix);
+    if (!searches_exactly(one))
+      all.listed = out.listed = classify(gpu, gbuffer, frame, grid, one, surfaces, out, plane, prefix);
     switch (settings.estimator) {
       case Estimator::gtao:
         if (!searches_exactly(one)) horizon(gpu, gbuffer, frame, one, out, plane);
-        for (int direction = 0; searches_exactly(one) && one.tolerance == 0 && direction < directions_of(one); direction++) {
+        for (int direction = 0; searches_exactly(one) && one.tolerance == 0 && direction < directions_of(one);
+             direction++) {
           const Profile lines = profile(gpu, gbuffer, frame, one, direction);
           exact(gpu, gbuffer, lines, frame, one, out, plane);
         }
@@ -206,7 +236,8 @@ double samples_per_pixel(const EstimatorSettings& settings) {
 }
 
 bool proves(const EstimatorSettings& settings) {
-  return !settings.no_skip && !searches_exactly(settings) && (settings.skip_tolerance > 0 || samples_of_a_radius(settings) >= kWorthProving);
+  return !settings.no_skip && !searches_exactly(settings) &&
+         (settings.skip_tolerance > 0 || samples_of_a_radius(settings) >= kWorthProving);
 }
 
 Bounds bounds(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings) {
@@ -215,25 +246,38 @@ Bounds bounds(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& fra
   const Bounds result{&gpu.buffer("bounds", sizeof(TileBounds) * tiles.x * tiles.y, gpu::Use::device),
                       &gpu.buffer("group bounds", sizeof(GroupBounds) * groups.x * groups.y, gpu::Use::device)};
   gpu.dispatch("bounds", BoundsParams{gbuffer.view, frame.noise_origin},
-               {{kBoundsDepth, *gbuffer.depth}, {kBoundsNormal, *gbuffer.normal}, {kBoundsTiles, *result.tiles}}, tiles, {uint(stride_of(settings))});
+               {{kBoundsDepth, *gbuffer.depth}, {kBoundsNormal, *gbuffer.normal}, {kBoundsTiles, *result.tiles}}, tiles,
+               {uint(stride_of(settings))});
   return result;
 }
 
 void coarsen(gpu::Recorder& gpu, const GBuffer& gbuffer, const Bounds& bounds) {
-  gpu.dispatch("coarsen", CoarsenParams{gbuffer.view.size}, {{kCoarsenTiles, *bounds.tiles}, {kCoarsenGroups, *bounds.groups}}, group_extent(gbuffer.view));
+  gpu.dispatch("coarsen", CoarsenParams{gbuffer.view.size},
+               {{kCoarsenTiles, *bounds.tiles}, {kCoarsenGroups, *bounds.groups}}, group_extent(gbuffer.view));
 }
 
-TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const BlockGrid& grid, const EstimatorSettings& settings,
-                  const Bounds& bounds, const Estimate& out, uint plane, const std::string& prefix) {
+TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const BlockGrid& grid,
+                  const EstimatorSettings& settings, const Bounds& bounds, const Estimate& out, uint plane,
+                  const std::string& prefix) {
   const gpu::Extent tiles = tile_extent(gbuffer.view);
-  const TileList list{&gpu.buffer("tiles", sizeof(ListedTile) * tiles.x * tiles.y, gpu::Use::device), &gpu.buffer(prefix + "tile counts", sizeof(TileCounts), gpu::Use::download),
+  const TileList list{&gpu.buffer("tiles", sizeof(ListedTile) * tiles.x * tiles.y, gpu::Use::device),
+                      &gpu.buffer(prefix + "tile counts", sizeof(TileCounts), gpu::Use::download),
                       &gpu.buffer(prefix + "tile sectors", sizeof(uint) * tiles.x * tiles.y, gpu::Use::device)};
   gpu.clear(*list.counts);
   const bool ranged = settings.estimator == Estimator::gtao || settings.estimator == Estimator::bitmask;
-  const uint mode = (settings.no_skip ? 0 : kClassifySkips) | (proves(settings) ? kClassifyProves : 0) | (ranged ? kClassifyRanged : 0) |
-                    (out.bent ? kClassifyWithBent : 0) | (frame.changes && !settings.no_skip ? kClassifyReuses : 0) | (settings.skip_tolerance > 0 ? kClassifyTolerates : 0);
-  const ClassifyParams params{gbuffer.view, frame.noise_origin, float(reach_of(settings)), float(std::sqrt(settings.skip_tolerance)),
-                              to_vec3(frame.depth_precision.at), plane, frame.view.size, grid.overhang, grid.factor};
+  const uint mode = (settings.no_skip ? 0 : kClassifySkips) | (proves(settings) ? kClassifyProves : 0) |
+                    (ranged ? kClassifyRanged : 0) | (out.bent ? kClassifyWithBent : 0) |
+                    (frame.changes && !settings.no_skip ? kClassifyReuses : 0) |
+                    (settings.skip_tolerance > 0 ? kClassifyTolerates : 0);
+  const ClassifyParams params{gbuffer.view,
+                              frame.noise_origin,
+                              float(reach_of(settings)),
+                              float(std::sqrt(settings.skip_tolerance)),
+                              to_vec3(frame.depth_precision.at),
+                              plane,
+                              frame.view.size,
+                              grid.overhang,
+                              grid.factor};
   gpu.dispatch("classify", params,
                {{kClassifyBounds, bounds.tiles ? *bounds.tiles : *list.tiles},
                 {kClassifyGroups, bounds.groups ? *bounds.groups : *list.tiles},
@@ -245,22 +289,29 @@ TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs&
                 {kClassifySectors, *list.sectors},
                 {kClassifyAo, *out.ao},
                 {kClassifyBent, out.bent ? *out.bent : *out.ao}},
-               {groups_of(int(tiles.x), 2 * kGroupY) * kGroupX, groups_of(int(tiles.y), 2) * kGroupY}, {uint(stride_of(settings)), mode});
+               {groups_of(int(tiles.x), 2 * kGroupY) * kGroupX, groups_of(int(tiles.y), 2) * kGroupY},
+               {uint(stride_of(settings)), mode});
   return list;
 }
 
-void horizon(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings, const Estimate& out, uint plane) {
+void horizon(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings,
+             const Estimate& out, uint plane) {
   std::vector<uint> constants = slice_constants(settings, out.bent);
   constants.push_back(settings.thickness == ThicknessKind::automatic  ? kThicknessWidth
                       : settings.thickness == ThicknessKind::constant ? kThicknessLength
                                                                       : kThicknessEndless);
   gpu.dispatch("horizon", slice_parameters<HorizonParams>(gbuffer, frame, settings, plane),
-               {{kHorizonDepth, *gbuffer.depth}, {kHorizonNormal, *gbuffer.normal}, {kHorizonAo, *out.ao}, {kHorizonBent, out.bent ? *out.bent : *out.ao},
-                {kHorizonList, *out.listed.tiles}, {kHorizonCounts, *out.listed.counts}},
+               {{kHorizonDepth, *gbuffer.depth},
+                {kHorizonNormal, *gbuffer.normal},
+                {kHorizonAo, *out.ao},
+                {kHorizonBent, out.bent ? *out.bent : *out.ao},
+                {kHorizonList, *out.listed.tiles},
+                {kHorizonCounts, *out.listed.counts}},
                gpu::Extent(*out.listed.counts), constants);
 }
 
-TileList converge(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings, Estimate& all, uint plane) {
+TileList converge(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame,
+                  const EstimatorSettings& settings, Estimate& all, uint plane) {
   EstimatorSettings every = settings;
   every.slices = kMostDirections;
   every.denoise = Denoise::none;
@@ -270,30 +321,35 @@ TileList converge(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs&
   const TileList first = sums.listed;
   for (int i = 0; i < kMostDirections; i++) {
     exact(gpu, gbuffer, profile(gpu, gbuffer, frame, every, bit_reversed(i), sums.listed.lines), frame, every, sums, 0);
-    if (i + 1 >= kLeastDirections && std::has_single_bit(uint(i + 1))) compare_directions(gpu, gbuffer, frame, settings, sums, all, plane, i + 1);
+    if (i + 1 >= kLeastDirections && std::has_single_bit(uint(i + 1)))
+      compare_directions(gpu, gbuffer, frame, settings, sums, all, plane, i + 1);
   }
   return first;
 }
 
-Profile profile(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings, int direction, const gpu::Buffer* groups) {
+Profile profile(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings,
+                int direction, const gpu::Buffer* groups) {
   const std::size_t bytes = plane_bytes(gbuffer.view);
   const Lines lines = lines_of(gbuffer.view, frame.noise_origin, direction, directions_of(settings));
-  const Profile result{direction, lines, &gpu.buffer("profile vertex", bytes, gpu::Use::device), &gpu.buffer("profile mark", bytes, gpu::Use::device),
+  const Profile result{direction, lines, &gpu.buffer("profile vertex", bytes, gpu::Use::device),
+                       &gpu.buffer("profile mark", bytes, gpu::Use::device),
                        &gpu.buffer("profile neighbor", bytes, gpu::Use::device)};
   const ivec2 size = gbuffer.view.size;
   const auto [least, most] = std::minmax({shift_at(lines, 0), shift_at(lines, (lines.steep ? size.y : size.x) - 1)});
-  const ProfileParams params{gbuffer.view, lines, -most, uint((lines.steep ? size.x : size.y) + most - least), kProfileTolerance};
+  const ProfileParams params{gbuffer.view, lines, -most, uint((lines.steep ? size.x : size.y) + most - least),
+                             kProfileTolerance};
   gpu.dispatch("profile", params,
                {{kProfileDepth, *gbuffer.depth},
                 {kProfileVertex, *result.vertex},
                 {kProfileMark, *result.mark},
                 {kProfileNeighbor, *result.neighbor}},
-               groups ? gpu::Extent(*groups) : gpu::Extent(params.count), {settings.search == SliceSearch::every_pixel ? 1u : 0u});
+               groups ? gpu::Extent(*groups) : gpu::Extent(params.count),
+               {settings.search == SliceSearch::every_pixel ? 1u : 0u});
   return result;
 }
 
-void exact(gpu::Recorder& gpu, const GBuffer& gbuffer, const Profile& profile, const FrameInputs& frame, const EstimatorSettings& settings, const Estimate& out,
-           uint plane) {
+void exact(gpu::Recorder& gpu, const GBuffer& gbuffer, const Profile& profile, const FrameInputs& frame,
+           const EstimatorSettings& settings, const Estimate& out, uint plane) {
   const Lines& lines = profile.lines;
   const int directions = directions_of(settings), takers = directions / settings.slices;
   ExactParams params{};
@@ -312,7 +368,8 @@ void exact(gpu::Recorder& gpu, const GBuffer& gbuffer, const Profile& profile, c
   params.bias = float(settings.bias);
   params.depth_precision = to_vec3(frame.depth_precision.at);
   params.plane = plane;
-  const ivec2 size = gbuffer.view.size, taken{(size.x + params.stride - 1) / params.stride, (size.y + params.stride - 1) / params.stride};
+  const ivec2 size = gbuffer.view.size,
+              taken{(size.x + params.stride - 1) / params.stride, (size.y + params.stride - 1) / params.stride};
   gpu.dispatch("exact", params,
                {{kExactDepth, *gbuffer.depth},
                 {kExactNormal, *gbuffer.normal},
@@ -323,18 +380,26 @@ void exact(gpu::Recorder& gpu, const GBuffer& gbuffer, const Profile& profile, c
                 {kExactAo, *out.ao},
                 {kExactList, out.listed.tiles ? *out.listed.tiles : *out.ao},
                 {kExactCounts, out.listed.counts ? *out.listed.counts : *out.ao}},
-               out.listed.counts ? gpu::Extent(*out.listed.counts) : lines.steep ? gpu::Extent{uint(taken.y), uint(taken.x)} : gpu::Extent{uint(taken.x), uint(taken.y)},
+               out.listed.counts ? gpu::Extent(*out.listed.counts)
+               : lines.steep     ? gpu::Extent{uint(taken.y), uint(taken.x)}
+                                 : gpu::Extent{uint(taken.x), uint(taken.y)},
                {out.listed.counts ? 1u : 0u});
 }
 
-void bitmask(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings, const Estimate& out, uint plane) {
+void bitmask(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings,
+             const Estimate& out, uint plane) {
   gpu.dispatch("bitmask", slice_parameters<BitmaskParams>(gbuffer, frame, settings, plane),
-               {{kBitmaskDepth, *gbuffer.depth}, {kBitmaskNormal, *gbuffer.normal}, {kBitmaskAo, *out.ao}, {kBitmaskBent, out.bent ? *out.bent : *out.ao},
-                {kBitmaskList, *out.listed.tiles}, {kBitmaskCounts, *out.listed.counts}},
+               {{kBitmaskDepth, *gbuffer.depth},
+                {kBitmaskNormal, *gbuffer.normal},
+                {kBitmaskAo, *out.ao},
+                {kBitmaskBent, out.bent ? *out.bent : *out.ao},
+                {kBitmaskList, *out.listed.tiles},
+                {kBitmaskCounts, *out.listed.counts}},
                gpu::Extent(*out.listed.counts), slice_constants(settings, out.bent));
 }
 
-void hbao(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings, const Estimate& out, uint plane) {
+void hbao(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings,
+          const Estimate& out, uint plane) {
   HbaoParams params{};
   params.view = gbuffer.view;
   params.radius = float(reach_of(settings));
@@ -345,11 +410,17 @@ void hbao(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, 
   params.noise_shift = noise_shift(settings.noise == Noise::animated ? frame.frame : 0, settings.seed);
   params.plane = plane;
   params.depth_precision = to_vec3(frame.depth_precision.at);
-  gpu.dispatch("hbao", params, {{kHbaoDepth, *gbuffer.depth}, {kHbaoNormal, *gbuffer.normal}, {kHbaoAo, *out.ao}, {kHbaoList, *out.listed.tiles}, {kHbaoCounts, *out.listed.counts}},
+  gpu.dispatch("hbao", params,
+               {{kHbaoDepth, *gbuffer.depth},
+                {kHbaoNormal, *gbuffer.normal},
+                {kHbaoAo, *out.ao},
+                {kHbaoList, *out.listed.tiles},
+                {kHbaoCounts, *out.listed.counts}},
                gpu::Extent(*out.listed.counts), slice_constants(settings));
 }
 
-void crytek(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings, const Estimate& out, uint plane) {
+void crytek(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings,
+            const Estimate& out, uint plane) {
   CrytekParams params{};
   params.view = gbuffer.view;
   params.radius = float(reach_of(settings));
@@ -360,11 +431,17 @@ void crytek(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame
   params.noise_shift = noise_shift(settings.noise == Noise::animated ? frame.frame : 0, settings.seed);
   params.plane = plane;
   params.depth_precision = to_vec3(frame.depth_precision.at);
-  gpu.dispatch("crytek", params, {{kCrytekDepth, *gbuffer.depth}, {kCrytekNormal, *gbuffer.normal}, {kCrytekAo, *out.ao}, {kCrytekList, *out.listed.tiles}, {kCrytekCounts, *out.listed.counts}},
+  gpu.dispatch("crytek", params,
+               {{kCrytekDepth, *gbuffer.depth},
+                {kCrytekNormal, *gbuffer.normal},
+                {kCrytekAo, *out.ao},
+                {kCrytekList, *out.listed.tiles},
+                {kCrytekCounts, *out.listed.counts}},
                gpu::Extent(*out.listed.counts), {uint(settings.samples), uint(stride_of(settings))});
 }
 
-gpu::Buffer& confidence(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings) {
+gpu::Buffer& confidence(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame,
+                        const EstimatorSettings& settings) {
   EstimatorSettings bracket = settings;
   bracket.estimator = Estimator::gtao;
   bracket.search = SliceSearch::steps;
@@ -378,7 +455,8 @@ gpu::Buffer& confidence(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameI
     const gpu::Buffer& ao = *estimate(gpu, gbuffer, frame, bracket, false, prefix).ao;
     return bracket.denoise == Denoise::none ? ao : denoise(gpu, gbuffer, ao, frame, bracket, prefix);
   };
-  const gpu::Buffer &thin = visibility(ThicknessKind::constant, "thin "), &solid = visibility(ThicknessKind::infinite, "solid ");
+  const gpu::Buffer &thin = visibility(ThicknessKind::constant, "thin "),
+                    &solid = visibility(ThicknessKind::infinite, "solid ");
   gpu::Buffer& result = gpu.buffer("confidence", plane_bytes(gbuffer.view), gpu::Use::download);
   const ConfidenceParams params{gbuffer.view, float(*bracket.radius), to_vec3(frame.depth_precision.at)};
   gpu.dispatch("confidence", params,

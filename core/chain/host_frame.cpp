@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "core/chain/chain.h"
 #include "core/base/error.h"
+#include "core/chain/chain.h"
 #include "core/frame/gbuffer.h"
 #include "core/frame/settle.h"
 #include "kernels/prepare.h"
@@ -52,16 +52,20 @@ FrameInputs upload(gpu::Recorder& gpu, const HostFrame& frame) {
   const std::size_t pixels = frame.data.pixels();
   if (frame.depth.size() != (frame.depth_kind == DepthKind::position ? 3 * pixels : pixels) ||
       (!frame.normal.empty() && frame.normal.size() != 3 * pixels && frame.normal.size() != 2 * pixels))
-    fail(ErrorKind::input, "a frame of {} has {} depth and {} normal values", to_string(frame.data), frame.depth.size(), frame.normal.size());
+    fail(ErrorKind::input, "a frame of {} has {} depth and {} normal values", to_string(frame.data), frame.depth.size(),
+         frame.normal.size());
   FrameInputs inputs;
   inputs.view = view_of(frame.camera, frame.data, frame.display);
   inputs.noise_origin = {frame.data.x - frame.display.x, frame.data.y - frame.display.y};
   inputs.frame = frame.frame;
-  inputs.depth_map = depth_map(frame.depth_kind, frame.depth_range, frame.position_space, frame.camera, frame.depth_scale, frame.sky);
-  inputs.depth_precision = depth_precision(inputs.depth_map, frame.depth_is_half ? kHalfPrecision : kFloatPrecision, frame.depth_step);
+  inputs.depth_map =
+      depth_map(frame.depth_kind, frame.depth_range, frame.position_space, frame.camera, frame.depth_scale, frame.sky);
+  inputs.depth_precision =
+      depth_precision(inputs.depth_map, frame.depth_is_half ? kHalfPrecision : kFloatPrecision, frame.depth_step);
   inputs.normal_encoding = frame.normal_encoding;
   inputs.normal_unorm = frame.normal_unorm;
-  if (!frame.normal.empty()) inputs.view_from_normal = view_from_normal(frame.camera, frame.normal_space, frame.flip_normal);
+  if (!frame.normal.empty())
+    inputs.view_from_normal = view_from_normal(frame.camera, frame.normal_space, frame.flip_normal);
   inputs.is_sky = is_all_sky(inputs.depth_map, frame.depth);
   inputs.depth = upload(gpu, "raw depth", frame.depth);
   inputs.normal = upload(gpu, "raw normal", frame.normal);

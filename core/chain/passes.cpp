@@ -45,9 +45,13 @@ std::vector<double> denoise_weights(const EstimatorSettings& settings) {
   return weights;
 }
 
-gpu::Buffer& denoised(gpu::Recorder& gpu, const std::string& prefix, std::size_t bytes) { return gpu.buffer(prefix + "denoised", bytes, gpu::Use::download); }
+gpu::Buffer& denoised(gpu::Recorder& gpu, const std::string& prefix, std::size_t bytes) {
+  return gpu.buffer(prefix + "denoised", bytes, gpu::Use::download);
+}
 
-gpu::Buffer& upsampled(gpu::Recorder& gpu, const std::string& prefix, std::size_t bytes) { return gpu.buffer(prefix + "upsampled", bytes, gpu::Use::download); }
+gpu::Buffer& upsampled(gpu::Recorder& gpu, const std::string& prefix, std::size_t bytes) {
+  return gpu.buffer(prefix + "upsampled", bytes, gpu::Use::download);
+}
 
 }  // namespace
 
@@ -56,14 +60,19 @@ BlockGrid block_grid(const FrameInputs& frame, const EstimatorSettings& settings
   const auto floored = [&](int px) { return px / factor - (px % factor < 0 ? 1 : 0); };
   const ivec2 origin{floored(frame.noise_origin.x), floored(frame.noise_origin.y)};
   const ivec2 overhang{frame.noise_origin.x - factor * origin.x, frame.noise_origin.y - factor * origin.y};
-  return {factor, origin, overhang, {floored(overhang.x + frame.view.size.x + factor - 1), floored(overhang.y + frame.view.size.y + factor - 1)}};
+  return {factor,
+          origin,
+          overhang,
+          {floored(overhang.x + frame.view.size.x + factor - 1), floored(overhang.y + frame.view.size.y + factor - 1)}};
 }
 
 OpenSky open_sky(gpu::Recorder& gpu, const FrameInputs& frame, const EstimatorSettings& settings) {
   const ivec2 size = block_grid(frame, settings).size;
-  const OpenSky sky{&gpu.buffer("counts", sizeof(FrameCounts), gpu::Use::download), &gpu.buffer("tile counts", sizeof(TileCounts), gpu::Use::download),
-                    &gpu.buffer("open sky", plane_bytes(frame.view), gpu::Use::download),
-                    &gpu.buffer("open sky scales", radii_of(settings).size() * plane_bytes(frame.view), gpu::Use::download)};
+  const OpenSky sky{
+      &gpu.buffer("counts", sizeof(FrameCounts), gpu::Use::download),
+      &gpu.buffer("tile counts", sizeof(TileCounts), gpu::Use::download),
+      &gpu.buffer("open sky", plane_bytes(frame.view), gpu::Use::download),
+      &gpu.buffer("open sky scales", radii_of(settings).size() * plane_bytes(frame.view), gpu::Use::download)};
   sky.counts->as<FrameCounts>()[0] = {uint(pixels_of(frame.view)), 0, 0, 0, 0};
   sky.tiles->as<TileCounts>()[0] = {{}, 0, groups_of(size.x, uint(kTile)) * groups_of(size.y, uint(kTile)), 0, 0, 0};
   for (const auto* planes : {sky.ao, sky.scales}) std::ranges::fill(planes->as<float>(), 1.0f);
@@ -91,7 +100,8 @@ GBuffer prepare(gpu::Recorder& gpu, const FrameInputs& frame, gpu::Use depth_use
   params.sky_depth = float(map.sky_depth);
   params.normal_unorm = frame.normal_unorm ? 1 : 0;
   gpu.clear(*gbuffer.counts);
-  gbuffer.missing->as<GroupCount>()[0] = {groups_of(frame.view.size.x, kGroupX), groups_of(frame.view.size.y, kGroupY), 0};
+  gbuffer.missing->as<GroupCount>()[0] = {groups_of(frame.view.size.x, kGroupX), groups_of(frame.view.size.y, kGroupY),
+                                          0};
   gpu.upload(*gbuffer.missing);
   gpu.dispatch("prepare", params,
                {{kPrepareRawDepth, *frame.depth},
@@ -105,16 +115,19 @@ GBuffer prepare(gpu::Recorder& gpu, const FrameInputs& frame, gpu::Use depth_use
 }
 
 void reconstruct(gpu::Recorder& gpu, const GBuffer& gbuffer) {
-  gpu.dispatch("reconstruct", ReconstructParams{gbuffer.view}, {{kReconstructDepth, *gbuffer.depth}, {kReconstructNormal, *gbuffer.normal}},
+  gpu.dispatch("reconstruct", ReconstructParams{gbuffer.view},
+               {{kReconstructDepth, *gbuffer.depth}, {kReconstructNormal, *gbuffer.normal}},
                gpu::Extent(*gbuffer.missing));
 }
 
-GBuffer downsample(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings) {
+GBuffer downsample(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame,
+                   const EstimatorSettings& settings) {
   const BlockGrid grid = block_grid(frame, settings);
   const auto size = float(grid.factor);
   GBuffer low = gbuffer;
   low.view.size = grid.size;
-  low.view.center = {(gbuffer.view.center.x + float(grid.overhang.x)) / size, (gbuffer.view.center.y + float(grid.overhang.y)) / size};
+  low.view.center = {(gbuffer.view.center.x + float(grid.overhang.x)) / size,
+                     (gbuffer.view.center.y + float(grid.overhang.y)) / size};
   low.view.tangent_per_pixel = {gbuffer.view.tangent_per_pixel.x * size, gbuffer.view.tangent_per_pixel.y * size};
   low.depth = &gpu.buffer("low depth", plane_bytes(low.view), gpu::Use::device);
   low.normal = &gpu.buffer("low normal", plane_bytes(low.view), gpu::Use::device);
@@ -130,11 +143,13 @@ GBuffer downsample(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs
 
 gpu::Buffer& combine(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& scales) {
   gpu::Buffer& ao = gpu.buffer("combined", plane_bytes(gbuffer.view), gpu::Use::download);
-  gpu.dispatch("combine", CombineParams{gbuffer.view.size, planes_in(scales, gbuffer.view)}, {{kCombineScales, scales}, {kCombineAo, ao}}, extent_of(gbuffer.view));
+  gpu.dispatch("combine", CombineParams{gbuffer.view.size, planes_in(scales, gbuffer.view)},
+               {{kCombineScales, scales}, {kCombineAo, ao}}, extent_of(gbuffer.view));
   return ao;
 }
 
-FilterRuns dilate(gpu::Recorder& gpu, const GBuffer& gbuffer, const TileList& tiles, const FrameInputs& frame, const EstimatorSettings& settings) {
+FilterRuns dilate(gpu::Recorder& gpu, const GBuffer& gbuffer, const TileList& tiles, const FrameInputs& frame,
+                  const EstimatorSettings& settings) {
   // A list costs as much as a twentieth of the filter: it pays where more than sky is left out.
   if (!tiles.sectors || settings.no_skip || !(frame.changes || proves(settings))) return {};
   const bool denoises = settings.denoise != Denoise::none, upsamples = settings.resolution != Resolution::full;
@@ -144,12 +159,19 @@ FilterRuns dilate(gpu::Recorder& gpu, const GBuffer& gbuffer, const TileList& ti
   const auto [width, height] = std::pair(gbuffer.view.size.x, gbuffer.view.size.y);
   const auto whole = [](int pixels, int each) { return int(groups_of(pixels, uint(each))); };
   const int in_column = whole(height, kDenoiseRun), in_row = whole(width + stride - 1, kDenoiseRun);
-  const gpu::Buffer& columns = gpu.buffer("runs along columns", sizeof(uint) * std::size_t(in_column * whole(width, kTile)), gpu::Use::device);
+  const gpu::Buffer& columns =
+      gpu.buffer("runs along columns", sizeof(uint) * std::size_t(in_column * whole(width, kTile)), gpu::Use::device);
   const auto list = [&](const std::string& name, int runs, int lines, uint mode, const gpu::Buffer& result) {
-    const RunList out{&gpu.buffer(name, sizeof(uint) * std::size_t(runs * lines), gpu::Use::device), &gpu.buffer(name + " counts", sizeof(RunCounts), gpu::Use::device)};
+    const RunList out{&gpu.buffer(name, sizeof(uint) * std::size_t(runs * lines), gpu::Use::device),
+                      &gpu.buffer(name + " counts", sizeof(RunCounts), gpu::Use::device)};
     gpu.clear(*out.counts);
-    gpu.dispatch("dilate", DilateParams{gbuffer.view.size, runs, lines, in_column, frame.view.size, grid.overhang, grid.factor},
-                 {{kDilateTiles, *tiles.sectors}, {kDilateColumns, columns}, {kDilateList, *out.runs}, {kDilateCounts, *out.counts}, {kDilateResult, result}},
+    gpu.dispatch("dilate",
+                 DilateParams{gbuffer.view.size, runs, lines, in_column, frame.view.size, grid.overhang, grid.factor},
+                 {{kDilateTiles, *tiles.sectors},
+                  {kDilateColumns, columns},
+                  {kDilateList, *out.runs},
+                  {kDilateCounts, *out.counts},
+                  {kDilateResult, result}},
                  {uint(runs), uint(lines)}, {uint(radius), uint(stride), mode});
     return out;
   };
@@ -159,12 +181,14 @@ FilterRuns dilate(gpu::Recorder& gpu, const GBuffer& gbuffer, const TileList& ti
     all.columns = list("listed columns", in_column, whole(width, kTile), kDilateAlongColumns, result);
     all.rows = list("listed rows", in_row, whole(height, kTile), kDilateAlongRows, result);
   }
-  if (upsamples) all.blocks = list("listed blocks", whole(width + 1, kGroupX), whole(height + 1, kGroupY), kDilateUpsample, upsampled(gpu, "", plane_bytes(frame.view)));
+  if (upsamples)
+    all.blocks = list("listed blocks", whole(width + 1, kGroupX), whole(height + 1, kGroupY), kDilateUpsample,
+                      upsampled(gpu, "", plane_bytes(frame.view)));
   return all;
 }
 
-gpu::Buffer& denoise(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& ao, const FrameInputs& frame, const EstimatorSettings& settings,
-                     const std::string& prefix, const FilterRuns& runs) {
+gpu::Buffer& denoise(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& ao, const FrameInputs& frame,
+                     const EstimatorSettings& settings, const std::string& prefix, const FilterRuns& runs) {
   const std::vector<double> weights = denoise_weights(settings);
   const auto radius = uint(weights.size() - 1);
   DenoiseParams params{};
@@ -175,9 +199,11 @@ gpu::Buffer& denoise(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buff
   std::ranges::transform(weights, params.weight, [&](double weight) { return float(weight / sum); });
   gpu::Buffer& rows = gpu.buffer(prefix + "denoised rows", ao.bytes(), gpu::Use::device);
   gpu::Buffer& result = denoised(gpu, prefix, ao.bytes());
-  const auto along = [&](ivec2 axis, const RunList& listed, const gpu::Buffer& from, const gpu::Buffer& to, uint sparse, uint stride) {
+  const auto along = [&](ivec2 axis, const RunList& listed, const gpu::Buffer& from, const gpu::Buffer& to, uint sparse,
+                         uint stride) {
     params.axis = axis;
-    const uint length = uint(axis.x ? gbuffer.view.size.x : gbuffer.view.size.y), others = uint(axis.x ? gbuffer.view.size.y : gbuffer.view.size.x);
+    const uint length = uint(axis.x ? gbuffer.view.size.x : gbuffer.view.size.y),
+               others = uint(axis.x ? gbuffer.view.size.y : gbuffer.view.size.x);
     gpu.dispatch("denoise", params,
                  {{kDenoiseAo, from},
                   {kDenoiseDepth, *gbuffer.depth},
@@ -185,8 +211,10 @@ gpu::Buffer& denoise(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buff
                   {kDenoiseResult, to},
                   {kDenoiseList, listed.runs ? *listed.runs : from},
                   {kDenoiseCounts, listed.counts ? *listed.counts : from}},
-                 listed.counts ? gpu::Extent(*listed.counts) : gpu::Extent(others, (length + stride - 1 + kDenoiseRun - 1) / kDenoiseRun),
-                 {radius, settings.denoise_depth_sigma > 0 ? 1u : 0u, sparse | (listed.runs ? kDenoiseListed : 0), stride, planes_in(ao, gbuffer.view)});
+                 listed.counts ? gpu::Extent(*listed.counts)
+                               : gpu::Extent(others, (length + stride - 1 + kDenoiseRun - 1) / kDenoiseRun),
+                 {radius, settings.denoise_depth_sigma > 0 ? 1u : 0u, sparse | (listed.runs ? kDenoiseListed : 0),
+                  stride, planes_in(ao, gbuffer.view)});
   };
   const bool dense = stride_of(settings) == 1;
   along({1, 0}, runs.rows, ao, rows, dense ? kDenoiseDense : kDenoiseSparseRows, uint(stride_of(settings)));
@@ -194,8 +222,9 @@ gpu::Buffer& denoise(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buff
   return result;
 }
 
-gpu::Buffer& upsample(gpu::Recorder& gpu, const GBuffer& gbuffer, const GBuffer& low, const gpu::Buffer& low_ao, const FrameInputs& frame,
-                      const EstimatorSettings& settings, const std::string& prefix, const FilterRuns& runs) {
+gpu::Buffer& upsample(gpu::Recorder& gpu, const GBuffer& gbuffer, const GBuffer& low, const gpu::Buffer& low_ao,
+                      const FrameInputs& frame, const EstimatorSettings& settings, const std::string& prefix,
+                      const FilterRuns& runs) {
   const uint planes = planes_in(low_ao, low.view);
   gpu::Buffer& ao = upsampled(gpu, prefix, planes * plane_bytes(gbuffer.view));
   const RunList& listed = runs.blocks;
@@ -218,14 +247,17 @@ gpu::Buffer& upsample(gpu::Recorder& gpu, const GBuffer& gbuffer, const GBuffer&
 gpu::Buffer& bent_normal(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& bent) {
   gpu::Buffer& result = gpu.buffer("bent normal", plane_bytes(gbuffer.view), gpu::Use::download);
   gpu.dispatch("bent_normal", BentNormalParams{gbuffer.view.size},
-               {{kBentNormalNormal, *gbuffer.normal}, {kBentNormalBent, bent}, {kBentNormalResult, result}}, extent_of(gbuffer.view));
+               {{kBentNormalNormal, *gbuffer.normal}, {kBentNormalBent, bent}, {kBentNormalResult, result}},
+               extent_of(gbuffer.view));
   return result;
 }
 
-bool shapes(const EstimatorSettings& settings) { return settings.intensity != 1 || settings.power != 1 || settings.fade_end; }
+bool shapes(const EstimatorSettings& settings) {
+  return settings.intensity != 1 || settings.power != 1 || settings.fade_end;
+}
 
-gpu::Buffer& shape(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& ao, const FrameInputs& frame, const EstimatorSettings& settings,
-                   const std::string& prefix) {
+gpu::Buffer& shape(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& ao, const FrameInputs& frame,
+                   const EstimatorSettings& settings, const std::string& prefix) {
   gpu::Buffer& shaped = gpu.buffer(prefix + "shaped", ao.bytes(), gpu::Use::download);
   ShapeParams params{};
   params.size = gbuffer.view.size;
@@ -247,7 +279,8 @@ gpu::Buffer& shape(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer
   return shaped;
 }
 
-gpu::Buffer& specular_occlusion(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& bent, const gpu::Buffer& ao, const EstimatorSettings& settings) {
+gpu::Buffer& specular_occlusion(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& bent,
+                                const gpu::Buffer& ao, const EstimatorSettings& settings) {
   gpu::Buffer& result = gpu.buffer("specular occlusion", plane_bytes(gbuffer.view), gpu::Use::download);
   const SpecularOcclusionParams params{gbuffer.view, float(settings.roughness)};
   gpu.dispatch("specular_occlusion", params,
@@ -263,12 +296,15 @@ gpu::Buffer& specular_occlusion(gpu::Recorder& gpu, const GBuffer& gbuffer, cons
 gpu::Buffer& multi_bounce(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& ao, const FrameInputs& frame) {
   gpu::Buffer& result = gpu.buffer("color ao", 3 * plane_bytes(gbuffer.view), gpu::Use::download);
   const MultiBounceParams params{gbuffer.view.size, frame.albedo ? 1u : 0u, float(frame.albedo_value)};
-  gpu.dispatch("multi_bounce", params, {{kMultiBounceAo, ao}, {kMultiBounceAlbedo, frame.albedo ? *frame.albedo : ao}, {kMultiBounceResult, result}},
-               extent_of(gbuffer.view));
+  gpu.dispatch(
+      "multi_bounce", params,
+      {{kMultiBounceAo, ao}, {kMultiBounceAlbedo, frame.albedo ? *frame.albedo : ao}, {kMultiBounceResult, result}},
+      extent_of(gbuffer.view));
   return result;
 }
 
-gpu::Buffer& composite(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& ao, const FrameInputs& frame, const OutputSettings& output) {
+gpu::Buffer& composite(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& ao, const FrameInputs& frame,
+                       const OutputSettings& output) {
   gpu::Buffer& result = gpu.buffer("composite", frame.beauty->bytes(), gpu::Use::download);
   CompositeParams params{};
   params.view = frame.view;
@@ -289,16 +325,21 @@ gpu::Buffer& composite(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Bu
   return result;
 }
 
-gpu::Buffer& directions(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& packed, const std::string& name, const FrameInputs& frame) {
+gpu::Buffer& directions(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& packed, const std::string& name,
+                        const FrameInputs& frame) {
   gpu::Buffer& planes = gpu.buffer(name, 3 * plane_bytes(gbuffer.view), gpu::Use::download);
-  const DirectionsParams params{gbuffer.view.size, to_vec3(frame.aov_from_view[0]), to_vec3(frame.aov_from_view[1]), to_vec3(frame.aov_from_view[2])};
-  gpu.dispatch("directions", params, {{kDirectionsDepth, *gbuffer.depth}, {kDirectionsPacked, packed}, {kDirectionsPlanes, planes}}, extent_of(gbuffer.view));
+  const DirectionsParams params{gbuffer.view.size, to_vec3(frame.aov_from_view[0]), to_vec3(frame.aov_from_view[1]),
+                                to_vec3(frame.aov_from_view[2])};
+  gpu.dispatch("directions", params,
+               {{kDirectionsDepth, *gbuffer.depth}, {kDirectionsPacked, packed}, {kDirectionsPlanes, planes}},
+               extent_of(gbuffer.view));
   return planes;
 }
 
-DebugPlane debug(gpu::Recorder& gpu, const DebugView& view, const GBuffer& gbuffer, const DebugStages& stages, const FrameInputs& frame,
-                 const EstimatorSettings& settings) {
-  const bool is_stage = view.source == DebugSource::raw_ao || view.source == DebugSource::denoised_ao || view.source == DebugSource::tiles;
+DebugPlane debug(gpu::Recorder& gpu, const DebugView& view, const GBuffer& gbuffer, const DebugStages& stages,
+                 const FrameInputs& frame, const EstimatorSettings& settings) {
+  const bool is_stage = view.source == DebugSource::raw_ao || view.source == DebugSource::denoised_ao ||
+                        view.source == DebugSource::tiles;
   const GBuffer& shown = is_stage ? stages.gbuffer : gbuffer;
   const gpu::Buffer* values = shown.normal;
   if (is_stage) values = view.source == DebugSource::raw_ao ? stages.raw_ao : stages.denoised_ao;
@@ -314,8 +355,10 @@ DebugPlane debug(gpu::Recorder& gpu, const DebugView& view, const GBuffer& gbuff
   gpu::Buffer& result = gpu.buffer(std::string("debug ") + view.name, plane_bytes(shown.view), gpu::Use::download);
   const int stride = view.source == DebugSource::raw_ao ? stride_of(settings) : 1;
   const DebugParams params{shown.view, view.kind, stride, block_grid(frame, settings).origin};
-  gpu.dispatch("debug", params, {{kDebugDepth, *shown.depth}, {kDebugNormal, *shown.normal}, {kDebugValues, *values}, {kDebugResult, result}},
-               extent_of(shown.view));
+  gpu.dispatch(
+      "debug", params,
+      {{kDebugDepth, *shown.depth}, {kDebugNormal, *shown.normal}, {kDebugValues, *values}, {kDebugResult, result}},
+      extent_of(shown.view));
   return {&view, shown.view.size, &result};
 }
 

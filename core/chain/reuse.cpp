@@ -31,18 +31,23 @@ void add(std::uint64_t& hash, const gpu::Buffer* plane) {
 }
 
 /// Blocks in x and y.
-ivec2 blocks_of(const View& view) { return {int(groups_of(view.size.x, uint(kChangeBlock))), int(groups_of(view.size.y, uint(kChangeBlock)))}; }
+ivec2 blocks_of(const View& view) {
+  return {int(groups_of(view.size.x, uint(kChangeBlock))), int(groups_of(view.size.y, uint(kChangeBlock)))};
+}
 
 }  // namespace
 
 LastFrame::Hashes LastFrame::hashes_of(const FrameInputs& f, const EstimatorSettings& settings) {
   Hashes hashes;
   const View& v = f.view;
-  add(hashes.meaning, v.size.x, v.size.y, v.center.x, v.center.y, v.tangent_per_pixel.x, v.tangent_per_pixel.y, v.orthographic, f.noise_origin.x, f.noise_origin.y);
+  add(hashes.meaning, v.size.x, v.size.y, v.center.x, v.center.y, v.tangent_per_pixel.x, v.tangent_per_pixel.y,
+      v.orthographic, f.noise_origin.x, f.noise_origin.y);
   const DepthMap& d = f.depth_map;
-  add(hashes.meaning, d.form, d.along_ray, d.origin, d.base, d.slope, d.sky_below, d.sky_above, d.sky_depth, d.axis[0], d.axis[1], d.axis[2], d.eye_distance);
+  add(hashes.meaning, d.form, d.along_ray, d.origin, d.base, d.slope, d.sky_below, d.sky_above, d.sky_depth, d.axis[0],
+      d.axis[1], d.axis[2], d.eye_distance);
   for (const double at : f.depth_precision.at) add(hashes.meaning, at);
-  add(hashes.meaning, int(f.normal_encoding), f.normal_unorm, f.has_alpha, f.albedo_value, f.normal ? planes_in(*f.normal, v) : 0);
+  add(hashes.meaning, int(f.normal_encoding), f.normal_unorm, f.has_alpha, f.albedo_value,
+      f.normal ? planes_in(*f.normal, v) : 0);
   add(hashes.meaning, f.view_from_normal);
   add(hashes.meaning, f.aov_from_view);
   if (settings.noise == Noise::animated) add(hashes.meaning, f.frame);
@@ -55,8 +60,10 @@ LastFrame::Hashes LastFrame::hashes_of(const FrameInputs& f, const EstimatorSett
     const auto values = planes->as<const float>();
     for (std::size_t row = 0; row < values.size() / std::size_t(v.size.x); row++)
       for (int x = 0; x < count.x; x++) {
-        const std::size_t begin = std::size_t(x) * kChangeBlock, pixels = std::min(std::size_t(kChangeBlock), std::size_t(v.size.x) - begin);
-        std::uint64_t& hash = hashes.blocks[row % std::size_t(v.size.y) / kChangeBlock * std::size_t(count.x) + std::size_t(x)];
+        const std::size_t begin = std::size_t(x) * kChangeBlock,
+                          pixels = std::min(std::size_t(kChangeBlock), std::size_t(v.size.x) - begin);
+        std::uint64_t& hash =
+            hashes.blocks[row % std::size_t(v.size.y) / kChangeBlock * std::size_t(count.x) + std::size_t(x)];
         hash = XXH3_64bits_withSeed(&values[row * std::size_t(v.size.x) + begin], pixels * sizeof(float), hash);
       }
   }
@@ -72,13 +79,16 @@ bool LastFrame::is_same(gpu::Recorder& gpu, FrameInputs& frame, const EstimatorS
   if (!had || before.meaning != last_.meaning) return false;
   const ivec2 count = blocks_of(frame.view);
   const int columns = count.x + 1;
-  frame.changes = &gpu.buffer("changes", std::size_t(columns) * std::size_t(count.y + 1) * sizeof(uint), gpu::Use::upload);
+  frame.changes =
+      &gpu.buffer("changes", std::size_t(columns) * std::size_t(count.y + 1) * sizeof(uint), gpu::Use::upload);
   const auto sums = frame.changes->as<uint>();
   std::ranges::fill(sums, 0u);
   for (int y = 0; y < count.y; y++)
     for (int x = 0; x < count.x; x++) {
-      const std::size_t block = std::size_t(y) * std::size_t(count.x) + std::size_t(x), at = std::size_t(y + 1) * std::size_t(columns) + std::size_t(x + 1);
-      sums[at] = (before.blocks[block] != last_.blocks[block] ? 1u : 0u) + sums[at - 1] + sums[at - std::size_t(columns)] - sums[at - std::size_t(columns) - 1];
+      const std::size_t block = std::size_t(y) * std::size_t(count.x) + std::size_t(x),
+                        at = std::size_t(y + 1) * std::size_t(columns) + std::size_t(x + 1);
+      sums[at] = (before.blocks[block] != last_.blocks[block] ? 1u : 0u) + sums[at - 1] +
+                 sums[at - std::size_t(columns)] - sums[at - std::size_t(columns) - 1];
     }
   return false;
 }

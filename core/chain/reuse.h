@@ -1,8 +1,8 @@
 // What a frame has in common with the one before it in the same buffers: all of it, or blocks of its pixels.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A result may be used again where it provably has the same bits: where every value that it is made from is the same, by 64-bit hashes (XXH3) of the raw planes.
-// That needs noise that is the same in every frame (Noise::fixed).
+// A result may be used again where it provably has the same bits: where every value that it is made from is the same,
+// by 64-bit hashes (XXH3) of the raw planes. That needs noise that is the same in every frame (Noise::fixed).
 #pragma once
 
 #include <cstdint>
@@ -16,8 +16,9 @@ namespace alcove {
 /// Remembers the last frame that went through a recorder's buffers. One for every recorder.
 class LastFrame {
  public:
-  /// Whether all that the frame's results are made from is as it was: outputs() are its own then. Else, where blocks of it are, frame.changes says which.
-  /// Call it once the planes are read, and keep() once the frame is computed; until then nothing is remembered.
+  /// Whether all that the frame's results are made from is as it was: outputs() are its own then. Else, where blocks of
+  /// it are, frame.changes says which. Call it once the planes are read, and keep() once the frame is computed; until
+  /// then nothing is remembered.
   bool is_same(gpu::Recorder& gpu, FrameInputs& frame, const EstimatorSettings& settings);
   void keep(const FrameOutputs& outputs) { outputs_ = outputs; }
   void forget() { outputs_.reset(); }
@@ -26,8 +27,8 @@ class LastFrame {
 
  private:
   struct Hashes {
-    std::uint64_t meaning = 0;           // of what is no plane
-    std::uint64_t colors = 0;            // of all planes but depth and normals
+    std::uint64_t meaning = 0;          // of what is no plane
+    std::uint64_t colors = 0;           // of all planes but depth and normals
     std::vector<std::uint64_t> blocks;  // of depth and normals
     bool operator==(const Hashes&) const = default;
   };

@@ -72,8 +72,8 @@ DisplayTransform::DisplayTransform(const std::string& config) : impl_(std::make_
   } catch (const OCIO::Exception& error) {
     std::string text = error.what();
     std::ranges::replace(text, '\n', ' ');
-    fail(ErrorKind::input, "{}: OpenColorIO {} cannot use this configuration for the preview (--ocio): {}", config.empty() ? "OCIO" : config,
-         OCIO::GetVersion(), text);
+    fail(ErrorKind::input, "{}: OpenColorIO {} cannot use this configuration for the preview (--ocio): {}",
+         config.empty() ? "OCIO" : config, OCIO::GetVersion(), text);
   }
 }
 

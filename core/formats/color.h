@@ -8,8 +8,9 @@
 
 namespace alcove {
 
-/// The default view of the default display of a configuration: `config` (a file), else what the OCIO variable names, else
-/// a small built-in one (linear Rec.709 to sRGB). Fails with ErrorKind::input when the configuration cannot be used.
+/// The default view of the default display of a configuration: `config` (a file), else what the OCIO variable names,
+/// else a small built-in one (linear Rec.709 to sRGB). Fails with ErrorKind::input when the configuration cannot be
+/// used.
 class DisplayTransform {
  public:
   explicit DisplayTransform(const std::string& config);

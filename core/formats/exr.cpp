@@ -5,12 +5,12 @@
 #include <ImathBox.h>
 #include <ImfArray.h>
 #include <ImfChannelList.h>
-#include <ImfFrameBuffer.h>
+#include <ImfDoubleAttribute.h>
+#include <ImfFloatAttribute.h>
 #include <ImfFloatVectorAttribute.h>
+#include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
 #include <ImfIO.h>
-#include <ImfFloatAttribute.h>
-#include <ImfDoubleAttribute.h>
 #include <ImfInputPart.h>
 #include <ImfIntAttribute.h>
 #include <ImfMatrixAttribute.h>
@@ -31,10 +31,10 @@
 #include <set>
 
 #include "core/base/error.h"
-#include "core/formats/exr_header.h"
 #include "core/base/file.h"
-#include "core/formats/picture_reader.h"
 #include "core/base/text.h"
+#include "core/formats/exr_header.h"
+#include "core/formats/picture_reader.h"
 
 namespace alcove {
 
@@ -46,16 +46,20 @@ class ExrAttributes {
 namespace {
 
 constexpr std::size_t kLongestText = std::size_t(1) << 16;  // of an attribute that is looked at
-constexpr std::size_t kMostPixels = std::size_t(1) << 28;  // in host memory: a gigabyte a channel
+constexpr std::size_t kMostPixels = std::size_t(1) << 28;   // in host memory: a gigabyte a channel
 
-Window window_of(const Imath::Box2i& box) { return {box.min.x, box.min.y, box.max.x - box.min.x + 1, box.max.y - box.min.y + 1}; }
+Window window_of(const Imath::Box2i& box) {
+  return {box.min.x, box.min.y, box.max.x - box.min.x + 1, box.max.y - box.min.y + 1};
+}
 
 Imath::Box2i box_of(const Window& window) {
   return {{window.x, window.y}, {window.x + window.width - 1, window.y + window.height - 1}};
 }
 
 SampleType type_of(Imf::PixelType type) {
-  return type == Imf::HALF ? SampleType::half_float : type == Imf::FLOAT ? SampleType::single_float : SampleType::integer;
+  return type == Imf::HALF    ? SampleType::half_float
+         : type == Imf::FLOAT ? SampleType::single_float
+                              : SampleType::integer;
 }
 
 /// What OpenEXR says of an error, on one line.
@@ -66,7 +70,11 @@ std::string one_line(const std::exception& error) {
 }
 
 ExrPart describe(const Imf::Header& header) {
-  ExrPart part{header.hasName() ? header.name() : std::string(), header.hasView() ? header.view() : std::string(), {}, window_of(header.dataWindow()), {}};
+  ExrPart part{header.hasName() ? header.name() : std::string(),
+               header.hasView() ? header.view() : std::string(),
+               {},
+               window_of(header.dataWindow()),
+               {}};
   part.dwa = header.compression() == Imf::DWAA_COMPRESSION || header.compression() == Imf::DWAB_COMPRESSION;
   if (Imf::hasMultiView(header)) part.multi_view = Imf::multiView(header);
   for (auto channel = header.channels().begin(); channel != header.channels().end(); ++channel) {
@@ -102,25 +110,46 @@ class FileStream : public Imf::OStream {
 
 /// Attributes that say how the input is stored or what its channels are; they do not hold for another file.
 bool describes_storage(const std::string& name) {
-  static const std::set<std::string> kNames = {"channels",   "compression",      "dataWindow",         "displayWindow",       "pixelAspectRatio",
-                                               "lineOrder",  "tiles",            "chunkCount",         "type",                "version",
-                                               "name",       "preview",          "dwaCompressionLevel", "zipCompressionLevel", "multiView",
-                                               "deepImageState", "maxSamplesPerPixel", "BlenderMultiChannel"};
+  static const std::set<std::string> kNames = {"channels",
+                                               "compression",
+                                               "dataWindow",
+                                               "displayWindow",
+                                               "pixelAspectRatio",
+                                               "lineOrder",
+                                               "tiles",
+                                               "chunkCount",
+                                               "type",
+                                               "version",
+                                               "name",
+                                               "preview",
+                                               "dwaCompressionLevel",
+                                               "zipCompressionLevel",
+                                               "multiView",
+                                               "deepImageState",
+                                               "maxSamplesPerPixel",
+                                               "BlenderMultiChannel"};
   return kNames.contains(name) || name.rfind("cryptomatte/", 0) == 0;
 }
 
 std::string text_of(const Imf::Attribute& attribute) {
-  if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&attribute)) return text->value().substr(0, kLongestText);
-  if (const auto* number = dynamic_cast<const Imf::FloatAttribute*>(&attribute)) return fmt::format("{}", number->value());
-  if (const auto* number = dynamic_cast<const Imf::DoubleAttribute*>(&attribute)) return fmt::format("{}", number->value());
-  if (const auto* number = dynamic_cast<const Imf::IntAttribute*>(&attribute)) return fmt::format("{}", number->value());
+  if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&attribute))
+    return text->value().substr(0, kLongestText);
+  if (const auto* number = dynamic_cast<const Imf::FloatAttribute*>(&attribute))
+    return fmt::format("{}", number->value());
+  if (const auto* number = dynamic_cast<const Imf::DoubleAttribute*>(&attribute))
+    return fmt::format("{}", number->value());
+  if (const auto* number = dynamic_cast<const Imf::IntAttribute*>(&attribute))
+    return fmt::format("{}", number->value());
   if (const auto* matrix = dynamic_cast<const Imf::M44fAttribute*>(&attribute)) {
     const auto values = std::span(matrix->value().getValue(), 16);
     return fmt::format("{}", fmt::join(values, " "));
   }
-  if (const auto* pair = dynamic_cast<const Imf::V2fAttribute*>(&attribute)) return fmt::format("{} {}", pair->value().x, pair->value().y);
-  if (const auto* pair = dynamic_cast<const Imf::V2dAttribute*>(&attribute)) return fmt::format("{} {}", pair->value().x, pair->value().y);
-  if (const auto* numbers = dynamic_cast<const Imf::FloatVectorAttribute*>(&attribute)) return fmt::format("{}", fmt::join(numbers->value(), " "));
+  if (const auto* pair = dynamic_cast<const Imf::V2fAttribute*>(&attribute))
+    return fmt::format("{} {}", pair->value().x, pair->value().y);
+  if (const auto* pair = dynamic_cast<const Imf::V2dAttribute*>(&attribute))
+    return fmt::format("{} {}", pair->value().x, pair->value().y);
+  if (const auto* numbers = dynamic_cast<const Imf::FloatVectorAttribute*>(&attribute))
+    return fmt::format("{}", fmt::join(numbers->value(), " "));
   if (const auto* matrix = dynamic_cast<const Imf::M44dAttribute*>(&attribute))
     return fmt::format("{}", fmt::join(std::span(matrix->value().getValue(), 16), " "));
   return std::string("(") + attribute.typeName() + ")";
@@ -144,14 +173,17 @@ Imf::Header header_of(const ExrOutput& output) {
     header.erase(name);  // the input's may be of another type
     header.insert(name, Imf::StringAttribute(value));
   }
-  for (const auto& plane : output.planes) header.channels().insert(plane.channel, Imf::Channel(plane.type == SampleType::half_float ? Imf::HALF : Imf::FLOAT));
+  for (const auto& plane : output.planes)
+    header.channels().insert(plane.channel,
+                             Imf::Channel(plane.type == SampleType::half_float ? Imf::HALF : Imf::FLOAT));
   return header;
 }
 
 /// Rounded to nearest; what is beyond half's range becomes its largest value, not infinity.
 std::vector<half> to_half(std::span<const float> values) {
   std::vector<half> halves(values.size());
-  std::ranges::transform(values, halves.begin(), [](float x) { return half(std::abs(x) > HALF_MAX ? std::copysign(HALF_MAX, x) : x); });
+  std::ranges::transform(values, halves.begin(),
+                         [](float x) { return half(std::abs(x) > HALF_MAX ? std::copysign(HALF_MAX, x) : x); });
   return halves;
 }
 
@@ -167,7 +199,8 @@ struct ExrFile::Impl {
   Image image;                             // where there is no picture either
 
   /// One part with these channels.
-  Impl(const std::string& path_, const char* option_, const Window& data, const Window& display_, const std::vector<std::string>& names)
+  Impl(const std::string& path_, const char* option_, const Window& data, const Window& display_,
+       const std::vector<std::string>& names)
       : path(path_), option(option_), parts{{"", "", {}, data, {}, false}}, display(display_) {
     for (const auto& name : names) parts[0].channels.push_back({name, SampleType::single_float, false});
   }
@@ -178,7 +211,8 @@ ExrFile::ExrFile(const std::string& path, const char* option) : impl_(std::make_
   require_readable(path, "EXR", option);
   impl_->path = path;
   impl_->option = option;
-  if (!std::filesystem::is_regular_file(path)) fail(ErrorKind::input, "{}: is no regular file; {} takes an EXR file", path, option);
+  if (!std::filesystem::is_regular_file(path))
+    fail(ErrorKind::input, "{}: is no regular file; {} takes an EXR file", path, option);
   try {
     if (!Imf::isOpenExrFile(path.c_str())) fail(ErrorKind::input, "{}: not an OpenEXR file ({})", path, option);
     require_sane_header(path, option);
@@ -186,9 +220,11 @@ ExrFile::ExrFile(const std::string& path, const char* option) : impl_(std::make_
     for (int part = 0; part < impl_->file->parts(); part++) {
       const auto& header = impl_->file->header(part);
       if (header.hasType() && Imf::isDeepData(header.type()))
-        fail(ErrorKind::input, "{}: part {} holds deep data, which has no single depth a pixel; flatten it first ({})", path, part, option);
+        fail(ErrorKind::input, "{}: part {} holds deep data, which has no single depth a pixel; flatten it first ({})",
+             path, part, option);
       impl_->parts.push_back(describe(header));
-      if (impl_->parts.back().channels.empty()) fail(ErrorKind::input, "{}: part {} has no channels ({})", path, part, option);
+      if (impl_->parts.back().channels.empty())
+        fail(ErrorKind::input, "{}: part {} has no channels ({})", path, part, option);
     }
     impl_->display = window_of(impl_->file->header(0).displayWindow());
     impl_->pixel_aspect = impl_->file->header(0).pixelAspectRatio();
@@ -204,12 +240,15 @@ ExrFile::ExrFile(const std::string& path, const char* option, std::unique_ptr<Pi
   impl_->picture = std::move(picture);
 }
 
-ExrFile::ExrFile(const std::string& path, const char* option, Image image) : impl_(std::make_unique<Impl>(path, option, image.data, image.display, image.names)) {
+ExrFile::ExrFile(const std::string& path, const char* option, Image image)
+    : impl_(std::make_unique<Impl>(path, option, image.data, image.display, image.names)) {
   impl_->image = std::move(image);
 }
 
 void require_host_room(const std::string& path, const Window& data) {
-  if (data.pixels() > kMostPixels) fail(ErrorKind::input, "{}: {} are more pixels than are read as a whole; use a smaller frame", path, to_string(data));
+  if (data.pixels() > kMostPixels)
+    fail(ErrorKind::input, "{}: {} are more pixels than are read as a whole; use a smaller frame", path,
+         to_string(data));
 }
 
 ExrFile::~ExrFile() = default;
@@ -225,7 +264,8 @@ std::shared_ptr<const ExrAttributes> ExrFile::attributes(int part) const {
   attributes->header = impl_->file->header(part);
   const Imf::Header& first = impl_->file->header(0);
   for (auto attribute = first.begin(); attribute != first.end(); ++attribute)
-    if (std::string_view(attribute.name()) != "view" && attributes->header.find(attribute.name()) == attributes->header.end())
+    if (std::string_view(attribute.name()) != "view" &&
+        attributes->header.find(attribute.name()) == attributes->header.end())
       attributes->header.insert(attribute.name(), attribute.attribute());
   return attributes;
 }
@@ -248,12 +288,15 @@ void ExrFile::read(std::span<const ExrRead> reads, int first, int rows) {
   if (impl_->picture) {
     const auto& names = impl_->picture->names;
     std::vector<PictureReader::Channel> channels;
-    for (const auto& read : reads) channels.push_back({std::size_t(std::ranges::find(names, read.channel) - names.begin()), read.to});
+    for (const auto& read : reads)
+      channels.push_back({std::size_t(std::ranges::find(names, read.channel) - names.begin()), read.to});
     return impl_->picture->read(first, rows, channels);
   }
   if (!impl_->file) {
     const std::size_t width = std::size_t(impl_->image.data.width);
-    for (const auto& read : reads) std::ranges::copy(impl_->image.plane(read.channel).subspan(std::size_t(first) * width, std::size_t(rows) * width), read.to);
+    for (const auto& read : reads)
+      std::ranges::copy(impl_->image.plane(read.channel).subspan(std::size_t(first) * width, std::size_t(rows) * width),
+                        read.to);
     return;
   }
   std::set<int> parts;
@@ -266,14 +309,15 @@ void ExrFile::read(std::span<const ExrRead> reads, int first, int rows) {
     Imf::FrameBuffer frame_buffer;
     for (const auto& read : reads)
       if (read.part == part)
-        frame_buffer.insert(read.channel, Imf::Slice::Make(Imf::FLOAT, read.to, box_of(data), sizeof(float), row_bytes));
+        frame_buffer.insert(read.channel,
+                            Imf::Slice::Make(Imf::FLOAT, read.to, box_of(data), sizeof(float), row_bytes));
     try {
       Imf::InputPart input(*impl_->file, part);
       input.setFrameBuffer(frame_buffer);
       input.readPixels(data.y, data.y + data.height - 1);
     } catch (const std::exception& error) {
-      fail(ErrorKind::input, "{}: the pixels of part {} cannot be read ({}), the file is damaged or incomplete: {}", impl_->path, part, impl_->option,
-           one_line(error));
+      fail(ErrorKind::input, "{}: the pixels of part {} cannot be read ({}), the file is damaged or incomplete: {}",
+           impl_->path, part, impl_->option, one_line(error));
     }
   }
 }
@@ -286,7 +330,8 @@ struct ExrWriter::Impl {
   std::unique_ptr<Imf::OutputFile> file;
   int rows = 0;  // that are written
 
-  Impl(const std::string& path_, const ExrOutput& output) : path(path_), data(output.data), planes(output.planes), stream(path_) {}
+  Impl(const std::string& path_, const ExrOutput& output)
+      : path(path_), data(output.data), planes(output.planes), stream(path_) {}
 
   /// What the stream says is why OpenEXR failed.
   template <class Function>
@@ -315,9 +360,11 @@ void ExrWriter::write(std::span<const std::span<const float>> planes) {
   for (std::size_t i = 0; i < planes.size(); i++) {
     const bool is_half = impl_->planes[i].type == SampleType::half_float;
     const std::size_t bytes = is_half ? sizeof(half) : sizeof(float);
-    const void* pixels = is_half ? static_cast<const void*>(halves.emplace_back(to_half(planes[i])).data()) : planes[i].data();
+    const void* pixels =
+        is_half ? static_cast<const void*>(halves.emplace_back(to_half(planes[i])).data()) : planes[i].data();
     frame_buffer.insert(impl_->planes[i].channel,
-                        Imf::Slice::Make(is_half ? Imf::HALF : Imf::FLOAT, pixels, box_of(band), bytes, bytes * std::size_t(band.width)));
+                        Imf::Slice::Make(is_half ? Imf::HALF : Imf::FLOAT, pixels, box_of(band), bytes,
+                                         bytes * std::size_t(band.width)));
   }
   impl_->run([&] {
     impl_->file->setFrameBuffer(frame_buffer);
@@ -342,7 +389,9 @@ void write_exr(const std::string& path, const ExrOutput& output) {
 Image read_exr_image(const std::string& path, const std::vector<std::string>& channels) {
   ExrFile file(path, "INPUT");
   const auto has_all = [&](const ExrPart& part) {
-    return std::ranges::all_of(channels, [&](const auto& name) { return std::ranges::find(part.channels, name, &ExrChannel::name) != part.channels.end(); });
+    return std::ranges::all_of(channels, [&](const auto& name) {
+      return std::ranges::find(part.channels, name, &ExrChannel::name) != part.channels.end();
+    });
   };
   const auto part = std::ranges::find_if(file.parts(), has_all);
   if (part == file.parts().end()) fail(ErrorKind::input, "{}: no part has the channels {}", path, list_of(channels));
@@ -351,7 +400,8 @@ Image read_exr_image(const std::string& path, const std::vector<std::string>& ch
   require_host_room(path, part->data);
   Image image(part->data, file.display(), names);
   std::vector<ExrRead> reads;
-  for (std::size_t i = 0; i < names.size(); i++) reads.push_back({int(part - file.parts().begin()), names[i], image.plane(i).data()});
+  for (std::size_t i = 0; i < names.size(); i++)
+    reads.push_back({int(part - file.parts().begin()), names[i], image.plane(i).data()});
   file.read(reads);
   return image;
 }
@@ -361,18 +411,22 @@ std::optional<std::string> attribute_of_whole_exr(const std::string& path, const
   quiet.error_handler_fn = [](exr_const_context_t, exr_result_t, const char*) {};
   exr_context_t raw = nullptr;
   if (exr_start_read(&raw, path.c_str(), &quiet) != EXR_ERR_SUCCESS) return std::nullopt;
-  const std::unique_ptr<std::remove_pointer_t<exr_context_t>, void (*)(exr_context_t)> file(raw, [](exr_context_t context) { exr_finish(&context); });
+  const std::unique_ptr<std::remove_pointer_t<exr_context_t>, void (*)(exr_context_t)> file(
+      raw, [](exr_context_t context) { exr_finish(&context); });
   exr_attr_box2i_t data;
   int32_t rows = 0, length = 0;
   const char* text = nullptr;
-  if (exr_get_data_window(raw, 0, &data) != EXR_ERR_SUCCESS || exr_get_scanlines_per_chunk(raw, 0, &rows) != EXR_ERR_SUCCESS || rows <= 0 ||
+  if (exr_get_data_window(raw, 0, &data) != EXR_ERR_SUCCESS ||
+      exr_get_scanlines_per_chunk(raw, 0, &rows) != EXR_ERR_SUCCESS || rows <= 0 ||
       exr_attr_get_string(raw, 0, name.c_str(), &length, &text) != EXR_ERR_SUCCESS)
     return std::nullopt;
   std::error_code error;
   const std::uint64_t size = std::filesystem::file_size(path, error);
   for (std::int64_t y = data.min.y; y <= data.max.y; y += rows) {
     exr_chunk_info_t chunk;
-    if (error || exr_read_scanline_chunk_info(raw, 0, int(y), &chunk) != EXR_ERR_SUCCESS || chunk.data_offset + chunk.packed_size > size) return std::nullopt;
+    if (error || exr_read_scanline_chunk_info(raw, 0, int(y), &chunk) != EXR_ERR_SUCCESS ||
+        chunk.data_offset + chunk.packed_size > size)
+      return std::nullopt;
   }
   return std::string(text, std::size_t(length));
 }

@@ -26,17 +26,20 @@ struct ExrChannel {
 struct ExrPart {
   std::string name;  // empty in single-part files
   std::string view;  // of stereo files with a part a view; empty: none
-  std::vector<std::string> multi_view;  // of stereo files whose channels name their view, the default first; empty: none
+  // of stereo files whose channels name their view, the default first; empty: none
+  std::vector<std::string> multi_view;
   Window data;
   std::vector<ExrChannel> channels;
   bool dwa = false;  // compressed by DWAA or DWAB, which are lossy for channels whose name ends in R, G, B, Y, RY or BY
 };
 
-/// All attributes of one part's header, of every type, and those that only the first part has, to be carried into an output.
+/// All attributes of one part's header, of every type, and those that only the first part has, to be carried into an
+/// output.
 class ExrAttributes;
 class PictureReader;
 
-/// A channel to read, and where to: width x height floats of the part's data window, or of some of its rows, row by row.
+/// A channel to read, and where to: width x height floats of the part's data window, or of some of its rows, row by
+/// row.
 struct ExrRead {
   int part;
   std::string channel;
@@ -46,7 +49,8 @@ struct ExrRead {
 /// An EXR file whose header has been read. Every failure is ErrorKind::input and names the file.
 class ExrFile {
  public:
-  /// Fails on a missing file, a folder, a file that is no EXR, deep data, no channels, and headers that ask for more than their file can hold.
+  /// Fails on a missing file, a folder, a file that is no EXR, deep data, no channels, and headers that ask for more
+  /// than their file can hold.
   explicit ExrFile(const std::string& path, const char* option);
   /// Pictures of other formats with the same face: one whose header has been read, and one that has been read whole.
   ExrFile(const std::string& path, const char* option, std::unique_ptr<PictureReader> picture);
@@ -60,7 +64,8 @@ class ExrFile {
   /// Width over height of a pixel.
   double pixel_aspect() const;
   std::shared_ptr<const ExrAttributes> attributes(int part) const;
-  /// The attributes of a part that do not describe its storage, as text: numbers, strings and matrices by value, all else by type; the first 64 KiB.
+  /// The attributes of a part that do not describe its storage, as text: numbers, strings and matrices by value, all
+  /// else by type; the first 64 KiB.
   std::map<std::string, std::string> attribute_texts(int part) const;
 
   /// Reads the channels as float, each part decoded once. Fails on truncated or corrupt data.
@@ -73,7 +78,8 @@ class ExrFile {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Fails with ErrorKind::input where planes of that window are too much for host memory; before they are made, since a header may say anything.
+/// Fails with ErrorKind::input where planes of that window are too much for host memory; before they are made, since a
+/// header may say anything.
 void require_host_room(const std::string& path, const Window& data);
 
 /// A plane to write: width x height floats of the data window.
@@ -87,12 +93,14 @@ struct ExrOutput {
   Window data, display;
   double pixel_aspect = 1;
   std::string compression = "zip";  // none, rle, zips, zip, piz
-  std::shared_ptr<const ExrAttributes> attributes;     // carried over, but those that describe the input's own channels and storage
-  std::map<std::string, std::string> own_attributes;   // added as strings
+  // carried over, but those that describe the input's own channels and storage
+  std::shared_ptr<const ExrAttributes> attributes;
+  std::map<std::string, std::string> own_attributes;  // added as strings
   std::vector<ExrPlane> planes;
 };
 
-/// A single-part scan-line file, written from top to bottom: there once it is finished, else not at all. Fails with ErrorKind::output.
+/// A single-part scan-line file, written from top to bottom: there once it is finished, else not at all. Fails with
+/// ErrorKind::output.
 class ExrWriter {
  public:
   /// The pixels of output.planes are not looked at.
@@ -113,11 +121,12 @@ class ExrWriter {
 /// The same at once, with the pixels of output.planes.
 void write_exr(const std::string& path, const ExrOutput& output);
 
-/// Every channel of the file's first part that holds all the named ones (all channels: no names), as an image. Fails with ErrorKind::input.
+/// Every channel of the file's first part that holds all the named ones (all channels: no names), as an image. Fails
+/// with ErrorKind::input.
 Image read_exr_image(const std::string& path, const std::vector<std::string>& channels = {});
 
-/// A text attribute of a file that is whole: every chunk of its first part lies within it, which a file cut short does not show otherwise.
-/// Nothing where it is not, where it is no EXR, and where there is no such attribute.
+/// A text attribute of a file that is whole: every chunk of its first part lies within it, which a file cut short does
+/// not show otherwise. Nothing where it is not, where it is no EXR, and where there is no such attribute.
 std::optional<std::string> attribute_of_whole_exr(const std::string& path, const std::string& name);
 
 /// How many threads the codecs may use, for the whole process; 0: none beside the caller's.

@@ -1,4 +1,5 @@
-// The header as bytes: name, type, size and value of each attribute; an empty name ends a part. Source: OpenEXR's "File Layout".
+// The header as bytes: name, type, size and value of each attribute; an empty name ends a part. Source: OpenEXR's "File
+// Layout".
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/formats/exr_header.h"
 
@@ -14,11 +15,13 @@ namespace alcove {
 namespace {
 
 constexpr std::size_t kLongestName = 255;
-constexpr std::uint32_t kMultiPart = 0x1000;     // of the version's flags
-constexpr std::uint64_t kLinesAChunk = 256;      // at most, of any compression
-constexpr std::uint64_t kOffset = 8;             // bytes of a chunk's place in the file
-constexpr std::uint64_t kPixelsAByte = 65536;    // at most: DWA keeps 2 bytes of a constant block of 64 pixels, and deflates these 1032:1
-constexpr std::uint64_t kMostBytes = 32 << 20;   // of a header: ten times what programs write, and small beside a frame; it is held several times
+constexpr std::uint32_t kMultiPart = 0x1000;  // of the version's flags
+constexpr std::uint64_t kLinesAChunk = 256;   // at most, of any compression
+constexpr std::uint64_t kOffset = 8;          // bytes of a chunk's place in the file
+// at most: DWA keeps 2 bytes of a constant block of 64 pixels, and deflates these 1032:1
+constexpr std::uint64_t kPixelsAByte = 65536;
+// of a header: ten times what programs write, and small beside a frame; it is held several times
+constexpr std::uint64_t kMostBytes = 32 << 20;
 
 struct Reader {
   std::ifstream file;
@@ -44,7 +47,9 @@ struct Reader {
 void require_sane_header(const std::string& path, const char* option) {
   std::error_code error;
   Reader reader{std::ifstream(path, std::ios::binary), std::filesystem::file_size(path, error)};
-  const auto refuse = [&](const std::string& why) { fail(ErrorKind::input, "{}: the EXR header cannot be right ({}): {}", path, option, why); };
+  const auto refuse = [&](const std::string& why) {
+    fail(ErrorKind::input, "{}: the EXR header cannot be right ({}): {}", path, option, why);
+  };
   const auto magic = reader.word(), version = reader.word();
   if (error || !magic || !version) return refuse("the file ends in it");
   std::uint64_t width = 0, height = 0, tile_width = 0, tile_height = 0;
@@ -53,10 +58,13 @@ void require_sane_header(const std::string& path, const char* option) {
     const auto name = reader.name();
     if (!name) return refuse("the file ends in it, or a name is endless");
     if (name->empty()) {
-      const std::uint64_t offsets = tile_width ? ((width + tile_width - 1) / tile_width) * ((height + tile_height - 1) / tile_height)
-                                               : (height + kLinesAChunk - 1) / kLinesAChunk;
-      const bool too_many = offsets > reader.left() / kOffset || (height > 0 && width > kPixelsAByte * reader.size / height);
-      if (in_part && too_many) return refuse(fmt::format("{} x {} pixels in a file of {} bytes", width, height, reader.size));
+      const std::uint64_t offsets =
+          tile_width ? ((width + tile_width - 1) / tile_width) * ((height + tile_height - 1) / tile_height)
+                     : (height + kLinesAChunk - 1) / kLinesAChunk;
+      const bool too_many =
+          offsets > reader.left() / kOffset || (height > 0 && width > kPixelsAByte * reader.size / height);
+      if (in_part && too_many)
+        return refuse(fmt::format("{} x {} pixels in a file of {} bytes", width, height, reader.size));
       if (!in_part || !(*version & kMultiPart)) return;
       in_part = false, width = height = tile_width = tile_height = 0;
       continue;
@@ -64,7 +72,8 @@ void require_sane_header(const std::string& path, const char* option) {
     in_part = true;
     const auto type = reader.name();
     const auto size = reader.word();
-    if (!type || !size || *size > reader.left()) return refuse(fmt::format("attribute {} is larger than the file", *name));
+    if (!type || !size || *size > reader.left())
+      return refuse(fmt::format("attribute {} is larger than the file", *name));
     const auto next = reader.file.tellg() + std::streamoff(*size);
     if (std::uint64_t(next) > kMostBytes) return refuse(fmt::format("it is longer than {} MiB", kMostBytes >> 20));
     if (*name == "dataWindow" && *size == 16) {

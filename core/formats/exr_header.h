@@ -6,8 +6,9 @@
 
 namespace alcove {
 
-/// Walks the attributes of all parts, allocating nothing by their sizes. Fails with ErrorKind::input where an attribute is larger than the file, all of them
-/// are longer than 32 MiB, or a part has more lines or tiles than the file has room for their offsets: OpenEXR would make room for both.
+/// Walks the attributes of all parts, allocating nothing by their sizes. Fails with ErrorKind::input where an attribute
+/// is larger than the file, all of them are longer than 32 MiB, or a part has more lines or tiles than the file has
+/// room for their offsets: OpenEXR would make room for both.
 void require_sane_header(const std::string& path, const char* option);
 
 }  // namespace alcove

@@ -23,8 +23,9 @@ namespace {
 /// Decoders go on after an error and tell the next one.
 std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
 
-constexpr std::uint64_t kDensest = 1 << 14;      // pixels' bytes that a byte of a file may stand for where formats pack them: deflate packs 1032, of 8 pixels each
-constexpr std::size_t kBlockBytes = 1 << 20;     // of pixels that are decoded at once, or one row
+// pixels' bytes that a byte of a file may stand for where formats pack them: deflate packs 1032, of 8 pixels each
+constexpr std::uint64_t kDensest = 1 << 14;
+constexpr std::size_t kBlockBytes = 1 << 20;  // of pixels that are decoded at once, or one row
 
 class OiioReader : public PictureReader {
  public:
@@ -33,33 +34,44 @@ class OiioReader : public PictureReader {
     OIIO::ImageSpec as_stored;
     as_stored["oiio:UnassociatedAlpha"] = 1;
     input_ = OIIO::ImageInput::open(path, &as_stored);
-    if (!input_) fail(ErrorKind::input, "{}: not a picture that can be read ({}): {}", path, option, first_line(OIIO::geterror()));
+    if (!input_)
+      fail(ErrorKind::input, "{}: not a picture that can be read ({}): {}", path, option, first_line(OIIO::geterror()));
     const OIIO::ImageSpec& spec = input_->spec();
-    if (spec.deep || spec.depth > 1) fail(ErrorKind::input, "{}: a deep or volume picture, which has no single value a pixel ({})", path, option);
+    if (spec.deep || spec.depth > 1)
+      fail(ErrorKind::input, "{}: a deep or volume picture, which has no single value a pixel ({})", path, option);
     data = {spec.x, spec.y, spec.width, spec.height};
     display = {spec.full_x, spec.full_y, spec.full_width, spec.full_height};
     names = spec.channelnames;
     // TIFF alone is always decoded strip by strip, and may pack one colour without end.
-    if (spec.image_bytes(true) / kDensest > OIIO::Filesystem::file_size(path) && std::string_view(input_->format_name()) != "tiff")
-      fail(ErrorKind::input, "{}: its header claims {} pixels, which its {} bytes cannot hold ({})", path, to_string(data), OIIO::Filesystem::file_size(path), option);
+    if (spec.image_bytes(true) / kDensest > OIIO::Filesystem::file_size(path) &&
+        std::string_view(input_->format_name()) != "tiff")
+      fail(ErrorKind::input, "{}: its header claims {} pixels, which its {} bytes cannot hold ({})", path,
+           to_string(data), OIIO::Filesystem::file_size(path), option);
   }
 
   void read(int first, int rows, std::span<const Channel> channels) override {
     const OIIO::ImageSpec& spec = input_->spec();
     const int together = std::max(1, spec.tile_height);  // rows
-    const std::size_t width = std::size_t(data.width), stride = names.size(), row_bytes = width * stride * sizeof(float) * std::size_t(together);
-    const int block = together * int(std::clamp<std::size_t>(kBlockBytes / std::max<std::size_t>(1, row_bytes), 1, std::size_t(data.height)));
+    const std::size_t width = std::size_t(data.width), stride = names.size(),
+                      row_bytes = width * stride * sizeof(float) * std::size_t(together);
+    const int block = together * int(std::clamp<std::size_t>(kBlockBytes / std::max<std::size_t>(1, row_bytes), 1,
+                                                             std::size_t(data.height)));
     std::vector<float> interleaved(width * stride * std::size_t(std::min(block, data.height)));
     for (int begin = first / together * together; begin < first + rows; begin += block) {
       const int end = std::min(begin + block, data.height), top = data.y + begin, bottom = data.y + end;
-      const bool is_read = spec.tile_width ? input_->read_tiles(0, 0, data.x, data.x + data.width, top, bottom, 0, 1, 0, int(stride), OIIO::TypeFloat, interleaved.data())
-                                           : input_->read_scanlines(0, 0, top, bottom, 0, 0, int(stride), OIIO::TypeFloat, interleaved.data());
+      const bool is_read = spec.tile_width ? input_->read_tiles(0, 0, data.x, data.x + data.width, top, bottom, 0, 1, 0,
+                                                                int(stride), OIIO::TypeFloat, interleaved.data())
+                                           : input_->read_scanlines(0, 0, top, bottom, 0, 0, int(stride),
+                                                                    OIIO::TypeFloat, interleaved.data());
       // That of TIFF says that all went well, and gives zeros, where the file ends too early.
-      if (!is_read || input_->has_error()) fail(ErrorKind::input, "{}: the pixels cannot be read, the file is damaged or incomplete ({}): {}", path_, option_, first_line(input_->geterror()));
+      if (!is_read || input_->has_error())
+        fail(ErrorKind::input, "{}: the pixels cannot be read, the file is damaged or incomplete ({}): {}", path_,
+             option_, first_line(input_->geterror()));
       for (const Channel& channel : channels)
         for (int row = std::max(begin, first); row < std::min(end, first + rows); row++)
           for (std::size_t x = 0; x < width; x++)
-            channel.to[std::size_t(row - first) * width + x] = interleaved[(std::size_t(row - begin) * width + x) * stride + channel.index];
+            channel.to[std::size_t(row - first) * width + x] =
+                interleaved[(std::size_t(row - begin) * width + x) * stride + channel.index];
     }
   }
 
@@ -68,24 +80,31 @@ class OiioReader : public PictureReader {
   std::unique_ptr<OIIO::ImageInput> input_;
 };
 
-std::unique_ptr<PictureReader> open_picture(const std::string& path, const char* option) { return std::make_unique<OiioReader>(path, option); }
+std::unique_ptr<PictureReader> open_picture(const std::string& path, const char* option) {
+  return std::make_unique<OiioReader>(path, option);
+}
 
-std::vector<char> encode_png(const std::string& name, int width, int height, int channels, std::span<const float> pixels, const std::string& made_by) {
+std::vector<char> encode_png(const std::string& name, int width, int height, int channels,
+                             std::span<const float> pixels, const std::string& made_by) {
   std::vector<unsigned char> bytes(pixels.size());
-  std::ranges::transform(pixels, bytes.begin(), [](float x) { return static_cast<unsigned char>(std::lround(255 * std::clamp(x, 0.0f, 1.0f))); });
+  std::ranges::transform(pixels, bytes.begin(), [](float x) {
+    return static_cast<unsigned char>(std::lround(255 * std::clamp(x, 0.0f, 1.0f)));
+  });
   std::vector<unsigned char> encoded;
   OIIO::Filesystem::IOVecOutput memory(encoded);
   OIIO::ImageSpec spec(width, height, channels, OIIO::TypeUInt8);
   if (!made_by.empty()) spec.attribute(kMadeBy, made_by);
   const auto writer = OIIO::ImageOutput::create("png", &memory);
   if (!writer || !writer->open(name, spec) || !writer->write_image(OIIO::TypeUInt8, bytes.data()) || !writer->close())
-    fail(ErrorKind::output, "{}: could not be encoded as PNG: {}", name, writer ? writer->geterror() : OIIO::geterror());
+    fail(ErrorKind::output, "{}: could not be encoded as PNG: {}", name,
+         writer ? writer->geterror() : OIIO::geterror());
   return {encoded.begin(), encoded.end()};
 }
 
 constexpr int kLegend = 48, kMargin = 8, kStripX = 110, kStrip = 200, kStripHeight = 14;  // px
 constexpr int kLeastWidth = 560, kLargestPixel = 8;                                       // px
-constexpr std::array kSkyColor{0.74f, 0.4f, 0.36f};                                       // display values; neither grey nor on the ramp
+// display values; neither grey nor on the ramp
+constexpr std::array kSkyColor{0.74f, 0.4f, 0.36f};
 
 /// Display values of a place on the scale.
 std::array<float, 3> color_at(const OIIO::ImageBuf& ramp, float place, bool is_grey) {
@@ -93,7 +112,8 @@ std::array<float, 3> color_at(const OIIO::ImageBuf& ramp, float place, bool is_g
   if (is_grey) return {place, place, place};
   std::array<float, 3> color{};
   ramp.getpixel(int(std::lround(place * float(ramp.spec().width - 1))), 0, color.data(), 3);
-  for (float& c : color) c = c <= 0.0031308f ? 12.92f * c : 1.055f * std::pow(c, 1 / 2.4f) - 0.055f;  // OpenImageIO's ramps are linear light
+  // OpenImageIO's ramps are linear light
+  for (float& c : color) c = c <= 0.0031308f ? 12.92f * c : 1.055f * std::pow(c, 1 / 2.4f) - 0.055f;
   return color;
 }
 
@@ -109,11 +129,13 @@ OIIO::ImageBuf make_ramp() {
 
 void write_text(OIIO::ImageBuf& picture, const std::string& name, int x, int y, const std::string& text) {
   if (!OIIO::ImageBufAlgo::render_text(picture, x, y, text, 15, "DejaVuSans", {0.9f, 0.9f, 0.9f}))
-    fail(ErrorKind::output, "{}: its texts need the font DejaVu Sans (Debian package fonts-dejavu-core): {}", name, first_line(picture.geterror()));
+    fail(ErrorKind::output, "{}: its texts need the font DejaVu Sans (Debian package fonts-dejavu-core): {}", name,
+         first_line(picture.geterror()));
 }
 
 std::vector<char> encode_chart(const std::string& name, const Chart& chart) {
-  const int zoom = std::min((kLeastWidth + chart.width - 1) / chart.width, kLargestPixel), width = std::max(zoom * chart.width, kLeastWidth), top = zoom * chart.height;
+  const int zoom = std::min((kLeastWidth + chart.width - 1) / chart.width, kLargestPixel),
+            width = std::max(zoom * chart.width, kLeastWidth), top = zoom * chart.height;
   OIIO::ImageBuf picture(OIIO::ImageSpec(width, top + kLegend, 3, OIIO::TypeFloat), OIIO::InitializePixels::Yes);
   const OIIO::ImageBuf ramp = make_ramp();
   const auto fill = [&](int x, int y, int w, int h, std::array<float, 3> color) {
@@ -121,9 +143,16 @@ std::vector<char> encode_chart(const std::string& name, const Chart& chart) {
   };
   for (int y = 0; y < top; y++)
     for (int x = 0; x < zoom * chart.width; x++)
-      picture.setpixel(x, y, color_at(ramp, chart.places[std::size_t(y / zoom) * std::size_t(chart.width) + std::size_t(x / zoom)], chart.is_grey).data(), 3);
-  const int strip = top + kLegend - kStripHeight - kMargin, baseline = strip + kStripHeight - 2, right = kStripX + kStrip + kMargin;
-  for (int x = 0; x < kStrip; x++) fill(kStripX + x, strip, 1, kStripHeight, color_at(ramp, float(x) / float(kStrip - 1), chart.is_grey));
+      picture.setpixel(
+          x, y,
+          color_at(ramp, chart.places[std::size_t(y / zoom) * std::size_t(chart.width) + std::size_t(x / zoom)],
+                   chart.is_grey)
+              .data(),
+          3);
+  const int strip = top + kLegend - kStripHeight - kMargin, baseline = strip + kStripHeight - 2,
+            right = kStripX + kStrip + kMargin;
+  for (int x = 0; x < kStrip; x++)
+    fill(kStripX + x, strip, 1, kStripHeight, color_at(ramp, float(x) / float(kStrip - 1), chart.is_grey));
   write_text(picture, name, kMargin, top + 18, chart.title);
   write_text(picture, name, kMargin, baseline, chart.low);
   write_text(picture, name, right, baseline, chart.high);
@@ -136,6 +165,7 @@ std::vector<char> encode_chart(const std::string& name, const Chart& chart) {
 
 }  // namespace
 
-extern "C" __attribute__((visibility("default"))) const ImageIoModule alcove_image_io_module = {open_picture, encode_png, encode_chart};
+extern "C" __attribute__((visibility("default")))
+const ImageIoModule alcove_image_io_module = {open_picture, encode_png, encode_chart};
 
 }  // namespace alcove

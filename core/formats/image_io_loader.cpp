@@ -18,9 +18,11 @@ constexpr std::size_t kTextWithin = 4096;  // bytes: texts are written before th
 /// `path` is the picture that needs it.
 const ImageIoModule& module(const std::string& path, ErrorKind kind) {
   static const ImageIoModule* loaded = [&] {
-    void* library = ::dlopen(kImageIoFile, RTLD_NOW | RTLD_LOCAL);  // found beside the program or in ../lib/alcove, by the program's run path
+    // found beside the program or in ../lib/alcove, by the program's run path
+    void* library = ::dlopen(kImageIoFile, RTLD_NOW | RTLD_LOCAL);
     void* symbol = library ? ::dlsym(library, kImageIoSymbol) : nullptr;
-    if (!symbol) fail(kind, "{}: a picture that is no EXR needs {} beside the program: {}", path, kImageIoFile, ::dlerror());
+    if (!symbol)
+      fail(kind, "{}: a picture that is no EXR needs {} beside the program: {}", path, kImageIoFile, ::dlerror());
     return static_cast<const ImageIoModule*>(symbol);
   }();
   return *loaded;
@@ -28,15 +30,21 @@ const ImageIoModule& module(const std::string& path, ErrorKind kind) {
 
 }  // namespace
 
-std::unique_ptr<PictureReader> open_picture(const std::string& path, const char* option) { return module(path, ErrorKind::input).open_picture(path, option); }
+std::unique_ptr<PictureReader> open_picture(const std::string& path, const char* option) {
+  return module(path, ErrorKind::input).open_picture(path, option);
+}
 
-std::vector<char> encode_png(const std::string& name, int width, int height, int channels, std::span<const float> pixels, const std::string& made_by) {
+std::vector<char> encode_png(const std::string& name, int width, int height, int channels,
+                             std::span<const float> pixels, const std::string& made_by) {
   return module(name, ErrorKind::output).encode_png(name, width, height, channels, pixels, made_by);
 }
 
-std::vector<char> encode_chart(const std::string& name, const Chart& chart) { return module(name, ErrorKind::output).encode_chart(name, chart); }
+std::vector<char> encode_chart(const std::string& name, const Chart& chart) {
+  return module(name, ErrorKind::output).encode_chart(name, chart);
+}
 
-void write_png(const std::string& path, int width, int height, int channels, std::span<const float> pixels, const std::string& made_by) {
+void write_png(const std::string& path, int width, int height, int channels, std::span<const float> pixels,
+               const std::string& made_by) {
   write_whole(path, encode_png(path, width, height, channels, pixels, made_by));
 }
 
@@ -46,8 +54,9 @@ bool is_whole_png(const std::string& path, const std::string& made_by) {
   std::string begin(kTextWithin, '\0'), end(kEnd.size(), '\0');
   file.read(begin.data(), std::streamsize(begin.size()));
   file.clear();
-  return begin.find(std::string(kMadeBy) + '\0' + made_by) != begin.npos && file.seekg(-std::streamoff(end.size()), std::ios::end) &&
-         file.read(end.data(), std::streamsize(end.size())) && end == kEnd;
+  return begin.find(std::string(kMadeBy) + '\0' + made_by) != begin.npos &&
+         file.seekg(-std::streamoff(end.size()), std::ios::end) && file.read(end.data(), std::streamsize(end.size())) &&
+         end == kEnd;
 }
 
 }  // namespace alcove

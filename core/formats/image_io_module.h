@@ -1,8 +1,8 @@
 // What core/formats/image_io.cpp, a module that is loaded on first use, offers to the program.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// OpenImageIO brings some 200 shared libraries along (video, GIS, computer vision). To load them costs a fifth of a second, more than
-// all the rest of a small frame, and a plain EXR job needs none of it.
+// OpenImageIO brings some 200 shared libraries along (video, GIS, computer vision). To load them costs a fifth of a
+// second, more than all the rest of a small frame, and a plain EXR job needs none of it.
 #pragma once
 
 #include <memory>
@@ -18,7 +18,8 @@ namespace alcove {
 /// The functions of core/formats/image_io.h that need OpenImageIO.
 struct ImageIoModule {
   std::unique_ptr<PictureReader> (*open_picture)(const std::string& path, const char* option);
-  std::vector<char> (*encode_png)(const std::string& name, int width, int height, int channels, std::span<const float> pixels, const std::string& made_by);
+  std::vector<char> (*encode_png)(const std::string& name, int width, int height, int channels,
+                                  std::span<const float> pixels, const std::string& made_by);
   std::vector<char> (*encode_chart)(const std::string& name, const Chart& chart);
 };
 

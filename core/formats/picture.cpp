@@ -9,8 +9,8 @@
 
 #include "core/base/error.h"
 #include "core/base/file.h"
-#include "core/formats/image_io.h"
 #include "core/base/text.h"
+#include "core/formats/image_io.h"
 
 namespace alcove {
 namespace {
@@ -32,7 +32,8 @@ std::vector<PictureChannel> channels_of(const ExrFile& file) {
   const auto& parts = file.parts();
   for (std::size_t part = 0; part < parts.size(); part++)
     for (const auto& channel : parts[part].channels) {
-      const bool repeats = parts[part].name.empty() || parts.size() == 1 || channel.name.starts_with(parts[part].name + ".");
+      const bool repeats =
+          parts[part].name.empty() || parts.size() == 1 || channel.name.starts_with(parts[part].name + ".");
       const std::string full = repeats ? channel.name : parts[part].name + "." + channel.name;
       if (!channel.subsampled) channels.push_back({full, parts[part].data, int(part), channel.name});
     }
@@ -45,7 +46,8 @@ std::string last_part(const std::string& name) { return lower_case(name.substr(n
 bool is_end_of(const std::string& name, const std::string& full) { return full == name || full.ends_with("." + name); }
 
 std::string both_lists(const Picture& result, const Picture& reference) {
-  return fmt::format("{} has {}; {} has {}", result.path(), list_of(result.names()), reference.path(), list_of(reference.names()));
+  return fmt::format("{} has {}; {} has {}", result.path(), list_of(result.names()), reference.path(),
+                     list_of(reference.names()));
 }
 
 std::vector<ChannelPair> chosen_pairs(const Picture& result, const Picture& reference, const std::string& chosen) {
@@ -71,8 +73,10 @@ std::vector<ChannelPair> same_names(const Picture& result, const Picture& refere
 
 }  // namespace
 
-Picture::Picture(const std::string& path, const char* option) : path_(path), file_(open(path, option)), channels_(channels_of(file_)) {
-  if (channels_.empty()) fail(ErrorKind::input, "{}: it has no channel with a sample for every pixel ({})", path, option);
+Picture::Picture(const std::string& path, const char* option)
+    : path_(path), file_(open(path, option)), channels_(channels_of(file_)) {
+  if (channels_.empty())
+    fail(ErrorKind::input, "{}: it has no channel with a sample for every pixel ({})", path, option);
 }
 
 std::vector<std::string> Picture::names() const {
@@ -92,9 +96,11 @@ std::size_t Picture::find(const std::string& name, const char* option) const {
     found.push_back(channels_[i].name);
     index = i;
   }
-  if (found.size() > 1) fail(ErrorKind::input, "{}: {} may be {}; give {} a longer name", path_, name, list_of(found), option);
+  if (found.size() > 1)
+    fail(ErrorKind::input, "{}: {} may be {}; give {} a longer name", path_, name, list_of(found), option);
   if (found.empty())
-    fail(ErrorKind::input, "{}: no channel {} for {}{}; there is {}", path_, name, option, suggestion(name, names()), list_of(names()));
+    fail(ErrorKind::input, "{}: no channel {} for {}{}; there is {}", path_, name, option, suggestion(name, names()),
+         list_of(names()));
   return index;
 }
 
@@ -106,8 +112,9 @@ std::vector<float> Picture::read(std::span<const std::size_t> channels) {
   for (std::size_t i = 0; i < channels.size(); i++) {
     const auto& channel = channels_[channels[i]];
     if (channel.data != data)
-      fail(ErrorKind::input, "{}: channel {} is {}, and channel {} is {}: they do not cover the same pixels; choose with --channel", path_,
-           channels_[channels[0]].name, to_string(data), channel.name, to_string(channel.data));
+      fail(ErrorKind::input,
+           "{}: channel {} is {}, and channel {} is {}: they do not cover the same pixels; choose with --channel",
+           path_, channels_[channels[0]].name, to_string(data), channel.name, to_string(channel.data));
     reads.push_back({channel.part, channel.name_in_part, planes.data() + i * data.pixels()});
   }
   file_.read(reads);
@@ -120,7 +127,8 @@ std::vector<ChannelPair> match_channels(const Picture& result, const Picture& re
   auto pairs = same_names(result, reference, lower_case);
   if (pairs.empty()) pairs = same_names(result, reference, last_part);
   if (pairs.empty())
-    fail(ErrorKind::input, "the pictures share no channel: {}; say what to compare with --channel RESULT=REFERENCE", both_lists(result, reference));
+    fail(ErrorKind::input, "the pictures share no channel: {}; say what to compare with --channel RESULT=REFERENCE",
+         both_lists(result, reference));
   std::vector<std::size_t> seen_result, seen_reference;
   for (const auto& pair : pairs) {
     if (std::ranges::count(seen_result, pair.result) || std::ranges::count(seen_reference, pair.reference))

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "core/formats/exr.h"
 #include "core/base/image.h"
+#include "core/formats/exr.h"
 
 namespace alcove {
 
@@ -19,8 +19,8 @@ struct PictureChannel {
   std::string name_in_part;
 };
 
-/// A file whose header has been read. EXRs are known by their content; all else is read through image_io. Every failure is
-/// ErrorKind::input and names the file; `option` says where the user named it.
+/// A file whose header has been read. EXRs are known by their content; all else is read through image_io. Every failure
+/// is ErrorKind::input and names the file; `option` says where the user named it.
 class Picture {
  public:
   Picture(const std::string& path, const char* option);
@@ -30,8 +30,9 @@ class Picture {
   const std::vector<PictureChannel>& channels() const { return channels_; }
   std::vector<std::string> names() const;
 
-  /// The channel of that name: its full name, or else the end of it after a dot, case ignored ("R" is "ViewLayer.Combined.R").
-  /// Fails when there is none, with the nearest names, and when there are several. Gives an index into channels().
+  /// The channel of that name: its full name, or else the end of it after a dot, case ignored ("R" is
+  /// "ViewLayer.Combined.R"). Fails when there is none, with the nearest names, and when there are several. Gives an
+  /// index into channels().
   std::size_t find(const std::string& name, const char* option) const;
 
   /// Their planes, one behind the other, row by row. Fails when they do not cover the same pixels.
@@ -48,9 +49,10 @@ struct ChannelPair {
   std::size_t result, reference;
 };
 
-/// The channels that two pictures share. `chosen` is a list with commas: a name, or RESULT=REFERENCE where the names differ. Without it: the only
-/// channel of each, whatever its name; else those with the same full name; else those with the same last part of the name; case is ignored.
-/// Fails with ErrorKind::input, listing the channels of both, when there are none, and when a last part stands for several.
+/// The channels that two pictures share. `chosen` is a list with commas: a name, or RESULT=REFERENCE where the names
+/// differ. Without it: the only channel of each, whatever its name; else those with the same full name; else those with
+/// the same last part of the name; case is ignored. Fails with ErrorKind::input, listing the channels of both, when
+/// there are none, and when a last part stands for several.
 std::vector<ChannelPair> match_channels(const Picture& result, const Picture& reference, const std::string& chosen);
 
 }  // namespace alcove

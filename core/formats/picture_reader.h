@@ -11,7 +11,8 @@
 
 namespace alcove {
 
-/// A picture whose header has been read. Its first image, as it is stored: integer formats become 0 to 1, no colour is converted, no alpha multiplied in.
+/// A picture whose header has been read. Its first image, as it is stored: integer formats become 0 to 1, no colour is
+/// converted, no alpha multiplied in.
 class PictureReader {
  public:
   virtual ~PictureReader() = default;

@@ -43,8 +43,10 @@ std::optional<Token> token_at(const std::string& path, std::size_t begin) {
   if (kind == '%') {
     int digits = 0;
     if (end < path.size() && path[end] == '0')
-      for (auto next = digit(path, end); next; next = digit(path, end)) digits = std::min(10 * digits + *next, kMostDigits + 1);
-    return ends_with('d') && digits <= kMostDigits ? std::optional(Token{begin, end, std::max(1, digits)}) : std::nullopt;
+      for (auto next = digit(path, end); next; next = digit(path, end))
+        digits = std::min(10 * digits + *next, kMostDigits + 1);
+    return ends_with('d') && digits <= kMostDigits ? std::optional(Token{begin, end, std::max(1, digits)})
+                                                   : std::nullopt;
   }
   if (kind != '$' && kind != '<') return std::nullopt;
   if (!ends_with('F') && !(kind == '<' && path[end - 1] == 'f')) return std::nullopt;
@@ -55,7 +57,9 @@ std::optional<Token> token_at(const std::string& path, std::size_t begin) {
 std::optional<Token> find_token(const std::string& path, std::size_t from) {
   for (std::size_t begin = from; begin < path.size(); begin++) {
     if (const auto token = token_at(path, begin)) return token;
-    if (path[begin] == '#' || path[begin] == '@') begin = std::min(path.find_first_not_of(path[begin], begin), path.size()) - 1;  // no part of a run
+    // no part of a run
+    if (path[begin] == '#' || path[begin] == '@')
+      begin = std::min(path.find_first_not_of(path[begin], begin), path.size()) - 1;
   }
   return std::nullopt;
 }
@@ -83,23 +87,30 @@ std::optional<Range> range_of(const std::string& text) {
 }
 
 /// Adds one part of a list, which is for messages. `listed` counts frames as often as they are there.
-void add_part(const std::string& text, const std::string& list, std::vector<int>& frames, std::unordered_set<int>& known, long& listed) {
+void add_part(const std::string& text, const std::string& list, std::vector<int>& frames,
+              std::unordered_set<int>& known, long& listed) {
   const auto range = range_of(text);
   if (!range)
-    fail(ErrorKind::usage, "--frames {}: \"{}\" is no frame and no range; write 1001, 1001-1100 or 1001-1100x2, with commas between", list, text);
+    fail(ErrorKind::usage,
+         "--frames {}: \"{}\" is no frame and no range; write 1001, 1001-1100 or 1001-1100x2, with commas between",
+         list, text);
   const auto [first, last, step] = *range;
   if (step == 0) fail(ErrorKind::usage, "--frames {}: the step of {} is 0", list, text);
-  if (step < 0 && last > first) fail(ErrorKind::usage, "--frames {}: {} runs forwards, and its step backwards", list, text);
+  if (step < 0 && last > first)
+    fail(ErrorKind::usage, "--frames {}: {} runs forwards, and its step backwards", list, text);
   const long stride = last >= first ? step : -std::abs(step);
   listed += std::abs(last - first) / std::abs(stride) + 1;
-  if (listed > kMostFrames) fail(ErrorKind::usage, "--frames {}: with {} there are more than {} frames", list, text, kMostFrames);
+  if (listed > kMostFrames)
+    fail(ErrorKind::usage, "--frames {}: with {} there are more than {} frames", list, text, kMostFrames);
   for (long frame = first; stride > 0 ? frame <= last : frame >= last; frame += stride)
     if (known.insert(int(frame)).second) frames.push_back(int(frame));
 }
 
 /// The frame whose path this is.
 std::optional<int> frame_of(const FramePattern& name, const std::string& text) {
-  if (text.size() <= name.before.size() + name.after.size() || !text.starts_with(name.before) || !text.ends_with(name.after)) return std::nullopt;
+  if (text.size() <= name.before.size() + name.after.size() || !text.starts_with(name.before) ||
+      !text.ends_with(name.after))
+    return std::nullopt;
   int frame = 0;
   const char* begin = text.data() + name.before.size();
   const char* end = text.data() + text.size() - name.after.size();
@@ -117,7 +128,8 @@ std::optional<FramePattern> frame_pattern(const std::string& path) {
   if (!token) return std::nullopt;
   const auto text_of = [&](const Token& t) { return path.substr(t.begin, t.end - t.begin); };
   if (const auto second = find_token(path, token->end))
-    fail(ErrorKind::usage, "{}: there are two places for the frame number, {} and {}; there may be one", path, text_of(*token), text_of(*second));
+    fail(ErrorKind::usage, "{}: there are two places for the frame number, {} and {}; there may be one", path,
+         text_of(*token), text_of(*second));
   return FramePattern{path.substr(0, token->begin), path.substr(token->end), token->digits};
 }
 
@@ -129,7 +141,8 @@ std::vector<int> parse_frames(const std::string& list) {
   for (std::string part; std::getline(parts, part, ',');) {
     std::istringstream words(part);
     std::string word;
-    if (!(words >> word)) fail(ErrorKind::usage, "--frames {}: the list is empty, or has nothing between two commas", list);
+    if (!(words >> word))
+      fail(ErrorKind::usage, "--frames {}: the list is empty, or has nothing between two commas", list);
     do add_part(word, list, frames, known, listed);
     while (words >> word);
   }
@@ -152,7 +165,8 @@ std::string frames_text(std::vector<int> frames) {
 std::vector<int> frames_on_disk(const FramePattern& pattern, const char* option) {
   namespace fs = std::filesystem;
   if (pattern.after.find('/') != pattern.after.npos)
-    fail(ErrorKind::usage, "{}: {}: the frame number is in a folder's name: say which frames with --frames", option, pattern.path(0));
+    fail(ErrorKind::usage, "{}: {}: the frame number is in a folder's name: say which frames with --frames", option,
+         pattern.path(0));
   const std::size_t slash = pattern.before.rfind('/');
   const std::string folder = slash == pattern.before.npos ? "." : pattern.before.substr(0, slash + 1);
   const FramePattern name{pattern.before.substr(slash + 1), pattern.after, pattern.digits};  // npos + 1 is 0

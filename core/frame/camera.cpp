@@ -40,7 +40,8 @@ struct CameraFile {
   double number(const char* field) const {
     const Json* value = find(field);
     if (!value) refuse(field, "is missing");
-    if (!value->is_number() || !std::isfinite(value->get<double>())) refuse(field, "must be a finite number, not " + value->dump());
+    if (!value->is_number() || !std::isfinite(value->get<double>()))
+      refuse(field, "must be a finite number, not " + value->dump());
     return value->get<double>();
   }
 
@@ -52,13 +53,15 @@ struct CameraFile {
 
   double scale(const char* field) const {
     const double value = positive(field);
-    if (!is_scale(value)) refuse(field, fmt::format("must be from {:g} to {:g}, not {}", kLeastScale, kMostScale, value));
+    if (!is_scale(value))
+      refuse(field, fmt::format("must be from {:g} to {:g}, not {}", kLeastScale, kMostScale, value));
     return value;
   }
 
   double center(const char* field) const {
     const double value = number(field);
-    if (std::abs(value) > kMostCenter) refuse(field, fmt::format("must be from {:g} to {:g}, not {}", -kMostCenter, kMostCenter, value));
+    if (std::abs(value) > kMostCenter)
+      refuse(field, fmt::format("must be from {:g} to {:g}, not {}", -kMostCenter, kMostCenter, value));
     return value;
   }
 
@@ -74,7 +77,8 @@ struct CameraFile {
     if (!value) refuse("resolution", "is missing");
     const bool fine = value->is_array() && value->size() == 2 && (*value)[std::size_t(index)].is_number_integer();
     const auto count = fine ? (*value)[std::size_t(index)].get<std::int64_t>() : 0;
-    if (count <= 0 || count > (1 << 24)) refuse("resolution", "must be two whole numbers of pixels above 0, not " + value->dump());
+    if (count <= 0 || count > (1 << 24))
+      refuse("resolution", "must be two whole numbers of pixels above 0, not " + value->dump());
     return int(count);
   }
 };
@@ -99,7 +103,9 @@ bool left_handed(const CameraFile& file) {
   const std::string text = file.text("camera_space");
   if (text.empty() || starts_with(text, "right-handed")) return false;
   if (starts_with(text, "left-handed")) return true;
-  file.refuse("camera_space", fmt::format("must begin with right-handed (looks along -z) or left-handed (looks along +z), not \"{}\"", text));
+  file.refuse(
+      "camera_space",
+      fmt::format("must begin with right-handed (looks along -z) or left-handed (looks along +z), not \"{}\"", text));
 }
 
 /// Fills in the rotation and offset of world_to_camera: orthonormal once a uniform scale is divided out.
@@ -120,19 +126,25 @@ void read_view_from_world(const CameraFile& file, Camera& camera) {
   if (!fine) file.refuse(field, "must be 4 rows of 4 finite numbers");
   const Json& last = (*value)[3];
   for (std::size_t column = 0; column < 4; column++)
-    if (std::abs(last[column].get<double>() - (column == 3)) > 1e-6) file.refuse(field, "must end in the row 0 0 0 1: it is for column vectors");
+    if (std::abs(last[column].get<double>() - (column == 3)) > 1e-6)
+      file.refuse(field, "must end in the row 0 0 0 1: it is for column vectors");
   const auto dot = [&](int a, int b) {
-    return m[std::size_t(a)][0] * m[std::size_t(b)][0] + m[std::size_t(a)][1] * m[std::size_t(b)][1] + m[std::size_t(a)][2] * m[std::size_t(b)][2];
+    return m[std::size_t(a)][0] * m[std::size_t(b)][0] + m[std::size_t(a)][1] * m[std::size_t(b)][1] +
+           m[std::size_t(a)][2] * m[std::size_t(b)][2];
   };
   const double squared = dot(0, 0);
   constexpr double kTolerance = 1e-3;  // matrices come from single precision, and from tools that round
   for (int a = 0; a < 3; a++)
     for (int b = 0; b < 3; b++)
-      if (!(squared > 0) || !(std::abs(dot(a, b) / squared - (a == b)) < kTolerance)) file.refuse(field, "is no rotation with a translation");
-  const double determinant = m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) - m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
+      if (!(squared > 0) || !(std::abs(dot(a, b) / squared - (a == b)) < kTolerance))
+        file.refuse(field, "is no rotation with a translation");
+  const double determinant = m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
+                             m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
                              m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
   if (determinant < 0 && !camera.left_handed)
-    file.refuse(field, "mirrors space; the camera looks along -z with x right and y up, right-handed, unless \"camera_space\" says left-handed");
+    file.refuse(field,
+                "mirrors space; the camera looks along -z with x right and y up, right-handed, unless \"camera_space\" "
+                "says left-handed");
   for (std::size_t row = 0; row < 3; row++) {
     const double scale = (camera.left_handed && row == 2 ? -1 : 1) / std::sqrt(squared);
     for (auto& x : m[row]) x *= scale;
@@ -152,7 +164,8 @@ std::optional<double> clip_plane(const CameraFile& file, const char* field) {
 /// By its word, or by the last row of the matrix that games have: 0 0 0 1 divides by nothing.
 bool is_orthographic(const CameraFile& file) {
   const Json* value = file.find("projection");
-  if (value && value->is_array() && value->size() == 4 && (*value)[3].is_array() && (*value)[3].size() == 4 && (*value)[3][3].is_number())
+  if (value && value->is_array() && value->size() == 4 && (*value)[3].is_array() && (*value)[3].size() == 4 &&
+      (*value)[3][3].is_number())
     return (*value)[3][3].get<double>() == 1;
   const std::string projection = file.text("projection");
   if (!projection.empty() && projection != "perspective" && projection != "orthographic")
@@ -163,7 +176,8 @@ bool is_orthographic(const CameraFile& file) {
 /// Where a projection for 0..1, not reversed, has z = 0: -B / A of its third row A z + B.
 std::optional<double> matrix_near(const CameraFile& file) {
   const Json* value = file.find("projection");
-  if (!value || !value->is_array() || value->size() != 4 || !(*value)[2].is_array() || (*value)[2].size() != 4) return std::nullopt;
+  if (!value || !value->is_array() || value->size() != 4 || !(*value)[2].is_array() || (*value)[2].size() != 4)
+    return std::nullopt;
   const Json &slope = (*value)[2][2], &offset = (*value)[2][3];
   if (!slope.is_number() || !offset.is_number() || slope.get<double>() == 0) return std::nullopt;
   const double near = std::abs(offset.get<double>() / slope.get<double>());
@@ -204,7 +218,8 @@ NormalEncoding normal_encoding(const CameraFile& file) {
   if (starts_with(text, "unorm")) return NormalEncoding::unorm;
   if (starts_with(text, "octahedral")) return NormalEncoding::octahedral;
   if (starts_with(text, "spheremap")) return NormalEncoding::spheremap;
-  file.refuse("normal_encoding", fmt::format("must begin with signed, unorm, octahedral or spheremap, not \"{}\"", text));
+  file.refuse("normal_encoding",
+              fmt::format("must begin with signed, unorm, octahedral or spheremap, not \"{}\"", text));
 }
 
 /// fx and fy for square tangents: a pixel `aspect` times as wide as high covers that much more in x.
@@ -218,7 +233,9 @@ Camera centred(const Window& display, double fx, double aspect, bool orthographi
   camera.cy = 0.5 * display.height;
   camera.orthographic = orthographic;
   if (!is_scale(camera.fx) || !is_scale(camera.fy))
-    fail(ErrorKind::usage, "a camera of {:g} pixels a unit sees nothing: give another --fov, --focal with --aperture, or --ortho-width", fx);
+    fail(ErrorKind::usage,
+         "a camera of {:g} pixels a unit sees nothing: give another --fov, --focal with --aperture, or --ortho-width",
+         fx);
   return camera;
 }
 
@@ -226,8 +243,9 @@ Camera centred(const Window& display, double fx, double aspect, bool orthographi
 Camera fitted(Camera camera, const Window& display, const std::string& path) {
   if (camera.width == display.width && camera.height == display.height) return camera;
   if (std::int64_t(camera.width) * display.height != std::int64_t(camera.height) * display.width)
-    fail(ErrorKind::input, "{}: the camera is for {}x{} pixels, and the frame's display window is {}x{}: give a --camera that fits", path, camera.width,
-         camera.height, display.width, display.height);
+    fail(ErrorKind::input,
+         "{}: the camera is for {}x{} pixels, and the frame's display window is {}x{}: give a --camera that fits", path,
+         camera.width, camera.height, display.width, display.height);
   const double scale = double(display.width) / camera.width;
   camera.width = display.width;
   camera.height = display.height;
@@ -240,7 +258,8 @@ Camera fitted(Camera camera, const Window& display, const std::string& path) {
 Camera read_camera(const std::string& path, int frame) {
   CameraFile file{path, Json::object(), Json::object()};
   const auto bounded = [&](int depth, Json::parse_event_t, Json&) {
-    if (depth > kDeepest) fail(ErrorKind::input, "{}: JSON that nests deeper than {}; --camera takes a camera file", path, kDeepest);
+    if (depth > kDeepest)
+      fail(ErrorKind::input, "{}: JSON that nests deeper than {}; --camera takes a camera file", path, kDeepest);
     return true;
   };
   file.top = Json::parse(read_text(path, "camera", "--camera"), bounded, false);
@@ -271,15 +290,22 @@ Camera read_camera(const std::string& path, int frame) {
 Camera camera_for(const InputSettings& settings, const Window& display, double pixel_aspect, int frame) {
   if (!settings.camera.empty()) return fitted(read_camera(settings.camera, frame), display, settings.camera);
   const double half_width = 0.5 * display.width;
-  if (settings.fov) return centred(display, half_width / std::tan(*settings.fov * std::numbers::pi / 360), pixel_aspect, false);
-  if (settings.focal && settings.aperture) return centred(display, 2 * half_width * *settings.focal / *settings.aperture, pixel_aspect, false);
+  if (settings.fov)
+    return centred(display, half_width / std::tan(*settings.fov * std::numbers::pi / 360), pixel_aspect, false);
+  if (settings.focal && settings.aperture)
+    return centred(display, 2 * half_width * *settings.focal / *settings.aperture, pixel_aspect, false);
   if (settings.ortho_width) return centred(display, 2 * half_width / *settings.ortho_width, pixel_aspect, true);
-  fail(ErrorKind::usage, "no camera for {}: give --camera FILE.json, or --fov DEGREES, or --focal MM with --aperture MM, or --ortho-width UNITS",
-       !settings.input.empty() ? settings.input : settings.depth.empty() ? settings.position : settings.depth);
+  fail(ErrorKind::usage,
+       "no camera for {}: give --camera FILE.json, or --fov DEGREES, or --focal MM with --aperture MM, or "
+       "--ortho-width UNITS",
+       !settings.input.empty()  ? settings.input
+       : settings.depth.empty() ? settings.position
+                                : settings.depth);
 }
 
 Matrix3 view_from_normal(const Camera& camera, NormalSpace space, const NormalFlips& flips) {
-  Matrix3 m = space == NormalSpace::world ? camera.view_from_world.value() : Matrix3{{{1, 0, 0}, {0, 1, 0}, {0, 0, camera.left_handed ? -1.0 : 1.0}}};
+  Matrix3 m = space == NormalSpace::world ? camera.view_from_world.value()
+                                          : Matrix3{{{1, 0, 0}, {0, 1, 0}, {0, 0, camera.left_handed ? -1.0 : 1.0}}};
   for (auto& row : m) {
     if (flips.x) row[0] = -row[0];
     if (flips.y) row[1] = -row[1];
@@ -291,7 +317,8 @@ Matrix3 view_from_normal(const Camera& camera, NormalSpace space, const NormalFl
 View view_of(const Camera& camera, const Window& data, const Window& display) {
   View view{};
   view.size = {data.width, data.height};
-  // Rounded so that differences of pixels and the centre are exact floats, whatever part of a frame is looked at: 1/4096 px for displays up to 1024 wide.
+  // Rounded so that differences of pixels and the centre are exact floats, whatever part of a frame is looked at:
+  // 1/4096 px for displays up to 1024 wide.
   const double steps = std::exp2(22 - std::ceil(std::log2(std::max(display.width, display.height))));
   const auto rounded = [&](double px) { return std::round(px * steps) / steps; };
   view.center = {float(rounded(camera.cx) + display.x - data.x), float(rounded(camera.cy) + display.y - data.y)};

@@ -22,7 +22,8 @@ double far_of(DepthKind kind, const DepthRange& range, bool may_be_infinite) {
   if (!range.far)
     fail(ErrorKind::usage, "{} depth needs the distance of the far plane: give --far{}", name_of(kind),
          may_be_infinite ? ", --far inf where there is none" : "");
-  if (std::isinf(*range.far) && !may_be_infinite) fail(ErrorKind::usage, "{} depth needs a finite --far", name_of(kind));
+  if (std::isinf(*range.far) && !may_be_infinite)
+    fail(ErrorKind::usage, "{} depth needs a finite --far", name_of(kind));
   return *range.far;
 }
 
@@ -33,22 +34,26 @@ void count_between(DepthMap& map, double near_value, double far_value, double fr
   map.origin = from;
 }
 
-/// The z-buffer. It is counted from the far plane, where perspective depth is densest: the difference is exact there, and 1 minus it would not be.
+/// The z-buffer. It is counted from the far plane, where perspective depth is densest: the difference is exact there,
+/// and 1 minus it would not be.
 void set_device(DepthMap& map, const DepthRange& range, bool orthographic, double scale) {
   const double n = near_of(DepthKind::device, range), f = far_of(DepthKind::device, range, !orthographic);
-  if (!(n < f)) fail(ErrorKind::usage, "the near plane must be nearer than the far plane, --near {} is not below --far {}", n, f);
+  if (!(n < f))
+    fail(ErrorKind::usage, "the near plane must be nearer than the far plane, --near {} is not below --far {}", n, f);
   const double low = range.device == DeviceRange::zero_to_one ? 0 : -1;
   const double near_value = range.reversed ? 1 : low, far_value = range.reversed ? low : 1;
   count_between(map, near_value, far_value, far_value);
   map.form = orthographic ? kDepthLinear : kDepthReciprocal;
-  const double at_near = orthographic ? n * scale : 1 / (n * scale), at_far = orthographic ? f * scale : 1 / (f * scale);
+  const double at_near = orthographic ? n * scale : 1 / (n * scale),
+               at_far = orthographic ? f * scale : 1 / (f * scale);
   map.base = at_far;
   map.slope = (at_near - at_far) / (near_value - far_value);
 }
 
 void set_normalized(DepthMap& map, const DepthRange& range, double scale) {
   const double n = range.near.value_or(0), f = far_of(DepthKind::normalized, range, false);
-  if (!(n < f)) fail(ErrorKind::usage, "the near plane must be nearer than the far plane, --near {} is not below --far {}", n, f);
+  if (!(n < f))
+    fail(ErrorKind::usage, "the near plane must be nearer than the far plane, --near {} is not below --far {}", n, f);
   const double near_value = range.reversed ? 1 : 0;
   count_between(map, near_value, 1 - near_value, near_value);
   map.base = n * scale;
@@ -71,7 +76,8 @@ void set_position(DepthMap& map, PositionSpace space, bool negative, const Camer
     return;
   }
   if (!camera.view_from_world)
-    fail(ErrorKind::usage, "world positions need a camera with world_to_camera: give a --camera file with it, or --position-space view");
+    fail(ErrorKind::usage,
+         "world positions need a camera with world_to_camera: give a --camera file with it, or --position-space view");
   for (std::size_t i = 0; i < 3; i++) map.axis[i] = -scale * (*camera.view_from_world)[2][i];
   map.base = -camera.view_from_world_offset[2];
   const auto& offset = camera.view_from_world_offset;
@@ -80,7 +86,8 @@ void set_position(DepthMap& map, PositionSpace space, bool negative, const Camer
 
 }  // namespace
 
-DepthMap depth_map(DepthKind kind, const DepthRange& range, PositionSpace space, const Camera& camera, double scale, double sky) {
+DepthMap depth_map(DepthKind kind, const DepthRange& range, PositionSpace space, const Camera& camera, double scale,
+                   double sky) {
   DepthMap map;
   map.sky_depth = sky * scale;
   switch (kind) {
@@ -94,18 +101,10 @@ DepthMap depth_map(DepthKind kind, const DepthRange& range, PositionSpace space,
       if (kind != DepthKind::inverse) map.sky_above = sky;
       if (range.negative) map.sky_below = -kInfinity, map.sky_above = 0;  // what is beyond the sky is by its distance
       break;
-    case DepthKind::device:
-      set_device(map, range, camera.orthographic, scale);
-      break;
-    case DepthKind::normalized:
-      set_normalized(map, range, scale);
-      break;
-    case DepthKind::log:
-      set_log(map, range, scale);
-      break;
-    case DepthKind::position:
-      set_position(map, space, range.negative, camera, scale);
-      break;
+    case DepthKind::device: set_device(map, range, camera.orthographic, scale); break;
+    case DepthKind::normalized: set_normalized(map, range, scale); break;
+    case DepthKind::log: set_log(map, range, scale); break;
+    case DepthKind::position: set_position(map, space, range.negative, camera, scale); break;
   }
   return map;
 }
@@ -118,7 +117,9 @@ double planar_depth(const DepthMap& map, const std::array<double, 3>& raw, doubl
   } else {
     if (!(raw[0] > map.sky_below && raw[0] < map.sky_above)) return kInfinity;
     const double value = map.slope * (raw[0] - map.origin);
-    z = map.form == kDepthReciprocal ? 1 / (map.base + value) : map.form == kDepthExponential ? map.base * std::expm1(value) : map.base + value;
+    z = map.form == kDepthReciprocal    ? 1 / (map.base + value)
+        : map.form == kDepthExponential ? map.base * std::expm1(value)
+                                        : map.base + value;
   }
   if (!(z > 0 && z < map.sky_depth)) return kInfinity;
   return map.along_ray ? z / ray_length : z;
@@ -153,7 +154,9 @@ DepthPrecision depth_precision(const DepthMap& map, double raw_precision, double
   constexpr double kRenderers = 0x1p-16;  // measured: up to 8e-6; with room for what bounds of tiles lose
   // A position's coordinates, each known to a part of itself, and their products are added up.
   const double from_origin = map.form == kDepthPosition ? 2 * map.eye_distance : 0;
-  const double slope = std::abs(map.slope), rest = raw_precision * std::max(from_origin, std::abs(map.slope * map.origin - map.base)) + 0.5 * step * slope;
+  const double slope = std::abs(map.slope),
+               rest = raw_precision * std::max(from_origin, std::abs(map.slope * map.origin - map.base)) +
+                      0.5 * step * slope;
   DepthPrecision precision;
   precision.at[1] = std::max(kRenderers, raw_precision);
   switch (map.form) {
@@ -169,22 +172,14 @@ DepthPrecision depth_precision(const DepthMap& map, double raw_precision, double
 
 const char* name_of(DepthKind kind) {
   switch (kind) {
-    case DepthKind::automatic:
-      return "auto";
-    case DepthKind::planar:
-      return "planar";
-    case DepthKind::ray:
-      return "ray";
-    case DepthKind::inverse:
-      return "inverse";
-    case DepthKind::device:
-      return "device";
-    case DepthKind::normalized:
-      return "normalized";
-    case DepthKind::log:
-      return "log";
-    case DepthKind::position:
-      return "position";
+    case DepthKind::automatic: return "auto";
+    case DepthKind::planar: return "planar";
+    case DepthKind::ray: return "ray";
+    case DepthKind::inverse: return "inverse";
+    case DepthKind::device: return "device";
+    case DepthKind::normalized: return "normalized";
+    case DepthKind::log: return "log";
+    case DepthKind::position: return "position";
   }
   return "";
 }

@@ -1,4 +1,5 @@
-// What a depth channel's values mean: one map from any kind of depth to planar depth, the same on the host and in prepare.comp.
+// What a depth channel's values mean: one map from any kind of depth to planar depth, the same on the host and in
+// prepare.comp.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -6,8 +7,8 @@
 #include <limits>
 #include <span>
 
-#include "core/frame/camera.h"
 #include "core/base/settings.h"
+#include "core/frame/camera.h"
 
 namespace alcove {
 
@@ -19,7 +20,8 @@ struct DepthMap {
   double sky_below = 0, sky_above = std::numeric_limits<double>::infinity();  // raw depth at or beyond them is sky
   double sky_depth = 1e9;                                                     // scene units
   std::array<double, 3> axis{};                                               // of positions
-  double eye_distance = 0;                                                    // of positions: from their origin to the eye, scene units
+  // of positions: from their origin to the eye, scene units
+  double eye_distance = 0;
 };
 
 /// How far a planar depth z may be from the surface's: at[0] + at[1] z + at[2] z^2, scene units.
@@ -29,12 +31,15 @@ struct DepthPrecision {
 
 /// With d the value and n, f the planes:
 /// planar z = d; ray: |position| = d; inverse z = 1/d; normalized z = n + d (f - n); log z = ((1 + C f)^d - 1) / C;
-/// device 1/z = 1/n - d (1/n - 1/f), of an orthographic camera z = n + d (f - n); position z = -(view z). `reversed` puts 1 - d for d, a device
-/// range of -1 to 1 (d + 1) / 2. Of device, normalized and log depth only what is strictly between 0 and 1 is a surface.
-/// Fails with ErrorKind::usage where the kind needs a plane, a world matrix or a perspective that is not there.
-DepthMap depth_map(DepthKind kind, const DepthRange& range, PositionSpace space, const Camera& camera, double scale, double sky);
+/// device 1/z = 1/n - d (1/n - 1/f), of an orthographic camera z = n + d (f - n); position z = -(view z). `reversed`
+/// puts 1 - d for d, a device range of -1 to 1 (d + 1) / 2. Of device, normalized and log depth only what is strictly
+/// between 0 and 1 is a surface. Fails with ErrorKind::usage where the kind needs a plane, a world matrix or a
+/// perspective that is not there.
+DepthMap depth_map(DepthKind kind, const DepthRange& range, PositionSpace space, const Camera& camera, double scale,
+                   double sky);
 
-/// Whether every raw value plainly says that there is no surface: none is one, or has to be repaired to be none. Of positions: x, y and z are 0.
+/// Whether every raw value plainly says that there is no surface: none is one, or has to be repaired to be none. Of
+/// positions: x, y and z are 0.
 bool is_all_sky(const DepthMap& map, std::span<const float> raw);
 
 /// Planar depth of a raw value, or of a position; `ray_length` is that of the pixel's ray at unit depth. Infinite: sky.
@@ -43,12 +48,13 @@ double planar_depth(const DepthMap& map, const std::array<double, 3>& raw, doubl
 /// Relative to a raw value: half a step of floats, and of half floats.
 constexpr double kFloatPrecision = 0x1p-24, kHalfPrecision = 0x1p-11;
 
-/// The step of device, normalized or log depth that was rounded to 16 or 24 bits; 0: it was not. Of 24 bits only small values tell, and matter: others are
-/// floats as coarse.
+/// The step of device, normalized or log depth that was rounded to 16 or 24 bits; 0: it was not. Of 24 bits only small
+/// values tell, and matter: others are floats as coarse.
 double step_of(std::span<const float> raw);
 
-/// What becomes of raw values that are known to this part of themselves, and rounded to multiples of `step`. Never less than twice what renderers' own arithmetic loses: 2^-16 of the depth, as where
-/// surfaces 1000 units across are seen from a few units (measured: 8e-6).
+/// What becomes of raw values that are known to this part of themselves, and rounded to multiples of `step`. Never less
+/// than twice what renderers' own arithmetic loses: 2^-16 of the depth, as where surfaces 1000 units across are seen
+/// from a few units (measured: 8e-6).
 DepthPrecision depth_precision(const DepthMap& map, double raw_precision, double step = 0);
 
 /// The word for it on the command line.

@@ -20,15 +20,20 @@ constexpr int kSamplesAcross = 160;         // places that are looked at in x an
 using Vector = std::array<double, 3>;
 
 double dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-Vector cross(const Vector& a, const Vector& b) { return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]}; }
+Vector cross(const Vector& a, const Vector& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
 Vector times(const Matrix3& m, const Vector& v) { return {dot(m[0], v), dot(m[1], v), dot(m[2], v)}; }
 
 int sparseness(const View& view) { return std::max(1, std::max(view.size.x, view.size.y) / kSamplesAcross); }
-std::size_t index_of(const View& view, int x, int y) { return std::size_t(y) * std::size_t(view.size.x) + std::size_t(x); }
+std::size_t index_of(const View& view, int x, int y) {
+  return std::size_t(y) * std::size_t(view.size.x) + std::size_t(x);
+}
 
 /// Where the pixel's ray meets the plane at unit depth; orthographic: its place in the plane.
 Vector tangent_at(const View& view, int x, int y) {
-  return {(x + 0.5 - view.center.x) * view.tangent_per_pixel.x, (y + 0.5 - view.center.y) * view.tangent_per_pixel.y, -1};
+  return {(x + 0.5 - view.center.x) * view.tangent_per_pixel.x, (y + 0.5 - view.center.y) * view.tangent_per_pixel.y,
+          -1};
 }
 
 double ray_length(const View& view, int x, int y) {
@@ -45,9 +50,11 @@ Vector value_at(std::span<const float> raw, std::size_t plane, std::size_t i) {
   return raw.size() == 3 * plane ? Vector{raw[i], raw[i + plane], raw[i + 2 * plane]} : Vector{raw[i], 0, 0};
 }
 
-Vector decoded_normal(std::span<const float> raw, std::size_t pixels, std::size_t i, NormalEncoding encoding, bool unorm) {
+Vector decoded_normal(std::span<const float> raw, std::size_t pixels, std::size_t i, NormalEncoding encoding,
+                      bool unorm) {
   Vector n{};
-  for (std::size_t c = 0; c * pixels < raw.size(); c++) n[c] = unorm ? 2 * raw[c * pixels + i] - 1.0 : raw[c * pixels + i];
+  for (std::size_t c = 0; c * pixels < raw.size(); c++)
+    n[c] = unorm ? 2 * raw[c * pixels + i] - 1.0 : raw[c * pixels + i];
   const double squared = n[0] * n[0] + n[1] * n[1];
   if (encoding == NormalEncoding::octahedral) {
     n[2] = 1 - std::abs(n[0]) - std::abs(n[1]);
@@ -83,8 +90,10 @@ ValueStatistics statistics_of(std::span<const float> values, std::size_t step) {
   for (std::size_t i = 0; i < values.size(); i += step) {
     const float x = values[i];
     s.pixels++;
-    if (std::isnan(x)) s.nan++;
-    else if (std::isinf(x)) s.infinite++;
+    if (std::isnan(x))
+      s.nan++;
+    else if (std::isinf(x))
+      s.infinite++;
     else {
       s.negative += x<0, s.zero += x == 0, s.one += x == 1, s.positive += x> 0;
       s.least = std::min(s.least, double(x)), s.most = std::max(s.most, double(x));
@@ -94,9 +103,11 @@ ValueStatistics statistics_of(std::span<const float> values, std::size_t step) {
   return s;
 }
 
-NormalStatistics normal_statistics(std::span<const float> normal, std::span<const float> raw, const DepthMap& map, std::size_t step) {
+NormalStatistics normal_statistics(std::span<const float> normal, std::span<const float> raw, const DepthMap& map,
+                                   std::size_t step) {
   NormalStatistics s;
-  const std::size_t plane = map.form == kDepthPosition ? raw.size() / 3 : raw.size(), components = normal.size() / plane;
+  const std::size_t plane = map.form == kDepthPosition ? raw.size() / 3 : raw.size(),
+                    components = normal.size() / plane;
   s.least = kInfinity, s.most = -kInfinity;
   for (std::size_t i = 0; i < plane; i += step) {
     if (std::isinf(planar_depth(map, value_at(raw, plane, i), 1))) continue;
@@ -112,7 +123,8 @@ NormalStatistics normal_statistics(std::span<const float> normal, std::span<cons
     for (std::size_t c = 0; c < components; c++) s.least = std::min(s.least, n[c]), s.most = std::max(s.most, n[c]);
   }
   if (!s.count) return {};
-  for (double* share : {&s.mean_length, &s.unorm_mean_length, &s.unit_share, &s.unorm_unit_share}) *share /= double(s.count);
+  for (double* share : {&s.mean_length, &s.unorm_mean_length, &s.unit_share, &s.unorm_unit_share})
+    *share /= double(s.count);
   return s;
 }
 
@@ -127,7 +139,8 @@ std::vector<float> planar_depths(std::span<const float> raw, const DepthMap& map
   return planar;
 }
 
-std::vector<float> decoded_normals(std::span<const float> raw, std::size_t pixels, NormalEncoding encoding, bool unorm) {
+std::vector<float> decoded_normals(std::span<const float> raw, std::size_t pixels, NormalEncoding encoding,
+                                   bool unorm) {
   std::vector<float> decoded(3 * pixels);
   for (std::size_t i = 0; i < pixels; i++) {
     const Vector n = decoded_normal(raw, pixels, i, encoding, unorm);
@@ -136,8 +149,8 @@ std::vector<float> decoded_normals(std::span<const float> raw, std::size_t pixel
   return decoded;
 }
 
-std::optional<double> reprojection_error(std::span<const float> position, PositionSpace space, bool mirrored, const Camera& camera,
-                                         const View& view) {
+std::optional<double> reprojection_error(std::span<const float> position, PositionSpace space, bool mirrored,
+                                         const Camera& camera, const View& view) {
   const std::size_t plane = position.size() / 3;
   const int stride = sparseness(view);
   std::vector<double> errors;
@@ -155,13 +168,15 @@ std::optional<double> reprojection_error(std::span<const float> position, Positi
       const Vector t = tangent_at(view, x, y);
       const double scale = view.orthographic ? 1 : -p[2];
       errors.push_back(!(-p[2] > 0) ? kInfinity
-                                    : std::hypot((p[0] / scale - t[0]) / view.tangent_per_pixel.x, (p[1] / scale - t[1]) / view.tangent_per_pixel.y));
+                                    : std::hypot((p[0] / scale - t[0]) / view.tangent_per_pixel.x,
+                                                 (p[1] / scale - t[1]) / view.tangent_per_pixel.y));
     }
   return errors.empty() ? std::nullopt : std::optional(quantile(errors, 0.5));
 }
 
 std::vector<DepthScore> score_depth(std::span<const float> raw, const View& view, double sky, double rounding) {
-  // Over this many pixels the difference between distance to the eye and to its plane bends 1/z by (reach / focal)^2, far above rounding.
+  // Over this many pixels the difference between distance to the eye and to its plane bends 1/z by (reach / focal)^2,
+  // far above rounding.
   const int reach = std::max(3, std::max(view.size.x, view.size.y) / 48), stride = sparseness(view);
   constexpr double kSmooth = 0.02;  // bend of values that are one surface
   std::vector<DepthScore> scores{{DepthKind::planar}, {DepthKind::ray}, {DepthKind::inverse}};
@@ -178,9 +193,10 @@ std::vector<DepthScore> score_depth(std::span<const float> raw, const View& view
     count++;
     const bool value_is = is_straight(value[0], value[1], value[2], rounding);
     const bool inverse_is = is_straight(1 / value[0], 1 / value[1], 1 / value[2], rounding);
-    const std::array straight{view.orthographic ? value_is : inverse_is,
-                              !view.orthographic && is_straight(length[0] / value[0], length[1] / value[1], length[2] / value[2], rounding),
-                              view.orthographic ? inverse_is : value_is};
+    const std::array straight{
+        view.orthographic ? value_is : inverse_is,
+        !view.orthographic && is_straight(length[0] / value[0], length[1] / value[1], length[2] / value[2], rounding),
+        view.orthographic ? inverse_is : value_is};
     if (straight[0] + straight[1] + straight[2] != 1) return;  // curved, or too even to tell
     for (std::size_t k = 0; k < scores.size(); k++) scores[k].straight += straight[k];
   };
@@ -192,12 +208,14 @@ std::vector<DepthScore> score_depth(std::span<const float> raw, const View& view
   return scores;
 }
 
-std::vector<NormalScore> score_normals(std::span<const float> normal, NormalEncoding encoding, bool unorm, std::span<const float> raw, const DepthMap& map,
-                                       const Camera& camera, const View& view) {
+std::vector<NormalScore> score_normals(std::span<const float> normal, NormalEncoding encoding, bool unorm,
+                                       std::span<const float> raw, const DepthMap& map, const Camera& camera,
+                                       const View& view) {
   std::vector<NormalScore> scores;
   for (const NormalSpace space : {NormalSpace::world, NormalSpace::view})
     for (const bool x : {false, true})
-      for (const NormalFlips flips : {NormalFlips{x, false, false}, NormalFlips{x, false, true}, NormalFlips{x, true, false}, NormalFlips{x, true, true}})
+      for (const NormalFlips flips : {NormalFlips{x, false, false}, NormalFlips{x, false, true},
+                                      NormalFlips{x, true, false}, NormalFlips{x, true, true}})
         if (space == NormalSpace::view || camera.view_from_world) scores.push_back({space, flips});
   std::vector<Matrix3> rotations;
   for (const auto& score : scores) rotations.push_back(view_from_normal(camera, score.space, score.flips));
@@ -210,14 +228,18 @@ std::vector<NormalScore> score_normals(std::span<const float> normal, NormalEnco
   for (int y = 1; y + 1 < view.size.y; y += stride)
     for (int x = 1; x + 1 < view.size.x; x += stride) {
       const auto depth = [&](int dx, int dy) {
-        return planar_depth(map, value_at(raw, plane, index_of(view, x + dx, y + dy)), ray_length(view, x + dx, y + dy));
+        return planar_depth(map, value_at(raw, plane, index_of(view, x + dx, y + dy)),
+                            ray_length(view, x + dx, y + dy));
       };
       const double left = depth(-1, 0), right = depth(1, 0), up = depth(0, -1), down = depth(0, 1), here = depth(0, 0);
       if (!(bend(1 / left, 1 / here, 1 / right) < 0.005) || !(bend(1 / up, 1 / here, 1 / down) < 0.005)) continue;
-      const auto difference = [](const Vector& a, const Vector& b) { return Vector{a[0] - b[0], a[1] - b[1], a[2] - b[2]}; };
+      const auto difference = [](const Vector& a, const Vector& b) {
+        return Vector{a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+      };
       const Vector surface = cross(difference(position_at(view, x, y + 1, down), position_at(view, x, y - 1, up)),
                                    difference(position_at(view, x + 1, y, right), position_at(view, x - 1, y, left)));
-      const Vector p = position_at(view, x, y, here), eye = view.orthographic ? Vector{0, 0, 1} : Vector{-p[0], -p[1], -p[2]};
+      const Vector p = position_at(view, x, y, here),
+                   eye = view.orthographic ? Vector{0, 0, 1} : Vector{-p[0], -p[1], -p[2]};
       const Vector vector = decoded_normal(normal, plane, index_of(view, x, y), encoding, unorm);
       const double lengths = std::sqrt(dot(vector, vector) * dot(surface, surface));
       if (!(lengths > 0) || std::isinf(lengths)) continue;

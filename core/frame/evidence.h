@@ -1,4 +1,5 @@
-// What the pixels themselves say about depth and normals: statistics, and scores of the ways to read them. Knows no renderer.
+// What the pixels themselves say about depth and normals: statistics, and scores of the ways to read them. Knows no
+// renderer.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -8,9 +9,9 @@
 #include <string>
 #include <vector>
 
+#include "core/base/settings.h"
 #include "core/frame/camera.h"
 #include "core/frame/depth.h"
-#include "core/base/settings.h"
 
 namespace alcove {
 
@@ -25,14 +26,15 @@ ValueStatistics statistics_of(std::span<const float> values, std::size_t step = 
 /// Of normals as they stand in the file, where they are finite and not zero.
 struct NormalStatistics {
   std::uint64_t count = 0;
-  double least = 0, most = 0;   // of all components
-  double mean_length = 0;       // 1 for signed normals
+  double least = 0, most = 0;    // of all components
+  double mean_length = 0;        // 1 for signed normals
   double unorm_mean_length = 0;  // the same of 2 n - 1
-  double unit_share = 0;        // whose length is 1 within 5 %
-  double unorm_unit_share = 0;  // the same of 2 n - 1
+  double unit_share = 0;         // whose length is 1 within 5 %
+  double unorm_unit_share = 0;   // the same of 2 n - 1
 };
 /// Of every `step`-th pixel that is no sky. `normal` has two planes or three, `raw` the depth as in the file.
-NormalStatistics normal_statistics(std::span<const float> normal, std::span<const float> raw, const DepthMap& map, std::size_t step = 1);
+NormalStatistics normal_statistics(std::span<const float> normal, std::span<const float> raw, const DepthMap& map,
+                                   std::size_t step = 1);
 
 /// Planes x, y, z of the normals that the file's values stand for, of any length, as prepare.comp decodes them.
 std::vector<float> decoded_normals(std::span<const float> raw, std::size_t pixels, NormalEncoding encoding, bool unorm);
@@ -40,21 +42,26 @@ std::vector<float> decoded_normals(std::span<const float> raw, std::size_t pixel
 /// Planar depth a pixel of the frame, in scene units; infinite on sky.
 std::vector<float> planar_depths(std::span<const float> raw, const DepthMap& map, const View& view);
 
-/// How far, in pixels, positions lie from the pixels that hold them (median); infinite where most are behind the camera, none where all are sky.
-/// `mirrored`: view positions whose z has the other sign than the camera's.
-std::optional<double> reprojection_error(std::span<const float> position, PositionSpace space, bool mirrored, const Camera& camera, const View& view);
+/// How far, in pixels, positions lie from the pixels that hold them (median); infinite where most are behind the
+/// camera, none where all are sky. `mirrored`: view positions whose z has the other sign than the camera's.
+std::optional<double> reprojection_error(std::span<const float> position, PositionSpace space, bool mirrored,
+                                         const Camera& camera, const View& view);
 
-constexpr double kFloatRounding = 3e-7, kHalfRounding = 2e-3;  // of the second difference of three values, relative to one of them
+// of the second difference of three values, relative to one of them
+constexpr double kFloatRounding = 3e-7, kHalfRounding = 2e-3;
 
 /// A way to read depth and how well the frame's flat surfaces agree with it.
 struct DepthScore {
   DepthKind kind;
-  double straight = 0;  // share of the smooth places where by this kind alone 1/z (orthographic: z) is affine over the image, as it is on every plane
+  // share of the smooth places where by this kind alone 1/z (orthographic: z) is affine over the image, as it is on
+  // every plane
+  double straight = 0;
 };
-/// planar, ray and inverse (which stands for all that is affine in 1/z: device depth too), the best first. Empty where too little of the frame is smooth.
-/// Orthographic: planar stands for ray and device depth too, and inverse for itself.
+/// planar, ray and inverse (which stands for all that is affine in 1/z: device depth too), the best first. Empty where
+/// too little of the frame is smooth. Orthographic: planar stands for ray and device depth too, and inverse for itself.
 /// `rounding`: of the values, relative.
-std::vector<DepthScore> score_depth(std::span<const float> raw, const View& view, double sky, double rounding = kFloatRounding);
+std::vector<DepthScore> score_depth(std::span<const float> raw, const View& view, double sky,
+                                    double rounding = kFloatRounding);
 
 /// A way to read normals and how well the frame agrees with it.
 struct NormalScore {
@@ -64,10 +71,11 @@ struct NormalScore {
   double agreement = 0;  // share within 20 degrees of the normal that depth gives
   double angle = 0;      // degrees to it, of the best quarter at most
 };
-/// World space (where the camera knows it) and view space, with all flips, the best agreement first; `normal` and `raw` are as in the file.
-/// Empty where too little of the frame is smooth.
-std::vector<NormalScore> score_normals(std::span<const float> normal, NormalEncoding encoding, bool unorm, std::span<const float> raw, const DepthMap& map,
-                                       const Camera& camera, const View& view);
+/// World space (where the camera knows it) and view space, with all flips, the best agreement first; `normal` and `raw`
+/// are as in the file. Empty where too little of the frame is smooth.
+std::vector<NormalScore> score_normals(std::span<const float> normal, NormalEncoding encoding, bool unorm,
+                                       std::span<const float> raw, const DepthMap& map, const Camera& camera,
+                                       const View& view);
 
 /// "xz", or "none".
 std::string to_string(const NormalFlips& flips);

@@ -73,26 +73,30 @@ struct Placement {
 
 enum class To { camera, world };
 
-/// A rigid 4 x 4 matrix in either layout: where the translation stands tells; without one, the standard's row vectors. A scale is the camera's own.
+/// A rigid 4 x 4 matrix in either layout: where the translation stands tells; without one, the standard's row vectors.
+/// A scale is the camera's own.
 std::optional<Placement> placement(const std::vector<double>& m, To to) {
   if (m.size() != 16) return std::nullopt;
   const auto ends = [&](std::size_t first, std::size_t step) {
     const double w = m[15];
-    return w != 0 && std::abs(m[first] / w) < 1e-6 && std::abs(m[first + step] / w) < 1e-6 && std::abs(m[first + 2 * step] / w) < 1e-6;
+    return w != 0 && std::abs(m[first] / w) < 1e-6 && std::abs(m[first + step] / w) < 1e-6 &&
+           std::abs(m[first + 2 * step] / w) < 1e-6;
   };
   const bool row_vectors = ends(3, 4);
   if (!row_vectors && !ends(12, 1)) return std::nullopt;
   Placement p{};
   p.row_vectors = row_vectors;
   for (std::size_t row = 0; row < 3; row++) {
-    for (std::size_t column = 0; column < 3; column++) p.rotation[row][column] = row_vectors ? m[4 * column + row] : m[4 * row + column];
+    for (std::size_t column = 0; column < 3; column++)
+      p.rotation[row][column] = row_vectors ? m[4 * column + row] : m[4 * row + column];
     p.offset[row] = row_vectors ? m[12 + row] : m[4 * row + 3];
   }
   const double squared = dot(p.rotation[0], p.rotation[0]);
   constexpr double kTolerance = 1e-3;
   for (std::size_t a = 0; a < 3; a++)
     for (std::size_t b = 0; b < 3; b++)
-      if (!(squared > 0) || !(std::abs(dot(p.rotation[a], p.rotation[b]) / squared - (a == b)) < kTolerance)) return std::nullopt;
+      if (!(squared > 0) || !(std::abs(dot(p.rotation[a], p.rotation[b]) / squared - (a == b)) < kTolerance))
+        return std::nullopt;
   for (std::size_t row = 0; row < 3; row++) {
     for (double& x : p.rotation[row]) x /= std::sqrt(squared);
     if (to == To::camera) p.offset[row] /= std::sqrt(squared);
@@ -127,7 +131,8 @@ Camera centred(const Window& display, double fx, double pixel_aspect) {
 
 double focal_px(double width, double fov_degrees) { return 0.5 * width / std::tan(0.5 * fov_degrees * kRadian); }
 
-/// One row of the projection: image coordinate * w = along * x + shift * depth (perspective), or along * x + shift (orthographic).
+/// One row of the projection: image coordinate * w = along * x + shift * depth (perspective), or along * x + shift
+/// (orthographic).
 struct Axis {
   double along, shift;
 };
@@ -137,12 +142,14 @@ std::optional<Camera> projected(const Placement& view, const std::vector<double>
   if (values.size() != 16) return std::nullopt;
   Matrix4 ndc{};
   for (std::size_t row = 0; row < 4; row++)
-    for (std::size_t column = 0; column < 4; column++) ndc[row][column] = view.row_vectors ? values[4 * column + row] : values[4 * row + column];
+    for (std::size_t column = 0; column < 4; column++)
+      ndc[row][column] = view.row_vectors ? values[4 * column + row] : values[4 * row + column];
   const Placement world = inverted(view);
   Matrix4 p{};  // NDC from camera space
   for (std::size_t row = 0; row < 4; row++) {
     const Vector of_world{ndc[row][0], ndc[row][1], ndc[row][2]};
-    for (std::size_t column = 0; column < 3; column++) p[row][column] = dot(of_world, transposed(world.rotation)[column]);
+    for (std::size_t column = 0; column < 3; column++)
+      p[row][column] = dot(of_world, transposed(world.rotation)[column]);
     p[row][3] = dot(of_world, world.offset) + ndc[row][3];
   }
   Camera camera;
@@ -151,7 +158,8 @@ std::optional<Camera> projected(const Placement& view, const std::vector<double>
   camera.orthographic = largest < 1e-6 * std::abs(p[3][3]);
   const bool looks_along_z = camera.orthographic ? p[2][2] / p[3][3] > 0 : depth_scale > 0;
   const auto axis = [&](std::size_t row) {
-    return camera.orthographic ? Axis{p[row][row] / p[3][3], p[row][3] / p[3][3]} : Axis{p[row][row] / std::abs(depth_scale), p[row][2] / depth_scale};
+    return camera.orthographic ? Axis{p[row][row] / p[3][3], p[row][3] / p[3][3]}
+                               : Axis{p[row][row] / std::abs(depth_scale), p[row][2] / depth_scale};
   };
   const Axis x = axis(0), y = axis(1);
   if (!(x.along != 0) || !(y.along != 0) || !std::isfinite(x.along + x.shift + y.along + y.shift)) return std::nullopt;
@@ -180,27 +188,32 @@ std::optional<HeaderCamera> by_redshift(const Attributes& a, const Window& displ
   const auto fov = a.positive("rs/camera/fov", 180);
   if (!fov) return std::nullopt;
   Camera camera = centred(display, focal_px(display.width, *fov), pixel_aspect);
-  if (const auto world = placement(a.numbers("rs/camera/transform", 16), To::world)) place(camera, inverted(*world), true);
+  if (const auto world = placement(a.numbers("rs/camera/transform", 16), To::world))
+    place(camera, inverted(*world), true);
   camera.near = a.positive("rs/camera/nearPlane"), camera.far = a.positive("rs/camera/farPlane");
   return HeaderCamera{camera, "rs/camera"};
 }
 
 /// Left-handed, z up, x forward, y right; yaw turns x to y, pitch raises, roll lowers the right side.
-std::optional<HeaderCamera> by_unreal(const Attributes& a, const Window& display, const Window& data, double pixel_aspect) {
+std::optional<HeaderCamera> by_unreal(const Attributes& a, const Window& display, const Window& data,
+                                      double pixel_aspect) {
   const std::string root = "unreal/camera/";
   std::optional<double> fov = a.positive(root + "FinalImage/fov", 180);
   if (!fov) fov = a.positive(root + "fov", 180);
   if (!fov) return std::nullopt;
   Camera camera = centred(display, focal_px(std::max(data.width, display.width), *fov), pixel_aspect);
   const auto x = a.number(root + "curPos/x"), y = a.number(root + "curPos/y"), z = a.number(root + "curPos/z");
-  const auto yaw = a.number(root + "curRot/yaw"), pitch = a.number(root + "curRot/pitch"), roll = a.number(root + "curRot/roll");
+  const auto yaw = a.number(root + "curRot/yaw"), pitch = a.number(root + "curRot/pitch"),
+             roll = a.number(root + "curRot/roll");
   if (x && y && z && yaw && pitch && roll) {
-    const double cy = std::cos(*yaw * kRadian), sy = std::sin(*yaw * kRadian), cp = std::cos(*pitch * kRadian), sp = std::sin(*pitch * kRadian);
+    const double cy = std::cos(*yaw * kRadian), sy = std::sin(*yaw * kRadian), cp = std::cos(*pitch * kRadian),
+                 sp = std::sin(*pitch * kRadian);
     const double cr = std::cos(*roll * kRadian), sr = std::sin(*roll * kRadian);
     const Vector forward{cp * cy, cp * sy, sp}, level{-sy, cy, 0}, above{-sp * cy, -sp * sy, cp};
     Placement p{};
     for (std::size_t i = 0; i < 3; i++)
-      p.rotation[0][i] = cr * level[i] - sr * above[i], p.rotation[1][i] = sr * level[i] + cr * above[i], p.rotation[2][i] = -forward[i];
+      p.rotation[0][i] = cr * level[i] - sr * above[i], p.rotation[1][i] = sr * level[i] + cr * above[i],
+      p.rotation[2][i] = -forward[i];
     for (std::size_t row = 0; row < 3; row++) p.offset[row] = -dot(p.rotation[row], {*x, *y, *z});
     place(camera, p, false);
   }
@@ -229,30 +242,38 @@ std::optional<HeaderCamera> by_standard(const Attributes& a, const Window& displ
     found->camera.cx -= center[0] * found->camera.fx;
     found->camera.cy += center[1] * found->camera.fy;
   } else if (focal && !sensor.empty() && sensor[0] > 0) {
-    found = {centred(display, display.width * *focal / sensor[0], pixel_aspect), "focal length, sensorOverallDimensions"};
+    found = {centred(display, display.width * *focal / sensor[0], pixel_aspect),
+             "focal length, sensorOverallDimensions"};
   }
-  if (const auto view = placement(a.numbers("worldToCamera", 16), To::camera); found && view) place(found->camera, *view, true);
+  if (const auto view = placement(a.numbers("worldToCamera", 16), To::camera); found && view)
+    place(found->camera, *view, true);
   return found;
 }
 
 }  // namespace
 
-std::optional<HeaderCamera> header_camera(const AttributeTexts& attributes, const Window& display, const Window& data, double pixel_aspect) {
+std::optional<HeaderCamera> header_camera(const AttributeTexts& attributes, const Window& display, const Window& data,
+                                          double pixel_aspect) {
   const Attributes a(attributes);
   auto found = by_matrices(a, display);
   if (!found) found = by_redshift(a, display, pixel_aspect);
   if (!found) found = by_unreal(a, display, data, pixel_aspect);
   if (!found) found = by_vray(a, display, pixel_aspect);
   if (!found) found = by_standard(a, display, pixel_aspect);
-  const auto fine = [](double scale, double center) { return scale > 1e-6 && scale < 1e12 && std::abs(center) < 1e9; };  // of numbers only: NaN is not
-  return found && fine(found->camera.fx, found->camera.cx) && fine(found->camera.fy, found->camera.cy) ? found : std::nullopt;
+  // of numbers only: NaN is not
+  const auto fine = [](double scale, double center) { return scale > 1e-6 && scale < 1e12 && std::abs(center) < 1e9; };
+  return found && fine(found->camera.fx, found->camera.cx) && fine(found->camera.fy, found->camera.cy) ? found
+                                                                                                       : std::nullopt;
 }
 
 void require_no_panorama(const AttributeTexts& attributes, const std::string& path) {
   const Attributes a(attributes);
-  const auto projection = a.number("cameraProjection");  // V-Ray's: 1 to 6 are spherical, cylindrical, box, fish eye and warped
+  // V-Ray's: 1 to 6 are spherical, cylindrical, box, fish eye and warped
+  const auto projection = a.number("cameraProjection");
   if (a.texts.contains("envmap") || (projection && *projection >= 1 && *projection <= 6))
-    fail(ErrorKind::input, "{}: a panorama ({}): its pixels have no plane of projection, which depth and AO here refer to; render it with a perspective camera",
+    fail(ErrorKind::input,
+         "{}: a panorama ({}): its pixels have no plane of projection, which depth and AO here refer to; render it "
+         "with a perspective camera",
          path, a.texts.contains("envmap") ? "envmap" : "cameraProjection");
 }
 

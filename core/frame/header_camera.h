@@ -6,8 +6,8 @@
 #include <optional>
 #include <string>
 
-#include "core/frame/camera.h"
 #include "core/base/image.h"
+#include "core/frame/camera.h"
 
 namespace alcove {
 
@@ -20,17 +20,20 @@ struct HeaderCamera {
 using AttributeTexts = std::map<std::string, std::string>;
 
 /// The camera that the attributes give; none where they lack a field of view. In this order:
-/// - worldToCamera and worldToNDC (Arnold, RenderMan, Karma, Mantra, pbrt), for row or column vectors, NDC from 0 or from -1, y up or down, with lens
-///   shift, perspective or orthographic;
+/// - worldToCamera and worldToNDC (Arnold, RenderMan, Karma, Mantra, pbrt), for row or column vectors, NDC from 0 or
+///   from -1, y up or down, with lens shift, perspective or orthographic;
 /// - rs/camera/transform, fov (Redshift);
 /// - unreal/camera/curPos, curRot, FinalImage/fov, which includes the overscan;
 /// - cameraTransform, cameraFov (V-Ray);
-/// - screenWindowWidth and screenWindowCenter, where they are not left at 1 and 0, or pinholeFocalLength or nominalFocalLength with
-///   sensorOverallDimensions (the standard attributes); with worldToCamera where there is one.
-/// Prefixes that Nuke puts before others' attributes (nuke/, exr/) do not matter. Numbers that make no camera count as none.
-std::optional<HeaderCamera> header_camera(const AttributeTexts& attributes, const Window& display, const Window& data, double pixel_aspect);
+/// - screenWindowWidth and screenWindowCenter, where they are not left at 1 and 0, or pinholeFocalLength or
+///   nominalFocalLength with sensorOverallDimensions (the standard attributes); with worldToCamera where there is one.
+/// Prefixes that Nuke puts before others' attributes (nuke/, exr/) do not matter. Numbers that make no camera count as
+/// none.
+std::optional<HeaderCamera> header_camera(const AttributeTexts& attributes, const Window& display, const Window& data,
+                                          double pixel_aspect);
 
-/// Fails with ErrorKind::input where the attributes say that the picture is no planar projection: envmap, V-Ray's cameraProjection.
+/// Fails with ErrorKind::input where the attributes say that the picture is no planar projection: envmap, V-Ray's
+/// cameraProjection.
 void require_no_panorama(const AttributeTexts& attributes, const std::string& path);
 
 }  // namespace alcove

@@ -5,22 +5,25 @@
 #include <algorithm>
 #include <cstdlib>
 
-#include "core/frame/depth.h"
 #include "core/base/error.h"
 #include "core/base/flat_toml.h"
 #include "core/base/text.h"
+#include "core/frame/depth.h"
 
 namespace alcove {
 namespace {
 
 std::optional<DepthKind> depth_kind_of(const std::string& word) {
-  for (const DepthKind kind : {DepthKind::planar, DepthKind::ray, DepthKind::inverse, DepthKind::device, DepthKind::normalized, DepthKind::log})
+  for (const DepthKind kind : {DepthKind::planar, DepthKind::ray, DepthKind::inverse, DepthKind::device,
+                               DepthKind::normalized, DepthKind::log})
     if (word == name_of(kind)) return kind;
   return std::nullopt;
 }
 
 std::optional<NormalSpace> normal_space_of(const std::string& word) {
-  return word == "world" ? std::optional(NormalSpace::world) : word == "view" ? std::optional(NormalSpace::view) : std::nullopt;
+  return word == "world"  ? std::optional(NormalSpace::world)
+         : word == "view" ? std::optional(NormalSpace::view)
+                          : std::nullopt;
 }
 
 std::optional<NormalEncoding> normal_encoding_of(const std::string& word) {
@@ -37,7 +40,8 @@ std::vector<AovCandidate> candidates_of(const std::vector<std::string>& words) {
     const std::string before = word.substr(0, colon), after = colon == word.npos ? "" : word.substr(colon + 1);
     const auto kind = depth_kind_of(after);
     const auto space = normal_space_of(after);
-    candidates.push_back({lower_case(kind || space ? before : word), kind.value_or(DepthKind::automatic), space.value_or(NormalSpace::automatic)});
+    candidates.push_back({lower_case(kind || space ? before : word), kind.value_or(DepthKind::automatic),
+                          space.value_or(NormalSpace::automatic)});
   }
   return candidates;
 }
@@ -46,15 +50,20 @@ std::vector<AovCandidate> candidates_of(const std::vector<std::string>& words) {
 bool fits(std::string_view text, std::string_view pattern) {
   std::size_t t = 0, p = 0, star = pattern.npos, resume = 0;
   while (t < text.size()) {
-    if (p < pattern.size() && pattern[p] == '*') star = p++, resume = t;
-    else if (p < pattern.size() && pattern[p] == text[t]) p++, t++;
-    else if (star != pattern.npos) p = star + 1, t = ++resume;
-    else return false;
+    if (p < pattern.size() && pattern[p] == '*')
+      star = p++, resume = t;
+    else if (p < pattern.size() && pattern[p] == text[t])
+      p++, t++;
+    else if (star != pattern.npos)
+      p = star + 1, t = ++resume;
+    else
+      return false;
   }
   return pattern.find_first_not_of('*', p) == pattern.npos;
 }
 
-/// What identifies a file: attributes as "name" and "name=value", channels as "channel:name"; in lower case. Nuke puts prefixes before others' attributes.
+/// What identifies a file: attributes as "name" and "name=value", channels as "channel:name"; in lower case. Nuke puts
+/// prefixes before others' attributes.
 std::vector<std::string> marks_of(const ExrFile& file) {
   constexpr std::size_t kLongest = 200;  // characters of a mark that count
   std::vector<std::string> marks;
@@ -68,7 +77,8 @@ std::vector<std::string> marks_of(const ExrFile& file) {
     }
     for (const auto& channel : file.parts()[p].channels) {
       marks.push_back("channel:" + lower_case(channel.name.substr(0, kLongest)));
-      if (!file.parts()[p].name.empty()) marks.push_back("channel:" + lower_case((file.parts()[p].name + "." + channel.name).substr(0, kLongest)));
+      if (!file.parts()[p].name.empty())
+        marks.push_back("channel:" + lower_case((file.parts()[p].name + "." + channel.name).substr(0, kLongest)));
     }
   }
   return marks;
@@ -89,19 +99,32 @@ InputRules parse_input_rules(const std::string& name, const std::string& text) {
       const double value = std::strtod(word.c_str(), nullptr);
       return known(value > 0 ? std::optional(value) : std::nullopt);
     };
-    if (key == "source") known(word == name ? std::optional(0) : std::nullopt);
-    else if (key == "detect") rules.detect = values;
-    else if (key == "last") rules.last = word == "true";
-    else if (key == "depth-channel") rules.depth = candidates_of(values);
-    else if (key == "normal-channels") rules.normal = candidates_of(values);
-    else if (key == "position-channels") rules.position = candidates_of(values);
-    else if (key == "depth-kind") rules.depth_kind = known(depth_kind_of(word));
-    else if (key == "near") rules.depth_range.near = distance();
-    else if (key == "far") rules.depth_range.far = distance();
-    else if (key == "reversed-z") rules.depth_range.reversed = word == "true";
-    else if (key == "normal-space") rules.normal_space = known(normal_space_of(word));
-    else if (key == "normal-encoding") rules.normal_encoding = known(normal_encoding_of(word));
-    else fail(ErrorKind::usage, "presets/input/{}.toml: there is no key {}", name, key);
+    if (key == "source")
+      known(word == name ? std::optional(0) : std::nullopt);
+    else if (key == "detect")
+      rules.detect = values;
+    else if (key == "last")
+      rules.last = word == "true";
+    else if (key == "depth-channel")
+      rules.depth = candidates_of(values);
+    else if (key == "normal-channels")
+      rules.normal = candidates_of(values);
+    else if (key == "position-channels")
+      rules.position = candidates_of(values);
+    else if (key == "depth-kind")
+      rules.depth_kind = known(depth_kind_of(word));
+    else if (key == "near")
+      rules.depth_range.near = distance();
+    else if (key == "far")
+      rules.depth_range.far = distance();
+    else if (key == "reversed-z")
+      rules.depth_range.reversed = word == "true";
+    else if (key == "normal-space")
+      rules.normal_space = known(normal_space_of(word));
+    else if (key == "normal-encoding")
+      rules.normal_encoding = known(normal_encoding_of(word));
+    else
+      fail(ErrorKind::usage, "presets/input/{}.toml: there is no key {}", name, key);
   }
   return rules;
 }
@@ -134,7 +157,8 @@ DetectedRules detect_rules(const ExrFile& file) {
   for (const bool last : {false, true})
     for (const auto& rules : all_input_rules())
       for (const auto& pattern : rules.detect)
-        if (const auto mark = std::ranges::find_if(marks, [wanted = lower_case(pattern)](const auto& m) { return fits(m, wanted); });
+        if (const auto mark =
+                std::ranges::find_if(marks, [wanted = lower_case(pattern)](const auto& m) { return fits(m, wanted); });
             rules.last == last && mark != marks.end())
           return {&rules, *mark};
   return {&input_rules("generic"), ""};

@@ -1,11 +1,12 @@
 // How the programs that write frames name and mean their AOVs: presets/input/*.toml, compiled into the program.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Keys: `detect`, patterns with * of header attributes ("arnold/*", "Software=Blender 3*") or of channels ("channel:ViewLayer.*"), any of which tells
-// the program; `last`, true where other programs' files bear its marks too, so that theirs tell first; `depth-channel`, `normal-channels`,
-// `position-channels`, layers or channels with the likeliest first, each with its own kind or space behind a colon where it has one ("Nn:view"); and
-// `depth-kind`, `near`, `far`, `reversed-z`, `normal-space` and `normal-encoding`, which mean what the options of these names mean. What is not there the
-// pixels decide.
+// Keys: `detect`, patterns with * of header attributes ("arnold/*", "Software=Blender 3*") or of channels
+// ("channel:ViewLayer.*"), any of which tells the program; `last`, true where other programs' files bear its marks too,
+// so that theirs tell first; `depth-channel`, `normal-channels`, `position-channels`, layers or channels with the
+// likeliest first, each with its own kind or space behind a colon where it has one ("Nn:view"); and `depth-kind`,
+// `near`, `far`, `reversed-z`, `normal-space` and `normal-encoding`, which mean what the options of these names mean.
+// What is not there the pixels decide.
 #pragma once
 
 #include <optional>
@@ -13,8 +14,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/formats/exr.h"
 #include "core/base/settings.h"
+#include "core/formats/exr.h"
 
 namespace alcove {
 
@@ -26,12 +27,12 @@ struct AovCandidate {
 };
 
 struct InputRules {
-  std::string name;                 // the file's, without .toml
+  std::string name;  // the file's, without .toml
   std::vector<std::string> detect;
-  bool last = false;                // told only where nothing else is
+  bool last = false;  // told only where nothing else is
   std::vector<AovCandidate> depth, normal, position;
   DepthKind depth_kind = DepthKind::automatic;
-  DepthRange depth_range;           // near, far and reversed only
+  DepthRange depth_range;  // near, far and reversed only
   NormalSpace normal_space = NormalSpace::automatic;
   NormalEncoding normal_encoding = NormalEncoding::automatic;
 };

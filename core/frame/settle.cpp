@@ -12,21 +12,29 @@
 namespace alcove {
 namespace {
 
-constexpr double kAsGood = 0.8;          // of the best score: the usual reading stays where it does about as well
-constexpr double kClear = 2;             // times the second best: another reading is taken only when it is that much better
-constexpr double kLeastStraight = 0.02;  // of the smooth places; below it the frame has no flat surfaces that could tell
-constexpr double kNoBetter = 0.95;       // of the best agreement: below it another reading of the normals is taken, or noted
-constexpr double kSurelyStraight = 0.1;  // of the smooth places; from there on flat surfaces speak for a kind by themselves
-constexpr double kLeastAgreement = 0.6;  // of the normals with depth; some reading reaches half by chance, as rooms have three directions
-constexpr double kLargestAngle = 2;      // degrees, of the best quarter of the normals: farther off, normals and depth are of different cameras or planes
-constexpr double kUnit = 0.9;            // of the normals: so many of unit length are vectors
-constexpr double kPlateau = 0.001;       // of the pixels: so many of exactly 1 are a background
-constexpr double kLargestError = 2;      // px, median: farther off, positions are not what they are taken for
-constexpr std::size_t kSparse = 31;      // every so many pixels are enough for statistics; a prime, so that no column is favoured
+constexpr double kAsGood = 0.8;  // of the best score: the usual reading stays where it does about as well
+// times the second best: another reading is taken only when it is that much better
+constexpr double kClear = 2;
+// of the smooth places; below it the frame has no flat surfaces that could tell
+constexpr double kLeastStraight = 0.02;
+// of the best agreement: below it another reading of the normals is taken, or noted
+constexpr double kNoBetter = 0.95;
+// of the smooth places; from there on flat surfaces speak for a kind by themselves
+constexpr double kSurelyStraight = 0.1;
+// of the normals with depth; some reading reaches half by chance, as rooms have three directions
+constexpr double kLeastAgreement = 0.6;
+// degrees, of the best quarter of the normals: farther off, normals and depth are of different cameras or planes
+constexpr double kLargestAngle = 2;
+constexpr double kUnit = 0.9;        // of the normals: so many of unit length are vectors
+constexpr double kPlateau = 0.001;   // of the pixels: so many of exactly 1 are a background
+constexpr double kLargestError = 2;  // px, median: farther off, positions are not what they are taken for
+// every so many pixels are enough for statistics; a prime, so that no column is favoured
+constexpr std::size_t kSparse = 31;
 
 class Settlement {
  public:
-  Settlement(FrameSource& source, const InputSettings& settings, std::span<const float> depth, std::span<const float> normal)
+  Settlement(FrameSource& source, const InputSettings& settings, std::span<const float> depth,
+             std::span<const float> normal)
       : source_(source),
         settings_(settings),
         depth_(depth),
@@ -35,11 +43,15 @@ class Settlement {
         values_(statistics_of(depth, kSparse)) {}
 
   void run() {
-    const auto is_near = [&](std::size_t i) { return std::isfinite(depth_[i]) && depth_[i] != 0 && std::abs(depth_[i]) < settings_.sky; };
+    const auto is_near = [&](std::size_t i) {
+      return std::isfinite(depth_[i]) && depth_[i] != 0 && std::abs(depth_[i]) < settings_.sky;
+    };
     source_.has_evidence = false;
     for (std::size_t i = 0; i < depth_.size() && !source_.has_evidence; i += kSparse) source_.has_evidence = is_near(i);
-    if (source_.depth_kind == DepthKind::position) settle_position();
-    else settle_depth();
+    if (source_.depth_kind == DepthKind::position)
+      settle_position();
+    else
+      settle_depth();
     if (source_.normal.empty()) return;
     settle_encoding();
     settle_space();
@@ -49,32 +61,39 @@ class Settlement {
   const std::string& depth_path() const { return source_.files[source_.depth[0].file].path(); }
   const std::string& normal_path() const { return source_.files[source_.normal[0].file].path(); }
 
-  void guess(const std::string& what, const std::string& chosen, const std::string& why, const std::string& option, bool unusual) {
+  void guess(const std::string& what, const std::string& chosen, const std::string& why, const std::string& option,
+             bool unusual) {
     if (settings_.strict)
-      fail(ErrorKind::input, "{}: --strict, and nothing says the {}; it would be {} ({}): give {}", depth_path(), what, chosen, why, option);
+      fail(ErrorKind::input, "{}: --strict, and nothing says the {}; it would be {} ({}): give {}", depth_path(), what,
+           chosen, why, option);
     source_.guesses.push_back({what, chosen, why, option});
-    if (unusual) source_.notes.push_back(fmt::format("{} taken as {}: {} ({} says otherwise)", what, chosen, why, option));
+    if (unusual)
+      source_.notes.push_back(fmt::format("{} taken as {}: {} ({} says otherwise)", what, chosen, why, option));
   }
 
   void settle_depth() {
-    if (source_.depth_kind_open) settle_kind();
-    else doubt_kind();
+    if (source_.depth_kind_open)
+      settle_kind();
+    else
+      doubt_kind();
     compare_planes();
-    const bool signed_kind =
-        source_.depth_kind == DepthKind::planar || source_.depth_kind == DepthKind::ray || source_.depth_kind == DepthKind::inverse;
+    const bool signed_kind = source_.depth_kind == DepthKind::planar || source_.depth_kind == DepthKind::ray ||
+                             source_.depth_kind == DepthKind::inverse;
     if (!signed_kind || values_.positive || !values_.negative || values_.least == values_.most) return;
     source_.depth_range.negative = true;
     source_.notes.push_back("all depth values are negative: their distance from 0 is the depth");
   }
 
   std::string straight(const DepthScore& score) const {
-    return fmt::format("{} is straight on {:.0f} % only as {}", source_.camera.orthographic ? "z" : "1/z", 100 * score.straight, name_of(score.kind));
+    return fmt::format("{} is straight on {:.0f} % only as {}", source_.camera.orthographic ? "z" : "1/z",
+                       100 * score.straight, name_of(score.kind));
   }
 
   /// What the program that wrote the frame, or most programs, write; no guess where the user named the program.
   void take_usual(const std::string& why) {
     source_.depth_kind = source_.usual_depth_kind;
-    const std::string by = source_.rules_by.empty() ? "" : fmt::format("{} writes it ({}); ", source_.rules->name, source_.rules_by);
+    const std::string by =
+        source_.rules_by.empty() ? "" : fmt::format("{} writes it ({}); ", source_.rules->name, source_.rules_by);
     guess("depth kind", name_of(source_.depth_kind), by + why, "--depth-kind", false);
   }
 
@@ -93,8 +112,8 @@ class Settlement {
     if (best.straight < kLeastStraight) return take_usual("the frame has no flat surfaces that tell: " + why);
     if (expected.straight >= kAsGood * best.straight) return take_usual(why);
     if (best.straight < kClear * second.straight)
-      fail(ErrorKind::input, "{}: the depth may be {} or {} ({}): say which with --depth-kind {} or --depth-kind {}", depth_path(),
-           name_of(best.kind), name_of(second.kind), why, name_of(best.kind), name_of(second.kind));
+      fail(ErrorKind::input, "{}: the depth may be {} or {} ({}): say which with --depth-kind {} or --depth-kind {}",
+           depth_path(), name_of(best.kind), name_of(second.kind), why, name_of(best.kind), name_of(second.kind));
     source_.depth_kind = best.kind;
     if (best.kind == DepthKind::inverse && values_.least >= 0 && values_.most <= 1) return settle_device(why);
     guess("depth kind", name_of(best.kind), why, "--depth-kind", true);
@@ -104,7 +123,8 @@ class Settlement {
   void refuse_plateau() const {
     if (values_.least < 0 || values_.most != 1 || double(values_.one) < kPlateau * double(values_.pixels)) return;
     fail(ErrorKind::input,
-         "{}: the depth may be normalized or planar (all in 0 to 1, {:.1f} % of exactly 1): say --depth-kind normalized with --near and --far (or log, with "
+         "{}: the depth may be normalized or planar (all in 0 to 1, {:.1f} % of exactly 1): say --depth-kind "
+         "normalized with --near and --far (or log, with "
          "--far and --log-constant), or --depth-kind planar",
          depth_path(), 100 * double(values_.one) / double(values_.pixels));
   }
@@ -113,13 +133,19 @@ class Settlement {
   void compare_planes() {
     const auto near = source_.depth_range.near, by_file = source_.camera.near, by_matrix = source_.camera.matrix_near;
     constexpr double kSame = 0.01;  // matrices are rounded
-    if (source_.depth_kind == DepthKind::device && settings_.depth_range.near && by_file && std::abs(*near / *by_file - 1) >= kSame)
-      source_.notes.push_back(fmt::format("--near is {:.4g}, and the camera file's near plane is at {:.4g}: distances are {:.3g} times what they are by that", *near,
-                                          *by_file, *near / *by_file));
-    if (source_.depth_kind != DepthKind::device || source_.depth_range.reversed || source_.depth_range.device != DeviceRange::zero_to_one) return;
+    if (source_.depth_kind == DepthKind::device && settings_.depth_range.near && by_file &&
+        std::abs(*near / *by_file - 1) >= kSame)
+      source_.notes.push_back(
+          fmt::format("--near is {:.4g}, and the camera file's near plane is at {:.4g}: distances are {:.3g} times "
+                      "what they are by that",
+                      *near, *by_file, *near / *by_file));
+    if (source_.depth_kind != DepthKind::device || source_.depth_range.reversed ||
+        source_.depth_range.device != DeviceRange::zero_to_one)
+      return;
     if (!near || !by_matrix || std::abs(*by_matrix / *near - 1) < kSame) return;
     source_.notes.push_back(
-        fmt::format("the near plane is {:.4g}, but the camera file's projection, read with z = depth, has it at {:.4g}: so read, distances would be {:.3g} "
+        fmt::format("the near plane is {:.4g}, but the camera file's projection, read with z = depth, has it at "
+                    "{:.4g}: so read, distances would be {:.3g} "
                     "times as large; trust the one that was measured (--near, --device-range)",
                     *near, *by_matrix, *by_matrix / *near));
   }
@@ -128,17 +154,24 @@ class Settlement {
   void doubt_kind() {
     doubt_range();
     const bool linear = source_.depth_kind == DepthKind::normalized || source_.depth_kind == DepthKind::log;
-    const DepthKind said = source_.depth_kind != DepthKind::device ? source_.depth_kind : source_.camera.orthographic ? DepthKind::planar : DepthKind::inverse;
+    const DepthKind said = source_.depth_kind != DepthKind::device ? source_.depth_kind
+                           : source_.camera.orthographic           ? DepthKind::planar
+                                                                   : DepthKind::inverse;
     const auto scores = score_depth(depth_, view_, settings_.sky, depth_rounding(source_));
     if (scores.empty() || scores[0].straight < (linear ? kSurelyStraight : kLeastStraight)) return;
-    if (kClear * straightness(linear ? scores_as_said() : scores, linear ? DepthKind::planar : said) > scores[0].straight) return;
-    source_.notes.push_back(fmt::format("depth is read as {}, as --depth-kind, --source or the camera file says, but {}: is it {}?", name_of(source_.depth_kind),
-                                        straight(scores[0]), scores[0].kind == DepthKind::inverse ? "inverse or device" : name_of(scores[0].kind)));
+    if (kClear * straightness(linear ? scores_as_said() : scores, linear ? DepthKind::planar : said) >
+        scores[0].straight)
+      return;
+    source_.notes.push_back(
+        fmt::format("depth is read as {}, as --depth-kind, --source or the camera file says, but {}: is it {}?",
+                    name_of(source_.depth_kind), straight(scores[0]),
+                    scores[0].kind == DepthKind::inverse ? "inverse or device" : name_of(scores[0].kind)));
   }
 
   /// Of what the distances are when the depth is read as it is said.
   std::vector<DepthScore> scores_as_said() const {
-    return score_depth(planar_depths(depth_, depth_map_of(source_, settings_), view_), view_, settings_.sky, 2 * depth_rounding(source_));
+    return score_depth(planar_depths(depth_, depth_map_of(source_, settings_), view_), view_, settings_.sky,
+                       2 * depth_rounding(source_));
   }
 
   double straightness(const std::vector<DepthScore>& scores, DepthKind kind) const {
@@ -152,22 +185,28 @@ class Settlement {
     if (source_.depth_kind != DepthKind::device) return;
     const auto below = std::ranges::count_if(depth_, [](float d) { return d > -1 && d < 0; });
     if (source_.depth_range.device == DeviceRange::zero_to_one && below > 0)
-      source_.notes.push_back(fmt::format("{} pixels have a depth of -1 to 0 and count as sky: is it that of --device-range=-1..1?", below));
+      source_.notes.push_back(fmt::format(
+          "{} pixels have a depth of -1 to 0 and count as sky: is it that of --device-range=-1..1?", below));
     if (source_.depth_range.device == DeviceRange::minus_one_to_one && values_.least >= 0)
-      source_.notes.push_back("no depth is below 0, so the nearest surface is beyond twice the near plane, or the depth is not that of --device-range=-1..1");
+      source_.notes.push_back(
+          "no depth is below 0, so the nearest surface is beyond twice the near plane, or the depth is not that of "
+          "--device-range=-1..1");
   }
 
-  /// Inverse depth and that of a z-buffer are both affine in 1/z; what tells them apart is that somebody knows a near plane. Sky is at the far one.
+  /// Inverse depth and that of a z-buffer are both affine in 1/z; what tells them apart is that somebody knows a near
+  /// plane. Sky is at the far one.
   void settle_device(const std::string& why) {
     const bool reversed = source_.depth_range.reversed || (values_.zero && !values_.one);
     if (!settings_.depth_range.near || !source_.depth_range.far || !(reversed || values_.one))
       fail(ErrorKind::input,
-           "{}: the depth may be device or inverse (all in 0 to 1, {}): say --depth-kind device with --near and --far (inf where there is none) and, "
+           "{}: the depth may be device or inverse (all in 0 to 1, {}): say --depth-kind device with --near and --far "
+           "(inf where there is none) and, "
            "where near is 1, --reversed-z; or --depth-kind inverse",
            depth_path(), why);
     source_.depth_range.reversed = reversed;
     source_.depth_kind = DepthKind::device;
-    guess("depth kind", reversed ? "device with --reversed-z" : "device", "all in 0 to 1, --near is given, and " + why, "--depth-kind", true);
+    guess("depth kind", reversed ? "device with --reversed-z" : "device", "all in 0 to 1, --near is given, and " + why,
+          "--depth-kind", true);
   }
 
   void settle_position() {
@@ -182,17 +221,20 @@ class Settlement {
         if ((settings_.position_space == PositionSpace::automatic || settings_.position_space == space) &&
             (space == PositionSpace::view || (source_.camera.view_from_world && !forward)))
           candidates.push_back({space, forward, reprojection_error(depth_, space, forward, source_.camera, view_)});
-    if (candidates.empty() || !candidates[0].error) return;  // no world matrix, which the map complains about; or nothing but sky
+    // no world matrix, which the map complains about; or nothing but sky
+    if (candidates.empty() || !candidates[0].error) return;
     const auto best = std::ranges::min_element(candidates, {}, &Candidate::error);
     if (!(*best->error <= kLargestError))
-      fail(ErrorKind::input,
-           "{}: its positions lie {} from the pixels that hold them: check --position-space and --camera", depth_path(),
-           *best->error < 1e6 ? fmt::format("{:.1f} pixels (median)", *best->error) : "on the other side of the camera");
+      fail(
+          ErrorKind::input,
+          "{}: its positions lie {} from the pixels that hold them: check --position-space and --camera", depth_path(),
+          *best->error < 1e6 ? fmt::format("{:.1f} pixels (median)", *best->error) : "on the other side of the camera");
     source_.position_space = best->space;
     source_.depth_range.negative = best->forward;
     if (settings_.position_space == PositionSpace::automatic)
       guess("position space", best->space == PositionSpace::world ? "world" : "view",
-            fmt::format("positions lie {:.3f} pixels (median) from the pixels that hold them", *best->error), "--position-space", false);
+            fmt::format("positions lie {:.3f} pixels (median) from the pixels that hold them", *best->error),
+            "--position-space", false);
   }
 
   static const char* name_of(NormalEncoding encoding, bool unorm) {
@@ -205,7 +247,9 @@ class Settlement {
     return score_normals(normal_, encoding, unorm, depth_, depth_map_of(source_, settings_), source_.camera, view_);
   }
 
-  static bool agrees(const NormalScore& score) { return score.agreement >= kLeastAgreement && score.angle <= kLargestAngle; }
+  static bool agrees(const NormalScore& score) {
+    return score.agreement >= kLeastAgreement && score.angle <= kLargestAngle;
+  }
 
   void settle_encoding() {
     const bool open = source_.normal_encoding_open;
@@ -213,20 +257,27 @@ class Settlement {
     if (!open) doubt_encoding(n);
     const bool in_unit_range = n.count && n.least >= 0 && n.most <= 1;
     const NormalEncoding said = source_.normal_encoding;
-    std::string why = source_.normal.size() == 2 ? fmt::format("all in {:.2g} to {:.2g}", n.least, n.most) : fmt::format("of unit length on {:.0f} %", 100 * n.unit_share);
+    std::string why = source_.normal.size() == 2 ? fmt::format("all in {:.2g} to {:.2g}", n.least, n.most)
+                                                 : fmt::format("of unit length on {:.0f} %", 100 * n.unit_share);
     if (said == NormalEncoding::octahedral || said == NormalEncoding::spheremap || source_.normal.size() == 2) {
-      source_.normal_unorm = said == NormalEncoding::unorm || (in_unit_range && (open || said != NormalEncoding::signed_float));
+      source_.normal_unorm =
+          said == NormalEncoding::unorm || (in_unit_range && (open || said != NormalEncoding::signed_float));
     } else {
-      const bool is_unorm = open && in_unit_range && n.unorm_unit_share > 0.5 && n.unit_share < 0.5 * n.unorm_unit_share;
-      if (is_unorm) why = fmt::format("all in 0 to 1, and 2 n - 1 is of unit length on {:.0f} %", 100 * n.unorm_unit_share);
+      const bool is_unorm =
+          open && in_unit_range && n.unorm_unit_share > 0.5 && n.unit_share < 0.5 * n.unorm_unit_share;
+      if (is_unorm)
+        why = fmt::format("all in 0 to 1, and 2 n - 1 is of unit length on {:.0f} %", 100 * n.unorm_unit_share);
       source_.normal_unorm = is_unorm || said == NormalEncoding::unorm;
     }
     const bool tells = source_.normal.size() == 3 && std::max(n.unit_share, n.unorm_unit_share) > kUnit;
     const bool differs = !tells && compare_encodings(in_unit_range, why);
-    if (open) guess("normal encoding", name_of(source_.normal_encoding, source_.normal_unorm), why, "--normal-encoding", differs || source_.normal_unorm);
+    if (open)
+      guess("normal encoding", name_of(source_.normal_encoding, source_.normal_unorm), why, "--normal-encoding",
+            differs || source_.normal_unorm);
   }
 
-  /// Where the normals are off by depth, and much less so in another encoding: it is taken where nobody says one, else noted. True where it is taken.
+  /// Where the normals are off by depth, and much less so in another encoding: it is taken where nobody says one, else
+  /// noted. True where it is taken.
   bool compare_encodings(bool in_unit_range, std::string& why) {
     const auto scores = scores_of(source_.normal_encoding, source_.normal_unorm);
     if (scores.empty() || agrees(scores[0])) return false;
@@ -234,11 +285,15 @@ class Settlement {
     for (const auto encoding : {NormalEncoding::signed_float, NormalEncoding::octahedral, NormalEncoding::spheremap}) {
       const auto others = scores_of(encoding, in_unit_range);
       if (others.empty() || !agrees(others[0]) || (best && others[0].angle >= best->second)) continue;
-      if (kClear * others[0].angle < scores[0].angle || scores[0].agreement < kAsGood * others[0].agreement) best = {encoding, others[0].angle};
+      if (kClear * others[0].angle < scores[0].angle || scores[0].agreement < kAsGood * others[0].agreement)
+        best = {encoding, others[0].angle};
     }
     if (!best) return false;
-    why = fmt::format("as {} the best quarter of the normals agrees with depth within {:.1f} degrees, as {} within {:.1f}, and {:.0f} % agree at all",
-                      name_of(best->first, in_unit_range), best->second, name_of(source_.normal_encoding, source_.normal_unorm), scores[0].angle, 100 * scores[0].agreement);
+    why = fmt::format(
+        "as {} the best quarter of the normals agrees with depth within {:.1f} degrees, as {} within {:.1f}, and "
+        "{:.0f} % agree at all",
+        name_of(best->first, in_unit_range), best->second, name_of(source_.normal_encoding, source_.normal_unorm),
+        scores[0].angle, 100 * scores[0].agreement);
     if (!source_.normal_encoding_open) {
       source_.notes.push_back(why + ": is --normal-encoding right?");
       return false;
@@ -251,38 +306,47 @@ class Settlement {
   void doubt_encoding(const NormalStatistics& n) {
     constexpr double kFew = 0.5;  // of the normals
     if (source_.normal.size() != 3) return;
-    const bool is_signed = n.unit_share > kUnit && n.unorm_unit_share < kFew, is_unorm = n.unorm_unit_share > kUnit && n.unit_share < kFew;
+    const bool is_signed =
+        n.unit_share > kUnit && n.unorm_unit_share<kFew, is_unorm = n.unorm_unit_share> kUnit && n.unit_share < kFew;
     if (is_signed && source_.normal_encoding != NormalEncoding::signed_float)
-      source_.notes.push_back(fmt::format("the normals are signed vectors by their lengths (of 1 on {:.0f} %), and --normal-encoding or the camera file says otherwise",
-                                          100 * n.unit_share));
+      source_.notes.push_back(
+          fmt::format("the normals are signed vectors by their lengths (of 1 on {:.0f} %), and --normal-encoding or "
+                      "the camera file says otherwise",
+                      100 * n.unit_share));
     if (is_unorm && source_.normal_encoding == NormalEncoding::signed_float)
-      source_.notes.push_back(fmt::format("2 n - 1 of the normals is of unit length on {:.0f} %: are they unorm (--normal-encoding)?", 100 * n.unorm_unit_share));
+      source_.notes.push_back(
+          fmt::format("2 n - 1 of the normals is of unit length on {:.0f} %: are they unorm (--normal-encoding)?",
+                      100 * n.unorm_unit_share));
   }
 
   void settle_space() {
-    const bool has_world = source_.camera.view_from_world.has_value(), usually_view = source_.usual_normal_space == NormalSpace::view;
+    const bool has_world = source_.camera.view_from_world.has_value(),
+               usually_view = source_.usual_normal_space == NormalSpace::view;
     const auto all = scores_of(source_.normal_encoding, source_.normal_unorm);
     if (!source_.normal_space_open) return doubt_normals(all);
     const std::string given = to_string(settings_.flip_normal);
     auto scores = all;
     if (given != "none") std::erase_if(scores, [&](const auto& s) { return to_string(s.flips) != given; });
-    const auto usual =
-        std::ranges::find_if(scores, [&](const auto& s) { return s.space == source_.usual_normal_space && to_string(s.flips) == given; });
+    const auto usual = std::ranges::find_if(
+        scores, [&](const auto& s) { return s.space == source_.usual_normal_space && to_string(s.flips) == given; });
     const bool tells = !scores.empty() && scores[0].agreement >= kLeastAgreement;
     if (!tells) source_.has_evidence = false;
     if ((has_world || usually_view) && (!tells || usual->agreement >= kNoBetter * scores[0].agreement)) {
       source_.normal_space = source_.usual_normal_space;
-      guess("normal space", name_of(source_.normal_space), tells ? said(*usual) : "the frame does not tell", "--normal-space", false);
+      guess("normal space", name_of(source_.normal_space), tells ? said(*usual) : "the frame does not tell",
+            "--normal-space", false);
       return doubt_normals(all);
     }
     if (!tells)
       fail(ErrorKind::input,
-           "{}: its normals are in world space, and the camera has no world_to_camera: give a --camera file with it, or --normal-space view",
+           "{}: its normals are in world space, and the camera has no world_to_camera: give a --camera file with it, "
+           "or --normal-space view",
            normal_path());
     const auto other = std::ranges::find_if(scores, [&](const auto& s) { return s.space != scores[0].space; });
     if (other != scores.end() && other->agreement >= kAsGood * scores[0].agreement)
-      fail(ErrorKind::input, "{}: its normals may be in {} or in {} space ({}; {}): say which with --normal-space, and --flip-normal", normal_path(),
-           name_of(scores[0].space), name_of(other->space), said(scores[0]), said(*other));
+      fail(ErrorKind::input,
+           "{}: its normals may be in {} or in {} space ({}; {}): say which with --normal-space, and --flip-normal",
+           normal_path(), name_of(scores[0].space), name_of(other->space), said(scores[0]), said(*other));
     source_.normal_space = scores[0].space;
     source_.flip_normal = scores[0].flips;
     guess("normal space", name_of(source_.normal_space), said(scores[0]), "--normal-space with --flip-normal",
@@ -293,25 +357,31 @@ class Settlement {
   static const char* name_of(NormalSpace space) { return space == NormalSpace::world ? "world" : "view"; }
   static const char* name_of(DepthKind kind) { return alcove::name_of(kind); }
   static std::string said(const NormalScore& s) {
-    return fmt::format("{} with flips {}: {:.0f} % agree with depth, {:.0f} % face the camera", name_of(s.space), to_string(s.flips), 100 * s.agreement,
-                       100 * s.facing);
+    return fmt::format("{} with flips {}: {:.0f} % agree with depth, {:.0f} % face the camera", name_of(s.space),
+                       to_string(s.flips), 100 * s.agreement, 100 * s.facing);
   }
 
   /// Normals as they are taken, where depth speaks against them.
   void doubt_normals(const std::vector<NormalScore>& scores) {
-    const auto chosen = std::ranges::find_if(
-        scores, [&](const auto& s) { return s.space == source_.normal_space && to_string(s.flips) == to_string(source_.flip_normal); });
+    const auto chosen = std::ranges::find_if(scores, [&](const auto& s) {
+      return s.space == source_.normal_space && to_string(s.flips) == to_string(source_.flip_normal);
+    });
     if (chosen == scores.end()) return;
     const bool another = scores[0].agreement >= kLeastAgreement && chosen->agreement < kNoBetter * scores[0].agreement;
     if (another)
-      source_.notes.push_back(fmt::format("normals are read as {}; better fits {} (--normal-space, --flip-normal)", said(*chosen), said(scores[0])));
+      source_.notes.push_back(fmt::format("normals are read as {}; better fits {} (--normal-space, --flip-normal)",
+                                          said(*chosen), said(scores[0])));
     else if (chosen->agreement < kLeastAgreement)
-      source_.notes.push_back(fmt::format("only {:.0f} % of the normals agree with depth in any space: {}", 100 * scores[0].agreement, kCheck));
+      source_.notes.push_back(fmt::format("only {:.0f} % of the normals agree with depth in any space: {}",
+                                          100 * scores[0].agreement, kCheck));
     else if (!agrees(*chosen) && depth_rounding(source_) == kFloatRounding)
-      source_.notes.push_back(fmt::format("even the best quarter of the normals is up to {:.1f} degrees off those of depth: {}", chosen->angle, kCheck));
+      source_.notes.push_back(
+          fmt::format("even the best quarter of the normals is up to {:.1f} degrees off those of depth: {}",
+                      chosen->angle, kCheck));
   }
 
-  static constexpr const char* kCheck = "check --normal-encoding, --depth-kind with --near, --far and --reversed-z, and --camera or --fov";
+  static constexpr const char* kCheck =
+      "check --normal-encoding, --depth-kind with --near, --far and --reversed-z, and --camera or --fov";
 
   FrameSource& source_;
   const InputSettings& settings_;
@@ -331,7 +401,8 @@ void refuse_8_bits(const FrameSource& source, std::span<const float> depth) {
     levels.insert(std::round(level));
   }
   if (levels.size() >= kLeastLevels)
-    fail(ErrorKind::input, "{}: {} holds only values of 8 bits, too few distances for AO: save depth as EXR, or as DDS (--depth)",
+    fail(ErrorKind::input,
+         "{}: {} holds only values of 8 bits, too few distances for AO: save depth as EXR, or as DDS (--depth)",
          source.files[source.depth[0].file].path(), source.depth[0].channel);
 }
 
@@ -346,17 +417,20 @@ void note_half(FrameSource& source, std::span<const float> depth) {
   std::ranges::nth_element(values, middle);
   const double step = std::exp2(std::floor(std::log2(*middle)) - 10);
   source.suspicious.push_back(
-      fmt::format("{} is stored as half float: at its median {:.4g} it changes in steps of {:.2g}, which AO shows as bands; write it as float",
+      fmt::format("{} is stored as half float: at its median {:.4g} it changes in steps of {:.2g}, which AO shows as "
+                  "bands; write it as float",
                   source.depth[0].channel, *middle, step));
 }
 
 }  // namespace
 
-void settle(FrameSource& source, const InputSettings& settings, std::span<const float> depth, std::span<const float> normal) {
+void settle(FrameSource& source, const InputSettings& settings, std::span<const float> depth,
+            std::span<const float> normal) {
   refuse_8_bits(source, depth);
   Settlement(source, settings, depth, normal).run();
   note_half(source, depth);
-  const bool is_fraction = source.depth_kind == DepthKind::device || source.depth_kind == DepthKind::normalized || source.depth_kind == DepthKind::log;
+  const bool is_fraction = source.depth_kind == DepthKind::device || source.depth_kind == DepthKind::normalized ||
+                           source.depth_kind == DepthKind::log;
   source.depth_step = is_fraction ? step_of(depth) : 0;
   source.settled = true;
 }
@@ -372,10 +446,12 @@ double depth_rounding(const FrameSource& source) { return has_half_depth(source)
 void settle_by_rows(FrameSource& source, const InputSettings& settings) {
   const Window data = source.data, all = source.file_data;
   if (std::size_t(all.width) > kEvidencePixels)
-    fail(ErrorKind::device, "{}: rows of {} pixels are more than Alcove takes on any --device", source.files[source.depth[0].file].path(), all.width);
+    fail(ErrorKind::device, "{}: rows of {} pixels are more than Alcove takes on any --device",
+         source.files[source.depth[0].file].path(), all.width);
   const int rows = int(std::clamp<std::size_t>(kEvidencePixels / std::size_t(all.width), 1, std::size_t(all.height)));
   source.data = {all.x, all.y + (all.height - rows) / 2, all.width, rows};
-  std::vector<float> depth(source.depth.size() * source.data.pixels()), normal(source.normal.size() * source.data.pixels());
+  std::vector<float> depth(source.depth.size() * source.data.pixels()),
+      normal(source.normal.size() * source.data.pixels());
   read_planes(source, {{&source.depth, depth.data()}, {&source.normal, normal.data()}});
   settle(source, settings, depth, normal);
   source.data = data;
@@ -398,8 +474,10 @@ bool settle_like(FrameSource& source, const FrameSource& settled) {
 DepthMap depth_map_of(const FrameSource& source, const InputSettings& settings) {
   constexpr double kLargestHalf = 65504;  // where half floats end, they mean what is beyond
   const bool is_distance = source.depth_kind == DepthKind::planar || source.depth_kind == DepthKind::ray;
-  const double sky = is_distance && depth_rounding(source) == kHalfRounding ? std::min(settings.sky, kLargestHalf) : settings.sky;
-  return depth_map(source.depth_kind, source.depth_range, source.position_space, source.camera, settings.depth_scale, sky);
+  const double sky =
+      is_distance && depth_rounding(source) == kHalfRounding ? std::min(settings.sky, kLargestHalf) : settings.sky;
+  return depth_map(source.depth_kind, source.depth_range, source.position_space, source.camera, settings.depth_scale,
+                   sky);
 }
 
 }  // namespace alcove

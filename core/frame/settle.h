@@ -1,24 +1,27 @@
-// Decides by the pixels what settings and camera leave open about a frame: kind and sign of depth, space and encoding of normals.
+// Decides by the pixels what settings and camera leave open about a frame: kind and sign of depth, space and encoding
+// of normals.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <span>
 
-#include "core/frame/gbuffer.h"
 #include "core/base/settings.h"
+#include "core/frame/gbuffer.h"
 
 namespace alcove {
 
-/// Settles what is open in `source`, from the planes of source.depth and source.normal as they were read, and adds to its guesses and notes.
-/// What the settings or the camera file say is never overruled. Fails with ErrorKind::input where the pixels speak for two ways or against all,
-/// naming the options that decide; under settings.strict, wherever there is a guess. Near or far that are missing are ErrorKind::usage.
-void settle(FrameSource& source, const InputSettings& settings, std::span<const float> depth, std::span<const float> normal);
+/// Settles what is open in `source`, from the planes of source.depth and source.normal as they were read, and adds to
+/// its guesses and notes. What the settings or the camera file say is never overruled. Fails with ErrorKind::input
+/// where the pixels speak for two ways or against all, naming the options that decide; under settings.strict, wherever
+/// there is a guess. Near or far that are missing are ErrorKind::usage.
+void settle(FrameSource& source, const InputSettings& settings, std::span<const float> depth,
+            std::span<const float> normal);
 
 /// The most pixels that a frame is settled by.
 constexpr std::size_t kEvidencePixels = std::size_t(1) << 24;
 
-/// The same for a frame of any size, by planes that it reads itself: all of the frame, or as many rows from its middle as hold kEvidencePixels.
-/// Fails with ErrorKind::device where a single row holds more.
+/// The same for a frame of any size, by planes that it reads itself: all of the frame, or as many rows from its middle
+/// as hold kEvidencePixels. Fails with ErrorKind::device where a single row holds more.
 void settle_by_rows(FrameSource& source, const InputSettings& settings);
 
 /// Settles a frame as another one of its sequence is. False: it has other planes, so it must be settled by itself.

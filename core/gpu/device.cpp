@@ -12,8 +12,8 @@
 
 #include "core/base/error.h"
 #include "core/base/file.h"
-#include "core/gpu/kernel.h"
 #include "core/base/text.h"
+#include "core/gpu/kernel.h"
 
 namespace alcove::gpu {
 namespace {
@@ -26,12 +26,14 @@ struct PhysicalDevice {
 };
 
 std::string version_text(std::uint32_t version) {
-  return fmt::format("{}.{}.{}", VK_API_VERSION_MAJOR(version), VK_API_VERSION_MINOR(version), VK_API_VERSION_PATCH(version));
+  return fmt::format("{}.{}.{}", VK_API_VERSION_MAJOR(version), VK_API_VERSION_MINOR(version),
+                     VK_API_VERSION_PATCH(version));
 }
 
 std::string uuid_text(const std::uint8_t (&uuid)[VK_UUID_SIZE]) {
   std::string text;
-  for (int i = 0; i < int(VK_UUID_SIZE); i++) text += fmt::format("{}{:02x}", i == 4 || i == 6 || i == 8 || i == 10 ? "-" : "", uuid[i]);
+  for (int i = 0; i < int(VK_UUID_SIZE); i++)
+    text += fmt::format("{}{:02x}", i == 4 || i == 6 || i == 8 || i == 10 ? "-" : "", uuid[i]);
   return text;
 }
 
@@ -63,7 +65,8 @@ bool has_extension(VkPhysicalDevice device, const char* name) {
   std::uint32_t count = 0;
   check(vkEnumerateDeviceExtensionProperties(device, nullptr, &count, nullptr), "vkEnumerateDeviceExtensionProperties");
   std::vector<VkExtensionProperties> extensions(count);
-  check(vkEnumerateDeviceExtensionProperties(device, nullptr, &count, extensions.data()), "vkEnumerateDeviceExtensionProperties");
+  check(vkEnumerateDeviceExtensionProperties(device, nullptr, &count, extensions.data()),
+        "vkEnumerateDeviceExtensionProperties");
   return std::ranges::any_of(extensions, [&](const auto& e) { return std::strcmp(e.extensionName, name) == 0; });
 }
 
@@ -132,7 +135,9 @@ int rank_of(DeviceType type) {
   return 5;
 }
 
-bool is_number(const std::string& text) { return !text.empty() && std::ranges::all_of(text, [](char c) { return c >= '0' && c <= '9'; }); }
+bool is_number(const std::string& text) {
+  return !text.empty() && std::ranges::all_of(text, [](char c) { return c >= '0' && c <= '9'; });
+}
 
 /// Whether a device is one that `choice` names.
 bool is_named(const DeviceInfo& device, const std::string& choice) {
@@ -161,7 +166,8 @@ VkInstance make_instance(bool validate) {
   const VkResult result = vkCreateInstance(&info, nullptr, &instance);
   if (result == VK_ERROR_INCOMPATIBLE_DRIVER) return VK_NULL_HANDLE;  // the loader found no driver at all
   if (result == VK_ERROR_LAYER_NOT_PRESENT)
-    fail(ErrorKind::device, "--validate: the layer {} is not installed (Debian: vulkan-validationlayers)", kValidationLayer);
+    fail(ErrorKind::device, "--validate: the layer {} is not installed (Debian: vulkan-validationlayers)",
+         kValidationLayer);
   check(result, "vkCreateInstance");
   return instance;
 }
@@ -169,14 +175,17 @@ VkInstance make_instance(bool validate) {
 VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
                                           const VkDebugUtilsMessengerCallbackDataEXT* data, void* counter) {
   ++*static_cast<std::atomic<int>*>(counter);
-  (void)std::fputs(fmt::format("vulkan validation: {}\n", data->pMessage).c_str(), stderr);  // no exception goes through a driver
+  // no exception goes through a driver
+  (void)std::fputs(fmt::format("vulkan validation: {}\n", data->pMessage).c_str(), stderr);
   return VK_FALSE;
 }
 
 /// The folder for compiled pipelines after the XDG base directory specification; empty when there is no home.
 std::filesystem::path cache_folder() {
-  if (const char* cache = std::getenv("XDG_CACHE_HOME"); cache && *cache == '/') return std::filesystem::path(cache) / "alcove";
-  if (const char* home = std::getenv("HOME"); home && *home == '/') return std::filesystem::path(home) / ".cache" / "alcove";
+  if (const char* cache = std::getenv("XDG_CACHE_HOME"); cache && *cache == '/')
+    return std::filesystem::path(cache) / "alcove";
+  if (const char* home = std::getenv("HOME"); home && *home == '/')
+    return std::filesystem::path(home) / ".cache" / "alcove";
   return {};
 }
 
@@ -189,7 +198,8 @@ std::filesystem::path cache_file(const DeviceInfo& info) {
 
 void check(VkResult result, const char* call) {
   if (result == VK_SUCCESS) return;
-  if (result == VK_ERROR_DEVICE_LOST) throw DeviceLost(ErrorKind::device, fmt::format("the device was lost in {}", call));
+  if (result == VK_ERROR_DEVICE_LOST)
+    throw DeviceLost(ErrorKind::device, fmt::format("the device was lost in {}", call));
   if (result == VK_ERROR_OUT_OF_DEVICE_MEMORY || result == VK_ERROR_OUT_OF_HOST_MEMORY)
     fail(ErrorKind::device, "out of memory in {}", call);
   fail(ErrorKind::device, "{} failed with Vulkan error {}", call, int(result));
@@ -238,7 +248,8 @@ void Device::release() {
     vkDestroyDevice(device_, nullptr);
   }
   if (messenger_) {
-    const auto destroy = PFN_vkDestroyDebugUtilsMessengerEXT(vkGetInstanceProcAddr(instance_, "vkDestroyDebugUtilsMessengerEXT"));
+    const auto destroy =
+        PFN_vkDestroyDebugUtilsMessengerEXT(vkGetInstanceProcAddr(instance_, "vkDestroyDebugUtilsMessengerEXT"));
     destroy(instance_, messenger_, nullptr);
   }
   if (instance_) vkDestroyInstance(instance_, nullptr);
@@ -246,15 +257,18 @@ void Device::release() {
 
 void Device::create_instance() {
   instance_ = make_instance(options_.validate);
-  if (!instance_) fail(ErrorKind::device, "no Vulkan driver found; lavapipe computes on the CPU (Debian: mesa-vulkan-drivers)");
+  if (!instance_)
+    fail(ErrorKind::device, "no Vulkan driver found; lavapipe computes on the CPU (Debian: mesa-vulkan-drivers)");
   if (!options_.validate) return;
   VkDebugUtilsMessengerCreateInfoEXT info{};
   info.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT;
-  info.messageSeverity = VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT;
+  info.messageSeverity =
+      VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT;
   info.messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_TYPE_PERFORMANCE_BIT_EXT;
   info.pfnUserCallback = on_message;
   info.pUserData = &validation_messages_;
-  const auto create = PFN_vkCreateDebugUtilsMessengerEXT(vkGetInstanceProcAddr(instance_, "vkCreateDebugUtilsMessengerEXT"));
+  const auto create =
+      PFN_vkCreateDebugUtilsMessengerEXT(vkGetInstanceProcAddr(instance_, "vkCreateDebugUtilsMessengerEXT"));
   check(create(instance_, &info, nullptr, &messenger_), "vkCreateDebugUtilsMessengerEXT");
 }
 
@@ -263,13 +277,15 @@ void Device::choose_device() {
   const PhysicalDevice* best = nullptr;
   std::string listed;
   for (const auto& device : devices) {
-    listed += fmt::format("{}{}: {} ({}{})", listed.empty() ? "" : "; ", device.info.index, device.info.name, name_of(device.info.type),
-                          device.info.unusable.empty() ? "" : ", " + device.info.unusable);
+    listed += fmt::format("{}{}: {} ({}{})", listed.empty() ? "" : "; ", device.info.index, device.info.name,
+                          name_of(device.info.type), device.info.unusable.empty() ? "" : ", " + device.info.unusable);
     if (!device.info.unusable.empty() || !is_named(device.info, options_.choice)) continue;
     if (!best || rank_of(device.info.type) < rank_of(best->info.type)) best = &device;
   }
-  if (listed.empty()) fail(ErrorKind::device, "no Vulkan device found; lavapipe computes on the CPU (Debian: mesa-vulkan-drivers)");
-  if (!best) fail(ErrorKind::device, "no usable Vulkan device matches --device \"{}\"; there are {}", options_.choice, listed);
+  if (listed.empty())
+    fail(ErrorKind::device, "no Vulkan device found; lavapipe computes on the CPU (Debian: mesa-vulkan-drivers)");
+  if (!best)
+    fail(ErrorKind::device, "no usable Vulkan device matches --device \"{}\"; there are {}", options_.choice, listed);
   if (options_.require_gpu && best->info.type == DeviceType::cpu)
     fail(ErrorKind::device, "--require-gpu: no GPU for --device {}; there are {}", options_.choice, listed);
   physical_ = best->handle;
@@ -307,7 +323,8 @@ void Device::create_device() {
 void Device::load_pipeline_cache() {
   std::string bytes;
   if (options_.pipeline_cache)
-    if (std::ifstream file(cache_file(info_), std::ios::binary); file) bytes.assign(std::istreambuf_iterator<char>(file), {});
+    if (std::ifstream file(cache_file(info_), std::ios::binary); file)
+      bytes.assign(std::istreambuf_iterator<char>(file), {});
   loaded_cache_bytes_ = bytes.size();
   VkPipelineCacheCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO;
@@ -322,7 +339,9 @@ void Device::save_pipeline_cache() const {
   const auto file = cache_file(info_);
   std::size_t size = 0;
   if (!options_.pipeline_cache || file.empty() || !pipeline_cache_) return;
-  if (vkGetPipelineCacheData(device_, pipeline_cache_, &size, nullptr) != VK_SUCCESS || size == 0 || size == loaded_cache_bytes_) return;
+  if (vkGetPipelineCacheData(device_, pipeline_cache_, &size, nullptr) != VK_SUCCESS || size == 0 ||
+      size == loaded_cache_bytes_)
+    return;
   std::vector<char> bytes(size);
   if (vkGetPipelineCacheData(device_, pipeline_cache_, &size, bytes.data()) != VK_SUCCESS) return;
   std::error_code ignored;

@@ -73,11 +73,15 @@ struct DeviceOptions {
   bool require_gpu = false;     // a CPU device is an error
   bool validate = false;        // load the validation layer; its messages are counted and printed to stderr
   bool pipeline_cache = true;   // keep compiled pipelines in the XDG cache folder
-  bool map_memory = true;       // false: always copy through staging buffers, as on a device whose memory the host cannot map
-  std::size_t guard_bytes = 0;  // for tests, a multiple of 256: before and behind every buffer; NaN, as its own bytes are until written; to write there fails
+  // false: always copy through staging buffers, as on a device whose memory the host cannot map
+  bool map_memory = true;
+  // for tests, a multiple of 256: before and behind every buffer; NaN, as its own bytes are until written; to write
+  // there fails
+  std::size_t guard_bytes = 0;
 };
 
-/// A logical device with one compute queue. Not movable: everything made on it refers to it. Several threads may use it, each with its own recorder.
+/// A logical device with one compute queue. Not movable: everything made on it refers to it. Several threads may use
+/// it, each with its own recorder.
 class Device {
  public:
   /// Fails with ErrorKind::device when no device fits, naming those that there are.

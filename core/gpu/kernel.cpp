@@ -20,8 +20,8 @@ struct Module {
   std::map<std::uint32_t, std::map<std::uint32_t, std::uint32_t>> member_offsets;
   std::map<std::uint32_t, std::uint32_t> array_stride, constants;
   std::map<std::uint32_t, std::vector<std::uint32_t>> types;  // opcode, then operands
-  std::map<std::uint32_t, std::uint32_t> block_of;  // variable -> struct type
-  std::set<std::uint32_t> not_writable, not_readable;  // struct types with such a member, and variables
+  std::map<std::uint32_t, std::uint32_t> block_of;            // variable -> struct type
+  std::set<std::uint32_t> not_writable, not_readable;         // struct types with such a member, and variables
   std::uint32_t push_constant_type = 0;
 
   /// Bytes of a type in scalar layout.
@@ -38,7 +38,9 @@ struct Module {
           size = std::max(size, member_offsets.at(type).at(std::uint32_t(member - 1)) + size_of(words[member]));
         return size;
       }
-      default: fail(ErrorKind::device, "a kernel's parameters hold a type that reflection does not know (opcode {})", words[0]);
+      default:
+        fail(ErrorKind::device, "a kernel's parameters hold a type that reflection does not know (opcode {})",
+             words[0]);
     }
   }
 };
@@ -96,7 +98,8 @@ std::string join_numbers(const T& numbers) {
 
 Reflection reflect(std::span<const std::uint32_t> code) {
   constexpr std::size_t kHeaderWords = 5;
-  if (code.size() < kHeaderWords || code[0] != spv::MagicNumber) fail(ErrorKind::device, "a kernel's code is no SPIR-V");
+  if (code.size() < kHeaderWords || code[0] != spv::MagicNumber)
+    fail(ErrorKind::device, "a kernel's code is no SPIR-V");
   Module module;
   Reflection reflection;
   for (std::size_t at = kHeaderWords; at < code.size();) {
@@ -116,15 +119,17 @@ Reflection reflect(std::span<const std::uint32_t> code) {
   return reflection;
 }
 
-Kernel::Kernel(Device& device, const std::string& stem, const std::vector<std::uint32_t>& specialization) : stem_(stem) {
+Kernel::Kernel(Device& device, const std::string& stem, const std::vector<std::uint32_t>& specialization)
+    : stem_(stem) {
   const auto code = kernel_code(stem);
   if (code.empty()) fail(ErrorKind::device, "there is no kernel {}", stem);
   reflection_ = reflect(code);
   std::vector<VkSpecializationMapEntry> entries;
   for (std::uint32_t id = 0; id < specialization.size(); id++) entries.push_back({id, id * 4, 4});
-  if (reflection_.constant_ids.size() != entries.size() || (!entries.empty() && *reflection_.constant_ids.rbegin() != entries.size() - 1))
-    fail(ErrorKind::device, "kernel {} has specialization constants {}, and {} are given", stem, join_numbers(reflection_.constant_ids),
-         entries.size());
+  if (reflection_.constant_ids.size() != entries.size() ||
+      (!entries.empty() && *reflection_.constant_ids.rbegin() != entries.size() - 1))
+    fail(ErrorKind::device, "kernel {} has specialization constants {}, and {} are given", stem,
+         join_numbers(reflection_.constant_ids), entries.size());
 
   std::vector<VkDescriptorSetLayoutBinding> bindings;
   for (const auto binding : reflection_.bindings)
@@ -157,7 +162,8 @@ Kernel::Kernel(Device& device, const std::string& stem, const std::vector<std::u
   check(vkCreateShaderModule(device.handle(), &module_info, nullptr, &module), "vkCreateShaderModule");
   const DeviceHandle<VkShaderModule, vkDestroyShaderModule> owned_module(device.handle(), module);
 
-  const VkSpecializationInfo constants{std::uint32_t(entries.size()), entries.data(), specialization.size() * 4, specialization.data()};
+  const VkSpecializationInfo constants{std::uint32_t(entries.size()), entries.data(), specialization.size() * 4,
+                                       specialization.data()};
   VkComputePipelineCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO;
   info.stage.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
@@ -167,15 +173,18 @@ Kernel::Kernel(Device& device, const std::string& stem, const std::vector<std::u
   info.stage.pSpecializationInfo = &constants;
   info.layout = layout_;
   VkPipeline pipeline = VK_NULL_HANDLE;
-  check(vkCreateComputePipelines(device.handle(), device.pipeline_cache(), 1, &info, nullptr, &pipeline), "vkCreateComputePipelines");
+  check(vkCreateComputePipelines(device.handle(), device.pipeline_cache(), 1, &info, nullptr, &pipeline),
+        "vkCreateComputePipelines");
   pipeline_ = {device.handle(), pipeline};
 }
 
 void Kernel::require(std::size_t parameter_bytes, const std::set<std::uint32_t>& bindings) const {
   if (parameter_bytes != reflection_.parameter_bytes)
-    fail(ErrorKind::device, "kernel {} takes {} bytes of parameters, and the host sends {}", stem_, reflection_.parameter_bytes, parameter_bytes);
+    fail(ErrorKind::device, "kernel {} takes {} bytes of parameters, and the host sends {}", stem_,
+         reflection_.parameter_bytes, parameter_bytes);
   if (bindings != reflection_.bindings)
-    fail(ErrorKind::device, "kernel {} has the bindings {}, and the host binds {}", stem_, join_numbers(reflection_.bindings), join_numbers(bindings));
+    fail(ErrorKind::device, "kernel {} has the bindings {}, and the host binds {}", stem_,
+         join_numbers(reflection_.bindings), join_numbers(bindings));
 }
 
 }  // namespace alcove::gpu

@@ -7,7 +7,8 @@
 namespace alcove::gpu {
 namespace {
 
-constexpr std::uint32_t kMostPasses = 4608;  // of one frame: an exact search of 64 slices, four directions each, at eight radii, has 4096
+// of one frame: an exact search of 64 slices, four directions each, at eight radii, has 4096
+constexpr std::uint32_t kMostPasses = 4608;
 
 }  // namespace
 
@@ -67,8 +68,10 @@ void Recorder::barrier() {
   memory.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER;
   memory.srcAccessMask = VK_ACCESS_MEMORY_WRITE_BIT;
   memory.dstAccessMask = VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT;
-  const VkPipelineStageFlags stages = VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT | VK_PIPELINE_STAGE_HOST_BIT;
-  vkCmdPipelineBarrier(commands_, stages, stages | VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT, 0, 1, &memory, 0, nullptr, 0, nullptr);
+  const VkPipelineStageFlags stages =
+      VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT | VK_PIPELINE_STAGE_HOST_BIT;
+  vkCmdPipelineBarrier(commands_, stages, stages | VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT, 0, 1, &memory, 0, nullptr, 0,
+                       nullptr);
 }
 
 std::size_t Recorder::bytes() const {
@@ -100,7 +103,8 @@ void Recorder::download(const Buffer& buffer) {
   barrier();
 }
 
-void Recorder::dispatch_bytes(const std::string& stem, std::span<const std::byte> params, std::span<const Binding> bindings, Extent extent,
+void Recorder::dispatch_bytes(const std::string& stem, std::span<const std::byte> params,
+                              std::span<const Binding> bindings, Extent extent,
                               const std::vector<std::uint32_t>& specialization) {
   begin();
   if (recorded_.size() == kMostPasses) fail(ErrorKind::device, "more than {} passes in one frame", kMostPasses);
@@ -126,13 +130,17 @@ void Recorder::dispatch_bytes(const std::string& stem, std::span<const std::byte
   const auto groups = [](std::uint32_t count, std::uint32_t size) { return (count + size - 1) / size; };
   if (device_.has_timestamps()) vkCmdWriteTimestamp(commands_, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, queries_, query);
   vkCmdBindPipeline(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.pipeline());
-  device_.push_descriptors(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.layout(), 0, std::uint32_t(writes.size()), writes.data());
-  vkCmdPushConstants(commands_, kernel.layout(), VK_SHADER_STAGE_COMPUTE_BIT, 0, std::uint32_t(params.size()), params.data());
+  device_.push_descriptors(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.layout(), 0, std::uint32_t(writes.size()),
+                           writes.data());
+  vkCmdPushConstants(commands_, kernel.layout(), VK_SHADER_STAGE_COMPUTE_BIT, 0, std::uint32_t(params.size()),
+                     params.data());
   if (extent.group_count)
     vkCmdDispatchIndirect(commands_, extent.group_count->bound().buffer, extent.group_count->bound().offset);
   else
-    vkCmdDispatch(commands_, groups(extent.x, kernel.reflection().group[0]), groups(extent.y, kernel.reflection().group[1]), 1);
-  if (device_.has_timestamps()) vkCmdWriteTimestamp(commands_, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, queries_, query + 1);
+    vkCmdDispatch(commands_, groups(extent.x, kernel.reflection().group[0]),
+                  groups(extent.y, kernel.reflection().group[1]), 1);
+  if (device_.has_timestamps())
+    vkCmdWriteTimestamp(commands_, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, queries_, query + 1);
   barrier();
   PassTime pass{stem};
   for (const auto& binding : bindings) {
@@ -160,8 +168,8 @@ void Recorder::run() {
   passes_ = std::move(recorded_);
   if (!device_.has_timestamps() || passes_.empty()) return;
   std::vector<std::uint64_t> ticks(2 * passes_.size());
-  check(vkGetQueryPoolResults(device_.handle(), queries_, 0, std::uint32_t(ticks.size()), ticks.size() * 8, ticks.data(), 8,
-                              VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT),
+  check(vkGetQueryPoolResults(device_.handle(), queries_, 0, std::uint32_t(ticks.size()), ticks.size() * 8,
+                              ticks.data(), 8, VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT),
         "vkGetQueryPoolResults");
   for (std::size_t i = 0; i < passes_.size(); i++) {
     const std::uint64_t elapsed = (ticks[2 * i + 1] - ticks[2 * i]) & device_.timestamp_mask();

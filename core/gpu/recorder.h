@@ -40,13 +40,14 @@ struct PassTime {
 template <class T>
 concept KernelParams = std::is_trivially_copyable_v<T> && sizeof(T) <= 128;
 
-/// One frame in flight. Use: buffer() and fill, then dispatch() ..., then run(), then read. Buffers live as long as the recorder.
+/// One frame in flight. Use: buffer() and fill, then dispatch() ..., then run(), then read. Buffers live as long as the
+/// recorder.
 class Recorder {
  public:
   explicit Recorder(Device& device);
 
-  /// The buffer of that name; made, or made again when size or use changed. Valid until the next call with another size;
-  /// what was recorded before keeps its own.
+  /// The buffer of that name; made, or made again when size or use changed. Valid until the next call with another
+  /// size; what was recorded before keeps its own.
   Buffer& buffer(std::string_view name, std::size_t bytes, Use use);
 
   /// Fills a buffer with zeros before the next dispatch.
@@ -56,7 +57,8 @@ class Recorder {
   /// Copies what kernels wrote to where the host reads it after run(); nothing to do for mapped buffers.
   void download(const Buffer& buffer);
 
-  /// Runs the kernel of that stem over the extent, after all that was recorded before. Fails unless parameters and bindings are the kernel's.
+  /// Runs the kernel of that stem over the extent, after all that was recorded before. Fails unless parameters and
+  /// bindings are the kernel's.
   template <KernelParams Params>
   void dispatch(const std::string& stem, const Params& params, std::initializer_list<Binding> bindings, Extent extent,
                 const std::vector<std::uint32_t>& specialization = {}) {
@@ -81,8 +83,8 @@ class Recorder {
  private:
   void begin();
   void barrier();
-  void dispatch_bytes(const std::string& stem, std::span<const std::byte> params, std::span<const Binding> bindings, Extent extent,
-                      const std::vector<std::uint32_t>& specialization);
+  void dispatch_bytes(const std::string& stem, std::span<const std::byte> params, std::span<const Binding> bindings,
+                      Extent extent, const std::vector<std::uint32_t>& specialization);
 
   Device& device_;
   DeviceHandle<VkCommandPool, vkDestroyCommandPool> pool_;

@@ -7,11 +7,11 @@
 #include <cmath>
 #include <vector>
 
-#include "core/chain/chain.h"
-#include "core/frame/evidence.h"
 #include "core/base/file.h"
+#include "core/chain/chain.h"
 #include "core/chain/host_frame.h"
 #include "core/formats/image_io.h"
+#include "core/frame/evidence.h"
 #include "core/run/plan.h"
 
 namespace alcove {
@@ -37,13 +37,15 @@ void write_contact_sheet(const Settings& settings, int number) {
   require_no_input(path, "--preview", input_files(settings.input));
   require_writable(path, "--preview");
   const HostFrame frame = read_host_frame(settings.input, number);
-  gpu::Device device({settings.device.device, settings.device.require_gpu, settings.device.validate, !settings.device.no_pipeline_cache});
+  gpu::Device device({settings.device.device, settings.device.require_gpu, settings.device.validate,
+                      !settings.device.no_pipeline_cache});
   gpu::Recorder gpu(device);
   const FrameInputs inputs = upload(gpu, frame);
   EstimatorSettings estimator = settings.estimator;
   if (!estimator.radius) {
     std::vector<float> planar = planar_depths(frame.depth, inputs.depth_map, inputs.view);
-    std::ranges::replace_if(planar, [](float z) { return std::isinf(z); }, kMostSky);
+    std::ranges::replace_if(
+        planar, [](float z) { return std::isinf(z); }, kMostSky);
     estimator.radius = 0.1 * percentiles(planar)[1];
   }
   OutputSettings output;
@@ -58,9 +60,10 @@ void write_contact_sheet(const Settings& settings, int number) {
   for (std::size_t i = 0; i < pixels; i++) {
     const bool sky = depth[i] >= kMostSky;
     const float bright = far > near ? float(1 - std::log(depth[i] / near) / std::log(far / near)) : 0.5f;
-    const std::array<float, 3> panels[] = {{bright, bright, bright},
-                                           {0.5f + 0.5f * normal[i], 0.5f + 0.5f * normal[i + pixels], 0.5f + 0.5f * normal[i + 2 * pixels]},
-                                           {ao[i], ao[i], ao[i]}};
+    const std::array<float, 3> panels[] = {
+        {bright, bright, bright},
+        {0.5f + 0.5f * normal[i], 0.5f + 0.5f * normal[i + pixels], 0.5f + 0.5f * normal[i + 2 * pixels]},
+        {ao[i], ao[i], ao[i]}};
     for (std::size_t panel = 0; panel < 3; panel++)
       for (std::size_t c = 0; c < 3; c++)
         picture[3 * (i / width * 3 * width + panel * width + i % width) + c] = sky ? kSkyColor[c] : panels[panel][c];

@@ -16,8 +16,8 @@ struct Inspection {
   std::optional<Error> unreadable;  // the headers are whole, and the pixels are not: the rest is what the headers tell
 };
 
-/// Opens the files that the settings name and reads depth and normals. What `run` would refuse is part of the answer; only a file whose
-/// header cannot be read fails, with ErrorKind::input.
+/// Opens the files that the settings name and reads depth and normals. What `run` would refuse is part of the answer;
+/// only a file whose header cannot be read fails, with ErrorKind::input.
 Inspection inspect_frame(const InputSettings& settings, int frame);
 
 }  // namespace alcove

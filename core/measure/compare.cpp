@@ -9,13 +9,13 @@
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/base/text.h"
+#include "core/formats/picture.h"
+#include "core/formats/sequence.h"
+#include "core/frame/gbuffer.h"
 #include "core/measure/flicker.h"
 #include "core/measure/flip.h"
-#include "core/frame/gbuffer.h"
-#include "core/formats/picture.h"
 #include "core/measure/report_images.h"
-#include "core/formats/sequence.h"
-#include "core/base/text.h"
 
 namespace alcove {
 namespace {
@@ -32,7 +32,8 @@ std::string path_of(const std::string& path, int frame) {
 }
 
 CompareSettings settings_of_frame(CompareSettings settings, int frame) {
-  for (std::string* path : {&settings.result, &settings.reference, &settings.reference_b, &settings.mask, &settings.depth, &settings.motion})
+  for (std::string* path : {&settings.result, &settings.reference, &settings.reference_b, &settings.mask,
+                            &settings.depth, &settings.motion})
     *path = path_of(*path, frame);
   return settings;
 }
@@ -41,14 +42,17 @@ CompareSettings settings_of_frame(CompareSettings settings, int frame) {
 std::vector<int> frames_of(const CompareSettings& settings) {
   const auto result = pattern_of(settings.result);
   if (!result)
-    fail(ErrorKind::usage, "{}: it has no place for a frame number, such as %04d or ####; the other files or --frames ask for a sequence",
+    fail(ErrorKind::usage,
+         "{}: it has no place for a frame number, such as %04d or ####; the other files or --frames ask for a sequence",
          settings.result);
   std::vector<int> frames = settings.frames.empty() ? frames_on_disk(*result, "RESULT") : parse_frames(settings.frames);
-  for (const std::string* path : {&settings.result, &settings.reference, &settings.reference_b, &settings.mask, &settings.depth, &settings.motion}) {
+  for (const std::string* path : {&settings.result, &settings.reference, &settings.reference_b, &settings.mask,
+                                  &settings.depth, &settings.motion}) {
     const auto pattern = pattern_of(*path);
     std::vector<int> missing;
     if (pattern)
-      std::ranges::copy_if(frames, std::back_inserter(missing), [&](int frame) { return !std::filesystem::exists(pattern->path(frame)); });
+      std::ranges::copy_if(frames, std::back_inserter(missing),
+                           [&](int frame) { return !std::filesystem::exists(pattern->path(frame)); });
     if (!missing.empty()) fail(ErrorKind::input, "{}: frames are missing: {}", *path, frames_text(missing));
   }
   return frames;
@@ -56,16 +60,21 @@ std::vector<int> frames_of(const CompareSettings& settings) {
 
 bool is_sequence(const CompareSettings& settings) {
   if (!settings.frames.empty()) return true;
-  for (const std::string* path : {&settings.result, &settings.reference, &settings.reference_b, &settings.mask, &settings.depth, &settings.motion})
+  for (const std::string* path : {&settings.result, &settings.reference, &settings.reference_b, &settings.mask,
+                                  &settings.depth, &settings.motion})
     if (!path->empty() && pattern_of(*path)) return true;
   return false;
 }
 
-std::string message_name(const CompareSettings& settings) { return fmt::format("{} against {}", settings.result, settings.reference); }
+std::string message_name(const CompareSettings& settings) {
+  return fmt::format("{} against {}", settings.result, settings.reference);
+}
 
-void require_same_pixels(const Window& window, const std::string& path, const Window& wanted, const std::string& result) {
+void require_same_pixels(const Window& window, const std::string& path, const Window& wanted,
+                         const std::string& result) {
   if (window != wanted)
-    fail(ErrorKind::input, "{} is {}, and {} is {}: they must cover the same pixels", result, to_string(wanted), path, to_string(window));
+    fail(ErrorKind::input, "{} is {}, and {} is {}: they must cover the same pixels", result, to_string(wanted), path,
+         to_string(window));
 }
 
 /// A frame's planes, and what they mean.
@@ -73,7 +82,7 @@ struct Planes {
   Window data;
   std::vector<std::string> channels;  // names in the result
   Comparable values;
-  std::vector<float> depth;             // empty: none
+  std::vector<float> depth;  // empty: none
   std::vector<float> motion_x, motion_y;
 
   std::span<const float> plane(const std::vector<float>& planes, std::size_t index) const {
@@ -104,7 +113,8 @@ std::size_t mask_channel_of(const Picture& picture, const std::string& chosen) {
     const std::string name = lower_case(picture.channels()[i].name);
     if (name == "a" || name == "alpha" || name.ends_with(".a") || name.ends_with(".alpha")) return i;
   }
-  fail(ErrorKind::input, "{}: which channel is the mask? There is {}; say which with --mask-channel", picture.path(), list_of(picture.names()));
+  fail(ErrorKind::input, "{}: which channel is the mask? There is {}; say which with --mask-channel", picture.path(),
+       list_of(picture.names()));
 }
 
 /// Where pixels are to be compared: by the mask's file and the depth's sky; empty for everywhere.
@@ -126,7 +136,8 @@ void read_motion(const CompareSettings& settings, Planes& planes) {
   const std::string names = settings.motion_channels.empty() ? "Vector.X,Vector.Y" : settings.motion_channels;
   const std::size_t comma = names.find(',');
   if (comma == names.npos) fail(ErrorKind::usage, "--motion-channels {}: give two names, X,Y", names);
-  const std::array channels{picture.find(names.substr(0, comma), "--motion-channels"), picture.find(names.substr(comma + 1), "--motion-channels")};
+  const std::array channels{picture.find(names.substr(0, comma), "--motion-channels"),
+                            picture.find(names.substr(comma + 1), "--motion-channels")};
   require_same_pixels(picture.channels()[channels[0]].data, settings.motion, planes.data, settings.result);
   const auto both = picture.read(channels);
   planes.motion_x.assign(both.begin(), both.begin() + std::ptrdiff_t(planes.data.pixels()));
@@ -150,13 +161,15 @@ Planes read_planes_of(const CompareSettings& settings) {
   if (!settings.reference_b.empty()) {
     Picture second(settings.reference_b, "--reference-b");
     std::vector<std::size_t> of_second;
-    for (const std::size_t channel : of_reference) of_second.push_back(second.find(reference.channels()[channel].name, "--reference-b"));
+    for (const std::size_t channel : of_reference)
+      of_second.push_back(second.find(reference.channels()[channel].name, "--reference-b"));
     require_same_pixels(second.channels()[of_second[0]].data, settings.reference_b, planes.data, settings.result);
     reference_b = second.read(of_second);
   }
   planes.depth = read_depth(settings, planes.data);
   const auto mask = read_mask(settings, planes.data, planes.depth);
-  planes.values = make_comparable(message_name(settings), planes.data.pixels(), result_planes, reference_planes, reference_b, mask);
+  planes.values =
+      make_comparable(message_name(settings), planes.data.pixels(), result_planes, reference_planes, reference_b, mask);
   read_motion(settings, planes);
   return planes;
 }
@@ -203,7 +216,8 @@ double mean_flip(const Planes& planes, const std::vector<float>& reference, bool
 
 double srgb_from_linear(double x) { return x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055; }
 
-/// The first layer's colours where there are any; else the first channel as grey. Scene-linear values are shown as a display would.
+/// The first layer's colours where there are any; else the first channel as grey. Scene-linear values are shown as a
+/// display would.
 ComparePictures pictures_of(const Planes& planes, const std::vector<float>& reference, bool hdr) {
   const int width = planes.data.width, height = planes.data.height;
   const auto colors = color_layers(planes.channels);
@@ -211,15 +225,18 @@ ComparePictures pictures_of(const Planes& planes, const std::vector<float>& refe
   const auto picture = [&](const std::vector<float>& values) {
     std::vector<float> pixels;
     for (std::size_t i = 0; i < planes.data.pixels(); i++)
-      for (std::size_t c = 0; c < (colors.empty() ? 1 : 3); c++) pixels.push_back(shown(planes.plane(values, colors.empty() ? 0 : colors[0][c])[i]));
+      for (std::size_t c = 0; c < (colors.empty() ? 1 : 3); c++)
+        pixels.push_back(shown(planes.plane(values, colors.empty() ? 0 : colors[0][c])[i]));
     return colors.empty() ? grey_picture(width, height, pixels) : color_picture(width, height, pixels);
   };
   const auto mean = [&](const std::vector<float>& values) {
     std::vector<float> pixels(planes.data.pixels());
-    for (std::size_t i = 0; i < values.size(); i++) pixels[i % pixels.size()] += values[i] / float(planes.channels.size());
+    for (std::size_t i = 0; i < values.size(); i++)
+      pixels[i % pixels.size()] += values[i] / float(planes.channels.size());
     return pixels;
   };
-  return {picture(planes.values.result), picture(reference), error_picture(width, height, mean(planes.values.result), mean(reference))};
+  return {picture(planes.values.result), picture(reference),
+          error_picture(width, height, mean(planes.values.result), mean(reference))};
 }
 
 FrameComparison measure(const CompareSettings& settings, const Planes& planes, int frame) {
@@ -242,7 +259,8 @@ FrameComparison measure(const CompareSettings& settings, const Planes& planes, i
   c.flip = mean_flip(planes, reference, settings.hdr);
   c.bands = darkness_bands(values.result, values.reference, values.mask, values.reference_b);
   if (!planes.depth.empty())
-    c.edges = edge_errors(depth_edges(width, height, planes.depth, settings.sky), values.result, values.reference, values.mask, values.reference_b);
+    c.edges = edge_errors(depth_edges(width, height, planes.depth, settings.sky), values.result, values.reference,
+                          values.mask, values.reference_b);
   if (settings.pictures) c.pictures = pictures_of(planes, reference, settings.hdr);
   return c;
 }
@@ -285,7 +303,8 @@ CompareReport compare_sequence(const CompareSettings& settings) {
     report.frames.push_back(measure(here, planes, frame));
     limit_pictures(report.frames);
     ErrorFrame errors = error_frame(std::move(planes));
-    if (follows && previous->error.size() == errors.error.size() && previous->width == errors.width) flicker.add(*previous, errors);
+    if (follows && previous->error.size() == errors.error.size() && previous->width == errors.width)
+      flicker.add(*previous, errors);
     previous = std::move(errors);
   }
   if (flicker.count()) report.flicker = flicker.rms();
@@ -297,7 +316,8 @@ CompareReport compare_sequence(const CompareSettings& settings) {
 CompareReport compare_pictures(const CompareSettings& settings) {
   if (is_sequence(settings)) return compare_sequence(settings);
   if (!settings.motion.empty())
-    fail(ErrorKind::usage, "--motion {}: it is for the flicker of a sequence, and RESULT is one picture", settings.motion);
+    fail(ErrorKind::usage, "--motion {}: it is for the flicker of a sequence, and RESULT is one picture",
+         settings.motion);
   return {settings.result, settings.reference, false, {measure(settings, read_planes_of(settings), 0)}, {}};
 }
 

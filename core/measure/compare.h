@@ -11,19 +11,21 @@
 
 namespace alcove {
 
-/// Every file may be an EXR or any other picture (depth: EXR only), and a pattern of core/formats/sequence.h; one that is none serves all frames.
+/// Every file may be an EXR or any other picture (depth: EXR only), and a pattern of core/formats/sequence.h; one that
+/// is none serves all frames.
 struct CompareSettings {
   std::string result, reference;
-  std::string reference_b;                    // a second render of the reference with independent noise; empty: none
-  std::string channels;                       // see match_channels(); empty: those that both have
-  std::string mask, mask_channel;             // pixels where it is above 0 are compared; without a channel name: its only one, or its alpha
-  std::string depth, depth_channel;           // where it is sky is not compared; gives the edges
-  double sky = 1e9;                           // depth at or beyond it is sky, as are 0, infinity and NaN; > 0
-  std::string motion, motion_channels;        // "X,Y"; empty: Vector.X, Vector.Y. See ErrorFrame for the convention
-  std::string frames;                         // a list; empty: those of the result that are on the disk
-  double peak = 1;                            // the largest value, for PSNR and SSIM; > 0
-  bool hdr = false;                           // scene-linear values: HDR-FLIP
-  bool pictures = false;                      // keep pictures for the report
+  std::string reference_b;  // a second render of the reference with independent noise; empty: none
+  std::string channels;     // see match_channels(); empty: those that both have
+  // pixels where it is above 0 are compared; without a channel name: its only one, or its alpha
+  std::string mask, mask_channel;
+  std::string depth, depth_channel;     // where it is sky is not compared; gives the edges
+  double sky = 1e9;                     // depth at or beyond it is sky, as are 0, infinity and NaN; > 0
+  std::string motion, motion_channels;  // "X,Y"; empty: Vector.X, Vector.Y. See ErrorFrame for the convention
+  std::string frames;                   // a list; empty: those of the result that are on the disk
+  double peak = 1;                      // the largest value, for PSNR and SSIM; > 0
+  bool hdr = false;                     // scene-linear values: HDR-FLIP
+  bool pictures = false;                // keep pictures for the report
 };
 
 /// Data URLs of the report.
@@ -38,8 +40,8 @@ struct FrameComparison {
   int width = 0, height = 0;
   std::size_t count = 0, excluded = 0, masked = 0;  // pixels; see Comparable
   PlaneErrors errors;
-  double psnr = 0;            // infinite for equal pictures
-  std::optional<double> ssim; // nothing where no compared pixel is 5 pixels from all borders
+  double psnr = 0;             // infinite for equal pictures
+  std::optional<double> ssim;  // nothing where no compared pixel is 5 pixels from all borders
   double flip = 0;
   std::array<BandErrors, 4> bands;
   std::optional<EdgeErrors> edges;  // with depth
@@ -47,7 +49,7 @@ struct FrameComparison {
 };
 
 struct CompareReport {
-  std::string result, reference;        // as given
+  std::string result, reference;  // as given
   bool is_sequence = false;
   std::vector<FrameComparison> frames;  // one, if it is no sequence
   std::optional<double> flicker;        // where two frames follow each other
@@ -56,8 +58,9 @@ struct CompareReport {
 /// Of a sequence this many frames keep their pictures, those with the largest rmse.
 inline constexpr std::size_t kMostPicturedFrames = 12;
 
-/// Fails with ErrorKind::usage on settings that contradict each other, and with ErrorKind::input on missing and unreadable files, on pictures that
-/// do not cover the same pixels or share no channel, and when no pixel is left to compare.
+/// Fails with ErrorKind::usage on settings that contradict each other, and with ErrorKind::input on missing and
+/// unreadable files, on pictures that do not cover the same pixels or share no channel, and when no pixel is left to
+/// compare.
 CompareReport compare_pictures(const CompareSettings& settings);
 
 /// The frame with the largest rmse.

@@ -7,8 +7,8 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "core/measure/compare.h"
 #include "core/base/error.h"
+#include "core/measure/compare.h"
 #include "core/measure/report.h"
 
 namespace alcove {
@@ -63,7 +63,8 @@ void add_parts(Json& json, const FrameComparison& frame) {
     bands.push_back(std::move(entry));
   }
   json["bands"] = std::move(bands);
-  json["edges"] = frame.edges ? Json{{"at", part_json(frame.edges->at)}, {"away", part_json(frame.edges->away)}} : Json(nullptr);
+  json["edges"] =
+      frame.edges ? Json{{"at", part_json(frame.edges->at)}, {"away", part_json(frame.edges->away)}} : Json(nullptr);
 }
 
 void add_measures(Json& json, const FrameComparison& frame) {
@@ -115,13 +116,14 @@ std::vector<std::string> broken_limits(const CompareReport& report, const Compar
                        Limit{"bias", "--max-bias", limits.max_bias}};
   for (const auto& limit : all) {
     if (!limit.value) continue;
-    const Measure& measure = *std::ranges::find_if(kMeasures, [&](const auto& m) { return std::string_view(m.name) == limit.measure; });
+    const Measure& measure =
+        *std::ranges::find_if(kMeasures, [&](const auto& m) { return std::string_view(m.name) == limit.measure; });
     const FrameComparison& worst = worst_in(report, measure);
     const double value = measure.of(worst);
     if (measure.badness(value) <= measure.badness(*limit.value)) continue;
     const std::string where = report.is_sequence ? fmt::format("frame {}: ", worst.frame) : "";
     const std::string what = std::isnan(value) ? "cannot be measured: no compared pixel is 5 pixels from all borders"
-                                              : fmt::format("is {:.6g}", value);
+                                               : fmt::format("is {:.6g}", value);
     broken.push_back(fmt::format("{}{} {}, and {} is {:.6g}", where, limit.measure, what, limit.option, *limit.value));
   }
   return broken;
@@ -153,18 +155,34 @@ std::string compare_page(const CompareReport& report) {
   if (report.flicker) candidate["flicker"] = *report.flicker;
   Json rows = Json::array(), images = Json::array();
   for (const auto& frame : report.frames) {
-    const std::string label = report.is_sequence ? std::to_string(frame.frame) : std::filesystem::path(frame.reference).filename().string();
-    Json row = {{"frame", label}, {"candidate", name}, {"ms", nullptr}, {"ms_min", nullptr}, {"estimator_rmse", nullptr}, {"geometry_rmse", nullptr},
+    const std::string label =
+        report.is_sequence ? std::to_string(frame.frame) : std::filesystem::path(frame.reference).filename().string();
+    Json row = {{"frame", label},
+                {"candidate", name},
+                {"ms", nullptr},
+                {"ms_min", nullptr},
+                {"estimator_rmse", nullptr},
+                {"geometry_rmse", nullptr},
                 {"samples_per_pixel", nullptr}};
     for (const auto& measure : kMeasures) row[measure.name] = number(measure.of(frame));
     rows.push_back(std::move(row));
     if (frame.pictures)
-      images.push_back({{"frame", label}, {"candidate", name}, {"width", frame.width}, {"height", frame.height}, {"result", frame.pictures->result},
-                        {"truth", frame.pictures->reference}, {"error", frame.pictures->error}});
+      images.push_back({{"frame", label},
+                        {"candidate", name},
+                        {"width", frame.width},
+                        {"height", frame.height},
+                        {"result", frame.pictures->result},
+                        {"truth", frame.pictures->reference},
+                        {"error", frame.pictures->error}});
   }
   const std::string title = name + " against " + std::filesystem::path(report.reference).filename().string();
-  return report_page(dump({{"title", title}, {"kind", "compare"}, {"device", nullptr}, {"yardstick_ms", nullptr},
-                           {"candidates", Json::array({candidate})}, {"rows", rows}, {"images", images}}));
+  return report_page(dump({{"title", title},
+                           {"kind", "compare"},
+                           {"device", nullptr},
+                           {"yardstick_ms", nullptr},
+                           {"candidates", Json::array({candidate})},
+                           {"rows", rows},
+                           {"images", images}}));
 }
 
 }  // namespace alcove

@@ -41,7 +41,8 @@ void Flicker::add(const ErrorFrame& previous, const ErrorFrame& here) {
       if (!earlier) continue;
       for (std::size_t plane = 0; plane < here.error.size(); plane += pixels) {
         const double a = double(here.error[plane + i]) - previous.error[plane + *earlier];
-        const double b = here.error_b.empty() ? a : double(here.error_b[plane + i]) - previous.error_b[plane + *earlier];
+        const double b =
+            here.error_b.empty() ? a : double(here.error_b[plane + i]) - previous.error_b[plane + *earlier];
         square_ += a * b;
         count_++;
       }

@@ -94,7 +94,8 @@ double hyab(const Triple& a, const Triple& b) { return std::abs(a[0] - b[0]) + s
 struct Sensitivity {
   double a1, b1, a2, b2;
 };
-constexpr Sensitivity kAchromatic{1, 0.0047, 0, 1e-5}, kRedGreen{1, 0.0053, 0, 1e-5}, kBlueYellow{34.1, 0.04, 13.5, 0.025};
+constexpr Sensitivity kAchromatic{1, 0.0047, 0, 1e-5}, kRedGreen{1, 0.0053, 0, 1e-5},
+    kBlueYellow{34.1, 0.04, 13.5, 0.025};
 constexpr double kWidestSensitivity = 0.04;
 
 /// Both Gaussians are separable; their sum, normalised as a whole, is taken apart for that.
@@ -118,7 +119,8 @@ Plane filter(int width, int height, const Plane& plane, const Sensitivity& s, do
 
 /// Opponent colours to Hunt-adjusted L*a*b* as the eye resolves it.
 Planes seen_colors(int width, int height, const Planes& opponent, double pixels_per_degree) {
-  Planes seen{filter(width, height, opponent[0], kAchromatic, pixels_per_degree), filter(width, height, opponent[1], kRedGreen, pixels_per_degree),
+  Planes seen{filter(width, height, opponent[0], kAchromatic, pixels_per_degree),
+              filter(width, height, opponent[1], kRedGreen, pixels_per_degree),
               filter(width, height, opponent[2], kBlueYellow, pixels_per_degree)};
   for (std::size_t i = 0; i < seen[0].size(); i++) {
     Triple rgb = rgb_from_opponent({seen[0][i], seen[1][i], seen[2][i]});
@@ -197,8 +199,10 @@ Seen see(int width, int height, const std::function<Triple(std::size_t)>& rgb, d
 
 /// FLIP 2020, equations 9 and 10: where features differ, a colour difference counts more.
 double flip_at(const Seen& a, const Seen& b, std::size_t i) {
-  const double color = color_error({a.colors[0][i], a.colors[1][i], a.colors[2][i]}, {b.colors[0][i], b.colors[1][i], b.colors[2][i]});
-  const double edge = std::abs(a.features.edge[i] - b.features.edge[i]), point = std::abs(a.features.point[i] - b.features.point[i]);
+  const double color =
+      color_error({a.colors[0][i], a.colors[1][i], a.colors[2][i]}, {b.colors[0][i], b.colors[1][i], b.colors[2][i]});
+  const double edge = std::abs(a.features.edge[i] - b.features.edge[i]),
+               point = std::abs(a.features.point[i] - b.features.point[i]);
   const double feature = std::sqrt(std::max(edge, point) / std::numbers::sqrt2);
   return std::pow(color, 1 - feature);
 }
@@ -219,15 +223,24 @@ double untone_mapped(double t) {
 /// What HDR-FLIP takes in: light cannot be negative, and half floats end there.
 double light(float value) { return std::clamp(double(value), 0.0, 65536.0); }
 
-/// The least luminance that the exposures are fitted to, so that a black reference or a black half of it has a finite exposure.
+/// The least luminance that the exposures are fitted to, so that a black reference or a black half of it has a finite
+/// exposure.
 constexpr double kLeastLuminance = 1e-5;
 
 }  // namespace
 
-std::vector<float> ldr_flip(int width, int height, const ColorPlanes& result, const ColorPlanes& reference, double pixels_per_degree) {
+std::vector<float> ldr_flip(int width, int height, const ColorPlanes& result, const ColorPlanes& reference,
+                            double pixels_per_degree) {
   const auto see_display = [&](const ColorPlanes& image) {
-    const auto value = [&](std::size_t c, std::size_t i) { return linear_from_srgb(std::clamp(double(image[c][i]), 0.0, 1.0)); };
-    return see(width, height, [&](std::size_t i) { return Triple{value(0, i), value(1, i), value(2, i)}; }, pixels_per_degree);
+    const auto value = [&](std::size_t c, std::size_t i) {
+      return linear_from_srgb(std::clamp(double(image[c][i]), 0.0, 1.0));
+    };
+    return see(
+        width, height,
+        [&](std::size_t i) {
+          return Triple{value(0, i), value(1, i), value(2, i)};
+        },
+        pixels_per_degree);
   };
   const Seen a = see_display(result), b = see_display(reference);
   std::vector<float> error(result[0].size());
@@ -244,19 +257,26 @@ ExposureRange hdr_flip_exposures(const ColorPlanes& reference) {
   const double median = *middle, most = *std::ranges::max_element(luminance);
   constexpr double kJustBelowWhite = 0.85;
   const double bright = untone_mapped(kJustBelowWhite);
-  ExposureRange range{std::log2(bright / std::max(most, kLeastLuminance)), std::log2(bright / std::max(median, kLeastLuminance)), 2};
+  ExposureRange range{std::log2(bright / std::max(most, kLeastLuminance)),
+                      std::log2(bright / std::max(median, kLeastLuminance)), 2};
   range.count = std::max(2, int(std::ceil(range.stop - range.start)));
   return range;
 }
 
-std::vector<float> hdr_flip(int width, int height, const ColorPlanes& result, const ColorPlanes& reference, double pixels_per_degree) {
+std::vector<float> hdr_flip(int width, int height, const ColorPlanes& result, const ColorPlanes& reference,
+                            double pixels_per_degree) {
   const ExposureRange range = hdr_flip_exposures(reference);
   std::vector<float> error(result[0].size());
   for (int step = 0; step < range.count; step++) {
     const double gain = std::exp2(range.start + (range.stop - range.start) * step / (range.count - 1));
     const auto see_exposed = [&](const ColorPlanes& image) {
       const auto value = [&](std::size_t c, std::size_t i) { return tone_mapped(gain * light(image[c][i])); };
-      return see(width, height, [&](std::size_t i) { return Triple{value(0, i), value(1, i), value(2, i)}; }, pixels_per_degree);
+      return see(
+          width, height,
+          [&](std::size_t i) {
+            return Triple{value(0, i), value(1, i), value(2, i)};
+          },
+          pixels_per_degree);
     };
     const Seen a = see_exposed(result), b = see_exposed(reference);
     for (std::size_t i = 0; i < error.size(); i++) error[i] = std::max(error[i], float(flip_at(a, b, i)));

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/measure/convolution.h"
 #include "core/base/error.h"
+#include "core/measure/convolution.h"
 
 namespace alcove {
 namespace {
@@ -18,7 +18,8 @@ struct ValueError {
   double reference, error, square;
 
   ValueError(double t, double a) : reference(a), error(t - a), square(error * error) {}
-  ValueError(double t, double a, double b) : reference(0.5 * (a + b)), error(t - reference), square((t - a) * (t - b)) {}
+  ValueError(double t, double a, double b)
+      : reference(0.5 * (a + b)), error(t - reference), square((t - a) * (t - b)) {}
   bool finite() const { return std::isfinite(error) && std::isfinite(square); }
 };
 
@@ -27,7 +28,8 @@ struct Errors {
   Values result, reference, reference_b;
 
   ValueError operator[](std::size_t i) const {
-    return reference_b.empty() ? ValueError(result[i], reference[i]) : ValueError(result[i], reference[i], reference_b[i]);
+    return reference_b.empty() ? ValueError(result[i], reference[i])
+                               : ValueError(result[i], reference[i], reference_b[i]);
   }
 };
 
@@ -57,7 +59,8 @@ double percentile(std::vector<double>& values, double part) {
 }
 
 /// The mean of one plane's SSIM map over the pixels that count, as a sum and a count.
-void add_ssim(int width, int height, Values result, Values reference, Mask mask, double peak, double& sum, std::size_t& count) {
+void add_ssim(int width, int height, Values result, Values reference, Mask mask, double peak, double& sum,
+              std::size_t& count) {
   constexpr int kRadius = 5;
   static const std::vector<double> window = gaussian_kernel(1.5, kRadius);
   const auto mean_of = [&](auto&& value) {
@@ -74,7 +77,8 @@ void add_ssim(int width, int height, Values result, Values reference, Mask mask,
       const std::size_t i = std::size_t(row) * std::size_t(width) + std::size_t(column);
       if (!counts(mask, i)) continue;
       const double variance_x = xx[i] - x[i] * x[i], variance_y = yy[i] - y[i] * y[i], covariance = xy[i] - x[i] * y[i];
-      sum += (2 * x[i] * y[i] + c1) * (2 * covariance + c2) / ((x[i] * x[i] + y[i] * y[i] + c1) * (variance_x + variance_y + c2));
+      sum += (2 * x[i] * y[i] + c1) * (2 * covariance + c2) /
+             ((x[i] * x[i] + y[i] * y[i] + c1) * (variance_x + variance_y + c2));
       count++;
     }
 }
@@ -103,7 +107,9 @@ PlaneErrors compare_planes(Values result, Values reference, Mask mask, Values re
     sums.add(error);
     sizes.push_back(std::abs(error.error));
   }
-  if (sizes.empty()) fail(ErrorKind::input, "there is no value to compare: {} are NaN or infinite, and the mask leaves out the rest", total.excluded);
+  if (sizes.empty())
+    fail(ErrorKind::input, "there is no value to compare: {} are NaN or infinite, and the mask leaves out the rest",
+         total.excluded);
   total.count = sums.count;
   total.rmse = sums.rmse();
   total.mae = sums.mean(sums.size);
@@ -127,11 +133,13 @@ std::vector<float> Comparable::mean_reference() const {
   return mean;
 }
 
-Comparable make_comparable(const std::string& what, std::size_t pixels, Values result, Values reference, Values reference_b, Mask mask) {
+Comparable make_comparable(const std::string& what, std::size_t pixels, Values result, Values reference,
+                           Values reference_b, Mask mask) {
   const auto copy = [](Values values) { return std::vector<float>(values.begin(), values.end()); };
   Comparable c{copy(result), copy(reference), copy(reference_b), std::vector<std::uint8_t>(pixels, 1)};
   for (std::size_t i = 0; i < result.size(); i++) {
-    const bool finite = std::isfinite(result[i]) && std::isfinite(reference[i]) && (reference_b.empty() || std::isfinite(reference_b[i]));
+    const bool finite = std::isfinite(result[i]) && std::isfinite(reference[i]) &&
+                        (reference_b.empty() || std::isfinite(reference_b[i]));
     if (!finite) c.mask[i % pixels] = 0;
   }
   for (std::size_t pixel = 0; pixel < pixels; pixel++) {
@@ -139,8 +147,9 @@ Comparable make_comparable(const std::string& what, std::size_t pixels, Values r
     if (!counts(mask, pixel)) c.mask[pixel] = 0;
   }
   if (c.count == 0)
-    fail(ErrorKind::input, "{}: there is no pixel to compare: of {}, {} are left out by the mask and {} are NaN or infinite", what, pixels, c.masked,
-         c.excluded);
+    fail(ErrorKind::input,
+         "{}: there is no pixel to compare: of {}, {} are left out by the mask and {} are NaN or infinite", what,
+         pixels, c.masked, c.excluded);
   for (std::size_t i = 0; i < result.size(); i++) {
     if (c.mask[i % pixels]) continue;
     c.reference[i] = c.result[i] = std::isfinite(reference[i]) ? reference[i] : 0;
@@ -181,7 +190,8 @@ std::vector<std::uint8_t> depth_edges(int width, int height, Values depth, doubl
   const auto at = [&](int x, int y) { return std::size_t(y) * std::size_t(width) + std::size_t(x); };
   const auto mark = [&](int left, int top, int right, int bottom) {  // what is in reach of the step between two pixels
     for (int y = std::max(top - kEdgeReach_px, 0); y <= std::min(bottom + kEdgeReach_px, height - 1); y++)
-      for (int x = std::max(left - kEdgeReach_px, 0); x <= std::min(right + kEdgeReach_px, width - 1); x++) edges[at(x, y)] = 1;
+      for (int x = std::max(left - kEdgeReach_px, 0); x <= std::min(right + kEdgeReach_px, width - 1); x++)
+        edges[at(x, y)] = 1;
   };
   for (int y = 0; y < height; y++)
     for (int x = 0; x < width; x++) {

@@ -14,48 +14,54 @@ namespace alcove {
 
 /// Values of one plane, row by row; or of several planes, one behind the other.
 using Values = std::span<const float>;
-/// Not 0 where a pixel counts; empty: all do. For one plane: where the values are several planes it holds for each of them.
+/// Not 0 where a pixel counts; empty: all do. For one plane: where the values are several planes it holds for each of
+/// them.
 using Mask = std::span<const std::uint8_t>;
 
 /// All sums are in double. The error of a value is result - reference.
 struct PlaneErrors {
-  std::size_t count = 0;     // values that were compared
-  std::size_t excluded = 0;  // values left out because one of the two is NaN or infinite; what the mask leaves out is not among them
+  std::size_t count = 0;  // values that were compared
+  // values left out because one of the two is NaN or infinite; what the mask leaves out is not among them
+  std::size_t excluded = 0;
   double rmse = 0, mae = 0;
-  double bias = 0;           // the mean error: positive where the result is too bright
-  double max = 0;            // of the error's size, as are the percentiles
-  double p95 = 0, p99 = 0;   // interpolated linearly between the two nearest ranks
+  double bias = 0;          // the mean error: positive where the result is too bright
+  double max = 0;           // of the error's size, as are the percentiles
+  double p95 = 0, p99 = 0;  // interpolated linearly between the two nearest ranks
 };
 
-/// Fails with ErrorKind::input when no value is left to compare. With a `reference_b`, whose noise is independent of the
-/// reference's, the reference is the mean of the two and rmse is free of their noise: see unbiased_rmse().
+/// Fails with ErrorKind::input when no value is left to compare. With a `reference_b`, whose noise is independent of
+/// the reference's, the reference is the mean of the two and rmse is free of their noise: see unbiased_rmse().
 PlaneErrors compare_planes(Values result, Values reference, Mask mask = {}, Values reference_b = {});
 
-/// sqrt(max(0, mean((t - a)(t - b)))): with independent noise in a and b of mean 0, the RMSE of t against what both estimate.
+/// sqrt(max(0, mean((t - a)(t - b)))): with independent noise in a and b of mean 0, the RMSE of t against what both
+/// estimate.
 double unbiased_rmse(Values result, Values reference_a, Values reference_b, Mask mask = {});
 
 /// 20 log10(peak / rmse), in dB; infinite for an rmse of 0.
 double psnr(double rmse, double peak = 1);
 
-/// Planes made ready for what looks at neighbourhoods too (ssim, FLIP): all finite, and equal where a pixel does not count,
-/// so that such a pixel adds no error to its neighbours.
+/// Planes made ready for what looks at neighbourhoods too (ssim, FLIP): all finite, and equal where a pixel does not
+/// count, so that such a pixel adds no error to its neighbours.
 struct Comparable {
   std::vector<float> result, reference, reference_b;  // reference_b: empty where there is none
-  std::vector<std::uint8_t> mask;  // a pixel; 1 where all its values are compared
-  std::size_t count = 0;           // pixels that are compared
-  std::size_t excluded = 0;        // pixels that the mask leaves in and a NaN or an infinity leaves out
-  std::size_t masked = 0;          // pixels that the mask leaves out
+  std::vector<std::uint8_t> mask;                     // a pixel; 1 where all its values are compared
+  std::size_t count = 0;                              // pixels that are compared
+  std::size_t excluded = 0;  // pixels that the mask leaves in and a NaN or an infinity leaves out
+  std::size_t masked = 0;    // pixels that the mask leaves out
 
   /// The reference, or the mean of the two.
   std::vector<float> mean_reference() const;
 };
 
 /// `pixels` is the size of one plane. Fails with ErrorKind::input when no pixel is left; `what` begins the message.
-Comparable make_comparable(const std::string& what, std::size_t pixels, Values result, Values reference, Values reference_b, Mask mask);
+Comparable make_comparable(const std::string& what, std::size_t pixels, Values result, Values reference,
+                           Values reference_b, Mask mask);
 
-/// Structural similarity (Wang et al. 2004): Gaussian window of 11 x 11, sigma 1.5, K1 .01, K2 .03, dynamic range `peak`; the mean over the
-/// pixels that count and are at least 5 from every border, and over the planes. All values must be finite. Nothing where no such pixel is.
-/// The same as skimage.metrics.structural_similarity(gaussian_weights=True, sigma=1.5, use_sample_covariance=False, data_range=peak).
+/// Structural similarity (Wang et al. 2004): Gaussian window of 11 x 11, sigma 1.5, K1 .01, K2 .03, dynamic range
+/// `peak`; the mean over the pixels that count and are at least 5 from every border, and over the planes. All values
+/// must be finite. Nothing where no such pixel is. The same as
+/// skimage.metrics.structural_similarity(gaussian_weights=True, sigma=1.5, use_sample_covariance=False,
+/// data_range=peak).
 std::optional<double> ssim(int width, int height, Values result, Values reference, Mask mask = {}, double peak = 1);
 
 /// The errors of some of the values; rmse and bias are 0 where there are none.
@@ -77,7 +83,8 @@ inline constexpr double kDepthStep = 0.1;
 /// A pixel is at an edge when one of the step's two pixels is at most this far from it in x and in y.
 inline constexpr int kEdgeReach_px = 2;
 
-/// 1 at depth edges. Depth is planar and positive; at or beyond `sky`, and where it is not finite or not positive, it is sky: a step to any surface.
+/// 1 at depth edges. Depth is planar and positive; at or beyond `sky`, and where it is not finite or not positive, it
+/// is sky: a step to any surface.
 std::vector<std::uint8_t> depth_edges(int width, int height, Values depth, double sky);
 /// 1 where there is a surface.
 std::vector<std::uint8_t> surfaces(Values depth, double sky);

@@ -17,7 +17,8 @@ std::string report_page(const std::string& json) {
   std::string text;
   text.reserve(page.size() + json.size() + json.size() / 64);
   text += page.substr(0, mark);
-  // In JSON a '<' can only stand inside a string. Escaped, neither "</script>" nor "<!--" can end or change the block it is in.
+  // In JSON a '<' can only stand inside a string. Escaped, neither "</script>" nor "<!--" can end or change the block
+  // it is in.
   for (const char c : json) {
     if (c == '<') {
       text += "\\u003c";

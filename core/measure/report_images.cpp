@@ -19,7 +19,8 @@ std::string base64(std::span<const char> bytes) {
   for (std::size_t i = 0; i < bytes.size(); i += 3) {
     std::uint32_t group = 0;
     const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
-    for (std::size_t k = 0; k < 3; k++) group = group << 8 | (k < count ? static_cast<unsigned char>(bytes[i + k]) : 0u);
+    for (std::size_t k = 0; k < 3; k++)
+      group = group << 8 | (k < count ? static_cast<unsigned char>(bytes[i + k]) : 0u);
     for (std::size_t k = 0; k < 4; k++) text += k <= count ? kDigits[group >> (18 - 6 * k) & 63] : '=';
   }
   return text;
@@ -31,7 +32,9 @@ std::string url_of(int width, int height, int channels, std::span<const float> p
 
 }  // namespace
 
-std::string grey_picture(int width, int height, std::span<const float> values) { return url_of(width, height, 1, values); }
+std::string grey_picture(int width, int height, std::span<const float> values) {
+  return url_of(width, height, 1, values);
+}
 
 std::string color_picture(int width, int height, std::span<const float> rgb) { return url_of(width, height, 3, rgb); }
 
@@ -42,8 +45,12 @@ std::string error_picture(int width, int height, std::span<const float> result, 
     const float error = (result[i] - reference[i]) / kFullColorError;
     const float size = std::min(1.0f, std::abs(error));
     if (!std::isfinite(error)) rgb.insert(rgb.end(), {0.5f, 0.5f, 0.5f});
-    else if (error < 0) rgb.insert(rgb.end(), {1 - 0.87f * size, 1 - 0.6f * size, 1 - 0.33f * size});  // towards a blue of (0.13, 0.4, 0.67)
-    else rgb.insert(rgb.end(), {1 - 0.3f * size, 1 - 0.91f * size, 1 - 0.83f * size});                 // towards a red of (0.7, 0.09, 0.17)
+    // towards a blue of (0.13, 0.4, 0.67)
+    else if (error < 0)
+      rgb.insert(rgb.end(), {1 - 0.87f * size, 1 - 0.6f * size, 1 - 0.33f * size});
+    // towards a red of (0.7, 0.09, 0.17)
+    else
+      rgb.insert(rgb.end(), {1 - 0.3f * size, 1 - 0.91f * size, 1 - 0.83f * size});
   }
   return color_picture(width, height, rgb);
 }

@@ -7,7 +7,8 @@
 
 namespace alcove {
 
-/// The size of an error that has full colour: blue where the result is too dark, red where it is too bright, white at 0.
+/// The size of an error that has full colour: blue where the result is too dark, red where it is too bright, white at
+/// 0.
 inline constexpr float kFullColorError = 0.25f;
 
 /// Width x height values in [0, 1] as grey, as they are: AO is data.

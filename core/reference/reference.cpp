@@ -23,7 +23,9 @@ constexpr double kRunSlope = 8;
 using Scene = ReferenceScene;
 
 /// Integral of cos(theta - gamma) |sin(theta)| from 0 to h (Jimenez et al. 2016, equation 7).
-double arc(double h, double gamma) { return 0.25 * (std::cos(gamma) + 2 * h * std::sin(gamma) - std::cos(2 * h - gamma)); }
+double arc(double h, double gamma) {
+  return 0.25 * (std::cos(gamma) + 2 * h * std::sin(gamma) - std::cos(2 * h - gamma));
+}
 
 /// Integral of cos(theta - gamma) sin(theta) (sin(theta), cos(theta)) by Simpson's rule.
 Vector bent_between(double from, double to, double gamma) {
@@ -31,7 +33,10 @@ Vector bent_between(double from, double to, double gamma) {
   const double width = (to - from) / parts;
   Vector sum;
   for (int i = 0; i <= parts; i++) {
-    const double theta = from + i * width, weight = (i == 0 || i == parts ? 1 : i % 2 ? 4 : 2) * width / 3 * std::cos(theta - gamma) * std::sin(theta);
+    const double theta = from + i * width, weight = (i == 0 || i == parts ? 1
+                                                     : i % 2              ? 4
+                                                                          : 2) *
+                                                    width / 3 * std::cos(theta - gamma) * std::sin(theta);
     sum = sum + weight * Vector{0, std::sin(theta), std::cos(theta)};
   }
   return sum;
@@ -42,7 +47,8 @@ class Blocked {
  public:
   Blocked(double gamma, bool with_bent) : gamma_(gamma), with_bent_(with_bent) {}
 
-  /// Blocks [from, to] and returns the integrals over what was open of it: the arc's, and the bent normal's along T and V.
+  /// Blocks [from, to] and returns the integrals over what was open of it: the arc's, and the bent normal's along T and
+  /// V.
   Vector add(double from, double to) {
     if (!(to > from)) return {};
     Vector fresh = integrals(from, to);
@@ -108,8 +114,10 @@ bool same_surface(const Scene& scene, const Sample& a, const Sample& b) {
   return std::abs(a.depth - b.depth) < kRunSlope * pixel;
 }
 
-/// The samples of a side, the receiver first. With runs to be measured the line goes on until the last run within reach has ended.
-std::vector<Sample> line_of(const Scene& scene, const Receiver& receiver, const Side& side, const ReferenceSettings& settings) {
+/// The samples of a side, the receiver first. With runs to be measured the line goes on until the last run within reach
+/// has ended.
+std::vector<Sample> line_of(const Scene& scene, const Receiver& receiver, const Side& side,
+                            const ReferenceSettings& settings) {
   std::vector<Sample> line = {{receiver.position, receiver.depth, 0}};
   std::size_t run_start = 0;
   for (int k = 1;; k++) {
@@ -120,8 +128,10 @@ std::vector<Sample> line_of(const Scene& scene, const Receiver& receiver, const 
     sample.position = scene.position(x, y, sample.depth);
     const bool same = same_surface(scene, line.back(), sample);
     if (!same) run_start = line.size();
-    // Beyond the reach a sample matters only as the other end of a crossing and as more of a run's width; a run wider than the sphere is wide enough.
-    if (k > side.reach + 1 && (settings.thickness != ThicknessRule::width || !same || length(sample.position - line[run_start].position) > 2 * settings.radius))
+    // Beyond the reach a sample matters only as the other end of a crossing and as more of a run's width; a run wider
+    // than the sphere is wide enough.
+    if (k > side.reach + 1 && (settings.thickness != ThicknessRule::width || !same ||
+                               length(sample.position - line[run_start].position) > 2 * settings.radius))
       break;
     line.push_back(sample);
   }
@@ -137,7 +147,8 @@ void set_thickness(const Scene& scene, std::vector<Sample>& line, const Referenc
   for (std::size_t first = 0; first < line.size();) {
     std::size_t last = first;
     while (last + 1 < line.size() && same_surface(scene, line[last], line[last + 1])) last++;
-    // From outer edge to outer edge: n pixels are n wide, and their centres n - 1 apart. Without it single blades of grass vanish.
+    // From outer edge to outer edge: n pixels are n wide, and their centres n - 1 apart. Without it single blades of
+    // grass vanish.
     const double pixel = scene.orthographic() ? 1 / scene.fx() : line[first].depth / scene.fx();
     const double chord = first == 0 ? INFINITY : length(line[last].position - line[first].position) + pixel;
     for (std::size_t i = first; i <= last; i++) line[i].thickness = chord;
@@ -146,7 +157,9 @@ void set_thickness(const Scene& scene, std::vector<Sample>& line, const Referenc
 }
 
 /// The angle of an offset from the view ray, in the slice; negative on the other side.
-double angle_of(const Side& side, Vector offset) { return std::atan2(dot(offset, side.along_t), dot(offset, side.along_v)); }
+double angle_of(const Side& side, Vector offset) {
+  return std::atan2(dot(offset, side.along_t), dot(offset, side.along_v));
+}
 
 /// Where the line between two offsets, one within the radius and one beyond, leaves the sphere.
 Vector crossing(Vector within, Vector beyond, double radius) {
@@ -155,8 +168,10 @@ Vector crossing(Vector within, Vector beyond, double radius) {
   return within + ((std::sqrt(std::max(0.0, b * b - a * c)) - b) / a) * step;
 }
 
-/// The angles that the surface between two neighbouring samples spans, as far as it lies within the radius; empty (first > second) where it does not.
-std::pair<double, double> span_between(const Scene& scene, const Receiver& receiver, const Side& side, const Sample& a, const Sample& b, double radius) {
+/// The angles that the surface between two neighbouring samples spans, as far as it lies within the radius; empty
+/// (first > second) where it does not.
+std::pair<double, double> span_between(const Scene& scene, const Receiver& receiver, const Side& side, const Sample& a,
+                                       const Sample& b, double radius) {
   Vector from = a.position - receiver.position, to = b.position - receiver.position;
   const bool from_within = length(from) < radius, to_within = length(to) < radius;
   if (!same_surface(scene, a, b) || (!from_within && !to_within)) return {1, 0};
@@ -165,10 +180,12 @@ std::pair<double, double> span_between(const Scene& scene, const Receiver& recei
   return std::minmax({angle_of(side, from), angle_of(side, to)});
 }
 
-Vector blocked_arcs(const Scene& scene, const Receiver& receiver, const Side& side, const ReferenceSettings& settings, bool with_bent) {
+Vector blocked_arcs(const Scene& scene, const Receiver& receiver, const Side& side, const ReferenceSettings& settings,
+                    bool with_bent) {
   auto line = line_of(scene, receiver, side, settings);
   set_thickness(scene, line, settings);
-  const double limit = side.gamma + kPi / 2, lowest = limit - std::asin(settings.bias);  // the tangent plane; and where blocking begins
+  // the tangent plane; and where blocking begins
+  const double limit = side.gamma + kPi / 2, lowest = limit - std::asin(settings.bias);
   Blocked blocked(side.gamma, with_bent);
   Vector sum;
   for (std::size_t i = 1; i < line.size(); i++) {
@@ -183,12 +200,15 @@ Vector blocked_arcs(const Scene& scene, const Receiver& receiver, const Side& si
     if (line[i].depth == 0 || distance >= settings.radius || distance == 0) continue;
     const double front = angle_of(side, offset);
     if (front <= 0 || front >= lowest) continue;
-    // What is behind the surface, as seen from the eye, blocks too, as far as it is thick and within the sphere of the radius.
+    // What is behind the surface, as seen from the eye, blocks too, as far as it is thick and within the sphere of the
+    // radius.
     const Vector away = scene.orthographic() ? Vector{0, 0, -1} : normalized(line[i].position);
     const double along = dot(offset, away);
-    const double exit = -along + std::sqrt(std::max(0.0, along * along - distance * distance + settings.radius * settings.radius));
+    const double exit =
+        -along + std::sqrt(std::max(0.0, along * along - distance * distance + settings.radius * settings.radius));
     const double angle = angle_of(side, offset + std::min(line[i].thickness, exit) * away);
-    const double back = angle < front ? limit : std::min(angle, limit);  // an angle that wrapped round is beyond the tangent plane
+    // an angle that wrapped round is beyond the tangent plane
+    const double back = angle < front ? limit : std::min(angle, limit);
     sum = sum + weight_of(settings, distance) * blocked.add(front, back);
   }
   return sum;
@@ -223,11 +243,13 @@ Openness openness(const Scene& scene, const Receiver& receiver, const ReferenceS
       const double px = du * scene.fx(), py = -dv * scene.fy(), pixels = std::max(std::abs(px), std::abs(py));
       double reach = settings.radius * pixels;
       if (!scene.orthographic()) {
-        const double sine = settings.radius / length(receiver.position), cosine = std::sqrt(std::max(0.0, 1 - sine * sine));
+        const double sine = settings.radius / length(receiver.position),
+                     cosine = std::sqrt(std::max(0.0, 1 - sine * sine));
         const double forward = v.z * cosine - tangent.z * sine;
         reach = sine < 1 && forward > 0 ? sine * pixels / forward : INFINITY;
       }
-      const Side side{tangent + double(sign) * n_t * shift, v + n_v * shift, sign * gamma, px / pixels, py / pixels, reach};
+      const Side side{
+          tangent + double(sign) * n_t * shift, v + n_v * shift, sign * gamma, px / pixels, py / pixels, reach};
       const Vector blocked = blocked_arcs(scene, receiver, side, settings, with_bent);
       sum += weight * blocked.x;
       if (with_bent) {
@@ -258,7 +280,8 @@ ReferenceSettings reference_settings_of(const EstimatorSettings& settings) {
 namespace {
 
 /// Calls `take` with the index and the openness of every pixel that was asked for and is no sky, from several threads.
-void for_pixels(const HostFrame& frame, const ReferenceSettings& settings, bool with_bent, const std::function<void(std::size_t, const Openness&)>& take) {
+void for_pixels(const HostFrame& frame, const ReferenceSettings& settings, bool with_bent,
+                const std::function<void(std::size_t, const Openness&)>& take) {
   const Scene scene(frame);
   constexpr std::size_t kChunk = 64;  // pixels that a thread takes at a time
   const std::size_t total = settings.pixels.empty() ? frame.data.pixels() : settings.pixels.size();

@@ -1,14 +1,14 @@
 // The estimators again, slow, in double precision, on the CPU: the oracle that kernels are tested against.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Every pixel along each slice is looked at; there is no noise. The distance of a kernel to it is the *estimator error*; its own distance to
-// ray tracing is the *missing-geometry error*, what one depth layer cannot show.
+// Every pixel along each slice is looked at; there is no noise. The distance of a kernel to it is the *estimator
+// error*; its own distance to ray tracing is the *missing-geometry error*, what one depth layer cannot show.
 #pragma once
 
 #include <vector>
 
-#include "core/chain/host_frame.h"
 #include "core/base/settings.h"
+#include "core/chain/host_frame.h"
 
 namespace alcove {
 
@@ -16,7 +16,9 @@ namespace alcove {
 enum class ThicknessRule {
   infinite,  // for ever, within the sphere of the radius
   constant,  // a length along the sample's own view ray
-  width,     // as deep as wide: the chord, and one pixel, of the run of neighbours along the slice that it belongs to; the receiver's own run is infinite
+  // as deep as wide: the chord, and one pixel, of the run of neighbours along the slice that it belongs to; the
+  // receiver's own run is infinite
+  width,
 };
 
 struct ReferenceSettings {
@@ -31,13 +33,16 @@ struct ReferenceSettings {
   std::vector<std::size_t> pixels;  // indices of those to compute; empty: all
 };
 
-/// What the estimators gtao and bitmask are meant to compute with these settings, but for intensity and power. settings.radius must be set.
+/// What the estimators gtao and bitmask are meant to compute with these settings, but for intensity and power.
+/// settings.radius must be set.
 ReferenceSettings reference_settings_of(const EstimatorSettings& settings);
 
-/// Visibility in [0, 1] a pixel, 1 on sky and where no pixel was asked for. The frame must have planar depth and normals. Fails with ErrorKind::input otherwise.
+/// Visibility in [0, 1] a pixel, 1 on sky and where no pixel was asked for. The frame must have planar depth and
+/// normals. Fails with ErrorKind::input otherwise.
 std::vector<float> reference_ao(const HostFrame& frame, const ReferenceSettings& settings);
 
-/// The mean open direction in view space, cosine weighted, as planes x, y, z: 2/3 of the normal where nothing is blocked; 0 on sky and where no pixel was asked for.
+/// The mean open direction in view space, cosine weighted, as planes x, y, z: 2/3 of the normal where nothing is
+/// blocked; 0 on sky and where no pixel was asked for.
 std::vector<float> reference_bent(const HostFrame& frame, const ReferenceSettings& settings);
 
 }  // namespace alcove

@@ -34,14 +34,17 @@ double attenuation(const EstimatorSettings& settings, double distance) {
   if (settings.falloff == Falloff::none) return 1;
   const double start = settings.falloff_start * *settings.radius, end = settings.falloff_end * *settings.radius;
   const double x = std::clamp((distance - start) / (end - start), 0.0, 1.0);
-  return settings.falloff == Falloff::linear ? 1 - x : settings.falloff == Falloff::quadratic ? 1 - x * x : 1 - smooth(x);
+  return settings.falloff == Falloff::linear      ? 1 - x
+         : settings.falloff == Falloff::quadratic ? 1 - x * x
+                                                  : 1 - smooth(x);
 }
 
 /// Pixels along a direction of the image within which the sphere of the radius is seen.
 double reach_of(const ReferenceScene& scene, const Receiver& receiver, Vector t, double radius) {
   const double distance = length(receiver.position), sine = radius / distance;
   if (!scene.orthographic() && sine >= 1) return INFINITY;  // it holds the eye
-  const Vector edge = scene.orthographic() ? receiver.position + radius * t : distance * (sine * t - std::sqrt(1 - sine * sine) * receiver.eye);
+  const Vector edge = scene.orthographic() ? receiver.position + radius * t
+                                           : distance * (sine * t - std::sqrt(1 - sine * sine) * receiver.eye);
   if (!scene.orthographic() && edge.z >= 0) return INFINITY;
   const auto [x, y] = scene.image_of(edge);
   return std::max(std::abs(x - receiver.x - 0.5), std::abs(y - receiver.y - 0.5));
@@ -56,7 +59,9 @@ double hbao_side(const ReferenceScene& scene, const Receiver& receiver, Vector t
   const double dx = x - receiver.x - 0.5, dy = y - receiver.y - 0.5, scale = 1 / std::max(std::abs(dx), std::abs(dy));
   const double reach = reach_of(scene, receiver, t, *settings.radius);
   const double tangent = -std::atan2(n_t, n_v);  // the surface's elevation above the plane across the view ray
-  double horizon = settings.elevation == Elevation::surface ? settings.bias : std::sin(tangent + std::asin(settings.bias)), sum = 0;
+  double horizon =
+             settings.elevation == Elevation::surface ? settings.bias : std::sin(tangent + std::asin(settings.bias)),
+         sum = 0;
   for (int k = 1; k <= reach; k++) {
     const int px = receiver.x + int(std::lround(k * scale * dx)), py = receiver.y + int(std::lround(k * scale * dy));
     if (!scene.inside(px, py)) break;
@@ -64,10 +69,12 @@ double hbao_side(const ReferenceScene& scene, const Receiver& receiver, Vector t
     if (z == 0) continue;
     const Vector offset = scene.position(px, py, z) - receiver.position;
     // A pixel's centre lies beside the slice; along the tangent plane it is moved into it.
-    const Vector moved = offset + dot(offset, b) * (dot(n, b) / (weight * weight) * (n_t * t + n_v * v)) - dot(offset, b) * b;
+    const Vector moved =
+        offset + dot(offset, b) * (dot(n, b) / (weight * weight) * (n_t * t + n_v * v)) - dot(offset, b) * b;
     const double along = dot(moved, t), height = dot(moved, n);
     if (along <= 0 || height < 1e-3 * length(offset)) continue;
-    const double elevation = settings.elevation == Elevation::surface ? height / length(moved) : dot(moved, v) / length(moved);
+    const double elevation =
+        settings.elevation == Elevation::surface ? height / length(moved) : dot(moved, v) / length(moved);
     if (elevation <= horizon) continue;
     sum += attenuation(settings, length(offset)) * (elevation - horizon);
     horizon = elevation;
@@ -89,11 +96,13 @@ double hbao_ao(const ReferenceScene& scene, const Receiver& receiver, const Esti
 
 double range_weight(const EstimatorSettings& settings, double dz) {
   if (settings.range_check == RangeCheck::none || dz == 0) return 1;
-  return settings.range_check == RangeCheck::ratio ? smooth(*settings.radius / std::abs(dz)) : 1 - smooth(std::abs(dz) / *settings.radius);
+  return settings.range_check == RangeCheck::ratio ? smooth(*settings.radius / std::abs(dz))
+                                                   : 1 - smooth(std::abs(dz) / *settings.radius);
 }
 
 double crytek_ao(const ReferenceScene& scene, const Receiver& receiver, const EstimatorSettings& settings) {
-  const Vector n = receiver.normal, x = normalized(cross(std::abs(n.x) < 0.9 ? Vector{1, 0, 0} : Vector{0, 1, 0}, n)), y = cross(n, x);
+  const Vector n = receiver.normal, x = normalized(cross(std::abs(n.x) < 0.9 ? Vector{1, 0, 0} : Vector{0, 1, 0}, n)),
+               y = cross(n, x);
   const double z = -receiver.position.z;
   double hidden = 0;
   int valid = 0;
@@ -101,10 +110,14 @@ double crytek_ao(const ReferenceScene& scene, const Receiver& receiver, const Es
   for (int i = 0; i < count; i++) {
     // Random directions and lengths, well spread: the three-dimensional R sequence.
     const auto random = [&](double step) { return std::fmod(0.5 + i * step, 1.0); };
-    const double up = random(0.81917251339616444), azimuth = 2 * kPi * random(0.67104360670378920), u = random(0.54970047790197026);
+    const double up = random(0.81917251339616444), azimuth = 2 * kPi * random(0.67104360670378920),
+                 u = random(0.54970047790197026);
     const double part = double(i / kDirectionsOfKernel) / settings.samples;
-    const double reach = *settings.radius * (settings.sample_kernel == SampleKernel::uniform ? std::cbrt(u) : u * (0.1 + 0.9 * part * part));
-    const Vector offset = reach * (std::sqrt(1 - up * up) * (std::cos(azimuth) * x + std::sin(azimuth) * y) + up * n), sample = receiver.position + offset;
+    const double reach =
+        *settings.radius *
+        (settings.sample_kernel == SampleKernel::uniform ? std::cbrt(u) : u * (0.1 + 0.9 * part * part));
+    const Vector offset = reach * (std::sqrt(1 - up * up) * (std::cos(azimuth) * x + std::sin(azimuth) * y) + up * n),
+                 sample = receiver.position + offset;
     if (!scene.orthographic() && sample.z >= 0) continue;
     const auto [image_x, image_y] = scene.image_of(sample);
     const double floor_x = std::floor(image_x), floor_y = std::floor(image_y);
@@ -116,13 +129,17 @@ double crytek_ao(const ReferenceScene& scene, const Receiver& receiver, const Es
     const Vector hit = scene.position(px, py, hit_z), ray = scene.position(px, py, 1) - scene.position(px, py, 0);
     // The sample on the ray of the pixel that it falls into, as high above the surface as it is.
     const double slope = -dot(n, ray), hit_height = dot(n, hit - receiver.position);
-    const double on_ray = slope > 1e-4 ? std::min(hit_z + (hit_height - dot(n, offset)) / slope, -sample.z + *settings.radius) : -sample.z;
-    if (hit_height > 1e-3 * length(hit - receiver.position) && on_ray - hit_z > settings.bias) hidden += range_weight(settings, hit_z - z);
+    const double on_ray = slope > 1e-4
+                              ? std::min(hit_z + (hit_height - dot(n, offset)) / slope, -sample.z + *settings.radius)
+                              : -sample.z;
+    if (hit_height > 1e-3 * length(hit - receiver.position) && on_ray - hit_z > settings.bias)
+      hidden += range_weight(settings, hit_z - z);
   }
   return valid > 0 ? 1 - hidden / valid : 1;
 }
 
-std::vector<float> gtao(const HostFrame& frame, const EstimatorSettings& settings, const std::vector<std::size_t>& pixels) {
+std::vector<float> gtao(const HostFrame& frame, const EstimatorSettings& settings,
+                        const std::vector<std::size_t>& pixels) {
   ReferenceSettings reference = reference_settings_of(settings);
   reference.slices = kDirections / 2;
   reference.pixels = pixels;
@@ -131,8 +148,10 @@ std::vector<float> gtao(const HostFrame& frame, const EstimatorSettings& setting
 
 }  // namespace
 
-std::vector<float> reference_estimate(const HostFrame& frame, const EstimatorSettings& settings, const std::vector<std::size_t>& pixels) {
-  if (settings.estimator == Estimator::bitmask) fail(ErrorKind::usage, "--estimator bitmask: its reference is reference_ao()");
+std::vector<float> reference_estimate(const HostFrame& frame, const EstimatorSettings& settings,
+                                      const std::vector<std::size_t>& pixels) {
+  if (settings.estimator == Estimator::bitmask)
+    fail(ErrorKind::usage, "--estimator bitmask: its reference is reference_ao()");
   const ReferenceScene scene(frame);
   std::vector<std::size_t> all(pixels);
   if (all.empty()) {
@@ -152,7 +171,8 @@ std::vector<float> reference_estimate(const HostFrame& frame, const EstimatorSet
       ao[i] = float(std::clamp(estimate(scene, {x, y, position, eye, scene.normal(x, y, eye)}, settings), 0.0, 1.0));
     }
   }
-  for (const std::size_t i : all) ao[i] = float(std::pow(std::max(0.0, 1 - settings.intensity * (1 - ao[i])), settings.power));
+  for (const std::size_t i : all)
+    ao[i] = float(std::pow(std::max(0.0, 1 - settings.intensity * (1 - ao[i])), settings.power));
   return ao;
 }
 

@@ -12,7 +12,8 @@ double length(Vector a) { return std::sqrt(dot(a, a)); }
 Vector normalized(Vector a) { return (1 / length(a)) * a; }
 
 ReferenceScene::ReferenceScene(const HostFrame& frame) : frame_(frame), camera_(frame.camera) {
-  if (frame.depth_kind != DepthKind::planar || frame.depth.size() != frame.data.pixels() || frame.normal.size() != 3 * frame.data.pixels())
+  if (frame.depth_kind != DepthKind::planar || frame.depth.size() != frame.data.pixels() ||
+      frame.normal.size() != 3 * frame.data.pixels())
     fail(ErrorKind::input, "the reference takes planar depth and normals for every pixel of {}", to_string(frame.data));
   center_x_ = camera_.cx + frame.display.x - frame.data.x;
   center_y_ = camera_.cy + frame.display.y - frame.data.y;
@@ -28,7 +29,9 @@ Vector ReferenceScene::position(int x, int y, double z) const {
   return orthographic() ? Vector{u, v, -z} : Vector{u * z, v * z, -z};
 }
 
-Vector ReferenceScene::toward_eye(Vector position) const { return orthographic() ? Vector{0, 0, 1} : normalized(-1 * position); }
+Vector ReferenceScene::toward_eye(Vector position) const {
+  return orthographic() ? Vector{0, 0, 1} : normalized(-1 * position);
+}
 
 std::pair<double, double> ReferenceScene::image_of(Vector position) const {
   const double z = orthographic() ? 1 : -position.z;
@@ -40,7 +43,8 @@ Vector ReferenceScene::normal(int x, int y, Vector eye) const {
   Vector n = {frame_.normal[i], frame_.normal[i + plane], frame_.normal[i + 2 * plane]};
   if (frame_.normal_space == NormalSpace::world) {
     const auto& m = *camera_.view_from_world;
-    n = {m[0][0] * n.x + m[0][1] * n.y + m[0][2] * n.z, m[1][0] * n.x + m[1][1] * n.y + m[1][2] * n.z, m[2][0] * n.x + m[2][1] * n.y + m[2][2] * n.z};
+    n = {m[0][0] * n.x + m[0][1] * n.y + m[0][2] * n.z, m[1][0] * n.x + m[1][1] * n.y + m[1][2] * n.z,
+         m[2][0] * n.x + m[2][1] * n.y + m[2][2] * n.z};
   }
   n = length(n) > 0 ? normalized(n) : eye;
   constexpr double kLeastFacing = 1e-3;

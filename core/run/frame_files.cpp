@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "core/chain/aov.h"
 #include "core/base/error.h"
+#include "core/base/version.h"
+#include "core/chain/aov.h"
 #include "core/formats/image_io.h"
 #include "core/frame/settle.h"
-#include "core/base/version.h"
 
 namespace alcove {
 namespace {
@@ -38,19 +38,23 @@ ExrOutput output_like(const FrameSource& source, const ChannelRef& like, const P
 SampleType type_of(const FrameSource& source, const ChannelRef& ref) {
   const auto& channels = source.files[ref.file].parts()[std::size_t(ref.part)].channels;
   const auto found = std::ranges::find(channels, ref.channel, &ExrChannel::name);
-  return found != channels.end() && found->type == SampleType::half_float ? SampleType::half_float : SampleType::single_float;
+  return found != channels.end() && found->type == SampleType::half_float ? SampleType::half_float
+                                                                          : SampleType::single_float;
 }
 
 /// The AO file, without pixels.
-ExrOutput aov_file(const FrameSource& source, const EstimatorSettings& estimator, const OutputSettings& settings, const Provenance& provenance) {
+ExrOutput aov_file(const FrameSource& source, const EstimatorSettings& estimator, const OutputSettings& settings,
+                   const Provenance& provenance) {
   ExrOutput output = output_like(source, source.depth[0], provenance);
   output.compression = settings.compression;
   const auto radii = estimator.radius ? radii_of(estimator) : std::vector<double>();
   for (const auto& aov : aovs_of(settings)) {
-    const SampleType type = settings.type == OutputType::half_float && !aov.is_float ? SampleType::half_float : SampleType::single_float;
+    const SampleType type =
+        settings.type == OutputType::half_float && !aov.is_float ? SampleType::half_float : SampleType::single_float;
     for (const auto& channel : channels_of(aov, radii.size())) output.planes.push_back({channel, type, {}});
   }
-  if (wants(settings, &FrameOutputs::scales)) output.own_attributes["alcove/radii"] = fmt::format("{}", fmt::join(radii, " "));
+  if (wants(settings, &FrameOutputs::scales))
+    output.own_attributes["alcove/radii"] = fmt::format("{}", fmt::join(radii, " "));
   if (wants(settings, &FrameOutputs::normal) || wants(settings, &FrameOutputs::bent_normal))
     output.own_attributes["alcove/normal_space"] = in_world(source, settings) ? "world" : "view";
   return output;
@@ -59,11 +63,15 @@ ExrOutput aov_file(const FrameSource& source, const EstimatorSettings& estimator
 /// The composite, without pixels. Every channel keeps the beauty's precision.
 ExrOutput composite_file(const FrameSource& source, const OutputSettings& settings, const Provenance& provenance) {
   ExrOutput output = output_like(source, source.beauty[0], provenance);
-  output.own_attributes["alcove/composite"] = source.indirect.empty() ? "multiply: beauty * ao" : "ambient: beauty - D + D * ao, D = indirect diffuse";
+  output.own_attributes["alcove/composite"] =
+      source.indirect.empty() ? "multiply: beauty * ao" : "ambient: beauty - D + D * ao, D = indirect diffuse";
   if (settings.multi_bounce) output.own_attributes["alcove/composite"] += "; ao with multi-bounce";
-  if (settings.fog_density > 0) output.own_attributes["alcove/composite"] += fmt::format("; ao seen through fog of density {}", settings.fog_density);
+  if (settings.fog_density > 0)
+    output.own_attributes["alcove/composite"] +=
+        fmt::format("; ao seen through fog of density {}", settings.fog_density);
   const char* names[] = {"R", "G", "B", "A"};
-  for (std::size_t c = 0; c < source.beauty.size(); c++) output.planes.push_back({names[c], type_of(source, source.beauty[c]), {}});
+  for (std::size_t c = 0; c < source.beauty.size(); c++)
+    output.planes.push_back({names[c], type_of(source, source.beauty[c]), {}});
   return output;
 }
 
@@ -74,8 +82,11 @@ std::vector<float> displayed(const FrameSource& source, std::span<const float> p
   for (int y = std::max(data.y, display.y); y < std::min(data.y + data.height, display.y + display.height); y++)
     for (int x = std::max(data.x, display.x); x < std::min(data.x + data.width, display.x + display.width); x++)
       for (int c = 0; c < planes; c++)
-        interleaved[(std::size_t(y - display.y) * std::size_t(display.width) + std::size_t(x - display.x)) * std::size_t(planes) + std::size_t(c)] =
-            pixels[std::size_t(c) * data.pixels() + std::size_t(y - data.y) * std::size_t(data.width) + std::size_t(x - data.x)];
+        interleaved[(std::size_t(y - display.y) * std::size_t(display.width) + std::size_t(x - display.x)) *
+                        std::size_t(planes) +
+                    std::size_t(c)] =
+            pixels[std::size_t(c) * data.pixels() + std::size_t(y - data.y) * std::size_t(data.width) +
+                   std::size_t(x - data.x)];
   return interleaved;
 }
 
@@ -83,23 +94,32 @@ std::vector<float> displayed(const FrameSource& source, std::span<const float> p
 void require_for_outputs(const FrameSource& source, const OutputSettings& settings) {
   const std::string& file = source.files[source.depth[0].file].path();
   if (settings.aov_space == NormalSpace::world && !source.camera.view_from_world)
-    fail(ErrorKind::input, "{}: --aov-space world needs a camera with world_to_camera: give a --camera file with it", file);
+    fail(ErrorKind::input, "{}: --aov-space world needs a camera with world_to_camera: give a --camera file with it",
+         file);
   if (settings.multi_bounce && !source.beauty.empty() && source.indirect.empty())
-    fail(ErrorKind::input, "{}: --multi-bounce is for indirect light, and the frame has no indirect diffuse part for the --composite (--beauty)", file);
+    fail(ErrorKind::input,
+         "{}: --multi-bounce is for indirect light, and the frame has no indirect diffuse part for the --composite "
+         "(--beauty)",
+         file);
   for (const auto* view : debug_views_of(settings)) {
     if (view->source == DebugSource::raw_depth && source.depth.size() > 1)
-      fail(ErrorKind::input, "{}: --debug {} shows a depth, and the frame has positions: name one with --depth-channel, or see linear-depth", file, view->name);
+      fail(ErrorKind::input,
+           "{}: --debug {} shows a depth, and the frame has positions: name one with --depth-channel, or see "
+           "linear-depth",
+           file, view->name);
     if (view->source == DebugSource::normals_from_depth && source.normal.empty())
-      fail(ErrorKind::input, "{}: --debug {} compares the frame's normals with those from depth, and there are none (--normal, --normal-channels)", file,
-           view->name);
+      fail(ErrorKind::input,
+           "{}: --debug {} compares the frame's normals with those from depth, and there are none (--normal, "
+           "--normal-channels)",
+           file, view->name);
   }
 }
 
 }  // namespace
 
 FrameSource open_frame(const Settings& settings, int frame) {
-  FrameSource source =
-      find_frame(settings.input, !settings.output.composite.empty(), frame, settings.output.multi_bounce && !settings.input.albedo_value);
+  FrameSource source = find_frame(settings.input, !settings.output.composite.empty(), frame,
+                                  settings.output.multi_bounce && !settings.input.albedo_value);
   if (settings.input.roi) source.region = region_of(source, *settings.input.roi);
   require_for_outputs(source, settings.output);
   return source;
@@ -118,7 +138,8 @@ FrameInputs load_frame(gpu::Recorder& gpu, FrameSource& source, const Settings& 
   inputs.albedo_value = settings.albedo_value.value_or(0);
   if (in_world(source, all.output))
     for (std::size_t row = 0; row < 3; row++)
-      for (std::size_t column = 0; column < 3; column++) inputs.aov_from_view[row][column] = (*source.camera.view_from_world)[column][row];
+      for (std::size_t column = 0; column < 3; column++)
+        inputs.aov_from_view[row][column] = (*source.camera.view_from_world)[column][row];
 
   std::vector<PlaneRead> reads;
   const auto upload = [&](const char* name, const std::vector<ChannelRef>& channels) -> gpu::Buffer* {
@@ -136,23 +157,27 @@ FrameInputs load_frame(gpu::Recorder& gpu, FrameSource& source, const Settings& 
   inputs.albedo = upload("albedo", source.albedo);
   read_planes(source, reads);
   if (!source.settled)
-    settle(source, settings, inputs.depth->as<float>(), inputs.normal ? inputs.normal->as<float>() : std::span<float>());
+    settle(source, settings, inputs.depth->as<float>(),
+           inputs.normal ? inputs.normal->as<float>() : std::span<float>());
   inputs.depth_map = depth_map_of(source, settings);
   inputs.is_sky = is_all_sky(inputs.depth_map, inputs.depth->as<const float>());
-  inputs.depth_precision = depth_precision(inputs.depth_map, has_half_depth(source) ? kHalfPrecision : kFloatPrecision, source.depth_step);
+  inputs.depth_precision =
+      depth_precision(inputs.depth_map, has_half_depth(source) ? kHalfPrecision : kFloatPrecision, source.depth_step);
   if (inputs.normal) inputs.view_from_normal = view_from_normal(source.camera, source.normal_space, source.flip_normal);
   inputs.normal_encoding = source.normal_encoding;
   inputs.normal_unorm = source.normal_unorm;
   return inputs;
 }
 
-std::vector<std::span<const float>> result_planes(const FrameOutputs& outputs, const Window& computed, const OutputSettings& settings) {
+std::vector<std::span<const float>> result_planes(const FrameOutputs& outputs, const Window& computed,
+                                                  const OutputSettings& settings) {
   std::vector<std::span<const float>> results;
   const std::size_t pixels = computed.pixels();
   for (const auto& aov : aovs_of(settings)) {
     const auto planes = (outputs.*aov.planes)->as<const float>();
     const std::size_t channels = channels_of(aov, planes.size() / pixels).size();
-    for (std::size_t c = 0; c < channels; c++) results.push_back(planes.subspan(planes.size() > pixels ? c * pixels : 0, pixels));
+    for (std::size_t c = 0; c < channels; c++)
+      results.push_back(planes.subspan(planes.size() > pixels ? c * pixels : 0, pixels));
   }
   const auto composite = outputs.composite ? outputs.composite->as<const float>() : std::span<const float>();
   for (std::size_t at = 0; at < composite.size(); at += pixels) results.push_back(composite.subspan(at, pixels));
@@ -182,14 +207,17 @@ void FrameWriter::finish() {
 
 std::string made_by(const std::string& options, const std::string& inputs) { return options + " " + inputs; }
 
-void write_pictures(const FrameSource& source, const FrameOutputs& outputs, const DisplayTransform* transform, const OutputSettings& settings, const Provenance& provenance) {
+void write_pictures(const FrameSource& source, const FrameOutputs& outputs, const DisplayTransform* transform,
+                    const OutputSettings& settings, const Provenance& provenance) {
   const std::string text = made_by(provenance.options, provenance.inputs);
   for (const auto& plane : outputs.debug)
-    write_debug_view(debug_path(settings, *plane.view), *plane.view, plane.size.x, plane.size.y, plane.values->as<float>(), text);
+    write_debug_view(debug_path(settings, *plane.view), *plane.view, plane.size.x, plane.size.y,
+                     plane.values->as<float>(), text);
   if (settings.preview.empty()) return;
   // The composite through the view transform; AO by itself is data, and shown as it is.
   const int planes = outputs.composite ? 3 : 1;
-  const auto shown = cropped((outputs.composite ? outputs.composite : outputs.ao)->as<float>(), source.data, written_of(source));
+  const auto shown =
+      cropped((outputs.composite ? outputs.composite : outputs.ao)->as<float>(), source.data, written_of(source));
   auto pixels = displayed(source, shown, planes);
   if (transform) transform->apply(pixels);
   write_png(settings.preview, source.display.width, source.display.height, planes, pixels, text);

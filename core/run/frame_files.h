@@ -15,7 +15,8 @@
 namespace alcove {
 
 /// The frame that the settings name, with all that its outputs need; nothing but headers is read.
-/// Fails with ErrorKind::input where it lacks what an output is made from, with ErrorKind::usage where --roi is not within it.
+/// Fails with ErrorKind::input where it lacks what an output is made from, with ErrorKind::usage where --roi is not
+/// within it.
 FrameSource open_frame(const Settings& settings, int frame);
 
 /// What is written of a frame: its region, or all of it.
@@ -34,7 +35,8 @@ struct Provenance {
 std::string made_by(const std::string& options, const std::string& inputs);
 
 /// What was computed over a window, plane by plane: the AO file's channels, then the composite's.
-std::vector<std::span<const float>> result_planes(const FrameOutputs& outputs, const Window& computed, const OutputSettings& settings);
+std::vector<std::span<const float>> result_planes(const FrameOutputs& outputs, const Window& computed,
+                                                  const OutputSettings& settings);
 
 /// The AO file and the composite, written from top to bottom, each whole or not at all. Fails with ErrorKind::output.
 class FrameWriter {
@@ -50,7 +52,9 @@ class FrameWriter {
   std::vector<std::size_t> planes_;  // of each file
 };
 
-/// Preview and debug views of a frame that was computed at once, over source.data. transform: for a composite; may be null.
-void write_pictures(const FrameSource& source, const FrameOutputs& outputs, const DisplayTransform* transform, const OutputSettings& settings, const Provenance& provenance);
+/// Preview and debug views of a frame that was computed at once, over source.data. transform: for a composite; may be
+/// null.
+void write_pictures(const FrameSource& source, const FrameOutputs& outputs, const DisplayTransform* transform,
+                    const OutputSettings& settings, const Provenance& provenance);
 
 }  // namespace alcove

@@ -6,11 +6,11 @@
 #include <new>
 #include <string_view>
 
-#include "core/run/batch.h"
 #include "core/base/error.h"
+#include "core/frame/settle.h"
+#include "core/run/batch.h"
 #include "core/run/resume.h"
 #include "core/run/scale_notes.h"
-#include "core/frame/settle.h"
 
 namespace alcove {
 namespace {
@@ -32,11 +32,14 @@ class FrameRun {
     go_on();
     FrameSource source = read();
     const auto pixel = pixel_memory(source, settings_);
-    if (fits(source.data, pixel, run_.room)) run_whole(source);
-    else run_tiles(source, pixel);
+    if (fits(source.data, pixel, run_.room))
+      run_whole(source);
+    else
+      run_tiles(source, pixel);
     report_.pixels = report_.pixels ? report_.pixels : source.data.pixels();
     note_counts(source);
-    for (const auto* said : {&source.suspicious, &source.notes}) report_.notes.insert(report_.notes.begin(), said->begin(), said->end());
+    for (const auto* said : {&source.suspicious, &source.notes})
+      report_.notes.insert(report_.notes.begin(), said->begin(), said->end());
     report_.total_ms = total.ms();
   }
 
@@ -82,7 +85,8 @@ class FrameRun {
     report_.pixels += source.data.pixels();
     has_ao_ = outputs.ao;
     if (outputs.squares)
-      for (const vec2& tile : outputs.squares->as<const vec2>()) report_.error_squares += tile.x, report_.error_pixels += tile.y;
+      for (const vec2& tile : outputs.squares->as<const vec2>())
+        report_.error_squares += tile.x, report_.error_pixels += tile.y;
     if (outputs.tiles) {
       const auto tiles = outputs.tiles->as<TileCounts>()[0];
       report_.tiles.sky += tiles.sky;
@@ -108,11 +112,13 @@ class FrameRun {
 
   Provenance provenance() const {
     const bool has_own_camera = settings_.input.camera != run_.plan.at(run_.plan.frames().front()).input.camera;
-    return {has_own_camera ? options_digest(settings_) : run_.provenance.options, run_.provenance.device, identity_of_inputs(settings_)};
+    return {has_own_camera ? options_digest(settings_) : run_.provenance.options, run_.provenance.device,
+            identity_of_inputs(settings_)};
   }
 
   void run_whole(FrameSource& source) {
-    const FrameOutputs outputs = compute(source, settings_.output, run_.plan.frames().size() > 1 && !settings_.estimator.no_skip);
+    const FrameOutputs outputs =
+        compute(source, settings_.output, run_.plan.frames().size() > 1 && !settings_.estimator.no_skip);
     const Stopwatch writing;
     std::vector<std::vector<float>> kept;
     auto planes = result_planes(outputs, source.data, settings_.output);
@@ -128,8 +134,10 @@ class FrameRun {
 
   void run_tiles(FrameSource& source, const PixelMemory& pixel) {
     if (!settings_.output.preview.empty() || !settings_.output.debug.empty())
-      fail(ErrorKind::device, "{}: a frame this large is computed in tiles, and {} needs it whole: allow more --memory, or use another --device", report_.input,
-           settings_.output.preview.empty() ? "--debug" : "--preview");
+      fail(ErrorKind::device,
+           "{}: a frame this large is computed in tiles, and {} needs it whole: allow more --memory, or use another "
+           "--device",
+           report_.input, settings_.output.preview.empty() ? "--debug" : "--preview");
     const Window whole = written_of(source);
     const Stopwatch reading;
     if (!source.settled) settle_by_rows(source, settings_.input);
@@ -142,7 +150,8 @@ class FrameRun {
       std::vector<std::vector<float>> planes;
       for (const auto& tile : row) {
         source.data = surroundings.around(tile);
-        add_tile(result_planes(compute(source, settings_.output, false), source.data, settings_.output), source.data, tile, row, planes);
+        add_tile(result_planes(compute(source, settings_.output, false), source.data, settings_.output), source.data,
+                 tile, row, planes);
         report_.parts++;
       }
       const Stopwatch writing;
@@ -155,15 +164,18 @@ class FrameRun {
   }
 
   /// Puts a tile of every result into the row that it is a part of.
-  static void add_tile(const std::vector<std::span<const float>>& results, const Window& computed, const Window& tile, const std::vector<Window>& row,
-                       std::vector<std::vector<float>>& planes) {
+  static void add_tile(const std::vector<std::span<const float>>& results, const Window& computed, const Window& tile,
+                       const std::vector<Window>& row, std::vector<std::vector<float>>& planes) {
     const std::size_t width = std::size_t(row.back().x + row.back().width - row.front().x);
     planes.resize(results.size());
     for (std::size_t i = 0; i < results.size(); i++) {
       planes[i].resize(width * std::size_t(tile.height));
       for (int y = 0; y < tile.height; y++)
-        std::ranges::copy(results[i].subspan(std::size_t(tile.y + y - computed.y) * std::size_t(computed.width) + std::size_t(tile.x - computed.x), std::size_t(tile.width)),
-                          planes[i].begin() + std::ptrdiff_t(std::size_t(y) * width + std::size_t(tile.x - row.front().x)));
+        std::ranges::copy(
+            results[i].subspan(
+                std::size_t(tile.y + y - computed.y) * std::size_t(computed.width) + std::size_t(tile.x - computed.x),
+                std::size_t(tile.width)),
+            planes[i].begin() + std::ptrdiff_t(std::size_t(y) * width + std::size_t(tile.x - row.front().x)));
     }
   }
 
@@ -171,15 +183,30 @@ class FrameRun {
     auto& notes = report_.notes;
     if (has_ao_) notes = sample_.notes(settings_.estimator, source.file_data.width, source.file_data.height);
     report_.sky_pixels = counts_.sky;
-    report_.repaired_pixels = counts_.repaired_depth + counts_.repaired_normals + counts_.repaired_material + counts_.repaired_beauty;
-    if (has_ao_) report_.samples_per_pixel = samples_per_pixel(settings_.estimator) * double(report_.pixels - report_.sky_pixels) / double(report_.pixels);
-    if (counts_.repaired_depth) notes.push_back(fmt::format("{} pixels had a depth that is NaN or negative; they count as sky", counts_.repaired_depth));
-    if (counts_.repaired_normals) notes.push_back(fmt::format("{} pixels had no usable normal; it was reconstructed from depth", counts_.repaired_normals));
-    if (counts_.repaired_material) notes.push_back(fmt::format("{} pixels of the material AO were NaN or infinite; they count as 1", counts_.repaired_material));
-    if (counts_.repaired_beauty) notes.push_back(fmt::format("{} pixels of the beauty were NaN or infinite; they are 0 in the composite", counts_.repaired_beauty));
-    if (source.normal.empty()) notes.push_back("there is no normal channel; normals were reconstructed from depth (--normal, --normal-channels)");
+    report_.repaired_pixels =
+        counts_.repaired_depth + counts_.repaired_normals + counts_.repaired_material + counts_.repaired_beauty;
+    if (has_ao_)
+      report_.samples_per_pixel =
+          samples_per_pixel(settings_.estimator) * double(report_.pixels - report_.sky_pixels) / double(report_.pixels);
+    if (counts_.repaired_depth)
+      notes.push_back(
+          fmt::format("{} pixels had a depth that is NaN or negative; they count as sky", counts_.repaired_depth));
+    if (counts_.repaired_normals)
+      notes.push_back(
+          fmt::format("{} pixels had no usable normal; it was reconstructed from depth", counts_.repaired_normals));
+    if (counts_.repaired_material)
+      notes.push_back(
+          fmt::format("{} pixels of the material AO were NaN or infinite; they count as 1", counts_.repaired_material));
+    if (counts_.repaired_beauty)
+      notes.push_back(fmt::format("{} pixels of the beauty were NaN or infinite; they are 0 in the composite",
+                                  counts_.repaired_beauty));
+    if (source.normal.empty())
+      notes.push_back(
+          "there is no normal channel; normals were reconstructed from depth (--normal, --normal-channels)");
     if (!source.beauty.empty() && source.indirect.empty())
-      notes.push_back("the frame has no indirect diffuse part: the composite is the whole beauty times AO, which dims direct light too");
+      notes.push_back(
+          "the frame has no indirect diffuse part: the composite is the whole beauty times AO, which dims direct light "
+          "too");
   }
 
   gpu::Recorder& gpu_;
@@ -211,11 +238,13 @@ FrameReport run_frame(Lane& lane, const RunContext& run, int frame) {
     report.state = FrameState::failed;
     // Devices and numbers know of no file.
     const bool may_be_without = error.kind() == ErrorKind::device || error.kind() == ErrorKind::usage;
-    const bool is_named = !may_be_without || std::string_view(error.what()).find(report.input) != std::string_view::npos;
+    const bool is_named =
+        !may_be_without || std::string_view(error.what()).find(report.input) != std::string_view::npos;
     report.error = is_named ? error : Error(error.kind(), fmt::format("{}: {}", report.input, error.what()));
   } catch (const std::bad_alloc&) {
     report.state = FrameState::failed;
-    report.error = Error(ErrorKind::device, fmt::format("{}: no memory is left for it: let a run take less by --memory", report.input));
+    report.error = Error(ErrorKind::device,
+                         fmt::format("{}: no memory is left for it: let a run take less by --memory", report.input));
   } catch (const std::exception& error) {
     report.state = FrameState::failed;
     report.error = Error(ErrorKind::some_frames_failed, fmt::format("{}: {}", report.input, error.what()));

@@ -5,10 +5,10 @@
 #include <chrono>
 #include <functional>
 
+#include "core/chain/reuse.h"
 #include "core/formats/color.h"
 #include "core/run/frame_files.h"
 #include "core/run/plan.h"
-#include "core/chain/reuse.h"
 #include "core/run/run_report.h"
 #include "core/run/tiles.h"
 
@@ -17,11 +17,11 @@ namespace alcove {
 /// What all frames of a run have in common.
 struct RunContext {
   const FramePlan& plan;
-  const FrameSource* settled = nullptr;          // as which all frames are read; null: each by itself
-  const DisplayTransform* transform = nullptr;   // for the preview of a composite
-  Provenance provenance;                         // of settings without a camera file a frame
-  Room room;                                     // for this frame
-  std::function<bool()> stop = {};               // asked between steps: true drops the frame
+  const FrameSource* settled = nullptr;         // as which all frames are read; null: each by itself
+  const DisplayTransform* transform = nullptr;  // for the preview of a composite
+  Provenance provenance;                        // of settings without a camera file a frame
+  Room room;                                    // for this frame
+  std::function<bool()> stop = {};              // asked between steps: true drops the frame
 };
 
 /// Where one frame after the other is computed: buffers, and what they still hold.
@@ -37,7 +37,9 @@ FrameReport run_frame(Lane& lane, const RunContext& run, int frame);
 
 class Stopwatch {
  public:
-  double ms() const { return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_).count(); }
+  double ms() const {
+    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_).count();
+  }
 
  private:
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();

@@ -11,11 +11,17 @@
 namespace alcove {
 namespace {
 
-/// Threads that take the next frame until none is left. Whatever they hand to each other, and the reports in order, passes under one mutex.
+/// Threads that take the next frame until none is left. Whatever they hand to each other, and the reports in order,
+/// passes under one mutex.
 class Pipeline {
  public:
-  Pipeline(Lanes& lanes, const RunContext& run, std::span<const int> frames, const std::function<bool(FrameReport&&)>& next)
-      : lanes_(lanes), run_(run), frames_(frames), next_(next), most_(std::size_t(lanes.count() > 1 ? 2 * lanes.count() : 1)) {}
+  Pipeline(Lanes& lanes, const RunContext& run, std::span<const int> frames,
+           const std::function<bool(FrameReport&&)>& next)
+      : lanes_(lanes),
+        run_(run),
+        frames_(frames),
+        next_(next),
+        most_(std::size_t(lanes.count() > 1 ? 2 * lanes.count() : 1)) {}
 
   void run() {
     {
@@ -62,8 +68,9 @@ class Pipeline {
   const RunContext& run_;
   const std::span<const int> frames_;
   const std::function<bool(FrameReport&&)>& next_;
-  const std::size_t most_;  // frames begun whose reports are not told: one that is done may have to wait for an earlier one; its lane does not
-  std::mutex mutex_;        // of all below
+  // frames begun whose reports are not told: one that is done may have to wait for an earlier one; its lane does not
+  const std::size_t most_;
+  std::mutex mutex_;  // of all below
   std::condition_variable told_one_;
   std::size_t begun_ = 0, told_ = 0;
   std::map<std::size_t, FrameReport> finished_;  // not told yet
@@ -91,7 +98,8 @@ std::unique_ptr<Lane> Lanes::take() {
     free_.pop_back();
     return lane;
   }
-  if (made_ > 0 && device().info().type == gpu::DeviceType::cpu) devices_.push_back(std::make_unique<gpu::Device>(options_));
+  if (made_ > 0 && device().info().type == gpu::DeviceType::cpu)
+    devices_.push_back(std::make_unique<gpu::Device>(options_));
   made_++;
   return std::make_unique<Lane>(*devices_.back());
 }
@@ -103,7 +111,8 @@ void Lanes::with(const std::function<void(Lane&)>& function) {
   free_.push_back(std::move(lane));
 }
 
-void run_pipeline(Lanes& lanes, const RunContext& run, std::span<const int> frames, const std::function<bool(FrameReport&&)>& next) {
+void run_pipeline(Lanes& lanes, const RunContext& run, std::span<const int> frames,
+                  const std::function<bool(FrameReport&&)>& next) {
   Pipeline(lanes, run, frames, next).run();
 }
 

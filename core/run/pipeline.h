@@ -12,8 +12,9 @@
 
 namespace alcove {
 
-/// Where frames are computed: as many recorders, each with buffers that are kept, as there are frames in flight. A CPU device is made anew for each of
-/// them, so that every frame has a core of its own from its first byte to its last, and none waits for another; a GPU is shared.
+/// Where frames are computed: as many recorders, each with buffers that are kept, as there are frames in flight. A CPU
+/// device is made anew for each of them, so that every frame has a core of its own from its first byte to its last, and
+/// none waits for another; a GPU is shared.
 class Lanes {
  public:
   /// As many as `count`, or on a GPU `gpu_count`.
@@ -37,7 +38,9 @@ class Lanes {
   std::size_t made_ = 0;  // lanes
 };
 
-/// Runs the frames on the lanes, in any order, and hands on their reports in theirs. After `next` has answered false no frame is begun.
-void run_pipeline(Lanes& lanes, const RunContext& run, std::span<const int> frames, const std::function<bool(FrameReport&&)>& next);
+/// Runs the frames on the lanes, in any order, and hands on their reports in theirs. After `next` has answered false no
+/// frame is begun.
+void run_pipeline(Lanes& lanes, const RunContext& run, std::span<const int> frames,
+                  const std::function<bool(FrameReport&&)>& next);
 
 }  // namespace alcove

@@ -7,9 +7,9 @@
 #include <filesystem>
 #include <unordered_set>
 
-#include "core/chain/debug_view.h"
 #include "core/base/error.h"
 #include "core/base/file.h"
+#include "core/chain/debug_view.h"
 #include "core/run/frame_files.h"
 #include "core/run/tiles.h"
 
@@ -40,7 +40,9 @@ bool exists(const std::string& path) {
 }
 
 /// "shot.1001.exr" of one frame, "shot.1001.exr to shot.1100.exr" of several.
-std::string span_text(const std::string& first, const std::string& last) { return first == last ? first : first + " to " + last; }
+std::string span_text(const std::string& first, const std::string& last) {
+  return first == last ? first : first + " to " + last;
+}
 
 }  // namespace
 
@@ -76,10 +78,12 @@ std::vector<int> FramePlan::all_frames() const {
 void FramePlan::refuse_shared_files(const std::vector<int>& all) const {
   Settings whole = settings_;
   for (const auto& path : kPaths) {
-    const bool is_pattern = std::ranges::any_of(patterns_, [&](const Pattern& pattern) { return pattern.path.option == path.option; });
+    const bool is_pattern =
+        std::ranges::any_of(patterns_, [&](const Pattern& pattern) { return pattern.path.option == path.option; });
     if (path.is_output && all.size() > 1 && !path.of(whole).empty() && !is_pattern)
-      fail(ErrorKind::usage, "{} {}: all {} frames would be written to it: put a place for the frame number into its name, such as %04d", path.option,
-           path.of(whole), all.size());
+      fail(ErrorKind::usage,
+           "{} {}: all {} frames would be written to it: put a place for the frame number into its name, such as %04d",
+           path.option, path.of(whole), all.size());
   }
   std::unordered_set<std::string> inputs;
   for (const auto& pattern : patterns_)
@@ -87,14 +91,17 @@ void FramePlan::refuse_shared_files(const std::vector<int>& all) const {
       for (const int frame : all) inputs.insert(pattern.name.path(frame));
   for (const auto& pattern : patterns_)
     for (const int frame : all)
-      if (const auto path = pattern.name.path(frame + settings_.frames.output_offset); pattern.path.is_output && inputs.contains(path))
+      if (const auto path = pattern.name.path(frame + settings_.frames.output_offset);
+          pattern.path.is_output && inputs.contains(path))
         fail(ErrorKind::usage, "{}: {} of frame {} would overwrite an input", path, pattern.path.option, frame);
   for (const auto& report : reports_of(settings_.output))
-    if (inputs.contains(report.path)) fail(ErrorKind::usage, "{}: {} would overwrite an input", report.path, report.option);
+    if (inputs.contains(report.path))
+      fail(ErrorKind::usage, "{}: {} would overwrite an input", report.path, report.option);
 }
 
 bool FramePlan::has_inputs(int frame) const {
-  return std::ranges::all_of(patterns_, [&](const Pattern& pattern) { return pattern.path.is_output || exists(pattern.name.path(frame)); });
+  return std::ranges::all_of(
+      patterns_, [&](const Pattern& pattern) { return pattern.path.is_output || exists(pattern.name.path(frame)); });
 }
 
 void FramePlan::find_inputs(const std::vector<int>& chunk) {
@@ -102,10 +109,12 @@ void FramePlan::find_inputs(const std::vector<int>& chunk) {
   for (const auto& pattern : patterns_) {
     if (pattern.path.is_output) continue;
     std::vector<int> absent;
-    std::ranges::copy_if(chunk, std::back_inserter(absent), [&](int frame) { return !exists(pattern.name.path(frame)); });
+    std::ranges::copy_if(chunk, std::back_inserter(absent),
+                         [&](int frame) { return !exists(pattern.name.path(frame)); });
     if (absent.empty()) continue;
-    complaint += fmt::format("{}{}: {} of {} frames are missing: {} ({})", complaint.empty() ? "" : "; ", pattern.path.option, absent.size(), chunk.size(),
-                             frames_text(absent), pattern.name.path(absent.front()));
+    complaint +=
+        fmt::format("{}{}: {} of {} frames are missing: {} ({})", complaint.empty() ? "" : "; ", pattern.path.option,
+                    absent.size(), chunk.size(), frames_text(absent), pattern.name.path(absent.front()));
   }
   if (!complaint.empty() && settings_.frames.missing == Missing::error)
     fail(ErrorKind::input, "{}; --missing skip leaves them out, --frames says which to compute", complaint);
@@ -116,7 +125,8 @@ void FramePlan::find_inputs(const std::vector<int>& chunk) {
 Settings FramePlan::at(int frame) const {
   Settings settings = settings_;
   for (const auto& pattern : patterns_)
-    pattern.path.of(settings) = pattern.name.path(pattern.path.is_output ? frame + settings_.frames.output_offset : frame);
+    pattern.path.of(settings) =
+        pattern.name.path(pattern.path.is_output ? frame + settings_.frames.output_offset : frame);
   return settings;
 }
 
@@ -132,33 +142,42 @@ const std::string& main_input(const InputSettings& settings) {
 }
 
 std::vector<OutputFile> outputs_of(const OutputSettings& output) {
-  std::vector<OutputFile> files{{"--output", output.output}, {"--composite", output.composite}, {"--preview", output.preview}};
+  std::vector<OutputFile> files{
+      {"--output", output.output}, {"--composite", output.composite}, {"--preview", output.preview}};
   for (const auto* view : debug_views_of(output)) files.push_back({"--debug", debug_path(output, *view)});
   std::erase_if(files, [](const OutputFile& file) { return file.path.empty(); });
   return files;
 }
 
 std::vector<OutputFile> reports_of(const OutputSettings& output) {
-  std::vector<OutputFile> files{{"--stats", output.stats}, {"--log-json", output.log_json == "-" ? "" : output.log_json}};
+  std::vector<OutputFile> files{{"--stats", output.stats},
+                                {"--log-json", output.log_json == "-" ? "" : output.log_json}};
   std::erase_if(files, [](const OutputFile& file) { return file.path.empty(); });
   return files;
 }
 
 std::vector<std::string> input_files(const InputSettings& input) {
-  return {input.input, input.depth, input.normal, input.position, input.beauty, input.camera, input.material_ao, input.albedo};
+  return {input.input,  input.depth,  input.normal,      input.position,
+          input.beauty, input.camera, input.material_ao, input.albedo};
 }
 
 std::vector<int> chunk_of(const std::vector<int>& frames, int chunk, int chunks) {
-  const auto at = [&](int i) { return frames.begin() + std::ptrdiff_t(frames.size() * std::size_t(i) / std::size_t(chunks)); };
+  const auto at = [&](int i) {
+    return frames.begin() + std::ptrdiff_t(frames.size() * std::size_t(i) / std::size_t(chunks));
+  };
   return {at(chunk - 1), at(chunk)};
 }
 
 std::string plan_text(const Settings& settings) {
   const FramePlan plan(settings);
   std::string text;
-  const auto line = [&](const std::string& name, const std::string& value) { text += fmt::format("{:<14}{}\n", name, value); };
-  line("frames", plan.frames().empty() ? "none" : fmt::format("{}: {}", plan.frames().size(), frames_text(plan.frames())));
-  if (!plan.missing().empty()) line("missing", fmt::format("{}: {}, left out", plan.missing().size(), frames_text(plan.missing())));
+  const auto line = [&](const std::string& name, const std::string& value) {
+    text += fmt::format("{:<14}{}\n", name, value);
+  };
+  line("frames",
+       plan.frames().empty() ? "none" : fmt::format("{}: {}", plan.frames().size(), frames_text(plan.frames())));
+  if (!plan.missing().empty())
+    line("missing", fmt::format("{}: {}, left out", plan.missing().size(), frames_text(plan.missing())));
   if (plan.frames().empty()) return text;
   Settings first = plan.at(plan.frames().front()), last = plan.at(plan.frames().back());
   for (const auto& path : kPaths)
@@ -166,15 +185,19 @@ std::string plan_text(const Settings& settings) {
 
   const FrameSource source = open_frame(first, plan.frames().front());
   std::vector<std::string> channels;
-  for (const auto* aov : {&source.depth, &source.normal, &source.beauty, &source.indirect, &source.diffuse_color, &source.albedo, &source.material_ao})
+  for (const auto* aov : {&source.depth, &source.normal, &source.beauty, &source.indirect, &source.diffuse_color,
+                          &source.albedo, &source.material_ao})
     for (const auto& channel : *aov) channels.push_back(channel.channel);
   line("channels", fmt::format("{}", fmt::join(channels, ", ")));
-  line("camera", fmt::format("{}, {:.6g} x {:.6g} px {}", source.camera.orthographic ? "orthographic" : "perspective", source.camera.fx, source.camera.fy,
-                             source.camera.orthographic ? "a scene unit" : "focal length"));
-  const std::uint64_t bytes = pixel_memory(source, first).bytes * source.file_data.pixels(), all = memory_for_frames(first.device);
+  line("camera",
+       fmt::format("{}, {:.6g} x {:.6g} px {}", source.camera.orthographic ? "orthographic" : "perspective",
+                   source.camera.fx, source.camera.fy, source.camera.orthographic ? "a scene unit" : "focal length"));
+  const std::uint64_t bytes = pixel_memory(source, first).bytes * source.file_data.pixels(),
+                      all = memory_for_frames(first.device);
   line("size", to_string(written_of(source)));
   line("memory", fmt::format("{} MiB a frame, {} MiB for frames: {}", bytes >> 20, all >> 20,
-                             bytes > all ? "in tiles" : fmt::format("up to {} at once", all / std::max<std::uint64_t>(1, bytes))));
+                             bytes > all ? "in tiles"
+                                         : fmt::format("up to {} at once", all / std::max<std::uint64_t>(1, bytes))));
   return text;
 }
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "core/formats/sequence.h"
 #include "core/base/settings.h"
+#include "core/formats/sequence.h"
 
 namespace alcove {
 
@@ -20,10 +20,11 @@ struct NamedPath {
 /// A run's frames and the names of their files.
 class FramePlan {
  public:
-  /// Finds the frames and looks for their inputs; opens nothing. A name is a pattern (core/formats/sequence.h) unless it is an input
-  /// that is there, or an output of a single frame.
-  /// Fails with ErrorKind::usage where two frames would write one file, or one overwrites another's input; with ErrorKind::input where inputs are missing,
-  /// listing the frames of each, unless the settings say to skip them, and where no frame is left.
+  /// Finds the frames and looks for their inputs; opens nothing. A name is a pattern (core/formats/sequence.h) unless
+  /// it is an input that is there, or an output of a single frame.
+  /// Fails with ErrorKind::usage where two frames would write one file, or one overwrites another's input; with
+  /// ErrorKind::input where inputs are missing, listing the frames of each, unless the settings say to skip them, and
+  /// where no frame is left.
   explicit FramePlan(const Settings& settings);
 
   bool is_sequence() const { return is_sequence_; }  // false: one frame, from names without a place for its number
@@ -31,7 +32,8 @@ class FramePlan {
   const std::vector<int>& frames() const { return frames_; }
   /// Left out, since an input is missing.
   const std::vector<int>& missing() const { return missing_; }
-  /// The first frames that there are of the whole sequence, whatever the chunk: what guesses are made by, so that all chunks make the same.
+  /// The first frames that there are of the whole sequence, whatever the chunk: what guesses are made by, so that all
+  /// chunks make the same.
   const std::vector<int>& evidence() const { return evidence_; }
   /// The settings with the files of one frame.
   Settings at(int frame) const;

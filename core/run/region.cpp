@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "core/base/error.h"
-#include "core/frame/evidence.h"
 #include "core/chain/passes.h"
+#include "core/frame/evidence.h"
 #include "core/frame/settle.h"
 #include "kernels/profile.h"
 
@@ -15,11 +15,13 @@ namespace alcove {
 namespace {
 
 constexpr int kBlock = 64;  // px of a block of pixels whose nearest depth is kept
-constexpr int kGrid = 4;  // px: windows begin on the grid of the coarsest resolution, so that its pixels are the same ones
+// px: windows begin on the grid of the coarsest resolution, so that its pixels are the same ones
+constexpr int kGrid = 4;
 
 Window grown(const Window& window, int margin_x, int margin_y, const Window& within) {
   const auto down = [](int x, int origin) { return origin + (x - origin) / kGrid * kGrid; };
-  const int left = down(std::max(window.x - margin_x, within.x), within.x), top = down(std::max(window.y - margin_y, within.y), within.y);
+  const int left = down(std::max(window.x - margin_x, within.x), within.x),
+            top = down(std::max(window.y - margin_y, within.y), within.y);
   const int right = std::min(window.x + window.width + margin_x + kGrid, within.x + within.width);
   const int bottom = std::min(window.y + window.height + margin_y + kGrid, within.y + within.height);
   return {left, top, right - left, bottom - top};
@@ -27,18 +29,24 @@ Window grown(const Window& window, int margin_x, int margin_y, const Window& wit
 
 /// How far a filter reaches: the denoiser over pixels of the estimate, and upsampling by two of them.
 int filter_reach(const EstimatorSettings& settings) {
-  const int denoised = settings.denoise == Denoise::none ? 0 : std::max({4, settings.denoise_radius, int(settings.denoise_kernel.size())});
+  const int denoised = settings.denoise == Denoise::none
+                           ? 0
+                           : std::max({4, settings.denoise_radius, int(settings.denoise_kernel.size())});
   return int(settings.resolution) * (denoised + (settings.resolution == Resolution::full ? 0 : 2));
 }
 
-/// How far lines of an exact search reach on beyond the sphere of the radius until they have the vertices of the whole frame; 0 without one.
-int line_reach(const EstimatorSettings& settings) { return searches_exactly(settings) ? int(settings.resolution) * (kProfileRestart + 2) : 0; }
+/// How far lines of an exact search reach on beyond the sphere of the radius until they have the vertices of the whole
+/// frame; 0 without one.
+int line_reach(const EstimatorSettings& settings) {
+  return searches_exactly(settings) ? int(settings.resolution) * (kProfileRestart + 2) : 0;
+}
 
-/// Of a run that begins within reach of a receiver; a wider one is as good as endless, also as exact.comp rounds widths.
+/// Of a run that begins within reach of a receiver; a wider one is as good as endless, also as exact.comp rounds
+/// widths.
 constexpr double kWidestRun = 2.1;  // radii
 
-/// Pixels on one axis that the image of a sphere of this radius reaches from its centre's, where centres are no nearer than `nearest` and no farther
-/// off axis than `tangent`.
+/// Pixels on one axis that the image of a sphere of this radius reaches from its centre's, where centres are no nearer
+/// than `nearest` and no farther off axis than `tangent`.
 double sphere_reach(double radius, double nearest, double tangent, double pixels_per_tangent, bool orthographic) {
   if (orthographic) return radius * pixels_per_tangent;
   if (radius >= nearest) return 1e9;
@@ -49,18 +57,22 @@ double sphere_reach(double radius, double nearest, double tangent, double pixels
 }  // namespace
 
 Window region_of(const FrameSource& source, const Region& roi) {
-  const Window all = source.file_data, region{source.display.x + roi.x, source.display.y + roi.y, roi.width, roi.height};
-  const bool inside = region.x >= all.x && region.y >= all.y && std::int64_t(region.x) + region.width <= std::int64_t(all.x) + all.width &&
+  const Window all = source.file_data,
+               region{source.display.x + roi.x, source.display.y + roi.y, roi.width, roi.height};
+  const bool inside = region.x >= all.x && region.y >= all.y &&
+                      std::int64_t(region.x) + region.width <= std::int64_t(all.x) + all.width &&
                       std::int64_t(region.y) + region.height <= std::int64_t(all.y) + all.height;
   if (!inside)
-    fail(ErrorKind::usage, "{}: --roi is {}, and the data window is {}: give a region within it", source.files[source.depth[0].file].path(),
-         to_string(region), to_string(all));
+    fail(ErrorKind::usage, "{}: --roi is {}, and the data window is {}: give a region within it",
+         source.files[source.depth[0].file].path(), to_string(region), to_string(all));
   return region;
 }
 
 Surroundings::Surroundings(FrameSource& source, const Settings& settings, const Window& whole)
     : file_data_(source.file_data),
-      read_(searches_exactly(settings.estimator) ? file_data_ : grown(whole, filter_reach(settings.estimator), filter_reach(settings.estimator), file_data_)),
+      read_(searches_exactly(settings.estimator)
+                ? file_data_
+                : grown(whole, filter_reach(settings.estimator), filter_reach(settings.estimator), file_data_)),
       columns_((read_.width + kBlock - 1) / kBlock),
       nearest_(std::size_t(columns_) * std::size_t((read_.height + kBlock - 1) / kBlock), kSkyDepth),
       view_(view_of(source.camera, source.file_data, source.display)),
@@ -95,7 +107,9 @@ Window Surroundings::within(double distance, const Window& window) const {
   const double nearest = nearest_in(window);
   const auto margin = [&](double low, double high, double center, double tangent_per_pixel) {
     const double tangent = std::max(std::abs(low - center), std::abs(high - center)) * std::abs(tangent_per_pixel);
-    return int(std::ceil(std::min(sphere_reach(distance, nearest, tangent, 1 / std::abs(tangent_per_pixel), orthographic_), 1e6))) + 2;
+    return int(std::ceil(std::min(
+               sphere_reach(distance, nearest, tangent, 1 / std::abs(tangent_per_pixel), orthographic_), 1e6))) +
+           2;
   };
   const int left = window.x - file_data_.x, top = window.y - file_data_.y;
   return grown(window, margin(left, left + window.width, view_.center.x, view_.tangent_per_pixel.x),

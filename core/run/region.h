@@ -2,15 +2,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "core/frame/gbuffer.h"
 #include "core/base/settings.h"
+#include "core/frame/gbuffer.h"
 
 namespace alcove {
 
 /// The region in pixels of the file. Fails with ErrorKind::usage where it is not within the data window.
 Window region_of(const FrameSource& source, const Region& roi);
 
-/// How far around the parts of a frame its results reach back, by the nearest depth in them: occluders of the radius, and the filters of the settings.
+/// How far around the parts of a frame its results reach back, by the nearest depth in them: occluders of the radius,
+/// and the filters of the settings.
 class Surroundings {
  public:
   /// Reads the depth of all rows of a settled frame that results within `whole` depend on directly, a few at a time.
@@ -25,14 +26,14 @@ class Surroundings {
   Window within(double distance, const Window& window) const;
 
   const Window file_data_;
-  Window read_;                  // what the grid of nearest depths covers
-  int columns_ = 0;              // of that grid
-  std::vector<float> nearest_;   // of every block of it
+  Window read_;                 // what the grid of nearest depths covers
+  int columns_ = 0;             // of that grid
+  std::vector<float> nearest_;  // of every block of it
   View view_;
   bool orthographic_;
   double radius_;
-  int filters_;                  // px that filters reach
-  int lines_;                    // px that the lines of an exact search need beyond the radius
+  int filters_;  // px that filters reach
+  int lines_;    // px that the lines of an exact search need beyond the radius
 };
 
 }  // namespace alcove

@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "core/formats/exr.h"
-#include "core/run/frame_files.h"
 #include "core/formats/image_io.h"
+#include "core/run/frame_files.h"
 #include "core/run/plan.h"
 
 namespace alcove {
@@ -63,7 +63,8 @@ bool has_whole_outputs(const Settings& frame, const std::string& options_digest)
     if (!time || *time < newest_input) return false;
     const bool is_picture = output.path != frame.output.output && output.path != frame.output.composite;
     if (is_picture) return is_whole_png(output.path, made_by(options_digest, inputs));
-    return attribute_of_whole_exr(output.path, "alcove/options") == options_digest && attribute_of_whole_exr(output.path, "alcove/inputs") == inputs;
+    return attribute_of_whole_exr(output.path, "alcove/options") == options_digest &&
+           attribute_of_whole_exr(output.path, "alcove/inputs") == inputs;
   });
 }
 

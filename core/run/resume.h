@@ -8,12 +8,14 @@
 
 namespace alcove {
 
-/// Tells the contents of a frame's input files from others, wherever they lie: a hash of the size, the beginning and the end of each. The beginning of an EXR
-/// file holds the places of all its chunks. Never fails: what cannot be read is as an empty file.
+/// Tells the contents of a frame's input files from others, wherever they lie: a hash of the size, the beginning and
+/// the end of each. The beginning of an EXR file holds the places of all its chunks. Never fails: what cannot be read
+/// is as an empty file.
 std::string identity_of_inputs(const Settings& frame);
 
-/// Whether all outputs of a frame are there and whole, made with the options of this digest from inputs of this identity, and no older than them. `frame` names
-/// the files of one frame. Reads headers and the table of chunks; never fails.
+/// Whether all outputs of a frame are there and whole, made with the options of this digest from inputs of this
+/// identity, and no older than them. `frame` names the files of one frame. Reads headers and the table of chunks; never
+/// fails.
 bool has_whole_outputs(const Settings& frame, const std::string& options_digest);
 
 }  // namespace alcove

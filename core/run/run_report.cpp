@@ -17,25 +17,38 @@ using Json = nlohmann::ordered_json;
 
 Json json_of(const FrameReport& frame) {
   Json passes = Json::array();
-  for (const auto& pass : frame.passes) passes.push_back({{"name", pass.name}, {"ms", pass.ms}, {"bytes_read", pass.bytes_read}, {"bytes_written", pass.bytes_written}});
-  Json json = {{"frame", frame.frame},
-               {"state", name_of(frame.state)},
-               {"input", frame.input},
-               {"output", frame.output},
-               {"ms", {{"read", frame.read_ms}, {"compute", frame.compute_ms}, {"write", frame.write_ms}, {"total", frame.total_ms}}},
-               {"passes", passes},
-               {"pixels", frame.pixels},
-               {"sky_pixels", frame.sky_pixels},
-               {"parts", frame.parts},
-               {"tiles", {{"total", frame.tiles.sky + frame.tiles.proved + frame.tiles.kept + frame.tiles.computed}, {"sky", frame.tiles.sky}, {"proved", frame.tiles.proved}, {"tolerated", frame.tiles.tolerated}, {"kept", frame.tiles.kept}, {"computed", frame.tiles.computed}}},
-               {"samples_per_pixel", frame.samples_per_pixel},
-               {"repaired_pixels", frame.repaired_pixels}};
+  for (const auto& pass : frame.passes)
+    passes.push_back(
+        {{"name", pass.name}, {"ms", pass.ms}, {"bytes_read", pass.bytes_read}, {"bytes_written", pass.bytes_written}});
+  Json json = {
+      {"frame", frame.frame},
+      {"state", name_of(frame.state)},
+      {"input", frame.input},
+      {"output", frame.output},
+      {"ms",
+       {{"read", frame.read_ms}, {"compute", frame.compute_ms}, {"write", frame.write_ms}, {"total", frame.total_ms}}},
+      {"passes", passes},
+      {"pixels", frame.pixels},
+      {"sky_pixels", frame.sky_pixels},
+      {"parts", frame.parts},
+      {"tiles",
+       {{"total", frame.tiles.sky + frame.tiles.proved + frame.tiles.kept + frame.tiles.computed},
+        {"sky", frame.tiles.sky},
+        {"proved", frame.tiles.proved},
+        {"tolerated", frame.tiles.tolerated},
+        {"kept", frame.tiles.kept},
+        {"computed", frame.tiles.computed}}},
+      {"samples_per_pixel", frame.samples_per_pixel},
+      {"repaired_pixels", frame.repaired_pixels}};
   if (frame.error_pixels > 0) json["error_estimate"] = std::sqrt(frame.error_squares / frame.error_pixels);
   if (frame.error) json["error"] = frame.error->what();
   return json;
 }
 
-std::string text_of(const Json& json, int indent) { return json.dump(indent, ' ', false, Json::error_handler_t::replace); }  // names need not be UTF-8
+// names need not be UTF-8
+std::string text_of(const Json& json, int indent) {
+  return json.dump(indent, ' ', false, Json::error_handler_t::replace);
+}
 
 rusage usage() {
   rusage usage{};
@@ -71,7 +84,8 @@ std::string stats_json(const RunReport& report) {
                        {"wall_s", report.wall_s},
                        {"cpu_s", seconds(used.ru_utime) + seconds(used.ru_stime)},
                        {"peak_rss_mb", peak_memory_mib()}};
-  return text_of({{"device", report.device}, {"options", report.options}, {"frames", frames}, {"totals", totals}}, 1) + "\n";
+  return text_of({{"device", report.device}, {"options", report.options}, {"frames", frames}, {"totals", totals}}, 1) +
+         "\n";
 }
 
 std::string frame_json(const FrameReport& frame) { return text_of(json_of(frame), -1); }
@@ -79,11 +93,12 @@ std::string frame_json(const FrameReport& frame) { return text_of(json_of(frame)
 std::string summary_of(const RunReport& report) {
   std::string text = fmt::format("{} frames done", report.done);
   if (report.kept) text += fmt::format(", {} kept", report.kept);
-  if (!report.missing.empty()) text += fmt::format(", {} missing ({})", report.missing.size(), frames_text(report.missing));
+  if (!report.missing.empty())
+    text += fmt::format(", {} missing ({})", report.missing.size(), frames_text(report.missing));
   if (report.failed) text += fmt::format(", {} failed ({})", report.failed, frames_text(report.failed_frames));
   if (report.dropped) text += fmt::format(", {} not begun or dropped", report.dropped);
-  return text + fmt::format(", in {:.1f} s on {}, {} at once, peak memory {:.0f} MiB", report.wall_s, report.device.empty() ? "no device" : report.device,
-                            report.at_once, peak_memory_mib());
+  return text + fmt::format(", in {:.1f} s on {}, {} at once, peak memory {:.0f} MiB", report.wall_s,
+                            report.device.empty() ? "no device" : report.device, report.at_once, peak_memory_mib());
 }
 
 }  // namespace alcove

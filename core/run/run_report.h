@@ -12,7 +12,8 @@
 
 namespace alcove {
 
-enum class FrameState { done, failed, kept, dropped };  // kept: its outputs were whole already; dropped: the run ended before it
+// kept: its outputs were whole already; dropped: the run ended before it
+enum class FrameState { done, failed, kept, dropped };
 const char* name_of(FrameState state);
 
 /// What happened to one frame.
@@ -23,13 +24,15 @@ struct FrameReport {
   double read_ms = 0, compute_ms = 0, write_ms = 0, total_ms = 0;  // compute: the sum of the passes' device time
   std::vector<gpu::PassTime> passes;
   std::uint64_t pixels = 0, sky_pixels = 0, repaired_pixels = 0;
-  int parts = 1;                   // that it was computed in; what they share is counted in each
+  int parts = 1;  // that it was computed in; what they share is counted in each
   struct Tiles {
-    std::uint64_t sky = 0, proved = 0, kept = 0, computed = 0;  // of 8 x 8 pixels: all sky, proved to be open, the same as in a frame before, estimated
-    std::uint64_t tolerated = 0;                                // of those proved, by the tolerance alone
+    // of 8 x 8 pixels: all sky, proved to be open, the same as in a frame before, estimated
+    std::uint64_t sky = 0, proved = 0, kept = 0, computed = 0;
+    std::uint64_t tolerated = 0;  // of those proved, by the tolerance alone
   } tiles;
   double error_squares = 0, error_pixels = 0;  // of an estimate with a tolerance
-  double samples_per_pixel = 0;    // depth samples that the settings ask for, averaged over all pixels; sky asks for none
+  // depth samples that the settings ask for, averaged over all pixels; sky asks for none
+  double samples_per_pixel = 0;
   std::vector<std::string> notes;  // what the user should know, a sentence each
   std::optional<Error> error;      // why it failed
   bool device_lost = false;        // that is why
@@ -44,7 +47,7 @@ struct RunReport {
   std::vector<int> missing;         // frames that were left out, since an input is missing
   int done = 0, failed = 0, kept = 0, dropped = 0;
   std::vector<int> failed_frames;
-  std::optional<Error> stop;        // why the run ended early
+  std::optional<Error> stop;  // why the run ended early
   double wall_s = 0;
 };
 

@@ -7,21 +7,24 @@
 #include <fstream>
 #include <limits>
 
+#include "core/base/error.h"
 #include "core/chain/aov.h"
 #include "core/chain/chain.h"
 #include "core/chain/debug_view.h"
-#include "core/base/error.h"
 #include "core/chain/passes.h"
 
 namespace alcove {
 namespace {
 
-constexpr std::uint64_t kProgramBytes = 192ull << 20;  // the process without frames: libraries, drivers, compiled kernels
-constexpr std::uint64_t kLeastBytes = 16ull << 20;     // for frames, however little the user allows
-constexpr int kLeastRows = 16, kLeastColumns = 64;     // px of a tile: rows that most files compress together
-constexpr std::size_t kTileLists = 8;                  // words a tile: sectors, bounds of groups, runs of the filters, and how the frame before differs
-constexpr std::size_t kConvergeLists = 7;              // one after each power of two directions
-constexpr int kFewBorders = 4;                         // a row of tiles is halved only while it is this many times as high as what it needs around it
+// the process without frames: libraries, drivers, compiled kernels
+constexpr std::uint64_t kProgramBytes = 192ull << 20;
+constexpr std::uint64_t kLeastBytes = 16ull << 20;  // for frames, however little the user allows
+constexpr int kLeastRows = 16, kLeastColumns = 64;  // px of a tile: rows that most files compress together
+// words a tile: sectors, bounds of groups, runs of the filters, and how the frame before differs
+constexpr std::size_t kTileLists = 8;
+constexpr std::size_t kConvergeLists = 7;  // one after each power of two directions
+// a row of tiles is halved only while it is this many times as high as what it needs around it
+constexpr int kFewBorders = 4;
 
 /// At most so many groups of `each` pixels a pixel along a side of the frame, however it is cut into tiles.
 double groups_a_pixel(int side, int each, int least) {
@@ -33,21 +36,29 @@ double groups_a_pixel(int side, int each, int least) {
 std::uint64_t chain_bytes(const FrameSource& source, const Settings& settings) {
   const auto& e = settings.estimator;
   const auto& o = settings.output;
-  const auto groups = [&](int each) { return groups_a_pixel(source.file_data.width, each, kLeastColumns) * groups_a_pixel(source.file_data.height, each, kLeastRows); };
-  const std::size_t scales = 1 + e.further_radii.size(), bent = needs_bent(e, o) ? 3 : 0, estimated = scales + bent + (scales > 1 ? 1 : 0);
+  const auto groups = [&](int each) {
+    return groups_a_pixel(source.file_data.width, each, kLeastColumns) *
+           groups_a_pixel(source.file_data.height, each, kLeastRows);
+  };
+  const std::size_t scales = 1 + e.further_radii.size(), bent = needs_bent(e, o) ? 3 : 0,
+                    estimated = scales + bent + (scales > 1 ? 1 : 0);
   const bool reduced = e.resolution != Resolution::full, converges = e.tolerance > 0;
-  std::size_t low = estimated + (reduced ? 2 : 0);                        // of the estimate's resolution: it, and its depth and normals
-  low += e.denoise == Denoise::none || converges ? 0 : 2 * estimated;     // rows, columns
-  low += searches_exactly(e) ? 4 : 0;                                     // vertices, marks, neighbours, whole arcs
-  low += converges ? 2 : 0;                                               // blocked arcs, error
-  std::size_t planes = 2 + (reduced ? estimated : 0);                     // depth, normals, the whole estimate
+  // of the estimate's resolution: it, and its depth and normals
+  std::size_t low = estimated + (reduced ? 2 : 0);
+  low += e.denoise == Denoise::none || converges ? 0 : 2 * estimated;  // rows, columns
+  low += searches_exactly(e) ? 4 : 0;                                  // vertices, marks, neighbours, whole arcs
+  low += converges ? 2 : 0;                                            // blocked arcs, error
+  std::size_t planes = 2 + (reduced ? estimated : 0);                  // depth, normals, the whole estimate
   planes += shapes(e) || !source.material_ao.empty() ? 1 + scales : 0;
   planes += bent ? 1 : 0;
-  planes += wants(o, &FrameOutputs::confidence) ? 2 * 3 : 0;              // thin and solid: estimates, rows, columns
+  planes += wants(o, &FrameOutputs::confidence) ? 2 * 3 : 0;  // thin and solid: estimates, rows, columns
   planes += (o.multi_bounce ? 3 : 0) + source.beauty.size() + debug_views_of(o).size();
   for (const auto& aov : aovs_of(o)) planes += channels_of(aov, scales).size();
-  const double tiles = double(sizeof(TileBounds) + kTileLists * sizeof(uint) + (converges ? kConvergeLists : 1) * sizeof(ListedTile)) * groups(kTile * int(e.resolution));
-  return std::uint64_t(std::ceil(double(sizeof(float)) * (double(planes) + double(low) * groups(int(e.resolution))) + tiles));
+  const double tiles =
+      double(sizeof(TileBounds) + kTileLists * sizeof(uint) + (converges ? kConvergeLists : 1) * sizeof(ListedTile)) *
+      groups(kTile * int(e.resolution));
+  return std::uint64_t(
+      std::ceil(double(sizeof(float)) * (double(planes) + double(low) * groups(int(e.resolution))) + tiles));
 }
 
 /// The number behind a word in a file of the kernel's, in bytes.
@@ -79,7 +90,8 @@ class Cutter {
       if (auto tiles = columns_of(row, columns); !tiles.empty()) return rows_.push_back(std::move(tiles));
     if (can_halve) return halve(row);
     fail(ErrorKind::device,
-         "{}: within --radius a tile of the frame depends on {} pixels, more than {} MiB, or buffers of {} MiB, hold: allow more --memory, use another "
+         "{}: within --radius a tile of the frame depends on {} pixels, more than {} MiB, or buffers of {} MiB, hold: "
+         "allow more --memory, use another "
          "--device or a smaller --radius",
          source_.files[source_.depth[0].file].path(), to_string(computed), room_.bytes >> 20, room_.buffer_bytes >> 20);
   }
@@ -97,10 +109,13 @@ class Cutter {
   std::vector<Window> columns_of(const Window& row, int columns) const {
     std::vector<Window> tiles;
     for (int i = 0; i < columns; i++) {
-      const int left = int(std::int64_t(row.width) * i / columns), right = int(std::int64_t(row.width) * (i + 1) / columns);
+      const int left = int(std::int64_t(row.width) * i / columns),
+                right = int(std::int64_t(row.width) * (i + 1) / columns);
       tiles.push_back({row.x + left, row.y, right - left, row.height});
       const Window computed = surroundings_.around(tiles.back());
-      const std::uint64_t rows = pixel_.read_bytes * std::uint64_t(source_.file_data.width) * std::uint64_t(computed.height) + pixel_.written_bytes * row.pixels();
+      const std::uint64_t rows =
+          pixel_.read_bytes * std::uint64_t(source_.file_data.width) * std::uint64_t(computed.height) +
+          pixel_.written_bytes * row.pixels();
       if (rows >= room_.bytes || !fits(computed, pixel_, {room_.bytes - rows, room_.buffer_bytes})) return {};
     }
     return tiles;
@@ -118,7 +133,8 @@ class Cutter {
 PixelMemory pixel_memory(const FrameSource& source, const Settings& settings) {
   const std::size_t scales = 1 + settings.estimator.further_radii.size();
   std::size_t read = 0, widest = std::max<std::size_t>(scales, needs_bent(settings.estimator, settings.output) ? 3 : 1);
-  for (const auto* aov : {&source.depth, &source.normal, &source.beauty, &source.indirect, &source.diffuse_color, &source.albedo, &source.material_ao}) {
+  for (const auto* aov : {&source.depth, &source.normal, &source.beauty, &source.indirect, &source.diffuse_color,
+                          &source.albedo, &source.material_ao}) {
     read += aov->size();
     widest = std::max(widest, aov->size());
   }
@@ -141,8 +157,8 @@ bool fits(const Window& computed, const PixelMemory& pixel, const Room& room) {
   return computed.pixels() * pixel.bytes <= room.bytes && computed.pixels() * pixel.widest <= room.buffer_bytes;
 }
 
-std::vector<std::vector<Window>> tiles_of(const Window& whole, const Surroundings& surroundings, const PixelMemory& pixel, const Room& room,
-                                          const FrameSource& source) {
+std::vector<std::vector<Window>> tiles_of(const Window& whole, const Surroundings& surroundings,
+                                          const PixelMemory& pixel, const Room& room, const FrameSource& source) {
   Cutter cutter(surroundings, pixel, room, source);
   cutter.cut(whole);
   return cutter.take();

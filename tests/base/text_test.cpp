@@ -24,11 +24,15 @@ TEST(Text, lower_case_changes_ascii_letters_only) {
 TEST(Text, printable_leaves_no_control_and_nothing_that_turns_the_direction_of_writing) {
   for (char32_t c = 0; c < 0x2100; c++) {
     std::string text;
-    if (c < 0x80) text = {char(c)};
-    else if (c < 0x800) text = {char(0xc0 | c >> 6), char(0x80 | (c & 63))};
-    else text = {char(0xe0 | c >> 12), char(0x80 | (c >> 6 & 63)), char(0x80 | (c & 63))};
+    if (c < 0x80)
+      text = {char(c)};
+    else if (c < 0x800)
+      text = {char(0xc0 | c >> 6), char(0x80 | (c & 63))};
+    else
+      text = {char(0xe0 | c >> 12), char(0x80 | (c >> 6 & 63)), char(0x80 | (c & 63))};
     const bool is_control = c < 0x20 || (c >= 0x7f && c < 0xa0);
-    const bool turns = c == 0x61c || c == 0x200e || c == 0x200f || (c >= 0x202a && c <= 0x202e) || (c >= 0x2066 && c <= 0x2069);
+    const bool turns =
+        c == 0x61c || c == 0x200e || c == 0x200f || (c >= 0x202a && c <= 0x202e) || (c >= 0x2066 && c <= 0x2069);
     EXPECT_EQ(printable("a" + text + "b"), "a" + (is_control || turns ? "?" : text) + "b") << std::hex << unsigned(c);
   }
   EXPECT_EQ(printable("cut short \xe2\x80"), "cut short \xe2\x80");
@@ -58,7 +62,8 @@ TEST(Text, edit_distance_counts_insertions_deletions_and_replacements) {
 std::size_t slow_distance(std::string_view a, std::string_view b) {
   if (a.empty() || b.empty()) return a.size() + b.size();
   const auto rest_a = a.substr(1), rest_b = b.substr(1);
-  return std::min({slow_distance(rest_a, rest_b) + (a[0] != b[0]), slow_distance(rest_a, b) + 1, slow_distance(a, rest_b) + 1});
+  return std::min(
+      {slow_distance(rest_a, rest_b) + (a[0] != b[0]), slow_distance(rest_a, b) + 1, slow_distance(a, rest_b) + 1});
 }
 
 TEST(Text, edit_distance_agrees_with_its_definition) {
@@ -72,14 +77,18 @@ TEST(Text, edit_distance_agrees_with_its_definition) {
 TEST(Text, nearest_names_come_nearest_first) {
   EXPECT_THAT(nearest_names("radis", Names{"radius", "ratios", "seed"}), ElementsAre("radius", "ratios"));
   EXPECT_THAT(nearest_names("standrad", Names{"draft", "production", "standard"}), ElementsAre("standard"));
-  EXPECT_THAT(nearest_names("depth.z", Names{"ViewLayer.Depth.Z", "Depth.Z"}), ElementsAre("Depth.Z", "ViewLayer.Depth.Z"))
+  EXPECT_THAT(nearest_names("depth.z", Names{"ViewLayer.Depth.Z", "Depth.Z"}),
+              ElementsAre("Depth.Z", "ViewLayer.Depth.Z"))
       << "the same name but for case is nearest";
-  EXPECT_THAT(nearest_names("Depth.Z", Names{"ViewLayer.Depth.Z", "Dept.Z"}), ElementsAre("ViewLayer.Depth.Z", "Dept.Z"));
+  EXPECT_THAT(nearest_names("Depth.Z", Names{"ViewLayer.Depth.Z", "Dept.Z"}),
+              ElementsAre("ViewLayer.Depth.Z", "Dept.Z"));
 }
 
 TEST(Text, a_misspelt_name_below_another_layer_is_near) {
-  EXPECT_THAT(nearest_names("Depth.Z", Names{"ViewLayer.Deph.Z", "ViewLayer.Combined.R"}), ElementsAre("ViewLayer.Deph.Z"));
-  EXPECT_THAT(nearest_names("Normal.X", Names{"ViewLayer.Depth.Z", "RenderLayer.Norml.X"}), ElementsAre("RenderLayer.Norml.X"));
+  EXPECT_THAT(nearest_names("Depth.Z", Names{"ViewLayer.Deph.Z", "ViewLayer.Combined.R"}),
+              ElementsAre("ViewLayer.Deph.Z"));
+  EXPECT_THAT(nearest_names("Normal.X", Names{"ViewLayer.Depth.Z", "RenderLayer.Norml.X"}),
+              ElementsAre("RenderLayer.Norml.X"));
 }
 
 TEST(Text, far_names_are_not_suggested) {

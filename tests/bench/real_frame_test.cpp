@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "core/formats/exr.h"
 #include "core/chain/host_frame.h"
+#include "core/formats/exr.h"
 #include "tests/support/device.h"
 
 namespace alcove {
@@ -66,7 +66,8 @@ TEST(RealFrame, normals_from_depth_come_close_to_the_rendered_ones) {
   const auto without = compute_ao(test::recorder(), crop.frame, eight_by_sixteen(0.75)).ao;
   double sum = 0;
   for (std::size_t i = 0; i < without.size(); i++) sum += std::pow(double(with_normals[i]) - without[i], 2);
-  EXPECT_LE(std::sqrt(sum / double(without.size())), 0.08);  // measured 0.0718; the rendered normals are smooth over facets
+  // measured 0.0718; the rendered normals are smooth over facets
+  EXPECT_LE(std::sqrt(sum / double(without.size())), 0.08);
 }
 
 }  // namespace

@@ -1,8 +1,9 @@
-// The presets of the source systems: each gives what its own definition gives, evaluated slowly, in double, without noise (tests/bench/source_presets.exr).
+// The presets of the source systems: each gives what its own definition gives, evaluated slowly, in double, without
+// noise (tests/bench/source_presets.exr).
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The goldens are reference_estimate() of a preset's settings on a part of a rendered frame, one channel a preset; a test computes some of their pixels
-// anew. After a change of a preset or a definition, write them with
+// The goldens are reference_estimate() of a preset's settings on a part of a rendered frame, one channel a preset; a
+// test computes some of their pixels anew. After a change of a preset or a definition, write them with
 //   build/tests/source_presets_test --gtest_also_run_disabled_tests --gtest_filter='*writes_the_goldens'
 #include <gtest/gtest.h>
 
@@ -22,7 +23,8 @@ namespace alcove {
 namespace {
 
 const char* const kGoldens = ALCOVE_SOURCE_DIR "/tests/bench/source_presets.exr";
-const std::vector<std::string> kPresets{"forfun-crytek", "forfun-gtao", "forfun-hbao", "forfun-plan", "fp-asm", "source15", "taos-performance", "taos-quality"};
+const std::vector<std::string> kPresets{"forfun-crytek", "forfun-gtao", "forfun-hbao",      "forfun-plan",
+                                        "fp-asm",        "source15",    "taos-performance", "taos-quality"};
 
 /// The two of Taos have no radius; all others have 0.5.
 EstimatorSettings settings_of(const std::string& preset) {
@@ -45,7 +47,8 @@ HostFrame part_of_frame() {
   part.normal.clear();
   const auto rows = [&](const std::vector<float>& values, std::size_t plane, std::vector<float>& to) {
     for (int y = 0; y < part.data.height; y++) {
-      const auto first = values.begin() + std::ptrdiff_t(plane * whole.data.pixels()) + std::ptrdiff_t(y + 90) * whole.data.width + 190;
+      const auto first = values.begin() + std::ptrdiff_t(plane * whole.data.pixels()) +
+                         std::ptrdiff_t(y + 90) * whole.data.width + 190;
       to.insert(to.end(), first, first + part.data.width);
     }
   };
@@ -60,12 +63,14 @@ class SourcePreset : public testing::TestWithParam<std::string> {};
 
 TEST_P(SourcePreset, gives_what_its_definition_gives) {
   const HostFrame frame = part_of_frame();
-  const std::vector<float> ao = compute_ao(test::recorder(), frame, settings_of(GetParam())).ao, golden = golden_of(GetParam());
+  const std::vector<float> ao = compute_ao(test::recorder(), frame, settings_of(GetParam())).ao,
+                           golden = golden_of(GetParam());
   const auto similarity = ssim(frame.data.width, frame.data.height, ao, golden);
   ASSERT_TRUE(similarity.has_value());
   RecordProperty("ssim", std::to_string(*similarity));
   EXPECT_GE(*similarity, 0.90);
-  // A picture may be alike and too bright: the mean is right too. Four steps a side (forfun-plan) miss some occluders: 0.025.
+  // A picture may be alike and too bright: the mean is right too. Four steps a side (forfun-plan) miss some occluders:
+  // 0.025.
   EXPECT_LE(std::abs(compare_planes(ao, golden).bias), 0.04);
 }
 
@@ -73,13 +78,15 @@ TEST_P(SourcePreset, is_the_one_that_its_golden_was_made_of) {
   const HostFrame frame = part_of_frame();
   std::vector<std::size_t> some;
   for (std::size_t i = 17; i < frame.data.pixels(); i += 191) some.push_back(i);
-  const std::vector<float> reference = reference_estimate(frame, settings_of(GetParam()), some), golden = golden_of(GetParam());
+  const std::vector<float> reference = reference_estimate(frame, settings_of(GetParam()), some),
+                           golden = golden_of(GetParam());
   for (const std::size_t i : some) EXPECT_NEAR(golden[i], reference[i], 1e-3) << "pixel " << i;
 }
 
 INSTANTIATE_TEST_SUITE_P(All, SourcePreset, testing::ValuesIn(kPresets), [](const auto& info) {
   std::string name = info.param;
-  for (char& c : name) if (c == '-') c = '_';
+  for (char& c : name)
+    if (c == '-') c = '_';
   return name;
 });
 
@@ -95,7 +102,8 @@ TEST(SourcePresets, DISABLED_writes_the_goldens) {
   ExrOutput output;
   output.data = output.display = {0, 0, frame.data.width, frame.data.height};
   for (const auto& preset : kPresets) planes.push_back(reference_estimate(frame, settings_of(preset)));
-  for (std::size_t i = 0; i < kPresets.size(); i++) output.planes.push_back({kPresets[i], SampleType::half_float, planes[i]});
+  for (std::size_t i = 0; i < kPresets.size(); i++)
+    output.planes.push_back({kPresets[i], SampleType::half_float, planes[i]});
   write_exr(kGoldens, output);
 }
 

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <functional>
 
-#include "core/run/batch.h"
 #include "core/formats/exr.h"
+#include "core/run/batch.h"
 #include "tests/support/command_line.h"
 #include "tests/support/exr_header.h"
 
@@ -59,8 +59,9 @@ bool is_floor(const Image& image, std::size_t i) { return image.plane("ViewLayer
 
 TEST_F(Aovs, all_of_them_lie_in_one_file_under_their_names) {
   const Image result = good({"--aov", "specular-occlusion, ao,normal,depth,ao"});
-  EXPECT_THAT(channels(), ElementsAre(HeaderChannel{"Y", 1}, HeaderChannel{"Z", 2}, HeaderChannel{"normal.X", 1}, HeaderChannel{"normal.Y", 1},
-                                      HeaderChannel{"normal.Z", 1}, HeaderChannel{"specular.Y", 1}));
+  EXPECT_THAT(channels(),
+              ElementsAre(HeaderChannel{"Y", 1}, HeaderChannel{"Z", 2}, HeaderChannel{"normal.X", 1},
+                          HeaderChannel{"normal.Y", 1}, HeaderChannel{"normal.Z", 1}, HeaderChannel{"specular.Y", 1}));
   const Image plain = good({});
   EXPECT_THAT(channels(), ElementsAre(HeaderChannel{"Y", 1}));
   EXPECT_TRUE(std::ranges::equal(result.plane("Y"), plain.plane("Y"))) << "another AOV changes the AO";
@@ -83,15 +84,18 @@ TEST_F(Aovs, a_depth_that_was_written_is_read_again) {
   good({"--aov", "depth,normal,ao", "--type", "float"});
   const std::string written = folder / "written.0042.exr", again = folder / "again.exr";  // the number keeps the noise
   write_bytes(written, read_bytes(ao));
-  const Finished finished = run_program({"run", written, "-o", again, "--camera", camera, "--radius", "1", "--type", "float"});
+  const Finished finished =
+      run_program({"run", written, "-o", again, "--camera", camera, "--radius", "1", "--type", "float"});
   ASSERT_EQ(finished.code, 0) << finished;
   const Image first = read_exr_image(ao), second = read_exr_image(again);
-  for (std::size_t i = 0; i < first.data.pixels(); i++) ASSERT_NEAR(first.plane("Y")[i], second.plane("Y")[i], 1e-3) << i;
+  for (std::size_t i = 0; i < first.data.pixels(); i++)
+    ASSERT_NEAR(first.plane("Y")[i], second.plane("Y")[i], 1e-3) << i;
 }
 
 TEST_F(Aovs, normals_are_in_world_space_where_the_camera_has_it_else_in_view_space) {
   for (auto& [name, plane] : input.planes)
-    if (name.find("Normal") != name.npos) plane[7] = 0;  // to be reconstructed, which it is on the wall, as its neighbours are
+    // to be reconstructed, which it is on the wall, as its neighbours are
+    if (name.find("Normal") != name.npos) plane[7] = 0;
   input.write(frame);
   const Image source = read_exr_image(frame);
   for (const char* space : {"auto", "world", "view"}) {
@@ -126,13 +130,16 @@ TEST_F(Aovs, only_what_was_asked_for_is_computed) {
   good({"--aov", "normal", "--stats", stats});
   EXPECT_THAT(passes(), ElementsAre("prepare", "reconstruct", "directions"));
   good({"--aov", "specular-occlusion", "--denoise", "none", "--stats", stats});
-  EXPECT_THAT(passes(), ElementsAre("prepare", "reconstruct", "bounds", "coarsen", "classify", "horizon", "bent_normal", "specular_occlusion"));
+  EXPECT_THAT(passes(), ElementsAre("prepare", "reconstruct", "bounds", "coarsen", "classify", "horizon", "bent_normal",
+                                    "specular_occlusion"));
   good({"--denoise", "none", "--stats", stats});
   EXPECT_THAT(passes(), ElementsAre("prepare", "reconstruct", "bounds", "coarsen", "classify", "horizon"));
 }
 
 TEST_F(Aovs, a_region_holds_what_the_whole_holds_there) {
-  const std::vector<std::string> all{"--aov", "ao,normal,bent-normal,depth,specular-occlusion", "--ao-channels", "rgb", "--multi-bounce", "--albedo", "0.7"};
+  const std::vector<std::string> all{
+      "--aov", "ao,normal,bent-normal,depth,specular-occlusion", "--ao-channels", "rgb", "--multi-bounce", "--albedo",
+      "0.7"};
   const Image whole = good(all);
   auto region = all;
   region.insert(region.end(), {"--roi", "20,10,9,20"});
@@ -141,8 +148,11 @@ TEST_F(Aovs, a_region_holds_what_the_whole_holds_there) {
   EXPECT_EQ(part.names, whole.names);
   for (const auto& name : whole.names)
     for (int y = 0; y < 20; y++)
-      for (int x = 0; x < 9; x++) ASSERT_EQ(part.plane(name)[std::size_t(y * 9 + x)], whole.plane(name)[std::size_t((y + 10) * 64 + x + 20)]) << name << x << " " << y;
-  EXPECT_EQ(run_program({"run", frame, "-o", ao, "--camera", camera, "--aov", "depth", "--roi", "20,10,9,20"}).code, 0) << "no radius, no surroundings";
+      for (int x = 0; x < 9; x++)
+        ASSERT_EQ(part.plane(name)[std::size_t(y * 9 + x)], whole.plane(name)[std::size_t((y + 10) * 64 + x + 20)])
+            << name << x << " " << y;
+  EXPECT_EQ(run_program({"run", frame, "-o", ao, "--camera", camera, "--aov", "depth", "--roi", "20,10,9,20"}).code, 0)
+      << "no radius, no surroundings";
   EXPECT_EQ(read_exr_image(ao).data, (Window{20, 10, 9, 20}));
 }
 
@@ -153,17 +163,20 @@ TEST_F(Aovs, without_ao_no_radius_is_needed) {
 
 TEST_F(Aovs, unknown_ones_are_answered_with_all_there_are) {
   for (const char* list : {"nromal", "ao,nromal", "bent", "ao,,depth", ""})
-    expect_refused(2, {"--aov", "ao, ao-scales, normal, bent-normal, depth, confidence, error, specular-occlusion"}, {"--aov", list});
+    expect_refused(2, {"--aov", "ao, ao-scales, normal, bent-normal, depth, confidence, error, specular-occlusion"},
+                   {"--aov", list});
   expect_refused(2, {"did you mean normal?"}, {"--aov", "nromal"});
 }
 
 TEST_F(Aovs, specular_occlusion_follows_the_roughness) {
-  const Image rough = good({"--aov", "ao,specular-occlusion", "--roughness", "0.9"}), smooth = good({"--aov", "ao,specular-occlusion", "--roughness", "0.1"});
+  const Image rough = good({"--aov", "ao,specular-occlusion", "--roughness", "0.9"}),
+              smooth = good({"--aov", "ao,specular-occlusion", "--roughness", "0.1"});
   EXPECT_FALSE(std::ranges::equal(rough.plane("specular.Y"), smooth.plane("specular.Y")));
   for (const auto* image : {&rough, &smooth})
     for (std::size_t i = 0; i < image->data.pixels(); i++) {
       ASSERT_TRUE(image->plane("specular.Y")[i] >= 0 && image->plane("specular.Y")[i] <= 1) << i;
-      if (image->plane("Y")[i] == 1) ASSERT_NEAR(image->plane("specular.Y")[i], 1, 0.03) << i;  // the AO is rounded to half: 1 stands for .9998 too
+      // the AO is rounded to half: 1 stands for .9998 too
+      if (image->plane("Y")[i] == 1) ASSERT_NEAR(image->plane("specular.Y")[i], 1, 0.03) << i;
     }
 }
 
@@ -177,7 +190,8 @@ TEST_F(Aovs, rgb_without_multi_bounce_is_the_ao_three_times) {
 
 /// The cubic of multi_bounce.comp.
 double bounced(double ao, double albedo) {
-  const double rho = std::clamp(albedo, 0.0, 1.0), a = 2.0404 * rho - 0.3324, b = -4.7951 * rho + 0.6417, c = 2.7552 * rho + 0.6903;
+  const double rho = std::clamp(albedo, 0.0, 1.0), a = 2.0404 * rho - 0.3324, b = -4.7951 * rho + 0.6417,
+               c = 2.7552 * rho + 0.6903;
   return std::clamp(((a * ao + b) * ao + c) * ao, ao, 1.0);
 }
 
@@ -188,18 +202,22 @@ TEST_F(Aovs, multi_bounce_takes_the_albedo_from_a_number_a_file_or_the_frame) {
   FrameFile colors{input.data, input.display, 1, {}, {}, {}};
   for (const char* c : {"R", "G", "B"}) colors.planes[c] = input.planes["ViewLayer.Combined." + std::string(c)];
   colors.write(other);
-  const auto expect_albedo = [&](const std::vector<std::string>& more, const std::function<double(const std::string&, std::size_t)>& albedo) {
+  const auto expect_albedo = [&](const std::vector<std::string>& more,
+                                 const std::function<double(const std::string&, std::size_t)>& albedo) {
     std::vector<std::string> arguments{"--ao-channels", "rgb", "--multi-bounce", "--type", "float"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     const Image rgb = good(arguments);
     for (const std::string c : {"R", "G", "B"})
-      for (std::size_t i = 0; i < mono.data.pixels(); i++) ASSERT_NEAR(rgb.plane(c)[i], bounced(mono.plane("Y")[i], albedo(c, i)), 1e-5) << c << i;
+      for (std::size_t i = 0; i < mono.data.pixels(); i++)
+        ASSERT_NEAR(rgb.plane(c)[i], bounced(mono.plane("Y")[i], albedo(c, i)), 1e-5) << c << i;
   };
   expect_albedo({"--albedo", "0.8"}, [](const std::string&, std::size_t) { return 0.8; });
   expect_albedo({"--albedo", other}, [&](const std::string& c, std::size_t i) { return colors.planes[c][i]; });
   expect_albedo({}, [&](const std::string& c, std::size_t i) { return input.planes["ViewLayer.DiffCol." + c][i]; });
-  expect_albedo({"--beauty", frame}, [&](const std::string& c, std::size_t i) { return input.planes["ViewLayer.DiffCol." + c][i]; });
-  expect_albedo({"--albedo-channels", "ViewLayer.DiffInd"}, [&](const std::string& c, std::size_t i) { return input.planes["ViewLayer.DiffInd." + c][i]; });
+  expect_albedo({"--beauty", frame},
+                [&](const std::string& c, std::size_t i) { return input.planes["ViewLayer.DiffCol." + c][i]; });
+  expect_albedo({"--albedo-channels", "ViewLayer.DiffInd"},
+                [&](const std::string& c, std::size_t i) { return input.planes["ViewLayer.DiffInd." + c][i]; });
 }
 
 TEST_F(Aovs, multi_bounce_says_what_it_lacks) {
@@ -207,7 +225,8 @@ TEST_F(Aovs, multi_bounce_says_what_it_lacks) {
   expect_refused(2, {"--albedo", "--multi-bounce"}, {"--albedo", "0.5"});
   expect_refused(2, {"--albedo", "1.5"}, {"--albedo", "1.5", "--multi-bounce", "--ao-channels", "rgb"});
   expect_refused(3, {"wall.0042.exr", "--multi-bounce", "--albedo"}, {"--multi-bounce", "--ao-channels", "rgb"});
-  expect_refused(3, {"missing.exr", "--albedo"}, {"--multi-bounce", "--ao-channels", "rgb", "--albedo", folder / "missing.exr"});
+  expect_refused(3, {"missing.exr", "--albedo"},
+                 {"--multi-bounce", "--ao-channels", "rgb", "--albedo", folder / "missing.exr"});
   expect_refused(2, {"overwrite an input"}, {"--multi-bounce", "--ao-channels", "rgb", "--albedo", ao});
   add_beauty(input);
   for (const char* c : {"R", "G", "B"}) input.planes.erase("ViewLayer.DiffInd." + std::string(c));
@@ -221,16 +240,20 @@ TEST_F(Aovs, composite_dims_each_colour_of_the_indirect_light_by_its_own_ao_and_
   const Image source = read_exr_image(frame);
   const auto in = [&](const std::string& name, std::size_t i) { return double(source.plane("ViewLayer." + name)[i]); };
   for (const double density : {0.0, 0.3}) {
-    const Image plain = good({"--type", "float", "--multi-bounce", "--composite", composite, "--fog-density", std::to_string(density)});
+    const Image plain =
+        good({"--type", "float", "--multi-bounce", "--composite", composite, "--fog-density", std::to_string(density)});
     const Image result = read_exr_image(composite);
     const std::string how = text_in(read_header(composite), "alcove/composite");
     EXPECT_THAT(how, HasSubstr("multi-bounce"));
     EXPECT_EQ(how.find("fog of density 0.3") != how.npos, density > 0) << how;
     for (std::size_t i = 0; i < plain.data.pixels(); i++) {
-      const double x = (double(i % 64) + 0.5 - 32) / 60, y = (double(i / 64) + 0.5 - 18) / 60, distance = in("Depth.Z", i) * std::sqrt(1 + x * x + y * y);
+      const double x = (double(i % 64) + 0.5 - 32) / 60, y = (double(i / 64) + 0.5 - 18) / 60,
+                   distance = in("Depth.Z", i) * std::sqrt(1 + x * x + y * y);
       for (const std::string c : {"R", "G", "B"}) {
-        const double f = 1 - in("Combined.A", i) * std::exp(-density * distance) * (1 - bounced(plain.plane("Y")[i], in("DiffCol." + c, i)));
-        const double light = in("DiffInd." + c, i) * in("DiffCol." + c, i), expected = in("Combined." + c, i) - light + light * f;
+        const double f = 1 - in("Combined.A", i) * std::exp(-density * distance) *
+                                 (1 - bounced(plain.plane("Y")[i], in("DiffCol." + c, i)));
+        const double light = in("DiffInd." + c, i) * in("DiffCol." + c, i),
+                     expected = in("Combined." + c, i) - light + light * f;
         ASSERT_NEAR(result.plane(c)[i], expected, 1e-5 * (1 + std::abs(expected))) << c << i;
       }
     }
@@ -248,15 +271,18 @@ TEST_F(Aovs, material_ao_is_multiplied_in_from_a_file_or_a_channel) {
   file.write(other);
   input.planes["ViewLayer.Baked.occ"] = material;
   input.write(frame);
-  for (const auto& how : {std::vector<std::string>{"--material-ao", other}, {"--material-ao", other, "--material-ao-channel", "R"},
+  for (const auto& how : {std::vector<std::string>{"--material-ao", other},
+                          {"--material-ao", other, "--material-ao-channel", "R"},
                           {"--material-ao-channel", "ViewLayer.Baked.occ"}}) {
     std::vector<std::string> arguments{"--type", "float"};
     arguments.insert(arguments.end(), how.begin(), how.end());
     const Image result = good(arguments);
-    for (std::size_t i = 0; i < material.size(); i++) ASSERT_EQ(result.plane("Y")[i], plain.plane("Y")[i] * material[i]) << i << testing::PrintToString(how);
+    for (std::size_t i = 0; i < material.size(); i++)
+      ASSERT_EQ(result.plane("Y")[i], plain.plane("Y")[i] * material[i]) << i << testing::PrintToString(how);
   }
   const Image rounded = good({"--material-ao", other});
-  for (std::size_t i = 0; i < material.size(); i++) ASSERT_NEAR(rounded.plane("Y")[i], plain.plane("Y")[i] * material[i], 0x1p-12) << i;
+  for (std::size_t i = 0; i < material.size(); i++)
+    ASSERT_NEAR(rounded.plane("Y")[i], plain.plane("Y")[i] * material[i], 0x1p-12) << i;
 }
 
 TEST_F(Aovs, a_channel_may_serve_two_purposes) {
@@ -264,8 +290,10 @@ TEST_F(Aovs, a_channel_may_serve_two_purposes) {
   input.write(frame);
   auto near = wall_camera();
   write_bytes(camera, near.dump());
-  const Image plain = good({"--type", "float"}), result = good({"--type", "float", "--material-ao-channel", "ViewLayer.Depth.Z"});
-  for (std::size_t i = 0; i < plain.data.pixels(); i++) ASSERT_EQ(result.plane("Y")[i], plain.plane("Y")[i] * input.planes["ViewLayer.Depth.Z"][i]) << i;
+  const Image plain = good({"--type", "float"}),
+              result = good({"--type", "float", "--material-ao-channel", "ViewLayer.Depth.Z"});
+  for (std::size_t i = 0; i < plain.data.pixels(); i++)
+    ASSERT_EQ(result.plane("Y")[i], plain.plane("Y")[i] * input.planes["ViewLayer.Depth.Z"][i]) << i;
 }
 
 TEST_F(Aovs, material_ao_that_does_not_fit_is_refused) {

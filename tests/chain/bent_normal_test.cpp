@@ -33,15 +33,17 @@ EstimatorSettings settings_of(Estimator estimator, double radius, int slices, in
 }
 
 std::string name_of(const EstimatorSettings& s) {
-  return std::string(s.estimator == Estimator::gtao ? "gtao " : "bitmask ") + std::to_string(s.slices) + " x " + std::to_string(s.steps) + ", thickness " +
-         std::to_string(int(s.thickness)) + ", falloff " + std::to_string(int(s.falloff)) + ", resolution 1/" + std::to_string(int(s.resolution));
+  return std::string(s.estimator == Estimator::gtao ? "gtao " : "bitmask ") + std::to_string(s.slices) + " x " +
+         std::to_string(s.steps) + ", thickness " + std::to_string(int(s.thickness)) + ", falloff " +
+         std::to_string(int(s.falloff)) + ", resolution 1/" + std::to_string(int(s.resolution));
 }
 
 std::vector<Vec3> vectors_in(std::span<const float> planes, double scale = 1, double offset = 0) {
   const std::size_t pixels = planes.size() / 3;
   std::vector<Vec3> vectors(pixels);
   for (std::size_t i = 0; i < pixels; i++)
-    vectors[i] = {scale * planes[i] + offset, scale * planes[i + pixels] + offset, scale * planes[i + 2 * pixels] + offset};
+    vectors[i] = {scale * planes[i] + offset, scale * planes[i + pixels] + offset,
+                  scale * planes[i + 2 * pixels] + offset};
   return vectors;
 }
 
@@ -81,22 +83,33 @@ TEST(BentNormals, of_an_open_plane_are_its_normal_and_two_thirds_long_at_every_t
   for (const double tilt : {0.0, 40.0, 75.0, 85.0}) {
     for (const double turn : {0.0, 37.0, 200.0}) {
       const double sine = std::sin(tilt * kPi / 180);
-      const Scene scene{{Plane{.point = {5, 0, 0}, .normal = {-std::cos(tilt * kPi / 180), sine * std::cos(turn * kPi / 180), sine * std::sin(turn * kPi / 180)}}}};
+      const Scene scene{{Plane{.point = {5, 0, 0},
+                               .normal = {-std::cos(tilt * kPi / 180), sine * std::cos(turn * kPi / 180),
+                                          sine * std::sin(turn * kPi / 180)}}}};
       for (const double fov : {0.0, 60.0, 110.0}) {
-        const HostFrame frame = test::render(scene, fov > 0 ? Shot::perspective({}, {1, 0, 0}, fov, 64, 48) : Shot::orthographic({}, {1, 0, 0}, 0.5, 64, 48)).frame;
+        const HostFrame frame = test::render(scene, fov > 0 ? Shot::perspective({}, {1, 0, 0}, fov, 64, 48)
+                                                            : Shot::orthographic({}, {1, 0, 0}, 0.5, 64, 48))
+                                    .frame;
         for (const Estimator estimator : {Estimator::gtao, Estimator::bitmask}) {
           for (const auto& [slices, steps] : {std::pair{1, 4}, {3, 40}}) {
             EstimatorSettings settings = settings_of(estimator, 1, slices, steps);
             const auto raw = raw_bent(frame, settings);
             for (std::size_t i = 0; i < raw.size(); i++)
-              if (frame.depth[i] < frame.sky) ASSERT_LE(length(raw[i] - (2.0 / 3) * normal_at(frame, i)), 1e-3) << name_of(settings) << " tilt " << tilt << " fov " << fov;
+              if (frame.depth[i] < frame.sky)
+                ASSERT_LE(length(raw[i] - (2.0 / 3) * normal_at(frame, i)), 1e-3)
+                    << name_of(settings) << " tilt " << tilt << " fov " << fov;
             settings.denoise = Denoise::bilateral;
-            for (const auto& [resolution, stride] : {std::pair{Resolution::full, 1}, {Resolution::full, 4}, {Resolution::half, 2}, {Resolution::quarter, 1}}) {
+            for (const auto& [resolution, stride] : {std::pair{Resolution::full, 1},
+                                                     {Resolution::full, 4},
+                                                     {Resolution::half, 2},
+                                                     {Resolution::quarter, 1}}) {
               settings.resolution = resolution;
               settings.stride = stride;
               const auto bent = bent_normals(frame, settings);
               for (std::size_t i = 0; i < bent.size(); i++)
-                if (frame.depth[i] < frame.sky) ASSERT_LE(length(bent[i] - normal_at(frame, i)), 1e-3) << name_of(settings) << " tilt " << tilt << " fov " << fov;
+                if (frame.depth[i] < frame.sky)
+                  ASSERT_LE(length(bent[i] - normal_at(frame, i)), 1e-3)
+                      << name_of(settings) << " tilt " << tilt << " fov " << fov;
             }
           }
         }
@@ -112,19 +125,23 @@ Vec3 mean_open(const std::function<bool(Vec3)>& is_open) {
   for (int r = 0; r < kRings; r++)
     for (int t = 0; t < kTurns; t++) {
       const double squared = (r + 0.5) / kRings, turn = 2 * kPi * (t + 0.5) / kTurns;
-      const Vec3 direction{std::sqrt(squared) * std::cos(turn), std::sqrt(squared) * std::sin(turn), std::sqrt(1 - squared)};
+      const Vec3 direction{std::sqrt(squared) * std::cos(turn), std::sqrt(squared) * std::sin(turn),
+                           std::sqrt(1 - squared)};
       if (is_open(direction)) sum = sum + (1.0 / (kRings * kTurns)) * direction;
     }
   return sum;
 }
 
 TEST(MeanOpen, is_the_closed_form_beside_a_wall) {  // the quadrature that the rest goes by
-  const Vec3 endless = mean_open([](Vec3 w) { return w.x > 0; }), corner = mean_open([](Vec3 w) { return w.x > 0 && w.y > 0; });
+  const Vec3 endless = mean_open([](Vec3 w) { return w.x > 0; }),
+             corner = mean_open([](Vec3 w) { return w.x > 0 && w.y > 0; });
   EXPECT_NEAR(std::atan2(endless.x, endless.z), std::atan(2 / kPi), 3e-3);
   EXPECT_LE(length(corner - Vec3{1 / (3 * kPi), 1 / (3 * kPi), 1.0 / 6}), 3e-3);
   const double c = 0.4;
   const Vec3 near = mean_open([&](Vec3 w) { return w.x > -c; });
-  EXPECT_LE(length(near - Vec3{2.0 / (3 * kPi) * std::pow(1 - c * c, 1.5), 0, 2.0 / 3 - 0.5 * (2.0 / 3 - c + c * c * c / 3)}), 3e-3);
+  EXPECT_LE(
+      length(near - Vec3{2.0 / (3 * kPi) * std::pow(1 - c * c, 1.5), 0, 2.0 / 3 - 0.5 * (2.0 / 3 - c + c * c * c / 3)}),
+      3e-3);
 }
 
 /// The floor z = 0 before one wall, or two.
@@ -135,7 +152,8 @@ Scene walls(int count) {
 }
 
 /// Compares the estimate with the truth on the floor, wherever the picture shows all that is within the radius.
-void expect_walls(int count, const Shot& shot, const EstimatorSettings& settings, double radius, const std::string& what) {
+void expect_walls(int count, const Shot& shot, const EstimatorSettings& settings, double radius,
+                  const std::string& what) {
   const Rendering rendering = test::render(walls(count), shot);
   const auto raw = raw_bent(rendering.frame, settings);
   int compared = 0, seen = 0;
@@ -143,8 +161,8 @@ void expect_walls(int count, const Shot& shot, const EstimatorSettings& settings
   for (std::size_t i = 0; i < raw.size(); i++) {
     const auto& hit = rendering.hits[i];
     const int x = int(i % std::size_t(shot.data.width)), y = int(i / std::size_t(shot.data.width));
-    if (hit.primitive != 0 || rendering.primitives_within(2, x, y) > 1 || 12 * rendering.footprint(x, y) > radius || !shot.sees_ball(hit.position, radius) ||
-        hit.position.x > 0.9 * radius)
+    if (hit.primitive != 0 || rendering.primitives_within(2, x, y) > 1 || 12 * rendering.footprint(x, y) > radius ||
+        !shot.sees_ball(hit.position, radius) || hit.position.x > 0.9 * radius)
       continue;
     if (++seen % 13) continue;  // spread over the floor
     const Vec3 p = hit.position;
@@ -170,7 +188,8 @@ TEST(BentNormals, beside_walls_are_the_closed_form_from_every_camera) {
       for (const Estimator estimator : {Estimator::gtao, Estimator::bitmask})
         for (const int steps : {16, 64})
           expect_walls(count, shot, settings_of(estimator, 0.6, 16, steps), 0.6,
-                       name_of(settings_of(estimator, 0.6, 16, steps)) + ", walls " + std::to_string(count) + ", roll " + std::to_string(roll));
+                       name_of(settings_of(estimator, 0.6, 16, steps)) + ", walls " + std::to_string(count) +
+                           ", roll " + std::to_string(roll));
     }
   }
 }
@@ -191,7 +210,8 @@ TEST(BentNormals, are_those_of_the_cpu_reference) {
           for (std::size_t i = 11; i < room.hits.size(); i += 37)
             if (room.hits[i].primitive >= 0) reference.pixels.push_back(i);
           const auto expected = vectors_in(reference_bent(room.frame, reference)), raw = raw_bent(room.frame, settings);
-          const auto expected_ao = reference_ao(room.frame, reference), ao = compute_ao(test::recorder(), room.frame, settings).ao;
+          const auto expected_ao = reference_ao(room.frame, reference),
+                     ao = compute_ao(test::recorder(), room.frame, settings).ao;
           double error = 0, ao_error = 0;
           Vec3 bias;
           for (const std::size_t i : reference.pixels) {
@@ -249,7 +269,11 @@ TEST(BentNormals, are_unit_vectors_above_the_surface_and_0_on_the_sky_through_ev
   const Rendering room = test::furnished_room(121, 83);
   for (const Estimator estimator : {Estimator::gtao, Estimator::bitmask})
     for (const Resolution resolution : {Resolution::full, Resolution::half, Resolution::quarter})
-      for (const auto& [denoise, stride] : {std::pair{Denoise::none, 1}, {Denoise::bilateral, 1}, {Denoise::box, 1}, {Denoise::bilateral, 2}, {Denoise::bilateral, 4}}) {
+      for (const auto& [denoise, stride] : {std::pair{Denoise::none, 1},
+                                            {Denoise::bilateral, 1},
+                                            {Denoise::box, 1},
+                                            {Denoise::bilateral, 2},
+                                            {Denoise::bilateral, 4}}) {
         EstimatorSettings settings = settings_of(estimator, 0.6, 1, 12);
         settings.resolution = resolution;
         settings.denoise = denoise;
@@ -266,13 +290,16 @@ TEST(BentNormals, are_unit_vectors_above_the_surface_and_0_on_the_sky_through_ev
 TEST(BentNormals, are_smoothed_towards_the_truth_without_mixing_surfaces) {
   const Rendering room = test::furnished_room(160, 120);
   EstimatorSettings one = settings_of(Estimator::gtao, 0.6, 1, 12);
-  const auto truth = bent_normals(room.frame, settings_of(Estimator::gtao, 0.6, 64, 12)), noisy = bent_normals(room.frame, one);
+  const auto truth = bent_normals(room.frame, settings_of(Estimator::gtao, 0.6, 64, 12)),
+             noisy = bent_normals(room.frame, one);
   one.denoise = Denoise::bilateral;
   const auto smooth = bent_normals(room.frame, one);
   double before = 0, after = 0;
   for (std::size_t i = 0; i < truth.size(); i++)
-    if (room.hits[i].primitive >= 0) before += degrees_between(noisy[i], truth[i]), after += degrees_between(smooth[i], truth[i]);
-  EXPECT_LT(after, 0.4 * before) << "mean degrees before " << before / double(truth.size()) << ", after " << after / double(truth.size());
+    if (room.hits[i].primitive >= 0)
+      before += degrees_between(noisy[i], truth[i]), after += degrees_between(smooth[i], truth[i]);
+  EXPECT_LT(after, 0.4 * before) << "mean degrees before " << before / double(truth.size()) << ", after "
+                                 << after / double(truth.size());
 }
 
 TEST(BentNormals, fall_back_to_the_normal_where_nothing_is_open) {
@@ -311,28 +338,33 @@ TEST(BentNormals, leave_every_bit_of_the_visibility) {
       }
 }
 
-// Reflections towards the wall are hidden and those away from it open, though the visibility is the same: the cone of what is seen leans away from the wall.
+// Reflections towards the wall are hidden and those away from it open, though the visibility is the same: the cone of
+// what is seen leans away from the wall.
 TEST(SpecularOcclusion, follows_the_bent_normal) {
   const auto at_floor = [](Estimator estimator, double side) {
-    const Scene scene{{Plane{.point = {}, .normal = {0, 0, 1}}, test::parallelogram({0, -6, 0}, {0, 12, 0}, {0, 0, 1.5})}};
+    const Scene scene{
+        {Plane{.point = {}, .normal = {0, 0, 1}}, test::parallelogram({0, -6, 0}, {0, 12, 0}, {0, 0, 1.5})}};
     const Shot shot = Shot::orthographic({0.4 + side * 20, 0, 20}, {0.4, 0, 0}, 3, 90, 60);
     const Rendering rendering = test::render(scene, shot);
     EstimatorSettings settings = settings_of(estimator, 1, 16, 32);
     settings.roughness = 0.3;
     OutputSettings output;
     output.aovs = "specular-occlusion";
-    const FrameOutputs outputs = run_chain(test::recorder(), upload(test::recorder(), rendering.frame), settings, output);
+    const FrameOutputs outputs =
+        run_chain(test::recorder(), upload(test::recorder(), rendering.frame), settings, output);
     test::recorder().run();
     double sum = 0;
     int count = 0;
     for (std::size_t i = 0; i < rendering.hits.size(); i++) {
       const auto& hit = rendering.hits[i];
-      if (hit.primitive == 0 && std::abs(hit.position.x - 0.4) < 0.05) sum += outputs.specular_occlusion->as<float>()[i], count++;
+      if (hit.primitive == 0 && std::abs(hit.position.x - 0.4) < 0.05)
+        sum += outputs.specular_occlusion->as<float>()[i], count++;
     }
     EXPECT_GT(count, 20);
     return sum / count;
   };
-  EXPECT_LT(at_floor(Estimator::gtao, 1), at_floor(Estimator::hbao, 1) - 0.05) << "seen from the open side the reflection meets the wall";
+  EXPECT_LT(at_floor(Estimator::gtao, 1), at_floor(Estimator::hbao, 1) - 0.05)
+      << "seen from the open side the reflection meets the wall";
 }
 
 }  // namespace

@@ -44,13 +44,15 @@ TEST(Confidence, the_confident_half_errs_less_than_half_as_much_as_the_rest) {
     const char* name;
     double radius;
   };
-  for (const auto& [name, radius] : {Scene{"monkeys", 0.5}, {"colonnade", 0.75}, {"machine", 0.006}, {"interior", 0.35}, {"terrain", 100}}) {
+  for (const auto& [name, radius] :
+       {Scene{"monkeys", 0.5}, {"colonnade", 0.75}, {"machine", 0.006}, {"interior", 0.35}, {"terrain", 100}}) {
     InputSettings input;
     input.input = folder + name + ".gbuffer.exr";
     input.camera = folder + name + ".camera.json";
     const HostFrame frame = read_host_frame(input, 0);
     const Outcome outcome = run(frame, settings_of(radius));
-    const std::vector<float> a = read_exr_image(folder + name + ".ao.a.exr").pixels, b = read_exr_image(folder + name + ".ao.b.exr").pixels;
+    const std::vector<float> a = read_exr_image(folder + name + ".ao.a.exr").pixels,
+                             b = read_exr_image(folder + name + ".ao.b.exr").pixels;
     std::vector<float> truth(a.size());
     std::ranges::transform(a, b, truth.begin(), [](float x, float y) { return (x + y) / 2; });
     std::vector<std::size_t> pixels;
@@ -75,7 +77,8 @@ TEST(Confidence, is_whole_on_an_open_floor_and_on_sky) {
 
 TEST(Confidence, falls_where_the_back_of_a_thing_decides) {
   // A slab that floats over a floor: what lies behind its rim is not seen.
-  const Scene scene{{parallelogram({-20, -20, 0}, {40, 0, 0}, {0, 40, 0}), parallelogram({-0.5, 0, 0.4}, {1, 0, 0}, {0, 0, 0.5})}};
+  const Scene scene{
+      {parallelogram({-20, -20, 0}, {40, 0, 0}, {0, 40, 0}), parallelogram({-0.5, 0, 0.4}, {1, 0, 0}, {0, 0, 0.5})}};
   const Rendering slab = render(scene, Shot::perspective({0, -4, 2}, {0, 0, 0.2}, 40, 96, 72));
   const Outcome outcome = run(slab.frame, settings_of(1));
   double floor = 0, floors = 0, below = 0, belows = 0;
@@ -94,7 +97,9 @@ TEST(Confidence, falls_where_the_back_of_a_thing_decides) {
 }
 
 TEST(Confidence, falls_with_the_precision_of_depth) {
-  HostFrame frame = render(Scene{{parallelogram({-20, -20, 0}, {40, 0, 0}, {0, 40, 0})}}, Shot::perspective({0, -3, 2}, {0, 0, 0}, 60, 64, 48)).frame;
+  HostFrame frame = render(Scene{{parallelogram({-20, -20, 0}, {40, 0, 0}, {0, 40, 0})}},
+                           Shot::perspective({0, -3, 2}, {0, 0, 0}, 60, 64, 48))
+                        .frame;
   frame.depth_is_half = true;
   const auto mean = [&](double radius) {
     const auto confidence = run(frame, settings_of(radius)).confidence;

@@ -45,7 +45,9 @@ class DebugViews : public CommandLine {
     return bytes;
   }
   /// Of a pixel of the frame.
-  static std::array<int, 3> shown(const Image& picture, int x, int y, int zoom = kZoom) { return color(picture, x * zoom + zoom / 2, y * zoom + zoom / 2); }
+  static std::array<int, 3> shown(const Image& picture, int x, int y, int zoom = kZoom) {
+    return color(picture, x * zoom + zoom / 2, y * zoom + zoom / 2);
+  }
 
   void expect_refused(int code, const std::vector<std::string>& words, const std::vector<std::string>& more) {
     const auto before = names_in(folder.path());
@@ -110,7 +112,8 @@ TEST_F(DebugViews, linear_depth_brightens_with_the_distance_and_view_z_darkens) 
   for (const auto& [name, sign] : {std::pair{"raw-depth", 1}, {"linear-depth", 1}, {"view-z", -1}}) {
     const Image picture = view(name);
     EXPECT_GT(sign * (luma(shown(picture, 0, 0)) - luma(shown(picture, 0, 35))), 100) << name;
-    for (int y = 30; y < 35; y++) EXPECT_GE(sign * (luma(shown(picture, 0, y)) - luma(shown(picture, 0, y + 1))), 0) << name << " " << y;
+    for (int y = 30; y < 35; y++)
+      EXPECT_GE(sign * (luma(shown(picture, 0, y)) - luma(shown(picture, 0, y + 1))), 0) << name << " " << y;
   }
 }
 
@@ -123,7 +126,8 @@ TEST_F(DebugViews, reconstruction_tells_wrong_normals_from_right_ones) {
   }
   input.write(frame);
   const Image wrong = view("reconstruction");
-  const auto end = color(right, 110 + 199, 36 * kZoom + kLegend - 15), start = color(right, 110, 36 * kZoom + kLegend - 15);
+  const auto end = color(right, 110 + 199, 36 * kZoom + kLegend - 15),
+             start = color(right, 110, 36 * kZoom + kLegend - 15);
   for (int x = 0; x < 64; x++) {
     ASSERT_EQ(shown(right, x, 1), start) << x;
     ASSERT_EQ(shown(wrong, x, 1), end) << x;
@@ -138,7 +142,8 @@ TEST_F(DebugViews, edges_are_where_the_surface_bends_or_ends) {
   const Image picture = view("edges");
   const auto none = shown(picture, 40, 3);
   EXPECT_EQ(color(picture, 110, 36 * kZoom + kLegend - 15), none) << "flat: the low end of the scale";
-  for (const auto& [x, y] : {std::pair{20, 10}, {21, 10}, {20, 9}}) EXPECT_NE(shown(picture, x, y), none) << x << " " << y;
+  for (const auto& [x, y] : {std::pair{20, 10}, {21, 10}, {20, 9}})
+    EXPECT_NE(shown(picture, x, y), none) << x << " " << y;
   EXPECT_EQ(shown(picture, 22, 10), none);
 }
 
@@ -164,9 +169,11 @@ TEST_F(DebugViews, what_cannot_be_shown_or_written_is_refused_before_any_work) {
   std::erase_if(input.planes, [](const auto& plane) { return plane.first.find("Normal") != plane.first.npos; });
   input.write(frame);
   expect_refused(3, {"wall.0042.exr", "--debug reconstruction", "--normal"}, {"--debug", "reconstruction"});
-  for (const char* c : {"X", "Y", "Z"}) input.planes["ViewLayer.Position." + std::string(c)] = input.planes["ViewLayer.Depth.Z"];
+  for (const char* c : {"X", "Y", "Z"})
+    input.planes["ViewLayer.Position." + std::string(c)] = input.planes["ViewLayer.Depth.Z"];
   input.write(frame);
-  expect_refused(3, {"wall.0042.exr", "--debug raw-depth", "--depth-channel"}, {"--debug", "raw-depth", "--position-channels", "ViewLayer.Position", "--depth-kind", "position"});
+  expect_refused(3, {"wall.0042.exr", "--debug raw-depth", "--depth-channel"},
+                 {"--debug", "raw-depth", "--position-channels", "ViewLayer.Position", "--depth-kind", "position"});
   std::filesystem::create_directory(folder / "ao.edges.png");
   expect_refused(4, {"ao.edges.png", "--debug"}, {"--debug", "edges"});
 }

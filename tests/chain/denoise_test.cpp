@@ -6,8 +6,8 @@
 #include <numbers>
 #include <random>
 
-#include "core/run/batch.h"
 #include "core/formats/exr.h"
+#include "core/run/batch.h"
 #include "tests/support/device.h"
 #include "tests/support/difference.h"
 #include "tests/support/single_pass.h"
@@ -48,13 +48,14 @@ EstimatorSettings box() {
 }
 
 std::vector<EstimatorSettings> all_denoisers() {
-  return {bilateral(1),   bilateral(3),   bilateral(8), by_kernel({0.227, 0.194, 0.121, 0.054, 0.016}), by_kernel({1, 0, 3}), by_depth(0.1),
-          by_depth(1e-4), box()};
+  return {bilateral(1),         bilateral(3),  bilateral(8),   by_kernel({0.227, 0.194, 0.121, 0.054, 0.016}),
+          by_kernel({1, 0, 3}), by_depth(0.1), by_depth(1e-4), box()};
 }
 
 std::string name_of(const EstimatorSettings& s) {
-  return std::string(s.denoise == Denoise::box ? "box" : "bilateral") + " radius " + std::to_string(s.denoise_radius) + " weights " +
-         std::to_string(s.denoise_kernel.size()) + " depth sigma " + std::to_string(s.denoise_depth_sigma);
+  return std::string(s.denoise == Denoise::box ? "box" : "bilateral") + " radius " + std::to_string(s.denoise_radius) +
+         " weights " + std::to_string(s.denoise_kernel.size()) + " depth sigma " +
+         std::to_string(s.denoise_depth_sigma);
 }
 
 /// Noise over the surfaces of a frame, 1 on its sky.
@@ -71,7 +72,8 @@ Rendering step(double nearer, double further, Vec3 normal = {-1, 0, 0}) {
   Rendering rendering = test::render({{Plane{.point = {nearer, 0, 0}, .normal = normal}}}, shot);
   const Rendering behind = test::render({{Plane{.point = {further, 0, 0}, .normal = normal}}}, shot);
   for (int y = 0; y < 60; y++)
-    for (int x = 40; x < 80; x++) rendering.frame.depth[std::size_t(y * 80 + x)] = behind.frame.depth[std::size_t(y * 80 + x)];
+    for (int x = 40; x < 80; x++)
+      rendering.frame.depth[std::size_t(y * 80 + x)] = behind.frame.depth[std::size_t(y * 80 + x)];
   return rendering;
 }
 
@@ -80,7 +82,8 @@ TEST(Denoise, keeps_what_is_constant_to_the_bit) {
   for (const EstimatorSettings& settings : all_denoisers()) {
     for (const float constant : {0.0f, 0.3f, 0.7317f, 1.0f}) {
       std::vector<float> ao;
-      for (const test::Hit& hit : room.hits) ao.push_back(hit.primitive < 0 ? 1.0f : constant);  // the sky's 1 must not get in
+      // the sky's 1 must not get in
+      for (const test::Hit& hit : room.hits) ao.push_back(hit.primitive < 0 ? 1.0f : constant);
       EXPECT_TRUE(same_bits(denoised(room.frame, ao, settings), ao)) << name_of(settings) << " " << constant;
     }
   }
@@ -117,34 +120,44 @@ TEST(Denoise, by_depth_sigma_weighs_a_step_by_its_exponential) {
 }
 
 TEST(Denoise, mixes_little_across_a_crease) {
-  const Scene scene{{Plane{.point = {5, 0, 0}, .normal = unit({-1, 1, 0})}, Plane{.point = {5, 0, 0}, .normal = unit({-1, -1, 0})}}};
+  const Scene scene{
+      {Plane{.point = {5, 0, 0}, .normal = unit({-1, 1, 0})}, Plane{.point = {5, 0, 0}, .normal = unit({-1, -1, 0})}}};
   const Rendering rendering = test::render(scene, Shot::perspective({}, kForward, 60, 80, 60));
   std::vector<float> ao;
   for (const test::Hit& hit : rendering.hits) ao.push_back(float(hit.primitive));
   const std::vector<float> result = denoised(rendering.frame, ao, bilateral(8));
   for (int y = 0; y < 60; y++)
     for (int x = 0; x < 80; x++)
-      if (rendering.primitives_within(2, x, y) == 1) ASSERT_EQ(result[std::size_t(y * 80 + x)], ao[std::size_t(y * 80 + x)]) << x << " " << y;
+      if (rendering.primitives_within(2, x, y) == 1)
+        ASSERT_EQ(result[std::size_t(y * 80 + x)], ao[std::size_t(y * 80 + x)]) << x << " " << y;
 }
 
-// The response to a single pixel on a plane is the product of the weights: the filter is centred, keeps the mean, and sees no tilt.
+// The response to a single pixel on a plane is the product of the weights: the filter is centred, keeps the mean, and
+// sees no tilt.
 TEST(Denoise, spreads_one_pixel_by_its_weights_at_every_tilt) {
   const std::pair<EstimatorSettings, std::vector<double>> cases[] = {
-      {box(), {1, 1, 0.5}}, {by_kernel({5, 0, 2, 1}), {5, 0, 2, 1}}, {by_kernel({3, 3, 2, 2, 2, 1, 1, 1, 1}), {3, 3, 2, 2, 2, 1, 1, 1, 1}}};
+      {box(), {1, 1, 0.5}},
+      {by_kernel({5, 0, 2, 1}), {5, 0, 2, 1}},
+      {by_kernel({3, 3, 2, 2, 2, 1, 1, 1, 1}), {3, 3, 2, 2, 2, 1, 1, 1, 1}}};
   for (const double tilt : {0.0, 30.0, 60.0, 80.0}) {
     for (const double turn : {0.0, 37.0, 200.0}) {
       const double sine = std::sin(tilt * kRadian);
       const Vec3 normal{-std::cos(tilt * kRadian), sine * std::cos(turn * kRadian), sine * std::sin(turn * kRadian)};
       const Scene scene{{Plane{.point = {5, 0, 0}, .normal = normal}}};
-      for (const Shot& shot : {Shot::perspective({}, kForward, 10, 41, 37), Shot::orthographic({}, kForward, 1, 41, 37)}) {
+      for (const Shot& shot :
+           {Shot::perspective({}, kForward, 10, 41, 37), Shot::orthographic({}, kForward, 1, 41, 37)}) {
         const HostFrame frame = test::render(scene, shot).frame;
         std::vector<float> ao(41 * 37, 0.0f);
         ao[18 * 41 + 20] = 1;
         for (const auto& [settings, weights] : cases) {
           double sum = -weights[0];
           for (const double weight : weights) sum += 2 * weight;
-          const auto weight_at = [&](int at) { return std::size_t(std::abs(at)) < weights.size() ? weights[std::size_t(std::abs(at))] / sum : 0; };
-          const auto expected = [&](std::size_t i) { return weight_at(int(i % 41) - 20) * weight_at(int(i / 41) - 18); };
+          const auto weight_at = [&](int at) {
+            return std::size_t(std::abs(at)) < weights.size() ? weights[std::size_t(std::abs(at))] / sum : 0;
+          };
+          const auto expected = [&](std::size_t i) {
+            return weight_at(int(i % 41) - 20) * weight_at(int(i / 41) - 18);
+          };
           const auto d = difference(denoised(frame, ao, settings), expected);
           EXPECT_LE(d.max, 1e-5) << name_of(settings) << " tilt " << tilt << " turn " << turn << " " << place(d, frame);
         }
@@ -155,7 +168,9 @@ TEST(Denoise, spreads_one_pixel_by_its_weights_at_every_tilt) {
 
 // At the border the weights are those of the pixels that there are.
 TEST(Denoise, repeats_no_pixel_of_the_border) {
-  const HostFrame frame = test::render({{Plane{.point = {5, 0, 0}, .normal = {-1, 0, 0}}}}, Shot::perspective({}, kForward, 60, 41, 37)).frame;
+  const HostFrame frame =
+      test::render({{Plane{.point = {5, 0, 0}, .normal = {-1, 0, 0}}}}, Shot::perspective({}, kForward, 60, 41, 37))
+          .frame;
   std::vector<float> ao(41 * 37, 0.0f);
   ao.front() = ao.back() = 1;
   const std::vector<float> result = denoised(frame, ao, by_kernel({5, 3, 1}));
@@ -169,7 +184,8 @@ TEST(Denoise, of_the_mirrored_frame_is_the_mirrored_result) {
   for (const EstimatorSettings& settings : all_denoisers()) {
     const std::vector<float> upright = denoised(room.frame, ao, settings);
     for (const bool left_right : {true, false}) {
-      const std::vector<float> result = denoised(mirrored(room.frame, left_right), mirrored(ao, room.frame, left_right), settings);
+      const std::vector<float> result =
+          denoised(mirrored(room.frame, left_right), mirrored(ao, room.frame, left_right), settings);
       const auto d = difference(result, mirrored(upright, room.frame, left_right));
       EXPECT_LE(d.max, 1e-4) << name_of(settings) << place(d, room.frame);
     }
@@ -193,10 +209,12 @@ TEST(Denoise, takes_any_size_and_any_bits) {
     const Scene scene{{Plane{.point = {5, 0, 0}, .normal = unit({-1, 0.2, 0.3})}}};
     const Rendering plane = test::render(scene, Shot::perspective({}, kForward, 40, width, height));
     for (const EstimatorSettings& settings : all_denoisers()) {
-      for (const float ao : denoised(frame, noise_over(plane), settings)) ASSERT_TRUE(ao >= 0 && ao <= 1) << ao << " " << name_of(settings);
+      for (const float ao : denoised(frame, noise_over(plane), settings))
+        ASSERT_TRUE(ao >= 0 && ao <= 1) << ao << " " << name_of(settings);
       std::vector<float> constant;
       for (const test::Hit& hit : plane.hits) constant.push_back(hit.primitive < 0 ? 1.0f : 0.4f);
-      EXPECT_TRUE(same_bits(denoised(plane.frame, constant, settings), constant)) << width << "x" << height << " " << name_of(settings);
+      EXPECT_TRUE(same_bits(denoised(plane.frame, constant, settings), constant))
+          << width << "x" << height << " " << name_of(settings);
     }
   }
 }
@@ -209,7 +227,8 @@ TEST(Denoise, settings_are_in_the_digest) {
   };
   const std::string plain = digest(bilateral(3));
   EXPECT_EQ(plain, digest(bilateral(3)));
-  for (const EstimatorSettings& other : {bilateral(4), box(), by_depth(0.1), by_kernel({1, 1})}) EXPECT_NE(plain, digest(other)) << name_of(other);
+  for (const EstimatorSettings& other : {bilateral(4), box(), by_depth(0.1), by_kernel({1, 1})})
+    EXPECT_NE(plain, digest(other)) << name_of(other);
   EXPECT_NE(digest(by_kernel({1, 1})), digest(by_kernel({1, 0.5})));
 }
 
@@ -228,11 +247,13 @@ TEST(Denoise, brings_few_samples_nearer_to_ray_tracing) {
     settings.denoise = denoise;
     const std::vector<float> ao = compute_ao(test::recorder(), frame, settings).ao;
     double sum = 0;
-    for (std::size_t i = 0; i < ao.size(); i++) sum += frame.depth[i] < 1e9f ? std::pow(double(ao[i]) - double(truth[i]), 2) : 0;
+    for (std::size_t i = 0; i < ao.size(); i++)
+      sum += frame.depth[i] < 1e9f ? std::pow(double(ao[i]) - double(truth[i]), 2) : 0;
     return std::sqrt(sum / double(ao.size()));
   };
   const double plain = error(Denoise::none);
-  RecordProperty("rmse", std::to_string(plain) + " " + std::to_string(error(Denoise::bilateral)) + " " + std::to_string(error(Denoise::box)));
+  RecordProperty("rmse", std::to_string(plain) + " " + std::to_string(error(Denoise::bilateral)) + " " +
+                             std::to_string(error(Denoise::box)));
   EXPECT_LE(error(Denoise::bilateral), 0.8 * plain);
   EXPECT_LE(error(Denoise::box), 0.8 * plain);
 }

@@ -20,7 +20,8 @@ constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 /// A floor, on which any two neighbours mix.
 HostFrame floor_of(int width, int height) {
-  return render(Scene{{Plane{{0, 0, 0}, {0, 0, 1}}}}, Shot::perspective({0, -3, 3}, {0, 0, 0}, 30, width, height)).frame;
+  return render(Scene{{Plane{{0, 0, 0}, {0, 0, 1}}}}, Shot::perspective({0, -3, 3}, {0, 0, 0}, 30, width, height))
+      .frame;
 }
 
 /// The denoiser, or upsampling from the settings' resolution.
@@ -33,23 +34,29 @@ struct Filter {
   ivec2 size() const {  // px of the estimate
     const int factor = int(settings.resolution);
     const auto blocks = [&](int begin, int pixels) { return (begin % factor + pixels + factor - 1) / factor; };
-    return {blocks(frame.data.x - frame.display.x, frame.data.width), blocks(frame.data.y - frame.display.y, frame.data.height)};
+    return {blocks(frame.data.x - frame.display.x, frame.data.width),
+            blocks(frame.data.y - frame.display.y, frame.data.height)};
   }
   int tile_columns() const { return (size().x + kTile - 1) / kTile; }
   uint tile_at(int x, int y) const { return tiles[std::size_t(y / kTile * tile_columns() + x / kTile)]; }
   std::size_t at(int x, int y) const { return std::size_t(y) * std::size_t(size().x) + std::size_t(x); }
 };
 
-/// What the filter makes of the frame after one with the visibility `before`, if it leaves out what the tiles say; or of all of the frame.
+/// What the filter makes of the frame after one with the visibility `before`, if it leaves out what the tiles say; or
+/// of all of the frame.
 std::vector<float> run(const Filter& filter, const std::vector<float>& before, bool listed) {
   gpu::Recorder gpu(device());
   const FrameInputs inputs = upload(gpu, filter.frame);
   for (const auto* plane : {inputs.depth, inputs.normal}) gpu.upload(*plane);
-  const GBuffer gbuffer = prepare(gpu, inputs), low = filter.settings.resolution == Resolution::full ? gbuffer : downsample(gpu, gbuffer, inputs, filter.settings);
+  const GBuffer gbuffer = prepare(gpu, inputs), low = filter.settings.resolution == Resolution::full
+                                                          ? gbuffer
+                                                          : downsample(gpu, gbuffer, inputs, filter.settings);
   const auto filtered = [&](const gpu::Buffer& ao, const FilterRuns& runs) {
     const gpu::Buffer* result = &ao;
-    if (filter.settings.denoise != Denoise::none) result = &denoise(gpu, low, *result, inputs, filter.settings, "", runs);
-    if (filter.settings.resolution != Resolution::full) result = &upsample(gpu, gbuffer, low, *result, inputs, filter.settings, "", runs);
+    if (filter.settings.denoise != Denoise::none)
+      result = &denoise(gpu, low, *result, inputs, filter.settings, "", runs);
+    if (filter.settings.resolution != Resolution::full)
+      result = &upsample(gpu, gbuffer, low, *result, inputs, filter.settings, "", runs);
     return result;
   };
   gpu::Buffer& ao = gpu.buffer("ao", sizeof(float) * filter.ao.size(), gpu::Use::upload);
@@ -100,7 +107,8 @@ TEST(Dilate, what_is_left_out_is_1_or_as_it_was) {
     // One kind of tiles, and a few rectangles of the others on it.
     const uint kinds[] = {kTileOpen, kTileKept, 5u};
     filter.tiles.assign(std::size_t(columns * ((height + kTile - 1) / kTile)), kinds[round % 2]);
-    for (int i = whole(0, 3); i > 0; i--) filter.tiles[std::size_t(whole(0, int(filter.tiles.size()) - 1))] = kinds[whole(0, 2)];
+    for (int i = whole(0, 3); i > 0; i--)
+      filter.tiles[std::size_t(whole(0, int(filter.tiles.size()) - 1))] = kinds[whole(0, 2)];
     filter.ao.assign(filter.at(width - 1, height - 1) + 1, 1.0f);
     std::vector<float> before = filter.ao;
     for (int y = 0; y < height; y++)
@@ -110,7 +118,8 @@ TEST(Dilate, what_is_left_out_is_1_or_as_it_was) {
         before[filter.at(x, y)] = tile == kTileKept ? filter.ao[filter.at(x, y)] : float(whole(0, 1000)) / 1000;
       }
     EXPECT_TRUE(same_bits(run(filter, before, true), run(filter, before, false)))
-        << width << " x " << height << ", radius " << filter.settings.denoise_radius << ", stride " << filter.settings.stride << ", round " << round;
+        << width << " x " << height << ", radius " << filter.settings.denoise_radius << ", stride "
+        << filter.settings.stride << ", round " << round;
   }
 }
 

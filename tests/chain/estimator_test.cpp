@@ -1,4 +1,5 @@
-// HBAO and Crytek's estimator against their own expected values (MATH of each stands beside its test), and against slow versions of themselves.
+// HBAO and Crytek's estimator against their own expected values (MATH of each stands beside its test), and against slow
+// versions of themselves.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
@@ -38,7 +39,8 @@ EstimatorSettings hbao(double radius, int slices = 16, int steps = 128) {
   return settings;
 }
 
-EstimatorSettings crytek(double radius, SampleKernel kernel = SampleKernel::uniform, RangeCheck check = RangeCheck::none) {
+EstimatorSettings crytek(double radius, SampleKernel kernel = SampleKernel::uniform,
+                         RangeCheck check = RangeCheck::none) {
   EstimatorSettings settings = test::plain_settings();
   settings.estimator = Estimator::crytek;
   settings.radius = radius;
@@ -67,15 +69,21 @@ std::vector<EstimatorSettings> all_variants(double radius) {
 }
 
 std::string name_of(const EstimatorSettings& s) {
-  return s.estimator == Estimator::hbao ? "hbao, elevation " + std::to_string(int(s.elevation)) + ", falloff " + std::to_string(int(s.falloff))
-                                        : "crytek, kernel " + std::to_string(int(s.sample_kernel)) + ", range check " + std::to_string(int(s.range_check));
+  return s.estimator == Estimator::hbao
+             ? "hbao, elevation " + std::to_string(int(s.elevation)) + ", falloff " + std::to_string(int(s.falloff))
+             : "crytek, kernel " + std::to_string(int(s.sample_kernel)) + ", range check " +
+                   std::to_string(int(s.range_check));
 }
 
-std::vector<float> run(const HostFrame& frame, const EstimatorSettings& settings) { return compute_ao(test::recorder(), frame, settings).ao; }
+std::vector<float> run(const HostFrame& frame, const EstimatorSettings& settings) {
+  return compute_ao(test::recorder(), frame, settings).ao;
+}
 
-/// Compares the mean AO over all receivers that have an expected value with the mean of what is expected, and each of them with a looser bound.
-void expect_mean(const Rendering& rendering, const EstimatorSettings& settings, const std::function<double(const test::Hit&)>& expected,
-                 double mean_tolerance, double tolerance, int least_pixels, const std::string& what) {
+/// Compares the mean AO over all receivers that have an expected value with the mean of what is expected, and each of
+/// them with a looser bound.
+void expect_mean(const Rendering& rendering, const EstimatorSettings& settings,
+                 const std::function<double(const test::Hit&)>& expected, double mean_tolerance, double tolerance,
+                 int least_pixels, const std::string& what) {
   const std::vector<float> ao = run(rendering.frame, settings);
   double sum = 0, worst = 0;
   int count = 0;
@@ -87,20 +95,24 @@ void expect_mean(const Rendering& rendering, const EstimatorSettings& settings, 
     worst = std::max(worst, std::abs(ao[i] - value));
   }
   EXPECT_GE(count, least_pixels) << what;
-  EXPECT_LE(std::abs(sum / count), mean_tolerance) << what << ", mean error " << sum / count << " over " << count << " pixels";
+  EXPECT_LE(std::abs(sum / count), mean_tolerance)
+      << what << ", mean error " << sum / count << " over " << count << " pixels";
   EXPECT_LE(worst, tolerance) << what;
 }
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-// HBAO: MATH of Bavoil and Sainz, the mean of sin h - sin t over the azimuth; the uniform, not the cosine-weighted hemisphere.
+// HBAO: MATH of Bavoil and Sainz, the mean of sin h - sin t over the azimuth; the uniform, not the cosine-weighted
+// hemisphere.
 
-// In the azimuth phi from the wall its rim stands at sin h = H / sqrt(H^2 + d^2 / cos^2 phi), as far as d / cos phi < R. An endless wall: acos(d / R) / pi.
+// In the azimuth phi from the wall its rim stands at sin h = H / sqrt(H^2 + d^2 / cos^2 phi), as far as d / cos phi <
+// R. An endless wall: acos(d / R) / pi.
 double hbao_beside_wall(double d, double height, double radius) {
   constexpr int kParts = 2000;
   const double limit = std::acos(std::min(1.0, d / radius));
   double sum = 0;
-  for (int i = 0; i < kParts; i++) sum += height / std::hypot(height, d / std::cos(limit * (i + 0.5) / kParts)) / kParts;
+  for (int i = 0; i < kParts; i++)
+    sum += height / std::hypot(height, d / std::cos(limit * (i + 0.5) / kParts)) / kParts;
   return 1 - sum * limit / kPi;
 }
 
@@ -108,33 +120,45 @@ TEST(Hbao, beside_an_endless_wall_seen_along_the_normal_is_1_minus_acos_c_over_p
   const Rendering rendering = test::render(block(50), leaning(0, 3, 300, 200));
   EXPECT_NEAR(hbao_beside_wall(0.5, 1e6, 1), 1 - std::acos(0.5) / kPi, 1e-6);
   for (const double c : {0.1, 0.3, 0.5, 0.8})
-    expect_mean(rendering, hbao(0.6), [&](const test::Hit& hit) {
-      const bool here = hit.primitive == 0 && std::abs(hit.position.x - 0.6 * c) < 0.006 && std::abs(hit.position.y) < 0.35;
-      return here ? 1 - std::acos(hit.position.x / 0.6) / kPi : kNone;
-    }, 0.01, 0.04, 50, "c = " + std::to_string(c));
+    expect_mean(
+        rendering, hbao(0.6),
+        [&](const test::Hit& hit) {
+          const bool here =
+              hit.primitive == 0 && std::abs(hit.position.x - 0.6 * c) < 0.006 && std::abs(hit.position.y) < 0.35;
+          return here ? 1 - std::acos(hit.position.x / 0.6) / kPi : kNone;
+        },
+        0.01, 0.04, 50, "c = " + std::to_string(c));
 }
 
 TEST(Hbao, beside_a_finite_wall_is_the_mean_sine_of_its_rim) {
   for (const double height : {0.2, 0.5, 1.0}) {
     const Rendering rendering = test::render(block(height), leaning(0, 3, 300, 200));
     for (const double d : {0.1, 0.25, 0.4})
-      expect_mean(rendering, hbao(0.6), [&](const test::Hit& hit) {
-        const bool here = hit.primitive == 0 && std::abs(hit.position.x - d) < 0.006 && std::abs(hit.position.y) < 0.35;
-        return here ? hbao_beside_wall(hit.position.x, height, 0.6) : kNone;
-      }, 0.01, 0.03, 50, "height " + std::to_string(height) + " d " + std::to_string(d));
+      expect_mean(
+          rendering, hbao(0.6),
+          [&](const test::Hit& hit) {
+            const bool here =
+                hit.primitive == 0 && std::abs(hit.position.x - d) < 0.006 && std::abs(hit.position.y) < 0.35;
+            return here ? hbao_beside_wall(hit.position.x, height, 0.6) : kNone;
+          },
+          0.01, 0.03, 50, "height " + std::to_string(height) + " d " + std::to_string(d));
   }
 }
 
-// Perfect horizons: half of the hemisphere beside an endless wall, a quarter below a rim at 45 degrees, whatever the tilt of the view.
-// The part of the uniform hemisphere that a rectangle of width 2 w at distance d, standing on the tangent plane, fills (van Oosterom and Strackee).
+// Perfect horizons: half of the hemisphere beside an endless wall, a quarter below a rim at 45 degrees, whatever the
+// tilt of the view. The part of the uniform hemisphere that a rectangle of width 2 w at distance d, standing on the
+// tangent plane, fills (van Oosterom and Strackee).
 double rectangle_share(double d, double height, double from, double to) {
-  const auto quarter = [&](double w) { return std::asin(w * height / std::sqrt((w * w + d * d) * (height * height + d * d))); };
+  const auto quarter = [&](double w) {
+    return std::asin(w * height / std::sqrt((w * w + d * d) * (height * height + d * d)));
+  };
   return (quarter(to) - quarter(from)) / (2 * kPi);
 }
 
 TEST(Hbao, sees_the_uniform_hemisphere_at_every_tilt_of_the_view) {
-  EXPECT_NEAR(rectangle_share(1, 1e7, -1e7, 1e7), 0.5, 1e-6);   // an endless wall: 0.5
-  EXPECT_NEAR(rectangle_share(1, 1, -1e7, 1e7), 0.25, 1e-6);    // a rim at 45 degrees: 0.25, where the cosine-weighted is 0.146
+  EXPECT_NEAR(rectangle_share(1, 1e7, -1e7, 1e7), 0.5, 1e-6);  // an endless wall: 0.5
+  // a rim at 45 degrees: 0.25, where the cosine-weighted is 0.146
+  EXPECT_NEAR(rectangle_share(1, 1, -1e7, 1e7), 0.25, 1e-6);
   constexpr double kHalf = 3;
   for (const double tilt : {0.0, 30.0, 60.0, 75.0}) {
     // Pixels oblong in y: the picture is long and has few of them.
@@ -142,23 +166,35 @@ TEST(Hbao, sees_the_uniform_hemisphere_at_every_tilt_of_the_view) {
     shot.camera.fy = 120 / (2 * kHalf);
     for (const auto& [height, d] : {std::pair{1.0, 1.0}, {2.0, 0.2}}) {
       const Rendering rendering = test::render(block(height), shot);
-      expect_mean(rendering, hbao(1e3, 32, 512), [&, d = d, height = height](const test::Hit& hit) {
-        const bool here = hit.primitive == 0 && std::abs(hit.position.x - d) < 0.05 && std::abs(hit.position.y) < 0.2;
-        return here ? 1 - rectangle_share(hit.position.x, height, -kHalf - hit.position.y, kHalf - hit.position.y) : kNone;
-      }, 0.01, 0.03, 8, "tilt " + std::to_string(tilt) + " height " + std::to_string(height));
+      expect_mean(
+          rendering, hbao(1e3, 32, 512),
+          [&, d = d, height = height](const test::Hit& hit) {
+            const bool here =
+                hit.primitive == 0 && std::abs(hit.position.x - d) < 0.05 && std::abs(hit.position.y) < 0.2;
+            return here ? 1 - rectangle_share(hit.position.x, height, -kHalf - hit.position.y, kHalf - hit.position.y)
+                        : kNone;
+          },
+          0.01, 0.03, 8, "tilt " + std::to_string(tilt) + " height " + std::to_string(height));
     }
   }
 }
 
-TEST(Hbao, off_axis_is_what_it_is_on_axis) {  // what even directions of the image get wrong without the weights of the kernel's head
+// what even directions of the image get wrong without the weights of the kernel's head
+TEST(Hbao, off_axis_is_what_it_is_on_axis) {
   const double half = 0.4, height = 0.3;
-  const Scene scene{{Plane{.point = {}, .normal = {0, 0, 1}}, test::parallelogram({0, -half, 0}, {0, 2 * half, 0}, {0, 0, height})}};
+  const Scene scene{
+      {Plane{.point = {}, .normal = {0, 0, 1}}, test::parallelogram({0, -half, 0}, {0, 2 * half, 0}, {0, 0, height})}};
   for (const double aside : {0.0, 0.6, 1.0}) {
     const Shot shot = Shot::perspective({1, aside, 1.2}, {1, aside, 0}, 120, 320, 320);
-    expect_mean(test::render(scene, shot), hbao(1e3, 16, 256), [&](const test::Hit& hit) {
-      const bool here = hit.primitive == 0 && std::abs(hit.position.x - 0.3) < 0.02 && std::abs(hit.position.y) < 0.1;
-      return here ? 1 - rectangle_share(hit.position.x, height, -half - hit.position.y, half - hit.position.y) : kNone;
-    }, 0.01, 0.03, 20, "aside " + std::to_string(aside));
+    expect_mean(
+        test::render(scene, shot), hbao(1e3, 16, 256),
+        [&](const test::Hit& hit) {
+          const bool here =
+              hit.primitive == 0 && std::abs(hit.position.x - 0.3) < 0.02 && std::abs(hit.position.y) < 0.1;
+          return here ? 1 - rectangle_share(hit.position.x, height, -half - hit.position.y, half - hit.position.y)
+                      : kNone;
+        },
+        0.01, 0.03, 20, "aside " + std::to_string(aside));
   }
 }
 
@@ -169,8 +205,10 @@ TEST(Hbao, from_the_surface_is_the_same_where_it_faces_the_eye_and_the_sine_abov
     settings.elevation = Elevation::surface;
     const std::vector<float> surface = run(rendering.frame, settings), view = run(rendering.frame, hbao(100));
     const Difference d = difference(surface, view);
-    if (tilt == 0) EXPECT_LE(d.max, 1e-4) << place(d, rendering.frame);
-    else EXPECT_GE(d.rmse, 0.01);
+    if (tilt == 0)
+      EXPECT_LE(d.max, 1e-4) << place(d, rendering.frame);
+    else
+      EXPECT_GE(d.rmse, 0.01);
     std::vector<std::size_t> some;
     for (std::size_t i = 50; i < surface.size(); i += 977) some.push_back(i);
     const std::vector<float> slow = reference_estimate(rendering.frame, settings, some);
@@ -178,9 +216,11 @@ TEST(Hbao, from_the_surface_is_the_same_where_it_faces_the_eye_and_the_sine_abov
   }
 }
 
-TEST(Hbao, attenuation_weighs_every_rise_of_the_horizon) {  // on a vertical wall a sample at height h is sqrt(d^2 + h^2) away: the integral of W d(sin h)
+// on a vertical wall a sample at height h is sqrt(d^2 + h^2) away: the integral of W d(sin h)
+TEST(Hbao, attenuation_weighs_every_rise_of_the_horizon) {
   const double radius = 1;
-  // Not seen from straight above; from aside a uniform hemisphere is the same, so the slow version must agree with the kernel there.
+  // Not seen from straight above; from aside a uniform hemisphere is the same, so the slow version must agree with the
+  // kernel there.
   const Rendering rendering = test::render(block(2), leaning(45, 4, 200, 150));
   for (const Falloff falloff : {Falloff::linear, Falloff::quadratic, Falloff::smooth}) {
     EstimatorSettings settings = hbao(radius);
@@ -199,7 +239,8 @@ TEST(Hbao, attenuation_weighs_every_rise_of_the_horizon) {  // on a vertical wal
   }
 }
 
-TEST(Hbao, bias_is_the_sine_of_the_least_elevation) {  // a rim at that elevation blocks nothing, a higher one what is above it
+// a rim at that elevation blocks nothing, a higher one what is above it
+TEST(Hbao, bias_is_the_sine_of_the_least_elevation) {
   const double d = 0.4;
   for (const double height : {0.1, 0.4}) {
     const Rendering rendering = test::render(block(height), leaning(0, 3, 300, 200));
@@ -208,63 +249,88 @@ TEST(Hbao, bias_is_the_sine_of_the_least_elevation) {  // a rim at that elevatio
       settings.bias = 0.5;
       settings.elevation = elevation;
       constexpr int kParts = 2000;
-      expect_mean(rendering, settings, [&](const test::Hit& hit) {
-        if (hit.primitive != 0 || std::abs(hit.position.x - d) > 0.006 || std::abs(hit.position.y) > 0.35) return kNone;
-        const double limit = std::acos(hit.position.x / 0.6);
-        double sum = 0;
-        for (int i = 0; i < kParts; i++)
-          sum += std::max(0.0, height / std::hypot(height, hit.position.x / std::cos(limit * (i + 0.5) / kParts)) - 0.5) / kParts;
-        return 1 - sum * limit / kPi;
-      }, 0.005, 0.02, 50, "height " + std::to_string(height) + " elevation " + std::to_string(int(elevation)));
+      expect_mean(
+          rendering, settings,
+          [&](const test::Hit& hit) {
+            if (hit.primitive != 0 || std::abs(hit.position.x - d) > 0.006 || std::abs(hit.position.y) > 0.35)
+              return kNone;
+            const double limit = std::acos(hit.position.x / 0.6);
+            double sum = 0;
+            for (int i = 0; i < kParts; i++)
+              sum += std::max(0.0, height / std::hypot(height, hit.position.x / std::cos(limit * (i + 0.5) / kParts)) -
+                                       0.5) /
+                     kParts;
+            return 1 - sum * limit / kPi;
+          },
+          0.005, 0.02, 50, "height " + std::to_string(height) + " elevation " + std::to_string(int(elevation)));
     }
   }
 }
 
 // Crytek's estimator: the hidden part of the volume.
 
-TEST(Crytek, beside_an_endless_wall_is_the_volume_before_it) {  // 1 - (1 - c)^2 (2 + c) / 4, seen from anywhere on the open side
-  for (const Shot& shot : {Shot::perspective({4, 0, 4}, {0.5, 0, 0.5}, 60, 320, 240), Shot::perspective({5, 0, 1.5}, {0, 0, 0.6}, 50, 320, 240),
-                           Shot::perspective({2.2, -0.6, 1.8}, {0.6, 0.2, 0.2}, 100, 320, 240), Shot::orthographic({4, -1, 3}, {0.5, 0, 0.5}, 5, 320, 240)}) {
-    const Rendering rendering = test::render({{Plane{.point = {}, .normal = {0, 0, 1}}, Plane{.point = {}, .normal = {1, 0, 0}}}}, shot);
+// 1 - (1 - c)^2 (2 + c) / 4, seen from anywhere on the open side
+TEST(Crytek, beside_an_endless_wall_is_the_volume_before_it) {
+  for (const Shot& shot : {Shot::perspective({4, 0, 4}, {0.5, 0, 0.5}, 60, 320, 240),
+                           Shot::perspective({5, 0, 1.5}, {0, 0, 0.6}, 50, 320, 240),
+                           Shot::perspective({2.2, -0.6, 1.8}, {0.6, 0.2, 0.2}, 100, 320, 240),
+                           Shot::orthographic({4, -1, 3}, {0.5, 0, 0.5}, 5, 320, 240)}) {
+    const Rendering rendering =
+        test::render({{Plane{.point = {}, .normal = {0, 0, 1}}, Plane{.point = {}, .normal = {1, 0, 0}}}}, shot);
     for (const double c : {0.1, 0.3, 0.5, 0.7})
-      expect_mean(rendering, crytek(1), [&](const test::Hit& hit) {
-        const double d = hit.primitive == 0 ? hit.position.x : hit.position.z;
-        return std::abs(d - c) < 0.05 && shot.sees_ball(hit.position, 1) ? 1 - (1 - d) * (1 - d) * (2 + d) / 4 : kNone;
-      }, 0.008, 0.12, 100, "c = " + std::to_string(c) + " fx " + std::to_string(shot.camera.fx));
+      expect_mean(
+          rendering, crytek(1),
+          [&](const test::Hit& hit) {
+            const double d = hit.primitive == 0 ? hit.position.x : hit.position.z;
+            return std::abs(d - c) < 0.05 && shot.sees_ball(hit.position, 1) ? 1 - (1 - d) * (1 - d) * (2 + d) / 4
+                                                                             : kNone;
+          },
+          0.008, 0.12, 100, "c = " + std::to_string(c) + " fx " + std::to_string(shot.camera.fx));
   }
 }
 
-TEST(Crytek, clustered_kernel_has_the_lengths_of_its_formula) {  // a sample of length s R is behind the wall with probability (1 - c / s) / 2
+// a sample of length s R is behind the wall with probability (1 - c / s) / 2
+TEST(Crytek, clustered_kernel_has_the_lengths_of_its_formula) {
   const Shot shot = Shot::perspective({4, 0, 4}, {0.5, 0, 0.5}, 60, 320, 240);
-  const Rendering rendering = test::render({{Plane{.point = {}, .normal = {0, 0, 1}}, Plane{.point = {}, .normal = {1, 0, 0}}}}, shot);
+  const Rendering rendering =
+      test::render({{Plane{.point = {}, .normal = {0, 0, 1}}, Plane{.point = {}, .normal = {1, 0, 0}}}}, shot);
   for (const int samples : {8, 64}) {
     EstimatorSettings settings = crytek(1, SampleKernel::clustered);
     settings.samples = samples;
-    expect_mean(rendering, settings, [&](const test::Hit& hit) {
-      const double c = hit.primitive == 0 ? hit.position.x : hit.position.z;
-      if (c < 0.1 || c > 0.4 || !shot.sees_ball(hit.position, 1)) return kNone;
-      double blocked = 0;
-      for (int i = 0; i < samples; i++) {
-        const double longest = 0.1 + 0.9 * std::pow(double(i) / samples, 2);  // s = u longest, u even in [0, 1)
-        if (longest > c) blocked += 0.5 * (1 - c / longest * (1 + std::log(longest / c))) / samples;
-      }
-      return 1 - blocked;
-    }, 0.004, 0.3, 500, std::to_string(samples) + " samples");
+    expect_mean(
+        rendering, settings,
+        [&](const test::Hit& hit) {
+          const double c = hit.primitive == 0 ? hit.position.x : hit.position.z;
+          if (c < 0.1 || c > 0.4 || !shot.sees_ball(hit.position, 1)) return kNone;
+          double blocked = 0;
+          for (int i = 0; i < samples; i++) {
+            const double longest = 0.1 + 0.9 * std::pow(double(i) / samples, 2);  // s = u longest, u even in [0, 1)
+            if (longest > c) blocked += 0.5 * (1 - c / longest * (1 + std::log(longest / c))) / samples;
+          }
+          return 1 - blocked;
+        },
+        0.004, 0.3, 500, std::to_string(samples) + " samples");
   }
 }
 
 TEST(Crytek, range_checks_weigh_a_hit_by_its_depth) {
-  // A floor seen from straight above and a block so high that all of it is dz before the floor: every hit weighs the same.
+  // A floor seen from straight above and a block so high that all of it is dz before the floor: every hit weighs the
+  // same.
   const double radius = 0.5;
   for (const double dz : {0.25, 0.4, 1.0, 2.0}) {
     const Rendering rendering = test::render(block(dz), leaning(0, 3, 150, 100));
     const std::vector<float> plain = run(rendering.frame, crytek(radius));
-    const auto smooth = [](double x) { const double t = std::clamp(x, 0.0, 1.0); return t * t * (3 - 2 * t); };
-    for (const auto& [check, weight] : {std::pair{RangeCheck::ratio, smooth(radius / dz)}, {RangeCheck::smoothstep, 1 - smooth(dz / radius)}}) {
+    const auto smooth = [](double x) {
+      const double t = std::clamp(x, 0.0, 1.0);
+      return t * t * (3 - 2 * t);
+    };
+    for (const auto& [check, weight] :
+         {std::pair{RangeCheck::ratio, smooth(radius / dz)}, {RangeCheck::smoothstep, 1 - smooth(dz / radius)}}) {
       const std::vector<float> ao = run(rendering.frame, crytek(radius, SampleKernel::uniform, check));
       double occluded = 0;
       for (std::size_t i = 0; i < ao.size(); i++) {
-        EXPECT_NEAR(1 - ao[i], weight * (1 - plain[i]), 1e-5) << "dz " << dz << " check " << int(check) << " pixel " << i;
+        EXPECT_NEAR(1 - ao[i], weight * (1 - plain[i]), 1e-5)
+            << "dz " << dz << " check " << int(check) << " pixel " << i;
         occluded += 1 - plain[i];
       }
       EXPECT_GT(occluded, 100) << "there is something to weigh";
@@ -277,7 +343,8 @@ TEST(Crytek, bias_is_a_depth_in_scene_units) {  // what is nearer to the eye tha
   EstimatorSettings settings = crytek(0.5);
   settings.bias = 0.31;
   EXPECT_LE(difference(run(rendering.frame, settings), [](std::size_t) { return 1.0; }).max, 0);
-  // Over the block from above, the samples lower than 0.3 - bias are hidden: those of a ball's slab beside the block's side.
+  // Over the block from above, the samples lower than 0.3 - bias are hidden: those of a ball's slab beside the block's
+  // side.
   settings.bias = 0.1;
   const double radius = 0.5, low = 0.2, d = 0.1;
   constexpr int kParts = 400;
@@ -286,10 +353,13 @@ TEST(Crytek, bias_is_a_depth_in_scene_units) {  // what is nearer to the eye tha
     const double z = low * (i + 0.5) / kParts, r = std::sqrt(radius * radius - z * z), c = d / r;
     hidden += (std::acos(c) - c * std::sqrt(1 - c * c)) * r * r * low / kParts;
   }
-  expect_mean(rendering, settings, [&](const test::Hit& hit) {
-    const bool here = hit.primitive == 0 && std::abs(hit.position.x - d) < 0.011 && std::abs(hit.position.y) < 0.4;
-    return here ? 1 - hidden / (2 * kPi / 3 * std::pow(radius, 3)) : kNone;
-  }, 0.015, 0.1, 20, "beside the block");
+  expect_mean(
+      rendering, settings,
+      [&](const test::Hit& hit) {
+        const bool here = hit.primitive == 0 && std::abs(hit.position.x - d) < 0.011 && std::abs(hit.position.y) < 0.4;
+        return here ? 1 - hidden / (2 * kPi / 3 * std::pow(radius, 3)) : kNone;
+      },
+      0.015, 0.1, 20, "beside the block");
 }
 
 // On the command line.
@@ -299,8 +369,9 @@ TEST(CommandLine, tells_how_many_samples_each_estimator_takes) {
   const std::string frame = ALCOVE_SOURCE_DIR "/examples/bench/machine.";
   for (const auto& [estimator, samples] : {std::pair<std::string, double>{"hbao", 2 * 3 * 5}, {"crytek", 9}}) {
     const test::Finished finished =
-        test::run_program({"run", frame + "gbuffer.exr", "--camera", frame + "camera.json", "--radius", "0.006", "--estimator", estimator, "--slices", "3",
-                           "--steps", "5", "--samples", "9", "-o", folder / (estimator + ".exr"), "--stats", folder / "stats.json"});
+        test::run_program({"run", frame + "gbuffer.exr", "--camera", frame + "camera.json", "--radius", "0.006",
+                           "--estimator", estimator, "--slices", "3", "--steps", "5", "--samples", "9", "-o",
+                           folder / (estimator + ".exr"), "--stats", folder / "stats.json"});
     ASSERT_EQ(finished.code, 0) << finished;
     const auto stats = nlohmann::json::parse(test::read_bytes(folder / "stats.json"))["frames"][0];
     const double surfaces = 1 - stats["sky_pixels"].get<double>() / stats["pixels"].get<double>();
@@ -311,8 +382,9 @@ TEST(CommandLine, tells_how_many_samples_each_estimator_takes) {
 TEST(CommandLine, refuses_a_sine_of_one_and_more_as_a_bias) {
   const test::TemporaryFolder folder;
   const std::string frame = ALCOVE_SOURCE_DIR "/examples/bench/machine.";
-  const test::Finished finished = test::run_program({"run", frame + "gbuffer.exr", "--camera", frame + "camera.json", "--radius", "1", "--estimator", "hbao",
-                                                     "--bias", "1", "-o", folder / "ao.exr"});
+  const test::Finished finished =
+      test::run_program({"run", frame + "gbuffer.exr", "--camera", frame + "camera.json", "--radius", "1",
+                         "--estimator", "hbao", "--bias", "1", "-o", folder / "ao.exr"});
   EXPECT_EQ(finished.code, 2) << finished;
   EXPECT_NE(finished.err.find("--bias"), std::string::npos) << finished;
 }
@@ -323,14 +395,18 @@ TEST(EveryVariant, leaves_a_flat_plane_open) {
   for (const double tilt : {0.0, 30.0, 60.0, 80.0, 85.0})
     for (const double turn : {0.0, 37.0, 200.0}) {
       const double sine = std::sin(tilt * kRadian);
-      const Scene scene{{Plane{.point = {5, 0, 0}, .normal = {-std::cos(tilt * kRadian), sine * std::cos(turn * kRadian), sine * std::sin(turn * kRadian)}}}};
+      const Scene scene{{Plane{
+          .point = {5, 0, 0},
+          .normal = {-std::cos(tilt * kRadian), sine * std::cos(turn * kRadian), sine * std::sin(turn * kRadian)}}}};
       for (const double fov : {0.0, 60.0, 120.0}) {
-        const Shot shot = fov > 0 ? Shot::perspective({}, {1, 0, 0}, fov, 64, 48) : Shot::orthographic({}, {1, 0, 0}, 0.5, 64, 48);
+        const Shot shot =
+            fov > 0 ? Shot::perspective({}, {1, 0, 0}, fov, 64, 48) : Shot::orthographic({}, {1, 0, 0}, 0.5, 64, 48);
         const Rendering rendering = test::render(scene, shot);
         for (const double radius : {0.01, 0.5, 10.0})
           for (const auto& settings : all_variants(radius)) {
             const Difference d = difference(run(rendering.frame, settings), [](std::size_t) { return 1.0; });
-            EXPECT_LE(d.max, 0) << name_of(settings) << ", radius " << radius << ", tilt " << tilt << " turn " << turn << " fov " << fov << ", " << place(d, rendering.frame);
+            EXPECT_LE(d.max, 0) << name_of(settings) << ", radius " << radius << ", tilt " << tilt << " turn " << turn
+                                << " fov " << fov << ", " << place(d, rendering.frame);
           }
       }
     }
@@ -338,7 +414,8 @@ TEST(EveryVariant, leaves_a_flat_plane_open) {
 
 /// A floor, a wall, a ball on the floor, and sky.
 Rendering furnished(int width = 120, int height = 90) {
-  const Scene scene{{test::parallelogram({0, -3, 0}, {4, 0, 0}, {0, 6, 0}), test::parallelogram({0, -3, 0}, {0, 6, 0}, {0, 0, 1.5}),
+  const Scene scene{{test::parallelogram({0, -3, 0}, {4, 0, 0}, {0, 6, 0}),
+                     test::parallelogram({0, -3, 0}, {0, 6, 0}, {0, 0, 1.5}),
                      Sphere{.center = {1.2, 0.4, 0.5}, .radius = 0.5}}};
   return test::render(scene, Shot::perspective({4.5, -1.5, 2.4}, {1, 0, 0.6}, 55, width, height));
 }
@@ -351,11 +428,14 @@ TEST(EveryVariant, agrees_with_its_slow_version) {
     settings.slices = 16;
     settings.steps = 64;
     settings.samples = 64;
-    const std::vector<float> ao = run(rendering.frame, settings), slow = reference_estimate(rendering.frame, settings, some);
+    const std::vector<float> ao = run(rendering.frame, settings),
+                             slow = reference_estimate(rendering.frame, settings, some);
     double bias = 0, rmse = 0;
-    for (const std::size_t i : some) bias += (ao[i] - slow[i]) / double(some.size()), rmse += std::pow(ao[i] - slow[i], 2) / double(some.size());
+    for (const std::size_t i : some)
+      bias += (ao[i] - slow[i]) / double(some.size()), rmse += std::pow(ao[i] - slow[i], 2) / double(some.size());
     EXPECT_LE(std::abs(bias), 0.003) << name_of(settings);
-    EXPECT_LE(std::sqrt(rmse), settings.estimator == Estimator::hbao ? 0.015 : 0.04) << name_of(settings);  // crytek: the noise of 64 samples
+    // crytek: the noise of 64 samples
+    EXPECT_LE(std::sqrt(rmse), settings.estimator == Estimator::hbao ? 0.015 : 0.04) << name_of(settings);
   }
 }
 

@@ -9,9 +9,9 @@
 #include <numbers>
 #include <optional>
 
-#include "core/run/batch.h"
 #include "core/formats/exr.h"
 #include "core/reference/reference.h"
+#include "core/run/batch.h"
 #include "tests/support/command_line.h"
 #include "tests/support/device.h"
 #include "tests/support/difference.h"
@@ -24,7 +24,8 @@ using namespace test;
 using testing::HasSubstr;
 
 constexpr double kPi = std::numbers::pi;
-const Plane kFloor{.point = {}, .normal = {0, 0, 1}}, kWallX{.point = {}, .normal = {1, 0, 0}}, kWallY{.point = {}, .normal = {0, 1, 0}};
+const Plane kFloor{.point = {}, .normal = {0, 0, 1}}, kWallX{.point = {}, .normal = {1, 0, 0}},
+    kWallY{.point = {}, .normal = {0, 1, 0}};
 
 EstimatorSettings settings_of(double radius, SliceSearch search = SliceSearch::exact, int slices = 16) {
   EstimatorSettings settings = plain_settings();
@@ -43,13 +44,17 @@ EstimatorSettings shared_directions(double radius) {
   return settings;
 }
 
-std::vector<float> run(const HostFrame& frame, const EstimatorSettings& settings) { return compute_ao(recorder(), frame, settings).ao; }
+std::vector<float> run(const HostFrame& frame, const EstimatorSettings& settings) {
+  return compute_ao(recorder(), frame, settings).ao;
+}
 
 /// Floor, wall, ball, a slab in the air, thin posts, and sky.
 Rendering furnished(bool orthographic = false, int width = 160, int height = 120) {
   Scene scene{{parallelogram({0, -3, 0}, {4, 0, 0}, {0, 6, 0}), parallelogram({0, -3, 0}, {0, 6, 0}, {0, 0, 1.5}),
-               Sphere{.center = {1.2, 0.4, 0.5}, .radius = 0.5}, parallelogram({2, -1.5, 0.3}, {0.6, 0.2, 0.1}, {0, 0.9, 0})}};
-  for (int i = 0; i < 6; i++) scene.primitives.emplace_back(parallelogram({2.5, 0.2 + 0.15 * i, 0}, {0, 0.03, 0}, {0, 0, 0.6}));
+               Sphere{.center = {1.2, 0.4, 0.5}, .radius = 0.5},
+               parallelogram({2, -1.5, 0.3}, {0.6, 0.2, 0.1}, {0, 0.9, 0})}};
+  for (int i = 0; i < 6; i++)
+    scene.primitives.emplace_back(parallelogram({2.5, 0.2 + 0.15 * i, 0}, {0, 0.03, 0}, {0, 0, 0.6}));
   return render(scene, orthographic ? Shot::orthographic({4.5, -1.5, 2.4}, {1, 0, 0.6}, 4, width, height)
                                     : Shot::perspective({4.5, -1.5, 2.4}, {1, 0, 0.6}, 55, width, height));
 }
@@ -64,8 +69,10 @@ TEST(Exact, outlines_give_what_every_pixel_gives) {
         exact.thickness_length = march.thickness_length = 0.2;
         const std::vector<float> marched = run(frame, march);
         const Difference d = difference(run(frame, exact), [&](std::size_t i) { return marched[i]; });
-        EXPECT_LE(d.rmse, 0.003) << orthographic << ", radius " << radius << ", thickness " << int(thickness) << ", " << place(d, frame);
-        EXPECT_LE(std::abs(d.bias), 0.0005) << orthographic << ", radius " << radius << ", thickness " << int(thickness);
+        EXPECT_LE(d.rmse, 0.003) << orthographic << ", radius " << radius << ", thickness " << int(thickness) << ", "
+                                 << place(d, frame);
+        EXPECT_LE(std::abs(d.bias), 0.0005)
+            << orthographic << ", radius " << radius << ", thickness " << int(thickness);
       }
     }
   }
@@ -90,17 +97,20 @@ TEST(Exact, planes_are_open_at_every_tilt) {
   for (const double tilt : {0.0, 30.0, 60.0, 80.0, 88.0}) {
     for (const double turn : {0.0, 25.0, 90.0}) {
       const double a = tilt * kPi / 180, b = turn * kPi / 180;
-      const Plane plane{.point = {5, 0, 0}, .normal = {-std::cos(a), std::sin(a) * std::cos(b), std::sin(a) * std::sin(b)}};
+      const Plane plane{.point = {5, 0, 0},
+                        .normal = {-std::cos(a), std::sin(a) * std::cos(b), std::sin(a) * std::sin(b)}};
       const Rendering rendering = render({{plane}}, Shot::perspective({0, 0, 0}, {1, 0, 0}, 60, 96, 64));
       for (const auto& settings : {settings_of(0.5), shared_directions(0.5), settings_of(50)}) {
         std::vector<float> ao = run(rendering.frame, settings);
         for (int i = 0; i < int(ao.size()); i++) {
           const int x = i % 96, y = i / 96;
           // At the horizon, and where it meets the border, nothing tells a plane from an edge.
-          if (tilt >= 60 && (x < 4 || y < 4 || x >= 92 || y >= 60 || rendering.primitives_within(2, x, y) > 1)) ao[std::size_t(i)] = 1;
+          if (tilt >= 60 && (x < 4 || y < 4 || x >= 92 || y >= 60 || rendering.primitives_within(2, x, y) > 1))
+            ao[std::size_t(i)] = 1;
         }
         const Difference d = difference(ao, [](std::size_t) { return 1.0; });
-        EXPECT_LE(d.max, 1e-3) << tilt << " turned by " << turn << ", radius " << *settings.radius << ", " << place(d, rendering.frame);
+        EXPECT_LE(d.max, 1e-3) << tilt << " turned by " << turn << ", radius " << *settings.radius << ", "
+                               << place(d, rendering.frame);
       }
     }
   }
@@ -109,14 +119,17 @@ TEST(Exact, planes_are_open_at_every_tilt) {
 using Truth = std::function<std::optional<double>(const Hit&)>;
 
 /// Compares the AO of every pixel that has a truth and is not beside an edge.
-void expect_truth(const char* what, const Rendering& rendering, const EstimatorSettings& settings, const Truth& truth, int least_pixels) {
+void expect_truth(const char* what, const Rendering& rendering, const EstimatorSettings& settings, const Truth& truth,
+                  int least_pixels) {
   const std::vector<float> ao = run(rendering.frame, settings);
   double sum = 0, worst = 0;
   int pixels = 0;
   for (int y = 0; y < rendering.shot.data.height; y++) {
     for (int x = 0; x < rendering.shot.data.width; x++) {
       const Hit& hit = rendering.at(x, y);
-      if (hit.primitive < 0 || rendering.primitives_within(2, x, y) > 1 || 16 * rendering.footprint(x, y) > *settings.radius) continue;
+      if (hit.primitive < 0 || rendering.primitives_within(2, x, y) > 1 ||
+          16 * rendering.footprint(x, y) > *settings.radius)
+        continue;
       const auto expected = truth(hit);
       if (!expected) continue;
       const double error = std::abs(ao[std::size_t(y * rendering.shot.data.width + x)] - *expected);
@@ -134,15 +147,19 @@ void expect_truth(const char* what, const Rendering& rendering, const EstimatorS
 double segment(double x) { return x >= 1 ? 0 : std::acos(x) - x * std::sqrt(1 - x * x); }
 
 TEST(Exact, wall_at_hard_radius) {
-  const std::pair<const char*, Shot> views[] = {{"bisector", Shot::perspective({4, 0, 4}, {0.5, 0, 0.5}, 60, 240, 180)},
-                                                {"along", Shot::perspective({2, -4, 2.5}, {0.4, 0, 0.3}, 70, 240, 180)},
-                                                {"wide", Shot::perspective({2.2, -0.6, 1.8}, {0.6, 0.2, 0.2}, 100, 320, 240)},
-                                                {"orthographic", Shot::orthographic({4, -1, 3}, {0.5, 0, 0.5}, 5, 240, 180)}};
+  const std::pair<const char*, Shot> views[] = {
+      {"bisector", Shot::perspective({4, 0, 4}, {0.5, 0, 0.5}, 60, 240, 180)},
+      {"along", Shot::perspective({2, -4, 2.5}, {0.4, 0, 0.3}, 70, 240, 180)},
+      {"wide", Shot::perspective({2.2, -0.6, 1.8}, {0.6, 0.2, 0.2}, 100, 320, 240)},
+      {"orthographic", Shot::orthographic({4, -1, 3}, {0.5, 0, 0.5}, 5, 240, 180)}};
   for (const auto& [name, shot] : views) {
-    expect_truth(name, render({{kFloor, kWallX}}, shot), settings_of(1), [&shot = shot](const Hit& hit) -> std::optional<double> {
-      if (!shot.sees_ball(hit.position, 1)) return std::nullopt;
-      return 1 - segment(hit.primitive == 0 ? hit.position.x : hit.position.z) / kPi;
-    }, 1000);
+    expect_truth(
+        name, render({{kFloor, kWallX}}, shot), settings_of(1),
+        [&shot = shot](const Hit& hit) -> std::optional<double> {
+          if (!shot.sees_ball(hit.position, 1)) return std::nullopt;
+          return 1 - segment(hit.primitive == 0 ? hit.position.x : hit.position.z) / kPi;
+        },
+        1000);
   }
 }
 
@@ -155,14 +172,20 @@ double beside_two_walls(double a, double b) {
 }
 
 TEST(Exact, corner_at_hard_radius) {
-  const std::pair<const char*, Shot> views[] = {{"diagonal", Shot::perspective({4, 4, 4}, {0.5, 0.5, 0.5}, 50, 240, 200)},
-                                                {"wide", Shot::perspective({2, 2.4, 1.8}, {0.6, 0.2, 0.4}, 100, 320, 240)}};
+  const std::pair<const char*, Shot> views[] = {
+      {"diagonal", Shot::perspective({4, 4, 4}, {0.5, 0.5, 0.5}, 50, 240, 200)},
+      {"wide", Shot::perspective({2, 2.4, 1.8}, {0.6, 0.2, 0.4}, 100, 320, 240)}};
   for (const auto& [name, shot] : views) {
-    expect_truth(name, render({{kFloor, kWallX, kWallY}}, shot), settings_of(1), [&shot = shot](const Hit& hit) -> std::optional<double> {
-      if (!shot.sees_ball(hit.position, 1)) return std::nullopt;
-      const auto [x, y, z] = hit.position;
-      return hit.primitive == 0 ? beside_two_walls(x, y) : hit.primitive == 1 ? beside_two_walls(y, z) : beside_two_walls(x, z);
-    }, 1000);
+    expect_truth(
+        name, render({{kFloor, kWallX, kWallY}}, shot), settings_of(1),
+        [&shot = shot](const Hit& hit) -> std::optional<double> {
+          if (!shot.sees_ball(hit.position, 1)) return std::nullopt;
+          const auto [x, y, z] = hit.position;
+          return hit.primitive == 0   ? beside_two_walls(x, y)
+                 : hit.primitive == 1 ? beside_two_walls(y, z)
+                                      : beside_two_walls(x, z);
+        },
+        1000);
   }
 }
 
@@ -171,8 +194,9 @@ TEST(Exact, spherical_bowl) {
   const Sphere bowl{.center = {0, 0, 0}, .radius = 1, .axis = {0, 0, -1}, .cos_half_angle = cosine};
   const Plane ground{.point = {0, 0, -cosine}, .normal = {0, 0, 1}, .hole = rim};
   for (const auto& settings : {settings_of(1000), shared_directions(1000)})
-    expect_truth("bowl", render({{bowl, ground}}, Shot::perspective({0.1, -0.2, 1}, {0, 0, -0.7}, 90, 240, 240)), settings,
-                 [&](const Hit& hit) { return hit.primitive == 0 ? std::optional((1 + cosine) / 2) : std::nullopt; }, 1000);
+    expect_truth(
+        "bowl", render({{bowl, ground}}, Shot::perspective({0.1, -0.2, 1}, {0, 0, -0.7}, 90, 240, 240)), settings,
+        [&](const Hit& hit) { return hit.primitive == 0 ? std::optional((1 + cosine) / 2) : std::nullopt; }, 1000);
 }
 
 TEST(Exact, directions_shared_by_a_block_come_close_to_all_of_them) {
@@ -186,7 +210,8 @@ TEST(Exact, directions_shared_by_a_block_come_close_to_all_of_them) {
 TEST(Exact, the_mirrored_frame_has_the_mirrored_ao) {
   HostFrame frame = furnished().frame;
   const auto mirrored = [&](std::vector<float> plane) {
-    for (auto row = plane.begin(); row != plane.end(); row += frame.data.width) std::reverse(row, row + frame.data.width);
+    for (auto row = plane.begin(); row != plane.end(); row += frame.data.width)
+      std::reverse(row, row + frame.data.width);
     return plane;
   };
   const std::vector<float> expected = mirrored(run(frame, settings_of(0.6)));
@@ -209,7 +234,8 @@ TEST(Exact, twice_gives_the_same_bits_and_sky_is_open) {
 TEST(Exact, any_shape_of_frame_is_searched) {
   for (const auto& [width, height] : {std::pair{1, 1}, {1, 40}, {40, 1}, {3, 700}, {700, 3}}) {
     const HostFrame frame = furnished(false, width, height).frame;
-    for (const float value : run(frame, settings_of(0.6))) ASSERT_TRUE(value >= 0 && value <= 1) << width << " x " << height;
+    for (const float value : run(frame, settings_of(0.6)))
+      ASSERT_TRUE(value >= 0 && value <= 1) << width << " x " << height;
   }
 }
 
@@ -219,24 +245,30 @@ TEST_F(CommandLine, an_exact_search_of_a_region_is_that_part_of_the_whole) {
   std::vector<float>& depth = rough.planes["ViewLayer.Depth.Z"];
   for (std::size_t i = 0; i < depth.size(); i++) {
     const auto x = i % std::size_t(data.width), y = i / std::size_t(data.width);
-    depth[i] *= float(1 + 0.002 * std::sin(0.1 * double(x)) * std::sin(0.07 * double(y)) - ((x / 40 * 7 + y / 25 * 3) % 5 == 0 ? 0.01 : 0));
+    depth[i] *= float(1 + 0.002 * std::sin(0.1 * double(x)) * std::sin(0.07 * double(y)) -
+                      ((x / 40 * 7 + y / 25 * 3) % 5 == 0 ? 0.01 : 0));
   }
   rough.write(frame);
   write_bytes(camera, wall_camera(display).dump());
-  for (const std::vector<std::string>& more : {std::vector<std::string>{"--preset", "reference"}, {"--search", "exact"}, {"--search", "exact", "--resolution", "half"}}) {
-    std::vector<std::string> arguments{"run", frame, "-o", ao, "--camera", camera, "--type", "float", "--radius", "0.1"};
+  for (const std::vector<std::string>& more : {std::vector<std::string>{"--preset", "reference"},
+                                               {"--search", "exact"},
+                                               {"--search", "exact", "--resolution", "half"}}) {
+    std::vector<std::string> arguments{"run",  frame,    "-o",    ao,         "--camera",
+                                       camera, "--type", "float", "--radius", "0.1"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     ASSERT_EQ(run_program(arguments).code, 0);
     const Image whole = read_exr_image(ao);
     EXPECT_LT(std::ranges::min(whole.pixels), 0.8);
     arguments.insert(arguments.end(), {"--roi", "319,114,127,60"});
     ASSERT_EQ(run_program(arguments).code, 0);
-    EXPECT_TRUE(same_bits(read_exr_image(ao).pixels, cropped(whole.pixels, whole.data, region))) << testing::PrintToString(more);
+    EXPECT_TRUE(same_bits(read_exr_image(ao).pixels, cropped(whole.pixels, whole.data, region)))
+        << testing::PrintToString(more);
   }
 }
 
 TEST_F(CommandLine, an_exact_search_refuses_what_it_cannot_do) {
-  const std::pair<std::vector<std::string>, const char*> cases[] = {{{"--falloff", "linear"}, "--falloff"}, {{"--stride", "4"}, "--stride"}, {{"--aov", "ao,bent-normal"}, "--aov"}};
+  const std::pair<std::vector<std::string>, const char*> cases[] = {
+      {{"--falloff", "linear"}, "--falloff"}, {{"--stride", "4"}, "--stride"}, {{"--aov", "ao,bent-normal"}, "--aov"}};
   for (const auto& [more, named] : cases) {
     std::vector<std::string> options{"--search", "exact"};
     options.insert(options.end(), more.begin(), more.end());

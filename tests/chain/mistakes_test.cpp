@@ -2,11 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Here:
-// - the arc integral in a wrong form; slices not weighted by the projected normal; slices against the normal or a constant axis instead of the view
-//   ray; the normal's angle with the wrong sign: Gtao.beside_a_wall_is_right_at_every_tilt
+// - the arc integral in a wrong form; slices not weighted by the projected normal; slices against the normal or a
+//   constant axis instead of the view ray; the normal's angle with the wrong sign:
+//   Gtao.beside_a_wall_is_right_at_every_tilt
 // - the two sides of a slice subtracted: Gtao.sums_both_sides_of_a_slice
 // - one side's horizon clamped or started as the other's; rows counted upwards: EveryEstimator.is_the_same_to_all_sides
-// - visibility inverted, or blended towards less than nothing: EveryEstimator.is_open_where_nothing_is_and_darker_where_something_is
+// - visibility inverted, or blended towards less than nothing:
+//   EveryEstimator.is_open_where_nothing_is_and_darker_where_something_is
 // - horizons clamped to +-90 degrees of the view ray instead of the normal: Gtao.beside_a_wall_is_right_at_every_tilt
 // - a slope that blocks itself: EveryEstimator.leaves_a_tilted_plane_open
 // - the radius taken for pixels: EveryEstimator.reaches_as_far_at_every_resolution
@@ -14,20 +16,27 @@
 // - normals of length 0, or encoded, that make NaN: EveryEstimator.stays_finite_on_broken_normals
 // - distance to the eye taken for planar depth: EveryEstimator.knows_ray_depth_from_planar
 // - an 8-bit result before the intensity: EveryEstimator.has_more_levels_than_8_bits_after_a_large_intensity
-// - samples behind the eye, off the image or before the sky that count: Crytek.counts_only_samples_before_the_eye_and_on_the_image,
-//   Crytek.counts_no_samples_before_the_sky
+// - samples behind the eye, off the image or before the sky that count:
+//   Crytek.counts_only_samples_before_the_eye_and_on_the_image, Crytek.counts_no_samples_before_the_sky
 // - a basis about the normal that degenerates: Crytek.has_a_basis_about_every_normal
 // - depth compared with the receiver's instead of the sample's: Crytek.compares_depth_with_the_sample_not_the_receiver
 // - a kernel whose noise fits one resolution: EveryEstimator.has_its_noise_by_pixel_at_every_resolution
 // Elsewhere:
-// - horizons of HBAO as angles to the normal, 1 - sin h: estimator_test Hbao.beside_*, Hbao.sees_the_uniform_hemisphere_at_every_tilt_of_the_view
-// - even directions of the image taken for even slices: estimator_test Hbao.off_axis_is_what_it_is_on_axis; closed_form_test, "wide"
-// - hits weighed by the cosine to the normal under the name of Crytek: estimator_test Crytek.beside_an_endless_wall_is_the_volume_before_it
-// - a range check that loses hits within the radius without anybody having asked for it, or divides 0 by 0: estimator_test Crytek.range_checks_*
-// - biases and thresholds in absolute units: estimator_test EveryVariant.gives_the_same_bits_twice_and_at_every_scale; property_test Scale.*
+// - horizons of HBAO as angles to the normal, 1 - sin h: estimator_test Hbao.beside_*,
+//   Hbao.sees_the_uniform_hemisphere_at_every_tilt_of_the_view
+// - even directions of the image taken for even slices: estimator_test Hbao.off_axis_is_what_it_is_on_axis;
+//   closed_form_test, "wide"
+// - hits weighed by the cosine to the normal under the name of Crytek: estimator_test
+//   Crytek.beside_an_endless_wall_is_the_volume_before_it
+// - a range check that loses hits within the radius without anybody having asked for it, or divides 0 by 0:
+//   estimator_test Crytek.range_checks_*
+// - biases and thresholds in absolute units: estimator_test EveryVariant.gives_the_same_bits_twice_and_at_every_scale;
+//   property_test Scale.*
 // - falloff towards the wrong horizon: closed_form_test FalloffForm.*
-// - normals in world space called view space: property_test NormalSpace.*; intensity as factor and exponent at once: property_test Shape.*
-// - AO on direct light: command_line_test, the composite; random numbers that differ by machine: property_test Repetition.*
+// - normals in world space called view space: property_test NormalSpace.*; intensity as factor and exponent at once:
+//   property_test Shape.*
+// - AO on direct light: command_line_test, the composite; random numbers that differ by machine: property_test
+//   Repetition.*
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -67,7 +76,9 @@ constexpr float kNan = std::numeric_limits<float>::quiet_NaN(), kInfinity = std:
 
 std::string name_of(Estimator estimator) { return "estimator " + std::to_string(int(estimator)); }
 
-std::vector<float> run(const HostFrame& frame, const EstimatorSettings& settings) { return compute_ao(test::recorder(), frame, settings).ao; }
+std::vector<float> run(const HostFrame& frame, const EstimatorSettings& settings) {
+  return compute_ao(test::recorder(), frame, settings).ao;
+}
 
 /// The mean over the floor's pixels at about that distance from the block, in the middle of the picture.
 double beside_block(const Rendering& rendering, const EstimatorSettings& settings, double d, double half_band = 0.025) {
@@ -92,14 +103,17 @@ TEST(Gtao, beside_a_wall_is_right_at_every_tilt) {
   for (const double tilt : {0.0, 30.0, 60.0, 75.0}) {
     Shot shot = leaning(tilt, 6, 300, 160);
     shot.camera.fy = 160 / 16.0;  // px oblong in y: the picture shows eight times the distance to each side
-    EXPECT_NEAR(beside_block(test::render(block(1), shot), settings_of(Estimator::gtao, 1e3, 32, 512), 1, 0.1), kBelow45, 0.01) << "tilt " << tilt;
+    EXPECT_NEAR(beside_block(test::render(block(1), shot), settings_of(Estimator::gtao, 1e3, 32, 512), 1, 0.1),
+                kBelow45, 0.01)
+        << "tilt " << tilt;
   }
 }
 
 TEST(Gtao, sums_both_sides_of_a_slice) {
   Scene trench = block(0.5);
   trench.primitives.emplace_back(test::parallelogram({1, -100, 0.5}, {0, 200, 0}, {100, 0, 0}));
-  const double ao = beside_block(test::render(trench, leaning(0, 3, 300, 300)), settings_of(Estimator::gtao, 1e3, 32, 512), 0.5);
+  const double ao =
+      beside_block(test::render(trench, leaning(0, 3, 300, 300)), settings_of(Estimator::gtao, 1e3, 32, 512), 0.5);
   EXPECT_NEAR(ao, 2 * kBelow45 - 1, 0.02);
 }
 
@@ -110,7 +124,8 @@ TEST(EveryEstimator, is_the_same_to_all_sides) {
     for (const double tilt : {0.0, 35.0}) {
       std::vector<double> all;
       for (const double turn : {0.0, 90.0, 180.0, 270.0})
-        all.push_back(beside_block(test::render(block(0.4), leaning(tilt, 3, 200, 200, turn)), settings_of(estimator, 0.6), 0.2));
+        all.push_back(
+            beside_block(test::render(block(0.4), leaning(tilt, 3, 200, 200, turn)), settings_of(estimator, 0.6), 0.2));
       EXPECT_LE(std::ranges::max(all) - std::ranges::min(all), 0.01) << name_of(estimator) << " tilt " << tilt;
       EXPECT_LE(std::ranges::max(all), 0.92) << name_of(estimator) << " tilt " << tilt;
     }
@@ -132,8 +147,10 @@ TEST(EveryEstimator, is_open_where_nothing_is_and_darker_where_something_is) {
 
 TEST(EveryEstimator, leaves_a_tilted_plane_open) {
   for (const double tilt : {20.0, 50.0, 75.0}) {
-    const Vec3 normal{-std::cos(tilt * std::numbers::pi / 180), 0.6 * std::sin(tilt * std::numbers::pi / 180), 0.8 * std::sin(tilt * std::numbers::pi / 180)};
-    const Rendering rendering = test::render({{Plane{.point = {5, 0, 0}, .normal = normal}}}, Shot::perspective({}, {1, 0, 0}, 70, 120, 90));
+    const Vec3 normal{-std::cos(tilt * std::numbers::pi / 180), 0.6 * std::sin(tilt * std::numbers::pi / 180),
+                      0.8 * std::sin(tilt * std::numbers::pi / 180)};
+    const Rendering rendering =
+        test::render({{Plane{.point = {5, 0, 0}, .normal = normal}}}, Shot::perspective({}, {1, 0, 0}, 70, 120, 90));
     for (const Estimator estimator : kEstimators) {
       const Difference d = difference(run(rendering.frame, settings_of(estimator, 2)), [](std::size_t) { return 1.0; });
       EXPECT_LE(d.max, 1e-4) << name_of(estimator) << " tilt " << tilt << ", " << place(d, rendering.frame);
@@ -156,7 +173,8 @@ TEST(EveryEstimator, reaches_as_far_at_every_resolution) {
 
 /// A floor, a ball on it, and sky.
 Rendering ball_before_sky(int width = 120, int height = 90) {
-  const Scene scene{{test::parallelogram({0, -2, 0}, {3, 0, 0}, {0, 4, 0}), Sphere{.center = {1.2, 0.3, 0.5}, .radius = 0.5}}};
+  const Scene scene{
+      {test::parallelogram({0, -2, 0}, {3, 0, 0}, {0, 4, 0}), Sphere{.center = {1.2, 0.3, 0.5}, .radius = 0.5}}};
   return test::render(scene, Shot::perspective({4.5, -1.5, 1.6}, {1, 0, 0.6}, 50, width, height));
 }
 
@@ -170,8 +188,10 @@ TEST(EveryEstimator, takes_no_sky_for_a_surface) {
       HostFrame frame = rendering.frame, ball = convex;
       std::ranges::replace(frame.depth, test::kSky, mark);
       std::ranges::replace(ball.depth, test::kSky, mark);
-      EXPECT_TRUE(same_bits(run(frame, settings_of(estimator, 0.8)), expected)) << name_of(estimator) << " sky " << mark;
-      EXPECT_LE(difference(run(ball, settings_of(estimator, 3)), [](std::size_t) { return 1.0; }).max, 1e-4) << name_of(estimator) << " sky " << mark;
+      EXPECT_TRUE(same_bits(run(frame, settings_of(estimator, 0.8)), expected))
+          << name_of(estimator) << " sky " << mark;
+      EXPECT_LE(difference(run(ball, settings_of(estimator, 3)), [](std::size_t) { return 1.0; }).max, 1e-4)
+          << name_of(estimator) << " sky " << mark;
     }
     for (std::size_t i = 0; i < expected.size(); i++)
       if (rendering.hits[i].primitive < 0) ASSERT_EQ(expected[i], 1) << name_of(estimator);
@@ -194,14 +214,17 @@ TEST(EveryEstimator, stays_finite_on_broken_normals) {
 }
 
 TEST(EveryEstimator, knows_ray_depth_from_planar) {
-  const Rendering rendering = test::render({{Plane{.point = {5, 0, 0}, .normal = {-1, 0, 0}}}}, Shot::perspective({}, {1, 0, 0}, 110, 160, 90));
+  const Rendering rendering =
+      test::render({{Plane{.point = {5, 0, 0}, .normal = {-1, 0, 0}}}}, Shot::perspective({}, {1, 0, 0}, 110, 160, 90));
   HostFrame frame = rendering.frame;
   for (std::size_t i = 0; i < frame.depth.size(); i++) frame.depth[i] = float(length(rendering.hits[i].position));
   for (const Estimator estimator : kEstimators) {
     frame.depth_kind = DepthKind::ray;
-    EXPECT_LE(difference(run(frame, settings_of(estimator, 2)), [](std::size_t) { return 1.0; }).max, 1e-3) << name_of(estimator);
+    EXPECT_LE(difference(run(frame, settings_of(estimator, 2)), [](std::size_t) { return 1.0; }).max, 1e-3)
+        << name_of(estimator);
     frame.depth_kind = DepthKind::planar;  // the plane becomes a bowl
-    EXPECT_GT(difference(run(frame, settings_of(estimator, 2)), [](std::size_t) { return 1.0; }).max, 0.02) << name_of(estimator);
+    EXPECT_GT(difference(run(frame, settings_of(estimator, 2)), [](std::size_t) { return 1.0; }).max, 0.02)
+        << name_of(estimator);
   }
 }
 
@@ -246,7 +269,8 @@ TEST(EveryEstimator, has_its_noise_by_pixel_at_every_resolution) {
 // Crytek's estimator.
 
 /// The kernel against its slow version at some pixels: the mean error and the largest.
-void expect_as_reference(const HostFrame& frame, const EstimatorSettings& settings, double mean, double largest, const std::string& what) {
+void expect_as_reference(const HostFrame& frame, const EstimatorSettings& settings, double mean, double largest,
+                         const std::string& what) {
   std::vector<std::size_t> some;
   for (std::size_t i = 3; i < frame.depth.size(); i += 7) some.push_back(i);
   const std::vector<float> ao = run(frame, settings), slow = reference_estimate(frame, settings, some);
@@ -264,8 +288,10 @@ TEST(Crytek, counts_only_samples_before_the_eye_and_on_the_image) {
   const Scene corner{{Plane{.point = {}, .normal = {0, 0, 1}}, Plane{.point = {}, .normal = {1, 0, 0}}}};
   const Rendering rendering = test::render(corner, Shot::perspective({0.12, 0, 0.1}, {0, 0.05, 0.02}, 70, 96, 72));
   for (const double radius : {0.1, 0.15, 0.2})
-    expect_as_reference(rendering.frame, settings_of(Estimator::crytek, radius), 0.01, 0.4, "in a corner, radius " + std::to_string(radius));
-  // A wall that covers all of the picture's left: beyond the picture's border nothing is known, so the border is no brighter than the middle.
+    expect_as_reference(rendering.frame, settings_of(Estimator::crytek, radius), 0.01, 0.4,
+                        "in a corner, radius " + std::to_string(radius));
+  // A wall that covers all of the picture's left: beyond the picture's border nothing is known, so the border is no
+  // brighter than the middle.
   const Rendering wall = test::render(block(5), leaning(30, 1, 96, 72));
   const std::vector<float> ao = run(wall.frame, settings_of(Estimator::crytek, 0.5));
   double border = 0, middle = 0;
@@ -273,23 +299,28 @@ TEST(Crytek, counts_only_samples_before_the_eye_and_on_the_image) {
   for (int x = 0; x < 96; x++) {
     if (wall.at(x, 36).primitive != 0 || wall.at(x, 36).position.x > 0.3) continue;
     columns++;
-    for (int y = 0; y < 4; y++) border += ao[std::size_t(y * 96 + x)] / 4, middle += ao[std::size_t((y + 34) * 96 + x)] / 4;
+    for (int y = 0; y < 4; y++)
+      border += ao[std::size_t(y * 96 + x)] / 4, middle += ao[std::size_t((y + 34) * 96 + x)] / 4;
   }
   ASSERT_GT(columns, 10);
   EXPECT_NEAR(border / columns, middle / columns, 0.02);
 }
 
 TEST(Crytek, counts_no_samples_before_the_sky) {
-  expect_as_reference(ball_before_sky().frame, settings_of(Estimator::crytek, 0.8), 0.003, 0.25, "a ball before the sky");
+  expect_as_reference(ball_before_sky().frame, settings_of(Estimator::crytek, 0.8), 0.003, 0.25,
+                      "a ball before the sky");
 }
 
 TEST(Crytek, has_a_basis_about_every_normal) {
-  // Inside of a ball, seen from its middle through a wide angle and from its rim, normals point everywhere; all are alike: the hidden volume is the same.
+  // Inside of a ball, seen from its middle through a wide angle and from its rim, normals point everywhere; all are
+  // alike: the hidden volume is the same.
   const Sphere ball{.center = {}, .radius = 2};
-  for (const Shot& shot : {Shot::perspective({}, {1, 0, 0}, 130, 120, 120), Shot::perspective({-1.9, 0, 0}, {1, 0, 0}, 130, 120, 120)}) {
+  for (const Shot& shot :
+       {Shot::perspective({}, {1, 0, 0}, 130, 120, 120), Shot::perspective({-1.9, 0, 0}, {1, 0, 0}, 130, 120, 120)}) {
     const Rendering rendering = test::render({{ball}}, shot);
     const std::vector<float> ao = run(rendering.frame, settings_of(Estimator::crytek, 0.5));
-    // A ball of radius R about a point of the sphere S: below the tangent's cap lies R / S * 3 / 16 of the half ball's volume.
+    // A ball of radius R about a point of the sphere S: below the tangent's cap lies R / S * 3 / 16 of the half ball's
+    // volume.
     double sum = 0;
     int count = 0;
     for (std::size_t i = 0; i < ao.size(); i++) {
@@ -304,13 +335,14 @@ TEST(Crytek, has_a_basis_about_every_normal) {
 }
 
 TEST(Crytek, compares_depth_with_the_sample_not_the_receiver) {
-  // On a floor that is seen aslant the far half of the hemisphere is deeper than the receiver, the near half less; a block behind, which no sample
-  // is within, hides nothing.
+  // On a floor that is seen aslant the far half of the hemisphere is deeper than the receiver, the near half less; a
+  // block behind, which no sample is within, hides nothing.
   const Rendering rendering = test::render(block(0.5), leaning(60, 4, 240, 120));
   EstimatorSettings settings = settings_of(Estimator::crytek, 0.3);
   settings.range_check = RangeCheck::none;
   EXPECT_NEAR(beside_block(rendering, settings, 0.4), 1, 1e-6);
-  EXPECT_NEAR(beside_block(rendering, settings, 0.15, 0.02), 1 - 0.25 * 2.5 / 4, 0.01);  // c = 0.5: (1 - c)^2 (2 + c) / 4 is hidden
+  // c = 0.5: (1 - c)^2 (2 + c) / 4 is hidden
+  EXPECT_NEAR(beside_block(rendering, settings, 0.15, 0.02), 1 - 0.25 * 2.5 / 4, 0.01);
 }
 
 }  // namespace

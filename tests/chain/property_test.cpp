@@ -35,29 +35,35 @@ EstimatorSettings settings_of(double radius, int slices, int steps) {
   return settings;
 }
 
-HostResult run(const HostFrame& frame, const EstimatorSettings& settings) { return compute_ao(test::recorder(), frame, settings); }
+HostResult run(const HostFrame& frame, const EstimatorSettings& settings) {
+  return compute_ao(test::recorder(), frame, settings);
+}
 
 void expect_open(const HostFrame& frame, const EstimatorSettings& settings, double tolerance, const std::string& what) {
   const HostResult result = run(frame, settings);
   const Difference d = difference(result.ao, [](std::size_t) { return 1.0; });
-  EXPECT_LE(d.max, tolerance) << what << ", " << settings.slices << " x " << settings.steps << ", radius " << *settings.radius << ", "
-                              << place(d, frame);
+  EXPECT_LE(d.max, tolerance) << what << ", " << settings.slices << " x " << settings.steps << ", radius "
+                              << *settings.radius << ", " << place(d, frame);
 }
 
 /// A floor, a wall, a ball on the floor, a slab, and sky.
 Rendering furnished(int width = 160, int height = 120) {
-  const Scene scene{{test::parallelogram({0, -3, 0}, {4, 0, 0}, {0, 6, 0}), test::parallelogram({0, -3, 0}, {0, 6, 0}, {0, 0, 1.5}),
-                     Sphere{.center = {1.2, 0.4, 0.5}, .radius = 0.5}, test::parallelogram({2, -1.5, 0.3}, {0.6, 0.2, 0.1}, {0, 0.9, 0})}};
+  const Scene scene{{test::parallelogram({0, -3, 0}, {4, 0, 0}, {0, 6, 0}),
+                     test::parallelogram({0, -3, 0}, {0, 6, 0}, {0, 0, 1.5}),
+                     Sphere{.center = {1.2, 0.4, 0.5}, .radius = 0.5},
+                     test::parallelogram({2, -1.5, 0.3}, {0.6, 0.2, 0.1}, {0, 0.9, 0})}};
   return test::render(scene, Shot::perspective({4.5, -1.5, 2.4}, {1, 0, 0.6}, 55, width, height));
 }
 
 /// A floor, a wall without end, and a dome.
 Scene room_with_a_dome() {
-  return {{Plane{.point = {}, .normal = {0, 0, 1}}, Plane{.point = {}, .normal = {1, 0, 0}}, Sphere{.center = {1, 0.5, -0.2}, .radius = 0.5}}};
+  return {{Plane{.point = {}, .normal = {0, 0, 1}}, Plane{.point = {}, .normal = {1, 0, 0}},
+           Sphere{.center = {1, 0.5, -0.2}, .radius = 0.5}}};
 }
 
 /// The frame whose pixel (x, y) is the pixel `source(x, y)` of another, both counted from their data windows' corners.
-HostFrame rearranged(const HostFrame& frame, const Window& data, const std::function<std::pair<int, int>(int, int)>& source) {
+HostFrame rearranged(const HostFrame& frame, const Window& data,
+                     const std::function<std::pair<int, int>(int, int)>& source) {
   HostFrame result = frame;
   const std::size_t pixels = data.pixels(), from_pixels = frame.data.pixels();
   result.data = data;
@@ -76,16 +82,18 @@ HostFrame rearranged(const HostFrame& frame, const Window& data, const std::func
 // Flat and convex surfaces.
 
 TEST(FlatPlane, is_open_at_every_tilt_and_field_of_view) {
-  const std::vector<EstimatorSettings> all{settings_of(100, 1, 1), settings_of(0.5, 2, 3), settings_of(0.002, 3, 6), settings_of(3, 3, 6),
-                                           settings_of(1e5, 8, 40)};
+  const std::vector<EstimatorSettings> all{settings_of(100, 1, 1), settings_of(0.5, 2, 3), settings_of(0.002, 3, 6),
+                                           settings_of(3, 3, 6), settings_of(1e5, 8, 40)};
   for (const double tilt : {0.0, 30.0, 60.0, 80.0, 85.0}) {
     for (const double turn : {0.0, 37.0, 90.0, 200.0}) {
       const double sine = std::sin(tilt * kRadian);
       const Vec3 normal{-std::cos(tilt * kRadian), sine * std::cos(turn * kRadian), sine * std::sin(turn * kRadian)};
       const Scene scene{{Plane{.point = {5, 0, 0}, .normal = normal}}};
       for (const double fov : {0.0, 10.0, 60.0, 90.0, 120.0}) {
-        const Shot shot = fov > 0 ? Shot::perspective({}, kForward, fov, 64, 48) : Shot::orthographic({}, kForward, 0.5, 64, 48);
-        const std::string what = "tilt " + std::to_string(tilt) + " turn " + std::to_string(turn) + " fov " + std::to_string(fov);
+        const Shot shot =
+            fov > 0 ? Shot::perspective({}, kForward, fov, 64, 48) : Shot::orthographic({}, kForward, 0.5, 64, 48);
+        const std::string what =
+            "tilt " + std::to_string(tilt) + " turn " + std::to_string(turn) + " fov " + std::to_string(fov);
         const Rendering rendering = test::render(scene, shot);
         for (const EstimatorSettings& settings : all) expect_open(rendering.frame, settings, 1e-4, what);
       }
@@ -118,7 +126,8 @@ TEST(FlatPlane, is_open_without_normals) {
     for (const double fov : {0.0, 60.0, 100.0}) {
       const double sine = std::sin(tilt * kRadian);
       const Scene scene{{Plane{.point = {5, 0, 0}, .normal = unit({-std::cos(tilt * kRadian), 0.4 * sine, sine})}}};
-      const Shot shot = fov > 0 ? Shot::perspective({}, kForward, fov, 96, 72) : Shot::orthographic({}, kForward, 5, 96, 72);
+      const Shot shot =
+          fov > 0 ? Shot::perspective({}, kForward, fov, 96, 72) : Shot::orthographic({}, kForward, 5, 96, 72);
       Rendering rendering = test::render(scene, shot);
       rendering.frame.normal.clear();
       const std::string what = "tilt " + std::to_string(tilt) + " fov " + std::to_string(fov);
@@ -130,14 +139,18 @@ TEST(FlatPlane, is_open_without_normals) {
 
 TEST(ConvexBody, is_open_before_the_sky) {
   const Sphere ball{.center = {6, 0.4, -0.3}, .radius = 1.5};
-  const Vec3 a = 1.6 * unit({1, 0.5, 0.3}), b = 1.2 * unit(cross(a, {0, 0, 1})), c = 1.4 * unit(cross(a, b)), corner{5, -0.5, 0.3};
-  const Scene box{{test::parallelogram(corner, a, b), test::parallelogram(corner, b, c), test::parallelogram(corner, c, a),
-                   test::parallelogram(corner + c, a, b), test::parallelogram(corner + a, b, c), test::parallelogram(corner + b, c, a)}};
+  const Vec3 a = 1.6 * unit({1, 0.5, 0.3}), b = 1.2 * unit(cross(a, {0, 0, 1})), c = 1.4 * unit(cross(a, b)),
+             corner{5, -0.5, 0.3};
+  const Scene box{{test::parallelogram(corner, a, b), test::parallelogram(corner, b, c),
+                   test::parallelogram(corner, c, a), test::parallelogram(corner + c, a, b),
+                   test::parallelogram(corner + a, b, c), test::parallelogram(corner + b, c, a)}};
   for (const auto& [name, scene] : {std::pair<const char*, Scene>{"ball", {{ball}}}, {"box", box}}) {
-    for (const Shot& shot : {Shot::perspective({}, kForward, 50, 160, 120), Shot::perspective({2.5, 0, 0}, kForward + Vec3{4, 1, 0}, 110, 160, 120),
+    for (const Shot& shot : {Shot::perspective({}, kForward, 50, 160, 120),
+                             Shot::perspective({2.5, 0, 0}, kForward + Vec3{4, 1, 0}, 110, 160, 120),
                              Shot::orthographic({}, kForward, 5, 160, 120)}) {
       const Rendering rendering = test::render(scene, shot);
-      ASSERT_GT(std::ranges::count_if(rendering.hits, [](const test::Hit& hit) { return hit.primitive >= 0; }), 1000) << name;
+      ASSERT_GT(std::ranges::count_if(rendering.hits, [](const test::Hit& hit) { return hit.primitive >= 0; }), 1000)
+          << name;
       for (const auto& settings : {settings_of(0.2, 3, 6), settings_of(2, 2, 3), settings_of(100, 8, 64)})
         expect_open(rendering.frame, settings, 1e-4, name);
     }
@@ -174,7 +187,8 @@ TEST(Scale, of_depth_by_its_setting_is_that_of_the_file) {
   EXPECT_TRUE(same_bits(run(centimetres, settings_of(0.6, 3, 6)).ao, run(rendering.frame, settings_of(0.6, 3, 6)).ao));
 }
 
-// The noise isn't mirrored, so the two are two estimates of the same; each is within 0.02 of the truth with so many samples, 0.005 in the mean.
+// The noise isn't mirrored, so the two are two estimates of the same; each is within 0.02 of the truth with so many
+// samples, 0.005 in the mean.
 TEST(Mirror, of_the_frame_is_the_mirror_of_the_ao) {
   Shot shot = Shot::perspective({4, -1, 3}, {0.8, 0, 0.4}, 55, 160, 120);
   shot.camera.cx -= 20;
@@ -186,7 +200,9 @@ TEST(Mirror, of_the_frame_is_the_mirror_of_the_ao) {
   const EstimatorSettings settings = settings_of(1, 32, 64);
   const std::vector<float> upright = run(frame, settings).ao;
   for (const bool flip_x : {true, false}) {
-    const auto source = [&](int x, int y) { return flip_x ? std::pair{width - 1 - x, y} : std::pair{x, height - 1 - y}; };
+    const auto source = [&](int x, int y) {
+      return flip_x ? std::pair{width - 1 - x, y} : std::pair{x, height - 1 - y};
+    };
     HostFrame flipped = rearranged(frame, frame.data, source);
     for (std::size_t i = 0; i < pixels; i++) flipped.normal[i + (flip_x ? 0 : pixels)] *= -1;
     (flip_x ? flipped.camera.cx : flipped.camera.cy) = flip_x ? width - frame.camera.cx : height - frame.camera.cy;
@@ -223,7 +239,8 @@ TEST(DepthKind, planar_ray_and_inverse_agree) {
     frame.depth_kind = kind;
     for (std::size_t i = 0; i < frame.depth.size(); i++) {
       const test::Hit& hit = rendering.hits[i];
-      if (kind == DepthKind::ray && hit.primitive >= 0) frame.depth[i] = float(length(hit.position - rendering.shot.eye));
+      if (kind == DepthKind::ray && hit.primitive >= 0)
+        frame.depth[i] = float(length(hit.position - rendering.shot.eye));
       if (kind == DepthKind::inverse) frame.depth[i] = hit.primitive < 0 ? 0 : float(1 / hit.distance);
     }
     return frame;
@@ -235,7 +252,8 @@ TEST(DepthKind, planar_ray_and_inverse_agree) {
       const HostFrame frame = kinds(kind);
       const HostResult result = run(frame, settings_of(radius, 3, 12));
       const Difference d = difference(result.ao, planar);
-      EXPECT_LE(radius > 1 ? d.max : d.rmse, 1e-4) << "kind " << int(kind) << " radius " << radius << " max " << d.max << ", " << place(d, frame);
+      EXPECT_LE(radius > 1 ? d.max : d.rmse, 1e-4)
+          << "kind " << int(kind) << " radius " << radius << " max " << d.max << ", " << place(d, frame);
       EXPECT_EQ(result.sky_pixels, run(rendering.frame, settings_of(radius, 1, 1)).sky_pixels) << "kind " << int(kind);
       EXPECT_EQ(result.repaired_depth, 0u) << "kind " << int(kind);
     }
@@ -254,7 +272,8 @@ TEST(NormalSpace, world_normals_are_turned_into_view_space) {
     const Vec3 n = rendering.hits[i].normal;
     world.normal[i] = float(n.x), world.normal[i + pixels] = float(n.y), world.normal[i + 2 * pixels] = float(n.z);
   }
-  const Difference d = difference(run(world, settings_of(0.6, 3, 12)).ao, run(rendering.frame, settings_of(0.6, 3, 12)).ao);
+  const Difference d =
+      difference(run(world, settings_of(0.6, 3, 12)).ao, run(rendering.frame, settings_of(0.6, 3, 12)).ao);
   EXPECT_LE(d.max, 1e-4) << place(d, world);
 }
 
@@ -262,17 +281,20 @@ TEST(Sky, is_the_same_whatever_marks_it) {
   const Rendering rendering = furnished();
   const EstimatorSettings settings = settings_of(0.6, 3, 6);
   const HostResult expected = run(rendering.frame, settings);
-  const auto sky = std::uint32_t(std::ranges::count_if(rendering.hits, [](const test::Hit& hit) { return hit.primitive < 0; }));
+  const auto sky =
+      std::uint32_t(std::ranges::count_if(rendering.hits, [](const test::Hit& hit) { return hit.primitive < 0; }));
   ASSERT_GT(sky, 1000u);
   EXPECT_EQ(expected.sky_pixels, sky);
   EXPECT_EQ(expected.repaired_depth, 0u);
   constexpr float kLargest = std::numeric_limits<float>::max();
-  for (const float mark : {0.0f, -0.0f, 1e9f, 1e30f, kLargest, kInfinity, kNan, -kNan, -1.0f, -1e30f, -kInfinity, 65504.0f}) {
+  for (const float mark :
+       {0.0f, -0.0f, 1e9f, 1e30f, kLargest, kInfinity, kNan, -kNan, -1.0f, -1e30f, -kInfinity, 65504.0f}) {
     HostFrame frame = rendering.frame;
     std::ranges::replace(frame.depth, test::kSky, mark);
     if (mark == 65504) frame.sky = 65504;
     const HostResult result = run(frame, settings);
-    EXPECT_TRUE(same_bits(result.ao, expected.ao)) << mark << ": max difference " << difference(result.ao, expected.ao).max;
+    EXPECT_TRUE(same_bits(result.ao, expected.ao))
+        << mark << ": max difference " << difference(result.ao, expected.ao).max;
     EXPECT_EQ(result.sky_pixels, sky) << mark;
     EXPECT_EQ(result.repaired_depth, std::isnan(mark) || mark < 0 ? sky : 0u) << mark;
   }
@@ -360,7 +382,8 @@ TEST(Depth, of_any_bits_gives_an_ao_from_0_to_1) {
     if (!normals) frame.normal.clear();
     for (const DepthKind kind : {DepthKind::planar, DepthKind::ray, DepthKind::inverse}) {
       frame.depth_kind = kind;
-      for (const float ao : run(frame, settings_of(0.6, 3, 6)).ao) ASSERT_TRUE(ao >= 0 && ao <= 1) << ao << " kind " << int(kind);
+      for (const float ao : run(frame, settings_of(0.6, 3, 6)).ao)
+        ASSERT_TRUE(ao >= 0 && ao <= 1) << ao << " kind " << int(kind);
     }
   }
 }
@@ -373,7 +396,9 @@ TEST(Crop, then_ao_is_ao_then_crop) {
   const std::vector<float> whole = run(rendering.frame, settings_of(radius, 3, 12)).ao;
   Shot cropped = rendering.shot;
   cropped.data = {37, 21, 110, 93};
-  const HostFrame frame = rearranged(rendering.frame, cropped.data, [&](int x, int y) { return std::pair{x + cropped.data.x, y + cropped.data.y}; });
+  const HostFrame frame = rearranged(rendering.frame, cropped.data, [&](int x, int y) {
+    return std::pair{x + cropped.data.x, y + cropped.data.y};
+  });
   const std::vector<float> ao = run(frame, settings_of(radius, 3, 12)).ao;
   int compared = 0;
   for (int y = 0; y < cropped.data.height; y++) {
@@ -395,7 +420,8 @@ TEST(Crop, of_overscan_is_the_frame_without) {
   wide.data = {-24, -16, 208, 152};
   const Scene scene{{Plane{.point = {}, .normal = {0, 0, 1}}, Sphere{.center = {1.2, 0.4, 0.5}, .radius = 0.5}}};
   const Rendering inside = test::render(scene, rendering.shot), overscan = test::render(scene, wide);
-  const std::vector<float> expected = run(inside.frame, settings_of(radius, 3, 12)).ao, ao = run(overscan.frame, settings_of(radius, 3, 12)).ao;
+  const std::vector<float> expected = run(inside.frame, settings_of(radius, 3, 12)).ao,
+                           ao = run(overscan.frame, settings_of(radius, 3, 12)).ao;
   int compared = 0;
   for (int y = 0; y < 120; y++) {
     for (int x = 0; x < 160; x++) {
@@ -416,14 +442,16 @@ TEST(Repetition, gives_the_same_bits) {
 }
 
 TEST(Size, may_be_anything_from_one_pixel) {
-  for (const auto& [width, height] : {std::pair{1, 1}, {1, 9}, {9, 1}, {2, 2}, {3, 5}, {8, 8}, {9, 7}, {17, 31}, {1, 700}, {700, 1}}) {
+  for (const auto& [width, height] :
+       {std::pair{1, 1}, {1, 9}, {9, 1}, {2, 2}, {3, 5}, {8, 8}, {9, 7}, {17, 31}, {1, 700}, {700, 1}}) {
     const Scene scene{{Plane{.point = {5, 0, 0}, .normal = unit({-1, 0.5, 0.7})}}};
     HostFrame frame = test::render(scene, Shot::perspective({}, kForward, 40, width, height)).frame;
     const std::string size = std::to_string(width) + "x" + std::to_string(height);
     expect_open(frame, settings_of(1, 3, 6), 1e-4, size);
     const Rendering rendering = furnished(width, height);
     for (const double radius : {0.6, 1e3})
-      for (const float ao : run(rendering.frame, settings_of(radius, 3, 6)).ao) EXPECT_TRUE(ao >= 0 && ao <= 1) << size << ": " << ao;
+      for (const float ao : run(rendering.frame, settings_of(radius, 3, 6)).ao)
+        EXPECT_TRUE(ao >= 0 && ao <= 1) << size << ": " << ao;
     if (width < 3 || height < 3) continue;
     frame.normal.clear();
     expect_open(frame, settings_of(1, 3, 6), 1e-3, size + " without normals");
@@ -467,7 +495,8 @@ TEST(Shape, raises_the_visibility_to_a_power_after_scaling_the_occlusion) {
   EstimatorSettings settings = settings_of(0.6, 3, 6);
   settings.intensity = 1.5;
   settings.power = 1.3;
-  const Difference d = difference(run(frame, settings).ao, [&](std::size_t i) { return std::pow(std::max(0.0, 1 - 1.5 * (1 - plain[i])), 1.3); });
+  const Difference d = difference(
+      run(frame, settings).ao, [&](std::size_t i) { return std::pow(std::max(0.0, 1 - 1.5 * (1 - plain[i])), 1.3); });
   EXPECT_LE(d.max, 1e-5) << place(d, frame);
 }
 

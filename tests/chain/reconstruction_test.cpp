@@ -1,4 +1,5 @@
-// Normals reconstructed from depth are nearer to the truth than cross products of neighbours, on curved surfaces and at edges.
+// Normals reconstructed from depth are nearer to the truth than cross products of neighbours, on curved surfaces and at
+// edges.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
@@ -63,7 +64,8 @@ Angles crossed(const Rendering& rendering) {
 
 TEST(Reconstruction, follows_curved_surfaces) {
   Scene scene;
-  for (int i = 0; i < 9; i++) scene.primitives.push_back(Sphere{.center = {double(i % 3), double(i / 3), 0}, .radius = 0.48});
+  for (int i = 0; i < 9; i++)
+    scene.primitives.push_back(Sphere{.center = {double(i % 3), double(i / 3), 0}, .radius = 0.48});
   const Rendering balls = render(scene, Shot::perspective({1, 1, 5}, {1, 1.001, 0}, 40, 240, 240));
   const Angles ours = reconstructed(balls), naive = crossed(balls);
   EXPECT_LT(ours.mean, 0.7) << "the other way: " << naive.mean;
@@ -73,9 +75,11 @@ TEST(Reconstruction, follows_curved_surfaces) {
 
 TEST(Reconstruction, keeps_edges_of_flat_surfaces) {
   Scene scene{{Plane{.point = {0, 0, 0}, .normal = {0, 0, 1}}}};
-  for (int i = 0; i < 12; i++) scene.primitives.push_back(parallelogram({-3 + 0.5 * i, 0, 0}, {0.2, 0.1, 0}, {0, 0.3, 1}));
+  for (int i = 0; i < 12; i++)
+    scene.primitives.push_back(parallelogram({-3 + 0.5 * i, 0, 0}, {0.2, 0.1, 0}, {0, 0.3, 1}));
   for (const bool perspective : {true, false}) {
-    const Rendering slats = render(scene, perspective ? Shot::perspective({0.5, -4, 3}, {0, 0, 0.3}, 60, 240, 160) : Shot::orthographic({0.5, -4, 3}, {0, 0, 0.3}, 6, 240, 160));
+    const Rendering slats = render(scene, perspective ? Shot::perspective({0.5, -4, 3}, {0, 0, 0.3}, 60, 240, 160)
+                                                      : Shot::orthographic({0.5, -4, 3}, {0, 0, 0.3}, 6, 240, 160));
     const Angles ours = reconstructed(slats), naive = crossed(slats);
     EXPECT_LT(ours.above_10, 0.01) << perspective;
     EXPECT_LT(ours.above_10, 0.15 * naive.above_10) << "the other way: " << naive.above_10;

@@ -24,7 +24,8 @@ using nlohmann::json;
 
 std::vector<float> values_of(const FrameOutputs& outputs) {
   std::vector<float> values;
-  for (const auto* planes : {outputs.ao, outputs.scales, outputs.bent_normal, outputs.confidence, outputs.specular_occlusion}) {
+  for (const auto* planes :
+       {outputs.ao, outputs.scales, outputs.bent_normal, outputs.confidence, outputs.specular_occlusion}) {
     if (!planes) continue;
     const auto plane = planes->as<float>();
     values.insert(values.end(), plane.begin(), plane.end());
@@ -51,7 +52,8 @@ Outcome next_of(Lane& lane, const HostFrame& frame, const EstimatorSettings& set
   FrameInputs inputs = upload(lane.gpu, frame);
   Outcome outcome;
   outcome.is_same = lane.last.is_same(lane.gpu, inputs, settings);
-  const FrameOutputs outputs = outcome.is_same ? lane.last.outputs() : run_chain(lane.gpu, inputs, settings, outputs_for(settings, all));
+  const FrameOutputs outputs =
+      outcome.is_same ? lane.last.outputs() : run_chain(lane.gpu, inputs, settings, outputs_for(settings, all));
   if (!outcome.is_same) lane.gpu.run();
   lane.last.keep(outputs);
   outcome.values = values_of(outputs);
@@ -70,7 +72,8 @@ std::vector<float> alone(const HostFrame& frame, const EstimatorSettings& settin
 /// Something is put into a rectangle of a frame, is taken from it, or turns its normals.
 void change(HostFrame& frame, RandomScenes& random) {
   const int x0 = random.whole(0, frame.data.width - 1), y0 = random.whole(0, frame.data.height - 1);
-  const int x1 = std::min(frame.data.width, x0 + random.whole(1, 12)), y1 = std::min(frame.data.height, y0 + random.whole(1, 12)), kind = random.whole(0, 3);
+  const int x1 = std::min(frame.data.width, x0 + random.whole(1, 12)),
+            y1 = std::min(frame.data.height, y0 + random.whole(1, 12)), kind = random.whole(0, 3);
   for (int y = y0; y < y1; y++)
     for (int x = x0; x < x1; x++) {
       const std::size_t i = std::size_t(y) * std::size_t(frame.data.width) + std::size_t(x);
@@ -97,16 +100,19 @@ TEST(Reuse, of_parts_and_of_whole_frames_changes_no_bit) {
     settings.steps = settings.samples = random.whole(4, 20);
     if (random.whole(0, 3) == 0) settings.further_radii = {*settings.radius / 3};
     if (random.whole(0, 2) == 0) settings.resolution = random.whole(0, 1) == 0 ? Resolution::half : Resolution::quarter;
-    settings.denoise = std::array{Denoise::none, Denoise::bilateral, Denoise::bilateral, Denoise::box}[std::size_t(random.whole(0, 3))];
+    settings.denoise = std::array{Denoise::none, Denoise::bilateral, Denoise::bilateral,
+                                  Denoise::box}[std::size_t(random.whole(0, 3))];
     if (random.whole(0, 3) == 0) settings.power = 1.5;
     const bool all = random.whole(0, 3) == 0;
-    if (settings.denoise == Denoise::bilateral && settings.resolution == Resolution::full) settings.stride = 1 << random.whole(0, 2);
+    if (settings.denoise == Denoise::bilateral && settings.resolution == Resolution::full)
+      settings.stride = 1 << random.whole(0, 2);
     Lane lane(device());
     for (int shot = 0; shot < 4; shot++) {
       if (shot > 0 && random.whole(0, 3) > 0) change(frame, random);
       frame.frame = shot;
       const Outcome next = next_of(lane, frame, settings, all);
-      EXPECT_TRUE(same_bits(next.values, alone(frame, settings, all))) << "scene " << i << " frame " << shot << " estimator " << int(settings.estimator);
+      EXPECT_TRUE(same_bits(next.values, alone(frame, settings, all)))
+          << "scene " << i << " frame " << shot << " estimator " << int(settings.estimator);
       kept += next.is_same ? 0 : next.kept;
       same += next.is_same;
     }
@@ -135,7 +141,8 @@ TEST(Reuse, is_of_what_was_computed_in_the_same_way) {
   EXPECT_TRUE(next_of(lane, other, settings).is_same);
 }
 
-/// A frame with device depth between planes at 0.5 and 50, and normals in world space, of a camera that is turned by a quarter.
+/// A frame with device depth between planes at 0.5 and 50, and normals in world space, of a camera that is turned by a
+/// quarter.
 HostFrame device_frame() {
   HostFrame frame = furnished_room(96, 64).frame;
   frame.depth_kind = DepthKind::device;
@@ -156,7 +163,10 @@ TEST(Reuse, is_not_of_the_same_planes_under_another_camera_or_reading) {
       {"fy", [](HostFrame& f) { f.camera.fy *= 1.1; }},
       {"cy", [](HostFrame& f) { f.camera.cy += 3; }},
       {"orthographic", [](HostFrame& f) { f.camera.orthographic = true, f.camera.fx = f.camera.fy = 20; }},
-      {"world to camera", [](HostFrame& f) { f.camera.view_from_world = {{{0.6, 0.8, 0}, {-0.8, 0.6, 0}, {0, 0, 1}}}; }},
+      {"world to camera",
+       [](HostFrame& f) {
+         f.camera.view_from_world = {{{0.6, 0.8, 0}, {-0.8, 0.6, 0}, {0, 0, 1}}};
+       }},
       {"flipped normals", [](HostFrame& f) { f.flip_normal.x = true; }},
       {"normals in view space", [](HostFrame& f) { f.normal_space = NormalSpace::view; }},
       {"normals' encoding", [](HostFrame& f) { f.normal_unorm = true; }},
@@ -236,11 +246,16 @@ void brighten(FrameFile& frame, const std::string& channel, int number) {
 TEST_F(ReuseOfFrames, other_light_over_the_same_surfaces_is_composed_anew) {
   FrameFile frame = wall_frame();
   add_beauty(frame);
-  // In turn: all anew, the beauty, the same again, the indirect light, the beauty and a part of the depth, the diffuse colour.
-  const std::vector<std::function<void()>> changes = {[] {}, [&] { brighten(frame, "Combined.G", 1); }, [] {}, [&] { brighten(frame, "DiffInd.R", 3); },
+  // In turn: all anew, the beauty, the same again, the indirect light, the beauty and a part of the depth, the diffuse
+  // colour.
+  const std::vector<std::function<void()>> changes = {[] {},
+                                                      [&] { brighten(frame, "Combined.G", 1); },
+                                                      [] {},
+                                                      [&] { brighten(frame, "DiffInd.R", 3); },
                                                       [&] {
                                                         brighten(frame, "Combined.B", 2);
-                                                        for (std::size_t i = 0; i < 9; i++) frame.planes.at("ViewLayer.Depth.Z")[64 * 33 + i] *= 0.95f;
+                                                        for (std::size_t i = 0; i < 9; i++)
+                                                          frame.planes.at("ViewLayer.Depth.Z")[64 * 33 + i] *= 0.95f;
                                                       },
                                                       [&] { brighten(frame, "DiffCol.R", 1); }};
   for (std::size_t i = 0; i < changes.size(); i++) {
@@ -248,8 +263,11 @@ TEST_F(ReuseOfFrames, other_light_over_the_same_surfaces_is_composed_anew) {
     frame.write(input(int(i) + 1));
   }
   const std::string path = folder / "stats.json";
-  const std::vector<std::string> options{"--composite", out + "/comp.%04d.exr", "--aov", "ao,confidence,specular-occlusion,bent-normal",
-                                         "--radius", "0.3", "--threads", "1", "--stats", path};
+  const std::vector<std::string> options{"--composite", out + "/comp.%04d.exr",
+                                         "--aov",       "ao,confidence,specular-occlusion,bent-normal",
+                                         "--radius",    "0.3",
+                                         "--threads",   "1",
+                                         "--stats",     path};
   ASSERT_EQ(run(options).code, 0);
   std::vector<int> kept, passes;
   const json statistics = stats(path);
@@ -259,7 +277,8 @@ TEST_F(ReuseOfFrames, other_light_over_the_same_surfaces_is_composed_anew) {
   }
   const int all = kept[2];
   EXPECT_THAT(kept, testing::ElementsAre(0, all, all, all, testing::AllOf(testing::Gt(0), testing::Lt(all)), all));
-  EXPECT_THAT(passes, testing::ElementsAre(testing::Gt(0), testing::Gt(0), 0, testing::Gt(0), testing::Gt(0), testing::Gt(0)));
+  EXPECT_THAT(passes,
+              testing::ElementsAre(testing::Gt(0), testing::Gt(0), 0, testing::Gt(0), testing::Gt(0), testing::Gt(0)));
   const auto reused = outputs();
   std::vector<std::string> without = options;
   without.insert(without.end(), {"--no-skip", "--overwrite"});
@@ -279,14 +298,16 @@ TEST_F(ReuseOfFrames, a_camera_that_turns_turns_the_directions) {
   }
   write_bytes(camera, cameras.dump());
   for (const std::string space : {"world", "view"}) {
-    const std::vector<std::string> options{"--aov", "ao,normal,bent-normal", "--normal-space", space, "--threads", "1", "--overwrite"};
+    const std::vector<std::string> options{
+        "--aov", "ao,normal,bent-normal", "--normal-space", space, "--threads", "1", "--overwrite"};
     ASSERT_EQ(run(options).code, 0);
     const auto reused = outputs();
     std::vector<std::string> without = options;
     without.push_back("--no-skip");
     ASSERT_EQ(run(without).code, 0);
     ASSERT_EQ(reused.size(), 4);
-    for (const auto& [name, bytes] : outputs()) EXPECT_TRUE(reused.at(name) == bytes) << name << ", normals in " << space;
+    for (const auto& [name, bytes] : outputs())
+      EXPECT_TRUE(reused.at(name) == bytes) << name << ", normals in " << space;
     // Normals in world space turn the other way in the view, and are as they were when they are written.
     const std::string told = space == "world" ? "Y" : "normal.X";
     const Image before = read_exr_image(output(2)), after = read_exr_image(output(3));

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <string>
 
-#include "core/run/batch.h"
 #include "core/chain/chain.h"
 #include "core/formats/exr.h"
+#include "core/run/batch.h"
 #include "tests/support/command_line.h"
 #include "tests/support/device.h"
 #include "tests/support/difference.h"
@@ -41,7 +41,9 @@ Result run(const HostFrame& frame, const EstimatorSettings& settings, const std:
   output.aovs = aovs;
   const FrameOutputs outputs = run_chain(recorder(), upload(recorder(), frame), settings, output);
   recorder().run();
-  const auto values = [](const gpu::Buffer* buffer) { return buffer ? Values(buffer->as<float>().begin(), buffer->as<float>().end()) : Values(); };
+  const auto values = [](const gpu::Buffer* buffer) {
+    return buffer ? Values(buffer->as<float>().begin(), buffer->as<float>().end()) : Values();
+  };
   Result result{values(outputs.ao), values(outputs.scales), values(outputs.bent_normal), {}};
   for (const auto& pass : recorder().passes()) result.passes.push_back(pass.name);
   return result;
@@ -57,7 +59,8 @@ TEST(Scales, each_is_the_run_with_that_radius_alone_whatever_the_chain) {
   const std::vector<double> radii{0.1, 0.6, 2};
   for (const Estimator estimator : {Estimator::gtao, Estimator::bitmask, Estimator::hbao, Estimator::crytek})
     for (const Resolution resolution : {Resolution::full, Resolution::half})
-      for (const auto& [denoise, stride] : {std::pair{Denoise::none, 1}, {Denoise::bilateral, 1}, {Denoise::bilateral, 2}}) {
+      for (const auto& [denoise, stride] :
+           {std::pair{Denoise::none, 1}, {Denoise::bilateral, 1}, {Denoise::bilateral, 2}}) {
         EstimatorSettings several = settings_of(radii, estimator);
         several.resolution = resolution;
         several.denoise = denoise;
@@ -71,7 +74,8 @@ TEST(Scales, each_is_the_run_with_that_radius_alone_whatever_the_chain) {
           alone.radius = radii[i];
           alone.further_radii.clear();
           EXPECT_TRUE(same_bits(plane_of(result.scales, i, frame), run(frame, alone, "ao").ao))
-              << "estimator " << int(estimator) << " resolution " << int(resolution) << " denoise " << int(denoise) << " radius " << radii[i];
+              << "estimator " << int(estimator) << " resolution " << int(resolution) << " denoise " << int(denoise)
+              << " radius " << radii[i];
         }
       }
 }
@@ -124,15 +128,20 @@ TEST(Scales, order_changes_no_bit) {
 
 TEST(Scales, bent_normals_are_those_of_the_largest) {
   const HostFrame frame = furnished_room(61, 47).frame;
-  EXPECT_TRUE(same_bits(run(frame, settings_of({2, 0.1}), "bent-normal").bent, run(frame, settings_of({2}), "bent-normal").bent));
+  EXPECT_TRUE(same_bits(run(frame, settings_of({2, 0.1}), "bent-normal").bent,
+                        run(frame, settings_of({2}), "bent-normal").bent));
 }
 
 TEST(Scales, share_all_passes_but_the_search) {
   const HostFrame frame = furnished_room(61, 47).frame;
-  EXPECT_THAT(run(frame, settings_of({0.1, 0.6, 2}), "ao").passes, ElementsAre("prepare", "reconstruct", "classify", "horizon", "classify", "horizon", "classify", "horizon", "combine", "denoise", "denoise"));
+  EXPECT_THAT(run(frame, settings_of({0.1, 0.6, 2}), "ao").passes,
+              ElementsAre("prepare", "reconstruct", "classify", "horizon", "classify", "horizon", "classify", "horizon",
+                          "combine", "denoise", "denoise"));
   EXPECT_THAT(run(frame, settings_of({0.1, 0.6, 2}), "ao,ao-scales").passes,
-              ElementsAre("prepare", "reconstruct", "classify", "horizon", "classify", "horizon", "classify", "horizon", "combine", "denoise", "denoise", "denoise", "denoise"));
-  EXPECT_THAT(run(frame, settings_of({0.6}), "ao,ao-scales").passes, ElementsAre("prepare", "reconstruct", "classify", "horizon", "denoise", "denoise"));
+              ElementsAre("prepare", "reconstruct", "classify", "horizon", "classify", "horizon", "classify", "horizon",
+                          "combine", "denoise", "denoise", "denoise", "denoise"));
+  EXPECT_THAT(run(frame, settings_of({0.6}), "ao,ao-scales").passes,
+              ElementsAre("prepare", "reconstruct", "classify", "horizon", "denoise", "denoise"));
 }
 
 TEST(Scales, of_one_radius_are_the_ao) {
@@ -150,7 +159,8 @@ class ScaleFiles : public CommandLine {
   Finished scaled(const std::vector<std::string>& more) const {
     std::vector<std::string> arguments{"run"};
     arguments.insert(arguments.end(), more.begin(), more.end());
-    arguments.insert(arguments.end(), {frame, "-o", ao, "--camera", camera});  // behind the radii, which must not swallow the input
+    // behind the radii, which must not swallow the input
+    arguments.insert(arguments.end(), {frame, "-o", ao, "--camera", camera});
     return run_program(arguments);
   }
   Image good(const std::vector<std::string>& more) const {
@@ -176,7 +186,9 @@ TEST_F(ScaleFiles, may_come_from_a_preset_and_are_printed_as_one) {
   write_bytes(preset, "radius = [0.5, 2]\n");
   const Image typed = good({"--radius", "0.5", "--radius", "2"});
   EXPECT_TRUE(std::ranges::equal(good({"--preset", preset}).plane("Y"), typed.plane("Y")));
-  EXPECT_TRUE(std::ranges::equal(good({"--preset", preset, "--radius", "3"}).plane("Y"), good({"--radius", "3"}).plane("Y"))) << "options win";
+  EXPECT_TRUE(
+      std::ranges::equal(good({"--preset", preset, "--radius", "3"}).plane("Y"), good({"--radius", "3"}).plane("Y")))
+      << "options win";
   const std::string printed = scaled({"--radius", "0.5", "--radius", "2", "--print-config"}).out;
   EXPECT_THAT(printed, HasSubstr("radius=[0.5, 2]\n"));
   write_bytes(preset, printed);
@@ -194,7 +206,9 @@ TEST_F(ScaleFiles, of_a_region_reach_as_far_as_the_largest) {
   ASSERT_EQ(part.data, (Window{20, 18, 9, 9}));
   for (const auto& name : whole.names)
     for (int y = 0; y < 9; y++)
-      for (int x = 0; x < 9; x++) ASSERT_EQ(part.plane(name)[std::size_t(y * 9 + x)], whole.plane(name)[std::size_t((y + 18) * 64 + x + 20)]) << name << x << " " << y;
+      for (int x = 0; x < 9; x++)
+        ASSERT_EQ(part.plane(name)[std::size_t(y * 9 + x)], whole.plane(name)[std::size_t((y + 18) * 64 + x + 20)])
+            << name << x << " " << y;
 }
 
 TEST_F(ScaleFiles, count_in_digest_and_statistics) {
@@ -209,7 +223,8 @@ TEST_F(ScaleFiles, count_in_digest_and_statistics) {
   EXPECT_EQ(digest({1, 2}), digest({2, 1}));
   const std::string stats = folder / "stats.json";
   good({"--radius", "1", "--radius", "2", "--slices", "2", "--steps", "5", "--stride", "1", "--stats", stats});
-  EXPECT_NEAR(nlohmann::json::parse(read_bytes(stats)).at("frames")[0].at("samples_per_pixel").get<double>(), 2 * 2 * 2 * 5, 1e-9);
+  EXPECT_NEAR(nlohmann::json::parse(read_bytes(stats)).at("frames")[0].at("samples_per_pixel").get<double>(),
+              2 * 2 * 2 * 5, 1e-9);
 }
 
 TEST_F(ScaleFiles, that_make_no_sense_are_refused) {
@@ -226,7 +241,8 @@ TEST_F(ScaleFiles, that_make_no_sense_are_refused) {
   refused(nine, "at most 8");
   for (const char* estimator : {"hbao", "crytek"}) {
     refused({"--radius", "1", "--aov", "bent-normal", "--estimator", estimator}, "gtao and bitmask");
-    EXPECT_EQ(scaled({"--radius", "1", "--aov", "specular-occlusion", "--estimator", estimator}).code, 0) << "by the shading normal";
+    EXPECT_EQ(scaled({"--radius", "1", "--aov", "specular-occlusion", "--estimator", estimator}).code, 0)
+        << "by the shading normal";
   }
 }
 

@@ -1,4 +1,5 @@
-// What is made of the visibility: shaping, multi-bounce, specular occlusion, and the bent normal of a slice; each against its definition.
+// What is made of the visibility: shaping, multi-bounce, specular occlusion, and the bent normal of a slice; each
+// against its definition.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
@@ -39,7 +40,8 @@ gpu::Buffer& given(const char* name, const Planes& values) {
 }
 
 /// What a pass makes of the frame's G-buffer.
-Planes pass(const HostFrame& frame, const std::function<gpu::Buffer&(const GBuffer&, FrameInputs&)>& record, FrameCounts* counts = nullptr) {
+Planes pass(const HostFrame& frame, const std::function<gpu::Buffer&(const GBuffer&, FrameInputs&)>& record,
+            FrameCounts* counts = nullptr) {
   gpu::Recorder& gpu = test::recorder();
   FrameInputs inputs = upload(gpu, frame);
   for (const auto* plane : {inputs.depth, inputs.normal})
@@ -56,7 +58,8 @@ Planes pass(const HostFrame& frame, const std::function<gpu::Buffer&(const GBuff
 
 /// A ball before a tilted floor, and sky: normals and depths of all kinds.
 Rendering ball() {
-  return test::render({{Plane{.point = {0, 0, -1}, .normal = test::unit({-0.2, 0, 1})}, Sphere{.center = {6, 0.3, 0.4}, .radius = 1.6}}},
+  return test::render({{Plane{.point = {0, 0, -1}, .normal = test::unit({-0.2, 0, 1})},
+                        Sphere{.center = {6, 0.3, 0.4}, .radius = 1.6}}},
                       Shot::perspective({}, {1, 0, 0}, 70, 61, 47));
 }
 
@@ -71,11 +74,15 @@ Planes uneven_ao(std::size_t count) {
 
 // Shape.
 
-Planes shaped(const HostFrame& frame, const Planes& ao, const EstimatorSettings& settings, const Planes* material = nullptr, FrameCounts* counts = nullptr) {
-  return pass(frame, [&](const GBuffer& gbuffer, FrameInputs& inputs) -> gpu::Buffer& {
-    if (material) inputs.material_ao = &given("test material", *material);
-    return shape(test::recorder(), gbuffer, given("test ao", ao), inputs, settings);
-  }, counts);
+Planes shaped(const HostFrame& frame, const Planes& ao, const EstimatorSettings& settings,
+              const Planes* material = nullptr, FrameCounts* counts = nullptr) {
+  return pass(
+      frame,
+      [&](const GBuffer& gbuffer, FrameInputs& inputs) -> gpu::Buffer& {
+        if (material) inputs.material_ao = &given("test material", *material);
+        return shape(test::recorder(), gbuffer, given("test ao", ao), inputs, settings);
+      },
+      counts);
 }
 
 TEST(Shape, material_ao_multiplies_exactly_but_not_the_sky) {
@@ -91,7 +98,8 @@ TEST(Shape, material_ao_beyond_its_range_is_clamped_and_broken_values_count_as_o
   const HostFrame frame = ball().frame;
   const Planes ao(frame.depth.size(), 0.5f);
   const auto surfaces = std::uint32_t(std::ranges::count_if(frame.depth, [](float z) { return z < 1e9f; }));
-  const std::tuple<float, float, std::uint32_t> cases[] = {{2, 0.5f, 0}, {-1, 0, 0}, {kNan, 0.5f, surfaces}, {kInfinity, 0.5f, surfaces}};
+  const std::tuple<float, float, std::uint32_t> cases[] = {
+      {2, 0.5f, 0}, {-1, 0, 0}, {kNan, 0.5f, surfaces}, {kInfinity, 0.5f, surfaces}};
   for (const auto& [value, expected, repaired] : cases) {
     const Planes material(ao.size(), value);
     FrameCounts counts{};
@@ -112,9 +120,12 @@ TEST(Shape, fade_is_exact_at_its_ends_and_linear_between) {
   for (std::size_t i = 0; i < ao.size(); i++) {
     const double z = frame.depth[i], faded = std::clamp((z - 4.75) / (6.5 - 4.75), 0.0, 1.0);
     (z <= 4.75 ? before : z >= 6.5 ? beyond : between)++;
-    if (z <= 4.75) ASSERT_EQ(result[i], ao[i]) << z;
-    else if (z >= 6.5) ASSERT_EQ(result[i], 1.0f) << z;
-    else ASSERT_NEAR(result[i], ao[i] + (1 - ao[i]) * faded, 1e-6) << z;
+    if (z <= 4.75)
+      ASSERT_EQ(result[i], ao[i]) << z;
+    else if (z >= 6.5)
+      ASSERT_EQ(result[i], 1.0f) << z;
+    else
+      ASSERT_NEAR(result[i], ao[i] + (1 - ao[i]) * faded, 1e-6) << z;
   }
   EXPECT_GT(std::min({before, between, beyond}), 100);
 }
@@ -124,7 +135,8 @@ TEST(Shape, fade_is_of_the_screen_space_ao_alone) {
   EstimatorSettings settings;
   settings.fade_start = 0;
   settings.fade_end = 1e-3;
-  const Planes material(frame.depth.size(), 0.25f), result = shaped(frame, uneven_ao(material.size()), settings, &material);
+  const Planes material(frame.depth.size(), 0.25f),
+      result = shaped(frame, uneven_ao(material.size()), settings, &material);
   for (std::size_t i = 0; i < result.size(); i++) ASSERT_EQ(result[i], is_sky(frame, i) ? 1.0f : 0.25f) << i;
 }
 
@@ -141,10 +153,13 @@ Planes bounced(const Planes& ao, double albedo, const Planes* colors = nullptr) 
 
 TEST(MultiBounce, agrees_with_numbers_worked_out_by_hand) {
   const std::size_t pixels = ball().frame.depth.size();
-  // f = ((a A + b) A + c) A; albedo 0.8: a 1.29992, b -3.19438, c 2.89446; 0.5: a 0.6878, b -1.75585, c 2.0679; 0: below A, which wins.
-  const std::tuple<double, float, double> cases[] = {{0.8, 0.1f, 0.258802}, {0.8, 0.5f, 0.811125}, {0.5, 0.3f, 0.480914}, {0, 0.5f, 0.5}, {1, 0, 0}};
+  // f = ((a A + b) A + c) A; albedo 0.8: a 1.29992, b -3.19438, c 2.89446; 0.5: a 0.6878, b -1.75585, c 2.0679; 0:
+  // below A, which wins.
+  const std::tuple<double, float, double> cases[] = {
+      {0.8, 0.1f, 0.258802}, {0.8, 0.5f, 0.811125}, {0.5, 0.3f, 0.480914}, {0, 0.5f, 0.5}, {1, 0, 0}};
   for (const auto& [albedo, ao, expected] : cases)
-    for (const float value : bounced(Planes(pixels, ao), albedo)) ASSERT_NEAR(value, expected, 1e-5) << albedo << " " << ao;
+    for (const float value : bounced(Planes(pixels, ao), albedo))
+      ASSERT_NEAR(value, expected, 1e-5) << albedo << " " << ao;
 }
 
 TEST(MultiBounce, leaves_what_is_open_and_never_darkens) {
@@ -167,7 +182,8 @@ TEST(MultiBounce, every_colour_takes_its_own_albedo_and_broken_ones_return_nothi
   Planes colors(3 * pixels, 0.2f);
   std::fill_n(colors.begin() + std::ptrdiff_t(pixels), pixels, 3.0f);
   std::fill_n(colors.begin() + std::ptrdiff_t(2 * pixels), pixels, kNan);
-  const Planes result = bounced(ao, 0.5, &colors), red = bounced(ao, 0.2), green = bounced(ao, 1), blue = bounced(ao, 0);
+  const Planes result = bounced(ao, 0.5, &colors), red = bounced(ao, 0.2), green = bounced(ao, 1),
+               blue = bounced(ao, 0);
   for (std::size_t i = 0; i < pixels; i++) {
     ASSERT_EQ(result[i], red[i]);
     ASSERT_EQ(result[i + pixels], green[i]) << "an albedo above 1 is 1";
@@ -201,7 +217,8 @@ Planes specular(const HostFrame& frame, const Planes& ao, double roughness, cons
     EstimatorSettings settings;
     settings.roughness = roughness;
     gpu::Buffer& visibility = given("test ao", ao);
-    return specular_occlusion(test::recorder(), gbuffer, bent ? given("test bent", *bent) : *gbuffer.normal, visibility, settings);
+    return specular_occlusion(test::recorder(), gbuffer, bent ? given("test bent", *bent) : *gbuffer.normal, visibility,
+                              settings);
   });
 }
 
@@ -214,12 +231,14 @@ Vec3 mirror_at(const Rendering& rendering, std::size_t i) {
 
 /// Parts of the cone about `axis` that lie in the cone about `other`, by even points of its cap.
 double shared(Vec3 axis, double cos_axis, Vec3 other, double cos_other) {
-  const Vec3 x = test::unit(test::cross(axis, std::abs(axis.z) < 0.9 ? Vec3{0, 0, 1} : Vec3{1, 0, 0})), y = test::cross(axis, x);
+  const Vec3 x = test::unit(test::cross(axis, std::abs(axis.z) < 0.9 ? Vec3{0, 0, 1} : Vec3{1, 0, 0})),
+             y = test::cross(axis, x);
   constexpr int kRings = 300, kTurns = 300;
   int inside = 0;
   for (int r = 0; r < kRings; r++)
     for (int t = 0; t < kTurns; t++) {
-      const double c = 1 - (r + 0.5) / kRings * (1 - cos_axis), s = std::sqrt(1 - c * c), turn = 2 * kPi * (t + 0.5 * (r % 2)) / kTurns;
+      const double c = 1 - (r + 0.5) / kRings * (1 - cos_axis), s = std::sqrt(1 - c * c),
+                   turn = 2 * kPi * (t + 0.5 * (r % 2)) / kTurns;
       inside += test::dot(c * axis + s * (std::cos(turn) * x + std::sin(turn) * y), other) > cos_other;
     }
   return double(inside) / (kRings * kTurns);
@@ -228,7 +247,8 @@ double shared(Vec3 axis, double cos_axis, Vec3 other, double cos_other) {
 TEST(SpecularOcclusion, is_1_where_the_surface_is_open_and_0_where_it_is_closed) {
   const HostFrame frame = ball().frame;
   for (const double roughness : {0.0, 0.2, 0.5, 1.0}) {
-    for (const float value : specular(frame, Planes(frame.depth.size(), 1), roughness)) ASSERT_EQ(value, 1.0f) << roughness;
+    for (const float value : specular(frame, Planes(frame.depth.size(), 1), roughness))
+      ASSERT_EQ(value, 1.0f) << roughness;
     const Planes closed = specular(frame, Planes(frame.depth.size(), 0), roughness);
     for (std::size_t i = 0; i < closed.size(); i++) ASSERT_EQ(closed[i], is_sky(frame, i) ? 1.0f : 0.0f) << roughness;
   }
@@ -243,7 +263,8 @@ TEST(SpecularOcclusion, is_the_part_of_the_lobe_that_the_visible_cone_holds) {
   Planes packed(ao.size());
   std::vector<Vec3> bent(ao.size());
   for (std::size_t i = 0; i < ao.size(); i++) {
-    bent[i] = is_sky(frame, i) ? Vec3{0, 0, 1} : test::unit(normal_at(frame, i) + Vec3{spread(random), spread(random), spread(random)});
+    bent[i] = is_sky(frame, i) ? Vec3{0, 0, 1}
+                               : test::unit(normal_at(frame, i) + Vec3{spread(random), spread(random), spread(random)});
     packed[i] = packed_as_float(bent[i]);
   }
   for (const double roughness : {0.15, 0.4, 0.8}) {
@@ -253,7 +274,8 @@ TEST(SpecularOcclusion, is_the_part_of_the_lobe_that_the_visible_cone_holds) {
     for (std::size_t i = 0; i < ao.size(); i += 11) {
       if (is_sky(frame, i)) continue;
       const Vec3 mirror = mirror_at(rendering, i);
-      const double seen = shared(mirror, cos_lobe, bent[i], std::sqrt(1 - ao[i])), open = shared(mirror, cos_lobe, normal_at(frame, i), 0);
+      const double seen = shared(mirror, cos_lobe, bent[i], std::sqrt(1 - ao[i])),
+                   open = shared(mirror, cos_lobe, normal_at(frame, i), 0);
       ASSERT_NEAR(result[i], std::min(1.0, seen / open), 0.01) << roughness << ", ao " << ao[i];
       partly += result[i] > 0.05 && result[i] < 0.95;
     }
@@ -308,17 +330,21 @@ TEST(BentNormal, share_of_a_side_gives_the_angle_back) {
   for (double gamma = -1.5; gamma <= 1.5; gamma += 0.125) {
     const double whole = gamma + kPi / 2, end = std::cos(gamma) + whole * std::sin(gamma);
     const auto arc = [&](double theta) {
-      return std::cos(gamma) * std::sin(theta) * std::sin(theta) + std::sin(gamma) * (theta - std::sin(theta) * std::cos(theta));
+      return std::cos(gamma) * std::sin(theta) * std::sin(theta) +
+             std::sin(gamma) * (theta - std::sin(theta) * std::cos(theta));
     };
     for (int k = 1; k < 64; k++) {
       double low = 0, high = whole;  // by bisection
       for (int i = 0; i < 50; i++) (arc(0.5 * (low + high)) < k / 64.0 * end ? low : high) = 0.5 * (low + high);
-      ASSERT_NEAR(glsl::angle_of_share(k / 64.0f, float(whole), float(std::cos(gamma)), float(std::sin(gamma))), low, 2e-3) << gamma << " " << k;
+      ASSERT_NEAR(glsl::angle_of_share(k / 64.0f, float(whole), float(std::cos(gamma)), float(std::sin(gamma))), low,
+                  2e-3)
+          << gamma << " " << k;
     }
   }
 }
 
-/// The mean over slices about the view ray z of a receiver; `side` gives the open angle of a side, from its azimuth and its whole angle.
+/// The mean over slices about the view ray z of a receiver; `side` gives the open angle of a side, from its azimuth and
+/// its whole angle.
 Vec3 mean_open_direction(Vec3 normal, const std::function<double(double azimuth, double whole)>& side) {
   constexpr int kSlices = 2000;
   Vec3 sum;
@@ -341,7 +367,8 @@ TEST(BentNormal, of_an_open_surface_is_two_thirds_of_its_normal) {
 }
 
 TEST(BentNormal, beside_an_endless_wall_leans_away_by_the_arc_tangent_of_2_over_pi) {
-  const Vec3 mean = mean_open_direction({0, 0, 1}, [](double azimuth, double whole) { return std::cos(azimuth) > 0 ? 0 : whole; });
+  const Vec3 mean =
+      mean_open_direction({0, 0, 1}, [](double azimuth, double whole) { return std::cos(azimuth) > 0 ? 0 : whole; });
   EXPECT_NEAR(std::atan2(-mean.x, mean.z), std::atan(2 / kPi), 1e-5);
   EXPECT_NEAR(mean.y, 0, 1e-5);
 }

@@ -69,10 +69,12 @@ TileCounts expect_same(const HostFrame& frame, const EstimatorSettings& settings
 }
 
 TEST(Skip, a_floor_is_open_but_where_something_stands_on_it) {
-  const Scene scene{{parallelogram({-20, -20, 0}, {40, 0, 0}, {0, 40, 0}), Sphere{.center = {0, 0, 0.2}, .radius = 0.2}}};
+  const Scene scene{
+      {parallelogram({-20, -20, 0}, {40, 0, 0}, {0, 40, 0}), Sphere{.center = {0, 0, 0.2}, .radius = 0.2}}};
   const Rendering floor = render(scene, Shot::perspective({0, -3, 2}, {0, 0, 0}, 50, 160, 120));
   for (const Estimator estimator : kEstimators) {
-    const auto proved = expect_same(floor.frame, proving(estimator, 0.3), "estimator " + std::to_string(int(estimator))).open;
+    const auto proved =
+        expect_same(floor.frame, proving(estimator, 0.3), "estimator " + std::to_string(int(estimator))).open;
     EXPECT_GT(proved, 100u) << "of 300, estimator " << int(estimator);
     EXPECT_LT(proved, 295u);
   }
@@ -195,7 +197,8 @@ TEST(Skip, receivers_whose_normals_differ_a_little) {
       EstimatorSettings settings = proving(estimator, 2);
       expect_same(frame, settings, what);
       const auto values = run(frame, settings, true).values;
-      EXPECT_TRUE(estimator == Estimator::hbao || std::ranges::any_of(values, [](float x) { return x < 1; })) << what << ": or else all is open, and nothing proved";
+      EXPECT_TRUE(estimator == Estimator::hbao || std::ranges::any_of(values, [](float x) { return x < 1; }))
+          << what << ": or else all is open, and nothing proved";
     }
   }
 }
@@ -212,9 +215,12 @@ TEST(Skip, any_bits_as_input) {
   }
 }
 
-// At a radius that suits the frame few tiles are open, and proofs tell in which directions to look; at a small one some are.
+// At a radius that suits the frame few tiles are open, and proofs tell in which directions to look; at a small one some
+// are.
 TEST(Skip, rendered_frames) {
-  for (const auto& [scene, radius, small] : {std::tuple<std::string, double, double>("monkeys", 0.5, 0.02), {"colonnade", 0.75, 0.1}, {"machine", 0.006, 0.003}}) {
+  for (const auto& [scene, radius, small] : {std::tuple<std::string, double, double>("monkeys", 0.5, 0.02),
+                                             {"colonnade", 0.75, 0.1},
+                                             {"machine", 0.006, 0.003}}) {
     InputSettings input;
     input.input = ALCOVE_SOURCE_DIR "/examples/bench/" + scene + ".gbuffer.exr";
     input.camera = ALCOVE_SOURCE_DIR "/examples/bench/" + scene + ".camera.json";
@@ -237,13 +243,15 @@ Scene pit(double depth) {
   Scene scene{{Plane{{0, 0, -depth}, {0, 0, 1}}}};
   for (int i = 0; i < kSides; i++) {
     scene.primitives.push_back(Polygon{{around(i, 1, 0), around(i + 1, 1, 0), around(i + 1, 9, 0), around(i, 9, 0)}});
-    scene.primitives.push_back(Polygon{{around(i, 1, 0), around(i + 1, 1, 0), around(i + 1, 1, -depth), around(i, 1, -depth)}});
+    scene.primitives.push_back(
+        Polygon{{around(i, 1, 0), around(i + 1, 1, 0), around(i + 1, 1, -depth), around(i, 1, -depth)}});
   }
   return scene;
 }
 
 TEST(Skip, a_tolerance_takes_no_more_than_it_says) {
-  const Shot shots[] = {Shot::perspective({0, 0, 3}, {0.01, 0, 0}, 50, 240, 240), Shot::perspective({0, -1.5, 2}, {0, 0, 0}, 60, 240, 200),
+  const Shot shots[] = {Shot::perspective({0, 0, 3}, {0.01, 0, 0}, 50, 240, 240),
+                        Shot::perspective({0, -1.5, 2}, {0, 0, 0}, 60, 240, 200),
                         Shot::orthographic({0, -1, 4}, {0, 0, 0}, 2.6, 240, 240)};
   for (const Shot& shot : shots)
     for (const double tolerance : {1.0 / 1024, 0.01}) {
@@ -258,7 +266,8 @@ TEST(Skip, a_tolerance_takes_no_more_than_it_says) {
         settings.skip_tolerance = tolerance;
         const Outcome tolerant = run(frame, settings, false);
         double worst = 0;
-        for (std::size_t k = 0; k < frame.data.pixels(); k++) worst = std::max(worst, double(std::abs(tolerant.values[k] - exact.values[k])));
+        for (std::size_t k = 0; k < frame.data.pixels(); k++)
+          worst = std::max(worst, double(std::abs(tolerant.values[k] - exact.values[k])));
         EXPECT_LE(worst, tolerance) << "tolerance " << tolerance << ", share " << share;
         open += tolerant.tiles.open;
         proved += exact.tiles.open;
@@ -273,9 +282,12 @@ unsigned seed_or(unsigned usual) {
   return seed ? unsigned(std::atoi(seed)) : usual;
 }
 
-/// Any settings with so many samples that proofs are worth their cost: the presets', with more steps. What is compiled for them alone is as few as will do.
+/// Any settings with so many samples that proofs are worth their cost: the presets', with more steps. What is compiled
+/// for them alone is as few as will do.
 EstimatorSettings any_proving(RandomScenes& random) {
-  const auto one_of = [&](auto... values) { return std::array{values...}[std::size_t(random.whole(0, int(sizeof...(values)) - 1))]; };
+  const auto one_of = [&](auto... values) {
+    return std::array{values...}[std::size_t(random.whole(0, int(sizeof...(values)) - 1))];
+  };
   EstimatorSettings settings;
   settings.estimator = random.estimator();
   settings.radius = random.radius();
@@ -293,10 +305,13 @@ EstimatorSettings any_proving(RandomScenes& random) {
   std::tie(settings.slices, settings.steps, settings.stride, settings.denoise_radius) =
       one_of(std::tuple(1, 10, 0, 6), std::tuple(2, 16, 0, 4), std::tuple(3, 16, 1, 2), std::tuple(2, 16, 2, 3));
   if (settings.estimator != Estimator::crytek)
-    settings.resolution = one_of(Resolution::full, Resolution::full, Resolution::full, Resolution::half, Resolution::quarter);
+    settings.resolution =
+        one_of(Resolution::full, Resolution::full, Resolution::full, Resolution::half, Resolution::quarter);
   settings.denoise = one_of(Denoise::none, Denoise::bilateral, Denoise::bilateral, Denoise::bilateral, Denoise::box);
   settings.denoise_depth_sigma = one_of(0.0, 0.0, 0.1);
-  if (settings.denoise != Denoise::bilateral || settings.resolution != Resolution::full || settings.estimator == Estimator::crytek) settings.stride = 1;
+  if (settings.denoise != Denoise::bilateral || settings.resolution != Resolution::full ||
+      settings.estimator == Estimator::crytek)
+    settings.stride = 1;
   settings.seed = unsigned(random.whole(0, 3));
   while (!proves(settings)) settings.steps *= 2;
   return settings;
@@ -315,10 +330,15 @@ TEST(Skip, hundreds_of_random_settings) {
       const int x = scenes.whole(0, 9), y = scenes.whole(0, 9);
       frame.data.x += x, frame.data.y += y, frame.camera.cx += x, frame.camera.cy += y;
     }
-    const std::string estimator = "estimator " + std::to_string(int(settings.estimator)), resolution = "resolution " + std::to_string(int(settings.resolution)),
-                      stride = "stride " + std::to_string(stride_of(settings)), thickness = "thickness " + std::to_string(int(settings.thickness));
-    const TileCounts tiles = expect_same(frame, settings, "scene " + std::to_string(i) + ", " + estimator + ", " + resolution + ", " + stride + ", " + thickness);
-    for (const auto& kind : {estimator, resolution, stride, thickness}) proved[kind].open += tiles.open, proved[kind].all += tiles.open + tiles.listed;
+    const std::string estimator = "estimator " + std::to_string(int(settings.estimator)),
+                      resolution = "resolution " + std::to_string(int(settings.resolution)),
+                      stride = "stride " + std::to_string(stride_of(settings)),
+                      thickness = "thickness " + std::to_string(int(settings.thickness));
+    const TileCounts tiles = expect_same(
+        frame, settings,
+        "scene " + std::to_string(i) + ", " + estimator + ", " + resolution + ", " + stride + ", " + thickness);
+    for (const auto& kind : {estimator, resolution, stride, thickness})
+      proved[kind].open += tiles.open, proved[kind].all += tiles.open + tiles.listed;
   }
   EXPECT_EQ(proved.size(), 4 + 3 + 3 + 3);
   for (const auto& [kind, tiles] : proved) {
@@ -343,7 +363,8 @@ TEST(Skip, a_tolerance_opens_only_what_is_nearly_open) {
     const Outcome exact = run(frame, settings, false);
     settings.skip_tolerance = tolerance;
     const Outcome tolerant = run(frame, settings, false);
-    const std::string kind = "estimator " + std::to_string(int(estimator)) + ", thickness " + std::to_string(int(thickness));
+    const std::string kind =
+        "estimator " + std::to_string(int(estimator)) + ", thickness " + std::to_string(int(thickness));
     const std::string what = "scene " + std::to_string(i) + ", " + kind;
     // The scales; they lie behind the AO, which is their mean.
     const std::size_t begin = frame.data.pixels(), end = begin * (2 + settings.further_radii.size());
@@ -376,7 +397,9 @@ TEST(Skip, thousands_of_random_scenes) {
     }
     if (i % 16 == 5) settings.steps *= settings.stride = 1 << scenes.whole(1, 2);
     const auto open = expect_same(frame, settings,
-                                  "scene " + std::to_string(i) + ", radius " + std::to_string(radius) + ", estimator " + std::to_string(int(estimator))).open;
+                                  "scene " + std::to_string(i) + ", radius " + std::to_string(radius) + ", estimator " +
+                                      std::to_string(int(estimator)))
+                          .open;
     proved += open;
     some += open > 0;
   }

@@ -10,8 +10,8 @@
 #include "core/chain/passes.h"
 #include "tests/support/device.h"
 #include "tests/support/difference.h"
-#include "tests/support/single_pass.h"
 #include "tests/support/scenes.h"
+#include "tests/support/single_pass.h"
 
 namespace alcove {
 namespace {
@@ -29,7 +29,9 @@ EstimatorSettings sparse_settings(double radius, int stride, int denoise_radius 
   return settings;
 }
 
-std::vector<float> run(const HostFrame& frame, const EstimatorSettings& settings) { return compute_ao(recorder(), frame, settings).ao; }
+std::vector<float> run(const HostFrame& frame, const EstimatorSettings& settings) {
+  return compute_ao(recorder(), frame, settings).ao;
+}
 
 class Sparse : public testing::TestWithParam<int> {};
 INSTANTIATE_TEST_SUITE_P(Estimate, Sparse, testing::Values(2, 4));
@@ -37,8 +39,10 @@ INSTANTIATE_TEST_SUITE_P(Estimate, Sparse, testing::Values(2, 4));
 TEST_P(Sparse, every_pixel_of_a_plane_is_open_at_any_size_and_filter) {
   for (const int radius : {1, 2, 3, 8})
     for (const auto& [width, height] : {std::pair{1, 1}, {3, 2}, {2, 7}, {13, 1}, {31, 17}, {64, 40}}) {
-      const Rendering plane = render(Scene{{parallelogram({-50, -50, 0}, {100, 0, 0}, {0, 100, 0})}}, Shot::perspective({0, -3, 2}, {0, 0, 0}, 50, width, height));
-      for (const float value : run(plane.frame, sparse_settings(1, GetParam(), radius))) ASSERT_EQ(value, 1.0f) << width << " x " << height << ", radius " << radius;
+      const Rendering plane = render(Scene{{parallelogram({-50, -50, 0}, {100, 0, 0}, {0, 100, 0})}},
+                                     Shot::perspective({0, -3, 2}, {0, 0, 0}, 50, width, height));
+      for (const float value : run(plane.frame, sparse_settings(1, GetParam(), radius)))
+        ASSERT_EQ(value, 1.0f) << width << " x " << height << ", radius " << radius;
     }
 }
 
@@ -46,7 +50,8 @@ TEST_P(Sparse, every_pixel_of_a_plane_is_open_at_any_size_and_filter) {
 TEST_P(Sparse, pixels_without_an_estimate_may_hold_anything) {
   const Rendering room = furnished_room(31, 17);
   const std::vector<float> expected = run(room.frame, sparse_settings(1, GetParam()));
-  for (float& value : recorder().buffer("ao", expected.size() * sizeof(float), gpu::Use::download).as<float>()) value = std::numeric_limits<float>::quiet_NaN();
+  for (float& value : recorder().buffer("ao", expected.size() * sizeof(float), gpu::Use::download).as<float>())
+    value = std::numeric_limits<float>::quiet_NaN();
   EXPECT_TRUE(same_bits(run(room.frame, sparse_settings(1, GetParam())), expected));
 }
 

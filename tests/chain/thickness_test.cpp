@@ -53,25 +53,30 @@ double segment(double x) { return x >= 1 ? 0 : std::acos(x) - x * std::sqrt(1 - 
 
 TEST(Thickness, a_wide_wall_blocks_as_an_endless_one) {
   const Shot shot = Shot::perspective({4, 0, 4}, {0.5, 0, 0.5}, 60, 240, 180);
-  EXPECT_LE(mean_error(render({{kFloor, kWall}}, shot), settings_of(1, ThicknessKind::automatic), [&](const Hit& hit) -> std::optional<double> {
-    if (!shot.sees_ball(hit.position, 1)) return std::nullopt;
-    return 1 - segment(hit.primitive == 0 ? hit.position.x : hit.position.z) / std::numbers::pi;
-  }), 0.005);
+  EXPECT_LE(mean_error(render({{kFloor, kWall}}, shot), settings_of(1, ThicknessKind::automatic),
+                       [&](const Hit& hit) -> std::optional<double> {
+                         if (!shot.sees_ball(hit.position, 1)) return std::nullopt;
+                         return 1 - segment(hit.primitive == 0 ? hit.position.x : hit.position.z) / std::numbers::pi;
+                       }),
+            0.005);
 }
 
 TEST(Thickness, a_bowl_blocks_all_below_its_rim) {
   const double cosine = 0.5, rim = std::sqrt(0.75);
   const Sphere bowl{.center = {0, 0, 0}, .radius = 1, .axis = {0, 0, -1}, .cos_half_angle = cosine};
   const Plane ground{.point = {0, 0, -cosine}, .normal = {0, 0, 1}, .hole = rim};
-  EXPECT_LE(mean_error(render({{bowl, ground}}, Shot::perspective({0.1, -0.2, 1}, {0, 0, -0.7}, 90, 240, 240)), settings_of(1000, ThicknessKind::automatic),
-                       [&](const Hit& hit) { return hit.primitive == 0 ? std::optional((1 + cosine) / 2) : std::nullopt; }),
-            0.005);
+  EXPECT_LE(
+      mean_error(render({{bowl, ground}}, Shot::perspective({0.1, -0.2, 1}, {0, 0, -0.7}, 90, 240, 240)),
+                 settings_of(1000, ThicknessKind::automatic),
+                 [&](const Hit& hit) { return hit.primitive == 0 ? std::optional((1 + cosine) / 2) : std::nullopt; }),
+      0.005);
 }
 
 /// The mean AO of the floor under blades that hang over it.
 double floor_under_blades(ThicknessKind thickness, double length = 0) {
   Scene scene{{kFloor}};
-  for (int i = -6; i <= 6; i++) scene.primitives.emplace_back(parallelogram({0.25 * i, -2, 0.2}, {0.03, 0, 0}, {0, 4, 0}));
+  for (int i = -6; i <= 6; i++)
+    scene.primitives.emplace_back(parallelogram({0.25 * i, -2, 0.2}, {0.03, 0, 0}, {0, 4, 0}));
   const Rendering rendering = render(scene, Shot::perspective({0.3, -2, 2.4}, {0, 0, 0}, 50, 240, 180));
   const std::vector<float> ao = compute_ao(recorder(), rendering.frame, settings_of(0.6, thickness, length)).ao;
   double sum = 0;
@@ -82,7 +87,8 @@ double floor_under_blades(ThicknessKind thickness, double length = 0) {
 }
 
 TEST(Thickness, thin_blades_block_as_thin_ones) {
-  const double measured = floor_under_blades(ThicknessKind::automatic), thin = floor_under_blades(ThicknessKind::constant, 0.03),
+  const double measured = floor_under_blades(ThicknessKind::automatic),
+               thin = floor_under_blades(ThicknessKind::constant, 0.03),
                endless = floor_under_blades(ThicknessKind::infinite);
   EXPECT_NEAR(measured, thin, 0.05);
   EXPECT_GE(measured, endless + 0.1);

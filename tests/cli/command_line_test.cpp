@@ -1,4 +1,5 @@
-// The command line as an interface: help, presets, devices, and what a good run leaves behind. Refusals: bad_input_test.cpp.
+// The command line as an interface: help, presets, devices, and what a good run leaves behind. Refusals:
+// bad_input_test.cpp.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,9 +12,9 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/options.h"
-#include "core/run/batch.h"
 #include "core/base/error.h"
 #include "core/formats/exr.h"
+#include "core/run/batch.h"
 #include "tests/support/command_line.h"
 #include "tests/support/exr_header.h"
 
@@ -51,12 +52,16 @@ void expect_usage_error(const std::vector<std::string>& arguments, const std::ve
 TEST_F(CommandLine, no_arguments_give_the_help_and_code_2) {
   const Finished finished = run_program({});
   EXPECT_EQ(finished.code, 2);
-  EXPECT_THAT(finished.out + finished.err, AllOf(HasSubstr("Usage"), HasSubstr("run"), HasSubstr("presets"), HasSubstr("devices")));
+  EXPECT_THAT(finished.out + finished.err,
+              AllOf(HasSubstr("Usage"), HasSubstr("run"), HasSubstr("presets"), HasSubstr("devices")));
 }
 
 TEST_F(CommandLine, help_and_version_give_code_0) {
-  for (const std::vector<std::string>& arguments :
-       {std::vector<std::string>{"--help"}, {"run", "--help"}, {"run", "-h"}, {"presets", "--help"}, {"devices", "-h"}}) {
+  for (const std::vector<std::string>& arguments : {std::vector<std::string>{"--help"},
+                                                    {"run", "--help"},
+                                                    {"run", "-h"},
+                                                    {"presets", "--help"},
+                                                    {"devices", "-h"}}) {
     const Finished finished = run_program(arguments);
     EXPECT_EQ(finished.code, 0) << testing::PrintToString(arguments) << finished;
     EXPECT_THAT(finished.out, HasSubstr("Usage")) << testing::PrintToString(arguments);
@@ -69,8 +74,8 @@ TEST_F(CommandLine, help_and_version_give_code_0) {
 
 TEST_F(CommandLine, help_of_run_prints_every_default) {
   const std::string help = run_program({"run", "--help"}).out;
-  for (const char* text :
-       {"=auto", "=1000000000", "=none", "=half", "=zip", "--slices NUMBER=", "--steps NUMBER=", "--seed NUMBER=0", "--threads NUMBER=0"})
+  for (const char* text : {"=auto", "=1000000000", "=none", "=half", "=zip",
+                           "--slices NUMBER=", "--steps NUMBER=", "--seed NUMBER=0", "--threads NUMBER=0"})
     EXPECT_THAT(help, HasSubstr(text));
 }
 
@@ -94,16 +99,26 @@ TEST_F(CommandLine, unexpected_words_are_usage_errors) {
 }
 
 TEST_F(CommandLine, numbers_out_of_range_name_option_and_range) {
-  for (const char* value : {"0", "-1", "nan", "inf", "wide"}) expect_usage_error({"run", frame, "-o", ao, "--radius", value}, {"--radius"});
-  const std::pair<const char*, std::vector<std::string>> cases[] = {{"--radius", {"1e400", "", "1,5", "1 2", "2e18", "-inf"}},
-                                                                    {"--fov", {"0", "180", "nan"}}, {"--slices", {"0", "65", "2.5"}},
-                                                                    {"--steps", {"0", "4097"}}, {"--falloff-start", {"1", "-0.1"}},
-                                                                    {"--power", {"0", "101"}}, {"--denoise-radius", {"0", "9", "1.5"}},
-                                                                    {"--denoise-kernel", {"1", "1,-1", "0,1", "1,,2", "1,x", "1,inf", "1,1,1,1,1,1,1,1,1,1"}},
-                                                                    {"--denoise-depth-sigma", {"-1", "101"}}, {"--intensity", {"-1", "inf"}},
-                                                                    {"--seed", {"-1", "4294967296", "0.5"}}, {"--sky", {"0"}}, {"--focal", {"0"}},
-                                                                    {"--aperture", {"-36"}}, {"--ortho-width", {"0"}}, {"--depth-scale", {"0", "-1"}},
-                                                                    {"--threads", {"-1", "1025"}}};
+  for (const char* value : {"0", "-1", "nan", "inf", "wide"})
+    expect_usage_error({"run", frame, "-o", ao, "--radius", value}, {"--radius"});
+  const std::pair<const char*, std::vector<std::string>> cases[] = {
+      {"--radius", {"1e400", "", "1,5", "1 2", "2e18", "-inf"}},
+      {"--fov", {"0", "180", "nan"}},
+      {"--slices", {"0", "65", "2.5"}},
+      {"--steps", {"0", "4097"}},
+      {"--falloff-start", {"1", "-0.1"}},
+      {"--power", {"0", "101"}},
+      {"--denoise-radius", {"0", "9", "1.5"}},
+      {"--denoise-kernel", {"1", "1,-1", "0,1", "1,,2", "1,x", "1,inf", "1,1,1,1,1,1,1,1,1,1"}},
+      {"--denoise-depth-sigma", {"-1", "101"}},
+      {"--intensity", {"-1", "inf"}},
+      {"--seed", {"-1", "4294967296", "0.5"}},
+      {"--sky", {"0"}},
+      {"--focal", {"0"}},
+      {"--aperture", {"-36"}},
+      {"--ortho-width", {"0"}},
+      {"--depth-scale", {"0", "-1"}},
+      {"--threads", {"-1", "1025"}}};
   for (const auto& [option, values] : cases)
     for (const auto& value : values) {
       RunOptions options;
@@ -139,18 +154,44 @@ TEST_F(CommandLine, later_presets_win_and_options_win_over_presets) {
   write_bytes(folder / "second.toml", "slices = 7\n");
   const std::string both = config({"--preset", folder / "first.toml", "--preset", folder / "second.toml"});
   EXPECT_THAT(lines_of(both), AllOf(Contains("radius=2"), Contains("slices=7")));
-  for (const auto& arguments : {std::vector<std::string>{"--slices", "9", "--preset", "draft"}, {"--preset", "draft", "--slices", "9"}})
+  for (const auto& arguments :
+       {std::vector<std::string>{"--slices", "9", "--preset", "draft"}, {"--preset", "draft", "--slices", "9"}})
     EXPECT_THAT(lines_of(config(arguments)), Contains("slices=9"));
 }
 
 TEST_F(CommandLine, printed_config_is_a_preset_that_gives_itself) {
   const std::string odd_name = "a b/\"cam\" = ü.json";
-  const std::string printed = config({"--radius", "0.1234567890123", "--camera", odd_name, "--falloff", "smooth", "--falloff-start", "0.25",
-                                      "--seed", "4294967295", "--sky", "1e10", "--device", "cpu", "--require-gpu", "--no-pipeline-cache",
-                                      "--denoise-kernel", "0.5,0.25,0.125", "-v", "--normal-channels", "a.X,b.Y,c.Z", "--type", "float", "-o", "out put.exr",
-                                      "--preset", "draft", "--fov", "60"});
-  EXPECT_THAT(printed,
-              AllOf(HasSubstr(odd_name), HasSubstr("0.1234567890123"), HasSubstr("out put.exr"), HasSubstr("a.X,b.Y,c.Z"), HasSubstr("0.5,0.25,0.125"), HasSubstr("require-gpu")));
+  const std::string printed = config({"--radius",
+                                      "0.1234567890123",
+                                      "--camera",
+                                      odd_name,
+                                      "--falloff",
+                                      "smooth",
+                                      "--falloff-start",
+                                      "0.25",
+                                      "--seed",
+                                      "4294967295",
+                                      "--sky",
+                                      "1e10",
+                                      "--device",
+                                      "cpu",
+                                      "--require-gpu",
+                                      "--no-pipeline-cache",
+                                      "--denoise-kernel",
+                                      "0.5,0.25,0.125",
+                                      "-v",
+                                      "--normal-channels",
+                                      "a.X,b.Y,c.Z",
+                                      "--type",
+                                      "float",
+                                      "-o",
+                                      "out put.exr",
+                                      "--preset",
+                                      "draft",
+                                      "--fov",
+                                      "60"});
+  EXPECT_THAT(printed, AllOf(HasSubstr(odd_name), HasSubstr("0.1234567890123"), HasSubstr("out put.exr"),
+                             HasSubstr("a.X,b.Y,c.Z"), HasSubstr("0.5,0.25,0.125"), HasSubstr("require-gpu")));
   const std::string preset = folder / "printed.toml";
   write_bytes(preset, printed);
   EXPECT_EQ(config({"--preset", preset}), printed);
@@ -171,8 +212,10 @@ TEST_F(CommandLine, a_switch_given_twice_is_printed_as_a_preset_can_hold_it) {
 
 TEST_F(CommandLine, a_wrong_preset_is_a_usage_error_that_names_it) {
   const std::string preset = folder / "shot.toml";
-  const std::pair<const char*, const char*> cases[] = {
-      {"radios = 1\n", "radios"}, {"radius = -1\n", "radius"}, {"falloff = \"cubic\"\n", "cubic"}, {"[radius]\nx = 1\n", "radius"}};
+  const std::pair<const char*, const char*> cases[] = {{"radios = 1\n", "radios"},
+                                                       {"radius = -1\n", "radius"},
+                                                       {"falloff = \"cubic\"\n", "cubic"},
+                                                       {"[radius]\nx = 1\n", "radius"}};
   for (const auto& [text, word] : cases) {
     write_bytes(preset, text);
     expect_usage_error({"run", frame, "-o", ao, "--preset", preset}, {word, "shot.toml"});
@@ -185,7 +228,8 @@ TEST_F(CommandLine, a_wrong_preset_is_a_usage_error_that_names_it) {
 
 TEST_F(CommandLine, a_file_in_the_working_directory_is_not_taken_for_a_preset_of_that_name) {
   write_bytes(folder / "production", "slices = 1\n");
-  const Finished finished = run_program({"run", "--preset", "production", "--print-config"}, {.folder = folder.path(), .environment = {}});
+  const Finished finished =
+      run_program({"run", "--preset", "production", "--print-config"}, {.folder = folder.path(), .environment = {}});
   EXPECT_EQ(finished.out, config({"--preset", "production"})) << finished;
 }
 
@@ -194,7 +238,8 @@ TEST_F(CommandLine, a_switch_that_a_preset_turns_off_is_off) {
   const Surroundings surroundings{.environment = {{"XDG_CACHE_HOME", folder / "cache"}}};
   const Finished finished = run({"--preset", folder / "on.toml"}, surroundings);
   EXPECT_EQ(finished.code, 0) << finished;
-  EXPECT_THAT(names_in(folder / "cache"), Contains(StartsWith("alcove/pipelines-"))) << "no-pipeline-cache = false keeps the cache";
+  EXPECT_THAT(names_in(folder / "cache"), Contains(StartsWith("alcove/pipelines-")))
+      << "no-pipeline-cache = false keeps the cache";
   fs::remove_all(folder / "cache");
   EXPECT_EQ(run({"--no-pipeline-cache"}, surroundings).code, 0);
   EXPECT_FALSE(fs::exists(folder / "cache/alcove"));
@@ -205,7 +250,8 @@ TEST_F(CommandLine, presets_of_another_folder_have_their_path_as_name) {
   write_bytes(folder / "presets/show/day.toml", "slices = 11\n");
   const Surroundings surroundings{.environment = {{"ALCOVE_PRESETS", folder / "presets"}}};
   EXPECT_EQ(run_program({"presets"}, surroundings).out, "show/day\n");
-  EXPECT_THAT(lines_of(run_program({"run", "--preset", "show/day", "--print-config"}, surroundings).out), Contains("slices=11"));
+  EXPECT_THAT(lines_of(run_program({"run", "--preset", "show/day", "--print-config"}, surroundings).out),
+              Contains("slices=11"));
 }
 
 TEST_F(CommandLine, devices_are_listed_as_text_and_json) {
@@ -216,12 +262,14 @@ TEST_F(CommandLine, devices_are_listed_as_text_and_json) {
   EXPECT_EQ(lines_of(text.out).size(), devices.size());
   ASSERT_FALSE(devices.empty());
   for (const auto& device : devices) {
-    for (const char* field : {"index", "name", "type", "uuid", "driver", "api_version", "memory_bytes", "buffer_bytes", "usable"})
+    for (const char* field :
+         {"index", "name", "type", "uuid", "driver", "api_version", "memory_bytes", "buffer_bytes", "usable"})
       EXPECT_TRUE(device.contains(field)) << field;
     EXPECT_THAT(text.out, HasSubstr(device["name"].get<std::string>()));
   }
   const std::string uuid = devices[0]["uuid"], name = devices[0]["name"];
-  for (const std::string& choice : {std::string("0"), uuid, name}) EXPECT_EQ(run({"--device", choice}).code, 0) << choice;
+  for (const std::string& choice : {std::string("0"), uuid, name})
+    EXPECT_EQ(run({"--device", choice}).code, 0) << choice;
 }
 
 // What a good run writes.
@@ -248,7 +296,8 @@ TEST_F(CommandLine, ao_is_one_half_channel_with_the_windows_and_attributes_of_th
       EXPECT_NE(text_in(header, "alcove/device"), "(none)");
       for (const auto& [name, attribute] : before)
         if (name != "channels") EXPECT_EQ(header[name].bytes, attribute.bytes) << name << " over " << to_string(data);
-      for (const auto& [name, attribute] : header) EXPECT_TRUE(before.contains(name) || name.starts_with("alcove/")) << name << " is new";
+      for (const auto& [name, attribute] : header)
+        EXPECT_TRUE(before.contains(name) || name.starts_with("alcove/")) << name << " is new";
     }
 }
 
@@ -258,7 +307,9 @@ TEST_F(CommandLine, ao_is_open_above_and_dark_in_the_corner_whatever_the_data_wi
     const Finished finished = run({"--type", "float"});
     ASSERT_EQ(finished.code, 0) << finished;
     const Image image = read_exr_image(ao);
-    const auto at = [&](int x, int y) { return image.pixels[std::size_t(y - data.y) * std::size_t(data.width) + std::size_t(x - data.x)]; };
+    const auto at = [&](int x, int y) {
+      return image.pixels[std::size_t(y - data.y) * std::size_t(data.width) + std::size_t(x - data.x)];
+    };
     EXPECT_NEAR(at(32, 12), 1, 1e-3) << "the open wall, " << to_string(data);
     EXPECT_LT(at(32, 27), 0.75) << "the wall just above the floor, " << to_string(data);
     EXPECT_GT(at(32, 27), 0.3) << to_string(data);
@@ -284,15 +335,18 @@ struct Composite {
   std::span<const float> in(const std::string& name) const { return input.plane("ViewLayer." + name); }
 };
 
-/// The largest error of the composite against `ambient`, in units of what half precision allows; alpha must be the same bits.
-void expect_composite(const Composite& frame, const std::function<double(const std::string& component, std::size_t pixel)>& ambient,
+/// The largest error of the composite against `ambient`, in units of what half precision allows; alpha must be the same
+/// bits.
+void expect_composite(const Composite& frame,
+                      const std::function<double(const std::string& component, std::size_t pixel)>& ambient,
                       double precision) {
   const auto alpha = frame.in("Combined.A"), ao = frame.ao.plane("Y"), alpha_after = frame.result.plane("A");
   EXPECT_EQ(std::memcmp(alpha.data(), alpha_after.data(), alpha.size_bytes()), 0) << "alpha has changed";
   for (const std::string component : {"R", "G", "B"}) {
     const auto beauty = frame.in("Combined." + component), result = frame.result.plane(component);
     for (std::size_t i = 0; i < beauty.size(); i++) {
-      const double f = 1 - double(alpha[i]) * (1 - double(ao[i])), light = ambient(component, i), expected = beauty[i] - light + light * f;
+      const double f = 1 - double(alpha[i]) * (1 - double(ao[i])), light = ambient(component, i),
+                   expected = beauty[i] - light + light * f;
       ASSERT_NEAR(result[i], expected, precision * (std::abs(expected) + 1))
           << component << " of pixel " << i << ", ao " << ao[i] << ", alpha " << alpha[i];
     }
@@ -320,12 +374,17 @@ TEST_F(Composites, composite_dims_only_the_ambient_part) {
       for (const auto& [name, plane] : input.planes)
         if (!name.ends_with("Depth.Z")) input.halves.insert(name);
     const Composite frame = compute(input);
-    expect_composite(frame, [&](const std::string& c, std::size_t i) { return double(frame.in("DiffInd." + c)[i]) * frame.in("DiffCol." + c)[i]; },
-                     is_half ? 0x1p-11 : 1e-6);
+    expect_composite(
+        frame,
+        [&](const std::string& c, std::size_t i) {
+          return double(frame.in("DiffInd." + c)[i]) * frame.in("DiffCol." + c)[i];
+        },
+        is_half ? 0x1p-11 : 1e-6);
     EXPECT_THAT(how(), StartsWith("ambient"));
     const int type = is_half ? 1 : 2;
     EXPECT_THAT(channels_in(read_header(folder / "composite.exr")),
-                ElementsAre(HeaderChannel{"A", type}, HeaderChannel{"B", type}, HeaderChannel{"G", type}, HeaderChannel{"R", type}));
+                ElementsAre(HeaderChannel{"A", type}, HeaderChannel{"B", type}, HeaderChannel{"G", type},
+                            HeaderChannel{"R", type}));
   }
 }
 
@@ -338,15 +397,18 @@ TEST_F(Composites, blender_5_names_mean_the_same_light) {
     input.rename("ViewLayer.DiffCol" + c, "ViewLayer.Diffuse Color" + c);
   }
   const Composite new_names = compute(input);
-  EXPECT_EQ(old_names.result.pixels, new_names.result.pixels) << "the indirect light of Blender is without the surface's colour, under either name";
+  EXPECT_EQ(old_names.result.pixels, new_names.result.pixels)
+      << "the indirect light of Blender is without the surface's colour, under either name";
 }
 
 TEST_F(Composites, arnold_indirect_light_holds_the_colour_already) {
   FrameFile input = wall_frame();
   add_beauty(input);
-  for (const std::string c : {".R", ".G", ".B"}) input.rename("ViewLayer.DiffInd" + c, "ViewLayer.diffuse_indirect" + c);
+  for (const std::string c : {".R", ".G", ".B"})
+    input.rename("ViewLayer.DiffInd" + c, "ViewLayer.diffuse_indirect" + c);
   const Composite frame = compute(input);
-  expect_composite(frame, [&](const std::string& c, std::size_t i) { return double(frame.in("diffuse_indirect." + c)[i]); }, 1e-6);
+  expect_composite(
+      frame, [&](const std::string& c, std::size_t i) { return double(frame.in("diffuse_indirect." + c)[i]); }, 1e-6);
 }
 
 TEST_F(Composites, composite_without_parts_is_a_multiply_and_says_so) {
@@ -354,7 +416,8 @@ TEST_F(Composites, composite_without_parts_is_a_multiply_and_says_so) {
   add_beauty(input);
   std::erase_if(input.planes, [](const auto& plane) { return plane.first.find(".Diff") != std::string::npos; });
   const Composite frame = compute(input);
-  expect_composite(frame, [&](const std::string& c, std::size_t i) { return double(frame.in("Combined." + c)[i]); }, 1e-6);
+  expect_composite(
+      frame, [&](const std::string& c, std::size_t i) { return double(frame.in("Combined." + c)[i]); }, 1e-6);
   EXPECT_THAT(how(), StartsWith("multiply"));
 }
 
@@ -378,7 +441,9 @@ TEST_F(Composites, nothing_that_leaves_is_nan_or_infinite_and_repairs_are_counte
   FrameFile input = wall_frame();
   add_beauty(input);
   const float nan = std::nanf(""), inf = INFINITY;
-  const auto spoil = [&](const char* name, std::size_t pixel, float value) { input.planes.at(std::string("ViewLayer.") + name)[pixel] = value; };
+  const auto spoil = [&](const char* name, std::size_t pixel, float value) {
+    input.planes.at(std::string("ViewLayer.") + name)[pixel] = value;
+  };
   spoil("Depth.Z", 100, nan);
   spoil("Depth.Z", 101, -1);
   spoil("Normal.X", 202, nan);
@@ -389,15 +454,18 @@ TEST_F(Composites, nothing_that_leaves_is_nan_or_infinite_and_repairs_are_counte
   const Composite frame = compute(input, {"--stats", folder / "stats.json"});
   for (const Image* image : {&frame.ao, &frame.result})
     for (std::size_t i = 0; i < image->pixels.size(); i++)
-      EXPECT_TRUE(std::isfinite(image->pixels[i])) << image->pixels[i] << " in " << image->names[i / kWallWindow.pixels()] << " of pixel "
-                                                   << i % kWallWindow.pixels();
-  EXPECT_EQ(json::parse(read_bytes(folder / "stats.json"))["frames"][0]["repaired_pixels"], 7) << "pixels 100, 101, 202 and 1900 to 1903";
+      EXPECT_TRUE(std::isfinite(image->pixels[i]))
+          << image->pixels[i] << " in " << image->names[i / kWallWindow.pixels()] << " of pixel "
+          << i % kWallWindow.pixels();
+  EXPECT_EQ(json::parse(read_bytes(folder / "stats.json"))["frames"][0]["repaired_pixels"], 7)
+      << "pixels 100, 101, 202 and 1900 to 1903";
 }
 
 TEST_F(Composites, a_composite_beyond_half_stays_finite) {
   FrameFile input = wall_frame();
   add_beauty(input);
-  for (const char* name : {"ViewLayer.DiffInd.R", "ViewLayer.DiffCol.R"}) input.planes[name].assign(kWallWindow.pixels(), 60000);
+  for (const char* name : {"ViewLayer.DiffInd.R", "ViewLayer.DiffCol.R"})
+    input.planes[name].assign(kWallWindow.pixels(), 60000);
   for (const auto& [name, plane] : input.planes)
     if (!name.ends_with("Depth.Z")) input.halves.insert(name);
   const Composite frame = compute(input);
@@ -442,7 +510,9 @@ TEST_F(CommandLine, stats_have_the_documented_fields_and_add_up) {
   EXPECT_NEAR(one.at("samples_per_pixel"), 2 * 2 * 5 / 2.0 * 35.0 / 36, 1e-9);
   EXPECT_EQ(one.at("repaired_pixels"), 0);
   EXPECT_EQ(one.at("parts"), 1);
-  EXPECT_EQ(one.at("tiles"), json({{"total", 40}, {"sky", 0}, {"proved", 0}, {"tolerated", 0}, {"kept", 0}, {"computed", 40}}));  // of 64 x 36 pixels
+  // of 64 x 36 pixels
+  EXPECT_EQ(one.at("tiles"),
+            json({{"total", 40}, {"sky", 0}, {"proved", 0}, {"tolerated", 0}, {"kept", 0}, {"computed", 40}}));
   EXPECT_EQ(totals.at("frames"), 1);
   EXPECT_EQ(totals.at("failed"), 0);
   for (const char* name : {"wall_s", "cpu_s", "peak_rss_mb"}) EXPECT_GT(totals.at(name), 0) << name;

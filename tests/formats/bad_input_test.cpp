@@ -28,8 +28,8 @@ class BadInput : public CommandLine {
     for (const std::string& file : {ao_out, composite, preview, stats}) write_bytes(file, kBefore);
   }
 
-  /// A run with these arguments must end with this code and one line on stderr that holds the words and names an option, and
-  /// must leave the output folder as it was.
+  /// A run with these arguments must end with this code and one line on stderr that holds the words and names an
+  /// option, and must leave the output folder as it was.
   void expect_refused(int code, const std::vector<std::string>& words, std::vector<std::string> arguments,
                       const Surroundings& surroundings = {}) const {
     arguments.insert(arguments.begin(), "run");
@@ -52,12 +52,13 @@ class BadInput : public CommandLine {
     return arguments;
   }
 
-  void expect_bad_input(const std::string& input, const std::vector<std::string>& words, const std::vector<std::string>& more = {}) const {
+  void expect_bad_input(const std::string& input, const std::vector<std::string>& words,
+                        const std::vector<std::string>& more = {}) const {
     expect_refused(3, words, good(input, more));
   }
 
-  const std::string out = folder / "out", ao_out = out + "/ao.exr", composite = out + "/composite.exr", preview = out + "/preview.png",
-                    stats = out + "/stats.json";
+  const std::string out = folder / "out", ao_out = out + "/ao.exr", composite = out + "/composite.exr",
+                    preview = out + "/preview.png", stats = out + "/stats.json";
 };
 
 // The input file.
@@ -88,7 +89,8 @@ TEST_F(BadInput, a_pipe_is_refused_and_not_waited_for) {
 TEST_F(BadInput, an_exr_cut_off_anywhere) {
   const std::string whole = read_bytes(frame);
   for (int cut = 0; cut < 12; cut++) {
-    write_bytes(folder / "cut.exr", whole.substr(0, cut < 6 ? 1 + std::size_t(cut) * 97 : whole.size() * std::size_t(cut - 5) / 6 - 1));
+    write_bytes(folder / "cut.exr",
+                whole.substr(0, cut < 6 ? 1 + std::size_t(cut) * 97 : whole.size() * std::size_t(cut - 5) / 6 - 1));
     expect_bad_input(folder / "cut.exr", {"cut.exr"});
   }
 }
@@ -97,7 +99,7 @@ TEST_F(BadInput, a_frame_larger_than_any_device_takes) {
   std::string bytes = read_bytes(frame);
   const std::size_t window = bytes.find("dataWindow") + sizeof("dataWindow") + sizeof("box2i") + 4;
   bytes.replace(window + 8, 4, std::string("\xff\xff\xff\x0f", 4));  // its right border
-  bytes.resize(200000);  // of fewer bytes nobody would believe it
+  bytes.resize(200000);                                              // of fewer bytes nobody would believe it
   write_bytes(folder / "wide.exr", bytes);
   expect_refused(5, {"wide.exr", "--device"}, good(folder / "wide.exr"));
 }
@@ -107,12 +109,15 @@ TEST_F(BadInput, no_depth_channel_lists_what_there_is_and_the_nearest) {
   input.rename("ViewLayer.Depth.Z", "ViewLayer.Deph.Z");
   input.write(frame);
   expect_bad_input(frame, {"wall.0042.exr", "--depth-channel",
-                           "there is ViewLayer.Deph.Z, ViewLayer.Normal.X, ViewLayer.Normal.Y, ViewLayer.Normal.Z", "did you mean ViewLayer.Deph.Z"});
+                           "there is ViewLayer.Deph.Z, ViewLayer.Normal.X, ViewLayer.Normal.Y, ViewLayer.Normal.Z",
+                           "did you mean ViewLayer.Deph.Z"});
 }
 
 TEST_F(BadInput, misspelt_channels_and_layers) {
-  expect_bad_input(frame, {"wall.0042.exr", "--depth-channel", "did you mean ViewLayer.Depth.Z"}, {"--depth-channel", "ViewLayer.Dept.Z"});
-  expect_bad_input(frame, {"wall.0042.exr", "--normal-channels", "ViewLayer.Norml"}, {"--normal-channels", "ViewLayer.Norml"});
+  expect_bad_input(frame, {"wall.0042.exr", "--depth-channel", "did you mean ViewLayer.Depth.Z"},
+                   {"--depth-channel", "ViewLayer.Dept.Z"});
+  expect_bad_input(frame, {"wall.0042.exr", "--normal-channels", "ViewLayer.Norml"},
+                   {"--normal-channels", "ViewLayer.Norml"});
   expect_bad_input(frame, {"wall.0042.exr", "--normal-channels", "did you mean ViewLayer.Normal."},
                    {"--normal-channels", "ViewLayer.Normal.X,ViewLayer.Normal.Y,ViewLayer.Normal.Q"});
   expect_bad_input(frame, {"wall.0042.exr", "--layer", "ViewLayr"}, {"--layer", "ViewLayr"});
@@ -135,7 +140,8 @@ TEST_F(BadInput, beauty_missing_or_of_another_size) {
   FrameFile beauty = wall_frame({0, 0, 32, 18}, {0, 0, 32, 18});
   add_beauty(beauty);
   beauty.write(folder / "small.exr");
-  expect_bad_input(frame, {"small.exr", "--beauty", "32x18", "64x36"}, {"--composite", composite, "--beauty", folder / "small.exr"});
+  expect_bad_input(frame, {"small.exr", "--beauty", "32x18", "64x36"},
+                   {"--composite", composite, "--beauty", folder / "small.exr"});
   expect_bad_input(frame, {"missing.exr", "--beauty"}, {"--composite", composite, "--beauty", folder / "missing.exr"});
 }
 
@@ -145,13 +151,15 @@ TEST_F(BadInput, an_unusable_colour_configuration_is_found_before_anything_is_wr
   input.write(frame);
   write_bytes(folder / "text.ocio", "no configuration");
   for (const char* name : {"missing.ocio", "text.ocio"})
-    expect_bad_input(frame, {name, "--ocio"}, {"--composite", composite, "--preview", preview, "--ocio", folder / name});
+    expect_bad_input(frame, {name, "--ocio"},
+                     {"--composite", composite, "--preview", preview, "--ocio", folder / name});
 }
 
 // The camera.
 
 TEST_F(BadInput, no_camera_names_the_options_that_give_one) {
-  expect_refused(2, {"wall.0042.exr", "--camera", "--fov", "--focal", "--aperture", "--ortho-width"}, {frame, "-o", ao_out, "--radius", "1"});
+  expect_refused(2, {"wall.0042.exr", "--camera", "--fov", "--focal", "--aperture", "--ortho-width"},
+                 {frame, "-o", ao_out, "--radius", "1"});
   expect_refused(2, {"--focal", "--aperture"}, {frame, "-o", ao_out, "--radius", "1", "--focal", "35"});
   expect_refused(2, {"--focal", "--aperture"}, {frame, "-o", ao_out, "--radius", "1", "--aperture", "36"});
 }
@@ -176,15 +184,20 @@ TEST_F(BadInput, camera_files_that_are_none) {
 }
 
 TEST_F(BadInput, camera_fields_that_are_missing_or_make_no_sense) {
-  const std::tuple<const char*, json, const char*> cases[] = {{"fy", nullptr, "fy"}, {"fx", 0, "fx"}, {"resolution", {0, 5}, "resolution"},
-                                                              {"resolution", {64, 48}, "64x48"},
-                                                              {"world_to_camera", {{1, 0, 0}, {0, 0, 1}, {0, -1, 0}}, "world_to_camera"},
-                                                              {"projection", "panoramic", "panoramic"},
-                                                              {"frames", {{{"frame", 1}}, {{"frame", 43}}}, "42"}};
+  const std::tuple<const char*, json, const char*> cases[] = {
+      {"fy", nullptr, "fy"},
+      {"fx", 0, "fx"},
+      {"resolution", {0, 5}, "resolution"},
+      {"resolution", {64, 48}, "64x48"},
+      {"world_to_camera", {{1, 0, 0}, {0, 0, 1}, {0, -1, 0}}, "world_to_camera"},
+      {"projection", "panoramic", "panoramic"},
+      {"frames", {{{"frame", 1}}, {{"frame", 43}}}, "42"}};
   for (const auto& [field, value, word] : cases) {
     json fields = wall_camera();
-    if (value.is_null()) fields.erase(field);
-    else fields[field] = value;
+    if (value.is_null())
+      fields.erase(field);
+    else
+      fields[field] = value;
     write_bytes(camera, fields.dump());
     expect_bad_input(frame, {"camera.json", word, "--camera"});
   }
@@ -206,7 +219,8 @@ TEST_F(BadInput, an_output_that_is_an_input) {
   fs::create_symlink(frame, folder / "link.exr");
   fs::create_hard_link(frame, folder / "hard.exr");
   for (const std::string& path : {frame, folder / "./out/../wall.0042.exr", folder / "link.exr", folder / "hard.exr"})
-    expect_refused(2, {path, "overwrite", "--output"}, {folder / "wall.0042.exr", "-o", path, "--camera", camera, "--radius", "1"});
+    expect_refused(2, {path, "overwrite", "--output"},
+                   {folder / "wall.0042.exr", "-o", path, "--camera", camera, "--radius", "1"});
   expect_refused(2, {"camera.json", "overwrite", "--stats"}, good(frame, {"--stats", camera}));
   expect_refused(2, {"wall.0042.exr", "overwrite", "--composite"}, good(frame, {"--composite", frame}));
   EXPECT_TRUE(read_bytes(frame) == before);
@@ -222,13 +236,15 @@ TEST_F(BadInput, an_output_where_no_file_can_be) {
   fs::create_directory(out + "/folder.exr");
   fs::create_symlink("loop", folder / "loop");
   const std::string missing = out + "/missing/ao.exr", below_file = ao_out + "/ao.exr";
-  for (const std::string& path : {missing, below_file, out + "/folder.exr", std::string("/dev/full"), std::string("/dev/null"), out + "/"}) {
+  for (const std::string& path :
+       {missing, below_file, out + "/folder.exr", std::string("/dev/full"), std::string("/dev/null"), out + "/"}) {
     expect_refused(4, {path, "--output"}, {frame, "-o", path, "--camera", camera, "--radius", "1"});
     for (const char* option : {"--composite", "--preview", "--stats"})
       if (path == missing) expect_refused(4, {path, option}, good(frame, {option, path}));
   }
   expect_refused(4, {folder / "loop/ao.exr", "--output"},
-                 {frame, "-o", folder / "loop/ao.exr", "--stats", folder / "loop/stats.json", "--camera", camera, "--radius", "1"});
+                 {frame, "-o", folder / "loop/ao.exr", "--stats", folder / "loop/stats.json", "--camera", camera,
+                  "--radius", "1"});
 }
 
 TEST_F(BadInput, a_read_only_folder) {
@@ -237,14 +253,18 @@ TEST_F(BadInput, a_read_only_folder) {
   const bool is_mount = ::geteuid() == 0;  // whom permissions do not stop
   if (is_mount && !mount_memory(locked, "size=64k")) GTEST_SKIP() << "this process may not mount";
   write_bytes(locked + "/ao.exr", kBefore);
-  if (is_mount) ASSERT_TRUE(make_read_only(locked));
-  else fs::permissions(locked, fs::perms::owner_read | fs::perms::owner_exec);
+  if (is_mount)
+    ASSERT_TRUE(make_read_only(locked));
+  else
+    fs::permissions(locked, fs::perms::owner_read | fs::perms::owner_exec);
   for (const char* name : {"/ao.exr", "/new.exr"})
     expect_refused(4, {locked + name, "--output"}, {frame, "-o", locked + name, "--camera", camera, "--radius", "1"});
   EXPECT_EQ(names_in(locked), std::vector<std::string>{"ao.exr"});
   EXPECT_EQ(read_bytes(locked + "/ao.exr"), kBefore);
-  if (is_mount) unmount(locked);
-  else fs::permissions(locked, fs::perms::owner_all);
+  if (is_mount)
+    unmount(locked);
+  else
+    fs::permissions(locked, fs::perms::owner_all);
 }
 
 TEST_F(BadInput, a_full_disk) {
@@ -256,7 +276,8 @@ TEST_F(BadInput, a_full_disk) {
   add_beauty(input);
   input.write(frame);
   write_bytes(camera, wall_camera(large).dump());
-  for (const char* name : {"/ao.exr", "/composite.exr", "/preview.png", "/stats.json"}) write_bytes(disk + name, kBefore);
+  for (const char* name : {"/ao.exr", "/composite.exr", "/preview.png", "/stats.json"})
+    write_bytes(disk + name, kBefore);
   // Without a denoiser, whose smooth pictures would fit.
   const auto expect_full = [&](const std::string& name, std::vector<std::string> more) {
     more.insert(more.begin(), {"run", frame, "--camera", camera, "--radius", "1", "--denoise", "none"});

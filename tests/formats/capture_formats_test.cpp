@@ -8,11 +8,11 @@
 #include <cstring>
 #include <filesystem>
 
-#include "core/formats/dds.h"
 #include "core/base/error.h"
+#include "core/formats/dds.h"
 #include "core/formats/exr.h"
-#include "core/inspect/findings.h"
 #include "core/frame/gbuffer.h"
+#include "core/inspect/findings.h"
 #include "tests/support/command_line.h"
 #include "tests/support/difference.h"
 
@@ -67,13 +67,17 @@ TEST_F(Dds, of_every_format_is_read) {
   EXPECT_THAT(read(40, bytes_of<float>({0.25f, 1})).names, ElementsAre("R"));
   EXPECT_THAT(read(56, bytes_of<std::uint16_t>({0, 65535})).pixels, ElementsAre(0, 1));
   EXPECT_THAT(read(54, bytes_of<std::uint16_t>({0x3c00, 0xb800})).pixels, ElementsAre(1, -0.5f));
-  EXPECT_THAT(read(46, words({0xab000000, 0xcdffffff})).pixels, ElementsAre(0, 1)) << "the upper 8 bits are the stencil";
-  const Image half = read(10, bytes_of<std::uint16_t>({0x3c00, 0x4000, 0x0001, 0x7bff, 0x7c00, 0xfc00, 0x8000, 0x3555}));
+  EXPECT_THAT(read(46, words({0xab000000, 0xcdffffff})).pixels, ElementsAre(0, 1))
+      << "the upper 8 bits are the stencil";
+  const Image half =
+      read(10, bytes_of<std::uint16_t>({0x3c00, 0x4000, 0x0001, 0x7bff, 0x7c00, 0xfc00, 0x8000, 0x3555}));
   EXPECT_THAT(half.names, ElementsAre("R", "G", "B", "A"));
-  EXPECT_THAT(half.pixels, ElementsAre(1, INFINITY, 2, -INFINITY, std::ldexp(1.0f, -24), -0.0f, 65504, testing::FloatNear(1 / 3.0f, 1e-3f)));
+  EXPECT_THAT(half.pixels, ElementsAre(1, INFINITY, 2, -INFINITY, std::ldexp(1.0f, -24), -0.0f, 65504,
+                                       testing::FloatNear(1 / 3.0f, 1e-3f)));
   const Image packed = read(24, words({1023u | 0u << 10 | 341u << 20 | 3u << 30, 0}));
   EXPECT_THAT(packed.pixels, ElementsAre(1, 0, 0, 0, testing::FloatNear(1 / 3.0f, 1e-6f), 0, 1, 0));
-  EXPECT_THAT(read(28, words({0xff008000, 0})).pixels, ElementsAre(0, 0, testing::FloatNear(128 / 255.0f, 1e-6f), 0, 0, 0, 1, 0));
+  EXPECT_THAT(read(28, words({0xff008000, 0})).pixels,
+              ElementsAre(0, 0, testing::FloatNear(128 / 255.0f, 1e-6f), 0, 0, 0, 1, 0));
   EXPECT_TRUE(is_dds(path));
 }
 
@@ -110,7 +114,8 @@ class Formats : public CommandLine {
     const FrameFile file = wall_frame();
     std::vector<float> pixels;
     for (std::size_t i = 0; i < file.data.pixels(); i++)
-      for (const char* axis : {"X", "Y", "Z"}) pixels.push_back(0.5f + 0.5f * file.planes.at(std::string("ViewLayer.Normal.") + axis)[i]);
+      for (const char* axis : {"X", "Y", "Z"})
+        pixels.push_back(0.5f + 0.5f * file.planes.at(std::string("ViewLayer.Normal.") + axis)[i]);
     const auto out = OIIO::ImageOutput::create(path);
     ASSERT_TRUE(out && out->open(path, OIIO::ImageSpec(file.data.width, file.data.height, 3, type)));
     ASSERT_TRUE(out->write_image(OIIO::TypeFloat, pixels.data()) && out->close());
@@ -120,11 +125,13 @@ class Formats : public CommandLine {
 TEST_F(Formats, normals_of_8_and_16_bits_are_read) {
   ASSERT_EQ(run({"--type", "float"}).code, 0);
   const auto expected = read_exr_image(ao).pixels;
-  for (const auto& [name, type, tolerance] : {std::tuple{"normal.png", OIIO::TypeUInt8, 0.01}, {"normal.tif", OIIO::TypeUInt16, 2e-3}}) {
+  for (const auto& [name, type, tolerance] :
+       {std::tuple{"normal.png", OIIO::TypeUInt8, 0.01}, {"normal.tif", OIIO::TypeUInt16, 2e-3}}) {
     write_normals(folder / name, type);
     const Finished finished = run({"--type", "float", "--normal", folder / name});
     ASSERT_EQ(finished.code, 0) << finished;
-    EXPECT_LE(difference(read_exr_image(ao).pixels, expected).rmse, tolerance) << name << ": single samples fall in or out of the radius";
+    EXPECT_LE(difference(read_exr_image(ao).pixels, expected).rmse, tolerance)
+        << name << ": single samples fall in or out of the radius";
   }
 }
 
@@ -137,22 +144,46 @@ TEST_F(Formats, textures_of_renderdoc_are_read) {
   std::vector<std::uint16_t> device16, halves;
   std::vector<std::uint32_t> device24, packed;
   const auto ten = [](float x) { return std::uint32_t(std::lround(1023 * (0.5f + 0.5f * x))); };
-  const auto half_of = [](float x) { return std::uint16_t(x == 0 ? 0 : x > 0 ? 0x3c00 : 0xbc00); };  // of -1, 0 and 1, and all normals here are these
+  // of -1, 0 and 1, and all normals here are these
+  const auto half_of = [](float x) { return std::uint16_t(x == 0 ? 0 : x > 0 ? 0x3c00 : 0xbc00); };
   for (std::size_t i = 0; i < file.data.pixels(); i++) {
-    const float d = 0.5f / file.planes.at("ViewLayer.Depth.Z")[i], x = normal("X")[i], y = normal("Y")[i], z = normal("Z")[i];
-    device.push_back(d), device16.push_back(std::uint16_t(std::lround(65535 * d))), device24.push_back(0xab000000 | std::uint32_t(std::lround(0xffffff * d)));
+    const float d = 0.5f / file.planes.at("ViewLayer.Depth.Z")[i], x = normal("X")[i], y = normal("Y")[i],
+                z = normal("Z")[i];
+    device.push_back(d), device16.push_back(std::uint16_t(std::lround(65535 * d))),
+        device24.push_back(0xab000000 | std::uint32_t(std::lround(0xffffff * d)));
     packed.push_back(ten(x) | ten(y) << 10 | ten(z) << 20);
     for (const float n : {x, y, z, 1.0f}) halves.push_back(half_of(n));
   }
   write_bytes(folder / "r10g10b10a2.dds", dds(64, 36, 24, words(packed)));
   write_bytes(folder / "rgba16f.dds", dds(64, 36, 10, bytes_of(halves)));
   const std::string depth = folder / "depth.0042.dds";
-  for (const auto& [name, bytes, tolerance] : {std::tuple{"R32F", dds(64, 36, 41, bytes_of(device)), 1e-3}, {"D24", dds(64, 36, 45, words(device24)), 1e-3},
+  for (const auto& [name, bytes, tolerance] : {std::tuple{"R32F", dds(64, 36, 41, bytes_of(device)), 1e-3},
+                                               {"D24", dds(64, 36, 45, words(device24)), 1e-3},
                                                {"R16", dds(64, 36, 56, bytes_of(device16)), 0.01}})
     for (const auto& [normals, more] : {std::pair{"rgba16f.dds", 0.0}, {"r10g10b10a2.dds", 0.01}}) {
       write_bytes(depth, bytes);
-      const Finished finished = run_program({"run", "--depth", depth, "--normal", folder / normals, "-o", ao, "--camera", camera, "--radius", "1", "--type", "float",
-                                             "--preset", "input/renderdoc", "--depth-kind", "device", "--near", "0.5", "--far", "inf", "--reversed-z"});
+      const Finished finished = run_program({"run",
+                                             "--depth",
+                                             depth,
+                                             "--normal",
+                                             folder / normals,
+                                             "-o",
+                                             ao,
+                                             "--camera",
+                                             camera,
+                                             "--radius",
+                                             "1",
+                                             "--type",
+                                             "float",
+                                             "--preset",
+                                             "input/renderdoc",
+                                             "--depth-kind",
+                                             "device",
+                                             "--near",
+                                             "0.5",
+                                             "--far",
+                                             "inf",
+                                             "--reversed-z"});
       ASSERT_EQ(finished.code, 0) << finished;
       EXPECT_LE(difference(read_exr_image(ao).pixels, expected).rmse, tolerance + more) << name << " " << normals;
     }
@@ -162,7 +193,8 @@ TEST_F(Formats, depth_of_8_bits_is_refused) {
   const auto out = OIIO::ImageOutput::create("depth.png");
   std::vector<std::uint8_t> bytes(64 * 36);
   for (std::size_t i = 0; i < bytes.size(); i++) bytes[i] = std::uint8_t(i * 7);
-  ASSERT_TRUE(out->open(folder / "depth.png", OIIO::ImageSpec(64, 36, 1, OIIO::TypeUInt8)) && out->write_image(OIIO::TypeUInt8, bytes.data()) && out->close());
+  ASSERT_TRUE(out->open(folder / "depth.png", OIIO::ImageSpec(64, 36, 1, OIIO::TypeUInt8)) &&
+              out->write_image(OIIO::TypeUInt8, bytes.data()) && out->close());
   const Finished finished = run({"--depth", folder / "depth.png"});
   EXPECT_EQ(finished.code, 3);
   EXPECT_THAT(finished.err, HasSubstr("8 bits"));
@@ -172,20 +204,32 @@ TEST_F(Formats, pictures_give_any_rows_in_any_order_however_they_are_stored) {
   constexpr int kWide = 701, kHigh = 907;  // some megabytes: several blocks
   std::vector<float> interleaved(std::size_t(3 * kWide) * kHigh);
   for (std::size_t i = 0; i < interleaved.size(); i++) interleaved[i] = float(i * 7919 % 65536) / 65535;
-  struct Stored { const char* name; int tile; bool separate; OIIO::TypeDesc type; double step; };
-  for (const auto& stored : {Stored{"rows.tif", 0, false, OIIO::TypeFloat, 0}, {"tiles.tif", 64, false, OIIO::TypeFloat, 0}, {"planes.tif", 0, true, OIIO::TypeFloat, 0},
-                             {"tiled-planes.tif", 32, true, OIIO::TypeUInt16, 1e-7}, {"rows.png", 0, false, OIIO::TypeUInt16, 1e-7}, {"rows.tga", 0, false, OIIO::TypeUInt8, 0.002}}) {
+  struct Stored {
+    const char* name;
+    int tile;
+    bool separate;
+    OIIO::TypeDesc type;
+    double step;
+  };
+  for (const auto& stored : {Stored{"rows.tif", 0, false, OIIO::TypeFloat, 0},
+                             {"tiles.tif", 64, false, OIIO::TypeFloat, 0},
+                             {"planes.tif", 0, true, OIIO::TypeFloat, 0},
+                             {"tiled-planes.tif", 32, true, OIIO::TypeUInt16, 1e-7},
+                             {"rows.png", 0, false, OIIO::TypeUInt16, 1e-7},
+                             {"rows.tga", 0, false, OIIO::TypeUInt8, 0.002}}) {
     const std::string path = folder / stored.name;
     OIIO::ImageSpec spec(kWide, kHigh, 3, stored.type);
     spec.tile_width = spec.tile_height = stored.tile;
     if (stored.separate) spec.attribute("planarconfig", "separate");
     const auto out = OIIO::ImageOutput::create(path);
-    ASSERT_TRUE(out->open(path, spec) && out->write_image(OIIO::TypeFloat, interleaved.data()) && out->close()) << path << out->geterror();
+    ASSERT_TRUE(out->open(path, spec) && out->write_image(OIIO::TypeFloat, interleaved.data()) && out->close())
+        << path << out->geterror();
     ExrFile file = open_file(path, "--normal");
     ASSERT_EQ(file.parts().at(0).channels.size(), 3u) << path;
     for (const auto& [first, rows] : {std::pair(0, kHigh), {600, 307}, {63, 2}, {0, 1}, {906, 1}}) {
       std::vector<float> green(std::size_t(kWide * rows)), red(green.size());
-      const ExrRead reads[] = {{0, file.parts()[0].channels[1].name, green.data()}, {0, file.parts()[0].channels[0].name, red.data()}};
+      const ExrRead reads[] = {{0, file.parts()[0].channels[1].name, green.data()},
+                               {0, file.parts()[0].channels[0].name, red.data()}};
       file.read(reads, first, rows);
       for (std::size_t i = 0; i < green.size(); i++) {
         const std::size_t at = 3 * (std::size_t(first) * kWide + i);
@@ -203,13 +247,18 @@ TEST_F(Formats, a_picture_that_is_cut_short_is_named) {
   for (const char* name : {"normal.png", "normal.tif", "normal.tga", "normal.bmp", "normal.hdr"}) {
     const std::string path = folder / name;
     const auto out = OIIO::ImageOutput::create(path);
-    ASSERT_TRUE(out->open(path, OIIO::ImageSpec(64, 36, 3, out->format_name() == std::string("hdr") ? OIIO::TypeFloat : OIIO::TypeUInt8)) &&
-                out->write_image(OIIO::TypeFloat, noise.data()) && out->close()) << path;
+    ASSERT_TRUE(
+        out->open(path, OIIO::ImageSpec(
+                            64, 36, 3, out->format_name() == std::string("hdr") ? OIIO::TypeFloat : OIIO::TypeUInt8)) &&
+        out->write_image(OIIO::TypeFloat, noise.data()) && out->close())
+        << path;
     const std::string whole = read_bytes(path);
     write_bytes(path, whole.substr(0, whole.size() / 2));
     const Finished finished = run({"--normal", path, "--normal-space", "view"});
     EXPECT_EQ(finished.code, 3) << finished;
-    EXPECT_THAT(finished.err, testing::AllOf(HasSubstr(path), HasSubstr("damaged or incomplete"), HasSubstr("--normal"))) << name;
+    EXPECT_THAT(finished.err,
+                testing::AllOf(HasSubstr(path), HasSubstr("damaged or incomplete"), HasSubstr("--normal")))
+        << name;
     EXPECT_FALSE(std::filesystem::exists(ao)) << name;
   }
 }
@@ -258,13 +307,15 @@ RawExr raw_exr(const std::string& channels, const std::vector<std::uint32_t>& da
 
 TEST_F(Formats, hostile_headers_are_errors) {
   const std::uint32_t most = 0x7fffffff, least = 0x80000000;
-  const std::vector<std::vector<std::uint32_t>> windows{{0, 0, most, most},     {least, least, most, most}, {0, 0, 0x3ffffffe, 0x3ffffffe}, {10, 10, 5, 5},
-                                                        {0, 0, 131071, 131071}, {0, 0, 63, most},           {most, most, least, least},     {0, 0, 63, 35}};
+  const std::vector<std::vector<std::uint32_t>> windows{
+      {0, 0, most, most},     {least, least, most, most}, {0, 0, 0x3ffffffe, 0x3ffffffe}, {10, 10, 5, 5},
+      {0, 0, 131071, 131071}, {0, 0, 63, most},           {most, most, least, least},     {0, 0, 63, 35}};
   for (const auto& window : windows) {
     RawExr exr = raw_exr(channel("Z"), window);
     write_bytes(frame, exr.bytes + '\0');
     for (const char* command : {"run", "inspect"}) {
-      const Finished finished = std::string(command) == "run" ? run({}) : run_program({command, frame, "--camera", camera});
+      const Finished finished =
+          std::string(command) == "run" ? run({}) : run_program({command, frame, "--camera", camera});
       EXPECT_EQ(finished.code, 3) << command << " " << testing::PrintToString(window) << finished;
       EXPECT_THAT(finished.err, HasSubstr("wall.0042.exr"));
     }
@@ -329,7 +380,9 @@ TEST_F(Formats, a_header_of_many_pixels_takes_no_memory) {
   const std::size_t window = bytes.find("dataWindow") + sizeof("dataWindow") + sizeof("box2i") + 4;
   bytes.replace(window + 8, 4, words({0x0fffffff}));  // its right border; as many lines as before
   write_bytes(frame, bytes);
-  for (const std::vector<std::string>& more : {std::vector<std::string>{"inspect", frame}, {"inspect", frame, "--preview", folder / "sheet.png"}, {"compare", frame, frame}}) {
+  for (const std::vector<std::string>& more : {std::vector<std::string>{"inspect", frame},
+                                               {"inspect", frame, "--preview", folder / "sheet.png"},
+                                               {"compare", frame, frame}}) {
     std::vector<std::string> arguments = more;
     if (more[0] == "inspect") arguments.insert(arguments.end(), {"--camera", camera});
     const Finished finished = run_program(arguments);

@@ -1,4 +1,5 @@
-// Colours for a display: the built-in configuration's against the sRGB standard's formula, and those of a configuration of one's own.
+// Colours for a display: the built-in configuration's against the sRGB standard's formula, and those of a configuration
+// of one's own.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/formats/color.h"
 

@@ -65,7 +65,8 @@ class Files : public testing::Test {
 // Wholes.
 
 TEST_F(Files, write_whole_writes_exactly_these_bytes) {
-  for (const std::string& bytes : {std::string(), std::string("a"), std::string("\0\n\xff", 3), std::string(3 << 20, 'x')}) {
+  for (const std::string& bytes :
+       {std::string(), std::string("a"), std::string("\0\n\xff", 3), std::string(3 << 20, 'x')}) {
     write_whole(path, bytes);
     EXPECT_TRUE(read_bytes(path) == bytes) << bytes.size() << " bytes";
     EXPECT_TRUE(read_text(path, "test", "--test") == bytes) << bytes.size() << " bytes";
@@ -94,7 +95,8 @@ TEST_F(Files, require_writable_tells_what_stands_in_the_way) {
   write_bytes(path, "kept");
   EXPECT_NO_THROW(require_writable(path, "--output"));
   EXPECT_EQ(read_bytes(path), "kept");
-  expect_error(ErrorKind::output, {"missing/a.exr", "--output"}, [&] { require_writable(folder / "missing/a.exr", "--output"); });
+  expect_error(ErrorKind::output, {"missing/a.exr", "--output"},
+               [&] { require_writable(folder / "missing/a.exr", "--output"); });
   expect_error(ErrorKind::output, {"a.exr/b.exr", "--output"}, [&] { require_writable(path + "/b.exr", "--output"); });
   expect_error(ErrorKind::output, {folder.path(), "--output"}, [&] { require_writable(folder.path(), "--output"); });
   expect_error(ErrorKind::output, {"/dev/full", "--output"}, [&] { require_writable("/dev/full", "--output"); });
@@ -102,19 +104,26 @@ TEST_F(Files, require_writable_tells_what_stands_in_the_way) {
 }
 
 TEST_F(Files, read_text_tells_what_is_no_file) {
-  expect_error(ErrorKind::input, {"missing", "camera", "--camera"}, [&] { read_text(folder / "missing", "camera", "--camera"); });
-  expect_error(ErrorKind::input, {folder.path(), "camera", "--camera"}, [&] { read_text(folder.path(), "camera", "--camera"); });
+  expect_error(ErrorKind::input, {"missing", "camera", "--camera"},
+               [&] { read_text(folder / "missing", "camera", "--camera"); });
+  expect_error(ErrorKind::input, {folder.path(), "camera", "--camera"},
+               [&] { read_text(folder.path(), "camera", "--camera"); });
   expect_error(ErrorKind::input, {"camera", "--camera"}, [&] { read_text("", "camera", "--camera"); });
 }
 
 TEST_F(Files, read_text_tells_that_the_disk_fails) {  // as page 0 of a process does
-  expect_error(ErrorKind::input, {"/proc/self/mem", "camera", "--camera"}, [] { read_text("/proc/self/mem", "camera", "--camera"); });
+  expect_error(ErrorKind::input, {"/proc/self/mem", "camera", "--camera"},
+               [] { read_text("/proc/self/mem", "camera", "--camera"); });
 }
 
 /// Who may not read everything; root again at the end.
 struct Nobody {
-  Nobody() { if (is_root) EXPECT_EQ(::setresuid(65534, 65534, 0), 0); }
-  ~Nobody() { if (is_root) EXPECT_EQ(::setresuid(0, 0, 0), 0); }
+  Nobody() {
+    if (is_root) EXPECT_EQ(::setresuid(65534, 65534, 0), 0);
+  }
+  ~Nobody() {
+    if (is_root) EXPECT_EQ(::setresuid(0, 0, 0), 0);
+  }
   const bool is_root = ::geteuid() == 0;
 };
 
@@ -129,11 +138,16 @@ TEST_F(Files, what_may_not_be_read_or_written_is_said_with_the_reason) {
   fs::permissions(folder / "shown", fs::perms(0555));
   {
     const Nobody nobody;
-    expect_error(ErrorKind::input, {path, "Permission denied", "--camera"}, [&] { require_readable(path, "camera", "--camera"); });
-    expect_error(ErrorKind::input, {"locked/a.exr", "cannot be reached", "Permission denied", "--camera"}, [&] { require_readable(folder / "locked/a.exr", "camera", "--camera"); });
-    expect_error(ErrorKind::output, {"shown/b.exr", "Permission denied", "--output"}, [&] { require_writable(folder / "shown/b.exr", "--output"); });
-    expect_error(ErrorKind::output, {"locked/b/c.exr", "cannot be reached", "Permission denied", "--output"}, [&] { require_writable(folder / "locked/b/c.exr", "--output"); });
-    expect_error(ErrorKind::output, {"shown/b.exr", "temporary file", "Permission denied"}, [&] { write_whole(folder / "shown/b.exr", std::string("x")); });
+    expect_error(ErrorKind::input, {path, "Permission denied", "--camera"},
+                 [&] { require_readable(path, "camera", "--camera"); });
+    expect_error(ErrorKind::input, {"locked/a.exr", "cannot be reached", "Permission denied", "--camera"},
+                 [&] { require_readable(folder / "locked/a.exr", "camera", "--camera"); });
+    expect_error(ErrorKind::output, {"shown/b.exr", "Permission denied", "--output"},
+                 [&] { require_writable(folder / "shown/b.exr", "--output"); });
+    expect_error(ErrorKind::output, {"locked/b/c.exr", "cannot be reached", "Permission denied", "--output"},
+                 [&] { require_writable(folder / "locked/b/c.exr", "--output"); });
+    expect_error(ErrorKind::output, {"shown/b.exr", "temporary file", "Permission denied"},
+                 [&] { write_whole(folder / "shown/b.exr", std::string("x")); });
   }
   for (const char* name : {"locked", "shown", "a.exr"}) fs::permissions(folder / name, fs::perms::owner_all);
   EXPECT_EQ(read_bytes(folder / "locked/a.exr"), "kept");
@@ -143,12 +157,14 @@ TEST_F(Files, what_may_not_be_read_or_written_is_said_with_the_reason) {
 TEST_F(Files, names_of_one_file_are_told_from_those_of_two) {
   write_bytes(path, "x");
   fs::create_symlink(path, folder / "link.exr");
-  for (const std::string& name : {path, folder / "./a.exr", folder / "link.exr", folder / "none/../a.exr"}) EXPECT_TRUE(same_file(path, name)) << name;
+  for (const std::string& name : {path, folder / "./a.exr", folder / "link.exr", folder / "none/../a.exr"})
+    EXPECT_TRUE(same_file(path, name)) << name;
   EXPECT_TRUE(same_file(folder / "none.exr", folder / "./none.exr"));  // that is not there yet
   EXPECT_FALSE(same_file(path, folder / "b.exr"));
   EXPECT_FALSE(same_file(folder / "b.exr", folder / "c.exr"));
   const std::vector<std::string> inputs{"", path};
-  expect_error(ErrorKind::usage, {"link.exr", "--stats", "overwrite"}, [&] { require_no_input(folder / "link.exr", "--stats", inputs); });
+  expect_error(ErrorKind::usage, {"link.exr", "--stats", "overwrite"},
+               [&] { require_no_input(folder / "link.exr", "--stats", inputs); });
   EXPECT_NO_THROW(require_no_input(folder / "b.exr", "--stats", inputs));
 }
 
@@ -188,7 +204,9 @@ ExrOutput output_of(const Window& data, const Window& display) {
   return output;
 }
 
-bool same(float a, float b) { return std::bit_cast<std::uint32_t>(a) == std::bit_cast<std::uint32_t>(b) || (std::isnan(a) && std::isnan(b)); }
+bool same(float a, float b) {
+  return std::bit_cast<std::uint32_t>(a) == std::bit_cast<std::uint32_t>(b) || (std::isnan(a) && std::isnan(b));
+}
 
 TEST_F(Files, floats_come_back_bit_by_bit_and_halves_as_the_nearest_that_is_finite) {
   const auto values = difficult_values();
@@ -200,14 +218,17 @@ TEST_F(Files, floats_come_back_bit_by_bit_and_halves_as_the_nearest_that_is_fini
     write_exr(path, output);
     const Image image = read_exr_image(path);
     for (std::size_t i = 0; i < values.size(); i++) {
-      EXPECT_TRUE(same(image.plane("F")[i], values[i])) << compression << " " << values[i] << " came back as " << image.plane("F")[i];
-      EXPECT_TRUE(same(image.plane("H")[i], nearest_half(values[i]))) << compression << " " << values[i] << " became " << image.plane("H")[i];
+      EXPECT_TRUE(same(image.plane("F")[i], values[i]))
+          << compression << " " << values[i] << " came back as " << image.plane("F")[i];
+      EXPECT_TRUE(same(image.plane("H")[i], nearest_half(values[i])))
+          << compression << " " << values[i] << " became " << image.plane("H")[i];
     }
   }
 }
 
 TEST_F(Files, windows_come_back_wherever_they_are) {
-  for (const Window& data : {Window{0, 0, 1, 1}, Window{-5, -7, 4, 3}, Window{1000000, -1000000, 2, 5}, Window{3, 2, 1, 33}}) {
+  for (const Window& data :
+       {Window{0, 0, 1, 1}, Window{-5, -7, 4, 3}, Window{1000000, -1000000, 2, 5}, Window{3, 2, 1, 33}}) {
     const Window display{-2, 3, 17, 9};
     std::vector<float> values(data.pixels());
     for (std::size_t i = 0; i < values.size(); i++) values[i] = float(i);
@@ -249,7 +270,8 @@ TEST_F(Files, attributes_of_every_type_are_carried_over_but_those_of_storage) {
   header.screenWindowCenter() = {0.125f, -0.5f};
   const auto kept = [&] {
     ExrHeader all = read_header(path);
-    for (const char* name : {"channels", "compression", "dataWindow", "displayWindow", "pixelAspectRatio", "lineOrder"}) all.erase(name);
+    for (const char* name : {"channels", "compression", "dataWindow", "displayWindow", "pixelAspectRatio", "lineOrder"})
+      all.erase(name);
     return all;
   };
   for (const char* name : {"BlenderMultiChannel", "cryptomatte/123abcd/name", "cryptomatte/123abcd/manifest"})
@@ -262,7 +284,8 @@ TEST_F(Files, attributes_of_every_type_are_carried_over_but_those_of_storage) {
   {
     const std::vector<float> values(8);
     Imf::FrameBuffer pixels;
-    pixels.insert("Z", Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(const_cast<float*>(values.data())), sizeof(float), 4 * sizeof(float)));
+    pixels.insert("Z", Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(const_cast<float*>(values.data())), sizeof(float),
+                                  4 * sizeof(float)));
     Imf::OutputFile file(path.c_str(), header);
     file.setFrameBuffer(pixels);
     file.writePixels(2);
@@ -274,7 +297,8 @@ TEST_F(Files, attributes_of_every_type_are_carried_over_but_those_of_storage) {
   output.own_attributes = {{"alcove/version", "1"}, {"owner", "another"}};
   output.planes = {{"Y", SampleType::half_float, values}};
   write_exr(path, output);
-  for (const char* name : {"BlenderMultiChannel", "cryptomatte/123abcd/name", "cryptomatte/123abcd/manifest", "multiView", "dwaCompressionLevel"})
+  for (const char* name : {"BlenderMultiChannel", "cryptomatte/123abcd/name", "cryptomatte/123abcd/manifest",
+                           "multiView", "dwaCompressionLevel"})
     EXPECT_EQ(before.erase(name), 1) << name << " was in the input";
   before["alcove/version"] = {"string", "1"};
   before["owner"] = {"string", "another"};
@@ -305,8 +329,8 @@ TEST_F(Files, our_attributes_replace_those_of_another_type) {
 TEST_F(Files, what_is_no_exr_is_an_input_error) {
   expect_error(ErrorKind::input, {"a.exr", "--depth"}, [&] { ExrFile(path, "--depth"); });
   expect_error(ErrorKind::input, {folder.path(), "--depth"}, [&] { ExrFile(folder.path(), "--depth"); });
-  for (const std::string& bytes :
-       {std::string(), std::string("v/1\x01"), std::string("P6 1 1 255\n"), std::string("\x76\x2f\x31\x01\x02\0\0\0", 8), std::string(4096, '\0')}) {
+  for (const std::string& bytes : {std::string(), std::string("v/1\x01"), std::string("P6 1 1 255\n"),
+                                   std::string("\x76\x2f\x31\x01\x02\0\0\0", 8), std::string(4096, '\0')}) {
     write_bytes(path, bytes);
     expect_error(ErrorKind::input, {"a.exr"}, [&] { ExrFile(path, "--depth"); });
   }
@@ -335,7 +359,8 @@ TEST_F(Files, every_truncation_is_an_input_error_or_gives_the_right_pixels) {
     for (std::size_t length = 0; length < whole.size(); length++) {
       write_bytes(path, whole.substr(0, length));
       try {
-        EXPECT_EQ(read_exr_image(path).pixels, pixels) << compression << " cut to " << length << " of " << whole.size() << " bytes";
+        EXPECT_EQ(read_exr_image(path).pixels, pixels)
+            << compression << " cut to " << length << " of " << whole.size() << " bytes";
       } catch (const Error& error) {
         EXPECT_EQ(error.kind(), ErrorKind::input) << error.what();
         EXPECT_THAT(error.what(), AllOf(HasSubstr("a.exr"), Not(HasSubstr("\n"))));
@@ -381,7 +406,8 @@ TEST_F(Files, an_exr_that_cannot_be_written_leaves_the_old_one) {
 
 TEST_F(Files, a_png_holds_the_nearest_of_256_values) {
   const std::string png = folder / "a.png";
-  const std::vector<float> values{0, 1, 0.5f, -1, 2, 1 / 255.0f, 0.4f / 255, 0.6f / 255, 254.6f / 255, INFINITY, -INFINITY, 0.25f};
+  const std::vector<float> values{0,          1,          0.5f,         -1,       2,         1 / 255.0f,
+                                  0.4f / 255, 0.6f / 255, 254.6f / 255, INFINITY, -INFINITY, 0.25f};
   const std::vector<int> expected{0, 255, 128, 0, 255, 1, 0, 1, 255, 255, 0, 64};
   for (const int channels : {1, 3}) {
     write_png(png, 4, 3 / channels, channels, values);

@@ -7,11 +7,11 @@
 #include <cstring>
 #include <filesystem>
 
-#include "core/frame/camera.h"
 #include "core/base/error.h"
 #include "core/formats/exr.h"
 #include "core/formats/image_io.h"
 #include "core/formats/sequence.h"
+#include "core/frame/camera.h"
 #include "core/frame/settle.h"
 #include "tests/support/command_line.h"
 
@@ -38,7 +38,8 @@ std::string png_claiming(std::uint32_t width, std::uint32_t height) {
     }
     return word(std::uint32_t(body.size() - 4)) + body + word(~sum);
   };
-  return "\x89PNG\r\n\x1a\n" + chunk("IHDR" + word(width) + word(height) + std::string("\x08\0\0\0\0", 5)) + chunk("IDAT") + chunk("IEND");
+  return "\x89PNG\r\n\x1a\n" + chunk("IHDR" + word(width) + word(height) + std::string("\x08\0\0\0\0", 5)) +
+         chunk("IDAT") + chunk("IEND");
 }
 
 class Hostile : public CommandLine {
@@ -55,7 +56,8 @@ class Hostile : public CommandLine {
     std::string file = read_bytes(frame);
     const std::int32_t right_and_bottom[] = {width - 1, height - 1};
     for (const char* name : {"dataWindow", "displayWindow"})
-      file.replace(file.find(name) + std::strlen(name) + sizeof("box2i") + 13, 8, reinterpret_cast<const char*>(right_and_bottom), 8);
+      file.replace(file.find(name) + std::strlen(name) + sizeof("box2i") + 13, 8,
+                   reinterpret_cast<const char*>(right_and_bottom), 8);
     file.resize(bytes);
     write_bytes(folder / "claim.exr", file);
     return folder / "claim.exr";
@@ -70,7 +72,8 @@ TEST_F(Hostile, a_channel_and_a_file_called_script_stay_text_in_the_report_of_co
   const std::string name = folder / kScript;  // its slash makes a folder of the first half
   fs::create_directories(fs::path(name).parent_path());
   file.write(name);
-  const Finished finished = run_program({"compare", name, name, "--channel", std::string(kScript) + ".Y", "--report", folder / "page.html"});
+  const Finished finished =
+      run_program({"compare", name, name, "--channel", std::string(kScript) + ".Y", "--report", folder / "page.html"});
   ASSERT_EQ(finished.code, 0) << finished;
   expect_text_only(folder / "page.html");
 }
@@ -78,8 +81,11 @@ TEST_F(Hostile, a_channel_and_a_file_called_script_stay_text_in_the_report_of_co
 TEST_F(Hostile, a_frame_and_a_candidate_called_script_stay_text_in_the_report_of_bench) {
   run({});
   const std::string suite = folder / "suite.toml";
-  write_bytes(suite, fmt::format("title = \"{0}\"\nrepeats = 1\nreference-slices = 0\n[[frame]]\nname = \"{0}\"\ninput = \"wall.0042.exr\"\ncamera = \"camera.json\"\n"
-                                 "radius = 1\ntruth = [\"ao.exr\"]\n[[candidate]]\nname = \"{0}\"\npreset = \"draft\"\n", kScript));
+  write_bytes(suite,
+              fmt::format("title = \"{0}\"\nrepeats = 1\nreference-slices = 0\n[[frame]]\nname = \"{0}\"\ninput = "
+                          "\"wall.0042.exr\"\ncamera = \"camera.json\"\n"
+                          "radius = 1\ntruth = [\"ao.exr\"]\n[[candidate]]\nname = \"{0}\"\npreset = \"draft\"\n",
+                          kScript));
   const Finished finished = run_program({"bench", suite, "--report", folder / "page.html"});
   ASSERT_EQ(finished.code, 0) << finished;
   expect_text_only(folder / "page.html");
@@ -90,9 +96,11 @@ TEST_F(Hostile, inspect_prints_names_of_headers_as_text_that_no_terminal_obeys) 
   file.rename("ViewLayer.Depth.Z", std::string(kScript) + "\x1b[2J.Z");
   file.attributes = {{"Software", "\x1b]0;title\x07\r\n`touch x`"}};
   file.write(frame);
-  const Finished text = run_program({"inspect", frame, "--camera", camera}), quoted = run_program({"inspect", frame, "--camera", camera, "--json"});
+  const Finished text = run_program({"inspect", frame, "--camera", camera}),
+                 quoted = run_program({"inspect", frame, "--camera", camera, "--json"});
   EXPECT_EQ(text.code, 0) << text;
-  EXPECT_THAT(text.out, AllOf(HasSubstr(kScript), HasSubstr("touch x"), Not(testing::ContainsRegex("[\x01-\x09\x0b-\x1f\x7f]"))));
+  EXPECT_THAT(text.out,
+              AllOf(HasSubstr(kScript), HasSubstr("touch x"), Not(testing::ContainsRegex("[\x01-\x09\x0b-\x1f\x7f]"))));
   EXPECT_TRUE(json::accept(quoted.out)) << quoted;
   EXPECT_THAT(quoted.out, Not(testing::ContainsRegex("[\x01-\x09\x0b-\x1f\x7f]")));
 }
@@ -100,14 +108,19 @@ TEST_F(Hostile, inspect_prints_names_of_headers_as_text_that_no_terminal_obeys) 
 TEST_F(Hostile, a_frame_s_name_is_printed_as_text_that_no_terminal_obeys) {
   const std::string name = folder / "a\nopenjd_fail: \x1b[2J\u009b2J\u202etxt.exr";
   fs::rename(frame, name);
-  for (const std::vector<std::string>& more : {std::vector<std::string>{"-v"}, {"--resume"}, {"--depth", folder / "none\n\u009b.exr"}}) {
-    std::vector<std::string> arguments{"run", name, "-o", name + ".ao.exr", "--camera", camera, "--radius", "1", "--progress", "plain"};
+  for (const std::vector<std::string>& more :
+       {std::vector<std::string>{"-v"}, {"--resume"}, {"--depth", folder / "none\n\u009b.exr"}}) {
+    std::vector<std::string> arguments{"run",  name,       "-o", name + ".ao.exr", "--camera",
+                                       camera, "--radius", "1",  "--progress",     "plain"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     const Finished finished = run_program(arguments);
     EXPECT_EQ(finished.code, more[0] == "--depth" ? 3 : 0) << finished;
     EXPECT_THAT(finished.err, Not(testing::ContainsRegex("[\x01-\x09\x0b-\x1f\x7f]"))) << finished;
-    EXPECT_THAT(finished.err, AllOf(Not(HasSubstr("\nopenjd_fail")), Not(HasSubstr("\u009b")), Not(HasSubstr("\u202e")))) << finished;
-    EXPECT_THAT(finished.err, HasSubstr(more[0] == "--depth" ? "none??.exr" : "a?openjd_fail: ?[2J?2J?txt.exr")) << "or nothing is proved";
+    EXPECT_THAT(finished.err,
+                AllOf(Not(HasSubstr("\nopenjd_fail")), Not(HasSubstr("\u009b")), Not(HasSubstr("\u202e"))))
+        << finished;
+    EXPECT_THAT(finished.err, HasSubstr(more[0] == "--depth" ? "none??.exr" : "a?openjd_fail: ?[2J?2J?txt.exr"))
+        << "or nothing is proved";
   }
 }
 
@@ -117,7 +130,8 @@ TEST_F(Hostile, the_command_that_inspect_proposes_quotes_what_a_shell_would_run)
   const Finished inspected = run_program({"inspect", name, "--camera", camera, "--json"});
   ASSERT_EQ(inspected.code, 0) << inspected;
   const std::string command = json::parse(inspected.out)["command"];
-  const std::string echo = "cd " + folder.path() + " && set -- " + command.substr(std::strlen("alcove ")) + " && printf %s \"$2\"";
+  const std::string echo =
+      "cd " + folder.path() + " && set -- " + command.substr(std::strlen("alcove ")) + " && printf %s \"$2\"";
   Surroundings shell;
   shell.program = "/bin/sh";
   EXPECT_EQ(run_program({"-c", echo}, shell).out, name);
@@ -131,13 +145,17 @@ TEST_F(Hostile, no_header_makes_a_run_take_more_memory_than_it_may) {
   GTEST_SKIP() << "the address sanitizer takes memory of its own";
 #endif
   const long plain = run({"--memory", "64M"}).peak_mib;
-  constexpr long evidence = (4 * sizeof(float) * kEvidencePixels) >> 20;  // depth and normals, while it is settled what they mean
+  // depth and normals, while it is settled what they mean
+  constexpr long evidence = (4 * sizeof(float) * kEvidencePixels) >> 20;
   ASSERT_GT(plain, 0);
   // Each with as many bytes as its table of offsets needs, and as may stand for so many pixels.
-  for (const auto& [width, height, bytes] : {std::tuple(16384, 16384, 5000), {1 << 26, 1, 2000}, {1, 100000, 60000}, {1 << 20, 64, 3000}}) {
+  for (const auto& [width, height, bytes] :
+       {std::tuple(16384, 16384, 5000), {1 << 26, 1, 2000}, {1, 100000, 60000}, {1 << 20, 64, 3000}}) {
     const std::string claim = claiming(width, height, std::size_t(bytes));
-    for (const std::vector<std::string>& more : {std::vector<std::string>{}, {"--roi", "0,0,1,1"}, {"--preview", folder / "p.png"}}) {
-      std::vector<std::string> arguments{"run", claim, "-o", ao, "--fov", "60", "--normal-space", "view", "--radius", "1", "--memory", "64M"};
+    for (const std::vector<std::string>& more :
+         {std::vector<std::string>{}, {"--roi", "0,0,1,1"}, {"--preview", folder / "p.png"}}) {
+      std::vector<std::string> arguments{"run",  claim,      "-o", ao,         "--fov", "60", "--normal-space",
+                                         "view", "--radius", "1",  "--memory", "64M"};
       arguments.insert(arguments.end(), more.begin(), more.end());
       const Finished finished = run_program(arguments);
       EXPECT_TRUE(finished.code == 3 || finished.code == 5) << finished;
@@ -155,7 +173,9 @@ TEST_F(Hostile, no_picture_makes_a_run_take_more_memory_than_its_rows) {
   write_bytes(claim, png_claiming(30000, 30000));
   write_png(black, 6000, 6000, 3, std::vector<float>(3 * 6000 * 6000));
   write_png(fits, 64, 36, 3, std::vector<float>(3 * 64 * 36, 0.5f));
-  const auto with_normal = [&](const std::string& picture) { return run({"--memory", "64M", "--normal", picture, "--normal-space", "view"}); };
+  const auto with_normal = [&](const std::string& picture) {
+    return run({"--memory", "64M", "--normal", picture, "--normal-space", "view"});
+  };
   const Finished plain = with_normal(fits);
   ASSERT_EQ(plain.code, 0) << plain;
   ASSERT_LT(fs::file_size(black), 600'000);
@@ -183,7 +203,8 @@ TEST_F(Hostile, a_header_of_more_pixels_than_its_bytes_can_stand_for_is_refused)
 
 TEST_F(Hostile, a_camera_that_nests_without_end_is_refused) {
   const std::string deep = std::string(200000, '[') + std::string(200000, ']');
-  for (const std::string& text : {"{\"fx\": " + deep + "}", "{\"frames\": [{\"frame\": 1, \"fx\": " + deep + "}]}", deep}) {
+  for (const std::string& text :
+       {"{\"fx\": " + deep + "}", "{\"frames\": [{\"frame\": 1, \"fx\": " + deep + "}]}", deep}) {
     write_bytes(camera, text);
     EXPECT_THROW(read_camera(camera, 1), Error);
   }
@@ -197,7 +218,8 @@ TEST_F(Hostile, a_frame_of_a_camera_is_the_number_that_is_written) {
 }
 
 TEST_F(Hostile, a_frame_number_beyond_all_numbers_is_refused) {
-  for (const char* list : {"-9223372036854775808", "9223372036854775807", "0-9223372036854775807x4611686018427387904", "1--9223372036854775808"})
+  for (const char* list : {"-9223372036854775808", "9223372036854775807", "0-9223372036854775807x4611686018427387904",
+                           "1--9223372036854775808"})
     EXPECT_THROW(parse_frames(list), Error) << list;
 }
 

@@ -17,7 +17,8 @@ namespace {
 
 using namespace test;
 
-/// Writes Z = 1, 2, 3 ... over a data window that does not begin at 0, in some layout; the planes that are read must be these.
+/// Writes Z = 1, 2, 3 ... over a data window that does not begin at 0, in some layout; the planes that are read must be
+/// these.
 class Layouts : public testing::Test {
  protected:
   static constexpr int kX = -3, kY = 5, kColumns = 7, kRows = 40;
@@ -34,7 +35,8 @@ class Layouts : public testing::Test {
   }
   Imf::FrameBuffer pixels() {
     Imf::FrameBuffer pixels;
-    pixels.insert("Z", Imf::Slice::Make(Imf::FLOAT, values.data(), header().dataWindow(), sizeof(float), kColumns * sizeof(float)));
+    pixels.insert("Z", Imf::Slice::Make(Imf::FLOAT, values.data(), header().dataWindow(), sizeof(float),
+                                        kColumns * sizeof(float)));
     return pixels;
   }
   void expect_pixels() const {
@@ -51,7 +53,8 @@ class Layouts : public testing::Test {
 
 TEST_F(Layouts, any_line_order_and_compression_is_read) {
   for (const auto order : {Imf::INCREASING_Y, Imf::DECREASING_Y})
-    for (const auto compression : {Imf::NO_COMPRESSION, Imf::RLE_COMPRESSION, Imf::ZIPS_COMPRESSION, Imf::ZIP_COMPRESSION, Imf::PIZ_COMPRESSION}) {
+    for (const auto compression : {Imf::NO_COMPRESSION, Imf::RLE_COMPRESSION, Imf::ZIPS_COMPRESSION,
+                                   Imf::ZIP_COMPRESSION, Imf::PIZ_COMPRESSION}) {
       Imf::Header header = this->header();
       header.lineOrder() = order;
       header.compression() = compression;
@@ -74,9 +77,11 @@ TEST_F(Layouts, tiles_are_read_at_full_resolution) {
       file.writeTiles(0, file.numXTiles(0) - 1, 0, file.numYTiles(0) - 1, 0);
       std::vector<float> wrong(values.size(), -1);
       Imf::FrameBuffer other;
-      other.insert("Z", Imf::Slice::Make(Imf::FLOAT, wrong.data(), header.dataWindow(), sizeof(float), kColumns * sizeof(float)));
+      other.insert("Z", Imf::Slice::Make(Imf::FLOAT, wrong.data(), header.dataWindow(), sizeof(float),
+                                         kColumns * sizeof(float)));
       file.setFrameBuffer(other);
-      for (int level = 1; level < file.numLevels(); level++) file.writeTiles(0, file.numXTiles(level) - 1, 0, file.numYTiles(level) - 1, level);
+      for (int level = 1; level < file.numLevels(); level++)
+        file.writeTiles(0, file.numXTiles(level) - 1, 0, file.numYTiles(level) - 1, level);
     }
     expect_pixels();
   }

@@ -59,11 +59,13 @@ TEST(FramePattern, other_names_are_none) {
 }
 
 TEST(FramePattern, two_tokens_are_an_error) {
-  EXPECT_THAT(error_of(ErrorKind::usage, [] { frame_pattern("%04d/shot.####.exr"); }), AllOf(HasSubstr("%04d and ####"), HasSubstr("two places")));
+  EXPECT_THAT(error_of(ErrorKind::usage, [] { frame_pattern("%04d/shot.####.exr"); }),
+              AllOf(HasSubstr("%04d and ####"), HasSubstr("two places")));
 }
 
 TEST(FramePattern, expands_in_the_order_of_the_frames) {
-  EXPECT_THAT(expand(*frame_pattern("a.##.exr"), std::vector{3, -1, 100}), ElementsAre("a.03.exr", "a.-1.exr", "a.100.exr"));
+  EXPECT_THAT(expand(*frame_pattern("a.##.exr"), std::vector{3, -1, 100}),
+              ElementsAre("a.03.exr", "a.-1.exr", "a.100.exr"));
 }
 
 TEST(ParseFrames, numbers_ranges_and_steps) {
@@ -95,14 +97,15 @@ TEST(ParseFrames, ranges_run_backwards) {
 }
 
 TEST(ParseFrames, anything_else_is_an_error_that_quotes_it) {
-  for (const char* list : {"", "a", "1-", "-", "1-2-3", "1-10x", "1-10y2", "1.5", "1,,2", ",1", "1,", "1-10x2x3", "12345678901", "1-2147483648",
-                           "0x10", "1e3", "1-+3", "99999999999999999999"})
+  for (const char* list : {"", "a", "1-", "-", "1-2-3", "1-10x", "1-10y2", "1.5", "1,,2", ",1", "1,", "1-10x2x3",
+                           "12345678901", "1-2147483648", "0x10", "1e3", "1-+3", "99999999999999999999"})
     EXPECT_THAT(error_of(ErrorKind::usage, [&] { parse_frames(list); }), HasSubstr(list)) << list;
   EXPECT_THAT(error_of(ErrorKind::usage, [] { parse_frames("  "); }), HasSubstr("empty"));
   EXPECT_THAT(error_of(ErrorKind::usage, [] { parse_frames("1-10x0"); }), HasSubstr("step"));
   EXPECT_THAT(error_of(ErrorKind::usage, [] { parse_frames("1-10x-2"); }), HasSubstr("backwards"));
   EXPECT_THAT(error_of(ErrorKind::usage, [] { parse_frames("1-100000000"); }), HasSubstr("more than 1000000 frames"));
-  EXPECT_THAT(error_of(ErrorKind::usage, [] { parse_frames("1-900000,1000001-1900000"); }), HasSubstr("more than 1000000 frames"));
+  EXPECT_THAT(error_of(ErrorKind::usage, [] { parse_frames("1-900000,1000001-1900000"); }),
+              HasSubstr("more than 1000000 frames"));
 }
 
 TEST(FramesText, is_short_and_means_the_same) {
@@ -114,7 +117,9 @@ TEST(FramesText, is_short_and_means_the_same) {
 
 class OnDisk : public testing::Test {
  protected:
-  std::vector<int> frames(const std::string& name) const { return frames_on_disk(frame_pattern(folder / name).value(), "RESULT"); }
+  std::vector<int> frames(const std::string& name) const {
+    return frames_on_disk(frame_pattern(folder / name).value(), "RESULT");
+  }
   void touch(const std::vector<std::string>& names) const {
     for (const auto& name : names) write_bytes(folder / name, "");
   }
@@ -127,14 +132,15 @@ TEST_F(OnDisk, frames_are_found_in_rising_order) {
 }
 
 TEST_F(OnDisk, other_names_are_passed_by) {
-  touch({"a.0001.exr", "a.00002.exr", "a.3.exr", "a..exr", "a.0004.png", "b.0005.exr", "a.0006.exr.tmp",
-         "a.x007.exr", "a.+008.exr", "a.99999999999.exr"});
+  touch({"a.0001.exr", "a.00002.exr", "a.3.exr", "a..exr", "a.0004.png", "b.0005.exr", "a.0006.exr.tmp", "a.x007.exr",
+         "a.+008.exr", "a.99999999999.exr"});
   EXPECT_THAT(frames("a.####.exr"), ElementsAre(1));
   EXPECT_THAT(frames("a.%d.exr"), ElementsAre(3));
 }
 
 TEST_F(OnDisk, none_is_an_error) {
-  EXPECT_THAT(error_of(ErrorKind::input, [&] { frames("a.%04d.exr"); }), AllOf(HasSubstr("RESULT"), HasSubstr("a.0001.exr")));
+  EXPECT_THAT(error_of(ErrorKind::input, [&] { frames("a.%04d.exr"); }),
+              AllOf(HasSubstr("RESULT"), HasSubstr("a.0001.exr")));
   EXPECT_THAT(error_of(ErrorKind::input, [&] { frames("missing/a.%04d.exr"); }), HasSubstr("cannot be read"));
 }
 

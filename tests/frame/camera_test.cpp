@@ -37,7 +37,9 @@ class CameraFiles : public testing::Test {
       ADD_FAILURE() << "accepted: " << text;
     } catch (const Error& error) {
       EXPECT_EQ(error.kind(), ErrorKind::input) << error.what();
-      EXPECT_THAT(error.what(), testing::AllOf(HasSubstr("camera.json"), HasSubstr(word), testing::Not(HasSubstr("\n")))) << text;
+      EXPECT_THAT(error.what(),
+                  testing::AllOf(HasSubstr("camera.json"), HasSubstr(word), testing::Not(HasSubstr("\n"))))
+          << text;
     }
   }
 
@@ -94,7 +96,8 @@ TEST_F(CameraFiles, clip_planes_and_the_conventions_of_games_are_read) {
   fields["projection"][3] = {0, 0, 0, 1};
   EXPECT_TRUE(read(fields).orthographic);
   for (const char* field : {"near", "far"}) expect_field_refused(field, -1);
-  for (const char* field : {"reversed_z", "normal_encoding", "depth_kind", "camera_space"}) expect_field_refused(field, "nonsense");
+  for (const char* field : {"reversed_z", "normal_encoding", "depth_kind", "camera_space"})
+    expect_field_refused(field, "nonsense");
 }
 
 TEST_F(CameraFiles, a_left_handed_camera_space_is_turned_to_look_along_minus_z) {
@@ -148,8 +151,8 @@ TEST_F(CameraFiles, the_frames_own_entry_wins) {
 }
 
 TEST_F(CameraFiles, text_that_is_no_camera_is_refused) {
-  for (const char* text : {"", " ", "{", "{}x", "[]", "7", "null", "\"fx\"", "{\"fx\": NaN}", "{\"fx\": 1e999, \"fy\": 1}", "{'fx': 1}", "\xff\xfe{}",
-                           "{\"fx\": \"\xff\"}"})
+  for (const char* text : {"", " ", "{", "{}x", "[]", "7", "null", "\"fx\"", "{\"fx\": NaN}",
+                           "{\"fx\": 1e999, \"fy\": 1}", "{'fx': 1}", "\xff\xfe{}", "{\"fx\": \"\xff\"}"})
     expect_refused(text, "JSON");
   expect_refused(std::string(100000, '['), "JSON");
 }
@@ -172,29 +175,33 @@ TEST_F(CameraFiles, senseless_fields_are_refused) {
     for (const double value : {1e-40, 1e40}) expect_field_refused(field, value);
   for (const char* field : {"cx", "cy"})
     for (const double value : {-1e10, 1e300}) expect_field_refused(field, value);
-  for (const json& value : {json{0, 5}, json{64, -36}, json{64}, json{64, 36, 1}, json{64.5, 36}, json{"64", "36"}, json("64x36"), json(64),
-                            json{64, 1 << 30}, json{9e99, 1}})
+  for (const json& value : {json{0, 5}, json{64, -36}, json{64}, json{64, 36, 1}, json{64.5, 36}, json{"64", "36"},
+                            json("64x36"), json(64), json{64, 1 << 30}, json{9e99, 1}})
     expect_field_refused("resolution", value);
   for (const json& value : {json("panoramic"), json(1), json("persp")}) expect_field_refused("projection", value);
   for (const json& value : {json("deep"), json(1)}) expect_field_refused("depth", value);
   for (const json& value : {json("tangent"), json(false)}) expect_field_refused("normal_space", value);
-  for (const json& value : {json("1-10"), json(7), json{1, 2}, json{{{"fx", 1}}}, json{{{"frame", "1"}}}, json{{{"frame", 0.5}}}, json::array()})
+  for (const json& value : {json("1-10"), json(7), json{1, 2}, json{{{"fx", 1}}}, json{{{"frame", "1"}}},
+                            json{{{"frame", 0.5}}}, json::array()})
     expect_field_refused("frames", value);
 }
 
 TEST_F(CameraFiles, only_a_rotation_with_a_translation_is_a_world_to_camera) {
   const json ok = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}};
   for (const json& value :
-       {json(nullptr), json("identity"), json::array(), json{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}, json{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}})
+       {json(nullptr), json("identity"), json::array(), json{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1},
+        json{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}})
     expect_field_refused("world_to_camera", value);
   const auto with = [&](std::size_t row, std::size_t column, const json& entry) {
     json matrix = ok;
     matrix[row][column] = entry;
     return matrix;
   };
-  for (const json& value : {with(0, 0, 0), with(0, 0, -1), with(0, 1, 0.01), with(1, 1, 2), with(2, 2, "1"), with(0, 3, nullptr), with(2, 2, 0.99)})
+  for (const json& value : {with(0, 0, 0), with(0, 0, -1), with(0, 1, 0.01), with(1, 1, 2), with(2, 2, "1"),
+                            with(0, 3, nullptr), with(2, 2, 0.99)})
     expect_field_refused("world_to_camera", value);
-  // With the translation in the last row it is the transposed matrix of row vectors: its rotation would be turned round.
+  // With the translation in the last row it is the transposed matrix of row vectors: its rotation would be turned
+  // round.
   expect_field_refused("world_to_camera", {{0, 1, 0, 0}, {0, 0, 1, 0}, {1, 0, 0, 0}, {5, 6, 7, 1}});
   expect_field_refused("world_to_camera", with(3, 3, 0));
 }
@@ -277,7 +284,8 @@ TEST_F(CameraFiles, no_camera_is_a_usage_error) {
     ADD_FAILURE();
   } catch (const Error& error) {
     EXPECT_EQ(error.kind(), ErrorKind::usage);
-    for (const char* option : {"--camera", "--fov", "--focal", "--aperture", "--ortho-width"}) EXPECT_THAT(error.what(), HasSubstr(option));
+    for (const char* option : {"--camera", "--fov", "--focal", "--aperture", "--ortho-width"})
+      EXPECT_THAT(error.what(), HasSubstr(option));
   }
 }
 
@@ -292,14 +300,16 @@ TEST_F(CameraFiles, a_camera_that_floats_cannot_hold_is_a_usage_error) {
       ADD_FAILURE();
     } catch (const Error& error) {
       EXPECT_EQ(error.kind(), ErrorKind::usage);
-      for (const char* option : {"--fov", "--focal", "--aperture", "--ortho-width"}) EXPECT_THAT(error.what(), HasSubstr(option));
+      for (const char* option : {"--fov", "--focal", "--aperture", "--ortho-width"})
+        EXPECT_THAT(error.what(), HasSubstr(option));
     }
   }
 }
 
 // What kernels are given.
 
-/// The image point of a view-space position, in pixels from the display window's corner, by the camera's own definition.
+/// The image point of a view-space position, in pixels from the display window's corner, by the camera's own
+/// definition.
 std::array<double, 2> seen_at(const Camera& camera, double x, double y, double z) {
   const double w = camera.orthographic ? 1 : -z;
   return {camera.cx + camera.fx * x / w, camera.cy - camera.fy * y / w};
@@ -311,9 +321,11 @@ TEST_F(CameraFiles, view_is_the_inverse_of_the_projection_in_every_data_window) 
   Camera off_axis = camera_for(with_fov(70), {0, 0, 64, 36}, 1.5, 0);
   off_axis.cx = 11.5;
   off_axis.cy = 40;
-  for (const Camera& camera : {camera_for(with_fov(70), {0, 0, 64, 36}, 1.5, 0), off_axis, camera_for(ortho, {0, 0, 64, 36}, 2, 0)})
+  for (const Camera& camera :
+       {camera_for(with_fov(70), {0, 0, 64, 36}, 1.5, 0), off_axis, camera_for(ortho, {0, 0, 64, 36}, 2, 0)})
     for (const Window& display : {Window{0, 0, 64, 36}, Window{-7, 100, 64, 36}})
-      for (const Window& data : {display, Window{display.x - 8, display.y - 4, 80, 44}, Window{display.x + 10, display.y + 6, 40, 24}}) {
+      for (const Window& data :
+           {display, Window{display.x - 8, display.y - 4, 80, 44}, Window{display.x + 10, display.y + 6, 40, 24}}) {
         const View view = view_of(camera, data, display);
         EXPECT_EQ(view.size.x, data.width);
         EXPECT_EQ(view.size.y, data.height);

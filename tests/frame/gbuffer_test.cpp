@@ -1,4 +1,5 @@
-// Finding the AOVs: renderers' names, parts, layers, files of their own, what is ambiguous and what must not be mistaken.
+// Finding the AOVs: renderers' names, parts, layers, files of their own, what is ambiguous and what must not be
+// mistaken.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/frame/gbuffer.h"
 
@@ -43,7 +44,8 @@ struct Part {
 float value_of(std::size_t part, std::size_t channel) { return float(10 * part + channel + 1); }
 
 Imf::Header header_of(const Part& part) {
-  Imf::Header header(Imath::Box2i({0, 0}, {kWidth - 1, kHeight - 1}), Imath::Box2i({0, 0}, {part.width - 1, kHeight - 1}));
+  Imf::Header header(Imath::Box2i({0, 0}, {kWidth - 1, kHeight - 1}),
+                     Imath::Box2i({0, 0}, {part.width - 1, kHeight - 1}));
   header.setType(Imf::SCANLINEIMAGE);
   if (!part.name.empty()) header.setName(part.name);
   if (!part.view.empty()) header.setView(part.view);
@@ -62,8 +64,8 @@ void write_parts(const std::string& path, const std::vector<Part>& parts) {
     Imf::FrameBuffer pixels;
     for (std::size_t c = 0; c < parts[p].channels.size(); c++) {
       planes.emplace_back(parts[p].width * kHeight, value_of(p, c));
-      pixels.insert(parts[p].channels[c], Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(planes.back().data()), sizeof(float),
-                                                     sizeof(float) * std::size_t(parts[p].width)));
+      pixels.insert(parts[p].channels[c], Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(planes.back().data()),
+                                                     sizeof(float), sizeof(float) * std::size_t(parts[p].width)));
     }
     Imf::OutputPart out(file, int(p));
     out.setFrameBuffer(pixels);
@@ -98,7 +100,8 @@ class GBuffer : public testing::Test {
     try {
       const FrameSource source = find(with_beauty);
       ADD_FAILURE() << "found depth " << testing::PrintToString(names_of(source.depth)) << ", normal "
-                    << testing::PrintToString(names_of(source.normal)) << "; expected an error that tells of " << testing::PrintToString(words);
+                    << testing::PrintToString(names_of(source.normal)) << "; expected an error that tells of "
+                    << testing::PrintToString(words);
     } catch (const Error& error) {
       EXPECT_EQ(error.kind(), ErrorKind::input) << error.what();
       EXPECT_THAT(error.what(), Not(HasSubstr("\n")));
@@ -113,8 +116,23 @@ class GBuffer : public testing::Test {
 // Names.
 
 TEST_F(GBuffer, depth_is_found_under_renderers_names) {
-  for (const Names& channels : {Names{"ViewLayer.Depth.Z"}, {"View Layer.Depth.Z"}, {"Z"}, {"z"}, {"depth.Z"}, {"depth"}, {"Depth.R"}, {"DEPTH.Z"},
-                                {"zDepth.Z"}, {"zdepth.R"}, {"VRayZDepth.R"}, {"Z.R"}, {"Pz"}, {"Z-Depth.R"}, {"beauty.depth.Z"}, {"__depth.r"}, {"CGeometry_ZDepth.R"},
+  for (const Names& channels : {Names{"ViewLayer.Depth.Z"},
+                                {"View Layer.Depth.Z"},
+                                {"Z"},
+                                {"z"},
+                                {"depth.Z"},
+                                {"depth"},
+                                {"Depth.R"},
+                                {"DEPTH.Z"},
+                                {"zDepth.Z"},
+                                {"zdepth.R"},
+                                {"VRayZDepth.R"},
+                                {"Z.R"},
+                                {"Pz"},
+                                {"Z-Depth.R"},
+                                {"beauty.depth.Z"},
+                                {"__depth.r"},
+                                {"CGeometry_ZDepth.R"},
                                 {"FinalImageMovieRenderQueue_WorldDepth.R"}})
     try {
       write(channels);
@@ -130,11 +148,19 @@ TEST_F(GBuffer, depth_is_found_among_three_channels_of_a_grey_layer) {
 }
 
 TEST_F(GBuffer, normals_are_found_under_renderers_names) {
-  for (const Names& channels : {Names{"ViewLayer.Normal.X", "ViewLayer.Normal.Y", "ViewLayer.Normal.Z"}, {"N.X", "N.Y", "N.Z"}, {"n.x", "n.y", "n.z"},
-                                {"N.R", "N.G", "N.B"}, {"Nn.x", "Nn.y", "Nn.z"}, {"normals.X", "normals.Y", "normals.Z"},
-                                {"NORMAL.x", "NORMAL.y", "NORMAL.z"}, {"Ns.X", "Ns.Y", "Ns.Z"}, {"normal.R", "normal.G", "normal.B"},
-                                {"NX", "NY", "NZ"}, {"__Nworld.x", "__Nworld.y", "__Nworld.z"},
-                                {"CGeometry_NormalsShading.R", "CGeometry_NormalsShading.G", "CGeometry_NormalsShading.B"}}) {
+  for (const Names& channels :
+       {Names{"ViewLayer.Normal.X", "ViewLayer.Normal.Y", "ViewLayer.Normal.Z"},
+        {"N.X", "N.Y", "N.Z"},
+        {"n.x", "n.y", "n.z"},
+        {"N.R", "N.G", "N.B"},
+        {"Nn.x", "Nn.y", "Nn.z"},
+        {"normals.X", "normals.Y", "normals.Z"},
+        {"NORMAL.x", "NORMAL.y", "NORMAL.z"},
+        {"Ns.X", "Ns.Y", "Ns.Z"},
+        {"normal.R", "normal.G", "normal.B"},
+        {"NX", "NY", "NZ"},
+        {"__Nworld.x", "__Nworld.y", "__Nworld.z"},
+        {"CGeometry_NormalsShading.R", "CGeometry_NormalsShading.G", "CGeometry_NormalsShading.B"}}) {
     Names all = channels;
     all.push_back("Z");
     write(all);
@@ -148,16 +174,19 @@ TEST_F(GBuffer, a_frame_as_blender_writes_it) {
     for (const char* c : {".R", ".G", ".B", ".A"}) all.push_back(std::string("ViewLayer.") + layer + c);
   for (const char* layer : {"Normal", "Position", "Vector", "Denoising Normal"})
     for (const char* c : {".X", ".Y", ".Z"}) all.push_back(std::string("ViewLayer.") + layer + c);
-  for (const char* name :
-       {"Depth.Z", "Denoising Depth.Z", "Mist.Z", "IndexOB.X", "UV.U", "UV.V", "UV.A", "CryptoObject00.r", "CryptoObject00.g", "CryptoObject00.b"})
+  for (const char* name : {"Depth.Z", "Denoising Depth.Z", "Mist.Z", "IndexOB.X", "UV.U", "UV.V", "UV.A",
+                           "CryptoObject00.r", "CryptoObject00.g", "CryptoObject00.b"})
     all.push_back(std::string("ViewLayer.") + name);
   write(all);
   const FrameSource source = find(true);
   EXPECT_THAT(names_of(source.depth), ElementsAre("ViewLayer.Depth.Z"));
   EXPECT_THAT(names_of(source.normal), ElementsAre("ViewLayer.Normal.X", "ViewLayer.Normal.Y", "ViewLayer.Normal.Z"));
-  EXPECT_THAT(names_of(source.beauty), ElementsAre("ViewLayer.Combined.R", "ViewLayer.Combined.G", "ViewLayer.Combined.B", "ViewLayer.Combined.A"));
-  EXPECT_THAT(names_of(source.indirect), ElementsAre("ViewLayer.DiffInd.R", "ViewLayer.DiffInd.G", "ViewLayer.DiffInd.B"));
-  EXPECT_THAT(names_of(source.diffuse_color), ElementsAre("ViewLayer.DiffCol.R", "ViewLayer.DiffCol.G", "ViewLayer.DiffCol.B"));
+  EXPECT_THAT(names_of(source.beauty), ElementsAre("ViewLayer.Combined.R", "ViewLayer.Combined.G",
+                                                   "ViewLayer.Combined.B", "ViewLayer.Combined.A"));
+  EXPECT_THAT(names_of(source.indirect),
+              ElementsAre("ViewLayer.DiffInd.R", "ViewLayer.DiffInd.G", "ViewLayer.DiffInd.B"));
+  EXPECT_THAT(names_of(source.diffuse_color),
+              ElementsAre("ViewLayer.DiffCol.R", "ViewLayer.DiffCol.G", "ViewLayer.DiffCol.B"));
 }
 
 TEST_F(GBuffer, blender_5_calls_the_parts_by_full_words) {
@@ -166,8 +195,10 @@ TEST_F(GBuffer, blender_5_calls_the_parts_by_full_words) {
     for (const char* c : {".R", ".G", ".B"}) all.push_back(std::string("ViewLayer.") + layer + c);
   write(all);
   const FrameSource source = find(true);
-  EXPECT_THAT(names_of(source.indirect), ElementsAre("ViewLayer.Diffuse Indirect.R", "ViewLayer.Diffuse Indirect.G", "ViewLayer.Diffuse Indirect.B"));
-  EXPECT_THAT(names_of(source.diffuse_color), ElementsAre("ViewLayer.Diffuse Color.R", "ViewLayer.Diffuse Color.G", "ViewLayer.Diffuse Color.B"));
+  EXPECT_THAT(names_of(source.indirect), ElementsAre("ViewLayer.Diffuse Indirect.R", "ViewLayer.Diffuse Indirect.G",
+                                                     "ViewLayer.Diffuse Indirect.B"));
+  EXPECT_THAT(names_of(source.diffuse_color),
+              ElementsAre("ViewLayer.Diffuse Color.R", "ViewLayer.Diffuse Color.G", "ViewLayer.Diffuse Color.B"));
 }
 
 TEST_F(GBuffer, indirect_light_without_the_colour_that_it_needs_is_no_part) {
@@ -184,7 +215,11 @@ TEST_F(GBuffer, beauty_is_read_only_when_asked_for) {
 // What must not be mistaken.
 
 TEST_F(GBuffer, a_picture_is_neither_depth_nor_normals) {
-  for (const Names& channels : {Names{"R", "G", "B", "A"}, {"R", "G", "B"}, {"Y"}, {"beauty.R", "beauty.G", "beauty.B"}, {"X", "Y"},
+  for (const Names& channels : {Names{"R", "G", "B", "A"},
+                                {"R", "G", "B"},
+                                {"Y"},
+                                {"beauty.R", "beauty.G", "beauty.B"},
+                                {"X", "Y"},
                                 {"Vector.X", "Vector.Y", "Vector.Z"}}) {
     write(channels);
     expect_error({"frame.exr", "no depth channel", "--depth-channel", channels[0]});
@@ -196,7 +231,8 @@ TEST_F(GBuffer, a_picture_is_neither_depth_nor_normals) {
 }
 
 TEST_F(GBuffer, positions_stand_in_for_a_depth_that_is_missing) {
-  for (const Names& channels : {Names{"P.X", "P.Y", "P.Z"}, {"ViewLayer.Position.X", "ViewLayer.Position.Y", "ViewLayer.Position.Z"}}) {
+  for (const Names& channels :
+       {Names{"P.X", "P.Y", "P.Z"}, {"ViewLayer.Position.X", "ViewLayer.Position.Y", "ViewLayer.Position.Z"}}) {
     write(channels);
     EXPECT_EQ(depth(), channels);
     EXPECT_EQ(find().depth_kind, DepthKind::position);
@@ -222,8 +258,10 @@ TEST_F(GBuffer, a_part_a_view_is_chosen_by_its_name) {
 }
 
 TEST_F(GBuffer, parts_may_name_their_view_behind_their_layer) {
-  write_parts(settings.input, {{"depth.left", {"Z"}, kWidth, "left"}, {"N.left", {"X", "Y", "Z"}, kWidth, "left"},
-                               {"depth.right", {"Z"}, kWidth, "right"}, {"N.right", {"X", "Y", "Z"}, kWidth, "right"}});
+  write_parts(settings.input, {{"depth.left", {"Z"}, kWidth, "left"},
+                               {"N.left", {"X", "Y", "Z"}, kWidth, "left"},
+                               {"depth.right", {"Z"}, kWidth, "right"},
+                               {"N.right", {"X", "Y", "Z"}, kWidth, "right"}});
   EXPECT_THAT(depth(), ElementsAre("Z"));
   EXPECT_THAT(normal(), ElementsAre("1:X", "1:Y", "1:Z"));
   settings.view = "right";
@@ -243,7 +281,8 @@ TEST_F(GBuffer, channels_that_name_their_view_are_chosen_by_it) {
 }
 
 TEST_F(GBuffer, layers_whose_names_only_contain_the_word_are_others) {
-  for (const char* name : {"ViewLayer.Denoising Depth.Z", "DepthOfField.Z", "Mist.Z", "notdepth.Z", "depth_mask.R", "volume_Z"}) {
+  for (const char* name :
+       {"ViewLayer.Denoising Depth.Z", "DepthOfField.Z", "Mist.Z", "notdepth.Z", "depth_mask.R", "volume_Z"}) {
     write(Names{name});
     expect_error({"no depth channel", name});
   }
@@ -273,8 +312,8 @@ TEST_F(GBuffer, half_a_normal_is_a_whole_one_in_encodings_of_two_coordinates) {
 }
 
 TEST_F(GBuffer, two_places_are_ambiguous_and_layer_decides) {
-  write(Names{"Left.Depth.Z", "Left.Normal.X", "Left.Normal.Y", "Left.Normal.Z", "Right.Depth.Z", "Right.Normal.X", "Right.Normal.Y",
-              "Right.Normal.Z"});
+  write(Names{"Left.Depth.Z", "Left.Normal.X", "Left.Normal.Y", "Left.Normal.Z", "Right.Depth.Z", "Right.Normal.X",
+              "Right.Normal.Y", "Right.Normal.Z"});
   expect_error({"Left.Depth.Z", "Right.Depth.Z", "--layer", "--depth-channel"});
   settings.depth_channel = "Left.Depth.Z";
   expect_error({"Left.Normal.X", "Right.Normal.X", "--layer", "--normal-channels"});
@@ -289,7 +328,8 @@ TEST_F(GBuffer, two_places_are_ambiguous_and_layer_decides) {
 }
 
 TEST_F(GBuffer, a_layer_is_a_whole_name) {
-  write(Names{"View.Depth.Z", "ViewLayer.Depth.Z", "View.Inner.Normal.X", "View.Inner.Normal.Y", "View.Inner.Normal.Z"});
+  write(
+      Names{"View.Depth.Z", "ViewLayer.Depth.Z", "View.Inner.Normal.X", "View.Inner.Normal.Y", "View.Inner.Normal.Z"});
   settings.layer = "View";
   EXPECT_THAT(depth(), ElementsAre("View.Depth.Z"));
   EXPECT_THAT(normal(), ElementsAre("View.Inner.Normal.X", "View.Inner.Normal.Y", "View.Inner.Normal.Z"));
@@ -298,7 +338,8 @@ TEST_F(GBuffer, a_layer_is_a_whole_name) {
 // Channels that the user names.
 
 TEST_F(GBuffer, chosen_channels_win) {
-  write(Names{"Z", "other.depth_filtered", "N.X", "N.Y", "N.Z", "bump.a", "bump.b", "bump.c", "smooth.X", "smooth.Y", "smooth.Z"});
+  write(Names{"Z", "other.depth_filtered", "N.X", "N.Y", "N.Z", "bump.a", "bump.b", "bump.c", "smooth.X", "smooth.Y",
+              "smooth.Z"});
   settings.depth_channel = "other.depth_filtered";
   for (const char* chosen : {"bump.c,bump.b,bump.a", "bump.c, bump.b, bump.a", "BUMP.C,BUMP.B,BUMP.A"}) {
     settings.normal_channels = chosen;
@@ -310,13 +351,17 @@ TEST_F(GBuffer, chosen_channels_win) {
 }
 
 TEST_F(GBuffer, a_chosen_name_may_hold_spaces) {
-  write(Names{"View Layer.Denoising Depth.Z", "View Layer.Denoising Normal.X", "View Layer.Denoising Normal.Y", "View Layer.Denoising Normal.Z"});
+  write(Names{"View Layer.Denoising Depth.Z", "View Layer.Denoising Normal.X", "View Layer.Denoising Normal.Y",
+              "View Layer.Denoising Normal.Z"});
   settings.depth_channel = "View Layer.Denoising Depth.Z";
   EXPECT_THAT(depth(), ElementsAre("View Layer.Denoising Depth.Z"));
   settings.normal_channels = "View Layer.Denoising Normal";
-  EXPECT_THAT(normal(), ElementsAre("View Layer.Denoising Normal.X", "View Layer.Denoising Normal.Y", "View Layer.Denoising Normal.Z"));
-  settings.normal_channels = "View Layer.Denoising Normal.X,View Layer.Denoising Normal.Y,View Layer.Denoising Normal.Z";
-  EXPECT_THAT(normal(), ElementsAre("View Layer.Denoising Normal.X", "View Layer.Denoising Normal.Y", "View Layer.Denoising Normal.Z"));
+  EXPECT_THAT(normal(), ElementsAre("View Layer.Denoising Normal.X", "View Layer.Denoising Normal.Y",
+                                    "View Layer.Denoising Normal.Z"));
+  settings.normal_channels =
+      "View Layer.Denoising Normal.X,View Layer.Denoising Normal.Y,View Layer.Denoising Normal.Z";
+  EXPECT_THAT(normal(), ElementsAre("View Layer.Denoising Normal.X", "View Layer.Denoising Normal.Y",
+                                    "View Layer.Denoising Normal.Z"));
 }
 
 TEST_F(GBuffer, chosen_channels_that_are_not_there_are_errors) {
@@ -341,7 +386,8 @@ TEST_F(GBuffer, a_beauty_is_three_channels_or_four) {
 }
 
 TEST_F(GBuffer, alpha_is_found_in_the_spelling_of_the_colours) {
-  for (const Names& channels : {Names{"R", "G", "B", "A"}, {"r", "g", "b", "a"}, {"RGBA.red", "RGBA.green", "RGBA.blue", "RGBA.alpha"}}) {
+  for (const Names& channels :
+       {Names{"R", "G", "B", "A"}, {"r", "g", "b", "a"}, {"RGBA.red", "RGBA.green", "RGBA.blue", "RGBA.alpha"}}) {
     Names all = channels;
     all.push_back("Z");
     write(all);
@@ -352,7 +398,8 @@ TEST_F(GBuffer, alpha_is_found_in_the_spelling_of_the_colours) {
 // Files and parts.
 
 TEST_F(GBuffer, part_names_are_layers) {
-  write(std::vector<Part>{{"rgba", {"A", "B", "G", "R"}}, {"depth", {"Z"}}, {"N", {"X", "Y", "Z"}}, {"albedo", {"B", "G", "R"}}});
+  write(std::vector<Part>{
+      {"rgba", {"A", "B", "G", "R"}}, {"depth", {"Z"}}, {"N", {"X", "Y", "Z"}}, {"albedo", {"B", "G", "R"}}});
   const FrameSource source = find(true);
   EXPECT_THAT(names_of(source.depth), ElementsAre("1:Z"));
   EXPECT_THAT(names_of(source.normal), ElementsAre("2:X", "2:Y", "2:Z"));
@@ -360,12 +407,14 @@ TEST_F(GBuffer, part_names_are_layers) {
 }
 
 TEST_F(GBuffer, parts_may_repeat_their_name_in_the_channels) {
-  write(std::vector<Part>{{"ViewLayer.Combined", {"ViewLayer.Combined.R", "ViewLayer.Combined.G", "ViewLayer.Combined.B"}},
-                          {"ViewLayer.Depth", {"ViewLayer.Depth.Z"}},
-                          {"ViewLayer.Normal", {"ViewLayer.Normal.X", "ViewLayer.Normal.Y", "ViewLayer.Normal.Z"}}});
+  write(std::vector<Part>{
+      {"ViewLayer.Combined", {"ViewLayer.Combined.R", "ViewLayer.Combined.G", "ViewLayer.Combined.B"}},
+      {"ViewLayer.Depth", {"ViewLayer.Depth.Z"}},
+      {"ViewLayer.Normal", {"ViewLayer.Normal.X", "ViewLayer.Normal.Y", "ViewLayer.Normal.Z"}}});
   EXPECT_THAT(depth(), ElementsAre("1:ViewLayer.Depth.Z"));
   EXPECT_THAT(normal(), ElementsAre("2:ViewLayer.Normal.X", "2:ViewLayer.Normal.Y", "2:ViewLayer.Normal.Z"));
-  EXPECT_THAT(names_of(find(true).beauty), ElementsAre("ViewLayer.Combined.R", "ViewLayer.Combined.G", "ViewLayer.Combined.B"));
+  EXPECT_THAT(names_of(find(true).beauty),
+              ElementsAre("ViewLayer.Combined.R", "ViewLayer.Combined.G", "ViewLayer.Combined.B"));
   settings.layer = "ViewLayer";
   EXPECT_THAT(depth(), ElementsAre("1:ViewLayer.Depth.Z"));
 }
@@ -477,7 +526,8 @@ TEST_F(GBuffer, options_win_over_the_camera_file_and_that_over_the_defaults) {
     settings.camera = folder / "camera.json";
     write_bytes(
         settings.camera,
-        R"({"resolution": [3, 2], "fx": 3, "fy": 3, "cx": 1, "cy": 1, "world_to_camera": [[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]])" + more + "}");
+        R"({"resolution": [3, 2], "fx": 3, "fy": 3, "cx": 1, "cy": 1, "world_to_camera": [[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]])" +
+            more + "}");
   };
   camera(R"(, "depth": "ray", "normal_space": "view")");
   settings.normal_space = NormalSpace::automatic;

@@ -1,4 +1,5 @@
-// Every way to say depth and normals gives the same AO; what pixels tell of them is found, and what they do not tell is refused.
+// Every way to say depth and normals gives the same AO; what pixels tell of them is found, and what they do not tell is
+// refused.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,11 +10,11 @@
 #include <functional>
 #include <limits>
 
-#include "core/run/batch.h"
 #include "core/base/error.h"
-#include "core/frame/evidence.h"
 #include "core/formats/exr.h"
+#include "core/frame/evidence.h"
 #include "core/frame/settle.h"
+#include "core/run/batch.h"
 #include "tests/support/command_line.h"
 #include "tests/support/device.h"
 #include "tests/support/difference.h"
@@ -52,16 +53,21 @@ std::vector<float> ao_of(const HostFrame& frame, double radius, ThicknessKind th
 }
 
 /// The frame with each depth of a surface replaced, and all sky by `sky`.
-HostFrame with_depth(const Rendering& rendering, DepthKind kind, const std::function<double(const test::Hit&)>& value, float sky) {
+HostFrame with_depth(const Rendering& rendering, DepthKind kind, const std::function<double(const test::Hit&)>& value,
+                     float sky) {
   HostFrame frame = rendering.frame;
   frame.depth_kind = kind;
-  for (std::size_t i = 0; i < frame.depth.size(); i++) frame.depth[i] = rendering.hits[i].primitive < 0 ? sky : float(value(rendering.hits[i]));
+  for (std::size_t i = 0; i < frame.depth.size(); i++)
+    frame.depth[i] = rendering.hits[i].primitive < 0 ? sky : float(value(rendering.hits[i]));
   return frame;
 }
 
-/// With no radius that samples could fall in or out of by rounding, and occluders that have no width, every pixel agrees; else all but single samples do.
+/// With no radius that samples could fall in or out of by rounding, and occluders that have no width, every pixel
+/// agrees; else all but single samples do.
 void expect_same_ao(const HostFrame& frame, const HostFrame& planar, const std::string& what) {
-  const auto compared = [&](double radius, ThicknessKind thickness) { return difference(ao_of(frame, radius, thickness), ao_of(planar, radius, thickness)); };
+  const auto compared = [&](double radius, ThicknessKind thickness) {
+    return difference(ao_of(frame, radius, thickness), ao_of(planar, radius, thickness));
+  };
   const Difference whole = compared(1e3, ThicknessKind::infinite);
   EXPECT_LE(whole.max, 1e-4) << what << ", " << place(whole, frame);
   for (const double radius : {1e3, 0.6}) {
@@ -70,7 +76,8 @@ void expect_same_ao(const HostFrame& frame, const HostFrame& planar, const std::
   }
 }
 
-DepthRange between_planes(double far, bool reversed, DeviceRange device = DeviceRange::zero_to_one, double near = kNear) {
+DepthRange between_planes(double far, bool reversed, DeviceRange device = DeviceRange::zero_to_one,
+                          double near = kNear) {
   DepthRange range;
   range.near = near;
   range.far = far;
@@ -91,16 +98,20 @@ double device_depth(double z, double far, bool reversed, DeviceRange device, dou
 TEST(Depth, of_every_z_buffer_is_the_same_scene) {
   for (const bool inside : {false, true}) {
     const Rendering rendering = furnished(inside);
-    const double near = inside ? 0.1 : 1;  // as near as the scene allows: standard z is coarse beyond some hundred times that
+    // as near as the scene allows: standard z is coarse beyond some hundred times that
+    const double near = inside ? 0.1 : 1;
     for (const double far : {kFar, double(kInfinite)})
       for (const bool reversed : {false, true})
         for (const DeviceRange device : {DeviceRange::zero_to_one, DeviceRange::minus_one_to_one}) {
           const float sky = float(device_depth(kInfinite, kInfinite, reversed, device));
           HostFrame frame = with_depth(
-              rendering, DepthKind::device, [&](const test::Hit& hit) { return device_depth(hit.distance, far, reversed, device, near); }, sky);
+              rendering, DepthKind::device,
+              [&](const test::Hit& hit) { return device_depth(hit.distance, far, reversed, device, near); }, sky);
           frame.depth_range = between_planes(far, reversed, device, near);
-          expect_same_ao(frame, rendering.frame, fmt::format("inside {} far {} reversed {} range {}", inside, far, reversed, int(device)));
-          EXPECT_EQ(compute_ao(recorder(), frame, settings_of(1)).sky_pixels, compute_ao(recorder(), rendering.frame, settings_of(1)).sky_pixels);
+          expect_same_ao(frame, rendering.frame,
+                         fmt::format("inside {} far {} reversed {} range {}", inside, far, reversed, int(device)));
+          EXPECT_EQ(compute_ao(recorder(), frame, settings_of(1)).sky_pixels,
+                    compute_ao(recorder(), rendering.frame, settings_of(1)).sky_pixels);
         }
   }
 }
@@ -118,7 +129,8 @@ TEST(Depth, by_distance_by_inverse_or_between_planes_is_the_same_scene) {
     negative.negative = true;
     log.log_constant = log_reversed.log_constant = 0.5;
     const auto log_depth = [](double z) { return std::log1p(0.5 * z) / std::log1p(0.5 * kFar); };
-    check("ray", DepthKind::ray, 1e30f, {}, [&](const test::Hit& hit) { return length(hit.position - rendering.shot.eye); });
+    check("ray", DepthKind::ray, 1e30f, {},
+          [&](const test::Hit& hit) { return length(hit.position - rendering.shot.eye); });
     check("inverse", DepthKind::inverse, 0, {}, [](const test::Hit& hit) { return 1 / hit.distance; });
     check("negative planar", DepthKind::planar, -1e10f, negative, [](const test::Hit& hit) { return -hit.distance; });
     check("negative inverse", DepthKind::inverse, 0, negative, [](const test::Hit& hit) { return -1 / hit.distance; });
@@ -127,12 +139,14 @@ TEST(Depth, by_distance_by_inverse_or_between_planes_is_the_same_scene) {
     check("normalized, near 1", DepthKind::normalized, 0, between_planes(kFar, true),
           [](const test::Hit& hit) { return (kFar - hit.distance) / (kFar - kNear); });
     check("log", DepthKind::log, 1, log, [&](const test::Hit& hit) { return log_depth(hit.distance); });
-    check("log, near 1", DepthKind::log, 0, log_reversed, [&](const test::Hit& hit) { return 1 - log_depth(hit.distance); });
+    check("log, near 1", DepthKind::log, 0, log_reversed,
+          [&](const test::Hit& hit) { return 1 - log_depth(hit.distance); });
   }
 }
 
 TEST(Depth, of_an_orthographic_z_buffer_is_linear) {
-  const Scene scene{{parallelogram({0, -3, 0}, {4, 0, 0}, {0, 6, 0}), Sphere{.center = {1.2, 0.4, 0.5}, .radius = 0.5}}};
+  const Scene scene{
+      {parallelogram({0, -3, 0}, {4, 0, 0}, {0, 6, 0}), Sphere{.center = {1.2, 0.4, 0.5}, .radius = 0.5}}};
   const Rendering rendering = render(scene, Shot::orthographic({4.5, -1.5, 2.4}, {1, 0, 0.6}, 5, 160, 120));
   for (const bool reversed : {false, true}) {
     HostFrame frame = with_depth(
@@ -155,8 +169,9 @@ TEST(Depth, by_position_in_world_or_view_space_is_the_same_scene) {
       HostFrame frame = rendering.frame;
       frame.depth_kind = DepthKind::position;
       frame.position_space = world ? PositionSpace::world : PositionSpace::view;
-      frame.camera.view_from_world =
-          Matrix3{{{shot.right.x, shot.right.y, shot.right.z}, {shot.up.x, shot.up.y, shot.up.z}, {shot.back.x, shot.back.y, shot.back.z}}};
+      frame.camera.view_from_world = Matrix3{{{shot.right.x, shot.right.y, shot.right.z},
+                                              {shot.up.x, shot.up.y, shot.up.z},
+                                              {shot.back.x, shot.back.y, shot.back.z}}};
       const Vec3 offset = -shot.view_from_world(shot.eye);
       frame.camera.view_from_world_offset = {offset.x, offset.y, offset.z};
       const std::size_t pixels = frame.data.pixels();
@@ -169,7 +184,10 @@ TEST(Depth, by_position_in_world_or_view_space_is_the_same_scene) {
       expect_same_ao(frame, rendering.frame, world ? "world" : "view");
       const View view = view_of(frame.camera, frame.data, frame.display);
       EXPECT_LT(reprojection_error(frame.depth, frame.position_space, false, frame.camera, view).value(), 1e-3);
-      EXPECT_GT(reprojection_error(frame.depth, world ? PositionSpace::view : PositionSpace::world, false, frame.camera, view).value(), 10);
+      EXPECT_GT(
+          reprojection_error(frame.depth, world ? PositionSpace::view : PositionSpace::world, false, frame.camera, view)
+              .value(),
+          10);
     }
   }
 }
@@ -184,13 +202,16 @@ TEST(Depth, of_every_sentinel_is_sky) {
       frame.depth_range = range;
       const HostResult result = compute_ao(recorder(), frame, settings_of(0.6));
       EXPECT_LE(difference(result.ao, expected).rmse, 1e-4) << name_of(kind) << " " << sentinel;
-      EXPECT_EQ(result.sky_pixels, compute_ao(recorder(), rendering.frame, settings_of(0.6)).sky_pixels) << name_of(kind) << " " << sentinel;
+      EXPECT_EQ(result.sky_pixels, compute_ao(recorder(), rendering.frame, settings_of(0.6)).sky_pixels)
+          << name_of(kind) << " " << sentinel;
     }
   };
   const auto distance = [](const test::Hit& hit) { return hit.distance; };
   check(DepthKind::planar, {}, {0, 1e9f, 1e10f, 1e30f, 1e38f, kInfinite, -kInfinite, kNan, -1}, distance);
-  check(DepthKind::ray, {}, {0, 1e10f, kInfinite, kNan, -1}, [&](const test::Hit& hit) { return length(hit.position - rendering.shot.eye); });
-  check(DepthKind::inverse, {}, {0, 1e-10f, -1, kNan, -kInfinite, kInfinite}, [](const test::Hit& hit) { return 1 / hit.distance; });
+  check(DepthKind::ray, {}, {0, 1e10f, kInfinite, kNan, -1},
+        [&](const test::Hit& hit) { return length(hit.position - rendering.shot.eye); });
+  check(DepthKind::inverse, {}, {0, 1e-10f, -1, kNan, -kInfinite, kInfinite},
+        [](const test::Hit& hit) { return 1 / hit.distance; });
   for (const bool reversed : {false, true})
     check(DepthKind::device, between_planes(kFar, reversed), {0, 1, 1e10f, 65504, kInfinite, -kInfinite, kNan, -1},
           [&](const test::Hit& hit) { return device_depth(hit.distance, kFar, reversed, DeviceRange::zero_to_one); });
@@ -201,7 +222,8 @@ TEST(Depth, of_every_sentinel_is_sky) {
 TEST(Depth, scale_holds_for_every_kind) {
   const Rendering rendering = furnished();
   HostFrame frame = with_depth(
-      rendering, DepthKind::device, [](const test::Hit& hit) { return device_depth(hit.distance, kFar, true, DeviceRange::zero_to_one); }, 0);
+      rendering, DepthKind::device,
+      [](const test::Hit& hit) { return device_depth(hit.distance, kFar, true, DeviceRange::zero_to_one); }, 0);
   frame.depth_range = between_planes(kFar, true);
   const std::vector<float> expected = ao_of(frame, 0.6);
   frame.depth_scale = 128;
@@ -217,7 +239,8 @@ TEST(Depth, the_host_and_the_kernel_agree_on_what_is_sky) {
 // Normals.
 
 /// The frame with the view normal of each surface written in other planes.
-HostFrame with_normals(const Rendering& rendering, int planes, NormalEncoding encoding, bool unorm, const std::function<Vec3(Vec3)>& encode) {
+HostFrame with_normals(const Rendering& rendering, int planes, NormalEncoding encoding, bool unorm,
+                       const std::function<Vec3(Vec3)>& encode) {
   HostFrame frame = rendering.frame;
   const std::size_t pixels = frame.data.pixels();
   frame.normal_encoding = encoding;
@@ -257,9 +280,11 @@ TEST(Normals, of_every_encoding_are_the_same) {
   check("unorm", with_normals(rendering, 3, NormalEncoding::signed_float, true, same));
   check("two components", with_normals(rendering, 2, NormalEncoding::signed_float, false, same));
   check("two components, unorm", with_normals(rendering, 2, NormalEncoding::signed_float, true, same));
-  check("of half the length", with_normals(rendering, 3, NormalEncoding::signed_float, false, [](Vec3 n) { return 0.5 * n; }));
+  check("of half the length",
+        with_normals(rendering, 3, NormalEncoding::signed_float, false, [](Vec3 n) { return 0.5 * n; }));
   for (const bool unorm : {false, true})
-    for (const int planes : {2, 3}) check("octahedral", with_normals(rendering, planes, NormalEncoding::octahedral, unorm, octahedral));
+    for (const int planes : {2, 3})
+      check("octahedral", with_normals(rendering, planes, NormalEncoding::octahedral, unorm, octahedral));
   HostFrame sphere = with_normals(rendering, 2, NormalEncoding::spheremap, true, spheremap);
   sphere.flip_normal.z = true;
   EXPECT_LE(difference(ao_of(sphere, 1e3), ao_of(rendering.frame, 1e3)).max, 2e-3) << "spheremap is steep at its rim";
@@ -267,8 +292,8 @@ TEST(Normals, of_every_encoding_are_the_same) {
 
 TEST(Normals, flips_undo_flips) {
   const Rendering rendering = furnished();
-  for (const NormalFlips flips :
-       {NormalFlips{true, false, false}, NormalFlips{false, true, false}, NormalFlips{false, false, true}, NormalFlips{true, true, true}}) {
+  for (const NormalFlips flips : {NormalFlips{true, false, false}, NormalFlips{false, true, false},
+                                  NormalFlips{false, false, true}, NormalFlips{true, true, true}}) {
     HostFrame frame = with_normals(rendering, 3, NormalEncoding::signed_float, false, [&](Vec3 n) {
       return Vec3{flips.x ? -n.x : n.x, flips.y ? -n.y : n.y, flips.z ? -n.z : n.z};
     });
@@ -287,7 +312,8 @@ class Evidence : public testing::Test {
 
   /// Depth as `value` gives it, normals by `turn`; the camera file says nothing of either.
   void write(
-      const std::function<double(const test::Hit&)>& value, float sky, const std::function<Vec3(Vec3)>& turn = [](Vec3 n) { return n; }) {
+      const std::function<double(const test::Hit&)>& value, float sky,
+      const std::function<Vec3(Vec3)>& turn = [](Vec3 n) { return n; }) {
     const Shot& shot = rendering.shot;
     FrameFile file{shot.data, shot.display, 1, {}, {}, {}};
     const HostFrame frame = with_depth(rendering, DepthKind::planar, value, sky);
@@ -403,7 +429,10 @@ TEST_F(Evidence, finds_the_space_and_the_flips_of_normals) {
 }
 
 TEST_F(Evidence, finds_normals_between_0_and_1) {
-  write([](const test::Hit& hit) { return hit.distance; }, 1e10f, [](Vec3 n) { return Vec3{0.5 + 0.5 * n.x, 0.5 + 0.5 * n.y, 0.5 + 0.5 * n.z}; });
+  write([](const test::Hit& hit) { return hit.distance; }, 1e10f,
+        [](Vec3 n) {
+          return Vec3{0.5 + 0.5 * n.x, 0.5 + 0.5 * n.y, 0.5 + 0.5 * n.z};
+        });
   const FrameSource source = settled();
   EXPECT_TRUE(source.normal_unorm);
   EXPECT_EQ(source.normal_space, NormalSpace::world);
@@ -434,9 +463,11 @@ TEST_F(CommandLine, a_z_buffer_between_planes_is_read) {
   ASSERT_EQ(run({"--type", "float"}).code, 0);
   const auto planar = read_exr_image(ao).pixels;
   FrameFile file = wall_frame();
-  for (float& z : file.planes["ViewLayer.Depth.Z"]) z = float(device_depth(z, kInfinite, true, DeviceRange::zero_to_one));
+  for (float& z : file.planes["ViewLayer.Depth.Z"])
+    z = float(device_depth(z, kInfinite, true, DeviceRange::zero_to_one));
   file.write(frame);
-  const Finished finished = run({"--type", "float", "--depth-kind", "device", "--near", "0.1", "--far", "inf", "--reversed-z"});
+  const Finished finished =
+      run({"--type", "float", "--depth-kind", "device", "--near", "0.1", "--far", "inf", "--reversed-z"});
   ASSERT_EQ(finished.code, 0) << finished;
   EXPECT_LE(difference(read_exr_image(ao).pixels, planar).rmse, 1e-4);
   const Finished without = run({"--depth-kind", "device"});

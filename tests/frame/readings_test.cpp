@@ -1,4 +1,5 @@
-// Every way to read a frame against every way it may be written: the right one is taken without a word, each wrong one is noted or refused.
+// Every way to read a frame against every way it may be written: the right one is taken without a word, each wrong one
+// is noted or refused.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -39,13 +40,14 @@ double to_log(double z) { return std::log1p(0.5 * z) / std::log1p(0.5 * kFar); }
 
 const Written kPlanar{DepthKind::planar, false, [](double z, double) { return z; }, 1e10f};
 const std::vector<Written>& all_depths() {
-  static const std::vector<Written> all{kPlanar,
-                                        {DepthKind::ray, false, [](double, double ray) { return ray; }, 1e10f},
-                                        {DepthKind::inverse, false, [](double z, double) { return 1 / z; }, 0},
-                                        {DepthKind::device, false, [](double z, double) { return to_range(z); }, 1},
-                                        {DepthKind::device, true, [](double z, double) { return 1 - to_range(z); }, 0},
-                                        {DepthKind::normalized, false, [](double z, double) { return (z - kNear) / (kFar - kNear); }, 1},
-                                        {DepthKind::log, false, [](double z, double) { return to_log(z); }, 1}};
+  static const std::vector<Written> all{
+      kPlanar,
+      {DepthKind::ray, false, [](double, double ray) { return ray; }, 1e10f},
+      {DepthKind::inverse, false, [](double z, double) { return 1 / z; }, 0},
+      {DepthKind::device, false, [](double z, double) { return to_range(z); }, 1},
+      {DepthKind::device, true, [](double z, double) { return 1 - to_range(z); }, 0},
+      {DepthKind::normalized, false, [](double z, double) { return (z - kNear) / (kFar - kNear); }, 1},
+      {DepthKind::log, false, [](double z, double) { return to_log(z); }, 1}};
   return all;
 }
 
@@ -71,35 +73,48 @@ class Readings : public testing::Test {
   }
 
   static Shot shot_of(bool orthographic) {
-    return orthographic ? Shot::orthographic({4.5, -1.5, 2.4}, {1, 0, 0.6}, 5, 160, 120) : Shot::perspective({4.5, -1.5, 2.4}, {1, 0, 0.6}, 60, 160, 120);
+    return orthographic ? Shot::orthographic({4.5, -1.5, 2.4}, {1, 0, 0.6}, 5, 160, 120)
+                        : Shot::perspective({4.5, -1.5, 2.4}, {1, 0, 0.6}, 60, 160, 120);
   }
 
-  void write(const Written& depth, const std::function<Vec3(Vec3)>& normal = as_it_is, bool in_view = false, bool orthographic = false) {
-    const Rendering rendering = render(Scene{{parallelogram({0, -3, 0}, {4, 0, 0}, {0, 6, 0}), parallelogram({0, -3, 0}, {0, 6, 0}, {0, 0, 1.5}),
-                                              parallelogram({0, 2, 0}, {4, 0, 0}, {0, 0, 1.5}), Sphere{.center = {1.2, 0.4, 0.5}, .radius = 0.5}}},
-                                       shot_of(orthographic));
+  void write(const Written& depth, const std::function<Vec3(Vec3)>& normal = as_it_is, bool in_view = false,
+             bool orthographic = false) {
+    const Rendering rendering = render(
+        Scene{{parallelogram({0, -3, 0}, {4, 0, 0}, {0, 6, 0}), parallelogram({0, -3, 0}, {0, 6, 0}, {0, 0, 1.5}),
+               parallelogram({0, 2, 0}, {4, 0, 0}, {0, 0, 1.5}), Sphere{.center = {1.2, 0.4, 0.5}, .radius = 0.5}}},
+        shot_of(orthographic));
     const Shot& shot = rendering.shot;
     FrameFile file{shot.data, shot.display, 1, {}, {}, {}};
     for (const auto& hit : rendering.hits) {
       const bool is_sky = hit.primitive < 0;
-      file.planes["Z"].push_back(is_sky ? depth.sky : float(depth.value(hit.distance, length(hit.position - shot.eye))));
+      file.planes["Z"].push_back(is_sky ? depth.sky
+                                        : float(depth.value(hit.distance, length(hit.position - shot.eye))));
       const Vec3 n = is_sky ? Vec3{} : normal(in_view ? shot.view_from_world(hit.normal) : hit.normal);
-      file.planes["N.X"].push_back(float(n.x)), file.planes["N.Y"].push_back(float(n.y)), file.planes["N.Z"].push_back(float(n.z));
+      file.planes["N.X"].push_back(float(n.x)), file.planes["N.Y"].push_back(float(n.y)),
+          file.planes["N.Z"].push_back(float(n.z));
     }
     file.halves = halves;
     file.attributes = attributes;
     file.write(settings.input);
     const Vec3 offset = -shot.view_from_world(shot.eye);
-    camera = {{"resolution", {160, 120}}, {"fx", shot.camera.fx}, {"fy", shot.camera.fy}, {"cx", shot.camera.cx}, {"cy", shot.camera.cy},
+    camera = {{"resolution", {160, 120}},
+              {"fx", shot.camera.fx},
+              {"fy", shot.camera.fy},
+              {"cx", shot.camera.cx},
+              {"cy", shot.camera.cy},
               {"projection", orthographic ? "orthographic" : "perspective"},
-              {"world_to_camera", {{shot.right.x, shot.right.y, shot.right.z, offset.x}, {shot.up.x, shot.up.y, shot.up.z, offset.y},
-                                   {shot.back.x, shot.back.y, shot.back.z, offset.z}, {0, 0, 0, 1}}}};
+              {"world_to_camera",
+               {{shot.right.x, shot.right.y, shot.right.z, offset.x},
+                {shot.up.x, shot.up.y, shot.up.z, offset.y},
+                {shot.back.x, shot.back.y, shot.back.z, offset.z},
+                {0, 0, 0, 1}}}};
     write_bytes(settings.camera, camera.dump());
   }
 
   void say(const Written& depth) {
     settings.depth_kind = depth.kind;
-    const bool has_planes = depth.kind == DepthKind::device || depth.kind == DepthKind::normalized || depth.kind == DepthKind::log;
+    const bool has_planes =
+        depth.kind == DepthKind::device || depth.kind == DepthKind::normalized || depth.kind == DepthKind::log;
     settings.depth_range = {};
     if (has_planes) settings.depth_range.near = kNear, settings.depth_range.far = kFar;
     settings.depth_range.reversed = depth.reversed, settings.depth_range.log_constant = 0.5;
@@ -128,9 +143,13 @@ TEST_F(Readings, of_every_kind_of_depth_by_every_other_are_noted) {
     write(written);
     for (const auto& read : all_depths()) {
       say(read);
-      if (written.kind == DepthKind::inverse && read.reversed) continue;  // that is 1/z too, but for a scale and next to nothing
-      if (&written == &read) EXPECT_THAT(said(), testing::IsEmpty()) << name_of(read.kind) << read.reversed;
-      else EXPECT_THAT(said(), testing::Contains(HasSubstr("--depth-kind"))) << name_of(written.kind) << written.reversed << " as " << name_of(read.kind) << read.reversed;
+      // that is 1/z too, but for a scale and next to nothing
+      if (written.kind == DepthKind::inverse && read.reversed) continue;
+      if (&written == &read)
+        EXPECT_THAT(said(), testing::IsEmpty()) << name_of(read.kind) << read.reversed;
+      else
+        EXPECT_THAT(said(), testing::Contains(HasSubstr("--depth-kind")))
+            << name_of(written.kind) << written.reversed << " as " << name_of(read.kind) << read.reversed;
     }
   }
 }
@@ -142,7 +161,9 @@ TEST_F(Readings, of_orthographic_depth_need_no_option_and_doubt_nothing_that_is_
   settings.depth_kind = DepthKind::inverse;
   EXPECT_THAT(said(), testing::Contains(HasSubstr("--depth-kind")));
   for (const bool reversed : {false, true}) {
-    const auto linear = [&](double z, double) { return reversed ? (kFar - z) / (kFar - kNear) : (z - kNear) / (kFar - kNear); };
+    const auto linear = [&](double z, double) {
+      return reversed ? (kFar - z) / (kFar - kNear) : (z - kNear) / (kFar - kNear);
+    };
     for (const DepthKind kind : {DepthKind::device, DepthKind::normalized}) {
       const Written depth{kind, reversed, linear, reversed ? 0.0f : 1.0f};
       write(depth, as_it_is, false, true);
@@ -156,8 +177,9 @@ TEST_F(Readings, of_depth_that_ends_at_1_need_to_be_said) {
   for (const auto& written : all_depths())
     if (written.kind == DepthKind::normalized || written.kind == DepthKind::log) {
       write(written);
-      EXPECT_THAT(said(), testing::ElementsAre(testing::AllOf(HasSubstr("frame.exr"), HasSubstr("--depth-kind normalized"), HasSubstr("--far"), HasSubstr("log"),
-                                                              HasSubstr("--depth-kind planar"))));
+      EXPECT_THAT(said(), testing::ElementsAre(testing::AllOf(HasSubstr("frame.exr"),
+                                                              HasSubstr("--depth-kind normalized"), HasSubstr("--far"),
+                                                              HasSubstr("log"), HasSubstr("--depth-kind planar"))));
       settings.depth_kind = DepthKind::planar;
       EXPECT_EQ(settled().depth_kind, DepthKind::planar) << "what is said is taken";
       settings.depth_kind = DepthKind::automatic;
@@ -173,7 +195,8 @@ TEST_F(Readings, between_wrong_planes_are_noted) {
   say(device);
   settings.depth_range.device = DeviceRange::minus_one_to_one;
   EXPECT_THAT(said(), testing::Contains(HasSubstr("--device-range"))) << "0..1 as -1..1";
-  const Written gl{DepthKind::device, false, [](double z, double) { return 2 * (1 / 2.9 - 1 / z) / (1 / 2.9 - 1 / kFar) - 1; }, 1};
+  const Written gl{DepthKind::device, false,
+                   [](double z, double) { return 2 * (1 / 2.9 - 1 / z) / (1 / 2.9 - 1 / kFar) - 1; }, 1};
   write(gl);
   say(gl);
   settings.depth_range.near = 2.9;
@@ -211,24 +234,31 @@ struct Encoded {
   bool between_0_and_1;
   Vec3 (*encode)(Vec3);
 };
-constexpr Encoded kEncodings[]{{NormalEncoding::signed_float, false, as_it_is}, {NormalEncoding::unorm, true, as_it_is},
-                               {NormalEncoding::octahedral, false, octahedral}, {NormalEncoding::octahedral, true, octahedral},
-                               {NormalEncoding::spheremap, false, spheremap},   {NormalEncoding::spheremap, true, spheremap}};
+constexpr Encoded kEncodings[]{
+    {NormalEncoding::signed_float, false, as_it_is}, {NormalEncoding::unorm, true, as_it_is},
+    {NormalEncoding::octahedral, false, octahedral}, {NormalEncoding::octahedral, true, octahedral},
+    {NormalEncoding::spheremap, false, spheremap},   {NormalEncoding::spheremap, true, spheremap}};
 
 TEST_F(Readings, of_every_encoding_are_found_and_by_every_other_are_noted) {
   for (const auto& written : kEncodings) {
-    write(kPlanar, [&](Vec3 n) { return written.between_0_and_1 ? unorm(written.encode(n)) : written.encode(n); }, true);
+    write(
+        kPlanar, [&](Vec3 n) { return written.between_0_and_1 ? unorm(written.encode(n)) : written.encode(n); }, true);
     say_nothing();
     const FrameSource found = settled();
     const auto vectors = [](NormalEncoding e) { return e == NormalEncoding::unorm ? NormalEncoding::signed_float : e; };
-    EXPECT_EQ(vectors(found.normal_encoding), vectors(written.encoding)) << int(written.encoding) << written.between_0_and_1;
+    EXPECT_EQ(vectors(found.normal_encoding), vectors(written.encoding))
+        << int(written.encoding) << written.between_0_and_1;
     EXPECT_EQ(found.normal_unorm, written.between_0_and_1) << int(written.encoding);
     EXPECT_EQ(found.normal_space, NormalSpace::view);
     settings.normal_space = NormalSpace::view;
-    for (const NormalEncoding read : {NormalEncoding::signed_float, NormalEncoding::unorm, NormalEncoding::octahedral, NormalEncoding::spheremap}) {
+    for (const NormalEncoding read :
+         {NormalEncoding::signed_float, NormalEncoding::unorm, NormalEncoding::octahedral, NormalEncoding::spheremap}) {
       settings.normal_encoding = read;
-      if (read == written.encoding) EXPECT_THAT(said(), testing::IsEmpty()) << int(read) << written.between_0_and_1;
-      else EXPECT_THAT(said(), testing::Contains(HasSubstr("--normal-encoding"))) << int(written.encoding) << written.between_0_and_1 << " as " << int(read);
+      if (read == written.encoding)
+        EXPECT_THAT(said(), testing::IsEmpty()) << int(read) << written.between_0_and_1;
+      else
+        EXPECT_THAT(said(), testing::Contains(HasSubstr("--normal-encoding")))
+            << int(written.encoding) << written.between_0_and_1 << " as " << int(read);
     }
   }
 }
@@ -237,7 +267,12 @@ TEST_F(Readings, in_every_space_with_every_flip_are_found_and_by_every_other_are
   for (const bool in_view : {false, true})
     for (int flips = 0; flips < 8; flips++) {
       const NormalFlips written{(flips & 1) != 0, (flips & 2) != 0, (flips & 4) != 0};
-      write(kPlanar, [&](Vec3 n) { return Vec3{written.x ? -n.x : n.x, written.y ? -n.y : n.y, written.z ? -n.z : n.z}; }, in_view);
+      write(
+          kPlanar,
+          [&](Vec3 n) {
+            return Vec3{written.x ? -n.x : n.x, written.y ? -n.y : n.y, written.z ? -n.z : n.z};
+          },
+          in_view);
       say_nothing();
       EXPECT_EQ(settled().normal_space, in_view ? NormalSpace::view : NormalSpace::world) << flips;
       EXPECT_EQ(to_string(settled().flip_normal), to_string(written));
@@ -245,8 +280,10 @@ TEST_F(Readings, in_every_space_with_every_flip_are_found_and_by_every_other_are
         for (const bool x : {false, true}) {
           settings.normal_space = as_view ? NormalSpace::view : NormalSpace::world;
           settings.flip_normal = {x, written.y, written.z};
-          if (as_view == in_view && x == written.x) EXPECT_THAT(said(), testing::IsEmpty()) << flips;
-          else EXPECT_THAT(said(), testing::Contains(HasSubstr("--normal-space"))) << flips << as_view << x;
+          if (as_view == in_view && x == written.x)
+            EXPECT_THAT(said(), testing::IsEmpty()) << flips;
+          else
+            EXPECT_THAT(said(), testing::Contains(HasSubstr("--normal-space"))) << flips << as_view << x;
         }
     }
 }
@@ -254,12 +291,15 @@ TEST_F(Readings, in_every_space_with_every_flip_are_found_and_by_every_other_are
 TEST_F(Readings, that_do_equally_well_are_refused_with_what_decides) {
   attributes["Software"] = "Octane";  // which writes distances along the ray
   write({DepthKind::planar, false, [](double z, double) { return z < 4.5 ? z : 40 / z; }, 1e10f});
-  EXPECT_THAT(said(), testing::ElementsAre(testing::AllOf(HasSubstr("frame.exr"), HasSubstr("--depth-kind planar"), HasSubstr("--depth-kind inverse"))));
+  EXPECT_THAT(said(), testing::ElementsAre(testing::AllOf(HasSubstr("frame.exr"), HasSubstr("--depth-kind planar"),
+                                                          HasSubstr("--depth-kind inverse"))));
   attributes.clear();
   write(kPlanar, as_it_is, true);
-  camera["world_to_camera"] = {{-1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, -1, 0}, {0, 0, 0, 1}};  // so that one space is the other with flips
+  // so that one space is the other with flips
+  camera["world_to_camera"] = {{-1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, -1, 0}, {0, 0, 0, 1}};
   write_bytes(settings.camera, camera.dump());
-  EXPECT_THAT(said(), testing::ElementsAre(testing::AllOf(HasSubstr("view"), HasSubstr("world"), HasSubstr("flips xz"), HasSubstr("--normal-space"), HasSubstr("--flip-normal"))));
+  EXPECT_THAT(said(), testing::ElementsAre(testing::AllOf(HasSubstr("view"), HasSubstr("world"), HasSubstr("flips xz"),
+                                                          HasSubstr("--normal-space"), HasSubstr("--flip-normal"))));
 }
 
 TEST_F(Readings, with_a_flip_and_no_space_are_noted_too) {

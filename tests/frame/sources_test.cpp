@@ -1,4 +1,5 @@
-// One scene as every program writes it gives the same AO, or is refused with the option that mends it; what is said wrongly is noted.
+// One scene as every program writes it gives the same AO, or is refused with the option that mends it; what is said
+// wrongly is noted.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ImfChannelList.h>
 #include <ImfFloatAttribute.h>
@@ -63,7 +64,10 @@ Rows world_to_camera(double sign) {
 
 Rows camera_to_world(double sign) {
   const Vec3 axes[] = {shot().right, shot().up, sign * shot().back};
-  return {{{axes[0].x, axes[1].x, axes[2].x, shot().eye.x}, {axes[0].y, axes[1].y, axes[2].y, shot().eye.y}, {axes[0].z, axes[1].z, axes[2].z, shot().eye.z}, {0, 0, 0, 1}}};
+  return {{{axes[0].x, axes[1].x, axes[2].x, shot().eye.x},
+           {axes[0].y, axes[1].y, axes[2].y, shot().eye.y},
+           {axes[0].z, axes[1].z, axes[2].z, shot().eye.z},
+           {0, 0, 0, 1}}};
 }
 
 /// World to NDC, through a camera that looks along +z: from 0 with y down, or from -1 with y up.
@@ -83,7 +87,8 @@ Rows world_to_ndc(bool from_zero) {
 Imf::M44fAttribute matrix(const Rows& rows, bool row_vectors) {
   Imath::M44f m;
   for (int i = 0; i < 4; i++)
-    for (int j = 0; j < 4; j++) m[i][j] = float(row_vectors ? rows[std::size_t(j)][std::size_t(i)] : rows[std::size_t(i)][std::size_t(j)]);
+    for (int j = 0; j < 4; j++)
+      m[i][j] = float(row_vectors ? rows[std::size_t(j)][std::size_t(i)] : rows[std::size_t(i)][std::size_t(j)]);
   return Imf::M44fAttribute(m);
 }
 
@@ -102,11 +107,13 @@ class Sources : public testing::Test {
     for (const auto& hit : rendering().hits) plane.push_back(hit.primitive < 0 ? sky : float(scale * value(hit)));
   }
 
-  void vectors(const std::string& layer, const char* components, const std::function<Vec3(const test::Hit&)>& value, float offset = 0, float scale = 1) {
+  void vectors(const std::string& layer, const char* components, const std::function<Vec3(const test::Hit&)>& value,
+               float offset = 0, float scale = 1) {
     for (const auto& hit : rendering().hits) {
       const Vec3 v = hit.primitive < 0 ? Vec3{} : value(hit);
       const double xyz[] = {v.x, v.y, v.z};
-      for (int c = 0; c < 3; c++) planes[layer + "." + components[c]].push_back(hit.primitive < 0 ? 0 : float(offset + scale * xyz[c]));
+      for (int c = 0; c < 3; c++)
+        planes[layer + "." + components[c]].push_back(hit.primitive < 0 ? 0 : float(offset + scale * xyz[c]));
     }
   }
 
@@ -134,7 +141,8 @@ class Sources : public testing::Test {
   void give_camera() {
     const Rows rows = world_to_camera(1);
     const Camera& c = shot().camera;
-    std::string text = fmt::format(R"({{"resolution": [160, 120], "fx": {}, "fy": {}, "cx": 80, "cy": 60, "world_to_camera": [)", c.fx, c.fy);
+    std::string text = fmt::format(
+        R"({{"resolution": [160, 120], "fx": {}, "fy": {}, "cx": 80, "cy": 60, "world_to_camera": [)", c.fx, c.fy);
     for (std::size_t i = 0; i < 4; i++) text += fmt::format("{}[{}]", i ? ", " : "", fmt::join(rows[i], ", "));
     settings.camera = folder / "camera.json";
     write_bytes(settings.camera, text + "]}");
@@ -285,20 +293,22 @@ TEST_F(Sources, unreal_in_its_left_handed_world_and_half_depth) {
   vectors("FinalImageMovieRenderQueue_WorldNormal", "RGB", [](const test::Hit& hit) { return mirrored(hit.normal); });
   const Vec3 forward = mirrored(-shot().back), eye = 100 * mirrored(shot().eye);
   const double degree = 180 / std::numbers::pi;
-  const std::pair<const char*, double> numbers[] = {{"unreal/camera/curPos/x", eye.x},
-                                                    {"unreal/camera/curPos/y", eye.y},
-                                                    {"unreal/camera/curPos/z", eye.z},
-                                                    {"unreal/camera/curRot/yaw", degree * std::atan2(forward.y, forward.x)},
-                                                    {"unreal/camera/curRot/pitch", degree * std::asin(forward.z)},
-                                                    {"unreal/camera/curRot/roll", 0},
-                                                    {"unreal/camera/FinalImage/fov", kFov}};
+  const std::pair<const char*, double> numbers[] = {
+      {"unreal/camera/curPos/x", eye.x},
+      {"unreal/camera/curPos/y", eye.y},
+      {"unreal/camera/curPos/z", eye.z},
+      {"unreal/camera/curRot/yaw", degree * std::atan2(forward.y, forward.x)},
+      {"unreal/camera/curRot/pitch", degree * std::asin(forward.z)},
+      {"unreal/camera/curRot/roll", 0},
+      {"unreal/camera/FinalImage/fov", kFov}};
   for (const auto& [name, value] : numbers) header.insert(name, Imf::StringAttribute(fmt::format("{}", value)));
   expect_same("unreal", 0.03, 100);  // half floats step by 0.25 cm here, and AO shows it
   EXPECT_THAT(settled().suspicious, testing::ElementsAre(HasSubstr("half float")));
 }
 
 TEST_F(Sources, nuke_with_inverse_depth) {
-  depth("depth.Z", [](const test::Hit& hit) { return 1 / hit.distance; }, 0);
+  depth(
+      "depth.Z", [](const test::Hit& hit) { return 1 / hit.distance; }, 0);
   vectors("N", "XYZ", world_normal);
   give_camera();
   header.insert("nuke/version", Imf::StringAttribute("13.2"));
@@ -347,7 +357,9 @@ TEST_F(Sources, what_went_through_nuke_is_not_nukes) {
   settings.fov = kFov;
   write(settings.input);
   EXPECT_EQ(find_frame(settings, false, 0).rules->name, "nuke");
-  for (const auto& [attribute, program] : {std::pair{"exr/vrayInfo/camera", "vray"}, {"nuke/exr/rs/camera/aspect", "redshift"}, {"exr/unreal/frame", "unreal"}}) {
+  for (const auto& [attribute, program] : {std::pair{"exr/vrayInfo/camera", "vray"},
+                                           {"nuke/exr/rs/camera/aspect", "redshift"},
+                                           {"exr/unreal/frame", "unreal"}}) {
     const Imf::Header before = header;
     header.insert(attribute, Imf::StringAttribute("1"));
     write(settings.input);
@@ -381,7 +393,8 @@ TEST_F(Sources, lens_shift_pixel_aspect_and_overscan_are_in_the_matrices) {
   depth("Z", planar, 1e12f);
   const Rows view = world_to_camera(-1);
   Rows ndc = world_to_ndc(true);
-  for (std::size_t j = 0; j < 4; j++) ndc[0][j] += 0.1 * ndc[3][j], ndc[1][j] = 2 * (ndc[1][j] - 0.5 * ndc[3][j]) + 0.4 * ndc[3][j];
+  for (std::size_t j = 0; j < 4; j++)
+    ndc[0][j] += 0.1 * ndc[3][j], ndc[1][j] = 2 * (ndc[1][j] - 0.5 * ndc[3][j]) + 0.4 * ndc[3][j];
   header.insert("worldToCamera", matrix(view, true));
   header.insert("worldToNDC", matrix(ndc, true));
   header.dataWindow() = Imath::Box2i({0, 0}, {159, 119});
@@ -397,7 +410,8 @@ TEST_F(Sources, an_orthographic_projection_is_known_by_its_matrix) {
   depth("Z", planar, 1e12f);
   const Rows view = world_to_camera(-1);
   Rows ndc{};
-  for (std::size_t j = 0; j < 4; j++) ndc[0][j] = view[0][j] / 8, ndc[1][j] = -view[1][j] / 6, ndc[2][j] = view[2][j] / 100;
+  for (std::size_t j = 0; j < 4; j++)
+    ndc[0][j] = view[0][j] / 8, ndc[1][j] = -view[1][j] / 6, ndc[2][j] = view[2][j] / 100;
   ndc[0][3] += 0.5, ndc[1][3] += 0.5, ndc[3] = {0, 0, 0, 1};
   header.insert("worldToCamera", matrix(view, true));
   header.insert("worldToNDC", matrix(ndc, true));
@@ -427,7 +441,8 @@ TEST_F(Sources, every_wrong_reading_that_is_forced_is_noted) {
   write(settings.input);
   EXPECT_THAT(settled().notes, testing::IsEmpty());
   const InputSettings right = settings;
-  const auto expect_noted = [&](const char* what, const char* option, const std::function<void(InputSettings&)>& wrong) {
+  const auto expect_noted = [&](const char* what, const char* option,
+                                const std::function<void(InputSettings&)>& wrong) {
     settings = right;
     wrong(settings);
     std::vector<std::string> notes;
@@ -440,21 +455,33 @@ TEST_F(Sources, every_wrong_reading_that_is_forced_is_noted) {
   };
   expect_noted("ray", "--depth-kind", [](InputSettings& s) { s.depth_kind = DepthKind::ray; });
   expect_noted("inverse", "--depth-kind", [](InputSettings& s) { s.depth_kind = DepthKind::inverse; });
-  expect_noted("device", "--depth-kind", [](InputSettings& s) { s.depth_kind = DepthKind::device, s.depth_range.near = 1, s.depth_range.far = 10; });
-  expect_noted("normalized", "--depth-kind", [](InputSettings& s) { s.depth_kind = DepthKind::normalized, s.depth_range.far = 10; });
+  expect_noted("device", "--depth-kind", [](InputSettings& s) {
+    s.depth_kind = DepthKind::device, s.depth_range.near = 1, s.depth_range.far = 10;
+  });
+  expect_noted("normalized", "--depth-kind",
+               [](InputSettings& s) { s.depth_kind = DepthKind::normalized, s.depth_range.far = 10; });
   expect_noted("log", "--depth-kind", [](InputSettings& s) { s.depth_kind = DepthKind::log, s.depth_range.far = 10; });
   expect_noted("view normals", "--normal-space", [](InputSettings& s) { s.normal_space = NormalSpace::view; });
-  for (const NormalFlips flips : {NormalFlips{true, false, false}, NormalFlips{false, true, false}, NormalFlips{false, false, true}})
-    expect_noted(flips.x ? "x" : flips.y ? "y" : "z", "--flip-normal", [&](InputSettings& s) { s.normal_space = NormalSpace::world, s.flip_normal = flips; });
+  for (const NormalFlips flips :
+       {NormalFlips{true, false, false}, NormalFlips{false, true, false}, NormalFlips{false, false, true}})
+    expect_noted(flips.x   ? "x"
+                 : flips.y ? "y"
+                           : "z",
+                 "--flip-normal",
+                 [&](InputSettings& s) { s.normal_space = NormalSpace::world, s.flip_normal = flips; });
   for (const NormalEncoding encoding : {NormalEncoding::unorm, NormalEncoding::octahedral, NormalEncoding::spheremap})
-    expect_noted("encoding", "--normal", [&](InputSettings& s) { s.normal_space = NormalSpace::world, s.normal_encoding = encoding; });
+    expect_noted("encoding", "--normal",
+                 [&](InputSettings& s) { s.normal_space = NormalSpace::world, s.normal_encoding = encoding; });
 }
 
 TEST_F(Sources, a_matrix_for_another_depth_range_is_noted) {
-  depth("Z", [](const test::Hit& hit) { return 1 - 0.5 / hit.distance; }, 1);
+  depth(
+      "Z", [](const test::Hit& hit) { return 1 - 0.5 / hit.distance; }, 1);
   give_camera();
   std::string text = read_bytes(settings.camera);
-  text.insert(1, R"("near": 0.5, "far": "inf", "depth_kind": "device", "projection": [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, -1], [0, 0, 1, 0]], )");
+  text.insert(
+      1,
+      R"("near": 0.5, "far": "inf", "depth_kind": "device", "projection": [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, -1], [0, 0, 1, 0]], )");
   write_bytes(settings.camera, text);
   write(settings.input);
   EXPECT_THAT(settled().notes, testing::Contains(HasSubstr("2 times as large")));
@@ -463,8 +490,8 @@ TEST_F(Sources, a_matrix_for_another_depth_range_is_noted) {
 }
 
 TEST(InputRules, all_names_are_there_and_unknown_ones_name_the_nearest) {
-  for (const char* name : {"arnold", "vray", "renderman", "cycles", "blender5", "redshift", "karma", "mantra", "octane", "corona", "3delight", "unreal", "unity",
-                           "nuke", "pbrt", "renderdoc", "reshade", "generic"})
+  for (const char* name : {"arnold", "vray", "renderman", "cycles", "blender5", "redshift", "karma", "mantra", "octane",
+                           "corona", "3delight", "unreal", "unity", "nuke", "pbrt", "renderdoc", "reshade", "generic"})
     EXPECT_EQ(input_rules(name).name, name);
   try {
     input_rules("arnlod");

@@ -35,13 +35,15 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     ExrFile file(input.path(), "INPUT");
     detect_rules(file);
     for (std::size_t part = 0; part < file.parts().size(); part++) {
-      fuzz::require(file.parts()[part].data.width > 0 && file.parts()[part].data.height > 0, "a data window has pixels");
+      fuzz::require(file.parts()[part].data.width > 0 && file.parts()[part].data.height > 0,
+                    "a data window has pixels");
       file.attributes(int(part));
       const auto texts = file.attribute_texts(int(part));
       fuzz::accepts([&] { require_no_panorama(texts, input.path()); });
       if (const auto found = header_camera(texts, file.display(), file.parts()[part].data, file.pixel_aspect())) {
         fuzz::require(found->camera.fx > 0 && found->camera.fy > 0, "a camera has a field of view");
-        for (const double x : {found->camera.cx, found->camera.cy}) fuzz::require(std::isfinite(float(x)), "a camera has a centre");
+        for (const double x : {found->camera.cx, found->camera.cy})
+          fuzz::require(std::isfinite(float(x)), "a camera has a centre");
       }
       read_pixels(file, part);
     }

@@ -32,7 +32,8 @@ class InputFile {
 /// Ends the program with the words unless the condition holds.
 void require(bool condition, const char* words);
 
-/// Calls the function, which may refuse its input with an Error that says why, and with no other exception. Whether it did not.
+/// Calls the function, which may refuse its input with an Error that says why, and with no other exception. Whether it
+/// did not.
 template <class Function>
 bool accepts(Function&& function) {
   try {

@@ -1,4 +1,5 @@
-// A whole frame as `alcove inspect` reads it: the search for AOVs, what the pixels say of their meaning, and the report.
+// A whole frame as `alcove inspect` reads it: the search for AOVs, what the pixels say of their meaning, and the
+// report.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/inspect/inspect.h"
 
@@ -32,7 +33,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   fuzz::accepts([&] {
     const Inspection inspection = inspect_frame(settings, 1);
     fuzz::require(nlohmann::json::accept(inspection.json), "the JSON is JSON");
-    const bool commands = std::ranges::any_of(inspection.text, [](unsigned char c) { return (c < 0x20 && c != '\n') || c == 0x7f; });
+    const bool commands =
+        std::ranges::any_of(inspection.text, [](unsigned char c) { return (c < 0x20 && c != '\n') || c == 0x7f; });
     fuzz::require(!commands, "a terminal shows text only");
   });
   return 0;

@@ -1,8 +1,8 @@
 // TOML: rules of input presets, suites and limits of the benchmark.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/base/flat_toml.h"
-#include "core/frame/input_rules.h"
 #include "core/bench/suite.h"
+#include "core/frame/input_rules.h"
 #include "tests/fuzz/fuzz.h"
 
 using namespace alcove;

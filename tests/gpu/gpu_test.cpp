@@ -39,9 +39,11 @@ TEST(Reflection, reads_parameter_sizes_that_the_host_sends) {
 
 TEST(Reflection, reads_bindings_groups_and_constants) {
   const auto horizon = gpu::reflect(gpu::kernel_code("horizon"));
-  EXPECT_THAT(horizon.bindings, ElementsAre(kHorizonDepth, kHorizonNormal, kHorizonAo, kHorizonBent, kHorizonList, kHorizonCounts));
+  EXPECT_THAT(horizon.bindings,
+              ElementsAre(kHorizonDepth, kHorizonNormal, kHorizonAo, kHorizonBent, kHorizonList, kHorizonCounts));
   EXPECT_THAT(horizon.group, ElementsAre(kGroupX, kGroupY, 1u));
-  EXPECT_THAT(horizon.constant_ids, ElementsAre(kHorizonSlicesId, kHorizonStepsId, kHorizonModeId, kHorizonStrideId, kHorizonThicknessId));
+  EXPECT_THAT(horizon.constant_ids,
+              ElementsAre(kHorizonSlicesId, kHorizonStepsId, kHorizonModeId, kHorizonStrideId, kHorizonThicknessId));
 }
 
 TEST(Reflection, refuses_what_is_no_spirv) {
@@ -55,14 +57,20 @@ TEST(Kernel, refuses_parameters_of_another_size) {
   auto& gpu = test::recorder();
   auto& buffer = gpu.buffer("test", 256, gpu::Use::device);
   const PrepareParams wrong{};
-  EXPECT_THAT(error_of([&] { gpu.dispatch("shape", wrong, {{kShapeAo, buffer}, {kShapeShaped, buffer}}, {8, 8}); }), HasSubstr("kernel shape takes"));
+  EXPECT_THAT(error_of([&] {
+                gpu.dispatch("shape", wrong, {{kShapeAo, buffer}, {kShapeShaped, buffer}}, {8, 8});
+              }),
+              HasSubstr("kernel shape takes"));
 }
 
 TEST(Kernel, refuses_bindings_that_are_not_its_own) {
   auto& gpu = test::recorder();
   auto& buffer = gpu.buffer("test", 256, gpu::Use::device);
   const ShapeParams params{};
-  EXPECT_THAT(error_of([&] { gpu.dispatch("shape", params, {{kShapeAo, buffer}}, {8, 8}); }), HasSubstr("kernel shape has the bindings"));
+  EXPECT_THAT(error_of([&] {
+                gpu.dispatch("shape", params, {{kShapeAo, buffer}}, {8, 8});
+              }),
+              HasSubstr("kernel shape has the bindings"));
 }
 
 TEST(Kernel, refuses_missing_constants_and_unknown_stems) {
@@ -85,7 +93,8 @@ TEST(Buffer, keeps_its_place_in_the_pool_until_its_size_changes) {
 /// Records a copy of 64 values, 0.5 each, from the buffer "source" of so many to one of so many.
 const gpu::Buffer& record_copy_of_64(std::size_t from, std::size_t to) {
   auto& gpu = test::recorder();
-  auto &source = gpu.buffer("source", from * sizeof(float), gpu::Use::upload), &copy = gpu.buffer("copy", to * sizeof(float), gpu::Use::download);
+  auto &source = gpu.buffer("source", from * sizeof(float), gpu::Use::upload),
+       &copy = gpu.buffer("copy", to * sizeof(float), gpu::Use::download);
   auto& unread = gpu.buffer("unread", 256, gpu::Use::device);
   std::ranges::fill(source.as<float>(), 0.5f);
   gpu.upload(source);
@@ -93,7 +102,12 @@ const gpu::Buffer& record_copy_of_64(std::size_t from, std::size_t to) {
   params.size = {64, 1};
   params.intensity = params.power = params.planes = 1;
   gpu.dispatch("shape", params,
-               {{kShapeAo, source}, {kShapeShaped, copy}, {kShapeDepth, unread}, {kShapeMaterial, unread}, {kShapeCounts, unread}}, {64, 1});
+               {{kShapeAo, source},
+                {kShapeShaped, copy},
+                {kShapeDepth, unread},
+                {kShapeMaterial, unread},
+                {kShapeCounts, unread}},
+               {64, 1});
   gpu.download(copy);
   return copy;
 }
@@ -117,7 +131,8 @@ TEST(Guards, what_is_read_behind_a_buffer_is_no_number) {
 TEST(Buffer, that_is_replaced_lives_until_what_was_recorded_has_run) {
   auto& gpu = test::recorder();
   const gpu::Buffer& copy = record_copy_of_64(64, 64);
-  for (std::size_t others = 60; others < 64; others++) std::ranges::fill(gpu.buffer("source", others * sizeof(float), gpu::Use::upload).as<float>(), 0.25f);
+  for (std::size_t others = 60; others < 64; others++)
+    std::ranges::fill(gpu.buffer("source", others * sizeof(float), gpu::Use::upload).as<float>(), 0.25f);
   gpu.run();
   for (const float value : copy.as<const float>()) ASSERT_EQ(value, 0.5f);
 }

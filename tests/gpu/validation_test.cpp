@@ -1,4 +1,5 @@
-// Every kernel once under the Vulkan validation layer, which checks their synchronization too: tests/CMakeLists.txt asks it to.
+// Every kernel once under the Vulkan validation layer, which checks their synchronization too: tests/CMakeLists.txt
+// asks it to.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
@@ -17,7 +18,8 @@ namespace {
 using namespace test;
 
 /// Runs the chain on a small room in light, and returns the kernels that it took. Nothing is compared: other tests do.
-std::set<std::string> kernels_of(gpu::Recorder& gpu, const EstimatorSettings& settings, const OutputSettings& output, bool has_normals = true) {
+std::set<std::string> kernels_of(gpu::Recorder& gpu, const EstimatorSettings& settings, const OutputSettings& output,
+                                 bool has_normals = true) {
   HostFrame frame = furnished_room(70, 45).frame;
   if (!has_normals) frame.normal.clear();
   FrameInputs inputs = upload(gpu, frame);

@@ -51,7 +51,8 @@ TEST_F(Inspect, lists_files_channels_and_attributes) {
 TEST_F(Inspect, says_what_would_be_used_and_how_it_is_understood) {
   const json all = inspected({"--camera", camera});
   EXPECT_EQ(all["aovs"]["depth"]["channels"], json::array({"ViewLayer.Depth.Z"}));
-  EXPECT_EQ(all["aovs"]["normal"]["channels"], json::array({"ViewLayer.Normal.X", "ViewLayer.Normal.Y", "ViewLayer.Normal.Z"}));
+  EXPECT_EQ(all["aovs"]["normal"]["channels"],
+            json::array({"ViewLayer.Normal.X", "ViewLayer.Normal.Y", "ViewLayer.Normal.Z"}));
   EXPECT_EQ(all["depth"]["kind"], "planar");
   EXPECT_NEAR(all["depth"]["farthest"].get<double>(), 6, 1e-6);
   EXPECT_EQ(all["depth"]["sky_share"], 0);
@@ -66,7 +67,8 @@ TEST_F(Inspect, says_what_would_be_used_and_how_it_is_understood) {
 TEST_F(Inspect, counts_sky_and_sentinels) {
   FrameFile file = wall_frame();
   auto& depth = file.planes["ViewLayer.Depth.Z"];
-  depth[0] = std::numeric_limits<float>::quiet_NaN(), depth[1] = 0, depth[2] = -1, depth[3] = 1e10f, depth[4] = std::numeric_limits<float>::infinity();
+  depth[0] = std::numeric_limits<float>::quiet_NaN(), depth[1] = 0, depth[2] = -1, depth[3] = 1e10f,
+  depth[4] = std::numeric_limits<float>::infinity();
   file.write(frame);
   const json all = inspected({"--camera", camera})["depth"];
   for (const char* what : {"nan", "zero", "negative", "infinite"}) EXPECT_EQ(all[what], 1) << what;
@@ -96,7 +98,9 @@ TEST_F(Inspect, names_what_is_missing_and_the_option_that_gives_it) {
   file.write(frame);
   const Finished finished = inspect();
   EXPECT_EQ(finished.code, 0) << finished;
-  for (const char* word : {"missing: camera", "--camera", "--fov", "missing: normals", "--normal-channels", "missing: beauty"}) EXPECT_THAT(finished.out, HasSubstr(word));
+  for (const char* word :
+       {"missing: camera", "--camera", "--fov", "missing: normals", "--normal-channels", "missing: beauty"})
+    EXPECT_THAT(finished.out, HasSubstr(word));
 }
 
 TEST_F(Inspect, a_frame_without_depth_is_described_with_what_is_missing) {
@@ -173,7 +177,8 @@ TEST_F(Inspect, without_a_camera_nothing_is_said_that_needs_one) {
   EXPECT_EQ(all["normals"]["scores"].size(), 0);
   EXPECT_FALSE(all["normals"].contains("agreement"));
   EXPECT_EQ(all["notes"].size(), 0) << all["notes"];
-  EXPECT_THAT(all["command"].get<std::string>(), testing::AllOf(HasSubstr("--camera CAMERA.json"), testing::Not(HasSubstr("--normal-space"))));
+  EXPECT_THAT(all["command"].get<std::string>(),
+              testing::AllOf(HasSubstr("--camera CAMERA.json"), testing::Not(HasSubstr("--normal-space"))));
   EXPECT_THAT(inspect().out, HasSubstr("missing: camera"));
 }
 

@@ -29,7 +29,8 @@ constexpr Window kWindow{0, 0, kFormulaWidth, kFormulaHeight};
 class Compare : public testing::Test {
  protected:
   /// Writes an EXR and gives its path.
-  std::string exr(const std::string& name, const std::map<std::string, Plane>& planes, const Window& data = kWindow) const {
+  std::string exr(const std::string& name, const std::map<std::string, Plane>& planes,
+                  const Window& data = kWindow) const {
     FrameFile file;
     file.data = file.display = data;
     file.planes = planes;
@@ -74,7 +75,8 @@ Plane constant(float value) { return Plane(kWindow.pixels(), value); }
 
 TEST_F(Compare, a_picture_with_itself) {
   const auto a = exr("a.exr", {{"Y", box}});
-  const json j = measured({a, a, "--max-rmse", "0", "--max-p99", "0", "--min-ssim", "1", "--max-flip", "0", "--max-bias", "0"});
+  const json j =
+      measured({a, a, "--max-rmse", "0", "--max-p99", "0", "--min-ssim", "1", "--max-flip", "0", "--max-bias", "0"});
   for (const char* key : {"rmse", "mae", "bias", "max", "p95", "p99", "flip"}) EXPECT_EQ(j[key], 0) << key;
   EXPECT_EQ(j["count"], kWindow.pixels());
   EXPECT_EQ(j["excluded"], 0);
@@ -85,7 +87,8 @@ TEST_F(Compare, a_picture_with_itself) {
 }
 
 TEST_F(Compare, known_differences) {
-  const json j = measured({exr("a.exr", {{"Y", with_left(constant(0.5f), 0.75f)}}), exr("b.exr", {{"Y", constant(0.5f)}})});
+  const json j =
+      measured({exr("a.exr", {{"Y", with_left(constant(0.5f), 0.75f)}}), exr("b.exr", {{"Y", constant(0.5f)}})});
   EXPECT_DOUBLE_EQ(j["rmse"], std::sqrt(0.5 * 0.0625));
   EXPECT_DOUBLE_EQ(j["mae"], 0.125);
   EXPECT_DOUBLE_EQ(j["bias"], 0.125);
@@ -113,9 +116,15 @@ TEST_F(Compare, flip_of_colours_is_that_of_the_colours_not_of_each_channel) {
   const auto a = exr("a.exr", {{"R", result[0]}, {"G", result[1]}, {"B", result[2]}});
   const auto b = exr("b.exr", {{"R", reference[0]}, {"G", reference[1]}, {"B", reference[2]}});
   EXPECT_NEAR(measured({a, b})["flip"], 0.323722805, 1e-6);
-  const json two = measured({exr("c.exr", {{"x.R", result[0]}, {"x.G", result[1]}, {"x.B", result[2]}, {"y.R", ramp}, {"y.G", ramp}, {"y.B", ramp}}),
-                             exr("d.exr", {{"x.R", reference[0]}, {"x.G", reference[1]}, {"x.B", reference[2]},
-                                           {"y.R", ramp}, {"y.G", ramp}, {"y.B", ramp}})});
+  const json two = measured(
+      {exr("c.exr",
+           {{"x.R", result[0]}, {"x.G", result[1]}, {"x.B", result[2]}, {"y.R", ramp}, {"y.G", ramp}, {"y.B", ramp}}),
+       exr("d.exr", {{"x.R", reference[0]},
+                     {"x.G", reference[1]},
+                     {"x.B", reference[2]},
+                     {"y.R", ramp},
+                     {"y.G", ramp},
+                     {"y.B", ramp}})});
   EXPECT_NEAR(two["flip"], 0.323722805 / 2, 1e-6) << "the mean of the layers";
 }
 
@@ -126,15 +135,18 @@ TEST_F(Compare, a_second_reference_takes_the_noise_out) {
     a.push_back(0.5f + (i & 2 ? 0.25f : -0.25f));
     b.push_back(0.5f + (i & 4 ? 0.5f : -0.5f));
   }
-  const json j = measured({exr("t.exr", {{"Y", result}}), exr("a.exr", {{"AO", a}}), "--reference-b", exr("b.exr", {{"AO", b}})});
+  const json j =
+      measured({exr("t.exr", {{"Y", result}}), exr("a.exr", {{"AO", a}}), "--reference-b", exr("b.exr", {{"AO", b}})});
   EXPECT_DOUBLE_EQ(j["rmse"], 0.125);
   EXPECT_DOUBLE_EQ(j["psnr"], -20 * std::log10(0.125));
 }
 
 TEST_F(Compare, the_table_tells_the_same) {
-  const Finished finished = compare({exr("a.exr", {{"Y", with_left(constant(0.5f), 0.75f)}}), exr("b.exr", {{"Y", constant(0.5f)}})});
+  const Finished finished =
+      compare({exr("a.exr", {{"Y", with_left(constant(0.5f), 0.75f)}}), exr("b.exr", {{"Y", constant(0.5f)}})});
   EXPECT_EQ(finished.code, 0) << finished;
-  EXPECT_THAT(finished.out, AllOf(HasSubstr("rmse 0.1768"), HasSubstr("bias +0.1250"), HasSubstr("psnr 15.05 dB"), HasSubstr("1920 pixels")));
+  EXPECT_THAT(finished.out, AllOf(HasSubstr("rmse 0.1768"), HasSubstr("bias +0.1250"), HasSubstr("psnr 15.05 dB"),
+                                  HasSubstr("1920 pixels")));
 }
 
 // Channels and formats.
@@ -146,15 +158,18 @@ TEST_F(Compare, single_channels_are_compared_whatever_their_names) {
 TEST_F(Compare, channels_match_by_name_then_by_its_last_part) {
   const auto a = exr("a.exr", {{"R", ramp}, {"G", box}, {"B", ramp}});
   const std::string layer = "ViewLayer.Combined.";
-  const json j = measured({a, exr("b.exr", {{layer + "R", ramp}, {layer + "G", box}, {layer + "B", ramp}, {layer + "A", box}})});
+  const json j =
+      measured({a, exr("b.exr", {{layer + "R", ramp}, {layer + "G", box}, {layer + "B", ramp}, {layer + "A", box}})});
   EXPECT_EQ(j["rmse"], 0);
   EXPECT_EQ(j["channels"], json::array({"B", "G", "R"}));
-  expect_error(3, {a, exr("c.exr", {{"x.R", ramp}, {"y.R", box}})}, {"channel R could be compared with several", "--channel"});
+  expect_error(3, {a, exr("c.exr", {{"x.R", ramp}, {"y.R", box}})},
+               {"channel R could be compared with several", "--channel"});
   EXPECT_EQ(measured({a, folder / "c.exr", "--channel", "R=x.R,G=y.R"})["rmse"], 0);
 }
 
 TEST_F(Compare, no_common_channel_is_an_error_that_lists_both) {
-  expect_error(3, {exr("a.exr", {{"Y", ramp}}), exr("b.exr", {{"U", ramp}, {"V", ramp}})}, {"a.exr has Y", "b.exr has U, V", "--channel"});
+  expect_error(3, {exr("a.exr", {{"Y", ramp}}), exr("b.exr", {{"U", ramp}, {"V", ramp}})},
+               {"a.exr has Y", "b.exr has U, V", "--channel"});
   expect_error(3, {folder / "a.exr", folder / "b.exr", "--channel", "Y=W"}, {"no channel W"});
 }
 
@@ -190,7 +205,8 @@ TEST_F(Compare, a_mask_from_a_file_from_alpha_and_from_depth) {
   const auto mask = exr("mask.exr", {{"m", with_left(constant(0.1f), 0)}});
   const auto alpha = exr("alpha.exr", {{"R", ramp}, {"A", with_left(constant(1), 0)}});
   const auto depth = exr("depth.exr", {{"ViewLayer.Depth.Z", with_left(constant(5), 1e10f)}});
-  const std::vector<std::vector<std::string>> ways{{"--mask", mask}, {"--mask", alpha}, {"--depth", depth}, {"--mask", alpha, "--mask-channel", "A"}};
+  const std::vector<std::vector<std::string>> ways{
+      {"--mask", mask}, {"--mask", alpha}, {"--depth", depth}, {"--mask", alpha, "--mask-channel", "A"}};
   for (const auto& arguments : ways) {
     std::vector<std::string> all{a, b};
     all.insert(all.end(), arguments.begin(), arguments.end());
@@ -200,16 +216,19 @@ TEST_F(Compare, a_mask_from_a_file_from_alpha_and_from_depth) {
     EXPECT_EQ(j["flip"], 0) << "what is left out must not shine over";
     EXPECT_DOUBLE_EQ(j["ssim"], 1);
   }
-  expect_error(3, {a, b, "--mask", exr("two.exr", {{"u", ramp}, {"v", ramp}})}, {"which channel is the mask", "u, v", "--mask-channel"});
+  expect_error(3, {a, b, "--mask", exr("two.exr", {{"u", ramp}, {"v", ramp}})},
+               {"which channel is the mask", "u, v", "--mask-channel"});
 }
 
 TEST_F(Compare, errors_at_depth_edges_and_away_from_them) {
   Plane result = ramp, depth = constant(10);
   for (std::size_t i = 0; i < depth.size(); i++) {
     if (i % kFormulaWidth >= 24) depth[i] = 12;
-    if (i % kFormulaWidth >= 22 && i % kFormulaWidth < 26) result[i] += 0.5f;  // two of the three columns that each side of the edge has
+    // two of the three columns that each side of the edge has
+    if (i % kFormulaWidth >= 22 && i % kFormulaWidth < 26) result[i] += 0.5f;
   }
-  const json j = measured({exr("a.exr", {{"Y", result}}), exr("b.exr", {{"Y", ramp}}), "--depth", exr("z.exr", {{"Z", depth}})});
+  const json j =
+      measured({exr("a.exr", {{"Y", result}}), exr("b.exr", {{"Y", ramp}}), "--depth", exr("z.exr", {{"Z", depth}})});
   EXPECT_EQ(j["edges"]["at"]["count"], 6 * kFormulaHeight);
   EXPECT_NEAR(j["edges"]["at"]["bias"], 0.5 * 4 / 6, 1e-6);
   EXPECT_EQ(j["edges"]["away"]["rmse"], 0);
@@ -218,12 +237,14 @@ TEST_F(Compare, errors_at_depth_edges_and_away_from_them) {
 TEST_F(Compare, nothing_to_compare_is_an_error) {
   const auto a = exr("a.exr", {{"Y", ramp}});
   expect_error(3, {a, exr("nan.exr", {{"Y", constant(kNan)}})}, {"nan.exr", "no pixel to compare", "1920 are NaN"});
-  expect_error(3, {a, a, "--mask", exr("empty.exr", {{"Y", constant(0)}})}, {"no pixel to compare", "1920 are left out by the mask"});
+  expect_error(3, {a, a, "--mask", exr("empty.exr", {{"Y", constant(0)}})},
+               {"no pixel to compare", "1920 are left out by the mask"});
 }
 
 TEST_F(Compare, other_pixels_are_an_error_that_names_both_windows) {
   const auto a = exr("a.exr", {{"Y", ramp}});
-  const auto small = exr("b.exr", {{"Y", Plane(100)}}, {0, 0, 10, 10}), moved = exr("c.exr", {{"Y", ramp}}, {5, 0, kFormulaWidth, kFormulaHeight});
+  const auto small = exr("b.exr", {{"Y", Plane(100)}}, {0, 0, 10, 10}),
+             moved = exr("c.exr", {{"Y", ramp}}, {5, 0, kFormulaWidth, kFormulaHeight});
   expect_error(3, {a, small}, {to_string(kWindow), to_string({0, 0, 10, 10}), "a.exr", "b.exr"});
   expect_error(3, {a, moved}, {to_string(kWindow), to_string({5, 0, kFormulaWidth, kFormulaHeight})});
   expect_error(3, {a, a, "--mask", small}, {"b.exr"});
@@ -247,7 +268,8 @@ TEST_F(Compare, a_broken_limit_ends_with_6_and_says_which) {
   expect_error(6, {a, b, "--max-bias", "0.1"}, {"bias is -0.125, and --max-bias is 0.1"});
   expect_error(6, {a, b, "--max-p99", "0.2"}, {"p99 is 0.25, and --max-p99 is 0.2"});
   expect_error(6, {a, b, "--min-ssim", "0.99"}, {"--min-ssim is 0.99"});
-  expect_error(6, {a, b, "--max-flip", "0.001", "--max-rmse", "0.1"}, {"--max-flip is 0.001", "; ", "--max-rmse is 0.1"});
+  expect_error(6, {a, b, "--max-flip", "0.001", "--max-rmse", "0.1"},
+               {"--max-flip is 0.001", "; ", "--max-rmse is 0.1"});
   const json j = measured({a, b, "--max-rmse", "0.1"}, 6);
   EXPECT_EQ(j["pass"], false);
   EXPECT_EQ(j["broken"].size(), 1);
@@ -278,7 +300,8 @@ TEST_F(Compare, files_that_cannot_be_read_end_with_3) {
   expect_error(3, {folder / "text.png", a}, {"text.png"});
   write_bytes(folder / "cut.exr", read_bytes(a).substr(0, read_bytes(a).size() - 100));
   expect_error(3, {folder / "cut.exr", a}, {"cut.exr", "damaged or incomplete"});
-  expect_error(3, {a, a, "--depth", exr("normal.exr", {{"N.X", ramp}, {"N.Y", ramp}})}, {"normal.exr", "no depth channel", "--depth-channel"});
+  expect_error(3, {a, a, "--depth", exr("normal.exr", {{"N.X", ramp}, {"N.Y", ramp}})},
+               {"normal.exr", "no depth channel", "--depth-channel"});
 }
 
 // Sequences.
@@ -319,10 +342,13 @@ TEST_F(CompareSequence, a_list_chooses_the_frames) {
   EXPECT_EQ(j["frames"].size(), 3);
   EXPECT_EQ(j["frames"][0]["frame"], 4);
   EXPECT_EQ(j["rmse"], 0);
-  EXPECT_TRUE(measured({result, reference, "--frames", "1-3x2"})["flicker"].is_null()) << "no two frames follow each other";
+  EXPECT_TRUE(measured({result, reference, "--frames", "1-3x2"})["flicker"].is_null())
+      << "no two frames follow each other";
 }
 
-TEST_F(CompareSequence, one_reference_serves_all_frames) { EXPECT_EQ(measured({result, folder / "truth.0001.exr"})["frames"].size(), 4); }
+TEST_F(CompareSequence, one_reference_serves_all_frames) {
+  EXPECT_EQ(measured({result, folder / "truth.0001.exr"})["frames"].size(), 4);
+}
 
 TEST_F(CompareSequence, missing_frames_are_listed_before_any_work) {
   exr("ao.0007.exr", {{"Y", ramp}});
@@ -333,21 +359,26 @@ TEST_F(CompareSequence, missing_frames_are_listed_before_any_work) {
 }
 
 TEST_F(CompareSequence, an_error_that_moves_with_its_surface_does_not_flicker) {
-  for (int frame = 1; frame <= 3; frame++) {  // an error of the result moves to the right by 3 pixels a frame, and up by 2
+  // an error of the result moves to the right by 3 pixels a frame, and up by 2
+  for (int frame = 1; frame <= 3; frame++) {
     Plane plane = constant(0.25f);
     for (int y = 0; y < kFormulaHeight; y++)
       for (int x = 0; x < kFormulaWidth; x++)
-        if (((x - 3 * frame + 90) % 5 == 0) != ((y + 2 * frame) % 7 == 0)) plane[std::size_t(y * kFormulaWidth + x)] += 0.25f;
+        if (((x - 3 * frame + 90) % 5 == 0) != ((y + 2 * frame) % 7 == 0))
+          plane[std::size_t(y * kFormulaWidth + x)] += 0.25f;
     exr("moving." + std::to_string(frame) + ".exr", {{"Y", plane}});
     exr("still." + std::to_string(frame) + ".exr", {{"Y", constant(0.25f)}});
     // Blender's: place in the previous frame minus place here, y up.
-    exr("vector." + std::to_string(frame) + ".exr",
-        {{"ViewLayer.Vector.X", constant(-3)}, {"ViewLayer.Vector.Y", constant(-2)}, {"ViewLayer.Vector.Z", constant(0)}});
+    exr("vector." + std::to_string(frame) + ".exr", {{"ViewLayer.Vector.X", constant(-3)},
+                                                     {"ViewLayer.Vector.Y", constant(-2)},
+                                                     {"ViewLayer.Vector.Z", constant(0)}});
   }
   const std::vector<std::string> pictures{folder / "moving.%d.exr", folder / "still.%d.exr"};
   EXPECT_GT(measured(pictures)["flicker"], 0.1);
   EXPECT_EQ(measured({pictures[0], pictures[1], "--motion", folder / "vector.%d.exr"})["flicker"], 0);
-  EXPECT_GT(measured({pictures[0], pictures[1], "--motion", folder / "vector.%d.exr", "--motion-channels", "Vector.Y,Vector.X"})["flicker"], 0.1);
+  EXPECT_GT(measured({pictures[0], pictures[1], "--motion", folder / "vector.%d.exr", "--motion-channels",
+                      "Vector.Y,Vector.X"})["flicker"],
+            0.1);
 }
 
 // Documents.
@@ -359,14 +390,17 @@ TEST(CompareReadme, every_option_and_every_field_is_told) {
   const std::string section = readme.substr(begin, end - begin);
   const std::regex option("\n  (-h,)?(--[a-z0-9-]+)");
   int count = 0;
-  for (auto match = std::sregex_iterator(help.begin(), help.end(), option); match != std::sregex_iterator(); ++match, count++)
-    if ((*match)[2] != "--help") EXPECT_TRUE(std::regex_search(section, std::regex((*match)[2].str() + "[^a-z-]"))) << (*match)[2];
+  for (auto match = std::sregex_iterator(help.begin(), help.end(), option); match != std::sregex_iterator();
+       ++match, count++)
+    if ((*match)[2] != "--help")
+      EXPECT_TRUE(std::regex_search(section, std::regex((*match)[2].str() + "[^a-z-]"))) << (*match)[2];
   EXPECT_GE(count, 20);
 }
 
 TEST_F(CompareSequence, every_field_is_told) {
   const std::string readme = read_bytes(ALCOVE_SOURCE_DIR "/README.md");
-  for (const json& object : {measured({result, reference}), measured({folder / "ao.0001.exr", folder / "truth.0001.exr"})})
+  for (const json& object :
+       {measured({result, reference}), measured({folder / "ao.0001.exr", folder / "truth.0001.exr"})})
     for (const auto& [key, value] : object.items())
       EXPECT_TRUE(readme.find("\"" + key + "\"") != readme.npos || readme.find("`" + key + "`") != readme.npos) << key;
 }

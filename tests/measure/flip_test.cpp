@@ -59,7 +59,9 @@ TEST(LdrFlip, equal_pictures_have_no_error) {
   for (const float error : formula_flip(noise_result(), noise_result())) EXPECT_EQ(error, 0);
 }
 
-TEST(LdrFlip, is_symmetric) { EXPECT_EQ(formula_flip(noise_result(), noise_reference()), formula_flip(noise_reference(), noise_result())); }
+TEST(LdrFlip, is_symmetric) {
+  EXPECT_EQ(formula_flip(noise_result(), noise_reference()), formula_flip(noise_reference(), noise_result()));
+}
 
 TEST(LdrFlip, lies_between_0_and_1_whatever_comes_in) {
   ColorImage wild = noise_result();
@@ -71,7 +73,9 @@ TEST(LdrFlip, lies_between_0_and_1_whatever_comes_in) {
   }
 }
 
-TEST(LdrFlip, values_outside_of_0_and_1_are_clamped) { EXPECT_EQ(plain_flip({-3, 0, 0}, {0, 9, 0}), plain_flip({0, 0, 0}, {0, 1, 0})); }
+TEST(LdrFlip, values_outside_of_0_and_1_are_clamped) {
+  EXPECT_EQ(plain_flip({-3, 0, 0}, {0, 9, 0}), plain_flip({0, 0, 0}, {0, 1, 0}));
+}
 
 TEST(LdrFlip, is_the_same_for_a_turned_picture) {
   const auto turned = [](ColorImage image) {
@@ -89,9 +93,11 @@ TEST(LdrFlip, stored_values_of_a_second_implementation) {
   EXPECT_NEAR(mean(noise), 0.323722805, 1e-6);
   EXPECT_NEAR(noise[0], 0.029864242, 1e-6);
   EXPECT_NEAR(noise[13 * kFormulaWidth + 20], 0.244680692, 1e-6);
-  const ColorImage grey{ramp_plane(0, 1), ramp_plane(0, 1), ramp_plane(0, 1)}, box{ramp_with_box(), ramp_with_box(), ramp_with_box()};
+  const ColorImage grey{ramp_plane(0, 1), ramp_plane(0, 1), ramp_plane(0, 1)},
+      box{ramp_with_box(), ramp_with_box(), ramp_with_box()};
   EXPECT_NEAR(mean(formula_flip(box, grey)), 0.110418082, 1e-6);
-  const Plane ramps = formula_flip({ramp_plane(0, 1), ramp_plane(5, 2), ramp_plane(9, 3)}, {ramp_plane(4, 1), ramp_plane(5, 2), ramp_plane(0, 3)});
+  const Plane ramps = formula_flip({ramp_plane(0, 1), ramp_plane(5, 2), ramp_plane(9, 3)},
+                                   {ramp_plane(4, 1), ramp_plane(5, 2), ramp_plane(0, 3)});
   EXPECT_NEAR(mean(ramps), 0.155553201, 1e-6);
   EXPECT_NEAR(ramps[13 * kFormulaWidth + 20], 0.139035488, 1e-6);
 }
@@ -103,7 +109,9 @@ TEST(LdrFlip, a_picture_of_one_pixel_is_measured) {
 
 // HDR.
 
-double curve(double x) { return (0.36 * 2.51 * x * x + 0.6 * 0.03 * x) / (0.36 * 2.43 * x * x + 0.6 * 0.59 * x + 0.14); }
+double curve(double x) {
+  return (0.36 * 2.51 * x * x + 0.6 * 0.03 * x) / (0.36 * 2.43 * x * x + 0.6 * 0.59 * x + 0.14);
+}
 
 TEST(HdrFlip, exposures_run_from_the_brightest_to_the_median_just_below_white) {
   const Plane grey{0.5, 1, 1, 16, 0.25};
@@ -132,7 +140,8 @@ ColorImage bright(ColorImage image) {
 
 TEST(HdrFlip, equal_pictures_have_no_error) {
   const auto picture = bright(noise_result());
-  for (const float error : hdr_flip(kFormulaWidth, kFormulaHeight, planes_of(picture), planes_of(picture))) EXPECT_EQ(error, 0);
+  for (const float error : hdr_flip(kFormulaWidth, kFormulaHeight, planes_of(picture), planes_of(picture)))
+    EXPECT_EQ(error, 0);
 }
 
 TEST(HdrFlip, stored_values_of_a_second_implementation) {

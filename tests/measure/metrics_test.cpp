@@ -52,7 +52,8 @@ TEST(PlaneErrors, four_values_by_hand) {
 
 TEST(PlaneErrors, percentiles_lie_between_the_nearest_ranks) {
   Plane result(101);
-  for (int i = 0; i <= 100; i++) result[std::size_t((i * 37) % 101)] = float(i % 2 ? -i : i);  // sizes 0 .. 100 in some order
+  // sizes 0 .. 100 in some order
+  for (int i = 0; i <= 100; i++) result[std::size_t((i * 37) % 101)] = float(i % 2 ? -i : i);
   const auto e = compare_planes(result, Plane(101));
   EXPECT_DOUBLE_EQ(e.p95, 95);
   EXPECT_DOUBLE_EQ(e.p99, 99);
@@ -93,7 +94,10 @@ TEST(PlaneErrors, one_mask_holds_for_each_of_several_planes) {
 
 TEST(PlaneErrors, nothing_to_compare_is_an_error) {
   EXPECT_THAT(input_error_of([] { compare_planes(Plane{kNan, kNan}, Plane{0, 0}); }), HasSubstr("2 are NaN"));
-  EXPECT_THAT(input_error_of([] { compare_planes(Plane{1, 1}, Plane{0, 0}, Bytes{0, 0}); }), HasSubstr("no value to compare"));
+  EXPECT_THAT(input_error_of([] {
+                compare_planes(Plane{1, 1}, Plane{0, 0}, Bytes{0, 0});
+              }),
+              HasSubstr("no value to compare"));
   EXPECT_THAT(input_error_of([] { compare_planes(Plane{}, Plane{}); }), HasSubstr("no value to compare"));
 }
 
@@ -106,7 +110,8 @@ TEST(UnbiasedRmse, independent_noise_of_two_references_cancels) {
   }
   EXPECT_DOUBLE_EQ(unbiased_rmse(result, a, b), 0.125);
   EXPECT_GT(compare_planes(result, a).rmse, 0.27);
-  EXPECT_DOUBLE_EQ(compare_planes(result, a, {}, b).mae, compare_planes(result, Comparable{{}, a, b, {}}.mean_reference()).mae);
+  EXPECT_DOUBLE_EQ(compare_planes(result, a, {}, b).mae,
+                   compare_planes(result, Comparable{{}, a, b, {}}.mean_reference()).mae);
 }
 
 TEST(UnbiasedRmse, a_negative_mean_is_no_error) { EXPECT_EQ(unbiased_rmse(Plane{0.5}, Plane{0}, Plane{1}), 0); }
@@ -136,7 +141,9 @@ TEST(MakeComparable, a_nan_in_one_plane_leaves_the_pixel_out_of_all) {
 }
 
 TEST(MakeComparable, no_pixel_left_is_an_error_that_says_why) {
-  EXPECT_THAT(input_error_of([] { make_comparable("a against b", 2, Plane{kNan, 1}, Plane{0, 0}, {}, Bytes{1, 0}); }),
+  EXPECT_THAT(input_error_of([] {
+                make_comparable("a against b", 2, Plane{kNan, 1}, Plane{0, 0}, {}, Bytes{1, 0});
+              }),
               testing::AllOf(HasSubstr("a against b"), HasSubstr("1 are left out by the mask and 1 are NaN")));
 }
 
@@ -151,7 +158,8 @@ TEST(Ssim, stored_values_of_scikit_image_0_19_3) {
 }
 
 TEST(Ssim, is_what_scikit_image_says) {
-  if (std::system("/usr/bin/python3 -c 'import skimage.metrics' 2>/dev/null") != 0) GTEST_SKIP() << "scikit-image is not installed";
+  if (std::system("/usr/bin/python3 -c 'import skimage.metrics' 2>/dev/null") != 0)
+    GTEST_SKIP() << "scikit-image is not installed";
   const TemporaryFolder folder;
   const auto a = formula_plane(3, 5, 7, 1000), b = formula_plane(3, 5, 7, 1100);
   const auto write = [&](const char* name, const Plane& plane) {
@@ -159,9 +167,12 @@ TEST(Ssim, is_what_scikit_image_says) {
   };
   write("a", a);
   write("b", b);
-  const std::string script = "import numpy,skimage.metrics as m;a,b=[numpy.fromfile(n,numpy.float32).reshape(40,48).astype(float) for n in 'ab'];"
-                             "print(repr(m.structural_similarity(a,b,gaussian_weights=True,sigma=1.5,use_sample_covariance=False,data_range=1)),"
-                             "repr(m.peak_signal_noise_ratio(a,b,data_range=1)),*map(repr,numpy.percentile(abs(a-b),[95,99])))";
+  const std::string script =
+      "import numpy,skimage.metrics as m;a,b=[numpy.fromfile(n,numpy.float32).reshape(40,48).astype(float) for n in "
+      "'ab'];"
+      "print(repr(m.structural_similarity(a,b,gaussian_weights=True,sigma=1.5,use_sample_covariance=False,data_range=1)"
+      "),"
+      "repr(m.peak_signal_noise_ratio(a,b,data_range=1)),*map(repr,numpy.percentile(abs(a-b),[95,99])))";
   const std::string command = "cd " + folder.path() + " && /usr/bin/python3 -c \"" + script + "\"";
   const std::unique_ptr<FILE, int (*)(FILE*)> pipe(::popen(command.c_str(), "r"), ::pclose);
   double similarity = 0, ratio = 0, p95 = 0, p99 = 0;
@@ -200,10 +211,10 @@ TEST(DarknessBands, values_go_where_the_reference_is) {
     EXPECT_DOUBLE_EQ(bands[i].errors.rmse, rmse) << i;
     EXPECT_DOUBLE_EQ(bands[i].errors.bias, bias) << i;
   };
-  expect(0, 0, 1, 0.5, -0.5);                                     // -.5: below all bands
-  expect(1, 0.25, 2, 0.25, 0);                                    // -.25, +.25
+  expect(0, 0, 1, 0.5, -0.5);   // -.5: below all bands
+  expect(1, 0.25, 2, 0.25, 0);  // -.25, +.25
   expect(2, 0.5, 1, 0.5, 0.5);
-  expect(3, 0.75, 2, std::sqrt((0.0625 + 0.25) / 2), 0.125);      // -.25, +.5: above all bands
+  expect(3, 0.75, 2, std::sqrt((0.0625 + 0.25) / 2), 0.125);  // -.25, +.5: above all bands
 }
 
 TEST(DepthEdges, reach_two_pixels_to_each_side_of_a_step) {
@@ -241,14 +252,18 @@ double flicker_of(const ErrorFrame& previous, const ErrorFrame& here) {
   return flicker.rms();
 }
 
-TEST(Flicker, an_error_that_stays_is_none) { EXPECT_EQ(flicker_of(frame_of(2, 2, {1, 2, 3, 4}), frame_of(2, 2, {1, 2, 3, 4})), 0); }
+TEST(Flicker, an_error_that_stays_is_none) {
+  EXPECT_EQ(flicker_of(frame_of(2, 2, {1, 2, 3, 4}), frame_of(2, 2, {1, 2, 3, 4})), 0);
+}
 
-TEST(Flicker, is_the_rms_of_the_change) { EXPECT_DOUBLE_EQ(flicker_of(frame_of(2, 1, {0, 0}), frame_of(2, 1, {3, -4})), std::sqrt(12.5)); }
+TEST(Flicker, is_the_rms_of_the_change) {
+  EXPECT_DOUBLE_EQ(flicker_of(frame_of(2, 1, {0, 0}), frame_of(2, 1, {3, -4})), std::sqrt(12.5));
+}
 
 TEST(Flicker, an_error_that_moves_with_its_surface_is_none) {
   auto previous = frame_of(3, 3, {1, 2, 3, 4, 5, 6, 7, 8, 9}), here = frame_of(3, 3, {5, 6, 99, 8, 9, 99, 99, 99, 99});
-  here.motion_x.assign(9, 1.2f);    // everything was one pixel to the right,
-  here.motion_y.assign(9, -0.9f);   // and one below: y is up
+  here.motion_x.assign(9, 1.2f);   // everything was one pixel to the right,
+  here.motion_y.assign(9, -0.9f);  // and one below: y is up
   Flicker flicker;
   flicker.add(previous, here);
   EXPECT_EQ(flicker.count(), 4) << "the others were outside";

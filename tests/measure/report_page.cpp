@@ -1,4 +1,5 @@
-// Writes the report page of the JSON on standard input to standard output: what tests/measure/report_page_test.py opens in a browser.
+// Writes the report page of the JSON on standard input to standard output: what tests/measure/report_page_test.py opens
+// in a browser.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/measure/report.h"
 

@@ -23,8 +23,13 @@ std::string json_block(const std::string& page) {
 }
 
 nlohmann::json small_report(const std::string& name) {
-  return {{"title", name}, {"kind", "compare"}, {"device", nullptr}, {"yardstick_ms", nullptr}, {"candidates", nlohmann::json::array()},
-          {"rows", nlohmann::json::array()}, {"images", nlohmann::json::array()}};
+  return {{"title", name},
+          {"kind", "compare"},
+          {"device", nullptr},
+          {"yardstick_ms", nullptr},
+          {"candidates", nlohmann::json::array()},
+          {"rows", nlohmann::json::array()},
+          {"images", nlohmann::json::array()}};
 }
 
 /// What `expression` finds in the page without its data: the first capture of each match.
@@ -39,7 +44,8 @@ std::vector<std::string> found(const char* expression) {
 }  // namespace
 
 TEST(Report, hostile_strings_come_back_from_the_block_as_they_went_in) {
-  for (const char* name : {"<script>alert(1)</script>", "</SCRIPT >", "<!-- <script>", "\"\\u003c", "a\nb\tc", "]]>", "{{page.js}}", "{{report.json}}", "\u00e9\u2028"}) {
+  for (const char* name : {"<script>alert(1)</script>", "</SCRIPT >", "<!-- <script>", "\"\\u003c", "a\nb\tc", "]]>",
+                           "{{page.js}}", "{{report.json}}", "\u00e9\u2028"}) {
     const nlohmann::json report = small_report(name);
     EXPECT_EQ(nlohmann::json::parse(json_block(report_page(report.dump()))), report) << name;
   }
@@ -54,14 +60,17 @@ TEST(Report, all_marks_are_filled) { EXPECT_THAT(found("(\\{\\{[a-z_]+\\.[a-z.]+
 TEST(Report, nothing_would_be_fetched) {
   EXPECT_THAT(found("<script[^>]*\\s(src)"), testing::IsEmpty());
   EXPECT_THAT(found("<link[^>]*\\shref\\s*=\\s*[\"']?([^\"'>\\s]*)"), testing::Each(testing::StartsWith("data:")));
-  EXPECT_THAT(found("<(?:img|iframe|object|embed|video|audio|source|base|form)\\b[^>]*\\s(?:src|data|href|action)\\s*=\\s*[\"']?([^\"'>\\s]*)"), testing::IsEmpty());
+  EXPECT_THAT(found("<(?:img|iframe|object|embed|video|audio|source|base|form)\\b[^>]*\\s(?:src|data|href|action)\\s*="
+                    "\\s*[\"']?([^\"'>\\s]*)"),
+              testing::IsEmpty());
   EXPECT_THAT(found("(@import)"), testing::IsEmpty());
   EXPECT_THAT(found("\\burl\\(([^)]*)\\)"), testing::IsEmpty());
   EXPECT_THAT(found("(sourceMappingURL)"), testing::IsEmpty());
 }
 
 TEST(Report, the_browser_is_told_to_fetch_nothing) {
-  EXPECT_THAT(report_page("{}"), HasSubstr("http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src data:;"));
+  EXPECT_THAT(report_page("{}"),
+              HasSubstr("http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src data:;"));
 }
 
 TEST(Report, the_page_is_below_half_a_megabyte) { EXPECT_LT(report_page("{}").size(), 500'000U); }

@@ -44,7 +44,8 @@ std::vector<SourceFile> all_sources() {
 }
 
 /// Every line that matches, as "file:line: text"; comments do not count.
-Names matches(const std::vector<SourceFile>& files, const std::string& pattern, const std::function<bool(const SourceFile&)>& where) {
+Names matches(const std::vector<SourceFile>& files, const std::string& pattern,
+              const std::function<bool(const SourceFile&)>& where) {
   const std::regex wanted(pattern), comment("//.*");
   Names found;
   for (const auto& file : files) {
@@ -81,7 +82,9 @@ TEST(Layers, only_core_gpu_names_vulkan) {
 
 TEST(Layers, only_one_file_includes_each_library) {
   const auto unless = [](const char* name) { return [name](const SourceFile& file) { return file.name != name; }; };
-  EXPECT_EQ(matches(product(), R"(#include [<"](OpenEXR/|Imath/)?(Imf|Imath|Iex|Ilm|half\.h|openexr))", unless("core/formats/exr.cpp")), Names{});
+  EXPECT_EQ(matches(product(), R"(#include [<"](OpenEXR/|Imath/)?(Imf|Imath|Iex|Ilm|half\.h|openexr))",
+                    unless("core/formats/exr.cpp")),
+            Names{});
   EXPECT_EQ(matches(product(), R"(#include [<"]OpenImageIO)", unless("core/formats/image_io.cpp")), Names{});
   EXPECT_EQ(matches(product(), R"(#include [<"]OpenColorIO)", unless("core/formats/color.cpp")), Names{});
 }
@@ -91,14 +94,17 @@ TEST(Layers, includes_point_one_way) {
   EXPECT_EQ(matches(product(), R"(#include "(cli|tests)/)", in("core")), Names{});
   EXPECT_EQ(matches(product(), R"(#include "(kernels|tests)/)", in("cli")), Names{});
   EXPECT_EQ(matches(product(), R"(#include "core/(?!gpu/|error\.h|text\.h|file\.h))", in("core/gpu")), Names{});
-  EXPECT_EQ(matches(product(), R"(#include "[^"]*/)", in("kernels")), Names{}) << "kernels include only what is beside them";
+  EXPECT_EQ(matches(product(), R"(#include "[^"]*/)", in("kernels")), Names{})
+      << "kernels include only what is beside them";
   EXPECT_EQ(matches(product(), R"(#include <(?!cstdint>|type_traits>))", in("kernels")), Names{});
 }
 
 TEST(Layers, only_the_command_line_prints_and_reads_arguments) {
   const auto core = [](const SourceFile& file) { return file.is_in("core"); };
   Names printing = matches(product(), R"(fmt::print|std::cout|std::cerr|std::clog|\bf?printf\(|\bputs\(|spdlog)", core);
-  std::erase_if(printing, [](const auto& line) { return line.starts_with("core/gpu/device.cpp:") && line.find("vulkan validation") != line.npos; });
+  std::erase_if(printing, [](const auto& line) {
+    return line.starts_with("core/gpu/device.cpp:") && line.find("vulkan validation") != line.npos;
+  });
   EXPECT_EQ(printing, Names{});
   EXPECT_EQ(matches(product(), R"(\bargv\b|\bstd::exit\(|\b_exit\(|\babort\()", core), Names{});
 }
@@ -110,7 +116,9 @@ std::string chain_source() {
   const std::string passes = read_bytes(ALCOVE_SOURCE_DIR "/core/chain/estimate.cpp");
   std::smatch choice;
   const bool found = std::regex_search(passes, choice, std::regex(R"(\nEstimate estimate\([^]*?\n\})"));
-  return found ? std::regex_replace(read_bytes(ALCOVE_SOURCE_DIR "/core/chain/chain.cpp"), std::regex(R"(\bestimate\()"), choice.str()) : "";
+  return found ? std::regex_replace(read_bytes(ALCOVE_SOURCE_DIR "/core/chain/chain.cpp"),
+                                    std::regex(R"(\bestimate\()"), choice.str())
+               : "";
 }
 
 Names kernel_stems() {
@@ -122,14 +130,19 @@ Names kernel_stems() {
 
 TEST(Kernels, a_stem_is_found_everywhere) {
   const Names stems = kernel_stems();
-  const std::string readme = read_bytes(ALCOVE_SOURCE_DIR "/README.md"), passes = read_bytes(ALCOVE_SOURCE_DIR "/core/chain/passes.h"),
-                    passes_source = read_bytes(ALCOVE_SOURCE_DIR "/core/chain/passes.cpp") + read_bytes(ALCOVE_SOURCE_DIR "/core/chain/estimate.cpp"), chain = chain_source();
+  const std::string readme = read_bytes(ALCOVE_SOURCE_DIR "/README.md"),
+                    passes = read_bytes(ALCOVE_SOURCE_DIR "/core/chain/passes.h"),
+                    passes_source = read_bytes(ALCOVE_SOURCE_DIR "/core/chain/passes.cpp") +
+                                    read_bytes(ALCOVE_SOURCE_DIR "/core/chain/estimate.cpp"),
+                    chain = chain_source();
   EXPECT_GE(stems.size(), 4);
   for (const auto& stem : stems) {
     EXPECT_TRUE(fs::exists(ALCOVE_SOURCE_DIR "/kernels/" + stem + ".h")) << stem;
-    EXPECT_TRUE(std::regex_search(passes, std::regex("\\b" + stem + "\\(gpu::Recorder&"))) << stem << " is no function of core/chain/passes.h";
+    EXPECT_TRUE(std::regex_search(passes, std::regex("\\b" + stem + "\\(gpu::Recorder&")))
+        << stem << " is no function of core/chain/passes.h";
     EXPECT_THAT(passes_source, HasSubstr("gpu.dispatch(\"" + stem + "\"")) << "its label in the timing report";
-    EXPECT_TRUE(std::regex_search(chain, std::regex("\\b" + stem + "\\("))) << stem << " is not in core/chain/chain.cpp";
+    EXPECT_TRUE(std::regex_search(chain, std::regex("\\b" + stem + "\\(")))
+        << stem << " is not in core/chain/chain.cpp";
     EXPECT_THAT(readme, HasSubstr("[" + stem + "](kernels/" + stem + ".comp)")) << "the README's chain";
   }
 }
@@ -141,7 +154,8 @@ int count_of(const std::string& text, const std::string& part) {
 }
 
 TEST(Presets, each_of_ours_has_limits_on_every_frame_of_the_suite) {
-  const std::string folder = ALCOVE_SOURCE_DIR "/examples/bench/", suite = read_bytes(folder + "suite.toml"), limits = read_bytes(folder + "limits.toml");
+  const std::string folder = ALCOVE_SOURCE_DIR "/examples/bench/", suite = read_bytes(folder + "suite.toml"),
+                    limits = read_bytes(folder + "limits.toml");
   for (const auto& file : names_in(ALCOVE_SOURCE_DIR "/presets")) {
     if (file.find('/') != std::string::npos || !file.ends_with(".toml")) continue;
     const std::string name = fs::path(file).stem().string();
@@ -179,10 +193,13 @@ TEST(Kernels, main_fits_in_120_lines) {
 }
 
 TEST(Kernels, variants_are_specialization_constants) {
-  const auto in_kernels = [](const SourceFile& file) { return file.is_in("kernels") && file.name != "kernels/shared.h"; };
+  const auto in_kernels = [](const SourceFile& file) {
+    return file.is_in("kernels") && file.name != "kernels/shared.h";
+  };
   for (const auto& line : matches(product(), R"(#\s*(if|ifdef|elif|else)\b)", in_kernels)) ADD_FAILURE() << line;
   for (const auto& file : product())
-    if (file.name.ends_with(".comp")) EXPECT_LE(matches({file}, "constant_id", [](const auto&) { return true; }).size(), 5) << file.name;
+    if (file.name.ends_with(".comp"))
+      EXPECT_LE(matches({file}, "constant_id", [](const auto&) { return true; }).size(), 5) << file.name;
 }
 
 // Form.
@@ -190,18 +207,21 @@ TEST(Kernels, variants_are_specialization_constants) {
 TEST(Form, files_begin_with_what_they_are_for_and_the_licence) {
   for (const auto& file : all_sources()) {
     ASSERT_GE(file.lines.size(), 2) << file.name;
-    EXPECT_TRUE(file.lines[0].starts_with("// ") && file.lines[0].find("SPDX") == std::string::npos) << file.name << ": " << file.lines[0];
+    EXPECT_TRUE(file.lines[0].starts_with("// ") && file.lines[0].find("SPDX") == std::string::npos)
+        << file.name << ": " << file.lines[0];
     const auto end = file.lines.begin() + std::min<std::ptrdiff_t>(3, std::ssize(file.lines));
     EXPECT_NE(std::find(file.lines.begin(), end, "// SPDX-License-Identifier: BSD-3-Clause"), end) << file.name;
   }
 }
 
 TEST(Form, files_are_short) {
-  for (const auto& file : all_sources()) EXPECT_LT(file.lines.size(), file.name.ends_with(".h") ? 200 : 500) << file.name;
+  for (const auto& file : all_sources())
+    EXPECT_LT(file.lines.size(), file.name.ends_with(".h") ? 200 : 500) << file.name;
 }
 
 TEST(Form, no_history_and_nothing_unfinished_is_left_in_comments) {
-  const std::string words = std::string("TO") + "DO|FIX" + "ME|XX" + "X|HA" + "CK";  // in pieces, so that this line is none
+  // in pieces, so that this line is none
+  const std::string words = std::string("TO") + "DO|FIX" + "ME|XX" + "X|HA" + "CK";
   const std::regex wanted("\\b(" + words + ")\\b");
   for (const auto& file : all_sources())
     for (const auto& line : file.lines) EXPECT_FALSE(std::regex_search(line, wanted)) << file.name << ": " << line;
@@ -210,7 +230,8 @@ TEST(Form, no_history_and_nothing_unfinished_is_left_in_comments) {
 // Documents.
 
 TEST(Readme, the_table_of_options_is_the_programs) {
-  const std::string readme = read_bytes(ALCOVE_SOURCE_DIR "/README.md"), begin = "<!-- options -->\n", end = "<!-- /options -->";
+  const std::string readme = read_bytes(ALCOVE_SOURCE_DIR "/README.md"), begin = "<!-- options -->\n",
+                    end = "<!-- /options -->";
   const std::size_t from = readme.find(begin), to = readme.find(end);
   ASSERT_NE(from, readme.npos);
   ASSERT_NE(to, readme.npos);
@@ -221,7 +242,8 @@ TEST(Readme, every_option_of_help_is_in_the_table) {
   const std::string help = run_program({"run", "--help"}).out, table = option_table_markdown();
   const std::regex option("\n  (-[a-z],)?(--[a-z-]+)");
   int count = 0;
-  for (auto match = std::sregex_iterator(help.begin(), help.end(), option); match != std::sregex_iterator(); ++match, count++)
+  for (auto match = std::sregex_iterator(help.begin(), help.end(), option); match != std::sregex_iterator();
+       ++match, count++)
     if ((*match)[2] != "--help") EXPECT_THAT(table, HasSubstr((*match)[2].str() + "`"));
   EXPECT_GT(count, 20);
 }

@@ -28,10 +28,14 @@ TEST_F(Batch, a_sequence_is_its_frames_one_by_one) {
   ASSERT_EQ(run({"--noise", "animated"}).code, 0);
   const auto together = outputs();
   EXPECT_EQ(together.size(), 5);
-  EXPECT_NE(pixels(together.at("ao.0008.exr")), pixels(together.at("ao.0009.exr"))) << "or else frames share their noise";
+  EXPECT_NE(pixels(together.at("ao.0008.exr")), pixels(together.at("ao.0009.exr")))
+      << "or else frames share their noise";
   for (int frame = 8; frame <= 12; frame++) {
     const std::string alone = folder / "alone.exr";
-    ASSERT_EQ(run_program({"run", input(frame), "-o", alone, "--camera", camera, "--radius", "1", "--noise", "animated"}).code, 0);
+    ASSERT_EQ(
+        run_program({"run", input(frame), "-o", alone, "--camera", camera, "--radius", "1", "--noise", "animated"})
+            .code,
+        0);
     EXPECT_TRUE(read_bytes(alone) == read_bytes(output(frame))) << frame;
   }
 }
@@ -70,16 +74,17 @@ TEST_F(Batch, every_file_has_a_pattern_of_its_own) {
   std::erase_if(normal.planes, [](const auto& plane) { return plane.first.find("Normal") == std::string::npos; });
   for (const char* frame : {"-02", "-01", "000"}) depth.write(in + "/d" + frame + ".exr");
   for (const char* frame : {"-2", "-1", "0"}) normal.write(in + "/n." + frame + ".exr");
-  const Finished finished = run_program({"run", "--depth", in + "/d@@@.exr", "--normal", in + "/n.$F.exr", "-o", out + "/<f4>.exr", "--output-offset", "100",
-                                         "--camera", camera, "--radius", "1", "--frames", "-2-0"});
+  const Finished finished =
+      run_program({"run", "--depth", in + "/d@@@.exr", "--normal", in + "/n.$F.exr", "-o", out + "/<f4>.exr",
+                   "--output-offset", "100", "--camera", camera, "--radius", "1", "--frames", "-2-0"});
   EXPECT_EQ(finished.code, 0) << finished;
   EXPECT_THAT(names_in(out), ElementsAre("0098.exr", "0099.exr", "0100.exr"));
 }
 
 TEST_F(Batch, a_static_input_serves_all_frames) {
   wall_frame().write(folder / "still.exr");
-  const Finished finished =
-      run_program({"run", folder / "still.exr", "-o", out + "/ao.#.exr", "--camera", camera, "--radius", "1", "--frames", "3,5"});
+  const Finished finished = run_program(
+      {"run", folder / "still.exr", "-o", out + "/ao.#.exr", "--camera", camera, "--radius", "1", "--frames", "3,5"});
   EXPECT_EQ(finished.code, 0) << finished;
   EXPECT_THAT(names_in(out), ElementsAre("ao.0003.exr", "ao.0005.exr"));
 }
@@ -106,7 +111,8 @@ TEST_F(Batch, missing_frames_are_listed_before_any_work) {
   for (const int frame : {3, 5, 6}) fs::remove(input(frame));
   const Finished finished = run({"--frames", "1-8"});
   EXPECT_EQ(finished.code, 3);
-  EXPECT_THAT(finished.err, AllOf(HasSubstr("3 of 8 frames are missing: 3, 5-6"), HasSubstr("f.0003.exr"), HasSubstr("--missing skip")));
+  EXPECT_THAT(finished.err, AllOf(HasSubstr("3 of 8 frames are missing: 3, 5-6"), HasSubstr("f.0003.exr"),
+                                  HasSubstr("--missing skip")));
   EXPECT_THAT(names_in(out), IsEmpty());
   const Finished skipped = run({"--frames", "1-8", "--missing", "skip"});
   EXPECT_EQ(skipped.code, 0) << skipped;
@@ -123,10 +129,12 @@ TEST_F(Batch, no_frame_at_all_is_an_error) {
 
 TEST_F(Batch, files_that_frames_would_share_are_refused) {
   write_frames(1, 3);
-  const Finished one = run_program({"run", in + "/f.%04d.exr", "-o", out + "/ao.exr", "--camera", camera, "--radius", "1"});
+  const Finished one =
+      run_program({"run", in + "/f.%04d.exr", "-o", out + "/ao.exr", "--camera", camera, "--radius", "1"});
   EXPECT_EQ(one.code, 2) << one;
   EXPECT_THAT(one.err, AllOf(HasSubstr("ao.exr"), HasSubstr("all 3 frames"), HasSubstr("%04d")));
-  const Finished over = run_program({"run", in + "/f.%04d.exr", "-o", in + "/f.%04d.exr", "--output-offset", "2", "--camera", camera, "--radius", "1"});
+  const Finished over = run_program({"run", in + "/f.%04d.exr", "-o", in + "/f.%04d.exr", "--output-offset", "2",
+                                     "--camera", camera, "--radius", "1"});
   EXPECT_EQ(over.code, 2) << over;
   EXPECT_THAT(over.err, AllOf(HasSubstr("f.0003.exr"), HasSubstr("overwrite an input")));
 }
@@ -135,7 +143,8 @@ TEST_F(Batch, a_dry_run_tells_the_plan_and_does_nothing) {
   write_frames(1, 4);
   const Finished finished = run({"--dry-run", "--frames", "1-4"});
   EXPECT_EQ(finished.code, 0) << finished;
-  EXPECT_THAT(finished.out, AllOf(HasSubstr("4: 1-4"), HasSubstr("f.0001.exr to "), HasSubstr("ao.0004.exr"), HasSubstr("64x36"), HasSubstr("Depth"), HasSubstr("MiB")));
+  EXPECT_THAT(finished.out, AllOf(HasSubstr("4: 1-4"), HasSubstr("f.0001.exr to "), HasSubstr("ao.0004.exr"),
+                                  HasSubstr("64x36"), HasSubstr("Depth"), HasSubstr("MiB")));
   EXPECT_THAT(names_in(out), IsEmpty());
 }
 
@@ -155,7 +164,8 @@ TEST_F(Batch, guesses_are_made_once_by_the_first_frame_that_shows_anything) {
   ASSERT_EQ(run({"--frames", "1-3", "--normal-space", "view", "--normal-encoding", "unorm"}).code, 0);
   for (const auto& [name, bytes] : outputs()) EXPECT_EQ(pixels(bytes), pixels(guessed.at(name))) << name;
   ASSERT_EQ(run({"--frames", "3", "--normal-space", "view"}).code, 0);
-  EXPECT_NE(pixels(read_bytes(output(3))), pixels(guessed.at("ao.0003.exr"))) << "or else the frames of this test show nothing";
+  EXPECT_NE(pixels(read_bytes(output(3))), pixels(guessed.at("ao.0003.exr")))
+      << "or else the frames of this test show nothing";
 }
 
 TEST_F(Batch, what_is_noted_of_all_frames_is_said_once) {
@@ -183,7 +193,8 @@ TEST_F(Batch, plain_progress_is_whole_lines_and_a_summary_at_the_end) {
   write_frames(1, 3);
   const Finished finished = run();
   EXPECT_THAT(finished.out, IsEmpty());
-  EXPECT_THAT(finished.err, AllOf(HasSubstr("(1 of 3, "), HasSubstr("frames/s"), HasSubstr("0:00 left"), Not(HasSubstr("\r"))));
+  EXPECT_THAT(finished.err,
+              AllOf(HasSubstr("(1 of 3, "), HasSubstr("frames/s"), HasSubstr("0:00 left"), Not(HasSubstr("\r"))));
   EXPECT_THAT(lines_of(finished.err).back(), StartsWith("alcove: 3 frames done, in "));
   EXPECT_THAT(run({"-q"}).err, IsEmpty());
   EXPECT_THAT(run({"--progress", "bar"}).err, HasSubstr("\r"));
@@ -232,13 +243,21 @@ TEST_F(Batch, bench_times_a_run_against_its_parts) {
   const auto lines = lines_of(finished.out);
   ASSERT_GE(lines.size(), 2);
   for (const auto& line : lines)
-    EXPECT_THAT(line, testing::MatchesRegex("[a-z]+: 2 frames, [0-9]+ at once: [0-9.]+ s; files alone [0-9.]+ s, kernels alone [0-9.]+ s: [0-9.]+ of their sum"));
+    EXPECT_THAT(line, testing::MatchesRegex("[a-z]+: 2 frames, [0-9]+ at once: [0-9.]+ s; files alone [0-9.]+ s, "
+                                            "kernels alone [0-9.]+ s: [0-9.]+ of their sum"));
 }
 
 TEST_F(Batch, senseless_options_are_refused) {
   write_frames(1, 1);
-  for (const std::vector<std::string>& arguments : {std::vector<std::string>{"--chunk", "0/2"}, {"--chunk", "3/2"}, {"--chunk", "2"}, {"--chunk", "a/b"}, {"--frames", "1-x"},
-                                                    {"--memory", "4X"}, {"--memory", "-1G"}, {"--missing", "hold"}, {"--progress", "loud"}})
+  for (const std::vector<std::string>& arguments : {std::vector<std::string>{"--chunk", "0/2"},
+                                                    {"--chunk", "3/2"},
+                                                    {"--chunk", "2"},
+                                                    {"--chunk", "a/b"},
+                                                    {"--frames", "1-x"},
+                                                    {"--memory", "4X"},
+                                                    {"--memory", "-1G"},
+                                                    {"--missing", "hold"},
+                                                    {"--progress", "loud"}})
     EXPECT_EQ(run(arguments).code, 2) << testing::PrintToString(arguments);
 }
 

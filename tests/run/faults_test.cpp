@@ -1,4 +1,5 @@
-// What goes wrong in long runs, done for real: damaged and vanished files, full disks, signals, a lost device; and what --resume makes good.
+// What goes wrong in long runs, done for real: damaged and vanished files, full disks, signals, a lost device; and what
+// --resume makes good.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gmock/gmock.h>
 #include <signal.h>
@@ -164,7 +165,8 @@ TEST_F(Faults, a_full_disk_leaves_nothing_half) {
   const Finished stopped = run({"-o", disk + "/ao.%04d.exr"});
   const Finished went_on = run({"-o", disk + "/ao.%04d.exr", "--keep-going"});
   const auto names = names_in(disk);
-  for (const auto& name : names) EXPECT_TRUE(whole.contains(name) && read_bytes(disk + "/" + name) == whole.at(name)) << name;
+  for (const auto& name : names)
+    EXPECT_TRUE(whole.contains(name) && read_bytes(disk + "/" + name) == whole.at(name)) << name;
   EXPECT_EQ(stopped.code, 4) << stopped;
   EXPECT_THAT(stopped.err, HasSubstr("No space left"));
   EXPECT_EQ(went_on.code, 1) << went_on;
@@ -176,11 +178,14 @@ TEST_F(Faults, a_full_disk_leaves_nothing_half) {
 
 TEST_F(Faults, a_lost_device_is_replaced_once) {
   write_frames(1, 6);
-  const std::vector<std::string> every_frame{"--threads", "1", "--keep-going", "--noise", "animated"};  // computes it, though they are equal
+  // computes it, though they are equal
+  const std::vector<std::string> every_frame{"--threads", "1", "--keep-going", "--noise", "animated"};
   ASSERT_EQ(run(every_frame).code, 0);
   const auto whole = outputs();
   remove_outputs();
-  const auto losing = [](const char* times) { return Surroundings{.environment = {{"ALCOVE_LOSSES", times}}, .preload = ALCOVE_LOST_DEVICE}; };
+  const auto losing = [](const char* times) {
+    return Surroundings{.environment = {{"ALCOVE_LOSSES", times}}, .preload = ALCOVE_LOST_DEVICE};
+  };
   const Finished once = run(every_frame, losing("1"));
   EXPECT_EQ(once.code, 0) << once;
   EXPECT_TRUE(outputs() == whole);

@@ -59,7 +59,8 @@ TEST_F(Memory, is_expected_of_every_estimator_search_and_resolution) {
             settings.estimator.denoise = denoise;
             settings.estimator.further_radii = further;
             settings.output.aovs = aovs;
-            expect_enough(settings, fmt::format("estimator {} resolution {} denoise {} {} radii {}", int(estimator), int(resolution), int(denoise), aovs, 1 + further.size()));
+            expect_enough(settings, fmt::format("estimator {} resolution {} denoise {} {} radii {}", int(estimator),
+                                                int(resolution), int(denoise), aovs, 1 + further.size()));
           }
 }
 
@@ -74,7 +75,8 @@ TEST_F(Memory, is_expected_of_exact_searches) {
           settings.estimator.tolerance = tolerance;
           settings.estimator.denoise = denoise;
           settings.output.aovs = aovs;
-          expect_enough(settings, fmt::format("search {} tolerance {} denoise {} {}", int(search), tolerance, int(denoise), aovs));
+          expect_enough(settings, fmt::format("search {} tolerance {} denoise {} {}", int(search), tolerance,
+                                              int(denoise), aovs));
         }
 }
 

@@ -1,5 +1,6 @@
-// How commands end that cannot do what they are asked: standard streams that nobody takes, reports that would overwrite inputs, presets, suites and limits
-// that make no sense, devices and modules that are not there. Refused frames: bad_input_test.cpp.
+// How commands end that cannot do what they are asked: standard streams that nobody takes, reports that would overwrite
+// inputs, presets, suites and limits that make no sense, devices and modules that are not there. Refused frames:
+// bad_input_test.cpp.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gmock/gmock.h>
 
@@ -17,7 +18,8 @@ using testing::AllOf;
 using testing::HasSubstr;
 
 /// Runs the program, which must end with this code and one line on stderr that has the words.
-void expect_refused(int code, const std::vector<std::string>& words, const std::vector<std::string>& arguments, const Surroundings& surroundings = {}) {
+void expect_refused(int code, const std::vector<std::string>& words, const std::vector<std::string>& arguments,
+                    const Surroundings& surroundings = {}) {
   const Finished finished = run_program(arguments, surroundings);
   EXPECT_EQ(finished.code, code) << testing::PrintToString(arguments) << finished;
   EXPECT_EQ(lines_of(finished.err).size(), 1) << testing::PrintToString(arguments) << finished;
@@ -27,7 +29,8 @@ void expect_refused(int code, const std::vector<std::string>& words, const std::
 // The standard streams.
 
 TEST(StandardOutput, that_is_full_ends_with_4_however_much_is_said) {
-  for (const std::vector<std::string>& arguments : {std::vector<std::string>{"--version"}, {"run", "--help"}, {"run", "--help-markdown"}, {"presets"}, {"devices"}})
+  for (const std::vector<std::string>& arguments :
+       {std::vector<std::string>{"--version"}, {"run", "--help"}, {"run", "--help-markdown"}, {"presets"}, {"devices"}})
     expect_refused(4, {"standard output"}, arguments, {.out = "/dev/full"});
 }
 
@@ -47,7 +50,8 @@ TEST_F(Streams, progress_and_a_log_that_nobody_takes_end_with_4_and_leave_whole_
   ASSERT_EQ(run().code, 0);
   const auto whole = outputs();
   remove_outputs();
-  for (const std::vector<std::string>& more : {std::vector<std::string>{"--progress", "percent"}, {"--log-json", "-"}}) {
+  for (const std::vector<std::string>& more :
+       {std::vector<std::string>{"--progress", "percent"}, {"--log-json", "-"}}) {
     const Finished finished = run(more, {.out = "/dev/full"});
     EXPECT_EQ(finished.code, 4) << finished;
     EXPECT_THAT(finished.err, HasSubstr(more[0] == "--log-json" ? "--log-json" : "standard output"));
@@ -72,12 +76,14 @@ TEST_F(Streams, a_log_on_a_full_disk_ends_with_4) {
 TEST_F(Streams, no_report_overwrites_a_file_of_any_frame) {
   write_frames(1, 3);
   ASSERT_EQ(run().code, 0);
-  const std::string camera_before = read_bytes(camera), input_before = read_bytes(input(3)), output_before = read_bytes(output(3));
+  const std::string camera_before = read_bytes(camera), input_before = read_bytes(input(3)),
+                    output_before = read_bytes(output(3));
   for (const char* option : {"--stats", "--log-json"})
     for (const std::string& path : {camera, input(1), input(3), output(1), output(3)}) {
       const Finished finished = run({option, path});
       EXPECT_EQ(finished.code, 2) << path << finished;
-      EXPECT_THAT(finished.err, AllOf(HasSubstr(path), HasSubstr(option), testing::ContainsRegex("would overwrite an input|name the same file")));
+      EXPECT_THAT(finished.err, AllOf(HasSubstr(path), HasSubstr(option),
+                                      testing::ContainsRegex("would overwrite an input|name the same file")));
     }
   EXPECT_EQ(run({"--stats", folder / "one", "--log-json", folder / "one"}).code, 2);
   EXPECT_EQ(read_bytes(camera), camera_before);
@@ -109,15 +115,20 @@ TEST_F(Refusals, a_log_of_a_run_that_is_refused_stays_as_it_was) {
 
 TEST_F(Refusals, reports_of_inspect_compare_and_bench_overwrite_no_input) {
   const std::string before = read_bytes(frame), camera_before = read_bytes(camera);
-  expect_refused(2, {frame, "--preview", "overwrite"}, {"inspect", frame, "--camera", camera, "--preview", frame, "-q"});
+  expect_refused(2, {frame, "--preview", "overwrite"},
+                 {"inspect", frame, "--camera", camera, "--preview", frame, "-q"});
   fs::create_symlink(frame, folder / "link.html");
-  for (const std::string& path : {frame, folder / "link.html"}) expect_refused(2, {path, "--report", "overwrite"}, {"compare", frame, frame, "--report", path});
-  const std::string suite = folder / "suite.toml", text =
-      "title = \"x\"\n[[frame]]\nname = \"wall\"\ninput = \"wall.0042.exr\"\ncamera = \"camera.json\"\nradius = 1\ntruth = \"wall.0042.exr\"\n"
-      "[[candidate]]\nname = \"draft\"\npreset = \"draft\"\n";
+  for (const std::string& path : {frame, folder / "link.html"})
+    expect_refused(2, {path, "--report", "overwrite"}, {"compare", frame, frame, "--report", path});
+  const std::string suite = folder / "suite.toml",
+                    text =
+                        "title = \"x\"\n[[frame]]\nname = \"wall\"\ninput = \"wall.0042.exr\"\ncamera = "
+                        "\"camera.json\"\nradius = 1\ntruth = \"wall.0042.exr\"\n"
+                        "[[candidate]]\nname = \"draft\"\npreset = \"draft\"\n";
   write_bytes(suite, text);
   for (const std::string& path : {suite, frame, camera})
-    for (const char* option : {"--json", "--csv", "--report"}) expect_refused(2, {path, option, "overwrite"}, {"bench", suite, option, path});
+    for (const char* option : {"--json", "--csv", "--report"})
+      expect_refused(2, {path, option, "overwrite"}, {"bench", suite, option, path});
   expect_refused(4, {folder / "none/x", "--csv"}, {"bench", suite, "--csv", folder / "none/x"});
   EXPECT_TRUE(read_bytes(frame) == before);
   EXPECT_EQ(read_bytes(camera), camera_before);
@@ -140,7 +151,9 @@ TEST_F(Refusals, settings_that_contradict_each_other_name_what_mends_them) {
       {{"--bias", "1"}, {"--bias 1", "below 1"}},
       {{"--aov", "bent-normal", "--estimator", "crytek"}, {"--aov bent-normal", "--estimator crytek", "gtao"}},
       {{"--radius", "1"}, {"--radius 1 is there twice"}},
-      {{"--radius", "2", "--radius", "3", "--radius", "4", "--radius", "5", "--radius", "6", "--radius", "7", "--radius", "8", "--radius", "9"}, {"--radius", "at most 8"}},
+      {{"--radius", "2", "--radius", "3", "--radius", "4", "--radius", "5", "--radius", "6", "--radius", "7",
+        "--radius", "8", "--radius", "9"},
+       {"--radius", "at most 8"}},
       {{"--fade-start", "1"}, {"--fade-start and --fade-end"}},
       {{"--fade-start", "2", "--fade-end", "2"}, {"--fade-end 2", "--fade-start 2"}},
       {{"--albedo", "0.5"}, {"--albedo", "--multi-bounce"}},
@@ -174,25 +187,33 @@ TEST_F(Refusals, outputs_that_the_frame_has_nothing_for_name_what_gives_it) {
   for (const char* axis : {"X", "Y", "Z"}) plain.planes.erase(std::string("ViewLayer.Normal.") + axis);
   plain.write(folder / "plain.exr");
   FrameFile positions;
-  for (const char* axis : {"X", "Y", "Z"}) positions.planes[std::string("Position.") + axis] = std::vector<float>(kWallWindow.pixels(), -2.0f);
+  for (const char* axis : {"X", "Y", "Z"})
+    positions.planes[std::string("Position.") + axis] = std::vector<float>(kWallWindow.pixels(), -2.0f);
   positions.write(folder / "positions.exr");
-  const auto refused = [&](int code, const std::string& input, std::vector<std::string> more, std::vector<std::string> words) {
+  const auto refused = [&](int code, const std::string& input, std::vector<std::string> more,
+                           std::vector<std::string> words) {
     more.insert(more.begin(), {"run", folder / input, "-o", ao, "--radius", "1"});
     words.push_back(folder / input);
     expect_refused(code, words, more);
   };
   refused(3, "plain.exr", {"--fov", "60", "--debug", "reconstruction"}, {"--debug reconstruction", "--normal"});
-  refused(3, "plain.exr", {"--fov", "60", "--aov", "normal", "--aov-space", "world"}, {"--aov-space world", "world_to_camera", "--camera"});
+  refused(3, "plain.exr", {"--fov", "60", "--aov", "normal", "--aov-space", "world"},
+          {"--aov-space world", "world_to_camera", "--camera"});
   refused(3, "positions.exr", {"--fov", "60", "--debug", "raw-depth"}, {"--debug raw-depth", "--depth-channel"});
-  refused(2, "positions.exr", {"--fov", "60", "--position-space", "world"}, {"world_to_camera", "--camera", "--position-space view"});
-  for (const std::string kind : {"device", "log"}) refused(2, "plain.exr", {"--fov", "60", "--depth-kind", kind}, {kind, kind == "log" ? "--far" : "--near"});
-  refused(2, "plain.exr", {"--fov", "60", "--depth-kind", "device", "--near", "2", "--far", "1"}, {"--near 2", "--far 1"});
+  refused(2, "positions.exr", {"--fov", "60", "--position-space", "world"},
+          {"world_to_camera", "--camera", "--position-space view"});
+  for (const std::string kind : {"device", "log"})
+    refused(2, "plain.exr", {"--fov", "60", "--depth-kind", kind}, {kind, kind == "log" ? "--far" : "--near"});
+  refused(2, "plain.exr", {"--fov", "60", "--depth-kind", "device", "--near", "2", "--far", "1"},
+          {"--near 2", "--far 1"});
   EXPECT_FALSE(fs::exists(ao));
 }
 
 TEST_F(Refusals, folders_of_presets_and_layers_that_are_not_there) {
-  expect_refused(2, {folder / "none", "ALCOVE_PRESETS"}, {"presets"}, {.environment = {{"ALCOVE_PRESETS", folder / "none"}}});
-  expect_refused(5, {"--validate", "vulkan-validationlayers"}, {"run", frame, "-o", ao, "--camera", camera, "--radius", "1", "--validate"},
+  expect_refused(2, {folder / "none", "ALCOVE_PRESETS"}, {"presets"},
+                 {.environment = {{"ALCOVE_PRESETS", folder / "none"}}});
+  expect_refused(5, {"--validate", "vulkan-validationlayers"},
+                 {"run", frame, "-o", ao, "--camera", camera, "--radius", "1", "--validate"},
                  {.environment = {{"VK_LAYER_PATH", folder / "none"}}});
   EXPECT_FALSE(fs::exists(ao));
 }
@@ -227,9 +248,11 @@ TEST_F(Refusals, presets_of_the_wrong_types_are_named_with_line_and_key) {
 
 TEST_F(Refusals, a_preset_or_a_camera_on_a_disk_that_fails_ends_with_3) {
   const std::string failing = "/proc/self/mem";  // nothing can be read at its beginning
-  expect_refused(3, {failing, "--preset", "cannot be read"}, {"run", frame, "-o", ao, "--camera", camera, "--radius", "1", "--preset", failing});
+  expect_refused(3, {failing, "--preset", "cannot be read"},
+                 {"run", frame, "-o", ao, "--camera", camera, "--radius", "1", "--preset", failing});
   expect_refused(3, {failing, "cannot be read"}, {"presets", failing});
-  expect_refused(3, {failing, "--camera", "cannot be read"}, {"run", frame, "-o", ao, "--camera", failing, "--radius", "1"});
+  expect_refused(3, {failing, "--camera", "cannot be read"},
+                 {"run", frame, "-o", ao, "--camera", failing, "--radius", "1"});
   expect_refused(3, {failing, "SUITE", "cannot be read"}, {"bench", failing});
 }
 
@@ -240,7 +263,9 @@ class Suites : public CommandLine {
   /// A suite of the frame, with other text for one of its parts.
   std::string suite_with(const std::string& part, const std::string& text) const {
     std::map<std::string, std::string> parts{{"top", "title = \"x\"\nrepeats = 1\nreference-slices = 0\n"},
-                                             {"frame", "[[frame]]\nname = \"wall\"\ninput = \"wall.0042.exr\"\ncamera = \"camera.json\"\nradius = 1\ntruth = \"ao.exr\"\n"},
+                                             {"frame",
+                                              "[[frame]]\nname = \"wall\"\ninput = \"wall.0042.exr\"\ncamera = "
+                                              "\"camera.json\"\nradius = 1\ntruth = \"ao.exr\"\n"},
                                              {"candidate", "[[candidate]]\nname = \"draft\"\npreset = \"draft\"\n"}};
     parts[part] = text;
     write_bytes(folder / "suite.toml", parts["top"] + parts["frame"] + parts["candidate"]);
@@ -269,7 +294,9 @@ TEST_F(Suites, of_the_wrong_types_are_refused_by_file_table_and_key) {
       {"frame", frame_start + "radius = 1\ntruth = [\"a\", \"b\", \"c\"]\n", {"\"truth\"", "one file or two"}},
       {"candidate", "", {"there is no [[candidate]]"}},
       {"candidate", "[[candidate]]\nname = \"a\"\n[[candidate]]\nname = \"a\"\n", {"two candidates are called a"}},
-      {"candidate", "[[candidate]]\nname = \"a\"\nslices = [1, 2]\n", {"[[candidate]] 1", "\"slices\"", "a string, a number or true"}},
+      {"candidate",
+       "[[candidate]]\nname = \"a\"\nslices = [1, 2]\n",
+       {"[[candidate]] 1", "\"slices\"", "a string, a number or true"}},
       {"candidate", "[[candidate]]\nname = \"a\"\nno-skip = false\n", {"\"no-skip\"", "a string, a number or true"}},
       {"candidate", "[[sweep]]\nslices = []\n", {"[[sweep]] 1", "\"slices\"", "must not be empty"}},
       {"candidate", "[[sweep]]\nslices = [{a = 1}]\n", {"[[sweep]] 1", "\"slices\""}},
@@ -284,12 +311,17 @@ TEST_F(Suites, of_the_wrong_types_are_refused_by_file_table_and_key) {
 
 TEST_F(Suites, candidates_whose_options_make_no_sense_are_refused_by_name) {
   const std::pair<const char*, std::vector<std::string>> cases[] = {
-      {"slcies = 2", {"--slcies", "did you mean --slices"}}, {"slices = 65", {"--slices", "65"}}, {"preset = \"drat\"", {"drat", "did you mean draft"}},
-      {"help = true", {"alcove run"}}, {"tolerance = 0.1\nestimator = \"hbao\"", {"--tolerance", "gtao"}}, {"stride = \"4\"\ndenoise = \"none\"", {"--stride 4", "--denoise"}}};
+      {"slcies = 2", {"--slcies", "did you mean --slices"}},
+      {"slices = 65", {"--slices", "65"}},
+      {"preset = \"drat\"", {"drat", "did you mean draft"}},
+      {"help = true", {"alcove run"}},
+      {"tolerance = 0.1\nestimator = \"hbao\"", {"--tolerance", "gtao"}},
+      {"stride = \"4\"\ndenoise = \"none\"", {"--stride 4", "--denoise"}}};
   for (const auto& [text, words] : cases) {
     std::vector<std::string> all{"suite.toml", "candidate odd"};
     all.insert(all.end(), words.begin(), words.end());
-    expect_refused(2, all, {"bench", suite_with("candidate", std::string("[[candidate]]\nname = \"odd\"\n") + text + "\n")});
+    expect_refused(2, all,
+                   {"bench", suite_with("candidate", std::string("[[candidate]]\nname = \"odd\"\n") + text + "\n")});
   }
 }
 
@@ -313,7 +345,8 @@ TEST_F(Suites, limits_that_fit_no_candidate_are_refused_before_anything_is_measu
     std::vector<std::string> all{limits, "--limits"};
     if (words[0] == "rms" || words[0] == "\"rmse\"") all.pop_back();
     all.insert(all.end(), words.begin(), words.end());
-    expect_refused(words[0] == "estimator-rmse" ? 2 : 3, all, {"bench", suite, "--limits", limits, "--json", folder / "bench.json"});
+    expect_refused(words[0] == "estimator-rmse" ? 2 : 3, all,
+                   {"bench", suite, "--limits", limits, "--json", folder / "bench.json"});
   }
   EXPECT_FALSE(fs::exists(folder / "bench.json"));
   write_bytes(limits, limit("wall", "draft", "rmse = 1e-9\nmae = 1\np99 = 1\nbias = 1"));
@@ -324,12 +357,15 @@ TEST_F(Suites, limits_that_fit_no_candidate_are_refused_before_anything_is_measu
 
 TEST_F(Suites, truths_yardsticks_and_scratch_folders_that_are_none) {
   ASSERT_EQ(run({}).code, 0);
-  const std::string start = "[[frame]]\nname = \"wall\"\ninput = \"wall.0042.exr\"\ncamera = \"camera.json\"\nradius = 1\n";
-  expect_refused(3, {frame, "4 channels", "must have one"}, {"bench", suite_with("frame", start + "truth = \"wall.0042.exr\"\n"), "-q"});
+  const std::string start =
+      "[[frame]]\nname = \"wall\"\ninput = \"wall.0042.exr\"\ncamera = \"camera.json\"\nradius = 1\n";
+  expect_refused(3, {frame, "4 channels", "must have one"},
+                 {"bench", suite_with("frame", start + "truth = \"wall.0042.exr\"\n"), "-q"});
   expect_refused(3, {"none.exr", "not found"}, {"bench", suite_with("frame", start + "truth = \"none.exr\"\n"), "-q"});
   const std::string suite = suite_with("", "");
   expect_refused(2, {"--yardstick true", "median X ms"}, {"bench", suite, "--yardstick", "true", "-q"});
-  expect_refused(4, {folder / "none", "TMPDIR"}, {"bench", suite, "--batch", "2", "-q"}, {.environment = {{"TMPDIR", folder / "none"}}});
+  expect_refused(4, {folder / "none", "TMPDIR"}, {"bench", suite, "--batch", "2", "-q"},
+                 {.environment = {{"TMPDIR", folder / "none"}}});
   expect_refused(5, {"nosuch", "--device"}, {"bench", suite, "--device", "nosuch", "-q"});
   expect_refused(2, {"SUITE"}, {"bench"});
   expect_refused(4, {folder / "none/x", "--json"}, {"bench", "--stability", "--json", folder / "none/x"});
@@ -344,7 +380,9 @@ TEST_F(Refusals, a_picture_that_is_cut_short_is_an_input_that_cannot_be_read) {
   fs::resize_file(picture, fs::file_size(picture) / 2);
   const Finished finished = run_program({"compare", picture, picture});
   EXPECT_EQ(finished.code, 3) << finished;
-  EXPECT_THAT(lines_of(finished.err).back(), AllOf(HasSubstr(picture), HasSubstr("damaged or incomplete"), HasSubstr("RESULT")));  // libpng has said a line of its own
+  // libpng has said a line of its own
+  EXPECT_THAT(lines_of(finished.err).back(),
+              AllOf(HasSubstr(picture), HasSubstr("damaged or incomplete"), HasSubstr("RESULT")));
 }
 
 TEST_F(Refusals, a_broken_module_of_pictures_is_named_and_leaves_no_output) {
@@ -354,7 +392,8 @@ TEST_F(Refusals, a_broken_module_of_pictures_is_named_and_leaves_no_output) {
   fs::create_directory(folder / "lib");
   write_bytes(folder / "lib/libalcove_image_io.so", "no library");
   const Surroundings broken{.environment = {{"LD_LIBRARY_PATH", folder / "lib"}}};
-  expect_refused(4, {folder / "p.png", "libalcove_image_io.so beside the program"}, {"run", frame, "-o", ao, "--preview", folder / "p.png", "--camera", camera, "--radius", "1"}, broken);
+  expect_refused(4, {folder / "p.png", "libalcove_image_io.so beside the program"},
+                 {"run", frame, "-o", ao, "--preview", folder / "p.png", "--camera", camera, "--radius", "1"}, broken);
   write_bytes(folder / "a.png", "x");
   expect_refused(3, {folder / "a.png", "libalcove_image_io.so"}, {"compare", folder / "a.png", frame}, broken);
   EXPECT_FALSE(fs::exists(ao));
@@ -363,24 +402,31 @@ TEST_F(Refusals, a_broken_module_of_pictures_is_named_and_leaves_no_output) {
 
 // Devices.
 
-Surroundings lacking(const std::string& what) { return {.environment = {{"ALCOVE_LACKS", what}}, .preload = ALCOVE_POOR_DEVICE}; }
+Surroundings lacking(const std::string& what) {
+  return {.environment = {{"ALCOVE_LACKS", what}}, .preload = ALCOVE_POOR_DEVICE};
+}
 
 TEST_F(Refusals, a_device_that_lacks_what_kernels_need_is_listed_with_what_and_not_used) {
   for (const std::string what : {"Vulkan 1.2", "a compute queue", "VK_KHR_push_descriptor", "scalar block layout"}) {
     const Finished listed = run_program({"devices"}, lacking(what));
     EXPECT_EQ(listed.code, 0) << listed;
     EXPECT_THAT(listed.out, HasSubstr("not usable: it lacks " + what));
-    expect_refused(5, {"--device", "it lacks " + what}, {"run", frame, "-o", ao, "--camera", camera, "--radius", "1"}, lacking(what));
+    expect_refused(5, {"--device", "it lacks " + what}, {"run", frame, "-o", ao, "--camera", camera, "--radius", "1"},
+                   lacking(what));
   }
   EXPECT_EQ(run({}, lacking("nothing")).code, 0);  // or else all of this proves nothing
 }
 
 TEST_F(Refusals, a_driver_without_devices_or_one_that_fails_ends_with_5) {
   expect_refused(5, {"no Vulkan device found"}, {"devices"}, lacking("any device"));
-  expect_refused(5, {"no Vulkan device found"}, {"run", frame, "-o", ao, "--camera", camera, "--radius", "1"}, lacking("any device"));
-  expect_refused(5, {"vkCreateDevice"}, {"run", frame, "-o", ao, "--camera", camera, "--radius", "1"}, lacking("a driver that works"));
-  expect_refused(5, {"out of memory in vkCreateComputePipelines"}, {"run", frame, "-o", ao, "--camera", camera, "--radius", "1"}, lacking("memory for kernels"));
-  expect_refused(5, {"no room for a buffer", "--memory"}, {"run", frame, "-o", ao, "--camera", camera, "--radius", "1"}, lacking("memory"));
+  expect_refused(5, {"no Vulkan device found"}, {"run", frame, "-o", ao, "--camera", camera, "--radius", "1"},
+                 lacking("any device"));
+  expect_refused(5, {"vkCreateDevice"}, {"run", frame, "-o", ao, "--camera", camera, "--radius", "1"},
+                 lacking("a driver that works"));
+  expect_refused(5, {"out of memory in vkCreateComputePipelines"},
+                 {"run", frame, "-o", ao, "--camera", camera, "--radius", "1"}, lacking("memory for kernels"));
+  expect_refused(5, {"no room for a buffer", "--memory"}, {"run", frame, "-o", ao, "--camera", camera, "--radius", "1"},
+                 lacking("memory"));
   EXPECT_THAT(names_in(folder.path()), testing::Each(testing::AnyOf("camera.json", "wall.0042.exr")));
   EXPECT_THAT(run_program({"devices"}, lacking("a known type")).out, HasSubstr("  other  "));
 }
@@ -409,7 +455,8 @@ TEST_F(Streams, a_frame_that_finds_no_memory_leaves_nothing_to_the_next) {
     EXPECT_EQ(finished.code, 1) << finished;
     EXPECT_THAT(finished.err, AllOf(HasSubstr("frame 1: "), HasSubstr(input(1)), HasSubstr("--memory")));
     EXPECT_THAT(names_in(out), testing::ElementsAre("ao.0002.exr", "ao.0003.exr"));
-    for (const auto& [name, bytes] : outputs()) EXPECT_TRUE(whole.at(name) == bytes) << name << " after allocation " << number;
+    for (const auto& [name, bytes] : outputs())
+      EXPECT_TRUE(whole.at(name) == bytes) << name << " after allocation " << number;
     const auto frames = nlohmann::json::parse(read_bytes(stats))["frames"];
     EXPECT_EQ(frames[1]["passes"].size(), frames[2]["passes"].size()) << "passes of the frame that failed";
   }

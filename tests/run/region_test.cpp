@@ -42,8 +42,10 @@ TEST_F(CommandLine, a_region_is_that_part_of_the_whole) {
 
 TEST_F(CommandLine, a_small_radius_makes_a_region_cheap) {
   const std::string stats = folder / "stats.json";
-  ASSERT_EQ(run_program({"run", frame, "-o", ao, "--camera", camera, "--radius", "0.05", "--denoise", "none", "--roi", "20,4,8,8",
-                         "--stats", stats}).code, 0);
+  ASSERT_EQ(run_program({"run", frame, "-o", ao, "--camera", camera, "--radius", "0.05", "--denoise", "none", "--roi",
+                         "20,4,8,8", "--stats", stats})
+                .code,
+            0);
   EXPECT_LT(nlohmann::json::parse(read_bytes(stats))["frames"][0]["pixels"].get<int>(), 24 * 24) << "of 64 x 36";
 }
 
@@ -53,7 +55,8 @@ TEST_F(CommandLine, a_region_outside_of_the_frame_is_refused) {
     EXPECT_EQ(finished.code, 2) << finished;
     EXPECT_THAT(finished.err, HasSubstr("--roi"));
   }
-  for (const char* roi : {"0,0,0,5", "1,2,3", "a,b,c,d", "1,2,3,4,5", "1.5,2,3,4"}) EXPECT_EQ(run({"--roi", roi}).code, 2) << roi;
+  for (const char* roi : {"0,0,0,5", "1,2,3", "a,b,c,d", "1,2,3,4,5", "1.5,2,3,4"})
+    EXPECT_EQ(run({"--roi", roi}).code, 2) << roi;
 }
 
 }  // namespace

@@ -8,8 +8,8 @@
 #include <filesystem>
 #include <fstream>
 
-#include "core/formats/exr.h"
 #include "core/base/file.h"
+#include "core/formats/exr.h"
 #include "tests/support/command_line.h"
 #include "tests/support/exr_header.h"
 
@@ -34,8 +34,8 @@ class SurroundingsTest : public CommandLine {
   /// A run must succeed and give the file that a plain run gives.
   void expect_plain(const std::vector<std::string>& more, const Surroundings& surroundings = {}) {
     if (plain.empty()) plain = result({});
-    EXPECT_TRUE(result(more, surroundings) == plain)
-        << "another file with " << testing::PrintToString(more) << " " << testing::PrintToString(surroundings.environment);
+    EXPECT_TRUE(result(more, surroundings) == plain) << "another file with " << testing::PrintToString(more) << " "
+                                                     << testing::PrintToString(surroundings.environment);
   }
 
   std::string plain;
@@ -96,7 +96,8 @@ TEST_F(SurroundingsTest, a_full_cache_folder_costs_nothing_but_time_and_is_left_
   write_bytes(home + "/full", std::string(4096, 'x'));
   // Mesa 22.3 maps the index of its own cache before there is room for it, and dies of the first write.
   expect_plain({}, {.environment = {{"XDG_CACHE_HOME", home}, {"MESA_SHADER_CACHE_DISABLE", "true"}}});
-  for (const auto& name : names_in(home)) EXPECT_FALSE(name.ends_with(".bin") || name.ends_with(".tmp")) << name << " is no whole cache";
+  for (const auto& name : names_in(home))
+    EXPECT_FALSE(name.ends_with(".bin") || name.ends_with(".tmp")) << name << " is no whole cache";
   unmount(home);
 }
 
@@ -119,19 +120,22 @@ TEST_F(SurroundingsTest, presets_are_found_beside_the_program_above_it_and_in_sh
     fs::create_directories(install + "/" + place);
     fs::copy_file(ALCOVE_PROGRAM, install + "/bin/alcove");
     write_bytes(install + "/" + place + "/mine.toml", "slices = 4\n");
-    const Finished finished = run_program({"presets"}, {.environment = {{"ALCOVE_PRESETS", std::nullopt}}, .program = install + "/bin/alcove"});
+    const Finished finished = run_program(
+        {"presets"}, {.environment = {{"ALCOVE_PRESETS", std::nullopt}}, .program = install + "/bin/alcove"});
     EXPECT_EQ(finished.out, "mine\n") << place << " " << finished;
   }
 }
 
 TEST_F(SurroundingsTest, help_needs_no_presets) {
   for (const char* command : {"run", "presets"})
-    EXPECT_EQ(run_program({command, "--help"}, {.environment = {{"ALCOVE_PRESETS", "/nonexistent"}}}).code, 0) << command;
+    EXPECT_EQ(run_program({command, "--help"}, {.environment = {{"ALCOVE_PRESETS", "/nonexistent"}}}).code, 0)
+        << command;
 }
 
 TEST_F(SurroundingsTest, relative_paths_are_relative_to_the_working_directory) {
-  const Finished finished = run_program({"run", "wall.0042.exr", "-o", "./ao.exr", "--camera", "camera.json", "--radius", "1"},
-                                        {.folder = folder.path(), .environment = {}});
+  const Finished finished =
+      run_program({"run", "wall.0042.exr", "-o", "./ao.exr", "--camera", "camera.json", "--radius", "1"},
+                  {.folder = folder.path(), .environment = {}});
   EXPECT_EQ(finished.code, 0) << finished;
   const std::string relative = read_bytes(ao);
   EXPECT_TRUE(relative == result({})) << "another file";
@@ -142,9 +146,9 @@ TEST_F(SurroundingsTest, file_names_may_hold_spaces_and_any_script) {
     const std::string shot = folder / (name + "/");
     fs::create_directory(shot);
     for (const char* file : {"wall.0042.exr", "camera.json"}) fs::copy_file(folder / file, shot + name + file);
-    const Finished finished =
-        run_program({"run", shot + name + "wall.0042.exr", "-o", shot + name + " ao.exr", "--camera", shot + name + "camera.json", "--radius", "1",
-                     "--preview", shot + name + ".png", "--stats", shot + name + ".json"});
+    const Finished finished = run_program({"run", shot + name + "wall.0042.exr", "-o", shot + name + " ao.exr",
+                                           "--camera", shot + name + "camera.json", "--radius", "1", "--preview",
+                                           shot + name + ".png", "--stats", shot + name + ".json"});
     EXPECT_EQ(finished.code, 0) << name << finished;
     EXPECT_EQ(names_in(shot).size(), 5) << name;
     EXPECT_EQ(text_in(read_header(shot + name + " ao.exr"), "alcove/input"), name + "wall.0042.exr");
@@ -154,8 +158,9 @@ TEST_F(SurroundingsTest, file_names_may_hold_spaces_and_any_script) {
 
 TEST_F(SurroundingsTest, a_file_name_that_begins_with_a_dash_can_be_given) {
   fs::copy_file(frame, folder / "-wall.0042.exr");
-  const Finished finished = run_program({"run", "-o", "-ao.exr", "--camera", "camera.json", "--radius", "1", "--", "-wall.0042.exr"},
-                                        {.folder = folder.path(), .environment = {}});
+  const Finished finished =
+      run_program({"run", "-o", "-ao.exr", "--camera", "camera.json", "--radius", "1", "--", "-wall.0042.exr"},
+                  {.folder = folder.path(), .environment = {}});
   EXPECT_EQ(finished.code, 0) << finished;
   EXPECT_TRUE(fs::exists(folder / "-ao.exr"));
 }
@@ -185,9 +190,11 @@ TEST_F(SurroundingsTest, an_output_that_is_a_symbolic_link_is_replaced_and_not_f
 }
 
 TEST_F(SurroundingsTest, names_of_devices_are_never_replaced) {
-  // In /dev itself only the error would show what is wrong, and a mistake would harm the machine: /proc stands for it, where nothing can be replaced.
+  // In /dev itself only the error would show what is wrong, and a mistake would harm the machine: /proc stands for it,
+  // where nothing can be replaced.
   for (const std::string path : {"/proc/self/fd/1", "/proc/self/none.json"}) {
-    const Finished finished = run_program({"run", frame, "-o", ao, "--camera", camera, "--radius", "1", "--stats", path});
+    const Finished finished =
+        run_program({"run", frame, "-o", ao, "--camera", camera, "--radius", "1", "--stats", path});
     EXPECT_EQ(finished.code, 4) << finished;
     EXPECT_THAT(finished.err, AllOf(HasSubstr(path), HasSubstr("no place for files"), HasSubstr("--stats")));
   }
@@ -206,7 +213,8 @@ TEST_F(SurroundingsTest, what_poses_as_an_unfinished_file_is_neither_followed_no
   ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
   fs::create_symlink(camera, link);
   write_bytes(folder / ".alcove-1-0000000c.tmp", "left by a process that was killed");
-  const std::vector<std::string> others{".alcove-notes.tmp", ".alcove-1-0000000c.tmp.exr", ".alcove-1-c.tmp", ".alcove--0000000c.tmp", ".alcove-x1-0000000c.tmp"};
+  const std::vector<std::string> others{".alcove-notes.tmp", ".alcove-1-0000000c.tmp.exr", ".alcove-1-c.tmp",
+                                        ".alcove--0000000c.tmp", ".alcove-x1-0000000c.tmp"};
   for (const auto& name : others) write_bytes(folder / name, "somebody's own");
   EXPECT_EQ(remove_unfinished(folder.path()), 1);
   for (const auto& name : others) EXPECT_TRUE(fs::exists(folder / name)) << name;
@@ -216,7 +224,8 @@ TEST_F(SurroundingsTest, what_poses_as_an_unfinished_file_is_neither_followed_no
 TEST_F(SurroundingsTest, a_run_replaces_what_was_there_and_leaves_nothing_else) {
   write_bytes(ao, "before");
   result({"--composite", "", "--preview", folder / "p.png"});
-  EXPECT_THAT(names_in(folder.path()), testing::UnorderedElementsAre("ao.exr", "camera.json", "p.png", "wall.0042.exr"));
+  EXPECT_THAT(names_in(folder.path()),
+              testing::UnorderedElementsAre("ao.exr", "camera.json", "p.png", "wall.0042.exr"));
 }
 
 TEST_F(SurroundingsTest, a_reader_never_sees_half_a_file) {

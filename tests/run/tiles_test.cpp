@@ -41,18 +41,19 @@ class Tiles : public CommandLine {
 };
 
 TEST_F(Tiles, give_the_bits_of_the_whole) {
-  for (const Options& options : {Options{"--radius", "0.1"},
-                                 {"--radius", "0.1", "--aov", "ao,normal,depth,specular-occlusion", "--composite", folder / "composite.exr"},
-                                 {"--radius", "0.15", "--estimator", "bitmask", "--slices", "2", "--steps", "20"},
-                                 {"--radius", "0.1", "--estimator", "hbao", "--denoise", "box"},
-                                 {"--radius", "0.1", "--estimator", "crytek", "--denoise", "none"},
-                                 {"--radius", "0.1", "--resolution", "half"},
-                                 {"--radius", "0.1", "--resolution", "quarter", "--denoise-radius", "5"},
-                                 {"--radius", "0.1", "--stride", "4"},
-                                 {"--radius", "0.1", "--preset", "reference"},
-                                 {"--radius", "0.1", "--preset", "reference", "--denoise", "none", "--thickness", "0.05"},
-                                 {"--radius", "0.04", "--tolerance", "0.03", "--aov", "ao,error"},
-                                 {"--radius", "0.1", "--roi", "3,5,900,500", "--falloff", "smooth"}}) {
+  for (const Options& options :
+       {Options{"--radius", "0.1"},
+        {"--radius", "0.1", "--aov", "ao,normal,depth,specular-occlusion", "--composite", folder / "composite.exr"},
+        {"--radius", "0.15", "--estimator", "bitmask", "--slices", "2", "--steps", "20"},
+        {"--radius", "0.1", "--estimator", "hbao", "--denoise", "box"},
+        {"--radius", "0.1", "--estimator", "crytek", "--denoise", "none"},
+        {"--radius", "0.1", "--resolution", "half"},
+        {"--radius", "0.1", "--resolution", "quarter", "--denoise-radius", "5"},
+        {"--radius", "0.1", "--stride", "4"},
+        {"--radius", "0.1", "--preset", "reference"},
+        {"--radius", "0.1", "--preset", "reference", "--denoise", "none", "--thickness", "0.05"},
+        {"--radius", "0.04", "--tolerance", "0.03", "--aov", "ao,error"},
+        {"--radius", "0.1", "--roi", "3,5,900,500", "--falloff", "smooth"}}) {
     const auto [whole, one] = computed(options, false);
     const auto [tiled, many] = computed(options, true);
     EXPECT_EQ(one, 1);
@@ -62,13 +63,15 @@ TEST_F(Tiles, give_the_bits_of_the_whole) {
 }
 
 TEST_F(Tiles, a_radius_that_reaches_everywhere_is_refused) {
-  const Finished finished = run_program({"run", frame, "-o", ao, "--camera", camera, "--radius", "50", "--memory", "1M"});
+  const Finished finished =
+      run_program({"run", frame, "-o", ao, "--camera", camera, "--radius", "50", "--memory", "1M"});
   EXPECT_EQ(finished.code, 5) << finished;
   EXPECT_THAT(finished.err, AllOf(HasSubstr("--radius"), HasSubstr("--memory")));
 }
 
 TEST_F(Tiles, pictures_need_the_whole) {
-  const Finished finished = run_program({"run", frame, "-o", ao, "--camera", camera, "--radius", "0.1", "--memory", "1M", "--preview", folder / "p.png"});
+  const Finished finished = run_program(
+      {"run", frame, "-o", ao, "--camera", camera, "--radius", "0.1", "--memory", "1M", "--preview", folder / "p.png"});
   EXPECT_EQ(finished.code, 5) << finished;
   EXPECT_THAT(finished.err, AllOf(HasSubstr("--preview"), HasSubstr("--memory")));
 }

@@ -1,4 +1,5 @@
-// A floor with a block on it, and parallel views that lean from the floor's normal: where every expected value is known at every tilt.
+// A floor with a block on it, and parallel views that lean from the floor's normal: where every expected value is known
+// at every tilt.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -15,8 +16,8 @@ inline Scene block(double height) {
            parallelogram({0, -100, height}, {0, 200, 0}, {-100, 0, 0})}};
 }
 
-/// A parallel view of the floor about (0.5, 0, 0), `units` wide, that leans from its normal towards x by an angle. The block's edge is upright in
-/// the picture at a `turn` of 0, and turns with it.
+/// A parallel view of the floor about (0.5, 0, 0), `units` wide, that leans from its normal towards x by an angle. The
+/// block's edge is upright in the picture at a `turn` of 0, and turns with it.
 inline Shot leaning(double tilt_degrees, double units, int width, int height, double turn_degrees = 0) {
   const double tilt = tilt_degrees * std::numbers::pi / 180, turn = turn_degrees * std::numbers::pi / 180;
   const Vec3 target{0.5, 0, 0}, right{std::cos(tilt), 0, -std::sin(tilt)}, up{0, 1, 0};

@@ -2,12 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "core/gpu/recorder.h"
 #include "core/base/settings.h"
+#include "core/gpu/recorder.h"
 
 namespace alcove::test {
 
-/// The device that ALCOVE_TEST_DEVICE names, else `auto`; with the validation layer where ALCOVE_TEST_VALIDATE is set. Its buffers are guarded.
+/// The device that ALCOVE_TEST_DEVICE names, else `auto`; with the validation layer where ALCOVE_TEST_VALIDATE is set.
+/// Its buffers are guarded.
 gpu::Device& device();
 /// A recorder on it.
 gpu::Recorder& recorder();

@@ -42,7 +42,8 @@ ExrHeader read_header(const std::string& path) {
   const std::string file = read_bytes(path);
   Bytes bytes{file};
   if (bytes.integer() != 20000630) throw std::runtime_error(path + ": no EXR");
-  if (const auto version = bytes.integer(); (version & 0x1aff) != 2) throw std::runtime_error(path + ": no single-part scan-line EXR");
+  if (const auto version = bytes.integer(); (version & 0x1aff) != 2)
+    throw std::runtime_error(path + ": no single-part scan-line EXR");
   ExrHeader header;
   for (std::string name = bytes.text(); !name.empty(); name = bytes.text()) {
     const std::string type = bytes.text();

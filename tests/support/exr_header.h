@@ -1,4 +1,5 @@
-// Reads the header of a single-part EXR byte by byte, so that what Alcove wrote is not judged by the library that wrote it.
+// Reads the header of a single-part EXR byte by byte, so that what Alcove wrote is not judged by the library that wrote
+// it.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 

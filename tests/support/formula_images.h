@@ -14,7 +14,8 @@ constexpr int kFormulaWidth = 48, kFormulaHeight = 40;
 inline std::vector<float> formula_plane(int a, int b, int c, int m) {
   std::vector<float> plane;
   for (int y = 0; y < kFormulaHeight; y++)
-    for (int x = 0; x < kFormulaWidth; x++) plane.push_back(float(double((x * x * a + y * y * b + x * y * c) % m) / (m - 1)));
+    for (int x = 0; x < kFormulaWidth; x++)
+      plane.push_back(float(double((x * x * a + y * y * b + x * y * c) % m) / (m - 1)));
   return plane;
 }
 
@@ -23,7 +24,8 @@ inline std::vector<float> ramp_plane(int d, int k) {
   std::vector<float> plane;
   for (int y = 0; y < kFormulaHeight; y++)
     for (int x = 0; x < kFormulaWidth; x++)
-      plane.push_back(float(std::clamp(double(x * k + 2 * y + d) / (kFormulaWidth * k + 2 * kFormulaHeight), 0.0, 1.0)));
+      plane.push_back(
+          float(std::clamp(double(x * k + 2 * y + d) / (kFormulaWidth * k + 2 * kFormulaHeight), 0.0, 1.0)));
   return plane;
 }
 
@@ -35,7 +37,11 @@ inline std::vector<float> ramp_with_box() {
 }
 
 using ColorImage = std::array<std::vector<float>, 3>;
-inline ColorImage noise_reference() { return {formula_plane(1, 3, 1, 256), formula_plane(2, 1, 3, 200), formula_plane(1, 1, 5, 300)}; }
-inline ColorImage noise_result() { return {formula_plane(1, 3, 2, 256), formula_plane(2, 1, 3, 210), formula_plane(1, 2, 5, 300)}; }
+inline ColorImage noise_reference() {
+  return {formula_plane(1, 3, 1, 256), formula_plane(2, 1, 3, 200), formula_plane(1, 1, 5, 300)};
+}
+inline ColorImage noise_result() {
+  return {formula_plane(1, 3, 2, 256), formula_plane(2, 1, 3, 210), formula_plane(1, 2, 5, 300)};
+}
 
 }  // namespace alcove::test

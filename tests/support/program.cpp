@@ -36,7 +36,9 @@ void require(bool condition, const char* what) {
 /// A file without a name that a child writes and we read.
 class Capture {
  public:
-  explicit Capture(const char* name) : descriptor_(::memfd_create(name, MFD_CLOEXEC)) { require(descriptor_ >= 0, "memfd_create"); }
+  explicit Capture(const char* name) : descriptor_(::memfd_create(name, MFD_CLOEXEC)) {
+    require(descriptor_ >= 0, "memfd_create");
+  }
   ~Capture() { ::close(descriptor_); }
   Capture(const Capture&) = delete;
   int descriptor() const { return descriptor_; }
@@ -57,7 +59,8 @@ std::vector<std::string> environment_with(const Surroundings& surroundings) {
   if (!surroundings.preload.empty()) {
     changes["LD_PRELOAD"] = surroundings.preload;
     const char* before = std::getenv("ASAN_OPTIONS");
-    changes["ASAN_OPTIONS"] = std::string(before ? before : "") + ":verify_asan_link_order=0";  // which asks to be the first itself
+    // which asks to be the first itself
+    changes["ASAN_OPTIONS"] = std::string(before ? before : "") + ":verify_asan_link_order=0";
   }
   std::vector<std::string> variables;
   for (char** variable = environ; *variable; variable++) {
@@ -76,12 +79,16 @@ std::vector<char*> pointers_to(std::vector<std::string>& texts) {
   return pointers;
 }
 
-/// The arguments with the device that ALCOVE_TEST_DEVICE names, for commands that compute and where they name none themselves.
+/// The arguments with the device that ALCOVE_TEST_DEVICE names, for commands that compute and where they name none
+/// themselves.
 std::vector<std::string> on_test_device(std::vector<std::string> arguments) {
   const char* device = std::getenv("ALCOVE_TEST_DEVICE");
   const bool computes = !arguments.empty() && (arguments[0] == "run" || arguments[0] == "bench");
-  const auto names_one = [](const std::string& word) { return word.starts_with("--device") || word == "--require-gpu"; };
-  if (device && *device && computes && std::ranges::none_of(arguments, names_one)) arguments.insert(arguments.begin() + 1, {"--device", device});
+  const auto names_one = [](const std::string& word) {
+    return word.starts_with("--device") || word == "--require-gpu";
+  };
+  if (device && *device && computes && std::ranges::none_of(arguments, names_one))
+    arguments.insert(arguments.begin() + 1, {"--device", device});
   return arguments;
 }
 
@@ -118,7 +125,8 @@ Finished run_program(const std::vector<std::string>& arguments, const Surroundin
     if (!path->empty()) posix_spawn_file_actions_addopen(&actions, number, path->c_str(), O_WRONLY, 0);
   posix_spawn_file_actions_addchdir_np(&actions, surroundings.folder.c_str());
   pid_t child = -1;
-  errno = ::posix_spawn(&child, surroundings.program.c_str(), &actions, nullptr, pointers_to(words).data(), pointers_to(variables).data());
+  errno = ::posix_spawn(&child, surroundings.program.c_str(), &actions, nullptr, pointers_to(words).data(),
+                        pointers_to(variables).data());
   posix_spawn_file_actions_destroy(&actions);
   require(errno == 0, surroundings.program.c_str());
   if (surroundings.meanwhile) surroundings.meanwhile(child);
@@ -145,7 +153,8 @@ TemporaryFolder::~TemporaryFolder() {
 
 std::vector<std::string> names_in(const std::string& folder) {
   std::vector<std::string> names;
-  for (const auto& entry : fs::recursive_directory_iterator(folder)) names.push_back(fs::relative(entry.path(), folder).string());
+  for (const auto& entry : fs::recursive_directory_iterator(folder))
+    names.push_back(fs::relative(entry.path(), folder).string());
   std::ranges::sort(names);
   return names;
 }
@@ -159,7 +168,8 @@ std::string read_bytes(const std::string& path) {
 void write_bytes(const std::string& path, const std::string& bytes) {
   if (fs::is_regular_file(path)) fs::remove(path);  // ext4 waits for the disk when a file is written over
   std::ofstream file(path, std::ios::binary);
-  if (!file.write(bytes.data(), std::streamsize(bytes.size())).flush()) throw std::runtime_error(path + ": cannot be written");
+  if (!file.write(bytes.data(), std::streamsize(bytes.size())).flush())
+    throw std::runtime_error(path + ": cannot be written");
 }
 
 bool mount_memory(const std::string& folder, const std::string& options) {
@@ -168,7 +178,9 @@ bool mount_memory(const std::string& folder, const std::string& options) {
   return is_private && ::mount("alcove-test", folder.c_str(), "tmpfs", 0, options.c_str()) == 0;
 }
 
-bool make_read_only(const std::string& folder) { return ::mount(nullptr, folder.c_str(), nullptr, MS_REMOUNT | MS_RDONLY, nullptr) == 0; }
+bool make_read_only(const std::string& folder) {
+  return ::mount(nullptr, folder.c_str(), nullptr, MS_REMOUNT | MS_RDONLY, nullptr) == 0;
+}
 
 void unmount(const std::string& folder) { ::umount2(folder.c_str(), MNT_DETACH); }
 

@@ -22,16 +22,18 @@ std::ostream& operator<<(std::ostream& stream, const Finished& finished);
 /// Where the program runs.
 struct Surroundings {
   std::string folder = "/";  // working directory; not the test's own, so that nothing depends on it
-  std::map<std::string, std::optional<std::string>> environment = {};  // to set, or to remove where there is no value; all else is inherited
+  // to set, or to remove where there is no value; all else is inherited
+  std::map<std::string, std::optional<std::string>> environment = {};
   std::string preload = {};  // a library that stands before all others
   double seconds = 300;      // then it is killed; under sanitizers, beside other work, frames take many
   std::string program = ALCOVE_PROGRAM;
-  std::string out = {}, err = {};  // files that stand for the standard output and the standard error, instead of Finished's texts
+  // files that stand for the standard output and the standard error, instead of Finished's texts
+  std::string out = {}, err = {};
   std::function<void(int)> meanwhile = {};  // called with its process id while it runs
 };
 
-/// Runs the program with these arguments and waits for its end. It finds the presets of the project unless the surroundings say otherwise, and computes on the
-/// device that ALCOVE_TEST_DEVICE names unless the arguments do.
+/// Runs the program with these arguments and waits for its end. It finds the presets of the project unless the
+/// surroundings say otherwise, and computes on the device that ALCOVE_TEST_DEVICE names unless the arguments do.
 Finished run_program(const std::vector<std::string>& arguments, const Surroundings& surroundings = {});
 
 std::vector<std::string> lines_of(const std::string& text);
@@ -56,8 +58,8 @@ std::vector<std::string> names_in(const std::string& folder);
 std::string read_bytes(const std::string& path);
 void write_bytes(const std::string& path, const std::string& bytes);
 
-/// A file system of its own in memory at `folder`, seen by this process and its children only, so that it goes with them.
-/// Options as for mount -o: "size=64k". False where this process may not mount.
+/// A file system of its own in memory at `folder`, seen by this process and its children only, so that it goes with
+/// them. Options as for mount -o: "size=64k". False where this process may not mount.
 bool mount_memory(const std::string& folder, const std::string& options);
 /// Makes what mount_memory() has mounted there read-only.
 bool make_read_only(const std::string& folder);

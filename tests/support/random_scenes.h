@@ -20,17 +20,22 @@ class RandomScenes {
   HostFrame next(int times = 1) {
     Scene scene;
     scene.primitives.push_back(Plane{{0, 0, 0}, {0, 0, 1}});
-    if (number(0, 1) < 0.5) scene.primitives.push_back(Plane{{0, number(1, 5), 0}, unit({number(-1, 1), -1, number(-0.3, 0.3)})});
+    if (number(0, 1) < 0.5)
+      scene.primitives.push_back(Plane{{0, number(1, 5), 0}, unit({number(-1, 1), -1, number(-0.3, 0.3)})});
     if (number(0, 1) < 0.3) scene.primitives.push_back(Plane{{number(-3, -1), 0, 0}, {1, 0, 0}});
     const int things = int(number(0, 6));
     for (int i = 0; i < things; i++) {
       const Vec3 at{number(-3, 3), number(-2, 4), number(0, 1)};
-      if (number(0, 1) < 0.5) scene.primitives.push_back(Sphere{.center = at, .radius = number(0.02, 0.5)});
-      else scene.primitives.push_back(parallelogram(at, vector(0.6), vector(0.6)));
+      if (number(0, 1) < 0.5)
+        scene.primitives.push_back(Sphere{.center = at, .radius = number(0.02, 0.5)});
+      else
+        scene.primitives.push_back(parallelogram(at, vector(0.6), vector(0.6)));
     }
-    const Vec3 eye{number(-0.8, 0.8), number(-4, 0.5), std::exp(number(-4, 1.5))}, target{number(-1, 1), number(0, 3), number(-0.5, 0.5)};
+    const Vec3 eye{number(-0.8, 0.8), number(-4, 0.5), std::exp(number(-4, 1.5))},
+        target{number(-1, 1), number(0, 3), number(-0.5, 0.5)};
     const int width = times * int(number(8, 97)), height = times * int(number(8, 65));
-    Shot shot = number(0, 1) < 0.8 ? Shot::perspective(eye, target, number(5, 150), width, height) : Shot::orthographic(eye, target, number(0.5, 8), width, height);
+    Shot shot = number(0, 1) < 0.8 ? Shot::perspective(eye, target, number(5, 150), width, height)
+                                   : Shot::orthographic(eye, target, number(0.5, 8), width, height);
     if (number(0, 1) < 0.3) shot.camera.cx += number(-1, 1) * width, shot.camera.fy *= number(0.4, 2.5);
     HostFrame frame = render(scene, shot).frame;
     const double kind = number(0, 1);

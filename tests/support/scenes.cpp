@@ -30,7 +30,9 @@ Crossings crossings(const Sphere& sphere, const Ray& ray) {
   const Vec3 to_center = sphere.center - ray.origin;
   const double along = dot(to_center, ray.direction) / dot(ray.direction, ray.direction);
   const Vec3 off = to_center - along * ray.direction;
-  const double half_chord = std::sqrt((sphere.radius * sphere.radius - dot(off, off)) / dot(ray.direction, ray.direction));  // NaN: missed
+  // NaN: missed
+  const double half_chord =
+      std::sqrt((sphere.radius * sphere.radius - dot(off, off)) / dot(ray.direction, ray.direction));
   return {along - half_chord, along + half_chord};
 }
 
@@ -45,7 +47,8 @@ bool covers(const Polygon& polygon, Vec3 point) {
 }
 
 bool covers(const Sphere& sphere, Vec3 point) {
-  return sphere.cos_half_angle <= -1 || dot(point - sphere.center, sphere.axis) >= sphere.radius * sphere.cos_half_angle;
+  return sphere.cos_half_angle <= -1 ||
+         dot(point - sphere.center, sphere.axis) >= sphere.radius * sphere.cos_half_angle;
 }
 
 Vec3 normal_at(const Plane& plane, Vec3) { return unit(plane.normal); }
@@ -76,16 +79,18 @@ Polygon parallelogram(Vec3 corner, Vec3 a, Vec3 b) { return {{corner, corner + a
 Hit Scene::hit(const Ray& ray) const {
   Hit nearest;
   for (std::size_t i = 0; i < primitives.size(); i++) {
-    std::visit([&](const auto& primitive) {
-      const Crossings t = crossings(primitive, ray);
-      for (const double distance : {t.near, t.far}) {
-        if (!(distance > 1e-9 && distance < nearest.distance)) continue;
-        const Vec3 position = ray.origin + distance * ray.direction;
-        if (!covers(primitive, position)) continue;
-        const Vec3 normal = normal_at(primitive, position);
-        nearest = {distance, int(i), position, dot(normal, ray.direction) > 0 ? -normal : normal};
-      }
-    }, primitives[i]);
+    std::visit(
+        [&](const auto& primitive) {
+          const Crossings t = crossings(primitive, ray);
+          for (const double distance : {t.near, t.far}) {
+            if (!(distance > 1e-9 && distance < nearest.distance)) continue;
+            const Vec3 position = ray.origin + distance * ray.direction;
+            if (!covers(primitive, position)) continue;
+            const Vec3 normal = normal_at(primitive, position);
+            nearest = {distance, int(i), position, dot(normal, ray.direction) > 0 ? -normal : normal};
+          }
+        },
+        primitives[i]);
   }
   return nearest;
 }
@@ -108,25 +113,31 @@ Ray Shot::ray(double x_px, double y_px) const {
 bool Shot::sees_ball(Vec3 center, double radius) const {
   const Vec3 p = view_from_world(center - eye);
   const double left = data.x - display.x + 0.5, top = data.y - display.y + 0.5;
-  // Signed distance of the ball's centre to the plane that the eye and a line of pixels span, positive towards the picture.
+  // Signed distance of the ball's centre to the plane that the eye and a line of pixels span, positive towards the
+  // picture.
   const auto room = [&](double coordinate, double line, double inwards) {
-    return camera.orthographic ? inwards * (coordinate - line) : inwards * (coordinate + line * p.z) / std::sqrt(1 + line * line);
+    return camera.orthographic ? inwards * (coordinate - line)
+                               : inwards * (coordinate + line * p.z) / std::sqrt(1 + line * line);
   };
-  return room(p.x, (left - camera.cx) / camera.fx, 1) >= radius && room(p.x, (left + data.width - 1 - camera.cx) / camera.fx, -1) >= radius &&
-         room(p.y, (camera.cy - top) / camera.fy, -1) >= radius && room(p.y, (camera.cy - top - data.height + 1) / camera.fy, 1) >= radius;
+  return room(p.x, (left - camera.cx) / camera.fx, 1) >= radius &&
+         room(p.x, (left + data.width - 1 - camera.cx) / camera.fx, -1) >= radius &&
+         room(p.y, (camera.cy - top) / camera.fy, -1) >= radius &&
+         room(p.y, (camera.cy - top - data.height + 1) / camera.fy, 1) >= radius;
 }
 
 int Rendering::primitives_within(int reach_px, int x, int y) const {
   std::set<int> seen;
   for (int v = std::max(y - reach_px, 0); v <= std::min(y + reach_px, shot.data.height - 1); v++)
-    for (int u = std::max(x - reach_px, 0); u <= std::min(x + reach_px, shot.data.width - 1); u++) seen.insert(at(u, v).primitive);
+    for (int u = std::max(x - reach_px, 0); u <= std::min(x + reach_px, shot.data.width - 1); u++)
+      seen.insert(at(u, v).primitive);
   return int(seen.size());
 }
 
 double Rendering::footprint(int x, int y) const {
   double largest = 0;
   for (const auto& [u, v] : {std::pair{x - 1, y}, {x + 1, y}, {x, y - 1}, {x, y + 1}})
-    if (u >= 0 && v >= 0 && u < shot.data.width && v < shot.data.height) largest = std::max(largest, length(at(u, v).position - at(x, y).position));
+    if (u >= 0 && v >= 0 && u < shot.data.width && v < shot.data.height)
+      largest = std::max(largest, length(at(u, v).position - at(x, y).position));
   return largest;
 }
 
@@ -143,7 +154,8 @@ Rendering render(const Scene& scene, const Shot& shot) {
   for (int y = 0; y < shot.data.height; y++) {
     for (int x = 0; x < shot.data.width; x++) {
       const std::size_t index = result.hits.size();
-      const Hit hit = scene.hit(shot.ray(shot.data.x - shot.display.x + x + 0.5, shot.data.y - shot.display.y + y + 0.5));
+      const Hit hit =
+          scene.hit(shot.ray(shot.data.x - shot.display.x + x + 0.5, shot.data.y - shot.display.y + y + 0.5));
       result.hits.push_back(hit);
       if (hit.primitive < 0) continue;
       const Vec3 normal = shot.view_from_world(hit.normal);

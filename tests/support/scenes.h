@@ -73,10 +73,13 @@ struct Shot {
   /// The same from a parallel projection that is `units` of the scene wide.
   static Shot orthographic(Vec3 eye, Vec3 target, double units, int width, int height);
 
-  Vec3 view_from_world(Vec3 direction) const { return {dot(direction, right), dot(direction, up), dot(direction, back)}; }
+  Vec3 view_from_world(Vec3 direction) const {
+    return {dot(direction, right), dot(direction, up), dot(direction, back)};
+  }
   /// The ray through a point of the display window; its parameter is planar depth.
   Ray ray(double x_px, double y_px) const;
-  /// Whether all that is within `radius` of a point is seen in the picture, between the centres of its outermost pixels.
+  /// Whether all that is within `radius` of a point is seen in the picture, between the centres of its outermost
+  /// pixels.
   bool sees_ball(Vec3 center, double radius) const;
 };
 

@@ -31,7 +31,8 @@ class SequenceFolder : public testing::Test {
   /// `run` on the sequence with these arguments and, where they say nothing else, its camera and a radius of 1.
   Finished run(const std::vector<std::string>& more = {}, const Surroundings& surroundings = {}) const {
     std::vector<std::string> arguments{"run", in + "/f.%04d.exr"};
-    for (const auto& [option, value] : {std::pair<std::string, std::string>("-o", out + "/ao.%04d.exr"), {"--camera", camera}, {"--radius", "1"}})
+    for (const auto& [option, value] :
+         {std::pair<std::string, std::string>("-o", out + "/ao.%04d.exr"), {"--camera", camera}, {"--radius", "1"}})
       if (std::ranges::find(more, option) == more.end()) arguments.insert(arguments.end(), {option, value});
     arguments.insert(arguments.end(), more.begin(), more.end());
     return run_program(arguments, surroundings);

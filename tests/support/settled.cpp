@@ -10,7 +10,8 @@ namespace alcove::test {
 
 FrameSource settled(const InputSettings& settings) {
   FrameSource source = find_frame(settings, false, 0);
-  std::vector<float> depth(source.depth.size() * source.data.pixels()), normal(source.normal.size() * source.data.pixels());
+  std::vector<float> depth(source.depth.size() * source.data.pixels()),
+      normal(source.normal.size() * source.data.pixels());
   read_planes(source, {{&source.depth, depth.data()}, {&source.normal, normal.data()}});
   settle(source, settings, depth, normal);
   return source;

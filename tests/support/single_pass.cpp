@@ -45,7 +45,8 @@ std::vector<float> denoised(const HostFrame& frame, const std::vector<float>& ao
   return finished(denoise(recorder(), gbuffer, visibility(ao), inputs, settings));
 }
 
-std::vector<float> upsampled(const HostFrame& frame, const std::function<double(int, int)>& ao_of_block, const EstimatorSettings& settings) {
+std::vector<float> upsampled(const HostFrame& frame, const std::function<double(int, int)>& ao_of_block,
+                             const EstimatorSettings& settings) {
   const FrameInputs inputs = uploaded(frame);
   const GBuffer gbuffer = prepare(recorder(), inputs);
   reconstruct(recorder(), gbuffer);
@@ -58,7 +59,8 @@ std::vector<float> upsampled(const HostFrame& frame, const std::function<double(
 
 Rendering furnished_room(int width, int height) {
   const Scene scene{{parallelogram({0, -3, 0}, {4, 0, 0}, {0, 6, 0}), parallelogram({0, -3, 0}, {0, 6, 0}, {0, 0, 1.5}),
-                     Sphere{.center = {1.2, 0.4, 0.5}, .radius = 0.5}, parallelogram({2, -1.5, 0.3}, {0.6, 0.2, 0.1}, {0, 0.9, 0})}};
+                     Sphere{.center = {1.2, 0.4, 0.5}, .radius = 0.5},
+                     parallelogram({2, -1.5, 0.3}, {0.6, 0.2, 0.1}, {0, 0.9, 0})}};
   return render(scene, Shot::perspective({4.5, -1.5, 2.4}, {1, 0, 0.6}, 55, width, height));
 }
 
@@ -66,7 +68,8 @@ std::vector<float> mirrored(const std::vector<float>& plane, const HostFrame& fr
   const int width = frame.data.width, height = frame.data.height;
   std::vector<float> result;
   for (int y = 0; y < height; y++)
-    for (int x = 0; x < width; x++) result.push_back(plane[left_right ? index_of(width - 1 - x, y, width) : index_of(x, height - 1 - y, width)]);
+    for (int x = 0; x < width; x++)
+      result.push_back(plane[left_right ? index_of(width - 1 - x, y, width) : index_of(x, height - 1 - y, width)]);
   return result;
 }
 
@@ -80,7 +83,8 @@ HostFrame mirrored(const HostFrame& frame, bool left_right) {
     if (axis == (left_right ? 0 : 1)) std::ranges::transform(plane, plane.begin(), std::negate());
     std::ranges::copy(plane, result.normal.begin() + std::ptrdiff_t(axis * pixels));
   }
-  (left_right ? result.camera.cx : result.camera.cy) = left_right ? frame.data.width - frame.camera.cx : frame.data.height - frame.camera.cy;
+  (left_right ? result.camera.cx : result.camera.cy) =
+      left_right ? frame.data.width - frame.camera.cx : frame.data.height - frame.camera.cy;
   return result;
 }
 

@@ -14,7 +14,8 @@ namespace alcove::test {
 std::vector<float> denoised(const HostFrame& frame, const std::vector<float>& ao, const EstimatorSettings& settings);
 
 /// What upsampling makes of a visibility that is given by block: its column and row at the settings' resolution.
-std::vector<float> upsampled(const HostFrame& frame, const std::function<double(int, int)>& ao_of_block, const EstimatorSettings& settings);
+std::vector<float> upsampled(const HostFrame& frame, const std::function<double(int, int)>& ao_of_block,
+                             const EstimatorSettings& settings);
 
 /// A floor, a wall, a ball on the floor, a slab in the air, and sky.
 Rendering furnished_room(int width, int height);

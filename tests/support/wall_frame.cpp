@@ -9,7 +9,7 @@
 namespace alcove::test {
 namespace {
 
-constexpr double kFocalPx = 60;         // of 64 pixels
+constexpr double kFocalPx = 60;  // of 64 pixels
 constexpr double kWallDistance = 6, kEyeHeight = 1;
 
 double focal_px(const Window& display) { return kFocalPx * display.width / kWallWindow.width; }
@@ -38,11 +38,14 @@ void FrameFile::rename(const std::string& from, const std::string& to) {
 
 FrameFile wall_frame(const Window& data, const Window& display, double pixel_aspect) {
   FrameFile frame{data, display, pixel_aspect, {}, {}, {}};
-  auto plane = [&](const std::string& name) -> std::vector<float>& { return frame.planes["ViewLayer." + name] = std::vector<float>(data.pixels()); };
+  auto plane = [&](const std::string& name) -> std::vector<float>& {
+    return frame.planes["ViewLayer." + name] = std::vector<float>(data.pixels());
+  };
   auto &z = plane("Depth.Z"), &x = plane("Normal.X"), &y = plane("Normal.Y"), &up = plane("Normal.Z");
   for (std::size_t i = 0; i < data.pixels(); i++) {
     const double row = double(i / std::size_t(data.width)) + 0.5 + data.y - display.y;
-    const double slope = -(row - 0.5 * display.height) / (focal_px(display) * pixel_aspect);  // of the ray, up an unit forward
+    // of the ray, up an unit forward
+    const double slope = -(row - 0.5 * display.height) / (focal_px(display) * pixel_aspect);
     const bool is_floor = -slope * kWallDistance > kEyeHeight;
     z[i] = float(is_floor ? kEyeHeight / -slope : kWallDistance);
     x[i] = 0;
@@ -56,7 +59,8 @@ void add_beauty(FrameFile& frame) {
   std::size_t index = 1;
   for (const char* layer : {"Combined", "DiffInd", "DiffCol"})
     for (const char* component : {"R", "G", "B"})
-      for (auto& value : frame.planes["ViewLayer." + std::string(layer) + "." + component] = std::vector<float>(frame.data.pixels()))
+      for (auto& value :
+           frame.planes["ViewLayer." + std::string(layer) + "." + component] = std::vector<float>(frame.data.pixels()))
         value = 2 * uneven(index++);
   auto& alpha = frame.planes["ViewLayer.Combined.A"] = std::vector<float>(frame.data.pixels(), 1);
   for (std::size_t i = 0; i < alpha.size(); i += 3) alpha[i] = uneven(i);

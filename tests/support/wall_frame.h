@@ -27,8 +27,8 @@ struct FrameFile {
   void rename(const std::string& from, const std::string& to);
 };
 
-/// Depth and world-space normals as Blender names them. The floor is 1 below the eye, the wall 6 in front of it; the world's z is up.
-/// On the wall, everything above the middle of the display window is farther than 1 from the floor.
+/// Depth and world-space normals as Blender names them. The floor is 1 below the eye, the wall 6 in front of it; the
+/// world's z is up. On the wall, everything above the middle of the display window is farther than 1 from the floor.
 FrameFile wall_frame(const Window& data = kWallWindow, const Window& display = kWallWindow, double pixel_aspect = 1);
 
 /// Adds Combined with alpha below 1 in places, DiffInd and DiffCol: uneven values, up to 2.

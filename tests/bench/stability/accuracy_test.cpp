@@ -1,11 +1,14 @@
-// How far each estimator is from its reference in double precision, and that this grows no faster than the depth's own precision explains.
+// How far each estimator is from its reference in double precision, and that this grows no faster than the depth's own
+// precision explains.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The bound. A depth that is off by d turns the direction to a sample one pixel aside by no more than d / p, p the width of a pixel there; both the
-// sample's and the receiver's depth may be off, and visibility changes by no more than the angle: 2 d / p. Farther samples turn less. So the RMSE is at most
-// the root mean square of min(1, 2 d / p), what the drawn samples leave (kSampling, that of exact depth), and what a sphere of few pixels leaves to chance: whether
-// the one next pixel is within it (kFewPixels p / R; not of crytek, which looks at no next pixel). A bound above the reference's own occlusion is none: an AO that is 1
-// everywhere would pass. Where depth is to show that it is precise enough, such bounds are refused.
+// The bound. A depth that is off by d turns the direction to a sample one pixel aside by no more than d / p, p the
+// width of a pixel there; both the sample's and the receiver's depth may be off, and visibility changes by no more than
+// the angle: 2 d / p. Farther samples turn less. So the RMSE is at most the root mean square of min(1, 2 d / p), what
+// the drawn samples leave (kSampling, that of exact depth), and what a sphere of few pixels leaves to chance: whether
+// the one next pixel is within it (kFewPixels p / R; not of crytek, which looks at no next pixel). A bound above the
+// reference's own occlusion is none: an AO that is 1 everywhere would pass. Where depth is to show that it is precise
+// enough, such bounds are refused.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -14,9 +17,9 @@
 #include "core/reference/reference.h"
 #include "core/reference/reference_estimators.h"
 #include "core/run/scale_notes.h"
+#include "tests/bench/stability/cases.h"
 #include "tests/support/device.h"
 #include "tests/support/difference.h"
-#include "tests/bench/stability/cases.h"
 
 namespace alcove {
 namespace {
@@ -24,16 +27,20 @@ namespace {
 using namespace test;
 using testing::Contains, testing::HasSubstr, testing::Not;
 
-/// Of 16 slices with a sample at every pixel, or 64 samples. With a constant thickness gtao takes the receiver's own surface for endless, and its reference does not.
-const std::map<std::string, double> kSampling{{"gtao", 0.02}, {"gtao infinite", 0.015}, {"gtao constant", 0.055}, {"gtao exact", 0.02},
-                                              {"bitmask", 0.02}, {"hbao", 0.03}, {"crytek", 0.035}};
+/// Of 16 slices with a sample at every pixel, or 64 samples. With a constant thickness gtao takes the receiver's own
+/// surface for endless, and its reference does not.
+const std::map<std::string, double> kSampling{{"gtao", 0.02},       {"gtao infinite", 0.015}, {"gtao constant", 0.055},
+                                              {"gtao exact", 0.02}, {"bitmask", 0.02},        {"hbao", 0.03},
+                                              {"crytek", 0.035}};
 constexpr double kFewPixels = 0.2;
 
 /// Made once for all storages of a spec and estimators that are meant to compute the same.
-const std::vector<float>& reference_of(const Spec& spec, const HostFrame& frame, const EstimatorSettings& settings, const std::vector<std::size_t>& pixels) {
+const std::vector<float>& reference_of(const Spec& spec, const HostFrame& frame, const EstimatorSettings& settings,
+                                       const std::vector<std::size_t>& pixels) {
   static std::map<std::string, std::vector<float>> made;
   const bool by_slices = settings.estimator == Estimator::gtao || settings.estimator == Estimator::bitmask;
-  auto& ao = made[fmt::format("{} {} {}", to_string(spec), by_slices ? 0 : int(settings.estimator), int(settings.thickness))];
+  auto& ao =
+      made[fmt::format("{} {} {}", to_string(spec), by_slices ? 0 : int(settings.estimator), int(settings.thickness))];
   if (!ao.empty()) return ao;
   if (!by_slices) return ao = reference_estimate(frame, settings, pixels);
   ReferenceSettings reference = reference_settings_of(settings);
@@ -41,7 +48,8 @@ const std::vector<float>& reference_of(const Spec& spec, const HostFrame& frame,
   return ao = reference_ao(frame, reference);
 }
 
-/// How far depth may be off: half a step of its storage; of positions twice a float's half step of their distance from the origin (see depth_precision()).
+/// How far depth may be off: half a step of its storage; of positions twice a float's half step of their distance from
+/// the origin (see depth_precision()).
 double step_at(const Spec& spec, double z, double room_depth) {
   const double near = 0.1 * room_depth, far = 1000 * room_depth, slope = z * z * (1 / near - 1 / far);
   switch (spec.storage) {
@@ -80,11 +88,13 @@ std::vector<Measured> measured(Spec spec) {
     settings.slices = 16;
     settings.steps = 64;
     settings.samples = 64;
-    const std::vector<float>&reference = reference_of(clean, exact.frame, settings, pixels), ao = compute_ao(recorder(), tried.frame, settings).ao;
+    const std::vector<float>&reference = reference_of(clean, exact.frame, settings, pixels),
+          ao = compute_ao(recorder(), tried.frame, settings).ao;
     double sum = 0, turned = 0, few = 0, occlusion = 0;
     for (const std::size_t i : pixels) {
       const double z = exact.frame.depth[i];
-      const double pixel = (exact.frame.camera.orthographic ? 1 : z) / exact.frame.camera.fx, highest = pixel * std::max(1.0, exact.frame.camera.fx / exact.frame.camera.fy);
+      const double pixel = (exact.frame.camera.orthographic ? 1 : z) / exact.frame.camera.fx,
+                   highest = pixel * std::max(1.0, exact.frame.camera.fx / exact.frame.camera.fy);
       sum += std::pow(ao[i] - reference[i], 2);
       occlusion += std::pow(1 - reference[i], 2);
       turned += std::pow(std::min(1.0, 2 * step_at(spec, z, exact.depth) / pixel), 2);
@@ -153,19 +163,23 @@ TEST(Accuracy, below_a_pixel_all_is_open) {
   for (const double radius : {1e-9, 0.005}) {
     const Case made = test::made({.radius = radius, .width = 48, .height = 36});
     for (const auto& variant : variants()) {
-      const Difference d = difference(compute_ao(recorder(), made.frame, with_radius(variant.settings, made.radius)).ao, [](std::size_t) { return 1.0; });
+      const Difference d = difference(compute_ao(recorder(), made.frame, with_radius(variant.settings, made.radius)).ao,
+                                      [](std::size_t) { return 1.0; });
       EXPECT_LE(d.max, 1e-6) << variant.name << " " << radius << " " << place(d, made.frame);
     }
   }
 }
 
 TEST(Accuracy, about_normals_that_are_not_the_surfaces) {
-  for (const NormalDefect normals : {NormalDefect::grazing, NormalDefect::axis, NormalDefect::in_slice, NormalDefect::across_slice, NormalDefect::backfacing, NormalDefect::random})
+  for (const NormalDefect normals : {NormalDefect::grazing, NormalDefect::axis, NormalDefect::in_slice,
+                                     NormalDefect::across_slice, NormalDefect::backfacing, NormalDefect::random})
     expect({.normals = normals}, "gtao constant");
 }
 
 TEST(Accuracy, beside_depths_that_are_none_or_next_to_the_eye) {
-  for (const DepthDefect depth : {DepthDefect::zero, DepthDefect::negative, DepthDefect::infinite, DepthDefect::nan, DepthDefect::largest}) expect({.depth = depth});
+  for (const DepthDefect depth :
+       {DepthDefect::zero, DepthDefect::negative, DepthDefect::infinite, DepthDefect::nan, DepthDefect::largest})
+    expect({.depth = depth});
   expect({.depth = DepthDefect::near_plane}, "crytek");  // whose sphere holds the eye: few of its samples are seen
 }
 
@@ -178,14 +192,19 @@ TEST(Accuracy, of_depth_stored_with_few_bits) {
 }
 
 TEST(Accuracy, of_positions_1e7_units_from_their_origin) {
-  for (const double far : {1e2, 1e3, 3e3}) expect_precise({.scale = 1e7 / far, .storage = Storage::far_positions, .far = far});
+  for (const double far : {1e2, 1e3, 3e3})
+    expect_precise({.scale = 1e7 / far, .storage = Storage::far_positions, .far = far});
 }
 
-// At 1.5 degrees pixels are as small as in a picture 1920 wide, and a bound from the nearest of them says nothing. These are measured.
+// At 1.5 degrees pixels are as small as in a picture 1920 wide, and a bound from the nearest of them says nothing.
+// These are measured.
 TEST(Accuracy, of_few_bits_and_small_pixels_is_better_than_its_bound) {
   for (const Storage storage : {Storage::half_float, Storage::bits_16, Storage::bits_16_reversed})
     for (const auto& [estimator, rmse, bound, occlusion] : measured({.fov = 1.5, .storage = storage}))
-      EXPECT_LE(rmse, estimator == "gtao constant" ? 0.08 : storage == Storage::half_float ? 0.055 : 0.035) << estimator << " storage " << int(storage);
+      EXPECT_LE(rmse, estimator == "gtao constant"     ? 0.08
+                      : storage == Storage::half_float ? 0.055
+                                                       : 0.035)
+          << estimator << " storage " << int(storage);
 }
 
 TEST(Accuracy, that_is_lost_is_noted) {

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
+#include "tests/bench/stability/cases.h"
 #include "tests/support/device.h"
 #include "tests/support/difference.h"
-#include "tests/bench/stability/cases.h"
 
 namespace alcove {
 namespace {
@@ -18,12 +18,15 @@ TEST(Devices, agree) {
     others++;
     gpu::Device other(gpu::DeviceOptions{.choice = info.uuid});
     gpu::Recorder on_other(other);
-    for (const Spec& spec : {Spec{.width = 320, .height = 240}, Spec{.scale = 1e6, .fov = 120, .width = 320, .height = 240}}) {
+    for (const Spec& spec :
+         {Spec{.width = 320, .height = 240}, Spec{.scale = 1e6, .fov = 120, .width = 320, .height = 240}}) {
       const Case made = test::made(spec);
       for (const auto& variant : variants()) {
         const EstimatorSettings settings = with_radius(variant.settings, made.radius);
-        const Difference d = difference(compute_ao(on_other, made.frame, settings).ao, compute_ao(recorder(), made.frame, settings).ao);
-        EXPECT_LE(d.rmse, 1e-4) << info.name << ", " << variant.name << ": " << to_string(spec) << ", " << place(d, made.frame);
+        const Difference d =
+            difference(compute_ao(on_other, made.frame, settings).ao, compute_ao(recorder(), made.frame, settings).ao);
+        EXPECT_LE(d.rmse, 1e-4) << info.name << ", " << variant.name << ": " << to_string(spec) << ", "
+                                << place(d, made.frame);
       }
     }
   }

@@ -1,7 +1,9 @@
-// Whatever the numbers: every estimator, preset and resolution gives an AO from 0 to 1, 1 on sky, the same with and without skipping, and writes nothing else.
+// Whatever the numbers: every estimator, preset and resolution gives an AO from 0 to 1, 1 on sky, the same with and
+// without skipping, and writes nothing else.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// ALCOVE_STABILITY_DRAWS=N takes N random draws of all axes at once instead of a round; ALCOVE_STABILITY_SEED=S, the number of the first, repeats those of a run. Both are printed.
+// ALCOVE_STABILITY_DRAWS=N takes N random draws of all axes at once instead of a round; ALCOVE_STABILITY_SEED=S, the
+// number of the first, repeats those of a run. Both are printed.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,9 +13,9 @@
 #include <random>
 
 #include "core/chain/pass_common.h"
+#include "tests/bench/stability/cases.h"
 #include "tests/support/device.h"
 #include "tests/support/difference.h"
-#include "tests/bench/stability/cases.h"
 
 namespace alcove {
 namespace {
@@ -25,7 +27,8 @@ std::string complaint(const Case& made, const Variant& variant) {
   EstimatorSettings settings = with_radius(variant.settings, made.radius);
   const HostResult result = compute_ao(recorder(), made.frame, settings);
   for (std::size_t i = 0; i < result.ao.size(); i++)
-    if (!(result.ao[i] >= 0 && result.ao[i] <= 1) || (made.sky[i] && result.ao[i] != 1)) return fmt::format("AO {} at pixel {}{}", result.ao[i], i, made.sky[i] ? ", which is sky" : "");
+    if (!(result.ao[i] >= 0 && result.ao[i] <= 1) || (made.sky[i] && result.ao[i] != 1))
+      return fmt::format("AO {} at pixel {}{}", result.ao[i], i, made.sky[i] ? ", which is sky" : "");
   settings.no_skip = true;
   const std::vector<float> all = compute_ao(recorder(), made.frame, settings).ao;
   const Difference d = difference(result.ao, all);
@@ -59,11 +62,16 @@ TEST(Grid, all_axes_at_once) {
 
 // The near plane's own value is sky; a third of the depths are next to it, the others before the far plane.
 TEST(Grid, what_is_next_to_the_near_plane_is_a_surface) {
-  for (const Storage storage : {Storage::bits_16, Storage::bits_16_reversed, Storage::bits_24, Storage::bits_24_reversed, Storage::device_reversed}) {
+  for (const Storage storage : {Storage::bits_16, Storage::bits_16_reversed, Storage::bits_24,
+                                Storage::bits_24_reversed, Storage::device_reversed}) {
     const Case made = test::made({.range = 50, .depth = DepthDefect::near_plane, .storage = storage});
-    const float at_near = made.frame.depth_range.reversed ? 1 : 0, next = std::abs(*std::ranges::min_element(made.frame.depth, {}, [&](float x) { return std::abs(x - at_near); }) - at_near);
+    const float at_near = made.frame.depth_range.reversed ? 1 : 0,
+                next = std::abs(*std::ranges::min_element(made.frame.depth, {}, [&](float x) {
+                  return std::abs(x - at_near);
+                }) - at_near);
     EXPECT_TRUE(next > 0 && next < 2e-5) << next;
-    EXPECT_EQ(compute_ao(recorder(), made.frame, with_radius(plain_settings(), made.radius)).sky_pixels, 0u) << int(storage);
+    EXPECT_EQ(compute_ao(recorder(), made.frame, with_radius(plain_settings(), made.radius)).sky_pixels, 0u)
+        << int(storage);
   }
 }
 
@@ -79,7 +87,8 @@ TEST(Grid, what_lies_beside_buffers_and_in_new_ones_changes_no_bit) {
       const Case made = test::made({.width = width, .height = height});
       const EstimatorSettings settings = with_radius(variant.settings, made.radius);
       const std::vector<float> ao = compute_ao(recorder(), made.frame, settings).ao;
-      EXPECT_TRUE(same_bits(ao, compute_ao(unguarded, made.frame, settings).ao)) << variant.name << " " << width << "x" << height;
+      EXPECT_TRUE(same_bits(ao, compute_ao(unguarded, made.frame, settings).ao))
+          << variant.name << " " << width << "x" << height;
     }
 }
 
@@ -100,9 +109,12 @@ TEST(Grid, estimators_write_their_own_plane_and_all_of_it) {
         gpu::Buffer& planes = gpu.buffer("three planes", 3 * pixels * sizeof(float), gpu::Use::download);
         gpu.clear(planes);
         Estimate out{&planes};
-        if (!searches_exactly(settings)) out.listed = classify(gpu, gbuffer, inputs, block_grid(inputs, settings), settings, bounds(gpu, gbuffer, inputs, settings), out, 1);
+        if (!searches_exactly(settings))
+          out.listed = classify(gpu, gbuffer, inputs, block_grid(inputs, settings), settings,
+                                bounds(gpu, gbuffer, inputs, settings), out, 1);
         if (searches_exactly(settings)) {
-          for (int direction = 0; direction < settings.slices; direction++) exact(gpu, gbuffer, profile(gpu, gbuffer, inputs, settings, direction), inputs, settings, out, 1);
+          for (int direction = 0; direction < settings.slices; direction++)
+            exact(gpu, gbuffer, profile(gpu, gbuffer, inputs, settings, direction), inputs, settings, out, 1);
         } else {
           const auto estimator = std::array{&horizon, &bitmask, &hbao, &crytek}[std::size_t(settings.estimator)];
           estimator(gpu, gbuffer, inputs, settings, out, 1);
@@ -111,7 +123,8 @@ TEST(Grid, estimators_write_their_own_plane_and_all_of_it) {
         gpu.run();
         const auto values = planes.as<float>();
         for (std::size_t i = 0; i < 3 * pixels; i++)
-          ASSERT_TRUE(i / pixels == 1 ? values[i] > 0 && values[i] <= 1 : values[i] == 0) << variant.name << " " << width << "x" << height << " value " << i << ": " << values[i];
+          ASSERT_TRUE(i / pixels == 1 ? values[i] > 0 && values[i] <= 1 : values[i] == 0)
+              << variant.name << " " << width << "x" << height << " value " << i << ": " << values[i];
       }
 }
 

@@ -1,4 +1,5 @@
-// What is the same scene has the same AO, for every estimator: other units, mirrors, crops, marks of sky, kinds of depth, projections; and what is more blocked is darker.
+// What is the same scene has the same AO, for every estimator: other units, mirrors, crops, marks of sky, kinds of
+// depth, projections; and what is more blocked is darker.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
@@ -9,10 +10,10 @@
 #include <limits>
 #include <numbers>
 
+#include "tests/bench/stability/cases.h"
 #include "tests/support/device.h"
 #include "tests/support/difference.h"
 #include "tests/support/single_pass.h"
-#include "tests/bench/stability/cases.h"
 
 namespace alcove {
 namespace {
@@ -21,7 +22,9 @@ using namespace test;
 
 constexpr double kRadius = 0.6;
 
-std::vector<float> run(const HostFrame& frame, const EstimatorSettings& settings) { return compute_ao(recorder(), frame, settings).ao; }
+std::vector<float> run(const HostFrame& frame, const EstimatorSettings& settings) {
+  return compute_ao(recorder(), frame, settings).ao;
+}
 
 /// So many samples that what is left to see is the estimator.
 EstimatorSettings converged(EstimatorSettings settings, double radius) {
@@ -32,7 +35,8 @@ EstimatorSettings converged(EstimatorSettings settings, double radius) {
   return settings;
 }
 
-/// Those that a larger radius or another occluder can only darken: all that is seen is solid, and counts fully however far off.
+/// Those that a larger radius or another occluder can only darken: all that is seen is solid, and counts fully however
+/// far off.
 std::vector<Variant> solid_estimators() {
   std::vector<Variant> all = estimators();
   for (auto& variant : all) {
@@ -55,7 +59,8 @@ TEST(Metamorphic, scale_by_powers_of_two_changes_no_bit) {
         settings = with_radius(settings, std::ldexp(kRadius, exponent));
         if (settings.estimator == Estimator::crytek) settings.bias = std::ldexp(bias, exponent);  // scene units
         const std::vector<float> ao = run(other, settings);
-        EXPECT_TRUE(same_bits(ao, expected)) << variant.name << " 2^" << exponent << (normals ? ": " : " without normals: ") << difference(ao, expected).max;
+        EXPECT_TRUE(same_bits(ao, expected)) << variant.name << " 2^" << exponent
+                                             << (normals ? ": " : " without normals: ") << difference(ao, expected).max;
       }
     }
   }
@@ -75,8 +80,9 @@ TEST(Metamorphic, a_mirrored_frame_has_the_mirrored_ao) {
   }
 }
 
-// Of a pixel that sees all that its AO depends on: the sphere of the radius and, where occluders are as deep as they are wide, what their width is measured over, which ends where
-// it is the sphere's: 3 radii. Not of an exact search, whose lines are the whole's only in a crop with a wider margin; exact_test has one.
+// Of a pixel that sees all that its AO depends on: the sphere of the radius and, where occluders are as deep as they
+// are wide, what their width is measured over, which ends where it is the sphere's: 3 radii. Not of an exact search,
+// whose lines are the whole's only in a crop with a wider margin; exact_test has one.
 TEST(Metamorphic, ao_of_a_crop_is_the_crop_of_ao) {
   constexpr double kSmall = 0.2;
   const Rendering whole = room(55, 1, 0, 96, 72);
@@ -93,7 +99,8 @@ TEST(Metamorphic, ao_of_a_crop_is_the_crop_of_ao) {
     if (searches_exactly(variant.settings)) continue;
     const EstimatorSettings settings = with_radius(variant.settings, kSmall);
     const double seen = (settings.thickness == ThicknessKind::automatic ? 3 : 1) * kSmall;
-    const std::vector<float> of_whole = cropped(run(whole.frame, settings), whole.frame.data, shot.data), of_part = run(part.frame, settings);
+    const std::vector<float> of_whole = cropped(run(whole.frame, settings), whole.frame.data, shot.data),
+                             of_part = run(part.frame, settings);
     int compared = 0;
     for (std::size_t i = 0; i < of_part.size(); i++) {
       const Hit& hit = whole.at(shot.data.x + int(i) % shot.data.width, shot.data.y + int(i) / shot.data.width);
@@ -107,11 +114,13 @@ TEST(Metamorphic, ao_of_a_crop_is_the_crop_of_ao) {
 
 TEST(Metamorphic, any_mark_of_sky_is_sky) {
   const HostFrame frame = room(55, 1, 0, 40, 30).frame;
-  constexpr float kLargest = std::numeric_limits<float>::max(), kInfinity = std::numeric_limits<float>::infinity(), kNan = std::numeric_limits<float>::quiet_NaN();
+  constexpr float kLargest = std::numeric_limits<float>::max(), kInfinity = std::numeric_limits<float>::infinity(),
+                  kNan = std::numeric_limits<float>::quiet_NaN();
   for (const auto& variant : variants()) {
     const EstimatorSettings settings = with_radius(variant.settings, kRadius);
     const std::vector<float> expected = run(frame, settings);
-    for (const float mark : {0.0f, -0.0f, 65504.0f, 1e9f, 1e10f, 1e30f, kLargest, kInfinity, -kInfinity, kNan, -1.0f, -kLargest}) {
+    for (const float mark :
+         {0.0f, -0.0f, 65504.0f, 1e9f, 1e10f, 1e30f, kLargest, kInfinity, -kInfinity, kNan, -1.0f, -kLargest}) {
       HostFrame marked = frame;
       if (mark == 65504) marked.sky = 65504;  // where half floats end
       std::ranges::replace(marked.depth, kSky, mark);
@@ -121,7 +130,8 @@ TEST(Metamorphic, any_mark_of_sky_is_sky) {
 }
 
 /// The frame's depth said in another way.
-HostFrame said(const Rendering& rendering, DepthKind kind, const DepthRange& range = {}, PositionSpace space = PositionSpace::view) {
+HostFrame said(const Rendering& rendering, DepthKind kind, const DepthRange& range = {},
+               PositionSpace space = PositionSpace::view) {
   HostFrame frame = rendering.frame;
   const Shot& shot = rendering.shot;
   frame.depth_kind = kind;
@@ -157,13 +167,16 @@ HostFrame said(const Rendering& rendering, DepthKind kind, const DepthRange& ran
 TEST(Metamorphic, every_kind_of_depth_says_the_same) {
   const Rendering rendering = room(55, 1, 0, 48, 36);
   constexpr double kNear = 0.5, kFar = 50, kEndless = std::numeric_limits<double>::infinity();
-  std::vector<HostFrame> frames{said(rendering, DepthKind::ray), said(rendering, DepthKind::inverse), said(rendering, DepthKind::position),
+  std::vector<HostFrame> frames{said(rendering, DepthKind::ray), said(rendering, DepthKind::inverse),
+                                said(rendering, DepthKind::position),
                                 said(rendering, DepthKind::position, {}, PositionSpace::world)};
   for (const bool reversed : {false, true}) {
     for (const DepthKind kind : {DepthKind::device, DepthKind::normalized, DepthKind::log})
       frames.push_back(said(rendering, kind, {.near = kNear, .far = kFar, .reversed = reversed}));
     for (const double far : {kFar, kEndless})
-      frames.push_back(said(rendering, DepthKind::device, {.near = kNear, .far = far, .reversed = reversed, .device = DeviceRange::minus_one_to_one}));
+      frames.push_back(
+          said(rendering, DepthKind::device,
+               {.near = kNear, .far = far, .reversed = reversed, .device = DeviceRange::minus_one_to_one}));
     frames.push_back(said(rendering, DepthKind::device, {.near = kNear, .far = kEndless, .reversed = reversed}));
   }
   for (const auto& variant : estimators()) {
@@ -187,8 +200,9 @@ TEST(Metamorphic, orthographic_is_the_limit_of_a_small_field_of_view) {
   }
 }
 
-// Of every thickness: a larger sphere holds more occluders, and more of what is behind their fronts. Where a surface leaves the sphere between two samples is interpolated, so a pixel
-// may be off by a little. Not of Crytek, whose samples move as the radius grows.
+// Of every thickness: a larger sphere holds more occluders, and more of what is behind their fronts. Where a surface
+// leaves the sphere between two samples is interpolated, so a pixel may be off by a little. Not of Crytek, whose
+// samples move as the radius grows.
 TEST(Metamorphic, a_larger_radius_only_darkens) {
   const HostFrame frame = room(55, 1, 0, 48, 36).frame;
   auto all = solid_estimators();
@@ -196,19 +210,23 @@ TEST(Metamorphic, a_larger_radius_only_darkens) {
   for (const auto& variant : all) {
     if (variant.settings.estimator == Estimator::crytek) continue;
     std::vector<float> smaller(frame.data.pixels(), 1.0f);
-    const float slack = searches_exactly(variant.settings) ? 0.01f : variant.settings.thickness == ThicknessKind::automatic ? 0.002f : 1e-6f;
+    const float slack = searches_exactly(variant.settings)                       ? 0.01f
+                        : variant.settings.thickness == ThicknessKind::automatic ? 0.002f
+                                                                                 : 1e-6f;
     for (const double radius : {1e-9, 0.01, 0.1, 0.3, 1.0, 3.0, 10.0, 1e9}) {
       EstimatorSettings settings = converged(variant.settings, radius);
       settings.thickness_length = 0.2;
       const std::vector<float> ao = run(frame, settings);
-      for (std::size_t i = 0; i < ao.size(); i++) EXPECT_LE(ao[i], smaller[i] + slack) << variant.name << " radius " << radius << " pixel " << i;
+      for (std::size_t i = 0; i < ao.size(); i++)
+        EXPECT_LE(ao[i], smaller[i] + slack) << variant.name << " radius " << radius << " pixel " << i;
       EXPECT_LE(difference(ao, smaller).bias, 0) << variant.name << " radius " << radius;
       smaller = ao;
     }
   }
 }
 
-// With an endless radius: within one, what comes before a blocker may be out of reach itself. Of solid occluders: a thin one hides more than it blocks. Bits are counted with a random shift, the same in both frames.
+// With an endless radius: within one, what comes before a blocker may be out of reach itself. Of solid occluders: a
+// thin one hides more than it blocks. Bits are counted with a random shift, the same in both frames.
 TEST(Metamorphic, an_added_occluder_never_brightens_what_is_still_seen) {
   const Plane floor{.point = {}, .normal = {0, 0, 1}}, wall{.point = {}, .normal = {1, 0, 0}};
   const Sphere ball{.center = {1.5, 0.2, 0.8}, .radius = 0.3};
@@ -233,37 +251,50 @@ TEST(Metamorphic, an_added_occluder_never_brightens_what_is_still_seen) {
 TEST(Metamorphic, a_convex_body_alone_is_open) {
   const Sphere ball{.center = {6, 0.4, -0.3}, .radius = 1.5};
   const Plane plane{.point = {5, 0, 0}, .normal = unit({-1, 0.5, 0.7})};
-  const Vec3 a = 1.6 * unit({1, 0.5, 0.3}), b = 1.2 * unit(cross(a, {0, 0, 1})), c = 1.4 * unit(cross(a, b)), corner{5, -0.5, 0.3};
-  const Scene box{{parallelogram(corner, a, b), parallelogram(corner, b, c), parallelogram(corner, c, a), parallelogram(corner + c, a, b), parallelogram(corner + a, b, c),
-                   parallelogram(corner + b, c, a)}};
+  const Vec3 a = 1.6 * unit({1, 0.5, 0.3}), b = 1.2 * unit(cross(a, {0, 0, 1})), c = 1.4 * unit(cross(a, b)),
+             corner{5, -0.5, 0.3};
+  const Scene box{{parallelogram(corner, a, b), parallelogram(corner, b, c), parallelogram(corner, c, a),
+                   parallelogram(corner + c, a, b), parallelogram(corner + a, b, c), parallelogram(corner + b, c, a)}};
   for (const Scene& scene : {Scene{{ball}}, Scene{{plane}}, box})
     for (const double fov : {0.0, 0.5, 20.0, 90.0, 150.0, 170.0}) {
-      const Shot shot = fov > 0 ? Shot::perspective({}, {1, 0, 0}, fov, 48, 36) : Shot::orthographic({}, {1, 0, 0}, 5, 48, 36);
+      const Shot shot =
+          fov > 0 ? Shot::perspective({}, {1, 0, 0}, fov, 48, 36) : Shot::orthographic({}, {1, 0, 0}, 5, 48, 36);
       const HostFrame frame = render(scene, shot).frame;
       for (const auto& variant : estimators())
         for (const double radius : {1e-6, 0.05, 1.0, 1e6}) {
-          const Difference d = difference(run(frame, with_radius(variant.settings, radius)), [](std::size_t) { return 1.0; });
-          // The strokes of an exact search keep to the surface within a fifth of a pixel, which is most at the rim of a ball and at a box's edges.
+          const Difference d =
+              difference(run(frame, with_radius(variant.settings, radius)), [](std::size_t) { return 1.0; });
+          // The strokes of an exact search keep to the surface within a fifth of a pixel, which is most at the rim of a
+          // ball and at a box's edges.
           const bool exact = searches_exactly(variant.settings);
-          EXPECT_LE(d.max, !exact ? 1e-4 : scene.primitives.size() > 1 ? 0.2 : 0.01) << variant.name << " fov " << fov << " radius " << radius << " " << place(d, frame);
+          EXPECT_LE(d.max, !exact                        ? 1e-4
+                           : scene.primitives.size() > 1 ? 0.2
+                                                         : 0.01)
+              << variant.name << " fov " << fov << " radius " << radius << " " << place(d, frame);
           EXPECT_LE(d.rmse, exact ? 0.01 : 1e-5) << variant.name << " fov " << fov << " radius " << radius;
         }
     }
 }
 
-// To 89.99 degrees. From 85 on a pixel's own footprint is longer than the radius, and rounded normals (4e-5 rad) tilt the plane by part of what is left.
+// To 89.99 degrees. From 85 on a pixel's own footprint is longer than the radius, and rounded normals (4e-5 rad) tilt
+// the plane by part of what is left.
 TEST(Metamorphic, a_plane_at_a_grazing_angle_is_open) {
   for (const double tilt : {60.0, 85.0, 89.0, 89.9, 89.99})
     for (const double turn : {0.0, 37.0, 90.0, 200.0}) {
       const double t = tilt * std::numbers::pi / 180, u = turn * std::numbers::pi / 180;
-      const Plane plane{.point = {60, 0, 0}, .normal = {-std::cos(t), std::sin(t) * std::cos(u), std::sin(t) * std::sin(u)}};
+      const Plane plane{.point = {60, 0, 0},
+                        .normal = {-std::cos(t), std::sin(t) * std::cos(u), std::sin(t) * std::sin(u)}};
       for (const double fov : {0.0, 0.01, 60.0}) {
-        const Shot shot = fov > 0 ? Shot::perspective({}, {1, 0, 0}, fov, 48, 36) : Shot::orthographic({}, {1, 0, 0}, 0.01, 48, 36);
+        const Shot shot =
+            fov > 0 ? Shot::perspective({}, {1, 0, 0}, fov, 48, 36) : Shot::orthographic({}, {1, 0, 0}, 0.01, 48, 36);
         const HostFrame frame = render({{plane}}, shot).frame;
         for (const auto& variant : estimators())
           for (const double radius : {0.05, 1.0, 1e6}) {
-            const Difference d = difference(run(frame, with_radius(variant.settings, radius)), [](std::size_t) { return 1.0; });
-            EXPECT_LE(d.max, searches_exactly(variant.settings) ? 3e-3 : 1e-3) << variant.name << " tilt " << tilt << " turn " << turn << " fov " << fov << " radius " << radius << " " << place(d, frame);
+            const Difference d =
+                difference(run(frame, with_radius(variant.settings, radius)), [](std::size_t) { return 1.0; });
+            EXPECT_LE(d.max, searches_exactly(variant.settings) ? 3e-3 : 1e-3)
+                << variant.name << " tilt " << tilt << " turn " << turn << " fov " << fov << " radius " << radius << " "
+                << place(d, frame);
           }
       }
     }

@@ -1,4 +1,5 @@
-// What `alcove bench --stability` says: every estimator on every axis, and no breakdown that a run would pass over in silence.
+// What `alcove bench --stability` says: every estimator on every axis, and no breakdown that a run would pass over in
+// silence.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gmock/gmock.h>
 
@@ -30,10 +31,12 @@ TEST(StabilityReport, says_where_each_estimator_breaks_down_and_that_a_run_notes
     for (const auto& curve : axis.curves) {
       ASSERT_EQ(curve.rmse.size(), axis.points.size()) << axis.name << ", " << curve.estimator;
       for (std::size_t i = 0; i < curve.rmse.size(); i++)
-        EXPECT_TRUE(curve.rmse[i] >= 0 && curve.rmse[i] <= 1) << axis.name << " at " << axis.points[i].at << ", " << curve.estimator << ": " << curve.rmse[i];
+        EXPECT_TRUE(curve.rmse[i] >= 0 && curve.rmse[i] <= 1)
+            << axis.name << " at " << axis.points[i].at << ", " << curve.estimator << ": " << curve.rmse[i];
       for (const std::size_t i : curve.breaks) {
         breaks++;
-        EXPECT_FALSE(axis.points.at(i).notes.empty()) << axis.name << " at " << axis.points[i].at << ", " << curve.estimator << ": " << curve.rmse[i];
+        EXPECT_FALSE(axis.points.at(i).notes.empty())
+            << axis.name << " at " << axis.points[i].at << ", " << curve.estimator << ": " << curve.rmse[i];
       }
       EXPECT_TRUE(curve.said) << axis.name << ", " << curve.estimator;
     }

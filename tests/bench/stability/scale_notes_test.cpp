@@ -1,4 +1,5 @@
-// A run says where its numbers cannot carry the radius; steps of device depth are known; the report of `bench --stability` holds together.
+// A run says where its numbers cannot carry the radius; steps of device depth are known; the report of `bench
+// --stability` holds together.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,12 +8,12 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
-#include "core/run/scale_notes.h"
 #include "core/bench/stability.h"
+#include "core/run/scale_notes.h"
+#include "tests/bench/stability/cases.h"
 #include "tests/support/command_line.h"
 #include "tests/support/device.h"
 #include "tests/support/difference.h"
-#include "tests/bench/stability/cases.h"
 
 namespace alcove {
 namespace {
@@ -28,7 +29,8 @@ std::vector<std::string> said(const HostFrame& frame, double radius) {
 }
 
 TEST(ScaleNotes, are_silent_where_all_is_well) {
-  for (const double radius : {0.3, 0.6, 2.0}) EXPECT_THAT(said(room(55, 1, 0, 96, 72).frame, radius), IsEmpty()) << radius;
+  for (const double radius : {0.3, 0.6, 2.0})
+    EXPECT_THAT(said(room(55, 1, 0, 96, 72).frame, radius), IsEmpty()) << radius;
 }
 
 TEST(ScaleNotes, name_a_radius_below_a_pixel_and_one_beyond_the_picture) {
@@ -40,7 +42,8 @@ TEST(ScaleNotes, name_a_radius_below_a_pixel_and_one_beyond_the_picture) {
 TEST(ScaleNotes, name_a_radius_within_the_depths_precision) {
   const HostFrame frame = room(0.3, 1, 0, 96, 72).frame;
   EXPECT_THAT(said(frame, 0.65), IsEmpty());
-  EXPECT_THAT(said(stored(frame, Storage::half_float, 0), 0.65), ElementsAre(AllOf(HasSubstr("times the depth's precision"), HasSubstr("more bits"))));
+  EXPECT_THAT(said(stored(frame, Storage::half_float, 0), 0.65),
+              ElementsAre(AllOf(HasSubstr("times the depth's precision"), HasSubstr("more bits"))));
 }
 
 TEST(ScaleNotes, know_positions_that_are_far_from_their_origin_in_any_direction) {
@@ -81,11 +84,14 @@ TEST(DepthStep, of_floats_and_half_floats_is_none) {
 // A flat step would be taken for a wall: without it the plane is darkened everywhere.
 TEST(DepthStep, keeps_a_plane_of_16_bits_open) {
   const Plane plane{.point = {5, 0, 0}, .normal = unit({-1, 0.5, 0.7})};
-  const HostFrame frame = stored(render({{plane}}, Shot::perspective({}, {1, 0, 0}, 5, 96, 72)).frame, Storage::bits_16, 0.4);
+  const HostFrame frame =
+      stored(render({{plane}}, Shot::perspective({}, {1, 0, 0}, 5, 96, 72)).frame, Storage::bits_16, 0.4);
   HostFrame unknown = frame;
   unknown.depth_step = 0;
   const auto darkened = [](const HostFrame& f) {
-    return difference(compute_ao(recorder(), f, with_radius(plain_settings(), 0.05)).ao, [](std::size_t) { return 1.0; }).max;
+    return difference(compute_ao(recorder(), f, with_radius(plain_settings(), 0.05)).ao,
+                      [](std::size_t) { return 1.0; })
+        .max;
   };
   EXPECT_LE(darkened(frame), 1e-3);
   EXPECT_GT(darkened(unknown), 0.05);
@@ -101,7 +107,11 @@ TEST_F(CommandLine, a_run_says_that_its_radius_is_below_a_pixel) {
 /// A report of two points whose names are hostile.
 StabilityReport hostile() {
   StabilityReport report{"<script>alert(1)</script>", {{"gtao", 0.01}}, {}};
-  report.axes.push_back({"a \"quoted\" <axis>", "units & more", true, {{1, {}}, {10, {"<b>radius</b>"}}, {100, {}}}, {{"gtao", {0.01, 0.2, 0.3}, {1}, true}}});
+  report.axes.push_back({"a \"quoted\" <axis>",
+                         "units & more",
+                         true,
+                         {{1, {}}, {10, {"<b>radius</b>"}}, {100, {}}},
+                         {{"gtao", {0.01, 0.2, 0.3}, {1}, true}}});
   return report;
 }
 
@@ -114,7 +124,8 @@ TEST(StabilityReport, is_json_with_every_curve) {
 
 TEST(StabilityReport, shows_strings_as_text) {
   const std::string page = stability_page(hostile());
-  EXPECT_THAT(page, AllOf(Not(HasSubstr("<script")), Not(HasSubstr("<b>radius")), Not(HasSubstr("<axis>")), HasSubstr("&lt;script&gt;"), HasSubstr("&lt;b&gt;radius")));
+  EXPECT_THAT(page, AllOf(Not(HasSubstr("<script")), Not(HasSubstr("<b>radius")), Not(HasSubstr("<axis>")),
+                          HasSubstr("&lt;script&gt;"), HasSubstr("&lt;b&gt;radius")));
   EXPECT_THAT(page, AllOf(Not(HasSubstr("http://")), Not(HasSubstr("https://")), HasSubstr("breaks down at 10")));
 }
 
