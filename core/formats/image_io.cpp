@@ -16,6 +16,7 @@
 
 #include "core/base/error.h"
 #include "core/base/file.h"
+#include "core/formats/png.h"
 
 namespace alcove {
 namespace {
@@ -84,23 +85,6 @@ std::unique_ptr<PictureReader> open_picture(const std::string& path, const char*
   return std::make_unique<OiioReader>(path, option);
 }
 
-std::vector<char> encode_png(const std::string& name, int width, int height, int channels,
-                             std::span<const float> pixels, const std::string& made_by) {
-  std::vector<unsigned char> bytes(pixels.size());
-  std::ranges::transform(pixels, bytes.begin(), [](float x) {
-    return static_cast<unsigned char>(std::lround(255 * std::clamp(x, 0.0f, 1.0f)));
-  });
-  std::vector<unsigned char> encoded;
-  OIIO::Filesystem::IOVecOutput memory(encoded);
-  OIIO::ImageSpec spec(width, height, channels, OIIO::TypeUInt8);
-  if (!made_by.empty()) spec.attribute(kMadeBy, made_by);
-  const auto writer = OIIO::ImageOutput::create("png", &memory);
-  if (!writer || !writer->open(name, spec) || !writer->write_image(OIIO::TypeUInt8, bytes.data()) || !writer->close())
-    fail(ErrorKind::output, "{}: could not be encoded as PNG: {}", name,
-         writer ? writer->geterror() : OIIO::geterror());
-  return {encoded.begin(), encoded.end()};
-}
-
 constexpr int kLegend = 48, kMargin = 8, kStripX = 110, kStrip = 200, kStripHeight = 14;  // px
 constexpr int kLeastWidth = 560, kLargestPixel = 8;                                       // px
 // display values; neither grey nor on the ramp
@@ -166,6 +150,6 @@ std::vector<char> encode_chart(const std::string& name, const Chart& chart) {
 }  // namespace
 
 extern "C" __attribute__((visibility("default")))
-const ImageIoModule alcove_image_io_module = {open_picture, encode_png, encode_chart};
+const ImageIoModule alcove_image_io_module = {open_picture, encode_chart};
 
 }  // namespace alcove

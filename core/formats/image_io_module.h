@@ -6,7 +6,6 @@
 #pragma once
 
 #include <memory>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -18,12 +17,9 @@ namespace alcove {
 /// The functions of core/formats/image_io.h that need OpenImageIO.
 struct ImageIoModule {
   std::unique_ptr<PictureReader> (*open_picture)(const std::string& path, const char* option);
-  std::vector<char> (*encode_png)(const std::string& name, int width, int height, int channels,
-                                  std::span<const float> pixels, const std::string& made_by);
   std::vector<char> (*encode_chart)(const std::string& name, const Chart& chart);
 };
 
-inline constexpr const char* kMadeBy = "alcove";  // the keyword of a PNG's text
 inline constexpr const char* kImageIoFile = "libalcove_image_io.so";
 inline constexpr const char* kImageIoSymbol = "alcove_image_io_module";  // an ImageIoModule
 

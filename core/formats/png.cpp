@@ -1,0 +1,111 @@
+// libpng, wrapped: the only file that includes it.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/formats/png.h"
+
+#include <png.h>
+
+#include <algorithm>
+#include <cmath>
+#include <csetjmp>
+#include <fstream>
+#include <memory>
+#include <string_view>
+
+#include "core/base/error.h"
+#include "core/base/file.h"
+
+namespace alcove {
+namespace {
+
+constexpr const char* kMadeBy = "alcove";    // the keyword of the text
+constexpr std::size_t kTextWithin = 4096;    // bytes: the text stands before the pixels
+
+/// What libpng's callbacks write to: the encoded bytes, and what went wrong.
+struct Sink {
+  std::vector<char> bytes;
+  std::string error;
+};
+
+void append(png_structp png, png_bytep bytes, png_size_t count) {
+  auto& sink = *static_cast<Sink*>(png_get_io_ptr(png));
+  try {
+    sink.bytes.insert(sink.bytes.end(), bytes, bytes + count);
+  } catch (const std::bad_alloc&) {
+    png_error(png, "no memory is left for it");  // an exception must not pass through libpng
+  }
+}
+
+[[noreturn]] void keep_error(png_structp png, png_const_charp text) {
+  static_cast<Sink*>(png_get_error_ptr(png))->error = text;
+  png_longjmp(png, 1);
+}
+
+void ignore_warning(png_structp, png_const_charp) {}
+
+struct Writer {
+  png_structp png = nullptr;
+  png_infop info = nullptr;
+  ~Writer() { png_destroy_write_struct(&png, &info); }
+};
+
+/// Only plain values live here: an error jumps out of the calls below to the setjmp.
+bool write_all(png_structp png, png_infop info, int width, int height, int channels, png_bytepp rows,
+               png_textp text) {
+  if (setjmp(png_jmpbuf(png))) return false;
+  png_set_IHDR(png, info, png_uint_32(width), png_uint_32(height), 8,
+               channels == 1 ? PNG_COLOR_TYPE_GRAY : PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
+               PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+  if (text) png_set_text(png, info, text, 1);
+  png_write_info(png, info);
+  png_write_image(png, rows);
+  png_write_end(png, nullptr);
+  return true;
+}
+
+}  // namespace
+
+std::vector<char> encode_png(const std::string& name, int width, int height, int channels,
+                             std::span<const float> pixels, const std::string& made_by) {
+  std::vector<png_byte> bytes(pixels.size());
+  std::ranges::transform(pixels, bytes.begin(),
+                         [](float x) { return png_byte(std::lround(255 * std::clamp(x, 0.0f, 1.0f))); });
+  std::vector<png_bytep> rows;
+  for (int y = 0; y < height; y++) rows.push_back(&bytes[std::size_t(y) * std::size_t(width) * std::size_t(channels)]);
+
+  std::string value = made_by;
+  std::string keyword = kMadeBy;
+  png_text text{};
+  text.compression = PNG_TEXT_COMPRESSION_NONE;
+  text.key = keyword.data();
+  text.text = value.data();
+  text.text_length = value.size();
+
+  Sink sink;
+  Writer writer;
+  writer.png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &sink, keep_error, ignore_warning);
+  writer.info = writer.png ? png_create_info_struct(writer.png) : nullptr;
+  if (!writer.info) fail(ErrorKind::output, "{}: could not be encoded as PNG: libpng does not start", name);
+  png_set_write_fn(writer.png, &sink, append, nullptr);
+  if (!write_all(writer.png, writer.info, width, height, channels, rows.data(), made_by.empty() ? nullptr : &text))
+    fail(ErrorKind::output, "{}: could not be encoded as PNG: {}", name, sink.error);
+  return std::move(sink.bytes);
+}
+
+void write_png(const std::string& path, int width, int height, int channels, std::span<const float> pixels,
+               const std::string& made_by) {
+  write_whole(path, encode_png(path, width, height, channels, pixels, made_by));
+}
+
+bool is_whole_png(const std::string& path, const std::string& made_by) {
+  constexpr std::string_view kEnd("IEND\xae\x42\x60\x82");  // the last chunk, behind the four bytes of its length
+  std::ifstream file(path, std::ios::binary);
+  std::string begin(kTextWithin, '\0');
+  std::string end(kEnd.size(), '\0');
+  file.read(begin.data(), std::streamsize(begin.size()));
+  file.clear();
+  return begin.find(std::string(kMadeBy) + '\0' + made_by) != begin.npos &&
+         file.seekg(-std::streamoff(end.size()), std::ios::end) && file.read(end.data(), std::streamsize(end.size())) &&
+         end == kEnd;
+}
+
+}  // namespace alcove

@@ -1,0 +1,23 @@
+// PNG pictures out: previews, debug views, pages.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+namespace alcove {
+
+/// Encodes an 8-bit PNG from interleaved display values in [0, 1] (clamped); 1 or 3 channels, rows from the top.
+/// `name` is for the message of a failure, ErrorKind::output. `made_by` is a text that the PNG keeps; empty: none.
+std::vector<char> encode_png(const std::string& name, int width, int height, int channels,
+                             std::span<const float> pixels, const std::string& made_by = "");
+
+/// Writes what encode_png() gives, whole or not at all. Fails with ErrorKind::output.
+void write_png(const std::string& path, int width, int height, int channels, std::span<const float> pixels,
+               const std::string& made_by = "");
+
+/// Whether a PNG of write_png() has that text and was not cut short.
+bool is_whole_png(const std::string& path, const std::string& made_by);
+
+}  // namespace alcove
