@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Installs the Debian packages that are missing and builds Alcove into build/ in Release. Takes seconds when all is there.
 #   scripts/setup.sh [--only-program] [CMAKE ARGUMENTS]
+# ALCOVE_STRICT=ON makes warnings in our code errors, as continuous integration does.
 # --only-program: build/alcove, with the packages of [run] and [build] and no tests. Without it, all of packages.txt and the tests.
 # SPDX-License-Identifier: BSD-3-Clause
 set -euo pipefail
@@ -45,6 +46,6 @@ show_progress() {
 
 mkdir -p build
 echo "Configuring"
-cmake -S . -B build -G Ninja -DCMAKE_BUILD_TYPE=Release -DBUILD_TESTING="$testing" "$@" >build/build.log 2>&1 || { cat build/build.log; exit 1; }
+cmake -S . -B build -G Ninja -DCMAKE_BUILD_TYPE=Release -DBUILD_TESTING="$testing" -DALCOVE_STRICT="${ALCOVE_STRICT:-OFF}" "$@" >build/build.log 2>&1 || { cat build/build.log; exit 1; }
 echo "Compiling"
 NINJA_STATUS='[%f/%t] ' cmake --build build --target "$target" 2>&1 | tee -a build/build.log | show_progress || { cat build/build.log; exit 1; }

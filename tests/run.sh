@@ -12,7 +12,7 @@ cd "$(dirname "$0")/.."
 if [ "${1:-}" = --device ]; then
   export ALCOVE_TEST_DEVICE=${2:?--device NAME}
 fi
-scripts/setup.sh -DALCOVE_STRICT="${ALCOVE_STRICT:-OFF}"
+scripts/setup.sh
 ctest --test-dir build --output-on-failure -j "$(nproc)"
 export VK_LAYER_ENABLES=VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT
 ALCOVE_TEST_VALIDATE=1 ctest --test-dir build --output-on-failure -R '^gpu_test$'
