@@ -17,8 +17,8 @@
 namespace alcove {
 namespace {
 
-constexpr const char* kMadeBy = "alcove";    // the keyword of the text
-constexpr std::size_t kTextWithin = 4096;    // bytes: the text stands before the pixels
+constexpr const char* kMadeBy = "alcove";  // the keyword of the text
+constexpr std::size_t kTextWithin = 4096;  // bytes: the text stands before the pixels
 
 /// What libpng's callbacks write to: the encoded bytes, and what went wrong.
 struct Sink {
@@ -49,8 +49,7 @@ struct Writer {
 };
 
 /// Only plain values live here: an error jumps out of the calls below to the setjmp.
-bool write_all(png_structp png, png_infop info, int width, int height, int channels, png_bytepp rows,
-               png_textp text) {
+bool write_all(png_structp png, png_infop info, int width, int height, int channels, png_bytepp rows, png_textp text) {
   if (setjmp(png_jmpbuf(png))) return false;
   png_set_IHDR(png, info, png_uint_32(width), png_uint_32(height), 8,
                channels == 1 ? PNG_COLOR_TYPE_GRAY : PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,

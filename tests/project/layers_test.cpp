@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <filesystem>
 #include <functional>
@@ -88,6 +89,7 @@ TEST(Layers, only_one_file_includes_each_library) {
             Names{});
   EXPECT_EQ(matches(product(), R"(#include [<"]OpenImageIO)", unless("core/formats/image_io.cpp")), Names{});
   EXPECT_EQ(matches(product(), R"(#include [<"]OpenColorIO)", unless("core/formats/color.cpp")), Names{});
+  EXPECT_EQ(matches(product(), R"(#include [<"]png\.h)", unless("core/formats/png.cpp")), Names{});
 }
 
 /// The architecture: what each room may include besides itself. README.md shows the same table.
@@ -123,6 +125,40 @@ TEST(Layers, rooms_include_only_what_the_table_allows) {
       EXPECT_THAT(kRooms.at(room), testing::Contains(other)) << file.name << ": " << line;
     }
   }
+}
+
+/// The table of rooms as README.md shows it, with the sentence that stands there for each room.
+std::string rooms_markdown() {
+  static const std::vector<std::pair<const char*, const char*>> kAnswers = {
+      {"kernels",
+       "What does the device compute? One `.comp` and one `.h` per pass, shared by GLSL and C++; mathematics "
+       "without bindings in `.glsl`."},
+      {"core/base", "What does everything stand on? Errors, texts, files, settings."},
+      {"core/gpu", "What is the device? Memory, kernels checked against their own SPIR-V, recording."},
+      {"core/formats", "How do the bytes of a file become planes, and back?"},
+      {"core/frame", "What do the channels of a frame mean? Camera, depth, normals, evidence."},
+      {"core/chain", "Which passes run, and in which order?"},
+      {"core/run", "How do many frames go from files to files? Plan, lanes, tiles, resuming, reports."},
+      {"core/reference", "What is right? The estimators again, slowly, in double precision."},
+      {"core/measure", "How far off is a result?"},
+      {"core/inspect", "What is in this file?"},
+      {"core/bench", "How fast and how accurate are we?"},
+      {"cli", "What did the user type, and what does the terminal show?"},
+  };
+  std::string text = "| room | its question | may include |\n|---|---|---|\n";
+  for (const auto& [room, answer] : kAnswers) {
+    Names allowed = kRooms.at(room);
+    for (auto& name : allowed) name = name.substr(name.find('/') + 1);
+    text += fmt::format("| `{}` | {} | {} |\n", room, answer,
+                        allowed.empty() ? "&ndash;" : fmt::format("{}", fmt::join(allowed, ", ")));
+  }
+  return text;
+}
+
+TEST(Readme, the_table_of_rooms_is_the_one_that_is_checked) {
+  const std::string readme = read_bytes(ALCOVE_SOURCE_DIR "/README.md");
+  EXPECT_THAT(readme, HasSubstr("<!-- rooms -->\n" + rooms_markdown() + "<!-- /rooms -->"));
+  for (const auto& [room, allowed] : kRooms) EXPECT_THAT(rooms_markdown(), HasSubstr("| `" + room + "` |"));
 }
 
 TEST(Layers, kernels_include_no_library) {
