@@ -76,9 +76,9 @@ BatchTimes time_batch(Settings settings, int frames) {
 
   times.files_s = seconds_of(report.at_once, frames, [&](int frame) {
     FrameSource source = open_frame(settings, frame);
-    std::vector<float> depth(source.depth.size() * source.data.pixels()),
-        normal(source.normal.size() * source.data.pixels());
-    read_planes(source, {{&source.depth, depth.data()}, {&source.normal, normal.data()}});
+    std::vector<float> depth(source[RawPlane::depth].size() * source.data.pixels()),
+        normal(source[RawPlane::normal].size() * source.data.pixels());
+    read_planes(source, {{&source[RawPlane::depth], depth.data()}, {&source[RawPlane::normal], normal.data()}});
     Settings one = settings;
     one.output.output = folder.file(frame);
     FrameWriter writer(source, one, {report.options, report.device});

@@ -5,21 +5,29 @@
 #include <algorithm>
 
 #include "core/base/error.h"
+#include "core/base/estimator_facts.h"
 #include "core/base/text.h"
-#include "core/chain/chain.h"
 
 namespace alcove {
+namespace {
+
+bool is_of_visibility(const DebugView* view) {
+  return view->source == DebugSource::raw_ao || view->source == DebugSource::denoised_ao ||
+         view->source == DebugSource::tiles;
+}
+
+}  // namespace
 
 std::span<const Aov> aov_table() {
   static const std::vector<Aov> rows{
-      {"ao", {"Y"}, &FrameOutputs::ao},
-      {"ao-scales", {"scale1.Y"}, &FrameOutputs::scales},
-      {"normal", {"normal.X", "normal.Y", "normal.Z"}, &FrameOutputs::normal},
-      {"bent-normal", {"bent.X", "bent.Y", "bent.Z"}, &FrameOutputs::bent_normal},
-      {"depth", {"Z"}, &FrameOutputs::depth, true},
-      {"confidence", {"confidence.Y"}, &FrameOutputs::confidence},
-      {"error", {"error.Y"}, &FrameOutputs::error},
-      {"specular-occlusion", {"specular.Y"}, &FrameOutputs::specular_occlusion},
+      {"ao", {"Y"}, &FrameOutputs::ao, AovSource::visibility},
+      {"ao-scales", {"scale1.Y"}, &FrameOutputs::scales, AovSource::visibility},
+      {"normal", {"normal.X", "normal.Y", "normal.Z"}, &FrameOutputs::normal, AovSource::geometry},
+      {"bent-normal", {"bent.X", "bent.Y", "bent.Z"}, &FrameOutputs::bent_normal, AovSource::open_directions},
+      {"depth", {"Z"}, &FrameOutputs::depth, AovSource::geometry, true},
+      {"confidence", {"confidence.Y"}, &FrameOutputs::confidence, AovSource::visibility},
+      {"error", {"error.Y"}, &FrameOutputs::error, AovSource::visibility},
+      {"specular-occlusion", {"specular.Y"}, &FrameOutputs::specular_occlusion, AovSource::open_directions},
   };
   return rows;
 }
@@ -53,9 +61,35 @@ std::vector<std::string> channels_of(const Aov& aov, std::size_t planes) {
   return channels;
 }
 
-bool wants(const OutputSettings& settings, gpu::Buffer* FrameOutputs::*planes) {
-  const auto aovs = aovs_of(settings);
+bool wants(const OutputSettings& settings, gpu::Buffer* FrameOutputs::*planes) { return Wanted(settings).has(planes); }
+
+Wanted::Wanted(const OutputSettings& settings)
+    : aovs(aovs_of(settings)),
+      debug_views(debug_views_of(settings)),
+      multi_bounce(settings.multi_bounce),
+      fog_density(settings.fog_density) {
+  const auto is_at_least = [](AovSource source) { return [source](const Aov& aov) { return aov.source >= source; }; };
+  open_directions = std::ranges::any_of(aovs, is_at_least(AovSource::open_directions));
+  visibility = std::ranges::any_of(aovs, is_at_least(AovSource::visibility)) || multi_bounce ||
+               !settings.composite.empty() || !settings.preview.empty() ||
+               std::ranges::any_of(debug_views, is_of_visibility);
+}
+
+bool Wanted::has(gpu::Buffer* FrameOutputs::*planes) const {
   return std::ranges::find(aovs, planes, &Aov::planes) != aovs.end();
+}
+
+bool Wanted::is_only_visibility() const {
+  const auto is_ao = [](const Aov& aov) {
+    return aov.planes == &FrameOutputs::ao || aov.planes == &FrameOutputs::scales;
+  };
+  return visibility && std::ranges::all_of(aovs, is_ao) && !multi_bounce && debug_views.empty();
+}
+
+bool needs_ao(const OutputSettings& output) { return Wanted(output).visibility; }
+
+bool needs_bent(const EstimatorSettings& settings, const Wanted& wanted) {
+  return wanted.open_directions && has_bent_normals(settings);
 }
 
 }  // namespace alcove

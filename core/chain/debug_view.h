@@ -37,9 +37,4 @@ std::vector<const DebugView*> debug_views_of(const OutputSettings& settings);
 /// Where the picture of a view goes: beside the AO, ao.exr -> ao.raw-depth.png.
 std::string debug_path(const OutputSettings& settings, const DebugView& view);
 
-/// Writes the picture, whole or not at all. `values`: a number a pixel, kSkyDepth for sky. made_by: see encode_png().
-/// Fails with ErrorKind::output.
-void write_debug_view(const std::string& path, const DebugView& view, int width, int height,
-                      std::span<const float> values, const std::string& made_by);
-
 }  // namespace alcove

@@ -52,14 +52,14 @@ class Settlement {
       settle_position();
     else
       settle_depth();
-    if (source_.normal.empty()) return;
+    if (source_[RawPlane::normal].empty()) return;
     settle_encoding();
     settle_space();
   }
 
  private:
-  const std::string& depth_path() const { return source_.files[source_.depth[0].file].path(); }
-  const std::string& normal_path() const { return source_.files[source_.normal[0].file].path(); }
+  const std::string& depth_path() const { return source_.depth_path(); }
+  const std::string& normal_path() const { return source_.files[source_[RawPlane::normal][0].file].path(); }
 
   void guess(const std::string& what, const std::string& chosen, const std::string& why, const std::string& option,
              bool unusual) {
@@ -170,7 +170,7 @@ class Settlement {
 
   /// Of what the distances are when the depth is read as it is said.
   std::vector<DepthScore> scores_as_said() const {
-    return score_depth(planar_depths(depth_, depth_map_of(source_, settings_), view_), view_, settings_.sky,
+    return score_depth(planar_depths(depth_, depth_map_of(source_), view_), view_, settings_.sky,
                        2 * depth_rounding(source_));
   }
 
@@ -244,7 +244,7 @@ class Settlement {
   }
 
   std::vector<NormalScore> scores_of(NormalEncoding encoding, bool unorm) const {
-    return score_normals(normal_, encoding, unorm, depth_, depth_map_of(source_, settings_), source_.camera, view_);
+    return score_normals(normal_, encoding, unorm, depth_, depth_map_of(source_), source_.camera, view_);
   }
 
   static bool agrees(const NormalScore& score) {
@@ -253,13 +253,15 @@ class Settlement {
 
   void settle_encoding() {
     const bool open = source_.normal_encoding_open;
-    const NormalStatistics n = normal_statistics(normal_, depth_, depth_map_of(source_, settings_), kSparse);
+    const NormalStatistics n = normal_statistics(normal_, depth_, depth_map_of(source_), kSparse);
     if (!open) doubt_encoding(n);
     const bool in_unit_range = n.count && n.least >= 0 && n.most <= 1;
     const NormalEncoding said = source_.normal_encoding;
-    std::string why = source_.normal.size() == 2 ? fmt::format("all in {:.2g} to {:.2g}", n.least, n.most)
-                                                 : fmt::format("of unit length on {:.0f} %", 100 * n.unit_share);
-    if (said == NormalEncoding::octahedral || said == NormalEncoding::spheremap || source_.normal.size() == 2) {
+    std::string why = source_[RawPlane::normal].size() == 2
+                          ? fmt::format("all in {:.2g} to {:.2g}", n.least, n.most)
+                          : fmt::format("of unit length on {:.0f} %", 100 * n.unit_share);
+    if (said == NormalEncoding::octahedral || said == NormalEncoding::spheremap ||
+        source_[RawPlane::normal].size() == 2) {
       source_.normal_unorm =
           said == NormalEncoding::unorm || (in_unit_range && (open || said != NormalEncoding::signed_float));
     } else {
@@ -269,7 +271,7 @@ class Settlement {
         why = fmt::format("all in 0 to 1, and 2 n - 1 is of unit length on {:.0f} %", 100 * n.unorm_unit_share);
       source_.normal_unorm = is_unorm || said == NormalEncoding::unorm;
     }
-    const bool tells = source_.normal.size() == 3 && std::max(n.unit_share, n.unorm_unit_share) > kUnit;
+    const bool tells = source_[RawPlane::normal].size() == 3 && std::max(n.unit_share, n.unorm_unit_share) > kUnit;
     const bool differs = !tells && compare_encodings(in_unit_range, why);
     if (open)
       guess("normal encoding", name_of(source_.normal_encoding, source_.normal_unorm), why, "--normal-encoding",
@@ -305,7 +307,7 @@ class Settlement {
   /// Vectors by their lengths, whatever they are taken for.
   void doubt_encoding(const NormalStatistics& n) {
     constexpr double kFew = 0.5;  // of the normals
-    if (source_.normal.size() != 3) return;
+    if (source_[RawPlane::normal].size() != 3) return;
     const bool is_signed =
         n.unit_share > kUnit && n.unorm_unit_share<kFew, is_unorm = n.unorm_unit_share> kUnit && n.unit_share < kFew;
     if (is_signed && source_.normal_encoding != NormalEncoding::signed_float)
@@ -392,7 +394,7 @@ class Settlement {
 
 /// Depth as a grey picture has no more than 256 distances.
 void refuse_8_bits(const FrameSource& source, std::span<const float> depth) {
-  if (source.depth.size() != 1) return;
+  if (source[RawPlane::depth].size() != 1) return;
   constexpr std::size_t kLeastLevels = 16;  // fewer may be a few walls that happen to lie there
   std::set<double> levels;
   for (std::size_t i = 0; i < depth.size(); i += kSparse) {
@@ -403,7 +405,7 @@ void refuse_8_bits(const FrameSource& source, std::span<const float> depth) {
   if (levels.size() >= kLeastLevels)
     fail(ErrorKind::input,
          "{}: {} holds only values of 8 bits, too few distances for AO: save depth as EXR, or as DDS (--depth)",
-         source.files[source.depth[0].file].path(), source.depth[0].channel);
+         source.depth_path(), source[RawPlane::depth][0].channel);
 }
 
 /// Half floats step by a 1024th of the power of two below the value.
@@ -419,7 +421,7 @@ void note_half(FrameSource& source, std::span<const float> depth) {
   source.suspicious.push_back(
       fmt::format("{} is stored as half float: at its median {:.4g} it changes in steps of {:.2g}, which AO shows as "
                   "bands; write it as float",
-                  source.depth[0].channel, *middle, step));
+                  source[RawPlane::depth][0].channel, *middle, step));
 }
 
 }  // namespace
@@ -435,49 +437,27 @@ void settle(FrameSource& source, const InputSettings& settings, std::span<const 
   source.settled = true;
 }
 
-bool has_half_depth(const FrameSource& source) {
-  const auto& channels = source.files[source.depth[0].file].parts()[std::size_t(source.depth[0].part)].channels;
-  const auto channel = std::ranges::find(channels, source.depth[0].channel, &ExrChannel::name);
-  return channel != channels.end() && channel->type == SampleType::half_float;
-}
-
-double depth_rounding(const FrameSource& source) { return has_half_depth(source) ? kHalfRounding : kFloatRounding; }
+double depth_rounding(const Reading& reading) { return reading.depth_is_half ? kHalfRounding : kFloatRounding; }
 
 void settle_by_rows(FrameSource& source, const InputSettings& settings) {
   const Window data = source.data, all = source.file_data;
   if (std::size_t(all.width) > kEvidencePixels)
-    fail(ErrorKind::device, "{}: rows of {} pixels are more than Alcove takes on any --device",
-         source.files[source.depth[0].file].path(), all.width);
+    fail(ErrorKind::device, "{}: rows of {} pixels are more than Alcove takes on any --device", source.depth_path(),
+         all.width);
   const int rows = int(std::clamp<std::size_t>(kEvidencePixels / std::size_t(all.width), 1, std::size_t(all.height)));
   source.data = {all.x, all.y + (all.height - rows) / 2, all.width, rows};
-  std::vector<float> depth(source.depth.size() * source.data.pixels()),
-      normal(source.normal.size() * source.data.pixels());
-  read_planes(source, {{&source.depth, depth.data()}, {&source.normal, normal.data()}});
+  std::vector<float> depth(source[RawPlane::depth].size() * source.data.pixels()),
+      normal(source[RawPlane::normal].size() * source.data.pixels());
+  read_planes(source, {{&source[RawPlane::depth], depth.data()}, {&source[RawPlane::normal], normal.data()}});
   settle(source, settings, depth, normal);
   source.data = data;
 }
 
 bool settle_like(FrameSource& source, const FrameSource& settled) {
-  if (source.depth.size() != settled.depth.size() || source.normal.size() != settled.normal.size()) return false;
-  source.depth_kind = settled.depth_kind;
-  source.depth_range.reversed = settled.depth_range.reversed;
-  source.depth_range.negative = settled.depth_range.negative;
-  source.position_space = settled.position_space;
-  source.normal_space = settled.normal_space;
-  source.normal_encoding = settled.normal_encoding;
-  source.normal_unorm = settled.normal_unorm;
-  source.flip_normal = settled.flip_normal;
-  source.depth_step = settled.depth_step;
+  for (const RawPlane plane : {RawPlane::depth, RawPlane::normal})
+    if (source[plane].size() != settled[plane].size()) return false;
+  read_like(source, settled);
   return source.settled = true;
-}
-
-DepthMap depth_map_of(const FrameSource& source, const InputSettings& settings) {
-  constexpr double kLargestHalf = 65504;  // where half floats end, they mean what is beyond
-  const bool is_distance = source.depth_kind == DepthKind::planar || source.depth_kind == DepthKind::ray;
-  const double sky =
-      is_distance && depth_rounding(source) == kHalfRounding ? std::min(settings.sky, kLargestHalf) : settings.sky;
-  return depth_map(source.depth_kind, source.depth_range, source.position_space, source.camera, settings.depth_scale,
-                   sky);
 }
 
 }  // namespace alcove

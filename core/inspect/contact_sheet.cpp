@@ -9,7 +9,7 @@
 
 #include "core/base/file.h"
 #include "core/chain/chain.h"
-#include "core/chain/host_frame.h"
+#include "core/chain/compute.h"
 #include "core/formats/image_io.h"
 #include "core/frame/evidence.h"
 #include "core/run/plan.h"

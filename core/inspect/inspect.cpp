@@ -113,9 +113,8 @@ void add_planar(Json& depth, std::span<const float> raw, const std::vector<float
       depth["scores"].push_back({{"kind", alcove::name_of(score.kind)}, {"straight", score.straight}});
 }
 
-Json normals_json(std::span<const float> normal, std::span<const float> raw, const FrameSource& source,
-                  const InputSettings& settings) {
-  const NormalStatistics s = normal_statistics(normal, raw, depth_map_of(source, settings));
+Json normals_json(std::span<const float> normal, std::span<const float> raw, const FrameSource& source) {
+  const NormalStatistics s = normal_statistics(normal, raw, depth_map_of(source));
   Json json = {
       {"space", name_of(source.normal_space)},
       {"encoding", name_of(source)},
@@ -126,8 +125,8 @@ Json normals_json(std::span<const float> normal, std::span<const float> raw, con
       {"most", s.most},
       {"scores", Json::array()}};
   const View view = view_of(source.camera, source.data, source.display);
-  for (const auto& score : score_normals(normal, source.normal_encoding, source.normal_unorm, raw,
-                                         depth_map_of(source, settings), source.camera, view)) {
+  for (const auto& score : score_normals(normal, source.normal_encoding, source.normal_unorm, raw, depth_map_of(source),
+                                         source.camera, view)) {
     const Json entry = {{"space", name_of(score.space)},
                         {"flips", to_string(score.flips)},
                         {"agreement", score.agreement},
@@ -176,7 +175,7 @@ std::string command_of(const FrameSource& source, const InputSettings& s, const 
   if (s.depth_range.log_constant != 1) add_number("--log-constant", s.depth_range.log_constant);
   if (s.depth_scale != 1) add_number("--depth-scale", s.depth_scale);
   if (s.sky != 1e9) add_number("--sky", s.sky);
-  if (!source.normal.empty()) {
+  if (!source[RawPlane::normal].empty()) {
     if (has_camera || s.normal_space != NormalSpace::automatic) add("--normal-space", name_of(source.normal_space));
     add("--normal-encoding", name_of(source));
     if (to_string(source.flip_normal) != "none") add("--flip-normal", to_string(source.flip_normal));
@@ -298,18 +297,18 @@ Inspection inspect_frame(const InputSettings& settings, int frame) {
     return finish();
   }
   json["source"] = {{"name", source.rules->name}, {"by", source.rules_by}};
-  add_aov(json["aovs"], source.depth.size() == 3 ? "position" : "depth", source, source.depth,
+  add_aov(json["aovs"], source[RawPlane::depth].size() == 3 ? "position" : "depth", source, source[RawPlane::depth],
           !settings.depth_channel.empty() || !settings.position_channels.empty());
-  add_aov(json["aovs"], "normal", source, source.normal, !settings.normal_channels.empty());
-  if (source.normal.empty())
+  add_aov(json["aovs"], "normal", source, source[RawPlane::normal], !settings.normal_channels.empty());
+  if (source[RawPlane::normal].empty())
     json["missing"].push_back(
         "normals: they would be reconstructed from depth; --normal or --normal-channels names them");
   if (has_camera) json["camera"] = camera_json(source, settings);
-  require_host_room(source.files[source.depth[0].file].path(), source.data);
-  std::vector<float> depth(source.depth.size() * source.data.pixels()),
-      normal(source.normal.size() * source.data.pixels());
+  require_host_room(source.depth_path(), source.data);
+  std::vector<float> depth(source[RawPlane::depth].size() * source.data.pixels()),
+      normal(source[RawPlane::normal].size() * source.data.pixels());
   try {
-    read_planes(source, {{&source.depth, depth.data()}, {&source.normal, normal.data()}});
+    read_planes(source, {{&source[RawPlane::depth], depth.data()}, {&source[RawPlane::normal], normal.data()}});
   } catch (const Error& error) {
     json["suspicious"].push_back(error.what());
     Inspection inspection = finish();
@@ -325,15 +324,14 @@ Inspection inspect_frame(const InputSettings& settings, int frame) {
       if (settings.normal_space == NormalSpace::automatic) source.normal_space = source.usual_normal_space;
     }
     json["depth"]["kind"] = alcove::name_of(source.depth_kind);
-    const auto planar =
-        planar_depths(depth, depth_map_of(source, reading), view_of(source.camera, source.data, source.display));
+    const auto planar = planar_depths(depth, depth_map_of(source), view_of(source.camera, source.data, source.display));
     add_planar(json["depth"], depth, planar, source, reading);
-    if (!normal.empty()) json["normals"] = normals_json(normal, depth, source, reading);
+    if (!normal.empty()) json["normals"] = normals_json(normal, depth, source);
     if (!normal.empty() && !has_camera)
       json["normals"]["scores"].clear(), json["normals"].erase("agreement"), json["normals"].erase("angle"),
           json["normals"].erase("facing");
     json["suspicious"] = source.suspicious;
-    for (const auto& finding : findings(source, reading, depth, normal)) json["suspicious"].push_back(finding);
+    for (const auto& finding : findings(source, depth, normal)) json["suspicious"].push_back(finding);
     json["command"] = command_of(source, settings, json["depth"], has_camera);
   } catch (const Error& error) {
     json["missing"].push_back(error.what());
@@ -345,9 +343,9 @@ Inspection inspect_frame(const InputSettings& settings, int frame) {
   json["notes"] = source.notes;
   try {
     const FrameSource beauty = find_frame(reading, true, frame);
-    add_aov(json["aovs"], "beauty", beauty, beauty.beauty, !settings.beauty_channels.empty());
-    add_aov(json["aovs"], "indirect", beauty, beauty.indirect, false);
-    add_aov(json["aovs"], "diffuse_color", beauty, beauty.diffuse_color, false);
+    add_aov(json["aovs"], "beauty", beauty, beauty[RawPlane::beauty], !settings.beauty_channels.empty());
+    add_aov(json["aovs"], "indirect", beauty, beauty[RawPlane::indirect], false);
+    add_aov(json["aovs"], "diffuse_color", beauty, beauty[RawPlane::diffuse_color], false);
   } catch (const Error&) {
     json["missing"].push_back("beauty: only --composite needs one; --beauty or --beauty-channels names it");
   }

@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "core/chain/host_frame.h"
+#include "core/frame/host_frame.h"
 
 namespace alcove {
 

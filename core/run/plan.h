@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -13,7 +14,7 @@ namespace alcove {
 /// A file that the settings name, for every frame or with a place for the frame number.
 struct NamedPath {
   const char* option;
-  std::string& (*of)(Settings&);
+  std::function<std::string&(Settings&)> of;
   bool is_output;
 };
 

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/estimator_facts.h"
+
 namespace alcove {
 namespace {
 
@@ -18,7 +20,7 @@ void DepthSample::add(const FrameInputs& inputs) {
   view_ = inputs.view;
   precision_ = inputs.depth_precision;
   const std::size_t pixels = std::size_t(view_.size.x) * std::size_t(view_.size.y), step = pixels / kSampled + 1;
-  const auto raw = inputs.depth->as<float>();
+  const auto raw = inputs[RawPlane::depth]->as<float>();
   for (std::size_t i = step / 2; i < pixels; i += step) {
     std::array<double, 3> values{};
     for (std::size_t axis = 0; axis < 3 && i + axis * pixels < raw.size(); axis++)

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/chain/passes.h"
+#include "core/chain/frame_inputs.h"
 
 namespace alcove {
 

@@ -99,9 +99,9 @@ class GBuffer : public testing::Test {
   void expect_error(const Names& words, bool with_beauty = false) const {
     try {
       const FrameSource source = find(with_beauty);
-      ADD_FAILURE() << "found depth " << testing::PrintToString(names_of(source.depth)) << ", normal "
-                    << testing::PrintToString(names_of(source.normal)) << "; expected an error that tells of "
-                    << testing::PrintToString(words);
+      ADD_FAILURE() << "found depth " << testing::PrintToString(names_of(source[RawPlane::depth])) << ", normal "
+                    << testing::PrintToString(names_of(source[RawPlane::normal]))
+                    << "; expected an error that tells of " << testing::PrintToString(words);
     } catch (const Error& error) {
       EXPECT_EQ(error.kind(), ErrorKind::input) << error.what();
       EXPECT_THAT(error.what(), Not(HasSubstr("\n")));
@@ -179,13 +179,14 @@ TEST_F(GBuffer, a_frame_as_blender_writes_it) {
     all.push_back(std::string("ViewLayer.") + name);
   write(all);
   const FrameSource source = find(true);
-  EXPECT_THAT(names_of(source.depth), ElementsAre("ViewLayer.Depth.Z"));
-  EXPECT_THAT(names_of(source.normal), ElementsAre("ViewLayer.Normal.X", "ViewLayer.Normal.Y", "ViewLayer.Normal.Z"));
-  EXPECT_THAT(names_of(source.beauty), ElementsAre("ViewLayer.Combined.R", "ViewLayer.Combined.G",
-                                                   "ViewLayer.Combined.B", "ViewLayer.Combined.A"));
-  EXPECT_THAT(names_of(source.indirect),
+  EXPECT_THAT(names_of(source[RawPlane::depth]), ElementsAre("ViewLayer.Depth.Z"));
+  EXPECT_THAT(names_of(source[RawPlane::normal]),
+              ElementsAre("ViewLayer.Normal.X", "ViewLayer.Normal.Y", "ViewLayer.Normal.Z"));
+  EXPECT_THAT(names_of(source[RawPlane::beauty]), ElementsAre("ViewLayer.Combined.R", "ViewLayer.Combined.G",
+                                                              "ViewLayer.Combined.B", "ViewLayer.Combined.A"));
+  EXPECT_THAT(names_of(source[RawPlane::indirect]),
               ElementsAre("ViewLayer.DiffInd.R", "ViewLayer.DiffInd.G", "ViewLayer.DiffInd.B"));
-  EXPECT_THAT(names_of(source.diffuse_color),
+  EXPECT_THAT(names_of(source[RawPlane::diffuse_color]),
               ElementsAre("ViewLayer.DiffCol.R", "ViewLayer.DiffCol.G", "ViewLayer.DiffCol.B"));
 }
 
@@ -195,9 +196,10 @@ TEST_F(GBuffer, blender_5_calls_the_parts_by_full_words) {
     for (const char* c : {".R", ".G", ".B"}) all.push_back(std::string("ViewLayer.") + layer + c);
   write(all);
   const FrameSource source = find(true);
-  EXPECT_THAT(names_of(source.indirect), ElementsAre("ViewLayer.Diffuse Indirect.R", "ViewLayer.Diffuse Indirect.G",
-                                                     "ViewLayer.Diffuse Indirect.B"));
-  EXPECT_THAT(names_of(source.diffuse_color),
+  EXPECT_THAT(
+      names_of(source[RawPlane::indirect]),
+      ElementsAre("ViewLayer.Diffuse Indirect.R", "ViewLayer.Diffuse Indirect.G", "ViewLayer.Diffuse Indirect.B"));
+  EXPECT_THAT(names_of(source[RawPlane::diffuse_color]),
               ElementsAre("ViewLayer.Diffuse Color.R", "ViewLayer.Diffuse Color.G", "ViewLayer.Diffuse Color.B"));
 }
 
@@ -401,9 +403,9 @@ TEST_F(GBuffer, part_names_are_layers) {
   write(std::vector<Part>{
       {"rgba", {"A", "B", "G", "R"}}, {"depth", {"Z"}}, {"N", {"X", "Y", "Z"}}, {"albedo", {"B", "G", "R"}}});
   const FrameSource source = find(true);
-  EXPECT_THAT(names_of(source.depth), ElementsAre("1:Z"));
-  EXPECT_THAT(names_of(source.normal), ElementsAre("2:X", "2:Y", "2:Z"));
-  EXPECT_THAT(names_of(source.beauty), ElementsAre("R", "G", "B", "A"));
+  EXPECT_THAT(names_of(source[RawPlane::depth]), ElementsAre("1:Z"));
+  EXPECT_THAT(names_of(source[RawPlane::normal]), ElementsAre("2:X", "2:Y", "2:Z"));
+  EXPECT_THAT(names_of(source[RawPlane::beauty]), ElementsAre("R", "G", "B", "A"));
 }
 
 TEST_F(GBuffer, parts_may_repeat_their_name_in_the_channels) {
@@ -437,7 +439,9 @@ TEST_F(GBuffer, planes_of_several_parts_are_read_each_from_its_own) {
   write(std::vector<Part>{{"rgba", {"B", "G", "R"}}, {"depth", {"Z"}}, {"N", {"X", "Y", "Z"}}});
   FrameSource source = find(true);
   std::vector<float> z(kPixels), n(3 * kPixels), rgb(3 * kPixels);
-  read_planes(source, {{&source.depth, z.data()}, {&source.normal, n.data()}, {&source.beauty, rgb.data()}});
+  read_planes(source, {{&source[RawPlane::depth], z.data()},
+                       {&source[RawPlane::normal], n.data()},
+                       {&source[RawPlane::beauty], rgb.data()}});
   EXPECT_THAT(z, testing::Each(value_of(1, 0)));
   for (std::size_t i = 0; i < n.size(); i++) {
     EXPECT_EQ(n[i], value_of(2, i / kPixels)) << i;
@@ -455,11 +459,11 @@ TEST_F(GBuffer, every_aov_may_have_a_file_of_its_own) {
     write_parts(settings.normal, {{"", {"R", "G", "B"}}});
     write_parts(settings.beauty, {{"", {"R", "G", "B", "A"}}});
     FrameSource source = find(true);
-    EXPECT_THAT(names_of(source.depth), ElementsAre(channels[0]));
-    EXPECT_THAT(names_of(source.normal), ElementsAre("R", "G", "B"));
-    EXPECT_THAT(names_of(source.beauty), ElementsAre("R", "G", "B", "A"));
+    EXPECT_THAT(names_of(source[RawPlane::depth]), ElementsAre(channels[0]));
+    EXPECT_THAT(names_of(source[RawPlane::normal]), ElementsAre("R", "G", "B"));
+    EXPECT_THAT(names_of(source[RawPlane::beauty]), ElementsAre("R", "G", "B", "A"));
     std::vector<float> n(3 * kPixels);
-    read_planes(source, {{&source.normal, n.data()}});
+    read_planes(source, {{&source[RawPlane::normal], n.data()}});
     EXPECT_EQ(n, (std::vector<float>{1, 1, 1, 1, 1, 1, 2, 2, 2, 2, 2, 2, 3, 3, 3, 3, 3, 3}));
   }
   write_parts(settings.normal, {{"", {"X", "Y", "Z"}}});
