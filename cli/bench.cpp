@@ -12,7 +12,7 @@
 #include "cli/print.h"
 #include "core/base/error.h"
 #include "core/base/file.h"
-#include "core/run/batch.h"
+#include "core/run/check.h"
 
 namespace alcove {
 namespace {

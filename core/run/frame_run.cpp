@@ -8,7 +8,7 @@
 
 #include "core/base/error.h"
 #include "core/frame/settle.h"
-#include "core/run/batch.h"
+#include "core/run/digest.h"
 #include "core/run/resume.h"
 #include "core/run/scale_notes.h"
 

@@ -14,7 +14,7 @@
 #include "cli/options.h"
 #include "core/base/error.h"
 #include "core/formats/exr.h"
-#include "core/run/batch.h"
+#include "core/run/digest.h"
 #include "tests/support/command_line.h"
 #include "tests/support/exr_header.h"
 
