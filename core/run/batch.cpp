@@ -161,8 +161,7 @@ class Batch {
               gpu_count = frames_at_once(settled, settings_, frames.size(), threads + kSpareLanes);
     share_cores(threads, count, settings_.device.threads > 0);
     std::optional<DisplayTransform> transform;
-    if (!settings_.output.preview.empty() && !settings_.output.composite.empty())
-      transform.emplace(settings_.output.ocio);
+    if (shows_composite(settings_.output)) transform.emplace(settings_.output.ocio);
     RunContext run{
         plan_,      settled ? &*settled : nullptr, transform ? &*transform : nullptr, {report_.options, ""}, {},
         watch_.stop};

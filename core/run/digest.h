@@ -8,8 +8,11 @@
 
 namespace alcove {
 
-/// 16 hexadecimal digits that change with every setting that changes the result, and with what the camera file says.
-/// Fails as reading that file does.
+/// 16 hexadecimal digits that change with every setting that changes the result, as the table of options says, and with
+/// what the camera file and the configuration of the display say. Fails as reading those files does.
 std::string options_digest(const Settings& settings);
+
+/// Whether the preview is the composite as a display shows it, and not the AO as data.
+bool shows_composite(const OutputSettings& output);
 
 }  // namespace alcove
