@@ -8,7 +8,7 @@
 
 namespace alcove {
 
-/// The file that DisplayTransform reads: `config`, else what the OCIO variable names; "": none, the built-in one serves.
+/// The file that DisplayTransform reads: `config`, else what the OCIO variable names; "" where the built-in one serves.
 std::string display_config_file(const std::string& config);
 
 /// The default view of the default display of a configuration: `config` (a file), else what the OCIO variable names,

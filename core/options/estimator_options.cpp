@@ -65,14 +65,15 @@ void read_kernel(const std::string& text, std::vector<double>& kernel) {
 void add_radius_rows(std::vector<OptionRow>& rows, EstimatorSettings& s) {
   OptionGroup pixels(rows, "Estimator", Effect::pixels);
   pixels.choice("--estimator", s.estimator,
-                "gtao: horizons; bitmask: what is blocked between front and back of every occluder; hbao: horizons, not "
-                "cosine weighted; crytek: samples in the hemisphere");
+                "gtao: horizons; bitmask: what is blocked between front and back of every occluder; hbao: horizons, "
+                "not cosine weighted; crytek: samples in the hemisphere");
   const Range reach = above_to(0, 1e18);
   pixels
-      .add({"--radius", "NUMBER", "scene units", reach.text,
-            "how far occluders reach; must be given, here or in a preset. May repeat: the AO is the mean of all "
-            "scales, see ao-scales"},
-           [&s] { return words_of_radii(s); }, [&s, reach](const Words& words) { read_radii(words, reach, s); })
+      .add(
+          {"--radius", "NUMBER", "scene units", reach.text,
+           "how far occluders reach; must be given, here or in a preset. May repeat: the AO is the mean of all "
+           "scales, see ao-scales"},
+          [&s] { return words_of_radii(s); }, [&s, reach](const Words& words) { read_radii(words, reach, s); })
       .repeats = true;
   pixels.choice("--falloff", s.falloff, "how a hit's weight fades towards the radius; none: all within it block fully");
   pixels.number("--falloff-start", s.falloff_start, "of the radius", below_and_at_least(0, 1),
@@ -103,36 +104,37 @@ void add_search_rows(std::vector<OptionRow>& rows, EstimatorSettings& s) {
   pixels.choice("--range-check", s.range_check,
                 "for crytek, by the depth dz between receiver and hit; none: every hit counts fully; ratio: "
                 "smoothstep(0, 1, radius / dz); smoothstep: 1 - smoothstep(0, radius, dz)");
-  pixels.own({"--thickness", "auto|infinite|NUMBER", "scene units", "",
-              "how far an occluder goes on behind what is seen of it; auto: as deep as it is wide"},
-             [&s] { return text_of_thickness(s); }, [&s](const std::string& text) { return read_thickness(text, s); },
-             "is neither auto nor infinite nor a length above 0");
+  pixels.own(
+      {"--thickness", "auto|infinite|NUMBER", "scene units", "",
+       "how far an occluder goes on behind what is seen of it; auto: as deep as it is wide"},
+      [&s] { return text_of_thickness(s); }, [&s](const std::string& text) { return read_thickness(text, s); },
+      "is neither auto nor infinite nor a length above 0");
 }
 
 void add_filter_rows(std::vector<OptionRow>& rows, EstimatorSettings& s) {
   OptionGroup pixels(rows, "Estimator", Effect::pixels);
   pixels.choice("--resolution", s.resolution,
                 "of the estimate; a half or a quarter takes the nearest surface of every 2 x 2 or 4 x 4 pixels");
-  pixels.own({"--stride", "auto|1|2|4", "", "",
-              "estimate one pixel of so many in a row, staggered, and let the bilateral denoiser give the others "
-              "theirs; auto: 4 for gtao with 1 or 2 slices at full resolution, else 1"},
-             [&s] { return s.stride == 0 ? std::string("auto") : fmt::format("{}", s.stride); },
-             [&s](const std::string& text) {
-               if (text != "auto" && text != "1" && text != "2" && text != "4") return false;
-               s.stride = text == "auto" ? 0 : text.front() - '0';
-               return true;
-             },
-             "is none of auto, 1, 2, 4");
+  pixels.own(
+      {"--stride", "auto|1|2|4", "", "",
+       "estimate one pixel of so many in a row, staggered, and let the bilateral denoiser give the others "
+       "theirs; auto: 4 for gtao with 1 or 2 slices at full resolution, else 1"},
+      [&s] { return s.stride == 0 ? std::string("auto") : fmt::format("{}", s.stride); },
+      [&s](const std::string& text) {
+        if (text != "auto" && text != "1" && text != "2" && text != "4") return false;
+        s.stride = text == "auto" ? 0 : text.front() - '0';
+        return true;
+      },
+      "is none of auto, 1, 2, 4");
   pixels.choice("--denoise", s.denoise,
                 "smooths each surface: bilateral: by a Gaussian or --denoise-kernel; box: by an even 4 x 4");
   pixels.number("--denoise-radius", s.denoise_radius, "pixels of the estimate", between(1, 8),
                 "how far the bilateral denoiser reaches to each side");
-  pixels.add({"--denoise-kernel", "W0,W1,...", "", "2 to 9 weights",
-              "of the bilateral denoiser, from the centre outwards, of any sum; they set its radius"},
-             [&s] {
-               return s.denoise_kernel.empty() ? Words{} : Words{fmt::format("{}", fmt::join(s.denoise_kernel, ","))};
-             },
-             [&s](const Words& words) { read_kernel(words.front(), s.denoise_kernel); });
+  pixels.add(
+      {"--denoise-kernel", "W0,W1,...", "", "2 to 9 weights",
+       "of the bilateral denoiser, from the centre outwards, of any sum; they set its radius"},
+      [&s] { return s.denoise_kernel.empty() ? Words{} : Words{fmt::format("{}", fmt::join(s.denoise_kernel, ","))}; },
+      [&s](const Words& words) { read_kernel(words.front(), s.denoise_kernel); });
   pixels.number("--denoise-depth-sigma", s.denoise_depth_sigma, "of the depth", between(0, 100),
                 "pixels that far apart weigh 1/e: exp(-|dz| / (SIGMA z)), z the nearer; 0: weighs by the distance from "
                 "each other's plane");
@@ -161,9 +163,9 @@ void add_shape_rows(std::vector<OptionRow>& rows, EstimatorSettings& s) {
 
 void add_estimator_rows(std::vector<OptionRow>& rows, RunOptions& options) {
   OptionGroup(rows, "Estimator", Effect::none)
-      .add({"--preset", "NAME|FILE", "", "",
-            "settings from a preset; may repeat, later wins, options win over presets"},
-           [&options] { return options.presets; }, [&options](const Words& words) { options.presets = words; })
+      .add(
+          {"--preset", "NAME|FILE", "", "", "settings from a preset; may repeat, later wins, options win over presets"},
+          [&options] { return options.presets; }, [&options](const Words& words) { options.presets = words; })
       .is_key = false;
   EstimatorSettings& settings = options.settings.estimator;
   add_radius_rows(rows, settings);

@@ -69,11 +69,11 @@ void add_file_rows(std::vector<OptionRow>& rows, InputSettings& s) {
   inputs.text("--beauty", s.beauty, "FILE", "an EXR of the beauty, and of the indirect diffuse light, for --composite");
   inputs.text("--material-ao", s.material_ao, "FILE", "an EXR of the materials' own AO, multiplied in");
   OptionGroup(rows, "Input", Effect::pixels_or_input)
-      .own({"--albedo", "FILE|NUMBER", "", "0 to 1",
-            "an EXR of the diffuse colour for --multi-bounce, or one number; else it is in the beauty's file"},
-           [&s] { return s.albedo_value ? fmt::format("{}", *s.albedo_value) : s.albedo; },
-           [&s](const std::string& text) { return read_albedo(text, s); },
-           "is neither a file nor a number from 0 to 1");
+      .own(
+          {"--albedo", "FILE|NUMBER", "", "0 to 1",
+           "an EXR of the diffuse colour for --multi-bounce, or one number; else it is in the beauty's file"},
+          [&s] { return s.albedo_value ? fmt::format("{}", *s.albedo_value) : s.albedo; },
+          [&s](const std::string& text) { return read_albedo(text, s); }, "is neither a file nor a number from 0 to 1");
 }
 
 void add_channel_rows(std::vector<OptionRow>& rows, InputSettings& s) {
@@ -92,10 +92,11 @@ void add_channel_rows(std::vector<OptionRow>& rows, InputSettings& s) {
   const auto say_roi = [&roi = s.roi] {
     return roi ? fmt::format("{},{},{},{}", roi->x, roi->y, roi->width, roi->height) : std::string();
   };
-  pixels.own({"--roi", "X,Y,WIDTH,HEIGHT", "px of the display window", "",
-              "compute and write only this region; its surroundings are read as far as occluders reach"},
-             say_roi, [&s](const std::string& text) { return read_roi(text, s.roi); },
-             "is not X,Y,WIDTH,HEIGHT in whole pixels");
+  pixels.own(
+      {"--roi", "X,Y,WIDTH,HEIGHT", "px of the display window", "",
+       "compute and write only this region; its surroundings are read as far as occluders reach"},
+      say_roi, [&s](const std::string& text) { return read_roi(text, s.roi); },
+      "is not X,Y,WIDTH,HEIGHT in whole pixels");
   pixels.word("--source", s.source, source_names(),
               "the program that wrote the frame, of presets/input; auto: by its header and channels");
 }
@@ -108,11 +109,11 @@ void add_depth_rows(std::vector<OptionRow>& rows, InputSettings& s) {
                 "auto: what the camera file says, else what fits the frame");
   pixels.number("--near", range.near, "file units", above(0),
                 "near plane of device or normalized depth; else the camera file's");
-  pixels.own({"--far", "NUMBER|inf", "file units", "above 0",
-              "far plane of device, normalized or log depth; else the camera file's"},
-             [&range] { return range.far ? fmt::format("{}", *range.far) : std::string(); },
-             [&range](const std::string& text) { return read_far(text, range.far); },
-             "is neither a distance above 0 nor inf");
+  pixels.own(
+      {"--far", "NUMBER|inf", "file units", "above 0",
+       "far plane of device, normalized or log depth; else the camera file's"},
+      [&range] { return range.far ? fmt::format("{}", *range.far) : std::string(); },
+      [&range](const std::string& text) { return read_far(text, range.far); }, "is neither a distance above 0 nor inf");
   pixels.flag("--reversed-z", range.reversed, "device, normalized or log depth is largest at the near plane");
   pixels.choice("--device-range", range.device,
                 "of device depth between the planes; -1..1: OpenGL's normalized device coordinates");
@@ -128,11 +129,10 @@ void add_direction_rows(std::vector<OptionRow>& rows, InputSettings& s) {
                 "the space of the normals; auto: what the camera file says, else what fits the frame");
   pixels.choice("--normal-encoding", s.normal_encoding,
                 "unorm: 0.5 + 0.5 n; octahedral, spheremap: two channels; auto: signed or unorm by their values");
-  pixels.own({"--flip-normal", "xyz", "", "",
-              "axes of the normals that point the other way, in the normals' own space"},
-             [&s] { return text_of(s.flip_normal); },
-             [&s](const std::string& text) { return read_flips(text, s.flip_normal); },
-             "is none of x, y, z, xy, xz, yz, xyz");
+  pixels.own(
+      {"--flip-normal", "xyz", "", "", "axes of the normals that point the other way, in the normals' own space"},
+      [&s] { return text_of(s.flip_normal); },
+      [&s](const std::string& text) { return read_flips(text, s.flip_normal); }, "is none of x, y, z, xy, xz, yz, xyz");
   pixels.choice("--position-space", s.position_space,
                 "the space of the positions; auto: the one that puts them onto their pixels");
 }

@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "core/base/text.h"
 
 namespace alcove {
@@ -54,9 +56,10 @@ void add_frame_rows(std::vector<OptionRow>& rows, RunOptions& options) {
   frames.text("--frames", s.frames, "LIST", "such as 1001-1100x2,1200; else those of INPUT on the disk");
   frames.number("--output-offset", s.output_offset, "frames", between(-1e9, 1e9),
                 "from the numbers of the inputs to those of the outputs");
-  frames.own({"--chunk", "I/N", "", "I from 1 to N", "compute only this part of the frames"},
-             [&s] { return s.chunks > 1 ? fmt::format("{}/{}", s.chunk, s.chunks) : std::string(); },
-             [&s](const std::string& text) { return read_chunk(text, s); }, "is not I/N, with I from 1 to N");
+  frames.own(
+      {"--chunk", "I/N", "", "I from 1 to N", "compute only this part of the frames"},
+      [&s] { return s.chunks > 1 ? fmt::format("{}/{}", s.chunk, s.chunks) : std::string(); },
+      [&s](const std::string& text) { return read_chunk(text, s); }, "is not I/N, with I from 1 to N");
   frames.choice("--missing", s.missing, "what a frame without its input is: an error before any work, or left out");
   frames.flag("--keep-going", s.keep_going, "a frame that fails does not end the run; the exit code is then 1");
   frames.flag("--resume", s.resume,
@@ -74,10 +77,11 @@ void add_device_rows(std::vector<OptionRow>& rows, DeviceSettings& s) {
   device.flag("--require-gpu", s.require_gpu, "computing on the CPU is an error");
   device.flag("--validate", s.validate, "load the Vulkan validation layer; any message is an error");
   device.flag("--no-pipeline-cache", s.no_pipeline_cache, "keep no compiled kernels in the XDG cache folder");
-  device.own({"--memory", "SIZE", "bytes, or with K, M, G", "",
-              "of the whole process; larger frames are computed in tiles; else half of what is free"},
-             [&s] { return text_of_memory(s.memory); },
-             [&s](const std::string& text) { return read_memory(text, s.memory); }, "is no size such as 512M or 4G");
+  device.own(
+      {"--memory", "SIZE", "bytes, or with K, M, G", "",
+       "of the whole process; larger frames are computed in tiles; else half of what is free"},
+      [&s] { return text_of_memory(s.memory); }, [&s](const std::string& text) { return read_memory(text, s.memory); },
+      "is no size such as 512M or 4G");
   device.number("--threads", s.threads, "", between(0, 1024),
                 "threads of the CPU device and of the codecs; 0: one per core");
 }
@@ -101,16 +105,25 @@ std::string cell(std::string text) {
   return text;
 }
 
-/// A value in TOML: a number and true plain, else a string.
-std::string toml_of(const std::string& word) {
-  const auto number = number_of(word);
-  if (word == "true" || (number && fmt::format("{}", *number) == word)) return word;
+bool is_control(char c) { return (unsigned char)c < 0x20 || c == 0x7f; }
+
+/// A text in TOML: within single quotes, where it stays as it is, if it would have to be escaped within double ones.
+std::string toml_text(const std::string& word) {
+  const bool has_special = word.find_first_of("\"\\") != word.npos;
+  const bool fits_single = word.find('\'') == word.npos && std::ranges::none_of(word, is_control);
+  if (has_special && fits_single) return "'" + word + "'";
   std::string text;
   for (const char c : word) {
     if (c == '"' || c == '\\') text += '\\';
-    text += (unsigned char)c < 0x20 || c == 0x7f ? fmt::format("\\u{:04x}", int(c)) : std::string(1, c);
+    text += is_control(c) ? fmt::format("\\u{:04x}", int(c)) : std::string(1, c);
   }
   return '"' + text + '"';
+}
+
+/// A value in TOML: a number and true plain, anything else as a text.
+std::string toml_of(const std::string& word) {
+  const auto number = number_of(word);
+  return word == "true" || (number && fmt::format("{}", *number) == word) ? word : toml_text(word);
 }
 
 }  // namespace

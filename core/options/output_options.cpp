@@ -12,8 +12,7 @@ void add_output_rows(std::vector<OptionRow>& rows, OutputSettings& s) {
   OptionGroup pixels(rows, "Output", Effect::pixels);
   OptionGroup files(rows, "Output", Effect::none);  // Whether a file is there is looked at when a run is resumed.
   files.text("-o,--output", s.output, "FILE.exr", "the AO, 1 = open, and what else --aov names");
-  pixels.text("--aov", s.aovs, "LIST",
-              fmt::format("what OUTPUT holds, with commas: {}", fmt::join(aov_names(), ", ")));
+  pixels.text("--aov", s.aovs, "LIST", fmt::format("what OUTPUT holds, with commas: {}", fmt::join(aov_names(), ", ")));
   pixels.choice("--ao-channels", s.ao_channels, "mono: Y; rgb: R, G, B");
   pixels.choice("--aov-space", s.aov_space,
                 "the space of the normals in OUTPUT; auto: world where the camera has world_to_camera, else view");

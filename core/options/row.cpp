@@ -101,8 +101,9 @@ OptionRow& OptionGroup::own(const Shown& shown, const std::function<std::string(
 
 OptionRow& OptionGroup::text(const std::string& name, std::string& value, const char* what,
                              const std::string& sentence) {
-  return add({name, what, "", "", sentence}, [&value] { return words_of(value); },
-             [&value](const Words& words) { value = words.front(); });
+  return add(
+      {name, what, "", "", sentence}, [&value] { return words_of(value); },
+      [&value](const Words& words) { value = words.front(); });
 }
 
 OptionRow& OptionGroup::flag(const std::string& name, bool& value, const std::string& sentence) {
@@ -116,26 +117,28 @@ OptionRow& OptionGroup::flag(const std::string& name, bool& value, const std::st
 OptionRow& OptionGroup::choice_row(const std::string& name, const Words& words, const std::string& sentence,
                                    const std::function<std::string()>& say,
                                    const std::function<void(const std::string&)>& take) {
-  return add({name, fmt::format("{}", fmt::join(words, "|")), "", "", sentence}, [say] { return words_of(say()); },
-             [name, words, take](const Words& given) {
-               const std::string& word = given.front();
-               if (std::ranges::find(words, word) == words.end())
-                 fail(ErrorKind::usage, "{}: {} is none of {}{}", name, word, list_of(words), suggestion(word, words));
-               take(word);
-             });
+  return add(
+      {name, fmt::format("{}", fmt::join(words, "|")), "", "", sentence}, [say] { return words_of(say()); },
+      [name, words, take](const Words& given) {
+        const std::string& word = given.front();
+        if (std::ranges::find(words, word) == words.end())
+          fail(ErrorKind::usage, "{}: {} is none of {}{}", name, word, list_of(words), suggestion(word, words));
+        take(word);
+      });
 }
 
 OptionRow& OptionGroup::word(const std::string& name, std::string& value, const Words& words,
                              const std::string& sentence) {
-  return choice_row(name, words, sentence, [&value] { return value; },
-                    [&value](const std::string& word) { value = word; });
+  return choice_row(
+      name, words, sentence, [&value] { return value; }, [&value](const std::string& word) { value = word; });
 }
 
 template <class T>
 OptionRow& OptionGroup::number_row(const std::string& name, T& value, const char* unit, const Range& range,
                                    const std::string& sentence) {
-  return add({name, "NUMBER", unit, range.text, sentence}, [&value] { return Words{fmt::format("{}", value)}; },
-             [name, range, &value](const Words& words) { take_number(name, range, words.front(), value); });
+  return add(
+      {name, "NUMBER", unit, range.text, sentence}, [&value] { return Words{fmt::format("{}", value)}; },
+      [name, range, &value](const Words& words) { take_number(name, range, words.front(), value); });
 }
 
 OptionRow& OptionGroup::number(const std::string& name, double& value, const char* unit, const Range& range,
@@ -155,9 +158,10 @@ OptionRow& OptionGroup::number(const std::string& name, std::uint32_t& value, co
 
 OptionRow& OptionGroup::number(const std::string& name, std::optional<double>& value, const char* unit,
                                const Range& range, const std::string& sentence) {
-  return add({name, "NUMBER", unit, range.text, sentence},
-             [&value] { return value ? Words{fmt::format("{}", *value)} : Words{}; },
-             [name, range, &value](const Words& words) { value = number_in(range, name, words.front()); });
+  return add(
+      {name, "NUMBER", unit, range.text, sentence},
+      [&value] { return value ? Words{fmt::format("{}", *value)} : Words{}; },
+      [name, range, &value](const Words& words) { value = number_in(range, name, words.front()); });
 }
 
 }  // namespace alcove
