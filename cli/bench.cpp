@@ -12,7 +12,7 @@
 #include "cli/print.h"
 #include "core/base/error.h"
 #include "core/base/file.h"
-#include "core/run/batch.h"
+#include "core/run/check.h"
 
 namespace alcove {
 namespace {
@@ -24,47 +24,49 @@ struct BenchArguments {
   bool quiet = false, stability = false;
 };
 
-/// False: help was asked for.
-bool parse(const std::vector<std::string>& arguments, BenchArguments& a) {
-  CLI::App app(
-      "Measures device time against error for the candidates of a suite.\n\n"
-      "Example:\n  alcove bench examples/bench/suite.toml --report bench.html\n",
-      "alcove bench");
-  app.get_formatter()->column_width(34);
-  app.add_option("SUITE", a.suite, "a suite file (TOML); all but --stability needs one")->type_name("");
-  app.add_option("--data", a.data, "the folder of the suite's frames; else the suite's own")->type_name("FOLDER");
-  app.add_option(
-         "--batch", a.batch,
-         "instead: time a run of so many frames against its files alone and its kernels alone, for the first candidate")
-      ->expected(0, 1)
-      ->default_str("240")
-      ->check(CLI::Range(1, 100000))
-      ->type_name("FRAMES");
-  app.add_flag("--stability", a.stability,
+std::vector<OptionRow> rows_of(BenchArguments& a) {
+  std::vector<OptionRow> rows;
+  OptionGroup(rows, "", Effect::none).text("SUITE", a.suite, "", "a suite file (TOML); all but --stability needs one");
+  OptionGroup options(rows, "Options", Effect::none);
+  // A count of 0 stands for "not given", and no default is shown for it.
+  const auto count = [&](const char* name, int& value, const char* what, const Range& range, const char* sentence) {
+    OptionRow& row = options.number(name, value, "", range, sentence);
+    row.value = what;
+    row.default_text.clear();
+    return &row;
+  };
+  options.text("--data", a.data, "FOLDER", "the folder of the suite's frames; else the suite's own");
+  OptionRow* batch = count(
+      "--batch", a.batch, "FRAMES", between(1, 100000),
+      "instead: time a run of so many frames against its files alone and its kernels alone, for the first candidate");
+  batch->alone = "240";
+  options.flag("--stability", a.stability,
                "instead: measure where each estimator's numbers fail, along depth, radius, field of view, tilt, bits "
                "and world offset; no suite");
-  app.add_option("--repeats", a.repeats, "timed runs, instead of the suite's")
-      ->check(CLI::Range(1, 1000))
-      ->type_name("NUMBER");
-  app.add_option("--reference-slices", a.reference_slices, "of the CPU reference, instead of the suite's; 0: none")
-      ->check(CLI::Range(0, 1024))
-      ->type_name("NUMBER");
-  app.add_option("--json", a.json, "write all numbers")->type_name("FILE.json");
-  app.add_option("--csv", a.csv, "write a line for every candidate and frame")->type_name("FILE.csv");
-  app.add_option("--report", a.report, "write a self-contained page with chart, table and pictures")
-      ->type_name("FILE.html");
-  app.add_option("--limits", a.limits, "a TOML file of largest errors; one that is exceeded ends with exit code 6")
-      ->type_name("FILE.toml");
-  app.add_option("--yardstick", a.yardstick,
-                 "a program that times a unit of work, run between the candidates as PROGRAM FRAME CAMERA RADIUS RUNS; "
-                 "it prints \"median X ms\"")
-      ->type_name("PROGRAM");
-  app.add_option("--device", a.device.choice, "as for alcove run")
-      ->capture_default_str()
-      ->type_name("auto|cpu|INDEX|NAME|UUID");
-  app.add_flag("--require-gpu", a.device.require_gpu, "measuring on the CPU is an error");
-  app.add_flag("-q,--quiet", a.quiet, "no progress and no table");
-  if (!parse_arguments(app, arguments)) return false;
+  count("--repeats", a.repeats, "NUMBER", between(1, 1000), "timed runs, instead of the suite's");
+  count("--reference-slices", a.reference_slices, "NUMBER", between(0, 1024),
+        "of the CPU reference, instead of the suite's; 0: none");
+  options.text("--json", a.json, "FILE.json", "write all numbers");
+  options.text("--csv", a.csv, "FILE.csv", "write a line for every candidate and frame");
+  options.text("--report", a.report, "FILE.html", "write a self-contained page with chart, table and pictures");
+  options.text("--limits", a.limits, "FILE.toml",
+               "a TOML file of largest errors; one that is exceeded ends with exit code 6");
+  options.text("--yardstick", a.yardstick, "PROGRAM",
+               "a program that times a unit of work, run between the candidates as PROGRAM FRAME CAMERA RADIUS RUNS; "
+               "it prints \"median X ms\"");
+  options.text("--device", a.device.choice, "auto|cpu|INDEX|NAME|UUID", "as for alcove run");
+  options.flag("--require-gpu", a.device.require_gpu, "measuring on the CPU is an error");
+  options.flag("-q,--quiet", a.quiet, "no progress and no table");
+  return rows;
+}
+
+/// False: help was asked for.
+bool parse(const std::vector<std::string>& arguments, BenchArguments& a) {
+  const Command command{"alcove bench",
+                        "Measures device time against error for the candidates of a suite.\n\n"
+                        "Example:\n  alcove bench examples/bench/suite.toml --report bench.html\n",
+                        rows_of(a)};
+  if (!parse_arguments(command, arguments)) return false;
   if (a.suite.empty() && !a.stability)
     fail(ErrorKind::usage, "alcove bench: SUITE is required; try alcove bench --help");
   return true;

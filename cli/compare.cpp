@@ -23,56 +23,52 @@ struct CompareArguments {
   bool json = false;
 };
 
-void add_options(CLI::App& app, CompareArguments& a) {
+std::vector<OptionRow> rows_of(CompareArguments& a) {
+  std::vector<OptionRow> rows;
   CompareSettings& s = a.settings;
-  const auto text = [&](const char* name, std::string& value, const char* what, const char* sentence) {
-    return app.add_option(name, value, sentence)->type_name(what);
-  };
-  text("RESULT", s.result, "", "an EXR or any other picture; a pattern such as ao.%04d.exr for a sequence")->required();
-  text("REFERENCE", s.reference, "", "what it should be; a pattern too, or one picture for all frames")->required();
-  text("--reference-b", s.reference_b, "FILE",
-       "a second render of the reference with independent noise: rmse is then free of the noise of both");
-  text("--channel", s.channels, "NAMES",
-       "names with commas, or RESULT=REFERENCE pairs; else the only channel of each, else those of the same name");
-  text("--mask", s.mask, "FILE", "compare only where it is above 0");
-  text("--mask-channel", s.mask_channel, "NAME", "the mask's channel; else its only one, or its alpha");
-  text("--depth", s.depth, "FILE.exr", "leave out the sky, and measure depth edges too");
-  text("--depth-channel", s.depth_channel, "NAME", "the depth channel; else found by its usual names");
-  const auto number = [&](const char* name, double& value, const char* sentence) {
-    app.add_option(name, value, sentence)->check(check_of(above(0)))->capture_default_str()->type_name("NUMBER");
-  };
-  number("--sky", s.sky, "depth at or beyond it is sky, as are 0, infinity and NaN");
-  text("--frames", s.frames, "LIST", "frames such as 1001-1100x2,1200; else those of RESULT on the disk");
-  text("--motion", s.motion, "FILE",
-       "motion for the flicker of a sequence: place in the previous frame minus place here, in pixels, y up");
-  text("--motion-channels", s.motion_channels, "X,Y", "the motion's channels; else Vector.X,Vector.Y");
-  number("--peak", s.peak, "the largest value, for PSNR and SSIM");
-  app.add_flag("--hdr", s.hdr, "the values are scene-linear light: HDR-FLIP instead of FLIP of display values");
-  app.add_flag("--json", a.json, "print JSON");
-  text("--report", a.report, "FILE.html", "write a self-contained page with table and pictures");
-  const auto limit = [&](const char* name, std::optional<double>& value, const Range& range, const char* sentence) {
-    const char* group = "Limits, for every frame; one that is broken ends with exit code 6";
-    app.add_option(name, value, sentence)->check(check_of(range))->type_name("NUMBER")->group(group);
-  };
-  const Range size{0, HUGE_VAL, false, true, "0 or more"};
-  limit("--max-rmse", a.limits.max_rmse, size, "the largest rmse");
-  limit("--max-p99", a.limits.max_p99, size, "the largest 99th percentile of the error's size");
-  limit("--min-ssim", a.limits.min_ssim, between(-1, 1), "the least structural similarity");
-  limit("--max-flip", a.limits.max_flip, between(0, 1), "the largest mean FLIP");
-  limit("--max-bias", a.limits.max_bias, size, "the largest size of the mean error");
+  OptionGroup pictures(rows, "", Effect::none);
+  pictures.text("RESULT", s.result, "", "an EXR or any other picture; a pattern such as ao.%04d.exr for a sequence")
+      .is_required = true;
+  pictures.text("REFERENCE", s.reference, "", "what it should be; a pattern too, or one picture for all frames")
+      .is_required = true;
+  OptionGroup options(rows, "Options", Effect::none);
+  options.text("--reference-b", s.reference_b, "FILE",
+               "a second render of the reference with independent noise: rmse is then free of the noise of both");
+  options.text("--channel", s.channels, "NAMES",
+               "names with commas, or RESULT=REFERENCE pairs; else the only channel of each, else those of the same "
+               "name");
+  options.text("--mask", s.mask, "FILE", "compare only where it is above 0");
+  options.text("--mask-channel", s.mask_channel, "NAME", "the mask's channel; else its only one, or its alpha");
+  options.text("--depth", s.depth, "FILE.exr", "leave out the sky, and measure depth edges too");
+  options.text("--depth-channel", s.depth_channel, "NAME", "the depth channel; else found by its usual names");
+  options.number("--sky", s.sky, "", above(0), "depth at or beyond it is sky, as are 0, infinity and NaN");
+  options.text("--frames", s.frames, "LIST", "frames such as 1001-1100x2,1200; else those of RESULT on the disk");
+  options.text("--motion", s.motion, "FILE",
+               "motion for the flicker of a sequence: place in the previous frame minus place here, in pixels, y up");
+  options.text("--motion-channels", s.motion_channels, "X,Y", "the motion's channels; else Vector.X,Vector.Y");
+  options.number("--peak", s.peak, "", above(0), "the largest value, for PSNR and SSIM");
+  options.flag("--hdr", s.hdr, "the values are scene-linear light: HDR-FLIP instead of FLIP of display values");
+  options.flag("--json", a.json, "print JSON");
+  options.text("--report", a.report, "FILE.html", "write a self-contained page with table and pictures");
+  OptionGroup limits(rows, "Limits, for every frame; one that is broken ends with exit code 6", Effect::none);
+  limits.number("--max-rmse", a.limits.max_rmse, "", at_least(0), "the largest rmse");
+  limits.number("--max-p99", a.limits.max_p99, "", at_least(0), "the largest 99th percentile of the error's size");
+  limits.number("--min-ssim", a.limits.min_ssim, "", between(-1, 1), "the least structural similarity");
+  limits.number("--max-flip", a.limits.max_flip, "", between(0, 1), "the largest mean FLIP");
+  limits.number("--max-bias", a.limits.max_bias, "", at_least(0), "the largest size of the mean error");
+  return rows;
 }
 
 /// False: help was asked for.
 bool parse(const std::vector<std::string>& arguments, CompareArguments& a) {
-  CLI::App app(
-      "Measures how far a picture or a sequence is from a reference.\n\n"
-      "Examples:\n"
-      "  alcove compare ao.exr truth.exr --depth frame.exr --max-rmse 0.1\n"
-      "  alcove compare ao.%04d.exr truth.%04d.exr --depth frame.%04d.exr --motion frame.%04d.exr --json\n",
-      "alcove compare");
-  app.get_formatter()->column_width(34);
-  add_options(app, a);
-  return parse_arguments(app, arguments);
+  return parse_arguments(
+      {"alcove compare",
+       "Measures how far a picture or a sequence is from a reference.\n\n"
+       "Examples:\n"
+       "  alcove compare ao.exr truth.exr --depth frame.exr --max-rmse 0.1\n"
+       "  alcove compare ao.%04d.exr truth.%04d.exr --depth frame.%04d.exr --motion frame.%04d.exr --json\n",
+       rows_of(a)},
+      arguments);
 }
 
 std::string optional_number(std::optional<double> value) { return value ? fmt::format("{:.4f}", *value) : "-"; }

@@ -7,14 +7,10 @@
 #include <memory>
 #include <string>
 
+#include "core/options/options.h"
 #include "core/run/run_report.h"
 
 namespace alcove {
-
-struct ProgressOptions {
-  std::string kind = "auto";  // auto, bar, plain, percent, openjd or none; auto: a bar on a terminal, else plain
-  bool verbose = false, quiet = false;
-};
 
 /// Messages go to the standard error; "Progress: 42%" and "openjd_progress: 42" to the standard output. Every line is
 /// whole and flushed.

@@ -42,8 +42,7 @@ colorspaces:
 )";
 
 OCIO::ConstConfigRcPtr open_config(const std::string& path) {
-  const char* variable = path.empty() ? std::getenv("OCIO") : nullptr;
-  const std::string file = variable ? variable : path;
+  const std::string file = display_config_file(path);
   if (file.empty()) {
     std::istringstream text(kBuiltinConfig);
     return OCIO::Config::CreateFromStream(text);
@@ -53,6 +52,11 @@ OCIO::ConstConfigRcPtr open_config(const std::string& path) {
 }
 
 }  // namespace
+
+std::string display_config_file(const std::string& config) {
+  const char* variable = config.empty() ? std::getenv("OCIO") : nullptr;
+  return variable ? variable : config;
+}
 
 struct DisplayTransform::Impl {
   OCIO::ConstCPUProcessorRcPtr processor;

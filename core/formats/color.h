@@ -8,6 +8,9 @@
 
 namespace alcove {
 
+/// The file that DisplayTransform reads: `config`, else what the OCIO variable names; "" where the built-in one serves.
+std::string display_config_file(const std::string& config);
+
 /// The default view of the default display of a configuration: `config` (a file), else what the OCIO variable names,
 /// else a small built-in one (linear Rec.709 to sRGB). Fails with ErrorKind::input when the configuration cannot be
 /// used.

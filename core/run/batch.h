@@ -10,14 +10,6 @@
 
 namespace alcove {
 
-/// Fails with ErrorKind::usage on settings that contradict each other.
-/// Opens no input and no device.
-void check_settings(const Settings& settings);
-
-/// 16 hexadecimal digits that change with every setting that changes the result, and with what the camera file says.
-/// Fails as reading that file does.
-std::string options_digest(const Settings& settings);
-
 /// Who follows a run; each may be empty.
 struct RunWatch {
   // before the first frame: the run as it is known then, and how many frames it has

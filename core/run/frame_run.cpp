@@ -9,7 +9,7 @@
 #include "core/base/error.h"
 #include "core/base/estimator_facts.h"
 #include "core/frame/settle.h"
-#include "core/run/batch.h"
+#include "core/run/digest.h"
 #include "core/run/resume.h"
 #include "core/run/scale_notes.h"
 

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <chrono>
 #include <functional>
 
+#include "core/base/stopwatch.h"
 #include "core/chain/reuse.h"
 #include "core/formats/color.h"
 #include "core/run/frame_files.h"
@@ -34,15 +34,5 @@ struct Lane {
 
 /// Never fails: what went wrong is in the report.
 FrameReport run_frame(Lane& lane, const RunContext& run, int frame);
-
-class Stopwatch {
- public:
-  double ms() const {
-    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_).count();
-  }
-
- private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
 
 }  // namespace alcove

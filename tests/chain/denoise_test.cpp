@@ -7,7 +7,7 @@
 #include <random>
 
 #include "core/formats/exr.h"
-#include "core/run/batch.h"
+#include "core/run/digest.h"
 #include "tests/support/device.h"
 #include "tests/support/difference.h"
 #include "tests/support/single_pass.h"

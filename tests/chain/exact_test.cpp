@@ -11,7 +11,7 @@
 
 #include "core/formats/exr.h"
 #include "core/reference/reference.h"
-#include "core/run/batch.h"
+#include "core/run/digest.h"
 #include "tests/support/command_line.h"
 #include "tests/support/device.h"
 #include "tests/support/difference.h"

@@ -8,7 +8,7 @@
 
 #include "core/chain/chain.h"
 #include "core/formats/exr.h"
-#include "core/run/batch.h"
+#include "core/run/digest.h"
 #include "tests/support/command_line.h"
 #include "tests/support/device.h"
 #include "tests/support/difference.h"

@@ -14,7 +14,7 @@
 #include "core/formats/exr.h"
 #include "core/frame/evidence.h"
 #include "core/frame/settle.h"
-#include "core/run/batch.h"
+#include "core/run/digest.h"
 #include "tests/support/command_line.h"
 #include "tests/support/device.h"
 #include "tests/support/difference.h"

@@ -100,7 +100,8 @@ const std::map<std::string, Names> kRooms = {
     {"core/formats", {"core/base"}},
     {"core/frame", {"core/base", "core/formats", "kernels"}},
     {"core/chain", {"core/base", "core/frame", "core/gpu", "kernels"}},
-    {"core/run", {"core/base", "core/formats", "core/frame", "core/chain", "core/gpu", "kernels"}},
+    {"core/options", {"core/base", "core/frame", "core/chain"}},
+    {"core/run", {"core/base", "core/formats", "core/frame", "core/chain", "core/gpu", "core/options", "kernels"}},
     {"core/reference", {"core/base", "core/frame", "kernels"}},
     {"core/measure", {"core/base", "core/formats", "core/frame"}},
     {"core/inspect", {"core/base", "core/formats", "core/frame", "core/chain"}},
@@ -108,8 +109,8 @@ const std::map<std::string, Names> kRooms = {
      {"core/base", "core/gpu", "core/formats", "core/frame", "core/chain", "core/run", "core/reference",
       "core/measure"}},
     {"cli",
-     {"core/base", "core/gpu", "core/formats", "core/frame", "core/chain", "core/run", "core/measure", "core/inspect",
-      "core/bench"}},
+     {"core/base", "core/gpu", "core/formats", "core/frame", "core/chain", "core/options", "core/run", "core/measure",
+      "core/inspect", "core/bench"}},
 };
 
 TEST(Layers, rooms_include_only_what_the_table_allows) {

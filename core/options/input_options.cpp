@@ -1,0 +1,163 @@
+// Options of what is read and how it is understood.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+
+#include "core/base/text.h"
+#include "core/frame/input_rules.h"
+#include "core/options/options.h"
+
+namespace alcove {
+namespace {
+
+/// --albedo: a number is the albedo of all surfaces, anything else is a file.
+bool read_albedo(const std::string& text, InputSettings& settings) {
+  const auto value = number_of(text);
+  if (value && !(*value >= 0 && *value <= 1)) return false;
+  settings.albedo = value ? "" : text;
+  settings.albedo_value = value;
+  return true;
+}
+
+/// --far: a distance, or inf.
+bool read_far(const std::string& text, std::optional<double>& far) {
+  const auto value = number_of(text);
+  if (!value || !(*value > 0)) return false;
+  far = value;
+  return true;
+}
+
+bool read_roi(const std::string& text, std::optional<Region>& roi) {
+  const auto words = split(text);
+  std::array<int, 4> numbers{};
+  if (words.size() != numbers.size()) return false;
+  for (std::size_t i = 0; i < numbers.size(); i++) {
+    const auto number = whole_number_of(words[i]);
+    if (!number) return false;
+    numbers[i] = *number;
+  }
+  const Region region{numbers[0], numbers[1], numbers[2], numbers[3]};
+  if (region.width <= 0 || region.height <= 0) return false;
+  roi = region;
+  return true;
+}
+
+/// --flip-normal: axes, each once at most.
+bool read_flips(const std::string& text, NormalFlips& flips) {
+  NormalFlips read;
+  for (const char axis : text) {
+    if (axis < 'x' || axis > 'z') return false;
+    bool& flip = *std::array{&read.x, &read.y, &read.z}[std::size_t(axis - 'x')];
+    if (flip) return false;
+    flip = true;
+  }
+  flips = read;
+  return true;
+}
+
+std::string text_of(const NormalFlips& flips) {
+  return std::string(flips.x ? "x" : "") + (flips.y ? "y" : "") + (flips.z ? "z" : "");
+}
+
+void add_file_rows(std::vector<OptionRow>& rows, InputSettings& s) {
+  OptionGroup inputs(rows, "Input", Effect::input);
+  inputs.text("--depth", s.depth, "FILE", "an EXR, DDS or TIFF of the depth alone; else it is in INPUT");
+  inputs.text("--normal", s.normal, "FILE", "an EXR, DDS, TIFF or PNG of the normals alone");
+  inputs.text("--position", s.position, "FILE", "an EXR of the positions, instead of a depth");
+  inputs.text("--beauty", s.beauty, "FILE", "an EXR of the beauty, and of the indirect diffuse light, for --composite");
+  inputs.text("--material-ao", s.material_ao, "FILE", "an EXR of the materials' own AO, multiplied in");
+  OptionGroup(rows, "Input", Effect::pixels_or_input)
+      .own(
+          {"--albedo", "FILE|NUMBER", "", "0 to 1",
+           "an EXR of the diffuse colour for --multi-bounce, or one number; else it is in the beauty's file"},
+          [&s] { return s.albedo_value ? fmt::format("{}", *s.albedo_value) : s.albedo; },
+          [&s](const std::string& text) { return read_albedo(text, s); }, "is neither a file nor a number from 0 to 1");
+}
+
+void add_channel_rows(std::vector<OptionRow>& rows, InputSettings& s) {
+  OptionGroup pixels(rows, "Input", Effect::pixels);
+  pixels.text("--depth-channel", s.depth_channel, "NAME", "the depth channel; else found by its usual names");
+  pixels.text("--normal-channels", s.normal_channels, "LAYER|X,Y[,Z]",
+              "the normal's layer, or its channels; of two, z is rebuilt");
+  pixels.text("--position-channels", s.position_channels, "LAYER|X,Y,Z",
+              "the position's layer, or its three channels, instead of a depth");
+  pixels.text("--beauty-channels", s.beauty_channels, "LAYER|R,G,B[,A]", "the beauty's layer, or its channels");
+  pixels.text("--material-ao-channel", s.material_ao_channel, "NAME",
+              "the material AO's channel, of --material-ao or else of INPUT");
+  pixels.text("--albedo-channels", s.albedo_channels, "LAYER|R,G,B", "the diffuse colour's layer, or its channels");
+  pixels.text("--layer", s.layer, "NAME", "look only at this layer or part");
+  pixels.text("--view", s.view, "NAME", "the view of a stereo file; else its default view");
+  const auto say_roi = [&roi = s.roi] {
+    return roi ? fmt::format("{},{},{},{}", roi->x, roi->y, roi->width, roi->height) : std::string();
+  };
+  pixels.own(
+      {"--roi", "X,Y,WIDTH,HEIGHT", "px of the display window", "",
+       "compute and write only this region; its surroundings are read as far as occluders reach"},
+      say_roi, [&s](const std::string& text) { return read_roi(text, s.roi); },
+      "is not X,Y,WIDTH,HEIGHT in whole pixels");
+  pixels.word("--source", s.source, source_names(),
+              "the program that wrote the frame, of presets/input; auto: by its header and channels");
+}
+
+void add_depth_rows(std::vector<OptionRow>& rows, InputSettings& s) {
+  OptionGroup pixels(rows, "Input", Effect::pixels);
+  DepthRange& range = s.depth_range;
+  pixels.choice("--depth-kind", s.depth_kind,
+                "planar: along the optical axis; ray: to the eye; inverse: 1/planar; others: see Inputs in the README; "
+                "auto: what the camera file says, else what fits the frame");
+  pixels.number("--near", range.near, "file units", above(0),
+                "near plane of device or normalized depth; else the camera file's");
+  pixels.own(
+      {"--far", "NUMBER|inf", "file units", "above 0",
+       "far plane of device, normalized or log depth; else the camera file's"},
+      [&range] { return range.far ? fmt::format("{}", *range.far) : std::string(); },
+      [&range](const std::string& text) { return read_far(text, range.far); }, "is neither a distance above 0 nor inf");
+  pixels.flag("--reversed-z", range.reversed, "device, normalized or log depth is largest at the near plane");
+  pixels.choice("--device-range", range.device,
+                "of device depth between the planes; -1..1: OpenGL's normalized device coordinates");
+  pixels.number("--log-constant", range.log_constant, "1 / file units", above(0),
+                "C of log depth, z = ((1 + C far)^d - 1) / C");
+  pixels.number("--depth-scale", s.depth_scale, "", above(0), "scene units per unit of the depth channel");
+  pixels.number("--sky", s.sky, "file units", above(0), "depth at or beyond it is sky, as are 0, infinity and NaN");
+}
+
+void add_direction_rows(std::vector<OptionRow>& rows, InputSettings& s) {
+  OptionGroup pixels(rows, "Input", Effect::pixels);
+  pixels.choice("--normal-space", s.normal_space,
+                "the space of the normals; auto: what the camera file says, else what fits the frame");
+  pixels.choice("--normal-encoding", s.normal_encoding,
+                "unorm: 0.5 + 0.5 n; octahedral, spheremap: two channels; auto: signed or unorm by their values");
+  pixels.own(
+      {"--flip-normal", "xyz", "", "", "axes of the normals that point the other way, in the normals' own space"},
+      [&s] { return text_of(s.flip_normal); },
+      [&s](const std::string& text) { return read_flips(text, s.flip_normal); }, "is none of x, y, z, xy, xz, yz, xyz");
+  pixels.choice("--position-space", s.position_space,
+                "the space of the positions; auto: the one that puts them onto their pixels");
+}
+
+void add_camera_rows(std::vector<OptionRow>& rows, InputSettings& s) {
+  OptionGroup(rows, "Input", Effect::none).flag("--strict", s.strict, "what could only be guessed is an error");
+  OptionGroup(rows, "Input", Effect::content)
+      .text("--camera", s.camera, "FILE.json", "the camera; see Cameras in the README");
+  OptionGroup pixels(rows, "Input", Effect::pixels);
+  pixels.number("--fov", s.fov, "degrees", strictly_between(0, 180),
+                "horizontal field of view, instead of a camera file");
+  pixels.number("--focal", s.focal, "mm", above(0), "focal length, with --aperture, instead of a camera file");
+  pixels.number("--aperture", s.aperture, "mm", above(0), "width of the film back");
+  pixels.number("--ortho-width", s.ortho_width, "scene units", above(0),
+                "width of an orthographic view, instead of a camera file");
+}
+
+}  // namespace
+
+void add_input_rows(std::vector<OptionRow>& rows, InputSettings& settings) {
+  add_file_rows(rows, settings);
+  add_channel_rows(rows, settings);
+  add_depth_rows(rows, settings);
+  add_direction_rows(rows, settings);
+  add_camera_rows(rows, settings);
+}
+
+}  // namespace alcove

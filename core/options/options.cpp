@@ -1,0 +1,173 @@
+// The table of all options, and what is written from it.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/options/options.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/base/text.h"
+
+namespace alcove {
+namespace {
+
+/// --chunk I/N.
+bool read_chunk(const std::string& text, FrameSettings& frames) {
+  const std::size_t slash = text.find('/');
+  if (slash == text.npos) return false;
+  const auto chunk = whole_number_of(text.substr(0, slash));
+  const auto chunks = whole_number_of(text.substr(slash + 1));
+  if (!chunk || !chunks || *chunk < 1 || *chunk > *chunks) return false;
+  frames.chunk = *chunk;
+  frames.chunks = *chunks;
+  return true;
+}
+
+constexpr std::string_view kUnits = "kmgt";  // powers of 1024
+
+/// --memory: "512M", "4G", "1.5GiB", "100000".
+bool read_memory(const std::string& text, std::uint64_t& bytes) {
+  const std::size_t end = std::min(text.find_first_not_of("0123456789."), text.size());
+  std::string unit = lower_case(text.substr(end));
+  if (unit.ends_with("b")) unit.pop_back();
+  if (unit.ends_with("i")) unit.pop_back();
+  const std::size_t power = unit.empty() ? 0 : kUnits.find(unit) + 1;
+  const auto number = number_of(text.substr(0, end));
+  const bool has_known_unit = unit.empty() || (unit.size() == 1 && power > 0);
+  if (!has_known_unit || !number || !(*number > 0) || *number > 1e15) return false;
+  bytes = std::uint64_t(*number * double(1ull << (10 * power)));
+  return true;
+}
+
+/// In the largest unit of which it is a whole number.
+std::string text_of_memory(std::uint64_t bytes) {
+  if (bytes == 0) return "";
+  std::size_t power = 0;
+  while (power < kUnits.size() && bytes % 1024 == 0) {
+    bytes /= 1024;
+    power++;
+  }
+  return power ? fmt::format("{}{}", bytes, char(kUnits[power - 1] - 'a' + 'A')) : fmt::format("{}", bytes);
+}
+
+void add_frame_rows(std::vector<OptionRow>& rows, RunOptions& options) {
+  FrameSettings& s = options.settings.frames;
+  OptionGroup frames(rows, "Frames", Effect::none);
+  frames.text("--frames", s.frames, "LIST", "such as 1001-1100x2,1200; else those of INPUT on the disk");
+  frames.number("--output-offset", s.output_offset, "frames", between(-1e9, 1e9),
+                "from the numbers of the inputs to those of the outputs");
+  frames.own(
+      {"--chunk", "I/N", "", "I from 1 to N", "compute only this part of the frames"},
+      [&s] { return s.chunks > 1 ? fmt::format("{}/{}", s.chunk, s.chunks) : std::string(); },
+      [&s](const std::string& text) { return read_chunk(text, s); }, "is not I/N, with I from 1 to N");
+  frames.choice("--missing", s.missing, "what a frame without its input is: an error before any work, or left out");
+  frames.flag("--keep-going", s.keep_going, "a frame that fails does not end the run; the exit code is then 1");
+  frames.flag("--resume", s.resume,
+              "compute only frames whose outputs are missing, broken, older than their inputs or made with other "
+              "options");
+  frames.flag("--overwrite", s.overwrite,
+              "compute all frames and replace their outputs, whatever --resume says; without --resume that is so "
+              "anyway");
+  frames.flag("--dry-run", options.dry_run, "print frames, files and memory, and stop").is_key = false;
+}
+
+void add_device_rows(std::vector<OptionRow>& rows, DeviceSettings& s) {
+  OptionGroup device(rows, "Device", Effect::none);
+  device.text("--device", s.device, "auto|cpu|INDEX|NAME|UUID", "where to compute; auto: the first GPU, else the CPU");
+  device.flag("--require-gpu", s.require_gpu, "computing on the CPU is an error");
+  device.flag("--validate", s.validate, "load the Vulkan validation layer; any message is an error");
+  device.flag("--no-pipeline-cache", s.no_pipeline_cache, "keep no compiled kernels in the XDG cache folder");
+  device.own(
+      {"--memory", "SIZE", "bytes, or with K, M, G", "",
+       "of the whole process; larger frames are computed in tiles; else half of what is free"},
+      [&s] { return text_of_memory(s.memory); }, [&s](const std::string& text) { return read_memory(text, s.memory); },
+      "is no size such as 512M or 4G");
+  device.number("--threads", s.threads, "", between(0, 1024),
+                "threads of the CPU device and of the codecs; 0: one per core");
+}
+
+void add_report_rows(std::vector<OptionRow>& rows, RunOptions& options) {
+  OptionGroup reports(rows, "Reports", Effect::none);
+  reports.text("--stats", options.settings.output.stats, "FILE.json", "times of every pass, counts and totals");
+  reports.word("--progress", options.progress.kind, {"auto", "bar", "plain", "percent", "openjd", "none"},
+               "plain: one line per frame; percent, openjd: on standard output, as farms read it; auto: a bar on a "
+               "terminal, else plain");
+  reports.text("--log-json", options.settings.output.log_json, "FILE|-",
+               "one JSON object per line for the beginning, every frame and the end");
+  reports.flag("-v,--verbose", options.progress.verbose, "say more: the time of every pass");
+  reports.flag("-q,--quiet", options.progress.quiet, "say nothing but errors");
+  reports.flag("--print-config", options.print_config, "print the settings as a preset and stop").is_key = false;
+}
+
+/// Text as a cell of a table in Markdown, where a bar would end it.
+std::string cell(std::string text) {
+  for (std::size_t at = 0; (at = text.find('|', at)) != text.npos; at += 2) text.insert(at, "\\");
+  return text;
+}
+
+bool is_control(char c) { return (unsigned char)c < 0x20 || c == 0x7f; }
+
+/// A text in TOML: within single quotes, where it stays as it is, if it would have to be escaped within double ones.
+std::string toml_text(const std::string& word) {
+  const bool has_special = word.find_first_of("\"\\") != word.npos;
+  const bool fits_single = word.find('\'') == word.npos && std::ranges::none_of(word, is_control);
+  if (has_special && fits_single) return "'" + word + "'";
+  std::string text;
+  for (const char c : word) {
+    if (c == '"' || c == '\\') text += '\\';
+    text += is_control(c) ? fmt::format("\\u{:04x}", int(c)) : std::string(1, c);
+  }
+  return '"' + text + '"';
+}
+
+/// A value in TOML: a number and true plain, anything else as a text.
+std::string toml_of(const std::string& word) {
+  const auto number = number_of(word);
+  return word == "true" || (number && fmt::format("{}", *number) == word) ? word : toml_text(word);
+}
+
+}  // namespace
+
+std::vector<OptionRow> option_table(RunOptions& options) {
+  std::vector<OptionRow> rows;
+  add_input_rows(rows, options.settings.input);
+  add_frame_rows(rows, options);
+  add_estimator_rows(rows, options);
+  add_output_rows(rows, options.settings.output);
+  add_device_rows(rows, options.settings.device);
+  add_report_rows(rows, options);
+  return rows;
+}
+
+std::string range_text(const OptionRow& row) {
+  return row.unit + (row.unit.empty() || row.range.empty() ? "" : ", ") + row.range;
+}
+
+std::string option_table_markdown() {
+  RunOptions options;
+  std::string text;
+  std::string group;
+  for (const auto& row : option_table(options)) {
+    if (row.group != group)
+      text +=
+          fmt::format("{}| {} | unit, range | default | |\n|---|---|---|---|\n", group.empty() ? "" : "\n", row.group);
+    group = row.group;
+    text += fmt::format("| `{}`{} | {} | {} | {} |\n", row.name, row.value.empty() ? "" : " " + cell(row.value),
+                        cell(range_text(row)), row.default_text, cell(row.sentence));
+  }
+  return text;
+}
+
+std::string preset_text(const std::vector<OptionRow>& rows) {
+  std::string text;
+  for (const auto& row : rows) {
+    Words words = row.words();
+    if (!row.is_key || words.empty()) continue;
+    for (auto& word : words) word = toml_of(word);
+    const std::string list = fmt::format("{}", fmt::join(words, ", "));
+    text += fmt::format("{}={}\n", row.long_name().substr(2), words.size() > 1 ? "[" + list + "]" : list);
+  }
+  return text;
+}
+
+}  // namespace alcove

@@ -1,0 +1,46 @@
+// ONE table of options: it serves the command line, --help, the keys of presets, --print-config, the README, and the
+// digest by which --resume knows its files.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/base/settings.h"
+#include "core/options/row.h"
+
+namespace alcove {
+
+/// How a run tells of its progress.
+struct ProgressOptions {
+  std::string kind = "auto";  // auto, bar, plain, percent, openjd or none; auto: a bar on a terminal, else plain
+  bool verbose = false, quiet = false;
+};
+
+/// What `alcove run` is told: its settings, and what only its command line knows.
+struct RunOptions {
+  Settings settings;
+  Words presets;
+  bool print_config = false;
+  bool dry_run = false;
+  ProgressOptions progress;
+};
+
+/// The table, bound to `options`, whose present values are the defaults. `options` must outlive it.
+std::vector<OptionRow> option_table(RunOptions& options);
+
+/// Unit and range of a number, as help shows them; "" where there is neither.
+std::string range_text(const OptionRow& row);
+
+/// The table as README.md shows it.
+std::string option_table_markdown();
+
+/// The present values as a preset in TOML, one line per option that is set.
+std::string preset_text(const std::vector<OptionRow>& rows);
+
+// The groups of the table, each in its own file.
+void add_input_rows(std::vector<OptionRow>& rows, InputSettings& settings);
+void add_estimator_rows(std::vector<OptionRow>& rows, RunOptions& options);
+void add_output_rows(std::vector<OptionRow>& rows, OutputSettings& settings);
+
+}  // namespace alcove

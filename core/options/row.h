@@ -1,0 +1,128 @@
+// A row of the table of options: what stands in help and README, and how its value is read and said.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/base/option_words.h"
+
+namespace alcove {
+
+/// What an option has to do with the pixels of an output: by this, --resume knows which files were made otherwise.
+enum class Effect {
+  none,             // The files come out the same: a device, threads, a report, the name of an output.
+  pixels,           // Its value counts.
+  input,            // It names an input, which is known by its bytes (alcove/inputs): only whether it is given counts.
+  pixels_or_input,  // A number counts by its value, anything else as the name of an input.
+  content,          // It names a file whose content counts, and not its place.
+  display,          // As `content`, but only where a preview shows a composite.
+};
+
+using Words = std::vector<std::string>;
+
+/// A row of the table. Only OptionGroup makes them, so that none is without its effect.
+struct OptionRow {
+  std::string group, name;   // name: as typed, "--radius" or "-o,--output"
+  std::string value;         // what stands behind it in help: FILE, NUMBER, the words to choose from; "" for a flag
+  std::string unit, range;   // of a number; "" where there is none
+  std::string sentence;      // ends without a full stop
+  std::string default_text;  // "" where there is none
+  Effect effect;
+  // The present value as it would be typed, exactly; none where it is not set. Only --radius may have several.
+  std::function<Words()> words;
+  // Takes a value. Fails with ErrorKind::usage, naming the option, what is wrong, and the nearest words.
+  std::function<void(const Words&)> read;
+  bool repeats = false;      // each value is one more
+  bool is_required = false;  // of arguments without a name
+  bool is_key = true;        // whether presets may hold it
+  std::string alone = {};    // its value where it is given without one; "": it must have one
+
+  bool is_flag() const { return value.empty() && name.starts_with('-'); }
+  /// "--output" of "-o,--output".
+  std::string long_name() const;
+};
+
+/// A number's allowed range, as text and as a check.
+struct Range {
+  double low, high;
+  bool open_low, open_high;
+  std::string text;
+  bool holds(double x) const { return (open_low ? x > low : x >= low) && (open_high ? x < high : x <= high); }
+};
+
+Range above(double low);
+Range at_least(double low);
+Range between(double low, double high);
+Range below_and_at_least(double low, double high);
+Range strictly_between(double low, double high);
+Range above_to(double low, double high);
+
+/// The number that the whole text is, which may be infinite or NaN.
+std::optional<double> number_of(const std::string& text);
+/// The same of a whole number that an int can hold.
+std::optional<int> whole_number_of(const std::string& text);
+
+/// Appends rows of one group and one effect to a table. What they bind must outlive the rows; its present values are
+/// the defaults.
+class OptionGroup {
+ public:
+  OptionGroup(std::vector<OptionRow>& rows, std::string group, Effect effect)
+      : rows_(rows), group_(std::move(group)), effect_(effect) {}
+
+  OptionRow& text(const std::string& name, std::string& value, const char* what, const std::string& sentence);
+  OptionRow& flag(const std::string& name, bool& value, const std::string& sentence);
+  /// One of a few words.
+  OptionRow& word(const std::string& name, std::string& value, const Words& words, const std::string& sentence);
+  /// One of the words of an enumeration.
+  template <class T>
+  OptionRow& choice(const std::string& name, T& value, const std::string& sentence);
+  /// A finite number.
+  OptionRow& number(const std::string& name, double& value, const char* unit, const Range& range,
+                    const std::string& sentence);
+  OptionRow& number(const std::string& name, std::optional<double>& value, const char* unit, const Range& range,
+                    const std::string& sentence);
+  OptionRow& number(const std::string& name, int& value, const char* unit, const Range& range,
+                    const std::string& sentence);
+  OptionRow& number(const std::string& name, std::uint32_t& value, const char* unit, const Range& range,
+                    const std::string& sentence);
+
+  /// What an option of its own kind shows in help.
+  struct Shown {
+    std::string name, value, unit, range, sentence;
+  };
+  /// say: the present value, "" where it is not set. take: whether the text is a value; `complaint` stands behind the
+  /// text where it is none.
+  OptionRow& own(const Shown& shown, const std::function<std::string()>& say,
+                 const std::function<bool(const std::string&)>& take, const std::string& complaint);
+  OptionRow& add(const Shown& shown, std::function<Words()> words, std::function<void(const Words&)> read);
+
+ private:
+  OptionRow& choice_row(const std::string& name, const Words& words, const std::string& sentence,
+                        const std::function<std::string()>& say, const std::function<void(const std::string&)>& take);
+  template <class T>
+  OptionRow& number_row(const std::string& name, T& value, const char* unit, const Range& range,
+                        const std::string& sentence);
+
+  std::vector<OptionRow>& rows_;
+  const std::string group_;
+  const Effect effect_;
+};
+
+template <class T>
+OptionRow& OptionGroup::choice(const std::string& name, T& value, const std::string& sentence) {
+  const auto& names = names_of<T>();
+  Words words;
+  for (const auto& [word, meaning] : names) words.push_back(word);
+  const auto say = [&value, &names] {
+    for (const auto& [word, meaning] : names)
+      if (meaning == value) return word;
+    return std::string();
+  };
+  return choice_row(name, words, sentence, say, [&value, &names](const std::string& word) { value = names.at(word); });
+}
+
+}  // namespace alcove

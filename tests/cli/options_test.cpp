@@ -1,0 +1,300 @@
+// The table of options: rows read what they say, and those that change pixels are in the digest that --resume knows.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/options/options.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <type_traits>
+
+#include "core/base/error.h"
+#include "core/base/flat_toml.h"
+#include "core/run/digest.h"
+#include "tests/support/command_line.h"
+#include "tests/support/exr_header.h"
+
+namespace alcove {
+namespace {
+
+using namespace test;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+static_assert(!std::is_constructible_v<OptionGroup, std::vector<OptionRow>&, std::string>,
+              "a row without a declared effect must not compile");
+
+class Options : public CommandLine {
+ protected:
+  Options() {
+    options.settings.estimator.radius = 1;
+    write_bytes(file, "a");
+    write_bytes(same, "a");
+    write_bytes(other, "b");
+  }
+
+  std::string digest() const { return options_digest(options.settings); }
+
+  /// Gives the row another value than it has: one of its own words, else what it takes of a number or a text.
+  static bool change(const OptionRow& row) {
+    const Words before = row.words();
+    Words candidates{"true"};
+    for (std::size_t at = 0; at != std::string::npos && at <= row.value.size();) {
+      const std::size_t bar = std::min(row.value.find('|', at), row.value.size());
+      candidates.push_back(row.value.substr(at, bar - at));
+      at = bar + 1;
+    }
+    candidates.insert(candidates.end(), {"0.5", "0.05", "2", "5", "x", "1,2", "1,2,3,4", "2/3", "4G"});
+    for (const auto& candidate : candidates) {
+      try {
+        row.read({candidate});
+      } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::usage) << row.name;
+        EXPECT_THAT(error.what(), HasSubstr(row.long_name()));
+        continue;
+      }
+      if (row.words() != before) return true;
+    }
+    return false;
+  }
+
+  /// Calls it with each row of the effect, bound to `options` as they are by default.
+  void for_each(Effect effect, const std::function<void(const OptionRow&)>& call) {
+    const RunOptions defaults = options;
+    int rows = 0;
+    const auto table = option_table(options);
+    for (const auto& row : table)
+      if (row.effect == effect) {
+        options = defaults;
+        call(row);
+        rows++;
+      }
+    options = defaults;
+    EXPECT_GT(rows, 0);
+  }
+
+  RunOptions options;
+  const std::string file = folder / "file", same = folder / "same", other = folder / "other";
+};
+
+TEST_F(Options, of_every_row_take_what_they_say) {
+  for (const auto& row : option_table(options)) {
+    ASSERT_TRUE(change(row)) << row.name << " has no other value";
+    RunOptions fresh;
+    const auto rows = option_table(fresh);
+    const auto& again = *std::ranges::find(rows, row.name, &OptionRow::name);
+    again.read(row.words());
+    EXPECT_EQ(again.words(), row.words()) << row.name;
+  }
+}
+
+TEST_F(Options, say_numbers_to_the_last_bit) {
+  const auto rows = option_table(options);
+  const auto& radius = *std::ranges::find(rows, "--radius", &OptionRow::name);
+  for (const double value : {0.1, 1.0 / 3, 1e-300, 0x1.fffffffffffffp+58}) {
+    options.settings.estimator.radius = value;
+    radius.read(radius.words());
+    EXPECT_EQ(options.settings.estimator.radius, value);
+  }
+}
+
+TEST_F(Options, that_change_pixels_change_the_digest_each_in_its_own_way) {
+  const std::string plain = digest();
+  std::set<std::string> digests;
+  int rows = 0;
+  for_each(Effect::pixels, [&](const OptionRow& row) {
+    EXPECT_TRUE(change(row));
+    EXPECT_NE(digest(), plain) << row.name;
+    digests.insert(digest());
+    rows++;
+  });
+  EXPECT_EQ(digests.size(), rows);
+}
+
+TEST_F(Options, that_change_no_pixels_are_these_and_not_in_the_digest) {
+  const std::string plain = digest();
+  Words names;
+  for_each(Effect::none, [&](const OptionRow& row) {
+    EXPECT_TRUE(change(row));
+    EXPECT_EQ(digest(), plain) << row.name;
+    names.push_back(row.long_name());
+  });
+  EXPECT_THAT(names, ElementsAre("--strict", "--frames", "--output-offset", "--chunk", "--missing", "--keep-going",
+                                 "--resume", "--overwrite", "--dry-run", "--preset", "--no-skip", "--output",
+                                 "--composite", "--preview", "--debug", "--compression", "--device", "--require-gpu",
+                                 "--validate", "--no-pipeline-cache", "--memory", "--threads", "--stats", "--progress",
+                                 "--log-json", "--verbose", "--quiet", "--print-config"))
+      << "whoever adds to this list says that the files come out the same";
+}
+
+TEST_F(Options, that_name_inputs_count_by_being_given) {
+  const std::string plain = digest();
+  for (const Effect effect : {Effect::input, Effect::pixels_or_input})
+    for_each(effect, [&](const OptionRow& row) {
+      row.read({file});
+      const std::string given = digest();
+      EXPECT_NE(given, plain) << row.name;
+      row.read({other});
+      EXPECT_EQ(digest(), given) << row.name << ": inputs are known by their bytes";
+    });
+  options.settings.input.albedo_value = 0.5;
+  const std::string half = digest();
+  options.settings.input.albedo_value = 0.25;
+  EXPECT_NE(digest(), half);
+}
+
+TEST_F(Options, that_name_a_file_count_by_its_content) {
+  const std::string plain = digest();
+  for_each(Effect::content, [&](const OptionRow& row) {
+    row.read({file});
+    const std::string first = digest();
+    EXPECT_NE(first, plain) << row.name;
+    row.read({same});
+    EXPECT_EQ(digest(), first) << row.name << ": another place";
+    row.read({other});
+    EXPECT_NE(digest(), first) << row.name;
+  });
+}
+
+TEST_F(Options, of_the_display_count_where_a_preview_shows_a_composite) {
+  ::unsetenv("OCIO");
+  const auto digest_of = [&](const OptionRow& row, const std::string& name) {
+    row.read({name});
+    return digest();
+  };
+  for_each(Effect::display, [&](const OptionRow& row) {
+    OutputSettings& output = options.settings.output;
+    const std::string plain = digest();
+    for (std::string* const path : {&output.preview, &output.composite}) {
+      *path = "a.file";
+      EXPECT_EQ(digest_of(row, file), plain) << "a preview of the AO, or a composite alone";
+      path->clear();
+      row.read({""});
+    }
+    output.preview = output.composite = "a.file";
+    const std::string built_in = digest();
+    const std::string first = digest_of(row, file);
+    EXPECT_NE(built_in, plain) << "the preview was of the AO";
+    EXPECT_NE(first, built_in);
+    EXPECT_EQ(digest_of(row, same), first) << "another place";
+    EXPECT_NE(digest_of(row, other), first);
+    row.read({""});
+    ::setenv("OCIO", file.c_str(), 1);
+    EXPECT_EQ(digest(), first) << "the variable says the same";
+    ::unsetenv("OCIO");
+  });
+}
+
+TEST_F(Options, that_are_not_set_are_not_those_that_are_zero) {
+  const std::string plain = digest();
+  options.settings.estimator.fade_start = 0;
+  EXPECT_NE(digest(), plain);
+}
+
+TEST_F(Options, run_into_each_other_in_no_digest) {
+  options.settings.input.layer = "a\n--view 1 b";
+  const std::string one = digest();
+  options.settings.input.layer = "a";
+  options.settings.input.view = "b";
+  EXPECT_NE(digest(), one);
+}
+
+TEST_F(Options, as_a_preset_are_what_they_are) {
+  const auto preset_of = [&](const std::string& text) {
+    options.settings.input.camera = text;
+    return preset_text(option_table(options));
+  };
+  for (const std::string text : {"a b", "a \"b\"", "it's", "c:\\d", "'\"\\\t\x7f'", "\n", "007", "1001", "inf", "true", "ü#"}) {
+    const auto entries = parse_flat_toml(preset_of(text));
+    const auto camera = std::ranges::find(entries, "camera", &FlatEntry::key);
+    ASSERT_NE(camera, entries.end());
+    EXPECT_THAT(camera->values, ElementsAre(text));
+  }
+}
+
+// The digest through the program.
+
+TEST_F(Options, of_the_camera_count_by_what_it_says_and_not_where_it_lies) {
+  const auto digest_in_file = [&] {
+    EXPECT_EQ(run({}).code, 0);
+    return text_in(read_header(ao), "alcove/options");
+  };
+  const std::string before = digest_in_file();
+  nlohmann::json fields = wall_camera();
+  fields["fx"] = 59;
+  write_bytes(camera, fields.dump());
+  EXPECT_NE(digest_in_file(), before) << "another focal length";
+  std::filesystem::create_directory(folder / "moved");
+  write_bytes(folder / "moved/camera.json", wall_camera().dump());
+  EXPECT_EQ(run_program({"run", frame, "-o", ao, "--camera", folder / "moved/camera.json", "--radius", "1"}).code, 0);
+  EXPECT_EQ(text_in(read_header(ao), "alcove/options"), before) << "the same camera in another folder";
+}
+
+/// A configuration whose only view multiplies by `factor`.
+std::string display_config(const char* factor) {
+  const std::string row = std::string("from_reference: !<MatrixTransform> {matrix: [") + factor + ", 0, 0, 0, 0, " +
+                          factor + ", 0, 0, 0, 0, " + factor + ", 0, 0, 0, 0, 1]}";
+  return "ocio_profile_version: 1\n"
+         "roles: {default: scene, scene_linear: scene}\n"
+         "displays:\n"
+         "  screen:\n"
+         "    - !<View> {name: darker, colorspace: dark}\n"
+         "colorspaces:\n"
+         "  - !<ColorSpace> {name: scene}\n"
+         "  - !<ColorSpace> {name: dark, " +
+         row + "}\n";
+}
+
+class Previews : public CommandLine {
+ protected:
+  Previews() {
+    FrameFile input = wall_frame();
+    add_beauty(input);
+    input.write(frame);
+    write_bytes(half, display_config("0.5"));
+    write_bytes(quarter, display_config("0.25"));
+  }
+
+  /// The preview after a run with --resume; the variable OCIO has this value, or none.
+  std::string preview_of(std::vector<std::string> more, std::optional<std::string> variable = {}) {
+    more.insert(more.end(), {"--preview", preview, "--resume", "--progress", "plain"});
+    const Finished finished = run(more, {.environment = {{"OCIO", variable}}});
+    EXPECT_EQ(finished.code, 0) << finished;
+    is_kept = finished.err.find("whole, kept") != std::string::npos;
+    return read_bytes(preview);
+  }
+
+  const std::string preview = folder / "preview.png", half = folder / "half.ocio", quarter = folder / "quarter.ocio";
+  const Words shown{"--composite", folder / "composite.exr"};
+  bool is_kept = false;
+};
+
+TEST_F(Previews, are_made_again_for_another_configuration_of_the_display) {
+  const Words by_half{shown[0], shown[1], "--ocio", half};
+  const Words by_quarter{shown[0], shown[1], "--ocio", quarter};
+  const std::string halved = preview_of(by_half);
+  EXPECT_EQ(preview_of(by_half), halved);
+  EXPECT_TRUE(is_kept);
+  const std::string quartered = preview_of(by_quarter);
+  EXPECT_NE(quartered, halved) << "--ocio";
+  EXPECT_EQ(preview_of(shown, quarter), quartered);
+  EXPECT_TRUE(is_kept) << "the variable OCIO says what --ocio said";
+  EXPECT_NE(preview_of(shown, half), quartered) << "the variable OCIO";
+  EXPECT_NE(preview_of(shown), halved) << "the built-in configuration";
+  write_bytes(half, display_config("0.25"));
+  EXPECT_NE(preview_of(by_half), halved) << "another text in the same file";
+}
+
+TEST_F(Previews, are_made_again_where_the_composite_is_not_asked_for_any_more) {
+  const std::string of_composite = preview_of(shown);
+  EXPECT_NE(preview_of({}), of_composite);
+  preview_of({});
+  EXPECT_TRUE(is_kept);
+}
+
+}  // namespace
+}  // namespace alcove

@@ -1,0 +1,269 @@
+// What a good run leaves behind: the AO file, the composite, the preview and the statistics.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <functional>
+#include <nlohmann/json.hpp>
+
+#include "core/formats/exr.h"
+#include "tests/support/command_line.h"
+#include "tests/support/exr_header.h"
+
+namespace alcove {
+namespace {
+
+using namespace test;
+using nlohmann::json;
+using testing::ElementsAre;
+using testing::StartsWith;
+
+TEST_F(CommandLine, ao_is_one_half_channel_with_the_windows_and_attributes_of_the_input) {
+  const Window display{0, 0, 64, 36};
+  for (const Window& data : {display, Window{-8, -4, 80, 44}, Window{10, 6, 40, 24}})
+    for (const double aspect : {1.0, 2.0}) {
+      FrameFile input = wall_frame(data, display, aspect);
+      input.attributes = {{"owner", "a studio"}, {"sceneTimeCode", "01:02:03:04"}, {"comments", "ü"}};
+      input.write(frame);
+      write_bytes(camera, wall_camera(display, aspect).dump());
+      const Finished finished = run({});
+      ASSERT_EQ(finished.code, 0) << to_string(data) << finished;
+
+      ExrHeader header = read_header(ao);
+      const ExrHeader before = read_header(frame);
+      EXPECT_THAT(channels_in(header), ElementsAre(HeaderChannel{"Y", 1}));
+      EXPECT_EQ(header["compression"].bytes, std::string(1, 3)) << "3: ZIP";
+      EXPECT_EQ(header["lineOrder"].bytes, std::string(1, 0)) << "0: increasing";
+      EXPECT_EQ(text_in(header, "alcove/input"), "wall.0042.exr");
+      EXPECT_THAT(text_in(header, "alcove/version"), testing::MatchesRegex("[0-9]+\\.[0-9]+\\.[0-9]+"));
+      EXPECT_THAT(text_in(header, "alcove/options"), testing::MatchesRegex("[0-9a-f]{16}"));
+      EXPECT_NE(text_in(header, "alcove/device"), "(none)");
+      for (const auto& [name, attribute] : before)
+        if (name != "channels") EXPECT_EQ(header[name].bytes, attribute.bytes) << name << " over " << to_string(data);
+      for (const auto& [name, attribute] : header)
+        EXPECT_TRUE(before.contains(name) || name.starts_with("alcove/")) << name << " is new";
+    }
+}
+
+TEST_F(CommandLine, ao_is_open_above_and_dark_in_the_corner_whatever_the_data_window) {
+  for (const Window& data : {kWallWindow, Window{-8, -4, 80, 44}, Window{10, 6, 40, 26}}) {
+    wall_frame(data).write(frame);
+    const Finished finished = run({"--type", "float"});
+    ASSERT_EQ(finished.code, 0) << finished;
+    const Image image = read_exr_image(ao);
+    const auto at = [&](int x, int y) {
+      return image.pixels[std::size_t(y - data.y) * std::size_t(data.width) + std::size_t(x - data.x)];
+    };
+    EXPECT_NEAR(at(32, 12), 1, 1e-3) << "the open wall, " << to_string(data);
+    EXPECT_LT(at(32, 27), 0.75) << "the wall just above the floor, " << to_string(data);
+    EXPECT_GT(at(32, 27), 0.3) << to_string(data);
+    for (const float value : image.pixels) EXPECT_TRUE(value >= 0 && value <= 1) << value;
+  }
+}
+
+TEST_F(CommandLine, type_and_compression_are_as_asked) {
+  ASSERT_EQ(run({"--type", "float", "--compression", "none"}).code, 0);
+  ExrHeader header = read_header(ao);
+  EXPECT_THAT(channels_in(header), ElementsAre(HeaderChannel{"Y", 2}));
+  EXPECT_EQ(header["compression"].bytes, std::string(1, 0));
+  const Image exact = read_exr_image(ao);
+  ASSERT_EQ(run({"--compression", "piz"}).code, 0);
+  EXPECT_EQ(read_header(ao)["compression"].bytes, std::string(1, 4));
+  const Image rounded = read_exr_image(ao);
+  for (std::size_t i = 0; i < exact.pixels.size(); i++) ASSERT_NEAR(rounded.pixels[i], exact.pixels[i], 0x1p-12) << i;
+}
+
+/// A frame with beauty, its AO as float and its composite.
+struct Composite {
+  Image input, ao, result;
+  std::span<const float> in(const std::string& name) const { return input.plane("ViewLayer." + name); }
+};
+
+/// The largest error of the composite against `ambient`, in units of what half precision allows; alpha must be the same
+/// bits.
+void expect_composite(const Composite& frame,
+                      const std::function<double(const std::string& component, std::size_t pixel)>& ambient,
+                      double precision) {
+  const auto alpha = frame.in("Combined.A"), ao = frame.ao.plane("Y"), alpha_after = frame.result.plane("A");
+  EXPECT_EQ(std::memcmp(alpha.data(), alpha_after.data(), alpha.size_bytes()), 0) << "alpha has changed";
+  for (const std::string component : {"R", "G", "B"}) {
+    const auto beauty = frame.in("Combined." + component), result = frame.result.plane(component);
+    for (std::size_t i = 0; i < beauty.size(); i++) {
+      const double f = 1 - double(alpha[i]) * (1 - double(ao[i])), light = ambient(component, i),
+                   expected = beauty[i] - light + light * f;
+      ASSERT_NEAR(result[i], expected, precision * (std::abs(expected) + 1))
+          << component << " of pixel " << i << ", ao " << ao[i] << ", alpha " << alpha[i];
+    }
+  }
+}
+
+class Composites : public CommandLine {
+ protected:
+  Composite compute(const FrameFile& input, std::vector<std::string> more = {}) {
+    input.write(frame);
+    const std::string composite = folder / "composite.exr";
+    more.insert(more.end(), {"--composite", composite, "--type", "float", "--compression", "none"});
+    const Finished finished = run(more);
+    EXPECT_EQ(finished.code, 0) << finished;
+    return {read_exr_image(frame), read_exr_image(ao), read_exr_image(composite)};
+  }
+  std::string how() const { return text_in(read_header(folder / "composite.exr"), "alcove/composite"); }
+};
+
+TEST_F(Composites, composite_dims_only_the_ambient_part) {
+  FrameFile input = wall_frame();
+  add_beauty(input);
+  for (const bool is_half : {false, true}) {
+    if (is_half)
+      for (const auto& [name, plane] : input.planes)
+        if (!name.ends_with("Depth.Z")) input.halves.insert(name);
+    const Composite frame = compute(input);
+    expect_composite(
+        frame,
+        [&](const std::string& c, std::size_t i) {
+          return double(frame.in("DiffInd." + c)[i]) * frame.in("DiffCol." + c)[i];
+        },
+        is_half ? 0x1p-11 : 1e-6);
+    EXPECT_THAT(how(), StartsWith("ambient"));
+    const int type = is_half ? 1 : 2;
+    EXPECT_THAT(channels_in(read_header(folder / "composite.exr")),
+                ElementsAre(HeaderChannel{"A", type}, HeaderChannel{"B", type}, HeaderChannel{"G", type},
+                            HeaderChannel{"R", type}));
+  }
+}
+
+TEST_F(Composites, blender_5_names_mean_the_same_light) {
+  FrameFile input = wall_frame();
+  add_beauty(input);
+  const Composite old_names = compute(input);
+  for (const std::string c : {".R", ".G", ".B"}) {
+    input.rename("ViewLayer.DiffInd" + c, "ViewLayer.Diffuse Indirect" + c);
+    input.rename("ViewLayer.DiffCol" + c, "ViewLayer.Diffuse Color" + c);
+  }
+  const Composite new_names = compute(input);
+  EXPECT_EQ(old_names.result.pixels, new_names.result.pixels)
+      << "the indirect light of Blender is without the surface's colour, under either name";
+}
+
+TEST_F(Composites, arnold_indirect_light_holds_the_colour_already) {
+  FrameFile input = wall_frame();
+  add_beauty(input);
+  for (const std::string c : {".R", ".G", ".B"})
+    input.rename("ViewLayer.DiffInd" + c, "ViewLayer.diffuse_indirect" + c);
+  const Composite frame = compute(input);
+  expect_composite(
+      frame, [&](const std::string& c, std::size_t i) { return double(frame.in("diffuse_indirect." + c)[i]); }, 1e-6);
+}
+
+TEST_F(Composites, composite_without_parts_is_a_multiply_and_says_so) {
+  FrameFile input = wall_frame();
+  add_beauty(input);
+  std::erase_if(input.planes, [](const auto& plane) { return plane.first.find(".Diff") != std::string::npos; });
+  const Composite frame = compute(input);
+  expect_composite(
+      frame, [&](const std::string& c, std::size_t i) { return double(frame.in("Combined." + c)[i]); }, 1e-6);
+  EXPECT_THAT(how(), StartsWith("multiply"));
+}
+
+TEST_F(Composites, beauty_of_its_own_file_keeps_that_files_attributes) {
+  FrameFile beauty = wall_frame();
+  add_beauty(beauty);
+  std::erase_if(beauty.planes, [](const auto& plane) { return plane.first.find("Combined") == std::string::npos; });
+  for (const std::string c : {"R", "G", "B", "A"}) beauty.rename("ViewLayer.Combined." + c, c);
+  beauty.attributes = {{"grade", "none"}};
+  beauty.write(folder / "beauty.exr");
+  const std::string composite = folder / "composite.exr";
+  const Finished finished = run({"--beauty", folder / "beauty.exr", "--composite", composite});
+  ASSERT_EQ(finished.code, 0) << finished;
+  EXPECT_EQ(text_in(read_header(composite), "grade"), "none");
+  EXPECT_EQ(text_in(read_header(ao), "grade"), "(none)");
+  const Image before = read_exr_image(folder / "beauty.exr", {"A"}), after = read_exr_image(composite, {"A"});
+  EXPECT_EQ(std::memcmp(before.pixels.data(), after.pixels.data(), 4 * before.pixels.size()), 0);
+}
+
+TEST_F(Composites, nothing_that_leaves_is_nan_or_infinite_and_repairs_are_counted) {
+  FrameFile input = wall_frame();
+  add_beauty(input);
+  const float nan = std::nanf(""), inf = INFINITY;
+  const auto spoil = [&](const char* name, std::size_t pixel, float value) {
+    input.planes.at(std::string("ViewLayer.") + name)[pixel] = value;
+  };
+  spoil("Depth.Z", 100, nan);
+  spoil("Depth.Z", 101, -1);
+  spoil("Normal.X", 202, nan);
+  spoil("Combined.R", 1900, nan);
+  spoil("Combined.G", 1901, inf);
+  spoil("DiffInd.B", 1902, -inf);
+  spoil("Combined.A", 1903, nan);
+  const Composite frame = compute(input, {"--stats", folder / "stats.json"});
+  for (const Image* image : {&frame.ao, &frame.result})
+    for (std::size_t i = 0; i < image->pixels.size(); i++)
+      EXPECT_TRUE(std::isfinite(image->pixels[i]))
+          << image->pixels[i] << " in " << image->names[i / kWallWindow.pixels()] << " of pixel "
+          << i % kWallWindow.pixels();
+  EXPECT_EQ(json::parse(read_bytes(folder / "stats.json"))["frames"][0]["repaired_pixels"], 7)
+      << "pixels 100, 101, 202 and 1900 to 1903";
+}
+
+TEST_F(Composites, a_composite_beyond_half_stays_finite) {
+  FrameFile input = wall_frame();
+  add_beauty(input);
+  for (const char* name : {"ViewLayer.DiffInd.R", "ViewLayer.DiffCol.R"})
+    input.planes[name].assign(kWallWindow.pixels(), 60000);
+  for (const auto& [name, plane] : input.planes)
+    if (!name.ends_with("Depth.Z")) input.halves.insert(name);
+  const Composite frame = compute(input);
+  for (const float value : frame.result.pixels) ASSERT_TRUE(std::isfinite(value)) << value;
+}
+
+TEST_F(CommandLine, preview_is_a_png_of_the_display_windows_size) {
+  wall_frame({-8, -4, 80, 44}).write(frame);
+  ASSERT_EQ(run({"--preview", folder / "preview.png"}).code, 0);
+  const std::string png = read_bytes(folder / "preview.png");
+  ASSERT_GT(png.size(), 33);
+  EXPECT_EQ(png.substr(0, 8), "\x89PNG\r\n\x1a\n");
+  EXPECT_EQ(png.substr(12, 4), "IHDR");
+  EXPECT_EQ(png.substr(16, 10), std::string("\0\0\0\x40\0\0\0\x24\x08\0", 10)) << "64 x 36, 8 bits, grey";
+}
+
+TEST_F(CommandLine, stats_have_the_documented_fields_and_add_up) {
+  const std::string stats_file = folder / "stats.json";
+  FrameFile input = wall_frame();
+  for (std::size_t i = 0; i < 64; i++) input.planes["ViewLayer.Depth.Z"][i] = 1e10f;  // one line of 36 is sky
+  input.write(frame);
+  ASSERT_EQ(run({"--stats", stats_file, "--slices", "2", "--steps", "5", "--stride", "2", "--power", "1.5"}).code, 0);
+  const json stats = json::parse(read_bytes(stats_file)), one = stats.at("frames").at(0), totals = stats.at("totals");
+  EXPECT_TRUE(stats.at("device").is_string());
+  EXPECT_EQ(stats.at("options"), text_in(read_header(ao), "alcove/options"));
+  EXPECT_EQ(stats.at("frames").size(), 1);
+  EXPECT_EQ(one.at("frame"), 42);
+  EXPECT_EQ(one.at("input"), frame);
+  EXPECT_EQ(one.at("output"), ao);
+  double sum = 0;
+  std::vector<std::string> passes;
+  for (const auto& pass : one.at("passes")) {
+    sum += pass.at("ms").get<double>();
+    EXPECT_GT(pass.at("ms"), 0);
+    passes.push_back(pass.at("name"));
+  }
+  EXPECT_THAT(passes, ElementsAre("prepare", "reconstruct", "classify", "horizon", "denoise", "denoise", "shape"));
+  const json& ms = one.at("ms");
+  EXPECT_NEAR(ms.at("compute"), sum, 1e-9 * sum);
+  for (const char* name : {"read", "compute", "write"}) EXPECT_GT(ms.at(name), 0) << name;
+  EXPECT_GE(ms.at("total").get<double>(), ms.at("read").get<double>() + ms.at("write").get<double>());
+  EXPECT_NEAR(one.at("samples_per_pixel"), 2 * 2 * 5 / 2.0 * 35.0 / 36, 1e-9);
+  EXPECT_EQ(one.at("repaired_pixels"), 0);
+  EXPECT_EQ(one.at("parts"), 1);
+  // of 64 x 36 pixels
+  EXPECT_EQ(one.at("tiles"),
+            json({{"total", 40}, {"sky", 0}, {"proved", 0}, {"tolerated", 0}, {"kept", 0}, {"computed", 40}}));
+  EXPECT_EQ(totals.at("frames"), 1);
+  EXPECT_EQ(totals.at("failed"), 0);
+  for (const char* name : {"wall_s", "cpu_s", "peak_rss_mb"}) EXPECT_GT(totals.at(name), 0) << name;
+}
+
+}  // namespace
+}  // namespace alcove
