@@ -14,6 +14,7 @@
 #include "core/chain/chain.h"
 #include "core/chain/host_frame.h"
 #include "core/formats/exr.h"
+#include "core/gpu/recorder.h"
 #include "core/measure/metrics.h"
 #include "core/reference/reference.h"
 

@@ -9,6 +9,7 @@
 #include <map>
 #include <numbers>
 
+#include "core/gpu/recorder.h"
 #include "core/reference/reference.h"
 #include "core/reference/reference_estimators.h"
 #include "core/reference/reference_scene.h"
