@@ -76,6 +76,13 @@ gpu::Extent tile_extent(const View& view) {
   return {groups_of(view.size.x, uint(kTile)), groups_of(view.size.y, uint(kTile))};
 }
 
+/// The listed tiles; each takes at most one workgroup, in rows of kListedRow as in tiles.glsl.
+gpu::Extent list_extent(const TileList& list) {
+  constexpr uint kListedRow = 0xffff;
+  const auto most = uint(list.tiles->bytes() / sizeof(ListedTile));
+  return {*list.counts, std::min(most, kListedRow), groups_of(most, kListedRow)};
+}
+
 /// Groups of tiles in x and y.
 gpu::Extent group_extent(const View& view) {
   return {groups_of(view.size.x, uint(kTile * kTileGroup)), groups_of(view.size.y, uint(kTile * kTileGroup))};
@@ -145,10 +152,9 @@ void compare_directions(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameI
   const std::string name = "converge " + std::to_string(directions) + " ";
   const TileList next{&gpu.buffer(name + "tiles", sizeof(ListedTile) * tiles, gpu::Use::device),
                       &gpu.buffer(name + "counts", sizeof(TileCounts), gpu::Use::download), nullptr,
-                      &gpu.buffer(name + "lines", sizeof(GroupCount), gpu::Use::upload)};
+                      &gpu.buffer(name + "lines", sizeof(GroupCount), gpu::Use::device)};
   gpu.clear(*next.counts);
-  next.lines->as<GroupCount>()[0] = {groups_of(2 * (size.x + size.y), kProfileGroup), 1, 0};
-  gpu.upload(*next.lines);
+  gpu.write(*next.lines, GroupCount{groups_of(2 * (size.x + size.y), kProfileGroup), 1, 0});
   all.error = &gpu.buffer("error", plane_bytes(gbuffer.view), gpu::Use::download);
   all.squares = &gpu.buffer("error squares", sizeof(vec2) * tiles, gpu::Use::download);
   const ConvergeParams params{
@@ -307,7 +313,7 @@ void horizon(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& fram
                 {kHorizonBent, out.bent ? *out.bent : *out.ao},
                 {kHorizonList, *out.listed.tiles},
                 {kHorizonCounts, *out.listed.counts}},
-               gpu::Extent(*out.listed.counts), constants);
+               list_extent(out.listed), constants);
 }
 
 TileList converge(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame,
@@ -380,7 +386,7 @@ void exact(gpu::Recorder& gpu, const GBuffer& gbuffer, const Profile& profile, c
                 {kExactAo, *out.ao},
                 {kExactList, out.listed.tiles ? *out.listed.tiles : *out.ao},
                 {kExactCounts, out.listed.counts ? *out.listed.counts : *out.ao}},
-               out.listed.counts ? gpu::Extent(*out.listed.counts)
+               out.listed.counts ? list_extent(out.listed)
                : lines.steep     ? gpu::Extent{uint(taken.y), uint(taken.x)}
                                  : gpu::Extent{uint(taken.x), uint(taken.y)},
                {out.listed.counts ? 1u : 0u});
@@ -395,7 +401,7 @@ void bitmask(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& fram
                 {kBitmaskBent, out.bent ? *out.bent : *out.ao},
                 {kBitmaskList, *out.listed.tiles},
                 {kBitmaskCounts, *out.listed.counts}},
-               gpu::Extent(*out.listed.counts), slice_constants(settings, out.bent));
+               list_extent(out.listed), slice_constants(settings, out.bent));
 }
 
 void hbao(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings,
@@ -416,7 +422,7 @@ void hbao(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, 
                 {kHbaoAo, *out.ao},
                 {kHbaoList, *out.listed.tiles},
                 {kHbaoCounts, *out.listed.counts}},
-               gpu::Extent(*out.listed.counts), slice_constants(settings));
+               list_extent(out.listed), slice_constants(settings));
 }
 
 void crytek(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const EstimatorSettings& settings,
@@ -437,7 +443,7 @@ void crytek(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame
                 {kCrytekAo, *out.ao},
                 {kCrytekList, *out.listed.tiles},
                 {kCrytekCounts, *out.listed.counts}},
-               gpu::Extent(*out.listed.counts), {uint(settings.samples), uint(stride_of(settings))});
+               list_extent(out.listed), {uint(settings.samples), uint(stride_of(settings))});
 }
 
 gpu::Buffer& confidence(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame,

@@ -69,10 +69,10 @@ BlockGrid block_grid(const FrameInputs& frame, const EstimatorSettings& settings
 OpenSky open_sky(gpu::Recorder& gpu, const FrameInputs& frame, const EstimatorSettings& settings) {
   const ivec2 size = block_grid(frame, settings).size;
   const OpenSky sky{
-      &gpu.buffer("counts", sizeof(FrameCounts), gpu::Use::download),
-      &gpu.buffer("tile counts", sizeof(TileCounts), gpu::Use::download),
-      &gpu.buffer("open sky", plane_bytes(frame.view), gpu::Use::download),
-      &gpu.buffer("open sky scales", radii_of(settings).size() * plane_bytes(frame.view), gpu::Use::download)};
+      &gpu.buffer("open sky counts", sizeof(FrameCounts), gpu::Use::upload),
+      &gpu.buffer("open sky tile counts", sizeof(TileCounts), gpu::Use::upload),
+      &gpu.buffer("open sky", plane_bytes(frame.view), gpu::Use::upload),
+      &gpu.buffer("open sky scales", radii_of(settings).size() * plane_bytes(frame.view), gpu::Use::upload)};
   sky.counts->as<FrameCounts>()[0] = {uint(pixels_of(frame.view)), 0, 0, 0, 0};
   sky.tiles->as<TileCounts>()[0] = {{}, 0, groups_of(size.x, uint(kTile)) * groups_of(size.y, uint(kTile)), 0, 0, 0};
   for (const auto* planes : {sky.ao, sky.scales}) std::ranges::fill(planes->as<float>(), 1.0f);
@@ -83,7 +83,7 @@ GBuffer prepare(gpu::Recorder& gpu, const FrameInputs& frame, gpu::Use depth_use
   GBuffer gbuffer{frame.view, &gpu.buffer(prefix + "depth", plane_bytes(frame.view), depth_use),
                   &gpu.buffer(prefix + "normal", plane_bytes(frame.view), gpu::Use::device),
                   &gpu.buffer(prefix + "counts", sizeof(FrameCounts), gpu::Use::download),
-                  &gpu.buffer(prefix + "missing", sizeof(GroupCount), gpu::Use::upload)};
+                  &gpu.buffer(prefix + "missing", sizeof(GroupCount), gpu::Use::device)};
   PrepareParams params{};
   params.view = frame.view;
   params.view_from_normal_x = to_vec3(frame.view_from_normal[0]);
@@ -100,9 +100,8 @@ GBuffer prepare(gpu::Recorder& gpu, const FrameInputs& frame, gpu::Use depth_use
   params.sky_depth = float(map.sky_depth);
   params.normal_unorm = frame.normal_unorm ? 1 : 0;
   gpu.clear(*gbuffer.counts);
-  gbuffer.missing->as<GroupCount>()[0] = {groups_of(frame.view.size.x, kGroupX), groups_of(frame.view.size.y, kGroupY),
-                                          0};
-  gpu.upload(*gbuffer.missing);
+  gpu.write(*gbuffer.missing,
+            GroupCount{groups_of(frame.view.size.x, kGroupX), groups_of(frame.view.size.y, kGroupY), 0});
   gpu.dispatch("prepare", params,
                {{kPrepareRawDepth, *frame.depth},
                 {kPrepareRawNormal, frame.normal ? *frame.normal : *frame.depth},
