@@ -12,6 +12,7 @@
 #include "cli/print.h"
 #include "core/base/error.h"
 #include "core/base/file.h"
+#include "core/gpu/device.h"
 #include "core/run/check.h"
 
 namespace alcove {

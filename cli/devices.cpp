@@ -6,7 +6,7 @@
 
 #include "cli/commands.h"
 #include "core/base/error.h"
-#include "core/gpu/device.h"
+#include "core/gpu/device_info.h"
 
 namespace alcove {
 

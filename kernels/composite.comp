@@ -23,9 +23,10 @@ layout(scalar, binding = kCompositeCounts) buffer Counts { FrameCounts counts; }
 
 bool broken = false;  // this pixel had a value that is NaN or infinite
 
-/// Nothing that leaves the tool is NaN or infinite: such a value becomes 0, and is counted.
+/// Nothing that leaves the tool is NaN or infinite: such a value becomes 0, and is counted. It is told by its bits, as
+/// drivers without SignedZeroInfNanPreserve may take isnan for false.
 float sane(float x) {
-  if (!isnan(x) && !isinf(x)) return x;
+  if ((floatBitsToUint(x) & 0x7f800000u) != 0x7f800000u) return x;
   broken = true;
   return 0.0;
 }

@@ -26,7 +26,9 @@ layout(scalar, binding = kPrepareMissing) writeonly buffer Missing { GroupCount 
 /// Normals shorter than this are no direction at all (a background of zeros).
 const float kLeastLength = 1e-6;
 
-bool finite(float x) { return !isnan(x) && !isinf(x); }
+/// By its bits: drivers without SignedZeroInfNanPreserve may take isnan for false.
+bool finite(float x) { return (floatBitsToUint(x) & 0x7f800000u) != 0x7f800000u; }
+bool is_nan(float x) { return (floatBitsToUint(x) & 0x7fffffffu) > 0x7f800000u; }
 
 /// Planar depth in scene units, kSkyDepth where there is no surface.
 float planar_depth(ivec2 pixel) {
@@ -77,7 +79,7 @@ void main() {
   if (z >= kSkyDepth) {
     normal[index] = pack_normal(vec3(0, 0, 1));
     atomicAdd(counts.sky, 1u);
-    if (isnan(raw_depth[index]) || raw_depth[index] < params.sky_below) atomicAdd(counts.repaired_depth, 1u);
+    if (is_nan(raw_depth[index]) || raw_depth[index] < params.sky_below) atomicAdd(counts.repaired_depth, 1u);
     return;
   }
 

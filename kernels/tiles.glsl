@@ -3,7 +3,6 @@
 
 /// Groups of a row of a dispatch over a list: as many as every device takes, since drivers share out whole rows, with
 /// the empty groups at the end of the last.
-const uint kListedRow = 0xffffu;
 
 /// A dispatch of so many groups, in x and y.
 uvec2 dispatch_of(uint groups) { return uvec2(min(groups, kListedRow), (groups + kListedRow - 1u) / kListedRow); }

@@ -15,6 +15,7 @@
 #include "core/chain/chain.h"
 #include "core/chain/compute.h"
 #include "core/formats/exr.h"
+#include "core/gpu/recorder.h"
 #include "core/measure/metrics.h"
 #include "core/reference/reference.h"
 

@@ -9,9 +9,12 @@
 
 #include "core/base/settings.h"
 #include "core/bench/suite.h"
-#include "core/gpu/recorder.h"
+#include "core/gpu/pass_time.h"
 
 namespace alcove {
+namespace gpu {
+class Device;
+}
 
 /// A candidate with its settings worked out; a radius of its own, or the frame's.
 struct BenchCandidate {

@@ -7,9 +7,12 @@
 #include <string>
 #include <vector>
 
-#include "core/gpu/recorder.h"
+#include "core/gpu/pass_time.h"
 
 namespace alcove {
+namespace gpu {
+class Device;
+}
 
 /// An estimator breaks down where its RMSE is this much above that of the plain room, which is what its samples leave.
 constexpr double kBreakdown = 0.05;

@@ -40,14 +40,14 @@ gpu::Buffer& confidence(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameI
   const auto visibility = [&](float thickness, const std::string& prefix) -> const gpu::Buffer& {
     Reach reach = reach_of(bracket, radius);
     reach.thickness = thickness;
-    Estimate out{&gpu.buffer(prefix + "ao", plane_bytes(gbuffer.view), gpu::Use::download)};
+    Estimate out{&gpu.buffer(prefix + "ao", plane_bytes(gbuffer.view), gpu::Use::device)};
     out.listed = classify(gpu, gbuffer, surfaces, skipping, reach.radius, sampling.stride, out, 0, prefix);
     horizon(gpu, gbuffer, reach, sampling, out, 0);
     return denoise(gpu, gbuffer, *out.ao, denoiser, prefix);
   };
   const gpu::Buffer& thin = visibility(float(kThin * radius), "thin ");
   const gpu::Buffer& solid = visibility(std::numeric_limits<float>::infinity(), "solid ");
-  gpu::Buffer& result = gpu.buffer("confidence", plane_bytes(gbuffer.view), gpu::Use::download);
+  gpu::Buffer& result = gpu.buffer("confidence", plane_bytes(gbuffer.view), gpu::Use::device);
   gpu.dispatch("confidence", ConfidenceParams{gbuffer.view, float(radius), gbuffer.depth_precision},
                {{kConfidenceDepth, *gbuffer.depth},
                 {kConfidenceNormal, *gbuffer.normal},

@@ -39,7 +39,7 @@ DebugPlane debug(gpu::Recorder& gpu, const DebugView& view, const GBuffer& gbuff
       values = stages.sectors;
       break;
   }
-  gpu::Buffer& result = gpu.buffer(std::string("debug ") + view.name, plane_bytes(shown->view), gpu::Use::download);
+  gpu::Buffer& result = gpu.buffer(std::string("debug ") + view.name, plane_bytes(shown->view), gpu::Use::device);
   gpu.dispatch(
       "debug", DebugParams{shown->view, view.kind, stride, shown->grid.origin},
       {{kDebugDepth, *shown->depth}, {kDebugNormal, *shown->normal}, {kDebugValues, *values}, {kDebugResult, result}},

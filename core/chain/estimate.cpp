@@ -79,12 +79,24 @@ gpu::Extent tile_extent(const View& view) {
   return {groups_of(view.size.x, uint(kTile)), groups_of(view.size.y, uint(kTile))};
 }
 
+/// The listed tiles; each takes at most one workgroup, in rows of kListedRow as in tiles.glsl.
+gpu::Extent list_extent(const TileList& list) {
+  constexpr uint kListedRow = 0xffff;
+  const auto most = uint(list.tiles->bytes() / sizeof(ListedTile));
+  return {*list.counts, std::min(most, kListedRow), groups_of(most, kListedRow)};
+}
+
 /// Groups of tiles in x and y.
 gpu::Extent group_extent(const View& view) {
   return {groups_of(view.size.x, uint(kTile * kTileGroup)), groups_of(view.size.y, uint(kTile * kTileGroup))};
 }
 
 }  // namespace
+
+gpu::Extent list_extent(const TileList& list) {
+  const auto most = uint(list.tiles->bytes() / sizeof(ListedTile));
+  return {*list.counts, std::min(most, kListedRow), groups_of(most, kListedRow)};
+}
 
 Reach reach_of(const EstimatorSettings& settings, double radius) {
   // Crytek's samples fill the sphere of the radius whatever the falloff.
@@ -113,8 +125,8 @@ Estimate estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs&
   const VolumeSamples volume{settings.samples, settings.sample_kernel, settings.range_check};
   const bool is_exact = searches_exactly(settings);
   Estimate result;
-  result.ao = &gpu.buffer("ao", radii.size() * plane_bytes(gbuffer.view), gpu::Use::download);
-  if (with_bent) result.bent = &gpu.buffer("bent", 3 * plane_bytes(gbuffer.view), gpu::Use::download);
+  result.ao = &gpu.buffer("ao", radii.size() * plane_bytes(gbuffer.view), gpu::Use::device);
+  if (with_bent) result.bent = &gpu.buffer("bent", 3 * plane_bytes(gbuffer.view), gpu::Use::device);
 
   const Bounds surfaces = bounds(gpu, gbuffer, skipping.proves, sampling.stride);
   coarsen(gpu, gbuffer, surfaces);
@@ -166,7 +178,7 @@ TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const Bounds& boun
   const gpu::Extent tiles = tile_extent(gbuffer.view);
   TileList list;
   list.tiles = &gpu.buffer("tiles", sizeof(ListedTile) * tiles.x * tiles.y, gpu::Use::device);
-  list.counts = &gpu.buffer(prefix + "tile counts", sizeof(TileCounts), gpu::Use::download);
+  list.counts = &gpu.buffer(prefix + "tile counts", sizeof(TileCounts), gpu::Use::device);
   list.sectors = &gpu.buffer(prefix + "tile sectors", sizeof(uint) * tiles.x * tiles.y, gpu::Use::device);
   list.skips_surfaces = skipping.proves || skipping.changes;
   gpu.clear(*list.counts);
@@ -209,7 +221,7 @@ void horizon(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, con
                 {kHorizonBent, out.bent ? *out.bent : *out.ao},
                 {kHorizonList, *out.listed.tiles},
                 {kHorizonCounts, *out.listed.counts}},
-               gpu::Extent(*out.listed.counts), constants);
+               list_extent(out.listed), constants);
 }
 
 void bitmask(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, const Sampling& sampling,
@@ -221,7 +233,7 @@ void bitmask(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, con
                 {kBitmaskBent, out.bent ? *out.bent : *out.ao},
                 {kBitmaskList, *out.listed.tiles},
                 {kBitmaskCounts, *out.listed.counts}},
-               gpu::Extent(*out.listed.counts), slice_constants(reach, sampling, out.bent));
+               list_extent(out.listed), slice_constants(reach, sampling, out.bent));
 }
 
 void hbao(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, const Sampling& sampling, Elevation elevation,
@@ -242,7 +254,7 @@ void hbao(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, const 
                 {kHbaoAo, *out.ao},
                 {kHbaoList, *out.listed.tiles},
                 {kHbaoCounts, *out.listed.counts}},
-               gpu::Extent(*out.listed.counts), slice_constants(reach, sampling));
+               list_extent(out.listed), slice_constants(reach, sampling));
 }
 
 void crytek(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, const Sampling& sampling,
@@ -263,7 +275,7 @@ void crytek(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, cons
                 {kCrytekAo, *out.ao},
                 {kCrytekList, *out.listed.tiles},
                 {kCrytekCounts, *out.listed.counts}},
-               gpu::Extent(*out.listed.counts), {uint(samples.count), uint(sampling.stride)});
+               list_extent(out.listed), {uint(samples.count), uint(sampling.stride)});
 }
 
 }  // namespace alcove

@@ -19,6 +19,9 @@ struct TileList {
   bool skips_surfaces = false;     // more than sky may be left out
 };
 
+/// The workgroups of a pass over the listed tiles, of which each takes at most one.
+gpu::Extent list_extent(const TileList& list);
+
 /// What an estimator gives for every pixel of the G-buffer, or for those that the stride leaves.
 struct Estimate {
   gpu::Buffer* ao = nullptr;       // a plane of visibility for each radius, from the smallest on

@@ -68,13 +68,12 @@ void compare_directions(gpu::Recorder& gpu, const GBuffer& gbuffer, double toler
   const std::string name = "converge " + std::to_string(directions) + " ";
   TileList next;
   next.tiles = &gpu.buffer(name + "tiles", sizeof(ListedTile) * tiles, gpu::Use::device);
-  next.counts = &gpu.buffer(name + "counts", sizeof(TileCounts), gpu::Use::download);
-  next.lines = &gpu.buffer(name + "lines", sizeof(GroupCount), gpu::Use::upload);
+  next.counts = &gpu.buffer(name + "counts", sizeof(TileCounts), gpu::Use::device);
+  next.lines = &gpu.buffer(name + "lines", sizeof(GroupCount), gpu::Use::device);
   gpu.clear(*next.counts);
-  next.lines->as<GroupCount>()[0] = {groups_of(2 * (size.x + size.y), kProfileGroup), 1, 0};
-  gpu.upload(*next.lines);
-  all.error = &gpu.buffer("error", plane_bytes(gbuffer.view), gpu::Use::download);
-  all.squares = &gpu.buffer("error squares", sizeof(vec2) * tiles, gpu::Use::download);
+  gpu.write(*next.lines, GroupCount{groups_of(2 * (size.x + size.y), kProfileGroup), 1, 0});
+  all.error = &gpu.buffer("error", plane_bytes(gbuffer.view), gpu::Use::device);
+  all.squares = &gpu.buffer("error squares", sizeof(vec2) * tiles, gpu::Use::device);
   const ConvergeParams params{
       gbuffer.view, origin, float(tolerance), uint(directions), directions > kLeastDirections ? 1u : 0u, plane};
   const bool begins = directions == 0;
@@ -173,7 +172,7 @@ void exact(gpu::Recorder& gpu, const GBuffer& gbuffer, const Profile& profile, c
                 {kExactAo, *out.ao},
                 {kExactList, is_listed ? *out.listed.tiles : *out.ao},
                 {kExactCounts, is_listed ? *out.listed.counts : *out.ao}},
-               is_listed ? gpu::Extent(*out.listed.counts) : pixels, {is_listed ? 1u : 0u});
+               is_listed ? list_extent(out.listed) : pixels, {is_listed ? 1u : 0u});
 }
 
 }  // namespace alcove

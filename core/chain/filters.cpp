@@ -32,11 +32,11 @@ std::vector<double> weights_of(const EstimatorSettings& settings) {
 }
 
 gpu::Buffer& denoised(gpu::Recorder& gpu, const std::string& prefix, std::size_t bytes) {
-  return gpu.buffer(prefix + "denoised", bytes, gpu::Use::download);
+  return gpu.buffer(prefix + "denoised", bytes, gpu::Use::device);
 }
 
 gpu::Buffer& upsampled(gpu::Recorder& gpu, const std::string& prefix, std::size_t bytes) {
-  return gpu.buffer(prefix + "upsampled", bytes, gpu::Use::download);
+  return gpu.buffer(prefix + "upsampled", bytes, gpu::Use::device);
 }
 
 /// The parameters of the filter, without the axis.
@@ -56,7 +56,7 @@ DenoiseParams denoise_params(const GBuffer& gbuffer, const Denoiser& denoiser) {
 Visibility combine(gpu::Recorder& gpu, const GBuffer& gbuffer, const Estimate& estimate, bool keeps_scales) {
   const uint radii = planes_in(*estimate.ao, gbuffer.view);
   if (radii == 1) return {estimate.ao, nullptr, estimate.bent};
-  gpu::Buffer& mean = gpu.buffer("combined", plane_bytes(gbuffer.view), gpu::Use::download);
+  gpu::Buffer& mean = gpu.buffer("combined", plane_bytes(gbuffer.view), gpu::Use::device);
   gpu.dispatch("combine", CombineParams{gbuffer.view.size, radii}, {{kCombineScales, *estimate.ao}, {kCombineAo, mean}},
                extent_of(gbuffer.view));
   return {&mean, keeps_scales ? estimate.ao : nullptr, estimate.bent};

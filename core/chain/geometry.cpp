@@ -28,14 +28,13 @@ GBuffer prepare(gpu::Recorder& gpu, const FrameInputs& frame, const std::string&
   gbuffer.view = frame.view;
   gbuffer.grid = block_grid(frame, 1);
   gbuffer.depth_precision = to_vec3(frame.depth_precision.at);
-  gbuffer.depth = &gpu.buffer(prefix + "depth", plane_bytes(frame.view), gpu::Use::download);
+  gbuffer.depth = &gpu.buffer(prefix + "depth", plane_bytes(frame.view), gpu::Use::device);
   gbuffer.normal = &gpu.buffer(prefix + "normal", plane_bytes(frame.view), gpu::Use::device);
-  gbuffer.counts = &gpu.buffer(prefix + "counts", sizeof(FrameCounts), gpu::Use::download);
-  gbuffer.missing = &gpu.buffer(prefix + "missing", sizeof(GroupCount), gpu::Use::upload);
+  gbuffer.counts = &gpu.buffer(prefix + "counts", sizeof(FrameCounts), gpu::Use::device);
+  gbuffer.missing = &gpu.buffer(prefix + "missing", sizeof(GroupCount), gpu::Use::device);
   gpu.clear(*gbuffer.counts);
-  gbuffer.missing->as<GroupCount>()[0] = {groups_of(frame.view.size.x, kGroupX), groups_of(frame.view.size.y, kGroupY),
-                                          0};
-  gpu.upload(*gbuffer.missing);
+  gpu.write(*gbuffer.missing,
+            GroupCount{groups_of(frame.view.size.x, kGroupX), groups_of(frame.view.size.y, kGroupY), 0});
   gpu.dispatch("prepare", frame.prepare,
                {{kPrepareRawDepth, raw_depth},
                 {kPrepareRawNormal, raw_normal ? *raw_normal : raw_depth},

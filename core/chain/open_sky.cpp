@@ -20,10 +20,10 @@ FrameOutputs open_sky(gpu::Recorder& gpu, const FrameInputs& frame, const Estima
   const ivec2 size = block_grid(frame, int(settings.resolution)).size;
   const std::size_t bytes = plane_bytes(frame.view);
   FrameOutputs out;
-  out.counts = &gpu.buffer("counts", sizeof(FrameCounts), gpu::Use::download);
-  out.tiles = &gpu.buffer("tile counts", sizeof(TileCounts), gpu::Use::download);
-  out.ao = &gpu.buffer("open sky", bytes, gpu::Use::download);
-  out.scales = &gpu.buffer("open sky scales", radii_of(settings).size() * bytes, gpu::Use::download);
+  out.counts = &gpu.buffer("open sky counts", sizeof(FrameCounts), gpu::Use::upload);
+  out.tiles = &gpu.buffer("open sky tile counts", sizeof(TileCounts), gpu::Use::upload);
+  out.ao = &gpu.buffer("open sky", bytes, gpu::Use::upload);
+  out.scales = &gpu.buffer("open sky scales", radii_of(settings).size() * bytes, gpu::Use::upload);
   out.counts->as<FrameCounts>()[0] = {uint(pixels_of(frame.view)), 0, 0, 0, 0};
   out.tiles->as<TileCounts>()[0] = {{}, 0, groups_of(size.x, uint(kTile)) * groups_of(size.y, uint(kTile)), 0, 0, 0};
   for (const auto* planes : {out.ao, out.scales}) std::ranges::fill(planes->as<float>(), 1.0f);

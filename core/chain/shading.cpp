@@ -18,7 +18,7 @@ Shaping shaping_of(const EstimatorSettings& settings) {
 
 gpu::Buffer& shape(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer& planes, const Shaping& shaping,
                    const gpu::Buffer* material_ao, const std::string& prefix) {
-  gpu::Buffer& shaped = gpu.buffer(prefix + "shaped", planes.bytes(), gpu::Use::download);
+  gpu::Buffer& shaped = gpu.buffer(prefix + "shaped", planes.bytes(), gpu::Use::device);
   ShapeParams params{};
   params.size = gbuffer.view.size;
   params.intensity = float(shaping.intensity);
@@ -51,7 +51,7 @@ Visibility shape(gpu::Recorder& gpu, const GBuffer& gbuffer, const Visibility& v
 
 gpu::Buffer& bent_normal(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer* bent) {
   if (!bent) return *gbuffer.normal;
-  gpu::Buffer& result = gpu.buffer("bent normal", plane_bytes(gbuffer.view), gpu::Use::download);
+  gpu::Buffer& result = gpu.buffer("bent normal", plane_bytes(gbuffer.view), gpu::Use::device);
   gpu.dispatch("bent_normal", BentNormalParams{gbuffer.view.size},
                {{kBentNormalNormal, *gbuffer.normal}, {kBentNormalBent, *bent}, {kBentNormalResult, result}},
                extent_of(gbuffer.view));
@@ -60,7 +60,7 @@ gpu::Buffer& bent_normal(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::
 
 gpu::Buffer& directions(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& packed, const std::string& name,
                         const Matrix3& aov_from_view) {
-  gpu::Buffer& planes = gpu.buffer(name, 3 * plane_bytes(gbuffer.view), gpu::Use::download);
+  gpu::Buffer& planes = gpu.buffer(name, 3 * plane_bytes(gbuffer.view), gpu::Use::device);
   const DirectionsParams params{gbuffer.view.size, to_vec3(aov_from_view[0]), to_vec3(aov_from_view[1]),
                                 to_vec3(aov_from_view[2])};
   gpu.dispatch("directions", params,
@@ -71,7 +71,7 @@ gpu::Buffer& directions(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::B
 
 gpu::Buffer& specular_occlusion(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& open,
                                 const gpu::Buffer& ao, double roughness) {
-  gpu::Buffer& result = gpu.buffer("specular occlusion", plane_bytes(gbuffer.view), gpu::Use::download);
+  gpu::Buffer& result = gpu.buffer("specular occlusion", plane_bytes(gbuffer.view), gpu::Use::device);
   gpu.dispatch("specular_occlusion", SpecularOcclusionParams{gbuffer.view, float(roughness)},
                {{kSpecularOcclusionDepth, *gbuffer.depth},
                 {kSpecularOcclusionNormal, *gbuffer.normal},
@@ -84,7 +84,7 @@ gpu::Buffer& specular_occlusion(gpu::Recorder& gpu, const GBuffer& gbuffer, cons
 
 gpu::Buffer& multi_bounce(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& ao, const FrameInputs& frame) {
   const gpu::Buffer* albedo = frame[RawPlane::albedo];
-  gpu::Buffer& result = gpu.buffer("color ao", 3 * plane_bytes(gbuffer.view), gpu::Use::download);
+  gpu::Buffer& result = gpu.buffer("color ao", 3 * plane_bytes(gbuffer.view), gpu::Use::device);
   gpu.dispatch("multi_bounce", MultiBounceParams{gbuffer.view.size, albedo ? 1u : 0u, float(frame.albedo_value)},
                {{kMultiBounceAo, ao}, {kMultiBounceAlbedo, albedo ? *albedo : ao}, {kMultiBounceResult, result}},
                extent_of(gbuffer.view));
@@ -96,7 +96,7 @@ gpu::Buffer& composite(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Bu
   const gpu::Buffer& beauty = *frame[RawPlane::beauty];
   const gpu::Buffer* indirect = frame[RawPlane::indirect];
   const gpu::Buffer* diffuse_color = frame[RawPlane::diffuse_color];
-  gpu::Buffer& result = gpu.buffer("composite", beauty.bytes(), gpu::Use::download);
+  gpu::Buffer& result = gpu.buffer("composite", beauty.bytes(), gpu::Use::device);
   CompositeParams params{};
   params.view = frame.view;
   params.has_alpha = planes_in(beauty, frame.view) == 4 ? 1 : 0;

@@ -1,4 +1,4 @@
-// Buffer allocation: which memory type serves which use.
+// Buffers in the memory that choose_memory names, with guards around them in tests.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/gpu/buffer.h"
 
@@ -9,84 +9,87 @@
 namespace alcove::gpu {
 namespace {
 
-constexpr VkMemoryPropertyFlags kDeviceLocal = VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT;
-constexpr VkMemoryPropertyFlags kHostWritten =
-    VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
-/// Reading memory that the host does not cache goes word by word over the bus.
-constexpr VkMemoryPropertyFlags kHostRead = kHostWritten | VK_MEMORY_PROPERTY_HOST_CACHED_BIT;
-
 constexpr std::byte kUnwritten{0xff};  // four of them are a NaN
+
+/// A buffer of less than this is kept for any smaller size: it costs less than another allocation.
+constexpr std::size_t kSmallBytes = 1 << 20;
 
 double mebibytes(std::size_t bytes) { return double(bytes) / (1 << 20); }
 
 }  // namespace
 
 Buffer::Buffer(Device& device, std::size_t bytes, Use use)
-    : bytes_(bytes), guard_(device.options().guard_bytes), use_(use) {
+    : bytes_(bytes), capacity_(bytes), guard_(device.options().guard_bytes), use_(use) {
   if (bytes > device.info().buffer_bytes)
     fail(ErrorKind::device,
          "a frame this large needs a buffer of {:.0f} MiB, and {} takes {:.0f} MiB; compute a smaller frame or use "
          "another --device",
          mebibytes(bytes), device.info().name, mebibytes(device.info().buffer_bytes));
-  if (guard_ > 0) {
-    if (!allocate(device, kDeviceLocal | kHostRead, device_side_) && !allocate(device, kHostRead, device_side_))
-      fail(ErrorKind::device, "{} has no host memory for a guarded buffer of {:.1f} MiB", device.info().name,
-           mebibytes(bytes));
-    map(device, device_side_);
-    return;
-  }
-  const VkMemoryPropertyFlags host = use == Use::upload ? kHostWritten : kHostRead;
-  if (use != Use::device && device.options().map_memory && allocate(device, kDeviceLocal | host, device_side_)) {
-    map(device, device_side_);
-    return;
-  }
-  if (!allocate(device, kDeviceLocal, device_side_) && !allocate(device, 0, device_side_))
-    fail(ErrorKind::device,
-         "{} has no room for a buffer of {:.1f} MiB; with less --memory a frame is computed in smaller tiles",
-         device.info().name, mebibytes(bytes));
-  if (use == Use::device) return;
-  if (!allocate(device, host, staging_side_) && !allocate(device, kHostWritten, staging_side_))
-    fail(ErrorKind::device, "no host memory for a staging buffer of {:.1f} MiB for {}", mebibytes(bytes),
-         device.info().name);
-  map(device, staging_side_);
+  if (guard_ > 0)
+    place_between_guards(device);
+  else
+    place(device);
 }
 
-bool Buffer::allocate(Device& device, VkMemoryPropertyFlags wanted, Allocation& allocation) const {
+void Buffer::place(Device& device) {
+  if (!allocate(device, MemoryUse::kernels, device_side_))
+    throw OutOfMemory(
+        ErrorKind::device,
+        fmt::format(
+            "{} has no room for a buffer of {:.1f} MiB; with less --memory a frame is computed in smaller tiles",
+            device.info().name, mebibytes(bytes_)));
+  if (device_side_.is_cached && device.options().map_memory) host_ = map(device, device_side_);
+  if (use_ == Use::upload) make_staging(device);
+}
+
+void Buffer::place_between_guards(Device& device) {
+  if (!allocate(device, MemoryUse::both, device_side_))
+    fail(ErrorKind::device, "{} has no host memory for a guarded buffer of {:.1f} MiB", device.info().name,
+         mebibytes(bytes_));
+  guarded_ = map(device, device_side_);
+  std::ranges::fill(guarded_, kUnwritten);
+  host_ = guarded_.subspan(guard_, bytes_);
+}
+
+void Buffer::make_staging(Device& device) const {
+  if (!host_.empty()) return;
+  if (!allocate(device, MemoryUse::host, staging_side_))
+    throw OutOfMemory(ErrorKind::device, fmt::format("no host memory for a staging buffer of {:.1f} MiB for {}",
+                                                     mebibytes(capacity_), device.info().name));
+  host_ = map(device, staging_side_);
+}
+
+bool Buffer::allocate(Device& device, MemoryUse use, Allocation& allocation) const {
   VkBufferCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO;
-  info.size = bytes_ + 2 * guard_;
+  info.size = capacity_ + 2 * guard_;
   info.usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT |
                VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
   VkBuffer buffer = VK_NULL_HANDLE;
   check(vkCreateBuffer(device.handle(), &info, nullptr, &buffer), "vkCreateBuffer");
-  allocation.buffer = {device.handle(), buffer};
+  Allocation made;
+  made.buffer = {device.handle(), buffer};
   VkMemoryRequirements needs;
   vkGetBufferMemoryRequirements(device.handle(), buffer, &needs);
-  for (std::uint32_t type = 0; type < device.memory().memoryTypeCount; type++) {
-    if (!(needs.memoryTypeBits >> type & 1) || (device.memory().memoryTypes[type].propertyFlags & wanted) != wanted)
-      continue;
-    VkMemoryAllocateInfo allocate_info{};
-    allocate_info.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
-    allocate_info.allocationSize = needs.size;
-    allocate_info.memoryTypeIndex = type;
-    VkDeviceMemory memory = VK_NULL_HANDLE;
-    if (vkAllocateMemory(device.handle(), &allocate_info, nullptr, &memory) != VK_SUCCESS) continue;
-    allocation.memory = {device.handle(), memory};
-    check(vkBindBufferMemory(device.handle(), buffer, memory, 0), "vkBindBufferMemory");
-    return true;
-  }
-  allocation.buffer = {};
-  return false;
+  const auto type = choose_memory(device.memory(), needs.memoryTypeBits, use);
+  if (!type) return false;
+  made.memory = device.allocate(needs.size, type->index);
+  if (!made.memory) return false;
+  made.is_cached = type->is_cached;
+  check(vkBindBufferMemory(device.handle(), buffer, made.memory, 0), "vkBindBufferMemory");
+  allocation = std::move(made);
+  return true;
 }
 
-void Buffer::map(Device& device, const Allocation& allocation) {
+std::span<std::byte> Buffer::map(Device& device, const Allocation& allocation) const {
   void* data = nullptr;
   check(vkMapMemory(device.handle(), allocation.memory, 0, VK_WHOLE_SIZE, 0, &data), "vkMapMemory");
-  const std::span all(static_cast<std::byte*>(data), bytes_ + 2 * guard_);
-  if (use_ != Use::device) host_ = all.subspan(guard_, bytes_);
-  if (guard_ == 0) return;
-  guarded_ = all;
-  std::ranges::fill(guarded_, kUnwritten);
+  return {static_cast<std::byte*>(data), capacity_ + 2 * guard_};
+}
+
+bool Buffer::suits(std::size_t bytes) const {
+  if (bytes == bytes_) return true;
+  return guard_ == 0 && bytes <= capacity_ && capacity_ <= std::max(2 * bytes, kSmallBytes);
 }
 
 bool Buffer::guards_hold() const {

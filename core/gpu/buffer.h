@@ -1,4 +1,5 @@
-// A storage buffer that the host reaches directly where the device allows it, and through a staging twin where not.
+// A storage buffer that the host reaches directly where it caches the device's memory, and through a staging twin where
+// not.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -7,11 +8,12 @@
 #include <span>
 
 #include "core/gpu/device.h"
+#include "core/gpu/memory_choice.h"
 
 namespace alcove::gpu {
 
-/// Who touches a buffer: only kernels, kernels after the host wrote it, or the host after kernels wrote it.
-enum class Use { device, upload, download };
+/// Who fills a buffer first: kernels, or the host. The host reads any buffer that Recorder::download() was told of.
+enum class Use { device, upload };
 
 class Buffer {
  public:
@@ -19,12 +21,21 @@ class Buffer {
   Buffer(Device& device, std::size_t bytes, Use use);
 
   std::size_t bytes() const { return bytes_; }
+  /// The bytes that it has room for.
+  std::size_t capacity() const { return capacity_; }
   Use use() const { return use_; }
-  /// The bytes as the host sees them; empty for Use::device. Stays at its place for the buffer's life.
-  std::span<std::byte> host() const { return host_; }
+  /// Whether resize() may be told so many bytes. A buffer much larger than they are does not suit. Guards lie exactly
+  /// behind the bytes, so a guarded buffer suits its own size only.
+  bool suits(std::size_t bytes) const;
+  /// From here on it has so many bytes, and what is in them is as it was.
+  void resize(std::size_t bytes) { bytes_ = bytes; }
+
+  /// The bytes as the host sees them; empty while the buffer is not mapped and has no staging twin. They stay at their
+  /// place for the buffer's life.
+  std::span<std::byte> host() const { return host_.first(host_.empty() ? 0 : bytes_); }
   template <class T>
   std::span<T> as() const {
-    return {reinterpret_cast<T*>(host_.data()), host_.size() / sizeof(T)};
+    return {reinterpret_cast<T*>(host().data()), host().size() / sizeof(T)};
   }
 
   VkBuffer handle() const { return device_side_.buffer; }
@@ -32,22 +43,30 @@ class Buffer {
   VkDescriptorBufferInfo bound() const { return {handle(), guard_, bytes_ + guard_}; }
   /// False when something was written beside its bytes. Always true without guards: see DeviceOptions.
   bool guards_hold() const;
-  /// The staging twin; null where the host maps the buffer itself.
+  /// The staging twin; null where the host maps the buffer itself, and where nobody has asked for one yet.
   VkBuffer staging() const { return staging_side_.buffer; }
+  /// Makes the staging twin unless there is one, or none is needed. It is no part of the buffer's value, so that a
+  /// buffer which may only be read can be downloaded.
+  void make_staging(Device& device) const;
 
  private:
   struct Allocation {
     DeviceHandle<VkBuffer, vkDestroyBuffer> buffer;
-    DeviceHandle<VkDeviceMemory, vkFreeMemory> memory;
+    Memory memory;
+    bool is_cached = false;
   };
-  /// False when no memory type has all `wanted` properties, or none of those that have is large enough.
-  bool allocate(Device& device, VkMemoryPropertyFlags wanted, Allocation& allocation) const;
-  void map(Device& device, const Allocation& allocation);
+  /// False when no memory of the device serves that use, or too little of it is left.
+  bool allocate(Device& device, MemoryUse use, Allocation& allocation) const;
+  std::span<std::byte> map(Device& device, const Allocation& allocation) const;
+  void place(Device& device);
+  void place_between_guards(Device& device);
 
-  std::size_t bytes_, guard_;
+  std::size_t bytes_, capacity_, guard_;
   Use use_;
-  Allocation device_side_, staging_side_;
-  std::span<std::byte> host_, guarded_;  // guarded_: with the guards; empty without
+  Allocation device_side_;
+  mutable Allocation staging_side_;
+  mutable std::span<std::byte> host_;  // of the whole capacity
+  std::span<std::byte> guarded_;       // with the guards; empty without
 };
 
 }  // namespace alcove::gpu

@@ -1,4 +1,4 @@
-// The Vulkan instance, the choice of a device, and its one compute queue.
+// A Vulkan device in use: its one compute queue, its memory, its kernels.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -9,24 +9,19 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "core/base/error.h"
+#include "core/gpu/check.h"
+#include "core/gpu/device_info.h"
+#include "core/gpu/pipeline_cache.h"
 
 namespace alcove::gpu {
 
+class Device;
 class Kernel;
-
-/// The device is gone, and all that was on it; another may be made in its place.
-class DeviceLost : public Error {
- public:
-  using Error::Error;
-};
-
-/// Fails with ErrorKind::device (DeviceLost where it is that) and the name of the call unless `result` is VK_SUCCESS.
-void check(VkResult result, const char* call);
 
 /// Owns one Vulkan handle that a device (or instance) destroys; moves, never copies.
 template <class Owner, class T, void (*destroy)(Owner, T, const VkAllocationCallbacks*)>
@@ -52,33 +47,9 @@ class Handle {
 template <class T, void (*destroy)(VkDevice, T, const VkAllocationCallbacks*)>
 using DeviceHandle = Handle<VkDevice, T, destroy>;
 
-enum class DeviceType { cpu, integrated_gpu, discrete_gpu, virtual_gpu, other };
-
-/// One Vulkan device of this machine, as `alcove devices` lists it.
-struct DeviceInfo {
-  std::uint32_t index;
-  std::string name, uuid, driver, api_version;
-  DeviceType type;
-  std::uint64_t memory_bytes;  // of all device-local heaps
-  std::uint64_t buffer_bytes;  // the largest storage buffer
-  std::string unusable;        // why Alcove cannot compute on it; empty: it can
-};
-const char* name_of(DeviceType type);
-
-/// All devices that the loader finds; empty when there is none. Fails only when the loader itself does.
-std::vector<DeviceInfo> list_devices();
-
-struct DeviceOptions {
-  std::string choice = "auto";  // auto | cpu | an index | a name or a part of it | a UUID
-  bool require_gpu = false;     // a CPU device is an error
-  bool validate = false;        // load the validation layer; its messages are counted and printed to stderr
-  bool pipeline_cache = true;   // keep compiled pipelines in the XDG cache folder
-  // false: always copy through staging buffers, as on a device whose memory the host cannot map
-  bool map_memory = true;
-  // for tests, a multiple of 256: before and behind every buffer; NaN, as its own bytes are until written; to write
-  // there fails
-  std::size_t guard_bytes = 0;
-};
+void free_memory(Device* device, VkDeviceMemory memory, const VkAllocationCallbacks* callbacks);
+/// Device memory that counts among the allocations which the driver allows.
+using Memory = Handle<Device*, VkDeviceMemory, free_memory>;
 
 /// A logical device with one compute queue. Not movable: everything made on it refers to it. Several threads may use
 /// it, each with its own recorder.
@@ -88,6 +59,7 @@ class Device {
   explicit Device(const DeviceOptions& options);
   ~Device();
   Device(const Device&) = delete;
+  Device& operator=(const Device&) = delete;
 
   const DeviceInfo& info() const { return info_; }
   const DeviceOptions& options() const { return options_; }
@@ -96,24 +68,34 @@ class Device {
   double nanoseconds_per_tick() const { return nanoseconds_per_tick_; }
   bool has_timestamps() const { return timestamp_bits_ != 0; }
   std::uint64_t timestamp_mask() const { return timestamp_bits_ >= 64 ? ~0ull : (1ull << timestamp_bits_) - 1; }
+  /// Whether kernels must be told, and can be, that NaN, infinity and the sign of zero matter: see with_preserved_nan.
+  bool preserves_nan() const { return preserves_nan_; }
+  /// How long a submission may take; infinite on a CPU, which drives no display, unless the options say otherwise.
+  double submission_ms() const;
 
   /// The kernel of that stem, compiled on first use for these specialization constants (ids 0, 1, 2 ...).
   const Kernel& kernel(const std::string& stem, const std::vector<std::uint32_t>& specialization);
 
+  /// So many bytes of memory of that type; null when too little is left. Fails with OutOfMemory when the driver allows
+  /// no further allocation, however small.
+  Memory allocate(VkDeviceSize bytes, std::uint32_t type);
+
   VkDevice handle() const { return device_; }
-  /// Hands work to the queue; `fence` tells when it is done.
-  void submit(const VkSubmitInfo& work, VkFence fence);
+  /// Hands submissions to the queue, one after the other; `fence` tells when all are done. Where this fails, none of
+  /// them is under way any more.
+  void submit(std::span<const VkCommandBuffer> submissions, VkFence fence);
   std::uint32_t queue_family() const { return queue_family_; }
   VkPipelineCache pipeline_cache() const { return pipeline_cache_; }
   const VkPhysicalDeviceMemoryProperties& memory() const { return memory_; }
   PFN_vkCmdPushDescriptorSetKHR push_descriptors = nullptr;
 
  private:
+  friend void free_memory(Device* device, VkDeviceMemory memory, const VkAllocationCallbacks* callbacks);
   void create_instance();
-  void choose_device();
+  void read_properties();
   void create_device();
   void load_pipeline_cache();
-  void save_pipeline_cache() const;
+  void save_pipeline_cache() noexcept;
   void release();
 
   DeviceOptions options_;
@@ -127,6 +109,10 @@ class Device {
   VkQueue queue_ = VK_NULL_HANDLE;
   std::uint32_t queue_family_ = 0, timestamp_bits_ = 0;
   double nanoseconds_per_tick_ = 1;
+  bool preserves_nan_ = false;
+  std::uint32_t most_allocations_ = 0;
+  std::atomic<std::uint32_t> allocations_ = 0;
+  CacheOwner cache_owner_;
   DeviceHandle<VkPipelineCache, vkDestroyPipelineCache> pipeline_cache_;
   std::size_t loaded_cache_bytes_ = 0;
   std::mutex mutex_;  // of the queue and the kernels

@@ -10,22 +10,12 @@
 #include <vector>
 
 #include "core/gpu/device.h"
+#include "core/gpu/spirv.h"
 
 namespace alcove::gpu {
 
 /// The SPIR-V of kernels/STEM.comp, embedded at build time; empty when there is none of that stem.
 std::span<const std::uint32_t> kernel_code(std::string_view stem);
-
-/// What a kernel's SPIR-V says of itself.
-struct Reflection {
-  std::set<std::uint32_t> bindings;       // storage buffers of descriptor set 0
-  std::set<std::uint32_t> read, written;  // those of them that are not writeonly, and not readonly
-  std::uint32_t parameter_bytes = 0;      // of the push constant block
-  std::uint32_t group[3] = {1, 1, 1};     // invocations of a workgroup
-  std::set<std::uint32_t> constant_ids;   // specialization constants
-};
-/// Fails with ErrorKind::device on code that is no SPIR-V of the kind our kernels compile to.
-Reflection reflect(std::span<const std::uint32_t> code);
 
 class Kernel {
  public:
@@ -41,6 +31,10 @@ class Kernel {
   VkPipelineLayout layout() const { return layout_; }
 
  private:
+  void create_layouts(Device& device);
+  void create_pipeline(Device& device, std::span<const std::uint32_t> code,
+                       const std::vector<std::uint32_t>& specialization);
+
   std::string stem_;
   Reflection reflection_;
   DeviceHandle<VkDescriptorSetLayout, vkDestroyDescriptorSetLayout> set_layout_;

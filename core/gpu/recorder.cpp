@@ -1,14 +1,53 @@
-// Command recording: one kernel after the other, a full barrier behind each, two timestamps around each.
+// Command recording: one kernel after the other, a barrier before each, two timestamps around each.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/gpu/recorder.h"
+
+#include <algorithm>
+#include <cmath>
 
 #include "core/base/error.h"
 
 namespace alcove::gpu {
 namespace {
 
-// of one frame: an exact search of 64 slices, four directions each, at eight radii, has 4096
-constexpr std::uint32_t kMostPasses = 4608;
+/// Dispatches of one submission. An exact search of 64 slices at eight radii has 4096 in a frame.
+constexpr std::uint32_t kMostDispatches = 64;
+
+/// Workgroups of a slice of a pass that has not been measured. Half a million pixels of the dearest estimate, 8192
+/// samples each, take an integrated GPU some 0.5 s at 10^10 samples a second, which is about what they reach.
+constexpr double kUnmeasuredGroups = 8192;
+
+/// A pass is never cut into more slices than this: each costs a barrier.
+constexpr double kMostSlices = 256;
+
+/// The workgroups of a pass, and of each of its slices, in x and y.
+struct Cut {
+  std::uint32_t x, y, slice_x, slice_y;
+
+  double slices() const { return std::ceil(double(x) / slice_x) * std::ceil(double(y) / slice_y); }
+};
+
+/// About so many slices: of whole rows where there are enough of them.
+Cut cut_into(double slices, std::uint32_t x, std::uint32_t y) {
+  const double wanted = std::clamp(std::ceil(slices), 1.0, kMostSlices);
+  const double a_row = std::max(1.0, std::min(std::ceil(wanted / y), double(x)));
+  const double rows = std::max(1.0, std::floor(y / wanted));
+  return {x, y, std::uint32_t(std::ceil(x / a_row)), std::uint32_t(rows)};
+}
+
+PassTime pass_of(const Kernel& kernel, std::span<const Binding> bindings) {
+  PassTime pass{kernel.stem()};
+  for (const auto& binding : bindings) {
+    if (kernel.reflection().read.contains(binding.slot)) pass.bytes_read += binding.buffer.bytes();
+    if (kernel.reflection().written.contains(binding.slot)) pass.bytes_written += binding.buffer.bytes();
+  }
+  return pass;
+}
+
+/// A measure of a pass's work that is known before it runs and grows with the frame.
+double work_of(const PassTime& pass) {
+  return double(std::max<std::uint64_t>(pass.bytes_read + pass.bytes_written, 1));
+}
 
 }  // namespace
 
@@ -20,20 +59,6 @@ Recorder::Recorder(Device& device) : device_(device) {
   check(vkCreateCommandPool(device.handle(), &pool_info, nullptr, &pool), "vkCreateCommandPool");
   pool_ = {device.handle(), pool};
 
-  VkCommandBufferAllocateInfo buffer_info{};
-  buffer_info.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO;
-  buffer_info.commandPool = pool;
-  buffer_info.commandBufferCount = 1;
-  check(vkAllocateCommandBuffers(device.handle(), &buffer_info, &commands_), "vkAllocateCommandBuffers");
-
-  VkQueryPoolCreateInfo query_info{};
-  query_info.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO;
-  query_info.queryType = VK_QUERY_TYPE_TIMESTAMP;
-  query_info.queryCount = 2 * kMostPasses;
-  VkQueryPool queries = VK_NULL_HANDLE;
-  check(vkCreateQueryPool(device.handle(), &query_info, nullptr, &queries), "vkCreateQueryPool");
-  queries_ = {device.handle(), queries};
-
   VkFenceCreateInfo fence_info{};
   fence_info.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO;
   VkFence fence = VK_NULL_HANDLE;
@@ -41,26 +66,80 @@ Recorder::Recorder(Device& device) : device_(device) {
   fence_ = {device.handle(), fence};
 }
 
+Recorder::Submission Recorder::make_submission() {
+  VkQueryPoolCreateInfo query_info{};
+  query_info.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO;
+  query_info.queryType = VK_QUERY_TYPE_TIMESTAMP;
+  query_info.queryCount = 2 * kMostDispatches;
+  VkQueryPool queries = VK_NULL_HANDLE;
+  check(vkCreateQueryPool(device_.handle(), &query_info, nullptr, &queries), "vkCreateQueryPool");
+  Submission submission{VK_NULL_HANDLE, {device_.handle(), queries}};
+
+  VkCommandBufferAllocateInfo buffer_info{};
+  buffer_info.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO;
+  buffer_info.commandPool = pool_;
+  buffer_info.commandBufferCount = 1;
+  check(vkAllocateCommandBuffers(device_.handle(), &buffer_info, &submission.commands), "vkAllocateCommandBuffers");
+  return submission;
+}
+
 Buffer& Recorder::buffer(std::string_view name, std::size_t bytes, Use use) {
   auto found = buffers_.find(name);
-  if (found != buffers_.end() && found->second.bytes() == bytes && found->second.use() == use) return found->second;
   if (found != buffers_.end()) {
-    if (recording_) replaced_.push_back(std::move(found->second));
+    auto& [pooled, recording] = found->second;
+    const bool is_free = recording != recordings_;  // nothing that waits to be run has it at its present size
+    if (pooled.use() == use && (pooled.bytes() == bytes || (is_free && pooled.suits(bytes)))) {
+      pooled.resize(bytes);
+      recording = recordings_;
+      return pooled;
+    }
+    if (recording_) replaced_.push_back(std::move(pooled));
     buffers_.erase(found);
   }
-  return buffers_.emplace(std::string(name), Buffer(device_, bytes, use)).first->second;
+  return buffers_.emplace(std::string(name), PooledBuffer{Buffer(device_, bytes, use), recordings_})
+      .first->second.buffer;
+}
+
+std::size_t Recorder::bytes() const {
+  std::size_t sum = 0;
+  for (const auto& [name, pooled] : buffers_) sum += pooled.buffer.capacity() * (pooled.buffer.staging() ? 2 : 1);
+  return sum;
 }
 
 void Recorder::begin() {
   if (recording_) return;
   check(vkResetCommandPool(device_.handle(), pool_, 0), "vkResetCommandPool");
+  used_ = 0;
+  touched_.clear();
+  recorded_.clear();
+  next_submission();
+  recording_ = true;
+}
+
+void Recorder::next_submission() {
+  if (used_ == submissions_.size()) submissions_.push_back(make_submission());
+  Submission& next = submissions_[used_];
+  next.timed.clear();
+  next.ms = 0;
   VkCommandBufferBeginInfo info{};
   info.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
   info.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
-  check(vkBeginCommandBuffer(commands_, &info), "vkBeginCommandBuffer");
-  vkCmdResetQueryPool(commands_, queries_, 0, 2 * kMostPasses);
-  recorded_.clear();
-  recording_ = true;
+  check(vkBeginCommandBuffer(next.commands, &info), "vkBeginCommandBuffer");
+  if (device_.has_timestamps()) vkCmdResetQueryPool(next.commands, next.queries, 0, 2 * kMostDispatches);
+  used_++;
+}
+
+void Recorder::end_submission() { check(vkEndCommandBuffer(commands()), "vkEndCommandBuffer"); }
+
+void Recorder::make_room_for(double ms) {
+  const Submission& now = submissions_[used_ - 1];
+  const bool is_full = now.timed.size() == kMostDispatches;
+  const bool is_too_long = !now.timed.empty() && now.ms + ms > device_.submission_ms();
+  if (is_full || is_too_long) {
+    end_submission();
+    next_submission();
+  }
+  submissions_[used_ - 1].ms += ms;
 }
 
 void Recorder::barrier() {
@@ -70,51 +149,105 @@ void Recorder::barrier() {
   memory.dstAccessMask = VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT;
   const VkPipelineStageFlags stages =
       VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT | VK_PIPELINE_STAGE_HOST_BIT;
-  vkCmdPipelineBarrier(commands_, stages, stages | VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT, 0, 1, &memory, 0, nullptr, 0,
-                       nullptr);
+  vkCmdPipelineBarrier(commands(), stages | VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT,
+                       stages | VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT, 0, 1, &memory, 0, nullptr, 0, nullptr);
+  touched_.clear();
 }
 
-std::size_t Recorder::bytes() const {
-  std::size_t sum = 0;
-  for (const auto& [name, buffer] : buffers_) sum += buffer.bytes();
-  return sum;
+/// Fills and copies of buffers that nothing has touched since the last barrier need none, so all clears before a pass
+/// share one with it, and so do all downloads behind the last one.
+void Recorder::wait_for(VkBuffer buffer) {
+  if (std::ranges::find(touched_, buffer) != touched_.end()) barrier();
+  touched_.push_back(buffer);
 }
 
 void Recorder::clear(const Buffer& buffer) {
   begin();
-  const VkDescriptorBufferInfo bound = buffer.bound();
-  vkCmdFillBuffer(commands_, bound.buffer, bound.offset, buffer.bytes(), 0);
-  barrier();
+  wait_for(buffer.handle());
+  vkCmdFillBuffer(commands(), buffer.handle(), buffer.bound().offset, buffer.bytes(), 0);
+}
+
+void Recorder::write_bytes(const Buffer& buffer, std::span<const std::byte> value) {
+  if (value.size() > buffer.bytes())
+    fail(ErrorKind::device, "a value of {} bytes is written to a buffer of {}", value.size(), buffer.bytes());
+  begin();
+  wait_for(buffer.handle());
+  vkCmdUpdateBuffer(commands(), buffer.handle(), buffer.bound().offset, value.size(), value.data());
 }
 
 void Recorder::upload(const Buffer& buffer) {
   if (!buffer.staging()) return;
   begin();
+  wait_for(buffer.staging());
+  wait_for(buffer.handle());
   const VkBufferCopy region{0, 0, buffer.bytes()};
-  vkCmdCopyBuffer(commands_, buffer.staging(), buffer.handle(), 1, &region);
-  barrier();
+  vkCmdCopyBuffer(commands(), buffer.staging(), buffer.handle(), 1, &region);
 }
 
 void Recorder::download(const Buffer& buffer) {
+  buffer.make_staging(device_);
   if (!buffer.staging()) return;
   begin();
+  wait_for(buffer.handle());
+  wait_for(buffer.staging());
   const VkBufferCopy region{0, 0, buffer.bytes()};
-  vkCmdCopyBuffer(commands_, buffer.handle(), buffer.staging(), 1, &region);
-  barrier();
+  vkCmdCopyBuffer(commands(), buffer.handle(), buffer.staging(), 1, &region);
+}
+
+/// What the pass has taken at most, scaled to its present work. A pass that was never measured fills a submission.
+double Recorder::expected_ms(const RecordedPass& pass) const {
+  const auto known = ms_per_byte_.find(pass.kernel);
+  return known == ms_per_byte_.end() ? device_.submission_ms() : known->second * work_of(pass.time);
 }
 
 void Recorder::dispatch_bytes(const std::string& stem, std::span<const std::byte> params,
                               std::span<const Binding> bindings, Extent extent,
                               const std::vector<std::uint32_t>& specialization) {
   begin();
-  if (recorded_.size() == kMostPasses) fail(ErrorKind::device, "more than {} passes in one frame", kMostPasses);
   const Kernel& kernel = device_.kernel(stem, specialization);
   std::set<std::uint32_t> slots;
+  for (const auto& binding : bindings) slots.insert(binding.slot);
+  kernel.require(params.size(), slots);
+  recorded_.push_back({pass_of(kernel, bindings), &kernel});
+
+  const auto& group = kernel.reflection().group;
+  const auto groups = [](std::uint32_t count, std::uint32_t size) { return (count + size - 1) / size; };
+  const std::uint32_t x = extent.group_count ? extent.x : groups(extent.x, group[0]);
+  const std::uint32_t y = extent.group_count ? extent.y : groups(extent.y, group[1]);
+  const double ms = expected_ms(recorded_.back());
+  const double most_ms = device_.submission_ms();
+  const bool is_measured = ms_per_byte_.contains(&kernel);
+  const double slices = std::isinf(most_ms) ? 1 : is_measured ? ms / most_ms : double(x) * y / kUnmeasuredGroups;
+  const bool is_counted_by_device = extent.group_count && (slices <= 1 || x == 0 || y == 0);
+  if (is_counted_by_device) {
+    make_room_for(ms);
+    record_slice(kernel, params, bindings, [&](VkCommandBuffer commands) {
+      const VkDescriptorBufferInfo count = extent.group_count->bound();
+      vkCmdDispatchIndirect(commands, count.buffer, count.offset);
+      touched_.push_back(count.buffer);
+    });
+    return;
+  }
+  const Cut cut = cut_into(slices, x, y);
+  const double slice_ms = is_measured ? ms / cut.slices() : ms;
+  for (std::uint32_t row = 0; row < cut.y; row += cut.slice_y)
+    for (std::uint32_t column = 0; column < cut.x; column += cut.slice_x) {
+      make_room_for(slice_ms);
+      record_slice(kernel, params, bindings, [&](VkCommandBuffer commands) {
+        vkCmdDispatchBase(commands, column, row, 0, std::min(cut.slice_x, cut.x - column),
+                          std::min(cut.slice_y, cut.y - row), 1);
+      });
+    }
+}
+
+template <class Dispatch>
+void Recorder::record_slice(const Kernel& kernel, std::span<const std::byte> params, std::span<const Binding> bindings,
+                            const Dispatch& dispatch) {
+  if (!touched_.empty()) barrier();
   std::vector<VkDescriptorBufferInfo> infos;
   std::vector<VkWriteDescriptorSet> writes;
   infos.reserve(bindings.size());
   for (const auto& binding : bindings) {
-    slots.insert(binding.slot);
     infos.push_back(binding.buffer.bound());
     VkWriteDescriptorSet write{};
     write.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
@@ -123,57 +256,75 @@ void Recorder::dispatch_bytes(const std::string& stem, std::span<const std::byte
     write.descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
     write.pBufferInfo = &infos.back();
     writes.push_back(write);
+    touched_.push_back(binding.buffer.handle());
   }
-  kernel.require(params.size(), slots);
-
-  const auto query = std::uint32_t(2 * recorded_.size());
-  const auto groups = [](std::uint32_t count, std::uint32_t size) { return (count + size - 1) / size; };
-  if (device_.has_timestamps()) vkCmdWriteTimestamp(commands_, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, queries_, query);
-  vkCmdBindPipeline(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.pipeline());
-  device_.push_descriptors(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.layout(), 0, std::uint32_t(writes.size()),
-                           writes.data());
-  vkCmdPushConstants(commands_, kernel.layout(), VK_SHADER_STAGE_COMPUTE_BIT, 0, std::uint32_t(params.size()),
+  Submission& submission = submissions_[used_ - 1];
+  const auto query = std::uint32_t(2 * submission.timed.size());
+  const auto stamp = [&](std::uint32_t number) {
+    if (!device_.has_timestamps()) return;
+    vkCmdWriteTimestamp(submission.commands, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, submission.queries, number);
+  };
+  stamp(query);
+  vkCmdBindPipeline(submission.commands, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.pipeline());
+  device_.push_descriptors(submission.commands, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.layout(), 0,
+                           std::uint32_t(writes.size()), writes.data());
+  vkCmdPushConstants(submission.commands, kernel.layout(), VK_SHADER_STAGE_COMPUTE_BIT, 0, std::uint32_t(params.size()),
                      params.data());
-  if (extent.group_count)
-    vkCmdDispatchIndirect(commands_, extent.group_count->bound().buffer, extent.group_count->bound().offset);
-  else
-    vkCmdDispatch(commands_, groups(extent.x, kernel.reflection().group[0]),
-                  groups(extent.y, kernel.reflection().group[1]), 1);
-  if (device_.has_timestamps())
-    vkCmdWriteTimestamp(commands_, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, queries_, query + 1);
-  barrier();
-  PassTime pass{stem};
-  for (const auto& binding : bindings) {
-    if (kernel.reflection().read.contains(binding.slot)) pass.bytes_read += binding.buffer.bytes();
-    if (kernel.reflection().written.contains(binding.slot)) pass.bytes_written += binding.buffer.bytes();
-  }
-  recorded_.push_back(pass);
+  dispatch(submission.commands);
+  stamp(query + 1);
+  submission.timed.push_back(recorded_.size() - 1);
 }
 
 void Recorder::run() {
   begin();
-  check(vkEndCommandBuffer(commands_), "vkEndCommandBuffer");
+  if (!touched_.empty()) barrier();
+  end_submission();
   recording_ = false;
-  VkSubmitInfo submit{};
-  submit.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;
-  submit.commandBufferCount = 1;
-  submit.pCommandBuffers = &commands_;
+  recordings_++;
+  std::vector<VkCommandBuffer> submissions;
+  for (std::size_t i = 0; i < used_; i++) submissions.push_back(submissions_[i].commands);
   const VkFence fence = fence_;
   check(vkResetFences(device_.handle(), 1, &fence), "vkResetFences");
-  device_.submit(submit, fence);
+  device_.submit(submissions, fence);
   check(vkWaitForFences(device_.handle(), 1, &fence, VK_TRUE, UINT64_MAX), "vkWaitForFences");
-  for (const auto& [name, buffer] : buffers_)
-    if (!buffer.guards_hold()) fail(ErrorKind::device, "something was written beside the buffer \"{}\"", name);
+  for (const auto& [name, pooled] : buffers_)
+    if (!pooled.buffer.guards_hold()) fail(ErrorKind::device, "something was written beside the buffer \"{}\"", name);
   replaced_.clear();
-  passes_ = std::move(recorded_);
-  if (!device_.has_timestamps() || passes_.empty()) return;
-  std::vector<std::uint64_t> ticks(2 * passes_.size());
-  check(vkGetQueryPoolResults(device_.handle(), queries_, 0, std::uint32_t(ticks.size()), ticks.size() * 8,
-                              ticks.data(), 8, VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT),
-        "vkGetQueryPoolResults");
-  for (std::size_t i = 0; i < passes_.size(); i++) {
-    const std::uint64_t elapsed = (ticks[2 * i + 1] - ticks[2 * i]) & device_.timestamp_mask();
-    passes_[i].ms = double(elapsed) * device_.nanoseconds_per_tick() * 1e-6;
+  if (device_.has_timestamps()) read_times();
+  learn();
+  passes_.clear();
+  for (auto& pass : recorded_) passes_.push_back(std::move(pass.time));
+  recorded_.clear();
+}
+
+void Recorder::abandon() {
+  recording_ = false;
+  recordings_++;
+  replaced_.clear();
+}
+
+/// A pass takes what its slices take together: what other recorders run between them is not its own.
+void Recorder::read_times() {
+  for (std::size_t i = 0; i < used_; i++) {
+    const auto& [commands, queries, timed, ms] = submissions_[i];
+    if (timed.empty()) continue;
+    std::vector<std::uint64_t> ticks(2 * timed.size());
+    check(vkGetQueryPoolResults(device_.handle(), queries, 0, std::uint32_t(ticks.size()), ticks.size() * 8,
+                                ticks.data(), 8, VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT),
+          "vkGetQueryPoolResults");
+    for (std::size_t slice = 0; slice < timed.size(); slice++) {
+      const std::uint64_t elapsed = (ticks[2 * slice + 1] - ticks[2 * slice]) & device_.timestamp_mask();
+      recorded_[timed[slice]].time.ms += double(elapsed) * device_.nanoseconds_per_tick() * 1e-6;
+    }
+  }
+}
+
+/// Without timestamps nothing is learned, and every pass stays a submission of its own.
+void Recorder::learn() {
+  if (!device_.has_timestamps()) return;
+  for (const auto& [time, kernel] : recorded_) {
+    double& most = ms_per_byte_[kernel];
+    most = std::max(most, time.ms / work_of(time));
   }
 }
 

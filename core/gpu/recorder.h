@@ -12,6 +12,7 @@
 
 #include "core/gpu/buffer.h"
 #include "core/gpu/kernel.h"
+#include "core/gpu/pass_time.h"
 
 namespace alcove::gpu {
 
@@ -20,21 +21,19 @@ struct Binding {
   const Buffer& buffer;
 };
 
-/// Invocations in x and y; the recorder rounds up to workgroups.
+/// How many invocations, or workgroups, a pass has.
 struct Extent {
+  /// Invocations in x and y; the recorder rounds up to workgroups.
   Extent(std::uint32_t width, std::uint32_t height = 1) : x(width), y(height) {}
   /// As many workgroups as the three numbers at the beginning of this buffer say when the pass begins.
   explicit Extent(const Buffer& groups) : group_count(&groups) {}
+  /// The same where at most so many workgroups are ever asked for, and those that are not asked for would do nothing.
+  /// Such a pass can be cut into slices when it takes too long: the number itself is known to the device alone.
+  Extent(const Buffer& groups, std::uint32_t most_x, std::uint32_t most_y)
+      : x(most_x), y(most_y), group_count(&groups) {}
 
-  std::uint32_t x = 0, y = 0;
+  std::uint32_t x = 0, y = 0;  // with a group_count: workgroups; 0: nobody knows how many there may be
   const Buffer* group_count = nullptr;
-};
-
-/// What one pass took on the device, and the least it must move: each bound buffer once.
-struct PassTime {
-  std::string name;
-  double ms = 0;
-  std::uint64_t bytes_read = 0, bytes_written = 0;
 };
 
 template <class T>
@@ -42,19 +41,30 @@ concept KernelParams = std::is_trivially_copyable_v<T> && sizeof(T) <= 128;
 
 /// One frame in flight. Use: buffer() and fill, then dispatch() ..., then run(), then read. Buffers live as long as the
 /// recorder.
+///
+/// What is recorded goes to the device in submissions, so that none keeps it from a display for long: a pass that has
+/// not been measured yet is a submission of its own, passes that have been share one up to Device::submission_ms(), and
+/// a pass that alone would take longer is cut into slices.
 class Recorder {
  public:
   explicit Recorder(Device& device);
 
-  /// The buffer of that name; made, or made again when size or use changed. Valid until the next call with another
-  /// size; what was recorded before keeps its own.
+  /// The buffer of that name. It is made, or made again, unless the one that there is suits; what was recorded before
+  /// keeps its own. Valid until the next call with another size.
   Buffer& buffer(std::string_view name, std::size_t bytes, Use use);
 
-  /// Fills a buffer with zeros before the next dispatch.
+  /// Fills a buffer with zeros, in the order of what is recorded.
   void clear(const Buffer& buffer);
+  /// Puts a small value at the beginning of a buffer, in the order of what is recorded. A buffer that gets several
+  /// values in one frame must get them so: host() of a mapped one has only the last by the time that kernels run.
+  template <KernelParams T>
+  void write(const Buffer& buffer, const T& value) {
+    static_assert(sizeof(T) % 4 == 0, "Vulkan updates whole words");
+    write_bytes(buffer, std::as_bytes(std::span(&value, 1)));
+  }
   /// Copies what the host wrote to where kernels read it; nothing to do for mapped buffers.
   void upload(const Buffer& buffer);
-  /// Copies what kernels wrote to where the host reads it after run(); nothing to do for mapped buffers.
+  /// Copies what kernels wrote to where host() shows it after run(); nothing to do for mapped buffers.
   void download(const Buffer& buffer);
 
   /// Runs the kernel of that stem over the extent, after all that was recorded before. Fails unless parameters and
@@ -69,31 +79,61 @@ class Recorder {
   void run();
 
   /// Drops what was recorded and not run: its buffers may go.
-  void abandon() {
-    recording_ = false;
-    replaced_.clear();
-  }
+  void abandon();
 
   /// Each pass of the last run, in order; its time is 0 on a device without timestamps.
   const std::vector<PassTime>& passes() const { return passes_; }
 
-  /// Of all its buffers.
+  /// Of all its buffers, their staging twins included.
   std::size_t bytes() const;
 
  private:
+  struct PooledBuffer {
+    Buffer buffer;
+    std::uint64_t recording;  // in which it was last asked for
+  };
+  /// What the queue gets at once.
+  struct Submission {
+    VkCommandBuffer commands;
+    DeviceHandle<VkQueryPool, vkDestroyQueryPool> queries;
+    std::vector<std::size_t> timed = {};  // of every two queries, the pass
+    double ms = 0;                        // expected
+  };
+  struct RecordedPass {
+    PassTime time;
+    const Kernel* kernel;
+  };
+
+  VkCommandBuffer commands() const { return submissions_[used_ - 1].commands; }
   void begin();
+  void end_submission();
+  void next_submission();
+  Submission make_submission();
+  void make_room_for(double ms);
   void barrier();
+  void wait_for(VkBuffer buffer);
+  void write_bytes(const Buffer& buffer, std::span<const std::byte> value);
   void dispatch_bytes(const std::string& stem, std::span<const std::byte> params, std::span<const Binding> bindings,
                       Extent extent, const std::vector<std::uint32_t>& specialization);
+  template <class Dispatch>
+  void record_slice(const Kernel& kernel, std::span<const std::byte> params, std::span<const Binding> bindings,
+                    const Dispatch& dispatch);
+  double expected_ms(const RecordedPass& pass) const;
+  void read_times();
+  void learn();
 
   Device& device_;
   DeviceHandle<VkCommandPool, vkDestroyCommandPool> pool_;
-  DeviceHandle<VkQueryPool, vkDestroyQueryPool> queries_;
   DeviceHandle<VkFence, vkDestroyFence> fence_;
-  VkCommandBuffer commands_ = VK_NULL_HANDLE;
+  std::vector<Submission> submissions_;
+  std::size_t used_ = 0;  // of the submissions, by this recording
   bool recording_ = false;
-  std::vector<PassTime> recorded_, passes_;
-  std::map<std::string, Buffer, std::less<>> buffers_;
+  std::uint64_t recordings_ = 0;   // that were run or abandoned
+  std::vector<VkBuffer> touched_;  // since the last barrier
+  std::vector<RecordedPass> recorded_;
+  std::vector<PassTime> passes_;
+  std::map<const Kernel*, double> ms_per_byte_;  // the most that was measured
+  std::map<std::string, PooledBuffer, std::less<>> buffers_;
   std::vector<Buffer> replaced_;  // by others of their names, but used by what is recorded
 };
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/base/error.h"
-#include "core/gpu/recorder.h"
+#include "core/gpu/pass_time.h"
 
 namespace alcove {
 

@@ -44,9 +44,9 @@ Pyramid pyramid_of(const HostFrame& frame) {
   p.tile_count = {parts(p.view.size.x, kTile), parts(p.view.size.y, kTile)};
   p.group_count = {parts(p.tile_count.x, kTileGroup), parts(p.tile_count.y, kTileGroup)};
   gpu::Buffer& tiles =
-      gpu.buffer("shown bounds", sizeof(TileBounds) * std::size_t(p.tile_count.x * p.tile_count.y), gpu::Use::download);
+      gpu.buffer("shown bounds", sizeof(TileBounds) * std::size_t(p.tile_count.x * p.tile_count.y), gpu::Use::device);
   gpu::Buffer& groups = gpu.buffer("shown groups", sizeof(GroupBounds) * std::size_t(p.group_count.x * p.group_count.y),
-                                   gpu::Use::download);
+                                   gpu::Use::device);
   gpu.dispatch("bounds", BoundsParams{p.view, inputs.noise_origin},
                {{kBoundsDepth, *gbuffer.depth}, {kBoundsNormal, *gbuffer.normal}, {kBoundsTiles, tiles}},
                {uint(p.tile_count.x), uint(p.tile_count.y)}, {1});

@@ -3,7 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <optional>
 
 #include "core/base/error.h"
 #include "core/chain/compute.h"
@@ -53,6 +55,15 @@ TEST(Reflection, refuses_what_is_no_spirv) {
   EXPECT_THAT(error_of([&] { gpu::reflect(code.first(6)); }), HasSubstr("cut short"));
 }
 
+TEST(Reflection, is_the_same_of_code_that_keeps_nan) {
+  const auto code = gpu::kernel_code("horizon");
+  const auto edited = gpu::with_preserved_nan(code);
+  EXPECT_EQ(edited.size(), code.size() + 6);
+  EXPECT_EQ(gpu::reflect(edited).bindings, gpu::reflect(code).bindings);
+  EXPECT_EQ(gpu::reflect(edited).parameter_bytes, gpu::reflect(code).parameter_bytes);
+  EXPECT_THAT(error_of([&] { gpu::with_preserved_nan(code.first(5)); }), HasSubstr("no entry point"));
+}
+
 TEST(Kernel, refuses_parameters_of_another_size) {
   auto& gpu = test::recorder();
   auto& buffer = gpu.buffer("test", 256, gpu::Use::device);
@@ -83,6 +94,116 @@ TEST(Buffer, refuses_more_than_the_device_can_bind) {
   EXPECT_THAT(error_of([&] { gpu::Buffer(test::device(), too_many, gpu::Use::device); }), HasSubstr("takes"));
 }
 
+// Memory types, as drivers list them.
+
+constexpr VkMemoryPropertyFlags kDevice = VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT,
+                                kWritten = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT,
+                                kCached = kWritten | VK_MEMORY_PROPERTY_HOST_CACHED_BIT;
+constexpr VkMemoryPropertyFlags kIncoherent = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_CACHED_BIT;
+constexpr VkMemoryPropertyFlags kAmdCoherent =
+    VK_MEMORY_PROPERTY_DEVICE_COHERENT_BIT_AMD | VK_MEMORY_PROPERTY_DEVICE_UNCACHED_BIT_AMD;
+
+struct DeviceMemory {
+  const char* device;
+  std::vector<VkMemoryPropertyFlags> types;
+  std::uint32_t for_kernels, for_host;
+  bool is_shared;  // the host maps what kernels use
+};
+
+std::optional<gpu::MemoryType> chosen(const std::vector<VkMemoryPropertyFlags>& types, std::uint32_t allowed,
+                                      gpu::MemoryUse use) {
+  VkPhysicalDeviceMemoryProperties memory{};
+  for (const auto flags : types) memory.memoryTypes[memory.memoryTypeCount++].propertyFlags = flags;
+  return gpu::choose_memory(memory, allowed, use);
+}
+
+TEST(Memory, of_kernels_is_the_devices_own_and_of_the_host_is_cached) {
+  const DeviceMemory devices[] = {
+      {"lavapipe", {kDevice | kCached}, 0, 0, true},
+      {"NVIDIA, with a window", {0, kDevice, kWritten, kCached, kDevice | kWritten}, 1, 3, false},
+      {"AMD, discrete (RADV)",
+       {kDevice, kDevice, kWritten, kDevice | kWritten, kDevice | kWritten, kCached, kCached, kDevice | kAmdCoherent,
+        kWritten | kAmdCoherent, kDevice | kWritten | kAmdCoherent, kCached | kAmdCoherent},
+       0,
+       5,
+       false},
+      {"AMD, first types that need a feature",
+       {kDevice | kAmdCoherent, kCached | kAmdCoherent, kDevice | kWritten, kDevice, kCached},
+       3,
+       4,
+       false},
+      {"Intel, integrated", {kDevice | kCached}, 0, 0, true},
+      {"Intel, integrated, without a shared cache",
+       {kDevice, kDevice | kWritten, kDevice | kIncoherent, kDevice | kCached},
+       3,
+       3,
+       true},
+      {"Intel, discrete", {kDevice, kCached, kDevice | kWritten}, 0, 1, false},
+      {"Apple", {kDevice, kDevice | kCached, kDevice | VK_MEMORY_PROPERTY_LAZILY_ALLOCATED_BIT}, 1, 1, true},
+      {"all behind a window", {kDevice | kWritten, kCached}, 0, 1, false},
+      {"protected first", {kDevice | VK_MEMORY_PROPERTY_PROTECTED_BIT, kDevice, kCached}, 1, 2, false},
+      {"nothing cached", {kDevice, kWritten}, 0, 1, false},
+  };
+  for (const auto& device : devices) {
+    const auto kernels = chosen(device.types, ~0u, gpu::MemoryUse::kernels);
+    const auto host = chosen(device.types, ~0u, gpu::MemoryUse::host);
+    ASSERT_TRUE(kernels && host) << device.device;
+    EXPECT_EQ(kernels->index, device.for_kernels) << device.device;
+    EXPECT_EQ(kernels->is_cached, device.is_shared) << device.device;
+    EXPECT_EQ(host->index, device.for_host) << device.device;
+  }
+}
+
+TEST(Memory, is_of_a_type_that_the_buffer_may_lie_in) {
+  const std::vector<VkMemoryPropertyFlags> types{kDevice, kDevice, kCached, kCached};
+  EXPECT_EQ(chosen(types, 0b1010, gpu::MemoryUse::kernels)->index, 1u);
+  EXPECT_EQ(chosen(types, 0b1010, gpu::MemoryUse::host)->index, 3u);
+  EXPECT_EQ(chosen(types, 0b1010, gpu::MemoryUse::both)->index, 3u);
+  EXPECT_FALSE(chosen(types, 0b0011, gpu::MemoryUse::host));
+  EXPECT_FALSE(chosen(types, 0b0011, gpu::MemoryUse::both)) << "which no test may take for guarded";
+}
+
+/// The device of the tests with memory that the host does not see, and so without guards.
+gpu::DeviceOptions staged_options() {
+  gpu::DeviceOptions options = test::device().options();
+  options.map_memory = false;
+  options.guard_bytes = 0;
+  return options;
+}
+
+TEST(Buffer, keeps_its_place_in_the_pool_while_it_suits) {
+  gpu::Device device(staged_options());
+  gpu::Recorder gpu(device);
+  constexpr std::size_t kLarge = 8 << 20;
+  const auto place_of = [&](std::size_t bytes) {
+    const gpu::Buffer& buffer = gpu.buffer("pooled", bytes, gpu::Use::upload);
+    EXPECT_EQ(buffer.bytes(), bytes);
+    EXPECT_EQ(buffer.host().size(), bytes);
+    EXPECT_EQ(buffer.bound().range, bytes);
+    gpu.run();
+    return buffer.handle();
+  };
+  const VkBuffer first = place_of(kLarge);
+  EXPECT_EQ(gpu.bytes(), 2 * kLarge) << "its staging twin counts";
+  EXPECT_EQ(place_of(kLarge - 4), first);
+  EXPECT_EQ(place_of(kLarge / 2), first);
+  EXPECT_EQ(place_of(kLarge), first);
+  place_of(kLarge / 2 - 4);
+  EXPECT_EQ(gpu.bytes(), kLarge - 8) << "a buffer that is far too large goes";
+  place_of(kLarge);
+  EXPECT_EQ(gpu.bytes(), 2 * kLarge);
+}
+
+TEST(Buffer, that_was_recorded_is_not_taken_for_another_size) {
+  gpu::Device device(staged_options());
+  gpu::Recorder gpu(device);
+  gpu::Buffer* buffer = &gpu.buffer("counted", 8, gpu::Use::device);
+  const VkBuffer recorded = buffer->handle();
+  gpu.clear(*buffer);
+  EXPECT_NE(gpu.buffer("counted", 4, gpu::Use::device).handle(), recorded);
+  gpu.run();
+}
+
 TEST(Buffer, keeps_its_place_in_the_pool_until_its_size_changes) {
   auto& gpu = test::recorder();
   const auto* first = gpu.buffer("pooled", 1024, gpu::Use::upload).host().data();
@@ -94,7 +215,7 @@ TEST(Buffer, keeps_its_place_in_the_pool_until_its_size_changes) {
 const gpu::Buffer& record_copy_of_64(std::size_t from, std::size_t to) {
   auto& gpu = test::recorder();
   auto &source = gpu.buffer("source", from * sizeof(float), gpu::Use::upload),
-       &copy = gpu.buffer("copy", to * sizeof(float), gpu::Use::download);
+       &copy = gpu.buffer("copy", to * sizeof(float), gpu::Use::device);
   auto& unread = gpu.buffer("unread", 256, gpu::Use::device);
   std::ranges::fill(source.as<float>(), 0.5f);
   gpu.upload(source);
@@ -153,15 +274,66 @@ HostFrame small_frame() {
   return frame;
 }
 
+/// Records that `target` gets the one value of `source`.
+void record_copy_of_1(gpu::Recorder& gpu, const gpu::Buffer& source, const gpu::Buffer& target) {
+  auto& unread = gpu.buffer("unread", 256, gpu::Use::device);
+  ShapeParams params{};
+  params.size = {1, 1};
+  params.intensity = params.power = params.planes = 1;
+  gpu.dispatch("shape", params,
+               {{kShapeAo, source},
+                {kShapeShaped, target},
+                {kShapeDepth, unread},
+                {kShapeMaterial, unread},
+                {kShapeCounts, unread}},
+               {1, 1});
+}
+
+TEST(Recorder, writes_small_values_in_the_order_of_what_is_recorded) {
+  gpu::Device staged(staged_options());
+  for (gpu::Device* device : {&test::device(), &staged}) {
+    gpu::Recorder gpu(*device);
+    auto& word = gpu.buffer("word", sizeof(float), gpu::Use::device);
+    auto& first = gpu.buffer("first", sizeof(float), gpu::Use::device);
+    auto& second = gpu.buffer("second", sizeof(float), gpu::Use::device);
+    gpu.write(word, 0.25f);
+    record_copy_of_1(gpu, word, first);
+    gpu.write(word, 0.75f);
+    record_copy_of_1(gpu, word, second);
+    for (const auto* result : {&first, &second}) gpu.download(*result);
+    gpu.run();
+    EXPECT_EQ(first.as<float>()[0], 0.25f);
+    EXPECT_EQ(second.as<float>()[0], 0.75f);
+    EXPECT_THAT(error_of([&] { gpu.write(word, std::array<float, 2>{}); }), HasSubstr("buffer of 4"));
+    gpu.abandon();
+  }
+}
+
+TEST(Recorder, downloads_any_buffer_and_clears_in_order) {
+  gpu::Device staged(staged_options());
+  for (gpu::Device* device : {&test::device(), &staged}) {
+    gpu::Recorder gpu(*device);
+    auto& word = gpu.buffer("word", sizeof(float), gpu::Use::device);
+    auto& copy = gpu.buffer("copy", sizeof(float), gpu::Use::device);
+    gpu.write(word, 0.25f);
+    gpu.clear(word);
+    gpu.write(copy, 0.5f);
+    record_copy_of_1(gpu, word, copy);
+    gpu.clear(word);
+    gpu.write(word, 0.75f);
+    for (const auto* result : {&word, &copy, &word}) gpu.download(*result);
+    gpu.run();
+    EXPECT_EQ(word.as<float>()[0], 0.75f);
+    EXPECT_EQ(copy.as<float>()[0], 0.0f);
+  }
+}
+
 TEST(Staging, gives_the_bits_that_mapped_memory_gives) {
   EstimatorSettings settings = test::plain_settings();
   settings.radius = 0.5;
   settings.power = 2;  // one more pass, so that a result is handed on
   const auto mapped = compute_ao(test::recorder(), small_frame(), settings);
-  gpu::DeviceOptions options = test::device().options();
-  options.map_memory = false;
-  options.guard_bytes = 0;
-  gpu::Device device(options);
+  gpu::Device device(staged_options());
   gpu::Recorder recorder(device);
   const auto staged = compute_ao(recorder, small_frame(), settings);
   EXPECT_EQ(mapped.ao, staged.ao);

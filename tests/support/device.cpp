@@ -14,7 +14,9 @@ constexpr std::size_t kGuardBytes = 4096;
 gpu::DeviceOptions options() {
   gpu::DeviceOptions options;
   if (const char* name = std::getenv("ALCOVE_TEST_DEVICE"); name && *name) options.choice = name;
-  options.guard_bytes = kGuardBytes;
+  const bool is_staged = std::getenv("ALCOVE_TEST_STAGED") != nullptr;
+  options.guard_bytes = is_staged ? 0 : kGuardBytes;  // the host must see the guards
+  options.map_memory = !is_staged;
   options.validate = std::getenv("ALCOVE_TEST_VALIDATE") != nullptr;
   return options;
 }

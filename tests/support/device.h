@@ -8,7 +8,8 @@
 namespace alcove::test {
 
 /// The device that ALCOVE_TEST_DEVICE names, else `auto`; with the validation layer where ALCOVE_TEST_VALIDATE is set.
-/// Its buffers are guarded.
+/// Its buffers are guarded, so the host sees them; where ALCOVE_TEST_STAGED is set they lie in memory that it does not
+/// see, without guards.
 gpu::Device& device();
 /// A recorder on it.
 gpu::Recorder& recorder();

@@ -108,7 +108,7 @@ TEST(Grid, estimators_write_their_own_plane_and_all_of_it) {
         const GBuffer gbuffer = prepare(gpu, inputs);
         reconstruct(gpu, gbuffer);
         const std::size_t pixels = made.frame.data.pixels();
-        gpu::Buffer& planes = gpu.buffer("three planes", 3 * pixels * sizeof(float), gpu::Use::download);
+        gpu::Buffer& planes = gpu.buffer("three planes", 3 * pixels * sizeof(float), gpu::Use::device);
         gpu.clear(planes);
         Estimate out{&planes};
         const Reach reach = reach_of(settings, *settings.radius);

@@ -1,0 +1,45 @@
+// What is known of a device before it is used, and how one is asked for. This header needs no Vulkan.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace alcove::gpu {
+
+enum class DeviceType { cpu, integrated_gpu, discrete_gpu, virtual_gpu, other };
+
+/// One Vulkan device of this machine, as `alcove devices` lists it.
+struct DeviceInfo {
+  std::uint32_t index;
+  std::string name, uuid, driver, api_version;
+  DeviceType type;
+  std::uint64_t memory_bytes;  // of all device-local heaps
+  std::uint64_t buffer_bytes;  // the largest storage buffer
+  std::string unusable;        // why Alcove cannot compute on it; empty: it can
+};
+const char* name_of(DeviceType type);
+
+/// All devices that the loader finds; empty when there is none. Fails only when the loader itself does.
+std::vector<DeviceInfo> list_devices();
+
+/// How long one submission may keep the device from others. A display that shares it stutters from some 0.1 s on, and
+/// systems reset a device that does not answer for 2 s (Windows' default).
+constexpr double kSubmissionMs = 250;
+
+struct DeviceOptions {
+  std::string choice = "auto";  // auto | cpu | an index | a name or a part of it | a UUID
+  bool require_gpu = false;     // a CPU device is an error
+  bool validate = false;        // load the validation layer; its messages are counted and printed to stderr
+  bool pipeline_cache = true;   // keep compiled pipelines in the XDG cache folder
+  // false: always copy through staging buffers, as on a device whose memory the host cannot map
+  bool map_memory = true;
+  // For tests, a multiple of 256. So many bytes lie before and behind every buffer and are NaN, as its own bytes are
+  // until they are written. A run that writes there fails.
+  std::size_t guard_bytes = 0;
+  double submission_ms = kSubmissionMs;  // see there; a CPU device has no limit unless this is changed
+};
+
+}  // namespace alcove::gpu

@@ -1,0 +1,357 @@
+// What the driver is told, seen from a fake one that stands before it: memory types, kernels' code, the pipeline cache,
+// extensions and submissions; and what becomes of a device that refuses.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <optional>
+#include <spirv/unified1/spirv.hpp>
+
+#include "core/chain/chain.h"
+#include "core/gpu/pipeline_cache.h"
+#include "tests/support/command_line.h"
+#include "tests/support/device.h"
+#include "tests/support/fake_driver.h"
+#include "tests/support/single_pass.h"
+
+namespace alcove {
+namespace {
+
+using namespace test;
+using testing::AllOf;
+using testing::Contains;
+using testing::Each;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+
+/// A fake driver as it is at the beginning, for each test.
+class Driver : public testing::Test {
+ protected:
+  Driver() { fake = {}; }
+  ~Driver() override { fake = {}; }
+
+  /// Without guards, whose memory the host must reach.
+  static gpu::DeviceOptions options() {
+    gpu::DeviceOptions options = device().options();
+    options.guard_bytes = 0;
+    options.pipeline_cache = false;
+    return options;
+  }
+
+  FakeDriver& fake = fake_driver();
+};
+
+EstimatorSettings settings_of(double radius) {
+  EstimatorSettings settings;
+  settings.radius = radius;
+  return settings;
+}
+
+/// Every direction of so many slices is two passes.
+EstimatorSettings exact_settings(int slices) {
+  EstimatorSettings settings = plain_settings();
+  settings.radius = 0.4;
+  settings.search = SliceSearch::exact;
+  settings.slices = slices;
+  return settings;
+}
+
+std::vector<float> ao_of(gpu::Recorder& gpu, const EstimatorSettings& settings) {
+  return compute_ao(gpu, furnished_room(70, 45).frame, settings).ao;
+}
+
+std::vector<float> ao_on(const gpu::DeviceOptions& options, const EstimatorSettings& settings) {
+  gpu::Device device(options);
+  gpu::Recorder recorder(device);
+  return ao_of(recorder, settings);
+}
+
+TEST_F(Driver, maps_only_memory_that_the_host_reads_through_its_cache) {
+  const auto expected = ao_on(options(), settings_of(0.4));
+  constexpr std::uint32_t kHostMemory = 2;
+  fake.has_own_memory = true;
+  fake.mapped_types.clear();
+  EXPECT_EQ(ao_on(options(), settings_of(0.4)), expected);
+  EXPECT_THAT(fake.mapped_types, AllOf(testing::Not(IsEmpty()), Each(kHostMemory)));
+}
+
+TEST_F(Driver, maps_a_frame_of_sky_in_memory_of_its_own) {
+  fake.has_own_memory = true;
+  HostFrame sky = furnished_room(70, 45).frame;
+  std::ranges::fill(sky.depth, kSky);
+  gpu::Device device(options());
+  gpu::Recorder recorder(device);
+  const HostResult result = compute_ao(recorder, sky, settings_of(0.4));
+  EXPECT_THAT(result.ao, Each(1.0f));
+  EXPECT_EQ(result.sky_pixels, sky.depth.size());
+}
+
+TEST_F(Driver, gets_no_more_allocations_than_it_allows) {
+  fake.most_allocations = 3;
+  gpu::Device device(options());
+  {
+    gpu::Recorder recorder(device);
+    EXPECT_THROW(
+        {
+          try {
+            ao_of(recorder, settings_of(0.4));
+          } catch (const gpu::OutOfMemory& error) {
+            EXPECT_THAT(error.what(), AllOf(HasSubstr("3 buffers"), HasSubstr("--threads")));
+            EXPECT_EQ(error.kind(), ErrorKind::device);
+            throw;
+          }
+        },
+        gpu::OutOfMemory);
+    EXPECT_EQ(fake.live_allocations, 3);
+  }
+  EXPECT_EQ(fake.live_allocations, 0);
+  gpu::Recorder again(device);
+  for (const char* name : {"a", "b", "c"}) again.buffer(name, 256, gpu::Use::device);
+}
+
+TEST_F(Driver, keeps_buffers_for_frames_of_nearly_one_size) {
+  gpu::Device device(options());
+  gpu::Recorder recorder(device);
+  compute_ao(recorder, furnished_room(140, 90).frame, settings_of(0.4));
+  const int before = fake.allocations;
+  for (const int width : {140, 131, 139, 120}) {
+    const HostFrame frame = furnished_room(width, 88).frame;
+    const auto ao = compute_ao(recorder, frame, settings_of(0.4)).ao;
+    gpu::Recorder alone(device);
+    const int others = fake.allocations;
+    EXPECT_EQ(ao, compute_ao(alone, frame, settings_of(0.4)).ao) << width;
+    fake.allocations = others;
+  }
+  EXPECT_EQ(fake.allocations - before, 0);
+}
+
+/// Whether code declares that NaN, infinity and signed zero of 32-bit floats are to be kept.
+bool declares_nan(const std::vector<std::uint32_t>& code) {
+  bool has_capability = false, has_mode = false;
+  for (std::size_t at = 5; at < code.size(); at += code[at] >> spv::WordCountShift) {
+    const auto opcode = code[at] & spv::OpCodeMask;
+    if (opcode == spv::OpCapability && code[at + 1] == spv::CapabilitySignedZeroInfNanPreserve) has_capability = true;
+    if (opcode == spv::OpExecutionMode && code[at + 2] == spv::ExecutionModeSignedZeroInfNanPreserve)
+      has_mode = code[at + 3] == 32;
+  }
+  return has_capability && has_mode;
+}
+
+TEST_F(Driver, of_a_gpu_is_told_to_keep_nan_in_every_kernel) {
+  const auto expected = ao_on(options(), settings_of(0.4));
+  fake.modules.clear();
+  fake.is_discrete = true;
+  const auto told = ao_on(options(), settings_of(0.4));
+  EXPECT_GE(fake.modules.size(), 5);
+  for (const auto& module : fake.modules) EXPECT_TRUE(declares_nan(module));
+  ASSERT_EQ(told.size(), expected.size());
+  double squares = 0;
+  for (std::size_t i = 0; i < told.size(); i++) squares += std::pow(told[i] - expected[i], 2);
+  EXPECT_LT(std::sqrt(squares / double(told.size())), 1e-4) << "as two devices may differ";
+}
+
+TEST_F(Driver, may_have_a_portable_part_of_vulkan_only) {
+  fake.is_portable = true;
+  const gpu::Device device(options());
+  EXPECT_TRUE(fake.instance_flags & 1u) << "VK_INSTANCE_CREATE_ENUMERATE_PORTABILITY_BIT_KHR";
+  EXPECT_THAT(fake.instance_extensions, Contains("VK_KHR_portability_enumeration"));
+  EXPECT_THAT(fake.device_extensions, Contains("VK_KHR_portability_subset"));
+  EXPECT_TRUE(fake.is_robust);
+}
+
+TEST_F(Driver, that_has_all_of_vulkan_is_not_asked_for_a_part) {
+  const gpu::Device device(options());
+  EXPECT_THAT(fake.device_extensions, testing::Not(Contains("VK_KHR_portability_subset")));
+}
+
+// Submissions.
+
+TEST_F(Driver, gets_a_long_recording_in_parts_that_give_the_same_bits) {
+  for (const EstimatorSettings& settings : {settings_of(0.4), exact_settings(20)}) {
+    gpu::DeviceOptions limited = options();
+    const auto expected = ao_on(limited, settings);
+    limited.submission_ms = 1e-6;
+    gpu::Device device(limited);
+    gpu::Recorder recorder(device);
+    std::vector<std::string> names;
+    for (const bool is_measured : {false, true}) {
+      fake.submissions = 0;
+      EXPECT_EQ(ao_of(recorder, settings), expected) << is_measured;
+      // Passes that were measured, and take longer than that, are cut up.
+      EXPECT_GE(fake.submissions, (is_measured ? 4 : 1) * int(recorder.passes().size()));
+      if (is_measured) EXPECT_EQ(names.size(), recorder.passes().size());
+      names.clear();
+      double ms = 0;
+      for (const auto& pass : recorder.passes()) {
+        names.push_back(pass.name);
+        ms += pass.ms;
+      }
+      EXPECT_GT(ms, 0);
+      EXPECT_EQ(names.front(), "prepare");
+    }
+  }
+}
+
+TEST_F(Driver, gets_a_frame_of_short_passes_at_once_when_they_are_measured) {
+  gpu::DeviceOptions limited = options();
+  limited.submission_ms = 60000;
+  gpu::Device device(limited);
+  gpu::Recorder recorder(device);
+  ao_of(recorder, settings_of(0.4));
+  EXPECT_EQ(fake.submissions, int(recorder.passes().size()));
+  fake.submissions = 0;
+  ao_of(recorder, settings_of(0.4));
+  EXPECT_EQ(fake.submissions, 1);
+}
+
+TEST_F(Driver, of_a_cpu_gets_a_frame_at_once_unless_it_is_very_long) {
+  gpu::Device device(options());
+  gpu::Recorder recorder(device);
+  ao_of(recorder, settings_of(0.4));
+  EXPECT_EQ(fake.submissions, 1);
+  fake.submissions = 0;
+  ao_of(recorder, exact_settings(40));
+  EXPECT_THAT(fake.submissions, AllOf(testing::Ge(2), testing::Le(4)));
+  EXPECT_THAT(recorder.passes(), SizeIs(testing::Ge(80)));
+}
+
+TEST_F(Driver, that_refuses_a_part_leaves_the_recorder_usable) {
+  gpu::DeviceOptions limited = options();
+  limited.submission_ms = 1e-6;
+  gpu::Device device(limited);
+  gpu::Recorder recorder(device);
+  const auto expected = ao_of(recorder, settings_of(0.4));
+  for (const int failing : {1, 2, 9}) {
+    fake.failing_submission = failing;
+    EXPECT_THROW(ao_of(recorder, settings_of(0.4)), gpu::OutOfMemory);
+    recorder.abandon();
+    EXPECT_EQ(ao_of(recorder, settings_of(0.4)), expected) << failing;
+  }
+}
+
+// The pipeline cache.
+
+/// Bytes as they lie in a vkGetPipelineCacheData result of this owner.
+std::string cache_of(const gpu::CacheOwner& owner, const std::string& rest) {
+  const std::uint32_t words[] = {32, 1, owner.vendor, owner.device};
+  std::string data(reinterpret_cast<const char*>(words), sizeof(words));
+  data.append(reinterpret_cast<const char*>(owner.uuid.data()), owner.uuid.size());
+  return data + rest;
+}
+
+std::string checked(const std::string& file, const gpu::CacheOwner& owner) {
+  const auto data = gpu::checked_cache(file, owner);
+  return {data.begin(), data.end()};
+}
+
+TEST(PipelineCache, is_used_when_it_is_whole_and_the_drivers_own) {
+  const gpu::CacheOwner owner{0x10de, 0x2330, {1, 2, 3}};
+  const std::string data = cache_of(owner, "compiled kernels");
+  const std::string file = gpu::packed_cache(data);
+  ASSERT_EQ(checked(file, owner), data);
+  for (std::size_t bytes = 0; bytes < file.size(); bytes++)
+    EXPECT_EQ(checked(file.substr(0, bytes), owner), "") << bytes;
+  EXPECT_EQ(checked(file + '\0', owner), "");
+  for (std::size_t bit = 0; bit < 8 * file.size(); bit++) {
+    std::string flipped = file;
+    flipped[bit / 8] = char(flipped[bit / 8] ^ (1 << bit % 8));
+    EXPECT_EQ(checked(flipped, owner), "") << bit;
+  }
+  EXPECT_EQ(checked(data, owner), "") << "a file without our header";
+}
+
+TEST(PipelineCache, of_another_device_or_driver_is_not_used) {
+  const gpu::CacheOwner owner{0x10de, 0x2330, {1, 2, 3}};
+  for (const gpu::CacheOwner& other :
+       {gpu::CacheOwner{0x1002, 0x2330, {1, 2, 3}}, {0x10de, 0x2331, {1, 2, 3}}, {0x10de, 0x2330, {1, 2, 4}}}) {
+    EXPECT_EQ(checked(gpu::packed_cache(cache_of(other, "compiled kernels")), owner), "");
+    EXPECT_NE(gpu::cache_file(other), gpu::cache_file(owner));
+  }
+  std::string other_version = cache_of(owner, "");
+  other_version[4] = 2;
+  EXPECT_EQ(checked(gpu::packed_cache(other_version), owner), "");
+  EXPECT_EQ(checked(gpu::packed_cache(cache_of(owner, "").substr(0, 31)), owner), "");
+}
+
+/// Has a folder of its own for caches.
+class CacheFolder : public Driver {
+ protected:
+  CacheFolder() { setenv("XDG_CACHE_HOME", folder.path().c_str(), 1); }
+  ~CacheFolder() override {
+    if (before)
+      setenv("XDG_CACHE_HOME", before->c_str(), 1);
+    else
+      unsetenv("XDG_CACHE_HOME");
+  }
+
+  /// Computes something, and returns what the driver was given as its cache.
+  std::string given() {
+    gpu::DeviceOptions caching = options();
+    caching.pipeline_cache = true;
+    ao_on(caching, settings_of(0.4));
+    return fake.caches.back();
+  }
+
+  std::string file() const {
+    const auto names = names_in(folder / "alcove");
+    EXPECT_THAT(names, SizeIs(1));
+    return folder / "alcove/" + names.at(0);
+  }
+
+  const std::optional<std::string> before =
+      std::getenv("XDG_CACHE_HOME") ? std::optional<std::string>(std::getenv("XDG_CACHE_HOME")) : std::nullopt;
+  TemporaryFolder folder;
+};
+
+TEST_F(CacheFolder, gives_the_driver_what_it_gave_and_nothing_else) {
+  EXPECT_EQ(given(), "");
+  const std::string whole = read_bytes(file());
+  const std::string data = given();
+  EXPECT_GE(data.size(), 32);
+  EXPECT_TRUE(whole.ends_with(data));
+  std::string flipped = whole;
+  flipped[flipped.size() / 2] ^= 1;
+  std::string foreign = data;
+  foreign[16] ^= 1;
+  for (const std::string& bad :
+       {std::string(), whole.substr(0, whole.size() / 2), flipped, data, gpu::packed_cache(foreign)}) {
+    write_bytes(file(), bad);
+    EXPECT_EQ(given(), "") << bad.size();
+    EXPECT_TRUE(read_bytes(file()) == whole) << "a bad cache is written anew";
+  }
+}
+
+TEST_F(CacheFolder, a_cache_beyond_all_memory_is_not_kept) {
+  fake.has_endless_cache = true;
+  given();  // or else the destructor of the device ends the program
+  EXPECT_FALSE(std::filesystem::exists(folder / "alcove"));
+}
+
+// Whole runs.
+
+using Runs = CommandLine;
+
+TEST_F(Runs, in_memory_of_the_devices_own_give_the_bits_of_shared_memory_in_tiles_too) {
+  const Window data{-6, -3, 613, 571}, display{0, 0, 600, 562};
+  FrameFile large = wall_frame(data, display);
+  add_beauty(large);
+  large.write(frame);
+  write_bytes(camera, wall_camera(display).dump());
+  const Surroundings own_memory{.environment = {{"ALCOVE_FAKE_MEMORY", "1"}}, .preload = ALCOVE_FAKE_DRIVER};
+  const auto outputs = [&](std::vector<std::string> more, const Surroundings& surroundings) {
+    more.insert(more.end(), {"--radius", "0.1", "--type", "float", "--composite", folder / "c.exr", "--aov",
+                             "ao,normal,depth,confidence"});
+    std::vector<std::string> arguments{"run", frame, "-o", ao, "--camera", camera};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Finished finished = run_program(arguments, surroundings);
+    EXPECT_EQ(finished.code, 0) << finished;
+    return read_bytes(ao) + read_bytes(folder / "c.exr");
+  };
+  const std::string shared = outputs({}, {});
+  EXPECT_TRUE(outputs({}, own_memory) == shared);
+  EXPECT_TRUE(outputs({"--memory", "1M"}, own_memory) == shared);
+}
+
+}  // namespace
+}  // namespace alcove

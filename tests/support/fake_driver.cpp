@@ -1,0 +1,154 @@
+// The functions of Vulkan that are told or shown something else.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tests/support/fake_driver.h"
+
+#include <dlfcn.h>
+#include <vulkan/vulkan.h>
+
+#include <cstdlib>
+#include <cstring>
+#include <limits>
+#include <map>
+#include <mutex>
+
+namespace alcove::test {
+namespace {
+
+constexpr const char* kPortabilitySubset = "VK_KHR_portability_subset";
+
+/// A discrete GPU's types: its own memory; a window to it that the host sees and does not cache; the host's memory.
+constexpr VkMemoryPropertyFlags kOwnMemory[] = {
+    VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT,
+    VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT | VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT,
+    VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT | VK_MEMORY_PROPERTY_HOST_CACHED_BIT};
+constexpr std::uint32_t kOwnTypes = 3;
+
+std::mutex mutex;
+std::map<VkDeviceMemory, std::uint32_t> type_of_memory;
+
+}  // namespace
+
+FakeDriver& fake_driver() {
+  static FakeDriver fake{.has_own_memory = std::getenv("ALCOVE_FAKE_MEMORY") != nullptr};
+  return fake;
+}
+
+namespace {
+
+FakeDriver& fake() { return fake_driver(); }
+
+}  // namespace
+}  // namespace alcove::test
+
+/// The loader's own function of the same name.
+#define NEXT(name) reinterpret_cast<PFN_##name>(dlsym(RTLD_NEXT, #name))
+
+using namespace alcove::test;
+
+extern "C" {
+#pragma GCC visibility push(default)
+
+VkResult vkCreateInstance(const VkInstanceCreateInfo* info, const VkAllocationCallbacks* callbacks,
+                          VkInstance* instance) {
+  fake().instance_flags = info->flags;
+  fake().instance_extensions.assign(info->ppEnabledExtensionNames,
+                                    info->ppEnabledExtensionNames + info->enabledExtensionCount);
+  return NEXT(vkCreateInstance)(info, callbacks, instance);
+}
+
+VkResult vkEnumerateDeviceExtensionProperties(VkPhysicalDevice device, const char* layer, uint32_t* count,
+                                              VkExtensionProperties* extensions) {
+  const uint32_t room = *count;
+  const VkResult result = NEXT(vkEnumerateDeviceExtensionProperties)(device, layer, count, extensions);
+  if (!fake().is_portable || result != VK_SUCCESS) return result;
+  if (extensions && *count < room) std::strcpy(extensions[*count].extensionName, kPortabilitySubset);
+  ++*count;
+  return result;
+}
+
+void vkGetPhysicalDeviceProperties2(VkPhysicalDevice device, VkPhysicalDeviceProperties2* properties) {
+  NEXT(vkGetPhysicalDeviceProperties2)(device, properties);
+  if (fake().is_discrete) properties->properties.deviceType = VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU;
+  if (fake().most_allocations) properties->properties.limits.maxMemoryAllocationCount = fake().most_allocations;
+}
+
+void vkGetPhysicalDeviceMemoryProperties(VkPhysicalDevice device, VkPhysicalDeviceMemoryProperties* memory) {
+  NEXT(vkGetPhysicalDeviceMemoryProperties)(device, memory);
+  if (!fake().has_own_memory) return;
+  memory->memoryTypeCount = kOwnTypes;
+  for (uint32_t type = 0; type < kOwnTypes; type++) memory->memoryTypes[type] = {kOwnMemory[type], 0};
+}
+
+void vkGetBufferMemoryRequirements(VkDevice device, VkBuffer buffer, VkMemoryRequirements* needs) {
+  NEXT(vkGetBufferMemoryRequirements)(device, buffer, needs);
+  if (fake().has_own_memory) needs->memoryTypeBits = (1u << kOwnTypes) - 1;
+}
+
+VkResult vkCreateDevice(VkPhysicalDevice physical, const VkDeviceCreateInfo* info,
+                        const VkAllocationCallbacks* callbacks, VkDevice* device) {
+  fake().device_extensions.assign(info->ppEnabledExtensionNames,
+                                  info->ppEnabledExtensionNames + info->enabledExtensionCount);
+  const auto* features = static_cast<const VkPhysicalDeviceFeatures2*>(info->pNext);
+  fake().is_robust =
+      features->sType == VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2 && features->features.robustBufferAccess;
+  std::vector<const char*> known;
+  for (const auto& name : fake().device_extensions)
+    if (name != kPortabilitySubset) known.push_back(name.c_str());
+  VkDeviceCreateInfo real = *info;
+  real.enabledExtensionCount = uint32_t(known.size());
+  real.ppEnabledExtensionNames = known.data();
+  return NEXT(vkCreateDevice)(physical, &real, callbacks, device);
+}
+
+VkResult vkAllocateMemory(VkDevice device, const VkMemoryAllocateInfo* info, const VkAllocationCallbacks* callbacks,
+                          VkDeviceMemory* memory) {
+  const std::lock_guard lock(mutex);
+  VkMemoryAllocateInfo real = *info;
+  if (fake().has_own_memory) real.memoryTypeIndex = 0;
+  const VkResult result = NEXT(vkAllocateMemory)(device, &real, callbacks, memory);
+  if (result != VK_SUCCESS) return result;
+  fake().allocations++;
+  fake().live_allocations++;
+  type_of_memory[*memory] = info->memoryTypeIndex;
+  return result;
+}
+
+void vkFreeMemory(VkDevice device, VkDeviceMemory memory, const VkAllocationCallbacks* callbacks) {
+  const std::lock_guard lock(mutex);
+  fake().live_allocations--;
+  NEXT(vkFreeMemory)(device, memory, callbacks);
+}
+
+VkResult vkMapMemory(VkDevice device, VkDeviceMemory memory, VkDeviceSize offset, VkDeviceSize size,
+                     VkMemoryMapFlags flags, void** data) {
+  const std::lock_guard lock(mutex);
+  fake().mapped_types.push_back(type_of_memory[memory]);
+  return NEXT(vkMapMemory)(device, memory, offset, size, flags, data);
+}
+
+VkResult vkCreateShaderModule(VkDevice device, const VkShaderModuleCreateInfo* info,
+                              const VkAllocationCallbacks* callbacks, VkShaderModule* module) {
+  fake().modules.emplace_back(info->pCode, info->pCode + info->codeSize / 4);
+  return NEXT(vkCreateShaderModule)(device, info, callbacks, module);
+}
+
+VkResult vkCreatePipelineCache(VkDevice device, const VkPipelineCacheCreateInfo* info,
+                               const VkAllocationCallbacks* callbacks, VkPipelineCache* cache) {
+  fake().caches.emplace_back(static_cast<const char*>(info->pInitialData), info->initialDataSize);
+  return NEXT(vkCreatePipelineCache)(device, info, callbacks, cache);
+}
+
+VkResult vkGetPipelineCacheData(VkDevice device, VkPipelineCache cache, size_t* bytes, void* data) {
+  if (!fake().has_endless_cache) return NEXT(vkGetPipelineCacheData)(device, cache, bytes, data);
+  *bytes = std::numeric_limits<size_t>::max() / 4;
+  return VK_SUCCESS;
+}
+
+VkResult vkQueueSubmit(VkQueue queue, uint32_t count, const VkSubmitInfo* work, VkFence fence) {
+  fake().submissions++;
+  if (fake().failing_submission && --fake().failing_submission == 0) return VK_ERROR_OUT_OF_DEVICE_MEMORY;
+  return NEXT(vkQueueSubmit)(queue, count, work, fence);
+}
+
+#pragma GCC visibility pop
+}
