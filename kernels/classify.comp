@@ -245,7 +245,7 @@ void search_tile(View view, Receivers r, ivec2 other, bool is_near) {
                                   bounds[index].plane[k + 1]));
   }
   const bool rises = kTolerates ? above > tolerated_height(view, r, apart.x, level) : true;
-  for (bool marks = above > limit; marks; marks = false)
+  for (bool once = above > limit; once; once = false)
     mark(view, r, other * kTile, kTile, level, farthest, is_near, rises);
 }
 
@@ -284,31 +284,32 @@ Receivers receivers_of(View view, ivec2 tile, Shared own) {
   return r;
 }
 
-/// Searches the first `count` groups within reach, of those that are unsettled and near or far, with all invocations of
-/// the row.
-void search_groups(View view, Receivers r, int count, bool is_far) {
-  const uint row = gl_LocalInvocationID.y;
+/// Searches a group tile by tile, with all invocations of the row. Steps grow with the distance, so it does not matter
+/// where in a far group something stands if its sectors are among the `known` ones: such a group is marked as a whole.
+/// All invocations of the row must pass the same sectors, since together they decide what becomes of the group.
+void search_group(View view, Receivers r, ivec2 group, uint known) {
   const ivec2 last_tile = tiles_of(view.size) - 1;
+  const vec2 offset = vec2((group * kTileGroup - r.tile) * kTile);
+  const uint sectors =
+      known != 0u ? sectors_of_offsets(offset - float(kBlock * kTile), offset + float(kGroupSide)) : kEverySector;
+  const bool is_coarse = (sectors & ~known) == 0u;
+  for (bool once = is_coarse && gl_LocalInvocationID.x == 0u; once; once = false)
+    mark(view, r, group * kGroupSide, kGroupSide, bounds_of(view, group).level, bounds_of(view, group).farthest, false,
+         true);
+  for (int k = int(gl_LocalInvocationID.x); k < kTileGroup * kTileGroup && !is_coarse; k += int(kGroupX)) {
+    const ivec2 other = group * kTileGroup + ivec2(k % kTileGroup, k / kTileGroup);
+    if (all(lessThanEqual(other, last_tile))) search_tile(view, r, other, false);
+  }
+}
+
+/// Searches the near or the far ones of the unsettled groups among the first `count` within reach.
+void search_groups(View view, Receivers r, int count, bool is_far, uint known) {
+  const uint row = gl_LocalInvocationID.y;
   for (int word = 0; word * 32 < count; word++)
     for (uint bits = unsettled[row * kGroupWords + uint(word)]; bits != 0u; bits &= bits - 1u) {
-      const ivec2 group = group_at(r, word * 32 + findLSB(bits)), offset = (group * kTileGroup - r.tile) * kTile;
-      for (bool is_next = (distances_px(r, group * kGroupSide, kGroupSide).x >= kFarGroup) == is_far; is_next;
-           is_next = false) {
-        // As steps grow with the distance, it does not matter where in a far group something stands, if it stands in no
-        // other sector than what is found.
-        const bool is_coarse =
-            is_far && risen[row] != 0u
-                ? (sectors_of_offsets(vec2(offset) - float(kBlock * kTile), vec2(offset) + float(kGroupSide)) &
-                   ~found[row]) == 0u
-                : false;
-        for (bool marks = is_coarse && gl_LocalInvocationID.x == 0u; marks; marks = false)
-          mark(view, r, group * kGroupSide, kGroupSide, bounds_of(view, group).level, bounds_of(view, group).farthest,
-               false, true);
-        for (int k = int(gl_LocalInvocationID.x); k < kTileGroup * kTileGroup && !is_coarse; k += int(kGroupX)) {
-          const ivec2 other = group * kTileGroup + ivec2(k % kTileGroup, k / kTileGroup);
-          if (all(lessThanEqual(other, last_tile))) search_tile(view, r, other, false);
-        }
-      }
+      const ivec2 group = group_at(r, word * 32 + findLSB(bits));
+      const bool is_next = (distances_px(r, group * kGroupSide, kGroupSide).x >= kFarGroup) == is_far;
+      for (bool once = is_next; once; once = false) search_group(view, r, group, known);
     }
 }
 
@@ -335,14 +336,17 @@ void find_sectors(View view, Receivers r) {
     const GroupBounds b = bounds_of(view, group);
     const bool settled = is_settled(r, group, b),
                too_far = is_too_far(view, r, group * kGroupSide, kGroupSide, b.level, b.farthest);
-    for (bool marks = !settled && too_far; marks; marks = false)
+    for (bool once = !settled && too_far; once; once = false)
       mark(view, r, group * kGroupSide, kGroupSide, b.level, b.farthest, false, true);
     if (!settled && !too_far) atomicOr(unsettled[row * kGroupWords + uint(i) / 32u], 1u << (uint(i) & 31u));
   }
   barrier();
-  search_groups(view, r, left, false);
+  search_groups(view, r, left, false, 0u);
   barrier();
-  search_groups(view, r, left, true);
+  // Between two barriers, so that all invocations of a row know the same, whatever the first of them marks next.
+  const uint known = risen[row] != 0u ? found[row] : 0u;
+  barrier();
+  search_groups(view, r, left, true, known);
   barrier();
 }
 
@@ -415,16 +419,21 @@ void main() {
     beside[row] = kEverySector;  // unless a search finds less
   }
   barrier();
-  // A surface in any of the tiles, as far as it must be known.
-  float near = kSkyDepth, far = 0.0;
-  for (int i = 0; i < kTile * kBlock * kBlock && (kReuses || surfaces[row] != kAllTiles); i++) {
+  // Each invocation looks down its own column of the tiles, until it has seen a surface in each of them or, where
+  // depths must be known, to the end.
+  float near = kSkyDepth;
+  float far = 0.0;
+  uint seen = kSkips ? 0u : kAllTiles;
+  for (int i = 0; i < kTile * kBlock * kBlock && (kReuses || seen != kAllTiles); i++) {
     const int part = i % (kBlock * kBlock);
     const ivec2 at = tile_of_block(tile, part) * kTile + ivec2(gl_LocalInvocationID.x, i / (kBlock * kBlock));
     const float z = depth[index_of(view, min(at, view.size - 1))];
     if (z >= kSkyDepth) continue;
-    atomicOr(surfaces[row], 1u << uint(part));
-    near = min(near, z), far = max(far, z);
+    seen |= 1u << uint(part);
+    near = min(near, z);
+    far = max(far, z);
   }
+  atomicOr(surfaces[row], seen);
   if (kReuses) atomicMin(nearest[row], floatBitsToUint(near)), atomicMax(farthest[row], floatBitsToUint(far));
   barrier();
   const bool is_kept = kReuses && surfaces[row] != 0u
@@ -433,7 +442,7 @@ void main() {
   Shared own = Shared(1.0, 1.0, kNoNormal, 0.0, 0.0, 0.0);
   if (kProves && tile.x < count.x && !is_kept) own = shared_by(tile, count);
   if (kProves) find_sectors(view, receivers_of(view, tile, own));
-  if (tile == ivec2(0)) counts.groups.z = 1u;
+  if (tile == ivec2(0) && gl_LocalInvocationID.x == 0u) counts.groups.z = 1u;
   const bool is_whole = beside[row] == kEverySector;
   const uint sectors = is_whole ? kEverySector : risen[row] != 0u ? found[row] : 0u;
   const uint first_place = row * uint(kBlock * kBlock);

@@ -28,26 +28,42 @@ struct ivec2 {
 #define ALCOVE_BEGIN namespace alcove {
 #define ALCOVE_END }
 #define ALCOVE_CONSTANT inline constexpr
+/// A constant with all its digits: double in C++, float in GLSL.
+#define ALCOVE_NUMBER inline constexpr double
 /// Push constants: at most the 128 bytes that every Vulkan device takes.
 #define ALCOVE_PARAMS(T) static_assert(sizeof(T) <= 128 && alignof(T) == 4 && std::is_trivially_copyable_v<T>);
 
 #else
 
 #extension GL_EXT_scalar_block_layout : require
+// One idiom of the kernels: for (bool once = c; once; once = false) is an `if` that jumps. Lavapipe goes through the
+// body of an `if` in any case, with its lanes switched off, but leaves a loop that no lane goes on with. It stands
+// before what is long and seldom needed.
 #define ALCOVE_BEGIN
 #define ALCOVE_END
 #define ALCOVE_CONSTANT const
+#define ALCOVE_NUMBER const float
 #define ALCOVE_PARAMS(T)
 
 #endif
 
 ALCOVE_BEGIN
 
-// pixels of a workgroup in x; 8 is lavapipe's subgroup size, so a row is one subgroup
+// Pixels of a workgroup in x and y. No kernel may take a row, or anything else but one invocation, to run in lock step:
+// a subgroup has 8 invocations on lavapipe with vectors of 256 bits, 4 with those of 128, and other numbers on GPUs.
+// What invocations share they write with atomics, and they read it behind a barrier.
 ALCOVE_CONSTANT uint kGroupX = 8;
-ALCOVE_CONSTANT uint kGroupY = 8;  // pixels of a workgroup in y
+ALCOVE_CONSTANT uint kGroupY = 8;
 // what `prepare` writes for sky: its squared distance overflows to infinity, so no radius reaches it
 ALCOVE_CONSTANT float kSkyDepth = 1e30;
+
+// The R2 sequence (M. Roberts, "The Unreasonable Effectiveness of Quasirandom Sequences", 2018) goes on by 1/g and
+// 1/g^2, where g^3 = g + 1.
+ALCOVE_NUMBER kR2X = 0.75487766624669276;
+ALCOVE_NUMBER kR2Y = 0.56984029099805327;
+// The roots of 2 and 3, less 1: together with the former and 1 they are linearly independent over the rationals.
+ALCOVE_NUMBER kRootX = 0.41421356237309505;
+ALCOVE_NUMBER kRootY = 0.73205080756887729;
 
 /// The projection of one frame's data window: pixel <-> view space (x right, y up, the camera looks along -z).
 struct View {
