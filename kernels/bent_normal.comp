@@ -1,8 +1,10 @@
-// The mean open direction -> a unit vector, where nothing is open the normal.
+// Makes a unit vector of the mean open direction; where nothing is open it is the normal.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// In: packed normals, planes of the mean open direction. Out: packed unit vectors; what they are on sky has no meaning.
-// Every open direction stands above the tangent plane, and so does their mean: where noise has put it below, it is
+// In: packed normals, planes of the mean open direction.
+// Out: packed unit vectors. What they are on sky has no meaning.
+//
+// Every open direction stands above the tangent plane, and so does their mean. Where noise has put it below, it is
 // lifted onto the plane.
 #version 450
 #extension GL_GOOGLE_include_directive : require

@@ -1,8 +1,10 @@
-// What surfaces a group of tiles shows: planes that none of them is before.
+// Bounds the surfaces that a group of tiles shows, by planes that none of them is before.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// In: bounds of the tiles. Out: bounds of groups of them, by which `classify` settles most of what is within reach at
-// once. The gradient is the mean of those of the tiles; that plane is pushed towards the eye until no tile's own plane
+// In: bounds of the tiles.
+// Out: bounds of groups of them, by which `classify` settles most of what is within reach at once.
+//
+// The gradient is the mean of those of the tiles. The plane with it is pushed towards the eye until no tile's own plane
 // is before it anywhere in the tile.
 #version 450
 #extension GL_GOOGLE_include_directive : require
@@ -18,7 +20,7 @@ layout(scalar, binding = kCoarsenGroups) writeonly buffer Groups { GroupBounds g
 const uint kLevel = kTilePlanes - 1u;
 const float kFar = 1e30;
 
-/// Of the sums' size, for rounding.
+/// The plane is pushed on by this part of the sums' size, for rounding: 16 times the 2^-24 of one operation.
 const float kPad = 1e-6;
 
 void main() {

@@ -1,10 +1,12 @@
-// Several radii in one AO: the mean of the visibilities.
+// Makes one AO of several radii: the mean of their visibilities.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// In: planes of visibility, one a radius. Out: visibility.
-// The mean, and neither the product nor the least: it is itself ambient occlusion, that of a falloff which drops by an
-// equal step at each radius. The occlusion with a falloff W is the integral of -W'(r) times the occlusion with the hard
-// radius r (superposition), which for steps is a mean.
+// In: planes of visibility, one per radius.
+// Out: visibility.
+//
+// It is the mean, and neither the product nor the least, because the mean is itself ambient occlusion: that of a
+// falloff which drops by an equal step at each radius. The occlusion with a falloff W is the integral of -W'(r) times
+// the occlusion with the hard radius r (superposition), which for steps is a mean.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "combine.h"

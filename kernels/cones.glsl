@@ -7,10 +7,10 @@ float angle_of_cosine(float cosine) {
   return angle_of(c, sqrt((1.0 - c) * (1.0 + c)));
 }
 
-/// The solid angle that two cones with one apex share, by the cosines of their half-angles, at most a right angle, and
-/// of the angle between their axes. Exact: the area of the intersection of two spherical caps, the two sectors less the
-/// two spherical triangles between centres and corners (Oat and Sander, "Ambient Aperture Lighting", 2007, give the
-/// same area and then approximate it).
+/// The solid angle that two cones with one apex share, by the cosines of their half-angles, which are at most a right
+/// angle, and of the angle between their axes. It is exact: the area of the intersection of two spherical caps, the two
+/// sectors less the two spherical triangles between centres and corners (Oat and Sander, "Ambient Aperture Lighting",
+/// 2007, give the same area and then approximate it).
 float shared_solid_angle(float cos_a, float cos_b, float cos_between) {
   const float a = angle_of_cosine(cos_a), b = angle_of_cosine(cos_b), between = angle_of_cosine(cos_between);
   if (between >= a + b) return 0.0;

@@ -1,16 +1,19 @@
-// Ambient occlusion by samples in the hemisphere above the surface, as engines do it after Crytek: how much of its
-// volume is hidden.
+// Estimates ambient occlusion by samples in the hemisphere above the surface, as engines do it after Crytek: how much
+// of its volume is hidden.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// In: planar depth, view normals. Out: visibility, 1 = open.
-// Mittring, "Finding Next Gen: CryEngine 2", 2007. It measures volume, not visibility: beside an infinite wall at
-// distance c R the uniform kernel gives 1 - (1 - c)^2 (2 + c) / 4. What is particular here:
-// - A sample is compared with the depth of the pixel that it falls into, on the ray of that pixel's centre: it is moved
+// In: planar depth, view normals.
+// Out: visibility, 1 = open.
+//
+// Mittring, "Finding Next Gen: CryEngine 2", 2007, section 8.5.4.3, with the hemisphere in the place of the sphere. It
+// measures volume, not visibility: beside an infinite wall at distance c R the uniform kernel gives 1 - (1 - c)^2 (2 +
+// c) / 4. What is particular here:
+// - A sample is compared with the depth of the pixel that it falls into, on the ray of that pixel's centre. It is moved
 //   there parallel to the receiver's tangent plane, which keeps its height above it. A flat surface stays open at every
 //   tilt, with no bias at all.
 // - The basis about the normal is built from the normal alone and turned by the noise, so no noise vector can be
 //   parallel to it.
-// - Samples behind the eye, outside the image and before the sky do not count; what is hidden is divided by the number
+// - Samples behind the eye, outside the image and before the sky do not count. What is hidden is divided by the number
 //   of those that do.
 #version 450
 #extension GL_GOOGLE_include_directive : require
@@ -36,7 +39,8 @@ layout(scalar, binding = kCrytekCounts) readonly buffer Counts { TileCounts coun
 const float kLeastSlope = 1e-4;
 const float kTwoPi = 6.28318530717958648;
 
-/// How far sample i lies from the receiver, in radii, by a random number in [0, 1).
+/// How far sample i lies from the receiver, in radii, by a random number in [0, 1). Clustered samples spread with the
+/// square of their number from a tenth of the radius on, as engines usually scale them.
 float reach_of(uint i, float random) {
   const float x = float(i) / float(kSamples);
   return params.uniform_volume != 0 ? pow(x + random / float(kSamples), 1.0 / 3.0) : (0.1 + 0.9 * x * x) * random;

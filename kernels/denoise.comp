@@ -1,14 +1,18 @@
 // Smooths the visibility along one axis, over each surface by itself; rows, then columns, make the separable filter.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// In: planes of visibility, depth, normals. Out: as many planes; constant stays exactly constant, sky stays 1 and is
-// never mixed in. Where one pixel of `stride` has an estimate, rows give every pixel the mean of those in reach and how
-// much they weigh together, by which columns then weigh the rows. Tomasi & Manduchi, "Bilateral Filtering for Gray and
-// Color Images", 1998, with the distance from the other pixel's tangent plane in the place of colour. Two pixels mix as
-// far as each lies in the plane of the other, which sees edges, steps and creases alike and leaves a plane whole at
-// every tilt: the weight is max(0, 1 - (h / sigma)^2), h the larger of both distances, in pixels' widths there. It is
-// the same for both, so it is computed once for a pair. One invocation computes a run of pixels, so that neighbours
-// share what they load.
+// In: planes of visibility, depth, normals.
+// Out: as many planes. What is constant stays exactly constant; sky stays 1 and is never mixed in.
+//
+// Tomasi and Manduchi, "Bilateral Filtering for Gray and Color Images", 1998, with the distance from the other pixel's
+// tangent plane in the place of colour. Two pixels mix as far as each lies in the plane of the other, which sees edges,
+// steps and creases alike and leaves a plane whole at every tilt. The weight is max(0, 1 - (h / sigma)^2), where h is
+// the larger of both distances, in pixels' widths there. It is the same for both pixels, so it is computed once per
+// pair.
+//
+// Where one pixel of `stride` has an estimate, rows give every pixel the mean of those in reach and how much they weigh
+// together, by which columns then weigh the rows. One invocation computes a run of pixels, so that neighbours share
+// what they load.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "denoise.h"
@@ -45,7 +49,7 @@ const int kCount = kDenoiseRun + 2 * kRadius;
 
 struct Tap {
   float weight, z;
-  float scale;  // scene units a unit of tangent_of(): z, or 1 where the view is orthographic
+  float scale;  // scene units per unit of tangent_of(): z, or 1 where the view is orthographic
   // height above this tap's plane, in sigmas, of what is a unit further away, and a pixel along the axis at scale 1
   float ahead, across;
 };
@@ -55,7 +59,7 @@ uint pack_mean(float mean, float weight) { return packUnorm2x16(vec2(mean, sqrt(
 
 float square(float x) { return x * x; }
 
-/// Whether tap i of a run has visibility to give.
+/// Whether tap i of a run has an estimate.
 bool is_known(int i) { return (i + (kStride - 1) * kRadius) % kStride == 0; }
 
 /// What lies outside the image is as sky: infinitely far from every plane.

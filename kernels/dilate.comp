@@ -1,11 +1,15 @@
-// Where a filter has work: within its reach of an estimate that is not proved to be 1.
+// Lists where a filter has work: within its reach of an estimate that is not proved to be 1.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// In: tiles by what classify found. Out: lists for `denoise` and `upsample`, and what they would write everywhere else,
-// where that is not there already. Of nothing but 1 a filter makes 1. Where nothing within its reach is other than in
-// the frame before, what it made then still lies in its place. Denoising is listed by runs: 8 lines wide, and as long
-// as an invocation looks along one. Columns are filtered last, so theirs decide what rows must make. Upsampling is
-// listed by workgroups: 8 x 8 squares between the centres of blocks.
+// In: tiles by what classify found.
+// Out: lists for `denoise` and `upsample`, and what they would write everywhere else, where that is not there already.
+//
+// Of nothing but 1 a filter makes 1. Where nothing within its reach is other than in the frame before, what it made
+// then still lies in its place.
+//
+// Denoising is listed by runs, 8 lines wide and as long as an invocation looks along one. Columns are filtered last, so
+// theirs decide what rows must make. Upsampling is listed by workgroups: squares of 8 x 8 between the centres of
+// blocks.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "dilate.h"
@@ -24,7 +28,7 @@ layout(scalar, binding = kDilateList) writeonly buffer List { uint list[]; };
 layout(scalar, binding = kDilateCounts) buffer Counts { RunCounts counts; };
 layout(scalar, binding = kDilateResult) writeonly buffer Result { float result[]; };
 
-/// Of a workgroup: how many runs it lists, and where.
+/// How many runs the workgroup lists, and where in the list they begin.
 shared uint listed_here, begin;
 
 struct Within {
@@ -96,8 +100,9 @@ void main() {
     begin = atomicAdd(counts.listed, listed_here);
     const uint each = kMode == kDilateUpsample ? 1u : kGroupY;
     const uvec2 groups = dispatch_of((begin + listed_here + each - 1u) / each);
-    atomicMax(counts.groups.x, groups.x), atomicMax(counts.groups.y, groups.y);
-    counts.groups.z = 1u;
+    atomicMax(counts.groups.x, groups.x);
+    atomicMax(counts.groups.y, groups.y);
+    atomicMax(counts.groups.z, 1u);
   }
   barrier();
   if (listed) list[begin + at] = pack_run(lines, run);

@@ -1,8 +1,10 @@
-// The G-buffer at a half or a quarter of the resolution: of each block of pixels the nearest surface, with its own
-// normal.
+// Makes the G-buffer at a half or a quarter of the resolution: of each block of pixels the nearest surface, with its
+// own normal.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// In: depth and normals. Out: depth and normals a block.
+// In: depth and normals of the pixels.
+// Out: depth and normals of the blocks.
+//
 // A block stands for its centre, where no pixel lies. The nearest pixel's surface is followed along its own plane to
 // the centre's ray: a plane stays that plane at every tilt, and nothing shifts by part of a pixel. Where the plane
 // would leave the range of depths that the block shows (a curved rim, a horizon) the range wins.

@@ -1,11 +1,13 @@
-// Visibility of white light -> of light that is thrown back and forth between coloured surfaces, for each of red, green
-// and blue.
+// Turns the visibility of white light into that of light which is thrown back and forth between coloured surfaces, for
+// each of red, green and blue.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// In: visibility, the surface's diffuse colour (or one for all). Out: planes r, g, b.
+// In: visibility, the surface's diffuse colour (or one for all).
+// Out: planes r, g, b.
+//
 // Jimenez et al., "Practical Realtime Strategies for Accurate Indirect Occlusion", 2016: a cubic in the visibility, its
-// coefficients linear in the albedo, fitted to path-traced scenes of one albedo. Never below the visibility, which at 1
-// it misses by up to 0.0004: what is open stays 1.
+// coefficients linear in the albedo, fitted to path-traced scenes of one albedo. The result is never below the
+// visibility. At visibility 1 the cubic misses by up to 0.0004: what is open stays 1.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "multi_bounce.h"

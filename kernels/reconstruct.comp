@@ -1,8 +1,10 @@
-// Normals from depth, where the frame has none that is usable.
+// Makes normals from depth, where the frame has none that is usable.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// In: planar depth; normals, marked where they are missing. Out: those normals. Runs where `prepare` has marked any. A
-// pixel without a usable normal gets the normal of its own plane: 1/z is affine over a plane's image, so on each axis
+// In: planar depth; normals, marked where they are missing.
+// Out: those normals. The kernel runs where `prepare` has marked any.
+//
+// A pixel without a usable normal gets the normal of its own plane. 1/z is affine over a plane's image, so on each axis
 // the side whose two neighbours predict this pixel's 1/z best is on the same plane, and its position difference is a
 // tangent. Where both sides are on one surface, flat or curved, the difference over both is the better tangent: its
 // error is of second order.
@@ -17,10 +19,14 @@ layout(scalar, push_constant) uniform Push { ReconstructParams params; };
 layout(scalar, binding = kReconstructDepth) readonly buffer Depth { float depth[]; };
 layout(scalar, binding = kReconstructNormal) buffer Normal { uint normal[]; };
 
-/// All of 1/z: how much a large change counts against a side, beside its bend; the difference of the two sides'
-/// changes, in such errors and in parts of 1/z (rounding), up to which they are the same surface; and the largest
-/// change of one surface. Tuned on rendered scenes.
-const float kNearness = 0.1, kSameSurface = 4.0, kRounding = 1e-6, kOneSurface = 0.01;
+/// How much a large change of 1/z counts against a side, beside its bend.
+const float kNearness = 0.1;
+
+/// Two sides are the same surface if their changes of 1/z differ by no more than so many errors of the better one, plus
+/// this part of 1/z for rounding, and if both changes are less than this part of 1/z. Tuned on rendered scenes.
+const float kSameSurface = 4.0;
+const float kRounding = 1e-6;
+const float kOneSurface = 0.01;
 
 /// What an affine function over the image would be here, going by the two neighbours on one side; orthographic planes
 /// are affine in z, others in 1/z.
@@ -42,10 +48,14 @@ vec3 tangent_along(ivec2 pixel, ivec2 axis, vec3 position, float here) {
     const float error = bend + kNearness * abs(change), z = params.view.orthographic != 0 ? one : 1.0 / one;
     const vec3 along = float(side) * (position_of(params.view, vec2(pixel + side * axis) + 0.5, z) - position);
     if (error < least) {
-      other = tangent, other_step = least < 1e30 ? step : 1e30;
-      tangent = along, step = change, least = error;
+      other = tangent;
+      other_step = least < 1e30 ? step : 1e30;
+      tangent = along;
+      step = change;
+      least = error;
     } else {
-      other = along, other_step = change;
+      other = along;
+      other_step = change;
     }
   }
   const bool same = abs(step - other_step) <= kSameSurface * least + kRounding * here &&

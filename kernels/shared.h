@@ -54,7 +54,7 @@ ALCOVE_BEGIN
 // What invocations share they write with atomics, and they read it behind a barrier.
 ALCOVE_CONSTANT uint kGroupX = 8;
 ALCOVE_CONSTANT uint kGroupY = 8;
-// what `prepare` writes for sky: its squared distance overflows to infinity, so no radius reaches it
+// What `prepare` writes for sky. Its squared distance overflows to infinity, so no radius reaches it.
 ALCOVE_CONSTANT float kSkyDepth = 1e30;
 
 // The R2 sequence (M. Roberts, "The Unreasonable Effectiveness of Quasirandom Sequences", 2018) goes on by 1/g and
@@ -69,7 +69,7 @@ ALCOVE_NUMBER kRootY = 0.73205080756887729;
 struct View {
   ivec2 size;   // px, of the data window
   vec2 center;  // px from the data window's upper left corner: where the optical axis meets the image
-  // perspective: tangent a pixel; orthographic: scene units a pixel. y is negative: pixels count downwards
+  // perspective: tangent per pixel; orthographic: scene units per pixel. y is negative: pixels count downwards
   vec2 tangent_per_pixel;
   uint orthographic;  // 0 or 1
 };
@@ -84,12 +84,12 @@ ALCOVE_CONSTANT int kTileGroup = 4;        // tiles a side of the groups by whic
 ALCOVE_CONSTANT uint kTilePlanes = 10;     // of TileBounds
 ALCOVE_CONSTANT uint kSectorsOfTurn = 16;  // of directions on the image: see tiles.glsl
 
-/// The surfaces seen in a tile, from the eye's side. They are told by their nearness: 1 / z, or -z orthographic, in
-/// which planes are affine in the pixel.
+/// Bounds of the surfaces seen in a tile, from the eye's side. They are told by their nearness: 1 / z, or -z
+/// orthographic, in which planes are affine in the pixel.
 struct TileBounds {
-  vec2 gradient;  // nearness a pixel, from corner to corner of the tile
-  // at the tile's centre, of planes that no surface is before: with its own gradient, those of its neighbours, see
-  // tiles.glsl; level
+  vec2 gradient;  // nearness per pixel, from corner to corner of the tile
+  // nearness at the tile's centre of planes that no surface is before: with the tile's own gradient, with those of its
+  // neighbours (tiles.glsl), and level
   float plane[kTilePlanes];
   float farthest;         // least nearness; above the level plane where the tile is all sky
   uint mixed;             // 1: its surfaces leave the plane with its own gradient, so that another one may be lower
@@ -98,22 +98,22 @@ struct TileBounds {
   float lowest, highest;  // of -dot(normal, position) over the receivers
 };
 
-/// The same of a group of tiles, less tightly.
+/// The same for a group of tiles, less tightly.
 struct GroupBounds {
-  vec2 gradient;       // nearness a pixel
-  float plane, level;  // at the group's centre, of planes that no surface is before: with that gradient, and with none
+  vec2 gradient;       // nearness per pixel
+  float plane, level;  // nearness at the group's centre of planes that no surface is before: with that gradient, level
   float farthest;      // as of a tile
 };
 
 /// A tile that is to be estimated.
 struct ListedTile {
   uint place;  // column + (row << 16), in tiles
-  // of each sector of directions on the image, the steps at which something may stand above, first + (last << 16); 0:
+  // for each sector of directions on the image the steps at which something may stand above, first + (last << 16); 0:
   // nothing blocks
   uint ranges[kSectorsOfTurn];
 };
 
-/// How many there are, and why the others are not.
+/// How many tiles are listed, and why the others are not.
 struct TileCounts {
   GroupCount groups;  // that hold the listed ones
   uint listed;
@@ -123,13 +123,13 @@ struct TileCounts {
   uint kept;       // as the frame before has them
 };
 
-/// Of runs of pixels that a filter is for.
+/// How many runs of pixels a filter is listed for.
 struct RunCounts {
   GroupCount groups;
   uint listed;
 };
 
-/// What classify says of a tile: a bit for every sector of directions in which something may block, or
+/// What classify says of a tile: a bit for every sector of directions in which something may block, or one of these:
 ALCOVE_CONSTANT uint kTileOpen = 0;        // its visibility is 1: nothing blocks, or it is sky
 ALCOVE_CONSTANT uint kTileKept = 1 << 16;  // its visibility is as in the frame before, and so are its depth and normals
 

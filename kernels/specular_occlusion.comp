@@ -1,8 +1,10 @@
-// How much of a glossy reflection is open: the part of the reflection's cone that lies within the cone of what the
-// surface sees.
+// Tells how much of a glossy reflection is open: the part of the reflection's cone that lies within the cone of what
+// the surface sees.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// In: planar depth, view normals, bent normals, visibility. Out: specular occlusion, 1 = open.
+// In: planar depth, view normals, bent normals, visibility.
+// Out: specular occlusion, 1 = open.
+//
 // Jimenez et al., "Practical Realtime Strategies for Accurate Indirect Occlusion", 2016: a cone about the bent normal b
 // sees as much, cosine weighted, as the surface does: its half-angle is acos(sqrt(1 - ao)). The cone of a glossy lobe
 // about the mirror direction r has the half-angle acos(2 ^ (-3.32193 roughness^2)), which holds most of what a rough

@@ -1,10 +1,13 @@
-// Visibility at a half or a quarter of the resolution back to all pixels, each surface by itself.
+// Brings visibility at a half or a quarter of the resolution back to all pixels, each surface by itself.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// In: depth and normals of pixels and of blocks, planes of visibility of blocks. Out: as many planes of pixels; sky is
-// 1. Kopf et al., "Joint Bilateral Upsampling", 2007: the four blocks about a pixel, by bilinear weights between their
-// centres, as far as these lie in the pixel's tangent plane and their normals agree with its own. Where none does, the
-// block of the nearest depth. One invocation computes the pixels that lie between the same four centres.
+// In: depth and normals of pixels and of blocks, planes of visibility of blocks.
+// Out: as many planes of pixels; sky is 1.
+//
+// Kopf et al., "Joint Bilateral Upsampling", 2007, equation 3: the four blocks about a pixel, by bilinear weights
+// between their centres, as far as these lie in the pixel's tangent plane and their normals agree with its own. Where
+// none does, the block of the nearest depth is taken. One invocation computes the pixels that lie between the same four
+// centres.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "upsample.h"

@@ -42,7 +42,7 @@ vec2 noise_shift(int frame, std::uint32_t seed) {
   const auto shift = [&](double by_frame, double by_seed) {
     return float(fraction(0.5 + fraction(frame * by_frame) + fraction(seed * by_seed)));
   };
-  return {shift(0.75487766624669276, 0.41421356237309505), shift(0.56984029099805327, 0.73205080756887729)};
+  return {shift(kR2X, kRootX), shift(kR2Y, kRootY)};
 }
 
 /// How far from a receiver anything blocks. Crytek's samples fill the sphere of the radius whatever the falloff.
