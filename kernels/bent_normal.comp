@@ -24,7 +24,7 @@ void main() {
   const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   if (any(greaterThanEqual(pixel, params.size))) return;
   const int plane = params.size.x * params.size.y, index = pixel.y * params.size.x + pixel.x;
-  const vec3 b = 2.0 * vec3(bent[index], bent[index + plane], bent[index + 2 * plane]) - 1.0,
-             n = unpack_normal(normal[index]);
+  const vec3 b = 2.0 * vec3(bent[index], bent[index + plane], bent[index + 2 * plane]) - 1.0;
+  const vec3 n = unpack_normal(normal[index]);
   result[index] = pack_normal(normalize(b + (max(0.0, -dot(b, n)) + kLeastLength) * n));
 }

@@ -51,7 +51,10 @@ vec3 search(Receiver r, Side side, Reach reach, Draw draw, uint range) {
   const float jitter = draw.jitter, shift = draw.shift;
   const int count = range != 0u ? min(int(kSteps), int(side.reach)) : 0;
   const float whole = whole_arc(side), endless = 1e30;
-  float last_z = r.z, last_offset = 0.0, last_cot = side.plane_cot, blocked = 0.0;
+  float last_z = r.z;
+  float last_offset = 0.0;
+  float last_cot = side.plane_cot;
+  float blocked = 0.0;
   bool own = true, last_blocks = true;
   vec2 start = vec2(0), bent_blocked = vec2(0);
   uint bits = 0u;
@@ -65,8 +68,8 @@ vec3 search(Receiver r, Side side, Reach reach, Draw draw, uint range) {
     const vec2 place = place_of(r, side, beside, z, scale);
     const vec3 delta = offset_to(r, beside, z, scale);
     const float cot = place.y / place.x, distance_sq = dot(delta, delta);
-    const bool above = is_above(r, reach, place, distance_sq, offset, beside, z, scale),
-               blocks = above ? distance_sq < reach.radius_sq : false;
+    const bool above = is_above(r, reach, place, distance_sq, offset, beside, z, scale);
+    const bool blocks = above ? distance_sq < reach.radius_sq : false;
     const bool connected = same_surface(r, reach, z, last_z, offset - last_offset);
     // What rises from below the tangent plane is treated as the receiver's own surface.
     start = connected && above ? start : place;

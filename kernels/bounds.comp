@@ -38,7 +38,8 @@ float nearness(float z) { return params.view.orthographic != 0 ? -z : z < kSkyDe
 
 /// The gradient of the nearness from corner to corner of a tile; for a tile beside the image, that of the nearest.
 vec2 gradient_of(ivec2 tile, ivec2 size) {
-  const ivec2 first = clamp(tile, ivec2(0), tiles_of(size) - 1) * kTile, last = min(first + kTile, size) - 1;
+  const ivec2 first = clamp(tile, ivec2(0), tiles_of(size) - 1) * kTile;
+  const ivec2 last = min(first + kTile, size) - 1;
   const float a = nearness(depth[first.y * size.x + first.x]);
   const float b = nearness(depth[first.y * size.x + last.x]);
   const float c = nearness(depth[last.y * size.x + first.x]);
@@ -48,7 +49,9 @@ vec2 gradient_of(ivec2 tile, ivec2 size) {
 
 void main() {
   const View view = params.view;
-  const ivec2 tile = ivec2(gl_GlobalInvocationID.xy), size = view.size, count = tiles_of(size);
+  const ivec2 tile = ivec2(gl_GlobalInvocationID.xy);
+  const ivec2 size = view.size;
+  const ivec2 count = tiles_of(size);
   if (any(greaterThanEqual(tile, count))) return;
   const ivec2 first = tile * kTile, end = min(first + kTile, size);
   const vec2 middle = vec2(first) + 0.5 * float(kTile - 1);
@@ -60,7 +63,10 @@ void main() {
     plane[k] = -kFar;
   }
   const float along_first = nearness(depth[first.y * size.x + first.x]) + dot(own, middle - vec2(first));
-  float along_own = -kFar, level = -kFar, farthest = kFar, deepest = 0.0;
+  float along_own = -kFar;
+  float level = -kFar;
+  float farthest = kFar;
+  float deepest = 0.0;
   for (int y = first.y; y < end.y; y++)
     for (int x = first.x; x < end.x; x++) {
       const float z = depth[y * size.x + x], near = z < kSkyDepth ? nearness(z) : -kFar;
@@ -76,7 +82,9 @@ void main() {
   const ivec2 centre = min(first + kTile / 2, size - 1);
   const bool mixed = max(along_own - along_first, -deepest) > kFlat * abs(along_first);
   uint word = kNoNormal;
-  float turned = 0.0, lowest = kFar, highest = -kFar;
+  float turned = 0.0;
+  float lowest = kFar;
+  float highest = -kFar;
   const uint central = normal[centre.y * size.x + centre.x];
   const vec3 n = unpack_normal(central);
   const bool is_surface = depth[centre.y * size.x + centre.x] < kSkyDepth;

@@ -85,7 +85,8 @@ uint changes_at(ivec2 corner, ivec2 blocks) { return changes[corner.y * (blocks.
 bool is_as_before(View view, ivec2 tile, float near, float far) {
   const Rect rect =
       image_of_reach(view, box_of(view, tile, kBlock, near, far), reach_of_samples(view, params.radius, far));
-  const ivec2 most = params.frame_size - 1, blocks = (params.frame_size + kChangeBlock - 1) / kChangeBlock;
+  const ivec2 most = params.frame_size - 1;
+  const ivec2 blocks = (params.frame_size + kChangeBlock - 1) / kChangeBlock;
   const ivec2 from =
       clamp(ivec2(rect.least) * params.factor - params.overhang - kChangeMargin, ivec2(0), most) / kChangeBlock;
   const ivec2 to =
@@ -105,8 +106,8 @@ ivec2 group_at(Receivers r, int i) {
 GroupBounds bounds_of(View view, ivec2 group) { return groups[group.y * groups_of_tiles(view.size).x + group.x]; }
 
 bool is_settled(Receivers r, ivec2 group, GroupBounds b) {
-  const float limit = harmless_height(r, distances_px(r, group * kGroupSide, kGroupSide).x, b.level),
-              half_side = 0.5 * float(kGroupSide - 1);
+  const float limit = harmless_height(r, distances_px(r, group * kGroupSide, kGroupSide).x, b.level);
+  const float half_side = 0.5 * float(kGroupSide - 1);
   const vec2 centre = vec2(group * kGroupSide) + half_side;
   const float above =
       min(most_above(r, centre, half_side, vec2(0), b.level), most_above(r, centre, half_side, b.gradient, b.plane));
@@ -169,8 +170,8 @@ Receivers receivers_of(View view, ivec2 tile, Shared own) {
   const vec3 n = unpack_normal(own.normal);
   const float near = depth_of(view, own.nearest), far = depth_of(view, own.farthest);
   const vec2 widest = max(abs(tangent_of(view, vec2(0))), abs(tangent_of(view, vec2(view.size))));
-  const float longest_ray = perspective ? sqrt(1.0 + dot(widest, widest)) : 1.0,
-              reach = reach_of_samples(view, params.radius, far);
+  const float longest_ray = perspective ? sqrt(1.0 + dot(widest, widest)) : 1.0;
+  const float reach = reach_of_samples(view, params.radius, far);
   Receivers r;
   r.tile = tile;
   r.box = box_of(view, tile, kBlock, near, far);
@@ -256,8 +257,8 @@ void find_sectors(View view, Receivers r) {
   for (int i = int(lane); i < left; i += int(kGroupX)) {
     const ivec2 group = group_at(r, i);
     const GroupBounds b = bounds_of(view, group);
-    const bool settled = is_settled(r, group, b),
-               too_far = is_too_far(view, r, group * kGroupSide, kGroupSide, b.level, b.farthest);
+    const bool settled = is_settled(r, group, b);
+    const bool too_far = is_too_far(view, r, group * kGroupSide, kGroupSide, b.level, b.farthest);
     for (bool once = !settled && too_far; once; once = false)
       mark(view, r, group * kGroupSide, kGroupSide, b.level, b.farthest, false, true);
     if (!settled && !too_far) atomicOr(unsettled[row * kGroupWords + uint(i) / 32u], 1u << (uint(i) & 31u));
@@ -332,8 +333,8 @@ Shared shared_by(ivec2 tile, ivec2 count) {
 
 void main() {
   const View view = params.view;
-  const ivec2 count = tiles_of(view.size),
-              tile = kBlock * ivec2(gl_WorkGroupID.x * kGroupY + gl_LocalInvocationID.y, gl_WorkGroupID.y);
+  const ivec2 count = tiles_of(view.size);
+  const ivec2 tile = kBlock * ivec2(gl_WorkGroupID.x * kGroupY + gl_LocalInvocationID.y, gl_WorkGroupID.y);
   const uint row = gl_LocalInvocationID.y;
   if (gl_LocalInvocationID.x == 0u) {
     surfaces[row] = kSkips ? 0u : kAllTiles;
@@ -384,7 +385,8 @@ void main() {
   barrier();
   for (int i = 0; i < kBlock * kBlock; i++) {
     const ivec2 part = tile_of_block(tile, i);
-    const bool is_inside = all(lessThan(part, count)), is_sky = (surfaces[row] >> uint(i) & 1u) == 0u;
+    const bool is_inside = all(lessThan(part, count));
+    const bool is_sky = (surfaces[row] >> uint(i) & 1u) == 0u;
     const bool is_open = is_sky || !is_kept && sectors == 0u;
     if (is_inside && is_open) write_open(view, part, is_sky, kTolerates && found[row] != 0u);
     if (is_inside && !is_open && !is_kept) list_tile(place[first_place + uint(i)], part, is_whole);

@@ -24,13 +24,16 @@ const float kFar = 1e30;
 const float kPad = 1e-6;
 
 void main() {
-  const ivec2 group = ivec2(gl_GlobalInvocationID.xy), count = tiles_of(params.size),
-              groups_in = groups_of_tiles(params.size);
+  const ivec2 group = ivec2(gl_GlobalInvocationID.xy);
+  const ivec2 count = tiles_of(params.size);
+  const ivec2 groups_in = groups_of_tiles(params.size);
   if (any(greaterThanEqual(group, groups_in))) return;
   const ivec2 from = group * kTileGroup, to = min(from + kTileGroup, count);
   const vec2 centre = vec2(from * kTile) + 0.5 * float(kTileGroup * kTile - 1);
   vec2 gradient = vec2(0);
-  float surfaces = 0.0, level = -kFar, farthest = kFar;
+  float surfaces = 0.0;
+  float level = -kFar;
+  float farthest = kFar;
   for (int y = from.y; y < to.y; y++)
     for (int x = from.x; x < to.x; x++) {
       const int i = y * count.x + x;
@@ -45,9 +48,12 @@ void main() {
   for (int y = from.y; y < to.y; y++)
     for (int x = from.x; x < to.x; x++) {
       const int i = y * count.x + x;
-      const vec2 offset = vec2(ivec2(x, y) * kTile) + 0.5 * float(kTile - 1) - centre,
-                 turn = abs(tiles[i].gradient - gradient), flat_turn = abs(gradient);
-      const float half_side = 0.5 * float(kTile - 1), own = tiles[i].plane[0], tile_level = tiles[i].plane[kLevel];
+      const vec2 offset = vec2(ivec2(x, y) * kTile) + 0.5 * float(kTile - 1) - centre;
+      const vec2 turn = abs(tiles[i].gradient - gradient);
+      const vec2 flat_turn = abs(gradient);
+      const float half_side = 0.5 * float(kTile - 1);
+      const float own = tiles[i].plane[0];
+      const float tile_level = tiles[i].plane[kLevel];
       const float before =
           min(own + half_side * (turn.x + turn.y), tile_level + half_side * (flat_turn.x + flat_turn.y)) -
           dot(gradient, offset);

@@ -19,7 +19,9 @@ layout(scalar, binding = kCombineAo) writeonly buffer Ao { float ao[]; };
 void main() {
   const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy), size = params.size;
   if (any(greaterThanEqual(pixel, size))) return;
-  const int index = pixel.y * size.x + pixel.x, plane = size.x * size.y, count = int(params.count);
+  const int index = pixel.y * size.x + pixel.x;
+  const int plane = size.x * size.y;
+  const int count = int(params.count);
   float sum = 0.0;
   for (int p = 0; p < count; p++) sum += scales[index + p * plane];
   ao[index] = sum / float(count);

@@ -59,8 +59,8 @@ void main() {
   if (place.tile >= counts.listed) return;
   const ivec2 pixel = pixel_of_tile(unpack_tile(list[place.tile].place), place.pixel, params.noise_origin, kStride);
   if (!inside(params.view, pixel)) return;
-  const int index = index_of(params.view, pixel),
-            ao_index = index + int(params.plane) * params.view.size.x * params.view.size.y;
+  const int index = index_of(params.view, pixel);
+  const int ao_index = index + int(params.plane) * params.view.size.x * params.view.size.y;
   const float z = depth[index];
   if (z >= kSkyDepth) {
     ao[ao_index] = 1.0;
@@ -68,11 +68,14 @@ void main() {
   }
 
   const bool perspective = params.view.orthographic == 0;
-  const vec3 position = position_of(params.view, vec2(pixel) + 0.5, z), n = unpack_normal(normal[index]);
+  const vec3 position = position_of(params.view, vec2(pixel) + 0.5, z);
+  const vec3 n = unpack_normal(normal[index]);
   // Two tangents (Duff et al., "Building an Orthonormal Basis, Revisited", 2017).
-  const float sign_z = n.z < 0.0 ? -1.0 : 1.0, a = -1.0 / (sign_z + n.z), b = n.x * n.y * a;
-  const vec3 tangent = vec3(1.0 + sign_z * n.x * n.x * a, sign_z * b, -sign_z * n.x),
-             bitangent = vec3(b, sign_z + n.y * n.y * a, -n.y);
+  const float sign_z = n.z < 0.0 ? -1.0 : 1.0;
+  const float a = -1.0 / (sign_z + n.z);
+  const float b = n.x * n.y * a;
+  const vec3 tangent = vec3(1.0 + sign_z * n.x * n.x * a, sign_z * b, -sign_z * n.x);
+  const vec3 bitangent = vec3(b, sign_z + n.y * n.y * a, -n.y);
 
   const uint first_point = kSamples * hilbert_index(uvec2(pixel + params.noise_origin));
   const float clearance = least_height(
@@ -80,8 +83,10 @@ void main() {
   float valid = 0.0, blocked = 0.0;
   for (uint i = 0u; i < kSamples; i++) {
     const vec3 random = r3_point(first_point + i, params.noise_shift);
-    const float azimuth = kTwoPi * random.x, up = random.y, across = sqrt(1.0 - up * up),
-                reach = params.radius * reach_of(i, random.z);
+    const float azimuth = kTwoPi * random.x;
+    const float up = random.y;
+    const float across = sqrt(1.0 - up * up);
+    const float reach = params.radius * reach_of(i, random.z);
     const float height = reach * up;  // above the tangent plane
     const vec3 at = position + reach * (across * (cos(azimuth) * tangent + sin(azimuth) * bitangent) + up * n);
     if (perspective && !(-at.z > 0.0)) continue;

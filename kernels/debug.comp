@@ -38,8 +38,8 @@ float edge(ivec2 pixel, float z, vec3 n) {
 
 /// The value of a pixel; where only one pixel of the stride has any, the value of that to its left.
 float value_at(ivec2 pixel) {
-  const int begin = first_estimated(pixel.y, params.origin, params.stride),
-            at = pixel.x - ((pixel.x - begin) & (params.stride - 1));
+  const int begin = first_estimated(pixel.y, params.origin, params.stride);
+  const int at = pixel.x - ((pixel.x - begin) & (params.stride - 1));
   return uintBitsToFloat(values[index_of(params.view, ivec2(at < 0 ? begin : at, pixel.y))]);
 }
 

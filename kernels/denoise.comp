@@ -73,8 +73,8 @@ Tap load(ivec2 pixel, bool has_ao) {
   const bool perspective = params.view.orthographic == 0;
   tap.scale = perspective ? tap.z : 1.0;
   const vec3 n = unpack_normal(normal[index]);
-  const vec2 pixel_step = vec2(params.axis) * params.view.tangent_per_pixel,
-             tangent = tangent_of(params.view, vec2(nearest) + 0.5);
+  const vec2 pixel_step = vec2(params.axis) * params.view.tangent_per_pixel;
+  const vec2 tangent = tangent_of(params.view, vec2(nearest) + 0.5);
   const float sigmas = 1.0 / (kPlaneSigma * (abs(pixel_step.x) + abs(pixel_step.y)) * tap.scale);
   if (tap.z < kSkyDepth) tap.ahead = (perspective ? dot(n.xy, tangent) - n.z : -n.z) * sigmas;
   tap.across = dot(n.xy, pixel_step) * sigmas;
@@ -93,8 +93,8 @@ float value_at(ivec2 pixel, int plane) {
 float similarity(Tap a, Tap b, float pixels) {
   const float further = b.z - a.z;
   if (kByDepth != 0) return exp(-abs(further) / (params.depth_sigma * min(a.z, b.z)));
-  const float above_a = a.ahead * further + a.across * pixels * b.scale,
-              above_b = b.ahead * further + b.across * pixels * a.scale;
+  const float above_a = a.ahead * further + a.across * pixels * b.scale;
+  const float above_b = b.ahead * further + b.across * pixels * a.scale;
   const float above_sq = max(above_a * above_a, above_b * above_b);
   return max(kSparse == kDenoiseDense ? 0.0 : kLeastSimilarity / (1.0 + above_sq), 1.0 - above_sq);
 }
@@ -104,8 +104,8 @@ void main() {
   if (kListed && at >= counts.listed) return;
   const ivec2 run = kListed ? unpack_run(list[at]) : ivec2(gl_WorkGroupID.x, gl_GlobalInvocationID.y);
   // Runs of a sparse estimate begin where it has a pixel.
-  const int line = run.x * int(kGroupX) + int(gl_LocalInvocationID.x),
-            known = first_estimated(line, params.origin, kStride);
+  const int line = run.x * int(kGroupX) + int(gl_LocalInvocationID.x);
+  const int known = first_estimated(line, params.origin, kStride);
   const ivec2 first = line * params.axis.yx + (kDenoiseRun * run.y + known - (known > 0 ? kStride : 0)) * params.axis;
   if (any(greaterThanEqual(first, params.view.size))) return;
 
@@ -125,8 +125,9 @@ void main() {
     for (int apart = 1; apart <= kRadius; apart++) {
       const int j = i - apart;
       if (j < 0 || i < kRadius || j >= kDenoiseRun + kRadius || !(is_known(i) || is_known(j))) continue;
-      const float weight = params.weight[apart] * similarity(taps[j], taps[i], float(apart)),
-                  to_j = weight * taps[i].weight, to_i = weight * taps[j].weight;
+      const float weight = params.weight[apart] * similarity(taps[j], taps[i], float(apart));
+      const float to_j = weight * taps[i].weight;
+      const float to_i = weight * taps[j].weight;
       // Changes of a pixel's own visibility, so that what is constant stays so to the bit; in sparse rows, which have
       // none, of 0.
       for (int p = 0; p < kPlanes * kCount; p += kCount) {

@@ -27,7 +27,8 @@ layout(scalar, binding = kDownsampleLowNormal) writeonly buffer LowNormal { uint
 float follow_plane(vec3 n, vec2 from, float z, vec2 to) {
   const float moved = dot(n.xy, (to - from) * params.view.tangent_per_pixel);
   if (params.view.orthographic != 0) return z + moved / n.z;
-  const float cosine = n.z - dot(n.xy, tangent_of(params.view, from)), cosine_there = cosine - moved;
+  const float cosine = n.z - dot(n.xy, tangent_of(params.view, from));
+  const float cosine_there = cosine - moved;
   return cosine_there > 0.0 ? min(z * (cosine / cosine_there), kSkyDepth) : kSkyDepth;
 }
 

@@ -96,8 +96,9 @@ struct Clipped {
 
 Point point_of(View view, LinePlane plane, vec2 tangent, float z, vec3 normal) {
   const bool perspective = view.orthographic == 0;
-  const vec3 along = vec3(plane.along, 0),
-             away = perspective ? vec3(plane.foot, -1) / plane.ray_length : vec3(0, 0, -1), across = cross(along, away);
+  const vec3 along = vec3(plane.along, 0);
+  const vec3 away = perspective ? vec3(plane.foot, -1) / plane.ray_length : vec3(0, 0, -1);
+  const vec3 across = cross(along, away);
   const vec3 position = perspective ? z * vec3(tangent, -1) : vec3(tangent - plane.foot, -z);
   const vec2 in_plane = vec2(dot(normal, along), dot(normal, away));
   const float beside =
@@ -113,8 +114,8 @@ Point point_of(View view, LinePlane plane, vec2 tangent, float z, vec3 normal) {
 /// slope_of() the back of an occluder: it lies `thickness` further along the eye's ray through its front (across,
 /// toward), but not beyond the sphere.
 float back_of(vec2 front, float eye_distance, float thickness, float radius_sq) {
-  const vec2 ray = eye_distance < kNone ? front - vec2(0, eye_distance) : vec2(0, -1),
-             direction = ray * inversesqrt(dot(ray, ray));
+  const vec2 ray = eye_distance < kNone ? front - vec2(0, eye_distance) : vec2(0, -1);
+  const vec2 direction = ray * inversesqrt(dot(ray, ray));
   const float middle = dot(front, direction);
   const float leaves = sqrt(max(0.0, middle * middle - dot(front, front) + radius_sq)) - middle;
   const vec2 back = front + min(thickness, leaves) * direction;
@@ -134,16 +135,23 @@ Stroke stroke_to(vec2 place, Walk walk, bool begins, int steps) {
 /// the roots of |from + t (to - from)|^2 = radius^2.
 Clipped clip_to_sphere(Stroke stroke, float radius_sq) {
   const vec2 from = stroke.from, along = stroke.to - stroke.from;
-  const float a = dot(along, along), middle = dot(from, along), beside = from.x * along.y - from.y * along.x;
-  const float inside_sq = a * radius_sq - beside * beside, inside = sqrt(max(inside_sq, 0.0)), scale = 1.0 / a;
-  const float enters = max(0.0, (-middle - inside) * scale), leaves = min(1.0, (inside - middle) * scale);
+  const float a = dot(along, along);
+  const float middle = dot(from, along);
+  const float beside = from.x * along.y - from.y * along.x;
+  const float inside_sq = a * radius_sq - beside * beside;
+  const float inside = sqrt(max(inside_sq, 0.0));
+  const float scale = 1.0 / a;
+  const float enters = max(0.0, (-middle - inside) * scale);
+  const float leaves = min(1.0, (inside - middle) * scale);
   return Clipped(from + enters * along, from + leaves * along, both(inside_sq > 0.0, enters <= leaves));
 }
 
 /// Adds what a stroke blocks from its front to its back: more of what the receiver's own surface does, or a set apart.
 /// least: the height above the tangent plane that it must have somewhere.
 void block(inout Walk walk, Search search, Clipped stroke, float eye_distance, float least, float radius_sq) {
-  const float near_slope = slope_of(stroke.near), far_slope = slope_of(stroke.far), high = max(near_slope, far_slope);
+  const float near_slope = slope_of(stroke.near);
+  const float far_slope = slope_of(stroke.far);
+  const float high = max(near_slope, far_slope);
   const bool rises = both(min(stroke.near.x, stroke.far.x) > 0.0, high > search.lowest);
   const bool clear = both(rises, max(dot(stroke.near, search.normal), dot(stroke.far, search.normal)) > least);
   const float top = both(stroke.is_within, clear) ? high : -1.0;
@@ -157,7 +165,9 @@ void block(inout Walk walk, Search search, Clipped stroke, float eye_distance, f
 
 /// The blocked part of a side's arc integral; `at` is the index of the side's first vertex.
 float blocked_arc(View view, LinePlane plane, Point point, Side side, Search search, int at) {
-  const float radius = params.radius, radius_sq = radius * radius, thickness = params.thickness;
+  const float radius = params.radius;
+  const float radius_sq = radius * radius;
+  const float thickness = params.thickness;
   Walk walk = Walk(vec2(0), true, true, thickness, slope_of(side.ahead), 0u);
   for (bool goes = true; goes; at += search.step) {
     const uint marked = mark[at];
@@ -194,7 +204,8 @@ void main() {
   }
   if (at.x >= extent.x || at.y >= extent.y) return;
   const ivec2 pixel = lines.steep != 0 ? at.yx : at;
-  const int index = index_of(view, pixel), ao_index = index + int(params.plane) * view.size.x * view.size.y;
+  const int index = index_of(view, pixel);
+  const int ao_index = index + int(params.plane) * view.size.x * view.size.y;
   const float z = depth[index];
   if (z >= kSkyDepth) {
     ao[ao_index] = 1.0;
@@ -207,8 +218,9 @@ void main() {
   const Point point = point_of(view, plane, tangent, z, n);
   const float clearance =
       least_height(params.depth_precision, z, (view.orthographic != 0 ? 0.0 : dot(n.xy, tangent)) - n.z);
-  const float radius = params.radius, weight = length(point.normal),
-              facing = max(dot(point.normal, point.eye), kLeastWeight);
+  const float radius = params.radius;
+  const float weight = length(point.normal);
+  const float facing = max(dot(point.normal, point.eye), kLeastWeight);
   const uint neighbors = neighbor[row + at.x];
   float blocked = 0.0, whole = 0.0;
   if (weight >= kLeastWeight) {

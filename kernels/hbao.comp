@@ -71,8 +71,9 @@ float occlusion(Direction side, ivec2 pixel, vec3 position, float jitter, uint r
     if (z >= kSkyDepth) continue;
     const vec3 delta = position_of(params.view, vec2(hit) + 0.5, z) - position;
     const vec2 in_slice = vec2(dot(delta, side.along_t), dot(delta, side.along_v));
-    const float unit = inversesqrt(dot(in_slice, in_slice)), squared_distance = dot(delta, delta),
-                height = dot(in_slice, side.normal);
+    const float unit = inversesqrt(dot(in_slice, in_slice));
+    const float squared_distance = dot(delta, delta);
+    const float height = dot(in_slice, side.normal);
     const bool clear =
         height > side.least_height + least_rise(params.view) * step_px * (params.view.orthographic == 0 ? z : 1.0);
     const bool above = clear && height * height > kLeastElevation * kLeastElevation * squared_distance;
@@ -90,8 +91,8 @@ void main() {
   if (place.tile >= counts.listed) return;
   const ivec2 pixel = pixel_of_tile(unpack_tile(list[place.tile].place), place.pixel, params.noise_origin, kStride);
   if (!inside(params.view, pixel)) return;
-  const int index = index_of(params.view, pixel),
-            ao_index = index + int(params.plane) * params.view.size.x * params.view.size.y;
+  const int index = index_of(params.view, pixel);
+  const int ao_index = index + int(params.plane) * params.view.size.x * params.view.size.y;
   const float z = depth[index];
   if (z >= kSkyDepth) {
     ao[ao_index] = 1.0;
@@ -100,8 +101,9 @@ void main() {
 
   const bool perspective = params.view.orthographic == 0;
   const vec2 tangent = tangent_of(params.view, vec2(pixel) + 0.5);
-  const vec3 position = position_of(params.view, vec2(pixel) + 0.5, z), eye = toward_eye(params.view, position),
-             n = unpack_normal(normal[index]);
+  const vec3 position = position_of(params.view, vec2(pixel) + 0.5, z);
+  const vec3 eye = toward_eye(params.view, position);
+  const vec3 n = unpack_normal(normal[index]);
   const vec2 noise = pixel_noise(packed_place(pixel + params.noise_origin, kStride), params.noise_shift);
   // The sphere of the radius is seen under this angle; 1 and more: it holds the eye, and the image is the only limit.
   const float sin_reach = perspective ? params.radius * inversesqrt(dot(position, position)) : 0.0;
@@ -116,7 +118,9 @@ void main() {
     // directions about the view ray for one of the image
     const float toward = dot(direction, eye), share = 1.0 / (1.0 - toward * toward);
     const vec3 t = (direction - toward * eye) * sqrt(share), b = cross(t, eye);
-    const float n_t = dot(n, t), n_v = dot(n, eye), weight_squared = n_t * n_t + n_v * n_v;
+    const float n_t = dot(n, t);
+    const float n_v = dot(n, eye);
+    const float weight_squared = n_t * n_t + n_v * n_v;
     whole += 2.0 * share;
     if (weight_squared < kLeastWeight * kLeastWeight) continue;
 

@@ -49,8 +49,8 @@ vec2 place_at(View view, LinePlane plane, int step, float z) {
 /// tangent_of() the centre of a pixel, counted along and across from the display window's corner, so that it is the
 /// same in a crop.
 vec2 tangent_at(View view, Lines lines, ivec2 along_and_across) {
-  const ivec2 origin = lines.steep != 0 ? lines.origin.yx : lines.origin,
-              pixel = lines.steep != 0 ? along_and_across.yx : along_and_across;
+  const ivec2 origin = lines.steep != 0 ? lines.origin.yx : lines.origin;
+  const ivec2 pixel = lines.steep != 0 ? along_and_across.yx : along_and_across;
   return (vec2(pixel) + 0.5 - (view.center + vec2(origin))) * view.tangent_per_pixel;
 }
 

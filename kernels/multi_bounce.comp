@@ -26,7 +26,9 @@ void main() {
   for (int c = 0; c < 3; c++) {
     const float raw = params.has_planes != 0 ? albedo[index + c * plane] : params.albedo;
     const float rho = raw > 0.0 ? min(raw, 1.0) : 0.0;  // NaN too is no colour that returns light
-    const float a = 2.0404 * rho - 0.3324, b = 0.6417 - 4.7951 * rho, d = 2.7552 * rho + 0.6903;
+    const float a = 2.0404 * rho - 0.3324;
+    const float b = 0.6417 - 4.7951 * rho;
+    const float d = 2.7552 * rho + 0.6903;
     result[index + c * plane] = clamp(((a * v + b) * v + d) * v, v, 1.0);
   }
 }

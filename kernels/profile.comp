@@ -128,7 +128,8 @@ Step step_at(View view, Lines lines, LinePlane plane, int rows, int line, int at
   const bool perspective = view.orthographic == 0;
   const int column = min(at, end - 1), across = line + shift_at(lines, column);
   const float rest = rest_at(lines, column);
-  const float nearest = depth[index_at(view, lines, column, across)], here = value_of(perspective, nearest);
+  const float nearest = depth[index_at(view, lines, column, across)];
+  const float here = value_of(perspective, nearest);
   const float change = change_across(view, lines, rows, column, across, rest < 0.0 ? -1 : 1, nearest);
   const float between = here + abs(rest) * change;
   Step s;
@@ -200,7 +201,8 @@ void main() {
                     pixel * (perspective ? min(last.z, run.start.place.y / plane.ray_length) : 1.0));
     for (bool once = here.is_surface && !goes_on; once; once = false) begin_run(run, here);
     if (goes_on) {
-      const float reach = tolerance * (perspective ? here.value : 1.0), length_px = float(t - run.anchor);
+      const float reach = tolerance * (perspective ? here.value : 1.0);
+      const float length_px = float(t - run.anchor);
       neighbor[run.row + t] = columns(run.next - 1, run.next);
       run.low = max(run.low, (here.value - reach - run.anchor_value) / length_px);
       run.high = min(run.high, (here.value + reach - run.anchor_value) / length_px);

@@ -38,9 +38,11 @@ struct Box {
 
 /// The box that holds what is seen in so many tiles in x and y between two depths.
 Box box_of(View view, ivec2 tile, int tiles, float near, float far) {
-  const vec2 a = tangent_of(view, vec2(tile * kTile) + 0.5),
-             b = tangent_of(view, vec2(min((tile + tiles) * kTile, view.size)) - 0.5);
-  const vec2 least = min(a, b), most = max(a, b), scale = view.orthographic != 0 ? vec2(1) : vec2(near, far);
+  const vec2 a = tangent_of(view, vec2(tile * kTile) + 0.5);
+  const vec2 b = tangent_of(view, vec2(min((tile + tiles) * kTile, view.size)) - 0.5);
+  const vec2 least = min(a, b);
+  const vec2 most = max(a, b);
+  const vec2 scale = view.orthographic != 0 ? vec2(1) : vec2(near, far);
   return Box(vec3(min(least * scale.x, least * scale.y), near), vec3(max(most * scale.x, most * scale.y), far));
 }
 
@@ -69,9 +71,10 @@ Rect image_of_reach(View view, Box box, float reach) {
   const float near = box.least.z - reach, far = box.most.z + reach;
   if (perspective && !(near > kLeastNear * box.least.z)) return Rect(vec2(0), vec2(view.size - 1));
   const vec2 least = box.least.xy - reach, most = box.most.xy + reach;
-  const vec2 a = perspective ? min(least / near, least / far) : least,
-             b = perspective ? max(most / near, most / far) : most;
-  const vec2 p = view.center + a / view.tangent_per_pixel, q = view.center + b / view.tangent_per_pixel;
+  const vec2 a = perspective ? min(least / near, least / far) : least;
+  const vec2 b = perspective ? max(most / near, most / far) : most;
+  const vec2 p = view.center + a / view.tangent_per_pixel;
+  const vec2 q = view.center + b / view.tangent_per_pixel;
   return Rect(clamp(min(p, q) - 1.0, vec2(0), vec2(view.size - 1)),
               clamp(max(p, q) + 1.0, vec2(0), vec2(view.size - 1)));
 }
@@ -109,8 +112,8 @@ float most_above(Receivers r, vec2 centre, float half_side, vec2 gradient, float
 /// Pixels from the block to a square of them, and to its farthest.
 ivec2 distances_px(Receivers r, ivec2 first_pixel, int side) {
   const ivec2 offset = first_pixel - r.tile * kTile;
-  const ivec2 least = max(-offset - side + 1, offset - kBlock * kTile + 1),
-              most = max(abs(offset - kBlock * kTile + 1), abs(offset + side - 1));
+  const ivec2 least = max(-offset - side + 1, offset - kBlock * kTile + 1);
+  const ivec2 most = max(abs(offset - kBlock * kTile + 1), abs(offset + side - 1));
   return ivec2(max(max(least.x, least.y), 0), max(most.x, most.y));
 }
 

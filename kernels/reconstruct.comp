@@ -40,12 +40,17 @@ float affine_depth(ivec2 pixel) {
 /// same surface. Zero where neither side has a surface.
 vec3 tangent_along(ivec2 pixel, ivec2 axis, vec3 position, float here) {
   vec3 tangent = vec3(0), other = vec3(0);
-  float least = 1e30, step = 0.0, other_step = 1e30;
+  float least = 1e30;
+  float step = 0.0;
+  float other_step = 1e30;
   for (int side = -1; side <= 1; side += 2) {
-    const float one = affine_depth(pixel + side * axis), two = affine_depth(pixel + 2 * side * axis);
+    const float one = affine_depth(pixel + side * axis);
+    const float two = affine_depth(pixel + 2 * side * axis);
     if (one <= 0.0) continue;
-    const float change = float(side) * (one - here), bend = two > 0.0 ? abs(2.0 * one - two - here) : abs(change);
-    const float error = bend + kNearness * abs(change), z = params.view.orthographic != 0 ? one : 1.0 / one;
+    const float change = float(side) * (one - here);
+    const float bend = two > 0.0 ? abs(2.0 * one - two - here) : abs(change);
+    const float error = bend + kNearness * abs(change);
+    const float z = params.view.orthographic != 0 ? one : 1.0 / one;
     const vec3 along = float(side) * (position_of(params.view, vec2(pixel + side * axis) + 0.5, z) - position);
     if (error < least) {
       other = tangent;
@@ -65,8 +70,8 @@ vec3 tangent_along(ivec2 pixel, ivec2 axis, vec3 position, float here) {
 
 vec3 normal_from_depth(ivec2 pixel, vec3 position, vec3 eye) {
   const float here = affine_depth(pixel);
-  const vec3 right = tangent_along(pixel, ivec2(1, 0), position, here),
-             down = tangent_along(pixel, ivec2(0, 1), position, here);
+  const vec3 right = tangent_along(pixel, ivec2(1, 0), position, here);
+  const vec3 down = tangent_along(pixel, ivec2(0, 1), position, here);
   // With one tangent only, the surface is taken to be as flat towards the eye as it allows; with none, to face the eye.
   vec3 n = cross(down, right);
   const vec3 only = right + down;
@@ -82,7 +87,7 @@ void main() {
   if (!inside(params.view, pixel)) return;
   const int index = index_of(params.view, pixel);
   if (normal[index] != kNoNormal) return;
-  const vec3 position = position_of(params.view, vec2(pixel) + 0.5, depth[index]),
-             eye = toward_eye(params.view, position);
+  const vec3 position = position_of(params.view, vec2(pixel) + 0.5, depth[index]);
+  const vec3 eye = toward_eye(params.view, position);
   normal[index] = pack_normal(facing(normal_from_depth(pixel, position, eye), eye));
 }

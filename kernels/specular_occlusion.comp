@@ -40,7 +40,8 @@ void main() {
   }
   const vec3 eye = toward_eye(params.view, position_of(params.view, vec2(pixel) + 0.5, z));
   const vec3 n = unpack_normal(normal[index]), mirror = reflect(-eye, n);
-  const float roughness = max(params.roughness, kLeastRoughness), cos_lobe = exp2(-3.32193 * roughness * roughness);
+  const float roughness = max(params.roughness, kLeastRoughness);
+  const float cos_lobe = exp2(-3.32193 * roughness * roughness);
   const float seen =
       shared_solid_angle(sqrt(max(0.0, 1.0 - visibility)), cos_lobe, dot(unpack_normal(bent[index]), mirror));
   result[index] = min(1.0, seen / shared_solid_angle(0.0, cos_lobe, dot(n, mirror)));

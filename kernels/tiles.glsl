@@ -33,8 +33,8 @@ uvec2 dispatch_of_tiles(uint tiles, int stride) {
 }
 
 ListedPlace listed_place(uvec2 group, uint invocation, int stride) {
-  const uint each = receivers_of_tile(stride),
-             place = (group.y * kListedRow + group.x) * (kGroupX * kGroupY) + invocation;
+  const uint each = receivers_of_tile(stride);
+  const uint place = (group.y * kListedRow + group.x) * (kGroupX * kGroupY) + invocation;
   return ListedPlace(place / each, place % each);
 }
 
@@ -112,7 +112,8 @@ uint sectors_of_offsets(vec2 least, vec2 most) {
     last = max(last, wrapped);
   }
   const float sectors = float(kSectorsOfTurn / 4u);
-  const int begin = int(floor((middle + first) * sectors)), end = int(floor((middle + last) * sectors));
+  const int begin = int(floor((middle + first) * sectors));
+  const int end = int(floor((middle + last) * sectors));
   const uint seen = ((2u << uint(end - begin)) - 1u) << (uint(begin) & (kSectorsOfTurn - 1u));
   return (seen | seen >> kSectorsOfTurn) & kEverySector;
 }
