@@ -1,4 +1,4 @@
-// The integrals of a slice through the hemisphere, and the angles they need. Pure: no bindings.
+// Angles for the integrals of a slice through the hemisphere. Pure: no bindings.
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Jimenez et al., "Practical Realtime Strategies for Accurate Indirect Occlusion", 2016: a slice is the plane of the

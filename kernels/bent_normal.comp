@@ -1,8 +1,10 @@
-// The mean open direction -> a unit vector, where nothing is open the normal.
+// Makes a unit vector of the mean open direction; where nothing is open it is the normal.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// In: packed normals, planes of the mean open direction. Out: packed unit vectors; what they are on sky has no meaning.
-// Every open direction stands above the tangent plane, and so does their mean: where noise has put it below, it is
+// In: packed normals, planes of the mean open direction.
+// Out: packed unit vectors. What they are on sky has no meaning.
+//
+// Every open direction stands above the tangent plane, and so does their mean. Where noise has put it below, it is
 // lifted onto the plane.
 #version 450
 #extension GL_GOOGLE_include_directive : require
@@ -22,7 +24,7 @@ void main() {
   const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   if (any(greaterThanEqual(pixel, params.size))) return;
   const int plane = params.size.x * params.size.y, index = pixel.y * params.size.x + pixel.x;
-  const vec3 b = 2.0 * vec3(bent[index], bent[index + plane], bent[index + 2 * plane]) - 1.0,
-             n = unpack_normal(normal[index]);
+  const vec3 b = 2.0 * vec3(bent[index], bent[index + plane], bent[index + 2 * plane]) - 1.0;
+  const vec3 n = unpack_normal(normal[index]);
   result[index] = pack_normal(normalize(b + (max(0.0, -dot(b, n)) + kLeastLength) * n));
 }

@@ -1,18 +1,21 @@
 // Ambient occlusion by a visibility bitmask in slices through the view ray, cosine weighted.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// In: planar depth, view normals. Out: visibility, 1 = open; the mean open direction (see bent.glsl) where it is asked
-// for. Therrien et al., "Screen Space Indirect Lighting with Visibility Bitmask", 2023: every sample blocks the angles
-// between its front and its back, and bits of a mask say which are blocked. With these differences:
-// - The 64 sectors of a slice, 32 a side, have equal measure of the cosine-weighted arc integral, not equal angles:
+// In: planar depth, view normals.
+// Out: visibility, 1 = open; the mean open direction (see bent.glsl) where it is asked for.
+//
+// Therrien et al., "Screen Space Indirect Lighting with Visibility Bitmask", 2023: every sample blocks the angles
+// between its front and its back, and the bits of a mask say which angles are blocked. The differences are these:
+// - The 64 sectors of a slice, 32 per side, have equal measure of the cosine-weighted arc integral, not equal angles:
 //   counting bits is integrating.
-// - An interval begins and ends at floor(32 F + u), with one random u a slice, which is unbiased; rounding outwards
+// - An interval begins and ends at floor(32 F + u), with one random u per slice, which is unbiased. Rounding outwards
 //   would block 1.6 % too much.
 // - The back lies along the sample's own eye ray, clipped to the sphere of the radius.
 // - Between two samples of one surface nothing is open. A sample that is not above the tangent plane says nothing else,
-//   so that it may be left out; what rises from there is as the receiver's own surface.
-// With occluders that are infinitely thick it is what horizon.comp computes. With `thickness` 0 a sample is as thick as
-// its surface is wide up to there.
+//   so it may be left out. What rises from there is treated as the receiver's own surface.
+//
+// With occluders that are infinitely thick the result is that of horizon.comp. With `thickness` 0 a sample is as thick
+// as its surface is wide up to there.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "bitmask.h"
@@ -44,10 +47,14 @@ const uint kFalloff = kMode & ~kWithBent;
 const bool kBent = (kMode & kWithBent) != 0u;
 
 /// The blocked part of a side's arc integral and, with bent normals, of bent_to().
-vec3 search(Receiver r, Side side, Reach reach, float jitter, float shift, uint range) {
+vec3 search(Receiver r, Side side, Reach reach, Draw draw, uint range) {
+  const float jitter = draw.jitter, shift = draw.shift;
   const int count = range != 0u ? min(int(kSteps), int(side.reach)) : 0;
   const float whole = whole_arc(side), endless = 1e30;
-  float last_z = r.z, last_offset = 0.0, last_cot = side.plane_cot, blocked = 0.0;
+  float last_z = r.z;
+  float last_offset = 0.0;
+  float last_cot = side.plane_cot;
+  float blocked = 0.0;
   bool own = true, last_blocks = true;
   vec2 start = vec2(0), bent_blocked = vec2(0);
   uint bits = 0u;
@@ -61,10 +68,10 @@ vec3 search(Receiver r, Side side, Reach reach, float jitter, float shift, uint 
     const vec2 place = place_of(r, side, beside, z, scale);
     const vec3 delta = offset_to(r, beside, z, scale);
     const float cot = place.y / place.x, distance_sq = dot(delta, delta);
-    const bool above = is_above(r, reach, place, distance_sq, offset, beside, z, scale),
-               blocks = above ? distance_sq < reach.radius_sq : false;
+    const bool above = is_above(r, reach, place, distance_sq, offset, beside, z, scale);
+    const bool blocks = above ? distance_sq < reach.radius_sq : false;
     const bool connected = same_surface(r, reach, z, last_z, offset - last_offset);
-    // What rises from below the tangent plane is as the receiver's own surface.
+    // What rises from below the tangent plane is treated as the receiver's own surface.
     start = connected && above ? start : place;
     own = above ? (connected ? own : false) : true;
     if (blocks) {
@@ -89,43 +96,19 @@ vec3 search(Receiver r, Side side, Reach reach, float jitter, float shift, uint 
   return vec3(blocked * whole / float(kSectors), bent_blocked);
 }
 
-void write_bent(int index, int plane, vec3 b) {
-  for (int c = 0; c < 3; c++) bent[index + c * plane] = stored_bent(b)[c];
+/// Random numbers of a side, from those of its pixel. The boundaries of the mask move by one number per slice. The
+/// fraction of a sum of whole multiples of two independent numbers is even in [0, 1) and independent of either one; 7
+/// and 13 are primes, so that it repeats with neither.
+Draw draw_of(vec2 noise, uint slice, uint side) {
+  return Draw(fract(noise.y + kGolden * float(2u * slice + side)),
+              fract(noise.x * 7.0 + noise.y * 13.0 + kGolden * float(slice)));
 }
+
+#include "slices.glsl"
 
 void main() {
   const ListedPlace place = listed_place(gl_WorkGroupID.xy, gl_LocalInvocationIndex, kStride);
   if (place.tile >= counts.listed) return;
   const ivec2 pixel = pixel_of_tile(unpack_tile(list[place.tile].place), place.pixel, params.noise_origin, kStride);
-  const View view = params.view;
-  if (!inside(view, pixel)) return;
-  const int index = index_of(view, pixel), plane = view.size.x * view.size.y,
-            ao_index = index + int(params.plane) * plane;
-  const float z = depth[index];
-  if (z >= kSkyDepth) {
-    ao[ao_index] = 1.0;
-    if (kBent) write_bent(index, plane, vec3(0));
-    return;
-  }
-  const Receiver r = receiver_at(view, pixel, z, unpack_normal(normal[index]), params.radius, params.depth_precision);
-  const Reach reach = reach_of(view, params.radius, params.falloff_start, params.thickness, params.bias);
-  const vec2 noise = pixel_noise(packed_place(pixel + params.noise_origin, kStride), params.noise_shift);
-  float blocked = 0.0, whole = 0.0;
-  vec3 bent_blocked = vec3(0);
-  for (uint s = 0u; s < kSlices; s++) {
-    const Slice slice = slice_at(view, r, s, kSlices, noise.x);
-    if (slice.weight < kLeastWeight) continue;
-    whole += slice.share * slice.weight * (slice.cos_gamma + slice.gamma * slice.sin_gamma);
-    const float shift = fract(noise.x * 7.0 + noise.y * 13.0 + kGolden * float(s));
-    for (int sign = -1; sign <= 1; sign += 2) {
-      const float jitter = fract(noise.y + kGolden * float(2u * s + uint(sign > 0)));
-      const Side side = side_of(view, r, slice, float(sign), reach);
-      const vec3 arcs = slice.share * slice.weight *
-                        search(r, side, reach, jitter, shift, list[place.tile].ranges[sector_of(side.direction_px)]);
-      blocked += arcs.x;
-      if (kBent) bent_blocked += arcs.y * float(sign) * slice.t + arcs.z * r.eye;
-    }
-  }
-  ao[ao_index] = whole > 0.0 ? clamp(1.0 - blocked / whole, 0.0, 1.0) : 1.0;
-  if (kBent) write_bent(index, plane, open_bent(r.normal) - (whole > 0.0 ? bent_blocked / whole : vec3(0)));
+  if (inside(params.view, pixel)) estimate(pixel, place.tile);
 }

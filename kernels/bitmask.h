@@ -5,31 +5,31 @@
 #include "horizon.h"
 ALCOVE_BEGIN
 
-ALCOVE_CONSTANT uint kBitmaskDepth = 0;   // in: float a pixel, from prepare
-ALCOVE_CONSTANT uint kBitmaskNormal = 1;  // in: uint a pixel, from prepare
-// out: float a pixel, visibility in [0, 1], 1 = open; the plane of the parameters
+ALCOVE_CONSTANT uint kBitmaskDepth = 0;   // in: one float per pixel, from prepare
+ALCOVE_CONSTANT uint kBitmaskNormal = 1;  // in: one uint per pixel, from prepare
+// out: one float per pixel, visibility in [0, 1], 1 = open; the plane of the parameters
 ALCOVE_CONSTANT uint kBitmaskAo = 2;
 // out: planes x, y, z of the mean open direction b in view space as 0.5 + 0.5 b; only with kWithBent
 ALCOVE_CONSTANT uint kBitmaskBent = 3;
-ALCOVE_CONSTANT uint kBitmaskList = 4;    // in: ListedTile a tile, from classify: what to estimate
+ALCOVE_CONSTANT uint kBitmaskList = 4;    // in: one ListedTile per tile, from classify: what to estimate
 ALCOVE_CONSTANT uint kBitmaskCounts = 5;  // in: TileCounts
 
-ALCOVE_CONSTANT uint kBitmaskSlicesId = 0;  // specialization: slices a pixel
+ALCOVE_CONSTANT uint kBitmaskSlicesId = 0;  // specialization: slices per pixel
 ALCOVE_CONSTANT uint kBitmaskStepsId = 1;   // specialization: steps to each side of a slice
 ALCOVE_CONSTANT uint kBitmaskModeId = 2;    // specialization: one of kFalloff* of falloff.glsl, and kWithBent or not
-// specialization: one pixel of so many in a row, 1, 2 or 4: see stride.glsl
+// specialization: one pixel of so many in a row is estimated, 1, 2 or 4: see stride.glsl
 ALCOVE_CONSTANT uint kBitmaskStrideId = 3;
 
 struct BitmaskParams {
   View view;
   float radius;          // scene units
   float falloff_start;   // scene units, below the radius
-  ivec2 noise_origin;    // px: what to add to a pixel so that crops and tiles share one noise pattern
+  ivec2 noise_origin;    // px: added to a pixel, so that crops and tiles share one noise pattern
   vec2 noise_shift;      // in [0, 1): the pattern's shift for this frame and seed
   float bias;            // sine of the elevation above the tangent plane below which nothing blocks
   float thickness;       // scene units; infinite allowed; 0: as deep as wide
-  uint plane;            // of the output, which has one a radius
-  vec3 depth_precision;  // how far a depth z may be from the surface's: x + y z + z z^2, scene units
+  uint plane;            // of the output, which has one plane per radius
+  vec3 depth_precision;  // scene units: a depth z may be off by x + y z + z z^2
 };
 ALCOVE_PARAMS(BitmaskParams)
 

@@ -1,12 +1,15 @@
-// What surfaces a tile of 8 x 8 pixels shows: planes that none of them is before, and the plane of its receivers where
-// they have one in common.
+// Bounds the surfaces that a tile of 8 x 8 pixels shows: by planes that none of them is before, and by the plane of its
+// receivers where they have one in common.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// In: planar depth, view normals. Out: bounds of every tile, for `classify`.
+// In: planar depth, view normals.
+// Out: bounds of every tile, for `classify`.
+//
 // A pyramid of depths alone cannot tell a floor from what stands on it, for within a tile the floor itself comes
-// nearer. In 1 / z (orthographic: in z) planes are affine in the pixel, so a tile is bounded by planes: by one along
-// its own surface, and, as an edge in it may be the end of a neighbour's surface, by ones along theirs. Each is pushed
-// towards the eye until no pixel is before it, so that all are true whatever their gradient.
+// nearer. In 1 / z (orthographic: in z) planes are affine in the pixel, so a tile is bounded by planes. One lies along
+// its own surface. As an edge in the tile may be the end of a neighbour's surface, others lie along the neighbours'
+// surfaces. Each plane is pushed towards the eye until no pixel is before it, so that all are true whatever their
+// gradient.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "bounds.h"
@@ -25,7 +28,7 @@ layout(scalar, binding = kBoundsTiles) writeonly buffer Tiles { TileBounds tiles
 /// Receivers whose normals differ more than this share no plane.
 const float kLeastTurn = 2e-3;
 
-/// Surfaces are one plane if they leave it by no more than this part of their nearness.
+/// Surfaces are one plane if they leave it by no more than this part of their nearness: 64 times its rounding, 2^-24.
 const float kFlat = 4e-6;
 
 const float kFar = 1e30;
@@ -33,26 +36,37 @@ const int kNeighbors = 8;
 
 float nearness(float z) { return params.view.orthographic != 0 ? -z : z < kSkyDepth ? 1.0 / z : 0.0; }
 
-/// From corner to corner of a tile; of one beside the image, that of the nearest.
+/// The gradient of the nearness from corner to corner of a tile; for a tile beside the image, that of the nearest.
 vec2 gradient_of(ivec2 tile, ivec2 size) {
-  const ivec2 first = clamp(tile, ivec2(0), tiles_of(size) - 1) * kTile, last = min(first + kTile, size) - 1;
-  const float a = nearness(depth[first.y * size.x + first.x]), b = nearness(depth[first.y * size.x + last.x]);
-  const float c = nearness(depth[last.y * size.x + first.x]), d = nearness(depth[last.y * size.x + last.x]);
+  const ivec2 first = clamp(tile, ivec2(0), tiles_of(size) - 1) * kTile;
+  const ivec2 last = min(first + kTile, size) - 1;
+  const float a = nearness(depth[first.y * size.x + first.x]);
+  const float b = nearness(depth[first.y * size.x + last.x]);
+  const float c = nearness(depth[last.y * size.x + first.x]);
+  const float d = nearness(depth[last.y * size.x + last.x]);
   return 0.5 * vec2(b - a + d - c, c - a + d - b) / vec2(max(last - first, ivec2(1)));
 }
 
 void main() {
   const View view = params.view;
-  const ivec2 tile = ivec2(gl_GlobalInvocationID.xy), size = view.size, count = tiles_of(size);
+  const ivec2 tile = ivec2(gl_GlobalInvocationID.xy);
+  const ivec2 size = view.size;
+  const ivec2 count = tiles_of(size);
   if (any(greaterThanEqual(tile, count))) return;
   const ivec2 first = tile * kTile, end = min(first + kTile, size);
   const vec2 middle = vec2(first) + 0.5 * float(kTile - 1);
   const vec2 own = gradient_of(tile, size);
   vec2 gradient[kNeighbors];
   float plane[kNeighbors];
-  for (int k = 0; k < kNeighbors; k++) gradient[k] = gradient_of(tile + neighbor_step(k), size), plane[k] = -kFar;
+  for (int k = 0; k < kNeighbors; k++) {
+    gradient[k] = gradient_of(tile + neighbor_step(k), size);
+    plane[k] = -kFar;
+  }
   const float along_first = nearness(depth[first.y * size.x + first.x]) + dot(own, middle - vec2(first));
-  float along_own = -kFar, level = -kFar, farthest = kFar, deepest = 0.0;
+  float along_own = -kFar;
+  float level = -kFar;
+  float farthest = kFar;
+  float deepest = 0.0;
   for (int y = first.y; y < end.y; y++)
     for (int x = first.x; x < end.x; x++) {
       const float z = depth[y * size.x + x], near = z < kSkyDepth ? nearness(z) : -kFar;
@@ -68,7 +82,9 @@ void main() {
   const ivec2 centre = min(first + kTile / 2, size - 1);
   const bool mixed = max(along_own - along_first, -deepest) > kFlat * abs(along_first);
   uint word = kNoNormal;
-  float turned = 0.0, lowest = kFar, highest = -kFar;
+  float turned = 0.0;
+  float lowest = kFar;
+  float highest = -kFar;
   const uint central = normal[centre.y * size.x + centre.x];
   const vec3 n = unpack_normal(central);
   const bool is_surface = depth[centre.y * size.x + centre.x] < kSkyDepth;

@@ -5,9 +5,9 @@
 #include "shared.h"
 ALCOVE_BEGIN
 
-ALCOVE_CONSTANT uint kBoundsDepth = 0;   // in: float a pixel, from prepare
-ALCOVE_CONSTANT uint kBoundsNormal = 1;  // in: uint a pixel, from prepare
-ALCOVE_CONSTANT uint kBoundsTiles = 2;   // out: TileBounds a tile, rows of tiles from the upper left corner
+ALCOVE_CONSTANT uint kBoundsDepth = 0;   // in: one float per pixel, from prepare
+ALCOVE_CONSTANT uint kBoundsNormal = 1;  // in: one uint per pixel, from prepare
+ALCOVE_CONSTANT uint kBoundsTiles = 2;   // out: one TileBounds per tile, rows of tiles from the upper left corner
 
 // specialization: one pixel of so many in a row is a receiver, 1, 2 or 4: see stride.glsl
 ALCOVE_CONSTANT uint kBoundsStrideId = 0;

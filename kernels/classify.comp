@@ -1,21 +1,27 @@
-// Tiles by what an estimator has to do for them: nothing for sky, nothing where nothing can block, else the directions
-// and steps at which something may.
+// Sorts the tiles by what an estimator has to do for them: nothing for sky, nothing where nothing can block, and else
+// the directions and steps at which something may block.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// In: bounds of the tiles and of groups of them. Out: a list of the tiles that are left, and the visibility of the
-// others' receivers, which is 1, or what it was. The proof. Let a receiver p of a tile have the normal N and -N.P <= c.
-// A surface point Q with depth z and N.Q = z m, m affine in the pixel, stands h = N.Q - N.P <= c + z m above p's
-// tangent plane, so h / z <= c / z + m. Nothing blocks that rises by no more than `least` + z `rise` a pixel aside
-// (clearance.glsl), that is, where (c - least) / z + m <= rise. With 1 / z below a plane of the other tile's bounds the
-// left side is affine, and largest at a corner of it. Receivers whose normals are turned by d against N see d |Q - P|
-// more at most. (Orthographic: -z for 1 / z, and no division.) What is farther than the radius from all receivers does
-// not block either, where the estimator says so: by the distance of the boxes in space that hold the surfaces of both
-// tiles. With a tolerance a tile is left out, too, where nothing within the radius rises more than an angle: what is
-// that low takes at most the squared sine of the angle from the visibility. The proof is the same with another height:
-// |Q - P| / z is at least the distance on the image over the length of p's ray. A group of tiles is searched tile by
-// tile only where its own bounds do not settle it.
-// Where another frame's estimates still lie and nothing within reach is other than it was, they stay.
-// Constants below 1 and pads leave room for rounding.
+// In: bounds of the tiles and of groups of them.
+// Out: a list of the tiles that are left, and the visibility of the others' receivers, which is 1, or what it was.
+//
+// The proof. Let a receiver P of a tile have the normal N, and let -N.P <= c for all of them. A surface point Q with
+// depth z has N.Q = z m, where m is affine in the pixel. Q stands h = N.Q - N.P <= c + z m above P's tangent plane, so
+// h / z <= c / z + m. Nothing blocks that rises by no more than `least` + z `rise` per pixel aside (clearance.glsl),
+// that is, where (c - least) / z + m <= rise. With 1 / z below a plane of the other tile's bounds the left side is
+// affine, and largest at a corner of that tile. Receivers whose normals differ from N by a vector of length d see at
+// most d |Q - P| more. (Orthographic: -z stands for 1 / z, and nothing is divided.)
+//
+// What is farther than the radius from all receivers does not block either, where the estimator says so. The distance
+// is that of the boxes in space that hold the surfaces of both tiles.
+//
+// With a tolerance a tile is left out, too, where nothing within the radius rises more than an angle: what is that low
+// takes at most the squared sine of the angle from the visibility. The proof is the same with another height: |Q - P| /
+// z is at least the distance on the image over the length of P's ray.
+//
+// A group of tiles is searched tile by tile only where its own bounds do not settle it. Where another frame's estimates
+// still lie and nothing within reach is other than it was, they stay. Constants below 1 and pads leave room for
+// rounding.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "classify.h"
@@ -24,12 +30,14 @@
 #include "stride.glsl"
 #include "clearance.glsl"
 #include "tiles.glsl"
+#include "proof.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 layout(constant_id = kClassifyStrideId) const int kStride = 1;
 layout(constant_id = kClassifyModeId) const uint kMode = kClassifySkips;
-const bool kSkips = (kMode & kClassifySkips) != 0u, kProves = (kMode & kClassifyProves) != 0u,
-           kReuses = (kMode & kClassifyReuses) != 0u;
+const bool kSkips = (kMode & kClassifySkips) != 0u;
+const bool kProves = (kMode & kClassifyProves) != 0u;
+const bool kReuses = (kMode & kClassifyReuses) != 0u;
 const bool kTolerates = (kMode & kClassifyTolerates) != 0u;
 layout(scalar, push_constant) uniform Push { ClassifyParams params; };
 layout(scalar, binding = kClassifyBounds) readonly buffer Bounds { TileBounds bounds[]; };
@@ -50,67 +58,22 @@ const uint kGroupWords = uint(kMostGroups) / 32u;
 /// px from the block to groups that are far.
 const int kFarGroup = 32;
 
-/// Receivers are taken together in blocks of so many tiles in x and y where all lie on one plane. A row of invocations
-/// has a block, and shares what it finds.
-const int kBlock = 2;
-// risen: whether something within the radius rises more than the tolerance; without one, more than is harmless.
-shared uint found[kGroupY], beside[kGroupY], risen[kGroupY], surfaces[kGroupY], place[kGroupY * kBlock * kBlock];
-shared uint nearest[kGroupY], farthest[kGroupY];  // bits of depths: of positive floats, in their order
-shared uint unsettled[kGroupY * kGroupWords];     // bits of groups
-// steps, of the sectors that are found or not
+// What the invocations of a row find of their block. Nothing is both written and read between two barriers, but by
+// atomics whose result is not looked at: a row need not run in lock step.
+// Sectors in which something within the radius may block, and those of them that the block itself and its neighbours
+// take.
+shared uint found[kGroupY], beside[kGroupY];
+// Whether something within the radius rises more than the tolerance; without one, more than is harmless.
+shared uint risen[kGroupY];
+// Tiles of the block that show a surface, as bits; where in the list the tiles are.
+shared uint surfaces[kGroupY], place[kGroupY * kBlock * kBlock];
+// Depths of the block, as bits: those of positive floats have the order of the floats.
+shared uint nearest[kGroupY], farthest[kGroupY];
+// Groups that their bounds do not settle, as bits.
+shared uint unsettled[kGroupY * kGroupWords];
+// The range of steps of each sector, found or not.
 shared uint first[kGroupY * kSectorsOfTurn], last[kGroupY * kSectorsOfTurn];
 const uint kAllTiles = (1u << (kBlock * kBlock)) - 1u;
-
-const uint kLevel = kTilePlanes - 1u;
-const float kFar = 1e30;
-const float kHalfTile = 0.5 * float(kTile - 1);
-const int kGroupSide = kTile * kTileGroup;  // px
-
-ivec2 tile_of_block(ivec2 first, int i) { return first + ivec2(i % kBlock, i / kBlock); }
-
-struct Box {
-  vec3 least, most;  // tangents times depth, and depth
-};
-
-/// That holds what is seen in so many tiles in x and y between two depths.
-Box box_of(View view, ivec2 tile, int tiles, float near, float far) {
-  const vec2 a = tangent_of(view, vec2(tile * kTile) + 0.5),
-             b = tangent_of(view, vec2(min((tile + tiles) * kTile, view.size)) - 0.5);
-  const vec2 least = min(a, b), most = max(a, b), scale = view.orthographic != 0 ? vec2(1) : vec2(near, far);
-  return Box(vec3(min(least * scale.x, least * scale.y), near), vec3(max(most * scale.x, most * scale.y), far));
-}
-
-float distance_sq(Box a, Box b) {
-  const vec3 gap = max(max(a.least - b.most, b.least - a.most), 0.0);
-  return dot(gap, gap);
-}
-
-/// Nearness as depth.
-float depth_of(View view, float nearness) { return view.orthographic != 0 ? -nearness : 1.0 / nearness; }
-
-/// From pixels' centres to the samples of receivers up to this depth: one lies up to half a pixel beside its slice, and
-/// is moved into it.
-float reach_of_samples(View view, float far) {
-  const float pixel = max(abs(view.tangent_per_pixel.x), abs(view.tangent_per_pixel.y));
-  return params.radius + 2.0 * pixel * (view.orthographic != 0 ? 1.0 : far + params.radius);
-}
-
-struct Rect {
-  vec2 least, most;  // px
-};
-
-/// The part of the image in which a sphere about anything in a box is seen: all of it where one may hold the eye.
-Rect image_of_reach(View view, Box box, float reach) {
-  const bool perspective = view.orthographic == 0;
-  const float near = box.least.z - reach, far = box.most.z + reach;
-  if (perspective && !(near > 0.01 * box.least.z)) return Rect(vec2(0), vec2(view.size - 1));
-  const vec2 least = box.least.xy - reach, most = box.most.xy + reach;
-  const vec2 a = perspective ? min(least / near, least / far) : least,
-             b = perspective ? max(most / near, most / far) : most;
-  const vec2 p = view.center + a / view.tangent_per_pixel, q = view.center + b / view.tangent_per_pixel;
-  return Rect(clamp(min(p, q) - 1.0, vec2(0), vec2(view.size - 1)),
-              clamp(max(p, q) + 1.0, vec2(0), vec2(view.size - 1)));
-}
 
 /// Pixels of the frame beyond the reach whose depth may decide a normal that was reconstructed, or which surface a
 /// pixel of a smaller image shows.
@@ -120,8 +83,10 @@ uint changes_at(ivec2 corner, ivec2 blocks) { return changes[corner.y * (blocks.
 
 /// Whether all that the estimates of a block of tiles are made from is as it was in the frame before.
 bool is_as_before(View view, ivec2 tile, float near, float far) {
-  const Rect rect = image_of_reach(view, box_of(view, tile, kBlock, near, far), reach_of_samples(view, far));
-  const ivec2 most = params.frame_size - 1, blocks = (params.frame_size + kChangeBlock - 1) / kChangeBlock;
+  const Rect rect =
+      image_of_reach(view, box_of(view, tile, kBlock, near, far), reach_of_samples(view, params.radius, far));
+  const ivec2 most = params.frame_size - 1;
+  const ivec2 blocks = (params.frame_size + kChangeBlock - 1) / kChangeBlock;
   const ivec2 from =
       clamp(ivec2(rect.least) * params.factor - params.overhang - kChangeMargin, ivec2(0), most) / kChangeBlock;
   const ivec2 to =
@@ -131,59 +96,9 @@ bool is_as_before(View view, ivec2 tile, float near, float far) {
          changes_at(ivec2(from.x, to.y), blocks) + changes_at(ivec2(to.x, from.y), blocks);
 }
 
-/// Of the receivers of a block, as of those of a tile.
-struct Shared {
-  float nearest, farthest;
-  uint normal;
-  float turned, lowest, highest;
-};
-
-struct Receivers {
-  ivec2 tile;  // first of the block
-  Box box;
-  float reach, reach_sq;   // of samples, from their pixels' centres
-  float rise, tolerated;   // harmless, and with a tolerance, for every pixel aside
-  float least;             // in units of depth, or orthographic of height: what the left side leaves out
-  ivec2 from, extent;      // groups within reach; more than kMostGroups: not searched
-  vec2 along;              // of the affine part, a pixel
-  float nearness, affine;  // factor of 1 / z: (c - least), or orthographic of -z: N.z; the affine part at pixel (0, 0)
-  // times the farthest that anything that may block is from a receiver, in units of the left side
-  float turned;
-  float turned_by_nearness;
-};
-
-/// The most that anything before a plane rises above the receivers' tangent planes, in a square of pixels.
-float most_above(Receivers r, vec2 centre, float half_side, vec2 gradient, float at_centre) {
-  const vec2 along = r.nearness * gradient + r.along;
-  return r.nearness * at_centre + r.affine + dot(r.along, centre) + half_side * (abs(along.x) + abs(along.y));
-}
-
-/// Pixels from the block to a square of them, and to its farthest.
-ivec2 distances_px(Receivers r, ivec2 first_pixel, int side) {
-  const ivec2 offset = first_pixel - r.tile * kTile;
-  const ivec2 least = max(-offset - side + 1, offset - kBlock * kTile + 1),
-              most = max(abs(offset - kBlock * kTile + 1), abs(offset + side - 1));
-  return ivec2(max(max(least.x, least.y), 0), max(most.x, most.y));
-}
-
-/// How much may stand above the tangent planes and yet not block, with nearness at most `level`.
-float harmless_height(Receivers r, float rise, int distance_px, float level) {
-  const float aside = max(float(distance_px) - 0.5, 0.5);
-  return rise * aside - 2e-6 * abs(r.nearness * level) - r.turned - r.turned_by_nearness * level;
-}
-
-float harmless_height(Receivers r, int distance_px, float level) {
-  return harmless_height(r, r.rise, distance_px, level);
-}
-
-/// How much of the left side, at most, takes no more of the visibility than the tolerance.
-float tolerated_height(View view, Receivers r, int distance_px, float level) {
-  return harmless_height(r, r.tolerated, distance_px, level) - r.least * (view.orthographic != 0 ? 1.0 : level);
-}
-
 /// Group i of those within reach, row by row.
 ivec2 group_at(Receivers r, int i) {
-  // of numbers up to kMostGroups: whole divisions are slow
+  // Divisions of whole numbers are slow; with numbers up to kMostGroups this one is exact.
   const int line = int((float(i) + 0.5) * (1.0 / float(r.extent.x)));
   return r.from + ivec2(i - line * r.extent.x, line);
 }
@@ -191,8 +106,8 @@ ivec2 group_at(Receivers r, int i) {
 GroupBounds bounds_of(View view, ivec2 group) { return groups[group.y * groups_of_tiles(view.size).x + group.x]; }
 
 bool is_settled(Receivers r, ivec2 group, GroupBounds b) {
-  const float limit = harmless_height(r, distances_px(r, group * kGroupSide, kGroupSide).x, b.level),
-              half_side = 0.5 * float(kGroupSide - 1);
+  const float limit = harmless_height(r, distances_px(r, group * kGroupSide, kGroupSide).x, b.level);
+  const float half_side = 0.5 * float(kGroupSide - 1);
   const vec2 centre = vec2(group * kGroupSide) + half_side;
   const float above =
       min(most_above(r, centre, half_side, vec2(0), b.level), most_above(r, centre, half_side, b.gradient, b.plane));
@@ -206,7 +121,8 @@ bool is_too_far(View view, Receivers r, ivec2 first_pixel, int side, float level
                                    depth_of(view, farthest))) > r.reach_sq;
 }
 
-/// Adds a square of pixels, in which something stands above, to the sectors and steps at which something may block.
+/// Adds a square of pixels, in which something stands above the tangent planes, to the sectors and steps at which
+/// something may block.
 void mark(View view, Receivers r, ivec2 first_pixel, int side, float level, float farthest, bool is_near, bool rises) {
   const uint row = gl_LocalInvocationID.y;
   const ivec2 apart = distances_px(r, first_pixel, side);
@@ -245,7 +161,7 @@ void search_tile(View view, Receivers r, ivec2 other, bool is_near) {
                                   bounds[index].plane[k + 1]));
   }
   const bool rises = kTolerates ? above > tolerated_height(view, r, apart.x, level) : true;
-  for (bool marks = above > limit; marks; marks = false)
+  for (bool once = above > limit; once; once = false)
     mark(view, r, other * kTile, kTile, level, farthest, is_near, rises);
 }
 
@@ -254,19 +170,20 @@ Receivers receivers_of(View view, ivec2 tile, Shared own) {
   const vec3 n = unpack_normal(own.normal);
   const float near = depth_of(view, own.nearest), far = depth_of(view, own.farthest);
   const vec2 widest = max(abs(tangent_of(view, vec2(0))), abs(tangent_of(view, vec2(view.size))));
-  const float longest_ray = perspective ? sqrt(1.0 + dot(widest, widest)) : 1.0, reach = reach_of_samples(view, far);
+  const float longest_ray = perspective ? sqrt(1.0 + dot(widest, widest)) : 1.0;
+  const float reach = reach_of_samples(view, params.radius, far);
   Receivers r;
   r.tile = tile;
   r.box = box_of(view, tile, kBlock, near, far);
   r.reach = reach;
   r.reach_sq = reach * reach;
-  r.rise = 0.9 * least_rise(view);
-  r.tolerated =
-      0.99 * params.tolerated / longest_ray * min(abs(view.tangent_per_pixel.x), abs(view.tangent_per_pixel.y));
+  r.rise = kClaimed * least_rise(view);
+  r.tolerated = kToleranceClaimed * params.tolerated / longest_ray *
+                min(abs(view.tangent_per_pixel.x), abs(view.tangent_per_pixel.y));
 
   // A unit of depth is at least so much height at every receiver: their normals differ.
   const float height = (perspective ? own.lowest / far : n.z) - own.turned * longest_ray;
-  const float least = 0.9 * least_height(params.depth_precision, near, max(height, 0.0));
+  const float least = kClaimed * least_height(params.depth_precision, near, max(height, 0.0));
   r.least = least;
   r.along = n.xy * view.tangent_per_pixel;
   r.nearness = perspective ? max(own.highest - least, 0.0) : n.z;
@@ -284,31 +201,32 @@ Receivers receivers_of(View view, ivec2 tile, Shared own) {
   return r;
 }
 
-/// Searches the first `count` groups within reach, of those that are unsettled and near or far, with all invocations of
-/// the row.
-void search_groups(View view, Receivers r, int count, bool is_far) {
-  const uint row = gl_LocalInvocationID.y;
+/// Searches a group tile by tile, with all invocations of the row. Steps grow with the distance, so it does not matter
+/// where in a far group something stands if its sectors are among the `known` ones: such a group is marked as a whole.
+/// All invocations of the row must pass the same sectors, since together they decide what becomes of the group.
+void search_group(View view, Receivers r, ivec2 group, uint known) {
   const ivec2 last_tile = tiles_of(view.size) - 1;
+  const vec2 offset = vec2((group * kTileGroup - r.tile) * kTile);
+  const uint sectors =
+      known != 0u ? sectors_of_offsets(offset - float(kBlock * kTile), offset + float(kGroupSide)) : kEverySector;
+  const bool is_coarse = (sectors & ~known) == 0u;
+  for (bool once = is_coarse && gl_LocalInvocationID.x == 0u; once; once = false)
+    mark(view, r, group * kGroupSide, kGroupSide, bounds_of(view, group).level, bounds_of(view, group).farthest, false,
+         true);
+  for (int k = int(gl_LocalInvocationID.x); k < kTileGroup * kTileGroup && !is_coarse; k += int(kGroupX)) {
+    const ivec2 other = group * kTileGroup + ivec2(k % kTileGroup, k / kTileGroup);
+    if (all(lessThanEqual(other, last_tile))) search_tile(view, r, other, false);
+  }
+}
+
+/// Searches the near or the far ones of the unsettled groups among the first `count` within reach.
+void search_groups(View view, Receivers r, int count, bool is_far, uint known) {
+  const uint row = gl_LocalInvocationID.y;
   for (int word = 0; word * 32 < count; word++)
     for (uint bits = unsettled[row * kGroupWords + uint(word)]; bits != 0u; bits &= bits - 1u) {
-      const ivec2 group = group_at(r, word * 32 + findLSB(bits)), offset = (group * kTileGroup - r.tile) * kTile;
-      for (bool is_next = (distances_px(r, group * kGroupSide, kGroupSide).x >= kFarGroup) == is_far; is_next;
-           is_next = false) {
-        // As steps grow with the distance, it does not matter where in a far group something stands, if it stands in no
-        // other sector than what is found.
-        const bool is_coarse =
-            is_far && risen[row] != 0u
-                ? (sectors_of_offsets(vec2(offset) - float(kBlock * kTile), vec2(offset) + float(kGroupSide)) &
-                   ~found[row]) == 0u
-                : false;
-        for (bool marks = is_coarse && gl_LocalInvocationID.x == 0u; marks; marks = false)
-          mark(view, r, group * kGroupSide, kGroupSide, bounds_of(view, group).level, bounds_of(view, group).farthest,
-               false, true);
-        for (int k = int(gl_LocalInvocationID.x); k < kTileGroup * kTileGroup && !is_coarse; k += int(kGroupX)) {
-          const ivec2 other = group * kTileGroup + ivec2(k % kTileGroup, k / kTileGroup);
-          if (all(lessThanEqual(other, last_tile))) search_tile(view, r, other, false);
-        }
-      }
+      const ivec2 group = group_at(r, word * 32 + findLSB(bits));
+      const bool is_next = (distances_px(r, group * kGroupSide, kGroupSide).x >= kFarGroup) == is_far;
+      for (bool once = is_next; once; once = false) search_group(view, r, group, known);
     }
 }
 
@@ -318,9 +236,15 @@ void find_sectors(View view, Receivers r) {
   const uint row = gl_LocalInvocationID.y, lane = gl_LocalInvocationID.x;
   const ivec2 last_tile = tiles_of(view.size) - 1;
   const int searched = r.extent.x * r.extent.y, around = kBlock + 2;
-  if (lane == 0u) found[row] = 0u, risen[row] = searched > 0 ? 0u : 1u, beside[row] = searched > 0 ? 0u : kEverySector;
-  for (uint k = lane; k < kSectorsOfTurn; k += kGroupX)
-    first[row * kSectorsOfTurn + k] = ~0u, last[row * kSectorsOfTurn + k] = 0u;
+  if (lane == 0u) {
+    found[row] = 0u;
+    risen[row] = searched > 0 ? 0u : 1u;
+    beside[row] = searched > 0 ? 0u : kEverySector;
+  }
+  for (uint k = lane; k < kSectorsOfTurn; k += kGroupX) {
+    first[row * kSectorsOfTurn + k] = ~0u;
+    last[row * kSectorsOfTurn + k] = 0u;
+  }
   for (uint k = lane; k < kGroupWords; k += kGroupX) unsettled[row * kGroupWords + k] = 0u;
   barrier();
   // The block and its neighbours decide most.
@@ -333,20 +257,23 @@ void find_sectors(View view, Receivers r) {
   for (int i = int(lane); i < left; i += int(kGroupX)) {
     const ivec2 group = group_at(r, i);
     const GroupBounds b = bounds_of(view, group);
-    const bool settled = is_settled(r, group, b),
-               too_far = is_too_far(view, r, group * kGroupSide, kGroupSide, b.level, b.farthest);
-    for (bool marks = !settled && too_far; marks; marks = false)
+    const bool settled = is_settled(r, group, b);
+    const bool too_far = is_too_far(view, r, group * kGroupSide, kGroupSide, b.level, b.farthest);
+    for (bool once = !settled && too_far; once; once = false)
       mark(view, r, group * kGroupSide, kGroupSide, b.level, b.farthest, false, true);
     if (!settled && !too_far) atomicOr(unsettled[row * kGroupWords + uint(i) / 32u], 1u << (uint(i) & 31u));
   }
   barrier();
-  search_groups(view, r, left, false);
+  search_groups(view, r, left, false, 0u);
   barrier();
-  search_groups(view, r, left, true);
+  // Between two barriers, so that all invocations of a row know the same, whatever the first of them marks next.
+  const uint known = risen[row] != 0u ? found[row] : 0u;
+  barrier();
+  search_groups(view, r, left, true, known);
   barrier();
 }
 
-/// By all invocations of a row, which put down the ranges of their own sectors.
+/// Lists a tile, by all invocations of a row, which each put down the ranges of their own sectors.
 void list_tile(uint at, ivec2 tile, bool is_whole) {
   const uint row = gl_LocalInvocationID.y;
   for (uint k = gl_LocalInvocationID.x; k < kSectorsOfTurn; k += kGroupX) {
@@ -358,10 +285,11 @@ void list_tile(uint at, ivec2 tile, bool is_whole) {
   if (gl_LocalInvocationID.x != 0u) return;
   list[at].place = pack_tile(tile);
   const uvec2 groups = dispatch_of_tiles(at + 1u, kStride);
-  atomicMax(counts.groups.x, groups.x), atomicMax(counts.groups.y, groups.y);
+  atomicMax(counts.groups.x, groups.x);
+  atomicMax(counts.groups.y, groups.y);
 }
 
-/// What estimators write where nothing blocks, by all invocations of a row.
+/// Writes what estimators write where nothing blocks, by all invocations of a row.
 void write_open(View view, ivec2 tile, bool is_sky, bool is_tolerated) {
   if (gl_LocalInvocationID.x == 0u) {
     atomicAdd(counts.sky, is_sky ? 1u : 0u);
@@ -405,8 +333,8 @@ Shared shared_by(ivec2 tile, ivec2 count) {
 
 void main() {
   const View view = params.view;
-  const ivec2 count = tiles_of(view.size),
-              tile = kBlock * ivec2(gl_WorkGroupID.x * kGroupY + gl_LocalInvocationID.y, gl_WorkGroupID.y);
+  const ivec2 count = tiles_of(view.size);
+  const ivec2 tile = kBlock * ivec2(gl_WorkGroupID.x * kGroupY + gl_LocalInvocationID.y, gl_WorkGroupID.y);
   const uint row = gl_LocalInvocationID.y;
   if (gl_LocalInvocationID.x == 0u) {
     surfaces[row] = kSkips ? 0u : kAllTiles;
@@ -415,17 +343,25 @@ void main() {
     beside[row] = kEverySector;  // unless a search finds less
   }
   barrier();
-  // A surface in any of the tiles, as far as it must be known.
-  float near = kSkyDepth, far = 0.0;
-  for (int i = 0; i < kTile * kBlock * kBlock && (kReuses || surfaces[row] != kAllTiles); i++) {
+  // Each invocation looks down its own column of the tiles, until it has seen a surface in each of them or, where
+  // depths must be known, to the end.
+  float near = kSkyDepth;
+  float far = 0.0;
+  uint seen = kSkips ? 0u : kAllTiles;
+  for (int i = 0; i < kTile * kBlock * kBlock && (kReuses || seen != kAllTiles); i++) {
     const int part = i % (kBlock * kBlock);
     const ivec2 at = tile_of_block(tile, part) * kTile + ivec2(gl_LocalInvocationID.x, i / (kBlock * kBlock));
     const float z = depth[index_of(view, min(at, view.size - 1))];
     if (z >= kSkyDepth) continue;
-    atomicOr(surfaces[row], 1u << uint(part));
-    near = min(near, z), far = max(far, z);
+    seen |= 1u << uint(part);
+    near = min(near, z);
+    far = max(far, z);
   }
-  if (kReuses) atomicMin(nearest[row], floatBitsToUint(near)), atomicMax(farthest[row], floatBitsToUint(far));
+  atomicOr(surfaces[row], seen);
+  if (kReuses) {
+    atomicMin(nearest[row], floatBitsToUint(near));
+    atomicMax(farthest[row], floatBitsToUint(far));
+  }
   barrier();
   const bool is_kept = kReuses && surfaces[row] != 0u
                            ? is_as_before(view, tile, uintBitsToFloat(nearest[row]), uintBitsToFloat(farthest[row]))
@@ -433,7 +369,7 @@ void main() {
   Shared own = Shared(1.0, 1.0, kNoNormal, 0.0, 0.0, 0.0);
   if (kProves && tile.x < count.x && !is_kept) own = shared_by(tile, count);
   if (kProves) find_sectors(view, receivers_of(view, tile, own));
-  if (tile == ivec2(0)) counts.groups.z = 1u;
+  if (tile == ivec2(0) && gl_LocalInvocationID.x == 0u) counts.groups.z = 1u;
   const bool is_whole = beside[row] == kEverySector;
   const uint sectors = is_whole ? kEverySector : risen[row] != 0u ? found[row] : 0u;
   const uint first_place = row * uint(kBlock * kBlock);
@@ -449,7 +385,8 @@ void main() {
   barrier();
   for (int i = 0; i < kBlock * kBlock; i++) {
     const ivec2 part = tile_of_block(tile, i);
-    const bool is_inside = all(lessThan(part, count)), is_sky = (surfaces[row] >> uint(i) & 1u) == 0u;
+    const bool is_inside = all(lessThan(part, count));
+    const bool is_sky = (surfaces[row] >> uint(i) & 1u) == 0u;
     const bool is_open = is_sky || !is_kept && sectors == 0u;
     if (is_inside && is_open) write_open(view, part, is_sky, kTolerates && found[row] != 0u);
     if (is_inside && !is_open && !is_kept) list_tile(place[first_place + uint(i)], part, is_whole);

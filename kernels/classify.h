@@ -5,20 +5,20 @@
 #include "shared.h"
 ALCOVE_BEGIN
 
-ALCOVE_CONSTANT uint kClassifyBounds = 0;  // in: TileBounds a tile, from bounds
-ALCOVE_CONSTANT uint kClassifyDepth = 1;   // in: float a pixel, from prepare
-ALCOVE_CONSTANT uint kClassifyNormal = 2;  // in: uint a pixel, from prepare
-ALCOVE_CONSTANT uint kClassifyList = 3;    // out: ListedTile a tile, as many as are counted, in no order
-ALCOVE_CONSTANT uint kClassifyCounts = 4;  // in, out: TileCounts, zeros
-// out: float a pixel, 1 at receivers of tiles that are not listed; the plane of the parameters
+ALCOVE_CONSTANT uint kClassifyBounds = 0;  // in: one TileBounds per tile, from bounds
+ALCOVE_CONSTANT uint kClassifyDepth = 1;   // in: one float per pixel, from prepare
+ALCOVE_CONSTANT uint kClassifyNormal = 2;  // in: one uint per pixel, from prepare
+ALCOVE_CONSTANT uint kClassifyList = 3;    // out: one ListedTile per tile, as many as are counted, in no order
+ALCOVE_CONSTANT uint kClassifyCounts = 4;  // in and out: TileCounts, zeros
+// out: one float per pixel, 1 at receivers of tiles that are not listed; in the plane that the parameters name
 ALCOVE_CONSTANT uint kClassifyAo = 5;
 // out: planes x, y, z as estimators write them, for the same; only with kClassifyWithBent
 ALCOVE_CONSTANT uint kClassifyBent = 6;
-// out: uint a tile: kTileOpen, kTileKept, or a bit for every sector of directions in which something may block
+// out: one uint per tile: kTileOpen, kTileKept, or a bit for every sector of directions in which something may block
 ALCOVE_CONSTANT uint kClassifySectors = 7;
-ALCOVE_CONSTANT uint kClassifyGroups = 8;  // in: GroupBounds a group of tiles, from coarsen
+ALCOVE_CONSTANT uint kClassifyGroups = 8;  // in: one GroupBounds per group of tiles, from coarsen
 
-// in: uint a corner of blocks, (columns + 1) x (rows + 1): the changed blocks above and left of it
+// in: one uint per corner of blocks, (columns + 1) x (rows + 1): how many blocks above and left of it have changed
 ALCOVE_CONSTANT uint kClassifyChanges = 9;
 
 // specialization: one pixel of so many in a row is a receiver, 1, 2 or 4: see stride.glsl
@@ -29,7 +29,7 @@ ALCOVE_CONSTANT uint kClassifySkips = 1;   // else every tile is listed
 ALCOVE_CONSTANT uint kClassifyProves = 8;  // with kClassifySkips: reads the bounds; else only sky is left out
 ALCOVE_CONSTANT uint kClassifyRanged = 2;  // nothing beyond the radius blocks
 ALCOVE_CONSTANT uint kClassifyWithBent = 4;
-// with kClassifySkips: reads the changes, and leaves as they are tiles within whose reach nothing has changed
+// with kClassifySkips: reads the changes, and leaves tiles as they are within whose reach nothing has changed
 ALCOVE_CONSTANT uint kClassifyReuses = 16;
 ALCOVE_CONSTANT uint kClassifyTolerates = 32;  // with kClassifyProves
 
@@ -41,7 +41,7 @@ struct ClassifyParams {
   float radius;  // scene units: the farthest at which anything blocks
   // with kClassifyTolerates: sine of the elevation above a tangent plane up to which a tile is left out
   float tolerated;
-  vec3 depth_precision;  // how far a depth z may be from the surface's: x + y z + z z^2, scene units
+  vec3 depth_precision;  // scene units: a depth z may be off by x + y z + z z^2
   uint plane;            // of the AO
   ivec2 frame_size;      // px; the frame is the image, or `factor` times as large
   ivec2 overhang;        // px of the first pixel of the image that are outside of the frame

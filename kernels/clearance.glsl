@@ -3,9 +3,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Depth is known to a precision only, and normals are rounded: on a plane each pixel would see some of its neighbours
-// rise a little. So nothing blocks that rises by less than two depths' errors can feign, and kLeastRise pixels for
-// every pixel that it lies aside; nor, seen aslant, what is not kLeastElevation above the plane. By that no visibility
-// changes by more than the square of this angle, 1.6e-5, once two depths' errors are small beside a pixel.
+// rise a little. So nothing blocks whose height is less than what the errors of two depths can feign plus kLeastRise
+// pixels for every pixel that it lies aside. Nor does, seen aslant, what is not kLeastElevation above the plane. By
+// that no visibility changes by more than the square of this angle, 1.6e-5, once two depths' errors are small beside a
+// pixel.
 
 const float kLeastRise = 4e-3;
 const float kLeastElevation = 1e-3;  // sine

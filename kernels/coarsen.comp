@@ -1,8 +1,10 @@
-// What surfaces a group of tiles shows: planes that none of them is before.
+// Bounds the surfaces that a group of tiles shows, by planes that none of them is before.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// In: bounds of the tiles. Out: bounds of groups of them, by which `classify` settles most of what is within reach at
-// once. The gradient is the mean of those of the tiles; that plane is pushed towards the eye until no tile's own plane
+// In: bounds of the tiles.
+// Out: bounds of groups of them, by which `classify` settles most of what is within reach at once.
+//
+// The gradient is the mean of those of the tiles. The plane with it is pushed towards the eye until no tile's own plane
 // is before it anywhere in the tile.
 #version 450
 #extension GL_GOOGLE_include_directive : require
@@ -18,17 +20,20 @@ layout(scalar, binding = kCoarsenGroups) writeonly buffer Groups { GroupBounds g
 const uint kLevel = kTilePlanes - 1u;
 const float kFar = 1e30;
 
-/// Of the sums' size, for rounding.
+/// The plane is pushed on by this part of the sums' size, for rounding: 16 times the 2^-24 of one operation.
 const float kPad = 1e-6;
 
 void main() {
-  const ivec2 group = ivec2(gl_GlobalInvocationID.xy), count = tiles_of(params.size),
-              groups_in = groups_of_tiles(params.size);
+  const ivec2 group = ivec2(gl_GlobalInvocationID.xy);
+  const ivec2 count = tiles_of(params.size);
+  const ivec2 groups_in = groups_of_tiles(params.size);
   if (any(greaterThanEqual(group, groups_in))) return;
   const ivec2 from = group * kTileGroup, to = min(from + kTileGroup, count);
   const vec2 centre = vec2(from * kTile) + 0.5 * float(kTileGroup * kTile - 1);
   vec2 gradient = vec2(0);
-  float surfaces = 0.0, level = -kFar, farthest = kFar;
+  float surfaces = 0.0;
+  float level = -kFar;
+  float farthest = kFar;
   for (int y = from.y; y < to.y; y++)
     for (int x = from.x; x < to.x; x++) {
       const int i = y * count.x + x;
@@ -43,9 +48,12 @@ void main() {
   for (int y = from.y; y < to.y; y++)
     for (int x = from.x; x < to.x; x++) {
       const int i = y * count.x + x;
-      const vec2 offset = vec2(ivec2(x, y) * kTile) + 0.5 * float(kTile - 1) - centre,
-                 turn = abs(tiles[i].gradient - gradient), flat_turn = abs(gradient);
-      const float half_side = 0.5 * float(kTile - 1), own = tiles[i].plane[0], tile_level = tiles[i].plane[kLevel];
+      const vec2 offset = vec2(ivec2(x, y) * kTile) + 0.5 * float(kTile - 1) - centre;
+      const vec2 turn = abs(tiles[i].gradient - gradient);
+      const vec2 flat_turn = abs(gradient);
+      const float half_side = 0.5 * float(kTile - 1);
+      const float own = tiles[i].plane[0];
+      const float tile_level = tiles[i].plane[kLevel];
       const float before =
           min(own + half_side * (turn.x + turn.y), tile_level + half_side * (flat_turn.x + flat_turn.y)) -
           dot(gradient, offset);

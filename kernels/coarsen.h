@@ -5,8 +5,8 @@
 #include "shared.h"
 ALCOVE_BEGIN
 
-ALCOVE_CONSTANT uint kCoarsenTiles = 0;  // in: TileBounds a tile, from bounds
-// out: GroupBounds a group of tiles, rows of groups from the upper left corner
+ALCOVE_CONSTANT uint kCoarsenTiles = 0;  // in: one TileBounds per tile, from bounds
+// out: one GroupBounds per group of tiles, rows of groups from the upper left corner
 ALCOVE_CONSTANT uint kCoarsenGroups = 1;
 
 struct CoarsenParams {

@@ -1,10 +1,12 @@
-// Several radii in one AO: the mean of the visibilities.
+// Makes one AO of several radii: the mean of their visibilities.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// In: planes of visibility, one a radius. Out: visibility.
-// The mean, and neither the product nor the least: it is itself ambient occlusion, that of a falloff which drops by an
-// equal step at each radius. The occlusion with a falloff W is the integral of -W'(r) times the occlusion with the hard
-// radius r (superposition), which for steps is a mean.
+// In: planes of visibility, one per radius.
+// Out: visibility.
+//
+// It is the mean, and neither the product nor the least, because the mean is itself ambient occlusion: that of a
+// falloff which drops by an equal step at each radius. The occlusion with a falloff W is the integral of -W'(r) times
+// the occlusion with the hard radius r (superposition), which for steps is a mean.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "combine.h"
@@ -17,7 +19,9 @@ layout(scalar, binding = kCombineAo) writeonly buffer Ao { float ao[]; };
 void main() {
   const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy), size = params.size;
   if (any(greaterThanEqual(pixel, size))) return;
-  const int index = pixel.y * size.x + pixel.x, plane = size.x * size.y, count = int(params.count);
+  const int index = pixel.y * size.x + pixel.x;
+  const int plane = size.x * size.y;
+  const int count = int(params.count);
   float sum = 0.0;
   for (int p = 0; p < count; p++) sum += scales[index + p * plane];
   ao[index] = sum / float(count);

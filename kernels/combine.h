@@ -5,8 +5,8 @@
 #include "shared.h"
 ALCOVE_BEGIN
 
-ALCOVE_CONSTANT uint kCombineScales = 0;  // in: planes of visibility in [0, 1], one a radius
-ALCOVE_CONSTANT uint kCombineAo = 1;      // out: float a pixel, visibility in [0, 1]
+ALCOVE_CONSTANT uint kCombineScales = 0;  // in: planes of visibility in [0, 1], one per radius
+ALCOVE_CONSTANT uint kCombineAo = 1;      // out: one float per pixel, visibility in [0, 1]
 
 struct CombineParams {
   ivec2 size;  // px

@@ -1,9 +1,11 @@
 // Puts AO into a beauty: beauty - D + D f where the ambient part D is known, beauty x f where it is not.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// In: visibility (one, or one a colour), beauty, the parts of D, planar depth where there is fog. Out: colour; alpha as
-// it was. f = 1 - alpha t (1 - ao): a pixel at an edge is part background, which the AO of the surface must not dim.
-// The difference form keeps all other light as it is, even where the passes do not sum to the beauty exactly. t =
+// In: visibility (one, or one per colour), beauty, the parts of D, planar depth where there is fog.
+// Out: colour; alpha as it was.
+//
+// f = 1 - alpha t (1 - ao): a pixel at an edge is part background, which the AO of the surface must not dim. The
+// difference form keeps all other light as it is, even where the passes do not sum to the beauty exactly. t =
 // exp(-density distance) is how much of the surface's light comes through the fog that the beauty shows (Beer and
 // Lambert's law): the fog before a surface is not in its corners.
 #version 450

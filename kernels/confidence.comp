@@ -1,14 +1,18 @@
-// How far the visibility of a pixel follows from what the frame shows, and is no guess.
+// Tells how far the visibility of a pixel follows from what the frame shows, and is no guess.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// In: the visibilities with thin and with endless occluders. Out: confidence, the product of four, each 1 where nothing
-// is unknown:
-// - the backs of what is seen are not: the truth lies between both visibilities, so 1 - their distance;
-// - no estimate of what blocks is exact: 1 - half of what endless occluders block;
-// - what is beyond the border is not seen: of the disc in which the sphere of the radius is seen the part outside of
-//   the image, counted by a fifth of the same, since what is there blocks where what is here does;
-// - depth is known to a precision: below it no occluder can be told from noise, so 1 less a multiple of the height that
-//   two depths' errors can feign, in radii.
+// In: planar depth, view normals, the visibilities with thin and with endless occluders.
+// Out: confidence.
+//
+// It is the product of four factors, each 1 where nothing is unknown:
+// - The backs of what is seen are not seen. The truth lies between both visibilities, so the factor is 1 - their
+//   distance.
+// - No estimate of what blocks is exact: 1 - half of what endless occluders block.
+// - What is beyond the border is not seen. The factor is 1 less a fifth of the part that lies outside of the image, of
+//   the disc in which the sphere of the radius is seen, times what endless occluders block: what is there blocks where
+//   what is here does.
+// - Depth is known to a precision. Below it no occluder can be told from noise, so the factor is 1 less a multiple of
+//   the height that two depths' errors can feign, in radii.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "confidence.h"
@@ -26,8 +30,10 @@ layout(scalar, binding = kConfidenceResult) writeonly buffer Result { float resu
 
 const int kDirections = 16;
 const float kTwoPi = 6.28318530717958648;
-// fitted on rendered frames, where the error falls with confidence
-const float kBlockedShare = 0.5, kBorderShare = 0.2;
+// Both are fitted on rendered frames, so that the error falls as confidence rises.
+const float kBlockedShare = 0.5;
+const float kBorderShare = 0.2;
+
 /// A radius of so many feigned heights is worth nothing.
 const float kLeastRadius = 8.0;
 

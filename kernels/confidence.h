@@ -5,16 +5,16 @@
 #include "shared.h"
 ALCOVE_BEGIN
 
-ALCOVE_CONSTANT uint kConfidenceDepth = 0;   // in: float a pixel, from prepare
-ALCOVE_CONSTANT uint kConfidenceNormal = 1;  // in: uint a pixel, from prepare
-ALCOVE_CONSTANT uint kConfidenceThin = 2;    // in: float a pixel, visibility where occluders are thin
-ALCOVE_CONSTANT uint kConfidenceSolid = 3;   // in: float a pixel, visibility where they are endless
-ALCOVE_CONSTANT uint kConfidenceResult = 4;  // out: float a pixel, 0 to 1; 1 for sky
+ALCOVE_CONSTANT uint kConfidenceDepth = 0;   // in: one float per pixel, from prepare
+ALCOVE_CONSTANT uint kConfidenceNormal = 1;  // in: one uint per pixel, from prepare
+ALCOVE_CONSTANT uint kConfidenceThin = 2;    // in: one float per pixel, visibility where occluders are thin
+ALCOVE_CONSTANT uint kConfidenceSolid = 3;   // in: one float per pixel, visibility where they are endless
+ALCOVE_CONSTANT uint kConfidenceResult = 4;  // out: one float per pixel, 0 to 1; 1 for sky
 
 struct ConfidenceParams {
   View view;
   float radius;          // scene units
-  vec3 depth_precision;  // how far a depth z may be from the surface's: x + y z + z z^2, scene units
+  vec3 depth_precision;  // scene units: a depth z may be off by x + y z + z z^2
 };
 ALCOVE_PARAMS(ConfidenceParams)
 

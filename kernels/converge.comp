@@ -1,12 +1,15 @@
-// Which tiles need more directions: the estimate of all directions so far is compared with that of every other one.
+// Finds the tiles that need more directions: the estimate of all directions so far is compared with that of every other
+// one.
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // In: the sums of an exact search over directions in bit-reversed order, so that 2, 4, 8 ... of them are even over the
-// half turn. Out: visibility, its estimated error, and the tiles where that is larger than the tolerance.
+// half turn.
+// Out: visibility, its estimated error, and the tiles where that is larger than the tolerance.
+//
 // What is integrated over directions is smooth but for the edges of occluders, so the error of n even directions falls
-// about as 1 / n (with a jump; faster without). The estimate of n / 2 then errs by twice as much, their difference by
-// about as much as the estimate of n. As it is a random number for a pixel, it is taken as the root of its mean square
-// over a tile of 8 x 8 pixels.
+// about as 1 / n where there is a jump, and faster without. The estimate of n / 2 directions then errs by twice as
+// much, and their difference by about as much as the estimate of n. The difference is a random number at each pixel, so
+// the root of its mean square over a tile of 8 x 8 pixels is taken.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "converge.h"
@@ -26,18 +29,20 @@ layout(scalar, binding = kConvergeList) readonly buffer List { ListedTile list[]
 layout(scalar, binding = kConvergeCounts) readonly buffer Counts { TileCounts counts; };
 layout(scalar, binding = kConvergeNextList) writeonly buffer NextList { ListedTile next[]; };
 layout(scalar, binding = kConvergeNextCounts) buffer NextCounts { TileCounts next_counts; };
-layout(scalar, binding = kConvergeNextLines) writeonly buffer NextLines { GroupCount next_lines; };
+layout(scalar, binding = kConvergeNextLines) buffer NextLines { GroupCount next_lines; };
 
 /// Of the difference between both estimates, the error of the better one: measured on rendered frames, 0.60 to 0.75.
 const float kErrorShare = 0.75;
 
+/// Lists a tile for more directions.
 void needs_more(uint place) {
   const uint at = atomicAdd(next_counts.listed, 1u);
   next[at].place = place;
-  next_counts.groups.z = 1u;
   const uvec2 groups = dispatch_of_tiles(at + 1u, 1);
-  atomicMax(next_counts.groups.x, groups.x), atomicMax(next_counts.groups.y, groups.y);
-  next_lines.z = 1u;
+  atomicMax(next_counts.groups.x, groups.x);
+  atomicMax(next_counts.groups.y, groups.y);
+  atomicMax(next_counts.groups.z, 1u);
+  atomicMax(next_lines.z, 1u);
 }
 
 void main() {

@@ -5,19 +5,19 @@
 #include "shared.h"
 ALCOVE_BEGIN
 
-ALCOVE_CONSTANT uint kConvergeDepth = 0;    // in: float a pixel, from prepare
-ALCOVE_CONSTANT uint kConvergeBlocked = 1;  // in: float a pixel, sum of blocked arcs, from exact
-ALCOVE_CONSTANT uint kConvergeWhole = 2;    // in: float a pixel, sum of whole arcs, from exact
-// in and out: float a pixel, visibility by half of the directions, then by all; the plane of the parameters
+ALCOVE_CONSTANT uint kConvergeDepth = 0;    // in: one float per pixel, from prepare
+ALCOVE_CONSTANT uint kConvergeBlocked = 1;  // in: one float per pixel, sum of blocked arcs, from exact
+ALCOVE_CONSTANT uint kConvergeWhole = 2;    // in: one float per pixel, sum of whole arcs, from exact
+// in and out: one float per pixel, visibility by half of the directions, then by all; the plane of the parameters
 ALCOVE_CONSTANT uint kConvergeAo = 3;
-ALCOVE_CONSTANT uint kConvergeError = 4;  // out: float a pixel, the estimated error of its tile
-// out: vec2 a tile, sum of the squared errors of its receivers, and their number
+ALCOVE_CONSTANT uint kConvergeError = 4;  // out: one float per pixel, the estimated error of its tile
+// out: one vec2 per tile, sum of the squared errors of its receivers, and their number
 ALCOVE_CONSTANT uint kConvergeSquares = 5;
-ALCOVE_CONSTANT uint kConvergeList = 6;        // in: ListedTile a tile that had more directions
+ALCOVE_CONSTANT uint kConvergeList = 6;        // in: one ListedTile per tile that had more directions
 ALCOVE_CONSTANT uint kConvergeCounts = 7;      // in: TileCounts
-ALCOVE_CONSTANT uint kConvergeNextList = 8;    // out: ListedTile a tile that needs more still
-ALCOVE_CONSTANT uint kConvergeNextCounts = 9;  // in, out: TileCounts, zeros
-// in, out: GroupCount of profile, whose z is 0; it becomes 1 where any tile needs more
+ALCOVE_CONSTANT uint kConvergeNextList = 8;    // out: one ListedTile per tile that needs more still
+ALCOVE_CONSTANT uint kConvergeNextCounts = 9;  // in and out: TileCounts, zeros
+// in and out: GroupCount of profile, whose z is 0; it becomes 1 where any tile needs more
 ALCOVE_CONSTANT uint kConvergeNextLines = 10;
 
 struct ConvergeParams {

@@ -1,16 +1,19 @@
-// Ambient occlusion by samples in the hemisphere above the surface, as engines do it after Crytek: how much of its
-// volume is hidden.
+// Estimates ambient occlusion by samples in the hemisphere above the surface, as engines do it after Crytek: how much
+// of its volume is hidden.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// In: planar depth, view normals. Out: visibility, 1 = open.
-// Mittring, "Finding Next Gen: CryEngine 2", 2007. It measures volume, not visibility: beside an infinite wall at
-// distance c R the uniform kernel gives 1 - (1 - c)^2 (2 + c) / 4. What is particular here:
-// - A sample is compared with the depth of the pixel that it falls into, on the ray of that pixel's centre: it is moved
+// In: planar depth, view normals.
+// Out: visibility, 1 = open.
+//
+// Mittring, "Finding Next Gen: CryEngine 2", 2007, section 8.5.4.3, with the hemisphere in the place of the sphere. It
+// measures volume, not visibility: beside an infinite wall at distance c R the uniform kernel gives 1 - (1 - c)^2 (2 +
+// c) / 4. What is particular here:
+// - A sample is compared with the depth of the pixel that it falls into, on the ray of that pixel's centre. It is moved
 //   there parallel to the receiver's tangent plane, which keeps its height above it. A flat surface stays open at every
 //   tilt, with no bias at all.
 // - The basis about the normal is built from the normal alone and turned by the noise, so no noise vector can be
 //   parallel to it.
-// - Samples behind the eye, outside the image and before the sky do not count; what is hidden is divided by the number
+// - Samples behind the eye, outside the image and before the sky do not count. What is hidden is divided by the number
 //   of those that do.
 #version 450
 #extension GL_GOOGLE_include_directive : require
@@ -36,7 +39,8 @@ layout(scalar, binding = kCrytekCounts) readonly buffer Counts { TileCounts coun
 const float kLeastSlope = 1e-4;
 const float kTwoPi = 6.28318530717958648;
 
-/// How far sample i lies from the receiver, in radii, by a random number in [0, 1).
+/// How far sample i lies from the receiver, in radii, by a random number in [0, 1). Clustered samples spread with the
+/// square of their number from a tenth of the radius on, as engines usually scale them.
 float reach_of(uint i, float random) {
   const float x = float(i) / float(kSamples);
   return params.uniform_volume != 0 ? pow(x + random / float(kSamples), 1.0 / 3.0) : (0.1 + 0.9 * x * x) * random;
@@ -55,8 +59,8 @@ void main() {
   if (place.tile >= counts.listed) return;
   const ivec2 pixel = pixel_of_tile(unpack_tile(list[place.tile].place), place.pixel, params.noise_origin, kStride);
   if (!inside(params.view, pixel)) return;
-  const int index = index_of(params.view, pixel),
-            ao_index = index + int(params.plane) * params.view.size.x * params.view.size.y;
+  const int index = index_of(params.view, pixel);
+  const int ao_index = index + int(params.plane) * params.view.size.x * params.view.size.y;
   const float z = depth[index];
   if (z >= kSkyDepth) {
     ao[ao_index] = 1.0;
@@ -64,11 +68,14 @@ void main() {
   }
 
   const bool perspective = params.view.orthographic == 0;
-  const vec3 position = position_of(params.view, vec2(pixel) + 0.5, z), n = unpack_normal(normal[index]);
+  const vec3 position = position_of(params.view, vec2(pixel) + 0.5, z);
+  const vec3 n = unpack_normal(normal[index]);
   // Two tangents (Duff et al., "Building an Orthonormal Basis, Revisited", 2017).
-  const float sign_z = n.z < 0.0 ? -1.0 : 1.0, a = -1.0 / (sign_z + n.z), b = n.x * n.y * a;
-  const vec3 tangent = vec3(1.0 + sign_z * n.x * n.x * a, sign_z * b, -sign_z * n.x),
-             bitangent = vec3(b, sign_z + n.y * n.y * a, -n.y);
+  const float sign_z = n.z < 0.0 ? -1.0 : 1.0;
+  const float a = -1.0 / (sign_z + n.z);
+  const float b = n.x * n.y * a;
+  const vec3 tangent = vec3(1.0 + sign_z * n.x * n.x * a, sign_z * b, -sign_z * n.x);
+  const vec3 bitangent = vec3(b, sign_z + n.y * n.y * a, -n.y);
 
   const uint first_point = kSamples * hilbert_index(uvec2(pixel + params.noise_origin));
   const float clearance = least_height(
@@ -76,8 +83,10 @@ void main() {
   float valid = 0.0, blocked = 0.0;
   for (uint i = 0u; i < kSamples; i++) {
     const vec3 random = r3_point(first_point + i, params.noise_shift);
-    const float azimuth = kTwoPi * random.x, up = random.y, across = sqrt(1.0 - up * up),
-                reach = params.radius * reach_of(i, random.z);
+    const float azimuth = kTwoPi * random.x;
+    const float up = random.y;
+    const float across = sqrt(1.0 - up * up);
+    const float reach = params.radius * reach_of(i, random.z);
     const float height = reach * up;  // above the tangent plane
     const vec3 at = position + reach * (across * (cos(azimuth) * tangent + sin(azimuth) * bitangent) + up * n);
     if (perspective && !(-at.z > 0.0)) continue;

@@ -5,15 +5,16 @@
 #include "shared.h"
 ALCOVE_BEGIN
 
-ALCOVE_CONSTANT uint kCrytekDepth = 0;   // in: float a pixel, from prepare
-ALCOVE_CONSTANT uint kCrytekNormal = 1;  // in: uint a pixel, from prepare
-// out: float a pixel, visibility in [0, 1], 1 = open; the plane of the parameters
+ALCOVE_CONSTANT uint kCrytekDepth = 0;   // in: one float per pixel, from prepare
+ALCOVE_CONSTANT uint kCrytekNormal = 1;  // in: one uint per pixel, from prepare
+// out: one float per pixel, visibility in [0, 1], 1 = open; the plane of the parameters
 ALCOVE_CONSTANT uint kCrytekAo = 2;
-ALCOVE_CONSTANT uint kCrytekList = 3;    // in: ListedTile a tile, from classify: what to estimate
+ALCOVE_CONSTANT uint kCrytekList = 3;    // in: one ListedTile per tile, from classify: what to estimate
 ALCOVE_CONSTANT uint kCrytekCounts = 4;  // in: TileCounts
 
-ALCOVE_CONSTANT uint kCrytekSamplesId = 0;  // specialization: samples a pixel
-ALCOVE_CONSTANT uint kCrytekStrideId = 1;   // specialization: one pixel of so many in a row, 1, 2 or 4: see stride.glsl
+ALCOVE_CONSTANT uint kCrytekSamplesId = 0;  // specialization: samples per pixel
+// specialization: one pixel of so many in a row is estimated, 1, 2 or 4: see stride.glsl
+ALCOVE_CONSTANT uint kCrytekStrideId = 1;
 
 ALCOVE_CONSTANT uint kRangeNone = 0;   // every hit counts fully
 ALCOVE_CONSTANT uint kRangeRatio = 1;  // smoothstep(0, 1, radius / dz): fully within the radius, less beyond
@@ -26,10 +27,10 @@ struct CrytekParams {
   float bias;            // scene units: by how much a hit must be nearer to the eye than the sample
   uint uniform_volume;   // 1: samples even in volume; 0: clustered about the receiver
   uint range_check;      // one of kRange*
-  ivec2 noise_origin;    // px: what to add to a pixel so that crops and tiles share one noise pattern
+  ivec2 noise_origin;    // px: added to a pixel, so that crops and tiles share one noise pattern
   vec2 noise_shift;      // in [0, 1): the pattern's shift for this frame and seed
-  uint plane;            // of the output, which has one a radius
-  vec3 depth_precision;  // how far a depth z may be from the surface's: x + y z + z z^2, scene units
+  uint plane;            // of the output, which has one plane per radius
+  vec3 depth_precision;  // scene units: a depth z may be off by x + y z + z z^2
 };
 ALCOVE_PARAMS(CrytekParams)
 

@@ -1,7 +1,10 @@
-// One number a pixel of what a frame holds on its way through the chain, for a picture of it; sky is kSkyDepth.
+// Writes one number per pixel of what a frame holds on its way through the chain, for a picture of it; sky is
+// kSkyDepth.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// In: planar depth, view normals, and for some views a plane of values or a second set of normals. Out: the number.
+// In: planar depth, view normals, and for some views a plane of values or a second set of normals.
+// Out: the number.
+//
 // An edge is where a neighbour lies off the pixel's tangent plane: the denoisers and the upsampling stop there.
 #version 450
 #extension GL_GOOGLE_include_directive : require
@@ -33,10 +36,10 @@ float edge(ivec2 pixel, float z, vec3 n) {
   return farthest;
 }
 
-/// The value of a pixel; where only one of the stride has any, that to its left.
+/// The value of a pixel; where only one pixel of the stride has any, the value of that to its left.
 float value_at(ivec2 pixel) {
-  const int begin = first_estimated(pixel.y, params.origin, params.stride),
-            at = pixel.x - ((pixel.x - begin) & (params.stride - 1));
+  const int begin = first_estimated(pixel.y, params.origin, params.stride);
+  const int at = pixel.x - ((pixel.x - begin) & (params.stride - 1));
   return uintBitsToFloat(values[index_of(params.view, ivec2(at < 0 ? begin : at, pixel.y))]);
 }
 

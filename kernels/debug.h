@@ -5,12 +5,12 @@
 #include "shared.h"
 ALCOVE_BEGIN
 
-ALCOVE_CONSTANT uint kDebugDepth = 0;   // in: float a pixel, planar depth, kSkyDepth for sky
-ALCOVE_CONSTANT uint kDebugNormal = 1;  // in: uint a pixel, unit vector in view space, see normal.glsl
-// in: float a pixel (kDebugValue) or a second set of normals (kDebugNormalAngle), or the sectors of tiles (kDebugTile);
-// not read by others
+ALCOVE_CONSTANT uint kDebugDepth = 0;   // in: one float per pixel, planar depth, kSkyDepth for sky
+ALCOVE_CONSTANT uint kDebugNormal = 1;  // in: one uint per pixel, unit vector in view space, see normal.glsl
+// in: one float per pixel (kDebugValue) or a second set of normals (kDebugNormalAngle), or the sectors of tiles
+// (kDebugTile); not read by others
 ALCOVE_CONSTANT uint kDebugValues = 2;
-ALCOVE_CONSTANT uint kDebugResult = 3;  // out: float a pixel
+ALCOVE_CONSTANT uint kDebugResult = 3;  // out: one float per pixel
 
 ALCOVE_CONSTANT uint kDebugValue = 0;        // the values as they are
 ALCOVE_CONSTANT uint kDebugPlanarDepth = 1;  // scene units

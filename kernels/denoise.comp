@@ -1,14 +1,18 @@
 // Smooths the visibility along one axis, over each surface by itself; rows, then columns, make the separable filter.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// In: planes of visibility, depth, normals. Out: as many planes; constant stays exactly constant, sky stays 1 and is
-// never mixed in. Where one pixel of `stride` has an estimate, rows give every pixel the mean of those in reach and how
-// much they weigh together, by which columns then weigh the rows. Tomasi & Manduchi, "Bilateral Filtering for Gray and
-// Color Images", 1998, with the distance from the other pixel's tangent plane in the place of colour. Two pixels mix as
-// far as each lies in the plane of the other, which sees edges, steps and creases alike and leaves a plane whole at
-// every tilt: the weight is max(0, 1 - (h / sigma)^2), h the larger of both distances, in pixels' widths there. It is
-// the same for both, so it is computed once for a pair. One invocation computes a run of pixels, so that neighbours
-// share what they load.
+// In: planes of visibility, depth, normals.
+// Out: as many planes. What is constant stays exactly constant; sky stays 1 and is never mixed in.
+//
+// Tomasi and Manduchi, "Bilateral Filtering for Gray and Color Images", 1998, with the distance from the other pixel's
+// tangent plane in the place of colour. Two pixels mix as far as each lies in the plane of the other, which sees edges,
+// steps and creases alike and leaves a plane whole at every tilt. The weight is max(0, 1 - (h / sigma)^2), where h is
+// the larger of both distances, in pixels' widths there. It is the same for both pixels, so it is computed once per
+// pair.
+//
+// Where one pixel of `stride` has an estimate, rows give every pixel the mean of those in reach and how much they weigh
+// together, by which columns then weigh the rows. One invocation computes a run of pixels, so that neighbours share
+// what they load.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "denoise.h"
@@ -45,7 +49,7 @@ const int kCount = kDenoiseRun + 2 * kRadius;
 
 struct Tap {
   float weight, z;
-  float scale;  // scene units a unit of tangent_of(): z, or 1 where the view is orthographic
+  float scale;  // scene units per unit of tangent_of(): z, or 1 where the view is orthographic
   // height above this tap's plane, in sigmas, of what is a unit further away, and a pixel along the axis at scale 1
   float ahead, across;
 };
@@ -55,7 +59,7 @@ uint pack_mean(float mean, float weight) { return packUnorm2x16(vec2(mean, sqrt(
 
 float square(float x) { return x * x; }
 
-/// Whether tap i of a run has visibility to give.
+/// Whether tap i of a run has an estimate.
 bool is_known(int i) { return (i + (kStride - 1) * kRadius) % kStride == 0; }
 
 /// What lies outside the image is as sky: infinitely far from every plane.
@@ -69,8 +73,8 @@ Tap load(ivec2 pixel, bool has_ao) {
   const bool perspective = params.view.orthographic == 0;
   tap.scale = perspective ? tap.z : 1.0;
   const vec3 n = unpack_normal(normal[index]);
-  const vec2 pixel_step = vec2(params.axis) * params.view.tangent_per_pixel,
-             tangent = tangent_of(params.view, vec2(nearest) + 0.5);
+  const vec2 pixel_step = vec2(params.axis) * params.view.tangent_per_pixel;
+  const vec2 tangent = tangent_of(params.view, vec2(nearest) + 0.5);
   const float sigmas = 1.0 / (kPlaneSigma * (abs(pixel_step.x) + abs(pixel_step.y)) * tap.scale);
   if (tap.z < kSkyDepth) tap.ahead = (perspective ? dot(n.xy, tangent) - n.z : -n.z) * sigmas;
   tap.across = dot(n.xy, pixel_step) * sigmas;
@@ -89,8 +93,8 @@ float value_at(ivec2 pixel, int plane) {
 float similarity(Tap a, Tap b, float pixels) {
   const float further = b.z - a.z;
   if (kByDepth != 0) return exp(-abs(further) / (params.depth_sigma * min(a.z, b.z)));
-  const float above_a = a.ahead * further + a.across * pixels * b.scale,
-              above_b = b.ahead * further + b.across * pixels * a.scale;
+  const float above_a = a.ahead * further + a.across * pixels * b.scale;
+  const float above_b = b.ahead * further + b.across * pixels * a.scale;
   const float above_sq = max(above_a * above_a, above_b * above_b);
   return max(kSparse == kDenoiseDense ? 0.0 : kLeastSimilarity / (1.0 + above_sq), 1.0 - above_sq);
 }
@@ -100,8 +104,8 @@ void main() {
   if (kListed && at >= counts.listed) return;
   const ivec2 run = kListed ? unpack_run(list[at]) : ivec2(gl_WorkGroupID.x, gl_GlobalInvocationID.y);
   // Runs of a sparse estimate begin where it has a pixel.
-  const int line = run.x * int(kGroupX) + int(gl_LocalInvocationID.x),
-            known = first_estimated(line, params.origin, kStride);
+  const int line = run.x * int(kGroupX) + int(gl_LocalInvocationID.x);
+  const int known = first_estimated(line, params.origin, kStride);
   const ivec2 first = line * params.axis.yx + (kDenoiseRun * run.y + known - (known > 0 ? kStride : 0)) * params.axis;
   if (any(greaterThanEqual(first, params.view.size))) return;
 
@@ -121,8 +125,9 @@ void main() {
     for (int apart = 1; apart <= kRadius; apart++) {
       const int j = i - apart;
       if (j < 0 || i < kRadius || j >= kDenoiseRun + kRadius || !(is_known(i) || is_known(j))) continue;
-      const float weight = params.weight[apart] * similarity(taps[j], taps[i], float(apart)),
-                  to_j = weight * taps[i].weight, to_i = weight * taps[j].weight;
+      const float weight = params.weight[apart] * similarity(taps[j], taps[i], float(apart));
+      const float to_j = weight * taps[i].weight;
+      const float to_i = weight * taps[j].weight;
       // Changes of a pixel's own visibility, so that what is constant stays so to the bit; in sparse rows, which have
       // none, of 0.
       for (int p = 0; p < kPlanes * kCount; p += kCount) {

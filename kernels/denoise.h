@@ -6,11 +6,11 @@
 ALCOVE_BEGIN
 
 ALCOVE_CONSTANT uint kDenoiseAo = 0;      // in: planes of floats in [0, 1], visibility or the like; each by itself
-ALCOVE_CONSTANT uint kDenoiseDepth = 1;   // in: float a pixel, of the G-buffer of that visibility
-ALCOVE_CONSTANT uint kDenoiseNormal = 2;  // in: uint a pixel, of the same; not read with a depth sigma
+ALCOVE_CONSTANT uint kDenoiseDepth = 1;   // in: one float per pixel, of the G-buffer of that visibility
+ALCOVE_CONSTANT uint kDenoiseNormal = 2;  // in: one uint per pixel, of the same; not read with a depth sigma
 ALCOVE_CONSTANT uint kDenoiseResult = 3;  // out: as many planes, in [0, 1]; of sparse rows: see pack_mean
 
-ALCOVE_CONSTANT uint kDenoiseList = 4;    // in: uint a run, from dilate; only with kDenoiseListed
+ALCOVE_CONSTANT uint kDenoiseList = 4;    // in: one uint per run, from dilate; only with kDenoiseListed
 ALCOVE_CONSTANT uint kDenoiseCounts = 5;  // in: RunCounts of it
 
 ALCOVE_CONSTANT uint kDenoiseRadiusId = 0;   // specialization: pixels to each side, 1 to kDenoiseMostRadius

@@ -1,11 +1,15 @@
-// Where a filter has work: within its reach of an estimate that is not proved to be 1.
+// Lists where a filter has work: within its reach of an estimate that is not proved to be 1.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// In: tiles by what classify found. Out: lists for `denoise` and `upsample`, and what they would write everywhere else,
-// where that is not there already. Of nothing but 1 a filter makes 1. Where nothing within its reach is other than in
-// the frame before, what it made then still lies in its place. Denoising is listed by runs: 8 lines wide, and as long
-// as an invocation looks along one. Columns are filtered last, so theirs decide what rows must make. Upsampling is
-// listed by workgroups: 8 x 8 squares between the centres of blocks.
+// In: tiles by what classify found.
+// Out: lists for `denoise` and `upsample`, and what they would write everywhere else, where that is not there already.
+//
+// Of nothing but 1 a filter makes 1. Where nothing within its reach is other than in the frame before, what it made
+// then still lies in its place.
+//
+// Denoising is listed by runs, 8 lines wide and as long as an invocation looks along one. Columns are filtered last, so
+// theirs decide what rows must make. Upsampling is listed by workgroups: squares of 8 x 8 between the centres of
+// blocks.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "dilate.h"
@@ -24,7 +28,7 @@ layout(scalar, binding = kDilateList) writeonly buffer List { uint list[]; };
 layout(scalar, binding = kDilateCounts) buffer Counts { RunCounts counts; };
 layout(scalar, binding = kDilateResult) writeonly buffer Result { float result[]; };
 
-/// Of a workgroup: how many runs it lists, and where.
+/// How many runs the workgroup lists, and where in the list they begin.
 shared uint listed_here, begin;
 
 struct Within {
@@ -33,8 +37,9 @@ struct Within {
 
 /// What lies within reach of a rectangle of pixels.
 Within reach_of(ivec2 first, ivec2 end) {
-  const ivec2 count = tiles_of(params.size), from = max(first - kRadius, ivec2(0)) / kTile,
-              to = min((end - 1 + kRadius) / kTile, count - 1);
+  const ivec2 count = tiles_of(params.size);
+  const ivec2 from = max(first - kRadius, ivec2(0)) / kTile;
+  const ivec2 to = min((end - 1 + kRadius) / kTile, count - 1);
   Within within = Within(false, false);
   for (int y = from.y; y <= to.y; y++)
     for (int x = from.x; x <= to.x; x++) {
@@ -53,14 +58,14 @@ bool lists(Within within, ivec2 first, ivec2 end, int width) {
 }
 
 bool lists_columns(int lines, int run) {
-  const ivec2 first = ivec2(lines * kTile, run * kDenoiseRun),
-              end = min(first + ivec2(kTile, kDenoiseRun), params.size);
+  const ivec2 first = ivec2(lines * kTile, run * kDenoiseRun);
+  const ivec2 end = min(first + ivec2(kTile, kDenoiseRun), params.size);
   return lists(reach_of(first, end), first, end, params.size.x);
 }
 
 bool lists_upsampling(ivec2 group) {
-  const ivec2 block = group * ivec2(kGroupX, kGroupY) - 1,
-              full = params.factor * block + params.factor / 2 - params.overhang;
+  const ivec2 block = group * ivec2(kGroupX, kGroupY) - 1;
+  const ivec2 full = params.factor * block + params.factor / 2 - params.overhang;
   const Within within = reach_of(max(block, ivec2(0)), min(block + ivec2(kGroupX, kGroupY) + 1, params.size));
   return lists(within, max(full, ivec2(0)), min(full + params.factor * ivec2(kGroupX, kGroupY), params.full_size),
                params.full_size.x);
@@ -68,10 +73,10 @@ bool lists_upsampling(ivec2 group) {
 
 /// Whether a run along rows is read by one along columns that has work.
 bool lists_rows(int lines, int run) {
-  const int first = max(run * kDenoiseRun - kStride + 1, 0) / kTile,
-            last = min((run + 1) * kDenoiseRun - 1, params.size.x - 1) / kTile;
-  const int above = max(lines * kTile - kRadius, 0) / kDenoiseRun,
-            below = min((lines + 1) * kTile - 1 + kRadius, params.size.y - 1) / kDenoiseRun;
+  const int first = max(run * kDenoiseRun - kStride + 1, 0) / kTile;
+  const int last = min((run + 1) * kDenoiseRun - 1, params.size.x - 1) / kTile;
+  const int above = max(lines * kTile - kRadius, 0) / kDenoiseRun;
+  const int below = min((lines + 1) * kTile - 1 + kRadius, params.size.y - 1) / kDenoiseRun;
   bool is_read = false;
   for (int x = first; x <= last; x++)
     for (int y = above; y <= below; y++) is_read = is_read || columns[x * params.runs_in_column + y] != 0u;
@@ -80,7 +85,8 @@ bool lists_rows(int lines, int run) {
 
 void main() {
   const int run = int(gl_GlobalInvocationID.x), lines = int(gl_GlobalInvocationID.y);
-  const bool inside = run < params.runs && lines < params.lines, first = gl_LocalInvocationIndex == 0u;
+  const bool inside = run < params.runs && lines < params.lines;
+  const bool first = gl_LocalInvocationIndex == 0u;
   bool listed = false;
   if (inside && kMode == kDilateAlongColumns) listed = lists_columns(lines, run);
   if (inside && kMode == kDilateAlongRows) listed = lists_rows(lines, run);
@@ -96,8 +102,9 @@ void main() {
     begin = atomicAdd(counts.listed, listed_here);
     const uint each = kMode == kDilateUpsample ? 1u : kGroupY;
     const uvec2 groups = dispatch_of((begin + listed_here + each - 1u) / each);
-    atomicMax(counts.groups.x, groups.x), atomicMax(counts.groups.y, groups.y);
-    counts.groups.z = 1u;
+    atomicMax(counts.groups.x, groups.x);
+    atomicMax(counts.groups.y, groups.y);
+    atomicMax(counts.groups.z, 1u);
   }
   barrier();
   if (listed) list[begin + at] = pack_run(lines, run);

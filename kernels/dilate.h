@@ -5,12 +5,12 @@
 #include "shared.h"
 ALCOVE_BEGIN
 
-ALCOVE_CONSTANT uint kDilateTiles = 0;  // in: uint a tile, from classify
-// uint a run along columns, line by line: 1 if it is listed; out: along columns, in: along rows
+ALCOVE_CONSTANT uint kDilateTiles = 0;  // in: one uint per tile, from classify
+// one uint per run along columns, line by line: 1 if it is listed; out: along columns, in: along rows
 ALCOVE_CONSTANT uint kDilateColumns = 1;
-ALCOVE_CONSTANT uint kDilateList = 2;    // out: uint a run or group that is listed, see pack_run
-ALCOVE_CONSTANT uint kDilateCounts = 3;  // in, out: RunCounts, zeros
-// out: float a pixel of the filter's result, where it is neither computed nor kept: 1; not along rows
+ALCOVE_CONSTANT uint kDilateList = 2;    // out: one uint per run or group that is listed, see pack_run
+ALCOVE_CONSTANT uint kDilateCounts = 3;  // in and out: RunCounts, zeros
+// out: one float per pixel of the filter's result, where it is neither computed nor kept: 1; not along rows
 ALCOVE_CONSTANT uint kDilateResult = 4;
 
 ALCOVE_CONSTANT uint kDilateRadiusId = 0;  // specialization: the denoiser's, px; 0: there is none

@@ -1,7 +1,9 @@
-// Packed unit vectors in view space -> planes x, y, z in the space that a file holds them in; sky has none: 0, 0, 0.
+// Turns packed unit vectors in view space into planes x, y, z in the space that a file holds them in; sky has none: 0,
+// 0, 0.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// In: planar depth (for the sky), packed vectors. Out: planes. No mathematics but a rotation.
+// In: planar depth (for the sky), packed vectors.
+// Out: planes.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "directions.h"

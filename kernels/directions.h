@@ -5,8 +5,8 @@
 #include "shared.h"
 ALCOVE_BEGIN
 
-ALCOVE_CONSTANT uint kDirectionsDepth = 0;   // in: float a pixel, planar depth, kSkyDepth for sky
-ALCOVE_CONSTANT uint kDirectionsPacked = 1;  // in: uint a pixel, unit vector in view space, see normal.glsl
+ALCOVE_CONSTANT uint kDirectionsDepth = 0;   // in: one float per pixel, planar depth, kSkyDepth for sky
+ALCOVE_CONSTANT uint kDirectionsPacked = 1;  // in: one uint per pixel, unit vector in view space, see normal.glsl
 ALCOVE_CONSTANT uint kDirectionsPlanes = 2;  // out: planes x, y, z
 
 struct DirectionsParams {

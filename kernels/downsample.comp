@@ -1,8 +1,10 @@
-// The G-buffer at a half or a quarter of the resolution: of each block of pixels the nearest surface, with its own
-// normal.
+// Makes the G-buffer at a half or a quarter of the resolution: of each block of pixels the nearest surface, with its
+// own normal.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// In: depth and normals. Out: depth and normals a block.
+// In: depth and normals of the pixels.
+// Out: depth and normals of the blocks.
+//
 // A block stands for its centre, where no pixel lies. The nearest pixel's surface is followed along its own plane to
 // the centre's ray: a plane stays that plane at every tilt, and nothing shifts by part of a pixel. Where the plane
 // would leave the range of depths that the block shows (a curved rim, a horizon) the range wins.
@@ -25,7 +27,8 @@ layout(scalar, binding = kDownsampleLowNormal) writeonly buffer LowNormal { uint
 float follow_plane(vec3 n, vec2 from, float z, vec2 to) {
   const float moved = dot(n.xy, (to - from) * params.view.tangent_per_pixel);
   if (params.view.orthographic != 0) return z + moved / n.z;
-  const float cosine = n.z - dot(n.xy, tangent_of(params.view, from)), cosine_there = cosine - moved;
+  const float cosine = n.z - dot(n.xy, tangent_of(params.view, from));
+  const float cosine_there = cosine - moved;
   return cosine_there > 0.0 ? min(z * (cosine / cosine_there), kSkyDepth) : kSkyDepth;
 }
 

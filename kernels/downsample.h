@@ -5,10 +5,10 @@
 #include "shared.h"
 ALCOVE_BEGIN
 
-ALCOVE_CONSTANT uint kDownsampleDepth = 0;      // in: float a pixel, from prepare
-ALCOVE_CONSTANT uint kDownsampleNormal = 1;     // in: uint a pixel, from prepare
-ALCOVE_CONSTANT uint kDownsampleLowDepth = 2;   // out: float a block, kSkyDepth where all of it is sky
-ALCOVE_CONSTANT uint kDownsampleLowNormal = 3;  // out: uint a block
+ALCOVE_CONSTANT uint kDownsampleDepth = 0;      // in: one float per pixel, from prepare
+ALCOVE_CONSTANT uint kDownsampleNormal = 1;     // in: one uint per pixel, from prepare
+ALCOVE_CONSTANT uint kDownsampleLowDepth = 2;   // out: one float per block, kSkyDepth where all of it is sky
+ALCOVE_CONSTANT uint kDownsampleLowNormal = 3;  // out: one uint per block
 
 ALCOVE_CONSTANT uint kDownsampleFactorId = 0;  // specialization: pixels of a block in x and in y
 

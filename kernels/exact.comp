@@ -2,20 +2,21 @@
 // every pixel.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// In: planar depth, view normals, the profiles of the lines of one direction. Out: visibility, 1 = open, after the last
-// direction. What horizon.comp samples, this searches without gaps: a receiver walks from vertex to vertex of the
-// profile of its line (profile.comp), whose strokes hold all pixels in between, until the sphere of the radius is left
-// behind.
-// - Slices are even on the image and shared by all pixels; each weighs 1 / (ray_length of the line's foot * cosine from
+// In: planar depth, view normals, the profiles of the lines of one direction.
+// Out: the sums of blocked and of whole arcs; after the last direction visibility, 1 = open.
+//
+// What horizon.comp samples, this kernel searches without gaps. A receiver walks from vertex to vertex of the profile
+// of its line (profile.comp), whose strokes hold all pixels in between, until the sphere of the radius is left behind.
+// - Slices are even on the image and shared by all pixels. Each weighs 1 / (ray_length of the line's foot * cosine from
 //   it), the Jacobian to azimuth about the view ray.
 // - The receiver is moved onto its line's plane along its tangent plane, by half a pixel at most: a flat surface stays
 //   flat.
-// - Every stroke is cut to what the sphere holds of it, and blocks from its front to its back: as far along the eye's
-//   ray as its run is wide ("width as thickness"). What goes on from the receiver is its own surface: it blocks all
-//   below its horizon.
-// - What is blocked is a union of intervals: exact for what joins the horizon; all others are counted in 24 sectors
-//   (sectors.glsl).
-// - Result 1 - (sum of blocked arcs) / (sum of whole arcs).
+// - Every stroke is cut to what the sphere holds of it, and blocks from its front to its back, which lies as far along
+//   the eye's ray as its run is wide ("width as thickness"). What goes on from the receiver is its own surface: it
+//   blocks all below its horizon.
+// - What is blocked is a union of intervals. It is exact for what joins the horizon; all others are counted in 24
+//   sectors (sectors.glsl).
+// - The result is 1 - (sum of blocked arcs) / (sum of whole arcs).
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "exact.h"
@@ -46,7 +47,11 @@ layout(scalar, binding = kExactCounts) readonly buffer Counts { TileCounts count
 
 const float kNone = 1e30;
 
-/// The receiver in the plane of its line, as the profile has its vertices.
+/// A vertex that stands alone is the end of a stroke from this part of its distance on: so short that its depth within
+/// the sphere and its slopes are those of the vertex within 0.1 %, and long enough not to be lost in rounding.
+const float kShortStroke = 0.999;
+
+/// The receiver in the plane of its line, where the profile has its vertices too.
 struct Point {
   vec2 place, eye;     // eye: unit, towards it
   vec2 normal;         // the normal's projection; its length is the slice's weight
@@ -65,12 +70,35 @@ struct Search {
   int from;                        // the receiver's step
   int step;                        // of columns, to that side
   uint begins, last;               // the flags of vertices to that side
+  float shift;                     // of the sectors' boundaries, in [0, 1): see sectors.glsl
+};
+
+/// A walk from vertex to vertex of one side, and what is found to block on it.
+struct Walk {
+  vec2 last;        // the vertex before, in (across, toward)
+  bool starts;      // there is none yet
+  bool is_own;      // the run is the receiver's own surface
+  float thickness;  // scene units, of the run
+  float own;        // slope_of() up to which the receiver's own surface blocks
+  uint sectors;     // that other runs block
+};
+
+/// A piece of the profile, in (across, toward).
+struct Stroke {
+  vec2 from, to;
+};
+
+/// What the sphere of the radius holds of a stroke.
+struct Clipped {
+  vec2 near, far;
+  bool is_within;  // whether it holds anything
 };
 
 Point point_of(View view, LinePlane plane, vec2 tangent, float z, vec3 normal) {
   const bool perspective = view.orthographic == 0;
-  const vec3 along = vec3(plane.along, 0),
-             away = perspective ? vec3(plane.foot, -1) / plane.ray_length : vec3(0, 0, -1), across = cross(along, away);
+  const vec3 along = vec3(plane.along, 0);
+  const vec3 away = perspective ? vec3(plane.foot, -1) / plane.ray_length : vec3(0, 0, -1);
+  const vec3 across = cross(along, away);
   const vec3 position = perspective ? z * vec3(tangent, -1) : vec3(tangent - plane.foot, -z);
   const vec2 in_plane = vec2(dot(normal, along), dot(normal, away));
   const float beside =
@@ -83,60 +111,82 @@ Point point_of(View view, LinePlane plane, vec2 tangent, float z, vec3 normal) {
   return point;
 }
 
-/// slope_of() the back of an occluder, `thickness` further along the eye's ray through its front (across, toward), but
-/// not beyond the sphere.
+/// slope_of() the back of an occluder: it lies `thickness` further along the eye's ray through its front (across,
+/// toward), but not beyond the sphere.
 float back_of(vec2 front, float eye_distance, float thickness, float radius_sq) {
-  const vec2 ray = eye_distance < kNone ? front - vec2(0, eye_distance) : vec2(0, -1),
-             direction = ray * inversesqrt(dot(ray, ray));
+  const vec2 ray = eye_distance < kNone ? front - vec2(0, eye_distance) : vec2(0, -1);
+  const vec2 direction = ray * inversesqrt(dot(ray, ray));
   const float middle = dot(front, direction);
   const float leaves = sqrt(max(0.0, middle * middle - dot(front, front) + radius_sq)) - middle;
   const vec2 back = front + min(thickness, leaves) * direction;
   return slope_of(back);
 }
 
-/// The blocked part of a side's arc integral.
-float blocked_arc(View view, LinePlane plane, Side side, Search search, Point point, float radius, float thickness,
-                  int at, float shift) {
+/// The stroke that ends at a vertex `steps` from the receiver. It begins at the vertex before. Nothing is seen before
+/// the first vertex of a side, to which it begins at the pixel next to the receiver. A vertex that begins a run stands
+/// alone, as a stroke that is short.
+Stroke stroke_to(vec2 place, Walk walk, bool begins, int steps) {
+  const float next_pixel = min(kShortStroke, 1.0 / float(steps));
+  const vec2 onward = walk.starts ? next_pixel * place : walk.last;
+  return Stroke(begins ? kShortStroke * place : onward, place);
+}
+
+/// The part of a stroke within the sphere of the radius about the receiver: with from + t (to - from), the t between
+/// the roots of |from + t (to - from)|^2 = radius^2.
+Clipped clip_to_sphere(Stroke stroke, float radius_sq) {
+  const vec2 from = stroke.from, along = stroke.to - stroke.from;
+  const float a = dot(along, along);
+  const float middle = dot(from, along);
+  const float beside = from.x * along.y - from.y * along.x;
+  const float inside_sq = a * radius_sq - beside * beside;
+  const float inside = sqrt(max(inside_sq, 0.0));
+  const float scale = 1.0 / a;
+  const float enters = max(0.0, (-middle - inside) * scale);
+  const float leaves = min(1.0, (inside - middle) * scale);
+  return Clipped(from + enters * along, from + leaves * along, both(inside_sq > 0.0, enters <= leaves));
+}
+
+/// Adds what a stroke blocks from its front to its back: more of what the receiver's own surface does, or a set apart.
+/// least: the height above the tangent plane that it must have somewhere.
+void block(inout Walk walk, Search search, Clipped stroke, float eye_distance, float least, float radius_sq) {
+  const float near_slope = slope_of(stroke.near);
+  const float far_slope = slope_of(stroke.far);
+  const float high = max(near_slope, far_slope);
+  const bool rises = both(min(stroke.near.x, stroke.far.x) > 0.0, high > search.lowest);
+  const bool clear = both(rises, max(dot(stroke.near, search.normal), dot(stroke.far, search.normal)) > least);
+  const float top = both(stroke.is_within, clear) ? high : -1.0;
+  const float back = back_of(stroke.far, eye_distance, walk.thickness, radius_sq);
+  const float bottom = walk.is_own ? -1.0 : min(min(near_slope, far_slope), back);
+  const bool onto_own = bottom <= walk.own;
+  walk.sectors |=
+      onto_own || top < bottom ? 0u : sectors_below(top, search.shift) & ~sectors_below(bottom, search.shift);
+  walk.own = onto_own ? max(walk.own, top) : walk.own;
+}
+
+/// The blocked part of a side's arc integral; `at` is the index of the side's first vertex.
+float blocked_arc(View view, LinePlane plane, Point point, Side side, Search search, int at) {
+  const float radius = params.radius;
   const float radius_sq = radius * radius;
-  const bool measured = thickness == 0.0;
-  float own = slope_of(side.ahead), thick = thickness;
-  vec2 last = vec2(0);
-  uint sectors = 0u;
-  bool is_own = true, starts = true;
+  const float thickness = params.thickness;
+  Walk walk = Walk(vec2(0), true, true, thickness, slope_of(side.ahead), 0u);
   for (bool goes = true; goes; at += search.step) {
     const uint marked = mark[at];
-    const int to = int(marked >> 16);
-    const float z = vertex[at], least = search.least_height + (view.orthographic != 0 ? 1.0 : z) * search.least_rise *
-                                                                  float(abs(to - search.from));
+    const int to = int(marked >> 16), steps = abs(to - search.from);
+    const float z = vertex[at], scale = view.orthographic != 0 ? 1.0 : z;
+    const float least = search.least_height + scale * search.least_rise * float(steps);
     const vec2 offset = place_at(view, plane, to, z) - point.place;
     const vec2 place = vec2(dot(offset, search.across), dot(offset, point.eye));
     const bool begins = (marked & search.begins) != 0u;
-    is_own = begins ? false : is_own;
-    thick = begins && measured ? unpack_width(marked) : thick;
-    // The stroke from the last vertex; to the first one from the next pixel on, as nothing is seen before it; the
-    // vertex alone as a short one. Cut to the sphere.
-    const float next_pixel = min(0.999, 1.0 / float(abs(to - search.from)));
-    const vec2 from = begins ? 0.999 * place : starts ? next_pixel * place : last, stroke = place - from;
-    const float a = dot(stroke, stroke), middle = dot(from, stroke), beside = from.x * stroke.y - from.y * stroke.x;
-    const float inside_sq = a * radius_sq - beside * beside, inside = sqrt(max(inside_sq, 0.0)), scale = 1.0 / a;
-    const float enters = max(0.0, (-middle - inside) * scale), leaves = min(1.0, (inside - middle) * scale);
-    const vec2 near = from + enters * stroke, far = from + leaves * stroke;
-    const float near_slope = slope_of(near), far_slope = slope_of(far), high = max(near_slope, far_slope);
-    const bool within = inside_sq > 0.0 ? enters <= leaves : false,
-               rises = min(near.x, far.x) > 0.0 ? high > search.lowest : false;
-    const bool clear = rises ? max(dot(near, search.normal), dot(far, search.normal)) > least : false;
-    const float top = within ? clear ? high : -1.0 : -1.0;
-    // What it blocks: more of what the receiver's own surface does, or a set apart.
-    const float bottom =
-        is_own ? -1.0 : min(min(near_slope, far_slope), back_of(far, point.eye_distance, thick, radius_sq));
-    const bool onto_own = bottom <= own;
-    sectors |= onto_own || top < bottom ? 0u : sectors_below(top, shift) & ~sectors_below(bottom, shift);
-    own = onto_own ? max(own, top) : own;
+    walk.is_own = begins ? false : walk.is_own;
+    walk.thickness = begins && thickness == 0.0 ? unpack_width(marked) : walk.thickness;
+    const Clipped stroke = clip_to_sphere(stroke_to(place, walk, begins, steps), radius_sq);
+    block(walk, search, stroke, point.eye_distance, least, radius_sq);
     goes = (marked & search.last) == 0u ? dot(place, search.leaving) < radius : false;
-    last = place;
-    starts = false;
+    walk.last = place;
+    walk.starts = false;
   }
-  return whole_arc(side) - arc_to(side, place_at(own)) + arc_of(side, sectors & ~sectors_below(own, shift));
+  return whole_arc(side) - arc_to(side, place_at(walk.own)) +
+         arc_of(side, walk.sectors & ~sectors_below(walk.own, search.shift));
 }
 
 void main() {
@@ -154,7 +204,8 @@ void main() {
   }
   if (at.x >= extent.x || at.y >= extent.y) return;
   const ivec2 pixel = lines.steep != 0 ? at.yx : at;
-  const int index = index_of(view, pixel), ao_index = index + int(params.plane) * view.size.x * view.size.y;
+  const int index = index_of(view, pixel);
+  const int ao_index = index + int(params.plane) * view.size.x * view.size.y;
   const float z = depth[index];
   if (z >= kSkyDepth) {
     ao[ao_index] = 1.0;
@@ -167,15 +218,16 @@ void main() {
   const Point point = point_of(view, plane, tangent, z, n);
   const float clearance =
       least_height(params.depth_precision, z, (view.orthographic != 0 ? 0.0 : dot(n.xy, tangent)) - n.z);
-  const float radius = params.radius, weight = length(point.normal),
-              facing = max(dot(point.normal, point.eye), kLeastWeight);
+  const float radius = params.radius;
+  const float weight = length(point.normal);
+  const float facing = max(dot(point.normal, point.eye), kLeastWeight);
   const uint neighbors = neighbor[row + at.x];
   float blocked = 0.0, whole = 0.0;
   if (weight >= kLeastWeight) {
     const vec2 across_eye = vec2(-point.eye.y, point.eye.x);
     const float sine = radius / point.eye_distance, cosine = sqrt(max(0.0, 1.0 - sine * sine));
     const float share = 1.0 / (plane.ray_length * -point.eye.y);
-    const float lift = max(params.bias, kLeastElevation), level = sqrt(1.0 - lift * lift), thickness = params.thickness;
+    const float lift = max(params.bias, kLeastElevation), level = sqrt(1.0 - lift * lift);
     for (int sign = -1; sign <= 1; sign += 2) {
       Side side;
       side.cos_gamma = facing / weight;
@@ -197,9 +249,8 @@ void main() {
       whole += share * weight * whole_arc(side);
       const uint column = sign > 0 ? neighbors >> 16 : neighbors & kNoVertex;
       if (column == kNoVertex) continue;
-      const float shift = fract(0.5 + kGolden * float(2u * params.direction + uint(sign > 0)));
-      blocked +=
-          share * weight * blocked_arc(view, plane, side, search, point, radius, thickness, row + int(column), shift);
+      search.shift = fract(0.5 + kGolden * float(2u * params.direction + uint(sign > 0)));
+      blocked += share * weight * blocked_arc(view, plane, point, side, search, row + int(column));
     }
   }
   if (params.is_first == 0) {

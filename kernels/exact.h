@@ -5,15 +5,15 @@
 #include "profile.h"
 ALCOVE_BEGIN
 
-ALCOVE_CONSTANT uint kExactDepth = 0;     // in: float a pixel, from prepare
-ALCOVE_CONSTANT uint kExactNormal = 1;    // in: uint a pixel, from prepare
+ALCOVE_CONSTANT uint kExactDepth = 0;     // in: one float per pixel, from prepare
+ALCOVE_CONSTANT uint kExactNormal = 1;    // in: one uint per pixel, from prepare
 ALCOVE_CONSTANT uint kExactVertex = 2;    // in: from profile
 ALCOVE_CONSTANT uint kExactMark = 3;      // in: from profile
 ALCOVE_CONSTANT uint kExactNeighbor = 4;  // in: from profile
-ALCOVE_CONSTANT uint kExactWhole = 5;     // in and out: float a pixel, sum of whole arcs
-// in and out: float a pixel, sum of blocked arcs; after the last slice visibility in [0, 1], 1 = open
+ALCOVE_CONSTANT uint kExactWhole = 5;     // in and out: one float per pixel, sum of whole arcs
+// in and out: one float per pixel, sum of blocked arcs; after the last slice visibility in [0, 1], 1 = open
 ALCOVE_CONSTANT uint kExactAo = 6;
-ALCOVE_CONSTANT uint kExactList = 7;    // in: ListedTile a tile, from converge; only with kExactListedId
+ALCOVE_CONSTANT uint kExactList = 7;    // in: one ListedTile per tile, from converge; only with kExactListedId
 ALCOVE_CONSTANT uint kExactCounts = 8;  // in: TileCounts; only with kExactListedId
 
 // specialization: 1: the pixels of listed tiles take the slice, and no sum is ever completed; see stride, first,
@@ -31,7 +31,7 @@ struct ExactParams {
   uint is_first, is_last;  // 0 or 1: of those that a pixel takes
   float radius;            // scene units
   float thickness;       // scene units, of what is not connected to the receiver; infinite allowed; 0: as deep as wide
-  uint plane;            // of the output: one a radius
+  uint plane;            // of the output, which has one plane per radius
   vec3 depth_precision;  // of planar depth: see clearance.glsl
   float bias;            // sine of the elevation above the tangent plane below which nothing blocks
 };

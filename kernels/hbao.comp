@@ -2,14 +2,16 @@
 // direction counting the same.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// In: planar depth, view normals. Out: visibility, 1 = open.
+// In: planar depth, view normals.
+// Out: visibility, 1 = open.
+//
 // Bavoil and Sainz, "Image-Space Horizon-Based Ambient Occlusion", 2008: occlusion is the mean over the directions of
-// sin h - sin t, the elevations of horizon and tangent above the plane across the view ray; with attenuation, every
-// rise of sin h counts with the weight W of the sample that makes it. This is uniform, not cosine-weighted AO: beside a
-// wall whose rim stands at 45 degrees it is 0.75, and GTAO's 0.854. What is particular here:
+// sin h - sin t, the elevations of horizon and tangent above the plane across the view ray. With attenuation every rise
+// of sin h counts with the weight W of the sample that makes it. This is uniform, not cosine-weighted AO: beside a wall
+// whose rim stands at 45 degrees it is 0.75, and GTAO's is 0.854. What is particular here:
 // - Off axis even directions of the image are not even about the view ray; each is weighted by the ratio of the two.
-// - Without attenuation whatever is within reach on the image blocks, at any distance: beside an endless wall 1 -
-//   acos(d / R) / pi.
+// - Without attenuation whatever is within reach on the image blocks, at any distance: beside an endless wall the
+//   result is 1 - acos(d / R) / pi.
 // - A sample is moved into its slice parallel to the tangent plane, so a flat surface stays open at every tilt.
 // - `from_surface` gives the simpler form of many engines: the sine of the horizon's elevation above the surface
 //   itself, which is the cosine of its angle to the normal. The two are equal where the surface faces the eye.
@@ -22,7 +24,10 @@
 #include "stride.glsl"
 #include "tiles.glsl"
 #include "falloff.glsl"
+#include "arcs.glsl"
+#include "bent.glsl"
 #include "clearance.glsl"
+#include "slice.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 layout(constant_id = kHbaoSlicesId) const uint kSlices = 3;
@@ -36,26 +41,23 @@ layout(scalar, binding = kHbaoAo) writeonly buffer Ao { float ao[]; };
 layout(scalar, binding = kHbaoList) readonly buffer List { ListedTile list[]; };
 layout(scalar, binding = kHbaoCounts) readonly buffer Counts { TileCounts counts; };
 
-/// Slices that the normal is nearly perpendicular to have no tangent to speak of, and are left out.
-const float kLeastWeight = 1e-4;
-const float kPi = 3.14159265358979324;
-
 /// One direction on the image and the half-plane of view space that is seen along it.
-struct Side {
+struct Direction {
   vec3 along_t, along_v;  // in-slice coordinates of an offset, moved into the slice parallel to the tangent plane
   vec2 normal;            // the normal in the slice, along T and V; its length is the part of it that lies in the slice
-  vec2 direction_px;      // pixels a step, the longer component +-1
+  vec2 direction_px;      // pixels per step, the longer component +-1
   float reach;            // steps of direction_px within the radius and the image
   float least_height;     // of a sample: see clearance.glsl
 };
 
 /// The occlusion in one direction: sin h - sin t, attenuated. `range`: the steps at which something may stand above the
 /// tangent plane.
-float occlusion(Side side, ivec2 pixel, vec3 position, float jitter, uint range) {
+float occlusion(Direction side, ivec2 pixel, vec3 position, float jitter, uint range) {
   const int steps = int(kSteps), count = range != 0u ? min(steps, int(side.reach)) : 0;
   const float last_step = float(last_of_range(range)) + 0.5;
   const float weight = length(side.normal);
-  // The sine that samples must exceed: of the tangent, raised by the bias, or of the bias alone.
+  // The sine that samples must exceed: that of the tangent (sin t of the paper), raised by the bias, or that of the
+  // bias alone.
   const vec2 across = vec2(side.normal.y, -side.normal.x) / weight;  // the tangent, as its own cosine and sine
   float horizon = params.from_surface != 0 ? params.bias
                                            : across.y * sqrt(1.0 - params.bias * params.bias) + across.x * params.bias;
@@ -69,8 +71,9 @@ float occlusion(Side side, ivec2 pixel, vec3 position, float jitter, uint range)
     if (z >= kSkyDepth) continue;
     const vec3 delta = position_of(params.view, vec2(hit) + 0.5, z) - position;
     const vec2 in_slice = vec2(dot(delta, side.along_t), dot(delta, side.along_v));
-    const float unit = inversesqrt(dot(in_slice, in_slice)), squared_distance = dot(delta, delta),
-                height = dot(in_slice, side.normal);
+    const float unit = inversesqrt(dot(in_slice, in_slice));
+    const float squared_distance = dot(delta, delta);
+    const float height = dot(in_slice, side.normal);
     const bool clear =
         height > side.least_height + least_rise(params.view) * step_px * (params.view.orthographic == 0 ? z : 1.0);
     const bool above = clear && height * height > kLeastElevation * kLeastElevation * squared_distance;
@@ -88,8 +91,8 @@ void main() {
   if (place.tile >= counts.listed) return;
   const ivec2 pixel = pixel_of_tile(unpack_tile(list[place.tile].place), place.pixel, params.noise_origin, kStride);
   if (!inside(params.view, pixel)) return;
-  const int index = index_of(params.view, pixel),
-            ao_index = index + int(params.plane) * params.view.size.x * params.view.size.y;
+  const int index = index_of(params.view, pixel);
+  const int ao_index = index + int(params.plane) * params.view.size.x * params.view.size.y;
   const float z = depth[index];
   if (z >= kSkyDepth) {
     ao[ao_index] = 1.0;
@@ -98,12 +101,12 @@ void main() {
 
   const bool perspective = params.view.orthographic == 0;
   const vec2 tangent = tangent_of(params.view, vec2(pixel) + 0.5);
-  const vec3 position = position_of(params.view, vec2(pixel) + 0.5, z), eye = toward_eye(params.view, position),
-             n = unpack_normal(normal[index]);
+  const vec3 position = position_of(params.view, vec2(pixel) + 0.5, z);
+  const vec3 eye = toward_eye(params.view, position);
+  const vec3 n = unpack_normal(normal[index]);
   const vec2 noise = pixel_noise(packed_place(pixel + params.noise_origin, kStride), params.noise_shift);
   // The sphere of the radius is seen under this angle; 1 and more: it holds the eye, and the image is the only limit.
   const float sin_reach = perspective ? params.radius * inversesqrt(dot(position, position)) : 0.0;
-  const float cos_reach = sqrt(max(0.0, 1.0 - sin_reach * sin_reach));
 
   const float clearance = least_height(params.depth_precision, z, (perspective ? dot(n.xy, tangent) : 0.0) - n.z);
 
@@ -115,7 +118,9 @@ void main() {
     // directions about the view ray for one of the image
     const float toward = dot(direction, eye), share = 1.0 / (1.0 - toward * toward);
     const vec3 t = (direction - toward * eye) * sqrt(share), b = cross(t, eye);
-    const float n_t = dot(n, t), n_v = dot(n, eye), weight_squared = n_t * n_t + n_v * n_v;
+    const float n_t = dot(n, t);
+    const float n_v = dot(n, eye);
+    const float weight_squared = n_t * n_t + n_v * n_v;
     whole += 2.0 * share;
     if (weight_squared < kLeastWeight * kLeastWeight) continue;
 
@@ -123,16 +128,14 @@ void main() {
     const float pixels = max(abs(image_t.x), abs(image_t.y));
     const vec3 shift = b * (dot(n, b) / weight_squared);
     for (int sign = -1; sign <= 1; sign += 2) {
-      Side side;
+      Direction side;
       side.along_t = float(sign) * (t + n_t * shift);
       side.along_v = eye + n_v * shift;
       side.normal = vec2(float(sign) * n_t, n_v);
       side.direction_px = float(sign) / pixels * image_t;
       side.least_height = clearance;
-      const float forward = perspective ? eye.z * cos_reach - float(sign) * t.z * sin_reach : 1.0;
-      const float reach = perspective ? sin_reach * pixels / forward : params.radius * pixels;
-      const float border = steps_to_border(params.view, pixel, side.direction_px);
-      side.reach = sin_reach < 1.0 && forward > 0.0 ? min(reach, border) : border;
+      side.reach = reach_of_side(params.view, pixel, side.direction_px, pixels, eye.z, float(sign) * t.z, sin_reach,
+                                 params.radius);
       blocked += share * occlusion(side, pixel, position, fract(noise.y + kGolden * float(2u * s + uint(sign > 0))),
                                    list[place.tile].ranges[sector_of(side.direction_px)]);
     }

@@ -5,17 +5,18 @@
 #include "horizon.h"
 ALCOVE_BEGIN
 
-ALCOVE_CONSTANT uint kHbaoDepth = 0;   // in: float a pixel, from prepare
-ALCOVE_CONSTANT uint kHbaoNormal = 1;  // in: uint a pixel, from prepare
-// out: float a pixel, visibility in [0, 1], 1 = open; the plane of the parameters
+ALCOVE_CONSTANT uint kHbaoDepth = 0;   // in: one float per pixel, from prepare
+ALCOVE_CONSTANT uint kHbaoNormal = 1;  // in: one uint per pixel, from prepare
+// out: one float per pixel, visibility in [0, 1], 1 = open; the plane of the parameters
 ALCOVE_CONSTANT uint kHbaoAo = 2;
-ALCOVE_CONSTANT uint kHbaoList = 3;    // in: ListedTile a tile, from classify: what to estimate
+ALCOVE_CONSTANT uint kHbaoList = 3;    // in: one ListedTile per tile, from classify: what to estimate
 ALCOVE_CONSTANT uint kHbaoCounts = 4;  // in: TileCounts
 
 ALCOVE_CONSTANT uint kHbaoSlicesId = 0;   // specialization: lines through a pixel, each searched to both sides
 ALCOVE_CONSTANT uint kHbaoStepsId = 1;    // specialization: steps to each side
 ALCOVE_CONSTANT uint kHbaoFalloffId = 2;  // specialization: one of kFalloff* of falloff.glsl, the attenuation W
-ALCOVE_CONSTANT uint kHbaoStrideId = 3;   // specialization: one pixel of so many in a row, 1, 2 or 4: see stride.glsl
+// specialization: one pixel of so many in a row is estimated, 1, 2 or 4: see stride.glsl
+ALCOVE_CONSTANT uint kHbaoStrideId = 3;
 
 struct HbaoParams {
   View view;
@@ -24,10 +25,10 @@ struct HbaoParams {
   float bias;           // sine of the elevation above the tangent plane below which nothing blocks
   // 1: the horizon's elevation above the surface; 0: of horizon and surface above the plane across the view ray
   uint from_surface;
-  ivec2 noise_origin;    // px: what to add to a pixel so that crops and tiles share one noise pattern
+  ivec2 noise_origin;    // px: added to a pixel, so that crops and tiles share one noise pattern
   vec2 noise_shift;      // in [0, 1): the pattern's shift for this frame and seed
-  uint plane;            // of the output, which has one a radius
-  vec3 depth_precision;  // how far a depth z may be from the surface's: x + y z + z z^2, scene units
+  uint plane;            // of the output, which has one plane per radius
+  vec3 depth_precision;  // scene units: a depth z may be off by x + y z + z z^2
 };
 ALCOVE_PARAMS(HbaoParams)
 

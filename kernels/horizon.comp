@@ -2,20 +2,24 @@
 // thickness.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// In: planar depth, view normals. Out: visibility, 1 = open; the mean open direction (see bent.glsl) where it is asked
-// for. Jimenez et al., "Practical Realtime Strategies for Accurate Indirect Occlusion", 2016, with these differences:
+// In: planar depth, view normals.
+// Out: visibility, 1 = open; the mean open direction (see bent.glsl) where it is asked for.
+//
+// Jimenez et al., "Practical Realtime Strategies for Accurate Indirect Occlusion", 2016, with these differences:
 // - Slices are even in azimuth about the view ray, not on the screen, so that no Jacobian is owed off axis.
 // - The reach is the exact image of the sphere of the radius in the slice, clipped to the image: what is outside is
 //   unknown.
 // - The samples of a side form runs of one surface. What goes on from the receiver, or from any place below its tangent
 //   plane, is its own surface: it blocks all below its horizon. A sample that is not above that plane says nothing
-//   else, so it may be left out where `classify` knows of it. Every other run blocks from its front to its back, which
-//   lies as much further along the eye's ray as the run is wide ("width as thickness": a blade of grass is as thin as
-//   it is narrow, a column as thick as it is broad), or as the user says. Nothing beyond the radius blocks. What is
-//   blocked is an interval, exact, of the own surface's, and 24 sectors (sectors.glsl) of all others'.
-// - Falloff weighs each arc by the distance of the sample that first blocks it ("incremental arcs"), exact for height
-//   fields.
-// - Result 1 - (sum of blocked arcs) / (sum of whole arcs): exactly 1 where nothing rises above the tangent plane.
+//   else, so it may be left out where `classify` knows of it.
+// - Every other run blocks from its front to its back, which lies as much further along the eye's ray as the run is
+//   wide ("width as thickness": a blade of grass is as thin as it is narrow, a column as thick as it is broad), or as
+//   the user says. Nothing beyond the radius blocks. What the own surface blocks is an interval, exact; what all other
+//   runs block is counted in 24 sectors (sectors.glsl).
+// - Falloff weighs each arc by the distance of the sample that first blocks it ("incremental arcs"), which is exact for
+//   height fields.
+// - The result is 1 - (sum of blocked arcs) / (sum of whole arcs): exactly 1 where nothing rises above the tangent
+//   plane.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "horizon.h"
@@ -73,9 +77,6 @@ struct Blocked {
   uint sectors;
 };
 
-// Logic without branches: `&&` and `||` would jump.
-bool both(bool a, bool b) { return a ? b : false; }
-
 /// arc_to() and, with bent normals, bent_to().
 vec3 arcs_to(Side side, vec2 place) {
   const vec2 direction = place * inversesqrt(dot(place, place));
@@ -102,107 +103,138 @@ uint sectors_of(Receiver r, Reach reach, Run run, float z, float gap_behind, flo
   return run.near >= run.far ? sectors_below(run.near, shift) & ~sectors_below(min(back, run.far), shift) : 0u;
 }
 
-/// The blocked part of a side's integrals. `range`: the steps at which something may stand above the tangent plane.
-vec3 search(Receiver r, Side side, Reach reach, float jitter, uint range) {
-  const int count = range != 0u ? min(int(kSteps), int(side.reach)) : 0;
-  const float last_step = float(last_of_range(range)) + 0.5;
-  const float shift = fract(11.0 * jitter);
-  const bool hard = kFalloff == kFalloffNone;
-  float last_z = r.z, last_offset = 0.0, last_slope = 0.0, last_distance_sq = kNone;
-  vec3 last_arcs = vec3(0), sum = vec3(0);
-  bool own = true, was_within = true, was_above = true;
-  Blocked blocked = Blocked(-1.0, kThickness == kThicknessEndless ? 1.0 : -1.0, 0u);
-  Run run = Run(vec2(0), vec2(0), 0.0, -1.0, 1.0);
-  for (int k = first_sample(range, int(kSteps), count, side.reach, jitter, step_exponent(int(kSteps), side.reach));
-       k < count && last_offset <= last_step; k++) {
-    const float offset = step_offset(k, int(kSteps), count, side.reach, jitter), gap = offset - last_offset;
-    const vec2 beside = round(side.direction_px * offset);
-    const ivec2 hit = r.pixel + ivec2(beside);
-    const float z = depth[hit.y * reach.width + hit.x], scale = r.perspective ? z : 1.0;
-    const vec2 place = place_of(r, side, beside, z, scale);
-    const float slope = slope_of(place), distance_sq = dot(place, place);
-    const bool above = is_above(r, reach, place, distance_sq, offset, beside, z, scale),
-               within = distance_sq < reach.radius_sq;
-    const bool blocks = both(above, within);
-    // A surface that crosses the sphere between two samples blocks up to there; that of a run, half way.
-    const bool connected = kThickness == kThicknessEndless
-                               ? both(max(distance_sq, last_distance_sq) < kSameSurface * reach.radius_sq,
-                                      min(distance_sq, last_distance_sq) * kSameSurface > reach.radius_sq)
-                               : same_surface(r, reach, z, last_z, gap);
-    const bool crosses = hard ? both(both(above, was_above), both(connected, within != was_within)) : false;
-    const float crossing =
-        mix(slope, last_slope,
-            kThickness == kThicknessEndless ? (reach.radius_sq - distance_sq) / (last_distance_sq - distance_sq) : 0.5);
-    const float near = max(blocks ? slope : -1.0, crosses ? crossing : -1.0),
-                far = min(blocks ? slope : 1.0, crosses ? crossing : 1.0);
-    if (connected) run.end = place;
-    if (kThickness != kThicknessEndless && (!connected || !above)) {
-      if (hard) blocked.sectors |= sectors_of(r, reach, run, last_z, gap, shift);
-      run = Run(place, place, gap, -1.0, 1.0);
-      own = !above;
-    }
-    if (own) {
-      blocked.near = max(blocked.near, near);
-      if (kThickness == kThicknessEndless)
-        blocked.far =
-            min(blocked.far, blocks ? min(far, slope_of(back_of(r, place, reach.thickness, reach.radius))) : far);
-    } else {
-      run.near = max(run.near, near);
-      run.far = min(run.far, far);
-    }
-    if (!hard) {
-      blocked.sectors |= sectors_of(r, reach, run, z, 1.0, shift);
-      const vec3 arcs = blocked_arcs(side, blocked, shift);
-      sum += falloff_weight(kFalloff, sqrt(distance_sq), reach.falloff_start, reach.radius) * (arcs - last_arcs);
-      last_arcs = arcs;
-    }
-    was_within = within;
-    was_above = above;
-    last_slope = slope;
-    last_distance_sq = above ? distance_sq : kNone;
-    last_z = z;
-    last_offset = offset;
-  }
-  if (hard) blocked.sectors |= sectors_of(r, reach, run, last_z, 1.0, shift);
-  return hard ? blocked_arcs(side, blocked, shift) : sum;
+/// One sample of a side.
+struct Sample {
+  float offset;        // steps from the receiver
+  float z, scale;      // planar depth; that, or 1 orthographic
+  vec2 place;          // in the slice
+  float slope;         // slope_of() it
+  float distance_sq;   // from the receiver
+  bool above, within;  // clear of the tangent plane; within the radius
+};
+
+Sample sample_at(Receiver r, Side side, Reach reach, float offset) {
+  const vec2 beside = round(side.direction_px * offset);
+  const ivec2 hit = r.pixel + ivec2(beside);
+  Sample s;
+  s.offset = offset;
+  s.z = depth[hit.y * reach.width + hit.x];
+  s.scale = r.perspective ? s.z : 1.0;
+  s.place = place_of(r, side, beside, s.z, s.scale);
+  s.slope = slope_of(s.place);
+  s.distance_sq = dot(s.place, s.place);
+  s.above = is_above(r, reach, s.place, s.distance_sq, offset, beside, s.z, s.scale);
+  s.within = s.distance_sq < reach.radius_sq;
+  return s;
 }
 
-void write_bent(int index, int plane, vec3 b) {
-  for (int c = 0; c < 3; c++) bent[index + c * plane] = stored_bent(b)[c];
+/// The slopes that a sample blocks, largest and smallest: its own where it `blocks`, and where the surface from the
+/// sample before it crosses the sphere in between, that `crossing`.
+vec2 slopes_of(Sample s, bool crosses, float crossing) {
+  const bool blocks = both(s.above, s.within);
+  return vec2(max(blocks ? s.slope : -1.0, crosses ? crossing : -1.0),
+              min(blocks ? s.slope : 1.0, crosses ? crossing : 1.0));
 }
+
+/// The sample before the first one.
+Sample receiver_sample(Receiver r) { return Sample(0.0, r.z, 1.0, vec2(0), 0.0, kNone, true, true); }
+
+const bool kHard = kFalloff == kFalloffNone;
+
+/// What falloff makes of the arcs that are blocked up to a sample: those that are new at it weigh as its distance says.
+vec3 faded(vec3 sum, vec3 arcs, vec3 last_arcs, Sample s, Reach reach) {
+  return sum + falloff_weight(kFalloff, sqrt(s.distance_sq), reach.falloff_start, reach.radius) * (arcs - last_arcs);
+}
+
+/// The blocked part of a side's integrals where occluders are solid as far as the sphere of the radius: one interval.
+vec3 search_endless(Receiver r, Side side, Reach reach, Draw draw, uint range) {
+  const int count = range != 0u ? min(int(kSteps), int(side.reach)) : 0;
+  const float last_step = float(last_of_range(range)) + 0.5;
+  vec3 last_arcs = vec3(0), sum = vec3(0);
+  Sample last = receiver_sample(r);
+  Blocked blocked = Blocked(-1.0, 1.0, 0u);
+  for (int k = first_sample(range, int(kSteps), count, side.reach, draw.jitter, step_exponent(int(kSteps), side.reach));
+       k < count && last.offset <= last_step; k++) {
+    const Sample s = sample_at(r, side, reach, step_offset(k, int(kSteps), count, side.reach, draw.jitter));
+    const bool connected = both(max(s.distance_sq, last.distance_sq) < kSameSurface * reach.radius_sq,
+                                min(s.distance_sq, last.distance_sq) * kSameSurface > reach.radius_sq);
+    const bool crosses = kHard ? both(both(s.above, last.above), both(connected, s.within != last.within)) : false;
+    const vec2 slopes = slopes_of(
+        s, crosses, mix(s.slope, last.slope, (reach.radius_sq - s.distance_sq) / (last.distance_sq - s.distance_sq)));
+    const float back = slope_of(back_of(r, s.place, reach.thickness, reach.radius));
+    blocked.near = max(blocked.near, slopes.x);
+    blocked.far = min(blocked.far, both(s.above, s.within) ? min(slopes.y, back) : slopes.y);
+    if (!kHard) {
+      const vec3 arcs = blocked_arcs(side, blocked, draw.shift);
+      sum = faded(sum, arcs, last_arcs, s, reach);
+      last_arcs = arcs;
+    }
+    last = s;
+    last.distance_sq = s.above ? s.distance_sq : kNone;
+  }
+  return kHard ? blocked_arcs(side, blocked, draw.shift) : sum;
+}
+
+/// The same where occluders are as thick as they are wide, or as the user says: the receiver's own surface, and runs.
+vec3 search_runs(Receiver r, Side side, Reach reach, Draw draw, uint range) {
+  const int count = range != 0u ? min(int(kSteps), int(side.reach)) : 0;
+  const float last_step = float(last_of_range(range)) + 0.5;
+  vec3 last_arcs = vec3(0), sum = vec3(0);
+  bool own = true;
+  Sample last = receiver_sample(r);
+  Blocked blocked = Blocked(-1.0, -1.0, 0u);
+  Run run = Run(vec2(0), vec2(0), 0.0, -1.0, 1.0);
+  for (int k = first_sample(range, int(kSteps), count, side.reach, draw.jitter, step_exponent(int(kSteps), side.reach));
+       k < count && last.offset <= last_step; k++) {
+    const Sample s = sample_at(r, side, reach, step_offset(k, int(kSteps), count, side.reach, draw.jitter));
+    const float gap = s.offset - last.offset;
+    const bool connected = same_surface(r, reach, s.z, last.z, gap);
+    // A run that crosses the sphere between two samples blocks half way to the one beyond.
+    const bool crosses = kHard ? both(both(s.above, last.above), both(connected, s.within != last.within)) : false;
+    const vec2 slopes = slopes_of(s, crosses, mix(s.slope, last.slope, 0.5));
+    if (connected) run.end = s.place;
+    if (!connected || !s.above) {
+      if (kHard) blocked.sectors |= sectors_of(r, reach, run, last.z, gap, draw.shift);
+      run = Run(s.place, s.place, gap, -1.0, 1.0);
+      own = !s.above;
+    }
+    if (own) {
+      blocked.near = max(blocked.near, slopes.x);
+    } else {
+      run.near = max(run.near, slopes.x);
+      run.far = min(run.far, slopes.y);
+    }
+    if (!kHard) {
+      blocked.sectors |= sectors_of(r, reach, run, s.z, 1.0, draw.shift);
+      const vec3 arcs = blocked_arcs(side, blocked, draw.shift);
+      sum = faded(sum, arcs, last_arcs, s, reach);
+      last_arcs = arcs;
+    }
+    last = s;
+  }
+  if (kHard) blocked.sectors |= sectors_of(r, reach, run, last.z, 1.0, draw.shift);
+  return kHard ? blocked_arcs(side, blocked, draw.shift) : sum;
+}
+
+/// The blocked part of a side's integrals. range: the steps at which something may stand above the tangent plane.
+vec3 search(Receiver r, Side side, Reach reach, Draw draw, uint range) {
+  return kThickness == kThicknessEndless ? search_endless(r, side, reach, draw, range)
+                                         : search_runs(r, side, reach, draw, range);
+}
+
+/// Random numbers of a side, from those of its pixel. The boundaries of the sectors move by the fraction of a multiple
+/// of the steps' jitter. Of a number that is even in [0, 1), the fraction of m times it is even too, and their
+/// correlation is 1 / m: here 9 %.
+Draw draw_of(vec2 noise, uint slice, uint side) {
+  const float jitter = fract(noise.y + kGolden * float(2u * slice + side));
+  return Draw(jitter, fract(11.0 * jitter));
+}
+
+#include "slices.glsl"
 
 void main() {
   const ListedPlace place = listed_place(gl_WorkGroupID.xy, gl_LocalInvocationIndex, kStride);
   if (place.tile >= counts.listed) return;
   const ivec2 pixel = pixel_of_tile(unpack_tile(list[place.tile].place), place.pixel, params.noise_origin, kStride);
-  const View view = params.view;
-  if (!inside(view, pixel)) return;
-  const int index = index_of(view, pixel), plane = view.size.x * view.size.y,
-            ao_index = index + int(params.plane) * plane;
-  const float z = depth[index];
-  if (z >= kSkyDepth) {
-    ao[ao_index] = 1.0;
-    if (kBent) write_bent(index, plane, vec3(0));
-    return;
-  }
-  const Receiver r = receiver_at(view, pixel, z, unpack_normal(normal[index]), params.radius, params.depth_precision);
-  const Reach reach = reach_of(view, params.radius, params.falloff_start, params.thickness, params.bias);
-  const vec2 noise = pixel_noise(packed_place(pixel + params.noise_origin, kStride), params.noise_shift);
-  float blocked = 0.0, whole = 0.0;
-  vec3 bent_blocked = vec3(0);
-  for (uint s = 0u; s < kSlices; s++) {
-    const Slice slice = slice_at(view, r, s, kSlices, noise.x);
-    if (slice.weight < kLeastWeight) continue;
-    whole += slice.share * slice.weight * (slice.cos_gamma + slice.gamma * slice.sin_gamma);
-    for (int sign = -1; sign <= 1; sign += 2) {
-      const float jitter = fract(noise.y + kGolden * float(2u * s + uint(sign > 0)));
-      const Side side = side_of(view, r, slice, float(sign), reach);
-      const vec3 arcs = slice.share * slice.weight *
-                        search(r, side, reach, jitter, list[place.tile].ranges[sector_of(side.direction_px)]);
-      blocked += arcs.x;
-      if (kBent) bent_blocked += arcs.y * float(sign) * slice.t + arcs.z * r.eye;
-    }
-  }
-  ao[ao_index] = whole > 0.0 ? clamp(1.0 - blocked / whole, 0.0, 1.0) : 1.0;
-  if (kBent) write_bent(index, plane, open_bent(r.normal) - (whole > 0.0 ? bent_blocked / whole : vec3(0)));
+  if (inside(params.view, pixel)) estimate(pixel, place.tile);
 }

@@ -5,19 +5,19 @@
 #include "shared.h"
 ALCOVE_BEGIN
 
-ALCOVE_CONSTANT uint kHorizonDepth = 0;   // in: float a pixel, from prepare
-ALCOVE_CONSTANT uint kHorizonNormal = 1;  // in: uint a pixel, from prepare
-// out: float a pixel, visibility in [0, 1], 1 = open; the plane of the parameters
+ALCOVE_CONSTANT uint kHorizonDepth = 0;   // in: one float per pixel, from prepare
+ALCOVE_CONSTANT uint kHorizonNormal = 1;  // in: one uint per pixel, from prepare
+// out: one float per pixel, visibility in [0, 1], 1 = open; the plane of the parameters
 ALCOVE_CONSTANT uint kHorizonAo = 2;
 // out: planes x, y, z of the mean open direction b in view space as 0.5 + 0.5 b; only with kWithBent
 ALCOVE_CONSTANT uint kHorizonBent = 3;
-ALCOVE_CONSTANT uint kHorizonList = 4;    // in: ListedTile a tile, from classify: what to estimate
+ALCOVE_CONSTANT uint kHorizonList = 4;    // in: one ListedTile per tile, from classify: what to estimate
 ALCOVE_CONSTANT uint kHorizonCounts = 5;  // in: TileCounts
 
-ALCOVE_CONSTANT uint kHorizonSlicesId = 0;  // specialization: slices a pixel
+ALCOVE_CONSTANT uint kHorizonSlicesId = 0;  // specialization: slices per pixel
 ALCOVE_CONSTANT uint kHorizonStepsId = 1;   // specialization: steps to each side of a slice
 ALCOVE_CONSTANT uint kHorizonModeId = 2;    // specialization: one of kFalloff* of falloff.glsl, and kWithBent or not
-// specialization: one pixel of so many in a row, 1, 2 or 4: see stride.glsl
+// specialization: one pixel of so many in a row is estimated, 1, 2 or 4: see stride.glsl
 ALCOVE_CONSTANT uint kHorizonStrideId = 3;
 ALCOVE_CONSTANT uint kHorizonThicknessId = 4;  // specialization: one of these, of what is not connected to the receiver
 
@@ -30,12 +30,12 @@ struct HorizonParams {
   View view;
   float radius;          // scene units
   float falloff_start;   // scene units, below the radius
-  ivec2 noise_origin;    // px: what to add to a pixel so that crops and tiles share one noise pattern
+  ivec2 noise_origin;    // px: added to a pixel, so that crops and tiles share one noise pattern
   vec2 noise_shift;      // in [0, 1): the pattern's shift for this frame and seed
   float bias;            // sine of the elevation above the tangent plane below which nothing blocks
   float thickness;       // scene units, of kThicknessLength; infinite of kThicknessEndless
-  uint plane;            // of the output, which has one a radius
-  vec3 depth_precision;  // how far a depth z may be from the surface's: x + y z + z z^2, scene units
+  uint plane;            // of the output, which has one plane per radius
+  vec3 depth_precision;  // scene units: a depth z may be off by x + y z + z z^2
 };
 ALCOVE_PARAMS(HorizonParams)
 

@@ -2,10 +2,11 @@
 // bindings.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Lines go along one axis of the image, a pixel a step, and are sheared across it by at most a pixel a step: every
-// pixel is on exactly one line, no further than half a pixel beside it. Slopes are whole numbers of 1/kSlopeUnit pixel,
-// so that all kernels and devices agree on which. Two lines that are as many pixels apart as the image is wide across
-// never share a step; so the lines of an image fill a sheared image of the same size, in which each lies in one row.
+// Lines go along one axis of the image, one pixel per step, and are sheared across it by at most one pixel per step:
+// every pixel is on exactly one line, no further than half a pixel beside it. Slopes are whole numbers of 1/kSlopeUnit
+// pixel, so that all kernels and devices agree on which. Two lines that are as many pixels apart as the image is wide
+// across never share a step; so the lines of an image fill a sheared image of the same size, in which each lies in one
+// row.
 //
 // The plane of a line is spanned by the ray through the line's point that is nearest to the optical axis, and the line.
 // A point of planar depth z is in it at (scale * place along the line, z * length of that ray), scale z in perspective,
@@ -26,7 +27,7 @@ int index_at(View view, Lines lines, int step, int across) {
   return lines.steep != 0 ? step * view.size.x + across : across * view.size.x + step;
 }
 
-/// Whole pixels that lines have moved across at a step, and the rest, in [-0.5, 0.5).
+/// How far lines have moved across at a step: whole pixels, and the rest, in [-0.5, 0.5).
 int shift_at(Lines lines, int step) { return (lines.slope * (lines.origin.x + step) + kSlopeUnit / 2) >> kSlopeBits; }
 float rest_at(Lines lines, int step) {
   return float(lines.slope * (lines.origin.x + step) - (shift_at(lines, step) << kSlopeBits)) / float(kSlopeUnit);
@@ -48,8 +49,8 @@ vec2 place_at(View view, LinePlane plane, int step, float z) {
 /// tangent_of() the centre of a pixel, counted along and across from the display window's corner, so that it is the
 /// same in a crop.
 vec2 tangent_at(View view, Lines lines, ivec2 along_and_across) {
-  const ivec2 origin = lines.steep != 0 ? lines.origin.yx : lines.origin,
-              pixel = lines.steep != 0 ? along_and_across.yx : along_and_across;
+  const ivec2 origin = lines.steep != 0 ? lines.origin.yx : lines.origin;
+  const ivec2 pixel = lines.steep != 0 ? along_and_across.yx : along_and_across;
   return (vec2(pixel) + 0.5 - (view.center + vec2(origin))) * view.tangent_per_pixel;
 }
 

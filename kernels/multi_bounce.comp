@@ -1,11 +1,13 @@
-// Visibility of white light -> of light that is thrown back and forth between coloured surfaces, for each of red, green
-// and blue.
+// Turns the visibility of white light into that of light which is thrown back and forth between coloured surfaces, for
+// each of red, green and blue.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// In: visibility, the surface's diffuse colour (or one for all). Out: planes r, g, b.
+// In: visibility, the surface's diffuse colour (or one for all).
+// Out: planes r, g, b.
+//
 // Jimenez et al., "Practical Realtime Strategies for Accurate Indirect Occlusion", 2016: a cubic in the visibility, its
-// coefficients linear in the albedo, fitted to path-traced scenes of one albedo. Never below the visibility, which at 1
-// it misses by up to 0.0004: what is open stays 1.
+// coefficients linear in the albedo, fitted to path-traced scenes of one albedo. The result is never below the
+// visibility. At visibility 1 the cubic misses by up to 0.0004: what is open stays 1.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "multi_bounce.h"
@@ -24,7 +26,9 @@ void main() {
   for (int c = 0; c < 3; c++) {
     const float raw = params.has_planes != 0 ? albedo[index + c * plane] : params.albedo;
     const float rho = raw > 0.0 ? min(raw, 1.0) : 0.0;  // NaN too is no colour that returns light
-    const float a = 2.0404 * rho - 0.3324, b = 0.6417 - 4.7951 * rho, d = 2.7552 * rho + 0.6903;
+    const float a = 2.0404 * rho - 0.3324;
+    const float b = 0.6417 - 4.7951 * rho;
+    const float d = 2.7552 * rho + 0.6903;
     result[index + c * plane] = clamp(((a * v + b) * v + d) * v, v, 1.0);
   }
 }

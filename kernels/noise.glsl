@@ -4,10 +4,9 @@
 // Neighbours along a Hilbert curve take successive points of the R2 sequence (M. Roberts, "The unreasonable
 // effectiveness of quasirandom sequences", 2018), so any small block of pixels holds a well spread set.
 
-const vec2 kR2 = vec2(0.75487766624669276, 0.56984029099805327);  // 1/g and 1/g^2, g^3 = g + 1
-// of 2 and 3, less 1: independent of the former over the rationals
-const vec2 kRoots = vec2(0.41421356237309505, 0.73205080756887729);
-const float kGolden = 0.61803398874989485;
+const vec2 kR2 = vec2(kR2X, kR2Y);
+const vec2 kRoots = vec2(kRootX, kRootY);
+const float kGolden = 0.61803398874989485;  // (sqrt(5) - 1) / 2
 
 /// Position along the Hilbert curve that fills a 64 x 64 tile.
 uint hilbert_index(uvec2 p) {
@@ -31,8 +30,8 @@ vec2 pixel_noise(ivec2 pixel, vec2 shift) {
 }
 
 /// Point `index` of the R3 sequence (the same in three dimensions, g^4 = g + 1), moved by `shift`, in [0, 1). Where
-/// every pixel has n samples, those from n hilbert_index() on go on where the neighbour's ended. In whole numbers,
-/// since floats have too few digits for it.
+/// every pixel has n samples, those from n hilbert_index() on go on where the neighbour's ended. It is computed in
+/// whole numbers, since floats have too few digits for it.
 vec3 r3_point(uint index, vec2 shift) {
   const uvec3 step = uvec3(3518319155u, 2882110345u, 2360945575u);  // 2^32 / g, / g^2, / g^3
   return fract(vec3(index * step >> 8) / 16777216.0 + vec3(shift, shift.x + shift.y));

@@ -1,8 +1,8 @@
-// Unit vectors in 32 bits: the octahedral map, 16 bits a coordinate, within 4e-5 rad. Pure: no bindings.
+// Packs unit vectors into 32 bits: the octahedral map, 16 bits per coordinate, within 4e-5 rad. Pure: no bindings.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Cigolle et al., "A Survey of Efficient Representations for Independent Unit Vectors", 2014. One word instead of three
-// floats, since what a kernel costs is mostly its loads and stores.
+// Cigolle et al., "A Survey of Efficient Representations for Independent Unit Vectors", 2014, section 3.2 (oct32). One
+// word instead of three floats, since what a kernel costs is mostly its loads and stores.
 
 /// No direction packs to this.
 const uint kNoNormal = 0x80008000u;
@@ -13,7 +13,7 @@ uint pack_normal(vec3 n) {
   return packSnorm2x16(p);
 }
 
-/// Of any length.
+/// A vector of any length in the direction that the map holds at p.
 vec3 octahedral_direction(vec2 p) {
   vec3 n = vec3(p, 1.0 - abs(p.x) - abs(p.y));
   if (n.z < 0.0) n.xy = (1.0 - abs(n.yx)) * mix(vec2(-1), vec2(1), greaterThanEqual(n.xy, vec2(0)));
@@ -22,8 +22,8 @@ vec3 octahedral_direction(vec2 p) {
 
 vec3 unpack_normal(uint word) { return normalize(octahedral_direction(unpackSnorm2x16(word))); }
 
-/// How far a normal is at least turned to the eye, as a cosine. Smaller, and the slices at grazing angles lose their
-/// weight to rounding.
+/// How far a normal is at least turned to the eye, as a cosine. Were it smaller, the slices at grazing angles would
+/// lose their weight to rounding.
 const float kLeastFacing = 1e-3;
 
 /// A visible surface faces the eye: a shading normal that leans away is bent back just far enough.

@@ -1,11 +1,12 @@
-// Raw depth and normals -> the G-buffer that every later kernel relies on: z > 0 planar or marked sky; unit view-space
-// normals that face the eye, those that are unusable marked for `reconstruct`; nothing that is not finite. What was
-// repaired is counted.
+// Makes the G-buffer that every later kernel relies on: z > 0 planar or marked sky; unit view-space normals that face
+// the eye, where those that are unusable are marked for `reconstruct`; nothing that is not finite.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// In: raw depth of any kind or positions, raw normals of any encoding in world or view space. Out: planar z, view
-// normals, counts. Spheremap: the equal-area map about -z (Mittring, "A bit more Deferred - CryEngine 3", 2009);
-// octahedral: see normal.glsl.
+// In: raw depth of any kind or positions, raw normals of any encoding in world or view space.
+// Out: planar z, view normals, and counts of what was repaired.
+//
+// Spheremap: the equal-area map about -z (Mittring, "A bit more Deferred - CryEngine 3", 2009). Octahedral: see
+// normal.glsl.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "prepare.h"
@@ -92,7 +93,7 @@ void main() {
   const float size = length(n);
   const bool usable = finite(size) && size > kLeastLength;
   if (!usable) {
-    missing.z = 1u;
+    missing.z = 1u;  // every invocation that writes it writes the same
     if (kNormalForm != kNormalNone) atomicAdd(counts.repaired_normals, 1u);
   }
   const vec3 eye = toward_eye(params.view, position_of(params.view, vec2(pixel) + 0.5, z));

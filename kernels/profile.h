@@ -5,11 +5,11 @@
 #include "shared.h"
 ALCOVE_BEGIN
 
-ALCOVE_CONSTANT uint kProfileDepth = 0;   // in: float a pixel, from prepare
-ALCOVE_CONSTANT uint kProfileVertex = 1;  // out: float a vertex, its planar depth
-// out: uint a vertex: its step in the high half, its run's width (pack_width()) and kVertex* in the low
+ALCOVE_CONSTANT uint kProfileDepth = 0;   // in: one float per pixel, from prepare
+ALCOVE_CONSTANT uint kProfileVertex = 1;  // out: one float per vertex, its planar depth
+// out: one uint per vertex: its step in the high half, its run's width (pack_width()) and kVertex* in the low
 ALCOVE_CONSTANT uint kProfileMark = 2;
-// out: uint a step: the columns of the vertices before (low half) and after it; kNoVertex: none
+// out: one uint per step: the columns of the vertices before (low half) and after it; kNoVertex: none
 ALCOVE_CONSTANT uint kProfileNeighbor = 3;
 
 ALCOVE_CONSTANT uint kProfileEveryPixelId = 0;  // specialization: 1: every pixel is a vertex

@@ -1,8 +1,10 @@
-// Normals from depth, where the frame has none that is usable.
+// Makes normals from depth, where the frame has none that is usable.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// In: planar depth; normals, marked where they are missing. Out: those normals. Runs where `prepare` has marked any. A
-// pixel without a usable normal gets the normal of its own plane: 1/z is affine over a plane's image, so on each axis
+// In: planar depth; normals, marked where they are missing.
+// Out: those normals. The kernel runs where `prepare` has marked any.
+//
+// A pixel without a usable normal gets the normal of its own plane. 1/z is affine over a plane's image, so on each axis
 // the side whose two neighbours predict this pixel's 1/z best is on the same plane, and its position difference is a
 // tangent. Where both sides are on one surface, flat or curved, the difference over both is the better tangent: its
 // error is of second order.
@@ -17,10 +19,14 @@ layout(scalar, push_constant) uniform Push { ReconstructParams params; };
 layout(scalar, binding = kReconstructDepth) readonly buffer Depth { float depth[]; };
 layout(scalar, binding = kReconstructNormal) buffer Normal { uint normal[]; };
 
-/// All of 1/z: how much a large change counts against a side, beside its bend; the difference of the two sides'
-/// changes, in such errors and in parts of 1/z (rounding), up to which they are the same surface; and the largest
-/// change of one surface. Tuned on rendered scenes.
-const float kNearness = 0.1, kSameSurface = 4.0, kRounding = 1e-6, kOneSurface = 0.01;
+/// How much a large change of 1/z counts against a side, beside its bend.
+const float kNearness = 0.1;
+
+/// Two sides are the same surface if their changes of 1/z differ by no more than so many errors of the better one, plus
+/// this part of 1/z for rounding, and if both changes are less than this part of 1/z. Tuned on rendered scenes.
+const float kSameSurface = 4.0;
+const float kRounding = 1e-6;
+const float kOneSurface = 0.01;
 
 /// What an affine function over the image would be here, going by the two neighbours on one side; orthographic planes
 /// are affine in z, others in 1/z.
@@ -34,18 +40,27 @@ float affine_depth(ivec2 pixel) {
 /// same surface. Zero where neither side has a surface.
 vec3 tangent_along(ivec2 pixel, ivec2 axis, vec3 position, float here) {
   vec3 tangent = vec3(0), other = vec3(0);
-  float least = 1e30, step = 0.0, other_step = 1e30;
+  float least = 1e30;
+  float step = 0.0;
+  float other_step = 1e30;
   for (int side = -1; side <= 1; side += 2) {
-    const float one = affine_depth(pixel + side * axis), two = affine_depth(pixel + 2 * side * axis);
+    const float one = affine_depth(pixel + side * axis);
+    const float two = affine_depth(pixel + 2 * side * axis);
     if (one <= 0.0) continue;
-    const float change = float(side) * (one - here), bend = two > 0.0 ? abs(2.0 * one - two - here) : abs(change);
-    const float error = bend + kNearness * abs(change), z = params.view.orthographic != 0 ? one : 1.0 / one;
+    const float change = float(side) * (one - here);
+    const float bend = two > 0.0 ? abs(2.0 * one - two - here) : abs(change);
+    const float error = bend + kNearness * abs(change);
+    const float z = params.view.orthographic != 0 ? one : 1.0 / one;
     const vec3 along = float(side) * (position_of(params.view, vec2(pixel + side * axis) + 0.5, z) - position);
     if (error < least) {
-      other = tangent, other_step = least < 1e30 ? step : 1e30;
-      tangent = along, step = change, least = error;
+      other = tangent;
+      other_step = least < 1e30 ? step : 1e30;
+      tangent = along;
+      step = change;
+      least = error;
     } else {
-      other = along, other_step = change;
+      other = along;
+      other_step = change;
     }
   }
   const bool same = abs(step - other_step) <= kSameSurface * least + kRounding * here &&
@@ -55,8 +70,8 @@ vec3 tangent_along(ivec2 pixel, ivec2 axis, vec3 position, float here) {
 
 vec3 normal_from_depth(ivec2 pixel, vec3 position, vec3 eye) {
   const float here = affine_depth(pixel);
-  const vec3 right = tangent_along(pixel, ivec2(1, 0), position, here),
-             down = tangent_along(pixel, ivec2(0, 1), position, here);
+  const vec3 right = tangent_along(pixel, ivec2(1, 0), position, here);
+  const vec3 down = tangent_along(pixel, ivec2(0, 1), position, here);
   // With one tangent only, the surface is taken to be as flat towards the eye as it allows; with none, to face the eye.
   vec3 n = cross(down, right);
   const vec3 only = right + down;
@@ -72,7 +87,7 @@ void main() {
   if (!inside(params.view, pixel)) return;
   const int index = index_of(params.view, pixel);
   if (normal[index] != kNoNormal) return;
-  const vec3 position = position_of(params.view, vec2(pixel) + 0.5, depth[index]),
-             eye = toward_eye(params.view, position);
+  const vec3 position = position_of(params.view, vec2(pixel) + 0.5, depth[index]);
+  const vec3 eye = toward_eye(params.view, position);
   normal[index] = pack_normal(facing(normal_from_depth(pixel, position, eye), eye));
 }

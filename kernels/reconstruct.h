@@ -5,8 +5,8 @@
 #include "shared.h"
 ALCOVE_BEGIN
 
-ALCOVE_CONSTANT uint kReconstructDepth = 0;   // in: float a pixel, from prepare
-ALCOVE_CONSTANT uint kReconstructNormal = 1;  // in and out: uint a pixel, see normal.glsl: kNoNormal is replaced
+ALCOVE_CONSTANT uint kReconstructDepth = 0;   // in: one float per pixel, from prepare
+ALCOVE_CONSTANT uint kReconstructNormal = 1;  // in and out: one uint per pixel, see normal.glsl: kNoNormal is replaced
 
 struct ReconstructParams {
   View view;

@@ -1,5 +1,5 @@
-// A set of angles of a side of a slice, as bits: even in slope_of(), the bits of the largest slopes highest. Pure: no
-// bindings; after slice.glsl.
+// A set of angles of a side of a slice, as bits: sectors are even in slope_of(), and the bits of the largest slopes are
+// the highest. Pure: no bindings; to be included after slice.glsl.
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The boundaries of what is added move by a `shift` in [0, 1) that is even over pixels: then the expected arc is the
@@ -19,8 +19,8 @@ const vec2 kSectorArc[kSectorCount] =
            vec2(0.08108108, 0.06906083), vec2(0.06891892, 0.04181445), vec2(0.05000000, 0.02094853),
            vec2(0.03076923, 0.00833134), vec2(0.01513241, 0.00229596), vec2(0.00409836, 0.00024798));
 
-/// The same of bent_to(): the differences of what its terms in cos gamma and sin gamma have of sin^3 / 3, (1 - cos)^2
-/// (2 + cos) / 3 and (1 - cos^3) / 3.
+/// The same for bent_to(): the differences of sin^3 / 3, (1 - cos)^2 (2 + cos) / 3 and (1 - cos^3) / 3, which its terms
+/// in cos gamma and sin gamma have as factors.
 const vec3 kSectorBent[kSectorCount] =
     vec3[](vec3(-0.00024737, 0.00001684, 0.00408995), vec3(-0.00226694, 0.00035783, 0.01495470),
            vec3(-0.00802662, 0.00221369, 0.02968369), vec3(-0.01927331, 0.00816504, 0.04609107),

@@ -1,11 +1,12 @@
-// What the user makes of the visibility: m (v + (1 - v) f), with v = max(0, 1 - intensity (1 - ao)) ^ power, f how far
-// the distance fade has come, from 0 to 1, and m the material's own AO. Without fade and material 1 stays 1; sky is 1
-// in any case.
+// Shapes the visibility as the user asks: m (v + (1 - v) f), with v = max(0, 1 - intensity (1 - ao)) ^ power, f how far
+// the distance fade has come, from 0 to 1, and m the material's own AO.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// In: planes of visibility, each by itself; planar depth and material AO where they are asked for. Out: visibility, and
-// how many values of the material AO were repaired. The fade is of the screen-space AO alone: what a material's own AO
-// holds is as true far away as nearby.
+// In: planes of visibility, each by itself; planar depth and material AO where they are asked for.
+// Out: visibility, and how many values of the material AO were repaired.
+//
+// Without fade and material 1 stays 1, and sky is 1 in any case. The fade is of the screen-space AO alone: what a
+// material's own AO holds is as true far away as nearby.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "shape.h"

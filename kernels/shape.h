@@ -7,10 +7,10 @@ ALCOVE_BEGIN
 
 ALCOVE_CONSTANT uint kShapeAo = 0;      // in: planes of visibility in [0, 1]
 ALCOVE_CONSTANT uint kShapeShaped = 1;  // out: as many planes, in [0, 1]
-// in: float a pixel, planar depth, kSkyDepth for sky; not read without fade and material
+// in: one float per pixel, planar depth, kSkyDepth for sky; not read without fade and material
 ALCOVE_CONSTANT uint kShapeDepth = 2;
-ALCOVE_CONSTANT uint kShapeMaterial = 3;  // in: float a pixel, visibility; not read without
-ALCOVE_CONSTANT uint kShapeCounts = 4;    // in, out: FrameCounts
+ALCOVE_CONSTANT uint kShapeMaterial = 3;  // in: one float per pixel, visibility; not read without
+ALCOVE_CONSTANT uint kShapeCounts = 4;    // in and out: FrameCounts
 
 struct ShapeParams {
   ivec2 size;            // px

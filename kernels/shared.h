@@ -28,32 +28,51 @@ struct ivec2 {
 #define ALCOVE_BEGIN namespace alcove {
 #define ALCOVE_END }
 #define ALCOVE_CONSTANT inline constexpr
+/// A constant with all its digits: double in C++, float in GLSL.
+#define ALCOVE_NUMBER inline constexpr double
 /// Push constants: at most the 128 bytes that every Vulkan device takes.
 #define ALCOVE_PARAMS(T) static_assert(sizeof(T) <= 128 && alignof(T) == 4 && std::is_trivially_copyable_v<T>);
 
 #else
 
 #extension GL_EXT_scalar_block_layout : require
+// One idiom of the kernels: for (bool once = c; once; once = false) is an `if` that jumps. Lavapipe goes through the
+// body of an `if` in any case, with its lanes switched off, but leaves a loop that no lane goes on with. It stands
+// before what is long and seldom needed.
 #define ALCOVE_BEGIN
 #define ALCOVE_END
 #define ALCOVE_CONSTANT const
+#define ALCOVE_NUMBER const float
 #define ALCOVE_PARAMS(T)
 
 #endif
 
 ALCOVE_BEGIN
 
-// pixels of a workgroup in x; 8 is lavapipe's subgroup size, so a row is one subgroup
+// Pixels of a workgroup in x and y. No kernel may take a row, or anything else but one invocation, to run in lock step:
+// a subgroup has 8 invocations on lavapipe with vectors of 256 bits, 4 with those of 128, and other numbers on GPUs.
+// What invocations share they write with atomics, and they read it behind a barrier.
 ALCOVE_CONSTANT uint kGroupX = 8;
-ALCOVE_CONSTANT uint kGroupY = 8;  // pixels of a workgroup in y
-// what `prepare` writes for sky: its squared distance overflows to infinity, so no radius reaches it
+ALCOVE_CONSTANT uint kGroupY = 8;
+// Workgroups in a row of a dispatch over a list: as many as every device takes. Drivers share out whole rows, so the
+// empty workgroups at the end of the last row are few.
+ALCOVE_CONSTANT uint kListedRow = 0xffff;
+// What `prepare` writes for sky. Its squared distance overflows to infinity, so no radius reaches it.
 ALCOVE_CONSTANT float kSkyDepth = 1e30;
+
+// The R2 sequence (M. Roberts, "The Unreasonable Effectiveness of Quasirandom Sequences", 2018) goes on by 1/g and
+// 1/g^2, where g^3 = g + 1.
+ALCOVE_NUMBER kR2X = 0.75487766624669276;
+ALCOVE_NUMBER kR2Y = 0.56984029099805327;
+// The roots of 2 and 3, less 1: together with the former and 1 they are linearly independent over the rationals.
+ALCOVE_NUMBER kRootX = 0.41421356237309505;
+ALCOVE_NUMBER kRootY = 0.73205080756887729;
 
 /// The projection of one frame's data window: pixel <-> view space (x right, y up, the camera looks along -z).
 struct View {
   ivec2 size;   // px, of the data window
   vec2 center;  // px from the data window's upper left corner: where the optical axis meets the image
-  // perspective: tangent a pixel; orthographic: scene units a pixel. y is negative: pixels count downwards
+  // perspective: tangent per pixel; orthographic: scene units per pixel. y is negative: pixels count downwards
   vec2 tangent_per_pixel;
   uint orthographic;  // 0 or 1
 };
@@ -68,12 +87,12 @@ ALCOVE_CONSTANT int kTileGroup = 4;        // tiles a side of the groups by whic
 ALCOVE_CONSTANT uint kTilePlanes = 10;     // of TileBounds
 ALCOVE_CONSTANT uint kSectorsOfTurn = 16;  // of directions on the image: see tiles.glsl
 
-/// The surfaces seen in a tile, from the eye's side. They are told by their nearness: 1 / z, or -z orthographic, in
-/// which planes are affine in the pixel.
+/// Bounds of the surfaces seen in a tile, from the eye's side. They are told by their nearness: 1 / z, or -z
+/// orthographic, in which planes are affine in the pixel.
 struct TileBounds {
-  vec2 gradient;  // nearness a pixel, from corner to corner of the tile
-  // at the tile's centre, of planes that no surface is before: with its own gradient, those of its neighbours, see
-  // tiles.glsl; level
+  vec2 gradient;  // nearness per pixel, from corner to corner of the tile
+  // nearness at the tile's centre of planes that no surface is before: with the tile's own gradient, with those of its
+  // neighbours (tiles.glsl), and level
   float plane[kTilePlanes];
   float farthest;         // least nearness; above the level plane where the tile is all sky
   uint mixed;             // 1: its surfaces leave the plane with its own gradient, so that another one may be lower
@@ -82,22 +101,22 @@ struct TileBounds {
   float lowest, highest;  // of -dot(normal, position) over the receivers
 };
 
-/// The same of a group of tiles, less tightly.
+/// The same for a group of tiles, less tightly.
 struct GroupBounds {
-  vec2 gradient;       // nearness a pixel
-  float plane, level;  // at the group's centre, of planes that no surface is before: with that gradient, and with none
+  vec2 gradient;       // nearness per pixel
+  float plane, level;  // nearness at the group's centre of planes that no surface is before: with that gradient, level
   float farthest;      // as of a tile
 };
 
 /// A tile that is to be estimated.
 struct ListedTile {
   uint place;  // column + (row << 16), in tiles
-  // of each sector of directions on the image, the steps at which something may stand above, first + (last << 16); 0:
+  // for each sector of directions on the image the steps at which something may stand above, first + (last << 16); 0:
   // nothing blocks
   uint ranges[kSectorsOfTurn];
 };
 
-/// How many there are, and why the others are not.
+/// How many tiles are listed, and why the others are not.
 struct TileCounts {
   GroupCount groups;  // that hold the listed ones
   uint listed;
@@ -107,13 +126,13 @@ struct TileCounts {
   uint kept;       // as the frame before has them
 };
 
-/// Of runs of pixels that a filter is for.
+/// How many runs of pixels a filter is listed for.
 struct RunCounts {
   GroupCount groups;
   uint listed;
 };
 
-/// What classify says of a tile: a bit for every sector of directions in which something may block, or
+/// What classify says of a tile: a bit for every sector of directions in which something may block, or one of these:
 ALCOVE_CONSTANT uint kTileOpen = 0;        // its visibility is 1: nothing blocks, or it is sky
 ALCOVE_CONSTANT uint kTileKept = 1 << 16;  // its visibility is as in the frame before, and so are its depth and normals
 

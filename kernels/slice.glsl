@@ -8,8 +8,13 @@
 // which keeps its height above it: a flat surface stays flat at every tilt, whatever pixel a step snaps to. Where that
 // plane is so steep across the slice that the sample would move by more than it lies beside it, it moves only so far.
 
-// slices whose plane the normal is nearly perpendicular to weigh less than this and are left out
+// Slices to whose plane the normal is nearly perpendicular weigh less than this, and are left out.
 const float kLeastWeight = 1e-4;
+
+/// Sine of the normal's tilt from the eye's ray below which its direction is not made a unit vector. Normals are stored
+/// within 4e-5 rad, so there it is mostly rounding; and what depends on it, the pull, differs from 1 by less than the
+/// square of this.
+const float kLeastTilt = 1e-3;
 
 /// Steps grow with the square of the distance, so that near occluders are not missed. More steps than this are enough
 /// to sample all of the reach densely instead: the exponent is then the one with which the first step is a pixel long.
@@ -19,8 +24,8 @@ const int kManySteps = 16;
 /// them, are one surface.
 const float kRunSlope = 8.0;
 
-/// What an estimator's loop over samples needs of its parameters: read once, since lavapipe gathers a parameter anew at
-/// each use within a loop.
+/// What an estimator's loop over samples needs of its parameters. They are read once, since lavapipe gathers a
+/// parameter anew at each use within a loop.
 struct Reach {
   float radius, radius_sq, falloff_start;  // scene units
   float thickness;                         // scene units, infinite allowed; 0: as deep as wide
@@ -55,13 +60,13 @@ struct Slice {
   float weight;                // length of the normal's projection
   float cos_gamma, sin_gamma;  // gamma: the projected normal's angle, from V towards T
   float gamma;
-  vec2 image_t;         // the image of T: pixels a unit of length at unit depth
+  vec2 image_t;         // the image of T: pixels per unit of length at unit depth
   vec2 across, toward;  // of the side towards T
 };
 
 /// One half of a slice.
 struct Side {
-  vec2 direction_px;  // pixels a step; the longer component is +-1
+  vec2 direction_px;  // pixels per step; the longer component is +-1
   float reach;        // steps within the radius and the image
   // coordinates in the slice: scale * dot(across, offset), ray_length * (receiver's z - z) + scale * dot(toward,
   // offset)
@@ -69,6 +74,12 @@ struct Side {
   float plane_cot;  // cotangent of the tangent plane
   vec2 ahead;       // a place on the tangent plane
   float gamma, cos_gamma, sin_gamma;
+};
+
+/// Random numbers in [0, 1) of one side.
+struct Draw {
+  float jitter;  // of its steps
+  float shift;   // of the boundaries of sectors
 };
 
 /// Two unit vectors that with v (v.z > 0) form a right-handed basis, smooth over the image (Duff et al., "Building an
@@ -100,13 +111,15 @@ Receiver receiver_at(View view, ivec2 pixel, float z, vec3 normal, float radius,
 /// The slice of an azimuth. Slices near the normal hold most of the cosine-weighted hemisphere where it is seen aslant:
 /// up to tan of its tilt times as much as those across. A lone slice is drawn that much more often there, by pulling
 /// its azimuth towards the normal as an ellipse does, and weighs the less: the ratio of blocked to whole would else be
-/// biased. The more slices a pixel has, the less this matters, and the less they are pulled.
+/// biased. The more slices per pixel has, the less this matters, and the less they are pulled.
 Slice slice_at(View view, Receiver r, uint index, uint slices, float jitter) {
   const float azimuth = kPi * (float(index) + jitter) / float(slices);
   vec3 x, y;
   basis_of(r.eye, x, y);
-  const float cos_tilt = dot(r.normal, r.eye), sin_tilt = sqrt(max(0.0, 1.0 - cos_tilt * cos_tilt));
-  const vec3 even = cos(azimuth) * x + sin(azimuth) * y, across = (r.normal - cos_tilt * r.eye) / max(sin_tilt, 1e-3);
+  const float cos_tilt = dot(r.normal, r.eye);
+  const float sin_tilt = sqrt(max(0.0, 1.0 - cos_tilt * cos_tilt));
+  const vec3 even = cos(azimuth) * x + sin(azimuth) * y;
+  const vec3 across = (r.normal - cos_tilt * r.eye) / max(sin_tilt, kLeastTilt);
   const float pull =
       mix(1.0, sqrt(cos_tilt / (cos_tilt + angle_of(cos_tilt, sin_tilt) * sin_tilt)), 1.0 / float(slices * slices));
   Slice s;
@@ -127,6 +140,19 @@ Slice slice_at(View view, Receiver r, uint index, uint slices, float jitter) {
   return s;
 }
 
+/// Steps of a side that lie within the sphere of the radius and on the image. pixels: of the side's image T, per unit
+/// of length at unit depth. eye_z, t_z: z of the direction to the eye and of T on that side. sin_reach: the sphere is
+/// seen under the angle of this sine; the ray that touches it leaves the image of the sphere at sin_reach * pixels /
+/// (eye_z cos_reach - t_z sin_reach) pixels from the receiver's.
+float reach_of_side(View view, ivec2 pixel, vec2 direction_px, float pixels, float eye_z, float t_z, float sin_reach,
+                    float radius) {
+  const float cos_reach = sqrt(max(0.0, 1.0 - sin_reach * sin_reach));
+  const float forward = eye_z * cos_reach - t_z * sin_reach;
+  const float steps = view.orthographic == 0 ? sin_reach * pixels / forward : radius * pixels;
+  const float border = steps_to_border(view, pixel, direction_px);
+  return sin_reach < 1.0 && forward > 0.0 ? min(steps, border) : border;
+}
+
 /// The side of a slice towards sign * T.
 Side side_of(View view, Receiver r, Slice s, float sign, Reach reach) {
   const float pixels = max(abs(s.image_t.x), abs(s.image_t.y));
@@ -139,26 +165,26 @@ Side side_of(View view, Receiver r, Slice s, float sign, Reach reach) {
   side.toward = s.toward;
   side.plane_cot = -side.sin_gamma / s.cos_gamma;
   side.ahead = vec2(side.cos_gamma, -side.sin_gamma);
-  const float cos_reach = sqrt(max(0.0, 1.0 - r.sin_reach * r.sin_reach)),
-              forward = r.eye.z * cos_reach - sign * s.t.z * r.sin_reach;
-  const float steps = r.perspective ? r.sin_reach * pixels / forward : reach.radius * pixels;
-  const float border = steps_to_border(view, r.pixel, side.direction_px);
-  side.reach = r.sin_reach < 1.0 && forward > 0.0 ? min(steps, border) : border;
+  side.reach =
+      reach_of_side(view, r.pixel, side.direction_px, pixels, r.eye.z, sign * s.t.z, r.sin_reach, reach.radius);
   return side;
 }
+
+/// `a && b` without a branch: `&&` and `||` would jump.
+bool both(bool a, bool b) { return a ? b : false; }
 
 /// The offset in space from the receiver to a sample of depth z, `offset` pixels away. scale: z, or 1 orthographic.
 vec3 offset_to(Receiver r, vec2 offset, float z, float scale) {
   return vec3((r.perspective ? z - r.z : 0.0) * r.tangent + scale * r.tangent_per_pixel * offset, r.z - z);
 }
 
-/// Where it is in the slice.
+/// Where that sample is in the slice.
 vec2 place_of(Receiver r, Side side, vec2 offset, float z, float scale) {
   return vec2(scale * dot(side.across, offset), r.ray_length * (r.z - z) + scale * dot(side.toward, offset));
 }
 
-/// Whether it stands clear of the tangent plane, and before the eye's ray. distance_sq: from the receiver. steps: to
-/// it.
+/// Whether that sample stands clear of the tangent plane, and before the eye's ray. distance_sq: from the receiver.
+/// steps: from the receiver to the sample.
 bool is_above(Receiver r, Reach reach, vec2 place, float distance_sq, float steps, vec2 offset, float z, float scale) {
   const float height = scale * dot(r.height, offset) + (z - r.z) * r.depth_height;
   const bool clear = height > r.least_height + scale * (reach.least_rise * steps)
@@ -167,10 +193,10 @@ bool is_above(Receiver r, Reach reach, vec2 place, float distance_sq, float step
   return place.x > 0.0 ? clear : false;
 }
 
-/// An angle by a number that is cheaper than its cotangent and falls as that does, from 1 at V to -1.
+/// Stands for an angle: a number that is cheaper than its cotangent and falls as that does, from 1 at V to -1.
 float slope_of(vec2 place) { return place.y / (place.x + abs(place.y)); }
 
-/// A place at the angle of a slope.
+/// A place at the angle that a slope stands for.
 vec2 place_at(float slope) { return vec2(1.0 - abs(slope), slope); }
 
 Reach reach_of(View view, float radius, float falloff_start, float thickness, float bias) {
@@ -179,7 +205,7 @@ Reach reach_of(View view, float radius, float falloff_start, float thickness, fl
                view.tangent_per_pixel.x, view.size.x);
 }
 
-/// Of the distance by the sample's number.
+/// The exponent with which the distance grows with the sample's number.
 float step_exponent(int steps, float reach) {
   return steps > kManySteps ? clamp(log2(max(reach, 1.0)) / log2(float(steps)), 1.0, 2.0) : 2.0;
 }
@@ -197,7 +223,7 @@ bool same_surface(Receiver r, Reach reach, float z, float last_z, float gap) {
   return abs(z - last_z) < kRunSlope * reach.pixel_size * gap * (r.perspective ? min(z, last_z) : 1.0);
 }
 
-/// The arc integral of a whole side, down to the tangent plane.
+/// The arc integral of a whole side, down to the tangent plane (Jimenez et al., 2016, equation 7, one side of it).
 float whole_arc(Side side) { return 0.5 * (side.cos_gamma + (side.gamma + kHalfPi) * side.sin_gamma); }
 
 /// The blocked part of a side's arc integral between its view ray and the angle of this cotangent.

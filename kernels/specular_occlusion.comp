@@ -1,8 +1,10 @@
-// How much of a glossy reflection is open: the part of the reflection's cone that lies within the cone of what the
-// surface sees.
+// Tells how much of a glossy reflection is open: the part of the reflection's cone that lies within the cone of what
+// the surface sees.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// In: planar depth, view normals, bent normals, visibility. Out: specular occlusion, 1 = open.
+// In: planar depth, view normals, bent normals, visibility.
+// Out: specular occlusion, 1 = open.
+//
 // Jimenez et al., "Practical Realtime Strategies for Accurate Indirect Occlusion", 2016: a cone about the bent normal b
 // sees as much, cosine weighted, as the surface does: its half-angle is acos(sqrt(1 - ao)). The cone of a glossy lobe
 // about the mirror direction r has the half-angle acos(2 ^ (-3.32193 roughness^2)), which holds most of what a rough
@@ -38,7 +40,8 @@ void main() {
   }
   const vec3 eye = toward_eye(params.view, position_of(params.view, vec2(pixel) + 0.5, z));
   const vec3 n = unpack_normal(normal[index]), mirror = reflect(-eye, n);
-  const float roughness = max(params.roughness, kLeastRoughness), cos_lobe = exp2(-3.32193 * roughness * roughness);
+  const float roughness = max(params.roughness, kLeastRoughness);
+  const float cos_lobe = exp2(-3.32193 * roughness * roughness);
   const float seen =
       shared_solid_angle(sqrt(max(0.0, 1.0 - visibility)), cos_lobe, dot(unpack_normal(bent[index]), mirror));
   result[index] = min(1.0, seen / shared_solid_angle(0.0, cos_lobe, dot(n, mirror)));

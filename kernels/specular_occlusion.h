@@ -5,11 +5,12 @@
 #include "shared.h"
 ALCOVE_BEGIN
 
-ALCOVE_CONSTANT uint kSpecularOcclusionDepth = 0;   // in: float a pixel, planar depth, kSkyDepth for sky
-ALCOVE_CONSTANT uint kSpecularOcclusionNormal = 1;  // in: uint a pixel, unit vector in view space, see normal.glsl
-ALCOVE_CONSTANT uint kSpecularOcclusionBent = 2;    // in: uint a pixel, as the normal: the mean open direction
-ALCOVE_CONSTANT uint kSpecularOcclusionAo = 3;      // in: float a pixel, visibility in [0, 1]
-ALCOVE_CONSTANT uint kSpecularOcclusionResult = 4;  // out: float a pixel in [0, 1]
+ALCOVE_CONSTANT uint kSpecularOcclusionDepth = 0;  // in: one float per pixel, planar depth, kSkyDepth for sky
+// in: one uint per pixel, unit vector in view space, see normal.glsl
+ALCOVE_CONSTANT uint kSpecularOcclusionNormal = 1;
+ALCOVE_CONSTANT uint kSpecularOcclusionBent = 2;    // in: one uint per pixel, as the normal: the mean open direction
+ALCOVE_CONSTANT uint kSpecularOcclusionAo = 3;      // in: one float per pixel, visibility in [0, 1]
+ALCOVE_CONSTANT uint kSpecularOcclusionResult = 4;  // out: one float per pixel in [0, 1]
 
 struct SpecularOcclusionParams {
   View view;

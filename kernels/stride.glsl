@@ -1,4 +1,4 @@
-// Which pixels an estimate is made for, where it is not made for all. Pure: no bindings.
+// Tells for which pixels an estimate is made, where it is not made for all. Pure: no bindings.
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // One pixel of `stride` (1, 2 or 4) in every row, at places that go from row to row in bit-reversed order, so that

@@ -1,9 +1,6 @@
 // Tiles of pixels by which work is skipped, and directions on the image. Pure: no bindings.
 // SPDX-License-Identifier: BSD-3-Clause
 
-/// Groups of a row of a dispatch over a list: as many as every device takes, since drivers share out whole rows, with
-/// the empty groups at the end of the last.
-
 /// A dispatch of so many groups, in x and y.
 uvec2 dispatch_of(uint groups) { return uvec2(min(groups, kListedRow), (groups + kListedRow - 1u) / kListedRow); }
 
@@ -23,7 +20,7 @@ struct ListedPlace {
   uint pixel;
 };
 
-/// Invocations a tile.
+/// How many invocations a tile has.
 uint receivers_of_tile(int stride) { return uint(kTile * kTile) >> findMSB(stride); }
 
 /// A dispatch over so many tiles.
@@ -32,13 +29,13 @@ uvec2 dispatch_of_tiles(uint tiles, int stride) {
 }
 
 ListedPlace listed_place(uvec2 group, uint invocation, int stride) {
-  const uint each = receivers_of_tile(stride),
-             place = (group.y * kListedRow + group.x) * (kGroupX * kGroupY) + invocation;
+  const uint each = receivers_of_tile(stride);
+  const uint place = (group.y * kListedRow + group.x) * (kGroupX * kGroupY) + invocation;
   return ListedPlace(place / each, place % each);
 }
 
-/// A run of pixels that an invocation of a filter computes, in kGroupX lines: which such lines, and which of their
-/// runs.
+/// Packs a run of pixels that an invocation of a filter computes in each of kGroupX lines: the number of these lines,
+/// and the number of the run in them.
 uint pack_run(int lines, int run) { return uint(lines) | uint(run) << 16; }
 ivec2 unpack_run(uint packed) { return ivec2(packed & 0xffffu, packed >> 16); }
 
@@ -50,15 +47,16 @@ ivec2 pixel_of_tile(ivec2 tile, uint pixel, ivec2 origin, int stride) {
   return ivec2(tile.x * kTile + stride * int(pixel % columns) + first_estimated(row, origin, stride), row);
 }
 
-/// Tiles that count from the display window's corner, `origin` pixels before the image's, so that a crop has those of
-/// the whole.
+/// How many tiles there are if they count from the display window's corner, `origin` pixels before the image's, so that
+/// a crop has those of the whole.
 ivec2 anchored_tiles_of(ivec2 size, ivec2 origin) { return tiles_of(size + (origin & (kTile - 1))); }
 
 ivec2 pixel_of_anchored_tile(ivec2 tile, uint pixel, ivec2 origin) {
   return tile * kTile - (origin & (kTile - 1)) + ivec2(pixel % uint(kTile), pixel / uint(kTile));
 }
 
-/// What the estimators store of a mean open direction: in [0, 1], so that filters of visibility take it as it is.
+/// What the estimators store of a mean open direction. It lies in [0, 1], so that filters of visibility take it as it
+/// is.
 vec3 stored_bent(vec3 bent) { return 0.5 + 0.5 * bent; }
 
 /// The mean open direction of an open hemisphere, whatever slices are drawn.
@@ -75,23 +73,29 @@ float turn_of(vec2 direction) {
 
 uint sector_of(vec2 direction) { return uint(turn_of(direction) * float(kSectorsOfTurn / 4u)) & (kSectorsOfTurn - 1u); }
 
-/// A range of a ListedTile: its first and last step. A step is a pixel along the longer axis; a sample lies up to half
-/// of one beside its offset.
+/// Packs a range of a ListedTile: its first and last step. A step is a pixel along the longer axis; a sample lies up to
+/// half of one beside its offset.
 uint pack_range(uint first, uint last) { return min(first, 0xffffu) | min(last, 0xffffu) << 16; }
 uint first_of_range(uint range) { return range & 0xffffu; }
 uint last_of_range(uint range) { return range >> 16; }
 const uint kWholeRange = 0xffff0000u;
+
+/// By so many samples first_sample() begins early, for rounding. pow() is right within 2e-6 of itself (by the
+/// precisions that Vulkan demands of exp2 and log2), which is less than this up to sample 5,000. Beyond, the half pixel
+/// holds by which a range begins before what stands above.
+const float kRoundingSamples = 0.01;
 
 /// The sample with which a search may begin: one of those before the first step of the range, which stand above
 /// nothing. The offsets of samples are k + 1, or where there are as many as wanted, so many pixels or ((k + jitter) /
 /// steps)^exponent times the reach, if that is more.
 int first_sample(uint range, int steps, int count, float reach, float jitter, float exponent) {
   const float before = float(first_of_range(range)) - 1.0, share = max(before, 0.0) / reach;
-  const float k = float(steps) * (exponent == 2.0 ? sqrt(share) : pow(share, 1.0 / exponent)) - jitter - 0.01;
+  const float k =
+      float(steps) * (exponent == 2.0 ? sqrt(share) : pow(share, 1.0 / exponent)) - jitter - kRoundingSamples;
   return max(int(floor(count < steps ? before - 1.0 : min(before - 1.0, k))), 0);
 }
 
-/// The sectors in which a rectangle of offsets is seen, from all of them where it holds the origin.
+/// The sectors in which a rectangle of offsets is seen; all of them where it holds the origin.
 uint sectors_of_offsets(vec2 least, vec2 most) {
   if (all(lessThanEqual(least, vec2(0))) && all(greaterThanEqual(most, vec2(0)))) return kEverySector;
   const float middle = turn_of(0.5 * (least + most));
@@ -104,7 +108,8 @@ uint sectors_of_offsets(vec2 least, vec2 most) {
     last = max(last, wrapped);
   }
   const float sectors = float(kSectorsOfTurn / 4u);
-  const int begin = int(floor((middle + first) * sectors)), end = int(floor((middle + last) * sectors));
+  const int begin = int(floor((middle + first) * sectors));
+  const int end = int(floor((middle + last) * sectors));
   const uint seen = ((2u << uint(end - begin)) - 1u) << (uint(begin) & (kSectorsOfTurn - 1u));
   return (seen | seen >> kSectorsOfTurn) & kEverySector;
 }

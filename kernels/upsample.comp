@@ -1,10 +1,13 @@
-// Visibility at a half or a quarter of the resolution back to all pixels, each surface by itself.
+// Brings visibility at a half or a quarter of the resolution back to all pixels, each surface by itself.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// In: depth and normals of pixels and of blocks, planes of visibility of blocks. Out: as many planes of pixels; sky is
-// 1. Kopf et al., "Joint Bilateral Upsampling", 2007: the four blocks about a pixel, by bilinear weights between their
-// centres, as far as these lie in the pixel's tangent plane and their normals agree with its own. Where none does, the
-// block of the nearest depth. One invocation computes the pixels that lie between the same four centres.
+// In: depth and normals of pixels and of blocks, planes of visibility of blocks.
+// Out: as many planes of pixels; sky is 1.
+//
+// Kopf et al., "Joint Bilateral Upsampling", 2007, equation 3: the four blocks about a pixel, by bilinear weights
+// between their centres, as far as these lie in the pixel's tangent plane and their normals agree with its own. Where
+// none does, the block of the nearest depth is taken. One invocation computes the pixels that lie between the same four
+// centres.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "upsample.h"
@@ -57,8 +60,9 @@ vec4 parts_of(Block blocks[4], vec2 between, ivec2 pixel, float z, vec3 n) {
   vec4 parts = vec4(0), closest = vec4(0);
   for (int i = 0; i < 4; i++) {
     if (blocks[i].z >= kSkyDepth) continue;
-    const float off_plane = dot(n, blocks[i].position - position) / sigma, alike = max(0.0, dot(n, blocks[i].normal)),
-                squared = alike * alike;
+    const float off_plane = dot(n, blocks[i].position - position) / sigma;
+    const float alike = max(0.0, dot(n, blocks[i].normal));
+    const float squared = alike * alike;
     const vec2 bilinear = mix(1.0 - between, between, bvec2(i & 1, i & 2));
     const float weight = bilinear.x * bilinear.y * max(0.0, 1.0 - off_plane * off_plane) * squared * squared;
     whole += weight;
@@ -74,13 +78,15 @@ void main() {
   const uint at = gl_WorkGroupID.y * kListedRow + gl_WorkGroupID.x;
   if (kListed != 0u && at >= counts.listed) return;
   const ivec2 group = kListed != 0u ? unpack_run(list[at]).yx : ivec2(gl_WorkGroupID.xy);
-  const ivec2 invocation = group * ivec2(kGroupX, kGroupY) + ivec2(gl_LocalInvocationID.xy), block = invocation - 1;
+  const ivec2 invocation = group * ivec2(kGroupX, kGroupY) + ivec2(gl_LocalInvocationID.xy);
+  const ivec2 block = invocation - 1;
   const ivec2 first = kFactor * block + kFactor / 2 - params.overhang;
   if (any(greaterThanEqual(first, params.view.size))) return;
 
   Block blocks[4];
   for (int i = 0; i < 4; i++) blocks[i] = load(block + ivec2(i & 1, i >> 1));
-  const int plane = params.view.size.x * params.view.size.y, low_plane = params.low_size.x * params.low_size.y;
+  const int plane = params.view.size.x * params.view.size.y;
+  const int low_plane = params.low_size.x * params.low_size.y;
   vec4 values[kPlanes];  // of the blocks
   for (int p = 0; p < kPlanes; p++)
     for (int i = 0; i < 4; i++) values[p][i] = low_ao[blocks[i].index + p * low_plane];

@@ -5,15 +5,15 @@
 #include "shared.h"
 ALCOVE_BEGIN
 
-ALCOVE_CONSTANT uint kUpsampleDepth = 0;      // in: float a pixel, from prepare
-ALCOVE_CONSTANT uint kUpsampleNormal = 1;     // in: uint a pixel, from prepare
-ALCOVE_CONSTANT uint kUpsampleLowDepth = 2;   // in: float a block, from downsample
-ALCOVE_CONSTANT uint kUpsampleLowNormal = 3;  // in: uint a block, from downsample
+ALCOVE_CONSTANT uint kUpsampleDepth = 0;      // in: one float per pixel, from prepare
+ALCOVE_CONSTANT uint kUpsampleNormal = 1;     // in: one uint per pixel, from prepare
+ALCOVE_CONSTANT uint kUpsampleLowDepth = 2;   // in: one float per block, from downsample
+ALCOVE_CONSTANT uint kUpsampleLowNormal = 3;  // in: one uint per block, from downsample
 // in: planes of floats in [0, 1] a block, visibility or the like; each by itself
 ALCOVE_CONSTANT uint kUpsampleLowAo = 4;
 ALCOVE_CONSTANT uint kUpsampleAo = 5;  // out: as many planes, in [0, 1]
 
-ALCOVE_CONSTANT uint kUpsampleList = 6;    // in: uint a workgroup, from dilate; only with kUpsampleListedId
+ALCOVE_CONSTANT uint kUpsampleList = 6;    // in: one uint per workgroup, from dilate; only with kUpsampleListedId
 ALCOVE_CONSTANT uint kUpsampleCounts = 7;  // in: RunCounts of it
 
 ALCOVE_CONSTANT uint kUpsampleFactorId = 0;  // specialization: pixels of a block in x and in y

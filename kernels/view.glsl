@@ -11,12 +11,12 @@ vec3 position_of(View view, vec2 point_px, float z) {
   return vec3(view.orthographic != 0 ? t : t * z, -z);
 }
 
-/// The pixel in which a view-space position before the eye is seen. From the centre outwards, so that it is the same
-/// one in a part of the image.
+/// The pixel in which a view-space position before the eye is seen. It is counted from the centre outwards, so that it
+/// is the same one in a part of the image.
 ivec2 pixel_of(View view, vec3 position) {
-  const vec2 whole = floor(view.center),
-             from_center =
-                 position.xy / (view.orthographic != 0 ? vec2(1) : vec2(-position.z)) / view.tangent_per_pixel;
+  const vec2 whole = floor(view.center);
+  const vec2 from_center =
+      position.xy / (view.orthographic != 0 ? vec2(1) : vec2(-position.z)) / view.tangent_per_pixel;
   return ivec2(whole) + ivec2(floor(clamp(from_center + (view.center - whole), -1e6, 1e6)));
 }
 

@@ -50,7 +50,7 @@ vec2 noise_shift(int frame, std::uint32_t seed) {
   const auto shift = [&](double by_frame, double by_seed) {
     return float(fraction(0.5 + fraction(frame * by_frame) + fraction(seed * by_seed)));
   };
-  return {shift(0.75487766624669276, 0.41421356237309505), shift(0.56984029099805327, 0.73205080756887729)};
+  return {shift(kR2X, kRootX), shift(kR2Y, kRootY)};
 }
 
 /// The parameters of an estimator that searches slices.
@@ -77,13 +77,6 @@ std::vector<uint> slice_constants(const Reach& reach, const Sampling& sampling, 
 /// Tiles in x and y.
 gpu::Extent tile_extent(const View& view) {
   return {groups_of(view.size.x, uint(kTile)), groups_of(view.size.y, uint(kTile))};
-}
-
-/// The listed tiles; each takes at most one workgroup, in rows of kListedRow as in tiles.glsl.
-gpu::Extent list_extent(const TileList& list) {
-  constexpr uint kListedRow = 0xffff;
-  const auto most = uint(list.tiles->bytes() / sizeof(ListedTile));
-  return {*list.counts, std::min(most, kListedRow), groups_of(most, kListedRow)};
 }
 
 /// Groups of tiles in x and y.
