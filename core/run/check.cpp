@@ -5,10 +5,9 @@
 #include <algorithm>
 
 #include "core/base/error.h"
+#include "core/base/estimator_facts.h"
 #include "core/chain/aov.h"
-#include "core/chain/chain.h"
 #include "core/chain/debug_view.h"
-#include "core/chain/passes.h"
 
 namespace alcove {
 namespace {
