@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // A header beside a kernel declares its parameters, bindings and group size with these names; the kernel and its host
-// function in core/chain both include it. Layout is scalar: every member is aligned to 4 bytes, in C++ as in GLSL.
+// function in core/chain/passes.cpp or core/chain/estimate.cpp both include it. Layout is scalar: every member is
+// aligned to 4 bytes, in C++ as in GLSL.
 #ifndef ALCOVE_SHARED_H
 #define ALCOVE_SHARED_H
 
