@@ -1,4 +1,4 @@
-// The table, and the search in it.
+// The search in the table, and what follows from what is found.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/chain/aov.h"
 
@@ -18,35 +18,21 @@ bool is_of_visibility(const DebugView* view) {
 
 }  // namespace
 
-std::span<const Aov> aov_table() {
-  static const std::vector<Aov> rows{
-      {"ao", {"Y"}, &FrameOutputs::ao, AovSource::visibility},
-      {"ao-scales", {"scale1.Y"}, &FrameOutputs::scales, AovSource::visibility},
-      {"normal", {"normal.X", "normal.Y", "normal.Z"}, &FrameOutputs::normal, AovSource::geometry},
-      {"bent-normal", {"bent.X", "bent.Y", "bent.Z"}, &FrameOutputs::bent_normal, AovSource::open_directions},
-      {"depth", {"Z"}, &FrameOutputs::depth, AovSource::geometry, true},
-      {"confidence", {"confidence.Y"}, &FrameOutputs::confidence, AovSource::visibility},
-      {"error", {"error.Y"}, &FrameOutputs::error, AovSource::visibility},
-      {"specular-occlusion", {"specular.Y"}, &FrameOutputs::specular_occlusion, AovSource::open_directions},
-  };
-  return rows;
-}
-
 std::vector<std::string> aov_names() {
   std::vector<std::string> names;
-  std::ranges::transform(aov_table(), std::back_inserter(names), &Aov::name);
+  std::ranges::transform(kAovs, std::back_inserter(names), &AovRow::name);
   return names;
 }
 
 std::vector<Aov> aovs_of(const OutputSettings& settings) {
   std::vector<Aov> aovs;
   for (const auto& name : split(settings.aovs)) {
-    const auto found = std::ranges::find(aov_table(), name, &Aov::name);
-    if (found == aov_table().end())
+    const auto row = std::ranges::find(kAovs, name, &AovRow::name);
+    if (row == kAovs.end())
       fail(ErrorKind::usage, "--aov: there is no AOV \"{}\"{}; there is {}", name, suggestion(name, aov_names()),
            list_of(aov_names()));
     if (std::ranges::find(aovs, name, &Aov::name) != aovs.end()) continue;
-    aovs.push_back(*found);
+    aovs.push_back({name, split(row->channels), row->planes, row->source, row->is_float});
     if (name != "ao" || settings.ao_channels == AoChannels::mono) continue;
     aovs.back().channels = {"R", "G", "B"};
     if (settings.multi_bounce) aovs.back().planes = &FrameOutputs::color_ao;

@@ -1,8 +1,7 @@
-// The AOVs that Alcove writes: ONE table of what each is called, its channels, and where its planes come from.
+// The AOVs that a run asks for, and what they ask of the chain.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <span>
 #include <string>
 #include <vector>
 
@@ -12,21 +11,17 @@
 
 namespace alcove {
 
-/// What an AOV is made from; each needs what stands before it, too.
-enum class AovSource { geometry, visibility, open_directions };
-
-/// A row of the table.
+/// An AOV that a run asks for: a row of kAovs, with the channels and planes that the other outputs' settings give it.
 struct Aov {
-  std::string name;                    // as --aov takes it
-  std::vector<std::string> channels;   // in the file; one for each plane, or all from the only plane
-  gpu::Buffer* FrameOutputs::*planes;  // where the chain leaves them
+  std::string name;
+  std::vector<std::string> channels;
+  gpu::Buffer* FrameOutputs::*planes;
   AovSource source;
-  bool is_float = false;  // whatever --type says: half would lose what it is for
+  bool is_float;
 };
-std::span<const Aov> aov_table();
 std::vector<std::string> aov_names();
 
-/// The rows that the settings ask for, each once, in their order. Fails with ErrorKind::usage on a name that is not in
+/// Those that the settings ask for, each once, in their order. Fails with ErrorKind::usage on a name that is not in
 /// the table, listing what is.
 std::vector<Aov> aovs_of(const OutputSettings& settings);
 

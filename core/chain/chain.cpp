@@ -13,7 +13,7 @@ namespace {
 void download(gpu::Recorder& gpu, const FrameOutputs& out) {
   for (const auto* result : {out.counts, out.tiles, out.squares, out.color_ao, out.composite})
     if (result) gpu.download(*result);
-  for (const auto& row : aov_table())
+  for (const auto& row : kAovs)
     if (out.*row.planes) gpu.download(*(out.*row.planes));
   for (const auto& plane : out.debug) gpu.download(*plane.values);
 }

@@ -98,12 +98,9 @@ constexpr bool rows_are_in_order() {
 static_assert(rows_are_in_order());
 
 /// Every option that names a file of planes, INPUT first.
-inline std::vector<FileOption> plane_file_options() {
-  std::vector<FileOption> options{{"INPUT", &InputSettings::input}};
-  for (const auto& row : kRawPlanes)
-    for (const FileOption& file : {row.file, row.other_file})
-      if (file.path) options.push_back(file);
-  return options;
-}
+std::vector<FileOption> plane_file_options();
+
+/// All files that a frame reads; empty where there is none.
+std::vector<std::string> input_files(const InputSettings& input);
 
 }  // namespace alcove

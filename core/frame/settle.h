@@ -10,10 +10,10 @@
 
 namespace alcove {
 
-/// Settles what is open in `source`, from the planes of source[RawPlane::depth] and source[RawPlane::normal] as they were read, and adds to
-/// its guesses and notes. What the settings or the camera file say is never overruled. Fails with ErrorKind::input
-/// where the pixels speak for two ways or against all, naming the options that decide; under settings.strict, wherever
-/// there is a guess. Near or far that are missing are ErrorKind::usage.
+/// Settles what is open in `source`, from the planes of depth and normals as they were read, and adds to its guesses
+/// and notes. What the settings or the camera file say is never overruled. Fails with ErrorKind::input where the pixels
+/// speak for two ways or against all, naming the options that decide; under settings.strict, wherever there is a guess.
+/// Near or far that are missing are ErrorKind::usage.
 void settle(FrameSource& source, const InputSettings& settings, std::span<const float> depth,
             std::span<const float> normal);
 

@@ -43,7 +43,8 @@ std::vector<float> places_of(const DebugView& view, std::span<const float> value
   const auto on_scale = [&](float x) {
     return logarithmic ? std::log(std::max(std::abs(x), std::numeric_limits<float>::min())) : x;
   };
-  const float from = on_scale(low), range = on_scale(high) - from;
+  const float from = on_scale(low);
+  const float range = on_scale(high) - from;
   std::vector<float> places(values.size());
   std::ranges::transform(values, places.begin(), [&](float x) {
     if (x >= kSkyDepth) return std::numeric_limits<float>::quiet_NaN();

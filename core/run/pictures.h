@@ -9,8 +9,8 @@
 
 namespace alcove {
 
-/// Writes the picture, whole or not at all. `values`: a number a pixel, kSkyDepth for sky. made_by: see encode_png().
-/// Fails with ErrorKind::output.
+/// Writes the picture, whole or not at all. `values`: one number per pixel, kSkyDepth for sky. made_by: see
+/// encode_png(). Fails with ErrorKind::output.
 void write_debug_view(const std::string& path, const DebugView& view, int width, int height,
                       std::span<const float> values, const std::string& made_by);
 

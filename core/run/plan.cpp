@@ -159,12 +159,6 @@ std::vector<OutputFile> reports_of(const OutputSettings& output) {
   return files;
 }
 
-std::vector<std::string> input_files(const InputSettings& input) {
-  std::vector<std::string> files{input.camera};
-  for (const auto& file : plane_file_options()) files.push_back(input.*file.path);
-  return files;
-}
-
 std::vector<int> chunk_of(const std::vector<int>& frames, int chunk, int chunks) {
   const auto at = [&](int i) {
     return frames.begin() + std::ptrdiff_t(frames.size() * std::size_t(i) / std::size_t(chunks));

@@ -215,11 +215,9 @@ Vec3 normal_at(const HostFrame& frame, std::size_t i) {
 /// `bent`: null: the normals.
 Planes specular(const HostFrame& frame, const Planes& ao, double roughness, const Planes* bent = nullptr) {
   return pass(frame, [&](const GBuffer& gbuffer, FrameInputs&) -> gpu::Buffer& {
-    EstimatorSettings settings;
-    settings.roughness = roughness;
     gpu::Buffer& visibility = given("test ao", ao);
     return specular_occlusion(test::recorder(), gbuffer, bent ? given("test bent", *bent) : *gbuffer.normal, visibility,
-                              settings);
+                              roughness);
   });
 }
 
