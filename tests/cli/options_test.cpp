@@ -208,7 +208,8 @@ TEST_F(Options, as_a_preset_are_what_they_are) {
     options.settings.input.camera = text;
     return preset_text(option_table(options));
   };
-  for (const std::string text : {"a b", "a \"b\"", "it's", "c:\\d", "'\"\\\t\x7f'", "\n", "007", "1001", "inf", "true", "ü#"}) {
+  for (const std::string text :
+       {"a b", "a \"b\"", "it's", "c:\\d", "'\"\\\t\x7f'", "\n", "007", "1001", "inf", "true", "ü#"}) {
     const auto entries = parse_flat_toml(preset_of(text));
     const auto camera = std::ranges::find(entries, "camera", &FlatEntry::key);
     ASSERT_NE(camera, entries.end());
