@@ -13,7 +13,7 @@
 namespace alcove {
 namespace {
 
-// Every scale takes a plane and a search of its own; nobody has asked for more.
+// Each scale costs a search and a plane of its own.
 constexpr std::size_t kMostRadii = 8;
 
 /// An estimate by its error is a mean over exact searches of every pixel.
