@@ -1,4 +1,4 @@
-// CLI11 finds the words that belong to each option; the rows read them. Its complaints in our words.
+// CLI11 finds the words that belong to each option, and the rows read them. Its complaints are put into our words.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/parsing.h"
 

@@ -1,4 +1,4 @@
-// Where presets lie, and what they are called.
+// Finds presets, by their names or as files.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <cstdlib>

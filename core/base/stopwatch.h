@@ -1,4 +1,4 @@
-// The wall time since a moment.
+// Measures wall time.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -6,9 +6,10 @@
 
 namespace alcove {
 
-/// Runs from its construction on.
+/// It runs from its construction on.
 class Stopwatch {
  public:
+  /// Milliseconds so far.
   double ms() const {
     return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_).count();
   }

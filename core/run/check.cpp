@@ -1,4 +1,4 @@
-// Settings that contradict each other, each with the option that mends it.
+// Finds settings that contradict each other, and names the option that mends each.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/run/check.h"
 
@@ -12,9 +12,10 @@
 namespace alcove {
 namespace {
 
+// Each scale costs a search and a plane of its own.
 constexpr std::size_t kMostRadii = 8;
 
-/// What an estimate by its error asks for.
+/// An estimate by its error is a mean over exact searches of every pixel.
 void check_tolerance(const Settings& settings) {
   const auto& e = settings.estimator;
   if (e.tolerance == 0) {
@@ -27,6 +28,7 @@ void check_tolerance(const Settings& settings) {
     fail(ErrorKind::usage, "--tolerance: the error is that of every pixel: give --resolution full");
 }
 
+/// Leaving out nearly open tiles needs a proof, which only two estimators have.
 void check_skipping(const Settings& settings) {
   const auto& e = settings.estimator;
   if (e.skip_tolerance == 0) return;
@@ -38,7 +40,7 @@ void check_skipping(const Settings& settings) {
   if (e.no_skip) fail(ErrorKind::usage, "--skip-tolerance and --no-skip: give only one of them");
 }
 
-/// What an exact search leaves to the others.
+/// An exact search has no samples: it knows no open directions, no fading hits and no pixels left out.
 void check_search(const Settings& settings) {
   const auto& e = settings.estimator;
   if (!searches_exactly(e)) return;
@@ -55,7 +57,7 @@ void check_search(const Settings& settings) {
          e.stride);
 }
 
-/// Several radii, and what only some estimators give.
+/// Several radii make sense once each; bent normals need an estimator that finds open directions.
 void check_scales(const Settings& settings) {
   const auto& e = settings.estimator;
   if (wants(settings.output, &FrameOutputs::bent_normal) && !has_bent_normals(e))
@@ -69,7 +71,7 @@ void check_scales(const Settings& settings) {
     fail(ErrorKind::usage, "--radius {} is there twice: give each scale once", *twice);
 }
 
-/// What goes into the shading of the AO.
+/// Options of the fade, the albedo and the fog, each with what it is useless without.
 void check_shading(const Settings& settings) {
   const auto& e = settings.estimator;
   const auto& o = settings.output;

@@ -1,4 +1,4 @@
-// What is checked of settings before any file or device is opened.
+// The check of settings before any file or device is opened.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 

@@ -1,4 +1,4 @@
-// By what a run with --resume knows that a file was made with the options of today.
+// The digest of options, by which --resume knows whether a file was made with the options of this run.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 

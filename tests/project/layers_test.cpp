@@ -90,6 +90,7 @@ TEST(Layers, only_one_file_includes_each_library) {
   EXPECT_EQ(matches(product(), R"(#include [<"]OpenImageIO)", unless("core/formats/image_io.cpp")), Names{});
   EXPECT_EQ(matches(product(), R"(#include [<"]OpenColorIO)", unless("core/formats/color.cpp")), Names{});
   EXPECT_EQ(matches(product(), R"(#include [<"]png\.h)", unless("core/formats/png.cpp")), Names{});
+  EXPECT_EQ(matches(product(), R"(#include [<"]CLI)", unless("cli/parsing.cpp")), Names{});
 }
 
 /// The architecture: what each room may include besides itself. README.md shows the same table.
@@ -139,6 +140,8 @@ std::string rooms_markdown() {
       {"core/formats", "How do the bytes of a file become planes, and back?"},
       {"core/frame", "What do the channels of a frame mean? Camera, depth, normals, evidence."},
       {"core/chain", "Which passes run, and in which order?"},
+      {"core/options",
+       "Which options are there? One table for flags, presets, help, this page and the digest of `--resume`."},
       {"core/run", "How do many frames go from files to files? Plan, lanes, tiles, resuming, reports."},
       {"core/reference", "What is right? The estimators again, slowly, in double precision."},
       {"core/measure", "How far off is a result?"},
