@@ -1,12 +1,11 @@
 // Loads the module of core/formats/image_io.cpp on first use and hands the calls on.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <dlfcn.h>
-
 #include <fstream>
 #include <string_view>
 
 #include "core/base/error.h"
 #include "core/base/file.h"
+#include "core/base/system.h"
 #include "core/formats/image_io.h"
 #include "core/formats/image_io_module.h"
 
@@ -19,10 +18,10 @@ constexpr std::size_t kTextWithin = 4096;  // bytes: texts are written before th
 const ImageIoModule& module(const std::string& path, ErrorKind kind) {
   static const ImageIoModule* loaded = [&] {
     // found beside the program or in ../lib/alcove, by the program's run path
-    void* library = ::dlopen(kImageIoFile, RTLD_NOW | RTLD_LOCAL);
-    void* symbol = library ? ::dlsym(library, kImageIoSymbol) : nullptr;
+    std::string why;
+    void* symbol = symbol_of(kImageIoFile, kImageIoSymbol, why);
     if (!symbol)
-      fail(kind, "{}: a picture that is no EXR needs {} beside the program: {}", path, kImageIoFile, ::dlerror());
+      fail(kind, "{}: a picture that is no EXR needs {} beside the program: {}", path, kImageIoFile, why);
     return static_cast<const ImageIoModule*>(symbol);
   }();
   return *loaded;

@@ -25,7 +25,14 @@ class DeviceLost : public Error {
   using Error::Error;
 };
 
-/// Fails with ErrorKind::device (DeviceLost where it is that) and the name of the call unless `result` is VK_SUCCESS.
+/// The device, or the host on its behalf, has no memory left; less work at once may find enough.
+class OutOfMemory : public Error {
+ public:
+  using Error::Error;
+};
+
+/// Fails with ErrorKind::device (DeviceLost or OutOfMemory where it is that) and the name of the call unless `result`
+/// is VK_SUCCESS.
 void check(VkResult result, const char* call);
 
 /// Owns one Vulkan handle that a device (or instance) destroys; moves, never copies.
@@ -60,6 +67,7 @@ struct DeviceInfo {
   std::string name, uuid, driver, api_version;
   DeviceType type;
   std::uint64_t memory_bytes;  // of all device-local heaps
+  std::uint64_t free_bytes;    // of the largest of them, what other programs have left; all of it where none tells
   std::uint64_t buffer_bytes;  // the largest storage buffer
   std::string unusable;        // why Alcove cannot compute on it; empty: it can
 };

@@ -20,8 +20,14 @@ struct Dropped {};
 
 class FrameRun {
  public:
-  FrameRun(Lane& lane, const RunContext& run, int frame, FrameReport& report)
-      : gpu_(lane.gpu), last_(lane.last), run_(run), frame_(frame), settings_(run.plan.at(frame)), report_(report) {
+  FrameRun(Lane& lane, const RunContext& run, const Room& room, int frame, FrameReport& report)
+      : gpu_(lane.gpu),
+        last_(lane.last),
+        run_(run),
+        room_(room),
+        frame_(frame),
+        settings_(run.plan.at(frame)),
+        report_(report) {
     report.frame = frame;
     report.input = main_input(settings_.input);
     report.output = settings_.output.output;
@@ -31,11 +37,12 @@ class FrameRun {
     const Stopwatch total;
     go_on();
     FrameSource source = read();
-    const auto pixel = pixel_memory(source, settings_);
-    if (fits(source.data, pixel, run_.room))
+    require_numbered_lines(source, settings_.estimator);
+    const WindowLimits limits{pixel_memory(source, settings_), room_, longest_side(settings_.estimator)};
+    if (limits.allow(source.data))
       run_whole(source);
     else
-      run_tiles(source, pixel);
+      run_tiles(source, limits);
     report_.pixels = report_.pixels ? report_.pixels : source.data.pixels();
     note_counts(source);
     for (const auto* said : {&source.suspicious, &source.notes})
@@ -63,6 +70,7 @@ class FrameRun {
 
   /// Reads and computes source.data. reuses: what is as in the frame before is not computed again.
   FrameOutputs compute(FrameSource& source, const OutputSettings& output, bool reuses) {
+    report_.pixels_at_once = std::max<std::uint64_t>(report_.pixels_at_once, source.data.pixels());
     const Stopwatch reading;
     FrameInputs inputs = load_frame(gpu_, source, settings_, frame_);
     sample_.add(inputs);
@@ -132,18 +140,16 @@ class FrameRun {
     report_.write_ms += writing.ms();
   }
 
-  void run_tiles(FrameSource& source, const PixelMemory& pixel) {
+  void run_tiles(FrameSource& source, const WindowLimits& limits) {
     if (!settings_.output.preview.empty() || !settings_.output.debug.empty())
-      fail(ErrorKind::device,
-           "{}: a frame this large is computed in tiles, and {} needs it whole: allow more --memory, or use another "
-           "--device",
-           report_.input, settings_.output.preview.empty() ? "--debug" : "--preview");
+      fail(ErrorKind::device, "{}: a frame this large is computed in tiles, and {} needs it whole: leave it out, or {}",
+           report_.input, settings_.output.preview.empty() ? "--debug" : "--preview", limits.mended_by(source.data));
     const Window whole = written_of(source);
     const Stopwatch reading;
     if (!source.settled) settle_by_rows(source, settings_.input);
     const Surroundings surroundings(source, settings_, whole);
     report_.read_ms += reading.ms();
-    const auto rows = tiles_of(whole, surroundings, pixel, run_.room, source);
+    const auto rows = tiles_of(whole, surroundings, limits, source);
     FrameWriter writer(source, settings_, provenance());
     report_.parts = 0;
     for (const auto& row : rows) {
@@ -212,6 +218,7 @@ class FrameRun {
   gpu::Recorder& gpu_;
   LastFrame& last_;
   const RunContext& run_;
+  const Room& room_;
   int frame_;
   Settings settings_;
   FrameReport& report_;
@@ -222,11 +229,11 @@ class FrameRun {
 
 }  // namespace
 
-FrameReport run_frame(Lane& lane, const RunContext& run, int frame) {
+FrameReport run_frame(Lane& lane, const RunContext& run, const Room& room, int frame) {
   FrameReport report;
   lane.gpu.abandon();  // what a frame that failed has left
   try {
-    FrameRun(lane, run, frame, report).run();
+    FrameRun(lane, run, room, frame, report).run();
     report.state = FrameState::done;
   } catch (const Dropped&) {
     report.state = FrameState::dropped;
@@ -236,6 +243,7 @@ FrameReport run_frame(Lane& lane, const RunContext& run, int frame) {
     report.device_lost = true;
   } catch (const Error& error) {
     report.state = FrameState::failed;
+    report.out_of_memory = dynamic_cast<const gpu::OutOfMemory*>(&error) != nullptr;
     // Devices and numbers know of no file.
     const bool may_be_without = error.kind() == ErrorKind::device || error.kind() == ErrorKind::usage;
     const bool is_named =

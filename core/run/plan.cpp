@@ -11,6 +11,7 @@
 #include "core/base/file.h"
 #include "core/chain/debug_view.h"
 #include "core/run/frame_files.h"
+#include "core/run/memory_plan.h"
 #include "core/run/tiles.h"
 
 namespace alcove {
@@ -193,7 +194,7 @@ std::string plan_text(const Settings& settings) {
        fmt::format("{}, {:.6g} x {:.6g} px {}", source.camera.orthographic ? "orthographic" : "perspective",
                    source.camera.fx, source.camera.fy, source.camera.orthographic ? "a scene unit" : "focal length"));
   const std::uint64_t bytes = pixel_memory(source, first).bytes * source.file_data.pixels(),
-                      all = memory_for_frames(first.device);
+                      all = host_memory_for_frames(first.device);
   line("size", to_string(written_of(source)));
   line("memory", fmt::format("{} MiB a frame, {} MiB for frames: {}", bytes >> 20, all >> 20,
                              bytes > all ? "in tiles"

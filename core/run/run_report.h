@@ -33,9 +33,11 @@ struct FrameReport {
   double error_squares = 0, error_pixels = 0;  // of an estimate with a tolerance
   // depth samples that the settings ask for, averaged over all pixels; sky asks for none
   double samples_per_pixel = 0;
-  std::vector<std::string> notes;  // what the user should know, a sentence each
-  std::optional<Error> error;      // why it failed
-  bool device_lost = false;        // that is why
+  std::uint64_t pixels_at_once = 0;  // the most that were computed at once
+  std::vector<std::string> notes;    // what the user should know, a sentence each
+  std::optional<Error> error;        // why it failed
+  bool device_lost = false;          // it failed since its device was lost
+  bool out_of_memory = false;        // it failed since the device had no memory for it
 };
 
 struct RunReport {
@@ -43,7 +45,7 @@ struct RunReport {
   std::string device, options;      // options: the digest that the outputs carry
   bool on_cpu_by_default = false;   // nobody asked for the CPU, and there is no GPU
   int at_once = 0;                  // frames in flight
-  std::vector<FrameReport> frames;  // in order, without the dropped ones
+  std::vector<FrameReport> frames;  // in order, without the dropped ones; kept for --stats only
   std::vector<int> missing;         // frames that were left out, since an input is missing
   int done = 0, failed = 0, kept = 0, dropped = 0;
   std::vector<int> failed_frames;
