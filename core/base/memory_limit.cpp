@@ -133,9 +133,12 @@ std::uint64_t left_upwards(const std::string& root, const GroupMount& mount, con
   }
 }
 
+/// A number that a variable of the environment holds; nothing where it holds none, or one beyond all machines.
 std::optional<std::uint64_t> number_of_variable(const char* name) {
+  constexpr std::uint64_t kMost = 1ull << 28;  // MiB: 256 TiB
   const char* text = std::getenv(name);
-  return text ? number_in(text) : std::nullopt;
+  const auto number = text ? number_in(text) : std::nullopt;
+  return number && *number <= kMost ? number : std::nullopt;
 }
 
 }  // namespace
@@ -167,7 +170,8 @@ std::uint64_t memory_of_slurm_job() {
   // 0 asks for all memory of the node.
   if (const auto of_node = number_of_variable("SLURM_MEM_PER_NODE"); of_node && *of_node > 0) return *of_node * kUnit;
   const auto of_core = number_of_variable("SLURM_MEM_PER_CPU"), cores = number_of_variable("SLURM_CPUS_ON_NODE");
-  if (of_core && cores && *of_core > 0 && *cores > 0) return *of_core * *cores * kUnit;
+  constexpr std::uint64_t kMostCores = 1 << 15;
+  if (of_core && cores && *of_core > 0 && *cores > 0) return *of_core * std::min(*cores, kMostCores) * kUnit;
   return kNoMemoryLimit;
 }
 
