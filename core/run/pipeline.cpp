@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/run/pipeline.h"
 
+#include <algorithm>
 #include <condition_variable>
 #include <exception>
 #include <map>
@@ -54,24 +55,32 @@ class Pipeline {
     return begun_++;
   }
 
+  /// What is tried for one frame, and what became of it.
+  struct Attempt {
+    Room room;
+    bool was_alone = false;  // no other frame was in flight, and no buffers were left of earlier ones
+    std::vector<std::string> notes = {};
+    std::optional<Error> out_of_memory = {};
+  };
+
   /// Computes a frame, again and again where the device has no memory for it and less at once may find some.
   void compute(std::size_t place) {
-    std::vector<std::string> notes;
-    std::optional<Error> out_of_memory;
+    Attempt attempt{room_now()};
     FrameReport report;
     do {
-      const Room room = room_now();
       lanes_.with([&](Lane& lane) {
-        report = run_frame(lane, run_, room, frames_[place]);
+        report = run_frame(lane, run_, attempt.room, frames_[place]);
         return !report.out_of_memory;
       });
-      if (report.out_of_memory) out_of_memory = report.error;
-    } while (report.out_of_memory && make_room(report, notes));
+      if (report.out_of_memory) attempt.out_of_memory = report.error;
+    } while (report.out_of_memory && make_room(report.pixels_at_once, attempt));
 
-    report.notes.insert(report.notes.end(), notes.begin(), notes.end());
-    const bool cannot_be_cut = out_of_memory && report.state == FrameState::failed && !report.out_of_memory;
-    if (cannot_be_cut && report.error->kind() == ErrorKind::device && !report.device_lost) report.error = out_of_memory;
-    finish(place, std::move(report));
+    if (report.state == FrameState::done)
+      report.notes.insert(report.notes.end(), attempt.notes.begin(), attempt.notes.end());
+    // That a frame cannot be cut any smaller is no help to who wants to know why it was cut.
+    const bool is_too_large = report.error && report.error->kind() == ErrorKind::device && !report.device_lost;
+    if (is_too_large && attempt.out_of_memory) report.error = attempt.out_of_memory;
+    finish(place, attempt.room, std::move(report));
   }
 
   Room room_now() {
@@ -79,22 +88,27 @@ class Pipeline {
     return room_;
   }
 
-  /// After a frame has found no memory: fewer frames at once, or less of a frame. Waits until the frame may be computed
-  /// again. False where nothing is left that could be less.
-  bool make_room(const FrameReport& report, std::vector<std::string>& notes) {
+  /// After a frame has found no memory: fewer frames at once, then this one alone, then less of it at once. Waits until
+  /// the frame may be computed again. False where nothing is left that could be less.
+  bool make_room(std::uint64_t pixels, Attempt& attempt) {
     Lock lock(mutex_);
     // Of several frames that fail side by side only the first one halves their number.
     const bool others_go = in_flight_ > most_in_flight_;
     if (!others_go && most_in_flight_ > 1) {
-      notes.push_back(fmt::format("the device had no memory for {} frames at once; now {} are computed at once",
-                                  most_in_flight_, most_in_flight_ / 2));
+      attempt.notes.push_back(fmt::format("the device had no memory for {} frames at once; from here on it computes {}",
+                                          most_in_flight_, most_in_flight_ / 2));
       most_in_flight_ /= 2;
       lanes_.set_count(most_in_flight_);
+    } else if (!others_go && !attempt.was_alone) {
+      attempt.notes.push_back("the device had no memory for this frame at first; it was computed again");
+      attempt.was_alone = true;
+      lanes_.set_count(1);
     } else if (!others_go) {
-      if (report.pixels_at_once < 2) return false;
-      notes.push_back(fmt::format("the device had no memory for {} pixels at once; now at most {} are computed at once",
-                                  report.pixels_at_once, report.pixels_at_once / 2));
-      room_.pixels = report.pixels_at_once / 2;
+      if (pixels < 2) return false;
+      attempt.notes.push_back(
+          fmt::format("the device had no memory for {} pixels at once; now at most {} are computed at once", pixels,
+                      pixels / 2));
+      attempt.room.pixels = pixels / 2;
     }
     in_flight_--;
     changed_.notify_all();
@@ -103,9 +117,11 @@ class Pipeline {
     return !error_;
   }
 
-  void finish(std::size_t place, FrameReport&& report) {
+  void finish(std::size_t place, const Room& room, FrameReport&& report) {
     const Lock lock(mutex_);
     in_flight_--;
+    // Later frames begin with what this one has learned.
+    if (report.state == FrameState::done) room_.pixels = std::min(room_.pixels, room.pixels);
     if (watch_.ends(report)) ended_ = true;
     finished_.emplace(place, std::move(report));
     changed_.notify_all();

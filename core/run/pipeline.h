@@ -56,7 +56,7 @@ struct PipelineWatch {
 
 /// Runs the frames on the lanes, in any order. Where the device has no memory for a frame, the number of lanes is
 /// halved, down to one, and then the window that is computed at once; the frame is computed again, and says so in a
-/// note. What that leaves of the room holds for all later frames.
+/// note. Later frames begin with what is left then.
 void run_pipeline(Lanes& lanes, const RunContext& run, Room room, std::span<const int> frames,
                   const PipelineWatch& watch);
 
