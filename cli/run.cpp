@@ -7,7 +7,7 @@
 #include "cli/print.h"
 #include "core/base/system.h"
 #include "core/run/batch.h"
-#include "core/run/plan.h"
+#include "core/run/dry_run.h"
 
 namespace alcove {
 
@@ -20,9 +20,10 @@ int run_command(const std::vector<std::string>& arguments) {
   }
   catch_ending_signals();
   Progress progress(options.progress, options.settings.output.log_json);
-  const RunReport report = run_frames(
-      options.settings, {[&](const RunReport& begun, int frames) { progress.begin(begun, frames); },
-                         [&](const FrameReport& frame) { progress.frame(frame); }, [] { return caught_signal() != 0; }});
+  const RunReport report =
+      run_frames(options.settings,
+                 {[&](const RunReport& begun, int frames) { progress.begin(begun, frames); },
+                  [&](const FrameReport& frame) { progress.frame(frame); }, [] { return caught_signal() != 0; }});
   progress.end(report);
   if (report.stop && !report.is_sequence) throw *report.stop;
   if (report.stop && report.failed == 0) print_error("alcove: error: {}\n", report.stop->what());

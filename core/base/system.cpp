@@ -10,11 +10,14 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cerrno>
 #include <csignal>
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <memory>
 #include <thread>
 #include <utility>
 
@@ -62,6 +65,14 @@ double cpu_seconds() {
 }
 
 void set_environment(const std::string& name, const std::string& value) { ::setenv(name.c_str(), value.c_str(), 1); }
+
+std::string output_of_command(const std::string& command) {
+  const std::unique_ptr<FILE, int (*)(FILE*)> pipe(::popen(command.c_str(), "r"), ::pclose);
+  std::string text;
+  std::array<char, 256> line;
+  while (pipe && std::fgets(line.data(), int(line.size()), pipe.get())) text += line.data();
+  return text;
+}
 
 bool errors_go_to_terminal() { return ::isatty(STDERR_FILENO) != 0; }
 

@@ -29,6 +29,9 @@ double cpu_seconds();
 /// Sets a variable of the environment for this process and for the libraries that it loads.
 void set_environment(const std::string& name, const std::string& value);
 
+/// What a command of the shell prints to its standard output; empty where it cannot be started.
+std::string output_of_command(const std::string& command);
+
 /// Whether the standard error is a terminal, and nobody's file or pipe.
 bool errors_go_to_terminal();
 

@@ -1,5 +1,4 @@
-// Pictures that explain themselves: ONE table of what --debug shows, and how numbers become colours with a scale below
-// them.
+// Pictures that explain themselves: ONE table of what --debug shows, and of the scales that its numbers have.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -36,10 +35,5 @@ std::vector<const DebugView*> debug_views_of(const OutputSettings& settings);
 
 /// Where the picture of a view goes: beside the AO, ao.exr -> ao.raw-depth.png.
 std::string debug_path(const OutputSettings& settings, const DebugView& view);
-
-/// Writes the picture, whole or not at all. `values`: a number a pixel, kSkyDepth for sky. made_by: see encode_png().
-/// Fails with ErrorKind::output.
-void write_debug_view(const std::string& path, const DebugView& view, int width, int height,
-                      std::span<const float> values, const std::string& made_by);
 
 }  // namespace alcove

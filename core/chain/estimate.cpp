@@ -335,6 +335,10 @@ Profile profile(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& f
                        &gpu.buffer("profile mark", bytes, gpu::Use::device),
                        &gpu.buffer("profile neighbor", bytes, gpu::Use::device)};
   const ivec2 size = gbuffer.view.size;
+  if (std::max(size.x, size.y) > int(kNoVertex))
+    fail(ErrorKind::usage,
+         "an exact search takes at most {} pixels along a line, and there are {}: give --search steps", kNoVertex,
+         std::max(size.x, size.y));
   const auto [least, most] = std::minmax({shift_at(lines, 0), shift_at(lines, (lines.steep ? size.y : size.x) - 1)});
   const ProfileParams params{gbuffer.view, lines, -most, uint((lines.steep ? size.x : size.y) + most - least),
                              kProfileTolerance};

@@ -12,7 +12,7 @@
 #include "core/chain/host_frame.h"
 #include "core/formats/image_io.h"
 #include "core/frame/evidence.h"
-#include "core/run/plan.h"
+#include "core/frame/input_files.h"
 
 namespace alcove {
 namespace {

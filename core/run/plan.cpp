@@ -1,4 +1,4 @@
-// Names with frame numbers, what is missing, chunks.
+// Finds frames by the names of their files, tells what is missing, and cuts chunks.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/run/plan.h"
 
@@ -10,16 +10,14 @@
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/chain/debug_view.h"
-#include "core/run/frame_files.h"
-#include "core/run/memory_plan.h"
-#include "core/run/tiles.h"
 
 namespace alcove {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kEvidenceFrames = 8;  // looked at, at the most, for one that shows what the files do not say
+// The most frames that are looked at for one that shows what the files do not say.
+constexpr std::size_t kEvidenceFrames = 8;
 
 constexpr std::array kPaths = {
     NamedPath{"INPUT", [](Settings& s) -> std::string& { return s.input.input; }, false},
@@ -38,11 +36,6 @@ constexpr std::array kPaths = {
 bool exists(const std::string& path) {
   std::error_code error;
   return fs::exists(path, error);
-}
-
-/// "shot.1001.exr" of one frame, "shot.1001.exr to shot.1100.exr" of several.
-std::string span_text(const std::string& first, const std::string& last) {
-  return first == last ? first : first + " to " + last;
 }
 
 }  // namespace
@@ -131,15 +124,13 @@ Settings FramePlan::at(int frame) const {
   return settings;
 }
 
+std::span<const NamedPath> named_paths() { return kPaths; }
+
 int frame_number_of(const std::string& path) {
   const std::string stem = fs::path(path).stem().string();
   const std::size_t last = stem.find_last_not_of("0123456789");
   const std::string digits = last == stem.npos ? stem : stem.substr(last + 1);
   return digits.empty() || digits.size() > 9 ? 0 : std::stoi(digits);
-}
-
-const std::string& main_input(const InputSettings& settings) {
-  return !settings.input.empty() ? settings.input : settings.depth.empty() ? settings.position : settings.depth;
 }
 
 std::vector<OutputFile> outputs_of(const OutputSettings& output) {
@@ -157,49 +148,11 @@ std::vector<OutputFile> reports_of(const OutputSettings& output) {
   return files;
 }
 
-std::vector<std::string> input_files(const InputSettings& input) {
-  return {input.input,  input.depth,  input.normal,      input.position,
-          input.beauty, input.camera, input.material_ao, input.albedo};
-}
-
 std::vector<int> chunk_of(const std::vector<int>& frames, int chunk, int chunks) {
   const auto at = [&](int i) {
     return frames.begin() + std::ptrdiff_t(frames.size() * std::size_t(i) / std::size_t(chunks));
   };
   return {at(chunk - 1), at(chunk)};
-}
-
-std::string plan_text(const Settings& settings) {
-  const FramePlan plan(settings);
-  std::string text;
-  const auto line = [&](const std::string& name, const std::string& value) {
-    text += fmt::format("{:<14}{}\n", name, value);
-  };
-  line("frames",
-       plan.frames().empty() ? "none" : fmt::format("{}: {}", plan.frames().size(), frames_text(plan.frames())));
-  if (!plan.missing().empty())
-    line("missing", fmt::format("{}: {}, left out", plan.missing().size(), frames_text(plan.missing())));
-  if (plan.frames().empty()) return text;
-  Settings first = plan.at(plan.frames().front()), last = plan.at(plan.frames().back());
-  for (const auto& path : kPaths)
-    if (!path.of(first).empty()) line(path.option, span_text(path.of(first), path.of(last)));
-
-  const FrameSource source = open_frame(first, plan.frames().front());
-  std::vector<std::string> channels;
-  for (const auto* aov : {&source.depth, &source.normal, &source.beauty, &source.indirect, &source.diffuse_color,
-                          &source.albedo, &source.material_ao})
-    for (const auto& channel : *aov) channels.push_back(channel.channel);
-  line("channels", fmt::format("{}", fmt::join(channels, ", ")));
-  line("camera",
-       fmt::format("{}, {:.6g} x {:.6g} px {}", source.camera.orthographic ? "orthographic" : "perspective",
-                   source.camera.fx, source.camera.fy, source.camera.orthographic ? "a scene unit" : "focal length"));
-  const std::uint64_t bytes = pixel_memory(source, first).bytes * source.file_data.pixels(),
-                      all = host_memory_for_frames(first.device);
-  line("size", to_string(written_of(source)));
-  line("memory", fmt::format("{} MiB a frame, {} MiB for frames: {}", bytes >> 20, all >> 20,
-                             bytes > all ? "in tiles"
-                                         : fmt::format("up to {} at once", all / std::max<std::uint64_t>(1, bytes))));
-  return text;
 }
 
 }  // namespace alcove

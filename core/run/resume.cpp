@@ -26,8 +26,8 @@ std::vector<std::string> inputs_of(const Settings& frame) {
   return {i.input, i.depth, i.normal, i.position, i.beauty, i.material_ao, i.albedo};
 }
 
-/// Of a file's beginning and of its end.
-constexpr std::streamoff kLooked = 1 << 16;  // bytes
+/// The bytes that are looked at of a file's beginning, and as many of its end.
+constexpr std::streamoff kLooked = 1 << 16;
 
 std::optional<fs::file_time_type> time_of(const std::string& path) {
   std::error_code error;

@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gmock/gmock.h>
 
+#include "core/chain/host_frame.h"
 #include "core/formats/exr.h"
 #include "tests/support/command_line.h"
+#include "tests/support/device.h"
 
 namespace alcove {
 namespace {
@@ -38,9 +40,27 @@ class LongLines : public CommandLine {
     std::vector<std::string> more = {};
   };
   Finished run_search(const Search& search) const {
-    std::vector<std::string> arguments{"run", frame, "-o", search.output, "--radius", search.radius, "--search",
-                                       search.kind, "--ortho-width", search.width, "--depth-channel", "Z", "--slices",
-                                       "2", "--denoise", "none", "--type", "float", "--memory", "4G", "--stats",
+    std::vector<std::string> arguments{"run",
+                                       frame,
+                                       "-o",
+                                       search.output,
+                                       "--radius",
+                                       search.radius,
+                                       "--search",
+                                       search.kind,
+                                       "--ortho-width",
+                                       search.width,
+                                       "--depth-channel",
+                                       "Z",
+                                       "--slices",
+                                       "2",
+                                       "--denoise",
+                                       "none",
+                                       "--type",
+                                       "float",
+                                       "--memory",
+                                       "4G",
+                                       "--stats",
                                        folder / "stats.json"};
     arguments.insert(arguments.end(), search.more.begin(), search.more.end());
     return run_program(arguments);
@@ -63,13 +83,14 @@ TEST_F(LongLines, give_the_bits_of_their_parts) {
   write_steps(width, height);
   ASSERT_EQ(run_search({std::to_string(width), ao}).code, 0);
   const Image whole = read_exr_image(ao);
-  for (const Window& part : {Window{0, 0, 64, height}, Window{kLongest - 30, 0, 64, height},
-                             Window{width - 64, 0, 64, height}}) {
+  for (const Window& part :
+       {Window{0, 0, 64, height}, Window{kLongest - 30, 0, 64, height}, Window{width - 64, 0, 64, height}}) {
     const std::string file = folder / "part.exr";
     ASSERT_EQ(run_search({.width = std::to_string(width),
                           .output = file,
                           .more = {"--roi", fmt::format("{},{},{},{}", part.x, part.y, part.width, part.height)}})
-                  .code, 0);
+                  .code,
+              0);
     EXPECT_EQ(parts(), 1);
     const Image alone = read_exr_image(file);
     EXPECT_EQ(alone.pixels, cropped(whole.pixels, whole.data, part)) << to_string(part);
@@ -86,6 +107,24 @@ TEST_F(LongLines, that_no_part_can_hold_are_refused_with_what_mends_it) {
   EXPECT_EQ(picture.code, 5) << picture;
   EXPECT_THAT(picture.err, AllOf(HasSubstr("--preview"), HasSubstr("--search steps")));
   EXPECT_EQ(run_search({"65536", ao, "60000", "steps", {"--steps", "4"}}).code, 0);
+}
+
+TEST(Chain, refuses_lines_that_an_exact_search_cannot_number) {
+  HostFrame host;
+  host.data = host.display = {0, 0, kLongest + 1, 1};
+  host.camera.fx = host.camera.fy = 100;
+  host.depth.assign(host.data.pixels(), 10.0f);
+  EstimatorSettings settings;
+  settings.radius = 1;
+  settings.search = SliceSearch::exact;
+  gpu::Recorder gpu(device());
+  try {
+    compute_ao(gpu, host, settings);
+    ADD_FAILURE() << "computed in silence";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::usage);
+    EXPECT_THAT(error.what(), HasSubstr("--search steps"));
+  }
 }
 
 TEST_F(LongLines, that_cannot_be_numbered_at_all_are_refused) {

@@ -1,0 +1,97 @@
+// Puts numbers on a scale of colours, and frames into the display window.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/run/pictures.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/base/file.h"
+#include "core/chain/debug_view.h"
+#include "core/formats/image_io.h"
+
+namespace alcove {
+namespace {
+
+/// The part of the surfaces beyond either end of a percentile scale. So much may lie beyond a window without hiding the
+/// room.
+constexpr double kEnds = 0.03;
+
+/// The number below which this part of the values lies. Puts the values into another order.
+float percentile(std::vector<float>& values, double part) {
+  const auto at = values.begin() + std::ptrdiff_t(part * double(values.size() - 1));
+  std::ranges::nth_element(values, at);
+  return *at;
+}
+
+/// The values at the two ends of the scale.
+std::pair<float, float> range_of(const DebugView& view, std::span<const float> values) {
+  if (view.scale == DebugScale::fixed || view.scale == DebugScale::fixed_logarithmic) return {view.low, view.high};
+  std::vector<float> surfaces;
+  std::ranges::copy_if(values, std::back_inserter(surfaces), [](float x) { return x < kSkyDepth; });
+  if (surfaces.empty()) return {0, 1};
+  return {percentile(surfaces, kEnds), percentile(surfaces, 1 - kEnds)};
+}
+
+/// Where each number stands on the scale, 0 to 1; sky is NaN.
+std::vector<float> places_of(const DebugView& view, std::span<const float> values, float low, float high) {
+  const bool logarithmic =
+      view.scale == DebugScale::fixed_logarithmic || view.scale == DebugScale::percentile_logarithmic;
+  const auto on_scale = [&](float x) {
+    return logarithmic ? std::log(std::max(std::abs(x), std::numeric_limits<float>::min())) : x;
+  };
+  const float from = on_scale(low), range = on_scale(high) - from;
+  std::vector<float> places(values.size());
+  std::ranges::transform(values, places.begin(), [&](float x) {
+    if (x >= kSkyDepth) return std::numeric_limits<float>::quiet_NaN();
+    return range == 0 ? 0.5f : std::clamp((on_scale(x) - from) / range, 0.0f, 1.0f);
+  });
+  return places;
+}
+
+/// Writes the picture of one view. `values` holds one number per pixel, kSkyDepth for sky.
+void write_debug_view(const std::string& path, const DebugView& view, int width, int height,
+                      std::span<const float> values, const std::string& made_by) {
+  const auto [low, high] = range_of(view, values);
+  const bool is_open = view.scale == DebugScale::percentile || view.scale == DebugScale::percentile_logarithmic;
+  const auto text = [&](const char* beyond, float x) { return fmt::format("{}{:.4g}", is_open ? beyond : "", x); };
+  const Chart chart{width,      height,           places_of(view, values, low, high),
+                    view.title, text("<= ", low), text(">= ", high),
+                    made_by,    view.is_grey};
+  write_whole(path, encode_chart(path, chart));
+}
+
+/// The display window of `planes` planes, interleaved; black where there are no pixels.
+std::vector<float> displayed(const FrameSource& source, std::span<const float> pixels, int planes) {
+  const Window data = written_of(source), &display = source.display;
+  std::vector<float> interleaved(display.pixels() * std::size_t(planes));
+  for (int y = std::max(data.y, display.y); y < std::min(data.y + data.height, display.y + display.height); y++)
+    for (int x = std::max(data.x, display.x); x < std::min(data.x + data.width, display.x + display.width); x++)
+      for (int c = 0; c < planes; c++)
+        interleaved[(std::size_t(y - display.y) * std::size_t(display.width) + std::size_t(x - display.x)) *
+                        std::size_t(planes) +
+                    std::size_t(c)] =
+            pixels[std::size_t(c) * data.pixels() + std::size_t(y - data.y) * std::size_t(data.width) +
+                   std::size_t(x - data.x)];
+  return interleaved;
+}
+
+}  // namespace
+
+void write_pictures(const FrameSource& source, const FrameOutputs& outputs, const DisplayTransform* transform,
+                    const OutputSettings& settings, const Provenance& provenance) {
+  const std::string text = made_by(provenance.options, provenance.inputs);
+  for (const auto& plane : outputs.debug)
+    write_debug_view(debug_path(settings, *plane.view), *plane.view, plane.size.x, plane.size.y,
+                     plane.values->as<float>(), text);
+  if (settings.preview.empty()) return;
+  // The composite through the view transform; AO by itself is data, and shown as it is.
+  const int planes = outputs.composite ? 3 : 1;
+  const auto shown =
+      cropped((outputs.composite ? outputs.composite : outputs.ao)->as<float>(), source.data, written_of(source));
+  auto pixels = displayed(source, shown, planes);
+  if (transform) transform->apply(pixels);
+  write_png(settings.preview, source.display.width, source.display.height, planes, pixels, text);
+}
+
+}  // namespace alcove
