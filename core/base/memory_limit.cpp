@@ -119,8 +119,10 @@ std::uint64_t left_upwards(const std::string& root, const GroupMount& mount, con
   // A container may see its own group as the top of the hierarchy, or a path that leads out of what it sees.
   std::string below = group;
   const std::string top = mount.group == "/" ? "" : mount.group;
-  if (below == top || below.starts_with(top + "/")) below = below.substr(top.size());
-  else below.clear();
+  if (below == top || below.starts_with(top + "/"))
+    below = below.substr(top.size());
+  else
+    below.clear();
   if (below.find("/..") != below.npos) below.clear();
   while (below.ends_with('/')) below.pop_back();
 

@@ -36,8 +36,8 @@ std::string output_of_command(const std::string& command);
 bool errors_go_to_terminal();
 
 /// From now on the signals that ask a program to end (SIGHUP, SIGINT and SIGTERM) do not end the process at once:
-/// caught_signal() tells of the first. A second one of its kind ends the process. SIGHUP stays ignored where the process
-/// was started so, as `nohup` does.
+/// caught_signal() tells of the first. A second one of its kind ends the process. SIGHUP stays ignored where the
+/// process was started so, as `nohup` does.
 void catch_ending_signals();
 /// The number of the signal that was caught; 0 for none. Every thread may ask.
 int caught_signal();

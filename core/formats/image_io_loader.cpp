@@ -20,8 +20,7 @@ const ImageIoModule& module(const std::string& path, ErrorKind kind) {
     // found beside the program or in ../lib/alcove, by the program's run path
     std::string why;
     void* symbol = symbol_of(kImageIoFile, kImageIoSymbol, why);
-    if (!symbol)
-      fail(kind, "{}: a picture that is no EXR needs {} beside the program: {}", path, kImageIoFile, why);
+    if (!symbol) fail(kind, "{}: a picture that is no EXR needs {} beside the program: {}", path, kImageIoFile, why);
     return static_cast<const ImageIoModule*>(symbol);
   }();
   return *loaded;

@@ -43,8 +43,9 @@ Buffer::Buffer(Device& device, std::size_t bytes, Use use)
   if (!allocate(device, kDeviceLocal, device_side_))
     throw OutOfMemory(
         ErrorKind::device,
-        fmt::format("{} has no room for a buffer of {:.1f} MiB; with less --memory a frame is computed in smaller tiles",
-                    device.info().name, mebibytes(bytes)));
+        fmt::format(
+            "{} has no room for a buffer of {:.1f} MiB; with less --memory a frame is computed in smaller tiles",
+            device.info().name, mebibytes(bytes)));
   if (use == Use::device) return;
   if (!allocate(device, host, staging_side_) && !allocate(device, kHostWritten, staging_side_))
     throw OutOfMemory(ErrorKind::device, fmt::format("no host memory for a staging buffer of {:.1f} MiB for {}",

@@ -306,8 +306,8 @@ class Batch {
     std::optional<DisplayTransform> transform;
     if (!settings_.output.preview.empty() && !settings_.output.composite.empty())
       transform.emplace(settings_.output.ocio);
-    RunContext run{plan_, settled ? &*settled : nullptr, transform ? &*transform : nullptr, {report_.options, ""},
-                   watch_.stop};
+    RunContext run{
+        plan_, settled ? &*settled : nullptr, transform ? &*transform : nullptr, {report_.options, ""}, watch_.stop};
 
     run_on_device(run, frames);
     if (!lost_) return;

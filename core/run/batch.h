@@ -29,8 +29,8 @@ struct RunWatch {
 };
 
 /// Computes the frames that the settings name and writes their outputs. After the loss of its device it goes on with a
-/// fresh one, once. Fails on what is wrong before the first frame. What is wrong with a frame is in its report, and ends
-/// the run unless the settings say to keep going.
+/// fresh one, once. Fails on what is wrong before the first frame. What is wrong with a frame is in its report, and
+/// ends the run unless the settings say to keep going.
 RunReport run_frames(const Settings& settings, const RunWatch& watch = {});
 
 }  // namespace alcove

@@ -29,7 +29,8 @@ RunMemory memory_for_frames(const DeviceSettings& settings, const gpu::DeviceInf
   memory.host_bytes = host_memory_for_frames(settings);
   // A CPU device computes in host memory, which is counted already. An integrated GPU's memory is counted as both: its
   // driver may give away less of it than the host has.
-  memory.device_bytes = device.type == gpu::DeviceType::cpu ? Room::kEndless : std::uint64_t(kPlannedPart * double(device.free_bytes));
+  memory.device_bytes =
+      device.type == gpu::DeviceType::cpu ? Room::kEndless : std::uint64_t(kPlannedPart * double(device.free_bytes));
   return memory;
 }
 

@@ -105,9 +105,8 @@ class Pipeline {
       lanes_.set_count(1);
     } else if (!others_go) {
       if (pixels < 2) return false;
-      attempt.notes.push_back(
-          fmt::format("the device had no memory for {} pixels at once; now at most {} are computed at once", pixels,
-                      pixels / 2));
+      attempt.notes.push_back(fmt::format(
+          "the device had no memory for {} pixels at once; now at most {} are computed at once", pixels, pixels / 2));
       attempt.room.pixels = pixels / 2;
     }
     in_flight_--;
@@ -161,14 +160,14 @@ class Pipeline {
 
   std::mutex mutex_;  // of all below
   std::condition_variable changed_;
-  Room room_;                  // of each frame in flight
-  int most_in_flight_;         // frames
-  int in_flight_ = 0;          // frames
-  int working_ = 0;            // threads that may still finish a frame
-  std::size_t begun_ = 0;      // frames
-  std::size_t told_ = 0;       // frames
+  Room room_;                                    // of each frame in flight
+  int most_in_flight_;                           // frames
+  int in_flight_ = 0;                            // frames
+  int working_ = 0;                              // threads that may still finish a frame
+  std::size_t begun_ = 0;                        // frames
+  std::size_t told_ = 0;                         // frames
   std::map<std::size_t, FrameReport> finished_;  // by place; not told of yet
-  bool ended_ = false;         // no frame is begun any more
+  bool ended_ = false;                           // no frame is begun any more
   std::exception_ptr error_;
 };
 

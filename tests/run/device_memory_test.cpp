@@ -67,7 +67,8 @@ TEST_F(DeviceMemory, that_runs_out_halves_the_frames_at_once_and_then_the_tiles)
   remove_outputs();
   const Finished fewer = run_with(6 * kMiB, 1024 * kMiB);
   ASSERT_EQ(fewer.code, 0) << fewer;
-  EXPECT_THAT(fewer.err, AllOf(HasSubstr("had no memory for 6 frames at once; from here on it computes 3"), Not(HasSubstr("pixels at once"))));
+  EXPECT_THAT(fewer.err, AllOf(HasSubstr("had no memory for 6 frames at once; from here on it computes 3"),
+                               Not(HasSubstr("pixels at once"))));
   EXPECT_LE(of_stats()["totals"]["at_once"], 3);
   EXPECT_TRUE(outputs() == whole);
 

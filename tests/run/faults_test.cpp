@@ -1,8 +1,8 @@
 // What goes wrong in long runs, done for real: damaged and vanished files, full disks, signals, a lost device; and what
 // --resume makes good.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gmock/gmock.h>
 #include <fcntl.h>
+#include <gmock/gmock.h>
 #include <signal.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
@@ -93,10 +93,10 @@ TEST_F(Faults, a_run_that_nohup_started_outlives_its_terminal) {
   write_frames(1, 60);
   Surroundings surroundings = signalled(out, 3, SIGHUP);
   surroundings.program = "/bin/sh";
-  const Finished finished = run_program(
-      {"-c", "trap '' HUP; exec \"$0\" \"$@\"", ALCOVE_PROGRAM, "run", in + "/f.%04d.exr", "-o", out + "/ao.%04d.exr",
-       "--camera", camera, "--radius", "1", "--noise", "animated"},
-      surroundings);
+  const Finished finished =
+      run_program({"-c", "trap '' HUP; exec \"$0\" \"$@\"", ALCOVE_PROGRAM, "run", in + "/f.%04d.exr", "-o",
+                   out + "/ao.%04d.exr", "--camera", camera, "--radius", "1", "--noise", "animated"},
+                  surroundings);
   EXPECT_EQ(finished.code, 0) << finished;
   EXPECT_THAT(names_in(out), SizeIs(60));
 }

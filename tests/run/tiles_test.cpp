@@ -17,7 +17,7 @@ using testing::HasSubstr;
 
 using Options = std::vector<std::string>;
 
-/// Frames get so little memory that a quarter of a megapixel takes several tiles.
+/// Bytes for frames: too few for any frame of this test as a whole.
 constexpr std::uint64_t kLittleMemory = 4 << 20;
 
 class Tiles : public CommandLine {
@@ -32,22 +32,27 @@ class Tiles : public CommandLine {
     ::setenv("ALCOVE_PRESETS", ALCOVE_SOURCE_DIR "/presets", 1);
   }
 
-  /// `alcove run` on the frame with these arguments, within this process: no option gives a run as little memory.
-  RunReport run_here(const Options& more, bool in_tiles) const {
+  /// `alcove run` on the frame with these arguments, with so many bytes for frames or, for 0, as many as there are. It
+  /// runs within this process, since no option gives a run so few.
+  RunReport run_here(const Options& more, std::uint64_t bytes) const {
     Options arguments{frame, "-o", ao, "--camera", camera, "--stats", folder / "stats.json", "--type", "float"};
     if (const char* device = std::getenv("ALCOVE_TEST_DEVICE"); device && *device)
       arguments.insert(arguments.end(), {"--device", device});
     arguments.insert(arguments.end(), more.begin(), more.end());
     RunOptions options;
     EXPECT_TRUE(parse_run_options(arguments, options));
-    if (in_tiles) options.settings.device.memory = 1;
-    if (in_tiles) options.settings.device.least_memory = kLittleMemory;
+    if (bytes) options.settings.device.memory = 1;
+    if (bytes) options.settings.device.least_memory = bytes;
     return run_frames(options.settings);
   }
 
   /// The bytes of the AO, and of the composite where there is one; how many tiles they took.
   std::pair<std::string, int> computed(const Options& more, bool in_tiles) const {
-    const RunReport report = run_here(more, in_tiles);
+    RunReport report = run_here(more, in_tiles ? kLittleMemory : 0);
+    // What reaches far takes more: then the tiles are the smallest that there are.
+    for (std::uint64_t bytes = kLittleMemory; in_tiles && report.done != 1 && bytes < 4 * kLittleMemory;
+         bytes += bytes / 4)
+      report = run_here(more, bytes);
     EXPECT_EQ(report.done, 1) << (report.stop ? report.stop->what() : "");
     if (report.done != 1) return {};
     const bool has_composite = std::ranges::find(more, "--composite") != more.end();
@@ -56,7 +61,7 @@ class Tiles : public CommandLine {
 
   /// The run in tiles must fail with ErrorKind::device and these words.
   void expect_refused(const Options& more, const std::vector<std::string>& words) const {
-    const RunReport report = run_here(more, true);
+    const RunReport report = run_here(more, kLittleMemory);
     ASSERT_TRUE(report.stop);
     EXPECT_EQ(report.stop->kind(), ErrorKind::device);
     for (const auto& word : words) EXPECT_THAT(report.stop->what(), HasSubstr(word));

@@ -1,9 +1,9 @@
 // Preloaded before the Vulkan loader: a poor device.
+// SPDX-License-Identifier: BSD-3-Clause
 //
 // It lacks what ALCOVE_LACKS says. Its allocations from number ALCOVE_ALLOCATION on, three of them, find no memory.
 // With ALCOVE_HEAP it is a discrete GPU with so many bytes of its own memory, which the host cannot map;
 // ALCOVE_HEAP_SAYS is what it says to have where that is another number.
-// SPDX-License-Identifier: BSD-3-Clause
 #include <dlfcn.h>
 #include <vulkan/vulkan.h>
 
@@ -32,7 +32,9 @@ VkDeviceSize bytes_in(const char* variable) {
 constexpr uint32_t kOwnMemory = 0;
 constexpr uint32_t kHostMemory = 1;
 
-VkDeviceSize stated_heap() { return bytes_in("ALCOVE_HEAP_SAYS") ? bytes_in("ALCOVE_HEAP_SAYS") : bytes_in("ALCOVE_HEAP"); }
+VkDeviceSize stated_heap() {
+  return bytes_in("ALCOVE_HEAP_SAYS") ? bytes_in("ALCOVE_HEAP_SAYS") : bytes_in("ALCOVE_HEAP");
+}
 
 void split_heap(VkPhysicalDeviceMemoryProperties& memory) {
   const VkDeviceSize host_bytes = memory.memoryHeaps[0].size;
@@ -40,9 +42,9 @@ void split_heap(VkPhysicalDeviceMemoryProperties& memory) {
   memory.memoryHeaps[kOwnMemory] = {stated_heap(), VK_MEMORY_HEAP_DEVICE_LOCAL_BIT};
   memory.memoryHeaps[kHostMemory] = {host_bytes, 0};
   memory.memoryTypes[kOwnMemory] = {VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, kOwnMemory};
-  memory.memoryTypes[kHostMemory] = {VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT |
-                                         VK_MEMORY_PROPERTY_HOST_CACHED_BIT,
-                                     kHostMemory};
+  memory.memoryTypes[kHostMemory] = {
+      VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT | VK_MEMORY_PROPERTY_HOST_CACHED_BIT,
+      kHostMemory};
 }
 
 /// What is allocated of the device's own memory, by whom.
