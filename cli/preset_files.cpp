@@ -6,18 +6,13 @@
 
 #include "cli/options.h"
 #include "core/base/error.h"
+#include "core/base/system.h"
 #include "core/base/text.h"
 
 namespace alcove {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// The folder of the running program.
-fs::path program_folder() {
-  std::error_code error;
-  return fs::read_symlink("/proc/self/exe", error).parent_path();
-}
 
 }  // namespace
 
@@ -26,8 +21,8 @@ std::string preset_folder() {
   if (const char* variable = std::getenv("ALCOVE_PRESETS"); variable && *variable)
     places.emplace_back(variable);
   else
-    places = {program_folder() / "presets", program_folder() / "../presets",
-              program_folder() / "../share/alcove/presets"};
+    for (const char* place : {"presets", "../presets", "../share/alcove/presets"})
+      places.push_back(fs::path(program_folder()) / place);
   std::error_code error;
   for (const auto& place : places)
     if (fs::is_directory(place, error)) return fs::weakly_canonical(place).string();

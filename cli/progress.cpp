@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/progress.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
@@ -12,6 +10,7 @@
 
 #include "cli/print.h"
 #include "core/base/error.h"
+#include "core/base/system.h"
 #include "core/base/text.h"
 
 namespace alcove {
@@ -29,7 +28,7 @@ std::string clock_text(double seconds) {
 
 Progress::Progress(const ProgressOptions& options, const std::string& log_json)
     : options_(options), log_path_(log_json) {
-  if (options_.kind == "auto") options_.kind = ::isatty(STDERR_FILENO) ? "bar" : "plain";
+  if (options_.kind == "auto") options_.kind = errors_go_to_terminal() ? "bar" : "plain";
 }
 
 void Progress::open_log() {

@@ -1,4 +1,4 @@
-// What a run tells while it goes on: a bar for people, lines for logs, and the words that farms look for.
+// Tells of a run while it goes on: a bar for people, lines for logs, and the words that farms look for.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -16,8 +16,8 @@ namespace alcove {
 /// whole and flushed.
 class Progress {
  public:
-  /// log_json: a file, or - for the standard output; empty: none. Whatever tells fails with ErrorKind::output where it
-  /// cannot be written.
+  /// log_json names a file, or is - for the standard output, or is empty for no log. All functions fail with
+  /// ErrorKind::output where the log or the standard output cannot be written.
   Progress(const ProgressOptions& options, const std::string& log_json);
 
   void begin(const RunReport& report, int frames);

@@ -2,30 +2,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 
-#include <atomic>
-#include <csignal>
-
 #include "cli/commands.h"
 #include "cli/options.h"
 #include "cli/print.h"
 #include "cli/progress.h"
+#include "core/base/system.h"
 #include "core/run/batch.h"
-#include "core/run/plan.h"
+#include "core/run/dry_run.h"
 
 namespace alcove {
-namespace {
-
-std::atomic<int> caught_signal = 0;  // read by every thread
-
-/// The first signal ends the run in order; a second one of its kind ends the process.
-void catch_signals() {
-  struct sigaction action {};
-  action.sa_handler = [](int number) { caught_signal = number; };
-  action.sa_flags = int(SA_RESETHAND);
-  for (const int number : {SIGINT, SIGTERM}) ::sigaction(number, &action, nullptr);
-}
-
-}  // namespace
 
 int run_command(const std::vector<std::string>& arguments) {
   RunOptions options;
@@ -34,16 +19,17 @@ int run_command(const std::vector<std::string>& arguments) {
     fmt::print("{}", plan_text(options.settings));
     return 0;
   }
-  catch_signals();
+  catch_ending_signals();
   Progress progress(options.progress, options.settings.output.log_json);
-  const RunReport report = run_frames(
-      options.settings, {[&](const RunReport& begun, int frames) { progress.begin(begun, frames); },
-                         [&](const FrameReport& frame) { progress.frame(frame); }, [] { return caught_signal != 0; }});
+  const RunReport report =
+      run_frames(options.settings,
+                 {[&](const RunReport& begun, int frames) { progress.begin(begun, frames); },
+                  [&](const FrameReport& frame) { progress.frame(frame); }, [] { return caught_signal() != 0; }});
   progress.end(report);
   if (report.stop && !report.is_sequence) throw *report.stop;
   if (report.stop && report.failed == 0) print_error("alcove: error: {}\n", report.stop->what());
   if (report.stop) return int(report.stop->kind());
-  if (caught_signal) return 128 + caught_signal;
+  if (caught_signal()) return 128 + caught_signal();
   return report.failed ? int(ErrorKind::some_frames_failed) : 0;
 }
 

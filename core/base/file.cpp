@@ -2,15 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/base/file.h"
 
-#include <fcntl.h>
-#include <sys/file.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <array>
-#include <cerrno>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <random>
@@ -26,13 +19,6 @@ namespace fs = std::filesystem;
 constexpr const char* kUnfinishedPrefix = ".alcove-";
 constexpr const char* kUnfinishedSuffix = ".tmp";
 
-/// Takes the lock that says "somebody is writing this". On file systems without locks nothing is locked.
-bool lock(int descriptor, bool wait) {
-  while (::flock(descriptor, LOCK_EX | (wait ? 0 : LOCK_NB)) != 0)
-    if (errno != EINTR) return wait && errno != EWOULDBLOCK;
-  return true;
-}
-
 /// Whether a name is one that NewFile gives: a process, eight digits.
 bool is_unfinished(std::string_view name) {
   if (!name.starts_with(kUnfinishedPrefix) || !name.ends_with(kUnfinishedSuffix)) return false;
@@ -46,11 +32,6 @@ bool is_unfinished(std::string_view name) {
          all_of(name.substr(dash + 1), "0123456789abcdef");
 }
 
-bool is_removed(int descriptor) {
-  struct stat status {};
-  return ::fstat(descriptor, &status) == 0 && status.st_nlink == 0;
-}
-
 }  // namespace
 
 void require_readable(const std::string& path, const char* what, const char* option) {
@@ -60,8 +41,8 @@ void require_readable(const std::string& path, const char* what, const char* opt
     fail(ErrorKind::input, "{}: {} file cannot be reached: {} ({})", path, what, error.message(), option);
   if (!fs::exists(status)) fail(ErrorKind::input, "{}: {} file not found ({})", path, what, option);
   if (fs::is_directory(status)) fail(ErrorKind::input, "{}: is a folder; {} takes a {} file", path, option, what);
-  if (::access(path.c_str(), R_OK) != 0)
-    fail(ErrorKind::input, "{}: {} file cannot be read: {} ({})", path, what, std::strerror(errno), option);
+  if (const auto why = may_read(path))
+    fail(ErrorKind::input, "{}: {} file cannot be read: {} ({})", path, what, why.message(), option);
 }
 
 std::string read_rest(std::istream& stream) {
@@ -97,8 +78,8 @@ void require_writable(const std::string& path, const char* option) {
                                               [&](const char* root) { return whole.starts_with(root); });
   if (is_systems && !whole.starts_with("/dev/shm/"))
     fail(ErrorKind::output, "{}: {} is no place for files; {} names the file to write", path, folder.string(), option);
-  if (::access(folder.c_str(), W_OK | X_OK) != 0)
-    fail(ErrorKind::output, "{}: its folder cannot be written: {} ({})", path, std::strerror(errno), option);
+  if (const auto why = may_make_files_in(folder.string()))
+    fail(ErrorKind::output, "{}: its folder cannot be written: {} ({})", path, why.message(), option);
   const auto status = fs::status(path, error);
   if (fs::exists(status) && !fs::is_regular_file(status))
     fail(ErrorKind::output, "{}: is no regular file; {} names the file to write", path, option);
@@ -121,42 +102,35 @@ void require_no_input(const std::string& path, const char* option, std::span<con
 NewFile::NewFile(const std::string& path) : target_(path) {
   // Whoever cleans up may take the file in the moment before it is locked.
   do {
-    if (descriptor_ >= 0) ::close(descriptor_);
-    temporary_ = (fs::path(folder_of(target_)) / fmt::format("{}{}-{:08x}{}", kUnfinishedPrefix, ::getpid(),
+    temporary_ = (fs::path(folder_of(target_)) / fmt::format("{}{}-{:08x}{}", kUnfinishedPrefix, process_id(),
                                                              std::random_device()(), kUnfinishedSuffix))
                      .string();
-    descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    if (descriptor_ < 0) give_up("make a temporary file for", errno);
-  } while (lock(descriptor_, true) && is_removed(descriptor_));
+    if (const auto error = file_.make(temporary_)) give_up("make a temporary file for", error);
+  } while (file_.is_removed());
 }
 
 NewFile::~NewFile() {
-  if (descriptor_ < 0) return;
-  ::unlink(temporary_.c_str());
-  ::close(descriptor_);
+  if (!file_.is_open()) return;
+  std::error_code ignored;
+  fs::remove(temporary_, ignored);
 }
 
 void NewFile::write_at(std::uint64_t offset, std::span<const char> bytes) {
-  while (!bytes.empty()) {
-    const ssize_t written = ::pwrite(descriptor_, bytes.data(), bytes.size(), off_t(offset));
-    if (written < 0 && errno == EINTR) continue;
-    if (written <= 0) give_up("write", written < 0 ? errno : ENOSPC);
-    bytes = bytes.subspan(std::size_t(written));
-    offset += std::uint64_t(written);
-  }
+  if (const auto error = file_.write_at(offset, bytes)) give_up("write", error);
 }
 
 void NewFile::commit() {
-  // What a file system reports only when a file is closed must be known before it has its name; the lock stays with the
-  // second descriptor.
-  const int second = ::fcntl(descriptor_, F_DUPFD_CLOEXEC, 0);
-  if (second < 0 || ::close(std::exchange(descriptor_, second)) != 0) give_up("write", errno);
-  if (::rename(temporary_.c_str(), target_.c_str()) != 0) give_up("rename the finished file to", errno);
-  ::close(std::exchange(descriptor_, -1));
+  file_.take_after(target_);
+  if (const auto error = file_.sync()) give_up("write", error);
+  std::error_code error;
+  fs::rename(temporary_, target_, error);
+  if (error) give_up("rename the finished file to", error);
+  file_.close();
+  sync_folder(folder_of(target_));
 }
 
-void NewFile::give_up(const char* what, int error) const {
-  fail(ErrorKind::output, "{}: could not {} it: {}", target_, what, std::strerror(error));
+void NewFile::give_up(const char* what, const std::error_code& error) const {
+  fail(ErrorKind::output, "{}: could not {} it: {}", target_, what, error.message());
 }
 
 void write_whole(const std::string& path, std::span<const char> bytes) {
@@ -172,10 +146,10 @@ int remove_unfinished(const std::string& folder) {
     const std::string name = entry->path().filename().string();
     if (!is_unfinished(name)) continue;
     if (!fs::is_regular_file(entry->symlink_status(error))) continue;
-    const int descriptor = ::open(entry->path().c_str(), O_WRONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
-    if (descriptor < 0) continue;
-    removed += lock(descriptor, false) && ::unlink(entry->path().c_str()) == 0;
-    ::close(descriptor);
+    LockedFile file;
+    if (file.open_abandoned(entry->path().string())) continue;
+    std::error_code kept;
+    removed += fs::remove(entry->path(), kept);
   }
   return removed;
 }

@@ -1,4 +1,4 @@
-// Files as wholes: text in; bytes out, complete or not at all.
+// Files as wholes: text is read, and bytes are written completely or not at all.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -7,16 +7,18 @@
 #include <span>
 #include <string>
 
+#include "core/base/system.h"
+
 namespace alcove {
 
 /// Fails with ErrorKind::input unless `path` is a readable file; `what` and `option` are for the message ("camera",
 /// "--camera").
 void require_readable(const std::string& path, const char* what, const char* option);
 
-/// What is left in a stream; where it cannot be read to its end, the stream is bad() then.
+/// Reads what is left in a stream. Where it cannot be read to its end, the stream is bad() afterwards.
 std::string read_rest(std::istream& stream);
 
-/// The whole file. Fails with ErrorKind::input.
+/// Reads a whole file. Fails with ErrorKind::input.
 std::string read_text(const std::string& path, const char* what, const char* option);
 
 /// Fails with ErrorKind::output unless a file can be made at `path`: its folder exists and is writable, and nothing but
@@ -36,26 +38,31 @@ class NewFile {
  public:
   explicit NewFile(const std::string& path);
   ~NewFile();
+  NewFile(NewFile&& other) noexcept = default;
   NewFile(const NewFile&) = delete;
+  NewFile& operator=(NewFile&& other) = delete;
+  NewFile& operator=(const NewFile&) = delete;
 
   void write_at(std::uint64_t offset, std::span<const char> bytes);
-  /// Gives it its name. A symbolic link at `path` is replaced and what it names stays as it was, so that nobody who can
-  /// write into a folder sends what is written there elsewhere; links among the folders of the path are followed.
+  /// Gives the file its name once its bytes are on the disk, so that after a loss of power it is whole or not there. A
+  /// file that is replaced leaves it its permissions, its owner and its group, as far as this process may set them. A
+  /// symbolic link at `path` is replaced and what it names stays as it was, so that nobody who can write into a folder
+  /// sends what is written there elsewhere; links among the folders of the path are followed.
   void commit();
 
  private:
-  [[noreturn]] void give_up(const char* what, int error) const;
+  [[noreturn]] void give_up(const char* what, const std::error_code& error) const;
 
   std::string target_, temporary_;
-  int descriptor_ = -1;
+  LockedFile file_;
 };
 
-/// The same for what is whole already.
+/// Writes a file whose bytes are all there, as NewFile does.
 void write_whole(const std::string& path, std::span<const char> bytes);
 
-/// Removes the unfinished files that processes which were killed have left in a folder, not those of living ones on any
-/// machine. Returns their number. Only regular files are looked at: no link is followed, no pipe waited for.
-/// Never fails: what cannot be removed stays.
+/// Removes the unfinished files that killed processes have left in a folder, and returns their number. Those of living
+/// processes stay, whatever machine they run on. Only regular files are looked at: no link is followed, and no pipe is
+/// waited for. Never fails: what cannot be removed stays.
 int remove_unfinished(const std::string& folder);
 
 /// The folder that a file lies in.

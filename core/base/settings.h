@@ -152,6 +152,8 @@ struct DeviceSettings {
   bool no_pipeline_cache = false;
   int threads = 0;           // of the CPU device and of the codecs; 0: one a core
   std::uint64_t memory = 0;  // bytes that the process may take; 0: half of what is free
+  // bytes that frames get however little `memory` is; no option: tests lower it to cut small frames into tiles
+  std::uint64_t least_memory = 16ull << 20;
 };
 
 struct Settings {

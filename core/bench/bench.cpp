@@ -12,6 +12,7 @@
 
 #include "core/base/error.h"
 #include "core/base/estimator_facts.h"
+#include "core/base/system.h"
 #include "core/chain/chain.h"
 #include "core/chain/compute.h"
 #include "core/formats/exr.h"
@@ -95,10 +96,7 @@ double run_yardstick(const std::string& program, const SuiteFrame& frame, int ru
   };
   const std::string command =
       fmt::format("{} {} {} {} {}", quoted(program), quoted(frame.input), quoted(frame.camera), frame.radius, runs);
-  const std::unique_ptr<FILE, int (*)(FILE*)> pipe(::popen(command.c_str(), "r"), ::pclose);
-  std::string text;
-  std::array<char, 256> line;
-  while (pipe && std::fgets(line.data(), int(line.size()), pipe.get())) text += line.data();
+  const std::string text = output_of_command(command);
   const std::size_t at = text.find("median ");
   const double ms = at == text.npos ? 0 : std::atof(text.c_str() + at + 7);
   if (!(ms > 0)) fail(ErrorKind::usage, "--yardstick {}: it printed no \"median X ms\" for {}", program, frame.input);

@@ -2,17 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/bench/bench_batch.h"
 
-#include <unistd.h>
-
 #include <atomic>
-#include <cerrno>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
 #include <filesystem>
 #include <thread>
 
 #include "core/base/error.h"
+#include "core/base/system.h"
 #include "core/run/batch.h"
 #include "core/run/frame_files.h"
 #include "core/run/pipeline.h"
@@ -32,11 +29,11 @@ fs::path folder_of_scratch() {
 /// A folder that is deleted with all that is in it.
 class ScratchFolder {
  public:
-  // mkdtemp draws the six letters.
+  // make_unique_folder() draws the six letters.
   ScratchFolder() : path_((folder_of_scratch() / ("alcove-bench-" + std::string(6, 'X'))).string()) {
-    if (!::mkdtemp(path_.data()))
+    if (const auto why = make_unique_folder(path_))
       fail(ErrorKind::output, "{}: no folder for the frames can be made: {}; the variable TMPDIR names another place",
-           path_, std::strerror(errno));
+           path_, why.message());
   }
   ~ScratchFolder() {
     std::error_code ignored;
@@ -88,7 +85,7 @@ BatchTimes time_batch(Settings settings, int frames) {
   });
 
   const DeviceSettings& d = settings.device;
-  Lanes lanes({d.device, d.require_gpu, d.validate, !d.no_pipeline_cache}, report.at_once, report.at_once);
+  Lanes lanes({d.device, d.require_gpu, d.validate, !d.no_pipeline_cache}, report.at_once);
   const int frames_of_a_lane = (frames + report.at_once - 1) / report.at_once;
   std::atomic<double> device_ms = 0;
   seconds_of(report.at_once, report.at_once, [&](int) {
@@ -103,6 +100,7 @@ BatchTimes time_batch(Settings settings, int frames) {
       }
       for (double most = device_ms, ms = computing.ms(); ms > most && !device_ms.compare_exchange_weak(most, ms);)
         continue;
+      return true;
     });
   });
   times.compute_s = device_ms / 1000;

@@ -1,5 +1,4 @@
-// Pictures that explain themselves: ONE table of what --debug shows, and how numbers become colours with a scale below
-// them.
+// Pictures that explain themselves: ONE table of what --debug shows, and of the scales that its numbers have.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 

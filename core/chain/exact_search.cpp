@@ -126,6 +126,10 @@ Profile profile(gpu::Recorder& gpu, const GBuffer& gbuffer, const SearchDirectio
   const ivec2 size = gbuffer.view.size;
   const int along = lines.steep ? size.y : size.x;
   const int across = lines.steep ? size.x : size.y;
+  if (std::max(size.x, size.y) > int(kNoVertex))
+    fail(ErrorKind::usage,
+         "an exact search takes at most {} pixels along a line, and there are {}: give --search steps", kNoVertex,
+         std::max(size.x, size.y));
   const auto [least, most] = std::minmax({shift_at(lines, 0), shift_at(lines, along - 1)});
   const ProfileParams params{gbuffer.view, lines, -most, uint(across + most - least), kProfileTolerance};
   gpu.dispatch("profile", params,

@@ -1,8 +1,8 @@
 // Loads the module of core/formats/image_io.cpp on first use and hands the calls on.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <dlfcn.h>
-
 #include "core/base/error.h"
+#include "core/base/file.h"
+#include "core/base/system.h"
 #include "core/formats/image_io.h"
 #include "core/formats/image_io_module.h"
 
@@ -13,13 +13,13 @@ namespace {
 const ImageIoModule& module(const std::string& path, ErrorKind kind) {
   static const ImageIoModule* loaded = [&] {
     // found beside the program or in ../lib/alcove, by the program's run path
-    void* library = ::dlopen(kImageIoFile, RTLD_NOW | RTLD_LOCAL);
-    void* symbol = library ? ::dlsym(library, kImageIoSymbol) : nullptr;
+    std::string why;
+    void* symbol = symbol_of(kImageIoFile, kImageIoSymbol, why);
     if (!symbol)
       fail(kind,
            "{}: to read a picture that is no EXR, and to draw debug views, Alcove needs {}, which is built where "
            "OpenImageIO is installed (Debian package libopenimageio-dev): {}",
-           path, kImageIoFile, ::dlerror());
+           path, kImageIoFile, why);
     return static_cast<const ImageIoModule*>(symbol);
   }();
   return *loaded;

@@ -12,10 +12,4 @@ std::vector<FileOption> plane_file_options() {
   return options;
 }
 
-std::vector<std::string> input_files(const InputSettings& input) {
-  std::vector<std::string> files{input.camera};
-  for (const auto& file : plane_file_options()) files.push_back(input.*file.path);
-  return files;
-}
-
 }  // namespace alcove

@@ -100,7 +100,4 @@ static_assert(rows_are_in_order());
 /// Every option that names a file of planes, INPUT first.
 std::vector<FileOption> plane_file_options();
 
-/// All files that a frame reads; empty where there is none.
-std::vector<std::string> input_files(const InputSettings& input);
-
 }  // namespace alcove

@@ -12,7 +12,7 @@
 #include "core/chain/compute.h"
 #include "core/formats/image_io.h"
 #include "core/frame/evidence.h"
-#include "core/frame/raw_plane.h"
+#include "core/frame/input_files.h"
 
 namespace alcove {
 namespace {

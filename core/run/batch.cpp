@@ -3,20 +3,24 @@
 #include "core/run/batch.h"
 
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
 #include <optional>
 #include <set>
-#include <thread>
 #include <unordered_map>
+#include <unordered_set>
 
 #include "core/base/error.h"
 #include "core/base/estimator_facts.h"
 #include "core/base/file.h"
+#include "core/base/system.h"
+#include "core/base/version.h"
+#include "core/chain/aov.h"
+#include "core/chain/chain.h"
 #include "core/formats/color.h"
 #include "core/frame/settle.h"
 #include "core/run/check.h"
 #include "core/run/digest.h"
+#include "core/run/memory_plan.h"
 #include "core/run/pipeline.h"
 #include "core/run/resume.h"
 
@@ -25,7 +29,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// on a GPU, beyond the threads: frames that wait for it while others are read and written
+// On a GPU there are so many frames more than threads: they wait for it while others are read and written.
 constexpr int kSpareLanes = 2;
 
 /// No output is an input, or another output.
@@ -78,25 +82,16 @@ std::optional<FrameSource> settle_sequence(const FramePlan& plan) {
   return best;
 }
 
-int thread_count(const DeviceSettings& settings) {
-  return settings.threads > 0 ? settings.threads : int(std::max(1u, std::thread::hardware_concurrency()));
-}
+int thread_count(const DeviceSettings& settings) { return settings.threads > 0 ? settings.threads : core_count(); }
 
-/// Frames that memory allows at once, of those that are left and at most `most`.
-int frames_at_once(const std::optional<FrameSource>& source, const Settings& settings, std::size_t frames, int most) {
-  if (!source || frames < 2) return 1;
-  const std::uint64_t frame_bytes = pixel_memory(*source, settings).bytes * source->file_data.pixels();
-  return int(std::clamp<std::uint64_t>(memory_for_frames(settings.device) / std::max<std::uint64_t>(1, frame_bytes), 1,
-                                       std::min<std::uint64_t>(std::uint64_t(most), frames)));
-}
-
-/// Cores that a frame's own threads may take.
+/// Divides the cores among the frames in flight: what is left for the threads of one frame. `is_chosen` says that the
+/// user named the number of threads.
 void share_cores(int threads, int lanes, bool is_chosen) {
   set_exr_threads(lanes == 1 ? threads : std::max(0, threads - lanes));
-  // lavapipe's own variable; 0: no threads beside the one that submits.
   const int of_a_frame = threads / lanes;
+  // The variable is lavapipe's own; with 0 it makes no threads beside the one that submits.
   if (lanes > 1 || is_chosen)
-    ::setenv("LP_NUM_THREADS", std::to_string(of_a_frame > 1 || lanes == 1 ? of_a_frame : 0).c_str(), 1);
+    set_environment("LP_NUM_THREADS", std::to_string(of_a_frame > 1 || lanes == 1 ? of_a_frame : 0));
 }
 
 /// A run from its plan to its report.
@@ -116,13 +111,10 @@ class Batch {
       first_camera_ = first.input.camera;
     }
     const std::vector<int> wanted = without_whole();
-    if (watch_.begin) watch_.begin(report_, int(wanted.size()) + report_.kept);
-    for (const auto& frame : report_.frames)
-      if (watch_.frame) watch_.frame(frame);
+    if (watch_.begin) watch_.begin(report_, int(plan_.frames().size()));
+    tell_kept(wanted);
     if (!wanted.empty()) compute(wanted);
-    std::unordered_map<int, std::size_t> place;
-    for (const int frame : plan_.frames()) place.emplace(frame, place.size());
-    std::ranges::sort(report_.frames, {}, [&](const FrameReport& frame) { return place.at(frame.frame); });
+    sort_reports();
     report_.dropped = int(plan_.frames().size()) - report_.done - report_.failed - report_.kept;
     report_.wall_s = wall.ms() / 1000;
     if (!settings_.output.stats.empty()) write_whole(settings_.output.stats, stats_json(report_));
@@ -130,72 +122,105 @@ class Batch {
   }
 
  private:
-  /// The frames that are left to compute; the others are in the report.
-  std::vector<int> without_whole() {
+  /// The frames that are left to compute: without those whose outputs an earlier run has left whole.
+  std::vector<int> without_whole() const {
     if (!settings_.frames.resume || settings_.frames.overwrite) return plan_.frames();
     std::vector<int> wanted;
-    for (const int frame : plan_.frames()) {
+    std::ranges::copy_if(plan_.frames(), std::back_inserter(wanted), [&](int frame) {
       const Settings settings = plan_.at(frame);
-      if (!has_whole_outputs(settings,
-                             settings.input.camera == first_camera_ ? report_.options : options_digest(settings))) {
-        wanted.push_back(frame);
-        continue;
-      }
+      const bool has_own_camera = settings.input.camera != first_camera_;
+      return !has_whole_outputs(settings, has_own_camera ? options_digest(settings) : report_.options);
+    });
+    return wanted;
+  }
+
+  /// Tells of the frames that are not wanted any more.
+  void tell_kept(const std::vector<int>& wanted) {
+    const std::unordered_set<int> computed(wanted.begin(), wanted.end());
+    for (const int frame : plan_.frames()) {
+      if (computed.contains(frame)) continue;
+      const Settings settings = plan_.at(frame);
       FrameReport report;
       report.frame = frame;
       report.state = FrameState::kept;
       report.input = main_input(settings.input);
       report.output = settings.output.output;
-      report_.frames.push_back(report);
       report_.kept++;
+      if (watch_.frame) watch_.frame(report);
+      keep(std::move(report));
     }
-    return wanted;
+  }
+
+  /// Into the order of the plan: frames that are kept, or were computed on a second device, were told of earlier or
+  /// later.
+  void sort_reports() {
+    std::unordered_map<int, std::size_t> place;
+    for (const int frame : plan_.frames()) place.emplace(frame, place.size());
+    std::ranges::sort(report_.frames, {}, [&](const FrameReport& frame) { return place.at(frame.frame); });
   }
 
   void compute(const std::vector<int>& frames) {
     const auto settled = plan_.is_sequence() ? settle_sequence(plan_) : std::nullopt;
     if (settled)
-      for (const auto* said : {&settled->suspicious, &settled->notes})
-        notes_of_all_.insert(notes_of_all_.end(), said->begin(), said->end());
-    const int threads = thread_count(settings_.device);
-    const int count = frames_at_once(settled, settings_, frames.size(), threads),
-              gpu_count = frames_at_once(settled, settings_, frames.size(), threads + kSpareLanes);
-    share_cores(threads, count, settings_.device.threads > 0);
+      for (const auto* known : {&settled->suspicious, &settled->notes})
+        notes_of_all_.insert(notes_of_all_.end(), known->begin(), known->end());
     std::optional<DisplayTransform> transform;
     if (shows_composite(settings_.output)) transform.emplace(settings_.output.ocio);
     RunContext run{
-        plan_,      settled ? &*settled : nullptr, transform ? &*transform : nullptr, {report_.options, ""}, {},
-        watch_.stop};
-    run_on_device(run, frames, count, gpu_count);
+        plan_, settled ? &*settled : nullptr, transform ? &*transform : nullptr, {report_.options, ""}, watch_.stop};
+
+    run_on_device(run, frames);
     if (!lost_) return;
     const Error loss = *std::exchange(lost_, std::nullopt);
     std::vector<int> left;
-    std::ranges::copy_if(frames, std::back_inserter(left), [&](int frame) {
-      return std::ranges::find(report_.frames, frame, &FrameReport::frame) == report_.frames.end();
-    });
-    run_on_device(run, left, count, gpu_count);
+    std::ranges::copy_if(frames, std::back_inserter(left), [&](int frame) { return !ended_.contains(frame); });
+    run_on_device(run, left);
     if (lost_)
       report_.stop =
           Error(ErrorKind::device, fmt::format("{}, and so was a fresh one: {}", loss.what(), lost_->what()));
   }
 
-  void run_on_device(RunContext& run, const std::vector<int>& frames, int count, int gpu_count) {
+  /// Frames that are computed at once, of so many that are left.
+  int lanes_for(const RunContext& run, std::size_t frames, const RunMemory& memory, int most) const {
+    if (!run.settled || frames < 2) return 1;
+    const std::uint64_t room =
+        frames_in(memory, pixel_memory(*run.settled, settings_), run.settled->file_data.pixels());
+    return int(std::min({room, std::uint64_t(frames), std::uint64_t(most)}));
+  }
+
+  void run_on_device(RunContext& run, const std::vector<int>& frames) {
     const DeviceSettings& d = settings_.device;
-    Lanes lanes({d.device, d.require_gpu, d.validate, !d.no_pipeline_cache}, count, gpu_count);
+    // A CPU device reads its number of threads when it is made, and so before anybody knows whether it is one.
+    const int threads = thread_count(d);
+    const RunMemory of_host{host_memory_for_frames(d), Room::kEndless};
+    const int cpu_lanes = lanes_for(run, frames.size(), of_host, threads);
+    share_cores(threads, cpu_lanes, d.threads > 0);
+    Lanes lanes({d.device, d.require_gpu, d.validate, !d.no_pipeline_cache}, cpu_lanes);
+
     const gpu::DeviceInfo& device = lanes.device().info();
+    const bool is_cpu = device.type == gpu::DeviceType::cpu;
+    const RunMemory memory = memory_for_frames(d, device);
+    if (!is_cpu) lanes.set_count(lanes_for(run, frames.size(), memory, threads + kSpareLanes));
     report_.device = run.provenance.device = device.name;
-    report_.on_cpu_by_default = device.type == gpu::DeviceType::cpu && d.device == "auto";
+    report_.on_cpu_by_default = is_cpu && d.device == "auto";
     report_.at_once = lanes.count();
-    run.room = {memory_for_frames(d) / std::uint64_t(lanes.count()), device.buffer_bytes};
-    run_pipeline(lanes, run, frames, [&](FrameReport&& frame) { return take(std::move(frame)); });
+
+    run_pipeline(lanes, run, room_of_lane(memory, lanes.count(), device), frames,
+                 {[this](const FrameReport& frame) { return ends(frame); },
+                  [this](FrameReport&& frame) { take(std::move(frame)); }});
+    report_.at_once = lanes.count();
     if (lanes.validation_messages())
       fail(ErrorKind::device, "--validate: the validation layer reported {} messages", lanes.validation_messages());
   }
 
-  /// Whether the run goes on.
-  bool take(FrameReport&& frame) {
+  /// Whether no frame is begun after this one. Called by any thread.
+  bool ends(const FrameReport& frame) const {
+    return frame.device_lost || (frame.state == FrameState::failed && !settings_.frames.keep_going);
+  }
+
+  void take(FrameReport&& frame) {
     if (frame.device_lost) lost_ = frame.error;
-    if (frame.state == FrameState::dropped || frame.device_lost) return !lost_;
+    if (frame.state == FrameState::dropped || frame.device_lost) return;
     if (frame.state == FrameState::done) {
       report_.done++;
       for (const auto& note : std::exchange(notes_of_all_, {}))
@@ -206,18 +231,23 @@ class Batch {
       report_.failed_frames.push_back(frame.frame);
       if (!settings_.frames.keep_going && !report_.stop) report_.stop = frame.error;
     }
+    ended_.insert(frame.frame);
     if (watch_.frame) watch_.frame(frame);
-    if (settings_.output.stats.empty()) frame.passes.clear(), frame.passes.shrink_to_fit();
-    report_.frames.push_back(std::move(frame));
-    return !report_.stop && !lost_;
+    keep(std::move(frame));
+  }
+
+  /// Reports are kept for --stats alone, so that the memory of a run does not grow with its frames without it.
+  void keep(FrameReport&& frame) {
+    if (!settings_.output.stats.empty()) report_.frames.push_back(std::move(frame));
   }
 
   const Settings& settings_;
   const RunWatch& watch_;
   const FramePlan plan_;
   std::string first_camera_;
-  std::optional<Error> lost_;              // the device
-  std::vector<std::string> notes_of_all_;  // of how a sequence is read; the first frame that is done carries them
+  std::optional<Error> lost_;              // why the device was lost
+  std::unordered_set<int> ended_;          // frames that were told of
+  std::vector<std::string> notes_of_all_;  // on how the sequence is read; the first frame that is done carries them
   RunReport report_;
 };
 

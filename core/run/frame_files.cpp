@@ -9,7 +9,6 @@
 #include "core/base/estimator_facts.h"
 #include "core/base/version.h"
 #include "core/chain/aov.h"
-#include "core/formats/image_io.h"
 #include "core/frame/settle.h"
 #include "core/run/pictures.h"
 
@@ -84,21 +83,6 @@ ExrOutput composite_file(const FrameSource& source, const OutputSettings& settin
   for (std::size_t c = 0; c < source[RawPlane::beauty].size(); c++)
     output.planes.push_back({names[c], type_of(source, source[RawPlane::beauty][c]), {}});
   return output;
-}
-
-/// The display window of `planes` planes, interleaved; black where there are no pixels.
-std::vector<float> displayed(const FrameSource& source, std::span<const float> pixels, int planes) {
-  const Window data = written_of(source), &display = source.display;
-  std::vector<float> interleaved(display.pixels() * std::size_t(planes));
-  for (int y = std::max(data.y, display.y); y < std::min(data.y + data.height, display.y + display.height); y++)
-    for (int x = std::max(data.x, display.x); x < std::min(data.x + data.width, display.x + display.width); x++)
-      for (int c = 0; c < planes; c++)
-        interleaved[(std::size_t(y - display.y) * std::size_t(display.width) + std::size_t(x - display.x)) *
-                        std::size_t(planes) +
-                    std::size_t(c)] =
-            pixels[std::size_t(c) * data.pixels() + std::size_t(y - data.y) * std::size_t(data.width) +
-                   std::size_t(x - data.x)];
-  return interleaved;
 }
 
 /// Fails with ErrorKind::input where a frame lacks what an output is made from.
@@ -198,21 +182,5 @@ void FrameWriter::finish() {
 }
 
 std::string made_by(const std::string& options, const std::string& inputs) { return options + " " + inputs; }
-
-void write_pictures(const FrameSource& source, const FrameOutputs& outputs, const DisplayTransform* transform,
-                    const OutputSettings& settings, const Provenance& provenance) {
-  const std::string text = made_by(provenance.options, provenance.inputs);
-  for (const auto& plane : outputs.debug)
-    write_debug_view(debug_path(settings, *plane.view), *plane.view, plane.size.x, plane.size.y,
-                     plane.values->as<float>(), text);
-  if (settings.preview.empty()) return;
-  // The composite through the view transform; AO by itself is data, and shown as it is.
-  const int planes = outputs.composite ? 3 : 1;
-  const auto shown =
-      cropped((outputs.composite ? outputs.composite : outputs.ao)->as<float>(), source.data, written_of(source));
-  auto pixels = displayed(source, shown, planes);
-  if (transform) transform->apply(pixels);
-  write_png(settings.preview, source.display.width, source.display.height, planes, pixels, text);
-}
 
 }  // namespace alcove

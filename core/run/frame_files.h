@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "core/chain/chain.h"
-#include "core/formats/color.h"
 #include "core/formats/exr.h"
 #include "core/frame/gbuffer.h"
 #include "core/run/region.h"
@@ -22,7 +21,7 @@ FrameSource open_frame(const Settings& settings, int frame);
 /// What is written of a frame: its region, or all of it.
 const Window& written_of(const FrameSource& source);
 
-/// The planes within source.data, in upload buffers, and what they mean. Settles what is open.
+/// Reads the planes within source.data into upload buffers, and says what they mean. Settles what is open.
 FrameInputs load_frame(gpu::Recorder& gpu, FrameSource& source, const Settings& settings, int frame);
 
 /// What the header of an output says of its making.
@@ -31,10 +30,10 @@ struct Provenance {
   std::string inputs = {};      // see identity_of_inputs()
 };
 
-/// The same of what a picture says: whoever finds it there need not make the picture again.
+/// The text that tells in a picture what it was made with: whoever finds it there need not make the picture again.
 std::string made_by(const std::string& options, const std::string& inputs);
 
-/// What was computed over a window, plane by plane: the AO file's channels, then the composite's.
+/// The results over a window, plane by plane: the AO file's channels, then the composite's.
 std::vector<std::span<const float>> result_planes(const FrameOutputs& outputs, const Window& computed,
                                                   const OutputSettings& settings);
 
@@ -49,12 +48,7 @@ class FrameWriter {
 
  private:
   std::vector<ExrWriter> files_;
-  std::vector<std::size_t> planes_;  // of each file
+  std::vector<std::size_t> planes_;  // the number of planes of each file
 };
-
-/// Preview and debug views of a frame that was computed at once, over source.data. transform: for a composite; may be
-/// null.
-void write_pictures(const FrameSource& source, const FrameOutputs& outputs, const DisplayTransform* transform,
-                    const OutputSettings& settings, const Provenance& provenance);
 
 }  // namespace alcove

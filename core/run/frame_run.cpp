@@ -9,9 +9,10 @@
 #include "core/base/error.h"
 #include "core/base/estimator_facts.h"
 #include "core/frame/settle.h"
-#include "core/run/digest.h"
+#include "core/run/batch.h"
+#include "core/run/frame_tally.h"
+#include "core/run/pictures.h"
 #include "core/run/resume.h"
-#include "core/run/scale_notes.h"
 
 namespace alcove {
 namespace {
@@ -21,8 +22,15 @@ struct Dropped {};
 
 class FrameRun {
  public:
-  FrameRun(Lane& lane, const RunContext& run, int frame, FrameReport& report)
-      : gpu_(lane.gpu), last_(lane.last), run_(run), frame_(frame), settings_(run.plan.at(frame)), report_(report) {
+  FrameRun(Lane& lane, const RunContext& run, const Room& room, int frame, FrameReport& report)
+      : gpu_(lane.gpu),
+        last_(lane.last),
+        run_(run),
+        room_(room),
+        frame_(frame),
+        settings_(run.plan.at(frame)),
+        report_(report),
+        tally_(report) {
     report.frame = frame;
     report.input = main_input(settings_.input);
     report.output = settings_.output.output;
@@ -31,26 +39,25 @@ class FrameRun {
   void run() {
     const Stopwatch total;
     go_on();
-    FrameSource source = read();
-    const auto pixel = pixel_memory(source, settings_);
-    if (fits(source.data, pixel, run_.room))
+    FrameSource source = open();
+    require_numbered_lines(source, settings_.estimator);
+    const WindowLimits limits{pixel_memory(source, settings_), room_, longest_side(settings_.estimator)};
+    if (limits.allow(source.data))
       run_whole(source);
     else
-      run_tiles(source, pixel);
-    report_.pixels = report_.pixels ? report_.pixels : source.data.pixels();
-    note_counts(source);
-    for (const auto* said : {&source.suspicious, &source.notes})
-      report_.notes.insert(report_.notes.begin(), said->begin(), said->end());
+      run_tiles(source, limits);
+    tally_.finish(source, settings_.estimator);
     report_.total_ms = total.ms();
   }
 
  private:
+  /// Ends the frame here where the run is to stop.
   void go_on() const {
     if (run_.stop && run_.stop()) throw Dropped{};
   }
 
-  /// Headers, and what is to be computed: source.data.
-  FrameSource read() {
+  /// Reads the headers, and finds the window that is to be computed: source.data.
+  FrameSource open() {
     const Stopwatch reading;
     FrameSource source = open_frame(settings_, frame_);
     if (run_.settled) settle_like(source, *run_.settled);
@@ -63,52 +70,26 @@ class FrameRun {
   }
 
   /// Reads and computes source.data. reuses: what is as in the frame before is not computed again.
-  FrameOutputs compute(FrameSource& source, const OutputSettings& output, bool reuses) {
+  FrameOutputs compute(FrameSource& source, bool reuses) {
+    tally_.begin(source.data);
     const Stopwatch reading;
     FrameInputs inputs = load_frame(gpu_, source, settings_, frame_);
-    sample_.add(inputs);
     const bool is_same = reuses && last_.is_same(gpu_, inputs, settings_.estimator);
     if (!reuses) last_.forget();
+    tally_.add_inputs(inputs);
     report_.read_ms += reading.ms();
+
     go_on();
-    FrameOutputs outputs = is_same ? last_.outputs() : run_chain(gpu_, inputs, settings_.estimator, output);
+    const FrameOutputs outputs =
+        is_same ? last_.outputs() : run_chain(gpu_, inputs, settings_.estimator, settings_.output);
     if (!is_same) {
       gpu_.run();
-      add_passes();
+      tally_.add_passes(gpu_.passes());
     }
     if (reuses) last_.keep(outputs);
-    const auto counts = outputs.counts->as<FrameCounts>()[0];
-    counts_.sky += counts.sky;
-    counts_.repaired_depth += counts.repaired_depth;
-    counts_.repaired_normals += counts.repaired_normals;
-    counts_.repaired_material += counts.repaired_material;
-    counts_.repaired_beauty += counts.repaired_beauty;
-    report_.pixels += source.data.pixels();
-    has_ao_ = outputs.ao;
-    if (outputs.squares)
-      for (const vec2& tile : outputs.squares->as<const vec2>())
-        report_.error_squares += tile.x, report_.error_pixels += tile.y;
-    if (outputs.tiles) {
-      const auto tiles = outputs.tiles->as<TileCounts>()[0];
-      report_.tiles.sky += tiles.sky;
-      report_.tiles.proved += tiles.open;
-      report_.tiles.tolerated += tiles.tolerated;
-      report_.tiles.kept += tiles.kept + (is_same ? tiles.listed : 0);
-      report_.tiles.computed += is_same ? 0 : tiles.listed;
-    }
+    tally_.add_outputs(outputs, source.data, is_same);
     go_on();
     return outputs;
-  }
-
-  void add_passes() {
-    for (std::size_t i = 0; i < gpu_.passes().size(); i++) {
-      const gpu::PassTime& pass = gpu_.passes()[i];
-      if (i >= report_.passes.size()) report_.passes.push_back({pass.name});
-      report_.passes[i].ms += pass.ms;
-      report_.passes[i].bytes_read += pass.bytes_read;
-      report_.passes[i].bytes_written += pass.bytes_written;
-      report_.compute_ms += pass.ms;
-    }
   }
 
   Provenance provenance() const {
@@ -118,13 +99,13 @@ class FrameRun {
   }
 
   void run_whole(FrameSource& source) {
-    const FrameOutputs outputs =
-        compute(source, settings_.output, run_.plan.frames().size() > 1 && !settings_.estimator.no_skip);
+    const bool reuses = run_.plan.frames().size() > 1 && !settings_.estimator.no_skip;
+    const FrameOutputs outputs = compute(source, reuses);
     const Stopwatch writing;
-    std::vector<std::vector<float>> kept;
+    std::vector<std::vector<float>> regions;
     auto planes = result_planes(outputs, source.data, settings_.output);
     for (auto& plane : planes)
-      if (source.region) plane = kept.emplace_back(cropped(plane, source.data, *source.region));
+      if (source.region) plane = regions.emplace_back(cropped(plane, source.data, *source.region));
     const Provenance by = provenance();
     FrameWriter writer(source, settings_, by);
     writer.write(planes);
@@ -133,28 +114,19 @@ class FrameRun {
     report_.write_ms += writing.ms();
   }
 
-  void run_tiles(FrameSource& source, const PixelMemory& pixel) {
-    if (!settings_.output.preview.empty() || !settings_.output.debug.empty())
-      fail(ErrorKind::device,
-           "{}: a frame this large is computed in tiles, and {} needs it whole: allow more --memory, or use another "
-           "--device",
-           report_.input, settings_.output.preview.empty() ? "--debug" : "--preview");
+  void run_tiles(FrameSource& source, const WindowLimits& limits) {
+    refuse_pictures(source, limits);
     const Window whole = written_of(source);
     const Stopwatch reading;
     if (!source.settled) settle_by_rows(source, settings_.input);
     const Surroundings surroundings(source, settings_, whole);
     report_.read_ms += reading.ms();
-    const auto rows = tiles_of(whole, surroundings, pixel, run_.room, source);
+
+    const auto rows = tiles_of(whole, surroundings, limits, source);
     FrameWriter writer(source, settings_, provenance());
     report_.parts = 0;
     for (const auto& row : rows) {
-      std::vector<std::vector<float>> planes;
-      for (const auto& tile : row) {
-        source.data = surroundings.around(tile);
-        add_tile(result_planes(compute(source, settings_.output, false), source.data, settings_.output), source.data,
-                 tile, row, planes);
-        report_.parts++;
-      }
+      const auto planes = compute_row(source, surroundings, row);
       const Stopwatch writing;
       writer.write(std::vector<std::span<const float>>(planes.begin(), planes.end()));
       report_.write_ms += writing.ms();
@@ -162,6 +134,26 @@ class FrameRun {
     const Stopwatch writing;
     writer.finish();
     report_.write_ms += writing.ms();
+  }
+
+  /// Pictures show a frame on a scale of its own, which no tile knows.
+  void refuse_pictures(const FrameSource& source, const WindowLimits& limits) const {
+    if (settings_.output.preview.empty() && settings_.output.debug.empty()) return;
+    fail(ErrorKind::device, "{}: a frame this large is computed in tiles, and {} needs it whole: leave it out, or {}",
+         report_.input, settings_.output.preview.empty() ? "--debug" : "--preview", limits.mended_by(source.data));
+  }
+
+  /// The planes of the results over one row of tiles.
+  std::vector<std::vector<float>> compute_row(FrameSource& source, const Surroundings& surroundings,
+                                              const std::vector<Window>& row) {
+    std::vector<std::vector<float>> planes;
+    for (const auto& tile : row) {
+      source.data = surroundings.around(tile);
+      const FrameOutputs outputs = compute(source, false);
+      add_tile(result_planes(outputs, source.data, settings_.output), source.data, tile, row, planes);
+      report_.parts++;
+    }
+    return planes;
   }
 
   /// Puts a tile of every result into the row that it is a part of.
@@ -180,54 +172,23 @@ class FrameRun {
     }
   }
 
-  void note_counts(const FrameSource& source) {
-    auto& notes = report_.notes;
-    if (has_ao_) notes = sample_.notes(settings_.estimator, source.file_data.width, source.file_data.height);
-    report_.sky_pixels = counts_.sky;
-    report_.repaired_pixels =
-        counts_.repaired_depth + counts_.repaired_normals + counts_.repaired_material + counts_.repaired_beauty;
-    if (has_ao_)
-      report_.samples_per_pixel =
-          samples_per_pixel(settings_.estimator) * double(report_.pixels - report_.sky_pixels) / double(report_.pixels);
-    if (counts_.repaired_depth)
-      notes.push_back(
-          fmt::format("{} pixels had a depth that is NaN or negative; they count as sky", counts_.repaired_depth));
-    if (counts_.repaired_normals)
-      notes.push_back(
-          fmt::format("{} pixels had no usable normal; it was reconstructed from depth", counts_.repaired_normals));
-    if (counts_.repaired_material)
-      notes.push_back(
-          fmt::format("{} pixels of the material AO were NaN or infinite; they count as 1", counts_.repaired_material));
-    if (counts_.repaired_beauty)
-      notes.push_back(fmt::format("{} pixels of the beauty were NaN or infinite; they are 0 in the composite",
-                                  counts_.repaired_beauty));
-    if (source[RawPlane::normal].empty())
-      notes.push_back(
-          "there is no normal channel; normals were reconstructed from depth (--normal, --normal-channels)");
-    if (!source[RawPlane::beauty].empty() && source[RawPlane::indirect].empty())
-      notes.push_back(
-          "the frame has no indirect diffuse part: the composite is the whole beauty times AO, which dims direct light "
-          "too");
-  }
-
   gpu::Recorder& gpu_;
   LastFrame& last_;
   const RunContext& run_;
+  const Room& room_;
   int frame_;
   Settings settings_;
   FrameReport& report_;
-  FrameCounts counts_{};
-  DepthSample sample_;
-  bool has_ao_ = false;
+  FrameTally tally_;
 };
 
 }  // namespace
 
-FrameReport run_frame(Lane& lane, const RunContext& run, int frame) {
+FrameReport run_frame(Lane& lane, const RunContext& run, const Room& room, int frame) {
   FrameReport report;
   lane.gpu.abandon();  // what a frame that failed has left
   try {
-    FrameRun(lane, run, frame, report).run();
+    FrameRun(lane, run, room, frame, report).run();
     report.state = FrameState::done;
   } catch (const Dropped&) {
     report.state = FrameState::dropped;
@@ -237,6 +198,7 @@ FrameReport run_frame(Lane& lane, const RunContext& run, int frame) {
     report.device_lost = true;
   } catch (const Error& error) {
     report.state = FrameState::failed;
+    report.out_of_memory = dynamic_cast<const gpu::OutOfMemory*>(&error) != nullptr;
     // Devices and numbers know of no file.
     const bool may_be_without = error.kind() == ErrorKind::device || error.kind() == ErrorKind::usage;
     const bool is_named =

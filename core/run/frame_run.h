@@ -17,14 +17,13 @@ namespace alcove {
 /// What all frames of a run have in common.
 struct RunContext {
   const FramePlan& plan;
-  const FrameSource* settled = nullptr;         // as which all frames are read; null: each by itself
+  const FrameSource* settled = nullptr;         // all frames are read as this one; null: each by itself
   const DisplayTransform* transform = nullptr;  // for the preview of a composite
-  Provenance provenance;                        // of settings without a camera file a frame
-  Room room;                                    // for this frame
+  Provenance provenance;                        // of settings whose camera file is the same for all frames
   std::function<bool()> stop = {};              // asked between steps: true drops the frame
 };
 
-/// Where one frame after the other is computed: buffers, and what they still hold.
+/// Where one frame after the other is computed: its buffers, and what they still hold.
 struct Lane {
   explicit Lane(gpu::Device& device) : gpu(device) {}
 
@@ -32,7 +31,7 @@ struct Lane {
   LastFrame last;
 };
 
-/// Never fails: what went wrong is in the report.
-FrameReport run_frame(Lane& lane, const RunContext& run, int frame);
+/// Reads, computes and writes one frame within the room. Never fails: what went wrong is in the report.
+FrameReport run_frame(Lane& lane, const RunContext& run, const Room& room, int frame);
 
 }  // namespace alcove

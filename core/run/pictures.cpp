@@ -1,33 +1,30 @@
-// Scales for the debug views; core/formats/image_io.cpp draws them.
+// Puts numbers on a scale of colours, and frames into the display window.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/run/pictures.h"
-
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <utility>
-#include <vector>
 
 #include "core/base/file.h"
+#include "core/chain/debug_view.h"
 #include "core/formats/image_io.h"
 
 namespace alcove {
 namespace {
 
-/// The part of the surfaces beyond either end of a percentile scale: so much may lie beyond a window without hiding the
+/// The part of the surfaces beyond either end of a percentile scale. So much may lie beyond a window without hiding the
 /// room.
 constexpr double kEnds = 0.03;
 
-/// The number below which this part of them lies; they are put into another order.
+/// The number below which this part of the values lies. Puts the values into another order.
 float percentile(std::vector<float>& values, double part) {
   const auto at = values.begin() + std::ptrdiff_t(part * double(values.size() - 1));
   std::ranges::nth_element(values, at);
   return *at;
 }
 
-/// The ends of the scale.
+/// The values at the two ends of the scale.
 std::pair<float, float> range_of(const DebugView& view, std::span<const float> values) {
   if (view.scale == DebugScale::fixed || view.scale == DebugScale::fixed_logarithmic) return {view.low, view.high};
   std::vector<float> surfaces;
@@ -43,8 +40,7 @@ std::vector<float> places_of(const DebugView& view, std::span<const float> value
   const auto on_scale = [&](float x) {
     return logarithmic ? std::log(std::max(std::abs(x), std::numeric_limits<float>::min())) : x;
   };
-  const float from = on_scale(low);
-  const float range = on_scale(high) - from;
+  const float from = on_scale(low), range = on_scale(high) - from;
   std::vector<float> places(values.size());
   std::ranges::transform(values, places.begin(), [&](float x) {
     if (x >= kSkyDepth) return std::numeric_limits<float>::quiet_NaN();
@@ -53,8 +49,7 @@ std::vector<float> places_of(const DebugView& view, std::span<const float> value
   return places;
 }
 
-}  // namespace
-
+/// Writes the picture of one view. `values` holds one number per pixel, kSkyDepth for sky.
 void write_debug_view(const std::string& path, const DebugView& view, int width, int height,
                       std::span<const float> values, const std::string& made_by) {
   const auto [low, high] = range_of(view, values);
@@ -64,6 +59,39 @@ void write_debug_view(const std::string& path, const DebugView& view, int width,
                     view.title, text("<= ", low), text(">= ", high),
                     made_by,    view.is_grey};
   write_whole(path, encode_chart(path, chart));
+}
+
+/// The display window of `planes` planes, interleaved; black where there are no pixels.
+std::vector<float> displayed(const FrameSource& source, std::span<const float> pixels, int planes) {
+  const Window data = written_of(source), &display = source.display;
+  std::vector<float> interleaved(display.pixels() * std::size_t(planes));
+  for (int y = std::max(data.y, display.y); y < std::min(data.y + data.height, display.y + display.height); y++)
+    for (int x = std::max(data.x, display.x); x < std::min(data.x + data.width, display.x + display.width); x++)
+      for (int c = 0; c < planes; c++)
+        interleaved[(std::size_t(y - display.y) * std::size_t(display.width) + std::size_t(x - display.x)) *
+                        std::size_t(planes) +
+                    std::size_t(c)] =
+            pixels[std::size_t(c) * data.pixels() + std::size_t(y - data.y) * std::size_t(data.width) +
+                   std::size_t(x - data.x)];
+  return interleaved;
+}
+
+}  // namespace
+
+void write_pictures(const FrameSource& source, const FrameOutputs& outputs, const DisplayTransform* transform,
+                    const OutputSettings& settings, const Provenance& provenance) {
+  const std::string text = made_by(provenance.options, provenance.inputs);
+  for (const auto& plane : outputs.debug)
+    write_debug_view(debug_path(settings, *plane.view), *plane.view, plane.size.x, plane.size.y,
+                     plane.values->as<float>(), text);
+  if (settings.preview.empty()) return;
+  // The composite through the view transform; AO by itself is data, and shown as it is.
+  const int planes = outputs.composite ? 3 : 1;
+  const auto shown =
+      cropped((outputs.composite ? outputs.composite : outputs.ao)->as<float>(), source.data, written_of(source));
+  auto pixels = displayed(source, shown, planes);
+  if (transform) transform->apply(pixels);
+  write_png(settings.preview, source.display.width, source.display.height, planes, pixels, text);
 }
 
 }  // namespace alcove

@@ -1,17 +1,17 @@
-// Pictures of debug views: how numbers become colours with a scale below them.
+// The pictures of a frame: its preview and its debug views.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <span>
-#include <string>
-
-#include "core/chain/debug_view.h"
+#include "core/chain/chain.h"
+#include "core/formats/color.h"
+#include "core/run/frame_files.h"
 
 namespace alcove {
 
-/// Writes the picture, whole or not at all. `values`: one number per pixel, kSkyDepth for sky. made_by: see
-/// encode_png(). Fails with ErrorKind::output.
-void write_debug_view(const std::string& path, const DebugView& view, int width, int height,
-                      std::span<const float> values, const std::string& made_by);
+/// Writes the preview and the debug views of a frame that was computed at once, over source.data; each picture is
+/// written whole or not at all. `transform` is for the preview of a composite, and may be null. Fails with
+/// ErrorKind::output.
+void write_pictures(const FrameSource& source, const FrameOutputs& outputs, const DisplayTransform* transform,
+                    const OutputSettings& settings, const Provenance& provenance);
 
 }  // namespace alcove

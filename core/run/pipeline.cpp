@@ -1,7 +1,8 @@
-// A frame's steps follow each other on one thread, frames run beside each other.
+// A frame's steps follow each other on one thread, and frames run beside each other.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/run/pipeline.h"
 
+#include <algorithm>
 #include <condition_variable>
 #include <exception>
 #include <map>
@@ -11,78 +12,174 @@
 namespace alcove {
 namespace {
 
-/// Threads that take the next frame until none is left. Whatever they hand to each other, and the reports in order,
-/// passes under one mutex.
+/// Threads that take the next frame until none is left, and the thread that tells of the frames in their order. What
+/// they hand to each other passes under one mutex, and nobody prints or computes while holding it.
 class Pipeline {
  public:
-  Pipeline(Lanes& lanes, const RunContext& run, std::span<const int> frames,
-           const std::function<bool(FrameReport&&)>& next)
-      : lanes_(lanes),
-        run_(run),
-        frames_(frames),
-        next_(next),
-        most_(std::size_t(lanes.count() > 1 ? 2 * lanes.count() : 1)) {}
+  Pipeline(Lanes& lanes, const RunContext& run, const Room& room, std::span<const int> frames,
+           const PipelineWatch& watch)
+      : lanes_(lanes), run_(run), frames_(frames), watch_(watch), room_(room), most_in_flight_(lanes.count()) {}
 
   void run() {
+    working_ = lanes_.count();
     {
-      std::vector<std::jthread> others;
-      while (int(others.size()) + 1 < lanes_.count()) others.emplace_back([this] { work(); });
-      work();
+      std::vector<std::jthread> workers;
+      for (int i = working_; i > 0; i--) workers.emplace_back([this] { work(); });
+      tell();
     }
     if (error_) std::rethrow_exception(error_);
   }
 
  private:
+  using Lock = std::unique_lock<std::mutex>;
+
+  // What each worker does.
+
   void work() {
     try {
-      while (const auto place = begin()) {
-        FrameReport report;
-        lanes_.with([&](Lane& lane) { report = run_frame(lane, run_, frames_[*place]); });
-        finish(*place, std::move(report));
-      }
+      while (const auto place = begin()) compute(*place);
     } catch (...) {
-      const std::lock_guard lock(mutex_);
-      if (!error_) error_ = std::current_exception();
-      ended_ = true;
-      told_one_.notify_all();
+      end_with(std::current_exception());
     }
+    const std::lock_guard lock(mutex_);
+    working_--;
+    changed_.notify_all();
   }
 
-  /// The next frame's place in the list.
+  /// The next frame's place in the list; nothing where no frame is to be begun.
   std::optional<std::size_t> begin() {
-    std::unique_lock lock(mutex_);
-    told_one_.wait(lock, [&] { return ended_ || begun_ == frames_.size() || begun_ < told_ + most_; });
+    Lock lock(mutex_);
+    changed_.wait(lock, [&] { return ended_ || begun_ == frames_.size() || in_flight_ < most_in_flight_; });
     if (ended_ || begun_ == frames_.size() || (run_.stop && run_.stop())) return {};
+    in_flight_++;
     return begun_++;
   }
 
-  void finish(std::size_t place, FrameReport&& report) {
-    const std::lock_guard lock(mutex_);
+  /// What is tried for one frame, and what became of it.
+  struct Attempt {
+    Room room;
+    bool was_alone = false;  // no other frame was in flight, and no buffers were left of earlier ones
+    std::vector<std::string> notes = {};
+    std::optional<Error> out_of_memory = {};
+  };
+
+  /// Computes a frame, again and again where the device has no memory for it and less at once may find some.
+  void compute(std::size_t place) {
+    Attempt attempt{room_now()};
+    FrameReport report;
+    do {
+      lanes_.with([&](Lane& lane) {
+        report = run_frame(lane, run_, attempt.room, frames_[place]);
+        return !report.out_of_memory;
+      });
+      if (report.out_of_memory) attempt.out_of_memory = report.error;
+    } while (report.out_of_memory && make_room(report.pixels_at_once, attempt));
+
+    if (report.state == FrameState::done)
+      report.notes.insert(report.notes.end(), attempt.notes.begin(), attempt.notes.end());
+    // That a frame cannot be cut any smaller is no help to who wants to know why it was cut.
+    const bool is_too_large = report.error && report.error->kind() == ErrorKind::device && !report.device_lost;
+    if (is_too_large && attempt.out_of_memory) report.error = attempt.out_of_memory;
+    finish(place, attempt.room, std::move(report));
+  }
+
+  Room room_now() {
+    const Lock lock(mutex_);
+    return room_;
+  }
+
+  /// After a frame has found no memory: fewer frames at once, then this one alone, then less of it at once. Waits until
+  /// the frame may be computed again. False where nothing is left that could be less.
+  bool make_room(std::uint64_t pixels, Attempt& attempt) {
+    Lock lock(mutex_);
+    // Of several frames that fail side by side only the first one halves their number.
+    const bool others_go = in_flight_ > most_in_flight_;
+    if (!others_go && most_in_flight_ > 1) {
+      attempt.notes.push_back(fmt::format("the device had no memory for {} frames at once; from here on it computes {}",
+                                          most_in_flight_, most_in_flight_ / 2));
+      most_in_flight_ /= 2;
+      lanes_.set_count(most_in_flight_);
+    } else if (!others_go && !attempt.was_alone) {
+      attempt.notes.push_back("the device had no memory for this frame at first; it was computed again");
+      attempt.was_alone = true;
+      lanes_.set_count(1);
+    } else if (!others_go) {
+      if (pixels < 2) return false;
+      attempt.notes.push_back(fmt::format(
+          "the device had no memory for {} pixels at once; now at most {} are computed at once", pixels, pixels / 2));
+      attempt.room.pixels = pixels / 2;
+    }
+    in_flight_--;
+    changed_.notify_all();
+    changed_.wait(lock, [&] { return error_ || in_flight_ < most_in_flight_; });
+    in_flight_++;
+    return !error_;
+  }
+
+  void finish(std::size_t place, const Room& room, FrameReport&& report) {
+    const Lock lock(mutex_);
+    in_flight_--;
+    // Later frames begin with what this one has learned.
+    if (report.state == FrameState::done) room_.pixels = std::min(room_.pixels, room.pixels);
+    if (watch_.ends(report)) ended_ = true;
     finished_.emplace(place, std::move(report));
-    for (; !finished_.empty() && finished_.begin()->first == told_; told_++)
-      if (!next_(std::move(finished_.extract(finished_.begin()).mapped()))) ended_ = true;
-    told_one_.notify_all();
+    changed_.notify_all();
+  }
+
+  void end_with(std::exception_ptr error) {
+    const Lock lock(mutex_);
+    if (!error_) error_ = std::move(error);
+    ended_ = true;
+    changed_.notify_all();
+  }
+
+  // What the thread does that runs the pipeline.
+
+  void tell() {
+    try {
+      while (auto report = next_report()) watch_.tell(std::move(*report));
+    } catch (...) {
+      end_with(std::current_exception());
+    }
+  }
+
+  /// The report of the first frame that was not told of; nothing once there is none any more.
+  std::optional<FrameReport> next_report() {
+    Lock lock(mutex_);
+    changed_.wait(lock, [&] { return finished_.contains(told_) || working_ == 0; });
+    const auto found = finished_.find(told_);
+    if (found == finished_.end()) return {};
+    told_++;
+    return std::move(finished_.extract(found).mapped());
   }
 
   Lanes& lanes_;
   const RunContext& run_;
   const std::span<const int> frames_;
-  const std::function<bool(FrameReport&&)>& next_;
-  // frames begun whose reports are not told: one that is done may have to wait for an earlier one; its lane does not
-  const std::size_t most_;
+  const PipelineWatch& watch_;
+
   std::mutex mutex_;  // of all below
-  std::condition_variable told_one_;
-  std::size_t begun_ = 0, told_ = 0;
-  std::map<std::size_t, FrameReport> finished_;  // not told yet
-  bool ended_ = false;
+  std::condition_variable changed_;
+  Room room_;                                    // of each frame in flight
+  int most_in_flight_;                           // frames
+  int in_flight_ = 0;                            // frames
+  int working_ = 0;                              // threads that may still finish a frame
+  std::size_t begun_ = 0;                        // frames
+  std::size_t told_ = 0;                         // frames
+  std::map<std::size_t, FrameReport> finished_;  // by place; not told of yet
+  bool ended_ = false;                           // no frame is begun any more
   std::exception_ptr error_;
 };
 
 }  // namespace
 
-Lanes::Lanes(const gpu::DeviceOptions& options, int count, int gpu_count) : options_(options) {
+Lanes::Lanes(const gpu::DeviceOptions& options, int count) : options_(options), count_(count) {
   devices_.push_back(std::make_unique<gpu::Device>(options));
-  count_ = device().info().type == gpu::DeviceType::cpu ? count : gpu_count;
+}
+
+int Lanes::count() const {
+  const std::lock_guard lock(mutex_);
+  return count_;
 }
 
 int Lanes::validation_messages() const {
@@ -91,29 +188,36 @@ int Lanes::validation_messages() const {
   return messages;
 }
 
-std::unique_ptr<Lane> Lanes::take() {
+void Lanes::set_count(int count) {
+  const std::lock_guard lock(mutex_);
+  count_ = count;
+  for (auto& place : free_) place.lane.reset();
+}
+
+Lanes::Place Lanes::take() {
   const std::lock_guard lock(mutex_);
   if (!free_.empty()) {
-    auto lane = std::move(free_.back());
+    Place place = std::move(free_.back());
     free_.pop_back();
-    return lane;
+    return place;
   }
-  if (made_ > 0 && device().info().type == gpu::DeviceType::cpu)
+  if (is_first_taken_ && device().info().type == gpu::DeviceType::cpu)
     devices_.push_back(std::make_unique<gpu::Device>(options_));
-  made_++;
-  return std::make_unique<Lane>(*devices_.back());
+  is_first_taken_ = true;
+  return {devices_.back().get(), nullptr};
 }
 
-void Lanes::with(const std::function<void(Lane&)>& function) {
-  auto lane = take();
-  function(*lane);
+void Lanes::with(const std::function<bool(Lane&)>& function) {
+  Place place = take();
+  if (!place.lane) place.lane = std::make_unique<Lane>(*place.device);
+  if (!function(*place.lane)) place.lane.reset();
   const std::lock_guard lock(mutex_);
-  free_.push_back(std::move(lane));
+  free_.push_back(std::move(place));
 }
 
-void run_pipeline(Lanes& lanes, const RunContext& run, std::span<const int> frames,
-                  const std::function<bool(FrameReport&&)>& next) {
-  Pipeline(lanes, run, frames, next).run();
+void run_pipeline(Lanes& lanes, const RunContext& run, Room room, std::span<const int> frames,
+                  const PipelineWatch& watch) {
+  Pipeline(lanes, run, room, frames, watch).run();
 }
 
 }  // namespace alcove

@@ -1,4 +1,4 @@
-// Frames in flight: while one is computed others are read and written.
+// Frames in flight: while one is computed, others are read and written.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -12,35 +12,52 @@
 
 namespace alcove {
 
-/// Where frames are computed: as many recorders, each with buffers that are kept, as there are frames in flight. A CPU
-/// device is made anew for each of them, so that every frame has a core of its own from its first byte to its last, and
-/// none waits for another; a GPU is shared.
+/// Where frames are computed: a lane for each frame in flight, whose buffers are kept from frame to frame. Each lane on
+/// a CPU has a device of its own, so that every frame has a core of its own from its first byte to its last, and none
+/// waits for another. A GPU is shared by all lanes.
 class Lanes {
  public:
-  /// As many as `count`, or on a GPU `gpu_count`.
-  Lanes(const gpu::DeviceOptions& options, int count, int gpu_count);
+  Lanes(const gpu::DeviceOptions& options, int count);
 
   const gpu::Device& device() const { return *devices_.front(); }
-  int count() const { return count_; }
+  int count() const;
   int validation_messages() const;
 
-  /// Runs the function with a lane that nobody else uses. Not more than count() at once.
-  void with(const std::function<void(Lane&)>& function);
+  /// Changes the number of lanes. The buffers of those that nobody uses are given back.
+  void set_count(int count);
+
+  /// Runs the function with a lane that nobody else uses. At most count() threads may do so at once. The function says
+  /// whether the lane keeps its buffers.
+  void with(const std::function<bool(Lane&)>& function);
 
  private:
-  std::unique_ptr<Lane> take();
+  struct Place {
+    gpu::Device* device;
+    std::unique_ptr<Lane> lane;  // null: without buffers
+  };
+  Place take();
 
   gpu::DeviceOptions options_;
   int count_;
-  std::mutex mutex_;
+  mutable std::mutex mutex_;  // of all that may change
   std::vector<std::unique_ptr<gpu::Device>> devices_;
-  std::vector<std::unique_ptr<Lane>> free_;
-  std::size_t made_ = 0;  // lanes
+  std::vector<Place> free_;
+  bool is_first_taken_ = false;
 };
 
-/// Runs the frames on the lanes, in any order, and hands on their reports in theirs. After `next` has answered false no
-/// frame is begun.
-void run_pipeline(Lanes& lanes, const RunContext& run, std::span<const int> frames,
-                  const std::function<bool(FrameReport&&)>& next);
+/// Who follows the frames of a pipeline.
+struct PipelineWatch {
+  /// Whether a report is the last: no frame is begun after it. Called by any thread.
+  std::function<bool(const FrameReport&)> ends;
+  /// Takes the reports in the order of the frames, on the thread that runs the pipeline. While it waits, for a terminal
+  /// that stands still, say, frames go on.
+  std::function<void(FrameReport&&)> tell;
+};
+
+/// Runs the frames on the lanes, in any order. Where the device has no memory for a frame, the number of lanes is
+/// halved, down to one, and then the window that is computed at once; the frame is computed again, and says so in a
+/// note. Later frames begin with what is left then.
+void run_pipeline(Lanes& lanes, const RunContext& run, Room room, std::span<const int> frames,
+                  const PipelineWatch& watch);
 
 }  // namespace alcove

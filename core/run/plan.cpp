@@ -1,4 +1,4 @@
-// Names with frame numbers, what is missing, chunks.
+// Finds frames by the names of their files, tells what is missing, and cuts chunks.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/run/plan.h"
 
@@ -9,18 +9,23 @@
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/chain/debug_view.h"
-#include "core/run/frame_files.h"
-#include "core/run/tiles.h"
 
 namespace alcove {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kEvidenceFrames = 8;  // looked at, at the most, for one that shows what the files do not say
+// The most frames that are looked at for one that shows what the files do not say.
+constexpr std::size_t kEvidenceFrames = 8;
 
-/// Every file that the settings name, inputs first.
-const std::vector<NamedPath>& named_paths() {
+bool exists(const std::string& path) {
+  std::error_code error;
+  return fs::exists(path, error);
+}
+
+}  // namespace
+
+std::span<const NamedPath> named_paths() {
   static const std::vector<NamedPath> paths = [] {
     std::vector<NamedPath> result;
     for (const auto& file : plane_file_options())
@@ -36,18 +41,6 @@ const std::vector<NamedPath>& named_paths() {
   }();
   return paths;
 }
-
-bool exists(const std::string& path) {
-  std::error_code error;
-  return fs::exists(path, error);
-}
-
-/// "shot.1001.exr" of one frame, "shot.1001.exr to shot.1100.exr" of several.
-std::string span_text(const std::string& first, const std::string& last) {
-  return first == last ? first : first + " to " + last;
-}
-
-}  // namespace
 
 FramePlan::FramePlan(const Settings& settings) : settings_(settings) {
   find_patterns();
@@ -140,10 +133,6 @@ int frame_number_of(const std::string& path) {
   return digits.empty() || digits.size() > 9 ? 0 : std::stoi(digits);
 }
 
-const std::string& main_input(const InputSettings& settings) {
-  return !settings.input.empty() ? settings.input : settings.depth.empty() ? settings.position : settings.depth;
-}
-
 std::vector<OutputFile> outputs_of(const OutputSettings& output) {
   std::vector<OutputFile> files{
       {"--output", output.output}, {"--composite", output.composite}, {"--preview", output.preview}};
@@ -164,38 +153,6 @@ std::vector<int> chunk_of(const std::vector<int>& frames, int chunk, int chunks)
     return frames.begin() + std::ptrdiff_t(frames.size() * std::size_t(i) / std::size_t(chunks));
   };
   return {at(chunk - 1), at(chunk)};
-}
-
-std::string plan_text(const Settings& settings) {
-  const FramePlan plan(settings);
-  std::string text;
-  const auto line = [&](const std::string& name, const std::string& value) {
-    text += fmt::format("{:<14}{}\n", name, value);
-  };
-  line("frames",
-       plan.frames().empty() ? "none" : fmt::format("{}: {}", plan.frames().size(), frames_text(plan.frames())));
-  if (!plan.missing().empty())
-    line("missing", fmt::format("{}: {}, left out", plan.missing().size(), frames_text(plan.missing())));
-  if (plan.frames().empty()) return text;
-  Settings first = plan.at(plan.frames().front()), last = plan.at(plan.frames().back());
-  for (const auto& path : named_paths())
-    if (!path.of(first).empty()) line(path.option, span_text(path.of(first), path.of(last)));
-
-  const FrameSource source = open_frame(first, plan.frames().front());
-  std::vector<std::string> channels;
-  for (const auto& plane : source.planes.entries)
-    for (const auto& channel : plane) channels.push_back(channel.channel);
-  line("channels", fmt::format("{}", fmt::join(channels, ", ")));
-  line("camera",
-       fmt::format("{}, {:.6g} x {:.6g} px {}", source.camera.orthographic ? "orthographic" : "perspective",
-                   source.camera.fx, source.camera.fy, source.camera.orthographic ? "a scene unit" : "focal length"));
-  const std::uint64_t bytes = pixel_memory(source, first).bytes * source.file_data.pixels(),
-                      all = memory_for_frames(first.device);
-  line("size", to_string(written_of(source)));
-  line("memory", fmt::format("{} MiB a frame, {} MiB for frames: {}", bytes >> 20, all >> 20,
-                             bytes > all ? "in tiles"
-                                         : fmt::format("up to {} at once", all / std::max<std::uint64_t>(1, bytes))));
-  return text;
 }
 
 }  // namespace alcove

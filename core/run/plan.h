@@ -3,11 +3,13 @@
 #pragma once
 
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "core/base/settings.h"
 #include "core/formats/sequence.h"
+#include "core/frame/input_files.h"
 #include "core/frame/raw_plane.h"
 
 namespace alcove {
@@ -19,6 +21,9 @@ struct NamedPath {
   bool is_output;
 };
 
+/// All files that settings can name for each frame, in the order in which people are told of them.
+std::span<const NamedPath> named_paths();
+
 /// A run's frames and the names of their files.
 class FramePlan {
  public:
@@ -29,13 +34,14 @@ class FramePlan {
   /// where no frame is left.
   explicit FramePlan(const Settings& settings);
 
-  bool is_sequence() const { return is_sequence_; }  // false: one frame, from names without a place for its number
-  /// To be computed, in order.
+  /// False for one frame, whose files' names have no place for its number.
+  bool is_sequence() const { return is_sequence_; }
+  /// The frames to compute, in order.
   const std::vector<int>& frames() const { return frames_; }
-  /// Left out, since an input is missing.
+  /// The frames that are left out, since an input is missing.
   const std::vector<int>& missing() const { return missing_; }
-  /// The first frames that there are of the whole sequence, whatever the chunk: what guesses are made by, so that all
-  /// chunks make the same.
+  /// The first frames that there are of the whole sequence, whatever the chunk. Guesses are made by them, so that all
+  /// chunks make the same guesses.
   const std::vector<int>& evidence() const { return evidence_; }
   /// The settings with the files of one frame.
   Settings at(int frame) const;
@@ -60,9 +66,6 @@ class FramePlan {
 /// The number at the end of a file name before its ending: shot.0042.exr is frame 42; 0 where there is none.
 int frame_number_of(const std::string& path);
 
-/// What a frame is called after: its INPUT, or else its depth or its positions.
-const std::string& main_input(const InputSettings& settings);
-
 /// All files that a frame writes.
 struct OutputFile {
   const char* option;
@@ -75,8 +78,5 @@ std::vector<OutputFile> reports_of(const OutputSettings& output);
 
 /// The parts of a list, as long as each other to within one frame. 1 <= chunk <= chunks.
 std::vector<int> chunk_of(const std::vector<int>& frames, int chunk, int chunks);
-
-/// What a run would do, for people: frames, files, size and memory. Opens the first frame's headers.
-std::string plan_text(const Settings& settings);
 
 }  // namespace alcove

@@ -1,4 +1,4 @@
-// Regions, and their surroundings by the nearest depth in them.
+// Finds the surroundings of a region by the nearest depth in it.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/run/region.h"
 
@@ -14,9 +14,14 @@
 namespace alcove {
 namespace {
 
-constexpr int kBlock = 64;  // px of a block of pixels whose nearest depth is kept
-// px: windows begin on the grid of the coarsest resolution, so that its pixels are the same ones
+constexpr int kBlock = 64;  // px of a side of the blocks whose nearest depths are kept
+// Windows begin at multiples of so many px, the grid of the coarsest resolution, so that its pixels are the same ones.
 constexpr int kGrid = 4;
+
+/// An angle close to a right one, in radians: beyond it the image of a sphere has no end.
+constexpr double kWidestAngle = 1.57;
+/// More pixels than any frame has.
+constexpr double kEverywhere = 1e9;
 
 Window grown(const Window& window, int margin_x, int margin_y, const Window& within) {
   const auto down = [](int x, int origin) { return origin + (x - origin) / kGrid * kGrid; };
@@ -27,7 +32,7 @@ Window grown(const Window& window, int margin_x, int margin_y, const Window& wit
   return {left, top, right - left, bottom - top};
 }
 
-/// How far a filter reaches: the denoiser over pixels of the estimate, and upsampling by two of them.
+/// How far filters reach, in px: the denoiser by pixels of the estimate, and upsampling by two of them.
 int filter_reach(const EstimatorSettings& settings) {
   const int denoised = settings.denoise == Denoise::none
                            ? 0
@@ -35,23 +40,23 @@ int filter_reach(const EstimatorSettings& settings) {
   return int(settings.resolution) * (denoised + (settings.resolution == Resolution::full ? 0 : 2));
 }
 
-/// How far lines of an exact search reach on beyond the sphere of the radius until they have the vertices of the whole
-/// frame; 0 without one.
+/// How far lines of an exact search reach beyond the sphere of the radius until they have the vertices of the whole
+/// frame, in px; 0 for other searches.
 int line_reach(const EstimatorSettings& settings) {
   return searches_exactly(settings) ? int(settings.resolution) * (kProfileRestart + 2) : 0;
 }
 
-/// Of a run that begins within reach of a receiver; a wider one is as good as endless, also as exact.comp rounds
-/// widths.
-constexpr double kWidestRun = 2.1;  // radii
+/// The width, in radii, from which a run that begins within reach of a receiver is as good as endless. It is more than
+/// the sphere's 2, since exact.comp rounds widths by up to 3 %.
+constexpr double kWidestRun = 2.1;
 
-/// Pixels on one axis that the image of a sphere of this radius reaches from its centre's, where centres are no nearer
-/// than `nearest` and no farther off axis than `tangent`.
+/// How many pixels the image of a sphere reaches from the image of its centre, on one axis. Centres are no nearer than
+/// `nearest`, and no farther off axis than `tangent`.
 double sphere_reach(double radius, double nearest, double tangent, double pixels_per_tangent, bool orthographic) {
   if (orthographic) return radius * pixels_per_tangent;
-  if (radius >= nearest) return 1e9;
-  const double centre = std::atan(tangent), edge = centre + std::asin(radius / nearest);
-  return edge < 1.57 ? (std::tan(edge) - tangent) * pixels_per_tangent : 1e9;
+  if (radius >= nearest) return kEverywhere;
+  const double edge = std::atan(tangent) + std::asin(radius / nearest);
+  return edge < kWidestAngle ? (std::tan(edge) - tangent) * pixels_per_tangent : kEverywhere;
 }
 
 }  // namespace

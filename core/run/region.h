@@ -1,4 +1,4 @@
-// A region of a frame: what of its surroundings the AO within it depends on.
+// Regions of a frame, and the surroundings that the AO within them depends on.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -7,7 +7,8 @@
 
 namespace alcove {
 
-/// The region in pixels of the file. Fails with ErrorKind::usage where it is not within the data window.
+/// Turns a region of the display window into pixels of the file. Fails with ErrorKind::usage where it is not within the
+/// data window.
 Window region_of(const FrameSource& source, const Region& roi);
 
 /// How far around the parts of a frame its results reach back, by the nearest depth in them: occluders of the radius,
@@ -21,19 +22,20 @@ class Surroundings {
   Window around(const Window& part) const;
 
  private:
+  /// The nearest depth that a window shows.
   double nearest_in(const Window& window) const;
-  /// What may be seen within this distance of anything that a window shows.
+  /// The window of everything that may be seen within this distance of what a window shows.
   Window within(double distance, const Window& window) const;
 
   const Window file_data_;
   Window read_;                 // what the grid of nearest depths covers
-  int columns_ = 0;             // of that grid
-  std::vector<float> nearest_;  // of every block of it
+  int columns_ = 0;             // blocks of that grid, across
+  std::vector<float> nearest_;  // the nearest depth of every block, row by row
   View view_;
   bool orthographic_;
-  double radius_;
-  int filters_;  // px that filters reach
-  int lines_;    // px that the lines of an exact search need beyond the radius
+  double radius_;  // scene units
+  int filters_;    // px that filters reach
+  int lines_;      // px that the lines of an exact search need beyond the radius
 };
 
 }  // namespace alcove

@@ -28,8 +28,8 @@ std::vector<std::string> inputs_of(const Settings& frame) {
   return files;
 }
 
-/// Of a file's beginning and of its end.
-constexpr std::streamoff kLooked = 1 << 16;  // bytes
+/// The bytes that are looked at of a file's beginning, and as many of its end.
+constexpr std::streamoff kLooked = 1 << 16;
 
 std::optional<fs::file_time_type> time_of(const std::string& path) {
   std::error_code error;

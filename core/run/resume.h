@@ -1,4 +1,4 @@
-// What an earlier run has left of a frame: whole, or to be made anew.
+// Finds out whether an earlier run has left a frame whole.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -9,8 +9,8 @@
 namespace alcove {
 
 /// Tells the contents of a frame's input files from others, wherever they lie: a hash of the size, the beginning and
-/// the end of each. The beginning of an EXR file holds the places of all its chunks. Never fails: what cannot be read
-/// is as an empty file.
+/// the end of each. The beginning of an EXR file holds the places of all its chunks. Never fails: a file that cannot be
+/// read counts as empty.
 std::string identity_of_inputs(const Settings& frame);
 
 /// Whether all outputs of a frame are there and whole, made with the options of this digest from inputs of this

@@ -4,10 +4,9 @@
 
 #include <cmath>
 
-#include <sys/resource.h>
-
 #include <nlohmann/json.hpp>
 
+#include "core/base/system.h"
 #include "core/formats/sequence.h"
 
 namespace alcove {
@@ -50,12 +49,6 @@ std::string text_of(const Json& json, int indent) {
   return json.dump(indent, ' ', false, Json::error_handler_t::replace);
 }
 
-rusage usage() {
-  rusage usage{};
-  ::getrusage(RUSAGE_SELF, &usage);
-  return usage;
-}
-
 }  // namespace
 
 const char* name_of(FrameState state) {
@@ -68,13 +61,11 @@ const char* name_of(FrameState state) {
   return "dropped";
 }
 
-double peak_memory_mib() { return double(usage().ru_maxrss) / 1024; }
+double peak_memory_mib() { return double(peak_memory_bytes()) / (1 << 20); }
 
 std::string stats_json(const RunReport& report) {
   Json frames = Json::array();
   for (const auto& frame : report.frames) frames.push_back(json_of(frame));
-  const auto seconds = [](const timeval& time) { return double(time.tv_sec) + 1e-6 * double(time.tv_usec); };
-  const rusage used = usage();
   const Json totals = {{"frames", report.done + report.failed + report.kept},
                        {"failed", report.failed},
                        {"kept", report.kept},
@@ -82,7 +73,7 @@ std::string stats_json(const RunReport& report) {
                        {"missing", report.missing},
                        {"at_once", report.at_once},
                        {"wall_s", report.wall_s},
-                       {"cpu_s", seconds(used.ru_utime) + seconds(used.ru_stime)},
+                       {"cpu_s", cpu_seconds()},
                        {"peak_rss_mb", peak_memory_mib()}};
   return text_of({{"device", report.device}, {"options", report.options}, {"frames", frames}, {"totals", totals}}, 1) +
          "\n";

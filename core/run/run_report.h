@@ -12,7 +12,7 @@
 
 namespace alcove {
 
-// kept: its outputs were whole already; dropped: the run ended before it
+/// kept: its outputs were whole already; dropped: the run ended before it.
 enum class FrameState { done, failed, kept, dropped };
 const char* name_of(FrameState state);
 
@@ -21,29 +21,38 @@ struct FrameReport {
   int frame = 0;
   FrameState state = FrameState::dropped;
   std::string input, output;
-  double read_ms = 0, compute_ms = 0, write_ms = 0, total_ms = 0;  // compute: the sum of the passes' device time
+  double read_ms = 0;
+  double compute_ms = 0;  // the sum of the passes' device time
+  double write_ms = 0;
+  double total_ms = 0;
   std::vector<gpu::PassTime> passes;
   std::uint64_t pixels = 0, sky_pixels = 0, repaired_pixels = 0;
-  int parts = 1;  // that it was computed in; what they share is counted in each
+  int parts = 1;  // the frame was computed in so many; what they share is counted in each
+  /// Numbers of tiles of 8 x 8 pixels.
   struct Tiles {
-    // of 8 x 8 pixels: all sky, proved to be open, the same as in a frame before, estimated
-    std::uint64_t sky = 0, proved = 0, kept = 0, computed = 0;
+    std::uint64_t sky = 0;        // nothing but sky
+    std::uint64_t proved = 0;     // proved to be open
     std::uint64_t tolerated = 0;  // of those proved, by the tolerance alone
+    std::uint64_t kept = 0;       // the same as in the frame before
+    std::uint64_t computed = 0;   // estimated
   } tiles;
-  double error_squares = 0, error_pixels = 0;  // of an estimate with a tolerance
-  // depth samples that the settings ask for, averaged over all pixels; sky asks for none
+  // The sum of squared errors of an estimate with a tolerance, and the pixels that it is over.
+  double error_squares = 0, error_pixels = 0;
+  // Depth samples that the settings ask for, averaged over all pixels; sky asks for none.
   double samples_per_pixel = 0;
-  std::vector<std::string> notes;  // what the user should know, a sentence each
-  std::optional<Error> error;      // why it failed
-  bool device_lost = false;        // that is why
+  std::uint64_t pixels_at_once = 0;  // the most that were computed at once
+  std::vector<std::string> notes;    // what the user should know, a sentence each
+  std::optional<Error> error;        // why it failed
+  bool device_lost = false;          // it failed since its device was lost
+  bool out_of_memory = false;        // it failed since the device had no memory for it
 };
 
 struct RunReport {
   bool is_sequence = false;
   std::string device, options;      // options: the digest that the outputs carry
   bool on_cpu_by_default = false;   // nobody asked for the CPU, and there is no GPU
-  int at_once = 0;                  // frames in flight
-  std::vector<FrameReport> frames;  // in order, without the dropped ones
+  int at_once = 0;                  // the frames in flight, at the end of the run
+  std::vector<FrameReport> frames;  // in order, without the dropped ones; kept for --stats only
   std::vector<int> missing;         // frames that were left out, since an input is missing
   int done = 0, failed = 0, kept = 0, dropped = 0;
   std::vector<int> failed_frames;
@@ -51,10 +60,10 @@ struct RunReport {
   double wall_s = 0;
 };
 
-/// `--stats`: see the README for the fields.
+/// The text of `--stats`; the README lists its fields.
 std::string stats_json(const RunReport& report);
 
-/// The same of one frame, on one line.
+/// The same fields of one frame, on one line.
 std::string frame_json(const FrameReport& frame);
 
 /// One sentence on the whole run, the same words every time, for those who search logs.

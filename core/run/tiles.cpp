@@ -1,10 +1,9 @@
-// Tiles by what they take with their surroundings.
+// Cuts frames by what their tiles take with their surroundings.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/run/tiles.h"
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <limits>
 
 #include "core/base/error.h"
@@ -14,27 +13,26 @@
 #include "core/chain/debug_view.h"
 #include "kernels/bounds.h"
 #include "kernels/classify.h"
+#include "kernels/profile.h"
 
 namespace alcove {
 namespace {
 
-// the process without frames: libraries, drivers, compiled kernels
-constexpr std::uint64_t kProgramBytes = 192ull << 20;
-constexpr std::uint64_t kLeastBytes = 16ull << 20;  // for frames, however little the user allows
-constexpr int kLeastRows = 16, kLeastColumns = 64;  // px of a tile: rows that most files compress together
-// words a tile: sectors, bounds of groups, runs of the filters, and how the frame before differs
+constexpr int kLeastRows = 16;     // px of a tile: most files compress so many rows together
+constexpr int kLeastColumns = 64;  // px of a tile
+// Words per tile of 8 x 8: sectors, bounds of groups, runs of the filters, and how the frame before differs.
 constexpr std::size_t kTileLists = 8;
-constexpr std::size_t kConvergeLists = 7;  // one after each power of two directions
-// a row of tiles is halved only while it is this many times as high as what it needs around it
+constexpr std::size_t kConvergeLists = 7;  // there is one after each power of two directions
+// A row of tiles is halved only while it is this many times as high as what it needs around it.
 constexpr int kFewBorders = 4;
 
-/// At most so many groups of `each` pixels a pixel along a side of the frame, however it is cut into tiles.
+/// The most groups of `each` pixels that there are per pixel along a side of the frame, however it is cut into tiles.
 double groups_a_pixel(int side, int each, int least) {
   const int pixels = std::min(side, least);
   return double((pixels + 2 * each - 2) / each) / pixels;
 }
 
-/// What passes leave in buffers of a frame, in bytes a pixel: what core/chain/chain.cpp makes.
+/// The bytes per pixel of the buffers that core/chain/chain.cpp makes for a frame.
 std::uint64_t chain_bytes(const FrameSource& source, const Settings& settings) {
   const auto& e = settings.estimator;
   const auto& o = settings.output;
@@ -63,39 +61,24 @@ std::uint64_t chain_bytes(const FrameSource& source, const Settings& settings) {
       std::ceil(double(sizeof(float)) * (double(planes) + double(low) * groups(int(e.resolution))) + tiles));
 }
 
-/// The number behind a word in a file of the kernel's, in bytes.
-std::uint64_t kernel_number(const char* path, const std::string& word, std::uint64_t unit) {
-  std::ifstream file(path);
-  for (std::string text; file >> text;)
-    if (std::uint64_t number = 0; text == word && file >> number) return number * unit;
-  return std::numeric_limits<std::uint64_t>::max();
-}
-
-std::uint64_t free_memory() {
-  std::uint64_t limit = std::numeric_limits<std::uint64_t>::max();
-  std::ifstream("/sys/fs/cgroup/memory.max") >> limit;  // "max" leaves it
-  if (limit == 0) limit = std::numeric_limits<std::uint64_t>::max();
-  return std::min(limit, kernel_number("/proc/meminfo", "MemAvailable:", 1024));
-}
-
 class Cutter {
  public:
-  Cutter(const Surroundings& surroundings, const PixelMemory& pixel, const Room& room, const FrameSource& source)
-      : surroundings_(surroundings), pixel_(pixel), room_(room), source_(source) {}
+  Cutter(const Surroundings& surroundings, const WindowLimits& limits, const FrameSource& source)
+      : surroundings_(surroundings), limits_(limits), source_(source) {}
 
   void cut(const Window& row) {
     const Window computed = surroundings_.around(row);
-    if (fits(computed, pixel_, room_)) return rows_.push_back({row});
+    if (limits_.allow(computed)) return rows_.push_back({row});
     const bool can_halve = row.height >= 2 * kLeastRows;
-    if (can_halve && row.height > kFewBorders * (computed.height - row.height)) return halve(row);
+    const bool is_too_wide = computed.width > limits_.longest_side;
+    if (can_halve && !is_too_wide && row.height > kFewBorders * (computed.height - row.height)) return halve(row);
     for (int columns = 2; row.width / columns >= kLeastColumns; columns *= 2)
       if (auto tiles = columns_of(row, columns); !tiles.empty()) return rows_.push_back(std::move(tiles));
     if (can_halve) return halve(row);
     fail(ErrorKind::device,
-         "{}: within --radius a tile of the frame depends on {} pixels, more than {} MiB, or buffers of {} MiB, hold: "
-         "allow more --memory, use another "
-         "--device or a smaller --radius",
-         source_.depth_path(), to_string(computed), room_.bytes >> 20, room_.buffer_bytes >> 20);
+         "{}: within --radius a tile of the frame depends on {} pixels, too many to compute at once: use a smaller "
+         "--radius, or {}",
+         source_.depth_path(), to_string(computed), limits_.mended_by(computed));
   }
 
   std::vector<std::vector<Window>> take() { return std::move(rows_); }
@@ -107,25 +90,26 @@ class Cutter {
     cut({row.x, row.y + upper, row.width, row.height - upper});
   }
 
-  /// Tiles of one row; empty where one does not fit beside the whole rows that are read and written.
+  /// The tiles of one row; none where one of them is too large beside the whole rows that are read and written.
   std::vector<Window> columns_of(const Window& row, int columns) const {
     std::vector<Window> tiles;
     for (int i = 0; i < columns; i++) {
-      const int left = int(std::int64_t(row.width) * i / columns),
-                right = int(std::int64_t(row.width) * (i + 1) / columns);
+      const int left = int(std::int64_t(row.width) * i / columns);
+      const int right = int(std::int64_t(row.width) * (i + 1) / columns);
       tiles.push_back({row.x + left, row.y, right - left, row.height});
       const Window computed = surroundings_.around(tiles.back());
       const std::uint64_t rows =
-          pixel_.read_bytes * std::uint64_t(source_.file_data.width) * std::uint64_t(computed.height) +
-          pixel_.written_bytes * row.pixels();
-      if (rows >= room_.bytes || !fits(computed, pixel_, {room_.bytes - rows, room_.buffer_bytes})) return {};
+          limits_.pixel.read_bytes * std::uint64_t(source_.file_data.width) * std::uint64_t(computed.height) +
+          limits_.pixel.written_bytes * row.pixels();
+      WindowLimits beside = limits_;
+      beside.room.bytes -= std::min(beside.room.bytes, rows);
+      if (!beside.allow(computed)) return {};
     }
     return tiles;
   }
 
   const Surroundings& surroundings_;
-  const PixelMemory& pixel_;
-  const Room& room_;
+  const WindowLimits& limits_;
   const FrameSource& source_;
   std::vector<std::vector<Window>> rows_;
 };
@@ -149,25 +133,53 @@ PixelMemory pixel_memory(const FrameSource& source, const Settings& settings) {
   memory.read_bytes = read * sizeof(float);
   memory.written_bytes = written * sizeof(float);
   memory.widest = widest * sizeof(float);
+  memory.device_bytes = memory.read_bytes + chain_bytes(source, settings);
   // What is written may be there once more: cropped to a region, or as half.
-  memory.bytes = memory.read_bytes + chain_bytes(source, settings) + pictures * sizeof(float) + memory.written_bytes;
+  memory.bytes = memory.device_bytes + pictures * sizeof(float) + memory.written_bytes;
   return memory;
 }
 
-bool fits(const Window& computed, const PixelMemory& pixel, const Room& room) {
-  return computed.pixels() * pixel.bytes <= room.bytes && computed.pixels() * pixel.widest <= room.buffer_bytes;
+int longest_side(const EstimatorSettings& settings) {
+  if (!searches_exactly(settings)) return std::numeric_limits<int>::max();
+  // kNoVertex stands for none.
+  return int(kNoVertex) * int(settings.resolution);
+}
+
+void require_numbered_lines(const FrameSource& source, const EstimatorSettings& settings) {
+  if (!searches_exactly(settings)) return;
+  // Slopes times steps from the display window's corner are of the type int: see lines.glsl.
+  const std::int64_t farthest = std::numeric_limits<int>::max() / kSlopeUnit - 1;
+  const std::int64_t left = std::int64_t(source.file_data.x) - source.display.x;
+  const std::int64_t top = std::int64_t(source.file_data.y) - source.display.y;
+  const std::int64_t reach =
+      std::max({-left, -top, left + source.file_data.width, top + source.file_data.height}) / int(settings.resolution);
+  if (reach > farthest)
+    fail(ErrorKind::input,
+         "{}: its pixels reach {} px from the display window's corner, and an exact search takes at most {}: give "
+         "--search steps",
+         source.depth_path(), reach, farthest);
+}
+
+bool WindowLimits::allow(const Window& computed) const {
+  const std::uint64_t pixels = computed.pixels();
+  return pixels * pixel.bytes <= room.bytes && pixels * pixel.device_bytes <= room.device_bytes &&
+         pixels * pixel.widest <= room.buffer_bytes && pixels <= room.pixels &&
+         std::max(computed.width, computed.height) <= longest_side;
+}
+
+std::string WindowLimits::mended_by(const Window& computed) const {
+  if (std::max(computed.width, computed.height) > longest_side)
+    return fmt::format("--search steps, since lines of an exact search have at most {} pixels", longest_side);
+  if (computed.pixels() * pixel.bytes > room.bytes)
+    return fmt::format("allow more --memory than the {} MiB that there are for this frame", room.bytes >> 20);
+  return "use another --device, with more memory or larger buffers";
 }
 
 std::vector<std::vector<Window>> tiles_of(const Window& whole, const Surroundings& surroundings,
-                                          const PixelMemory& pixel, const Room& room, const FrameSource& source) {
-  Cutter cutter(surroundings, pixel, room, source);
+                                          const WindowLimits& limits, const FrameSource& source) {
+  Cutter cutter(surroundings, limits, source);
   cutter.cut(whole);
   return cutter.take();
-}
-
-std::uint64_t memory_for_frames(const DeviceSettings& settings) {
-  const std::uint64_t all = settings.memory ? settings.memory : free_memory() / 2;
-  return std::max(kLeastBytes, all - std::min(all, kProgramBytes));
 }
 
 }  // namespace alcove

@@ -1,5 +1,5 @@
 # Runs examples/farm/slurm.sh on a real Slurm of one node: an array over a sequence, one task of it killed and given out again; the union of all must have
-# the bits of a local run. Takes the program, the project's folder, a frame and its camera; exits with 77 where Slurm or the right to start it is missing, but not in CI.
+# the bits of a local run. A job keeps to the memory that it asked for. Takes the program, the project's folder, a frame and its camera; exits with 77 where Slurm or the right to start it is missing, but not in CI.
 # SPDX-License-Identifier: BSD-3-Clause
 import filecmp
 import os
@@ -13,6 +13,7 @@ import time
 
 PROGRAM, PROJECT, FRAME, CAMERA = sys.argv[1:5]
 FRAMES, CHUNKS, RADIUS = 24, 3, "0.35"
+NODE_MEMORY, JOB_MEMORY, PROGRAM_MEMORY = 1500, 1000, 192  # MiB; PROGRAM_MEMORY: what the program counts for itself
 
 
 def skip(reason):
@@ -55,7 +56,7 @@ class Cluster:
             "SlurmdLogFile": folder / "slurmd.log", "ProctrackType": "proctrack/linuxproc", "TaskPlugin": "task/none", "MpiDefault": "none",
             "JobAcctGatherType": "jobacct_gather/none", "SelectType": "select/cons_tres", "SelectTypeParameters": "CR_CPU", "ReturnToService": 2,
             "SchedulerParameters": "sched_interval=1,batch_sched_delay=0", "KillWait": 2,
-            "NodeName": f"{self.host} NodeAddr=127.0.0.1 CPUs={os.cpu_count()} State=UNKNOWN",
+            "NodeName": f"{self.host} NodeAddr=127.0.0.1 CPUs={os.cpu_count()} RealMemory={NODE_MEMORY} State=UNKNOWN",
             "PartitionName": f"all Nodes={self.host} Default=YES MaxTime=INFINITE State=UP"}
         path = folder / "slurm.conf"
         path.write_text("".join(f"{key}={value}\n" for key, value in config.items()))
@@ -83,6 +84,14 @@ class Cluster:
 
 def arguments(folder, out):
     return [f"{folder}/in/f.%04d.exr", "-o", f"{folder}/{out}/ao.%04d.exr", "--frames", f"1-{FRAMES}", "--camera", CAMERA, "--radius", RADIUS]
+
+
+def test_memory(cluster, folder):
+    """A job plans with half of the memory that it asked for, whatever the node has."""
+    command = " ".join([PROGRAM, "run", FRAME, "-o", f"{folder}/ao.exr", "--camera", CAMERA, "--radius", RADIUS, "--dry-run"])
+    cluster.run("sbatch", "--wait", f"--mem={JOB_MEMORY}M", f"--output={folder}/memory.log", f"--wrap={command}")
+    plan = (folder / "memory.log").read_text()
+    assert f", {JOB_MEMORY // 2 - PROGRAM_MEMORY} MiB for frames" in plan, plan
 
 
 def test(cluster, folder):
@@ -119,6 +128,7 @@ with tempfile.TemporaryDirectory(prefix="alcove-slurm-") as name:
     cluster, folder = None, pathlib.Path(name)
     try:
         cluster = Cluster(folder)
+        test_memory(cluster, folder)
         test(cluster, folder)
     except BaseException:
         for log in sorted(folder.glob("*.log")) + sorted(folder.glob("*.out")):

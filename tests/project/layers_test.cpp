@@ -93,6 +93,17 @@ TEST(Layers, only_one_file_includes_each_library) {
   EXPECT_EQ(matches(product(), R"(#include [<"]CLI)", unless("cli/parsing.cpp")), Names{});
 }
 
+TEST(Layers, only_one_file_asks_the_operating_system) {
+  const Names calls = matches(
+      product(),
+      R"(#include <(sys/|unistd|dlfcn|fcntl|signal|csignal|sched|pthread|poll|pwd|spawn|termios|link\.h|linux/|windows))",
+      [](const SourceFile& file) { return file.name != "core/base/system.cpp"; });
+  EXPECT_EQ(calls, Names{}) << "core/base/system.h has what is to be ported";
+  EXPECT_EQ(matches(product(), R"(\bpopen\(|\bfork\(|\bmkdtemp\(|\bsetenv\(|/proc/self/exe)",
+                    [](const SourceFile& file) { return file.name != "core/base/system.cpp"; }),
+            Names{});
+}
+
 /// The architecture: what each room may include besides itself. README.md shows the same table.
 const std::map<std::string, Names> kRooms = {
     {"kernels", {}},

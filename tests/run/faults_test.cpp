@@ -1,9 +1,14 @@
 // What goes wrong in long runs, done for real: damaged and vanished files, full disks, signals, a lost device; and what
 // --resume makes good.
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <signal.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <array>
 #include <chrono>
 #include <thread>
 
@@ -74,7 +79,7 @@ TEST_F(Faults, signals_end_the_run_and_leave_whole_files_only) {
   write_frames(1, 150);
   ASSERT_EQ(run().code, 0);
   const auto whole = outputs();
-  for (const auto& [signal, code] : {std::pair(SIGTERM, 143), std::pair(SIGINT, 130)}) {
+  for (const auto& [signal, code] : {std::pair(SIGTERM, 143), std::pair(SIGINT, 130), std::pair(SIGHUP, 129)}) {
     remove_outputs();
     const Finished finished = run({}, signalled(out, 3, signal));
     EXPECT_EQ(finished.code, code) << finished;
@@ -82,6 +87,51 @@ TEST_F(Faults, signals_end_the_run_and_leave_whole_files_only) {
     EXPECT_LT(outputs().size(), 150);
     for (const auto& [name, bytes] : outputs()) EXPECT_TRUE(whole.contains(name) && whole.at(name) == bytes) << name;
   }
+}
+
+TEST_F(Faults, a_run_that_nohup_started_outlives_its_terminal) {
+  write_frames(1, 60);
+  Surroundings surroundings = signalled(out, 3, SIGHUP);
+  surroundings.program = "/bin/sh";
+  const Finished finished =
+      run_program({"-c", "trap '' HUP; exec \"$0\" \"$@\"", ALCOVE_PROGRAM, "run", in + "/f.%04d.exr", "-o",
+                   out + "/ao.%04d.exr", "--camera", camera, "--radius", "1", "--noise", "animated"},
+                  surroundings);
+  EXPECT_EQ(finished.code, 0) << finished;
+  EXPECT_THAT(names_in(out), SizeIs(60));
+}
+
+TEST_F(Faults, a_terminal_that_stands_still_stops_no_frame) {
+  constexpr int kFrames = 120;
+  write_frames(1, kFrames);
+  // A pipe that nobody reads takes the place of a terminal after Ctrl-S: it holds 4 KiB, and the run says more.
+  const std::string terminal = folder / "terminal";
+  ASSERT_EQ(::mkfifo(terminal.c_str(), 0600), 0);
+  const int reader = ::open(terminal.c_str(), O_RDWR | O_NONBLOCK);
+  ASSERT_GE(reader, 0);
+  ASSERT_GT(::fcntl(reader, F_SETPIPE_SZ, 4096), 0);
+  Surroundings surroundings;
+  surroundings.err = terminal;
+  std::size_t written = 0;
+  surroundings.meanwhile = [&](int process) {
+    const auto whole_files = [&] {
+      return std::size_t(std::ranges::count_if(names_in(out), [](const auto& name) { return name.ends_with(".exr"); }));
+    };
+    for (int i = 0; i < 1000 && whole_files() < kFrames; i++) sleep_ms(20);
+    written = whole_files();
+    // Now the user presses Ctrl-Q.
+    const auto is_running = [&] {
+      siginfo_t end{};
+      return ::waitid(P_PID, id_t(process), &end, WEXITED | WNOHANG | WNOWAIT) == 0 && end.si_pid == 0;
+    };
+    std::array<char, 4096> text;
+    while (is_running())
+      if (::read(reader, text.data(), text.size()) <= 0) sleep_ms(5);
+  };
+  const Finished finished = run({"--noise", "animated"}, surroundings);
+  ::close(reader);
+  EXPECT_EQ(finished.code, 0);
+  EXPECT_EQ(written, std::size_t(kFrames)) << "before anybody read what the run has to say";
 }
 
 TEST_F(Faults, a_kill_at_any_moment_leaves_whole_files_and_what_is_cleaned_next_time) {

@@ -1,11 +1,16 @@
-// Preloaded before the Vulkan loader: a device that lacks what ALCOVE_LACKS says, or whose allocations from number
-// ALCOVE_ALLOCATION on, three of them, find no memory.
+// Preloaded before the Vulkan loader: a poor device.
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// It lacks what ALCOVE_LACKS says. Its allocations from number ALCOVE_ALLOCATION on, three of them, find no memory.
+// With ALCOVE_HEAP it is a discrete GPU with so many bytes of its own memory, which the host cannot map;
+// ALCOVE_HEAP_SAYS is what it says to have where that is another number.
 #include <dlfcn.h>
 #include <vulkan/vulkan.h>
 
 #include <atomic>
 #include <cstdlib>
+#include <map>
+#include <mutex>
 #include <string_view>
 
 namespace {
@@ -16,6 +21,59 @@ bool lacks(std::string_view what) {
 }
 
 std::atomic<int> allocations = 0;
+
+/// The number that a variable of the environment holds; 0 for none.
+VkDeviceSize bytes_in(const char* variable) {
+  const char* text = std::getenv(variable);
+  return text ? std::strtoull(text, nullptr, 10) : 0;
+}
+
+// Of the device with a heap of its own: memory types of the same numbers as their heaps.
+constexpr uint32_t kOwnMemory = 0;
+constexpr uint32_t kHostMemory = 1;
+
+VkDeviceSize stated_heap() {
+  return bytes_in("ALCOVE_HEAP_SAYS") ? bytes_in("ALCOVE_HEAP_SAYS") : bytes_in("ALCOVE_HEAP");
+}
+
+void split_heap(VkPhysicalDeviceMemoryProperties& memory) {
+  const VkDeviceSize host_bytes = memory.memoryHeaps[0].size;
+  memory.memoryHeapCount = memory.memoryTypeCount = 2;
+  memory.memoryHeaps[kOwnMemory] = {stated_heap(), VK_MEMORY_HEAP_DEVICE_LOCAL_BIT};
+  memory.memoryHeaps[kHostMemory] = {host_bytes, 0};
+  memory.memoryTypes[kOwnMemory] = {VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, kOwnMemory};
+  memory.memoryTypes[kHostMemory] = {
+      VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT | VK_MEMORY_PROPERTY_HOST_CACHED_BIT,
+      kHostMemory};
+}
+
+/// What is allocated of the device's own memory, by whom.
+class Heap {
+ public:
+  bool take(VkDeviceSize bytes) {
+    const std::lock_guard lock(mutex_);
+    if (taken_ + bytes > bytes_in("ALCOVE_HEAP")) return false;
+    taken_ += bytes;
+    return true;
+  }
+  void name(VkDeviceMemory memory, VkDeviceSize bytes) {
+    const std::lock_guard lock(mutex_);
+    owners_[memory] = bytes;
+  }
+  void give_back(VkDeviceMemory memory) {
+    const std::lock_guard lock(mutex_);
+    const auto owner = owners_.find(memory);
+    if (owner == owners_.end()) return;
+    taken_ -= owner->second;
+    owners_.erase(owner);
+  }
+
+ private:
+  std::mutex mutex_;
+  VkDeviceSize taken_ = 0;
+  std::map<VkDeviceMemory, VkDeviceSize> owners_;
+};
+Heap heap;
 
 }  // namespace
 
@@ -35,6 +93,27 @@ void vkGetPhysicalDeviceProperties2(VkPhysicalDevice device, VkPhysicalDevicePro
   NEXT(vkGetPhysicalDeviceProperties2)(device, properties);
   if (lacks("Vulkan 1.2")) properties->properties.apiVersion = VK_API_VERSION_1_1;
   if (lacks("a known type")) properties->properties.deviceType = VK_PHYSICAL_DEVICE_TYPE_OTHER;
+  if (bytes_in("ALCOVE_HEAP")) properties->properties.deviceType = VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU;
+}
+
+void vkGetPhysicalDeviceMemoryProperties(VkPhysicalDevice device, VkPhysicalDeviceMemoryProperties* memory) {
+  NEXT(vkGetPhysicalDeviceMemoryProperties)(device, memory);
+  if (bytes_in("ALCOVE_HEAP")) split_heap(*memory);
+}
+
+void vkGetPhysicalDeviceMemoryProperties2(VkPhysicalDevice device, VkPhysicalDeviceMemoryProperties2* memory) {
+  NEXT(vkGetPhysicalDeviceMemoryProperties2)(device, memory);
+  if (!bytes_in("ALCOVE_HEAP")) return;
+  split_heap(memory->memoryProperties);
+  if (!memory->pNext) return;
+  auto& budget = *static_cast<VkPhysicalDeviceMemoryBudgetPropertiesEXT*>(memory->pNext);
+  budget.heapBudget[kOwnMemory] = stated_heap();
+  budget.heapUsage[kOwnMemory] = 0;
+}
+
+void vkGetBufferMemoryRequirements(VkDevice device, VkBuffer buffer, VkMemoryRequirements* needs) {
+  NEXT(vkGetBufferMemoryRequirements)(device, buffer, needs);
+  if (bytes_in("ALCOVE_HEAP")) needs->memoryTypeBits = 1u << kOwnMemory | 1u << kHostMemory;
 }
 
 void vkGetPhysicalDeviceQueueFamilyProperties(VkPhysicalDevice device, uint32_t* count,
@@ -79,7 +158,19 @@ VkResult vkAllocateMemory(VkDevice device, const VkMemoryAllocateInfo* info, con
   const int number = ++allocations;
   if (lacks("memory") || (first && number >= std::atoi(first) && number < std::atoi(first) + 3))
     return VK_ERROR_OUT_OF_DEVICE_MEMORY;
-  return NEXT(vkAllocateMemory)(device, info, callbacks, memory);
+  if (!bytes_in("ALCOVE_HEAP")) return NEXT(vkAllocateMemory)(device, info, callbacks, memory);
+  const bool is_own = info->memoryTypeIndex == kOwnMemory;
+  if (is_own && !heap.take(info->allocationSize)) return VK_ERROR_OUT_OF_DEVICE_MEMORY;
+  VkMemoryAllocateInfo of_the_driver = *info;
+  of_the_driver.memoryTypeIndex = 0;
+  const VkResult result = NEXT(vkAllocateMemory)(device, &of_the_driver, callbacks, memory);
+  if (is_own) heap.name(*memory, info->allocationSize);
+  return result;
+}
+
+void vkFreeMemory(VkDevice device, VkDeviceMemory memory, const VkAllocationCallbacks* callbacks) {
+  heap.give_back(memory);
+  NEXT(vkFreeMemory)(device, memory, callbacks);
 }
 
 #pragma GCC visibility pop

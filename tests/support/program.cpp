@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 #include <poll.h>
 #include <sched.h>
+#include <signal.h>
 #include <spawn.h>
 #include <sys/mman.h>
 #include <sys/mount.h>
@@ -124,9 +125,18 @@ Finished run_program(const std::vector<std::string>& arguments, const Surroundin
   for (const auto& [number, path] : {std::pair(1, &surroundings.out), {2, &surroundings.err}})
     if (!path->empty()) posix_spawn_file_actions_addopen(&actions, number, path->c_str(), O_WRONLY, 0);
   posix_spawn_file_actions_addchdir_np(&actions, surroundings.folder.c_str());
+  // The program gets the signals' defaults, also where nohup has started the tests.
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  sigset_t ending;
+  sigemptyset(&ending);
+  for (const int number : {SIGHUP, SIGINT, SIGTERM}) sigaddset(&ending, number);
+  posix_spawnattr_setsigdefault(&attributes, &ending);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF);
   pid_t child = -1;
-  errno = ::posix_spawn(&child, surroundings.program.c_str(), &actions, nullptr, pointers_to(words).data(),
+  errno = ::posix_spawn(&child, surroundings.program.c_str(), &actions, &attributes, pointers_to(words).data(),
                         pointers_to(variables).data());
+  posix_spawnattr_destroy(&attributes);
   posix_spawn_file_actions_destroy(&actions);
   require(errno == 0, surroundings.program.c_str());
   if (surroundings.meanwhile) surroundings.meanwhile(child);

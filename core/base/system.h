@@ -1,0 +1,95 @@
+// What Alcove asks of the operating system: the only file that includes its headers, and so the one to port.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <system_error>
+
+namespace alcove {
+
+// The process and its machine.
+
+/// The number of this process.
+int process_id();
+
+/// The folder that the running program lies in; empty where the system does not say.
+std::string program_folder();
+
+/// The number of cores that the process may use, at least 1.
+int core_count();
+
+/// The most memory that the process has had so far, in bytes.
+std::uint64_t peak_memory_bytes();
+
+/// The time that all threads of the process have computed so far, in seconds.
+double cpu_seconds();
+
+/// Sets a variable of the environment for this process and for the libraries that it loads.
+void set_environment(const std::string& name, const std::string& value);
+
+/// What a command of the shell prints to its standard output; empty where it cannot be started.
+std::string output_of_command(const std::string& command);
+
+/// Whether the standard error is a terminal, and nobody's file or pipe.
+bool errors_go_to_terminal();
+
+/// From now on the signals that ask a program to end (SIGHUP, SIGINT and SIGTERM) do not end the process at once:
+/// caught_signal() tells of the first. A second one of its kind ends the process. SIGHUP stays ignored where the
+/// process was started so, as `nohup` does.
+void catch_ending_signals();
+/// The number of the signal that was caught; 0 for none. Every thread may ask.
+int caught_signal();
+
+/// The address of a symbol in a library, which is loaded if it is not yet; null where there is none, and why in `why`.
+void* symbol_of(const char* library, const char* symbol, std::string& why);
+
+// Files and folders.
+
+/// Empty where the process may read the file, else why it may not.
+std::error_code may_read(const std::string& path);
+/// Empty where the process may make files in the folder, else why it may not.
+std::error_code may_make_files_in(const std::string& folder);
+
+/// Makes a folder of a name that nobody else has, and writes the name: the six X at the end of `path` are replaced.
+std::error_code make_unique_folder(std::string& path);
+
+/// Puts a folder's names on the disk, so that they outlive a loss of power. File systems that cannot do it pass it by.
+void sync_folder(const std::string& folder);
+
+/// A file that this process alone writes: it is locked as long as it is open. On file systems without locks it is only
+/// open. Moves, never copies.
+class LockedFile {
+ public:
+  LockedFile() = default;
+  LockedFile(LockedFile&& other) noexcept;
+  LockedFile& operator=(LockedFile&& other) noexcept;
+  LockedFile(const LockedFile&) = delete;
+  LockedFile& operator=(const LockedFile&) = delete;
+  ~LockedFile() { close(); }
+
+  /// Makes a new file; fails where something of its name is there.
+  std::error_code make(const std::string& path);
+  /// Opens a file that no living process has locked. A link is not followed, and no pipe is waited for.
+  std::error_code open_abandoned(const std::string& path);
+
+  bool is_open() const { return descriptor_ >= 0; }
+  /// Whether somebody has removed the file's name before it was locked.
+  bool is_removed() const;
+
+  std::error_code write_at(std::uint64_t offset, std::span<const char> bytes);
+  /// Takes on the permissions and, as far as this process may give files away, the owner and the group of the regular
+  /// file at `path`. Changes nothing where there is none.
+  void take_after(const std::string& path);
+  /// Puts the bytes on the disk, and asks for the errors that a file system tells only when a file is closed. The file
+  /// stays open and locked.
+  std::error_code sync();
+  void close();
+
+ private:
+  int descriptor_ = -1;
+  bool is_locked_ = false;
+};
+
+}  // namespace alcove

@@ -1,0 +1,18 @@
+// The files that a frame is read from, by the settings that name them.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/base/settings.h"
+
+namespace alcove {
+
+/// The file that a frame is called after: its INPUT, or else its depth or its positions.
+const std::string& main_input(const InputSettings& settings);
+
+/// All files that a frame reads; empty names where it has none.
+std::vector<std::string> input_files(const InputSettings& settings);
+
+}  // namespace alcove

@@ -1,0 +1,39 @@
+// Adds up what the parts of a frame took and what was found in them, for the frame's report.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <span>
+
+#include "core/chain/chain.h"
+#include "core/frame/gbuffer.h"
+#include "core/run/run_report.h"
+#include "core/run/scale_notes.h"
+
+namespace alcove {
+
+/// Counts over all windows of one frame. What the windows share is counted in each.
+class FrameTally {
+ public:
+  explicit FrameTally(FrameReport& report) : report_(report) {}
+
+  /// A window is about to be computed.
+  void begin(const Window& computed);
+  void add_inputs(const FrameInputs& inputs) { sample_.add(inputs); }
+  void add_passes(std::span<const gpu::PassTime> passes);
+  /// is_same: all results were kept from the frame before.
+  void add_outputs(const FrameOutputs& outputs, const Window& computed, bool is_same);
+
+  /// Writes the sums into the report, and what the user should know.
+  void finish(const FrameSource& source, const EstimatorSettings& settings);
+
+ private:
+  void note_repairs();
+  void note_missing(const FrameSource& source);
+
+  FrameReport& report_;
+  FrameCounts counts_{};
+  DepthSample sample_;
+  bool has_ao_ = false;
+};
+
+}  // namespace alcove
