@@ -63,6 +63,28 @@ std::string missing_in(VkPhysicalDevice device, const VkPhysicalDeviceProperties
   return features12.scalarBlockLayout ? "" : "scalar block layout";
 }
 
+/// What is free of the largest device-local heap; all of it where the driver does not tell.
+std::uint64_t free_bytes_of(VkPhysicalDevice device) {
+  VkPhysicalDeviceMemoryBudgetPropertiesEXT budget{};
+  budget.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MEMORY_BUDGET_PROPERTIES_EXT;
+  VkPhysicalDeviceMemoryProperties2 properties{};
+  properties.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MEMORY_PROPERTIES_2;
+  const bool has_budget = has_extension(device, VK_EXT_MEMORY_BUDGET_EXTENSION_NAME);
+  if (has_budget) properties.pNext = &budget;
+  vkGetPhysicalDeviceMemoryProperties2(device, &properties);
+
+  const VkPhysicalDeviceMemoryProperties& memory = properties.memoryProperties;
+  std::uint64_t largest = 0;
+  std::uint64_t free = 0;
+  for (std::uint32_t i = 0; i < memory.memoryHeapCount; i++) {
+    const bool is_local = memory.memoryHeaps[i].flags & VK_MEMORY_HEAP_DEVICE_LOCAL_BIT;
+    if (!is_local || memory.memoryHeaps[i].size <= largest) continue;
+    largest = memory.memoryHeaps[i].size;
+    free = has_budget ? budget.heapBudget[i] - std::min(budget.heapBudget[i], budget.heapUsage[i]) : largest;
+  }
+  return free;
+}
+
 PhysicalDevice describe(VkPhysicalDevice device, std::uint32_t index) {
   VkPhysicalDeviceVulkan11Properties properties11{};
   properties11.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_PROPERTIES;
@@ -86,6 +108,7 @@ PhysicalDevice describe(VkPhysicalDevice device, std::uint32_t index) {
   info.buffer_bytes = properties.properties.limits.maxStorageBufferRange;
   for (std::uint32_t i = 0; i < memory.memoryHeapCount; i++)
     if (memory.memoryHeaps[i].flags & VK_MEMORY_HEAP_DEVICE_LOCAL_BIT) info.memory_bytes += memory.memoryHeaps[i].size;
+  if (properties.properties.apiVersion >= VK_API_VERSION_1_1) info.free_bytes = free_bytes_of(device);
   const std::string missing = missing_in(device, properties.properties);
   if (!missing.empty()) info.unusable = "it lacks " + missing;
   return {device, info};
