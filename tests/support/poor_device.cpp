@@ -1,5 +1,5 @@
-// Preloaded before the Vulkan loader: a device that lacks what ALCOVE_LACKS says, or whose allocations from number
-// ALCOVE_ALLOCATION on, three of them, find no memory.
+// Preloaded before the Vulkan loader: a device that lacks what ALCOVE_LACKS says, or whose allocation of the number
+// ALCOVE_ALLOCATION finds no memory.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <dlfcn.h>
 #include <vulkan/vulkan.h>
@@ -77,8 +77,7 @@ VkResult vkAllocateMemory(VkDevice device, const VkMemoryAllocateInfo* info, con
                           VkDeviceMemory* memory) {
   const char* first = std::getenv("ALCOVE_ALLOCATION");
   const int number = ++allocations;
-  if (lacks("memory") || (first && number >= std::atoi(first) && number < std::atoi(first) + 3))
-    return VK_ERROR_OUT_OF_DEVICE_MEMORY;
+  if (lacks("memory") || (first && number == std::atoi(first))) return VK_ERROR_OUT_OF_DEVICE_MEMORY;
   return NEXT(vkAllocateMemory)(device, info, callbacks, memory);
 }
 
