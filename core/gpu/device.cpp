@@ -98,9 +98,10 @@ void Device::read_properties() {
   properties2.pNext = &properties12;
   vkGetPhysicalDeviceProperties2(physical_, &properties2);
   const VkPhysicalDeviceProperties& properties = properties2.properties;
-  // lavapipe keeps NaN and infinity in any case, as the tests of damaged frames show; told to, it leaves out other
+  // lavapipe keeps NaN and infinity in any case, as the tests of damaged frames show. Told to, it leaves out other
   // optimizations too, and its results differ in their last bits from those without.
-  preserves_nan_ = info_.type != DeviceType::cpu && properties12.shaderSignedZeroInfNanPreserveFloat32 == VK_TRUE;
+  const bool is_lavapipe = properties12.driverID == VK_DRIVER_ID_MESA_LLVMPIPE;
+  preserves_nan_ = properties12.shaderSignedZeroInfNanPreserveFloat32 == VK_TRUE && !is_lavapipe;
   nanoseconds_per_tick_ = properties.limits.timestampPeriod;
   most_allocations_ = properties.limits.maxMemoryAllocationCount;
   cache_owner_ = {properties.vendorID, properties.deviceID, std::to_array(properties.pipelineCacheUUID)};

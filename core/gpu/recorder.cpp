@@ -20,6 +20,10 @@ constexpr double kUnmeasuredGroups = 8192;
 /// A pass is never cut into more slices than this: each costs a barrier.
 constexpr double kMostSlices = 256;
 
+/// How many times more slices a list gets than its time asks for. A list that is a quarter full has all its work in the
+/// first quarter of its workgroups.
+constexpr double kListSlices = 4;
+
 /// The workgroups of a pass, and of each of its slices, in x and y.
 struct Cut {
   std::uint32_t x, y, slice_x, slice_y;
@@ -87,8 +91,9 @@ Buffer& Recorder::buffer(std::string_view name, std::size_t bytes, Use use) {
   auto found = buffers_.find(name);
   if (found != buffers_.end()) {
     auto& [pooled, recording] = found->second;
-    const bool is_free = recording != recordings_;  // nothing that waits to be run has it at its present size
-    if (pooled.use() == use && (pooled.bytes() == bytes || (is_free && pooled.suits(bytes)))) {
+    // Nothing that waits to be run has it at its present size, and memory is not short.
+    const bool may_resize = recording != recordings_ && !is_short_;
+    if (pooled.use() == use && (pooled.bytes() == bytes || (may_resize && pooled.suits(bytes)))) {
       pooled.resize(bytes);
       recording = recordings_;
       return pooled;
@@ -96,8 +101,13 @@ Buffer& Recorder::buffer(std::string_view name, std::size_t bytes, Use use) {
     if (recording_) replaced_.push_back(std::move(pooled));
     buffers_.erase(found);
   }
-  return buffers_.emplace(std::string(name), PooledBuffer{Buffer(device_, bytes, use), recordings_})
-      .first->second.buffer;
+  try {
+    PooledBuffer made{Buffer(device_, bytes, use), recordings_};
+    return buffers_.emplace(std::string(name), std::move(made)).first->second.buffer;
+  } catch (const OutOfMemory&) {
+    is_short_ = true;
+    throw;
+  }
 }
 
 std::size_t Recorder::bytes() const {
@@ -194,10 +204,19 @@ void Recorder::download(const Buffer& buffer) {
   vkCmdCopyBuffer(commands(), buffer.handle(), buffer.staging(), 1, &region);
 }
 
-/// What the pass has taken at most, scaled to its present work. A pass that was never measured fills a submission.
-double Recorder::expected_ms(const RecordedPass& pass) const {
+/// What the pass has taken at most, scaled to its present work; nullopt when it was never measured.
+std::optional<double> Recorder::measured_ms(const RecordedPass& pass) const {
   const auto known = ms_per_byte_.find(pass.kernel);
-  return known == ms_per_byte_.end() ? device_.submission_ms() : known->second * work_of(pass.time);
+  if (known == ms_per_byte_.end()) return std::nullopt;
+  return known->second * work_of(pass.time);
+}
+
+/// How many slices of a pass of so many workgroups keep each of them short.
+double Recorder::slices_of(std::optional<double> ms, double groups, bool is_list) const {
+  const double most_ms = device_.submission_ms();
+  if (std::isinf(most_ms)) return 1;
+  if (!ms) return groups / kUnmeasuredGroups;
+  return *ms <= most_ms ? 1 : *ms / most_ms * (is_list ? kListSlices : 1);
 }
 
 void Recorder::dispatch_bytes(const std::string& stem, std::span<const std::byte> params,
@@ -214,13 +233,12 @@ void Recorder::dispatch_bytes(const std::string& stem, std::span<const std::byte
   const auto groups = [](std::uint32_t count, std::uint32_t size) { return (count + size - 1) / size; };
   const std::uint32_t x = extent.group_count ? extent.x : groups(extent.x, group[0]);
   const std::uint32_t y = extent.group_count ? extent.y : groups(extent.y, group[1]);
-  const double ms = expected_ms(recorded_.back());
-  const double most_ms = device_.submission_ms();
-  const bool is_measured = ms_per_byte_.contains(&kernel);
-  const double slices = std::isinf(most_ms) ? 1 : is_measured ? ms / most_ms : double(x) * y / kUnmeasuredGroups;
-  const bool is_counted_by_device = extent.group_count && (slices <= 1 || x == 0 || y == 0);
-  if (is_counted_by_device) {
-    make_room_for(ms);
+  const std::optional<double> ms = measured_ms(recorded_.back());
+  const double slices = slices_of(ms, double(x) * y, extent.group_count);
+  const double unmeasured_ms =
+      device_.submission_ms();  // as much as any submission may take, so it gets one of its own
+  if (extent.group_count && (slices <= 1 || x == 0)) {
+    make_room_for(ms.value_or(unmeasured_ms));
     record_slice(kernel, params, bindings, [&](VkCommandBuffer commands) {
       const VkDescriptorBufferInfo count = extent.group_count->bound();
       vkCmdDispatchIndirect(commands, count.buffer, count.offset);
@@ -229,7 +247,7 @@ void Recorder::dispatch_bytes(const std::string& stem, std::span<const std::byte
     return;
   }
   const Cut cut = cut_into(slices, x, y);
-  const double slice_ms = is_measured ? ms / cut.slices() : ms;
+  const double slice_ms = ms ? *ms / cut.slices() : unmeasured_ms;
   for (std::uint32_t row = 0; row < cut.y; row += cut.slice_y)
     for (std::uint32_t column = 0; column < cut.x; column += cut.slice_x) {
       make_room_for(slice_ms);

@@ -5,6 +5,7 @@
 #include <concepts>
 #include <initializer_list>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -118,7 +119,8 @@ class Recorder {
   template <class Dispatch>
   void record_slice(const Kernel& kernel, std::span<const std::byte> params, std::span<const Binding> bindings,
                     const Dispatch& dispatch);
-  double expected_ms(const RecordedPass& pass) const;
+  std::optional<double> measured_ms(const RecordedPass& pass) const;
+  double slices_of(std::optional<double> ms, double groups, bool is_list) const;
   void read_times();
   void learn();
 
@@ -128,6 +130,7 @@ class Recorder {
   std::vector<Submission> submissions_;
   std::size_t used_ = 0;  // of the submissions, by this recording
   bool recording_ = false;
+  bool is_short_ = false;          // of memory: it ran out once, so from then on no buffer is larger than it must be
   std::uint64_t recordings_ = 0;   // that were run or abandoned
   std::vector<VkBuffer> touched_;  // since the last barrier
   std::vector<RecordedPass> recorded_;

@@ -110,6 +110,20 @@ TEST_F(Driver, gets_no_more_allocations_than_it_allows) {
   for (const char* name : {"a", "b", "c"}) again.buffer(name, 256, gpu::Use::device);
 }
 
+TEST_F(Driver, that_ran_out_of_memory_gets_no_buffer_larger_than_it_must_be) {
+  fake.most_allocations = 1;
+  gpu::Device device(options());
+  gpu::Recorder recorder(device);
+  const auto capacity_for = [&](std::size_t bytes) {
+    recorder.abandon();
+    return recorder.buffer("a", bytes, gpu::Use::device).capacity();
+  };
+  capacity_for(1000);
+  EXPECT_EQ(capacity_for(900), 1000);
+  EXPECT_THROW(recorder.buffer("b", 8, gpu::Use::device), gpu::OutOfMemory);
+  EXPECT_EQ(capacity_for(800), 800);
+}
+
 TEST_F(Driver, keeps_buffers_for_frames_of_nearly_one_size) {
   gpu::Device device(options());
   gpu::Recorder recorder(device);

@@ -69,6 +69,9 @@ VkResult vkEnumerateDeviceExtensionProperties(VkPhysicalDevice device, const cha
 void vkGetPhysicalDeviceProperties2(VkPhysicalDevice device, VkPhysicalDeviceProperties2* properties) {
   NEXT(vkGetPhysicalDeviceProperties2)(device, properties);
   if (fake().is_discrete) properties->properties.deviceType = VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU;
+  for (auto* next = static_cast<VkBaseOutStructure*>(properties->pNext); next; next = next->pNext)
+    if (fake().is_discrete && next->sType == VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_PROPERTIES)
+      reinterpret_cast<VkPhysicalDeviceVulkan12Properties*>(next)->driverID = VK_DRIVER_ID_NVIDIA_PROPRIETARY;
   if (fake().most_allocations) properties->properties.limits.maxMemoryAllocationCount = fake().most_allocations;
 }
 

@@ -14,7 +14,7 @@ namespace alcove::test {
 struct FakeDriver {
   // What it pretends.
   bool has_own_memory = false;         // as a discrete GPU: see kOwnMemory in the source
-  bool is_discrete = false;            // by its type
+  bool is_discrete = false;            // by its type and driver
   bool is_portable = false;            // has VK_KHR_portability_subset
   std::uint32_t most_allocations = 0;  // 0: as many as the driver says
   int failing_submission = 0;          // from now on; 0: none

@@ -1,7 +1,7 @@
 // Preloaded before the Vulkan loader: a poor device.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// It lacks what ALCOVE_LACKS says. Its allocations from number ALCOVE_ALLOCATION on, three of them, find no memory.
+// It lacks what ALCOVE_LACKS says. Its allocation of the number ALCOVE_ALLOCATION finds no memory.
 // With ALCOVE_HEAP it is a discrete GPU with so many bytes of its own memory, which the host cannot map;
 // ALCOVE_HEAP_SAYS is what it says to have where that is another number.
 #include <dlfcn.h>
@@ -156,7 +156,7 @@ VkResult vkAllocateMemory(VkDevice device, const VkMemoryAllocateInfo* info, con
                           VkDeviceMemory* memory) {
   const char* first = std::getenv("ALCOVE_ALLOCATION");
   const int number = ++allocations;
-  if (lacks("memory") || (first && number >= std::atoi(first) && number < std::atoi(first) + 3))
+  if (lacks("memory") || (first && number == std::atoi(first)))
     return VK_ERROR_OUT_OF_DEVICE_MEMORY;
   if (!bytes_in("ALCOVE_HEAP")) return NEXT(vkAllocateMemory)(device, info, callbacks, memory);
   const bool is_own = info->memoryTypeIndex == kOwnMemory;
