@@ -81,18 +81,18 @@ class Tiles : public CommandLine {
 
 TEST_F(Tiles, give_the_bits_of_the_whole) {
   for (const Options& options :
-       {Options{"--radius", "0.1"},
-        {"--radius", "0.1", "--aov", "ao,normal,depth,specular-occlusion", "--composite", folder / "composite.exr"},
-        {"--radius", "0.15", "--estimator", "bitmask", "--slices", "2", "--steps", "20"},
-        {"--radius", "0.1", "--estimator", "hbao", "--denoise", "box"},
-        {"--radius", "0.1", "--estimator", "crytek", "--denoise", "none"},
-        {"--radius", "0.1", "--resolution", "half"},
-        {"--radius", "0.1", "--resolution", "quarter", "--denoise-radius", "5"},
-        {"--radius", "0.1", "--stride", "4"},
-        {"--radius", "0.04", "--preset", "reference"},
+       {Options{"--radius", "0.2"},
+        {"--radius", "0.2", "--aov", "ao,normal,depth,specular-occlusion", "--composite", folder / "composite.exr"},
+        {"--radius", "0.3", "--estimator", "bitmask", "--slices", "2", "--steps", "20"},
+        {"--radius", "0.2", "--estimator", "hbao", "--denoise", "box"},
+        {"--radius", "0.2", "--estimator", "crytek", "--denoise", "none"},
+        {"--radius", "0.2", "--resolution", "half"},
+        {"--radius", "0.2", "--resolution", "quarter", "--denoise-radius", "5"},
+        {"--radius", "0.2", "--stride", "4"},
+        {"--radius", "0.06", "--preset", "reference"},
         {"--radius", "0.1", "--preset", "reference", "--denoise", "none", "--thickness", "0.05"},
-        {"--radius", "0.04", "--tolerance", "0.03", "--aov", "ao,error"},
-        {"--radius", "0.1", "--roi", "3,5,450,250", "--falloff", "smooth"}}) {
+        {"--radius", "0.06", "--tolerance", "0.03", "--aov", "ao,error"},
+        {"--radius", "0.2", "--roi", "3,5,450,250", "--falloff", "smooth"}}) {
     const auto [whole, one] = computed(options, false);
     const auto [tiled, many] = computed(options, true);
     EXPECT_EQ(one, 1);
