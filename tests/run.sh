@@ -1,6 +1,5 @@
 #!/usr/bin/env bash
-# Sets up, builds and runs every test, the presets' errors against ray tracing among them; then runs the chain's tests once more under the Vulkan
-# validation layer with its checks of synchronization, where any message fails. Its GPU-assisted checks do not know push descriptors in Debian 12.
+# Sets up, builds and runs every test, in the forms that run with each change: tests/long.sh has the long ones, docs/testing.md says which.
 #   tests/run.sh [--device NAME]      on another Vulkan device
 # ALCOVE_STRICT=ON makes warnings in our code errors, as continuous integration does.
 # SPDX-License-Identifier: BSD-3-Clause
@@ -12,5 +11,3 @@ if [ "${1:-}" = --device ]; then
 fi
 scripts/setup.sh -DALCOVE_STRICT="${ALCOVE_STRICT:-OFF}"
 ctest --test-dir build --output-on-failure -j "$(nproc)"
-export VK_LAYER_ENABLES=VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT
-ALCOVE_TEST_VALIDATE=1 ctest --test-dir build --output-on-failure -R 'gpu_test|property_test'
