@@ -163,7 +163,7 @@ int bench_command(const std::vector<std::string>& arguments) {
   }
   std::vector<std::string> inputs{a.suite, a.limits};
   for (const auto& frame : suite.frames) {
-    inputs.insert(inputs.end(), {frame.input, frame.camera});
+    inputs.insert(inputs.end(), {frame.input, frame.camera, frame.reference});
     inputs.insert(inputs.end(), frame.truth.begin(), frame.truth.end());
   }
   for (const auto& [path, option] :

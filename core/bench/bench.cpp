@@ -13,6 +13,7 @@
 #include "core/base/error.h"
 #include "core/base/estimator_facts.h"
 #include "core/base/system.h"
+#include "core/bench/kept_reference.h"
 #include "core/chain/chain.h"
 #include "core/chain/compute.h"
 #include "core/formats/exr.h"
@@ -106,7 +107,9 @@ double run_yardstick(const std::string& program, const SuiteFrame& frame, int ru
 /// References by what they depend on, so that candidates that differ in samples only share one.
 class References {
  public:
-  References(const LoadedFrame& frame, int slices) : frame_(frame), slices_(slices) {}
+  /// `kept`: a file that holds one of them; empty: none does.
+  References(const LoadedFrame& frame, int slices, std::string kept)
+      : frame_(frame), slices_(slices), kept_(std::move(kept)) {}
 
   /// Of several radii the mean, as the estimate is.
   std::vector<float> of(EstimatorSettings settings) {
@@ -126,14 +129,14 @@ class References {
     wanted.slices = slices_;
     auto& reference = made_[{wanted.radius, wanted.falloff, wanted.falloff_start, wanted.thickness,
                              wanted.thickness_length, wanted.bias}];
-    if (reference.empty()) {
-      reference = reference_ao(frame_.host, wanted);
-    }
+    if (reference.empty() && !kept_.empty()) reference = read_kept_reference(kept_, wanted, frame_.host.data);
+    if (reference.empty()) reference = reference_ao(frame_.host, wanted);
     return reference;
   }
 
   const LoadedFrame& frame_;
   int slices_;
+  std::string kept_;
   std::map<std::tuple<double, Falloff, double, ThicknessRule, double, double>, std::vector<float>> made_;
 };
 
@@ -179,7 +182,7 @@ BenchReport run_bench(gpu::Device& device, const Suite& suite, const std::vector
     }
     if (!yardsticks.empty()) described.yardstick_ms = median(yardsticks);
     if (options.say && suite.reference_slices) options.say(fmt::format("{}: CPU reference", frame.name));
-    References references(loaded, suite.reference_slices);
+    References references(loaded, suite.reference_slices, frame.reference);
     for (std::size_t c = 0; c < candidates.size(); c++) {
       const auto settings = settings_for(candidates[c], frame);
       BenchRow row;

@@ -328,14 +328,32 @@ std::vector<std::size_t> breaks_of(const std::vector<double>& rmse, std::size_t 
   return places;
 }
 
+/// The first, the last, and others evenly between them.
+std::vector<double> thinned(const std::vector<double>& values, std::size_t most) {
+  if (values.size() <= most) return values;
+  std::vector<double> some;
+  for (std::size_t i = 0; i < most; i++) some.push_back(values[i * (values.size() - 1) / (most - 1)]);
+  return some;
+}
+
+std::vector<Axis> axes_of(const StabilityPart& part) {
+  std::vector<Axis> axes = all_axes();
+  std::erase_if(axes, [&](const Axis& axis) {
+    return !part.axes.empty() && std::ranges::find(part.axes, axis.name) == part.axes.end();
+  });
+  for (Axis& axis : axes) axis.values = thinned(axis.values, part.most_points);
+  return axes;
+}
+
 }  // namespace
 
-StabilityReport run_stability(gpu::Device& device, const std::function<void(const std::string&)>& say) {
+StabilityReport run_stability(gpu::Device& device, const std::function<void(const std::string&)>& say,
+                              const StabilityPart& part) {
   StabilityReport report{device.info().name, {}, {}};
   Bench bench(device);
   const auto all = candidates();
   for (const auto& candidate : all) report.plain.emplace_back(candidate.name, bench.rmse(at_scale(1), candidate));
-  for (const Axis& axis : all_axes()) {
+  for (const Axis& axis : axes_of(part)) {
     if (say) say(fmt::format("{}: {} points", axis.name, axis.values.size()));
     StabilityAxis& measured = report.axes.emplace_back(StabilityAxis{axis.name, axis.unit, axis.logarithmic, {}, {}});
     for (const auto& candidate : all) measured.curves.push_back({candidate.name, {}, {}, false});

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -44,8 +45,16 @@ struct StabilityReport {
   std::vector<StabilityAxis> axes;
 };
 
-/// Measures all axes, in a minute or so on a CPU. `say`: progress, a line each; may be empty.
-StabilityReport run_stability(gpu::Device& device, const std::function<void(const std::string&)>& say);
+/// Which of it to measure.
+struct StabilityPart {
+  std::vector<std::string> axes = {};  // their names; empty: all
+  // of each axis, > 1: the first, the last, and others evenly between them
+  std::size_t most_points = std::numeric_limits<std::size_t>::max();
+};
+
+/// Measures the axes, all of them in a minute or so on a CPU. `say`: progress, a line each; may be empty.
+StabilityReport run_stability(gpu::Device& device, const std::function<void(const std::string&)>& say,
+                              const StabilityPart& part = {});
 
 /// A line for every axis and estimator: the worst error and where it breaks down.
 std::string stability_text(const StabilityReport& report);

@@ -80,9 +80,13 @@ std::vector<std::string> paths_of(const Table& table, const fs::path& folder) {
 }
 
 SuiteFrame frame_of(const Table& table, const fs::path& folder) {
-  table.require_keys({"name", "input", "camera", "radius", "truth"});
-  return {table.text("name"), (folder / table.text("input")).string(), (folder / table.text("camera")).string(),
-          table.positive("radius"), paths_of(table, folder)};
+  table.require_keys({"name", "input", "camera", "radius", "truth", "reference"});
+  return {table.text("name"),
+          (folder / table.text("input")).string(),
+          (folder / table.text("camera")).string(),
+          table.positive("radius"),
+          paths_of(table, folder),
+          table.values.contains("reference") ? (folder / table.text("reference")).string() : ""};
 }
 
 SuiteCandidate candidate_of(const Table& table) {

@@ -30,14 +30,17 @@ Image picture_of(const std::string& path) {
   return image;
 }
 
+std::string all_names() { return fmt::format("{}", fmt::join(debug_view_names(), ",")); }
+
 class DebugViews : public CommandLine {
  protected:
   Image view(const std::string& name, std::vector<std::string> more = {}) {
     more.insert(more.end(), {"--debug", name});
     const Finished finished = run(more);
     EXPECT_EQ(finished.code, 0) << finished;
-    return picture_of(folder / ("ao." + name + ".png"));
+    return written(name);
   }
+  Image written(const std::string& name) const { return picture_of(folder / ("ao." + name + ".png")); }
   static std::array<int, 3> color(const Image& picture, int x, int y) {
     std::array<int, 3> bytes{};
     const std::size_t i = std::size_t(y) * std::size_t(picture.data.width) + std::size_t(x);
@@ -59,11 +62,9 @@ class DebugViews : public CommandLine {
 };
 
 TEST_F(DebugViews, every_one_is_a_picture_beside_the_output_with_a_scale_below) {
-  std::string all;
-  for (const auto& name : debug_view_names()) all += (all.empty() ? "" : ",") + name;
-  ASSERT_EQ(run({"--debug", all, "--resolution", "full"}).code, 0);
+  ASSERT_EQ(run({"--debug", all_names(), "--resolution", "full"}).code, 0);
   for (const auto& name : debug_view_names()) {
-    const Image picture = picture_of(folder / ("ao." + name + ".png"));
+    const Image picture = written(name);
     EXPECT_EQ(picture.data.width, 560) << name << ": texts need the room";
     EXPECT_EQ(picture.data.height, 36 * kZoom + kLegend) << name;
     int lit = 0;  // the texts
@@ -77,8 +78,9 @@ TEST_F(DebugViews, sky_has_a_colour_that_no_number_has) {
   FrameFile input = wall_frame();
   input.planes["ViewLayer.Depth.Z"][3 * 64 + 5] = 1e10f;
   input.write(frame);
+  ASSERT_EQ(run({"--debug", all_names()}).code, 0);
   for (const auto& name : debug_view_names()) {
-    const Image picture = view(name);
+    const Image picture = written(name);
     const auto sky = shown(picture, 5, 3);
     EXPECT_GT(sky[0], sky[1] + 60) << name;
     for (int y = 0; y < 36; y++)

@@ -85,9 +85,13 @@ TEST(Exact, is_what_the_reference_computes) {
       EstimatorSettings settings = settings_of(0.6);
       settings.thickness = thickness;
       settings.thickness_length = 0.2;
-      const std::vector<float> reference = reference_ao(frame, reference_settings_of(settings));
-      const Difference d = difference(run(frame, settings), [&](std::size_t i) { return reference[i]; });
-      EXPECT_LE(d.mean, 0.01) << orthographic << ", thickness " << int(thickness) << ", " << place(d, frame);
+      ReferenceSettings some = reference_settings_of(settings);
+      for (std::size_t i = 0; i < frame.depth.size(); i += 7) some.pixels.push_back(i);
+      const std::vector<float> reference = reference_ao(frame, some), ao = run(frame, settings);
+      std::vector<float> compared;
+      for (const std::size_t i : some.pixels) compared.push_back(ao[i]);
+      const Difference d = difference(compared, [&](std::size_t i) { return reference[some.pixels[i]]; });
+      EXPECT_LE(d.mean, 0.01) << orthographic << ", thickness " << int(thickness) << ", pixel " << some.pixels[d.worst];
       EXPECT_LE(std::abs(d.bias), 0.003) << orthographic << ", thickness " << int(thickness);
     }
   }

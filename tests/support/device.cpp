@@ -6,8 +6,12 @@
 
 #include <cstdlib>
 
+#include "tests/support/threads.h"
+
 namespace alcove::test {
 namespace {
+
+[[maybe_unused]] const bool kOneThread = compute_in_one_thread();
 
 constexpr std::size_t kGuardBytes = 4096;
 

@@ -25,8 +25,12 @@
 #include <stdexcept>
 #include <system_error>
 
+#include "tests/support/threads.h"
+
 namespace alcove::test {
 namespace {
+
+[[maybe_unused]] const bool kOneThread = compute_in_one_thread();
 
 namespace fs = std::filesystem;
 

@@ -18,6 +18,7 @@
 #include "tests/bench/stability/cases.h"
 #include "tests/support/device.h"
 #include "tests/support/difference.h"
+#include "tests/support/long_tests.h"
 
 namespace alcove {
 namespace {
@@ -45,9 +46,19 @@ void expect_sound(const Spec& spec, const std::vector<Variant>& all) {
   }
 }
 
+/// Of all variants those whose turn it is at the number-th frame, a quarter; in the long form all. Four frames on, and
+/// the values of an axis are several, each variant has been met; so have most kinds of variants at every frame.
+std::vector<Variant> variants_in_turn(const std::vector<Variant>& all, int number) {
+  std::vector<Variant> some;
+  for (std::size_t i = 0; i < all.size(); i++)
+    if (tried(number + int(i), 4)) some.push_back(all[i]);
+  return some;
+}
+
 TEST(Grid, every_axis_by_itself) {
   const auto all = variants();
-  for (const Spec& spec : sweeps()) expect_sound(spec, all);
+  int number = 0;
+  for (const Spec& spec : sweeps()) expect_sound(spec, variants_in_turn(all, number++));
 }
 
 TEST(Grid, all_axes_at_once) {
@@ -57,7 +68,7 @@ TEST(Grid, all_axes_at_once) {
   if (draws) std::cout << "ALCOVE_STABILITY_DRAWS=" << count << " ALCOVE_STABILITY_SEED=" << first << std::endl;
   const auto all = variants();
   for (int i = 0; i < count; i++) {
-    expect_sound(drawn(first + unsigned(i)), all);
+    expect_sound(drawn(first + unsigned(i)), draws ? all : variants_in_turn(all, i));
     if (HasFailure()) FAIL() << "repeat with ALCOVE_STABILITY_DRAWS=1 ALCOVE_STABILITY_SEED=" << first + unsigned(i);
   }
 }

@@ -1,0 +1,166 @@
+// The CPU references of the benchmark's small frames, which are kept in files: each is what reference.cpp computes, and
+// none is taken for another.
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// With every change some pixels of each are computed anew, with ALCOVE_TEST_LONG all. After a change of the reference or
+// of the presets' radius rules, write them with
+//   build/tests/kept_references_test --gtest_also_run_disabled_tests --gtest_filter='*writes_them'
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <string>
+#include <vector>
+
+#include "cli/options.h"
+#include "core/base/error.h"
+#include "core/bench/bench.h"
+#include "core/bench/kept_reference.h"
+#include "core/formats/exr.h"
+#include "tests/support/device.h"
+#include "tests/support/long_tests.h"
+#include "tests/support/program.h"
+
+namespace alcove {
+namespace {
+
+using test::TemporaryFolder;
+using testing::HasSubstr;
+
+/// Half floats from 0.5 to 1 are 2^-11 apart.
+constexpr float kRounding = 0x1p-12f;
+
+Suite suite() { return read_suite(ALCOVE_SOURCE_DIR "/examples/bench/suite.toml", ""); }
+
+HostFrame host_frame(const SuiteFrame& frame) {
+  InputSettings settings;
+  settings.input = frame.input;
+  settings.camera = frame.camera;
+  return read_host_frame(settings, 0);
+}
+
+EstimatorSettings estimator_of(const SuiteCandidate& candidate) {
+  ::setenv("ALCOVE_PRESETS", ALCOVE_SOURCE_DIR "/presets", 1);
+  RunOptions options;
+  parse_run_options(candidate.arguments, options);
+  return options.settings.estimator;
+}
+
+ReferenceSettings reference_of(const SuiteCandidate& candidate, const SuiteFrame& frame, int slices) {
+  EstimatorSettings estimator = estimator_of(candidate);
+  estimator.radius = frame.radius;
+  ReferenceSettings settings = reference_settings_of(estimator);
+  settings.slices = slices;
+  return settings;
+}
+
+TEST(KeptReferences, are_what_the_reference_computes) {
+  const Suite all = suite();
+  for (const auto& frame : all.frames) {
+    const HostFrame host = host_frame(frame);
+    ReferenceSettings settings = reference_of(all.candidates.front(), frame, all.reference_slices);
+    const std::vector<float> kept = read_kept_reference(frame.reference, settings, host.data);
+    ASSERT_EQ(kept.size(), host.data.pixels()) << frame.name;
+    for (std::size_t i = 17; i < kept.size(); i += test::long_tests() ? 1 : 397) settings.pixels.push_back(i);
+    const std::vector<float> computed = reference_ao(host, settings);
+    int surfaces = 0;
+    for (const std::size_t i : settings.pixels) {
+      surfaces += computed[i] < 1;
+      ASSERT_NEAR(kept[i], computed[i], kRounding) << frame.name << " pixel " << i;
+    }
+    EXPECT_GT(surfaces, 50) << frame.name;
+  }
+}
+
+// Else the suite would compute them, which takes over a minute.
+TEST(KeptReferences, are_those_of_all_presets) {
+  const Suite all = suite();
+  for (const auto& frame : all.frames)
+    for (const auto& candidate : all.candidates)
+      EXPECT_EQ(attribute_of_whole_exr(frame.reference, "alcove/reference"),
+                text_of(reference_of(candidate, frame, all.reference_slices)))
+          << frame.name << " " << candidate.name;
+}
+
+TEST(KeptReferences, are_taken_for_the_settings_they_were_made_with_alone) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "kept.exr";
+  HostFrame frame;
+  frame.data = frame.display = {0, 0, 3, 2};
+  ReferenceSettings made;
+  made.radius = 0.7;
+  const std::vector<float> ao{1, 0.5f, 0.25f, 0, 0.75f, 1};
+  write_kept_reference(path, made, frame, ao);
+  EXPECT_EQ(read_kept_reference(path, made, frame.data), ao);
+  std::vector<ReferenceSettings> others(7, made);
+  others[0].radius = 0.71;
+  others[1].falloff = Falloff::linear;
+  others[2].falloff_start = 0.1;
+  others[3].slices = 17;
+  others[4].thickness = ThicknessRule::width;
+  others[5].thickness_length = 0.1;
+  others[6].bias = 0.1;
+  for (std::size_t i = 0; i < others.size(); i++)
+    EXPECT_TRUE(read_kept_reference(path, others[i], frame.data).empty()) << i;
+}
+
+TEST(KeptReferences, of_another_window_or_none_at_all_are_refused) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "kept.exr";
+  HostFrame frame;
+  frame.data = frame.display = {0, 0, 3, 2};
+  ReferenceSettings settings;
+  settings.radius = 1;
+  write_kept_reference(path, settings, frame, std::vector<float>(6, 1.0f));
+  const auto complaint = [&](const std::string& of, const Window& data) {
+    try {
+      read_kept_reference(of, settings, data);
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::input);
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_THAT(complaint(path, {0, 0, 2, 3}), HasSubstr(path));
+  EXPECT_THAT(complaint(path, {1, 0, 3, 2}), HasSubstr(path));
+  const std::string truth = ALCOVE_SOURCE_DIR "/examples/bench/machine.ao.a.exr";
+  EXPECT_THAT(complaint(truth, {0, 0, 3, 2}), HasSubstr("alcove/reference"));
+}
+
+TEST(KeptReferences, are_what_a_suite_measures_against) {
+  const TemporaryFolder folder;
+  Suite all = suite();
+  const auto machine = std::ranges::find(all.frames, "machine", &SuiteFrame::name);
+  all.frames = {*machine};
+  all.repeats = 1;
+  SuiteFrame& frame = all.frames.front();
+  frame.reference = folder / "kept.exr";
+  const HostFrame host = host_frame(frame);
+  constexpr float kKept = 0.25f;
+  write_kept_reference(frame.reference, reference_of(all.candidates.front(), frame, all.reference_slices), host,
+                       std::vector<float>(host.data.pixels(), kKept));
+  BenchCandidate candidate{"draft", "", estimator_of(all.candidates.front())};
+  candidate.estimator.radius.reset();
+  const BenchReport report = run_bench(test::device(), all, {candidate}, {});
+  double sum = 0, surfaces = 0;
+  for (std::size_t i = 0; i < host.depth.size(); i++) {
+    if (!(host.depth[i] < host.sky)) continue;
+    sum += std::pow(report.rows.at(0).ao[i] - kKept, 2);
+    surfaces++;
+  }
+  EXPECT_NEAR(report.rows[0].estimator_rmse.value(), std::sqrt(sum / surfaces), 1e-6);
+}
+
+TEST(KeptReferences, DISABLED_writes_them) {
+  const Suite all = suite();
+  for (const auto& frame : all.frames) {
+    const HostFrame host = host_frame(frame);
+    const ReferenceSettings settings = reference_of(all.candidates.front(), frame, all.reference_slices);
+    write_kept_reference(frame.reference, settings, host, reference_ao(host, settings));
+  }
+}
+
+}  // namespace
+}  // namespace alcove
