@@ -11,18 +11,11 @@
 #include "core/base/settings.h"
 #include "core/formats/exr.h"
 #include "core/frame/camera.h"
+#include "core/frame/channels.h"
 #include "core/frame/depth.h"
 #include "core/frame/input_rules.h"
 
 namespace alcove {
-
-/// One channel of one of the frame's files.
-struct ChannelRef {
-  std::size_t file;
-  int part;
-  std::string channel;
-  auto operator<=>(const ChannelRef&) const = default;
-};
 
 /// Something that neither settings nor camera say.
 struct Guess {
