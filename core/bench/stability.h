@@ -41,7 +41,7 @@ struct StabilityReport {
   std::vector<StabilityAxis> axes;
 };
 
-/// Measures all axes, in a minute or so on a CPU. `say`: progress, a line each; may be empty.
+/// Measures all axes, in a minute or so on a CPU. `say` takes lines about the progress; it may be empty.
 StabilityReport run_stability(gpu::Device& device, const std::function<void(const std::string&)>& say);
 
 /// A line for every axis and estimator: the worst error and where it breaks down.

@@ -9,7 +9,7 @@
 
 #include "core/base/error.h"
 #include "core/base/text.h"
-#include "core/frame/gbuffer.h"
+#include "core/formats/open_image.h"
 
 namespace alcove {
 
@@ -90,15 +90,15 @@ const AovNames kAlbedoNames{
 
 namespace {
 
-/// The name without the layer; nothing when it lies elsewhere. Without a layer: the name.
+/// Gives the name without the layer; nothing if it lies elsewhere. Without a layer it gives the name.
 std::optional<std::string> within_layer(const std::string& name, const std::string& layer) {
   if (layer.empty()) return lower_case(name);
   if (!lower_case(name).starts_with(lower_case(layer) + ".")) return std::nullopt;
   return lower_case(name).substr(layer.size() + 1);
 }
 
-/// The name without its view, which stands before the last name part ("depth.right.Z", "right.R"); nothing where it is
-/// of another view. Channels that name no view belong to the first.
+/// Gives the name without its view, which stands before the last name part ("depth.right.Z", "right.R"); nothing if it
+/// is of another view. Channels that name no view belong to the first.
 std::optional<std::string> within_view(const std::string& name, const std::vector<std::string>& views,
                                        const std::string& view) {
   if (views.empty()) return name;
@@ -112,7 +112,7 @@ std::optional<std::string> within_view(const std::string& name, const std::vecto
   return name.substr(0, begin) + name.substr(last + 1);
 }
 
-/// The channels of the chosen view and layer; all of them without a layer.
+/// Lists the channels of the chosen view and layer; without a layer, all of the view.
 std::vector<NamedChannel> channels_of(const ExrFile& file, std::size_t index, const std::string& layer,
                                       const std::string& chosen_view) {
   const auto views = views_of(file);
@@ -149,7 +149,7 @@ std::vector<std::string> full_names(const std::vector<NamedChannel>& channels) {
   return names;
 }
 
-/// All that stands before a dot in a full name, once each: "ViewLayer", "ViewLayer.Depth" ...
+/// Lists once each everything that stands before a dot in a full name: "ViewLayer", "ViewLayer.Depth" ...
 std::vector<std::string> layers_of(const ExrFile& file) {
   std::set<std::string> layers;
   for (const auto& channel : channels_of(file, 0, "", ""))
@@ -158,7 +158,7 @@ std::vector<std::string> layers_of(const ExrFile& file) {
   return {layers.begin(), layers.end()};
 }
 
-/// What stands before `.component` (or "" for the bare component); nothing when the name does not end so.
+/// Gives the part of a name before `.component`, or "" for the bare component; nothing if the name does not end so.
 std::optional<std::string> prefix_of(const std::string& name, const std::string& component) {
   if (name == component) return "";
   const std::string end = "." + component;
@@ -171,7 +171,7 @@ bool is_layer(const std::string& path, const std::string& layer) {
   return path == layer || (!layer.empty() && prefix_of(path, layer));
 }
 
-/// The channels of one part that spell `layer` with these components: one entry for each place where all are found.
+/// Lists the places within parts where `layer` has all of these components: for each place, its channels.
 std::vector<std::vector<const NamedChannel*>> places_of(const std::vector<NamedChannel>& channels,
                                                         const std::string& layer,
                                                         const std::vector<std::string>& components) {
@@ -202,8 +202,8 @@ std::vector<ChannelRef> refs_of(const std::vector<const NamedChannel*>& channels
   return refs;
 }
 
-/// The AOV at the one place where `layer` holds one of the component sets; empty when there is none. Two places are an
-/// error.
+/// Finds the AOV at the one place where `layer` holds one of the component sets; gives nothing if there is none. Two
+/// places are an error.
 std::vector<ChannelRef> find_in_layer(const ExrFile& file, const std::vector<NamedChannel>& channels,
                                       const AovNames& names, const std::string& layer, const Components& sets) {
   for (const auto& components : sets) {
@@ -216,7 +216,7 @@ std::vector<ChannelRef> find_in_layer(const ExrFile& file, const std::vector<Nam
   return {};
 }
 
-/// The AOV under its usual names; empty when there is none.
+/// Finds the AOV under its usual names; gives nothing if there is none.
 std::vector<ChannelRef> find_usual(const ExrFile& file, const std::vector<NamedChannel>& channels,
                                    const AovNames& names, bool own_file) {
   for (const auto& layer : names.layers)
@@ -232,7 +232,7 @@ const NamedChannel* find_named(const std::vector<NamedChannel>& channels, const 
   return nullptr;
 }
 
-/// The channels that the user named: each by its full name, or all by their layer.
+/// Finds the channels that the user named: each by its full name, or all by their layer.
 std::vector<ChannelRef> find_chosen(const ExrFile& file, const std::vector<NamedChannel>& channels,
                                     const AovNames& names, const std::string& chosen) {
   auto wanted = split(chosen);
@@ -256,8 +256,7 @@ std::vector<ChannelRef> find_chosen(const ExrFile& file, const std::vector<Named
   return refs_of(found, file);
 }
 
-/// Where the first of the candidates is, in the order of the rules; a name is a layer, or else a channel. Null: none is
-/// there.
+/// Finds the first of the candidates that is there, in the order of the rules. Its name is a layer, or else a channel.
 FoundByRules find_candidate(const ExrFile& file, const std::vector<NamedChannel>& channels, const AovNames& names,
                             const std::vector<AovCandidate>& candidates) {
   for (const auto& candidate : candidates) {
@@ -285,7 +284,7 @@ std::size_t ChannelSearch::open(const std::string& path, const char* option) {
   if (path.empty()) fail(ErrorKind::usage, "no INPUT and no {} FILE: give one of them", option);
   const auto known = std::ranges::find(files_, path, &ExrFile::path);
   if (known != files_.end()) return std::size_t(known - files_.begin());
-  files_.push_back(open_file(path, path == settings_.input ? "INPUT" : option));
+  files_.push_back(open_image(path, path == settings_.input ? "INPUT" : option, Formats::of_frames));
   const auto views = views_of(files_.back());
   const auto same = [&](const std::string& view) { return lower_case(view) == lower_case(settings_.view); };
   if (!settings_.view.empty() && !views.empty() && std::ranges::none_of(views, same))

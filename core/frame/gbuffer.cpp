@@ -10,8 +10,7 @@
 
 #include "core/base/error.h"
 #include "core/base/text.h"
-#include "core/formats/dds.h"
-#include "core/formats/image_io.h"
+#include "core/formats/open_image.h"
 #include "core/frame/header_camera.h"
 
 namespace alcove {
@@ -76,7 +75,9 @@ void find_rules(FrameSource& source, std::size_t file, const InputSettings& sett
   const bool detects = settings.source.empty() || settings.source == "auto";
   const DetectedRules found =
       detects ? detect_rules(source.files[file]) : DetectedRules{&input_rules(settings.source), "--source"};
-  source.rules = found.rules, source.rules_by = found.by, source.rules_said = !detects;
+  source.rules = found.rules;
+  source.rules_by = found.by;
+  source.rules_said = !detects;
 }
 
 /// The depth channel; the position's where the settings say so, or where there is no depth.
@@ -123,11 +124,8 @@ std::vector<ChannelRef> find_normal(FrameSource& source, const ChannelSearch& se
   return search.find(file, two, "", false);
 }
 
-bool names_a_camera(const InputSettings& settings) {
-  return !settings.camera.empty() || settings.fov || settings.focal || settings.ortho_width;
-}
-
-/// The settings' camera, or else the header's.
+/// The settings' camera, or else the header's. Options that give no more than a projection leave the camera where the
+/// header says that it stands.
 void find_camera(FrameSource& source, const InputSettings& settings, const ChannelRef& depth, int frame) {
   const ExrFile& file = source.files[depth.file];
   const auto attributes = file.attribute_texts(depth.part);
@@ -139,6 +137,7 @@ void find_camera(FrameSource& source, const InputSettings& settings, const Chann
       return;
     }
   source.camera = camera_for(settings, source.display, source.pixel_aspect, frame);
+  if (settings.camera.empty()) place_by_header(source.camera, attributes, source.display);
 }
 
 /// What of the meaning of depth and normals is said, and by whom; the rest is open.
@@ -238,19 +237,11 @@ FrameSource find_frame(const InputSettings& settings, bool with_beauty, int fram
   return source;
 }
 
-ExrFile open_file(const std::string& path, const char* option) {
-  if (is_dds(path)) return {path, option, read_dds(path, option)};
-  const std::string ending = lower_case(path.substr(std::min(path.rfind('.'), path.size())));
-  for (const char* other : {".png", ".tif", ".tiff", ".tga", ".bmp", ".hdr"})
-    if (ending == other) return {path, option, open_picture(path, option)};
-  return ExrFile(path, option);
-}
-
 bool header_has_camera(const InputSettings& settings) {
-  const ExrFile file = open_file(!settings.depth.empty()  ? settings.depth
-                                 : settings.input.empty() ? settings.position
-                                                          : settings.input,
-                                 "INPUT");
+  const ExrFile file = open_image(!settings.depth.empty()  ? settings.depth
+                                  : settings.input.empty() ? settings.position
+                                                           : settings.input,
+                                  "INPUT", Formats::of_frames);
   for (std::size_t part = 0; part < file.parts().size(); part++)
     if (header_camera(file.attribute_texts(int(part)), file.display(), file.parts()[part].data, file.pixel_aspect()))
       return true;

@@ -68,9 +68,6 @@ struct FrameSource {
 /// is found twice, is subsampled, or has another size than the depth.
 FrameSource find_frame(const InputSettings& settings, bool with_beauty, int frame, bool with_albedo = false);
 
-/// Opens an EXR, a DDS, or another picture by its ending (png, tif, tiff, tga, bmp, hdr). Fails with ErrorKind::input.
-ExrFile open_file(const std::string& path, const char* option);
-
 /// Whether the header of the frame's depth or position file has a camera. Fails as opening it does.
 bool header_has_camera(const InputSettings& settings);
 

@@ -7,10 +7,10 @@
 #include <string_view>
 
 #include "core/base/error.h"
+#include "core/frame/scale_notes.h"
 #include "core/frame/settle.h"
 #include "core/run/batch.h"
 #include "core/run/resume.h"
-#include "core/run/scale_notes.h"
 
 namespace alcove {
 namespace {
@@ -65,7 +65,7 @@ class FrameRun {
   FrameOutputs compute(FrameSource& source, const OutputSettings& output, bool reuses) {
     const Stopwatch reading;
     FrameInputs inputs = load_frame(gpu_, source, settings_, frame_);
-    sample_.add(inputs);
+    sample_.add(inputs.view, inputs.depth_map, inputs.depth_precision, inputs.depth->as<float>());
     const bool is_same = reuses && last_.is_same(gpu_, inputs, settings_.estimator);
     if (!reuses) last_.forget();
     report_.read_ms += reading.ms();
@@ -181,7 +181,8 @@ class FrameRun {
 
   void note_counts(const FrameSource& source) {
     auto& notes = report_.notes;
-    if (has_ao_) notes = sample_.notes(settings_.estimator, source.file_data.width, source.file_data.height);
+    const std::vector<double> radii = has_ao_ ? radii_of(settings_.estimator) : std::vector<double>{};
+    if (has_ao_) notes = sample_.notes(radii.front(), radii.back(), source.file_data.width, source.file_data.height);
     report_.sky_pixels = counts_.sky;
     report_.repaired_pixels =
         counts_.repaired_depth + counts_.repaired_normals + counts_.repaired_material + counts_.repaired_beauty;

@@ -9,6 +9,7 @@
 
 #include "core/base/error.h"
 #include "core/base/file.h"
+#include "core/base/text.h"
 #include "core/chain/debug_view.h"
 #include "core/run/frame_files.h"
 #include "core/run/tiles.h"
@@ -172,7 +173,7 @@ std::string plan_text(const Settings& settings) {
   const FramePlan plan(settings);
   std::string text;
   const auto line = [&](const std::string& name, const std::string& value) {
-    text += fmt::format("{:<14}{}\n", name, value);
+    text += printable(fmt::format("{:<14}{}", name, value)) + "\n";
   };
   line("frames",
        plan.frames().empty() ? "none" : fmt::format("{}: {}", plan.frames().size(), frames_text(plan.frames())));
