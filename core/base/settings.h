@@ -7,53 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "core/base/setting_words.h"
+
 namespace alcove {
-
-enum class DepthKind { automatic, planar, ray, inverse, device, normalized, log, position };
-// of device depth between the near and the far plane: Vulkan, Direct3D; OpenGL
-enum class DeviceRange { zero_to_one, minus_one_to_one };
-enum class NormalSpace { automatic, world, view };
-enum class PositionSpace { automatic, world, view };
-enum class NormalEncoding { automatic, signed_float, unorm, octahedral, spheremap };
-enum class Falloff : std::uint32_t { none, linear, quadratic, smooth };
-enum class Estimator { gtao, bitmask, hbao, crytek };
-// how gtao looks along a slice: at so many steps; at all pixels, by their outlines; at each of them
-enum class SliceSearch { steps, exact, every_pixel };
-// what HBAO measures a horizon from: the plane across the view ray, or the surface
-enum class Elevation { view, surface };
-// how Crytek's samples fill the hemisphere: more near the receiver, or even in volume
-enum class SampleKernel { clustered, uniform };
-// how Crytek's hits fade with the difference of depth between receiver and hit
-enum class RangeCheck { none, ratio, smoothstep };
-enum class ThicknessKind { automatic, infinite, constant };
-// pixels of the frame a pixel of the estimate, in x and in y
-enum class Resolution { full = 1, half = 2, quarter = 4 };
-enum class Denoise { none, bilateral, box };
-enum class Noise { fixed, animated };  // whether frames share one pattern of sample noise
-enum class AoChannels { mono, rgb };
-enum class OutputType { half_float, single_float };
-enum class Missing { error, skip };  // what a frame without its input is
-
-/// What device, normalized and log depth are counted between.
-struct DepthRange {
-  // distance of the planes, in the file's units, 0 < near < far; far may be infinite (device only)
-  std::optional<double> near, far;
-  bool reversed = false;  // the near plane has the largest value
-  DeviceRange device = DeviceRange::zero_to_one;
-  double log_constant = 1;  // C of z = ((1 + C far)^d - 1) / C, 1 / the file's units, > 0
-  // planar, ray and inverse depth: the values are below 0; view positions: their z is not as the camera's
-  bool negative = false;
-};
-
-/// Axes of the normals that point the other way.
-struct NormalFlips {
-  bool x = false, y = false, z = false;
-};
-
-/// Pixels, counted from the display window's upper left corner.
-struct Region {
-  int x = 0, y = 0, width = 0, height = 0;
-};
 
 /// Which frames of a sequence, and what becomes of those that cannot or need not be computed.
 struct FrameSettings {
@@ -168,7 +124,7 @@ struct OutputSettings {
   std::string output;     // the AO EXR
   std::string composite;  // the composite EXR
   std::string preview;    // a PNG of the composite, or of the AO where there is none
-  // what the file of `output` holds: names of core/chain/aov.h with commas
+  // what the file of `output` holds: names of AOVs with commas, see core/chain/outputs.h
   std::string aovs = "ao";
   // mono: Y; rgb: R, G, B, as compositors' shuffles expect, and coloured with multi_bounce
   AoChannels ao_channels = AoChannels::mono;

@@ -11,8 +11,9 @@
 #include <tuple>
 
 #include "core/base/error.h"
+#include "core/base/estimator_facts.h"
 #include "core/chain/chain.h"
-#include "core/chain/host_frame.h"
+#include "core/chain/compute.h"
 #include "core/formats/exr.h"
 #include "core/measure/metrics.h"
 #include "core/reference/reference.h"

@@ -22,16 +22,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Where files are kept for a while: std::filesystem::temp_directory_path() would not say which place it cannot use.
+/// The folder where files are kept for a while: std::filesystem::temp_directory_path() would not say which place it
+/// cannot use.
 fs::path folder_of_scratch() {
   const char* variable = std::getenv("TMPDIR");
   return variable && *variable ? variable : P_tmpdir;
 }
 
-/// A folder that goes with all that is in it.
+/// A folder that is deleted with all that is in it.
 class ScratchFolder {
  public:
-  // mkdtemp draws the six letters
+  // mkdtemp draws the six letters.
   ScratchFolder() : path_((folder_of_scratch() / ("alcove-bench-" + std::string(6, 'X'))).string()) {
     if (!::mkdtemp(path_.data()))
       fail(ErrorKind::output, "{}: no folder for the frames can be made: {}; the variable TMPDIR names another place",
@@ -49,7 +50,7 @@ class ScratchFolder {
   std::string path_;
 };
 
-/// Seconds for the function to be called with 0 to count - 1, by so many threads.
+/// Returns the seconds that so many threads take to call the function with 0 to count - 1.
 template <class Function>
 double seconds_of(int threads, int count, const Function& function) {
   const Stopwatch watch;
@@ -76,19 +77,19 @@ BatchTimes time_batch(Settings settings, int frames) {
 
   times.files_s = seconds_of(report.at_once, frames, [&](int frame) {
     FrameSource source = open_frame(settings, frame);
-    std::vector<float> depth(source.depth.size() * source.data.pixels()),
-        normal(source.normal.size() * source.data.pixels());
-    read_planes(source, {{&source.depth, depth.data()}, {&source.normal, normal.data()}});
-    Settings one = settings;
-    one.output.output = folder.file(frame);
-    FrameWriter writer(source, one, {report.options, report.device});
+    std::vector<float> depth(source[RawPlane::depth].size() * source.data.pixels());
+    std::vector<float> normal(source[RawPlane::normal].size() * source.data.pixels());
+    read_planes(source, {{&source[RawPlane::depth], depth.data()}, {&source[RawPlane::normal], normal.data()}});
+    Settings of_frame = settings;
+    of_frame.output.output = folder.file(frame);
+    FrameWriter writer(source, of_frame, {report.options, report.device});
     writer.write(std::vector{std::span<const float>(depth).first(source.data.pixels())});
     writer.finish();
   });
 
   const DeviceSettings& d = settings.device;
   Lanes lanes({d.device, d.require_gpu, d.validate, !d.no_pipeline_cache}, report.at_once, report.at_once);
-  const int each = (frames + report.at_once - 1) / report.at_once;
+  const int frames_of_a_lane = (frames + report.at_once - 1) / report.at_once;
   std::atomic<double> device_ms = 0;
   seconds_of(report.at_once, report.at_once, [&](int) {
     lanes.with([&](Lane& lane) {
@@ -96,7 +97,7 @@ BatchTimes time_batch(Settings settings, int frames) {
       FrameSource source = open_frame(settings, 1);
       const FrameInputs inputs = load_frame(gpu, source, settings, 1);
       const Stopwatch computing;
-      for (int i = 0; i < each; i++) {
+      for (int i = 0; i < frames_of_a_lane; i++) {
         run_chain(gpu, inputs, settings.estimator, settings.output);
         gpu.run();
       }

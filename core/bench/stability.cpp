@@ -9,6 +9,7 @@
 #include <map>
 #include <numbers>
 
+#include "core/chain/compute.h"
 #include "core/frame/scale_notes.h"
 #include "core/reference/reference.h"
 #include "core/reference/reference_estimators.h"
@@ -289,7 +290,7 @@ class Bench {
   std::vector<std::string> notes(const Trial& trial) {
     DepthSample sample;
     const FrameInputs inputs = upload(gpu_, trial.tried);
-    sample.add(inputs.view, inputs.depth_map, inputs.depth_precision, inputs.depth->as<float>());
+    sample.add(inputs.view, inputs.depth_map, inputs.depth_precision, inputs[RawPlane::depth]->as<float>());
     return sample.notes(trial.radius, trial.radius, kWidth, kHeight);
   }
 

@@ -22,7 +22,7 @@ struct SuiteCandidate {
 struct Suite {
   std::string title;
   int repeats = 5;            // timed runs of every candidate on every frame, > 0
-  int reference_slices = 16;  // of the CPU reference that splits the error; 0: none
+  int reference_slices = 16;  // slices of the CPU reference that splits the error; 0: there is none
   std::vector<SuiteFrame> frames;
   std::vector<SuiteCandidate> candidates;
 };

@@ -1,44 +1,38 @@
-// The table, and the search in it.
+// The search in the table, and what follows from what is found.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/chain/aov.h"
 
 #include <algorithm>
 
 #include "core/base/error.h"
+#include "core/base/estimator_facts.h"
 #include "core/base/text.h"
-#include "core/chain/chain.h"
 
 namespace alcove {
+namespace {
 
-std::span<const Aov> aov_table() {
-  static const std::vector<Aov> rows{
-      {"ao", {"Y"}, &FrameOutputs::ao},
-      {"ao-scales", {"scale1.Y"}, &FrameOutputs::scales},
-      {"normal", {"normal.X", "normal.Y", "normal.Z"}, &FrameOutputs::normal},
-      {"bent-normal", {"bent.X", "bent.Y", "bent.Z"}, &FrameOutputs::bent_normal},
-      {"depth", {"Z"}, &FrameOutputs::depth, true},
-      {"confidence", {"confidence.Y"}, &FrameOutputs::confidence},
-      {"error", {"error.Y"}, &FrameOutputs::error},
-      {"specular-occlusion", {"specular.Y"}, &FrameOutputs::specular_occlusion},
-  };
-  return rows;
+bool is_of_visibility(const DebugView* view) {
+  return view->source == DebugSource::raw_ao || view->source == DebugSource::denoised_ao ||
+         view->source == DebugSource::tiles;
 }
+
+}  // namespace
 
 std::vector<std::string> aov_names() {
   std::vector<std::string> names;
-  std::ranges::transform(aov_table(), std::back_inserter(names), &Aov::name);
+  std::ranges::transform(kAovs, std::back_inserter(names), &AovRow::name);
   return names;
 }
 
 std::vector<Aov> aovs_of(const OutputSettings& settings) {
   std::vector<Aov> aovs;
   for (const auto& name : split(settings.aovs)) {
-    const auto found = std::ranges::find(aov_table(), name, &Aov::name);
-    if (found == aov_table().end())
+    const auto row = std::ranges::find(kAovs, name, &AovRow::name);
+    if (row == kAovs.end())
       fail(ErrorKind::usage, "--aov: there is no AOV \"{}\"{}; there is {}", name, suggestion(name, aov_names()),
            list_of(aov_names()));
     if (std::ranges::find(aovs, name, &Aov::name) != aovs.end()) continue;
-    aovs.push_back(*found);
+    aovs.push_back({name, split(row->channels), row->planes, row->source, row->is_float});
     if (name != "ao" || settings.ao_channels == AoChannels::mono) continue;
     aovs.back().channels = {"R", "G", "B"};
     if (settings.multi_bounce) aovs.back().planes = &FrameOutputs::color_ao;
@@ -53,9 +47,35 @@ std::vector<std::string> channels_of(const Aov& aov, std::size_t planes) {
   return channels;
 }
 
-bool wants(const OutputSettings& settings, gpu::Buffer* FrameOutputs::*planes) {
-  const auto aovs = aovs_of(settings);
+bool wants(const OutputSettings& settings, gpu::Buffer* FrameOutputs::*planes) { return Wanted(settings).has(planes); }
+
+Wanted::Wanted(const OutputSettings& settings)
+    : aovs(aovs_of(settings)),
+      debug_views(debug_views_of(settings)),
+      multi_bounce(settings.multi_bounce),
+      fog_density(settings.fog_density) {
+  const auto is_at_least = [](AovSource source) { return [source](const Aov& aov) { return aov.source >= source; }; };
+  open_directions = std::ranges::any_of(aovs, is_at_least(AovSource::open_directions));
+  visibility = std::ranges::any_of(aovs, is_at_least(AovSource::visibility)) || multi_bounce ||
+               !settings.composite.empty() || !settings.preview.empty() ||
+               std::ranges::any_of(debug_views, is_of_visibility);
+}
+
+bool Wanted::has(gpu::Buffer* FrameOutputs::*planes) const {
   return std::ranges::find(aovs, planes, &Aov::planes) != aovs.end();
+}
+
+bool Wanted::is_only_visibility() const {
+  const auto is_ao = [](const Aov& aov) {
+    return aov.planes == &FrameOutputs::ao || aov.planes == &FrameOutputs::scales;
+  };
+  return visibility && std::ranges::all_of(aovs, is_ao) && !multi_bounce && debug_views.empty();
+}
+
+bool needs_ao(const OutputSettings& output) { return Wanted(output).visibility; }
+
+bool needs_bent(const EstimatorSettings& settings, const Wanted& wanted) {
+  return wanted.open_directions && has_bent_normals(settings);
 }
 
 }  // namespace alcove

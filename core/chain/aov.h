@@ -1,38 +1,59 @@
-// The AOVs that Alcove writes: ONE table of what each is called, its channels, and where its planes come from.
+// The AOVs that a run asks for, and what they ask of the chain.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <span>
 #include <string>
 #include <vector>
 
 #include "core/base/settings.h"
+#include "core/chain/debug_view.h"
+#include "core/chain/outputs.h"
 
 namespace alcove {
 
-namespace gpu {
-class Buffer;
-}
-struct FrameOutputs;  // core/chain/chain.h
-
-/// A row of the table.
+/// An AOV that a run asks for: a row of kAovs, with the channels and planes that the other outputs' settings give it.
 struct Aov {
-  std::string name;                    // as --aov takes it
-  std::vector<std::string> channels;   // in the file; one a plane, or all from the only plane
-  gpu::Buffer* FrameOutputs::*planes;  // where the chain leaves them
-  bool is_float = false;               // whatever --type says: half would lose what it is for
+  std::string name;
+  std::vector<std::string> channels;
+  gpu::Buffer* FrameOutputs::*planes;
+  AovSource source;
+  bool is_float;
 };
-std::span<const Aov> aov_table();
 std::vector<std::string> aov_names();
 
-/// The rows that the settings ask for, each once, in their order. Fails with ErrorKind::usage on a name that is not in
+/// Those that the settings ask for, each once, in their order. Fails with ErrorKind::usage on a name that is not in
 /// the table, listing what is.
 std::vector<Aov> aovs_of(const OutputSettings& settings);
 
-/// The channels of an AOV that has so many planes: ao-scales has one a radius, scale1.Y of the smallest.
+/// The channels of an AOV that has so many planes: ao-scales has one for each radius, scale1.Y of the smallest.
 std::vector<std::string> channels_of(const Aov& aov, std::size_t planes);
 
 /// Whether one of them lies there.
 bool wants(const OutputSettings& settings, gpu::Buffer* FrameOutputs::*planes);
+
+/// What the outputs ask of the chain: their names, parsed once. Whoever has settings may pass them in its place.
+struct Wanted {
+  /// Fails with ErrorKind::usage on names that are in no table.
+  Wanted(const OutputSettings& settings);
+  Wanted() : Wanted(OutputSettings{}) {}
+
+  /// Whether an AOV lies there.
+  bool has(gpu::Buffer* FrameOutputs::*planes) const;
+  /// Whether nothing is asked for but AO that is made from depth and normals alone.
+  bool is_only_visibility() const;
+
+  std::vector<Aov> aovs;
+  std::vector<const DebugView*> debug_views;
+  bool visibility = false;       // AO, or what is made from it
+  bool open_directions = false;  // what is made from them, of an estimator that finds them
+  bool multi_bounce = false;
+  double fog_density = 0;  // 1 / scene units
+};
+
+/// Whether any of it is AO or made from it.
+bool needs_ao(const OutputSettings& output);
+
+/// Whether any of it is made from open directions, by an estimator that finds them.
+bool needs_bent(const EstimatorSettings& settings, const Wanted& wanted);
 
 }  // namespace alcove

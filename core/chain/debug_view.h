@@ -13,7 +13,7 @@
 namespace alcove {
 
 enum class DebugScale { fixed, fixed_logarithmic, percentile, percentile_logarithmic };
-// what kernels/debug.comp takes beside the G-buffer
+/// What kernels/debug.comp takes beside the G-buffer.
 enum class DebugSource { none, raw_depth, raw_ao, denoised_ao, normals_from_depth, tiles };
 
 /// A row of the table.
@@ -22,11 +22,12 @@ struct DebugView {
   const char* title;  // what the picture shows, and its unit
   uint kind;          // of kernels/debug.h
   DebugSource source;
-  // percentile: from the 3rd to the 97th of the frame's surfaces; logarithmic: equal factors are equal steps, by the
-  // numbers' sizes
+  // A percentile scale goes from the 3rd to the 97th of the frame's surfaces. On a logarithmic one equal factors are
+  // equal steps, by the numbers' sizes.
   DebugScale scale;
-  float low, high;  // of fixed scales; what is beyond has the colour of the end
-  bool is_grey;     // black to white instead of the colour ramp
+  float low;  // ends of fixed scales; what is beyond has the colour of the end
+  float high;
+  bool is_grey;  // black to white instead of the colour ramp
 };
 std::span<const DebugView> debug_view_table();
 std::vector<std::string> debug_view_names();
@@ -36,10 +37,5 @@ std::vector<const DebugView*> debug_views_of(const OutputSettings& settings);
 
 /// Where the picture of a view goes: beside the AO, ao.exr -> ao.raw-depth.png.
 std::string debug_path(const OutputSettings& settings, const DebugView& view);
-
-/// Writes the picture, whole or not at all. `values`: a number a pixel, kSkyDepth for sky. made_by: see encode_png().
-/// Fails with ErrorKind::output.
-void write_debug_view(const std::string& path, const DebugView& view, int width, int height,
-                      std::span<const float> values, const std::string& made_by);
 
 }  // namespace alcove

@@ -1,12 +1,17 @@
-// What the host functions of kernels share.
+// What the host functions of kernels share: sizes of planes, and counts of workgroups.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <array>
 
-#include "core/chain/passes.h"
+#include "core/gpu/recorder.h"
+#include "kernels/shared.h"
 
 namespace alcove {
+
+// They stand before the names of the buffers of further planes; those of the AO have none.
+inline constexpr const char* kScalesPrefix = "scales ";
+inline constexpr const char* kBentPrefix = "bent ";
 
 inline std::size_t pixels_of(const View& view) { return std::size_t(view.size.x) * std::size_t(view.size.y); }
 inline std::size_t plane_bytes(const View& view) { return pixels_of(view) * sizeof(float); }

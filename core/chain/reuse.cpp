@@ -20,6 +20,11 @@ void add(std::uint64_t& hash, const T&... values) {
   ((hash = XXH3_64bits_withSeed(&values, sizeof(values), hash)), ...);
 }
 
+/// Kernels' parameters have nothing between their members.
+void add(std::uint64_t& hash, const PrepareParams& params) {
+  hash = XXH3_64bits_withSeed(&params, sizeof(params), hash);
+}
+
 void add(std::uint64_t& hash, const Matrix3& matrix) {
   for (const auto& row : matrix)
     for (const double value : row) add(hash, value);
@@ -35,37 +40,40 @@ ivec2 blocks_of(const View& view) {
   return {int(groups_of(view.size.x, uint(kChangeBlock))), int(groups_of(view.size.y, uint(kChangeBlock)))};
 }
 
+/// Adds what each block holds of planes one behind the other, row by row.
+void add_blocks(std::vector<std::uint64_t>& blocks, const gpu::Buffer& planes, ivec2 size) {
+  const auto values = planes.as<const float>();
+  const auto width = std::size_t(size.x);
+  const std::size_t columns = groups_of(size.x, uint(kChangeBlock));
+  for (std::size_t row = 0; row < values.size() / width; row++) {
+    const std::size_t first = row % std::size_t(size.y) / kChangeBlock * columns;
+    for (std::size_t x = 0; x < columns; x++) {
+      const std::size_t begin = x * kChangeBlock;
+      const std::size_t pixels = std::min(std::size_t(kChangeBlock), width - begin);
+      std::uint64_t& hash = blocks[first + x];
+      hash = XXH3_64bits_withSeed(&values[row * width + begin], pixels * sizeof(float), hash);
+    }
+  }
+}
+
 }  // namespace
 
-LastFrame::Hashes LastFrame::hashes_of(const FrameInputs& f, const EstimatorSettings& settings) {
+LastFrame::Hashes LastFrame::hashes_of(const FrameInputs& frame, const EstimatorSettings& settings) {
   Hashes hashes;
-  const View& v = f.view;
-  add(hashes.meaning, v.size.x, v.size.y, v.center.x, v.center.y, v.tangent_per_pixel.x, v.tangent_per_pixel.y,
-      v.orthographic, f.noise_origin.x, f.noise_origin.y);
-  const DepthMap& d = f.depth_map;
-  add(hashes.meaning, d.form, d.along_ray, d.origin, d.base, d.slope, d.sky_below, d.sky_above, d.sky_depth, d.axis[0],
-      d.axis[1], d.axis[2], d.eye_distance);
-  for (const double at : f.depth_precision.at) add(hashes.meaning, at);
-  add(hashes.meaning, int(f.normal_encoding), f.normal_unorm, f.has_alpha, f.albedo_value,
-      f.normal ? planes_in(*f.normal, v) : 0);
-  add(hashes.meaning, f.view_from_normal);
-  add(hashes.meaning, f.aov_from_view);
-  if (settings.noise == Noise::animated) add(hashes.meaning, f.frame);
-  for (const auto* plane : {f.beauty, f.indirect, f.diffuse_color, f.material_ao, f.albedo}) add(hashes.colors, plane);
-
-  const ivec2 count = blocks_of(v);
-  hashes.blocks.assign(std::size_t(count.x) * std::size_t(count.y), 0);
-  for (const auto* planes : {f.depth, f.normal}) {
-    if (!planes) continue;
-    const auto values = planes->as<const float>();
-    for (std::size_t row = 0; row < values.size() / std::size_t(v.size.x); row++)
-      for (int x = 0; x < count.x; x++) {
-        const std::size_t begin = std::size_t(x) * kChangeBlock,
-                          pixels = std::min(std::size_t(kChangeBlock), std::size_t(v.size.x) - begin);
-        std::uint64_t& hash =
-            hashes.blocks[row % std::size_t(v.size.y) / kChangeBlock * std::size_t(count.x) + std::size_t(x)];
-        hash = XXH3_64bits_withSeed(&values[row * std::size_t(v.size.x) + begin], pixels * sizeof(float), hash);
-      }
+  add(hashes.meaning, frame.prepare);
+  add(hashes.meaning, frame.depth_map.form, frame.normal_form, frame.noise_origin.x, frame.noise_origin.y,
+      frame.albedo_value);
+  for (const double at : frame.depth_precision.at) add(hashes.meaning, at);
+  add(hashes.meaning, frame.aov_from_view);
+  for (const auto* plane : frame.planes.entries) add(hashes.meaning, plane ? planes_in(*plane, frame.view) : 0u);
+  if (settings.noise == Noise::animated) add(hashes.meaning, frame.frame);
+  hashes.blocks.assign(std::size_t(blocks_of(frame.view).x) * std::size_t(blocks_of(frame.view).y), 0);
+  for (const auto& row : kRawPlanes) {
+    const gpu::Buffer* plane = frame[row.plane];
+    if (row.content == PlaneContent::color)
+      add(hashes.colors, plane);
+    else if (plane)
+      add_blocks(hashes.blocks, *plane, frame.view.size);
   }
   return hashes;
 }

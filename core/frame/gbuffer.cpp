@@ -20,6 +20,12 @@ const ExrPart& part_of(const FrameSource& source, const ChannelRef& ref) {
   return source.files[ref.file].parts()[std::size_t(ref.part)];
 }
 
+bool has_half_channel(const FrameSource& source, const ChannelRef& ref) {
+  const auto& channels = part_of(source, ref).channels;
+  const auto channel = std::ranges::find(channels, ref.channel, &ExrChannel::name);
+  return channel != channels.end() && channel->type == SampleType::half_float;
+}
+
 /// All planes of a frame lie over the same pixels.
 void require_same_window(const FrameSource& source, const std::vector<ChannelRef>& channels, const char* what,
                          const char* option) {
@@ -32,18 +38,19 @@ void require_same_window(const FrameSource& source, const std::vector<ChannelRef
 }
 
 void find_beauty(FrameSource& source, const ChannelSearch& search, std::size_t file, const InputSettings& settings) {
-  source.beauty = search.with_alpha(
+  source[RawPlane::beauty] = search.with_alpha(
       search.require(file, kBeautyNames, settings.beauty_channels, !settings.beauty.empty(), "Combined.R"));
-  source.indirect = search.find(file, kIndirectNames, "", false);
-  source.diffuse_color = search.find(file, kDiffuseColorNames, "", false);
+  source[RawPlane::indirect] = search.find(file, kIndirectNames, "", false);
+  source[RawPlane::diffuse_color] = search.find(file, kDiffuseColorNames, "", false);
   // Blender's indirect light (DiffInd, from version 5 on Diffuse Indirect) is without the surface's colour; without the
   // colour pass the part is unknown. Others' includes it.
-  const std::string indirect = source.indirect.empty() ? "" : lower_case(source.indirect[0].channel);
+  const std::string indirect =
+      source[RawPlane::indirect].empty() ? "" : lower_case(source[RawPlane::indirect][0].channel);
   const bool is_blender =
       indirect.find("diffind") != indirect.npos || indirect.find("diffuse indirect") != indirect.npos;
-  if (is_blender && source.diffuse_color.empty()) source.indirect.clear();
-  if (!is_blender) source.diffuse_color.clear();
-  for (const auto* aov : {&source.beauty, &source.indirect, &source.diffuse_color})
+  if (is_blender && source[RawPlane::diffuse_color].empty()) source[RawPlane::indirect].clear();
+  if (!is_blender) source[RawPlane::diffuse_color].clear();
+  for (const auto* aov : {&source[RawPlane::beauty], &source[RawPlane::indirect], &source[RawPlane::diffuse_color]})
     require_same_window(source, *aov, "beauty", "--beauty");
 }
 
@@ -52,22 +59,22 @@ void find_material(FrameSource& source, ChannelSearch& search, const InputSettin
   if (settings.material_ao.empty() && settings.material_ao_channel.empty()) return;
   const std::size_t file =
       search.open(settings.material_ao.empty() ? settings.input : settings.material_ao, "--material-ao");
-  source.material_ao =
+  source[RawPlane::material_ao] =
       search.require(file, kMaterialNames, settings.material_ao_channel, !settings.material_ao.empty(), "AO");
-  require_same_window(source, source.material_ao, "material AO", "--material-ao");
+  require_same_window(source, source[RawPlane::material_ao], "material AO", "--material-ao");
 }
 
 /// The colour that light takes at the surfaces.
 void find_albedo(FrameSource& source, ChannelSearch& search, const std::string& beauty_path,
                  const InputSettings& settings) {
   const std::size_t file = search.open(settings.albedo.empty() ? beauty_path : settings.albedo, "--albedo");
-  source.albedo = search.find(file, kAlbedoNames, settings.albedo_channels, !settings.albedo.empty());
-  if (source.albedo.empty())
+  source[RawPlane::albedo] = search.find(file, kAlbedoNames, settings.albedo_channels, !settings.albedo.empty());
+  if (source[RawPlane::albedo].empty())
     fail(ErrorKind::input,
          "{}: no diffuse colour found for --multi-bounce: name its channels with --albedo-channels, or give --albedo a "
          "file or a number",
          source.files[file].path());
-  require_same_window(source, source.albedo, "diffuse colour", "--albedo");
+  require_same_window(source, source[RawPlane::albedo], "diffuse colour", "--albedo");
 }
 
 /// The rules that the settings name, or those of the file.
@@ -157,7 +164,7 @@ void find_meaning(FrameSource& source, const InputSettings& settings) {
       is_open(settings.normal_space, source.camera.normal_space, rules.normal_space != NormalSpace::automatic);
   source.normal_encoding_open = is_open(settings.normal_encoding, source.camera.normal_encoding,
                                         rules.normal_encoding != NormalEncoding::automatic);
-  source.depth_kind = source.depth.size() == 3
+  source.depth_kind = source[RawPlane::depth].size() == 3
                           ? DepthKind::position
                           : decided(settings.depth_kind, source.camera.depth_kind, source.usual_depth_kind);
   source.depth_range = settings.depth_range;
@@ -211,14 +218,17 @@ FrameSource find_frame(const InputSettings& settings, bool with_beauty, int fram
                                      ? search.open(settings.position, "--position")
                                      : search.open(depth_path, "--depth");
   find_rules(source, depth_file, settings);
-  source.depth = find_depth(source, search, depth_file, settings, by_position);
-  source.data = source.file_data = part_of(source, source.depth[0]).data;
+  source[RawPlane::depth] = find_depth(source, search, depth_file, settings, by_position);
+  source.data = source.file_data = part_of(source, source[RawPlane::depth][0]).data;
   source.display = source.files[depth_file].display();
   source.pixel_aspect = source.files[depth_file].pixel_aspect();
+  source.depth_is_half = has_half_channel(source, source[RawPlane::depth][0]);
+  source.depth_scale = settings.depth_scale;
+  source.sky = settings.sky;
 
   const std::size_t normal_file = search.open(normal_path, "--normal");
-  source.normal = find_normal(source, search, normal_file, settings);
-  require_same_window(source, source.normal, "normal", "--normal");
+  source[RawPlane::normal] = find_normal(source, search, normal_file, settings);
+  require_same_window(source, source[RawPlane::normal], "normal", "--normal");
   if (with_beauty) find_beauty(source, search, search.open(beauty_path, "--beauty"), settings);
   if (with_albedo) find_albedo(source, search, beauty_path, settings);
   find_material(source, search, settings);
@@ -226,14 +236,14 @@ FrameSource find_frame(const InputSettings& settings, bool with_beauty, int fram
   const auto views = views_of(source.files[depth_file]);
   if (settings.view.empty() && views.size() > 1)
     source.notes.push_back(fmt::format("of the views {} this is {} (--view)", list_of(views), views.front()));
-  find_camera(source, settings, source.depth[0], frame);
+  find_camera(source, settings, source[RawPlane::depth][0], frame);
   find_meaning(source, settings);
-  if (!source.normal.empty() && source.normal_space == NormalSpace::world && !source.normal_space_open &&
+  if (!source[RawPlane::normal].empty() && source.normal_space == NormalSpace::world && !source.normal_space_open &&
       !source.camera.view_from_world)
     fail(ErrorKind::input,
          "{}: its normals are in world space, and the camera has no world_to_camera: give a --camera file with it, or "
          "--normal-space view",
-         source.files[source.normal[0].file].path());
+         source.files[source[RawPlane::normal][0].file].path());
   return source;
 }
 

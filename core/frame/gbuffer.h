@@ -10,10 +10,10 @@
 
 #include "core/base/settings.h"
 #include "core/formats/exr.h"
-#include "core/frame/camera.h"
 #include "core/frame/channels.h"
-#include "core/frame/depth.h"
 #include "core/frame/input_rules.h"
+#include "core/frame/raw_plane.h"
+#include "core/frame/reading.h"
 
 namespace alcove {
 
@@ -22,31 +22,23 @@ struct Guess {
   std::string what, chosen, why, option;  // option: what says it
 };
 
-/// Where everything is that a frame needs; nothing but headers has been read.
-struct FrameSource {
+/// Where everything is that a frame needs, and how it is read; nothing but headers has been read. `data` may be a part
+/// of what the files hold, then no more is read.
+struct FrameSource : Reading {
+  /// The channels of a plane, in the order of its components; none: the frame has no such plane, or nobody asked for
+  /// it. The indirect diffuse light is to be multiplied by the diffuse colour where that is there, and holds it already
+  /// where it is not.
+  std::vector<ChannelRef>& operator[](RawPlane plane) { return planes[plane]; }
+  const std::vector<ChannelRef>& operator[](RawPlane plane) const { return planes[plane]; }
+  /// The file of the depth or the positions, after which the frame is called in messages.
+  const std::string& depth_path() const { return files[planes[RawPlane::depth][0].file].path(); }
+
   std::vector<ExrFile> files;
-  Window data, display;  // of all channels below; data may be a part of what the files hold, then no more is read
-  Window file_data;      // what the files hold
-  std::optional<Window> region;  // what is to be written of it; none: all of data
-  bool settled = false;          // see core/frame/settle.h
-  double depth_step = 0;         // see step_of()
-  bool has_evidence = true;      // false: its pixels did not show what was left open
-  double pixel_aspect = 1;
-  std::vector<ChannelRef> depth;     // one, or x, y, z of positions
-  std::vector<ChannelRef> normal;    // x, y, z, or two of them; none: to be reconstructed from depth
-  std::vector<ChannelRef> beauty;    // r, g, b and, where there is one, a; none unless asked for
-  std::vector<ChannelRef> indirect;  // r, g, b: the indirect diffuse light; none where the frame has no such part
-  // r, g, b: the colour that it is still to be multiplied by; none where it holds it already
-  std::vector<ChannelRef> diffuse_color;
-  std::vector<ChannelRef> material_ao;  // one; none unless the settings name it
-  std::vector<ChannelRef> albedo;       // r, g, b: the diffuse colour; none unless asked for
-  DepthKind depth_kind = DepthKind::planar;
-  DepthRange depth_range;
-  PositionSpace position_space = PositionSpace::world;
-  NormalSpace normal_space = NormalSpace::world;
-  NormalEncoding normal_encoding = NormalEncoding::signed_float;
-  bool normal_unorm = false;  // the values are 0.5 + 0.5 n, of any encoding
-  NormalFlips flip_normal;
+  RawPlaneArray<std::vector<ChannelRef>> planes;
+  Window file_data;                   // what the files hold
+  std::optional<Window> region;       // what is to be written of it; none: all of data
+  bool settled = false;               // see core/frame/settle.h
+  bool has_evidence = true;           // false: its pixels did not show what was left open
   const InputRules* rules = nullptr;  // of the program that wrote the frame
   std::string rules_by;               // the attribute or channel, or the option, that told; empty: nothing did
   bool rules_said = false;            // by an option: what they say is no guess
@@ -54,7 +46,6 @@ struct FrameSource {
   NormalSpace usual_normal_space = NormalSpace::world;
   // nobody says it; the pixels decide
   bool depth_kind_open = false, normal_space_open = false, normal_encoding_open = false;
-  Camera camera;
   std::string camera_from;  // the attributes that gave it; empty: the settings did
   std::vector<Guess> guesses;
   // what the user should know: guesses that are unusual, options that the pixels speak against; a sentence each

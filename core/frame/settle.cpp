@@ -12,23 +12,27 @@
 namespace alcove {
 namespace {
 
-constexpr double kAsGood = 0.8;  // of the best score: the usual reading stays where it does about as well
-// times the second best: another reading is taken only when it is that much better
+/// The usual reading stays where its score is at least this part of the best one.
+constexpr double kAsGood = 0.8;
+/// Another reading is taken only where it is this many times as good as the second best.
 constexpr double kClear = 2;
-// of the smooth places; below it the frame has no flat surfaces that could tell
+/// Where a smaller part of the smooth places is straight, the frame has no flat surfaces that could tell.
 constexpr double kLeastStraight = 0.02;
-// of the best agreement: below it another reading of the normals is taken, or noted
-constexpr double kNoBetter = 0.95;
-// of the smooth places; from there on flat surfaces speak for a kind by themselves
+/// From this part of the smooth places on, flat surfaces speak for a kind by themselves.
 constexpr double kSurelyStraight = 0.1;
-// of the normals with depth; some reading reaches half by chance, as rooms have three directions
+/// Where the normals agree less than this part of the best agreement, another reading of them is taken, or noted.
+constexpr double kNoBetter = 0.95;
+/// So many of the normals must agree with depth. Some reading reaches half by chance, as rooms have three directions.
 constexpr double kLeastAgreement = 0.6;
-// degrees, of the best quarter of the normals: farther off, normals and depth are of different cameras or planes
+/// Degrees, of the best quarter of the normals: farther off, normals and depth are of different cameras or planes.
 constexpr double kLargestAngle = 2;
-constexpr double kUnit = 0.9;        // of the normals: so many of unit length are vectors
-constexpr double kPlateau = 0.001;   // of the pixels: so many of exactly 1 are a background
-constexpr double kLargestError = 2;  // px, median: farther off, positions are not what they are taken for
-// every so many pixels are enough for statistics; a prime, so that no column is favoured
+/// Where so many of the normals have unit length, they are vectors.
+constexpr double kUnit = 0.9;
+/// Where so many of the pixels are exactly 1, that is a background.
+constexpr double kPlateau = 0.001;
+/// Pixels, median: farther off, positions are not what they are taken for.
+constexpr double kLargestError = 2;
+/// Every so many pixels are enough for statistics; a prime, so that no column is favoured.
 constexpr std::size_t kSparse = 31;
 
 class Settlement {
@@ -52,14 +56,14 @@ class Settlement {
       settle_position();
     else
       settle_depth();
-    if (source_.normal.empty()) return;
+    if (source_[RawPlane::normal].empty()) return;
     settle_encoding();
     settle_space();
   }
 
  private:
-  const std::string& depth_path() const { return source_.files[source_.depth[0].file].path(); }
-  const std::string& normal_path() const { return source_.files[source_.normal[0].file].path(); }
+  const std::string& depth_path() const { return source_.depth_path(); }
+  const std::string& normal_path() const { return source_.files[source_[RawPlane::normal][0].file].path(); }
 
   void guess(const std::string& what, const std::string& chosen, const std::string& why, const std::string& option,
              bool unusual) {
@@ -168,9 +172,9 @@ class Settlement {
                     scores[0].kind == DepthKind::inverse ? "inverse or device" : name_of(scores[0].kind)));
   }
 
-  /// Of what the distances are when the depth is read as it is said.
+  /// The scores of the distances that the depth gives when it is read as it is said.
   std::vector<DepthScore> scores_as_said() const {
-    return score_depth(planar_depths(depth_, depth_map_of(source_, settings_), view_), view_, settings_.sky,
+    return score_depth(planar_depths(depth_, depth_map_of(source_), view_), view_, settings_.sky,
                        2 * depth_rounding(source_));
   }
 
@@ -244,7 +248,7 @@ class Settlement {
   }
 
   std::vector<NormalScore> scores_of(NormalEncoding encoding, bool unorm) const {
-    return score_normals(normal_, encoding, unorm, depth_, depth_map_of(source_, settings_), source_.camera, view_);
+    return score_normals(normal_, encoding, unorm, depth_, depth_map_of(source_), source_.camera, view_);
   }
 
   static bool agrees(const NormalScore& score) {
@@ -252,26 +256,28 @@ class Settlement {
   }
 
   void settle_encoding() {
-    const bool open = source_.normal_encoding_open;
-    const NormalStatistics n = normal_statistics(normal_, depth_, depth_map_of(source_, settings_), kSparse);
-    if (!open) doubt_encoding(n);
+    const bool is_open = source_.normal_encoding_open;
+    const NormalStatistics n = normal_statistics(normal_, depth_, depth_map_of(source_), kSparse);
+    if (!is_open) doubt_encoding(n);
     const bool in_unit_range = n.count && n.least >= 0 && n.most <= 1;
     const NormalEncoding said = source_.normal_encoding;
-    std::string why = source_.normal.size() == 2 ? fmt::format("all in {:.2g} to {:.2g}", n.least, n.most)
-                                                 : fmt::format("of unit length on {:.0f} %", 100 * n.unit_share);
-    if (said == NormalEncoding::octahedral || said == NormalEncoding::spheremap || source_.normal.size() == 2) {
+    std::string why = source_[RawPlane::normal].size() == 2
+                          ? fmt::format("all in {:.2g} to {:.2g}", n.least, n.most)
+                          : fmt::format("of unit length on {:.0f} %", 100 * n.unit_share);
+    if (said == NormalEncoding::octahedral || said == NormalEncoding::spheremap ||
+        source_[RawPlane::normal].size() == 2) {
       source_.normal_unorm =
-          said == NormalEncoding::unorm || (in_unit_range && (open || said != NormalEncoding::signed_float));
+          said == NormalEncoding::unorm || (in_unit_range && (is_open || said != NormalEncoding::signed_float));
     } else {
       const bool is_unorm =
-          open && in_unit_range && n.unorm_unit_share > 0.5 && n.unit_share < 0.5 * n.unorm_unit_share;
+          is_open && in_unit_range && n.unorm_unit_share > 0.5 && n.unit_share < 0.5 * n.unorm_unit_share;
       if (is_unorm)
         why = fmt::format("all in 0 to 1, and 2 n - 1 is of unit length on {:.0f} %", 100 * n.unorm_unit_share);
       source_.normal_unorm = is_unorm || said == NormalEncoding::unorm;
     }
-    const bool tells = source_.normal.size() == 3 && std::max(n.unit_share, n.unorm_unit_share) > kUnit;
+    const bool tells = source_[RawPlane::normal].size() == 3 && std::max(n.unit_share, n.unorm_unit_share) > kUnit;
     const bool differs = !tells && compare_encodings(in_unit_range, why);
-    if (open)
+    if (is_open)
       guess("normal encoding", name_of(source_.normal_encoding, source_.normal_unorm), why, "--normal-encoding",
             differs || source_.normal_unorm);
   }
@@ -298,16 +304,17 @@ class Settlement {
       source_.notes.push_back(why + ": is --normal-encoding right?");
       return false;
     }
-    source_.normal_encoding = best->first, source_.normal_unorm = in_unit_range;
+    source_.normal_encoding = best->first;
+    source_.normal_unorm = in_unit_range;
     return true;
   }
 
   /// Vectors by their lengths, whatever they are taken for.
   void doubt_encoding(const NormalStatistics& n) {
     constexpr double kFew = 0.5;  // of the normals
-    if (source_.normal.size() != 3) return;
-    const bool is_signed =
-        n.unit_share > kUnit && n.unorm_unit_share<kFew, is_unorm = n.unorm_unit_share> kUnit && n.unit_share < kFew;
+    if (source_[RawPlane::normal].size() != 3) return;
+    const bool is_signed = n.unit_share > kUnit && n.unorm_unit_share < kFew;
+    const bool is_unorm = n.unorm_unit_share > kUnit && n.unit_share < kFew;
     if (is_signed && source_.normal_encoding != NormalEncoding::signed_float)
       source_.notes.push_back(
           fmt::format("the normals are signed vectors by their lengths (of 1 on {:.0f} %), and --normal-encoding or "
@@ -320,12 +327,12 @@ class Settlement {
   }
 
   void settle_space() {
-    const bool has_world = source_.camera.view_from_world.has_value(),
-               usually_view = source_.usual_normal_space == NormalSpace::view;
-    const auto all = scores_of(source_.normal_encoding, source_.normal_unorm);
-    if (!source_.normal_space_open) return doubt_normals(all);
+    const bool has_world = source_.camera.view_from_world.has_value();
+    const bool usually_view = source_.usual_normal_space == NormalSpace::view;
+    const auto all_scores = scores_of(source_.normal_encoding, source_.normal_unorm);
+    if (!source_.normal_space_open) return doubt_normals(all_scores);
     const std::string given = to_string(settings_.flip_normal);
-    auto scores = all;
+    auto scores = all_scores;
     if (given != "none") std::erase_if(scores, [&](const auto& s) { return to_string(s.flips) != given; });
     const auto usual = std::ranges::find_if(
         scores, [&](const auto& s) { return s.space == source_.usual_normal_space && to_string(s.flips) == given; });
@@ -333,9 +340,9 @@ class Settlement {
     if (!tells) source_.has_evidence = false;
     if ((has_world || usually_view) && (!tells || usual->agreement >= kNoBetter * scores[0].agreement)) {
       source_.normal_space = source_.usual_normal_space;
-      guess("normal space", name_of(source_.normal_space), tells ? said(*usual) : "the frame does not tell",
+      guess("normal space", name_of(source_.normal_space), tells ? text_of(*usual) : "the frame does not tell",
             "--normal-space", false);
-      return doubt_normals(all);
+      return doubt_normals(all_scores);
     }
     if (!tells)
       fail(ErrorKind::input,
@@ -346,17 +353,17 @@ class Settlement {
     if (other != scores.end() && other->agreement >= kAsGood * scores[0].agreement)
       fail(ErrorKind::input,
            "{}: its normals may be in {} or in {} space ({}; {}): say which with --normal-space, and --flip-normal",
-           normal_path(), name_of(scores[0].space), name_of(other->space), said(scores[0]), said(*other));
+           normal_path(), name_of(scores[0].space), name_of(other->space), text_of(scores[0]), text_of(*other));
     source_.normal_space = scores[0].space;
     source_.flip_normal = scores[0].flips;
-    guess("normal space", name_of(source_.normal_space), said(scores[0]), "--normal-space with --flip-normal",
+    guess("normal space", name_of(source_.normal_space), text_of(scores[0]), "--normal-space with --flip-normal",
           source_.normal_space != source_.usual_normal_space || has_world || to_string(scores[0].flips) != "none");
-    doubt_normals(all);
+    doubt_normals(all_scores);
   }
 
   static const char* name_of(NormalSpace space) { return space == NormalSpace::world ? "world" : "view"; }
   static const char* name_of(DepthKind kind) { return alcove::name_of(kind); }
-  static std::string said(const NormalScore& s) {
+  static std::string text_of(const NormalScore& s) {
     return fmt::format("{} with flips {}: {:.0f} % agree with depth, {:.0f} % face the camera", name_of(s.space),
                        to_string(s.flips), 100 * s.agreement, 100 * s.facing);
   }
@@ -370,7 +377,7 @@ class Settlement {
     const bool another = scores[0].agreement >= kLeastAgreement && chosen->agreement < kNoBetter * scores[0].agreement;
     if (another)
       source_.notes.push_back(fmt::format("normals are read as {}; better fits {} (--normal-space, --flip-normal)",
-                                          said(*chosen), said(scores[0])));
+                                          text_of(*chosen), text_of(scores[0])));
     else if (chosen->agreement < kLeastAgreement)
       source_.notes.push_back(fmt::format("only {:.0f} % of the normals agree with depth in any space: {}",
                                           100 * scores[0].agreement, kCheck));
@@ -392,7 +399,7 @@ class Settlement {
 
 /// Depth as a grey picture has no more than 256 distances.
 void refuse_8_bits(const FrameSource& source, std::span<const float> depth) {
-  if (source.depth.size() != 1) return;
+  if (source[RawPlane::depth].size() != 1) return;
   constexpr std::size_t kLeastLevels = 16;  // fewer may be a few walls that happen to lie there
   std::set<double> levels;
   for (std::size_t i = 0; i < depth.size(); i += kSparse) {
@@ -403,7 +410,7 @@ void refuse_8_bits(const FrameSource& source, std::span<const float> depth) {
   if (levels.size() >= kLeastLevels)
     fail(ErrorKind::input,
          "{}: {} holds only values of 8 bits, too few distances for AO: save depth as EXR, or as DDS (--depth)",
-         source.files[source.depth[0].file].path(), source.depth[0].channel);
+         source.depth_path(), source[RawPlane::depth][0].channel);
 }
 
 /// Half floats step by a 1024th of the power of two below the value.
@@ -419,7 +426,7 @@ void note_half(FrameSource& source, std::span<const float> depth) {
   source.suspicious.push_back(
       fmt::format("{} is stored as half float: at its median {:.4g} it changes in steps of {:.2g}, which AO shows as "
                   "bands; write it as float",
-                  source.depth[0].channel, *middle, step));
+                  source[RawPlane::depth][0].channel, *middle, step));
 }
 
 }  // namespace
@@ -435,49 +442,27 @@ void settle(FrameSource& source, const InputSettings& settings, std::span<const 
   source.settled = true;
 }
 
-bool has_half_depth(const FrameSource& source) {
-  const auto& channels = source.files[source.depth[0].file].parts()[std::size_t(source.depth[0].part)].channels;
-  const auto channel = std::ranges::find(channels, source.depth[0].channel, &ExrChannel::name);
-  return channel != channels.end() && channel->type == SampleType::half_float;
-}
-
-double depth_rounding(const FrameSource& source) { return has_half_depth(source) ? kHalfRounding : kFloatRounding; }
+double depth_rounding(const Reading& reading) { return reading.depth_is_half ? kHalfRounding : kFloatRounding; }
 
 void settle_by_rows(FrameSource& source, const InputSettings& settings) {
   const Window data = source.data, all = source.file_data;
   if (std::size_t(all.width) > kEvidencePixels)
-    fail(ErrorKind::device, "{}: rows of {} pixels are more than Alcove takes on any --device",
-         source.files[source.depth[0].file].path(), all.width);
+    fail(ErrorKind::device, "{}: rows of {} pixels are more than Alcove takes on any --device", source.depth_path(),
+         all.width);
   const int rows = int(std::clamp<std::size_t>(kEvidencePixels / std::size_t(all.width), 1, std::size_t(all.height)));
   source.data = {all.x, all.y + (all.height - rows) / 2, all.width, rows};
-  std::vector<float> depth(source.depth.size() * source.data.pixels()),
-      normal(source.normal.size() * source.data.pixels());
-  read_planes(source, {{&source.depth, depth.data()}, {&source.normal, normal.data()}});
+  std::vector<float> depth(source[RawPlane::depth].size() * source.data.pixels()),
+      normal(source[RawPlane::normal].size() * source.data.pixels());
+  read_planes(source, {{&source[RawPlane::depth], depth.data()}, {&source[RawPlane::normal], normal.data()}});
   settle(source, settings, depth, normal);
   source.data = data;
 }
 
 bool settle_like(FrameSource& source, const FrameSource& settled) {
-  if (source.depth.size() != settled.depth.size() || source.normal.size() != settled.normal.size()) return false;
-  source.depth_kind = settled.depth_kind;
-  source.depth_range.reversed = settled.depth_range.reversed;
-  source.depth_range.negative = settled.depth_range.negative;
-  source.position_space = settled.position_space;
-  source.normal_space = settled.normal_space;
-  source.normal_encoding = settled.normal_encoding;
-  source.normal_unorm = settled.normal_unorm;
-  source.flip_normal = settled.flip_normal;
-  source.depth_step = settled.depth_step;
+  for (const RawPlane plane : {RawPlane::depth, RawPlane::normal})
+    if (source[plane].size() != settled[plane].size()) return false;
+  read_like(source, settled);
   return source.settled = true;
-}
-
-DepthMap depth_map_of(const FrameSource& source, const InputSettings& settings) {
-  constexpr double kLargestHalf = 65504;  // where half floats end, they mean what is beyond
-  const bool is_distance = source.depth_kind == DepthKind::planar || source.depth_kind == DepthKind::ray;
-  const double sky =
-      is_distance && depth_rounding(source) == kHalfRounding ? std::min(settings.sky, kLargestHalf) : settings.sky;
-  return depth_map(source.depth_kind, source.depth_range, source.position_space, source.camera, settings.depth_scale,
-                   sky);
 }
 
 }  // namespace alcove

@@ -10,10 +10,10 @@
 
 namespace alcove {
 
-/// Settles what is open in `source`, from the planes of source.depth and source.normal as they were read, and adds to
-/// its guesses and notes. What the settings or the camera file say is never overruled. Fails with ErrorKind::input
-/// where the pixels speak for two ways or against all, naming the options that decide; under settings.strict, wherever
-/// there is a guess. Near or far that are missing are ErrorKind::usage.
+/// Settles what is open in `source`, from the planes of depth and normals as they were read, and adds to its guesses
+/// and notes. What the settings or the camera file say is never overruled. Fails with ErrorKind::input where the pixels
+/// speak for two ways or against all, naming the options that decide; under settings.strict, wherever there is a guess.
+/// Near or far that are missing are ErrorKind::usage.
 void settle(FrameSource& source, const InputSettings& settings, std::span<const float> depth,
             std::span<const float> normal);
 
@@ -27,12 +27,7 @@ void settle_by_rows(FrameSource& source, const InputSettings& settings);
 /// Settles a frame as another one of its sequence is. False: it has other planes, so it must be settled by itself.
 bool settle_like(FrameSource& source, const FrameSource& settled);
 
-/// Of the depth channel as it is stored: see score_depth().
-double depth_rounding(const FrameSource& source);
-
-/// The map to planar depth, for a settled frame.
-DepthMap depth_map_of(const FrameSource& source, const InputSettings& settings);
-/// Whether the depth channel is stored as half float.
-bool has_half_depth(const FrameSource& source);
+/// How coarsely the depth is stored: see score_depth().
+double depth_rounding(const Reading& reading);
 
 }  // namespace alcove

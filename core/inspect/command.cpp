@@ -71,7 +71,7 @@ void add_depth(Command& command, const FrameSource& source, const InputSettings&
 }
 
 void add_normals(Command& command, const FrameSource& source, const InputSettings& settings, bool has_camera) {
-  if (source.normal.empty()) return;
+  if (source[RawPlane::normal].empty()) return;
   if (has_camera || settings.normal_space != NormalSpace::automatic)
     command.add("--normal-space", std::string(name_of(source.normal_space)));
   command.add("--normal-encoding", std::string(encoding_name(source)));

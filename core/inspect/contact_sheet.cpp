@@ -9,10 +9,10 @@
 
 #include "core/base/file.h"
 #include "core/chain/chain.h"
-#include "core/chain/host_frame.h"
+#include "core/chain/compute.h"
 #include "core/formats/image_io.h"
 #include "core/frame/evidence.h"
-#include "core/run/plan.h"
+#include "core/frame/raw_plane.h"
 
 namespace alcove {
 namespace {

@@ -51,7 +51,7 @@ std::vector<std::string> cut_parts(ExrFile& file) {
 }  // namespace
 
 bool has_lengths(const FrameSource& source) {
-  return source.normal.size() == 3 &&
+  return source[RawPlane::normal].size() == 3 &&
          (source.normal_encoding == NormalEncoding::signed_float || source.normal_encoding == NormalEncoding::unorm);
 }
 
@@ -74,10 +74,9 @@ double blended_edges(std::span<const float> planar, int width) {
   return sharp + blended < kLeastEdges ? 0 : double(blended) / (sharp + blended);
 }
 
-std::vector<std::string> findings(FrameSource& source, const InputSettings& settings, std::span<const float> depth,
-                                  std::span<const float> normal) {
+std::vector<std::string> findings(FrameSource& source, std::span<const float> depth, std::span<const float> normal) {
   std::vector<std::string> found;
-  const DepthMap map = depth_map_of(source, settings);
+  const DepthMap map = depth_map_of(source);
   const double blended =
       blended_edges(planar_depths(depth, map, view_of(source.camera, source.data, source.display)), source.data.width);
   if (blended > kMostBlended)
@@ -94,7 +93,7 @@ std::vector<std::string> findings(FrameSource& source, const InputSettings& sett
                       "over several surfaces",
                       100 * (1 - unit)));
   }
-  for (const auto* channels : {&source.depth, &source.normal})
+  for (const auto* channels : {&source[RawPlane::depth], &source[RawPlane::normal]})
     for (const auto& channel : *channels)
       if (is_lossy(source, channel))
         found.push_back(
@@ -102,7 +101,7 @@ std::vector<std::string> findings(FrameSource& source, const InputSettings& sett
                         channel.channel));
   for (auto& file : source.files)
     for (auto& sentence : cut_parts(file)) found.push_back(std::move(sentence));
-  const std::size_t file = source.depth[0].file;
+  const std::size_t file = source[RawPlane::depth][0].file;
   for (const auto& part : source.files[file].parts())
     if (part.data != source.file_data) {
       found.push_back(fmt::format("part {} is {}, and the depth is {}", part.name, to_string(part.data),

@@ -13,8 +13,7 @@ namespace alcove {
 /// Gives one sentence for each finding: anti-aliased depth, shortened normals, channels that a lossy codec has damaged,
 /// parts that are cut short or have other windows, overscan and crops. `depth` and `normal` are as read, of a settled
 /// frame.
-std::vector<std::string> findings(FrameSource& source, const InputSettings& settings, std::span<const float> depth,
-                                  std::span<const float> normal);
+std::vector<std::string> findings(FrameSource& source, std::span<const float> depth, std::span<const float> normal);
 
 /// Whether the normals are vectors in x, y and z, which have a length to look at.
 bool has_lengths(const FrameSource& source);

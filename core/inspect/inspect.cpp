@@ -64,9 +64,8 @@ void add_planar(InspectedDepth& depth, std::span<const float> raw, const std::ve
         score_depth(raw, view_of(source.camera, source.data, source.display), settings.sky, depth_rounding(source));
 }
 
-InspectedNormals normals_of(std::span<const float> normal, std::span<const float> raw, const FrameSource& source,
-                            const InputSettings& settings) {
-  const NormalStatistics s = normal_statistics(normal, raw, depth_map_of(source, settings));
+InspectedNormals normals_of(std::span<const float> normal, std::span<const float> raw, const FrameSource& source) {
+  const NormalStatistics s = normal_statistics(normal, raw, depth_map_of(source));
   InspectedNormals normals{.space = source.normal_space,
                            .encoding = encoding_name(source),
                            .flips = source.flip_normal,
@@ -80,9 +79,8 @@ InspectedNormals normals_of(std::span<const float> normal, std::span<const float
     normals.mean_length = source.normal_unorm ? s.unorm_mean_length : s.mean_length;
     normals.unit_share = source.normal_unorm ? s.unorm_unit_share : s.unit_share;
   }
-  normals.scores =
-      score_normals(normal, source.normal_encoding, source.normal_unorm, raw, depth_map_of(source, settings),
-                    source.camera, view_of(source.camera, source.data, source.display));
+  normals.scores = score_normals(normal, source.normal_encoding, source.normal_unorm, raw, depth_map_of(source),
+                                 source.camera, view_of(source.camera, source.data, source.display));
   for (const auto& score : normals.scores)
     if (score.space == source.normal_space && to_string(score.flips) == to_string(source.flip_normal))
       normals.chosen = score;
@@ -127,10 +125,10 @@ struct Inspector {
       return false;
     }
     found.source = InspectedSource{source.rules->name, source.rules_by};
-    add_aov(found, source.depth.size() == 3 ? "position" : "depth", source, source.depth,
+    add_aov(found, source[RawPlane::depth].size() == 3 ? "position" : "depth", source, source[RawPlane::depth],
             !settings.depth_channel.empty() || !settings.position_channels.empty());
-    add_aov(found, "normal", source, source.normal, !settings.normal_channels.empty());
-    if (source.normal.empty())
+    add_aov(found, "normal", source, source[RawPlane::normal], !settings.normal_channels.empty());
+    if (source[RawPlane::normal].empty())
       found.missing.push_back(
           "normals: they would be reconstructed from depth; --normal or --normal-channels names them");
     if (has_camera) found.camera = camera_of(source, settings);
@@ -139,11 +137,11 @@ struct Inspector {
 
   /// Reads depth and normals. False: the pixels cannot be read.
   bool read() {
-    require_host_room(source.files[source.depth[0].file].path(), source.data);
-    depth.resize(source.depth.size() * source.data.pixels());
-    normal.resize(source.normal.size() * source.data.pixels());
+    require_host_room(source.depth_path(), source.data);
+    depth.resize(source[RawPlane::depth].size() * source.data.pixels());
+    normal.resize(source[RawPlane::normal].size() * source.data.pixels());
     try {
-      read_planes(source, {{&source.depth, depth.data()}, {&source.normal, normal.data()}});
+      read_planes(source, {{&source[RawPlane::depth], depth.data()}, {&source[RawPlane::normal], normal.data()}});
     } catch (const Error& error) {
       found.suspicious.push_back(error.what());
       found.unreadable = error;
@@ -165,7 +163,7 @@ struct Inspector {
 
   void look_at_normals() {
     if (normal.empty()) return;
-    found.normals = normals_of(normal, depth, source, reading);
+    found.normals = normals_of(normal, depth, source);
     if (has_camera) return;
     found.normals->scores.clear();
     found.normals->chosen.reset();
@@ -176,10 +174,10 @@ struct Inspector {
     try {
       settle_frame();
       const View view = view_of(source.camera, source.data, source.display);
-      add_planar(*found.depth, depth, planar_depths(depth, depth_map_of(source, reading), view), source, reading);
+      add_planar(*found.depth, depth, planar_depths(depth, depth_map_of(source), view), source, reading);
       look_at_normals();
       found.suspicious = source.suspicious;
-      std::ranges::copy(findings(source, reading, depth, normal), std::back_inserter(found.suspicious));
+      std::ranges::copy(findings(source, depth, normal), std::back_inserter(found.suspicious));
       found.command = command_of(source, settings, has_camera, found.depth->median);
     } catch (const Error& error) {
       found.missing.push_back(error.what());
@@ -192,9 +190,9 @@ struct Inspector {
   void find_beauty() {
     try {
       const FrameSource beauty = find_frame(reading, true, frame);
-      add_aov(found, "beauty", beauty, beauty.beauty, !settings.beauty_channels.empty());
-      add_aov(found, "indirect", beauty, beauty.indirect, false);
-      add_aov(found, "diffuse_color", beauty, beauty.diffuse_color, false);
+      add_aov(found, "beauty", beauty, beauty[RawPlane::beauty], !settings.beauty_channels.empty());
+      add_aov(found, "indirect", beauty, beauty[RawPlane::indirect], false);
+      add_aov(found, "diffuse_color", beauty, beauty[RawPlane::diffuse_color], false);
     } catch (const Error&) {
       found.missing.push_back("beauty: only --composite needs one; --beauty or --beauty-channels names it");
     }

@@ -106,7 +106,7 @@ std::vector<float> read_depth(const CompareSettings& settings, const Window& dat
   FrameSource source = find_frame(input, false, 0);
   require_same_pixels(source.data, settings.depth, data, settings.result);
   std::vector<float> depth(data.pixels());
-  read_planes(source, {{&source.depth, depth.data()}});
+  read_planes(source, {{&source[RawPlane::depth], depth.data()}});
   return depth;
 }
 

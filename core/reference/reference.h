@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/base/settings.h"
-#include "core/chain/host_frame.h"
+#include "core/frame/host_frame.h"
 
 namespace alcove {
 
@@ -29,7 +29,7 @@ struct ReferenceSettings {
   ThicknessRule thickness = ThicknessRule::infinite;
   double thickness_length = 0;      // scene units, > 0; with ThicknessRule::constant
   double bias = 0;                  // sine of the elevation above the tangent plane below which nothing blocks
-  int threads = 0;                  // 0: one a core
+  int threads = 0;                  // 0: one per core
   std::vector<std::size_t> pixels;  // indices of those to compute; empty: all
 };
 
@@ -37,7 +37,7 @@ struct ReferenceSettings {
 /// settings.radius must be set.
 ReferenceSettings reference_settings_of(const EstimatorSettings& settings);
 
-/// Visibility in [0, 1] a pixel, 1 on sky and where no pixel was asked for. The frame must have planar depth and
+/// One visibility in [0, 1] per pixel, 1 on sky and where no pixel was asked for. The frame must have planar depth and
 /// normals. Fails with ErrorKind::input otherwise.
 std::vector<float> reference_ao(const HostFrame& frame, const ReferenceSettings& settings);
 

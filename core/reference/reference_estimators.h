@@ -5,13 +5,13 @@
 
 #include <vector>
 
-#include "core/chain/host_frame.h"
+#include "core/frame/host_frame.h"
 
 namespace alcove {
 
-/// Visibility in [0, 1] a pixel, by the settings' estimator (gtao, hbao, crytek) with its radius, bias, falloff and
-/// kernel, intensity and power: what it gives at full resolution with so many directions and samples that nothing is
-/// left to smooth; slices, steps, resolution, denoiser and seed are not looked at. 1 on sky and where no pixel was
+/// One visibility in [0, 1] per pixel, by the settings' estimator (gtao, hbao, crytek) with its radius, bias, falloff
+/// and kernel, intensity and power: what it gives at full resolution with so many directions and samples that nothing
+/// is left to smooth; slices, steps, resolution, denoiser and seed are not looked at. 1 on sky and where no pixel was
 /// asked for (indices; empty: all). The radius must be set. The frame must have planar depth and normals. Fails with
 /// ErrorKind::input otherwise, and with ErrorKind::usage on another estimator.
 std::vector<float> reference_estimate(const HostFrame& frame, const EstimatorSettings& settings,

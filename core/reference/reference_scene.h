@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "core/chain/host_frame.h"
+#include "core/frame/host_frame.h"
 
 namespace alcove {
 

@@ -13,6 +13,7 @@
 #include <unordered_map>
 
 #include "core/base/error.h"
+#include "core/base/estimator_facts.h"
 #include "core/base/file.h"
 #include "core/base/version.h"
 #include "core/chain/aov.h"

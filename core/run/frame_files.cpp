@@ -6,10 +6,12 @@
 #include <filesystem>
 
 #include "core/base/error.h"
+#include "core/base/estimator_facts.h"
 #include "core/base/version.h"
 #include "core/chain/aov.h"
 #include "core/formats/image_io.h"
 #include "core/frame/settle.h"
+#include "core/run/pictures.h"
 
 namespace alcove {
 namespace {
@@ -19,6 +21,14 @@ namespace fs = std::filesystem;
 /// Whether the directions that are written are in world space.
 bool in_world(const FrameSource& source, const OutputSettings& settings) {
   return settings.aov_space != NormalSpace::view && source.camera.view_from_world.has_value();
+}
+
+/// Of a rotation the way back.
+Matrix3 transposed(const Matrix3& matrix) {
+  Matrix3 result{};
+  for (std::size_t row = 0; row < 3; row++)
+    for (std::size_t column = 0; column < 3; column++) result[row][column] = matrix[column][row];
+  return result;
 }
 
 ExrOutput output_like(const FrameSource& source, const ChannelRef& like, const Provenance& provenance) {
@@ -31,7 +41,7 @@ ExrOutput output_like(const FrameSource& source, const ChannelRef& like, const P
                            {"alcove/options", provenance.options},
                            {"alcove/device", provenance.device},
                            {"alcove/inputs", provenance.inputs},
-                           {"alcove/input", fs::path(source.files[source.depth[0].file].path()).filename().string()}};
+                           {"alcove/input", fs::path(source.depth_path()).filename().string()}};
   return output;
 }
 
@@ -45,7 +55,7 @@ SampleType type_of(const FrameSource& source, const ChannelRef& ref) {
 /// The AO file, without pixels.
 ExrOutput aov_file(const FrameSource& source, const EstimatorSettings& estimator, const OutputSettings& settings,
                    const Provenance& provenance) {
-  ExrOutput output = output_like(source, source.depth[0], provenance);
+  ExrOutput output = output_like(source, source[RawPlane::depth][0], provenance);
   output.compression = settings.compression;
   const auto radii = estimator.radius ? radii_of(estimator) : std::vector<double>();
   for (const auto& aov : aovs_of(settings)) {
@@ -62,16 +72,17 @@ ExrOutput aov_file(const FrameSource& source, const EstimatorSettings& estimator
 
 /// The composite, without pixels. Every channel keeps the beauty's precision.
 ExrOutput composite_file(const FrameSource& source, const OutputSettings& settings, const Provenance& provenance) {
-  ExrOutput output = output_like(source, source.beauty[0], provenance);
-  output.own_attributes["alcove/composite"] =
-      source.indirect.empty() ? "multiply: beauty * ao" : "ambient: beauty - D + D * ao, D = indirect diffuse";
+  ExrOutput output = output_like(source, source[RawPlane::beauty][0], provenance);
+  output.own_attributes["alcove/composite"] = source[RawPlane::indirect].empty()
+                                                  ? "multiply: beauty * ao"
+                                                  : "ambient: beauty - D + D * ao, D = indirect diffuse";
   if (settings.multi_bounce) output.own_attributes["alcove/composite"] += "; ao with multi-bounce";
   if (settings.fog_density > 0)
     output.own_attributes["alcove/composite"] +=
         fmt::format("; ao seen through fog of density {}", settings.fog_density);
   const char* names[] = {"R", "G", "B", "A"};
-  for (std::size_t c = 0; c < source.beauty.size(); c++)
-    output.planes.push_back({names[c], type_of(source, source.beauty[c]), {}});
+  for (std::size_t c = 0; c < source[RawPlane::beauty].size(); c++)
+    output.planes.push_back({names[c], type_of(source, source[RawPlane::beauty][c]), {}});
   return output;
 }
 
@@ -92,22 +103,22 @@ std::vector<float> displayed(const FrameSource& source, std::span<const float> p
 
 /// Fails with ErrorKind::input where a frame lacks what an output is made from.
 void require_for_outputs(const FrameSource& source, const OutputSettings& settings) {
-  const std::string& file = source.files[source.depth[0].file].path();
+  const std::string& file = source.depth_path();
   if (settings.aov_space == NormalSpace::world && !source.camera.view_from_world)
     fail(ErrorKind::input, "{}: --aov-space world needs a camera with world_to_camera: give a --camera file with it",
          file);
-  if (settings.multi_bounce && !source.beauty.empty() && source.indirect.empty())
+  if (settings.multi_bounce && !source[RawPlane::beauty].empty() && source[RawPlane::indirect].empty())
     fail(ErrorKind::input,
          "{}: --multi-bounce is for indirect light, and the frame has no indirect diffuse part for the --composite "
          "(--beauty)",
          file);
   for (const auto* view : debug_views_of(settings)) {
-    if (view->source == DebugSource::raw_depth && source.depth.size() > 1)
+    if (view->source == DebugSource::raw_depth && source[RawPlane::depth].size() > 1)
       fail(ErrorKind::input,
            "{}: --debug {} shows a depth, and the frame has positions: name one with --depth-channel, or see "
            "linear-depth",
            file, view->name);
-    if (view->source == DebugSource::normals_from_depth && source.normal.empty())
+    if (view->source == DebugSource::normals_from_depth && source[RawPlane::normal].empty())
       fail(ErrorKind::input,
            "{}: --debug {} compares the frame's normals with those from depth, and there are none (--normal, "
            "--normal-channels)",
@@ -130,42 +141,23 @@ const Window& written_of(const FrameSource& source) { return source.region ? *so
 FrameInputs load_frame(gpu::Recorder& gpu, FrameSource& source, const Settings& all, int frame) {
   const InputSettings& settings = all.input;
   if (!source.settled && source.data.pixels() > kEvidencePixels) settle_by_rows(source, settings);
-  FrameInputs inputs;
-  inputs.view = view_of(source.camera, source.data, source.display);
-  inputs.noise_origin = {source.data.x - source.display.x, source.data.y - source.display.y};
-  inputs.frame = frame;
-  inputs.has_alpha = source.beauty.size() == 4;
-  inputs.albedo_value = settings.albedo_value.value_or(0);
-  if (in_world(source, all.output))
-    for (std::size_t row = 0; row < 3; row++)
-      for (std::size_t column = 0; column < 3; column++)
-        inputs.aov_from_view[row][column] = (*source.camera.view_from_world)[column][row];
-
+  RawPlaneArray<gpu::Buffer*> planes;
   std::vector<PlaneRead> reads;
-  const auto upload = [&](const char* name, const std::vector<ChannelRef>& channels) -> gpu::Buffer* {
-    if (channels.empty()) return nullptr;
-    gpu::Buffer& buffer = gpu.buffer(name, channels.size() * source.data.pixels() * sizeof(float), gpu::Use::upload);
-    reads.push_back({&channels, buffer.as<float>().data()});
-    return &buffer;
-  };
-  inputs.depth = upload("raw depth", source.depth);
-  inputs.normal = upload("raw normal", source.normal);
-  inputs.beauty = upload("beauty", source.beauty);
-  inputs.indirect = upload("indirect", source.indirect);
-  inputs.diffuse_color = upload("diffuse color", source.diffuse_color);
-  inputs.material_ao = upload("material ao", source.material_ao);
-  inputs.albedo = upload("albedo", source.albedo);
+  for (const auto& row : kRawPlanes) {
+    const auto& channels = source[row.plane];
+    if (channels.empty()) continue;
+    const std::size_t bytes = channels.size() * source.data.pixels() * sizeof(float);
+    planes[row.plane] = &gpu.buffer(row.name, bytes, gpu::Use::upload);
+    reads.push_back({&channels, planes[row.plane]->as<float>().data()});
+  }
   read_planes(source, reads);
-  if (!source.settled)
-    settle(source, settings, inputs.depth->as<float>(),
-           inputs.normal ? inputs.normal->as<float>() : std::span<float>());
-  inputs.depth_map = depth_map_of(source, settings);
-  inputs.is_sky = is_all_sky(inputs.depth_map, inputs.depth->as<const float>());
-  inputs.depth_precision =
-      depth_precision(inputs.depth_map, has_half_depth(source) ? kHalfPrecision : kFloatPrecision, source.depth_step);
-  if (inputs.normal) inputs.view_from_normal = view_from_normal(source.camera, source.normal_space, source.flip_normal);
-  inputs.normal_encoding = source.normal_encoding;
-  inputs.normal_unorm = source.normal_unorm;
+  const auto values_of = [&](RawPlane plane) {
+    return planes[plane] ? planes[plane]->as<float>() : std::span<float>();
+  };
+  if (!source.settled) settle(source, settings, values_of(RawPlane::depth), values_of(RawPlane::normal));
+  FrameInputs inputs = inputs_of(source, planes, frame);
+  inputs.albedo_value = settings.albedo_value.value_or(0);
+  if (in_world(source, all.output)) inputs.aov_from_view = transposed(*source.camera.view_from_world);
   return inputs;
 }
 

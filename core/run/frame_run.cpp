@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "core/base/error.h"
+#include "core/base/estimator_facts.h"
 #include "core/frame/scale_notes.h"
 #include "core/frame/settle.h"
 #include "core/run/batch.h"
@@ -65,7 +66,7 @@ class FrameRun {
   FrameOutputs compute(FrameSource& source, const OutputSettings& output, bool reuses) {
     const Stopwatch reading;
     FrameInputs inputs = load_frame(gpu_, source, settings_, frame_);
-    sample_.add(inputs.view, inputs.depth_map, inputs.depth_precision, inputs.depth->as<float>());
+    sample_.add(inputs.view, inputs.depth_map, inputs.depth_precision, inputs[RawPlane::depth]->as<float>());
     const bool is_same = reuses && last_.is_same(gpu_, inputs, settings_.estimator);
     if (!reuses) last_.forget();
     report_.read_ms += reading.ms();
@@ -201,10 +202,10 @@ class FrameRun {
     if (counts_.repaired_beauty)
       notes.push_back(fmt::format("{} pixels of the beauty were NaN or infinite; they are 0 in the composite",
                                   counts_.repaired_beauty));
-    if (source.normal.empty())
+    if (source[RawPlane::normal].empty())
       notes.push_back(
           "there is no normal channel; normals were reconstructed from depth (--normal, --normal-channels)");
-    if (!source.beauty.empty() && source.indirect.empty())
+    if (!source[RawPlane::beauty].empty() && source[RawPlane::indirect].empty())
       notes.push_back(
           "the frame has no indirect diffuse part: the composite is the whole beauty times AO, which dims direct light "
           "too");

@@ -3,7 +3,6 @@
 #include "core/run/plan.h"
 
 #include <algorithm>
-#include <array>
 #include <filesystem>
 #include <unordered_set>
 
@@ -21,19 +20,23 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kEvidenceFrames = 8;  // looked at, at the most, for one that shows what the files do not say
 
-constexpr std::array kPaths = {
-    NamedPath{"INPUT", [](Settings& s) -> std::string& { return s.input.input; }, false},
-    NamedPath{"--depth", [](Settings& s) -> std::string& { return s.input.depth; }, false},
-    NamedPath{"--position", [](Settings& s) -> std::string& { return s.input.position; }, false},
-    NamedPath{"--normal", [](Settings& s) -> std::string& { return s.input.normal; }, false},
-    NamedPath{"--beauty", [](Settings& s) -> std::string& { return s.input.beauty; }, false},
-    NamedPath{"--material-ao", [](Settings& s) -> std::string& { return s.input.material_ao; }, false},
-    NamedPath{"--albedo", [](Settings& s) -> std::string& { return s.input.albedo; }, false},
-    NamedPath{"--camera", [](Settings& s) -> std::string& { return s.input.camera; }, false},
-    NamedPath{"--output", [](Settings& s) -> std::string& { return s.output.output; }, true},
-    NamedPath{"--composite", [](Settings& s) -> std::string& { return s.output.composite; }, true},
-    NamedPath{"--preview", [](Settings& s) -> std::string& { return s.output.preview; }, true},
-};
+/// Every file that the settings name, inputs first.
+const std::vector<NamedPath>& named_paths() {
+  static const std::vector<NamedPath> paths = [] {
+    std::vector<NamedPath> result;
+    for (const auto& file : plane_file_options())
+      result.push_back({file.option, [path = file.path](Settings& s) -> std::string& { return s.input.*path; }, false});
+    const auto add = [&](const char* option, auto member, auto path, bool is_output) {
+      result.push_back({option, [=](Settings& s) -> std::string& { return s.*member.*path; }, is_output});
+    };
+    add("--camera", &Settings::input, &InputSettings::camera, false);
+    add("--output", &Settings::output, &OutputSettings::output, true);
+    add("--composite", &Settings::output, &OutputSettings::composite, true);
+    add("--preview", &Settings::output, &OutputSettings::preview, true);
+    return result;
+  }();
+  return paths;
+}
 
 bool exists(const std::string& path) {
   std::error_code error;
@@ -58,7 +61,7 @@ FramePlan::FramePlan(const Settings& settings) : settings_(settings) {
 
 void FramePlan::find_patterns() {
   const auto find = [&](bool outputs) {
-    for (const auto& path : kPaths) {
+    for (const auto& path : named_paths()) {
       const std::string& text = path.of(settings_);
       if (path.is_output != outputs || text.empty() || (!outputs && exists(text))) continue;
       if (const auto name = frame_pattern(text)) patterns_.push_back({path, *name});
@@ -78,7 +81,7 @@ std::vector<int> FramePlan::all_frames() const {
 
 void FramePlan::refuse_shared_files(const std::vector<int>& all) const {
   Settings whole = settings_;
-  for (const auto& path : kPaths) {
+  for (const auto& path : named_paths()) {
     const bool is_pattern =
         std::ranges::any_of(patterns_, [&](const Pattern& pattern) { return pattern.path.option == path.option; });
     if (path.is_output && all.size() > 1 && !path.of(whole).empty() && !is_pattern)
@@ -157,11 +160,6 @@ std::vector<OutputFile> reports_of(const OutputSettings& output) {
   return files;
 }
 
-std::vector<std::string> input_files(const InputSettings& input) {
-  return {input.input,  input.depth,  input.normal,      input.position,
-          input.beauty, input.camera, input.material_ao, input.albedo};
-}
-
 std::vector<int> chunk_of(const std::vector<int>& frames, int chunk, int chunks) {
   const auto at = [&](int i) {
     return frames.begin() + std::ptrdiff_t(frames.size() * std::size_t(i) / std::size_t(chunks));
@@ -181,14 +179,13 @@ std::string plan_text(const Settings& settings) {
     line("missing", fmt::format("{}: {}, left out", plan.missing().size(), frames_text(plan.missing())));
   if (plan.frames().empty()) return text;
   Settings first = plan.at(plan.frames().front()), last = plan.at(plan.frames().back());
-  for (const auto& path : kPaths)
+  for (const auto& path : named_paths())
     if (!path.of(first).empty()) line(path.option, span_text(path.of(first), path.of(last)));
 
   const FrameSource source = open_frame(first, plan.frames().front());
   std::vector<std::string> channels;
-  for (const auto* aov : {&source.depth, &source.normal, &source.beauty, &source.indirect, &source.diffuse_color,
-                          &source.albedo, &source.material_ao})
-    for (const auto& channel : *aov) channels.push_back(channel.channel);
+  for (const auto& plane : source.planes.entries)
+    for (const auto& channel : plane) channels.push_back(channel.channel);
   line("channels", fmt::format("{}", fmt::join(channels, ", ")));
   line("camera",
        fmt::format("{}, {:.6g} x {:.6g} px {}", source.camera.orthographic ? "orthographic" : "perspective",

@@ -2,18 +2,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
 #include "core/base/settings.h"
 #include "core/formats/sequence.h"
+#include "core/frame/raw_plane.h"
 
 namespace alcove {
 
 /// A file that the settings name, for every frame or with a place for the frame number.
 struct NamedPath {
   const char* option;
-  std::string& (*of)(Settings&);
+  std::function<std::string&(Settings&)> of;
   bool is_output;
 };
 
@@ -70,9 +72,6 @@ std::vector<OutputFile> outputs_of(const OutputSettings& output);
 
 /// What a run writes once, whatever its frames.
 std::vector<OutputFile> reports_of(const OutputSettings& output);
-
-/// All files that a frame reads; empty where there is none.
-std::vector<std::string> input_files(const InputSettings& input);
 
 /// The parts of a list, as long as each other to within one frame. 1 <= chunk <= chunks.
 std::vector<int> chunk_of(const std::vector<int>& frames, int chunk, int chunks);

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "core/base/error.h"
-#include "core/chain/passes.h"
+#include "core/base/estimator_facts.h"
 #include "core/frame/evidence.h"
 #include "core/frame/settle.h"
 #include "kernels/profile.h"
@@ -63,8 +63,8 @@ Window region_of(const FrameSource& source, const Region& roi) {
                       std::int64_t(region.x) + region.width <= std::int64_t(all.x) + all.width &&
                       std::int64_t(region.y) + region.height <= std::int64_t(all.y) + all.height;
   if (!inside)
-    fail(ErrorKind::usage, "{}: --roi is {}, and the data window is {}: give a region within it",
-         source.files[source.depth[0].file].path(), to_string(region), to_string(all));
+    fail(ErrorKind::usage, "{}: --roi is {}, and the data window is {}: give a region within it", source.depth_path(),
+         to_string(region), to_string(all));
   return region;
 }
 
@@ -81,11 +81,11 @@ Surroundings::Surroundings(FrameSource& source, const Settings& settings, const 
       filters_(filter_reach(settings.estimator)),
       lines_(line_reach(settings.estimator)) {
   const Window data = source.data;
-  const DepthMap map = depth_map_of(source, settings.input);
+  const DepthMap map = depth_map_of(source);
   for (int top = 0; top < read_.height; top += kBlock) {
     source.data = {read_.x, read_.y + top, read_.width, std::min(kBlock, read_.height - top)};
-    std::vector<float> depth(source.depth.size() * source.data.pixels());
-    read_planes(source, {{&source.depth, depth.data()}});
+    std::vector<float> depth(source[RawPlane::depth].size() * source.data.pixels());
+    read_planes(source, {{&source[RawPlane::depth], depth.data()}});
     const auto planar = planar_depths(depth, map, view_of(source.camera, source.data, source.display));
     for (std::size_t i = 0; i < planar.size(); i++) {
       float& nearest = nearest_[std::size_t(top / kBlock * columns_) + i % std::size_t(read_.width) / kBlock];

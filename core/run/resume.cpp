@@ -13,6 +13,7 @@
 
 #include "core/formats/exr.h"
 #include "core/formats/image_io.h"
+#include "core/frame/raw_plane.h"
 #include "core/run/frame_files.h"
 #include "core/run/plan.h"
 
@@ -22,8 +23,9 @@ namespace {
 namespace fs = std::filesystem;
 
 std::vector<std::string> inputs_of(const Settings& frame) {
-  const InputSettings& i = frame.input;
-  return {i.input, i.depth, i.normal, i.position, i.beauty, i.material_ao, i.albedo};
+  std::vector<std::string> files;
+  for (const auto& file : plane_file_options()) files.push_back(frame.input.*file.path);
+  return files;
 }
 
 /// Of a file's beginning and of its end.

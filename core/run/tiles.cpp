@@ -8,10 +8,12 @@
 #include <limits>
 
 #include "core/base/error.h"
+#include "core/base/estimator_facts.h"
 #include "core/chain/aov.h"
 #include "core/chain/chain.h"
 #include "core/chain/debug_view.h"
-#include "core/chain/passes.h"
+#include "kernels/bounds.h"
+#include "kernels/classify.h"
 
 namespace alcove {
 namespace {
@@ -49,10 +51,10 @@ std::uint64_t chain_bytes(const FrameSource& source, const Settings& settings) {
   low += searches_exactly(e) ? 4 : 0;                                  // vertices, marks, neighbours, whole arcs
   low += converges ? 2 : 0;                                            // blocked arcs, error
   std::size_t planes = 2 + (reduced ? estimated : 0);                  // depth, normals, the whole estimate
-  planes += shapes(e) || !source.material_ao.empty() ? 1 + scales : 0;
+  planes += shapes(e) || !source[RawPlane::material_ao].empty() ? 1 + scales : 0;
   planes += bent ? 1 : 0;
   planes += wants(o, &FrameOutputs::confidence) ? 2 * 3 : 0;  // thin and solid: estimates, rows, columns
-  planes += (o.multi_bounce ? 3 : 0) + source.beauty.size() + debug_views_of(o).size();
+  planes += (o.multi_bounce ? 3 : 0) + source[RawPlane::beauty].size() + debug_views_of(o).size();
   for (const auto& aov : aovs_of(o)) planes += channels_of(aov, scales).size();
   const double tiles =
       double(sizeof(TileBounds) + kTileLists * sizeof(uint) + (converges ? kConvergeLists : 1) * sizeof(ListedTile)) *
@@ -93,7 +95,7 @@ class Cutter {
          "{}: within --radius a tile of the frame depends on {} pixels, more than {} MiB, or buffers of {} MiB, hold: "
          "allow more --memory, use another "
          "--device or a smaller --radius",
-         source_.files[source_.depth[0].file].path(), to_string(computed), room_.bytes >> 20, room_.buffer_bytes >> 20);
+         source_.depth_path(), to_string(computed), room_.bytes >> 20, room_.buffer_bytes >> 20);
   }
 
   std::vector<std::vector<Window>> take() { return std::move(rows_); }
@@ -133,12 +135,11 @@ class Cutter {
 PixelMemory pixel_memory(const FrameSource& source, const Settings& settings) {
   const std::size_t scales = 1 + settings.estimator.further_radii.size();
   std::size_t read = 0, widest = std::max<std::size_t>(scales, needs_bent(settings.estimator, settings.output) ? 3 : 1);
-  for (const auto* aov : {&source.depth, &source.normal, &source.beauty, &source.indirect, &source.diffuse_color,
-                          &source.albedo, &source.material_ao}) {
-    read += aov->size();
-    widest = std::max(widest, aov->size());
+  for (const auto& channels : source.planes.entries) {
+    read += channels.size();
+    widest = std::max(widest, channels.size());
   }
-  std::size_t written = source.beauty.size();
+  std::size_t written = source[RawPlane::beauty].size();
   for (const auto& aov : aovs_of(settings.output)) {
     written += channels_of(aov, scales).size();
     widest = std::max(widest, aov.channels.size());

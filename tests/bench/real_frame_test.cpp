@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "core/chain/host_frame.h"
+#include "core/chain/compute.h"
 #include "core/formats/exr.h"
 #include "tests/support/device.h"
 

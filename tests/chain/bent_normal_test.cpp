@@ -60,8 +60,7 @@ std::vector<Vec3> bent_normals(const HostFrame& frame, const EstimatorSettings& 
 std::vector<Vec3> raw_bent(const HostFrame& frame, const EstimatorSettings& settings) {
   gpu::Recorder& gpu = test::recorder();
   const FrameInputs inputs = upload(gpu, frame);
-  for (const auto* plane : {inputs.depth, inputs.normal})
-    if (plane) gpu.upload(*plane);
+  upload(gpu, inputs);
   const GBuffer gbuffer = prepare(gpu, inputs);
   reconstruct(gpu, gbuffer);
   const Estimate result = estimate(gpu, gbuffer, inputs, settings, true);
@@ -306,12 +305,13 @@ TEST(BentNormals, fall_back_to_the_normal_where_nothing_is_open) {
   const Rendering room = test::furnished_room(40, 30);
   gpu::Recorder& gpu = test::recorder();
   const FrameInputs inputs = upload(gpu, room.frame);
-  for (const auto* plane : {inputs.depth, inputs.normal}) gpu.upload(*plane);
+  upload(gpu, inputs);
   const GBuffer gbuffer = prepare(gpu, inputs);
   gpu::Buffer& closed = gpu.buffer("closed", 3 * room.frame.depth.size() * sizeof(float), gpu::Use::upload);
   std::ranges::fill(closed.as<float>(), 0.5f);
   gpu.upload(closed);
-  const gpu::Buffer& planes = directions(gpu, gbuffer, bent_normal(gpu, gbuffer, closed), "test directions", inputs);
+  const gpu::Buffer& planes =
+      directions(gpu, gbuffer, bent_normal(gpu, gbuffer, &closed), "test directions", inputs.aov_from_view);
   gpu.download(planes);
   gpu.run();
   const auto bent = vectors_in(planes.as<float>());

@@ -6,7 +6,8 @@
 #include <limits>
 #include <random>
 
-#include "core/chain/passes.h"
+#include "core/chain/compute.h"
+#include "core/chain/geometry.h"
 #include "kernels/bounds.h"
 #include "kernels/coarsen.h"
 #include "tests/support/device.h"
@@ -34,9 +35,8 @@ std::vector<T> contents(const gpu::Buffer& buffer) {
 Pyramid pyramid_of(const HostFrame& frame) {
   gpu::Recorder& gpu = recorder();
   const FrameInputs inputs = upload(gpu, frame);
-  for (const auto* plane : {inputs.depth, inputs.normal})
-    if (plane) gpu.upload(*plane);
-  const GBuffer gbuffer = prepare(gpu, inputs, gpu::Use::download);
+  upload(gpu, inputs);
+  const GBuffer gbuffer = prepare(gpu, inputs);
   reconstruct(gpu, gbuffer);
   Pyramid p;
   p.view = gbuffer.view;

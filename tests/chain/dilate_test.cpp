@@ -6,7 +6,9 @@
 #include <limits>
 #include <random>
 
-#include "core/chain/passes.h"
+#include "core/base/estimator_facts.h"
+#include "core/chain/compute.h"
+#include "core/chain/filters.h"
 #include "tests/support/device.h"
 #include "tests/support/difference.h"
 #include "tests/support/random_scenes.h"
@@ -47,17 +49,12 @@ struct Filter {
 std::vector<float> run(const Filter& filter, const std::vector<float>& before, bool listed) {
   gpu::Recorder gpu(device());
   const FrameInputs inputs = upload(gpu, filter.frame);
-  for (const auto* plane : {inputs.depth, inputs.normal}) gpu.upload(*plane);
-  const GBuffer gbuffer = prepare(gpu, inputs), low = filter.settings.resolution == Resolution::full
-                                                          ? gbuffer
-                                                          : downsample(gpu, gbuffer, inputs, filter.settings);
-  const auto filtered = [&](const gpu::Buffer& ao, const FilterRuns& runs) {
-    const gpu::Buffer* result = &ao;
-    if (filter.settings.denoise != Denoise::none)
-      result = &denoise(gpu, low, *result, inputs, filter.settings, "", runs);
-    if (filter.settings.resolution != Resolution::full)
-      result = &upsample(gpu, gbuffer, low, *result, inputs, filter.settings, "", runs);
-    return result;
+  upload(gpu, inputs);
+  const GBuffer gbuffer = prepare(gpu, inputs);
+  const GBuffer low = downsample(gpu, gbuffer, block_grid(inputs, int(filter.settings.resolution)));
+  const Denoiser denoiser = denoiser_of(filter.settings);
+  const auto filtered = [&](gpu::Buffer& ao, const FilterRuns& runs) {
+    return &upsample(gpu, gbuffer, low, denoise(gpu, low, ao, denoiser, "", runs), "", runs);
   };
   gpu::Buffer& ao = gpu.buffer("ao", sizeof(float) * filter.ao.size(), gpu::Use::upload);
   gpu::Buffer& words = gpu.buffer("words", sizeof(uint) * filter.tiles.size(), gpu::Use::upload);
@@ -71,7 +68,8 @@ std::vector<float> run(const Filter& filter, const std::vector<float>& before, b
   gpu.upload(ao);
   TileList list;
   list.sectors = &words;
-  const FilterRuns runs = listed ? dilate(gpu, low, list, inputs, filter.settings) : FilterRuns{};
+  list.skips_surfaces = true;
+  const FilterRuns runs = listed ? dilate(gpu, low, list, denoiser) : FilterRuns{};
   EXPECT_EQ(runs.rows.runs != nullptr, listed && filter.settings.denoise != Denoise::none);
   EXPECT_EQ(runs.blocks.runs != nullptr, listed && filter.settings.resolution != Resolution::full);
   const gpu::Buffer& result = *filtered(ao, runs);

@@ -8,6 +8,7 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
+#include "core/base/estimator_facts.h"
 #include "core/formats/exr.h"
 #include "core/run/frame_run.h"
 #include "tests/support/device.h"

@@ -12,7 +12,8 @@
 #include <random>
 #include <vector>
 
-#include "core/chain/passes.h"
+#include "core/chain/compute.h"
+#include "core/chain/shading.h"
 #include "kernels/prepare.h"
 #include "tests/support/device.h"
 #include "tests/support/scenes.h"
@@ -44,8 +45,7 @@ Planes pass(const HostFrame& frame, const std::function<gpu::Buffer&(const GBuff
             FrameCounts* counts = nullptr) {
   gpu::Recorder& gpu = test::recorder();
   FrameInputs inputs = upload(gpu, frame);
-  for (const auto* plane : {inputs.depth, inputs.normal})
-    if (plane) gpu.upload(*plane);
+  upload(gpu, inputs);
   const GBuffer gbuffer = prepare(gpu, inputs);
   reconstruct(gpu, gbuffer);
   const gpu::Buffer& result = record(gbuffer, inputs);
@@ -79,8 +79,9 @@ Planes shaped(const HostFrame& frame, const Planes& ao, const EstimatorSettings&
   return pass(
       frame,
       [&](const GBuffer& gbuffer, FrameInputs& inputs) -> gpu::Buffer& {
-        if (material) inputs.material_ao = &given("test material", *material);
-        return shape(test::recorder(), gbuffer, given("test ao", ao), inputs, settings);
+        if (material) inputs[RawPlane::material_ao] = &given("test material", *material);
+        return shape(test::recorder(), gbuffer, given("test ao", ao), shaping_of(settings),
+                     inputs[RawPlane::material_ao]);
       },
       counts);
 }
@@ -146,7 +147,7 @@ Planes bounced(const Planes& ao, double albedo, const Planes* colors = nullptr) 
   HostFrame frame = ball().frame;
   return pass(frame, [&](const GBuffer& gbuffer, FrameInputs& inputs) -> gpu::Buffer& {
     inputs.albedo_value = albedo;
-    if (colors) inputs.albedo = &given("test albedo", *colors);
+    if (colors) inputs[RawPlane::albedo] = &given("test albedo", *colors);
     return multi_bounce(test::recorder(), gbuffer, given("test ao", ao), inputs);
   });
 }
@@ -214,11 +215,9 @@ Vec3 normal_at(const HostFrame& frame, std::size_t i) {
 /// `bent`: null: the normals.
 Planes specular(const HostFrame& frame, const Planes& ao, double roughness, const Planes* bent = nullptr) {
   return pass(frame, [&](const GBuffer& gbuffer, FrameInputs&) -> gpu::Buffer& {
-    EstimatorSettings settings;
-    settings.roughness = roughness;
     gpu::Buffer& visibility = given("test ao", ao);
     return specular_occlusion(test::recorder(), gbuffer, bent ? given("test bent", *bent) : *gbuffer.normal, visibility,
-                              settings);
+                              roughness);
   });
 }
 

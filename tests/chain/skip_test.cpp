@@ -12,6 +12,7 @@
 #include <numbers>
 #include <tuple>
 
+#include "core/base/estimator_facts.h"
 #include "core/chain/chain.h"
 #include "tests/support/device.h"
 #include "tests/support/difference.h"

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <limits>
 
-#include "core/chain/host_frame.h"
-#include "core/chain/passes.h"
+#include "core/base/estimator_facts.h"
+#include "core/chain/compute.h"
 #include "tests/support/device.h"
 #include "tests/support/difference.h"
 #include "tests/support/scenes.h"

@@ -43,7 +43,7 @@ class Layouts : public testing::Test {
     FrameSource source = find_frame(settings, false, 0);
     EXPECT_EQ(source.data, (Window{kX, kY, kColumns, kRows}));
     std::vector<float> read(values.size());
-    read_planes(source, {{&source.depth, read.data()}});
+    read_planes(source, {{&source[RawPlane::depth], read.data()}});
     EXPECT_EQ(read, values);
   }
   TemporaryFolder folder;

@@ -31,7 +31,7 @@ TEST_F(GBuffer, depth_is_found_under_renderers_names) {
                                 {"Z.R"},
                                 {"Pz"},
                                 {"Z-Depth.R"},
-                                {"beauty.depth.Z"},
+                                {"beauty[RawPlane::depth].Z"},
                                 {"__depth.r"},
                                 {"CGeometry_ZDepth.R"},
                                 {"FinalImageMovieRenderQueue_WorldDepth.R"}})
@@ -80,13 +80,14 @@ TEST_F(GBuffer, a_frame_as_blender_writes_it) {
     all.push_back(std::string("ViewLayer.") + name);
   write(all);
   const FrameSource source = find(true);
-  EXPECT_THAT(names_of(source.depth), ElementsAre("ViewLayer.Depth.Z"));
-  EXPECT_THAT(names_of(source.normal), ElementsAre("ViewLayer.Normal.X", "ViewLayer.Normal.Y", "ViewLayer.Normal.Z"));
-  EXPECT_THAT(names_of(source.beauty), ElementsAre("ViewLayer.Combined.R", "ViewLayer.Combined.G",
-                                                   "ViewLayer.Combined.B", "ViewLayer.Combined.A"));
-  EXPECT_THAT(names_of(source.indirect),
+  EXPECT_THAT(names_of(source[RawPlane::depth]), ElementsAre("ViewLayer.Depth.Z"));
+  EXPECT_THAT(names_of(source[RawPlane::normal]),
+              ElementsAre("ViewLayer.Normal.X", "ViewLayer.Normal.Y", "ViewLayer.Normal.Z"));
+  EXPECT_THAT(names_of(source[RawPlane::beauty]), ElementsAre("ViewLayer.Combined.R", "ViewLayer.Combined.G",
+                                                              "ViewLayer.Combined.B", "ViewLayer.Combined.A"));
+  EXPECT_THAT(names_of(source[RawPlane::indirect]),
               ElementsAre("ViewLayer.DiffInd.R", "ViewLayer.DiffInd.G", "ViewLayer.DiffInd.B"));
-  EXPECT_THAT(names_of(source.diffuse_color),
+  EXPECT_THAT(names_of(source[RawPlane::diffuse_color]),
               ElementsAre("ViewLayer.DiffCol.R", "ViewLayer.DiffCol.G", "ViewLayer.DiffCol.B"));
 }
 
@@ -96,9 +97,10 @@ TEST_F(GBuffer, blender_5_calls_the_parts_by_full_words) {
     for (const char* c : {".R", ".G", ".B"}) all.push_back(std::string("ViewLayer.") + layer + c);
   write(all);
   const FrameSource source = find(true);
-  EXPECT_THAT(names_of(source.indirect), ElementsAre("ViewLayer.Diffuse Indirect.R", "ViewLayer.Diffuse Indirect.G",
-                                                     "ViewLayer.Diffuse Indirect.B"));
-  EXPECT_THAT(names_of(source.diffuse_color),
+  EXPECT_THAT(
+      names_of(source[RawPlane::indirect]),
+      ElementsAre("ViewLayer.Diffuse Indirect.R", "ViewLayer.Diffuse Indirect.G", "ViewLayer.Diffuse Indirect.B"));
+  EXPECT_THAT(names_of(source[RawPlane::diffuse_color]),
               ElementsAre("ViewLayer.Diffuse Color.R", "ViewLayer.Diffuse Color.G", "ViewLayer.Diffuse Color.B"));
 }
 

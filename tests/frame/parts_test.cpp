@@ -19,9 +19,9 @@ TEST_F(GBuffer, part_names_are_layers) {
   write(std::vector<Part>{
       {"rgba", {"A", "B", "G", "R"}}, {"depth", {"Z"}}, {"N", {"X", "Y", "Z"}}, {"albedo", {"B", "G", "R"}}});
   const FrameSource source = find(true);
-  EXPECT_THAT(names_of(source.depth), ElementsAre("1:Z"));
-  EXPECT_THAT(names_of(source.normal), ElementsAre("2:X", "2:Y", "2:Z"));
-  EXPECT_THAT(names_of(source.beauty), ElementsAre("R", "G", "B", "A"));
+  EXPECT_THAT(names_of(source[RawPlane::depth]), ElementsAre("1:Z"));
+  EXPECT_THAT(names_of(source[RawPlane::normal]), ElementsAre("2:X", "2:Y", "2:Z"));
+  EXPECT_THAT(names_of(source[RawPlane::beauty]), ElementsAre("R", "G", "B", "A"));
 }
 
 TEST_F(GBuffer, parts_may_repeat_their_name_in_the_channels) {
@@ -55,7 +55,9 @@ TEST_F(GBuffer, planes_of_several_parts_are_read_each_from_its_own) {
   write(std::vector<Part>{{"rgba", {"B", "G", "R"}}, {"depth", {"Z"}}, {"N", {"X", "Y", "Z"}}});
   FrameSource source = find(true);
   std::vector<float> z(kPixels), n(3 * kPixels), rgb(3 * kPixels);
-  read_planes(source, {{&source.depth, z.data()}, {&source.normal, n.data()}, {&source.beauty, rgb.data()}});
+  read_planes(source, {{&source[RawPlane::depth], z.data()},
+                       {&source[RawPlane::normal], n.data()},
+                       {&source[RawPlane::beauty], rgb.data()}});
   EXPECT_THAT(z, testing::Each(value_of(1, 0)));
   for (std::size_t i = 0; i < n.size(); i++) {
     EXPECT_EQ(n[i], value_of(2, i / kPixels)) << i;
@@ -73,11 +75,11 @@ TEST_F(GBuffer, every_aov_may_have_a_file_of_its_own) {
     write_parts(settings.normal, {{"", {"R", "G", "B"}}});
     write_parts(settings.beauty, {{"", {"R", "G", "B", "A"}}});
     FrameSource source = find(true);
-    EXPECT_THAT(names_of(source.depth), ElementsAre(channels[0]));
-    EXPECT_THAT(names_of(source.normal), ElementsAre("R", "G", "B"));
-    EXPECT_THAT(names_of(source.beauty), ElementsAre("R", "G", "B", "A"));
+    EXPECT_THAT(names_of(source[RawPlane::depth]), ElementsAre(channels[0]));
+    EXPECT_THAT(names_of(source[RawPlane::normal]), ElementsAre("R", "G", "B"));
+    EXPECT_THAT(names_of(source[RawPlane::beauty]), ElementsAre("R", "G", "B", "A"));
     std::vector<float> n(3 * kPixels);
-    read_planes(source, {{&source.normal, n.data()}});
+    read_planes(source, {{&source[RawPlane::normal], n.data()}});
     EXPECT_EQ(n, (std::vector<float>{1, 1, 1, 1, 1, 1, 2, 2, 2, 2, 2, 2, 3, 3, 3, 3, 3, 3}));
   }
   write_parts(settings.normal, {{"", {"X", "Y", "Z"}}});

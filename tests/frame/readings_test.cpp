@@ -313,8 +313,8 @@ TEST_F(Readings, of_what_is_beyond_half_floats_are_sky) {
   write({DepthKind::planar, false, kPlanar.value, 65504});
   settings.depth_kind = DepthKind::planar;
   const FrameSource source = settled();
-  EXPECT_TRUE(std::isinf(planar_depth(depth_map_of(source, settings), {65504, 0, 0}, 1)));
-  EXPECT_FALSE(std::isinf(planar_depth(depth_map_of(source, settings), {65472, 0, 0}, 1)));
+  EXPECT_TRUE(std::isinf(planar_depth(depth_map_of(source), {65504, 0, 0}, 1)));
+  EXPECT_FALSE(std::isinf(planar_depth(depth_map_of(source), {65472, 0, 0}, 1)));
   EXPECT_THAT(source.suspicious, testing::ElementsAre(HasSubstr("half float")));
 }
 

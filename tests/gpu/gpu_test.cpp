@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "core/base/error.h"
-#include "core/chain/host_frame.h"
+#include "core/chain/compute.h"
 #include "kernels/composite.h"
 #include "kernels/horizon.h"
 #include "kernels/prepare.h"

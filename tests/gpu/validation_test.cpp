@@ -8,7 +8,7 @@
 #include <set>
 
 #include "core/chain/chain.h"
-#include "core/chain/host_frame.h"
+#include "core/chain/compute.h"
 #include "tests/support/device.h"
 #include "tests/support/single_pass.h"
 
@@ -29,9 +29,8 @@ std::set<std::string> kernels_of(gpu::Recorder& gpu, const EstimatorSettings& se
     return &buffer;
   };
   if (!output.composite.empty()) {
-    inputs.beauty = planes("raw beauty", 4), inputs.has_alpha = true;
-    inputs.indirect = planes("raw indirect", 3), inputs.diffuse_color = planes("raw diffuse color", 3);
-    inputs.albedo = planes("raw albedo", 3), inputs.material_ao = planes("raw material ao", 1);
+    for (const auto& row : kRawPlanes)
+      if (!inputs[row.plane]) inputs[row.plane] = planes(row.name, row.most);
   }
   run_chain(gpu, inputs, settings, output);
   gpu.run();

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "core/chain/host_frame.h"
+#include "core/chain/compute.h"
 
 namespace alcove::test {
 

@@ -89,9 +89,9 @@ class GBuffer : public testing::Test {
   void expect_error(const Names& words, bool with_beauty = false) const {
     try {
       const FrameSource source = find(with_beauty);
-      ADD_FAILURE() << "found depth " << testing::PrintToString(names_of(source.depth)) << ", normal "
-                    << testing::PrintToString(names_of(source.normal)) << "; expected an error that tells of "
-                    << testing::PrintToString(words);
+      ADD_FAILURE() << "found depth " << testing::PrintToString(names_of(source[RawPlane::depth])) << ", normal "
+                    << testing::PrintToString(names_of(source[RawPlane::normal]))
+                    << "; expected an error that tells of " << testing::PrintToString(words);
     } catch (const Error& error) {
       EXPECT_EQ(error.kind(), ErrorKind::input) << error.what();
       EXPECT_THAT(error.what(), testing::Not(testing::HasSubstr("\n")));

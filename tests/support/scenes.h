@@ -7,7 +7,7 @@
 #include <variant>
 #include <vector>
 
-#include "core/chain/host_frame.h"
+#include "core/frame/host_frame.h"
 
 namespace alcove::test {
 

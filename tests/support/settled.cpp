@@ -10,9 +10,9 @@ namespace alcove::test {
 
 FrameSource settled(const InputSettings& settings) {
   FrameSource source = find_frame(settings, false, 0);
-  std::vector<float> depth(source.depth.size() * source.data.pixels()),
-      normal(source.normal.size() * source.data.pixels());
-  read_planes(source, {{&source.depth, depth.data()}, {&source.normal, normal.data()}});
+  std::vector<float> depth(source[RawPlane::depth].size() * source.data.pixels()),
+      normal(source[RawPlane::normal].size() * source.data.pixels());
+  read_planes(source, {{&source[RawPlane::depth], depth.data()}, {&source[RawPlane::normal], normal.data()}});
   settle(source, settings, depth, normal);
   return source;
 }

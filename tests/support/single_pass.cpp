@@ -7,7 +7,8 @@
 #include <cmath>
 #include <random>
 
-#include "core/chain/passes.h"
+#include "core/chain/compute.h"
+#include "core/chain/filters.h"
 #include "tests/support/device.h"
 
 namespace alcove::test {
@@ -24,8 +25,7 @@ gpu::Buffer& visibility(const std::vector<float>& values) {
 
 FrameInputs uploaded(const HostFrame& frame) {
   const FrameInputs inputs = upload(recorder(), frame);
-  for (const auto* plane : {inputs.depth, inputs.normal})
-    if (plane) recorder().upload(*plane);
+  upload(recorder(), inputs);
   return inputs;
 }
 
@@ -42,7 +42,7 @@ std::vector<float> denoised(const HostFrame& frame, const std::vector<float>& ao
   const FrameInputs inputs = uploaded(frame);
   const GBuffer gbuffer = prepare(recorder(), inputs);
   reconstruct(recorder(), gbuffer);
-  return finished(denoise(recorder(), gbuffer, visibility(ao), inputs, settings));
+  return finished(denoise(recorder(), gbuffer, visibility(ao), denoiser_of(settings)));
 }
 
 std::vector<float> upsampled(const HostFrame& frame, const std::function<double(int, int)>& ao_of_block,
@@ -50,11 +50,11 @@ std::vector<float> upsampled(const HostFrame& frame, const std::function<double(
   const FrameInputs inputs = uploaded(frame);
   const GBuffer gbuffer = prepare(recorder(), inputs);
   reconstruct(recorder(), gbuffer);
-  const GBuffer low = downsample(recorder(), gbuffer, inputs, settings);
+  const GBuffer low = downsample(recorder(), gbuffer, block_grid(inputs, int(settings.resolution)));
   std::vector<float> ao;
   for (int y = 0; y < low.view.size.y; y++)
     for (int x = 0; x < low.view.size.x; x++) ao.push_back(float(ao_of_block(x, y)));
-  return finished(upsample(recorder(), gbuffer, low, visibility(ao), inputs, settings));
+  return finished(upsample(recorder(), gbuffer, low, visibility(ao)));
 }
 
 Rendering furnished_room(int width, int height) {

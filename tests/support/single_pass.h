@@ -5,7 +5,7 @@
 #include <functional>
 #include <vector>
 
-#include "core/chain/host_frame.h"
+#include "core/chain/compute.h"
 #include "tests/support/scenes.h"
 
 namespace alcove::test {

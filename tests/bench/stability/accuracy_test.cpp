@@ -127,7 +127,7 @@ std::vector<std::string> notes_on(const Spec& spec) {
   const Case made = test::made(spec);
   DepthSample sample;
   const FrameInputs inputs = upload(recorder(), made.frame);
-  sample.add(inputs.view, inputs.depth_map, inputs.depth_precision, inputs.depth->as<float>());
+  sample.add(inputs.view, inputs.depth_map, inputs.depth_precision, inputs[RawPlane::depth]->as<float>());
   return sample.notes(made.radius, made.radius, spec.width, spec.height);
 }
 

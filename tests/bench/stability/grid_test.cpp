@@ -12,6 +12,8 @@
 #include <iostream>
 #include <random>
 
+#include "core/base/estimator_facts.h"
+#include "core/chain/estimate.h"
 #include "core/chain/pass_common.h"
 #include "tests/bench/stability/cases.h"
 #include "tests/support/device.h"
@@ -102,22 +104,32 @@ TEST(Grid, estimators_write_their_own_plane_and_all_of_it) {
         settings.no_skip = no_skip;
         gpu::Recorder& gpu = recorder();
         const FrameInputs inputs = upload(gpu, made.frame);
-        for (const auto* plane : {inputs.depth, inputs.normal}) gpu.upload(*plane);
+        upload(gpu, inputs);
         const GBuffer gbuffer = prepare(gpu, inputs);
         reconstruct(gpu, gbuffer);
         const std::size_t pixels = made.frame.data.pixels();
         gpu::Buffer& planes = gpu.buffer("three planes", 3 * pixels * sizeof(float), gpu::Use::download);
         gpu.clear(planes);
         Estimate out{&planes};
-        if (!searches_exactly(settings))
-          out.listed = classify(gpu, gbuffer, inputs, block_grid(inputs, settings), settings,
-                                bounds(gpu, gbuffer, inputs, settings), out, 1);
+        const Reach reach = reach_of(settings, *settings.radius);
+        const Sampling sampling = sampling_of(settings, 0);
+        const Skipping skipping = skipping_of(settings, nullptr);
+        const SearchDirections directions = search_directions(settings);
         if (searches_exactly(settings)) {
-          for (int direction = 0; direction < settings.slices; direction++)
-            exact(gpu, gbuffer, profile(gpu, gbuffer, inputs, settings, direction), inputs, settings, out, 1);
+          for (int direction = 0; direction < directions.count; direction++)
+            exact(gpu, gbuffer, profile(gpu, gbuffer, directions, direction), directions, reach, out, 1);
         } else {
-          const auto estimator = std::array{&horizon, &bitmask, &hbao, &crytek}[std::size_t(settings.estimator)];
-          estimator(gpu, gbuffer, inputs, settings, out, 1);
+          const Bounds surfaces = bounds(gpu, gbuffer, skipping.proves, sampling.stride);
+          out.listed = classify(gpu, gbuffer, surfaces, skipping, reach.radius, sampling.stride, out, 1);
+          switch (settings.estimator) {
+            case Estimator::gtao: horizon(gpu, gbuffer, reach, sampling, out, 1); break;
+            case Estimator::bitmask: bitmask(gpu, gbuffer, reach, sampling, out, 1); break;
+            case Estimator::hbao: hbao(gpu, gbuffer, reach, sampling, settings.elevation, out, 1); break;
+            case Estimator::crytek:
+              crytek(gpu, gbuffer, reach, sampling, {settings.samples, settings.sample_kernel, settings.range_check},
+                     out, 1);
+              break;
+          }
         }
         gpu.download(planes);
         gpu.run();

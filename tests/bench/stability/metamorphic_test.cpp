@@ -10,6 +10,7 @@
 #include <limits>
 #include <numbers>
 
+#include "core/base/estimator_facts.h"
 #include "tests/bench/stability/cases.h"
 #include "tests/support/device.h"
 #include "tests/support/difference.h"

@@ -25,7 +25,7 @@ using testing::AllOf, testing::ElementsAre, testing::HasSubstr, testing::IsEmpty
 std::vector<std::string> said(const HostFrame& frame, double radius) {
   DepthSample sample;
   const FrameInputs inputs = upload(recorder(), frame);
-  sample.add(inputs.view, inputs.depth_map, inputs.depth_precision, inputs.depth->as<float>());
+  sample.add(inputs.view, inputs.depth_map, inputs.depth_precision, inputs[RawPlane::depth]->as<float>());
   return sample.notes(radius, radius, frame.data.width, frame.data.height);
 }
 

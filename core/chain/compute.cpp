@@ -1,0 +1,51 @@
+// Host memory -> upload buffers -> chain -> host memory.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/chain/compute.h"
+
+#include <algorithm>
+#include <span>
+
+#include "core/base/error.h"
+#include "core/chain/chain.h"
+
+namespace alcove {
+namespace {
+
+gpu::Buffer* filled(gpu::Recorder& gpu, RawPlane plane, std::span<const float> values) {
+  if (values.empty()) return nullptr;
+  const char* name = kRawPlanes[std::size_t(plane)].name;
+  gpu::Buffer& buffer = gpu.buffer(name, values.size_bytes(), gpu::Use::upload);
+  std::ranges::copy(values, buffer.as<float>().begin());
+  return &buffer;
+}
+
+/// Whether there are as many values as the table allows a plane of so many pixels.
+bool fills(RawPlane plane, std::size_t values, std::size_t pixels) {
+  const RawPlaneFacts& facts = kRawPlanes[std::size_t(plane)];
+  return values % pixels == 0 && values / pixels >= facts.least && values / pixels <= facts.most;
+}
+
+}  // namespace
+
+FrameInputs upload(gpu::Recorder& gpu, const HostFrame& frame) {
+  const std::size_t pixels = frame.data.pixels();
+  const std::size_t of_depth = frame.depth_kind == DepthKind::position ? 3 : 1;
+  if (frame.depth.size() != of_depth * pixels ||
+      (!frame.normal.empty() && !fills(RawPlane::normal, frame.normal.size(), pixels)))
+    fail(ErrorKind::input, "a frame of {} has {} depth and {} normal values", to_string(frame.data), frame.depth.size(),
+         frame.normal.size());
+  RawPlaneArray<gpu::Buffer*> planes;
+  planes[RawPlane::depth] = filled(gpu, RawPlane::depth, frame.depth);
+  planes[RawPlane::normal] = filled(gpu, RawPlane::normal, frame.normal);
+  return inputs_of(frame, planes, frame.frame);
+}
+
+HostResult compute_ao(gpu::Recorder& gpu, const HostFrame& frame, const EstimatorSettings& settings) {
+  const FrameOutputs outputs = run_chain(gpu, upload(gpu, frame), settings);
+  gpu.run();
+  const auto ao = outputs.ao->as<float>();
+  const auto& counts = outputs.counts->as<FrameCounts>()[0];
+  return {{ao.begin(), ao.end()}, counts.sky, counts.repaired_depth, counts.repaired_normals};
+}
+
+}  // namespace alcove

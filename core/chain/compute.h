@@ -1,0 +1,29 @@
+// A frame in host memory through the whole chain.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/base/settings.h"
+#include "core/chain/frame_inputs.h"
+#include "core/frame/host_frame.h"
+
+namespace alcove {
+
+/// The frame in upload buffers, as run_chain() takes it. Fails with ErrorKind::input when its planes do not fill its
+/// data window.
+FrameInputs upload(gpu::Recorder& gpu, const HostFrame& frame);
+
+/// What the chain makes of it.
+struct HostResult {
+  std::vector<float> ao;  // one value per pixel: visibility in [0, 1]
+  std::uint32_t sky_pixels = 0;
+  std::uint32_t repaired_depth = 0;
+  std::uint32_t repaired_normals = 0;
+};
+
+/// Runs prepare, the estimator and the shaping. settings.radius must be set. Fails with ErrorKind::device.
+HostResult compute_ao(gpu::Recorder& gpu, const HostFrame& frame, const EstimatorSettings& settings);
+
+}  // namespace alcove

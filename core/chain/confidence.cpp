@@ -1,0 +1,61 @@
+// The visibility with the thinnest and with the thickest occluders, and how far they are apart.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/chain/confidence.h"
+
+#include <limits>
+
+#include "core/base/estimator_facts.h"
+#include "core/chain/estimate.h"
+#include "core/chain/filters.h"
+#include "core/chain/pass_common.h"
+#include "kernels/confidence.h"
+
+namespace alcove {
+namespace {
+
+/// The thickness of thin occluders, in radii.
+constexpr double kThin = 0.02;
+
+/// The estimate by slices and steps at full resolution that stands for any other.
+EstimatorSettings settings_of_the_bracket(const EstimatorSettings& settings) {
+  EstimatorSettings bracket = settings;
+  bracket.estimator = Estimator::gtao;
+  bracket.search = SliceSearch::steps;
+  bracket.tolerance = 0;
+  bracket.resolution = Resolution::full;
+  return bracket;
+}
+
+}  // namespace
+
+gpu::Buffer& confidence(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame,
+                        const EstimatorSettings& settings) {
+  const EstimatorSettings bracket = settings_of_the_bracket(settings);
+  const double radius = radii_of(settings).back();
+  const Sampling sampling = sampling_of(bracket, frame.frame);
+  const Skipping skipping = skipping_of(bracket, frame.changes);
+  const Denoiser denoiser = denoiser_of(bracket);
+  const Bounds surfaces = bounds(gpu, gbuffer, skipping.proves, sampling.stride);
+  coarsen(gpu, gbuffer, surfaces);
+  const auto visibility = [&](float thickness, const std::string& prefix) -> const gpu::Buffer& {
+    Reach reach = reach_of(bracket, radius);
+    reach.thickness = thickness;
+    Estimate out{&gpu.buffer(prefix + "ao", plane_bytes(gbuffer.view), gpu::Use::download)};
+    out.listed = classify(gpu, gbuffer, surfaces, skipping, reach.radius, sampling.stride, out, 0, prefix);
+    horizon(gpu, gbuffer, reach, sampling, out, 0);
+    return denoise(gpu, gbuffer, *out.ao, denoiser, prefix);
+  };
+  const gpu::Buffer& thin = visibility(float(kThin * radius), "thin ");
+  const gpu::Buffer& solid = visibility(std::numeric_limits<float>::infinity(), "solid ");
+  gpu::Buffer& result = gpu.buffer("confidence", plane_bytes(gbuffer.view), gpu::Use::download);
+  gpu.dispatch("confidence", ConfidenceParams{gbuffer.view, float(radius), gbuffer.depth_precision},
+               {{kConfidenceDepth, *gbuffer.depth},
+                {kConfidenceNormal, *gbuffer.normal},
+                {kConfidenceThin, thin},
+                {kConfidenceSolid, solid},
+                {kConfidenceResult, result}},
+               extent_of(gbuffer.view));
+  return result;
+}
+
+}  // namespace alcove

@@ -1,0 +1,50 @@
+// Host side of debug.comp: what each view takes beside the G-buffer.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/chain/debug.h"
+
+#include "core/chain/pass_common.h"
+#include "kernels/debug.h"
+
+namespace alcove {
+namespace {
+
+/// The normals that the frame would have without any of its own.
+const gpu::Buffer* normals_from_depth(gpu::Recorder& gpu, FrameInputs frame) {
+  frame[RawPlane::normal] = nullptr;
+  return reconstruct(gpu, prepare(gpu, frame, "debug ")).normal;
+}
+
+}  // namespace
+
+DebugPlane debug(gpu::Recorder& gpu, const DebugView& view, const GBuffer& gbuffer, const DebugStages& stages,
+                 const FrameInputs& frame) {
+  const GBuffer* shown = &gbuffer;
+  const gpu::Buffer* values = gbuffer.normal;
+  int stride = 1;
+  switch (view.source) {
+    case DebugSource::none: break;
+    case DebugSource::raw_depth: values = frame[RawPlane::depth]; break;
+    case DebugSource::normals_from_depth: values = normals_from_depth(gpu, frame); break;
+    case DebugSource::raw_ao:
+      shown = &stages.gbuffer;
+      values = stages.raw_ao;
+      stride = stages.stride;
+      break;
+    case DebugSource::denoised_ao:
+      shown = &stages.gbuffer;
+      values = stages.denoised_ao;
+      break;
+    case DebugSource::tiles:
+      shown = &stages.gbuffer;
+      values = stages.sectors;
+      break;
+  }
+  gpu::Buffer& result = gpu.buffer(std::string("debug ") + view.name, plane_bytes(shown->view), gpu::Use::download);
+  gpu.dispatch(
+      "debug", DebugParams{shown->view, view.kind, stride, shown->grid.origin},
+      {{kDebugDepth, *shown->depth}, {kDebugNormal, *shown->normal}, {kDebugValues, *values}, {kDebugResult, result}},
+      extent_of(shown->view));
+  return {&view, shown->view.size, &result};
+}
+
+}  // namespace alcove

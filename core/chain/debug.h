@@ -1,0 +1,22 @@
+// The pass that draws what the others see.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "core/chain/debug_view.h"
+#include "core/chain/geometry.h"
+#include "core/chain/outputs.h"
+
+namespace alcove {
+
+/// The visibility on its way, at the resolution of the estimate; null where there is none.
+struct DebugStages {
+  GBuffer gbuffer{};
+  const gpu::Buffer* raw_ao = nullptr;
+  int stride = 1;  // of raw_ao: one pixel of so many in a row has an estimate
+  const gpu::Buffer* denoised_ao = nullptr;
+  const gpu::Buffer* sectors = nullptr;  // of the tiles
+};
+DebugPlane debug(gpu::Recorder& gpu, const DebugView& view, const GBuffer& gbuffer, const DebugStages& stages,
+                 const FrameInputs& frame);
+
+}  // namespace alcove

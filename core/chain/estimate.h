@@ -1,0 +1,124 @@
+// The estimators, and the passes that list the tiles they have something to do for.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+#include "core/base/settings.h"
+#include "core/chain/geometry.h"
+#include "kernels/profile.h"
+
+namespace alcove {
+
+/// Tiles of a G-buffer that an estimator has something to do for.
+struct TileList {
+  gpu::Buffer* tiles = nullptr;    // ListedTile each
+  gpu::Buffer* counts = nullptr;   // one TileCounts
+  gpu::Buffer* sectors = nullptr;  // of all tiles, from classify
+  gpu::Buffer* lines = nullptr;    // GroupCount of profile, from converge
+  bool skips_surfaces = false;     // more than sky may be left out
+};
+
+/// What an estimator gives for every pixel of the G-buffer, or for those that the stride leaves.
+struct Estimate {
+  gpu::Buffer* ao = nullptr;       // a plane of visibility for each radius, from the smallest on
+  gpu::Buffer* bent = nullptr;     // planes x, y, z, of the largest radius: see horizon.h; null: not asked for
+  TileList listed{};               // of the largest radius
+  gpu::Buffer* error = nullptr;    // with a tolerance, of the largest radius: see converge.h
+  gpu::Buffer* squares = nullptr;  // the same
+};
+
+/// By the estimator of the settings, for each of their radii. The frame gives the number that animates noise, and what
+/// has changed.
+Estimate estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame,
+                  const EstimatorSettings& settings, bool with_bent = false);
+
+/// What blocks around a receiver, for one radius.
+struct Reach {
+  float radius;         // scene units: nothing beyond blocks
+  float falloff_start;  // scene units: what is nearer blocks fully
+  Falloff falloff;
+  float thickness;  // scene units that an occluder goes on behind what is seen of it; 0: as deep as wide
+  float bias;       // the least height that blocks: see EstimatorSettings::bias
+};
+Reach reach_of(const EstimatorSettings& settings, double radius);
+
+/// How samples are spread over the hemisphere, and over neighbouring pixels.
+struct Sampling {
+  int slices;        // directions per pixel
+  int steps;         // samples to each side of a slice
+  int stride;        // one pixel of so many in a row has an estimate
+  vec2 noise_shift;  // where the noise pattern begins
+};
+Sampling sampling_of(const EstimatorSettings& settings, int frame);
+
+/// Crytek's samples in the volume of the hemisphere.
+struct VolumeSamples {
+  int count;
+  SampleKernel kernel;
+  RangeCheck range_check;
+};
+
+/// What may be left out.
+struct Skipping {
+  bool skips_sky;
+  bool proves;                 // tiles that nothing can block are left out too
+  bool is_ranged;              // the estimator takes the range of steps in which something may block
+  double tolerance;            // also left out, as open: a visibility of at least 1 less this
+  const gpu::Buffer* changes;  // against the frame before; null: it gives nothing
+};
+Skipping skipping_of(const EstimatorSettings& settings, const gpu::Buffer* changes);
+
+/// What surfaces tiles show.
+struct Bounds {
+  gpu::Buffer* tiles = nullptr;   // TileBounds for each tile; null: nothing is proved
+  gpu::Buffer* groups = nullptr;  // GroupBounds for each group of tiles
+};
+/// The bounds of the tiles, where tiles are to be proved.
+Bounds bounds(gpu::Recorder& gpu, const GBuffer& gbuffer, bool proves, int stride);
+/// Puts the bounds of the groups, where there are any of tiles.
+void coarsen(gpu::Recorder& gpu, const GBuffer& gbuffer, const Bounds& bounds);
+
+/// For one radius. What an estimate would be that is not made, it writes into a plane of `out`. `prefix` stands before
+/// the names of its buffers where there is another estimate.
+TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const Bounds& bounds, const Skipping& skipping,
+                  float radius, int stride, const Estimate& out, uint plane, const std::string& prefix = "");
+
+void horizon(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, const Sampling& sampling,
+             const Estimate& out, uint plane);
+void bitmask(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, const Sampling& sampling,
+             const Estimate& out, uint plane);
+void hbao(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, const Sampling& sampling, Elevation elevation,
+          const Estimate& out, uint plane);
+void crytek(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, const Sampling& sampling,
+            const VolumeSamples& samples, const Estimate& out, uint plane);
+
+/// The directions of an exact search over a frame.
+struct SearchDirections {
+  int count;         // over all pixels
+  int takers;        // pixels that share them: 1, or the 4 of a block where a denoiser mixes what they found
+  bool every_pixel;  // look at each pixel; else at the outlines of runs of them
+};
+SearchDirections search_directions(const EstimatorSettings& settings);
+
+/// The depth along all lines of one direction over the image, as straight strokes: see profile.h.
+struct Profile {
+  int direction;
+  Lines lines;
+  gpu::Buffer* vertex;
+  gpu::Buffer* mark;
+  gpu::Buffer* neighbor;
+};
+/// `groups`: workgroups, a GroupCount; null: those of all lines.
+Profile profile(gpu::Recorder& gpu, const GBuffer& gbuffer, const SearchDirections& directions, int direction,
+                const gpu::Buffer* groups = nullptr);
+/// Adds a direction to a plane of out.ao, for the pixels that take it; call it for all directions in order. For listed
+/// tiles what is blocked stays a sum, for converge.
+void exact(gpu::Recorder& gpu, const GBuffer& gbuffer, const Profile& profile, const SearchDirections& directions,
+           const Reach& reach, const Estimate& out, uint plane);
+/// As many directions as the tolerance takes, an RMS error of the visibility. Puts visibility, error and squares into
+/// `all`, and returns the tiles that have surfaces.
+TileList converge(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, double tolerance, bool every_pixel,
+                  Estimate& all, uint plane);
+
+}  // namespace alcove

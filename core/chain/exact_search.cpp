@@ -1,0 +1,179 @@
+// Host side of the exact search: straight strokes of depth along lines, what they block, and how many directions of
+// lines an estimate by its error takes.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <numbers>
+
+#include "core/chain/estimate.h"
+#include "core/chain/pass_common.h"
+#include "kernels/converge.h"
+#include "kernels/exact.h"
+#include "kernels/profile.h"
+
+namespace alcove {
+namespace {
+
+/// Directions of an estimate by error: at the least, where it has no other estimate to compare with, and at the most;
+/// powers of 2.
+constexpr int kLeastDirections = 2;
+constexpr int kMostDirections = 64;
+
+/// How far a profile may leave a pixel's depth, in the pixel's own widths: less costs more vertices.
+constexpr float kProfileTolerance = 0.2f;
+
+/// In this order 2, 4, 8 ... of the most directions are even.
+int bit_reversed(int i) {
+  int reversed = 0;
+  for (int bit = 1; bit < kMostDirections; bit *= 2) reversed = 2 * reversed + (i / bit & 1);
+  return reversed;
+}
+
+/// Pixels that lines have moved across at a step: as in lines.glsl.
+int shift_at(const Lines& lines, int step) {
+  return (lines.slope * (lines.origin.x + step) + kSlopeUnit / 2) >> kSlopeBits;
+}
+
+/// The lines of a direction, even in angle where the view's pixels are made square; those of a few directions never
+/// follow an axis of the image.
+Lines lines_of(const View& view, ivec2 origin, int direction, int directions) {
+  const double angle = std::numbers::pi * (direction + 0.5) / directions;
+  const double x = std::cos(angle) / view.tangent_per_pixel.x;
+  const double y = std::sin(angle) / view.tangent_per_pixel.y;
+  const bool steep = std::abs(y) > std::abs(x);
+  Lines lines{steep ? 1u : 0u, int(std::lround(kSlopeUnit * (steep ? x / y : y / x))),
+              steep ? ivec2{origin.y, origin.x} : origin, 0};
+  const int across = steep ? view.size.x : view.size.y;
+  const int along = steep ? view.size.y : view.size.x;
+  const int most = std::max(std::abs(shift_at(lines, 0)), std::abs(shift_at(lines, along)));
+  lines.wrap = (most / across + 1) * across;
+  return lines;
+}
+
+/// One float per pixel: the sum of the whole arcs over the directions so far.
+gpu::Buffer& whole_arcs(gpu::Recorder& gpu, const GBuffer& gbuffer) {
+  return gpu.buffer("whole arcs", plane_bytes(gbuffer.view), gpu::Use::device);
+}
+
+/// The visibility that the sums of so many directions give, its error, and for sums.listed the tiles that need more; of
+/// 0 directions: all with surfaces.
+void compare_directions(gpu::Recorder& gpu, const GBuffer& gbuffer, double tolerance, Estimate& sums, Estimate& all,
+                        uint plane, int directions) {
+  const ivec2 size = gbuffer.view.size;
+  const ivec2 origin = gbuffer.grid.origin;
+  const auto tiles_in = [](int pixels, int begin) { return groups_of(pixels + (begin & (kTile - 1)), uint(kTile)); };
+  const uint columns = tiles_in(size.x, origin.x);
+  const uint tiles = columns * tiles_in(size.y, origin.y);
+  const std::string name = "converge " + std::to_string(directions) + " ";
+  TileList next;
+  next.tiles = &gpu.buffer(name + "tiles", sizeof(ListedTile) * tiles, gpu::Use::device);
+  next.counts = &gpu.buffer(name + "counts", sizeof(TileCounts), gpu::Use::download);
+  next.lines = &gpu.buffer(name + "lines", sizeof(GroupCount), gpu::Use::upload);
+  gpu.clear(*next.counts);
+  next.lines->as<GroupCount>()[0] = {groups_of(2 * (size.x + size.y), kProfileGroup), 1, 0};
+  gpu.upload(*next.lines);
+  all.error = &gpu.buffer("error", plane_bytes(gbuffer.view), gpu::Use::download);
+  all.squares = &gpu.buffer("error squares", sizeof(vec2) * tiles, gpu::Use::download);
+  const ConvergeParams params{
+      gbuffer.view, origin, float(tolerance), uint(directions), directions > kLeastDirections ? 1u : 0u, plane};
+  const bool begins = directions == 0;
+  gpu.dispatch("converge", params,
+               {{kConvergeDepth, *gbuffer.depth},
+                {kConvergeBlocked, *sums.ao},
+                {kConvergeWhole, whole_arcs(gpu, gbuffer)},
+                {kConvergeAo, *all.ao},
+                {kConvergeError, *all.error},
+                {kConvergeSquares, *all.squares},
+                {kConvergeList, begins ? *next.tiles : *sums.listed.tiles},
+                {kConvergeCounts, begins ? *next.counts : *sums.listed.counts},
+                {kConvergeNextList, *next.tiles},
+                {kConvergeNextCounts, *next.counts},
+                {kConvergeNextLines, *next.lines}},
+               {columns, tiles / columns});
+  sums.listed = next;
+}
+
+}  // namespace
+
+SearchDirections search_directions(const EstimatorSettings& settings) {
+  const int takers = settings.denoise == Denoise::none ? 1 : 4;
+  return {settings.slices * takers, takers, settings.search == SliceSearch::every_pixel};
+}
+
+TileList converge(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, double tolerance, bool every_pixel,
+                  Estimate& all, uint plane) {
+  const SearchDirections directions{kMostDirections, 1, every_pixel};
+  Estimate sums;
+  sums.ao = &gpu.buffer("blocked arcs", plane_bytes(gbuffer.view), gpu::Use::device);
+  compare_directions(gpu, gbuffer, tolerance, sums, all, plane, 0);
+  const TileList first = sums.listed;
+  for (int i = 0; i < kMostDirections; i++) {
+    const Profile lines = profile(gpu, gbuffer, directions, bit_reversed(i), sums.listed.lines);
+    exact(gpu, gbuffer, lines, directions, reach, sums, 0);
+    if (i + 1 >= kLeastDirections && std::has_single_bit(uint(i + 1)))
+      compare_directions(gpu, gbuffer, tolerance, sums, all, plane, i + 1);
+  }
+  return first;
+}
+
+Profile profile(gpu::Recorder& gpu, const GBuffer& gbuffer, const SearchDirections& directions, int direction,
+                const gpu::Buffer* groups) {
+  const std::size_t bytes = plane_bytes(gbuffer.view);
+  const Lines lines = lines_of(gbuffer.view, gbuffer.grid.origin, direction, directions.count);
+  const Profile result{direction, lines, &gpu.buffer("profile vertex", bytes, gpu::Use::device),
+                       &gpu.buffer("profile mark", bytes, gpu::Use::device),
+                       &gpu.buffer("profile neighbor", bytes, gpu::Use::device)};
+  const ivec2 size = gbuffer.view.size;
+  const int along = lines.steep ? size.y : size.x;
+  const int across = lines.steep ? size.x : size.y;
+  const auto [least, most] = std::minmax({shift_at(lines, 0), shift_at(lines, along - 1)});
+  const ProfileParams params{gbuffer.view, lines, -most, uint(across + most - least), kProfileTolerance};
+  gpu.dispatch("profile", params,
+               {{kProfileDepth, *gbuffer.depth},
+                {kProfileVertex, *result.vertex},
+                {kProfileMark, *result.mark},
+                {kProfileNeighbor, *result.neighbor}},
+               groups ? gpu::Extent(*groups) : gpu::Extent(params.count), {directions.every_pixel ? 1u : 0u});
+  return result;
+}
+
+void exact(gpu::Recorder& gpu, const GBuffer& gbuffer, const Profile& profile, const SearchDirections& directions,
+           const Reach& reach, const Estimate& out, uint plane) {
+  const Lines& lines = profile.lines;
+  const int takers = directions.takers;
+  const bool is_listed = out.listed.counts != nullptr;
+  ExactParams params{};
+  params.view = gbuffer.view;
+  params.lines = lines;
+  params.stride = takers > 1 ? 2 : 1;
+  // Neighbouring directions go to opposite corners of a block; blocks are those of the display window.
+  constexpr ivec2 kCorners[] = {{0, 0}, {1, 1}, {1, 0}, {0, 1}};
+  const ivec2 corner = kCorners[profile.direction % takers];
+  if (takers > 1) params.first = {(corner.x + lines.origin.x) & 1, (corner.y + lines.origin.y) & 1};
+  params.direction = uint(profile.direction);
+  params.is_first = profile.direction < takers ? 1 : 0;
+  params.is_last = !is_listed && profile.direction >= directions.count - takers ? 1 : 0;
+  params.radius = reach.radius;
+  params.thickness = reach.thickness;
+  params.bias = reach.bias;
+  params.depth_precision = gbuffer.depth_precision;
+  params.plane = plane;
+  const ivec2 size = gbuffer.view.size;
+  const auto columns = uint((size.x + params.stride - 1) / params.stride);
+  const auto rows = uint((size.y + params.stride - 1) / params.stride);
+  const gpu::Extent pixels = lines.steep ? gpu::Extent{rows, columns} : gpu::Extent{columns, rows};
+  gpu.dispatch("exact", params,
+               {{kExactDepth, *gbuffer.depth},
+                {kExactNormal, *gbuffer.normal},
+                {kExactVertex, *profile.vertex},
+                {kExactMark, *profile.mark},
+                {kExactNeighbor, *profile.neighbor},
+                {kExactWhole, whole_arcs(gpu, gbuffer)},
+                {kExactAo, *out.ao},
+                {kExactList, is_listed ? *out.listed.tiles : *out.ao},
+                {kExactCounts, is_listed ? *out.listed.counts : *out.ao}},
+               is_listed ? gpu::Extent(*out.listed.counts) : pixels, {is_listed ? 1u : 0u});
+}
+
+}  // namespace alcove

@@ -1,0 +1,39 @@
+// What the chain starts from: a frame's raw planes in upload buffers, and their meaning in the terms of kernels.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "core/frame/raw_plane.h"
+#include "core/frame/reading.h"
+#include "core/gpu/recorder.h"
+#include "kernels/prepare.h"
+
+namespace alcove {
+
+struct FrameInputs {
+  /// The buffer of a plane, its components one behind the other; null: the frame has no such plane, or nobody asked for
+  /// it.
+  gpu::Buffer*& operator[](RawPlane plane) { return planes[plane]; }
+  gpu::Buffer* operator[](RawPlane plane) const { return planes[plane]; }
+
+  RawPlaneArray<gpu::Buffer*> planes;
+  View view{};
+  ivec2 noise_origin{};  // px: the data window's corner, so that a crop has the noise of the whole
+  int frame = 0;
+  DepthMap depth_map;
+  DepthPrecision depth_precision{};  // of the planar depth that it gives
+  PrepareParams prepare{};           // the meaning of depth and normals, as prepare.comp takes it
+  uint normal_form = kNormalNone;    // of kernels/prepare.h
+  double albedo_value = 0;           // for multi-bounce where there are no planes of it
+  Matrix3 aov_from_view{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};  // rotation to the space of the directions that are written
+  bool is_sky = false;  // no pixel shows a surface, and none had to be repaired for that
+  // of blocks against the frame before, whose estimate its buffers still hold: see classify.h; null: there is none
+  const gpu::Buffer* changes = nullptr;
+};
+
+/// The terms of kernels for planes that are read so. The host must still see the depth.
+FrameInputs inputs_of(const Reading& reading, const RawPlaneArray<gpu::Buffer*>& planes, int frame);
+
+/// Records the upload of every plane.
+void upload(gpu::Recorder& gpu, const FrameInputs& frame);
+
+}  // namespace alcove

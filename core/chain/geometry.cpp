@@ -1,0 +1,77 @@
+// Host side of the kernels that make the G-buffer.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/chain/geometry.h"
+
+#include "core/chain/pass_common.h"
+#include "kernels/downsample.h"
+#include "kernels/reconstruct.h"
+
+namespace alcove {
+
+BlockGrid block_grid(const FrameInputs& frame, int factor) {
+  const auto floored = [&](int px) { return px / factor - (px % factor < 0 ? 1 : 0); };
+  const ivec2 begin = frame.noise_origin;
+  const ivec2 size = frame.view.size;
+  BlockGrid grid;
+  grid.factor = factor;
+  grid.origin = {floored(begin.x), floored(begin.y)};
+  grid.overhang = {begin.x - factor * grid.origin.x, begin.y - factor * grid.origin.y};
+  grid.size = {floored(grid.overhang.x + size.x + factor - 1), floored(grid.overhang.y + size.y + factor - 1)};
+  grid.frame_size = size;
+  return grid;
+}
+
+GBuffer prepare(gpu::Recorder& gpu, const FrameInputs& frame, const std::string& prefix) {
+  const gpu::Buffer& raw_depth = *frame[RawPlane::depth];
+  const gpu::Buffer* raw_normal = frame[RawPlane::normal];
+  GBuffer gbuffer;
+  gbuffer.view = frame.view;
+  gbuffer.grid = block_grid(frame, 1);
+  gbuffer.depth_precision = to_vec3(frame.depth_precision.at);
+  gbuffer.depth = &gpu.buffer(prefix + "depth", plane_bytes(frame.view), gpu::Use::download);
+  gbuffer.normal = &gpu.buffer(prefix + "normal", plane_bytes(frame.view), gpu::Use::device);
+  gbuffer.counts = &gpu.buffer(prefix + "counts", sizeof(FrameCounts), gpu::Use::download);
+  gbuffer.missing = &gpu.buffer(prefix + "missing", sizeof(GroupCount), gpu::Use::upload);
+  gpu.clear(*gbuffer.counts);
+  gbuffer.missing->as<GroupCount>()[0] = {groups_of(frame.view.size.x, kGroupX), groups_of(frame.view.size.y, kGroupY),
+                                          0};
+  gpu.upload(*gbuffer.missing);
+  gpu.dispatch("prepare", frame.prepare,
+               {{kPrepareRawDepth, raw_depth},
+                {kPrepareRawNormal, raw_normal ? *raw_normal : raw_depth},
+                {kPrepareDepth, *gbuffer.depth},
+                {kPrepareNormal, *gbuffer.normal},
+                {kPrepareCounts, *gbuffer.counts},
+                {kPrepareMissing, *gbuffer.missing}},
+               extent_of(frame.view), {frame.depth_map.form, raw_normal ? frame.normal_form : kNormalNone});
+  return gbuffer;
+}
+
+GBuffer reconstruct(gpu::Recorder& gpu, const GBuffer& gbuffer) {
+  gpu.dispatch("reconstruct", ReconstructParams{gbuffer.view},
+               {{kReconstructDepth, *gbuffer.depth}, {kReconstructNormal, *gbuffer.normal}},
+               gpu::Extent(*gbuffer.missing));
+  return gbuffer;
+}
+
+GBuffer downsample(gpu::Recorder& gpu, const GBuffer& gbuffer, const BlockGrid& grid) {
+  if (grid.factor == 1) return gbuffer;
+  const auto factor = float(grid.factor);
+  GBuffer low = gbuffer;
+  low.grid = grid;
+  low.view.size = grid.size;
+  low.view.center = {(gbuffer.view.center.x + float(grid.overhang.x)) / factor,
+                     (gbuffer.view.center.y + float(grid.overhang.y)) / factor};
+  low.view.tangent_per_pixel = {gbuffer.view.tangent_per_pixel.x * factor, gbuffer.view.tangent_per_pixel.y * factor};
+  low.depth = &gpu.buffer("low depth", plane_bytes(low.view), gpu::Use::device);
+  low.normal = &gpu.buffer("low normal", plane_bytes(low.view), gpu::Use::device);
+  gpu.dispatch("downsample", DownsampleParams{gbuffer.view, grid.size, grid.overhang},
+               {{kDownsampleDepth, *gbuffer.depth},
+                {kDownsampleNormal, *gbuffer.normal},
+                {kDownsampleLowDepth, *low.depth},
+                {kDownsampleLowNormal, *low.normal}},
+               extent_of(low.view), {uint(grid.factor)});
+  return low;
+}
+
+}  // namespace alcove

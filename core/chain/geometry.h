@@ -1,0 +1,42 @@
+// The passes that make the G-buffer: what every later pass relies on.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+#include "core/chain/frame_inputs.h"
+
+namespace alcove {
+
+/// Blocks of whole pixels of the display window. They begin at its corner, so that a crop has the blocks of the whole;
+/// of 1 x 1 pixel at full resolution.
+struct BlockGrid {
+  int factor = 1;      // px of a block in x and in y
+  ivec2 origin{};      // blocks from the display window's corner to the first one of the data window
+  ivec2 overhang{};    // px of that one outside of the data window
+  ivec2 size{};        // blocks
+  ivec2 frame_size{};  // px of the data window
+};
+BlockGrid block_grid(const FrameInputs& frame, int factor);
+
+/// Depth and normals, one value per block of the grid: see prepare.comp and reconstruct.comp.
+struct GBuffer {
+  View view{};
+  BlockGrid grid;
+  vec3 depth_precision{};  // of planar depth: see DepthPrecision
+  gpu::Buffer* depth = nullptr;
+  gpu::Buffer* normal = nullptr;
+  gpu::Buffer* counts = nullptr;   // one FrameCounts, for the host
+  gpu::Buffer* missing = nullptr;  // the GroupCount of reconstruct
+};
+
+/// From the raw planes. `prefix` stands before the names of its buffers where there is another G-buffer already.
+GBuffer prepare(gpu::Recorder& gpu, const FrameInputs& frame, const std::string& prefix = "");
+
+/// Puts normals where prepare found none, and returns the same G-buffer.
+GBuffer reconstruct(gpu::Recorder& gpu, const GBuffer& gbuffer);
+
+/// The G-buffer of blocks of `factor` x `factor` pixels; the same one where that is 1.
+GBuffer downsample(gpu::Recorder& gpu, const GBuffer& gbuffer, const BlockGrid& grid);
+
+}  // namespace alcove

@@ -1,0 +1,119 @@
+// Host side of the kernels that make something of the visibility.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/chain/shading.h"
+
+#include "core/chain/pass_common.h"
+#include "kernels/bent_normal.h"
+#include "kernels/composite.h"
+#include "kernels/directions.h"
+#include "kernels/multi_bounce.h"
+#include "kernels/shape.h"
+#include "kernels/specular_occlusion.h"
+
+namespace alcove {
+
+Shaping shaping_of(const EstimatorSettings& settings) {
+  return {settings.intensity, settings.power, settings.fade_start.value_or(0), settings.fade_end};
+}
+
+gpu::Buffer& shape(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer& planes, const Shaping& shaping,
+                   const gpu::Buffer* material_ao, const std::string& prefix) {
+  gpu::Buffer& shaped = gpu.buffer(prefix + "shaped", planes.bytes(), gpu::Use::download);
+  ShapeParams params{};
+  params.size = gbuffer.view.size;
+  params.intensity = float(shaping.intensity);
+  params.power = float(shaping.power);
+  params.fade_start = float(shaping.fade_start);
+  params.fade_end = float(shaping.fade_end.value_or(0));
+  params.has_fade = shaping.fade_end ? 1 : 0;
+  params.has_material = material_ao ? 1 : 0;
+  params.planes = planes_in(planes, gbuffer.view);
+  params.counts_repaired = prefix.empty() ? 1 : 0;
+  gpu.dispatch("shape", params,
+               {{kShapeAo, planes},
+                {kShapeShaped, shaped},
+                {kShapeDepth, *gbuffer.depth},
+                {kShapeMaterial, material_ao ? *material_ao : planes},
+                {kShapeCounts, *gbuffer.counts}},
+               extent_of(gbuffer.view));
+  return shaped;
+}
+
+Visibility shape(gpu::Recorder& gpu, const GBuffer& gbuffer, const Visibility& visibility, const Shaping& shaping,
+                 const gpu::Buffer* material_ao) {
+  const bool changes = shaping.intensity != 1 || shaping.power != 1 || shaping.fade_end || material_ao;
+  if (!changes) return visibility;
+  Visibility result = visibility;
+  result.ao = &shape(gpu, gbuffer, *visibility.ao, shaping, material_ao);
+  if (visibility.scales) result.scales = &shape(gpu, gbuffer, *visibility.scales, shaping, material_ao, kScalesPrefix);
+  return result;
+}
+
+gpu::Buffer& bent_normal(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer* bent) {
+  if (!bent) return *gbuffer.normal;
+  gpu::Buffer& result = gpu.buffer("bent normal", plane_bytes(gbuffer.view), gpu::Use::download);
+  gpu.dispatch("bent_normal", BentNormalParams{gbuffer.view.size},
+               {{kBentNormalNormal, *gbuffer.normal}, {kBentNormalBent, *bent}, {kBentNormalResult, result}},
+               extent_of(gbuffer.view));
+  return result;
+}
+
+gpu::Buffer& directions(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& packed, const std::string& name,
+                        const Matrix3& aov_from_view) {
+  gpu::Buffer& planes = gpu.buffer(name, 3 * plane_bytes(gbuffer.view), gpu::Use::download);
+  const DirectionsParams params{gbuffer.view.size, to_vec3(aov_from_view[0]), to_vec3(aov_from_view[1]),
+                                to_vec3(aov_from_view[2])};
+  gpu.dispatch("directions", params,
+               {{kDirectionsDepth, *gbuffer.depth}, {kDirectionsPacked, packed}, {kDirectionsPlanes, planes}},
+               extent_of(gbuffer.view));
+  return planes;
+}
+
+gpu::Buffer& specular_occlusion(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& open,
+                                const gpu::Buffer& ao, double roughness) {
+  gpu::Buffer& result = gpu.buffer("specular occlusion", plane_bytes(gbuffer.view), gpu::Use::download);
+  gpu.dispatch("specular_occlusion", SpecularOcclusionParams{gbuffer.view, float(roughness)},
+               {{kSpecularOcclusionDepth, *gbuffer.depth},
+                {kSpecularOcclusionNormal, *gbuffer.normal},
+                {kSpecularOcclusionBent, open},
+                {kSpecularOcclusionAo, ao},
+                {kSpecularOcclusionResult, result}},
+               extent_of(gbuffer.view));
+  return result;
+}
+
+gpu::Buffer& multi_bounce(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& ao, const FrameInputs& frame) {
+  const gpu::Buffer* albedo = frame[RawPlane::albedo];
+  gpu::Buffer& result = gpu.buffer("color ao", 3 * plane_bytes(gbuffer.view), gpu::Use::download);
+  gpu.dispatch("multi_bounce", MultiBounceParams{gbuffer.view.size, albedo ? 1u : 0u, float(frame.albedo_value)},
+               {{kMultiBounceAo, ao}, {kMultiBounceAlbedo, albedo ? *albedo : ao}, {kMultiBounceResult, result}},
+               extent_of(gbuffer.view));
+  return result;
+}
+
+gpu::Buffer& composite(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& ao, const FrameInputs& frame,
+                       double fog_density) {
+  const gpu::Buffer& beauty = *frame[RawPlane::beauty];
+  const gpu::Buffer* indirect = frame[RawPlane::indirect];
+  const gpu::Buffer* diffuse_color = frame[RawPlane::diffuse_color];
+  gpu::Buffer& result = gpu.buffer("composite", beauty.bytes(), gpu::Use::download);
+  CompositeParams params{};
+  params.view = frame.view;
+  params.has_alpha = planes_in(beauty, frame.view) == 4 ? 1 : 0;
+  params.has_ambient = indirect ? 1 : 0;
+  params.has_diffuse_color = diffuse_color ? 1 : 0;
+  params.has_color = planes_in(ao, frame.view) == 3 ? 1 : 0;
+  params.fog_density = float(fog_density);
+  gpu.dispatch("composite", params,
+               {{kCompositeAo, ao},
+                {kCompositeBeauty, beauty},
+                {kCompositeIndirect, indirect ? *indirect : beauty},
+                {kCompositeDiffuseColor, diffuse_color ? *diffuse_color : beauty},
+                {kCompositeResult, result},
+                {kCompositeCounts, *gbuffer.counts},
+                {kCompositeDepth, *gbuffer.depth}},
+               extent_of(frame.view));
+  return result;
+}
+
+}  // namespace alcove

@@ -1,0 +1,106 @@
+// The planes that a frame's files hold, before any pass: ONE table of what each is, and arrays with one entry for each.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "core/base/settings.h"
+
+namespace alcove {
+
+/// Each may have several components: depth may be a position's x, y, z.
+enum class RawPlane { depth, normal, beauty, indirect, diffuse_color, material_ao, albedo };
+
+/// What an estimate is made from, and what only colours or dims it afterwards.
+enum class PlaneContent { geometry, color };
+
+/// An option that names a file.
+struct FileOption {
+  const char* option;
+  std::string InputSettings::*path;
+};
+
+/// A row of the table.
+struct RawPlaneFacts {
+  RawPlane plane;
+  const char* name;   // of its buffer
+  std::size_t least;  // components
+  std::size_t most;
+  PlaneContent content;
+  FileOption file;             // null: it lies in the beauty's file
+  FileOption other_file = {};  // null: there is no second option for it
+};
+
+inline constexpr std::array kRawPlanes{
+    RawPlaneFacts{.plane = RawPlane::depth,
+                  .name = "raw depth",
+                  .least = 1,
+                  .most = 3,
+                  .content = PlaneContent::geometry,
+                  .file = {"--depth", &InputSettings::depth},
+                  .other_file = {"--position", &InputSettings::position}},
+    RawPlaneFacts{.plane = RawPlane::normal,
+                  .name = "raw normal",
+                  .least = 2,
+                  .most = 3,
+                  .content = PlaneContent::geometry,
+                  .file = {"--normal", &InputSettings::normal}},
+    RawPlaneFacts{.plane = RawPlane::beauty,
+                  .name = "raw beauty",
+                  .least = 3,
+                  .most = 4,
+                  .content = PlaneContent::color,
+                  .file = {"--beauty", &InputSettings::beauty}},
+    RawPlaneFacts{.plane = RawPlane::indirect,
+                  .name = "raw indirect",
+                  .least = 3,
+                  .most = 3,
+                  .content = PlaneContent::color,
+                  .file = {}},
+    RawPlaneFacts{.plane = RawPlane::diffuse_color,
+                  .name = "raw diffuse color",
+                  .least = 3,
+                  .most = 3,
+                  .content = PlaneContent::color,
+                  .file = {}},
+    RawPlaneFacts{.plane = RawPlane::material_ao,
+                  .name = "raw material ao",
+                  .least = 1,
+                  .most = 1,
+                  .content = PlaneContent::color,
+                  .file = {"--material-ao", &InputSettings::material_ao}},
+    RawPlaneFacts{.plane = RawPlane::albedo,
+                  .name = "raw albedo",
+                  .least = 3,
+                  .most = 3,
+                  .content = PlaneContent::color,
+                  .file = {"--albedo", &InputSettings::albedo}},
+};
+
+/// One entry for each plane.
+template <class T>
+struct RawPlaneArray {
+  std::array<T, kRawPlanes.size()> entries{};
+
+  T& operator[](RawPlane plane) { return entries[std::size_t(plane)]; }
+  const T& operator[](RawPlane plane) const { return entries[std::size_t(plane)]; }
+};
+
+/// Rows stand in the order of the enumeration.
+constexpr bool rows_are_in_order() {
+  for (std::size_t i = 0; i < kRawPlanes.size(); i++)
+    if (std::size_t(kRawPlanes[i].plane) != i) return false;
+  return true;
+}
+static_assert(rows_are_in_order());
+
+/// Every option that names a file of planes, INPUT first.
+std::vector<FileOption> plane_file_options();
+
+/// All files that a frame reads; empty where there is none.
+std::vector<std::string> input_files(const InputSettings& input);
+
+}  // namespace alcove
