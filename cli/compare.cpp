@@ -12,6 +12,7 @@
 #include "cli/parsing.h"
 #include "core/base/error.h"
 #include "core/base/file.h"
+#include "core/base/text.h"
 
 namespace alcove {
 namespace {
@@ -77,8 +78,12 @@ void print_part(const std::string& name, const PartErrors& part) {
   fmt::print("  {:<22} {:>9} values   rmse {:.4f}   bias {:+.4f}\n", name, part.count, part.rmse, part.bias);
 }
 
+void print_heading(const std::string& result, const std::string& reference, const std::vector<std::string>& channels) {
+  fmt::print("{}\n", printable(fmt::format("{} against {}: {}", result, reference, fmt::join(channels, ", "))));
+}
+
 void print_picture(const FrameComparison& c) {
-  fmt::print("{} against {}: {}\n", c.result, c.reference, fmt::join(c.channels, ", "));
+  print_heading(c.result, c.reference, c.channels);
   fmt::print("  {} pixels compared, {} masked, {} not finite\n", c.count, c.masked, c.excluded);
   const PlaneErrors& e = c.errors;
   fmt::print("  rmse {:.4f}   mae {:.4f}   bias {:+.4f}   max {:.4f}   p95 {:.4f}   p99 {:.4f}\n", e.rmse, e.mae,
@@ -92,7 +97,7 @@ void print_picture(const FrameComparison& c) {
 }
 
 void print_sequence(const CompareReport& report) {
-  fmt::print("{} against {}: {}\n", report.result, report.reference, fmt::join(report.frames[0].channels, ", "));
+  print_heading(report.result, report.reference, report.frames[0].channels);
   fmt::print("{:>7} {:>9} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8}\n", "frame", "pixels", "rmse", "mae", "bias", "p99",
              "psnr", "ssim", "flip");
   double sum = 0;

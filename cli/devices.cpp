@@ -6,6 +6,8 @@
 
 #include "cli/commands.h"
 #include "core/base/error.h"
+#include "core/base/json_text.h"
+#include "core/base/text.h"
 #include "core/gpu/device_info.h"
 
 namespace alcove {
@@ -36,11 +38,11 @@ int devices_command(const std::vector<std::string>& arguments) {
                     {"usable", d.unusable.empty()},
                     {"reason", d.unusable}});
     if (!json)
-      fmt::print("{}  {}  {}  {}  Vulkan {}  {:.1f} GiB  {}{}\n", d.index, d.name, gpu::name_of(d.type), d.driver,
-                 d.api_version, double(d.memory_bytes) / (1 << 30), d.uuid,
-                 d.unusable.empty() ? "" : "  not usable: " + d.unusable);
+      fmt::print("{}  {}  {}  {}  Vulkan {}  {:.1f} GiB  {}{}\n", d.index, printable(d.name), gpu::name_of(d.type),
+                 printable(d.driver), d.api_version, double(d.memory_bytes) / (1 << 30), d.uuid,
+                 d.unusable.empty() ? "" : "  not usable: " + printable(d.unusable));
   }
-  if (json) fmt::print("{}\n", list.dump(1));
+  if (json) fmt::print("{}\n", json_text(list, 1));
   if (devices.empty())
     fail(ErrorKind::device, "no Vulkan device found; lavapipe computes on the CPU (Debian: mesa-vulkan-drivers)");
   return 0;

@@ -32,7 +32,7 @@ int inspect_command(const std::vector<std::string>& arguments) {
   const std::string& path = !input.input.empty() ? input.input : input.depth.empty() ? input.position : input.depth;
   if (path.empty()) fail(ErrorKind::usage, "no input: name an EXR file, or one with --depth or --position");
   const Inspection inspection = inspect_frame(input, frame_number_of(path));
-  fmt::print("{}", json ? inspection.json : inspection.text);
+  fmt::print("{}", json ? inspection_json(inspection) : inspection_text(inspection));
   if (inspection.unreadable) throw *inspection.unreadable;
   if (!options.settings.output.preview.empty()) write_contact_sheet(options.settings, frame_number_of(path));
   return 0;

@@ -4,6 +4,7 @@
 #include "cli/options.h"
 #include "core/base/error.h"
 #include "core/base/file.h"
+#include "core/base/text.h"
 
 namespace alcove {
 
@@ -19,7 +20,7 @@ int presets_command(const std::vector<std::string>& arguments) {
     fmt::print("{}", read_text(preset_file(arguments[0]), "preset", "NAME"));
     return 0;
   }
-  for (const auto& name : preset_names()) fmt::print("{}\n", name);
+  for (const auto& name : preset_names()) fmt::print("{}\n", printable(name));
   return 0;
 }
 

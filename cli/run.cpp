@@ -7,6 +7,7 @@
 #include "cli/print.h"
 #include "cli/progress.h"
 #include "core/base/system.h"
+#include "core/base/text.h"
 #include "core/run/batch.h"
 #include "core/run/dry_run.h"
 
@@ -27,7 +28,7 @@ int run_command(const std::vector<std::string>& arguments) {
                   [&](const FrameReport& frame) { progress.frame(frame); }, [] { return caught_signal() != 0; }});
   progress.end(report);
   if (report.stop && !report.is_sequence) throw *report.stop;
-  if (report.stop && report.failed == 0) print_error("alcove: error: {}\n", report.stop->what());
+  if (report.stop && report.failed == 0) print_error("alcove: error: {}\n", printable(report.stop->what()));
   if (report.stop) return int(report.stop->kind());
   if (caught_signal()) return 128 + caught_signal();
   return report.failed ? int(ErrorKind::some_frames_failed) : 0;

@@ -1,4 +1,4 @@
-// TOML files that are a flat list of keys and values: presets.
+// Reads TOML files that are a flat list of keys and values, as presets are.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -7,14 +7,14 @@
 
 namespace alcove {
 
-/// A key and its value, or its list's values, as they would be typed on a command line.
+/// A key with its value, or with the values of its list, as they would be typed on a command line.
 struct FlatEntry {
   std::string key;
   std::vector<std::string> values;
 };
 
-/// The entries in the order of the file's keys. Fails with ErrorKind::usage, with line and reason, on text that is no
-/// TOML and on tables.
+/// Gives the entries in the order of the file's keys. Fails with ErrorKind::usage on text that is no TOML and on
+/// tables, naming line and reason.
 std::vector<FlatEntry> parse_flat_toml(const std::string& text);
 
 }  // namespace alcove

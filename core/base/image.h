@@ -18,13 +18,13 @@ struct Window {
 };
 std::string to_string(const Window& window);
 
-/// The part of planes over `from` that lies over `to`, which is within it.
+/// Cuts out of planes over `from` the part that lies over `to`, which must be within it.
 std::vector<float> cropped(std::span<const float> planes, const Window& from, const Window& to);
 
 struct Image {
   Window data;                     // where there are pixels
   Window display;                  // what the picture shows; the projection refers to it
-  std::vector<std::string> names;  // one a plane, full channel names
+  std::vector<std::string> names;  // full channel names, one per plane
   std::vector<float> pixels;       // plane by plane, row by row from the top
 
   Image() = default;
@@ -35,7 +35,7 @@ struct Image {
 
   std::span<float> plane(std::size_t index);
   std::span<const float> plane(std::size_t index) const;
-  /// The plane of that name; fails with ErrorKind::input, listing those that there are.
+  /// Gives the plane of that name. Fails with ErrorKind::input, listing the planes that there are.
   std::span<const float> plane(std::string_view name) const;
 };
 

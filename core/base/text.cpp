@@ -1,10 +1,11 @@
-// Case, lists and the nearest of a set of names.
+// Characters of UTF-8, lists, and distances between names.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/base/text.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <numeric>
 
@@ -16,24 +17,74 @@ std::string lower_case(std::string_view text) {
   return lower;
 }
 
-std::string printable(std::string text) {
-  std::ranges::replace_if(
-      text, [](unsigned char c) { return c < 0x20 || c == 0x7f; }, '?');
-  // In UTF-8: the controls U+0080 to U+009F, of which terminals obey some, and what turns the direction of writing:
-  // U+061C, U+200E, U+200F, U+202A to U+202E, U+2066 to U+2069.
+namespace {
+
+/// The first character of a text in UTF-8.
+struct Character {
+  char32_t code;
+  std::size_t bytes;  // 0: the first byte belongs to no character
+};
+
+/// How many bytes a character has that begins with this one; 0 if none does.
+std::size_t bytes_after(unsigned char lead) {
+  if (lead < 0x80) return 1;
+  if (lead < 0xc2) return 0;
+  if (lead < 0xe0) return 2;
+  if (lead < 0xf0) return 3;
+  return lead < 0xf5 ? 4 : 0;
+}
+
+/// Decodes one character. Overlong spellings and halves of surrogate pairs are none.
+Character first_character(std::string_view text) {
+  constexpr Character kNone{0, 0};
+  constexpr std::array<char32_t, 5> kLeast{0, 0, 0x80, 0x800, 0x10000};  // codes that need so many bytes
+  const auto lead = static_cast<unsigned char>(text[0]);
+  const std::size_t bytes = bytes_after(lead);
+  if (bytes == 0 || bytes > text.size()) return kNone;
+  if (bytes == 1) return {lead, 1};
+  char32_t code = lead & (0x7fu >> bytes);
+  for (const char next : text.substr(1, bytes - 1)) {
+    if ((next & 0xc0) != 0x80) return kNone;
+    code = code << 6 | (next & 0x3f);
+  }
+  const bool is_surrogate = code >= 0xd800 && code < 0xe000;
+  return code < kLeast[bytes] || code > 0x10ffff || is_surrogate ? kNone : Character{code, bytes};
+}
+
+/// Controls, of which terminals obey some.
+bool is_control(char32_t code) { return code < 0x20 || (code >= 0x7f && code < 0xa0); }
+
+/// Characters that turn the direction of writing, so that a name shows as another.
+bool turns_writing(char32_t code) {
+  return code == 0x61c || code == 0x200e || code == 0x200f || (code >= 0x202a && code <= 0x202e) ||
+         (code >= 0x2066 && code <= 0x2069);
+}
+
+/// The text in UTF-8, with ? in the place of the characters that `hides` picks.
+template <class Hides>
+std::string escaped(std::string_view text, Hides hides) {
   std::string shown;
-  for (std::size_t i = 0; i < text.size(); i++) {
-    const auto byte = [&](std::size_t at) {
-      return i + at < text.size() ? static_cast<unsigned char>(text[i + at]) : 0u;
-    };
-    const unsigned two = byte(0) << 8 | byte(1), three = two << 8 | byte(2);
-    const bool is_control = (two >= 0xc280 && two <= 0xc29f) || two == 0xd89c;
-    const bool turns = three == 0xe2808e || three == 0xe2808f || (three >= 0xe280aa && three <= 0xe280ae) ||
-                       (three >= 0xe281a6 && three <= 0xe281a9);
-    shown += is_control || turns ? '?' : text[i];
-    i += turns ? 2 : is_control ? 1 : 0;
+  while (!text.empty()) {
+    const auto [code, bytes] = first_character(text);
+    if (bytes == 0)
+      shown += fmt::format("\\x{:02x}", static_cast<unsigned char>(text[0]));
+    else if (hides(code))
+      shown += '?';
+    else
+      shown += text.substr(0, bytes);
+    text.remove_prefix(std::max<std::size_t>(1, bytes));
   }
   return shown;
+}
+
+}  // namespace
+
+std::string as_utf8(std::string_view text) {
+  return escaped(text, [](char32_t) { return false; });
+}
+
+std::string printable(std::string_view text) {
+  return escaped(text, [](char32_t code) { return is_control(code) || turns_writing(code); });
 }
 
 std::vector<std::string> split(const std::string& text) {

@@ -1,4 +1,4 @@
-// Small help with names: case, lists, and the nearest of them to a misspelt one.
+// Names as text: case, lists, escapes, and the names that are nearest to a misspelt one.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -11,23 +11,28 @@ namespace alcove {
 
 std::string lower_case(std::string_view text);
 
-/// The parts between commas, without the spaces around them. One, empty, for an empty text.
+/// Gives the parts between commas, without the spaces around them. An empty text has one part, which is empty.
 std::vector<std::string> split(const std::string& text);
 
-/// "a, b, c"; at most `most` names, then "and N more". "nothing" for none.
+/// Gives "a, b, c": at most `most` names, then "and N more"; "nothing" if there are none.
 std::string list_of(std::span<const std::string> names, std::size_t most = 24);
 
-/// Insertions, deletions and replacements that turn one text into the other, case ignored.
+/// Counts the insertions, deletions and replacements that turn one text into the other. Case is ignored.
 std::size_t edit_distance(std::string_view a, std::string_view b);
 
-/// Up to `most` of the candidates that resemble `name`, the nearest first; none where all are far off.
+/// Gives up to `most` of the candidates that resemble `name`, the nearest first; none if all are far off.
 std::vector<std::string> nearest_names(std::string_view name, std::span<const std::string> candidates,
                                        std::size_t most = 3);
 
-/// The text with ? in the place of each control character, since names in files may hold what a terminal would obey.
-std::string printable(std::string text);
+/// The text in valid UTF-8. Names of files may hold any bytes: each byte that belongs to no character becomes \xff, in
+/// its hexadecimal digits.
+std::string as_utf8(std::string_view text);
 
-/// " (did you mean a or b?)", or nothing: to be put behind a message.
+/// The same for a terminal: each control character also becomes ?, since names in files may hold what a terminal would
+/// obey, and so does each character that turns the direction of writing.
+std::string printable(std::string_view text);
+
+/// Gives " (did you mean a or b?)" to be put behind a message, or an empty text if no candidate is near.
 std::string suggestion(std::string_view name, std::span<const std::string> candidates);
 
 }  // namespace alcove

@@ -1,12 +1,12 @@
-// What a benchmark is written as: JSON, CSV, a page; and the check against limits.
+// Writes a benchmark as JSON, as CSV and as a page, and checks it against limits.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "core/base/json_text.h"
 #include "core/bench/bench.h"
 #include "core/measure/report.h"
-#include "core/measure/report_images.h"
 
 namespace alcove {
 namespace {
@@ -72,8 +72,6 @@ Json to_json(const BenchReport& report) {
           {"frames", frames},      {"candidates", candidates}, {"rows", rows}};
 }
 
-std::string dump(const Json& json) { return json.dump(1, ' ', false, Json::error_handler_t::replace); }
-
 /// A CSV field: quoted where it must be.
 std::string field(const std::string& text) {
   if (text.find_first_of(",\"\n") == text.npos) return text;
@@ -92,7 +90,7 @@ double measured(const BenchRow& row, const std::string& measure) {
 
 }  // namespace
 
-std::string bench_json(const BenchReport& report) { return dump(to_json(report)) + "\n"; }
+std::string bench_json(const BenchReport& report) { return json_text(to_json(report), 1) + "\n"; }
 
 std::string bench_csv(const BenchReport& report) {
   std::string text =
@@ -134,7 +132,7 @@ std::string bench_page(const BenchReport& report) {
                       {"error", error_picture(frame.width, frame.height, row.ao, frame.truth)}});
   }
   page["images"] = std::move(images);
-  return report_page(dump(page));
+  return report_page(json_text(page, 1));
 }
 
 std::vector<std::string> broken_limits(const BenchReport& report, const std::vector<Limit>& limits) {

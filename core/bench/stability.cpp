@@ -10,10 +10,10 @@
 #include <numbers>
 
 #include "core/chain/compute.h"
+#include "core/frame/scale_notes.h"
 #include "core/reference/reference.h"
 #include "core/reference/reference_estimators.h"
 #include "core/reference/reference_scene.h"
-#include "core/run/scale_notes.h"
 
 namespace alcove {
 namespace {
@@ -78,7 +78,7 @@ Axes axes_of_view() {
 }
 double distance_of(double fov) { return 0.5 * kRoomWidth / std::tan(fov * std::numbers::pi / 360); }
 
-/// The room from so far that it fills a picture of this field of view.
+/// Gives the distance from which the room fills a picture of this field of view.
 HostFrame room(double fov) {
   HostFrame frame = empty_frame();
   frame.camera.fx = frame.camera.fy = 0.5 * kWidth / std::tan(fov * std::numbers::pi / 360);
@@ -289,8 +289,9 @@ class Bench {
 
   std::vector<std::string> notes(const Trial& trial) {
     DepthSample sample;
-    sample.add(upload(gpu_, trial.tried));
-    return sample.notes(with(EstimatorSettings(), trial.radius), kWidth, kHeight);
+    const FrameInputs inputs = upload(gpu_, trial.tried);
+    sample.add(inputs.view, inputs.depth_map, inputs.depth_precision, inputs[RawPlane::depth]->as<float>());
+    return sample.notes(trial.radius, trial.radius, kWidth, kHeight);
   }
 
  private:

@@ -2,11 +2,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 
+#include "core/base/json_text.h"
+#include "core/base/text.h"
 #include "core/bench/stability.h"
 
 namespace alcove {
@@ -14,25 +18,41 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+/// The text as HTML shows it.
 std::string escaped(const std::string& text) {
+  static const std::map<char, const char*> kEntities = {{'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}};
   std::string safe;
-  for (const char c : text)
-    safe += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '>' ? "&gt;" : c == '"' ? "&quot;" : std::string(1, c);
+  for (const char c : as_utf8(text)) {
+    const auto entity = kEntities.find(c);
+    safe += entity == kEntities.end() ? std::string(1, c) : entity->second;
+  }
   return safe;
 }
 
 double worst_of(const StabilityCurve& curve) { return *std::ranges::max_element(curve.rmse); }
 
-std::string breaks_text(const StabilityAxis& axis, const StabilityCurve& curve) {
-  if (curve.breaks.empty()) return "-";
+/// Where the curve breaks down: values of the axis.
+std::string places_of(const StabilityAxis& axis, const StabilityCurve& curve) {
   std::vector<std::string> places;
   for (const std::size_t i : curve.breaks) places.push_back(fmt::format("{:g}", axis.points[i].at));
-  return fmt::format("{}{}", fmt::join(places, ", "), curve.said ? ", said" : ", NOT said");
+  return fmt::format("{}", fmt::join(places, ", "));
+}
+
+std::string breaks_text(const StabilityAxis& axis, const StabilityCurve& curve) {
+  if (curve.breaks.empty()) return "-";
+  return places_of(axis, curve) + (curve.said ? ", said" : ", NOT said");
 }
 
 constexpr std::array kColors{"#2f6fb0", "#d1495b", "#e3963e", "#2a9d6f", "#7b5ea7", "#8a6a4f", "#4aa3b5"};
-constexpr double kWidth = 520, kHeight = 210, kLeft = 46, kRight = 26, kTop = 10, kBottom = 34, kMost = 0.4;
+constexpr double kWidth = 520, kHeight = 210;                       // of a drawing, px
+constexpr double kLeft = 46, kRight = 26, kTop = 10, kBottom = 34;  // margins, px
+constexpr double kMost = 0.4;                                       // the largest RMSE that is drawn as it is
+constexpr std::array kLevels{0.0, 0.01, 0.05, 0.1, 0.2, 0.4};       // RMSE of the grid's lines
+constexpr double kLabelWidth = 40;                                  // px between labels of the axis
 
+const char* color_of(std::size_t curve) { return kColors[curve % kColors.size()]; }
+
+/// The curves of one axis as SVG, and the table below them.
 struct Drawing {
   const StabilityAxis& axis;
 
@@ -47,57 +67,72 @@ struct Drawing {
     return kTop + (1 - std::sqrt(std::min(rmse, kMost) / kMost)) * (kHeight - kTop - kBottom);
   }
 
-  std::string svg() const {
-    std::string out = fmt::format("<svg viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"RMSE against {}\">", kWidth,
-                                  kHeight, escaped(axis.name));
-    for (const double level : {0.0, 0.01, 0.05, 0.1, 0.2, 0.4})
+  static std::string grid() {
+    std::string out;
+    for (const double level : kLevels)
       out += fmt::format(
           "<line class=\"grid\" x1=\"{0}\" x2=\"{1}\" y1=\"{2:.1f}\" y2=\"{2:.1f}\"/><text x=\"{3}\" y=\"{4:.1f}\" "
           "text-anchor=\"end\">{5:g}</text>",
           kLeft, kWidth - kRight, y(level), kLeft - 5, y(level) + 4, level);
+    return out;
+  }
+
+  /// Labels of the axis, and a band wherever a run says that its result is unsound.
+  std::string points() const {
+    std::string out;
     double last = -100;
     for (std::size_t i = 0; i < axis.points.size(); i++) {
-      if (!axis.points[i].notes.empty())
+      const StabilityPoint& point = axis.points[i];
+      if (!point.notes.empty())
         out += fmt::format(
             "<rect class=\"said\" x=\"{:.1f}\" y=\"{}\" width=\"8\" height=\"{}\"><title>{}</title></rect>", x(i) - 4,
-            kTop, kHeight - kTop - kBottom, escaped(fmt::format("{}", fmt::join(axis.points[i].notes, "; "))));
-      if (x(i) - last < 40) continue;
+            kTop, kHeight - kTop - kBottom, escaped(fmt::format("{}", fmt::join(point.notes, "; "))));
+      if (x(i) - last < kLabelWidth) continue;
       last = x(i);
-      out += fmt::format("<text x=\"{:.1f}\" y=\"{}\" text-anchor=\"middle\">{:g}</text>", x(i), kHeight - 20,
-                         axis.points[i].at);
+      out +=
+          fmt::format("<text x=\"{:.1f}\" y=\"{}\" text-anchor=\"middle\">{:g}</text>", x(i), kHeight - 20, point.at);
     }
+    return out;
+  }
+
+  /// One estimator's line, with a dot where it breaks down.
+  std::string curve(std::size_t c) const {
+    const StabilityCurve& curve = axis.curves[c];
+    std::string points;
+    for (std::size_t i = 0; i < curve.rmse.size(); i++) points += fmt::format("{:.1f},{:.1f} ", x(i), y(curve.rmse[i]));
+    std::string out = fmt::format("<polyline points=\"{}\" stroke=\"{}\"><title>{}</title></polyline>", points,
+                                  color_of(c), escaped(curve.estimator));
+    for (const std::size_t i : curve.breaks)
+      out += fmt::format(
+          "<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"4\" fill=\"{}\"><title>{} breaks down at {:g}, RMSE "
+          "{:.3f}</title></circle>",
+          x(i), y(curve.rmse[i]), color_of(c), escaped(curve.estimator), axis.points[i].at, curve.rmse[i]);
+    return out;
+  }
+
+  std::string svg() const {
+    std::string out = fmt::format("<svg viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"RMSE against {}\">", kWidth,
+                                  kHeight, escaped(axis.name));
+    out += grid() + points();
     out += fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"end\">{}</text>", kWidth - kRight, kHeight - 4,
                        escaped(axis.unit));
-    for (std::size_t c = 0; c < axis.curves.size(); c++) {
-      const StabilityCurve& curve = axis.curves[c];
-      std::string points;
-      for (std::size_t i = 0; i < curve.rmse.size(); i++)
-        points += fmt::format("{:.1f},{:.1f} ", x(i), y(curve.rmse[i]));
-      out += fmt::format("<polyline points=\"{}\" stroke=\"{}\"><title>{}</title></polyline>", points,
-                         kColors[c % kColors.size()], escaped(curve.estimator));
-      for (const std::size_t i : curve.breaks)
-        out += fmt::format(
-            "<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"4\" fill=\"{}\"><title>{} breaks down at {:g}, RMSE "
-            "{:.3f}</title></circle>",
-            x(i), y(curve.rmse[i]), kColors[c % kColors.size()], escaped(curve.estimator), axis.points[i].at,
-            curve.rmse[i]);
-    }
+    for (std::size_t c = 0; c < axis.curves.size(); c++) out += curve(c);
     return out + "</svg>";
+  }
+
+  std::string row(const StabilityCurve& curve) const {
+    if (curve.breaks.empty())
+      return fmt::format("<tr><td>{}</td><td>{:.4f}</td><td>&ndash;</td><td>&ndash;</td></tr>",
+                         escaped(curve.estimator), worst_of(curve));
+    return fmt::format("<tr><td>{}</td><td>{:.4f}</td><td>{}</td><td{}>{}</td></tr>", escaped(curve.estimator),
+                       worst_of(curve), places_of(axis, curve), curve.said ? "" : " class=\"silent\"",
+                       curve.said ? "yes" : "no");
   }
 
   std::string table() const {
     std::string out =
         "<table><tr><th>estimator</th><th>worst RMSE</th><th>breaks down at</th><th>a run says so</th></tr>";
-    for (const auto& curve : axis.curves) {
-      std::vector<std::string> places;
-      for (const std::size_t i : curve.breaks) places.push_back(fmt::format("{:g}", axis.points[i].at));
-      out += fmt::format("<tr><td>{}</td><td>{:.4f}</td><td>{}</td><td{}>{}</td></tr>", escaped(curve.estimator),
-                         worst_of(curve), places.empty() ? "&ndash;" : fmt::format("{}", fmt::join(places, ", ")),
-                         curve.said || places.empty() ? "" : " class=\"silent\"",
-                         places.empty() ? "&ndash;"
-                         : curve.said   ? "yes"
-                                        : "no");
-    }
+    for (const auto& curve : axis.curves) out += row(curve);
     return out + "</table>";
   }
 };
@@ -146,9 +181,7 @@ std::string stability_json(const StabilityReport& report) {
     }
     axes.push_back({{"name", axis.name}, {"unit", axis.unit}, {"points", points}, {"curves", curves}});
   }
-  return Json{{"device", report.device}, {"breakdown", kBreakdown}, {"plain", plain}, {"axes", axes}}.dump(
-             1, ' ', false, Json::error_handler_t::replace) +
-         "\n";
+  return json_text({{"device", report.device}, {"breakdown", kBreakdown}, {"plain", plain}, {"axes", axes}}, 1) + "\n";
 }
 
 std::string stability_page(const StabilityReport& report) {
@@ -160,8 +193,8 @@ std::string stability_page(const StabilityReport& report) {
       "class=\"key\">",
       escaped(report.device), kBreakdown);
   for (std::size_t c = 0; c < report.plain.size(); c++)
-    page += fmt::format("<i style=\"background:{}\"></i>{} {:.3f}", kColors[c % kColors.size()],
-                        escaped(report.plain[c].first), report.plain[c].second);
+    page += fmt::format("<i style=\"background:{}\"></i>{} {:.3f}", color_of(c), escaped(report.plain[c].first),
+                        report.plain[c].second);
   page += "</p><main>\n";
   for (const auto& axis : report.axes)
     page += fmt::format("<section><h2>{}</h2>{}{}</section>\n", escaped(axis.name), Drawing{axis}.svg(),

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
@@ -15,12 +14,13 @@
 
 #include "core/base/error.h"
 #include "core/base/file.h"
+#include "core/formats/exr.h"
 
 namespace alcove {
 namespace {
 
 constexpr std::size_t kHeaderWords = 32, kDx10Words = 5;  // with the four letters at the beginning
-constexpr std::uint32_t kMostPixels = 1u << 16;           // a side
+constexpr std::uint32_t kMostPixels = 1u << 16;           // in width and in height
 constexpr std::uint32_t kDx10 = 0x30315844;               // "DX10"
 
 enum class Sample { single_float, half_float, unorm16, unorm8, unorm24, ten_ten_ten_two };
@@ -29,7 +29,7 @@ struct Format {
   std::uint32_t code;  // DXGI_FORMAT, or the four letters (or their number) of the older header
   Sample sample;
   int channels;
-  std::size_t bytes;  // a pixel
+  std::size_t bytes;  // per pixel
 };
 
 constexpr Format kFormats[] = {
@@ -42,14 +42,6 @@ constexpr Format kFormats[] = {
     {111, Sample::half_float, 1, 2},   {112, Sample::half_float, 2, 4},     {113, Sample::half_float, 4, 8},
     {114, Sample::single_float, 1, 4}, {115, Sample::single_float, 2, 8},   {116, Sample::single_float, 4, 16},
 };
-
-float from_half(std::uint16_t bits) {
-  const int exponent = (bits >> 10) & 31, mantissa = bits & 1023;
-  const float magnitude = exponent == 0    ? std::ldexp(float(mantissa), -24)
-                          : exponent == 31 ? (mantissa ? std::nanf("") : HUGE_VALF)
-                                           : std::ldexp(float(1024 + mantissa), exponent - 25);
-  return bits & 0x8000 ? -magnitude : magnitude;
-}
 
 template <class T>
 T at(const char* bytes, std::size_t index) {
@@ -74,13 +66,6 @@ float sample_of(const Format& format, const char* pixel, std::size_t channel) {
 }
 
 }  // namespace
-
-bool is_dds(const std::string& path) {
-  std::error_code error;
-  std::array<char, 4> magic{};
-  return std::filesystem::is_regular_file(path, error) && std::ifstream(path, std::ios::binary).read(magic.data(), 4) &&
-         std::memcmp(magic.data(), "DDS ", 4) == 0;
-}
 
 Image read_dds(const std::string& path, const char* option) {
   static_assert(std::endian::native == std::endian::little);

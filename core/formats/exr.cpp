@@ -34,7 +34,7 @@
 #include "core/base/file.h"
 #include "core/base/text.h"
 #include "core/formats/exr_header.h"
-#include "core/formats/picture_reader.h"
+#include "core/formats/image_io.h"
 
 namespace alcove {
 
@@ -46,7 +46,7 @@ class ExrAttributes {
 namespace {
 
 constexpr std::size_t kLongestText = std::size_t(1) << 16;  // of an attribute that is looked at
-constexpr std::size_t kMostPixels = std::size_t(1) << 28;   // in host memory: a gigabyte a channel
+constexpr std::size_t kMostPixels = std::size_t(1) << 28;   // in host memory: one gigabyte per channel
 
 Window window_of(const Imath::Box2i& box) {
   return {box.min.x, box.min.y, box.max.x - box.min.x + 1, box.max.y - box.min.y + 1};
@@ -62,7 +62,7 @@ SampleType type_of(Imf::PixelType type) {
                               : SampleType::integer;
 }
 
-/// What OpenEXR says of an error, on one line.
+/// Gives OpenEXR's description of an error on one line.
 std::string one_line(const std::exception& error) {
   std::string text = error.what();
   std::ranges::replace(text, '\n', ' ');
@@ -108,7 +108,7 @@ class FileStream : public Imf::OStream {
   std::optional<Error> failure_;
 };
 
-/// Attributes that say how the input is stored or what its channels are; they do not hold for another file.
+/// Whether an attribute says how the input is stored or what its channels are, which does not hold for another file.
 bool describes_storage(const std::string& name) {
   static const std::set<std::string> kNames = {"channels",
                                                "compression",
@@ -179,7 +179,7 @@ Imf::Header header_of(const ExrOutput& output) {
   return header;
 }
 
-/// Rounded to nearest; what is beyond half's range becomes its largest value, not infinity.
+/// Rounds to nearest. Values beyond half's range become its largest value, not infinity.
 std::vector<half> to_half(std::span<const float> values) {
   std::vector<half> halves(values.size());
   std::ranges::transform(values, halves.begin(),
@@ -220,8 +220,9 @@ ExrFile::ExrFile(const std::string& path, const char* option) : impl_(std::make_
     for (int part = 0; part < impl_->file->parts(); part++) {
       const auto& header = impl_->file->header(part);
       if (header.hasType() && Imf::isDeepData(header.type()))
-        fail(ErrorKind::input, "{}: part {} holds deep data, which has no single depth a pixel; flatten it first ({})",
-             path, part, option);
+        fail(ErrorKind::input,
+             "{}: part {} holds deep data, which has no single depth per pixel; flatten it first ({})", path, part,
+             option);
       impl_->parts.push_back(describe(header));
       if (impl_->parts.back().channels.empty())
         fail(ErrorKind::input, "{}: part {} has no channels ({})", path, part, option);
@@ -333,7 +334,7 @@ struct ExrWriter::Impl {
   Impl(const std::string& path_, const ExrOutput& output)
       : path(path_), data(output.data), planes(output.planes), stream(path_) {}
 
-  /// What the stream says is why OpenEXR failed.
+  /// Runs a step of writing. Where the stream failed, its error is the reason that OpenEXR does not tell.
   template <class Function>
   void run(Function&& function) {
     try {
@@ -429,6 +430,12 @@ std::optional<std::string> attribute_of_whole_exr(const std::string& path, const
       return std::nullopt;
   }
   return std::string(text, std::size_t(length));
+}
+
+float from_half(std::uint16_t bits) {
+  half value;
+  value.setBits(bits);
+  return value;
 }
 
 void set_exr_threads(int threads) { Imf::setGlobalThreadCount(threads); }

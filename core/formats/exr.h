@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <optional>
@@ -11,7 +12,6 @@
 #include <vector>
 
 #include "core/base/image.h"
-#include "core/base/settings.h"
 
 namespace alcove {
 
@@ -25,20 +25,20 @@ struct ExrChannel {
 
 struct ExrPart {
   std::string name;  // empty in single-part files
-  std::string view;  // of stereo files with a part a view; empty: none
-  // of stereo files whose channels name their view, the default first; empty: none
+  std::string view;  // of stereo files that have one part per view; empty: none
+  // the views of stereo files whose channels name their view, the default first; empty: none
   std::vector<std::string> multi_view;
   Window data;
   std::vector<ExrChannel> channels;
   bool dwa = false;  // compressed by DWAA or DWAB, which are lossy for channels whose name ends in R, G, B, Y, RY or BY
 };
 
-/// All attributes of one part's header, of every type, and those that only the first part has, to be carried into an
-/// output.
+/// The attributes of one part's header, of every type, and those that only the first part has. They are carried into
+/// outputs.
 class ExrAttributes;
 class PictureReader;
 
-/// A channel to read, and where to: width x height floats of the part's data window, or of some of its rows, row by
+/// A channel to read and its destination: one float per pixel of the part's data window, or of some of its rows, row by
 /// row.
 struct ExrRead {
   int part;
@@ -49,10 +49,10 @@ struct ExrRead {
 /// An EXR file whose header has been read. Every failure is ErrorKind::input and names the file.
 class ExrFile {
  public:
-  /// Fails on a missing file, a folder, a file that is no EXR, deep data, no channels, and headers that ask for more
-  /// than their file can hold.
+  /// Fails on a missing file, a folder, a file that is no EXR, deep data, a part without channels, and headers that
+  /// ask for more than their file can hold.
   explicit ExrFile(const std::string& path, const char* option);
-  /// Pictures of other formats with the same face: one whose header has been read, and one that has been read whole.
+  /// Pictures of other formats, to be read like an EXR of one part: the first has been opened, the second read whole.
   ExrFile(const std::string& path, const char* option, std::unique_ptr<PictureReader> picture);
   ExrFile(const std::string& path, const char* option, Image image);
   ~ExrFile();
@@ -61,16 +61,16 @@ class ExrFile {
   const std::string& path() const;
   const std::vector<ExrPart>& parts() const;
   const Window& display() const;
-  /// Width over height of a pixel.
+  /// The width of a pixel over its height.
   double pixel_aspect() const;
   std::shared_ptr<const ExrAttributes> attributes(int part) const;
-  /// The attributes of a part that do not describe its storage, as text: numbers, strings and matrices by value, all
-  /// else by type; the first 64 KiB.
+  /// Gives as text the attributes of a part that do not describe its storage. Numbers, strings and matrices are given
+  /// by value, of which the first 64 KiB count, and all else by type.
   std::map<std::string, std::string> attribute_texts(int part) const;
 
   /// Reads the channels as float, each part decoded once. Fails on truncated or corrupt data.
   void read(std::span<const ExrRead> reads);
-  /// Only `rows` rows of the parts' data windows, from the `first` one on.
+  /// Reads only `rows` rows of the parts' data windows, from the `first` one on.
   void read(std::span<const ExrRead> reads, int first, int rows);
 
  private:
@@ -78,11 +78,11 @@ class ExrFile {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Fails with ErrorKind::input where planes of that window are too much for host memory; before they are made, since a
-/// header may say anything.
+/// Fails with ErrorKind::input if planes of that window are too much for host memory. It is asked before they are made,
+/// since a header may say anything.
 void require_host_room(const std::string& path, const Window& data);
 
-/// A plane to write: width x height floats of the data window.
+/// A plane to write: one float per pixel of the data window.
 struct ExrPlane {
   std::string channel;
   SampleType type;  // half: rounded to nearest, at most +-65504
@@ -99,18 +99,18 @@ struct ExrOutput {
   std::vector<ExrPlane> planes;
 };
 
-/// A single-part scan-line file, written from top to bottom: there once it is finished, else not at all. Fails with
-/// ErrorKind::output.
+/// Writes a single-part scan-line file from top to bottom. The file has its name once it is finished, and is gone if it
+/// is not. Fails with ErrorKind::output.
 class ExrWriter {
  public:
-  /// The pixels of output.planes are not looked at.
+  /// Ignores the pixels of output.planes.
   ExrWriter(const std::string& path, const ExrOutput& output);
   ~ExrWriter();
   ExrWriter(ExrWriter&&) noexcept;
 
-  /// The next rows of every plane, as wide as the data window.
+  /// Writes the next rows of every plane, as wide as the data window.
   void write(std::span<const std::span<const float>> planes);
-  /// After the last row.
+  /// Ends the file after its last row.
   void finish();
 
  private:
@@ -118,18 +118,21 @@ class ExrWriter {
   std::unique_ptr<Impl> impl_;
 };
 
-/// The same at once, with the pixels of output.planes.
+/// Writes a whole file with the pixels of output.planes.
 void write_exr(const std::string& path, const ExrOutput& output);
 
-/// Every channel of the file's first part that holds all the named ones (all channels: no names), as an image. Fails
-/// with ErrorKind::input.
+/// Reads the named channels, from the first part that holds all of them; without names, every channel of the first
+/// part. Fails with ErrorKind::input.
 Image read_exr_image(const std::string& path, const std::vector<std::string>& channels = {});
 
-/// A text attribute of a file that is whole: every chunk of its first part lies within it, which a file cut short does
-/// not show otherwise. Nothing where it is not, where it is no EXR, and where there is no such attribute.
+/// Gives a text attribute of a file that is whole, with every chunk of its first part within it; a file that was cut
+/// short shows it in no other way. Gives nothing if the file is cut, is no EXR, or has no such attribute.
 std::optional<std::string> attribute_of_whole_exr(const std::string& path, const std::string& name);
 
-/// How many threads the codecs may use, for the whole process; 0: none beside the caller's.
+/// Gives the value of a half float's bits.
+float from_half(std::uint16_t bits);
+
+/// Sets how many threads the codecs may use in the whole process. 0: none beside the caller's.
 void set_exr_threads(int threads);
 
 }  // namespace alcove

@@ -1,5 +1,5 @@
-// The header as bytes: name, type, size and value of each attribute; an empty name ends a part. Source: OpenEXR's "File
-// Layout".
+// The header as bytes: name, type, size and value of each attribute; an empty name ends a part.
+// The source is OpenEXR's document "File Layout".
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/formats/exr_header.h"
 
@@ -15,12 +15,12 @@ namespace alcove {
 namespace {
 
 constexpr std::size_t kLongestName = 255;
-constexpr std::uint32_t kMultiPart = 0x1000;  // of the version's flags
-constexpr std::uint64_t kLinesAChunk = 256;   // at most, of any compression
-constexpr std::uint64_t kOffset = 8;          // bytes of a chunk's place in the file
-// at most: DWA keeps 2 bytes of a constant block of 64 pixels, and deflates these 1032:1
-constexpr std::uint64_t kPixelsAByte = 65536;
-// of a header: ten times what programs write, and small beside a frame; it is held several times
+constexpr std::uint32_t kMultiPart = 0x1000;   // of the version's flags
+constexpr std::uint64_t kLinesPerChunk = 256;  // at most, of any compression
+constexpr std::uint64_t kOffset = 8;           // bytes of a chunk's place in the file
+// At most: DWA keeps 2 bytes of a constant block of 64 pixels, and deflate packs these 1032:1.
+constexpr std::uint64_t kPixelsPerByte = 65536;
+// The longest header: ten times what programs write, and small beside a frame. Several copies of it are held.
 constexpr std::uint64_t kMostBytes = 32 << 20;
 
 struct Reader {
@@ -33,7 +33,7 @@ struct Reader {
     if (!file.read(reinterpret_cast<char*>(b.data()), 4)) return std::nullopt;
     return std::uint32_t(b[0]) | std::uint32_t(b[1]) << 8 | std::uint32_t(b[2]) << 16 | std::uint32_t(b[3]) << 24;
   }
-  /// Up to a zero byte; nothing where it is too long or the file ends.
+  /// Reads up to a zero byte; gives nothing if the name is too long or the file ends.
   std::optional<std::string> name() {
     std::string text;
     for (char c = 0; text.size() <= kLongestName && file.get(c); text += c)
@@ -42,51 +42,90 @@ struct Reader {
   }
 };
 
+/// The sizes that a part's header claims.
+struct Claim {
+  std::uint64_t width = 0, height = 0;            // px
+  std::uint64_t tile_width = 0, tile_height = 0;  // px; 0: lines
+  bool has_attributes = false;
+
+  std::uint64_t chunks() const {
+    if (!tile_width) return (height + kLinesPerChunk - 1) / kLinesPerChunk;
+    return ((width + tile_width - 1) / tile_width) * ((height + tile_height - 1) / tile_height);
+  }
+};
+
+/// A header being walked through.
+class Walk {
+ public:
+  Walk(const std::string& path, const char* option) : path_(path), option_(option) {
+    std::error_code error;
+    reader_ = {std::ifstream(path, std::ios::binary), std::filesystem::file_size(path, error)};
+    const auto magic = reader_.word();
+    const auto version = reader_.word();
+    if (error || !magic || !version) refuse("the file ends in it");
+    is_multi_part_ = *version & kMultiPart;
+  }
+
+  void check() {
+    for (Claim claim;;) {
+      const auto name = reader_.name();
+      if (!name) refuse("the file ends in it, or a name is endless");
+      if (!name->empty()) {
+        check_attribute(*name, claim);
+        continue;
+      }
+      // An empty name ends a part, and a part without attributes the header.
+      if (claim.has_attributes) check_part(claim);
+      if (!claim.has_attributes || !is_multi_part_) return;
+      claim = {};
+    }
+  }
+
+ private:
+  [[noreturn]] void refuse(const std::string& why) const {
+    fail(ErrorKind::input, "{}: the EXR header cannot be right ({}): {}", path_, option_, why);
+  }
+
+  void check_part(const Claim& claim) {
+    const bool is_dense = claim.height > 0 && claim.width > kPixelsPerByte * reader_.size / claim.height;
+    if (is_dense || claim.chunks() > reader_.left() / kOffset)
+      refuse(fmt::format("{} x {} pixels in a file of {} bytes", claim.width, claim.height, reader_.size));
+  }
+
+  void check_attribute(const std::string& name, Claim& claim) {
+    claim.has_attributes = true;
+    const auto type = reader_.name();
+    const auto size = reader_.word();
+    if (!type || !size || *size > reader_.left()) refuse(fmt::format("attribute {} is larger than the file", name));
+    const auto next = reader_.file.tellg() + std::streamoff(*size);
+    if (std::uint64_t(next) > kMostBytes) refuse(fmt::format("it is longer than {} MiB", kMostBytes >> 20));
+    if (name == "dataWindow" && *size == 16) read_window(claim);
+    if (name == "tiles" && *size == 9) read_tiles(claim);
+    reader_.file.seekg(next);
+  }
+
+  void read_window(Claim& claim) {
+    std::array<std::int64_t, 4> window{};
+    for (auto& x : window) x = std::int32_t(*reader_.word());
+    if (window[2] < window[0] || window[3] < window[1]) refuse("its data window is empty or inside out");
+    claim.width = std::uint64_t(window[2] - window[0] + 1);
+    claim.height = std::uint64_t(window[3] - window[1] + 1);
+  }
+
+  void read_tiles(Claim& claim) {
+    claim.tile_width = *reader_.word();
+    claim.tile_height = *reader_.word();
+    if (!claim.tile_width || !claim.tile_height) refuse("its tiles are empty");
+  }
+
+  const std::string& path_;
+  const char* option_;
+  Reader reader_;
+  bool is_multi_part_ = false;
+};
+
 }  // namespace
 
-void require_sane_header(const std::string& path, const char* option) {
-  std::error_code error;
-  Reader reader{std::ifstream(path, std::ios::binary), std::filesystem::file_size(path, error)};
-  const auto refuse = [&](const std::string& why) {
-    fail(ErrorKind::input, "{}: the EXR header cannot be right ({}): {}", path, option, why);
-  };
-  const auto magic = reader.word(), version = reader.word();
-  if (error || !magic || !version) return refuse("the file ends in it");
-  std::uint64_t width = 0, height = 0, tile_width = 0, tile_height = 0;
-  bool in_part = false;
-  while (true) {
-    const auto name = reader.name();
-    if (!name) return refuse("the file ends in it, or a name is endless");
-    if (name->empty()) {
-      const std::uint64_t offsets =
-          tile_width ? ((width + tile_width - 1) / tile_width) * ((height + tile_height - 1) / tile_height)
-                     : (height + kLinesAChunk - 1) / kLinesAChunk;
-      const bool too_many =
-          offsets > reader.left() / kOffset || (height > 0 && width > kPixelsAByte * reader.size / height);
-      if (in_part && too_many)
-        return refuse(fmt::format("{} x {} pixels in a file of {} bytes", width, height, reader.size));
-      if (!in_part || !(*version & kMultiPart)) return;
-      in_part = false, width = height = tile_width = tile_height = 0;
-      continue;
-    }
-    in_part = true;
-    const auto type = reader.name();
-    const auto size = reader.word();
-    if (!type || !size || *size > reader.left())
-      return refuse(fmt::format("attribute {} is larger than the file", *name));
-    const auto next = reader.file.tellg() + std::streamoff(*size);
-    if (std::uint64_t(next) > kMostBytes) return refuse(fmt::format("it is longer than {} MiB", kMostBytes >> 20));
-    if (*name == "dataWindow" && *size == 16) {
-      std::array<std::int64_t, 4> window{};
-      for (auto& x : window) x = std::int32_t(*reader.word());
-      if (window[2] < window[0] || window[3] < window[1]) return refuse("its data window is empty or inside out");
-      width = std::uint64_t(window[2] - window[0] + 1), height = std::uint64_t(window[3] - window[1] + 1);
-    } else if (*name == "tiles" && *size == 9) {
-      tile_width = *reader.word(), tile_height = *reader.word();
-      if (!tile_width || !tile_height) return refuse("its tiles are empty");
-    }
-    reader.file.seekg(next);
-  }
-}
+void require_sane_header(const std::string& path, const char* option) { Walk(path, option).check(); }
 
 }  // namespace alcove

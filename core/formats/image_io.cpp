@@ -24,7 +24,7 @@ namespace {
 /// Decoders go on after an error and tell the next one.
 std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
 
-// pixels' bytes that a byte of a file may stand for where formats pack them: deflate packs 1032, of 8 pixels each
+// Bytes of pixels that one byte of a packed file may stand for. Deflate packs 1032 bytes of up to 8 pixels each.
 constexpr std::uint64_t kDensest = 1 << 14;
 constexpr std::size_t kBlockBytes = 1 << 20;  // of pixels that are decoded at once, or one row
 
@@ -39,7 +39,7 @@ class OiioReader : public PictureReader {
       fail(ErrorKind::input, "{}: not a picture that can be read ({}): {}", path, option, first_line(OIIO::geterror()));
     const OIIO::ImageSpec& spec = input_->spec();
     if (spec.deep || spec.depth > 1)
-      fail(ErrorKind::input, "{}: a deep or volume picture, which has no single value a pixel ({})", path, option);
+      fail(ErrorKind::input, "{}: a deep or volume picture, which has no single value per pixel ({})", path, option);
     data = {spec.x, spec.y, spec.width, spec.height};
     display = {spec.full_x, spec.full_y, spec.full_width, spec.full_height};
     names = spec.channelnames;
@@ -64,7 +64,7 @@ class OiioReader : public PictureReader {
                                                                 int(stride), OIIO::TypeFloat, interleaved.data())
                                            : input_->read_scanlines(0, 0, top, bottom, 0, 0, int(stride),
                                                                     OIIO::TypeFloat, interleaved.data());
-      // That of TIFF says that all went well, and gives zeros, where the file ends too early.
+      // Where a file ends too early, the reader of TIFF reports success and gives zeros; only has_error() tells.
       if (!is_read || input_->has_error())
         fail(ErrorKind::input, "{}: the pixels cannot be read, the file is damaged or incomplete ({}): {}", path_,
              option_, first_line(input_->geterror()));
@@ -81,14 +81,19 @@ class OiioReader : public PictureReader {
   std::unique_ptr<OIIO::ImageInput> input_;
 };
 
-std::unique_ptr<PictureReader> open_picture(const std::string& path, const char* option) {
+std::unique_ptr<PictureReader> open_by_oiio(const std::string& path, const char* option) {
   return std::make_unique<OiioReader>(path, option);
 }
 
-constexpr int kLegend = 48, kMargin = 8, kStripX = 110, kStrip = 200, kStripHeight = 14;  // px
-constexpr int kLeastWidth = 560, kLargestPixel = 8;                                       // px
-// display values; neither grey nor on the ramp
-constexpr std::array kSkyColor{0.74f, 0.4f, 0.36f};
+// The layout of a chart's legend, px.
+constexpr int kLegend = 48;                       // its height
+constexpr int kMargin = 8;                        // around all that stands in it
+constexpr int kTextHeight = 15, kTitleBase = 18;  // of a text, and from the legend's top to the base of the title
+constexpr int kTextWidth = 110;                   // room for a number on either side of the strip
+constexpr int kStrip = 200, kStripHeight = 14;    // the strip of colours
+constexpr int kLeastWidth = 560;                  // of a chart: what the legend needs
+constexpr int kLargestPixel = 8;                  // small pictures are enlarged so far
+constexpr float kTextGrey = 0.9f;                 // display value
 
 /// Display values of a place on the scale.
 std::array<float, 3> color_at(const OIIO::ImageBuf& ramp, float place, bool is_grey) {
@@ -111,45 +116,76 @@ OIIO::ImageBuf make_ramp() {
   return OIIO::ImageBufAlgo::color_map(places, 0, "viridis");
 }
 
-void write_text(OIIO::ImageBuf& picture, const std::string& name, int x, int y, const std::string& text) {
-  if (!OIIO::ImageBufAlgo::render_text(picture, x, y, text, 15, "DejaVuSans", {0.9f, 0.9f, 0.9f}))
-    fail(ErrorKind::output, "{}: its texts need the font DejaVu Sans (Debian package fonts-dejavu-core): {}", name,
-         first_line(picture.geterror()));
-}
+/// A chart being drawn: the picture, and below it the legend.
+class Drawing {
+ public:
+  Drawing(const std::string& name, const Chart& chart)
+      : name_(name),
+        chart_(chart),
+        zoom_(std::min((kLeastWidth + chart.width - 1) / chart.width, kLargestPixel)),
+        width_(std::max(zoom_ * chart.width, kLeastWidth)),
+        top_(zoom_ * chart.height),
+        picture_(OIIO::ImageSpec(width_, top_ + kLegend, 3, OIIO::TypeFloat), OIIO::InitializePixels::Yes) {}
 
-std::vector<char> encode_chart(const std::string& name, const Chart& chart) {
-  const int zoom = std::min((kLeastWidth + chart.width - 1) / chart.width, kLargestPixel),
-            width = std::max(zoom * chart.width, kLeastWidth), top = zoom * chart.height;
-  OIIO::ImageBuf picture(OIIO::ImageSpec(width, top + kLegend, 3, OIIO::TypeFloat), OIIO::InitializePixels::Yes);
-  const OIIO::ImageBuf ramp = make_ramp();
-  const auto fill = [&](int x, int y, int w, int h, std::array<float, 3> color) {
-    OIIO::ImageBufAlgo::fill(picture, OIIO::cspan<float>(color.data(), 3), OIIO::ROI(x, x + w, y, y + h));
-  };
-  for (int y = 0; y < top; y++)
-    for (int x = 0; x < zoom * chart.width; x++)
-      picture.setpixel(
-          x, y,
-          color_at(ramp, chart.places[std::size_t(y / zoom) * std::size_t(chart.width) + std::size_t(x / zoom)],
-                   chart.is_grey)
-              .data(),
-          3);
-  const int strip = top + kLegend - kStripHeight - kMargin, baseline = strip + kStripHeight - 2,
-            right = kStripX + kStrip + kMargin;
-  for (int x = 0; x < kStrip; x++)
-    fill(kStripX + x, strip, 1, kStripHeight, color_at(ramp, float(x) / float(kStrip - 1), chart.is_grey));
-  write_text(picture, name, kMargin, top + 18, chart.title);
-  write_text(picture, name, kMargin, baseline, chart.low);
-  write_text(picture, name, right, baseline, chart.high);
-  fill(right + 110, strip, kStripHeight, kStripHeight, kSkyColor);
-  write_text(picture, name, right + 110 + kStripHeight + kMargin, baseline, "sky");
-  std::vector<float> pixels(std::size_t(width) * std::size_t(top + kLegend) * 3);
-  picture.get_pixels(picture.roi(), OIIO::TypeFloat, pixels.data());
-  return encode_png(name, width, top + kLegend, 3, pixels, chart.made_by);
+  void draw_picture() {
+    for (int y = 0; y < top_; y++)
+      for (int x = 0; x < zoom_ * chart_.width; x++) {
+        const std::size_t at = std::size_t(y / zoom_) * std::size_t(chart_.width) + std::size_t(x / zoom_);
+        picture_.setpixel(x, y, color_at(ramp_, chart_.places[at], chart_.is_grey).data(), 3);
+      }
+  }
+
+  /// The title; below it the lowest number, the strip of colours, the highest number, and the colour of sky.
+  void draw_legend() {
+    const int strip = top_ + kLegend - kStripHeight - kMargin;
+    const int base = strip + kStripHeight - 2;
+    const int right = kTextWidth + kStrip + kMargin;
+    const int sky = right + kTextWidth;
+    for (int x = 0; x < kStrip; x++)
+      fill(kTextWidth + x, strip, 1, color_at(ramp_, float(x) / float(kStrip - 1), chart_.is_grey));
+    write(kMargin, top_ + kTitleBase, chart_.title);
+    write(kMargin, base, chart_.low);
+    write(right, base, chart_.high);
+    fill(sky, strip, kStripHeight, kSkyColor);
+    write(sky + kStripHeight + kMargin, base, "sky");
+  }
+
+  std::vector<char> encoded() const {
+    std::vector<float> pixels(std::size_t(width_) * std::size_t(top_ + kLegend) * 3);
+    picture_.get_pixels(picture_.roi(), OIIO::TypeFloat, pixels.data());
+    return encode_png(name_, width_, top_ + kLegend, 3, pixels, chart_.made_by);
+  }
+
+ private:
+  /// A piece of the strip's height.
+  void fill(int x, int y, int width, std::array<float, 3> color) {
+    OIIO::ImageBufAlgo::fill(picture_, OIIO::cspan<float>(color.data(), 3),
+                             OIIO::ROI(x, x + width, y, y + kStripHeight));
+  }
+
+  void write(int x, int base, const std::string& text) {
+    if (!OIIO::ImageBufAlgo::render_text(picture_, x, base, text, kTextHeight, "DejaVuSans",
+                                         {kTextGrey, kTextGrey, kTextGrey}))
+      fail(ErrorKind::output, "{}: its texts need the font DejaVu Sans (Debian package fonts-dejavu-core): {}", name_,
+           first_line(picture_.geterror()));
+  }
+
+  const std::string& name_;
+  const Chart& chart_;
+  int zoom_, width_, top_;  // px
+  OIIO::ImageBuf picture_, ramp_ = make_ramp();
+};
+
+std::vector<char> draw_chart(const std::string& name, const Chart& chart) {
+  Drawing drawing(name, chart);
+  drawing.draw_picture();
+  drawing.draw_legend();
+  return drawing.encoded();
 }
 
 }  // namespace
 
 extern "C" __attribute__((visibility("default")))
-const ImageIoModule alcove_image_io_module = {open_picture, encode_chart};
+const ImageIoModule alcove_image_io_module = {open_by_oiio, draw_chart};
 
 }  // namespace alcove

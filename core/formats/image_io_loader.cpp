@@ -1,7 +1,6 @@
 // Loads the module of core/formats/image_io.cpp on first use and hands the calls on.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/base/error.h"
-#include "core/base/file.h"
 #include "core/base/system.h"
 #include "core/formats/image_io.h"
 #include "core/formats/image_io_module.h"

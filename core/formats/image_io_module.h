@@ -1,16 +1,15 @@
-// What core/formats/image_io.cpp, a module that is loaded on first use, offers to the program.
+// The interface between the program and core/formats/image_io.cpp, a module that is loaded on first use.
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // OpenImageIO brings some 200 shared libraries along (video, GIS, computer vision). To load them costs a fifth of a
-// second, more than all the rest of a small frame, and a plain EXR job needs none of it.
+// second, more than all the rest of a small frame, and a job with EXRs only needs none of them.
 #pragma once
 
 #include <memory>
 #include <string>
 #include <vector>
 
-#include "core/formats/chart.h"
-#include "core/formats/picture_reader.h"
+#include "core/formats/image_io.h"
 
 namespace alcove {
 

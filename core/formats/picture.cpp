@@ -3,29 +3,14 @@
 #include "core/formats/picture.h"
 
 #include <algorithm>
-#include <array>
-#include <fstream>
 #include <sstream>
 
 #include "core/base/error.h"
-#include "core/base/file.h"
 #include "core/base/text.h"
-#include "core/formats/image_io.h"
+#include "core/formats/open_image.h"
 
 namespace alcove {
 namespace {
-
-bool is_exr(const std::string& path, const char* option) {
-  require_readable(path, "picture", option);
-  std::array<char, 4> magic{};
-  std::ifstream(path, std::ios::binary).read(magic.data(), magic.size());
-  return magic == std::array<char, 4>{0x76, 0x2f, 0x31, 0x01};
-}
-
-ExrFile open(const std::string& path, const char* option) {
-  if (is_exr(path, option)) return ExrFile(path, option);
-  return {path, option, open_picture(path, option)};
-}
 
 std::vector<PictureChannel> channels_of(const ExrFile& file) {
   std::vector<PictureChannel> channels;
@@ -42,7 +27,7 @@ std::vector<PictureChannel> channels_of(const ExrFile& file) {
 
 std::string last_part(const std::string& name) { return lower_case(name.substr(name.rfind('.') + 1)); }
 
-/// Whether `name` is all of `full`, or the end of it after a dot; both in lower case.
+/// Whether `name` is all of `full`, or the end of it after a dot. Both are in lower case.
 bool is_end_of(const std::string& name, const std::string& full) { return full == name || full.ends_with("." + name); }
 
 std::string both_lists(const Picture& result, const Picture& reference) {
@@ -74,7 +59,7 @@ std::vector<ChannelPair> same_names(const Picture& result, const Picture& refere
 }  // namespace
 
 Picture::Picture(const std::string& path, const char* option)
-    : path_(path), file_(open(path, option)), channels_(channels_of(file_)) {
+    : path_(path), file_(open_image(path, option, Formats::all)), channels_(channels_of(file_)) {
   if (channels_.empty())
     fail(ErrorKind::input, "{}: it has no channel with a sample for every pixel ({})", path, option);
 }

@@ -16,10 +16,10 @@ namespace {
 
 using Json = nlohmann::json;
 
-// What kernels keep as floats, and square, stays finite and above 0: far beyond any lens.
+// Kernels keep these numbers as floats and square them: within these limits they stay finite and above 0.
 constexpr double kLeastScale = 1e-18, kMostScale = 1e18;  // fx and fy
 constexpr double kMostCenter = 1e9;                       // px: cx and cy, to either side
-constexpr int kDeepest = 64;  // lists and objects within each other: to copy and to quote them recurses
+constexpr int kDeepest = 64;  // lists and objects within each other, since copying and quoting them recurses
 
 bool is_scale(double pixels) { return pixels >= kLeastScale && pixels <= kMostScale; }
 
@@ -138,10 +138,7 @@ void read_view_from_world(const CameraFile& file, Camera& camera) {
     for (int b = 0; b < 3; b++)
       if (!(squared > 0) || !(std::abs(dot(a, b) / squared - (a == b)) < kTolerance))
         file.refuse(field, "is no rotation with a translation");
-  const double determinant = m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
-                             m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
-                             m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
-  if (determinant < 0 && !camera.left_handed)
+  if (determinant(m) < 0 && !camera.left_handed)
     file.refuse(field,
                 "mirrors space; the camera looks along -z with x right and y up, right-handed, unless \"camera_space\" "
                 "says left-handed");
@@ -161,7 +158,7 @@ std::optional<double> clip_plane(const CameraFile& file, const char* field) {
   return file.positive(field);
 }
 
-/// By its word, or by the last row of the matrix that games have: 0 0 0 1 divides by nothing.
+/// Tells the projection by its word, or by the last row of the matrix that games have: 0 0 0 1 divides by nothing.
 bool is_orthographic(const CameraFile& file) {
   const Json* value = file.find("projection");
   if (value && value->is_array() && value->size() == 4 && (*value)[3].is_array() && (*value)[3].size() == 4 &&
@@ -173,7 +170,7 @@ bool is_orthographic(const CameraFile& file) {
   return projection == "orthographic";
 }
 
-/// Where a projection for 0..1, not reversed, has z = 0: -B / A of its third row A z + B.
+/// Gives the depth where a projection to 0..1, not reversed, has z = 0: -B / A of its third row A z + B.
 std::optional<double> matrix_near(const CameraFile& file) {
   const Json* value = file.find("projection");
   if (!value || !value->is_array() || value->size() != 4 || !(*value)[2].is_array() || (*value)[2].size() != 4)
@@ -222,7 +219,7 @@ NormalEncoding normal_encoding(const CameraFile& file) {
               fmt::format("must begin with signed, unorm, octahedral or spheremap, not \"{}\"", text));
 }
 
-/// fx and fy for square tangents: a pixel `aspect` times as wide as high covers that much more in x.
+/// Puts the optical axis into the middle. A pixel that is `aspect` times as wide as high covers that much more in x.
 Camera centred(const Window& display, double fx, double aspect, bool orthographic) {
   Camera camera;
   camera.width = display.width;
@@ -234,7 +231,7 @@ Camera centred(const Window& display, double fx, double aspect, bool orthographi
   camera.orthographic = orthographic;
   if (!is_scale(camera.fx) || !is_scale(camera.fy))
     fail(ErrorKind::usage,
-         "a camera of {:g} pixels a unit sees nothing: give another --fov, --focal with --aperture, or --ortho-width",
+         "a camera of {:g} pixels per unit sees nothing: give another --fov, --focal with --aperture, or --ortho-width",
          fx);
   return camera;
 }
@@ -287,6 +284,10 @@ Camera read_camera(const std::string& path, int frame) {
   return camera;
 }
 
+bool names_a_camera(const InputSettings& settings) {
+  return !settings.camera.empty() || settings.fov || settings.focal || settings.ortho_width;
+}
+
 Camera camera_for(const InputSettings& settings, const Window& display, double pixel_aspect, int frame) {
   if (!settings.camera.empty()) return fitted(read_camera(settings.camera, frame), display, settings.camera);
   const double half_width = 0.5 * display.width;
@@ -303,6 +304,11 @@ Camera camera_for(const InputSettings& settings, const Window& display, double p
                                 : settings.depth);
 }
 
+double determinant(const Matrix3& m) {
+  return m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) - m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
+         m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
+}
+
 Matrix3 view_from_normal(const Camera& camera, NormalSpace space, const NormalFlips& flips) {
   Matrix3 m = space == NormalSpace::world ? camera.view_from_world.value()
                                           : Matrix3{{{1, 0, 0}, {0, 1, 0}, {0, 0, camera.left_handed ? -1.0 : 1.0}}};
@@ -317,7 +323,7 @@ Matrix3 view_from_normal(const Camera& camera, NormalSpace space, const NormalFl
 View view_of(const Camera& camera, const Window& data, const Window& display) {
   View view{};
   view.size = {data.width, data.height};
-  // Rounded so that differences of pixels and the centre are exact floats, whatever part of a frame is looked at:
+  // The centre is rounded so that its differences to pixels are exact floats, whatever part of a frame is looked at:
   // 1/4096 px for displays up to 1024 wide.
   const double steps = std::exp2(22 - std::ceil(std::log2(std::max(display.width, display.height))));
   const auto rounded = [&](double px) { return std::round(px * steps) / steps; };

@@ -14,6 +14,8 @@ namespace alcove {
 
 /// Rows of a rotation (or any linear map): to = M * from.
 using Matrix3 = std::array<std::array<double, 3>, 3>;
+/// Below 0 where the map mirrors.
+double determinant(const Matrix3& m);
 
 /// Projection onto the display window: view space is right-handed, x right, y up, the camera looks along -z.
 /// A point is seen at (cx + fx x / -z, cy - fy y / -z), or (cx + fx x, cy - fy y) when orthographic.
@@ -22,33 +24,38 @@ struct Camera {
   double fx = 0, fy = 0;      // px (perspective) or px a scene unit (orthographic), > 0
   double cx = 0, cy = 0;      // px from the display window's upper left corner
   bool orthographic = false;
-  // rotation only; none where the source does not tell. It mirrors where the world is left-handed
+  // A rotation, which mirrors where the world is left-handed; none if the source does not tell.
   std::optional<Matrix3> view_from_world;
   std::array<double, 3> view_from_world_offset{};  // scene units: view = view_from_world * world + offset
-  // the source's own camera space looks along +z: so do its view-space normals and positions
+  // The header attribute that gave view_from_world beside a projection by options; empty if one source gave both.
+  std::string placement_from;
+  // The source's own camera space looks along +z, and its view-space normals and positions are of that space.
   bool left_handed = false;
   std::optional<double> near, far;  // clip planes, scene units; far may be infinite
   bool reversed_z = false;
-  // where the source's projection matrix puts depth 0, were its z the depth itself
+  // Where the source's projection matrix puts depth 0, if its z were the depth itself.
   std::optional<double> matrix_near;
   DepthKind depth_kind = DepthKind::automatic;  // what its source says of the frame's depth
   NormalSpace normal_space = NormalSpace::automatic;
   NormalEncoding normal_encoding = NormalEncoding::automatic;
 };
 
-/// Reads a camera JSON file (keys: DESIGN of the command line in README.md); where it lists `frames`, the one of that
-/// number. Fails with ErrorKind::input, naming file and field, on anything missing or senseless.
+/// Reads a camera JSON file, whose keys README.md lists; if the file lists `frames`, the one of that number. Fails with
+/// ErrorKind::input, naming file and field, on anything missing or senseless.
 Camera read_camera(const std::string& path, int frame);
 
-/// The camera that the settings give for a frame of this display window and pixel aspect (width / height of a pixel):
-/// the file, or fov, or focal and aperture, or ortho_width. Fails with ErrorKind::usage when there is none,
-/// ErrorKind::input when it does not fit.
+/// Whether the settings give a camera, or at least try to.
+bool names_a_camera(const InputSettings& settings);
+
+/// Gives the camera of the settings for a frame of this display window and pixel aspect (width / height of a pixel): by
+/// its file, by fov, by focal and aperture, or by ortho_width. Fails with ErrorKind::usage if there is none, and with
+/// ErrorKind::input if it does not fit.
 Camera camera_for(const InputSettings& settings, const Window& display, double pixel_aspect, int frame);
 
-/// From the normals' space, with their flips, to view space. World space needs camera.view_from_world.
+/// Gives the map from the normals' space, with their flips, to view space. World space needs camera.view_from_world.
 Matrix3 view_from_normal(const Camera& camera, NormalSpace space, const NormalFlips& flips);
 
-/// The projection as kernels take it, for pixels counted from the data window's upper left corner.
+/// Gives the projection as kernels take it, for pixels counted from the data window's upper left corner.
 View view_of(const Camera& camera, const Window& data, const Window& display);
 
 }  // namespace alcove

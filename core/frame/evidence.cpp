@@ -14,6 +14,7 @@ namespace alcove {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kAgreementDegrees = 20;    // to the normal that depth gives; depth's own steps turn it by less
 constexpr std::size_t kLeastSamples = 200;  // fewer smooth places tell nothing
 constexpr int kSamplesAcross = 160;         // places that are looked at in x and in y: enough for shares to a percent
 
@@ -30,7 +31,7 @@ std::size_t index_of(const View& view, int x, int y) {
   return std::size_t(y) * std::size_t(view.size.x) + std::size_t(x);
 }
 
-/// Where the pixel's ray meets the plane at unit depth; orthographic: its place in the plane.
+/// Gives the point where the pixel's ray meets the plane at unit depth; orthographic: the pixel's place in the plane.
 Vector tangent_at(const View& view, int x, int y) {
   return {(x + 0.5 - view.center.x) * view.tangent_per_pixel.x, (y + 0.5 - view.center.y) * view.tangent_per_pixel.y,
           -1};
@@ -71,7 +72,7 @@ Vector decoded_normal(std::span<const float> raw, std::size_t pixels, std::size_
 /// Relative second difference of three evenly spaced values.
 double bend(double before, double here, double after) { return std::abs(before + after - 2 * here) / std::abs(here); }
 
-/// Three values on one line, but for their rounding.
+/// Whether three values lie on one line, but for their rounding.
 bool is_straight(double before, double here, double after, double rounding) {
   return std::abs(before + after - 2 * here) < 1e-4 * std::abs(after - before) + rounding * std::abs(here);
 }
@@ -82,23 +83,121 @@ double quantile(std::vector<double>& values, double share) {
   return *at;
 }
 
+void count_value(ValueStatistics& s, float x) {
+  s.pixels++;
+  if (std::isnan(x)) {
+    s.nan++;
+    return;
+  }
+  if (std::isinf(x)) {
+    s.infinite++;
+    return;
+  }
+  s.negative += x < 0;
+  s.zero += x == 0;
+  s.one += x == 1;
+  s.positive += x > 0;
+  s.least = std::min(s.least, double(x));
+  s.most = std::max(s.most, double(x));
+}
+
+constexpr double kUnitTolerance = 0.05;  // of a length that is taken for 1
+
+/// Counts a normal as it stands in the file, unless it is zero or not finite. Components beyond `components` are 0.
+void count_normal(NormalStatistics& s, const Vector& n, std::size_t components) {
+  Vector unorm{};
+  for (std::size_t c = 0; c < components; c++) unorm[c] = 2 * n[c] - 1;
+  const double length = std::sqrt(dot(n, n));
+  const double unorm_length = std::sqrt(dot(unorm, unorm));
+  if (!(length > 0) || std::isinf(length)) return;
+  s.count++;
+  s.mean_length += length;
+  s.unorm_mean_length += unorm_length;
+  s.unit_share += std::abs(length - 1) < kUnitTolerance;
+  s.unorm_unit_share += std::abs(unorm_length - 1) < kUnitTolerance;
+  for (std::size_t c = 0; c < components; c++) {
+    s.least = std::min(s.least, n[c]);
+    s.most = std::max(s.most, n[c]);
+  }
+}
+
+/// Depths of three pixels in a row, `reach` apart, and the lengths of their rays.
+struct Triple {
+  std::array<double, 3> value{}, length{};
+  bool is_surface = true;
+
+  Triple(std::span<const float> raw, const View& view, double sky, int x, int y, int dx, int dy) {
+    for (std::size_t k = 0; k < 3; k++) {
+      const int side = int(k) - 1;
+      value[k] = std::abs(raw[index_of(view, x + side * dx, y + side * dy)]);
+      length[k] = ray_length(view, x + side * dx, y + side * dy);
+      is_surface = is_surface && value[k] > 0 && value[k] < sky;
+    }
+  }
+  bool is_smooth() const {
+    constexpr double kSmooth = 0.02;  // bend of values that are one surface
+    return bend(1 / value[0], 1 / value[1], 1 / value[2]) < kSmooth;
+  }
+  /// Tells for planar, ray and inverse depth in turn whether a plane would have these values.
+  std::array<bool, 3> straight(const View& view, double rounding) const {
+    const bool value_is = is_straight(value[0], value[1], value[2], rounding);
+    const bool inverse_is = is_straight(1 / value[0], 1 / value[1], 1 / value[2], rounding);
+    if (view.orthographic) return {value_is, false, inverse_is};
+    return {inverse_is, is_straight(length[0] / value[0], length[1] / value[1], length[2] / value[2], rounding),
+            value_is};
+  }
+};
+
+/// World space, where the camera knows it, and view space, with all flips.
+std::vector<NormalScore> readings_of_normals(const Camera& camera) {
+  std::vector<NormalScore> scores;
+  for (const NormalSpace space : {NormalSpace::world, NormalSpace::view})
+    for (const bool x : {false, true})
+      for (const NormalFlips flips : {NormalFlips{x, false, false}, NormalFlips{x, false, true},
+                                      NormalFlips{x, true, false}, NormalFlips{x, true, true}})
+        if (space == NormalSpace::view || camera.view_from_world) scores.push_back({space, flips});
+  return scores;
+}
+
+Vector difference(const Vector& a, const Vector& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
+
+/// A place of a smooth surface: the normal that depth gives it, of any length, and the way to the eye.
+struct SurfacePlace {
+  Vector normal, eye;
+};
+
+/// Gives nothing at edges, where the depths around the pixel are not those of a plane.
+std::optional<SurfacePlace> surface_at(std::span<const float> raw, const DepthMap& map, const View& view, int x,
+                                       int y) {
+  constexpr double kSmooth = 0.005;  // bend of 1/z on one surface
+  const std::size_t plane = std::size_t(view.size.x) * std::size_t(view.size.y);
+  const auto depth = [&](int dx, int dy) {
+    return planar_depth(map, value_at(raw, plane, index_of(view, x + dx, y + dy)), ray_length(view, x + dx, y + dy));
+  };
+  const double left = depth(-1, 0), right = depth(1, 0), up = depth(0, -1), down = depth(0, 1), here = depth(0, 0);
+  if (!(bend(1 / left, 1 / here, 1 / right) < kSmooth) || !(bend(1 / up, 1 / here, 1 / down) < kSmooth))
+    return std::nullopt;
+  const Vector along_y = difference(position_at(view, x, y + 1, down), position_at(view, x, y - 1, up));
+  const Vector along_x = difference(position_at(view, x + 1, y, right), position_at(view, x - 1, y, left));
+  const Vector p = position_at(view, x, y, here);
+  return SurfacePlace{cross(along_y, along_x), view.orthographic ? Vector{0, 0, 1} : Vector{-p[0], -p[1], -p[2]}};
+}
+
+/// How far a point of view space is seen from the pixel, in pixels; infinite where it is behind the camera.
+double pixels_beside(const View& view, int x, int y, const Vector& p) {
+  if (!(-p[2] > 0)) return kInfinity;
+  const Vector t = tangent_at(view, x, y);
+  const double scale = view.orthographic ? 1 : -p[2];
+  return std::hypot((p[0] / scale - t[0]) / view.tangent_per_pixel.x, (p[1] / scale - t[1]) / view.tangent_per_pixel.y);
+}
+
 }  // namespace
 
 ValueStatistics statistics_of(std::span<const float> values, std::size_t step) {
   ValueStatistics s;
-  s.least = kInfinity, s.most = -kInfinity;
-  for (std::size_t i = 0; i < values.size(); i += step) {
-    const float x = values[i];
-    s.pixels++;
-    if (std::isnan(x))
-      s.nan++;
-    else if (std::isinf(x))
-      s.infinite++;
-    else {
-      s.negative += x<0, s.zero += x == 0, s.one += x == 1, s.positive += x> 0;
-      s.least = std::min(s.least, double(x)), s.most = std::max(s.most, double(x));
-    }
-  }
+  s.least = kInfinity;
+  s.most = -kInfinity;
+  for (std::size_t i = 0; i < values.size(); i += step) count_value(s, values[i]);
   if (s.least > s.most) s.least = s.most = 0;
   return s;
 }
@@ -106,21 +205,15 @@ ValueStatistics statistics_of(std::span<const float> values, std::size_t step) {
 NormalStatistics normal_statistics(std::span<const float> normal, std::span<const float> raw, const DepthMap& map,
                                    std::size_t step) {
   NormalStatistics s;
-  const std::size_t plane = map.form == kDepthPosition ? raw.size() / 3 : raw.size(),
-                    components = normal.size() / plane;
-  s.least = kInfinity, s.most = -kInfinity;
+  s.least = kInfinity;
+  s.most = -kInfinity;
+  const std::size_t plane = map.form == kDepthPosition ? raw.size() / 3 : raw.size();
+  const std::size_t components = normal.size() / plane;
   for (std::size_t i = 0; i < plane; i += step) {
     if (std::isinf(planar_depth(map, value_at(raw, plane, i), 1))) continue;
-    Vector n{}, unorm{};
-    for (std::size_t c = 0; c < components; c++) n[c] = normal[c * plane + i], unorm[c] = 2 * n[c] - 1;
-    const double length = std::sqrt(dot(n, n)), unorm_length = std::sqrt(dot(unorm, unorm));
-    if (!(length > 0) || std::isinf(length)) continue;
-    s.count++;
-    s.mean_length += length;
-    s.unorm_mean_length += unorm_length;
-    s.unit_share += std::abs(length - 1) < 0.05;
-    s.unorm_unit_share += std::abs(unorm_length - 1) < 0.05;
-    for (std::size_t c = 0; c < components; c++) s.least = std::min(s.least, n[c]), s.most = std::max(s.most, n[c]);
+    Vector n{};
+    for (std::size_t c = 0; c < components; c++) n[c] = normal[c * plane + i];
+    count_normal(s, n, components);
   }
   if (!s.count) return {};
   for (double* share : {&s.mean_length, &s.unorm_mean_length, &s.unit_share, &s.unorm_unit_share})
@@ -165,11 +258,7 @@ std::optional<double> reprojection_error(std::span<const float> position, Positi
       } else if (camera.left_handed != mirrored) {
         p[2] = -p[2];
       }
-      const Vector t = tangent_at(view, x, y);
-      const double scale = view.orthographic ? 1 : -p[2];
-      errors.push_back(!(-p[2] > 0) ? kInfinity
-                                    : std::hypot((p[0] / scale - t[0]) / view.tangent_per_pixel.x,
-                                                 (p[1] / scale - t[1]) / view.tangent_per_pixel.y));
+      errors.push_back(pixels_beside(view, x, y, p));
     }
   return errors.empty() ? std::nullopt : std::optional(quantile(errors, 0.5));
 }
@@ -177,31 +266,23 @@ std::optional<double> reprojection_error(std::span<const float> position, Positi
 std::vector<DepthScore> score_depth(std::span<const float> raw, const View& view, double sky, double rounding) {
   // Over this many pixels the difference between distance to the eye and to its plane bends 1/z by (reach / focal)^2,
   // far above rounding.
-  const int reach = std::max(3, std::max(view.size.x, view.size.y) / 48), stride = sparseness(view);
-  constexpr double kSmooth = 0.02;  // bend of values that are one surface
+  const int reach = std::max(3, std::max(view.size.x, view.size.y) / 48);
+  const int stride = sparseness(view);
   std::vector<DepthScore> scores{{DepthKind::planar}, {DepthKind::ray}, {DepthKind::inverse}};
   std::size_t count = 0;
   const auto look = [&](int x, int y, int dx, int dy) {
-    std::array<double, 3> value{}, length{};
-    for (std::size_t k = 0; k < 3; k++) {
-      const int side = int(k) - 1;
-      value[k] = std::abs(raw[index_of(view, x + side * dx, y + side * dy)]);
-      length[k] = ray_length(view, x + side * dx, y + side * dy);
-      if (!(value[k] > 0 && value[k] < sky)) return;
-    }
-    if (!(bend(1 / value[0], 1 / value[1], 1 / value[2]) < kSmooth)) return;
+    const Triple triple(raw, view, sky, x, y, dx, dy);
+    if (!triple.is_surface || !triple.is_smooth()) return;
     count++;
-    const bool value_is = is_straight(value[0], value[1], value[2], rounding);
-    const bool inverse_is = is_straight(1 / value[0], 1 / value[1], 1 / value[2], rounding);
-    const std::array straight{
-        view.orthographic ? value_is : inverse_is,
-        !view.orthographic && is_straight(length[0] / value[0], length[1] / value[1], length[2] / value[2], rounding),
-        view.orthographic ? inverse_is : value_is};
+    const auto straight = triple.straight(view, rounding);
     if (straight[0] + straight[1] + straight[2] != 1) return;  // curved, or too even to tell
     for (std::size_t k = 0; k < scores.size(); k++) scores[k].straight += straight[k];
   };
   for (int y = reach; y + reach < view.size.y; y += stride)
-    for (int x = reach; x + reach < view.size.x; x += stride) look(x, y, reach, 0), look(x, y, 0, reach);
+    for (int x = reach; x + reach < view.size.x; x += stride) {
+      look(x, y, reach, 0);
+      look(x, y, 0, reach);
+    }
   if (count < kLeastSamples) return {};
   for (auto& score : scores) score.straight /= double(count);
   std::ranges::stable_sort(scores, std::greater(), &DepthScore::straight);
@@ -211,49 +292,34 @@ std::vector<DepthScore> score_depth(std::span<const float> raw, const View& view
 std::vector<NormalScore> score_normals(std::span<const float> normal, NormalEncoding encoding, bool unorm,
                                        std::span<const float> raw, const DepthMap& map, const Camera& camera,
                                        const View& view) {
-  std::vector<NormalScore> scores;
-  for (const NormalSpace space : {NormalSpace::world, NormalSpace::view})
-    for (const bool x : {false, true})
-      for (const NormalFlips flips : {NormalFlips{x, false, false}, NormalFlips{x, false, true},
-                                      NormalFlips{x, true, false}, NormalFlips{x, true, true}})
-        if (space == NormalSpace::view || camera.view_from_world) scores.push_back({space, flips});
+  std::vector<NormalScore> scores = readings_of_normals(camera);
   std::vector<Matrix3> rotations;
   for (const auto& score : scores) rotations.push_back(view_from_normal(camera, score.space, score.flips));
 
   const std::size_t plane = std::size_t(view.size.x) * std::size_t(view.size.y);
   const int stride = sparseness(view);
-  const double least_cosine = std::cos(20 * std::numbers::pi / 180);
+  const double least_cosine = std::cos(kAgreementDegrees * std::numbers::pi / 180);
   std::size_t count = 0;
   std::vector<std::vector<double>> cosines(scores.size());
   for (int y = 1; y + 1 < view.size.y; y += stride)
     for (int x = 1; x + 1 < view.size.x; x += stride) {
-      const auto depth = [&](int dx, int dy) {
-        return planar_depth(map, value_at(raw, plane, index_of(view, x + dx, y + dy)),
-                            ray_length(view, x + dx, y + dy));
-      };
-      const double left = depth(-1, 0), right = depth(1, 0), up = depth(0, -1), down = depth(0, 1), here = depth(0, 0);
-      if (!(bend(1 / left, 1 / here, 1 / right) < 0.005) || !(bend(1 / up, 1 / here, 1 / down) < 0.005)) continue;
-      const auto difference = [](const Vector& a, const Vector& b) {
-        return Vector{a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-      };
-      const Vector surface = cross(difference(position_at(view, x, y + 1, down), position_at(view, x, y - 1, up)),
-                                   difference(position_at(view, x + 1, y, right), position_at(view, x - 1, y, left)));
-      const Vector p = position_at(view, x, y, here),
-                   eye = view.orthographic ? Vector{0, 0, 1} : Vector{-p[0], -p[1], -p[2]};
+      const auto surface = surface_at(raw, map, view, x, y);
+      if (!surface) continue;
       const Vector vector = decoded_normal(normal, plane, index_of(view, x, y), encoding, unorm);
-      const double lengths = std::sqrt(dot(vector, vector) * dot(surface, surface));
+      const double lengths = std::sqrt(dot(vector, vector) * dot(surface->normal, surface->normal));
       if (!(lengths > 0) || std::isinf(lengths)) continue;
       count++;
       for (std::size_t k = 0; k < scores.size(); k++) {
         const Vector n = times(rotations[k], vector);
-        scores[k].facing += dot(n, eye) > 0;
-        cosines[k].push_back(std::min(1.0, dot(n, surface) / lengths));
+        scores[k].facing += dot(n, surface->eye) > 0;
+        cosines[k].push_back(std::min(1.0, dot(n, surface->normal) / lengths));
         scores[k].agreement += cosines[k].back() > least_cosine;
       }
     }
   if (count < kLeastSamples) return {};
   for (std::size_t k = 0; k < scores.size(); k++) {
-    scores[k].facing /= double(count), scores[k].agreement /= double(count);
+    scores[k].facing /= double(count);
+    scores[k].agreement /= double(count);
     scores[k].angle = std::acos(std::max(-1.0, quantile(cosines[k], 0.75))) * 180 / std::numbers::pi;
   }
   std::ranges::stable_sort(scores, std::greater(), &NormalScore::agreement);

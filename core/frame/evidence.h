@@ -15,46 +15,47 @@
 
 namespace alcove {
 
-/// Of a plane's values.
+/// Statistics of a plane's values.
 struct ValueStatistics {
   std::uint64_t pixels = 0, nan = 0, infinite = 0, negative = 0, zero = 0, one = 0, positive = 0;
   double least = 0, most = 0;  // finite ones; 0 where there are none
 };
-/// Looks at every `step`-th value.
+/// Counts every `step`-th value.
 ValueStatistics statistics_of(std::span<const float> values, std::size_t step = 1);
 
-/// Of normals as they stand in the file, where they are finite and not zero.
+/// Statistics of normals as they stand in the file, of those that are finite and not zero.
 struct NormalStatistics {
   std::uint64_t count = 0;
   double least = 0, most = 0;    // of all components
   double mean_length = 0;        // 1 for signed normals
   double unorm_mean_length = 0;  // the same of 2 n - 1
-  double unit_share = 0;         // whose length is 1 within 5 %
+  double unit_share = 0;         // the share whose length is 1 within 5 %
   double unorm_unit_share = 0;   // the same of 2 n - 1
 };
-/// Of every `step`-th pixel that is no sky. `normal` has two planes or three, `raw` the depth as in the file.
+/// Counts every `step`-th pixel that is no sky. `normal` has two planes or three; `raw` is the depth as in the file.
 NormalStatistics normal_statistics(std::span<const float> normal, std::span<const float> raw, const DepthMap& map,
                                    std::size_t step = 1);
 
-/// Planes x, y, z of the normals that the file's values stand for, of any length, as prepare.comp decodes them.
+/// Decodes the file's values into planes x, y, z of normals of any length, as prepare.comp does.
 std::vector<float> decoded_normals(std::span<const float> raw, std::size_t pixels, NormalEncoding encoding, bool unorm);
 
-/// Planar depth a pixel of the frame, in scene units; infinite on sky.
+/// Gives the planar depth of each pixel, in scene units; infinite on sky.
 std::vector<float> planar_depths(std::span<const float> raw, const DepthMap& map, const View& view);
 
-/// How far, in pixels, positions lie from the pixels that hold them (median); infinite where most are behind the
-/// camera, none where all are sky. `mirrored`: view positions whose z has the other sign than the camera's.
+/// Gives the median distance, in pixels, of positions from the pixels that hold them. It is infinite if most positions
+/// are behind the camera; there is none if all are sky. `mirrored` says that the z of view positions has the other sign
+/// than the camera's.
 std::optional<double> reprojection_error(std::span<const float> position, PositionSpace space, bool mirrored,
                                          const Camera& camera, const View& view);
 
-// of the second difference of three values, relative to one of them
+// Rounding of the second difference of three values, relative to one of them.
 constexpr double kFloatRounding = 3e-7, kHalfRounding = 2e-3;
 
 /// A way to read depth and how well the frame's flat surfaces agree with it.
 struct DepthScore {
   DepthKind kind;
-  // share of the smooth places where by this kind alone 1/z (orthographic: z) is affine over the image, as it is on
-  // every plane
+  // The share of the smooth places where by this kind alone 1/z (orthographic: z) is affine over the image, as it is on
+  // every plane.
   double straight = 0;
 };
 /// planar, ray and inverse (which stands for all that is affine in 1/z: device depth too), the best first. Empty where

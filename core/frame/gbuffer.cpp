@@ -1,4 +1,4 @@
-// Channel search by the names that renderers use.
+// What a frame holds: its planes, the rules it is read by, its camera, and the meaning of depth and normals.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/frame/gbuffer.h"
 
@@ -10,346 +10,11 @@
 
 #include "core/base/error.h"
 #include "core/base/text.h"
-#include "core/formats/dds.h"
-#include "core/formats/image_io.h"
+#include "core/formats/open_image.h"
 #include "core/frame/header_camera.h"
 
 namespace alcove {
 namespace {
-
-/// A channel under its full name: among several parts, a part's name stands for a layer where the channel does not
-/// repeat it.
-struct NamedChannel {
-  ChannelRef ref;
-  std::string full;
-  // lower case, without the chosen layer: the full name, and the name within the part where that is another
-  std::vector<std::string> spellings;
-  bool subsampled;
-};
-
-using Components = std::vector<std::vector<std::string>>;  // sets of last name parts that may spell an AOV
-
-/// An AOV's usual names, lower case, the likeliest first.
-struct AovNames {
-  const char* what;
-  const char* channel_option;
-  std::vector<std::string> layers;
-  Components in_layer;  // below one of the layers
-  Components bare;      // by themselves in any file
-  Components alone;     // by themselves in a file that was given for this AOV only
-  bool may_have_alpha = false;
-  bool may_be_two = false;
-};
-
-const AovNames kDepthNames{"depth",
-                           "--depth-channel",
-                           {"depth", "z", "zdepth", "vrayzdepth", "z-depth", "__depth", "cgeometry_zdepth",
-                            "finalimagemovierenderqueue_worlddepth"},
-                           {{"z"}, {"depth"}, {"r"}, {"y"}},
-                           {{"z"}, {"depth"}, {"zdepth"}, {"pz"}},
-                           {{"r"}, {"y"}}};
-const AovNames kNormalNames{"normal",
-                            "--normal-channels",
-                            {"normal", "n", "nn", "normals", "ns", "__nworld", "cgeometry_normalsshading"},
-                            {{"x", "y", "z"}, {"r", "g", "b"}},
-                            {{"nx", "ny", "nz"}},
-                            {{"x", "y", "z"}, {"r", "g", "b"}, {"x", "y"}, {"r", "g"}},
-                            false,
-                            true};
-const AovNames kPositionNames{"position",
-                              "--position-channels",
-                              {"position", "p", "pworld", "__pworld", "worldposition", "cgeometry_worldposition"},
-                              {{"x", "y", "z"}, {"r", "g", "b"}},
-                              {{"px", "py", "pz"}},
-                              {{"x", "y", "z"}, {"r", "g", "b"}}};
-const AovNames kBeautyNames{"beauty",
-                            "--beauty-channels",
-                            {"combined", "rgba", "beauty"},
-                            {{"r", "g", "b"}, {"red", "green", "blue"}},
-                            {{"r", "g", "b"}},
-                            {},
-                            true};
-const AovNames kIndirectNames{
-    "indirect diffuse", "--layer", {"diffind", "diffuse indirect", "diffuse_indirect", "indirectdiffuse", "gi"},
-    {{"r", "g", "b"}},  {},        {}};
-const AovNames kDiffuseColorNames{"diffuse colour", "--layer", {"diffcol", "diffuse color"}, {{"r", "g", "b"}}, {}, {}};
-
-const AovNames kMaterialNames{
-    "material AO",          "--material-ao-channel", {"ao", "occlusion", "ambient occlusion", "materialao"},
-    {{"y"}, {"r"}, {"ao"}}, {{"ao"}, {"occlusion"}}, {{"y"}, {"r"}}};
-const AovNames kAlbedoNames{"diffuse colour",
-                            "--albedo-channels",
-                            {"diffcol", "diffuse color", "albedo", "diffuse_albedo"},
-                            {{"r", "g", "b"}},
-                            {},
-                            {{"r", "g", "b"}}};
-
-/// The name without the layer; nothing when it lies elsewhere. Without a layer: the name.
-std::optional<std::string> within_layer(const std::string& name, const std::string& layer) {
-  if (layer.empty()) return lower_case(name);
-  if (!lower_case(name).starts_with(lower_case(layer) + ".")) return std::nullopt;
-  return lower_case(name).substr(layer.size() + 1);
-}
-
-/// The views of a stereo file, the default first; none of any other file.
-std::vector<std::string> views_of(const ExrFile& file) {
-  std::vector<std::string> views;
-  for (const auto& part : file.parts())
-    for (const auto& view : part.multi_view.empty() ? std::vector{part.view} : part.multi_view)
-      if (!view.empty() && std::ranges::find(views, view) == views.end()) views.push_back(view);
-  return views;
-}
-
-/// The name without its view, which stands before the last name part ("depth.right.Z", "right.R"); nothing where it is
-/// of another view. Channels that name no view belong to the first.
-std::optional<std::string> within_view(const std::string& name, const std::vector<std::string>& views,
-                                       const std::string& view) {
-  if (views.empty()) return name;
-  const std::size_t last = name.rfind('.'),
-                    before = last == name.npos || last == 0 ? name.npos : name.rfind('.', last - 1);
-  const std::size_t begin = before == name.npos ? 0 : before + 1;
-  const std::string named = last == name.npos ? "" : name.substr(begin, last - begin);
-  if (std::ranges::find(views, named) == views.end())
-    return lower_case(view) == lower_case(views.front()) ? std::optional(name) : std::nullopt;
-  if (lower_case(named) != lower_case(view)) return std::nullopt;
-  return name.substr(0, begin) + name.substr(last + 1);
-}
-
-/// The channels of the chosen view and layer; all of them without a layer.
-std::vector<NamedChannel> channels_of(const ExrFile& file, std::size_t index, const std::string& layer,
-                                      const std::string& chosen_view) {
-  const auto views = views_of(file);
-  const std::string view = chosen_view.empty() && !views.empty() ? views.front() : chosen_view;
-  std::vector<NamedChannel> channels;
-  for (std::size_t part = 0; part < file.parts().size(); part++) {
-    const auto& p = file.parts()[part];
-    if (!p.view.empty() && !view.empty() && lower_case(p.view) != lower_case(view)) continue;
-    // "depth.left" of view "left" is the layer "depth".
-    const std::string part_name = !p.view.empty() && p.name.ends_with("." + p.view)
-                                      ? p.name.substr(0, p.name.size() - p.view.size() - 1)
-                                      : p.name;
-    for (const auto& channel : p.channels) {
-      const auto plain = within_view(channel.name, p.multi_view, view);
-      if (!plain) continue;
-      const bool alone = file.parts().size() == 1 || part_name.empty() || channel.name.starts_with(part_name + ".");
-      NamedChannel named{{index, int(part), channel.name},
-                         alone ? channel.name : part_name + "." + channel.name,
-                         {},
-                         channel.subsampled};
-      for (const auto& name : plain != channel.name ? std::vector{*plain} : std::vector{named.full, channel.name})
-        if (const auto spelling = within_layer(name, layer);
-            spelling && (named.spellings.empty() || named.spellings.back() != *spelling))
-          named.spellings.push_back(*spelling);
-      if (!named.spellings.empty()) channels.push_back(std::move(named));
-    }
-  }
-  return channels;
-}
-
-std::vector<std::string> full_names(const std::vector<NamedChannel>& channels) {
-  std::vector<std::string> names;
-  std::ranges::transform(channels, std::back_inserter(names), &NamedChannel::full);
-  return names;
-}
-
-/// All that stands before a dot in a full name, once each: "ViewLayer", "ViewLayer.Depth" ...
-std::vector<std::string> layers_of(const ExrFile& file) {
-  std::set<std::string> layers;
-  for (const auto& channel : channels_of(file, 0, "", ""))
-    for (std::size_t dot = channel.full.find('.'); dot != channel.full.npos; dot = channel.full.find('.', dot + 1))
-      layers.insert(channel.full.substr(0, dot));
-  return {layers.begin(), layers.end()};
-}
-
-/// What stands before `.component` (or "" for the bare component); nothing when the name does not end so.
-std::optional<std::string> prefix_of(const std::string& name, const std::string& component) {
-  if (name == component) return "";
-  const std::string end = "." + component;
-  if (name.size() <= end.size() || name.compare(name.size() - end.size(), end.size(), end) != 0) return std::nullopt;
-  return name.substr(0, name.size() - end.size());
-}
-
-/// Whether a layer path is, or ends in, this layer.
-bool is_layer(const std::string& path, const std::string& layer) {
-  return path == layer || (!layer.empty() && prefix_of(path, layer));
-}
-
-/// The channels of one part that spell `layer` with these components: one entry for each place where all are found.
-std::vector<std::vector<const NamedChannel*>> places_of(const std::vector<NamedChannel>& channels,
-                                                        const std::string& layer,
-                                                        const std::vector<std::string>& components) {
-  std::map<std::pair<int, std::string>, std::vector<const NamedChannel*>> places;
-  for (std::size_t i = 0; i < components.size(); i++)
-    for (const auto& channel : channels)
-      for (const auto& spelling : channel.spellings) {
-        const auto prefix = prefix_of(spelling, components[i]);
-        if (!prefix || !is_layer(*prefix, layer)) continue;
-        auto& place = places[{channel.ref.part, *prefix}];
-        if (place.size() == i) place.push_back(&channel);
-      }
-  std::vector<std::vector<const NamedChannel*>> whole;
-  std::set<std::vector<const NamedChannel*>> known;
-  for (auto& [key, place] : places)
-    if (place.size() == components.size() && known.insert(place).second) whole.push_back(std::move(place));
-  return whole;
-}
-
-std::vector<ChannelRef> refs_of(const std::vector<const NamedChannel*>& channels, const ExrFile& file) {
-  std::vector<ChannelRef> refs;
-  for (const auto* channel : channels) {
-    if (channel->subsampled)
-      fail(ErrorKind::input, "{}: channel {} is subsampled; it must have a sample for every pixel", file.path(),
-           channel->full);
-    refs.push_back(channel->ref);
-  }
-  return refs;
-}
-
-/// The AOV at the one place where `layer` holds one of the component sets; empty when there is none. Two places are an
-/// error.
-std::vector<ChannelRef> find_in_layer(const ExrFile& file, const std::vector<NamedChannel>& channels,
-                                      const AovNames& names, const std::string& layer, const Components& sets) {
-  for (const auto& components : sets) {
-    const auto places = places_of(channels, layer, components);
-    if (places.size() > 1)
-      fail(ErrorKind::input, "{}: two layers hold a {}: {} and {}; say which with --layer or {}", file.path(),
-           names.what, places[0][0]->full, places[1][0]->full, names.channel_option);
-    if (places.size() == 1) return refs_of(places[0], file);
-  }
-  return {};
-}
-
-/// The AOV under its usual names; empty when there is none.
-std::vector<ChannelRef> find_usual(const ExrFile& file, const std::vector<NamedChannel>& channels,
-                                   const AovNames& names, bool own_file) {
-  for (const auto& layer : names.layers)
-    if (auto found = find_in_layer(file, channels, names, layer, names.in_layer); !found.empty()) return found;
-  auto found = find_in_layer(file, channels, names, "", names.bare);
-  return found.empty() && own_file ? find_in_layer(file, channels, names, "", names.alone) : found;
-}
-
-const NamedChannel* find_named(const std::vector<NamedChannel>& channels, const std::string& name) {
-  const std::string lower = lower_case(name);
-  for (const auto& channel : channels)
-    if (lower_case(channel.full) == lower || lower_case(channel.ref.channel) == lower) return &channel;
-  return nullptr;
-}
-
-/// The channels that the user named: each by its full name, or all by their layer.
-std::vector<ChannelRef> find_chosen(const ExrFile& file, const std::vector<NamedChannel>& channels,
-                                    const AovNames& names, const std::string& chosen) {
-  auto wanted = split(chosen);
-  const std::size_t count = names.in_layer.front().size();
-  if (wanted.size() == 1 && count > 1)
-    for (const auto& components : names.in_layer)
-      if (const auto places = places_of(channels, lower_case(chosen), components); places.size() == 1)
-        return refs_of(places[0], file);
-  if (wanted.size() != count && !(names.may_have_alpha && wanted.size() == count + 1) &&
-      !(names.may_be_two && wanted.size() == 2))
-    fail(ErrorKind::input, "{}: no layer {} for {}{}; there is {}; {} takes a layer or {} channel names with commas",
-         file.path(), chosen, names.channel_option, suggestion(chosen, full_names(channels)),
-         list_of(full_names(channels)), names.channel_option, count);
-  std::vector<const NamedChannel*> found;
-  for (const auto& name : wanted) {
-    found.push_back(find_named(channels, name));
-    if (!found.back())
-      fail(ErrorKind::input, "{}: no channel {} for {}{}; there is {}", file.path(), name, names.channel_option,
-           suggestion(name, full_names(channels)), list_of(full_names(channels)));
-  }
-  return refs_of(found, file);
-}
-
-/// Where the first of the candidates is, in the order of the rules; a name is a layer, or else a channel. Null: none is
-/// there.
-std::pair<std::vector<ChannelRef>, const AovCandidate*> find_candidate(const ExrFile& file,
-                                                                       const std::vector<NamedChannel>& channels,
-                                                                       const AovNames& names,
-                                                                       const std::vector<AovCandidate>& candidates) {
-  for (const auto& candidate : candidates) {
-    auto found = find_in_layer(file, channels, names, candidate.name, names.in_layer);
-    const std::size_t dot = candidate.name.rfind('.');
-    if (found.empty() && names.in_layer.front().size() == 1)
-      found = find_in_layer(file, channels, names, dot == std::string::npos ? "" : candidate.name.substr(0, dot),
-                            {{dot == std::string::npos ? candidate.name : candidate.name.substr(dot + 1)}});
-    if (!found.empty()) return {std::move(found), &candidate};
-  }
-  return {};
-}
-
-/// Files opened once each, and their channels.
-class Search {
- public:
-  Search(const InputSettings& settings, std::vector<ExrFile>& files) : settings_(settings), files_(files) {}
-
-  /// The file's place in the list, opened now if it is new.
-  std::size_t open(const std::string& path, const char* option) {
-    if (path.empty()) fail(ErrorKind::usage, "no INPUT and no {} FILE: give one of them", option);
-    const auto known = std::ranges::find(files_, path, &ExrFile::path);
-    if (known != files_.end()) return std::size_t(known - files_.begin());
-    files_.push_back(open_file(path, path == settings_.input ? "INPUT" : option));
-    const auto views = views_of(files_.back());
-    const auto same = [&](const std::string& view) { return lower_case(view) == lower_case(settings_.view); };
-    if (!settings_.view.empty() && !views.empty() && std::ranges::none_of(views, same))
-      fail(ErrorKind::input, "{}: there is no view {}{} for --view; there is {}", path, settings_.view,
-           suggestion(settings_.view, views), list_of(views));
-    channels_.push_back(channels_of(files_.back(), files_.size() - 1, settings_.layer, settings_.view));
-    return files_.size() - 1;
-  }
-
-  /// The AOV by the names that the user chose, or else its usual ones; empty when there is none. `own_file`: the file
-  /// holds nothing else.
-  std::vector<ChannelRef> find(std::size_t file, const AovNames& names, const std::string& chosen,
-                               bool own_file) const {
-    return chosen.empty() ? find_usual(files_[file], channels_[file], names, own_file)
-                          : find_chosen(files_[file], channels_[file], names, chosen);
-  }
-
-  /// As the rules name it; empty when the user chose, or none is there.
-  std::pair<std::vector<ChannelRef>, const AovCandidate*> find_by_rules(
-      std::size_t file, const AovNames& names, const std::string& chosen,
-      const std::vector<AovCandidate>& candidates) const {
-    return chosen.empty() ? find_candidate(files_[file], channels_[file], names, candidates)
-                          : std::pair<std::vector<ChannelRef>, const AovCandidate*>{};
-  }
-
-  /// As find(), but not to find anything is an error. `hint` is the name that near misses are measured by.
-  std::vector<ChannelRef> require(std::size_t file, const AovNames& names, const std::string& chosen, bool own_file,
-                                  const char* hint) const {
-    auto found = find(file, names, chosen, own_file);
-    if (!found.empty()) return found;
-    if (channels_[file].empty() && !settings_.layer.empty()) {
-      const auto layers = layers_of(files_[file]);
-      fail(ErrorKind::input, "{}: there is no layer {}{} for --layer; there is {}", files_[file].path(),
-           settings_.layer, suggestion(settings_.layer, layers), list_of(layers));
-    }
-    const auto all = full_names(channels_[file]);
-    const std::string within = settings_.layer.empty() ? "" : fmt::format(" in layer {}", settings_.layer);
-    fail(ErrorKind::input, "{}: no {} channel found{}{}; there is {}; name it with {}", files_[file].path(), names.what,
-         within, suggestion(hint, all), list_of(all), names.channel_option);
-  }
-
-  /// A channel beside the r, g, b of a beauty, under the same layer.
-  std::vector<ChannelRef> with_alpha(std::vector<ChannelRef> beauty) const {
-    if (beauty.size() != 3) return beauty;
-    const std::string& red = beauty[0].channel;
-    const std::size_t dot = red.rfind('.');
-    const std::string prefix = dot == red.npos ? "" : red.substr(0, dot + 1);
-    for (const auto& channel : channels_[beauty[0].file]) {
-      if (channel.ref.part != beauty[0].part || channel.subsampled) continue;
-      const std::string& name = channel.ref.channel;
-      if (lower_case(name) == lower_case(prefix + "a") || lower_case(name) == lower_case(prefix + "alpha")) {
-        beauty.push_back(channel.ref);
-        break;
-      }
-    }
-    return beauty;
-  }
-
- private:
-  const InputSettings& settings_;
-  std::vector<ExrFile>& files_;
-  std::vector<std::vector<NamedChannel>> channels_;
-};
 
 const ExrPart& part_of(const FrameSource& source, const ChannelRef& ref) {
   return source.files[ref.file].parts()[std::size_t(ref.part)];
@@ -372,7 +37,7 @@ void require_same_window(const FrameSource& source, const std::vector<ChannelRef
   }
 }
 
-void find_beauty(FrameSource& source, const Search& search, std::size_t file, const InputSettings& settings) {
+void find_beauty(FrameSource& source, const ChannelSearch& search, std::size_t file, const InputSettings& settings) {
   source[RawPlane::beauty] = search.with_alpha(
       search.require(file, kBeautyNames, settings.beauty_channels, !settings.beauty.empty(), "Combined.R"));
   source[RawPlane::indirect] = search.find(file, kIndirectNames, "", false);
@@ -390,7 +55,7 @@ void find_beauty(FrameSource& source, const Search& search, std::size_t file, co
 }
 
 /// What is multiplied in, where the settings name a file or a channel of it.
-void find_material(FrameSource& source, Search& search, const InputSettings& settings) {
+void find_material(FrameSource& source, ChannelSearch& search, const InputSettings& settings) {
   if (settings.material_ao.empty() && settings.material_ao_channel.empty()) return;
   const std::size_t file =
       search.open(settings.material_ao.empty() ? settings.input : settings.material_ao, "--material-ao");
@@ -400,7 +65,8 @@ void find_material(FrameSource& source, Search& search, const InputSettings& set
 }
 
 /// The colour that light takes at the surfaces.
-void find_albedo(FrameSource& source, Search& search, const std::string& beauty_path, const InputSettings& settings) {
+void find_albedo(FrameSource& source, ChannelSearch& search, const std::string& beauty_path,
+                 const InputSettings& settings) {
   const std::size_t file = search.open(settings.albedo.empty() ? beauty_path : settings.albedo, "--albedo");
   source[RawPlane::albedo] = search.find(file, kAlbedoNames, settings.albedo_channels, !settings.albedo.empty());
   if (source[RawPlane::albedo].empty())
@@ -416,11 +82,13 @@ void find_rules(FrameSource& source, std::size_t file, const InputSettings& sett
   const bool detects = settings.source.empty() || settings.source == "auto";
   const DetectedRules found =
       detects ? detect_rules(source.files[file]) : DetectedRules{&input_rules(settings.source), "--source"};
-  source.rules = found.rules, source.rules_by = found.by, source.rules_said = !detects;
+  source.rules = found.rules;
+  source.rules_by = found.by;
+  source.rules_said = !detects;
 }
 
 /// The depth channel; the position's where the settings say so, or where there is no depth.
-std::vector<ChannelRef> find_depth(FrameSource& source, const Search& search, std::size_t file,
+std::vector<ChannelRef> find_depth(FrameSource& source, const ChannelSearch& search, std::size_t file,
                                    const InputSettings& settings, bool by_position) {
   source.usual_depth_kind =
       source.rules->depth_kind != DepthKind::automatic ? source.rules->depth_kind : DepthKind::planar;
@@ -444,7 +112,7 @@ std::vector<ChannelRef> find_depth(FrameSource& source, const Search& search, st
 }
 
 /// The normals, none where there are none; and what the rules say of their space.
-std::vector<ChannelRef> find_normal(FrameSource& source, const Search& search, std::size_t file,
+std::vector<ChannelRef> find_normal(FrameSource& source, const ChannelSearch& search, std::size_t file,
                                     const InputSettings& settings) {
   if (source.rules->normal_space != NormalSpace::automatic) source.usual_normal_space = source.rules->normal_space;
   if (auto [found, candidate] =
@@ -463,11 +131,8 @@ std::vector<ChannelRef> find_normal(FrameSource& source, const Search& search, s
   return search.find(file, two, "", false);
 }
 
-bool names_a_camera(const InputSettings& settings) {
-  return !settings.camera.empty() || settings.fov || settings.focal || settings.ortho_width;
-}
-
-/// The settings' camera, or else the header's.
+/// The settings' camera, or else the header's. Options that give no more than a projection leave the camera where the
+/// header says that it stands.
 void find_camera(FrameSource& source, const InputSettings& settings, const ChannelRef& depth, int frame) {
   const ExrFile& file = source.files[depth.file];
   const auto attributes = file.attribute_texts(depth.part);
@@ -479,6 +144,7 @@ void find_camera(FrameSource& source, const InputSettings& settings, const Chann
       return;
     }
   source.camera = camera_for(settings, source.display, source.pixel_aspect, frame);
+  if (settings.camera.empty()) place_by_header(source.camera, attributes, source.display);
 }
 
 /// What of the meaning of depth and normals is said, and by whom; the rest is open.
@@ -535,7 +201,7 @@ void read_part(FrameSource& source, const std::vector<PlaneRead>& reads) {
 
 FrameSource find_frame(const InputSettings& settings, bool with_beauty, int frame, bool with_albedo) {
   FrameSource source;
-  Search search(settings, source.files);
+  ChannelSearch search(settings, source.files);
   const std::string& depth_path = !settings.depth.empty()  ? settings.depth
                                   : settings.input.empty() ? settings.position
                                                            : settings.input;
@@ -581,19 +247,11 @@ FrameSource find_frame(const InputSettings& settings, bool with_beauty, int fram
   return source;
 }
 
-ExrFile open_file(const std::string& path, const char* option) {
-  if (is_dds(path)) return {path, option, read_dds(path, option)};
-  const std::string ending = lower_case(path.substr(std::min(path.rfind('.'), path.size())));
-  for (const char* other : {".png", ".tif", ".tiff", ".tga", ".bmp", ".hdr"})
-    if (ending == other) return {path, option, open_picture(path, option)};
-  return ExrFile(path, option);
-}
-
 bool header_has_camera(const InputSettings& settings) {
-  const ExrFile file = open_file(!settings.depth.empty()  ? settings.depth
-                                 : settings.input.empty() ? settings.position
-                                                          : settings.input,
-                                 "INPUT");
+  const ExrFile file = open_image(!settings.depth.empty()  ? settings.depth
+                                  : settings.input.empty() ? settings.position
+                                                           : settings.input,
+                                  "INPUT", Formats::of_frames);
   for (std::size_t part = 0; part < file.parts().size(); part++)
     if (header_camera(file.attribute_texts(int(part)), file.display(), file.parts()[part].data, file.pixel_aspect()))
       return true;

@@ -10,19 +10,12 @@
 
 #include "core/base/settings.h"
 #include "core/formats/exr.h"
+#include "core/frame/channels.h"
 #include "core/frame/input_rules.h"
 #include "core/frame/raw_plane.h"
 #include "core/frame/reading.h"
 
 namespace alcove {
-
-/// One channel of one of the frame's files.
-struct ChannelRef {
-  std::size_t file;
-  int part;
-  std::string channel;
-  auto operator<=>(const ChannelRef&) const = default;
-};
 
 /// Something that neither settings nor camera say.
 struct Guess {
@@ -65,9 +58,6 @@ struct FrameSource : Reading {
 /// Fails with ErrorKind::input, listing what there is and naming the option that decides, when a channel is not found,
 /// is found twice, is subsampled, or has another size than the depth.
 FrameSource find_frame(const InputSettings& settings, bool with_beauty, int frame, bool with_albedo = false);
-
-/// Opens an EXR, a DDS, or another picture by its ending (png, tif, tiff, tga, bmp, hdr). Fails with ErrorKind::input.
-ExrFile open_file(const std::string& path, const char* option);
 
 /// Whether the header of the frame's depth or position file has a camera. Fails as opening it does.
 bool header_has_camera(const InputSettings& settings);

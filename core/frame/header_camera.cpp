@@ -1,4 +1,4 @@
-// Matrices and numbers of headers -> the one projection model.
+// Turns matrices and numbers of headers into the one projection model.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/frame/header_camera.h"
 
@@ -18,6 +18,8 @@ using Vector = std::array<double, 3>;
 using Matrix4 = std::array<std::array<double, 4>, 4>;  // rows, for column vectors
 
 constexpr double kRadian = std::numbers::pi / 180;
+constexpr double kWidest = 180;     // degrees: no plane shows a field of view as wide
+constexpr double kFarthest = 1e29;  // scene units: programs write 1e30 where there is no far plane
 
 double dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 Matrix3 transposed(const Matrix3& m) {
@@ -37,7 +39,7 @@ struct Attributes {
     }
   }
 
-  /// The finite numbers of an attribute; empty unless there are so many and no more.
+  /// Gives the finite numbers of an attribute; none unless there are exactly `count`.
   std::vector<double> numbers(const std::string& name, std::size_t count) const {
     const auto found = texts.find(name);
     if (found == texts.end() || found->second.size() > 2000) return {};
@@ -64,7 +66,7 @@ struct Attributes {
   }
 };
 
-/// A rigid map with uniform scale: to = rotation * from + offset. Rotation may mirror.
+/// A rigid map: to = rotation * from + offset. The rotation may mirror.
 struct Placement {
   Matrix3 rotation;
   Vector offset;
@@ -73,8 +75,8 @@ struct Placement {
 
 enum class To { camera, world };
 
-/// A rigid 4 x 4 matrix in either layout: where the translation stands tells; without one, the standard's row vectors.
-/// A scale is the camera's own.
+/// Reads a rigid 4 x 4 matrix in either layout. The place of the translation tells the layout; without a translation it
+/// is the standard's, for row vectors. A uniform scale is the camera's own and is divided out.
 std::optional<Placement> placement(const std::vector<double>& m, To to) {
   if (m.size() != 16) return std::nullopt;
   const auto ends = [&](std::size_t first, std::size_t step) {
@@ -110,22 +112,78 @@ Placement inverted(const Placement& p) {
   return inverse;
 }
 
-/// The camera looks along -z afterwards.
-void place(Camera& camera, Placement p, bool looks_along_z) {
-  camera.left_handed = looks_along_z;
-  if (looks_along_z) {
-    for (double& x : p.rotation[2]) x = -x;
-    p.offset[2] = -p.offset[2];
+/// Where a header says that its camera stands.
+struct Pose {
+  Placement view;  // camera space from the world
+  bool looks_along_z;
+  const char* from;  // the attribute
+};
+
+/// Puts the camera there, in a camera space that looks along -z.
+void place(Camera& camera, Pose pose) {
+  camera.left_handed = pose.looks_along_z;
+  if (pose.looks_along_z) {
+    for (double& x : pose.view.rotation[2]) x = -x;
+    pose.view.offset[2] = -pose.view.offset[2];
   }
-  camera.view_from_world = p.rotation;
-  camera.view_from_world_offset = p.offset;
+  camera.view_from_world = pose.view.rotation;
+  camera.view_from_world_offset = pose.view.offset;
+}
+
+/// The matrix without its projection. The standard's camera space is left-handed and looks along +z, which mirrors a
+/// right-handed world, as renderers' worlds are; programs whose camera space is right-handed look along -z.
+std::optional<Pose> standard_pose(const Attributes& a) {
+  const auto view = placement(a.numbers("worldToCamera", 16), To::camera);
+  if (!view) return std::nullopt;
+  return Pose{*view, determinant(view->rotation) < 0, "worldToCamera"};
+}
+
+std::optional<Pose> redshift_pose(const Attributes& a) {
+  const auto world = placement(a.numbers("rs/camera/transform", 16), To::world);
+  if (!world) return std::nullopt;
+  return Pose{inverted(*world), true, "rs/camera/transform"};
+}
+
+std::optional<Pose> vray_pose(const Attributes& a) {
+  const auto world = placement(a.numbers("cameraTransform", 16), To::world);
+  if (!world) return std::nullopt;
+  return Pose{inverted(*world), false, "cameraTransform"};
+}
+
+/// Angles of a left-handed world with z up, x forward and y right: yaw turns x to y, pitch raises, roll lowers the
+/// right side.
+std::optional<Pose> unreal_pose(const Attributes& a) {
+  const auto x = a.number("unreal/camera/curPos/x");
+  const auto y = a.number("unreal/camera/curPos/y");
+  const auto z = a.number("unreal/camera/curPos/z");
+  const auto yaw = a.number("unreal/camera/curRot/yaw");
+  const auto pitch = a.number("unreal/camera/curRot/pitch");
+  const auto roll = a.number("unreal/camera/curRot/roll");
+  if (!x || !y || !z || !yaw || !pitch || !roll) return std::nullopt;
+  const double cos_yaw = std::cos(*yaw * kRadian), sin_yaw = std::sin(*yaw * kRadian);
+  const double cos_pitch = std::cos(*pitch * kRadian), sin_pitch = std::sin(*pitch * kRadian);
+  const double cos_roll = std::cos(*roll * kRadian), sin_roll = std::sin(*roll * kRadian);
+  const Vector forward{cos_pitch * cos_yaw, cos_pitch * sin_yaw, sin_pitch};
+  const Vector level{-sin_yaw, cos_yaw, 0};
+  const Vector above{-sin_pitch * cos_yaw, -sin_pitch * sin_yaw, cos_pitch};
+  Placement view{};
+  for (std::size_t i = 0; i < 3; i++) {
+    view.rotation[0][i] = cos_roll * level[i] - sin_roll * above[i];
+    view.rotation[1][i] = sin_roll * level[i] + cos_roll * above[i];
+    view.rotation[2][i] = -forward[i];
+  }
+  for (std::size_t row = 0; row < 3; row++) view.offset[row] = -dot(view.rotation[row], {*x, *y, *z});
+  return Pose{view, false, "unreal/camera"};
 }
 
 Camera centred(const Window& display, double fx, double pixel_aspect) {
   Camera camera;
-  camera.width = display.width, camera.height = display.height;
-  camera.fx = fx, camera.fy = fx * pixel_aspect;
-  camera.cx = 0.5 * display.width, camera.cy = 0.5 * display.height;
+  camera.width = display.width;
+  camera.height = display.height;
+  camera.fx = fx;
+  camera.fy = fx * pixel_aspect;
+  camera.cx = 0.5 * display.width;
+  camera.cy = 0.5 * display.height;
   return camera;
 }
 
@@ -137,7 +195,7 @@ struct Axis {
   double along, shift;
 };
 
-/// From what worldToNDC does to points of camera space.
+/// Finds the projection from what worldToNDC does to points of camera space.
 std::optional<Camera> projected(const Placement& view, const std::vector<double>& values, const Window& display) {
   if (values.size() != 16) return std::nullopt;
   Matrix4 ndc{};
@@ -153,8 +211,10 @@ std::optional<Camera> projected(const Placement& view, const std::vector<double>
     p[row][3] = dot(of_world, world.offset) + ndc[row][3];
   }
   Camera camera;
-  camera.width = display.width, camera.height = display.height;
-  const double depth_scale = p[3][2], largest = std::max({std::abs(p[3][0]), std::abs(p[3][1]), std::abs(p[3][2])});
+  camera.width = display.width;
+  camera.height = display.height;
+  const double depth_scale = p[3][2];
+  const double largest = std::max({std::abs(p[3][0]), std::abs(p[3][1]), std::abs(p[3][2])});
   camera.orthographic = largest < 1e-6 * std::abs(p[3][3]);
   const bool looks_along_z = camera.orthographic ? p[2][2] / p[3][3] > 0 : depth_scale > 0;
   const auto axis = [&](std::size_t row) {
@@ -171,7 +231,7 @@ std::optional<Camera> projected(const Placement& view, const std::vector<double>
   camera.cx = (x.shift + origin) * scale * display.width;
   const double down = (y.shift + origin) * scale;  // from the side that y counts from
   camera.cy = (y.along < 0 ? down : 1 - down) * display.height;
-  place(camera, view, looks_along_z);
+  place(camera, {view, looks_along_z, ""});
   return camera;
 }
 
@@ -180,52 +240,38 @@ std::optional<HeaderCamera> by_matrices(const Attributes& a, const Window& displ
   if (!view) return std::nullopt;
   auto camera = projected(*view, a.numbers("worldToNDC", 16), display);
   if (!camera) return std::nullopt;
-  camera->near = a.positive("arnold/camera/near_clip"), camera->far = a.positive("arnold/camera/far_clip", 1e29);
+  camera->near = a.positive("arnold/camera/near_clip");
+  camera->far = a.positive("arnold/camera/far_clip", kFarthest);
   return HeaderCamera{*camera, "worldToCamera, worldToNDC"};
 }
 
 std::optional<HeaderCamera> by_redshift(const Attributes& a, const Window& display, double pixel_aspect) {
-  const auto fov = a.positive("rs/camera/fov", 180);
+  const auto fov = a.positive("rs/camera/fov", kWidest);
   if (!fov) return std::nullopt;
   Camera camera = centred(display, focal_px(display.width, *fov), pixel_aspect);
-  if (const auto world = placement(a.numbers("rs/camera/transform", 16), To::world))
-    place(camera, inverted(*world), true);
-  camera.near = a.positive("rs/camera/nearPlane"), camera.far = a.positive("rs/camera/farPlane");
+  if (const auto pose = redshift_pose(a)) place(camera, *pose);
+  camera.near = a.positive("rs/camera/nearPlane");
+  camera.far = a.positive("rs/camera/farPlane");
   return HeaderCamera{camera, "rs/camera"};
 }
 
-/// Left-handed, z up, x forward, y right; yaw turns x to y, pitch raises, roll lowers the right side.
 std::optional<HeaderCamera> by_unreal(const Attributes& a, const Window& display, const Window& data,
                                       double pixel_aspect) {
-  const std::string root = "unreal/camera/";
-  std::optional<double> fov = a.positive(root + "FinalImage/fov", 180);
-  if (!fov) fov = a.positive(root + "fov", 180);
+  std::optional<double> fov = a.positive("unreal/camera/FinalImage/fov", kWidest);
+  if (!fov) fov = a.positive("unreal/camera/fov", kWidest);
   if (!fov) return std::nullopt;
   Camera camera = centred(display, focal_px(std::max(data.width, display.width), *fov), pixel_aspect);
-  const auto x = a.number(root + "curPos/x"), y = a.number(root + "curPos/y"), z = a.number(root + "curPos/z");
-  const auto yaw = a.number(root + "curRot/yaw"), pitch = a.number(root + "curRot/pitch"),
-             roll = a.number(root + "curRot/roll");
-  if (x && y && z && yaw && pitch && roll) {
-    const double cy = std::cos(*yaw * kRadian), sy = std::sin(*yaw * kRadian), cp = std::cos(*pitch * kRadian),
-                 sp = std::sin(*pitch * kRadian);
-    const double cr = std::cos(*roll * kRadian), sr = std::sin(*roll * kRadian);
-    const Vector forward{cp * cy, cp * sy, sp}, level{-sy, cy, 0}, above{-sp * cy, -sp * sy, cp};
-    Placement p{};
-    for (std::size_t i = 0; i < 3; i++)
-      p.rotation[0][i] = cr * level[i] - sr * above[i], p.rotation[1][i] = sr * level[i] + cr * above[i],
-      p.rotation[2][i] = -forward[i];
-    for (std::size_t row = 0; row < 3; row++) p.offset[row] = -dot(p.rotation[row], {*x, *y, *z});
-    place(camera, p, false);
-  }
+  if (const auto pose = unreal_pose(a)) place(camera, *pose);
   return HeaderCamera{camera, "unreal/camera"};
 }
 
 std::optional<HeaderCamera> by_vray(const Attributes& a, const Window& display, double pixel_aspect) {
-  const auto fov = a.positive("cameraFov", 180);
+  const auto fov = a.positive("cameraFov", kWidest);
   if (!fov) return std::nullopt;
   Camera camera = centred(display, focal_px(display.width, *fov), pixel_aspect);
-  if (const auto world = placement(a.numbers("cameraTransform", 16), To::world)) place(camera, inverted(*world), false);
-  camera.near = a.positive("cameraNearClip"), camera.far = a.positive("cameraFarClip", 1e29);
+  if (const auto pose = vray_pose(a)) place(camera, *pose);
+  camera.near = a.positive("cameraNearClip");
+  camera.far = a.positive("cameraFarClip", kFarthest);
   return HeaderCamera{camera, "cameraTransform, cameraFov"};
 }
 
@@ -245,8 +291,7 @@ std::optional<HeaderCamera> by_standard(const Attributes& a, const Window& displ
     found = {centred(display, display.width * *focal / sensor[0], pixel_aspect),
              "focal length, sensorOverallDimensions"};
   }
-  if (const auto view = placement(a.numbers("worldToCamera", 16), To::camera); found && view)
-    place(found->camera, *view, true);
+  if (const auto pose = standard_pose(a); found && pose) place(found->camera, *pose);
   return found;
 }
 
@@ -260,10 +305,28 @@ std::optional<HeaderCamera> header_camera(const AttributeTexts& attributes, cons
   if (!found) found = by_unreal(a, display, data, pixel_aspect);
   if (!found) found = by_vray(a, display, pixel_aspect);
   if (!found) found = by_standard(a, display, pixel_aspect);
-  // of numbers only: NaN is not
+  // A comparison with NaN is false.
   const auto fine = [](double scale, double center) { return scale > 1e-6 && scale < 1e12 && std::abs(center) < 1e9; };
   return found && fine(found->camera.fx, found->camera.cx) && fine(found->camera.fy, found->camera.cy) ? found
                                                                                                        : std::nullopt;
+}
+
+void place_by_header(Camera& camera, const AttributeTexts& attributes, const Window& display) {
+  const Attributes a(attributes);
+  // With its projection, the matrix tells by itself which way the camera looks.
+  if (const auto whole = by_matrices(a, display)) {
+    camera.view_from_world = whole->camera.view_from_world;
+    camera.view_from_world_offset = whole->camera.view_from_world_offset;
+    camera.left_handed = whole->camera.left_handed;
+    camera.placement_from = "worldToCamera";
+    return;
+  }
+  for (const auto& pose_of : {redshift_pose, unreal_pose, vray_pose, standard_pose})
+    if (const auto pose = pose_of(a)) {
+      place(camera, *pose);
+      camera.placement_from = pose->from;
+      return;
+    }
 }
 
 void require_no_panorama(const AttributeTexts& attributes, const std::string& path) {

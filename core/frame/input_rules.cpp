@@ -21,9 +21,8 @@ std::optional<DepthKind> depth_kind_of(const std::string& word) {
 }
 
 std::optional<NormalSpace> normal_space_of(const std::string& word) {
-  return word == "world"  ? std::optional(NormalSpace::world)
-         : word == "view" ? std::optional(NormalSpace::view)
-                          : std::nullopt;
+  if (word == "world") return NormalSpace::world;
+  return word == "view" ? std::optional(NormalSpace::view) : std::nullopt;
 }
 
 std::optional<NormalEncoding> normal_encoding_of(const std::string& word) {
@@ -50,20 +49,24 @@ std::vector<AovCandidate> candidates_of(const std::vector<std::string>& words) {
 bool fits(std::string_view text, std::string_view pattern) {
   std::size_t t = 0, p = 0, star = pattern.npos, resume = 0;
   while (t < text.size()) {
-    if (p < pattern.size() && pattern[p] == '*')
-      star = p++, resume = t;
-    else if (p < pattern.size() && pattern[p] == text[t])
-      p++, t++;
-    else if (star != pattern.npos)
-      p = star + 1, t = ++resume;
-    else
+    if (p < pattern.size() && pattern[p] == '*') {
+      star = p++;
+      resume = t;
+    } else if (p < pattern.size() && pattern[p] == text[t]) {
+      p++;
+      t++;
+    } else if (star != pattern.npos) {
+      p = star + 1;
+      t = ++resume;
+    } else {
       return false;
+    }
   }
   return pattern.find_first_not_of('*', p) == pattern.npos;
 }
 
-/// What identifies a file: attributes as "name" and "name=value", channels as "channel:name"; in lower case. Nuke puts
-/// prefixes before others' attributes.
+/// Lists what identifies a file, in lower case: attributes as "name" and "name=value", channels as "channel:name". Nuke
+/// puts prefixes before others' attributes.
 std::vector<std::string> marks_of(const ExrFile& file) {
   constexpr std::size_t kLongest = 200;  // characters of a mark that count
   std::vector<std::string> marks;

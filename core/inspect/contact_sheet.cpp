@@ -11,14 +11,14 @@
 #include "core/chain/chain.h"
 #include "core/chain/compute.h"
 #include "core/formats/image_io.h"
+#include "core/formats/png.h"
 #include "core/frame/evidence.h"
 #include "core/frame/input_files.h"
 
 namespace alcove {
 namespace {
 
-constexpr std::array kSkyColor{0.74f, 0.4f, 0.36f};  // display values; no grey, and no normal that faces the camera
-constexpr float kMostSky = 1e29f;                    // depth from there on is sky
+constexpr float kMostSky = 1e29f;  // depth from there on is sky
 
 /// The surfaces' depths that 1 %, 50 % and 99 % of them do not reach; 1 where there is none.
 std::array<double, 3> percentiles(std::span<const float> depth) {

@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kStep = 0.1;     // relative change of depth that is an edge
 constexpr double kSmooth = 0.02;  // relative change within a surface
-constexpr double kBetween = 0.1;  // of a step: nearer to one of its sides a value belongs to that surface
+constexpr double kBetween = 0.1;  // part of a step within which a value belongs to the surface on that side
 constexpr int kLeastEdges = 100;
 constexpr double kMostBlended = 0.3;     // of the edges; thin things give some by themselves
 constexpr double kMostShortened = 0.02;  // of the normals
@@ -67,7 +67,7 @@ double blended_edges(std::span<const float> planar, int width) {
         continue;
       const double place = (here - before) / (after - before);
       if (place > kBetween && place < 1 - kBetween) blended++;
-      // an edge without a pixel in between is seen from both of its sides: counted once
+      // An edge without a pixel in between is seen from both of its sides, and is counted once.
       else if (place <= kBetween)
         sharp++;
     }

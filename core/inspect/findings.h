@@ -10,15 +10,16 @@
 
 namespace alcove {
 
-/// A sentence each: anti-aliased depth, shortened normals, channels that a lossy codec has damaged, parts that are cut
-/// short or have other windows, overscan and crops. `depth` and `normal` are as read, of a settled frame.
+/// Gives one sentence for each finding: anti-aliased depth, shortened normals, channels that a lossy codec has damaged,
+/// parts that are cut short or have other windows, overscan and crops. `depth` and `normal` are as read, of a settled
+/// frame.
 std::vector<std::string> findings(FrameSource& source, std::span<const float> depth, std::span<const float> normal);
 
 /// Whether the normals are vectors in x, y and z, which have a length to look at.
 bool has_lengths(const FrameSource& source);
 
-/// Of the rows' steps from one surface to another, the share that takes a pixel in between: near 0 for point samples,
-/// near 1 where pixels were averaged. `planar` is infinite on sky. 0 where there are too few steps to tell.
+/// Gives the share of the rows' steps from one surface to another that take a pixel in between. It is near 0 for point
+/// samples, near 1 where pixels were averaged, and 0 if there are too few steps to tell. `planar` is infinite on sky.
 double blended_edges(std::span<const float> planar, int width);
 
 }  // namespace alcove

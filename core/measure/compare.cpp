@@ -3,6 +3,7 @@
 #include "core/measure/compare.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <functional>
@@ -15,15 +16,22 @@
 #include "core/frame/gbuffer.h"
 #include "core/measure/flicker.h"
 #include "core/measure/flip.h"
-#include "core/measure/report_images.h"
+#include "core/measure/report.h"
 
 namespace alcove {
 namespace {
 
-/// A path's pattern; a file of that very name is none.
+/// Gives the path's pattern; a file of that very name is none.
 std::optional<FramePattern> pattern_of(const std::string& path) {
   std::error_code error;
   return std::filesystem::exists(path, error) ? std::nullopt : frame_pattern(path);
+}
+
+/// Pointers to all files of the settings, each of which may be empty.
+template <class Settings>
+auto files_of(Settings& settings) {
+  return std::array{&settings.result, &settings.reference, &settings.reference_b,
+                    &settings.mask,   &settings.depth,     &settings.motion};
 }
 
 std::string path_of(const std::string& path, int frame) {
@@ -32,13 +40,11 @@ std::string path_of(const std::string& path, int frame) {
 }
 
 CompareSettings settings_of_frame(CompareSettings settings, int frame) {
-  for (std::string* path : {&settings.result, &settings.reference, &settings.reference_b, &settings.mask,
-                            &settings.depth, &settings.motion})
-    *path = path_of(*path, frame);
+  for (auto* path : files_of(settings)) *path = path_of(*path, frame);
   return settings;
 }
 
-/// The frames of the comparison; all their files are there.
+/// Gives the frames of the comparison, all of whose files are there.
 std::vector<int> frames_of(const CompareSettings& settings) {
   const auto result = pattern_of(settings.result);
   if (!result)
@@ -46,8 +52,7 @@ std::vector<int> frames_of(const CompareSettings& settings) {
          "{}: it has no place for a frame number, such as %04d or ####; the other files or --frames ask for a sequence",
          settings.result);
   std::vector<int> frames = settings.frames.empty() ? frames_on_disk(*result, "RESULT") : parse_frames(settings.frames);
-  for (const std::string* path : {&settings.result, &settings.reference, &settings.reference_b, &settings.mask,
-                                  &settings.depth, &settings.motion}) {
+  for (const std::string* path : files_of(settings)) {
     const auto pattern = pattern_of(*path);
     std::vector<int> missing;
     if (pattern)
@@ -60,8 +65,7 @@ std::vector<int> frames_of(const CompareSettings& settings) {
 
 bool is_sequence(const CompareSettings& settings) {
   if (!settings.frames.empty()) return true;
-  for (const std::string* path : {&settings.result, &settings.reference, &settings.reference_b, &settings.mask,
-                                  &settings.depth, &settings.motion})
+  for (const std::string* path : files_of(settings))
     if (!path->empty() && pattern_of(*path)) return true;
   return false;
 }
@@ -117,7 +121,7 @@ std::size_t mask_channel_of(const Picture& picture, const std::string& chosen) {
        list_of(picture.names()));
 }
 
-/// Where pixels are to be compared: by the mask's file and the depth's sky; empty for everywhere.
+/// Marks the pixels to be compared, by the mask's file and the depth's sky; empty if all are.
 std::vector<std::uint8_t> read_mask(const CompareSettings& settings, const Window& data, Values depth) {
   std::vector<std::uint8_t> mask = surfaces(depth, settings.sky);
   if (settings.mask.empty()) return mask;

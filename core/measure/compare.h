@@ -11,15 +11,15 @@
 
 namespace alcove {
 
-/// Every file may be an EXR or any other picture (depth: EXR only), and a pattern of core/formats/sequence.h; one that
-/// is none serves all frames.
+/// Every file may be of any format that open_image() reads, and a pattern of core/formats/sequence.h. A file that is no
+/// pattern serves all frames.
 struct CompareSettings {
   std::string result, reference;
   std::string reference_b;  // a second render of the reference with independent noise; empty: none
   std::string channels;     // see match_channels(); empty: those that both have
-  // pixels where it is above 0 are compared; without a channel name: its only one, or its alpha
+  // Pixels where the mask is above 0 are compared. Without a name, its only channel is taken, or its alpha.
   std::string mask, mask_channel;
-  std::string depth, depth_channel;     // where it is sky is not compared; gives the edges
+  std::string depth, depth_channel;     // sky is not compared, and edges are found
   double sky = 1e9;                     // depth at or beyond it is sky, as are 0, infinity and NaN; > 0
   std::string motion, motion_channels;  // "X,Y"; empty: Vector.X, Vector.Y. See ErrorFrame for the convention
   std::string frames;                   // a list; empty: those of the result that are on the disk
@@ -55,24 +55,24 @@ struct CompareReport {
   std::optional<double> flicker;        // where two frames follow each other
 };
 
-/// Of a sequence this many frames keep their pictures, those with the largest rmse.
+/// How many frames of a sequence keep their pictures: those with the largest rmse.
 inline constexpr std::size_t kMostPicturedFrames = 12;
 
-/// Fails with ErrorKind::usage on settings that contradict each other, and with ErrorKind::input on missing and
-/// unreadable files, on pictures that do not cover the same pixels or share no channel, and when no pixel is left to
-/// compare.
+/// Reads and measures the frames. Fails with ErrorKind::usage on settings that contradict each other, and with
+/// ErrorKind::input on missing and unreadable files, on pictures that do not cover the same pixels or share no channel,
+/// and when no pixel is left to compare.
 CompareReport compare_pictures(const CompareSettings& settings);
 
 /// The frame with the largest rmse.
 const FrameComparison& worst_frame(const CompareReport& report);
 
-/// Each holds for every frame of a sequence.
+/// Limits, each of which holds for every frame of a sequence.
 struct CompareLimits {
   std::optional<double> max_rmse, max_p99, min_ssim, max_flip;
   std::optional<double> max_bias;  // of its size
 };
 
-/// A sentence for each limit that is broken: what was measured, where, and what was allowed.
+/// Gives a sentence for each limit that is broken, with what was measured, where, and what was allowed.
 std::vector<std::string> broken_limits(const CompareReport& report, const CompareLimits& limits);
 
 /// See the README for the fields.

@@ -1,4 +1,4 @@
-// What a comparison is written as: JSON, a page; and the check against limits.
+// Writes a comparison as JSON and as a page, and checks it against limits.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <array>
@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
+#include "core/base/json_text.h"
 #include "core/measure/compare.h"
 #include "core/measure/report.h"
 
@@ -19,9 +20,7 @@ using Json = nlohmann::ordered_json;
 /// JSON has no infinity and no NaN.
 Json number(std::optional<double> value) { return value && std::isfinite(*value) ? Json(*value) : Json(nullptr); }
 
-std::string dump(const Json& json) { return json.dump(1, ' ', false, Json::error_handler_t::replace); }
-
-/// One measure of a frame; NaN where it could not be taken.
+/// Takes one measure of a frame; NaN if it could not be taken.
 struct Measure {
   const char* name;
   double (*of)(const FrameComparison&);
@@ -145,7 +144,7 @@ std::string compare_json(const CompareReport& report, const std::vector<std::str
   json["broken"] = broken;
   if (report.is_sequence)
     for (const auto& frame : report.frames) json["frames"].push_back(frame_json(frame));
-  return dump(json);
+  return json_text(json, 1);
 }
 
 std::string compare_page(const CompareReport& report) {
@@ -176,13 +175,14 @@ std::string compare_page(const CompareReport& report) {
                         {"error", frame.pictures->error}});
   }
   const std::string title = name + " against " + std::filesystem::path(report.reference).filename().string();
-  return report_page(dump({{"title", title},
-                           {"kind", "compare"},
-                           {"device", nullptr},
-                           {"yardstick_ms", nullptr},
-                           {"candidates", Json::array({candidate})},
-                           {"rows", rows},
-                           {"images", images}}));
+  return report_page(json_text({{"title", title},
+                                {"kind", "compare"},
+                                {"device", nullptr},
+                                {"yardstick_ms", nullptr},
+                                {"candidates", Json::array({candidate})},
+                                {"rows", rows},
+                                {"images", images}},
+                               1));
 }
 
 }  // namespace alcove

@@ -8,14 +8,14 @@
 
 namespace alcove {
 
-/// What two consecutive frames are told apart by. All planes are of one size, row by row.
+/// The errors of one frame of a sequence. All planes are of one size, row by row.
 struct ErrorFrame {
   int width = 0, height = 0;
   std::vector<float> error;        // result - reference; one or several planes
   std::vector<float> error_b;      // result - a second, independently noisy reference; empty where there is none
-  std::vector<std::uint8_t> mask;  // a pixel; 0 where it does not count
+  std::vector<std::uint8_t> mask;  // one per pixel; 0 where it does not count
   std::vector<float> depth;        // empty: not known
-  // place in the previous frame minus place here, in pixels, y up (Blender's Vector); empty: nothing moves
+  // The place in the previous frame minus the place here, in pixels, y up (as Blender's Vector); empty: nothing moves.
   std::vector<float> motion_x, motion_y;
 };
 
@@ -23,9 +23,9 @@ struct ErrorFrame {
 /// a surface, and for any movement that the reference makes too. With two references it is free of their noise, as
 /// unbiased_rmse() is.
 ///
-/// With motion, the same surface is at the nearest pixel to the motion's place; taken as it is, since interpolation
-/// would hide noise. A pixel is left out where it or its earlier place does not count or is outside, where the motion
-/// is not finite, and where the two depths differ by more than kDepthStep.
+/// With motion, the same surface is at the pixel that is nearest to the motion's place. That pixel is taken as it is,
+/// since interpolation would hide noise. A pixel is left out where it or its earlier place does not count or is
+/// outside, where the motion is not finite, and where the two depths differ by more than kDepthStep.
 class Flicker {
  public:
   /// Adds two consecutive frames, of one size and with the same planes.

@@ -7,7 +7,7 @@
 #include <functional>
 #include <numbers>
 
-#include "core/measure/convolution.h"
+#include "core/measure/metrics.h"
 
 namespace alcove {
 namespace {
@@ -46,7 +46,7 @@ Triple xyz_of(double x, double y) { return {x / y, 1, (1 - x - y) / y}; }
 /// D65, rounded as in the FLIP papers' conversion of sRGB.
 const Triple kWhite = xyz_of(0.31271, 0.32902);
 
-/// From linear Rec.709 to XYZ: the primaries, each as bright as makes their sum white.
+/// Converts linear Rec.709 to XYZ. The primaries are as bright as makes their sum white.
 Matrix make_xyz_from_rgb() {
   const std::array<Triple, 3> primaries{xyz_of(0.64, 0.33), xyz_of(0.30, 0.60), xyz_of(0.15, 0.06)};
   Matrix columns{};
@@ -220,7 +220,7 @@ double untone_mapped(double t) {
   return (-b + std::sqrt(b * b - 4 * a * c)) / (2 * a);
 }
 
-/// What HDR-FLIP takes in: light cannot be negative, and half floats end there.
+/// Clamps to the range that HDR-FLIP takes: light cannot be negative, and half floats end there.
 double light(float value) { return std::clamp(double(value), 0.0, 65536.0); }
 
 /// The least luminance that the exposures are fitted to, so that a black reference or a black half of it has a finite

@@ -14,8 +14,8 @@ namespace alcove {
 
 /// Values of one plane, row by row; or of several planes, one behind the other.
 using Values = std::span<const float>;
-/// Not 0 where a pixel counts; empty: all do. For one plane: where the values are several planes it holds for each of
-/// them.
+/// Not 0 where a pixel counts; if it is empty, all do. It is of one plane; where the values are several planes, it
+/// holds for each of them.
 using Mask = std::span<const std::uint8_t>;
 
 /// All sums are in double. The error of a value is result - reference.
@@ -29,8 +29,9 @@ struct PlaneErrors {
   double p95 = 0, p99 = 0;  // interpolated linearly between the two nearest ranks
 };
 
-/// Fails with ErrorKind::input when no value is left to compare. With a `reference_b`, whose noise is independent of
-/// the reference's, the reference is the mean of the two and rmse is free of their noise: see unbiased_rmse().
+/// Measures the errors. Fails with ErrorKind::input if no value is left to compare. With a `reference_b`, whose noise
+/// is independent of the reference's, the reference is the mean of the two and rmse is free of their noise: see
+/// unbiased_rmse().
 PlaneErrors compare_planes(Values result, Values reference, Mask mask = {}, Values reference_b = {});
 
 /// sqrt(max(0, mean((t - a)(t - b)))): with independent noise in a and b of mean 0, the RMSE of t against what both
@@ -40,11 +41,11 @@ double unbiased_rmse(Values result, Values reference_a, Values reference_b, Mask
 /// 20 log10(peak / rmse), in dB; infinite for an rmse of 0.
 double psnr(double rmse, double peak = 1);
 
-/// Planes made ready for what looks at neighbourhoods too (ssim, FLIP): all finite, and equal where a pixel does not
-/// count, so that such a pixel adds no error to its neighbours.
+/// Planes made ready for measures that look at neighbourhoods too (ssim, FLIP): they are finite, and equal where a
+/// pixel does not count, so that such a pixel adds no error to its neighbours.
 struct Comparable {
   std::vector<float> result, reference, reference_b;  // reference_b: empty where there is none
-  std::vector<std::uint8_t> mask;                     // a pixel; 1 where all its values are compared
+  std::vector<std::uint8_t> mask;                     // one per pixel; 1 where all its values are compared
   std::size_t count = 0;                              // pixels that are compared
   std::size_t excluded = 0;  // pixels that the mask leaves in and a NaN or an infinity leaves out
   std::size_t masked = 0;    // pixels that the mask leaves out
@@ -75,7 +76,8 @@ struct BandErrors {
   PartErrors errors;
 };
 
-/// By darkness of the reference: [0, .25), [.25, .5), [.5, .75), [.75, 1]. As compare_planes(), but bands may be empty.
+/// Measures the errors by darkness of the reference: [0, .25), [.25, .5), [.5, .75), [.75, 1]. It is like
+/// compare_planes(), but bands may be empty.
 std::array<BandErrors, 4> darkness_bands(Values result, Values reference, Mask mask = {}, Values reference_b = {});
 
 /// A step between neighbours of more than this part of the nearer depth is an edge.
@@ -83,16 +85,27 @@ inline constexpr double kDepthStep = 0.1;
 /// A pixel is at an edge when one of the step's two pixels is at most this far from it in x and in y.
 inline constexpr int kEdgeReach_px = 2;
 
-/// 1 at depth edges. Depth is planar and positive; at or beyond `sky`, and where it is not finite or not positive, it
-/// is sky: a step to any surface.
+/// Gives 1 at depth edges. Depth is planar and positive; at or beyond `sky`, and where it is not finite or not
+/// positive, it is sky: a step to any surface.
 std::vector<std::uint8_t> depth_edges(int width, int height, Values depth, double sky);
-/// 1 where there is a surface.
+/// Gives 1 where there is a surface.
 std::vector<std::uint8_t> surfaces(Values depth, double sky);
 
-/// Errors at depth edges and away from them. As compare_planes(), but either may be empty.
+/// Errors at depth edges and away from them; either part may be empty.
 struct EdgeErrors {
   PartErrors at, away;
 };
 EdgeErrors edge_errors(Mask edges, Values result, Values reference, Mask mask = {}, Values reference_b = {});
+
+// Separable filters, in double precision.
+
+/// Correlates the plane (width x height, row by row) with `along_x` in its rows, then with `along_y` in its columns.
+/// The kernels have an odd number of weights, the middle one for the pixel itself. Outside, the border's pixels are
+/// repeated.
+std::vector<double> convolve(int width, int height, std::span<const double> plane, std::span<const double> along_x,
+                             std::span<const double> along_y);
+
+/// exp(-x^2 / (2 sigma^2)) for x from -radius to radius, sum 1. Units: pixels, both above 0.
+std::vector<double> gaussian_kernel(double sigma, int radius);
 
 }  // namespace alcove

@@ -1,13 +1,38 @@
-// Puts the report's JSON into the page that the build has made of report/.
+// Puts the report's JSON and pictures into the page that the build has made of report/.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/measure/report.h"
 
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "core/formats/image_io.h"
+#include "core/formats/png.h"
 #include "core/measure/report_template.h"
 
 namespace alcove {
 namespace {
 
 constexpr std::string_view kJsonMark = "{{report.json}}";
+
+std::string base64(std::span<const char> bytes) {
+  constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  text.reserve((bytes.size() + 2) / 3 * 4);
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    std::uint32_t group = 0;
+    const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
+    for (std::size_t k = 0; k < 3; k++)
+      group = group << 8 | (k < count ? static_cast<unsigned char>(bytes[i + k]) : 0u);
+    for (std::size_t k = 0; k < 4; k++) text += k <= count ? kDigits[group >> (18 - 6 * k) & 63] : '=';
+  }
+  return text;
+}
+
+std::string url_of(int width, int height, int channels, std::span<const float> pixels) {
+  return "data:image/png;base64," + base64(encode_png("picture", width, height, channels, pixels));
+}
 
 }  // namespace
 
@@ -28,6 +53,29 @@ std::string report_page(const std::string& json) {
   }
   text += page.substr(mark + kJsonMark.size());
   return text;
+}
+
+std::string grey_picture(int width, int height, std::span<const float> values) {
+  return url_of(width, height, 1, values);
+}
+
+std::string color_picture(int width, int height, std::span<const float> rgb) { return url_of(width, height, 3, rgb); }
+
+std::string error_picture(int width, int height, std::span<const float> result, std::span<const float> reference) {
+  std::vector<float> rgb;
+  rgb.reserve(3 * result.size());
+  for (std::size_t i = 0; i < result.size(); i++) {
+    const float error = (result[i] - reference[i]) / kFullColorError;
+    const float size = std::min(1.0f, std::abs(error));
+    if (!std::isfinite(error)) rgb.insert(rgb.end(), {0.5f, 0.5f, 0.5f});
+    // towards a blue of (0.13, 0.4, 0.67)
+    else if (error < 0)
+      rgb.insert(rgb.end(), {1 - 0.87f * size, 1 - 0.6f * size, 1 - 0.33f * size});
+    // towards a red of (0.7, 0.09, 0.17)
+    else
+      rgb.insert(rgb.end(), {1 - 0.3f * size, 1 - 0.91f * size, 1 - 0.83f * size});
+  }
+  return color_picture(width, height, rgb);
 }
 
 }  // namespace alcove

@@ -2,13 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <span>
 #include <string>
 
 namespace alcove {
 
 /// One HTML file that fetches nothing: styles, scripts and libraries (report/) are inside, and so is `json`.
 ///
-/// `json`: valid JSON in UTF-8 (nlohmann::json::dump with error_handler_t::replace makes it so from any file name).
+/// `json`: valid JSON in UTF-8, as json_text() makes it.
 /// Every string may be hostile: the page shows strings as text only. Members, all needed unless said otherwise:
 ///
 ///   "title"         string
@@ -31,7 +32,7 @@ namespace alcove {
 ///                   three are of one size.
 ///                   "truth" may be null or absent where another image of the same frame has it, so that a frame's
 ///                   truth is stored once.
-///                   "error" is result - truth in the colours of error_picture() (report_images.h), which the page's
+///                   "error" is result - truth in the colours of error_picture(), which the page's
 ///                   legend explains.
 ///   "frames"        optional list of {"name": string, "yardstick_ms": number or null}: a frame's own yardstick, where
 ///   frames differ in size;
@@ -39,5 +40,18 @@ namespace alcove {
 ///
 /// Numbers that are not finite must be null, as JSON has no others.
 std::string report_page(const std::string& json);
+
+// Pictures for the page: planes as "data:image/png;base64,..." URLs.
+
+/// The size of an error that has full colour: blue where the result is too dark, red where it is too bright, white at
+/// 0.
+inline constexpr float kFullColorError = 0.25f;
+
+/// Width x height values in [0, 1] as grey, as they are: AO is data.
+std::string grey_picture(int width, int height, std::span<const float> values);
+/// Interleaved r, g, b display values.
+std::string color_picture(int width, int height, std::span<const float> rgb);
+/// result - reference in colours; grey where the difference is not finite.
+std::string error_picture(int width, int height, std::span<const float> result, std::span<const float> reference);
 
 }  // namespace alcove

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "core/base/text.h"
 #include "core/run/frame_files.h"
 #include "core/run/memory_plan.h"
 #include "core/run/plan.h"
@@ -25,7 +26,7 @@ std::string plan_text(const Settings& settings) {
   const FramePlan plan(settings);
   std::string text;
   const auto line = [&](const std::string& name, const std::string& value) {
-    text += fmt::format("{:<14}{}\n", name, value);
+    text += printable(fmt::format("{:<14}{}", name, value)) + "\n";
   };
   line("frames",
        plan.frames().empty() ? "none" : fmt::format("{}: {}", plan.frames().size(), frames_text(plan.frames())));

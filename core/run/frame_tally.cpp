@@ -51,7 +51,8 @@ void FrameTally::finish(const FrameSource& source, const EstimatorSettings& sett
   report_.repaired_pixels =
       counts_.repaired_depth + counts_.repaired_normals + counts_.repaired_material + counts_.repaired_beauty;
   if (has_ao_) {
-    report_.notes = sample_.notes(settings, source.file_data.width, source.file_data.height);
+    const std::vector<double> radii = radii_of(settings);
+    report_.notes = sample_.notes(radii.front(), radii.back(), source.file_data.width, source.file_data.height);
     report_.samples_per_pixel =
         samples_per_pixel(settings) * double(report_.pixels - report_.sky_pixels) / double(report_.pixels);
   }

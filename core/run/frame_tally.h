@@ -6,8 +6,8 @@
 
 #include "core/chain/chain.h"
 #include "core/frame/gbuffer.h"
+#include "core/frame/scale_notes.h"
 #include "core/run/run_report.h"
-#include "core/run/scale_notes.h"
 
 namespace alcove {
 
@@ -18,7 +18,9 @@ class FrameTally {
 
   /// A window is about to be computed.
   void begin(const Window& computed);
-  void add_inputs(const FrameInputs& inputs) { sample_.add(inputs); }
+  void add_inputs(const FrameInputs& inputs) {
+    sample_.add(inputs.view, inputs.depth_map, inputs.depth_precision, inputs[RawPlane::depth]->as<float>());
+  }
   void add_passes(std::span<const gpu::PassTime> passes);
   /// is_same: all results were kept from the frame before.
   void add_outputs(const FrameOutputs& outputs, const Window& computed, bool is_same);

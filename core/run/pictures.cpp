@@ -9,6 +9,7 @@
 #include "core/base/file.h"
 #include "core/chain/debug_view.h"
 #include "core/formats/image_io.h"
+#include "core/formats/png.h"
 
 namespace alcove {
 namespace {

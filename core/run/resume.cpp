@@ -13,6 +13,7 @@
 
 #include "core/formats/exr.h"
 #include "core/formats/image_io.h"
+#include "core/formats/png.h"
 #include "core/frame/raw_plane.h"
 #include "core/run/frame_files.h"
 #include "core/run/plan.h"

@@ -6,6 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/base/json_text.h"
 #include "core/base/system.h"
 #include "core/formats/sequence.h"
 
@@ -44,11 +45,6 @@ Json json_of(const FrameReport& frame) {
   return json;
 }
 
-// names need not be UTF-8
-std::string text_of(const Json& json, int indent) {
-  return json.dump(indent, ' ', false, Json::error_handler_t::replace);
-}
-
 }  // namespace
 
 const char* name_of(FrameState state) {
@@ -75,11 +71,12 @@ std::string stats_json(const RunReport& report) {
                        {"wall_s", report.wall_s},
                        {"cpu_s", cpu_seconds()},
                        {"peak_rss_mb", peak_memory_mib()}};
-  return text_of({{"device", report.device}, {"options", report.options}, {"frames", frames}, {"totals", totals}}, 1) +
+  return json_text({{"device", report.device}, {"options", report.options}, {"frames", frames}, {"totals", totals}},
+                   1) +
          "\n";
 }
 
-std::string frame_json(const FrameReport& frame) { return text_of(json_of(frame), -1); }
+std::string frame_json(const FrameReport& frame) { return json_text(json_of(frame)); }
 
 std::string summary_of(const RunReport& report) {
   std::string text = fmt::format("{} frames done", report.done);

@@ -6,6 +6,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "core/base/json_text.h"
 
 namespace alcove {
 namespace {
@@ -35,7 +38,31 @@ TEST(Text, printable_leaves_no_control_and_nothing_that_turns_the_direction_of_w
         c == 0x61c || c == 0x200e || c == 0x200f || (c >= 0x202a && c <= 0x202e) || (c >= 0x2066 && c <= 0x2069);
     EXPECT_EQ(printable("a" + text + "b"), "a" + (is_control || turns ? "?" : text) + "b") << std::hex << unsigned(c);
   }
-  EXPECT_EQ(printable("cut short \xe2\x80"), "cut short \xe2\x80");
+}
+
+TEST(Text, bytes_that_are_no_character_are_escaped) {
+  const std::pair<std::string, std::string> shown[] = {
+      {"plain, caf\xc3\xa9, \xe2\x82\xac, \xf0\x9f\x98\x80", "plain, caf\xc3\xa9, \xe2\x82\xac, \xf0\x9f\x98\x80"},
+      {"caf\xe9!", "caf\\xe9!"},
+      {"\xff\xfe", "\\xff\\xfe"},
+      {"cut short \xe2\x80", "cut short \\xe2\\x80"},
+      {"cut short \xe2\x80 and on", "cut short \\xe2\\x80 and on"},
+      {"overlong \xc0\xaf \xe0\x80\xaf \xf0\x80\x80\xaf", "overlong \\xc0\\xaf \\xe0\\x80\\xaf \\xf0\\x80\\x80\\xaf"},
+      {"half a pair \xed\xa0\x80", "half a pair \\xed\\xa0\\x80"},
+      {"beyond the last \xf4\x90\x80\x80 \xf5\x80\x80\x80",
+       "beyond the last \\xf4\\x90\\x80\\x80 \\xf5\\x80\\x80\\x80"},
+  };
+  for (const auto& [text, expected] : shown) {
+    EXPECT_EQ(printable(text), expected);
+    EXPECT_EQ(as_utf8(text), expected);
+  }
+  EXPECT_EQ(as_utf8("\x1b[2J\n\xc2\x80"), "\x1b[2J\n\xc2\x80") << "controls are UTF-8";
+}
+
+TEST(Text, json_is_utf8_whatever_its_keys_and_strings_hold) {
+  const nlohmann::ordered_json json = {
+      {"b\xff", {"x\xe9", 1, nullptr, true}}, {"a", {{"deep", "\xc3"}}}, {"n", {}}, {"f", 0.5}};
+  EXPECT_EQ(json_text(json), R"({"b\\xff":["x\\xe9",1,null,true],"a":{"deep":"\\xc3"},"n":null,"f":0.5})");
 }
 
 TEST(Text, a_list_ends_with_how_many_more) {

@@ -29,6 +29,7 @@
 #include "core/base/error.h"
 #include "core/formats/exr.h"
 #include "core/formats/image_io.h"
+#include "core/formats/png.h"
 #include "tests/support/exr_header.h"
 #include "tests/support/program.h"
 

@@ -10,6 +10,7 @@
 #include "core/base/error.h"
 #include "core/formats/exr.h"
 #include "core/formats/image_io.h"
+#include "core/formats/png.h"
 #include "core/formats/sequence.h"
 #include "core/frame/camera.h"
 #include "core/frame/settle.h"

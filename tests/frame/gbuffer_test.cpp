@@ -1,23 +1,8 @@
-// Finding the AOVs: renderers' names, parts, layers, files of their own, what is ambiguous and what must not be
-// mistaken.
+// Finding the AOVs: renderers' names, layers and views, what is ambiguous and what must not be mistaken.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/frame/gbuffer.h"
 
-#include <ImfChannelList.h>
-#include <ImfDeepFrameBuffer.h>
-#include <ImfDeepScanLineOutputFile.h>
-#include <ImfFrameBuffer.h>
-#include <ImfHeader.h>
-#include <ImfMultiPartOutputFile.h>
-#include <ImfOutputFile.h>
-#include <ImfOutputPart.h>
-#include <ImfPartType.h>
-#include <ImfStandardAttributes.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include "core/base/error.h"
-#include "tests/support/program.h"
+#include "tests/support/part_files.h"
 
 namespace alcove {
 namespace {
@@ -28,90 +13,6 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
-using Names = std::vector<std::string>;
-
-constexpr int kWidth = 3, kHeight = 2, kPixels = kWidth * kHeight;
-
-struct Part {
-  std::string name;
-  Names channels;
-  int width = kWidth;
-  std::string view = {};
-  Names multi_view = {};
-};
-
-/// The channel's value in every pixel, told from all others by its place.
-float value_of(std::size_t part, std::size_t channel) { return float(10 * part + channel + 1); }
-
-Imf::Header header_of(const Part& part) {
-  Imf::Header header(Imath::Box2i({0, 0}, {kWidth - 1, kHeight - 1}),
-                     Imath::Box2i({0, 0}, {part.width - 1, kHeight - 1}));
-  header.setType(Imf::SCANLINEIMAGE);
-  if (!part.name.empty()) header.setName(part.name);
-  if (!part.view.empty()) header.setView(part.view);
-  if (!part.multi_view.empty()) Imf::addMultiView(header, part.multi_view);
-  for (const auto& channel : part.channels) header.channels().insert(channel, Imf::Channel(Imf::FLOAT));
-  return header;
-}
-
-/// A file of these parts; only one part may be without a name.
-void write_parts(const std::string& path, const std::vector<Part>& parts) {
-  std::vector<Imf::Header> headers;
-  for (const auto& part : parts) headers.push_back(header_of(part));
-  Imf::MultiPartOutputFile file(path.c_str(), headers.data(), int(headers.size()));
-  for (std::size_t p = 0; p < parts.size(); p++) {
-    std::vector<std::vector<float>> planes;
-    Imf::FrameBuffer pixels;
-    for (std::size_t c = 0; c < parts[p].channels.size(); c++) {
-      planes.emplace_back(parts[p].width * kHeight, value_of(p, c));
-      pixels.insert(parts[p].channels[c], Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(planes.back().data()),
-                                                     sizeof(float), sizeof(float) * std::size_t(parts[p].width)));
-    }
-    Imf::OutputPart out(file, int(p));
-    out.setFrameBuffer(pixels);
-    out.writePixels(kHeight);
-  }
-}
-
-/// "part:channel" of each; the part is left out where it is the first.
-Names names_of(const std::vector<ChannelRef>& channels) {
-  Names names;
-  for (const auto& c : channels) names.push_back(c.part == 0 ? c.channel : std::to_string(c.part) + ":" + c.channel);
-  return names;
-}
-
-class GBuffer : public testing::Test {
- protected:
-  GBuffer() {
-    settings.input = folder / "frame.exr";
-    settings.fov = 60;
-    settings.normal_space = NormalSpace::view;
-  }
-
-  void write(const std::vector<Part>& parts) const { write_parts(settings.input, parts); }
-  void write(const Names& channels) const { write_parts(settings.input, {{"", channels}}); }
-  FrameSource find(bool with_beauty = false) const { return find_frame(settings, with_beauty, 0); }
-
-  Names depth() const { return names_of(find().depth); }
-  Names normal() const { return names_of(find().normal); }
-
-  /// The search must fail with ErrorKind::input, in one line that holds these.
-  void expect_error(const Names& words, bool with_beauty = false) const {
-    try {
-      const FrameSource source = find(with_beauty);
-      ADD_FAILURE() << "found depth " << testing::PrintToString(names_of(source[RawPlane::depth])) << ", normal "
-                    << testing::PrintToString(names_of(source[RawPlane::normal]))
-                    << "; expected an error that tells of " << testing::PrintToString(words);
-    } catch (const Error& error) {
-      EXPECT_EQ(error.kind(), ErrorKind::input) << error.what();
-      EXPECT_THAT(error.what(), Not(HasSubstr("\n")));
-      for (const auto& word : words) EXPECT_THAT(error.what(), HasSubstr(word));
-    }
-  }
-
-  TemporaryFolder folder;
-  InputSettings settings;
-};
 
 // Names.
 
@@ -205,13 +106,13 @@ TEST_F(GBuffer, blender_5_calls_the_parts_by_full_words) {
 
 TEST_F(GBuffer, indirect_light_without_the_colour_that_it_needs_is_no_part) {
   write(Names{"Z", "R", "G", "B", "DiffInd.R", "DiffInd.G", "DiffInd.B"});
-  EXPECT_THAT(find(true).indirect, IsEmpty());
+  EXPECT_THAT(find(true)[RawPlane::indirect], IsEmpty());
 }
 
 TEST_F(GBuffer, beauty_is_read_only_when_asked_for) {
   write(Names{"Z", "R", "G", "B", "A"});
-  EXPECT_THAT(find(false).beauty, IsEmpty());
-  EXPECT_THAT(names_of(find(true).beauty), ElementsAre("R", "G", "B", "A"));
+  EXPECT_THAT(find(false)[RawPlane::beauty], IsEmpty());
+  EXPECT_THAT(names_of(find(true)[RawPlane::beauty]), ElementsAre("R", "G", "B", "A"));
 }
 
 // What must not be mistaken.
@@ -380,11 +281,11 @@ TEST_F(GBuffer, chosen_channels_that_are_not_there_are_errors) {
 TEST_F(GBuffer, a_beauty_is_three_channels_or_four) {
   write(Names{"Z", "fill.R", "fill.G", "fill.B", "fill.A", "key.R", "key.G", "key.B"});
   settings.beauty_channels = "fill";
-  EXPECT_THAT(names_of(find(true).beauty), ElementsAre("fill.R", "fill.G", "fill.B", "fill.A"));
+  EXPECT_THAT(names_of(find(true)[RawPlane::beauty]), ElementsAre("fill.R", "fill.G", "fill.B", "fill.A"));
   settings.beauty_channels = "key";
-  EXPECT_THAT(names_of(find(true).beauty), ElementsAre("key.R", "key.G", "key.B"));
+  EXPECT_THAT(names_of(find(true)[RawPlane::beauty]), ElementsAre("key.R", "key.G", "key.B"));
   settings.beauty_channels = "key.R,key.G,key.B,fill.A";
-  EXPECT_THAT(names_of(find(true).beauty), ElementsAre("key.R", "key.G", "key.B", "fill.A"));
+  EXPECT_THAT(names_of(find(true)[RawPlane::beauty]), ElementsAre("key.R", "key.G", "key.B", "fill.A"));
 }
 
 TEST_F(GBuffer, alpha_is_found_in_the_spelling_of_the_colours) {
@@ -393,133 +294,8 @@ TEST_F(GBuffer, alpha_is_found_in_the_spelling_of_the_colours) {
     Names all = channels;
     all.push_back("Z");
     write(all);
-    EXPECT_EQ(names_of(find(true).beauty), channels);
+    EXPECT_EQ(names_of(find(true)[RawPlane::beauty]), channels);
   }
-}
-
-// Files and parts.
-
-TEST_F(GBuffer, part_names_are_layers) {
-  write(std::vector<Part>{
-      {"rgba", {"A", "B", "G", "R"}}, {"depth", {"Z"}}, {"N", {"X", "Y", "Z"}}, {"albedo", {"B", "G", "R"}}});
-  const FrameSource source = find(true);
-  EXPECT_THAT(names_of(source[RawPlane::depth]), ElementsAre("1:Z"));
-  EXPECT_THAT(names_of(source[RawPlane::normal]), ElementsAre("2:X", "2:Y", "2:Z"));
-  EXPECT_THAT(names_of(source[RawPlane::beauty]), ElementsAre("R", "G", "B", "A"));
-}
-
-TEST_F(GBuffer, parts_may_repeat_their_name_in_the_channels) {
-  write(std::vector<Part>{
-      {"ViewLayer.Combined", {"ViewLayer.Combined.R", "ViewLayer.Combined.G", "ViewLayer.Combined.B"}},
-      {"ViewLayer.Depth", {"ViewLayer.Depth.Z"}},
-      {"ViewLayer.Normal", {"ViewLayer.Normal.X", "ViewLayer.Normal.Y", "ViewLayer.Normal.Z"}}});
-  EXPECT_THAT(depth(), ElementsAre("1:ViewLayer.Depth.Z"));
-  EXPECT_THAT(normal(), ElementsAre("2:ViewLayer.Normal.X", "2:ViewLayer.Normal.Y", "2:ViewLayer.Normal.Z"));
-  EXPECT_THAT(names_of(find(true).beauty),
-              ElementsAre("ViewLayer.Combined.R", "ViewLayer.Combined.G", "ViewLayer.Combined.B"));
-  settings.layer = "ViewLayer";
-  EXPECT_THAT(depth(), ElementsAre("1:ViewLayer.Depth.Z"));
-}
-
-TEST_F(GBuffer, the_name_of_the_only_part_is_no_layer) {
-  for (const char* name : {"rgba", "rgba.main", "Layer"}) {
-    write(std::vector<Part>{{name, {"R", "G", "B", "Z", "N.X", "N.Y", "N.Z"}}});
-    EXPECT_THAT(names_of(find(true).depth), ElementsAre("Z")) << name;
-    EXPECT_THAT(normal(), ElementsAre("N.X", "N.Y", "N.Z")) << name;
-  }
-}
-
-TEST_F(GBuffer, a_part_with_any_name_may_hold_everything) {
-  write(std::vector<Part>{{"main", {"R", "G", "B", "Z", "N.X", "N.Y", "N.Z"}}, {"extra", {"R", "G", "B"}}});
-  EXPECT_THAT(depth(), ElementsAre("Z"));
-  EXPECT_THAT(normal(), ElementsAre("N.X", "N.Y", "N.Z"));
-}
-
-TEST_F(GBuffer, planes_of_several_parts_are_read_each_from_its_own) {
-  write(std::vector<Part>{{"rgba", {"B", "G", "R"}}, {"depth", {"Z"}}, {"N", {"X", "Y", "Z"}}});
-  FrameSource source = find(true);
-  std::vector<float> z(kPixels), n(3 * kPixels), rgb(3 * kPixels);
-  read_planes(source, {{&source[RawPlane::depth], z.data()},
-                       {&source[RawPlane::normal], n.data()},
-                       {&source[RawPlane::beauty], rgb.data()}});
-  EXPECT_THAT(z, testing::Each(value_of(1, 0)));
-  for (std::size_t i = 0; i < n.size(); i++) {
-    EXPECT_EQ(n[i], value_of(2, i / kPixels)) << i;
-    EXPECT_EQ(rgb[i], value_of(0, 2 - i / kPixels)) << i << ": R is the file's third channel";
-  }
-}
-
-TEST_F(GBuffer, every_aov_may_have_a_file_of_its_own) {
-  settings.depth = folder / "d.exr";
-  settings.normal = folder / "n.exr";
-  settings.beauty = folder / "b.exr";
-  settings.input = "";
-  for (const Names& channels : {Names{"R", "G", "B"}, {"Y"}, {"Z"}, {"ViewLayer.Depth.Z"}}) {
-    write_parts(settings.depth, {{"", channels}});
-    write_parts(settings.normal, {{"", {"R", "G", "B"}}});
-    write_parts(settings.beauty, {{"", {"R", "G", "B", "A"}}});
-    FrameSource source = find(true);
-    EXPECT_THAT(names_of(source[RawPlane::depth]), ElementsAre(channels[0]));
-    EXPECT_THAT(names_of(source[RawPlane::normal]), ElementsAre("R", "G", "B"));
-    EXPECT_THAT(names_of(source[RawPlane::beauty]), ElementsAre("R", "G", "B", "A"));
-    std::vector<float> n(3 * kPixels);
-    read_planes(source, {{&source[RawPlane::normal], n.data()}});
-    EXPECT_EQ(n, (std::vector<float>{1, 1, 1, 1, 1, 1, 2, 2, 2, 2, 2, 2, 3, 3, 3, 3, 3, 3}));
-  }
-  write_parts(settings.normal, {{"", {"X", "Y", "Z"}}});
-  EXPECT_THAT(normal(), ElementsAre("X", "Y", "Z"));
-  write_parts(settings.normal, {{"", {"R", "G"}}});
-  EXPECT_THAT(normal(), ElementsAre("R", "G"));
-  write_parts(settings.normal, {{"", {"R"}}});
-  expect_error({"n.exr", "no normal channel", "--normal-channels"});
-}
-
-TEST_F(GBuffer, depth_alone_is_enough) {
-  settings.depth = settings.input;
-  settings.input = "";
-  write_parts(settings.depth, {{"", {"R", "G", "B"}}});
-  EXPECT_THAT(depth(), ElementsAre("R"));
-  EXPECT_THAT(normal(), IsEmpty()) << "the R, G, B of a depth file are no normal";
-}
-
-TEST_F(GBuffer, planes_must_cover_the_same_pixels) {
-  write(std::vector<Part>{{"depth", {"Z"}}, {"N", {"X", "Y", "Z"}, kWidth + 1}});
-  expect_error({"frame.exr", "3x2", "4x2", "--normal"});
-  write(std::vector<Part>{{"depth", {"Z"}}, {"rgba", {"R", "G", "B"}, kWidth + 1}});
-  expect_error({"frame.exr", "3x2", "4x2", "--beauty"}, true);
-  EXPECT_NO_THROW(find(false)) << "nobody asked for the beauty";
-}
-
-// Storage.
-
-TEST_F(GBuffer, a_subsampled_channel_is_refused) {
-  Imf::Header header(4, 2);
-  header.channels().insert("Z", Imf::Channel(Imf::FLOAT, 2, 2));
-  header.channels().insert("Y", Imf::Channel(Imf::FLOAT));
-  {
-    Imf::OutputFile file(settings.input.c_str(), header);
-    file.setFrameBuffer(Imf::FrameBuffer());
-    file.writePixels(2);
-  }
-  expect_error({"frame.exr", "Z", "subsampled"});
-}
-
-TEST_F(GBuffer, deep_data_is_refused) {
-  Imf::Header header(2, 1);
-  header.setType(Imf::DEEPSCANLINE);
-  header.compression() = Imf::ZIPS_COMPRESSION;
-  header.channels().insert("Z", Imf::Channel(Imf::FLOAT));
-  {
-    Imf::DeepScanLineOutputFile file(settings.input.c_str(), header);
-    unsigned int counts[] = {0, 0};
-    float* samples[] = {nullptr, nullptr};
-    Imf::DeepFrameBuffer pixels;
-    pixels.insertSampleCountSlice(Imf::Slice(Imf::UINT, reinterpret_cast<char*>(counts), sizeof(unsigned int), 0));
-    pixels.insert("Z", Imf::DeepSlice(Imf::FLOAT, reinterpret_cast<char*>(samples), sizeof(float*), 0, sizeof(float)));
-    file.setFrameBuffer(pixels);
-    file.writePixels(1);
-  }
-  expect_error({"frame.exr", "deep"});
 }
 
 // What the settings and the camera say together.

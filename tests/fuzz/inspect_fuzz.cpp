@@ -32,9 +32,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   settings.fov = 60;
   fuzz::accepts([&] {
     const Inspection inspection = inspect_frame(settings, 1);
-    fuzz::require(nlohmann::json::accept(inspection.json), "the JSON is JSON");
-    const bool commands =
-        std::ranges::any_of(inspection.text, [](unsigned char c) { return (c < 0x20 && c != '\n') || c == 0x7f; });
+    fuzz::require(nlohmann::json::accept(inspection_json(inspection)), "the JSON is JSON");
+    const bool commands = std::ranges::any_of(inspection_text(inspection),
+                                              [](unsigned char c) { return (c < 0x20 && c != '\n') || c == 0x7f; });
     fuzz::require(!commands, "a terminal shows text only");
   });
   return 0;

@@ -9,6 +9,7 @@
 #include <regex>
 
 #include "core/formats/image_io.h"
+#include "core/formats/png.h"
 #include "tests/support/formula_images.h"
 #include "tests/support/program.h"
 #include "tests/support/wall_frame.h"

@@ -156,8 +156,7 @@ VkResult vkAllocateMemory(VkDevice device, const VkMemoryAllocateInfo* info, con
                           VkDeviceMemory* memory) {
   const char* first = std::getenv("ALCOVE_ALLOCATION");
   const int number = ++allocations;
-  if (lacks("memory") || (first && number == std::atoi(first)))
-    return VK_ERROR_OUT_OF_DEVICE_MEMORY;
+  if (lacks("memory") || (first && number == std::atoi(first))) return VK_ERROR_OUT_OF_DEVICE_MEMORY;
   if (!bytes_in("ALCOVE_HEAP")) return NEXT(vkAllocateMemory)(device, info, callbacks, memory);
   const bool is_own = info->memoryTypeIndex == kOwnMemory;
   if (is_own && !heap.take(info->allocationSize)) return VK_ERROR_OUT_OF_DEVICE_MEMORY;

@@ -14,9 +14,9 @@
 #include <cmath>
 #include <map>
 
+#include "core/frame/scale_notes.h"
 #include "core/reference/reference.h"
 #include "core/reference/reference_estimators.h"
-#include "core/run/scale_notes.h"
 #include "tests/bench/stability/cases.h"
 #include "tests/support/device.h"
 #include "tests/support/difference.h"
@@ -126,8 +126,9 @@ void expect_precise(Spec spec) {
 std::vector<std::string> notes_on(const Spec& spec) {
   const Case made = test::made(spec);
   DepthSample sample;
-  sample.add(upload(recorder(), made.frame));
-  return sample.notes(with_radius(plain_settings(), made.radius), spec.width, spec.height);
+  const FrameInputs inputs = upload(recorder(), made.frame);
+  sample.add(inputs.view, inputs.depth_map, inputs.depth_precision, inputs[RawPlane::depth]->as<float>());
+  return sample.notes(made.radius, made.radius, spec.width, spec.height);
 }
 
 TEST(Accuracy, of_the_room) { expect({}); }

@@ -9,7 +9,7 @@
 #include <numeric>
 
 #include "core/bench/stability.h"
-#include "core/run/scale_notes.h"
+#include "core/frame/scale_notes.h"
 #include "tests/bench/stability/cases.h"
 #include "tests/support/command_line.h"
 #include "tests/support/device.h"
@@ -24,8 +24,9 @@ using testing::AllOf, testing::ElementsAre, testing::HasSubstr, testing::IsEmpty
 /// What is said of the room at this radius.
 std::vector<std::string> said(const HostFrame& frame, double radius) {
   DepthSample sample;
-  sample.add(upload(recorder(), frame));
-  return sample.notes(with_radius(plain_settings(), radius), frame.data.width, frame.data.height);
+  const FrameInputs inputs = upload(recorder(), frame);
+  sample.add(inputs.view, inputs.depth_map, inputs.depth_precision, inputs[RawPlane::depth]->as<float>());
+  return sample.notes(radius, radius, frame.data.width, frame.data.height);
 }
 
 TEST(ScaleNotes, are_silent_where_all_is_well) {

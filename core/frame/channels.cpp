@@ -1,0 +1,339 @@
+// The search for channels: tables of usual names, the layers and views of a file, and the places that spell an AOV.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/frame/channels.h"
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <set>
+
+#include "core/base/error.h"
+#include "core/base/text.h"
+#include "core/formats/open_image.h"
+
+namespace alcove {
+
+const AovNames kDepthNames{
+    .what = "depth",
+    .channel_option = "--depth-channel",
+    .layers = {"depth", "z", "zdepth", "vrayzdepth", "z-depth", "__depth", "cgeometry_zdepth",
+               "finalimagemovierenderqueue_worlddepth"},
+    .in_layer = {{"z"}, {"depth"}, {"r"}, {"y"}},
+    .bare = {{"z"}, {"depth"}, {"zdepth"}, {"pz"}},
+    .alone = {{"r"}, {"y"}},
+};
+
+const AovNames kNormalNames{
+    .what = "normal",
+    .channel_option = "--normal-channels",
+    .layers = {"normal", "n", "nn", "normals", "ns", "__nworld", "cgeometry_normalsshading"},
+    .in_layer = {{"x", "y", "z"}, {"r", "g", "b"}},
+    .bare = {{"nx", "ny", "nz"}},
+    .alone = {{"x", "y", "z"}, {"r", "g", "b"}, {"x", "y"}, {"r", "g"}},
+    .may_be_two = true,
+};
+
+const AovNames kPositionNames{
+    .what = "position",
+    .channel_option = "--position-channels",
+    .layers = {"position", "p", "pworld", "__pworld", "worldposition", "cgeometry_worldposition"},
+    .in_layer = {{"x", "y", "z"}, {"r", "g", "b"}},
+    .bare = {{"px", "py", "pz"}},
+    .alone = {{"x", "y", "z"}, {"r", "g", "b"}},
+};
+
+const AovNames kBeautyNames{
+    .what = "beauty",
+    .channel_option = "--beauty-channels",
+    .layers = {"combined", "rgba", "beauty"},
+    .in_layer = {{"r", "g", "b"}, {"red", "green", "blue"}},
+    .bare = {{"r", "g", "b"}},
+    .alone = {},
+    .may_have_alpha = true,
+};
+
+const AovNames kIndirectNames{
+    .what = "indirect diffuse",
+    .channel_option = "--layer",
+    .layers = {"diffind", "diffuse indirect", "diffuse_indirect", "indirectdiffuse", "gi"},
+    .in_layer = {{"r", "g", "b"}},
+    .bare = {},
+    .alone = {},
+};
+
+const AovNames kDiffuseColorNames{
+    .what = "diffuse colour",
+    .channel_option = "--layer",
+    .layers = {"diffcol", "diffuse color"},
+    .in_layer = {{"r", "g", "b"}},
+    .bare = {},
+    .alone = {},
+};
+
+const AovNames kMaterialNames{
+    .what = "material AO",
+    .channel_option = "--material-ao-channel",
+    .layers = {"ao", "occlusion", "ambient occlusion", "materialao"},
+    .in_layer = {{"y"}, {"r"}, {"ao"}},
+    .bare = {{"ao"}, {"occlusion"}},
+    .alone = {{"y"}, {"r"}},
+};
+
+const AovNames kAlbedoNames{
+    .what = "diffuse colour",
+    .channel_option = "--albedo-channels",
+    .layers = {"diffcol", "diffuse color", "albedo", "diffuse_albedo"},
+    .in_layer = {{"r", "g", "b"}},
+    .bare = {},
+    .alone = {{"r", "g", "b"}},
+};
+
+namespace {
+
+/// Gives the name without the layer; nothing if it lies elsewhere. Without a layer it gives the name.
+std::optional<std::string> within_layer(const std::string& name, const std::string& layer) {
+  if (layer.empty()) return lower_case(name);
+  if (!lower_case(name).starts_with(lower_case(layer) + ".")) return std::nullopt;
+  return lower_case(name).substr(layer.size() + 1);
+}
+
+/// Gives the name without its view, which stands before the last name part ("depth.right.Z", "right.R"); nothing if it
+/// is of another view. Channels that name no view belong to the first.
+std::optional<std::string> within_view(const std::string& name, const std::vector<std::string>& views,
+                                       const std::string& view) {
+  if (views.empty()) return name;
+  const std::size_t last = name.rfind('.'),
+                    before = last == name.npos || last == 0 ? name.npos : name.rfind('.', last - 1);
+  const std::size_t begin = before == name.npos ? 0 : before + 1;
+  const std::string named = last == name.npos ? "" : name.substr(begin, last - begin);
+  if (std::ranges::find(views, named) == views.end())
+    return lower_case(view) == lower_case(views.front()) ? std::optional(name) : std::nullopt;
+  if (lower_case(named) != lower_case(view)) return std::nullopt;
+  return name.substr(0, begin) + name.substr(last + 1);
+}
+
+/// Lists the channels of the chosen view and layer; without a layer, all of the view.
+std::vector<NamedChannel> channels_of(const ExrFile& file, std::size_t index, const std::string& layer,
+                                      const std::string& chosen_view) {
+  const auto views = views_of(file);
+  const std::string view = chosen_view.empty() && !views.empty() ? views.front() : chosen_view;
+  std::vector<NamedChannel> channels;
+  for (std::size_t part = 0; part < file.parts().size(); part++) {
+    const auto& p = file.parts()[part];
+    if (!p.view.empty() && !view.empty() && lower_case(p.view) != lower_case(view)) continue;
+    // "depth.left" of view "left" is the layer "depth".
+    const std::string part_name = !p.view.empty() && p.name.ends_with("." + p.view)
+                                      ? p.name.substr(0, p.name.size() - p.view.size() - 1)
+                                      : p.name;
+    for (const auto& channel : p.channels) {
+      const auto plain = within_view(channel.name, p.multi_view, view);
+      if (!plain) continue;
+      const bool alone = file.parts().size() == 1 || part_name.empty() || channel.name.starts_with(part_name + ".");
+      NamedChannel named{{index, int(part), channel.name},
+                         alone ? channel.name : part_name + "." + channel.name,
+                         {},
+                         channel.subsampled};
+      for (const auto& name : plain != channel.name ? std::vector{*plain} : std::vector{named.full, channel.name})
+        if (const auto spelling = within_layer(name, layer);
+            spelling && (named.spellings.empty() || named.spellings.back() != *spelling))
+          named.spellings.push_back(*spelling);
+      if (!named.spellings.empty()) channels.push_back(std::move(named));
+    }
+  }
+  return channels;
+}
+
+std::vector<std::string> full_names(const std::vector<NamedChannel>& channels) {
+  std::vector<std::string> names;
+  std::ranges::transform(channels, std::back_inserter(names), &NamedChannel::full);
+  return names;
+}
+
+/// Lists once each everything that stands before a dot in a full name: "ViewLayer", "ViewLayer.Depth" ...
+std::vector<std::string> layers_of(const ExrFile& file) {
+  std::set<std::string> layers;
+  for (const auto& channel : channels_of(file, 0, "", ""))
+    for (std::size_t dot = channel.full.find('.'); dot != channel.full.npos; dot = channel.full.find('.', dot + 1))
+      layers.insert(channel.full.substr(0, dot));
+  return {layers.begin(), layers.end()};
+}
+
+/// Gives the part of a name before `.component`, or "" for the bare component; nothing if the name does not end so.
+std::optional<std::string> prefix_of(const std::string& name, const std::string& component) {
+  if (name == component) return "";
+  const std::string end = "." + component;
+  if (name.size() <= end.size() || name.compare(name.size() - end.size(), end.size(), end) != 0) return std::nullopt;
+  return name.substr(0, name.size() - end.size());
+}
+
+/// Whether a layer path is, or ends in, this layer.
+bool is_layer(const std::string& path, const std::string& layer) {
+  return path == layer || (!layer.empty() && prefix_of(path, layer));
+}
+
+/// Lists the places within parts where `layer` has all of these components: for each place, its channels.
+std::vector<std::vector<const NamedChannel*>> places_of(const std::vector<NamedChannel>& channels,
+                                                        const std::string& layer,
+                                                        const std::vector<std::string>& components) {
+  std::map<std::pair<int, std::string>, std::vector<const NamedChannel*>> places;
+  for (std::size_t i = 0; i < components.size(); i++)
+    for (const auto& channel : channels)
+      for (const auto& spelling : channel.spellings) {
+        const auto prefix = prefix_of(spelling, components[i]);
+        if (!prefix || !is_layer(*prefix, layer)) continue;
+        auto& place = places[{channel.ref.part, *prefix}];
+        if (place.size() == i) place.push_back(&channel);
+      }
+  std::vector<std::vector<const NamedChannel*>> whole;
+  std::set<std::vector<const NamedChannel*>> known;
+  for (auto& [key, place] : places)
+    if (place.size() == components.size() && known.insert(place).second) whole.push_back(std::move(place));
+  return whole;
+}
+
+std::vector<ChannelRef> refs_of(const std::vector<const NamedChannel*>& channels, const ExrFile& file) {
+  std::vector<ChannelRef> refs;
+  for (const auto* channel : channels) {
+    if (channel->subsampled)
+      fail(ErrorKind::input, "{}: channel {} is subsampled; it must have a sample for every pixel", file.path(),
+           channel->full);
+    refs.push_back(channel->ref);
+  }
+  return refs;
+}
+
+/// Finds the AOV at the one place where `layer` holds one of the component sets; gives nothing if there is none. Two
+/// places are an error.
+std::vector<ChannelRef> find_in_layer(const ExrFile& file, const std::vector<NamedChannel>& channels,
+                                      const AovNames& names, const std::string& layer, const Components& sets) {
+  for (const auto& components : sets) {
+    const auto places = places_of(channels, layer, components);
+    if (places.size() > 1)
+      fail(ErrorKind::input, "{}: two layers hold a {}: {} and {}; say which with --layer or {}", file.path(),
+           names.what, places[0][0]->full, places[1][0]->full, names.channel_option);
+    if (places.size() == 1) return refs_of(places[0], file);
+  }
+  return {};
+}
+
+/// Finds the AOV under its usual names; gives nothing if there is none.
+std::vector<ChannelRef> find_usual(const ExrFile& file, const std::vector<NamedChannel>& channels,
+                                   const AovNames& names, bool own_file) {
+  for (const auto& layer : names.layers)
+    if (auto found = find_in_layer(file, channels, names, layer, names.in_layer); !found.empty()) return found;
+  auto found = find_in_layer(file, channels, names, "", names.bare);
+  return found.empty() && own_file ? find_in_layer(file, channels, names, "", names.alone) : found;
+}
+
+const NamedChannel* find_named(const std::vector<NamedChannel>& channels, const std::string& name) {
+  const std::string lower = lower_case(name);
+  for (const auto& channel : channels)
+    if (lower_case(channel.full) == lower || lower_case(channel.ref.channel) == lower) return &channel;
+  return nullptr;
+}
+
+/// Finds the channels that the user named: each by its full name, or all by their layer.
+std::vector<ChannelRef> find_chosen(const ExrFile& file, const std::vector<NamedChannel>& channels,
+                                    const AovNames& names, const std::string& chosen) {
+  auto wanted = split(chosen);
+  const std::size_t count = names.in_layer.front().size();
+  if (wanted.size() == 1 && count > 1)
+    for (const auto& components : names.in_layer)
+      if (const auto places = places_of(channels, lower_case(chosen), components); places.size() == 1)
+        return refs_of(places[0], file);
+  if (wanted.size() != count && !(names.may_have_alpha && wanted.size() == count + 1) &&
+      !(names.may_be_two && wanted.size() == 2))
+    fail(ErrorKind::input, "{}: no layer {} for {}{}; there is {}; {} takes a layer or {} channel names with commas",
+         file.path(), chosen, names.channel_option, suggestion(chosen, full_names(channels)),
+         list_of(full_names(channels)), names.channel_option, count);
+  std::vector<const NamedChannel*> found;
+  for (const auto& name : wanted) {
+    found.push_back(find_named(channels, name));
+    if (!found.back())
+      fail(ErrorKind::input, "{}: no channel {} for {}{}; there is {}", file.path(), name, names.channel_option,
+           suggestion(name, full_names(channels)), list_of(full_names(channels)));
+  }
+  return refs_of(found, file);
+}
+
+/// Finds the first of the candidates that is there, in the order of the rules. Its name is a layer, or else a channel.
+FoundByRules find_candidate(const ExrFile& file, const std::vector<NamedChannel>& channels, const AovNames& names,
+                            const std::vector<AovCandidate>& candidates) {
+  for (const auto& candidate : candidates) {
+    auto found = find_in_layer(file, channels, names, candidate.name, names.in_layer);
+    const std::size_t dot = candidate.name.rfind('.');
+    if (found.empty() && names.in_layer.front().size() == 1)
+      found = find_in_layer(file, channels, names, dot == std::string::npos ? "" : candidate.name.substr(0, dot),
+                            {{dot == std::string::npos ? candidate.name : candidate.name.substr(dot + 1)}});
+    if (!found.empty()) return {std::move(found), &candidate};
+  }
+  return {};
+}
+
+}  // namespace
+
+std::vector<std::string> views_of(const ExrFile& file) {
+  std::vector<std::string> views;
+  for (const auto& part : file.parts())
+    for (const auto& view : part.multi_view.empty() ? std::vector{part.view} : part.multi_view)
+      if (!view.empty() && std::ranges::find(views, view) == views.end()) views.push_back(view);
+  return views;
+}
+
+std::size_t ChannelSearch::open(const std::string& path, const char* option) {
+  if (path.empty()) fail(ErrorKind::usage, "no INPUT and no {} FILE: give one of them", option);
+  const auto known = std::ranges::find(files_, path, &ExrFile::path);
+  if (known != files_.end()) return std::size_t(known - files_.begin());
+  files_.push_back(open_image(path, path == settings_.input ? "INPUT" : option, Formats::of_frames));
+  const auto views = views_of(files_.back());
+  const auto same = [&](const std::string& view) { return lower_case(view) == lower_case(settings_.view); };
+  if (!settings_.view.empty() && !views.empty() && std::ranges::none_of(views, same))
+    fail(ErrorKind::input, "{}: there is no view {}{} for --view; there is {}", path, settings_.view,
+         suggestion(settings_.view, views), list_of(views));
+  channels_.push_back(channels_of(files_.back(), files_.size() - 1, settings_.layer, settings_.view));
+  return files_.size() - 1;
+}
+
+std::vector<ChannelRef> ChannelSearch::find(std::size_t file, const AovNames& names, const std::string& chosen,
+                                            bool own_file) const {
+  return chosen.empty() ? find_usual(files_[file], channels_[file], names, own_file)
+                        : find_chosen(files_[file], channels_[file], names, chosen);
+}
+
+FoundByRules ChannelSearch::find_by_rules(std::size_t file, const AovNames& names, const std::string& chosen,
+                                          const std::vector<AovCandidate>& candidates) const {
+  return chosen.empty() ? find_candidate(files_[file], channels_[file], names, candidates) : FoundByRules{};
+}
+
+std::vector<ChannelRef> ChannelSearch::require(std::size_t file, const AovNames& names, const std::string& chosen,
+                                               bool own_file, const char* hint) const {
+  auto found = find(file, names, chosen, own_file);
+  if (!found.empty()) return found;
+  if (channels_[file].empty() && !settings_.layer.empty()) {
+    const auto layers = layers_of(files_[file]);
+    fail(ErrorKind::input, "{}: there is no layer {}{} for --layer; there is {}", files_[file].path(), settings_.layer,
+         suggestion(settings_.layer, layers), list_of(layers));
+  }
+  const auto all = full_names(channels_[file]);
+  const std::string within = settings_.layer.empty() ? "" : fmt::format(" in layer {}", settings_.layer);
+  fail(ErrorKind::input, "{}: no {} channel found{}{}; there is {}; name it with {}", files_[file].path(), names.what,
+       within, suggestion(hint, all), list_of(all), names.channel_option);
+}
+
+std::vector<ChannelRef> ChannelSearch::with_alpha(std::vector<ChannelRef> beauty) const {
+  if (beauty.size() != 3) return beauty;
+  const std::string& red = beauty[0].channel;
+  const std::size_t dot = red.rfind('.');
+  const std::string prefix = dot == red.npos ? "" : red.substr(0, dot + 1);
+  for (const auto& channel : channels_[beauty[0].file]) {
+    if (channel.ref.part != beauty[0].part || channel.subsampled) continue;
+    const std::string& name = channel.ref.channel;
+    if (lower_case(name) == lower_case(prefix + "a") || lower_case(name) == lower_case(prefix + "alpha")) {
+      beauty.push_back(channel.ref);
+      break;
+    }
+  }
+  return beauty;
+}
+
+}  // namespace alcove

@@ -1,0 +1,94 @@
+// Finds channels in files by the names that renderers use, or by those that the user chose.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/base/settings.h"
+#include "core/formats/exr.h"
+#include "core/frame/input_rules.h"
+
+namespace alcove {
+
+/// One channel of one of the frame's files.
+struct ChannelRef {
+  std::size_t file;
+  int part;
+  std::string channel;
+  auto operator<=>(const ChannelRef&) const = default;
+};
+
+/// Each inner list is a set of last name parts that together may spell an AOV, such as {"x", "y", "z"}.
+using Components = std::vector<std::vector<std::string>>;
+
+/// The usual names of an AOV, in lower case, the likeliest first.
+struct AovNames {
+  const char* what;
+  const char* channel_option;
+  std::vector<std::string> layers;
+  Components in_layer;  // These are looked for below one of the layers.
+  Components bare;      // These name the AOV by themselves in any file.
+  Components alone;     // These name it by themselves in a file that was given for this AOV only.
+  bool may_have_alpha = false;
+  bool may_be_two = false;  // The user may name two channels instead of three.
+};
+
+extern const AovNames kDepthNames;
+extern const AovNames kNormalNames;
+extern const AovNames kPositionNames;
+extern const AovNames kBeautyNames;
+extern const AovNames kIndirectNames;
+extern const AovNames kDiffuseColorNames;
+extern const AovNames kMaterialNames;
+extern const AovNames kAlbedoNames;
+
+/// A channel under its full name: in a file of several parts, the part's name stands for a layer where the channel does
+/// not repeat it.
+struct NamedChannel {
+  ChannelRef ref;
+  std::string full;
+  // These are in lower case and without the chosen layer: the full name, and the name within the part if it differs.
+  std::vector<std::string> spellings;
+  bool subsampled;
+};
+
+/// Channels that the rules of a program name, and the candidate among them that was there; null if none was.
+using FoundByRules = std::pair<std::vector<ChannelRef>, const AovCandidate*>;
+
+/// Opens files once each, and searches their channels. Every failure is ErrorKind::input and names file and option.
+class ChannelSearch {
+ public:
+  /// The opened files are appended to `files`, which must outlive the search.
+  ChannelSearch(const InputSettings& settings, std::vector<ExrFile>& files) : settings_(settings), files_(files) {}
+
+  /// Gives the file's place in the list, and opens it if it is new. Fails if the file lacks the chosen view.
+  std::size_t open(const std::string& path, const char* option);
+
+  /// Finds the AOV by the names that the user chose, or else by its usual names; gives nothing if there is none.
+  /// `own_file` says that the file holds nothing else. Fails if two layers hold the AOV.
+  std::vector<ChannelRef> find(std::size_t file, const AovNames& names, const std::string& chosen, bool own_file) const;
+
+  /// Finds the AOV as the rules name it; gives nothing if the user chose, or if none of the candidates is there.
+  FoundByRules find_by_rules(std::size_t file, const AovNames& names, const std::string& chosen,
+                             const std::vector<AovCandidate>& candidates) const;
+
+  /// Does the same as find(), but fails if there is nothing. `hint` is the name that near misses are measured by.
+  std::vector<ChannelRef> require(std::size_t file, const AovNames& names, const std::string& chosen, bool own_file,
+                                  const char* hint) const;
+
+  /// Adds the alpha channel of the same layer to the r, g, b of a beauty, if there is one.
+  std::vector<ChannelRef> with_alpha(std::vector<ChannelRef> beauty) const;
+
+ private:
+  const InputSettings& settings_;
+  std::vector<ExrFile>& files_;
+  std::vector<std::vector<NamedChannel>> channels_;  // one list per file
+};
+
+/// Gives the views of a stereo file, the default first; any other file has none.
+std::vector<std::string> views_of(const ExrFile& file);
+
+}  // namespace alcove

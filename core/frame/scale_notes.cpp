@@ -1,0 +1,80 @@
+// The median depth against precision, pixel and picture.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/frame/scale_notes.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace alcove {
+namespace {
+
+constexpr std::size_t kSampled = 4096;      // pixels of a window
+constexpr double kFullPrecision = 0x1p-16;  // of the depth: no file of floats is worse
+constexpr double kMostBelowPixel = 0.5;     // share of the surfaces
+
+double precision_at(const DepthPrecision& precision, double z) {
+  return precision.at[0] + z * (precision.at[1] + z * precision.at[2]);
+}
+
+}  // namespace
+
+void DepthSample::add(const View& view, const DepthMap& map, const DepthPrecision& precision,
+                      std::span<const float> raw) {
+  view_ = view;
+  precision_ = precision;
+  const std::size_t width = std::size_t(view.size.x);
+  const std::size_t pixels = width * std::size_t(view.size.y);
+  const std::size_t step = pixels / kSampled + 1;
+  for (std::size_t i = step / 2; i < pixels; i += step) {
+    std::array<double, 3> values{};
+    for (std::size_t axis = 0; axis < 3 && i + axis * pixels < raw.size(); axis++)
+      values[axis] = raw[i + axis * pixels];
+    const double x = (double(i % width) + 0.5 - view.center.x) * view.tangent_per_pixel.x;
+    const double y = (double(i / width) + 0.5 - view.center.y) * view.tangent_per_pixel.y;
+    const double z = planar_depth(map, values, view.orthographic ? 1 : std::sqrt(1 + x * x + y * y));
+    if (std::isfinite(z)) depths_.push_back(z);
+  }
+}
+
+/// How wide a pixel is there, in scene units.
+double DepthSample::pixel_at(double depth) const {
+  return (view_.orthographic ? 1 : depth) * double(view_.tangent_per_pixel.x);
+}
+
+std::vector<std::string> DepthSample::notes(double smallest_radius, double largest_radius, int width,
+                                            int height) const {
+  std::vector<std::string> notes;
+  if (depths_.empty()) return notes;
+  std::vector<double> depths = depths_;
+  const auto middle = depths.begin() + std::ptrdiff_t(depths.size() / 2);
+  std::ranges::nth_element(depths, middle);
+  const double z = *middle;
+
+  const double precision = precision_at(precision_, z);
+  if (smallest_radius < kLeastPrecisions * precision)
+    notes.push_back(
+        fmt::format("radius {:.3g} is {:.2g} times the depth's precision of {:.2g} at the median depth {:.3g}: "
+                    "occluders are lost in its rounding; give a larger --radius{}",
+                    smallest_radius, smallest_radius / precision, precision, z,
+                    precision > kFullPrecision * z ? ", or write depth with more bits" : ""));
+
+  const auto is_below = [&](double depth) { return smallest_radius < pixel_at(depth); };
+  const double below = double(std::ranges::count_if(depths, is_below)) / double(depths.size());
+  if (below > kMostBelowPixel)
+    notes.push_back(
+        fmt::format("radius {:.3g} is less than a pixel over {:.0f} % of the surfaces, where nothing can block: give a "
+                    "larger --radius",
+                    smallest_radius, 100 * below));
+
+  if (largest_radius > pixel_at(z) * std::max(width, height))
+    notes.push_back(
+        fmt::format("radius {:.3g} is {:.3g} pixels at the median depth {:.3g}, and the picture is {}x{}: most of what "
+                    "it reaches is not in it; a smaller --radius needs no more than is seen",
+                    largest_radius, largest_radius / pixel_at(z), z, width, height));
+  return notes;
+}
+
+}  // namespace alcove

@@ -1,0 +1,114 @@
+// Options in the order of their groups, quoted for a shell.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/inspect/command.h"
+
+#include <string_view>
+
+#include "core/base/error.h"
+#include "core/frame/evidence.h"
+#include "core/inspect/inspection.h"
+
+namespace alcove {
+namespace {
+
+/// A word as a shell takes it.
+std::string quoted(const std::string& word) {
+  constexpr std::string_view kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./%-+=,:";
+  if (word.find_first_not_of(kPlain) == word.npos && !word.empty()) return word;
+  std::string text = "'";
+  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return text + "'";
+}
+
+/// A command line in the making. Options without a value are left out.
+class Command {
+ public:
+  explicit Command(std::string program) : text_(std::move(program)) {}
+
+  void add(const std::string& word) { text_ += " " + word; }
+  void add(const char* option, const std::string& value) {
+    if (!value.empty()) text_ += fmt::format(" {} {}", option, quoted(value));
+  }
+  void add(const char* option, const std::optional<double>& value) {
+    if (value) text_ += fmt::format(" {} {}", option, *value);
+  }
+  const std::string& text() const { return text_; }
+
+ private:
+  std::string text_;
+};
+
+void add_files(Command& command, const FrameSource& source, const InputSettings& settings) {
+  if (!settings.input.empty()) command.add(quoted(settings.input));
+  command.add("--depth", settings.depth);
+  command.add("--normal", settings.normal);
+  command.add("--position", settings.position);
+  command.add("--layer", settings.layer);
+  command.add("--view", settings.view);
+  if (source.rules_said) command.add("--source", settings.source);
+  command.add("--depth-channel", settings.depth_channel);
+  command.add("--normal-channels", settings.normal_channels);
+  command.add("--position-channels", settings.position_channels);
+}
+
+void add_depth(Command& command, const FrameSource& source, const InputSettings& settings) {
+  command.add("--depth-kind", std::string(name_of(source.depth_kind)));
+  const bool has_planes = source.depth_kind == DepthKind::device || source.depth_kind == DepthKind::normalized ||
+                          source.depth_kind == DepthKind::log;
+  if (has_planes) {
+    command.add("--near", source.depth_range.near);
+    command.add("--far", source.depth_range.far);
+    if (source.depth_range.reversed) command.add("--reversed-z");
+  }
+  if (source.depth_kind == DepthKind::position)
+    command.add("--position-space", std::string(source.position_space == PositionSpace::world ? "world" : "view"));
+  const InputSettings defaults;
+  if (settings.depth_range.device == DeviceRange::minus_one_to_one) command.add("--device-range=-1..1");
+  if (settings.depth_range.log_constant != defaults.depth_range.log_constant)
+    command.add("--log-constant", std::optional(settings.depth_range.log_constant));
+  if (settings.depth_scale != defaults.depth_scale) command.add("--depth-scale", std::optional(settings.depth_scale));
+  if (settings.sky != defaults.sky) command.add("--sky", std::optional(settings.sky));
+}
+
+void add_normals(Command& command, const FrameSource& source, const InputSettings& settings, bool has_camera) {
+  if (source[RawPlane::normal].empty()) return;
+  if (has_camera || settings.normal_space != NormalSpace::automatic)
+    command.add("--normal-space", std::string(name_of(source.normal_space)));
+  command.add("--normal-encoding", std::string(encoding_name(source)));
+  if (to_string(source.flip_normal) != "none") command.add("--flip-normal", to_string(source.flip_normal));
+}
+
+void add_camera(Command& command, const InputSettings& settings, bool has_camera) {
+  command.add("--camera", settings.camera);
+  command.add("--fov", settings.fov);
+  command.add("--focal", settings.focal);
+  command.add("--aperture", settings.aperture);
+  command.add("--ortho-width", settings.ortho_width);
+  if (!has_camera) command.add("--camera CAMERA.json");
+}
+
+}  // namespace
+
+const char* encoding_name(const FrameSource& source) {
+  if (source.normal_encoding == NormalEncoding::octahedral) return "octahedral";
+  if (source.normal_encoding == NormalEncoding::spheremap) return "spheremap";
+  return source.normal_unorm ? "unorm" : "signed";
+}
+
+std::string command_of(const FrameSource& source, const InputSettings& settings, bool has_camera,
+                       std::optional<double> median) {
+  Command command("alcove run");
+  add_files(command, source, settings);
+  command.add("-o ao.exr");
+  add_depth(command, source, settings);
+  add_normals(command, source, settings, has_camera);
+  add_camera(command, settings, has_camera);
+  // A tenth of the median distance, by one figure: as much as a guess at a radius deserves.
+  if (median)
+    command.add("--radius", std::optional(std::stod(fmt::format("{:.1g}", 0.1 * *median))));
+  else
+    command.add("--radius RADIUS");
+  return command.text();
+}
+
+}  // namespace alcove

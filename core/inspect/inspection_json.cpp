@@ -1,0 +1,138 @@
+// An inspection as one JSON document.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "core/base/json_text.h"
+#include "core/inspect/inspection.h"
+
+namespace alcove {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json number(std::optional<double> value) { return value ? Json(*value) : Json(); }
+
+Json to_json(const InspectedPart& part) {
+  Json channels = Json::array();
+  for (const auto& channel : part.header.channels)
+    channels.push_back({{"name", channel.name}, {"type", name_of(channel.type)}});
+  return {{"name", part.header.name},
+          {"view", part.header.view},
+          {"data_window", to_string(part.header.data)},
+          {"channels", channels},
+          {"attributes", part.attributes}};
+}
+
+Json to_json(const InspectedFile& file) {
+  Json parts = Json::array();
+  for (const auto& part : file.parts) parts.push_back(to_json(part));
+  return {{"path", file.path},
+          {"display_window", to_string(file.display)},
+          {"pixel_aspect", file.pixel_aspect},
+          {"parts", parts}};
+}
+
+Json to_json(const InspectedSource& source) { return {{"name", source.name}, {"by", source.by}}; }
+
+Json to_json(const InspectedAov& aov) {
+  return {{"file", aov.file},
+          {"part", aov.part},
+          {"channels", aov.channels},
+          {"why", aov.is_chosen ? "named by an option" : "a usual name"}};
+}
+
+Json to_json(const InspectedCamera& inspected) {
+  const Camera& camera = inspected.camera;
+  const double half_width = 0.5 * camera.width / camera.fx;
+  return {{"from", inspected.from},
+          {"projection", camera.orthographic ? "orthographic" : "perspective"},
+          {"fx", camera.fx},
+          {"fy", camera.fy},
+          {"cx", camera.cx},
+          {"cy", camera.cy},
+          {"horizontal_fov", camera.orthographic ? Json() : Json(2 * std::atan(half_width) * 180 / std::numbers::pi)},
+          {"world_to_camera", camera.view_from_world.has_value()}};
+}
+
+Json to_json(const InspectedDepth& depth) {
+  const ValueStatistics& values = depth.values;
+  Json json = {
+      {"kind", depth.kind},          {"least", values.least},       {"most", values.most}, {"nan", values.nan},
+      {"infinite", values.infinite}, {"negative", values.negative}, {"zero", values.zero}, {"one", values.one}};
+  const std::pair<const char*, std::optional<double>> distances[] = {{"sky_share", depth.sky_share},
+                                                                     {"nearest", depth.nearest},
+                                                                     {"median", depth.median},
+                                                                     {"farthest", depth.farthest}};
+  for (const auto& [name, value] : distances)
+    if (value) json[name] = *value;
+  if (!depth.scores) return json;
+  json["scores"] = Json::array();
+  for (const auto& score : *depth.scores)
+    json["scores"].push_back({{"kind", name_of(score.kind)}, {"straight", score.straight}});
+  return json;
+}
+
+Json to_json(const NormalScore& score) {
+  return {{"space", name_of(score.space)},
+          {"flips", to_string(score.flips)},
+          {"agreement", score.agreement},
+          {"angle", score.angle},
+          {"facing", score.facing}};
+}
+
+Json to_json(const InspectedNormals& normals) {
+  Json scores = Json::array();
+  for (const auto& score : normals.scores) scores.push_back(to_json(score));
+  Json json = {{"space", name_of(normals.space)},
+               {"encoding", normals.encoding},
+               {"flips", to_string(normals.flips)},
+               {"mean_length", number(normals.mean_length)},
+               {"unit_share", number(normals.unit_share)},
+               {"least", normals.least},
+               {"most", normals.most},
+               {"scores", scores}};
+  if (!normals.chosen) return json;
+  json["agreement"] = normals.chosen->agreement;
+  json["angle"] = normals.chosen->angle;
+  json["facing"] = normals.chosen->facing;
+  return json;
+}
+
+Json to_json(const Guess& guess) {
+  return {{"what", guess.what}, {"chosen", guess.chosen}, {"why", guess.why}, {"option", guess.option}};
+}
+
+template <class T>
+Json to_json(const std::optional<T>& value) {
+  return value ? to_json(*value) : Json();
+}
+
+template <class T>
+Json list_json(const std::vector<T>& values) {
+  Json list = Json::array();
+  for (const auto& value : values) list.push_back(to_json(value));
+  return list;
+}
+
+}  // namespace
+
+std::string inspection_json(const Inspection& inspection) {
+  Json aovs = Json::object();
+  for (const auto& aov : inspection.aovs) aovs[aov.name] = to_json(aov);
+  const Json json = {{"files", list_json(inspection.files)},
+                     {"source", to_json(inspection.source)},
+                     {"aovs", aovs},
+                     {"camera", to_json(inspection.camera)},
+                     {"depth", to_json(inspection.depth)},
+                     {"normals", to_json(inspection.normals)},
+                     {"guesses", list_json(inspection.guesses)},
+                     {"notes", inspection.notes},
+                     {"suspicious", inspection.suspicious},
+                     {"missing", inspection.missing},
+                     {"command", inspection.command}};
+  return json_text(json, 1) + "\n";
+}
+
+}  // namespace alcove

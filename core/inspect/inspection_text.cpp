@@ -1,0 +1,124 @@
+// An inspection as lines for people.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/base/text.h"
+#include "core/inspect/inspection.h"
+
+namespace alcove {
+
+const char* name_of(NormalSpace space) { return space == NormalSpace::world ? "world" : "view"; }
+
+const char* name_of(SampleType type) {
+  switch (type) {
+    case SampleType::half_float: return "half";
+    case SampleType::single_float: return "float";
+    case SampleType::integer: break;
+  }
+  return "integer";
+}
+
+namespace {
+
+constexpr std::size_t kShownScores = 8;        // of normals; the JSON has all of them
+constexpr std::size_t kShownCharacters = 100;  // of an attribute
+
+std::string percent(double share) { return fmt::format("{:.1f} %", 100 * share); }
+
+/// Lines that a terminal may show.
+class Lines {
+ public:
+  template <class... Args>
+  void add(fmt::format_string<Args...> format, Args&&... args) {
+    text_ += printable(fmt::format(format, std::forward<Args>(args)...)) + "\n";
+  }
+  const std::string& text() const { return text_; }
+
+ private:
+  std::string text_;
+};
+
+void add(Lines& lines, const InspectedPart& part) {
+  const ExrPart& header = part.header;
+  lines.add("  part{}{}: data window {}", header.name.empty() ? "" : " " + header.name,
+            header.view.empty() ? "" : ", view " + header.view, to_string(header.data));
+  for (const auto& channel : header.channels) lines.add("    {} ({})", channel.name, name_of(channel.type));
+  for (const auto& [name, value] : part.attributes) lines.add("    {} = {}", name, value.substr(0, kShownCharacters));
+}
+
+void add(Lines& lines, const InspectedFile& file) {
+  lines.add("{}: display window {}, pixel aspect {:.4g}", file.path, to_string(file.display), file.pixel_aspect);
+  for (const auto& part : file.parts) add(lines, part);
+}
+
+void add(Lines& lines, const InspectedSource& source) {
+  lines.add("source: {}{}", source.name, source.by.empty() ? "" : " (" + source.by + ")");
+}
+
+void add(Lines& lines, const InspectedAov& aov) {
+  lines.add("{}: {} ({})", aov.name, fmt::join(aov.channels, ", "),
+            aov.is_chosen ? "named by an option" : "a usual name");
+}
+
+void add(Lines& lines, const InspectedCamera& inspected) {
+  const Camera& camera = inspected.camera;
+  const double degrees = 2 * std::atan(0.5 * camera.width / camera.fx) * 180 / std::numbers::pi;
+  lines.add("camera: {} by {}, {}, {} world_to_camera", camera.orthographic ? "orthographic" : "perspective",
+            inspected.from,
+            camera.orthographic ? fmt::format("{:.5g} px a scene unit", camera.fx)
+                                : fmt::format("{:.2f} degrees wide", degrees),
+            camera.view_from_world ? "with" : "without");
+}
+
+void add(Lines& lines, const InspectedDepth& depth, bool is_orthographic) {
+  const ValueStatistics& values = depth.values;
+  lines.add("depth: {}, values {:.6g} to {:.6g}; {} NaN, {} infinite, {} negative, {} of 0, {} of 1", depth.kind,
+            values.least, values.most, values.nan, values.infinite, values.negative, values.zero, values.one);
+  if (depth.median)
+    lines.add("  distances {:.6g} to {:.6g}, median {:.6g}; sky {}", *depth.nearest, *depth.farthest, *depth.median,
+              percent(*depth.sky_share));
+  if (!depth.scores) return;
+  for (const auto& score : *depth.scores)
+    lines.add("  only as {}: {} straight on {}", name_of(score.kind), is_orthographic ? "z" : "1/z",
+              percent(score.straight));
+}
+
+void add(Lines& lines, const InspectedNormals& normals) {
+  const std::string lengths = normals.mean_length ? fmt::format(", mean length {:.4f}, of unit length on {}",
+                                                                *normals.mean_length, percent(*normals.unit_share))
+                                                  : "";
+  lines.add("normals: {} space, {}, flips {}{}", name_of(normals.space), normals.encoding, to_string(normals.flips),
+            lengths);
+  for (std::size_t i = 0; i < std::min(normals.scores.size(), kShownScores); i++) {
+    const NormalScore& score = normals.scores[i];
+    lines.add("  as {} with flips {}: {} agree with depth, a quarter within {:.1f} degrees, {} face the camera",
+              name_of(score.space), to_string(score.flips), percent(score.agreement), score.angle,
+              percent(score.facing));
+  }
+}
+
+}  // namespace
+
+std::string inspection_text(const Inspection& inspection) {
+  Lines lines;
+  for (const auto& file : inspection.files) add(lines, file);
+  if (inspection.source) add(lines, *inspection.source);
+  for (const auto& aov : inspection.aovs) add(lines, aov);
+  if (inspection.camera) add(lines, *inspection.camera);
+  const bool is_orthographic = inspection.camera && inspection.camera->camera.orthographic;
+  if (inspection.depth) add(lines, *inspection.depth, is_orthographic);
+  if (inspection.normals) add(lines, *inspection.normals);
+  for (const auto& guess : inspection.guesses)
+    lines.add("guess: {} {}, since {} ({})", guess.what, guess.chosen, guess.why, guess.option);
+  for (const auto& note : inspection.notes) lines.add("note: {}", note);
+  for (const auto& finding : inspection.suspicious) lines.add("suspicious: {}", finding);
+  for (const auto& missing : inspection.missing) lines.add("missing: {}", missing);
+  if (!inspection.command.empty()) lines.add("{}", inspection.command);
+  return lines.text();
+}
+
+}  // namespace alcove

@@ -1,0 +1,102 @@
+// File names may hold any bytes: what is no UTF-8 is escaped wherever a name is shown, and outputs stay valid.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/support/command_line.h"
+
+namespace alcove {
+namespace {
+
+using namespace test;
+using nlohmann::json;
+using testing::HasSubstr;
+using testing::Not;
+
+/// Bytes of Latin-1, and how they are shown.
+const std::string kName = "caf\xe9 \xff", kShown = "caf\\xe9 \\xff";
+
+class FileNames : public CommandLine {
+ protected:
+  FileNames() { wall_frame().write(input); }
+
+  Finished run_on_name(const std::vector<std::string>& more) const {
+    std::vector<std::string> arguments{"run", input, "-o", output, "--camera", camera, "--radius", "1"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_program(arguments);
+  }
+
+  /// Nothing but UTF-8, with the name as it is to be shown.
+  static void expect_shown(const std::string& text) {
+    EXPECT_NO_THROW((void)json(text).dump()) << "not UTF-8";
+    EXPECT_THAT(text, HasSubstr(kShown));
+    EXPECT_THAT(text, Not(HasSubstr("\xef\xbf\xbd"))) << "a replacement character hides which byte it was";
+  }
+
+  const std::string input = folder / (kName + ".exr"), output = folder / (kName + ".ao.exr");
+};
+
+TEST_F(FileNames, in_reports_of_a_run) {
+  const std::string stats = folder / "stats.json", log = folder / "log.json";
+  const Finished finished = run_on_name({"--stats", stats, "--log-json", log, "-v"});
+  ASSERT_EQ(finished.code, 0) << finished;
+  expect_shown(finished.err);
+  const json frame = json::parse(read_bytes(stats))["frames"][0];
+  EXPECT_EQ(frame["input"], folder / (kShown + ".exr"));
+  EXPECT_EQ(frame["output"], folder / (kShown + ".ao.exr"));
+  bool is_logged = false;
+  for (const auto& line : lines_of(read_bytes(log)))
+    is_logged = is_logged || json::parse(line).value("input", "") == folder / (kShown + ".exr");
+  EXPECT_TRUE(is_logged) << read_bytes(log);
+}
+
+TEST_F(FileNames, in_errors) {
+  write_bytes(input, "no picture");
+  const Finished finished = run_on_name({});
+  EXPECT_EQ(finished.code, 3);
+  expect_shown(finished.err);
+}
+
+TEST_F(FileNames, in_the_plan_of_a_dry_run) {
+  const Finished finished = run_on_name({"--dry-run"});
+  ASSERT_EQ(finished.code, 0) << finished;
+  expect_shown(finished.out);
+}
+
+TEST_F(FileNames, in_what_inspect_says) {
+  const Finished text = run_program({"inspect", input, "--camera", camera}),
+                 quoted = run_program({"inspect", input, "--camera", camera, "--json"});
+  ASSERT_EQ(quoted.code, 0) << quoted;
+  expect_shown(text.out);
+  EXPECT_EQ(json::parse(quoted.out)["files"][0]["path"], folder / (kShown + ".exr"));
+}
+
+TEST_F(FileNames, in_what_inspect_says_of_channels_and_attributes) {
+  FrameFile file = wall_frame();
+  file.attributes = {{"note \xff", "caf\xe9"}};
+  file.planes["odd\xff.R"] = file.planes["ViewLayer.Depth.Z"];
+  file.write(input);
+  const Finished quoted = run_program({"inspect", input, "--camera", camera, "--json"});
+  ASSERT_EQ(quoted.code, 0) << quoted;
+  const json part = json::parse(quoted.out)["files"][0]["parts"][0];
+  EXPECT_EQ(part["attributes"]["note \\xff"], "caf\\xe9");
+  EXPECT_THAT(part["channels"].dump(), HasSubstr("odd\\\\xff.R"));
+}
+
+TEST_F(FileNames, in_what_compare_says) {
+  const std::string page = folder / "page.html";
+  const std::vector<std::string> arguments{"compare", input, input, "--channel", "ViewLayer.Depth.Z"};
+  std::vector<std::string> quoted = arguments;
+  quoted.insert(quoted.end(), {"--json", "--report", page});
+  const Finished text = run_program(arguments), parsed = run_program(quoted);
+  ASSERT_EQ(text.code, 0) << text;
+  expect_shown(text.out);
+  ASSERT_EQ(parsed.code, 0) << parsed;
+  EXPECT_EQ(json::parse(parsed.out)["result"], folder / (kShown + ".exr"));
+  EXPECT_THAT(read_bytes(page), HasSubstr("caf\\\\xe9 \\\\xff"));
+}
+
+}  // namespace
+}  // namespace alcove

@@ -1,0 +1,184 @@
+// A scene as renderers write it: channels by their names, attributes and matrices of headers; and how it must be read.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <ImfChannelList.h>
+#include <ImfFloatAttribute.h>
+#include <ImfFloatVectorAttribute.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfIntAttribute.h>
+#include <ImfMatrixAttribute.h>
+#include <ImfOutputFile.h>
+#include <ImfStringAttribute.h>
+#include <ImfVecAttribute.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+#include "core/base/error.h"
+#include "core/frame/input_rules.h"
+#include "core/frame/settle.h"
+#include "tests/support/device.h"
+#include "tests/support/difference.h"
+#include "tests/support/program.h"
+#include "tests/support/scenes.h"
+#include "tests/support/settled.h"
+
+namespace alcove::test {
+
+constexpr double kFov = 60, kFar = 50;
+
+/// A floor, two walls and a ball under sky.
+inline const Rendering& rendering() {
+  static const Rendering made = render(
+      Scene{{parallelogram({0, -3, 0}, {4, 0, 0}, {0, 6, 0}), parallelogram({0, -3, 0}, {0, 6, 0}, {0, 0, 1.5}),
+             parallelogram({0, 2, 0}, {4, 0, 0}, {0, 0, 1.5}), Sphere{.center = {1.2, 0.4, 0.5}, .radius = 0.5}}},
+      Shot::perspective({4.5, -1.5, 2.4}, {1, 0, 0.6}, kFov, 160, 120));
+  return made;
+}
+
+inline const Shot& shot() { return rendering().shot; }
+inline Vec3 mirrored(Vec3 v) { return {v.x, -v.y, v.z}; }
+inline Vec3 in_view(Vec3 world) { return shot().view_from_world(world); }
+inline Vec3 forward_z(Vec3 view) { return {view.x, view.y, -view.z}; }
+inline double planar(const Hit& hit) { return hit.distance; }
+inline double ray(const Hit& hit) { return length(hit.position - shot().eye); }
+
+using Rows = std::array<std::array<double, 4>, 4>;  // for column vectors
+
+/// World to a camera space that looks along +z (sign -1) or -z (sign 1).
+inline Rows world_to_camera(double sign) {
+  const Vec3 axes[] = {shot().right, shot().up, sign * shot().back};
+  Rows rows{};
+  for (std::size_t i = 0; i < 3; i++) rows[i] = {axes[i].x, axes[i].y, axes[i].z, -dot(axes[i], shot().eye)};
+  rows[3] = {0, 0, 0, 1};
+  return rows;
+}
+
+inline Rows camera_to_world(double sign) {
+  const Vec3 axes[] = {shot().right, shot().up, sign * shot().back};
+  return {{{axes[0].x, axes[1].x, axes[2].x, shot().eye.x},
+           {axes[0].y, axes[1].y, axes[2].y, shot().eye.y},
+           {axes[0].z, axes[1].z, axes[2].z, shot().eye.z},
+           {0, 0, 0, 1}}};
+}
+
+/// World to NDC, through a camera that looks along +z: from 0 with y down, or from -1 with y up.
+inline Rows world_to_ndc(bool from_zero) {
+  const Rows view = world_to_camera(-1);
+  const Camera& c = shot().camera;
+  const double x = c.fx / c.width, y = c.fy / c.height;
+  const Rows projection = from_zero ? Rows{{{x, 0, 0.5, 0}, {0, -y, 0.5, 0}, {0, 0, 1.001, -0.1}, {0, 0, 1, 0}}}
+                                    : Rows{{{2 * x, 0, 0, 0}, {0, 2 * y, 0, 0}, {0, 0, 1.001, -0.1}, {0, 0, 1, 0}}};
+  Rows product{};
+  for (std::size_t i = 0; i < 4; i++)
+    for (std::size_t j = 0; j < 4; j++)
+      for (std::size_t k = 0; k < 4; k++) product[i][j] += projection[i][k] * view[k][j];
+  return product;
+}
+
+inline Imf::M44fAttribute matrix(const Rows& rows, bool row_vectors) {
+  Imath::M44f m;
+  for (int i = 0; i < 4; i++)
+    for (int j = 0; j < 4; j++)
+      m[i][j] = float(row_vectors ? rows[std::size_t(j)][std::size_t(i)] : rows[std::size_t(i)][std::size_t(j)]);
+  return Imf::M44fAttribute(m);
+}
+
+inline void add_matrices(Imf::Header& header, bool from_zero, bool row_vectors = true) {
+  header.insert("worldToCamera", matrix(world_to_camera(-1), row_vectors));
+  header.insert("worldToNDC", matrix(world_to_ndc(from_zero), row_vectors));
+}
+
+/// A frame as a program writes it: planes by name, attributes, and how it must be read.
+class Sources : public testing::Test {
+ protected:
+  Sources() : header(160, 120) { settings.input = folder / "frame.exr"; }
+
+  void depth(const std::string& channel, double (*value)(const Hit&), float sky, double scale = 1) {
+    auto& plane = planes[channel];
+    for (const auto& hit : rendering().hits) plane.push_back(hit.primitive < 0 ? sky : float(scale * value(hit)));
+  }
+
+  void vectors(const std::string& layer, const char* components, const std::function<Vec3(const Hit&)>& value,
+               float offset = 0, float scale = 1) {
+    for (const auto& hit : rendering().hits) {
+      const Vec3 v = hit.primitive < 0 ? Vec3{} : value(hit);
+      const double xyz[] = {v.x, v.y, v.z};
+      for (int c = 0; c < 3; c++)
+        planes[layer + "." + components[c]].push_back(hit.primitive < 0 ? 0 : float(offset + scale * xyz[c]));
+    }
+  }
+
+  static Vec3 world_normal(const Hit& hit) { return hit.normal; }
+  static Vec3 view_normal(const Hit& hit) { return in_view(hit.normal); }
+
+  void write(const std::string& path) {
+    Imf::Header h = header;
+    Imf::FrameBuffer buffer;
+    std::vector<std::vector<half>> halves;
+    for (auto& [name, plane] : planes) {
+      const bool is_half = name.ends_with("WorldDepth.R");
+      h.channels().insert(name, Imf::Channel(is_half ? Imf::HALF : Imf::FLOAT));
+      if (is_half) halves.emplace_back(plane.begin(), plane.end());
+      char* base = is_half ? reinterpret_cast<char*>(halves.back().data()) : reinterpret_cast<char*>(plane.data());
+      const std::size_t bytes = is_half ? 2 : 4;
+      buffer.insert(name, Imf::Slice(is_half ? Imf::HALF : Imf::FLOAT, base, bytes, bytes * 160));
+    }
+    Imf::OutputFile file(path.c_str(), h);
+    file.setFrameBuffer(buffer);
+    file.writePixels(120);
+  }
+
+  /// The camera file of the scene, for programs that write none.
+  void give_camera() {
+    const Rows rows = world_to_camera(1);
+    const Camera& c = shot().camera;
+    std::string text = fmt::format(
+        R"({{"resolution": [160, 120], "fx": {}, "fy": {}, "cx": 80, "cy": 60, "world_to_camera": [)", c.fx, c.fy);
+    for (std::size_t i = 0; i < 4; i++) text += fmt::format("{}[{}]", i ? ", " : "", fmt::join(rows[i], ", "));
+    settings.camera = folder / "camera.json";
+    write_bytes(settings.camera, text + "]}");
+  }
+
+  FrameSource settled() const { return test::settled(settings); }
+
+  static std::vector<float> ao_of(const HostFrame& frame, double scale) {
+    EstimatorSettings estimator = plain_settings();
+    estimator.radius = 1e3 * scale;
+    return compute_ao(recorder(), frame, estimator).ao;
+  }
+
+  /// Written, detected as that program's, and the AO of the rendering.
+  void expect_same(const std::string& program, double tolerance = 1e-3, double scale = 1) {
+    write(settings.input);
+    SCOPED_TRACE(program);
+    const FrameSource source = settled();
+    EXPECT_EQ(source.rules->name, program);
+    const Difference d = difference(ao_of(read_host_frame(settings, 0), scale), ao_of(rendering().frame, 1));
+    EXPECT_LE(tolerance > 1e-3 ? d.rmse : d.max, tolerance) << place(d, rendering().frame);
+  }
+
+  void expect_refused(ErrorKind kind, const std::vector<std::string>& words) {
+    write(settings.input);
+    try {
+      settled();
+      read_host_frame(settings, 0);
+      ADD_FAILURE() << "accepted";
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), kind);
+      for (const auto& word : words) EXPECT_THAT(error.what(), testing::HasSubstr(word));
+    }
+  }
+
+  TemporaryFolder folder;
+  InputSettings settings;
+  Imf::Header header;
+  std::map<std::string, std::vector<float>> planes;
+};
+
+}  // namespace alcove::test
