@@ -10,6 +10,7 @@
 #include "core/base/estimator_facts.h"
 #include "core/frame/settle.h"
 #include "core/run/batch.h"
+#include "core/run/digest.h"
 #include "core/run/frame_tally.h"
 #include "core/run/pictures.h"
 #include "core/run/resume.h"

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "core/base/estimator_facts.h"
+
 namespace alcove {
 
 void FrameTally::begin(const Window& computed) {
