@@ -31,7 +31,7 @@ class Driver : public testing::Test {
   Driver() { fake = {}; }
   ~Driver() override { fake = {}; }
 
-  /// On lavapipe, before which the fake one can stand, whatever type it has; without guards, whose memory the host must reach.
+  /// On lavapipe, whatever type it shows; without guards, whose memory the host must reach.
   static gpu::DeviceOptions options() {
     gpu::DeviceOptions options = device().options();
     options.choice = "llvmpipe";
