@@ -92,8 +92,8 @@ class GBuffer : public testing::Test {
   void write(const Names& channels) const { write_parts(settings.input, {{"", channels}}); }
   FrameSource find(bool with_beauty = false) const { return find_frame(settings, with_beauty, 0); }
 
-  Names depth() const { return names_of(find().depth); }
-  Names normal() const { return names_of(find().normal); }
+  Names depth() const { return names_of(find()[RawPlane::depth]); }
+  Names normal() const { return names_of(find()[RawPlane::normal]); }
 
   /// The search must fail with ErrorKind::input, in one line that holds these.
   void expect_error(const Names& words, bool with_beauty = false) const {
@@ -205,13 +205,13 @@ TEST_F(GBuffer, blender_5_calls_the_parts_by_full_words) {
 
 TEST_F(GBuffer, indirect_light_without_the_colour_that_it_needs_is_no_part) {
   write(Names{"Z", "R", "G", "B", "DiffInd.R", "DiffInd.G", "DiffInd.B"});
-  EXPECT_THAT(find(true).indirect, IsEmpty());
+  EXPECT_THAT(find(true)[RawPlane::indirect], IsEmpty());
 }
 
 TEST_F(GBuffer, beauty_is_read_only_when_asked_for) {
   write(Names{"Z", "R", "G", "B", "A"});
-  EXPECT_THAT(find(false).beauty, IsEmpty());
-  EXPECT_THAT(names_of(find(true).beauty), ElementsAre("R", "G", "B", "A"));
+  EXPECT_THAT(find(false)[RawPlane::beauty], IsEmpty());
+  EXPECT_THAT(names_of(find(true)[RawPlane::beauty]), ElementsAre("R", "G", "B", "A"));
 }
 
 // What must not be mistaken.
@@ -380,11 +380,11 @@ TEST_F(GBuffer, chosen_channels_that_are_not_there_are_errors) {
 TEST_F(GBuffer, a_beauty_is_three_channels_or_four) {
   write(Names{"Z", "fill.R", "fill.G", "fill.B", "fill.A", "key.R", "key.G", "key.B"});
   settings.beauty_channels = "fill";
-  EXPECT_THAT(names_of(find(true).beauty), ElementsAre("fill.R", "fill.G", "fill.B", "fill.A"));
+  EXPECT_THAT(names_of(find(true)[RawPlane::beauty]), ElementsAre("fill.R", "fill.G", "fill.B", "fill.A"));
   settings.beauty_channels = "key";
-  EXPECT_THAT(names_of(find(true).beauty), ElementsAre("key.R", "key.G", "key.B"));
+  EXPECT_THAT(names_of(find(true)[RawPlane::beauty]), ElementsAre("key.R", "key.G", "key.B"));
   settings.beauty_channels = "key.R,key.G,key.B,fill.A";
-  EXPECT_THAT(names_of(find(true).beauty), ElementsAre("key.R", "key.G", "key.B", "fill.A"));
+  EXPECT_THAT(names_of(find(true)[RawPlane::beauty]), ElementsAre("key.R", "key.G", "key.B", "fill.A"));
 }
 
 TEST_F(GBuffer, alpha_is_found_in_the_spelling_of_the_colours) {
@@ -393,7 +393,7 @@ TEST_F(GBuffer, alpha_is_found_in_the_spelling_of_the_colours) {
     Names all = channels;
     all.push_back("Z");
     write(all);
-    EXPECT_EQ(names_of(find(true).beauty), channels);
+    EXPECT_EQ(names_of(find(true)[RawPlane::beauty]), channels);
   }
 }
 
@@ -415,7 +415,7 @@ TEST_F(GBuffer, parts_may_repeat_their_name_in_the_channels) {
       {"ViewLayer.Normal", {"ViewLayer.Normal.X", "ViewLayer.Normal.Y", "ViewLayer.Normal.Z"}}});
   EXPECT_THAT(depth(), ElementsAre("1:ViewLayer.Depth.Z"));
   EXPECT_THAT(normal(), ElementsAre("2:ViewLayer.Normal.X", "2:ViewLayer.Normal.Y", "2:ViewLayer.Normal.Z"));
-  EXPECT_THAT(names_of(find(true).beauty),
+  EXPECT_THAT(names_of(find(true)[RawPlane::beauty]),
               ElementsAre("ViewLayer.Combined.R", "ViewLayer.Combined.G", "ViewLayer.Combined.B"));
   settings.layer = "ViewLayer";
   EXPECT_THAT(depth(), ElementsAre("1:ViewLayer.Depth.Z"));
@@ -424,7 +424,7 @@ TEST_F(GBuffer, parts_may_repeat_their_name_in_the_channels) {
 TEST_F(GBuffer, the_name_of_the_only_part_is_no_layer) {
   for (const char* name : {"rgba", "rgba.main", "Layer"}) {
     write(std::vector<Part>{{name, {"R", "G", "B", "Z", "N.X", "N.Y", "N.Z"}}});
-    EXPECT_THAT(names_of(find(true).depth), ElementsAre("Z")) << name;
+    EXPECT_THAT(names_of(find(true)[RawPlane::depth]), ElementsAre("Z")) << name;
     EXPECT_THAT(normal(), ElementsAre("N.X", "N.Y", "N.Z")) << name;
   }
 }
