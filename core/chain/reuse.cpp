@@ -93,8 +93,8 @@ bool LastFrame::is_same(gpu::Recorder& gpu, FrameInputs& frame, const EstimatorS
   std::ranges::fill(sums, 0u);
   for (int y = 0; y < count.y; y++)
     for (int x = 0; x < count.x; x++) {
-      const std::size_t block = std::size_t(y) * std::size_t(count.x) + std::size_t(x),
-                        at = std::size_t(y + 1) * std::size_t(columns) + std::size_t(x + 1);
+      const std::size_t block = std::size_t(y) * std::size_t(count.x) + std::size_t(x);
+      const std::size_t at = std::size_t(y + 1) * std::size_t(columns) + std::size_t(x + 1);
       sums[at] = (before.blocks[block] != last_.blocks[block] ? 1u : 0u) + sums[at - 1] +
                  sums[at - std::size_t(columns)] - sums[at - std::size_t(columns) - 1];
     }

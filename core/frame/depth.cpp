@@ -27,31 +27,35 @@ double far_of(DepthKind kind, const DepthRange& range, bool may_be_infinite) {
   return *range.far;
 }
 
-/// Values strictly between the near and the far plane's; counted from `from`, which is one of them.
+/// Counts only values strictly between the near and the far plane's as surfaces. `from` is the one of the two that
+/// depths are counted from.
 void count_between(DepthMap& map, double near_value, double far_value, double from) {
   map.sky_below = std::min(near_value, far_value);
   map.sky_above = std::max(near_value, far_value);
   map.origin = from;
 }
 
-/// The z-buffer. It is counted from the far plane, where perspective depth is densest: the difference is exact there,
-/// and 1 minus it would not be.
+/// Sets the map of a z-buffer. Depth is counted from the far plane, where perspective depth is densest: the difference
+/// is exact there, and 1 minus it would not be.
 void set_device(DepthMap& map, const DepthRange& range, bool orthographic, double scale) {
-  const double n = near_of(DepthKind::device, range), f = far_of(DepthKind::device, range, !orthographic);
+  const double n = near_of(DepthKind::device, range);
+  const double f = far_of(DepthKind::device, range, !orthographic);
   if (!(n < f))
     fail(ErrorKind::usage, "the near plane must be nearer than the far plane, --near {} is not below --far {}", n, f);
   const double low = range.device == DeviceRange::zero_to_one ? 0 : -1;
-  const double near_value = range.reversed ? 1 : low, far_value = range.reversed ? low : 1;
+  const double near_value = range.reversed ? 1 : low;
+  const double far_value = range.reversed ? low : 1;
   count_between(map, near_value, far_value, far_value);
   map.form = orthographic ? kDepthLinear : kDepthReciprocal;
-  const double at_near = orthographic ? n * scale : 1 / (n * scale),
-               at_far = orthographic ? f * scale : 1 / (f * scale);
+  const double at_near = orthographic ? n * scale : 1 / (n * scale);
+  const double at_far = orthographic ? f * scale : 1 / (f * scale);
   map.base = at_far;
   map.slope = (at_near - at_far) / (near_value - far_value);
 }
 
 void set_normalized(DepthMap& map, const DepthRange& range, double scale) {
-  const double n = range.near.value_or(0), f = far_of(DepthKind::normalized, range, false);
+  const double n = range.near.value_or(0);
+  const double f = far_of(DepthKind::normalized, range, false);
   if (!(n < f))
     fail(ErrorKind::usage, "the near plane must be nearer than the far plane, --near {} is not below --far {}", n, f);
   const double near_value = range.reversed ? 1 : 0;
@@ -99,7 +103,10 @@ DepthMap depth_map(DepthKind kind, const DepthRange& range, PositionSpace space,
       map.along_ray = kind == DepthKind::ray && !camera.orthographic;
       map.slope = (range.negative ? -1 : 1) * (kind == DepthKind::inverse ? 1 / scale : scale);
       if (kind != DepthKind::inverse) map.sky_above = sky;
-      if (range.negative) map.sky_below = -kInfinity, map.sky_above = 0;  // what is beyond the sky is by its distance
+      if (range.negative) {  // what is beyond the sky is told by its distance
+        map.sky_below = -kInfinity;
+        map.sky_above = 0;
+      }
       break;
     case DepthKind::device: set_device(map, range, camera.orthographic, scale); break;
     case DepthKind::normalized: set_normalized(map, range, scale); break;
@@ -117,9 +124,11 @@ double planar_depth(const DepthMap& map, const std::array<double, 3>& raw, doubl
   } else {
     if (!(raw[0] > map.sky_below && raw[0] < map.sky_above)) return kInfinity;
     const double value = map.slope * (raw[0] - map.origin);
-    z = map.form == kDepthReciprocal    ? 1 / (map.base + value)
-        : map.form == kDepthExponential ? map.base * std::expm1(value)
-                                        : map.base + value;
+    switch (map.form) {
+      case kDepthReciprocal: z = 1 / (map.base + value); break;
+      case kDepthExponential: z = map.base * std::expm1(value); break;
+      default: z = map.base + value;
+    }
   }
   if (!(z > 0 && z < map.sky_depth)) return kInfinity;
   return map.along_ray ? z / ray_length : z;
@@ -127,25 +136,27 @@ double planar_depth(const DepthMap& map, const std::array<double, 3>& raw, doubl
 
 bool is_all_sky(const DepthMap& map, std::span<const float> raw) {
   if (map.form == kDepthPosition) return std::ranges::all_of(raw, [](float x) { return x == 0; });
-  const float below = float(map.sky_below), above = float(map.sky_above);
+  const auto below = float(map.sky_below);
+  const auto above = float(map.sky_above);
   return std::ranges::all_of(raw, [&](float x) { return x >= above || x == below; });
 }
 
 double step_of(std::span<const float> raw) {
-  constexpr std::size_t kSampled = 4096, kLeastValues = 64;
+  constexpr std::size_t kSampled = 4096;
+  constexpr std::size_t kLeastValues = 64;
   constexpr double kExact = 0.02;  // of a step: how near to a level a float is that can tell
   const std::size_t sparse = raw.size() / kSampled + 1;
   for (const int bits : {16, 24}) {
     const double levels = std::exp2(bits) - 1;
     std::size_t values = 0;
-    bool all = true;
-    for (std::size_t i = 0; i < raw.size() && all; i += sparse) {
+    bool is_on_levels = true;
+    for (std::size_t i = 0; i < raw.size() && is_on_levels; i += sparse) {
       const double level = raw[i] * levels;
       if (!(raw[i] > 0 && raw[i] < 1) || level * kFloatPrecision > 0.5 * kExact) continue;
-      all = std::abs(level - std::round(level)) < kExact;
+      is_on_levels = std::abs(level - std::round(level)) < kExact;
       values++;
     }
-    if (all && values >= kLeastValues) return 1 / levels;
+    if (is_on_levels && values >= kLeastValues) return 1 / levels;
   }
   return 0;
 }
@@ -154,9 +165,9 @@ DepthPrecision depth_precision(const DepthMap& map, double raw_precision, double
   constexpr double kRenderers = 0x1p-16;  // measured: up to 8e-6; with room for what bounds of tiles lose
   // A position's coordinates, each known to a part of itself, and their products are added up.
   const double from_origin = map.form == kDepthPosition ? 2 * map.eye_distance : 0;
-  const double slope = std::abs(map.slope),
-               rest = raw_precision * std::max(from_origin, std::abs(map.slope * map.origin - map.base)) +
-                      0.5 * step * slope;
+  const double slope = std::abs(map.slope);
+  const double rest =
+      raw_precision * std::max(from_origin, std::abs(map.slope * map.origin - map.base)) + 0.5 * step * slope;
   DepthPrecision precision;
   precision.at[1] = std::max(kRenderers, raw_precision);
   switch (map.form) {

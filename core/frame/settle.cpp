@@ -135,7 +135,9 @@ class Settlement {
 
   /// A projection matrix made for another depth range than the buffer's scales all distances, which no pixel shows.
   void compare_planes() {
-    const auto near = source_.depth_range.near, by_file = source_.camera.near, by_matrix = source_.camera.matrix_near;
+    const auto near = source_.depth_range.near;
+    const auto by_file = source_.camera.near;
+    const auto by_matrix = source_.camera.matrix_near;
     constexpr double kSame = 0.01;  // matrices are rounded
     if (source_.depth_kind == DepthKind::device && settings_.depth_range.near && by_file &&
         std::abs(*near / *by_file - 1) >= kSame)
@@ -445,12 +447,14 @@ void settle(FrameSource& source, const InputSettings& settings, std::span<const 
 double depth_rounding(const Reading& reading) { return reading.depth_is_half ? kHalfRounding : kFloatRounding; }
 
 void settle_by_rows(FrameSource& source, const InputSettings& settings) {
-  const Window data = source.data, all = source.file_data;
-  if (std::size_t(all.width) > kEvidencePixels)
+  const Window data = source.data;
+  const Window whole = source.file_data;
+  if (std::size_t(whole.width) > kEvidencePixels)
     fail(ErrorKind::device, "{}: rows of {} pixels are more than Alcove takes on any --device", source.depth_path(),
-         all.width);
-  const int rows = int(std::clamp<std::size_t>(kEvidencePixels / std::size_t(all.width), 1, std::size_t(all.height)));
-  source.data = {all.x, all.y + (all.height - rows) / 2, all.width, rows};
+         whole.width);
+  const int rows =
+      int(std::clamp<std::size_t>(kEvidencePixels / std::size_t(whole.width), 1, std::size_t(whole.height)));
+  source.data = {whole.x, whole.y + (whole.height - rows) / 2, whole.width, rows};
   std::vector<float> depth(source[RawPlane::depth].size() * source.data.pixels()),
       normal(source[RawPlane::normal].size() * source.data.pixels());
   read_planes(source, {{&source[RawPlane::depth], depth.data()}, {&source[RawPlane::normal], normal.data()}});

@@ -27,16 +27,20 @@ double arc(double h, double gamma) {
   return 0.25 * (std::cos(gamma) + 2 * h * std::sin(gamma) - std::cos(2 * h - gamma));
 }
 
+/// The weight of Simpson's rule at the i-th of so many parts' ends.
+double simpson_weight(int i, int parts) {
+  if (i == 0 || i == parts) return 1;
+  return i % 2 ? 4 : 2;
+}
+
 /// Integral of cos(theta - gamma) sin(theta) (sin(theta), cos(theta)) by Simpson's rule.
 Vector bent_between(double from, double to, double gamma) {
   const int parts = 2 * (1 + int(8 * (to - from)));
   const double width = (to - from) / parts;
   Vector sum;
   for (int i = 0; i <= parts; i++) {
-    const double theta = from + i * width, weight = (i == 0 || i == parts ? 1
-                                                     : i % 2              ? 4
-                                                                          : 2) *
-                                                    width / 3 * std::cos(theta - gamma) * std::sin(theta);
+    const double theta = from + i * width;
+    const double weight = simpson_weight(i, parts) * width / 3 * std::cos(theta - gamma) * std::sin(theta);
     sum = sum + weight * Vector{0, std::sin(theta), std::cos(theta)};
   }
   return sum;
@@ -121,7 +125,8 @@ std::vector<Sample> line_of(const Scene& scene, const Receiver& receiver, const 
   std::vector<Sample> line = {{receiver.position, receiver.depth, 0}};
   std::size_t run_start = 0;
   for (int k = 1;; k++) {
-    const int x = receiver.x + int(std::lround(side.step_x * k)), y = receiver.y + int(std::lround(side.step_y * k));
+    const int x = receiver.x + int(std::lround(side.step_x * k));
+    const int y = receiver.y + int(std::lround(side.step_y * k));
     if (!scene.inside(x, y)) break;
     Sample sample;
     sample.depth = scene.depth(x, y);
@@ -164,7 +169,9 @@ double angle_of(const Side& side, Vector offset) {
 /// Where the line between two offsets, one within the radius and one beyond, leaves the sphere.
 Vector crossing(Vector within, Vector beyond, double radius) {
   const Vector step = beyond - within;
-  const double a = dot(step, step), b = dot(within, step), c = dot(within, within) - radius * radius;
+  const double a = dot(step, step);
+  const double b = dot(within, step);
+  const double c = dot(within, within) - radius * radius;
   return within + ((std::sqrt(std::max(0.0, b * b - a * c)) - b) / a) * step;
 }
 
@@ -172,8 +179,10 @@ Vector crossing(Vector within, Vector beyond, double radius) {
 /// (first > second) where it does not.
 std::pair<double, double> span_between(const Scene& scene, const Receiver& receiver, const Side& side, const Sample& a,
                                        const Sample& b, double radius) {
-  Vector from = a.position - receiver.position, to = b.position - receiver.position;
-  const bool from_within = length(from) < radius, to_within = length(to) < radius;
+  Vector from = a.position - receiver.position;
+  Vector to = b.position - receiver.position;
+  const bool from_within = length(from) < radius;
+  const bool to_within = length(to) < radius;
   if (!same_surface(scene, a, b) || (!from_within && !to_within)) return {1, 0};
   if (!to_within) to = crossing(from, to, radius);
   if (!from_within) from = crossing(to, from, radius);
@@ -185,7 +194,8 @@ Vector blocked_arcs(const Scene& scene, const Receiver& receiver, const Side& si
   auto line = line_of(scene, receiver, side, settings);
   set_thickness(scene, line, settings);
   // the tangent plane; and where blocking begins
-  const double limit = side.gamma + kPi / 2, lowest = limit - std::asin(settings.bias);
+  const double limit = side.gamma + kPi / 2;
+  const double lowest = limit - std::asin(settings.bias);
   Blocked blocked(side.gamma, with_bent);
   Vector sum;
   for (std::size_t i = 1; i < line.size(); i++) {
@@ -221,14 +231,20 @@ struct Openness {
 
 Openness openness(const Scene& scene, const Receiver& receiver, const ReferenceSettings& settings, bool with_bent) {
   const Vector v = receiver.eye;
-  const double a = 1 / (1 + v.z), b = -v.x * v.y * a;
-  const Vector basis_x = {1 - v.x * v.x * a, b, -v.x}, basis_y = {b, 1 - v.y * v.y * a, -v.y};
-  double sum = 0, whole = 0;
+  const double a = 1 / (1 + v.z);
+  const double b = -v.x * v.y * a;
+  const Vector basis_x = {1 - v.x * v.x * a, b, -v.x};
+  const Vector basis_y = {b, 1 - v.y * v.y * a, -v.y};
+  double sum = 0;
+  double whole = 0;
   Vector bent;
   for (int s = 0; s < settings.slices; s++) {
     const double azimuth = kPi * (s + 0.5) / settings.slices;
-    const Vector t = std::cos(azimuth) * basis_x + std::sin(azimuth) * basis_y, across = cross(t, v);
-    const double n_t = dot(receiver.normal, t), n_v = dot(receiver.normal, v), n_b = dot(receiver.normal, across);
+    const Vector t = std::cos(azimuth) * basis_x + std::sin(azimuth) * basis_y;
+    const Vector across = cross(t, v);
+    const double n_t = dot(receiver.normal, t);
+    const double n_v = dot(receiver.normal, v);
+    const double n_b = dot(receiver.normal, across);
     const double weight = std::hypot(n_t, n_v);
     if (weight < 1e-9) continue;
     const double gamma = std::atan2(n_t, n_v);
@@ -240,11 +256,13 @@ Openness openness(const Scene& scene, const Receiver& receiver, const ReferenceS
       const double depth = receiver.depth;
       const double du = scene.orthographic() ? tangent.x : tangent.x + receiver.position.x / depth * tangent.z;
       const double dv = scene.orthographic() ? tangent.y : tangent.y + receiver.position.y / depth * tangent.z;
-      const double px = du * scene.fx(), py = -dv * scene.fy(), pixels = std::max(std::abs(px), std::abs(py));
+      const double px = du * scene.fx();
+      const double py = -dv * scene.fy();
+      const double pixels = std::max(std::abs(px), std::abs(py));
       double reach = settings.radius * pixels;
       if (!scene.orthographic()) {
-        const double sine = settings.radius / length(receiver.position),
-                     cosine = std::sqrt(std::max(0.0, 1 - sine * sine));
+        const double sine = settings.radius / length(receiver.position);
+        const double cosine = std::sqrt(std::max(0.0, 1 - sine * sine));
         const double forward = v.z * cosine - tangent.z * sine;
         reach = sine < 1 && forward > 0 ? sine * pixels / forward : INFINITY;
       }
@@ -290,10 +308,12 @@ void for_pixels(const HostFrame& frame, const ReferenceSettings& settings, bool 
     for (std::size_t first = next.fetch_add(kChunk); first < total; first = next.fetch_add(kChunk))
       for (std::size_t i = first; i < std::min(total, first + kChunk); i++) {
         const std::size_t index = settings.pixels.empty() ? i : settings.pixels[i];
-        const int x = int(index % std::size_t(scene.width())), y = int(index / std::size_t(scene.width()));
+        const int x = int(index % std::size_t(scene.width()));
+        const int y = int(index / std::size_t(scene.width()));
         const double z = scene.depth(x, y);
         if (z == 0) continue;
-        const Vector position = scene.position(x, y, z), eye = scene.toward_eye(position);
+        const Vector position = scene.position(x, y, z);
+        const Vector eye = scene.toward_eye(position);
         take(index, openness(scene, {x, y, z, position, eye, scene.normal(x, y, eye)}, settings, with_bent));
       }
   };

@@ -32,7 +32,8 @@ double smooth(double x) {
 
 double attenuation(const EstimatorSettings& settings, double distance) {
   if (settings.falloff == Falloff::none) return 1;
-  const double start = settings.falloff_start * *settings.radius, end = settings.falloff_end * *settings.radius;
+  const double start = settings.falloff_start * *settings.radius;
+  const double end = settings.falloff_end * *settings.radius;
   const double x = std::clamp((distance - start) / (end - start), 0.0, 1.0);
   return settings.falloff == Falloff::linear      ? 1 - x
          : settings.falloff == Falloff::quadratic ? 1 - x * x
@@ -41,7 +42,8 @@ double attenuation(const EstimatorSettings& settings, double distance) {
 
 /// Pixels along a direction of the image within which the sphere of the radius is seen.
 double reach_of(const ReferenceScene& scene, const Receiver& receiver, Vector t, double radius) {
-  const double distance = length(receiver.position), sine = radius / distance;
+  const double distance = length(receiver.position);
+  const double sine = radius / distance;
   if (!scene.orthographic() && sine >= 1) return INFINITY;  // it holds the eye
   const Vector edge = scene.orthographic() ? receiver.position + radius * t
                                            : distance * (sine * t - std::sqrt(1 - sine * sine) * receiver.eye);
@@ -52,18 +54,25 @@ double reach_of(const ReferenceScene& scene, const Receiver& receiver, Vector t,
 
 /// Attenuated sin h - sin t in the slice of the view ray and t, over every pixel of its image.
 double hbao_side(const ReferenceScene& scene, const Receiver& receiver, Vector t, const EstimatorSettings& settings) {
-  const Vector v = receiver.eye, b = cross(t, v), n = receiver.normal;
-  const double n_t = dot(n, t), n_v = dot(n, v), weight = std::hypot(n_t, n_v);
+  const Vector v = receiver.eye;
+  const Vector b = cross(t, v);
+  const Vector n = receiver.normal;
+  const double n_t = dot(n, t);
+  const double n_v = dot(n, v);
+  const double weight = std::hypot(n_t, n_v);
   if (weight < 1e-9) return 0;
   const auto [x, y] = scene.image_of(receiver.position + 1e-6 * length(receiver.position) * t);
-  const double dx = x - receiver.x - 0.5, dy = y - receiver.y - 0.5, scale = 1 / std::max(std::abs(dx), std::abs(dy));
+  const double dx = x - receiver.x - 0.5;
+  const double dy = y - receiver.y - 0.5;
+  const double scale = 1 / std::max(std::abs(dx), std::abs(dy));
   const double reach = reach_of(scene, receiver, t, *settings.radius);
   const double tangent = -std::atan2(n_t, n_v);  // the surface's elevation above the plane across the view ray
   double horizon =
-             settings.elevation == Elevation::surface ? settings.bias : std::sin(tangent + std::asin(settings.bias)),
-         sum = 0;
+      settings.elevation == Elevation::surface ? settings.bias : std::sin(tangent + std::asin(settings.bias));
+  double sum = 0;
   for (int k = 1; k <= reach; k++) {
-    const int px = receiver.x + int(std::lround(k * scale * dx)), py = receiver.y + int(std::lround(k * scale * dy));
+    const int px = receiver.x + int(std::lround(k * scale * dx));
+    const int py = receiver.y + int(std::lround(k * scale * dy));
     if (!scene.inside(px, py)) break;
     const double z = scene.depth(px, py);
     if (z == 0) continue;
@@ -71,7 +80,8 @@ double hbao_side(const ReferenceScene& scene, const Receiver& receiver, Vector t
     // A pixel's centre lies beside the slice; along the tangent plane it is moved into it.
     const Vector moved =
         offset + dot(offset, b) * (dot(n, b) / (weight * weight) * (n_t * t + n_v * v)) - dot(offset, b) * b;
-    const double along = dot(moved, t), height = dot(moved, n);
+    const double along = dot(moved, t);
+    const double height = dot(moved, n);
     if (along <= 0 || height < 1e-3 * length(offset)) continue;
     const double elevation =
         settings.elevation == Elevation::surface ? height / length(moved) : dot(moved, v) / length(moved);
@@ -83,11 +93,13 @@ double hbao_side(const ReferenceScene& scene, const Receiver& receiver, Vector t
 }
 
 double hbao_ao(const ReferenceScene& scene, const Receiver& receiver, const EstimatorSettings& settings) {
-  double sum = 0, whole = 0;
+  double sum = 0;
+  double whole = 0;
   for (int i = 0; i < kDirections; i++) {
     const double angle = 2 * kPi * (i + 0.5) / kDirections;
     const Vector direction{std::cos(angle), std::sin(angle), 0};
-    const double toward = dot(direction, receiver.eye), share = 1 / (1 - toward * toward);
+    const double toward = dot(direction, receiver.eye);
+    const double share = 1 / (1 - toward * toward);
     sum += share * hbao_side(scene, receiver, normalized(direction - toward * receiver.eye), settings);
     whole += share;
   }
@@ -101,8 +113,9 @@ double range_weight(const EstimatorSettings& settings, double dz) {
 }
 
 double crytek_ao(const ReferenceScene& scene, const Receiver& receiver, const EstimatorSettings& settings) {
-  const Vector n = receiver.normal, x = normalized(cross(std::abs(n.x) < 0.9 ? Vector{1, 0, 0} : Vector{0, 1, 0}, n)),
-               y = cross(n, x);
+  const Vector n = receiver.normal;
+  const Vector x = normalized(cross(std::abs(n.x) < 0.9 ? Vector{1, 0, 0} : Vector{0, 1, 0}, n));
+  const Vector y = cross(n, x);
   const double z = -receiver.position.z;
   double hidden = 0;
   int valid = 0;
@@ -110,25 +123,30 @@ double crytek_ao(const ReferenceScene& scene, const Receiver& receiver, const Es
   for (int i = 0; i < count; i++) {
     // Random directions and lengths, well spread: the three-dimensional R sequence.
     const auto random = [&](double step) { return std::fmod(0.5 + i * step, 1.0); };
-    const double up = random(0.81917251339616444), azimuth = 2 * kPi * random(0.67104360670378920),
-                 u = random(0.54970047790197026);
+    const double up = random(0.81917251339616444);
+    const double azimuth = 2 * kPi * random(0.67104360670378920);
+    const double u = random(0.54970047790197026);
     const double part = double(i / kDirectionsOfKernel) / settings.samples;
     const double reach =
         *settings.radius *
         (settings.sample_kernel == SampleKernel::uniform ? std::cbrt(u) : u * (0.1 + 0.9 * part * part));
-    const Vector offset = reach * (std::sqrt(1 - up * up) * (std::cos(azimuth) * x + std::sin(azimuth) * y) + up * n),
-                 sample = receiver.position + offset;
+    const Vector offset = reach * (std::sqrt(1 - up * up) * (std::cos(azimuth) * x + std::sin(azimuth) * y) + up * n);
+    const Vector sample = receiver.position + offset;
     if (!scene.orthographic() && sample.z >= 0) continue;
     const auto [image_x, image_y] = scene.image_of(sample);
-    const double floor_x = std::floor(image_x), floor_y = std::floor(image_y);
+    const double floor_x = std::floor(image_x);
+    const double floor_y = std::floor(image_y);
     if (!(floor_x >= 0 && floor_x < scene.width() && floor_y >= 0 && floor_y < scene.height())) continue;
-    const int px = int(floor_x), py = int(floor_y);
+    const int px = int(floor_x);
+    const int py = int(floor_y);
     const double hit_z = scene.depth(px, py);
     if (hit_z == 0) continue;
     valid++;
-    const Vector hit = scene.position(px, py, hit_z), ray = scene.position(px, py, 1) - scene.position(px, py, 0);
+    const Vector hit = scene.position(px, py, hit_z);
+    const Vector ray = scene.position(px, py, 1) - scene.position(px, py, 0);
     // The sample on the ray of the pixel that it falls into, as high above the surface as it is.
-    const double slope = -dot(n, ray), hit_height = dot(n, hit - receiver.position);
+    const double slope = -dot(n, ray);
+    const double hit_height = dot(n, hit - receiver.position);
     const double on_ray = slope > 1e-4
                               ? std::min(hit_z + (hit_height - dot(n, offset)) / slope, -sample.z + *settings.radius)
                               : -sample.z;
@@ -164,10 +182,12 @@ std::vector<float> reference_estimate(const HostFrame& frame, const EstimatorSet
   } else {
     const auto estimate = settings.estimator == Estimator::hbao ? hbao_ao : crytek_ao;
     for (const std::size_t i : all) {
-      const int x = int(i % std::size_t(scene.width())), y = int(i / std::size_t(scene.width()));
+      const int x = int(i % std::size_t(scene.width()));
+      const int y = int(i / std::size_t(scene.width()));
       const double z = scene.depth(x, y);
       if (z == 0) continue;
-      const Vector position = scene.position(x, y, z), eye = scene.toward_eye(position);
+      const Vector position = scene.position(x, y, z);
+      const Vector eye = scene.toward_eye(position);
       ao[i] = float(std::clamp(estimate(scene, {x, y, position, eye, scene.normal(x, y, eye)}, settings), 0.0, 1.0));
     }
   }

@@ -25,7 +25,8 @@ double ReferenceScene::depth(int x, int y) const {
 }
 
 Vector ReferenceScene::position(int x, int y, double z) const {
-  const double u = (x + 0.5 - center_x_) / camera_.fx, v = -(y + 0.5 - center_y_) / camera_.fy;
+  const double u = (x + 0.5 - center_x_) / camera_.fx;
+  const double v = -(y + 0.5 - center_y_) / camera_.fy;
   return orthographic() ? Vector{u, v, -z} : Vector{u * z, v * z, -z};
 }
 
@@ -39,7 +40,8 @@ std::pair<double, double> ReferenceScene::image_of(Vector position) const {
 }
 
 Vector ReferenceScene::normal(int x, int y, Vector eye) const {
-  const std::size_t plane = frame_.data.pixels(), i = index(x, y);
+  const std::size_t plane = frame_.data.pixels();
+  const std::size_t i = index(x, y);
   Vector n = {frame_.normal[i], frame_.normal[i + plane], frame_.normal[i + 2 * plane]};
   if (frame_.normal_space == NormalSpace::world) {
     const auto& m = *camera_.view_from_world;

@@ -16,6 +16,7 @@
 #include "tests/support/device.h"
 #include "tests/support/difference.h"
 #include "tests/support/scenes.h"
+#include "tests/support/single_pass.h"
 
 namespace alcove {
 namespace {
@@ -46,14 +47,7 @@ void expect_open(const HostFrame& frame, const EstimatorSettings& settings, doub
                               << *settings.radius << ", " << place(d, frame);
 }
 
-/// A floor, a wall, a ball on the floor, a slab, and sky.
-Rendering furnished(int width = 160, int height = 120) {
-  const Scene scene{{test::parallelogram({0, -3, 0}, {4, 0, 0}, {0, 6, 0}),
-                     test::parallelogram({0, -3, 0}, {0, 6, 0}, {0, 0, 1.5}),
-                     Sphere{.center = {1.2, 0.4, 0.5}, .radius = 0.5},
-                     test::parallelogram({2, -1.5, 0.3}, {0.6, 0.2, 0.1}, {0, 0.9, 0})}};
-  return test::render(scene, Shot::perspective({4.5, -1.5, 2.4}, {1, 0, 0.6}, 55, width, height));
-}
+Rendering furnished(int width = 160, int height = 120) { return test::furnished_room(width, height); }
 
 /// A floor, a wall without end, and a dome.
 Scene room_with_a_dome() {

@@ -7,7 +7,7 @@
 #include <variant>
 #include <vector>
 
-#include "core/frame/host_frame.h"
+#include "core/chain/compute.h"
 
 namespace alcove::test {
 
