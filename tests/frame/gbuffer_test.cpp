@@ -31,7 +31,7 @@ TEST_F(GBuffer, depth_is_found_under_renderers_names) {
                                 {"Z.R"},
                                 {"Pz"},
                                 {"Z-Depth.R"},
-                                {"beauty[RawPlane::depth].Z"},
+                                {"beauty.depth.Z"},
                                 {"__depth.r"},
                                 {"CGeometry_ZDepth.R"},
                                 {"FinalImageMovieRenderQueue_WorldDepth.R"}})
@@ -106,13 +106,13 @@ TEST_F(GBuffer, blender_5_calls_the_parts_by_full_words) {
 
 TEST_F(GBuffer, indirect_light_without_the_colour_that_it_needs_is_no_part) {
   write(Names{"Z", "R", "G", "B", "DiffInd.R", "DiffInd.G", "DiffInd.B"});
-  EXPECT_THAT(find(true).indirect, IsEmpty());
+  EXPECT_THAT(find(true)[RawPlane::indirect], IsEmpty());
 }
 
 TEST_F(GBuffer, beauty_is_read_only_when_asked_for) {
   write(Names{"Z", "R", "G", "B", "A"});
-  EXPECT_THAT(find(false).beauty, IsEmpty());
-  EXPECT_THAT(names_of(find(true).beauty), ElementsAre("R", "G", "B", "A"));
+  EXPECT_THAT(find(false)[RawPlane::beauty], IsEmpty());
+  EXPECT_THAT(names_of(find(true)[RawPlane::beauty]), ElementsAre("R", "G", "B", "A"));
 }
 
 // What must not be mistaken.
@@ -281,11 +281,11 @@ TEST_F(GBuffer, chosen_channels_that_are_not_there_are_errors) {
 TEST_F(GBuffer, a_beauty_is_three_channels_or_four) {
   write(Names{"Z", "fill.R", "fill.G", "fill.B", "fill.A", "key.R", "key.G", "key.B"});
   settings.beauty_channels = "fill";
-  EXPECT_THAT(names_of(find(true).beauty), ElementsAre("fill.R", "fill.G", "fill.B", "fill.A"));
+  EXPECT_THAT(names_of(find(true)[RawPlane::beauty]), ElementsAre("fill.R", "fill.G", "fill.B", "fill.A"));
   settings.beauty_channels = "key";
-  EXPECT_THAT(names_of(find(true).beauty), ElementsAre("key.R", "key.G", "key.B"));
+  EXPECT_THAT(names_of(find(true)[RawPlane::beauty]), ElementsAre("key.R", "key.G", "key.B"));
   settings.beauty_channels = "key.R,key.G,key.B,fill.A";
-  EXPECT_THAT(names_of(find(true).beauty), ElementsAre("key.R", "key.G", "key.B", "fill.A"));
+  EXPECT_THAT(names_of(find(true)[RawPlane::beauty]), ElementsAre("key.R", "key.G", "key.B", "fill.A"));
 }
 
 TEST_F(GBuffer, alpha_is_found_in_the_spelling_of_the_colours) {
@@ -294,7 +294,7 @@ TEST_F(GBuffer, alpha_is_found_in_the_spelling_of_the_colours) {
     Names all = channels;
     all.push_back("Z");
     write(all);
-    EXPECT_EQ(names_of(find(true).beauty), channels);
+    EXPECT_EQ(names_of(find(true)[RawPlane::beauty]), channels);
   }
 }
 

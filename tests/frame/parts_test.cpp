@@ -31,7 +31,7 @@ TEST_F(GBuffer, parts_may_repeat_their_name_in_the_channels) {
       {"ViewLayer.Normal", {"ViewLayer.Normal.X", "ViewLayer.Normal.Y", "ViewLayer.Normal.Z"}}});
   EXPECT_THAT(depth(), ElementsAre("1:ViewLayer.Depth.Z"));
   EXPECT_THAT(normal(), ElementsAre("2:ViewLayer.Normal.X", "2:ViewLayer.Normal.Y", "2:ViewLayer.Normal.Z"));
-  EXPECT_THAT(names_of(find(true).beauty),
+  EXPECT_THAT(names_of(find(true)[RawPlane::beauty]),
               ElementsAre("ViewLayer.Combined.R", "ViewLayer.Combined.G", "ViewLayer.Combined.B"));
   settings.layer = "ViewLayer";
   EXPECT_THAT(depth(), ElementsAre("1:ViewLayer.Depth.Z"));
@@ -40,7 +40,7 @@ TEST_F(GBuffer, parts_may_repeat_their_name_in_the_channels) {
 TEST_F(GBuffer, the_name_of_the_only_part_is_no_layer) {
   for (const char* name : {"rgba", "rgba.main", "Layer"}) {
     write(std::vector<Part>{{name, {"R", "G", "B", "Z", "N.X", "N.Y", "N.Z"}}});
-    EXPECT_THAT(names_of(find(true).depth), ElementsAre("Z")) << name;
+    EXPECT_THAT(names_of(find(true)[RawPlane::depth]), ElementsAre("Z")) << name;
     EXPECT_THAT(normal(), ElementsAre("N.X", "N.Y", "N.Z")) << name;
   }
 }

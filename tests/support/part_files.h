@@ -82,8 +82,8 @@ class GBuffer : public testing::Test {
   void write(const Names& channels) const { write_parts(settings.input, {{"", channels}}); }
   FrameSource find(bool with_beauty = false) const { return find_frame(settings, with_beauty, 0); }
 
-  Names depth() const { return names_of(find().depth); }
-  Names normal() const { return names_of(find().normal); }
+  Names depth() const { return names_of(find()[RawPlane::depth]); }
+  Names normal() const { return names_of(find()[RawPlane::normal]); }
 
   /// The search must fail with ErrorKind::input, in one line that holds these.
   void expect_error(const Names& words, bool with_beauty = false) const {
