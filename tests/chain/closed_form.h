@@ -1,4 +1,4 @@
-// What the tests of closed forms share: a picture of a scene compared with its truth, by the kernel and by the reference.
+// What the tests of closed forms share: kernel and reference, compared with the truth over a picture of a scene.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 

@@ -1,5 +1,5 @@
-// The AO beside walls, in corners and under ceilings, with every falloff, whose truth has a closed form: MATH.md section 4,
-// named by its paragraphs.
+// The AO beside walls, in corners and under ceilings, with every falloff, whose truth has a closed form: MATH.md
+// section 4, named by its paragraphs.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/chain/closed_form.h"
 
