@@ -10,6 +10,7 @@
 #include <string>
 
 #include "core/chain/chain.h"
+#include "core/chain/compute.h"
 #include "core/chain/shading.h"
 #include "core/reference/reference.h"
 #include "tests/support/device.h"

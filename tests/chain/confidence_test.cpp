@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "core/chain/chain.h"
+#include "core/chain/compute.h"
 #include "core/formats/exr.h"
 #include "tests/support/device.h"
 #include "tests/support/difference.h"

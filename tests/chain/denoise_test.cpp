@@ -6,6 +6,7 @@
 #include <numbers>
 #include <random>
 
+#include "core/chain/compute.h"
 #include "core/formats/exr.h"
 #include "core/run/digest.h"
 #include "tests/support/device.h"

@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "core/chain/compute.h"
 #include "core/reference/reference_estimators.h"
 #include "tests/support/block_scene.h"
 #include "tests/support/device.h"

@@ -9,6 +9,7 @@
 #include <numbers>
 #include <optional>
 
+#include "core/chain/compute.h"
 #include "core/formats/exr.h"
 #include "core/reference/reference.h"
 #include "core/run/digest.h"

@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "core/chain/compute.h"
 #include "tests/support/device.h"
 #include "tests/support/difference.h"
 #include "tests/support/scenes.h"

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "core/chain/chain.h"
+#include "core/chain/compute.h"
 #include "tests/support/device.h"
 #include "tests/support/scenes.h"
 

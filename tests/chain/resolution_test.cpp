@@ -8,6 +8,7 @@
 #include <numbers>
 #include <string>
 
+#include "core/chain/compute.h"
 #include "tests/support/device.h"
 #include "tests/support/difference.h"
 #include "tests/support/single_pass.h"

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/estimator_facts.h"
+#include "core/chain/compute.h"
 #include "core/formats/exr.h"
 #include "core/run/frame_run.h"
 #include "tests/support/device.h"

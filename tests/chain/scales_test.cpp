@@ -7,6 +7,7 @@
 #include <string>
 
 #include "core/chain/chain.h"
+#include "core/chain/compute.h"
 #include "core/formats/exr.h"
 #include "core/run/digest.h"
 #include "tests/support/command_line.h"

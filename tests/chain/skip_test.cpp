@@ -14,6 +14,7 @@
 
 #include "core/base/estimator_facts.h"
 #include "core/chain/chain.h"
+#include "core/chain/compute.h"
 #include "tests/support/device.h"
 #include "tests/support/difference.h"
 #include "tests/support/long_tests.h"

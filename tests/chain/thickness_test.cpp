@@ -8,6 +8,7 @@
 #include <numbers>
 #include <optional>
 
+#include "core/chain/compute.h"
 #include "tests/support/device.h"
 #include "tests/support/scenes.h"
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/chain/chain.h"
+#include "core/chain/compute.h"
 #include "tests/support/device.h"
 #include "tests/support/difference.h"
 #include "tests/support/scenes.h"

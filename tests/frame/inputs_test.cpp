@@ -11,6 +11,7 @@
 #include <limits>
 
 #include "core/base/error.h"
+#include "core/chain/compute.h"
 #include "core/formats/exr.h"
 #include "core/frame/evidence.h"
 #include "core/frame/settle.h"

@@ -8,6 +8,7 @@
 #include <spirv/unified1/spirv.hpp>
 
 #include "core/chain/chain.h"
+#include "core/chain/compute.h"
 #include "core/gpu/pipeline_cache.h"
 #include "tests/support/command_line.h"
 #include "tests/support/device.h"

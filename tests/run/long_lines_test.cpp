@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gmock/gmock.h>
 
-#include "core/chain/host_frame.h"
+#include "core/chain/compute.h"
 #include "core/formats/exr.h"
 #include "tests/support/command_line.h"
 #include "tests/support/device.h"

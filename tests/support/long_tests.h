@@ -9,8 +9,8 @@ namespace alcove::test {
 /// True where ALCOVE_TEST_LONG is set: more cases of the same facts, which take minutes.
 inline bool long_tests() { return std::getenv("ALCOVE_TEST_LONG") != nullptr; }
 
-/// Whether a combination of several axes' values is tried: in the long form each is, else one of every `parts`. With the
-/// sum of the values' numbers along their axes, each value is still met by some of every other axis.
+/// Whether a combination of several axes' values is tried: in the long form each is, else one of every `parts`. With
+/// the sum of the values' numbers along their axes, each value is still met by some of every other axis.
 inline bool tried(int sum_of_numbers, int parts) { return long_tests() || sum_of_numbers % parts == 0; }
 
 }  // namespace alcove::test

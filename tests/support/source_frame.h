@@ -20,6 +20,7 @@
 #include <numbers>
 
 #include "core/base/error.h"
+#include "core/chain/compute.h"
 #include "core/frame/input_rules.h"
 #include "core/frame/settle.h"
 #include "tests/support/device.h"

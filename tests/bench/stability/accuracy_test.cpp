@@ -14,6 +14,7 @@
 #include <cmath>
 #include <map>
 
+#include "core/chain/compute.h"
 #include "core/frame/scale_notes.h"
 #include "core/reference/reference.h"
 #include "core/reference/reference_estimators.h"

@@ -13,6 +13,7 @@
 #include <random>
 
 #include "core/base/estimator_facts.h"
+#include "core/chain/compute.h"
 #include "core/chain/estimate.h"
 #include "core/chain/pass_common.h"
 #include "tests/bench/stability/cases.h"

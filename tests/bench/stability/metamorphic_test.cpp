@@ -11,6 +11,7 @@
 #include <numbers>
 
 #include "core/base/estimator_facts.h"
+#include "core/chain/compute.h"
 #include "tests/bench/stability/cases.h"
 #include "tests/support/device.h"
 #include "tests/support/difference.h"

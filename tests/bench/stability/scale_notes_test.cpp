@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "core/bench/stability.h"
+#include "core/chain/compute.h"
 #include "core/frame/scale_notes.h"
 #include "tests/bench/stability/cases.h"
 #include "tests/support/command_line.h"
