@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "cli/options.h"
+#include "core/chain/compute.h"
 #include "core/formats/exr.h"
 #include "core/measure/metrics.h"
 #include "core/reference/reference_estimators.h"
