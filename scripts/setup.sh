@@ -38,7 +38,7 @@ show_progress() {
     match($0, /^\[[0-9]+\/[0-9]+\]/) {
       split(substr($0, 2, RLENGTH - 2), count, "/")
       if (terminal) { printf "\r  %d of %d", count[1], count[2]; fflush() }
-      else if (count[1] % 20 == 0 || count[1] == count[2]) { printf "  %d of %d\n", count[1], count[2]; fflush() }
+      else if (count[1] > 0 && (count[1] % 20 == 0 || count[1] == count[2])) { printf "  %d of %d\n", count[1], count[2]; fflush() }
       any = 1
     }
     END { if (terminal && any) print "" }'
