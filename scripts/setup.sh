@@ -51,7 +51,7 @@ show_progress() {
     if [ -t 1 ]; then
       printf '\r  %d of %d' "$count" "$total"
       has_shown=yes
-    elif [ $((count % 20)) = 0 ] || [ "$count" = "$total" ]; then
+    elif [ "$count" -gt 0 ] && { [ $((count % 20)) = 0 ] || [ "$count" = "$total" ]; }; then
       echo "  $count of $total"
     fi
   done

@@ -22,13 +22,13 @@ mkdir -p build-fuzz/found
 # Inputs that a target tries in about 20 seconds on one core.
 runs_of() {
   case $1 in
-    exr) echo 20000 ;;
-    dds) echo 300000 ;;
-    camera) echo 60000 ;;
-    frames) echo 100000 ;;
-    toml) echo 60000 ;;
-    preset) echo 20000 ;;
-    inspect) echo 8000 ;;
+    exr) echo 9000 ;;
+    dds) echo 400000 ;;
+    camera) echo 80000 ;;
+    frames) echo 10000 ;;
+    toml) echo 80000 ;;
+    preset) echo 1500 ;;
+    inspect) echo 2500 ;;
   esac
 }
 
