@@ -21,11 +21,12 @@ class SuiteRadius : public CommandLine {
                 "title = \"radii\"\nrepeats = 1\nreference-slices = 0\n[[frame]]\nname = \"wall\"\ninput = "
                 "\"wall.0042.exr\"\ncamera = \"camera.json\"\nradius = 1\ntruth = \"ao.exr\"\n" +
                     candidates);
-    const std::string report = folder / "report.json";
-    const Finished finished = run_program({"bench", folder / "suite.toml", "-q", "--json", report});
+    const std::string file = folder / "report.json";
+    const Finished finished = run_program({"bench", folder / "suite.toml", "-q", "--json", file});
     EXPECT_EQ(finished.code, 0) << finished;
+    const auto report = nlohmann::json::parse(read_bytes(file));
     std::map<std::string, double> errors;
-    for (const auto& row : nlohmann::json::parse(read_bytes(report))["rows"]) errors[row["candidate"]] = row["rmse"];
+    for (const auto& row : report["rows"]) errors[row["candidate"]] = row["rmse"];
     return errors;
   }
 };
