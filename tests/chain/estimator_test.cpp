@@ -1,5 +1,5 @@
-// HBAO and Crytek's estimator against their own expected values (MATH of each stands beside its test), and against slow
-// versions of themselves.
+// HBAO and Crytek's estimator against their own expected values, whose derivations stand beside the tests, and against
+// slow versions of themselves.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
@@ -103,11 +103,11 @@ void expect_mean(const Rendering& rendering, const EstimatorSettings& settings,
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-// HBAO: MATH of Bavoil and Sainz, the mean of sin h - sin t over the azimuth; the uniform, not the cosine-weighted
-// hemisphere.
+// HBAO, after Bavoil and Sainz: the mean of sin h - sin t over the azimuth, which weighs the hemisphere uniformly and not
+// by the cosine.
 
-// In the azimuth phi from the wall its rim stands at sin h = H / sqrt(H^2 + d^2 / cos^2 phi), as far as d / cos phi <
-// R. An endless wall: acos(d / R) / pi.
+// In the azimuth phi from the wall its rim stands at sin h = H / sqrt(H^2 + d^2 / cos^2 phi), as long as d / cos phi <
+// R. An endless wall blocks acos(d / R) / pi.
 double hbao_beside_wall(double d, double height, double radius) {
   constexpr int kParts = 2000;
   const double limit = std::acos(std::min(1.0, d / radius));
