@@ -5,9 +5,9 @@
 // Out: as many planes of pixels; sky is 1.
 //
 // Kopf et al., "Joint Bilateral Upsampling", 2007: a pixel mixes the four blocks about it by bilinear weights between
-// their centres, as far as these lie in the pixel's tangent plane and their normals agree with its own. Where none does,
-// the pixel takes the block of the nearest depth. One invocation computes the pixels that lie between the same four
-// centres.
+// their centres, as far as these lie in the pixel's tangent plane and their normals agree with its own. Where none
+// does, the pixel takes the block of the nearest depth. One invocation computes the pixels that lie between the same
+// four centres.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "upsample.h"
@@ -50,8 +50,8 @@ Block load(ivec2 block) {
   return Block(index, z, position_of(params.view, center, z), unpack_normal(low_normal[index]));
 }
 
-/// The shares of four blocks in a pixel. `between`: where it lies between the centres of the first and the last of them,
-/// from 0 to 1 on each axis.
+/// The shares of four blocks in a pixel. `between`: where it lies between the centres of the first and the last of
+/// them, from 0 to 1 on each axis.
 vec4 parts_of(Block blocks[4], vec2 between, ivec2 pixel, float z, vec3 n) {
   const vec3 position = position_of(params.view, vec2(pixel) + 0.5, z);
   const vec2 across = abs(params.view.tangent_per_pixel);

@@ -103,8 +103,8 @@ void expect_mean(const Rendering& rendering, const EstimatorSettings& settings,
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-// HBAO, after Bavoil and Sainz: the mean of sin h - sin t over the azimuth, which weighs the hemisphere uniformly and not
-// by the cosine.
+// HBAO, after Bavoil and Sainz: the mean of sin h - sin t over the azimuth, which weighs the hemisphere uniformly and
+// not by the cosine.
 
 // In the azimuth phi from the wall its rim stands at sin h = H / sqrt(H^2 + d^2 / cos^2 phi), as long as d / cos phi <
 // R. An endless wall blocks acos(d / R) / pi.
