@@ -126,8 +126,8 @@ TEST(Reuse, of_parts_and_of_whole_frames_changes_no_bit) {
   EXPECT_GT(same, std::uint64_t(count) * 2 / 5) << "frames";
 }
 
-// A low wall walks over a floor seen from above. The radius is 103 pixels wide there, more than three blocks of changes:
-// whatever is within it must be computed anew.
+// A low wall walks over a floor seen from above. The radius is 103 pixels wide there, more than three blocks of
+// changes: whatever is within it must be computed anew.
 TEST(Reuse, looks_as_far_as_a_receiver_reaches) {
   const Scene scene{{parallelogram({-9, -9, 0}, {18, 0, 0}, {0, 18, 0})}};
   const HostFrame floor = render(scene, Shot::perspective({0, 0, 3}, {0.01, 0, 0}, 50, 288, 96)).frame;

@@ -279,8 +279,8 @@ TEST(Skip, a_tolerance_takes_no_more_than_it_says) {
     }
 }
 
-/// How many times as large as usual a random scene's picture is. Usual ones are two or three groups of tiles wide, where
-/// hardly any group is far: every third is so large that proofs search far groups too.
+/// How many times as large as usual a random scene's picture is. Usual ones are two or three groups of tiles wide,
+/// where hardly any group is far: every third is so large that proofs search far groups too.
 int size_of(int scene) { return scene % 3 == 2 ? 3 : 1; }
 
 // ALCOVE_TEST_SEED: other scenes.
