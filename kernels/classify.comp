@@ -55,11 +55,11 @@ layout(scalar, binding = kClassifySectors) writeonly buffer Sectors { uint secto
 const int kMostGroups = 512;
 const uint kGroupWords = uint(kMostGroups) / 32u;
 
-/// px from the block to groups that are far.
+/// Groups are far from this many pixels from the block on.
 const int kFarGroup = 32;
 
-// What the invocations of a row find of their block. Nothing is both written and read between two barriers, but by
-// atomics whose result is not looked at: a row need not run in lock step.
+// What the invocations of a row find about their block. Between two barriers a value is either read or changed, and it
+// is changed by atomics whose results nobody looks at, or by one invocation: a row need not run in lock step.
 // Sectors in which something within the radius may block, and those of them that the block itself and its neighbours
 // take.
 shared uint found[kGroupY], beside[kGroupY];
@@ -81,7 +81,7 @@ const int kChangeMargin = 8;
 
 uint changes_at(ivec2 corner, ivec2 blocks) { return changes[corner.y * (blocks.x + 1) + corner.x]; }
 
-/// Whether all that the estimates of a block of tiles are made from is as it was in the frame before.
+/// Whether everything that the estimates of a block of tiles are made from is as it was in the frame before.
 bool is_as_before(View view, ivec2 tile, float near, float far) {
   const Rect rect =
       image_of_reach(view, box_of(view, tile, kBlock, near, far), reach_of_samples(view, params.radius, far));
@@ -114,7 +114,7 @@ bool is_settled(Receivers r, ivec2 group, GroupBounds b) {
   return b.farthest > b.level ? true : above <= limit;
 }
 
-/// Whether nothing in a square of pixels blocks, as far as it is.
+/// Whether a square of pixels is so far away that nothing in it blocks.
 bool is_too_far(View view, Receivers r, ivec2 first_pixel, int side, float level, float farthest) {
   if ((kMode & kClassifyRanged) == 0u) return false;
   return distance_sq(r.box, box_of(view, first_pixel / kTile, side / kTile, depth_of(view, level),
@@ -310,25 +310,25 @@ void write_open(View view, ivec2 tile, bool is_sky, bool is_tolerated) {
   }
 }
 
-/// The receivers of a block of tiles.
+/// What the receivers of a block of tiles have in common.
 Shared shared_by(ivec2 tile, ivec2 count) {
-  Shared all = Shared(-kFar, kFar, kNoNormal, 0.0, kFar, -kFar);
+  Shared block = Shared(-kFar, kFar, kNoNormal, 0.0, kFar, -kFar);
   bool agree = true;
   for (int i = 0; i < kBlock * kBlock; i++) {
     const ivec2 part = tile_of_block(tile, i);
     const int index = min(part.y, count.y - 1) * count.x + min(part.x, count.x - 1);
     const float level = bounds[index].plane[kLevel], farthest = bounds[index].farthest;
     if (any(greaterThanEqual(part, count)) || farthest > level) continue;
-    all.nearest = max(all.nearest, level);
-    all.farthest = min(all.farthest, farthest);
-    if (all.normal == kNoNormal) all.normal = bounds[index].normal;
-    agree = agree && bounds[index].normal != kNoNormal && bounds[index].normal == all.normal;
-    all.turned = max(all.turned, bounds[index].turned);
-    all.lowest = min(all.lowest, bounds[index].lowest);
-    all.highest = max(all.highest, bounds[index].highest);
+    block.nearest = max(block.nearest, level);
+    block.farthest = min(block.farthest, farthest);
+    if (block.normal == kNoNormal) block.normal = bounds[index].normal;
+    agree = agree && bounds[index].normal != kNoNormal && bounds[index].normal == block.normal;
+    block.turned = max(block.turned, bounds[index].turned);
+    block.lowest = min(block.lowest, bounds[index].lowest);
+    block.highest = max(block.highest, bounds[index].highest);
   }
-  if (!agree) all.normal = kNoNormal;
-  return all;
+  if (!agree) block.normal = kNoNormal;
+  return block;
 }
 
 void main() {

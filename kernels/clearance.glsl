@@ -2,11 +2,12 @@
 // Pure: no bindings.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Depth is known to a precision only, and normals are rounded: on a plane each pixel would see some of its neighbours
-// rise a little. So nothing blocks whose height is less than what the errors of two depths can feign plus kLeastRise
-// pixels for every pixel that it lies aside. Nor does, seen aslant, what is not kLeastElevation above the plane. By
-// that no visibility changes by more than the square of this angle, 1.6e-5, once two depths' errors are small beside a
-// pixel.
+// Depth is known to a limited precision only, and normals are rounded: on a plane each pixel would see some of its
+// neighbours rise a little. So a sample blocks only if its height exceeds what the errors of two depths can feign plus
+// kLeastRise pixels for every pixel that it lies aside. It must also stand kLeastElevation above the plane,
+// which counts where the surface is seen aslant. What stands lower than an angle takes at most the squared sine of that
+// angle from the visibility: once the errors of two depths are small beside a pixel, that is the square of kLeastRise,
+// 1.6e-5.
 
 const float kLeastRise = 4e-3;
 const float kLeastElevation = 1e-3;  // sine

@@ -11,6 +11,7 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "composite.h"
+#include "finite.glsl"
 #include "view.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
@@ -25,10 +26,9 @@ layout(scalar, binding = kCompositeCounts) buffer Counts { FrameCounts counts; }
 
 bool broken = false;  // this pixel had a value that is NaN or infinite
 
-/// Nothing that leaves the tool is NaN or infinite: such a value becomes 0, and is counted. It is told by its bits, as
-/// drivers without SignedZeroInfNanPreserve may take isnan for false.
+/// Nothing that leaves the tool is NaN or infinite: such a value becomes 0, and is counted.
 float sane(float x) {
-  if ((floatBitsToUint(x) & 0x7f800000u) != 0x7f800000u) return x;
+  if (is_finite(x)) return x;
   broken = true;
   return 0.0;
 }

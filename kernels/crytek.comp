@@ -5,9 +5,9 @@
 // In: planar depth, view normals.
 // Out: visibility, 1 = open.
 //
-// Mittring, "Finding Next Gen: CryEngine 2", 2007, section 8.5.4.3, with the hemisphere in the place of the sphere. It
-// measures volume, not visibility: beside an infinite wall at distance c R the uniform kernel gives 1 - (1 - c)^2 (2 +
-// c) / 4. What is particular here:
+// Mittring, "Finding Next Gen: CryEngine 2", 2007, with the hemisphere in the place of the sphere. It measures volume,
+// not visibility: beside an infinite wall at distance c R the uniform kernel gives 1 - (1 - c)^2 (2 + c) / 4. What is
+// particular here:
 // - A sample is compared with the depth of the pixel that it falls into, on the ray of that pixel's centre. It is moved
 //   there parallel to the receiver's tangent plane, which keeps its height above it. A flat surface stays open at every
 //   tilt, with no bias at all.

@@ -4,8 +4,8 @@
 // In: tiles by what classify found.
 // Out: lists for `denoise` and `upsample`, and what they would write everywhere else, where that is not there already.
 //
-// Of nothing but 1 a filter makes 1. Where nothing within its reach is other than in the frame before, what it made
-// then still lies in its place.
+// From nothing but 1 a filter makes 1. Where nothing within its reach differs from the frame before, what it made then
+// still lies in its place.
 //
 // Denoising is listed by runs, 8 lines wide and as long as an invocation looks along one. Columns are filtered last, so
 // theirs decide what rows must make. Upsampling is listed by workgroups: squares of 8 x 8 between the centres of
@@ -32,7 +32,7 @@ layout(scalar, binding = kDilateResult) writeonly buffer Result { float result[]
 shared uint listed_here, begin;
 
 struct Within {
-  bool estimated, changed;  // some tile may be other than 1, or than it was
+  bool estimated, changed;  // some tile may differ from 1, or from what it was
 };
 
 /// What lies within reach of a rectangle of pixels.
@@ -100,8 +100,8 @@ void main() {
   barrier();
   if (first) {
     begin = atomicAdd(counts.listed, listed_here);
-    const uint each = kMode == kDilateUpsample ? 1u : kGroupY;
-    const uvec2 groups = dispatch_of((begin + listed_here + each - 1u) / each);
+    const uint per_group = kMode == kDilateUpsample ? 1u : kGroupY;
+    const uvec2 groups = dispatch_of((begin + listed_here + per_group - 1u) / per_group);
     atomicMax(counts.groups.x, groups.x);
     atomicMax(counts.groups.y, groups.y);
     atomicMax(counts.groups.z, 1u);

@@ -1,8 +1,8 @@
 // Packs unit vectors into 32 bits: the octahedral map, 16 bits per coordinate, within 4e-5 rad. Pure: no bindings.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Cigolle et al., "A Survey of Efficient Representations for Independent Unit Vectors", 2014, section 3.2 (oct32). One
-// word instead of three floats, since what a kernel costs is mostly its loads and stores.
+// Cigolle et al., "A Survey of Efficient Representations for Independent Unit Vectors", 2014 (oct32). A normal takes
+// one word instead of three floats, since what a kernel costs is mostly its loads and stores.
 
 /// No direction packs to this.
 const uint kNoNormal = 0x80008000u;

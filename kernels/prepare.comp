@@ -10,6 +10,7 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "prepare.h"
+#include "finite.glsl"
 #include "view.glsl"
 #include "normal.glsl"
 
@@ -26,10 +27,6 @@ layout(scalar, binding = kPrepareMissing) writeonly buffer Missing { GroupCount 
 
 /// Normals shorter than this are no direction at all (a background of zeros).
 const float kLeastLength = 1e-6;
-
-/// By its bits: drivers without SignedZeroInfNanPreserve may take isnan for false.
-bool finite(float x) { return (floatBitsToUint(x) & 0x7f800000u) != 0x7f800000u; }
-bool is_nan(float x) { return (floatBitsToUint(x) & 0x7fffffffu) > 0x7f800000u; }
 
 /// Planar depth in scene units, kSkyDepth where there is no surface.
 float planar_depth(ivec2 pixel) {
@@ -48,7 +45,7 @@ float planar_depth(ivec2 pixel) {
         : kDepthForm == kDepthExponential ? params.base * (exp(value) - 1.0)
                                           : params.base + value;
   }
-  if (!(z > 0.0 && z < params.sky_depth)) return kSkyDepth;
+  if (!is_finite(z) || !(z > 0.0 && z < params.sky_depth)) return kSkyDepth;
   const vec2 t = tangent_of(params.view, vec2(pixel) + 0.5);
   if (params.along_ray != 0) z *= inversesqrt(1.0 + dot(t, t));
   return z < kSkyDepth ? z : kSkyDepth;
@@ -91,7 +88,7 @@ void main() {
              dot(params.view_from_normal_z, raw));
   }
   const float size = length(n);
-  const bool usable = finite(size) && size > kLeastLength;
+  const bool usable = is_finite(size) && size > kLeastLength;
   if (!usable) {
     missing.z = 1u;  // every invocation that writes it writes the same
     if (kNormalForm != kNormalNone) atomicAdd(counts.repaired_normals, 1u);

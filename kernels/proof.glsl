@@ -3,7 +3,7 @@
 // clearance.glsl and tiles.glsl.
 // SPDX-License-Identifier: BSD-3-Clause
 
-/// Receivers are taken together in blocks of so many tiles in x and y where all lie on one plane.
+/// Receivers are treated together in blocks of so many tiles in x and y, where they lie on one plane.
 const int kBlock = 2;
 const uint kLevel = kTilePlanes - 1u;
 const float kFar = 1e30;
@@ -79,7 +79,7 @@ Rect image_of_reach(View view, Box box, float reach) {
               clamp(max(p, q) + 1.0, vec2(0), vec2(view.size - 1)));
 }
 
-/// What the receivers of a block have in common, as TileBounds says it of those of a tile.
+/// What the receivers of a block have in common; the members are those of TileBounds.
 struct Shared {
   float nearest, farthest;
   uint normal;

@@ -11,6 +11,7 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "reconstruct.h"
+#include "finite.glsl"
 #include "view.glsl"
 #include "normal.glsl"
 
@@ -77,7 +78,7 @@ vec3 normal_from_depth(ivec2 pixel, vec3 position, vec3 eye) {
   const vec3 only = right + down;
   if (dot(n, n) == 0.0 && dot(only, only) > 0.0) n = eye - only * (dot(eye, only) / dot(only, only));
   const float length_squared = dot(n, n);
-  if (!(length_squared > 0.0) || isinf(length_squared)) return eye;
+  if (!is_finite(length_squared) || !(length_squared > 0.0)) return eye;
   const vec3 unit = n * inversesqrt(length_squared);
   return dot(unit, eye) < 0.0 ? -unit : unit;
 }

@@ -10,6 +10,7 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "shape.h"
+#include "finite.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 layout(scalar, push_constant) uniform Push { ShapeParams params; };
@@ -28,7 +29,7 @@ float shaped_of(float value, int index) {
         (1.0 - value) * clamp((depth[index] - params.fade_start) / (params.fade_end - params.fade_start), 0.0, 1.0);
   if (params.has_material != 0 && depth[index] < kSkyDepth) {
     const float own = material[index];
-    if (!isnan(own) && !isinf(own)) value *= clamp(own, 0.0, 1.0);
+    if (is_finite(own)) value *= clamp(own, 0.0, 1.0);
   }
   return value;
 }
@@ -39,5 +40,5 @@ void main() {
   const int index = pixel.y * params.size.x + pixel.x, plane = params.size.x * params.size.y;
   for (int p = 0; p < int(params.planes); p++) shaped[index + p * plane] = shaped_of(ao[index + p * plane], index);
   if (params.has_material == 0 || params.counts_repaired == 0 || depth[index] >= kSkyDepth) return;
-  if (isnan(material[index]) || isinf(material[index])) atomicAdd(counts.repaired_material, 1u);
+  if (!is_finite(material[index])) atomicAdd(counts.repaired_material, 1u);
 }

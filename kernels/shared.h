@@ -2,8 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // A header beside a kernel declares its parameters, bindings and group size with these names; the kernel and its host
-// function in core/chain/passes.cpp or core/chain/estimate.cpp both include it. Layout is scalar: every member is
-// aligned to 4 bytes, in C++ as in GLSL.
+// function in core/chain both include it. Layout is scalar: every member is aligned to 4 bytes, in C++ as in GLSL.
 #ifndef ALCOVE_SHARED_H
 #define ALCOVE_SHARED_H
 
@@ -51,7 +50,7 @@ ALCOVE_BEGIN
 
 // Pixels of a workgroup in x and y. No kernel may take a row, or anything else but one invocation, to run in lock step:
 // a subgroup has 8 invocations on lavapipe with vectors of 256 bits, 4 with those of 128, and other numbers on GPUs.
-// What invocations share they write with atomics, and they read it behind a barrier.
+// What invocations share they write with atomics, and they read it after a barrier.
 ALCOVE_CONSTANT uint kGroupX = 8;
 ALCOVE_CONSTANT uint kGroupY = 8;
 // Workgroups in a row of a dispatch over a list: as many as every device takes. Drivers share out whole rows, so the
@@ -97,7 +96,7 @@ struct TileBounds {
   float farthest;         // least nearness; above the level plane where the tile is all sky
   uint mixed;             // 1: its surfaces leave the plane with its own gradient, so that another one may be lower
   uint normal;            // of its receivers, packed; kNoNormal: they have none in common
-  float turned;           // length of the largest difference of a receiver's normal to it
+  float turned;           // length of the largest difference between a receiver's normal and it
   float lowest, highest;  // of -dot(normal, position) over the receivers
 };
 

@@ -1,14 +1,14 @@
 // Tiles of pixels by which work is skipped, and directions on the image. Pure: no bindings.
 // SPDX-License-Identifier: BSD-3-Clause
 
-/// A dispatch of so many groups, in x and y.
+/// The workgroups in x and y of a dispatch of so many.
 uvec2 dispatch_of(uint groups) { return uvec2(min(groups, kListedRow), (groups + kListedRow - 1u) / kListedRow); }
 
 ivec2 tiles_of(ivec2 size) { return (size + kTile - 1) / kTile; }
 
 ivec2 groups_of_tiles(ivec2 size) { return (tiles_of(size) + kTileGroup - 1) / kTileGroup; }
 
-/// The neighbours of a tile, k of 8.
+/// The step from a tile to the k-th of its 8 neighbours.
 ivec2 neighbor_step(int k) { return k < 3 ? ivec2(k - 1, -1) : k < 6 ? ivec2(k - 4, 1) : ivec2(k * 2 - 13, 0); }
 
 uint pack_tile(ivec2 tile) { return uint(tile.x) | uint(tile.y) << 16; }
@@ -20,18 +20,18 @@ struct ListedPlace {
   uint pixel;
 };
 
-/// How many invocations a tile has.
+/// How many invocations a tile takes: one for each pixel with an estimate.
 uint receivers_of_tile(int stride) { return uint(kTile * kTile) >> findMSB(stride); }
 
-/// A dispatch over so many tiles.
+/// The workgroups in x and y of a dispatch over so many tiles.
 uvec2 dispatch_of_tiles(uint tiles, int stride) {
   return dispatch_of((tiles * receivers_of_tile(stride) - 1u) / (kGroupX * kGroupY) + 1u);
 }
 
 ListedPlace listed_place(uvec2 group, uint invocation, int stride) {
-  const uint each = receivers_of_tile(stride);
+  const uint per_tile = receivers_of_tile(stride);
   const uint place = (group.y * kListedRow + group.x) * (kGroupX * kGroupY) + invocation;
-  return ListedPlace(place / each, place % each);
+  return ListedPlace(place / per_tile, place % per_tile);
 }
 
 /// Packs a run of pixels that an invocation of a filter computes in each of kGroupX lines: the number of these lines,
@@ -59,7 +59,7 @@ ivec2 pixel_of_anchored_tile(ivec2 tile, uint pixel, ivec2 origin) {
 /// is.
 vec3 stored_bent(vec3 bent) { return 0.5 + 0.5 * bent; }
 
-/// The mean open direction of an open hemisphere, whatever slices are drawn.
+/// The mean open direction of an open hemisphere, whichever slices are drawn.
 vec3 open_bent(vec3 normal) { return 2.0 / 3.0 * normal; }
 
 /// Sixteen sectors of directions on the image, by a number that grows with the angle as that does: 0 to 4 for a whole
@@ -80,7 +80,7 @@ uint first_of_range(uint range) { return range & 0xffffu; }
 uint last_of_range(uint range) { return range >> 16; }
 const uint kWholeRange = 0xffff0000u;
 
-/// By so many samples first_sample() begins early, for rounding. pow() is right within 2e-6 of itself (by the
+/// first_sample() begins so many samples early, for rounding. pow() is right within 2e-6 of itself (by the
 /// precisions that Vulkan demands of exp2 and log2), which is less than this up to sample 5,000. Beyond, the half pixel
 /// holds by which a range begins before what stands above.
 const float kRoundingSamples = 0.01;

@@ -4,10 +4,10 @@
 // In: depth and normals of pixels and of blocks, planes of visibility of blocks.
 // Out: as many planes of pixels; sky is 1.
 //
-// Kopf et al., "Joint Bilateral Upsampling", 2007, equation 3: the four blocks about a pixel, by bilinear weights
-// between their centres, as far as these lie in the pixel's tangent plane and their normals agree with its own. Where
-// none does, the block of the nearest depth is taken. One invocation computes the pixels that lie between the same four
-// centres.
+// Kopf et al., "Joint Bilateral Upsampling", 2007: a pixel mixes the four blocks about it by bilinear weights between
+// their centres, as far as these lie in the pixel's tangent plane and their normals agree with its own. Where none
+// does, the pixel takes the block of the nearest depth. One invocation computes the pixels that lie between the same
+// four centres.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "upsample.h"
@@ -30,10 +30,10 @@ layout(scalar, binding = kUpsampleAo) writeonly buffer Ao { float ao[]; };
 layout(scalar, binding = kUpsampleList) readonly buffer List { uint list[]; };
 layout(scalar, binding = kUpsampleCounts) readonly buffer Counts { RunCounts counts; };
 
-/// A block whose centre lies further from a pixel's tangent plane than this many pixels are wide there has no part in
-/// it.
+/// A block has no part in a pixel if its centre lies further from the pixel's tangent plane than this many pixels are
+/// wide there.
 const float kPlaneSigma = 2.0;
-/// Weights whose sum is less than this are none.
+/// If the sum of the weights is less than this, no block agrees with the pixel.
 const float kLeastWeight = 1e-3;
 
 struct Block {
@@ -50,8 +50,8 @@ Block load(ivec2 block) {
   return Block(index, z, position_of(params.view, center, z), unpack_normal(low_normal[index]));
 }
 
-/// The parts of four blocks in a pixel `between` the centres of the first and the last of them, in parts of their
-/// distance.
+/// The shares of four blocks in a pixel. `between`: where it lies between the centres of the first and the last of
+/// them, from 0 to 1 on each axis.
 vec4 parts_of(Block blocks[4], vec2 between, ivec2 pixel, float z, vec3 n) {
   const vec3 position = position_of(params.view, vec2(pixel) + 0.5, z);
   const vec2 across = abs(params.view.tangent_per_pixel);

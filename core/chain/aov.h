@@ -21,23 +21,24 @@ struct Aov {
 };
 std::vector<std::string> aov_names();
 
-/// Those that the settings ask for, each once, in their order. Fails with ErrorKind::usage on a name that is not in
-/// the table, listing what is.
+/// The AOVs that the settings ask for, each once, in their order. Fails with ErrorKind::usage on a name that is not in
+/// the table, listing the names that are.
 std::vector<Aov> aovs_of(const OutputSettings& settings);
 
 /// The channels of an AOV that has so many planes: ao-scales has one for each radius, scale1.Y of the smallest.
 std::vector<std::string> channels_of(const Aov& aov, std::size_t planes);
 
-/// Whether one of them lies there.
+/// Whether an AOV that the settings ask for lies in these planes.
 bool wants(const OutputSettings& settings, gpu::Buffer* FrameOutputs::*planes);
 
-/// What the outputs ask of the chain: their names, parsed once. Whoever has settings may pass them in its place.
+/// What the outputs ask of the chain: their names, parsed once. Settings convert to it, so they may be passed in its
+/// place.
 struct Wanted {
   /// Fails with ErrorKind::usage on names that are in no table.
   Wanted(const OutputSettings& settings);
   Wanted() : Wanted(OutputSettings{}) {}
 
-  /// Whether an AOV lies there.
+  /// Whether an AOV lies in these planes.
   bool has(gpu::Buffer* FrameOutputs::*planes) const;
   /// Whether nothing is asked for but AO that is made from depth and normals alone.
   bool is_only_visibility() const;
@@ -50,10 +51,10 @@ struct Wanted {
   double fog_density = 0;  // 1 / scene units
 };
 
-/// Whether any of it is AO or made from it.
+/// Whether any output is AO or made from it.
 bool needs_ao(const OutputSettings& output);
 
-/// Whether any of it is made from open directions, by an estimator that finds them.
+/// Whether any output is made from open directions, by an estimator that finds them.
 bool needs_bent(const EstimatorSettings& settings, const Wanted& wanted);
 
 }  // namespace alcove

@@ -9,8 +9,8 @@
 
 namespace alcove {
 
-/// Records for one frame what is wanted, and the composite where the frame has a beauty. settings.radius must be set
-/// where that needs AO.
+/// Records the passes that make what is wanted of one frame, and the composite where the frame has a beauty.
+/// settings.radius must be set where they need AO.
 FrameOutputs run_chain(gpu::Recorder& gpu, const FrameInputs& frame, const EstimatorSettings& settings,
                        const Wanted& wanted = {});
 

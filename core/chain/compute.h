@@ -15,7 +15,7 @@ namespace alcove {
 /// data window.
 FrameInputs upload(gpu::Recorder& gpu, const HostFrame& frame);
 
-/// What the chain makes of it.
+/// What the chain makes of a frame in host memory.
 struct HostResult {
   std::vector<float> ao;  // one value per pixel: visibility in [0, 1]
   std::uint32_t sky_pixels = 0;

@@ -16,7 +16,7 @@ namespace {
 /// The thickness of thin occluders, in radii.
 constexpr double kThin = 0.02;
 
-/// The estimate by slices and steps at full resolution that stands for any other.
+/// The settings of the estimate by slices and steps at full resolution that stands for any other.
 EstimatorSettings settings_of_the_bracket(const EstimatorSettings& settings) {
   EstimatorSettings bracket = settings;
   bracket.estimator = Estimator::gtao;

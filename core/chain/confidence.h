@@ -1,4 +1,4 @@
-// How far the AO is no guess: a second estimate between two bounds.
+// How far the AO can be trusted: the distance between two estimates that bracket it.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -7,7 +7,7 @@
 
 namespace alcove {
 
-/// A plane in [0, 1], of the largest radius, whatever the estimator: see confidence.comp.
+/// Makes a plane in [0, 1], for the largest radius, whatever the estimator: see confidence.comp.
 gpu::Buffer& confidence(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame,
                         const EstimatorSettings& settings);
 

@@ -19,7 +19,7 @@
 namespace alcove {
 namespace {
 
-/// As kernels take it: 0 says as deep as wide.
+/// Returns the thickness as kernels take it: 0 stands for as deep as wide.
 float thickness_of(const EstimatorSettings& settings) {
   switch (settings.thickness) {
     case ThicknessKind::automatic: return 0;
@@ -43,8 +43,8 @@ uint range_check_of(RangeCheck check) {
   return kRangeNone;
 }
 
-/// Where the noise pattern begins: successive frames, where it is animated, take successive points of the R2 sequence,
-/// seeds of another.
+/// Returns where the noise pattern begins. Where it is animated, successive frames take successive points of the R2
+/// sequence; seeds take those of another sequence.
 vec2 noise_shift(int frame, std::uint32_t seed) {
   const auto fraction = [](double x) { return x - std::floor(x); };
   const auto shift = [&](double by_frame, double by_seed) {

@@ -31,8 +31,8 @@ struct Estimate {
   gpu::Buffer* squares = nullptr;  // the same
 };
 
-/// By the estimator of the settings, for each of their radii. The frame gives the number that animates noise, and what
-/// has changed.
+/// Runs the estimator of the settings for each of their radii. The frame gives the number that animates the noise, and
+/// what has changed.
 Estimate estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame,
                   const EstimatorSettings& settings, bool with_bent = false);
 
@@ -67,7 +67,7 @@ struct Skipping {
   bool skips_sky;
   bool proves;                 // tiles that nothing can block are left out too
   bool is_ranged;              // the estimator takes the range of steps in which something may block
-  double tolerance;            // also left out, as open: a visibility of at least 1 less this
+  double tolerance;            // tiles whose visibility is at least 1 less this are left out as open, too
   const gpu::Buffer* changes;  // against the frame before; null: it gives nothing
 };
 Skipping skipping_of(const EstimatorSettings& settings, const gpu::Buffer* changes);
@@ -79,11 +79,11 @@ struct Bounds {
 };
 /// The bounds of the tiles, where tiles are to be proved.
 Bounds bounds(gpu::Recorder& gpu, const GBuffer& gbuffer, bool proves, int stride);
-/// Puts the bounds of the groups, where there are any of tiles.
+/// Bounds the groups of tiles, where the tiles have bounds.
 void coarsen(gpu::Recorder& gpu, const GBuffer& gbuffer, const Bounds& bounds);
 
-/// For one radius. What an estimate would be that is not made, it writes into a plane of `out`. `prefix` stands before
-/// the names of its buffers where there is another estimate.
+/// Lists the tiles that an estimator must compute for one radius. Into a plane of `out` it writes the visibility of
+/// those that are left out. `prefix` stands before the names of its buffers where there is another estimate.
 TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const Bounds& bounds, const Skipping& skipping,
                   float radius, int stride, const Estimate& out, uint plane, const std::string& prefix = "");
 
@@ -115,13 +115,13 @@ struct Profile {
 /// `groups`: workgroups, a GroupCount; null: those of all lines.
 Profile profile(gpu::Recorder& gpu, const GBuffer& gbuffer, const SearchDirections& directions, int direction,
                 const gpu::Buffer* groups = nullptr);
-/// Adds a direction to a plane of out.ao, for the pixels that take it; call it for all directions in order. For listed
-/// tiles what is blocked stays a sum, for converge.
+/// Adds a direction to a plane of out.ao, for the pixels that take it; call it for all directions in order. Where tiles
+/// are listed, the plane keeps the sum of what is blocked, from which converge makes the visibility.
 void exact(gpu::Recorder& gpu, const GBuffer& gbuffer, const Profile& profile, const SearchDirections& directions,
            const Reach& reach, const Estimate& out, uint plane);
-/// As many directions as the tolerance takes, an RMS error of the visibility. Puts visibility, error and squares into
-/// `all`, and returns the tiles that have surfaces.
+/// Searches as many directions as the tolerance, an RMS error of the visibility, takes. Puts visibility, error and
+/// squares into `result`, and returns the tiles that have surfaces.
 TileList converge(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, double tolerance, bool every_pixel,
-                  Estimate& all, uint plane);
+                  Estimate& result, uint plane);
 
 }  // namespace alcove

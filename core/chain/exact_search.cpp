@@ -15,7 +15,7 @@
 namespace alcove {
 namespace {
 
-/// Directions of an estimate by error: at the least, where it has no other estimate to compare with, and at the most;
+/// The least directions of an estimate by error, where it has no other estimate to compare with, and the most. Both are
 /// powers of 2.
 constexpr int kLeastDirections = 2;
 constexpr int kMostDirections = 64;
@@ -23,14 +23,14 @@ constexpr int kMostDirections = 64;
 /// How far a profile may leave a pixel's depth, in the pixel's own widths: less costs more vertices.
 constexpr float kProfileTolerance = 0.2f;
 
-/// In this order 2, 4, 8 ... of the most directions are even.
+/// The number of the i-th direction. In this order the first 2, 4, 8 ... directions are even over the half turn.
 int bit_reversed(int i) {
   int reversed = 0;
   for (int bit = 1; bit < kMostDirections; bit *= 2) reversed = 2 * reversed + (i / bit & 1);
   return reversed;
 }
 
-/// Pixels that lines have moved across at a step: as in lines.glsl.
+/// How many pixels lines have moved across at a step: as in lines.glsl.
 int shift_at(const Lines& lines, int step) {
   return (lines.slope * (lines.origin.x + step) + kSlopeUnit / 2) >> kSlopeBits;
 }
@@ -56,9 +56,9 @@ gpu::Buffer& whole_arcs(gpu::Recorder& gpu, const GBuffer& gbuffer) {
   return gpu.buffer("whole arcs", plane_bytes(gbuffer.view), gpu::Use::device);
 }
 
-/// The visibility that the sums of so many directions give, its error, and for sums.listed the tiles that need more; of
-/// 0 directions: all with surfaces.
-void compare_directions(gpu::Recorder& gpu, const GBuffer& gbuffer, double tolerance, Estimate& sums, Estimate& all,
+/// Makes the visibility from the sums of so many directions, and its error, and lists in sums.listed the tiles that
+/// need more directions; after 0 directions all that have surfaces.
+void compare_directions(gpu::Recorder& gpu, const GBuffer& gbuffer, double tolerance, Estimate& sums, Estimate& result,
                         uint plane, int directions) {
   const ivec2 size = gbuffer.view.size;
   const ivec2 origin = gbuffer.grid.origin;
@@ -72,8 +72,8 @@ void compare_directions(gpu::Recorder& gpu, const GBuffer& gbuffer, double toler
   next.lines = &gpu.buffer(name + "lines", sizeof(GroupCount), gpu::Use::device);
   gpu.clear(*next.counts);
   gpu.write(*next.lines, GroupCount{groups_of(2 * (size.x + size.y), kProfileGroup), 1, 0});
-  all.error = &gpu.buffer("error", plane_bytes(gbuffer.view), gpu::Use::device);
-  all.squares = &gpu.buffer("error squares", sizeof(vec2) * tiles, gpu::Use::device);
+  result.error = &gpu.buffer("error", plane_bytes(gbuffer.view), gpu::Use::device);
+  result.squares = &gpu.buffer("error squares", sizeof(vec2) * tiles, gpu::Use::device);
   const ConvergeParams params{
       gbuffer.view, origin, float(tolerance), uint(directions), directions > kLeastDirections ? 1u : 0u, plane};
   const bool begins = directions == 0;
@@ -81,9 +81,9 @@ void compare_directions(gpu::Recorder& gpu, const GBuffer& gbuffer, double toler
                {{kConvergeDepth, *gbuffer.depth},
                 {kConvergeBlocked, *sums.ao},
                 {kConvergeWhole, whole_arcs(gpu, gbuffer)},
-                {kConvergeAo, *all.ao},
-                {kConvergeError, *all.error},
-                {kConvergeSquares, *all.squares},
+                {kConvergeAo, *result.ao},
+                {kConvergeError, *result.error},
+                {kConvergeSquares, *result.squares},
                 {kConvergeList, begins ? *next.tiles : *sums.listed.tiles},
                 {kConvergeCounts, begins ? *next.counts : *sums.listed.counts},
                 {kConvergeNextList, *next.tiles},
@@ -101,17 +101,17 @@ SearchDirections search_directions(const EstimatorSettings& settings) {
 }
 
 TileList converge(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, double tolerance, bool every_pixel,
-                  Estimate& all, uint plane) {
+                  Estimate& result, uint plane) {
   const SearchDirections directions{kMostDirections, 1, every_pixel};
   Estimate sums;
   sums.ao = &gpu.buffer("blocked arcs", plane_bytes(gbuffer.view), gpu::Use::device);
-  compare_directions(gpu, gbuffer, tolerance, sums, all, plane, 0);
+  compare_directions(gpu, gbuffer, tolerance, sums, result, plane, 0);
   const TileList first = sums.listed;
   for (int i = 0; i < kMostDirections; i++) {
     const Profile lines = profile(gpu, gbuffer, directions, bit_reversed(i), sums.listed.lines);
     exact(gpu, gbuffer, lines, directions, reach, sums, 0);
     if (i + 1 >= kLeastDirections && std::has_single_bit(uint(i + 1)))
-      compare_directions(gpu, gbuffer, tolerance, sums, all, plane, i + 1);
+      compare_directions(gpu, gbuffer, tolerance, sums, result, plane, i + 1);
   }
   return first;
 }

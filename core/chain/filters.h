@@ -16,18 +16,18 @@ struct Visibility {
   gpu::Buffer* bent = nullptr;    // planes x, y, z of the mean open direction; null: nobody asked for it
 };
 
-/// Takes the mean over the radii of an estimate. It keeps their planes where `keeps_scales`.
+/// Takes the mean over the radii of an estimate, and keeps their planes where `keeps_scales`.
 Visibility combine(gpu::Recorder& gpu, const GBuffer& gbuffer, const Estimate& estimate, bool keeps_scales);
 
 /// What the settings ask of the denoiser.
 struct Denoiser {
-  std::vector<double> weights;  // from the centre outwards, as good as any multiple of them; empty: there is no filter
+  std::vector<double> weights;  // from the centre outwards, up to a common factor; empty: there is no filter
   double depth_sigma;           // see EstimatorSettings::denoise_depth_sigma
   int stride;                   // one pixel of so many in a row has an estimate
 };
 Denoiser denoiser_of(const EstimatorSettings& settings);
 
-/// Runs or groups of pixels that a filter has work in; see dilate.comp.
+/// Runs or groups of pixels in which a filter has work; see dilate.comp.
 struct RunList {
   gpu::Buffer* runs = nullptr;  // null: all
   gpu::Buffer* counts = nullptr;
@@ -37,19 +37,21 @@ struct FilterRuns {
   RunList columns;  // of denoise
   RunList blocks;   // of upsample
 };
-/// Lists for the filters, whose results this writes wherever they have nothing to do. `gbuffer` is that of the
-/// estimate. Nothing is listed where that would not pay.
+/// Lists where the filters have work, and writes their results everywhere else. `gbuffer` is that of the estimate.
+/// Where a list would not pay, there is none.
 FilterRuns dilate(gpu::Recorder& gpu, const GBuffer& gbuffer, const TileList& tiles, const Denoiser& denoiser);
 
-/// Both directions of the filter, on any number of planes; the input where there is no filter. `gbuffer` is that of the
-/// estimate. `runs`: from dilate, of the same visibility; else all.
+/// Runs both directions of the filter on any number of planes, or returns the input where there is no filter. `gbuffer`
+/// is that of the estimate. `runs`: from dilate, for the same visibility; without them the filter runs everywhere.
 Visibility denoise(gpu::Recorder& gpu, const GBuffer& gbuffer, const Visibility& visibility, const Denoiser& denoiser,
                    const FilterRuns& runs = {});
-/// The same for one buffer of planes; `prefix` stands before the names of the buffers where others are filtered too.
+/// Does the same for one buffer of planes. `prefix` stands before the names of its buffers where others are filtered
+/// too.
 gpu::Buffer& denoise(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer& planes, const Denoiser& denoiser,
                      const std::string& prefix = "", const FilterRuns& runs = {});
 
-/// From the blocks of `low` to the pixels of `gbuffer`, any number of planes; the input where both are the same.
+/// Brings any number of planes from the blocks of `low` to the pixels of `gbuffer`, or returns the input where both are
+/// the same.
 Visibility upsample(gpu::Recorder& gpu, const GBuffer& gbuffer, const GBuffer& low, const Visibility& visibility,
                     const FilterRuns& runs = {});
 gpu::Buffer& upsample(gpu::Recorder& gpu, const GBuffer& gbuffer, const GBuffer& low, gpu::Buffer& planes,

@@ -26,11 +26,12 @@ struct FrameInputs {
   double albedo_value = 0;           // for multi-bounce where there are no planes of it
   Matrix3 aov_from_view{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};  // rotation to the space of the directions that are written
   bool is_sky = false;  // no pixel shows a surface, and none had to be repaired for that
-  // of blocks against the frame before, whose estimate its buffers still hold: see classify.h; null: there is none
+  // how the blocks differ from the frame before, whose estimate the buffers still hold: see classify.h; null: the
+  // buffers hold none
   const gpu::Buffer* changes = nullptr;
 };
 
-/// The terms of kernels for planes that are read so. The host must still see the depth.
+/// Gives the terms of kernels for planes that are read so. The host must still see the depth.
 FrameInputs inputs_of(const Reading& reading, const RawPlaneArray<gpu::Buffer*>& planes, int frame);
 
 /// Records the upload of every plane.

@@ -30,13 +30,14 @@ struct GBuffer {
   gpu::Buffer* missing = nullptr;  // the GroupCount of reconstruct
 };
 
-/// From the raw planes. `prefix` stands before the names of its buffers where there is another G-buffer already.
+/// Makes the G-buffer from the raw planes. `prefix` stands before the names of its buffers where there is another
+/// G-buffer already.
 GBuffer prepare(gpu::Recorder& gpu, const FrameInputs& frame, const std::string& prefix = "");
 
 /// Puts normals where prepare found none, and returns the same G-buffer.
 GBuffer reconstruct(gpu::Recorder& gpu, const GBuffer& gbuffer);
 
-/// The G-buffer of blocks of `factor` x `factor` pixels; the same one where that is 1.
+/// Makes the G-buffer of the blocks of a grid, or returns the same one where each block is a pixel.
 GBuffer downsample(gpu::Recorder& gpu, const GBuffer& gbuffer, const BlockGrid& grid);
 
 }  // namespace alcove

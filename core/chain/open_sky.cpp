@@ -1,4 +1,4 @@
-// Fills by the host what kernels would give of sky.
+// Fills on the host what kernels would give for sky.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/chain/open_sky.h"
 

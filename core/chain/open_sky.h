@@ -1,4 +1,4 @@
-// Frames that show nothing but sky: what the chain would give, without a kernel.
+// Frames that show nothing but sky: the host fills in what the chain would give, without a kernel.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -8,10 +8,10 @@
 
 namespace alcove {
 
-/// Whether the frame is sky, and nothing is wanted of it but its visibility.
+/// Whether the frame is nothing but sky, and nothing but its visibility is wanted.
 bool is_open_sky(const FrameInputs& frame, const EstimatorSettings& settings, const Wanted& wanted);
 
-/// Counts, and a visibility of 1.
+/// Gives the counts, and a visibility of 1.
 FrameOutputs open_sky(gpu::Recorder& gpu, const FrameInputs& frame, const EstimatorSettings& settings);
 
 }  // namespace alcove

@@ -1,4 +1,4 @@
-// What the chain gives: buffers that the host reads after the recorder has run, and ONE table of those that are AOVs.
+// What the chain gives: buffers that the host reads after the recorder has run, and ONE table of the AOVs among them.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 

@@ -13,14 +13,14 @@
 namespace alcove {
 namespace {
 
-/// Adds values to a hash, each by its own bytes: between the members of a struct there may be others.
+/// Adds values to a hash, each by its own bytes: between the members of a struct there may be padding.
 template <class... T>
 void add(std::uint64_t& hash, const T&... values) {
   static_assert((std::is_arithmetic_v<T> && ...));
   ((hash = XXH3_64bits_withSeed(&values, sizeof(values), hash)), ...);
 }
 
-/// Kernels' parameters have nothing between their members.
+/// The parameters of kernels are hashed as a whole, since they have no padding.
 void add(std::uint64_t& hash, const PrepareParams& params) {
   hash = XXH3_64bits_withSeed(&params, sizeof(params), hash);
 }
@@ -40,7 +40,7 @@ ivec2 blocks_of(const View& view) {
   return {int(groups_of(view.size.x, uint(kChangeBlock))), int(groups_of(view.size.y, uint(kChangeBlock)))};
 }
 
-/// Adds what each block holds of planes one behind the other, row by row.
+/// Adds to each block's hash what it holds of planes that lie one behind the other, row by row.
 void add_blocks(std::vector<std::uint64_t>& blocks, const gpu::Buffer& planes, ivec2 size) {
   const auto values = planes.as<const float>();
   const auto width = std::size_t(size.x);

@@ -13,12 +13,12 @@
 
 namespace alcove {
 
-/// Remembers the last frame that went through a recorder's buffers. One for every recorder.
+/// Remembers the last frame that went through a recorder's buffers. Each recorder has one of its own.
 class LastFrame {
  public:
-  /// Whether all that the frame's results are made from is as it was: outputs() are its own then. Else, where blocks of
-  /// it are, frame.changes says which. Call it once the planes are read, and keep() once the frame is computed; until
-  /// then nothing is remembered.
+  /// Whether all that the frame's results are made from is as it was: then outputs() are its own. If only some blocks
+  /// of its pixels are as they were, frame.changes says which. Call it once the planes are read, and keep() once the
+  /// frame is computed; until then nothing is remembered.
   bool is_same(gpu::Recorder& gpu, FrameInputs& frame, const EstimatorSettings& settings);
   void keep(const FrameOutputs& outputs) { outputs_ = outputs; }
   void forget() { outputs_.reset(); }
@@ -27,7 +27,7 @@ class LastFrame {
 
  private:
   struct Hashes {
-    std::uint64_t meaning = 0;          // of what is no plane
+    std::uint64_t meaning = 0;          // of everything but the planes
     std::uint64_t colors = 0;           // of all planes but depth and normals
     std::vector<std::uint64_t> blocks;  // of depth and normals
     bool operator==(const Hashes&) const = default;

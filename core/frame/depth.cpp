@@ -1,4 +1,4 @@
-// Depth kinds as coefficients.
+// The coefficients of the map from each kind of depth.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/frame/depth.h"
 

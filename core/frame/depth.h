@@ -42,22 +42,23 @@ DepthMap depth_map(DepthKind kind, const DepthRange& range, PositionSpace space,
 /// positions: x, y and z are 0.
 bool is_all_sky(const DepthMap& map, std::span<const float> raw);
 
-/// Planar depth of a raw value, or of a position; `ray_length` is that of the pixel's ray at unit depth. Infinite: sky.
+/// Planar depth of a raw value, or of a position; infinite for sky. `ray_length`: the length of the pixel's ray at unit
+/// depth.
 double planar_depth(const DepthMap& map, const std::array<double, 3>& raw, double ray_length);
 
-/// Relative to a raw value: half a step of floats, and of half floats.
+/// Half a step of floats, and of half floats, as a part of the raw value.
 constexpr double kFloatPrecision = 0x1p-24, kHalfPrecision = 0x1p-11;
 
-/// The step of device, normalized or log depth that was rounded to 16 or 24 bits; 0: it was not. Of 24 bits only small
-/// values tell, and matter: others are floats as coarse.
+/// The step of device, normalized or log depth that was rounded to 16 or 24 bits; 0: it was not rounded. Only small
+/// values show a step of 24 bits, and only there it matters: larger floats are as coarse themselves.
 double step_of(std::span<const float> raw);
 
-/// What becomes of raw values that are known to this part of themselves, and rounded to multiples of `step`. Never less
-/// than twice what renderers' own arithmetic loses: 2^-16 of the depth, as where surfaces 1000 units across are seen
-/// from a few units (measured: 8e-6).
+/// The precision of the planar depth from raw values that are known to this part of themselves, and rounded to
+/// multiples of `step`. It is never less than 2^-16 of the depth, twice what renderers' own arithmetic loses where
+/// surfaces 1000 units across are seen from a few units away (measured: 8e-6).
 DepthPrecision depth_precision(const DepthMap& map, double raw_precision, double step = 0);
 
-/// The word for it on the command line.
+/// The word for a kind on the command line.
 const char* name_of(DepthKind kind);
 
 }  // namespace alcove

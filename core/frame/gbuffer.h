@@ -17,9 +17,9 @@
 
 namespace alcove {
 
-/// Something that neither settings nor camera say.
+/// Something that neither settings nor camera say, and what was chosen.
 struct Guess {
-  std::string what, chosen, why, option;  // option: what says it
+  std::string what, chosen, why, option;  // option: the one that says it
 };
 
 /// Where everything is that a frame needs, and how it is read; nothing but headers has been read. `data` may be a part
@@ -41,14 +41,14 @@ struct FrameSource : Reading {
   bool has_evidence = true;           // false: its pixels did not show what was left open
   const InputRules* rules = nullptr;  // of the program that wrote the frame
   std::string rules_by;               // the attribute or channel, or the option, that told; empty: nothing did
-  bool rules_said = false;            // by an option: what they say is no guess
+  bool rules_said = false;            // an option names them: what they say is no guess
   DepthKind usual_depth_kind = DepthKind::planar;  // by the rules, for what is open
   NormalSpace usual_normal_space = NormalSpace::world;
-  // nobody says it; the pixels decide
+  // Nobody says it, so the pixels decide.
   bool depth_kind_open = false, normal_space_open = false, normal_encoding_open = false;
   std::string camera_from;  // the attributes that gave it; empty: the settings did
   std::vector<Guess> guesses;
-  // what the user should know: guesses that are unusual, options that the pixels speak against; a sentence each
+  // what the user should know, a sentence each: guesses that are unusual, options that the pixels speak against
   std::vector<std::string> notes;
   std::vector<std::string> suspicious;  // what harms AO
 };
@@ -68,7 +68,7 @@ struct PlaneRead {
   float* to;
 };
 
-/// Reads all planes within source.data, every part of every file decoded once.
+/// Reads all planes within source.data. Every part of every file is decoded once.
 void read_planes(FrameSource& source, const std::vector<PlaneRead>& reads);
 
 }  // namespace alcove

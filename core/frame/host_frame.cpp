@@ -1,4 +1,4 @@
-// Files -> host memory.
+// Reads a frame's depth and normals from its files into host memory.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/frame/host_frame.h"
 

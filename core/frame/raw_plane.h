@@ -11,10 +11,10 @@
 
 namespace alcove {
 
-/// Each may have several components: depth may be a position's x, y, z.
+/// A plane may have several components: depth may be a position's x, y, z.
 enum class RawPlane { depth, normal, beauty, indirect, diffuse_color, material_ao, albedo };
 
-/// What an estimate is made from, and what only colours or dims it afterwards.
+/// Whether an estimate is made from a plane, or whether the plane only colours or dims it afterwards.
 enum class PlaneContent { geometry, color };
 
 /// An option that names a file.
@@ -89,7 +89,7 @@ struct RawPlaneArray {
   const T& operator[](RawPlane plane) const { return entries[std::size_t(plane)]; }
 };
 
-/// Rows stand in the order of the enumeration.
+/// Whether the rows stand in the order of the enumeration.
 constexpr bool rows_are_in_order() {
   for (std::size_t i = 0; i < kRawPlanes.size(); i++)
     if (std::size_t(kRawPlanes[i].plane) != i) return false;

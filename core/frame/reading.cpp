@@ -1,4 +1,4 @@
-// From what a frame's values mean to the terms of kernels.
+// What follows from a reading: which meaning other frames take over, and the map from its values to depth.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/frame/reading.h"
 

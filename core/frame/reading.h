@@ -9,7 +9,8 @@
 
 namespace alcove {
 
-/// What is said of the values, or settled by the pixels: the same for all frames of a sequence.
+/// What the values mean, as options and headers say or as the pixels settle it. It is the same for all frames of a
+/// sequence.
 struct Meaning {
   DepthKind depth_kind = DepthKind::planar;  // not automatic
   DepthRange depth_range;
@@ -32,11 +33,11 @@ struct Reading : Meaning {
   bool depth_is_half = false;  // the depth values were rounded to half floats
 };
 
-/// Takes over what is said and settled of another frame of the sequence. The clip planes stay this frame's own, as its
-/// own camera has them.
+/// Takes over the meaning of another frame of the sequence. The clip planes stay this frame's own, as its own camera
+/// has them.
 void read_like(Reading& reading, const Meaning& settled);
 
-/// The map to planar depth. Half floats end at 65504, and there they mean what is beyond: distances of that size are
+/// The map to planar depth. Half floats end at 65504, which stands for all that is beyond: distances of that size are
 /// sky. Fails as depth_map() does.
 DepthMap depth_map_of(const Reading& reading);
 

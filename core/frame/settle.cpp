@@ -1,4 +1,4 @@
-// Hypotheses, their scores, and which of them is taken.
+// Scores the ways in which a frame's values may be read, and chooses one.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/frame/settle.h"
 
@@ -20,19 +20,21 @@ constexpr double kClear = 2;
 constexpr double kLeastStraight = 0.02;
 /// From this part of the smooth places on, flat surfaces speak for a kind by themselves.
 constexpr double kSurelyStraight = 0.1;
-/// Where the normals agree less than this part of the best agreement, another reading of them is taken, or noted.
+/// Where the normals agree with depth less than this part of the best agreement, another reading of them is chosen, or
+/// noted.
 constexpr double kNoBetter = 0.95;
 /// So many of the normals must agree with depth. Some reading reaches half by chance, as rooms have three directions.
 constexpr double kLeastAgreement = 0.6;
-/// Degrees, of the best quarter of the normals: farther off, normals and depth are of different cameras or planes.
+/// Degrees. If the best quarter of the normals is farther off than this, normals and depth are of different cameras or
+/// planes.
 constexpr double kLargestAngle = 2;
-/// Where so many of the normals have unit length, they are vectors.
+/// If this part of the normals has unit length, they are vectors.
 constexpr double kUnit = 0.9;
-/// Where so many of the pixels are exactly 1, that is a background.
+/// If this part of the pixels is exactly 1, that is a background.
 constexpr double kPlateau = 0.001;
-/// Pixels, median: farther off, positions are not what they are taken for.
+/// Pixels. If the median is farther off than this, positions are not what they are taken for.
 constexpr double kLargestError = 2;
-/// Every so many pixels are enough for statistics; a prime, so that no column is favoured.
+/// One of so many pixels is enough for statistics. It is a prime, so that no column is favoured.
 constexpr std::size_t kSparse = 31;
 
 class Settlement {
@@ -93,7 +95,8 @@ class Settlement {
                        100 * score.straight, name_of(score.kind));
   }
 
-  /// What the program that wrote the frame, or most programs, write; no guess where the user named the program.
+  /// Reads the depth as the program that wrote the frame, or most programs, write it. It is no guess where the user
+  /// named the program.
   void take_usual(const std::string& why) {
     source_.depth_kind = source_.usual_depth_kind;
     const std::string by =
@@ -123,7 +126,8 @@ class Settlement {
     guess("depth kind", name_of(best.kind), why, "--depth-kind", true);
   }
 
-  /// A background of exactly 1 behind depths of 0 to 1 is the far end of something; what the far end is no pixel shows.
+  /// A background of exactly 1 behind depths of 0 to 1 is the far end of a range, and no pixel shows how far away that
+  /// is.
   void refuse_plateau() const {
     if (values_.least < 0 || values_.most != 1 || double(values_.one) < kPlateau * double(values_.pixels)) return;
     fail(ErrorKind::input,
@@ -133,7 +137,8 @@ class Settlement {
          depth_path(), 100 * double(values_.one) / double(values_.pixels));
   }
 
-  /// A projection matrix made for another depth range than the buffer's scales all distances, which no pixel shows.
+  /// Notes near planes that differ. A projection matrix made for another depth range than the buffer's scales all
+  /// distances, which no pixel shows.
   void compare_planes() {
     const auto near = source_.depth_range.near;
     const auto by_file = source_.camera.near;
@@ -156,7 +161,7 @@ class Settlement {
                     *near, *by_matrix, *by_matrix / *near));
   }
 
-  /// A kind that is said, and that the pixels speak against, is taken and noted.
+  /// Notes where the pixels speak against the kind of depth that is said. It is read so all the same.
   void doubt_kind() {
     doubt_range();
     const bool linear = source_.depth_kind == DepthKind::normalized || source_.depth_kind == DepthKind::log;
@@ -174,7 +179,7 @@ class Settlement {
                     scores[0].kind == DepthKind::inverse ? "inverse or device" : name_of(scores[0].kind)));
   }
 
-  /// The scores of the distances that the depth gives when it is read as it is said.
+  /// The scores of the distances that the depth gives if it is read as is said.
   std::vector<DepthScore> scores_as_said() const {
     return score_depth(planar_depths(depth_, depth_map_of(source_), view_), view_, settings_.sky,
                        2 * depth_rounding(source_));
@@ -186,7 +191,7 @@ class Settlement {
     return found == scores.end() ? 0 : found->straight;
   }
 
-  /// A z-buffer that leaves half of its range alone, or leaves its range.
+  /// Notes a z-buffer that uses only half of its range, or that leaves it.
   void doubt_range() {
     if (source_.depth_kind != DepthKind::device) return;
     const auto below = std::ranges::count_if(depth_, [](float d) { return d > -1 && d < 0; });
@@ -199,8 +204,8 @@ class Settlement {
           "--device-range=-1..1");
   }
 
-  /// Inverse depth and that of a z-buffer are both affine in 1/z; what tells them apart is that somebody knows a near
-  /// plane. Sky is at the far one.
+  /// Inverse depth and that of a z-buffer are both affine in 1/z. A near plane that somebody knows tells them apart.
+  /// Sky is at the far plane.
   void settle_device(const std::string& why) {
     const bool reversed = source_.depth_range.reversed || (values_.zero && !values_.one);
     if (!settings_.depth_range.near || !source_.depth_range.far || !(reversed || values_.one))
@@ -284,8 +289,8 @@ class Settlement {
             differs || source_.normal_unorm);
   }
 
-  /// Where the normals are off by depth, and much less so in another encoding: it is taken where nobody says one, else
-  /// noted. True where it is taken.
+  /// If the normals do not agree with depth, and do so much better in another encoding, that one is chosen where nobody
+  /// says one, and else noted. Returns whether it was chosen.
   bool compare_encodings(bool in_unit_range, std::string& why) {
     const auto scores = scores_of(source_.normal_encoding, source_.normal_unorm);
     if (scores.empty() || agrees(scores[0])) return false;
@@ -311,7 +316,7 @@ class Settlement {
     return true;
   }
 
-  /// Vectors by their lengths, whatever they are taken for.
+  /// Notes where the lengths of the normals speak against the encoding that is said.
   void doubt_encoding(const NormalStatistics& n) {
     constexpr double kFew = 0.5;  // of the normals
     if (source_[RawPlane::normal].size() != 3) return;
@@ -370,7 +375,7 @@ class Settlement {
                        to_string(s.flips), 100 * s.agreement, 100 * s.facing);
   }
 
-  /// Normals as they are taken, where depth speaks against them.
+  /// Notes where depth speaks against the normals as they are read.
   void doubt_normals(const std::vector<NormalScore>& scores) {
     const auto chosen = std::ranges::find_if(scores, [&](const auto& s) {
       return s.space == source_.normal_space && to_string(s.flips) == to_string(source_.flip_normal);
@@ -399,7 +404,7 @@ class Settlement {
   ValueStatistics values_;
 };
 
-/// Depth as a grey picture has no more than 256 distances.
+/// Refuses depth that was saved as a grey picture: it has no more than 256 distances.
 void refuse_8_bits(const FrameSource& source, std::span<const float> depth) {
   if (source[RawPlane::depth].size() != 1) return;
   constexpr std::size_t kLeastLevels = 16;  // fewer may be a few walls that happen to lie there

@@ -20,11 +20,12 @@ void settle(FrameSource& source, const InputSettings& settings, std::span<const 
 /// The most pixels that a frame is settled by.
 constexpr std::size_t kEvidencePixels = std::size_t(1) << 24;
 
-/// The same for a frame of any size, by planes that it reads itself: all of the frame, or as many rows from its middle
-/// as hold kEvidencePixels. Fails with ErrorKind::device where a single row holds more.
+/// Does the same for a frame of any size, by planes that it reads itself: all of the frame, or as many rows from its
+/// middle as hold kEvidencePixels. Fails with ErrorKind::device where a single row holds more.
 void settle_by_rows(FrameSource& source, const InputSettings& settings);
 
-/// Settles a frame as another one of its sequence is. False: it has other planes, so it must be settled by itself.
+/// Settles a frame as another one of its sequence is settled. False: it has other planes, so it must be settled by
+/// itself.
 bool settle_like(FrameSource& source, const FrameSource& settled);
 
 /// How coarsely the depth is stored: see score_depth().

@@ -99,7 +99,7 @@ struct Receiver {
 struct Side {
   Vector along_t, along_v;  // in-slice coordinates of an offset, moved into the slice parallel to the tangent plane
   double gamma;
-  double step_x, step_y;  // pixels a step, the longer component +-1
+  double step_x, step_y;  // pixels per step; the longer component is +-1
   double reach;           // steps within the radius; infinite when the sphere of the radius holds the eye
 };
 

@@ -22,14 +22,14 @@ class Aovs : public CommandLine {
  protected:
   using Planes = std::span<const float>;
 
-  /// A run that must succeed; what OUTPUT holds then.
+  /// Makes a run that must succeed, and returns what OUTPUT holds then.
   Image good(const std::vector<std::string>& more) {
     const Finished finished = run(more);
     EXPECT_EQ(finished.code, 0) << finished;
     return read_exr_image(ao);
   }
 
-  /// A run that must end with this code and one line that holds the words, and leave nothing behind.
+  /// Makes a run that must end with this code and one line that holds the words, and must leave nothing behind.
   void expect_refused(int code, const std::vector<std::string>& words, const std::vector<std::string>& more) {
     const auto before = names_in(folder.path());
     const Finished finished = run(more);
@@ -41,7 +41,7 @@ class Aovs : public CommandLine {
 
   std::vector<HeaderChannel> channels() const { return channels_in(read_header(ao)); }
 
-  /// Passes of the last run, which wrote its statistics.
+  /// The passes of the last run, by the statistics that it wrote.
   std::vector<std::string> passes() const {
     std::vector<std::string> names;
     const auto report = nlohmann::json::parse(read_bytes(stats));
@@ -94,7 +94,7 @@ TEST_F(Aovs, a_depth_that_was_written_is_read_again) {
 
 TEST_F(Aovs, normals_are_in_world_space_where_the_camera_has_it_else_in_view_space) {
   for (auto& [name, plane] : input.planes)
-    // to be reconstructed, which it is on the wall, as its neighbours are
+    // This normal must be reconstructed: on the wall it becomes that of its neighbours.
     if (name.find("Normal") != name.npos) plane[7] = 0;
   input.write(frame);
   const Image source = read_exr_image(frame);

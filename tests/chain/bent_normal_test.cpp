@@ -137,7 +137,7 @@ Vec3 mean_open(const std::function<bool(Vec3)>& is_open) {
   return sum;
 }
 
-TEST(MeanOpen, is_the_closed_form_beside_a_wall) {  // the quadrature that the rest goes by
+TEST(MeanOpen, is_the_closed_form_beside_a_wall) {  // The other tests go by this quadrature.
   const Vec3 endless = mean_open([](Vec3 w) { return w.x > 0; }),
              corner = mean_open([](Vec3 w) { return w.x > 0 && w.y > 0; });
   EXPECT_NEAR(std::atan2(endless.x, endless.z), std::atan(2 / kPi), 3e-3);
@@ -178,7 +178,7 @@ void expect_walls(int count, const Shot& shot, const EstimatorSettings& settings
     compared++;
   }
   EXPECT_GE(compared, 30) << what;
-  const double tolerance = settings.steps < 64 ? 0.018 : 0.006;  // so few steps miss as much of the visibility
+  const double tolerance = settings.steps < 64 ? 0.018 : 0.006;  // So few steps miss as much of the visibility.
   EXPECT_LE(worst, 3 * tolerance) << what;
   EXPECT_LE(sum / compared, tolerance) << what;
 }
@@ -232,7 +232,7 @@ TEST(BentNormals, are_those_of_the_cpu_reference) {
             ao_error += std::abs(ao[i] - expected_ao[i]) / double(reference.pixels.size());
             bias = bias + 1.0 / double(reference.pixels.size()) * (raw[i] - expected[i]);
           }
-          // As far from the reference as the visibility by the same samples is, and no farther.
+          // The bent normal is no farther from the reference than the visibility by the same samples is.
           EXPECT_LE(error, 1.25 * ao_error + 0.003) << name_of(settings) << ", visibility " << ao_error;
           EXPECT_LE(length(bias), ao_error + 0.002) << name_of(settings);
         }

@@ -1,5 +1,4 @@
-// The AO in and around bodies whose truth has a closed form, from spheres to pits: MATH.md section 4, named by its
-// paragraphs.
+// The AO in and around bodies whose truth has a closed form, from spheres to pits.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/chain/closed_form.h"
 
@@ -123,7 +122,8 @@ TEST_F(ClosedForm, groove) {
           [&](const test::Hit& hit) -> std::optional<double> {
             // Beside the tips of the end triangles an occluder is narrower than a pixel.
             if (hit.primitive > 1 || std::abs(hit.position.y) > 0.9 * half_length) return std::nullopt;
-            // Lambert's sum for an endless groove is the formula of 4.1.2, so what is used for the finite one is right.
+            // The sides of an endless groove block up to the angle psi, at which the other side's rim is seen: there
+            // Lambert's sum is (1 - cos psi) / 2, so what is used for the finite groove is right.
             const Vec3 there{hit.position.x, 0, hit.position.z};
             const double s = length(there), cos_beta = 2 * std::cos(half) * std::cos(half) - 1;
             const double cos_psi = (cos_beta - s) / std::sqrt(1 + s * s - 2 * s * cos_beta);
@@ -178,13 +178,16 @@ TEST_F(ClosedForm, three_plane_corner) {
       "diagonal", {{planes[0], planes[1], planes[2]}}, shot, fine(kUnlimited),
       [&](const test::Hit& hit) -> std::optional<double> {
         if (std::max({hit.position.x, hit.position.y, hit.position.z}) > 1) return std::nullopt;
-        EXPECT_NEAR(truth(three_planes(1e6), hit.position, hit.normal, hit.primitive), 0.25, 1e-5);  // 4.1.5
+        EXPECT_NEAR(truth(three_planes(1e6), hit.position, hit.normal, hit.primitive), 0.25, 1e-5);
         return truth(planes, hit.position, hit.normal, hit.primitive);
       },
       500);
 }
 
-/// 4.1.6: the occlusion of a sphere that may cross the tangent plane; D > r.
+/// The occlusion by a sphere of radius r whose centre lies at height h and this offset aside, at a distance D > r. A
+/// sphere wholly above the tangent plane fills a cone of half-angle asin(r / D) about a direction of the cosine h / D,
+/// which takes (r / D)^2 h / D of the cosine-weighted hemisphere. Else this is the configuration factor from a plane
+/// element to a sphere that the element's plane cuts.
 double sphere_occlusion(double r, double h, double offset) {
   const double d_squared = offset * offset + h * h, n = h / std::sqrt(d_squared);
   if (h >= r) return r * r * h / (d_squared * std::sqrt(d_squared));

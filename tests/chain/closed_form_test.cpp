@@ -1,6 +1,9 @@
-// The AO beside walls, in corners and under ceilings, with every falloff, whose truth has a closed form: MATH.md
-// section 4, named by its paragraphs.
+// The AO beside walls, in corners and under ceilings, with every falloff, whose truth has a closed form.
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// The cosine-weighted hemisphere is the unit disk below it, seen from above (Nusselt's analogue), so each truth is an
+// area of that disk over pi. A direction that meets an infinite wall at distance d within the radius r lies beyond the
+// chord at d / r.
 #include "tests/chain/closed_form.h"
 
 namespace alcove {
@@ -14,16 +17,16 @@ const Plane kFloor{.point = {}, .normal = {0, 0, 1}}, kWallX{.point = {}, .norma
 /// Area of the segment of the unit disk beyond the chord at x.
 double segment(double x) { return x >= 1 ? 0 : std::acos(x) - x * std::sqrt(1 - x * x); }
 
-/// 4.2.1: beside an infinite wall at distance d, hard radius r.
+/// The AO beside an infinite wall at distance d, with the hard radius r.
 double wall(double d, double r) { return 1 - segment(d / r) / kPi; }
 
-/// 4.2.2: beside a wall of that height; 4.1.3 in the limit of large r.
+/// The same beside a wall of that height; for large r it is (1 + d / hypot(d, height)) / 2.
 double low_wall(double d, double height, double r) {
   const double c = d / r, a = d / std::hypot(d, height);
   return 1 - (segment(c) - a * segment(std::min(1.0, c / a))) / kPi;
 }
 
-/// 4.2.3: beside two infinite walls at a right angle; 4.1.5 in the limit of large r.
+/// The same beside two infinite walls at a right angle; for large r it is 1/4.
 double corner(double d_a, double d_b, double r) {
   const double a = std::min(1.0, d_a / r), b = std::min(1.0, d_b / r), far_a = std::sqrt(1 - b * b);
   const auto area = [](double x) { return 0.5 * (x * std::sqrt(1 - x * x) + std::asin(x)); };
@@ -31,7 +34,7 @@ double corner(double d_a, double d_b, double r) {
   return 1 - (segment(a) + segment(b) - both) / kPi;
 }
 
-/// 1.1: the AO of a falloff from the AO of hard radii: the integral of -W'(r) A(r) dr, by the midpoint rule.
+/// The AO of a falloff from the AO of hard radii: the integral of -W'(r) A(r) dr, by the midpoint rule.
 double superpose(const EstimatorSettings& settings, const std::function<double(double)>& hard) {
   constexpr int kParts = 200;
   const double radius = settings.radius.value(), start = radius * settings.falloff_start;

@@ -1,4 +1,4 @@
-// Where the AO is a guess, and says so.
+// The confidence AOV: it is low where the AO is a guess.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -47,7 +47,7 @@ class DebugViews : public CommandLine {
     for (std::size_t c = 0; c < 3; c++) bytes[c] = int(std::lround(255 * picture.plane(c)[i]));
     return bytes;
   }
-  /// Of a pixel of the frame.
+  /// The colour that a picture shows for a pixel of the frame.
   static std::array<int, 3> shown(const Image& picture, int x, int y, int zoom = kZoom) {
     return color(picture, x * zoom + zoom / 2, y * zoom + zoom / 2);
   }
@@ -67,7 +67,7 @@ TEST_F(DebugViews, every_one_is_a_picture_beside_the_output_with_a_scale_below) 
     const Image picture = written(name);
     EXPECT_EQ(picture.data.width, 560) << name << ": texts need the room";
     EXPECT_EQ(picture.data.height, 36 * kZoom + kLegend) << name;
-    int lit = 0;  // the texts
+    int lit = 0;  // pixels of the texts
     for (int y = 36 * kZoom; y < picture.data.height; y++)
       for (int x = 0; x < 100; x++) lit += color(picture, x, y)[0] > 150;
     EXPECT_GT(lit, 60) << name;

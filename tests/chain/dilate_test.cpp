@@ -44,8 +44,8 @@ struct Filter {
   std::size_t at(int x, int y) const { return std::size_t(y) * std::size_t(size().x) + std::size_t(x); }
 };
 
-/// What the filter makes of the frame after one with the visibility `before`, if it leaves out what the tiles say; or
-/// of all of the frame.
+/// What the filter makes of the frame after one with the visibility `before`: where it has work, as the tiles say, or
+/// everywhere.
 std::vector<float> run(const Filter& filter, const std::vector<float>& before, bool listed) {
   gpu::Recorder gpu(device());
   const FrameInputs inputs = upload(gpu, filter.frame);

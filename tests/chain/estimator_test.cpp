@@ -1,5 +1,5 @@
-// HBAO and Crytek's estimator against their own expected values (MATH of each stands beside its test), and against slow
-// versions of themselves.
+// HBAO and Crytek's estimator against their own expected values, whose derivations stand beside the tests, and against
+// slow versions of themselves.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
@@ -103,11 +103,11 @@ void expect_mean(const Rendering& rendering, const EstimatorSettings& settings,
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-// HBAO: MATH of Bavoil and Sainz, the mean of sin h - sin t over the azimuth; the uniform, not the cosine-weighted
-// hemisphere.
+// HBAO, after Bavoil and Sainz: the mean of sin h - sin t over the azimuth, which weighs the hemisphere uniformly and
+// not by the cosine.
 
-// In the azimuth phi from the wall its rim stands at sin h = H / sqrt(H^2 + d^2 / cos^2 phi), as far as d / cos phi <
-// R. An endless wall: acos(d / R) / pi.
+// In the azimuth phi from the wall its rim stands at sin h = H / sqrt(H^2 + d^2 / cos^2 phi), as long as d / cos phi <
+// R. An endless wall blocks acos(d / R) / pi.
 double hbao_beside_wall(double d, double height, double radius) {
   constexpr int kParts = 2000;
   const double limit = std::acos(std::min(1.0, d / radius));
@@ -180,7 +180,7 @@ TEST(Hbao, sees_the_uniform_hemisphere_at_every_tilt_of_the_view) {
   }
 }
 
-// what even directions of the image get wrong without the weights of the kernel's head
+// Without the weights that the kernel's head describes, even directions of the image get this wrong.
 TEST(Hbao, off_axis_is_what_it_is_on_axis) {
   const double half = 0.4, height = 0.3;
   const Scene scene{
@@ -217,7 +217,7 @@ TEST(Hbao, from_the_surface_is_the_same_where_it_faces_the_eye_and_the_sine_abov
   }
 }
 
-// on a vertical wall a sample at height h is sqrt(d^2 + h^2) away: the integral of W d(sin h)
+// On a vertical wall a sample at height h is sqrt(d^2 + h^2) away, so what is blocked is the integral of W d(sin h).
 TEST(Hbao, attenuation_weighs_every_rise_of_the_horizon) {
   const double radius = 1;
   // Not seen from straight above; from aside a uniform hemisphere is the same, so the slow version must agree with the
@@ -240,7 +240,7 @@ TEST(Hbao, attenuation_weighs_every_rise_of_the_horizon) {
   }
 }
 
-// a rim at that elevation blocks nothing, a higher one what is above it
+// A rim at that elevation blocks nothing, and a higher rim blocks what lies between.
 TEST(Hbao, bias_is_the_sine_of_the_least_elevation) {
   const double d = 0.4;
   for (const double height : {0.1, 0.4}) {
@@ -270,7 +270,7 @@ TEST(Hbao, bias_is_the_sine_of_the_least_elevation) {
 
 // Crytek's estimator: the hidden part of the volume.
 
-// 1 - (1 - c)^2 (2 + c) / 4, seen from anywhere on the open side
+// The visibility is 1 - (1 - c)^2 (2 + c) / 4, from wherever on the open side it is seen.
 TEST(Crytek, beside_an_endless_wall_is_the_volume_before_it) {
   for (const Shot& shot : {Shot::perspective({4, 0, 4}, {0.5, 0, 0.5}, 60, 320, 240),
                            Shot::perspective({5, 0, 1.5}, {0, 0, 0.6}, 50, 320, 240),
@@ -290,7 +290,7 @@ TEST(Crytek, beside_an_endless_wall_is_the_volume_before_it) {
   }
 }
 
-// a sample of length s R is behind the wall with probability (1 - c / s) / 2
+// A sample of length s R is behind the wall with probability (1 - c / s) / 2.
 TEST(Crytek, clustered_kernel_has_the_lengths_of_its_formula) {
   const Shot shot = Shot::perspective({4, 0, 4}, {0.5, 0, 0.5}, 60, 320, 240);
   const Rendering rendering =

@@ -123,12 +123,12 @@ TEST(Gtao, sums_both_sides_of_a_slice) {
 TEST(EveryEstimator, is_the_same_to_all_sides) {
   for (const Estimator estimator : kEstimators)
     for (const double tilt : {0.0, 35.0}) {
-      std::vector<double> all;
+      std::vector<double> means;
       for (const double turn : {0.0, 90.0, 180.0, 270.0})
-        all.push_back(
+        means.push_back(
             beside_block(test::render(block(0.4), leaning(tilt, 3, 200, 200, turn)), settings_of(estimator, 0.6), 0.2));
-      EXPECT_LE(std::ranges::max(all) - std::ranges::min(all), 0.01) << name_of(estimator) << " tilt " << tilt;
-      EXPECT_LE(std::ranges::max(all), 0.92) << name_of(estimator) << " tilt " << tilt;
+      EXPECT_LE(std::ranges::max(means) - std::ranges::min(means), 0.01) << name_of(estimator) << " tilt " << tilt;
+      EXPECT_LE(std::ranges::max(means), 0.92) << name_of(estimator) << " tilt " << tilt;
     }
 }
 
@@ -272,12 +272,12 @@ TEST(EveryEstimator, has_its_noise_by_pixel_at_every_resolution) {
 /// The kernel against its slow version at some pixels: the mean error and the largest.
 void expect_as_reference(const HostFrame& frame, const EstimatorSettings& settings, double mean, double largest,
                          const std::string& what) {
-  std::vector<std::size_t> some;
-  for (std::size_t i = 3; i < frame.depth.size(); i += 23) some.push_back(i);
-  const std::vector<float> ao = run(frame, settings), slow = reference_estimate(frame, settings, some);
+  std::vector<std::size_t> pixels;
+  for (std::size_t i = 3; i < frame.depth.size(); i += 23) pixels.push_back(i);
+  const std::vector<float> ao = run(frame, settings), slow = reference_estimate(frame, settings, pixels);
   double bias = 0, worst = 0;
-  for (const std::size_t i : some) {
-    bias += (ao[i] - slow[i]) / double(some.size());
+  for (const std::size_t i : pixels) {
+    bias += (ao[i] - slow[i]) / double(pixels.size());
     worst = std::max(worst, double(std::abs(ao[i] - slow[i])));
   }
   EXPECT_LE(std::abs(bias), mean) << what;

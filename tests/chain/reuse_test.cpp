@@ -126,6 +126,31 @@ TEST(Reuse, of_parts_and_of_whole_frames_changes_no_bit) {
   EXPECT_GT(same, std::uint64_t(count) * 2 / 5) << "frames";
 }
 
+// A low wall walks over a floor seen from above. The radius is 103 pixels wide there, more than three blocks of
+// changes: whatever is within it must be computed anew.
+TEST(Reuse, looks_as_far_as_a_receiver_reaches) {
+  const Scene scene{{parallelogram({-9, -9, 0}, {18, 0, 0}, {0, 18, 0})}};
+  const HostFrame floor = render(scene, Shot::perspective({0, 0, 3}, {0.01, 0, 0}, 50, 288, 96)).frame;
+  for (const Estimator estimator : {Estimator::gtao, Estimator::crytek}) {
+    EstimatorSettings settings = plain_settings();
+    settings.estimator = estimator;
+    settings.radius = 1;
+    settings.slices = 2;
+    settings.steps = settings.samples = 32;
+    Lane lane(device());
+    std::uint64_t kept = 0;
+    for (int wall = 4; wall < 284; wall += 24) {
+      HostFrame frame = floor;
+      for (std::size_t y = 20; y < 76; y++)
+        for (std::size_t x = 0; x < 4; x++) frame.depth[y * 288 + std::size_t(wall) + x] *= 0.95f;
+      const Outcome next = next_of(lane, frame, settings);
+      EXPECT_TRUE(same_bits(next.values, alone(frame, settings))) << "estimator " << int(estimator) << " wall " << wall;
+      kept += next.kept;
+    }
+    EXPECT_GT(kept, 100u) << "tiles, estimator " << int(estimator);
+  }
+}
+
 TEST(Reuse, is_of_what_was_computed_in_the_same_way) {
   const HostFrame room = furnished_room(96, 64).frame;
   EstimatorSettings settings = plain_settings();

@@ -279,6 +279,10 @@ TEST(Skip, a_tolerance_takes_no_more_than_it_says) {
     }
 }
 
+/// How many times as large as usual a random scene's picture is. Usual ones are two or three groups of tiles wide,
+/// where hardly any group is far: every third is so large that proofs search far groups too.
+int size_of(int scene) { return scene % 3 == 2 ? 3 : 1; }
+
 // ALCOVE_TEST_SEED: other scenes.
 unsigned seed_or(unsigned usual) {
   const char* seed = std::getenv("ALCOVE_TEST_SEED");
@@ -335,7 +339,7 @@ TEST(Skip, hundreds_of_random_settings) {
   const int count = long_tests() ? 260 : 90;
   for (int i = 0; i < count && !HasFailure(); i++) {
     const EstimatorSettings settings = any_proving(scenes, i);
-    HostFrame frame = scenes.next(settings.resolution == Resolution::full ? 1 : 2);
+    HostFrame frame = scenes.next(settings.resolution == Resolution::full ? size_of(i) : 2);
     if (scenes.whole(0, 1)) {  // a crop: its blocks and its noise begin outside of it
       const int x = scenes.whole(0, 9), y = scenes.whole(0, 9);
       frame.data.x += x, frame.data.y += y, frame.camera.cx += x, frame.camera.cy += y;
@@ -352,7 +356,7 @@ TEST(Skip, hundreds_of_random_settings) {
   }
   EXPECT_EQ(proved.size(), 4 + 3 + 3 + 3);
   for (const auto& [kind, tiles] : proved) {
-    EXPECT_GT(tiles.open, 0.01 * tiles.all) << kind;
+    EXPECT_GT(tiles.open, 0.04 * tiles.all) << kind;
     EXPECT_LT(tiles.open, 0.9 * tiles.all) << kind;
   }
 }
@@ -394,9 +398,9 @@ TEST(Skip, a_tolerance_opens_only_what_is_nearly_open) {
 void expect_same_in_random_scenes(unsigned seed, int count) {
   RandomScenes scenes(seed);
   std::uint64_t proved = 0;
-  int some = 0;
+  int scenes_with_proofs = 0;
   for (int i = 0; i < count && !testing::Test::HasFailure(); i++) {
-    const HostFrame frame = scenes.next();
+    const HostFrame frame = scenes.next(size_of(i));
     const double radius = scenes.radius();
     const Estimator estimator = scenes.estimator();
     EstimatorSettings settings = proving(estimator, radius, scenes.thickness());
@@ -411,9 +415,9 @@ void expect_same_in_random_scenes(unsigned seed, int count) {
                                       std::to_string(int(estimator)))
                           .open;
     proved += open;
-    some += open > 0;
+    scenes_with_proofs += open > 0;
   }
-  EXPECT_GT(some, count / 10) << "scenes in which anything was proved";
+  EXPECT_GT(scenes_with_proofs, count / 10) << "scenes in which anything was proved";
   EXPECT_GT(proved, std::uint64_t(count)) << "tiles";
 }
 

@@ -292,6 +292,12 @@ TEST(Kernels, variants_are_specialization_constants) {
       EXPECT_LE(matches({file}, "constant_id", [](const auto&) { return true; }).size(), 5) << file.name;
 }
 
+TEST(Kernels, tell_nan_and_infinity_by_their_bits) {
+  const auto in_kernels = [](const SourceFile& file) { return file.is_in("kernels"); };
+  for (const auto& line : matches(product(), R"(\b(isnan|isinf)\()", in_kernels))
+    ADD_FAILURE() << line << ": see kernels/finite.glsl";
+}
+
 // Form.
 
 /// Characters of a line of UTF-8.

@@ -13,6 +13,7 @@
 #include <random>
 
 #include "core/base/estimator_facts.h"
+#include "core/chain/chain.h"
 #include "core/chain/compute.h"
 #include "core/chain/estimate.h"
 #include "core/chain/pass_common.h"
@@ -26,40 +27,93 @@ namespace {
 
 using namespace test;
 
-/// "": all is well.
-std::string complaint(const Case& made, const Variant& variant) {
-  EstimatorSettings settings = with_radius(variant.settings, made.radius);
-  const HostResult result = compute_ao(recorder(), made.frame, settings);
-  for (std::size_t i = 0; i < result.ao.size(); i++)
-    if (!(result.ao[i] >= 0 && result.ao[i] <= 1) || (made.sky[i] && result.ao[i] != 1))
-      return fmt::format("AO {} at pixel {}{}", result.ao[i], i, made.sky[i] ? ", which is sky" : "");
-  settings.no_skip = true;
-  const std::vector<float> all = compute_ao(recorder(), made.frame, settings).ao;
-  const Difference d = difference(result.ao, all);
-  return same_bits(result.ao, all) ? "" : fmt::format("skipping changes pixel {} by {}", d.worst, d.max);
+/// What the chain makes of a frame.
+struct Outcome {
+  std::vector<float> ao;
+  TileCounts tiles{};  // zeros where the frame is nothing but sky
+};
+
+Outcome run(const HostFrame& frame, const EstimatorSettings& settings) {
+  const FrameOutputs outputs = run_chain(recorder(), upload(recorder(), frame), settings);
+  recorder().run();
+  const auto ao = outputs.ao->as<float>();
+  return {{ao.begin(), ao.end()}, outputs.tiles ? outputs.tiles->as<TileCounts>()[0] : TileCounts{}};
 }
 
-void expect_sound(const Spec& spec, const std::vector<Variant>& all) {
+/// What is wrong with the AO of a case, or "".
+std::string complaint(const Case& made, const std::vector<float>& skipped, const std::vector<float>& whole) {
+  for (std::size_t i = 0; i < skipped.size(); i++)
+    if (!(skipped[i] >= 0 && skipped[i] <= 1) || (made.sky[i] && skipped[i] != 1))
+      return fmt::format("AO {} at pixel {}{}", skipped[i], i, made.sky[i] ? ", which is sky" : "");
+  const Difference d = difference(skipped, whole);
+  return same_bits(skipped, whole) ? "" : fmt::format("skipping changes pixel {} by {}", d.worst, d.max);
+}
+
+/// Returns how many tiles were proved to be open, and how many were listed.
+std::pair<std::uint64_t, std::uint64_t> expect_sound(const Spec& spec, const std::vector<Variant>& variants) {
   const Case made = test::made(spec);
-  for (const auto& variant : all) {
-    const std::string said = complaint(made, variant);
-    EXPECT_EQ(said, "") << variant.name << ": " << to_string(spec);
+  std::uint64_t open = 0, listed = 0;
+  for (const auto& variant : variants) {
+    EstimatorSettings settings = with_radius(variant.settings, made.radius);
+    const Outcome skipped = run(made.frame, settings);
+    settings.no_skip = true;
+    EXPECT_EQ(complaint(made, skipped.ao, run(made.frame, settings).ao), "") << variant.name << ": " << to_string(spec);
+    open += skipped.tiles.open;
+    listed += skipped.tiles.listed;
   }
+  return {open, listed};
 }
 
-/// Of all variants those whose turn it is at the number-th frame, a quarter; in the long form all. Four frames on, and
-/// the values of an axis are several, each variant has been met; so have most kinds of variants at every frame.
-std::vector<Variant> variants_in_turn(const std::vector<Variant>& all, int number) {
-  std::vector<Variant> some;
+/// Those of all variants whose turn it is at the number-th frame: one of every `parts`, and in the long form all. After
+/// so many frames each variant has been met, and an axis has several values.
+std::vector<Variant> variants_in_turn(const std::vector<Variant>& all, int number, int parts = 4) {
+  std::vector<Variant> chosen;
   for (std::size_t i = 0; i < all.size(); i++)
-    if (tried(number + int(i), 4)) some.push_back(all[i]);
-  return some;
+    if (tried(number + int(i), parts)) chosen.push_back(all[i]);
+  return chosen;
 }
 
 TEST(Grid, every_axis_by_itself) {
   const auto all = variants();
   int number = 0;
   for (const Spec& spec : sweeps()) expect_sound(spec, variants_in_turn(all, number++));
+}
+
+// The frames of the other tests are a few tiles large. These are groups of tiles beside each other, so that tiles are
+// proved to be open, groups are settled at once, and far ones are marked as a whole.
+TEST(Grid, frames_of_many_tiles) {
+  const std::vector<Spec> specs{{},
+                                {.scale = 1e-6},
+                                {.scale = 1e9},
+                                {.range = 1e4},
+                                {.fov = 0},
+                                {.fov = 5},
+                                {.fov = 150},
+                                {.shift = 1},
+                                {.aspect = 0.25},
+                                {.radius = 0.01},
+                                {.radius = 1},
+                                {.radius = 1e4},
+                                {.normals = NormalDefect::missing},
+                                {.normals = NormalDefect::random},
+                                {.depth = DepthDefect::any_bits},
+                                {.storage = Storage::half_float},
+                                {.storage = Storage::bits_16},
+                                {.fov = 0, .storage = Storage::bits_24_reversed},
+                                {.place = Place::corner},
+                                {.fov = 0, .place = Place::corner}};
+  const auto all = estimators();
+  std::uint64_t open = 0, listed = 0;
+  int number = 0;
+  for (Spec spec : specs) {
+    spec.width = 160;
+    spec.height = 120;
+    const auto [open_tiles, listed_tiles] = expect_sound(spec, variants_in_turn(all, number++, 2));
+    open += open_tiles;
+    listed += listed_tiles;
+  }
+  EXPECT_GT(open, listed / 100);
+  EXPECT_GT(listed, open / 100);
 }
 
 TEST(Grid, all_axes_at_once) {
