@@ -61,7 +61,7 @@ std::vector<OptionRow> rows_of(BenchArguments& a) {
   return rows;
 }
 
-/// False: help was asked for.
+/// Returns false where help was asked for.
 bool parse(const std::vector<std::string>& arguments, BenchArguments& a) {
   const Command command{"alcove bench",
                         "Measures device time against error for the candidates of a suite.\n\n"
@@ -92,12 +92,20 @@ Settings settings_of(const SuiteCandidate& candidate, const SuiteFrame& frame, c
   return settings;
 }
 
+/// Whether the candidate names a radius of its own, as "--radius=0.5".
+bool names_radius(const SuiteCandidate& candidate) {
+  return std::ranges::any_of(candidate.arguments, [](const auto& word) { return word.starts_with("--radius="); });
+}
+
 std::vector<BenchCandidate> candidates_of(const Suite& suite, const std::string& path) {
   std::vector<BenchCandidate> candidates;
   for (const auto& candidate : suite.candidates) {
     EstimatorSettings estimator = settings_of(candidate, suite.frames.front(), path).estimator;
-    // a preset's: truths have one
-    if (std::ranges::find(candidate.arguments, "--radius") == candidate.arguments.end()) estimator.radius.reset();
+    if (!names_radius(candidate)) {
+      // The radii of a preset do not count: each frame is measured at the radius of its truth.
+      estimator.radius.reset();
+      estimator.further_radii.clear();
+    }
     candidates.push_back({candidate.name, fmt::format("{}", fmt::join(candidate.arguments, " ")), estimator});
   }
   return candidates;

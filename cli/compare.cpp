@@ -60,7 +60,7 @@ std::vector<OptionRow> rows_of(CompareArguments& a) {
   return rows;
 }
 
-/// False: help was asked for.
+/// Returns false where help was asked for.
 bool parse(const std::vector<std::string>& arguments, CompareArguments& a) {
   return parse_arguments(
       {"alcove compare",

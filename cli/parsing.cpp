@@ -112,7 +112,7 @@ void read_rows(const Command& command, const Parser& parser) {
   }
 }
 
-/// False: --help was asked for and printed.
+/// Returns false where --help was asked for and printed.
 bool parse(const Command& command, Parser& parser, const std::vector<std::string>& arguments) {
   try {
     parser.app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));

@@ -17,8 +17,8 @@ struct Command {
 };
 
 /// Reads the arguments into what the rows bind: presets first, where the command has --preset, then the arguments.
-/// False: --help was asked for and printed. Fails with ErrorKind::usage in one sentence, with the nearest of the
-/// command's options where one is misspelt, and with the name of the preset where one is wrong.
+/// Returns false where --help was asked for and printed. Fails with ErrorKind::usage in one sentence, with the nearest
+/// of the command's options where one is misspelt, and with the name of the preset where one is wrong.
 bool parse_arguments(const Command& command, const std::vector<std::string>& arguments);
 
 }  // namespace alcove

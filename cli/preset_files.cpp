@@ -32,9 +32,11 @@ std::string preset_folder() {
 std::vector<std::string> preset_names() {
   std::vector<std::string> names;
   const fs::path folder = preset_folder();
-  for (const auto& entry : fs::recursive_directory_iterator(folder))
-    if (entry.path().extension() == ".toml")
-      names.push_back(fs::relative(entry.path(), folder).replace_extension().string());
+  std::error_code error;
+  fs::recursive_directory_iterator entry(folder, fs::directory_options::skip_permission_denied, error);
+  for (const fs::recursive_directory_iterator end; !error && entry != end; entry.increment(error))
+    if (entry->path().extension() == ".toml")
+      names.push_back(entry->path().lexically_relative(folder).replace_extension().string());
   std::ranges::sort(names);
   return names;
 }

@@ -9,7 +9,7 @@
 
 namespace alcove {
 
-/// Whatever becomes of them: a log on a full disk ends no run.
+/// Ignores what becomes of the message, since a log on a full disk should end no run.
 template <class... Args>
 void print_error(fmt::format_string<Args...> format, Args&&... args) {
   (void)std::fputs(fmt::format(format, std::forward<Args>(args)...).c_str(), stderr);

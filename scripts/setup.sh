@@ -22,26 +22,40 @@ missing=()
 for package in $(packages_of $sections); do
   [ "$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null)" = installed ] || missing+=("$package")
 done
+give_up() {
+  echo "$1" >&2
+  exit 1
+}
+
 if [ ${#missing[@]} -gt 0 ]; then
-  echo "Installing ${#missing[@]} Debian packages: ${missing[*]}"
+  [ -x "$(command -v apt-get)" ] || give_up "This system has no apt-get. Install what these Debian packages hold, and build with CMake: ${missing[*]}"
   as_root=()
-  [ "$(id -u)" = 0 ] || as_root=(sudo)
-  "${as_root[@]}" apt-get update -qq
-  DEBIAN_FRONTEND=noninteractive "${as_root[@]}" apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
+  if [ "$(id -u)" != 0 ]; then
+    [ -x "$(command -v sudo)" ] || give_up "Only root can install packages, and there is no sudo. As root: apt-get install ${missing[*]}"
+    as_root=(sudo)
+  fi
+  echo "Installing ${#missing[@]} Debian packages: ${missing[*]}"
+  "${as_root[@]}" apt-get update -qq || echo "apt-get update failed; the lists of packages that are here already may do"
+  # sudo passes no variables on, and a package that asks a question would wait for ever.
+  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null ||
+    give_up "The packages could not be installed: see above what apt-get says, and whether there is a network"
 fi
 
-# Passes on a line of ninja's progress, "[12/104] ...": each on a terminal, over the last one; elsewhere every twentieth.
+# Passes on the lines of ninja's progress, "[12/104] ...": each on a terminal, over the last one; elsewhere every twentieth. Not by awk, since Debian's
+# reads 4 KiB of a pipe before it looks at the first line.
 show_progress() {
-  local terminal=0
-  [ -t 1 ] && terminal=1
-  awk -v terminal="$terminal" '
-    match($0, /^\[[0-9]+\/[0-9]+\]/) {
-      split(substr($0, 2, RLENGTH - 2), count, "/")
-      if (terminal) { printf "\r  %d of %d", count[1], count[2]; fflush() }
-      else if (count[1] > 0 && (count[1] % 20 == 0 || count[1] == count[2])) { printf "  %d of %d\n", count[1], count[2]; fflush() }
-      any = 1
-    }
-    END { if (terminal && any) print "" }'
+  local line has_shown=
+  while IFS= read -r line; do
+    [[ $line =~ ^\[([0-9]+)/([0-9]+)\] ]] || continue
+    local count=${BASH_REMATCH[1]} total=${BASH_REMATCH[2]}
+    if [ -t 1 ]; then
+      printf '\r  %d of %d' "$count" "$total"
+      has_shown=yes
+    elif [ "$count" -gt 0 ] && { [ $((count % 20)) = 0 ] || [ "$count" = "$total" ]; }; then
+      echo "  $count of $total"
+    fi
+  done
+  if [ -n "$has_shown" ]; then echo; fi
 }
 
 mkdir -p build

@@ -70,7 +70,7 @@ BenchReport run_bench(gpu::Device& device, const Suite& suite, const std::vector
 /// {"title", "device", "repeats", "frames": [{"name", "width", "height", "yardstick_ms"}], "candidates": [{"name",
 /// "settings", means over frames}], "rows": [...]}.
 std::string bench_json(const BenchReport& report);
-/// A line a row, with a heading.
+/// Writes one line per row, below a heading.
 std::string bench_csv(const BenchReport& report);
 /// The page of core/measure/report.h, with pictures.
 std::string bench_page(const BenchReport& report);

@@ -31,11 +31,13 @@ struct Trial {
   std::string picture;                              // a name for the exact frame
 };
 
-/// A floor, a wall and a ball. The parameter of the nearest hit, infinite: none.
+/// Gives the distance, in lengths of d, to the nearest of a floor, a wall and a ball; infinite where the ray hits none.
 double hit_of(Vector o, Vector d, Vector& normal) {
   double nearest = std::numeric_limits<double>::infinity();
   const auto take = [&](double t, bool covers, Vector n) {
-    if (t > 1e-9 && t < nearest && covers) nearest = t, normal = n;
+    if (!(t > 1e-9 && t < nearest && covers)) return;
+    nearest = t;
+    normal = n;
   };
   const double floor = -o.z / d.z, wall = -o.x / d.x;
   const Vector on_floor = o + floor * d, on_wall = o + wall * d;
@@ -61,10 +63,17 @@ HostFrame empty_frame() {
   return frame;
 }
 
+/// Sets one pixel of three planes that stand one behind the other.
+void set_vector(std::vector<float>& planes, std::size_t i, Vector v) {
+  const std::size_t pixels = planes.size() / 3;
+  planes[i] = float(v.x);
+  planes[i + pixels] = float(v.y);
+  planes[i + 2 * pixels] = float(v.z);
+}
+
 void set_pixel(HostFrame& frame, std::size_t i, double z, Vector n) {
-  const std::size_t pixels = frame.data.pixels();
   frame.depth[i] = float(z);
-  frame.normal[i] = float(n.x), frame.normal[i + pixels] = float(n.y), frame.normal[i + 2 * pixels] = float(n.z);
+  set_vector(frame.normal, i, n);
 }
 
 const Vector kTarget{1, 0, 0.6};
@@ -76,9 +85,10 @@ Axes axes_of_view() {
   const Vector back = normalized({3.5, -1.5, 1.8}), right = normalized(cross({0, 0, 1}, back));
   return {right, cross(back, right), back};
 }
+/// Gives the distance from which the room fills a picture of this field of view.
 double distance_of(double fov) { return 0.5 * kRoomWidth / std::tan(fov * std::numbers::pi / 360); }
 
-/// Gives the distance from which the room fills a picture of this field of view.
+/// Renders the room from the distance where it fills a picture of this field of view.
 HostFrame room(double fov) {
   HostFrame frame = empty_frame();
   frame.camera.fx = frame.camera.fy = 0.5 * kWidth / std::tan(fov * std::numbers::pi / 360);
@@ -130,7 +140,7 @@ Trial tilted(double degrees) {
 
 Trial with_radius(double radius) { return trial(fmt::format("room {}", kFov), room(kFov), radius); }
 
-/// Rounded to so many bits of mantissa.
+/// Rounds to so many bits of mantissa.
 double rounded(double x, int bits) {
   int exponent = 0;
   const double mantissa = std::frexp(x, &exponent);
@@ -144,7 +154,8 @@ Trial in_half(double fov) {
   return made;
 }
 
-/// Device depth of so many bits; the far plane is 10^5 times as far as the near plane, and the room `over_near` times.
+/// Stores the room as device depth of so many bits. The far plane is 10^5 times as far as the near plane, and the room
+/// `over_near` times.
 Trial in_bits(int bits, bool reversed, double over_near) {
   Trial made = trial(fmt::format("room {}", kNarrowFov), room(kNarrowFov), kRadius);
   const double near = distance_of(kNarrowFov) / over_near, far = 1e5 * near, steps = std::exp2(bits) - 1;
@@ -159,7 +170,7 @@ Trial in_bits(int bits, bool reversed, double over_near) {
   return made;
 }
 
-/// World positions, so many room widths from the origin.
+/// Stores the room as world positions, so many room widths from the origin.
 Trial far_out(double widths) {
   Trial made = trial(fmt::format("room {}", kFov), room(kFov), kRadius);
   HostFrame& frame = made.tried;
@@ -171,15 +182,13 @@ Trial far_out(double widths) {
   const auto row = [](Vector v) { return std::array{v.x, v.y, v.z}; };
   frame.camera.view_from_world = Matrix3{row(view.right), row(view.up), row(view.back)};
   frame.camera.view_from_world_offset = {-dot(view.right, eye), -dot(view.up, eye), -dot(view.back, eye)};
-  const std::size_t pixels = frame.data.pixels();
-  frame.depth.assign(3 * pixels, 0);
-  for (std::size_t i = 0; i < pixels; i++) {
+  frame.depth.assign(3 * frame.data.pixels(), 0);
+  for (std::size_t i = 0; i < frame.data.pixels(); i++) {
     const double z = made.exact.depth[i];
     if (z >= kSky) continue;
     const double x = (double(i % kWidth) + 0.5 - frame.camera.cx) / frame.camera.fx,
                  y = (frame.camera.cy - double(i / kWidth) - 0.5) / frame.camera.fy;
-    const Vector at = eye + z * (x * view.right + y * view.up - view.back);
-    frame.depth[i] = float(at.x), frame.depth[i + pixels] = float(at.y), frame.depth[i + 2 * pixels] = float(at.z);
+    set_vector(frame.depth, i, eye + z * (x * view.right + y * view.up - view.back));
   }
   return made;
 }
@@ -196,7 +205,7 @@ std::vector<Axis> all_axes() {
   const std::vector<double> over_near{3, 10, 30, 100, 300, 1e3, 3e3, 1e4};
   const double depth = distance_of(kFov), pixel = depth * 2 * std::tan(kFov * std::numbers::pi / 360) / kWidth;
   return {
-      {"depth scale", "scene units a unit of the room", true, 1, {1e-6, 1e-4, 1e-2, 1, 1e2, 1e4, 1e6, 1e9}, at_scale},
+      {"depth scale", "scene units per unit of the room", true, 1, {1e-6, 1e-4, 1e-2, 1, 1e2, 1e4, 1e6, 1e9}, at_scale},
       {"depth range", "farthest over nearest depth", true, 1, {1, 10, 1e2, 1e3, 1e4, 1e5, 1e6}, before_background},
       {"field of view",
        "degrees",
@@ -241,7 +250,7 @@ struct Candidate {
   EstimatorSettings settings;
 };
 
-/// So many samples that what is left is numbers.
+/// Every estimator, with so many samples that what error is left comes from the numbers.
 std::vector<Candidate> candidates() {
   EstimatorSettings plain;
   plain.slices = 16;
@@ -295,7 +304,7 @@ class Bench {
   }
 
  private:
-  /// Shared by frames of one picture and by candidates of one definition.
+  /// Computes a reference once for all frames of one picture and all candidates of one definition.
   const std::vector<float>& reference_of(const Trial& trial, const Candidate& candidate,
                                          const std::vector<std::size_t>& pixels) {
     const EstimatorSettings settings = with(candidate.settings, trial.exact_radius);
@@ -312,7 +321,7 @@ class Bench {
   std::map<std::string, std::vector<float>> made_;
 };
 
-/// The nearest points to the plain room, to each side, that break down.
+/// Gives the points that break down and are nearest to the plain room, one to each side of it at most.
 std::vector<std::size_t> breaks_of(const std::vector<double>& rmse, std::size_t plain_point, double plain) {
   const auto breaks = [&](std::size_t i) { return !(rmse[i] <= plain + kBreakdown); };
   std::vector<std::size_t> places;
@@ -329,7 +338,7 @@ std::vector<std::size_t> breaks_of(const std::vector<double>& rmse, std::size_t 
   return places;
 }
 
-/// The first, the last, and others evenly between them.
+/// Keeps the first value, the last, and others evenly between them.
 std::vector<double> thinned(const std::vector<double>& values, std::size_t most) {
   if (values.size() <= most) return values;
   std::vector<double> some;

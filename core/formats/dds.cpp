@@ -50,7 +50,7 @@ T at(const char* bytes, std::size_t index) {
   return value;
 }
 
-/// Files and machines are little-endian.
+/// Decodes one channel of a pixel. Files and machines are little-endian.
 float sample_of(const Format& format, const char* pixel, std::size_t channel) {
   switch (format.sample) {
     case Sample::single_float: return at<float>(pixel, channel);

@@ -21,7 +21,7 @@
 namespace alcove {
 namespace {
 
-/// Decoders go on after an error and tell the next one.
+/// Gives the first of several messages: decoders go on after an error and report the next one.
 std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
 
 // Bytes of pixels that one byte of a packed file may stand for. Deflate packs 1032 bytes of up to 8 pixels each.
@@ -95,18 +95,18 @@ constexpr int kLeastWidth = 560;                  // of a chart: what the legend
 constexpr int kLargestPixel = 8;                  // small pictures are enlarged so far
 constexpr float kTextGrey = 0.9f;                 // display value
 
-/// Display values of a place on the scale.
+/// Gives the display values of a place on the scale.
 std::array<float, 3> color_at(const OIIO::ImageBuf& ramp, float place, bool is_grey) {
   if (std::isnan(place)) return kSkyColor;
   if (is_grey) return {place, place, place};
   std::array<float, 3> color{};
   ramp.getpixel(int(std::lround(place * float(ramp.spec().width - 1))), 0, color.data(), 3);
-  // OpenImageIO's ramps are linear light
+  // OpenImageIO's ramps are linear light.
   for (float& c : color) c = c <= 0.0031308f ? 12.92f * c : 1.055f * std::pow(c, 1 / 2.4f) - 0.055f;
   return color;
 }
 
-/// The colour ramp, one row.
+/// Makes the colour ramp, one row.
 OIIO::ImageBuf make_ramp() {
   OIIO::ImageBuf places(OIIO::ImageSpec(256, 1, 1, OIIO::TypeFloat));
   for (int x = 0; x < 256; x++) {
@@ -135,7 +135,7 @@ class Drawing {
       }
   }
 
-  /// The title; below it the lowest number, the strip of colours, the highest number, and the colour of sky.
+  /// Draws the title, and below it the lowest number, the strip of colours, the highest number, and the colour of sky.
   void draw_legend() {
     const int strip = top_ + kLegend - kStripHeight - kMargin;
     const int base = strip + kStripHeight - 2;
@@ -157,7 +157,7 @@ class Drawing {
   }
 
  private:
-  /// A piece of the strip's height.
+  /// Fills a rectangle as high as the strip.
   void fill(int x, int y, int width, std::array<float, 3> color) {
     OIIO::ImageBufAlgo::fill(picture_, OIIO::cspan<float>(color.data(), 3),
                              OIIO::ROI(x, x + width, y, y + kStripHeight));

@@ -33,7 +33,8 @@ struct Signature {
   std::size_t offset = 0;
 };
 
-// Each format's own specification gives its signature. Those that frames do not have are here to be named.
+// Each format's own specification gives its signature. Formats that no frame may have are listed so that a message can
+// name them.
 constexpr Signature kSignatures[] = {
     {"an OpenEXR", Reader::exr, "\x76\x2f\x31\x01"sv},
     {"a DDS", Reader::dds, "DDS "sv},
@@ -71,7 +72,7 @@ bool has_tga_end(std::ifstream& file) {
   return file.seekg(-std::streamoff(kTgaEnd.size()), std::ios::end) && read_some(file, kTgaEnd.size()) == kTgaEnd;
 }
 
-/// The format of a file; null if it is unknown.
+/// Gives the format of a file, or null if it is unknown.
 const Signature* format_of(const std::string& path, std::ifstream& file, const std::string& head) {
   const auto* found = std::ranges::find_if(kSignatures, [&](const Signature& signature) {
     return std::string_view(head).substr(std::min(signature.offset, head.size())).starts_with(signature.bytes);

@@ -46,7 +46,7 @@ std::vector<ChannelPair> chosen_pairs(const Picture& result, const Picture& refe
   return pairs;
 }
 
-/// The pairs of channels whose names are the same after `key`.
+/// Pairs the channels whose names are the same once `key` has been applied to them.
 template <class Key>
 std::vector<ChannelPair> same_names(const Picture& result, const Picture& reference, const Key& key) {
   std::vector<ChannelPair> pairs;

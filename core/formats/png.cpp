@@ -5,8 +5,11 @@
 #include <png.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <csetjmp>
+#include <cstdio>
+#include <exception>
 #include <fstream>
 #include <memory>
 #include <string_view>
@@ -20,27 +23,49 @@ namespace {
 constexpr const char* kMadeBy = "alcove";  // the keyword of the text
 constexpr std::size_t kTextWithin = 4096;  // bytes: the text stands before the pixels
 
-/// What libpng's callbacks write to: the encoded bytes, and what went wrong.
+constexpr std::size_t kErrorBytes = 256;  // of a message of libpng's, which are shorter
+
+/// What libpng's callbacks write to: the encoded bytes, and what went wrong. No exception may pass through libpng, and
+/// its errors jump over destructors, so that a message has its place here already.
 struct Sink {
   std::vector<char> bytes;
-  std::string error;
+  std::array<char, kErrorBytes> error{};
+  std::array<char, kErrorBytes> warning{};  // the last one, which often says why the error came
 };
 
-void append(png_structp png, png_bytep bytes, png_size_t count) {
-  auto& sink = *static_cast<Sink*>(png_get_io_ptr(png));
+void copy_text(png_const_charp text, std::array<char, kErrorBytes>& to) {
+  (void)std::snprintf(to.data(), to.size(), "%s", text);
+}
+
+/// False where no memory is left.
+bool has_appended(Sink& sink, const png_byte* bytes, std::size_t count) noexcept {
   try {
     sink.bytes.insert(sink.bytes.end(), bytes, bytes + count);
-  } catch (const std::bad_alloc&) {
-    png_error(png, "no memory is left for it");  // an exception must not pass through libpng
+    return true;
+  } catch (const std::exception&) {
+    return false;
   }
 }
 
+void append(png_structp png, png_bytep bytes, png_size_t count) {
+  // The jump begins here and not in the handler, which would never end.
+  if (!has_appended(*static_cast<Sink*>(png_get_io_ptr(png)), bytes, count)) png_error(png, "no memory is left for it");
+}
+
 [[noreturn]] void keep_error(png_structp png, png_const_charp text) {
-  static_cast<Sink*>(png_get_error_ptr(png))->error = text;
+  copy_text(text, static_cast<Sink*>(png_get_error_ptr(png))->error);
   png_longjmp(png, 1);
 }
 
-void ignore_warning(png_structp, png_const_charp) {}
+void keep_warning(png_structp png, png_const_charp text) {
+  copy_text(text, static_cast<Sink*>(png_get_error_ptr(png))->warning);
+}
+
+/// What libpng says of its failure.
+std::string reason_of(const Sink& sink) {
+  const std::string error = sink.error.data();
+  return sink.warning[0] ? error + ": " + sink.warning.data() : error;
+}
 
 struct Writer {
   png_structp png = nullptr;
@@ -48,7 +73,7 @@ struct Writer {
   ~Writer() { png_destroy_write_struct(&png, &info); }
 };
 
-/// Only plain values live here: an error jumps out of the calls below to the setjmp.
+/// Nothing here has a destructor, since an error jumps out of the calls below to the setjmp.
 bool write_all(png_structp png, png_infop info, int width, int height, int channels, png_bytepp rows, png_textp text) {
   if (setjmp(png_jmpbuf(png))) return false;
   png_set_IHDR(png, info, png_uint_32(width), png_uint_32(height), 8,
@@ -69,7 +94,8 @@ std::vector<char> encode_png(const std::string& name, int width, int height, int
   std::ranges::transform(pixels, bytes.begin(),
                          [](float x) { return png_byte(std::lround(255 * std::clamp(x, 0.0f, 1.0f))); });
   std::vector<png_bytep> rows;
-  for (int y = 0; y < height; y++) rows.push_back(&bytes[std::size_t(y) * std::size_t(width) * std::size_t(channels)]);
+  for (int y = 0; y < height; y++)
+    rows.push_back(bytes.data() + std::size_t(y) * std::size_t(width) * std::size_t(channels));
 
   std::string value = made_by;
   std::string keyword = kMadeBy;
@@ -81,12 +107,12 @@ std::vector<char> encode_png(const std::string& name, int width, int height, int
 
   Sink sink;
   Writer writer;
-  writer.png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &sink, keep_error, ignore_warning);
+  writer.png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &sink, keep_error, keep_warning);
   writer.info = writer.png ? png_create_info_struct(writer.png) : nullptr;
   if (!writer.info) fail(ErrorKind::output, "{}: could not be encoded as PNG: libpng does not start", name);
   png_set_write_fn(writer.png, &sink, append, nullptr);
   if (!write_all(writer.png, writer.info, width, height, channels, rows.data(), made_by.empty() ? nullptr : &text))
-    fail(ErrorKind::output, "{}: could not be encoded as PNG: {}", name, sink.error);
+    fail(ErrorKind::output, "{}: could not be encoded as PNG: {}", name, reason_of(sink));
   return std::move(sink.bytes);
 }
 

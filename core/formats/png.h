@@ -8,8 +8,9 @@
 
 namespace alcove {
 
-/// Encodes an 8-bit PNG from interleaved display values in [0, 1] (clamped); 1 or 3 channels, rows from the top.
-/// `name` is for the message of a failure, ErrorKind::output. `made_by` is a text that the PNG keeps; empty: none.
+/// Encodes an 8-bit PNG from interleaved display values in [0, 1] (clamped); 1 or 3 channels, rows from the top. Fails
+/// with ErrorKind::output, whose message begins with `name`. `made_by` is a text that the PNG keeps; an empty one is
+/// left out.
 std::vector<char> encode_png(const std::string& name, int width, int height, int channels,
                              std::span<const float> pixels, const std::string& made_by = "");
 
@@ -17,7 +18,7 @@ std::vector<char> encode_png(const std::string& name, int width, int height, int
 void write_png(const std::string& path, int width, int height, int channels, std::span<const float> pixels,
                const std::string& made_by = "");
 
-/// Whether a PNG of write_png() has that text and was not cut short.
+/// Tells whether the file is a PNG of write_png() that has this text and was not cut short.
 bool is_whole_png(const std::string& path, const std::string& made_by);
 
 }  // namespace alcove

@@ -23,13 +23,13 @@ struct Token {
   int digits = 1;
 };
 
-/// One digit or none from `at` on; moves `at` behind it.
+/// Reads the digit at `at`, if there is one, and moves `at` behind it.
 std::optional<int> digit(const std::string& text, std::size_t& at) {
   if (at >= text.size() || text[at] < '0' || text[at] > '9') return std::nullopt;
   return text[at++] - '0';
 }
 
-/// The token that begins at `begin`.
+/// Gives the token that begins at `begin`.
 std::optional<Token> token_at(const std::string& path, std::size_t begin) {
   const char kind = path[begin];
   std::size_t end = begin + 1;
@@ -57,7 +57,7 @@ std::optional<Token> token_at(const std::string& path, std::size_t begin) {
 std::optional<Token> find_token(const std::string& path, std::size_t from) {
   for (std::size_t begin = from; begin < path.size(); begin++) {
     if (const auto token = token_at(path, begin)) return token;
-    // no part of a run
+    // A part of a run of # or @ is no token.
     if (path[begin] == '#' || path[begin] == '@')
       begin = std::min(path.find_first_not_of(path[begin], begin), path.size()) - 1;
   }
@@ -106,7 +106,7 @@ void add_part(const std::string& text, const std::string& list, std::vector<int>
     if (known.insert(int(frame)).second) frames.push_back(int(frame));
 }
 
-/// The frame whose path this is.
+/// Gives the frame whose path this is.
 std::optional<int> frame_of(const FramePattern& name, const std::string& text) {
   if (text.size() <= name.before.size() + name.after.size() || !text.starts_with(name.before) ||
       !text.ends_with(name.after))

@@ -18,26 +18,26 @@ struct FramePattern {
   bool operator==(const FramePattern&) const = default;
 };
 
-/// The pattern in a path; nothing where it has no token. Tokens: %d, %04d (up to 16 digits, as the next two); # (4
-/// digits), ## and more (a digit each); @@ and more (a digit each; a lone @ is a letter); $F, $F4; <f>, <F>, <f4>,
-/// <F4>. Fails with ErrorKind::usage when there are two tokens.
+/// Gives the pattern in a path, or nothing where it has no token. Tokens: %d, %04d (up to 16 digits, as the next two);
+/// # (4 digits), ## and more (one digit each); @@ and more (one digit each; a lone @ is a letter); $F, $F4; <f>, <F>,
+/// <f4>, <F4>. Fails with ErrorKind::usage when there are two tokens.
 std::optional<FramePattern> frame_pattern(const std::string& path);
 
-/// The frames of a list such as "1001-1100x2,1200": single numbers, ranges a-b, ranges with a step a-bxS or a-b:S, with
-/// commas, blanks or both between them. Numbers may be negative (-5--1), ranges may run backwards (10-1, 10-1x2). In
-/// the order of the list, no frame twice. Fails with ErrorKind::usage, quoting the part, on anything else, on a step of
-/// 0, and on more than 1,000,000 frames, repeated ones counted.
+/// Gives the frames of a list such as "1001-1100x2,1200": single numbers, ranges a-b, ranges with a step a-bxS or
+/// a-b:S, with commas, blanks or both between them. Numbers may be negative (-5--1), ranges may run backwards (10-1,
+/// 10-1x2). They come in the order of the list, none twice. Fails with ErrorKind::usage, quoting the part, on anything
+/// else, on a step of 0, and on more than 1,000,000 frames, repeated ones counted.
 std::vector<int> parse_frames(const std::string& list);
 
-/// The shortest such list, in rising order: "1003, 1010-1012".
+/// Writes the shortest such list, in rising order: "1003, 1010-1012".
 std::string frames_text(std::vector<int> frames);
 
-/// The frames of a pattern that lie on the disk, in rising order. Names are taken only where the pattern gives them
-/// back: shot.00042.exr is no frame of shot.%04d.exr. Fails with ErrorKind::input when the folder cannot be read or
-/// holds no such file, with ErrorKind::usage when the token is in the folder's name; `option` is for the message.
+/// Gives the frames of a pattern that lie on the disk, in rising order. Names are taken only where the pattern gives
+/// them back: shot.00042.exr is no frame of shot.%04d.exr. Fails with ErrorKind::input when the folder cannot be read
+/// or holds no such file, with ErrorKind::usage when the token is in the folder's name; `option` is for the message.
 std::vector<int> frames_on_disk(const FramePattern& pattern, const char* option);
 
-/// The pattern's paths. Opens no file.
+/// Gives the pattern's paths. Opens no file.
 std::vector<std::string> expand(const FramePattern& pattern, std::span<const int> frames);
 
 }  // namespace alcove

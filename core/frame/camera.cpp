@@ -85,7 +85,7 @@ struct CameraFile {
 
 bool starts_with(const std::string& text, const char* start) { return text.rfind(start, 0) == 0; }
 
-/// The entry of `frames` with that number; an empty object where the file lists none.
+/// Gives the entry of `frames` with that number, or an empty object where the file has no `frames`.
 Json frame_entry(const CameraFile& file, int frame) {
   if (!file.top.contains("frames")) return Json::object();
   const Json& frames = file.top["frames"];
@@ -108,7 +108,7 @@ bool left_handed(const CameraFile& file) {
       fmt::format("must begin with right-handed (looks along -z) or left-handed (looks along +z), not \"{}\"", text));
 }
 
-/// Fills in the rotation and offset of world_to_camera: orthonormal once a uniform scale is divided out.
+/// Fills in rotation and offset of world_to_camera. The rotation is orthonormal once a uniform scale is divided out.
 void read_view_from_world(const CameraFile& file, Camera& camera) {
   const char* field = "world_to_camera";
   const Json* value = file.find(field);
@@ -150,7 +150,7 @@ void read_view_from_world(const CameraFile& file, Camera& camera) {
   camera.view_from_world = m;
 }
 
-/// Near or far; "inf" is a far plane that is none.
+/// Reads near or far. The word "inf" says that there is no far plane.
 std::optional<double> clip_plane(const CameraFile& file, const char* field) {
   const Json* value = file.find(field);
   if (!value || value->is_null()) return std::nullopt;
@@ -236,7 +236,7 @@ Camera centred(const Window& display, double fx, double aspect, bool orthographi
   return camera;
 }
 
-/// The same field of view at the frame's resolution: proxies share their camera with the full size.
+/// Scales the camera to the frame's resolution, and keeps its field of view: proxies share the camera of the full size.
 Camera fitted(Camera camera, const Window& display, const std::string& path) {
   if (camera.width == display.width && camera.height == display.height) return camera;
   if (std::int64_t(camera.width) * display.height != std::int64_t(camera.height) * display.width)

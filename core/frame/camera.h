@@ -21,7 +21,7 @@ double determinant(const Matrix3& m);
 /// A point is seen at (cx + fx x / -z, cy - fy y / -z), or (cx + fx x, cy - fy y) when orthographic.
 struct Camera {
   int width = 0, height = 0;  // px of the display window it was made for, > 0
-  double fx = 0, fy = 0;      // px (perspective) or px a scene unit (orthographic), > 0
+  double fx = 0, fy = 0;      // px (perspective) or px per scene unit (orthographic), > 0
   double cx = 0, cy = 0;      // px from the display window's upper left corner
   bool orthographic = false;
   // A rotation, which mirrors where the world is left-handed; none if the source does not tell.

@@ -58,9 +58,9 @@ struct DepthScore {
   // every plane.
   double straight = 0;
 };
-/// planar, ray and inverse (which stands for all that is affine in 1/z: device depth too), the best first. Empty where
-/// too little of the frame is smooth. Orthographic: planar stands for ray and device depth too, and inverse for itself.
-/// `rounding`: of the values, relative.
+/// Scores planar, ray and inverse depth, the best first. Inverse stands for all that is affine in 1/z, as device depth
+/// is. In an orthographic view planar stands for ray and device depth too, and inverse for itself. Gives nothing where
+/// too little of the frame is smooth. `rounding` is that of the values, relative to them.
 std::vector<DepthScore> score_depth(std::span<const float> raw, const View& view, double sky,
                                     double rounding = kFloatRounding);
 
@@ -72,13 +72,13 @@ struct NormalScore {
   double agreement = 0;  // share within 20 degrees of the normal that depth gives
   double angle = 0;      // degrees to it, of the best quarter at most
 };
-/// World space (where the camera knows it) and view space, with all flips, the best agreement first; `normal` and `raw`
-/// are as in the file. Empty where too little of the frame is smooth.
+/// Scores world space, where the camera knows it, and view space, each with all flips, the best agreement first. Gives
+/// nothing where too little of the frame is smooth. `normal` and `raw` are as in the file.
 std::vector<NormalScore> score_normals(std::span<const float> normal, NormalEncoding encoding, bool unorm,
                                        std::span<const float> raw, const DepthMap& map, const Camera& camera,
                                        const View& view);
 
-/// "xz", or "none".
+/// Gives the axes, as "xz", or "none".
 std::string to_string(const NormalFlips& flips);
 
 }  // namespace alcove

@@ -32,7 +32,7 @@ void add_aov(Inspection& found, const char* name, const FrameSource& source, con
   found.aovs.push_back(std::move(aov));
 }
 
-/// The options that gave the camera.
+/// Names the options that gave the camera.
 std::string options_of_camera(const InputSettings& settings) {
   if (!settings.camera.empty()) return "--camera";
   if (settings.fov) return "--fov";
@@ -87,7 +87,7 @@ InspectedNormals normals_of(std::span<const float> normal, std::span<const float
   return normals;
 }
 
-/// A camera for frames that have none yet, so that everything else can be looked at.
+/// Adds some camera for a frame that has none yet, so that everything else can be looked at.
 InputSettings with_some_camera(InputSettings settings) {
   settings.fov = 50;
   if (settings.normal_space == NormalSpace::automatic) settings.normal_space = NormalSpace::view;
@@ -113,7 +113,7 @@ struct Inspector {
   std::vector<float> depth = {}, normal = {};
   Inspection found = {};
 
-  /// Finds the channels. False: what is missing has been said.
+  /// Finds the channels. Returns false where some are missing, which is then part of what was found.
   bool find() {
     try {
       source = find_frame(reading, false, frame);
@@ -135,7 +135,7 @@ struct Inspector {
     return true;
   }
 
-  /// Reads depth and normals. False: the pixels cannot be read.
+  /// Reads depth and normals. Returns false where the pixels cannot be read.
   bool read() {
     require_host_room(source.depth_path(), source.data);
     depth.resize(source[RawPlane::depth].size() * source.data.pixels());

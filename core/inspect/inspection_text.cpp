@@ -69,7 +69,7 @@ void add(Lines& lines, const InspectedCamera& inspected) {
   const double degrees = 2 * std::atan(0.5 * camera.width / camera.fx) * 180 / std::numbers::pi;
   lines.add("camera: {} by {}, {}, {} world_to_camera", camera.orthographic ? "orthographic" : "perspective",
             inspected.from,
-            camera.orthographic ? fmt::format("{:.5g} px a scene unit", camera.fx)
+            camera.orthographic ? fmt::format("{:.5g} px per scene unit", camera.fx)
                                 : fmt::format("{:.2f} degrees wide", degrees),
             camera.view_from_world ? "with" : "without");
 }

@@ -21,10 +21,15 @@
 namespace alcove {
 namespace {
 
+/// Whether there is a file of that name that can be reached.
+bool is_there(const std::string& path) {
+  std::error_code error;
+  return std::filesystem::exists(path, error);
+}
+
 /// Gives the path's pattern; a file of that very name is none.
 std::optional<FramePattern> pattern_of(const std::string& path) {
-  std::error_code error;
-  return std::filesystem::exists(path, error) ? std::nullopt : frame_pattern(path);
+  return is_there(path) ? std::nullopt : frame_pattern(path);
 }
 
 /// Pointers to all files of the settings, each of which may be empty.
@@ -57,7 +62,7 @@ std::vector<int> frames_of(const CompareSettings& settings) {
     std::vector<int> missing;
     if (pattern)
       std::ranges::copy_if(frames, std::back_inserter(missing),
-                           [&](int frame) { return !std::filesystem::exists(pattern->path(frame)); });
+                           [&](int frame) { return !is_there(pattern->path(frame)); });
     if (!missing.empty()) fail(ErrorKind::input, "{}: frames are missing: {}", *path, frames_text(missing));
   }
   return frames;

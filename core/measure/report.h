@@ -9,42 +9,36 @@ namespace alcove {
 
 /// One HTML file that fetches nothing: styles, scripts and libraries (report/) are inside, and so is `json`.
 ///
-/// `json`: valid JSON in UTF-8, as json_text() makes it.
+/// `json` is valid JSON in UTF-8, as json_text() makes it.
 /// Every string may be hostile: the page shows strings as text only. Members, all needed unless said otherwise:
 ///
 ///   "title"         string
 ///   "kind"          "compare" or "bench"
 ///   "device"        string or null
 ///   "yardstick_ms"  number or null: what a yardstick takes; times can then also be read in yardsticks
-///   "candidates"    list of {"name": string, unique, "settings": string, "ms": number or null, "ms_min": number or
-///   null, "rmse": number, and any
-///                   more numbers such as "p99", "bias"}: means over the frames. With a time and an RMSE a candidate is
-///                   a point of the chart;
-///                   without such a candidate the page has no chart.
+///   "candidates"    list of {"name": string, unique, "settings": string, "ms": number or null,
+///                   "ms_min": number or null, "rmse": number, and any more numbers such as "p99", "bias"}: means over
+///                   the frames. With a time and an RMSE a candidate is a point of the chart; without such a candidate
+///                   the page has no chart.
 ///   "rows"          list of {"frame": string, "candidate": a candidate's name, and numbers or nulls: "ms", "ms_min",
-///   "rmse", "p99", "bias",
-///                   "estimator_rmse", "geometry_rmse", "samples_per_pixel", ...}: the table. A column is shown when
-///                   any row has a number
-///                   for it; columns that the page does not know come last and are headed by their key.
+///                   "rmse", "p99", "bias", "estimator_rmse", "geometry_rmse", "samples_per_pixel", ...}: the table. A
+///                   column is shown when any row has a number for it; columns that the page does not know come last
+///                   and are headed by their key.
 ///   "images"        list, may be empty, of {"frame": string, "candidate": string, "width": pixels, "height": pixels,
-///   "result": PICTURE,
-///                   "truth": PICTURE, "error": PICTURE or null}. PICTURE is a "data:image/png;base64,..." URL; all
-///                   three are of one size.
-///                   "truth" may be null or absent where another image of the same frame has it, so that a frame's
-///                   truth is stored once.
-///                   "error" is result - truth in the colours of error_picture(), which the page's
-///                   legend explains.
+///                   "result": PICTURE, "truth": PICTURE, "error": PICTURE or null}. PICTURE is a
+///                   "data:image/png;base64,..." URL; all three are of one size. "truth" may be null or absent where
+///                   another image of the same frame has it, so that a frame's truth is stored once. "error" is
+///                   result - truth in the colours of error_picture(), which the page's legend explains.
 ///   "frames"        optional list of {"name": string, "yardstick_ms": number or null}: a frame's own yardstick, where
-///   frames differ in size;
-///                   "yardstick_ms" above is then their mean
+///                   frames differ in size; "yardstick_ms" above is then their mean
 ///
 /// Numbers that are not finite must be null, as JSON has no others.
 std::string report_page(const std::string& json);
 
 // Pictures for the page: planes as "data:image/png;base64,..." URLs.
 
-/// The size of an error that has full colour: blue where the result is too dark, red where it is too bright, white at
-/// 0.
+/// The size of an error that has full colour: blue where the result is too dark, red where it is too bright. An error
+/// of 0 is white.
 inline constexpr float kFullColorError = 0.25f;
 
 /// Width x height values in [0, 1] as grey, as they are: AO is data.

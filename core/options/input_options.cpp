@@ -12,7 +12,7 @@
 namespace alcove {
 namespace {
 
-/// --albedo: a number is the albedo of all surfaces, anything else is a file.
+/// Reads --albedo: a number is the albedo of all surfaces, anything else is a file.
 bool read_albedo(const std::string& text, InputSettings& settings) {
   const auto value = number_of(text);
   if (value && !(*value >= 0 && *value <= 1)) return false;
@@ -21,7 +21,7 @@ bool read_albedo(const std::string& text, InputSettings& settings) {
   return true;
 }
 
-/// --far: a distance, or inf.
+/// Reads --far: a distance, or inf.
 bool read_far(const std::string& text, std::optional<double>& far) {
   const auto value = number_of(text);
   if (!value || !(*value > 0)) return false;
@@ -44,7 +44,7 @@ bool read_roi(const std::string& text, std::optional<Region>& roi) {
   return true;
 }
 
-/// --flip-normal: axes, each once at most.
+/// Reads --flip-normal: axes, each once at most.
 bool read_flips(const std::string& text, NormalFlips& flips) {
   NormalFlips read;
   for (const char axis : text) {

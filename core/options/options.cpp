@@ -11,7 +11,7 @@
 namespace alcove {
 namespace {
 
-/// --chunk I/N.
+/// Reads I/N of --chunk.
 bool read_chunk(const std::string& text, FrameSettings& frames) {
   const std::size_t slash = text.find('/');
   if (slash == text.npos) return false;
@@ -24,8 +24,9 @@ bool read_chunk(const std::string& text, FrameSettings& frames) {
 }
 
 constexpr std::string_view kUnits = "kmgt";  // powers of 1024
+constexpr double kMostMemory = 1e18;         // bytes: more than any machine has, and what 64 bits can hold
 
-/// --memory: "512M", "4G", "1.5GiB", "100000".
+/// Reads the size of --memory: "512M", "4G", "1.5GiB", "100000".
 bool read_memory(const std::string& text, std::uint64_t& bytes) {
   const std::size_t end = std::min(text.find_first_not_of("0123456789."), text.size());
   std::string unit = lower_case(text.substr(end));
@@ -34,12 +35,14 @@ bool read_memory(const std::string& text, std::uint64_t& bytes) {
   const std::size_t power = unit.empty() ? 0 : kUnits.find(unit) + 1;
   const auto number = number_of(text.substr(0, end));
   const bool has_known_unit = unit.empty() || (unit.size() == 1 && power > 0);
-  if (!has_known_unit || !number || !(*number > 0) || *number > 1e15) return false;
-  bytes = std::uint64_t(*number * double(1ull << (10 * power)));
+  if (!has_known_unit || !number) return false;
+  const double size = *number * double(1ull << (10 * power));
+  if (!(size >= 1) || size > kMostMemory) return false;
+  bytes = std::uint64_t(size);
   return true;
 }
 
-/// In the largest unit of which it is a whole number.
+/// Writes the size in the largest unit of which it is a whole number.
 std::string text_of_memory(std::uint64_t bytes) {
   if (bytes == 0) return "";
   std::size_t power = 0;
@@ -62,9 +65,10 @@ void add_frame_rows(std::vector<OptionRow>& rows, RunOptions& options) {
       [&s](const std::string& text) { return read_chunk(text, s); }, "is not I/N, with I from 1 to N");
   frames.choice("--missing", s.missing, "what a frame without its input is: an error before any work, or left out");
   frames.flag("--keep-going", s.keep_going, "a frame that fails does not end the run; the exit code is then 1");
-  frames.flag("--resume", s.resume,
-              "compute only frames whose outputs are missing, broken, older than their inputs or made with other "
-              "options");
+  frames.flag(
+      "--resume", s.resume,
+      "compute only frames whose outputs are missing, broken, older than their inputs or made with options that "
+      "give other pixels");
   frames.flag("--overwrite", s.overwrite,
               "compute all frames and replace their outputs, whatever --resume says; without --resume that is so "
               "anyway");
@@ -107,7 +111,8 @@ std::string cell(std::string text) {
 
 bool is_control(char c) { return (unsigned char)c < 0x20 || c == 0x7f; }
 
-/// A text in TOML: within single quotes, where it stays as it is, if it would have to be escaped within double ones.
+/// Quotes a text for TOML. A text that would have to be escaped within double quotes is put within single ones, where
+/// it stays as it is.
 std::string toml_text(const std::string& word) {
   const bool has_special = word.find_first_of("\"\\") != word.npos;
   const bool fits_single = word.find('\'') == word.npos && std::ranges::none_of(word, is_control);
@@ -120,7 +125,7 @@ std::string toml_text(const std::string& word) {
   return '"' + text + '"';
 }
 
-/// A value in TOML: a number and true plain, anything else as a text.
+/// Writes a value in TOML: numbers and true as they are, anything else as a text.
 std::string toml_of(const std::string& word) {
   const auto number = number_of(word);
   return word == "true" || (number && fmt::format("{}", *number) == word) ? word : toml_text(word);

@@ -11,13 +11,13 @@
 
 namespace alcove {
 
-/// How a run tells of its progress.
+/// How a run reports its progress.
 struct ProgressOptions {
   std::string kind = "auto";  // auto, bar, plain, percent, openjd or none; auto: a bar on a terminal, else plain
   bool verbose = false, quiet = false;
 };
 
-/// What `alcove run` is told: its settings, and what only its command line knows.
+/// What the command line of `alcove run` says: the settings, and what only the command line itself needs.
 struct RunOptions {
   Settings settings;
   Words presets;
@@ -26,16 +26,16 @@ struct RunOptions {
   ProgressOptions progress;
 };
 
-/// The table, bound to `options`, whose present values are the defaults. `options` must outlive it.
+/// Gives the table, bound to `options`, whose present values are the defaults. `options` must outlive it.
 std::vector<OptionRow> option_table(RunOptions& options);
 
-/// Unit and range of a number, as help shows them; "" where there is neither.
+/// Gives unit and range of a number, as help shows them; "" where there is neither.
 std::string range_text(const OptionRow& row);
 
-/// The table as README.md shows it.
+/// Gives the table as README.md shows it.
 std::string option_table_markdown();
 
-/// The present values as a preset in TOML, one line per option that is set.
+/// Gives the present values as a preset in TOML, one line per option that is set.
 std::string preset_text(const std::vector<OptionRow>& rows);
 
 // The groups of the table, each in its own file.

@@ -14,7 +14,7 @@ namespace alcove {
 
 /// What an option has to do with the pixels of an output: by this, --resume knows which files were made otherwise.
 enum class Effect {
-  none,             // The files come out the same: a device, threads, a report, the name of an output.
+  none,             // The pixels come out the same: a device, threads, a report, the name or compression of an output.
   pixels,           // Its value counts.
   input,            // It names an input, which is known by its bytes (alcove/inputs): only whether it is given counts.
   pixels_or_input,  // A number counts by its value, anything else as the name of an input.
@@ -32,7 +32,8 @@ struct OptionRow {
   std::string sentence;      // ends without a full stop
   std::string default_text;  // "" where there is none
   Effect effect;
-  // The present value as it would be typed, exactly; none where it is not set. Only --radius may have several.
+  // Gives the present value as it would be typed, exactly, or nothing where it is not set. Only --radius may have
+  // several words.
   std::function<Words()> words;
   // Takes a value. Fails with ErrorKind::usage, naming the option, what is wrong, and the nearest words.
   std::function<void(const Words&)> read;
@@ -61,9 +62,9 @@ Range below_and_at_least(double low, double high);
 Range strictly_between(double low, double high);
 Range above_to(double low, double high);
 
-/// The number that the whole text is, which may be infinite or NaN.
+/// Reads a text that is a number and nothing else. The number may be infinite or NaN.
 std::optional<double> number_of(const std::string& text);
-/// The same of a whole number that an int can hold.
+/// Does the same for a whole number that an int can hold.
 std::optional<int> whole_number_of(const std::string& text);
 
 /// Appends rows of one group and one effect to a table. What they bind must outlive the rows; its present values are
@@ -94,8 +95,8 @@ class OptionGroup {
   struct Shown {
     std::string name, value, unit, range, sentence;
   };
-  /// say: the present value, "" where it is not set. take: whether the text is a value; `complaint` stands behind the
-  /// text where it is none.
+  /// `say` gives the present value, or "" where it is not set. `take` reads a text, and tells whether it is a value;
+  /// where it is none, `complaint` follows the text in the message.
   OptionRow& own(const Shown& shown, const std::function<std::string()>& say,
                  const std::function<bool(const std::string&)>& take, const std::string& complaint);
   OptionRow& add(const Shown& shown, std::function<Words()> words, std::function<void(const Words&)> read);

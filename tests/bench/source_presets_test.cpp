@@ -70,8 +70,8 @@ TEST_P(SourcePreset, gives_what_its_definition_gives) {
   ASSERT_TRUE(similarity.has_value());
   RecordProperty("ssim", std::to_string(*similarity));
   EXPECT_GE(*similarity, 0.90);
-  // A picture may be alike and too bright: the mean is right too. Four steps a side (forfun-plan) miss some occluders:
-  // 0.025.
+  // A picture may be alike and too bright: the mean is right too. Four steps per side (forfun-plan) miss some
+  // occluders: 0.025.
   EXPECT_LE(std::abs(compare_planes(ao, golden).bias), 0.04);
 }
 

@@ -109,6 +109,7 @@ TEST_F(CommandLine, numbers_out_of_range_name_option_and_range) {
       {"--aperture", {"-36"}},
       {"--ortho-width", {"0"}},
       {"--depth-scale", {"0", "-1"}},
+      {"--memory", {"0", "0.5", "-1G", "4X", "1000000000000000T"}},
       {"--threads", {"-1", "1025"}}};
   for (const auto& [option, values] : cases)
     for (const auto& value : values) {
@@ -239,8 +240,12 @@ TEST_F(CommandLine, a_switch_that_a_preset_turns_off_is_off) {
 TEST_F(CommandLine, presets_of_another_folder_have_their_path_as_name) {
   fs::create_directories(folder / "presets/show");
   write_bytes(folder / "presets/show/day.toml", "slices = 11\n");
+  write_bytes(folder / "elsewhere.toml", "slices = 13\n");
+  fs::create_symlink(folder / "elsewhere.toml", folder / "presets/linked.toml");
   const Surroundings surroundings{.environment = {{"ALCOVE_PRESETS", folder / "presets"}}};
-  EXPECT_EQ(run_program({"presets"}, surroundings).out, "show/day\n");
+  EXPECT_EQ(run_program({"presets"}, surroundings).out, "linked\nshow/day\n");
+  EXPECT_THAT(lines_of(run_program({"run", "--preset", "linked", "--print-config"}, surroundings).out),
+              Contains("slices=13"));
   EXPECT_THAT(lines_of(run_program({"run", "--preset", "show/day", "--print-config"}, surroundings).out),
               Contains("slices=11"));
 }

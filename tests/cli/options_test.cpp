@@ -128,7 +128,7 @@ TEST_F(Options, that_change_no_pixels_are_these_and_not_in_the_digest) {
                                  "--composite", "--preview", "--debug", "--compression", "--device", "--require-gpu",
                                  "--validate", "--no-pipeline-cache", "--memory", "--threads", "--stats", "--progress",
                                  "--log-json", "--verbose", "--quiet", "--print-config"))
-      << "whoever adds to this list says that the files come out the same";
+      << "whoever adds to this list says that the pixels come out the same";
 }
 
 TEST_F(Options, that_name_inputs_count_by_being_given) {

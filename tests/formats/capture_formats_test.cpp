@@ -31,9 +31,14 @@ std::string words(const std::vector<std::uint32_t>& values) {
 std::string dds(std::uint32_t width, std::uint32_t height, std::uint32_t format, const std::string& pixels) {
   std::vector<std::uint32_t> header(32 + 5);
   std::memcpy(header.data(), "DDS ", 4);
-  header[1] = 124, header[3] = height, header[4] = width, header[19] = 32;
+  header[1] = 124;
+  header[3] = height;
+  header[4] = width;
+  header[19] = 32;
   std::memcpy(&header[21], "DX10", 4);
-  header[32] = format, header[33] = 3, header[35] = 1;
+  header[32] = format;
+  header[33] = 3;
+  header[35] = 1;
   return words(header) + pixels;
 }
 

@@ -428,7 +428,12 @@ TEST_F(Files, a_png_holds_the_nearest_of_256_values) {
 TEST_F(Files, a_png_that_cannot_be_written_is_an_output_error) {
   const std::vector<float> value(1);
   expect_error(ErrorKind::output, {"missing/a.png"}, [&] { write_png(folder / "missing/a.png", 1, 1, 1, value); });
-  expect_error(ErrorKind::output, {"a.png"}, [&] { write_png(folder / "a.png", 0, 0, 1, {}); });
+  expect_error(ErrorKind::output, {"a.png", "width is zero"}, [&] { write_png(folder / "a.png", 0, 3, 1, {}); });
+  expect_error(ErrorKind::output, {"a.png", "height is zero"}, [&] { write_png(folder / "a.png", 3, 0, 1, {}); });
+  constexpr int kTooWide = 2'000'000;  // libpng's own limit is a million
+  const std::vector<float> row(kTooWide);
+  expect_error(ErrorKind::output, {"a.png", "width exceeds"},
+               [&] { write_png(folder / "a.png", kTooWide, 1, 1, row); });
   EXPECT_THAT(names_in(folder.path()), IsEmpty());
 }
 

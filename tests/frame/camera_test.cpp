@@ -292,7 +292,8 @@ TEST_F(CameraFiles, no_camera_is_a_usage_error) {
 TEST_F(CameraFiles, a_camera_that_floats_cannot_hold_is_a_usage_error) {
   InputSettings narrow, flat, small;
   narrow.fov = 1e-300;
-  flat.focal = 1e30, flat.aperture = 1e-30;
+  flat.focal = 1e30;
+  flat.aperture = 1e-30;
   small.ortho_width = 1e-200;
   for (const auto& settings : {narrow, flat, small}) {
     try {

@@ -41,7 +41,9 @@ class Evidence : public testing::Test {
     for (std::size_t i = 0; i < frame.depth.size(); i++) {
       if (rendering.hits[i].primitive < 0) continue;
       const Vec3 n = turn(rendering.hits[i].normal);
-      file.planes["N.X"][i] = float(n.x), file.planes["N.Y"][i] = float(n.y), file.planes["N.Z"][i] = float(n.z);
+      file.planes["N.X"][i] = float(n.x);
+      file.planes["N.Y"][i] = float(n.y);
+      file.planes["N.Z"][i] = float(n.z);
     }
     file.halves = halves;
     file.write(settings.input);
@@ -122,7 +124,9 @@ TEST_F(Evidence, positions_that_are_not_on_their_pixels_are_refused) {
   for (std::size_t i = 0; i < rendering.hits.size(); i++) {
     if (rendering.hits[i].primitive < 0) continue;
     const Vec3 p = rendering.hits[i].position;
-    file.planes["P.X"][i] = float(p.x), file.planes["P.Y"][i] = float(p.y), file.planes["P.Z"][i] = float(p.z);
+    file.planes["P.X"][i] = float(p.x);
+    file.planes["P.Y"][i] = float(p.y);
+    file.planes["P.Z"][i] = float(p.z);
   }
   write([](const test::Hit& hit) { return hit.distance; }, 1e10f);  // for its camera
   file.write(settings.input);

@@ -27,8 +27,10 @@ TEST_F(HeaderCamera, lens_shift_pixel_aspect_and_overscan_are_in_the_matrices) {
   depth("Z", planar, 1e12f);
   const Rows view = world_to_camera(-1);
   Rows ndc = world_to_ndc(true);
-  for (std::size_t j = 0; j < 4; j++)
-    ndc[0][j] += 0.1 * ndc[3][j], ndc[1][j] = 2 * (ndc[1][j] - 0.5 * ndc[3][j]) + 0.4 * ndc[3][j];
+  for (std::size_t j = 0; j < 4; j++) {
+    ndc[0][j] += 0.1 * ndc[3][j];
+    ndc[1][j] = 2 * (ndc[1][j] - 0.5 * ndc[3][j]) + 0.4 * ndc[3][j];
+  }
   header.insert("worldToCamera", matrix(view, true));
   header.insert("worldToNDC", matrix(ndc, true));
   header.dataWindow() = Imath::Box2i({0, 0}, {159, 119});
@@ -44,9 +46,14 @@ TEST_F(HeaderCamera, an_orthographic_projection_is_known_by_its_matrix) {
   depth("Z", planar, 1e12f);
   const Rows view = world_to_camera(-1);
   Rows ndc{};
-  for (std::size_t j = 0; j < 4; j++)
-    ndc[0][j] = view[0][j] / 8, ndc[1][j] = -view[1][j] / 6, ndc[2][j] = view[2][j] / 100;
-  ndc[0][3] += 0.5, ndc[1][3] += 0.5, ndc[3] = {0, 0, 0, 1};
+  for (std::size_t j = 0; j < 4; j++) {
+    ndc[0][j] = view[0][j] / 8;
+    ndc[1][j] = -view[1][j] / 6;
+    ndc[2][j] = view[2][j] / 100;
+  }
+  ndc[0][3] += 0.5;
+  ndc[1][3] += 0.5;
+  ndc[3] = {0, 0, 0, 1};
   header.insert("worldToCamera", matrix(view, true));
   header.insert("worldToNDC", matrix(ndc, true));
   write(settings.input);

@@ -145,7 +145,9 @@ TEST(Depth, by_position_in_world_or_view_space_is_the_same_scene) {
       for (std::size_t i = 0; i < pixels; i++) {
         if (rendering.hits[i].primitive < 0) continue;
         const Vec3 p = world ? rendering.hits[i].position : shot.view_from_world(rendering.hits[i].position - shot.eye);
-        frame.depth[i] = float(p.x), frame.depth[i + pixels] = float(p.y), frame.depth[i + 2 * pixels] = float(p.z);
+        frame.depth[i] = float(p.x);
+        frame.depth[i + pixels] = float(p.y);
+        frame.depth[i + 2 * pixels] = float(p.z);
       }
       expect_same_ao(frame, rendering.frame, world ? "world" : "view");
       const View view = view_of(frame.camera, frame.data, frame.display);

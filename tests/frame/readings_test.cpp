@@ -69,7 +69,8 @@ class Readings : public testing::Test {
 
   void say_nothing() {
     settings = {};
-    settings.input = folder / "frame.exr", settings.camera = folder / "camera.json";
+    settings.input = folder / "frame.exr";
+    settings.camera = folder / "camera.json";
   }
 
   static Shot shot_of(bool orthographic) {
@@ -116,8 +117,12 @@ class Readings : public testing::Test {
     const bool has_planes =
         depth.kind == DepthKind::device || depth.kind == DepthKind::normalized || depth.kind == DepthKind::log;
     settings.depth_range = {};
-    if (has_planes) settings.depth_range.near = kNear, settings.depth_range.far = kFar;
-    settings.depth_range.reversed = depth.reversed, settings.depth_range.log_constant = 0.5;
+    if (has_planes) {
+      settings.depth_range.near = kNear;
+      settings.depth_range.far = kFar;
+    }
+    settings.depth_range.reversed = depth.reversed;
+    settings.depth_range.log_constant = 0.5;
   }
 
   FrameSource settled() const { return test::settled(settings); }

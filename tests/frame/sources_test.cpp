@@ -163,7 +163,9 @@ TEST_F(Sources, reshade_and_renderdoc_by_name) {
   expect_same("reshade");
   settings.source = "renderdoc";
   expect_refused(ErrorKind::usage, {"--near"});
-  settings.depth_range.near = 1, settings.depth_range.far = 1000, settings.depth_range.reversed = true;
+  settings.depth_range.near = 1;
+  settings.depth_range.far = 1000;
+  settings.depth_range.reversed = true;
   expect_same("renderdoc");
 }
 
@@ -222,7 +224,9 @@ TEST_F(Sources, every_wrong_reading_that_is_forced_is_noted) {
   expect_noted("ray", "--depth-kind", [](InputSettings& s) { s.depth_kind = DepthKind::ray; });
   expect_noted("inverse", "--depth-kind", [](InputSettings& s) { s.depth_kind = DepthKind::inverse; });
   expect_noted("device", "--depth-kind", [](InputSettings& s) {
-    s.depth_kind = DepthKind::device, s.depth_range.near = 1, s.depth_range.far = 10;
+    s.depth_kind = DepthKind::device;
+    s.depth_range.near = 1;
+    s.depth_range.far = 10;
   });
   expect_noted("normalized", "--depth-kind",
                [](InputSettings& s) { s.depth_kind = DepthKind::normalized, s.depth_range.far = 10; });

@@ -13,7 +13,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 
 namespace alcove::fuzz {
 
-/// Pixels that are decoded, so that thousands of inputs a second can be tried.
+/// Of larger pictures no pixels are decoded, so that thousands of inputs can be tried in a second.
 constexpr std::size_t kMostPixels = std::size_t(1) << 16;
 
 /// The input as a regular file that lies in memory only.

@@ -1,5 +1,9 @@
 // `alcove inspect`: what it says is what `run` does, and what is missing is named with the option that gives it.
 // SPDX-License-Identifier: BSD-3-Clause
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfOutputFile.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -67,7 +71,10 @@ TEST_F(Inspect, says_what_would_be_used_and_how_it_is_understood) {
 TEST_F(Inspect, counts_sky_and_sentinels) {
   FrameFile file = wall_frame();
   auto& depth = file.planes["ViewLayer.Depth.Z"];
-  depth[0] = std::numeric_limits<float>::quiet_NaN(), depth[1] = 0, depth[2] = -1, depth[3] = 1e10f,
+  depth[0] = std::numeric_limits<float>::quiet_NaN();
+  depth[1] = 0;
+  depth[2] = -1;
+  depth[3] = 1e10f;
   depth[4] = std::numeric_limits<float>::infinity();
   file.write(frame);
   const json all = inspected({"--camera", camera})["depth"];
@@ -149,13 +156,40 @@ TEST_F(Inspect, what_is_suspicious_is_said) {
   EXPECT_THAT(suspicious, HasSubstr("data window is 72x36"));
 }
 
-TEST_F(Inspect, half_depth_and_lossy_channels_are_suspicious) {
+TEST_F(Inspect, half_depth_is_suspicious) {
   FrameFile file = wall_frame();
   file.halves = {"ViewLayer.Depth.Z"};
   file.write(frame);
   const json suspicious = inspected({"--camera", camera})["suspicious"];
   ASSERT_EQ(suspicious.size(), 1) << suspicious;
   EXPECT_THAT(suspicious[0].get<std::string>(), testing::AllOf(HasSubstr("half float"), HasSubstr("steps of")));
+}
+
+TEST_F(Inspect, channels_that_dwa_damages_are_suspicious) {
+  FrameFile file = wall_frame();
+  for (const auto& [axis, color] : {std::pair("X", "R"), {"Y", "G"}, {"Z", "B"}})
+    file.rename(std::string("ViewLayer.Normal.") + axis, std::string("ViewLayer.Normal.") + color);
+  for (const auto compression : {Imf::DWAA_COMPRESSION, Imf::DWAB_COMPRESSION, Imf::ZIP_COMPRESSION}) {
+    Imf::Header header(file.data.width, file.data.height);
+    header.compression() = compression;
+    Imf::FrameBuffer pixels;
+    for (const auto& [name, plane] : file.planes) {
+      header.channels().insert(name, Imf::Channel(Imf::FLOAT));
+      pixels.insert(name, Imf::Slice::Make(Imf::FLOAT, plane.data(), header.dataWindow()));
+    }
+    {
+      Imf::OutputFile out(frame.c_str(), header);
+      out.setFrameBuffer(pixels);
+      out.writePixels(file.data.height);
+    }
+    const std::string suspicious = inspected({"--camera", camera})["suspicious"].dump();
+    const bool is_lossy = compression != Imf::ZIP_COMPRESSION;
+    for (const char* color : {"R", "G", "B"})
+      EXPECT_EQ(suspicious.find(std::string("ViewLayer.Normal.") + color + " is compressed by DWA") != suspicious.npos,
+                is_lossy)
+          << suspicious;
+    EXPECT_EQ(suspicious.find("Depth.Z"), suspicious.npos) << "DWA keeps a channel of that name";
+  }
 }
 
 TEST_F(Inspect, a_file_cut_short_is_suspicious_and_its_header_is_shown) {

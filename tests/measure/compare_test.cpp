@@ -357,10 +357,12 @@ TEST_F(CompareSequence, missing_frames_are_listed_before_any_work) {
   expect_error(3, {result, reference}, {"truth.####.exr", "frames are missing: 7-8"});
   expect_error(3, {result, reference, "--frames", "1-10"}, {"ao.%04d.exr", "5-6, 9-10"});
   expect_error(3, {folder / "none.%04d.exr", reference}, {"none.0001.exr"});
+  const std::string too_long = folder / (std::string(300, 'x') + ".%04d.exr");  // for a name of the file system's
+  expect_error(3, {too_long, reference, "--frames", "1"}, {too_long, "frames are missing: 1"});
 }
 
 TEST_F(CompareSequence, an_error_that_moves_with_its_surface_does_not_flicker) {
-  // an error of the result moves to the right by 3 pixels a frame, and up by 2
+  // an error of the result moves to the right by 3 pixels per frame, and up by 2
   for (int frame = 1; frame <= 3; frame++) {
     Plane plane = constant(0.25f);
     for (int y = 0; y < kFormulaHeight; y++)

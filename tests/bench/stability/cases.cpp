@@ -110,7 +110,9 @@ void spoil(HostFrame& frame, std::size_t i, NormalDefect defect, std::mt19937& r
   std::vector<float>& normal = frame.normal;
   const std::size_t pixels = frame.data.pixels();
   const auto set = [&](float x, float y, float z) {
-    normal[i] = x, normal[i + pixels] = y, normal[i + 2 * pixels] = z;
+    normal[i] = x;
+    normal[i + pixels] = y;
+    normal[i + 2 * pixels] = z;
   };
   std::normal_distribution<float> gauss;
   switch (defect) {
@@ -174,7 +176,9 @@ HostFrame as_far_positions(HostFrame frame, double far) {
     const double x = scale * (double(i % std::size_t(frame.data.width)) + 0.5 - frame.camera.cx) / frame.camera.fx;
     const double y = scale * (frame.camera.cy - double(i / std::size_t(frame.data.width)) - 0.5) / frame.camera.fy;
     const Vec3 at = eye + x * right + y * up - z * back;
-    positions[i] = float(at.x), positions[i + pixels] = float(at.y), positions[i + 2 * pixels] = float(at.z);
+    positions[i] = float(at.x);
+    positions[i + pixels] = float(at.y);
+    positions[i + 2 * pixels] = float(at.z);
   }
   frame.depth = positions;
   return frame;
@@ -320,7 +324,10 @@ Case made(const Spec& spec) {
     if (i % 3 == 2) spoil(frame, i, spec.normals, random);
     sky[i] = !(z > 0 && z < frame.sky);
   }
-  if (frame.camera.orthographic) frame.camera.fx /= spec.scale, frame.camera.fy /= spec.scale;
+  if (frame.camera.orthographic) {
+    frame.camera.fx /= spec.scale;
+    frame.camera.fy /= spec.scale;
+  }
   if (spec.normals == NormalDefect::missing) frame.normal.clear();
   HostFrame kept = stored(std::move(frame), spec.storage, depth * spec.scale, spec.far);
   // So far out a depth of 0 or less cannot be told from others.

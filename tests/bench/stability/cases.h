@@ -51,7 +51,7 @@ enum class Place { room, corner };
 
 /// A frame of a room, and what is extreme about it. The values of each member are those of the axis.
 struct Spec {
-  double scale = 1;      // scene units a unit of the room
+  double scale = 1;      // scene units per unit of the room
   double range = 1;      // the background's depth over the room's; 1: there is none but sky
   double fov = 55;       // horizontal, degrees; 0: orthographic. The eye moves so that the room fills the picture
   double shift = 0;      // of the optical axis, in widths of the picture
