@@ -48,7 +48,9 @@ void needs_more(uint place) {
 void main() {
   const View view = params.view;
   const ivec2 count = anchored_tiles_of(view.size, params.origin);
-  const uint i = gl_GlobalInvocationID.y * gl_NumWorkGroups.x * kGroupX + gl_GlobalInvocationID.x;
+  // The invocations of a row of workgroups, from the grid of tiles: gl_NumWorkGroups counts those of one slice only.
+  const uint row = (uint(count.x) + kGroupX - 1u) / kGroupX * kGroupX;
+  const uint i = gl_GlobalInvocationID.y * row + gl_GlobalInvocationID.x;
   const bool begins = params.directions == 0u;
   if (i >= (begins ? uint(count.x * count.y) : counts.listed)) return;
   const uint place = begins ? pack_tile(ivec2(i % uint(count.x), i / uint(count.x))) : list[i].place;

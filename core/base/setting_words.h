@@ -24,7 +24,7 @@ enum class SampleKernel { clustered, uniform };
 // how Crytek's hits fade with the difference of depth between receiver and hit
 enum class RangeCheck { none, ratio, smoothstep };
 enum class ThicknessKind { automatic, infinite, constant };
-// pixels of the frame a pixel of the estimate, in x and in y
+// pixels of the frame per pixel of the estimate, in x and in y
 enum class Resolution { full = 1, half = 2, quarter = 4 };
 enum class Denoise { none, bilateral, box };
 enum class Noise { fixed, animated };  // whether frames share one pattern of sample noise

@@ -47,7 +47,7 @@ struct InputSettings {
   std::string source = "auto";
   DepthKind depth_kind = DepthKind::automatic;  // automatic: what the camera file says, else planar
   DepthRange depth_range;                       // near and far: else the camera file's
-  double depth_scale = 1;                       // scene units a unit of the depth channel, > 0
+  double depth_scale = 1;                       // scene units per unit of the depth channel, > 0
   // depth at or beyond it is sky, in the file's units, > 0; below every known sentinel
   double sky = 1e9;
   NormalSpace normal_space = NormalSpace::automatic;  // automatic: what the camera file says, else world
@@ -74,8 +74,8 @@ struct EstimatorSettings {
   double falloff_start = 0;         // fraction of the radius where the falloff begins, 0 to 1 exclusive
   // fraction of the radius where it ends, above the start to 1; nothing beyond blocks
   double falloff_end = 1;
-  // directions a pixel, 1 to 64; with fewer than 3 a pixel by itself is noisy, and the denoiser must share its
-  // neighbours'
+  // directions per pixel, 1 to 64; with fewer than 3 each pixel by itself is noisy, and the denoiser must share those
+  // of its neighbours
   int slices = 2;
   int steps = 16;  // samples to each side of a slice, 1 to 4096; they matter more than slices
   // of gtao, RMS error of the visibility by the search, 0 to 1: as many directions of an exact search as that takes,
@@ -140,7 +140,7 @@ struct OutputSettings {
   std::string compression = "zip";           // of the AO file: none, rle, zips, zip or piz
   std::string ocio;                          // an OpenColorIO configuration for the preview
   std::string stats;                         // a JSON file
-  // a file of JSON objects, a line each, or - for the standard output: whoever watches the run writes it
+  // a file of JSON objects, one per line, or - for the standard output; whoever watches the run writes it
   std::string log_json;
 };
 
@@ -150,7 +150,7 @@ struct DeviceSettings {
   bool require_gpu = false;
   bool validate = false;
   bool no_pipeline_cache = false;
-  int threads = 0;           // of the CPU device and of the codecs; 0: one a core
+  int threads = 0;           // of the CPU device and of the codecs; 0: one per core
   std::uint64_t memory = 0;  // bytes that the process may take; 0: half of what is free
   // bytes that frames get however little `memory` is; no option: tests lower it to cut small frames into tiles
   std::uint64_t least_memory = 16ull << 20;

@@ -33,6 +33,13 @@ rusage usage_of_process() {
 }
 
 std::atomic<int> signal_number = 0;
+static_assert(std::atomic<int>::is_always_lock_free, "or else no signal handler may touch it");
+
+/// Remembers the first signal.
+void remember_signal(int number) {
+  int none = 0;
+  signal_number.compare_exchange_strong(none, number);
+}
 
 /// Takes the lock that says "somebody is writing this". On file systems without locks nothing is locked: then only
 /// who waits for the lock goes on without it.
@@ -78,7 +85,7 @@ bool errors_go_to_terminal() { return ::isatty(STDERR_FILENO) != 0; }
 
 void catch_ending_signals() {
   struct sigaction action {};
-  action.sa_handler = [](int number) { signal_number = number; };
+  action.sa_handler = remember_signal;
   action.sa_flags = int(SA_RESETHAND);
   for (const int number : {SIGINT, SIGTERM}) ::sigaction(number, &action, nullptr);
 
@@ -171,10 +178,17 @@ void LockedFile::take_after(const std::string& path) {
 }
 
 std::error_code LockedFile::sync() {
-  if (::fsync(descriptor_) != 0 && !is_unsupported(errno)) return last_error();
+  // File systems of networks let a signal interrupt these calls.
+  int failed = 0;
+  do {
+    failed = ::fsync(descriptor_);
+  } while (failed != 0 && errno == EINTR);
+  if (failed != 0 && !is_unsupported(errno)) return last_error();
   // The lock stays with the second descriptor.
   const int second = ::fcntl(descriptor_, F_DUPFD_CLOEXEC, 0);
-  if (second < 0 || ::close(std::exchange(descriptor_, second)) != 0) return last_error();
+  if (second < 0) return last_error();
+  // An interrupted close() has closed the descriptor, and the bytes are on the disk.
+  if (::close(std::exchange(descriptor_, second)) != 0 && errno != EINTR) return last_error();
   return {};
 }
 

@@ -35,9 +35,8 @@ void Buffer::place(Device& device) {
   if (!allocate(device, MemoryUse::kernels, device_side_))
     throw OutOfMemory(
         ErrorKind::device,
-        fmt::format(
-            "{} has no room for a buffer of {:.1f} MiB; with less --memory a frame is computed in smaller tiles",
-            device.info().name, mebibytes(bytes_)));
+        fmt::format("{} has no room for a buffer of {:.1f} MiB: end what else uses its memory, or use another --device",
+                    device.info().name, mebibytes(bytes_)));
   if (device_side_.is_cached && device.options().map_memory) host_ = map(device, device_side_);
   if (use_ == Use::upload) make_staging(device);
 }

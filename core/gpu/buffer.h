@@ -1,5 +1,5 @@
-// A storage buffer that the host reaches directly where it caches the device's memory, and through a staging twin where
-// not.
+// A storage buffer. The host reaches it directly where it caches the device's memory, and through a staging twin
+// elsewhere.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -12,7 +12,7 @@
 
 namespace alcove::gpu {
 
-/// Who fills a buffer first: kernels, or the host. The host reads any buffer that Recorder::download() was told of.
+/// Says who fills a buffer first, kernels or the host. The host reads any buffer that Recorder::download() was told of.
 enum class Use { device, upload };
 
 class Buffer {
@@ -24,10 +24,10 @@ class Buffer {
   /// The bytes that it has room for.
   std::size_t capacity() const { return capacity_; }
   Use use() const { return use_; }
-  /// Whether resize() may be told so many bytes. A buffer much larger than they are does not suit. Guards lie exactly
-  /// behind the bytes, so a guarded buffer suits its own size only.
+  /// Whether it may be resized to so many bytes. It does not suit when it is much larger than they are. Guards lie
+  /// exactly behind the bytes, so a guarded buffer suits its own size only.
   bool suits(std::size_t bytes) const;
-  /// From here on it has so many bytes, and what is in them is as it was.
+  /// Gives it so many bytes, which must suit. What is in them stays as it is.
   void resize(std::size_t bytes) { bytes_ = bytes; }
 
   /// The bytes as the host sees them; empty while the buffer is not mapped and has no staging twin. They stay at their

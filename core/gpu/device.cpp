@@ -14,13 +14,14 @@
 namespace alcove::gpu {
 namespace {
 
-/// Of devices that have only a part of Vulkan; who uses one must enable it. Its macro is in no stable header.
+/// The extension of devices that have only a part of Vulkan. Whoever uses such a device must enable it. No stable
+/// header has a macro for its name.
 constexpr const char* kPortabilitySubset = "VK_KHR_portability_subset";
 
 VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
                                           const VkDebugUtilsMessengerCallbackDataEXT* data, void* counter) {
   ++*static_cast<std::atomic<int>*>(counter);
-  // No exception goes through a driver.
+  // No exception may pass through a driver.
   (void)std::fputs(fmt::format("vulkan validation: {}\n", data->pMessage).c_str(), stderr);
   return VK_FALSE;
 }

@@ -76,8 +76,8 @@ class Device {
   /// The kernel of that stem, compiled on first use for these specialization constants (ids 0, 1, 2 ...).
   const Kernel& kernel(const std::string& stem, const std::vector<std::uint32_t>& specialization);
 
-  /// So many bytes of memory of that type; null when too little is left. Fails with OutOfMemory when the driver allows
-  /// no further allocation, however small.
+  /// Allocates so many bytes of memory of that type; gives null when too little is left. Fails with OutOfMemory when
+  /// the driver allows no further allocation, however small.
   Memory allocate(VkDeviceSize bytes, std::uint32_t type);
 
   VkDevice handle() const { return device_; }

@@ -49,7 +49,7 @@ bool loader_hides_devices() {
   return is_among(extensions, VK_KHR_PORTABILITY_ENUMERATION_EXTENSION_NAME);
 }
 
-/// What a device lacks of what the kernels need; empty when nothing.
+/// The first thing that the kernels need and a device lacks; empty when it lacks nothing.
 std::string missing_in(VkPhysicalDevice device, const VkPhysicalDeviceProperties& properties) {
   if (properties.apiVersion < VK_API_VERSION_1_2) return "Vulkan 1.2";
   if (!compute_family(device)) return "a compute queue";

@@ -17,7 +17,7 @@ struct DeviceInfo {
   std::string name, uuid, driver, api_version;
   DeviceType type;
   std::uint64_t memory_bytes;  // of all device-local heaps
-  std::uint64_t free_bytes;    // of the largest of them, what other programs have left; all of it where none tells
+  std::uint64_t free_bytes;    // what is free of the largest of them; all of it where the driver does not tell
   std::uint64_t buffer_bytes;  // the largest storage buffer
   std::string unusable;        // why Alcove cannot compute on it; empty: it can
 };

@@ -1,4 +1,4 @@
-// Which types of a device's memory a buffer lies in: a pure function of the table that the device gives.
+// Chooses the type of memory that a buffer lies in: a pure function of the table that the device gives.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 

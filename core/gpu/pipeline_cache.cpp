@@ -10,7 +10,6 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 
 #include "core/base/error.h"
 #include "core/base/file.h"
@@ -27,7 +26,7 @@ struct FileHeader {
 };
 static_assert(sizeof(FileHeader) == 24);
 
-/// The beginning of `bytes` as a T; they are not too few.
+/// The beginning of `bytes` as a T. There must be enough of them.
 template <class T>
 T beginning_of(std::span<const char> bytes) {
   T value;
@@ -80,7 +79,7 @@ std::span<const char> checked_cache(std::span<const char> file, const CacheOwner
 
 std::string read_cache(const std::string& path, const CacheOwner& owner) {
   std::ifstream stream(path, std::ios::binary);
-  const std::string file(std::istreambuf_iterator<char>(stream), {});
+  const std::string file = read_rest(stream);
   const auto data = checked_cache(file, owner);
   return {data.begin(), data.end()};
 }

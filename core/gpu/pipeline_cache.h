@@ -1,4 +1,4 @@
-// The file of compiled pipelines: its name, and what of it a driver may see. Drivers trust their caches, and some crash
+// The file of compiled pipelines: its name, and what a driver may see of it. Drivers trust their caches, and some crash
 // on damaged ones, so nothing reaches a driver that is not, bit for bit, what the same driver has given.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once

@@ -10,11 +10,12 @@
 namespace alcove::gpu {
 namespace {
 
-/// Dispatches of one submission. An exact search of 64 slices at eight radii has 4096 in a frame.
+/// The most dispatches of one submission. A frame of an exact search with 64 slices and eight radii has 4096.
 constexpr std::uint32_t kMostDispatches = 64;
 
-/// Workgroups of a slice of a pass that has not been measured. Half a million pixels of the dearest estimate, 8192
-/// samples each, take an integrated GPU some 0.5 s at 10^10 samples a second, which is about what they reach.
+/// The most workgroups of a slice of a pass that has not been measured. They are half a million pixels: with 8192
+/// samples per pixel (64 slices with 64 steps to each side) they take an integrated GPU some 0.4 s, at the 10^10
+/// samples per second that such GPUs reach.
 constexpr double kUnmeasuredGroups = 8192;
 
 /// A pass is never cut into more slices than this: each costs a barrier.
@@ -31,12 +32,12 @@ struct Cut {
   double slices() const { return std::ceil(double(x) / slice_x) * std::ceil(double(y) / slice_y); }
 };
 
-/// About so many slices: of whole rows where there are enough of them.
+/// Cuts a pass into about so many slices, of whole rows where there are enough of them.
 Cut cut_into(double slices, std::uint32_t x, std::uint32_t y) {
   const double wanted = std::clamp(std::ceil(slices), 1.0, kMostSlices);
-  const double a_row = std::max(1.0, std::min(std::ceil(wanted / y), double(x)));
+  const double slices_per_row = std::max(1.0, std::min(std::ceil(wanted / y), double(x)));
   const double rows = std::max(1.0, std::floor(y / wanted));
-  return {x, y, std::uint32_t(std::ceil(x / a_row)), std::uint32_t(rows)};
+  return {x, y, std::uint32_t(std::ceil(x / slices_per_row)), std::uint32_t(rows)};
 }
 
 PassTime pass_of(const Kernel& kernel, std::span<const Binding> bindings) {
@@ -98,7 +99,7 @@ Buffer& Recorder::buffer(std::string_view name, std::size_t bytes, Use use) {
       recording = recordings_;
       return pooled;
     }
-    if (recording_) replaced_.push_back(std::move(pooled));
+    if (recording_) replaced_.emplace_back(name, std::move(pooled));
     buffers_.erase(found);
   }
   try {
@@ -204,14 +205,14 @@ void Recorder::download(const Buffer& buffer) {
   vkCmdCopyBuffer(commands(), buffer.handle(), buffer.staging(), 1, &region);
 }
 
-/// What the pass has taken at most, scaled to its present work; nullopt when it was never measured.
+/// The longest that the pass has taken, scaled to its present work; nullopt when it was never measured.
 std::optional<double> Recorder::measured_ms(const RecordedPass& pass) const {
   const auto known = ms_per_byte_.find(pass.kernel);
   if (known == ms_per_byte_.end()) return std::nullopt;
   return known->second * work_of(pass.time);
 }
 
-/// How many slices of a pass of so many workgroups keep each of them short.
+/// The number of slices that a pass of so many workgroups needs for each slice to be short.
 double Recorder::slices_of(std::optional<double> ms, double groups, bool is_list) const {
   const double most_ms = device_.submission_ms();
   if (std::isinf(most_ms)) return 1;
@@ -235,8 +236,8 @@ void Recorder::dispatch_bytes(const std::string& stem, std::span<const std::byte
   const std::uint32_t y = extent.group_count ? extent.y : groups(extent.y, group[1]);
   const std::optional<double> ms = measured_ms(recorded_.back());
   const double slices = slices_of(ms, double(x) * y, extent.group_count);
-  const double unmeasured_ms =
-      device_.submission_ms();  // as much as any submission may take, so it gets one of its own
+  // As much as any submission may take, so that the pass gets one of its own.
+  const double unmeasured_ms = device_.submission_ms();
   if (extent.group_count && (slices <= 1 || x == 0)) {
     make_room_for(ms.value_or(unmeasured_ms));
     record_slice(kernel, params, bindings, [&](VkCommandBuffer commands) {
@@ -305,14 +306,21 @@ void Recorder::run() {
   check(vkResetFences(device_.handle(), 1, &fence), "vkResetFences");
   device_.submit(submissions, fence);
   check(vkWaitForFences(device_.handle(), 1, &fence, VK_TRUE, UINT64_MAX), "vkWaitForFences");
-  for (const auto& [name, pooled] : buffers_)
-    if (!pooled.buffer.guards_hold()) fail(ErrorKind::device, "something was written beside the buffer \"{}\"", name);
+  check_guards();
   replaced_.clear();
   if (device_.has_timestamps()) read_times();
   learn();
   passes_.clear();
   for (auto& pass : recorded_) passes_.push_back(std::move(pass.time));
   recorded_.clear();
+}
+
+void Recorder::check_guards() const {
+  const auto check_guards_of = [](const std::string& name, const Buffer& buffer) {
+    if (!buffer.guards_hold()) fail(ErrorKind::device, "something was written beside the buffer \"{}\"", name);
+  };
+  for (const auto& [name, pooled] : buffers_) check_guards_of(name, pooled.buffer);
+  for (const auto& [name, buffer] : replaced_) check_guards_of(name, buffer);
 }
 
 void Recorder::abandon() {

@@ -9,6 +9,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "core/gpu/buffer.h"
@@ -22,14 +23,15 @@ struct Binding {
   const Buffer& buffer;
 };
 
-/// How many invocations, or workgroups, a pass has.
+/// The number of invocations, or of workgroups, of a pass.
 struct Extent {
   /// Invocations in x and y; the recorder rounds up to workgroups.
   Extent(std::uint32_t width, std::uint32_t height = 1) : x(width), y(height) {}
   /// As many workgroups as the three numbers at the beginning of this buffer say when the pass begins.
   explicit Extent(const Buffer& groups) : group_count(&groups) {}
-  /// The same where at most so many workgroups are ever asked for, and those that are not asked for would do nothing.
-  /// Such a pass can be cut into slices when it takes too long: the number itself is known to the device alone.
+  /// The same for a buffer that never asks for more than so many workgroups, and for a kernel that does nothing in
+  /// those beyond what it asks for. Such a pass can be cut into slices when it takes too long, although only the device
+  /// knows the number itself.
   Extent(const Buffer& groups, std::uint32_t most_x, std::uint32_t most_y)
       : x(most_x), y(most_y), group_count(&groups) {}
 
@@ -45,13 +47,14 @@ concept KernelParams = std::is_trivially_copyable_v<T> && sizeof(T) <= 128;
 ///
 /// What is recorded goes to the device in submissions, so that none keeps it from a display for long: a pass that has
 /// not been measured yet is a submission of its own, passes that have been share one up to Device::submission_ms(), and
-/// a pass that alone would take longer is cut into slices.
+/// a pass that alone would take longer is cut into slices. So kernels may not use gl_NumWorkGroups: it counts the
+/// workgroups of one slice.
 class Recorder {
  public:
   explicit Recorder(Device& device);
 
   /// The buffer of that name. It is made, or made again, unless the one that there is suits; what was recorded before
-  /// keeps its own. Valid until the next call with another size.
+  /// keeps the one that it had. The reference is valid until the next call with another size.
   Buffer& buffer(std::string_view name, std::size_t bytes, Use use);
 
   /// Fills a buffer with zeros, in the order of what is recorded.
@@ -97,8 +100,8 @@ class Recorder {
   struct Submission {
     VkCommandBuffer commands;
     DeviceHandle<VkQueryPool, vkDestroyQueryPool> queries;
-    std::vector<std::size_t> timed = {};  // of every two queries, the pass
-    double ms = 0;                        // expected
+    std::vector<std::size_t> timed = {};  // the pass that every two queries are of
+    double ms = 0;                        // that it is expected to take
   };
   struct RecordedPass {
     PassTime time;
@@ -121,6 +124,7 @@ class Recorder {
                     const Dispatch& dispatch);
   std::optional<double> measured_ms(const RecordedPass& pass) const;
   double slices_of(std::optional<double> ms, double groups, bool is_list) const;
+  void check_guards() const;
   void read_times();
   void learn();
 
@@ -128,7 +132,7 @@ class Recorder {
   DeviceHandle<VkCommandPool, vkDestroyCommandPool> pool_;
   DeviceHandle<VkFence, vkDestroyFence> fence_;
   std::vector<Submission> submissions_;
-  std::size_t used_ = 0;  // of the submissions, by this recording
+  std::size_t used_ = 0;  // submissions that this recording has begun
   bool recording_ = false;
   bool is_short_ = false;          // of memory: it ran out once, so from then on no buffer is larger than it must be
   std::uint64_t recordings_ = 0;   // that were run or abandoned
@@ -137,7 +141,8 @@ class Recorder {
   std::vector<PassTime> passes_;
   std::map<const Kernel*, double> ms_per_byte_;  // the most that was measured
   std::map<std::string, PooledBuffer, std::less<>> buffers_;
-  std::vector<Buffer> replaced_;  // by others of their names, but used by what is recorded
+  // Replaced by others of the same names, but used by what is recorded.
+  std::vector<std::pair<std::string, Buffer>> replaced_;
 };
 
 }  // namespace alcove::gpu

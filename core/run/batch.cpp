@@ -29,7 +29,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// On a GPU there are so many frames more than threads: they wait for it while others are read and written.
+// On a GPU so many more frames than threads are in flight: they wait for it while others are read and written.
 constexpr int kSpareLanes = 2;
 
 /// No output is an input, or another output.
@@ -64,8 +64,8 @@ void prepare_outputs(const FramePlan& plan, const Settings& settings) {
   for (const auto& folder : folders) remove_unfinished(folder);
 }
 
-/// One frame of the sequence, settled: as which all others are read. The first that shows what is left open; null where
-/// none can be read.
+/// Settles one frame of the sequence, and all others are read in the same way. It is the first one that shows what
+/// files and options leave open; null where no frame can be read.
 std::optional<FrameSource> settle_sequence(const FramePlan& plan) {
   std::optional<FrameSource> best;
   for (const int frame : plan.evidence()) {
@@ -76,7 +76,7 @@ std::optional<FrameSource> settle_sequence(const FramePlan& plan) {
       if (!best || source.has_evidence) best = std::move(source);
       if (best->has_evidence) break;
     } catch (const Error&) {
-      // It is computed as all others are, and what is wrong with it is said then.
+      // The frame is computed like all others, and its report says then what is wrong with it.
     }
   }
   return best;
@@ -84,8 +84,8 @@ std::optional<FrameSource> settle_sequence(const FramePlan& plan) {
 
 int thread_count(const DeviceSettings& settings) { return settings.threads > 0 ? settings.threads : core_count(); }
 
-/// Divides the cores among the frames in flight: what is left for the threads of one frame. `is_chosen` says that the
-/// user named the number of threads.
+/// Divides the cores among the frames in flight, and tells the codecs and lavapipe how many threads are left for each.
+/// `is_chosen` says that the user named the number of threads.
 void share_cores(int threads, int lanes, bool is_chosen) {
   set_exr_threads(lanes == 1 ? threads : std::max(0, threads - lanes));
   const int of_a_frame = threads / lanes;
@@ -122,7 +122,7 @@ class Batch {
   }
 
  private:
-  /// The frames that are left to compute: without those whose outputs an earlier run has left whole.
+  /// The frames to compute: all but those whose outputs an earlier run has left whole.
   std::vector<int> without_whole() const {
     if (!settings_.frames.resume || settings_.frames.overwrite) return plan_.frames();
     std::vector<int> wanted;
@@ -151,8 +151,8 @@ class Batch {
     }
   }
 
-  /// Into the order of the plan: frames that are kept, or were computed on a second device, were told of earlier or
-  /// later.
+  /// Puts the reports into the order of the plan: those of frames that were kept come first, and those of frames that
+  /// were computed on a second device come last.
   void sort_reports() {
     std::unordered_map<int, std::size_t> place;
     for (const int frame : plan_.frames()) place.emplace(frame, place.size());
@@ -170,7 +170,7 @@ class Batch {
         plan_, settled ? &*settled : nullptr, transform ? &*transform : nullptr, {report_.options, ""}, watch_.stop};
 
     run_on_device(run, frames);
-    if (!lost_) return;
+    if (!lost_ || report_.stop) return;  // a frame that failed beside the loss has ended the run
     const Error loss = *std::exchange(lost_, std::nullopt);
     std::vector<int> left;
     std::ranges::copy_if(frames, std::back_inserter(left), [&](int frame) { return !ended_.contains(frame); });
@@ -180,7 +180,7 @@ class Batch {
           Error(ErrorKind::device, fmt::format("{}, and so was a fresh one: {}", loss.what(), lost_->what()));
   }
 
-  /// Frames that are computed at once, of so many that are left.
+  /// The number of frames that are computed at once, of so many that are left.
   int lanes_for(const RunContext& run, std::size_t frames, const RunMemory& memory, int most) const {
     if (!run.settled || frames < 2) return 1;
     const std::uint64_t room =

@@ -44,13 +44,13 @@ std::string plan_text(const Settings& settings) {
   line("channels", fmt::format("{}", fmt::join(channels, ", ")));
   line("camera",
        fmt::format("{}, {:.6g} x {:.6g} px {}", source.camera.orthographic ? "orthographic" : "perspective",
-                   source.camera.fx, source.camera.fy, source.camera.orthographic ? "a scene unit" : "focal length"));
-  const std::uint64_t bytes = pixel_memory(source, first).bytes * source.file_data.pixels(),
-                      all = host_memory_for_frames(first.device);
+                   source.camera.fx, source.camera.fy, source.camera.orthographic ? "per scene unit" : "focal length"));
+  const std::uint64_t bytes = pixel_memory(source, first).bytes * source.file_data.pixels();
+  const std::uint64_t memory = host_memory_for_frames(first.device);
   line("size", to_string(written_of(source)));
-  line("memory", fmt::format("{} MiB a frame, {} MiB for frames: {}", bytes >> 20, all >> 20,
-                             bytes > all ? "in tiles"
-                                         : fmt::format("up to {} at once", all / std::max<std::uint64_t>(1, bytes))));
+  const std::string at_once =
+      bytes > memory ? "in tiles" : fmt::format("up to {} at once", memory / std::max<std::uint64_t>(1, bytes));
+  line("memory", fmt::format("{} MiB per frame, {} MiB for frames: {}", bytes >> 20, memory >> 20, at_once));
   return text;
 }
 

@@ -21,10 +21,9 @@ class Pipeline {
       : lanes_(lanes), run_(run), frames_(frames), watch_(watch), room_(room), most_in_flight_(lanes.count()) {}
 
   void run() {
-    working_ = lanes_.count();
     {
       std::vector<std::jthread> workers;
-      for (int i = working_; i > 0; i--) workers.emplace_back([this] { work(); });
+      start(workers);
       tell();
     }
     if (error_) std::rethrow_exception(error_);
@@ -33,11 +32,25 @@ class Pipeline {
  private:
   using Lock = std::unique_lock<std::mutex>;
 
+  /// Starts a thread for each lane. Where the system gives no more threads the run ends with its error, once those that
+  /// have begun are done.
+  void start(std::vector<std::jthread>& workers) {
+    const int wanted = lanes_.count();
+    working_ = wanted;
+    try {
+      while (int(workers.size()) < wanted) workers.emplace_back([this] { work(); });
+    } catch (...) {
+      end_with(std::current_exception());
+      const Lock lock(mutex_);
+      working_ -= wanted - int(workers.size());
+    }
+  }
+
   // What each worker does.
 
   void work() {
     try {
-      while (const auto place = begin()) compute(*place);
+      while (auto attempt = begin()) compute(*attempt);
     } catch (...) {
       end_with(std::current_exception());
     }
@@ -46,46 +59,63 @@ class Pipeline {
     changed_.notify_all();
   }
 
-  /// The next frame's place in the list; nothing where no frame is to be begun.
-  std::optional<std::size_t> begin() {
-    Lock lock(mutex_);
-    changed_.wait(lock, [&] { return ended_ || begun_ == frames_.size() || in_flight_ < most_in_flight_; });
-    if (ended_ || begun_ == frames_.size() || (run_.stop && run_.stop())) return {};
-    in_flight_++;
-    return begun_++;
-  }
-
   /// What is tried for one frame, and what became of it.
   struct Attempt {
+    std::size_t place;  // of the frame, in the list
     Room room;
+    int most_in_flight;      // frames, when it began
     bool was_alone = false;  // no other frame was in flight, and no buffers were left of earlier ones
     std::vector<std::string> notes = {};
     std::optional<Error> out_of_memory = {};
   };
 
+  /// Begins the next frame; nothing where no frame is to be begun.
+  std::optional<Attempt> begin() {
+    Lock lock(mutex_);
+    changed_.wait(lock, [&] { return ended_ || begun_ == frames_.size() || in_flight_ < most_in_flight_; });
+    if (ended_ || begun_ == frames_.size() || (run_.stop && run_.stop())) return {};
+    in_flight_++;
+    return Attempt{begun_++, room_, most_in_flight_};
+  }
+
   /// Computes a frame, again and again where the device has no memory for it and less at once may find some.
-  void compute(std::size_t place) {
-    Attempt attempt{room_now()};
+  void compute(Attempt& attempt) {
     FrameReport report;
     do {
-      lanes_.with([&](Lane& lane) {
-        report = run_frame(lane, run_, attempt.room, frames_[place]);
-        return !report.out_of_memory;
-      });
+      report = run_on_lane(attempt);
       if (report.out_of_memory) attempt.out_of_memory = report.error;
     } while (report.out_of_memory && make_room(report.pixels_at_once, attempt));
 
     if (report.state == FrameState::done)
       report.notes.insert(report.notes.end(), attempt.notes.begin(), attempt.notes.end());
-    // That a frame cannot be cut any smaller is no help to who wants to know why it was cut.
-    const bool is_too_large = report.error && report.error->kind() == ErrorKind::device && !report.device_lost;
-    if (is_too_large && attempt.out_of_memory) report.error = attempt.out_of_memory;
-    finish(place, attempt.room, std::move(report));
+    // Whoever reads why a frame could not be cut any smaller wants to know why it had to be cut.
+    const bool is_too_large =
+        report.error && report.error->kind() == ErrorKind::device && !report.device_lost && !report.out_of_memory;
+    if (is_too_large && attempt.out_of_memory)
+      report.error = Error(ErrorKind::device, fmt::format("{}; in smaller parts: {}", attempt.out_of_memory->what(),
+                                                          report.error->what()));
+    finish(attempt.place, attempt.room, std::move(report));
   }
 
-  Room room_now() {
-    const Lock lock(mutex_);
-    return room_;
+  /// Runs the frame on a lane. Where there is no memory for the lane itself, the report says so as for the frame.
+  FrameReport run_on_lane(const Attempt& attempt) {
+    const int frame = frames_[attempt.place];
+    FrameReport report;
+    try {
+      lanes_.with([&](Lane& lane) {
+        report = run_frame(lane, run_, attempt.room, frame);
+        return !report.out_of_memory;
+      });
+    } catch (const gpu::OutOfMemory& error) {
+      const Settings settings = run_.plan.at(frame);
+      report.frame = frame;
+      report.input = main_input(settings.input);
+      report.output = settings.output.output;
+      report.state = FrameState::failed;
+      report.error = error;
+      report.out_of_memory = true;
+    }
+    return report;
   }
 
   /// After a frame has found no memory: fewer frames at once, then this one alone, then less of it at once. Waits until
@@ -93,17 +123,17 @@ class Pipeline {
   bool make_room(std::uint64_t pixels, Attempt& attempt) {
     Lock lock(mutex_);
     // Of several frames that fail side by side only the first one halves their number.
-    const bool others_go = in_flight_ > most_in_flight_;
-    if (!others_go && most_in_flight_ > 1) {
+    const bool is_fewer_already = most_in_flight_ < attempt.most_in_flight;
+    if (!is_fewer_already && most_in_flight_ > 1) {
       attempt.notes.push_back(fmt::format("the device had no memory for {} frames at once; from here on it computes {}",
                                           most_in_flight_, most_in_flight_ / 2));
       most_in_flight_ /= 2;
       lanes_.set_count(most_in_flight_);
-    } else if (!others_go && !attempt.was_alone) {
+    } else if (!is_fewer_already && !attempt.was_alone) {
       attempt.notes.push_back("the device had no memory for this frame at first; it was computed again");
       attempt.was_alone = true;
       lanes_.set_count(1);
-    } else if (!others_go) {
+    } else if (!is_fewer_already) {
       if (pixels < 2) return false;
       attempt.notes.push_back(fmt::format(
           "the device had no memory for {} pixels at once; now at most {} are computed at once", pixels, pixels / 2));
@@ -113,6 +143,7 @@ class Pipeline {
     changed_.notify_all();
     changed_.wait(lock, [&] { return error_ || in_flight_ < most_in_flight_; });
     in_flight_++;
+    attempt.most_in_flight = most_in_flight_;
     return !error_;
   }
 

@@ -12,9 +12,9 @@
 
 namespace alcove {
 
-/// Where frames are computed: a lane for each frame in flight, whose buffers are kept from frame to frame. Each lane on
-/// a CPU has a device of its own, so that every frame has a core of its own from its first byte to its last, and none
-/// waits for another. A GPU is shared by all lanes.
+/// The places where frames are computed: one lane for each frame in flight, whose buffers are kept from frame to frame.
+/// Each lane on a CPU has a device of its own, so that every frame has a core of its own from its first byte to its
+/// last, and no frame waits for another. A GPU is shared by all lanes.
 class Lanes {
  public:
   Lanes(const gpu::DeviceOptions& options, int count);

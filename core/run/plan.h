@@ -1,4 +1,4 @@
-// Which frames a run computes, from which files to which: settled before any work.
+// Finds, before any work, which frames a run computes, and from which files to which.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 

@@ -62,14 +62,14 @@ double sphere_reach(double radius, double nearest, double tangent, double pixels
 }  // namespace
 
 Window region_of(const FrameSource& source, const Region& roi) {
-  const Window all = source.file_data,
-               region{source.display.x + roi.x, source.display.y + roi.y, roi.width, roi.height};
-  const bool inside = region.x >= all.x && region.y >= all.y &&
-                      std::int64_t(region.x) + region.width <= std::int64_t(all.x) + all.width &&
-                      std::int64_t(region.y) + region.height <= std::int64_t(all.y) + all.height;
+  const Window& data = source.file_data;
+  const Window region{source.display.x + roi.x, source.display.y + roi.y, roi.width, roi.height};
+  const bool inside = region.x >= data.x && region.y >= data.y &&
+                      std::int64_t(region.x) + region.width <= std::int64_t(data.x) + data.width &&
+                      std::int64_t(region.y) + region.height <= std::int64_t(data.y) + data.height;
   if (!inside)
     fail(ErrorKind::usage, "{}: --roi is {}, and the data window is {}: give a region within it", source.depth_path(),
-         to_string(region), to_string(all));
+         to_string(region), to_string(data));
   return region;
 }
 

@@ -26,24 +26,27 @@ constexpr std::size_t kConvergeLists = 7;  // there is one after each power of t
 // A row of tiles is halved only while it is this many times as high as what it needs around it.
 constexpr int kFewBorders = 4;
 
-/// The most groups of `each` pixels that there are per pixel along a side of the frame, however it is cut into tiles.
-double groups_a_pixel(int side, int each, int least) {
+/// The most groups of `group` pixels that there are per pixel along a side of the frame, however it is cut into tiles
+/// of at least so many pixels.
+double groups_per_pixel(int side, int group, int least) {
   const int pixels = std::min(side, least);
-  return double((pixels + 2 * each - 2) / each) / pixels;
+  return double((pixels + 2 * group - 2) / group) / pixels;
 }
 
 /// The bytes per pixel of the buffers that core/chain/chain.cpp makes for a frame.
 std::uint64_t chain_bytes(const FrameSource& source, const Settings& settings) {
   const auto& e = settings.estimator;
   const auto& o = settings.output;
-  const auto groups = [&](int each) {
-    return groups_a_pixel(source.file_data.width, each, kLeastColumns) *
-           groups_a_pixel(source.file_data.height, each, kLeastRows);
+  const auto groups = [&](int group) {
+    return groups_per_pixel(source.file_data.width, group, kLeastColumns) *
+           groups_per_pixel(source.file_data.height, group, kLeastRows);
   };
-  const std::size_t scales = 1 + e.further_radii.size(), bent = needs_bent(e, o) ? 3 : 0,
-                    estimated = scales + bent + (scales > 1 ? 1 : 0);
-  const bool reduced = e.resolution != Resolution::full, converges = e.tolerance > 0;
-  // of the estimate's resolution: it, and its depth and normals
+  const std::size_t scales = 1 + e.further_radii.size();
+  const std::size_t bent = needs_bent(e, o) ? 3 : 0;
+  const std::size_t estimated = scales + bent + (scales > 1 ? 1 : 0);
+  const bool reduced = e.resolution != Resolution::full;
+  const bool converges = e.tolerance > 0;
+  // Planes of the estimate's resolution: the estimate, and its depth and normals.
   std::size_t low = estimated + (reduced ? 2 : 0);
   low += e.denoise == Denoise::none || converges ? 0 : 2 * estimated;  // rows, columns
   low += searches_exactly(e) ? 4 : 0;                                  // vertices, marks, neighbours, whole arcs

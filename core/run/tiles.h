@@ -30,7 +30,7 @@ struct Room {
   std::uint64_t pixels = kEndless;        // at once: fewer than those for which the device had no memory
 };
 
-/// The pixels of a side of a window that the passes of these settings can count: the marks of an exact search hold the
+/// The longest side of a window, in pixels, for the passes of these settings: the marks of an exact search hold the
 /// step along a line in 16 bits.
 int longest_side(const EstimatorSettings& settings);
 
@@ -49,8 +49,8 @@ struct WindowLimits {
   std::string mended_by(const Window& computed) const;
 };
 
-/// The window of all results in rows of tiles from the top, each row in tiles from the left, so that each of them is
-/// allowed with its surroundings. Rows come first, since what is read of a file is whole rows. Fails with
+/// Cuts the window of all results into rows of tiles, from the top, and each row into tiles, from the left, so that
+/// each tile is allowed with its surroundings. Rows are cut first, since whole rows are read of a file. Fails with
 /// ErrorKind::device where the radius reaches so far that no tile is small enough.
 std::vector<std::vector<Window>> tiles_of(const Window& whole, const Surroundings& surroundings,
                                           const WindowLimits& limits, const FrameSource& source);

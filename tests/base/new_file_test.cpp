@@ -8,6 +8,7 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <type_traits>
 #include <utility>
 
@@ -22,6 +23,9 @@ std::vector<std::string>& disk_calls() {
   return calls;
 }
 
+/// How many of the next calls of fsync() a signal interrupts.
+int interruptions = 0;
+
 }  // namespace
 
 // These stand before the C library's own functions of their names.
@@ -29,6 +33,11 @@ extern "C" int fsync(int descriptor) {
   struct stat status {};
   ::fstat(descriptor, &status);
   disk_calls().emplace_back(S_ISDIR(status.st_mode) ? "sync folder" : "sync file");
+  if (interruptions > 0) {
+    interruptions--;
+    errno = EINTR;
+    return -1;
+  }
   return int(::syscall(SYS_fsync, descriptor));
 }
 extern "C" int rename(const char* from, const char* to) noexcept {
@@ -95,6 +104,14 @@ TEST_F(NewFiles, are_on_the_disk_before_they_have_their_names_and_their_names_af
   disk_calls().clear();
   write_whole(path, std::string("whole"));
   EXPECT_THAT(disk_calls(), ElementsAre("sync file", "rename", "sync folder"));
+}
+
+TEST_F(NewFiles, are_whole_though_signals_interrupt_the_wait_for_the_disk) {
+  disk_calls().clear();
+  interruptions = 2;
+  EXPECT_NO_THROW(write_whole(path, std::string("whole")));
+  EXPECT_THAT(disk_calls(), ElementsAre("sync file", "sync file", "sync file", "rename", "sync folder"));
+  EXPECT_EQ(read_bytes(path), "whole");
 }
 
 }  // namespace

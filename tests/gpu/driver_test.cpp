@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <filesystem>
 #include <optional>
 #include <spirv/unified1/spirv.hpp>
 
@@ -56,6 +57,20 @@ EstimatorSettings exact_settings(int slices) {
   settings.radius = 0.4;
   settings.search = SliceSearch::exact;
   settings.slices = slices;
+  return settings;
+}
+
+/// As many directions as an error of 0.03 takes, tile by tile.
+EstimatorSettings tolerant_settings() {
+  EstimatorSettings settings = exact_settings(2);
+  settings.tolerance = 0.03;
+  return settings;
+}
+
+EstimatorSettings settings_of(Estimator estimator, Resolution resolution) {
+  EstimatorSettings settings = settings_of(0.4);
+  settings.estimator = estimator;
+  settings.resolution = resolution;
   return settings;
 }
 
@@ -135,9 +150,9 @@ TEST_F(Driver, keeps_buffers_for_frames_of_nearly_one_size) {
     const HostFrame frame = furnished_room(width, 88).frame;
     const auto ao = compute_ao(recorder, frame, settings_of(0.4)).ao;
     gpu::Recorder alone(device);
-    const int others = fake.allocations;
+    const int before_alone = fake.allocations;
     EXPECT_EQ(ao, compute_ao(alone, frame, settings_of(0.4)).ao) << width;
-    fake.allocations = others;
+    fake.allocations = before_alone;
   }
   EXPECT_EQ(fake.allocations - before, 0);
 }
@@ -184,7 +199,9 @@ TEST_F(Driver, that_has_all_of_vulkan_is_not_asked_for_a_part) {
 // Submissions.
 
 TEST_F(Driver, gets_a_long_recording_in_parts_that_give_the_same_bits) {
-  for (const EstimatorSettings& settings : {settings_of(0.4), exact_settings(20)}) {
+  for (const EstimatorSettings& settings :
+       {settings_of(0.4), exact_settings(20), tolerant_settings(), settings_of(Estimator::bitmask, Resolution::half),
+        settings_of(Estimator::hbao, Resolution::quarter), settings_of(Estimator::crytek, Resolution::full)}) {
     gpu::DeviceOptions limited = options();
     const auto expected = ao_on(limited, settings);
     limited.submission_ms = 1e-6;
@@ -207,6 +224,20 @@ TEST_F(Driver, gets_a_long_recording_in_parts_that_give_the_same_bits) {
       EXPECT_EQ(names.front(), "prepare");
     }
   }
+}
+
+TEST(Kernels, do_not_count_the_workgroups_of_a_dispatch_which_may_be_a_slice) {
+  int kernels = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(ALCOVE_SOURCE_DIR "/kernels")) {
+    if (entry.path().extension() != ".comp") continue;
+    kernels++;
+    const auto code = gpu::kernel_code(entry.path().stem().string());
+    for (std::size_t at = 5; at < code.size(); at += code[at] >> spv::WordCountShift) {
+      const bool is_builtin = (code[at] & spv::OpCodeMask) == spv::OpDecorate && code[at + 2] == spv::DecorationBuiltIn;
+      EXPECT_FALSE(is_builtin && code[at + 3] == spv::BuiltInNumWorkgroups) << entry.path();
+    }
+  }
+  EXPECT_GE(kernels, 20);
 }
 
 TEST_F(Driver, gets_a_frame_of_short_passes_at_once_when_they_are_measured) {
@@ -336,6 +367,17 @@ TEST_F(CacheFolder, gives_the_driver_what_it_gave_and_nothing_else) {
     EXPECT_EQ(given(), "") << bad.size();
     EXPECT_TRUE(read_bytes(file()) == whole) << "a bad cache is written anew";
   }
+}
+
+TEST_F(CacheFolder, a_cache_that_cannot_be_read_is_an_empty_one) {
+  given();
+  const std::string path = file();
+  std::filesystem::remove(path);
+  std::filesystem::create_directory(path);
+  EXPECT_EQ(given(), "");
+  std::filesystem::remove(path);
+  std::filesystem::create_symlink("/proc/self/mem", path);  // nothing can be read at its beginning
+  EXPECT_EQ(given(), "");
 }
 
 TEST_F(CacheFolder, a_cache_beyond_all_memory_is_not_kept) {

@@ -242,6 +242,14 @@ TEST(Guards, who_writes_beside_a_buffer_fails_the_run_by_its_name) {
   EXPECT_THAT(error_of([] { copied_64(64, 60); }), HasSubstr("beside the buffer \"copy\""));
 }
 
+TEST(Guards, hold_for_buffers_too_that_were_replaced_before_the_run) {
+  auto& gpu = test::recorder();
+  record_copy_of_64(64, 60);
+  gpu.buffer("copy", 64 * sizeof(float), gpu::Use::device);
+  EXPECT_THAT(error_of([&] { gpu.run(); }), HasSubstr("beside the buffer \"copy\""));
+  gpu.abandon();
+}
+
 TEST(Guards, what_is_read_behind_a_buffer_is_no_number) {
   const auto values = copied_64(60, 64);
   for (std::size_t i = 0; i < 64; i++) EXPECT_EQ(std::isnan(values[i]), i >= 60) << i;
@@ -250,8 +258,8 @@ TEST(Guards, what_is_read_behind_a_buffer_is_no_number) {
 TEST(Buffer, that_is_replaced_lives_until_what_was_recorded_has_run) {
   auto& gpu = test::recorder();
   const gpu::Buffer& copy = record_copy_of_64(64, 64);
-  for (std::size_t others = 60; others < 64; others++)
-    std::ranges::fill(gpu.buffer("source", others * sizeof(float), gpu::Use::upload).as<float>(), 0.25f);
+  for (std::size_t floats = 60; floats < 64; floats++)
+    std::ranges::fill(gpu.buffer("source", floats * sizeof(float), gpu::Use::upload).as<float>(), 0.25f);
   gpu.run();
   for (const float value : copy.as<const float>()) ASSERT_EQ(value, 0.5f);
 }

@@ -27,12 +27,13 @@ class DeviceMemory : public SequenceFolder {
   }
 
   /// A run on a discrete GPU that has `bytes` of memory and says to have `stated`.
-  Finished run_with(std::uint64_t bytes, std::uint64_t stated, std::vector<std::string> more = {}) const {
+  Finished run_with(std::uint64_t bytes, std::uint64_t stated, std::vector<std::string> more = {},
+                    std::map<std::string, std::optional<std::string>> environment = {}) const {
     more.insert(more.end(), {"--threads", "4", "--noise", "animated", "--radius", "0.1", "--stats", stats});
-    return run(more, {.environment = {{"ALCOVE_HEAP", std::to_string(bytes)},
-                                      {"ALCOVE_HEAP_SAYS", std::to_string(stated)},
-                                      {"ALCOVE_TEST_DEVICE", std::nullopt}},
-                      .preload = ALCOVE_POOR_DEVICE});
+    environment.insert({{"ALCOVE_HEAP", std::to_string(bytes)},
+                        {"ALCOVE_HEAP_SAYS", std::to_string(stated)},
+                        {"ALCOVE_TEST_DEVICE", std::nullopt}});
+    return run(more, {.environment = environment, .preload = ALCOVE_POOR_DEVICE});
   }
   json of_stats() const { return json::parse(read_bytes(stats)); }
 
@@ -50,6 +51,12 @@ TEST_F(DeviceMemory, decides_how_many_frames_are_computed_at_once) {
   ASSERT_EQ(poor.code, 0) << poor;
   EXPECT_LT(of_stats()["totals"]["at_once"], 6);
   EXPECT_THAT(poor.err, Not(HasSubstr("had no memory"))) << "it was planned for";
+  EXPECT_TRUE(outputs() == whole);
+
+  remove_outputs();
+  const Finished shared = run_with(1024 * kMiB, 1024 * kMiB, {}, {{"ALCOVE_HEAP_USED", std::to_string(1008 * kMiB)}});
+  ASSERT_EQ(shared.code, 0) << shared;
+  EXPECT_LT(of_stats()["totals"]["at_once"], 6) << "other programs have taken all but 16 MiB";
   EXPECT_TRUE(outputs() == whole);
 
   remove_outputs();
@@ -81,6 +88,25 @@ TEST_F(DeviceMemory, that_runs_out_halves_the_frames_at_once_and_then_the_tiles)
   EXPECT_TRUE(outputs() == whole);
 }
 
+TEST_F(DeviceMemory, that_six_frames_miss_side_by_side_halves_their_number_once) {
+  const Finished finished = run_with(1024 * kMiB, 1024 * kMiB, {}, {{"ALCOVE_TOGETHER", "6"}});
+  ASSERT_EQ(finished.code, 0) << finished;
+  EXPECT_THAT(finished.err, AllOf(HasSubstr("had no memory for 6 frames at once; from here on it computes 3"),
+                                  Not(HasSubstr("had no memory for 3 frames"))));
+  EXPECT_EQ(of_stats()["totals"]["at_once"], 3);
+  EXPECT_EQ(outputs().size(), std::size_t(kFrames));
+}
+
+TEST_F(DeviceMemory, that_is_missing_for_a_second_device_leaves_one_lane) {
+  const Finished finished =
+      run({"--device", "cpu", "--threads", "2", "--radius", "0.1", "--stats", stats},
+          {.environment = {{"ALCOVE_LACKS", "memory for a second device"}}, .preload = ALCOVE_POOR_DEVICE});
+  ASSERT_EQ(finished.code, 0) << finished;
+  EXPECT_THAT(finished.err, HasSubstr("had no memory for 2 frames at once; from here on it computes 1"));
+  EXPECT_EQ(of_stats()["totals"]["at_once"], 1);
+  EXPECT_EQ(outputs().size(), std::size_t(kFrames));
+}
+
 TEST_F(DeviceMemory, that_is_not_enough_for_any_tile_fails_the_frame_by_name) {
   const Finished finished = run_with(kMiB / 4, 1024 * kMiB);
   EXPECT_EQ(finished.code, 5) << finished;
@@ -91,7 +117,8 @@ TEST_F(DeviceMemory, that_is_not_enough_for_any_tile_fails_the_frame_by_name) {
 TEST_F(DeviceMemory, that_runs_out_for_a_picture_of_the_whole_frame_fails_the_frame) {
   const Finished finished = run_with(3 * kMiB / 2, 1024 * kMiB, {"--preview", out + "/p.%04d.png"});
   EXPECT_EQ(finished.code, 5) << finished;
-  EXPECT_THAT(finished.err, HasSubstr("no room for a buffer"));
+  EXPECT_THAT(finished.err, AllOf(HasSubstr("no room for a buffer"), HasSubstr("--preview needs it whole")));
+  EXPECT_THAT(names_in(out), testing::IsEmpty());
 }
 
 }  // namespace

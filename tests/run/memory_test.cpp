@@ -1,4 +1,4 @@
-// What a frame is said to take, before its pixels are read, is no less than what its buffers then take.
+// The memory that a frame is expected to take, before its pixels are read, is no less than what its buffers then take.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
@@ -27,7 +27,7 @@ class Memory : public testing::Test {
     all.output.output = folder / "ao.exr";
   }
 
-  /// Compares the bytes a pixel of all buffers with those that were expected.
+  /// Compares the bytes per pixel of all buffers with those that were expected.
   void expect_enough(const Settings& settings, const std::string& what) const {
     gpu::Recorder gpu(device());
     FrameSource source = open_frame(settings, 0);

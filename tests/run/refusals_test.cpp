@@ -426,7 +426,7 @@ TEST_F(Refusals, a_driver_without_devices_or_one_that_fails_ends_with_5) {
                  lacking("a driver that works"));
   expect_refused(5, {"out of memory in vkCreateComputePipelines"},
                  {"run", frame, "-o", ao, "--camera", camera, "--radius", "1"}, lacking("memory for kernels"));
-  expect_refused(5, {"no room for a buffer", "--memory"}, {"run", frame, "-o", ao, "--camera", camera, "--radius", "1"},
+  expect_refused(5, {"no room for a buffer", "--device"}, {"run", frame, "-o", ao, "--camera", camera, "--radius", "1"},
                  lacking("memory"));
   EXPECT_THAT(names_in(folder.path()), testing::Each(testing::AnyOf("camera.json", "wall.0042.exr")));
   EXPECT_THAT(run_program({"devices"}, lacking("a known type")).out, HasSubstr("  other  "));

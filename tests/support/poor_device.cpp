@@ -1,17 +1,21 @@
 // Preloaded before the Vulkan loader: a poor device.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// It lacks what ALCOVE_LACKS says. Its allocation of the number ALCOVE_ALLOCATION finds no memory.
+// It lacks what ALCOVE_LACKS says. Its allocation of the number ALCOVE_ALLOCATION finds no memory. Its first
+// ALCOVE_TOGETHER allocations wait until each of so many threads has asked for one, and find none together.
 // With ALCOVE_HEAP it is a discrete GPU with so many bytes of its own memory, which the host cannot map;
-// ALCOVE_HEAP_SAYS is what it says to have where that is another number.
+// ALCOVE_HEAP_SAYS is what it says to have where that is another number, and ALCOVE_HEAP_USED is what it says that
+// other programs have taken.
 #include <dlfcn.h>
 #include <vulkan/vulkan.h>
 
 #include <atomic>
 #include <cstdlib>
+#include <cstring>
 #include <map>
 #include <mutex>
 #include <string_view>
+#include <thread>
 
 namespace {
 
@@ -21,9 +25,10 @@ bool lacks(std::string_view what) {
 }
 
 std::atomic<int> allocations = 0;
+std::atomic<int> devices = 0;
 
 /// The number that a variable of the environment holds; 0 for none.
-VkDeviceSize bytes_in(const char* variable) {
+VkDeviceSize number_in(const char* variable) {
   const char* text = std::getenv(variable);
   return text ? std::strtoull(text, nullptr, 10) : 0;
 }
@@ -33,7 +38,7 @@ constexpr uint32_t kOwnMemory = 0;
 constexpr uint32_t kHostMemory = 1;
 
 VkDeviceSize stated_heap() {
-  return bytes_in("ALCOVE_HEAP_SAYS") ? bytes_in("ALCOVE_HEAP_SAYS") : bytes_in("ALCOVE_HEAP");
+  return number_in("ALCOVE_HEAP_SAYS") ? number_in("ALCOVE_HEAP_SAYS") : number_in("ALCOVE_HEAP");
 }
 
 void split_heap(VkPhysicalDeviceMemoryProperties& memory) {
@@ -52,7 +57,7 @@ class Heap {
  public:
   bool take(VkDeviceSize bytes) {
     const std::lock_guard lock(mutex_);
-    if (taken_ + bytes > bytes_in("ALCOVE_HEAP")) return false;
+    if (taken_ + bytes > number_in("ALCOVE_HEAP")) return false;
     taken_ += bytes;
     return true;
   }
@@ -93,27 +98,27 @@ void vkGetPhysicalDeviceProperties2(VkPhysicalDevice device, VkPhysicalDevicePro
   NEXT(vkGetPhysicalDeviceProperties2)(device, properties);
   if (lacks("Vulkan 1.2")) properties->properties.apiVersion = VK_API_VERSION_1_1;
   if (lacks("a known type")) properties->properties.deviceType = VK_PHYSICAL_DEVICE_TYPE_OTHER;
-  if (bytes_in("ALCOVE_HEAP")) properties->properties.deviceType = VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU;
+  if (number_in("ALCOVE_HEAP")) properties->properties.deviceType = VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU;
 }
 
 void vkGetPhysicalDeviceMemoryProperties(VkPhysicalDevice device, VkPhysicalDeviceMemoryProperties* memory) {
   NEXT(vkGetPhysicalDeviceMemoryProperties)(device, memory);
-  if (bytes_in("ALCOVE_HEAP")) split_heap(*memory);
+  if (number_in("ALCOVE_HEAP")) split_heap(*memory);
 }
 
 void vkGetPhysicalDeviceMemoryProperties2(VkPhysicalDevice device, VkPhysicalDeviceMemoryProperties2* memory) {
   NEXT(vkGetPhysicalDeviceMemoryProperties2)(device, memory);
-  if (!bytes_in("ALCOVE_HEAP")) return;
+  if (!number_in("ALCOVE_HEAP")) return;
   split_heap(memory->memoryProperties);
   if (!memory->pNext) return;
   auto& budget = *static_cast<VkPhysicalDeviceMemoryBudgetPropertiesEXT*>(memory->pNext);
   budget.heapBudget[kOwnMemory] = stated_heap();
-  budget.heapUsage[kOwnMemory] = 0;
+  budget.heapUsage[kOwnMemory] = number_in("ALCOVE_HEAP_USED");
 }
 
 void vkGetBufferMemoryRequirements(VkDevice device, VkBuffer buffer, VkMemoryRequirements* needs) {
   NEXT(vkGetBufferMemoryRequirements)(device, buffer, needs);
-  if (bytes_in("ALCOVE_HEAP")) needs->memoryTypeBits = 1u << kOwnMemory | 1u << kHostMemory;
+  if (number_in("ALCOVE_HEAP")) needs->memoryTypeBits = 1u << kOwnMemory | 1u << kHostMemory;
 }
 
 void vkGetPhysicalDeviceQueueFamilyProperties(VkPhysicalDevice device, uint32_t* count,
@@ -127,10 +132,13 @@ void vkGetPhysicalDeviceQueueFamilyProperties(VkPhysicalDevice device, uint32_t*
 
 VkResult vkEnumerateDeviceExtensionProperties(VkPhysicalDevice device, const char* layer, uint32_t* count,
                                               VkExtensionProperties* extensions) {
-  if (!lacks("VK_KHR_push_descriptor"))
-    return NEXT(vkEnumerateDeviceExtensionProperties)(device, layer, count, extensions);
-  *count = 0;
-  return VK_SUCCESS;
+  const uint32_t room = *count;
+  const VkResult result = NEXT(vkEnumerateDeviceExtensionProperties)(device, layer, count, extensions);
+  if (lacks("VK_KHR_push_descriptor")) *count = 0;
+  if (!number_in("ALCOVE_HEAP_USED") || result != VK_SUCCESS) return result;
+  if (extensions && *count < room) std::strcpy(extensions[*count].extensionName, VK_EXT_MEMORY_BUDGET_EXTENSION_NAME);
+  ++*count;
+  return result;
 }
 
 void vkGetPhysicalDeviceFeatures2(VkPhysicalDevice device, VkPhysicalDeviceFeatures2* features) {
@@ -142,6 +150,7 @@ void vkGetPhysicalDeviceFeatures2(VkPhysicalDevice device, VkPhysicalDeviceFeatu
 VkResult vkCreateDevice(VkPhysicalDevice physical, const VkDeviceCreateInfo* info,
                         const VkAllocationCallbacks* callbacks, VkDevice* device) {
   if (lacks("a driver that works")) return VK_ERROR_INITIALIZATION_FAILED;
+  if (lacks("memory for a second device") && ++devices > 1) return VK_ERROR_OUT_OF_HOST_MEMORY;
   return NEXT(vkCreateDevice)(physical, info, callbacks, device);
 }
 
@@ -156,8 +165,12 @@ VkResult vkAllocateMemory(VkDevice device, const VkMemoryAllocateInfo* info, con
                           VkDeviceMemory* memory) {
   const char* first = std::getenv("ALCOVE_ALLOCATION");
   const int number = ++allocations;
+  if (const auto together = int(number_in("ALCOVE_TOGETHER")); number <= together) {
+    while (allocations < together) std::this_thread::yield();
+    return VK_ERROR_OUT_OF_DEVICE_MEMORY;
+  }
   if (lacks("memory") || (first && number == std::atoi(first))) return VK_ERROR_OUT_OF_DEVICE_MEMORY;
-  if (!bytes_in("ALCOVE_HEAP")) return NEXT(vkAllocateMemory)(device, info, callbacks, memory);
+  if (!number_in("ALCOVE_HEAP")) return NEXT(vkAllocateMemory)(device, info, callbacks, memory);
   const bool is_own = info->memoryTypeIndex == kOwnMemory;
   if (is_own && !heap.take(info->allocationSize)) return VK_ERROR_OUT_OF_DEVICE_MEMORY;
   VkMemoryAllocateInfo of_the_driver = *info;
