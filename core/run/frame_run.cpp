@@ -42,6 +42,7 @@ class FrameRun {
     go_on();
     FrameSource source = open();
     require_numbered_lines(source, settings_.estimator);
+    require_room_for_preview(source);
     const WindowLimits limits{pixel_memory(source, settings_), room_, longest_side(settings_.estimator)};
     if (limits.allow(source.data))
       run_whole(source);
@@ -135,6 +136,18 @@ class FrameRun {
     const Stopwatch writing;
     writer.finish();
     report_.write_ms += writing.ms();
+  }
+
+  /// A preview shows the display window, which a header may make far larger than the pixels that the file holds.
+  void require_room_for_preview(const FrameSource& source) const {
+    if (settings_.output.preview.empty()) return;
+    constexpr std::uint64_t kBytes = 3 * (sizeof(float) + 1);  // per pixel: display values, and the bytes of a PNG
+    if (source.display.pixels() * kBytes > room_.bytes)
+      fail(
+          ErrorKind::device,
+          "{}: a preview shows the display window, {}, which takes {} MiB: leave out --preview, or allow more --memory "
+          "than the {} MiB that there are for this frame",
+          report_.input, to_string(source.display), source.display.pixels() * kBytes >> 20, room_.bytes >> 20);
   }
 
   /// Pictures show a frame on a scale of its own, which no tile knows.

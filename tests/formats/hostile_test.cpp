@@ -166,6 +166,18 @@ TEST_F(Hostile, no_header_makes_a_run_take_more_memory_than_it_may) {
   }
 }
 
+TEST_F(Hostile, no_display_window_makes_a_preview_take_more_memory_than_it_may) {
+  const Window display{0, 0, 60000, 60000};
+  wall_frame(kWallWindow, display).write(frame);
+  write_bytes(camera, wall_camera(display).dump());
+  const Finished refused = run({"--memory", "256M", "--preview", folder / "p.png"});
+  EXPECT_EQ(refused.code, 5) << refused;
+  EXPECT_THAT(lines_of(refused.err).back(),
+              AllOf(HasSubstr(frame), HasSubstr("60000x60000"), HasSubstr("--preview"), HasSubstr("--memory")));
+  EXPECT_FALSE(fs::exists(ao));
+  EXPECT_EQ(run({"--memory", "256M"}).code, 0) << "without the preview nothing is as large as the display window";
+}
+
 TEST_F(Hostile, no_picture_makes_a_run_take_more_memory_than_its_rows) {
 #ifdef __SANITIZE_ADDRESS__
   GTEST_SKIP() << "the address sanitizer takes memory of its own";
