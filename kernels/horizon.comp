@@ -22,6 +22,9 @@
 //   plane.
 #version 450
 #extension GL_GOOGLE_include_directive : require
+#define X_BB
+#define VAR_SHARE 1.0
+#define VAR_PIXELS 0.0
 #include "horizon.h"
 #include "view.glsl"
 #include "normal.glsl"
@@ -50,6 +53,10 @@ layout(scalar, binding = kHorizonCounts) readonly buffer Counts { TileCounts cou
 layout(scalar, binding = kHorizonBent) writeonly buffer Bent { float bent[]; };
 
 const uint kFalloff = kMode & ~kWithBent;
+#ifndef VAR_COMPLETE
+#define VAR_COMPLETE true
+#endif
+const bool kComplete = VAR_COMPLETE;
 const bool kBent = (kMode & kWithBent) != 0u;
 
 /// A run is wider than the distance of its outer samples by a pixel and, on average, by this part of the gaps to the
@@ -66,6 +73,7 @@ const float kNone = 1e30;
 /// blocks.
 struct Run {
   vec2 start, end;  // its outer samples
+ vec2 tip, tip2;
   float gap;        // steps from the sample before it
   float near, far;  // largest and smallest of the samples that block
 };
@@ -95,11 +103,23 @@ vec3 blocked_arcs(Side side, Blocked blocked, float shift) {
 /// What a run blocks that is `gap_behind` steps wide of the sample behind it.
 uint sectors_of(Receiver r, Reach reach, Run run, float z, float gap_behind, float shift) {
   const float pixel = reach.pixel_size * (r.perspective ? z : 1.0);
-  const float width = length(run.end - run.start) + pixel * (1.0 + kGapShare * (run.gap + gap_behind));
+  const float width = kComplete ? VAR_SHARE * length(run.end - run.start) + pixel * (VAR_PIXELS + VAR_SHARE * (1.0 + kGapShare * (run.gap + gap_behind))) : length(run.end - run.start) + pixel * (1.0 + kGapShare * (run.gap + gap_behind));
   // What is as deep as wide is not clipped to the sphere: no difference in the error, and it takes a tenth off the
   // time.
   const float back = slope_of(kThickness == kThicknessWidth ? run.start + width * away_from_eye(r, run.start)
                                                             : back_of(r, run.start, reach.thickness, reach.radius));
+#ifdef X_BACK3
+  const vec2 tip = run.tip.x > 0.0 ? run.tip : run.end;
+  const float back4 = slope_of(tip + width * away_from_eye(r, tip));
+  const vec2 tip2 = run.tip2.x > 0.0 ? run.tip2 : run.start;
+  const float back5 = slope_of(tip2 + width * away_from_eye(r, tip2));
+  const float backs = min(min(min(back, back5), back4), run.far);
+  return run.near >= run.far ? sectors_below(run.near, shift) & ~sectors_below(backs, shift) : 0u;
+#endif
+#ifdef X_BACK2
+  const float back2 = slope_of(run.end + width * away_from_eye(r, run.end));
+  return run.near >= run.far ? sectors_below(run.near, shift) & ~sectors_below(min(min(back, back2), run.far), shift) : 0u;
+#endif
   return run.near >= run.far ? sectors_below(run.near, shift) & ~sectors_below(min(back, run.far), shift) : 0u;
 }
 
@@ -183,7 +203,7 @@ vec3 search_runs(Receiver r, Side side, Reach reach, Draw draw, uint range) {
   bool own = true;
   Sample last = receiver_sample(r);
   Blocked blocked = Blocked(-1.0, -1.0, 0u);
-  Run run = Run(vec2(0), vec2(0), 0.0, -1.0, 1.0);
+  Run run = Run(vec2(0), vec2(0), vec2(0), vec2(0), 0.0, -1.0, 1.0);
   for (int k = first_sample(range, int(kSteps), count, side.reach, draw.jitter, step_exponent(int(kSteps), side.reach));
        k < count && last.offset <= last_step; k++) {
     const Sample s = sample_at(r, side, reach, step_offset(k, int(kSteps), count, side.reach, draw.jitter));
@@ -195,7 +215,7 @@ vec3 search_runs(Receiver r, Side side, Reach reach, Draw draw, uint range) {
     if (connected) run.end = s.place;
     if (!connected || !s.above) {
       if (kHard) blocked.sectors |= sectors_of(r, reach, run, last.z, gap, draw.shift);
-      run = Run(s.place, s.place, gap, -1.0, 1.0);
+      run = Run(s.place, s.place, vec2(0), vec2(0), gap, -1.0, 1.0);
       own = !s.above;
     }
     if (own) {
@@ -216,10 +236,142 @@ vec3 search_runs(Receiver r, Side side, Reach reach, Draw draw, uint range) {
   return kHard ? blocked_arcs(side, blocked, draw.shift) : sum;
 }
 
+// ---- completion
+#ifndef VAR_SHARE
+#define VAR_SHARE 1.0
+#define VAR_PIXELS 0.0
+#endif
+struct Hidden {
+  bool open, own;
+  vec2 normal, end, until;
+  Run run;
+  float z, gap;
+};
+
+vec2 normal_in_slice(Receiver r, Side side, Reach reach, float offset) {
+  const ivec2 hit = r.pixel + ivec2(round(side.direction_px * offset));
+  const vec3 n = unpack_normal(normal[hit.y * reach.width + hit.x]);
+  const vec2 p = vec2(dot(n, side.t), dot(n, r.eye));
+  return p * inversesqrt(max(dot(p, p), 1e-12));
+}
+
+/// Slopes (largest, smallest) of the straight piece from `end` along `direction` to the ray of `until`, in the sphere.
+vec2 slopes_of_piece(Receiver r, Reach reach, vec2 end, vec2 direction, vec2 n, vec2 until, inout vec2 tip) {
+  const vec2 ray = -away_from_eye(r, until);  // towards the eye
+  // until - u * ray on the plane: dot(n, until - u ray - end) = 0
+  const float down = dot(n, ray);
+  const float u = dot(n, until - end) / down;
+  const vec2 far = until - u * ray;
+  const float b = dot(end, direction), inside = b * b - dot(end, end) + reach.radius_sq;
+  const float root = sqrt(max(inside, 0.0));
+  float last = down > 1e-4 ? max(dot(far - end, direction), 0.0) : 1e30;
+  // across > 0
+  if (direction.x < 0.0) last = min(last, 0.999 * end.x / -direction.x);
+  const float t0 = max(0.0, -b - root), t1 = min(last, root - b);
+  if (!(inside > 0.0 && t1 > t0)) return vec2(-1.0, 1.0);
+  tip = end + t1 * direction;
+  const float s0 = slope_of(end + t0 * direction), s1 = slope_of(end + t1 * direction);
+  return vec2(max(s0, s1), min(s0, s1));
+}
+
+bool faces_eye(Receiver r, vec2 n, vec2 at) { return dot(n, -away_from_eye(r, at)) > 0.02; }
+
+uint close_hidden(Receiver r, Reach reach, Hidden h, inout float own_near, float shift) {
+  const vec2 d = vec2(h.normal.y, -h.normal.x);
+  const vec2 s = slopes_of_piece(r, reach, h.end, d, h.normal, h.until, h.run.tip);
+  if (h.own) { own_near = max(own_near, s.x); return 0u; }
+  h.run.near = max(h.run.near, s.x);
+  h.run.far = min(h.run.far, s.y);
+  return sectors_of(r, reach, h.run, h.z, h.gap, shift);
+}
+
+vec3 search_completed(Receiver r, Side side, Reach reach, Draw draw, uint range) {
+  const int count = range != 0u ? min(int(kSteps), int(side.reach)) : 0;
+  const float last_step = float(last_of_range(range)) + 0.5;
+  bool own = true;
+  Sample last = receiver_sample(r);
+  Blocked blocked = Blocked(-1.0, -1.0, 0u);
+  Run run = Run(vec2(0), vec2(0), vec2(0), vec2(0), 0.0, -1.0, 1.0);
+  Hidden hidden = Hidden(false, false, vec2(0), vec2(0), vec2(0), run, 0.0, 0.0);
+  for (int k = first_sample(range, int(kSteps), count, side.reach, draw.jitter, step_exponent(int(kSteps), side.reach));
+       k < count && last.offset <= last_step; k++) {
+    const Sample s = sample_at(r, side, reach, step_offset(k, int(kSteps), count, side.reach, draw.jitter));
+    const float gap = s.offset - last.offset;
+    const bool connected = same_surface(r, reach, s.z, last.z, gap);
+    const bool crosses = both(both(s.above, last.above), both(connected, s.within != last.within));
+    const vec2 slopes = slopes_of(s, crosses, mix(s.slope, last.slope, 0.5));
+    if (hidden.open) {
+      const bool hides = s.above && dot(hidden.normal, s.place - hidden.end) > 0.0;
+      if (hides) hidden.until = s.place;
+      else {
+#ifdef X_MEET
+        if (s.above) hidden.until = s.place;
+#endif
+        blocked.sectors |= close_hidden(r, reach, hidden, blocked.near, draw.shift);
+        hidden.open = false;
+      }
+    }
+    if (connected) run.end = s.place;
+    if (!connected || !s.above) {
+      bool pends = false;
+      if (!connected && s.above && last.above && last.offset > 0.0 && s.z < last.z) {
+        const vec2 n = normal_in_slice(r, side, reach, last.offset);
+        pends = faces_eye(r, n, last.place) && dot(n, s.place - last.place) > 0.0;
+        if (pends) {
+          if (hidden.open) blocked.sectors |= close_hidden(r, reach, hidden, blocked.near, draw.shift);
+          hidden = Hidden(true, own, n, last.place, s.place, run, last.z, gap);
+        }
+      }
+      if (!pends && !own) blocked.sectors |= sectors_of(r, reach, run, last.z, gap, draw.shift);
+      const vec2 barrier = run.start;
+      run = Run(s.place, s.place, vec2(0), vec2(0), gap, -1.0, 1.0);
+      own = !s.above;
+      if (!connected && s.above && last.above && last.offset > 0.0 && s.z > last.z) {
+        const vec2 n = normal_in_slice(r, side, reach, s.offset);
+        if (faces_eye(r, n, s.place) && dot(n, last.place - s.place) > 0.0) {
+          const vec2 until = dot(n, barrier - s.place) > 0.0 ? barrier : last.place;
+          const vec2 back = slopes_of_piece(r, reach, s.place, vec2(-n.y, n.x), n, until, run.tip2);
+          run.near = back.x;
+          run.far = back.y;
+        }
+      }
+    }
+    if (own) {
+      blocked.near = max(blocked.near, slopes.x);
+    } else {
+      run.near = max(run.near, slopes.x);
+      run.far = min(run.far, slopes.y);
+    }
+    last = s;
+  }
+  if (hidden.open) blocked.sectors |= close_hidden(r, reach, hidden, blocked.near, draw.shift);
+  // the border
+#ifndef X_NOBORDER
+  #ifdef X_BB
+  if (side.is_cut && last.offset > 0.0 && last.z < 1e29) {
+#else
+  if (side.is_cut && last.above && last.offset > 0.0) {
+#endif
+    const vec2 n = normal_in_slice(r, side, reach, last.offset);
+    if (faces_eye(r, n, last.place)) {
+      const vec2 d = vec2(n.y, -n.x);
+      const float b = dot(last.place, d), inside = b * b - dot(last.place, last.place) + reach.radius_sq;
+      const vec2 piece = slopes_of_piece(r, reach, last.place, d, n, last.place + (sqrt(max(inside, 0.0)) + abs(b)) * d, run.tip);
+      if (own) blocked.near = max(blocked.near, piece.x);
+      run.near = max(run.near, piece.x);
+      run.far = min(run.far, piece.y);
+    }
+    run.gap = 1e30;
+  }
+#endif
+  if (!own) blocked.sectors |= sectors_of(r, reach, run, last.z, 1.0, draw.shift);
+  return blocked_arcs(side, blocked, draw.shift);
+}
+
 /// The blocked part of a side's integrals. range: the steps at which something may stand above the tangent plane.
 vec3 search(Receiver r, Side side, Reach reach, Draw draw, uint range) {
   return kThickness == kThicknessEndless ? search_endless(r, side, reach, draw, range)
-                                         : search_runs(r, side, reach, draw, range);
+                                         : kComplete ? search_completed(r, side, reach, draw, range) : search_runs(r, side, reach, draw, range);
 }
 
 /// Random numbers of a side, from those of its pixel. The boundaries of the sectors move by the fraction of a multiple

@@ -67,12 +67,14 @@ struct Slice {
 /// One half of a slice.
 struct Side {
   vec2 direction_px;  // pixels per step; the longer component is +-1
+  bool is_cut;
   float reach;        // steps within the radius and the image
   // coordinates in the slice: scale * dot(across, offset), ray_length * (receiver's z - z) + scale * dot(toward,
   // offset)
   vec2 across, toward;
   float plane_cot;  // cotangent of the tangent plane
   vec2 ahead;       // a place on the tangent plane
+  vec3 t;           // unit, view space: across V, to that side
   float gamma, cos_gamma, sin_gamma;
 };
 
@@ -165,8 +167,11 @@ Side side_of(View view, Receiver r, Slice s, float sign, Reach reach) {
   side.toward = s.toward;
   side.plane_cot = -side.sin_gamma / s.cos_gamma;
   side.ahead = vec2(side.cos_gamma, -side.sin_gamma);
+  side.t = sign * s.t;
+  side.is_cut = false;
   side.reach =
       reach_of_side(view, r.pixel, side.direction_px, pixels, r.eye.z, sign * s.t.z, r.sin_reach, reach.radius);
+  side.is_cut = side.reach >= steps_to_border(view, r.pixel, side.direction_px);
   return side;
 }
 
