@@ -95,7 +95,7 @@ Reach reach_of(const EstimatorSettings& settings, double radius) {
   // Crytek's samples fill the sphere of the radius whatever the falloff.
   const double end = settings.estimator == Estimator::crytek ? 1 : settings.falloff_end;
   return {float(radius * end), float(radius * settings.falloff_start), settings.falloff, thickness_of(settings),
-          float(settings.bias)};
+          float(settings.bias), settings.complete};
 }
 
 Sampling sampling_of(const EstimatorSettings& settings, int frame) {

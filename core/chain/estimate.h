@@ -43,6 +43,7 @@ struct Reach {
   Falloff falloff;
   float thickness;  // scene units that an occluder goes on behind what is seen of it; 0: as deep as wide
   float bias;       // the least height that blocks: see EstimatorSettings::bias
+  Completion complete;  // where surfaces go on unseen: see EstimatorSettings::complete
 };
 Reach reach_of(const EstimatorSettings& settings, double radius);
 
