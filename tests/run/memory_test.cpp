@@ -88,7 +88,7 @@ TEST_F(Memory, is_expected_of_every_output) {
   expect_enough(settings, "multi-bounce");
   settings.input.material_ao_channel = "material";
   expect_enough(settings, "material AO");
-  settings.output.debug = "tiles,raw-ao,denoised-ao";
+  settings.output.debug = "tiles,raw-ao,denoised-ao,completed";
   expect_enough(settings, "debug views");
   settings.output.aovs = "ao,bent-normal,normal,depth,confidence,specular-occlusion,ao-scales";
   settings.estimator.resolution = Resolution::half;
