@@ -121,9 +121,10 @@ Estimate estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs&
   Estimate result;
   result.ao = &gpu.buffer("ao", radii.size() * plane_bytes(gbuffer.view), gpu::Use::device);
   if (with_bent) result.bent = &gpu.buffer("bent", 3 * plane_bytes(gbuffer.view), gpu::Use::device);
-  if (with_completed) result.completed = &gpu.buffer("completed", plane_bytes(gbuffer.view), gpu::Use::device);
+  gpu::Buffer* completed =
+      with_completed ? &gpu.buffer("completed", plane_bytes(gbuffer.view), gpu::Use::device) : nullptr;
   // Tiles that are as in the frame before keep what it found in them.
-  if (with_completed && (is_exact || !skipping.changes)) gpu.clear(*result.completed);
+  if (completed && (is_exact || !skipping.changes)) gpu.clear(*completed);
 
   const Bounds surfaces = bounds(gpu, gbuffer, skipping.proves, sampling.stride);
   coarsen(gpu, gbuffer, surfaces);
@@ -131,7 +132,8 @@ Estimate estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs&
     const Reach reach = reach_of(settings, radii[plane]);
     const bool is_largest = plane + 1 == radii.size();
     Estimate out{result.ao, is_largest ? result.bent : nullptr};
-    out.completed = is_largest ? result.completed : nullptr;
+    out.completed = is_largest ? completed : nullptr;
+    result.completed = out.completed;
     if (!is_exact) out.listed = classify(gpu, gbuffer, surfaces, skipping, reach.radius, sampling.stride, out, plane);
     result.listed = out.listed;
     switch (settings.estimator) {
