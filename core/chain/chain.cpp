@@ -39,6 +39,7 @@ FrameOutputs run_chain(gpu::Recorder& gpu, const FrameInputs& frame, const Estim
     const bool with_completed = wanted.completed && completes_anywhere(settings);
     const Estimate estimated = estimate(gpu, work, frame, settings, needs_bent(settings, wanted), with_completed);
     const Denoiser denoiser = denoiser_of(settings);
+    out.completion = completion(gpu, work, estimated, denoiser.stride);
     const Visibility noisy = combine(gpu, work, estimated, wanted.has(&FrameOutputs::scales));
     const FilterRuns runs = dilate(gpu, work, estimated.listed, denoiser);
     const Visibility smooth = denoise(gpu, work, noisy, denoiser, runs);
@@ -49,7 +50,6 @@ FrameOutputs run_chain(gpu::Recorder& gpu, const FrameInputs& frame, const Estim
     out.tiles = estimated.listed.counts;
     out.squares = estimated.squares;
     out.completed = estimated.completed;
-    out.completion = completion(gpu, work, estimated, denoiser.stride);
     if (wanted.has(&FrameOutputs::error)) out.error = estimated.error;
   }
 

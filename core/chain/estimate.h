@@ -87,7 +87,8 @@ Bounds bounds(gpu::Recorder& gpu, const GBuffer& gbuffer, bool proves, int strid
 void coarsen(gpu::Recorder& gpu, const GBuffer& gbuffer, const Bounds& bounds);
 
 /// Lists the tiles that an estimator must compute for one radius. Into a plane of `out` it writes the visibility of
-/// those that are left out, and 0 into out.completed. `prefix` stands before the names of its buffers where there is another estimate.
+/// those that are left out, and into out.completed 0 for them. `prefix` stands before the names of its buffers where
+/// there is another estimate.
 TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const Bounds& bounds, const Skipping& skipping,
                   float radius, int stride, const Estimate& out, uint plane, const std::string& prefix = "");
 
