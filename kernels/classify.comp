@@ -49,6 +49,7 @@ layout(scalar, binding = kClassifyList) writeonly buffer List { ListedTile list[
 layout(scalar, binding = kClassifyCounts) buffer Counts { TileCounts counts; };
 layout(scalar, binding = kClassifyAo) writeonly buffer Ao { float ao[]; };
 layout(scalar, binding = kClassifyBent) writeonly buffer Bent { float bent[]; };
+layout(scalar, binding = kClassifyCompleted) writeonly buffer Completed { float completed[]; };
 layout(scalar, binding = kClassifySectors) writeonly buffer Sectors { uint sectors_of_tile[]; };
 
 /// With more groups of tiles within reach than these, the search costs more than it saves.
@@ -302,6 +303,7 @@ void write_open(View view, ivec2 tile, bool is_sky, bool is_tolerated) {
     if (!inside(view, pixel)) continue;
     const int index = index_of(view, pixel);
     ao[index + int(params.plane) * plane] = 1.0;
+    if ((kMode & kClassifyWithCompleted) != 0u) completed[index] = 0.0;
     if ((kMode & kClassifyWithBent) != 0u) {
       const vec3 stored =
           depth[index] >= kSkyDepth ? stored_bent(vec3(0)) : stored_bent(open_bent(unpack_normal(normal[index])));

@@ -18,6 +18,8 @@ ALCOVE_CONSTANT uint kClassifyBent = 6;
 ALCOVE_CONSTANT uint kClassifySectors = 7;
 ALCOVE_CONSTANT uint kClassifyGroups = 8;  // in: one GroupBounds per group of tiles, from coarsen
 
+// out: one float per pixel, 0 at receivers of tiles that are not listed; only with kClassifyWithCompleted
+ALCOVE_CONSTANT uint kClassifyCompleted = 10;
 // in: one uint per corner of blocks, (columns + 1) x (rows + 1): how many blocks above and left of it have changed
 ALCOVE_CONSTANT uint kClassifyChanges = 9;
 
@@ -32,6 +34,7 @@ ALCOVE_CONSTANT uint kClassifyWithBent = 4;
 // with kClassifySkips: reads the changes, and leaves tiles as they are within whose reach nothing has changed
 ALCOVE_CONSTANT uint kClassifyReuses = 16;
 ALCOVE_CONSTANT uint kClassifyTolerates = 32;  // with kClassifyProves
+ALCOVE_CONSTANT uint kClassifyWithCompleted = 64;
 
 ALCOVE_CONSTANT int kChangeBlock = 32;  // px of the frame a side of the blocks whose changes are known
 

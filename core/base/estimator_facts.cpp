@@ -19,6 +19,10 @@ double samples_of_a_radius(const EstimatorSettings& settings) {
   return samples / (factor * factor * stride_of(settings));
 }
 
+bool knows_thickness(const EstimatorSettings& settings) {
+  return settings.estimator == Estimator::gtao || settings.estimator == Estimator::bitmask;
+}
+
 }  // namespace
 
 std::vector<double> radii_of(const EstimatorSettings& settings) {
@@ -35,6 +39,15 @@ bool searches_exactly(const EstimatorSettings& settings) {
 bool has_bent_normals(const EstimatorSettings& settings) {
   return settings.estimator == Estimator::bitmask ||
          (settings.estimator == Estimator::gtao && !searches_exactly(settings));
+}
+
+bool completes(const EstimatorSettings& settings) {
+  return knows_thickness(settings) && settings.complete == Completion::all &&
+         settings.thickness != ThicknessKind::infinite;
+}
+
+bool completes_anywhere(const EstimatorSettings& settings) {
+  return knows_thickness(settings) && settings.complete != Completion::none;
 }
 
 int stride_of(const EstimatorSettings& settings) {

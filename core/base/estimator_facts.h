@@ -17,6 +17,13 @@ bool searches_exactly(const EstimatorSettings& settings);
 /// Whether the estimator finds open directions too.
 bool has_bent_normals(const EstimatorSettings& settings);
 
+/// Whether surfaces are completed behind what is nearer. They are not where occluders are endless, since all that those
+/// hide is blocked anyway. What goes on beyond the picture's border does not count here.
+bool completes(const EstimatorSettings& settings);
+
+/// Whether surfaces are completed anywhere, be it beyond the picture's border alone.
+bool completes_anywhere(const EstimatorSettings& settings);
+
 /// How many pixels in a row share one estimate. Where the settings leave it open, it is 4 for the estimator that this
 /// was measured with, gtao, at full resolution, with so few slices that the denoiser must share them among neighbours
 /// anyway; else it is 1.

@@ -86,6 +86,12 @@ inline const std::map<std::string, RangeCheck>& names_of() {
   return names;
 }
 template <>
+inline const std::map<std::string, Completion>& names_of() {
+  static const std::map<std::string, Completion> names = {
+      {"none", Completion::none}, {"border", Completion::border}, {"all", Completion::all}};
+  return names;
+}
+template <>
 inline const std::map<std::string, Resolution>& names_of() {
   static const std::map<std::string, Resolution> names = {
       {"full", Resolution::full}, {"half", Resolution::half}, {"quarter", Resolution::quarter}};

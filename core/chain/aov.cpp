@@ -13,7 +13,7 @@ namespace {
 
 bool is_of_visibility(const DebugView* view) {
   return view->source == DebugSource::raw_ao || view->source == DebugSource::denoised_ao ||
-         view->source == DebugSource::tiles;
+         view->source == DebugSource::completed || view->source == DebugSource::tiles;
 }
 
 }  // namespace
@@ -55,6 +55,8 @@ Wanted::Wanted(const OutputSettings& settings)
       multi_bounce(settings.multi_bounce),
       fog_density(settings.fog_density) {
   const auto is_at_least = [](AovSource source) { return [source](const Aov& aov) { return aov.source >= source; }; };
+  const auto shows_completed = [](const DebugView* view) { return view->source == DebugSource::completed; };
+  completed = !settings.stats.empty() || std::ranges::any_of(debug_views, shows_completed);
   open_directions = std::ranges::any_of(aovs, is_at_least(AovSource::open_directions));
   visibility = std::ranges::any_of(aovs, is_at_least(AovSource::visibility)) || multi_bounce ||
                !settings.composite.empty() || !settings.preview.empty() ||

@@ -47,6 +47,7 @@ struct Wanted {
   std::vector<const DebugView*> debug_views;
   bool visibility = false;       // AO, or what is made from it
   bool open_directions = false;  // what is made from them, of an estimator that finds them
+  bool completed = false;        // what completed surfaces took of the visibility
   bool multi_bounce = false;
   double fog_density = 0;  // 1 / scene units
 };

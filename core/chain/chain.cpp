@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/chain/chain.h"
 
+#include "core/base/estimator_facts.h"
+#include "core/chain/completion.h"
 #include "core/chain/confidence.h"
 #include "core/chain/debug.h"
 #include "core/chain/open_sky.h"
@@ -11,7 +13,7 @@ namespace alcove {
 namespace {
 
 void download(gpu::Recorder& gpu, const FrameOutputs& out) {
-  for (const auto* result : {out.counts, out.tiles, out.squares, out.color_ao, out.composite})
+  for (const auto* result : {out.counts, out.tiles, out.squares, out.completion, out.color_ao, out.composite})
     if (result) gpu.download(*result);
   for (const auto& row : kAovs)
     if (out.*row.planes) gpu.download(*(out.*row.planes));
@@ -34,17 +36,20 @@ FrameOutputs run_chain(gpu::Recorder& gpu, const FrameInputs& frame, const Estim
   DebugStages stages;
   if (wanted.visibility || frame[RawPlane::beauty]) {
     const GBuffer work = downsample(gpu, gbuffer, block_grid(frame, int(settings.resolution)));
-    const Estimate estimated = estimate(gpu, work, frame, settings, needs_bent(settings, wanted));
+    const bool with_completed = wanted.completed && completes_anywhere(settings);
+    const Estimate estimated = estimate(gpu, work, frame, settings, needs_bent(settings, wanted), with_completed);
     const Denoiser denoiser = denoiser_of(settings);
+    out.completion = completion(gpu, work, estimated, denoiser.stride);
     const Visibility noisy = combine(gpu, work, estimated, wanted.has(&FrameOutputs::scales));
     const FilterRuns runs = dilate(gpu, work, estimated.listed, denoiser);
     const Visibility smooth = denoise(gpu, work, noisy, denoiser, runs);
     const Visibility whole = upsample(gpu, gbuffer, work, smooth, runs);
     open_directions = &bent_normal(gpu, gbuffer, whole.bent);
     visibility = shape(gpu, gbuffer, whole, shaping_of(settings), frame[RawPlane::material_ao]);
-    stages = {work, noisy.ao, denoiser.stride, smooth.ao, estimated.listed.sectors};
+    stages = {work, noisy.ao, denoiser.stride, smooth.ao, estimated.completed, estimated.listed.sectors};
     out.tiles = estimated.listed.counts;
     out.squares = estimated.squares;
+    out.completed = estimated.completed;
     if (wanted.has(&FrameOutputs::error)) out.error = estimated.error;
   }
 

@@ -23,6 +23,7 @@ EstimatorSettings settings_of_the_bracket(const EstimatorSettings& settings) {
   bracket.search = SliceSearch::steps;
   bracket.tolerance = 0;
   bracket.resolution = Resolution::full;
+  bracket.complete = Completion::none;
   return bracket;
 }
 

@@ -34,6 +34,11 @@ DebugPlane debug(gpu::Recorder& gpu, const DebugView& view, const GBuffer& gbuff
       shown = &stages.gbuffer;
       values = stages.denoised_ao;
       break;
+    case DebugSource::completed:
+      shown = &stages.gbuffer;
+      values = stages.completed;
+      stride = stages.stride;
+      break;
     case DebugSource::tiles:
       shown = &stages.gbuffer;
       values = stages.sectors;

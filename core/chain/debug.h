@@ -14,7 +14,8 @@ struct DebugStages {
   const gpu::Buffer* raw_ao = nullptr;
   int stride = 1;  // of raw_ao: one pixel of so many in a row has an estimate
   const gpu::Buffer* denoised_ao = nullptr;
-  const gpu::Buffer* sectors = nullptr;  // of the tiles
+  const gpu::Buffer* completed = nullptr;  // of the pixels of raw_ao; null: not asked for
+  const gpu::Buffer* sectors = nullptr;    // of the tiles
 };
 DebugPlane debug(gpu::Recorder& gpu, const DebugView& view, const GBuffer& gbuffer, const DebugStages& stages,
                  const FrameInputs& frame);

@@ -27,6 +27,8 @@ constexpr std::array kViews{
               DebugScale::fixed, 0, 1, true},
     DebugView{"denoised-ao", "denoised AO: before upsampling and shaping; 1 is open", kDebugValue,
               DebugSource::denoised_ao, DebugScale::fixed, 0, 1, true},
+    DebugView{"completed", "completed: visibility that surfaces take where they are only guessed to go on", kDebugValue,
+              DebugSource::completed, DebugScale::fixed, 0, 1, true},
     DebugView{
         "tiles",
         "tiles: share of the directions in which something may block; 0 is proved open, or as in the frame before",

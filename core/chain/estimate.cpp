@@ -94,8 +94,9 @@ gpu::Extent list_extent(const TileList& list) {
 Reach reach_of(const EstimatorSettings& settings, double radius) {
   // Crytek's samples fill the sphere of the radius whatever the falloff.
   const double end = settings.estimator == Estimator::crytek ? 1 : settings.falloff_end;
-  return {float(radius * end), float(radius * settings.falloff_start), settings.falloff, thickness_of(settings),
-          float(settings.bias)};
+  return {float(radius * end),  float(radius * settings.falloff_start),
+          settings.falloff,     thickness_of(settings),
+          float(settings.bias), settings.complete};
 }
 
 Sampling sampling_of(const EstimatorSettings& settings, int frame) {
@@ -110,7 +111,7 @@ Skipping skipping_of(const EstimatorSettings& settings, const gpu::Buffer* chang
 }
 
 Estimate estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame,
-                  const EstimatorSettings& settings, bool with_bent) {
+                  const EstimatorSettings& settings, bool with_bent, bool with_completed) {
   const auto radii = radii_of(settings);
   const Sampling sampling = sampling_of(settings, frame.frame);
   const Skipping skipping = skipping_of(settings, frame.changes);
@@ -120,12 +121,19 @@ Estimate estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs&
   Estimate result;
   result.ao = &gpu.buffer("ao", radii.size() * plane_bytes(gbuffer.view), gpu::Use::device);
   if (with_bent) result.bent = &gpu.buffer("bent", 3 * plane_bytes(gbuffer.view), gpu::Use::device);
+  gpu::Buffer* completed =
+      with_completed ? &gpu.buffer("completed", plane_bytes(gbuffer.view), gpu::Use::device) : nullptr;
+  // Tiles that are as in the frame before keep what it found in them.
+  if (completed && (is_exact || !skipping.changes)) gpu.clear(*completed);
 
   const Bounds surfaces = bounds(gpu, gbuffer, skipping.proves, sampling.stride);
   coarsen(gpu, gbuffer, surfaces);
   for (uint plane = 0; plane < radii.size(); plane++) {
     const Reach reach = reach_of(settings, radii[plane]);
-    Estimate out{result.ao, plane + 1 == radii.size() ? result.bent : nullptr};
+    const bool is_largest = plane + 1 == radii.size();
+    Estimate out{result.ao, is_largest ? result.bent : nullptr};
+    out.completed = is_largest ? completed : nullptr;
+    result.completed = out.completed;
     if (!is_exact) out.listed = classify(gpu, gbuffer, surfaces, skipping, reach.radius, sampling.stride, out, plane);
     result.listed = out.listed;
     switch (settings.estimator) {
@@ -177,7 +185,8 @@ TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const Bounds& boun
   gpu.clear(*list.counts);
   const uint mode = (skipping.skips_sky ? kClassifySkips : 0) | (skipping.proves ? kClassifyProves : 0) |
                     (skipping.is_ranged ? kClassifyRanged : 0) | (out.bent ? kClassifyWithBent : 0) |
-                    (skipping.changes ? kClassifyReuses : 0) | (skipping.tolerance > 0 ? kClassifyTolerates : 0);
+                    (skipping.changes ? kClassifyReuses : 0) | (skipping.tolerance > 0 ? kClassifyTolerates : 0) |
+                    (out.completed ? kClassifyWithCompleted : 0);
   const ClassifyParams params{gbuffer.view,
                               gbuffer.grid.origin,
                               radius,
@@ -197,7 +206,8 @@ TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const Bounds& boun
                 {kClassifyCounts, *list.counts},
                 {kClassifySectors, *list.sectors},
                 {kClassifyAo, *out.ao},
-                {kClassifyBent, out.bent ? *out.bent : *out.ao}},
+                {kClassifyBent, out.bent ? *out.bent : *out.ao},
+                {kClassifyCompleted, out.completed ? *out.completed : *out.ao}},
                {groups_of(int(tiles.x), 2 * kGroupY) * kGroupX, groups_of(int(tiles.y), 2) * kGroupY},
                {uint(stride), mode});
   return list;

@@ -29,20 +29,24 @@ struct Estimate {
   TileList listed{};               // of the largest radius
   gpu::Buffer* error = nullptr;    // with a tolerance, of the largest radius: see converge.h
   gpu::Buffer* squares = nullptr;  // the same
+  // A plane of the visibility that completed surfaces took, of the largest radius, before any filter: 0 to what is
+  // blocked, 0 at sky. Null: not asked for.
+  gpu::Buffer* completed = nullptr;
 };
 
 /// Runs the estimator of the settings for each of their radii. The frame gives the number that animates the noise, and
 /// what has changed.
 Estimate estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame,
-                  const EstimatorSettings& settings, bool with_bent = false);
+                  const EstimatorSettings& settings, bool with_bent = false, bool with_completed = false);
 
 /// What blocks around a receiver, for one radius.
 struct Reach {
   float radius;         // scene units: nothing beyond blocks
   float falloff_start;  // scene units: what is nearer blocks fully
   Falloff falloff;
-  float thickness;  // scene units that an occluder goes on behind what is seen of it; 0: as deep as wide
-  float bias;       // the least height that blocks: see EstimatorSettings::bias
+  float thickness;      // scene units that an occluder goes on behind what is seen of it; 0: as deep as wide
+  float bias;           // the least height that blocks: see EstimatorSettings::bias
+  Completion complete;  // where surfaces go on unseen: see EstimatorSettings::complete
 };
 Reach reach_of(const EstimatorSettings& settings, double radius);
 
@@ -83,7 +87,8 @@ Bounds bounds(gpu::Recorder& gpu, const GBuffer& gbuffer, bool proves, int strid
 void coarsen(gpu::Recorder& gpu, const GBuffer& gbuffer, const Bounds& bounds);
 
 /// Lists the tiles that an estimator must compute for one radius. Into a plane of `out` it writes the visibility of
-/// those that are left out. `prefix` stands before the names of its buffers where there is another estimate.
+/// those that are left out, and into out.completed 0 for them. `prefix` stands before the names of its buffers where
+/// there is another estimate.
 TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const Bounds& bounds, const Skipping& skipping,
                   float radius, int stride, const Estimate& out, uint plane, const std::string& prefix = "");
 

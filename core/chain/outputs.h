@@ -23,9 +23,14 @@ struct DebugPlane {
 
 /// Null: not asked for.
 struct FrameOutputs {
-  gpu::Buffer* counts = nullptr;              // one FrameCounts
-  gpu::Buffer* tiles = nullptr;               // one TileCounts, where there is an estimate
-  gpu::Buffer* squares = nullptr;             // with a tolerance, vec2 per tile: sum of its squares, and receivers
+  gpu::Buffer* counts = nullptr;   // one FrameCounts
+  gpu::Buffer* tiles = nullptr;    // one TileCounts, where there is an estimate
+  gpu::Buffer* squares = nullptr;  // with a tolerance, vec2 per tile: sum of its squares, and receivers
+  // with wanted.completed, vec2 per tile: what completed surfaces took of the visibility, and what all did
+  gpu::Buffer* completion = nullptr;
+  // with wanted.completed, a plane of the estimate's size: see Estimate. It stays on the device: whoever reads it calls
+  // download()
+  gpu::Buffer* completed = nullptr;
   gpu::Buffer* ao = nullptr;                  // a plane: visibility in [0, 1]; of several radii the mean
   gpu::Buffer* scales = nullptr;              // a plane for each radius, from the smallest on
   gpu::Buffer* normal = nullptr;              // planes x, y, z; 0 for sky

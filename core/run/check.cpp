@@ -57,6 +57,18 @@ void check_search(const Settings& settings) {
          e.stride);
 }
 
+/// A view of what is completed needs something that is.
+void check_completion(const Settings& settings) {
+  const auto& e = settings.estimator;
+  const auto views = debug_views_of(settings.output);
+  const bool is_shown = std::ranges::find(views, DebugSource::completed, &DebugView::source) != views.end();
+  if (!is_shown || completes_anywhere(e)) return;
+  if (e.complete == Completion::none)
+    fail(ErrorKind::usage, "--debug completed: with --complete none nothing is; border and all complete surfaces");
+  fail(ErrorKind::usage, "--debug completed: --estimator {} completes no surfaces; gtao and bitmask do",
+       e.estimator == Estimator::hbao ? "hbao" : "crytek");
+}
+
 /// Several radii make sense once each; bent normals need an estimator that finds open directions.
 void check_scales(const Settings& settings) {
   const auto& e = settings.estimator;
@@ -103,6 +115,7 @@ void check_settings(const Settings& settings) {
   check_tolerance(settings);
   check_skipping(settings);
   check_search(settings);
+  check_completion(settings);
   check_scales(settings);
   if (settings.estimator.estimator != Estimator::crytek && settings.estimator.bias >= 1)
     fail(ErrorKind::usage, "--bias {}: of every estimator but crytek it is the sine of an elevation, below 1",

@@ -48,7 +48,7 @@ class FrameRun {
       run_whole(source);
     else
       run_tiles(source, limits);
-    tally_.finish(source, settings_.estimator);
+    tally_.finish(source, settings_);
     report_.total_ms = total.ms();
   }
 

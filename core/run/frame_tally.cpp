@@ -37,6 +37,13 @@ void FrameTally::add_outputs(const FrameOutputs& outputs, const Window& computed
       report_.error_squares += tile.x;
       report_.error_pixels += tile.y;
     }
+  if (outputs.completion) {
+    auto& occlusion = report_.occlusion ? *report_.occlusion : report_.occlusion.emplace();
+    for (const vec2& tile : outputs.completion->as<const vec2>()) {
+      occlusion.by_completed += tile.x;
+      occlusion.whole += tile.y;
+    }
+  }
   if (outputs.tiles) {
     const auto tiles = outputs.tiles->as<TileCounts>()[0];
     report_.tiles.sky += tiles.sky;
@@ -47,16 +54,18 @@ void FrameTally::add_outputs(const FrameOutputs& outputs, const Window& computed
   }
 }
 
-void FrameTally::finish(const FrameSource& source, const EstimatorSettings& settings) {
+void FrameTally::finish(const FrameSource& source, const Settings& settings) {
   if (report_.pixels == 0) report_.pixels = source.data.pixels();
   report_.sky_pixels = counts_.sky;
   report_.repaired_pixels =
       counts_.repaired_depth + counts_.repaired_normals + counts_.repaired_material + counts_.repaired_beauty;
   if (has_ao_) {
-    const std::vector<double> radii = radii_of(settings);
+    const std::vector<double> radii = radii_of(settings.estimator);
     report_.notes = sample_.notes(radii.front(), radii.back(), source.file_data.width, source.file_data.height);
     report_.samples_per_pixel =
-        samples_per_pixel(settings) * double(report_.pixels - report_.sky_pixels) / double(report_.pixels);
+        samples_per_pixel(settings.estimator) * double(report_.pixels - report_.sky_pixels) / double(report_.pixels);
+    // An estimator that completes nothing, and sky, are no reason to leave the share out: it is 0.
+    if (!settings.output.stats.empty() && !report_.occlusion) report_.occlusion.emplace();
   }
   note_repairs();
   note_missing(source);

@@ -26,7 +26,7 @@ class FrameTally {
   void add_outputs(const FrameOutputs& outputs, const Window& computed, bool is_same);
 
   /// Writes the sums into the report, and what the user should know.
-  void finish(const FrameSource& source, const EstimatorSettings& settings);
+  void finish(const FrameSource& source, const Settings& settings);
 
  private:
   void note_repairs();

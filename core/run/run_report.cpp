@@ -41,6 +41,7 @@ Json json_of(const FrameReport& frame) {
       {"samples_per_pixel", frame.samples_per_pixel},
       {"repaired_pixels", frame.repaired_pixels}};
   if (frame.error_pixels > 0) json["error_estimate"] = std::sqrt(frame.error_squares / frame.error_pixels);
+  if (frame.occlusion) json["completed"] = frame.occlusion->completed_share();
   if (frame.error) json["error"] = frame.error->what();
   return json;
 }

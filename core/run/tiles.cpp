@@ -22,7 +22,8 @@ constexpr int kLeastRows = 16;     // px of a tile: most files compress so many 
 constexpr int kLeastColumns = 64;  // px of a tile
 // Words per tile of 8 x 8: sectors, bounds of groups, runs of the filters, and how the frame before differs.
 constexpr std::size_t kTileLists = 8;
-constexpr std::size_t kConvergeLists = 7;  // there is one after each power of two directions
+constexpr std::size_t kCompletionSums = 2;  // words per tile
+constexpr std::size_t kConvergeLists = 7;   // there is one after each power of two directions
 // A row of tiles is halved only while it is this many times as high as what it needs around it.
 constexpr int kFewBorders = 4;
 
@@ -51,14 +52,17 @@ std::uint64_t chain_bytes(const FrameSource& source, const Settings& settings) {
   low += e.denoise == Denoise::none || converges ? 0 : 2 * estimated;  // rows, columns
   low += searches_exactly(e) ? 4 : 0;                                  // vertices, marks, neighbours, whole arcs
   low += converges ? 2 : 0;                                            // blocked arcs, error
-  std::size_t planes = 2 + (reduced ? estimated : 0);                  // depth, normals, the whole estimate
+  const bool sums_completed = Wanted(o).completed && completes_anywhere(e);
+  low += sums_completed ? 1 : 0;
+  std::size_t planes = 2 + (reduced ? estimated : 0);  // depth, normals, the whole estimate
   planes += shapes(e) || !source[RawPlane::material_ao].empty() ? 1 + scales : 0;
   planes += bent ? 1 : 0;
   planes += wants(o, &FrameOutputs::confidence) ? 2 * 3 : 0;  // thin and solid: estimates, rows, columns
   planes += (o.multi_bounce ? 3 : 0) + source[RawPlane::beauty].size() + debug_views_of(o).size();
   for (const auto& aov : aovs_of(o)) planes += channels_of(aov, scales).size();
   const double tiles =
-      double(sizeof(TileBounds) + kTileLists * sizeof(uint) + (converges ? kConvergeLists : 1) * sizeof(ListedTile)) *
+      double(sizeof(TileBounds) + (kTileLists + (sums_completed ? kCompletionSums : 0)) * sizeof(uint) +
+             (converges ? kConvergeLists : 1) * sizeof(ListedTile)) *
       groups(kTile * int(e.resolution));
   return std::uint64_t(
       std::ceil(double(sizeof(float)) * (double(planes) + double(low) * groups(int(e.resolution))) + tiles));

@@ -249,7 +249,8 @@ TEST_F(CommandLine, stats_have_the_documented_fields_and_add_up) {
     EXPECT_GT(pass.at("ms"), 0);
     passes.push_back(pass.at("name"));
   }
-  EXPECT_THAT(passes, ElementsAre("prepare", "reconstruct", "classify", "horizon", "denoise", "denoise", "shape"));
+  EXPECT_THAT(passes, ElementsAre("prepare", "reconstruct", "classify", "horizon", "completion", "denoise", "denoise",
+                                  "shape"));
   const json& ms = one.at("ms");
   EXPECT_NEAR(ms.at("compute"), sum, 1e-9 * sum);
   for (const char* name : {"read", "compute", "write"}) EXPECT_GT(ms.at(name), 0) << name;

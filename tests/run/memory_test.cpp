@@ -27,17 +27,24 @@ class Memory : public testing::Test {
     all.output.output = folder / "ao.exr";
   }
 
-  /// Compares the bytes per pixel of all buffers with those that were expected.
-  void expect_enough(const Settings& settings, const std::string& what) const {
+  /// Bytes per pixel of all buffers.
+  struct Bytes {
+    double taken, expected;
+  };
+  Bytes bytes_of(const Settings& settings) const {
     gpu::Recorder gpu(device());
     FrameSource source = open_frame(settings, 0);
     const PixelMemory expected = pixel_memory(source, settings);
     const FrameInputs inputs = load_frame(gpu, source, settings, 0);
     run_chain(gpu, inputs, settings.estimator, settings.output);
     gpu.run();
-    const double taken = double(gpu.bytes()) / double(window.pixels());
-    EXPECT_LE(taken, double(expected.device_bytes)) << what;
-    EXPECT_GE(taken, 0.5 * double(expected.device_bytes)) << what << ": so much is never used";
+    return {double(gpu.bytes()) / double(window.pixels()), double(expected.device_bytes)};
+  }
+
+  void expect_enough(const Settings& settings, const std::string& what) const {
+    const Bytes bytes = bytes_of(settings);
+    EXPECT_LE(bytes.taken, bytes.expected) << what;
+    EXPECT_GE(bytes.taken, 0.5 * bytes.expected) << what << ": so much is never used";
   }
 
   const Window window{0, 0, 320, 180};
@@ -88,12 +95,27 @@ TEST_F(Memory, is_expected_of_every_output) {
   expect_enough(settings, "multi-bounce");
   settings.input.material_ao_channel = "material";
   expect_enough(settings, "material AO");
-  settings.output.debug = "tiles,raw-ao,denoised-ao";
+  settings.output.debug = "tiles,raw-ao,denoised-ao,completed";
   expect_enough(settings, "debug views");
   settings.output.aovs = "ao,bent-normal,normal,depth,confidence,specular-occlusion,ao-scales";
   settings.estimator.resolution = Resolution::half;
   settings.estimator.power = 2;
   expect_enough(settings, "all at half the resolution");
+}
+
+TEST_F(Memory, is_expected_of_what_completed_surfaces_take) {
+  for (const Resolution resolution : {Resolution::full, Resolution::half}) {
+    Settings settings = all;
+    settings.estimator.resolution = resolution;
+    const Bytes without = bytes_of(settings);
+    settings.output.stats = folder / "stats.json";
+    const Bytes with = bytes_of(settings);
+    EXPECT_GT(with.taken, without.taken);
+    // What is expected is rounded up to whole bytes per pixel.
+    EXPECT_LE(with.taken - without.taken, with.expected - without.expected + 1) << int(resolution);
+    settings.estimator.complete = Completion::none;
+    EXPECT_EQ(bytes_of(settings).expected, without.expected) << "nothing is made";
+  }
 }
 
 }  // namespace

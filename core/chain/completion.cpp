@@ -1,0 +1,24 @@
+// Host side of completion.comp.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/chain/completion.h"
+
+#include "core/chain/pass_common.h"
+#include "kernels/completion.h"
+
+namespace alcove {
+
+gpu::Buffer* completion(gpu::Recorder& gpu, const GBuffer& gbuffer, const Estimate& estimate, int stride) {
+  if (!estimate.completed) return nullptr;
+  const View& view = gbuffer.view;
+  const gpu::Extent tiles{groups_of(view.size.x, uint(kTile)), groups_of(view.size.y, uint(kTile))};
+  gpu::Buffer& sums = gpu.buffer("completion", sizeof(vec2) * tiles.x * tiles.y, gpu::Use::device);
+  gpu.dispatch("completion", CompletionParams{view, gbuffer.grid.origin, stride, planes_in(*estimate.ao, view) - 1},
+               {{kCompletionDepth, *gbuffer.depth},
+                {kCompletionAo, *estimate.ao},
+                {kCompletionCompleted, *estimate.completed},
+                {kCompletionSums, sums}},
+               tiles);
+  return &sums;
+}
+
+}  // namespace alcove

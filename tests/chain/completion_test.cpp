@@ -1,0 +1,390 @@
+// What completed surfaces take of the visibility: who asks for it, its sums, its picture, and what is said of it.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "core/base/estimator_facts.h"
+#include "core/chain/completion.h"
+#include "core/chain/debug.h"
+#include "core/chain/reuse.h"
+#include "core/run/frame_tally.h"
+#include "tests/support/command_line.h"
+#include "tests/support/device.h"
+#include "tests/support/single_pass.h"
+
+namespace alcove {
+namespace {
+
+using namespace test;
+using nlohmann::json;
+using testing::HasSubstr;
+
+constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+constexpr float kBefore = 0.5f;  // what stands in a plane before a pass that must leave it
+
+TEST(Completion, behind_others_is_of_occluders_with_an_end) {
+  for (const Estimator estimator : {Estimator::gtao, Estimator::bitmask, Estimator::hbao, Estimator::crytek})
+    for (const Completion complete : {Completion::none, Completion::border, Completion::all})
+      for (const ThicknessKind thickness :
+           {ThicknessKind::automatic, ThicknessKind::constant, ThicknessKind::infinite}) {
+        EstimatorSettings settings;
+        settings.estimator = estimator;
+        settings.complete = complete;
+        settings.thickness = thickness;
+        const bool knows = estimator == Estimator::gtao || estimator == Estimator::bitmask;
+        const bool ends = thickness != ThicknessKind::infinite;
+        EXPECT_EQ(completes(settings), knows && ends && complete == Completion::all)
+            << int(estimator) << int(complete) << int(thickness);
+        EXPECT_EQ(completes_anywhere(settings), knows && complete != Completion::none)
+            << int(estimator) << int(complete) << int(thickness);
+        EXPECT_EQ(reach_of(settings, 1).complete, complete);
+      }
+}
+
+/// A frame with sky on the device, at an odd place of its display window, and planes that a test fills by hand.
+class Planes : public testing::Test {
+ protected:
+  Planes() {
+    frame.data.x = frame.display.x + 3;
+    frame.data.y = frame.display.y + 5;
+    inputs = upload(recorder(), frame);
+    upload(recorder(), inputs);
+    gbuffer = reconstruct(recorder(), prepare(recorder(), inputs));
+  }
+
+  bool is_sky(int x, int y) const { return frame.depth[index(x, y)] >= kSky; }
+  std::size_t index(int x, int y) const { return std::size_t(y) * std::size_t(frame.data.width) + std::size_t(x); }
+  int width() const { return frame.data.width; }
+  int height() const { return frame.data.height; }
+
+  /// Whether a pixel has an estimate of its own: the places of successive rows are 0, 2, 1, 3.
+  static bool is_receiver(int x, int y, int stride) {
+    constexpr int kPlaces[] = {0, 2, 1, 3};
+    const int row = (y + 5) % stride;
+    const int place = stride == 4 ? kPlaces[row] : row;
+    return (x + 3 - place) % stride == 0;
+  }
+
+  /// Sixteenths, so that sums of them have no error.
+  static float value(int x, int y, int factor) { return float((x * 3 + y * factor) % 17) / 16; }
+
+  static gpu::Buffer& plane(const char* name, const std::vector<float>& values) {
+    gpu::Buffer& buffer = recorder().buffer(name, values.size() * sizeof(float), gpu::Use::upload);
+    std::ranges::copy(values, buffer.as<float>().begin());
+    recorder().upload(buffer);
+    return buffer;
+  }
+
+  /// A plane that is NaN wherever the pass has no business.
+  std::vector<float> receivers_only(int stride, int factor) const {
+    std::vector<float> values(frame.data.pixels(), kNaN);
+    for (int y = 0; y < height(); y++)
+      for (int x = 0; x < width(); x++)
+        if (is_receiver(x, y, stride) && !is_sky(x, y)) values[index(x, y)] = value(x, y, factor);
+    return values;
+  }
+
+  static std::vector<float> finished(const gpu::Buffer& result) {
+    recorder().download(result);
+    recorder().run();
+    const auto values = result.as<const float>();
+    return {values.begin(), values.end()};
+  }
+
+  HostFrame frame = furnished_room(61, 43).frame;
+  FrameInputs inputs;
+  GBuffer gbuffer;
+};
+
+TEST_F(Planes, are_added_up_tile_by_tile_over_the_receivers_of_surfaces) {
+  for (const int stride : {1, 2, 4})
+    for (const std::size_t radii : {1, 3}) {
+      std::vector<float> ao(frame.data.pixels() * (radii - 1), kNaN);
+      const std::vector<float> largest = receivers_only(stride, 5);
+      ao.insert(ao.end(), largest.begin(), largest.end());
+      Estimate estimate;
+      estimate.ao = &plane("ao of a test", ao);
+      estimate.completed = &plane("completed of a test", receivers_only(stride, 7));
+      gpu::Buffer* result = completion(recorder(), gbuffer, estimate, stride);
+      ASSERT_NE(result, nullptr);
+      const std::vector<float> sums = finished(*result);
+      const int columns = (width() + kTile - 1) / kTile;
+      const int rows = (height() + kTile - 1) / kTile;
+      std::vector<float> expected(std::size_t(2 * columns * rows), 0.0f);
+      int receivers = 0;
+      for (int y = 0; y < height(); y++)
+        for (int x = 0; x < width(); x++) {
+          if (!is_receiver(x, y, stride) || is_sky(x, y)) continue;
+          const std::size_t tile = std::size_t(y / kTile * columns + x / kTile);
+          expected[2 * tile] += value(x, y, 7);
+          expected[2 * tile + 1] += 1 - value(x, y, 5);
+          receivers++;
+        }
+      EXPECT_EQ(sums, expected) << "stride " << stride << ", radii " << radii;
+      EXPECT_GT(receivers, 100 / stride);
+      EXPECT_LT(receivers * stride, width() * height()) << "or else no sky was left out";
+    }
+}
+
+TEST_F(Planes, are_not_added_up_where_nobody_asked) {
+  Estimate estimate;
+  estimate.ao = &plane("ao of a test", receivers_only(1, 5));
+  EXPECT_EQ(completion(recorder(), gbuffer, estimate, 1), nullptr);
+}
+
+TEST_F(Planes, are_shown_in_grey_from_0_to_1_and_sky_apart) {
+  OutputSettings settings;
+  settings.debug = "completed";
+  const DebugView& view = *debug_views_of(settings).at(0);
+  EXPECT_TRUE(view.is_grey && view.scale == DebugScale::fixed && view.low == 0 && view.high == 1);
+  const int stride = 2;
+  DebugStages stages{gbuffer};
+  stages.raw_ao = &plane("ao of a test", std::vector<float>(frame.data.pixels(), kBefore));
+  stages.denoised_ao = stages.raw_ao;
+  stages.stride = stride;
+  stages.completed = &plane("completed of a test", receivers_only(stride, 7));
+  const DebugPlane shown = debug(recorder(), view, gbuffer, stages, inputs);
+  const std::vector<float> values = finished(*shown.values);
+  for (int y = 0; y < height(); y++)
+    for (int x = 0; x < width(); x++) {
+      if (is_sky(x, y)) ASSERT_EQ(values[index(x, y)], kSkyDepth) << x << " " << y;
+      // Other pixels show the value of the receiver to their left.
+      const int receiver = is_receiver(x, y, stride) ? x : x - 1;
+      if (is_sky(x, y) || receiver < 0 || is_sky(receiver, y)) continue;
+      ASSERT_EQ(values[index(x, y)], value(receiver, y, 7)) << x << " " << y;
+    }
+}
+
+TEST_F(Planes, are_0_in_tiles_that_are_left_out_and_else_as_they_were) {
+  const float radius = 0.05f;
+  const Skipping skipping{.skips_sky = true, .proves = true, .is_ranged = true, .tolerance = 0, .changes = nullptr};
+  for (const int stride : {1, 4}) {
+    const Bounds surfaces = bounds(recorder(), gbuffer, true, stride);
+    coarsen(recorder(), gbuffer, surfaces);
+    Estimate out;
+    out.ao = &plane("ao of a test", std::vector<float>(frame.data.pixels(), kBefore));
+    out.completed = &plane("completed of a test", std::vector<float>(frame.data.pixels(), kBefore));
+    const TileList list = classify(recorder(), gbuffer, surfaces, skipping, radius, stride, out, 0);
+    recorder().download(*list.sectors);
+    recorder().download(*out.ao);
+    const std::vector<float> completed = finished(*out.completed);
+    const auto ao = out.ao->as<const float>();
+    const auto sectors = list.sectors->as<const uint>();
+    int open = 0;
+    for (int y = 0; y < height(); y++)
+      for (int x = 0; x < width(); x++) {
+        const std::size_t tile = std::size_t(y / kTile * ((width() + kTile - 1) / kTile) + x / kTile);
+        const bool is_open = sectors[tile] == kTileOpen && is_receiver(x, y, stride);
+        ASSERT_EQ(completed[index(x, y)], is_open ? 0 : kBefore) << x << " " << y << " stride " << stride;
+        ASSERT_EQ(ao[index(x, y)], is_open ? 1 : kBefore) << x << " " << y << " stride " << stride;
+        open += is_open;
+      }
+    EXPECT_GT(open, 0);
+    EXPECT_LT(open, width() * height() / stride);
+  }
+}
+
+/// Every way to search that completes, without filters, so that the AO is the estimate.
+std::vector<EstimatorSettings> searches() {
+  EstimatorSettings plain = plain_settings();
+  plain.radius = 0.6;
+  plain.thickness = ThicknessKind::automatic;
+  plain.denoise = Denoise::none;
+  plain.stride = 1;
+  std::vector<EstimatorSettings> all(6, plain);
+  all[1].estimator = Estimator::bitmask;
+  all[2].search = SliceSearch::exact;
+  all[3].tolerance = 0.05;
+  all[4].steps = 64;
+  all[5].complete = Completion::border;
+  return all;
+}
+
+OutputSettings with_stats() {
+  OutputSettings output;
+  output.stats = "stats.json";
+  return output;
+}
+
+TEST(Completion, takes_no_more_than_is_blocked_and_changes_no_bit_where_it_is_asked_for) {
+  const HostFrame frame = furnished_room(80, 60).frame;
+  for (const EstimatorSettings& settings : searches()) {
+    const std::vector<float> before = compute_ao(recorder(), frame, settings).ao;
+    const FrameOutputs outputs = run_chain(recorder(), upload(recorder(), frame), settings, with_stats());
+    ASSERT_NE(outputs.completed, nullptr);
+    ASSERT_NE(outputs.completion, nullptr);
+    recorder().download(*outputs.completed);
+    recorder().run();
+    const auto completed = outputs.completed->as<const float>();
+    const auto ao = outputs.ao->as<const float>();
+    EXPECT_TRUE(std::ranges::equal(ao, before)) << int(settings.estimator) << int(settings.search);
+    double by_completed = 0;
+    double whole = 0;
+    for (std::size_t i = 0; i < ao.size(); i++) {
+      ASSERT_GE(completed[i], 0) << i;
+      ASSERT_LE(completed[i], 1 - ao[i] + 1e-5f) << i;
+      by_completed += completed[i];
+      whole += 1 - ao[i];
+    }
+    vec2 sums{};
+    for (const vec2& tile : outputs.completion->as<const vec2>()) {
+      sums.x += tile.x;
+      sums.y += tile.y;
+    }
+    EXPECT_NEAR(sums.x, by_completed, 1e-4 * whole);
+    EXPECT_NEAR(sums.y, whole, 1e-4 * whole);
+    EXPECT_GT(whole, 0);
+  }
+}
+
+TEST(Completion, is_made_only_where_something_is_completed_and_somebody_asks) {
+  const HostFrame frame = furnished_room(64, 36).frame;
+  const auto is_made = [&](const EstimatorSettings& settings, const OutputSettings& output) {
+    const FrameOutputs outputs = run_chain(recorder(), upload(recorder(), frame), settings, output);
+    recorder().run();
+    EXPECT_EQ(outputs.completed != nullptr, outputs.completion != nullptr);
+    return outputs.completed != nullptr;
+  };
+  for (EstimatorSettings settings : searches()) {
+    EXPECT_TRUE(is_made(settings, with_stats()));
+    EXPECT_FALSE(is_made(settings, {}));
+    settings.complete = Completion::none;
+    EXPECT_FALSE(is_made(settings, with_stats()));
+  }
+  OutputSettings shown;
+  shown.debug = "completed";
+  shown.aovs = "depth";
+  EXPECT_TRUE(is_made(searches().front(), shown)) << "a view of it needs the estimate";
+  shown.debug = "raw-ao";
+  EXPECT_FALSE(is_made(searches().front(), shown));
+  for (const Estimator estimator : {Estimator::hbao, Estimator::crytek}) {
+    EstimatorSettings settings = searches().front();
+    settings.estimator = estimator;
+    EXPECT_FALSE(is_made(settings, with_stats()));
+  }
+}
+
+TEST(Completion, stays_in_tiles_that_are_as_in_the_frame_before) {
+  EstimatorSettings settings = searches().front();
+  settings.radius = 0.05;
+  HostFrame frame = furnished_room(256, 192).frame;
+  LastFrame last;
+  const auto run = [&](FrameInputs inputs) {
+    EXPECT_FALSE(last.is_same(recorder(), inputs, settings));
+    const FrameOutputs outputs = run_chain(recorder(), inputs, settings, with_stats());
+    recorder().download(*outputs.completed);
+    recorder().run();
+    last.keep(outputs);
+    return outputs;
+  };
+  gpu::Buffer& completed = *run(upload(recorder(), frame)).completed;
+  std::ranges::fill(completed.as<float>(), kBefore);
+  recorder().upload(completed);
+  frame.depth.back() *= 0.999f;
+  const FrameOutputs outputs = run(upload(recorder(), frame));
+  ASSERT_GT(outputs.tiles->as<TileCounts>()[0].kept, 0);
+  const auto values = outputs.completed->as<const float>();
+  const auto kept = std::ranges::count(values, kBefore);
+  EXPECT_GT(kept, std::ptrdiff_t(values.size() / 4));
+  double by_completed = 0;
+  for (const vec2& tile : outputs.completion->as<const vec2>()) by_completed += tile.x;
+  EXPECT_GE(by_completed, kBefore * double(values.size() / 4)) << "what stays counts";
+}
+
+/// The report of a frame whose parts have these sums by tile.
+json report_of(const std::vector<std::vector<vec2>>& parts) {
+  FrameReport report;
+  FrameTally tally(report);
+  gpu::Buffer& counts = recorder().buffer("counts of a test", sizeof(FrameCounts), gpu::Use::upload);
+  counts.as<FrameCounts>()[0] = {};
+  for (const auto& tiles : parts) {
+    FrameOutputs outputs;
+    outputs.counts = &counts;
+    outputs.completion = &recorder().buffer("sums of a test", tiles.size() * sizeof(vec2), gpu::Use::upload);
+    std::ranges::copy(tiles, outputs.completion->as<vec2>().begin());
+    tally.add_outputs(outputs, {0, 0, 8, 8}, false);
+  }
+  return json::parse(frame_json(report));
+}
+
+TEST(Completion, of_a_frame_is_its_share_of_all_that_is_blocked_in_all_parts) {
+  EXPECT_EQ(report_of({{{1, 4}, {0, 2}}}).at("completed"), 1.0 / 6);
+  EXPECT_EQ(report_of({{{1, 4}, {0, 2}}, {{2, 2}}}).at("completed"), 3.0 / 8) << "not the mean of the parts' shares";
+  EXPECT_EQ(report_of({{{0, 0}}}).at("completed"), 0) << "nothing is occluded";
+  EXPECT_FALSE(report_of({}).contains("completed"));
+}
+
+TEST(Completion, of_millions_of_tiles_loses_none) {
+  // From 2^24 on single precision has no odd numbers.
+  const std::vector<vec2> tiles(std::size_t(1) << 19, vec2{21, 63});
+  const double count = 3 * double(tiles.size());
+  EXPECT_EQ(report_of({tiles, tiles, tiles, {{0, 64}}}).at("completed"), 21 * count / (63 * count + 64));
+}
+
+class CompletionStats : public CommandLine {
+ protected:
+  /// What the statistics say of the frame.
+  json stats_of(std::vector<std::string> more) const {
+    more.insert(more.end(), {"--stats", folder / "stats.json"});
+    const Finished finished = run(more);
+    EXPECT_EQ(finished.code, 0) << finished;
+    return json::parse(read_bytes(folder / "stats.json")).at("frames").at(0);
+  }
+};
+
+TEST_F(CompletionStats, are_there_wherever_ao_is_and_0_where_nothing_is_completed) {
+  for (const std::vector<std::string>& settings :
+       {std::vector<std::string>{"--complete", "none"}, {"--estimator", "hbao"}, {"--estimator", "crytek"}})
+    EXPECT_EQ(stats_of(settings).at("completed"), 0) << testing::PrintToString(settings);
+  for (const std::vector<std::string>& settings :
+       {std::vector<std::string>{}, {"--complete", "border"}, {"--resolution", "half"}, {"--search", "exact"}}) {
+    const json share = stats_of(settings).at("completed");
+    EXPECT_TRUE(share.is_number() && share >= 0 && share <= 1) << share << testing::PrintToString(settings);
+  }
+  EXPECT_FALSE(stats_of({"--aov", "depth"}).contains("completed"));
+}
+
+TEST_F(CompletionStats, of_sky_are_0) {
+  FrameFile input = wall_frame();
+  std::ranges::fill(input.planes["ViewLayer.Depth.Z"], 1e10f);
+  input.write(frame);
+  EXPECT_EQ(stats_of({}).at("completed"), 0);
+  EXPECT_EQ(stats_of({"--no-skip"}).at("completed"), 0);
+}
+
+TEST_F(CompletionStats, are_in_no_log_that_nobody_made_them_for) {
+  const std::string log = folder / "log";
+  ASSERT_EQ(run({"--log-json", log}).code, 0);
+  EXPECT_THAT(read_bytes(log), testing::Not(HasSubstr("\"completed\"")));
+  stats_of({"--log-json", log});
+  EXPECT_THAT(read_bytes(log), HasSubstr("\"completed\""));
+}
+
+TEST_F(CompletionStats, and_views_change_no_bit_of_the_ao) {
+  ASSERT_EQ(run({}).code, 0);
+  const std::string before = read_bytes(ao);
+  stats_of({"--debug", "completed"});
+  EXPECT_TRUE(read_bytes(ao) == before);
+}
+
+TEST_F(CompletionStats, of_a_view_without_any_are_refused) {
+  const std::pair<std::vector<std::string>, std::vector<std::string>> cases[] = {
+      {{"--complete", "none"}, {"--debug completed", "--complete none", "border"}},
+      {{"--estimator", "hbao"}, {"--debug completed", "--estimator hbao", "gtao and bitmask"}},
+      {{"--estimator", "crytek"}, {"--debug completed", "--estimator crytek", "gtao and bitmask"}},
+  };
+  for (auto [settings, words] : cases) {
+    settings.insert(settings.end(), {"--debug", "completed"});
+    const Finished finished = run(settings);
+    EXPECT_EQ(finished.code, 2) << finished;
+    for (const auto& word : words) EXPECT_THAT(finished.err, HasSubstr(word));
+  }
+}
+
+}  // namespace
+}  // namespace alcove
