@@ -22,7 +22,21 @@
 //   plane.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#define X_BB
+#ifdef X_NOJUMPS
+#define Y_JUMPS false
+#else
+#define Y_JUMPS jumps
+#endif
+#ifdef X_NOPENDS
+#define Y_PENDS false
+#else
+#define Y_PENDS pends
+#endif
+#ifdef X_NOBORDER
+#define Y_CUT false
+#else
+#define Y_CUT side.is_cut && last.above && last.offset > 0.0
+#endif
 #define VAR_SHARE 1.0
 #define VAR_PIXELS 0.0
 #include "horizon.h"
@@ -56,6 +70,15 @@ const uint kFalloff = kMode & ~kWithBent;
 #ifndef VAR_COMPLETE
 #define VAR_COMPLETE true
 #endif
+#ifdef X_NOJUMPS
+#else
+#endif
+#ifdef X_NOPENDS
+#else
+#endif
+#ifdef X_NOBORDER
+#else
+#endif
 const bool kComplete = VAR_COMPLETE;
 const bool kBent = (kMode & kWithBent) != 0u;
 
@@ -73,7 +96,6 @@ const float kNone = 1e30;
 /// blocks.
 struct Run {
   vec2 start, end;  // its outer samples
- vec2 tip, tip2;
   float gap;        // steps from the sample before it
   float near, far;  // largest and smallest of the samples that block
 };
@@ -108,18 +130,6 @@ uint sectors_of(Receiver r, Reach reach, Run run, float z, float gap_behind, flo
   // time.
   const float back = slope_of(kThickness == kThicknessWidth ? run.start + width * away_from_eye(r, run.start)
                                                             : back_of(r, run.start, reach.thickness, reach.radius));
-#ifdef X_BACK3
-  const vec2 tip = run.tip.x > 0.0 ? run.tip : run.end;
-  const float back4 = slope_of(tip + width * away_from_eye(r, tip));
-  const vec2 tip2 = run.tip2.x > 0.0 ? run.tip2 : run.start;
-  const float back5 = slope_of(tip2 + width * away_from_eye(r, tip2));
-  const float backs = min(min(min(back, back5), back4), run.far);
-  return run.near >= run.far ? sectors_below(run.near, shift) & ~sectors_below(backs, shift) : 0u;
-#endif
-#ifdef X_BACK2
-  const float back2 = slope_of(run.end + width * away_from_eye(r, run.end));
-  return run.near >= run.far ? sectors_below(run.near, shift) & ~sectors_below(min(min(back, back2), run.far), shift) : 0u;
-#endif
   return run.near >= run.far ? sectors_below(run.near, shift) & ~sectors_below(min(back, run.far), shift) : 0u;
 }
 
@@ -203,7 +213,7 @@ vec3 search_runs(Receiver r, Side side, Reach reach, Draw draw, uint range) {
   bool own = true;
   Sample last = receiver_sample(r);
   Blocked blocked = Blocked(-1.0, -1.0, 0u);
-  Run run = Run(vec2(0), vec2(0), vec2(0), vec2(0), 0.0, -1.0, 1.0);
+  Run run = Run(vec2(0), vec2(0), 0.0, -1.0, 1.0);
   for (int k = first_sample(range, int(kSteps), count, side.reach, draw.jitter, step_exponent(int(kSteps), side.reach));
        k < count && last.offset <= last_step; k++) {
     const Sample s = sample_at(r, side, reach, step_offset(k, int(kSteps), count, side.reach, draw.jitter));
@@ -215,7 +225,7 @@ vec3 search_runs(Receiver r, Side side, Reach reach, Draw draw, uint range) {
     if (connected) run.end = s.place;
     if (!connected || !s.above) {
       if (kHard) blocked.sectors |= sectors_of(r, reach, run, last.z, gap, draw.shift);
-      run = Run(s.place, s.place, vec2(0), vec2(0), gap, -1.0, 1.0);
+      run = Run(s.place, s.place, gap, -1.0, 1.0);
       own = !s.above;
     }
     if (own) {
@@ -237,104 +247,67 @@ vec3 search_runs(Receiver r, Side side, Reach reach, Draw draw, uint range) {
 }
 
 // ---- completion
-#ifndef VAR_SHARE
-#define VAR_SHARE 1.0
-#define VAR_PIXELS 0.0
-#endif
-struct Hidden {
-  bool open, own;
-  vec2 normal, end, until;
-  Run run;
-  float z, gap;
-};
-
 vec2 normal_in_slice(Receiver r, Side side, Reach reach, float offset) {
   const ivec2 hit = r.pixel + ivec2(round(side.direction_px * offset));
-  const vec3 n = unpack_normal(normal[hit.y * reach.width + hit.x]);
+  const vec3 n = octahedral_direction(unpackSnorm2x16(normal[hit.y * reach.width + hit.x]));
   const vec2 p = vec2(dot(n, side.t), dot(n, r.eye));
   return p * inversesqrt(max(dot(p, p), 1e-12));
 }
 
 /// Slopes (largest, smallest) of the straight piece from `end` along `direction` to the ray of `until`, in the sphere.
-vec2 slopes_of_piece(Receiver r, Reach reach, vec2 end, vec2 direction, vec2 n, vec2 until, inout vec2 tip) {
-  const vec2 ray = -away_from_eye(r, until);  // towards the eye
-  // until - u * ray on the plane: dot(n, until - u ray - end) = 0
+vec2 slopes_of_piece(Receiver r, Reach reach, vec2 end, vec2 direction, vec2 n, vec2 until) {
+  const vec2 ray = r.perspective ? vec2(0, r.eye_distance) - until : vec2(0, 1);  // towards the eye
   const float down = dot(n, ray);
   const float u = dot(n, until - end) / down;
   const vec2 far = until - u * ray;
   const float b = dot(end, direction), inside = b * b - dot(end, end) + reach.radius_sq;
   const float root = sqrt(max(inside, 0.0));
-  float last = down > 1e-4 ? max(dot(far - end, direction), 0.0) : 1e30;
-  // across > 0
-  if (direction.x < 0.0) last = min(last, 0.999 * end.x / -direction.x);
+  float last = down > 0.0 ? max(dot(far - end, direction), 0.0) : 1e30;
+  last = direction.x < 0.0 ? min(last, 0.999 * end.x / -direction.x) : last;
   const float t0 = max(0.0, -b - root), t1 = min(last, root - b);
-  if (!(inside > 0.0 && t1 > t0)) return vec2(-1.0, 1.0);
-  tip = end + t1 * direction;
   const float s0 = slope_of(end + t0 * direction), s1 = slope_of(end + t1 * direction);
-  return vec2(max(s0, s1), min(s0, s1));
+  return inside > 0.0 && t1 > t0 ? vec2(max(s0, s1), min(s0, s1)) : vec2(-1.0, 1.0);
 }
 
-bool faces_eye(Receiver r, vec2 n, vec2 at) { return dot(n, -away_from_eye(r, at)) > 0.02; }
+bool faces_eye(Receiver r, vec2 n, vec2 at) { return r.perspective ? dot(n, vec2(0, r.eye_distance) - at) > 0.0 : n.y > 0.0; }
 
-uint close_hidden(Receiver r, Reach reach, Hidden h, inout float own_near, float shift) {
-  const vec2 d = vec2(h.normal.y, -h.normal.x);
-  const vec2 s = slopes_of_piece(r, reach, h.end, d, h.normal, h.until, h.run.tip);
-  if (h.own) { own_near = max(own_near, s.x); return 0u; }
-  h.run.near = max(h.run.near, s.x);
-  h.run.far = min(h.run.far, s.y);
-  return sectors_of(r, reach, h.run, h.z, h.gap, shift);
+uint sectors_between(vec2 slopes, float shift) {
+  return slopes.x >= slopes.y ? sectors_below(slopes.x, shift) & ~sectors_below(slopes.y, shift) : 0u;
+}
+
+/// Where a sample is in the slice.
+vec2 place_at_offset(Receiver r, Side side, Reach reach, float offset) {
+  const vec2 beside = round(side.direction_px * offset);
+  const ivec2 hit = r.pixel + ivec2(beside);
+  const float z = depth[hit.y * reach.width + hit.x];
+  return place_of(r, side, beside, z, r.perspective ? z : 1.0);
 }
 
 vec3 search_completed(Receiver r, Side side, Reach reach, Draw draw, uint range) {
   const int count = range != 0u ? min(int(kSteps), int(side.reach)) : 0;
   const float last_step = float(last_of_range(range)) + 0.5;
+  vec3 last_arcs = vec3(0), sum = vec3(0);
   bool own = true;
+  uint jumps = 0u, starts = 0u;
   Sample last = receiver_sample(r);
   Blocked blocked = Blocked(-1.0, -1.0, 0u);
-  Run run = Run(vec2(0), vec2(0), vec2(0), vec2(0), 0.0, -1.0, 1.0);
-  Hidden hidden = Hidden(false, false, vec2(0), vec2(0), vec2(0), run, 0.0, 0.0);
-  for (int k = first_sample(range, int(kSteps), count, side.reach, draw.jitter, step_exponent(int(kSteps), side.reach));
-       k < count && last.offset <= last_step; k++) {
+  Run run = Run(vec2(0), vec2(0), 0.0, -1.0, 1.0);
+  int k = first_sample(range, int(kSteps), count, side.reach, draw.jitter, step_exponent(int(kSteps), side.reach));
+  for (; k < count && last.offset <= last_step; k++) {
     const Sample s = sample_at(r, side, reach, step_offset(k, int(kSteps), count, side.reach, draw.jitter));
     const float gap = s.offset - last.offset;
     const bool connected = same_surface(r, reach, s.z, last.z, gap);
-    const bool crosses = both(both(s.above, last.above), both(connected, s.within != last.within));
+    // A run that crosses the sphere between two samples blocks half way to the one beyond.
+    const bool crosses = kHard ? both(both(s.above, last.above), both(connected, s.within != last.within)) : false;
     const vec2 slopes = slopes_of(s, crosses, mix(s.slope, last.slope, 0.5));
-    if (hidden.open) {
-      const bool hides = s.above && dot(hidden.normal, s.place - hidden.end) > 0.0;
-      if (hides) hidden.until = s.place;
-      else {
-#ifdef X_MEET
-        if (s.above) hidden.until = s.place;
-#endif
-        blocked.sectors |= close_hidden(r, reach, hidden, blocked.near, draw.shift);
-        hidden.open = false;
-      }
-    }
     if (connected) run.end = s.place;
+    const uint bit = 1u << uint(k);
+    jumps |= both(both(!connected, last.offset > 0.0), both(both(s.above, last.above), max(s.z, last.z) < kSkyDepth)) ? bit : 0u;
     if (!connected || !s.above) {
-      bool pends = false;
-      if (!connected && s.above && last.above && last.offset > 0.0 && s.z < last.z) {
-        const vec2 n = normal_in_slice(r, side, reach, last.offset);
-        pends = faces_eye(r, n, last.place) && dot(n, s.place - last.place) > 0.0;
-        if (pends) {
-          if (hidden.open) blocked.sectors |= close_hidden(r, reach, hidden, blocked.near, draw.shift);
-          hidden = Hidden(true, own, n, last.place, s.place, run, last.z, gap);
-        }
-      }
-      if (!pends && !own) blocked.sectors |= sectors_of(r, reach, run, last.z, gap, draw.shift);
-      const vec2 barrier = run.start;
-      run = Run(s.place, s.place, vec2(0), vec2(0), gap, -1.0, 1.0);
+      blocked.sectors |= sectors_of(r, reach, run, last.z, gap, draw.shift);
+      run = Run(s.place, s.place, gap, -1.0, 1.0);
       own = !s.above;
-      if (!connected && s.above && last.above && last.offset > 0.0 && s.z > last.z) {
-        const vec2 n = normal_in_slice(r, side, reach, s.offset);
-        if (faces_eye(r, n, s.place) && dot(n, last.place - s.place) > 0.0) {
-          const vec2 until = dot(n, barrier - s.place) > 0.0 ? barrier : last.place;
-          const vec2 back = slopes_of_piece(r, reach, s.place, vec2(-n.y, n.x), n, until, run.tip2);
-          run.near = back.x;
-          run.far = back.y;
-        }
-      }
+      starts |= bit;
     }
     if (own) {
       blocked.near = max(blocked.near, slopes.x);
@@ -344,27 +317,33 @@ vec3 search_completed(Receiver r, Side side, Reach reach, Draw draw, uint range)
     }
     last = s;
   }
-  if (hidden.open) blocked.sectors |= close_hidden(r, reach, hidden, blocked.near, draw.shift);
-  // the border
-#ifndef X_NOBORDER
-  #ifdef X_BB
-  if (side.is_cut && last.offset > 0.0 && last.z < 1e29) {
-#else
-  if (side.is_cut && last.above && last.offset > 0.0) {
-#endif
-    const vec2 n = normal_in_slice(r, side, reach, last.offset);
-    if (faces_eye(r, n, last.place)) {
-      const vec2 d = vec2(n.y, -n.x);
-      const float b = dot(last.place, d), inside = b * b - dot(last.place, last.place) + reach.radius_sq;
-      const vec2 piece = slopes_of_piece(r, reach, last.place, d, n, last.place + (sqrt(max(inside, 0.0)) + abs(b)) * d, run.tip);
-      if (own) blocked.near = max(blocked.near, piece.x);
-      run.near = max(run.near, piece.x);
-      run.far = min(run.far, piece.y);
-    }
-    run.gap = 1e30;
+  for (uint left = jumps; left != 0u; left &= left - 1u) {
+    const int at = findLSB(left);
+    const uint after = at >= 31 ? 0u : starts >> uint(at + 1) << uint(at + 1);
+    const uint before = starts & ((1u << uint(at)) - 1u);
+    const float ob = step_offset(at, int(kSteps), count, side.reach, draw.jitter);
+    const float oa = step_offset(at - 1, int(kSteps), count, side.reach, draw.jitter);
+    const vec2 pb = place_at_offset(r, side, reach, ob), pa = place_at_offset(r, side, reach, oa);
+    // the deeper one is further from the eye
+    const vec2 eb = r.perspective ? vec2(0, r.eye_distance) - pb : vec2(0, -pb.y), ea = r.perspective ? vec2(0, r.eye_distance) - pa : vec2(0, -pa.y);
+    const bool back = dot(eb, eb) > dot(ea, ea);
+    const int other = back ? (before != 0u ? findMSB(before) : 0) : (after != 0u ? findLSB(after) : k) - 1;
+    const vec2 po = place_at_offset(r, side, reach, step_offset(other, int(kSteps), count, side.reach, draw.jitter));
+    const vec2 n = normal_in_slice(r, side, reach, back ? ob : oa);
+    const vec2 end = back ? pb : pa, hider = back ? pa : pb;
+    const vec2 until = dot(n, po - end) > 0.0 ? po : hider;
+    const vec2 piece = slopes_of_piece(r, reach, end, back ? vec2(-n.y, n.x) : vec2(n.y, -n.x), n, until);
+    blocked.sectors |= both(faces_eye(r, n, end), dot(n, hider - end) > 0.0) ? sectors_between(piece, draw.shift) : 0u;
   }
-#endif
-  if (!own) blocked.sectors |= sectors_of(r, reach, run, last.z, 1.0, draw.shift);
+  bool endless = false;
+  for (bool once = Y_CUT; once; once = false) {
+    const vec2 n = normal_in_slice(r, side, reach, last.offset);
+    endless = true;
+    const vec2 piece = slopes_of_piece(r, reach, last.place, vec2(n.y, -n.x), vec2(0, 0), last.place);
+    blocked.sectors |= faces_eye(r, n, last.place) ? sectors_between(vec2(piece.x, own ? piece.y : -1.0), draw.shift) : 0u;
+  }
+  if (endless && run.near >= run.far) blocked.sectors |= sectors_below(run.near, draw.shift);
+  blocked.sectors |= sectors_of(r, reach, run, last.z, 1.0, draw.shift);
   return blocked_arcs(side, blocked, draw.shift);
 }
 
