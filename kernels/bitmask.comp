@@ -35,6 +35,7 @@ layout(constant_id = kBitmaskSlicesId) const uint kSlices = 3;
 layout(constant_id = kBitmaskStepsId) const uint kSteps = 6;
 layout(constant_id = kBitmaskModeId) const uint kMode = kFalloffNone;
 layout(constant_id = kBitmaskStrideId) const int kStride = 1;
+layout(constant_id = kBitmaskCompleteId) const uint kComplete = 0;
 layout(scalar, push_constant) uniform Push { BitmaskParams params; };
 layout(scalar, binding = kBitmaskDepth) readonly buffer Depth { float depth[]; };
 layout(scalar, binding = kBitmaskNormal) readonly buffer Normal { uint normal[]; };
@@ -42,12 +43,14 @@ layout(scalar, binding = kBitmaskAo) writeonly buffer Ao { float ao[]; };
 layout(scalar, binding = kBitmaskList) readonly buffer List { ListedTile list[]; };
 layout(scalar, binding = kBitmaskCounts) readonly buffer Counts { TileCounts counts; };
 layout(scalar, binding = kBitmaskBent) writeonly buffer Bent { float bent[]; };
+layout(scalar, binding = kBitmaskCompleted) writeonly buffer Completed { float completed[]; };
 
-const uint kFalloff = kMode & ~kWithBent;
+const uint kFalloff = kMode & ~(kWithBent | kWithCompleted);
 const bool kBent = (kMode & kWithBent) != 0u;
+const bool kTellsCompleted = (kMode & kWithCompleted) != 0u;
 
 /// The blocked part of a side's arc integral and, with bent normals, of bent_to().
-vec3 search(Receiver r, Side side, Reach reach, Draw draw, uint range) {
+vec4 search(Receiver r, Side side, Reach reach, Draw draw, uint range) {
   const float jitter = draw.jitter, shift = draw.shift;
   const int count = range != 0u ? min(int(kSteps), int(side.reach)) : 0;
   const float whole = whole_arc(side), endless = 1e30;
@@ -93,7 +96,7 @@ vec3 search(Receiver r, Side side, Reach reach, Draw draw, uint range) {
     last_offset = offset;
   }
   if (kBent && kFalloff == kFalloffNone) bent_blocked = bent_of_sectors(side, bits, shift);
-  return vec3(blocked * whole / float(kSectors), bent_blocked);
+  return vec4(blocked * whole / float(kSectors), bent_blocked, 0.0);
 }
 
 /// Random numbers of a side, from those of its pixel. The boundaries of the mask move by one number per slice. The

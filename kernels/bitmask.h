@@ -13,12 +13,15 @@ ALCOVE_CONSTANT uint kBitmaskAo = 2;
 ALCOVE_CONSTANT uint kBitmaskBent = 3;
 ALCOVE_CONSTANT uint kBitmaskList = 4;    // in: one ListedTile per tile, from classify: what to estimate
 ALCOVE_CONSTANT uint kBitmaskCounts = 5;  // in: TileCounts
+// out: one float per pixel, the visibility that completed surfaces took; only with kWithCompleted
+ALCOVE_CONSTANT uint kBitmaskCompleted = 6;
 
 ALCOVE_CONSTANT uint kBitmaskSlicesId = 0;  // specialization: slices per pixel
 ALCOVE_CONSTANT uint kBitmaskStepsId = 1;   // specialization: steps to each side of a slice
-ALCOVE_CONSTANT uint kBitmaskModeId = 2;    // specialization: one of kFalloff* of falloff.glsl, and kWithBent or not
+ALCOVE_CONSTANT uint kBitmaskModeId = 2;    // specialization: one of kFalloff* of falloff.glsl, and kWith* or not
 // specialization: one pixel of so many in a row is estimated, 1, 2 or 4: see stride.glsl
 ALCOVE_CONSTANT uint kBitmaskStrideId = 3;
+ALCOVE_CONSTANT uint kBitmaskCompleteId = 4;  // specialization: bits of kCompletes* of horizon.h
 
 struct BitmaskParams {
   View view;

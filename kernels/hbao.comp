@@ -134,8 +134,9 @@ void main() {
       side.normal = vec2(float(sign) * n_t, n_v);
       side.direction_px = float(sign) / pixels * image_t;
       side.least_height = clearance;
+      bool is_cut;
       side.reach = reach_of_side(params.view, pixel, side.direction_px, pixels, eye.z, float(sign) * t.z, sin_reach,
-                                 params.radius);
+                                 params.radius, is_cut);
       blocked += share * occlusion(side, pixel, position, fract(noise.y + kGolden * float(2u * s + uint(sign > 0))),
                                    list[place.tile].ranges[sector_of(side.direction_px)]);
     }

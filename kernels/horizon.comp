@@ -3,7 +3,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // In: planar depth, view normals.
-// Out: visibility, 1 = open; the mean open direction (see bent.glsl) where it is asked for.
+// Out: visibility, 1 = open; where they are asked for, the mean open direction (see bent.glsl), and what of the
+// visibility completed surfaces took.
 //
 // Jimenez et al., "Practical Realtime Strategies for Accurate Indirect Occlusion", 2016, with these differences:
 // - Slices are even in azimuth about the view ray, not on the screen, so that no Jacobian is owed off axis.
@@ -16,29 +17,14 @@
 //   wide ("width as thickness": a blade of grass is as thin as it is narrow, a column as thick as it is broad), or as
 //   the user says. Nothing beyond the radius blocks. What the own surface blocks is an interval, exact; what all other
 //   runs block is counted in 24 sectors (sectors.glsl).
+// - A run that something nearer interrupts goes on behind it, as far as it would not be seen, and one that the image's
+//   border cuts goes on beyond it (complete.glsl).
 // - Falloff weighs each arc by the distance of the sample that first blocks it ("incremental arcs"), which is exact for
 //   height fields.
 // - The result is 1 - (sum of blocked arcs) / (sum of whole arcs): exactly 1 where nothing rises above the tangent
 //   plane.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#ifdef X_NOJUMPS
-#define Y_JUMPS false
-#else
-#define Y_JUMPS jumps
-#endif
-#ifdef X_NOPENDS
-#define Y_PENDS false
-#else
-#define Y_PENDS pends
-#endif
-#ifdef X_NOBORDER
-#define Y_CUT false
-#else
-#define Y_CUT side.is_cut && last.above && last.offset > 0.0
-#endif
-#define VAR_SHARE 1.0
-#define VAR_PIXELS 0.0
 #include "horizon.h"
 #include "view.glsl"
 #include "normal.glsl"
@@ -56,7 +42,7 @@ layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 layout(constant_id = kHorizonSlicesId) const uint kSlices = 3;
 layout(constant_id = kHorizonStepsId) const uint kSteps = 6;
 layout(constant_id = kHorizonModeId) const uint kMode = kFalloffNone;
-layout(constant_id = kHorizonThicknessId) const uint kThickness = kThicknessWidth;
+layout(constant_id = kHorizonSolidId) const uint kSolid = kThicknessWidth;
 layout(constant_id = kHorizonStrideId) const int kStride = 1;
 layout(scalar, push_constant) uniform Push { HorizonParams params; };
 layout(scalar, binding = kHorizonDepth) readonly buffer Depth { float depth[]; };
@@ -65,22 +51,14 @@ layout(scalar, binding = kHorizonAo) writeonly buffer Ao { float ao[]; };
 layout(scalar, binding = kHorizonList) readonly buffer List { ListedTile list[]; };
 layout(scalar, binding = kHorizonCounts) readonly buffer Counts { TileCounts counts; };
 layout(scalar, binding = kHorizonBent) writeonly buffer Bent { float bent[]; };
+layout(scalar, binding = kHorizonCompleted) writeonly buffer Completed { float completed[]; };
 
-const uint kFalloff = kMode & ~kWithBent;
-#ifndef VAR_COMPLETE
-#define VAR_COMPLETE true
-#endif
-#ifdef X_NOJUMPS
-#else
-#endif
-#ifdef X_NOPENDS
-#else
-#endif
-#ifdef X_NOBORDER
-#else
-#endif
-const bool kComplete = VAR_COMPLETE;
+const uint kFalloff = kMode & ~(kWithBent | kWithCompleted);
 const bool kBent = (kMode & kWithBent) != 0u;
+const bool kTellsCompleted = (kMode & kWithCompleted) != 0u;
+const uint kThickness = kSolid & ~(kCompletesBorder | kCompletesHidden);
+const bool kBeyondBorder = (kSolid & kCompletesBorder) != 0u;
+const bool kBehindOthers = (kSolid & kCompletesHidden) != 0u;
 
 /// A run is wider than the distance of its outer samples by a pixel and, on average, by this part of the gaps to the
 /// samples before and behind it.
@@ -90,7 +68,7 @@ const float kGapShare = 0.5;
 /// distances are within this factor of its.
 const float kSameSurface = 1.44;
 
-const float kNone = 1e30;
+#include "complete.glsl"
 
 /// A run of samples that is not the receiver's own surface. Angles go by slope_of(); where far > near nothing of it
 /// blocks.
@@ -125,37 +103,12 @@ vec3 blocked_arcs(Side side, Blocked blocked, float shift) {
 /// What a run blocks that is `gap_behind` steps wide of the sample behind it.
 uint sectors_of(Receiver r, Reach reach, Run run, float z, float gap_behind, float shift) {
   const float pixel = reach.pixel_size * (r.perspective ? z : 1.0);
-  const float width = kComplete ? VAR_SHARE * length(run.end - run.start) + pixel * (VAR_PIXELS + VAR_SHARE * (1.0 + kGapShare * (run.gap + gap_behind))) : length(run.end - run.start) + pixel * (1.0 + kGapShare * (run.gap + gap_behind));
+  const float width = length(run.end - run.start) + pixel * (1.0 + kGapShare * (run.gap + gap_behind));
   // What is as deep as wide is not clipped to the sphere: no difference in the error, and it takes a tenth off the
   // time.
   const float back = slope_of(kThickness == kThicknessWidth ? run.start + width * away_from_eye(r, run.start)
                                                             : back_of(r, run.start, reach.thickness, reach.radius));
   return run.near >= run.far ? sectors_below(run.near, shift) & ~sectors_below(min(back, run.far), shift) : 0u;
-}
-
-/// One sample of a side.
-struct Sample {
-  float offset;        // steps from the receiver
-  float z, scale;      // planar depth; that, or 1 orthographic
-  vec2 place;          // in the slice
-  float slope;         // slope_of() it
-  float distance_sq;   // from the receiver
-  bool above, within;  // clear of the tangent plane; within the radius
-};
-
-Sample sample_at(Receiver r, Side side, Reach reach, float offset) {
-  const vec2 beside = round(side.direction_px * offset);
-  const ivec2 hit = r.pixel + ivec2(beside);
-  Sample s;
-  s.offset = offset;
-  s.z = depth[hit.y * reach.width + hit.x];
-  s.scale = r.perspective ? s.z : 1.0;
-  s.place = place_of(r, side, beside, s.z, s.scale);
-  s.slope = slope_of(s.place);
-  s.distance_sq = dot(s.place, s.place);
-  s.above = is_above(r, reach, s.place, s.distance_sq, offset, beside, s.z, s.scale);
-  s.within = s.distance_sq < reach.radius_sq;
-  return s;
 }
 
 /// The slopes that a sample blocks, largest and smallest: its own where it `blocks`, and where the surface from the
@@ -166,23 +119,70 @@ vec2 slopes_of(Sample s, bool crosses, float crossing) {
               min(blocks ? s.slope : 1.0, crosses ? crossing : 1.0));
 }
 
-/// The sample before the first one.
-Sample receiver_sample(Receiver r) { return Sample(0.0, r.z, 1.0, vec2(0), 0.0, kNone, true, true); }
-
 const bool kHard = kFalloff == kFalloffNone;
 
+/// What a search has found to be blocked.
+struct Found {
+  Blocked blocked;
+  uint completed;       // sectors that completed surfaces block
+  vec3 sum, last_arcs;  // with falloff: the weighed integrals, and those of all that is blocked so far
+  float completed_sum;  // with falloff: what completed surfaces added to the sum
+};
+
 /// What falloff makes of the arcs that are blocked up to a sample: those that are new at it weigh as its distance says.
-vec3 faded(vec3 sum, vec3 arcs, vec3 last_arcs, Sample s, Reach reach) {
-  return sum + falloff_weight(kFalloff, sqrt(s.distance_sq), reach.falloff_start, reach.radius) * (arcs - last_arcs);
+void add_faded(inout Found found, Side side, Reach reach, Draw draw, Sample s) {
+  const vec3 arcs = blocked_arcs(side, found.blocked, draw.shift);
+  const float weight = falloff_weight(kFalloff, sqrt(s.distance_sq), reach.falloff_start, reach.radius);
+  found.sum += weight * (arcs - found.last_arcs);
+  found.last_arcs = arcs;
 }
 
-/// The blocked part of a side's integrals where occluders are solid as far as the sphere of the radius: one interval.
-vec3 search_endless(Receiver r, Side side, Reach reach, Draw draw, uint range) {
-  const int count = range != 0u ? min(int(kSteps), int(side.reach)) : 0;
+/// Adds what a completed surface blocks between two slopes, the larger one first. middle: a place on it.
+void add_completed(inout Found found, Side side, Reach reach, Draw draw, vec2 slopes, vec2 middle) {
+  if (kThickness == kThicknessEndless && slopes.x >= slopes.y) {
+    found.blocked.near = max(found.blocked.near, slopes.x);
+    found.blocked.far = min(found.blocked.far, slopes.y);
+  }
+  const uint sectors = sectors_between(slopes, draw.shift);
+  if (kHard) {
+    found.completed |= sectors;
+    return;
+  }
+  found.blocked.sectors |= sectors;
+  const vec3 arcs = blocked_arcs(side, found.blocked, draw.shift);
+  const vec3 added = falloff_weight(kFalloff, length(middle), reach.falloff_start, reach.radius) * (arcs - found.last_arcs);
+  found.sum += added;
+  found.completed_sum += added.x;
+  found.last_arcs = arcs;
+}
+
+/// Adds what goes on behind something nearer. behind_last: the sample after the last one.
+void complete_behind(inout Found found, Receiver r, Side side, Reach reach, Draw draw, int count,
+                     Interruptions interrupted, int behind_last) {
+  for (uint left = interrupted.jumps; left != 0u; left &= left - 1u) {
+    const Piece piece =
+        piece_behind(r, side, reach, draw, count, interrupted, interrupted.first + findLSB(left), behind_last);
+    add_completed(found, side, reach, draw, slopes_of(piece), 0.5 * (piece.near + piece.far));
+  }
+}
+
+/// Adds what goes on beyond the image's border. What the border cuts has no known end, so it is endless.
+void complete_beyond(inout Found found, Receiver r, Side side, Reach reach, Draw draw) {
+  const Sample border = sample_at(r, side, reach, floor(side.reach));
+  const Piece piece = piece_beyond(r, side, reach, border);
+  vec2 slopes = slopes_of(piece);
+  if (both(border.above, border.within)) {
+    const float back = slope_of(back_of(r, border.place, kNone, reach.radius));
+    slopes = vec2(max(slopes.x, border.slope), min(slopes.y, min(border.slope, back)));
+  }
+  add_completed(found, side, reach, draw, slopes, piece.exists ? 0.5 * (piece.near + piece.far) : border.place);
+}
+
+/// Searches a side where occluders are solid as far as the sphere of the radius: they block one interval.
+void search_endless(inout Found found, Receiver r, Side side, Reach reach, Draw draw, uint range, int count) {
   const float last_step = float(last_of_range(range)) + 0.5;
-  vec3 last_arcs = vec3(0), sum = vec3(0);
   Sample last = receiver_sample(r);
-  Blocked blocked = Blocked(-1.0, 1.0, 0u);
+  found.blocked.far = 1.0;
   for (int k = first_sample(range, int(kSteps), count, side.reach, draw.jitter, step_exponent(int(kSteps), side.reach));
        k < count && last.offset <= last_step; k++) {
     const Sample s = sample_at(r, side, reach, step_offset(k, int(kSteps), count, side.reach, draw.jitter));
@@ -192,107 +192,22 @@ vec3 search_endless(Receiver r, Side side, Reach reach, Draw draw, uint range) {
     const vec2 slopes = slopes_of(
         s, crosses, mix(s.slope, last.slope, (reach.radius_sq - s.distance_sq) / (last.distance_sq - s.distance_sq)));
     const float back = slope_of(back_of(r, s.place, reach.thickness, reach.radius));
-    blocked.near = max(blocked.near, slopes.x);
-    blocked.far = min(blocked.far, both(s.above, s.within) ? min(slopes.y, back) : slopes.y);
-    if (!kHard) {
-      const vec3 arcs = blocked_arcs(side, blocked, draw.shift);
-      sum = faded(sum, arcs, last_arcs, s, reach);
-      last_arcs = arcs;
-    }
+    found.blocked.near = max(found.blocked.near, slopes.x);
+    found.blocked.far = min(found.blocked.far, both(s.above, s.within) ? min(slopes.y, back) : slopes.y);
+    if (!kHard) add_faded(found, side, reach, draw, s);
     last = s;
     last.distance_sq = s.above ? s.distance_sq : kNone;
   }
-  return kHard ? blocked_arcs(side, blocked, draw.shift) : sum;
 }
 
 /// The same where occluders are as thick as they are wide, or as the user says: the receiver's own surface, and runs.
-vec3 search_runs(Receiver r, Side side, Reach reach, Draw draw, uint range) {
-  const int count = range != 0u ? min(int(kSteps), int(side.reach)) : 0;
+void search_runs(inout Found found, Receiver r, Side side, Reach reach, Draw draw, uint range, int count) {
   const float last_step = float(last_of_range(range)) + 0.5;
-  vec3 last_arcs = vec3(0), sum = vec3(0);
   bool own = true;
   Sample last = receiver_sample(r);
-  Blocked blocked = Blocked(-1.0, -1.0, 0u);
-  Run run = Run(vec2(0), vec2(0), 0.0, -1.0, 1.0);
-  for (int k = first_sample(range, int(kSteps), count, side.reach, draw.jitter, step_exponent(int(kSteps), side.reach));
-       k < count && last.offset <= last_step; k++) {
-    const Sample s = sample_at(r, side, reach, step_offset(k, int(kSteps), count, side.reach, draw.jitter));
-    const float gap = s.offset - last.offset;
-    const bool connected = same_surface(r, reach, s.z, last.z, gap);
-    // A run that crosses the sphere between two samples blocks half way to the one beyond.
-    const bool crosses = kHard ? both(both(s.above, last.above), both(connected, s.within != last.within)) : false;
-    const vec2 slopes = slopes_of(s, crosses, mix(s.slope, last.slope, 0.5));
-    if (connected) run.end = s.place;
-    if (!connected || !s.above) {
-      if (kHard) blocked.sectors |= sectors_of(r, reach, run, last.z, gap, draw.shift);
-      run = Run(s.place, s.place, gap, -1.0, 1.0);
-      own = !s.above;
-    }
-    if (own) {
-      blocked.near = max(blocked.near, slopes.x);
-    } else {
-      run.near = max(run.near, slopes.x);
-      run.far = min(run.far, slopes.y);
-    }
-    if (!kHard) {
-      blocked.sectors |= sectors_of(r, reach, run, s.z, 1.0, draw.shift);
-      const vec3 arcs = blocked_arcs(side, blocked, draw.shift);
-      sum = faded(sum, arcs, last_arcs, s, reach);
-      last_arcs = arcs;
-    }
-    last = s;
-  }
-  if (kHard) blocked.sectors |= sectors_of(r, reach, run, last.z, 1.0, draw.shift);
-  return kHard ? blocked_arcs(side, blocked, draw.shift) : sum;
-}
-
-// ---- completion
-vec2 normal_in_slice(Receiver r, Side side, Reach reach, float offset) {
-  const ivec2 hit = r.pixel + ivec2(round(side.direction_px * offset));
-  const vec3 n = octahedral_direction(unpackSnorm2x16(normal[hit.y * reach.width + hit.x]));
-  const vec2 p = vec2(dot(n, side.t), dot(n, r.eye));
-  return p * inversesqrt(max(dot(p, p), 1e-12));
-}
-
-/// Slopes (largest, smallest) of the straight piece from `end` along `direction` to the ray of `until`, in the sphere.
-vec2 slopes_of_piece(Receiver r, Reach reach, vec2 end, vec2 direction, vec2 n, vec2 until) {
-  const vec2 ray = r.perspective ? vec2(0, r.eye_distance) - until : vec2(0, 1);  // towards the eye
-  const float down = dot(n, ray);
-  const float u = dot(n, until - end) / down;
-  const vec2 far = until - u * ray;
-  const float b = dot(end, direction), inside = b * b - dot(end, end) + reach.radius_sq;
-  const float root = sqrt(max(inside, 0.0));
-  float last = down > 0.0 ? max(dot(far - end, direction), 0.0) : 1e30;
-  last = direction.x < 0.0 ? min(last, 0.999 * end.x / -direction.x) : last;
-  const float t0 = max(0.0, -b - root), t1 = min(last, root - b);
-  const float s0 = slope_of(end + t0 * direction), s1 = slope_of(end + t1 * direction);
-  return inside > 0.0 && t1 > t0 ? vec2(max(s0, s1), min(s0, s1)) : vec2(-1.0, 1.0);
-}
-
-bool faces_eye(Receiver r, vec2 n, vec2 at) { return r.perspective ? dot(n, vec2(0, r.eye_distance) - at) > 0.0 : n.y > 0.0; }
-
-uint sectors_between(vec2 slopes, float shift) {
-  return slopes.x >= slopes.y ? sectors_below(slopes.x, shift) & ~sectors_below(slopes.y, shift) : 0u;
-}
-
-/// Where a sample is in the slice.
-vec2 place_at_offset(Receiver r, Side side, Reach reach, float offset) {
-  const vec2 beside = round(side.direction_px * offset);
-  const ivec2 hit = r.pixel + ivec2(beside);
-  const float z = depth[hit.y * reach.width + hit.x];
-  return place_of(r, side, beside, z, r.perspective ? z : 1.0);
-}
-
-vec3 search_completed(Receiver r, Side side, Reach reach, Draw draw, uint range) {
-  const int count = range != 0u ? min(int(kSteps), int(side.reach)) : 0;
-  const float last_step = float(last_of_range(range)) + 0.5;
-  vec3 last_arcs = vec3(0), sum = vec3(0);
-  bool own = true;
-  uint jumps = 0u, starts = 0u;
-  Sample last = receiver_sample(r);
-  Blocked blocked = Blocked(-1.0, -1.0, 0u);
   Run run = Run(vec2(0), vec2(0), 0.0, -1.0, 1.0);
   int k = first_sample(range, int(kSteps), count, side.reach, draw.jitter, step_exponent(int(kSteps), side.reach));
+  Interruptions interrupted = Interruptions(k & ~(kWordBits - 1), 0u, 0u);
   for (; k < count && last.offset <= last_step; k++) {
     const Sample s = sample_at(r, side, reach, step_offset(k, int(kSteps), count, side.reach, draw.jitter));
     const float gap = s.offset - last.offset;
@@ -300,57 +215,49 @@ vec3 search_completed(Receiver r, Side side, Reach reach, Draw draw, uint range)
     // A run that crosses the sphere between two samples blocks half way to the one beyond.
     const bool crosses = kHard ? both(both(s.above, last.above), both(connected, s.within != last.within)) : false;
     const vec2 slopes = slopes_of(s, crosses, mix(s.slope, last.slope, 0.5));
+    if (kBehindOthers) take_down(interrupted, k, s, last, connected, reach);
     if (connected) run.end = s.place;
-    const uint bit = 1u << uint(k);
-    jumps |= both(both(!connected, last.offset > 0.0), both(both(s.above, last.above), max(s.z, last.z) < kSkyDepth)) ? bit : 0u;
     if (!connected || !s.above) {
-      blocked.sectors |= sectors_of(r, reach, run, last.z, gap, draw.shift);
+      if (kHard) found.blocked.sectors |= sectors_of(r, reach, run, last.z, gap, draw.shift);
       run = Run(s.place, s.place, gap, -1.0, 1.0);
       own = !s.above;
-      starts |= bit;
     }
     if (own) {
-      blocked.near = max(blocked.near, slopes.x);
+      found.blocked.near = max(found.blocked.near, slopes.x);
     } else {
       run.near = max(run.near, slopes.x);
       run.far = min(run.far, slopes.y);
     }
+    if (!kHard) {
+      found.blocked.sectors |= sectors_of(r, reach, run, s.z, 1.0, draw.shift);
+      add_faded(found, side, reach, draw, s);
+    }
     last = s;
+    for (bool once = kBehindOthers && int(kSteps) > kWordBits && (k + 1 & kWordBits - 1) == 0; once; once = false) {
+      complete_behind(found, r, side, reach, draw, count, interrupted, k + 1);
+      interrupted = Interruptions(k + 1, 0u, 0u);
+    }
   }
-  for (uint left = jumps; left != 0u; left &= left - 1u) {
-    const int at = findLSB(left);
-    const uint after = at >= 31 ? 0u : starts >> uint(at + 1) << uint(at + 1);
-    const uint before = starts & ((1u << uint(at)) - 1u);
-    const float ob = step_offset(at, int(kSteps), count, side.reach, draw.jitter);
-    const float oa = step_offset(at - 1, int(kSteps), count, side.reach, draw.jitter);
-    const vec2 pb = place_at_offset(r, side, reach, ob), pa = place_at_offset(r, side, reach, oa);
-    // the deeper one is further from the eye
-    const vec2 eb = r.perspective ? vec2(0, r.eye_distance) - pb : vec2(0, -pb.y), ea = r.perspective ? vec2(0, r.eye_distance) - pa : vec2(0, -pa.y);
-    const bool back = dot(eb, eb) > dot(ea, ea);
-    const int other = back ? (before != 0u ? findMSB(before) : 0) : (after != 0u ? findLSB(after) : k) - 1;
-    const vec2 po = place_at_offset(r, side, reach, step_offset(other, int(kSteps), count, side.reach, draw.jitter));
-    const vec2 n = normal_in_slice(r, side, reach, back ? ob : oa);
-    const vec2 end = back ? pb : pa, hider = back ? pa : pb;
-    const vec2 until = dot(n, po - end) > 0.0 ? po : hider;
-    const vec2 piece = slopes_of_piece(r, reach, end, back ? vec2(-n.y, n.x) : vec2(n.y, -n.x), n, until);
-    blocked.sectors |= both(faces_eye(r, n, end), dot(n, hider - end) > 0.0) ? sectors_between(piece, draw.shift) : 0u;
-  }
-  bool endless = false;
-  for (bool once = Y_CUT; once; once = false) {
-    const vec2 n = normal_in_slice(r, side, reach, last.offset);
-    endless = true;
-    const vec2 piece = slopes_of_piece(r, reach, last.place, vec2(n.y, -n.x), vec2(0, 0), last.place);
-    blocked.sectors |= faces_eye(r, n, last.place) ? sectors_between(vec2(piece.x, own ? piece.y : -1.0), draw.shift) : 0u;
-  }
-  if (endless && run.near >= run.far) blocked.sectors |= sectors_below(run.near, draw.shift);
-  blocked.sectors |= sectors_of(r, reach, run, last.z, 1.0, draw.shift);
-  return blocked_arcs(side, blocked, draw.shift);
+  if (kHard) found.blocked.sectors |= sectors_of(r, reach, run, last.z, 1.0, draw.shift);
+  if (kBehindOthers) complete_behind(found, r, side, reach, draw, count, interrupted, k);
 }
 
-/// The blocked part of a side's integrals. range: the steps at which something may stand above the tangent plane.
-vec3 search(Receiver r, Side side, Reach reach, Draw draw, uint range) {
-  return kThickness == kThicknessEndless ? search_endless(r, side, reach, draw, range)
-                                         : kComplete ? search_completed(r, side, reach, draw, range) : search_runs(r, side, reach, draw, range);
+/// The blocked part of a side's integrals, and what of its arc completed surfaces block. range: the steps at which
+/// something may stand above the tangent plane.
+vec4 search(Receiver r, Side side, Reach reach, Draw draw, uint range) {
+  const int count = range != 0u ? min(int(kSteps), int(side.reach)) : 0;
+  Found found = Found(Blocked(-1.0, -1.0, 0u), 0u, vec3(0), vec3(0), 0.0);
+  if (kThickness == kThicknessEndless)
+    search_endless(found, r, side, reach, draw, range, count);
+  else
+    search_runs(found, r, side, reach, draw, range, count);
+  const Blocked seen = found.blocked;
+  for (bool once = kBeyondBorder && side.is_cut && range != 0u && side.reach >= 1.0; once; once = false)
+    complete_beyond(found, r, side, reach, draw);
+  if (!kHard) return vec4(found.sum, found.completed_sum);
+  found.blocked.sectors |= found.completed;
+  const vec3 arcs = blocked_arcs(side, found.blocked, draw.shift);
+  return vec4(arcs, kTellsCompleted ? arcs.x - blocked_arcs(side, seen, draw.shift).x : 0.0);
 }
 
 /// Random numbers of a side, from those of its pixel. The boundaries of the sectors move by the fraction of a multiple

@@ -13,18 +13,24 @@ ALCOVE_CONSTANT uint kHorizonAo = 2;
 ALCOVE_CONSTANT uint kHorizonBent = 3;
 ALCOVE_CONSTANT uint kHorizonList = 4;    // in: one ListedTile per tile, from classify: what to estimate
 ALCOVE_CONSTANT uint kHorizonCounts = 5;  // in: TileCounts
+// out: one float per pixel, the visibility that completed surfaces took; only with kWithCompleted
+ALCOVE_CONSTANT uint kHorizonCompleted = 6;
 
 ALCOVE_CONSTANT uint kHorizonSlicesId = 0;  // specialization: slices per pixel
 ALCOVE_CONSTANT uint kHorizonStepsId = 1;   // specialization: steps to each side of a slice
-ALCOVE_CONSTANT uint kHorizonModeId = 2;    // specialization: one of kFalloff* of falloff.glsl, and kWithBent or not
+ALCOVE_CONSTANT uint kHorizonModeId = 2;    // specialization: one of kFalloff* of falloff.glsl, and kWith* or not
 // specialization: one pixel of so many in a row is estimated, 1, 2 or 4: see stride.glsl
 ALCOVE_CONSTANT uint kHorizonStrideId = 3;
-ALCOVE_CONSTANT uint kHorizonThicknessId = 4;  // specialization: one of these, of what is not connected to the receiver
+// specialization: one of kThickness*, of what is not connected to the receiver, and kCompletes* or not
+ALCOVE_CONSTANT uint kHorizonSolidId = 4;
 
 ALCOVE_CONSTANT uint kWithBent = 4;          // a bit beside kFalloff*: bent normals too
+ALCOVE_CONSTANT uint kWithCompleted = 8;     // another one: what completed surfaces take, too
 ALCOVE_CONSTANT uint kThicknessWidth = 0;    // as deep as wide
 ALCOVE_CONSTANT uint kThicknessLength = 1;   // as HorizonParams says
 ALCOVE_CONSTANT uint kThicknessEndless = 2;  // solid as far as the sphere of the radius
+ALCOVE_CONSTANT uint kCompletesBorder = 4;   // a bit beside them: surfaces go on beyond the image's border
+ALCOVE_CONSTANT uint kCompletesHidden = 8;   // another one: they go on behind what is nearer, if not kThicknessEndless
 
 struct HorizonParams {
   View view;

@@ -39,6 +39,11 @@ uint sectors_below(float slope, float shift) {
   return (1u << uint(0.5 * float(kSectorCount) * (slope + 1.0) + shift)) - 1u;
 }
 
+/// What lies between two slopes, the larger one first; nothing if it is not.
+uint sectors_between(vec2 slopes, float shift) {
+  return slopes.x >= slopes.y ? sectors_below(slopes.x, shift) & ~sectors_below(slopes.y, shift) : 0u;
+}
+
 /// The arc integral over a set.
 float arc_of(Side side, uint sectors) {
   vec2 sum = vec2(0);

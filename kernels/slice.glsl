@@ -67,14 +67,14 @@ struct Slice {
 /// One half of a slice.
 struct Side {
   vec2 direction_px;  // pixels per step; the longer component is +-1
-  bool is_cut;
   float reach;        // steps within the radius and the image
+  bool is_cut;        // the image's border comes before the radius
   // coordinates in the slice: scale * dot(across, offset), ray_length * (receiver's z - z) + scale * dot(toward,
   // offset)
   vec2 across, toward;
   float plane_cot;  // cotangent of the tangent plane
   vec2 ahead;       // a place on the tangent plane
-  vec3 t;           // unit, view space: across V, to that side
+  vec3 t;           // unit, view space: T of this side
   float gamma, cos_gamma, sin_gamma;
 };
 
@@ -145,14 +145,15 @@ Slice slice_at(View view, Receiver r, uint index, uint slices, float jitter) {
 /// Steps of a side that lie within the sphere of the radius and on the image. pixels: of the side's image T, per unit
 /// of length at unit depth. eye_z, t_z: z of the direction to the eye and of T on that side. sin_reach: the sphere is
 /// seen under the angle of this sine; the ray that touches it leaves the image of the sphere at sin_reach * pixels /
-/// (eye_z cos_reach - t_z sin_reach) pixels from the receiver's.
+/// (eye_z cos_reach - t_z sin_reach) pixels from the receiver's. is_cut: the border comes before it.
 float reach_of_side(View view, ivec2 pixel, vec2 direction_px, float pixels, float eye_z, float t_z, float sin_reach,
-                    float radius) {
+                    float radius, out bool is_cut) {
   const float cos_reach = sqrt(max(0.0, 1.0 - sin_reach * sin_reach));
   const float forward = eye_z * cos_reach - t_z * sin_reach;
   const float steps = view.orthographic == 0 ? sin_reach * pixels / forward : radius * pixels;
   const float border = steps_to_border(view, pixel, direction_px);
-  return sin_reach < 1.0 && forward > 0.0 ? min(steps, border) : border;
+  is_cut = sin_reach < 1.0 && forward > 0.0 ? border < steps : true;
+  return is_cut ? border : steps;
 }
 
 /// The side of a slice towards sign * T.
@@ -168,10 +169,8 @@ Side side_of(View view, Receiver r, Slice s, float sign, Reach reach) {
   side.plane_cot = -side.sin_gamma / s.cos_gamma;
   side.ahead = vec2(side.cos_gamma, -side.sin_gamma);
   side.t = sign * s.t;
-  side.is_cut = false;
-  side.reach =
-      reach_of_side(view, r.pixel, side.direction_px, pixels, r.eye.z, sign * s.t.z, r.sin_reach, reach.radius);
-  side.is_cut = side.reach >= steps_to_border(view, r.pixel, side.direction_px);
+  side.reach = reach_of_side(view, r.pixel, side.direction_px, pixels, r.eye.z, sign * s.t.z, r.sin_reach,
+                             reach.radius, side.is_cut);
   return side;
 }
 

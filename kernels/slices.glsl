@@ -3,7 +3,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The kernel has declared its buffers, constants and parameters, and two functions: `draw_of` gives the random numbers
-// of a side, and `search` the blocked part of its integrals. The result is 1 - (sum of blocked arcs) / (sum of whole
+// of a side, and `search` the blocked part of its integrals, and what of its arc
+// completed surfaces block. The result is 1 - (sum of blocked arcs) / (sum of whole
 // arcs).
 
 void write_bent(int index, int plane, vec3 b) {
@@ -19,6 +20,7 @@ void estimate(ivec2 pixel, uint tile) {
   const float z = depth[index];
   if (z >= kSkyDepth) {
     ao[ao_index] = 1.0;
+    if (kTellsCompleted) completed[index] = 0.0;
     if (kBent) write_bent(index, plane, vec3(0));
     return;
   }
@@ -27,6 +29,7 @@ void estimate(ivec2 pixel, uint tile) {
   const vec2 noise = pixel_noise(packed_place(pixel + params.noise_origin, kStride), params.noise_shift);
   float blocked = 0.0;
   float whole = 0.0;
+  float completed_arcs = 0.0;
   vec3 bent_blocked = vec3(0);
   for (uint s = 0u; s < kSlices; s++) {
     const Slice slice = slice_at(view, r, s, kSlices, noise.x);
@@ -35,11 +38,14 @@ void estimate(ivec2 pixel, uint tile) {
     for (int sign = -1; sign <= 1; sign += 2) {
       const Side side = side_of(view, r, slice, float(sign), reach);
       const uint range = list[tile].ranges[sector_of(side.direction_px)];
-      const vec3 arcs = slice.share * slice.weight * search(r, side, reach, draw_of(noise, s, uint(sign > 0)), range);
+      const vec4 arcs = slice.share * slice.weight * search(r, side, reach, draw_of(noise, s, uint(sign > 0)), range);
       blocked += arcs.x;
+      if (kTellsCompleted) completed_arcs += arcs.w;
       if (kBent) bent_blocked += arcs.y * float(sign) * slice.t + arcs.z * r.eye;
     }
   }
-  ao[ao_index] = whole > 0.0 ? clamp(1.0 - blocked / whole, 0.0, 1.0) : 1.0;
+  const float visibility = whole > 0.0 ? clamp(1.0 - blocked / whole, 0.0, 1.0) : 1.0;
+  ao[ao_index] = visibility;
+  if (kTellsCompleted) completed[index] = whole > 0.0 ? clamp(completed_arcs / whole, 0.0, 1.0 - visibility) : 0.0;
   if (kBent) write_bent(index, plane, open_bent(r.normal) - (whole > 0.0 ? bent_blocked / whole : vec3(0)));
 }

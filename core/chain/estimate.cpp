@@ -69,9 +69,20 @@ Params slice_parameters(const GBuffer& gbuffer, const Reach& reach, const Sampli
   return params;
 }
 
-std::vector<uint> slice_constants(const Reach& reach, const Sampling& sampling, const gpu::Buffer* bent = nullptr) {
-  return {uint(sampling.slices), uint(sampling.steps), uint(reach.falloff) | (bent ? kWithBent : 0),
+std::vector<uint> slice_constants(const Reach& reach, const Sampling& sampling, const Estimate& out = {}) {
+  return {uint(sampling.slices), uint(sampling.steps),
+          uint(reach.falloff) | (out.bent ? kWithBent : 0) | (out.completed ? kWithCompleted : 0),
           uint(sampling.stride)};
+}
+
+/// What is completed, as kernels take it.
+uint completion_of(const Reach& reach) {
+  switch (reach.complete) {
+    case Completion::none: break;
+    case Completion::border: return kCompletesBorder;
+    case Completion::all: return kCompletesBorder | kCompletesHidden;
+  }
+  return 0;
 }
 
 /// Tiles in x and y.
@@ -215,28 +226,32 @@ TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const Bounds& boun
 
 void horizon(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, const Sampling& sampling,
              const Estimate& out, uint plane) {
-  std::vector<uint> constants = slice_constants(reach, sampling, out.bent);
-  constants.push_back(thickness_rule_of(reach.thickness));
+  std::vector<uint> constants = slice_constants(reach, sampling, out);
+  constants.push_back(thickness_rule_of(reach.thickness) | completion_of(reach));
   gpu.dispatch("horizon", slice_parameters<HorizonParams>(gbuffer, reach, sampling, plane),
                {{kHorizonDepth, *gbuffer.depth},
                 {kHorizonNormal, *gbuffer.normal},
                 {kHorizonAo, *out.ao},
                 {kHorizonBent, out.bent ? *out.bent : *out.ao},
                 {kHorizonList, *out.listed.tiles},
-                {kHorizonCounts, *out.listed.counts}},
+                {kHorizonCounts, *out.listed.counts},
+                {kHorizonCompleted, out.completed ? *out.completed : *out.ao}},
                list_extent(out.listed), constants);
 }
 
 void bitmask(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, const Sampling& sampling,
              const Estimate& out, uint plane) {
+  std::vector<uint> constants = slice_constants(reach, sampling, out);
+  constants.push_back(completion_of(reach));
   gpu.dispatch("bitmask", slice_parameters<BitmaskParams>(gbuffer, reach, sampling, plane),
                {{kBitmaskDepth, *gbuffer.depth},
                 {kBitmaskNormal, *gbuffer.normal},
                 {kBitmaskAo, *out.ao},
                 {kBitmaskBent, out.bent ? *out.bent : *out.ao},
                 {kBitmaskList, *out.listed.tiles},
-                {kBitmaskCounts, *out.listed.counts}},
-               list_extent(out.listed), slice_constants(reach, sampling, out.bent));
+                {kBitmaskCounts, *out.listed.counts},
+                {kBitmaskCompleted, out.completed ? *out.completed : *out.ao}},
+               list_extent(out.listed), constants);
 }
 
 void hbao(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, const Sampling& sampling, Elevation elevation,

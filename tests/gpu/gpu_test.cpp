@@ -45,7 +45,7 @@ TEST(Reflection, reads_bindings_groups_and_constants) {
               ElementsAre(kHorizonDepth, kHorizonNormal, kHorizonAo, kHorizonBent, kHorizonList, kHorizonCounts));
   EXPECT_THAT(horizon.group, ElementsAre(kGroupX, kGroupY, 1u));
   EXPECT_THAT(horizon.constant_ids,
-              ElementsAre(kHorizonSlicesId, kHorizonStepsId, kHorizonModeId, kHorizonStrideId, kHorizonThicknessId));
+              ElementsAre(kHorizonSlicesId, kHorizonStepsId, kHorizonModeId, kHorizonStrideId, kHorizonSolidId));
 }
 
 TEST(Reflection, refuses_what_is_no_spirv) {

@@ -1,0 +1,151 @@
+// What goes on behind what interrupts it, and beyond the image's border, in a search that takes samples.
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// A surface that something nearer interrupts, or the image's border, goes on in its plane. In a slice that is a
+// straight piece from the surface's end; so all that it blocks is one more interval of angles. The plane is that of the
+// normal at the end: with samples far apart it says better how a surface goes on than the line through two of them.
+// A piece ends where it would be seen, and where it leaves the sphere of the radius.
+//
+// Only what stands above the receiver's tangent plane goes on behind something. There, a deeper point of a ray never
+// stands higher above that plane than what is seen on the ray, measured by depth, so classify.comp's proofs hold.
+//
+// The kernel has declared its buffers `depth` and `normal`, and how many steps a side takes, kSteps.
+
+/// An end goes on if its squared distance from the receiver is within this factor of the squared radius: what is
+/// farther seldom comes back.
+const float kFarEnd = 1.44;
+
+/// Beyond the border an end goes on if it rises to this height above the tangent plane, in radii, before it leaves the
+/// sphere: a floor that the border cuts stays open, whatever its normal map.
+const float kLeastRisen = 0.1;
+
+const float kNone = 1e30;
+
+/// A straight piece of a surface in the slice.
+struct Piece {
+  vec2 near, far;
+  bool exists;
+};
+
+/// The way from a place to the eye, of any length.
+vec2 toward_eye(Receiver r, vec2 place) { return r.perspective ? vec2(0, r.eye_distance) - place : vec2(0, 1); }
+
+/// A normal within the slice, as a unit vector; `word` is packed.
+vec2 normal_in_slice(Receiver r, Side side, uint word) {
+  const vec3 n = octahedral_direction(unpackSnorm2x16(word));
+  const vec2 projected = vec2(dot(n, side.t), dot(n, r.eye));
+  return projected * inversesqrt(max(dot(projected, projected), 1e-12));
+}
+
+/// Where the line of a surface is seen behind a place, as the distance from its `end` along the unit vector `onward`;
+/// infinite where the place's ray never meets it.
+float seen_at(Receiver r, vec2 end, vec2 onward, vec2 surface_normal, vec2 place) {
+  const vec2 ray = toward_eye(r, place);
+  const float facing = dot(surface_normal, ray);
+  const vec2 meets = place - dot(surface_normal, place - end) / facing * ray;
+  return facing > 0.0 ? max(dot(meets - end, onward), 0.0) : kNone;
+}
+
+/// The piece from `end` onward, as far as `most`, within the sphere of the radius and before the eye's ray.
+Piece piece_of(Reach reach, vec2 end, vec2 onward, float most) {
+  const float middle = dot(end, onward);
+  const float inside_sq = middle * middle - dot(end, end) + reach.radius_sq;
+  const float inside = sqrt(max(inside_sq, 0.0));
+  const float to_ray = onward.x < 0.0 ? 0.999 * end.x / -onward.x : most;
+  const float enters = max(0.0, -middle - inside), leaves = min(min(most, to_ray), inside - middle);
+  return Piece(end + enters * onward, end + leaves * onward, both(inside_sq > 0.0, leaves > enters));
+}
+
+/// The largest and the smallest slope_of() a piece; none if it does not exist.
+vec2 slopes_of(Piece piece) {
+  const float near = slope_of(piece.near), far = slope_of(piece.far);
+  return piece.exists ? vec2(max(near, far), min(near, far)) : vec2(-1, 1);
+}
+
+/// One sample of a side.
+struct Sample {
+  float offset;        // steps from the receiver
+  float z, scale;      // planar depth; that, or 1 orthographic
+  vec2 place;          // in the slice
+  float slope;         // slope_of() it
+  float distance_sq;   // from the receiver
+  bool above, within;  // clear of the tangent plane; within the radius
+};
+
+Sample sample_at(Receiver r, Side side, Reach reach, float offset) {
+  const vec2 beside = round(side.direction_px * offset);
+  const ivec2 hit = r.pixel + ivec2(beside);
+  Sample s;
+  s.offset = offset;
+  s.z = depth[hit.y * reach.width + hit.x];
+  s.scale = r.perspective ? s.z : 1.0;
+  s.place = place_of(r, side, beside, s.z, s.scale);
+  s.slope = slope_of(s.place);
+  s.distance_sq = dot(s.place, s.place);
+  s.above = is_above(r, reach, s.place, s.distance_sq, offset, beside, s.z, s.scale);
+  s.within = s.distance_sq < reach.radius_sq;
+  return s;
+}
+
+/// The sample before the first one.
+Sample receiver_sample(Receiver r) { return Sample(0.0, r.z, 1.0, vec2(0), 0.0, kNone, true, true); }
+
+/// The samples of a search among which surfaces are interrupted, as bits: as many as a word has at a time.
+const int kWordBits = 32;
+struct Interruptions {
+  int first;    // the sample of the lowest bit
+  uint starts;  // those that begin a run
+  uint jumps;   // of them those that are not connected to the one before, both above the tangent plane
+};
+
+/// Takes down what a sample begins.
+void take_down(inout Interruptions found, int k, Sample s, Sample last, bool connected, Reach reach) {
+  const bool is_jump = both(both(!connected, last.offset > 0.0), both(s.above, last.above));
+  const bool is_near = (s.z > last.z ? s.distance_sq : last.distance_sq) < kFarEnd * reach.radius_sq;
+  const uint bit = 1u << uint(k & (kWordBits - 1));
+  found.starts |= !connected || !s.above ? bit : 0u;
+  found.jumps |= both(is_jump, is_near) ? bit : 0u;
+}
+
+/// The piece by which the deeper one of two neighbouring samples, `at` and the one before, goes on behind the nearer
+/// one: to the other end of that one's run, and on to the next run's beginning if that hides it too. behind_last: the
+/// sample after the last one.
+Piece piece_behind(Receiver r, Side side, Reach reach, Draw draw, int count, Interruptions found, int at,
+                   int behind_last) {
+  const uint bit = uint(at - found.first);
+  const uint before = found.starts & ((1u << bit) - 1u), after = found.starts & ~((2u << bit) - 1u);
+  const Sample s = sample_at(r, side, reach, step_offset(at, int(kSteps), count, side.reach, draw.jitter));
+  const Sample last = sample_at(r, side, reach, step_offset(at - 1, int(kSteps), count, side.reach, draw.jitter));
+  const bool is_back = s.z > last.z;  // the sample itself goes on, towards the receiver
+  const vec2 end = is_back ? s.place : last.place, hider = is_back ? last.place : s.place;
+  const int first_before = before != 0u ? findMSB(before) : 0, first_after = after != 0u ? findLSB(after) : kWordBits;
+  const int other = is_back ? min(found.first + first_before, at - 1) : min(found.first + first_after, behind_last) - 1;
+  const vec2 beside = round(side.direction_px * (is_back ? s.offset : last.offset));
+  const ivec2 hit = r.pixel + ivec2(beside);
+  const vec2 n = normal_in_slice(r, side, normal[hit.y * reach.width + hit.x]);
+  const Sample opposite =
+      sample_at(r, side, reach, step_offset(other, int(kSteps), count, side.reach, draw.jitter));
+  const bool hides_all = dot(n, opposite.place - end) > 0.0;
+  vec2 until = hides_all ? opposite.place : hider;
+  const int next = is_back ? other - 1 : other + 1;
+  for (bool once = hides_all ? next >= 0 && next < behind_last : false; once; once = false) {
+    const Sample beyond = sample_at(r, side, reach, step_offset(next, int(kSteps), count, side.reach, draw.jitter));
+    until = both(beyond.above, dot(n, beyond.place - end) > 0.0) ? beyond.place : until;
+  }
+  const vec2 onward = is_back ? vec2(-n.y, n.x) : vec2(n.y, -n.x);
+  Piece piece = piece_of(reach, end, onward, seen_at(r, end, onward, n, until));
+  piece.exists = both(piece.exists, both(dot(n, toward_eye(r, end)) > 0.0, dot(n, hider - end) > 0.0));
+  return piece;
+}
+
+/// The piece by which the surface at the image's border goes on beyond it.
+Piece piece_beyond(Receiver r, Side side, Reach reach, Sample border) {
+  const ivec2 hit = r.pixel + ivec2(round(side.direction_px * border.offset));
+  const vec2 n = normal_in_slice(r, side, normal[hit.y * reach.width + hit.x]);
+  Piece piece = piece_of(reach, border.place, vec2(n.y, -n.x), kNone);
+  const float height = dot(piece.far, vec2(dot(r.normal, side.t), dot(r.normal, r.eye)));
+  const bool is_near = both(border.place.x > 0.0, border.distance_sq < kFarEnd * reach.radius_sq);
+  const bool goes_on = both(height > kLeastRisen * reach.radius, dot(n, toward_eye(r, border.place)) > 0.0);
+  piece.exists = both(piece.exists, both(is_near, goes_on));
+  return piece;
+}
