@@ -24,6 +24,9 @@ enum class SampleKernel { clustered, uniform };
 // how Crytek's hits fade with the difference of depth between receiver and hit
 enum class RangeCheck { none, ratio, smoothstep };
 enum class ThicknessKind { automatic, infinite, constant };
+// where surfaces are taken to go on although the frame does not show it: nowhere; beyond the picture's border; there
+// and behind what is nearer
+enum class Completion { none, border, all };
 // pixels of the frame per pixel of the estimate, in x and in y
 enum class Resolution { full = 1, half = 2, quarter = 4 };
 enum class Denoise { none, bilateral, box };
