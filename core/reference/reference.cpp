@@ -175,8 +175,8 @@ class Blocking {
     const double exit =
         -along + std::sqrt(std::max(0.0, along * along - distance * distance + settings_.radius * settings_.radius));
     const double angle = angle_of(side_, offset + std::min(thickness, exit) * away);
-    // an angle that wrapped round is beyond the tangent plane
-    return angle < front ? limit_ : std::min(angle, limit_);
+    // An angle that wrapped round is beyond the tangent plane. On the sphere, rounding may leave nothing of it.
+    return angle < 0 ? limit_ : std::min(std::max(angle, front), limit_);
   }
 
   Vector by_segment(const CompletedSegment& segment) {
