@@ -56,8 +56,8 @@ TEST(Completion, of_a_run_of_one_pixel_is_nothing) {
   }
 }
 
-// The end of the run lies 0.12 away on the image and 0.3 deeper than the receiver. Behind what hides it the run comes to
-// stand above the receiver's tangent plane either way.
+// The end of the run lies 0.12 away on the image and 0.3 deeper than the receiver. Behind what hides it the run comes
+// to stand above the tangent plane of the receiver either way.
 TEST(Completion, begins_above_the_tangent_plane_alone) {
   std::vector<float> depths(60, 5.0f);
   std::fill_n(depths.begin() + 25, 2, 5.3f);
