@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // In: planar depth, view normals.
-// Out: visibility, 1 = open; the mean open direction (see bent.glsl) where it is asked for.
+// Out: visibility, 1 = open; where they are asked for, the mean open direction (see bent.glsl), and what of the
+// visibility completed surfaces took.
 //
 // Therrien et al., "Screen Space Indirect Lighting with Visibility Bitmask", 2023: every sample blocks the angles
 // between its front and its back, and the bits of a mask say which angles are blocked. The differences are these:
@@ -13,6 +14,8 @@
 // - The back lies along the sample's own eye ray, clipped to the sphere of the radius.
 // - Between two samples of one surface nothing is open. A sample that is not above the tangent plane says nothing else,
 //   so it may be left out. What rises from there is treated as the receiver's own surface.
+// - A surface that something nearer interrupts goes on behind it, and one that the image's border cuts goes on beyond it
+//   (complete.glsl).
 //
 // With occluders that are infinitely thick the result is that of horizon.comp. With `thickness` 0 a sample is as thick
 // as its surface is wide up to there.
@@ -47,23 +50,77 @@ layout(scalar, binding = kBitmaskCompleted) writeonly buffer Completed { float c
 
 const uint kFalloff = kMode & ~(kWithBent | kWithCompleted);
 const bool kBent = (kMode & kWithBent) != 0u;
+/// Instead of 0, across the view ray.
+const float kLeastAcross = 1e-7;
+
+const bool kBeyondBorder = (kComplete & kCompletesBorder) != 0u;
+// What endless occluders hide is blocked anyway: the host does not ask for it.
+const bool kBehindOthers = (kComplete & kCompletesHidden) != 0u;
 const bool kTellsCompleted = (kMode & kWithCompleted) != 0u;
 
-/// The blocked part of a side's arc integral and, with bent normals, of bent_to().
+#include "complete.glsl"
+
+/// What a search has found to be blocked.
+struct Found {
+  uint bits;
+  float blocked;    // sectors, each weighed by its falloff
+  float completed;  // of them those that only completed surfaces block
+  vec2 bent;        // with falloff: what is blocked of the bent normal
+};
+
+/// Blocks sectors that are `distance` from the receiver; those that are blocked already stay as they are.
+float block(inout Found found, Side side, Reach reach, float shift, uint sectors, float distance) {
+  const uint added = sectors & ~found.bits;
+  const float weight = falloff_weight(kFalloff, distance, reach.falloff_start, reach.radius);
+  found.bits |= added;
+  found.blocked += float(bitCount(added)) * weight;
+  if (kBent && kFalloff != kFalloffNone) found.bent += weight * bent_of_sectors(side, added, shift);
+  return float(bitCount(added)) * weight;
+}
+
+/// Blocks what a completed surface covers between two slopes, the larger one first. middle: a place on it.
+void block_completed(inout Found found, Side side, Reach reach, float shift, vec2 slopes, vec2 middle) {
+  const vec2 near = place_at(slopes.x), far = place_at(slopes.y);
+  const float whole = whole_arc(side);
+  const uint before = sectors_to(side, whole, near.y / max(near.x, kLeastAcross), shift);
+  const uint behind = sectors_to(side, whole, far.y / max(far.x, kLeastAcross), shift);
+  const uint sectors = slopes.x >= slopes.y ? behind & ~before : 0u;
+  found.completed += block(found, side, reach, shift, sectors, length(middle));
+}
+
+/// Blocks what goes on behind something nearer. behind_last: the sample after the last one.
+void complete_behind(inout Found found, Receiver r, Side side, Reach reach, Draw draw, int count,
+                     Interruptions interrupted, int behind_last) {
+  for (uint left = interrupted.jumps; left != 0u; left &= left - 1u) {
+    const Piece piece =
+        piece_behind(r, side, reach, draw, count, interrupted, interrupted.first + findLSB(left), behind_last);
+    block_completed(found, side, reach, draw.shift, slopes_of(piece), 0.5 * (piece.near + piece.far));
+  }
+}
+
+/// Blocks what goes on beyond the image's border, as far as it is seen or completed. It has no known end, so it is
+/// endless.
+void complete_beyond(inout Found found, Receiver r, Side side, Reach reach, Draw draw) {
+  const Sample border = sample_at(r, side, reach, floor(side.reach));
+  const Piece piece = piece_beyond(r, side, reach, border);
+  block_completed(found, side, reach, draw.shift, slopes_beyond(r, reach, border, piece), middle_of(piece, border));
+}
+
+/// The blocked part of a side's arc integral and, with bent normals, of bent_to(); and what of the arc completed
+/// surfaces block.
 vec4 search(Receiver r, Side side, Reach reach, Draw draw, uint range) {
   const float jitter = draw.jitter, shift = draw.shift;
   const int count = range != 0u ? min(int(kSteps), int(side.reach)) : 0;
   const float whole = whole_arc(side), endless = 1e30;
-  float last_z = r.z;
-  float last_offset = 0.0;
+  Sample last = receiver_sample(r);
   float last_cot = side.plane_cot;
-  float blocked = 0.0;
   bool own = true, last_blocks = true;
-  vec2 start = vec2(0), bent_blocked = vec2(0);
-  uint bits = 0u;
+  vec2 start = vec2(0);
+  Found found = Found(0u, 0.0, 0.0, vec2(0));
   const float last_step = float(last_of_range(range)) + 0.5;
-  for (int k = first_sample(range, int(kSteps), count, side.reach, jitter, step_exponent(int(kSteps), side.reach));
-       k < count && last_offset <= last_step; k++) {
+  int k = first_sample(range, int(kSteps), count, side.reach, jitter, step_exponent(int(kSteps), side.reach));
+  Interruptions interrupted = Interruptions(k & ~(kWordBits - 1), 0u, 0u);
+  for (; k < count && last.offset <= last_step; k++) {
     const float offset = step_offset(k, int(kSteps), count, side.reach, jitter);
     const vec2 beside = round(side.direction_px * offset);
     const ivec2 hit = r.pixel + ivec2(beside);
@@ -73,7 +130,9 @@ vec4 search(Receiver r, Side side, Reach reach, Draw draw, uint range) {
     const float cot = place.y / place.x, distance_sq = dot(delta, delta);
     const bool above = is_above(r, reach, place, distance_sq, offset, beside, z, scale);
     const bool blocks = above ? distance_sq < reach.radius_sq : false;
-    const bool connected = same_surface(r, reach, z, last_z, offset - last_offset);
+    const bool connected = same_surface(r, reach, z, last.z, offset - last.offset);
+    const Sample s = Sample(offset, z, scale, place, slope_of(place), distance_sq, above, blocks);
+    if (kBehindOthers) take_down(interrupted, k, s, last, connected, reach);
     // What rises from below the tangent plane is treated as the receiver's own surface.
     start = connected && above ? start : place;
     own = above ? (connected ? own : false) : true;
@@ -84,19 +143,22 @@ vec4 search(Receiver r, Side side, Reach reach, Draw draw, uint range) {
       const bool joined = connected ? last_blocks : false;
       const uint before = sectors_to(side, whole, joined ? max(cot, last_cot) : cot, shift);
       const uint behind = sectors_to(side, whole, min(back, joined ? min(cot, last_cot) : cot), shift);
-      const uint added = behind & ~before & ~bits;
-      bits |= added;
-      const float weight = falloff_weight(kFalloff, sqrt(distance_sq), reach.falloff_start, reach.radius);
-      blocked += float(bitCount(added)) * weight;
-      if (kBent && kFalloff != kFalloffNone) bent_blocked += weight * bent_of_sectors(side, added, shift);
+      block(found, side, reach, shift, behind & ~before, sqrt(distance_sq));
     }
     last_blocks = blocks;
     last_cot = cot;
-    last_z = z;
-    last_offset = offset;
+    last = s;
+    for (bool once = kBehindOthers && int(kSteps) > kWordBits && (k + 1 & kWordBits - 1) == 0; once; once = false) {
+      complete_behind(found, r, side, reach, draw, count, interrupted, k + 1);
+      interrupted = Interruptions(k + 1, 0u, 0u);
+    }
   }
-  if (kBent && kFalloff == kFalloffNone) bent_blocked = bent_of_sectors(side, bits, shift);
-  return vec4(blocked * whole / float(kSectors), bent_blocked, 0.0);
+  if (kBehindOthers) complete_behind(found, r, side, reach, draw, count, interrupted, k);
+  for (bool once = kBeyondBorder && side.is_cut && range != 0u && side.reach >= 1.0; once; once = false)
+    complete_beyond(found, r, side, reach, draw);
+  if (kBent && kFalloff == kFalloffNone) found.bent = bent_of_sectors(side, found.bits, shift);
+  const float sector = whole / float(kSectors);
+  return vec4(found.blocked * sector, found.bent, found.completed * sector);
 }
 
 /// Random numbers of a side, from those of its pixel. The boundaries of the mask move by one number per slice. The

@@ -15,6 +15,11 @@
 // What is farther than the radius from all receivers does not block either, where the estimator says so. The distance
 // is that of the boxes in space that hold the surfaces of both tiles.
 //
+// What is completed (complete.glsl) does not change this: behind others only what stands above the tangent plane goes on,
+// and at a pixel it lies deeper than what is seen there, so that c / z is less. But it may lie nearer to the receiver:
+// where the surfaces seen in a tile are before the sphere, what they hide may be within it. Beyond the border only
+// what faces another way than the receivers can rise far enough.
+//
 // With a tolerance a tile is left out, too, where nothing within the radius rises more than an angle: what is that low
 // takes at most the squared sine of the angle from the visibility. The proof is the same with another height: |Q - P| /
 // z is at least the distance on the image over the length of P's ray.
@@ -38,6 +43,7 @@ layout(constant_id = kClassifyModeId) const uint kMode = kClassifySkips;
 const bool kSkips = (kMode & kClassifySkips) != 0u;
 const bool kProves = (kMode & kClassifyProves) != 0u;
 const bool kReuses = (kMode & kClassifyReuses) != 0u;
+const bool kCompletes = (kMode & kClassifyCompletes) != 0u;
 const bool kTolerates = (kMode & kClassifyTolerates) != 0u;
 layout(scalar, push_constant) uniform Push { ClassifyParams params; };
 layout(scalar, binding = kClassifyBounds) readonly buffer Bounds { TileBounds bounds[]; };
@@ -106,20 +112,33 @@ ivec2 group_at(Receivers r, int i) {
 
 GroupBounds bounds_of(View view, ivec2 group) { return groups[group.y * groups_of_tiles(view.size).x + group.x]; }
 
-bool is_settled(Receivers r, ivec2 group, GroupBounds b) {
+/// Nothing in a group blocks by its bounds. Those at the border do not tell what goes on beyond it.
+bool is_settled(View view, Receivers r, ivec2 group, GroupBounds b) {
   const float limit = harmless_height(r, distances_px(r, group * kGroupSide, kGroupSide).x, b.level);
   const float half_side = 0.5 * float(kGroupSide - 1);
   const vec2 centre = vec2(group * kGroupSide) + half_side;
   const float above =
       min(most_above(r, centre, half_side, vec2(0), b.level), most_above(r, centre, half_side, b.gradient, b.plane));
-  return b.farthest > b.level ? true : above <= limit;
+  const ivec2 last_group = groups_of_tiles(view.size) - 1;
+  const bool at_border = any(equal(group, ivec2(0))) || any(equal(group, last_group));
+  return b.farthest > b.level ? true : above <= limit && !(kCompletes && at_border);
 }
 
-/// Whether a square of pixels is so far away that nothing in it blocks.
+/// Whether a square of pixels is so far away that nothing in it blocks. What goes on behind the surfaces in it may lie
+/// deeper than them, as deep as the sphere.
 bool is_too_far(View view, Receivers r, ivec2 first_pixel, int side, float level, float farthest) {
   if ((kMode & kClassifyRanged) == 0u) return false;
-  return distance_sq(r.box, box_of(view, first_pixel / kTile, side / kTile, depth_of(view, level),
-                                   depth_of(view, farthest))) > r.reach_sq;
+  const float near = depth_of(view, level), far = depth_of(view, farthest);
+  const float deepest = kCompletes ? max(far, r.box.most.z + r.reach) : far;
+  return distance_sq(r.box, box_of(view, first_pixel / kTile, side / kTile, near, deepest)) > r.reach_sq;
+}
+
+/// Whether a tile's surfaces may rise above the tangent planes beyond the image's border.
+bool may_rise_beyond(View view, Receivers r, ivec2 tile, uint word, float turned) {
+  const ivec2 last_tile = tiles_of(view.size) - 1;
+  const bool at_border = any(equal(tile, ivec2(0))) || any(equal(tile, last_tile));
+  const float differs = word == kNoNormal ? kFar : length(unpack_normal(word) - r.normal) + turned;
+  return at_border && differs + r.differs > kSameSlope;
 }
 
 /// Adds a square of pixels, in which something stands above the tangent planes, to the sectors and steps at which
@@ -161,8 +180,11 @@ void search_tile(View view, Receivers r, ivec2 other, bool is_near) {
     above = min(above, most_above(r, centre, kHalfTile, bounds[neighbor.y * count.x + neighbor.x].gradient,
                                   bounds[index].plane[k + 1]));
   }
-  const bool rises = kTolerates ? above > tolerated_height(view, r, apart.x, level) : true;
-  for (bool once = above > limit; once; once = false)
+  const bool goes_on = kCompletes && farthest <= level
+                           ? may_rise_beyond(view, r, other, bounds[index].normal, bounds[index].turned)
+                           : false;
+  const bool rises = kTolerates ? goes_on || above > tolerated_height(view, r, apart.x, level) : true;
+  for (bool once = goes_on || above > limit; once; once = false)
     mark(view, r, other * kTile, kTile, level, farthest, is_near, rises);
 }
 
@@ -177,7 +199,8 @@ Receivers receivers_of(View view, ivec2 tile, Shared own) {
   r.tile = tile;
   r.box = box_of(view, tile, kBlock, near, far);
   r.reach = reach;
-  r.reach_sq = reach * reach;
+  r.reach_sq = kCompletes ? kFarEnd * kFarEnd * reach * reach : reach * reach;
+  r.normal = n;
   r.rise = kClaimed * least_rise(view);
   r.tolerated = kToleranceClaimed * params.tolerated / longest_ray *
                 min(abs(view.tangent_per_pixel.x), abs(view.tangent_per_pixel.y));
@@ -186,12 +209,14 @@ Receivers receivers_of(View view, ivec2 tile, Shared own) {
   const float height = (perspective ? own.lowest / far : n.z) - own.turned * longest_ray;
   const float least = kClaimed * least_height(params.depth_precision, near, max(height, 0.0));
   r.least = least;
+  r.differs = own.turned + (least <= kFeignedHeight * params.radius ? 0.0 : kFar);
   r.along = n.xy * view.tangent_per_pixel;
   r.nearness = perspective ? max(own.highest - least, 0.0) : n.z;
   r.affine = dot(n.xy, tangent_of(view, vec2(0.5))) + (perspective ? -n.z : own.highest - least);
-  // |Q - P| is at most the reach, or, where nothing is too far to block, |Q| + |P|; over z in perspective.
-  r.turned = own.turned * (perspective ? (ranged ? 0.0 : longest_ray) : reach);
-  r.turned_by_nearness = own.turned * (perspective ? (ranged ? reach : longest_ray * far) : 0.0);
+  const float farthest_end = kCompletes ? kFarEnd * reach : reach;
+  // |Q - P| is at most that, or, where nothing is too far to block, |Q| + |P|; over z in perspective.
+  r.turned = own.turned * (perspective ? (ranged ? 0.0 : longest_ray) : farthest_end);
+  r.turned_by_nearness = own.turned * (perspective ? (ranged ? farthest_end : longest_ray * far) : 0.0);
 
   const Rect rect = image_of_reach(view, r.box, reach);
   r.from = ivec2(rect.least / float(kGroupSide));
@@ -258,7 +283,7 @@ void find_sectors(View view, Receivers r) {
   for (int i = int(lane); i < left; i += int(kGroupX)) {
     const ivec2 group = group_at(r, i);
     const GroupBounds b = bounds_of(view, group);
-    const bool settled = is_settled(r, group, b);
+    const bool settled = is_settled(view, r, group, b);
     const bool too_far = is_too_far(view, r, group * kGroupSide, kGroupSide, b.level, b.farthest);
     for (bool once = !settled && too_far; once; once = false)
       mark(view, r, group * kGroupSide, kGroupSide, b.level, b.farthest, false, true);

@@ -35,6 +35,7 @@ ALCOVE_CONSTANT uint kClassifyWithBent = 4;
 ALCOVE_CONSTANT uint kClassifyReuses = 16;
 ALCOVE_CONSTANT uint kClassifyTolerates = 32;  // with kClassifyProves
 ALCOVE_CONSTANT uint kClassifyWithCompleted = 64;
+ALCOVE_CONSTANT uint kClassifyCompletes = 128;  // with kClassifyProves: surfaces go on beyond what is seen of them
 
 ALCOVE_CONSTANT int kChangeBlock = 32;  // px of the frame a side of the blocks whose changes are known
 

@@ -11,14 +11,6 @@
 //
 // The kernel has declared its buffers `depth` and `normal`, and how many steps a side takes, kSteps.
 
-/// An end goes on if its squared distance from the receiver is within this factor of the squared radius: what is
-/// farther seldom comes back.
-const float kFarEnd = 1.44;
-
-/// Beyond the border an end goes on if it rises to this height above the tangent plane, in radii, before it leaves the
-/// sphere: a floor that the border cuts stays open, whatever its normal map.
-const float kLeastRisen = 0.1;
-
 const float kNone = 1e30;
 
 /// A straight piece of a surface in the slice.
@@ -101,7 +93,7 @@ struct Interruptions {
 /// Takes down what a sample begins.
 void take_down(inout Interruptions found, int k, Sample s, Sample last, bool connected, Reach reach) {
   const bool is_jump = both(both(!connected, last.offset > 0.0), both(s.above, last.above));
-  const bool is_near = (s.z > last.z ? s.distance_sq : last.distance_sq) < kFarEnd * reach.radius_sq;
+  const bool is_near = (s.z > last.z ? s.distance_sq : last.distance_sq) < kFarEnd * kFarEnd * reach.radius_sq;
   const uint bit = 1u << uint(k & (kWordBits - 1));
   found.starts |= !connected || !s.above ? bit : 0u;
   found.jumps |= both(is_jump, is_near) ? bit : 0u;
@@ -128,10 +120,10 @@ Piece piece_behind(Receiver r, Side side, Reach reach, Draw draw, int count, Int
   const bool hides_all = dot(n, opposite.place - end) > 0.0;
   vec2 until = hides_all ? opposite.place : hider;
   const int next = is_back ? other - 1 : other + 1;
-  for (bool once = hides_all ? next >= 0 && next < behind_last : false; once; once = false) {
-    const Sample beyond = sample_at(r, side, reach, step_offset(next, int(kSteps), count, side.reach, draw.jitter));
-    until = both(beyond.above, dot(n, beyond.place - end) > 0.0) ? beyond.place : until;
-  }
+  const bool goes_on = both(hides_all, both(next >= 0, next < behind_last));
+  const Sample beyond = sample_at(
+      r, side, reach, step_offset(clamp(next, 0, behind_last - 1), int(kSteps), count, side.reach, draw.jitter));
+  until = both(goes_on, both(beyond.above, dot(n, beyond.place - end) > 0.0)) ? beyond.place : until;
   const vec2 onward = is_back ? vec2(-n.y, n.x) : vec2(n.y, -n.x);
   Piece piece = piece_of(reach, end, onward, seen_at(r, end, onward, n, until));
   piece.exists = both(piece.exists, both(dot(n, toward_eye(r, end)) > 0.0, dot(n, hider - end) > 0.0));
@@ -144,8 +136,21 @@ Piece piece_beyond(Receiver r, Side side, Reach reach, Sample border) {
   const vec2 n = normal_in_slice(r, side, normal[hit.y * reach.width + hit.x]);
   Piece piece = piece_of(reach, border.place, vec2(n.y, -n.x), kNone);
   const float height = dot(piece.far, vec2(dot(r.normal, side.t), dot(r.normal, r.eye)));
-  const bool is_near = both(border.place.x > 0.0, border.distance_sq < kFarEnd * reach.radius_sq);
+  const bool is_near = both(border.place.x > 0.0, border.distance_sq < kFarEnd * kFarEnd * reach.radius_sq);
   const bool goes_on = both(height > kLeastRisen * reach.radius, dot(n, toward_eye(r, border.place)) > 0.0);
   piece.exists = both(piece.exists, both(is_near, goes_on));
   return piece;
+}
+
+/// What the surface at the border blocks, from the largest to the smallest slope_of(): itself, what goes on of it, and
+/// all that is behind it, since it has no known end.
+vec2 slopes_beyond(Receiver r, Reach reach, Sample border, Piece piece) {
+  const vec2 slopes = slopes_of(piece);
+  const float back = slope_of(back_of(r, border.place, kNone, reach.radius));
+  return both(border.above, border.within) ? vec2(max(slopes.x, border.slope), min(slopes.y, min(border.slope, back)))
+                                           : slopes;
+}
+
+vec2 middle_of(Piece piece, Sample border) {
+  return piece.exists ? 0.5 * (piece.near + piece.far) : border.place;
 }

@@ -166,16 +166,11 @@ void complete_behind(inout Found found, Receiver r, Side side, Reach reach, Draw
   }
 }
 
-/// Adds what goes on beyond the image's border. What the border cuts has no known end, so it is endless.
+/// Adds what goes on beyond the image's border.
 void complete_beyond(inout Found found, Receiver r, Side side, Reach reach, Draw draw) {
   const Sample border = sample_at(r, side, reach, floor(side.reach));
   const Piece piece = piece_beyond(r, side, reach, border);
-  vec2 slopes = slopes_of(piece);
-  if (both(border.above, border.within)) {
-    const float back = slope_of(back_of(r, border.place, kNone, reach.radius));
-    slopes = vec2(max(slopes.x, border.slope), min(slopes.y, min(border.slope, back)));
-  }
-  add_completed(found, side, reach, draw, slopes, piece.exists ? 0.5 * (piece.near + piece.far) : border.place);
+  add_completed(found, side, reach, draw, slopes_beyond(r, reach, border, piece), middle_of(piece, border));
 }
 
 /// Searches a side where occluders are solid as far as the sphere of the radius: they block one interval.

@@ -36,6 +36,14 @@ struct Box {
   vec3 least, most;  // tangents times depth, and depth
 };
 
+/// At the image's border a tile's surface does not rise to kLeastRisen beyond it if its normals differ from a receiver's
+/// by no more than this: it rises by at most so much of the way that it goes, which is at most 1 + kFarEnd radii, and
+/// stands no higher where it begins than what is harmless, kLeastRise radii, and kFeignedHeight.
+const float kSameSlope = 0.03;
+
+/// The part of the radius that errors of depth may feign of a height where that is used.
+const float kFeignedHeight = 0.02;
+
 /// The box that holds what is seen in so many tiles in x and y between two depths.
 Box box_of(View view, ivec2 tile, int tiles, float near, float far) {
   const vec2 a = tangent_of(view, vec2(tile * kTile) + 0.5);
@@ -96,6 +104,9 @@ struct Receivers {
   ivec2 from, extent;     // groups within reach; more than kMostGroups: not searched
   float nearness;         // factor of 1 / z: c - least; or orthographic of -z: N.z
   float affine;           // at pixel (0, 0)
+  vec3 normal;            // N
+  // the largest difference from it, or more than kSameSlope where nothing is known of surfaces beyond the border
+  float differs;
   vec2 along;             // per pixel
   // What the left side grows by as normals differ: alone, and per nearness. It is the length of the difference times
   // the farthest that anything that may block is from a receiver.

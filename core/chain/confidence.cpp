@@ -23,7 +23,6 @@ EstimatorSettings settings_of_the_bracket(const EstimatorSettings& settings) {
   bracket.search = SliceSearch::steps;
   bracket.tolerance = 0;
   bracket.resolution = Resolution::full;
-  bracket.complete = Completion::none;
   return bracket;
 }
 
@@ -36,18 +35,22 @@ gpu::Buffer& confidence(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameI
   const Sampling sampling = sampling_of(bracket, frame.frame);
   const Skipping skipping = skipping_of(bracket, frame.changes);
   const Denoiser denoiser = denoiser_of(bracket);
-  const Bounds surfaces = bounds(gpu, gbuffer, skipping.proves, sampling.stride);
+  const Bounds surfaces = bounds(gpu, gbuffer, skipping.proves, skipping.completes ? 1 : sampling.stride);
   coarsen(gpu, gbuffer, surfaces);
-  const auto visibility = [&](float thickness, const std::string& prefix) -> const gpu::Buffer& {
+  const auto visibility = [&](float thickness, Completion complete,
+                              const std::string& prefix) -> const gpu::Buffer& {
     Reach reach = reach_of(bracket, radius);
     reach.thickness = thickness;
+    reach.complete = complete;
     Estimate out{&gpu.buffer(prefix + "ao", plane_bytes(gbuffer.view), gpu::Use::device)};
     out.listed = classify(gpu, gbuffer, surfaces, skipping, reach.radius, sampling.stride, out, 0, prefix);
     horizon(gpu, gbuffer, reach, sampling, out, 0);
     return denoise(gpu, gbuffer, *out.ao, denoiser, prefix);
   };
-  const gpu::Buffer& thin = visibility(float(kThin * radius), "thin ");
-  const gpu::Buffer& solid = visibility(std::numeric_limits<float>::infinity(), "solid ");
+  const gpu::Buffer& thin = visibility(float(kThin * radius), Completion::none, "thin ");
+  // Endless occluders block all that anything behind them does, but nothing beyond the border.
+  const Completion beyond = bracket.complete == Completion::none ? Completion::none : Completion::border;
+  const gpu::Buffer& solid = visibility(std::numeric_limits<float>::infinity(), beyond, "solid ");
   gpu::Buffer& result = gpu.buffer("confidence", plane_bytes(gbuffer.view), gpu::Use::device);
   gpu.dispatch("confidence", ConfidenceParams{gbuffer.view, float(radius), gbuffer.depth_precision},
                {{kConfidenceDepth, *gbuffer.depth},

@@ -80,7 +80,8 @@ uint completion_of(const Reach& reach) {
   switch (reach.complete) {
     case Completion::none: break;
     case Completion::border: return kCompletesBorder;
-    case Completion::all: return kCompletesBorder | kCompletesHidden;
+    // What endless occluders hide is blocked anyway.
+    case Completion::all: return kCompletesBorder | (std::isinf(reach.thickness) ? 0u : kCompletesHidden);
   }
   return 0;
 }
@@ -118,7 +119,7 @@ Sampling sampling_of(const EstimatorSettings& settings, int frame) {
 Skipping skipping_of(const EstimatorSettings& settings, const gpu::Buffer* changes) {
   const bool is_ranged = settings.estimator == Estimator::gtao || settings.estimator == Estimator::bitmask;
   return {!settings.no_skip, proves(settings), is_ranged, settings.skip_tolerance,
-          settings.no_skip ? nullptr : changes};
+          settings.no_skip ? nullptr : changes, completes_anywhere(settings)};
 }
 
 Estimate estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame,
@@ -137,7 +138,9 @@ Estimate estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs&
   // Tiles that are as in the frame before keep what it found in them.
   if (completed && (is_exact || !skipping.changes)) gpu.clear(*completed);
 
-  const Bounds surfaces = bounds(gpu, gbuffer, skipping.proves, sampling.stride);
+  // What goes on beyond the border is told by the normals of all pixels there.
+  const Bounds surfaces =
+      bounds(gpu, gbuffer, skipping.proves, skipping.completes ? 1 : sampling.stride);
   coarsen(gpu, gbuffer, surfaces);
   for (uint plane = 0; plane < radii.size(); plane++) {
     const Reach reach = reach_of(settings, radii[plane]);
@@ -197,7 +200,7 @@ TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const Bounds& boun
   const uint mode = (skipping.skips_sky ? kClassifySkips : 0) | (skipping.proves ? kClassifyProves : 0) |
                     (skipping.is_ranged ? kClassifyRanged : 0) | (out.bent ? kClassifyWithBent : 0) |
                     (skipping.changes ? kClassifyReuses : 0) | (skipping.tolerance > 0 ? kClassifyTolerates : 0) |
-                    (out.completed ? kClassifyWithCompleted : 0);
+                    (out.completed ? kClassifyWithCompleted : 0) | (skipping.completes ? kClassifyCompletes : 0);
   const ClassifyParams params{gbuffer.view,
                               gbuffer.grid.origin,
                               radius,

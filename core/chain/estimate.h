@@ -73,6 +73,7 @@ struct Skipping {
   bool is_ranged;              // the estimator takes the range of steps in which something may block
   double tolerance;            // tiles whose visibility is at least 1 less this are left out as open, too
   const gpu::Buffer* changes;  // against the frame before; null: it gives nothing
+  bool completes = false;      // surfaces go on beyond what is seen of them
 };
 Skipping skipping_of(const EstimatorSettings& settings, const gpu::Buffer* changes);
 
