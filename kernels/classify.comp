@@ -112,6 +112,12 @@ ivec2 group_at(Receivers r, int i) {
 
 GroupBounds bounds_of(View view, ivec2 group) { return groups[group.y * groups_of_tiles(view.size).x + group.x]; }
 
+/// Whether a square of pixels may hold the end of a surface that the image's border cuts: a search looks up to a step
+/// before the border.
+bool is_at_border(View view, ivec2 first_pixel, int side) {
+  return any(equal(first_pixel, ivec2(0))) || any(greaterThanEqual(first_pixel + side, view.size - 1));
+}
+
 /// Nothing in a group blocks by its bounds. Those at the border do not tell what goes on beyond it.
 bool is_settled(View view, Receivers r, ivec2 group, GroupBounds b) {
   const float limit = harmless_height(r, distances_px(r, group * kGroupSide, kGroupSide).x, b.level);
@@ -119,9 +125,8 @@ bool is_settled(View view, Receivers r, ivec2 group, GroupBounds b) {
   const vec2 centre = vec2(group * kGroupSide) + half_side;
   const float above =
       min(most_above(r, centre, half_side, vec2(0), b.level), most_above(r, centre, half_side, b.gradient, b.plane));
-  const ivec2 last_group = groups_of_tiles(view.size) - 1;
-  const bool at_border = any(equal(group, ivec2(0))) || any(equal(group, last_group));
-  return b.farthest > b.level ? true : above <= limit && !(kCompletes && at_border);
+  const bool goes_on = kCompletes && is_at_border(view, group * kGroupSide, kGroupSide);
+  return b.farthest > b.level ? true : above <= limit && !goes_on;
 }
 
 /// Whether a square of pixels is so far away that nothing in it blocks. What goes on behind the surfaces in it may lie
@@ -133,12 +138,10 @@ bool is_too_far(View view, Receivers r, ivec2 first_pixel, int side, float level
   return distance_sq(r.box, box_of(view, first_pixel / kTile, side / kTile, near, deepest)) > r.reach_sq;
 }
 
-/// Whether a tile's surfaces may rise above the tangent planes beyond the image's border.
-bool may_rise_beyond(View view, Receivers r, ivec2 tile, uint word, float turned) {
-  const ivec2 last_tile = tiles_of(view.size) - 1;
-  const bool at_border = any(equal(tile, ivec2(0))) || any(equal(tile, last_tile));
+/// Whether surfaces that stand nowhere above the tangent planes in a tile may rise above them beyond the border.
+bool may_rise_beyond(Receivers r, uint word, float turned) {
   const float differs = word == kNoNormal ? kFar : length(unpack_normal(word) - r.normal) + turned;
-  return at_border && differs + r.differs > kSameSlope;
+  return differs + r.differs > kSameSlope;
 }
 
 /// Adds a square of pixels, in which something stands above the tangent planes, to the sectors and steps at which
@@ -180,9 +183,10 @@ void search_tile(View view, Receivers r, ivec2 other, bool is_near) {
     above = min(above, most_above(r, centre, kHalfTile, bounds[neighbor.y * count.x + neighbor.x].gradient,
                                   bounds[index].plane[k + 1]));
   }
-  const bool goes_on = kCompletes && farthest <= level
-                           ? may_rise_beyond(view, r, other, bounds[index].normal, bounds[index].turned)
-                           : false;
+  const bool goes_on =
+      kCompletes && farthest <= level && is_at_border(view, other * kTile, kTile)
+          ? above > limit || may_rise_beyond(r, bounds[index].normal, bounds[index].turned)
+          : false;
   const bool rises = kTolerates ? goes_on || above > tolerated_height(view, r, apart.x, level) : true;
   for (bool once = goes_on || above > limit; once; once = false)
     mark(view, r, other * kTile, kTile, level, farthest, is_near, rises);

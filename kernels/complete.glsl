@@ -132,10 +132,13 @@ Piece piece_behind(Receiver r, Side side, Reach reach, Draw draw, int count, Int
 
 /// The piece by which the surface at the image's border goes on beyond it.
 Piece piece_beyond(Receiver r, Side side, Reach reach, Sample border) {
-  const ivec2 hit = r.pixel + ivec2(round(side.direction_px * border.offset));
+  const vec2 beside = round(side.direction_px * border.offset);
+  const ivec2 hit = r.pixel + ivec2(beside);
   const vec2 n = normal_in_slice(r, side, normal[hit.y * reach.width + hit.x]);
   Piece piece = piece_of(reach, border.place, vec2(n.y, -n.x), kNone);
-  const float height = dot(piece.far, vec2(dot(r.normal, side.t), dot(r.normal, r.eye)));
+  // Where the end is moved into the slice its height in it may be another one than its own.
+  const float height = height_of(r, beside, border.z, border.scale) +
+                       dot(piece.far - border.place, vec2(dot(r.normal, side.t), dot(r.normal, r.eye)));
   const bool is_near = both(border.place.x > 0.0, border.distance_sq < kFarEnd * kFarEnd * reach.radius_sq);
   const bool goes_on = both(height > kLeastRisen * reach.radius, dot(n, toward_eye(r, border.place)) > 0.0);
   piece.exists = both(piece.exists, both(is_near, goes_on));

@@ -187,10 +187,15 @@ vec2 place_of(Receiver r, Side side, vec2 offset, float z, float scale) {
   return vec2(scale * dot(side.across, offset), r.ray_length * (r.z - z) + scale * dot(side.toward, offset));
 }
 
+/// How high that sample stands above the tangent plane.
+float height_of(Receiver r, vec2 offset, float z, float scale) {
+  return scale * dot(r.height, offset) + (z - r.z) * r.depth_height;
+}
+
 /// Whether that sample stands clear of the tangent plane, and before the eye's ray. distance_sq: from the receiver.
 /// steps: from the receiver to the sample.
 bool is_above(Receiver r, Reach reach, vec2 place, float distance_sq, float steps, vec2 offset, float z, float scale) {
-  const float height = scale * dot(r.height, offset) + (z - r.z) * r.depth_height;
+  const float height = height_of(r, offset, z, scale);
   const bool clear = height > r.least_height + scale * (reach.least_rise * steps)
                          ? height * height > reach.least_elevation_sq * distance_sq
                          : false;
