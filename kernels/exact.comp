@@ -34,6 +34,7 @@
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 layout(constant_id = kExactListedId) const uint kListed = 0;
+layout(constant_id = kExactCompletesId) const uint kCompletes = 0;
 layout(scalar, push_constant) uniform Push { ExactParams params; };
 layout(scalar, binding = kExactDepth) readonly buffer Depth { float depth[]; };
 layout(scalar, binding = kExactNormal) readonly buffer Normal { uint normal[]; };
@@ -44,6 +45,8 @@ layout(scalar, binding = kExactWhole) buffer Whole { float whole_arcs[]; };
 layout(scalar, binding = kExactAo) buffer Ao { float ao[]; };
 layout(scalar, binding = kExactList) readonly buffer List { ListedTile list[]; };
 layout(scalar, binding = kExactCounts) readonly buffer Counts { TileCounts counts; };
+layout(scalar, binding = kExactGoesOn) readonly buffer GoesOn { vec2 goes_on[]; };
+layout(scalar, binding = kExactBehind) readonly buffer Behind { uint behind[]; };
 
 const float kNone = 1e30;
 
@@ -131,6 +134,21 @@ Stroke stroke_to(vec2 place, Walk walk, bool begins, int steps) {
   return Stroke(begins ? kShortStroke * place : onward, place);
 }
 
+/// A stroke goes on to the receiver's own ray at most: to this part of its distance across the ray.
+const float kBesideReceiver = 1e-3;
+
+/// The stroke with what its surface goes on behind others: towards the receiver from the first vertex of a run, else
+/// away from it.
+Stroke completed(Stroke stroke, Walk walk, bool begins, vec2 unseen) {
+  const float across = stroke.to.x;
+  const float least = kBesideReceiver * across;
+  const float part = unseen.x < least ? (across - least) / (across - unseen.x) : 1.0;
+  const vec2 toward = stroke.to + part * (unseen - stroke.to);
+  // What is seen before the first vertex of a side is not straight with what goes on behind it.
+  const vec2 onward = walk.starts ? stroke.to : stroke.from;
+  return begins ? Stroke(toward, stroke.to) : Stroke(onward, unseen);
+}
+
 /// The part of a stroke within the sphere of the radius about the receiver: with from + t (to - from), the t between
 /// the roots of |from + t (to - from)|^2 = radius^2.
 Clipped clip_to_sphere(Stroke stroke, float radius_sq) {
@@ -164,7 +182,7 @@ void block(inout Walk walk, Search search, Clipped stroke, float eye_distance, f
 }
 
 /// The blocked part of a side's arc integral; `at` is the index of the side's first vertex.
-float blocked_arc(View view, LinePlane plane, Point point, Side side, Search search, int at) {
+float blocked_arc(View view, LinePlane plane, Point point, Side side, Search search, int row, int at) {
   const float radius = params.radius;
   const float radius_sq = radius * radius;
   const float thickness = params.thickness;
@@ -172,18 +190,42 @@ float blocked_arc(View view, LinePlane plane, Point point, Side side, Search sea
   for (bool goes = true; goes; at += search.step) {
     const uint marked = mark[at];
     const int to = int(marked >> 16), steps = abs(to - search.from);
-    const float z = vertex[at], scale = view.orthographic != 0 ? 1.0 : z;
+    const float stored = vertex[at], z = kCompletes != 0u ? abs(stored) : stored;
+    const float scale = view.orthographic != 0 ? 1.0 : z;
     const float least = search.least_height + scale * search.least_rise * float(steps);
     const vec2 offset = place_at(view, plane, to, z) - point.place;
     const vec2 place = vec2(dot(offset, search.across), dot(offset, point.eye));
     const bool begins = (marked & search.begins) != 0u;
     walk.is_own = begins ? false : walk.is_own;
     walk.thickness = begins && thickness == 0.0 ? unpack_width(marked) : walk.thickness;
-    const Clipped stroke = clip_to_sphere(stroke_to(place, walk, begins, steps), radius_sq);
-    block(walk, search, stroke, point.eye_distance, least, radius_sq);
+    Stroke stroke = stroke_to(place, walk, begins, steps);
+    for (bool once = kCompletes != 0u && stored < 0.0; once; once = false) {
+      const vec2 to_unseen = place_at(view, plane, goes_on[at].x, goes_on[at].y) - point.place;
+      const vec2 unseen = vec2(dot(to_unseen, search.across), dot(to_unseen, point.eye));
+      stroke = completed(stroke, walk, begins, unseen);
+    }
+    block(walk, search, clip_to_sphere(stroke, radius_sq), point.eye_distance, least, radius_sq);
     goes = (marked & search.last) == 0u ? dot(place, search.leaving) < radius : false;
     walk.last = place;
     walk.starts = false;
+  }
+  for (bool once = kCompletes != 0u; once; once = false) {
+    at -= search.step;
+    const uint columns = behind[at];
+    const uint column = search.step > 0 ? columns >> 16 : columns & kNoVertex;
+    if (column == kNoVertex) continue;
+    at = row + int(column);
+    const uint marked = mark[at];
+    const int to = int(marked >> 16);
+    const float z = abs(vertex[at]), scale = view.orthographic != 0 ? 1.0 : z;
+    const vec2 offset = place_at(view, plane, to, z) - point.place;
+    const vec2 place = vec2(dot(offset, search.across), dot(offset, point.eye));
+    const vec2 to_unseen = place_at(view, plane, goes_on[at].x, goes_on[at].y) - point.place;
+    const vec2 unseen = vec2(dot(to_unseen, search.across), dot(to_unseen, point.eye));
+    walk.is_own = false;
+    walk.thickness = thickness == 0.0 ? unpack_width(marked) : thickness;
+    const float least = search.least_height + scale * search.least_rise * abs(goes_on[at].x - float(search.from));
+    block(walk, search, clip_to_sphere(completed(Stroke(place, place), walk, true, unseen), radius_sq), point.eye_distance, least, radius_sq);
   }
   return whole_arc(side) - arc_to(side, place_at(walk.own)) +
          arc_of(side, walk.sectors & ~sectors_below(walk.own, search.shift));
@@ -250,7 +292,7 @@ void main() {
       const uint column = sign > 0 ? neighbors >> 16 : neighbors & kNoVertex;
       if (column == kNoVertex) continue;
       search.shift = fract(0.5 + kGolden * float(2u * params.direction + uint(sign > 0)));
-      blocked += share * weight * blocked_arc(view, plane, point, side, search, row + int(column));
+      blocked += share * weight * blocked_arc(view, plane, point, side, search, row, row + int(column));
     }
   }
   if (params.is_first == 0) {

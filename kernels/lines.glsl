@@ -45,6 +45,10 @@ vec2 place_at(View view, LinePlane plane, int step, float z) {
   return vec2((view.orthographic != 0 ? 1.0 : z) * (plane.start + float(plane.origin + step) * plane.step),
               z * plane.ray_length);
 }
+vec2 place_at(View view, LinePlane plane, float step, float z) {
+  return vec2((view.orthographic != 0 ? 1.0 : z) * (plane.start + (float(plane.origin) + step) * plane.step),
+              z * plane.ray_length);
+}
 
 /// tangent_of() the centre of a pixel, counted along and across from the display window's corner, so that it is the
 /// same in a crop.
@@ -66,4 +70,24 @@ LinePlane plane_of(View view, Lines lines, int line) {
   plane.foot = first - plane.start * plane.along;
   plane.ray_length = view.orthographic != 0 ? 1.0 : sqrt(1.0 + dot(plane.foot, plane.foot));
   return plane;
+}
+
+/// What is straight along a line where the surface is: disparity, or orthographic depth.
+float value_of(bool perspective, float z) { return perspective ? 1.0 / z : z; }
+
+/// The steps of a line that lie on the image, from the first to behind the last.
+ivec2 steps_of(Lines lines, ivec2 extent, int line) {
+  const float steps_per_pixel = float(kSlopeUnit) / (lines.slope == 0 ? 1.0 : float(lines.slope));
+  const float enters = (-0.5 - float(line)) * steps_per_pixel - float(lines.origin.x);
+  const float leaves = enters + float(extent.y) * steps_per_pixel;
+  // Rounding may put them beside the border: two steps more on either side are searched for it.
+  int begin = clamp(int(clamp(min(enters, leaves), -1e6, 1e6)) - 2, 0, extent.x);
+  int end = clamp(int(clamp(max(enters, leaves), -1e6, 1e6)) + 3, 0, extent.x);
+  if (lines.slope == 0) {
+    begin = 0;
+    end = extent.x;
+  }
+  while (begin < end && uint(line + shift_at(lines, begin)) >= uint(extent.y)) begin++;
+  while (begin < end && uint(line + shift_at(lines, end - 1)) >= uint(extent.y)) end--;
+  return ivec2(begin, end);
 }

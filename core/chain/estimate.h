@@ -116,10 +116,12 @@ struct Profile {
   gpu::Buffer* vertex;
   gpu::Buffer* mark;
   gpu::Buffer* neighbor;
+  gpu::Buffer* goes_on;  // from complete; null: nothing does
+  gpu::Buffer* behind;   // the same
 };
 /// `groups`: workgroups, a GroupCount; null: those of all lines.
 Profile profile(gpu::Recorder& gpu, const GBuffer& gbuffer, const SearchDirections& directions, int direction,
-                const gpu::Buffer* groups = nullptr);
+                const Reach& reach, const gpu::Buffer* groups = nullptr);
 /// Adds a direction to a plane of out.ao, for the pixels that take it; call it for all directions in order. Where tiles
 /// are listed, the plane keeps the sum of what is blocked, from which converge makes the visibility.
 void exact(gpu::Recorder& gpu, const GBuffer& gbuffer, const Profile& profile, const SearchDirections& directions,

@@ -8,6 +8,7 @@
 
 #include "core/chain/estimate.h"
 #include "core/chain/pass_common.h"
+#include "kernels/complete.h"
 #include "kernels/converge.h"
 #include "kernels/exact.h"
 #include "kernels/profile.h"
@@ -22,6 +23,11 @@ constexpr int kMostDirections = 64;
 
 /// How far a profile may leave a pixel's depth, in the pixel's own widths: less costs more vertices.
 constexpr float kProfileTolerance = 0.2f;
+
+/// Where surfaces are completed, a run is so thick: its width times the first, and so many pixels more. Thickness need
+/// not stand for what is hidden then.
+constexpr float kCompletedDepthPerWidth = 0.5f;
+constexpr float kCompletedMorePixels = 1;
 
 /// The number of the i-th direction. In this order the first 2, 4, 8 ... directions are even over the half turn.
 int bit_reversed(int i) {
@@ -108,7 +114,7 @@ TileList converge(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach
   compare_directions(gpu, gbuffer, tolerance, sums, result, plane, 0);
   const TileList first = sums.listed;
   for (int i = 0; i < kMostDirections; i++) {
-    const Profile lines = profile(gpu, gbuffer, directions, bit_reversed(i), sums.listed.lines);
+    const Profile lines = profile(gpu, gbuffer, directions, bit_reversed(i), reach, sums.listed.lines);
     exact(gpu, gbuffer, lines, directions, reach, sums, 0);
     if (i + 1 >= kLeastDirections && std::has_single_bit(uint(i + 1)))
       compare_directions(gpu, gbuffer, tolerance, sums, result, plane, i + 1);
@@ -117,12 +123,12 @@ TileList converge(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach
 }
 
 Profile profile(gpu::Recorder& gpu, const GBuffer& gbuffer, const SearchDirections& directions, int direction,
-                const gpu::Buffer* groups) {
+                const Reach& reach, const gpu::Buffer* groups) {
   const std::size_t bytes = plane_bytes(gbuffer.view);
   const Lines lines = lines_of(gbuffer.view, gbuffer.grid.origin, direction, directions.count);
-  const Profile result{direction, lines, &gpu.buffer("profile vertex", bytes, gpu::Use::device),
+  Profile result{direction, lines, &gpu.buffer("profile vertex", bytes, gpu::Use::device),
                        &gpu.buffer("profile mark", bytes, gpu::Use::device),
-                       &gpu.buffer("profile neighbor", bytes, gpu::Use::device)};
+                       &gpu.buffer("profile neighbor", bytes, gpu::Use::device), nullptr, nullptr};
   const ivec2 size = gbuffer.view.size;
   const int along = lines.steep ? size.y : size.x;
   const int across = lines.steep ? size.x : size.y;
@@ -131,13 +137,28 @@ Profile profile(gpu::Recorder& gpu, const GBuffer& gbuffer, const SearchDirectio
          "an exact search takes at most {} pixels along a line, and there are {}: give --search steps", kNoVertex,
          std::max(size.x, size.y));
   const auto [least, most] = std::minmax({shift_at(lines, 0), shift_at(lines, along - 1)});
-  const ProfileParams params{gbuffer.view, lines, -most, uint(across + most - least), kProfileTolerance};
+  const bool completes_all = reach.complete == Completion::all;
+  const ProfileParams params{gbuffer.view,
+                             lines,
+                             -most,
+                             uint(across + most - least),
+                             kProfileTolerance,
+                             completes_all ? kCompletedDepthPerWidth : 1,
+                             completes_all ? kCompletedMorePixels : 0,
+                             reach.complete != Completion::none ? 1u : 0u};
   gpu.dispatch("profile", params,
                {{kProfileDepth, *gbuffer.depth},
                 {kProfileVertex, *result.vertex},
                 {kProfileMark, *result.mark},
                 {kProfileNeighbor, *result.neighbor}},
                groups ? gpu::Extent(*groups) : gpu::Extent(params.count), {directions.every_pixel ? 1u : 0u});
+  if (reach.complete == Completion::none) return result;
+  result.goes_on = &gpu.buffer("profile goes on", 2 * bytes, gpu::Use::device);
+  result.behind = &gpu.buffer("profile behind", bytes, gpu::Use::device);
+  gpu.dispatch("complete",
+               CompleteParams{gbuffer.view, lines, params.first, params.count, reach.radius, completes_all ? 1u : 0u},
+               {{kCompleteVertex, *result.vertex}, {kCompleteMark, *result.mark}, {kCompleteGoesOn, *result.goes_on}, {kCompleteBehind, *result.behind}},
+               groups ? gpu::Extent(*groups) : gpu::Extent(params.count));
   return result;
 }
 
@@ -175,8 +196,10 @@ void exact(gpu::Recorder& gpu, const GBuffer& gbuffer, const Profile& profile, c
                 {kExactWhole, whole_arcs(gpu, gbuffer)},
                 {kExactAo, *out.ao},
                 {kExactList, is_listed ? *out.listed.tiles : *out.ao},
-                {kExactCounts, is_listed ? *out.listed.counts : *out.ao}},
-               is_listed ? list_extent(out.listed) : pixels, {is_listed ? 1u : 0u});
+                {kExactCounts, is_listed ? *out.listed.counts : *out.ao},
+                {kExactGoesOn, profile.goes_on ? *profile.goes_on : *profile.vertex},
+                {kExactBehind, profile.behind ? *profile.behind : *profile.mark}},
+               is_listed ? list_extent(out.listed) : pixels, {is_listed ? 1u : 0u, profile.goes_on ? 1u : 0u});
 }
 
 }  // namespace alcove
