@@ -35,6 +35,9 @@ const int kLeastAtBorder = 3;
 /// Longer strokes than this, in steps, are not needed for any image.
 const float kLongestStroke = 65536.0;
 
+/// Surfaces that go on at one place of a line. Of more, the first that went behind what is seen ends.
+const int kMostOpen = 6;
+
 struct Corner {
   uint marked;
   int at;         // the step
@@ -50,62 +53,123 @@ Corner corner_at(bool perspective, int index) {
   return c;
 }
 
-/// The step up to which a surface goes on behind what is seen, from a run's end at `index`; its own where it does not.
-float hidden_until(bool perspective, int row, int index, int way, Corner end, float slope, float farthest) {
-  const uint column = uint(index - row);
-  const uint begins = way > 0 ? kVertexBegins : kVertexEnds;
-  const uint is_last = way > 0 ? kVertexLast : kVertexFirst;
-  Corner before = end;
-  float until = float(end.at);
-  for (bool goes = true; goes;) {
-    index += way;
-    const Corner next = corner_at(perspective, index);
-    const float depth_behind = next.nearness - end.nearness - slope * float(next.at - end.at);
-    const bool begins_run = (next.marked & begins) != 0u;
-    const bool after_sky = begins_run && abs(next.at - before.at) > 1;
-    const float before_behind = before.nearness - end.nearness - slope * float(before.at - end.at);
-    goes = !after_sky && depth_behind > 0.0;
-    for (bool once = goes; once; once = false) {
-      until = float(next.at);
-      const uint others = behind[index];
-      if (way > 0) behind[index] = others & 0xffff0000u | column;
-      if (way < 0 && others >> 16 == kNoVertex) behind[index] = others & kNoVertex | column << 16;
-    }
-    if (!goes && !begins_run)
-      until = float(before.at) + float(next.at - before.at) * before_behind / (before_behind - depth_behind);
-    if (abs(until - float(end.at)) >= farthest || (next.marked & is_last) != 0u) goes = false;
-    before = next;
-  }
-  return until;
+/// A surface that goes on behind what is seen so far.
+struct Open {
+  bool is_open;
+  int index;       // of the vertex from which it goes on
+  float from;      // the step of that
+  float nearness;  // there
+  float slope;     // of the nearness, per step of the walk
+  float farthest;  // steps that it goes on at most
+};
+
+/// The surfaces that go on at one place of a line, the latest first. Of more, the first to have gone behind what is seen
+/// ends.
+struct Opens {
+  Open a, b, c;
+};
+
+/// What a walk along the line knows of the vertices behind it.
+struct Walk {
+  int way;              // 1 or -1
+  uint begins, is_last;  // the flags of vertices, as the walk meets them
+  Corner before, prior;  // the last vertex, and the one before it
+  Corner inner;  // the vertex of the last one's run that says with it how the surface goes on: two steps away at least, where the run is so long
+};
+
+Open from_end(View view, LinePlane plane, Walk walk, int index) {
+  const bool perspective = view.orthographic == 0;
+  const Corner end = walk.before;
+  const float scale = perspective ? 1.0 / end.nearness : 1.0;
+  Open open;
+  open.is_open = true;
+  open.index = index;
+  open.from = float(end.at);
+  open.nearness = end.nearness;
+  open.slope = (end.nearness - walk.inner.nearness) / float(abs(end.at - walk.inner.at));
+  open.farthest = min(ceil(2.0 * params.radius / (scale * plane.step)), kLongestStroke);
+  if (perspective && open.slope < 0.0)
+    open.farthest = min(open.farthest, (kLeastDisparity - 1.0) * end.nearness / open.slope);
+  return open;
 }
 
-/// Writes where the surface of the run's end at `index` goes on to; `way` leads out of the run.
-void complete(View view, LinePlane plane, ivec2 steps, int row, int index, int way) {
-  const bool perspective = view.orthographic == 0;
-  const Corner end = corner_at(perspective, index);
-  Corner inner = corner_at(perspective, index - way);
-  const uint other_end = way > 0 ? kVertexBegins : kVertexEnds;
-  if (abs(end.at - inner.at) < 2 && (inner.marked & other_end) == 0u) inner = corner_at(perspective, index - 2 * way);
-  const float slope = (end.nearness - inner.nearness) / float(end.at - inner.at);
-  const float z = perspective ? 1.0 / end.nearness : -end.nearness;
-  float farthest = min(ceil(2.0 * params.radius / ((perspective ? z : 1.0) * plane.step)), kLongestStroke);
-  const float falling = -slope * float(way);
-  if (perspective && falling > 0.0) farthest = min(farthest, (1.0 - kLeastDisparity) * end.nearness / falling);
-  const bool at_border = end.at + way < steps.x || end.at + way >= steps.y;
-  const bool is_last = (end.marked & (way > 0 ? kVertexLast : kVertexFirst)) != 0u;
-  float until = float(end.at);
-  if (at_border) {
-    if (abs(end.at - inner.at) >= kLeastAtBorder - 1) until += float(way) * farthest;
-  } else if (params.behind != 0 && !is_last) {
-    const Corner next = corner_at(perspective, index + way);
-    if (next.at == end.at + way && next.nearness > end.nearness)
-      until = hidden_until(perspective, row, index, way, end, slope, farthest);
+/// Ends what goes on from a vertex so many steps from there.
+void close(inout Open open, bool perspective, int way, float steps) {
+  const float nearness = open.nearness + open.slope * steps;
+  goes_on[open.index] = vec2(open.from + float(way) * steps, perspective ? 1.0 / nearness : -nearness);
+  vertex[open.index] = -abs(vertex[open.index]);
+  open.is_open = false;
+}
+
+/// Goes on from the walk's last vertex to the next one, and ends what would be seen until there.
+void go_on(inout Open open, bool perspective, Walk walk, Corner next, bool begins_run, bool is_end) {
+  const float to_before = abs(float(walk.before.at) - open.from), to_next = abs(float(next.at) - open.from);
+  const float behind_before = walk.before.nearness - open.nearness - open.slope * to_before;
+  const float behind_next = next.nearness - open.nearness - open.slope * to_next;
+  const bool after_sky = begins_run && abs(next.at - walk.before.at) > 1;
+  const bool is_hidden = !after_sky && behind_next > 0.0;
+  const bool ends = !is_hidden || is_end || to_next >= open.farthest;
+  for (bool once = open.is_open && ends; once; once = false) {
+    float steps = begins_run ? to_before : mix(to_before, to_next, behind_before / (behind_before - behind_next));
+    if (is_hidden) steps = to_next;
+    close(open, perspective, walk.way, min(steps, open.farthest));
   }
-  until = clamp(until, float(end.at) - farthest, float(end.at) + farthest);
-  if (until == float(end.at)) return;
-  const float nearness = end.nearness + slope * (until - float(end.at));
-  goes_on[index] = vec2(until, perspective ? 1.0 / nearness : -nearness);
-  vertex[index] = -z;
+}
+
+/// Walks along the vertices of a line from `first` on; it has one at least.
+void complete(View view, LinePlane plane, ivec2 steps, int row, int first, int way) {
+  const bool perspective = view.orthographic == 0;
+  Walk walk;
+  walk.way = way;
+  walk.begins = way > 0 ? kVertexBegins : kVertexEnds;
+  walk.is_last = way > 0 ? kVertexLast : kVertexFirst;
+  const uint both_ends = kVertexBegins | kVertexEnds;
+  walk.before = corner_at(perspective, first);
+  walk.prior = walk.before;
+  walk.inner = walk.before;
+  Open none;
+  none.is_open = false;
+  none.index = 0;
+  none.from = none.nearness = none.slope = none.farthest = 0.0;
+  Opens opens = Opens(none, none, none);
+  int index = first;
+  bool goes = (walk.before.marked & walk.is_last) == 0u;
+  while (goes) {
+    index += way;
+    const Corner next = corner_at(perspective, index);
+    const bool begins_run = (next.marked & walk.begins) != 0u;
+    const bool is_interrupted = begins_run && (walk.before.marked & both_ends) != both_ends &&
+                                next.at == walk.before.at + way && next.nearness > walk.before.nearness;
+    goes = (next.marked & walk.is_last) == 0u;
+    for (bool once = is_interrupted; once; once = false) {
+      if (opens.a.is_open && opens.b.is_open) {
+        for (bool full = opens.c.is_open; full; full = false)
+          close(opens.c, perspective, way, abs(float(walk.before.at) - opens.c.from));
+        opens.c = opens.b;
+      }
+      if (opens.a.is_open) opens.b = opens.a;
+      opens.a = from_end(view, plane, walk, index - way);
+    }
+    go_on(opens.a, perspective, walk, next, begins_run, !goes);
+    go_on(opens.b, perspective, walk, next, begins_run, !goes);
+    go_on(opens.c, perspective, walk, next, begins_run, !goes);
+    uint column = kNoVertex;
+    if (opens.c.is_open) column = uint(opens.c.index - row);
+    if (opens.b.is_open) column = uint(opens.b.index - row);
+    if (opens.a.is_open) column = uint(opens.a.index - row);
+    behind[index] = way > 0 ? column | kNoVertex << 16 : behind[index] & kNoVertex | column << 16;
+    const bool is_long = abs(next.at - walk.before.at) > 1;
+    const bool before_begins = (walk.before.marked & walk.begins) != 0u;
+    walk.inner = is_long || before_begins ? walk.before : walk.prior;
+    if (begins_run) walk.inner = next;
+    walk.prior = walk.before;
+    walk.before = next;
+  }
+  const bool at_border = walk.before.at + way < steps.x || walk.before.at + way >= steps.y;
+  for (bool once = at_border && abs(walk.before.at - walk.inner.at) >= kLeastAtBorder - 1; once; once = false) {
+    Open last = from_end(view, plane, walk, index);
+    close(last, perspective, way, last.farthest);
+  }
 }
 
 void main() {
@@ -118,17 +182,10 @@ void main() {
   if (steps.x >= steps.y) return;
   const LinePlane plane = plane_of(view, lines, line);
   const int row = row_of(lines, line, extent.y) * extent.x;
-  int index = row + steps.x;
-  for (bool goes = mark[index] != 0u; goes; index++) {
-    behind[index] = kNoVertex | kNoVertex << 16;
-    goes = (mark[index] & kVertexLast) == 0u;
-  }
-  index = row + steps.x;
-  for (bool goes = mark[index] != 0u; goes; index++) {
-    const uint marked = mark[index];
-    const uint ends = marked & (kVertexBegins | kVertexEnds);
-    for (bool once = ends == kVertexBegins || ends == kVertexEnds; once; once = false)
-      complete(view, plane, steps, row, index, ends == kVertexEnds ? 1 : -1);
-    goes = (marked & kVertexLast) == 0u;
-  }
+  if (mark[row + steps.x] == 0u) return;
+  behind[row + steps.x] = kNoVertex | kNoVertex << 16;
+  complete(view, plane, steps, row, row + steps.x, 1);
+  int last = row + steps.x;
+  while ((mark[last] & kVertexLast) == 0u) last++;
+  complete(view, plane, steps, row, last, -1);
 }
