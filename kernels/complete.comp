@@ -23,7 +23,7 @@ layout(local_size_x = kCompleteGroup) in;
 layout(scalar, push_constant) uniform Push { CompleteParams params; };
 layout(scalar, binding = kCompleteVertex) buffer Vertex { float vertex[]; };
 layout(scalar, binding = kCompleteMark) readonly buffer Mark { uint mark[]; };
-layout(scalar, binding = kCompleteGoesOn) writeonly buffer GoesOn { vec2 goes_on[]; };
+layout(scalar, binding = kCompleteGoesOn) writeonly buffer GoesOn { uint goes_on[]; };
 layout(scalar, binding = kCompleteBehind) buffer Behind { uint behind[]; };
 
 /// A surface goes on until its disparity has fallen to this part of what it is at its last vertex.
@@ -33,7 +33,7 @@ const float kLeastDisparity = 0.02;
 const int kLeastAtBorder = 3;
 
 /// Longer strokes than this, in steps, are not needed for any image.
-const float kLongestStroke = 65536.0;
+const float kLongestStroke = 8191.0;
 
 /// Surfaces that go on at one place of a line. Of more, the first that went behind what is seen ends.
 const int kMostOpen = 6;
@@ -96,7 +96,8 @@ Open from_end(View view, LinePlane plane, Walk walk, int index) {
 /// Ends what goes on from a vertex so many steps from there.
 void close(inout Open open, bool perspective, int way, float steps) {
   const float nearness = open.nearness + open.slope * steps;
-  goes_on[open.index] = vec2(open.from + float(way) * steps, perspective ? 1.0 / nearness : -nearness);
+  goes_on[open.index] =
+      pack_goes_on(steps, perspective ? open.nearness / nearness : max(nearness / open.nearness, 0.0));
   vertex[open.index] = -abs(vertex[open.index]);
   open.is_open = false;
 }

@@ -8,7 +8,7 @@ ALCOVE_BEGIN
 // in and out: from profile; a vertex from which its surface goes on has its depth negated
 ALCOVE_CONSTANT uint kCompleteVertex = 0;
 ALCOVE_CONSTANT uint kCompleteMark = 1;  // in: from profile
-// out: for each vertex with a negative depth the step up to which its surface goes on, and the planar depth there
+// out: one uint for each vertex with a negative depth: up to where its surface goes on (pack_goes_on())
 ALCOVE_CONSTANT uint kCompleteGoesOn = 2;
 // out: one uint per vertex: the columns of the nearest vertices before (low half) and after it (high half) whose surface
 // goes on behind it; kNoVertex: none

@@ -45,7 +45,7 @@ layout(scalar, binding = kExactWhole) buffer Whole { float whole_arcs[]; };
 layout(scalar, binding = kExactAo) buffer Ao { float ao[]; };
 layout(scalar, binding = kExactList) readonly buffer List { ListedTile list[]; };
 layout(scalar, binding = kExactCounts) readonly buffer Counts { TileCounts counts; };
-layout(scalar, binding = kExactGoesOn) readonly buffer GoesOn { vec2 goes_on[]; };
+layout(scalar, binding = kExactGoesOn) readonly buffer GoesOn { uint goes_on[]; };
 layout(scalar, binding = kExactBehind) readonly buffer Behind { uint behind[]; };
 
 const float kNone = 1e30;
@@ -199,10 +199,14 @@ float blocked_arc(View view, LinePlane plane, Point point, Side side, Search sea
     walk.is_own = begins ? false : walk.is_own;
     walk.thickness = begins && thickness == 0.0 ? unpack_width(marked) : walk.thickness;
     Stroke stroke = stroke_to(place, walk, begins, steps);
-    for (bool once = kCompletes != 0u && stored < 0.0; once; once = false) {
-      const vec2 to_unseen = place_at(view, plane, goes_on[at].x, goes_on[at].y) - point.place;
+    if (kCompletes != 0u) {
+      const uint further = goes_on[at];
+      const float away = begins ? -float(search.step) : float(search.step);
+      const vec2 to_unseen = place_at(view, plane, float(to) + away * steps_of_goes_on(further), z * depths_of_goes_on(further)) - point.place;
       const vec2 unseen = vec2(dot(to_unseen, search.across), dot(to_unseen, point.eye));
-      stroke = completed(stroke, walk, begins, unseen);
+      const Stroke whole = completed(stroke, walk, begins, unseen);
+      stroke.from = stored < 0.0 ? whole.from : stroke.from;
+      stroke.to = stored < 0.0 ? whole.to : stroke.to;
     }
     block(walk, search, clip_to_sphere(stroke, radius_sq), point.eye_distance, least, radius_sq);
     goes = (marked & search.last) == 0u ? dot(place, search.leaving) < radius : false;
@@ -220,11 +224,13 @@ float blocked_arc(View view, LinePlane plane, Point point, Side side, Search sea
     const float z = abs(vertex[at]), scale = view.orthographic != 0 ? 1.0 : z;
     const vec2 offset = place_at(view, plane, to, z) - point.place;
     const vec2 place = vec2(dot(offset, search.across), dot(offset, point.eye));
-    const vec2 to_unseen = place_at(view, plane, goes_on[at].x, goes_on[at].y) - point.place;
+    const uint further = goes_on[at];
+    const float until = float(to) - float(search.step) * steps_of_goes_on(further);
+    const vec2 to_unseen = place_at(view, plane, until, z * depths_of_goes_on(further)) - point.place;
     const vec2 unseen = vec2(dot(to_unseen, search.across), dot(to_unseen, point.eye));
     walk.is_own = false;
     walk.thickness = thickness == 0.0 ? unpack_width(marked) : thickness;
-    const float least = search.least_height + scale * search.least_rise * abs(goes_on[at].x - float(search.from));
+    const float least = search.least_height + scale * search.least_rise * abs(until - float(search.from));
     block(walk, search, clip_to_sphere(completed(Stroke(place, place), walk, true, unseen), radius_sq), point.eye_distance, least, radius_sq);
   }
   return whole_arc(side) - arc_to(side, place_at(walk.own)) +

@@ -153,7 +153,7 @@ Profile profile(gpu::Recorder& gpu, const GBuffer& gbuffer, const SearchDirectio
                 {kProfileNeighbor, *result.neighbor}},
                groups ? gpu::Extent(*groups) : gpu::Extent(params.count), {directions.every_pixel ? 1u : 0u});
   if (reach.complete == Completion::none) return result;
-  result.goes_on = &gpu.buffer("profile goes on", 2 * bytes, gpu::Use::device);
+  result.goes_on = &gpu.buffer("profile goes on", bytes, gpu::Use::device);
   result.behind = &gpu.buffer("profile behind", bytes, gpu::Use::device);
   gpu.dispatch("complete",
                CompleteParams{gbuffer.view, lines, params.first, params.count, reach.radius, completes_all ? 1u : 0u},
