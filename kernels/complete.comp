@@ -27,7 +27,7 @@ layout(scalar, binding = kCompleteGoesOn) writeonly buffer GoesOn { uint goes_on
 layout(scalar, binding = kCompleteBehind) buffer Behind { uint behind[]; };
 
 /// A surface goes on until its disparity has fallen to this part of what it is at its last vertex.
-const float kLeastDisparity = 0.02;
+const float kLeastDisparity = 0.0627;
 
 /// A run of fewer pixels than this does not tell how its surface goes on beyond the border.
 const int kLeastAtBorder = 3;

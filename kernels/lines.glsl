@@ -43,13 +43,10 @@ float unpack_width(uint mark) { return uintBitsToFloat((mark & 0xfff0u) << 15); 
 /// Where a surface goes on to unseen: so many steps further along the line, at most 8191, to so many times the planar
 /// depth; within 1/16 step and, up to twice the depth, 1e-4 of it.
 uint pack_goes_on(float steps, float depths) {
-  return uint(steps * 8.0 + 0.5) << 16 | uint(65536.0 * depths / (1.0 + depths));
+  return uint(steps * 8.0 + 0.5) << 16 | uint(min(depths * 4096.0 + 0.5, 65535.0));
 }
 float steps_of_goes_on(uint packed) { return float(packed >> 16) * 0.125; }
-float depths_of_goes_on(uint packed) {
-  const float share = (float(packed & 0xffffu) + 0.5) / 65536.0;
-  return share / (1.0 - share);
-}
+float depths_of_goes_on(uint packed) { return float(packed & 0xffffu) / 4096.0; }
 
 /// Where a point of the line is in its plane.
 vec2 place_at(View view, LinePlane plane, int step, float z) {
