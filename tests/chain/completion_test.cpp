@@ -11,6 +11,7 @@
 #include "core/base/estimator_facts.h"
 #include "core/chain/completion.h"
 #include "core/chain/debug.h"
+#include "core/chain/reuse.h"
 #include "core/run/frame_tally.h"
 #include "tests/support/command_line.h"
 #include "tests/support/device.h"
@@ -266,6 +267,33 @@ TEST(Completion, is_made_only_where_something_is_completed_and_somebody_asks) {
     settings.estimator = estimator;
     EXPECT_FALSE(is_made(settings, with_stats()));
   }
+}
+
+TEST(Completion, stays_in_tiles_that_are_as_in_the_frame_before) {
+  EstimatorSettings settings = searches().front();
+  settings.radius = 0.05;
+  HostFrame frame = furnished_room(256, 192).frame;
+  LastFrame last;
+  const auto run = [&](FrameInputs inputs) {
+    EXPECT_FALSE(last.is_same(recorder(), inputs, settings));
+    const FrameOutputs outputs = run_chain(recorder(), inputs, settings, with_stats());
+    recorder().download(*outputs.completed);
+    recorder().run();
+    last.keep(outputs);
+    return outputs;
+  };
+  gpu::Buffer& completed = *run(upload(recorder(), frame)).completed;
+  std::ranges::fill(completed.as<float>(), kBefore);
+  recorder().upload(completed);
+  frame.depth.back() *= 0.999f;
+  const FrameOutputs outputs = run(upload(recorder(), frame));
+  ASSERT_GT(outputs.tiles->as<TileCounts>()[0].kept, 0);
+  const auto values = outputs.completed->as<const float>();
+  const auto kept = std::ranges::count(values, kBefore);
+  EXPECT_GT(kept, std::ptrdiff_t(values.size() / 4));
+  double by_completed = 0;
+  for (const vec2& tile : outputs.completion->as<const vec2>()) by_completed += tile.x;
+  EXPECT_GE(by_completed, kBefore * double(values.size() / 4)) << "what stays counts";
 }
 
 /// The report of a frame whose parts have these sums by tile.
