@@ -128,7 +128,7 @@ class References {
     ReferenceSettings wanted = reference_settings_of(settings);
     wanted.slices = slices_;
     auto& reference = made_[{wanted.radius, wanted.falloff, wanted.falloff_start, wanted.thickness,
-                             wanted.thickness_length, wanted.bias}];
+                             wanted.thickness_length, wanted.bias, wanted.complete}];
     if (reference.empty() && !kept_.empty()) reference = read_kept_reference(kept_, wanted, frame_.host.data);
     if (reference.empty()) reference = reference_ao(frame_.host, wanted);
     return reference;
@@ -137,7 +137,7 @@ class References {
   const LoadedFrame& frame_;
   int slices_;
   std::string kept_;
-  std::map<std::tuple<double, Falloff, double, ThicknessRule, double, double>, std::vector<float>> made_;
+  std::map<std::tuple<double, Falloff, double, ThicknessRule, double, double, Completion>, std::vector<float>> made_;
 };
 
 /// Over the surfaces, without the truths' noise where there are two.

@@ -29,12 +29,23 @@ const char* name_of(ThicknessRule rule) {
   return "";
 }
 
+const char* name_of(Completion completion) {
+  switch (completion) {
+    case Completion::none: return "none";
+    case Completion::border: return "border";
+    case Completion::all: return "all";
+  }
+  return "";
+}
+
 }  // namespace
 
 std::string text_of(const ReferenceSettings& settings) {
-  return fmt::format("radius {} falloff {} from {} slices {} thickness {} length {} bias {}", settings.radius,
-                     name_of(settings.falloff), settings.falloff_start, settings.slices, name_of(settings.thickness),
-                     settings.thickness_length, settings.bias);
+  return fmt::format(
+      "radius {} falloff {} from {} slices {} thickness {} length {} share {} pixels {} complete {} bias {}",
+      settings.radius, name_of(settings.falloff), settings.falloff_start, settings.slices, name_of(settings.thickness),
+      settings.thickness_length, settings.width_share, settings.width_pixels, name_of(settings.complete),
+      settings.bias);
 }
 
 std::vector<float> read_kept_reference(const std::string& path, const ReferenceSettings& settings, const Window& data) {

@@ -11,16 +11,21 @@
 #include <numbers>
 #include <thread>
 
+#include "core/reference/reference_completion.h"
 #include "core/reference/reference_scene.h"
+#include "core/reference/reference_slice.h"
 
 namespace alcove {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-/// Neighbours on a slice whose depth differs by less than this many pixels' worth of slope are one surface.
-constexpr double kRunSlope = 8;
+/// Into so many parts a completed segment is cut where what is blocked weighs by its distance.
+constexpr int kPartsWithFalloff = 32;
 
 using Scene = ReferenceScene;
+using Sample = ReferenceSample;
+using Receiver = ReferenceReceiver;
+using Side = ReferenceSide;
 
 /// Integral of cos(theta - gamma) |sin(theta)| from 0 to h (Jimenez et al. 2016, equation 7).
 double arc(double h, double gamma) {
@@ -82,27 +87,6 @@ class Blocked {
   std::vector<std::pair<double, double>> intervals_;
 };
 
-/// One pixel on a slice's image line.
-struct Sample {
-  Vector position;
-  double depth = 0;      // 0: sky
-  double thickness = 0;  // scene units, infinite allowed
-};
-
-struct Receiver {
-  int x, y;
-  double depth;
-  Vector position, eye, normal;
-};
-
-/// One side of a slice at a receiver.
-struct Side {
-  Vector along_t, along_v;  // in-slice coordinates of an offset, moved into the slice parallel to the tangent plane
-  double gamma;
-  double step_x, step_y;  // pixels per step; the longer component is +-1
-  double reach;           // steps within the radius; infinite when the sphere of the radius holds the eye
-};
-
 double weight_of(const ReferenceSettings& settings, double distance) {
   if (settings.falloff == Falloff::none) return 1;
   const double start = settings.falloff_start * settings.radius;
@@ -110,60 +94,6 @@ double weight_of(const ReferenceSettings& settings, double distance) {
   if (settings.falloff == Falloff::linear) return 1 - x;
   if (settings.falloff == Falloff::quadratic) return 1 - x * x;
   return 1 - x * x * (3 - 2 * x);
-}
-
-bool same_surface(const Scene& scene, const Sample& a, const Sample& b) {
-  if (a.depth == 0 || b.depth == 0) return false;
-  const double pixel = scene.orthographic() ? 1 / scene.fx() : std::min(a.depth, b.depth) / scene.fx();
-  return std::abs(a.depth - b.depth) < kRunSlope * pixel;
-}
-
-/// The samples of a side, the receiver first. With runs to be measured the line goes on until the last run within reach
-/// has ended.
-std::vector<Sample> line_of(const Scene& scene, const Receiver& receiver, const Side& side,
-                            const ReferenceSettings& settings) {
-  std::vector<Sample> line = {{receiver.position, receiver.depth, 0}};
-  std::size_t run_start = 0;
-  for (int k = 1;; k++) {
-    const int x = receiver.x + int(std::lround(side.step_x * k));
-    const int y = receiver.y + int(std::lround(side.step_y * k));
-    if (!scene.inside(x, y)) break;
-    Sample sample;
-    sample.depth = scene.depth(x, y);
-    sample.position = scene.position(x, y, sample.depth);
-    const bool same = same_surface(scene, line.back(), sample);
-    if (!same) run_start = line.size();
-    // Beyond the reach a sample matters only as the other end of a crossing and as more of a run's width; a run wider
-    // than the sphere is wide enough.
-    if (k > side.reach + 1 && (settings.thickness != ThicknessRule::width || !same ||
-                               length(sample.position - line[run_start].position) > 2 * settings.radius))
-      break;
-    line.push_back(sample);
-  }
-  return line;
-}
-
-void set_thickness(const Scene& scene, std::vector<Sample>& line, const ReferenceSettings& settings) {
-  if (settings.thickness != ThicknessRule::width) {
-    const double value = settings.thickness == ThicknessRule::infinite ? INFINITY : settings.thickness_length;
-    for (auto& sample : line) sample.thickness = value;
-    return;
-  }
-  for (std::size_t first = 0; first < line.size();) {
-    std::size_t last = first;
-    while (last + 1 < line.size() && same_surface(scene, line[last], line[last + 1])) last++;
-    // From outer edge to outer edge: n pixels are n wide, and their centres n - 1 apart. Without it single blades of
-    // grass vanish.
-    const double pixel = scene.orthographic() ? 1 / scene.fx() : line[first].depth / scene.fx();
-    const double chord = first == 0 ? INFINITY : length(line[last].position - line[first].position) + pixel;
-    for (std::size_t i = first; i <= last; i++) line[i].thickness = chord;
-    first = last + 1;
-  }
-}
-
-/// The angle of an offset from the view ray, in the slice; negative on the other side.
-double angle_of(const Side& side, Vector offset) {
-  return std::atan2(dot(offset, side.along_t), dot(offset, side.along_v));
 }
 
 /// Where the line between two offsets, one within the radius and one beyond, leaves the sphere.
@@ -189,44 +119,105 @@ std::pair<double, double> span_between(const Scene& scene, const Receiver& recei
   return std::minmax({angle_of(side, from), angle_of(side, to)});
 }
 
-Vector blocked_arcs(const Scene& scene, const Receiver& receiver, const Side& side, const ReferenceSettings& settings,
-                    bool with_bent) {
-  auto line = line_of(scene, receiver, side, settings);
-  set_thickness(scene, line, settings);
-  // the tangent plane; and where blocking begins
-  const double limit = side.gamma + kPi / 2;
-  const double lowest = limit - std::asin(settings.bias);
-  Blocked blocked(side.gamma, with_bent);
-  Vector sum;
-  for (std::size_t i = 1; i < line.size(); i++) {
-    const Vector offset = line[i].position - receiver.position;
-    const double distance = length(offset);
-    if (i > 1) {
-      const auto [low, high] = span_between(scene, receiver, side, line[i - 1], line[i], settings.radius);
-      const double before = length(line[i - 1].position - receiver.position);
-      const double weight = 0.5 * (weight_of(settings, before) + weight_of(settings, distance));
-      if (low > 0 && low <= lowest) sum = sum + weight * blocked.add(low, std::min(high, limit));
+/// What a slice's side blocks.
+struct Arcs {
+  Vector seen;       // by what the picture shows
+  Vector completed;  // by completed surfaces besides
+};
+
+/// The blocked angles of one side, and what may block them.
+class Blocking {
+ public:
+  Blocking(const Scene& scene, const Receiver& receiver, const Side& side, const ReferenceSettings& settings,
+           bool with_bent)
+      : scene_(scene),
+        receiver_(receiver),
+        side_(side),
+        settings_(settings),
+        limit_(side.gamma + kPi / 2),
+        lowest_(limit_ - std::asin(settings.bias)),
+        blocked_(side.gamma, with_bent) {}
+
+  Arcs arcs() {
+    const ReferenceLine line = line_of(scene_, receiver_, side_, settings_);
+    Arcs arcs{by_samples(line.samples), {}};
+    for (const auto& segment : completed_segments(scene_, receiver_, side_, line, settings_))
+      arcs.completed = arcs.completed + by_segment(segment);
+    return arcs;
+  }
+
+ private:
+  Vector by_samples(const std::vector<Sample>& line) {
+    Vector sum;
+    for (std::size_t i = 1; i < line.size(); i++) {
+      const Vector offset = line[i].position - receiver_.position;
+      const double distance = length(offset);
+      if (i > 1) {
+        const auto [low, high] = span_between(scene_, receiver_, side_, line[i - 1], line[i], settings_.radius);
+        const double before = length(line[i - 1].position - receiver_.position);
+        const double weight = 0.5 * (weight_of(settings_, before) + weight_of(settings_, distance));
+        if (low > 0 && low <= lowest_) sum = sum + weight * blocked_.add(low, std::min(high, limit_));
+      }
+      if (line[i].depth == 0 || distance >= settings_.radius || distance == 0) continue;
+      const double front = angle_of(side_, offset);
+      if (front <= 0 || front >= lowest_) continue;
+      const double back = back_of(line[i].position, offset, distance, front, line[i].thickness);
+      sum = sum + weight_of(settings_, distance) * blocked_.add(front, back);
     }
-    if (line[i].depth == 0 || distance >= settings.radius || distance == 0) continue;
-    const double front = angle_of(side, offset);
-    if (front <= 0 || front >= lowest) continue;
-    // What is behind the surface, as seen from the eye, blocks too, as far as it is thick and within the sphere of the
-    // radius.
-    const Vector away = scene.orthographic() ? Vector{0, 0, -1} : normalized(line[i].position);
+    return sum;
+  }
+
+  /// The angle where what is behind a point ends, as seen from the eye, as far as it is thick and within the sphere of
+  /// the radius.
+  double back_of(Vector position, Vector offset, double distance, double front, double thickness) const {
+    const Vector away = scene_.orthographic() ? Vector{0, 0, -1} : normalized(position);
     const double along = dot(offset, away);
     const double exit =
-        -along + std::sqrt(std::max(0.0, along * along - distance * distance + settings.radius * settings.radius));
-    const double angle = angle_of(side, offset + std::min(line[i].thickness, exit) * away);
-    // an angle that wrapped round is beyond the tangent plane
-    const double back = angle < front ? limit : std::min(angle, limit);
-    sum = sum + weight_of(settings, distance) * blocked.add(front, back);
+        -along + std::sqrt(std::max(0.0, along * along - distance * distance + settings_.radius * settings_.radius));
+    const double angle = angle_of(side_, offset + std::min(thickness, exit) * away);
+    // An angle that wrapped round is beyond the tangent plane. On the sphere, rounding may leave nothing of it.
+    return angle < 0 ? limit_ : std::min(std::max(angle, front), limit_);
   }
-  return sum;
-}
+
+  Vector by_segment(const CompletedSegment& segment) {
+    const int parts = settings_.falloff == Falloff::none ? 1 : kPartsWithFalloff;
+    Vector sum;
+    Vector from = segment.nearer;
+    for (int i = 1; i <= parts; i++) {
+      const Vector to = segment.nearer + (double(i) / parts) * (segment.farther - segment.nearer);
+      sum = sum + by_part(from, to, segment.thickness);
+      from = to;
+    }
+    return sum;
+  }
+
+  /// The fronts of a straight part are one interval of angles, and the backs follow them.
+  Vector by_part(Vector from, Vector to, double thickness) {
+    const auto [low, high] = std::minmax({angle_of(side_, from), angle_of(side_, to)});
+    if (low <= 0 || low >= lowest_) return {};
+    double back = std::min(high, limit_);
+    double weight = 0;
+    for (const Vector end : {from, to}) {
+      const double distance = length(end);
+      back = std::max(back, back_of(receiver_.position + end, end, distance, angle_of(side_, end), thickness));
+      weight += 0.5 * weight_of(settings_, distance);
+    }
+    return weight * blocked_.add(low, back);
+  }
+
+  const Scene& scene_;
+  const Receiver& receiver_;
+  const Side& side_;
+  const ReferenceSettings& settings_;
+  double limit_;   // the tangent plane
+  double lowest_;  // where blocking begins
+  Blocked blocked_;
+};
 
 struct Openness {
   double visibility = 1;
-  Vector bent;  // the mean open direction
+  double completed = 0;  // how much more would be visible without completed surfaces
+  Vector bent;           // the mean open direction
 };
 
 Openness openness(const Scene& scene, const Receiver& receiver, const ReferenceSettings& settings, bool with_bent) {
@@ -235,7 +226,8 @@ Openness openness(const Scene& scene, const Receiver& receiver, const ReferenceS
   const double b = -v.x * v.y * a;
   const Vector basis_x = {1 - v.x * v.x * a, b, -v.x};
   const Vector basis_y = {b, 1 - v.y * v.y * a, -v.y};
-  double sum = 0;
+  double seen = 0;
+  double completed = 0;
   double whole = 0;
   Vector bent;
   for (int s = 0; s < settings.slices; s++) {
@@ -268,16 +260,19 @@ Openness openness(const Scene& scene, const Receiver& receiver, const ReferenceS
       }
       const Side side{
           tangent + double(sign) * n_t * shift, v + n_v * shift, sign * gamma, px / pixels, py / pixels, reach};
-      const Vector blocked = blocked_arcs(scene, receiver, side, settings, with_bent);
-      sum += weight * blocked.x;
+      const Arcs blocked = Blocking(scene, receiver, side, settings, with_bent).arcs();
+      seen += weight * blocked.seen.x;
+      completed += weight * blocked.completed.x;
       if (with_bent) {
         const double end = side.gamma + kPi / 2;
-        const Vector open = bent_between(0, end, side.gamma) - blocked;
+        const Vector open = bent_between(0, end, side.gamma) - blocked.seen - blocked.completed;
         bent = bent + weight * (open.y * tangent + open.z * v);
       }
     }
   }
-  return whole > 0 ? Openness{std::clamp(1 - sum / whole, 0.0, 1.0), (1 / whole) * bent} : Openness{};
+  if (!(whole > 0)) return {};
+  const double visibility = std::clamp(1 - (seen + completed) / whole, 0.0, 1.0);
+  return {visibility, std::clamp(1 - seen / whole, 0.0, 1.0) - visibility, (1 / whole) * bent};
 }
 
 }  // namespace
@@ -292,6 +287,11 @@ ReferenceSettings reference_settings_of(const EstimatorSettings& settings) {
                                                                         : ThicknessRule::constant;
   reference.thickness_length = settings.thickness_length;
   reference.bias = settings.bias;
+  reference.complete = settings.complete;
+  if (settings.complete == Completion::all) {
+    reference.width_share = 0.5;
+    reference.width_pixels = 1;
+  }
   return reference;
 }
 
@@ -330,6 +330,13 @@ std::vector<float> reference_ao(const HostFrame& frame, const ReferenceSettings&
   std::vector<float> ao(frame.data.pixels(), 1.0f);
   for_pixels(frame, settings, false, [&](std::size_t i, const Openness& open) { ao[i] = float(open.visibility); });
   return ao;
+}
+
+std::vector<float> reference_completed(const HostFrame& frame, const ReferenceSettings& settings) {
+  std::vector<float> completed(frame.data.pixels(), 0.0f);
+  for_pixels(frame, settings, false,
+             [&](std::size_t i, const Openness& open) { completed[i] = float(open.completed); });
+  return completed;
 }
 
 std::vector<float> reference_bent(const HostFrame& frame, const ReferenceSettings& settings) {

@@ -16,8 +16,9 @@ namespace alcove {
 enum class ThicknessRule {
   infinite,  // for ever, within the sphere of the radius
   constant,  // a length along the sample's own view ray
-  // as deep as wide: the chord, and one pixel, of the run of neighbours along the slice that it belongs to; the
-  // receiver's own run is infinite
+  // As wide as the run of neighbours along the slice that it belongs to, which is its chord and a pixel, times
+  // width_share, and width_pixels more pixels. The receiver's own run is infinite, and but for Completion::none that
+  // is a run which the picture's border cuts.
   width,
 };
 
@@ -27,7 +28,12 @@ struct ReferenceSettings {
   double falloff_start = 0;         // fraction of the radius
   int slices = 16;                  // per pixel, even in azimuth about the view ray; > 0
   ThicknessRule thickness = ThicknessRule::infinite;
-  double thickness_length = 0;      // scene units, > 0; with ThicknessRule::constant
+  double thickness_length = 0;  // scene units, > 0; with ThicknessRule::constant
+  double width_share = 1;       // > 0; with ThicknessRule::width
+  double width_pixels = 0;      // px, >= 0; with ThicknessRule::width
+  // Where surfaces go on straight although the picture does not show it: docs/completion.md. Behind what is nearer they
+  // do only where occluders have an end.
+  Completion complete = Completion::none;
   double bias = 0;                  // sine of the elevation above the tangent plane below which nothing blocks
   int threads = 0;                  // 0: one per core
   std::vector<std::size_t> pixels;  // indices of those to compute; empty: all
@@ -40,6 +46,10 @@ ReferenceSettings reference_settings_of(const EstimatorSettings& settings);
 /// One visibility in [0, 1] per pixel, 1 on sky and where no pixel was asked for. The frame must have planar depth and
 /// normals. Fails with ErrorKind::input otherwise.
 std::vector<float> reference_ao(const HostFrame& frame, const ReferenceSettings& settings);
+
+/// By how much the visibility would be higher without what completed surfaces block, with the same thickness: in [0, 1]
+/// per pixel, 0 on sky and where no pixel was asked for.
+std::vector<float> reference_completed(const HostFrame& frame, const ReferenceSettings& settings);
 
 /// The mean open direction in view space, cosine weighted, as planes x, y, z: 2/3 of the normal where nothing is
 /// blocked; 0 on sky and where no pixel was asked for.

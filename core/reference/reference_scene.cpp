@@ -30,6 +30,11 @@ Vector ReferenceScene::position(int x, int y, double z) const {
   return orthographic() ? Vector{u, v, -z} : Vector{u * z, v * z, -z};
 }
 
+Vector ReferenceScene::across(double x_px, double y_px, double z) const {
+  const double scale = orthographic() ? 1 : z;
+  return {x_px / camera_.fx * scale, -y_px / camera_.fy * scale, 0};
+}
+
 Vector ReferenceScene::toward_eye(Vector position) const {
   return orthographic() ? Vector{0, 0, 1} : normalized(-1 * position);
 }

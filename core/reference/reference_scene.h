@@ -36,6 +36,8 @@ class ReferenceScene {
   /// Planar depth; 0 on sky.
   double depth(int x, int y) const;
   Vector position(int x, int y, double z) const;
+  /// The offset in position of an offset on the image, px, at that planar depth.
+  Vector across(double x_px, double y_px, double z) const;
   Vector toward_eye(Vector position) const;
   /// Where a position is seen, px from the data window's upper left corner.
   std::pair<double, double> image_of(Vector position) const;

@@ -94,7 +94,7 @@ TEST(KeptReferences, are_taken_for_the_settings_they_were_made_with_alone) {
   const std::vector<float> ao{1, 0.5f, 0.25f, 0, 0.75f, 1};
   write_kept_reference(path, made, frame, ao);
   EXPECT_EQ(read_kept_reference(path, made, frame.data), ao);
-  std::vector<ReferenceSettings> others(7, made);
+  std::vector<ReferenceSettings> others(10, made);
   others[0].radius = 0.71;
   others[1].falloff = Falloff::linear;
   others[2].falloff_start = 0.1;
@@ -102,6 +102,9 @@ TEST(KeptReferences, are_taken_for_the_settings_they_were_made_with_alone) {
   others[4].thickness = ThicknessRule::width;
   others[5].thickness_length = 0.1;
   others[6].bias = 0.1;
+  others[7].width_share = 0.5;
+  others[8].width_pixels = 1;
+  others[9].complete = Completion::border;
   for (std::size_t i = 0; i < others.size(); i++)
     EXPECT_TRUE(read_kept_reference(path, others[i], frame.data).empty()) << i;
 }

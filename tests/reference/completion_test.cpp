@@ -1,0 +1,436 @@
+// Completed surfaces of the CPU reference, where what one depth layer hides is known: against casting rays.
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The scenes are of flat things without thickness, so the reference is told that occluders are thin. Without completed
+// surfaces it then misses exactly what is hidden, and each test shows that this is a lot.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "core/reference/reference.h"
+#include "tests/support/furnished.h"
+#include "tests/support/random_scenes.h"
+#include "tests/support/scenes.h"
+
+namespace alcove {
+namespace {
+
+using namespace test;
+
+constexpr double kThin = 1e-4;  // scene units
+constexpr int kRaysAcross = 160;
+const Plane kFloor{.point = {}, .normal = {0, 0, 1}};
+const Plane kWall{.point = {}, .normal = {1, 0, 0}};
+
+ReferenceSettings thin(double radius, Completion complete) {
+  ReferenceSettings settings;
+  settings.radius = radius;
+  settings.slices = 64;
+  settings.thickness = ThicknessRule::constant;
+  settings.thickness_length = kThin;
+  settings.complete = complete;
+  return settings;
+}
+
+/// Unit directions about a normal, as dense as the cosine to it.
+std::vector<Vec3> directions_about(Vec3 normal) {
+  const Vec3 x = unit(cross(std::abs(normal.x) < 0.9 ? Vec3{1, 0, 0} : Vec3{0, 1, 0}, normal));
+  const Vec3 y = cross(normal, x);
+  std::vector<Vec3> directions;
+  for (int i = 0; i < kRaysAcross; i++) {
+    for (int j = 0; j < kRaysAcross; j++) {
+      const double out = std::sqrt((i + 0.5) / kRaysAcross);
+      const double azimuth = 2 * std::numbers::pi * (j + 0.5) / kRaysAcross;
+      directions.push_back(out * (std::cos(azimuth) * x + std::sin(azimuth) * y) + std::sqrt(1 - out * out) * normal);
+    }
+  }
+  return directions;
+}
+
+/// The mean over the rays of a receiver of what `value` gives for the ray and what it hits.
+double mean_over_rays(const Scene& scene, const Hit& receiver,
+                      const std::function<double(const Hit&, const Vec3&)>& value) {
+  const std::vector<Vec3> directions = directions_about(receiver.normal);
+  double sum = 0;
+  for (const Vec3& direction : directions) sum += value(scene.hit({receiver.position, direction}), direction);
+  return sum / double(directions.size());
+}
+
+double true_ao(const Scene& scene, const Hit& receiver, double radius) {
+  return mean_over_rays(scene, receiver,
+                        [&](const Hit& hit, const Vec3&) { return hit.distance < radius ? 0.0 : 1.0; });
+}
+
+using Chosen = std::function<bool(const Hit&)>;
+
+/// Pixels of a grid that show a chosen surface, are not beside an edge, and whose sphere of the radius is in the
+/// picture.
+std::vector<std::size_t> receivers(const Rendering& rendering, double radius, const Chosen& chosen) {
+  constexpr int kEvery = 5;
+  std::vector<std::size_t> pixels;
+  for (int y = 2; y < rendering.shot.data.height; y += kEvery) {
+    for (int x = 2; x < rendering.shot.data.width; x += kEvery) {
+      const Hit& hit = rendering.at(x, y);
+      if (hit.primitive >= 0 && rendering.primitives_within(2, x, y) == 1 &&
+          rendering.shot.sees_ball(hit.position, radius) && chosen(hit))
+        pixels.push_back(std::size_t(y) * std::size_t(rendering.shot.data.width) + std::size_t(x));
+    }
+  }
+  return pixels;
+}
+
+struct Errors {
+  double mean = 0, worst = 0;
+};
+
+Errors errors_of(const std::vector<float>& ao, const std::vector<std::size_t>& pixels,
+                 const std::vector<double>& truth) {
+  Errors errors;
+  for (std::size_t i = 0; i < pixels.size(); i++) {
+    const double error = std::abs(ao[pixels[i]] - truth[i]);
+    errors.mean += error / double(pixels.size());
+    errors.worst = std::max(errors.worst, error);
+  }
+  return errors;
+}
+
+/// The same frame as if its data window began so many rows lower.
+HostFrame without_upper_rows(const HostFrame& frame, int rows) {
+  HostFrame lower = frame;
+  lower.data.y += rows;
+  lower.data.height -= rows;
+  const std::size_t first = std::size_t(rows) * std::size_t(frame.data.width);
+  const auto cut = [&](const std::vector<float>& plane, std::size_t planes) {
+    std::vector<float> kept;
+    for (std::size_t i = 0; i < planes; i++)
+      kept.insert(kept.end(), plane.begin() + std::ptrdiff_t(i * frame.data.pixels() + first),
+                  plane.begin() + std::ptrdiff_t((i + 1) * frame.data.pixels()));
+    return kept;
+  };
+  lower.depth = cut(frame.depth, 1);
+  lower.normal = cut(frame.normal, 3);
+  return lower;
+}
+
+/// Completed, the chosen surfaces have their true AO to the bound, which is a pixel's size; without, they are `gain`
+/// times as far off.
+void expect_completed(const char* what, const Scene& scene, const Shot& shot, double radius, const Chosen& chosen,
+                      double bound, double gain) {
+  const Rendering rendering = render(scene, shot);
+  ReferenceSettings settings = thin(radius, Completion::all);
+  settings.pixels = receivers(rendering, radius, chosen);
+  ASSERT_GE(settings.pixels.size(), 30u) << what;
+  std::vector<double> truth;
+  for (const std::size_t i : settings.pixels) truth.push_back(true_ao(scene, rendering.hits[i], radius));
+  const Errors all = errors_of(reference_ao(rendering.frame, settings), settings.pixels, truth);
+  settings.complete = Completion::none;
+  const Errors none = errors_of(reference_ao(rendering.frame, settings), settings.pixels, truth);
+  EXPECT_LE(all.mean, bound) << what << ", worst " << all.worst << ", not completed " << none.mean;
+  EXPECT_LE(all.worst, 5 * bound) << what;
+  EXPECT_GE(none.mean, gain * bound) << what;
+}
+
+TEST(Completion, a_plate_before_a_wall_hides_nothing_of_it) {
+  const Scene scene{{kFloor, kWall, parallelogram({0.8, -0.5, 0.3}, {0, 1, 0}, {0, 0, 0.8})}};
+  const Chosen floor_behind = [](const Hit& hit) { return hit.primitive == 0 && hit.position.x < 0.7; };
+  expect_completed("perspective", scene, Shot::perspective({5, 0.3, 1.8}, {0.3, 0, 0.6}, 50, 320, 240), 1, floor_behind,
+                   0.002, 30);
+  expect_completed("orthographic", scene, Shot::orthographic({5, 0.3, 1.8}, {0.3, 0, 0.6}, 5, 320, 240), 1,
+                   floor_behind, 0.002, 30);
+}
+
+TEST(Completion, a_column_before_a_wall_hides_nothing_of_it) {
+  const Plane other_wall{.point = {}, .normal = {0, 1, 0}};
+  // The column is 15 pixels wide, of which each slice misses half a one at either edge.
+  const Scene scene{{other_wall, kWall, parallelogram({0.75, 0.35, -9}, {-0.15, 0.15, 0}, {0, 0, 18})}};
+  const Chosen beside = [](const Hit& hit) { return hit.primitive == 1 && hit.position.y < 0.6; };
+  expect_completed("perspective", scene, Shot::perspective({4, 4, 1}, {0.3, 0.3, 0}, 45, 320, 240), 0.8, beside, 0.005,
+                   20);
+  expect_completed("orthographic", scene, Shot::orthographic({4, 4, 1}, {0.3, 0.3, 0}, 4, 320, 240), 0.8, beside, 0.005,
+                   20);
+}
+
+TEST(Completion, a_sphere_before_a_floor_hides_nothing_of_it) {
+  // Half a sphere, all of which is seen.
+  const Sphere half{.center = {0.9, 0, 0.8}, .radius = 0.3, .axis = unit({2.1, 0, 2.7}), .cos_half_angle = 0.15};
+  const Scene scene{{kFloor, kWall, half}};
+  const Chosen low = [](const Hit& hit) { return hit.primitive == 1 && hit.position.z < 0.5; };
+  expect_completed("perspective", scene, Shot::perspective({3, 0, 3.5}, {0.3, 0, 0.3}, 50, 320, 240), 0.8, low, 0.001,
+                   30);
+  expect_completed("orthographic", scene, Shot::orthographic({3, 0, 3.5}, {0.3, 0, 0.3}, 4, 320, 240), 0.8, low, 0.001,
+                   30);
+}
+
+// What is blocked weighs by its distance, for which the segment is cut into parts.
+TEST(Completion, a_falloff_weighs_what_goes_on) {
+  const Scene scene{{kFloor, kWall, parallelogram({0.8, -0.5, 0.45}, {0, 1, 0}, {0, 0, 0.8})}};
+  const Rendering rendering = render(scene, Shot::perspective({5, 0.3, 1.8}, {0.3, 0, 0.6}, 50, 320, 240));
+  ReferenceSettings settings = thin(1, Completion::all);
+  settings.falloff = Falloff::linear;
+  settings.pixels = receivers(rendering, 1, [](const Hit& hit) { return hit.primitive == 0 && hit.position.x < 0.7; });
+  std::vector<double> truth;
+  for (const std::size_t i : settings.pixels)
+    truth.push_back(mean_over_rays(scene, rendering.hits[i],
+                                   [](const Hit& hit, const Vec3&) { return std::min(1.0, hit.distance); }));
+  const Errors errors = errors_of(reference_ao(rendering.frame, settings), settings.pixels, truth);
+  EXPECT_LE(errors.mean, 0.002);
+  EXPECT_LE(errors.worst, 0.01);
+}
+
+TEST(Completion, bent_normals_lean_away_from_what_goes_on) {
+  const Scene scene{{kFloor, kWall, parallelogram({0.8, -0.5, 0.45}, {0, 1, 0}, {0, 0, 0.8})}};
+  const Rendering rendering = render(scene, Shot::perspective({5, 0.3, 1.8}, {0.3, 0, 0.6}, 50, 320, 240));
+  ReferenceSettings settings = thin(1, Completion::all);
+  settings.pixels = receivers(rendering, 1, [](const Hit& hit) { return hit.primitive == 0 && hit.position.x < 0.7; });
+  const std::vector<float> bent = reference_bent(rendering.frame, settings);
+  const std::size_t plane = rendering.frame.data.pixels();
+  for (const std::size_t i : settings.pixels) {
+    Vec3 open;
+    mean_over_rays(scene, rendering.hits[i], [&](const Hit& hit, const Vec3& direction) {
+      if (hit.distance >= 1) open = open + direction;
+      return 0;
+    });
+    const Vec3 truth = rendering.shot.view_from_world((1.0 / double(kRaysAcross * kRaysAcross)) * open);
+    EXPECT_LE(length(truth - Vec3{bent[i], bent[i + plane], bent[i + 2 * plane]}), 0.01) << i;
+  }
+}
+
+// Where the wall is seen it is known, and it is taken to go on no farther than the column hides it. So what is blocked
+// too much, or too little, is no more than the receiver sees of the part of the wall's plane that the column hides: of
+// that without wall, or with it.
+TEST(Completion, a_wall_that_ends_behind_a_column_errs_by_what_the_column_hides_at_most) {
+  const Vec3 eye{5, 0.2, 1.2};
+  const Polygon wall = parallelogram({0, -4, 0}, {0, 4, 0}, {0, 0, 4});
+  const Polygon column = parallelogram({0.8, -0.15, 0.02}, {0, 0.3, 0}, {0, 0, 5});
+  const Scene scene{{kFloor, wall, column}};
+  const Rendering rendering = render(scene, Shot::perspective(eye, {0.3, 0, 0.6}, 50, 320, 240));
+  ReferenceSettings settings = thin(1, Completion::all);
+  settings.pixels = receivers(rendering, 1, [](const Hit& hit) { return hit.primitive == 0 && hit.position.x < 0.5; });
+  ASSERT_GE(settings.pixels.size(), 30u);
+  const std::vector<float> ao = reference_ao(rendering.frame, settings);
+  constexpr double kPixel = 0.015;  // what the size of pixels costs
+  double largest = 0;
+  const Scene columns{{column}};
+  for (const std::size_t i : settings.pixels) {
+    const Hit& receiver = rendering.hits[i];
+    const double truth = true_ao(scene, receiver, 1);
+    double missed = 0;
+    const double added = mean_over_rays(scene, receiver, [&](const Hit& hit, const Vec3& direction) {
+      const double to_plane = -receiver.position.x / direction.x;
+      if (!(to_plane > 0 && to_plane < 1)) return 0.0;
+      const Vec3 on_plane = receiver.position + to_plane * direction;
+      if (columns.hit({eye, on_plane - eye}).distance >= 1) return 0.0;
+      missed += hit.primitive == 1 ? 1.0 / (kRaysAcross * kRaysAcross) : 0;
+      return hit.distance >= 1 ? 1.0 : 0.0;
+    });
+    EXPECT_GE(ao[i], truth - added - kPixel) << i << ", not wall " << added;
+    EXPECT_LE(ao[i], truth + missed + kPixel) << i << ", wall " << missed;
+    largest = std::max(largest, added);
+  }
+  EXPECT_GE(largest, 3 * kPixel);
+}
+
+// A picture of a wall whose upper part is cut off, against the whole.
+TEST(Completion, beyond_the_border_a_wall_goes_on_as_in_a_wider_picture) {
+  const Scene scene{{kFloor, kWall}};
+  for (const bool orthographic : {false, true}) {
+    const Rendering whole = render(scene, orthographic ? Shot::orthographic({5, 0.4, 1.8}, {0.3, 0, 0.6}, 5, 320, 240)
+                                                       : Shot::perspective({5, 0.4, 1.8}, {0.3, 0, 0.6}, 50, 320, 240));
+    // the first row whose wall is no more than 0.25 high
+    int cut = 0;
+    while (whole.at(160, cut).position.z > 0.25) cut++;
+    const HostFrame frame = without_upper_rows(whole.frame, cut);
+    ReferenceSettings settings = thin(1, Completion::none);
+    settings.pixels = receivers(whole, 1, [](const Hit& hit) { return hit.primitive == 0 && hit.position.x < 0.7; });
+    ASSERT_GE(settings.pixels.size(), 30u);
+    const std::vector<float> expected = reference_ao(whole.frame, settings);
+    const std::size_t rows = std::size_t(cut) * std::size_t(frame.data.width);
+    std::vector<double> truth;
+    for (std::size_t& i : settings.pixels) {
+      truth.push_back(expected[i]);
+      i -= rows;
+    }
+    const Errors none = errors_of(reference_ao(frame, settings), settings.pixels, truth);
+    EXPECT_GE(none.mean, 0.1) << orthographic;
+    for (const Completion complete : {Completion::border, Completion::all}) {
+      settings.complete = complete;
+      const Errors errors = errors_of(reference_ao(frame, settings), settings.pixels, truth);
+      EXPECT_LE(errors.worst, 2e-3) << orthographic << ", completion " << int(complete);
+    }
+  }
+}
+
+TEST(Completion, of_a_thing_before_the_sky_changes_no_bit) {
+  const Scene things[] = {{{Sphere{.center = {0, 0, 0}, .radius = 1}}},
+                          {{parallelogram({-1, -1, -0.5}, {2, 0.3, 0}, {0, 2, 1})}},
+                          {{parallelogram({-1, 0, -1}, {0.05, 0, 0}, {0, 0, 2})}}};
+  for (const Scene& scene : things) {
+    for (const bool orthographic : {false, true}) {
+      const HostFrame frame = render(scene, orthographic ? Shot::orthographic({3, -4, 2}, {0, 0, 0}, 6, 60, 48)
+                                                         : Shot::perspective({3, -4, 2}, {0, 0, 0}, 60, 60, 48))
+                                  .frame;
+      ReferenceSettings settings;
+      settings.radius = 0.8;
+      settings.slices = 8;
+      settings.thickness = ThicknessRule::width;
+      const std::vector<float> ao = reference_ao(frame, settings);
+      const std::vector<float> bent = reference_bent(frame, settings);
+      settings.complete = Completion::all;
+      EXPECT_EQ(reference_ao(frame, settings), ao);
+      EXPECT_EQ(reference_bent(frame, settings), bent);
+      EXPECT_EQ(reference_completed(frame, settings), std::vector<float>(ao.size(), 0.0f));
+    }
+  }
+}
+
+TEST(Completion, never_opens_what_was_blocked) {
+  RandomScenes scenes(7);
+  double border_share = 0, all_share = 0;
+  for (int i = 0; i < 12; i++) {
+    const HostFrame frame = scenes.next();
+    if (frame.normal.empty()) continue;
+    ReferenceSettings settings = thin(0.7, Completion::none);
+    settings.thickness_length = 0.1;
+    settings.slices = 4;
+    const std::vector<float> none = reference_ao(frame, settings);
+    settings.complete = Completion::border;
+    const std::vector<float> border = reference_ao(frame, settings);
+    const std::vector<float> beyond_border = reference_completed(frame, settings);
+    settings.complete = Completion::all;
+    const std::vector<float> all = reference_ao(frame, settings);
+    const std::vector<float> completed = reference_completed(frame, settings);
+    for (std::size_t k = 0; k < all.size(); k++) {
+      ASSERT_LE(border[k], none[k]) << i << " pixel " << k;
+      ASSERT_LE(all[k], none[k]) << i << " pixel " << k;
+      // To complete surfaces behind others, more samples are looked at, and near the edge of the sphere a few count.
+      ASSERT_NEAR(completed[k], none[k] - all[k], 5e-3) << i << " pixel " << k;
+      ASSERT_NEAR(beyond_border[k], none[k] - border[k], 2e-7) << i << " pixel " << k;
+      border_share += none[k] - border[k];
+      all_share += completed[k];
+    }
+  }
+  EXPECT_GE(border_share, 1);
+  EXPECT_GE(all_share, 1.1 * border_share);
+}
+
+// What the reference gave before it completed anything. Not a fact of a scene, but what `none` promises.
+TEST(Completion, none_leaves_every_bit) {
+  const HostFrame frame = furnished(true).frame;
+  const std::vector<float> by_width{0.826432347f,
+                                    1,
+                                    1,
+                                    1,
+                                    0.999978721f,
+                                    1,
+                                    0.859125376f,
+                                    1,
+                                    0.577577412f,
+                                    0.882604301f,
+                                    0.137566283f,
+                                    0.854906023f,
+                                    0.746861517f,
+                                    0.851462662f,
+                                    0.902732551f,
+                                    0.858756721f,
+                                    0.925121248f};
+  const std::vector<float> by_length{0.990392506f,
+                                     1,
+                                     1,
+                                     1,
+                                     0.999998152f,
+                                     1,
+                                     0.93079716f,
+                                     1,
+                                     0.73887217f,
+                                     0.924595594f,
+                                     0.313172549f,
+                                     0.946524143f,
+                                     0.843613207f,
+                                     0.920015514f,
+                                     0.963344336f,
+                                     0.946940243f,
+                                     0.97700417f};
+  ReferenceSettings settings;
+  settings.radius = 1;
+  settings.slices = 5;
+  settings.thickness = ThicknessRule::width;
+  settings.thickness_length = 0.1;
+  for (std::size_t i = 0; i < frame.depth.size(); i += 1193) settings.pixels.push_back(i);
+  const auto given = [&] {
+    const std::vector<float> ao = reference_ao(frame, settings);
+    std::vector<float> some;
+    for (const std::size_t i : settings.pixels) some.push_back(ao[i]);
+    return some;
+  };
+  EXPECT_EQ(given(), by_width);
+  settings.thickness = ThicknessRule::constant;
+  settings.falloff = Falloff::linear;
+  EXPECT_EQ(given(), by_length);
+}
+
+/// A strip along the rows above a floor, seen from straight above, and one slice across it.
+struct Strip {
+  HostFrame frame;
+  ReferenceSettings settings;
+};
+
+Strip strip(int rows, bool at_border) {
+  constexpr double kPixel = 0.02;
+  const double top = at_border ? 5 : 0.2;
+  const Scene scene{{kFloor, parallelogram({-9, top - (at_border ? 4.6 : rows * kPixel), 0.3}, {18, 0, 0},
+                                           {0, at_border ? 4.6 : rows * kPixel, 0})}};
+  Strip strip{render(scene, Shot::orthographic({0, 0.001, 5}, {0, 0.001, 0}, 60 * kPixel, 60, 48)).frame, {}};
+  strip.settings.radius = 0.6;
+  strip.settings.slices = 1;
+  strip.settings.thickness = ThicknessRule::width;
+  return strip;
+}
+
+TEST(Thickness, is_a_share_of_the_width_and_some_pixels) {
+  for (const auto& [share, pixels] : {std::pair(1.0, 0.0), std::pair(0.5, 1.0), std::pair(0.7, 2.0)}) {
+    Strip wide = strip(7, false);
+    wide.settings.width_share = share;
+    wide.settings.width_pixels = pixels;
+    const std::vector<float> by_width = reference_ao(wide.frame, wide.settings);
+    wide.settings.thickness = ThicknessRule::constant;
+    wide.settings.thickness_length = (share * 7 + pixels) * 0.02;
+    const std::vector<float> by_length = reference_ao(wide.frame, wide.settings);
+    for (std::size_t i = 0; i < by_width.size(); i++)
+      // the strip's own depth is another matter: it is endless for itself
+      if (wide.frame.depth[i] > 4.9) EXPECT_NEAR(by_width[i], by_length[i], 1e-6) << share << " pixel " << i;
+  }
+}
+
+TEST(Thickness, has_no_end_where_the_border_cuts_the_run) {
+  Strip cut = strip(7, true);
+  const std::vector<float> by_width = reference_ao(cut.frame, cut.settings);
+  cut.settings.complete = Completion::border;
+  const std::vector<float> border = reference_ao(cut.frame, cut.settings);
+  cut.settings.thickness = ThicknessRule::infinite;
+  EXPECT_EQ(reference_ao(cut.frame, cut.settings), border);
+  EXPECT_NE(by_width, border);
+}
+
+TEST(Settings, of_the_estimators_become_the_references) {
+  EstimatorSettings settings;
+  settings.radius = 1;
+  const ReferenceSettings all = reference_settings_of(settings);
+  EXPECT_EQ(all.complete, Completion::all);
+  EXPECT_EQ(all.width_share, 0.5);
+  EXPECT_EQ(all.width_pixels, 1);
+  for (const Completion complete : {Completion::none, Completion::border}) {
+    settings.complete = complete;
+    const ReferenceSettings other = reference_settings_of(settings);
+    EXPECT_EQ(other.complete, complete);
+    EXPECT_EQ(other.width_share, 1);
+    EXPECT_EQ(other.width_pixels, 0);
+  }
+}
+
+}  // namespace
+}  // namespace alcove
