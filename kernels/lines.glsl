@@ -49,10 +49,6 @@ float steps_of_goes_on(uint packed) { return float(packed >> 16) * 0.125; }
 float depths_of_goes_on(uint packed) { return float(packed & 0xffffu) / 4096.0; }
 
 /// Where a point of the line is in its plane.
-vec2 place_at(View view, LinePlane plane, int step, float z) {
-  return vec2((view.orthographic != 0 ? 1.0 : z) * (plane.start + float(plane.origin + step) * plane.step),
-              z * plane.ray_length);
-}
 vec2 place_at(View view, LinePlane plane, float step, float z) {
   return vec2((view.orthographic != 0 ? 1.0 : z) * (plane.start + (float(plane.origin) + step) * plane.step),
               z * plane.ray_length);

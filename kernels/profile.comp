@@ -119,7 +119,7 @@ Step step_at(View view, Lines lines, LinePlane plane, int rows, int line, int at
   s.is_surface = nearest < kSkyDepth && at < end;
   s.value = perspective ? max(between, kLeastNearness * here) : between;
   s.z = value_of(perspective, s.value);
-  s.place = place_at(view, plane, at, s.z);
+  s.place = place_at(view, plane, float(at), s.z);
   return s;
 }
 

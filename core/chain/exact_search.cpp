@@ -110,6 +110,7 @@ TileList converge(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach
                   Estimate& result, uint plane) {
   const SearchDirections directions{kMostDirections, 1, every_pixel};
   Estimate sums;
+  sums.completed = result.completed;
   sums.ao = &gpu.buffer("blocked arcs", plane_bytes(gbuffer.view), gpu::Use::device);
   compare_directions(gpu, gbuffer, tolerance, sums, result, plane, 0);
   const TileList first = sums.listed;
@@ -137,7 +138,8 @@ Profile profile(gpu::Recorder& gpu, const GBuffer& gbuffer, const SearchDirectio
          "an exact search takes at most {} pixels along a line, and there are {}: give --search steps", kNoVertex,
          std::max(size.x, size.y));
   const auto [least, most] = std::minmax({shift_at(lines, 0), shift_at(lines, along - 1)});
-  const bool completes_all = reach.complete == Completion::all;
+  // What endless occluders hide is blocked anyway.
+  const bool completes_all = reach.complete == Completion::all && !std::isinf(reach.thickness);
   const ProfileParams params{gbuffer.view,
                              lines,
                              -most,
@@ -187,6 +189,8 @@ void exact(gpu::Recorder& gpu, const GBuffer& gbuffer, const Profile& profile, c
   const auto columns = uint((size.x + params.stride - 1) / params.stride);
   const auto rows = uint((size.y + params.stride - 1) / params.stride);
   const gpu::Extent pixels = lines.steep ? gpu::Extent{rows, columns} : gpu::Extent{columns, rows};
+  uint completing = profile.goes_on ? 1 : 0;
+  if (profile.goes_on && out.completed) completing = 2;
   gpu.dispatch("exact", params,
                {{kExactDepth, *gbuffer.depth},
                 {kExactNormal, *gbuffer.normal},
@@ -198,8 +202,9 @@ void exact(gpu::Recorder& gpu, const GBuffer& gbuffer, const Profile& profile, c
                 {kExactList, is_listed ? *out.listed.tiles : *out.ao},
                 {kExactCounts, is_listed ? *out.listed.counts : *out.ao},
                 {kExactGoesOn, profile.goes_on ? *profile.goes_on : *profile.vertex},
-                {kExactBehind, profile.behind ? *profile.behind : *profile.mark}},
-               is_listed ? list_extent(out.listed) : pixels, {is_listed ? 1u : 0u, profile.goes_on ? 1u : 0u});
+                {kExactBehind, profile.behind ? *profile.behind : *profile.mark},
+                {kExactCompleted, out.completed ? *out.completed : *out.ao}},
+               is_listed ? list_extent(out.listed) : pixels, {is_listed ? 1u : 0u, completing});
 }
 
 }  // namespace alcove

@@ -36,6 +36,7 @@ class Surroundings {
   double radius_;  // scene units
   int filters_;    // px that filters reach
   int lines_;      // px that the lines of an exact search need beyond the radius
+  double widest_run_;  // radii, beyond which they need no more of a run
 };
 
 }  // namespace alcove
