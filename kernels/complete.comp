@@ -26,11 +26,13 @@ layout(scalar, binding = kCompleteMark) readonly buffer Mark { uint mark[]; };
 layout(scalar, binding = kCompleteGoesOn) writeonly buffer GoesOn { uint goes_on[]; };
 layout(scalar, binding = kCompleteBehind) buffer Behind { uint behind[]; };
 
-/// A surface goes on until its disparity has fallen to this part of what it is at its last vertex.
-const float kLeastDisparity = 0.0627;
+/// A surface goes on until it is so many times as deep as at its last vertex.
+const float kLeastDepths = 1.0 / 64.0;
+const float kMostDepths = 15.9;
 
-/// A run of fewer pixels than this does not tell how its surface goes on beyond the border.
-const int kLeastAtBorder = 3;
+/// How a surface goes on beyond the border its last 4 pixels say, and at least 3 must.
+const int kStepsAtBorder = 3;
+const int kLeastStepsAtBorder = 2;
 
 /// Longer strokes than this, in steps, are not needed for any image.
 const float kLongestStroke = 8191.0;
@@ -77,7 +79,16 @@ struct Walk {
   Corner inner;  // the vertex of the last one's run that says with it how the surface goes on: two steps away at least, where the run is so long
 };
 
-Open from_end(View view, LinePlane plane, Walk walk, int index) {
+/// The steps after which a value that changes so much per step leaves the range of depths that pack_goes_on() holds.
+float steps_in_range(bool perspective, float value, float change) {
+  const float least = perspective ? 1.0 / kMostDepths : kLeastDepths;
+  const float most = perspective ? 1.0 / kLeastDepths : kMostDepths;
+  const float room = value * (change < 0.0 ? 1.0 - least : most - 1.0);
+  return room / max(abs(change), room / kLongestStroke);
+}
+
+/// What goes on from the walk's last vertex, along the line through `inner` and that.
+Open from_end(View view, LinePlane plane, Walk walk, Corner inner, int index) {
   const bool perspective = view.orthographic == 0;
   const Corner end = walk.before;
   const float scale = perspective ? 1.0 / end.nearness : 1.0;
@@ -86,10 +97,9 @@ Open from_end(View view, LinePlane plane, Walk walk, int index) {
   open.index = index;
   open.from = float(end.at);
   open.nearness = end.nearness;
-  open.slope = (end.nearness - walk.inner.nearness) / float(abs(end.at - walk.inner.at));
-  open.farthest = min(ceil(2.0 * params.radius / (scale * plane.step)), kLongestStroke);
-  if (perspective && open.slope < 0.0)
-    open.farthest = min(open.farthest, (kLeastDisparity - 1.0) * end.nearness / open.slope);
+  open.slope = (end.nearness - inner.nearness) / float(abs(end.at - inner.at));
+  const float in_range = steps_in_range(perspective, abs(end.nearness), perspective ? open.slope : -open.slope);
+  open.farthest = min(ceil(2.0 * params.radius / (scale * plane.step)), in_range);
   return open;
 }
 
@@ -149,7 +159,7 @@ void complete(View view, LinePlane plane, ivec2 steps, int row, int first, int w
         opens.c = opens.b;
       }
       if (opens.a.is_open) opens.b = opens.a;
-      opens.a = from_end(view, plane, walk, index - way);
+      opens.a = from_end(view, plane, walk, walk.inner, index - way);
     }
     go_on(opens.a, perspective, walk, next, begins_run, !goes);
     go_on(opens.b, perspective, walk, next, begins_run, !goes);
@@ -167,8 +177,17 @@ void complete(View view, LinePlane plane, ivec2 steps, int row, int first, int w
     walk.before = next;
   }
   const bool at_border = walk.before.at + way < steps.x || walk.before.at + way >= steps.y;
-  for (bool once = at_border && abs(walk.before.at - walk.inner.at) >= kLeastAtBorder - 1; once; once = false) {
-    Open last = from_end(view, plane, walk, index);
+  Corner inner = walk.before;
+  int behind_end = index;
+  for (bool in_run = at_border; in_run;) {
+    in_run = abs(walk.before.at - inner.at) < kStepsAtBorder && (inner.marked & walk.begins) == 0u;
+    if (in_run) {
+      behind_end -= way;
+      inner = corner_at(perspective, behind_end);
+    }
+  }
+  for (bool once = abs(walk.before.at - inner.at) >= kLeastStepsAtBorder; once; once = false) {
+    Open last = from_end(view, plane, walk, inner, index);
     close(last, perspective, way, last.farthest);
   }
 }

@@ -40,8 +40,8 @@ int row_of(Lines lines, int line, int rows) { return (line + lines.wrap) % rows;
 uint pack_width(float width) { return (floatBitsToUint(width) + 0x40000u) >> 19 << 4; }
 float unpack_width(uint mark) { return uintBitsToFloat((mark & 0xfff0u) << 15); }
 
-/// Where a surface goes on to unseen: so many steps further along the line, at most 8191, to so many times the planar
-/// depth; within 1/16 step and, up to twice the depth, 1e-4 of it.
+/// Up to where a surface goes on unseen: so many steps further along the line, at most 8191, and there it is so many
+/// times as deep, less than 16. Steps are held within 1/16, and depths within 1/8192 of the depth where it begins.
 uint pack_goes_on(float steps, float depths) {
   return uint(steps * 8.0 + 0.5) << 16 | uint(min(depths * 4096.0 + 0.5, 65535.0));
 }
