@@ -6,8 +6,9 @@
 // Out: for each run's first and last vertex where the surface goes on unseen the end of the straight stroke by which it
 // does.
 //
-// - A plane is straight in 1/z along a line (orthographic: in z), so a surface goes on along the line through the last
-//   two vertices of its run.
+// - A plane is straight in 1/z along a line (orthographic: in z), so a surface goes on as a straight stroke. Its slope is
+//   the mean of two: of the line through the last vertices of the run, which follows what curves, and of the plane across
+//   the normal at its end, which holds where a run is only a few pixels wide.
 // - It goes on where the next step shows a nearer surface, as far as it stays behind what is seen. Where the next step
 //   shows sky, or something farther, the surface ends.
 // - A stroke that is as long as the sphere of the radius is wide is long enough for every receiver.
@@ -17,11 +18,13 @@
 #extension GL_GOOGLE_include_directive : require
 #include "complete.h"
 #include "view.glsl"
+#include "normal.glsl"
 #include "lines.glsl"
 
 layout(local_size_x = kCompleteGroup) in;
 layout(scalar, push_constant) uniform Push { CompleteParams params; };
 layout(scalar, binding = kCompleteVertex) buffer Vertex { float vertex[]; };
+layout(scalar, binding = kCompleteNormal) readonly buffer Normal { uint normal[]; };
 layout(scalar, binding = kCompleteMark) readonly buffer Mark { uint mark[]; };
 layout(scalar, binding = kCompleteGoesOn) writeonly buffer GoesOn { uint goes_on[]; };
 layout(scalar, binding = kCompleteBehind) buffer Behind { uint behind[]; };
@@ -29,6 +32,10 @@ layout(scalar, binding = kCompleteBehind) buffer Behind { uint behind[]; };
 /// A surface goes on until it is so many times as deep as at its last vertex.
 const float kLeastDepths = 1.0 / 64.0;
 const float kMostDepths = 15.9;
+
+/// The normal's plane says nothing about a surface that is seen more nearly edge on than this: the dot product of the
+/// normal and the view ray, which is 1 long along the optical axis.
+const float kLeastFacingToGoOn = -0.02;
 
 /// How a surface goes on beyond the border its last 4 pixels say, and at least 3 must.
 const int kStepsAtBorder = 3;
@@ -42,7 +49,7 @@ const int kMostOpen = 6;
 
 struct Corner {
   uint marked;
-  int at;         // the step
+  int at;          // the step
   float nearness;  // what is straight along a line, larger where the surface is nearer: 1/z, orthographic -z
 };
 
@@ -73,10 +80,12 @@ struct Opens {
 
 /// What a walk along the line knows of the vertices behind it.
 struct Walk {
-  int way;              // 1 or -1
+  int way;               // 1 or -1
   uint begins, is_last;  // the flags of vertices, as the walk meets them
   Corner before, prior;  // the last vertex, and the one before it
-  Corner inner;  // the vertex of the last one's run that says with it how the surface goes on: two steps away at least, where the run is so long
+  // the vertex of the last one's run that says with it how the surface goes on: two steps away at least, where the run
+  // is so long
+  Corner inner;
 };
 
 /// The steps after which a value that changes so much per step leaves the range of depths that pack_goes_on() holds.
@@ -87,8 +96,20 @@ float steps_in_range(bool perspective, float value, float change) {
   return room / max(abs(change), room / kLongestStroke);
 }
 
+/// The change of nearness per step `way` on the plane through a vertex across the normal there; `otherwise` where that is
+/// seen edge on.
+float change_on_plane(View view, Lines lines, LinePlane plane, int line, Corner end, float way, float otherwise) {
+  const bool perspective = view.orthographic == 0;
+  const ivec2 along_and_across = ivec2(end.at, line + shift_at(lines, end.at));
+  const vec3 n = unpack_normal(normal[index_at(view, lines, along_and_across.x, along_and_across.y)]);
+  const vec2 tangent = tangent_at(view, lines, along_and_across + lines.origin);
+  const float facing = (perspective ? dot(n.xy, tangent) : 0.0) - n.z;
+  const float change = way * plane.step * dot(n.xy, plane.along) * (perspective ? end.nearness : 1.0) / facing;
+  return facing < kLeastFacingToGoOn ? change : otherwise;
+}
+
 /// What goes on from the walk's last vertex, along the line through `inner` and that.
-Open from_end(View view, LinePlane plane, Walk walk, Corner inner, int index) {
+Open from_end(View view, Lines lines, LinePlane plane, int line, Walk walk, Corner inner, int index) {
   const bool perspective = view.orthographic == 0;
   const Corner end = walk.before;
   const float scale = perspective ? 1.0 / end.nearness : 1.0;
@@ -97,7 +118,9 @@ Open from_end(View view, LinePlane plane, Walk walk, Corner inner, int index) {
   open.index = index;
   open.from = float(end.at);
   open.nearness = end.nearness;
-  open.slope = (end.nearness - inner.nearness) / float(abs(end.at - inner.at));
+  const float by_line = (end.nearness - inner.nearness) / float(abs(end.at - inner.at));
+  const float by_plane = change_on_plane(view, lines, plane, line, end, float(walk.way), by_line);
+  open.slope = 0.5 * (by_line + by_plane);
   const float in_range = steps_in_range(perspective, abs(end.nearness), perspective ? open.slope : -open.slope);
   open.farthest = min(ceil(2.0 * params.radius / (scale * plane.step)), in_range);
   return open;
@@ -128,7 +151,7 @@ void go_on(inout Open open, bool perspective, Walk walk, Corner next, bool begin
 }
 
 /// Walks along the vertices of a line from `first` on; it has one at least.
-void complete(View view, LinePlane plane, ivec2 steps, int row, int first, int way) {
+void complete(View view, Lines lines, LinePlane plane, int line, ivec2 steps, int row, int first, int way) {
   const bool perspective = view.orthographic == 0;
   Walk walk;
   walk.way = way;
@@ -149,7 +172,7 @@ void complete(View view, LinePlane plane, ivec2 steps, int row, int first, int w
     index += way;
     const Corner next = corner_at(perspective, index);
     const bool begins_run = (next.marked & walk.begins) != 0u;
-    const bool is_interrupted = begins_run && (walk.before.marked & both_ends) != both_ends &&
+    const bool is_interrupted = params.behind != 0 && begins_run && (walk.before.marked & both_ends) != both_ends &&
                                 next.at == walk.before.at + way && next.nearness > walk.before.nearness;
     goes = (next.marked & walk.is_last) == 0u;
     for (bool once = is_interrupted; once; once = false) {
@@ -159,7 +182,7 @@ void complete(View view, LinePlane plane, ivec2 steps, int row, int first, int w
         opens.c = opens.b;
       }
       if (opens.a.is_open) opens.b = opens.a;
-      opens.a = from_end(view, plane, walk, walk.inner, index - way);
+      opens.a = from_end(view, lines, plane, line, walk, walk.inner, index - way);
     }
     go_on(opens.a, perspective, walk, next, begins_run, !goes);
     go_on(opens.b, perspective, walk, next, begins_run, !goes);
@@ -187,7 +210,7 @@ void complete(View view, LinePlane plane, ivec2 steps, int row, int first, int w
     }
   }
   for (bool once = abs(walk.before.at - inner.at) >= kLeastStepsAtBorder; once; once = false) {
-    Open last = from_end(view, plane, walk, inner, index);
+    Open last = from_end(view, lines, plane, line, walk, inner, index);
     close(last, perspective, way, last.farthest);
   }
 }
@@ -204,8 +227,8 @@ void main() {
   const int row = row_of(lines, line, extent.y) * extent.x;
   if (mark[row + steps.x] == 0u) return;
   behind[row + steps.x] = kNoVertex | kNoVertex << 16;
-  complete(view, plane, steps, row, row + steps.x, 1);
+  complete(view, lines, plane, line, steps, row, row + steps.x, 1);
   int last = row + steps.x;
   while ((mark[last] & kVertexLast) == 0u) last++;
-  complete(view, plane, steps, row, last, -1);
+  complete(view, lines, plane, line, steps, row, last, -1);
 }

@@ -13,16 +13,17 @@ ALCOVE_CONSTANT uint kCompleteGoesOn = 2;
 // out: one uint per vertex: the columns of the nearest vertices before (low half) and after it (high half) whose surface
 // goes on behind it; kNoVertex: none
 ALCOVE_CONSTANT uint kCompleteBehind = 3;
+ALCOVE_CONSTANT uint kCompleteNormal = 4;  // in: one uint per pixel, from prepare
 
 ALCOVE_CONSTANT uint kCompleteGroup = 32;  // lines of a workgroup
 
 struct CompleteParams {
   View view;
-  Lines lines;       // as the profile's
-  int first;         // as the profile's
-  uint count;        // lines
-  float radius;      // scene units: of the sphere beyond which nothing blocks
-  uint behind;       // 0 or 1: surfaces go on behind what is nearer, beside beyond the border
+  Lines lines;   // as the profile's
+  int first;     // as the profile's
+  uint count;    // lines
+  float radius;  // scene units: of the sphere beyond which nothing blocks
+  uint behind;   // 0 or 1: surfaces go on behind what is nearer, beside beyond the border
 };
 ALCOVE_PARAMS(CompleteParams)
 

@@ -147,14 +147,12 @@ const float kBesideReceiver = 1e-3;
 
 /// The stroke with what its surface goes on behind others: towards the receiver from the first vertex of a run, else
 /// away from it.
-Stroke with_unseen(Stroke stroke, Walk walk, bool begins, vec2 unseen) {
+Stroke with_unseen(Stroke stroke, bool begins, vec2 unseen) {
   const float across = stroke.to.x;
   const float least = kBesideReceiver * across;
   const float part = unseen.x < least ? (across - least) / (across - unseen.x) : 1.0;
   const vec2 toward = stroke.to + part * (unseen - stroke.to);
-  // What is seen before the first vertex of a side is not straight with what goes on behind it.
-  const vec2 onward = walk.starts ? stroke.to : stroke.from;
-  return begins ? Stroke(toward, stroke.to) : Stroke(onward, unseen);
+  return begins ? Stroke(toward, stroke.to) : Stroke(stroke.from, unseen);
 }
 
 /// The part of a stroke within the sphere of the radius about the receiver: with from + t (to - from), the t between
@@ -174,7 +172,8 @@ Clipped clip_to_sphere(Stroke stroke, float radius_sq) {
 
 /// Adds what a stroke blocks from its front to its back: more of what the receiver's own surface does, or a set apart.
 /// least: the height above the tangent plane that it must have somewhere.
-void block(inout Blocked blocked, Walk walk, Search search, Clipped stroke, float eye_distance, float least, float radius_sq) {
+void block(inout Blocked blocked, Walk walk, Search search, Clipped stroke, float eye_distance, float least,
+           float radius_sq) {
   const float near_slope = slope_of(stroke.near);
   const float far_slope = slope_of(stroke.far);
   const float high = max(near_slope, far_slope);
@@ -244,9 +243,12 @@ vec2 blocked_arcs(View view, LinePlane plane, Point point, Side side, Search sea
     if (kCompletes == kCompletesApart)
       block(seen, walk, search, clip_to_sphere(stroke, radius_sq), point.eye_distance, least, radius_sq);
     if (kCompletes != kCompletesNothing) {
-      const Stroke whole = with_unseen(stroke, walk, begins, corner.unseen);
-      stroke.from = stored < 0.0 ? whole.from : stroke.from;
-      stroke.to = stored < 0.0 ? whole.to : stroke.to;
+      const Stroke whole = with_unseen(stroke, begins, corner.unseen);
+      // What is seen from the receiver to the first vertex need not be straight with what goes on there: where that is
+      // beyond the sphere, only the former matters.
+      const bool goes_on = both(stored < 0.0, !both(walk.starts, dot(corner.place, corner.place) > radius_sq));
+      stroke.from = goes_on ? whole.from : stroke.from;
+      stroke.to = goes_on ? whole.to : stroke.to;
     }
     block(all, walk, search, clip_to_sphere(stroke, radius_sq), point.eye_distance, least, radius_sq);
     goes = (marked & search.last) == 0u ? dot(corner.place, search.leaving) < radius : false;
@@ -263,7 +265,7 @@ vec2 blocked_arcs(View view, LinePlane plane, Point point, Side side, Search sea
     const Corner corner = corner_at(view, plane, point, search, at, to, z, true);
     walk.is_own = false;
     walk.thickness = thickness == 0.0 ? unpack_width(marked) : thickness;
-    const Stroke stroke = with_unseen(Stroke(corner.place, corner.place), walk, true, corner.unseen);
+    const Stroke stroke = with_unseen(Stroke(corner.place, corner.place), true, corner.unseen);
     block(all, walk, search, clip_to_sphere(stroke, radius_sq), point.eye_distance, least, radius_sq);
   }
   const float arc = arc_of(side, search, all);
@@ -343,7 +345,8 @@ void main() {
   }
   whole_arcs[index] = whole;
   if (kCompletes == kCompletesApart && whole > 0.0)
-    completed[index] = ((last_whole > 0.0 ? completed[index] * last_whole : 0.0) + unseen) / whole;
+    completed[index] =
+        clamp((last_whole > 0.0 ? completed[index] * last_whole : 0.0) + unseen, 0.0, max(blocked, 0.0)) / whole;
   if (params.is_last != 0) blocked = whole > 0.0 ? clamp(1.0 - blocked / whole, 0.0, 1.0) : 1.0;
   ao[ao_index] = blocked;
 }

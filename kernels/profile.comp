@@ -152,7 +152,8 @@ float thickness_of(View view, LinePlane plane, ivec2 steps, Step first, Step las
   const float pixel = view.tangent_per_pixel.x * nearer;
   const float width = length(last.place - first.place) + pixel;
   const bool is_cut = first.at == steps.x || last.at == steps.y - 1;
-  return params.is_endless_at_border != 0 && is_cut ? uintBitsToFloat(kEndlessBits) : params.depth_per_width * width + params.more_pixels * pixel;
+  return params.is_endless_at_border != 0 && is_cut ? uintBitsToFloat(kEndlessBits)
+                                                    : params.depth_per_width * width + params.more_pixels * pixel;
 }
 
 void begin_run(inout Run run, Step start) {

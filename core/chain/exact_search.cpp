@@ -57,6 +57,9 @@ Lines lines_of(const View& view, ivec2 origin, int direction, int directions) {
   return lines;
 }
 
+/// What endless occluders hide is blocked anyway.
+bool completes_behind(const Reach& reach) { return reach.complete == Completion::all && !std::isinf(reach.thickness); }
+
 /// One float per pixel: the sum of the whole arcs over the directions so far.
 gpu::Buffer& whole_arcs(gpu::Recorder& gpu, const GBuffer& gbuffer) {
   return gpu.buffer("whole arcs", plane_bytes(gbuffer.view), gpu::Use::device);
@@ -115,7 +118,8 @@ TileList converge(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach
   compare_directions(gpu, gbuffer, tolerance, sums, result, plane, 0);
   const TileList first = sums.listed;
   for (int i = 0; i < kMostDirections; i++) {
-    const Profile lines = profile(gpu, gbuffer, directions, bit_reversed(i), reach, sums.listed.lines);
+    Profile lines = profile(gpu, gbuffer, directions, bit_reversed(i), reach, sums.listed.lines);
+    complete(gpu, gbuffer, lines, reach, sums.listed.lines);
     exact(gpu, gbuffer, lines, directions, reach, sums, 0);
     if (i + 1 >= kLeastDirections && std::has_single_bit(uint(i + 1)))
       compare_directions(gpu, gbuffer, tolerance, sums, result, plane, i + 1);
@@ -127,9 +131,10 @@ Profile profile(gpu::Recorder& gpu, const GBuffer& gbuffer, const SearchDirectio
                 const Reach& reach, const gpu::Buffer* groups) {
   const std::size_t bytes = plane_bytes(gbuffer.view);
   const Lines lines = lines_of(gbuffer.view, gbuffer.grid.origin, direction, directions.count);
-  Profile result{direction, lines, &gpu.buffer("profile vertex", bytes, gpu::Use::device),
-                       &gpu.buffer("profile mark", bytes, gpu::Use::device),
-                       &gpu.buffer("profile neighbor", bytes, gpu::Use::device), nullptr, nullptr};
+  Profile result{direction, lines};
+  result.vertex = &gpu.buffer("profile vertex", bytes, gpu::Use::device);
+  result.mark = &gpu.buffer("profile mark", bytes, gpu::Use::device);
+  result.neighbor = &gpu.buffer("profile neighbor", bytes, gpu::Use::device);
   const ivec2 size = gbuffer.view.size;
   const int along = lines.steep ? size.y : size.x;
   const int across = lines.steep ? size.x : size.y;
@@ -138,15 +143,16 @@ Profile profile(gpu::Recorder& gpu, const GBuffer& gbuffer, const SearchDirectio
          "an exact search takes at most {} pixels along a line, and there are {}: give --search steps", kNoVertex,
          std::max(size.x, size.y));
   const auto [least, most] = std::minmax({shift_at(lines, 0), shift_at(lines, along - 1)});
-  // What endless occluders hide is blocked anyway.
-  const bool completes_all = reach.complete == Completion::all && !std::isinf(reach.thickness);
+  const bool is_thinner = completes_behind(reach);
+  result.first = -most;
+  result.count = uint(across + most - least);
   const ProfileParams params{gbuffer.view,
                              lines,
-                             -most,
-                             uint(across + most - least),
+                             result.first,
+                             result.count,
                              kProfileTolerance,
-                             completes_all ? kCompletedDepthPerWidth : 1,
-                             completes_all ? kCompletedMorePixels : 0,
+                             is_thinner ? kCompletedDepthPerWidth : 1,
+                             is_thinner ? kCompletedMorePixels : 0,
                              reach.complete != Completion::none ? 1u : 0u};
   gpu.dispatch("profile", params,
                {{kProfileDepth, *gbuffer.depth},
@@ -154,14 +160,24 @@ Profile profile(gpu::Recorder& gpu, const GBuffer& gbuffer, const SearchDirectio
                 {kProfileMark, *result.mark},
                 {kProfileNeighbor, *result.neighbor}},
                groups ? gpu::Extent(*groups) : gpu::Extent(params.count), {directions.every_pixel ? 1u : 0u});
-  if (reach.complete == Completion::none) return result;
-  result.goes_on = &gpu.buffer("profile goes on", bytes, gpu::Use::device);
-  result.behind = &gpu.buffer("profile behind", bytes, gpu::Use::device);
-  gpu.dispatch("complete",
-               CompleteParams{gbuffer.view, lines, params.first, params.count, reach.radius, completes_all ? 1u : 0u},
-               {{kCompleteVertex, *result.vertex}, {kCompleteMark, *result.mark}, {kCompleteGoesOn, *result.goes_on}, {kCompleteBehind, *result.behind}},
-               groups ? gpu::Extent(*groups) : gpu::Extent(params.count));
   return result;
+}
+
+void complete(gpu::Recorder& gpu, const GBuffer& gbuffer, Profile& profile, const Reach& reach,
+              const gpu::Buffer* groups) {
+  if (reach.complete == Completion::none) return;
+  const std::size_t bytes = plane_bytes(gbuffer.view);
+  profile.goes_on = &gpu.buffer("profile goes on", bytes, gpu::Use::device);
+  profile.behind = &gpu.buffer("profile behind", bytes, gpu::Use::device);
+  const CompleteParams params{gbuffer.view,  profile.lines, profile.first,
+                              profile.count, reach.radius,  completes_behind(reach) ? 1u : 0u};
+  gpu.dispatch("complete", params,
+               {{kCompleteNormal, *gbuffer.normal},
+                {kCompleteVertex, *profile.vertex},
+                {kCompleteMark, *profile.mark},
+                {kCompleteGoesOn, *profile.goes_on},
+                {kCompleteBehind, *profile.behind}},
+               groups ? gpu::Extent(*groups) : gpu::Extent(profile.count));
 }
 
 void exact(gpu::Recorder& gpu, const GBuffer& gbuffer, const Profile& profile, const SearchDirections& directions,
