@@ -6,14 +6,14 @@
 // Out: for each run's first and last vertex where the surface goes on unseen the end of the straight stroke by which it
 // does.
 //
-// - A plane is straight in 1/z along a line (orthographic: in z), so a surface goes on as a straight stroke. Its slope is
-//   the mean of two: of the line through the last vertices of the run, which follows what curves, and of the plane across
-//   the normal at its end, which holds where a run is only a few pixels wide.
+// - A plane is straight in 1/z along a line (orthographic: in z), so a surface goes on as a straight stroke. Its slope
+//   is the mean of two: of the line through the last vertices of the run, which follows what curves, and of the plane
+//   across the normal at its end, which holds where a run is only a few pixels wide.
 // - It goes on where the next step shows a nearer surface, as far as it stays behind what is seen. Where the next step
 //   shows sky, or something farther, the surface ends.
 // - A stroke that is as long as the sphere of the radius is wide is long enough for every receiver.
-// - The image's border hides all that is beyond it, so there a surface goes on as far as that. Where the image is a part
-//   of the frame, no result lies within the radius of a border that is not the frame's: see core/run/region.h.
+// - The image's border hides all that is beyond it, so there a surface goes on as far as that. Where the image is a
+//   part of the frame, no result lies within the radius of a border that is not the frame's: see core/run/region.h.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "complete.h"
@@ -72,8 +72,8 @@ struct Open {
   float farthest;  // steps that it goes on at most
 };
 
-/// The surfaces that go on at one place of a line, the latest first. Of more, the first to have gone behind what is seen
-/// ends.
+/// The surfaces that go on at one place of a line, the latest first. Of more, the first to have gone behind what is
+/// seen ends.
 struct Opens {
   Open a, b, c;
 };
@@ -96,8 +96,8 @@ float steps_in_range(bool perspective, float value, float change) {
   return room / max(abs(change), room / kLongestStroke);
 }
 
-/// The change of nearness per step `way` on the plane through a vertex across the normal there; `otherwise` where that is
-/// seen edge on.
+/// The change of nearness per step `way` on the plane through a vertex across the normal there; `otherwise` where that
+/// is seen edge on.
 float change_on_plane(View view, Lines lines, LinePlane plane, int line, Corner end, float way, float otherwise) {
   const bool perspective = view.orthographic == 0;
   const ivec2 along_and_across = ivec2(end.at, line + shift_at(lines, end.at));

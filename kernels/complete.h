@@ -10,8 +10,8 @@ ALCOVE_CONSTANT uint kCompleteVertex = 0;
 ALCOVE_CONSTANT uint kCompleteMark = 1;  // in: from profile
 // out: one uint for each vertex with a negative depth: up to where its surface goes on (pack_goes_on())
 ALCOVE_CONSTANT uint kCompleteGoesOn = 2;
-// out: one uint per vertex: the columns of the nearest vertices before (low half) and after it (high half) whose surface
-// goes on behind it; kNoVertex: none
+// out: one uint per vertex: the columns of the nearest vertices before (low half) and after it (high half) whose
+// surface goes on behind it; kNoVertex: none
 ALCOVE_CONSTANT uint kCompleteBehind = 3;
 ALCOVE_CONSTANT uint kCompleteNormal = 4;  // in: one uint per pixel, from prepare
 

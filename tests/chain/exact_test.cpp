@@ -216,7 +216,7 @@ TEST(Exact, a_wall_goes_on_behind_a_plate) {
 }
 
 TEST(Exact, a_wall_goes_on_beyond_the_border) {
-  const Rendering rendering = render({{kFloor, kWallX}}, Shot::perspective({3, 0, 1}, {0, 0, 0.4}, 70, 360, 60));
+  const Rendering rendering = render({{kFloor, kWallX}}, Shot::perspective({3, 0, 1}, {0.15, 0, 0.1}, 70, 360, 60));
   const auto truth = [](const Hit& hit) -> std::optional<double> {
     if (std::abs(hit.position.y) > 0.7) return std::nullopt;
     return 1 - segment(hit.primitive == 0 ? hit.position.x : hit.position.z) / kPi;
