@@ -370,6 +370,31 @@ TEST_F(CommandLine, an_exact_search_of_a_region_is_that_part_of_the_whole) {
   }
 }
 
+TEST_F(CommandLine, a_surface_goes_on_into_a_region_from_far_beyond_its_reach) {
+  const Window data{0, 0, 1000, 300}, region{440, 60, 30, 30};
+  // Left of a bar the wall is at 6, right of it at 5.8, and that goes on behind the bar.
+  FrameFile barred = wall_frame(data, data);
+  std::vector<float>& depth = barred.planes["ViewLayer.Depth.Z"];
+  for (std::size_t i = 0; i < depth.size(); i++) {
+    const auto x = i % std::size_t(data.width);
+    if (x >= 480) depth[i] *= float(x < 680 ? 4.8 / 6 : 5.8 / 6);
+  }
+  barred.write(frame);
+  write_bytes(camera, wall_camera(data).dump());
+  std::vector<std::string> arguments{"run",    frame,   "-o",       ao,    "--camera", camera,
+                                     "--type", "float", "--radius", "0.5", "--preset", "reference"};
+  ASSERT_EQ(run_program(arguments).code, 0);
+  const Image whole = read_exr_image(ao);
+  const std::vector<float> part = cropped(whole.pixels, whole.data, region);
+  arguments.insert(arguments.end(), {"--complete", "border"});
+  ASSERT_EQ(run_program(arguments).code, 0);
+  EXPECT_FALSE(same_bits(read_exr_image(ao).pixels, whole.pixels));
+  arguments.back() = "all";
+  arguments.insert(arguments.end(), {"--roi", "440,60,30,30"});
+  ASSERT_EQ(run_program(arguments).code, 0);
+  EXPECT_TRUE(same_bits(read_exr_image(ao).pixels, part));
+}
+
 TEST_F(CommandLine, an_exact_search_refuses_what_it_cannot_do) {
   const std::pair<std::vector<std::string>, const char*> cases[] = {
       {{"--falloff", "linear"}, "--falloff"}, {{"--stride", "4"}, "--stride"}, {{"--aov", "ao,bent-normal"}, "--aov"}};
