@@ -136,18 +136,29 @@ void close(inout Open open, bool perspective, int way, float steps) {
 }
 
 /// Goes on from the walk's last vertex to the next one, and ends what would be seen until there.
-void go_on(inout Open open, bool perspective, Walk walk, Corner next, bool begins_run, bool is_end) {
+void go_on(inout Open open, bool perspective, Walk walk, Corner next, bool begins_run) {
   const float to_before = abs(float(walk.before.at) - open.from), to_next = abs(float(next.at) - open.from);
   const float behind_before = walk.before.nearness - open.nearness - open.slope * to_before;
   const float behind_next = next.nearness - open.nearness - open.slope * to_next;
   const bool after_sky = begins_run && abs(next.at - walk.before.at) > 1;
   const bool is_hidden = !after_sky && behind_next > 0.0;
-  const bool ends = !is_hidden || is_end || to_next >= open.farthest;
+  const bool ends = !is_hidden || to_next >= open.farthest;
   for (bool once = open.is_open && ends; once; once = false) {
     float steps = begins_run ? to_before : mix(to_before, to_next, behind_before / (behind_before - behind_next));
     if (is_hidden) steps = to_next;
     close(open, perspective, walk.way, min(steps, open.farthest));
   }
+}
+
+/// Ends what still goes on at the walk's end: there, or where the last surface goes on beyond the border, where it would
+/// come before that.
+void go_beyond(inout Open open, Open last, bool perspective, Walk walk, bool goes_beyond) {
+  const float steps = abs(float(walk.before.at) - open.from);
+  const float behind_last = walk.before.nearness - open.nearness - open.slope * steps;
+  const float closing = open.slope - last.slope;
+  const float further = closing > 0.0 ? behind_last / max(closing, behind_last / kLongestStroke) : kLongestStroke;
+  for (bool once = open.is_open; once; once = false)
+    close(open, perspective, walk.way, min(goes_beyond ? steps + further : steps, open.farthest));
 }
 
 /// Walks along the vertices of a line from `first` on; it has one at least.
@@ -184,9 +195,9 @@ void complete(View view, Lines lines, LinePlane plane, int line, ivec2 steps, in
       if (opens.a.is_open) opens.b = opens.a;
       opens.a = from_end(view, lines, plane, line, walk, walk.inner, index - way);
     }
-    go_on(opens.a, perspective, walk, next, begins_run, !goes);
-    go_on(opens.b, perspective, walk, next, begins_run, !goes);
-    go_on(opens.c, perspective, walk, next, begins_run, !goes);
+    go_on(opens.a, perspective, walk, next, begins_run);
+    go_on(opens.b, perspective, walk, next, begins_run);
+    go_on(opens.c, perspective, walk, next, begins_run);
     uint column = kNoVertex;
     if (opens.c.is_open) column = uint(opens.c.index - row);
     if (opens.b.is_open) column = uint(opens.b.index - row);
@@ -209,10 +220,15 @@ void complete(View view, Lines lines, LinePlane plane, int line, ivec2 steps, in
       inner = corner_at(perspective, behind_end);
     }
   }
-  for (bool once = abs(walk.before.at - inner.at) >= kLeastStepsAtBorder; once; once = false) {
-    Open last = from_end(view, lines, plane, line, walk, inner, index);
+  const bool goes_beyond = abs(walk.before.at - inner.at) >= kLeastStepsAtBorder;
+  Open last = none;
+  for (bool once = goes_beyond; once; once = false) {
+    last = from_end(view, lines, plane, line, walk, inner, index);
     close(last, perspective, way, last.farthest);
   }
+  go_beyond(opens.a, last, perspective, walk, goes_beyond);
+  go_beyond(opens.b, last, perspective, walk, goes_beyond);
+  go_beyond(opens.c, last, perspective, walk, goes_beyond);
 }
 
 void main() {
