@@ -34,6 +34,7 @@
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 layout(constant_id = kExactListedId) const uint kListed = 0;
+layout(constant_id = kExactCompletesId) const uint kCompletes = 0;
 layout(scalar, push_constant) uniform Push { ExactParams params; };
 layout(scalar, binding = kExactDepth) readonly buffer Depth { float depth[]; };
 layout(scalar, binding = kExactNormal) readonly buffer Normal { uint normal[]; };
@@ -44,6 +45,12 @@ layout(scalar, binding = kExactWhole) buffer Whole { float whole_arcs[]; };
 layout(scalar, binding = kExactAo) buffer Ao { float ao[]; };
 layout(scalar, binding = kExactList) readonly buffer List { ListedTile list[]; };
 layout(scalar, binding = kExactCounts) readonly buffer Counts { TileCounts counts; };
+layout(scalar, binding = kExactGoesOn) readonly buffer GoesOn { uint goes_on[]; };
+layout(scalar, binding = kExactBehind) readonly buffer Behind { uint behind[]; };
+layout(scalar, binding = kExactCompleted) buffer Completed { float completed[]; };
+
+const uint kCompletesNothing = 0;
+const uint kCompletesApart = 2;
 
 const float kNone = 1e30;
 
@@ -73,14 +80,18 @@ struct Search {
   float shift;                     // of the sectors' boundaries, in [0, 1): see sectors.glsl
 };
 
-/// A walk from vertex to vertex of one side, and what is found to block on it.
+/// A walk from vertex to vertex of one side.
 struct Walk {
   vec2 last;        // the vertex before, in (across, toward)
   bool starts;      // there is none yet
   bool is_own;      // the run is the receiver's own surface
   float thickness;  // scene units, of the run
-  float own;        // slope_of() up to which the receiver's own surface blocks
-  uint sectors;     // that other runs block
+};
+
+/// What is found to block on a side.
+struct Blocked {
+  float own;     // slope_of() up to which the receiver's own surface blocks
+  uint sectors;  // that other runs block
 };
 
 /// A piece of the profile, in (across, toward).
@@ -131,6 +142,19 @@ Stroke stroke_to(vec2 place, Walk walk, bool begins, int steps) {
   return Stroke(begins ? kShortStroke * place : onward, place);
 }
 
+/// A stroke goes on to the receiver's own ray at most: to this part of its distance across the ray.
+const float kBesideReceiver = 1e-3;
+
+/// The stroke with what its surface goes on behind others: towards the receiver from the first vertex of a run, else
+/// away from it.
+Stroke with_unseen(Stroke stroke, bool begins, vec2 unseen) {
+  const float across = stroke.to.x;
+  const float least = kBesideReceiver * across;
+  const float part = unseen.x < least ? (across - least) / (across - unseen.x) : 1.0;
+  const vec2 toward = stroke.to + part * (unseen - stroke.to);
+  return begins ? Stroke(toward, stroke.to) : Stroke(stroke.from, unseen);
+}
+
 /// The part of a stroke within the sphere of the radius about the receiver: with from + t (to - from), the t between
 /// the roots of |from + t (to - from)|^2 = radius^2.
 Clipped clip_to_sphere(Stroke stroke, float radius_sq) {
@@ -148,7 +172,8 @@ Clipped clip_to_sphere(Stroke stroke, float radius_sq) {
 
 /// Adds what a stroke blocks from its front to its back: more of what the receiver's own surface does, or a set apart.
 /// least: the height above the tangent plane that it must have somewhere.
-void block(inout Walk walk, Search search, Clipped stroke, float eye_distance, float least, float radius_sq) {
+void block(inout Blocked blocked, Walk walk, Search search, Clipped stroke, float eye_distance, float least,
+           float radius_sq) {
   const float near_slope = slope_of(stroke.near);
   const float far_slope = slope_of(stroke.far);
   const float high = max(near_slope, far_slope);
@@ -157,36 +182,94 @@ void block(inout Walk walk, Search search, Clipped stroke, float eye_distance, f
   const float top = both(stroke.is_within, clear) ? high : -1.0;
   const float back = back_of(stroke.far, eye_distance, walk.thickness, radius_sq);
   const float bottom = walk.is_own ? -1.0 : min(min(near_slope, far_slope), back);
-  const bool onto_own = bottom <= walk.own;
-  walk.sectors |=
+  const bool onto_own = bottom <= blocked.own;
+  blocked.sectors |=
       onto_own || top < bottom ? 0u : sectors_below(top, search.shift) & ~sectors_below(bottom, search.shift);
-  walk.own = onto_own ? max(walk.own, top) : walk.own;
+  blocked.own = onto_own ? max(blocked.own, top) : blocked.own;
 }
 
-/// The blocked part of a side's arc integral; `at` is the index of the side's first vertex.
-float blocked_arc(View view, LinePlane plane, Point point, Side side, Search search, int at) {
+/// What is seen of a vertex, and where its surface goes on to unseen.
+struct Corner {
+  vec2 place, unseen;  // in (across, toward)
+};
+
+Corner corner_at(View view, LinePlane plane, Point point, Search search, int at, int step, float z, bool toward) {
+  Corner corner;
+  const vec2 offset = place_at(view, plane, float(step), z) - point.place;
+  corner.place = vec2(dot(offset, search.across), dot(offset, point.eye));
+  corner.unseen = corner.place;
+  if (kCompletes != kCompletesNothing) {
+    const uint further = goes_on[at];
+    const float until = float(step) + float(toward ? -search.step : search.step) * steps_of_goes_on(further);
+    const vec2 to_unseen = place_at(view, plane, until, z * depths_of_goes_on(further)) - point.place;
+    corner.unseen = vec2(dot(to_unseen, search.across), dot(to_unseen, point.eye));
+  }
+  return corner;
+}
+
+/// The column of the nearest vertex beyond the end of a walk at `at` whose surface goes on towards the receiver behind
+/// that end.
+uint vertex_beyond(Search search, int at) {
+  const uint columns = behind[at];
+  return search.step > 0 ? columns >> 16 : columns & kNoVertex;
+}
+
+/// The blocked part of a side's arc integral.
+float arc_of(Side side, Search search, Blocked blocked) {
+  return whole_arc(side) - arc_to(side, place_at(blocked.own)) +
+         arc_of(side, blocked.sectors & ~sectors_below(blocked.own, search.shift));
+}
+
+/// The blocked part of a side's arc integral, and how much of it only what completed surfaces block. `at` is the index
+/// of the side's first vertex, and `row` that of the line's column 0.
+vec2 blocked_arcs(View view, LinePlane plane, Point point, Side side, Search search, int row, int at) {
   const float radius = params.radius;
   const float radius_sq = radius * radius;
   const float thickness = params.thickness;
-  Walk walk = Walk(vec2(0), true, true, thickness, slope_of(side.ahead), 0u);
+  Walk walk = Walk(vec2(0), true, true, thickness);
+  Blocked all = Blocked(slope_of(side.ahead), 0u);
+  Blocked seen = all;
   for (bool goes = true; goes; at += search.step) {
     const uint marked = mark[at];
     const int to = int(marked >> 16), steps = abs(to - search.from);
-    const float z = vertex[at], scale = view.orthographic != 0 ? 1.0 : z;
+    const float stored = vertex[at], z = kCompletes != kCompletesNothing ? abs(stored) : stored;
+    const float scale = view.orthographic != 0 ? 1.0 : z;
     const float least = search.least_height + scale * search.least_rise * float(steps);
-    const vec2 offset = place_at(view, plane, to, z) - point.place;
-    const vec2 place = vec2(dot(offset, search.across), dot(offset, point.eye));
     const bool begins = (marked & search.begins) != 0u;
+    const Corner corner = corner_at(view, plane, point, search, at, to, z, begins);
     walk.is_own = begins ? false : walk.is_own;
     walk.thickness = begins && thickness == 0.0 ? unpack_width(marked) : walk.thickness;
-    const Clipped stroke = clip_to_sphere(stroke_to(place, walk, begins, steps), radius_sq);
-    block(walk, search, stroke, point.eye_distance, least, radius_sq);
-    goes = (marked & search.last) == 0u ? dot(place, search.leaving) < radius : false;
-    walk.last = place;
+    Stroke stroke = stroke_to(corner.place, walk, begins, steps);
+    if (kCompletes == kCompletesApart)
+      block(seen, walk, search, clip_to_sphere(stroke, radius_sq), point.eye_distance, least, radius_sq);
+    if (kCompletes != kCompletesNothing) {
+      const Stroke whole = with_unseen(stroke, begins, corner.unseen);
+      // What is seen from the receiver to the first vertex need not be straight with what goes on there: where that is
+      // beyond the sphere, only the former matters.
+      const bool goes_on = both(stored < 0.0, !both(walk.starts, dot(corner.place, corner.place) > radius_sq));
+      stroke.from = goes_on ? whole.from : stroke.from;
+      stroke.to = goes_on ? whole.to : stroke.to;
+    }
+    block(all, walk, search, clip_to_sphere(stroke, radius_sq), point.eye_distance, least, radius_sq);
+    goes = (marked & search.last) == 0u ? dot(corner.place, search.leaving) < radius : false;
+    walk.last = corner.place;
     walk.starts = false;
   }
-  return whole_arc(side) - arc_to(side, place_at(walk.own)) +
-         arc_of(side, walk.sectors & ~sectors_below(walk.own, search.shift));
+  const uint beyond = kCompletes != kCompletesNothing ? vertex_beyond(search, at - search.step) : kNoVertex;
+  for (bool once = beyond != kNoVertex; once; once = false) {
+    at = row + int(beyond);
+    const uint marked = mark[at];
+    const int to = int(marked >> 16);
+    const float z = abs(vertex[at]), scale = view.orthographic != 0 ? 1.0 : z;
+    const float least = search.least_height + scale * search.least_rise * float(abs(to - search.from));
+    const Corner corner = corner_at(view, plane, point, search, at, to, z, true);
+    walk.is_own = false;
+    walk.thickness = thickness == 0.0 ? unpack_width(marked) : thickness;
+    const Stroke stroke = with_unseen(Stroke(corner.place, corner.place), true, corner.unseen);
+    block(all, walk, search, clip_to_sphere(stroke, radius_sq), point.eye_distance, least, radius_sq);
+  }
+  const float arc = arc_of(side, search, all);
+  return vec2(arc, kCompletes == kCompletesApart ? arc - arc_of(side, search, seen) : 0.0);
 }
 
 void main() {
@@ -222,7 +305,7 @@ void main() {
   const float weight = length(point.normal);
   const float facing = max(dot(point.normal, point.eye), kLeastWeight);
   const uint neighbors = neighbor[row + at.x];
-  float blocked = 0.0, whole = 0.0;
+  float blocked = 0.0, whole = 0.0, unseen = 0.0;
   if (weight >= kLeastWeight) {
     const vec2 across_eye = vec2(-point.eye.y, point.eye.x);
     const float sine = radius / point.eye_distance, cosine = sqrt(max(0.0, 1.0 - sine * sine));
@@ -250,14 +333,20 @@ void main() {
       const uint column = sign > 0 ? neighbors >> 16 : neighbors & kNoVertex;
       if (column == kNoVertex) continue;
       search.shift = fract(0.5 + kGolden * float(2u * params.direction + uint(sign > 0)));
-      blocked += share * weight * blocked_arc(view, plane, point, side, search, row + int(column));
+      const vec2 arcs = share * weight * blocked_arcs(view, plane, point, side, search, row, row + int(column));
+      blocked += arcs.x;
+      unseen += arcs.y;
     }
   }
+  const float last_whole = params.is_first == 0 ? whole_arcs[index] : 0.0;
   if (params.is_first == 0) {
-    whole += whole_arcs[index];
+    whole += last_whole;
     blocked += ao[ao_index];
   }
   whole_arcs[index] = whole;
+  if (kCompletes == kCompletesApart && whole > 0.0)
+    completed[index] =
+        clamp((last_whole > 0.0 ? completed[index] * last_whole : 0.0) + unseen, 0.0, max(blocked, 0.0)) / whole;
   if (params.is_last != 0) blocked = whole > 0.0 ? clamp(1.0 - blocked / whole, 0.0, 1.0) : 1.0;
   ao[ao_index] = blocked;
 }

@@ -13,12 +13,18 @@ ALCOVE_CONSTANT uint kExactNeighbor = 4;  // in: from profile
 ALCOVE_CONSTANT uint kExactWhole = 5;     // in and out: one float per pixel, sum of whole arcs
 // in and out: one float per pixel, sum of blocked arcs; after the last slice visibility in [0, 1], 1 = open
 ALCOVE_CONSTANT uint kExactAo = 6;
-ALCOVE_CONSTANT uint kExactList = 7;    // in: one ListedTile per tile, from converge; only with kExactListedId
-ALCOVE_CONSTANT uint kExactCounts = 8;  // in: TileCounts; only with kExactListedId
+ALCOVE_CONSTANT uint kExactList = 7;     // in: one ListedTile per tile, from converge; only with kExactListedId
+ALCOVE_CONSTANT uint kExactCounts = 8;   // in: TileCounts; only with kExactListedId
+ALCOVE_CONSTANT uint kExactGoesOn = 9;   // in: from complete; only with kExactCompletesId
+ALCOVE_CONSTANT uint kExactBehind = 10;  // the same
+// in and out: one float per pixel, visibility that completed surfaces took; only where kExactCompletesId is 2
+ALCOVE_CONSTANT uint kExactCompleted = 11;
 
 // specialization: 1: the pixels of listed tiles take the slice, and no sum is ever completed; see stride, first,
 // is_last
 ALCOVE_CONSTANT uint kExactListedId = 0;
+// specialization: 1: surfaces go on as complete has found; 2: and what they block is told apart
+ALCOVE_CONSTANT uint kExactCompletesId = 1;
 
 struct ExactParams {
   View view;

@@ -40,9 +40,17 @@ int row_of(Lines lines, int line, int rows) { return (line + lines.wrap) % rows;
 uint pack_width(float width) { return (floatBitsToUint(width) + 0x40000u) >> 19 << 4; }
 float unpack_width(uint mark) { return uintBitsToFloat((mark & 0xfff0u) << 15); }
 
+/// Up to where a surface goes on unseen: so many steps further along the line, at most 8191, and there it is so many
+/// times as deep, less than 16. Steps are held within 1/16, and depths within 1/8192 of the depth where it begins.
+uint pack_goes_on(float steps, float depths) {
+  return uint(steps * 8.0 + 0.5) << 16 | uint(min(depths * 4096.0 + 0.5, 65535.0));
+}
+float steps_of_goes_on(uint packed) { return float(packed >> 16) * 0.125; }
+float depths_of_goes_on(uint packed) { return float(packed & 0xffffu) / 4096.0; }
+
 /// Where a point of the line is in its plane.
-vec2 place_at(View view, LinePlane plane, int step, float z) {
-  return vec2((view.orthographic != 0 ? 1.0 : z) * (plane.start + float(plane.origin + step) * plane.step),
+vec2 place_at(View view, LinePlane plane, float step, float z) {
+  return vec2((view.orthographic != 0 ? 1.0 : z) * (plane.start + (float(plane.origin) + step) * plane.step),
               z * plane.ray_length);
 }
 
@@ -66,4 +74,24 @@ LinePlane plane_of(View view, Lines lines, int line) {
   plane.foot = first - plane.start * plane.along;
   plane.ray_length = view.orthographic != 0 ? 1.0 : sqrt(1.0 + dot(plane.foot, plane.foot));
   return plane;
+}
+
+/// What is straight along a line where the surface is: disparity, or orthographic depth.
+float value_of(bool perspective, float z) { return perspective ? 1.0 / z : z; }
+
+/// The steps of a line that lie on the image, from the first to behind the last.
+ivec2 steps_of(Lines lines, ivec2 extent, int line) {
+  const float steps_per_pixel = float(kSlopeUnit) / (lines.slope == 0 ? 1.0 : float(lines.slope));
+  const float enters = (-0.5 - float(line)) * steps_per_pixel - float(lines.origin.x);
+  const float leaves = enters + float(extent.y) * steps_per_pixel;
+  // Rounding may put them beside the border: two steps more on either side are searched for it.
+  int begin = clamp(int(clamp(min(enters, leaves), -1e6, 1e6)) - 2, 0, extent.x);
+  int end = clamp(int(clamp(max(enters, leaves), -1e6, 1e6)) + 3, 0, extent.x);
+  if (lines.slope == 0) {
+    begin = 0;
+    end = extent.x;
+  }
+  while (begin < end && uint(line + shift_at(lines, begin)) >= uint(extent.y)) begin++;
+  while (begin < end && uint(line + shift_at(lines, end - 1)) >= uint(extent.y)) end--;
+  return ivec2(begin, end);
 }

@@ -41,6 +41,8 @@ const float kLeastNearness = 0.02;
 
 const float kFar = 1e30;
 
+const uint kEndlessBits = 0x7f800000u;  // of the float infinity
+
 /// What is seen at one step of a line.
 struct Step {
   int at;  // the step
@@ -68,27 +70,7 @@ bool connected(bool perspective, float pixel, float a, float b) {
   return abs(a - b) < kRunSlope * pixel * (perspective ? min(a, b) : 1.0);
 }
 
-/// What is straight along a line where the surface is: disparity, or orthographic depth.
-float value_of(bool perspective, float z) { return perspective ? 1.0 / z : z; }
-
 uint columns(int before, int after) { return uint(before) & kNoVertex | uint(after) << 16; }
-
-/// The steps of a line that lie on the image, from the first to behind the last.
-ivec2 steps_of(Lines lines, ivec2 extent, int line) {
-  const float steps_per_pixel = float(kSlopeUnit) / (lines.slope == 0 ? 1.0 : float(lines.slope));
-  const float enters = (-0.5 - float(line)) * steps_per_pixel - float(lines.origin.x);
-  const float leaves = enters + float(extent.y) * steps_per_pixel;
-  // Rounding may put them beside the border: two steps more on either side are searched for it.
-  int begin = clamp(int(clamp(min(enters, leaves), -1e6, 1e6)) - 2, 0, extent.x);
-  int end = clamp(int(clamp(max(enters, leaves), -1e6, 1e6)) + 3, 0, extent.x);
-  if (lines.slope == 0) {
-    begin = 0;
-    end = extent.x;
-  }
-  while (begin < end && uint(line + shift_at(lines, begin)) >= uint(extent.y)) begin++;
-  while (begin < end && uint(line + shift_at(lines, end - 1)) >= uint(extent.y)) end--;
-  return ivec2(begin, end);
-}
 
 /// The value's change from the pixel `across` to the next one on a side, by the pixels on the other side: `known` says
 /// whether there is a next one that is no sky, whose value lies `ahead`. At the image's border, where the pixel before
@@ -137,7 +119,7 @@ Step step_at(View view, Lines lines, LinePlane plane, int rows, int line, int at
   s.is_surface = nearest < kSkyDepth && at < end;
   s.value = perspective ? max(between, kLeastNearness * here) : between;
   s.z = value_of(perspective, s.value);
-  s.place = place_at(view, plane, at, s.z);
+  s.place = place_at(view, plane, float(at), s.z);
   return s;
 }
 
@@ -153,8 +135,8 @@ void emit_vertex(inout Run run, int at, float z, float value) {
 }
 
 /// Marks the first and the last vertex of a run that ends at its step `last`, the last that has a vertex.
-void close_run(inout Run run, Step last, float width) {
-  const uint packed = pack_width(width);
+void close_run(inout Run run, Step last, float thickness) {
+  const uint packed = pack_width(thickness);
   const bool is_one = run.first == run.next - 1;
   mark[run.row + run.first] = uint(run.start.at) << 16 | packed | kVertexBegins | (is_one ? kVertexEnds : 0u) |
                               (run.first == run.begin ? kVertexFirst : 0u);
@@ -162,6 +144,16 @@ void close_run(inout Run run, Step last, float width) {
                   (run.next - 1 == run.begin ? kVertexFirst : 0u);
   mark[run.row + run.next - 1] = run.last_mark;
   run.is_open = false;
+}
+
+/// How thick a run is, in scene units. One that the image's border cuts has no known end.
+float thickness_of(View view, LinePlane plane, ivec2 steps, Step first, Step last) {
+  const float nearer = view.orthographic == 0 ? min(last.z, first.place.y / plane.ray_length) : 1.0;
+  const float pixel = view.tangent_per_pixel.x * nearer;
+  const float width = length(last.place - first.place) + pixel;
+  const bool is_cut = first.at == steps.x || last.at == steps.y - 1;
+  return params.is_endless_at_border != 0 && is_cut ? uintBitsToFloat(kEndlessBits)
+                                                    : params.depth_per_width * width + params.more_pixels * pixel;
 }
 
 void begin_run(inout Run run, Step start) {
@@ -196,9 +188,7 @@ void main() {
       run.is_pending = false;
     }
     for (bool once = run.is_open && !goes_on; once; once = false)
-      close_run(run, last,
-                length(last.place - run.start.place) +
-                    pixel * (perspective ? min(last.z, run.start.place.y / plane.ray_length) : 1.0));
+      close_run(run, last, thickness_of(view, plane, steps, run.start, last));
     for (bool once = here.is_surface && !goes_on; once; once = false) begin_run(run, here);
     if (goes_on) {
       const float reach = tolerance * (perspective ? here.value : 1.0);
@@ -213,5 +203,7 @@ void main() {
   if (run.next > run.begin) {
     mark[run.row + run.next - 1] = run.last_mark | kVertexLast;
     neighbor[run.row + run.anchor] = columns(run.next - 1 == run.begin ? -1 : run.next - 2, -1);
+  } else if (steps.x < steps.y) {
+    mark[run.row + run.begin] = 0u;
   }
 }

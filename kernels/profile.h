@@ -7,7 +7,8 @@ ALCOVE_BEGIN
 
 ALCOVE_CONSTANT uint kProfileDepth = 0;   // in: one float per pixel, from prepare
 ALCOVE_CONSTANT uint kProfileVertex = 1;  // out: one float per vertex, its planar depth
-// out: one uint per vertex: its step in the high half, its run's width (pack_width()) and kVertex* in the low
+// out: one uint per vertex: its step in the high half, its run's thickness (pack_width()) and kVertex* in the low; 0
+// for a line that shows no surface
 ALCOVE_CONSTANT uint kProfileMark = 2;
 // out: one uint per step: the columns of the vertices before (low half) and after it; kNoVertex: none
 ALCOVE_CONSTANT uint kProfileNeighbor = 3;
@@ -42,6 +43,9 @@ struct ProfileParams {
   int first;        // number of the first line: the pixel across at step 0 were it not for the origin
   uint count;       // lines
   float tolerance;  // px: how far in depth a pixel may be from the profile, in its own widths
+  // A run's thickness is its width times the first and so many widths of its pixels.
+  float depth_per_width, more_pixels;
+  uint is_endless_at_border;  // 0 or 1: a run that the image's border cuts has no end
 };
 ALCOVE_PARAMS(ProfileParams)
 

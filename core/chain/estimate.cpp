@@ -154,7 +154,8 @@ Estimate estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs&
       case Estimator::gtao:
         if (!is_exact) horizon(gpu, gbuffer, reach, sampling, out, plane);
         for (int i = 0; is_exact && settings.tolerance == 0 && i < directions.count; i++) {
-          const Profile lines = profile(gpu, gbuffer, directions, i);
+          Profile lines = profile(gpu, gbuffer, directions, i, reach);
+          complete(gpu, gbuffer, lines, reach);
           exact(gpu, gbuffer, lines, directions, reach, out, plane);
         }
         if (settings.tolerance > 0)

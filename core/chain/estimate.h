@@ -110,17 +110,24 @@ struct SearchDirections {
 };
 SearchDirections search_directions(const EstimatorSettings& settings);
 
-/// The depth along all lines of one direction over the image, as straight strokes: see profile.h.
+/// The depth along all lines of one direction over the image, as straight strokes: see profile.h and complete.h.
 struct Profile {
   int direction;
   Lines lines;
-  gpu::Buffer* vertex;
-  gpu::Buffer* mark;
-  gpu::Buffer* neighbor;
+  int first = 0;   // number of the first line
+  uint count = 0;  // lines
+  gpu::Buffer* vertex = nullptr;
+  gpu::Buffer* mark = nullptr;
+  gpu::Buffer* neighbor = nullptr;
+  gpu::Buffer* goes_on = nullptr;  // null: no surface goes on unseen
+  gpu::Buffer* behind = nullptr;   // the same
 };
 /// `groups`: workgroups, a GroupCount; null: those of all lines.
 Profile profile(gpu::Recorder& gpu, const GBuffer& gbuffer, const SearchDirections& directions, int direction,
-                const gpu::Buffer* groups = nullptr);
+                const Reach& reach, const gpu::Buffer* groups = nullptr);
+/// Finds how far the surfaces of a profile go on unseen, where the settings say that any do.
+void complete(gpu::Recorder& gpu, const GBuffer& gbuffer, Profile& profile, const Reach& reach,
+              const gpu::Buffer* groups = nullptr);
 /// Adds a direction to a plane of out.ao, for the pixels that take it; call it for all directions in order. Where tiles
 /// are listed, the plane keeps the sum of what is blocked, from which converge makes the visibility.
 void exact(gpu::Recorder& gpu, const GBuffer& gbuffer, const Profile& profile, const SearchDirections& directions,

@@ -8,6 +8,7 @@
 
 #include "core/chain/estimate.h"
 #include "core/chain/pass_common.h"
+#include "kernels/complete.h"
 #include "kernels/converge.h"
 #include "kernels/exact.h"
 #include "kernels/profile.h"
@@ -22,6 +23,11 @@ constexpr int kMostDirections = 64;
 
 /// How far a profile may leave a pixel's depth, in the pixel's own widths: less costs more vertices.
 constexpr float kProfileTolerance = 0.2f;
+
+/// Where surfaces are completed, a run is so thick: its width times the first, and so many pixels more. Thickness need
+/// not stand for what is hidden then.
+constexpr float kCompletedDepthPerWidth = 0.5f;
+constexpr float kCompletedMorePixels = 1;
 
 /// The number of the i-th direction. In this order the first 2, 4, 8 ... directions are even over the half turn.
 int bit_reversed(int i) {
@@ -50,6 +56,9 @@ Lines lines_of(const View& view, ivec2 origin, int direction, int directions) {
   lines.wrap = (most / across + 1) * across;
   return lines;
 }
+
+/// What endless occluders hide is blocked anyway.
+bool completes_behind(const Reach& reach) { return reach.complete == Completion::all && !std::isinf(reach.thickness); }
 
 /// One float per pixel: the sum of the whole arcs over the directions so far.
 gpu::Buffer& whole_arcs(gpu::Recorder& gpu, const GBuffer& gbuffer) {
@@ -104,11 +113,13 @@ TileList converge(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach
                   Estimate& result, uint plane) {
   const SearchDirections directions{kMostDirections, 1, every_pixel};
   Estimate sums;
+  sums.completed = result.completed;
   sums.ao = &gpu.buffer("blocked arcs", plane_bytes(gbuffer.view), gpu::Use::device);
   compare_directions(gpu, gbuffer, tolerance, sums, result, plane, 0);
   const TileList first = sums.listed;
   for (int i = 0; i < kMostDirections; i++) {
-    const Profile lines = profile(gpu, gbuffer, directions, bit_reversed(i), sums.listed.lines);
+    Profile lines = profile(gpu, gbuffer, directions, bit_reversed(i), reach, sums.listed.lines);
+    complete(gpu, gbuffer, lines, reach, sums.listed.lines);
     exact(gpu, gbuffer, lines, directions, reach, sums, 0);
     if (i + 1 >= kLeastDirections && std::has_single_bit(uint(i + 1)))
       compare_directions(gpu, gbuffer, tolerance, sums, result, plane, i + 1);
@@ -117,12 +128,13 @@ TileList converge(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach
 }
 
 Profile profile(gpu::Recorder& gpu, const GBuffer& gbuffer, const SearchDirections& directions, int direction,
-                const gpu::Buffer* groups) {
+                const Reach& reach, const gpu::Buffer* groups) {
   const std::size_t bytes = plane_bytes(gbuffer.view);
   const Lines lines = lines_of(gbuffer.view, gbuffer.grid.origin, direction, directions.count);
-  const Profile result{direction, lines, &gpu.buffer("profile vertex", bytes, gpu::Use::device),
-                       &gpu.buffer("profile mark", bytes, gpu::Use::device),
-                       &gpu.buffer("profile neighbor", bytes, gpu::Use::device)};
+  Profile result{direction, lines};
+  result.vertex = &gpu.buffer("profile vertex", bytes, gpu::Use::device);
+  result.mark = &gpu.buffer("profile mark", bytes, gpu::Use::device);
+  result.neighbor = &gpu.buffer("profile neighbor", bytes, gpu::Use::device);
   const ivec2 size = gbuffer.view.size;
   const int along = lines.steep ? size.y : size.x;
   const int across = lines.steep ? size.x : size.y;
@@ -131,7 +143,17 @@ Profile profile(gpu::Recorder& gpu, const GBuffer& gbuffer, const SearchDirectio
          "an exact search takes at most {} pixels along a line, and there are {}: give --search steps", kNoVertex,
          std::max(size.x, size.y));
   const auto [least, most] = std::minmax({shift_at(lines, 0), shift_at(lines, along - 1)});
-  const ProfileParams params{gbuffer.view, lines, -most, uint(across + most - least), kProfileTolerance};
+  const bool is_thinner = completes_behind(reach);
+  result.first = -most;
+  result.count = uint(across + most - least);
+  const ProfileParams params{gbuffer.view,
+                             lines,
+                             result.first,
+                             result.count,
+                             kProfileTolerance,
+                             is_thinner ? kCompletedDepthPerWidth : 1,
+                             is_thinner ? kCompletedMorePixels : 0,
+                             reach.complete != Completion::none ? 1u : 0u};
   gpu.dispatch("profile", params,
                {{kProfileDepth, *gbuffer.depth},
                 {kProfileVertex, *result.vertex},
@@ -139,6 +161,23 @@ Profile profile(gpu::Recorder& gpu, const GBuffer& gbuffer, const SearchDirectio
                 {kProfileNeighbor, *result.neighbor}},
                groups ? gpu::Extent(*groups) : gpu::Extent(params.count), {directions.every_pixel ? 1u : 0u});
   return result;
+}
+
+void complete(gpu::Recorder& gpu, const GBuffer& gbuffer, Profile& profile, const Reach& reach,
+              const gpu::Buffer* groups) {
+  if (reach.complete == Completion::none) return;
+  const std::size_t bytes = plane_bytes(gbuffer.view);
+  profile.goes_on = &gpu.buffer("profile goes on", bytes, gpu::Use::device);
+  profile.behind = &gpu.buffer("profile behind", bytes, gpu::Use::device);
+  const CompleteParams params{gbuffer.view,  profile.lines, profile.first,
+                              profile.count, reach.radius,  completes_behind(reach) ? 1u : 0u};
+  gpu.dispatch("complete", params,
+               {{kCompleteNormal, *gbuffer.normal},
+                {kCompleteVertex, *profile.vertex},
+                {kCompleteMark, *profile.mark},
+                {kCompleteGoesOn, *profile.goes_on},
+                {kCompleteBehind, *profile.behind}},
+               groups ? gpu::Extent(*groups) : gpu::Extent(profile.count));
 }
 
 void exact(gpu::Recorder& gpu, const GBuffer& gbuffer, const Profile& profile, const SearchDirections& directions,
@@ -166,6 +205,8 @@ void exact(gpu::Recorder& gpu, const GBuffer& gbuffer, const Profile& profile, c
   const auto columns = uint((size.x + params.stride - 1) / params.stride);
   const auto rows = uint((size.y + params.stride - 1) / params.stride);
   const gpu::Extent pixels = lines.steep ? gpu::Extent{rows, columns} : gpu::Extent{columns, rows};
+  uint completing = profile.goes_on ? 1 : 0;
+  if (profile.goes_on && out.completed) completing = 2;
   gpu.dispatch("exact", params,
                {{kExactDepth, *gbuffer.depth},
                 {kExactNormal, *gbuffer.normal},
@@ -175,8 +216,11 @@ void exact(gpu::Recorder& gpu, const GBuffer& gbuffer, const Profile& profile, c
                 {kExactWhole, whole_arcs(gpu, gbuffer)},
                 {kExactAo, *out.ao},
                 {kExactList, is_listed ? *out.listed.tiles : *out.ao},
-                {kExactCounts, is_listed ? *out.listed.counts : *out.ao}},
-               is_listed ? list_extent(out.listed) : pixels, {is_listed ? 1u : 0u});
+                {kExactCounts, is_listed ? *out.listed.counts : *out.ao},
+                {kExactGoesOn, profile.goes_on ? *profile.goes_on : *profile.vertex},
+                {kExactBehind, profile.behind ? *profile.behind : *profile.mark},
+                {kExactCompleted, out.completed ? *out.completed : *out.ao}},
+               is_listed ? list_extent(out.listed) : pixels, {is_listed ? 1u : 0u, completing});
 }
 
 }  // namespace alcove

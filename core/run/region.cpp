@@ -47,8 +47,9 @@ int line_reach(const EstimatorSettings& settings) {
 }
 
 /// The width, in radii, from which a run that begins within reach of a receiver is as good as endless. It is more than
-/// the sphere's 2, since exact.comp rounds widths by up to 3 %.
-constexpr double kWidestRun = 2.1;
+/// the sphere's 2, since exact.comp rounds widths by up to 3 %. Where surfaces are completed, a run is half as thick as
+/// wide; that is also farther than a surface goes on towards the receiver from beyond its reach, which is 2 radii.
+double widest_run(const EstimatorSettings& settings) { return completes(settings) ? 4.2 : 2.1; }
 
 /// How many pixels the image of a sphere reaches from the image of its centre, on one axis. Centres are no nearer than
 /// `nearest`, and no farther off axis than `tangent`.
@@ -84,7 +85,8 @@ Surroundings::Surroundings(FrameSource& source, const Settings& settings, const 
       orthographic_(source.camera.orthographic),
       radius_(settings.estimator.radius ? radii_of(settings.estimator).back() : 0),
       filters_(filter_reach(settings.estimator)),
-      lines_(line_reach(settings.estimator)) {
+      lines_(line_reach(settings.estimator)),
+      widest_run_(widest_run(settings.estimator)) {
   const Window data = source.data;
   const DepthMap map = depth_map_of(source);
   for (int top = 0; top < read_.height; top += kBlock) {
@@ -123,7 +125,7 @@ Window Surroundings::within(double distance, const Window& window) const {
 
 Window Surroundings::around(const Window& part) const {
   const Window occluders = within(radius_, grown(part, filters_, filters_, file_data_));
-  return lines_ == 0 ? occluders : within(kWidestRun * radius_, grown(occluders, lines_, lines_, file_data_));
+  return lines_ == 0 ? occluders : within(widest_run_ * radius_, grown(occluders, lines_, lines_, file_data_));
 }
 
 }  // namespace alcove

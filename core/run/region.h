@@ -33,9 +33,10 @@ class Surroundings {
   std::vector<float> nearest_;  // the nearest depth of every block, row by row
   View view_;
   bool orthographic_;
-  double radius_;  // scene units
-  int filters_;    // px that filters reach
-  int lines_;      // px that the lines of an exact search need beyond the radius
+  double radius_;      // scene units
+  int filters_;        // px that filters reach
+  int lines_;          // px that the lines of an exact search need beyond the radius
+  double widest_run_;  // radii, beyond which they need no more of a run
 };
 
 }  // namespace alcove

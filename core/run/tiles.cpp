@@ -51,6 +51,7 @@ std::uint64_t chain_bytes(const FrameSource& source, const Settings& settings) {
   std::size_t low = estimated + (reduced ? 2 : 0);
   low += e.denoise == Denoise::none || converges ? 0 : 2 * estimated;  // rows, columns
   low += searches_exactly(e) ? 4 : 0;                                  // vertices, marks, neighbours, whole arcs
+  low += searches_exactly(e) && completes_anywhere(e) ? 2 : 0;         // what goes on, and behind what
   low += converges ? 2 : 0;                                            // blocked arcs, error
   const bool sums_completed = Wanted(o).completed && completes_anywhere(e);
   low += sums_completed ? 1 : 0;

@@ -9,6 +9,7 @@
 #include <numbers>
 #include <optional>
 
+#include "core/chain/chain.h"
 #include "core/chain/compute.h"
 #include "core/formats/exr.h"
 #include "core/reference/reference.h"
@@ -65,15 +66,23 @@ TEST(Exact, outlines_give_what_every_pixel_gives) {
     const HostFrame frame = furnished(orthographic).frame;
     for (const double radius : {0.3, 1.0, 100.0}) {
       for (const auto thickness : {ThicknessKind::automatic, ThicknessKind::infinite, ThicknessKind::constant}) {
-        EstimatorSettings exact = settings_of(radius), march = settings_of(radius, SliceSearch::every_pixel);
-        exact.thickness = march.thickness = thickness;
-        exact.thickness_length = march.thickness_length = 0.2;
-        const std::vector<float> marched = run(frame, march);
-        const Difference d = difference(run(frame, exact), [&](std::size_t i) { return marched[i]; });
-        EXPECT_LE(d.rmse, 0.003) << orthographic << ", radius " << radius << ", thickness " << int(thickness) << ", "
-                                 << place(d, frame);
-        EXPECT_LE(std::abs(d.bias), 0.0005)
-            << orthographic << ", radius " << radius << ", thickness " << int(thickness);
+        for (const auto complete : {Completion::none, Completion::border, Completion::all}) {
+          EstimatorSettings exact = settings_of(radius), march = settings_of(radius, SliceSearch::every_pixel);
+          exact.thickness = march.thickness = thickness;
+          exact.thickness_length = march.thickness_length = 0.2;
+          exact.complete = march.complete = complete;
+          const std::vector<float> marched = run(frame, march);
+          const Difference d = difference(run(frame, exact), [&](std::size_t i) { return marched[i]; });
+          // How a surface goes on, two vertices say: of outlines these are far apart, and what a pixel leaves of the
+          // straight line counts the more the farther it goes on.
+          const bool goes_on = complete == Completion::all && thickness != ThicknessKind::infinite;
+          EXPECT_LE(d.rmse, goes_on ? 0.006 : 0.003)
+              << orthographic << ", radius " << radius << ", thickness " << int(thickness) << ", complete "
+              << int(complete) << ", " << place(d, frame);
+          EXPECT_LE(std::abs(d.bias), complete != Completion::none ? 0.001 : 0.0005)
+              << orthographic << ", radius " << radius << ", thickness " << int(thickness) << ", complete "
+              << int(complete);
+        }
       }
     }
   }
@@ -148,6 +157,25 @@ void expect_truth(const char* what, const Rendering& rendering, const EstimatorS
   EXPECT_LE(worst, 0.02) << what;
 }
 
+/// How far the AO of the pixels that have a truth and are not beside an edge is from that, on the mean.
+double mean_error(const Rendering& rendering, const EstimatorSettings& settings, const Truth& truth) {
+  const std::vector<float> ao = run(rendering.frame, settings);
+  double sum = 0;
+  int pixels = 0;
+  for (int y = 0; y < rendering.shot.data.height; y++) {
+    for (int x = 0; x < rendering.shot.data.width; x++) {
+      const Hit& hit = rendering.at(x, y);
+      if (hit.primitive < 0 || rendering.primitives_within(2, x, y) > 1) continue;
+      const auto expected = truth(hit);
+      if (!expected) continue;
+      sum += std::abs(ao[std::size_t(y * rendering.shot.data.width + x)] - *expected);
+      pixels++;
+    }
+  }
+  EXPECT_GT(pixels, 500);
+  return sum / pixels;
+}
+
 /// Area of the segment of the unit disk beyond the chord at x.
 double segment(double x) { return x >= 1 ? 0 : std::acos(x) - x * std::sqrt(1 - x * x); }
 
@@ -165,6 +193,77 @@ TEST(Exact, wall_at_hard_radius) {
           return 1 - segment(hit.primitive == 0 ? hit.position.x : hit.position.z) / kPi;
         },
         1000);
+  }
+}
+
+TEST(Exact, a_wall_goes_on_behind_a_plate) {
+  // The plate stands farther than the radius before what it hides, so it blocks nothing.
+  const Polygon plate = parallelogram({2.3, -0.6, 2.1}, {0, 1.2, 0}, {-0.14, 0, 0.14});
+  for (const Shot& shot : {Shot::perspective({4, 0, 4}, {0.5, 0, 0.5}, 50, 240, 180),
+                           Shot::orthographic({4, 0, 4}, {0.5, 0, 0.5}, 5, 240, 180)}) {
+    const Rendering rendering = render({{kFloor, kWallX, plate}}, shot);
+    const auto truth = [&](const Hit& hit) -> std::optional<double> {
+      if (hit.primitive > 1 || std::abs(hit.position.y) > 0.8 || !shot.sees_ball(hit.position, 1)) return std::nullopt;
+      return 1 - segment(hit.primitive == 0 ? hit.position.x : hit.position.z) / kPi;
+    };
+    EstimatorSettings settings = settings_of(1);
+    const double all = mean_error(rendering, settings, truth);
+    settings.complete = Completion::none;
+    const double none = mean_error(rendering, settings, truth);
+    EXPECT_LE(all, 0.004) << none;
+    EXPECT_GE(none, 3 * all);
+  }
+}
+
+TEST(Exact, a_wall_goes_on_beyond_the_border) {
+  const Rendering rendering = render({{kFloor, kWallX}}, Shot::perspective({3, 0, 1}, {0.15, 0, 0.1}, 70, 360, 60));
+  const auto truth = [](const Hit& hit) -> std::optional<double> {
+    if (std::abs(hit.position.y) > 0.7) return std::nullopt;
+    return 1 - segment(hit.primitive == 0 ? hit.position.x : hit.position.z) / kPi;
+  };
+  EstimatorSettings settings = settings_of(1);
+  settings.complete = Completion::none;
+  const double none = mean_error(rendering, settings, truth);
+  for (const Completion complete : {Completion::border, Completion::all}) {
+    settings.complete = complete;
+    EXPECT_LE(mean_error(rendering, settings, truth), 0.25 * none) << none;
+  }
+}
+
+TEST(Exact, a_thing_alone_before_the_sky_is_not_completed) {
+  const Scene scene{
+      {Sphere{.center = {0, 0, 0}, .radius = 1}, parallelogram({1.2, -0.5, -0.5}, {0.3, 0, 0}, {0, 0, 1})}};
+  const HostFrame frame = render(scene, Shot::perspective({0.3, -6, 0.5}, {0, 0, 0}, 40, 160, 120)).frame;
+  EstimatorSettings settings = settings_of(1);
+  settings.thickness = ThicknessKind::constant;
+  settings.thickness_length = 0.2;
+  const std::vector<float> all = run(frame, settings);
+  settings.complete = Completion::none;
+  EXPECT_TRUE(same_bits(all, run(frame, settings)));
+}
+
+TEST(Exact, completed_surfaces_take_what_is_blocked_with_them_and_not_without) {
+  const HostFrame frame = furnished().frame;
+  OutputSettings output;
+  output.stats = "stats.json";
+  for (const double tolerance : {0.0, 0.001}) {
+    EstimatorSettings settings = settings_of(0.6);
+    settings.slices = 64;
+    settings.tolerance = tolerance;
+    settings.thickness = ThicknessKind::constant;
+    settings.thickness_length = 0.2;
+    const FrameOutputs outputs = run_chain(recorder(), upload(recorder(), frame), settings, output);
+    recorder().download(*outputs.completed);
+    recorder().run();
+    const auto taken = outputs.completed->as<const float>();
+    const std::vector<float> completed(taken.begin(), taken.end());
+    const auto with = outputs.ao->as<const float>();
+    const std::vector<float> all(with.begin(), with.end());
+    settings.complete = Completion::none;
+    const std::vector<float> none = run(frame, settings);
+    const Difference d = difference(completed, [&](std::size_t i) { return none[i] - all[i]; });
+    EXPECT_LE(d.rmse, tolerance > 0 ? 0.002 : 1e-3) << tolerance << ", " << place(d, frame);
+    EXPECT_GT(*std::ranges::max_element(completed), 0.05);
   }
 }
 
@@ -269,6 +368,31 @@ TEST_F(CommandLine, an_exact_search_of_a_region_is_that_part_of_the_whole) {
     EXPECT_TRUE(same_bits(read_exr_image(ao).pixels, cropped(whole.pixels, whole.data, region)))
         << testing::PrintToString(more);
   }
+}
+
+TEST_F(CommandLine, a_surface_goes_on_into_a_region_from_far_beyond_its_reach) {
+  const Window data{0, 0, 1000, 300}, region{440, 60, 30, 30};
+  // Left of a bar the wall is at 6, right of it at 5.8, and that goes on behind the bar.
+  FrameFile barred = wall_frame(data, data);
+  std::vector<float>& depth = barred.planes["ViewLayer.Depth.Z"];
+  for (std::size_t i = 0; i < depth.size(); i++) {
+    const auto x = i % std::size_t(data.width);
+    if (x >= 480) depth[i] *= float(x < 680 ? 4.8 / 6 : 5.8 / 6);
+  }
+  barred.write(frame);
+  write_bytes(camera, wall_camera(data).dump());
+  std::vector<std::string> arguments{"run",    frame,   "-o",       ao,    "--camera", camera,
+                                     "--type", "float", "--radius", "0.5", "--preset", "reference"};
+  ASSERT_EQ(run_program(arguments).code, 0);
+  const Image whole = read_exr_image(ao);
+  const std::vector<float> part = cropped(whole.pixels, whole.data, region);
+  arguments.insert(arguments.end(), {"--complete", "border"});
+  ASSERT_EQ(run_program(arguments).code, 0);
+  EXPECT_FALSE(same_bits(read_exr_image(ao).pixels, whole.pixels));
+  arguments.back() = "all";
+  arguments.insert(arguments.end(), {"--roi", "440,60,30,30"});
+  ASSERT_EQ(run_program(arguments).code, 0);
+  EXPECT_TRUE(same_bits(read_exr_image(ao).pixels, part));
 }
 
 TEST_F(CommandLine, an_exact_search_refuses_what_it_cannot_do) {

@@ -1,0 +1,250 @@
+// Completes the profiles of the lines of one direction: how far surfaces go on behind what is nearer, and beyond the
+// image's border.
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// In: the vertices of profile.comp.
+// Out: for each run's first and last vertex where the surface goes on unseen the end of the straight stroke by which it
+// does.
+//
+// - A plane is straight in 1/z along a line (orthographic: in z), so a surface goes on as a straight stroke. Its slope
+//   is the mean of two: of the line through the last vertices of the run, which follows what curves, and of the plane
+//   across the normal at its end, which holds where a run is only a few pixels wide.
+// - It goes on where the next step shows a nearer surface, as far as it stays behind what is seen. Where the next step
+//   shows sky, or something farther, the surface ends.
+// - A stroke that is as long as the sphere of the radius is wide is long enough for every receiver.
+// - The image's border hides all that is beyond it, so there a surface goes on as far as that. Where the image is a
+//   part of the frame, no result lies within the radius of a border that is not the frame's: see core/run/region.h.
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#include "complete.h"
+#include "view.glsl"
+#include "normal.glsl"
+#include "lines.glsl"
+
+layout(local_size_x = kCompleteGroup) in;
+layout(scalar, push_constant) uniform Push { CompleteParams params; };
+layout(scalar, binding = kCompleteVertex) buffer Vertex { float vertex[]; };
+layout(scalar, binding = kCompleteNormal) readonly buffer Normal { uint normal[]; };
+layout(scalar, binding = kCompleteMark) readonly buffer Mark { uint mark[]; };
+layout(scalar, binding = kCompleteGoesOn) writeonly buffer GoesOn { uint goes_on[]; };
+layout(scalar, binding = kCompleteBehind) buffer Behind { uint behind[]; };
+
+/// A surface goes on until it is so many times as deep as at its last vertex.
+const float kLeastDepths = 1.0 / 64.0;
+const float kMostDepths = 15.9;
+
+/// The normal's plane says nothing about a surface that is seen more nearly edge on than this: the dot product of the
+/// normal and the view ray, which is 1 long along the optical axis.
+const float kLeastFacingToGoOn = -0.02;
+
+/// How a surface goes on beyond the border its last 4 pixels say, and at least 3 must.
+const int kStepsAtBorder = 3;
+const int kLeastStepsAtBorder = 2;
+
+/// Longer strokes than this, in steps, are not needed for any image.
+const float kLongestStroke = 8191.0;
+
+/// Surfaces that go on at one place of a line. Of more, the first that went behind what is seen ends.
+const int kMostOpen = 6;
+
+struct Corner {
+  uint marked;
+  int at;          // the step
+  float nearness;  // what is straight along a line, larger where the surface is nearer: 1/z, orthographic -z
+};
+
+Corner corner_at(bool perspective, int index) {
+  Corner c;
+  c.marked = mark[index];
+  c.at = int(c.marked >> 16);
+  const float value = value_of(perspective, abs(vertex[index]));
+  c.nearness = perspective ? value : -value;
+  return c;
+}
+
+/// A surface that goes on behind what is seen so far.
+struct Open {
+  bool is_open;
+  int index;       // of the vertex from which it goes on
+  float from;      // the step of that
+  float nearness;  // there
+  float slope;     // of the nearness, per step of the walk
+  float farthest;  // steps that it goes on at most
+};
+
+/// The surfaces that go on at one place of a line, the latest first. Of more, the first to have gone behind what is
+/// seen ends.
+struct Opens {
+  Open a, b, c;
+};
+
+/// What a walk along the line knows of the vertices behind it.
+struct Walk {
+  int way;               // 1 or -1
+  uint begins, is_last;  // the flags of vertices, as the walk meets them
+  Corner before, prior;  // the last vertex, and the one before it
+  // the vertex of the last one's run that says with it how the surface goes on: two steps away at least, where the run
+  // is so long
+  Corner inner;
+};
+
+/// The steps after which a value that changes so much per step leaves the range of depths that pack_goes_on() holds.
+float steps_in_range(bool perspective, float value, float change) {
+  const float least = perspective ? 1.0 / kMostDepths : kLeastDepths;
+  const float most = perspective ? 1.0 / kLeastDepths : kMostDepths;
+  const float room = value * (change < 0.0 ? 1.0 - least : most - 1.0);
+  return room / max(abs(change), room / kLongestStroke);
+}
+
+/// The change of nearness per step `way` on the plane through a vertex across the normal there; `otherwise` where that
+/// is seen edge on.
+float change_on_plane(View view, Lines lines, LinePlane plane, int line, Corner end, float way, float otherwise) {
+  const bool perspective = view.orthographic == 0;
+  const ivec2 along_and_across = ivec2(end.at, line + shift_at(lines, end.at));
+  const vec3 n = unpack_normal(normal[index_at(view, lines, along_and_across.x, along_and_across.y)]);
+  const vec2 tangent = tangent_at(view, lines, along_and_across + lines.origin);
+  const float facing = (perspective ? dot(n.xy, tangent) : 0.0) - n.z;
+  const float change = way * plane.step * dot(n.xy, plane.along) * (perspective ? end.nearness : 1.0) / facing;
+  return facing < kLeastFacingToGoOn ? change : otherwise;
+}
+
+/// What goes on from the walk's last vertex, along the line through `inner` and that.
+Open from_end(View view, Lines lines, LinePlane plane, int line, Walk walk, Corner inner, int index) {
+  const bool perspective = view.orthographic == 0;
+  const Corner end = walk.before;
+  const float scale = perspective ? 1.0 / end.nearness : 1.0;
+  Open open;
+  open.is_open = true;
+  open.index = index;
+  open.from = float(end.at);
+  open.nearness = end.nearness;
+  const float by_line = (end.nearness - inner.nearness) / float(abs(end.at - inner.at));
+  const float by_plane = change_on_plane(view, lines, plane, line, end, float(walk.way), by_line);
+  open.slope = 0.5 * (by_line + by_plane);
+  const float in_range = steps_in_range(perspective, abs(end.nearness), perspective ? open.slope : -open.slope);
+  open.farthest = min(ceil(2.0 * params.radius / (scale * plane.step)), in_range);
+  return open;
+}
+
+/// Ends what goes on from a vertex so many steps from there.
+void close(inout Open open, bool perspective, int way, float steps) {
+  const float nearness = open.nearness + open.slope * steps;
+  goes_on[open.index] =
+      pack_goes_on(steps, perspective ? open.nearness / nearness : max(nearness / open.nearness, 0.0));
+  vertex[open.index] = -abs(vertex[open.index]);
+  open.is_open = false;
+}
+
+/// Goes on from the walk's last vertex to the next one, and ends what would be seen until there.
+void go_on(inout Open open, bool perspective, Walk walk, Corner next, bool begins_run) {
+  const float to_before = abs(float(walk.before.at) - open.from), to_next = abs(float(next.at) - open.from);
+  const float behind_before = walk.before.nearness - open.nearness - open.slope * to_before;
+  const float behind_next = next.nearness - open.nearness - open.slope * to_next;
+  const bool after_sky = begins_run && abs(next.at - walk.before.at) > 1;
+  const bool is_hidden = !after_sky && behind_next > 0.0;
+  const bool ends = !is_hidden || to_next >= open.farthest;
+  for (bool once = open.is_open && ends; once; once = false) {
+    float steps = begins_run ? to_before : mix(to_before, to_next, behind_before / (behind_before - behind_next));
+    if (is_hidden) steps = to_next;
+    close(open, perspective, walk.way, min(steps, open.farthest));
+  }
+}
+
+/// Ends what still goes on at the walk's end: there, or where the last surface goes on beyond the border, where it would
+/// come before that.
+void go_beyond(inout Open open, Open last, bool perspective, Walk walk, bool goes_beyond) {
+  const float steps = abs(float(walk.before.at) - open.from);
+  const float behind_last = walk.before.nearness - open.nearness - open.slope * steps;
+  const float closing = open.slope - last.slope;
+  const float further = closing > 0.0 ? behind_last / max(closing, behind_last / kLongestStroke) : kLongestStroke;
+  for (bool once = open.is_open; once; once = false)
+    close(open, perspective, walk.way, min(goes_beyond ? steps + further : steps, open.farthest));
+}
+
+/// Walks along the vertices of a line from `first` on; it has one at least.
+void complete(View view, Lines lines, LinePlane plane, int line, ivec2 steps, int row, int first, int way) {
+  const bool perspective = view.orthographic == 0;
+  Walk walk;
+  walk.way = way;
+  walk.begins = way > 0 ? kVertexBegins : kVertexEnds;
+  walk.is_last = way > 0 ? kVertexLast : kVertexFirst;
+  const uint both_ends = kVertexBegins | kVertexEnds;
+  walk.before = corner_at(perspective, first);
+  walk.prior = walk.before;
+  walk.inner = walk.before;
+  Open none;
+  none.is_open = false;
+  none.index = 0;
+  none.from = none.nearness = none.slope = none.farthest = 0.0;
+  Opens opens = Opens(none, none, none);
+  int index = first;
+  bool goes = (walk.before.marked & walk.is_last) == 0u;
+  while (goes) {
+    index += way;
+    const Corner next = corner_at(perspective, index);
+    const bool begins_run = (next.marked & walk.begins) != 0u;
+    const bool is_interrupted = params.behind != 0 && begins_run && (walk.before.marked & both_ends) != both_ends &&
+                                next.at == walk.before.at + way && next.nearness > walk.before.nearness;
+    goes = (next.marked & walk.is_last) == 0u;
+    for (bool once = is_interrupted; once; once = false) {
+      if (opens.a.is_open && opens.b.is_open) {
+        for (bool full = opens.c.is_open; full; full = false)
+          close(opens.c, perspective, way, abs(float(walk.before.at) - opens.c.from));
+        opens.c = opens.b;
+      }
+      if (opens.a.is_open) opens.b = opens.a;
+      opens.a = from_end(view, lines, plane, line, walk, walk.inner, index - way);
+    }
+    go_on(opens.a, perspective, walk, next, begins_run);
+    go_on(opens.b, perspective, walk, next, begins_run);
+    go_on(opens.c, perspective, walk, next, begins_run);
+    uint column = kNoVertex;
+    if (opens.c.is_open) column = uint(opens.c.index - row);
+    if (opens.b.is_open) column = uint(opens.b.index - row);
+    if (opens.a.is_open) column = uint(opens.a.index - row);
+    behind[index] = way > 0 ? column | kNoVertex << 16 : behind[index] & kNoVertex | column << 16;
+    const bool is_long = abs(next.at - walk.before.at) > 1;
+    const bool before_begins = (walk.before.marked & walk.begins) != 0u;
+    walk.inner = is_long || before_begins ? walk.before : walk.prior;
+    if (begins_run) walk.inner = next;
+    walk.prior = walk.before;
+    walk.before = next;
+  }
+  const bool at_border = walk.before.at + way < steps.x || walk.before.at + way >= steps.y;
+  Corner inner = walk.before;
+  int behind_end = index;
+  for (bool in_run = at_border; in_run;) {
+    in_run = abs(walk.before.at - inner.at) < kStepsAtBorder && (inner.marked & walk.begins) == 0u;
+    if (in_run) {
+      behind_end -= way;
+      inner = corner_at(perspective, behind_end);
+    }
+  }
+  const bool goes_beyond = abs(walk.before.at - inner.at) >= kLeastStepsAtBorder;
+  Open last = none;
+  for (bool once = goes_beyond; once; once = false) {
+    last = from_end(view, lines, plane, line, walk, inner, index);
+    close(last, perspective, way, last.farthest);
+  }
+  go_beyond(opens.a, last, perspective, walk, goes_beyond);
+  go_beyond(opens.b, last, perspective, walk, goes_beyond);
+  go_beyond(opens.c, last, perspective, walk, goes_beyond);
+}
+
+void main() {
+  if (gl_GlobalInvocationID.x >= params.count) return;
+  const View view = params.view;
+  const Lines lines = params.lines;
+  const ivec2 extent = extent_of(view, lines);
+  const int line = params.first + int(gl_GlobalInvocationID.x);
+  const ivec2 steps = steps_of(lines, extent, line);
+  if (steps.x >= steps.y) return;
+  const LinePlane plane = plane_of(view, lines, line);
+  const int row = row_of(lines, line, extent.y) * extent.x;
+  if (mark[row + steps.x] == 0u) return;
+  behind[row + steps.x] = kNoVertex | kNoVertex << 16;
+  complete(view, lines, plane, line, steps, row, row + steps.x, 1);
+  int last = row + steps.x;
+  while ((mark[last] & kVertexLast) == 0u) last++;
+  complete(view, lines, plane, line, steps, row, last, -1);
+}
