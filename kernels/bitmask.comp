@@ -15,7 +15,7 @@
 // - Between two samples of one surface nothing is open. A sample that is not above the tangent plane says nothing else,
 //   so it may be left out. What rises from there is treated as the receiver's own surface.
 // - A surface that something nearer interrupts goes on behind it, and one that the image's border cuts goes on beyond it
-//   (complete.glsl).
+//   (pieces.glsl).
 //
 // With occluders that are infinitely thick the result is that of horizon.comp. With `thickness` 0 a sample is as thick
 // as its surface is wide up to there.
@@ -58,7 +58,7 @@ const bool kBeyondBorder = (kComplete & kCompletesBorder) != 0u;
 const bool kBehindOthers = (kComplete & kCompletesHidden) != 0u;
 const bool kTellsCompleted = (kMode & kWithCompleted) != 0u;
 
-#include "complete.glsl"
+#include "pieces.glsl"
 
 /// What a search has found to be blocked.
 struct Found {

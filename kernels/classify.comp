@@ -15,7 +15,7 @@
 // What is farther than the radius from all receivers does not block either, where the estimator says so. The distance
 // is that of the boxes in space that hold the surfaces of both tiles.
 //
-// What is completed (complete.glsl) does not change this: behind others only what stands above the tangent plane goes on,
+// What is completed (pieces.glsl) does not change this: behind others only what stands above the tangent plane goes on,
 // and at a pixel it lies deeper than what is seen there, so that c / z is less. But it may lie nearer to the receiver:
 // where the surfaces seen in a tile are before the sphere, what they hide may be within it. Beyond the border only
 // what faces another way than the receivers can rise far enough.
@@ -183,10 +183,9 @@ void search_tile(View view, Receivers r, ivec2 other, bool is_near) {
     above = min(above, most_above(r, centre, kHalfTile, bounds[neighbor.y * count.x + neighbor.x].gradient,
                                   bounds[index].plane[k + 1]));
   }
-  const bool goes_on =
-      kCompletes && farthest <= level && is_at_border(view, other * kTile, kTile)
-          ? above > limit || may_rise_beyond(r, bounds[index].normal, bounds[index].turned)
-          : false;
+  const bool goes_on = kCompletes && farthest <= level && is_at_border(view, other * kTile, kTile)
+                           ? above > limit || may_rise_beyond(r, bounds[index].normal, bounds[index].turned)
+                           : false;
   const bool rises = kTolerates ? goes_on || above > tolerated_height(view, r, apart.x, level) : true;
   for (bool once = goes_on || above > limit; once; once = false)
     mark(view, r, other * kTile, kTile, level, farthest, is_near, rises);

@@ -18,7 +18,7 @@
 //   the user says. Nothing beyond the radius blocks. What the own surface blocks is an interval, exact; what all other
 //   runs block is counted in 24 sectors (sectors.glsl).
 // - A run that something nearer interrupts goes on behind it, as far as it would not be seen, and one that the image's
-//   border cuts goes on beyond it (complete.glsl).
+//   border cuts goes on beyond it (pieces.glsl).
 // - Falloff weighs each arc by the distance of the sample that first blocks it ("incremental arcs"), which is exact for
 //   height fields.
 // - The result is 1 - (sum of blocked arcs) / (sum of whole arcs): exactly 1 where nothing rises above the tangent
@@ -68,7 +68,7 @@ const float kGapShare = 0.5;
 /// distances are within this factor of its.
 const float kSameSurface = 1.44;
 
-#include "complete.glsl"
+#include "pieces.glsl"
 
 /// A run of samples that is not the receiver's own surface. Angles go by slope_of(); where far > near nothing of it
 /// blocks.
@@ -150,7 +150,8 @@ void add_completed(inout Found found, Side side, Reach reach, Draw draw, vec2 sl
   }
   found.blocked.sectors |= sectors;
   const vec3 arcs = blocked_arcs(side, found.blocked, draw.shift);
-  const vec3 added = falloff_weight(kFalloff, length(middle), reach.falloff_start, reach.radius) * (arcs - found.last_arcs);
+  const vec3 added =
+      falloff_weight(kFalloff, length(middle), reach.falloff_start, reach.radius) * (arcs - found.last_arcs);
   found.sum += added;
   found.completed_sum += added.x;
   found.last_arcs = arcs;

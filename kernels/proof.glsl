@@ -107,7 +107,7 @@ struct Receivers {
   vec3 normal;            // N
   // the largest difference from it, or more than kSameSlope where nothing is known of surfaces beyond the border
   float differs;
-  vec2 along;             // per pixel
+  vec2 along;  // per pixel
   // What the left side grows by as normals differ: alone, and per nearness. It is the length of the difference times
   // the farthest that anything that may block is from a receiver.
   float turned;

@@ -169,8 +169,8 @@ Side side_of(View view, Receiver r, Slice s, float sign, Reach reach) {
   side.plane_cot = -side.sin_gamma / s.cos_gamma;
   side.ahead = vec2(side.cos_gamma, -side.sin_gamma);
   side.t = sign * s.t;
-  side.reach = reach_of_side(view, r.pixel, side.direction_px, pixels, r.eye.z, sign * s.t.z, r.sin_reach,
-                             reach.radius, side.is_cut);
+  side.reach = reach_of_side(view, r.pixel, side.direction_px, pixels, r.eye.z, sign * s.t.z, r.sin_reach, reach.radius,
+                             side.is_cut);
   return side;
 }
 

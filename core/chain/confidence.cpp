@@ -37,8 +37,7 @@ gpu::Buffer& confidence(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameI
   const Denoiser denoiser = denoiser_of(bracket);
   const Bounds surfaces = bounds(gpu, gbuffer, skipping.proves, skipping.completes ? 1 : sampling.stride);
   coarsen(gpu, gbuffer, surfaces);
-  const auto visibility = [&](float thickness, Completion complete,
-                              const std::string& prefix) -> const gpu::Buffer& {
+  const auto visibility = [&](float thickness, Completion complete, const std::string& prefix) -> const gpu::Buffer& {
     Reach reach = reach_of(bracket, radius);
     reach.thickness = thickness;
     reach.complete = complete;

@@ -118,8 +118,12 @@ Sampling sampling_of(const EstimatorSettings& settings, int frame) {
 
 Skipping skipping_of(const EstimatorSettings& settings, const gpu::Buffer* changes) {
   const bool is_ranged = settings.estimator == Estimator::gtao || settings.estimator == Estimator::bitmask;
-  return {!settings.no_skip, proves(settings), is_ranged, settings.skip_tolerance,
-          settings.no_skip ? nullptr : changes, completes_anywhere(settings)};
+  return {!settings.no_skip,
+          proves(settings),
+          is_ranged,
+          settings.skip_tolerance,
+          settings.no_skip ? nullptr : changes,
+          completes_anywhere(settings)};
 }
 
 Estimate estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame,
@@ -139,8 +143,7 @@ Estimate estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs&
   if (completed && (is_exact || !skipping.changes)) gpu.clear(*completed);
 
   // What goes on beyond the border is told by the normals of all pixels there.
-  const Bounds surfaces =
-      bounds(gpu, gbuffer, skipping.proves, skipping.completes ? 1 : sampling.stride);
+  const Bounds surfaces = bounds(gpu, gbuffer, skipping.proves, skipping.completes ? 1 : sampling.stride);
   coarsen(gpu, gbuffer, surfaces);
   for (uint plane = 0; plane < radii.size(); plane++) {
     const Reach reach = reach_of(settings, radii[plane]);

@@ -115,8 +115,7 @@ Piece piece_behind(Receiver r, Side side, Reach reach, Draw draw, int count, Int
   const vec2 beside = round(side.direction_px * (is_back ? s.offset : last.offset));
   const ivec2 hit = r.pixel + ivec2(beside);
   const vec2 n = normal_in_slice(r, side, normal[hit.y * reach.width + hit.x]);
-  const Sample opposite =
-      sample_at(r, side, reach, step_offset(other, int(kSteps), count, side.reach, draw.jitter));
+  const Sample opposite = sample_at(r, side, reach, step_offset(other, int(kSteps), count, side.reach, draw.jitter));
   const bool hides_all = dot(n, opposite.place - end) > 0.0;
   vec2 until = hides_all ? opposite.place : hider;
   const int next = is_back ? other - 1 : other + 1;
@@ -154,6 +153,4 @@ vec2 slopes_beyond(Receiver r, Reach reach, Sample border, Piece piece) {
                                            : slopes;
 }
 
-vec2 middle_of(Piece piece, Sample border) {
-  return piece.exists ? 0.5 * (piece.near + piece.far) : border.place;
-}
+vec2 middle_of(Piece piece, Sample border) { return piece.exists ? 0.5 * (piece.near + piece.far) : border.place; }
