@@ -150,8 +150,8 @@ void go_on(inout Open open, bool perspective, Walk walk, Corner next, bool begin
   }
 }
 
-/// Ends what still goes on at the walk's end: there, or where the last surface goes on beyond the border, where it would
-/// come before that.
+/// Ends what still goes on at the walk's end: there, or where the last surface goes on beyond the border, where it
+/// would come before that.
 void go_beyond(inout Open open, Open last, bool perspective, Walk walk, bool goes_beyond) {
   const float steps = abs(float(walk.before.at) - open.from);
   const float behind_last = walk.before.nearness - open.nearness - open.slope * steps;
