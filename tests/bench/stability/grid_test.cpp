@@ -182,10 +182,13 @@ TEST(Grid, estimators_write_their_own_plane_and_all_of_it) {
         const Skipping skipping = skipping_of(settings, nullptr);
         const SearchDirections directions = search_directions(settings);
         if (searches_exactly(settings)) {
-          for (int direction = 0; direction < directions.count; direction++)
-            exact(gpu, gbuffer, profile(gpu, gbuffer, directions, direction), directions, reach, out, 1);
+          for (int direction = 0; direction < directions.count; direction++) {
+            Profile lines = profile(gpu, gbuffer, directions, direction, reach);
+            complete(gpu, gbuffer, lines, reach);
+            exact(gpu, gbuffer, lines, directions, reach, out, 1);
+          }
         } else {
-          const Bounds surfaces = bounds(gpu, gbuffer, skipping.proves, sampling.stride);
+          const Bounds surfaces = bounds(gpu, gbuffer, skipping.proves, skipping.completes ? 1 : sampling.stride);
           out.listed = classify(gpu, gbuffer, surfaces, skipping, reach.radius, sampling.stride, out, 1);
           switch (settings.estimator) {
             case Estimator::gtao: horizon(gpu, gbuffer, reach, sampling, out, 1); break;
