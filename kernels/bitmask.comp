@@ -14,8 +14,8 @@
 // - The back lies along the sample's own eye ray, clipped to the sphere of the radius.
 // - Between two samples of one surface nothing is open. A sample that is not above the tangent plane says nothing else,
 //   so it may be left out. What rises from there is treated as the receiver's own surface.
-// - A surface that something nearer interrupts goes on behind it, and one that the image's border cuts goes on beyond it
-//   (pieces.glsl).
+// - A surface that something nearer interrupts goes on behind it, and one that the image's border cuts goes on beyond
+//   it (pieces.glsl).
 //
 // With occluders that are infinitely thick the result is that of horizon.comp. With `thickness` 0 a sample is as thick
 // as its surface is wide up to there.
