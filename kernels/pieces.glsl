@@ -148,7 +148,7 @@ Piece piece_beyond(Receiver r, Side side, Reach reach, Sample border) {
 /// all that is behind it, since it has no known end.
 vec2 slopes_beyond(Receiver r, Reach reach, Sample border, Piece piece) {
   const vec2 slopes = slopes_of(piece);
-  const float back = slope_of(back_of(r, border.place, kNone, reach.radius));
+  const float back = slope_of(back_of(r, border.place, kCutThickness * reach.radius, reach.radius));
   return both(border.above, border.within) ? vec2(max(slopes.x, border.slope), min(slopes.y, min(border.slope, back)))
                                            : slopes;
 }

@@ -153,7 +153,7 @@ Profile profile(gpu::Recorder& gpu, const GBuffer& gbuffer, const SearchDirectio
                              kProfileTolerance,
                              is_thinner ? kCompletedDepthPerWidth : 1,
                              is_thinner ? kCompletedMorePixels : 0,
-                             reach.complete != Completion::none ? 1u : 0u};
+                             reach.complete != Completion::none ? kCutThickness * reach.radius : 0};
   gpu.dispatch("profile", params,
                {{kProfileDepth, *gbuffer.depth},
                 {kProfileVertex, *result.vertex},

@@ -266,9 +266,10 @@ TEST(Skip, a_tolerance_takes_no_more_than_it_says) {
                         Shot::perspective({0, -1.5, 2}, {0, 0, 0}, 60, 240, 200),
                         Shot::orthographic({0, -1, 4}, {0, 0, 0}, 2.6, 240, 240)};
   for (const Shot& shot : shots)
-    for (const auto& [tolerance, complete] :
-         {std::pair(1.0 / 1024, Completion::none), {1.0 / 1024, Completion::all}, {0.01, Completion::none},
-          {0.01, Completion::all}}) {
+    for (const auto& [tolerance, complete] : {std::pair(1.0 / 1024, Completion::none),
+                                              {1.0 / 1024, Completion::all},
+                                              {0.01, Completion::none},
+                                              {0.01, Completion::all}}) {
       std::uint32_t open = 0, proved = 0;
       // In the middle the edge takes depth^2.
       for (const double share : {0.05, 0.3, 1.3}) {
