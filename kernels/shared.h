@@ -58,7 +58,7 @@ ALCOVE_CONSTANT uint kGroupY = 8;
 ALCOVE_CONSTANT uint kListedRow = 0xffff;
 // What `prepare` writes for sky. Its squared distance overflows to infinity, so no radius reaches it.
 ALCOVE_CONSTANT float kSkyDepth = 1e30;
-// With surfaces that go on beyond the image's border, what it cuts is taken to be at least so thick, in radii, since its
+// Where surfaces go on beyond the image's border, what it cuts is taken to be at least so thick, in radii, since its
 // width is not known. Endless it would be as near to ray tracing in one picture, but flicker in a moving one.
 ALCOVE_CONSTANT float kCutThickness = 0.5;
 
