@@ -190,7 +190,10 @@ void block(inout Blocked blocked, Walk walk, Search search, Clipped stroke, floa
   const bool rises = both(min(stroke.near.x, stroke.far.x) > 0.0, high > search.lowest);
   const bool clear = both(rises, max(dot(stroke.near, search.normal), dot(stroke.far, search.normal)) > least);
   const float top = both(stroke.is_within, clear) ? high : -1.0;
-  const float back = back_of(stroke.far, eye_distance, walk.thickness, radius_sq);
+  float back = back_of(stroke.far, eye_distance, walk.thickness, radius_sq);
+  // A stroke that goes on towards the receiver may end at the sphere, where nothing is behind it.
+  if (kCompletes != kCompletesNothing)
+    back = min(back, back_of(stroke.near, eye_distance, walk.thickness, radius_sq));
   const float bottom = walk.is_own ? -1.0 : min(min(near_slope, far_slope), back);
   const bool onto_own = bottom <= blocked.own;
   blocked.sectors |=
