@@ -48,8 +48,8 @@ int line_reach(const EstimatorSettings& settings) {
 
 /// The width, in radii, from which a run that begins within reach of a receiver is as good as endless. It is more than
 /// the sphere's 2, since exact.comp rounds widths by up to 3 %. Where surfaces are completed, a run is half as thick as
-/// wide; that is also farther than a surface goes on towards the receiver from beyond its reach, which is 2 radii.
-double widest_run(const EstimatorSettings& settings) { return completes(settings) ? 4.2 : 2.1; }
+/// wide, and it may begin so far beyond the reach as a surface goes on, which is 3 radii in complete.comp.
+double widest_run(const EstimatorSettings& settings) { return completes(settings) ? 3 + 4.2 : 2.1; }
 
 /// How many pixels the image of a sphere reaches from the image of its centre, on one axis. Centres are no nearer than
 /// `nearest`, and no farther off axis than `tangent`.
