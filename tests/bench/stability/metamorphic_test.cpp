@@ -245,8 +245,8 @@ TEST(Metamorphic, a_larger_radius_only_darkens) {
   }
 }
 
-// Whatever the radius. Behind what is nearer only of a given thickness: where surfaces go on there, the automatic one is
-// half as thick. What is counted in sectors is rounded. The worst that was measured is 3.8e-4 of samples, from the
+// Whatever the radius. Behind what is nearer only of a given thickness: where surfaces go on there, the automatic one
+// is half as thick. What is counted in sectors is rounded. The worst that was measured is 3.8e-4 of samples, from the
 // sector that the tangent plane cuts, and 0.0070 of the exact search, which does not round what joins the receiver's
 // own surface.
 TEST(Metamorphic, completing_only_darkens) {
