@@ -14,8 +14,8 @@
 // - The back lies along the sample's own eye ray, clipped to the sphere of the radius.
 // - Between two samples of one surface nothing is open. A sample that is not above the tangent plane says nothing else,
 //   so it may be left out. What rises from there is treated as the receiver's own surface.
-// - A surface that something nearer interrupts goes on behind it, and one that the image's border cuts goes on beyond it
-//   (pieces.glsl).
+// - A surface that something nearer interrupts goes on behind it, and one that the image's border cuts goes on beyond
+//   it (pieces.glsl).
 //
 // With occluders that are infinitely thick the result is that of horizon.comp. With `thickness` 0 a sample is as thick
 // as its surface is wide up to there.
@@ -78,14 +78,19 @@ float block(inout Found found, Side side, Reach reach, float shift, uint sectors
   return float(bitCount(added)) * weight;
 }
 
-/// Blocks what a completed surface covers between two slopes, the larger one first. middle: a place on it.
-void block_completed(inout Found found, Side side, Reach reach, float shift, vec2 slopes, vec2 middle) {
+/// The sectors between two slopes, the larger one first; none if it is not.
+uint sectors_between(Side side, vec2 slopes, float shift) {
   const vec2 near = place_at(slopes.x), far = place_at(slopes.y);
   const float whole = whole_arc(side);
   const uint before = sectors_to(side, whole, near.y / max(near.x, kLeastAcross), shift);
   const uint behind = sectors_to(side, whole, far.y / max(far.x, kLeastAcross), shift);
-  const uint sectors = slopes.x >= slopes.y ? behind & ~before : 0u;
-  found.completed += block(found, side, reach, shift, sectors, length(middle));
+  return slopes.x >= slopes.y ? behind & ~before : 0u;
+}
+
+/// Blocks what a completed surface covers.
+void block_completed(inout Found found, Side side, Reach reach, float shift, Piece piece) {
+  const uint sectors = sectors_between(side, slopes_of(piece), shift);
+  found.completed += block(found, side, reach, shift, sectors, length(0.5 * (piece.near + piece.far)));
 }
 
 /// Blocks what goes on behind something nearer. behind_last: the sample after the last one.
@@ -94,16 +99,17 @@ void complete_behind(inout Found found, Receiver r, Side side, Reach reach, Draw
   for (uint left = interrupted.jumps; left != 0u; left &= left - 1u) {
     const Piece piece =
         piece_behind(r, side, reach, draw, count, interrupted, interrupted.first + findLSB(left), behind_last);
-    block_completed(found, side, reach, draw.shift, slopes_of(piece), 0.5 * (piece.near + piece.far));
+    block_completed(found, side, reach, draw.shift, piece);
   }
 }
 
-/// Blocks what goes on beyond the image's border, as far as it is seen or completed. It has no known end, so it is
-/// endless.
+/// Blocks what the image's border cuts, and what goes on of it beyond the border.
 void complete_beyond(inout Found found, Receiver r, Side side, Reach reach, Draw draw) {
   const Sample border = sample_at(r, side, reach, floor(side.reach));
   const Piece piece = piece_beyond(r, side, reach, border);
-  block_completed(found, side, reach, draw.shift, slopes_beyond(r, reach, border, piece), middle_of(piece, border));
+  block(found, side, reach, draw.shift, sectors_between(side, slopes_at_border(r, reach, border), draw.shift),
+        sqrt(border.distance_sq));
+  block_completed(found, side, reach, draw.shift, piece);
 }
 
 /// The blocked part of a side's arc integral and, with bent normals, of bent_to(); and what of the arc completed

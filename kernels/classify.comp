@@ -16,9 +16,10 @@
 // is that of the boxes in space that hold the surfaces of both tiles.
 //
 // What is completed (pieces.glsl) does not change this: behind others only what stands above the tangent plane goes on,
-// and at a pixel it lies deeper than what is seen there, so that c / z is less. But it may lie nearer to the receiver:
-// where the surfaces seen in a tile are before the sphere, what they hide may be within it. Beyond the border only
-// what faces another way than the receivers can rise far enough.
+// and at a pixel it lies deeper than what is seen there, so that c / z is less. It may lie nearer to the receiver than
+// what hides it; but its end is within kFarEnd radii, and the tile of that end is listed for the same direction. Beyond
+// the border goes on what stands above the tangent planes already, and what faces another way than the receivers, so
+// that it may rise.
 //
 // With a tolerance a tile is left out, too, where nothing within the radius rises more than an angle: what is that low
 // takes at most the squared sine of the angle from the visibility. The proof is the same with another height: |Q - P| /
@@ -129,13 +130,12 @@ bool is_settled(View view, Receivers r, ivec2 group, GroupBounds b) {
   return b.farthest > b.level ? true : above <= limit && !goes_on;
 }
 
-/// Whether a square of pixels is so far away that nothing in it blocks. What goes on behind the surfaces in it may lie
-/// deeper than them, as deep as the sphere.
+/// Whether a square of pixels is so far away that nothing in it blocks, and that nothing of it goes on as something that
+/// does.
 bool is_too_far(View view, Receivers r, ivec2 first_pixel, int side, float level, float farthest) {
   if ((kMode & kClassifyRanged) == 0u) return false;
-  const float near = depth_of(view, level), far = depth_of(view, farthest);
-  const float deepest = kCompletes ? max(far, r.box.most.z + r.reach) : far;
-  return distance_sq(r.box, box_of(view, first_pixel / kTile, side / kTile, near, deepest)) > r.reach_sq;
+  return distance_sq(r.box, box_of(view, first_pixel / kTile, side / kTile, depth_of(view, level),
+                                   depth_of(view, farthest))) > r.reach_sq;
 }
 
 /// Whether surfaces that stand nowhere above the tangent planes in a tile may rise above them beyond the border.

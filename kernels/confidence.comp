@@ -6,8 +6,8 @@
 //
 // It is the product of four factors, each 1 where nothing is unknown:
 // - The backs of what is seen are not seen, and neither is what goes on behind it or beyond the border. The truth lies
-//   between both visibilities, so the factor is 1 - their distance. Thin occluders are not completed; endless ones block
-//   all that completed surfaces could, and go on beyond the border as the settings say.
+//   between both visibilities, so the factor is 1 - their distance. Thin occluders are not completed; endless ones
+//   block all that completed surfaces could, and go on beyond the border as the settings say.
 // - No estimate of what blocks is exact: 1 - half of what endless occluders block.
 // - What is beyond the border is not seen. The factor is 1 less a fifth of the part that lies outside of the image, of
 //   the disc in which the sphere of the radius is seen, times what endless occluders block: what is there blocks where

@@ -4,7 +4,8 @@
 //
 // In: the sums of an exact search over directions in bit-reversed order, so that 2, 4, 8 ... of them are even over the
 // half turn.
-// Out: visibility, its estimated error, and the tiles where that is larger than the tolerance.
+// Out: visibility, its estimated error, and the tiles where that is larger than the tolerance. Where it is asked for,
+// the mean open direction of the others.
 //
 // What is integrated over directions is smooth but for the edges of occluders, so the error of n even directions falls
 // about as 1 / n where there is a jump, and faster without. The estimate of n / 2 directions then errs by twice as
@@ -16,8 +17,10 @@
 #include "view.glsl"
 #include "stride.glsl"
 #include "tiles.glsl"
+#include "normal.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
+layout(constant_id = kConvergeBentId) const uint kBent = 0;
 layout(scalar, push_constant) uniform Push { ConvergeParams params; };
 layout(scalar, binding = kConvergeDepth) readonly buffer Depth { float depth[]; };
 layout(scalar, binding = kConvergeBlocked) readonly buffer Blocked { float blocked[]; };
@@ -30,6 +33,8 @@ layout(scalar, binding = kConvergeCounts) readonly buffer Counts { TileCounts co
 layout(scalar, binding = kConvergeNextList) writeonly buffer NextList { ListedTile next[]; };
 layout(scalar, binding = kConvergeNextCounts) buffer NextCounts { TileCounts next_counts; };
 layout(scalar, binding = kConvergeNextLines) buffer NextLines { GroupCount next_lines; };
+layout(scalar, binding = kConvergeNormal) readonly buffer Normal { uint normal[]; };
+layout(scalar, binding = kConvergeBent) buffer Bent { float bent[]; };
 
 /// Of the difference between both estimates, the error of the better one: measured on rendered frames, 0.60 to 0.75.
 const float kErrorShare = 0.75;
@@ -43,6 +48,23 @@ void needs_more(uint place) {
   atomicMax(next_counts.groups.y, groups.y);
   atomicMax(next_counts.groups.z, 1u);
   atomicMax(next_lines.z, 1u);
+}
+
+/// Makes the mean open directions of a tile from the sums of what is blocked.
+void finish_bent(View view, ivec2 tile) {
+  const int plane = view.size.x * view.size.y;
+  for (uint k = 0u; k < uint(kTile * kTile); k++) {
+    const ivec2 pixel = pixel_of_anchored_tile(tile, k, params.origin);
+    if (!inside(view, pixel)) continue;
+    const int index = index_of(view, pixel);
+    const bool is_sky = depth[index] >= kSkyDepth;
+    const vec3 open = is_sky ? vec3(0) : open_bent(unpack_normal(normal[index]));
+    for (int c = 0; c < 3; c++) {
+      const int at = index + c * plane;
+      const float blocks = !is_sky && whole[index] > 0.0 ? bent[at] / whole[index] : 0.0;
+      bent[at] = stored_bent(vec3(open[c] - blocks)).x;
+    }
+  }
 }
 
 void main() {
@@ -81,5 +103,7 @@ void main() {
     squares[tile.y * count.x + tile.x] = vec2(sum, receivers);
   }
   if (begins && receivers == 0.0) atomicAdd(next_counts.sky, 1u);
-  if (receivers > 0.0 && (!known || rms > params.tolerance)) needs_more(place);
+  const bool goes_on = receivers > 0.0 && (!known || rms > params.tolerance);
+  if (goes_on) needs_more(place);
+  if (kBent != 0u && (!goes_on || params.ends != 0u)) finish_bent(view, tile);
 }

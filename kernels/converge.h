@@ -19,6 +19,12 @@ ALCOVE_CONSTANT uint kConvergeNextList = 8;    // out: one ListedTile per tile t
 ALCOVE_CONSTANT uint kConvergeNextCounts = 9;  // in and out: TileCounts, zeros
 // in and out: GroupCount of profile, whose z is 0; it becomes 1 where any tile needs more
 ALCOVE_CONSTANT uint kConvergeNextLines = 10;
+ALCOVE_CONSTANT uint kConvergeNormal = 11;  // in: one uint per pixel, from prepare; only with kConvergeBentId
+// in: planes x, y, z of the sums of what is blocked, from exact; out: where a tile needs no more directions, the mean
+// open direction, as exact has it. Only with kConvergeBentId.
+ALCOVE_CONSTANT uint kConvergeBent = 12;
+
+ALCOVE_CONSTANT uint kConvergeBentId = 0;  // specialization: 1: bent normals too
 
 struct ConvergeParams {
   View view;
@@ -26,6 +32,7 @@ struct ConvergeParams {
   float tolerance;  // RMS error of a tile's visibility
   uint directions;  // so far; 0: all tiles with surfaces are listed, and nothing else is read
   uint decides;     // 0: all tiles of the list stay, since there is no estimate to compare with
+  uint ends;        // 1: no tile gets more
   uint plane;       // of the visibility
 };
 ALCOVE_PARAMS(ConvergeParams)

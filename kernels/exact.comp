@@ -3,7 +3,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // In: planar depth, view normals, the profiles of the lines of one direction.
-// Out: the sums of blocked and of whole arcs; after the last direction visibility, 1 = open.
+// Out: the sums of blocked and of whole arcs; after the last direction visibility, 1 = open. The same of the mean open
+// direction (see bent.glsl), where it is asked for.
 //
 // What horizon.comp samples, this kernel searches without gaps. A receiver walks from vertex to vertex of the profile
 // of its line (profile.comp), whose strokes hold all pixels in between, until the sphere of the radius is left behind.
@@ -35,6 +36,7 @@
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 layout(constant_id = kExactListedId) const uint kListed = 0;
 layout(constant_id = kExactCompletesId) const uint kCompletes = 0;
+layout(constant_id = kExactBentId) const uint kBentId = 0;
 layout(scalar, push_constant) uniform Push { ExactParams params; };
 layout(scalar, binding = kExactDepth) readonly buffer Depth { float depth[]; };
 layout(scalar, binding = kExactNormal) readonly buffer Normal { uint normal[]; };
@@ -48,6 +50,9 @@ layout(scalar, binding = kExactCounts) readonly buffer Counts { TileCounts count
 layout(scalar, binding = kExactGoesOn) readonly buffer GoesOn { uint goes_on[]; };
 layout(scalar, binding = kExactBehind) readonly buffer Behind { uint behind[]; };
 layout(scalar, binding = kExactCompleted) buffer Completed { float completed[]; };
+layout(scalar, binding = kExactBent) buffer Bent { float bent[]; };
+
+const bool kBent = kBentId != 0u;
 
 const uint kCompletesNothing = 0;
 const uint kCompletesApart = 2;
@@ -106,10 +111,15 @@ struct Clipped {
   bool is_within;  // whether it holds anything
 };
 
+/// The unit vector in the plane of a line that is across the line, away from the eye.
+vec3 away_of(View view, LinePlane plane) {
+  return view.orthographic == 0 ? vec3(plane.foot, -1) / plane.ray_length : vec3(0, 0, -1);
+}
+
 Point point_of(View view, LinePlane plane, vec2 tangent, float z, vec3 normal) {
   const bool perspective = view.orthographic == 0;
   const vec3 along = vec3(plane.along, 0);
-  const vec3 away = perspective ? vec3(plane.foot, -1) / plane.ray_length : vec3(0, 0, -1);
+  const vec3 away = away_of(view, plane);
   const vec3 across = cross(along, away);
   const vec3 position = perspective ? z * vec3(tangent, -1) : vec3(tangent - plane.foot, -z);
   const vec2 in_plane = vec2(dot(normal, along), dot(normal, away));
@@ -177,7 +187,10 @@ void block(inout Blocked blocked, Walk walk, Search search, Clipped stroke, floa
   const bool rises = both(min(stroke.near.x, stroke.far.x) > 0.0, high > search.lowest);
   const bool clear = both(rises, max(dot(stroke.near, search.normal), dot(stroke.far, search.normal)) > least);
   const float top = both(stroke.is_within, clear) ? high : -1.0;
-  const float back = back_of(stroke.far, eye_distance, walk.thickness, radius_sq);
+  float back = back_of(stroke.far, eye_distance, walk.thickness, radius_sq);
+  // A stroke that goes on towards the receiver may end at the sphere, where nothing is behind it.
+  if (kCompletes != kCompletesNothing)
+    back = min(back, back_of(stroke.near, eye_distance, walk.thickness, radius_sq));
   const float bottom = walk.is_own ? -1.0 : min(min(near_slope, far_slope), back);
   const bool onto_own = bottom <= blocked.own;
   blocked.sectors |=
@@ -227,9 +240,26 @@ float arc_of(Side side, Search search, Blocked blocked) {
          arc_of(side, blocked.sectors & ~sectors_below(blocked.own, search.shift));
 }
 
-/// The blocked part of a side's arc integral, and how much of it only what completed surfaces block. `at` is the index
-/// of the side's first vertex, and `row` that of the line's column 0.
-vec2 blocked_arcs(View view, LinePlane plane, Point point, Side side, Search search, int row, int at) {
+/// bent_to() over what is blocked. Where the receiver's own surface blocks nothing, it adds exactly 0.
+vec2 bent_of(Side side, Search search, Blocked blocked) {
+  vec2 own = vec2(0);
+  if (blocked.own > slope_of(side.ahead)) {
+    const vec2 top = normalize(place_at(blocked.own));
+    own = bent_to(-side.sin_gamma, side.cos_gamma, side.cos_gamma, side.sin_gamma) -
+          bent_to(top.y, top.x, side.cos_gamma, side.sin_gamma);
+  }
+  return own + bent_of(side, blocked.sectors & ~sectors_below(blocked.own, search.shift));
+}
+
+/// The blocked part of a side's integrals.
+struct BlockedArcs {
+  float arc;
+  float unseen;  // of the arc: what only completed surfaces block; only where kCompletes is kCompletesApart
+  vec2 bent;     // bent_to(), across the eye's ray and towards it; only with kBent
+};
+
+/// `at` is the index of the side's first vertex, and `row` that of the line's column 0.
+BlockedArcs blocked_arcs(View view, LinePlane plane, Point point, Side side, Search search, int row, int at) {
   const float radius = params.radius;
   const float radius_sq = radius * radius;
   const float thickness = params.thickness;
@@ -274,7 +304,19 @@ vec2 blocked_arcs(View view, LinePlane plane, Point point, Side side, Search sea
     block(all, walk, search, clip_to_sphere(stroke, radius_sq, search.unit), point.eye_distance, least, radius_sq);
   }
   const float arc = arc_of(side, search, all);
-  return vec2(arc, kCompletes == kCompletesApart ? arc - arc_of(side, search, seen) : 0.0);
+  return BlockedArcs(arc, kCompletes == kCompletesApart ? arc - arc_of(side, search, seen) : 0.0,
+                     kBent ? bent_of(side, search, all) : vec2(0));
+}
+
+/// Adds what a direction blocks to the sum of the pixel's bent_to(), of which the last one makes the mean open
+/// direction.
+void add_bent(int index, int plane, vec3 n, vec3 blocked, float whole) {
+  for (int c = 0; c < 3; c++) {
+    const int at = index + c * plane;
+    const float sum = params.is_first == 0 ? bent[at] + blocked[c] : blocked[c];
+    const float mean = open_bent(n)[c] - (whole > 0.0 ? sum / whole : 0.0);
+    bent[at] = params.is_last != 0 ? stored_bent(vec3(mean)).x : sum;
+  }
 }
 
 void main() {
@@ -293,10 +335,12 @@ void main() {
   if (at.x >= extent.x || at.y >= extent.y) return;
   const ivec2 pixel = lines.steep != 0 ? at.yx : at;
   const int index = index_of(view, pixel);
-  const int ao_index = index + int(params.plane) * view.size.x * view.size.y;
+  const int pixels = view.size.x * view.size.y;
+  const int ao_index = index + int(params.plane) * pixels;
   const float z = depth[index];
   if (z >= kSkyDepth) {
     ao[ao_index] = 1.0;
+    for (int c = 0; kBent && c < 3; c++) bent[index + c * pixels] = stored_bent(vec3(0)).x;
     return;
   }
   const int line = at.y - shift_at(lines, at.x), row = row_of(lines, line, extent.y) * extent.x;
@@ -311,6 +355,7 @@ void main() {
   const float facing = max(dot(point.normal, point.eye), kLeastWeight);
   const uint neighbors = neighbor[row + at.x];
   float blocked = 0.0, whole = 0.0, unseen = 0.0;
+  vec2 bent_blocked = vec2(0);  // along the line, and away from the eye
   if (weight >= kLeastWeight) {
     const vec2 across_eye = vec2(-point.eye.y, point.eye.x);
     const float sine = radius / point.eye_distance, cosine = sqrt(max(0.0, 1.0 - sine * sine));
@@ -339,9 +384,10 @@ void main() {
       const uint column = sign > 0 ? neighbors >> 16 : neighbors & kNoVertex;
       if (column == kNoVertex) continue;
       search.shift = fract(0.5 + kGolden * float(2u * params.direction + uint(sign > 0)));
-      const vec2 arcs = share * weight * blocked_arcs(view, plane, point, side, search, row, row + int(column));
-      blocked += arcs.x;
-      unseen += arcs.y;
+      const BlockedArcs arcs = blocked_arcs(view, plane, point, side, search, row, row + int(column));
+      blocked += share * weight * arcs.arc;
+      unseen += share * weight * arcs.unseen;
+      bent_blocked += share * weight * (arcs.bent.x * search.across + arcs.bent.y * point.eye);
     }
   }
   const float last_whole = params.is_first == 0 ? whole_arcs[index] : 0.0;
@@ -353,6 +399,8 @@ void main() {
   if (kCompletes == kCompletesApart && whole > 0.0)
     completed[index] =
         clamp((last_whole > 0.0 ? completed[index] * last_whole : 0.0) + unseen, 0.0, max(blocked, 0.0)) / whole;
+  if (kBent)
+    add_bent(index, pixels, n, bent_blocked.x * vec3(plane.along, 0) + bent_blocked.y * away_of(view, plane), whole);
   if (params.is_last != 0) blocked = whole > 0.0 ? clamp(1.0 - blocked / whole, 0.0, 1.0) : 1.0;
   ao[ao_index] = blocked;
 }

@@ -19,12 +19,16 @@ ALCOVE_CONSTANT uint kExactGoesOn = 9;   // in: from complete; only with kExactC
 ALCOVE_CONSTANT uint kExactBehind = 10;  // the same
 // in and out: one float per pixel, visibility that completed surfaces took; only where kExactCompletesId is 2
 ALCOVE_CONSTANT uint kExactCompleted = 11;
+// in and out: planes x, y, z of the sum of the bent_to() of what is blocked, in view space; after the last slice the
+// mean open direction b as 0.5 + 0.5 b. Only with kExactBentId.
+ALCOVE_CONSTANT uint kExactBent = 12;
 
 // specialization: 1: the pixels of listed tiles take the slice, and no sum is ever completed; see stride, first,
 // is_last
 ALCOVE_CONSTANT uint kExactListedId = 0;
 // specialization: 1: surfaces go on as complete has found; 2: and what they block is told apart
 ALCOVE_CONSTANT uint kExactCompletesId = 1;
+ALCOVE_CONSTANT uint kExactBentId = 2;  // specialization: 1: bent normals too
 
 struct ExactParams {
   View view;

@@ -124,37 +124,40 @@ const bool kHard = kFalloff == kFalloffNone;
 /// What a search has found to be blocked.
 struct Found {
   Blocked blocked;
-  uint completed;       // sectors that completed surfaces block
+  Blocked completed;    // without falloff: by completed surfaces
   vec3 sum, last_arcs;  // with falloff: the weighed integrals, and those of all that is blocked so far
   float completed_sum;  // with falloff: what completed surfaces added to the sum
 };
 
-/// What falloff makes of the arcs that are blocked up to a sample: those that are new at it weigh as its distance says.
-void add_faded(inout Found found, Side side, Reach reach, Draw draw, Sample s) {
-  const vec3 arcs = blocked_arcs(side, found.blocked, draw.shift);
-  const float weight = falloff_weight(kFalloff, sqrt(s.distance_sq), reach.falloff_start, reach.radius);
-  found.sum += weight * (arcs - found.last_arcs);
-  found.last_arcs = arcs;
+/// Adds what lies between two slopes, the larger one first, to what is blocked.
+void block(inout Blocked blocked, vec2 slopes, float shift) {
+  const bool exists = slopes.x >= slopes.y;
+  if (kThickness == kThicknessEndless) {
+    blocked.near = exists ? max(blocked.near, slopes.x) : blocked.near;
+    blocked.far = exists ? min(blocked.far, slopes.y) : blocked.far;
+  } else {
+    blocked.sectors |= sectors_between(slopes, shift);
+  }
 }
 
-/// Adds what a completed surface blocks between two slopes, the larger one first. middle: a place on it.
-void add_completed(inout Found found, Side side, Reach reach, Draw draw, vec2 slopes, vec2 middle) {
-  if (kThickness == kThicknessEndless && slopes.x >= slopes.y) {
-    found.blocked.near = max(found.blocked.near, slopes.x);
-    found.blocked.far = min(found.blocked.far, slopes.y);
-  }
-  const uint sectors = sectors_between(slopes, draw.shift);
+/// With falloff: adds what is new of what is blocked, by the distance of a place, and returns that part of the arc.
+float add_faded(inout Found found, Side side, Reach reach, Draw draw, vec2 place) {
+  const vec3 arcs = blocked_arcs(side, found.blocked, draw.shift);
+  const float weight = falloff_weight(kFalloff, length(place), reach.falloff_start, reach.radius);
+  const vec3 added = weight * (arcs - found.last_arcs);
+  found.sum += added;
+  found.last_arcs = arcs;
+  return added.x;
+}
+
+/// Adds what a completed surface blocks.
+void add_completed(inout Found found, Side side, Reach reach, Draw draw, Piece piece) {
   if (kHard) {
-    found.completed |= sectors;
+    block(found.completed, slopes_of(piece), draw.shift);
     return;
   }
-  found.blocked.sectors |= sectors;
-  const vec3 arcs = blocked_arcs(side, found.blocked, draw.shift);
-  const vec3 added =
-      falloff_weight(kFalloff, length(middle), reach.falloff_start, reach.radius) * (arcs - found.last_arcs);
-  found.sum += added;
-  found.completed_sum += added.x;
-  found.last_arcs = arcs;
+  block(found.blocked, slopes_of(piece), draw.shift);
+  found.completed_sum += add_faded(found, side, reach, draw, 0.5 * (piece.near + piece.far));
 }
 
 /// Adds what goes on behind something nearer. behind_last: the sample after the last one.
@@ -163,22 +166,23 @@ void complete_behind(inout Found found, Receiver r, Side side, Reach reach, Draw
   for (uint left = interrupted.jumps; left != 0u; left &= left - 1u) {
     const Piece piece =
         piece_behind(r, side, reach, draw, count, interrupted, interrupted.first + findLSB(left), behind_last);
-    add_completed(found, side, reach, draw, slopes_of(piece), 0.5 * (piece.near + piece.far));
+    add_completed(found, side, reach, draw, piece);
   }
 }
 
-/// Adds what goes on beyond the image's border.
+/// Adds what the image's border cuts, and what goes on of it beyond the border.
 void complete_beyond(inout Found found, Receiver r, Side side, Reach reach, Draw draw) {
   const Sample border = sample_at(r, side, reach, floor(side.reach));
   const Piece piece = piece_beyond(r, side, reach, border);
-  add_completed(found, side, reach, draw, slopes_beyond(r, reach, border, piece), middle_of(piece, border));
+  block(found.blocked, slopes_at_border(r, reach, border), draw.shift);
+  if (!kHard) add_faded(found, side, reach, draw, border.place);
+  add_completed(found, side, reach, draw, piece);
 }
 
 /// Searches a side where occluders are solid as far as the sphere of the radius: they block one interval.
 void search_endless(inout Found found, Receiver r, Side side, Reach reach, Draw draw, uint range, int count) {
   const float last_step = float(last_of_range(range)) + 0.5;
   Sample last = receiver_sample(r);
-  found.blocked.far = 1.0;
   for (int k = first_sample(range, int(kSteps), count, side.reach, draw.jitter, step_exponent(int(kSteps), side.reach));
        k < count && last.offset <= last_step; k++) {
     const Sample s = sample_at(r, side, reach, step_offset(k, int(kSteps), count, side.reach, draw.jitter));
@@ -190,7 +194,7 @@ void search_endless(inout Found found, Receiver r, Side side, Reach reach, Draw 
     const float back = slope_of(back_of(r, s.place, reach.thickness, reach.radius));
     found.blocked.near = max(found.blocked.near, slopes.x);
     found.blocked.far = min(found.blocked.far, both(s.above, s.within) ? min(slopes.y, back) : slopes.y);
-    if (!kHard) add_faded(found, side, reach, draw, s);
+    if (!kHard) add_faded(found, side, reach, draw, s.place);
     last = s;
     last.distance_sq = s.above ? s.distance_sq : kNone;
   }
@@ -226,7 +230,7 @@ void search_runs(inout Found found, Receiver r, Side side, Reach reach, Draw dra
     }
     if (!kHard) {
       found.blocked.sectors |= sectors_of(r, reach, run, s.z, 1.0, draw.shift);
-      add_faded(found, side, reach, draw, s);
+      add_faded(found, side, reach, draw, s.place);
     }
     last = s;
     for (bool once = kBehindOthers && int(kSteps) > kWordBits && (k + 1 & kWordBits - 1) == 0; once; once = false) {
@@ -242,18 +246,20 @@ void search_runs(inout Found found, Receiver r, Side side, Reach reach, Draw dra
 /// something may stand above the tangent plane.
 vec4 search(Receiver r, Side side, Reach reach, Draw draw, uint range) {
   const int count = range != 0u ? min(int(kSteps), int(side.reach)) : 0;
-  Found found = Found(Blocked(-1.0, -1.0, 0u), 0u, vec3(0), vec3(0), 0.0);
+  const Blocked nothing = Blocked(-1.0, kThickness == kThicknessEndless ? 1.0 : -1.0, 0u);
+  Found found = Found(nothing, nothing, vec3(0), vec3(0), 0.0);
   if (kThickness == kThicknessEndless)
     search_endless(found, r, side, reach, draw, range, count);
   else
     search_runs(found, r, side, reach, draw, range, count);
-  const Blocked seen = found.blocked;
   for (bool once = kBeyondBorder && side.is_cut && range != 0u && side.reach >= 1.0; once; once = false)
     complete_beyond(found, r, side, reach, draw);
   if (!kHard) return vec4(found.sum, found.completed_sum);
-  found.blocked.sectors |= found.completed;
-  const vec3 arcs = blocked_arcs(side, found.blocked, draw.shift);
-  return vec4(arcs, kTellsCompleted ? arcs.x - blocked_arcs(side, seen, draw.shift).x : 0.0);
+  const Blocked all =
+      Blocked(max(found.blocked.near, found.completed.near), min(found.blocked.far, found.completed.far),
+              found.blocked.sectors | found.completed.sectors);
+  const vec3 arcs = blocked_arcs(side, all, draw.shift);
+  return vec4(arcs, kTellsCompleted ? arcs.x - blocked_arcs(side, found.blocked, draw.shift).x : 0.0);
 }
 
 /// Random numbers of a side, from those of its pixel. The boundaries of the sectors move by the fraction of a multiple

@@ -154,13 +154,10 @@ Piece piece_beyond(Receiver r, Side side, Reach reach, Sample border) {
   return piece;
 }
 
-/// What the surface at the border blocks, from the largest to the smallest slope_of(): itself, what goes on of it, and
-/// all that is behind it, since it has no known end.
-vec2 slopes_beyond(Receiver r, Reach reach, Sample border, Piece piece) {
-  const vec2 slopes = slopes_of(piece);
-  const float back = slope_of(back_of(r, border.place, kNone, reach.radius));
-  return both(border.above, border.within) ? vec2(max(slopes.x, border.slope), min(slopes.y, min(border.slope, back)))
-                                           : slopes;
+/// What a sample at the border blocks from its front to its back, from the largest slope_of() to the smallest. As its
+/// width is not known, it is kCutThickness radii thick, or as the user says.
+vec2 slopes_at_border(Receiver r, Reach reach, Sample border) {
+  const float thickness = reach.thickness > 0.0 ? reach.thickness : kCutThickness * reach.radius;
+  const float back = slope_of(back_of(r, border.place, thickness, reach.radius));
+  return both(border.above, border.within) ? vec2(border.slope, min(border.slope, back)) : vec2(-1, 1);
 }
-
-vec2 middle_of(Piece piece, Sample border) { return piece.exists ? 0.5 * (piece.near + piece.far) : border.place; }

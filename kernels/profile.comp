@@ -41,8 +41,6 @@ const float kLeastNearness = 0.02;
 
 const float kFar = 1e30;
 
-const uint kEndlessBits = 0x7f800000u;  // of the float infinity
-
 /// What is seen at one step of a line.
 struct Step {
   int at;  // the step
@@ -146,14 +144,14 @@ void close_run(inout Run run, Step last, float thickness) {
   run.is_open = false;
 }
 
-/// How thick a run is, in scene units. One that the image's border cuts has no known end.
+/// How thick a run is, in scene units. The width of one that the image's border cuts is not known.
 float thickness_of(View view, LinePlane plane, ivec2 steps, Step first, Step last) {
   const float nearer = view.orthographic == 0 ? min(last.z, first.place.y / plane.ray_length) : 1.0;
   const float pixel = view.tangent_per_pixel.x * nearer;
   const float width = length(last.place - first.place) + pixel;
   const bool is_cut = first.at == steps.x || last.at == steps.y - 1;
-  return params.is_endless_at_border != 0 && is_cut ? uintBitsToFloat(kEndlessBits)
-                                                    : params.depth_per_width * width + params.more_pixels * pixel;
+  const float thickness = params.depth_per_width * width + params.more_pixels * pixel;
+  return is_cut ? max(thickness, params.least_at_border) : thickness;
 }
 
 void begin_run(inout Run run, Step start) {

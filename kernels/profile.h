@@ -45,7 +45,7 @@ struct ProfileParams {
   float tolerance;  // px: how far in depth a pixel may be from the profile, in its own widths
   // A run's thickness is its width times the first and so many widths of its pixels.
   float depth_per_width, more_pixels;
-  uint is_endless_at_border;  // 0 or 1: a run that the image's border cuts has no end
+  float least_at_border;  // scene units: a run that the image's border cuts is taken to be at least so thick
 };
 ALCOVE_PARAMS(ProfileParams)
 

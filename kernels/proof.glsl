@@ -36,9 +36,9 @@ struct Box {
   vec3 least, most;  // tangents times depth, and depth
 };
 
-/// At the image's border a tile's surface does not rise to kLeastRisen beyond it if its normals differ from a receiver's
-/// by no more than this: it rises by at most so much of the way that it goes, which is at most 1 + kFarEnd radii, and
-/// stands no higher where it begins than what is harmless, kLeastRise radii, and kFeignedHeight.
+/// At the image's border a tile's surface does not rise to kLeastRisen beyond it if its normals differ from a
+/// receiver's by no more than this: it rises by at most so much of the way that it goes, which is at most 1 + kFarEnd
+/// radii, and stands no higher where it begins than what is harmless, kLeastRise radii, and kFeignedHeight.
 const float kSameSlope = 0.03;
 
 /// The part of the radius that errors of depth may feign of a height where that is used.

@@ -58,6 +58,9 @@ ALCOVE_CONSTANT uint kGroupY = 8;
 ALCOVE_CONSTANT uint kListedRow = 0xffff;
 // What `prepare` writes for sky. Its squared distance overflows to infinity, so no radius reaches it.
 ALCOVE_CONSTANT float kSkyDepth = 1e30;
+// Where surfaces go on beyond the image's border, what it cuts is taken to be at least so thick, in radii, since its
+// width is not known. Endless it would be as near to ray tracing in one picture, but flicker in a moving one.
+ALCOVE_CONSTANT float kCutThickness = 0.5;
 
 // The R2 sequence (M. Roberts, "The Unreasonable Effectiveness of Quasirandom Sequences", 2018) goes on by 1/g and
 // 1/g^2, where g^3 = g + 1.

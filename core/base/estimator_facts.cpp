@@ -37,8 +37,7 @@ bool searches_exactly(const EstimatorSettings& settings) {
 }
 
 bool has_bent_normals(const EstimatorSettings& settings) {
-  return settings.estimator == Estimator::bitmask ||
-         (settings.estimator == Estimator::gtao && !searches_exactly(settings));
+  return settings.estimator == Estimator::gtao || settings.estimator == Estimator::bitmask;
 }
 
 bool completes(const EstimatorSettings& settings) {

@@ -48,7 +48,7 @@ gpu::Buffer& confidence(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameI
   };
   const gpu::Buffer& thin = visibility(float(kThin * radius), Completion::none, "thin ");
   // Endless occluders block all that anything behind them does, but nothing beyond the border.
-  const Completion beyond = bracket.complete == Completion::none ? Completion::none : Completion::border;
+  const Completion beyond = completes_anywhere(settings) ? Completion::border : Completion::none;
   const gpu::Buffer& solid = visibility(std::numeric_limits<float>::infinity(), beyond, "solid ");
   gpu::Buffer& result = gpu.buffer("confidence", plane_bytes(gbuffer.view), gpu::Use::device);
   gpu.dispatch("confidence", ConfidenceParams{gbuffer.view, float(radius), gbuffer.depth_precision},

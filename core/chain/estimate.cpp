@@ -136,7 +136,7 @@ Estimate estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs&
   const bool is_exact = searches_exactly(settings);
   Estimate result;
   result.ao = &gpu.buffer("ao", radii.size() * plane_bytes(gbuffer.view), gpu::Use::device);
-  if (with_bent) result.bent = &gpu.buffer("bent", 3 * plane_bytes(gbuffer.view), gpu::Use::device);
+  gpu::Buffer* bent = with_bent ? &gpu.buffer("bent", 3 * plane_bytes(gbuffer.view), gpu::Use::device) : nullptr;
   gpu::Buffer* completed =
       with_completed ? &gpu.buffer("completed", plane_bytes(gbuffer.view), gpu::Use::device) : nullptr;
   // Tiles that are as in the frame before keep what it found in them.
@@ -148,8 +148,9 @@ Estimate estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs&
   for (uint plane = 0; plane < radii.size(); plane++) {
     const Reach reach = reach_of(settings, radii[plane]);
     const bool is_largest = plane + 1 == radii.size();
-    Estimate out{result.ao, is_largest ? result.bent : nullptr};
+    Estimate out{result.ao, is_largest ? bent : nullptr};
     out.completed = is_largest ? completed : nullptr;
+    result.bent = out.bent;
     result.completed = out.completed;
     if (!is_exact) out.listed = classify(gpu, gbuffer, surfaces, skipping, reach.radius, sampling.stride, out, plane);
     result.listed = out.listed;

@@ -83,8 +83,13 @@ void compare_directions(gpu::Recorder& gpu, const GBuffer& gbuffer, double toler
   gpu.write(*next.lines, GroupCount{groups_of(2 * (size.x + size.y), kProfileGroup), 1, 0});
   result.error = &gpu.buffer("error", plane_bytes(gbuffer.view), gpu::Use::device);
   result.squares = &gpu.buffer("error squares", sizeof(vec2) * tiles, gpu::Use::device);
-  const ConvergeParams params{
-      gbuffer.view, origin, float(tolerance), uint(directions), directions > kLeastDirections ? 1u : 0u, plane};
+  const ConvergeParams params{gbuffer.view,
+                              origin,
+                              float(tolerance),
+                              uint(directions),
+                              directions > kLeastDirections ? 1u : 0u,
+                              directions == kMostDirections ? 1u : 0u,
+                              plane};
   const bool begins = directions == 0;
   gpu.dispatch("converge", params,
                {{kConvergeDepth, *gbuffer.depth},
@@ -97,8 +102,10 @@ void compare_directions(gpu::Recorder& gpu, const GBuffer& gbuffer, double toler
                 {kConvergeCounts, begins ? *next.counts : *sums.listed.counts},
                 {kConvergeNextList, *next.tiles},
                 {kConvergeNextCounts, *next.counts},
-                {kConvergeNextLines, *next.lines}},
-               {columns, tiles / columns});
+                {kConvergeNextLines, *next.lines},
+                {kConvergeNormal, *gbuffer.normal},
+                {kConvergeBent, sums.bent ? *sums.bent : *result.ao}},
+               {columns, tiles / columns}, {sums.bent ? 1u : 0u});
   sums.listed = next;
 }
 
@@ -113,6 +120,7 @@ TileList converge(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach
                   Estimate& result, uint plane) {
   const SearchDirections directions{kMostDirections, 1, every_pixel};
   Estimate sums;
+  sums.bent = result.bent;
   sums.completed = result.completed;
   sums.ao = &gpu.buffer("blocked arcs", plane_bytes(gbuffer.view), gpu::Use::device);
   compare_directions(gpu, gbuffer, tolerance, sums, result, plane, 0);
@@ -153,7 +161,7 @@ Profile profile(gpu::Recorder& gpu, const GBuffer& gbuffer, const SearchDirectio
                              kProfileTolerance,
                              is_thinner ? kCompletedDepthPerWidth : 1,
                              is_thinner ? kCompletedMorePixels : 0,
-                             reach.complete != Completion::none ? 1u : 0u};
+                             reach.complete != Completion::none ? kCutThickness * reach.radius : 0};
   gpu.dispatch("profile", params,
                {{kProfileDepth, *gbuffer.depth},
                 {kProfileVertex, *result.vertex},
@@ -219,8 +227,9 @@ void exact(gpu::Recorder& gpu, const GBuffer& gbuffer, const Profile& profile, c
                 {kExactCounts, is_listed ? *out.listed.counts : *out.ao},
                 {kExactGoesOn, profile.goes_on ? *profile.goes_on : *profile.vertex},
                 {kExactBehind, profile.behind ? *profile.behind : *profile.mark},
-                {kExactCompleted, out.completed ? *out.completed : *out.ao}},
-               is_listed ? list_extent(out.listed) : pixels, {is_listed ? 1u : 0u, completing});
+                {kExactCompleted, out.completed ? *out.completed : *out.ao},
+                {kExactBent, out.bent ? *out.bent : *out.ao}},
+               is_listed ? list_extent(out.listed) : pixels, {is_listed ? 1u : 0u, completing, out.bent ? 1u : 0u});
 }
 
 }  // namespace alcove

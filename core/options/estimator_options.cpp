@@ -106,9 +106,8 @@ void add_search_rows(std::vector<OptionRow>& rows, EstimatorSettings& s) {
                 "smoothstep(0, 1, radius / dz); smoothstep: 1 - smoothstep(0, radius, dz)");
   pixels.own(
       {"--thickness", "auto|infinite|NUMBER", "scene units", "",
-       "how far an occluder goes on behind what is seen of it; auto: as deep as it is wide, with --complete all half "
-       "as "
-       "deep, since less is left for thickness to stand for"},
+       "how far an occluder goes on behind what is seen of it; auto: as deep as it is wide; in an exact search with "
+       "--complete all half as deep, since less is left for thickness to stand for"},
       [&s] { return text_of_thickness(s); }, [&s](const std::string& text) { return read_thickness(text, s); },
       "is neither auto nor infinite nor a length above 0");
   pixels.choice(

@@ -10,6 +10,8 @@ namespace {
 
 /// Neighbours on a slice whose depth differs by less than this many pixels' worth of slope are one surface.
 constexpr double kRunSlope = 8;
+/// What the picture's border cuts is taken to be at least so thick, in radii: its width is not known.
+constexpr double kCutThickness = 0.5;
 
 /// With Completion::all, a surface that begins so many times the reach away may go on towards the receiver into the
 /// sphere. The seven rendered scenes came ever nearer to ray tracing up to 3.
@@ -56,12 +58,14 @@ ReferenceLine samples_of(const ReferenceScene& scene, const ReferenceReceiver& r
 double thickness_of_run(const ReferenceScene& scene, const ReferenceLine& line, std::size_t first, std::size_t last,
                         const ReferenceSettings& settings) {
   const bool cut = line.at_border && last + 1 == line.samples.size();
-  if (first == 0 || (cut && settings.complete != Completion::none)) return INFINITY;
+  if (first == 0) return INFINITY;
   // From outer edge to outer edge: n pixels are n wide, and their centres n - 1 apart. Without it single blades of
   // grass vanish.
   const double pixel = size_of_pixel(scene, line.samples[first].depth);
   const double chord = length(line.samples[last].position - line.samples[first].position) + pixel;
-  return settings.width_share * chord + settings.width_pixels * pixel;
+  const double thickness = settings.width_share * chord + settings.width_pixels * pixel;
+  return cut && settings.complete != Completion::none ? std::max(thickness, kCutThickness * settings.radius)
+                                                      : thickness;
 }
 
 void set_thickness(const ReferenceScene& scene, ReferenceLine& line, const ReferenceSettings& settings) {

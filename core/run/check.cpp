@@ -40,12 +40,10 @@ void check_skipping(const Settings& settings) {
   if (e.no_skip) fail(ErrorKind::usage, "--skip-tolerance and --no-skip: give only one of them");
 }
 
-/// An exact search has no samples: it knows no open directions, no fading hits and no pixels left out.
+/// An exact search has no samples: it knows no fading hits and no pixels left out.
 void check_search(const Settings& settings) {
   const auto& e = settings.estimator;
   if (!searches_exactly(e)) return;
-  if (wants(settings.output, &FrameOutputs::bent_normal))
-    fail(ErrorKind::usage, "--aov bent-normal: an exact search finds no open directions; --search steps does");
   for (const auto* view : debug_views_of(settings.output))
     if (view->source == DebugSource::tiles)
       fail(ErrorKind::usage, "--debug tiles: an exact search leaves out none; --search steps does");

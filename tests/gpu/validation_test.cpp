@@ -70,10 +70,12 @@ std::set<std::string> kernels_of_all_settings(gpu::Recorder& gpu) {
   settings.estimator = Estimator::gtao;
   settings.search = SliceSearch::exact;
   settings.slices = 2;
-  add({});
+  OutputSettings bent;
+  bent.aovs = "ao,bent-normal";
+  add(bent);
   settings.tolerance = 0.05;
   OutputSettings error;
-  error.aovs = "ao,error";
+  error.aovs = "ao,error,bent-normal";
   add(error);
   return names;
 }

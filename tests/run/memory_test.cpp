@@ -74,7 +74,7 @@ TEST_F(Memory, is_expected_of_exact_searches) {
   for (const SliceSearch search : {SliceSearch::steps, SliceSearch::exact, SliceSearch::every_pixel})
     for (const double tolerance : {0.0, 0.03})
       for (const Denoise denoise : {Denoise::none, Denoise::bilateral})
-        for (const char* aovs : {"ao", "ao,error", "ao,ao-scales"}) {
+        for (const char* aovs : {"ao", "ao,error", "ao,ao-scales", "ao,bent-normal"}) {
           if (tolerance == 0 && std::string(aovs) == "ao,error") continue;
           Settings settings = all;
           settings.estimator.search = search;
