@@ -90,7 +90,7 @@ struct Walk {
   Corner inner;
 };
 
-/// The steps after which a value that changes so much per step leaves the range of depths that pack_goes_on() holds.
+/// The steps after which a value that changes so much per step leaves the range of depths in which surfaces go on.
 float steps_in_range(bool perspective, float value, float change) {
   const float least = perspective ? 1.0 / kMostDepths : kLeastDepths;
   const float most = perspective ? 1.0 / kLeastDepths : kMostDepths;

@@ -83,6 +83,7 @@ struct Search {
   int step;                        // of columns, to that side
   uint begins, last;               // the flags of vertices to that side
   float shift;                     // of the sectors' boundaries, in [0, 1): see sectors.glsl
+  float unit;                      // scene units: a power of two near the receiver's depth
 };
 
 /// A walk from vertex to vertex of one side.
@@ -155,20 +156,13 @@ Stroke stroke_to(vec2 place, Walk walk, bool begins, int steps) {
 /// A stroke goes on to the receiver's own ray at most: to this part of its distance across the ray.
 const float kBesideReceiver = 1e-3;
 
-/// The stroke with what its surface goes on behind others: towards the receiver from the first vertex of a run, else
-/// away from it.
-Stroke with_unseen(Stroke stroke, bool begins, vec2 unseen) {
-  const float across = stroke.to.x;
-  const float least = kBesideReceiver * across;
-  const float part = unseen.x < least ? (across - least) / (across - unseen.x) : 1.0;
-  const vec2 toward = stroke.to + part * (unseen - stroke.to);
-  return begins ? Stroke(toward, stroke.to) : Stroke(stroke.from, unseen);
-}
-
 /// The part of a stroke within the sphere of the radius about the receiver: with from + t (to - from), the t between
-/// the roots of |from + t (to - from)|^2 = radius^2.
-Clipped clip_to_sphere(Stroke stroke, float radius_sq) {
-  const vec2 from = stroke.from, along = stroke.to - stroke.from;
+/// the roots of |from + t (to - from)|^2 = radius^2. They hold products of four lengths, which overflow where the
+/// scene's numbers are large. So `along` is divided by a power of two near the receiver's depth, and t is multiplied by
+/// it, which changes no bit.
+Clipped clip_to_sphere(Stroke stroke, float radius_sq, float unit) {
+  const float per_unit = 1.0 / unit;
+  const vec2 from = stroke.from, along = per_unit * (stroke.to - stroke.from);
   const float a = dot(along, along);
   const float middle = dot(from, along);
   const float beside = from.x * along.y - from.y * along.x;
@@ -176,9 +170,12 @@ Clipped clip_to_sphere(Stroke stroke, float radius_sq) {
   const float inside = sqrt(max(inside_sq, 0.0));
   const float scale = 1.0 / a;
   const float enters = max(0.0, (-middle - inside) * scale);
-  const float leaves = min(1.0, (inside - middle) * scale);
+  const float leaves = min(unit, (inside - middle) * scale);
   return Clipped(from + enters * along, from + leaves * along, both(inside_sq > 0.0, enters <= leaves));
 }
+
+/// The largest power of two that is not above a depth.
+float power_of_two(float z) { return uintBitsToFloat(floatBitsToUint(clamp(z, 1e-30, 1e30)) & 0x7f800000u); }
 
 /// Adds what a stroke blocks from its front to its back: more of what the receiver's own surface does, or a set apart.
 /// least: the height above the tangent plane that it must have somewhere.
@@ -218,6 +215,16 @@ Corner corner_at(View view, LinePlane plane, Point point, Search search, int at,
     corner.unseen = vec2(dot(to_unseen, search.across), dot(to_unseen, point.eye));
   }
   return corner;
+}
+
+/// What of a vertex' surface goes on behind others: towards the receiver from the first vertex of a run, else away from
+/// it.
+Stroke unseen_stroke(Corner corner, bool begins) {
+  const float across = corner.place.x;
+  const float least = kBesideReceiver * across;
+  const float part = corner.unseen.x < least ? (across - least) / (across - corner.unseen.x) : 1.0;
+  const vec2 toward = corner.place + part * (corner.unseen - corner.place);
+  return begins ? Stroke(toward, corner.place) : Stroke(corner.place, corner.unseen);
 }
 
 /// The column of the nearest vertex beyond the end of a walk at `at` whose surface goes on towards the receiver behind
@@ -269,18 +276,16 @@ BlockedArcs blocked_arcs(View view, LinePlane plane, Point point, Side side, Sea
     const Corner corner = corner_at(view, plane, point, search, at, to, z, begins);
     walk.is_own = begins ? false : walk.is_own;
     walk.thickness = begins && thickness == 0.0 ? unpack_width(marked) : walk.thickness;
-    Stroke stroke = stroke_to(corner.place, walk, begins, steps);
+    const Stroke stroke = stroke_to(corner.place, walk, begins, steps);
     if (kCompletes == kCompletesApart)
-      block(seen, walk, search, clip_to_sphere(stroke, radius_sq), point.eye_distance, least, radius_sq);
-    if (kCompletes != kCompletesNothing) {
-      const Stroke whole = with_unseen(stroke, begins, corner.unseen);
-      // What is seen from the receiver to the first vertex need not be straight with what goes on there: where that is
-      // beyond the sphere, only the former matters.
-      const bool goes_on = both(stored < 0.0, !both(walk.starts, dot(corner.place, corner.place) > radius_sq));
-      stroke.from = goes_on ? whole.from : stroke.from;
-      stroke.to = goes_on ? whole.to : stroke.to;
+      block(seen, walk, search, clip_to_sphere(stroke, radius_sq, search.unit), point.eye_distance, least, radius_sq);
+    block(all, walk, search, clip_to_sphere(stroke, radius_sq, search.unit), point.eye_distance, least, radius_sq);
+    // What goes on unseen need not be straight with what is seen: it is a stroke of its own.
+    const bool goes_on = kCompletes != kCompletesNothing && stored < 0.0;
+    for (bool once = goes_on; once; once = false) {
+      const Stroke unseen = unseen_stroke(corner, begins);
+      block(all, walk, search, clip_to_sphere(unseen, radius_sq, search.unit), point.eye_distance, least, radius_sq);
     }
-    block(all, walk, search, clip_to_sphere(stroke, radius_sq), point.eye_distance, least, radius_sq);
     goes = (marked & search.last) == 0u ? dot(corner.place, search.leaving) < radius : false;
     walk.last = corner.place;
     walk.starts = false;
@@ -295,8 +300,8 @@ BlockedArcs blocked_arcs(View view, LinePlane plane, Point point, Side side, Sea
     const Corner corner = corner_at(view, plane, point, search, at, to, z, true);
     walk.is_own = false;
     walk.thickness = thickness == 0.0 ? unpack_width(marked) : thickness;
-    const Stroke stroke = with_unseen(Stroke(corner.place, corner.place), true, corner.unseen);
-    block(all, walk, search, clip_to_sphere(stroke, radius_sq), point.eye_distance, least, radius_sq);
+    const Stroke stroke = unseen_stroke(corner, true);
+    block(all, walk, search, clip_to_sphere(stroke, radius_sq, search.unit), point.eye_distance, least, radius_sq);
   }
   const float arc = arc_of(side, search, all);
   return BlockedArcs(arc, kCompletes == kCompletesApart ? arc - arc_of(side, search, seen) : 0.0,
@@ -371,6 +376,7 @@ void main() {
       search.least_height = clearance;
       search.least_rise = least_rise(view);
       search.from = at.x;
+      search.unit = power_of_two(z);
       search.step = sign;
       search.begins = sign > 0 ? kVertexBegins : kVertexEnds;
       search.last = sign > 0 ? kVertexLast : kVertexFirst;

@@ -41,12 +41,13 @@ uint pack_width(float width) { return (floatBitsToUint(width) + 0x40000u) >> 19 
 float unpack_width(uint mark) { return uintBitsToFloat((mark & 0xfff0u) << 15); }
 
 /// Up to where a surface goes on unseen: so many steps further along the line, at most 8191, and there it is so many
-/// times as deep, less than 16. Steps are held within 1/16, and depths within 1/8192 of the depth where it begins.
+/// times as deep. Steps are held within 1/16. Of the depth the change is held, within 1/2048 of itself: so what goes on
+/// has its direction too where it is small beside its distance from the eye.
 uint pack_goes_on(float steps, float depths) {
-  return uint(steps * 8.0 + 0.5) << 16 | uint(min(depths * 4096.0 + 0.5, 65535.0));
+  return uint(steps * 8.0 + 0.5) << 16 | packHalf2x16(vec2(depths - 1.0, 0.0));
 }
 float steps_of_goes_on(uint packed) { return float(packed >> 16) * 0.125; }
-float depths_of_goes_on(uint packed) { return float(packed & 0xffffu) / 4096.0; }
+float depths_of_goes_on(uint packed) { return 1.0 + unpackHalf2x16(packed).x; }
 
 /// Where a point of the line is in its plane.
 vec2 place_at(View view, LinePlane plane, float step, float z) {

@@ -29,6 +29,16 @@ vec2 normal_in_slice(Receiver r, Side side, uint word) {
   return projected * inversesqrt(max(dot(projected, projected), 1e-12));
 }
 
+/// The normal says nothing of where a surface goes on if it is seen more nearly edge on than this: the sine of the
+/// angle between the surface and the eye's ray. A normal that leaned away from the eye has been bent to 0.001.
+const float kLeastFacingToGoOn = 0.02;
+
+/// Whether a normal within the slice, a unit vector, says how the surface at a place goes on.
+bool is_told_by(vec2 surface_normal, Receiver r, vec2 place) {
+  const vec2 eye = toward_eye(r, place);
+  return dot(surface_normal, eye) > kLeastFacingToGoOn * length(eye);
+}
+
 /// Where the line of a surface is seen behind a place, as the distance from its `end` along the unit vector `onward`;
 /// infinite where the place's ray never meets it.
 float seen_at(Receiver r, vec2 end, vec2 onward, vec2 surface_normal, vec2 place) {
@@ -125,7 +135,7 @@ Piece piece_behind(Receiver r, Side side, Reach reach, Draw draw, int count, Int
   until = both(goes_on, both(beyond.above, dot(n, beyond.place - end) > 0.0)) ? beyond.place : until;
   const vec2 onward = is_back ? vec2(-n.y, n.x) : vec2(n.y, -n.x);
   Piece piece = piece_of(reach, end, onward, seen_at(r, end, onward, n, until));
-  piece.exists = both(piece.exists, both(dot(n, toward_eye(r, end)) > 0.0, dot(n, hider - end) > 0.0));
+  piece.exists = both(piece.exists, both(is_told_by(n, r, end), dot(n, hider - end) > 0.0));
   return piece;
 }
 
@@ -139,7 +149,7 @@ Piece piece_beyond(Receiver r, Side side, Reach reach, Sample border) {
   const float height = height_of(r, beside, border.z, border.scale) +
                        dot(piece.far - border.place, vec2(dot(r.normal, side.t), dot(r.normal, r.eye)));
   const bool is_near = both(border.place.x > 0.0, border.distance_sq < kFarEnd * kFarEnd * reach.radius_sq);
-  const bool goes_on = both(height > kLeastRisen * reach.radius, dot(n, toward_eye(r, border.place)) > 0.0);
+  const bool goes_on = both(height > kLeastRisen * reach.radius + r.least_height, is_told_by(n, r, border.place));
   piece.exists = both(piece.exists, both(is_near, goes_on));
   return piece;
 }

@@ -9,11 +9,17 @@
 // the one next pixel is within it (kFewPixels p / R; not of crytek, which looks at no next pixel). A bound above the
 // reference's own occlusion is none: an AO that is 1 everywhere would pass. Where depth is to show that it is precise
 // enough, such bounds are refused.
+//
+// All of it holds with and without completed surfaces. Only what goes on beyond the picture's border do kernels and
+// reference guess in two ways: the kernels by the plane of the normal at a sample and only where it rises by a tenth of
+// the radius, the reference by the mean of that plane and of the line through 4 pixels. The exact search joins pixels
+// to strokes first. Where most of the sphere is beyond the border, a bound of its own says how far they may differ.
 #include <gmock/gmock.h>
 
 #include <cmath>
 #include <map>
 
+#include "core/base/estimator_facts.h"
 #include "core/chain/compute.h"
 #include "core/frame/scale_notes.h"
 #include "core/reference/reference.h"
@@ -40,8 +46,8 @@ const std::vector<float>& reference_of(const Spec& spec, const HostFrame& frame,
                                        const std::vector<std::size_t>& pixels) {
   static std::map<std::string, std::vector<float>> made;
   const bool by_slices = settings.estimator == Estimator::gtao || settings.estimator == Estimator::bitmask;
-  auto& ao =
-      made[fmt::format("{} {} {}", to_string(spec), by_slices ? 0 : int(settings.estimator), int(settings.thickness))];
+  auto& ao = made[fmt::format("{} {} {} {}", to_string(spec), by_slices ? 0 : int(settings.estimator),
+                              int(settings.thickness), int(settings.complete))];
   if (!ao.empty()) return ao;
   if (!by_slices) return ao = reference_estimate(frame, settings, pixels);
   ReferenceSettings reference = reference_settings_of(settings);
@@ -69,11 +75,13 @@ double step_at(const Spec& spec, double z, double room_depth) {
 
 struct Measured {
   std::string estimator;
+  Completion complete;
   double rmse, bound;
   double occlusion;  // RMS, of the reference: the error of an AO that is 1 everywhere
 };
 
-std::vector<Measured> measured(Spec spec) {
+/// beyond: the least bound, before that of the depth's precision, of what completes surfaces.
+std::vector<Measured> measured(Spec spec, Completion complete, double beyond = 0) {
   spec.width = 48;
   spec.height = 36;
   Spec clean = spec;
@@ -86,6 +94,7 @@ std::vector<Measured> measured(Spec spec) {
   std::vector<Measured> all;
   for (const auto& variant : estimators()) {
     EstimatorSettings settings = with_radius(variant.settings, exact.radius);
+    settings.complete = complete;
     settings.slices = 16;
     settings.steps = 64;
     settings.samples = 64;
@@ -102,25 +111,33 @@ std::vector<Measured> measured(Spec spec) {
       if (settings.estimator != Estimator::crytek) few += std::pow(kFewPixels * highest / exact.radius, 2);
     }
     const auto mean = [&](double squares) { return std::sqrt(squares / double(pixels.size())); };
-    all.push_back({variant.name, mean(sum), kSampling.at(variant.name) + mean(turned) + mean(few), mean(occlusion)});
-    testing::Test::RecordProperty(variant.name + ", " + to_string(spec), std::to_string(mean(sum)));
+    double sampling = kSampling.at(variant.name);
+    if (completes_anywhere(settings)) sampling = std::max(sampling, beyond);
+    all.push_back({variant.name, complete, mean(sum), sampling + mean(turned) + mean(few), mean(occlusion)});
+    testing::Test::RecordProperty(fmt::format("{}, completion {}, {}", variant.name, int(complete), to_string(spec)),
+                                  std::to_string(mean(sum)));
   }
   return all;
 }
 
+constexpr Completion kCompletions[] = {Completion::none, Completion::all};
+
 /// But for an estimator whose reference knows less, or too few samples.
-void expect(const Spec& spec, const std::string& without = "") {
-  for (const auto& [estimator, rmse, bound, occlusion] : measured(spec))
-    if (estimator != without) EXPECT_LE(rmse, bound) << estimator << ": " << to_string(spec);
+void expect(const Spec& spec, const std::string& without = "", double beyond = 0) {
+  for (const Completion completion : kCompletions)
+    for (const auto& [estimator, complete, rmse, bound, occlusion] : measured(spec, completion, beyond))
+      if (estimator != without)
+        EXPECT_LE(rmse, bound) << estimator << ", completion " << int(complete) << ": " << to_string(spec);
 }
 
 /// That depth so stored is precise enough, at a radius that darkens much.
 void expect_precise(Spec spec) {
   spec.radius = 0.5;
-  for (const auto& [estimator, rmse, bound, occlusion] : measured(spec)) {
-    EXPECT_LE(rmse, bound) << estimator << ": " << to_string(spec);
-    EXPECT_LT(bound, occlusion) << estimator << ", whose bound says nothing: " << to_string(spec);
-  }
+  for (const Completion completion : kCompletions)
+    for (const auto& [estimator, complete, rmse, bound, occlusion] : measured(spec, completion)) {
+      EXPECT_LE(rmse, bound) << estimator << ", completion " << int(complete) << ": " << to_string(spec);
+      EXPECT_LT(bound, occlusion) << estimator << ", whose bound says nothing: " << to_string(spec);
+    }
 }
 
 /// What a run says of it.
@@ -134,8 +151,9 @@ std::vector<std::string> notes_on(const Spec& spec) {
 
 TEST(Accuracy, of_the_room) { expect({}); }
 
+// The picture's border cuts all spheres. The worst that was measured where surfaces are completed is 0.0310.
 TEST(Accuracy, of_a_corner_whose_sphere_holds_the_eye) {
-  for (const double fov : {0.0, 55.0, 120.0}) expect({.fov = fov, .place = Place::corner});
+  for (const double fov : {0.0, 55.0, 120.0}) expect({.fov = fov, .place = Place::corner}, "", 0.032);
 }
 
 TEST(Accuracy, at_every_scale) {
@@ -155,10 +173,11 @@ TEST(Accuracy, through_shifted_lenses_and_oblong_pixels) {
   expect({.shift = 0.4});
 }
 
-// In a sphere far beyond the picture few of Crytek's samples are seen.
+// In a sphere far beyond the picture few of Crytek's samples are seen, and all that goes on beyond the border counts:
+// the worst that was measured is 0.0328.
 TEST(Accuracy, at_every_radius_of_pixels) {
   for (const double radius : {0.05, 0.1, 0.5, 1.0}) expect({.radius = radius});
-  expect({.radius = 10}, "crytek");
+  expect({.radius = 10}, "crytek", 0.034);
 }
 
 TEST(Accuracy, below_a_pixel_all_is_open) {
@@ -201,12 +220,14 @@ TEST(Accuracy, of_positions_1e7_units_from_their_origin) {
 // At 1.5 degrees pixels are as small as in a picture 1920 wide, and a bound from the nearest of them says nothing.
 // These are measured.
 TEST(Accuracy, of_few_bits_and_small_pixels_is_better_than_its_bound) {
-  for (const Storage storage : {Storage::half_float, Storage::bits_16, Storage::bits_16_reversed})
-    for (const auto& [estimator, rmse, bound, occlusion] : measured({.fov = 1.5, .storage = storage}))
-      EXPECT_LE(rmse, estimator == "gtao constant"     ? 0.08
-                      : storage == Storage::half_float ? 0.055
-                                                       : 0.035)
-          << estimator << " storage " << int(storage);
+  for (const Completion completion : kCompletions)
+    for (const Storage storage : {Storage::half_float, Storage::bits_16, Storage::bits_16_reversed})
+      for (const auto& [estimator, complete, rmse, bound, occlusion] :
+           measured({.fov = 1.5, .storage = storage}, completion))
+        EXPECT_LE(rmse, estimator == "gtao constant"     ? 0.08
+                        : storage == Storage::half_float ? 0.055
+                                                         : 0.035)
+            << estimator << " storage " << int(storage) << " completion " << int(complete);
 }
 
 TEST(Accuracy, that_is_lost_is_noted) {
@@ -216,7 +237,9 @@ TEST(Accuracy, that_is_lost_is_noted) {
   // Of positions too far off to tell any height nothing is feigned.
   const Spec far{.width = 48, .height = 36, .storage = Storage::far_positions};
   EXPECT_THAT(notes_on(far), lost);
-  for (const auto& [estimator, rmse, bound, occlusion] : measured(far)) EXPECT_NEAR(rmse, occlusion, 1e-6) << estimator;
+  for (const Completion completion : kCompletions)
+    for (const auto& [estimator, complete, rmse, bound, occlusion] : measured(far, completion))
+      EXPECT_NEAR(rmse, occlusion, 1e-6) << estimator << ", completion " << int(complete);
 }
 
 }  // namespace

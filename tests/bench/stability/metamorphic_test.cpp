@@ -202,9 +202,26 @@ TEST(Metamorphic, orthographic_is_the_limit_of_a_small_field_of_view) {
   }
 }
 
+// Only how exactly depth is known changes.
+TEST(Metamorphic, an_orthographic_eye_may_be_anywhere_on_its_ray) {
+  const HostFrame frame = room(0, 1, 0, 48, 36).frame;
+  for (const double farther : {10.0, 100.0, 1000.0}) {
+    HostFrame moved = frame;
+    for (float& z : moved.depth)
+      if (z < kSky) z = float(z + farther);
+    for (const auto& variant : estimators()) {
+      const EstimatorSettings settings = with_radius(variant.settings, kRadius);
+      const Difference d = difference(run(moved, settings), run(frame, settings));
+      EXPECT_LE(d.rmse, 5e-3) << variant.name << " " << farther << " " << place(d, frame) << " " << d.max;
+      EXPECT_LE(std::abs(d.bias), 5e-4) << variant.name << " " << farther;
+    }
+  }
+}
+
 // Of every thickness: a larger sphere holds more occluders, and more of what is behind their fronts. Where a surface
 // leaves the sphere between two samples is interpolated, so a pixel may be off by a little. Not of Crytek, whose
-// samples move as the radius grows.
+// samples move as the radius grows. Nor of what goes on beyond the border: that must rise by a part of the radius and
+// begin within a multiple of it, so a larger one may leave it out.
 TEST(Metamorphic, a_larger_radius_only_darkens) {
   const HostFrame frame = room(55, 1, 0, 48, 36).frame;
   auto all = solid_estimators();
@@ -218,12 +235,52 @@ TEST(Metamorphic, a_larger_radius_only_darkens) {
     for (const double radius : {1e-9, 0.01, 0.1, 0.3, 1.0, 3.0, 10.0, 1e9}) {
       EstimatorSettings settings = converged(variant.settings, radius);
       settings.thickness_length = 0.2;
+      settings.complete = Completion::none;
       const std::vector<float> ao = run(frame, settings);
       for (std::size_t i = 0; i < ao.size(); i++)
         EXPECT_LE(ao[i], smaller[i] + slack) << variant.name << " radius " << radius << " pixel " << i;
       EXPECT_LE(difference(ao, smaller).bias, 0) << variant.name << " radius " << radius;
       smaller = ao;
     }
+  }
+}
+
+// Whatever the radius. Behind what is nearer only of a given thickness: where surfaces go on there, the automatic one
+// is half as thick. What is counted in sectors is rounded. The worst that was measured is 3.8e-4 of samples, from the
+// sector that the tangent plane cuts, and 0.0070 of the exact search, which does not round what joins the receiver's
+// own surface.
+TEST(Metamorphic, completing_only_darkens) {
+  const HostFrame frame = room(55, 1, 0, 48, 36).frame;
+  auto all = solid_estimators();
+  for (Variant variant : estimators()) {
+    all.push_back(variant);
+    variant.settings.thickness = ThicknessKind::constant;
+    if (searches_exactly(variant.settings)) all.push_back(variant);
+  }
+  for (const auto& variant : all) {
+    const float slack = variant.settings.thickness == ThicknessKind::infinite ? 1e-6f
+                        : searches_exactly(variant.settings)                  ? 0.008f
+                                                                              : 5e-4f;
+    int darker = 0;
+    for (const double radius : {1e-9, 0.01, 0.1, 0.3, 1.0, 3.0, 10.0, 1e9}) {
+      EstimatorSettings settings = converged(variant.settings, radius);
+      settings.thickness_length = 0.2;
+      settings.complete = Completion::none;
+      const std::vector<float> seen = run(frame, settings);
+      std::vector<float> before = seen;
+      for (const Completion completion : {Completion::border, Completion::all}) {
+        settings.complete = completion;
+        if (completion == Completion::all && settings.thickness == ThicknessKind::automatic) continue;
+        const std::vector<float> ao = run(frame, settings);
+        for (std::size_t i = 0; i < ao.size(); i++) {
+          EXPECT_LE(ao[i], before[i] + slack)
+              << variant.name << " completion " << int(completion) << " radius " << radius << " pixel " << i;
+        }
+        before = ao;
+      }
+      for (std::size_t i = 0; i < before.size(); i++) darker += before[i] < seen[i] - 0.05f;
+    }
+    EXPECT_EQ(darker > 0, completes_anywhere(variant.settings)) << variant.name;
   }
 }
 
@@ -250,6 +307,20 @@ TEST(Metamorphic, an_added_occluder_never_brightens_what_is_still_seen) {
   }
 }
 
+/// Whether a surface is at the picture's border.
+bool is_cut_by_border(const HostFrame& frame) {
+  const int width = frame.data.width, height = frame.data.height;
+  for (int i = 0; i < width * height; i++) {
+    const int x = i % width, y = i / width;
+    const bool at_border = x == 0 || y == 0 || x == width - 1 || y == height - 1;
+    if (at_border && frame.depth[std::size_t(i)] < kSky) return true;
+  }
+  return false;
+}
+
+// What the picture shows whole is not completed: its faces are connected, and behind them is sky. Where the border cuts
+// it, it goes on along its last 4 pixels. Where they lie on both sides of an edge, their line rises above the outer
+// face. The worst that was measured is .2138, of one pixel beside the border.
 TEST(Metamorphic, a_convex_body_alone_is_open) {
   const Sphere ball{.center = {6, 0.4, -0.3}, .radius = 1.5};
   const Plane plane{.point = {5, 0, 0}, .normal = unit({-1, 0.5, 0.7})};
@@ -257,25 +328,38 @@ TEST(Metamorphic, a_convex_body_alone_is_open) {
              corner{5, -0.5, 0.3};
   const Scene box{{parallelogram(corner, a, b), parallelogram(corner, b, c), parallelogram(corner, c, a),
                    parallelogram(corner + c, a, b), parallelogram(corner + a, b, c), parallelogram(corner + b, c, a)}};
+  int whole = 0;
   for (const Scene& scene : {Scene{{ball}}, Scene{{plane}}, box})
     for (const double fov : {0.0, 0.5, 20.0, 90.0, 150.0, 170.0}) {
       const Shot shot =
           fov > 0 ? Shot::perspective({}, {1, 0, 0}, fov, 48, 36) : Shot::orthographic({}, {1, 0, 0}, 5, 48, 36);
       const HostFrame frame = render(scene, shot).frame;
+      const bool is_cut = is_cut_by_border(frame);
+      whole += !is_cut;
       for (const auto& variant : estimators())
         for (const double radius : {1e-6, 0.05, 1.0, 1e6}) {
-          const Difference d =
-              difference(run(frame, with_radius(variant.settings, radius)), [](std::size_t) { return 1.0; });
           // The strokes of an exact search keep to the surface within a fifth of a pixel, which is most at the rim of a
           // ball and at a box's edges.
           const bool exact = searches_exactly(variant.settings);
-          EXPECT_LE(d.max, !exact                        ? 1e-4
-                           : scene.primitives.size() > 1 ? 0.2
-                                                         : 0.01)
-              << variant.name << " fov " << fov << " radius " << radius << " " << place(d, frame);
-          EXPECT_LE(d.rmse, exact ? 0.01 : 1e-5) << variant.name << " fov " << fov << " radius " << radius;
+          const bool has_edges = scene.primitives.size() > 1;
+          EstimatorSettings settings = with_radius(variant.settings, radius);
+          settings.complete = Completion::none;
+          const std::vector<float> seen = run(frame, settings);
+          settings.complete = Completion::all;
+          const std::vector<float> completed = run(frame, settings);
+          if (!is_cut) EXPECT_TRUE(same_bits(completed, seen)) << variant.name << " fov " << fov;
+          for (const bool completes : {false, true}) {
+            const double worst_edge = completes && is_cut ? 0.22 : 0.2;
+            const Difference d = difference(completes ? completed : seen, [](std::size_t) { return 1.0; });
+            EXPECT_LE(d.max, !exact      ? 1e-4
+                             : has_edges ? worst_edge
+                                         : 0.01)
+                << variant.name << " fov " << fov << " radius " << radius << " " << place(d, frame);
+            EXPECT_LE(d.rmse, exact ? 0.01 : 1e-5) << variant.name << " fov " << fov << " radius " << radius;
+          }
         }
     }
+  EXPECT_GE(whole, 6);
 }
 
 // To 89.99 degrees. From 85 on a pixel's own footprint is longer than the radius, and rounded normals (4e-5 rad) tilt
