@@ -130,8 +130,8 @@ bool is_settled(View view, Receivers r, ivec2 group, GroupBounds b) {
   return b.farthest > b.level ? true : above <= limit && !goes_on;
 }
 
-/// Whether a square of pixels is so far away that nothing in it blocks, and that nothing of it goes on as something that
-/// does.
+/// Whether a square of pixels is so far away that nothing in it blocks, and that nothing of it goes on as something
+/// that does.
 bool is_too_far(View view, Receivers r, ivec2 first_pixel, int side, float level, float farthest) {
   if ((kMode & kClassifyRanged) == 0u) return false;
   return distance_sq(r.box, box_of(view, first_pixel / kTile, side / kTile, depth_of(view, level),

@@ -42,8 +42,8 @@ const float kLeastFacingToGoOn = -0.02;
 const int kStepsAtBorder = 3;
 const int kLeastStepsAtBorder = 2;
 
-/// Of a stroke, in radii: as core/run/region.cpp reads around a part. With 2 colonnade, whose walls go on far behind its
-/// columns, has .0639 instead of .0627, with 4 .0617.
+/// Of a stroke, in radii: as core/run/region.cpp reads around a part. With 2 colonnade, whose walls go on far behind
+/// its columns, has an RMSE of .0639 instead of .0627, with 4 .0617.
 const float kLongest = 3.0;
 
 /// Longer strokes than this, in steps, are not needed for any image.

@@ -178,9 +178,10 @@ Clipped clip_to_sphere(Stroke stroke, float radius_sq, float unit) {
 float power_of_two(float z) { return uintBitsToFloat(floatBitsToUint(clamp(z, 1e-30, 1e30)) & 0x7f800000u); }
 
 /// Adds what a stroke blocks from its front to its back: more of what the receiver's own surface does, or a set apart.
-/// least: the height above the tangent plane that it must have somewhere.
+/// least: the height above the tangent plane that it must have somewhere. is_unseen: it goes on behind others; towards
+/// the receiver it may end at the sphere, where nothing is behind it, so its back is taken at both ends.
 void block(inout Blocked blocked, Walk walk, Search search, Clipped stroke, float eye_distance, float least,
-           float radius_sq) {
+           float radius_sq, bool is_unseen) {
   const float near_slope = slope_of(stroke.near);
   const float far_slope = slope_of(stroke.far);
   const float high = max(near_slope, far_slope);
@@ -188,9 +189,7 @@ void block(inout Blocked blocked, Walk walk, Search search, Clipped stroke, floa
   const bool clear = both(rises, max(dot(stroke.near, search.normal), dot(stroke.far, search.normal)) > least);
   const float top = both(stroke.is_within, clear) ? high : -1.0;
   float back = back_of(stroke.far, eye_distance, walk.thickness, radius_sq);
-  // A stroke that goes on towards the receiver may end at the sphere, where nothing is behind it.
-  if (kCompletes != kCompletesNothing)
-    back = min(back, back_of(stroke.near, eye_distance, walk.thickness, radius_sq));
+  if (is_unseen) back = min(back, back_of(stroke.near, eye_distance, walk.thickness, radius_sq));
   const float bottom = walk.is_own ? -1.0 : min(min(near_slope, far_slope), back);
   const bool onto_own = bottom <= blocked.own;
   blocked.sectors |=
@@ -278,13 +277,16 @@ BlockedArcs blocked_arcs(View view, LinePlane plane, Point point, Side side, Sea
     walk.thickness = begins && thickness == 0.0 ? unpack_width(marked) : walk.thickness;
     const Stroke stroke = stroke_to(corner.place, walk, begins, steps);
     if (kCompletes == kCompletesApart)
-      block(seen, walk, search, clip_to_sphere(stroke, radius_sq, search.unit), point.eye_distance, least, radius_sq);
-    block(all, walk, search, clip_to_sphere(stroke, radius_sq, search.unit), point.eye_distance, least, radius_sq);
+      block(seen, walk, search, clip_to_sphere(stroke, radius_sq, search.unit),
+            point.eye_distance, least, radius_sq, false);
+    block(all, walk, search, clip_to_sphere(stroke, radius_sq, search.unit),
+          point.eye_distance, least, radius_sq, false);
     // What goes on unseen need not be straight with what is seen: it is a stroke of its own.
     const bool goes_on = kCompletes != kCompletesNothing && stored < 0.0;
     for (bool once = goes_on; once; once = false) {
       const Stroke unseen = unseen_stroke(corner, begins);
-      block(all, walk, search, clip_to_sphere(unseen, radius_sq, search.unit), point.eye_distance, least, radius_sq);
+      block(all, walk, search, clip_to_sphere(unseen, radius_sq, search.unit),
+            point.eye_distance, least, radius_sq, true);
     }
     goes = (marked & search.last) == 0u ? dot(corner.place, search.leaving) < radius : false;
     walk.last = corner.place;
@@ -301,7 +303,8 @@ BlockedArcs blocked_arcs(View view, LinePlane plane, Point point, Side side, Sea
     walk.is_own = false;
     walk.thickness = thickness == 0.0 ? unpack_width(marked) : thickness;
     const Stroke stroke = unseen_stroke(corner, true);
-    block(all, walk, search, clip_to_sphere(stroke, radius_sq, search.unit), point.eye_distance, least, radius_sq);
+    block(all, walk, search, clip_to_sphere(stroke, radius_sq, search.unit),
+          point.eye_distance, least, radius_sq, true);
   }
   const float arc = arc_of(side, search, all);
   return BlockedArcs(arc, kCompletes == kCompletesApart ? arc - arc_of(side, search, seen) : 0.0,
