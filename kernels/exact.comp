@@ -178,19 +178,23 @@ Clipped clip_to_sphere(Stroke stroke, float radius_sq, float unit) {
 float power_of_two(float z) { return uintBitsToFloat(floatBitsToUint(clamp(z, 1e-30, 1e30)) & 0x7f800000u); }
 
 /// Adds what a stroke blocks from its front to its back: more of what the receiver's own surface does, or a set apart.
-/// least: the height above the tangent plane that it must have somewhere. is_unseen: it goes on behind others; towards
-/// the receiver it may end at the sphere, where nothing is behind it, so its back is taken at both ends.
-void block(inout Blocked blocked, Walk walk, Search search, Clipped stroke, float eye_distance, float least,
-           float radius_sq, bool is_unseen) {
+/// bend: its vertex, where what goes on unseen need not be straight with what is seen; both hang together there, so they
+/// block one interval. least: the height above the tangent plane that it must have somewhere.
+void block(inout Blocked blocked, Walk walk, Search search, Clipped stroke, vec2 bend, float eye_distance, float least,
+           float radius_sq) {
   const float near_slope = slope_of(stroke.near);
   const float far_slope = slope_of(stroke.far);
-  const float high = max(near_slope, far_slope);
+  const bool bends = kCompletes != kCompletesNothing ? dot(bend, bend) < radius_sq : false;
+  const float bend_slope = bends ? slope_of(bend) : far_slope;
+  const float high = max(max(near_slope, far_slope), bend_slope);
   const bool rises = both(min(stroke.near.x, stroke.far.x) > 0.0, high > search.lowest);
-  const bool clear = both(rises, max(dot(stroke.near, search.normal), dot(stroke.far, search.normal)) > least);
+  const float height = max(dot(stroke.near, search.normal), dot(stroke.far, search.normal));
+  const bool clear = both(rises, (bends ? max(height, dot(bend, search.normal)) : height) > least);
   const float top = both(stroke.is_within, clear) ? high : -1.0;
   float back = back_of(stroke.far, eye_distance, walk.thickness, radius_sq);
-  if (is_unseen) back = min(back, back_of(stroke.near, eye_distance, walk.thickness, radius_sq));
-  const float bottom = walk.is_own ? -1.0 : min(min(near_slope, far_slope), back);
+  if (kCompletes != kCompletesNothing)
+    back = min(back, back_of(bends ? bend : stroke.near, eye_distance, walk.thickness, radius_sq));
+  const float bottom = walk.is_own ? -1.0 : min(min(min(near_slope, far_slope), bend_slope), back);
   const bool onto_own = bottom <= blocked.own;
   blocked.sectors |=
       onto_own || top < bottom ? 0u : sectors_below(top, search.shift) & ~sectors_below(bottom, search.shift);
@@ -216,14 +220,14 @@ Corner corner_at(View view, LinePlane plane, Point point, Search search, int at,
   return corner;
 }
 
-/// What of a vertex' surface goes on behind others: towards the receiver from the first vertex of a run, else away from
-/// it.
-Stroke unseen_stroke(Corner corner, bool begins) {
-  const float across = corner.place.x;
+/// The stroke with what its surface goes on behind others: towards the receiver from the first vertex of a run, else
+/// away from it.
+Stroke with_unseen(Stroke stroke, bool begins, vec2 unseen) {
+  const float across = stroke.to.x;
   const float least = kBesideReceiver * across;
-  const float part = corner.unseen.x < least ? (across - least) / (across - corner.unseen.x) : 1.0;
-  const vec2 toward = corner.place + part * (corner.unseen - corner.place);
-  return begins ? Stroke(toward, corner.place) : Stroke(corner.place, corner.unseen);
+  const float part = unseen.x < least ? (across - least) / (across - unseen.x) : 1.0;
+  const vec2 toward = stroke.to + part * (unseen - stroke.to);
+  return begins ? Stroke(toward, stroke.to) : Stroke(stroke.from, unseen);
 }
 
 /// The column of the nearest vertex beyond the end of a walk at `at` whose surface goes on towards the receiver behind
@@ -275,19 +279,20 @@ BlockedArcs blocked_arcs(View view, LinePlane plane, Point point, Side side, Sea
     const Corner corner = corner_at(view, plane, point, search, at, to, z, begins);
     walk.is_own = begins ? false : walk.is_own;
     walk.thickness = begins && thickness == 0.0 ? unpack_width(marked) : walk.thickness;
-    const Stroke stroke = stroke_to(corner.place, walk, begins, steps);
+    Stroke stroke = stroke_to(corner.place, walk, begins, steps);
     if (kCompletes == kCompletesApart)
-      block(seen, walk, search, clip_to_sphere(stroke, radius_sq, search.unit),
-            point.eye_distance, least, radius_sq, false);
-    block(all, walk, search, clip_to_sphere(stroke, radius_sq, search.unit),
-          point.eye_distance, least, radius_sq, false);
-    // What goes on unseen need not be straight with what is seen: it is a stroke of its own.
-    const bool goes_on = kCompletes != kCompletesNothing && stored < 0.0;
-    for (bool once = goes_on; once; once = false) {
-      const Stroke unseen = unseen_stroke(corner, begins);
-      block(all, walk, search, clip_to_sphere(unseen, radius_sq, search.unit),
-            point.eye_distance, least, radius_sq, true);
+      block(seen, walk, search, clip_to_sphere(stroke, radius_sq, search.unit), corner.place, point.eye_distance, least,
+            radius_sq);
+    if (kCompletes != kCompletesNothing) {
+      const Stroke whole = with_unseen(stroke, begins, corner.unseen);
+      // What is seen from the receiver to the first vertex need not be straight with what goes on there: where that is
+      // beyond the sphere, only the former matters.
+      const bool goes_on = both(stored < 0.0, !both(walk.starts, dot(corner.place, corner.place) > radius_sq));
+      stroke.from = goes_on ? whole.from : stroke.from;
+      stroke.to = goes_on ? whole.to : stroke.to;
     }
+    block(all, walk, search, clip_to_sphere(stroke, radius_sq, search.unit), corner.place, point.eye_distance, least,
+          radius_sq);
     goes = (marked & search.last) == 0u ? dot(corner.place, search.leaving) < radius : false;
     walk.last = corner.place;
     walk.starts = false;
@@ -302,9 +307,9 @@ BlockedArcs blocked_arcs(View view, LinePlane plane, Point point, Side side, Sea
     const Corner corner = corner_at(view, plane, point, search, at, to, z, true);
     walk.is_own = false;
     walk.thickness = thickness == 0.0 ? unpack_width(marked) : thickness;
-    const Stroke stroke = unseen_stroke(corner, true);
-    block(all, walk, search, clip_to_sphere(stroke, radius_sq, search.unit),
-          point.eye_distance, least, radius_sq, true);
+    const Stroke stroke = with_unseen(Stroke(corner.place, corner.place), true, corner.unseen);
+    block(all, walk, search, clip_to_sphere(stroke, radius_sq, search.unit), corner.place, point.eye_distance, least,
+          radius_sq);
   }
   const float arc = arc_of(side, search, all);
   return BlockedArcs(arc, kCompletes == kCompletesApart ? arc - arc_of(side, search, seen) : 0.0,
