@@ -300,7 +300,7 @@ TEST(Pieces, are_not_of_a_thing_alone_before_the_sky) {
 /// The picture in which a plate hides a part of a wall.
 const HostFrame& plate_frame() {
   static const HostFrame frame =
-      render(kPlateScene, Shot::perspective({5, 0.3, 1.8}, {0.3, 0, 0.6}, 50, 240, 180)).frame;
+      render(kPlateScene, Shot::perspective({5, 0.3, 1.8}, {0.3, 0, 0.6}, 50, 160, 120)).frame;
   return frame;
 }
 
@@ -349,7 +349,7 @@ TEST(Pieces, are_found_among_any_number_of_samples) {
   for (const Estimator estimator : kSampled) {
     EstimatorSettings settings = thin(estimator, 1, Completion::all);
     const std::vector<float> expected = ao_of(plate_frame(), settings);
-    for (const int steps : {33, 40, 64, 70}) {
+    for (const int steps : {40, 70}) {
       settings.steps = steps;
       const Difference d = difference(ao_of(plate_frame(), settings), expected);
       EXPECT_LE(d.rmse, 0.0092) << int(estimator) << ", steps " << steps << ", " << place(d, plate_frame());
