@@ -334,7 +334,8 @@ TEST(Pieces, weigh_by_the_falloff) {
   }
 }
 
-// 32 samples are looked at together, and runs go on from one lot to the next. A radius is 70 pixels wide here.
+// Interruptions are found among 32 samples at a time. A run that crosses from one lot to the next hides no more than to
+// the end of its lot, so that of 70 samples up to 3 tenths of what goes on is missed. A radius is 70 pixels wide here.
 TEST(Pieces, are_found_among_any_number_of_samples) {
   const HostFrame frame = render(kPlateScene, Shot::perspective({5, 0.3, 1.8}, {0.3, 0, 0.4}, 25, 160, 120)).frame;
   ReferenceSettings some = reference_settings_of(thin(Estimator::gtao, 1, Completion::all));
