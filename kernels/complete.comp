@@ -135,12 +135,14 @@ void close(inout Open open, View view, LinePlane plane, int way, float steps) {
   const float nearness = open.nearness + open.slope * steps;
   const float z = perspective ? 1.0 / open.nearness : -open.nearness;
   const float end_z = z * (perspective ? open.nearness / nearness : max(nearness / open.nearness, 0.0));
-  const vec2 from = place_at(view, plane, open.from, z);
-  const vec2 to = place_at(view, plane, open.from + float(way) * steps, end_z);
+  // Steps are counted from the display window's corner, so that a part of the frame rounds as the whole does.
+  const float first = float(plane.origin + int(open.from)), last = first + float(way) * steps;
+  const vec2 from = vec2((perspective ? z : 1.0) * (plane.start + first * plane.step), z * plane.ray_length);
+  const vec2 to = vec2((perspective ? end_z : 1.0) * (plane.start + last * plane.step), end_z * plane.ray_length);
   const vec2 end = from + min(kLongest * params.radius / max(length(to - from), 1e-30), 1.0) * (to - from);
   const float kept_z = end.y / plane.ray_length;
-  const float step = (end.x / (perspective ? kept_z : 1.0) - plane.start) / plane.step - float(plane.origin);
-  const float kept = min(steps, abs(step - open.from));
+  const float kept_step = (end.x / (perspective ? kept_z : 1.0) - plane.start) / plane.step;
+  const float kept = min(steps, abs(kept_step - first));
   for (bool once = kept > 0.0; once; once = false) {
     goes_on[open.index] = pack_goes_on(kept, kept_z / z);
     vertex[open.index] = -abs(vertex[open.index]);

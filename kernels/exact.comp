@@ -178,23 +178,27 @@ Clipped clip_to_sphere(Stroke stroke, float radius_sq, float unit) {
 float power_of_two(float z) { return uintBitsToFloat(floatBitsToUint(clamp(z, 1e-30, 1e30)) & 0x7f800000u); }
 
 /// Adds what a stroke blocks from its front to its back: more of what the receiver's own surface does, or a set apart.
-/// bend: its vertex, where what goes on unseen need not be straight with what is seen; both hang together there, so they
-/// block one interval. least: the height above the tangent plane that it must have somewhere.
-void block(inout Blocked blocked, Walk walk, Search search, Clipped stroke, vec2 bend, float eye_distance, float least,
-           float radius_sq) {
+/// least: the height above the tangent plane that it must have somewhere. goes_on: from `bend` on it is not seen, or up
+/// to there, and need not be straight with what is; both hang together there, so they block one interval.
+void block(inout Blocked blocked, Walk walk, Search search, Clipped stroke, bool goes_on, vec2 bend, float eye_distance,
+           float least, float radius_sq) {
   const float near_slope = slope_of(stroke.near);
   const float far_slope = slope_of(stroke.far);
-  const bool bends = kCompletes != kCompletesNothing ? dot(bend, bend) < radius_sq : false;
-  const float bend_slope = bends ? slope_of(bend) : far_slope;
-  const float high = max(max(near_slope, far_slope), bend_slope);
-  const bool rises = both(min(stroke.near.x, stroke.far.x) > 0.0, high > search.lowest);
-  const float height = max(dot(stroke.near, search.normal), dot(stroke.far, search.normal));
-  const bool clear = both(rises, (bends ? max(height, dot(bend, search.normal)) : height) > least);
-  const float top = both(stroke.is_within, clear) ? high : -1.0;
+  float high = max(near_slope, far_slope);
+  float low = min(near_slope, far_slope);
+  float height = max(dot(stroke.near, search.normal), dot(stroke.far, search.normal));
   float back = back_of(stroke.far, eye_distance, walk.thickness, radius_sq);
-  if (kCompletes != kCompletesNothing)
-    back = min(back, back_of(bends ? bend : stroke.near, eye_distance, walk.thickness, radius_sq));
-  const float bottom = walk.is_own ? -1.0 : min(min(min(near_slope, far_slope), bend_slope), back);
+  if (kCompletes != kCompletesNothing) {
+    const bool bends = both(goes_on, dot(bend, bend) < radius_sq);
+    const float slope = slope_of(bend), back_of_bend = back_of(bend, eye_distance, walk.thickness, radius_sq);
+    high = bends ? max(high, slope) : high;
+    low = bends ? min(low, slope) : low;
+    height = bends ? max(height, dot(bend, search.normal)) : height;
+    back = bends ? min(back, back_of_bend) : back;
+  }
+  const bool rises = both(min(stroke.near.x, stroke.far.x) > 0.0, high > search.lowest);
+  const float top = both(stroke.is_within, both(rises, height > least)) ? high : -1.0;
+  const float bottom = walk.is_own ? -1.0 : min(low, back);
   const bool onto_own = bottom <= blocked.own;
   blocked.sectors |=
       onto_own || top < bottom ? 0u : sectors_below(top, search.shift) & ~sectors_below(bottom, search.shift);
@@ -281,18 +285,19 @@ BlockedArcs blocked_arcs(View view, LinePlane plane, Point point, Side side, Sea
     walk.thickness = begins && thickness == 0.0 ? unpack_width(marked) : walk.thickness;
     Stroke stroke = stroke_to(corner.place, walk, begins, steps);
     if (kCompletes == kCompletesApart)
-      block(seen, walk, search, clip_to_sphere(stroke, radius_sq, search.unit), corner.place, point.eye_distance, least,
-            radius_sq);
+      block(seen, walk, search, clip_to_sphere(stroke, radius_sq, search.unit), false, corner.place, point.eye_distance,
+            least, radius_sq);
+    // What is seen from the receiver to the first vertex need not be straight with what goes on there: where that is
+    // beyond the sphere, only the former matters.
+    const bool is_first_beyond = both(walk.starts, dot(corner.place, corner.place) > radius_sq);
+    const bool goes_on = kCompletes != kCompletesNothing && stored < 0.0 && !is_first_beyond;
     if (kCompletes != kCompletesNothing) {
       const Stroke whole = with_unseen(stroke, begins, corner.unseen);
-      // What is seen from the receiver to the first vertex need not be straight with what goes on there: where that is
-      // beyond the sphere, only the former matters.
-      const bool goes_on = both(stored < 0.0, !both(walk.starts, dot(corner.place, corner.place) > radius_sq));
       stroke.from = goes_on ? whole.from : stroke.from;
       stroke.to = goes_on ? whole.to : stroke.to;
     }
-    block(all, walk, search, clip_to_sphere(stroke, radius_sq, search.unit), corner.place, point.eye_distance, least,
-          radius_sq);
+    block(all, walk, search, clip_to_sphere(stroke, radius_sq, search.unit), goes_on, corner.place, point.eye_distance,
+          least, radius_sq);
     goes = (marked & search.last) == 0u ? dot(corner.place, search.leaving) < radius : false;
     walk.last = corner.place;
     walk.starts = false;
@@ -308,8 +313,8 @@ BlockedArcs blocked_arcs(View view, LinePlane plane, Point point, Side side, Sea
     walk.is_own = false;
     walk.thickness = thickness == 0.0 ? unpack_width(marked) : thickness;
     const Stroke stroke = with_unseen(Stroke(corner.place, corner.place), true, corner.unseen);
-    block(all, walk, search, clip_to_sphere(stroke, radius_sq, search.unit), corner.place, point.eye_distance, least,
-          radius_sq);
+    block(all, walk, search, clip_to_sphere(stroke, radius_sq, search.unit), true, corner.place, point.eye_distance,
+          least, radius_sq);
   }
   const float arc = arc_of(side, search, all);
   return BlockedArcs(arc, kCompletes == kCompletesApart ? arc - arc_of(side, search, seen) : 0.0,

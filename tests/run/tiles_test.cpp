@@ -100,7 +100,7 @@ TEST_F(Tiles, give_the_bits_of_the_whole) {
         {"--radius", "0.2", "--resolution", "half"},
         {"--radius", "0.2", "--resolution", "quarter", "--denoise-radius", "5"},
         {"--radius", "0.2", "--stride", "4"},
-        {"--radius", "0.06", "--tolerance", "0.03", "--aov", "ao,error"},
+        {"--radius", "0.03", "--tolerance", "0.03", "--aov", "ao,error"},
         {"--radius", "0.2", "--roi", "3,5,450,250", "--falloff", "smooth"}}) {
     expect_same(options);
   }

