@@ -1,13 +1,13 @@
 // Tells how far the visibility of a pixel follows from what the frame shows, and is no guess.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// In: planar depth, view normals, the visibilities with thin and with endless occluders.
+// In: planar depth, view normals, the visibilities with thin and with endless occluders, and with completed surfaces.
 // Out: confidence.
 //
 // It is the product of four factors, each 1 where nothing is unknown:
 // - The backs of what is seen are not seen, and neither is what goes on behind it or beyond the border. The truth lies
-//   between both visibilities, so the factor is 1 - their distance. Thin occluders are not completed; endless ones
-//   block all that completed surfaces could, and go on beyond the border as the settings say.
+//   between the visibility with thin occluders, where nothing is completed, and that with endless ones, or with thin
+//   ones and completed surfaces, whichever is less. The factor is 1 - their distance.
 // - No estimate of what blocks is exact: 1 - half of what endless occluders block.
 // - What is beyond the border is not seen. The factor is 1 less a fifth of the part that lies outside of the image, of
 //   the disc in which the sphere of the radius is seen, times what endless occluders block: what is there blocks where
@@ -27,6 +27,7 @@ layout(scalar, binding = kConfidenceDepth) readonly buffer Depth { float depth[]
 layout(scalar, binding = kConfidenceNormal) readonly buffer Normal { uint normal[]; };
 layout(scalar, binding = kConfidenceThin) readonly buffer Thin { float thin[]; };
 layout(scalar, binding = kConfidenceSolid) readonly buffer Solid { float solid[]; };
+layout(scalar, binding = kConfidenceCompleted) readonly buffer Completed { float completed[]; };
 layout(scalar, binding = kConfidenceResult) writeonly buffer Result { float result[]; };
 
 const int kDirections = 16;
@@ -62,7 +63,8 @@ void main() {
   }
   const bool perspective = view.orthographic == 0;
   const vec3 n = unpack_normal(normal[index]);
-  const float known_backs = 1.0 - clamp(thin[index] - solid[index], 0.0, 1.0);
+  const float least = min(solid[index], completed[index]);
+  const float known_backs = 1.0 - clamp(thin[index] - least, 0.0, 1.0);
   const float blocked = 1.0 - clamp(solid[index], 0.0, 1.0);
   const float seen =
       1.0 - kBorderShare * blocked *

@@ -58,7 +58,8 @@ std::uint64_t chain_bytes(const FrameSource& source, const Settings& settings) {
   std::size_t planes = 2 + (reduced ? estimated : 0);  // depth, normals, the whole estimate
   planes += shapes(e) || !source[RawPlane::material_ao].empty() ? 1 + scales : 0;
   planes += bent ? 1 : 0;
-  planes += wants(o, &FrameOutputs::confidence) ? 2 * 3 : 0;  // thin and solid: estimates, rows, columns
+  // thin, solid and perhaps completed: estimates, rows, columns
+  planes += wants(o, &FrameOutputs::confidence) ? (completes_anywhere(e) ? 3 : 2) * 3 : 0;
   planes += (o.multi_bounce ? 3 : 0) + source[RawPlane::beauty].size() + debug_views_of(o).size();
   for (const auto& aov : aovs_of(o)) planes += channels_of(aov, scales).size();
   const double tiles =

@@ -39,6 +39,29 @@ EstimatorSettings settings_of(double radius) {
   return settings;
 }
 
+// What hides a surface may be nearer than the sphere: then it is no occluder itself, however thick.
+TEST(Confidence, is_low_where_completed_surfaces_decide) {
+  InputSettings input;
+  input.input = ALCOVE_SOURCE_DIR "/examples/bench/colonnade.gbuffer.exr";
+  input.camera = ALCOVE_SOURCE_DIR "/examples/bench/colonnade.camera.json";
+  const HostFrame frame = read_host_frame(input, 0);
+  EstimatorSettings settings = settings_of(0.75);
+  settings.slices = 4;
+  settings.stride = 1;
+  const Outcome all = run(frame, settings);
+  settings.complete = Completion::none;
+  const Outcome none = run(frame, settings);
+  int decided = 0;
+  int trusted = 0;
+  for (std::size_t i = 0; i < all.ao.size(); i++) {
+    if (none.ao[i] - all.ao[i] < 0.2f) continue;
+    decided++;
+    trusted += all.confidence[i] > 0.8f;
+  }
+  EXPECT_GT(decided, 150);
+  EXPECT_LT(trusted, 0.02 * decided);
+}
+
 TEST(Confidence, the_confident_half_errs_less_than_half_as_much_as_the_rest) {
   const std::string folder = ALCOVE_SOURCE_DIR "/examples/bench/";
   struct Scene {
