@@ -51,9 +51,8 @@ gpu::Buffer& confidence(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameI
   const Completion beyond = completes_anywhere(settings) ? Completion::border : Completion::none;
   const gpu::Buffer& solid = visibility(std::numeric_limits<float>::infinity(), beyond, "solid ");
   // What is nearer than the sphere is no occluder, but may hide surfaces within it.
-  const gpu::Buffer& completed = completes_anywhere(settings)
-                                     ? visibility(float(kThin * radius), bracket.complete, "completed ")
-                                     : thin;
+  const gpu::Buffer& completed =
+      completes_anywhere(settings) ? visibility(float(kThin * radius), bracket.complete, "completed ") : thin;
   gpu::Buffer& result = gpu.buffer("confidence", plane_bytes(gbuffer.view), gpu::Use::device);
   gpu.dispatch("confidence", ConfidenceParams{gbuffer.view, float(radius), gbuffer.depth_precision},
                {{kConfidenceDepth, *gbuffer.depth},
