@@ -16,6 +16,14 @@ namespace alcove {
 enum class FrameState { done, failed, kept, dropped };
 const char* name_of(FrameState state);
 
+/// Visibility that is taken, added up over the receivers of an estimate of the largest radius.
+struct TakenVisibility {
+  double by_completed = 0;  // by surfaces where they are only guessed to go on
+  double whole = 0;
+
+  double completed_share() const { return whole > 0 ? by_completed / whole : 0; }
+};
+
 /// What happened to one frame.
 struct FrameReport {
   int frame = 0;
@@ -38,14 +46,7 @@ struct FrameReport {
   } tiles;
   // The sum of squared errors of an estimate with a tolerance, and the pixels that it is over.
   double error_squares = 0, error_pixels = 0;
-  /// Visibility that is taken, added up over the receivers of an estimate of the largest radius.
-  struct Occlusion {
-    double by_completed = 0;  // by surfaces where they are only guessed to go on
-    double whole = 0;
-
-    double completed_share() const { return whole > 0 ? by_completed / whole : 0; }
-  };
-  std::optional<Occlusion> occlusion;  // of a frame with an estimate, where --stats asks for it
+  std::optional<TakenVisibility> occlusion;  // of a frame with an estimate, where --stats asks for it
   // Depth samples that the settings ask for, averaged over all pixels; sky asks for none.
   double samples_per_pixel = 0;
   std::uint64_t pixels_at_once = 0;  // the most that were computed at once
