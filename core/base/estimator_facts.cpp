@@ -19,10 +19,6 @@ double samples_of_a_radius(const EstimatorSettings& settings) {
   return samples / (factor * factor * stride_of(settings));
 }
 
-bool knows_thickness(const EstimatorSettings& settings) {
-  return settings.estimator == Estimator::gtao || settings.estimator == Estimator::bitmask;
-}
-
 }  // namespace
 
 std::vector<double> radii_of(const EstimatorSettings& settings) {
@@ -36,17 +32,17 @@ bool searches_exactly(const EstimatorSettings& settings) {
   return settings.estimator == Estimator::gtao && (settings.search != SliceSearch::steps || settings.tolerance > 0);
 }
 
-bool has_bent_normals(const EstimatorSettings& settings) {
+bool searches_slices(const EstimatorSettings& settings) {
   return settings.estimator == Estimator::gtao || settings.estimator == Estimator::bitmask;
 }
 
 bool completes(const EstimatorSettings& settings) {
-  return knows_thickness(settings) && settings.complete == Completion::all &&
+  return searches_slices(settings) && settings.complete == Completion::all &&
          settings.thickness != ThicknessKind::infinite;
 }
 
 bool completes_anywhere(const EstimatorSettings& settings) {
-  return knows_thickness(settings) && settings.complete != Completion::none;
+  return searches_slices(settings) && settings.complete != Completion::none;
 }
 
 int stride_of(const EstimatorSettings& settings) {

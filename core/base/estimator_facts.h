@@ -14,8 +14,9 @@ std::vector<double> radii_of(const EstimatorSettings& settings);
 /// Whether slices are searched by profile and exact, and not by horizon.
 bool searches_exactly(const EstimatorSettings& settings);
 
-/// Whether the estimator finds open directions too.
-bool has_bent_normals(const EstimatorSettings& settings);
+/// Whether the estimator searches slices about the view ray, of gtao and bitmask: these find open directions too, know
+/// how thick occluders are, and nothing beyond the radius blocks.
+bool searches_slices(const EstimatorSettings& settings);
 
 /// Whether surfaces are completed behind what is nearer. They are not where occluders are endless, since all that those
 /// hide is blocked anyway. What goes on beyond the picture's border does not count here.

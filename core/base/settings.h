@@ -91,12 +91,12 @@ struct EstimatorSettings {
   SampleKernel sample_kernel = SampleKernel::clustered;  // of estimator crytek
   // of estimator crytek; ratio: full within the radius, so that no hit in reach is lost
   RangeCheck range_check = RangeCheck::ratio;
-  // how far an occluder goes on behind what is seen of it; automatic: as deep as it is wide, and half of that where
-  // surfaces are completed behind what is nearer
+  // how far an occluder goes on behind what is seen of it; automatic: as deep as it is wide, and in an exact search
+  // half of that where surfaces are completed behind what is nearer
   ThicknessKind thickness = ThicknessKind::automatic;
   double thickness_length = 0;  // scene units, > 0; with ThicknessKind::constant
-  // Of gtao and bitmask: where a surface goes on straight although the frame does not show it. That is a guess, and on
-  // all scenes it was nearer to ray tracing than to leave the surface out. none: nowhere, so that only what is seen
+  // Of gtao and bitmask: where a surface goes on straight although the frame does not show it. That is a guess; on all
+  // rendered scenes the AO came nearer to ray tracing by it. none: nowhere, so that only what is seen
   // blocks; border: beyond the picture's border; all: also behind what is nearer to the eye.
   Completion complete = Completion::all;
   Resolution resolution = Resolution::full;

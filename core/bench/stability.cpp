@@ -9,6 +9,7 @@
 #include <map>
 #include <numbers>
 
+#include "core/base/estimator_facts.h"
 #include "core/chain/compute.h"
 #include "core/frame/scale_notes.h"
 #include "core/reference/reference.h"
@@ -308,7 +309,7 @@ class Bench {
   const std::vector<float>& reference_of(const Trial& trial, const Candidate& candidate,
                                          const std::vector<std::size_t>& pixels) {
     const EstimatorSettings settings = with(candidate.settings, trial.exact_radius);
-    const bool by_slices = settings.estimator == Estimator::gtao || settings.estimator == Estimator::bitmask;
+    const bool by_slices = searches_slices(settings);
     auto& made = made_[fmt::format("{} {} {} {}", trial.picture, trial.exact_radius,
                                    by_slices ? -1 : int(settings.estimator), int(settings.thickness))];
     if (!made.empty()) return made;

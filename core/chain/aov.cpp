@@ -77,7 +77,7 @@ bool Wanted::is_only_visibility() const {
 bool needs_ao(const OutputSettings& output) { return Wanted(output).visibility; }
 
 bool needs_bent(const EstimatorSettings& settings, const Wanted& wanted) {
-  return wanted.open_directions && has_bent_normals(settings);
+  return wanted.open_directions && searches_slices(settings);
 }
 
 }  // namespace alcove

@@ -35,7 +35,7 @@ gpu::Buffer& confidence(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameI
   const Sampling sampling = sampling_of(bracket, frame.frame);
   const Skipping skipping = skipping_of(bracket, frame.changes);
   const Denoiser denoiser = denoiser_of(bracket);
-  const Bounds surfaces = bounds(gpu, gbuffer, skipping.proves, skipping.completes ? 1 : sampling.stride);
+  const Bounds surfaces = bounds(gpu, gbuffer, skipping, sampling.stride);
   coarsen(gpu, gbuffer, surfaces);
   const auto visibility = [&](float thickness, Completion complete, const std::string& prefix) -> const gpu::Buffer& {
     Reach reach = reach_of(bracket, radius);

@@ -80,8 +80,7 @@ uint completion_of(const Reach& reach) {
   switch (reach.complete) {
     case Completion::none: break;
     case Completion::border: return kCompletesBorder;
-    // What endless occluders hide is blocked anyway.
-    case Completion::all: return kCompletesBorder | (std::isinf(reach.thickness) ? 0u : kCompletesHidden);
+    case Completion::all: return kCompletesBorder | (completes_behind(reach) ? kCompletesHidden : 0u);
   }
   return 0;
 }
@@ -111,16 +110,17 @@ Reach reach_of(const EstimatorSettings& settings, double radius) {
           float(settings.bias), settings.complete};
 }
 
+bool completes_behind(const Reach& reach) { return reach.complete == Completion::all && !std::isinf(reach.thickness); }
+
 Sampling sampling_of(const EstimatorSettings& settings, int frame) {
   return {settings.slices, settings.steps, stride_of(settings),
           noise_shift(settings.noise == Noise::animated ? frame : 0, settings.seed)};
 }
 
 Skipping skipping_of(const EstimatorSettings& settings, const gpu::Buffer* changes) {
-  const bool is_ranged = settings.estimator == Estimator::gtao || settings.estimator == Estimator::bitmask;
   return {!settings.no_skip,
           proves(settings),
-          is_ranged,
+          searches_slices(settings),
           settings.skip_tolerance,
           settings.no_skip ? nullptr : changes,
           completes_anywhere(settings)};
@@ -142,8 +142,7 @@ Estimate estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs&
   // Tiles that are as in the frame before keep what it found in them.
   if (completed && (is_exact || !skipping.changes)) gpu.clear(*completed);
 
-  // What goes on beyond the border is told by the normals of all pixels there.
-  const Bounds surfaces = bounds(gpu, gbuffer, skipping.proves, skipping.completes ? 1 : sampling.stride);
+  const Bounds surfaces = bounds(gpu, gbuffer, skipping, sampling.stride);
   coarsen(gpu, gbuffer, surfaces);
   for (uint plane = 0; plane < radii.size(); plane++) {
     const Reach reach = reach_of(settings, radii[plane]);
@@ -175,8 +174,10 @@ Estimate estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs&
   return result;
 }
 
-Bounds bounds(gpu::Recorder& gpu, const GBuffer& gbuffer, bool proves, int stride) {
-  if (!proves) return {};
+Bounds bounds(gpu::Recorder& gpu, const GBuffer& gbuffer, const Skipping& skipping, int stride) {
+  if (!skipping.proves) return {};
+  // What goes on beyond the border is told by the normals of all pixels there, not of the receivers alone.
+  if (skipping.completes) stride = 1;
   const gpu::Extent tiles = tile_extent(gbuffer.view);
   const gpu::Extent groups = group_extent(gbuffer.view);
   const Bounds result{&gpu.buffer("bounds", sizeof(TileBounds) * tiles.x * tiles.y, gpu::Use::device),

@@ -49,6 +49,8 @@ struct Reach {
   Completion complete;  // where surfaces go on unseen: see EstimatorSettings::complete
 };
 Reach reach_of(const EstimatorSettings& settings, double radius);
+/// Whether surfaces go on behind what is nearer. What endless occluders hide is blocked anyway.
+bool completes_behind(const Reach& reach);
 
 /// How samples are spread over the hemisphere, and over neighbouring pixels.
 struct Sampling {
@@ -83,7 +85,7 @@ struct Bounds {
   gpu::Buffer* groups = nullptr;  // GroupBounds for each group of tiles
 };
 /// The bounds of the tiles, where tiles are to be proved.
-Bounds bounds(gpu::Recorder& gpu, const GBuffer& gbuffer, bool proves, int stride);
+Bounds bounds(gpu::Recorder& gpu, const GBuffer& gbuffer, const Skipping& skipping, int stride);
 /// Bounds the groups of tiles, where the tiles have bounds.
 void coarsen(gpu::Recorder& gpu, const GBuffer& gbuffer, const Bounds& bounds);
 

@@ -57,9 +57,6 @@ Lines lines_of(const View& view, ivec2 origin, int direction, int directions) {
   return lines;
 }
 
-/// What endless occluders hide is blocked anyway.
-bool completes_behind(const Reach& reach) { return reach.complete == Completion::all && !std::isinf(reach.thickness); }
-
 /// One float per pixel: the sum of the whole arcs over the directions so far.
 gpu::Buffer& whole_arcs(gpu::Recorder& gpu, const GBuffer& gbuffer) {
   return gpu.buffer("whole arcs", plane_bytes(gbuffer.view), gpu::Use::device);

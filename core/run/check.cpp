@@ -70,7 +70,7 @@ void check_completion(const Settings& settings) {
 /// Several radii make sense once each; bent normals need an estimator that finds open directions.
 void check_scales(const Settings& settings) {
   const auto& e = settings.estimator;
-  if (wants(settings.output, &FrameOutputs::bent_normal) && !has_bent_normals(e))
+  if (wants(settings.output, &FrameOutputs::bent_normal) && !searches_slices(e))
     fail(ErrorKind::usage, "--aov bent-normal: --estimator {} finds no open directions; gtao and bitmask do",
          e.estimator == Estimator::hbao ? "hbao" : "crytek");
   if (e.further_radii.empty()) return;

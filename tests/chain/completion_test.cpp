@@ -164,7 +164,7 @@ TEST_F(Planes, are_0_in_tiles_that_are_left_out_and_else_as_they_were) {
   const float radius = 0.05f;
   const Skipping skipping{.skips_sky = true, .proves = true, .is_ranged = true, .tolerance = 0, .changes = nullptr};
   for (const int stride : {1, 4}) {
-    const Bounds surfaces = bounds(recorder(), gbuffer, true, stride);
+    const Bounds surfaces = bounds(recorder(), gbuffer, skipping, stride);
     coarsen(recorder(), gbuffer, surfaces);
     Estimate out;
     out.ao = &plane("ao of a test", std::vector<float>(frame.data.pixels(), kBefore));

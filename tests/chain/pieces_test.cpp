@@ -22,6 +22,7 @@
 #include "tests/support/command_line.h"
 #include "tests/support/device.h"
 #include "tests/support/difference.h"
+#include "tests/support/hidden_truth.h"
 #include "tests/support/scenes.h"
 
 namespace alcove {
@@ -31,6 +32,7 @@ using namespace test;
 
 constexpr double kThin = 0.001;  // scene units
 constexpr int kRaysAcross = 64;
+constexpr int kEvery = 4;  // px from one receiver to the next
 constexpr Estimator kSampled[] = {Estimator::gtao, Estimator::bitmask};
 const Plane kFloor{.point = {}, .normal = {0, 0, 1}};
 const Plane kWall{.point = {}, .normal = {1, 0, 0}};
@@ -73,48 +75,6 @@ std::vector<float> ao_of(const HostFrame& frame, const EstimatorSettings& settin
   return compute_ao(recorder(), frame, settings).ao;
 }
 
-/// The mean over the rays of a receiver, as dense as the cosine to its normal, of what `value` gives for the ray and
-/// what it hits.
-double mean_over_rays(const Scene& scene, const Hit& receiver,
-                      const std::function<double(const Hit&, const Vec3&)>& value) {
-  const Vec3 x = unit(cross(std::abs(receiver.normal.x) < 0.9 ? Vec3{1, 0, 0} : Vec3{0, 1, 0}, receiver.normal));
-  const Vec3 y = cross(receiver.normal, x);
-  double sum = 0;
-  for (int i = 0; i < kRaysAcross; i++) {
-    const double out = std::sqrt((i + 0.5) / kRaysAcross);
-    for (int j = 0; j < kRaysAcross; j++) {
-      const double azimuth = 2 * std::numbers::pi * (j + 0.5) / kRaysAcross;
-      const Vec3 direction =
-          out * (std::cos(azimuth) * x + std::sin(azimuth) * y) + std::sqrt(1 - out * out) * receiver.normal;
-      sum += value(scene.hit({receiver.position, direction}), direction);
-    }
-  }
-  return sum / (kRaysAcross * kRaysAcross);
-}
-
-double true_ao(const Scene& scene, const Hit& receiver, double radius) {
-  return mean_over_rays(scene, receiver,
-                        [&](const Hit& hit, const Vec3&) { return hit.distance < radius ? 0.0 : 1.0; });
-}
-
-using Chosen = std::function<bool(const Hit&)>;
-
-/// Pixels of a grid that show a chosen surface, are not beside an edge, and whose sphere of the radius is in the
-/// picture.
-std::vector<std::size_t> receivers(const Rendering& rendering, double radius, const Chosen& chosen) {
-  constexpr int kEvery = 4;
-  std::vector<std::size_t> pixels;
-  for (int y = 2; y < rendering.shot.data.height; y += kEvery) {
-    for (int x = 2; x < rendering.shot.data.width; x += kEvery) {
-      const Hit& hit = rendering.at(x, y);
-      if (hit.primitive >= 0 && rendering.primitives_within(2, x, y) == 1 &&
-          rendering.shot.sees_ball(hit.position, radius) && chosen(hit))
-        pixels.push_back(std::size_t(y) * std::size_t(rendering.shot.data.width) + std::size_t(x));
-    }
-  }
-  return pixels;
-}
-
 double mean_error(const std::vector<float>& ao, const std::vector<std::size_t>& pixels,
                   const std::vector<double>& truth) {
   double sum = 0;
@@ -134,10 +94,10 @@ Shot oblique(Shot shot) {
 void expect_completed(const char* what, const Scene& scene, const Shot& shot, double radius, const Chosen& chosen,
                       double bound) {
   const Rendering rendering = render(scene, shot);
-  const std::vector<std::size_t> pixels = receivers(rendering, radius, chosen);
+  const std::vector<std::size_t> pixels = receivers(rendering, radius, kEvery, chosen);
   ASSERT_GE(pixels.size(), 30u) << what;
   std::vector<double> truth;
-  for (const std::size_t i : pixels) truth.push_back(true_ao(scene, rendering.hits[i], radius));
+  for (const std::size_t i : pixels) truth.push_back(true_ao(scene, rendering.hits[i], radius, kRaysAcross));
   for (const Estimator estimator : kSampled) {
     const double all = mean_error(ao_of(rendering.frame, thin(estimator, radius, Completion::all)), pixels, truth);
     const double none = mean_error(ao_of(rendering.frame, thin(estimator, radius, Completion::none)), pixels, truth);
@@ -184,7 +144,7 @@ TEST(Pieces, of_a_wall_that_ends_behind_a_column_err_by_what_it_hides_at_most) {
   const Scene scene{{kFloor, wall, column}}, columns{{column}};
   const Rendering rendering = render(scene, Shot::perspective(eye, {0.3, 0, 0.6}, 50, 240, 180));
   const auto pixels =
-      receivers(rendering, 1, [](const Hit& hit) { return hit.primitive == 0 && hit.position.x < 0.5; });
+      receivers(rendering, 1, kEvery, [](const Hit& hit) { return hit.primitive == 0 && hit.position.x < 0.5; });
   ASSERT_GE(pixels.size(), 30u);
   for (const Estimator estimator : kSampled) {
     const std::vector<float> ao = ao_of(rendering.frame, thin(estimator, 1, Completion::all));
@@ -193,7 +153,7 @@ TEST(Pieces, of_a_wall_that_ends_behind_a_column_err_by_what_it_hides_at_most) {
     for (const std::size_t i : pixels) {
       const Hit& receiver = rendering.hits[i];
       double missed = 0;
-      const double added = mean_over_rays(scene, receiver, [&](const Hit& hit, const Vec3& direction) {
+      const double added = mean_over_rays(scene, receiver, kRaysAcross, [&](const Hit& hit, const Vec3& direction) {
         const double to_plane = -receiver.position.x / direction.x;
         if (!(to_plane > 0 && to_plane < 1)) return 0.0;
         const Vec3 on_plane = receiver.position + to_plane * direction;
@@ -201,7 +161,7 @@ TEST(Pieces, of_a_wall_that_ends_behind_a_column_err_by_what_it_hides_at_most) {
         missed += hit.primitive == 1 ? 1.0 / (kRaysAcross * kRaysAcross) : 0;
         return hit.distance >= 1 ? 1.0 : 0.0;
       });
-      const double truth = true_ao(scene, receiver, 1);
+      const double truth = true_ao(scene, receiver, 1, kRaysAcross);
       EXPECT_GE(ao[i], truth - added - kSampling) << i << ", not wall " << added << ", estimator " << int(estimator);
       EXPECT_LE(ao[i], truth + missed + kSampling) << i << ", wall " << missed << ", estimator " << int(estimator);
       largest = std::max(largest, added);
@@ -230,7 +190,7 @@ TEST(Pieces, of_a_wall_go_on_beyond_the_border_as_in_a_wider_picture) {
     while (whole.at(120, cut).position.z > 0.25) cut++;
     const HostFrame frame = without_upper_rows(whole.frame, cut);
     std::vector<std::size_t> pixels =
-        receivers(whole, 1, [](const Hit& hit) { return hit.primitive == 0 && hit.position.x < 0.7; });
+        receivers(whole, 1, kEvery, [](const Hit& hit) { return hit.primitive == 0 && hit.position.x < 0.7; });
     ASSERT_GE(pixels.size(), 30u);
     for (const Estimator estimator : kSampled) {
       const std::vector<float> expected = ao_of(whole.frame, thin(estimator, 1, Completion::none));

@@ -39,7 +39,7 @@ std::vector<float> values_of(const FrameOutputs& outputs) {
 /// all: also what is made of the AO, and by other estimates beside it.
 OutputSettings outputs_for(const EstimatorSettings& settings, bool all) {
   OutputSettings output;
-  output.aovs = has_bent_normals(settings) ? "ao,bent-normal,ao-scales" : "ao,ao-scales";
+  output.aovs = searches_slices(settings) ? "ao,bent-normal,ao-scales" : "ao,ao-scales";
   if (all) output.aovs += ",confidence,specular-occlusion";
   return output;
 }

@@ -35,7 +35,7 @@ struct Outcome {
 Outcome run(const HostFrame& frame, EstimatorSettings settings, bool no_skip) {
   settings.no_skip = no_skip;
   OutputSettings output;
-  output.aovs = has_bent_normals(settings) ? "ao,bent-normal,ao-scales" : "ao,ao-scales";
+  output.aovs = searches_slices(settings) ? "ao,bent-normal,ao-scales" : "ao,ao-scales";
   const FrameOutputs outputs = run_chain(recorder(), upload(recorder(), frame), settings, output);
   recorder().run();
   Outcome outcome;

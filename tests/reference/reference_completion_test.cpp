@@ -14,6 +14,7 @@
 
 #include "core/reference/reference.h"
 #include "tests/support/furnished.h"
+#include "tests/support/hidden_truth.h"
 #include "tests/support/random_scenes.h"
 #include "tests/support/scenes.h"
 
@@ -24,6 +25,7 @@ using namespace test;
 
 constexpr double kThin = 1e-4;  // scene units
 constexpr int kRaysAcross = 160;
+constexpr int kEvery = 5;  // px from one receiver to the next
 const Plane kFloor{.point = {}, .normal = {0, 0, 1}};
 const Plane kWall{.point = {}, .normal = {1, 0, 0}};
 
@@ -35,53 +37,6 @@ ReferenceSettings thin(double radius, Completion complete) {
   settings.thickness_length = kThin;
   settings.complete = complete;
   return settings;
-}
-
-/// Unit directions about a normal, as dense as the cosine to it.
-std::vector<Vec3> directions_about(Vec3 normal) {
-  const Vec3 x = unit(cross(std::abs(normal.x) < 0.9 ? Vec3{1, 0, 0} : Vec3{0, 1, 0}, normal));
-  const Vec3 y = cross(normal, x);
-  std::vector<Vec3> directions;
-  for (int i = 0; i < kRaysAcross; i++) {
-    for (int j = 0; j < kRaysAcross; j++) {
-      const double out = std::sqrt((i + 0.5) / kRaysAcross);
-      const double azimuth = 2 * std::numbers::pi * (j + 0.5) / kRaysAcross;
-      directions.push_back(out * (std::cos(azimuth) * x + std::sin(azimuth) * y) + std::sqrt(1 - out * out) * normal);
-    }
-  }
-  return directions;
-}
-
-/// The mean over the rays of a receiver of what `value` gives for the ray and what it hits.
-double mean_over_rays(const Scene& scene, const Hit& receiver,
-                      const std::function<double(const Hit&, const Vec3&)>& value) {
-  const std::vector<Vec3> directions = directions_about(receiver.normal);
-  double sum = 0;
-  for (const Vec3& direction : directions) sum += value(scene.hit({receiver.position, direction}), direction);
-  return sum / double(directions.size());
-}
-
-double true_ao(const Scene& scene, const Hit& receiver, double radius) {
-  return mean_over_rays(scene, receiver,
-                        [&](const Hit& hit, const Vec3&) { return hit.distance < radius ? 0.0 : 1.0; });
-}
-
-using Chosen = std::function<bool(const Hit&)>;
-
-/// Pixels of a grid that show a chosen surface, are not beside an edge, and whose sphere of the radius is in the
-/// picture.
-std::vector<std::size_t> receivers(const Rendering& rendering, double radius, const Chosen& chosen) {
-  constexpr int kEvery = 5;
-  std::vector<std::size_t> pixels;
-  for (int y = 2; y < rendering.shot.data.height; y += kEvery) {
-    for (int x = 2; x < rendering.shot.data.width; x += kEvery) {
-      const Hit& hit = rendering.at(x, y);
-      if (hit.primitive >= 0 && rendering.primitives_within(2, x, y) == 1 &&
-          rendering.shot.sees_ball(hit.position, radius) && chosen(hit))
-        pixels.push_back(std::size_t(y) * std::size_t(rendering.shot.data.width) + std::size_t(x));
-    }
-  }
-  return pixels;
 }
 
 struct Errors {
@@ -123,10 +78,10 @@ void expect_completed(const char* what, const Scene& scene, const Shot& shot, do
                       double bound, double gain) {
   const Rendering rendering = render(scene, shot);
   ReferenceSettings settings = thin(radius, Completion::all);
-  settings.pixels = receivers(rendering, radius, chosen);
+  settings.pixels = receivers(rendering, radius, kEvery, chosen);
   ASSERT_GE(settings.pixels.size(), 30u) << what;
   std::vector<double> truth;
-  for (const std::size_t i : settings.pixels) truth.push_back(true_ao(scene, rendering.hits[i], radius));
+  for (const std::size_t i : settings.pixels) truth.push_back(true_ao(scene, rendering.hits[i], radius, kRaysAcross));
   const Errors all = errors_of(reference_ao(rendering.frame, settings), settings.pixels, truth);
   settings.complete = Completion::none;
   const Errors none = errors_of(reference_ao(rendering.frame, settings), settings.pixels, truth);
@@ -172,10 +127,11 @@ TEST(Completion, a_falloff_weighs_what_goes_on) {
   const Rendering rendering = render(scene, Shot::perspective({5, 0.3, 1.8}, {0.3, 0, 0.6}, 50, 320, 240));
   ReferenceSettings settings = thin(1, Completion::all);
   settings.falloff = Falloff::linear;
-  settings.pixels = receivers(rendering, 1, [](const Hit& hit) { return hit.primitive == 0 && hit.position.x < 0.7; });
+  settings.pixels =
+      receivers(rendering, 1, kEvery, [](const Hit& hit) { return hit.primitive == 0 && hit.position.x < 0.7; });
   std::vector<double> truth;
   for (const std::size_t i : settings.pixels)
-    truth.push_back(mean_over_rays(scene, rendering.hits[i],
+    truth.push_back(mean_over_rays(scene, rendering.hits[i], kRaysAcross,
                                    [](const Hit& hit, const Vec3&) { return std::min(1.0, hit.distance); }));
   const Errors errors = errors_of(reference_ao(rendering.frame, settings), settings.pixels, truth);
   EXPECT_LE(errors.mean, 0.002);
@@ -186,12 +142,13 @@ TEST(Completion, bent_normals_lean_away_from_what_goes_on) {
   const Scene scene{{kFloor, kWall, parallelogram({0.8, -0.5, 0.45}, {0, 1, 0}, {0, 0, 0.8})}};
   const Rendering rendering = render(scene, Shot::perspective({5, 0.3, 1.8}, {0.3, 0, 0.6}, 50, 320, 240));
   ReferenceSettings settings = thin(1, Completion::all);
-  settings.pixels = receivers(rendering, 1, [](const Hit& hit) { return hit.primitive == 0 && hit.position.x < 0.7; });
+  settings.pixels =
+      receivers(rendering, 1, kEvery, [](const Hit& hit) { return hit.primitive == 0 && hit.position.x < 0.7; });
   const std::vector<float> bent = reference_bent(rendering.frame, settings);
   const std::size_t plane = rendering.frame.data.pixels();
   for (const std::size_t i : settings.pixels) {
     Vec3 open;
-    mean_over_rays(scene, rendering.hits[i], [&](const Hit& hit, const Vec3& direction) {
+    mean_over_rays(scene, rendering.hits[i], kRaysAcross, [&](const Hit& hit, const Vec3& direction) {
       if (hit.distance >= 1) open = open + direction;
       return 0;
     });
@@ -210,7 +167,8 @@ TEST(Completion, a_wall_that_ends_behind_a_column_errs_by_what_the_column_hides_
   const Scene scene{{kFloor, wall, column}};
   const Rendering rendering = render(scene, Shot::perspective(eye, {0.3, 0, 0.6}, 50, 320, 240));
   ReferenceSettings settings = thin(1, Completion::all);
-  settings.pixels = receivers(rendering, 1, [](const Hit& hit) { return hit.primitive == 0 && hit.position.x < 0.5; });
+  settings.pixels =
+      receivers(rendering, 1, kEvery, [](const Hit& hit) { return hit.primitive == 0 && hit.position.x < 0.5; });
   ASSERT_GE(settings.pixels.size(), 30u);
   const std::vector<float> ao = reference_ao(rendering.frame, settings);
   constexpr double kPixel = 0.015;  // what the size of pixels costs
@@ -218,9 +176,9 @@ TEST(Completion, a_wall_that_ends_behind_a_column_errs_by_what_the_column_hides_
   const Scene columns{{column}};
   for (const std::size_t i : settings.pixels) {
     const Hit& receiver = rendering.hits[i];
-    const double truth = true_ao(scene, receiver, 1);
+    const double truth = true_ao(scene, receiver, 1, kRaysAcross);
     double missed = 0;
-    const double added = mean_over_rays(scene, receiver, [&](const Hit& hit, const Vec3& direction) {
+    const double added = mean_over_rays(scene, receiver, kRaysAcross, [&](const Hit& hit, const Vec3& direction) {
       const double to_plane = -receiver.position.x / direction.x;
       if (!(to_plane > 0 && to_plane < 1)) return 0.0;
       const Vec3 on_plane = receiver.position + to_plane * direction;
@@ -246,7 +204,8 @@ TEST(Completion, beyond_the_border_a_wall_goes_on_as_in_a_wider_picture) {
     while (whole.at(160, cut).position.z > 0.25) cut++;
     const HostFrame frame = without_upper_rows(whole.frame, cut);
     ReferenceSettings settings = thin(1, Completion::none);
-    settings.pixels = receivers(whole, 1, [](const Hit& hit) { return hit.primitive == 0 && hit.position.x < 0.7; });
+    settings.pixels =
+        receivers(whole, 1, kEvery, [](const Hit& hit) { return hit.primitive == 0 && hit.position.x < 0.7; });
     ASSERT_GE(settings.pixels.size(), 30u);
     const std::vector<float> expected = reference_ao(whole.frame, settings);
     const std::size_t rows = std::size_t(cut) * std::size_t(frame.data.width);

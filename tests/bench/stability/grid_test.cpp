@@ -188,7 +188,7 @@ TEST(Grid, estimators_write_their_own_plane_and_all_of_it) {
             exact(gpu, gbuffer, lines, directions, reach, out, 1);
           }
         } else {
-          const Bounds surfaces = bounds(gpu, gbuffer, skipping.proves, skipping.completes ? 1 : sampling.stride);
+          const Bounds surfaces = bounds(gpu, gbuffer, skipping, sampling.stride);
           out.listed = classify(gpu, gbuffer, surfaces, skipping, reach.radius, sampling.stride, out, 1);
           switch (settings.estimator) {
             case Estimator::gtao: horizon(gpu, gbuffer, reach, sampling, out, 1); break;
