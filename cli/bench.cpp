@@ -128,14 +128,14 @@ void time_batches(const Suite& suite, const BenchArguments& a) {
 }
 
 void print_table(const BenchReport& report) {
-  fmt::print("{:<14} {:<24} {:>9} {:>7} {:>8} {:>8} {:>8} {:>9} {:>9}\n", "frame", "candidate", "ms", "yards", "rmse",
-             "bias", "p99", "estimator", "geometry");
+  fmt::print("{:<14} {:<24} {:>9} {:>7} {:>8} {:>8} {:>8} {:>8} {:>9} {:>9}\n", "frame", "candidate", "ms", "yards",
+             "rmse", "bias", "p99", "grain", "estimator", "geometry");
   for (const auto& row : report.rows) {
     const auto& frame = *std::ranges::find(report.frames, row.frame, &BenchFrame::name);
     const auto number = [](std::optional<double> value) { return value ? fmt::format("{:.4f}", *value) : "-"; };
-    fmt::print("{:<14} {:<24} {:>9.2f} {:>7} {:>8.4f} {:>+8.4f} {:>8.4f} {:>9} {:>9}\n", row.frame, row.candidate,
+    fmt::print("{:<14} {:<24} {:>9.2f} {:>7} {:>8.4f} {:>+8.4f} {:>8.4f} {:>8} {:>9} {:>9}\n", row.frame, row.candidate,
                row.ms, frame.yardstick_ms ? fmt::format("{:.2f}", row.ms / *frame.yardstick_ms) : "-", row.rmse,
-               row.bias, row.p99, number(row.estimator_rmse), number(row.geometry_rmse));
+               row.bias, row.p99, number(row.grain), number(row.estimator_rmse), number(row.geometry_rmse));
   }
 }
 

@@ -40,7 +40,7 @@ std::vector<OptionRow> rows_of(CompareArguments& a) {
                "name");
   options.text("--mask", s.mask, "FILE", "compare only where it is above 0");
   options.text("--mask-channel", s.mask_channel, "NAME", "the mask's channel; else its only one, or its alpha");
-  options.text("--depth", s.depth, "FILE.exr", "leave out the sky, and measure depth edges too");
+  options.text("--depth", s.depth, "FILE.exr", "leave out the sky, and measure depth edges and grain too");
   options.text("--depth-channel", s.depth_channel, "NAME", "the depth channel; else found by its usual names");
   options.number("--sky", s.sky, "", above(0), "depth at or beyond it is sky, as are 0, infinity and NaN");
   options.text("--frames", s.frames, "LIST", "frames such as 1001-1100x2,1200; else those of RESULT on the disk");
@@ -57,6 +57,8 @@ std::vector<OptionRow> rows_of(CompareArguments& a) {
   limits.number("--min-ssim", a.limits.min_ssim, "", between(-1, 1), "the least structural similarity");
   limits.number("--max-flip", a.limits.max_flip, "", between(0, 1), "the largest mean FLIP");
   limits.number("--max-bias", a.limits.max_bias, "", at_least(0), "the largest size of the mean error");
+  limits.number("--max-grain", a.limits.max_grain, "", at_least(0),
+                "the largest grain, which needs --depth; a frame without plain surfaces ends with exit code 3");
   return rows;
 }
 
@@ -88,7 +90,8 @@ void print_picture(const FrameComparison& c) {
   const PlaneErrors& e = c.errors;
   fmt::print("  rmse {:.4f}   mae {:.4f}   bias {:+.4f}   max {:.4f}   p95 {:.4f}   p99 {:.4f}\n", e.rmse, e.mae,
              e.bias, e.max, e.p95, e.p99);
-  fmt::print("  psnr {:.2f} dB   ssim {}   flip {:.4f}\n", c.psnr, optional_number(c.ssim), c.flip);
+  fmt::print("  psnr {:.2f} dB   ssim {}   flip {:.4f}   grain {}\n", c.psnr, optional_number(c.ssim), c.flip,
+             optional_number(c.grain));
   for (const auto& band : c.bands)
     print_part(fmt::format("reference {:.2f} to {:.2f}", band.from, band.to), band.errors);
   if (!c.edges) return;
@@ -98,13 +101,13 @@ void print_picture(const FrameComparison& c) {
 
 void print_sequence(const CompareReport& report) {
   print_heading(report.result, report.reference, report.frames[0].channels);
-  fmt::print("{:>7} {:>9} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8}\n", "frame", "pixels", "rmse", "mae", "bias", "p99",
-             "psnr", "ssim", "flip");
+  fmt::print("{:>7} {:>9} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8}\n", "frame", "pixels", "rmse", "mae", "bias",
+             "p99", "psnr", "ssim", "flip", "grain");
   double sum = 0;
   for (const auto& c : report.frames) {
     const PlaneErrors& e = c.errors;
-    fmt::print("{:>7} {:>9} {:>8.4f} {:>8.4f} {:>+8.4f} {:>8.4f} {:>8.2f} {:>8} {:>8.4f}\n", c.frame, c.count, e.rmse,
-               e.mae, e.bias, e.p99, c.psnr, optional_number(c.ssim), c.flip);
+    fmt::print("{:>7} {:>9} {:>8.4f} {:>8.4f} {:>+8.4f} {:>8.4f} {:>8.2f} {:>8} {:>8.4f} {:>8}\n", c.frame, c.count,
+               e.rmse, e.mae, e.bias, e.p99, c.psnr, optional_number(c.ssim), c.flip, optional_number(c.grain));
     sum += e.rmse;
   }
   const auto& worst = worst_frame(report);
@@ -122,18 +125,23 @@ int compare_command(const std::vector<std::string>& arguments) {
     require_no_input(a.report, "--report", std::array{s.result, s.reference, s.reference_b, s.mask, s.depth, s.motion});
     require_writable(a.report, "--report");
   }
+  if (a.limits.max_grain && a.settings.depth.empty())
+    fail(ErrorKind::usage,
+         "--max-grain {}: grain is measured on plain surfaces, and only depth shows where they are; give --depth "
+         "FILE.exr",
+         *a.limits.max_grain);
   a.settings.pictures = !a.report.empty();
 
   const CompareReport report = compare_pictures(a.settings);
   const auto broken = broken_limits(report, a.limits);
   if (a.json)
-    fmt::print("{}\n", compare_json(report, broken));
+    fmt::print("{}\n", compare_json(report, broken.sentences));
   else if (report.is_sequence)
     print_sequence(report);
   else
     print_picture(report.frames[0]);
   if (!a.report.empty()) write_whole(a.report, compare_page(report));
-  if (!broken.empty()) fail(ErrorKind::comparison, "{}", fmt::join(broken, "; "));
+  if (!broken.sentences.empty()) fail(broken.kind, "{}", fmt::join(broken.sentences, "; "));
   return 0;
 }
 

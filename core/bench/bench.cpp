@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <map>
 #include <memory>
 #include <tuple>
@@ -17,6 +18,7 @@
 #include "core/chain/chain.h"
 #include "core/chain/compute.h"
 #include "core/formats/exr.h"
+#include "core/frame/evidence.h"
 #include "core/gpu/recorder.h"
 #include "core/measure/metrics.h"
 #include "core/reference/reference.h"
@@ -30,15 +32,17 @@ struct LoadedFrame {
   std::vector<std::vector<float>> truths;
   std::vector<float> truth;           // their mean
   std::vector<std::uint8_t> surface;  // 1 where there is no sky: what is measured
+  std::vector<float> planar;          // depth in scene units, infinite on sky
 };
 
 LoadedFrame load(const SuiteFrame& frame) {
   InputSettings settings;
   settings.input = frame.input;
   settings.camera = frame.camera;
-  LoadedFrame loaded{read_host_frame(settings, 0), {}, {}, {}};
+  LoadedFrame loaded{read_host_frame(settings, 0), {}, {}, {}, {}};
   const auto& host = loaded.host;
   for (const float z : host.depth) loaded.surface.push_back(std::isfinite(z) && z > 0 && z < host.sky);
+  loaded.planar = planar_depths(host.depth, depth_map_of(host), view_of(host.camera, host.data, host.display));
   loaded.truth.assign(host.depth.size(), 0.0f);
   for (const auto& path : frame.truth) {
     const Image image = read_exr_image(path);
@@ -140,10 +144,22 @@ class References {
   std::map<std::tuple<double, Falloff, double, ThicknessRule, double, double, Completion>, std::vector<float>> made_;
 };
 
+/// Empty where there is one truth.
+Values second_truth(const LoadedFrame& frame) { return frame.truths.size() == 2 ? Values(frame.truths[1]) : Values(); }
+
 /// Over the surfaces, without the truths' noise where there are two.
 PlaneErrors against_truth(const std::vector<float>& result, const LoadedFrame& frame) {
-  return compare_planes(result, frame.truths[0], frame.surface,
-                        frame.truths.size() == 2 ? Values(frame.truths[1]) : Values());
+  return compare_planes(result, frame.truths[0], frame.surface, second_truth(frame));
+}
+
+/// Over the plain surfaces; a value that is not finite makes the 15 x 15 pixels about it no plain ones.
+std::optional<double> grain_of(const BenchRow& row, const LoadedFrame& frame) {
+  const int width = frame.host.data.width;
+  const int height = frame.host.data.height;
+  const Comparable values =
+      make_comparable(row.frame, frame.planar.size(), row.ao, frame.truths[0], second_truth(frame), frame.surface);
+  const auto plain = plain_pixels(width, height, frame.planar, std::numeric_limits<double>::infinity(), values.mask);
+  return grain(width, height, plain, values.result, values.reference, values.reference_b);
 }
 
 void measure(BenchRow& row, const LoadedFrame& frame, const EstimatorSettings& settings, References* references) {
@@ -152,6 +168,7 @@ void measure(BenchRow& row, const LoadedFrame& frame, const EstimatorSettings& s
   row.mae = errors.mae;
   row.bias = errors.bias;
   row.p99 = errors.p99;
+  row.grain = grain_of(row, frame);
   if (!references) return;
   const auto reference = references->of(settings);
   row.estimator_rmse = compare_planes(row.ao, reference, frame.surface).rmse;

@@ -248,6 +248,16 @@ ComparePictures pictures_of(const Planes& planes, const std::vector<float>& refe
           error_picture(width, height, mean(planes.values.result), mean(reference))};
 }
 
+/// What only depth can tell: edges and plain surfaces.
+void measure_by_depth(FrameComparison& c, const Planes& planes, double sky) {
+  const auto& values = planes.values;
+  const int width = planes.data.width, height = planes.data.height;
+  c.edges = edge_errors(depth_edges(width, height, planes.depth, sky), values.result, values.reference, values.mask,
+                        values.reference_b);
+  c.grain = grain(width, height, plain_pixels(width, height, planes.depth, sky, values.mask), values.result,
+                  values.reference, values.reference_b);
+}
+
 FrameComparison measure(const CompareSettings& settings, const Planes& planes, int frame) {
   const auto& values = planes.values;
   const int width = planes.data.width, height = planes.data.height;
@@ -267,9 +277,7 @@ FrameComparison measure(const CompareSettings& settings, const Planes& planes, i
   c.ssim = ssim(width, height, values.result, reference, values.mask, settings.peak);
   c.flip = mean_flip(planes, reference, settings.hdr);
   c.bands = darkness_bands(values.result, values.reference, values.mask, values.reference_b);
-  if (!planes.depth.empty())
-    c.edges = edge_errors(depth_edges(width, height, planes.depth, settings.sky), values.result, values.reference,
-                          values.mask, values.reference_b);
+  if (!planes.depth.empty()) measure_by_depth(c, planes, settings.sky);
   if (settings.pictures) c.pictures = pictures_of(planes, reference, settings.hdr);
   return c;
 }

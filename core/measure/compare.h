@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/error.h"
 #include "core/measure/metrics.h"
 
 namespace alcove {
@@ -19,7 +20,7 @@ struct CompareSettings {
   std::string channels;     // see match_channels(); empty: those that both have
   // Pixels where the mask is above 0 are compared. Without a name, its only channel is taken, or its alpha.
   std::string mask, mask_channel;
-  std::string depth, depth_channel;     // sky is not compared, and edges are found
+  std::string depth, depth_channel;     // sky is not compared; edges and plain surfaces are found
   double sky = 1e9;                     // depth at or beyond it is sky, as are 0, infinity and NaN; > 0
   std::string motion, motion_channels;  // "X,Y"; empty: Vector.X, Vector.Y. See ErrorFrame for the convention
   std::string frames;                   // a list; empty: those of the result that are on the disk
@@ -45,6 +46,7 @@ struct FrameComparison {
   double flip = 0;
   std::array<BandErrors, 4> bands;
   std::optional<EdgeErrors> edges;  // with depth
+  std::optional<double> grain;      // with depth; nothing where no pixel is plain
   std::optional<ComparePictures> pictures;
 };
 
@@ -69,11 +71,17 @@ const FrameComparison& worst_frame(const CompareReport& report);
 /// Limits, each of which holds for every frame of a sequence.
 struct CompareLimits {
   std::optional<double> max_rmse, max_p99, min_ssim, max_flip;
-  std::optional<double> max_bias;  // of its size
+  std::optional<double> max_bias;   // of its size
+  std::optional<double> max_grain;  // needs CompareSettings::depth
 };
 
-/// Gives a sentence for each limit that is broken, with what was measured, where, and what was allowed.
-std::vector<std::string> broken_limits(const CompareReport& report, const CompareLimits& limits);
+struct BrokenLimits {
+  std::vector<std::string> sentences;  // one for each: what was measured, where, and what was allowed
+  // ErrorKind::input where a limit on grain holds and a frame has no plain pixel: nothing could be checked there
+  ErrorKind kind = ErrorKind::comparison;
+};
+
+BrokenLimits broken_limits(const CompareReport& report, const CompareLimits& limits);
 
 /// See the README for the fields.
 std::string compare_json(const CompareReport& report, const std::vector<std::string>& broken);

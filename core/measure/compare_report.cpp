@@ -24,7 +24,9 @@ Json number(std::optional<double> value) { return value && std::isfinite(*value)
 struct Measure {
   const char* name;
   double (*of)(const FrameComparison&);
-  double (*badness)(double);  // larger is worse
+  double (*badness)(double);                       // larger is worse
+  const char* why_not = "";                        // it could not be taken
+  ErrorKind kind_without = ErrorKind::comparison;  // of a limit on what could not be taken
 };
 
 double as_it_is(double x) { return x; }
@@ -39,8 +41,11 @@ constexpr std::array kMeasures = {
     Measure{"p95", [](const FrameComparison& f) { return f.errors.p95; }, as_it_is},
     Measure{"p99", [](const FrameComparison& f) { return f.errors.p99; }, as_it_is},
     Measure{"psnr", [](const FrameComparison& f) { return f.psnr; }, negative},
-    Measure{"ssim", [](const FrameComparison& f) { return f.ssim.value_or(NAN); }, negative},
+    Measure{"ssim", [](const FrameComparison& f) { return f.ssim.value_or(NAN); }, negative,
+            "no compared pixel is 5 pixels from all borders"},
     Measure{"flip", [](const FrameComparison& f) { return f.flip; }, as_it_is},
+    Measure{"grain", [](const FrameComparison& f) { return f.grain.value_or(NAN); }, as_it_is,
+            "--depth shows no 15 x 15 compared pixels of one plane", ErrorKind::input},
 };
 
 /// The frame where a measure is worst; one where it could not be taken is worse than any other.
@@ -108,11 +113,11 @@ struct Limit {
 
 }  // namespace
 
-std::vector<std::string> broken_limits(const CompareReport& report, const CompareLimits& limits) {
-  std::vector<std::string> broken;
+BrokenLimits broken_limits(const CompareReport& report, const CompareLimits& limits) {
+  BrokenLimits broken;
   const std::array all{Limit{"rmse", "--max-rmse", limits.max_rmse}, Limit{"p99", "--max-p99", limits.max_p99},
                        Limit{"ssim", "--min-ssim", limits.min_ssim}, Limit{"flip", "--max-flip", limits.max_flip},
-                       Limit{"bias", "--max-bias", limits.max_bias}};
+                       Limit{"bias", "--max-bias", limits.max_bias}, Limit{"grain", "--max-grain", limits.max_grain}};
   for (const auto& limit : all) {
     if (!limit.value) continue;
     const Measure& measure =
@@ -121,9 +126,12 @@ std::vector<std::string> broken_limits(const CompareReport& report, const Compar
     const double value = measure.of(worst);
     if (measure.badness(value) <= measure.badness(*limit.value)) continue;
     const std::string where = report.is_sequence ? fmt::format("frame {}: ", worst.frame) : "";
-    const std::string what = std::isnan(value) ? "cannot be measured: no compared pixel is 5 pixels from all borders"
-                                               : fmt::format("is {:.6g}", value);
-    broken.push_back(fmt::format("{}{} {}, and {} is {:.6g}", where, limit.measure, what, limit.option, *limit.value));
+    const std::string what = std::isnan(value)
+                                 ? fmt::format("cannot be measured in {}: {}", worst.result, measure.why_not)
+                                 : fmt::format("is {:.6g}", value);
+    broken.sentences.push_back(
+        fmt::format("{}{} {}, and {} is {:.6g}", where, limit.measure, what, limit.option, *limit.value));
+    if (std::isnan(value) && measure.kind_without == ErrorKind::input) broken.kind = ErrorKind::input;
   }
   return broken;
 }

@@ -1,4 +1,4 @@
-// Error sums, percentiles, structural similarity, depth edges.
+// Error sums, percentiles, structural similarity, depth edges, grain.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/measure/metrics.h"
 
@@ -92,6 +92,38 @@ bool is_step(float a, float b, double sky) {
 /// to += weight * from.
 void add_scaled(double weight, std::span<const double> from, std::span<double> to) {
   for (std::size_t i = 0; i < to.size(); i++) to[i] += weight * from[i];
+}
+
+constexpr std::size_t kPlainSide_px = 2 * kPlainReach_px + 1;
+
+/// Whether 1/z, at a pixel and at its two neighbours in a line, is that of a straight surface. The caller gives 0 for
+/// sky, which is never straight and no neighbour of a straight surface.
+bool is_straight(double before, double here, double after) {
+  return std::abs(before + after - 2 * here) < kPlainBend * here;
+}
+
+/// Gives 1 at the surfaces that count and do not bend.
+std::vector<double> straight_pixels(int width, int height, Values depth, double sky, Mask mask) {
+  std::vector<double> inverse(depth.size()), straight(depth.size());
+  std::ranges::transform(depth, inverse.begin(), [&](float z) { return is_surface(z, sky) ? 1.0 / z : 0.0; });
+  for (int y = 1; y < height - 1; y++)
+    for (int x = 1; x < width - 1; x++) {
+      const std::size_t row = std::size_t(width);
+      const std::size_t i = std::size_t(y) * row + std::size_t(x);
+      const bool along_x = is_straight(inverse[i - 1], inverse[i], inverse[i + 1]);
+      const bool along_y = is_straight(inverse[i - row], inverse[i], inverse[i + row]);
+      straight[i] = along_x && along_y && counts(mask, i) ? 1 : 0;
+    }
+  return straight;
+}
+
+/// The error less its mean over the square about each pixel.
+std::vector<double> residual(int width, int height, Values result, Values reference) {
+  static const std::vector<double> mean(kPlainSide_px, 1.0 / kPlainSide_px);
+  std::vector<double> error(result.size());
+  std::ranges::transform(result, reference, error.begin(), [](double t, double a) { return t - a; });
+  add_scaled(-1, convolve(width, height, error, mean, mean), error);
+  return error;
 }
 
 }  // namespace
@@ -213,6 +245,36 @@ EdgeErrors edge_errors(Mask edges, Values result, Values reference, Mask mask, V
     if (counts(mask, i) && error.finite()) (counts(edges, i) ? at : away).add(error);
   }
   return {at.part(), away.part()};
+}
+
+std::vector<std::uint8_t> plain_pixels(int width, int height, Values depth, double sky, Mask mask) {
+  static const std::vector<double> ones(kPlainSide_px, 1);
+  const auto straight = straight_pixels(width, height, depth, sky, mask);
+  // Beyond the picture the border's pixels are repeated, and none of them is straight.
+  const auto straight_in_square = convolve(width, height, straight, ones, ones);
+  std::vector<std::uint8_t> plain(depth.size());
+  std::ranges::transform(straight_in_square, plain.begin(),
+                         [](double count) { return count == kPlainSide_px * kPlainSide_px; });
+  return plain;
+}
+
+std::optional<double> grain(int width, int height, Mask plain, Values result, Values reference, Values reference_b) {
+  const std::size_t pixels = plain.size();
+  double sum = 0;
+  std::size_t count = 0;
+  for (std::size_t plane = 0; plane < result.size(); plane += pixels) {
+    const auto against = [&](Values truth) {
+      return residual(width, height, result.subspan(plane, pixels), truth.subspan(plane, pixels));
+    };
+    const auto a = against(reference);
+    const auto b = reference_b.empty() ? a : against(reference_b);
+    for (std::size_t i = 0; i < pixels; i++) {
+      if (!plain[i]) continue;
+      sum += a[i] * b[i];
+      count++;
+    }
+  }
+  return count ? std::optional(std::sqrt(std::max(0.0, sum / double(count)))) : std::nullopt;
 }
 
 std::vector<double> convolve(int width, int height, std::span<const double> plane, std::span<const double> along_x,

@@ -97,6 +97,27 @@ struct EdgeErrors {
 };
 EdgeErrors edge_errors(Mask edges, Values result, Values reference, Mask mask = {}, Values reference_b = {});
 
+/// A plain pixel is the middle of a square of plain surface that reaches so far to each side: 15 x 15 pixels.
+inline constexpr int kPlainReach_px = 7;
+/// A surface bends where the second difference of 1/z along x or along y is this part of 1/z or more.
+inline constexpr double kPlainBend = 1e-4;
+
+/// Gives 1 at plain pixels: all 15 x 15 pixels about such a pixel lie in the picture, are surfaces that the mask counts,
+/// and do not bend. Depth and sky are as for depth_edges().
+///
+/// In a perspective 1/z is affine over the picture on every plane, and a pixel at the picture's border has no second
+/// difference. The camera is not asked for: an orthographic one sees planes as affine z, and then a tilted plane passes
+/// where its 1/z bends less than the bound. Depth that was rounded to half floats shows hardly any plain pixel.
+std::vector<std::uint8_t> plain_pixels(int width, int height, Values depth, double sky, Mask mask = {});
+
+/// The RMS of the error's high-pass residual over the plain pixels and over the planes. The residual of a pixel is its
+/// error less the mean error of the 15 x 15 pixels about it: stripes and specks count, a bias or a soft gradient does
+/// not. With a second reference it is the root of the mean product of the residuals against the one and the other, 0
+/// where that is negative: independent noise of the references drops out. All values must be finite. Nothing where no
+/// pixel is plain.
+std::optional<double> grain(int width, int height, Mask plain, Values result, Values reference,
+                            Values reference_b = {});
+
 // Separable filters, in double precision.
 
 /// Correlates the plane (width x height, row by row) with `along_x` in its rows, then with `along_y` in its columns.
