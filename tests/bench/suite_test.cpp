@@ -1,7 +1,10 @@
-// Suites of the benchmark: at which radius each candidate is measured.
+// Suites of the benchmark: at which radius each candidate is measured, and with how much grain.
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
 
@@ -49,6 +52,114 @@ TEST_F(SuiteRadius, is_the_frames_whatever_a_preset_says) {
                                 "\"\n[[candidate]]\nname = \"two\"\npreset = \"" + folder / "two.toml" + "\"\n");
   EXPECT_LT(errors.at("one"), 1e-6);
   EXPECT_LT(errors.at("two"), 1e-6);
+}
+
+class SuiteGrain : public CommandLine {
+ protected:
+  SuiteGrain() {
+    compute(frame, camera, ao, {"--radius", "1"});
+    compute(frame, camera, second, {"--radius", "2"});
+    compute(frame, camera, far, {"--radius", "4"});
+    const Window window{0, 0, 16, 16};  // too few for a plain pixel
+    wall_frame(window, window).write(folder / "small.exr");
+    write_bytes(folder / "small.json", wall_camera(window).dump());
+    compute(folder / "small.exr", folder / "small.json", folder / "small-ao.exr", {"--radius", "1"});
+  }
+
+  static void compute(const std::string& input, const std::string& seen_by, const std::string& output,
+                      const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{"run", input, "-o", output, "--camera", seen_by, "--type", "float"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Finished finished = run_program(arguments);
+    EXPECT_EQ(finished.code, 0) << finished;
+  }
+
+  static std::string frame_table(const std::string& name, const std::string& input, const std::string& camera_name,
+                                 const std::string& truth) {
+    return fmt::format("[[frame]]\nname = \"{}\"\ninput = \"{}\"\ncamera = \"{}\"\nradius = 1\ntruth = {}\n", name,
+                       input, camera_name, truth);
+  }
+
+  Finished bench(const std::string& frames, const std::vector<std::string>& more) const {
+    write_bytes(folder / "suite.toml", "title = \"grain\"\nrepeats = 1\nreference-slices = 0\n" + frames +
+                                           "[[candidate]]\nname = \"far\"\nradius = 4\n");
+    std::vector<std::string> arguments{"bench", folder / "suite.toml"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_program(arguments);
+  }
+
+  nlohmann::json report_of(const std::string& frames) const {
+    const Finished finished = bench(frames, {"--json", folder / "report.json", "-q"});
+    EXPECT_EQ(finished.code, 0) << finished;
+    return nlohmann::json::parse(read_bytes(folder / "report.json"));
+  }
+
+  double compared(std::vector<std::string> more) const {
+    more.insert(more.begin(), {"compare", far, ao, "--depth", frame, "--json"});
+    return nlohmann::json::parse(run_program(more).out)["grain"];
+  }
+
+  const std::string second = folder / "second.exr", far = folder / "far.exr";
+  const std::string wall = frame_table("wall", "wall.0042.exr", "camera.json", "\"ao.exr\"");
+  const std::string both = wall + frame_table("small", "small.exr", "small.json", "\"small-ao.exr\"");
+};
+
+TEST_F(SuiteGrain, is_what_compare_says) {
+  const double expected = compared({});
+  EXPECT_GT(expected, 1e-3);
+  EXPECT_NEAR(report_of(wall)["rows"][0]["grain"], expected, 1e-6);
+  const std::string two = frame_table("wall", "wall.0042.exr", "camera.json", "[\"ao.exr\", \"second.exr\"]");
+  const double of_two = compared({"--reference-b", second});
+  EXPECT_GT(std::abs(of_two - expected), 1e-5);
+  EXPECT_NEAR(report_of(two)["rows"][0]["grain"], of_two, 1e-6);
+}
+
+TEST_F(SuiteGrain, is_looked_for_in_planar_depth_whatever_the_file_has) {
+  FrameFile ray = wall_frame();
+  nlohmann::json ray_camera = wall_camera();
+  ray_camera["depth"] = "ray";
+  auto& depth = ray.planes["ViewLayer.Depth.Z"];
+  for (std::size_t i = 0; i < depth.size(); i++) {
+    const double x = (double(i % 64) + 0.5 - 32) / 60, y = (double(i / 64) + 0.5 - 18) / 60;
+    depth[i] *= float(std::sqrt(1 + x * x + y * y));
+  }
+  ray.write(folder / "ray.exr");
+  write_bytes(folder / "ray.json", ray_camera.dump());
+  const auto row = report_of(frame_table("ray", "ray.exr", "ray.json", "\"ao.exr\""))["rows"][0];
+  EXPECT_NEAR(row["grain"], compared({}), 1e-4);
+}
+
+TEST_F(SuiteGrain, of_a_frame_without_plain_pixels_is_nothing_and_in_no_mean) {
+  const auto report = report_of(both);
+  EXPECT_TRUE(report["rows"][0]["grain"].is_number());
+  ASSERT_TRUE(report["rows"][1].contains("grain"));
+  EXPECT_TRUE(report["rows"][1]["grain"].is_null());
+  EXPECT_EQ(report["candidates"][0]["grain"], report["rows"][0]["grain"]);
+  const Finished finished = bench(both, {"--csv", folder / "report.csv", "--report", folder / "page.html"});
+  EXPECT_EQ(finished.code, 0) << finished;
+  const std::string in_table = fmt::format("{:.4f}", double(report["rows"][0]["grain"]));
+  EXPECT_THAT(lines_of(finished.out)[0], testing::HasSubstr("   grain "));
+  EXPECT_THAT(lines_of(finished.out)[1], testing::HasSubstr(in_table));
+  const auto csv = lines_of(read_bytes(folder / "report.csv"));
+  EXPECT_THAT(csv[0], testing::EndsWith(",grain"));
+  EXPECT_THAT(csv[1], testing::HasSubstr("," + in_table.substr(0, 5)));
+  EXPECT_THAT(csv[2], testing::EndsWith(","));
+  EXPECT_THAT(read_bytes(folder / "page.html"), testing::HasSubstr("\"grain\": " + in_table.substr(0, 5)));
+}
+
+TEST_F(SuiteGrain, has_a_limit_that_holds_breaks_or_cannot_be_checked) {
+  const auto limited = [&](const std::string& name, double most) {
+    write_bytes(folder / "limits.toml",
+                fmt::format("[[limit]]\nframe = \"{}\"\ncandidate = \"far\"\ngrain = {}\n", name, most));
+    return bench(both, {"--limits", folder / "limits.toml", "-q"});
+  };
+  EXPECT_EQ(limited("wall", compared({}) + 1e-4).code, 0);
+  const Finished broken = limited("wall", compared({}) - 1e-4);
+  EXPECT_EQ(broken.code, 6) << broken;
+  EXPECT_THAT(broken.err, testing::StartsWith("alcove: far on wall: grain is "));
+  const Finished nothing = limited("small", 1);
+  EXPECT_EQ(nothing.code, 3) << nothing;
+  EXPECT_THAT(nothing.err, testing::AllOf(testing::HasSubstr("far on small: grain"), testing::HasSubstr("--limits")));
 }
 
 }  // namespace
