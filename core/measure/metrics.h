@@ -102,7 +102,7 @@ inline constexpr int kPlainReach_px = 7;
 /// A surface bends where the second difference of 1/z along x or along y is this part of 1/z or more.
 inline constexpr double kPlainBend = 1e-4;
 
-/// Gives 1 at plain pixels: all 15 x 15 pixels about such a pixel lie in the picture, are surfaces that the mask counts,
+/// Gives 1 at plain pixels: all 15 x 15 pixels about such a pixel lie in the picture, are surfaces, count by the mask,
 /// and do not bend. Depth and sky are as for depth_edges().
 ///
 /// In a perspective 1/z is affine over the picture on every plane, and a pixel at the picture's border has no second
