@@ -77,10 +77,11 @@ struct CompareLimits {
 
 struct BrokenLimits {
   std::vector<std::string> sentences;  // one for each: what was measured, where, and what was allowed
-  // ErrorKind::input where a limit on grain holds and a frame has no plain pixel: nothing could be checked there
+  // ErrorKind::input where grain has a limit and a frame has no plain pixel: there was nothing to check
   ErrorKind kind = ErrorKind::comparison;
 };
 
+/// Checks each limit on the frame where its measure is worst.
 BrokenLimits broken_limits(const CompareReport& report, const CompareLimits& limits);
 
 /// See the README for the fields.

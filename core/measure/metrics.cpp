@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/base/error.h"
 
@@ -96,19 +97,22 @@ void add_scaled(double weight, std::span<const double> from, std::span<double> t
 
 constexpr std::size_t kPlainSide_px = 2 * kPlainReach_px + 1;
 
-/// Whether 1/z, at a pixel and at its two neighbours in a line, is that of a straight surface. The caller gives 0 for
-/// sky, which is never straight and no neighbour of a straight surface.
+/// Whether 1/z at a pixel and at its two neighbours in a line is that of a straight surface. Sky is NaN: with it as one
+/// of the three nothing is straight.
 bool is_straight(double before, double here, double after) {
   return std::abs(before + after - 2 * here) < kPlainBend * here;
 }
 
 /// Gives 1 at the surfaces that count and do not bend.
 std::vector<double> straight_pixels(int width, int height, Values depth, double sky, Mask mask) {
-  std::vector<double> inverse(depth.size()), straight(depth.size());
-  std::ranges::transform(depth, inverse.begin(), [&](float z) { return is_surface(z, sky) ? 1.0 / z : 0.0; });
+  std::vector<double> inverse(depth.size());
+  std::vector<double> straight(depth.size());
+  std::ranges::transform(depth, inverse.begin(), [&](float z) {
+    return is_surface(z, sky) ? 1.0 / z : std::numeric_limits<double>::quiet_NaN();
+  });
+  const auto row = std::size_t(width);
   for (int y = 1; y < height - 1; y++)
     for (int x = 1; x < width - 1; x++) {
-      const std::size_t row = std::size_t(width);
       const std::size_t i = std::size_t(y) * row + std::size_t(x);
       const bool along_x = is_straight(inverse[i - 1], inverse[i], inverse[i + 1]);
       const bool along_y = is_straight(inverse[i - row], inverse[i], inverse[i + row]);

@@ -169,6 +169,13 @@ TEST(PlainPixels, keep_7_from_a_step_a_fold_and_the_sky) {
   EXPECT_THAT(plain_of(constant(1e10f)), Each(0));
 }
 
+TEST(PlainPixels, take_the_sky_for_no_surface_that_is_infinitely_far) {
+  // 1/z rises evenly from column 10 on, as if the sky there were a part of the plane.
+  const Bytes plain = plain_of(plane_of([](int x, int) { return x <= 10 ? 1e10 : 1 / (0.01 * (x - 10)); }));
+  EXPECT_FALSE(plain[at(18, 24)]) << "11 has no neighbour";
+  EXPECT_TRUE(plain[at(19, 24)]);
+}
+
 TEST(PlainPixels, keep_7_from_what_does_not_count) {
   Bytes mask(kWindow.pixels(), 1);
   mask[at(24, 24)] = 0;
