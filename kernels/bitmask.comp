@@ -26,7 +26,6 @@
 #include "normal.glsl"
 #include "arcs.glsl"
 #include "noise.glsl"
-#include "stride.glsl"
 #include "tiles.glsl"
 #include "falloff.glsl"
 #include "bent.glsl"
@@ -37,13 +36,15 @@ layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 layout(constant_id = kBitmaskSlicesId) const uint kSlices = 3;
 layout(constant_id = kBitmaskStepsId) const uint kSteps = 6;
 layout(constant_id = kBitmaskModeId) const uint kMode = kFalloffNone;
-layout(constant_id = kBitmaskStrideId) const int kStride = 1;
+layout(constant_id = kBitmaskSparseId) const uint kSparse = 0;
 layout(constant_id = kBitmaskCompleteId) const uint kComplete = 0;
 layout(scalar, push_constant) uniform Push { BitmaskParams params; };
 layout(scalar, binding = kBitmaskDepth) readonly buffer Depth { float depth[]; };
 layout(scalar, binding = kBitmaskNormal) readonly buffer Normal { uint normal[]; };
 layout(scalar, binding = kBitmaskAo) writeonly buffer Ao { float ao[]; };
 layout(scalar, binding = kBitmaskList) readonly buffer List { ListedTile list[]; };
+layout(scalar, binding = kBitmaskSites) readonly buffer Sites { uint sites[]; };
+layout(scalar, binding = kBitmaskSiteCounts) readonly buffer SiteCountsBuffer { SiteCounts site_counts; };
 layout(scalar, binding = kBitmaskCounts) readonly buffer Counts { TileCounts counts; };
 layout(scalar, binding = kBitmaskBent) writeonly buffer Bent { float bent[]; };
 layout(scalar, binding = kBitmaskCompleted) writeonly buffer Completed { float completed[]; };
@@ -177,9 +178,9 @@ Draw draw_of(vec2 noise, uint slice, uint side) {
 
 #include "slices.glsl"
 
+#include "receivers.glsl"
+
 void main() {
-  const ListedPlace place = listed_place(gl_WorkGroupID.xy, gl_LocalInvocationIndex, kStride);
-  if (place.tile >= counts.listed) return;
-  const ivec2 pixel = pixel_of_tile(unpack_tile(list[place.tile].place), place.pixel, params.noise_origin, kStride);
-  if (inside(params.view, pixel)) estimate(pixel, place.tile);
+  const ListedPixel here = listed_pixel(gl_WorkGroupID.xy, gl_LocalInvocationIndex);
+  if (here.exists) estimate(here.pixel, here.tile);
 }

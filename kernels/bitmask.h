@@ -11,16 +11,17 @@ ALCOVE_CONSTANT uint kBitmaskNormal = 1;  // in: one uint per pixel, from prepar
 ALCOVE_CONSTANT uint kBitmaskAo = 2;
 // out: planes x, y, z of the mean open direction b in view space as 0.5 + 0.5 b; only with kWithBent
 ALCOVE_CONSTANT uint kBitmaskBent = 3;
-ALCOVE_CONSTANT uint kBitmaskList = 4;    // in: one ListedTile per tile, from classify: what to estimate
-ALCOVE_CONSTANT uint kBitmaskCounts = 5;  // in: TileCounts
+ALCOVE_CONSTANT uint kBitmaskList = 4;        // in: one ListedTile per tile, from classify: what to estimate
+ALCOVE_CONSTANT uint kBitmaskCounts = 5;      // in: TileCounts
+ALCOVE_CONSTANT uint kBitmaskSites = 7;       // in: one uint per site, from list_sites; only if sparse
+ALCOVE_CONSTANT uint kBitmaskSiteCounts = 8;  // in: SiteCounts; only if sparse
 // out: one float per pixel, the visibility that completed surfaces took; only with kWithCompleted
 ALCOVE_CONSTANT uint kBitmaskCompleted = 6;
 
-ALCOVE_CONSTANT uint kBitmaskSlicesId = 0;  // specialization: slices per pixel
-ALCOVE_CONSTANT uint kBitmaskStepsId = 1;   // specialization: steps to each side of a slice
-ALCOVE_CONSTANT uint kBitmaskModeId = 2;    // specialization: one of kFalloff* of falloff.glsl, and kWith* or not
-// specialization: one pixel of so many in a row is estimated, 1, 2 or 4: see stride.glsl
-ALCOVE_CONSTANT uint kBitmaskStrideId = 3;
+ALCOVE_CONSTANT uint kBitmaskSlicesId = 0;    // specialization: slices per pixel
+ALCOVE_CONSTANT uint kBitmaskStepsId = 1;     // specialization: steps to each side of a slice
+ALCOVE_CONSTANT uint kBitmaskModeId = 2;      // specialization: one of kFalloff* of falloff.glsl, and kWith* or not
+ALCOVE_CONSTANT uint kBitmaskSparseId = 3;    // specialization: 1: only the sites of the list are estimated
 ALCOVE_CONSTANT uint kBitmaskCompleteId = 4;  // specialization: bits of kCompletes* of horizon.h
 
 struct BitmaskParams {

@@ -15,11 +15,9 @@
 #include "bounds.h"
 #include "view.glsl"
 #include "normal.glsl"
-#include "stride.glsl"
 #include "tiles.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
-layout(constant_id = kBoundsStrideId) const int kStride = 1;
 layout(scalar, push_constant) uniform Push { BoundsParams params; };
 layout(scalar, binding = kBoundsDepth) readonly buffer Depth { float depth[]; };
 layout(scalar, binding = kBoundsNormal) readonly buffer Normal { uint normal[]; };
@@ -88,9 +86,9 @@ void main() {
   const uint central = normal[centre.y * size.x + centre.x];
   const vec3 n = unpack_normal(central);
   const bool is_surface = depth[centre.y * size.x + centre.x] < kSkyDepth;
-  const uint receivers = is_surface ? uint(kTile * kTile / kStride) : 0u;
+  const uint receivers = is_surface ? kTilePixels : 0u;
   for (uint i = 0u; i < receivers; i++) {
-    const ivec2 pixel = pixel_of_tile(tile, i, params.origin, kStride);
+    const ivec2 pixel = pixel_of_tile(tile, i);
     const int index = min(pixel.y, size.y - 1) * size.x + min(pixel.x, size.x - 1);
     const float z = depth[index];
     const bool counts = inside(view, pixel) ? z < kSkyDepth : false;

@@ -9,12 +9,8 @@ ALCOVE_CONSTANT uint kBoundsDepth = 0;   // in: one float per pixel, from prepar
 ALCOVE_CONSTANT uint kBoundsNormal = 1;  // in: one uint per pixel, from prepare
 ALCOVE_CONSTANT uint kBoundsTiles = 2;   // out: one TileBounds per tile, rows of tiles from the upper left corner
 
-// specialization: one pixel of so many in a row is a receiver, 1, 2 or 4: see stride.glsl
-ALCOVE_CONSTANT uint kBoundsStrideId = 0;
-
 struct BoundsParams {
   View view;
-  ivec2 origin;  // px: from the display window's corner to the image's, as estimators count
 };
 ALCOVE_PARAMS(BoundsParams)
 

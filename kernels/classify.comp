@@ -33,13 +33,13 @@
 #include "classify.h"
 #include "view.glsl"
 #include "normal.glsl"
-#include "stride.glsl"
 #include "clearance.glsl"
+#include "lattice.glsl"
 #include "tiles.glsl"
 #include "proof.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
-layout(constant_id = kClassifyStrideId) const int kStride = 1;
+layout(constant_id = kClassifySparseId) const uint kSparse = 0;
 layout(constant_id = kClassifyModeId) const uint kMode = kClassifySkips;
 const bool kSkips = (kMode & kClassifySkips) != 0u;
 const bool kProves = (kMode & kClassifyProves) != 0u;
@@ -57,6 +57,7 @@ layout(scalar, binding = kClassifyCounts) buffer Counts { TileCounts counts; };
 layout(scalar, binding = kClassifyAo) writeonly buffer Ao { float ao[]; };
 layout(scalar, binding = kClassifyBent) writeonly buffer Bent { float bent[]; };
 layout(scalar, binding = kClassifyCompleted) writeonly buffer Completed { float completed[]; };
+layout(scalar, binding = kClassifyRows) readonly buffer Rows { uint rows[]; };
 layout(scalar, binding = kClassifySectors) writeonly buffer Sectors { uint sectors_of_tile[]; };
 
 /// With more groups of tiles within reach than these, the search costs more than it saves.
@@ -94,12 +95,11 @@ bool is_as_before(View view, ivec2 tile, float near, float far) {
   const Rect rect =
       image_of_reach(view, box_of(view, tile, kBlock, near, far), reach_of_samples(view, params.radius, far));
   const ivec2 most = params.frame_size - 1;
+  const int margin = kChangeMargin + (kSparse != 0u ? kSiteReach * params.factor : 0);
   const ivec2 blocks = (params.frame_size + kChangeBlock - 1) / kChangeBlock;
-  const ivec2 from =
-      clamp(ivec2(rect.least) * params.factor - params.overhang - kChangeMargin, ivec2(0), most) / kChangeBlock;
+  const ivec2 from = clamp(ivec2(rect.least) * params.factor - params.overhang - margin, ivec2(0), most) / kChangeBlock;
   const ivec2 to =
-      clamp(ivec2(rect.most + 1.0) * params.factor - params.overhang + kChangeMargin, ivec2(0), most) / kChangeBlock +
-      1;
+      clamp(ivec2(rect.most + 1.0) * params.factor - params.overhang + margin, ivec2(0), most) / kChangeBlock + 1;
   return changes_at(to, blocks) + changes_at(from, blocks) ==
          changes_at(ivec2(from.x, to.y), blocks) + changes_at(ivec2(to.x, from.y), blocks);
 }
@@ -313,9 +313,14 @@ void list_tile(uint at, ivec2 tile, bool is_whole) {
   }
   if (gl_LocalInvocationID.x != 0u) return;
   list[at].place = pack_tile(tile);
-  const uvec2 groups = dispatch_of_tiles(at + 1u, kStride);
+  const uvec2 groups = dispatch_of_tiles(at + 1u, kSparse != 0u ? 1u : kTilePixels);
   atomicMax(counts.groups.x, groups.x);
   atomicMax(counts.groups.y, groups.y);
+}
+
+bool is_site(ivec2 tile, uint pixel) {
+  const uint row = rows[words_of_tile(tile, tiles_of(params.view.size)) + int(pixel) / kTile];
+  return (row >> kSiteByte + pixel % uint(kTile) & 1u) != 0u;
 }
 
 /// Writes what estimators write where nothing blocks, by all invocations of a row.
@@ -326,9 +331,9 @@ void write_open(View view, ivec2 tile, bool is_sky, bool is_tolerated) {
     atomicAdd(counts.tolerated, !is_sky && is_tolerated ? 1u : 0u);
   }
   const int plane = view.size.x * view.size.y;
-  for (uint i = gl_LocalInvocationID.x; i < uint(kTile * kTile / kStride); i += kGroupX) {
-    const ivec2 pixel = pixel_of_tile(tile, i, params.origin, kStride);
-    if (!inside(view, pixel)) continue;
+  for (uint i = gl_LocalInvocationID.x; i < kTilePixels; i += kGroupX) {
+    const ivec2 pixel = pixel_of_tile(tile, i);
+    if (!inside(view, pixel) || kSparse != 0u && !is_site(tile, i)) continue;
     const int index = index_of(view, pixel);
     ao[index + int(params.plane) * plane] = 1.0;
     if ((kMode & kClassifyWithCompleted) != 0u) completed[index] = 0.0;

@@ -22,10 +22,10 @@ ALCOVE_CONSTANT uint kClassifyGroups = 8;  // in: one GroupBounds per group of t
 ALCOVE_CONSTANT uint kClassifyCompleted = 10;
 // in: one uint per corner of blocks, (columns + 1) x (rows + 1): how many blocks above and left of it have changed
 ALCOVE_CONSTANT uint kClassifyChanges = 9;
+ALCOVE_CONSTANT uint kClassifyRows = 11;  // in: 8 words per tile, see lattice.glsl; only if sparse
 
-// specialization: one pixel of so many in a row is a receiver, 1, 2 or 4: see stride.glsl
-ALCOVE_CONSTANT uint kClassifyStrideId = 0;
-ALCOVE_CONSTANT uint kClassifyModeId = 1;  // specialization: bits of kClassify*
+ALCOVE_CONSTANT uint kClassifySparseId = 0;  // specialization: 1: only sites have an estimate
+ALCOVE_CONSTANT uint kClassifyModeId = 1;    // specialization: bits of kClassify*
 
 ALCOVE_CONSTANT uint kClassifySkips = 1;   // else every tile is listed
 ALCOVE_CONSTANT uint kClassifyProves = 8;  // with kClassifySkips: reads the bounds; else only sky is left out
@@ -41,7 +41,6 @@ ALCOVE_CONSTANT int kChangeBlock = 32;  // px of the frame a side of the blocks 
 
 struct ClassifyParams {
   View view;
-  ivec2 origin;  // px: from the display window's corner to the image's, as estimators count
   float radius;  // scene units: the farthest at which anything blocks
   // with kClassifyTolerates: sine of the elevation above a tangent plane up to which a tile is left out
   float tolerated;

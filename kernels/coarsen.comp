@@ -9,7 +9,6 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "coarsen.h"
-#include "stride.glsl"
 #include "tiles.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;

@@ -14,7 +14,7 @@ ALCOVE_CONSTANT uint kCompletionSums = 3;
 struct CompletionParams {
   View view;
   ivec2 origin;  // px from the display window's corner to the image's
-  int stride;    // one pixel of so many in a row is a receiver, see stride.glsl
+  int spacing;   // of the widest lattice of sites: see lattice.glsl; 1: all pixels have an estimate
   uint plane;    // of the visibility
 };
 ALCOVE_PARAMS(CompletionParams)

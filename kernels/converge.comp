@@ -15,7 +15,6 @@
 #extension GL_GOOGLE_include_directive : require
 #include "converge.h"
 #include "view.glsl"
-#include "stride.glsl"
 #include "tiles.glsl"
 #include "normal.glsl"
 
@@ -43,7 +42,7 @@ const float kErrorShare = 0.75;
 void needs_more(uint place) {
   const uint at = atomicAdd(next_counts.listed, 1u);
   next[at].place = place;
-  const uvec2 groups = dispatch_of_tiles(at + 1u, 1);
+  const uvec2 groups = dispatch_of_tiles(at + 1u, kTilePixels);
   atomicMax(next_counts.groups.x, groups.x);
   atomicMax(next_counts.groups.y, groups.y);
   atomicMax(next_counts.groups.z, 1u);

@@ -21,18 +21,19 @@
 #include "view.glsl"
 #include "normal.glsl"
 #include "noise.glsl"
-#include "stride.glsl"
 #include "tiles.glsl"
 #include "clearance.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 layout(constant_id = kCrytekSamplesId) const uint kSamples = 16;
-layout(constant_id = kCrytekStrideId) const int kStride = 1;
+layout(constant_id = kCrytekSparseId) const uint kSparse = 0;
 layout(scalar, push_constant) uniform Push { CrytekParams params; };
 layout(scalar, binding = kCrytekDepth) readonly buffer Depth { float depth[]; };
 layout(scalar, binding = kCrytekNormal) readonly buffer Normal { uint normal[]; };
 layout(scalar, binding = kCrytekAo) writeonly buffer Ao { float ao[]; };
 layout(scalar, binding = kCrytekList) readonly buffer List { ListedTile list[]; };
+layout(scalar, binding = kCrytekSites) readonly buffer Sites { uint sites[]; };
+layout(scalar, binding = kCrytekSiteCounts) readonly buffer SiteCountsBuffer { SiteCounts site_counts; };
 layout(scalar, binding = kCrytekCounts) readonly buffer Counts { TileCounts counts; };
 
 /// How far a pixel's ray must turn towards the tangent plane to meet it at a place worth the name.
@@ -54,11 +55,12 @@ float range_weight(float depth_difference) {
   return smoothstep(0.0, 1.0, params.radius / max(dz, 1e-6 * params.radius));  // 1 for dz = 0
 }
 
+#include "receivers.glsl"
+
 void main() {
-  const ListedPlace place = listed_place(gl_WorkGroupID.xy, gl_LocalInvocationIndex, kStride);
-  if (place.tile >= counts.listed) return;
-  const ivec2 pixel = pixel_of_tile(unpack_tile(list[place.tile].place), place.pixel, params.noise_origin, kStride);
-  if (!inside(params.view, pixel)) return;
+  const ListedPixel here = listed_pixel(gl_WorkGroupID.xy, gl_LocalInvocationIndex);
+  if (!here.exists) return;
+  const ivec2 pixel = here.pixel;
   const int index = index_of(params.view, pixel);
   const int ao_index = index + int(params.plane) * params.view.size.x * params.view.size.y;
   const float z = depth[index];

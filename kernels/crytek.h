@@ -9,12 +9,13 @@ ALCOVE_CONSTANT uint kCrytekDepth = 0;   // in: one float per pixel, from prepar
 ALCOVE_CONSTANT uint kCrytekNormal = 1;  // in: one uint per pixel, from prepare
 // out: one float per pixel, visibility in [0, 1], 1 = open; the plane of the parameters
 ALCOVE_CONSTANT uint kCrytekAo = 2;
-ALCOVE_CONSTANT uint kCrytekList = 3;    // in: one ListedTile per tile, from classify: what to estimate
-ALCOVE_CONSTANT uint kCrytekCounts = 4;  // in: TileCounts
+ALCOVE_CONSTANT uint kCrytekList = 3;        // in: one ListedTile per tile, from classify: what to estimate
+ALCOVE_CONSTANT uint kCrytekCounts = 4;      // in: TileCounts
+ALCOVE_CONSTANT uint kCrytekSites = 5;       // in: one uint per site, from list_sites; only if sparse
+ALCOVE_CONSTANT uint kCrytekSiteCounts = 6;  // in: SiteCounts; only if sparse
 
 ALCOVE_CONSTANT uint kCrytekSamplesId = 0;  // specialization: samples per pixel
-// specialization: one pixel of so many in a row is estimated, 1, 2 or 4: see stride.glsl
-ALCOVE_CONSTANT uint kCrytekStrideId = 1;
+ALCOVE_CONSTANT uint kCrytekSparseId = 1;   // specialization: 1: only the sites of the list are estimated
 
 ALCOVE_CONSTANT uint kRangeNone = 0;   // every hit counts fully
 ALCOVE_CONSTANT uint kRangeRatio = 1;  // smoothstep(0, 1, radius / dz): fully within the radius, less beyond

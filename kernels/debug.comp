@@ -12,7 +12,7 @@
 #include "view.glsl"
 #include "normal.glsl"
 #include "arcs.glsl"
-#include "stride.glsl"
+#include "lattice.glsl"
 #include "tiles.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
@@ -20,6 +20,7 @@ layout(scalar, push_constant) uniform Push { DebugParams params; };
 layout(scalar, binding = kDebugDepth) readonly buffer Depth { float depth[]; };
 layout(scalar, binding = kDebugNormal) readonly buffer Normal { uint normal[]; };
 layout(scalar, binding = kDebugValues) readonly buffer Values { uint values[]; };
+layout(scalar, binding = kDebugRows) readonly buffer Rows { uint rows[]; };
 layout(scalar, binding = kDebugResult) writeonly buffer Result { float result[]; };
 
 /// How far the farthest of the four neighbours lies off the tangent plane, as part of the pixel's depth; 1 at the sky.
@@ -36,11 +37,47 @@ float edge(ivec2 pixel, float z, vec3 n) {
   return farthest;
 }
 
-/// The value of a pixel; where only one pixel of the stride has any, the value of that to its left.
+bool is_site(ivec2 pixel) {
+  const ivec2 tile = pixel / kTile;
+  const uint row = rows[words_of_tile(tile, tiles_of(params.view.size)) + pixel.y % kTile];
+  return (row >> kSiteByte + uint(pixel.x % kTile) & 1u) != 0u;
+}
+
+/// How far around a pixel its nearest site is sought, in px.
+const int kFarthestSite = 4;
+
+/// The value of a pixel; where only sites have any, that of the nearest one, of several the first row by row. Where
+/// there is none, it is 0.
 float value_at(ivec2 pixel) {
-  const int begin = first_estimated(pixel.y, params.origin, params.stride);
-  const int at = pixel.x - ((pixel.x - begin) & (params.stride - 1));
-  return uintBitsToFloat(values[index_of(params.view, ivec2(at < 0 ? begin : at, pixel.y))]);
+  if (params.sparse == 0u || is_site(pixel)) return uintBitsToFloat(values[index_of(params.view, pixel)]);
+  const int side = 2 * kFarthestSite + 1;
+  int nearest = side * side;
+  float value = 0.0;
+  for (int k = 0; k < side * side; k++) {
+    const ivec2 away = ivec2(k % side, k / side) - kFarthestSite;
+    const ivec2 site = pixel + away;
+    const int distance = away.x * away.x + away.y * away.y;
+    if (distance >= nearest || !inside(params.view, site)) continue;
+    if (!is_site(site)) continue;
+    nearest = distance;
+    value = uintBitsToFloat(values[index_of(params.view, site)]);
+  }
+  return value;
+}
+
+/// The share of the pixels with an estimate of their own in the pixel's square of 4 x 4, which is counted from the
+/// display window's corner.
+float density_at(ivec2 pixel) {
+  if (params.sparse == 0u) return 1.0;
+  const ivec2 first = pixel - ((pixel + params.origin) & 3);
+  int sites = 0, surfaces = 0;
+  for (int k = 0; k < 16; k++) {
+    const ivec2 at = first + ivec2(k & 3, k >> 2);
+    if (!inside(params.view, at)) continue;
+    surfaces += depth[index_of(params.view, at)] < kSkyDepth ? 1 : 0;
+    sites += is_site(at) ? 1 : 0;
+  }
+  return float(sites) / float(surfaces);
 }
 
 void main() {
@@ -55,6 +92,7 @@ void main() {
   const vec3 n = unpack_normal(normal[index]);
   float value = z;
   if (params.kind == kDebugValue) value = value_at(pixel);
+  if (params.kind == kDebugDensity) value = density_at(pixel);
   if (params.kind == kDebugViewZ) value = -z;
   if (params.kind == kDebugNormalZ) value = n.z;
   if (params.kind == kDebugTile)

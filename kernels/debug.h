@@ -11,6 +11,7 @@ ALCOVE_CONSTANT uint kDebugNormal = 1;  // in: one uint per pixel, unit vector i
 // (kDebugTile); not read by others
 ALCOVE_CONSTANT uint kDebugValues = 2;
 ALCOVE_CONSTANT uint kDebugResult = 3;  // out: one float per pixel
+ALCOVE_CONSTANT uint kDebugRows = 4;    // in: 8 words per tile, see lattice.glsl; only if sparse
 
 ALCOVE_CONSTANT uint kDebugValue = 0;        // the values as they are
 ALCOVE_CONSTANT uint kDebugPlanarDepth = 1;  // scene units
@@ -18,12 +19,13 @@ ALCOVE_CONSTANT uint kDebugViewZ = 2;        // z in view space, scene units, be
 ALCOVE_CONSTANT uint kDebugNormalZ = 3;      // z of the normal in view space
 ALCOVE_CONSTANT uint kDebugNormalAngle = 4;  // degrees between the two sets of normals
 ALCOVE_CONSTANT uint kDebugEdge = 5;         // distance of a neighbour from the tangent plane, part of the depth
+ALCOVE_CONSTANT uint kDebugDensity = 7;      // share of the pixels of a square of 4 x 4 that are sites
 ALCOVE_CONSTANT uint kDebugTile = 6;         // share of the directions that are searched, of the pixel's tile
 
 struct DebugParams {
   View view;
   uint kind;     // one of kDebug*
-  int stride;    // of kDebugValue: one pixel of so many in a row has a value, see stride.glsl
+  uint sparse;   // of kDebugValue and kDebugDensity: 1: only sites have a value
   ivec2 origin;  // px from the display window's corner to the image's
 };
 ALCOVE_PARAMS(DebugParams)

@@ -8,29 +8,22 @@ ALCOVE_BEGIN
 ALCOVE_CONSTANT uint kDenoiseAo = 0;      // in: planes of floats in [0, 1], visibility or the like; each by itself
 ALCOVE_CONSTANT uint kDenoiseDepth = 1;   // in: one float per pixel, of the G-buffer of that visibility
 ALCOVE_CONSTANT uint kDenoiseNormal = 2;  // in: one uint per pixel, of the same; not read with a depth sigma
-ALCOVE_CONSTANT uint kDenoiseResult = 3;  // out: as many planes, in [0, 1]; of sparse rows: see pack_mean
+ALCOVE_CONSTANT uint kDenoiseResult = 3;  // out: as many planes, in [0, 1]
 
-ALCOVE_CONSTANT uint kDenoiseList = 4;    // in: one uint per run, from dilate; only with kDenoiseListed
+ALCOVE_CONSTANT uint kDenoiseList = 4;    // in: one uint per run, from dilate; only if listed
 ALCOVE_CONSTANT uint kDenoiseCounts = 5;  // in: RunCounts of it
 
 ALCOVE_CONSTANT uint kDenoiseRadiusId = 0;   // specialization: pixels to each side, 1 to kDenoiseMostRadius
 ALCOVE_CONSTANT uint kDenoiseByDepthId = 1;  // specialization: 1: weighs by depth_sigma instead of by plane distance
 
-ALCOVE_CONSTANT uint kDenoiseSparseId = 2;  // specialization: one of these, and kDenoiseListed
-ALCOVE_CONSTANT uint kDenoiseStrideId = 3;  // specialization: of sparse rows, 2 or 4: see stride.glsl; else 1
-ALCOVE_CONSTANT uint kDenoisePlanesId = 4;  // specialization: how many planes; they share their weights
-
-ALCOVE_CONSTANT uint kDenoiseDense = 0;          // every pixel has an estimate
-ALCOVE_CONSTANT uint kDenoiseSparseRows = 1;     // one pixel of the stride has
-ALCOVE_CONSTANT uint kDenoiseSparseColumns = 2;  // what sparse rows have made
-ALCOVE_CONSTANT uint kDenoiseListed = 4;         // only the runs of the list, not all
+ALCOVE_CONSTANT uint kDenoiseListedId = 2;  // specialization: 1: only the runs of the list, not all
+ALCOVE_CONSTANT uint kDenoisePlanesId = 3;  // specialization: how many planes; they share their weights
 
 ALCOVE_CONSTANT int kDenoiseMostRadius = 8;  // px
 ALCOVE_CONSTANT int kDenoiseRun = 12;        // px along the axis that one invocation computes
 
 struct DenoiseParams {
   View view;
-  ivec2 origin;       // px from the display window's corner to the image's
   ivec2 axis;         // (1, 0): along rows; (0, 1): along columns
   float depth_sigma;  // of the depth: a step by this part of it weighs 1/e
   float weight[9];    // by the distance in pixels, 0 to the radius; of any sum

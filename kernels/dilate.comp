@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // In: tiles by what classify found.
-// Out: lists for `denoise` and `upsample`, and what they would write everywhere else, where that is not there already.
+// Out: lists for `denoise` or `interpolate`, and for `upsample`, and what they would write everywhere else, where that
+// is not there already.
 //
 // From nothing but 1 a filter makes 1. Where nothing within its reach differs from the frame before, what it made then
 // still lies in its place.
@@ -14,12 +15,10 @@
 #extension GL_GOOGLE_include_directive : require
 #include "dilate.h"
 #include "denoise.h"
-#include "stride.glsl"
 #include "tiles.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 layout(constant_id = kDilateRadiusId) const int kRadius = 4;
-layout(constant_id = kDilateStrideId) const int kStride = 1;
 layout(constant_id = kDilateModeId) const uint kMode = kDilateAlongColumns;
 layout(scalar, push_constant) uniform Push { DilateParams params; };
 layout(scalar, binding = kDilateTiles) readonly buffer Tiles { uint tiles[]; };
@@ -73,7 +72,7 @@ bool lists_upsampling(ivec2 group) {
 
 /// Whether a run along rows is read by one along columns that has work.
 bool lists_rows(int lines, int run) {
-  const int first = max(run * kDenoiseRun - kStride + 1, 0) / kTile;
+  const int first = run * kDenoiseRun / kTile;
   const int last = min((run + 1) * kDenoiseRun - 1, params.size.x - 1) / kTile;
   const int above = max(lines * kTile - kRadius, 0) / kDenoiseRun;
   const int below = min((lines + 1) * kTile - 1 + kRadius, params.size.y - 1) / kDenoiseRun;

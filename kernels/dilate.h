@@ -14,9 +14,7 @@ ALCOVE_CONSTANT uint kDilateCounts = 3;  // in and out: RunCounts, zeros
 ALCOVE_CONSTANT uint kDilateResult = 4;
 
 ALCOVE_CONSTANT uint kDilateRadiusId = 0;  // specialization: the denoiser's, px; 0: there is none
-// specialization: of rows of a sparse estimate, as the denoiser has it; else 1
-ALCOVE_CONSTANT uint kDilateStrideId = 1;
-ALCOVE_CONSTANT uint kDilateModeId = 2;  // specialization: one of these
+ALCOVE_CONSTANT uint kDilateModeId = 1;    // specialization: one of these
 
 ALCOVE_CONSTANT uint kDilateAlongColumns = 0;  // runs whose result may be other than 1 or than it was; before the rows
 ALCOVE_CONSTANT uint kDilateAlongRows = 1;     // runs that those read

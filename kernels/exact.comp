@@ -26,7 +26,6 @@
 #include "arcs.glsl"
 #include "noise.glsl"
 #include "bent.glsl"
-#include "stride.glsl"
 #include "tiles.glsl"
 #include "clearance.glsl"
 #include "slice.glsl"
@@ -338,7 +337,7 @@ void main() {
   const ivec2 extent = extent_of(view, lines);
   ivec2 at = params.first + params.stride * ivec2(gl_GlobalInvocationID.xy);  // along and across
   if (kListed != 0u) {
-    const ListedPlace place = listed_place(gl_WorkGroupID.xy, gl_LocalInvocationIndex, 1);
+    const ListedPlace place = listed_place(gl_WorkGroupID.xy, gl_LocalInvocationIndex);
     if (place.tile >= counts.listed) return;
     const ivec2 origin = lines.steep != 0 ? lines.origin.yx : lines.origin;
     const ivec2 listed = pixel_of_anchored_tile(unpack_tile(list[place.tile].place), place.pixel, origin);

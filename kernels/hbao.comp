@@ -21,7 +21,6 @@
 #include "view.glsl"
 #include "normal.glsl"
 #include "noise.glsl"
-#include "stride.glsl"
 #include "tiles.glsl"
 #include "falloff.glsl"
 #include "arcs.glsl"
@@ -33,12 +32,14 @@ layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 layout(constant_id = kHbaoSlicesId) const uint kSlices = 3;
 layout(constant_id = kHbaoStepsId) const uint kSteps = 6;
 layout(constant_id = kHbaoFalloffId) const uint kFalloff = kFalloffNone;
-layout(constant_id = kHbaoStrideId) const int kStride = 1;
+layout(constant_id = kHbaoSparseId) const uint kSparse = 0;
 layout(scalar, push_constant) uniform Push { HbaoParams params; };
 layout(scalar, binding = kHbaoDepth) readonly buffer Depth { float depth[]; };
 layout(scalar, binding = kHbaoNormal) readonly buffer Normal { uint normal[]; };
 layout(scalar, binding = kHbaoAo) writeonly buffer Ao { float ao[]; };
 layout(scalar, binding = kHbaoList) readonly buffer List { ListedTile list[]; };
+layout(scalar, binding = kHbaoSites) readonly buffer Sites { uint sites[]; };
+layout(scalar, binding = kHbaoSiteCounts) readonly buffer SiteCountsBuffer { SiteCounts site_counts; };
 layout(scalar, binding = kHbaoCounts) readonly buffer Counts { TileCounts counts; };
 
 /// One direction on the image and the half-plane of view space that is seen along it.
@@ -86,11 +87,12 @@ float occlusion(Direction side, ivec2 pixel, vec3 position, float jitter, uint r
   return sum;
 }
 
+#include "receivers.glsl"
+
 void main() {
-  const ListedPlace place = listed_place(gl_WorkGroupID.xy, gl_LocalInvocationIndex, kStride);
-  if (place.tile >= counts.listed) return;
-  const ivec2 pixel = pixel_of_tile(unpack_tile(list[place.tile].place), place.pixel, params.noise_origin, kStride);
-  if (!inside(params.view, pixel)) return;
+  const ListedPixel here = listed_pixel(gl_WorkGroupID.xy, gl_LocalInvocationIndex);
+  if (!here.exists) return;
+  const ivec2 pixel = here.pixel;
   const int index = index_of(params.view, pixel);
   const int ao_index = index + int(params.plane) * params.view.size.x * params.view.size.y;
   const float z = depth[index];
@@ -104,7 +106,7 @@ void main() {
   const vec3 position = position_of(params.view, vec2(pixel) + 0.5, z);
   const vec3 eye = toward_eye(params.view, position);
   const vec3 n = unpack_normal(normal[index]);
-  const vec2 noise = pixel_noise(packed_place(pixel + params.noise_origin, kStride), params.noise_shift);
+  const vec2 noise = pixel_noise(pixel + params.noise_origin, params.noise_shift);
   // The sphere of the radius is seen under this angle; 1 and more: it holds the eye, and the image is the only limit.
   const float sin_reach = perspective ? params.radius * inversesqrt(dot(position, position)) : 0.0;
 
@@ -138,7 +140,7 @@ void main() {
       side.reach = reach_of_side(params.view, pixel, side.direction_px, pixels, eye.z, float(sign) * t.z, sin_reach,
                                  params.radius, is_cut);
       blocked += share * occlusion(side, pixel, position, fract(noise.y + kGolden * float(2u * s + uint(sign > 0))),
-                                   list[place.tile].ranges[sector_of(side.direction_px)]);
+                                   list[here.tile].ranges[sector_of(side.direction_px)]);
     }
   }
   ao[ao_index] = clamp(1.0 - blocked / whole, 0.0, 1.0);

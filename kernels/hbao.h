@@ -9,14 +9,15 @@ ALCOVE_CONSTANT uint kHbaoDepth = 0;   // in: one float per pixel, from prepare
 ALCOVE_CONSTANT uint kHbaoNormal = 1;  // in: one uint per pixel, from prepare
 // out: one float per pixel, visibility in [0, 1], 1 = open; the plane of the parameters
 ALCOVE_CONSTANT uint kHbaoAo = 2;
-ALCOVE_CONSTANT uint kHbaoList = 3;    // in: one ListedTile per tile, from classify: what to estimate
-ALCOVE_CONSTANT uint kHbaoCounts = 4;  // in: TileCounts
+ALCOVE_CONSTANT uint kHbaoList = 3;        // in: one ListedTile per tile, from classify: what to estimate
+ALCOVE_CONSTANT uint kHbaoCounts = 4;      // in: TileCounts
+ALCOVE_CONSTANT uint kHbaoSites = 5;       // in: one uint per site, from list_sites; only if sparse
+ALCOVE_CONSTANT uint kHbaoSiteCounts = 6;  // in: SiteCounts; only if sparse
 
 ALCOVE_CONSTANT uint kHbaoSlicesId = 0;   // specialization: lines through a pixel, each searched to both sides
 ALCOVE_CONSTANT uint kHbaoStepsId = 1;    // specialization: steps to each side
 ALCOVE_CONSTANT uint kHbaoFalloffId = 2;  // specialization: one of kFalloff* of falloff.glsl, the attenuation W
-// specialization: one pixel of so many in a row is estimated, 1, 2 or 4: see stride.glsl
-ALCOVE_CONSTANT uint kHbaoStrideId = 3;
+ALCOVE_CONSTANT uint kHbaoSparseId = 3;   // specialization: 1: only the sites of the list are estimated
 
 struct HbaoParams {
   View view;

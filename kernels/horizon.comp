@@ -30,7 +30,6 @@
 #include "normal.glsl"
 #include "arcs.glsl"
 #include "noise.glsl"
-#include "stride.glsl"
 #include "tiles.glsl"
 #include "falloff.glsl"
 #include "bent.glsl"
@@ -43,12 +42,14 @@ layout(constant_id = kHorizonSlicesId) const uint kSlices = 3;
 layout(constant_id = kHorizonStepsId) const uint kSteps = 6;
 layout(constant_id = kHorizonModeId) const uint kMode = kFalloffNone;
 layout(constant_id = kHorizonSolidId) const uint kSolid = kThicknessWidth;
-layout(constant_id = kHorizonStrideId) const int kStride = 1;
+layout(constant_id = kHorizonSparseId) const uint kSparse = 0;
 layout(scalar, push_constant) uniform Push { HorizonParams params; };
 layout(scalar, binding = kHorizonDepth) readonly buffer Depth { float depth[]; };
 layout(scalar, binding = kHorizonNormal) readonly buffer Normal { uint normal[]; };
 layout(scalar, binding = kHorizonAo) writeonly buffer Ao { float ao[]; };
 layout(scalar, binding = kHorizonList) readonly buffer List { ListedTile list[]; };
+layout(scalar, binding = kHorizonSites) readonly buffer Sites { uint sites[]; };
+layout(scalar, binding = kHorizonSiteCounts) readonly buffer SiteCountsBuffer { SiteCounts site_counts; };
 layout(scalar, binding = kHorizonCounts) readonly buffer Counts { TileCounts counts; };
 layout(scalar, binding = kHorizonBent) writeonly buffer Bent { float bent[]; };
 layout(scalar, binding = kHorizonCompleted) writeonly buffer Completed { float completed[]; };
@@ -272,9 +273,9 @@ Draw draw_of(vec2 noise, uint slice, uint side) {
 
 #include "slices.glsl"
 
+#include "receivers.glsl"
+
 void main() {
-  const ListedPlace place = listed_place(gl_WorkGroupID.xy, gl_LocalInvocationIndex, kStride);
-  if (place.tile >= counts.listed) return;
-  const ivec2 pixel = pixel_of_tile(unpack_tile(list[place.tile].place), place.pixel, params.noise_origin, kStride);
-  if (inside(params.view, pixel)) estimate(pixel, place.tile);
+  const ListedPixel here = listed_pixel(gl_WorkGroupID.xy, gl_LocalInvocationIndex);
+  if (here.exists) estimate(here.pixel, here.tile);
 }

@@ -128,6 +128,18 @@ struct TileCounts {
   uint kept;       // as the frame before has them
 };
 
+// How far from a pixel others decide whether it is a site, in px: 3 for each of the four passes of sites.comp, and the
+// neighbours that links.comp looks at.
+ALCOVE_CONSTANT int kSiteReach = 13;
+ALCOVE_CONSTANT uint kLattices = 5;  // of one pixel of 16, 8, 4, 2 and 1: see lattice.glsl
+
+/// How many sites are listed: pixels that are to be estimated.
+struct SiteCounts {
+  GroupCount groups;  // that hold them
+  uint listed;
+  uint of_lattice[kLattices];  // of them, those on a lattice and on no wider one; from the widest on
+};
+
 /// How many runs of pixels a filter is listed for.
 struct RunCounts {
   GroupCount groups;

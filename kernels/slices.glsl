@@ -26,7 +26,7 @@ void estimate(ivec2 pixel, uint tile) {
   }
   const Receiver r = receiver_at(view, pixel, z, unpack_normal(normal[index]), params.radius, params.depth_precision);
   const Reach reach = reach_of(view, params.radius, params.falloff_start, params.thickness, params.bias);
-  const vec2 noise = pixel_noise(packed_place(pixel + params.noise_origin, kStride), params.noise_shift);
+  const vec2 noise = pixel_noise(pixel + params.noise_origin, params.noise_shift);
   float blocked = 0.0;
   float whole = 0.0;
   float completed_arcs = 0.0;

@@ -14,45 +14,43 @@ ivec2 neighbor_step(int k) { return k < 3 ? ivec2(k - 1, -1) : k < 6 ? ivec2(k -
 uint pack_tile(ivec2 tile) { return uint(tile.x) | uint(tile.y) << 16; }
 ivec2 unpack_tile(uint place) { return ivec2(place & 0xffffu, place >> 16); }
 
-/// Which of the listed tiles an invocation is for, and which of its pixels with an estimate; see stride.glsl.
+/// The workgroups in x and y of a dispatch over so many tiles, of which each takes so many invocations.
+uvec2 dispatch_of_tiles(uint tiles, uint invocations) {
+  return dispatch_of((tiles * invocations - 1u) / (kGroupX * kGroupY) + 1u);
+}
+
+/// Pixels of a tile count row by row.
+const uint kTilePixels = uint(kTile * kTile);
+
+/// A pixel of a listed tile, by the tile's number in the list.
 struct ListedPlace {
   uint tile;  // in the list, or beyond its end
   uint pixel;
 };
 
-/// How many invocations a tile takes: one for each pixel with an estimate.
-uint receivers_of_tile(int stride) { return uint(kTile * kTile) >> findMSB(stride); }
-
-/// The workgroups in x and y of a dispatch over so many tiles.
-uvec2 dispatch_of_tiles(uint tiles, int stride) {
-  return dispatch_of((tiles * receivers_of_tile(stride) - 1u) / (kGroupX * kGroupY) + 1u);
-}
-
-ListedPlace listed_place(uvec2 group, uint invocation, int stride) {
-  const uint per_tile = receivers_of_tile(stride);
+/// Which of the pixels of all listed tiles an invocation is for.
+ListedPlace listed_place(uvec2 group, uint invocation) {
   const uint place = (group.y * kListedRow + group.x) * (kGroupX * kGroupY) + invocation;
-  return ListedPlace(place / per_tile, place % per_tile);
+  return ListedPlace(place / kTilePixels, place % kTilePixels);
 }
+
+/// Packs a site: such a pixel in one word.
+uint pack_site(uint tile, uint pixel) { return tile * kTilePixels + pixel; }
+ListedPlace unpack_site(uint site) { return ListedPlace(site / kTilePixels, site % kTilePixels); }
 
 /// Packs a run of pixels that an invocation of a filter computes in each of kGroupX lines: the number of these lines,
 /// and the number of the run in them.
 uint pack_run(int lines, int run) { return uint(lines) | uint(run) << 16; }
 ivec2 unpack_run(uint packed) { return ivec2(packed & 0xffffu, packed >> 16); }
 
-ivec2 pixel_of_tile(ivec2 tile, uint pixel, ivec2 origin, int stride) {
-  const uint columns = uint(kTile) >> findMSB(stride);
-  const int row = tile.y * kTile + int(pixel / columns);
-  // Where the first estimated pixel of a row lies does not change from tile to tile, as their width is a multiple of
-  // any stride.
-  return ivec2(tile.x * kTile + stride * int(pixel % columns) + first_estimated(row, origin, stride), row);
-}
+ivec2 pixel_of_tile(ivec2 tile, uint pixel) { return tile * kTile + ivec2(pixel % uint(kTile), pixel / uint(kTile)); }
 
 /// How many tiles there are if they count from the display window's corner, `origin` pixels before the image's, so that
 /// a crop has those of the whole.
 ivec2 anchored_tiles_of(ivec2 size, ivec2 origin) { return tiles_of(size + (origin & (kTile - 1))); }
 
 ivec2 pixel_of_anchored_tile(ivec2 tile, uint pixel, ivec2 origin) {
-  return tile * kTile - (origin & (kTile - 1)) + ivec2(pixel % uint(kTile), pixel / uint(kTile));
+  return pixel_of_tile(tile, pixel) - (origin & (kTile - 1));
 }
 
 /// What the estimators store of a mean open direction. It lies in [0, 1], so that filters of visibility take it as it

@@ -13,7 +13,6 @@
 #include "upsample.h"
 #include "view.glsl"
 #include "normal.glsl"
-#include "stride.glsl"
 #include "tiles.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;

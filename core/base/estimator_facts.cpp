@@ -11,12 +11,21 @@ namespace {
 /// and most frames are open in a tenth.
 constexpr double kWorthProving = 48;
 
-/// Of one radius, on average over the pixels of a surface.
+/// From so many slices on an estimate is meant to be better than what fewer pixels can tell.
+constexpr int kManySlices = 5;
+
+/// The part of the pixels that an adaptive density adds in most frames.
+constexpr double kAdded = 0.06;
+
 double samples_of_a_radius(const EstimatorSettings& settings) {
+  return settings.estimator == Estimator::crytek ? settings.samples : 2 * settings.slices * settings.steps;
+}
+
+/// Of one radius, on average over the pixels of a surface.
+double expected_samples(const EstimatorSettings& settings) {
   const double factor = double(settings.resolution);
-  const double samples =
-      settings.estimator == Estimator::crytek ? settings.samples : 2 * settings.slices * settings.steps;
-  return samples / (factor * factor * stride_of(settings));
+  const double density = 1.0 / spacing_of(settings) + (is_adaptive(settings) ? kAdded : 0);
+  return samples_of_a_radius(settings) / (factor * factor) * density;
 }
 
 }  // namespace
@@ -45,21 +54,49 @@ bool completes_anywhere(const EstimatorSettings& settings) {
   return searches_slices(settings) && settings.complete != Completion::none;
 }
 
-int stride_of(const EstimatorSettings& settings) {
+int spacing_of(const EstimatorSettings& settings) {
   if (searches_exactly(settings)) return 1;
   if (settings.stride > 0) return settings.stride;
-  const bool is_shared =
-      settings.denoise == Denoise::bilateral && settings.resolution == Resolution::full && settings.slices <= 2;
-  return is_shared && settings.estimator == Estimator::gtao ? 4 : 1;
+  if (settings.denoise != Denoise::bilateral || settings.resolution != Resolution::full) return 1;
+  if (settings.density == Density::adaptive && searches_slices(settings)) return settings.slices < kManySlices ? 16 : 2;
+  return settings.slices <= 2 && settings.estimator == Estimator::gtao ? 4 : 1;
+}
+
+bool is_adaptive(const EstimatorSettings& settings) {
+  return settings.density == Density::adaptive && searches_slices(settings) && spacing_of(settings) > 1;
+}
+
+int denoise_radius_of(const EstimatorSettings& settings) {
+  if (settings.denoise_radius > 0) return settings.denoise_radius;
+  return spacing_of(settings) > 1 ? 8 : 4;
+}
+
+int denoise_reach_of(const EstimatorSettings& settings) {
+  // What has an estimated error is not mixed with its neighbours.
+  if (settings.denoise == Denoise::none || settings.tolerance > 0) return 0;
+  if (settings.denoise == Denoise::box) return 2;
+  const auto& kernel = settings.denoise_kernel;
+  const int radius = kernel.empty() ? denoise_radius_of(settings) : int(kernel.size()) - 1;
+  if (spacing_of(settings) == 1) return radius;
+  return std::max(radius, is_adaptive(settings) ? 3 : 8);
 }
 
 bool proves(const EstimatorSettings& settings) {
   return !settings.no_skip && !searches_exactly(settings) &&
-         (settings.skip_tolerance > 0 || samples_of_a_radius(settings) >= kWorthProving);
+         (settings.skip_tolerance > 0 || expected_samples(settings) >= kWorthProving);
 }
 
-double samples_per_pixel(const EstimatorSettings& settings) {
+double samples_per_estimate(const EstimatorSettings& settings) {
   return searches_exactly(settings) ? 0 : samples_of_a_radius(settings) * double(1 + settings.further_radii.size());
+}
+
+EstimatorSettings bracket_of(const EstimatorSettings& settings) {
+  EstimatorSettings bracket = settings;
+  bracket.estimator = Estimator::gtao;
+  bracket.search = SliceSearch::steps;
+  bracket.tolerance = 0;
+  bracket.resolution = Resolution::full;
+  return bracket;
 }
 
 bool shapes(const EstimatorSettings& settings) {

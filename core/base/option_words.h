@@ -92,6 +92,11 @@ inline const std::map<std::string, Completion>& names_of() {
   return names;
 }
 template <>
+inline const std::map<std::string, Density>& names_of() {
+  static const std::map<std::string, Density> names = {{"uniform", Density::uniform}, {"adaptive", Density::adaptive}};
+  return names;
+}
+template <>
 inline const std::map<std::string, Resolution>& names_of() {
   static const std::map<std::string, Resolution> names = {
       {"full", Resolution::full}, {"half", Resolution::half}, {"quarter", Resolution::quarter}};

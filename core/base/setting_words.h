@@ -27,6 +27,8 @@ enum class ThicknessKind { automatic, infinite, constant };
 // where surfaces are taken to go on although the frame does not show it: nowhere; beyond the picture's border; there
 // and behind what is nearer
 enum class Completion { none, border, all };
+// where pixels have an estimate of their own: evenly over the image; more where surfaces show few pixels
+enum class Density { uniform, adaptive };
 // pixels of the frame per pixel of the estimate, in x and in y
 enum class Resolution { full = 1, half = 2, quarter = 4 };
 enum class Denoise { none, bilateral, box };

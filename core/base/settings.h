@@ -100,12 +100,17 @@ struct EstimatorSettings {
   // blocks; border: beyond the picture's border; all: also behind what is nearer to the eye.
   Completion complete = Completion::all;
   Resolution resolution = Resolution::full;
-  // one pixel of so many in a row has an estimate, 1, 2 or 4, and gives it to the others in the bilateral denoiser; 0:
-  // see stride_of
+  // one pixel of so many has an estimate, 1, 2, 4, 8 or 16, and gives it to the others in the bilateral denoiser; with
+  // Density::adaptive so many at least; 0: see spacing_of
   int stride = 0;
+  // adaptive: more estimates where a surface shows too few pixels for its neighbours to give it one; of gtao by steps,
+  // and of bitmask
+  Density density = Density::adaptive;
   Denoise denoise = Denoise::bilateral;
-  int denoise_radius = 4;  // pixels of the estimate to each side, 1 to 8; with Denoise::bilateral
-  // instead: 2 to 9 weights from the centre outwards, none negative, the centre's above 0; empty: a Gaussian
+  // pixels of the estimate to each side, 1 to 8; with Denoise::bilateral; 0: see denoise_radius_of
+  int denoise_radius = 0;
+  // instead: 2 to 9 weights from the centre outwards, none negative, the centre's above 0; empty: a Gaussian, or
+  // interpolate's parabola
   std::vector<double> denoise_kernel;
   // of the depth, 0 to 100: a step by this part weighs 1/e; 0: weighs by plane distance instead
   double denoise_depth_sigma = 0;

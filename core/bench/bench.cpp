@@ -207,8 +207,11 @@ BenchReport run_bench(gpu::Device& device, const Suite& suite, const std::vector
       row.candidate = candidates[c].name;
       row.ao = std::move(results[c].ao);
       timings[c].summarize(row);
-      row.samples_per_pixel =
-          samples_per_pixel(settings) * (1 - double(results[c].sky_pixels) / double(loaded.host.depth.size()));
+      const HostResult& result = results[c];
+      const auto pixels = double(loaded.planar.size());
+      const double blocks = double(settings.resolution) * double(settings.resolution);
+      const double estimates = result.estimates ? result.estimates : (pixels - result.sky_pixels) / blocks;
+      row.samples_per_pixel = samples_per_estimate(settings) * estimates / pixels;
       measure(row, loaded, settings, suite.reference_slices ? &references : nullptr);
       report.rows.push_back(std::move(row));
     }

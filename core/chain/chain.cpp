@@ -13,7 +13,8 @@ namespace alcove {
 namespace {
 
 void download(gpu::Recorder& gpu, const FrameOutputs& out) {
-  for (const auto* result : {out.counts, out.tiles, out.squares, out.completion, out.color_ao, out.composite})
+  for (const auto* result :
+       {out.counts, out.tiles, out.sites, out.squares, out.completion, out.color_ao, out.composite})
     if (result) gpu.download(*result);
   for (const auto& row : kAovs)
     if (out.*row.planes) gpu.download(*(out.*row.planes));
@@ -37,17 +38,21 @@ FrameOutputs run_chain(gpu::Recorder& gpu, const FrameInputs& frame, const Estim
   if (wanted.visibility || frame[RawPlane::beauty]) {
     const GBuffer work = downsample(gpu, gbuffer, block_grid(frame, int(settings.resolution)));
     const bool with_completed = wanted.completed && completes_anywhere(settings);
-    const Estimate estimated = estimate(gpu, work, frame, settings, needs_bent(settings, wanted), with_completed);
+    const Sites chosen = sites(gpu, work, site_rule_of(settings));
+    const Estimate estimated =
+        estimate(gpu, work, chosen, frame, settings, needs_bent(settings, wanted), with_completed);
     const Denoiser denoiser = denoiser_of(settings);
-    out.completion = completion(gpu, work, estimated, denoiser.stride);
+    out.completion = completion(gpu, work, estimated, chosen);
     const Visibility noisy = combine(gpu, work, estimated, wanted.has(&FrameOutputs::scales));
     const FilterRuns runs = dilate(gpu, work, estimated.listed, denoiser);
-    const Visibility smooth = denoise(gpu, work, noisy, denoiser, runs);
+    const Visibility smooth =
+        chosen.rows ? interpolate(gpu, work, noisy, chosen, denoiser, runs) : denoise(gpu, work, noisy, denoiser, runs);
     const Visibility whole = upsample(gpu, gbuffer, work, smooth, runs);
     open_directions = &bent_normal(gpu, gbuffer, whole.bent);
     visibility = shape(gpu, gbuffer, whole, shaping_of(settings), frame[RawPlane::material_ao]);
-    stages = {work, noisy.ao, denoiser.stride, smooth.ao, estimated.completed, estimated.listed.sectors};
+    stages = {work, noisy.ao, chosen, smooth.ao, estimated.completed, estimated.listed.sectors};
     out.tiles = estimated.listed.counts;
+    out.sites = estimated.listed.site_counts;
     out.squares = estimated.squares;
     out.completed = estimated.completed;
     if (wanted.has(&FrameOutputs::error)) out.error = estimated.error;

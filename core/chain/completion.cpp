@@ -7,12 +7,13 @@
 
 namespace alcove {
 
-gpu::Buffer* completion(gpu::Recorder& gpu, const GBuffer& gbuffer, const Estimate& estimate, int stride) {
+gpu::Buffer* completion(gpu::Recorder& gpu, const GBuffer& gbuffer, const Estimate& estimate, const Sites& sites) {
   if (!estimate.completed) return nullptr;
   const View& view = gbuffer.view;
   const gpu::Extent tiles{groups_of(view.size.x, uint(kTile)), groups_of(view.size.y, uint(kTile))};
   gpu::Buffer& sums = gpu.buffer("completion", sizeof(vec2) * tiles.x * tiles.y, gpu::Use::device);
-  gpu.dispatch("completion", CompletionParams{view, gbuffer.grid.origin, stride, planes_in(*estimate.ao, view) - 1},
+  gpu.dispatch("completion",
+               CompletionParams{view, gbuffer.grid.origin, sites.spacing, planes_in(*estimate.ao, view) - 1},
                {{kCompletionDepth, *gbuffer.depth},
                 {kCompletionAo, *estimate.ao},
                 {kCompletionCompleted, *estimate.completed},

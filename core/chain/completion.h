@@ -7,7 +7,7 @@
 namespace alcove {
 
 /// Sums for each tile of 8 x 8 pixels the visibility that is taken by completed surfaces, and by all, for the largest
-/// radius: see completion.comp. Null where nobody asked for estimate.completed.
-gpu::Buffer* completion(gpu::Recorder& gpu, const GBuffer& gbuffer, const Estimate& estimate, int stride);
+/// radius, at the sites of the widest lattice: see completion.comp. Null where nobody asked for estimate.completed.
+gpu::Buffer* completion(gpu::Recorder& gpu, const GBuffer& gbuffer, const Estimate& estimate, const Sites& sites);
 
 }  // namespace alcove

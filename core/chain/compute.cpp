@@ -45,7 +45,8 @@ HostResult compute_ao(gpu::Recorder& gpu, const HostFrame& frame, const Estimato
   gpu.run();
   const auto ao = outputs.ao->as<float>();
   const auto& counts = outputs.counts->as<FrameCounts>()[0];
-  return {{ao.begin(), ao.end()}, counts.sky, counts.repaired_depth, counts.repaired_normals};
+  const std::uint32_t estimates = outputs.sites ? outputs.sites->as<SiteCounts>()[0].listed : 0;
+  return {{ao.begin(), ao.end()}, counts.sky, estimates, counts.repaired_depth, counts.repaired_normals};
 }
 
 }  // namespace alcove

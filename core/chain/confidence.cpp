@@ -16,35 +16,28 @@ namespace {
 /// The thickness of thin occluders, in radii.
 constexpr double kThin = 0.02;
 
-/// The settings of the estimate by slices and steps at full resolution that stands for any other.
-EstimatorSettings settings_of_the_bracket(const EstimatorSettings& settings) {
-  EstimatorSettings bracket = settings;
-  bracket.estimator = Estimator::gtao;
-  bracket.search = SliceSearch::steps;
-  bracket.tolerance = 0;
-  bracket.resolution = Resolution::full;
-  return bracket;
-}
-
 }  // namespace
 
 gpu::Buffer& confidence(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame,
                         const EstimatorSettings& settings) {
-  const EstimatorSettings bracket = settings_of_the_bracket(settings);
+  const EstimatorSettings bracket = bracket_of(settings);
   const double radius = radii_of(settings).back();
   const Sampling sampling = sampling_of(bracket, frame.frame);
   const Skipping skipping = skipping_of(bracket, frame.changes);
   const Denoiser denoiser = denoiser_of(bracket);
-  const Bounds surfaces = bounds(gpu, gbuffer, skipping, sampling.stride);
+  const Sites chosen = sites(gpu, gbuffer, site_rule_of(bracket), "bracket ");
+  const Bounds surfaces = bounds(gpu, gbuffer, skipping);
   coarsen(gpu, gbuffer, surfaces);
   const auto visibility = [&](float thickness, Completion complete, const std::string& prefix) -> const gpu::Buffer& {
     Reach reach = reach_of(bracket, radius);
     reach.thickness = thickness;
     reach.complete = complete;
     Estimate out{&gpu.buffer(prefix + "ao", plane_bytes(gbuffer.view), gpu::Use::device)};
-    out.listed = classify(gpu, gbuffer, surfaces, skipping, reach.radius, sampling.stride, out, 0, prefix);
+    out.listed = classify(gpu, gbuffer, surfaces, skipping, reach.radius, chosen, out, 0, prefix);
+    list_sites(gpu, gbuffer, chosen, out.listed, prefix);
     horizon(gpu, gbuffer, reach, sampling, out, 0);
-    return denoise(gpu, gbuffer, *out.ao, denoiser, prefix);
+    return chosen.rows ? interpolate(gpu, gbuffer, *out.ao, chosen, denoiser, prefix)
+                       : denoise(gpu, gbuffer, *out.ao, denoiser, prefix);
   };
   const gpu::Buffer& thin = visibility(float(kThin * radius), Completion::none, "thin ");
   // Endless occluders block all that anything behind them does, but nothing beyond the border.

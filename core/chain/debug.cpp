@@ -20,7 +20,7 @@ DebugPlane debug(gpu::Recorder& gpu, const DebugView& view, const GBuffer& gbuff
                  const FrameInputs& frame) {
   const GBuffer* shown = &gbuffer;
   const gpu::Buffer* values = gbuffer.normal;
-  int stride = 1;
+  Sites sites;
   switch (view.source) {
     case DebugSource::none: break;
     case DebugSource::raw_depth: values = frame[RawPlane::depth]; break;
@@ -28,7 +28,7 @@ DebugPlane debug(gpu::Recorder& gpu, const DebugView& view, const GBuffer& gbuff
     case DebugSource::raw_ao:
       shown = &stages.gbuffer;
       values = stages.raw_ao;
-      stride = stages.stride;
+      sites = stages.sites;
       break;
     case DebugSource::denoised_ao:
       shown = &stages.gbuffer;
@@ -37,7 +37,11 @@ DebugPlane debug(gpu::Recorder& gpu, const DebugView& view, const GBuffer& gbuff
     case DebugSource::completed:
       shown = &stages.gbuffer;
       values = stages.completed;
-      stride = stages.stride;
+      sites = stages.sites;
+      break;
+    case DebugSource::sites:
+      shown = &stages.gbuffer;
+      sites = stages.sites;
       break;
     case DebugSource::tiles:
       shown = &stages.gbuffer;
@@ -45,10 +49,13 @@ DebugPlane debug(gpu::Recorder& gpu, const DebugView& view, const GBuffer& gbuff
       break;
   }
   gpu::Buffer& result = gpu.buffer(std::string("debug ") + view.name, plane_bytes(shown->view), gpu::Use::device);
-  gpu.dispatch(
-      "debug", DebugParams{shown->view, view.kind, stride, shown->grid.origin},
-      {{kDebugDepth, *shown->depth}, {kDebugNormal, *shown->normal}, {kDebugValues, *values}, {kDebugResult, result}},
-      extent_of(shown->view));
+  gpu.dispatch("debug", DebugParams{shown->view, view.kind, sites.rows ? 1u : 0u, shown->grid.origin},
+               {{kDebugDepth, *shown->depth},
+                {kDebugNormal, *shown->normal},
+                {kDebugValues, *values},
+                {kDebugResult, result},
+                {kDebugRows, sites.rows ? *sites.rows : *values}},
+               extent_of(shown->view));
   return {&view, shown->view.size, &result};
 }
 

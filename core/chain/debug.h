@@ -5,6 +5,7 @@
 #include "core/chain/debug_view.h"
 #include "core/chain/geometry.h"
 #include "core/chain/outputs.h"
+#include "core/chain/sites.h"
 
 namespace alcove {
 
@@ -12,7 +13,7 @@ namespace alcove {
 struct DebugStages {
   GBuffer gbuffer{};
   const gpu::Buffer* raw_ao = nullptr;
-  int stride = 1;  // of raw_ao: one pixel of so many in a row has an estimate
+  Sites sites{};  // the pixels that raw_ao is of
   const gpu::Buffer* denoised_ao = nullptr;
   const gpu::Buffer* completed = nullptr;  // of the pixels of raw_ao; null: not asked for
   const gpu::Buffer* sectors = nullptr;    // of the tiles

@@ -29,6 +29,9 @@ constexpr std::array kViews{
               DebugSource::denoised_ao, DebugScale::fixed, 0, 1, true},
     DebugView{"completed", "completed: visibility that surfaces take where they are only guessed to go on", kDebugValue,
               DebugSource::completed, DebugScale::fixed, 0, 1, true},
+    DebugView{"density",
+              "density: share of the pixels with an estimate of their own, in squares of 4 x 4 (logarithmic)",
+              kDebugDensity, DebugSource::sites, DebugScale::fixed_logarithmic, 1.0f / 16, 1, false},
     DebugView{
         "tiles",
         "tiles: share of the directions in which something may block; 0 is proved open, or as in the frame before",

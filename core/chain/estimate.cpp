@@ -8,6 +8,7 @@
 
 #include "core/base/estimator_facts.h"
 #include "core/chain/pass_common.h"
+#include "core/chain/sites.h"
 #include "kernels/bitmask.h"
 #include "kernels/bounds.h"
 #include "kernels/classify.h"
@@ -69,10 +70,10 @@ Params slice_parameters(const GBuffer& gbuffer, const Reach& reach, const Sampli
   return params;
 }
 
-std::vector<uint> slice_constants(const Reach& reach, const Sampling& sampling, const Estimate& out = {}) {
+std::vector<uint> slice_constants(const Reach& reach, const Sampling& sampling, const Estimate& out) {
   return {uint(sampling.slices), uint(sampling.steps),
           uint(reach.falloff) | (out.bent ? kWithBent : 0) | (out.completed ? kWithCompleted : 0),
-          uint(sampling.stride)};
+          out.listed.sites ? 1u : 0u};
 }
 
 /// What is completed, as kernels take it.
@@ -97,6 +98,12 @@ gpu::Extent group_extent(const View& view) {
 
 }  // namespace
 
+gpu::Extent estimate_extent(const TileList& list) {
+  if (!list.sites) return list_extent(list);
+  const uint most = groups_of(int(list.sites->bytes() / sizeof(uint)), kGroupX * kGroupY);
+  return {*list.site_counts, std::min(most, kListedRow), groups_of(int(most), kListedRow)};
+}
+
 gpu::Extent list_extent(const TileList& list) {
   const auto most = uint(list.tiles->bytes() / sizeof(ListedTile));
   return {*list.counts, std::min(most, kListedRow), groups_of(most, kListedRow)};
@@ -113,8 +120,7 @@ Reach reach_of(const EstimatorSettings& settings, double radius) {
 bool completes_behind(const Reach& reach) { return reach.complete == Completion::all && !std::isinf(reach.thickness); }
 
 Sampling sampling_of(const EstimatorSettings& settings, int frame) {
-  return {settings.slices, settings.steps, stride_of(settings),
-          noise_shift(settings.noise == Noise::animated ? frame : 0, settings.seed)};
+  return {settings.slices, settings.steps, noise_shift(settings.noise == Noise::animated ? frame : 0, settings.seed)};
 }
 
 Skipping skipping_of(const EstimatorSettings& settings, const gpu::Buffer* changes) {
@@ -126,7 +132,7 @@ Skipping skipping_of(const EstimatorSettings& settings, const gpu::Buffer* chang
           completes_anywhere(settings)};
 }
 
-Estimate estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame,
+Estimate estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const Sites& sites, const FrameInputs& frame,
                   const EstimatorSettings& settings, bool with_bent, bool with_completed) {
   const auto radii = radii_of(settings);
   const Sampling sampling = sampling_of(settings, frame.frame);
@@ -142,7 +148,7 @@ Estimate estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs&
   // Tiles that are as in the frame before keep what it found in them.
   if (completed && (is_exact || !skipping.changes)) gpu.clear(*completed);
 
-  const Bounds surfaces = bounds(gpu, gbuffer, skipping, sampling.stride);
+  const Bounds surfaces = bounds(gpu, gbuffer, skipping);
   coarsen(gpu, gbuffer, surfaces);
   for (uint plane = 0; plane < radii.size(); plane++) {
     const Reach reach = reach_of(settings, radii[plane]);
@@ -151,7 +157,10 @@ Estimate estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs&
     out.completed = is_largest ? completed : nullptr;
     result.bent = out.bent;
     result.completed = out.completed;
-    if (!is_exact) out.listed = classify(gpu, gbuffer, surfaces, skipping, reach.radius, sampling.stride, out, plane);
+    if (!is_exact) {
+      out.listed = classify(gpu, gbuffer, surfaces, skipping, reach.radius, sites, out, plane);
+      list_sites(gpu, gbuffer, sites, out.listed);
+    }
     result.listed = out.listed;
     switch (settings.estimator) {
       case Estimator::gtao:
@@ -174,17 +183,15 @@ Estimate estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs&
   return result;
 }
 
-Bounds bounds(gpu::Recorder& gpu, const GBuffer& gbuffer, const Skipping& skipping, int stride) {
+Bounds bounds(gpu::Recorder& gpu, const GBuffer& gbuffer, const Skipping& skipping) {
   if (!skipping.proves) return {};
-  // What goes on beyond the border is told by the normals of all pixels there, not of the receivers alone.
-  if (skipping.completes) stride = 1;
   const gpu::Extent tiles = tile_extent(gbuffer.view);
   const gpu::Extent groups = group_extent(gbuffer.view);
   const Bounds result{&gpu.buffer("bounds", sizeof(TileBounds) * tiles.x * tiles.y, gpu::Use::device),
                       &gpu.buffer("group bounds", sizeof(GroupBounds) * groups.x * groups.y, gpu::Use::device)};
-  gpu.dispatch("bounds", BoundsParams{gbuffer.view, gbuffer.grid.origin},
-               {{kBoundsDepth, *gbuffer.depth}, {kBoundsNormal, *gbuffer.normal}, {kBoundsTiles, *result.tiles}}, tiles,
-               {uint(stride)});
+  gpu.dispatch("bounds", BoundsParams{gbuffer.view},
+               {{kBoundsDepth, *gbuffer.depth}, {kBoundsNormal, *gbuffer.normal}, {kBoundsTiles, *result.tiles}},
+               tiles);
   return result;
 }
 
@@ -195,7 +202,7 @@ void coarsen(gpu::Recorder& gpu, const GBuffer& gbuffer, const Bounds& bounds) {
 }
 
 TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const Bounds& bounds, const Skipping& skipping,
-                  float radius, int stride, const Estimate& out, uint plane, const std::string& prefix) {
+                  float radius, const Sites& sites, const Estimate& out, uint plane, const std::string& prefix) {
   const gpu::Extent tiles = tile_extent(gbuffer.view);
   TileList list;
   list.tiles = &gpu.buffer("tiles", sizeof(ListedTile) * tiles.x * tiles.y, gpu::Use::device);
@@ -208,7 +215,6 @@ TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const Bounds& boun
                     (skipping.changes ? kClassifyReuses : 0) | (skipping.tolerance > 0 ? kClassifyTolerates : 0) |
                     (out.completed ? kClassifyWithCompleted : 0) | (skipping.completes ? kClassifyCompletes : 0);
   const ClassifyParams params{gbuffer.view,
-                              gbuffer.grid.origin,
                               radius,
                               float(std::sqrt(skipping.tolerance)),
                               gbuffer.depth_precision,
@@ -222,6 +228,7 @@ TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const Bounds& boun
                 {kClassifyChanges, skipping.changes ? *skipping.changes : *list.tiles},
                 {kClassifyDepth, *gbuffer.depth},
                 {kClassifyNormal, *gbuffer.normal},
+                {kClassifyRows, sites.rows ? *sites.rows : *list.tiles},
                 {kClassifyList, *list.tiles},
                 {kClassifyCounts, *list.counts},
                 {kClassifySectors, *list.sectors},
@@ -229,7 +236,7 @@ TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const Bounds& boun
                 {kClassifyBent, out.bent ? *out.bent : *out.ao},
                 {kClassifyCompleted, out.completed ? *out.completed : *out.ao}},
                {groups_of(int(tiles.x), 2 * kGroupY) * kGroupX, groups_of(int(tiles.y), 2) * kGroupY},
-               {uint(stride), mode});
+               {sites.rows ? 1u : 0u, mode});
   return list;
 }
 
@@ -244,8 +251,10 @@ void horizon(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, con
                 {kHorizonBent, out.bent ? *out.bent : *out.ao},
                 {kHorizonList, *out.listed.tiles},
                 {kHorizonCounts, *out.listed.counts},
+                {kHorizonSites, out.listed.sites ? *out.listed.sites : *out.listed.tiles},
+                {kHorizonSiteCounts, out.listed.sites ? *out.listed.site_counts : *out.listed.counts},
                 {kHorizonCompleted, out.completed ? *out.completed : *out.ao}},
-               list_extent(out.listed), constants);
+               estimate_extent(out.listed), constants);
 }
 
 void bitmask(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, const Sampling& sampling,
@@ -259,8 +268,10 @@ void bitmask(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, con
                 {kBitmaskBent, out.bent ? *out.bent : *out.ao},
                 {kBitmaskList, *out.listed.tiles},
                 {kBitmaskCounts, *out.listed.counts},
+                {kBitmaskSites, out.listed.sites ? *out.listed.sites : *out.listed.tiles},
+                {kBitmaskSiteCounts, out.listed.sites ? *out.listed.site_counts : *out.listed.counts},
                 {kBitmaskCompleted, out.completed ? *out.completed : *out.ao}},
-               list_extent(out.listed), constants);
+               estimate_extent(out.listed), constants);
 }
 
 void hbao(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, const Sampling& sampling, Elevation elevation,
@@ -280,8 +291,10 @@ void hbao(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, const 
                 {kHbaoNormal, *gbuffer.normal},
                 {kHbaoAo, *out.ao},
                 {kHbaoList, *out.listed.tiles},
-                {kHbaoCounts, *out.listed.counts}},
-               list_extent(out.listed), slice_constants(reach, sampling));
+                {kHbaoCounts, *out.listed.counts},
+                {kHbaoSites, out.listed.sites ? *out.listed.sites : *out.listed.tiles},
+                {kHbaoSiteCounts, out.listed.sites ? *out.listed.site_counts : *out.listed.counts}},
+               estimate_extent(out.listed), slice_constants(reach, sampling, out));
 }
 
 void crytek(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, const Sampling& sampling,
@@ -301,8 +314,10 @@ void crytek(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, cons
                 {kCrytekNormal, *gbuffer.normal},
                 {kCrytekAo, *out.ao},
                 {kCrytekList, *out.listed.tiles},
-                {kCrytekCounts, *out.listed.counts}},
-               list_extent(out.listed), {uint(samples.count), uint(sampling.stride)});
+                {kCrytekCounts, *out.listed.counts},
+                {kCrytekSites, out.listed.sites ? *out.listed.sites : *out.listed.tiles},
+                {kCrytekSiteCounts, out.listed.sites ? *out.listed.site_counts : *out.listed.counts}},
+               estimate_extent(out.listed), {uint(samples.count), out.listed.sites ? 1u : 0u});
 }
 
 }  // namespace alcove

@@ -6,23 +6,28 @@
 
 #include "core/base/settings.h"
 #include "core/chain/geometry.h"
+#include "core/chain/sites.h"
 #include "kernels/profile.h"
 
 namespace alcove {
 
 /// Tiles of a G-buffer that an estimator has something to do for.
 struct TileList {
-  gpu::Buffer* tiles = nullptr;    // ListedTile each
-  gpu::Buffer* counts = nullptr;   // one TileCounts
-  gpu::Buffer* sectors = nullptr;  // of all tiles, from classify
-  gpu::Buffer* lines = nullptr;    // GroupCount of profile, from converge
-  bool skips_surfaces = false;     // more than sky may be left out
+  gpu::Buffer* tiles = nullptr;        // ListedTile each
+  gpu::Buffer* counts = nullptr;       // one TileCounts
+  gpu::Buffer* sectors = nullptr;      // of all tiles, from classify
+  gpu::Buffer* lines = nullptr;        // GroupCount of profile, from converge
+  gpu::Buffer* sites = nullptr;        // that lie in them, from list_sites; null: all of their pixels
+  gpu::Buffer* site_counts = nullptr;  // one SiteCounts; null as the sites
+  bool skips_surfaces = false;         // more than sky may be left out
 };
 
 /// The workgroups of a pass over the listed tiles, of which each takes at most one.
 gpu::Extent list_extent(const TileList& list);
+/// The workgroups of an estimator over what is listed.
+gpu::Extent estimate_extent(const TileList& list);
 
-/// What an estimator gives for every pixel of the G-buffer, or for those that the stride leaves.
+/// What an estimator gives for the sites of a G-buffer.
 struct Estimate {
   gpu::Buffer* ao = nullptr;       // a plane of visibility for each radius, from the smallest on
   gpu::Buffer* bent = nullptr;     // planes x, y, z, of the largest radius: see horizon.h; null: not asked for
@@ -36,7 +41,7 @@ struct Estimate {
 
 /// Runs the estimator of the settings for each of their radii. The frame gives the number that animates the noise, and
 /// what has changed.
-Estimate estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame,
+Estimate estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const Sites& sites, const FrameInputs& frame,
                   const EstimatorSettings& settings, bool with_bent = false, bool with_completed = false);
 
 /// What blocks around a receiver, for one radius.
@@ -56,7 +61,6 @@ bool completes_behind(const Reach& reach);
 struct Sampling {
   int slices;        // directions per pixel
   int steps;         // samples to each side of a slice
-  int stride;        // one pixel of so many in a row has an estimate
   vec2 noise_shift;  // where the noise pattern begins
 };
 Sampling sampling_of(const EstimatorSettings& settings, int frame);
@@ -85,15 +89,15 @@ struct Bounds {
   gpu::Buffer* groups = nullptr;  // GroupBounds for each group of tiles
 };
 /// The bounds of the tiles, where tiles are to be proved.
-Bounds bounds(gpu::Recorder& gpu, const GBuffer& gbuffer, const Skipping& skipping, int stride);
+Bounds bounds(gpu::Recorder& gpu, const GBuffer& gbuffer, const Skipping& skipping);
 /// Bounds the groups of tiles, where the tiles have bounds.
 void coarsen(gpu::Recorder& gpu, const GBuffer& gbuffer, const Bounds& bounds);
 
-/// Lists the tiles that an estimator must compute for one radius. Into a plane of `out` it writes the visibility of
-/// those that are left out, and into out.completed 0 for them. `prefix` stands before the names of its buffers where
-/// there is another estimate.
+/// Lists the tiles that an estimator must compute for one radius. Into a plane of `out` it writes the visibility of the
+/// sites of those that are left out, and into out.completed 0 for them. `prefix` stands before the names of its buffers
+/// where there is another estimate.
 TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const Bounds& bounds, const Skipping& skipping,
-                  float radius, int stride, const Estimate& out, uint plane, const std::string& prefix = "");
+                  float radius, const Sites& sites, const Estimate& out, uint plane, const std::string& prefix = "");
 
 void horizon(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, const Sampling& sampling,
              const Estimate& out, uint plane);

@@ -11,6 +11,7 @@
 #include "kernels/combine.h"
 #include "kernels/denoise.h"
 #include "kernels/dilate.h"
+#include "kernels/interpolate.h"
 #include "kernels/upsample.h"
 
 namespace alcove {
@@ -19,16 +20,41 @@ namespace {
 /// The Gaussian's standard deviation, in radii of the denoiser.
 constexpr double kDenoiseSigma = 0.6;
 
+std::vector<double> gaussian(int radius) {
+  std::vector<double> weights;
+  const double sigma = kDenoiseSigma * radius;
+  for (int i = 0; i <= radius; i++) weights.push_back(std::exp(-0.5 * i * i / (sigma * sigma)));
+  return weights;
+}
+
+/// What interpolate makes of a radius: 0 a pixel beyond it.
+double narrowness_of(const EstimatorSettings& settings) {
+  const double end = denoise_radius_of(settings) + 1;
+  return 1 / (end * end);
+}
+
+std::vector<double> parabola(double narrowness, int reach) {
+  std::vector<double> weights;
+  for (int i = 0; i <= reach; i++) weights.push_back(1 - narrowness * i * i);
+  return weights;
+}
+
+/// Makes weights, from the centre outwards, reach for sites where there may be few.
+std::vector<double> reaching(std::vector<double> weights, int reach) {
+  const double least = kLeastWindow * weights.front();
+  weights.resize(std::size_t(reach) + 1, 0.0);
+  for (double& weight : weights) weight = std::max(weight, least);
+  return weights;
+}
+
 std::vector<double> weights_of(const EstimatorSettings& settings) {
-  // What has an estimated error is not mixed with its neighbours.
-  if (settings.denoise == Denoise::none || settings.tolerance > 0) return {};
+  const auto& kernel = settings.denoise_kernel;
+  const int reach = denoise_reach_of(settings);
+  if (reach == 0) return {};
   // The mean of the four boxes of 4 x 4 that hold a pixel: 4 wide, and centred.
   if (settings.denoise == Denoise::box) return {1, 1, 0.5};
-  if (!settings.denoise_kernel.empty()) return settings.denoise_kernel;
-  std::vector<double> weights;
-  const double sigma = kDenoiseSigma * settings.denoise_radius;
-  for (int i = 0; i <= settings.denoise_radius; i++) weights.push_back(std::exp(-0.5 * i * i / (sigma * sigma)));
-  return weights;
+  if (spacing_of(settings) == 1) return kernel.empty() ? gaussian(denoise_radius_of(settings)) : kernel;
+  return reaching(kernel.empty() ? parabola(narrowness_of(settings), reach) : kernel, reach);
 }
 
 gpu::Buffer& denoised(gpu::Recorder& gpu, const std::string& prefix, std::size_t bytes) {
@@ -40,15 +66,24 @@ gpu::Buffer& upsampled(gpu::Recorder& gpu, const std::string& prefix, std::size_
 }
 
 /// The parameters of the filter, without the axis.
-DenoiseParams denoise_params(const GBuffer& gbuffer, const Denoiser& denoiser) {
-  DenoiseParams params{};
+template <class Params>
+Params filter_params(const GBuffer& gbuffer, const Denoiser& denoiser) {
+  Params params{};
   params.view = gbuffer.view;
-  params.origin = gbuffer.grid.origin;
   params.depth_sigma = float(denoiser.depth_sigma);
   const auto& weights = denoiser.weights;
   const double sum = 2 * std::accumulate(weights.begin(), weights.end(), 0.0) - weights.front();
   std::ranges::transform(weights, params.weight, [&](double weight) { return float(weight / sum); });
   return params;
+}
+
+/// The workgroups of a filter along one axis.
+gpu::Extent runs_extent(const GBuffer& gbuffer, ivec2 axis, const RunList& listed) {
+  if (listed.counts) return gpu::Extent(*listed.counts);
+  const ivec2 size = gbuffer.view.size;
+  const int length = axis.x ? size.x : size.y;
+  const int lines = axis.x ? size.y : size.x;
+  return {uint(lines), groups_of(length, uint(kDenoiseRun))};
 }
 
 }  // namespace
@@ -63,7 +98,8 @@ Visibility combine(gpu::Recorder& gpu, const GBuffer& gbuffer, const Estimate& e
 }
 
 Denoiser denoiser_of(const EstimatorSettings& settings) {
-  return {weights_of(settings), settings.denoise_depth_sigma, stride_of(settings)};
+  return {weights_of(settings), settings.denoise_depth_sigma,
+          settings.denoise_kernel.empty() ? narrowness_of(settings) : 0};
 }
 
 FilterRuns dilate(gpu::Recorder& gpu, const GBuffer& gbuffer, const TileList& tiles, const Denoiser& denoiser) {
@@ -78,7 +114,7 @@ FilterRuns dilate(gpu::Recorder& gpu, const GBuffer& gbuffer, const TileList& ti
   if (!denoises && !upsamples) return {};
   const auto groups = [](int pixels, int size) { return int(groups_of(pixels, uint(size))); };
   const int in_column = groups(height, kDenoiseRun);
-  const int in_row = groups(width + denoiser.stride - 1, kDenoiseRun);
+  const int in_row = groups(width, kDenoiseRun);
   const gpu::Buffer& columns =
       gpu.buffer("runs along columns", sizeof(uint) * std::size_t(in_column * groups(width, kTile)), gpu::Use::device);
   const auto list = [&](const std::string& name, int runs, int lines, uint mode, const gpu::Buffer& result) {
@@ -92,7 +128,7 @@ FilterRuns dilate(gpu::Recorder& gpu, const GBuffer& gbuffer, const TileList& ti
                   {kDilateList, *out.runs},
                   {kDilateCounts, *out.counts},
                   {kDilateResult, result}},
-                 {uint(runs), uint(lines)}, {uint(radius), uint(denoiser.stride), mode});
+                 {uint(runs), uint(lines)}, {uint(radius), mode});
     return out;
   };
   FilterRuns listed;
@@ -113,15 +149,11 @@ gpu::Buffer& denoise(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer& pl
                      const std::string& prefix, const FilterRuns& runs) {
   if (denoiser.weights.empty()) return planes;
   const auto radius = uint(denoiser.weights.size() - 1);
-  DenoiseParams params = denoise_params(gbuffer, denoiser);
+  DenoiseParams params = filter_params<DenoiseParams>(gbuffer, denoiser);
   gpu::Buffer& rows = gpu.buffer(prefix + "denoised rows", planes.bytes(), gpu::Use::device);
   gpu::Buffer& result = denoised(gpu, prefix, planes.bytes());
-  const auto along = [&](ivec2 axis, const RunList& listed, const gpu::Buffer& from, const gpu::Buffer& to, uint sparse,
-                         int stride) {
+  const auto along = [&](ivec2 axis, const RunList& listed, const gpu::Buffer& from, const gpu::Buffer& to) {
     params.axis = axis;
-    const int length = axis.x ? gbuffer.view.size.x : gbuffer.view.size.y;
-    const int lines = axis.x ? gbuffer.view.size.y : gbuffer.view.size.x;
-    const gpu::Extent every_run(uint(lines), groups_of(length + stride - 1, uint(kDenoiseRun)));
     gpu.dispatch("denoise", params,
                  {{kDenoiseAo, from},
                   {kDenoiseDepth, *gbuffer.depth},
@@ -129,23 +161,77 @@ gpu::Buffer& denoise(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer& pl
                   {kDenoiseResult, to},
                   {kDenoiseList, listed.runs ? *listed.runs : from},
                   {kDenoiseCounts, listed.counts ? *listed.counts : from}},
-                 listed.counts ? gpu::Extent(*listed.counts) : every_run,
-                 {radius, denoiser.depth_sigma > 0 ? 1u : 0u, sparse | (listed.runs ? kDenoiseListed : 0), uint(stride),
-                  planes_in(planes, gbuffer.view)});
+                 runs_extent(gbuffer, axis, listed),
+                 {radius, denoiser.depth_sigma > 0 ? 1u : 0u, listed.runs ? 1u : 0u, planes_in(planes, gbuffer.view)});
   };
-  const bool is_dense = denoiser.stride == 1;
-  along({1, 0}, runs.rows, planes, rows, is_dense ? kDenoiseDense : kDenoiseSparseRows, denoiser.stride);
-  along({0, 1}, runs.columns, rows, result, is_dense ? kDenoiseDense : kDenoiseSparseColumns, 1);
+  along({1, 0}, runs.rows, planes, rows);
+  along({0, 1}, runs.columns, rows, result);
   return result;
 }
 
+gpu::Buffer& interpolate(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer& planes, const Sites& sites,
+                         const Denoiser& denoiser, const std::string& prefix, const FilterRuns& runs) {
+  const auto radius = uint(denoiser.weights.size() - 1);
+  InterpolateParams params = filter_params<InterpolateParams>(gbuffer, denoiser);
+  const gpu::Buffer& written =
+      gpu.buffer(prefix + "written rows",
+                 sizeof(uint) * groups_of(gbuffer.view.size.x, uint(kDenoiseRun)) * groups_of(gbuffer.view.size.y, 32),
+                 gpu::Use::device);
+  gpu.clear(written);
+  params.narrowness = float(denoiser.narrowness);
+  params.missing = prefix == kBentPrefix ? 0.5f : 1.0f;
+  const uint mode =
+      (denoiser.depth_sigma > 0 ? kInterpolateByDepth : 0) | (denoiser.narrowness > 0 ? 0 : kInterpolateLooksUp);
+  gpu::Buffer& rows = gpu.buffer(prefix + "denoised rows", planes.bytes(), gpu::Use::device);
+  gpu::Buffer& result = denoised(gpu, prefix, planes.bytes());
+  const auto along = [&](ivec2 axis, const RunList& listed, const gpu::Buffer& from, const gpu::Buffer& to) {
+    params.axis = axis;
+    gpu.dispatch("interpolate", params,
+                 {{kInterpolateAo, from},
+                  {kInterpolateDepth, *gbuffer.depth},
+                  {kInterpolateNormal, *gbuffer.normal},
+                  {kInterpolateResult, to},
+                  {kInterpolateList, listed.runs ? *listed.runs : from},
+                  {kInterpolateCounts, listed.counts ? *listed.counts : from},
+                  {kInterpolateRuns, written},
+                  {kInterpolateSites, *sites.rows}},
+                 runs_extent(gbuffer, axis, listed),
+                 {radius, mode | (axis.y ? kInterpolateColumns : 0) | (listed.runs ? kInterpolateListed : 0),
+                  planes_in(planes, gbuffer.view)});
+  };
+  along({1, 0}, runs.rows, planes, rows);
+  along({0, 1}, runs.columns, rows, result);
+  return result;
+}
+
+namespace {
+
+/// Filters all planes of a visibility; only those of the AO have runs.
+template <class Filter>
+Visibility filtered(const Visibility& visibility, const FilterRuns& runs, const Filter& filter) {
+  Visibility result;
+  result.ao = &filter(*visibility.ao, "", runs);
+  if (visibility.scales) result.scales = &filter(*visibility.scales, kScalesPrefix, FilterRuns{});
+  if (visibility.bent) result.bent = &filter(*visibility.bent, kBentPrefix, FilterRuns{});
+  return result;
+}
+
+}  // namespace
+
 Visibility denoise(gpu::Recorder& gpu, const GBuffer& gbuffer, const Visibility& visibility, const Denoiser& denoiser,
                    const FilterRuns& runs) {
-  Visibility result;
-  result.ao = &denoise(gpu, gbuffer, *visibility.ao, denoiser, "", runs);
-  if (visibility.scales) result.scales = &denoise(gpu, gbuffer, *visibility.scales, denoiser, kScalesPrefix);
-  if (visibility.bent) result.bent = &denoise(gpu, gbuffer, *visibility.bent, denoiser, kBentPrefix);
-  return result;
+  return filtered(visibility, runs,
+                  [&](gpu::Buffer& planes, const std::string& prefix, const FilterRuns& listed) -> gpu::Buffer& {
+                    return denoise(gpu, gbuffer, planes, denoiser, prefix, listed);
+                  });
+}
+
+Visibility interpolate(gpu::Recorder& gpu, const GBuffer& gbuffer, const Visibility& visibility, const Sites& sites,
+                       const Denoiser& denoiser, const FilterRuns& runs) {
+  return filtered(visibility, runs,
+                  [&](gpu::Buffer& planes, const std::string& prefix, const FilterRuns& listed) -> gpu::Buffer& {
+                    return interpolate(gpu, gbuffer, planes, sites, denoiser, prefix, listed);
+                  });
 }
 
 gpu::Buffer& upsample(gpu::Recorder& gpu, const GBuffer& gbuffer, const GBuffer& low, gpu::Buffer& low_planes,

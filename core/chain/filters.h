@@ -23,7 +23,8 @@ Visibility combine(gpu::Recorder& gpu, const GBuffer& gbuffer, const Estimate& e
 struct Denoiser {
   std::vector<double> weights;  // from the centre outwards, up to a common factor; empty: there is no filter
   double depth_sigma;           // see EstimatorSettings::denoise_depth_sigma
-  int stride;                   // one pixel of so many in a row has an estimate
+  // of interpolate's parabola, at d pixels 1 - d^2 times this of what it is at 0; 0: the weights are the user's
+  double narrowness;
 };
 Denoiser denoiser_of(const EstimatorSettings& settings);
 
@@ -33,8 +34,8 @@ struct RunList {
   gpu::Buffer* counts = nullptr;
 };
 struct FilterRuns {
-  RunList rows;     // of denoise
-  RunList columns;  // of denoise
+  RunList rows;     // of denoise or interpolate
+  RunList columns;  // of the same
   RunList blocks;   // of upsample
 };
 /// Lists where the filters have work, and writes their results everywhere else. `gbuffer` is that of the estimate.
@@ -43,12 +44,18 @@ FilterRuns dilate(gpu::Recorder& gpu, const GBuffer& gbuffer, const TileList& ti
 
 /// Runs both directions of the filter on any number of planes, or returns the input where there is no filter. `gbuffer`
 /// is that of the estimate. `runs`: from dilate, for the same visibility; without them the filter runs everywhere.
-Visibility denoise(gpu::Recorder& gpu, const GBuffer& gbuffer, const Visibility& visibility, const Denoiser& denoiser,
-                   const FilterRuns& runs = {});
-/// Does the same for one buffer of planes. `prefix` stands before the names of its buffers where others are filtered
-/// too.
+/// `prefix` stands before the names of its buffers where others are filtered too.
 gpu::Buffer& denoise(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer& planes, const Denoiser& denoiser,
                      const std::string& prefix = "", const FilterRuns& runs = {});
+
+Visibility denoise(gpu::Recorder& gpu, const GBuffer& gbuffer, const Visibility& visibility, const Denoiser& denoiser,
+                   const FilterRuns& runs = {});
+
+/// Gives every pixel a visibility from the sites about it, where not every pixel is one.
+Visibility interpolate(gpu::Recorder& gpu, const GBuffer& gbuffer, const Visibility& visibility, const Sites& sites,
+                       const Denoiser& denoiser, const FilterRuns& runs = {});
+gpu::Buffer& interpolate(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer& planes, const Sites& sites,
+                         const Denoiser& denoiser, const std::string& prefix = "", const FilterRuns& runs = {});
 
 /// Brings any number of planes from the blocks of `low` to the pixels of `gbuffer`, or returns the input where both are
 /// the same.

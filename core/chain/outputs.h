@@ -25,6 +25,7 @@ struct DebugPlane {
 struct FrameOutputs {
   gpu::Buffer* counts = nullptr;   // one FrameCounts
   gpu::Buffer* tiles = nullptr;    // one TileCounts, where there is an estimate
+  gpu::Buffer* sites = nullptr;    // one SiteCounts, of the largest radius, where pixels share estimates
   gpu::Buffer* squares = nullptr;  // with a tolerance, vec2 per tile: sum of its squares, and receivers
   // with wanted.completed, vec2 per tile: what completed surfaces took of the visibility, and what all did
   gpu::Buffer* completion = nullptr;

@@ -120,21 +120,41 @@ void add_filter_rows(std::vector<OptionRow>& rows, EstimatorSettings& s) {
   OptionGroup pixels(rows, "Estimator", Effect::pixels);
   pixels.choice("--resolution", s.resolution,
                 "of the estimate; a half or a quarter takes the nearest surface of every 2 x 2 or 4 x 4 pixels");
+  pixels.choice("--density", s.density,
+                "where pixels have an estimate of their own; uniform: one of --stride, evenly, so that surfaces of few "
+                "pixels may get none; adaptive: for gtao by steps and for bitmask one of --stride at least, and more "
+                "where a surface shows few pixels; other estimators and exact searches are uniform");
   pixels.own(
-      {"--stride", "auto|1|2|4", "", "",
-       "estimate one pixel of so many in a row, staggered, and let the bilateral denoiser give the others "
-       "theirs; auto: 4 for gtao with 1 or 2 slices at full resolution, else 1"},
+      {"--stride", "auto|1|2|4|8|16", "", "",
+       "estimate one pixel of so many, and let the bilateral denoiser give the others theirs; auto: 1, but at full "
+       "resolution with the bilateral denoiser 16 with --density adaptive, or 2 from 5 slices on, and 4 with 1 or 2 "
+       "slices for gtao with --density uniform"},
       [&s] { return s.stride == 0 ? std::string("auto") : fmt::format("{}", s.stride); },
       [&s](const std::string& text) {
-        if (text != "auto" && text != "1" && text != "2" && text != "4") return false;
-        s.stride = text == "auto" ? 0 : text.front() - '0';
+        const std::vector<std::string> strides = {"1", "2", "4", "8", "16"};
+        const auto found = std::ranges::find(strides, text);
+        if (text != "auto" && found == strides.end()) return false;
+        s.stride = text == "auto" ? 0 : 1 << (found - strides.begin());
         return true;
       },
-      "is none of auto, 1, 2, 4");
-  pixels.choice("--denoise", s.denoise,
-                "smooths each surface: bilateral: by a Gaussian or --denoise-kernel; box: by an even 4 x 4");
-  pixels.number("--denoise-radius", s.denoise_radius, "pixels of the estimate", between(1, 8),
-                "how far the bilateral denoiser reaches to each side");
+      "is none of auto, 1, 2, 4, 8, 16");
+  pixels.choice(
+      "--denoise", s.denoise,
+      "smooths each surface: bilateral: by a Gaussian or --denoise-kernel, and where pixels share estimates by a line "
+      "fitted to those in reach; box: by an even 4 x 4");
+  pixels.own(
+      {"--denoise-radius", "auto|NUMBER", "pixels of the estimate", "1 to 8",
+       "how far the bilateral denoiser reaches to each side; auto: 8 where pixels share estimates, 4 where each has "
+       "its "
+       "own"},
+      [&s] { return s.denoise_radius == 0 ? std::string("auto") : fmt::format("{}", s.denoise_radius); },
+      [&s](const std::string& text) {
+        const bool is_digit = text.size() == 1 && text >= "1" && text <= "8";
+        if (text != "auto" && !is_digit) return false;
+        s.denoise_radius = is_digit ? text.front() - '0' : 0;
+        return true;
+      },
+      "is neither auto nor a whole number from 1 to 8");
   pixels.add(
       {"--denoise-kernel", "W0,W1,...", "", "2 to 9 weights",
        "of the bilateral denoiser, from the centre outwards, of any sum; they set its radius"},

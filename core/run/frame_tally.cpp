@@ -3,6 +3,7 @@
 #include "core/run/frame_tally.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include "core/base/estimator_facts.h"
 
@@ -52,6 +53,11 @@ void FrameTally::add_outputs(const FrameOutputs& outputs, const Window& computed
     report_.tiles.kept += tiles.kept + (is_same ? tiles.listed : 0);
     report_.tiles.computed += is_same ? 0 : tiles.listed;
   }
+  if (outputs.sites) {
+    const SiteCounts& sites = outputs.sites->as<SiteCounts>()[0];
+    auto& estimates = report_.estimates ? *report_.estimates : report_.estimates.emplace();
+    for (std::size_t k = 0; k < kLattices && !is_same; k++) estimates[k] += sites.of_lattice[k];
+  }
 }
 
 void FrameTally::finish(const FrameSource& source, const Settings& settings) {
@@ -63,7 +69,7 @@ void FrameTally::finish(const FrameSource& source, const Settings& settings) {
     const std::vector<double> radii = radii_of(settings.estimator);
     report_.notes = sample_.notes(radii.front(), radii.back(), source.file_data.width, source.file_data.height);
     report_.samples_per_pixel =
-        samples_per_pixel(settings.estimator) * double(report_.pixels - report_.sky_pixels) / double(report_.pixels);
+        samples_per_estimate(settings.estimator) * estimates_of(settings.estimator) / double(report_.pixels);
     // An estimator that completes nothing, and sky, are no reason to leave the share out: it is 0.
     if (!settings.output.stats.empty() && !report_.occlusion) report_.occlusion.emplace();
   }
@@ -71,6 +77,12 @@ void FrameTally::finish(const FrameSource& source, const Settings& settings) {
   note_missing(source);
   for (const auto* known : {&source.suspicious, &source.notes})
     report_.notes.insert(report_.notes.begin(), known->begin(), known->end());
+}
+
+double FrameTally::estimates_of(const EstimatorSettings& settings) const {
+  if (report_.estimates) return double(std::accumulate(report_.estimates->begin(), report_.estimates->end(), 0ull));
+  const double factor = double(settings.resolution);
+  return double(report_.pixels - report_.sky_pixels) / (factor * factor);
 }
 
 void FrameTally::note_repairs() {

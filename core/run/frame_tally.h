@@ -29,6 +29,8 @@ class FrameTally {
   void finish(const FrameSource& source, const Settings& settings);
 
  private:
+  /// How many pixels have had an estimate; where each has its own, how many surfaces ask for one.
+  double estimates_of(const EstimatorSettings& settings) const;
   void note_repairs();
   void note_missing(const FrameSource& source);
 

@@ -7,6 +7,7 @@
 
 #include "core/base/error.h"
 #include "core/base/estimator_facts.h"
+#include "core/chain/aov.h"
 #include "core/frame/evidence.h"
 #include "core/frame/settle.h"
 #include "kernels/profile.h"
@@ -34,10 +35,15 @@ Window grown(const Window& window, int margin_x, int margin_y, const Window& wit
 
 /// How far filters reach, in px: the denoiser by pixels of the estimate, and upsampling by two of them.
 int filter_reach(const EstimatorSettings& settings) {
-  const int denoised = settings.denoise == Denoise::none
-                           ? 0
-                           : std::max({4, settings.denoise_radius, int(settings.denoise_kernel.size())});
+  const int denoised = denoise_reach_of(settings) + (is_adaptive(settings) ? kSiteReach : 0);
   return int(settings.resolution) * (denoised + (settings.resolution == Resolution::full ? 0 : 2));
+}
+
+/// The same of all that a frame's outputs are made from.
+int filter_reach(const Settings& settings) {
+  const int own = filter_reach(settings.estimator);
+  if (!wants(settings.output, &FrameOutputs::confidence)) return own;
+  return std::max(own, filter_reach(bracket_of(settings.estimator)));
 }
 
 /// How far lines of an exact search reach beyond the sphere of the radius until they have the vertices of the whole
@@ -78,13 +84,13 @@ Surroundings::Surroundings(FrameSource& source, const Settings& settings, const 
     : file_data_(source.file_data),
       read_(searches_exactly(settings.estimator)
                 ? file_data_
-                : grown(whole, filter_reach(settings.estimator), filter_reach(settings.estimator), file_data_)),
+                : grown(whole, filter_reach(settings), filter_reach(settings), file_data_)),
       columns_((read_.width + kBlock - 1) / kBlock),
       nearest_(std::size_t(columns_) * std::size_t((read_.height + kBlock - 1) / kBlock), kSkyDepth),
       view_(view_of(source.camera, source.file_data, source.display)),
       orthographic_(source.camera.orthographic),
       radius_(settings.estimator.radius ? radii_of(settings.estimator).back() : 0),
-      filters_(filter_reach(settings.estimator)),
+      filters_(filter_reach(settings)),
       lines_(line_reach(settings.estimator)),
       widest_run_(widest_run(settings.estimator)) {
   const Window data = source.data;

@@ -3,6 +3,7 @@
 #include "core/run/run_report.h"
 
 #include <cmath>
+#include <numeric>
 
 #include <nlohmann/json.hpp>
 
@@ -40,6 +41,11 @@ Json json_of(const FrameReport& frame) {
         {"computed", frame.tiles.computed}}},
       {"samples_per_pixel", frame.samples_per_pixel},
       {"repaired_pixels", frame.repaired_pixels}};
+  if (frame.estimates) {
+    Json estimates = {{"total", std::accumulate(frame.estimates->begin(), frame.estimates->end(), 0ull)}};
+    for (std::size_t k = 0; k < kLattices; k++) estimates[fmt::format("one_of_{}", 16 >> k)] = (*frame.estimates)[k];
+    json["estimates"] = estimates;
+  }
   if (frame.error_pixels > 0) json["error_estimate"] = std::sqrt(frame.error_squares / frame.error_pixels);
   if (frame.occlusion) json["completed"] = frame.occlusion->completed_share();
   if (frame.error) json["error"] = frame.error->what();

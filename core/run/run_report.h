@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -9,6 +10,7 @@
 
 #include "core/base/error.h"
 #include "core/gpu/pass_time.h"
+#include "kernels/shared.h"
 
 namespace alcove {
 
@@ -47,7 +49,11 @@ struct FrameReport {
   // The sum of squared errors of an estimate with a tolerance, and the pixels that it is over.
   double error_squares = 0, error_pixels = 0;
   std::optional<TakenVisibility> occlusion;  // of a frame with an estimate, where --stats asks for it
-  // Depth samples that the settings ask for, averaged over all pixels; sky asks for none.
+  // Pixels with an estimate of their own, by the lattices that they lie on, of spacing 16, 8, 4, 2 and 1, and on no
+  // wider one; where pixels share estimates. Of several radii for the largest.
+  std::optional<std::array<std::uint64_t, kLattices>> estimates;
+  // Depth samples, averaged over all pixels: those that were taken where pixels share estimates, else what the settings
+  // ask for at surfaces.
   double samples_per_pixel = 0;
   std::uint64_t pixels_at_once = 0;  // the most that were computed at once
   std::vector<std::string> notes;    // what the user should know, a sentence each

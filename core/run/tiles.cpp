@@ -23,7 +23,9 @@ constexpr int kLeastColumns = 64;  // px of a tile
 // Words per tile of 8 x 8: sectors, bounds of groups, runs of the filters, and how the frame before differs.
 constexpr std::size_t kTileLists = 8;
 constexpr std::size_t kCompletionSums = 2;  // words per tile
-constexpr std::size_t kConvergeLists = 7;   // there is one after each power of two directions
+// Words per tile where pixels share estimates: twice the words of its rows, those of flat links, and its sites.
+constexpr std::size_t kSiteLists = 3 * kTile + kTile * kTile;
+constexpr std::size_t kConvergeLists = 7;  // there is one after each power of two directions
 // A row of tiles is halved only while it is this many times as high as what it needs around it.
 constexpr int kFewBorders = 4;
 
@@ -62,8 +64,11 @@ std::uint64_t chain_bytes(const FrameSource& source, const Settings& settings) {
   planes += wants(o, &FrameOutputs::confidence) ? (completes_anywhere(e) ? 3 : 2) * 3 : 0;
   planes += (o.multi_bounce ? 3 : 0) + source[RawPlane::beauty].size() + debug_views_of(o).size();
   for (const auto& aov : aovs_of(o)) planes += channels_of(aov, scales).size();
+  const bool has_bracket = wants(o, &FrameOutputs::confidence);
+  const int shares = (spacing_of(e) > 1 ? 1 : 0) + (has_bracket && spacing_of(bracket_of(e)) > 1 ? 1 : 0);
   const double tiles =
-      double(sizeof(TileBounds) + (kTileLists + (sums_completed ? kCompletionSums : 0)) * sizeof(uint) +
+      double(sizeof(TileBounds) +
+             (kTileLists + (sums_completed ? kCompletionSums : 0) + std::size_t(shares) * kSiteLists) * sizeof(uint) +
              (converges ? kConvergeLists : 1) * sizeof(ListedTile)) *
       groups(kTile * int(e.resolution));
   return std::uint64_t(

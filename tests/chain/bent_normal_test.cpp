@@ -97,6 +97,7 @@ TEST(BentNormals, of_an_open_plane_are_its_normal_and_two_thirds_long_at_every_t
             settings.denoise = Denoise::bilateral;
             for (const auto& [resolution, stride] : {std::pair{Resolution::full, 1},
                                                      {Resolution::full, 4},
+                                                     {Resolution::full, 16},
                                                      {Resolution::half, 2},
                                                      {Resolution::quarter, 1}}) {
               settings.resolution = resolution;
@@ -105,7 +106,7 @@ TEST(BentNormals, of_an_open_plane_are_its_normal_and_two_thirds_long_at_every_t
               for (std::size_t i = 0; i < bent.size(); i++)
                 if (frame.depth[i] < frame.sky)
                   ASSERT_LE(length(bent[i] - normal_at(frame, i)), 1e-3)
-                      << name_of(settings) << " tilt " << tilt << " fov " << fov;
+                      << name_of(settings) << ", stride " << stride << ", tilt " << tilt << ", fov " << fov;
             }
           }
         }
@@ -363,7 +364,8 @@ TEST(BentNormals, are_unit_vectors_above_the_surface_and_0_on_the_sky_through_ev
                                             {Denoise::bilateral, 1},
                                             {Denoise::box, 1},
                                             {Denoise::bilateral, 2},
-                                            {Denoise::bilateral, 4}}) {
+                                            {Denoise::bilateral, 4},
+                                            {Denoise::bilateral, 16}}) {
         EstimatorSettings settings = settings_of(estimator, 0.6, 1, 12);
         settings.resolution = resolution;
         settings.denoise = denoise;

@@ -47,9 +47,9 @@ Pyramid pyramid_of(const HostFrame& frame) {
       gpu.buffer("shown bounds", sizeof(TileBounds) * std::size_t(p.tile_count.x * p.tile_count.y), gpu::Use::device);
   gpu::Buffer& groups = gpu.buffer("shown groups", sizeof(GroupBounds) * std::size_t(p.group_count.x * p.group_count.y),
                                    gpu::Use::device);
-  gpu.dispatch("bounds", BoundsParams{p.view, inputs.noise_origin},
+  gpu.dispatch("bounds", BoundsParams{p.view},
                {{kBoundsDepth, *gbuffer.depth}, {kBoundsNormal, *gbuffer.normal}, {kBoundsTiles, tiles}},
-               {uint(p.tile_count.x), uint(p.tile_count.y)}, {1});
+               {uint(p.tile_count.x), uint(p.tile_count.y)});
   gpu.dispatch("coarsen", CoarsenParams{p.view.size}, {{kCoarsenTiles, tiles}, {kCoarsenGroups, groups}},
                {uint(p.group_count.x), uint(p.group_count.y)});
   for (const auto* buffer : {gbuffer.depth, &tiles, &groups}) gpu.download(*buffer);

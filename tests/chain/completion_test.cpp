@@ -16,6 +16,7 @@
 #include "tests/support/command_line.h"
 #include "tests/support/device.h"
 #include "tests/support/single_pass.h"
+#include "tests/support/sites_of.h"
 
 namespace alcove {
 namespace {
@@ -52,6 +53,8 @@ class Planes : public testing::Test {
   Planes() {
     frame.data.x = frame.display.x + 3;
     frame.data.y = frame.display.y + 5;
+    frame.camera.cx += 3;
+    frame.camera.cy += 5;
     inputs = upload(recorder(), frame);
     upload(recorder(), inputs);
     gbuffer = reconstruct(recorder(), prepare(recorder(), inputs));
@@ -62,13 +65,10 @@ class Planes : public testing::Test {
   int width() const { return frame.data.width; }
   int height() const { return frame.data.height; }
 
-  /// Whether a pixel has an estimate of its own: the places of successive rows are 0, 2, 1, 3.
-  static bool is_receiver(int x, int y, int stride) {
-    constexpr int kPlaces[] = {0, 2, 1, 3};
-    const int row = (y + 5) % stride;
-    const int place = stride == 4 ? kPlaces[row] : row;
-    return (x + 3 - place) % stride == 0;
-  }
+  /// Whether a pixel is on the lattice of that spacing: see kernels/lattice.glsl.
+  static bool is_receiver(int x, int y, int spacing) { return is_on_lattice(x + 3, y + 5, spacing); }
+
+  Sites sites_of(int spacing) const { return sites(recorder(), gbuffer, {spacing, false}); }
 
   /// Sixteenths, so that sums of them have no error.
   static float value(int x, int y, int factor) { return float((x * 3 + y * factor) % 17) / 16; }
@@ -81,12 +81,27 @@ class Planes : public testing::Test {
   }
 
   /// A plane that is NaN wherever the pass has no business.
-  std::vector<float> receivers_only(int stride, int factor) const {
+  std::vector<float> receivers_only(int spacing, int factor) const {
     std::vector<float> values(frame.data.pixels(), kNaN);
     for (int y = 0; y < height(); y++)
       for (int x = 0; x < width(); x++)
-        if (is_receiver(x, y, stride) && !is_sky(x, y)) values[index(x, y)] = value(x, y, factor);
+        if (is_receiver(x, y, spacing) && !is_sky(x, y)) values[index(x, y)] = value(x, y, factor);
     return values;
+  }
+
+  /// What a pixel shows: the value of the nearest receiver within 4 pixels in x and in y, of several the first row by
+  /// row; 0 where there is none.
+  float shown_at(int x, int y, int spacing) const {
+    int nearest = 1000;
+    float shown = 0;
+    for (int j = std::max(y - 4, 0); j <= std::min(y + 4, height() - 1); j++)
+      for (int i = std::max(x - 4, 0); i <= std::min(x + 4, width() - 1); i++) {
+        const int distance = (i - x) * (i - x) + (j - y) * (j - y);
+        if (distance >= nearest || !is_receiver(i, j, spacing) || is_sky(i, j)) continue;
+        nearest = distance;
+        shown = value(i, j, 7);
+      }
+    return shown;
   }
 
   static std::vector<float> finished(const gpu::Buffer& result) {
@@ -96,21 +111,21 @@ class Planes : public testing::Test {
     return {values.begin(), values.end()};
   }
 
-  HostFrame frame = furnished_room(61, 43).frame;
+  HostFrame frame = furnished_room(161, 123).frame;
   FrameInputs inputs;
   GBuffer gbuffer;
 };
 
 TEST_F(Planes, are_added_up_tile_by_tile_over_the_receivers_of_surfaces) {
-  for (const int stride : {1, 2, 4})
+  for (const int spacing : {1, 2, 4, 8, 16})
     for (const std::size_t radii : {1, 3}) {
       std::vector<float> ao(frame.data.pixels() * (radii - 1), kNaN);
-      const std::vector<float> largest = receivers_only(stride, 5);
+      const std::vector<float> largest = receivers_only(spacing, 5);
       ao.insert(ao.end(), largest.begin(), largest.end());
       Estimate estimate;
       estimate.ao = &plane("ao of a test", ao);
-      estimate.completed = &plane("completed of a test", receivers_only(stride, 7));
-      gpu::Buffer* result = completion(recorder(), gbuffer, estimate, stride);
+      estimate.completed = &plane("completed of a test", receivers_only(spacing, 7));
+      gpu::Buffer* result = completion(recorder(), gbuffer, estimate, sites_of(spacing));
       ASSERT_NE(result, nullptr);
       const std::vector<float> sums = finished(*result);
       const int columns = (width() + kTile - 1) / kTile;
@@ -119,22 +134,22 @@ TEST_F(Planes, are_added_up_tile_by_tile_over_the_receivers_of_surfaces) {
       int receivers = 0;
       for (int y = 0; y < height(); y++)
         for (int x = 0; x < width(); x++) {
-          if (!is_receiver(x, y, stride) || is_sky(x, y)) continue;
+          if (!is_receiver(x, y, spacing) || is_sky(x, y)) continue;
           const std::size_t tile = std::size_t(y / kTile * columns + x / kTile);
           expected[2 * tile] += value(x, y, 7);
           expected[2 * tile + 1] += 1 - value(x, y, 5);
           receivers++;
         }
-      EXPECT_EQ(sums, expected) << "stride " << stride << ", radii " << radii;
-      EXPECT_GT(receivers, 100 / stride);
-      EXPECT_LT(receivers * stride, width() * height()) << "or else no sky was left out";
+      EXPECT_EQ(sums, expected) << "spacing " << spacing << ", radii " << radii;
+      EXPECT_GT(receivers * spacing, 100);
+      EXPECT_LT(receivers * spacing, width() * height()) << "or else no sky was left out";
     }
 }
 
 TEST_F(Planes, are_not_added_up_where_nobody_asked) {
   Estimate estimate;
   estimate.ao = &plane("ao of a test", receivers_only(1, 5));
-  EXPECT_EQ(completion(recorder(), gbuffer, estimate, 1), nullptr);
+  EXPECT_EQ(completion(recorder(), gbuffer, estimate, {}), nullptr);
 }
 
 TEST_F(Planes, are_shown_in_grey_from_0_to_1_and_sky_apart) {
@@ -142,50 +157,51 @@ TEST_F(Planes, are_shown_in_grey_from_0_to_1_and_sky_apart) {
   settings.debug = "completed";
   const DebugView& view = *debug_views_of(settings).at(0);
   EXPECT_TRUE(view.is_grey && view.scale == DebugScale::fixed && view.low == 0 && view.high == 1);
-  const int stride = 2;
-  DebugStages stages{gbuffer};
-  stages.raw_ao = &plane("ao of a test", std::vector<float>(frame.data.pixels(), kBefore));
-  stages.denoised_ao = stages.raw_ao;
-  stages.stride = stride;
-  stages.completed = &plane("completed of a test", receivers_only(stride, 7));
-  const DebugPlane shown = debug(recorder(), view, gbuffer, stages, inputs);
-  const std::vector<float> values = finished(*shown.values);
-  for (int y = 0; y < height(); y++)
-    for (int x = 0; x < width(); x++) {
-      if (is_sky(x, y)) ASSERT_EQ(values[index(x, y)], kSkyDepth) << x << " " << y;
-      // Other pixels show the value of the receiver to their left.
-      const int receiver = is_receiver(x, y, stride) ? x : x - 1;
-      if (is_sky(x, y) || receiver < 0 || is_sky(receiver, y)) continue;
-      ASSERT_EQ(values[index(x, y)], value(receiver, y, 7)) << x << " " << y;
-    }
+  for (const int spacing : {1, 2, 4, 8, 16}) {
+    DebugStages stages{gbuffer};
+    stages.raw_ao = &plane("ao of a test", std::vector<float>(frame.data.pixels(), kBefore));
+    stages.denoised_ao = stages.raw_ao;
+    stages.sites = sites_of(spacing);
+    stages.completed = &plane("completed of a test", receivers_only(spacing, 7));
+    const DebugPlane shown = debug(recorder(), view, gbuffer, stages, inputs);
+    const std::vector<float> values = finished(*shown.values);
+    for (int y = 0; y < height(); y++)
+      for (int x = 0; x < width(); x++) {
+        if (is_sky(x, y)) ASSERT_EQ(values[index(x, y)], kSkyDepth) << x << " " << y;
+        if (is_sky(x, y)) continue;
+        ASSERT_EQ(values[index(x, y)], shown_at(x, y, spacing)) << x << " " << y << " spacing " << spacing;
+      }
+  }
 }
 
 TEST_F(Planes, are_0_in_tiles_that_are_left_out_and_else_as_they_were) {
   const float radius = 0.05f;
   const Skipping skipping{.skips_sky = true, .proves = true, .is_ranged = true, .tolerance = 0, .changes = nullptr};
-  for (const int stride : {1, 4}) {
-    const Bounds surfaces = bounds(recorder(), gbuffer, skipping, stride);
+  for (const int spacing : {1, 4, 16}) {
+    const Bounds surfaces = bounds(recorder(), gbuffer, skipping);
     coarsen(recorder(), gbuffer, surfaces);
     Estimate out;
     out.ao = &plane("ao of a test", std::vector<float>(frame.data.pixels(), kBefore));
     out.completed = &plane("completed of a test", std::vector<float>(frame.data.pixels(), kBefore));
-    const TileList list = classify(recorder(), gbuffer, surfaces, skipping, radius, stride, out, 0);
+    const TileList list = classify(recorder(), gbuffer, surfaces, skipping, radius, sites_of(spacing), out, 0);
     recorder().download(*list.sectors);
     recorder().download(*out.ao);
     const std::vector<float> completed = finished(*out.completed);
     const auto ao = out.ao->as<const float>();
     const auto sectors = list.sectors->as<const uint>();
-    int open = 0;
+    int open = 0;  // of surfaces
     for (int y = 0; y < height(); y++)
       for (int x = 0; x < width(); x++) {
         const std::size_t tile = std::size_t(y / kTile * ((width() + kTile - 1) / kTile) + x / kTile);
-        const bool is_open = sectors[tile] == kTileOpen && is_receiver(x, y, stride);
-        ASSERT_EQ(completed[index(x, y)], is_open ? 0 : kBefore) << x << " " << y << " stride " << stride;
-        ASSERT_EQ(ao[index(x, y)], is_open ? 1 : kBefore) << x << " " << y << " stride " << stride;
-        open += is_open;
+        // Where not every pixel is a receiver, none of the sky is.
+        const bool is_written = is_receiver(x, y, spacing) && (spacing == 1 || !is_sky(x, y));
+        const bool is_open = sectors[tile] == kTileOpen && is_written;
+        ASSERT_EQ(completed[index(x, y)], is_open ? 0 : kBefore) << x << " " << y << " spacing " << spacing;
+        ASSERT_EQ(ao[index(x, y)], is_open ? 1 : kBefore) << x << " " << y << " spacing " << spacing;
+        open += is_open && !is_sky(x, y);
       }
     EXPECT_GT(open, 0);
-    EXPECT_LT(open, width() * height() / stride);
+    EXPECT_LT(open, width() * height() / spacing);
   }
 }
 

@@ -9,6 +9,7 @@
 #include "core/base/estimator_facts.h"
 #include "core/chain/compute.h"
 #include "core/chain/filters.h"
+#include "core/chain/sites.h"
 #include "tests/support/device.h"
 #include "tests/support/difference.h"
 #include "tests/support/random_scenes.h"
@@ -53,8 +54,10 @@ std::vector<float> run(const Filter& filter, const std::vector<float>& before, b
   const GBuffer gbuffer = prepare(gpu, inputs);
   const GBuffer low = downsample(gpu, gbuffer, block_grid(inputs, int(filter.settings.resolution)));
   const Denoiser denoiser = denoiser_of(filter.settings);
+  const Sites chosen = sites(gpu, low, site_rule_of(filter.settings));
+  EXPECT_EQ(chosen.rows != nullptr, filter.settings.stride > 1);
   const auto filtered = [&](gpu::Buffer& ao, const FilterRuns& runs) {
-    return &upsample(gpu, gbuffer, low, denoise(gpu, low, ao, denoiser, "", runs), "", runs);
+    return &upsample(gpu, gbuffer, low, interpolate(gpu, low, ao, chosen, denoiser, "", runs), "", runs);
   };
   gpu::Buffer& ao = gpu.buffer("ao", sizeof(float) * filter.ao.size(), gpu::Use::upload);
   gpu::Buffer& words = gpu.buffer("words", sizeof(uint) * filter.tiles.size(), gpu::Use::upload);
@@ -79,11 +82,12 @@ std::vector<float> run(const Filter& filter, const std::vector<float>& before, b
   return {values.begin(), values.end()};
 }
 
-EstimatorSettings filtering(int radius, int stride) {
+EstimatorSettings filtering(int radius, int stride, Density density = Density::uniform) {
   EstimatorSettings settings = plain_settings();
   settings.denoise = Denoise::bilateral;
   settings.denoise_radius = radius;
   settings.stride = stride;
+  settings.density = density;
   settings.slices = 16;
   settings.steps = 256;
   EXPECT_TRUE(proves(settings));
@@ -94,7 +98,8 @@ TEST(Dilate, what_is_left_out_is_1_or_as_it_was) {
   std::mt19937 random(8);
   const auto whole = [&](int least, int most) { return std::uniform_int_distribution(least, most)(random); };
   for (int round = 0; round < 240 && !HasFailure(); round++) {
-    Filter filter{floor_of(whole(1, 120), whole(1, 120)), filtering(whole(1, 8), 1 << whole(0, 2)), {}, {}};
+    const EstimatorSettings settings = filtering(whole(1, 8), 1 << whole(0, 4), Density(round / 4 % 2));
+    Filter filter{floor_of(whole(1, 120), whole(1, 120)), settings, {}, {}};
     if (round % 4 >= 2) {
       filter.settings.stride = 1;
       filter.settings.resolution = round % 8 < 4 ? Resolution::half : Resolution::quarter;

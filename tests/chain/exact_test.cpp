@@ -355,7 +355,7 @@ TEST_F(CommandLine, an_exact_search_of_a_region_is_that_part_of_the_whole) {
   rough.write(frame);
   write_bytes(camera, wall_camera(display).dump());
   for (const std::vector<std::string>& more : {std::vector<std::string>{"--preset", "reference"},
-                                               {"--search", "exact"},
+                                               {"--search", "exact", "--slices", "2"},
                                                {"--tolerance", "0.05"},
                                                {"--search", "exact", "--resolution", "half"}}) {
     std::vector<std::string> arguments{"run",      frame,  "-o",     ao,

@@ -111,7 +111,8 @@ TEST(Reuse, of_parts_and_of_whole_frames_changes_no_bit) {
     if (random.whole(0, 3) == 0) settings.power = 1.5;
     const bool all = random.whole(0, 3) == 0;
     if (settings.denoise == Denoise::bilateral && settings.resolution == Resolution::full)
-      settings.stride = 1 << random.whole(0, 2);
+      settings.stride = 1 << random.whole(0, 4);
+    settings.density = Density(i % 2);
     for (int shot = 0; shot < 4; shot++) {
       if (shot > 0 && random.whole(0, 3) > 0) change(frame, random);
       frame.frame = shot;
@@ -274,7 +275,10 @@ void brighten(FrameFile& frame, const std::string& channel, int number) {
 }
 
 TEST_F(ReuseOfFrames, other_light_over_the_same_surfaces_is_composed_anew) {
-  FrameFile frame = wall_frame();
+  // So large that most of it is farther from the changed part than what a choice of sites depends on.
+  const Window window{0, 0, 192, 108};
+  FrameFile frame = wall_frame(window, window);
+  write_bytes(camera, wall_camera(window).dump());
   add_beauty(frame);
   // In turn: all anew, the beauty, the same again, the indirect light, the beauty and a part of the depth, the diffuse
   // colour.
@@ -285,7 +289,7 @@ TEST_F(ReuseOfFrames, other_light_over_the_same_surfaces_is_composed_anew) {
                                                       [&] {
                                                         brighten(frame, "Combined.B", 2);
                                                         for (std::size_t i = 0; i < 9; i++)
-                                                          frame.planes.at("ViewLayer.Depth.Z")[64 * 33 + i] *= 0.95f;
+                                                          frame.planes.at("ViewLayer.Depth.Z")[192 * 99 + i] *= 0.95f;
                                                       },
                                                       [&] { brighten(frame, "DiffCol.R", 1); }};
   for (std::size_t i = 0; i < changes.size(); i++) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <string>
 
+#include "core/base/estimator_facts.h"
 #include "core/chain/chain.h"
 #include "core/chain/compute.h"
 #include "core/formats/exr.h"
@@ -61,7 +62,7 @@ TEST(Scales, each_is_the_run_with_that_radius_alone_whatever_the_chain) {
   for (const Estimator estimator : {Estimator::gtao, Estimator::bitmask, Estimator::hbao, Estimator::crytek})
     for (const Resolution resolution : {Resolution::full, Resolution::half})
       for (const auto& [denoise, stride] :
-           {std::pair{Denoise::none, 1}, {Denoise::bilateral, 1}, {Denoise::bilateral, 2}}) {
+           {std::pair{Denoise::none, 1}, {Denoise::bilateral, 1}, {Denoise::bilateral, 2}, {Denoise::bilateral, 16}}) {
         EstimatorSettings several = settings_of(radii, estimator);
         several.resolution = resolution;
         several.denoise = denoise;
@@ -86,6 +87,7 @@ TEST(Scales, ao_is_their_mean_shaped) {
   for (const Resolution resolution : {Resolution::full, Resolution::quarter}) {
     EstimatorSettings settings = settings_of({0.1, 0.6, 2});
     settings.resolution = resolution;
+    settings.stride = 1;
     const Result plain = run(frame, settings, "ao,ao-scales");
     const auto mean = [&](std::size_t i) {
       const std::size_t pixels = frame.data.pixels();
@@ -98,6 +100,22 @@ TEST(Scales, ao_is_their_mean_shaped) {
     const auto shaped = [&](std::size_t i) { return std::pow(std::max(0.0, 1 - 1.2 * (1 - mean(i))), 1.4); };
     EXPECT_LE(difference(run(frame, settings, "ao").ao, shaped).max, 1e-4);
   }
+}
+
+// The filters that give pixels theirs from sites about them cut off what they find beyond 0 and 1: of each scale by
+// itself, and of the mean.
+TEST(Scales, ao_is_nearly_their_mean_where_pixels_share_estimates) {
+  const HostFrame frame = furnished_room(121, 83).frame;
+  const EstimatorSettings settings = settings_of({0.1, 0.6, 2});
+  ASSERT_TRUE(is_adaptive(settings));
+  const Result result = run(frame, settings, "ao,ao-scales");
+  const auto mean = [&](std::size_t i) {
+    const std::size_t pixels = frame.data.pixels();
+    return (double(result.scales[i]) + result.scales[i + pixels] + result.scales[i + 2 * pixels]) / 3;
+  };
+  const Difference d = difference(result.ao, mean);
+  EXPECT_LE(d.rmse, 2e-3) << place(d, frame);
+  EXPECT_LE(d.max, 0.05) << place(d, frame);
 }
 
 TEST(Scales, of_steps_of_a_falloff_are_that_falloff) {
@@ -136,13 +154,21 @@ TEST(Scales, bent_normals_are_those_of_the_largest) {
 TEST(Scales, share_all_passes_but_the_search) {
   const HostFrame frame = furnished_room(61, 47).frame;
   EXPECT_THAT(run(frame, settings_of({0.1, 0.6, 2}), "ao").passes,
-              ElementsAre("prepare", "reconstruct", "classify", "horizon", "classify", "horizon", "classify", "horizon",
-                          "combine", "denoise", "denoise"));
+              ElementsAre("prepare", "reconstruct", "links", "sites", "sites", "sites", "sites", "classify",
+                          "list_sites", "horizon", "classify", "list_sites", "horizon", "classify", "list_sites",
+                          "horizon", "combine", "interpolate", "interpolate"));
   EXPECT_THAT(run(frame, settings_of({0.1, 0.6, 2}), "ao,ao-scales").passes,
-              ElementsAre("prepare", "reconstruct", "classify", "horizon", "classify", "horizon", "classify", "horizon",
-                          "combine", "denoise", "denoise", "denoise", "denoise"));
+              ElementsAre("prepare", "reconstruct", "links", "sites", "sites", "sites", "sites", "classify",
+                          "list_sites", "horizon", "classify", "list_sites", "horizon", "classify", "list_sites",
+                          "horizon", "combine", "interpolate", "interpolate", "interpolate", "interpolate"));
   EXPECT_THAT(run(frame, settings_of({0.6}), "ao,ao-scales").passes,
-              ElementsAre("prepare", "reconstruct", "classify", "horizon", "denoise", "denoise"));
+              ElementsAre("prepare", "reconstruct", "links", "sites", "sites", "sites", "sites", "classify",
+                          "list_sites", "horizon", "interpolate", "interpolate"));
+  EstimatorSettings dense = settings_of({0.1, 0.6});
+  dense.stride = 1;
+  EXPECT_THAT(run(frame, dense, "ao,ao-scales").passes,
+              ElementsAre("prepare", "reconstruct", "bounds", "coarsen", "classify", "horizon", "classify", "horizon",
+                          "combine", "denoise", "denoise", "denoise", "denoise"));
 }
 
 TEST(Scales, of_one_radius_are_the_ao) {

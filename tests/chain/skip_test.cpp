@@ -96,11 +96,15 @@ TEST(Skip, thicknesses_falloffs_scales_strides_and_resolutions) {
   expect_same(room.frame, settings, "scales");
   settings = proving(Estimator::gtao, 0.4);
   settings.denoise = Denoise::bilateral;
-  settings.steps = 64;
-  for (const int stride : {2, 4}) {
-    settings.stride = stride;
-    expect_same(room.frame, settings, "stride " + std::to_string(stride));
-  }
+  settings.steps = 256;
+  for (const Density density : {Density::uniform, Density::adaptive})
+    for (const int stride : {2, 4, 8, 16}) {
+      settings.density = density;
+      settings.stride = stride;
+      ASSERT_TRUE(proves(settings));
+      const std::string what = fmt::format("stride {}, density {}", stride, int(density));
+      EXPECT_GT(expect_same(room.frame, settings, what).open, 0u) << what;
+    }
   settings.stride = 1;
   settings.steps = 128;
   for (const auto resolution : {Resolution::half, Resolution::quarter}) {
@@ -339,6 +343,7 @@ EstimatorSettings any_proving(RandomScenes& random, int scene) {
   if (settings.denoise != Denoise::bilateral || settings.resolution != Resolution::full ||
       settings.estimator == Estimator::crytek)
     settings.stride = 1;
+  settings.density = Density(scene / 16 % 2);
   settings.seed = unsigned(random.whole(0, 3));
   while (!proves(settings)) settings.steps *= 2;
   return settings;
@@ -360,15 +365,16 @@ TEST(Skip, hundreds_of_random_settings) {
     }
     const std::string estimator = "estimator " + std::to_string(int(settings.estimator)),
                       resolution = "resolution " + std::to_string(int(settings.resolution)),
-                      stride = "stride " + std::to_string(stride_of(settings)),
-                      thickness = "thickness " + std::to_string(int(settings.thickness));
-    const TileCounts tiles = expect_same(
-        frame, settings,
-        "scene " + std::to_string(i) + ", " + estimator + ", " + resolution + ", " + stride + ", " + thickness);
-    for (const auto& kind : {estimator, resolution, stride, thickness})
+                      stride = "stride " + std::to_string(spacing_of(settings)),
+                      thickness = "thickness " + std::to_string(int(settings.thickness)),
+                      density = is_adaptive(settings) ? "adaptive" : "uniform";
+    const TileCounts tiles =
+        expect_same(frame, settings,
+                    fmt::format("scene {}, {}, {}, {}, {}, {}", i, estimator, resolution, stride, thickness, density));
+    for (const auto& kind : {estimator, resolution, stride, thickness, density})
       proved[kind].open += tiles.open, proved[kind].all += tiles.open + tiles.listed;
   }
-  EXPECT_EQ(proved.size(), 4 + 3 + 3 + 3);
+  EXPECT_EQ(proved.size(), 4 + 3 + 4 + 3 + 2);
   for (const auto& [kind, tiles] : proved) {
     EXPECT_GT(tiles.open, 0.04 * tiles.all) << kind;
     EXPECT_LT(tiles.open, 0.9 * tiles.all) << kind;
@@ -425,7 +431,12 @@ void expect_same_in_random_scenes(unsigned seed, int count) {
       settings.denoise_radius = scenes.whole(1, 8);
       settings.denoise_depth_sigma = i % 8 == 1 ? 0.1 : 0;
     }
-    if (i % 16 == 5) settings.steps *= settings.stride = 1 << scenes.whole(1, 2);
+    if (i % 16 == 5) {
+      settings.density = Density(i / 16 % 2);
+      settings.stride = 1 << scenes.whole(1, 4);
+      settings.steps *= 2 * settings.stride;
+      EXPECT_TRUE(proves(settings) || estimator == Estimator::crytek);
+    }
     const auto open = expect_same(frame, settings,
                                   "scene " + std::to_string(i) + ", radius " + std::to_string(radius) + ", estimator " +
                                       std::to_string(int(estimator)))

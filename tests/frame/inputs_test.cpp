@@ -36,6 +36,7 @@ EstimatorSettings settings_of(double radius) {
   settings.radius = radius;
   settings.slices = 3;
   settings.steps = 12;
+  settings.stride = 1;  // or rounding would choose other pixels to estimate
   return settings;
 }
 

@@ -42,10 +42,10 @@ TEST(Reflection, reads_parameter_sizes_that_the_host_sends) {
 TEST(Reflection, reads_bindings_groups_and_constants) {
   const auto horizon = gpu::reflect(gpu::kernel_code("horizon"));
   EXPECT_THAT(horizon.bindings, ElementsAre(kHorizonDepth, kHorizonNormal, kHorizonAo, kHorizonBent, kHorizonList,
-                                            kHorizonCounts, kHorizonCompleted));
+                                            kHorizonCounts, kHorizonCompleted, kHorizonSites, kHorizonSiteCounts));
   EXPECT_THAT(horizon.group, ElementsAre(kGroupX, kGroupY, 1u));
   EXPECT_THAT(horizon.constant_ids,
-              ElementsAre(kHorizonSlicesId, kHorizonStepsId, kHorizonModeId, kHorizonStrideId, kHorizonSolidId));
+              ElementsAre(kHorizonSlicesId, kHorizonStepsId, kHorizonModeId, kHorizonSparseId, kHorizonSolidId));
 }
 
 TEST(Reflection, refuses_what_is_no_spirv) {

@@ -193,14 +193,18 @@ TEST(Layers, only_the_command_line_prints_and_reads_arguments) {
 
 // Kernels.
 
-/// core/chain/chain.cpp, with the estimators that estimate() chooses from in its place.
+/// core/chain/chain.cpp, with the passes that sites() and estimate() choose from in their place.
 std::string chain_source() {
-  const std::string estimators = read_bytes(ALCOVE_SOURCE_DIR "/core/chain/estimate.cpp");
-  std::smatch choice;
-  const bool found = std::regex_search(estimators, choice, std::regex(R"(\nEstimate estimate\([^]*?\n\})"));
-  return found ? std::regex_replace(read_bytes(ALCOVE_SOURCE_DIR "/core/chain/chain.cpp"),
-                                    std::regex(R"(\bestimate\()"), choice.str())
-               : "";
+  std::string chain = read_bytes(ALCOVE_SOURCE_DIR "/core/chain/chain.cpp");
+  for (const auto& [file, type, name] :
+       {std::array{"sites", "Sites", "sites"}, std::array{"estimate", "Estimate", "estimate"}}) {
+    const std::string source = read_bytes(std::string(ALCOVE_SOURCE_DIR "/core/chain/") + file + ".cpp");
+    std::smatch choice;
+    const std::regex body(std::string("\\n") + type + " " + name + R"(\([^]*?\n\})");
+    if (!std::regex_search(source, choice, body)) return "";
+    chain = std::regex_replace(chain, std::regex(std::string("\\b") + name + "\\("), choice.str());
+  }
+  return chain;
 }
 
 /// The text of all files of core/chain with that ending.

@@ -80,7 +80,7 @@ TEST_F(DeviceMemory, that_runs_out_halves_the_frames_at_once_and_then_the_tiles)
   EXPECT_TRUE(outputs() == whole);
 
   remove_outputs();
-  const Finished in_tiles = run_with(3 * kMiB / 2, 1024 * kMiB);
+  const Finished in_tiles = run_with(2 * kMiB, 1024 * kMiB);
   ASSERT_EQ(in_tiles.code, 0) << in_tiles;
   EXPECT_THAT(in_tiles.err, HasSubstr("had no memory for 57600 pixels at once; now at most 28800"));
   EXPECT_EQ(of_stats()["totals"]["at_once"], 1);

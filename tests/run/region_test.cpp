@@ -23,6 +23,8 @@ TEST_F(CommandLine, a_region_is_that_part_of_the_whole) {
                                  {"--radius", "0.5"},
                                  {"--radius", "1", "--resolution", "half"},
                                  {"--radius", "0.5", "--denoise", "bilateral"},
+                                 {"--radius", "0.5", "--stride", "4", "--density", "uniform"},
+                                 {"--radius", "0.5", "--stride", "1"},
                                  {"--radius", "2", "--resolution", "quarter", "--denoise", "box"}}) {
     Options arguments{"run", frame, "-o", ao, "--camera", camera, "--type", "float"};
     arguments.insert(arguments.end(), options.begin(), options.end());

@@ -100,6 +100,8 @@ TEST_F(Tiles, give_the_bits_of_the_whole) {
         {"--radius", "0.2", "--resolution", "half"},
         {"--radius", "0.2", "--resolution", "quarter", "--denoise-radius", "5"},
         {"--radius", "0.2", "--stride", "4"},
+        {"--radius", "0.2", "--stride", "8", "--density", "uniform"},
+        {"--radius", "0.2", "--stride", "1"},
         {"--radius", "0.03", "--tolerance", "0.03", "--aov", "ao,error"},
         {"--radius", "0.2", "--roi", "3,5,450,250", "--falloff", "smooth"}}) {
     expect_same(options);

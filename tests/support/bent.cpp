@@ -32,7 +32,7 @@ std::vector<Vec3> raw_bent(const HostFrame& frame, const EstimatorSettings& sett
   upload(gpu, inputs);
   const GBuffer gbuffer = prepare(gpu, inputs);
   reconstruct(gpu, gbuffer);
-  const Estimate result = estimate(gpu, gbuffer, inputs, settings, true);
+  const Estimate result = estimate(gpu, gbuffer, sites(gpu, gbuffer, site_rule_of(settings)), inputs, settings, true);
   gpu.download(*result.bent);
   gpu.run();
   return vectors_in(result.bent->as<float>(), 2, -1);

@@ -168,6 +168,7 @@ TEST(Grid, estimators_write_their_own_plane_and_all_of_it) {
         const Case made = test::made({.width = width, .height = height});
         EstimatorSettings settings = with_radius(variant.settings, made.radius);
         settings.no_skip = no_skip;
+        ASSERT_EQ(spacing_of(settings), 1) << variant.name << ": every pixel is to be written";
         gpu::Recorder& gpu = recorder();
         const FrameInputs inputs = upload(gpu, made.frame);
         upload(gpu, inputs);
@@ -188,8 +189,8 @@ TEST(Grid, estimators_write_their_own_plane_and_all_of_it) {
             exact(gpu, gbuffer, lines, directions, reach, out, 1);
           }
         } else {
-          const Bounds surfaces = bounds(gpu, gbuffer, skipping, sampling.stride);
-          out.listed = classify(gpu, gbuffer, surfaces, skipping, reach.radius, sampling.stride, out, 1);
+          const Bounds surfaces = bounds(gpu, gbuffer, skipping);
+          out.listed = classify(gpu, gbuffer, surfaces, skipping, reach.radius, Sites{}, out, 1);
           switch (settings.estimator) {
             case Estimator::gtao: horizon(gpu, gbuffer, reach, sampling, out, 1); break;
             case Estimator::bitmask: bitmask(gpu, gbuffer, reach, sampling, out, 1); break;

@@ -1,0 +1,78 @@
+// Host side of the kernels that choose and list the pixels with an estimate of their own.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/chain/sites.h"
+
+#include <bit>
+
+#include "core/base/estimator_facts.h"
+#include "core/chain/estimate.h"
+#include "core/chain/pass_common.h"
+#include "kernels/links.h"
+#include "kernels/list_sites.h"
+#include "kernels/sites.h"
+
+namespace alcove {
+namespace {
+
+std::size_t tiles_in(const View& view) {
+  return std::size_t(groups_of(view.size.x, uint(kTile))) * groups_of(view.size.y, uint(kTile));
+}
+
+std::size_t rows_bytes(const View& view) { return tiles_in(view) * kTile * sizeof(uint); }
+
+/// See links.h.
+const gpu::Buffer& flat_links(gpu::Recorder& gpu, const View& view, const std::string& prefix) {
+  return gpu.buffer(prefix + "flat links", rows_bytes(view), gpu::Use::device);
+}
+
+}  // namespace
+
+SiteRule site_rule_of(const EstimatorSettings& settings) { return {spacing_of(settings), is_adaptive(settings)}; }
+
+Sites sites(gpu::Recorder& gpu, const GBuffer& gbuffer, const SiteRule& rule, const std::string& prefix) {
+  if (rule.spacing == 1) return {};
+  const View& view = gbuffer.view;
+  const gpu::Buffer* rows = &links(gpu, gbuffer, rule, prefix);
+  const gpu::Extent strips{groups_of(view.size.x, uint(kTile * kSitesTiles)), groups_of(view.size.y, uint(kTile))};
+  for (int spacing = rule.spacing / 2; rule.is_adaptive && spacing > 0; spacing /= 2) {
+    // Each pass reads what the one before it wrote.
+    const bool is_odd = std::countr_zero(unsigned(rule.spacing / spacing)) % 2 == 1;
+    gpu::Buffer& more = gpu.buffer(prefix + (is_odd ? "more sites" : "sites"), rows_bytes(view), gpu::Use::device);
+    gpu.dispatch("sites", SitesParams{view.size, gbuffer.grid.origin},
+                 {{kSitesRows, *rows}, {kSitesFlat, flat_links(gpu, view, prefix)}, {kSitesResult, more}}, strips,
+                 {uint(spacing)});
+    rows = &more;
+  }
+  return {rows, rule.spacing};
+}
+
+const gpu::Buffer& links(gpu::Recorder& gpu, const GBuffer& gbuffer, const SiteRule& rule, const std::string& prefix) {
+  const View& view = gbuffer.view;
+  gpu::Buffer& rows = gpu.buffer(prefix + "sites", rows_bytes(view), gpu::Use::device);
+  gpu.dispatch("links", LinksParams{view, gbuffer.grid.origin},
+               {{kLinksDepth, *gbuffer.depth},
+                {kLinksNormal, *gbuffer.normal},
+                {kLinksRows, rows},
+                {kLinksFlat, rule.is_adaptive ? flat_links(gpu, view, prefix) : rows}},
+               {groups_of(view.size.x, uint(kTile)), groups_of(view.size.y, uint(kTile))},
+               {uint(rule.spacing), rule.is_adaptive ? 1u : 0u});
+  return rows;
+}
+
+void list_sites(gpu::Recorder& gpu, const GBuffer& gbuffer, const Sites& sites, TileList& list,
+                const std::string& prefix) {
+  if (!sites.rows) return;
+  const View& view = gbuffer.view;
+  list.sites = &gpu.buffer("listed sites", tiles_in(view) * kTile * kTile * sizeof(uint), gpu::Use::device);
+  list.site_counts = &gpu.buffer(prefix + "site counts", sizeof(SiteCounts), gpu::Use::device);
+  gpu.clear(*list.site_counts);
+  gpu.dispatch("list_sites", ListSitesParams{view.size, gbuffer.grid.origin},
+               {{kListSitesRows, *sites.rows},
+                {kListSitesTiles, *list.tiles},
+                {kListSitesTileCounts, *list.counts},
+                {kListSitesList, *list.sites},
+                {kListSitesCounts, *list.site_counts}},
+               list_extent(list));
+}
+
+}  // namespace alcove
