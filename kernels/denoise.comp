@@ -29,9 +29,6 @@ layout(scalar, binding = kDenoiseResult) writeonly buffer Result { float result[
 layout(scalar, binding = kDenoiseList) readonly buffer List { uint list[]; };
 layout(scalar, binding = kDenoiseCounts) readonly buffer Counts { RunCounts counts; };
 
-/// See likeness.glsl.
-const float kPlaneSigma = 1.0;
-
 #include "likeness.glsl"
 
 /// Pixels that one invocation looks at.

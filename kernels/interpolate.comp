@@ -37,10 +37,6 @@ layout(scalar, binding = kInterpolateCounts) readonly buffer Counts { RunCounts 
 layout(scalar, binding = kInterpolateRuns) buffer Runs { uint runs[]; };
 layout(scalar, binding = kInterpolateSites) readonly buffer Sites { uint rows[]; };
 
-/// See likeness.glsl. It is less than where every pixel has an estimate: where sites are dense, what they hold must not
-/// leak over a crease to pixels that have it from far away else.
-const float kPlaneSigma = 0.5;
-
 #include "likeness.glsl"
 
 /// Pixels that one invocation looks at.

@@ -6,9 +6,11 @@
 // steps and creases alike and leaves a plane whole at every tilt. The weight is max(0, 1 - (h / sigma)^2), where h is
 // the larger of both distances, in pixels' widths there.
 //
-// The kernel has declared its parameters, with the members view, axis and depth_sigma, kByDepth, the buffers `depth`
-// and `normal`, and kPlaneSigma: two pixels do not mix when one lies further from the plane of the other than so many
-// pixels are wide there.
+// The kernel has declared its parameters, with the members view, axis and depth_sigma, kByDepth, and the buffers
+// `depth` and `normal`.
+
+/// Two pixels do not mix when one lies further from the plane of the other than this many pixels are wide there.
+const float kPlaneSigma = 1.0;
 
 /// Pixels without an estimate of their own need some: where nothing alike is in reach, they get what is least unlike,
 /// for it weighs this over its height squared.

@@ -25,7 +25,7 @@ layout(scalar, binding = kLinksRows) writeonly buffer Rows { uint rows[]; };
 layout(scalar, binding = kLinksFlat) writeonly buffer Flat { uint flat_rows[]; };
 
 /// Neighbours are one surface if neither lies further from the other's plane than this many pixels are wide there. The
-/// filters give such a neighbour 0.64 of its weight.
+/// filters give such a neighbour 0.9 of its weight.
 const float kLinked = 0.3;
 
 /// On a round surface the distance grows with the square of that between the pixels. Neighbours are linked without a

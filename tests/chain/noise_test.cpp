@@ -1,0 +1,125 @@
+// The noise of the slices: a lattice that is the same however far away, and whose waves the filter takes away.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include <complex>
+#include <cstdint>
+#include <numbers>
+#include <regex>
+
+#include "tests/support/difference.h"
+#include "tests/support/program.h"
+#include "tests/support/site_frames.h"
+#include "tests/support/site_picture.h"
+
+namespace alcove {
+namespace {
+
+using namespace test;
+
+/// By what part of a turn, times 2^32, a number grows from pixel to pixel.
+struct Lattice {
+  std::uint32_t by_x, by_y;
+
+  std::uint32_t at(int x, int y) const { return std::uint32_t(x) * by_x + std::uint32_t(y) * by_y; }
+  double turns(int x, int y) const { return std::ldexp(double(at(x, y)), -32); }
+  /// How far a step is from whole turns.
+  double off_whole(int x, int y) const { return std::abs(turns(x, y) - std::round(turns(x, y))); }
+};
+
+/// A lattice as noise.glsl has it.
+Lattice lattice_of(const std::string& name) {
+  const std::string text = read_bytes(ALCOVE_SOURCE_DIR "/kernels/noise.glsl");
+  const auto number = [&](const std::string& constant) {
+    std::smatch match;
+    EXPECT_TRUE(std::regex_search(text, match, std::regex(constant + " = (\\d+)u"))) << constant;
+    return std::uint32_t(std::stoul(match[1]));
+  };
+  return {number("kNoise" + name + "ByX"), number("kNoise" + name + "ByY")};
+}
+
+/// What is left of a harmonic of a lattice, at most, by the parabolas of a filter along rows and columns, over the
+/// sites of a spacing.
+double left_of(const Lattice& lattice, int harmonic, int spacing, int radius) {
+  const auto window = [&](int away) { return 1 - std::pow(away / (radius + 1.0), 2); };
+  double most = 0;
+  for (int phase = 0; phase < 16; phase++) {
+    std::complex<double> sum = 0;
+    double whole = 0;
+    for (int y = -radius; y <= radius; y++)
+      for (int x = -radius; x <= radius; x++) {
+        if (!is_on_lattice(x + phase % 4, y + phase / 4, spacing)) continue;
+        const double weight = window(x) * window(y);
+        sum += std::polar(weight, 2 * std::numbers::pi * harmonic * lattice.turns(x, y));
+        whole += weight;
+      }
+    most = std::max(most, std::abs(sum) / whole);
+  }
+  return most;
+}
+
+// The R2 sequence leaves .11 and .54 of the first and third harmonic at one pixel of 16.
+TEST(Noise, is_taken_away_by_the_filter_at_every_spacing) {
+  const Lattice directions = lattice_of("X"), steps = lattice_of("Y");
+  for (const int spacing : {16, 8, 4, 2, 1}) {
+    for (const int harmonic : {1, 2, 3})
+      EXPECT_LT(left_of(directions, harmonic, spacing, 8), 0.05) << "spacing " << spacing << ", harmonic " << harmonic;
+    EXPECT_LT(left_of(steps, 1, spacing, 8), 0.05) << "spacing " << spacing;
+  }
+  const Lattice r2{3242174889u, 2447445414u};
+  EXPECT_GT(left_of(r2, 3, 16, 8), 0.3) << "or else any lattice would do";
+}
+
+/// A step in a wall, whose window lies so far from the display window's corner.
+HostFrame step_at(int x, int y) {
+  HostFrame frame = wall_at(x, y, 96, 72, {-1, 0, 0}, false);
+  for (std::size_t i = 0; i < frame.depth.size(); i++)
+    if (i % 96 > 20 && i % 96 < 50 && i / 96 > 15) frame.depth[i] -= 0.06f;
+  return frame;
+}
+
+// Where both numbers have gone through whole turns the noise is the same again; in floats it would be off by 1/16 of a
+// turn there, or more.
+TEST(Noise, is_exact_a_million_pixels_away) {
+  const Lattice directions = lattice_of("X"), steps = lattice_of("Y");
+  EstimatorSettings settings = plain_settings();
+  settings.radius = 0.4;
+  settings.slices = 2;
+  settings.steps = 12;
+  const std::vector<float> here = compute_ao(recorder(), step_at(0, 0), settings).ao;
+  const auto difference_at = [&](int x, int y) {
+    return difference(compute_ao(recorder(), step_at(x, y), settings).ao, here);
+  };
+  int found = 0;
+  for (int y = 900001; y < 1000000 && found < 3; y += 997)
+    for (int x = 800000; x < 1000000 && found < 3; x++) {
+      if (directions.off_whole(x, y) > 1e-4 || steps.off_whole(x, y) > 1e-3) continue;
+      found++;
+      EXPECT_LT(difference_at(x, y).mean, 1e-4) << x << " " << y;
+      EXPECT_GT(difference_at(x + 1, y).mean, 1e-3) << "or else there is no noise";
+    }
+  EXPECT_EQ(found, 3);
+}
+
+TEST(Noise, of_a_crop_far_away_is_that_of_the_whole) {
+  EstimatorSettings settings;
+  settings.radius = 0.2;  // 5 px
+  const HostFrame whole = step_at(-1000003, 999999);
+  const std::vector<float> expected = compute_ao(recorder(), whole, settings).ao;
+  const Window window{whole.data.x + 5, whole.data.y + 3, 91, 69};
+  HostFrame crop = whole;
+  crop.data = window;
+  crop.depth = cropped(whole.depth, whole.data, window);
+  crop.normal = cropped(whole.normal, whole.data, window);
+  const std::vector<float> ao = compute_ao(recorder(), crop, settings).ao;
+  int darkened = 0;
+  for (int y = 27; y < 69 - 27; y++)
+    for (int x = 27; x < 91 - 27; x++) {
+      EXPECT_EQ(ao[std::size_t(y * 91 + x)], expected[std::size_t((y + 3) * 96 + x + 5)]) << x << " " << y;
+      darkened += ao[std::size_t(y * 91 + x)] < 0.98;
+    }
+  EXPECT_GT(darkened, 10);
+}
+
+}  // namespace
+}  // namespace alcove

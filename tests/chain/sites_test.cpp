@@ -1,0 +1,268 @@
+// Which pixels have an estimate of their own: the kernels against their rule written out slowly, and what follows from
+// it.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <optional>
+#include <set>
+
+#include "core/base/estimator_facts.h"
+#include "core/chain/estimate.h"
+#include "tests/support/random_scenes.h"
+#include "tests/support/site_frames.h"
+#include "tests/support/site_picture.h"
+
+namespace alcove {
+namespace {
+
+using namespace test;
+
+constexpr int kSpacings[] = {16, 8, 4, 2, 1};
+
+/// The sites by the rule, lattice by lattice, from surfaces and links.
+Picture chosen_slowly(Picture picture, const SiteRule& rule) {
+  for (int y = 0; y < picture.height; y++)
+    for (int x = 0; x < picture.width; x++)
+      picture.at(x, y).is_site = picture.at(x, y).is_surface && picture.is_on_lattice(x, y, rule.spacing);
+  for (int spacing = rule.spacing / 2; rule.is_adaptive && spacing > 0; spacing /= 2) {
+    const Picture wider = picture;
+    for (int y = 0; y < picture.height; y++)
+      for (int x = 0; x < picture.width; x++) {
+        Pixel& pixel = picture.at(x, y);
+        if (!pixel.is_surface || !picture.is_on_lattice(x, y, spacing)) continue;
+        if (wider.quadrants_with_sites(x, y, spacing) < (spacing >= 2 ? 3 : 2)) pixel.is_site = true;
+      }
+  }
+  return picture;
+}
+
+constexpr SiteRule kAdaptive{16, true};
+
+void expect_same_sites(const Picture& picture, const Picture& expected, const std::string& what) {
+  for (int y = 0; y < picture.height; y++)
+    for (int x = 0; x < picture.width; x++)
+      ASSERT_EQ(picture.at(x, y).is_site, expected.at(x, y).is_site)
+          << what << ", pixel " << x << " " << y << " of " << picture.width << " x " << picture.height;
+}
+
+constexpr double kLinked = 0.3;  // px: of links.comp
+constexpr double kFlat = 0.33;   // of kLinked: the same
+
+/// What the kernel says of two neighbours, against the geometry.
+struct LinkCounts {
+  int linked = 0, parted = 0, doubtful = 0;
+
+  void compare(const Geometry& geometry, int x, int y, int u, int v, bool is_linked, double bound) {
+    const bool surfaces = geometry.is_surface(x, y) && geometry.is_surface(u, v);
+    const double apart = surfaces ? geometry.apart(x, y, u, v) / bound : 2;
+    // Floats may decide otherwise so near to the bound.
+    if (std::abs(apart - 1) < 1e-3) {
+      doubtful++;
+      return;
+    }
+    (is_linked ? linked : parted)++;
+    ASSERT_EQ(is_linked, apart < 1) << "pixels " << x << " " << y << " and " << u << " " << v << ", " << apart;
+  }
+};
+
+TEST(Links, join_neighbours_that_lie_in_each_others_planes) {
+  std::mt19937 random(5);
+  RandomScenes scenes(77);
+  LinkCounts counts, flat;
+  for (int i = 0; i < 60 && !HasFatalFailure(); i++) {
+    const GBuffer gbuffer = prepared(i % 2 ? scenes.next() : random_picture(random)).gbuffer;
+    const Geometry geometry(gbuffer);
+    const Picture picture = picture_of(links(recorder(), gbuffer, kAdaptive), gbuffer, kAdaptive);
+    for (int y = 0; y < picture.height && !HasFatalFailure(); y++)
+      for (int x = 0; x < picture.width && !HasFatalFailure(); x++) {
+        const Pixel& pixel = picture.at(x, y);
+        ASSERT_EQ(pixel.is_surface, geometry.is_surface(x, y));
+        counts.compare(geometry, x, y, x + 1, y, pixel.linked.right, kLinked);
+        counts.compare(geometry, x, y, x, y + 1, pixel.linked.below, kLinked);
+        flat.compare(geometry, x, y, x + 1, y, pixel.flat.right, kFlat * kLinked);
+        flat.compare(geometry, x, y, x, y + 1, pixel.flat.below, kFlat * kLinked);
+      }
+  }
+  EXPECT_GT(counts.linked, 20000);
+  EXPECT_GT(counts.parted, 5000);
+  EXPECT_LT(counts.doubtful, counts.linked / 100);
+  EXPECT_LT(flat.linked, counts.linked - 200);
+  EXPECT_LT(flat.doubtful, flat.linked / 100);
+}
+
+TEST(Sites, are_those_of_the_rule) {
+  std::mt19937 random(11);
+  RandomScenes scenes(3);
+  int sites = 0, added = 0;
+  for (int i = 0; i < 80 && !HasFailure(); i++) {
+    const GBuffer gbuffer = prepared(i % 4 == 3 ? scenes.next() : random_picture(random)).gbuffer;
+    const SiteRule rule{1 << (i % 5 == 4 ? 4 : 1 + i % 4), i % 7 != 6};
+    const Picture picture = chosen(gbuffer, rule);
+    const Picture expected = chosen_slowly(picture, rule);
+    expect_same_sites(picture, expected, "picture " + std::to_string(i) + " spacing " + std::to_string(rule.spacing));
+    sites += picture.count_of_sites();
+    added += picture.count_of_sites() - chosen_slowly(picture, {rule.spacing, false}).count_of_sites();
+  }
+  EXPECT_GT(sites, 10000);
+  EXPECT_GT(added, 1000) << "or else nothing is adaptive";
+}
+
+TEST(Sites, nest_and_leave_no_surface_alone) {
+  std::mt19937 random(21);
+  for (int i = 0; i < 25 && !HasFailure(); i++) {
+    const GBuffer gbuffer = prepared(random_picture(random)).gbuffer;
+    const Picture adaptive = chosen(gbuffer, kAdaptive);
+    std::optional<Picture> wider;
+    for (const int spacing : {16, 8, 4, 2}) {
+      const Picture uniform = chosen(gbuffer, {spacing, false});
+      for (int y = 0; y < uniform.height; y++)
+        for (int x = 0; x < uniform.width; x++) {
+          ASSERT_EQ(uniform.at(x, y).is_site, uniform.at(x, y).is_surface && uniform.is_on_lattice(x, y, spacing));
+          if (wider && wider->at(x, y).is_site) ASSERT_TRUE(uniform.at(x, y).is_site) << spacing;
+          if (spacing == 16 && uniform.at(x, y).is_site) ASSERT_TRUE(adaptive.at(x, y).is_site);
+        }
+      wider = uniform;
+    }
+    for (int y = 0; y < adaptive.height; y++)
+      for (int x = 0; x < adaptive.width; x++) {
+        const Pixel& pixel = adaptive.at(x, y);
+        if (!pixel.is_surface) ASSERT_FALSE(pixel.is_site) << "sky at " << x << " " << y;
+        if (pixel.is_surface && !pixel.is_site) ASSERT_GE(adaptive.quadrants_with_sites(x, y, 1), 2) << x << " " << y;
+      }
+  }
+}
+
+/// Whether a pixel of a plain wall lies in a corner of the picture that no site of the widest lattice closes off.
+bool is_in_open_corner(const Picture& picture, int x, int y) {
+  const auto has_lattice = [&](int from_x, int to_x, int from_y, int to_y) {
+    for (int v = std::max(from_y, 0); v <= std::min(to_y, picture.height - 1); v++)
+      for (int u = std::max(from_x, 0); u <= std::min(to_x, picture.width - 1); u++)
+        if (picture.is_on_lattice(u, v, 16)) return true;
+    return false;
+  };
+  return has_lattice(x - 3, x, y - 3, y) + has_lattice(x, x + 3, y - 3, y) + has_lattice(x - 3, x, y, y + 3) +
+             has_lattice(x, x + 3, y, y + 3) <
+         2;
+}
+
+TEST(Sites, of_a_plain_wall_are_those_of_the_widest_lattice_up_to_the_border) {
+  for (const Vec3& normal : {Vec3{-1, 0, 0}, unit({-1, 0.4, 0.1}), unit({-1, -1, 1})})
+    for (const auto& [width, height] : {std::pair{1, 1}, {3, 5}, {8, 8}, {24, 8}, {29, 13}, {50, 41}, {97, 31}})
+      for (const auto& [x, y] : {std::pair{0, 0}, {1, 3}, {-5, 2}, {1000003, -70001}})
+        for (const bool orthographic : {false, true}) {
+          const Picture picture = chosen(wall_at(x, y, width, height, normal, orthographic), kAdaptive);
+          for (int v = 0; v < height; v++)
+            for (int u = 0; u < width; u++)
+              if (picture.is_on_lattice(u, v, 16) || !is_in_open_corner(picture, u, v))
+                ASSERT_EQ(picture.at(u, v).is_site, picture.is_on_lattice(u, v, 16))
+                    << u << " " << v << " of " << width << " x " << height << " at " << x << " " << y;
+        }
+}
+
+/// A line over a wall, a pixel wide, that goes by so many pixels in x and y at each step.
+HostFrame line_on_wall(int x, int y, int step_x, int step_y, int count) {
+  HostFrame frame = wall_at(0, 0, 45, 37, {-1, 0, 0}, false);
+  for (int i = 0; i < count; i++) {
+    const std::size_t at = std::size_t((y + i * step_y) * 45 + x + i * step_x);
+    frame.depth[at] = 4;
+  }
+  return frame;
+}
+
+TEST(Sites, lie_all_along_a_line_that_is_a_pixel_wide) {
+  for (int offset = 0; offset < 8; offset++)
+    for (const auto& [step_x, step_y] : {std::pair{1, 0}, {0, 1}, {1, 1}, {-1, 1}}) {
+      const int first_x = step_x < 0 ? 40 - offset : 4 + offset, first_y = 5 + (step_x == 0 ? 0 : offset % 4);
+      const Picture picture = chosen(line_on_wall(first_x, first_y, step_x, step_y, 24), kAdaptive);
+      int last = -1;
+      for (int i = 0; i < 24; i++) {
+        if (!picture.at(first_x + i * step_x, first_y + i * step_y).is_site) continue;
+        // A straight line is one surface, so sites share; the pixels of a diagonal one touch at their corners only.
+        EXPECT_LE(i - last, step_x * step_y != 0 ? 1 : 4) << "line " << step_x << " " << step_y << " from " << first_x;
+        last = i;
+      }
+      EXPECT_GE(last, 20) << "line " << step_x << " " << step_y << " from " << first_x;
+      // What goes on beside the line is plain again within 4 px.
+      for (int y = 30; y < 37; y++)
+        for (int x = 40; x < 45; x++)
+          if (std::abs(x - first_x) > 4 && first_y + 24 * step_y + 4 < y)
+            EXPECT_EQ(picture.at(x, y).is_site, is_on_lattice(x, y, 16)) << x << " " << y;
+    }
+}
+
+/// Where a listed site lies.
+std::pair<int, int> place_of(uint site, const std::vector<ListedTile>& tiles) {
+  const uint place = tiles[site / 64].place, pixel = site % 64;
+  return {int(place & 0xffffu) * 8 + int(pixel % 8), int(place >> 16) * 8 + int(pixel / 8)};
+}
+
+/// A room before a sky that fills tiles.
+HostFrame room_before_sky(int x, int y) {
+  Shot shot = Shot::perspective({4.5, -1.5, 2.4}, {1, 0, 0.6}, 75, 157, 117);
+  shot.data.x = x;
+  shot.data.y = y;
+  const Scene scene{{parallelogram({0, -3, 0}, {4, 0, 0}, {0, 6, 0}), parallelogram({0, -3, 0}, {0, 6, 0}, {0, 0, 1.5}),
+                     Sphere{.center = {1.2, 0.4, 0.5}, .radius = 0.5}}};
+  return render(scene, shot).frame;
+}
+
+TEST(ListedSites, are_those_of_the_listed_tiles_each_once_and_are_counted_by_lattice) {
+  for (const auto& [x, y] : {std::pair{0, 0}, {-3, 7}})
+    for (const SiteRule& rule : {kAdaptive, SiteRule{4, true}, SiteRule{8, false}}) {
+      const Prepared frame = prepared(room_before_sky(x, y));
+      EstimatorSettings settings;
+      settings.radius = 0.2;
+      settings.stride = rule.spacing;
+      settings.density = rule.is_adaptive ? Density::adaptive : Density::uniform;
+      const Sites sites = alcove::sites(recorder(), frame.gbuffer, rule);
+      const Estimate made = estimate(recorder(), frame.gbuffer, sites, frame.inputs, settings);
+      for (const gpu::Buffer* buffer : {made.listed.tiles, made.listed.counts, made.listed.sites})
+        recorder().download(*buffer);
+      const auto counts = downloaded<SiteCounts>(*made.listed.site_counts)[0];
+      const Picture picture = picture_of(*sites.rows, frame.gbuffer, rule);
+      const uint listed_tiles = made.listed.counts->as<TileCounts>()[0].listed;
+      ASSERT_GT(listed_tiles, 64u) << "more than one workgroup lists";
+      ASSERT_GT(made.listed.counts->as<TileCounts>()[0].sky, 10u);
+      const auto all_tiles = made.listed.tiles->as<ListedTile>();
+      const std::vector<ListedTile> tiles(all_tiles.begin(), all_tiles.begin() + listed_tiles);
+
+      std::set<std::pair<int, int>> expected, listed;
+      std::array<uint, kLattices> of_lattice{};
+      for (const ListedTile& tile : tiles)
+        for (uint pixel = 0; pixel < 64; pixel++) {
+          const auto at = place_of(pixel, {tile});
+          if (!picture.has(at.first, at.second) || !picture.at(at.first, at.second).is_site) continue;
+          expected.insert(at);
+          std::size_t lattice = 0;
+          while (!picture.is_on_lattice(at.first, at.second, kSpacings[lattice])) lattice++;
+          of_lattice[lattice]++;
+        }
+      const auto list = made.listed.sites->as<uint>();
+      ASSERT_LE(counts.listed, list.size());
+      for (uint i = 0; i < counts.listed; i++) {
+        ASSERT_LT(list[i] / 64, listed_tiles);
+        EXPECT_TRUE(listed.insert(place_of(list[i], tiles)).second) << "twice";
+      }
+      EXPECT_EQ(listed, expected);
+      EXPECT_THAT(counts.of_lattice, testing::ElementsAreArray(of_lattice));
+      EXPECT_EQ(counts.groups.x, (counts.listed + 63) / 64);
+      EXPECT_EQ(counts.groups.y, 1u);
+    }
+}
+
+TEST(SiteRule, follows_the_settings) {
+  EstimatorSettings settings;
+  EXPECT_EQ(site_rule_of(settings).spacing, 16);
+  EXPECT_TRUE(site_rule_of(settings).is_adaptive);
+  settings.density = Density::uniform;
+  EXPECT_FALSE(site_rule_of(settings).is_adaptive);
+  settings.density = Density::adaptive;
+  settings.stride = 1;
+  EXPECT_FALSE(site_rule_of(settings).is_adaptive) << "all pixels are sites";
+  EXPECT_EQ(sites(recorder(), GBuffer{}, site_rule_of(settings)).rows, nullptr);
+}
+
+}  // namespace
+}  // namespace alcove
