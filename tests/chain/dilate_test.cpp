@@ -57,7 +57,9 @@ std::vector<float> run(const Filter& filter, const std::vector<float>& before, b
   const Sites chosen = sites(gpu, low, site_rule_of(filter.settings));
   EXPECT_EQ(chosen.rows != nullptr, filter.settings.stride > 1);
   const auto filtered = [&](gpu::Buffer& ao, const FilterRuns& runs) {
-    return &upsample(gpu, gbuffer, low, interpolate(gpu, low, ao, chosen, denoiser, "", runs), "", runs);
+    gpu::Buffer& smooth =
+        chosen.rows ? interpolate(gpu, low, ao, chosen, denoiser, "", runs) : denoise(gpu, low, ao, denoiser, "", runs);
+    return &upsample(gpu, gbuffer, low, smooth, "", runs);
   };
   gpu::Buffer& ao = gpu.buffer("ao", sizeof(float) * filter.ao.size(), gpu::Use::upload);
   gpu::Buffer& words = gpu.buffer("words", sizeof(uint) * filter.tiles.size(), gpu::Use::upload);
