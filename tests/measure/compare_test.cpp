@@ -10,6 +10,7 @@
 
 #include "core/formats/image_io.h"
 #include "core/formats/png.h"
+#include "tests/support/compare_command.h"
 #include "tests/support/formula_images.h"
 #include "tests/support/program.h"
 #include "tests/support/wall_frame.h"
@@ -27,39 +28,13 @@ using Plane = std::vector<float>;
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr Window kWindow{0, 0, kFormulaWidth, kFormulaHeight};
 
-class Compare : public testing::Test {
+class Compare : public CompareCommand {
  protected:
-  /// Writes an EXR and gives its path.
   std::string exr(const std::string& name, const std::map<std::string, Plane>& planes,
                   const Window& data = kWindow) const {
-    FrameFile file;
-    file.data = file.display = data;
-    file.planes = planes;
-    file.write(folder / name);
-    return folder / name;
+    return exr_of(name, planes, data);
   }
 
-  Finished compare(const std::vector<std::string>& more) const {
-    std::vector<std::string> arguments{"compare"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return run_program(arguments);
-  }
-
-  json measured(std::vector<std::string> more, int code = 0) const {
-    more.push_back("--json");
-    const Finished finished = compare(more);
-    EXPECT_EQ(finished.code, code) << finished;
-    return json::parse(finished.out);
-  }
-
-  void expect_error(int code, const std::vector<std::string>& arguments, const std::vector<std::string>& words) const {
-    const Finished finished = compare(arguments);
-    EXPECT_EQ(finished.code, code) << finished;
-    EXPECT_EQ(lines_of(finished.err).size(), 1) << finished;
-    for (const auto& word : words) EXPECT_THAT(finished.err, HasSubstr(word));
-  }
-
-  TemporaryFolder folder;
   const Plane ramp = ramp_plane(0, 1), box = ramp_with_box();
 };
 

@@ -10,6 +10,7 @@
 #include <random>
 
 #include "core/measure/metrics.h"
+#include "tests/support/compare_command.h"
 #include "tests/support/program.h"
 #include "tests/support/wall_frame.h"
 
@@ -251,7 +252,7 @@ TEST(Grain, of_no_plain_pixel_is_nothing) {
 
 // The command.
 
-class GrainCommand : public testing::Test {
+class GrainCommand : public CompareCommand {
  protected:
   GrainCommand() {
     Plane result = stripes(0.125, 8, 0);
@@ -263,33 +264,9 @@ class GrainCommand : public testing::Test {
   }
 
   std::string exr(const std::string& name, const std::string& channel, const Plane& values) const {
-    FrameFile file;
-    file.data = file.display = kWindow;
-    file.planes[channel] = values;
-    file.write(folder / name);
-    return folder / name;
+    return exr_of(name, {{channel, values}}, kWindow);
   }
 
-  Finished compare(std::vector<std::string> arguments) const {
-    arguments.insert(arguments.begin(), "compare");
-    return run_program(arguments);
-  }
-
-  json measured(std::vector<std::string> arguments, int code = 0) const {
-    arguments.push_back("--json");
-    const Finished finished = compare(arguments);
-    EXPECT_EQ(finished.code, code) << finished;
-    return json::parse(finished.out);
-  }
-
-  void expect_error(int code, const std::vector<std::string>& arguments, const std::vector<std::string>& words) const {
-    const Finished finished = compare(arguments);
-    EXPECT_EQ(finished.code, code) << finished;
-    EXPECT_EQ(lines_of(finished.err).size(), 1) << finished;
-    for (const auto& word : words) EXPECT_THAT(finished.err, HasSubstr(word));
-  }
-
-  TemporaryFolder folder;
   std::string striped, grey, plane, rough;
   const double expected = 0.125 / std::numbers::sqrt2 * (1 - damping(8));  // 0.0943
 };
