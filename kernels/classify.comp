@@ -318,11 +318,6 @@ void list_tile(uint at, ivec2 tile, bool is_whole) {
   atomicMax(counts.groups.y, groups.y);
 }
 
-bool is_site(ivec2 tile, uint pixel) {
-  const uint row = rows[words_of_tile(tile, tiles_of(params.view.size)) + int(pixel) / kTile];
-  return (row >> kSiteByte + pixel % uint(kTile) & 1u) != 0u;
-}
-
 /// Writes what estimators write where nothing blocks, by all invocations of a row.
 void write_open(View view, ivec2 tile, bool is_sky, bool is_tolerated) {
   if (gl_LocalInvocationID.x == 0u) {
@@ -333,7 +328,8 @@ void write_open(View view, ivec2 tile, bool is_sky, bool is_tolerated) {
   const int plane = view.size.x * view.size.y;
   for (uint i = gl_LocalInvocationID.x; i < kTilePixels; i += kGroupX) {
     const ivec2 pixel = pixel_of_tile(tile, i);
-    if (!inside(view, pixel) || kSparse != 0u && !is_site(tile, i)) continue;
+    if (!inside(view, pixel)) continue;
+    if (kSparse != 0u && !is_site(rows[word_of_pixel(pixel, tiles_of(view.size))], pixel.x)) continue;
     const int index = index_of(view, pixel);
     ao[index + int(params.plane) * plane] = 1.0;
     if ((kMode & kClassifyWithCompleted) != 0u) completed[index] = 0.0;

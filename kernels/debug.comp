@@ -37,11 +37,7 @@ float edge(ivec2 pixel, float z, vec3 n) {
   return farthest;
 }
 
-bool is_site(ivec2 pixel) {
-  const ivec2 tile = pixel / kTile;
-  const uint row = rows[words_of_tile(tile, tiles_of(params.view.size)) + pixel.y % kTile];
-  return (row >> kSiteByte + uint(pixel.x % kTile) & 1u) != 0u;
-}
+bool has_site(ivec2 pixel) { return is_site(rows[word_of_pixel(pixel, tiles_of(params.view.size))], pixel.x); }
 
 /// How far around a pixel its nearest site is sought, in px.
 const int kFarthestSite = 4;
@@ -49,7 +45,7 @@ const int kFarthestSite = 4;
 /// The value of a pixel; where only sites have any, that of the nearest one, of several the first row by row. Where
 /// there is none, it is 0.
 float value_at(ivec2 pixel) {
-  if (params.sparse == 0u || is_site(pixel)) return uintBitsToFloat(values[index_of(params.view, pixel)]);
+  if (params.sparse == 0u || has_site(pixel)) return uintBitsToFloat(values[index_of(params.view, pixel)]);
   const int side = 2 * kFarthestSite + 1;
   int nearest = side * side;
   float value = 0.0;
@@ -58,7 +54,7 @@ float value_at(ivec2 pixel) {
     const ivec2 site = pixel + away;
     const int distance = away.x * away.x + away.y * away.y;
     if (distance >= nearest || !inside(params.view, site)) continue;
-    if (!is_site(site)) continue;
+    if (!has_site(site)) continue;
     nearest = distance;
     value = uintBitsToFloat(values[index_of(params.view, site)]);
   }
@@ -75,7 +71,7 @@ float density_at(ivec2 pixel) {
     const ivec2 at = first + ivec2(k & 3, k >> 2);
     if (!inside(params.view, at)) continue;
     surfaces += depth[index_of(params.view, at)] < kSkyDepth ? 1 : 0;
-    sites += is_site(at) ? 1 : 0;
+    sites += has_site(at) ? 1 : 0;
   }
   return float(sites) / float(surfaces);
 }

@@ -11,8 +11,8 @@
 // an edge on which there are sites. Rows give every pixel that value and how much the sites weigh together, by which
 // columns then weigh the rows. Rows write nothing where no site is in reach, and say so in a bit per run.
 //
-// One invocation computes a run of pixels. A tap costs nothing where no lane of a subgroup has a site in it: so the
-// invocations beside each other take rows that lie 4 apart, on which a wide lattice has its sites in the same places.
+// One invocation computes a run of pixels, and goes over the sites in reach of it. A subgroup goes on as long as one of
+// its lanes has any: so those beside each other take rows that lie 4 apart, on which a wide lattice has as many.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "interpolate.h"

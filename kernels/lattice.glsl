@@ -25,3 +25,9 @@ uint lattice_row(ivec2 first, int spacing) {
 
 /// Where the words of a tile begin.
 int words_of_tile(ivec2 tile, ivec2 tiles) { return (tile.y * tiles.x + tile.x) * 8; }
+
+/// The word of the row of a tile in which a pixel lies.
+int word_of_pixel(ivec2 pixel, ivec2 tiles) { return words_of_tile(pixel / kTile, tiles) + pixel.y % kTile; }
+
+/// Whether the pixel in this column of the image is a site, by the word of its row.
+bool is_site(uint word, int x) { return (word >> kSiteByte + uint(x % kTile) & 1u) != 0u; }

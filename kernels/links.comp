@@ -29,7 +29,7 @@ layout(scalar, binding = kLinksFlat) writeonly buffer Flat { uint flat_rows[]; }
 const float kLinked = 0.3;
 
 /// On a round surface the distance grows with the square of that between the pixels. Neighbours are linked without a
-/// bend if those 4 pixels apart still count in the filters: this part of kLinked.
+/// bend if those 3 pixels apart still count in the filters: this part of kLinked.
 const float kFlat = 0.33;
 
 struct Tap {

@@ -238,8 +238,8 @@ std::vector<float> ramp_up_to(int column, double slope_x, double slope_y, float 
   return ao;
 }
 
-// On each pixel of the wall, up to its edge and to the picture's border, the ramp is met as if it were read at most
-// two pixels beside at most. A mean of the sites is up to 4 pixels off, on that side on which there are none.
+// On each pixel of the wall, up to its edge and to the picture's border, the ramp is met as if it were read two
+// pixels beside at most. A mean of the sites is up to 4 pixels off, on that side on which there are none.
 TEST(Interpolate, keeps_a_ramp_up_to_an_edge) {
   constexpr double kSlope = 0.008;
   for (const bool orthographic : {false, true})
