@@ -61,6 +61,32 @@ std::vector<OptionRow> rows_of(BenchArguments& a) {
   return rows;
 }
 
+/// Refuses what --batch and --stability, which measure something else, would leave undone.
+void check_purpose(const BenchArguments& a) {
+  const auto refuse = [](const char* purpose, std::initializer_list<std::pair<const char*, bool>> options) {
+    for (const auto& [option, is_given] : options)
+      if (is_given) fail(ErrorKind::usage, "{} does not apply with {}; give only one of them", option, purpose);
+  };
+  const bool has_repeats = a.repeats > 0, has_slices = a.reference_slices >= 0;
+  if (a.stability)
+    refuse("--stability", {{"SUITE", !a.suite.empty()},
+                           {"--batch", a.batch > 0},
+                           {"--data", !a.data.empty()},
+                           {"--csv", !a.csv.empty()},
+                           {"--limits", !a.limits.empty()},
+                           {"--yardstick", !a.yardstick.empty()},
+                           {"--repeats", has_repeats},
+                           {"--reference-slices", has_slices}});
+  else if (a.batch > 0)
+    refuse("--batch", {{"--json", !a.json.empty()},
+                       {"--csv", !a.csv.empty()},
+                       {"--report", !a.report.empty()},
+                       {"--limits", !a.limits.empty()},
+                       {"--yardstick", !a.yardstick.empty()},
+                       {"--repeats", has_repeats},
+                       {"--reference-slices", has_slices}});
+}
+
 /// Returns false where help was asked for.
 bool parse(const std::vector<std::string>& arguments, BenchArguments& a) {
   const Command command{"alcove bench",
@@ -70,7 +96,13 @@ bool parse(const std::vector<std::string>& arguments, BenchArguments& a) {
   if (!parse_arguments(command, arguments)) return false;
   if (a.suite.empty() && !a.stability)
     fail(ErrorKind::usage, "alcove bench: SUITE is required; try alcove bench --help");
+  check_purpose(a);
   return true;
+}
+
+/// Whether the candidate names a radius of its own, as "--radius=0.5".
+bool names_radius(const SuiteCandidate& candidate) {
+  return std::ranges::any_of(candidate.arguments, [](const auto& word) { return word.starts_with("--radius="); });
 }
 
 /// The candidate's settings for a frame: its options go the way that alcove run's go.
@@ -80,6 +112,9 @@ Settings settings_of(const SuiteCandidate& candidate, const SuiteFrame& frame, c
   try {
     if (!parse_run_options(candidate.arguments, options))
       fail(ErrorKind::usage, "it asks for what only alcove run prints");
+    if (settings.estimator.radius_auto && names_radius(candidate))
+      fail(ErrorKind::usage, "--radius auto: without a --radius each frame is measured at that of its truth");
+    settings.estimator.radius_auto = false;
     settings.input.input = frame.input;
     settings.input.camera = frame.camera;
     Settings checked = settings;
@@ -90,11 +125,6 @@ Settings settings_of(const SuiteCandidate& candidate, const SuiteFrame& frame, c
     fail(error.kind(), "{}: candidate {}: {}", suite, candidate.name, error.what());
   }
   return settings;
-}
-
-/// Whether the candidate names a radius of its own, as "--radius=0.5".
-bool names_radius(const SuiteCandidate& candidate) {
-  return std::ranges::any_of(candidate.arguments, [](const auto& word) { return word.starts_with("--radius="); });
 }
 
 std::vector<BenchCandidate> candidates_of(const Suite& suite, const std::string& path) {

@@ -10,6 +10,7 @@
 
 #include "cli/commands.h"
 #include "cli/parsing.h"
+#include "cli/print.h"
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/base/text.h"
@@ -21,7 +22,7 @@ struct CompareArguments {
   CompareSettings settings;
   CompareLimits limits;
   std::string report;
-  bool json = false;
+  bool json = false, quiet = false;
 };
 
 std::vector<OptionRow> rows_of(CompareArguments& a) {
@@ -35,9 +36,12 @@ std::vector<OptionRow> rows_of(CompareArguments& a) {
   OptionGroup options(rows, "Options", Effect::none);
   options.text("--reference-b", s.reference_b, "FILE",
                "a second render of the reference with independent noise: rmse is then free of the noise of both");
-  options.text("--channel", s.channels, "NAMES",
-               "names with commas, or RESULT=REFERENCE pairs; else the only channel of each, else those of the same "
-               "name");
+  OptionRow& channels =
+      options.text("--channel", s.channels, "NAMES",
+                   "names with commas, or RESULT=REFERENCE pairs; may be given more than once; else the only channel "
+                   "of each, else those of the same name");
+  channels.repeats = true;
+  channels.read = [&s](const Words& words) { s.channels = fmt::format("{}", fmt::join(words, ",")); };
   options.text("--mask", s.mask, "FILE", "compare only where it is above 0");
   options.text("--mask-channel", s.mask_channel, "NAME", "the mask's channel; else its only one, or its alpha");
   options.text("--depth", s.depth, "FILE.exr", "leave out the sky, and measure depth edges and grain too");
@@ -51,6 +55,7 @@ std::vector<OptionRow> rows_of(CompareArguments& a) {
   options.flag("--hdr", s.hdr, "the values are scene-linear light: HDR-FLIP instead of FLIP of display values");
   options.flag("--json", a.json, "print JSON");
   options.text("--report", a.report, "FILE.html", "write a self-contained page with table and pictures");
+  options.flag("-q,--quiet", a.quiet, "print no table and no warnings: the exit code says whether limits hold");
   OptionGroup limits(rows, "Limits, for every frame; one that is broken ends with exit code 6", Effect::none);
   limits.number("--max-rmse", a.limits.max_rmse, "", at_least(0), "the largest rmse");
   limits.number("--max-p99", a.limits.max_p99, "", at_least(0), "the largest 99th percentile of the error's size");
@@ -60,6 +65,18 @@ std::vector<OptionRow> rows_of(CompareArguments& a) {
   limits.number("--max-grain", a.limits.max_grain, "", at_least(0),
                 "the largest grain, which needs --depth; a frame without plain surfaces ends with exit code 3");
   return rows;
+}
+
+/// Refuses options that say something of a file that is not there.
+void check_files(const CompareSettings& s) {
+  const auto require = [](bool is_said, const char* option, const std::string& file, const char* file_option) {
+    if (is_said && file.empty())
+      fail(ErrorKind::usage, "{}: applies with {} only, and there is none", option, file_option);
+  };
+  require(!s.mask_channel.empty(), "--mask-channel", s.mask, "--mask");
+  require(!s.depth_channel.empty(), "--depth-channel", s.depth, "--depth");
+  require(s.sky != CompareSettings().sky, "--sky", s.depth, "--depth");
+  require(!s.motion_channels.empty(), "--motion-channels", s.motion, "--motion");
 }
 
 /// Returns false where help was asked for.
@@ -120,6 +137,7 @@ void print_sequence(const CompareReport& report) {
 int compare_command(const std::vector<std::string>& arguments) {
   CompareArguments a;
   if (!parse(arguments, a)) return 0;
+  check_files(a.settings);
   if (!a.report.empty()) {
     const CompareSettings& s = a.settings;
     require_no_input(a.report, "--report", std::array{s.result, s.reference, s.reference_b, s.mask, s.depth, s.motion});
@@ -136,10 +154,12 @@ int compare_command(const std::vector<std::string>& arguments) {
   const auto broken = broken_limits(report, a.limits);
   if (a.json)
     fmt::print("{}\n", compare_json(report, broken.sentences));
-  else if (report.is_sequence)
+  else if (report.is_sequence && !a.quiet)
     print_sequence(report);
-  else
+  else if (!a.quiet)
     print_picture(report.frames[0]);
+  if (!a.quiet)
+    for (const auto& warning : warnings_of(report, a.settings)) print_error("warning: {}\n", printable(warning));
   if (!a.report.empty()) write_whole(a.report, compare_page(report));
   if (!broken.sentences.empty()) fail(broken.kind, "{}", fmt::join(broken.sentences, "; "));
   return 0;

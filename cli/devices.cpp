@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/commands.h"
+#include "cli/parsing.h"
 #include "core/base/error.h"
 #include "core/base/json_text.h"
 #include "core/base/text.h"
@@ -14,16 +15,10 @@ namespace alcove {
 
 int devices_command(const std::vector<std::string>& arguments) {
   bool json = false;
-  for (const auto& argument : arguments) {
-    if (argument == "--help" || argument == "-h") {
-      fmt::print(
-          "Usage: alcove devices [--json]\n\nLists the Vulkan devices; --device of alcove run takes an index, a name "
-          "or a UUID.\n");
-      return 0;
-    }
-    if (argument != "--json") fail(ErrorKind::usage, "alcove devices takes only --json, not {}", argument);
-    json = true;
-  }
+  Command command{
+      "alcove devices", "Lists the Vulkan devices; --device of alcove run takes an index, a name or a UUID.\n", {}};
+  OptionGroup(command.rows, "Options", Effect::none).flag("--json", json, "print JSON");
+  if (!parse_arguments(command, arguments)) return 0;
   const auto devices = gpu::list_devices();
   auto list = nlohmann::ordered_json::array();
   for (const auto& d : devices) {

@@ -4,15 +4,36 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 
 #include "cli/commands.h"
 #include "cli/options.h"
 #include "core/base/error.h"
+#include "core/frame/input_files.h"
 #include "core/inspect/contact_sheet.h"
 #include "core/inspect/inspect.h"
+#include "core/inspect/inspect_sequence.h"
 #include "core/run/plan.h"
 
 namespace alcove {
+
+namespace {
+
+/// The frames of a sequence; nothing for a single frame. Frames that are not there are no error here.
+std::optional<FramePlan> plan_of(const Settings& settings) {
+  Settings inputs = settings;
+  inputs.output = {};
+  inputs.frames.missing = Missing::skip;
+  FramePlan plan(inputs);
+  return plan.is_sequence() ? std::optional(std::move(plan)) : std::nullopt;
+}
+
+SequenceNames names_of(const FramePlan& plan, const Settings& settings) {
+  return {settings.input,  plan.frames(),          plan.missing(),
+          plan.evidence(), settings.frames.frames, [&plan](int frame) { return plan.at(frame).input; }};
+}
+
+}  // namespace
 
 int inspect_command(const std::vector<std::string>& arguments) {
   std::vector<std::string> rest = arguments;
@@ -22,19 +43,26 @@ int inspect_command(const std::vector<std::string>& arguments) {
         "Usage: alcove inspect INPUT [--json] [--preview FILE.png] [input options]\n\nSays what the frame's files "
         "hold, which channels would be used and how they would "
         "be understood, with the evidence,\n"
-        "what is suspicious or missing, and the command that would run it. --preview shows depth, normals and AO in a "
-        "picture. Takes the input options of alcove run.\n");
+        "what is suspicious or missing, and the command that would run it. Of a sequence (shot.####.exr, with or "
+        "without --frames) also what changes along it, by all\n"
+        "headers and the pixels of a few frames. --preview shows depth, normals and AO in a picture. Takes the input "
+        "options of alcove run.\n");
     return 0;
   }
   RunOptions options;
-  if (!parse_run_options(rest, options)) return 0;
+  if (!parse_run_options(rest, options, Reader::inspect)) return 0;
   const InputSettings& input = options.settings.input;
-  const std::string& path = !input.input.empty() ? input.input : input.depth.empty() ? input.position : input.depth;
+  const std::string& path = main_input(input);
   if (path.empty()) fail(ErrorKind::usage, "no input: name an EXR file, or one with --depth or --position");
-  const Inspection inspection = inspect_frame(input, frame_number_of(path));
+  const auto plan = plan_of(options.settings);
+  const Inspection inspection =
+      plan ? inspect_sequence(names_of(*plan, options.settings)) : inspect_frame(input, frame_number_of(path));
   fmt::print("{}", json ? inspection_json(inspection) : inspection_text(inspection));
   if (inspection.unreadable) throw *inspection.unreadable;
-  if (!options.settings.output.preview.empty()) write_contact_sheet(options.settings, frame_number_of(path));
+  if (options.settings.output.preview.empty()) return 0;
+  Settings shown = options.settings;
+  if (plan) shown.input = plan->at(inspection.sequence->shown).input;
+  write_contact_sheet(shown, plan ? inspection.sequence->shown : frame_number_of(path));
   return 0;
 }
 

@@ -2,13 +2,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <new>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "cli/commands.h"
+#include "cli/input_words.h"
 #include "cli/print.h"
 #include "core/base/error.h"
 #include "core/base/text.h"
@@ -17,7 +20,7 @@
 namespace {
 
 struct Command {
-  const char* name;
+  std::string_view name;
   int (*run)(const std::vector<std::string>&);
   const char* sentence;
 };
@@ -32,28 +35,53 @@ constexpr std::array kCommands = {
 };
 
 void print_help() {
-  fmt::print("alcove {}: ambient occlusion from rendered depth and normals\n\nUsage: alcove COMMAND [options]\n\n",
-             alcove::kVersion);
+  fmt::print(
+      "alcove {}: ambient occlusion from rendered depth and normals\n\nUsage: alcove COMMAND [options]\n"
+      "       alcove FILE.exr [options]\n\n",
+      alcove::kVersion);
   for (const auto& command : kCommands) fmt::print("  {:<10}{}\n", command.name, command.sentence);
-  fmt::print("\nalcove COMMAND --help tells the rest.\n");
+  fmt::print("\nWithout a command an input is run. alcove help COMMAND, or alcove COMMAND --help, tells the rest.\n");
+}
+
+/// The command of that name. Fails with the nearest names where there is none.
+const Command& command_of(const std::string& name) {
+  std::vector<std::string> names;
+  for (const auto& command : kCommands) {
+    if (name == command.name) return command;
+    names.emplace_back(command.name);
+  }
+  names.emplace_back("help");
+  alcove::fail(alcove::ErrorKind::usage, "there is no command {}{}; there is {}, and alcove FILE.exr is alcove run",
+               name, alcove::suggestion(name, names), alcove::list_of(names));
+}
+
+/// `alcove help [COMMAND]`.
+int help(const std::vector<std::string>& arguments) {
+  if (arguments.size() > 1)
+    alcove::fail(alcove::ErrorKind::usage, "alcove help takes one command, not {} words", arguments.size());
+  if (arguments.empty()) print_help();
+  return arguments.empty() ? 0 : command_of(arguments[0]).run({"--help"});
 }
 
 int dispatch(const std::vector<std::string>& arguments) {
-  if (arguments.empty() || arguments[0] == "--help" || arguments[0] == "-h") {
+  if (arguments.empty() || arguments[0] == "--help" || arguments[0] == "-h" || arguments[0] == "--help-all") {
     print_help();
     return arguments.empty() ? int(alcove::ErrorKind::usage) : 0;
   }
-  if (arguments[0] == "--version") {
+  const std::string& first = arguments[0];
+  if (first == "--version") {
     fmt::print("alcove {}\n", alcove::kVersion);
     return 0;
   }
-  std::vector<std::string> names;
-  for (const auto& command : kCommands) {
-    if (arguments[0] == command.name) return command.run({arguments.begin() + 1, arguments.end()});
-    names.emplace_back(command.name);
-  }
-  alcove::fail(alcove::ErrorKind::usage, "there is no command {}{}; there is {}", arguments[0],
-               alcove::suggestion(arguments[0], names), alcove::list_of(names));
+  if (first == "help") return help({arguments.begin() + 1, arguments.end()});
+  const bool is_known = std::ranges::find(kCommands, first, &Command::name) != kCommands.end();
+  const bool is_run =
+      alcove::names_input(first) || (first.starts_with('-') && std::ranges::any_of(arguments, alcove::names_input));
+  if (!is_known && is_run) return alcove::run_command(arguments);
+  if (first.starts_with('-'))
+    alcove::fail(alcove::ErrorKind::usage, "{}: name a command before it, such as run, or an input; see alcove --help",
+                 first);
+  return command_of(first).run({arguments.begin() + 1, arguments.end()});
 }
 
 }  // namespace

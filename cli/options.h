@@ -1,4 +1,4 @@
-// The options of `alcove run`, from presets and arguments; where presets lie.
+// The options of `alcove run`, from presets and arguments; where presets lie and what they say.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -6,20 +6,30 @@
 #include <vector>
 
 #include "core/options/options.h"
+#include "core/options/said.h"
 
 namespace alcove {
 
 /// Fills `options` from presets and arguments (argv without program and subcommand; later wins over earlier, arguments
 /// over presets). Returns false where --help, --help-markdown or --print-config was asked for and printed. Fails with
-/// ErrorKind::usage, naming the nearest options or presets.
-bool parse_run_options(const std::vector<std::string>& arguments, RunOptions& options);
+/// ErrorKind::usage, naming the nearest options or presets, and on options that have no effect or contradict another.
+bool parse_run_options(const std::vector<std::string>& arguments, RunOptions& options, Reader reader = Reader::run);
 
 /// Gives the folder of presets: ALCOVE_PRESETS, else beside the program, above it, or in ../share/alcove. Fails with
 /// ErrorKind::usage.
 std::string preset_folder();
 /// Gives the names of presets: paths below the folder without .toml, sorted.
 std::vector<std::string> preset_names();
-/// Gives the file of a preset, which is named or is a path. Fails with ErrorKind::usage, naming the nearest.
+/// Gives the file of a preset, which is named, in any case, or is a path. Fails with ErrorKind::usage, naming the
+/// nearest.
 std::string preset_file(const std::string& name);
+/// Gives the presets of words that may be lists with commas: each word is a preset, or else its parts are.
+std::vector<std::string> presets_of(const std::vector<std::string>& words);
+/// Gives what a preset says, in the order of its file. Fails with ErrorKind::usage, naming preset and key, on keys that
+/// are no options.
+std::vector<Said> said_by_preset(const std::string& preset, const std::vector<OptionRow>& table);
+
+/// Gives what a preset is for: the first sentence of the comment that its file begins with, "" without one.
+std::string preset_sentence(const std::string& text);
 
 }  // namespace alcove

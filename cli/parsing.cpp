@@ -6,11 +6,10 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cctype>
 
-#include "cli/options.h"
+#include "cli/input_words.h"
 #include "core/base/error.h"
-#include "core/base/file.h"
-#include "core/base/flat_toml.h"
 #include "core/base/text.h"
 #include "core/options/options.h"
 
@@ -18,37 +17,10 @@ namespace alcove {
 namespace {
 
 constexpr int kHelpColumn = 34;  // where the sentences begin
-
-/// Presets are read by a real TOML reader: CLI11's own stumbles over a '#', a comma or a space within quotes.
-class PresetFormat : public CLI::ConfigTOML {
- public:
-  std::vector<CLI::ConfigItem> from_config(std::istream& input) const override {
-    std::vector<CLI::ConfigItem> items;
-    auto entries = parse_flat_toml(read_rest(input));
-    if (input.bad()) fail(ErrorKind::input, "it cannot be read to its end");
-    // The rules of presets/input are known to the program: such a preset is its --source and no more.
-    if (std::ranges::any_of(entries, [](const auto& entry) { return entry.key == "detect"; }))
-      std::erase_if(entries, [](const auto& entry) { return entry.key != "source"; });
-    for (auto& entry : entries) {
-      items.emplace_back();
-      items.back().name = std::move(entry.key);
-      items.back().inputs = std::move(entry.values);
-    }
-    return items;
-  }
-};
-
-bool is_preset(const OptionRow& row) { return row.name == "--preset"; }
+constexpr const char* kDigits = "0123456789";
 
 /// The row as an option that only collects its words.
 CLI::Option* add_option(CLI::App& app, const OptionRow& row) {
-  if (is_preset(row)) {
-    app.config_formatter(std::make_shared<PresetFormat>());
-    app.allow_config_extras(CLI::config_extras_mode::error);
-    return app.set_config("--preset")->expected(1)->take_all()->transform([](const std::string& name) {
-      return preset_file(name);
-    });
-  }
   if (row.is_flag()) return app.add_flag(row.name)->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
   CLI::Option* option = app.add_option(row.name);
   if (row.repeats) option->take_all()->allow_extra_args(false);
@@ -56,97 +28,159 @@ CLI::Option* add_option(CLI::App& app, const OptionRow& row) {
   return option->required(row.is_required);
 }
 
+bool has_common_rows(const Command& command) { return std::ranges::any_of(command.rows, &OptionRow::is_common); }
+
 /// An app and, row by row, its options.
 struct Parser {
   CLI::App app;
   std::vector<CLI::Option*> options;
 
-  explicit Parser(const Command& command) : app(command.description, command.name) {
+  /// Help shows all rows, or only those that are common and the arguments by place.
+  Parser(const Command& command, bool shows_all) : app(command.description, command.name) {
     app.get_formatter()->column_width(kHelpColumn);
+    app.get_formatter()->label("REQUIRED", "");
+    app.set_help_flag("-h,--help", "print this help and stop");
+    app.set_help_all_flag("--help-all", has_common_rows(command) && !shows_all ? "print all options and stop" : "")
+        ->group(has_common_rows(command) && !shows_all ? "Options" : "");
     for (const auto& row : command.rows) {
       CLI::Option* option = options.emplace_back(add_option(app, row));
       const std::string range = range_text(row);
-      option->description(row.sentence + (range.empty() ? "" : " (" + range + ")"))->configurable(row.is_key);
+      option->description(row.whole_sentence() + (range.empty() ? "" : " (" + range + ")"));
       if (!row.group.empty()) option->group(row.group);
+      if (!shows_all && !row.is_common && row.name.starts_with('-')) option->group("");
       if (!row.is_flag()) option->type_name(row.value);
       if (!row.default_text.empty()) option->default_str(row.default_text);
     }
   }
 };
 
-std::vector<std::string> option_names(const CLI::App& app) {
-  std::vector<std::string> names;
-  for (const auto* option : app.get_options())
-    for (const auto& name : option->get_lnames()) names.push_back("--" + name);
+std::vector<std::string> option_names(const Command& command) {
+  std::vector<std::string> names{"--help", "--help-all"};
+  for (const auto& row : command.rows)
+    if (row.name.starts_with('-')) names.push_back(row.long_name());
   return names;
 }
 
-/// CLI11's complaint as one sentence with the nearest names.
-[[noreturn]] void complain(const CLI::App& app, const CLI::ParseError& error) {
+/// What a value of the row is: "FILE", or "NUMBER (scene units, above 0)".
+std::string value_text(const OptionRow& row) {
+  const std::string range = range_text(row);
+  return row.value + (range.empty() ? "" : " (" + range + ")");
+}
+
+/// The row that CLI11 complains of: its messages begin with a name and a colon.
+const OptionRow* row_of(const Command& command, const std::string& complaint) {
+  const std::string name = complaint.substr(0, complaint.find(':'));
+  const auto row = std::ranges::find(command.rows, name, &OptionRow::long_name);
+  return row == command.rows.end() ? nullptr : &*row;
+}
+
+/// Where the number begins that ends before `end`.
+std::size_t begin_of_number(const std::string& name, std::size_t end) {
+  const std::size_t before = name.find_last_not_of(kDigits, end - 1);
+  return before == name.npos ? 0 : before + 1;
+}
+
+/// Whether a number is that of a version, as in shot_v002.exr.
+bool is_version(const std::string& name, std::size_t begin) {
+  const bool has_v = begin > 0 && lower_case(name.substr(begin - 1, 1)) == "v";
+  return has_v && (begin == 1 || !std::isalpha((unsigned char)name[begin - 2]));
+}
+
+/// A pattern's token for a number of so many digits; a lone # stands for four.
+std::string token_of(std::size_t digits) { return digits == 1 ? "%d" : std::string(digits, '#'); }
+
+/// The pattern of the sequence that a picture belongs to, by its last number that is none of a version; "" for a name
+/// that is none of a picture or has no such number.
+std::string pattern_of(const std::string& name) {
+  if (!names_input(name)) return "";
+  const std::size_t folder = name.rfind('/') == name.npos ? 0 : name.rfind('/') + 1;
+  std::size_t last = name.find_last_of(kDigits, name.rfind('.'));
+  while (last != name.npos && last >= folder) {
+    const std::size_t begin = begin_of_number(name, last + 1);
+    if (!is_version(name, begin)) return name.substr(0, begin) + token_of(last + 1 - begin) + name.substr(last + 1);
+    last = begin == 0 ? name.npos : name.find_last_of(kDigits, begin - 1);
+  }
+  return "";
+}
+
+/// Complains of what no option takes.
+[[noreturn]] void refuse_extra(const Command& command, const std::string& extra) {
+  if (extra.starts_with('-')) {
+    const std::string option = extra.substr(0, extra.find('='));
+    fail(ErrorKind::usage, "there is no option {}{}{}", option, suggestion(option, option_names(command)),
+         see_help(command.name));
+  }
+  Words places;
+  for (const auto& row : command.rows)
+    if (!row.name.starts_with('-')) places.push_back(row.name);
+  if (places.empty())
+    fail(ErrorKind::usage, "{}: {} takes options only{}", extra, command.name, see_help(command.name));
+  const std::string pattern = pattern_of(extra);
+  fail(ErrorKind::usage, "{}: {} takes one {}{}{}", extra, command.name, fmt::join(places, " and one "),
+       pattern.empty() ? "" : "; a sequence is one name with a pattern: write " + pattern, see_help(command.name));
+}
+
+/// CLI11's complaint as one sentence in the words of the table.
+[[noreturn]] void complain(const Command& command, const CLI::App& app, const CLI::ParseError& error) {
   std::string text = error.what();
   std::ranges::replace(text, '\n', ' ');
-  const auto names = option_names(app);
-  const auto rest = app.remaining();
-  if (dynamic_cast<const CLI::ExtrasError*>(&error) && !rest.empty() && rest.front().starts_with('-')) {
-    const std::string option = rest.front().substr(0, rest.front().find('='));
-    fail(ErrorKind::usage, "there is no option {}{}; see {} --help", option, suggestion(option, names), app.get_name());
+  auto rest = app.remaining();
+  std::erase(rest, "--");
+  if (dynamic_cast<const CLI::ExtrasError*>(&error) && !rest.empty()) refuse_extra(command, rest.front());
+  const OptionRow* row = row_of(command, text);
+  if (row && dynamic_cast<const CLI::ArgumentMismatch*>(&error)) {
+    const bool is_repeated = text.find("At Most") != text.npos;
+    if (is_repeated) fail(ErrorKind::usage, "{} is given more than once", row->long_name());
+    fail(ErrorKind::usage, "{} needs a value: {}{}", row->long_name(), value_text(*row), see_help(command.name));
   }
-  if (dynamic_cast<const CLI::ConfigError*>(&error)) {
-    if (const std::size_t colon = text.find(": "); colon != text.npos)
-      fail(ErrorKind::usage, "{} is an option of the command line only", text.substr(0, colon));
-    const std::string key = text.substr(text.find_last_of(' ') + 1);
-    fail(ErrorKind::usage, "{} is no option{}", key, suggestion("--" + key, names));
+  if (dynamic_cast<const CLI::RequiredError*>(&error)) {
+    const std::string name = text.substr(0, text.find(' '));
+    const auto missing = std::ranges::find(command.rows, name, &OptionRow::name);
+    if (missing != command.rows.end())
+      fail(ErrorKind::usage, "{} is missing: {}{}", name, missing->sentence, see_help(command.name));
   }
-  fail(ErrorKind::usage, "{}; see {} --help", text, app.get_name());
+  fail(ErrorKind::usage, "{}{}", text, see_help(command.name));
 }
 
-void read_rows(const Command& command, const Parser& parser) {
-  for (std::size_t i = 0; i < command.rows.size(); i++) {
-    if (parser.options[i]->count() == 0) continue;
-    const Words words = parser.options[i]->reduced_results();
-    try {
-      command.rows[i].read(words);
-    } catch (const Error& error) {
-      fail(error.kind(), "{}; see {} --help", error.what(), command.name);
-    }
-  }
-}
-
-/// Returns false where --help was asked for and printed.
-bool parse(const Command& command, Parser& parser, const std::vector<std::string>& arguments) {
-  try {
-    parser.app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
-    read_rows(command, parser);
-  } catch (const CLI::CallForHelp&) {
-    fmt::print("{}", parser.app.help());
-    return false;
-  } catch (const CLI::ParseError& error) {
-    complain(parser.app, error);
-  }
-  return true;
-}
-
-/// Parses a preset by itself, so that what is wrong with it is said with its name.
-void require_good_preset(const Command& command, const std::string& preset) {
-  Parser parser(command);
-  try {
-    parse(command, parser, {"--preset", preset});
-  } catch (const Error& error) {
-    fail(error.kind(), "{} (--preset): {}", preset, error.what());
-  }
+void print_help(const Command& command, bool shows_all) {
+  const Parser parser(command, shows_all || !has_common_rows(command));
+  fmt::print("{}", parser.app.help());
 }
 
 }  // namespace
 
-bool parse_arguments(const Command& command, const std::vector<std::string>& arguments) {
-  Parser parser(command);
+std::string see_help(const std::string& command) { return fmt::format("; see {} --help", command); }
+
+std::optional<std::vector<Typed>> find_typed(const Command& command, const std::vector<std::string>& arguments) {
+  Parser parser(command, true);
   try {
-    return parse(command, parser, arguments);
-  } catch (const Error&) {
-    if (const auto* presets = parser.app.get_config_ptr())
-      for (const auto& preset : presets->results()) require_good_preset(command, preset);
-    throw;
+    parser.app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
+  } catch (const CLI::CallForAllHelp&) {
+    print_help(command, true);
+    return std::nullopt;
+  } catch (const CLI::CallForHelp&) {
+    print_help(command, false);
+    return std::nullopt;
+  } catch (const CLI::ParseError& error) {
+    complain(command, parser.app, error);
   }
+  std::vector<Typed> typed;
+  for (std::size_t i = 0; i < command.rows.size(); i++)
+    if (parser.options[i]->count() > 0) typed.push_back({&command.rows[i], parser.options[i]->reduced_results()});
+  return typed;
+}
+
+bool parse_arguments(const Command& command, const std::vector<std::string>& arguments) {
+  const auto typed = find_typed(command, arguments);
+  if (!typed) return false;
+  for (const auto& [row, words] : *typed) {
+    try {
+      row->read(words);
+    } catch (const Error& error) {
+      fail(error.kind(), "{}{}", error.what(), see_help(command.name));
+    }
+  }
+  return true;
 }
 
 }  // namespace alcove

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,9 +17,22 @@ struct Command {
   std::vector<OptionRow> rows;
 };
 
-/// Reads the arguments into what the rows bind: presets first, where the command has --preset, then the arguments.
-/// Returns false where --help was asked for and printed. Fails with ErrorKind::usage in one sentence, with the nearest
-/// of the command's options where one is misspelt, and with the name of the preset where one is wrong.
+/// The words that were typed for a row.
+struct Typed {
+  const OptionRow* row;
+  Words words;
+};
+
+/// Finds the words of each row that was typed, in the order of the rows; none where --help or --help-all was asked for
+/// and printed. Fails with ErrorKind::usage in one sentence, with the nearest of the command's options where one is
+/// misspelt.
+std::optional<std::vector<Typed>> find_typed(const Command& command, const std::vector<std::string>& arguments);
+
+/// Reads the arguments into what the rows bind. Returns false where help was asked for and printed. Fails with
+/// ErrorKind::usage, also on values that the rows refuse.
 bool parse_arguments(const Command& command, const std::vector<std::string>& arguments);
+
+/// Behind a message: where the options of the command stand.
+std::string see_help(const std::string& command);
 
 }  // namespace alcove

@@ -1,4 +1,4 @@
-// Finds presets, by their names or as files.
+// Finds presets, by their names or as files, and reads what they say.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <cstdlib>
@@ -6,6 +6,8 @@
 
 #include "cli/options.h"
 #include "core/base/error.h"
+#include "core/base/file.h"
+#include "core/base/flat_toml.h"
 #include "core/base/system.h"
 #include "core/base/text.h"
 
@@ -13,6 +15,37 @@ namespace alcove {
 namespace {
 
 namespace fs = std::filesystem;
+
+bool is_file(const std::string& path) {
+  std::error_code error;
+  return fs::exists(path, error) && !fs::is_directory(path, error);
+}
+
+/// The settings in the text of a preset. The rules of presets/input are known to the program: such a preset is its
+/// --source and no more.
+std::vector<FlatEntry> settings_in(const std::string& text) {
+  auto entries = parse_flat_toml(text);
+  if (std::ranges::find(entries, "detect", &FlatEntry::key) != entries.end())
+    std::erase_if(entries, [](const auto& entry) { return entry.key != "source"; });
+  return entries;
+}
+
+/// The long name of the option that a key stands for.
+std::string row_of(const FlatEntry& entry, const std::vector<OptionRow>& table) {
+  const std::string option = "--" + entry.key;
+  const auto row = std::ranges::find(table, option, &OptionRow::long_name);
+  if (row == table.end()) {
+    std::vector<std::string> names;
+    for (const auto& known : table)
+      if (known.is_key) names.push_back(known.long_name());
+    fail(ErrorKind::usage, "{} is no option{}", entry.key, suggestion(option, names));
+  }
+  if (!row->is_key) fail(ErrorKind::usage, "{} is an option of the command line only", entry.key);
+  if (entry.values.empty()) fail(ErrorKind::usage, "{}: the list is empty", option);
+  if (entry.values.size() > 1 && !row->repeats)
+    fail(ErrorKind::usage, "{} takes one value, and the list has {}", option, entry.values.size());
+  return option;
+}
 
 }  // namespace
 
@@ -45,10 +78,44 @@ std::string preset_file(const std::string& name) {
   // A known name is never a file that happens to lie in the working directory.
   const auto names = preset_names();
   if (std::ranges::find(names, name) != names.end()) return preset_folder() + "/" + name + ".toml";
-  std::error_code error;
-  if (fs::exists(name, error) && !fs::is_directory(name, error)) return name;
-  fail(ErrorKind::usage, "there is no preset {}{}; there is {}; --preset takes one of them, or a TOML file", name,
-       suggestion(name, names), list_of(names));
+  if (is_file(name)) return name;
+  if (const auto known = std::ranges::find(names, lower_case(name), lower_case); known != names.end())
+    return preset_folder() + "/" + *known + ".toml";
+  std::vector<std::string> own = names;
+  std::erase_if(own, [](const auto& known) { return known.find('/') != known.npos; });
+  fail(ErrorKind::usage,
+       "there is no preset {}{}; there is {}, and alcove presets lists all; --preset takes one of them, or a TOML file",
+       name, suggestion(name, names), list_of(own));
+}
+
+std::vector<std::string> presets_of(const std::vector<std::string>& words) {
+  std::vector<std::string> presets;
+  for (const auto& word : words) {
+    const auto parts = is_file(word) ? std::vector{word} : split(word);
+    presets.insert(presets.end(), parts.begin(), parts.end());
+  }
+  return presets;
+}
+
+std::vector<Said> said_by_preset(const std::string& preset, const std::vector<OptionRow>& table) {
+  const std::string text = read_text(preset_file(preset), "preset", "--preset");
+  std::vector<Said> said;
+  try {
+    for (const auto& entry : settings_in(text)) said.push_back({row_of(entry, table), entry.values, preset});
+  } catch (const Error& error) {
+    fail(error.kind(), "{} (--preset): {}", preset, error.what());
+  }
+  return said;
+}
+
+std::string preset_sentence(const std::string& text) {
+  if (!text.starts_with('#')) return "";
+  const std::string line = text.substr(1, text.find('\n') - 1);
+  // A full stop within a number or a name ends no sentence.
+  std::string sentence = line.substr(0, line.find(". "));
+  sentence.erase(0, sentence.find_first_not_of(' '));
+  sentence.erase(sentence.find_last_not_of(" .\r") + 1);
+  return sentence;
 }
 
 }  // namespace alcove

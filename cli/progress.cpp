@@ -7,6 +7,8 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
+#include <set>
+#include <utility>
 
 #include "cli/print.h"
 #include "core/base/error.h"
@@ -42,8 +44,12 @@ void Progress::open_log() {
 }
 
 void Progress::say(const std::string& line) {
-  const bool over_bar = options_.kind == "bar" && is_sequence_ && !options_.quiet;
-  print_error("{}{}\n", over_bar ? "\r\x1b[K" : "", line);
+  take_line_away();
+  print_error("{}\n", line);
+}
+
+void Progress::take_line_away() {
+  if (std::exchange(is_line_shown_, false)) print_error("\r\x1b[K");
 }
 
 void Progress::log(const std::string& event, const std::string& members) {
@@ -58,7 +64,40 @@ void Progress::begin(const RunReport& report, int frames) {
   is_sequence_ = report.is_sequence;
   frames_ = frames;
   open_log();  // now that the run's checks have let it through
-  log("begin", fmt::format("\"frames\":{},\"options\":\"{}\"", frames, report.options));
+  log("begin",
+      fmt::format("\"frames\":{},\"options\":\"{}\",\"notes\":{}", frames, report.options, notes_json(report.notes)));
+  note(report);
+}
+
+void Progress::say(const std::string& file, const Note& note) {
+  if (options_.quiet) return;
+  const std::string place = file.empty() ? "" : file + ": ";
+  say(printable(fmt::format("alcove: {}: {}{} [{}]", level_of(note), place, note.text, facts_of(note.code).name)));
+}
+
+void Progress::note(const RunReport& report) {
+  for (std::size_t i = of_all_.size(); i < report.notes.size(); i++) {
+    const Note& note = report.notes[i];
+    say(note.code == NoteCode::no_gpu ? "" : report.input, note);
+  }
+  of_all_ = report.notes;
+}
+
+void Progress::note_frame(const FrameReport& frame) {
+  std::set<NoteCode> here;
+  for (const auto& note : frame.notes) {
+    if (std::ranges::find(of_all_, note) != of_all_.end()) continue;
+    here.insert(note.code);
+    if (!further_.contains(note.code)) say(frame.input, note);
+  }
+  for (const NoteCode code : here)
+    if (const auto [known, is_new] = further_.try_emplace(code, 0); !is_new) known->second++;
+}
+
+void Progress::say_further() {
+  for (const auto& [code, frames] : further_)
+    if (frames)
+      say(fmt::format("and in {} further frame{}", frames, frames > 1 ? "s" : ""), {code, facts_of(code).meaning});
 }
 
 std::string Progress::rate_text() const {
@@ -71,22 +110,44 @@ std::string Progress::rate_text() const {
 void Progress::show_bar() {
   const int full = kBarWidth * ended_ / std::max(1, frames_);
   print_error("\r\x1b[K[{:#<{}}{:.<{}}] {}", "", full, "", kBarWidth - full, rate_text());
+  is_line_shown_ = true;
+  (void)std::fflush(stderr);
+}
+
+void Progress::working(std::span<const FrameProgress> frames) {
+  constexpr double kLong = 2;  // seconds, from which on a person wants to know
+  const auto slowest = std::ranges::max_element(frames, {}, &FrameProgress::seconds);
+  if (options_.quiet || slowest == frames.end() || slowest->seconds < kLong) return;
+  std::string text = fmt::format("{}: {} so far", slowest->input, clock_text(slowest->seconds));
+  if (slowest->parts > 1) text += fmt::format(", part {} of {}", slowest->part, slowest->parts);
+  if (options_.kind == "plain" && slowest->seconds >= next_told_s_) {
+    next_told_s_ = 2 * slowest->seconds;  // ever more seldom, so that logs stay short
+    say(printable(text));
+  }
+  if (options_.kind != "bar") return;
+  if (is_sequence_) show_bar();
+  print_error("{}{}", is_sequence_ ? " | " : "\r\x1b[K", printable(text));
+  is_line_shown_ = true;
   (void)std::fflush(stderr);
 }
 
 void Progress::frame(const FrameReport& frame) {
+  next_told_s_ = kFirstTold;
   ended_++;
   computed_ += frame.state != FrameState::kept;
   const std::string record = frame_json(frame);
   log("frame", record.substr(1, record.size() - 2));
   if (frame.error && is_sequence_)
     say(printable(fmt::format("alcove: error: frame {}: {}", frame.frame, frame.error->what())));
-  if (options_.quiet) return;
-  for (const auto& note : frame.notes) say(printable(fmt::format("{}: {}", frame.input, note)));
+  if (frame.state == FrameState::done) note_frame(frame);
+  if (!options_.quiet) tell_people(frame);
+  tell_farm(frame);
+}
+
+void Progress::tell_people(const FrameReport& frame) {
   if (options_.verbose)
     for (const auto& pass : frame.passes)
       say(printable(fmt::format("{}: {} {:.3f} ms", frame.input, pass.name, pass.ms)));
-  const double percent = 100.0 * ended_ / std::max(1, frames_);
   if (options_.kind == "plain" || (options_.kind == "bar" && !is_sequence_)) {
     const std::string place = is_sequence_ ? fmt::format(" ({})", rate_text()) : "";
     if (frame.state == FrameState::kept) say(printable(fmt::format("{}: whole, kept{}", frame.output, place)));
@@ -95,6 +156,10 @@ void Progress::frame(const FrameReport& frame) {
                                 frame.output, frame.read_ms, frame.compute_ms, frame.write_ms, place)));
   }
   if (options_.kind == "bar" && is_sequence_) show_bar();
+}
+
+void Progress::tell_farm(const FrameReport& frame) const {
+  const double percent = 100.0 * ended_ / std::max(1, frames_);
   if (options_.kind == "percent") fmt::print("Progress: {:.0f}%\n", std::floor(percent));
   if (options_.kind == "openjd")
     fmt::print("openjd_progress: {:.1f}\nopenjd_status: frame {} {}\n", percent, frame.frame, name_of(frame.state));
@@ -104,13 +169,16 @@ void Progress::frame(const FrameReport& frame) {
 void Progress::end(const RunReport& report) {
   const std::string summary = summary_of(report);
   log("end",
-      fmt::format("\"done\":{},\"kept\":{},\"failed\":{},\"dropped\":{},\"missing\":{},\"wall_s\":{:.3f}", report.done,
-                  report.kept, report.failed, report.dropped, report.missing.size(), report.wall_s));
-  if (options_.quiet) return;
+      fmt::format("\"done\":{},\"kept\":{},\"failed\":{},\"warned\":{},\"dropped\":{},\"missing\":{},\"wall_s\":{:.3f}",
+                  report.done, report.kept, report.failed, report.warned, report.dropped, report.missing.size(),
+                  report.wall_s));
   if (options_.kind == "openjd" && (report.failed || report.stop)) fmt::print("openjd_fail: {}\n", summary);
   (void)std::fflush(stdout);
-  if (report.on_cpu_by_default && report.done) say(fmt::format("no GPU found; computed on {}", report.device));
+  if (options_.quiet) return;
+  say_further();
   if (is_sequence_) say(printable("alcove: " + summary));
+  take_line_away();  // for an error that is told after the run, or for the shell
+  (void)std::fflush(stderr);
 }
 
 }  // namespace alcove

@@ -4,7 +4,9 @@
 
 #include <chrono>
 #include <cstdio>
+#include <map>
 #include <memory>
+#include <span>
 #include <string>
 
 #include "core/options/options.h"
@@ -21,16 +23,28 @@ class Progress {
   Progress(const ProgressOptions& options, const std::string& log_json);
 
   void begin(const RunReport& report, int frames);
+  /// Says what is new in RunReport::notes.
+  void note(const RunReport& report);
   void frame(const FrameReport& frame);
+  /// Tells how far the frames in flight are, once one of them takes long.
+  void working(std::span<const FrameProgress> frames);
   void end(const RunReport& report);
 
  private:
+  static constexpr double kFirstTold = 10;  // seconds that a frame takes
   struct CloseFile {
     void operator()(std::FILE* file) const { (void)std::fclose(file); }
   };
   void open_log();
   void say(const std::string& line);
+  void say(const std::string& file, const Note& note);
+  void note_frame(const FrameReport& frame);
+  void say_further();
   void show_bar();
+  void tell_people(const FrameReport& frame);
+  /// Lines that a farm reads: it asked for them, so even a quiet run prints them.
+  void tell_farm(const FrameReport& frame) const;
+  void take_line_away();
   void log(const std::string& event, const std::string& members);
   std::string rate_text() const;
 
@@ -41,6 +55,10 @@ class Progress {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   bool is_sequence_ = false;
   int frames_ = 0, ended_ = 0, computed_ = 0;
+  bool is_line_shown_ = false;       // of a bar, or of a frame in work: the next line takes its place
+  double next_told_s_ = kFirstTold;  // from when on plain lines tell of a frame again
+  Notes of_all_;                     // what was said of the whole run
+  std::map<NoteCode, int> further_;  // of a sequence: codes that were said of a frame, and the further frames with them
 };
 
 }  // namespace alcove

@@ -8,26 +8,63 @@
 #include "cli/progress.h"
 #include "core/base/system.h"
 #include "core/base/text.h"
+#include "core/formats/sequence.h"
+#include "core/frame/input_files.h"
 #include "core/run/batch.h"
 #include "core/run/dry_run.h"
+#include "core/run/first_look.h"
 
 namespace alcove {
+namespace {
+
+/// The name of an output beside which people look for it: ao.####.exr for shot.####.exr.
+std::string usual_output(const std::string& input) {
+  const auto pattern = frame_pattern(input);
+  if (!pattern) return "ao.exr";
+  const std::size_t token = pattern->before.size();
+  return "ao." + input.substr(token, input.size() - token - pattern->after.size()) + ".exr";
+}
+
+/// Fails with all that is missing, and with the command that has it.
+void require_all(const Settings& settings, const std::vector<std::string>& arguments) {
+  const Lacking lacking = lacking_in(settings);
+  if (!lacking.any()) return;
+  std::string command = "alcove run";
+  if (lacking.input) command += " frame.exr";
+  for (const auto& argument : arguments) command += " " + for_shell(argument);
+  if (lacking.output) command += " -o " + for_shell(usual_output(main_input(settings.input)));
+  if (lacking.camera) command += " --camera CAMERA.json";
+  if (lacking.radius)
+    command += " --radius " + (lacking.proposed_radius ? fmt::format("{}", *lacking.proposed_radius) : "auto");
+  fail(ErrorKind::usage, "{}; such as: {}", text_of(lacking), command);
+}
+
+}  // namespace
 
 int run_command(const std::vector<std::string>& arguments) {
   RunOptions options;
   if (!parse_run_options(arguments, options)) return 0;
+  require_all(options.settings, arguments);
   if (options.dry_run) {
     fmt::print("{}", plan_text(options.settings));
     return 0;
   }
   catch_ending_signals();
   Progress progress(options.progress, options.settings.output.log_json);
+  std::optional<Error> failure;
   const RunReport report =
-      run_frames(options.settings,
-                 {[&](const RunReport& begun, int frames) { progress.begin(begun, frames); },
-                  [&](const FrameReport& frame) { progress.frame(frame); }, [] { return caught_signal() != 0; }});
+      run_frames(options.settings, {[&](const RunReport& begun, int frames) { progress.begin(begun, frames); },
+                                    [&](const RunReport& noted) { progress.note(noted); },
+                                    [&](const FrameReport& frame) {
+                                      progress.frame(frame);
+                                      if (frame.error) failure = frame.error;
+                                    },
+                                    [] { return caught_signal() != 0; },
+                                    [&](std::span<const FrameProgress> frames) { progress.working(frames); }});
   progress.end(report);
   if (report.stop && !report.is_sequence) throw *report.stop;
+  // Of a sequence each failure was told of with its frame.
+  if (failure && !report.is_sequence) print_error("alcove: error: {}\n", printable(failure->what()));
   if (report.stop && report.failed == 0) print_error("alcove: error: {}\n", printable(report.stop->what()));
   if (report.stop) return int(report.stop->kind());
   if (caught_signal()) return 128 + caught_signal();

@@ -48,6 +48,7 @@ layout(scalar, binding = kBitmaskSiteCounts) readonly buffer SiteCountsBuffer { 
 layout(scalar, binding = kBitmaskCounts) readonly buffer Counts { TileCounts counts; };
 layout(scalar, binding = kBitmaskBent) writeonly buffer Bent { float bent[]; };
 layout(scalar, binding = kBitmaskCompleted) writeonly buffer Completed { float completed[]; };
+layout(scalar, binding = kBitmaskHidden) readonly buffer Hidden { float hidden[]; };
 
 const uint kFalloff = kMode & ~(kWithBent | kWithCompleted);
 const bool kBent = (kMode & kWithBent) != 0u;
@@ -57,9 +58,23 @@ const float kLeastAcross = 1e-7;
 const bool kBeyondBorder = (kComplete & kCompletesBorder) != 0u;
 // What endless occluders hide is blocked anyway: the host does not ask for it.
 const bool kBehindOthers = (kComplete & kCompletesHidden) != 0u;
+const int kSurfaces = 1 + int(kComplete / kHiddenSurface);
 const bool kTellsCompleted = (kMode & kWithCompleted) != 0u;
 
 #include "pieces.glsl"
+
+/// A sample whose distance is that in space, not in the slice.
+Sample surface_at(Receiver r, Side side, Reach reach, float offset, vec2 beside, float z) {
+  const float scale = r.perspective ? z : 1.0;
+  const vec2 place = place_of(r, side, beside, z, scale);
+  const vec3 delta = offset_to(r, beside, z, scale);
+  const float distance_sq = dot(delta, delta);
+  const bool above = is_above(r, reach, place, distance_sq, offset, beside, z, scale);
+  return Sample(offset, z, scale, place, slope_of(place), distance_sq, above,
+                above ? distance_sq < reach.radius_sq : false);
+}
+
+#include "surfaces.glsl"
 
 /// What a search has found to be blocked.
 struct Found {
@@ -113,17 +128,14 @@ void complete_beyond(inout Found found, Receiver r, Side side, Reach reach, Draw
   block_completed(found, side, reach, draw.shift, piece);
 }
 
-/// The blocked part of a side's arc integral and, with bent normals, of bent_to(); and what of the arc completed
-/// surfaces block.
-vec4 search(Receiver r, Side side, Reach reach, Draw draw, uint range) {
+/// Searches a side where one surface is known at a pixel.
+void search_runs(inout Found found, Receiver r, Side side, Reach reach, Draw draw, uint range, int count) {
   const float jitter = draw.jitter, shift = draw.shift;
-  const int count = range != 0u ? min(int(kSteps), int(side.reach)) : 0;
   const float whole = whole_arc(side), endless = 1e30;
   Sample last = receiver_sample(r);
   float last_cot = side.plane_cot;
   bool own = true, last_blocks = true;
   vec2 start = vec2(0);
-  Found found = Found(0u, 0.0, 0.0, vec2(0));
   const float last_step = float(last_of_range(range)) + 0.5;
   int k = first_sample(range, int(kSteps), count, side.reach, jitter, step_exponent(int(kSteps), side.reach));
   Interruptions interrupted = Interruptions(k & ~(kWordBits - 1), 0u, 0u);
@@ -131,28 +143,24 @@ vec4 search(Receiver r, Side side, Reach reach, Draw draw, uint range) {
     const float offset = step_offset(k, int(kSteps), count, side.reach, jitter);
     const vec2 beside = round(side.direction_px * offset);
     const ivec2 hit = r.pixel + ivec2(beside);
-    const float z = depth[hit.y * reach.width + hit.x], scale = r.perspective ? z : 1.0;
-    const vec2 place = place_of(r, side, beside, z, scale);
-    const vec3 delta = offset_to(r, beside, z, scale);
-    const float cot = place.y / place.x, distance_sq = dot(delta, delta);
-    const bool above = is_above(r, reach, place, distance_sq, offset, beside, z, scale);
-    const bool blocks = above ? distance_sq < reach.radius_sq : false;
-    const bool connected = same_surface(r, reach, z, last.z, offset - last.offset);
-    const Sample s = Sample(offset, z, scale, place, slope_of(place), distance_sq, above, blocks);
-    if (kBehindOthers) take_down(interrupted, k, s, last, connected, reach);
+    const Sample s = surface_at(r, side, reach, offset, beside, depth[hit.y * reach.width + hit.x]);
+    const vec2 place = s.place;
+    const float cot = place.y / place.x;
+    const bool connected = same_surface(r, reach, s.z, last.z, offset - last.offset);
+    if (kBehindOthers) take_down(interrupted, k, s, last, connected, connected, reach);
     // What rises from below the tangent plane is treated as the receiver's own surface.
-    start = connected && above ? start : place;
-    own = above ? (connected ? own : false) : true;
-    if (blocks) {
-      const float width = own ? endless : length(place - start) + reach.pixel_size * scale;
+    start = connected && s.above ? start : place;
+    own = s.above ? (connected ? own : false) : true;
+    if (s.within) {
+      const float width = own ? endless : length(place - start) + reach.pixel_size * s.scale;
       const vec2 back_place = back_of(r, place, reach.thickness > 0.0 ? reach.thickness : width, reach.radius);
       const float back = back_place.y / back_place.x;
       const bool joined = connected ? last_blocks : false;
       const uint before = sectors_to(side, whole, joined ? max(cot, last_cot) : cot, shift);
       const uint behind = sectors_to(side, whole, min(back, joined ? min(cot, last_cot) : cot), shift);
-      block(found, side, reach, shift, behind & ~before, sqrt(distance_sq));
+      block(found, side, reach, shift, behind & ~before, sqrt(s.distance_sq));
     }
-    last_blocks = blocks;
+    last_blocks = s.within;
     last_cot = cot;
     last = s;
     for (bool once = kBehindOthers && int(kSteps) > kWordBits && (k + 1 & kWordBits - 1) == 0; once; once = false) {
@@ -161,6 +169,87 @@ vec4 search(Receiver r, Side side, Reach reach, Draw draw, uint range) {
     }
   }
   if (kBehindOthers) complete_behind(found, r, side, reach, draw, count, interrupted, k);
+}
+
+/// A surface of the last sample, and what is known of its run.
+struct Slot {
+  float z;  // kNoLastSurface: there is none
+  vec2 start;
+  bool own;  // the receiver's surface
+  bool blocks;
+  vec2 cots;  // cotangents of what the sample blocks if its back is known, else its own twice
+};
+
+float cot_of(float slope) { return slope / max(1.0 - abs(slope), kLeastAcross); }
+
+/// The same where several are: a sample of each goes on from the surface that it is linked to.
+void search_layers(inout Found found, Receiver r, Side side, Reach reach, Draw draw, uint range, int count) {
+  const float whole = whole_arc(side), endless = 1e30, last_step = float(last_of_range(range)) + 0.5;
+  const int plane = params.view.size.x * params.view.size.y;
+  Sample last = receiver_sample(r);
+  Slot slots[kMostSurfaces];
+  for (int j = 0; j < kSurfaces; j++)
+    slots[j] = Slot(j == 0 ? r.z : kNoLastSurface, vec2(0), true, true, vec2(side.plane_cot));
+  int k = first_sample(range, int(kSteps), count, side.reach, draw.jitter, step_exponent(int(kSteps), side.reach));
+  Interruptions interrupted = Interruptions(k & ~(kWordBits - 1), 0u, 0u);
+  for (; k < count && last.offset <= last_step; k++) {
+    const float offset = step_offset(k, int(kSteps), count, side.reach, draw.jitter), gap = offset - last.offset;
+    const Surfaces here = surfaces_at(r, side, reach, offset, plane);
+    float last_z[kMostSurfaces];
+    for (int j = 0; j < kSurfaces; j++) last_z[j] = slots[j].z;
+    const int from[kMostSurfaces] = links_of(r, reach, here, last_z, gap);
+    if (kBehindOthers) {
+      const bool goes_on = here.at[0].z > last.z ? from[0] >= 0 : is_taken(from, 0);
+      take_down(interrupted, k, here.at[0], last, same_surface(r, reach, here.at[0].z, last.z, gap), goes_on, reach);
+    }
+    Slot now[kMostSurfaces];
+    for (int i = 0; i < kSurfaces; i++) {
+      const Sample s = here.at[i];
+      Slot slot = slots[0];
+      for (int j = 1; j < kSurfaces; j++) {
+        slot.start = from[i] == j ? slots[j].start : slot.start;
+        slot.own = from[i] == j ? slots[j].own : slot.own;
+        slot.blocks = from[i] == j ? slots[j].blocks : slot.blocks;
+        slot.cots = from[i] == j ? slots[j].cots : slot.cots;
+      }
+      const bool connected = from[i] >= 0;
+      slot.start = both(connected, s.above) ? slot.start : s.place;
+      slot.own = s.above ? both(connected, slot.own) : true;
+      const bool is_known = both(here.has_back[i], !slot.own);
+      const float width = slot.own ? endless : length(s.place - slot.start) + reach.pixel_size * s.scale;
+      const vec2 back_place = back_of(r, s.place, reach.thickness > 0.0 ? reach.thickness : width, reach.radius);
+      const vec2 cots = is_known ? vec2(cot_of(here.solid[i].x), cot_of(here.solid[i].y)) : vec2(s.place.y / s.place.x);
+      const float back = is_known ? cots.y : back_place.y / back_place.x;
+      const bool blocks = both(here.exists[i], is_known ? here.solid[i].x >= here.solid[i].y : s.within);
+      const bool joined = both(connected, slot.blocks);
+      for (bool once = blocks; once; once = false) {
+        const uint before = sectors_to(side, whole, joined ? max(cots.x, slot.cots.x) : cots.x, draw.shift);
+        const uint behind = sectors_to(side, whole, min(back, joined ? min(cots.y, slot.cots.y) : cots.y), draw.shift);
+        block(found, side, reach, draw.shift, behind & ~before, sqrt(s.distance_sq));
+      }
+      now[i] = Slot(here.exists[i] ? s.z : kNoLastSurface, slot.start, slot.own, blocks, cots);
+    }
+    slots = now;
+    last = here.at[0];
+    for (bool once = kBehindOthers && int(kSteps) > kWordBits && (k + 1 & kWordBits - 1) == 0; once; once = false) {
+      complete_behind(found, r, side, reach, draw, count, interrupted, k + 1);
+      interrupted = Interruptions(k + 1, 0u, 0u);
+    }
+  }
+  if (kBehindOthers) complete_behind(found, r, side, reach, draw, count, interrupted, k);
+}
+
+/// The blocked part of a side's arc integral and, with bent normals, of bent_to(); and what of the arc completed
+/// surfaces block.
+vec4 search(Receiver r, Side side, Reach reach, Draw draw, uint range) {
+  const float shift = draw.shift;
+  const int count = range != 0u ? min(int(kSteps), int(side.reach)) : 0;
+  const float whole = whole_arc(side);
+  Found found = Found(0u, 0.0, 0.0, vec2(0));
+  if (kSurfaces > 1)
+    search_layers(found, r, side, reach, draw, range, count);
+  else
+    search_runs(found, r, side, reach, draw, range, count);
   for (bool once = kBeyondBorder && side.is_cut && range != 0u && side.reach >= 1.0; once; once = false)
     complete_beyond(found, r, side, reach, draw);
   if (kBent && kFalloff == kFalloffNone) found.bent = bent_of_sectors(side, found.bits, shift);

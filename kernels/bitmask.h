@@ -17,12 +17,13 @@ ALCOVE_CONSTANT uint kBitmaskSites = 7;       // in: one uint per site, from lis
 ALCOVE_CONSTANT uint kBitmaskSiteCounts = 8;  // in: SiteCounts; only if sparse
 // out: one float per pixel, the visibility that completed surfaces took; only with kWithCompleted
 ALCOVE_CONSTANT uint kBitmaskCompleted = 6;
+ALCOVE_CONSTANT uint kBitmaskHidden = 9;  // in: planes of hidden surfaces, see GBuffer; with more than one surface
 
 ALCOVE_CONSTANT uint kBitmaskSlicesId = 0;    // specialization: slices per pixel
 ALCOVE_CONSTANT uint kBitmaskStepsId = 1;     // specialization: steps to each side of a slice
 ALCOVE_CONSTANT uint kBitmaskModeId = 2;      // specialization: one of kFalloff* of falloff.glsl, and kWith* or not
 ALCOVE_CONSTANT uint kBitmaskSparseId = 3;    // specialization: 1: only the sites of the list are estimated
-ALCOVE_CONSTANT uint kBitmaskCompleteId = 4;  // specialization: bits of kCompletes* of horizon.h
+ALCOVE_CONSTANT uint kBitmaskCompleteId = 4;  // specialization: bits of kCompletes* of horizon.h, and kHiddenSurface
 
 struct BitmaskParams {
   View view;

@@ -2,7 +2,7 @@
 // receivers where they have one in common.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// In: planar depth, view normals.
+// In: planar depth, view normals, depths of hidden surfaces.
 // Out: bounds of every tile, for `classify`.
 //
 // A pyramid of depths alone cannot tell a floor from what stands on it, for within a tile the floor itself comes
@@ -21,6 +21,7 @@ layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 layout(scalar, push_constant) uniform Push { BoundsParams params; };
 layout(scalar, binding = kBoundsDepth) readonly buffer Depth { float depth[]; };
 layout(scalar, binding = kBoundsNormal) readonly buffer Normal { uint normal[]; };
+layout(scalar, binding = kBoundsHidden) readonly buffer Hidden { float hidden[]; };
 layout(scalar, binding = kBoundsTiles) writeonly buffer Tiles { TileBounds tiles[]; };
 
 /// Receivers whose normals differ more than this share no plane.
@@ -45,6 +46,16 @@ vec2 gradient_of(ivec2 tile, ivec2 size) {
   return 0.5 * vec2(b - a + d - c, c - a + d - b) / vec2(max(last - first, ivec2(1)));
 }
 
+/// The depth of the last surface of a pixel.
+float last_of(int index, float first) {
+  float last = first;
+  for (uint k = 0u; k < params.hidden; k++) {
+    const float z = abs(hidden[index + int(k) * params.view.size.x * params.view.size.y]);
+    last = z < kSkyDepth ? max(last, z) : last;
+  }
+  return last;
+}
+
 void main() {
   const View view = params.view;
   const ivec2 tile = ivec2(gl_GlobalInvocationID.xy);
@@ -64,6 +75,7 @@ void main() {
   float along_own = -kFar;
   float level = -kFar;
   float farthest = kFar;
+  float last = kFar;
   float deepest = 0.0;
   for (int y = first.y; y < end.y; y++)
     for (int x = first.x; x < end.x; x++) {
@@ -75,6 +87,7 @@ void main() {
       for (int k = 0; k < kNeighbors; k++) plane[k] = max(plane[k], near - dot(gradient[k], from_middle));
       level = max(level, near);
       farthest = min(farthest, z < kSkyDepth ? near : kFar);
+      last = min(last, z < kSkyDepth ? nearness(last_of(y * size.x + x, z)) : kFar);
     }
 
   const ivec2 centre = min(first + kTile / 2, size - 1);
@@ -106,6 +119,7 @@ void main() {
   for (int k = 0; k < kNeighbors; k++) result.plane[k + 1] = plane[k];
   result.plane[kTilePlanes - 1u] = level;
   result.farthest = farthest;
+  result.last = last;
   result.mixed = mixed ? 1u : 0u;
   result.normal = word;
   result.turned = turned;

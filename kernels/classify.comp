@@ -13,7 +13,10 @@
 // most d |Q - P| more. (Orthographic: -z stands for 1 / z, and nothing is divided.)
 //
 // What is farther than the radius from all receivers does not block either, where the estimator says so. The distance
-// is that of the boxes in space that hold the surfaces of both tiles.
+// is that of the boxes in space that hold the surfaces of both tiles, hidden ones too.
+//
+// A hidden surface has the same m as the one that hides it, and is deeper: it rises less. So heights are bounded by the
+// first surfaces alone.
 //
 // What is completed (pieces.glsl) does not change this: behind others only what stands above the tangent plane goes on,
 // and at a pixel it lies deeper than what is seen there, so that c / z is less. It may lie nearer to the receiver than
@@ -127,15 +130,15 @@ bool is_settled(View view, Receivers r, ivec2 group, GroupBounds b) {
   const float above =
       min(most_above(r, centre, half_side, vec2(0), b.level), most_above(r, centre, half_side, b.gradient, b.plane));
   const bool goes_on = kCompletes && is_at_border(view, group * kGroupSide, kGroupSide);
-  return b.farthest > b.level ? true : above <= limit && !goes_on;
+  return b.last > b.level ? true : above <= limit && !goes_on;
 }
 
 /// Whether a square of pixels is so far away that nothing in it blocks, and that nothing of it goes on as something
 /// that does.
-bool is_too_far(View view, Receivers r, ivec2 first_pixel, int side, float level, float farthest) {
+bool is_too_far(View view, Receivers r, ivec2 first_pixel, int side, float level, float last_surface) {
   if ((kMode & kClassifyRanged) == 0u) return false;
   return distance_sq(r.box, box_of(view, first_pixel / kTile, side / kTile, depth_of(view, level),
-                                   depth_of(view, farthest))) > r.reach_sq;
+                                   depth_of(view, last_surface))) > r.reach_sq;
 }
 
 /// Whether surfaces that stand nowhere above the tangent planes in a tile may rise above them beyond the border.
@@ -146,13 +149,14 @@ bool may_rise_beyond(Receivers r, uint word, float turned) {
 
 /// Adds a square of pixels, in which something stands above the tangent planes, to the sectors and steps at which
 /// something may block.
-void mark(View view, Receivers r, ivec2 first_pixel, int side, float level, float farthest, bool is_near, bool rises) {
+void mark(View view, Receivers r, ivec2 first_pixel, int side, float level, float last_surface, bool is_near,
+          bool rises) {
   const uint row = gl_LocalInvocationID.y;
   const ivec2 apart = distances_px(r, first_pixel, side);
   const vec2 offset = vec2(first_pixel - r.tile * kTile);
   const uint sectors = sectors_of_offsets(offset - float(kBlock * kTile), offset + float(side));
   // What stands above, but too far to block, may yet go on as something that does.
-  const bool too_far = is_too_far(view, r, first_pixel, side, level, farthest);
+  const bool too_far = is_too_far(view, r, first_pixel, side, level, last_surface);
   if (!too_far) atomicOr(found[row], sectors);
   if (!too_far && rises) atomicOr(risen[row], 1u);
   if (is_near && rises) atomicOr(beside[row], sectors);
@@ -188,7 +192,7 @@ void search_tile(View view, Receivers r, ivec2 other, bool is_near) {
                            : false;
   const bool rises = kTolerates ? goes_on || above > tolerated_height(view, r, apart.x, level) : true;
   for (bool once = goes_on || above > limit; once; once = false)
-    mark(view, r, other * kTile, kTile, level, farthest, is_near, rises);
+    mark(view, r, other * kTile, kTile, level, bounds[index].last, is_near, rises);
 }
 
 Receivers receivers_of(View view, ivec2 tile, Shared own) {
@@ -240,7 +244,7 @@ void search_group(View view, Receivers r, ivec2 group, uint known) {
       known != 0u ? sectors_of_offsets(offset - float(kBlock * kTile), offset + float(kGroupSide)) : kEverySector;
   const bool is_coarse = (sectors & ~known) == 0u;
   for (bool once = is_coarse && gl_LocalInvocationID.x == 0u; once; once = false)
-    mark(view, r, group * kGroupSide, kGroupSide, bounds_of(view, group).level, bounds_of(view, group).farthest, false,
+    mark(view, r, group * kGroupSide, kGroupSide, bounds_of(view, group).level, bounds_of(view, group).last, false,
          true);
   for (int k = int(gl_LocalInvocationID.x); k < kTileGroup * kTileGroup && !is_coarse; k += int(kGroupX)) {
     const ivec2 other = group * kTileGroup + ivec2(k % kTileGroup, k / kTileGroup);
@@ -287,9 +291,9 @@ void find_sectors(View view, Receivers r) {
     const ivec2 group = group_at(r, i);
     const GroupBounds b = bounds_of(view, group);
     const bool settled = is_settled(view, r, group, b);
-    const bool too_far = is_too_far(view, r, group * kGroupSide, kGroupSide, b.level, b.farthest);
+    const bool too_far = is_too_far(view, r, group * kGroupSide, kGroupSide, b.level, b.last);
     for (bool once = !settled && too_far; once; once = false)
-      mark(view, r, group * kGroupSide, kGroupSide, b.level, b.farthest, false, true);
+      mark(view, r, group * kGroupSide, kGroupSide, b.level, b.last, false, true);
     if (!settled && !too_far) atomicOr(unsettled[row * kGroupWords + uint(i) / 32u], 1u << (uint(i) & 31u));
   }
   barrier();

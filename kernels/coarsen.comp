@@ -32,7 +32,7 @@ void main() {
   vec2 gradient = vec2(0);
   float surfaces = 0.0;
   float level = -kFar;
-  float farthest = kFar;
+  float last = kFar;
   for (int y = from.y; y < to.y; y++)
     for (int x = from.x; x < to.x; x++) {
       const int i = y * count.x + x;
@@ -40,7 +40,7 @@ void main() {
       gradient += is_sky ? vec2(0) : tiles[i].gradient;
       surfaces += is_sky ? 0.0 : 1.0;
       level = max(level, tiles[i].plane[kLevel]);
-      farthest = min(farthest, tiles[i].farthest);
+      last = min(last, tiles[i].last);
     }
   gradient /= max(surfaces, 1.0);
   float plane = -kFar;
@@ -59,5 +59,5 @@ void main() {
       const float size = abs(own) + abs(tile_level) + abs(gradient.x * offset.x) + abs(gradient.y * offset.y);
       plane = max(plane, tiles[i].farthest > tile_level ? -kFar : before + kPad * size);
     }
-  groups[group.y * groups_in.x + group.x] = GroupBounds(gradient, plane, level, farthest);
+  groups[group.y * groups_in.x + group.x] = GroupBounds(gradient, plane, level, last);
 }

@@ -15,6 +15,9 @@
 //   receivers see; nearly all that matters is shorter.
 // - The image's border hides all that is beyond it, so there a surface goes on as far as that. Where the image is a
 //   part of the frame, no result lies within the radius of a border that is not the frame's: see core/run/region.h.
+// - Where hidden surfaces are known, those of each slot go on beyond the border. Behind what is nearer goes on, where
+//   the frame tells all surfaces of a pixel up to so many, the deepest surface of its pixel, behind the deepest of
+//   others that have as many; else the first surface behind the first of others, if it is not known to go on there.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "complete.h"
@@ -23,12 +26,16 @@
 #include "lines.glsl"
 
 layout(local_size_x = kCompleteGroup) in;
+layout(constant_id = kCompleteSurfacesId) const uint kSurfaces = 1;
+layout(constant_id = kCompleteWholeId) const uint kWhole = 0;
 layout(scalar, push_constant) uniform Push { CompleteParams params; };
 layout(scalar, binding = kCompleteVertex) buffer Vertex { float vertex[]; };
 layout(scalar, binding = kCompleteNormal) readonly buffer Normal { uint normal[]; };
 layout(scalar, binding = kCompleteMark) readonly buffer Mark { uint mark[]; };
 layout(scalar, binding = kCompleteGoesOn) writeonly buffer GoesOn { uint goes_on[]; };
 layout(scalar, binding = kCompleteBehind) buffer Behind { uint behind[]; };
+layout(scalar, binding = kCompleteDepth) readonly buffer Depth { float depth[]; };
+layout(scalar, binding = kCompleteHidden) readonly buffer Hidden { float hidden[]; };
 
 /// A surface goes on until it is so many times as deep as at its last vertex.
 const float kLeastDepths = 1.0 / 64.0;
@@ -98,16 +105,29 @@ float steps_in_range(bool perspective, float value, float change) {
   return room / max(abs(change), room / kLongestStroke);
 }
 
+/// A vertex that is farther from its pixel's first surface than so many pixels' worth of slope is of another one.
+const float kOfFirstSurface = 8.0;
+
+/// Whether a vertex is of the first surface of its pixel, which alone has a normal.
+bool is_first_surface(View view, int pixel, float nearness) {
+  if (kSurfaces == 1u) return true;
+  const bool perspective = view.orthographic == 0;
+  const float z = perspective ? 1.0 / nearness : -nearness;
+  return abs(z - depth[pixel]) < kOfFirstSurface * view.tangent_per_pixel.x * (perspective ? z : 1.0);
+}
+
 /// The change of nearness per step `way` on the plane through a vertex across the normal there; `otherwise` where that
-/// is seen edge on.
+/// is seen edge on, or not known.
 float change_on_plane(View view, Lines lines, LinePlane plane, int line, Corner end, float way, float otherwise) {
   const bool perspective = view.orthographic == 0;
   const ivec2 along_and_across = ivec2(end.at, line + shift_at(lines, end.at));
-  const vec3 n = unpack_normal(normal[index_at(view, lines, along_and_across.x, along_and_across.y)]);
+  const int pixel = index_at(view, lines, along_and_across.x, along_and_across.y);
+  const vec3 n = unpack_normal(normal[pixel]);
   const vec2 tangent = tangent_at(view, lines, along_and_across + lines.origin);
   const float facing = (perspective ? dot(n.xy, tangent) : 0.0) - n.z;
   const float change = way * plane.step * dot(n.xy, plane.along) * (perspective ? end.nearness : 1.0) / facing;
-  return facing < kLeastFacingToGoOn ? change : otherwise;
+  const bool is_known = facing < kLeastFacingToGoOn && is_first_surface(view, pixel, end.nearness);
+  return is_known ? change : otherwise;
 }
 
 /// What goes on from the walk's last vertex, along the line through `inner` and that.
@@ -176,6 +196,19 @@ void go_beyond(inout Open open, View view, LinePlane plane, Open last, Walk walk
     close(open, view, plane, walk.way, min(goes_beyond ? steps + further : steps, open.farthest));
 }
 
+/// Whether it is to be told behind what vertices a surface goes on: in a plane of several, only of the deepest.
+bool tells_behind() { return kSurfaces == 1u || params.behind != 0u; }
+
+/// The index at which the plane of the profile begins.
+int first_of_plane(View view) { return kSurfaces == 1u ? 0 : int(params.slot) * view.size.x * view.size.y; }
+
+/// Whether there may be more surfaces at a step of a line than the frame tells.
+bool may_have_more(View view, Lines lines, int line, int step) {
+  if (kWhole == 0u) return true;
+  const int pixel = index_at(view, lines, step, line + shift_at(lines, step));
+  return abs(hidden[int(kSurfaces - 2u) * view.size.x * view.size.y + pixel]) < kSkyDepth;
+}
+
 /// Walks along the vertices of a line from `first` on; it has one at least.
 void complete(View view, Lines lines, LinePlane plane, int line, ivec2 steps, int row, int first, int way) {
   const bool perspective = view.orthographic == 0;
@@ -199,7 +232,8 @@ void complete(View view, Lines lines, LinePlane plane, int line, ivec2 steps, in
     const Corner next = corner_at(perspective, index);
     const bool begins_run = (next.marked & walk.begins) != 0u;
     const bool is_interrupted = params.behind != 0 && begins_run && (walk.before.marked & both_ends) != both_ends &&
-                                next.at == walk.before.at + way && next.nearness > walk.before.nearness;
+                                next.at == walk.before.at + way && next.nearness > walk.before.nearness &&
+                                may_have_more(view, lines, line, next.at);
     goes = (next.marked & walk.is_last) == 0u;
     for (bool once = is_interrupted; once; once = false) {
       if (opens.a.is_open && opens.b.is_open) {
@@ -217,7 +251,10 @@ void complete(View view, Lines lines, LinePlane plane, int line, ivec2 steps, in
     if (opens.c.is_open) column = uint(opens.c.index - row);
     if (opens.b.is_open) column = uint(opens.b.index - row);
     if (opens.a.is_open) column = uint(opens.a.index - row);
-    behind[index] = way > 0 ? column | kNoVertex << 16 : behind[index] & kNoVertex | column << 16;
+    if (tells_behind()) {
+      const int at = index - first_of_plane(view);
+      behind[at] = way > 0 ? column | kNoVertex << 16 : behind[at] & kNoVertex | column << 16;
+    }
     const bool is_long = abs(next.at - walk.before.at) > 1;
     const bool before_begins = (walk.before.marked & walk.begins) != 0u;
     walk.inner = is_long || before_begins ? walk.before : walk.prior;
@@ -255,9 +292,9 @@ void main() {
   const ivec2 steps = steps_of(lines, extent, line);
   if (steps.x >= steps.y) return;
   const LinePlane plane = plane_of(view, lines, line);
-  const int row = row_of(lines, line, extent.y) * extent.x;
+  const int row = first_of_plane(view) + row_of(lines, line, extent.y) * extent.x;
   if (mark[row + steps.x] == 0u) return;
-  behind[row + steps.x] = kNoVertex | kNoVertex << 16;
+  if (tells_behind()) behind[row + steps.x - first_of_plane(view)] = kNoVertex | kNoVertex << 16;
   complete(view, lines, plane, line, steps, row, row + steps.x, 1);
   int last = row + steps.x;
   while ((mark[last] & kVertexLast) == 0u) last++;

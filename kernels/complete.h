@@ -14,6 +14,15 @@ ALCOVE_CONSTANT uint kCompleteGoesOn = 2;
 // surface goes on behind it; kNoVertex: none
 ALCOVE_CONSTANT uint kCompleteBehind = 3;
 ALCOVE_CONSTANT uint kCompleteNormal = 4;  // in: one uint per pixel, from prepare
+// Only with several surfaces:
+ALCOVE_CONSTANT uint kCompleteDepth = 5;   // in: one float per pixel, from prepare
+ALCOVE_CONSTANT uint kCompleteHidden = 6;  // in: planes of floats, see GBuffer::hidden
+
+// specialization: of a pixel. Of several, the profile is a plane among others, and `behind` is of that one alone of
+// which surfaces go on behind what is nearer.
+ALCOVE_CONSTANT uint kCompleteSurfacesId = 0;
+// specialization: 1: the frame tells all surfaces of a pixel, but for those behind as many as it may have
+ALCOVE_CONSTANT uint kCompleteWholeId = 1;
 
 ALCOVE_CONSTANT uint kCompleteGroup = 32;  // lines of a workgroup
 
@@ -24,6 +33,7 @@ struct CompleteParams {
   uint count;    // lines
   float radius;  // scene units: of the sphere beyond which nothing blocks
   uint behind;   // 0 or 1: surfaces go on behind what is nearer, beside beyond the border
+  uint slot;     // planes of the profile before the one that is completed
 };
 ALCOVE_PARAMS(CompleteParams)
 

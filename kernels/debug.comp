@@ -76,6 +76,18 @@ float density_at(ivec2 pixel) {
   return float(sites) / float(surfaces);
 }
 
+/// How many surfaces lie behind the first one, and half a one more where any of them closes a solid.
+float hidden_at(int index) {
+  const int plane = params.view.size.x * params.view.size.y;
+  float count = 0.0, solid = 0.0;
+  for (uint k = 0u; k < params.hidden; k++) {
+    const float z = uintBitsToFloat(values[index + int(k) * plane]);
+    count += z < kSkyDepth ? 1.0 : 0.0;
+    solid = z < 0.0 ? 0.5 : solid;
+  }
+  return count + solid;
+}
+
 void main() {
   const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   if (!inside(params.view, pixel)) return;
@@ -94,6 +106,7 @@ void main() {
   if (params.kind == kDebugTile)
     value = float(bitCount(values[(pixel.y / kTile) * tiles_of(params.view.size).x + pixel.x / kTile] & kEverySector)) /
             float(kSectorsOfTurn);
+  if (params.kind == kDebugHidden) value = hidden_at(index);
   if (params.kind == kDebugEdge) value = edge(pixel, z, n);
   if (params.kind == kDebugNormalAngle) {
     const vec3 other = unpack_normal(values[index]);

@@ -15,6 +15,9 @@
 // - Every stroke is cut to what the sphere holds of it, and blocks from its front to its back, which lies as far along
 //   the eye's ray as its run is wide ("width as thickness"). What goes on from the receiver is its own surface: it
 //   blocks all below its horizon.
+// - Where hidden surfaces are known, the line has a profile in each of several slots. The receiver's own surface goes
+//   on in the slot that it is in; all others add what blocks to the same union. A run there that passes behind the
+//   receiver is cut at the eye's ray. Where a vertex knows how thick its surface's solid is, that counts.
 // - What is blocked is a union of intervals. It is exact for what joins the horizon; all others are counted in 24
 //   sectors (sectors.glsl).
 // - The result is 1 - (sum of blocked arcs) / (sum of whole arcs).
@@ -31,11 +34,14 @@
 #include "slice.glsl"
 #include "sectors.glsl"
 #include "lines.glsl"
+#include "strokes.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 layout(constant_id = kExactListedId) const uint kListed = 0;
 layout(constant_id = kExactCompletesId) const uint kCompletes = 0;
 layout(constant_id = kExactBentId) const uint kBentId = 0;
+layout(constant_id = kExactSlotsId) const uint kSlots = 1;
+layout(constant_id = kExactUnseenId) const uint kUnseen = 0;
 layout(scalar, push_constant) uniform Push { ExactParams params; };
 layout(scalar, binding = kExactDepth) readonly buffer Depth { float depth[]; };
 layout(scalar, binding = kExactNormal) readonly buffer Normal { uint normal[]; };
@@ -50,17 +56,12 @@ layout(scalar, binding = kExactGoesOn) readonly buffer GoesOn { uint goes_on[]; 
 layout(scalar, binding = kExactBehind) readonly buffer Behind { uint behind[]; };
 layout(scalar, binding = kExactCompleted) buffer Completed { float completed[]; };
 layout(scalar, binding = kExactBent) buffer Bent { float bent[]; };
+layout(scalar, binding = kExactOwn) readonly buffer Own { uint own[]; };
 
 const bool kBent = kBentId != 0u;
 
 const uint kCompletesNothing = 0;
 const uint kCompletesApart = 2;
-
-const float kNone = 1e30;
-
-/// A vertex that stands alone is the end of a stroke from this part of its distance on: so short that its depth within
-/// the sphere and its slopes are those of the vertex within 0.1 %, and long enough not to be lost in rounding.
-const float kShortStroke = 0.999;
 
 /// The receiver in the plane of its line, where the profile has its vertices too.
 struct Point {
@@ -85,29 +86,10 @@ struct Search {
   float unit;                      // scene units: a power of two near the receiver's depth
 };
 
-/// A walk from vertex to vertex of one side.
-struct Walk {
-  vec2 last;        // the vertex before, in (across, toward)
-  bool starts;      // there is none yet
-  bool is_own;      // the run is the receiver's own surface
-  float thickness;  // scene units, of the run
-};
-
 /// What is found to block on a side.
 struct Blocked {
   float own;     // slope_of() up to which the receiver's own surface blocks
   uint sectors;  // that other runs block
-};
-
-/// A piece of the profile, in (across, toward).
-struct Stroke {
-  vec2 from, to;
-};
-
-/// What the sphere of the radius holds of a stroke.
-struct Clipped {
-  vec2 near, far;
-  bool is_within;  // whether it holds anything
 };
 
 /// The unit vector in the plane of a line that is across the line, away from the eye.
@@ -132,50 +114,6 @@ Point point_of(View view, LinePlane plane, vec2 tangent, float z, vec3 normal) {
   return point;
 }
 
-/// slope_of() the back of an occluder: it lies `thickness` further along the eye's ray through its front (across,
-/// toward), but not beyond the sphere.
-float back_of(vec2 front, float eye_distance, float thickness, float radius_sq) {
-  const vec2 ray = eye_distance < kNone ? front - vec2(0, eye_distance) : vec2(0, -1);
-  const vec2 direction = ray * inversesqrt(dot(ray, ray));
-  const float middle = dot(front, direction);
-  const float leaves = sqrt(max(0.0, middle * middle - dot(front, front) + radius_sq)) - middle;
-  const vec2 back = front + min(thickness, leaves) * direction;
-  return slope_of(back);
-}
-
-/// The stroke that ends at a vertex `steps` from the receiver. It begins at the vertex before. Nothing is seen before
-/// the first vertex of a side, to which it begins at the pixel next to the receiver. A vertex that begins a run stands
-/// alone, as a stroke that is short.
-Stroke stroke_to(vec2 place, Walk walk, bool begins, int steps) {
-  const float next_pixel = min(kShortStroke, 1.0 / float(steps));
-  const vec2 onward = walk.starts ? next_pixel * place : walk.last;
-  return Stroke(begins ? kShortStroke * place : onward, place);
-}
-
-/// A stroke goes on to the receiver's own ray at most: to this part of its distance across the ray.
-const float kBesideReceiver = 1e-3;
-
-/// The part of a stroke within the sphere of the radius about the receiver: with from + t (to - from), the t between
-/// the roots of |from + t (to - from)|^2 = radius^2. They hold products of four lengths, which overflow where the
-/// scene's numbers are large. So `along` is divided by a power of two near the receiver's depth, and t is multiplied by
-/// it, which changes no bit.
-Clipped clip_to_sphere(Stroke stroke, float radius_sq, float unit) {
-  const float per_unit = 1.0 / unit;
-  const vec2 from = stroke.from, along = per_unit * (stroke.to - stroke.from);
-  const float a = dot(along, along);
-  const float middle = dot(from, along);
-  const float beside = from.x * along.y - from.y * along.x;
-  const float inside_sq = a * radius_sq - beside * beside;
-  const float inside = sqrt(max(inside_sq, 0.0));
-  const float scale = 1.0 / a;
-  const float enters = max(0.0, (-middle - inside) * scale);
-  const float leaves = min(unit, (inside - middle) * scale);
-  return Clipped(from + enters * along, from + leaves * along, both(inside_sq > 0.0, enters <= leaves));
-}
-
-/// The largest power of two that is not above a depth.
-float power_of_two(float z) { return uintBitsToFloat(floatBitsToUint(clamp(z, 1e-30, 1e30)) & 0x7f800000u); }
-
 /// Adds what a stroke blocks from its front to its back: more of what the receiver's own surface does, or a set apart.
 /// least: the height above the tangent plane that it must have somewhere. goes_on: from `bend` on it is not seen, or up
 /// to there, and need not be straight with what is; both hang together there, so they block one interval.
@@ -186,10 +124,13 @@ void block(inout Blocked blocked, Walk walk, Search search, Clipped stroke, bool
   float high = max(near_slope, far_slope);
   float low = min(near_slope, far_slope);
   float height = max(dot(stroke.near, search.normal), dot(stroke.far, search.normal));
-  float back = back_of(stroke.far, eye_distance, walk.thickness, radius_sq);
+  const float thickness = kSlots > 1u ? walk.thickness + stroke.parts.y * walk.change : walk.thickness;
+  float back = back_of(stroke.far, eye_distance, thickness, radius_sq);
+  for (bool once = kSlots > 1u && walk.change != 0.0; once; once = false)
+    back = min(back, back_of(stroke.near, eye_distance, walk.thickness + stroke.parts.x * walk.change, radius_sq));
   if (kCompletes != kCompletesNothing) {
     const bool bends = both(goes_on, dot(bend, bend) < radius_sq);
-    const float slope = slope_of(bend), back_of_bend = back_of(bend, eye_distance, walk.thickness, radius_sq);
+    const float slope = slope_of(bend), back_of_bend = back_of(bend, eye_distance, thickness, radius_sq);
     high = bends ? max(high, slope) : high;
     low = bends ? min(low, slope) : low;
     height = bends ? max(height, dot(bend, search.normal)) : height;
@@ -223,20 +164,10 @@ Corner corner_at(View view, LinePlane plane, Point point, Search search, int at,
   return corner;
 }
 
-/// The stroke with what its surface goes on behind others: towards the receiver from the first vertex of a run, else
-/// away from it.
-Stroke with_unseen(Stroke stroke, bool begins, vec2 unseen) {
-  const float across = stroke.to.x;
-  const float least = kBesideReceiver * across;
-  const float part = unseen.x < least ? (across - least) / (across - unseen.x) : 1.0;
-  const vec2 toward = stroke.to + part * (unseen - stroke.to);
-  return begins ? Stroke(toward, stroke.to) : Stroke(stroke.from, unseen);
-}
-
 /// The column of the nearest vertex beyond the end of a walk at `at` whose surface goes on towards the receiver behind
 /// that end.
-uint vertex_beyond(Search search, int at) {
-  const uint columns = behind[at];
+uint vertex_beyond(View view, Search search, int at) {
+  const uint columns = behind[kSlots > 1u ? at - int(kSlots) * view.size.x * view.size.y : at];
   return search.step > 0 ? columns >> 16 : columns & kNoVertex;
 }
 
@@ -264,53 +195,185 @@ struct BlockedArcs {
   vec2 bent;     // bent_to(), across the eye's ray and towards it; only with kBent
 };
 
-/// `at` is the index of the side's first vertex, and `row` that of the line's column 0.
-BlockedArcs blocked_arcs(View view, LinePlane plane, Point point, Side side, Search search, int row, int at) {
+/// The walks along the profiles of a line: one of each slot, and one for what is unseen.
+const int kWalks = int(kSlots + (kUnseen != 0u ? 1u : 0u));
+const uint kUnseenOfFirst = 2;
+
+/// Farther away than any step of a line.
+const int kNever = 0x10000;
+
+/// The next vertices of the walks of a side.
+struct Next {
+  int at[kWalks];    // index
+  int away[kWalks];  // steps from the receiver; kNever: there is none
+  float z[kWalks];
+};
+
+void set_next(inout Next next, int walk, int at, int away, float z) {
+  for (int i = 0; i < kWalks; i++) {
+    const bool is_it = i == walk;
+    next.at[i] = is_it ? at : next.at[i];
+    next.away[i] = is_it ? away : next.away[i];
+    next.z[i] = is_it ? z : next.z[i];
+  }
+}
+
+/// The walk whose vertex is the nearest, on the image and then to the eye: so runs are met in one order whichever slots
+/// they have. That for what is unseen comes last.
+int nearest_walk(Next next) {
+  int best = 0;
+  for (int i = 1; i < kWalks; i++) {
+    const bool ties = next.away[i] == next.away[best] && next.z[i] < next.z[best];
+    best = next.away[i] < next.away[best] || ties ? i : best;
+  }
+  return best;
+}
+
+/// Goes on with a walk at an index; ends it with kNoVertex for its column.
+void go_to(inout Next next, Search search, int walk, int at, bool ends) {
+  int away = kNever;
+  float z = 0.0;
+  for (bool once = !ends; once; once = false) {
+    away = abs(int(mark[at] >> 16) - search.from);
+    z = abs(vertex[at]);
+  }
+  set_next(next, walk, at, away, z);
+}
+
+/// The column of the first vertex on a side; kNoVertex: none.
+uint first_column(Search search, int index) {
+  const uint columns = neighbor[index];
+  return search.step > 0 ? columns >> 16 : columns & kNoVertex;
+}
+
+/// The thickness at a vertex.
+float thickness_at(uint marked) {
+  const float known = unpack_width(marked);
+  return known > 0.0 ? known : min(params.thickness, kNone);
+}
+
+/// A walk that comes to the vertex at an index from the one before, where there are several. A run that passes behind
+/// the receiver is cut beside the eye's ray.
+void come_to(inout Walk walk, View view, LinePlane plane, Point point, Search search, int at, vec2 place) {
+  const float here = thickness_at(mark[at]);
+  walk.thickness = here;
+  walk.change = 0.0;
+  for (bool once = !walk.starts && (mark[at] & search.begins) == 0u; once; once = false) {
+    const int before = at - search.step, from_step = int(mark[before] >> 16);
+    const vec2 offset = place_at(view, plane, float(from_step), abs(vertex[before])) - point.place;
+    const vec2 from = vec2(dot(offset, search.across), dot(offset, point.eye));
+    const float least = kBesideReceiver * place.x;
+    const bool is_behind = both((from_step - search.from) * search.step <= 0, from.x < least);
+    const float part = is_behind ? (place.x - least) / (place.x - from.x) : 1.0;
+    const float change = here - thickness_at(mark[before]);
+    walk.last = is_behind ? place + part * (from - place) : from;
+    walk.thickness = is_behind ? here - part * change : thickness_at(mark[before]);
+    walk.change = is_behind ? part * change : change;
+  }
+}
+
+/// Whether a walk ends with this vertex: it is the last, or the sphere is left behind.
+bool ends_at(uint marked, Corner corner, Search search) {
+  return (marked & search.last) != 0u || !(dot(corner.place, search.leaving) < params.radius);
+}
+
+/// `row` is the index of the line's column 0 in each plane of the profile, `slot` that of the receiver's own surface.
+BlockedArcs blocked_arcs(View view, LinePlane plane, Point point, Side side, Search search, int row, int slot) {
+  const int pixels = view.size.x * view.size.y;
   const float radius = params.radius;
   const float radius_sq = radius * radius;
   const float thickness = params.thickness;
-  Walk walk = Walk(vec2(0), true, true, thickness);
+  Next next;
+  bool goes = false;
+  for (int i = 0; i < kWalks; i++) {
+    const int first = i * pixels + row;
+    const uint column = first_column(search, first + search.from);
+    go_to(next, search, i, first + int(column), column == kNoVertex);
+    goes = goes || column != kNoVertex;
+  }
+  if (!goes) return BlockedArcs(0.0, 0.0, vec2(0));
+  Walk walk = Walk(vec2(0), true, true, thickness, 0.0);
+  bool is_own = true, starts = true;  // the walk along the receiver's own slot: where there are several
   Blocked all = Blocked(slope_of(side.ahead), 0u);
   Blocked seen = all;
-  for (bool goes = true; goes; at += search.step) {
+  int last = kWalks == 1 || next.away[kWalks - 1] != kNever ? 0 : -1;  // vertex that says what goes on behind it
+  for (; goes;) {
+    const int i = kWalks == 1 ? 0 : nearest_walk(next);
+    int at = next.at[0];
+    for (int k = 1; k < kWalks; k++) at = k == i ? next.at[k] : at;
+    const bool is_unseen = kUnseen != 0u && i == kWalks - 1;
     const uint marked = mark[at];
     const int to = int(marked >> 16), steps = abs(to - search.from);
     const float stored = vertex[at], z = kCompletes != kCompletesNothing ? abs(stored) : stored;
     const float scale = view.orthographic != 0 ? 1.0 : z;
     const float least = search.least_height + scale * search.least_rise * float(steps);
     const bool begins = (marked & search.begins) != 0u;
-    const Corner corner = corner_at(view, plane, point, search, at, to, z, begins);
-    walk.is_own = begins ? false : walk.is_own;
-    walk.thickness = begins && thickness == 0.0 ? unpack_width(marked) : walk.thickness;
+    // The walk for what is unseen has the same vertex where the run begins or ends there too.
+    const int unseen_at = next.at[kWalks - 1];
+    bool is_twin = kUnseen != 0u && !is_unseen && next.away[kWalks - 1] == steps && next.z[kWalks - 1] == z;
+    is_twin = is_twin && ((mark[is_twin ? unseen_at : at] ^ marked) & (kVertexBegins | kVertexEnds)) == 0u;
+    const bool twin_goes_on = is_twin && vertex[is_twin ? unseen_at : at] < 0.0;
+    const Corner corner = corner_at(view, plane, point, search, twin_goes_on ? unseen_at : at, to, z, begins);
+    if (kWalks == 1) {
+      walk.is_own = begins ? false : walk.is_own;
+      walk.thickness = begins && thickness == 0.0 ? unpack_width(marked) : walk.thickness;
+    } else {
+      is_own = i == slot && begins ? false : is_own;
+      walk.is_own = i == slot && is_own;
+      walk.starts = i == slot && starts;
+      starts = i == slot ? false : starts;
+      come_to(walk, view, plane, point, search, at, corner.place);
+    }
     Stroke stroke = stroke_to(corner.place, walk, begins, steps);
-    if (kCompletes == kCompletesApart)
+    if (kCompletes == kCompletesApart && !is_unseen)
       block(seen, walk, search, clip_to_sphere(stroke, radius_sq, search.unit), false, corner.place, point.eye_distance,
             least, radius_sq);
     // What is seen from the receiver to the first vertex need not be straight with what goes on there: where that is
     // beyond the sphere, only the former matters.
     const bool is_first_beyond = both(walk.starts, dot(corner.place, corner.place) > radius_sq);
-    const bool goes_on = kCompletes != kCompletesNothing && stored < 0.0 && !is_first_beyond;
+    const bool goes_on = kCompletes != kCompletesNothing && (stored < 0.0 || twin_goes_on) && !is_first_beyond &&
+                         !(is_unseen && kUnseen == kUnseenOfFirst);
     if (kCompletes != kCompletesNothing) {
+      // What is seen of them the slots have.
+      if (is_unseen) {
+        stroke = Stroke(corner.place, corner.place);
+        walk.thickness = thickness_at(marked);
+        walk.change = 0.0;
+      }
       const Stroke whole = with_unseen(stroke, begins, corner.unseen);
       stroke.from = goes_on ? whole.from : stroke.from;
       stroke.to = goes_on ? whole.to : stroke.to;
     }
-    block(all, walk, search, clip_to_sphere(stroke, radius_sq, search.unit), goes_on, corner.place, point.eye_distance,
-          least, radius_sq);
-    goes = (marked & search.last) == 0u ? dot(corner.place, search.leaving) < radius : false;
-    walk.last = corner.place;
-    walk.starts = false;
+    for (bool once = goes_on || !is_unseen; once; once = false)
+      block(all, walk, search, clip_to_sphere(stroke, radius_sq, search.unit), goes_on, corner.place,
+            point.eye_distance, least, radius_sq);
+    const bool ends = ends_at(marked, corner, search);
+    if (is_unseen || is_twin) last = unseen_at;
+    if (kWalks == 1) last = at;
+    if (kWalks == 1) {
+      next.at[0] = at + search.step;
+      goes = !ends;
+      walk.last = corner.place;
+      walk.starts = false;
+    } else {
+      go_to(next, search, i, at + search.step, ends);
+      if (is_twin) go_to(next, search, kWalks - 1, unseen_at + search.step, ends_at(mark[unseen_at], corner, search));
+      goes = false;
+      for (int k = 0; k < kWalks; k++) goes = goes || next.away[k] != kNever;
+    }
   }
-  const uint beyond = kCompletes != kCompletesNothing ? vertex_beyond(search, at - search.step) : kNoVertex;
+  const bool looks_beyond = kCompletes != kCompletesNothing && (kSlots == 1u || kUnseen != 0u) && last >= 0;
+  const uint beyond = looks_beyond ? vertex_beyond(view, search, last) : kNoVertex;
   for (bool once = beyond != kNoVertex; once; once = false) {
-    at = row + int(beyond);
+    const int at = (kWalks - 1) * pixels + row + int(beyond);
     const uint marked = mark[at];
     const int to = int(marked >> 16);
     const float z = abs(vertex[at]), scale = view.orthographic != 0 ? 1.0 : z;
     const float least = search.least_height + scale * search.least_rise * float(abs(to - search.from));
     const Corner corner = corner_at(view, plane, point, search, at, to, z, true);
     walk.is_own = false;
-    walk.thickness = thickness == 0.0 ? unpack_width(marked) : thickness;
+    walk.thickness = thickness == 0.0 || kWalks > 1 ? thickness_at(marked) : thickness;
+    walk.change = 0.0;
     const Stroke stroke = with_unseen(Stroke(corner.place, corner.place), true, corner.unseen);
     block(all, walk, search, clip_to_sphere(stroke, radius_sq, search.unit), true, corner.place, point.eye_distance,
           least, radius_sq);
@@ -365,7 +428,7 @@ void main() {
   const float radius = params.radius;
   const float weight = length(point.normal);
   const float facing = max(dot(point.normal, point.eye), kLeastWeight);
-  const uint neighbors = neighbor[row + at.x];
+  const int slot = kSlots > 1u ? int(own[row + at.x]) : 0;
   float blocked = 0.0, whole = 0.0, unseen = 0.0;
   vec2 bent_blocked = vec2(0);  // along the line, and away from the eye
   if (weight >= kLeastWeight) {
@@ -393,10 +456,8 @@ void main() {
       search.begins = sign > 0 ? kVertexBegins : kVertexEnds;
       search.last = sign > 0 ? kVertexLast : kVertexFirst;
       whole += share * weight * whole_arc(side);
-      const uint column = sign > 0 ? neighbors >> 16 : neighbors & kNoVertex;
-      if (column == kNoVertex) continue;
       search.shift = fract(0.5 + kGolden * float(2u * params.direction + uint(sign > 0)));
-      const BlockedArcs arcs = blocked_arcs(view, plane, point, side, search, row, row + int(column));
+      const BlockedArcs arcs = blocked_arcs(view, plane, point, side, search, row, slot);
       blocked += share * weight * arcs.arc;
       unseen += share * weight * arcs.unseen;
       bent_blocked += share * weight * (arcs.bent.x * search.across + arcs.bent.y * point.eye);

@@ -22,13 +22,18 @@ ALCOVE_CONSTANT uint kExactCompleted = 11;
 // in and out: planes x, y, z of the sum of the bent_to() of what is blocked, in view space; after the last slice the
 // mean open direction b as 0.5 + 0.5 b. Only with kExactBentId.
 ALCOVE_CONSTANT uint kExactBent = 12;
+ALCOVE_CONSTANT uint kExactOwn = 13;  // in: from profile; only with kExactSlotsId
 
 // specialization: 1: the pixels of listed tiles take the slice, and no sum is ever completed; see stride, first,
 // is_last
 ALCOVE_CONSTANT uint kExactListedId = 0;
 // specialization: 1: surfaces go on as complete has found; 2: and what they block is told apart
 ALCOVE_CONSTANT uint kExactCompletesId = 1;
-ALCOVE_CONSTANT uint kExactBentId = 2;  // specialization: 1: bent normals too
+ALCOVE_CONSTANT uint kExactBentId = 2;   // specialization: 1: bent normals too
+ALCOVE_CONSTANT uint kExactSlotsId = 3;  // specialization: of the profile, 1 to 1 + kMostHidden of layers.h
+// specialization: behind the slots' planes is one of which only what goes on unseen blocks. 1: of the deepest surfaces;
+// 2: of the first, which go on unseen where they go on in no slot
+ALCOVE_CONSTANT uint kExactUnseenId = 4;
 
 struct ExactParams {
   View view;

@@ -17,12 +17,14 @@ ALCOVE_CONSTANT uint kHorizonSites = 7;       // in: one uint per site, from lis
 ALCOVE_CONSTANT uint kHorizonSiteCounts = 8;  // in: SiteCounts; only if sparse
 // out: one float per pixel, the visibility that completed surfaces took; only with kWithCompleted
 ALCOVE_CONSTANT uint kHorizonCompleted = 6;
+ALCOVE_CONSTANT uint kHorizonHidden = 9;  // in: planes of hidden surfaces, see GBuffer; with more than one surface
 
 ALCOVE_CONSTANT uint kHorizonSlicesId = 0;  // specialization: slices per pixel
 ALCOVE_CONSTANT uint kHorizonStepsId = 1;   // specialization: steps to each side of a slice
 ALCOVE_CONSTANT uint kHorizonModeId = 2;    // specialization: one of kFalloff* of falloff.glsl, and kWith* or not
 ALCOVE_CONSTANT uint kHorizonSparseId = 3;  // specialization: 1: only the sites of the list are estimated
-// specialization: one of kThickness*, of what is not connected to the receiver, and kCompletes* or not
+// specialization: one of kThickness*, of what is not connected to the receiver, kCompletes* or not, and kHiddenSurface
+// times as many surfaces as a pixel may have behind the first
 ALCOVE_CONSTANT uint kHorizonSolidId = 4;
 
 ALCOVE_CONSTANT uint kWithBent = 4;          // a bit beside kFalloff*: bent normals too
@@ -32,6 +34,7 @@ ALCOVE_CONSTANT uint kThicknessLength = 1;   // as HorizonParams says
 ALCOVE_CONSTANT uint kThicknessEndless = 2;  // solid as far as the sphere of the radius
 ALCOVE_CONSTANT uint kCompletesBorder = 4;   // a bit beside them: surfaces go on beyond the image's border
 ALCOVE_CONSTANT uint kCompletesHidden = 8;   // another one: they go on behind what is nearer, if not kThicknessEndless
+ALCOVE_CONSTANT uint kHiddenSurface = 16;
 
 struct HorizonParams {
   View view;

@@ -74,12 +74,11 @@ struct Sample {
   bool above, within;  // clear of the tangent plane; within the radius
 };
 
-Sample sample_at(Receiver r, Side side, Reach reach, float offset) {
-  const vec2 beside = round(side.direction_px * offset);
-  const ivec2 hit = r.pixel + ivec2(beside);
+/// The sample of a surface of depth z at a pixel `beside` the receiver's.
+Sample sample_of(Receiver r, Side side, Reach reach, float offset, vec2 beside, float z) {
   Sample s;
   s.offset = offset;
-  s.z = depth[hit.y * reach.width + hit.x];
+  s.z = z;
   s.scale = r.perspective ? s.z : 1.0;
   s.place = place_of(r, side, beside, s.z, s.scale);
   s.slope = slope_of(s.place);
@@ -87,6 +86,12 @@ Sample sample_at(Receiver r, Side side, Reach reach, float offset) {
   s.above = is_above(r, reach, s.place, s.distance_sq, offset, beside, s.z, s.scale);
   s.within = s.distance_sq < reach.radius_sq;
   return s;
+}
+
+Sample sample_at(Receiver r, Side side, Reach reach, float offset) {
+  const vec2 beside = round(side.direction_px * offset);
+  const ivec2 hit = r.pixel + ivec2(beside);
+  return sample_of(r, side, reach, offset, beside, depth[hit.y * reach.width + hit.x]);
 }
 
 /// The sample before the first one.
@@ -100,9 +105,9 @@ struct Interruptions {
   uint jumps;   // of them those that are not connected to the one before, both above the tangent plane
 };
 
-/// Takes down what a sample begins.
-void take_down(inout Interruptions found, int k, Sample s, Sample last, bool connected, Reach reach) {
-  const bool is_jump = both(both(!connected, last.offset > 0.0), both(s.above, last.above));
+/// Takes down what a sample begins. goes_on: the deeper one of it and the one before goes on where it is hidden.
+void take_down(inout Interruptions found, int k, Sample s, Sample last, bool connected, bool goes_on, Reach reach) {
+  const bool is_jump = both(both(both(!connected, !goes_on), last.offset > 0.0), both(s.above, last.above));
   const bool is_near = (s.z > last.z ? s.distance_sq : last.distance_sq) < kFarEnd * kFarEnd * reach.radius_sq;
   const uint bit = 1u << uint(k & (kWordBits - 1));
   found.starts |= !connected || !s.above ? bit : 0u;

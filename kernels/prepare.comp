@@ -12,6 +12,7 @@
 #include "prepare.h"
 #include "finite.glsl"
 #include "view.glsl"
+#include "depth_terms.glsl"
 #include "normal.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
@@ -29,26 +30,11 @@ layout(scalar, binding = kPrepareMissing) writeonly buffer Missing { GroupCount 
 const float kLeastLength = 1e-6;
 
 /// Planar depth in scene units, kSkyDepth where there is no surface.
-float planar_depth(ivec2 pixel) {
-  const int index = index_of(params.view, pixel);
-  const float raw = raw_depth[index];
-  float z;
-  if (kDepthForm == kDepthPosition) {
-    const int plane = params.view.size.x * params.view.size.y;
-    const vec3 position = vec3(raw, raw_depth[index + plane], raw_depth[index + 2 * plane]);
-    if (position == vec3(0)) return kSkyDepth;
-    z = params.base + dot(params.depth_axis, position);
-  } else {
-    if (!(raw > params.sky_below && raw < params.sky_above)) return kSkyDepth;
-    const float value = params.slope * (raw - params.origin);
-    z = kDepthForm == kDepthReciprocal    ? 1.0 / (params.base + value)
-        : kDepthForm == kDepthExponential ? params.base * (exp(value) - 1.0)
-                                          : params.base + value;
-  }
-  if (!is_finite(z) || !(z > 0.0 && z < params.sky_depth)) return kSkyDepth;
-  const vec2 t = tangent_of(params.view, vec2(pixel) + 0.5);
-  if (params.along_ray != 0) z *= inversesqrt(1.0 + dot(t, t));
-  return z < kSkyDepth ? z : kSkyDepth;
+float depth_at(ivec2 pixel) {
+  const int index = index_of(params.view, pixel), plane = params.view.size.x * params.view.size.y;
+  vec3 raw = vec3(raw_depth[index], 0, 0);
+  if (kDepthForm == kDepthPosition) raw.yz = vec2(raw_depth[index + plane], raw_depth[index + 2 * plane]);
+  return planar_depth(kDepthForm, params.depth, params.view, pixel, raw);
 }
 
 /// The file's normal as a vector, in its own space and of any length; zero where it is none.
@@ -72,12 +58,12 @@ void main() {
   if (!inside(params.view, pixel)) return;
   const int index = index_of(params.view, pixel);
 
-  const float z = planar_depth(pixel);
+  const float z = depth_at(pixel);
   depth[index] = z;
   if (z >= kSkyDepth) {
     normal[index] = pack_normal(vec3(0, 0, 1));
     atomicAdd(counts.sky, 1u);
-    if (is_nan(raw_depth[index]) || raw_depth[index] < params.sky_below) atomicAdd(counts.repaired_depth, 1u);
+    if (is_nan(raw_depth[index]) || raw_depth[index] < params.depth.sky_below) atomicAdd(counts.repaired_depth, 1u);
     return;
   }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #ifndef ALCOVE_PREPARE_H
 #define ALCOVE_PREPARE_H
+#include "depth_terms.h"
 #include "shared.h"
 ALCOVE_BEGIN
 
@@ -13,12 +14,6 @@ ALCOVE_CONSTANT uint kPrepareDepth = 2;  // out: one float per pixel, planar z >
 ALCOVE_CONSTANT uint kPrepareNormal = 3;
 ALCOVE_CONSTANT uint kPrepareCounts = 4;   // out: FrameCounts, zeroed before
 ALCOVE_CONSTANT uint kPrepareMissing = 5;  // out: GroupCount of reconstruct: z becomes 1 where a normal is missing
-
-ALCOVE_CONSTANT uint kDepthLinear = 0;  // z = base + slope * (raw - origin)
-// z = 1 / (base + slope * (raw - origin)): 1/z, and the z-buffer of any perspective projection
-ALCOVE_CONSTANT uint kDepthReciprocal = 1;
-ALCOVE_CONSTANT uint kDepthExponential = 2;  // z = base * (exp(slope * (raw - origin)) - 1)
-ALCOVE_CONSTANT uint kDepthPosition = 3;     // z = base + dot(axis, position); (0, 0, 0) is sky
 
 ALCOVE_CONSTANT uint kNormalNone = 0;        // all are reconstructed from depth
 ALCOVE_CONSTANT uint kNormalVector = 1;      // x, y, z of any length
@@ -36,13 +31,8 @@ struct PrepareParams {
   vec3 view_from_normal_x;  // rows of the rotation from the normals' space to view space
   vec3 view_from_normal_y;
   vec3 view_from_normal_z;
-  vec3 depth_axis;            // scene units per unit of the file, of kDepthPosition
-  uint along_ray;             // 0 or 1: what the form gives is the distance to the eye
-  float origin, base, slope;  // see the forms; z in scene units
-  float sky_below;            // raw depth at or below it is sky
-  float sky_above;            // raw depth at or above it is sky
-  float sky_depth;            // a distance at or beyond it is sky, scene units
-  uint normal_unorm;          // 0 or 1: the file holds 0.5 + 0.5 n
+  DepthTerms depth;
+  uint normal_unorm;  // 0 or 1: the file holds 0.5 + 0.5 n
 };
 ALCOVE_PARAMS(PrepareParams)
 

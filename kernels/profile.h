@@ -5,7 +5,8 @@
 #include "shared.h"
 ALCOVE_BEGIN
 
-ALCOVE_CONSTANT uint kProfileDepth = 0;   // in: one float per pixel, from prepare
+ALCOVE_CONSTANT uint kProfileDepth = 0;  // in: one float per pixel, from prepare
+// What comes out has a plane of the image's size for each slot.
 ALCOVE_CONSTANT uint kProfileVertex = 1;  // out: one float per vertex, its planar depth
 // out: one uint per vertex: its step in the high half, its run's thickness (pack_width()) and kVertex* in the low; 0
 // for a line that shows no surface
@@ -13,7 +14,14 @@ ALCOVE_CONSTANT uint kProfileMark = 2;
 // out: one uint per step: the columns of the vertices before (low half) and after it; kNoVertex: none
 ALCOVE_CONSTANT uint kProfileNeighbor = 3;
 
+ALCOVE_CONSTANT uint kProfileHidden = 4;  // in: planes of floats, see GBuffer::hidden; only with several surfaces
+// out: one uint per step, the slot of its first surface; only with several slots
+ALCOVE_CONSTANT uint kProfileOwn = 5;
+
 ALCOVE_CONSTANT uint kProfileEveryPixelId = 0;  // specialization: 1: every pixel is a vertex
+ALCOVE_CONSTANT uint kProfileSurfacesId = 1;    // specialization: of a pixel, 1 to 1 + kMostHidden of layers.h
+// specialization: as many as surfaces; or 1 for the first surface of each pixel, 0 for the deepest
+ALCOVE_CONSTANT uint kProfileSlotsId = 2;
 
 ALCOVE_CONSTANT uint kProfileGroup = 32;  // lines of a workgroup
 // px: a run has a vertex at every multiple along the line, so that a crop has those of the whole; a power of 2
@@ -24,6 +32,7 @@ ALCOVE_CONSTANT uint kVertexEnds = 2;
 ALCOVE_CONSTANT uint kVertexLast = 4;  // of the line
 ALCOVE_CONSTANT uint kVertexFirst = 8;
 ALCOVE_CONSTANT uint kVertexFlags = 15;
+ALCOVE_CONSTANT uint kVertexThickness = 0xfff0;
 ALCOVE_CONSTANT uint kNoVertex = 0xffff;
 
 ALCOVE_CONSTANT int kSlopeBits = 14;  // so that products with 100,000 pixels are no larger than an int
@@ -46,6 +55,7 @@ struct ProfileParams {
   // A run's thickness is its width times the first and so many widths of its pixels.
   float depth_per_width, more_pixels;
   float least_at_border;  // scene units: a run that the image's border cuts is taken to be at least so thick
+  uint slot;              // planes of what comes out before that of the first slot
 };
 ALCOVE_PARAMS(ProfileParams)
 

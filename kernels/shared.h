@@ -97,6 +97,7 @@ struct TileBounds {
   // neighbours (tiles.glsl), and level
   float plane[kTilePlanes];
   float farthest;         // least nearness; above the level plane where the tile is all sky
+  float last;             // the same, of hidden surfaces too
   uint mixed;             // 1: its surfaces leave the plane with its own gradient, so that another one may be lower
   uint normal;            // of its receivers, packed; kNoNormal: they have none in common
   float turned;           // length of the largest difference between a receiver's normal and it
@@ -107,7 +108,7 @@ struct TileBounds {
 struct GroupBounds {
   vec2 gradient;       // nearness per pixel
   float plane, level;  // nearness at the group's centre of planes that no surface is before: with that gradient, level
-  float farthest;      // as of a tile
+  float last;          // as of a tile
 };
 
 /// A tile that is to be estimated.

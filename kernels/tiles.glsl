@@ -53,6 +53,13 @@ ivec2 pixel_of_anchored_tile(ivec2 tile, uint pixel, ivec2 origin) {
   return pixel_of_tile(tile, pixel) - (origin & (kTile - 1));
 }
 
+/// The number of an invocation, of a dispatch with one for each tile. The invocations of a row of workgroups are
+/// counted from the grid of tiles, since gl_NumWorkGroups counts those of one slice only.
+uint invocation_of_tile(ivec2 tiles, uvec2 invocation) {
+  const uint row = (uint(tiles.x) + kGroupX - 1u) / kGroupX * kGroupX;
+  return invocation.y * row + invocation.x;
+}
+
 /// What the estimators store of a mean open direction. It lies in [0, 1], so that filters of visibility take it as it
 /// is.
 vec3 stored_bent(vec3 bent) { return 0.5 + 0.5 * bent; }

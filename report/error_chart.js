@@ -50,6 +50,37 @@ function log_label(value, index, ticks) {
   return shown ? String(Number(value.toPrecision(3))) : '';
 }
 
+const kLabelLength = 32;  // Characters of a name beside its point.
+
+/// Names the points where there is room: those on the front first, each beside the line, which comes from above and goes to the right.
+const name_points = {
+  id: 'name_points',
+  afterDatasetsDraw(chart) {
+    const { ctx, chartArea: area } = chart;
+    const points = [1, 2].flatMap((set) => chart.getDatasetMeta(set).data.map((point, index) => ({ x: point.x, y: point.y, name: chart.data.datasets[set].data[index].row.name })));
+    const taken = points.map(({ x, y }) => ({ left: x - 7, right: x + 7, top: y - 7, bottom: y + 7 }));
+    const is_free = (box) => box.left >= area.left && box.right <= area.right && box.top >= area.top && box.bottom <= area.bottom
+      && taken.every((other) => box.right <= other.left || box.left >= other.right || box.bottom <= other.top || box.top >= other.bottom);
+    chart.named = [];
+    ctx.save();
+    ctx.font = `12px ${Chart.defaults.font.family}`;
+    ctx.fillStyle = getComputedStyle(document.body).color;
+    ctx.textBaseline = 'middle';
+    for (const { x, y, name } of points) {
+      const text = name.length > kLabelLength ? `${name.slice(0, kLabelLength - 1)}…` : name;
+      const width = ctx.measureText(text).width;
+      const places = [[x + 7, y + 13], [x - 11 - width, y], [x - 7 - width, y + 13], [x + 7, y - 13], [x - 7 - width, y - 13], [x + 11, y]];
+      const boxes = places.map(([left, middle]) => ({ left, right: left + width, top: middle - 7, bottom: middle + 7 }));
+      const box = boxes.find(is_free);
+      if (!box) continue;
+      taken.push(box);
+      chart.named.push(name);
+      ctx.fillText(text, box.left, (box.top + box.bottom) / 2);
+    }
+    ctx.restore();
+  },
+};
+
 function chart_options() {
   const axis = (text) => ({ title: { display: true, text }, border: {}, grid: {}, ticks: {} });
   return {
@@ -139,6 +170,7 @@ function start_chart() {
       ],
     },
     options: chart_options(),
+    plugins: [name_points],
   });
   colour_chart(chart);
   fill_chart(chart);

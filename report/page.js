@@ -24,6 +24,7 @@ const kColumns = {
   psnr: { heading: 'PSNR', hint: 'peak signal to noise ratio in dB' },
   estimator_rmse: { heading: 'estimator RMSE', hint: 'error against an exact search of the same depth buffer: what sampling costs', decimals: 4 },
   geometry_rmse: { heading: 'geometry RMSE', hint: 'error of that exact search against the truth: what a depth buffer cannot see', decimals: 4 },
+  flicker: { heading: 'flicker', hint: 'RMS of the change of the error on a surface from a frame to the next', decimals: 4 },
   samples_per_pixel: { heading: 'samples/px', hint: 'depth samples a pixel' },
 };
 
@@ -73,13 +74,20 @@ function numbers_of(row) {
   return keys.map((key) => [kColumns[key]?.heading ?? key, number_text(key, row[key])]);
 }
 
+/// [name, text] of what is known of a sequence as a whole.
+function sequence_facts({ worst_frame, worst_rmse, mean_rmse, flicker }) {
+  const flickers = Number.isFinite(flicker) ? number_text('flicker', flicker) : 'not measured: no two frames follow each other';
+  return [['Worst frame', `${worst_frame}, RMSE ${number_text('rmse', worst_rmse)}`], ['Mean RMSE', number_text('rmse', mean_rmse)], ['Flicker', flickers]];
+}
+
 function start_header() {
   document.title = `${report.title} – Alcove`;
   document.getElementById('title').textContent = report.title;
   document.getElementById('kind').textContent = `Alcove ${report.kind}`;
   const facts = [['Device', report.device], ['Yardstick', report.yardstick_ms && `${number_text('ms', report.yardstick_ms)} ms`],
     ['Frames', frames.length], ['Candidates', report.candidates.length]];
-  if (report.candidates.length === 1) facts[3] = ['Settings', report.candidates[0].settings];
+  if (report.candidates.length === 1) facts[3] = [report.kind === 'compare' ? 'Compared' : 'Settings', report.candidates[0].settings];
+  if (report.sequence) facts.push(...sequence_facts(report.sequence));
   for (const [name, value] of facts) {
     if (value) document.getElementById('facts').append(make('div', {}, make('dt', {}, name), make('dd', {}, String(value))));
   }

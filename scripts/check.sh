@@ -15,7 +15,7 @@ tests=({text,new_file,memory_limit}_test
        {camera,header_camera,gbuffer,parts,evidence,inputs,readings,sources}_test
        {refusals,region,compare,inspect,options}_test
        {gpu,property,bounds,confidence,tolerance,real_frame}_test
-       {exr,dds,camera,frames,toml,preset,inspect}_fuzz)
+       {exr,deep,dds,camera,frames,toml,preset,inspect}_fuzz)
 if [ "${1:-}" = all ]; then
   readers=(core/*/*.cpp cli/*.cpp)
   tests=(all)

@@ -85,6 +85,22 @@ void require_writable(const std::string& path, const char* option) {
     fail(ErrorKind::output, "{}: is no regular file; {} names the file to write", path, option);
 }
 
+void require_makeable(const std::string& path, const char* option) {
+  std::error_code error;
+  std::string first = path;  // that is missing of the folders, or the file itself
+  while (fs::status(folder_of(first), error).type() == fs::file_type::not_found && folder_of(first) != first)
+    first = folder_of(first);
+  require_writable(first, option);
+}
+
+void make_folder_of(const std::string& path, const char* option) {
+  std::error_code error;
+  fs::create_directories(folder_of(path), error);
+  if (error)
+    fail(ErrorKind::output, "{}: its folder {} cannot be made: {} ({})", path, folder_of(path), error.message(),
+         option);
+}
+
 bool same_file(const std::string& a, const std::string& b) {
   std::error_code error;
   if (fs::equivalent(a, b, error)) return true;
@@ -157,6 +173,13 @@ int remove_unfinished(const std::string& folder) {
 std::string folder_of(const std::string& path) {
   const fs::path folder = fs::path(path).parent_path();
   return folder.empty() ? "." : folder.string();
+}
+
+std::string existing_folder_of(const std::string& path) {
+  std::string folder = folder_of(path);
+  std::error_code error;
+  while (folder != "." && folder != "/" && !fs::is_directory(folder, error)) folder = folder_of(folder);
+  return folder;
 }
 
 }  // namespace alcove

@@ -25,6 +25,12 @@ std::string read_text(const std::string& path, const char* what, const char* opt
 /// a regular file stands there. Called before any work, so that a long job does not fail at its end.
 void require_writable(const std::string& path, const char* option);
 
+/// Does the same for a file whose folders may be missing: they can be made.
+void require_makeable(const std::string& path, const char* option);
+
+/// Makes the folders that a file lies in, where they are missing. Fails with ErrorKind::output.
+void make_folder_of(const std::string& path, const char* option);
+
 /// Whether two names are, or would be, one file, whatever dots and links are in them.
 bool same_file(const std::string& a, const std::string& b);
 
@@ -49,6 +55,8 @@ class NewFile {
   /// symbolic link at `path` is replaced and what it names stays as it was, so that nobody who can write into a folder
   /// sends what is written there elsewhere; links among the folders of the path are followed.
   void commit();
+  /// The name that it has until then.
+  const std::string& temporary() const { return temporary_; }
 
  private:
   [[noreturn]] void give_up(const char* what, const std::error_code& error) const;
@@ -67,5 +75,7 @@ int remove_unfinished(const std::string& folder);
 
 /// The folder that a file lies in.
 std::string folder_of(const std::string& path);
+/// The same, or where it is not there yet the folder that it will be made in.
+std::string existing_folder_of(const std::string& path);
 
 }  // namespace alcove

@@ -20,6 +20,20 @@ inline const std::map<std::string, DepthKind>& names_of() {
   return names;
 }
 template <>
+inline const std::map<std::string, BehindKind>& names_of() {
+  static const std::map<std::string, BehindKind> names = {{"surfaces", BehindKind::surfaces},
+                                                          {"fronts", BehindKind::fronts},
+                                                          {"backs", BehindKind::backs},
+                                                          {"thickness", BehindKind::thickness}};
+  return names;
+}
+template <>
+inline const std::map<std::string, MotionKind>& names_of() {
+  static const std::map<std::string, MotionKind> names = {
+      {"auto", MotionKind::automatic}, {"previous", MotionKind::previous}, {"next", MotionKind::next}};
+  return names;
+}
+template <>
 inline const std::map<std::string, DeviceRange>& names_of() {
   static const std::map<std::string, DeviceRange> names = {{"0..1", DeviceRange::zero_to_one},
                                                            {"-1..1", DeviceRange::minus_one_to_one}};

@@ -2,11 +2,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
+#include <string>
 
 namespace alcove {
 
+// what a file of --behind holds: the depth of surfaces of which nothing more is known; of those seen from outside, as
+// culled peels and other elements are; of those seen from inside, which close the solid before them; or how far the
+// first surface's solid goes on along the depth
+enum class BehindKind { surfaces, fronts, backs, thickness };
+// what motion vectors point to: the place in the frame before, or in the next one
+enum class MotionKind { automatic, previous, next };
 enum class DepthKind { automatic, planar, ray, inverse, device, normalized, log, position };
 // of device depth between the near and the far plane: Vulkan, Direct3D; OpenGL
 enum class DeviceRange { zero_to_one, minus_one_to_one };
@@ -52,6 +60,10 @@ struct DepthRange {
 struct NormalFlips {
   bool x = false, y = false, z = false;
 };
+
+/// Files of one option, each with a place of its own; "" where there is none.
+constexpr std::size_t kMostBehind = 8;
+using FileList = std::array<std::string, kMostBehind>;
 
 /// Pixels, counted from the display window's upper left corner.
 struct Region {

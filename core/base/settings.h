@@ -20,6 +20,8 @@ struct FrameSettings {
   int chunk = 1, chunks = 1;
   Missing missing = Missing::error;
   bool keep_going = false;  // a frame that fails does not end the run
+  // a frame with a warning (core/base/note.h) fails before anything of it is written
+  bool warnings_as_errors = false;
   // compute only frames whose outputs are missing, broken, older than their inputs, or made with other options
   bool resume = false;
   bool overwrite = false;  // compute all of them whatever `resume` says
@@ -40,9 +42,23 @@ struct InputSettings {
   // the diffuse colour for multi-bounce: a file; empty: the beauty's. Three names, or a layer; empty: found
   std::string albedo, albedo_channels;
   std::optional<double> albedo_value;  // instead: one for all surfaces, 0 to 1
-  std::string layer;                   // look only at channels of this layer or part
-  std::string view;                    // of a stereo file; empty: its default
-  std::optional<Region> roi;           // compute and write no more than this; none: the data window
+  // what lies behind the first surface, or before it as seen from there: files of depth, in any order
+  FileList behind;
+  // their depth channels, full names, and what they hold: none, one for all, or one for each
+  std::vector<std::string> behind_channels;
+  std::vector<BehindKind> behind_kinds;
+  std::string deep;           // a deep EXR file of the frame
+  double deep_opacity = 0.5;  // of a sample, from which it is a surface, 0 to 1
+  bool other_views = false;   // of a stereo file: what its other views see counts too
+  // frames to each side, 0 to 32, whose static surfaces count where they are hidden in this one
+  int around = 0;
+  bool around_all = false;  // instead: all frames of the shot
+  // motion vectors, which tell what moves: a file, two channels, and what they point to
+  std::string motion, motion_channels;
+  MotionKind motion_kind = MotionKind::automatic;
+  std::string layer;          // look only at channels of this layer or part
+  std::string view;           // of a stereo file; empty: its default
+  std::optional<Region> roi;  // compute and write no more than this; none: the data window
   // the program that wrote the frame, of presets/input; auto: by its header and channels
   std::string source = "auto";
   DepthKind depth_kind = DepthKind::automatic;  // automatic: what the camera file says, else planar
@@ -56,7 +72,7 @@ struct InputSettings {
   NormalFlips flip_normal;  // in the normals' own space, before anything else
   // automatic: the one whose points lie on the rays of their pixels
   PositionSpace position_space = PositionSpace::automatic;
-  bool strict = false;                    // what only a guess could decide is an error
+  bool strict = false;                    // what only a guess could decide is an error, and so is a warning
   std::string camera;                     // a camera JSON file
   std::optional<double> fov;              // horizontal, degrees, 0 to 180 exclusive
   std::optional<double> focal, aperture;  // mm, > 0: focal length and width of the film back
@@ -67,6 +83,7 @@ struct InputSettings {
 struct EstimatorSettings {
   Estimator estimator = Estimator::gtao;
   std::optional<double> radius;  // scene units, > 0; no default, since no number fits all scenes
+  bool radius_auto = false;      // instead: as core/frame/radius.h proposes
   // scene units, > 0: more scales. The AO is the mean of all: that is AO itself, with a falloff that drops by a step at
   // each radius
   std::vector<double> further_radii;
@@ -99,6 +116,9 @@ struct EstimatorSettings {
   // rendered scenes the AO came nearer to ray tracing by it. none: nowhere, so that only what is seen
   // blocks; border: beyond the picture's border; all: also behind what is nearer to the eye.
   Completion complete = Completion::all;
+  int hidden = 3;  // surfaces kept behind the first of a pixel, 0 to 3, where the frame has any
+  // scene units: surfaces closer than it are one; none: by the depth's precision and a pixel's slope
+  std::optional<double> separation;
   Resolution resolution = Resolution::full;
   // one pixel of so many has an estimate, 1, 2, 4, 8 or 16, and gives it to the others in the bilateral denoiser; with
   // Density::adaptive so many at least; 0: see spacing_of
@@ -150,6 +170,7 @@ struct OutputSettings {
   std::string compression = "zip";           // of the AO file: none, rle, zips, zip or piz
   std::string ocio;                          // an OpenColorIO configuration for the preview
   std::string stats;                         // a JSON file
+  bool no_mkdir = false;                     // a folder that is missing is an error, and is not made
   // a file of JSON objects, one per line, or - for the standard output; whoever watches the run writes it
   std::string log_json;
 };
@@ -162,8 +183,8 @@ struct DeviceSettings {
   bool no_pipeline_cache = false;
   int threads = 0;           // of the CPU device and of the codecs; 0: one per core
   std::uint64_t memory = 0;  // bytes that the process may take; 0: half of what is free
-  // bytes that frames get however little `memory` is; no option: tests lower it to cut small frames into tiles
-  std::uint64_t least_memory = 16ull << 20;
+  // bytes that frames get however little `memory` is; no option: tests cut small frames into tiles by it
+  std::uint64_t least_memory = 0;
 };
 
 struct Settings {

@@ -4,6 +4,9 @@
 
 #include <dlfcn.h>
 #include <fcntl.h>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 #include <sys/file.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
@@ -17,6 +20,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <memory>
 #include <thread>
 #include <utility>
@@ -49,6 +53,18 @@ bool lock(int descriptor, bool waits) {
   return true;
 }
 
+std::error_code write_bytes_at(int descriptor, std::uint64_t offset, std::span<const char> bytes) {
+  while (!bytes.empty()) {
+    const ssize_t written = ::pwrite(descriptor, bytes.data(), bytes.size(), off_t(offset));
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) return last_error();
+    if (written == 0) return std::make_error_code(std::errc::no_space_on_device);
+    bytes = bytes.subspan(std::size_t(written));
+    offset += std::uint64_t(written);
+  }
+  return {};
+}
+
 /// Whether a file system merely does not know the call.
 bool is_unsupported(int error) { return error == EINVAL || error == ENOSYS || error == ENOTSUP || error == EROFS; }
 
@@ -64,6 +80,21 @@ std::string program_folder() {
 int core_count() { return int(std::max(1u, std::thread::hardware_concurrency())); }
 
 std::uint64_t peak_memory_bytes() { return std::uint64_t(usage_of_process().ru_maxrss) << 10; }
+
+std::uint64_t resident_memory_bytes() {
+  std::uint64_t whole = 0, resident = 0;  // pages
+  std::ifstream("/proc/self/statm") >> whole >> resident;
+  return resident * std::uint64_t(::sysconf(_SC_PAGESIZE));
+}
+
+void keep_no_spare_memory() {
+#ifdef __GLIBC__
+  constexpr int kLarge = 1 << 20;  // bytes
+  ::mallopt(M_MMAP_THRESHOLD, kLarge);
+  ::mallopt(M_TRIM_THRESHOLD, kLarge);
+  ::mallopt(M_ARENA_MAX, 2);
+#endif
+}
 
 double cpu_seconds() {
   const auto seconds = [](const timeval& time) { return double(time.tv_sec) + 1e-6 * double(time.tv_usec); };
@@ -155,15 +186,7 @@ bool LockedFile::is_removed() const {
 }
 
 std::error_code LockedFile::write_at(std::uint64_t offset, std::span<const char> bytes) {
-  while (!bytes.empty()) {
-    const ssize_t written = ::pwrite(descriptor_, bytes.data(), bytes.size(), off_t(offset));
-    if (written < 0 && errno == EINTR) continue;
-    if (written < 0) return last_error();
-    if (written == 0) return std::make_error_code(std::errc::no_space_on_device);
-    bytes = bytes.subspan(std::size_t(written));
-    offset += std::uint64_t(written);
-  }
-  return {};
+  return write_bytes_at(descriptor_, offset, bytes);
 }
 
 void LockedFile::take_after(const std::string& path) {
@@ -194,6 +217,37 @@ std::error_code LockedFile::sync() {
 
 void LockedFile::close() {
   if (descriptor_ >= 0) ::close(std::exchange(descriptor_, -1));
+}
+
+ScratchFile::~ScratchFile() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+std::error_code ScratchFile::make(const std::string& folder) {
+  descriptor_ = ::open(folder.c_str(), O_RDWR | O_TMPFILE | O_CLOEXEC, 0600);
+  if (descriptor_ >= 0) return {};
+  // File systems of networks know no files without names: there the name is taken away again.
+  std::string path = folder + "/.alcove-XXXXXX";
+  descriptor_ = ::mkostemp(path.data(), O_CLOEXEC);
+  if (descriptor_ < 0) return last_error();
+  ::unlink(path.c_str());
+  return {};
+}
+
+std::error_code ScratchFile::write_at(std::uint64_t offset, std::span<const char> bytes) {
+  return write_bytes_at(descriptor_, offset, bytes);
+}
+
+std::error_code ScratchFile::read_at(std::uint64_t offset, std::span<char> bytes) const {
+  while (!bytes.empty()) {
+    const ssize_t read = ::pread(descriptor_, bytes.data(), bytes.size(), off_t(offset));
+    if (read < 0 && errno == EINTR) continue;
+    if (read < 0) return last_error();
+    if (read == 0) return std::make_error_code(std::errc::io_error);
+    bytes = bytes.subspan(std::size_t(read));
+    offset += std::uint64_t(read);
+  }
+  return {};
 }
 
 }  // namespace alcove

@@ -23,6 +23,13 @@ int core_count();
 /// The most memory that the process has had so far, in bytes.
 std::uint64_t peak_memory_bytes();
 
+/// The memory that the process has now, in bytes.
+std::uint64_t resident_memory_bytes();
+
+/// From now on memory that is given back goes to the system at once where it is more than a little, and threads share
+/// it, so that the process does not keep what it no longer uses.
+void keep_no_spare_memory();
+
 /// The time that all threads of the process have computed so far, in seconds.
 double cpu_seconds();
 
@@ -90,6 +97,23 @@ class LockedFile {
  private:
   int descriptor_ = -1;
   bool is_locked_ = false;
+};
+
+/// A file without a name, for what memory has no room for: it is gone once it is closed, however its process ends.
+class ScratchFile {
+ public:
+  ScratchFile() = default;
+  ScratchFile(const ScratchFile&) = delete;
+  ScratchFile& operator=(const ScratchFile&) = delete;
+  ~ScratchFile();
+
+  std::error_code make(const std::string& folder);
+  bool is_open() const { return descriptor_ >= 0; }
+  std::error_code write_at(std::uint64_t offset, std::span<const char> bytes);
+  std::error_code read_at(std::uint64_t offset, std::span<char> bytes) const;
+
+ private:
+  int descriptor_ = -1;
 };
 
 }  // namespace alcove

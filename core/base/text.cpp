@@ -107,6 +107,12 @@ std::string list_of(std::span<const std::string> names, std::size_t most) {
   return text;
 }
 
+std::string linked(std::span<const std::string> words, const char* link) {
+  if (words.size() < 2) return words.empty() ? "" : words.front();
+  const auto most = words.first(words.size() - 1);
+  return fmt::format("{} {} {}", fmt::join(most, ", "), link, words.back());
+}
+
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   const std::string from = lower_case(a), to = lower_case(b);
   std::vector<std::size_t> row(to.size() + 1);
@@ -161,6 +167,14 @@ std::vector<std::string> nearest_names(std::string_view name, std::span<const st
 std::string suggestion(std::string_view name, std::span<const std::string> candidates) {
   const auto names = nearest_names(name, candidates);
   return names.empty() ? std::string() : fmt::format(" (did you mean {}?)", fmt::join(names, " or "));
+}
+
+std::string for_shell(const std::string& word) {
+  constexpr std::string_view kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./%-+=,:";
+  if (word.find_first_not_of(kPlain) == word.npos && !word.empty()) return word;
+  std::string text = "'";
+  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return text + "'";
 }
 
 }  // namespace alcove

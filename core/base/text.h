@@ -17,6 +17,9 @@ std::vector<std::string> split(const std::string& text);
 /// Gives "a, b, c": at most `most` names, then "and N more"; "nothing" if there are none.
 std::string list_of(std::span<const std::string> names, std::size_t most = 24);
 
+/// Gives "a", "a or b", "a, b or c", with the link between the last two.
+std::string linked(std::span<const std::string> words, const char* link);
+
 /// Counts the insertions, deletions and replacements that turn one text into the other. Case is ignored.
 std::size_t edit_distance(std::string_view a, std::string_view b);
 
@@ -31,6 +34,9 @@ std::string as_utf8(std::string_view text);
 /// The same for a terminal: each control character also becomes ?, since names in files may hold what a terminal would
 /// obey, and so does each character that turns the direction of writing.
 std::string printable(std::string_view text);
+
+/// A word as a shell takes it: quoted where it must be.
+std::string for_shell(const std::string& word);
 
 /// Gives " (did you mean a or b?)" to be put behind a message, or an empty text if no candidate is near.
 std::string suggestion(std::string_view name, std::span<const std::string> candidates);

@@ -297,7 +297,7 @@ class Bench {
     return std::sqrt(sum);
   }
 
-  std::vector<std::string> notes(const Trial& trial) {
+  Notes notes(const Trial& trial) {
     DepthSample sample;
     const FrameInputs inputs = upload(gpu_, trial.tried);
     sample.add(inputs.view, inputs.depth_map, inputs.depth_precision, inputs[RawPlane::depth]->as<float>());

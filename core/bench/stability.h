@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/note.h"
 #include "core/gpu/pass_time.h"
 
 namespace alcove {
@@ -20,7 +21,7 @@ constexpr double kBreakdown = 0.05;
 
 struct StabilityPoint {
   double at = 0;
-  std::vector<std::string> notes = {};  // what `alcove run` says of this frame and radius
+  Notes notes = {};  // what `alcove run` says of this frame and radius
 };
 
 /// An estimator along an axis.

@@ -86,7 +86,7 @@ struct Drawing {
       if (!point.notes.empty())
         out += fmt::format(
             "<rect class=\"said\" x=\"{:.1f}\" y=\"{}\" width=\"8\" height=\"{}\"><title>{}</title></rect>", x(i) - 4,
-            kTop, kHeight - kTop - kBottom, escaped(fmt::format("{}", fmt::join(point.notes, "; "))));
+            kTop, kHeight - kTop - kBottom, escaped(fmt::format("{}", fmt::join(texts_of(point.notes), "; "))));
       if (x(i) - last < kLabelWidth) continue;
       last = x(i);
       out +=
@@ -172,7 +172,7 @@ std::string stability_json(const StabilityReport& report) {
     plain.push_back({{"estimator", estimator}, {"rmse", number(rmse)}});
   for (const auto& axis : report.axes) {
     Json points = Json::array(), curves = Json::array();
-    for (const auto& point : axis.points) points.push_back({{"at", point.at}, {"notes", point.notes}});
+    for (const auto& point : axis.points) points.push_back({{"at", point.at}, {"notes", texts_of(point.notes)}});
     for (const auto& curve : axis.curves) {
       Json rmse = Json::array(), breaks = Json::array();
       for (const double value : curve.rmse) rmse.push_back(number(value));

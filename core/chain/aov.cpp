@@ -40,9 +40,19 @@ std::vector<Aov> aovs_of(const OutputSettings& settings) {
   return aovs;
 }
 
+std::size_t planes_of(const Aov& aov, const EstimatorSettings& settings) {
+  if (aov.planes == &FrameOutputs::scales) return 1 + settings.further_radii.size();
+  return aov.planes == &FrameOutputs::hidden ? 2 * std::size_t(settings.hidden) : aov.channels.size();
+}
+
 std::vector<std::string> channels_of(const Aov& aov, std::size_t planes) {
-  if (aov.planes != &FrameOutputs::scales) return aov.channels;
   std::vector<std::string> channels;
+  if (aov.planes == &FrameOutputs::hidden) {
+    for (std::size_t i = 1; i <= planes / 2; i++)
+      channels.insert(channels.end(), {fmt::format("hidden{}.Z", i), fmt::format("hidden{}.back", i)});
+    return channels;
+  }
+  if (aov.planes != &FrameOutputs::scales) return aov.channels;
   for (std::size_t i = 1; i <= planes; i++) channels.push_back(fmt::format("scale{}.Y", i));
   return channels;
 }

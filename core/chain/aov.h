@@ -25,7 +25,9 @@ std::vector<std::string> aov_names();
 /// the table, listing the names that are.
 std::vector<Aov> aovs_of(const OutputSettings& settings);
 
-/// The channels of an AOV that has so many planes: ao-scales has one for each radius, scale1.Y of the smallest.
+/// How many planes of values an AOV has: ao-scales one for each radius, hidden two for each surface that is kept.
+std::size_t planes_of(const Aov& aov, const EstimatorSettings& settings);
+/// The channels of an AOV that has so many planes: scale1.Y of the smallest radius, hidden1.Z of the nearest surface.
 std::vector<std::string> channels_of(const Aov& aov, std::size_t planes);
 
 /// Whether an AOV that the settings ask for lies in these planes.

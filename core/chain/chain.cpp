@@ -6,15 +6,18 @@
 #include "core/chain/completion.h"
 #include "core/chain/confidence.h"
 #include "core/chain/debug.h"
+#include "core/chain/hidden.h"
+#include "core/chain/margin.h"
 #include "core/chain/open_sky.h"
 #include "core/chain/shading.h"
+#include "core/chain/warp.h"
 
 namespace alcove {
 namespace {
 
 void download(gpu::Recorder& gpu, const FrameOutputs& out) {
-  for (const auto* result :
-       {out.counts, out.tiles, out.sites, out.squares, out.completion, out.color_ao, out.composite})
+  for (const auto* result : {out.counts, out.layer_counts, out.view_counts, out.tiles, out.sites, out.squares,
+                             out.completion, out.color_ao, out.composite})
     if (result) gpu.download(*result);
   for (const auto& row : kAovs)
     if (out.*row.planes) gpu.download(*(out.*row.planes));
@@ -28,26 +31,33 @@ FrameOutputs run_chain(gpu::Recorder& gpu, const FrameInputs& frame, const Estim
   if (is_open_sky(frame, settings, wanted)) return open_sky(gpu, frame, settings);
   upload(gpu, frame);
 
+  const Layering layering = layering_of(settings);
+  const FrameInputs inputs = with_margin(frame);
   const GBuffer prepared = prepare(gpu, frame);
-  const GBuffer gbuffer = reconstruct(gpu, prepared);
+  const GBuffer warped = warp(gpu, prepared, frame, layering);
+  const GBuffer layered = layers(gpu, warped, frame, layering);
+  const GBuffer wide = reconstruct(gpu, layered);
+  const GBuffer gbuffer = cut(gpu, frame, wide, prepared);
   FrameOutputs out;
   out.counts = gbuffer.counts;
+  out.layer_counts = gbuffer.layer_counts;
+  out.view_counts = wide.view_counts;
   Visibility visibility;
   const gpu::Buffer* open_directions = gbuffer.normal;
   DebugStages stages;
   if (wanted.visibility || frame[RawPlane::beauty]) {
-    const GBuffer work = downsample(gpu, gbuffer, block_grid(frame, int(settings.resolution)));
+    const GBuffer work = downsample(gpu, wide, block_grid(inputs, int(settings.resolution)));
     const bool with_completed = wanted.completed && completes_anywhere(settings);
     const Sites chosen = sites(gpu, work, site_rule_of(settings));
     const Estimate estimated =
-        estimate(gpu, work, chosen, frame, settings, needs_bent(settings, wanted), with_completed);
+        estimate(gpu, work, chosen, inputs, settings, needs_bent(settings, wanted), with_completed);
     const Denoiser denoiser = denoiser_of(settings);
     out.completion = completion(gpu, work, estimated, chosen);
     const Visibility noisy = combine(gpu, work, estimated, wanted.has(&FrameOutputs::scales));
     const FilterRuns runs = dilate(gpu, work, estimated.listed, denoiser);
     const Visibility smooth =
         chosen.rows ? interpolate(gpu, work, noisy, chosen, denoiser, runs) : denoise(gpu, work, noisy, denoiser, runs);
-    const Visibility whole = upsample(gpu, gbuffer, work, smooth, runs);
+    const Visibility whole = cut(gpu, frame, upsample(gpu, wide, work, smooth, runs));
     open_directions = &bent_normal(gpu, gbuffer, whole.bent);
     visibility = shape(gpu, gbuffer, whole, shaping_of(settings), frame[RawPlane::material_ao]);
     stages = {work, noisy.ao, chosen, smooth.ao, estimated.completed, estimated.listed.sectors};
@@ -55,7 +65,7 @@ FrameOutputs run_chain(gpu::Recorder& gpu, const FrameInputs& frame, const Estim
     out.sites = estimated.listed.site_counts;
     out.squares = estimated.squares;
     out.completed = estimated.completed;
-    if (wanted.has(&FrameOutputs::error)) out.error = estimated.error;
+    if (wanted.has(&FrameOutputs::error)) out.error = cut(gpu, frame, estimated.error, "error");
   }
 
   out.ao = visibility.ao;
@@ -65,7 +75,9 @@ FrameOutputs run_chain(gpu::Recorder& gpu, const FrameInputs& frame, const Estim
   if (wanted.has(&FrameOutputs::bent_normal))
     out.bent_normal = &directions(gpu, gbuffer, *open_directions, "bent normal planes", frame.aov_from_view);
   if (wanted.has(&FrameOutputs::depth)) out.depth = gbuffer.depth;
-  if (wanted.has(&FrameOutputs::confidence)) out.confidence = &confidence(gpu, gbuffer, frame, settings);
+  if (wanted.has(&FrameOutputs::hidden)) out.hidden = &hidden_planes(gpu, gbuffer, layering);
+  if (wanted.has(&FrameOutputs::confidence))
+    out.confidence = cut(gpu, frame, &confidence(gpu, wide, inputs, settings), "confidence");
   if (wanted.has(&FrameOutputs::specular_occlusion))
     out.specular_occlusion = &specular_occlusion(gpu, gbuffer, *open_directions, *visibility.ao, settings.roughness);
   if (wanted.multi_bounce) out.color_ao = &multi_bounce(gpu, gbuffer, *visibility.ao, frame);

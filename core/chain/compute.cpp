@@ -34,9 +34,13 @@ FrameInputs upload(gpu::Recorder& gpu, const HostFrame& frame) {
       (!frame.normal.empty() && !fills(RawPlane::normal, frame.normal.size(), pixels)))
     fail(ErrorKind::input, "a frame of {} has {} depth and {} normal values", to_string(frame.data), frame.depth.size(),
          frame.normal.size());
+  if (frame.behind_depth.size() != frame.behind.size() * pixels || frame.behind.size() > kMostBehindPlanes)
+    fail(ErrorKind::input, "a frame of {} with {} planes behind has {} values of theirs", to_string(frame.data),
+         frame.behind.size(), frame.behind_depth.size());
   RawPlaneArray<gpu::Buffer*> planes;
   planes[RawPlane::depth] = filled(gpu, RawPlane::depth, frame.depth);
   planes[RawPlane::normal] = filled(gpu, RawPlane::normal, frame.normal);
+  planes[RawPlane::behind] = filled(gpu, RawPlane::behind, frame.behind_depth);
   return inputs_of(frame, planes, frame.frame);
 }
 

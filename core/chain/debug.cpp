@@ -21,6 +21,7 @@ DebugPlane debug(gpu::Recorder& gpu, const DebugView& view, const GBuffer& gbuff
   const GBuffer* shown = &gbuffer;
   const gpu::Buffer* values = gbuffer.normal;
   Sites sites;
+  uint hidden = 0;
   switch (view.source) {
     case DebugSource::none: break;
     case DebugSource::raw_depth: values = frame[RawPlane::depth]; break;
@@ -43,13 +44,17 @@ DebugPlane debug(gpu::Recorder& gpu, const DebugView& view, const GBuffer& gbuff
       shown = &stages.gbuffer;
       sites = stages.sites;
       break;
+    case DebugSource::hidden:
+      if (gbuffer.hidden) values = gbuffer.hidden;
+      hidden = gbuffer.surfaces - 1;
+      break;
     case DebugSource::tiles:
       shown = &stages.gbuffer;
       values = stages.sectors;
       break;
   }
   gpu::Buffer& result = gpu.buffer(std::string("debug ") + view.name, plane_bytes(shown->view), gpu::Use::device);
-  gpu.dispatch("debug", DebugParams{shown->view, view.kind, sites.rows ? 1u : 0u, shown->grid.origin},
+  gpu.dispatch("debug", DebugParams{shown->view, view.kind, sites.rows ? 1u : 0u, shown->grid.origin, hidden},
                {{kDebugDepth, *shown->depth},
                 {kDebugNormal, *shown->normal},
                 {kDebugValues, *values},

@@ -36,6 +36,8 @@ constexpr std::array kViews{
         "tiles",
         "tiles: share of the directions in which something may block; 0 is proved open, or as in the frame before",
         kDebugTile, DebugSource::tiles, DebugScale::fixed, 0, 1, false},
+    DebugView{"hidden", "hidden: surfaces behind the first; half a one more where any of them closes a solid",
+              kDebugHidden, DebugSource::hidden, DebugScale::fixed, 0, 3.5f, false},
     DebugView{"edges", "edges: a neighbour's distance from the tangent plane, part of the depth (logarithmic)",
               kDebugEdge, DebugSource::none, DebugScale::fixed_logarithmic, 1e-4f, 1, false},
 };

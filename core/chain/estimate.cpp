@@ -170,8 +170,14 @@ Estimate estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const Sites& sites
           complete(gpu, gbuffer, lines, reach);
           exact(gpu, gbuffer, lines, directions, reach, out, plane);
         }
-        if (settings.tolerance > 0)
-          result.listed = converge(gpu, gbuffer, reach, settings.tolerance, directions.every_pixel, result, plane);
+        if (settings.tolerance > 0) {
+          Convergence search = convergence(gpu, gbuffer, settings, out, plane, uint(radii.size()));
+          for (const int count : kComparedDirections) {
+            search_until(gpu, gbuffer, reach, search, count);
+            converge(gpu, gbuffer, search, result, count);
+            refine(gpu, gbuffer, search, result, count);
+          }
+        }
         break;
       case Estimator::bitmask: bitmask(gpu, gbuffer, reach, sampling, out, plane); break;
       case Estimator::hbao: hbao(gpu, gbuffer, reach, sampling, settings.elevation, out, plane); break;
@@ -189,8 +195,11 @@ Bounds bounds(gpu::Recorder& gpu, const GBuffer& gbuffer, const Skipping& skippi
   const gpu::Extent groups = group_extent(gbuffer.view);
   const Bounds result{&gpu.buffer("bounds", sizeof(TileBounds) * tiles.x * tiles.y, gpu::Use::device),
                       &gpu.buffer("group bounds", sizeof(GroupBounds) * groups.x * groups.y, gpu::Use::device)};
-  gpu.dispatch("bounds", BoundsParams{gbuffer.view},
-               {{kBoundsDepth, *gbuffer.depth}, {kBoundsNormal, *gbuffer.normal}, {kBoundsTiles, *result.tiles}},
+  gpu.dispatch("bounds", BoundsParams{gbuffer.view, gbuffer.surfaces - 1},
+               {{kBoundsDepth, *gbuffer.depth},
+                {kBoundsNormal, *gbuffer.normal},
+                {kBoundsHidden, gbuffer.hidden ? *gbuffer.hidden : *gbuffer.depth},
+                {kBoundsTiles, *result.tiles}},
                tiles);
   return result;
 }
@@ -243,7 +252,8 @@ TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const Bounds& boun
 void horizon(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, const Sampling& sampling,
              const Estimate& out, uint plane) {
   std::vector<uint> constants = slice_constants(reach, sampling, out);
-  constants.push_back(thickness_rule_of(reach.thickness) | completion_of(reach));
+  constants.push_back(thickness_rule_of(reach.thickness) | completion_of(reach) |
+                      kHiddenSurface * (gbuffer.surfaces - 1));
   gpu.dispatch("horizon", slice_parameters<HorizonParams>(gbuffer, reach, sampling, plane),
                {{kHorizonDepth, *gbuffer.depth},
                 {kHorizonNormal, *gbuffer.normal},
@@ -253,14 +263,15 @@ void horizon(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, con
                 {kHorizonCounts, *out.listed.counts},
                 {kHorizonSites, out.listed.sites ? *out.listed.sites : *out.listed.tiles},
                 {kHorizonSiteCounts, out.listed.sites ? *out.listed.site_counts : *out.listed.counts},
-                {kHorizonCompleted, out.completed ? *out.completed : *out.ao}},
+                {kHorizonCompleted, out.completed ? *out.completed : *out.ao},
+                {kHorizonHidden, gbuffer.hidden ? *gbuffer.hidden : *gbuffer.depth}},
                estimate_extent(out.listed), constants);
 }
 
 void bitmask(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, const Sampling& sampling,
              const Estimate& out, uint plane) {
   std::vector<uint> constants = slice_constants(reach, sampling, out);
-  constants.push_back(completion_of(reach));
+  constants.push_back(completion_of(reach) | kHiddenSurface * (gbuffer.surfaces - 1));
   gpu.dispatch("bitmask", slice_parameters<BitmaskParams>(gbuffer, reach, sampling, plane),
                {{kBitmaskDepth, *gbuffer.depth},
                 {kBitmaskNormal, *gbuffer.normal},
@@ -270,7 +281,8 @@ void bitmask(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, con
                 {kBitmaskCounts, *out.listed.counts},
                 {kBitmaskSites, out.listed.sites ? *out.listed.sites : *out.listed.tiles},
                 {kBitmaskSiteCounts, out.listed.sites ? *out.listed.site_counts : *out.listed.counts},
-                {kBitmaskCompleted, out.completed ? *out.completed : *out.ao}},
+                {kBitmaskCompleted, out.completed ? *out.completed : *out.ao},
+                {kBitmaskHidden, gbuffer.hidden ? *gbuffer.hidden : *gbuffer.depth}},
                estimate_extent(out.listed), constants);
 }
 

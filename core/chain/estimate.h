@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <string>
 
 #include "core/base/settings.h"
@@ -16,7 +17,7 @@ struct TileList {
   gpu::Buffer* tiles = nullptr;        // ListedTile each
   gpu::Buffer* counts = nullptr;       // one TileCounts
   gpu::Buffer* sectors = nullptr;      // of all tiles, from classify
-  gpu::Buffer* lines = nullptr;        // GroupCount of profile, from converge
+  gpu::Buffer* lines = nullptr;        // GroupCount of profile, from refine
   gpu::Buffer* sites = nullptr;        // that lie in them, from list_sites; null: all of their pixels
   gpu::Buffer* site_counts = nullptr;  // one SiteCounts; null as the sites
   bool skips_surfaces = false;         // more than sky may be left out
@@ -32,7 +33,7 @@ struct Estimate {
   gpu::Buffer* ao = nullptr;       // a plane of visibility for each radius, from the smallest on
   gpu::Buffer* bent = nullptr;     // planes x, y, z, of the largest radius: see horizon.h; null: not asked for
   TileList listed{};               // of the largest radius
-  gpu::Buffer* error = nullptr;    // with a tolerance, of the largest radius: see converge.h
+  gpu::Buffer* error = nullptr;    // with a tolerance, of the mean over the radii: see refine.h
   gpu::Buffer* squares = nullptr;  // the same
   // A plane of the visibility that completed surfaces took, of the largest radius, before any filter: 0 to what is
   // blocked, 0 at sky. Null: not asked for.
@@ -120,11 +121,14 @@ SearchDirections search_directions(const EstimatorSettings& settings);
 struct Profile {
   int direction;
   Lines lines;
-  int first = 0;   // number of the first line
-  uint count = 0;  // lines
+  int first = 0;            // number of the first line
+  uint count = 0;           // lines
+  uint slots = 1;           // a plane of vertices, marks and neighbors each; as many as a pixel has surfaces at most
+  bool has_unseen = false;  // behind the slots is a plane for what goes on behind what is nearer
   gpu::Buffer* vertex = nullptr;
   gpu::Buffer* mark = nullptr;
   gpu::Buffer* neighbor = nullptr;
+  gpu::Buffer* own = nullptr;      // the slot of each step's first surface; null: there is one slot
   gpu::Buffer* goes_on = nullptr;  // null: no surface goes on unseen
   gpu::Buffer* behind = nullptr;   // the same
 };
@@ -136,12 +140,31 @@ void complete(gpu::Recorder& gpu, const GBuffer& gbuffer, Profile& profile, cons
               const gpu::Buffer* groups = nullptr);
 /// Adds a direction to a plane of out.ao and to out.bent, for the pixels that take it; call it for all directions in
 /// order. Where tiles are listed, these planes keep the sums of what is blocked, from which converge makes the
-/// visibility and the mean open direction.
+/// visibility, and refine the mean open direction.
 void exact(gpu::Recorder& gpu, const GBuffer& gbuffer, const Profile& profile, const SearchDirections& directions,
            const Reach& reach, const Estimate& out, uint plane);
-/// Searches as many directions as the tolerance, an RMS error of the visibility, takes. Puts visibility, error and
-/// squares into `result`, and returns the tiles that have surfaces.
-TileList converge(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, double tolerance, bool every_pixel,
-                  Estimate& result, uint plane);
+
+/// The directions after which an estimate by its error is compared: at the first it begins, at the second it has
+/// nothing to compare with, and at the last it ends. In between tiles that are good are left.
+inline constexpr std::array kComparedDirections{0, 2, 4, 8, 16, 32, 64};
+
+/// A search of as many directions as the tolerance takes, for one radius.
+struct Convergence {
+  double tolerance;    // RMS error of the visibility
+  bool every_pixel;    // as in SearchDirections
+  uint plane, planes;  // which of the radii it is, and of how many
+  Estimate sums;       // over the directions so far; its list has the tiles that take the next ones
+};
+Convergence convergence(gpu::Recorder& gpu, const GBuffer& gbuffer, const EstimatorSettings& settings,
+                        const Estimate& result, uint plane, uint planes);
+/// Searches the directions from the last comparison up to so many.
+void search_until(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, const Convergence& search,
+                  int directions);
+/// Makes the visibility of so many directions, and judges its tiles; after 0 directions all tiles are new.
+void converge(gpu::Recorder& gpu, const GBuffer& gbuffer, const Convergence& search, const Estimate& result,
+              int directions);
+/// Lists the tiles that take more than so many directions, and adds to `result` the error of the others, which is the
+/// mean over the radii. After 0 directions it lists all that have surfaces, in `result` too.
+void refine(gpu::Recorder& gpu, const GBuffer& gbuffer, Convergence& search, Estimate& result, int directions);
 
 }  // namespace alcove

@@ -2,7 +2,6 @@
 // lines an estimate by its error takes.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <numbers>
 
@@ -12,14 +11,15 @@
 #include "kernels/converge.h"
 #include "kernels/exact.h"
 #include "kernels/profile.h"
+#include "kernels/refine.h"
 
 namespace alcove {
 namespace {
 
-/// The least directions of an estimate by error, where it has no other estimate to compare with, and the most. Both are
-/// powers of 2.
-constexpr int kLeastDirections = 2;
-constexpr int kMostDirections = 64;
+/// The most directions of an estimate by error, a power of 2.
+constexpr int kMostDirections = kComparedDirections.back();
+// All but the first two and the last decide.
+static_assert(kComparedDirections.size() == kRefineRounds + 3);
 
 /// How far a profile may leave a pixel's depth, in the pixel's own widths: less costs more vertices.
 constexpr float kProfileTolerance = 0.2f;
@@ -62,48 +62,69 @@ gpu::Buffer& whole_arcs(gpu::Recorder& gpu, const GBuffer& gbuffer) {
   return gpu.buffer("whole arcs", plane_bytes(gbuffer.view), gpu::Use::device);
 }
 
-/// Makes the visibility from the sums of so many directions, and its error, and lists in sums.listed the tiles that
-/// need more directions; after 0 directions all that have surfaces.
-void compare_directions(gpu::Recorder& gpu, const GBuffer& gbuffer, double tolerance, Estimate& sums, Estimate& result,
-                        uint plane, int directions) {
-  const ivec2 size = gbuffer.view.size;
-  const ivec2 origin = gbuffer.grid.origin;
+/// The tiles of a frame, as an estimate by its error counts them.
+struct Tiles {
+  uint columns, rows;
+  std::uint64_t count() const { return std::uint64_t(columns) * rows; }
+};
+
+Tiles tiles_of(const GBuffer& gbuffer) {
   const auto tiles_in = [](int pixels, int begin) { return groups_of(pixels + (begin & (kTile - 1)), uint(kTile)); };
-  const uint columns = tiles_in(size.x, origin.x);
-  const uint tiles = columns * tiles_in(size.y, origin.y);
-  const std::string name = "converge " + std::to_string(directions) + " ";
+  const ivec2 size = gbuffer.view.size, origin = gbuffer.grid.origin;
+  return {tiles_in(size.x, origin.x), tiles_in(size.y, origin.y)};
+}
+
+/// One JudgedTile per tile.
+gpu::Buffer& judged_tiles(gpu::Recorder& gpu, const GBuffer& gbuffer) {
+  return gpu.buffer("judged tiles", sizeof(JudgedTile) * tiles_of(gbuffer).count(), gpu::Use::device);
+}
+
+/// The empty list of the tiles that take more than so many directions.
+TileList next_list(gpu::Recorder& gpu, const GBuffer& gbuffer, int directions) {
+  const ivec2 size = gbuffer.view.size;
+  const std::string name = "refine " + std::to_string(directions) + " ";
   TileList next;
-  next.tiles = &gpu.buffer(name + "tiles", sizeof(ListedTile) * tiles, gpu::Use::device);
+  next.tiles = &gpu.buffer(name + "tiles", sizeof(ListedTile) * tiles_of(gbuffer).count(), gpu::Use::device);
   next.counts = &gpu.buffer(name + "counts", sizeof(TileCounts), gpu::Use::device);
   next.lines = &gpu.buffer(name + "lines", sizeof(GroupCount), gpu::Use::device);
   gpu.clear(*next.counts);
   gpu.write(*next.lines, GroupCount{groups_of(2 * (size.x + size.y), kProfileGroup), 1, 0});
-  result.error = &gpu.buffer("error", plane_bytes(gbuffer.view), gpu::Use::device);
-  result.squares = &gpu.buffer("error squares", sizeof(vec2) * tiles, gpu::Use::device);
-  const ConvergeParams params{gbuffer.view,
-                              origin,
-                              float(tolerance),
-                              uint(directions),
-                              directions > kLeastDirections ? 1u : 0u,
-                              directions == kMostDirections ? 1u : 0u,
-                              plane};
-  const bool begins = directions == 0;
-  gpu.dispatch("converge", params,
-               {{kConvergeDepth, *gbuffer.depth},
-                {kConvergeBlocked, *sums.ao},
-                {kConvergeWhole, whole_arcs(gpu, gbuffer)},
-                {kConvergeAo, *result.ao},
-                {kConvergeError, *result.error},
-                {kConvergeSquares, *result.squares},
-                {kConvergeList, begins ? *next.tiles : *sums.listed.tiles},
-                {kConvergeCounts, begins ? *next.counts : *sums.listed.counts},
-                {kConvergeNextList, *next.tiles},
-                {kConvergeNextCounts, *next.counts},
-                {kConvergeNextLines, *next.lines},
-                {kConvergeNormal, *gbuffer.normal},
-                {kConvergeBent, sums.bent ? *sums.bent : *result.ao}},
-               {columns, tiles / columns}, {sums.bent ? 1u : 0u});
-  sums.listed = next;
+  return next;
+}
+
+/// For kProfileSlotsId.
+constexpr uint kDeepestSurfaces = 0;
+
+/// The planes of a profile.
+uint planes_of(const Profile& profile) { return profile.slots + (profile.has_unseen ? 1 : 0); }
+
+/// Draws the profiles of all slots, from `slot` 0 on, or behind them that of which surfaces go on
+/// behind what is nearer.
+void draw_profile(gpu::Recorder& gpu, const GBuffer& gbuffer, const SearchDirections& directions, const Reach& reach,
+                  const Profile& profile, uint slot, const gpu::Buffer* groups) {
+  const bool is_thinner = completes_behind(reach) || (gbuffer.hidden && reach.complete != Completion::none);
+  ProfileParams params{gbuffer.view,
+                       profile.lines,
+                       profile.first,
+                       profile.count,
+                       kProfileTolerance,
+                       is_thinner ? kCompletedDepthPerWidth : 1,
+                       is_thinner ? kCompletedMorePixels : 0,
+                       reach.complete != Completion::none ? kCutThickness * reach.radius : 0,
+                       slot};
+  // With several slots a thickness of 0 is one that is not known, for which exact takes the given one.
+  if (gbuffer.hidden && reach.thickness != 0) params.depth_per_width = params.more_pixels = params.least_at_border = 0;
+  uint slots = profile.slots;
+  if (slot > 0) slots = gbuffer.hides_no_more ? kDeepestSurfaces : 1;
+  gpu.dispatch("profile", params,
+               {{kProfileDepth, *gbuffer.depth},
+                {kProfileVertex, *profile.vertex},
+                {kProfileMark, *profile.mark},
+                {kProfileNeighbor, *profile.neighbor},
+                {kProfileHidden, gbuffer.hidden ? *gbuffer.hidden : *gbuffer.depth},
+                {kProfileOwn, profile.own ? *profile.own : *profile.neighbor}},
+               groups ? gpu::Extent(*groups) : gpu::Extent(profile.count),
+               {directions.every_pixel ? 1u : 0u, profile.slots, slots});
 }
 
 }  // namespace
@@ -113,33 +134,88 @@ SearchDirections search_directions(const EstimatorSettings& settings) {
   return {settings.slices * takers, takers, settings.search == SliceSearch::every_pixel};
 }
 
-TileList converge(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, double tolerance, bool every_pixel,
-                  Estimate& result, uint plane) {
-  const SearchDirections directions{kMostDirections, 1, every_pixel};
-  Estimate sums;
-  sums.bent = result.bent;
-  sums.completed = result.completed;
-  sums.ao = &gpu.buffer("blocked arcs", plane_bytes(gbuffer.view), gpu::Use::device);
-  compare_directions(gpu, gbuffer, tolerance, sums, result, plane, 0);
-  const TileList first = sums.listed;
-  for (int i = 0; i < kMostDirections; i++) {
-    Profile lines = profile(gpu, gbuffer, directions, bit_reversed(i), reach, sums.listed.lines);
+Convergence convergence(gpu::Recorder& gpu, const GBuffer& gbuffer, const EstimatorSettings& settings,
+                        const Estimate& result, uint plane, uint planes) {
+  Convergence search{settings.tolerance, settings.search == SliceSearch::every_pixel, plane, planes, {}};
+  search.sums.ao = &gpu.buffer("blocked arcs", plane_bytes(gbuffer.view), gpu::Use::device);
+  search.sums.bent = result.bent;
+  search.sums.completed = result.completed;
+  return search;
+}
+
+void search_until(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, const Convergence& search,
+                  int directions) {
+  const SearchDirections all{kMostDirections, 1, search.every_pixel};
+  const int before = *(std::ranges::find(kComparedDirections, directions) - (directions > 0 ? 1 : 0));
+  const Estimate& sums = search.sums;
+  for (int i = before; i < directions; i++) {
+    Profile lines = profile(gpu, gbuffer, all, bit_reversed(i), reach, sums.listed.lines);
     complete(gpu, gbuffer, lines, reach, sums.listed.lines);
-    exact(gpu, gbuffer, lines, directions, reach, sums, 0);
-    if (i + 1 >= kLeastDirections && std::has_single_bit(uint(i + 1)))
-      compare_directions(gpu, gbuffer, tolerance, sums, result, plane, i + 1);
+    exact(gpu, gbuffer, lines, all, reach, sums, 0);
   }
-  return first;
+}
+
+void converge(gpu::Recorder& gpu, const GBuffer& gbuffer, const Convergence& search, const Estimate& result,
+              int directions) {
+  gpu::Buffer& judged = judged_tiles(gpu, gbuffer);
+  const ConvergeParams params{gbuffer.view, gbuffer.grid.origin, uint(directions), search.plane};
+  const Tiles tiles = tiles_of(gbuffer);
+  const TileList& listed = search.sums.listed;
+  gpu.dispatch("converge", params,
+               {{kConvergeDepth, *gbuffer.depth},
+                {kConvergeBlocked, *search.sums.ao},
+                {kConvergeWhole, whole_arcs(gpu, gbuffer)},
+                {kConvergeAo, *result.ao},
+                {kConvergeJudged, judged},
+                {kConvergeList, listed.tiles ? *listed.tiles : judged},
+                {kConvergeCounts, listed.counts ? *listed.counts : judged}},
+               {tiles.columns, tiles.rows});
+}
+
+void refine(gpu::Recorder& gpu, const GBuffer& gbuffer, Convergence& search, Estimate& result, int directions) {
+  const Tiles tiles = tiles_of(gbuffer);
+  const TileList listed = search.sums.listed, next = next_list(gpu, gbuffer, directions);
+  result.error = &gpu.buffer("error", plane_bytes(gbuffer.view), gpu::Use::device);
+  result.squares = &gpu.buffer("error squares", sizeof(vec2) * tiles.count(), gpu::Use::device);
+  RefineParams params{};
+  params.view = gbuffer.view;
+  params.origin = gbuffer.grid.origin;
+  params.tolerance = float(search.tolerance);
+  params.directions = uint(directions);
+  params.decides = directions > kComparedDirections[1] ? 1 : 0;
+  params.ends = directions == kMostDirections ? 1 : 0;
+  params.is_first = search.plane == 0 ? 1 : 0;
+  params.share = 1.0f / float(search.planes);
+  const gpu::Buffer* bent = search.sums.bent;
+  gpu.dispatch("refine", params,
+               {{kRefineDepth, *gbuffer.depth},
+                {kRefineJudged, judged_tiles(gpu, gbuffer)},
+                {kRefineList, listed.tiles ? *listed.tiles : *next.tiles},
+                {kRefineCounts, listed.counts ? *listed.counts : *next.counts},
+                {kRefineError, *result.error},
+                {kRefineSquares, *result.squares},
+                {kRefineNextList, *next.tiles},
+                {kRefineNextCounts, *next.counts},
+                {kRefineNextLines, *next.lines},
+                {kRefineWhole, whole_arcs(gpu, gbuffer)},
+                {kRefineNormal, *gbuffer.normal},
+                {kRefineBent, bent ? *bent : *result.ao}},
+               {tiles.columns, tiles.rows}, {bent ? 1u : 0u});
+  search.sums.listed = next;
+  if (directions == 0) result.listed = next;
 }
 
 Profile profile(gpu::Recorder& gpu, const GBuffer& gbuffer, const SearchDirections& directions, int direction,
                 const Reach& reach, const gpu::Buffer* groups) {
-  const std::size_t bytes = plane_bytes(gbuffer.view);
   const Lines lines = lines_of(gbuffer.view, gbuffer.grid.origin, direction, directions.count);
   Profile result{direction, lines};
+  result.slots = gbuffer.surfaces;
+  result.has_unseen = gbuffer.hidden && completes_behind(reach);
+  const std::size_t bytes = planes_of(result) * plane_bytes(gbuffer.view);
   result.vertex = &gpu.buffer("profile vertex", bytes, gpu::Use::device);
   result.mark = &gpu.buffer("profile mark", bytes, gpu::Use::device);
   result.neighbor = &gpu.buffer("profile neighbor", bytes, gpu::Use::device);
+  if (gbuffer.hidden) result.own = &gpu.buffer("profile own", plane_bytes(gbuffer.view), gpu::Use::device);
   const ivec2 size = gbuffer.view.size;
   const int along = lines.steep ? size.y : size.x;
   const int across = lines.steep ? size.x : size.y;
@@ -148,23 +224,10 @@ Profile profile(gpu::Recorder& gpu, const GBuffer& gbuffer, const SearchDirectio
          "an exact search takes at most {} pixels along a line, and there are {}: give --search steps", kNoVertex,
          std::max(size.x, size.y));
   const auto [least, most] = std::minmax({shift_at(lines, 0), shift_at(lines, along - 1)});
-  const bool is_thinner = completes_behind(reach);
   result.first = -most;
   result.count = uint(across + most - least);
-  const ProfileParams params{gbuffer.view,
-                             lines,
-                             result.first,
-                             result.count,
-                             kProfileTolerance,
-                             is_thinner ? kCompletedDepthPerWidth : 1,
-                             is_thinner ? kCompletedMorePixels : 0,
-                             reach.complete != Completion::none ? kCutThickness * reach.radius : 0};
-  gpu.dispatch("profile", params,
-               {{kProfileDepth, *gbuffer.depth},
-                {kProfileVertex, *result.vertex},
-                {kProfileMark, *result.mark},
-                {kProfileNeighbor, *result.neighbor}},
-               groups ? gpu::Extent(*groups) : gpu::Extent(params.count), {directions.every_pixel ? 1u : 0u});
+  draw_profile(gpu, gbuffer, directions, reach, result, 0, groups);
+  if (result.has_unseen) draw_profile(gpu, gbuffer, directions, reach, result, result.slots, groups);
   return result;
 }
 
@@ -172,17 +235,24 @@ void complete(gpu::Recorder& gpu, const GBuffer& gbuffer, Profile& profile, cons
               const gpu::Buffer* groups) {
   if (reach.complete == Completion::none) return;
   const std::size_t bytes = plane_bytes(gbuffer.view);
-  profile.goes_on = &gpu.buffer("profile goes on", bytes, gpu::Use::device);
+  profile.goes_on = &gpu.buffer("profile goes on", planes_of(profile) * bytes, gpu::Use::device);
   profile.behind = &gpu.buffer("profile behind", bytes, gpu::Use::device);
-  const CompleteParams params{gbuffer.view,  profile.lines, profile.first,
-                              profile.count, reach.radius,  completes_behind(reach) ? 1u : 0u};
-  gpu.dispatch("complete", params,
-               {{kCompleteNormal, *gbuffer.normal},
-                {kCompleteVertex, *profile.vertex},
-                {kCompleteMark, *profile.mark},
-                {kCompleteGoesOn, *profile.goes_on},
-                {kCompleteBehind, *profile.behind}},
-               groups ? gpu::Extent(*groups) : gpu::Extent(profile.count));
+  for (uint slot = 0; slot < planes_of(profile); slot++) {
+    // Of several slots, each goes on beyond the border, and only the last plane's surfaces behind others.
+    const bool behind = completes_behind(reach) && (profile.slots == 1 || slot == profile.slots);
+    const CompleteParams params{gbuffer.view, profile.lines,    profile.first, profile.count,
+                                reach.radius, behind ? 1u : 0u, slot};
+    gpu.dispatch("complete", params,
+                 {{kCompleteNormal, *gbuffer.normal},
+                  {kCompleteVertex, *profile.vertex},
+                  {kCompleteMark, *profile.mark},
+                  {kCompleteGoesOn, *profile.goes_on},
+                  {kCompleteBehind, *profile.behind},
+                  {kCompleteDepth, *gbuffer.depth},
+                  {kCompleteHidden, gbuffer.hidden ? *gbuffer.hidden : *gbuffer.depth}},
+                 groups ? gpu::Extent(*groups) : gpu::Extent(profile.count),
+                 {profile.slots, gbuffer.hides_no_more ? 1u : 0u});
+  }
 }
 
 void exact(gpu::Recorder& gpu, const GBuffer& gbuffer, const Profile& profile, const SearchDirections& directions,
@@ -194,9 +264,10 @@ void exact(gpu::Recorder& gpu, const GBuffer& gbuffer, const Profile& profile, c
   params.view = gbuffer.view;
   params.lines = lines;
   params.stride = takers > 1 ? 2 : 1;
-  // Neighbouring directions go to opposite corners of a block; blocks are those of the display window.
+  // Neighbouring directions go to opposite corners of a block, (x, y); blocks are those of the display window.
   constexpr ivec2 kCorners[] = {{0, 0}, {1, 1}, {1, 0}, {0, 1}};
-  const ivec2 corner = kCorners[profile.direction % takers];
+  const ivec2 of_block = kCorners[profile.direction % takers];
+  const ivec2 corner = lines.steep ? ivec2{of_block.y, of_block.x} : of_block;
   if (takers > 1) params.first = {(corner.x + lines.origin.x) & 1, (corner.y + lines.origin.y) & 1};
   params.direction = uint(profile.direction);
   params.is_first = profile.direction < takers ? 1 : 0;
@@ -212,6 +283,8 @@ void exact(gpu::Recorder& gpu, const GBuffer& gbuffer, const Profile& profile, c
   const gpu::Extent pixels = lines.steep ? gpu::Extent{rows, columns} : gpu::Extent{columns, rows};
   uint completing = profile.goes_on ? 1 : 0;
   if (profile.goes_on && out.completed) completing = 2;
+  uint unseen = profile.has_unseen ? 1 : 0;
+  if (profile.has_unseen && !gbuffer.hides_no_more) unseen = 2;
   gpu.dispatch("exact", params,
                {{kExactDepth, *gbuffer.depth},
                 {kExactNormal, *gbuffer.normal},
@@ -225,8 +298,10 @@ void exact(gpu::Recorder& gpu, const GBuffer& gbuffer, const Profile& profile, c
                 {kExactGoesOn, profile.goes_on ? *profile.goes_on : *profile.vertex},
                 {kExactBehind, profile.behind ? *profile.behind : *profile.mark},
                 {kExactCompleted, out.completed ? *out.completed : *out.ao},
-                {kExactBent, out.bent ? *out.bent : *out.ao}},
-               is_listed ? list_extent(out.listed) : pixels, {is_listed ? 1u : 0u, completing, out.bent ? 1u : 0u});
+                {kExactBent, out.bent ? *out.bent : *out.ao},
+                {kExactOwn, profile.own ? *profile.own : *profile.neighbor}},
+               is_listed ? list_extent(out.listed) : pixels,
+               {is_listed ? 1u : 0u, completing, out.bent ? 1u : 0u, profile.slots, unseen});
 }
 
 }  // namespace alcove

@@ -14,6 +14,25 @@ uint normal_form_of(const Reading& reading, std::size_t components) {
   return components < 3 ? kNormalXy : kNormalVector;
 }
 
+DepthTerms depth_terms(const DepthMap& map) {
+  DepthTerms terms{};
+  terms.axis = to_vec3(map.axis);
+  terms.along_ray = map.along_ray ? 1 : 0;
+  terms.origin = float(map.origin);
+  terms.base = float(map.base);
+  terms.slope = float(map.slope);
+  terms.sky_below = float(map.sky_below);
+  terms.sky_above = float(map.sky_above);
+  terms.sky_depth = float(map.sky_depth);
+  return terms;
+}
+
+/// The terms of a plane behind the first surface.
+LayerTerms layer_terms(const Reading& reading, const BehindPlane& plane) {
+  const DepthMap map = behind_map_of(reading, plane);
+  return {map.form, plane.kind, depth_terms(map)};
+}
+
 PrepareParams prepare_params(const Reading& reading, const DepthMap& map, const View& view, bool has_normals) {
   PrepareParams params{};
   params.view = view;
@@ -23,14 +42,7 @@ PrepareParams prepare_params(const Reading& reading, const DepthMap& map, const 
     params.view_from_normal_y = to_vec3(rotation[1]);
     params.view_from_normal_z = to_vec3(rotation[2]);
   }
-  params.depth_axis = to_vec3(map.axis);
-  params.along_ray = map.along_ray ? 1 : 0;
-  params.origin = float(map.origin);
-  params.base = float(map.base);
-  params.slope = float(map.slope);
-  params.sky_below = float(map.sky_below);
-  params.sky_above = float(map.sky_above);
-  params.sky_depth = float(map.sky_depth);
+  params.depth = depth_terms(map);
   params.normal_unorm = reading.normal_unorm ? 1 : 0;
   return params;
 }
@@ -46,8 +58,10 @@ FrameInputs inputs_of(const Reading& reading, const RawPlaneArray<gpu::Buffer*>&
   inputs.frame = frame;
   inputs.depth_map = depth_map_of(reading);
   inputs.depth_precision = depth_precision_of(reading);
+  inputs.hidden_precision = hidden_precision_of(reading);
   inputs.prepare = prepare_params(reading, inputs.depth_map, inputs.view, normal != nullptr);
   inputs.normal_form = normal_form_of(reading, normal ? planes_in(*normal, inputs.view) : 0);
+  for (const auto& plane : reading.behind) inputs.behind.push_back(layer_terms(reading, plane));
   inputs.is_sky = is_all_sky(inputs.depth_map, planes[RawPlane::depth]->as<const float>());
   return inputs;
 }
@@ -55,6 +69,9 @@ FrameInputs inputs_of(const Reading& reading, const RawPlaneArray<gpu::Buffer*>&
 void upload(gpu::Recorder& gpu, const FrameInputs& frame) {
   for (const auto* plane : frame.planes.entries)
     if (plane) gpu.upload(*plane);
+  for (const auto& other : frame.others)
+    for (const auto* plane : {other.depth, other.normal, other.moving})
+      if (plane) gpu.upload(*plane);
 }
 
 }  // namespace alcove

@@ -62,13 +62,17 @@ GBuffer downsample(gpu::Recorder& gpu, const GBuffer& gbuffer, const BlockGrid& 
   low.view.center = {(gbuffer.view.center.x + float(grid.overhang.x)) / factor,
                      (gbuffer.view.center.y + float(grid.overhang.y)) / factor};
   low.view.tangent_per_pixel = {gbuffer.view.tangent_per_pixel.x * factor, gbuffer.view.tangent_per_pixel.y * factor};
+  const uint hidden = gbuffer.surfaces - 1;
+  if (gbuffer.hidden) low.hidden = &gpu.buffer("low hidden", hidden * plane_bytes(low.view), gpu::Use::device);
   low.depth = &gpu.buffer("low depth", plane_bytes(low.view), gpu::Use::device);
   low.normal = &gpu.buffer("low normal", plane_bytes(low.view), gpu::Use::device);
-  gpu.dispatch("downsample", DownsampleParams{gbuffer.view, grid.size, grid.overhang},
+  gpu.dispatch("downsample", DownsampleParams{gbuffer.view, grid.size, grid.overhang, hidden},
                {{kDownsampleDepth, *gbuffer.depth},
                 {kDownsampleNormal, *gbuffer.normal},
                 {kDownsampleLowDepth, *low.depth},
-                {kDownsampleLowNormal, *low.normal}},
+                {kDownsampleLowNormal, *low.normal},
+                {kDownsampleHidden, gbuffer.hidden ? *gbuffer.hidden : *gbuffer.depth},
+                {kDownsampleLowHidden, low.hidden ? *low.hidden : *low.depth}},
                extent_of(low.view), {uint(grid.factor)});
   return low;
 }

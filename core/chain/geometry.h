@@ -26,8 +26,17 @@ struct GBuffer {
   vec3 depth_precision{};  // of planar depth: see DepthPrecision
   gpu::Buffer* depth = nullptr;
   gpu::Buffer* normal = nullptr;
-  gpu::Buffer* counts = nullptr;   // one FrameCounts, for the host
-  gpu::Buffer* missing = nullptr;  // the GroupCount of reconstruct
+  // Surfaces behind that of `depth`, nearer first, a plane behind the other: planar depth > 0, kSkyDepth where there is
+  // none, and below 0, of the same size, where the surface closes the solid of the one before it. Sky has none. Null:
+  // there is nothing hidden in the frame.
+  gpu::Buffer* hidden = nullptr;
+  uint surfaces = 1;                    // of a pixel at most: 1 more than `hidden` has planes
+  bool hides_no_more = false;           // a pixel with fewer hides no surface that is not told
+  gpu::Buffer* layer_counts = nullptr;  // one LayerCounts of layers.h; null as `hidden`
+  gpu::Buffer* warped = nullptr;        // what other views show behind the first surface: see warp.h; null: nothing
+  gpu::Buffer* view_counts = nullptr;   // one ViewCounts of warp.h; null as `warped`
+  gpu::Buffer* counts = nullptr;        // one FrameCounts, for the host
+  gpu::Buffer* missing = nullptr;       // the GroupCount of reconstruct
 };
 
 /// Makes the G-buffer from the raw planes. `prefix` stands before the names of its buffers where there is another

@@ -23,20 +23,25 @@ struct DebugPlane {
 
 /// Null: not asked for.
 struct FrameOutputs {
-  gpu::Buffer* counts = nullptr;   // one FrameCounts
-  gpu::Buffer* tiles = nullptr;    // one TileCounts, where there is an estimate
-  gpu::Buffer* sites = nullptr;    // one SiteCounts, of the largest radius, where pixels share estimates
-  gpu::Buffer* squares = nullptr;  // with a tolerance, vec2 per tile: sum of its squares, and receivers
+  gpu::Buffer* counts = nullptr;        // one FrameCounts
+  gpu::Buffer* layer_counts = nullptr;  // one LayerCounts of layers.h, where anything is known of what is hidden
+  gpu::Buffer* view_counts = nullptr;   // one ViewCounts of warp.h, where others see what is hidden here
+  gpu::Buffer* tiles = nullptr;         // one TileCounts, where there is an estimate
+  gpu::Buffer* sites = nullptr;         // one SiteCounts, of the largest radius, where pixels share estimates
+  gpu::Buffer* squares = nullptr;       // with a tolerance, vec2 per tile: sum of its squares, and receivers
   // with wanted.completed, vec2 per tile: what completed surfaces took of the visibility, and what all did
   gpu::Buffer* completion = nullptr;
   // with wanted.completed, a plane of the estimate's size: see Estimate. It stays on the device: whoever reads it calls
   // download()
   gpu::Buffer* completed = nullptr;
-  gpu::Buffer* ao = nullptr;                  // a plane: visibility in [0, 1]; of several radii the mean
-  gpu::Buffer* scales = nullptr;              // a plane for each radius, from the smallest on
-  gpu::Buffer* normal = nullptr;              // planes x, y, z; 0 for sky
-  gpu::Buffer* bent_normal = nullptr;         // planes x, y, z; 0 for sky
-  gpu::Buffer* depth = nullptr;               // a plane: planar, scene units; kSkyDepth for sky
+  gpu::Buffer* ao = nullptr;           // a plane: visibility in [0, 1]; of several radii the mean
+  gpu::Buffer* scales = nullptr;       // a plane for each radius, from the smallest on
+  gpu::Buffer* normal = nullptr;       // planes x, y, z; 0 for sky
+  gpu::Buffer* bent_normal = nullptr;  // planes x, y, z; 0 for sky
+  gpu::Buffer* depth = nullptr;        // a plane: planar, scene units; kSkyDepth for sky
+  // for each surface that is kept behind the first, nearer first, a plane of planar depth, kSkyDepth for none; and a
+  // plane of 1 where it closes the solid of the one before it, else 0
+  gpu::Buffer* hidden = nullptr;
   gpu::Buffer* confidence = nullptr;          // a plane, in [0, 1]
   gpu::Buffer* error = nullptr;               // a plane: with a tolerance, the estimated error of the visibility
   gpu::Buffer* specular_occlusion = nullptr;  // a plane, in [0, 1], 1 = open
@@ -63,6 +68,7 @@ inline constexpr std::array kAovs{
     AovRow{"normal", "normal.X,normal.Y,normal.Z", &FrameOutputs::normal, AovSource::geometry},
     AovRow{"bent-normal", "bent.X,bent.Y,bent.Z", &FrameOutputs::bent_normal, AovSource::open_directions},
     AovRow{"depth", "Z", &FrameOutputs::depth, AovSource::geometry, true},
+    AovRow{"hidden", "hidden1.Z,hidden1.back", &FrameOutputs::hidden, AovSource::geometry, true},
     AovRow{"confidence", "confidence.Y", &FrameOutputs::confidence, AovSource::visibility},
     AovRow{"error", "error.Y", &FrameOutputs::error, AovSource::visibility},
     AovRow{"specular-occlusion", "specular.Y", &FrameOutputs::specular_occlusion, AovSource::open_directions},

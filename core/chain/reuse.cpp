@@ -25,6 +25,12 @@ void add(std::uint64_t& hash, const PrepareParams& params) {
   hash = XXH3_64bits_withSeed(&params, sizeof(params), hash);
 }
 
+void add(std::uint64_t& hash, const LayerTerms& terms) {
+  static_assert(std::has_unique_object_representations_v<uint> && sizeof(DepthTerms) == 10 * sizeof(float));
+  add(hash, terms.form, std::uint32_t(terms.kind));
+  hash = XXH3_64bits_withSeed(&terms.depth, sizeof(terms.depth), hash);
+}
+
 void add(std::uint64_t& hash, const Matrix3& matrix) {
   for (const auto& row : matrix)
     for (const double value : row) add(hash, value);
@@ -33,6 +39,16 @@ void add(std::uint64_t& hash, const Matrix3& matrix) {
 void add(std::uint64_t& hash, const gpu::Buffer* plane) {
   add(hash, plane ? 1 : 0);
   if (plane) hash = XXH3_64bits_withSeed(plane->host().data(), plane->host().size(), hash);
+}
+
+/// All of what another frame or view sees: any of it may count for any pixel.
+void add(std::uint64_t& hash, const OtherView& other) {
+  add(hash, other.view.size.x, other.view.size.y, other.view.center.x, other.view.center.y,
+      other.view.tangent_per_pixel.x, other.view.tangent_per_pixel.y, other.view.orthographic, other.depth_precision.x,
+      other.depth_precision.y, other.depth_precision.z);
+  for (const auto& row : other.to_here)
+    for (const float value : row) add(hash, value);
+  for (const gpu::Buffer* plane : {other.depth, other.normal, other.moving}) add(hash, plane);
 }
 
 /// Blocks in x and y.
@@ -64,7 +80,10 @@ LastFrame::Hashes LastFrame::hashes_of(const FrameInputs& frame, const Estimator
   add(hashes.meaning, frame.depth_map.form, frame.normal_form, frame.noise_origin.x, frame.noise_origin.y,
       frame.albedo_value);
   for (const double at : frame.depth_precision.at) add(hashes.meaning, at);
+  for (const double at : frame.hidden_precision.at) add(hashes.meaning, at);
+  for (const auto& terms : frame.behind) add(hashes.meaning, terms);
   add(hashes.meaning, frame.aov_from_view);
+  for (const auto& other : frame.others) add(hashes.meaning, other);
   for (const auto* plane : frame.planes.entries) add(hashes.meaning, plane ? planes_in(*plane, frame.view) : 0u);
   if (settings.noise == Noise::animated) add(hashes.meaning, frame.frame);
   hashes.blocks.assign(std::size_t(blocks_of(frame.view).x) * std::size_t(blocks_of(frame.view).y), 0);

@@ -1,16 +1,19 @@
-// OpenEXR's C++ API, wrapped: the only file that includes it.
+// OpenEXR's C++ API, wrapped.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/formats/exr.h"
 
 #include <ImathBox.h>
 #include <ImfArray.h>
 #include <ImfChannelList.h>
+#include <ImfCompressionAttribute.h>
+#include <ImfDeepImageStateAttribute.h>
 #include <ImfDoubleAttribute.h>
 #include <ImfFloatAttribute.h>
 #include <ImfFloatVectorAttribute.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
 #include <ImfIO.h>
+#include <ImfInputFile.h>
 #include <ImfInputPart.h>
 #include <ImfIntAttribute.h>
 #include <ImfMatrixAttribute.h>
@@ -22,39 +25,30 @@
 #include <ImfTestFile.h>
 #include <ImfThreading.h>
 #include <ImfVecAttribute.h>
-#include <openexr.h>
+#include <ImfVersion.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <deque>
 #include <filesystem>
+#include <limits>
 #include <set>
 
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/base/text.h"
+#include "core/formats/deep_exr.h"
+#include "core/formats/exr_attributes.h"
 #include "core/formats/exr_header.h"
 #include "core/formats/image_io.h"
 
 namespace alcove {
 
-class ExrAttributes {
- public:
-  Imf::Header header;
-};
-
 namespace {
 
 constexpr std::size_t kLongestText = std::size_t(1) << 16;  // of an attribute that is looked at
 constexpr std::size_t kMostPixels = std::size_t(1) << 28;   // in host memory: one gigabyte per channel
-
-Window window_of(const Imath::Box2i& box) {
-  return {box.min.x, box.min.y, box.max.x - box.min.x + 1, box.max.y - box.min.y + 1};
-}
-
-Imath::Box2i box_of(const Window& window) {
-  return {{window.x, window.y}, {window.x + window.width - 1, window.y + window.height - 1}};
-}
 
 SampleType type_of(Imf::PixelType type) {
   return type == Imf::HALF    ? SampleType::half_float
@@ -62,11 +56,58 @@ SampleType type_of(Imf::PixelType type) {
                               : SampleType::integer;
 }
 
-/// Gives OpenEXR's description of an error on one line.
-std::string one_line(const std::exception& error) {
-  std::string text = error.what();
-  std::ranges::replace(text, '\n', ' ');
-  return text;
+/// How many rows are compressed together, as the specification of OpenEXR's file layout has it.
+int rows_together(const Imf::Header& header) {
+  if (header.hasTileDescription()) return int(header.tileDescription().ySize);
+  switch (header.compression()) {
+    case Imf::ZIP_COMPRESSION:
+    case Imf::PXR24_COMPRESSION: return 16;
+    case Imf::PIZ_COMPRESSION:
+    case Imf::B44_COMPRESSION:
+    case Imf::B44A_COMPRESSION:
+    case Imf::DWAA_COMPRESSION: return 32;
+    case Imf::DWAB_COMPRESSION: return 256;
+    default: return 1;
+  }
+}
+
+/// For each thread OpenEXR keeps two groups of rows: as they are stored, as they are, and once more in between.
+constexpr std::uint64_t kGroups = 2, kCopies = 3;
+
+std::atomic<std::uint64_t> codec_bytes = std::numeric_limits<std::uint64_t>::max();
+
+/// The bytes that a codec works on with so many threads.
+std::uint64_t bytes_of_codec(std::uint64_t group_bytes, int threads) {
+  return kCopies * group_bytes * std::max<std::uint64_t>(1, kGroups * std::uint64_t(threads));
+}
+
+/// As many threads as may work on groups of rows of this size within so many bytes.
+int threads_for(std::uint64_t group_bytes, std::uint64_t most_bytes) {
+  const std::uint64_t of_thread = std::max<std::uint64_t>(1, kCopies * kGroups * group_bytes);
+  return int(std::min(most_bytes / of_thread, std::uint64_t(Imf::globalThreadCount())));
+}
+
+/// The bytes of the rows of a part that are compressed together.
+std::uint64_t group_bytes(const ExrPart& part) {
+  std::uint64_t pixel = 0;
+  for (const auto& channel : part.channels) pixel += channel.type == SampleType::half_float ? 2 : 4;
+  return pixel * std::uint64_t(part.data.width) * std::uint64_t(part.rows_together);
+}
+
+const char* name_of(Imf::Compression compression) {
+  switch (compression) {
+    case Imf::NO_COMPRESSION: return "none";
+    case Imf::RLE_COMPRESSION: return "rle";
+    case Imf::ZIPS_COMPRESSION: return "zips";
+    default: return "other";
+  }
+}
+
+DeepLayout deep_layout(const Imf::Header& header) {
+  constexpr const char* kStates[] = {"messy", "sorted", "non-overlapping", "tidy"};
+  const int state = Imf::hasDeepImageState(header) ? int(Imf::deepImageState(header)) : 0;
+  return {state >= 0 && state < int(std::size(kStates)) ? kStates[state] : kStates[0], name_of(header.compression()),
+          header.type() == Imf::DEEPTILE};
 }
 
 ExrPart describe(const Imf::Header& header) {
@@ -75,60 +116,15 @@ ExrPart describe(const Imf::Header& header) {
                {},
                window_of(header.dataWindow()),
                {}};
+  part.rows_together = rows_together(header);
   part.dwa = header.compression() == Imf::DWAA_COMPRESSION || header.compression() == Imf::DWAB_COMPRESSION;
+  if (header.hasType() && Imf::isDeepData(header.type())) part.deep = deep_layout(header);
   if (Imf::hasMultiView(header)) part.multi_view = Imf::multiView(header);
   for (auto channel = header.channels().begin(); channel != header.channels().end(); ++channel) {
     const auto& c = channel.channel();
     part.channels.push_back({channel.name(), type_of(c.type), c.xSampling != 1 || c.ySampling != 1});
   }
   return part;
-}
-
-/// An output stream into a file in the making. OpenEXR swallows what fails while it closes a file; failed() keeps it.
-class FileStream : public Imf::OStream {
- public:
-  explicit FileStream(const std::string& path) : Imf::OStream(path.c_str()), file_(path) {}
-  void write(const char data[], int count) override {
-    try {
-      file_.write_at(position_, {data, std::size_t(count)});
-    } catch (const Error& error) {
-      if (!failure_) failure_ = error;
-      throw;
-    }
-    position_ += std::uint64_t(count);
-  }
-  std::uint64_t tellp() override { return position_; }
-  void seekp(std::uint64_t position) override { position_ = position; }
-  const std::optional<Error>& failure() const { return failure_; }
-  void commit() { file_.commit(); }
-
- private:
-  NewFile file_;
-  std::uint64_t position_ = 0;
-  std::optional<Error> failure_;
-};
-
-/// Whether an attribute says how the input is stored or what its channels are, which does not hold for another file.
-bool describes_storage(const std::string& name) {
-  static const std::set<std::string> kNames = {"channels",
-                                               "compression",
-                                               "dataWindow",
-                                               "displayWindow",
-                                               "pixelAspectRatio",
-                                               "lineOrder",
-                                               "tiles",
-                                               "chunkCount",
-                                               "type",
-                                               "version",
-                                               "name",
-                                               "preview",
-                                               "dwaCompressionLevel",
-                                               "zipCompressionLevel",
-                                               "multiView",
-                                               "deepImageState",
-                                               "maxSamplesPerPixel",
-                                               "BlenderMultiChannel"};
-  return kNames.contains(name) || name.rfind("cryptomatte/", 0) == 0;
 }
 
 std::string text_of(const Imf::Attribute& attribute) {
@@ -155,36 +151,37 @@ std::string text_of(const Imf::Attribute& attribute) {
   return std::string("(") + attribute.typeName() + ")";
 }
 
-Imf::Compression compression_of(const std::string& name) {
-  if (name == "none") return Imf::NO_COMPRESSION;
-  if (name == "rle") return Imf::RLE_COMPRESSION;
-  if (name == "zips") return Imf::ZIPS_COMPRESSION;
-  if (name == "piz") return Imf::PIZ_COMPRESSION;
-  return Imf::ZIP_COMPRESSION;
-}
-
-Imf::Header header_of(const ExrOutput& output) {
-  Imf::Header header(box_of(output.display), box_of(output.data), float(output.pixel_aspect));
-  header.compression() = compression_of(output.compression);
-  if (output.attributes)
-    for (auto attribute = output.attributes->header.begin(); attribute != output.attributes->header.end(); ++attribute)
-      if (!describes_storage(attribute.name())) header.insert(attribute.name(), attribute.attribute());
-  for (const auto& [name, value] : output.own_attributes) {
-    header.erase(name);  // the input's may be of another type
-    header.insert(name, Imf::StringAttribute(value));
+/// A deep part without its place in the file.
+DeepStored stored_deep(const Imf::Header& header, int part) {
+  const ExrPart described = describe(header);
+  DeepStored stored{.part = part,
+                    .data = described.data,
+                    .tile_width = described.data.width,
+                    .tile_height = described.rows_together,
+                    .is_tiled = described.deep->is_tiled,
+                    .compression = header.compression() == Imf::NO_COMPRESSION    ? DeepCompression::none
+                                   : header.compression() == Imf::RLE_COMPRESSION ? DeepCompression::rle
+                                                                                  : DeepCompression::zip,
+                    .channels = {},
+                    .offsets = 0,
+                    .names_part = false};
+  if (stored.is_tiled) {
+    constexpr unsigned kMost = std::numeric_limits<int>::max();
+    stored.tile_width = int(std::min(header.tileDescription().xSize, kMost));
+    stored.tile_height = int(std::min(header.tileDescription().ySize, kMost));
   }
-  for (const auto& plane : output.planes)
-    header.channels().insert(plane.channel,
-                             Imf::Channel(plane.type == SampleType::half_float ? Imf::HALF : Imf::FLOAT));
-  return header;
+  for (const auto& channel : described.channels)
+    stored.channels.push_back(
+        {channel.name, channel.type == SampleType::half_float, channel.type == SampleType::integer});
+  return stored;
 }
 
-/// Rounds to nearest. Values beyond half's range become its largest value, not infinity.
-std::vector<half> to_half(std::span<const float> values) {
-  std::vector<half> halves(values.size());
-  std::ranges::transform(values, halves.begin(),
-                         [](float x) { return half(std::abs(x) > HALF_MAX ? std::copysign(HALF_MAX, x) : x); });
-  return halves;
+/// The surface of a channel that samples make, and whether it is its end.
+std::optional<std::pair<std::size_t, bool>> place_of_deep(const std::string& channel) {
+  for (std::size_t surface = 0; surface < kMostDeepSurfaces; surface++)
+    for (const bool back : {false, true})
+      if (channel == deep_channel(surface, back)) return std::pair(surface, back);
+  return std::nullopt;
 }
 
 }  // namespace
@@ -195,13 +192,42 @@ struct ExrFile::Impl {
   std::vector<ExrPart> parts;
   Window display;
   double pixel_aspect = 1;
+  std::uint64_t group = 0;                 // bytes of the rows that are decoded together; 0 where there is no file
+  std::uint64_t codec_bytes = 0;           // that reading takes
   std::unique_ptr<PictureReader> picture;  // where there is no file
   Image image;                             // where there is no picture either
+  std::unique_ptr<DeepReader> deep;        // where deep parts are taken
+  int deep_part = -1;                      // the first of them
+  std::uint64_t deep_bytes = 0;            // that reading them takes
+  std::uint64_t header_bytes = 0;          // of the file
+
+  /// Opens the file again where all threads would work on more bytes than they may.
+  void limit_codec() {
+    for (const auto& part : parts)
+      if (!part.deep) group = std::max(group, group_bytes(part));
+    const int threads = threads_for(group, alcove::codec_bytes);
+    if (threads < Imf::globalThreadCount()) file = std::make_unique<Imf::MultiPartInputFile>(path.c_str(), threads);
+    codec_bytes = bytes_of_codec(group, threads);
+  }
+
+  /// Reads those of the channels that samples make.
+  void read_deep(std::span<const ExrRead> reads, int first, int rows) const {
+    std::vector<DeepRead> planes;
+    for (const auto& read : reads) {
+      if (!parts[std::size_t(read.part)].deep) continue;
+      const auto place = place_of_deep(read.channel);
+      if (read.part != deep_part || !place)
+        fail(ErrorKind::input, "{}: channel {} of part {} is deep: it has no single value per pixel ({})", path,
+             read.channel, read.part, option);
+      planes.push_back({place->first, place->second, read.to});
+    }
+    if (!planes.empty()) deep->read(planes, first, rows);
+  }
 
   /// One part with these channels.
   Impl(const std::string& path_, const char* option_, const Window& data, const Window& display_,
        const std::vector<std::string>& names)
-      : path(path_), option(option_), parts{{"", "", {}, data, {}, false}}, display(display_) {
+      : path(path_), option(option_), parts{{"", "", {}, data, {}}}, display(display_) {
     for (const auto& name : names) parts[0].channels.push_back({name, SampleType::single_float, false});
   }
   Impl() = default;
@@ -215,18 +241,15 @@ ExrFile::ExrFile(const std::string& path, const char* option) : impl_(std::make_
     fail(ErrorKind::input, "{}: is no regular file; {} takes an EXR file", path, option);
   try {
     if (!Imf::isOpenExrFile(path.c_str())) fail(ErrorKind::input, "{}: not an OpenEXR file ({})", path, option);
-    require_sane_header(path, option);
+    impl_->header_bytes = require_sane_header(path, option);
     impl_->file = std::make_unique<Imf::MultiPartInputFile>(path.c_str());
     for (int part = 0; part < impl_->file->parts(); part++) {
       const auto& header = impl_->file->header(part);
-      if (header.hasType() && Imf::isDeepData(header.type()))
-        fail(ErrorKind::input,
-             "{}: part {} holds deep data, which has no single depth per pixel; flatten it first ({})", path, part,
-             option);
       impl_->parts.push_back(describe(header));
       if (impl_->parts.back().channels.empty())
         fail(ErrorKind::input, "{}: part {} has no channels ({})", path, part, option);
     }
+    impl_->limit_codec();
     impl_->display = window_of(impl_->file->header(0).displayWindow());
     impl_->pixel_aspect = impl_->file->header(0).pixelAspectRatio();
   } catch (const Error&) {
@@ -280,6 +303,41 @@ std::map<std::string, std::string> ExrFile::attribute_texts(int part) const {
   return texts;
 }
 
+std::uint64_t ExrFile::bytes_beside_pixels() const {
+  return impl_->image.pixels.size() * sizeof(float) + impl_->codec_bytes + impl_->deep_bytes;
+}
+
+std::uint64_t ExrFile::codec_group() const { return impl_->group; }
+
+std::string deep_channel(std::size_t surface, bool back) {
+  return fmt::format("deep{}.{}", surface + 1, back ? "ZBack" : "Z");
+}
+
+void ExrFile::take_deep(const std::vector<int>& parts, const DeepRules& rules) {
+  std::vector<DeepStored> stored;
+  std::uint64_t offsets = impl_->header_bytes;
+  for (int part = 0; part < impl_->file->parts(); part++) {
+    const auto& header = impl_->file->header(part);
+    if (std::ranges::find(parts, part) != parts.end()) {
+      stored.push_back(stored_deep(header, part));
+      stored.back().offsets = offsets;
+      stored.back().names_part = Imf::isMultiPart(impl_->file->version());
+    }
+    if (header.hasChunkCount()) offsets += sizeof(std::uint64_t) * std::uint64_t(std::max(0, header.chunkCount()));
+  }
+  impl_->deep = std::make_unique<DeepReader>(impl_->path, impl_->option.c_str(), stored, rules, codec_bytes);
+  impl_->deep_part = parts.front();
+  impl_->deep_bytes = impl_->deep->bytes();
+}
+
+DeepCounts ExrFile::deep_counts() const { return impl_->deep ? impl_->deep->counts() : DeepCounts{}; }
+
+void ExrFile::close() {
+  impl_->file.reset();
+  impl_->picture.reset();
+  impl_->deep.reset();
+}
+
 void ExrFile::read(std::span<const ExrRead> reads) {
   // All parts that are read together cover the same pixels.
   if (!reads.empty()) read(reads, 0, impl_->parts[std::size_t(reads[0].part)].data.height);
@@ -300,8 +358,10 @@ void ExrFile::read(std::span<const ExrRead> reads, int first, int rows) {
                         read.to);
     return;
   }
+  impl_->read_deep(reads, first, rows);
   std::set<int> parts;
-  for (const auto& read : reads) parts.insert(read.part);
+  for (const auto& read : reads)
+    if (!impl_->parts[std::size_t(read.part)].deep) parts.insert(read.part);
   for (const int part : parts) {
     Window data = impl_->parts[std::size_t(part)].data;
     data.y += first;
@@ -323,115 +383,6 @@ void ExrFile::read(std::span<const ExrRead> reads, int first, int rows) {
   }
 }
 
-struct ExrWriter::Impl {
-  std::string path;
-  Window data;
-  std::vector<ExrPlane> planes;
-  FileStream stream;
-  std::unique_ptr<Imf::OutputFile> file;
-  int rows = 0;  // that are written
-
-  Impl(const std::string& path_, const ExrOutput& output)
-      : path(path_), data(output.data), planes(output.planes), stream(path_) {}
-
-  /// Runs a step of writing. Where the stream failed, its error is the reason that OpenEXR does not tell.
-  template <class Function>
-  void run(Function&& function) {
-    try {
-      function();
-    } catch (const std::exception& error) {
-      if (!stream.failure()) fail(ErrorKind::output, "{}: could not be encoded: {}", path, one_line(error));
-    }
-    if (stream.failure()) throw *stream.failure();
-  }
-};
-
-ExrWriter::ExrWriter(const std::string& path, const ExrOutput& output) : impl_(std::make_unique<Impl>(path, output)) {
-  impl_->run([&] { impl_->file = std::make_unique<Imf::OutputFile>(impl_->stream, header_of(output)); });
-}
-ExrWriter::~ExrWriter() = default;
-ExrWriter::ExrWriter(ExrWriter&&) noexcept = default;
-
-void ExrWriter::write(std::span<const std::span<const float>> planes) {
-  Window band = impl_->data;
-  band.y += impl_->rows;
-  band.height = int(planes[0].size() / std::size_t(band.width));
-  std::deque<std::vector<half>> halves;
-  Imf::FrameBuffer frame_buffer;
-  for (std::size_t i = 0; i < planes.size(); i++) {
-    const bool is_half = impl_->planes[i].type == SampleType::half_float;
-    const std::size_t bytes = is_half ? sizeof(half) : sizeof(float);
-    const void* pixels =
-        is_half ? static_cast<const void*>(halves.emplace_back(to_half(planes[i])).data()) : planes[i].data();
-    frame_buffer.insert(impl_->planes[i].channel,
-                        Imf::Slice::Make(is_half ? Imf::HALF : Imf::FLOAT, pixels, box_of(band), bytes,
-                                         bytes * std::size_t(band.width)));
-  }
-  impl_->run([&] {
-    impl_->file->setFrameBuffer(frame_buffer);
-    impl_->file->writePixels(band.height);
-  });
-  impl_->rows += band.height;
-}
-
-void ExrWriter::finish() {
-  impl_->run([&] { impl_->file.reset(); });
-  impl_->stream.commit();
-}
-
-void write_exr(const std::string& path, const ExrOutput& output) {
-  ExrWriter writer(path, output);
-  std::vector<std::span<const float>> planes;
-  for (const auto& plane : output.planes) planes.push_back(plane.pixels);
-  writer.write(planes);
-  writer.finish();
-}
-
-Image read_exr_image(const std::string& path, const std::vector<std::string>& channels) {
-  ExrFile file(path, "INPUT");
-  const auto has_all = [&](const ExrPart& part) {
-    return std::ranges::all_of(channels, [&](const auto& name) {
-      return std::ranges::find(part.channels, name, &ExrChannel::name) != part.channels.end();
-    });
-  };
-  const auto part = std::ranges::find_if(file.parts(), has_all);
-  if (part == file.parts().end()) fail(ErrorKind::input, "{}: no part has the channels {}", path, list_of(channels));
-  std::vector<std::string> names = channels;
-  if (names.empty()) std::ranges::transform(part->channels, std::back_inserter(names), &ExrChannel::name);
-  require_host_room(path, part->data);
-  Image image(part->data, file.display(), names);
-  std::vector<ExrRead> reads;
-  for (std::size_t i = 0; i < names.size(); i++)
-    reads.push_back({int(part - file.parts().begin()), names[i], image.plane(i).data()});
-  file.read(reads);
-  return image;
-}
-
-std::optional<std::string> attribute_of_whole_exr(const std::string& path, const std::string& name) {
-  exr_context_initializer_t quiet = EXR_DEFAULT_CONTEXT_INITIALIZER;
-  quiet.error_handler_fn = [](exr_const_context_t, exr_result_t, const char*) {};
-  exr_context_t raw = nullptr;
-  if (exr_start_read(&raw, path.c_str(), &quiet) != EXR_ERR_SUCCESS) return std::nullopt;
-  const std::unique_ptr<std::remove_pointer_t<exr_context_t>, void (*)(exr_context_t)> file(
-      raw, [](exr_context_t context) { exr_finish(&context); });
-  exr_attr_box2i_t data;
-  int32_t rows = 0, length = 0;
-  const char* text = nullptr;
-  if (exr_get_data_window(raw, 0, &data) != EXR_ERR_SUCCESS ||
-      exr_get_scanlines_per_chunk(raw, 0, &rows) != EXR_ERR_SUCCESS || rows <= 0 ||
-      exr_attr_get_string(raw, 0, name.c_str(), &length, &text) != EXR_ERR_SUCCESS)
-    return std::nullopt;
-  std::error_code error;
-  const std::uint64_t size = std::filesystem::file_size(path, error);
-  for (std::int64_t y = data.min.y; y <= data.max.y; y += rows) {
-    exr_chunk_info_t chunk;
-    if (error || exr_read_scanline_chunk_info(raw, 0, int(y), &chunk) != EXR_ERR_SUCCESS ||
-        chunk.data_offset + chunk.packed_size > size)
-      return std::nullopt;
-  }
-  return std::string(text, std::size_t(length));
-}
-
 float from_half(std::uint16_t bits) {
   half value;
   value.setBits(bits);
@@ -439,5 +390,11 @@ float from_half(std::uint16_t bits) {
 }
 
 void set_exr_threads(int threads) { Imf::setGlobalThreadCount(threads); }
+
+void set_exr_memory(std::uint64_t bytes) { codec_bytes = bytes; }
+
+std::uint64_t exr_codec_bytes(std::uint64_t group_bytes, std::optional<std::uint64_t> most_bytes) {
+  return bytes_of_codec(group_bytes, threads_for(group_bytes, most_bytes.value_or(codec_bytes)));
+}
 
 }  // namespace alcove

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/base/image.h"
+#include "core/formats/deep_surfaces.h"
 
 namespace alcove {
 
@@ -23,6 +24,13 @@ struct ExrChannel {
   bool subsampled;  // fewer samples than pixels: cannot be read as a plane
 };
 
+/// How a deep part is stored, in the words of OpenEXR.
+struct DeepLayout {
+  std::string state;  // of its samples: messy, sorted, non-overlapping or tidy; what is not said is messy
+  std::string compression;
+  bool is_tiled = false;
+};
+
 struct ExrPart {
   std::string name;  // empty in single-part files
   std::string view;  // of stereo files that have one part per view; empty: none
@@ -30,6 +38,9 @@ struct ExrPart {
   std::vector<std::string> multi_view;
   Window data;
   std::vector<ExrChannel> channels;
+  int rows_together = 1;  // that are compressed together: a multiple of them is decoded without waste
+  // of a part that has several samples a pixel, or none: its channels are no planes; see ExrFile::take_deep()
+  std::optional<DeepLayout> deep = {};
   bool dwa = false;  // compressed by DWAA or DWAB, which are lossy for channels whose name ends in R, G, B, Y, RY or BY
 };
 
@@ -49,8 +60,8 @@ struct ExrRead {
 /// An EXR file whose header has been read. Every failure is ErrorKind::input and names the file.
 class ExrFile {
  public:
-  /// Fails on a missing file, a folder, a file that is no EXR, deep data, a part without channels, and headers that
-  /// ask for more than their file can hold.
+  /// Fails on a missing file, a folder, a file that is no EXR, a part without channels, and headers that ask for more
+  /// than their file can hold.
   explicit ExrFile(const std::string& path, const char* option);
   /// Pictures of other formats, to be read like an EXR of one part: the first has been opened, the second read whole.
   ExrFile(const std::string& path, const char* option, std::unique_ptr<PictureReader> picture);
@@ -68,6 +79,21 @@ class ExrFile {
   /// by value, of which the first 64 KiB count, and all else by type.
   std::map<std::string, std::string> attribute_texts(int part) const;
 
+  /// The most that the file takes in memory while it is open and while it is read, in bytes: what codecs work on, and a
+  /// picture that was read whole.
+  std::uint64_t bytes_beside_pixels() const;
+  /// The bytes of the rows that are decoded together; 0 where no EXR file is read.
+  std::uint64_t codec_group() const;
+  /// Gives back what reading takes. From then on only parts, windows and that number are there.
+  void close();
+
+  /// The samples of these deep parts, all together, make the channels deep_channel() of the first of them from now on.
+  /// Fails where a part has no Z, where the parts differ in windows or tiles, and where chunks claim more than the
+  /// file can hold.
+  void take_deep(const std::vector<int>& parts, const DeepRules& rules);
+  /// What was met in the deep samples that were read so far.
+  DeepCounts deep_counts() const;
+
   /// Reads the channels as float, each part decoded once. Fails on truncated or corrupt data.
   void read(std::span<const ExrRead> reads);
   /// Reads only `rows` rows of the parts' data windows, from the `first` one on.
@@ -77,6 +103,10 @@ class ExrFile {
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
+
+/// The name of a plane of depth that samples make: of the fronts of all pixels' first surfaces, of the second ones ...;
+/// or of where the bodies behind these fronts end. `surface` is below kMostDeepSurfaces.
+std::string deep_channel(std::size_t surface, bool back);
 
 /// Fails with ErrorKind::input if planes of that window are too much for host memory. It is asked before they are made,
 /// since a header may say anything.
@@ -110,8 +140,9 @@ class ExrWriter {
 
   /// Writes the next rows of every plane, as wide as the data window.
   void write(std::span<const std::span<const float>> planes);
-  /// Ends the file after its last row.
-  void finish();
+  /// Ends the file after its last row. `late` holds attributes, as text, that were not known when the file was begun:
+  /// since its header stands before its rows, these are copied behind a new one, compressed as they are.
+  void finish(const std::map<std::string, std::string>& late = {});
 
  private:
   struct Impl;
@@ -134,5 +165,16 @@ float from_half(std::uint16_t bits);
 
 /// Sets how many threads the codecs may use in the whole process. 0: none beside the caller's.
 void set_exr_threads(int threads);
+
+/// Sets how many bytes the codec of each file that is opened from now on may work on: where rows are long, fewer
+/// threads work on one file then.
+void set_exr_memory(std::uint64_t bytes);
+
+/// The most rows that any compression of outputs puts together.
+constexpr std::uint64_t kRowsOfOutput = 32;
+
+/// The bytes that a codec works on of which a group of rows takes so many: as set_exr_memory() has it, or where it may
+/// work on `most_bytes`.
+std::uint64_t exr_codec_bytes(std::uint64_t group_bytes, std::optional<std::uint64_t> most_bytes = {});
 
 }  // namespace alcove

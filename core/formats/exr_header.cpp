@@ -15,9 +15,10 @@ namespace alcove {
 namespace {
 
 constexpr std::size_t kLongestName = 255;
-constexpr std::uint32_t kMultiPart = 0x1000;   // of the version's flags
-constexpr std::uint64_t kLinesPerChunk = 256;  // at most, of any compression
-constexpr std::uint64_t kOffset = 8;           // bytes of a chunk's place in the file
+constexpr std::uint32_t kMultiPart = 0x1000;             // of the version's flags
+constexpr std::uint64_t kLinesPerChunk = 256;            // at most, of any compression
+constexpr std::string_view kDeepLines = "deepscanline";  // a type of parts, which compresses each line by itself
+constexpr std::uint64_t kOffset = 8;                     // bytes of a chunk's place in the file
 // At most: DWA keeps 2 bytes of a constant block of 64 pixels, and deflate packs these 1032:1.
 constexpr std::uint64_t kPixelsPerByte = 65536;
 // The longest header: ten times what programs write, and small beside a frame. Several copies of it are held.
@@ -47,9 +48,10 @@ struct Claim {
   std::uint64_t width = 0, height = 0;            // px
   std::uint64_t tile_width = 0, tile_height = 0;  // px; 0: lines
   bool has_attributes = false;
+  std::uint64_t lines_per_chunk = kLinesPerChunk;
 
   std::uint64_t chunks() const {
-    if (!tile_width) return (height + kLinesPerChunk - 1) / kLinesPerChunk;
+    if (!tile_width) return (height + lines_per_chunk - 1) / lines_per_chunk;
     return ((width + tile_width - 1) / tile_width) * ((height + tile_height - 1) / tile_height);
   }
 };
@@ -66,7 +68,8 @@ class Walk {
     is_multi_part_ = *version & kMultiPart;
   }
 
-  void check() {
+  /// Gives the bytes of the header.
+  std::uint64_t check() {
     for (Claim claim;;) {
       const auto name = reader_.name();
       if (!name) refuse("the file ends in it, or a name is endless");
@@ -76,7 +79,7 @@ class Walk {
       }
       // An empty name ends a part, and a part without attributes the header.
       if (claim.has_attributes) check_part(claim);
-      if (!claim.has_attributes || !is_multi_part_) return;
+      if (!claim.has_attributes || !is_multi_part_) return std::uint64_t(reader_.file.tellg());
       claim = {};
     }
   }
@@ -101,6 +104,8 @@ class Walk {
     if (std::uint64_t(next) > kMostBytes) refuse(fmt::format("it is longer than {} MiB", kMostBytes >> 20));
     if (name == "dataWindow" && *size == 16) read_window(claim);
     if (name == "tiles" && *size == 9) read_tiles(claim);
+    if (name == "chunkCount" && *size == 4) read_chunk_count();
+    if (name == "type" && *size == kDeepLines.size()) read_type(claim);
     reader_.file.seekg(next);
   }
 
@@ -118,6 +123,17 @@ class Walk {
     if (!claim.tile_width || !claim.tile_height) refuse("its tiles are empty");
   }
 
+  void read_chunk_count() {
+    if (const std::uint32_t count = *reader_.word(); count > reader_.left() / kOffset)
+      refuse(fmt::format("{} chunks in a file of {} bytes", count, reader_.size));
+  }
+
+  void read_type(Claim& claim) {
+    std::string type(kDeepLines.size(), '\0');
+    reader_.file.read(type.data(), std::streamsize(type.size()));
+    if (type == kDeepLines) claim.lines_per_chunk = 1;
+  }
+
   const std::string& path_;
   const char* option_;
   Reader reader_;
@@ -126,6 +142,6 @@ class Walk {
 
 }  // namespace
 
-void require_sane_header(const std::string& path, const char* option) { Walk(path, option).check(); }
+std::uint64_t require_sane_header(const std::string& path, const char* option) { return Walk(path, option).check(); }
 
 }  // namespace alcove

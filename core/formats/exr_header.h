@@ -2,13 +2,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 namespace alcove {
 
 /// Walks the attributes of all parts, allocating nothing by their sizes. Fails with ErrorKind::input where an attribute
 /// is larger than the file, all of them are longer than 32 MiB, or a part has more lines or tiles than the file has
-/// room for their offsets: OpenEXR would make room for both.
-void require_sane_header(const std::string& path, const char* option);
+/// room for their offsets: OpenEXR would make room for both. Gives the bytes of the header, behind which the tables of
+/// chunks stand.
+std::uint64_t require_sane_header(const std::string& path, const char* option);
 
 }  // namespace alcove

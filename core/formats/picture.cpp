@@ -20,7 +20,8 @@ std::vector<PictureChannel> channels_of(const ExrFile& file) {
       const bool repeats =
           parts[part].name.empty() || parts.size() == 1 || channel.name.starts_with(parts[part].name + ".");
       const std::string full = repeats ? channel.name : parts[part].name + "." + channel.name;
-      if (!channel.subsampled) channels.push_back({full, parts[part].data, int(part), channel.name});
+      if (!channel.subsampled && !parts[part].deep)
+        channels.push_back({full, parts[part].data, int(part), channel.name});
     }
   return channels;
 }
@@ -56,10 +57,26 @@ std::vector<ChannelPair> same_names(const Picture& result, const Picture& refere
   return pairs;
 }
 
+/// Whether a channel is one of x, y and z that its layer all has.
+bool is_of_vector(const Picture& picture, std::size_t index) {
+  const std::string name = lower_case(picture.channels()[index].name);
+  const std::string layer = name.substr(0, name.size() - last_part(name).size());
+  const auto has = [&](const char* component) {
+    return std::ranges::any_of(picture.channels(),
+                               [&](const auto& channel) { return lower_case(channel.name) == layer + component; });
+  };
+  const std::string last = last_part(name);
+  return (last == "x" || last == "y" || last == "z") && has("x") && has("y") && has("z");
+}
+
 }  // namespace
 
 Picture::Picture(const std::string& path, const char* option)
     : path_(path), file_(open_image(path, option, Formats::all)), channels_(channels_of(file_)) {
+  if (std::ranges::any_of(file_.parts(), [](const ExrPart& part) { return part.deep.has_value(); }) &&
+      channels_.empty())
+    fail(ErrorKind::input, "{}: it holds deep data only, which has no single value per pixel: flatten it first ({})",
+         path_, option);
   if (channels_.empty())
     fail(ErrorKind::input, "{}: it has no channel with a sample for every pixel ({})", path, option);
 }
@@ -110,7 +127,13 @@ std::vector<ChannelPair> match_channels(const Picture& result, const Picture& re
   if (!chosen.empty()) return chosen_pairs(result, reference, chosen);
   if (result.channels().size() == 1 && reference.channels().size() == 1) return {{0, 0}};
   auto pairs = same_names(result, reference, lower_case);
-  if (pairs.empty()) pairs = same_names(result, reference, last_part);
+  if (pairs.empty()) {
+    pairs = same_names(result, reference, last_part);
+    // The Y of an AO file is no component of a normal.
+    std::erase_if(pairs, [&](const ChannelPair& pair) {
+      return is_of_vector(result, pair.result) != is_of_vector(reference, pair.reference);
+    });
+  }
   if (pairs.empty())
     fail(ErrorKind::input, "the pictures share no channel: {}; say what to compare with --channel RESULT=REFERENCE",
          both_lists(result, reference));

@@ -51,8 +51,9 @@ struct ChannelPair {
 
 /// Pairs the channels that two pictures share. `chosen` is a list with commas of names, or of RESULT=REFERENCE where
 /// the names differ. Without it, the only channels of both are paired, whatever their names; else those with the same
-/// full name; else those with the same last part of the name. Case is ignored. Fails with ErrorKind::input, listing the
-/// channels of both, if there are no pairs and if a last part stands for several channels.
+/// full name; else those with the same last part of the name, but for one that is of a vector in one picture alone.
+/// Case is ignored. Fails with ErrorKind::input, listing the channels of both, if there are no pairs and if a last part
+/// stands for several channels.
 std::vector<ChannelPair> match_channels(const Picture& result, const Picture& reference, const std::string& chosen);
 
 }  // namespace alcove

@@ -26,11 +26,13 @@ bool is_scale(double pixels) { return pixels >= kLeastScale && pixels <= kMostSc
 /// A camera file being read: every complaint names the file and the field.
 struct CameraFile {
   std::string path;
-  Json top, frame;  // fields of the frame's own entry win
+  // Those of the frame's own entry win over those outside, and within either those of the view.
+  Json top, frame, view_of_top, view_of_frame;
 
   const Json* find(const char* field) const {
-    if (frame.contains(field)) return &frame[field];
-    return top.contains(field) ? &top[field] : nullptr;
+    for (const Json* fields : {&view_of_frame, &frame, &view_of_top, &top})
+      if (fields->contains(field)) return &(*fields)[field];
+    return nullptr;
   }
 
   [[noreturn]] void refuse(const char* field, const std::string& why) const {
@@ -83,6 +85,18 @@ struct CameraFile {
   }
 };
 
+/// The object that a camera file is.
+Json object_in(const std::string& path) {
+  const auto bounded = [&](int depth, Json::parse_event_t, Json&) {
+    if (depth > kDeepest)
+      fail(ErrorKind::input, "{}: JSON that nests deeper than {}; --camera takes a camera file", path, kDeepest);
+    return true;
+  };
+  Json top = Json::parse(read_text(path, "camera", "--camera"), bounded, false);
+  if (!top.is_object()) fail(ErrorKind::input, "{}: not a JSON object; --camera takes a camera file", path);
+  return top;
+}
+
 bool starts_with(const std::string& text, const char* start) { return text.rfind(start, 0) == 0; }
 
 /// Gives the entry of `frames` with that number, or an empty object where the file has no `frames`.
@@ -96,6 +110,19 @@ Json frame_entry(const CameraFile& file, int frame) {
     if (entry["frame"] == frame) return entry;
   }
   file.refuse("frames", fmt::format("has no frame {}", frame));
+}
+
+/// Gives the entry of `views` with that name, in any case; an empty object where there are no `views`.
+Json view_entry(const CameraFile& file, const Json& within, const std::string& view) {
+  if (view.empty() || !within.contains("views")) return Json::object();
+  const Json& views = within["views"];
+  if (!views.is_object()) file.refuse("views", "must be an object, with an object of fields for the name of each view");
+  for (const auto& [name, entry] : views.items())
+    if (lower_case(name) == lower_case(view)) {
+      if (!entry.is_object()) file.refuse("views", fmt::format("has no object of fields for {}", name));
+      return entry;
+    }
+  file.refuse("views", fmt::format("has no view {}", view));
 }
 
 /// Whether the file says that its camera space is left-handed, looking along +z.
@@ -252,16 +279,11 @@ Camera fitted(Camera camera, const Window& display, const std::string& path) {
 
 }  // namespace
 
-Camera read_camera(const std::string& path, int frame) {
-  CameraFile file{path, Json::object(), Json::object()};
-  const auto bounded = [&](int depth, Json::parse_event_t, Json&) {
-    if (depth > kDeepest)
-      fail(ErrorKind::input, "{}: JSON that nests deeper than {}; --camera takes a camera file", path, kDeepest);
-    return true;
-  };
-  file.top = Json::parse(read_text(path, "camera", "--camera"), bounded, false);
-  if (!file.top.is_object()) fail(ErrorKind::input, "{}: not a JSON object; --camera takes a camera file", path);
+Camera read_camera(const std::string& path, int frame, const std::string& view) {
+  CameraFile file{path, object_in(path), Json::object(), Json::object(), Json::object()};
   file.frame = frame_entry(file, frame);
+  file.view_of_top = view_entry(file, file.top, view);
+  file.view_of_frame = view_entry(file, file.frame, view);
 
   Camera camera;
   camera.width = file.resolution(0);
@@ -284,12 +306,15 @@ Camera read_camera(const std::string& path, int frame) {
   return camera;
 }
 
+bool lists_frames(const std::string& path) { return object_in(path).contains("frames"); }
+
 bool names_a_camera(const InputSettings& settings) {
   return !settings.camera.empty() || settings.fov || settings.focal || settings.ortho_width;
 }
 
-Camera camera_for(const InputSettings& settings, const Window& display, double pixel_aspect, int frame) {
-  if (!settings.camera.empty()) return fitted(read_camera(settings.camera, frame), display, settings.camera);
+Camera camera_for(const InputSettings& settings, const Window& display, double pixel_aspect, int frame,
+                  const std::string& view) {
+  if (!settings.camera.empty()) return fitted(read_camera(settings.camera, frame, view), display, settings.camera);
   const double half_width = 0.5 * display.width;
   if (settings.fov)
     return centred(display, half_width / std::tan(*settings.fov * std::numbers::pi / 360), pixel_aspect, false);
@@ -318,6 +343,20 @@ Matrix3 view_from_normal(const Camera& camera, NormalSpace space, const NormalFl
     if (flips.z) row[2] = -row[2];
   }
   return m;
+}
+
+ViewMap view_from_view(const Camera& to, const Camera& from) {
+  const Matrix3 &t = to.view_from_world.value(), &f = from.view_from_world.value();
+  ViewMap map{};
+  for (std::size_t i = 0; i < 3; i++) {
+    map[i][3] = to.view_from_world_offset[i];
+    for (std::size_t j = 0; j < 3; j++) {
+      // The way back of a rotation is its transpose.
+      for (std::size_t k = 0; k < 3; k++) map[i][j] += t[i][k] * f[j][k];
+      map[i][3] -= map[i][j] * from.view_from_world_offset[j];
+    }
+  }
+  return map;
 }
 
 View view_of(const Camera& camera, const Window& data, const Window& display) {

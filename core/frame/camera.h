@@ -40,9 +40,13 @@ struct Camera {
   NormalEncoding normal_encoding = NormalEncoding::automatic;
 };
 
-/// Reads a camera JSON file, whose keys README.md lists; if the file lists `frames`, the one of that number. Fails with
-/// ErrorKind::input, naming file and field, on anything missing or senseless.
-Camera read_camera(const std::string& path, int frame);
+/// Reads a camera JSON file, whose keys README.md lists; if the file lists `frames`, the one of that number, and
+/// where it has `views`, the one of that name; "": what all views share. Fails with ErrorKind::input, naming file and
+/// field, on anything missing or senseless.
+Camera read_camera(const std::string& path, int frame, const std::string& view = "");
+
+/// Whether a camera file lists `frames`. Fails with ErrorKind::input where it cannot be read.
+bool lists_frames(const std::string& path);
 
 /// Whether the settings give a camera, or at least try to.
 bool names_a_camera(const InputSettings& settings);
@@ -50,10 +54,16 @@ bool names_a_camera(const InputSettings& settings);
 /// Gives the camera of the settings for a frame of this display window and pixel aspect (width / height of a pixel): by
 /// its file, by fov, by focal and aperture, or by ortho_width. Fails with ErrorKind::usage if there is none, and with
 /// ErrorKind::input if it does not fit.
-Camera camera_for(const InputSettings& settings, const Window& display, double pixel_aspect, int frame);
+Camera camera_for(const InputSettings& settings, const Window& display, double pixel_aspect, int frame,
+                  const std::string& view = "");
 
 /// Gives the map from the normals' space, with their flips, to view space. World space needs camera.view_from_world.
 Matrix3 view_from_normal(const Camera& camera, NormalSpace space, const NormalFlips& flips);
+
+/// Rows of a map from one view space to another: x' = row.xyz * x + row.w, scene units.
+using ViewMap = std::array<std::array<double, 4>, 3>;
+/// Gives the map from one camera's view space to another's. Both need view_from_world.
+ViewMap view_from_view(const Camera& to, const Camera& from);
 
 /// Gives the projection as kernels take it, for pixels counted from the data window's upper left corner.
 View view_of(const Camera& camera, const Window& data, const Window& display);

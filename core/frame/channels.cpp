@@ -18,18 +18,18 @@ const AovNames kDepthNames{
     .channel_option = "--depth-channel",
     .layers = {"depth", "z", "zdepth", "vrayzdepth", "z-depth", "__depth", "cgeometry_zdepth",
                "finalimagemovierenderqueue_worlddepth"},
-    .in_layer = {{"z"}, {"depth"}, {"r"}, {"y"}},
+    .in_layer = {{"z"}, {"depth"}, {"r"}, {"red"}, {"y"}},
     .bare = {{"z"}, {"depth"}, {"zdepth"}, {"pz"}},
-    .alone = {{"r"}, {"y"}},
+    .alone = {{"r"}, {"red"}, {"y"}},
 };
 
 const AovNames kNormalNames{
     .what = "normal",
     .channel_option = "--normal-channels",
     .layers = {"normal", "n", "nn", "normals", "ns", "__nworld", "cgeometry_normalsshading"},
-    .in_layer = {{"x", "y", "z"}, {"r", "g", "b"}},
+    .in_layer = {{"x", "y", "z"}, {"r", "g", "b"}, {"red", "green", "blue"}},
     .bare = {{"nx", "ny", "nz"}},
-    .alone = {{"x", "y", "z"}, {"r", "g", "b"}, {"x", "y"}, {"r", "g"}},
+    .alone = {{"x", "y", "z"}, {"r", "g", "b"}, {"red", "green", "blue"}, {"x", "y"}, {"r", "g"}, {"red", "green"}},
     .may_be_two = true,
 };
 
@@ -37,9 +37,9 @@ const AovNames kPositionNames{
     .what = "position",
     .channel_option = "--position-channels",
     .layers = {"position", "p", "pworld", "__pworld", "worldposition", "cgeometry_worldposition"},
-    .in_layer = {{"x", "y", "z"}, {"r", "g", "b"}},
+    .in_layer = {{"x", "y", "z"}, {"r", "g", "b"}, {"red", "green", "blue"}},
     .bare = {{"px", "py", "pz"}},
-    .alone = {{"x", "y", "z"}, {"r", "g", "b"}},
+    .alone = {{"x", "y", "z"}, {"r", "g", "b"}, {"red", "green", "blue"}},
 };
 
 const AovNames kBeautyNames{
@@ -47,7 +47,7 @@ const AovNames kBeautyNames{
     .channel_option = "--beauty-channels",
     .layers = {"combined", "rgba", "beauty"},
     .in_layer = {{"r", "g", "b"}, {"red", "green", "blue"}},
-    .bare = {{"r", "g", "b"}},
+    .bare = {{"r", "g", "b"}, {"red", "green", "blue"}},
     .alone = {},
     .may_have_alpha = true,
 };
@@ -56,7 +56,7 @@ const AovNames kIndirectNames{
     .what = "indirect diffuse",
     .channel_option = "--layer",
     .layers = {"diffind", "diffuse indirect", "diffuse_indirect", "indirectdiffuse", "gi"},
-    .in_layer = {{"r", "g", "b"}},
+    .in_layer = {{"r", "g", "b"}, {"red", "green", "blue"}},
     .bare = {},
     .alone = {},
 };
@@ -65,7 +65,7 @@ const AovNames kDiffuseColorNames{
     .what = "diffuse colour",
     .channel_option = "--layer",
     .layers = {"diffcol", "diffuse color"},
-    .in_layer = {{"r", "g", "b"}},
+    .in_layer = {{"r", "g", "b"}, {"red", "green", "blue"}},
     .bare = {},
     .alone = {},
 };
@@ -83,9 +83,9 @@ const AovNames kAlbedoNames{
     .what = "diffuse colour",
     .channel_option = "--albedo-channels",
     .layers = {"diffcol", "diffuse color", "albedo", "diffuse_albedo"},
-    .in_layer = {{"r", "g", "b"}},
+    .in_layer = {{"r", "g", "b"}, {"red", "green", "blue"}},
     .bare = {},
-    .alone = {{"r", "g", "b"}},
+    .alone = {{"r", "g", "b"}, {"red", "green", "blue"}},
 };
 
 namespace {
@@ -120,6 +120,7 @@ std::vector<NamedChannel> channels_of(const ExrFile& file, std::size_t index, co
   std::vector<NamedChannel> channels;
   for (std::size_t part = 0; part < file.parts().size(); part++) {
     const auto& p = file.parts()[part];
+    if (p.deep) continue;  // its channels are no planes
     if (!p.view.empty() && !view.empty() && lower_case(p.view) != lower_case(view)) continue;
     // "depth.left" of view "left" is the layer "depth".
     const std::string part_name = !p.view.empty() && p.name.ends_with("." + p.view)
@@ -222,7 +223,10 @@ std::vector<ChannelRef> find_usual(const ExrFile& file, const std::vector<NamedC
   for (const auto& layer : names.layers)
     if (auto found = find_in_layer(file, channels, names, layer, names.in_layer); !found.empty()) return found;
   auto found = find_in_layer(file, channels, names, "", names.bare);
-  return found.empty() && own_file ? find_in_layer(file, channels, names, "", names.alone) : found;
+  if (!found.empty() || !own_file) return found;
+  found = find_in_layer(file, channels, names, "", names.alone);
+  const bool is_single = names.in_layer.front().size() == 1 && channels.size() == 1;
+  return found.empty() && is_single ? refs_of({&channels[0]}, file) : found;
 }
 
 const NamedChannel* find_named(const std::vector<NamedChannel>& channels, const std::string& name) {
@@ -232,15 +236,20 @@ const NamedChannel* find_named(const std::vector<NamedChannel>& channels, const 
   return nullptr;
 }
 
+/// Components of a layer that the user named: what they are is no question then, only their order.
+const Components kOtherComponents{{"0", "1", "2"}, {"u", "v", "w"}, {"nx", "ny", "nz"}, {"px", "py", "pz"}};
+
 /// Finds the channels that the user named: each by its full name, or all by their layer.
 std::vector<ChannelRef> find_chosen(const ExrFile& file, const std::vector<NamedChannel>& channels,
                                     const AovNames& names, const std::string& chosen) {
   auto wanted = split(chosen);
   const std::size_t count = names.in_layer.front().size();
-  if (wanted.size() == 1 && count > 1)
-    for (const auto& components : names.in_layer)
-      if (const auto places = places_of(channels, lower_case(chosen), components); places.size() == 1)
-        return refs_of(places[0], file);
+  if (wanted.size() == 1 && count > 1) {
+    Components sets = names.in_layer;
+    sets.insert(sets.end(), kOtherComponents.begin(), kOtherComponents.end());
+    if (names.may_be_two) sets.insert(sets.end(), {{"x", "y"}, {"r", "g"}, {"red", "green"}});
+    if (auto found = find_in_layer(file, channels, names, lower_case(chosen), sets); !found.empty()) return found;
+  }
   if (wanted.size() != count && !(names.may_have_alpha && wanted.size() == count + 1) &&
       !(names.may_be_two && wanted.size() == 2))
     fail(ErrorKind::input, "{}: no layer {} for {}{}; there is {}; {} takes a layer or {} channel names with commas",
@@ -314,6 +323,12 @@ std::vector<ChannelRef> ChannelSearch::require(std::size_t file, const AovNames&
     fail(ErrorKind::input, "{}: there is no layer {}{} for --layer; there is {}", files_[file].path(), settings_.layer,
          suggestion(settings_.layer, layers), list_of(layers));
   }
+  const bool is_deep =
+      std::ranges::any_of(files_[file].parts(), [](const ExrPart& part) { return part.deep.has_value(); });
+  if (is_deep && channels_[file].empty())
+    fail(ErrorKind::input,
+         "{}: it holds deep data only, which has no single value per pixel: no {} ({}); --deep takes it",
+         files_[file].path(), names.what, names.channel_option);
   const auto all = full_names(channels_[file]);
   const std::string within = settings_.layer.empty() ? "" : fmt::format(" in layer {}", settings_.layer);
   fail(ErrorKind::input, "{}: no {} channel found{}{}; there is {}; name it with {}", files_[file].path(), names.what,

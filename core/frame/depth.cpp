@@ -39,6 +39,7 @@ void count_between(DepthMap& map, double near_value, double far_value, double fr
 /// is exact there, and 1 minus it would not be.
 void set_device(DepthMap& map, const DepthRange& range, bool orthographic, double scale) {
   const double n = near_of(DepthKind::device, range);
+  if (!(n > 0) && !orthographic) fail(ErrorKind::usage, "device depth needs a near plane above 0, and --near is {}", n);
   const double f = far_of(DepthKind::device, range, !orthographic);
   if (!(n < f))
     fail(ErrorKind::usage, "the near plane must be nearer than the far plane, --near {} is not below --far {}", n, f);
@@ -141,9 +142,15 @@ bool is_all_sky(const DepthMap& map, std::span<const float> raw) {
   return std::ranges::all_of(raw, [&](float x) { return x >= above || x == below; });
 }
 
+/// So many values do not lie on the levels of integers by chance.
+constexpr std::size_t kLeastOnLevels = 64;
+
+bool shows_step(std::span<const float> raw) {
+  return std::size_t(std::ranges::count_if(raw, [](float d) { return d > 0 && d < 1; })) >= kLeastOnLevels;
+}
+
 double step_of(std::span<const float> raw) {
   constexpr std::size_t kSampled = 4096;
-  constexpr std::size_t kLeastValues = 64;
   constexpr double kExact = 0.02;  // of a step: how near to a level a float is that can tell
   const std::size_t sparse = raw.size() / kSampled + 1;
   for (const int bits : {16, 24}) {
@@ -156,7 +163,7 @@ double step_of(std::span<const float> raw) {
       is_on_levels = std::abs(level - std::round(level)) < kExact;
       values++;
     }
-    if (is_on_levels && values >= kLeastValues) return 1 / levels;
+    if (is_on_levels && values >= kLeastOnLevels) return 1 / levels;
   }
   return 0;
 }

@@ -53,6 +53,9 @@ constexpr double kFloatPrecision = 0x1p-24, kHalfPrecision = 0x1p-11;
 /// values show a step of 24 bits, and only there it matters: larger floats are as coarse themselves.
 double step_of(std::span<const float> raw);
 
+/// Whether there are enough values to tell whether they were rounded to 16 bits.
+bool shows_step(std::span<const float> raw);
+
 /// The precision of the planar depth from raw values that are known to this part of themselves, and rounded to
 /// multiples of `step`. It is never less than 2^-16 of the depth, twice what renderers' own arithmetic loses where
 /// surfaces 1000 units across are seen from a few units away (measured: 8e-6).

@@ -15,6 +15,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kAgreementDegrees = 20;    // to the normal that depth gives; depth's own steps turn it by less
+constexpr double kCloseDegrees = 3;         // to it; less than a wrong camera turns most of the normals
 constexpr std::size_t kLeastSamples = 200;  // fewer smooth places tell nothing
 constexpr int kSamplesAcross = 160;         // places that are looked at in x and in y: enough for shares to a percent
 
@@ -180,7 +181,10 @@ std::optional<SurfacePlace> surface_at(std::span<const float> raw, const DepthMa
   const Vector along_y = difference(position_at(view, x, y + 1, down), position_at(view, x, y - 1, up));
   const Vector along_x = difference(position_at(view, x + 1, y, right), position_at(view, x - 1, y, left));
   const Vector p = position_at(view, x, y, here);
-  return SurfacePlace{cross(along_y, along_x), view.orthographic ? Vector{0, 0, 1} : Vector{-p[0], -p[1], -p[2]}};
+  // A view in which the picture is mirrored turns the product around.
+  const bool is_mirrored = (view.tangent_per_pixel.x > 0) == (view.tangent_per_pixel.y > 0);
+  return SurfacePlace{is_mirrored ? cross(along_x, along_y) : cross(along_y, along_x),
+                      view.orthographic ? Vector{0, 0, 1} : Vector{-p[0], -p[1], -p[2]}};
 }
 
 /// How far a point of view space is seen from the pixel, in pixels; infinite where it is behind the camera.
@@ -189,6 +193,43 @@ double pixels_beside(const View& view, int x, int y, const Vector& p) {
   const Vector t = tangent_at(view, x, y);
   const double scale = view.orthographic ? 1 : -p[2];
   return std::hypot((p[0] / scale - t[0]) / view.tangent_per_pixel.x, (p[1] / scale - t[1]) / view.tangent_per_pixel.y);
+}
+
+/// Fills in how well the frame agrees with each of the readings. Gives false where too little of it is smooth.
+bool score(std::vector<NormalScore>& scores, const NormalPlanes& planes, const Camera& camera, const View& view) {
+  std::vector<Matrix3> rotations;
+  for (const auto& score : scores) rotations.push_back(view_from_normal(camera, score.space, score.flips));
+
+  const std::size_t plane = std::size_t(view.size.x) * std::size_t(view.size.y);
+  const int stride = sparseness(view);
+  const double agreeing = std::cos(kAgreementDegrees * std::numbers::pi / 180);
+  const double close = std::cos(kCloseDegrees * std::numbers::pi / 180);
+  std::size_t count = 0;
+  std::vector<std::vector<double>> cosines(scores.size());
+  for (int y = 1; y + 1 < view.size.y; y += stride)
+    for (int x = 1; x + 1 < view.size.x; x += stride) {
+      const auto surface = surface_at(planes.raw, planes.map, view, x, y);
+      if (!surface) continue;
+      const Vector vector = decoded_normal(planes.normal, plane, index_of(view, x, y), planes.encoding, planes.unorm);
+      const double lengths = std::sqrt(dot(vector, vector) * dot(surface->normal, surface->normal));
+      if (!(lengths > 0) || std::isinf(lengths)) continue;
+      count++;
+      for (std::size_t k = 0; k < scores.size(); k++) {
+        const Vector n = times(rotations[k], vector);
+        scores[k].facing += dot(n, surface->eye) > 0;
+        cosines[k].push_back(std::min(1.0, dot(n, surface->normal) / lengths));
+        scores[k].agreement += cosines[k].back() > agreeing;
+        scores[k].close += cosines[k].back() > close;
+      }
+    }
+  if (count < kLeastSamples) return false;
+  for (std::size_t k = 0; k < scores.size(); k++) {
+    scores[k].facing /= double(count);
+    scores[k].agreement /= double(count);
+    scores[k].close /= double(count);
+    scores[k].angle = std::acos(std::max(-1.0, quantile(cosines[k], 0.75))) * 180 / std::numbers::pi;
+  }
+  return true;
 }
 
 }  // namespace
@@ -221,14 +262,13 @@ NormalStatistics normal_statistics(std::span<const float> normal, std::span<cons
   return s;
 }
 
-std::vector<float> planar_depths(std::span<const float> raw, const DepthMap& map, const View& view) {
+std::vector<float> planar_depths(std::span<const float> raw, const DepthMap& map, const View& view, int row_step) {
   const std::size_t plane = std::size_t(view.size.x) * std::size_t(view.size.y);
-  std::vector<float> planar(plane);
-  for (int y = 0; y < view.size.y; y++)
-    for (int x = 0; x < view.size.x; x++) {
-      const std::size_t i = index_of(view, x, y);
-      planar[i] = float(planar_depth(map, value_at(raw, plane, i), ray_length(view, x, y)));
-    }
+  std::vector<float> planar;
+  planar.reserve(plane / std::size_t(row_step) + std::size_t(view.size.x));
+  for (int y = 0; y < view.size.y; y += row_step)
+    for (int x = 0; x < view.size.x; x++)
+      planar.push_back(float(planar_depth(map, value_at(raw, plane, index_of(view, x, y)), ray_length(view, x, y))));
   return planar;
 }
 
@@ -289,41 +329,18 @@ std::vector<DepthScore> score_depth(std::span<const float> raw, const View& view
   return scores;
 }
 
-std::vector<NormalScore> score_normals(std::span<const float> normal, NormalEncoding encoding, bool unorm,
-                                       std::span<const float> raw, const DepthMap& map, const Camera& camera,
-                                       const View& view) {
+std::vector<NormalScore> score_normals(const NormalPlanes& planes, const Camera& camera, const View& view) {
   std::vector<NormalScore> scores = readings_of_normals(camera);
-  std::vector<Matrix3> rotations;
-  for (const auto& score : scores) rotations.push_back(view_from_normal(camera, score.space, score.flips));
-
-  const std::size_t plane = std::size_t(view.size.x) * std::size_t(view.size.y);
-  const int stride = sparseness(view);
-  const double least_cosine = std::cos(kAgreementDegrees * std::numbers::pi / 180);
-  std::size_t count = 0;
-  std::vector<std::vector<double>> cosines(scores.size());
-  for (int y = 1; y + 1 < view.size.y; y += stride)
-    for (int x = 1; x + 1 < view.size.x; x += stride) {
-      const auto surface = surface_at(raw, map, view, x, y);
-      if (!surface) continue;
-      const Vector vector = decoded_normal(normal, plane, index_of(view, x, y), encoding, unorm);
-      const double lengths = std::sqrt(dot(vector, vector) * dot(surface->normal, surface->normal));
-      if (!(lengths > 0) || std::isinf(lengths)) continue;
-      count++;
-      for (std::size_t k = 0; k < scores.size(); k++) {
-        const Vector n = times(rotations[k], vector);
-        scores[k].facing += dot(n, surface->eye) > 0;
-        cosines[k].push_back(std::min(1.0, dot(n, surface->normal) / lengths));
-        scores[k].agreement += cosines[k].back() > least_cosine;
-      }
-    }
-  if (count < kLeastSamples) return {};
-  for (std::size_t k = 0; k < scores.size(); k++) {
-    scores[k].facing /= double(count);
-    scores[k].agreement /= double(count);
-    scores[k].angle = std::acos(std::max(-1.0, quantile(cosines[k], 0.75))) * 180 / std::numbers::pi;
-  }
+  if (!score(scores, planes, camera, view)) return {};
   std::ranges::stable_sort(scores, std::greater(), &NormalScore::agreement);
   return scores;
+}
+
+std::optional<NormalScore> score_normals_as(NormalSpace space, const NormalFlips& flips, const NormalPlanes& planes,
+                                            const Camera& camera, const View& view) {
+  std::vector<NormalScore> scores{{space, flips}};
+  if (!score(scores, planes, camera, view)) return std::nullopt;
+  return scores[0];
 }
 
 std::string to_string(const NormalFlips& flips) {

@@ -39,8 +39,8 @@ NormalStatistics normal_statistics(std::span<const float> normal, std::span<cons
 /// Decodes the file's values into planes x, y, z of normals of any length, as prepare.comp does.
 std::vector<float> decoded_normals(std::span<const float> raw, std::size_t pixels, NormalEncoding encoding, bool unorm);
 
-/// Gives the planar depth of each pixel, in scene units; infinite on sky.
-std::vector<float> planar_depths(std::span<const float> raw, const DepthMap& map, const View& view);
+/// Gives the planar depth of each pixel, in scene units; infinite on sky. Of `row_step` rows only the first is taken.
+std::vector<float> planar_depths(std::span<const float> raw, const DepthMap& map, const View& view, int row_step = 1);
 
 /// Gives the median distance, in pixels, of positions from the pixels that hold them. It is infinite if most positions
 /// are behind the camera; there is none if all are sky. `mirrored` says that the z of view positions has the other sign
@@ -70,13 +70,23 @@ struct NormalScore {
   NormalFlips flips;
   double facing = 0;     // share that faces the camera, as all that is visible does
   double agreement = 0;  // share within 20 degrees of the normal that depth gives
+  double close = 0;      // share within 3 degrees of it, which only the right camera gives
   double angle = 0;      // degrees to it, of the best quarter at most
 };
+/// Normals as they stand in a file, how they are encoded, and the depth that they are held against.
+struct NormalPlanes {
+  std::span<const float> normal;
+  NormalEncoding encoding;
+  bool unorm;
+  std::span<const float> raw;  // as in the file
+  DepthMap map;
+};
 /// Scores world space, where the camera knows it, and view space, each with all flips, the best agreement first. Gives
-/// nothing where too little of the frame is smooth. `normal` and `raw` are as in the file.
-std::vector<NormalScore> score_normals(std::span<const float> normal, NormalEncoding encoding, bool unorm,
-                                       std::span<const float> raw, const DepthMap& map, const Camera& camera,
-                                       const View& view);
+/// nothing where too little of the frame is smooth.
+std::vector<NormalScore> score_normals(const NormalPlanes& planes, const Camera& camera, const View& view);
+/// Scores one of these readings, so that another camera than the frame's can be tried.
+std::optional<NormalScore> score_normals_as(NormalSpace space, const NormalFlips& flips, const NormalPlanes& planes,
+                                            const Camera& camera, const View& view);
 
 /// Gives the axes, as "xz", or "none".
 std::string to_string(const NormalFlips& flips);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 #include <optional>
 #include <set>
@@ -11,7 +12,10 @@
 #include "core/base/error.h"
 #include "core/base/text.h"
 #include "core/formats/open_image.h"
+#include "core/frame/behind.h"
+#include "core/frame/deep.h"
 #include "core/frame/header_camera.h"
+#include "core/frame/input_files.h"
 
 namespace alcove {
 namespace {
@@ -131,6 +135,17 @@ std::vector<ChannelRef> find_normal(FrameSource& source, const ChannelSearch& se
   return search.find(file, two, "", false);
 }
 
+/// Notes a camera file whose pixels have another shape than the file of the frame says: no pixel shows which is right.
+void note_pixel_aspect(FrameSource& source, const std::string& camera) {
+  constexpr double kSame = 0.01;  // focal lengths are rounded
+  const double aspect = source.camera.fy / source.camera.fx;
+  if (std::abs(aspect / source.pixel_aspect - 1) < kSame) return;
+  source.notes.push_back({NoteCode::said_otherwise,
+                          fmt::format("by fx {:.6g} and fy {:.6g} of {} a pixel is {:.4g} times as wide as high, and "
+                                      "by the pixelAspectRatio of the frame {:.4g} times: is one of them wrong?",
+                                      source.camera.fx, source.camera.fy, camera, aspect, source.pixel_aspect)});
+}
+
 /// The settings' camera, or else the header's. Options that give no more than a projection leave the camera where the
 /// header says that it stands.
 void find_camera(FrameSource& source, const InputSettings& settings, const ChannelRef& depth, int frame) {
@@ -143,7 +158,10 @@ void find_camera(FrameSource& source, const InputSettings& settings, const Chann
       source.camera_from = found->from;
       return;
     }
-  source.camera = camera_for(settings, source.display, source.pixel_aspect, frame);
+  const auto views = views_of(file);
+  const std::string view = settings.view.empty() && !views.empty() ? views.front() : settings.view;
+  source.camera = camera_for(settings, source.display, source.pixel_aspect, frame, view);
+  if (!settings.camera.empty()) note_pixel_aspect(source, settings.camera);
   if (settings.camera.empty()) place_by_header(source.camera, attributes, source.display);
 }
 
@@ -182,19 +200,16 @@ void find_meaning(FrameSource& source, const InputSettings& settings) {
   source.normal_space = decided(settings.normal_space, source.camera.normal_space, source.usual_normal_space);
 }
 
-/// Reads whole rows, since that is how files are stored, and keeps what lies in source.data.
-void read_part(FrameSource& source, const std::vector<PlaneRead>& reads) {
-  const Window part = source.data, rows{source.file_data.x, part.y, source.file_data.width, part.height};
-  source.data = rows;
-  std::vector<std::vector<float>> whole;
-  std::vector<PlaneRead> whole_reads;
-  for (const auto& read : reads) {
-    whole.emplace_back(read.channels->size() * rows.pixels());
-    whole_reads.push_back({read.channels, whole.back().data()});
-  }
-  read_planes(source, whole_reads);
-  for (std::size_t i = 0; i < reads.size(); i++) std::ranges::copy(cropped(whole[i], rows, part), reads[i].to);
-  source.data = part;
+/// Notes an INPUT that gives nothing although the frame has no normals: perhaps it holds them.
+void note_unused_input(FrameSource& source, const InputSettings& settings) {
+  if (settings.input.empty() || !source[RawPlane::normal].empty() || source.normals_left_out) return;
+  const auto is_of_input = [&](const ChannelRef& ref) { return source.files[ref.file].path() == settings.input; };
+  const auto is_used = [&](const std::vector<ChannelRef>& plane) { return std::ranges::any_of(plane, is_of_input); };
+  if (std::ranges::any_of(source.planes.entries, is_used)) return;
+  source.notes.push_back({NoteCode::unused_input,
+                          fmt::format("no channel of {} is used: where it holds the normals, give it with --normal, "
+                                      "or name them with --normal-channels",
+                                      settings.input)});
 }
 
 }  // namespace
@@ -203,7 +218,7 @@ FrameSource find_frame(const InputSettings& settings, bool with_beauty, int fram
   FrameSource source;
   ChannelSearch search(settings, source.files);
   const std::string& depth_path = !settings.depth.empty()  ? settings.depth
-                                  : settings.input.empty() ? settings.position
+                                  : settings.input.empty() ? main_input(settings)
                                                            : settings.input;
   const std::string& normal_path = !settings.normal.empty() ? settings.normal
                                    : settings.input.empty() ? depth_path
@@ -214,42 +229,54 @@ FrameSource find_frame(const InputSettings& settings, bool with_beauty, int fram
 
   const bool wants_position = !settings.position.empty() || !settings.position_channels.empty();
   const bool by_position = wants_position || settings.depth_kind == DepthKind::position;
-  const std::size_t depth_file = by_position && !settings.position.empty()
-                                     ? search.open(settings.position, "--position")
-                                     : search.open(depth_path, "--depth");
+  std::size_t depth_file = by_position && !settings.position.empty()
+                               ? search.open(settings.position, "--position")
+                               : search.open(depth_path, depth_path == settings.deep ? "--deep" : "--depth");
   find_rules(source, depth_file, settings);
-  source[RawPlane::depth] = find_depth(source, search, depth_file, settings, by_position);
+  if (!by_position) source[RawPlane::depth] = find_deep_depth(source, search, depth_file, settings);
+  if (source[RawPlane::depth].empty())
+    source[RawPlane::depth] = find_depth(source, search, depth_file, settings, by_position);
+  depth_file = source[RawPlane::depth][0].file;
   source.data = source.file_data = part_of(source, source[RawPlane::depth][0]).data;
   source.display = source.files[depth_file].display();
   source.pixel_aspect = source.files[depth_file].pixel_aspect();
-  source.depth_is_half = has_half_channel(source, source[RawPlane::depth][0]);
+  source.depth_is_half = has_half_channel(source, source[RawPlane::depth][0]) || source.deep_depth_is_half;
   source.depth_scale = settings.depth_scale;
   source.sky = settings.sky;
 
-  const std::size_t normal_file = search.open(normal_path, "--normal");
-  source[RawPlane::normal] = find_normal(source, search, normal_file, settings);
-  require_same_window(source, source[RawPlane::normal], "normal", "--normal");
+  source.normals_left_out = !wants_normals(settings);
+  if (!source.normals_left_out) {
+    source[RawPlane::normal] = find_normal(source, search, search.open(normal_path, "--normal"), settings);
+    require_same_window(source, source[RawPlane::normal], "normal", "--normal");
+  }
   if (with_beauty) find_beauty(source, search, search.open(beauty_path, "--beauty"), settings);
   if (with_albedo) find_albedo(source, search, beauty_path, settings);
   find_material(source, search, settings);
+  find_behind(source, search, settings);
+  find_deep(source, search, settings);
+
+  note_unused_input(source, settings);
 
   const auto views = views_of(source.files[depth_file]);
   if (settings.view.empty() && views.size() > 1)
-    source.notes.push_back(fmt::format("of the views {} this is {} (--view)", list_of(views), views.front()));
+    source.notes.push_back(
+        {NoteCode::default_view, fmt::format("of the views {} this is {} (--view)", list_of(views), views.front())});
+  const auto has_views = [](const ExrFile& file) { return !views_of(file).empty(); };
+  if (!settings.view.empty() && std::ranges::none_of(source.files, has_views))
+    source.notes.push_back({NoteCode::said_otherwise,
+                            fmt::format("--view {} chooses nothing: the frame's files name no views", settings.view)});
   find_camera(source, settings, source[RawPlane::depth][0], frame);
   find_meaning(source, settings);
+  take_deep(source, settings);
   if (!source[RawPlane::normal].empty() && source.normal_space == NormalSpace::world && !source.normal_space_open &&
       !source.camera.view_from_world)
-    fail(ErrorKind::input,
-         "{}: its normals are in world space, and the camera has no world_to_camera: give a --camera file with it, or "
-         "--normal-space view",
-         source.files[source[RawPlane::normal][0].file].path());
+    fail(ErrorKind::input, "{}: {}", source.files[source[RawPlane::normal][0].file].path(), kWorldWithoutMatrix);
   return source;
 }
 
 bool header_has_camera(const InputSettings& settings) {
   const ExrFile file = open_image(!settings.depth.empty()  ? settings.depth
-                                  : settings.input.empty() ? settings.position
+                                  : settings.input.empty() ? main_input(settings)
                                                            : settings.input,
                                   "INPUT", Formats::of_frames);
   for (std::size_t part = 0; part < file.parts().size(); part++)
@@ -259,7 +286,7 @@ bool header_has_camera(const InputSettings& settings) {
 }
 
 void read_planes(FrameSource& source, const std::vector<PlaneRead>& reads) {
-  if (source.data.width != source.file_data.width) return read_part(source, reads);
+  source.rows_read += std::uint64_t(source.data.height);
   std::vector<std::vector<ExrRead>> by_file(source.files.size());
   // a channel that serves two purposes is decoded to the first place, and copied from there
   std::map<ChannelRef, float*> first;

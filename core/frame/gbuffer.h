@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/note.h"
 #include "core/base/settings.h"
 #include "core/formats/exr.h"
 #include "core/frame/channels.h"
@@ -34,11 +35,17 @@ struct FrameSource : Reading {
   const std::string& depth_path() const { return files[planes[RawPlane::depth][0].file].path(); }
 
   std::vector<ExrFile> files;
+  std::optional<std::size_t> deep;  // of them, whose samples are the depth, or give planes behind it
+  std::vector<int> deep_parts;      // of that file
+  bool deep_depth_is_half = false;  // samples are the depth, and were rounded to half floats
   RawPlaneArray<std::vector<ChannelRef>> planes;
-  Window file_data;                   // what the files hold
-  std::optional<Window> region;       // what is to be written of it; none: all of data
-  bool settled = false;               // see core/frame/settle.h
-  bool has_evidence = true;           // false: its pixels did not show what was left open
+  Window file_data;              // what the files hold
+  std::optional<Window> region;  // what is to be written of it; none: all of data
+  std::uint64_t rows_read = 0;   // that were decoded, each as often as it was
+  bool settled = false;          // see core/frame/settle.h
+  bool has_evidence = true;      // false: its pixels did not show what was left open
+  // of the surfaces, scene units; none until the frame is settled, and where all is sky
+  std::optional<double> median_depth;
   const InputRules* rules = nullptr;  // of the program that wrote the frame
   std::string rules_by;               // the attribute or channel, or the option, that told; empty: nothing did
   bool rules_said = false;            // an option names them: what they say is no guess
@@ -46,11 +53,14 @@ struct FrameSource : Reading {
   NormalSpace usual_normal_space = NormalSpace::world;
   // Nobody says it, so the pixels decide.
   bool depth_kind_open = false, normal_space_open = false, normal_encoding_open = false;
-  std::string camera_from;  // the attributes that gave it; empty: the settings did
+  bool normals_left_out = false;  // the settings say so
+  std::string camera_from;        // the attributes that gave it; empty: the settings did
+  // Nobody gave a camera, and this one only stands in for it, so that the pixels cannot speak against it.
+  bool camera_is_assumed = false;
   std::vector<Guess> guesses;
   // what the user should know, a sentence each: guesses that are unusual, options that the pixels speak against
-  std::vector<std::string> notes;
-  std::vector<std::string> suspicious;  // what harms AO
+  Notes notes;
+  Notes suspicious;  // what harms AO
 };
 
 /// Opens the files that the settings name and finds the channels. `with_beauty` asks for the beauty and its ambient
@@ -58,6 +68,11 @@ struct FrameSource : Reading {
 /// Fails with ErrorKind::input, listing what there is and naming the option that decides, when a channel is not found,
 /// is found twice, is subsampled, or has another size than the depth.
 FrameSource find_frame(const InputSettings& settings, bool with_beauty, int frame, bool with_albedo = false);
+
+/// What to do about normals in world space where the camera has no world_to_camera.
+constexpr const char* kWorldWithoutMatrix =
+    "its normals are in world space, and the camera has no world_to_camera: give a --camera file with it, or --normal "
+    "none, which reconstructs them from depth";
 
 /// Whether the header of the frame's depth or position file has a camera. Fails as opening it does.
 bool header_has_camera(const InputSettings& settings);
@@ -68,7 +83,8 @@ struct PlaneRead {
   float* to;
 };
 
-/// Reads all planes within source.data. Every part of every file is decoded once.
+/// Reads all planes within source.data, which is as wide as the files. Every part of every file is decoded once; for
+/// windows see core/frame/frame_rows.h.
 void read_planes(FrameSource& source, const std::vector<PlaneRead>& reads);
 
 }  // namespace alcove

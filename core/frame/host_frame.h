@@ -14,6 +14,8 @@ struct HostFrame : Reading {
   std::vector<float> depth;
   // planes x, y, z (or two, see kernels/prepare.h) in normal_space; empty: reconstructed from depth
   std::vector<float> normal;
+  // planes of depth behind the first surface, in any order, as Reading::behind says; empty: none is known
+  std::vector<float> behind_depth;
   int frame = 0;
 };
 

@@ -2,18 +2,28 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/frame/input_files.h"
 
+#include "core/base/text.h"
 #include "core/frame/raw_plane.h"
 
 namespace alcove {
 
 const std::string& main_input(const InputSettings& settings) {
   if (!settings.input.empty()) return settings.input;
-  return settings.depth.empty() ? settings.position : settings.depth;
+  if (!settings.depth.empty()) return settings.depth;
+  return settings.position.empty() ? settings.deep : settings.position;
+}
+
+bool wants_normals(const InputSettings& settings) { return lower_case(settings.normal) != "none"; }
+
+bool has_hidden_sources(const InputSettings& settings) {
+  const bool has_files = settings.behind != FileList{} || !settings.deep.empty();
+  return has_files || settings.around > 0 || settings.around_all || settings.other_views;
 }
 
 std::vector<std::string> input_files(const InputSettings& settings) {
-  std::vector<std::string> files{settings.camera};
-  for (const auto& file : plane_file_options()) files.push_back(settings.*file.path);
+  std::vector<std::string> files{settings.camera, settings.motion};
+  for (const auto& file : plane_file_options())
+    if (file.path != &InputSettings::normal || wants_normals(settings)) files.push_back(file.of(settings));
   return files;
 }
 

@@ -9,8 +9,14 @@
 
 namespace alcove {
 
-/// The file that a frame is called after: its INPUT, or else its depth or its positions.
+/// The file that a frame is called after: its INPUT, or else its depth, its positions or its deep samples.
 const std::string& main_input(const InputSettings& settings);
+
+/// Whether the frame's normals are read; `--normal none` leaves them out.
+bool wants_normals(const InputSettings& settings);
+
+/// Whether anything is named that may show more than the first surface of each pixel.
+bool has_hidden_sources(const InputSettings& settings);
 
 /// All files that a frame reads; empty names where it has none.
 std::vector<std::string> input_files(const InputSettings& settings);

@@ -126,6 +126,8 @@ InputRules parse_input_rules(const std::string& name, const std::string& text) {
       rules.normal_space = known(normal_space_of(word));
     else if (key == "normal-encoding")
       rules.normal_encoding = known(normal_encoding_of(word));
+    else if (key == "normal-averaged")
+      rules.normal_averaged = word == "true";
     else
       fail(ErrorKind::usage, "presets/input/{}.toml: there is no key {}", name, key);
   }

@@ -5,7 +5,8 @@
 // ("channel:ViewLayer.*"), any of which tells the program; `last`, true where other programs' files bear its marks too,
 // so that theirs tell first; `depth-channel`, `normal-channels`, `position-channels`, layers or channels with the
 // likeliest first, each with its own kind or space behind a colon where it has one ("Nn:view"); and `depth-kind`,
-// `near`, `far`, `reversed-z`, `normal-space` and `normal-encoding`, which mean what the options of these names mean.
+// `near`, `far`, `reversed-z`, `normal-space` and `normal-encoding`, which mean what the options of these names mean;
+// and `normal-averaged`, true where normals are always averaged over the pixel, so that it is no fault of the file.
 // The pixels decide what the rules leave open.
 #pragma once
 
@@ -35,6 +36,7 @@ struct InputRules {
   DepthRange depth_range;  // near, far and reversed only
   NormalSpace normal_space = NormalSpace::automatic;
   NormalEncoding normal_encoding = NormalEncoding::automatic;
+  bool normal_averaged = false;
 };
 
 /// Gives all rules, sorted by name.

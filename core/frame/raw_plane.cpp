@@ -8,7 +8,10 @@ std::vector<FileOption> plane_file_options() {
   std::vector<FileOption> options{{"INPUT", &InputSettings::input}};
   for (const auto& row : kRawPlanes)
     for (const FileOption& file : {row.file, row.other_file})
-      if (file.path) options.push_back(file);
+      if (file.path)
+        options.push_back(file);
+      else if (file.list)
+        for (std::size_t i = 0; i < kMostBehind; i++) options.push_back({file.option, nullptr, file.list, i});
   return options;
 }
 

@@ -12,15 +12,24 @@
 namespace alcove {
 
 /// A plane may have several components: depth may be a position's x, y, z.
-enum class RawPlane { depth, normal, beauty, indirect, diffuse_color, material_ao, albedo };
+enum class RawPlane { depth, normal, behind, beauty, indirect, diffuse_color, material_ao, albedo };
 
 /// Whether an estimate is made from a plane, or whether the plane only colours or dims it afterwards.
 enum class PlaneContent { geometry, color };
 
-/// An option that names a file.
+/// The most planes of depth behind the first surface that files may give.
+constexpr std::size_t kMostBehindPlanes = 16;
+
+/// An option that names a file, or one of its files.
 struct FileOption {
-  const char* option;
-  std::string InputSettings::*path;
+  const char* option = nullptr;
+  std::string InputSettings::*path = nullptr;
+  FileList InputSettings::*list = nullptr;  // instead of a path
+  std::size_t entry = 0;                    // of the list
+
+  bool exists() const { return path || list; }
+  std::string& of(InputSettings& settings) const { return path ? settings.*path : (settings.*list)[entry]; }
+  const std::string& of(const InputSettings& settings) const { return path ? settings.*path : (settings.*list)[entry]; }
 };
 
 /// A row of the table.
@@ -48,6 +57,13 @@ inline constexpr std::array kRawPlanes{
                   .most = 3,
                   .content = PlaneContent::geometry,
                   .file = {"--normal", &InputSettings::normal}},
+    RawPlaneFacts{.plane = RawPlane::behind,
+                  .name = "raw behind",
+                  .least = 1,
+                  .most = kMostBehindPlanes,
+                  .content = PlaneContent::geometry,
+                  .file = {"--behind", nullptr, &InputSettings::behind},
+                  .other_file = {"--deep", &InputSettings::deep}},
     RawPlaneFacts{.plane = RawPlane::beauty,
                   .name = "raw beauty",
                   .least = 3,
@@ -97,7 +113,7 @@ constexpr bool rows_are_in_order() {
 }
 static_assert(rows_are_in_order());
 
-/// Every option that names a file of planes, INPUT first.
+/// Every option that names a file of planes, INPUT first; one that names several, once for each.
 std::vector<FileOption> plane_file_options();
 
 }  // namespace alcove

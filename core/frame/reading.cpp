@@ -10,6 +10,12 @@ namespace {
 /// The largest finite half float.
 constexpr double kLargestHalf = 65504;
 
+/// Raw depth at or beyond it is sky.
+double sky_of(DepthKind kind, bool is_half, double sky) {
+  const bool is_distance = kind == DepthKind::planar || kind == DepthKind::ray;
+  return is_distance && is_half ? std::min(sky, kLargestHalf) : sky;
+}
+
 }  // namespace
 
 void read_like(Reading& reading, const Meaning& settled) {
@@ -20,10 +26,24 @@ void read_like(Reading& reading, const Meaning& settled) {
 }
 
 DepthMap depth_map_of(const Reading& reading) {
-  const bool is_distance = reading.depth_kind == DepthKind::planar || reading.depth_kind == DepthKind::ray;
-  const double sky = is_distance && reading.depth_is_half ? std::min(reading.sky, kLargestHalf) : reading.sky;
   return depth_map(reading.depth_kind, reading.depth_range, reading.position_space, reading.camera, reading.depth_scale,
-                   sky);
+                   sky_of(reading.depth_kind, reading.depth_is_half, reading.sky));
+}
+
+DepthMap behind_map_of(const Reading& reading, const BehindPlane& plane) {
+  const bool is_own = plane.depth_kind == DepthKind::automatic;
+  const bool is_length = is_own && (plane.kind == BehindKind::thickness || reading.depth_kind == DepthKind::position);
+  DepthKind kind = is_own ? reading.depth_kind : plane.depth_kind;
+  if (is_length && kind != DepthKind::ray) kind = DepthKind::planar;
+  return depth_map(kind, is_own && !is_length ? reading.depth_range : DepthRange{}, reading.position_space,
+                   reading.camera, is_own ? reading.depth_scale : plane.scale,
+                   sky_of(kind, plane.is_half, reading.sky));
+}
+
+DepthPrecision hidden_precision_of(const Reading& reading) {
+  Reading coarsest = reading;
+  for (const auto& plane : reading.behind) coarsest.depth_is_half |= plane.is_half;
+  return depth_precision_of(coarsest);
 }
 
 DepthPrecision depth_precision_of(const Reading& reading) {

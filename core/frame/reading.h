@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <vector>
+
 #include "core/base/image.h"
 #include "core/base/settings.h"
 #include "core/frame/camera.h"
@@ -20,17 +22,30 @@ struct Meaning {
   NormalEncoding normal_encoding = NormalEncoding::signed_float;  // not automatic
   bool normal_unorm = false;                                      // the values are 0.5 + 0.5 n, of any encoding
   NormalFlips flip_normal;
+  // of deep samples beside a flat depth, as BehindPlane has them
+  DepthKind deep_kind = DepthKind::automatic;
+  double deep_scale = 1;
+};
+
+/// One plane of depth behind the first surface.
+struct BehindPlane {
+  BehindKind kind = BehindKind::surfaces;
+  // how its values are read: automatic: as the frame's own depth; or planar or ray depth, times the scale
+  DepthKind depth_kind = DepthKind::automatic;
+  double scale = 1;      // scene units per unit; with planar and ray
+  bool is_half = false;  // the values were rounded to half floats
 };
 
 /// The meaning of one frame, with its windows and its camera.
 struct Reading : Meaning {
   Window data;  // of the planes
   Window display;
-  double pixel_aspect = 1;     // width / height of a pixel
-  Camera camera;               // for the display window
-  double depth_scale = 1;      // scene units per unit of the depth values
-  double sky = 1e9;            // depth at or beyond it is sky, in the file's units
-  bool depth_is_half = false;  // the depth values were rounded to half floats
+  double pixel_aspect = 1;          // width / height of a pixel
+  Camera camera;                    // for the display window
+  double depth_scale = 1;           // scene units per unit of the depth values
+  double sky = 1e9;                 // depth at or beyond it is sky, in the file's units
+  bool depth_is_half = false;       // the depth values were rounded to half floats
+  std::vector<BehindPlane> behind;  // of the planes of RawPlane::behind, one for each
 };
 
 /// Takes over the meaning of another frame of the sequence. The clip planes stay this frame's own, as its own camera
@@ -40,6 +55,14 @@ void read_like(Reading& reading, const Meaning& settled);
 /// The map to planar depth. Half floats end at 65504, which stands for all that is beyond: distances of that size are
 /// sky. Fails as depth_map() does.
 DepthMap depth_map_of(const Reading& reading);
+
+/// The map of a plane behind the first surface to planar depth, of a thickness to a length. Where the frame's own depth
+/// is neither planar nor along the ray a thickness is a planar length in the file's units, and so is what lies behind
+/// positions. Fails as depth_map() does.
+DepthMap behind_map_of(const Reading& reading, const BehindPlane& plane);
+
+/// How far any depth may be from its surface's, of the first surface and of those behind it.
+DepthPrecision hidden_precision_of(const Reading& reading);
 
 /// How far the planar depth that the map gives may be from the surface's.
 DepthPrecision depth_precision_of(const Reading& reading);

@@ -23,19 +23,27 @@ double precision_at(const DepthPrecision& precision, double z) {
 
 void DepthSample::add(const View& view, const DepthMap& map, const DepthPrecision& precision,
                       std::span<const float> raw) {
+  const Window window{0, 0, view.size.x, view.size.y};
+  add(view, map, precision, raw, window, window);
+}
+
+void DepthSample::add(const View& view, const DepthMap& map, const DepthPrecision& precision,
+                      std::span<const float> raw, const Window& window, const Window& whole) {
   view_ = view;
   precision_ = precision;
-  const std::size_t width = std::size_t(view.size.x);
-  const std::size_t pixels = width * std::size_t(view.size.y);
-  const std::size_t step = pixels / kSampled + 1;
-  for (std::size_t i = step / 2; i < pixels; i += step) {
+  const std::size_t pixels = window.pixels(), step = whole.pixels() / kSampled + 1;
+  for (std::size_t i = step / 2; i < whole.pixels(); i += step) {
+    const int column = whole.x + int(i % std::size_t(whole.width)) - window.x,
+              row = whole.y + int(i / std::size_t(whole.width)) - window.y;
+    if (column < 0 || column >= window.width || row < 0 || row >= window.height) continue;
+    const std::size_t at = std::size_t(row) * std::size_t(window.width) + std::size_t(column);
     std::array<double, 3> values{};
-    for (std::size_t axis = 0; axis < 3 && i + axis * pixels < raw.size(); axis++)
-      values[axis] = raw[i + axis * pixels];
-    const double x = (double(i % width) + 0.5 - view.center.x) * view.tangent_per_pixel.x;
-    const double y = (double(i / width) + 0.5 - view.center.y) * view.tangent_per_pixel.y;
+    for (std::size_t axis = 0; axis < 3 && at + axis * pixels < raw.size(); axis++)
+      values[axis] = raw[at + axis * pixels];
+    const double x = (double(column) + 0.5 - view.center.x) * view.tangent_per_pixel.x;
+    const double y = (double(row) + 0.5 - view.center.y) * view.tangent_per_pixel.y;
     const double z = planar_depth(map, values, view.orthographic ? 1 : std::sqrt(1 + x * x + y * y));
-    if (std::isfinite(z)) depths_.push_back(z);
+    if (std::isfinite(z)) depths_.emplace(i, z);
   }
 }
 
@@ -44,11 +52,11 @@ double DepthSample::pixel_at(double depth) const {
   return (view_.orthographic ? 1 : depth) * double(view_.tangent_per_pixel.x);
 }
 
-std::vector<std::string> DepthSample::notes(double smallest_radius, double largest_radius, int width,
-                                            int height) const {
-  std::vector<std::string> notes;
+Notes DepthSample::notes(double smallest_radius, double largest_radius, int width, int height) const {
+  Notes notes;
   if (depths_.empty()) return notes;
-  std::vector<double> depths = depths_;
+  std::vector<double> depths;
+  for (const auto& [pixel, depth] : depths_) depths.push_back(depth);
   const auto middle = depths.begin() + std::ptrdiff_t(depths.size() / 2);
   std::ranges::nth_element(depths, middle);
   const double z = *middle;
@@ -56,24 +64,29 @@ std::vector<std::string> DepthSample::notes(double smallest_radius, double large
   const double precision = precision_at(precision_, z);
   if (smallest_radius < kLeastPrecisions * precision)
     notes.push_back(
-        fmt::format("radius {:.3g} is {:.2g} times the depth's precision of {:.2g} at the median depth {:.3g}: "
-                    "occluders are lost in its rounding; give a larger --radius{}",
-                    smallest_radius, smallest_radius / precision, precision, z,
-                    precision > kFullPrecision * z ? ", or write depth with more bits" : ""));
+        {NoteCode::radius_below_precision,
+         fmt::format("radius {:.3g} is {:.2g} times the depth's precision of {:.2g} at the median depth {:.3g}: "
+                     "occluders are lost in its rounding; give a larger --radius{}",
+                     smallest_radius, smallest_radius / precision, precision, z,
+                     precision > kFullPrecision * z ? ", or write depth with more bits" : "")});
 
   const auto is_below = [&](double depth) { return smallest_radius < pixel_at(depth); };
   const double below = double(std::ranges::count_if(depths, is_below)) / double(depths.size());
   if (below > kMostBelowPixel)
     notes.push_back(
-        fmt::format("radius {:.3g} is less than a pixel over {:.0f} % of the surfaces, where nothing can block: give a "
-                    "larger --radius",
-                    smallest_radius, 100 * below));
+        {NoteCode::radius_below_pixel,
+         fmt::format(
+             "radius {:.3g} is less than a pixel over {:.0f} % of the surfaces, where nothing can block: give a "
+             "larger --radius",
+             smallest_radius, 100 * below)});
 
   if (largest_radius > pixel_at(z) * std::max(width, height))
     notes.push_back(
-        fmt::format("radius {:.3g} is {:.3g} pixels at the median depth {:.3g}, and the picture is {}x{}: most of what "
-                    "it reaches is not in it; a smaller --radius needs no more than is seen",
-                    largest_radius, largest_radius / pixel_at(z), z, width, height));
+        {NoteCode::radius_beyond_picture,
+         fmt::format(
+             "radius {:.3g} is {:.3g} pixels at the median depth {:.3g}, and the picture is {}x{}: most of what "
+             "it reaches is not in it; a smaller --radius needs no more than is seen",
+             largest_radius, largest_radius / pixel_at(z), z, width, height)});
   return notes;
 }
 

@@ -3,10 +3,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <map>
 #include <span>
-#include <string>
 #include <vector>
 
+#include "core/base/image.h"
+#include "core/base/note.h"
 #include "core/frame/depth.h"
 
 namespace alcove {
@@ -16,17 +18,21 @@ class DepthSample {
  public:
   /// Takes a few thousand pixels of a window. `raw` is its depth as the file has it: one plane, or three of positions.
   void add(const View& view, const DepthMap& map, const DepthPrecision& precision, std::span<const float> raw);
+  /// Takes those of `window` that belong to a few thousand of `whole`. Windows that share pixels give each of them
+  /// once, so that it is all the same how the whole is cut into windows.
+  void add(const View& view, const DepthMap& map, const DepthPrecision& precision, std::span<const float> raw,
+           const Window& window, const Window& whole);
 
   /// Gives a sentence with the numbers for everything that makes the AO at these radii unsound; none where all is well.
   /// `width` and `height` are those of the whole picture, in pixels. The smallest radius must be at least
   /// kLeastPrecisions times the depth's precision at the median depth, and at least a pixel over half of the surfaces.
   /// The largest must not be seen wider than the picture's longer side at the median depth.
-  std::vector<std::string> notes(double smallest_radius, double largest_radius, int width, int height) const;
+  Notes notes(double smallest_radius, double largest_radius, int width, int height) const;
 
  private:
   double pixel_at(double depth) const;
 
-  std::vector<double> depths_;
+  std::map<std::size_t, double> depths_;  // by the number of the pixel in the whole
   View view_{};
   DepthPrecision precision_;
 };

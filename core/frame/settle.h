@@ -17,16 +17,12 @@ namespace alcove {
 void settle(FrameSource& source, const InputSettings& settings, std::span<const float> depth,
             std::span<const float> normal);
 
-/// The most pixels that a frame is settled by.
-constexpr std::size_t kEvidencePixels = std::size_t(1) << 24;
-
-/// Does the same for a frame of any size, by planes that it reads itself: all of the frame, or as many rows from its
-/// middle as hold kEvidencePixels. Fails with ErrorKind::device where a single row holds more.
-void settle_by_rows(FrameSource& source, const InputSettings& settings);
-
 /// Settles a frame as another one of its sequence is settled. False: it has other planes, so it must be settled by
 /// itself.
 bool settle_like(FrameSource& source, const FrameSource& settled);
+
+/// Whether depth of this kind may be stored as integers: see step_of().
+bool has_step(DepthKind kind);
 
 /// How coarsely the depth is stored: see score_depth().
 double depth_rounding(const Reading& reading);

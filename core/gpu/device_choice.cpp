@@ -133,18 +133,19 @@ bool is_number(const std::string& text) {
 /// Whether a device is one that `choice` names.
 bool is_named(const DeviceInfo& device, const std::string& choice) {
   if (choice.empty()) return false;
-  if (choice == "auto") return true;
-  if (choice == "cpu") return device.type == DeviceType::cpu;
+  if (lower_case(choice) == "auto") return true;
+  if (lower_case(choice) == "cpu") return device.type == DeviceType::cpu;
   if (is_number(choice)) return std::to_string(device.index) == choice;
   return device.uuid == lower_case(choice) || lower_case(device.name).find(lower_case(choice)) != std::string::npos;
 }
 
-/// All devices in one clause each: index, name, type, and what makes it useless.
+/// All devices in one clause each: name, index, type, and what makes it useless.
 std::string list_of(const std::vector<PhysicalDevice>& devices) {
   std::string list;
   for (const auto& [handle, info] : devices) {
     const std::string reason = info.unusable.empty() ? "" : ", " + info.unusable;
-    list += fmt::format("{}{}: {} ({}{})", list.empty() ? "" : "; ", info.index, info.name, name_of(info.type), reason);
+    list += fmt::format("{}{} (index {}, {}{})", list.empty() ? "" : "; ", info.name, info.index, name_of(info.type),
+                        reason);
   }
   return list;
 }
@@ -218,10 +219,11 @@ PhysicalDevice choose_device(const std::vector<PhysicalDevice>& devices, const D
   if (devices.empty())
     fail(ErrorKind::device, "no Vulkan device found; lavapipe computes on the CPU (Debian: mesa-vulkan-drivers)");
   if (!best)
-    fail(ErrorKind::device, "no usable Vulkan device matches --device \"{}\"; there are {}", options.choice,
+    fail(ErrorKind::device, "no usable Vulkan device matches --device \"{}\"; this machine has {}", options.choice,
          list_of(devices));
   if (options.require_gpu && best->info.type == DeviceType::cpu)
-    fail(ErrorKind::device, "--require-gpu: no GPU for --device {}; there are {}", options.choice, list_of(devices));
+    fail(ErrorKind::device, "--require-gpu: no GPU for --device {}; this machine has {}", options.choice,
+         list_of(devices));
   return *best;
 }
 

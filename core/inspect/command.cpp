@@ -2,23 +2,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/inspect/command.h"
 
-#include <string_view>
-
 #include "core/base/error.h"
+#include "core/base/option_words.h"
+#include "core/base/text.h"
 #include "core/frame/evidence.h"
+#include "core/frame/radius.h"
 #include "core/inspect/inspection.h"
 
 namespace alcove {
 namespace {
-
-/// A word as a shell takes it.
-std::string quoted(const std::string& word) {
-  constexpr std::string_view kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./%-+=,:";
-  if (word.find_first_not_of(kPlain) == word.npos && !word.empty()) return word;
-  std::string text = "'";
-  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return text + "'";
-}
 
 /// A command line in the making. Options without a value are left out.
 class Command {
@@ -27,7 +19,7 @@ class Command {
 
   void add(const std::string& word) { text_ += " " + word; }
   void add(const char* option, const std::string& value) {
-    if (!value.empty()) text_ += fmt::format(" {} {}", option, quoted(value));
+    if (!value.empty()) text_ += fmt::format(" {} {}", option, for_shell(value));
   }
   void add(const char* option, const std::optional<double>& value) {
     if (value) text_ += fmt::format(" {} {}", option, *value);
@@ -39,7 +31,7 @@ class Command {
 };
 
 void add_files(Command& command, const FrameSource& source, const InputSettings& settings) {
-  if (!settings.input.empty()) command.add(quoted(settings.input));
+  if (!settings.input.empty()) command.add(for_shell(settings.input));
   command.add("--depth", settings.depth);
   command.add("--normal", settings.normal);
   command.add("--position", settings.position);
@@ -51,20 +43,35 @@ void add_files(Command& command, const FrameSource& source, const InputSettings&
   command.add("--position-channels", settings.position_channels);
 }
 
+void add_behind(Command& command, const InputSettings& settings) {
+  for (const auto& file : settings.behind) command.add("--behind", file);
+  command.add("--behind-channel", fmt::format("{}", fmt::join(settings.behind_channels, ",")));
+  std::vector<std::string> kinds;
+  for (const BehindKind kind : settings.behind_kinds)
+    for (const auto& [word, meaning] : names_of<BehindKind>())
+      if (meaning == kind) kinds.push_back(word);
+  command.add("--behind-kind", fmt::format("{}", fmt::join(kinds, ",")));
+  command.add("--deep", settings.deep);
+  if (!settings.deep.empty() && settings.deep_opacity != InputSettings().deep_opacity)
+    command.add("--deep-opacity", std::optional(settings.deep_opacity));
+}
+
 void add_depth(Command& command, const FrameSource& source, const InputSettings& settings) {
   command.add("--depth-kind", std::string(name_of(source.depth_kind)));
   const bool has_planes = source.depth_kind == DepthKind::device || source.depth_kind == DepthKind::normalized ||
                           source.depth_kind == DepthKind::log;
   if (has_planes) {
-    command.add("--near", source.depth_range.near);
+    if (source.depth_kind != DepthKind::log) command.add("--near", source.depth_range.near);
     command.add("--far", source.depth_range.far);
     if (source.depth_range.reversed) command.add("--reversed-z");
   }
   if (source.depth_kind == DepthKind::position)
     command.add("--position-space", std::string(source.position_space == PositionSpace::world ? "world" : "view"));
   const InputSettings defaults;
-  if (settings.depth_range.device == DeviceRange::minus_one_to_one) command.add("--device-range=-1..1");
-  if (settings.depth_range.log_constant != defaults.depth_range.log_constant)
+  const bool is_device = source.depth_kind == DepthKind::device;
+  if (is_device && settings.depth_range.device == DeviceRange::minus_one_to_one) command.add("--device-range=-1..1");
+  const bool is_log = source.depth_kind == DepthKind::log;
+  if (is_log && settings.depth_range.log_constant != defaults.depth_range.log_constant)
     command.add("--log-constant", std::optional(settings.depth_range.log_constant));
   if (settings.depth_scale != defaults.depth_scale) command.add("--depth-scale", std::optional(settings.depth_scale));
   if (settings.sky != defaults.sky) command.add("--sky", std::optional(settings.sky));
@@ -95,17 +102,18 @@ const char* encoding_name(const FrameSource& source) {
   return source.normal_unorm ? "unorm" : "signed";
 }
 
-std::string command_of(const FrameSource& source, const InputSettings& settings, bool has_camera,
-                       std::optional<double> median) {
+std::string command_of(const FrameSource& source, const CommandNames& names, bool has_camera) {
+  const InputSettings& settings = names.inputs;
   Command command("alcove run");
   add_files(command, source, settings);
-  command.add("-o ao.exr");
+  add_behind(command, settings);
+  command.add("--frames", names.frames);
+  command.add("-o", names.output);
   add_depth(command, source, settings);
   add_normals(command, source, settings, has_camera);
   add_camera(command, settings, has_camera);
-  // A tenth of the median distance, by one figure: as much as a guess at a radius deserves.
-  if (median)
-    command.add("--radius", std::optional(std::stod(fmt::format("{:.1g}", 0.1 * *median))));
+  if (const auto radius = proposed_radius(source))
+    command.add("--radius", radius);
   else
     command.add("--radius RADIUS");
   return command.text();

@@ -11,6 +11,7 @@
 #include "core/chain/chain.h"
 #include "core/chain/compute.h"
 #include "core/formats/image_io.h"
+#include "core/formats/output_name.h"
 #include "core/formats/png.h"
 #include "core/frame/evidence.h"
 #include "core/frame/input_files.h"
@@ -35,6 +36,7 @@ std::array<double, 3> percentiles(std::span<const float> depth) {
 void write_contact_sheet(const Settings& settings, int number) {
   const std::string& path = settings.output.preview;
   require_no_input(path, "--preview", input_files(settings.input));
+  require_ending(path, "--preview", ".png", "PNG");
   require_writable(path, "--preview");
   const HostFrame frame = read_host_frame(settings.input, number);
   gpu::Device device({settings.device.device, settings.device.require_gpu, settings.device.validate,

@@ -7,9 +7,11 @@
 
 #include "core/base/error.h"
 #include "core/formats/open_image.h"
+#include "core/frame/findings.h"
+#include "core/frame/input_files.h"
 #include "core/frame/settle.h"
 #include "core/inspect/command.h"
-#include "core/inspect/findings.h"
+#include "core/inspect/hidden_guesses.h"
 
 namespace alcove {
 namespace {
@@ -24,8 +26,8 @@ std::vector<InspectedFile> files_of(const FrameSource& source) {
   return files;
 }
 
-void add_aov(Inspection& found, const char* name, const FrameSource& source, const std::vector<ChannelRef>& channels,
-             bool is_chosen) {
+void add_aov(Inspection& found, const std::string& name, const FrameSource& source,
+             const std::vector<ChannelRef>& channels, bool is_chosen) {
   if (channels.empty()) return;
   InspectedAov aov{name, source.files[channels[0].file].path(), channels[0].part, {}, is_chosen};
   for (const auto& channel : channels) aov.channels.push_back(channel.channel);
@@ -79,7 +81,7 @@ InspectedNormals normals_of(std::span<const float> normal, std::span<const float
     normals.mean_length = source.normal_unorm ? s.unorm_mean_length : s.mean_length;
     normals.unit_share = source.normal_unorm ? s.unorm_unit_share : s.unit_share;
   }
-  normals.scores = score_normals(normal, source.normal_encoding, source.normal_unorm, raw, depth_map_of(source),
+  normals.scores = score_normals({normal, source.normal_encoding, source.normal_unorm, raw, depth_map_of(source)},
                                  source.camera, view_of(source.camera, source.data, source.display));
   for (const auto& score : normals.scores)
     if (score.space == source.normal_space && to_string(score.flips) == to_string(source.flip_normal))
@@ -87,25 +89,10 @@ InspectedNormals normals_of(std::span<const float> normal, std::span<const float
   return normals;
 }
 
-/// Adds some camera for a frame that has none yet, so that everything else can be looked at.
-InputSettings with_some_camera(InputSettings settings) {
-  settings.fov = 50;
-  if (settings.normal_space == NormalSpace::automatic) settings.normal_space = NormalSpace::view;
-  return settings;
-}
-
-/// Whether a header has a camera; a file that cannot be opened has none, and fails later with all that is missing.
-bool some_header_has_camera(const InputSettings& settings) {
-  try {
-    return header_has_camera(settings);
-  } catch (const Error&) {
-    return false;
-  }
-}
-
 /// A frame being looked at.
 struct Inspector {
   const InputSettings& settings;  // as the user gave them
+  const CommandNames& run;        // of the command
   InputSettings reading;          // with a camera in any case
   bool has_camera;
   int frame;
@@ -118,17 +105,24 @@ struct Inspector {
     try {
       source = find_frame(reading, false, frame);
     } catch (const Error& error) {
-      for (const std::string& path : {settings.input, settings.depth, settings.normal, settings.position})
+      for (const std::string& path :
+           {settings.input, settings.depth, wants_normals(settings) ? settings.normal : "", settings.position})
         if (!path.empty())
           source.files.push_back(open_image(path, "INPUT", Formats::of_frames));  // what cannot be read fails here
       found.missing.push_back(error.what());
       return false;
     }
+    source.camera_is_assumed = !has_camera;
     found.source = InspectedSource{source.rules->name, source.rules_by};
     add_aov(found, source[RawPlane::depth].size() == 3 ? "position" : "depth", source, source[RawPlane::depth],
             !settings.depth_channel.empty() || !settings.position_channels.empty());
     add_aov(found, "normal", source, source[RawPlane::normal], !settings.normal_channels.empty());
-    if (source[RawPlane::normal].empty())
+    for (std::size_t i = 0; i < source[RawPlane::behind].size(); i++)
+      add_aov(found, fmt::format("behind{}", i + 1), source, {source[RawPlane::behind][i]},
+              !settings.behind_channels.empty());
+    found.hidden = hidden_guesses(source);
+    found.hidden_options = options_for(found.hidden);
+    if (source[RawPlane::normal].empty() && wants_normals(settings))
       found.missing.push_back(
           "normals: they would be reconstructed from depth; --normal or --normal-channels names them");
     if (has_camera) found.camera = camera_of(source, settings);
@@ -143,7 +137,7 @@ struct Inspector {
     try {
       read_planes(source, {{&source[RawPlane::depth], depth.data()}, {&source[RawPlane::normal], normal.data()}});
     } catch (const Error& error) {
-      found.suspicious.push_back(error.what());
+      found.suspicious.push_back({NoteCode::damaged_file, error.what()});
       found.unreadable = error;
       return false;
     }
@@ -169,22 +163,54 @@ struct Inspector {
     found.normals->chosen.reset();
   }
 
+  /// Whether it is known what the depth means, be it that the frame is refused for its normals.
+  bool knows_depth() const {
+    return !source.depth_kind_open ||
+           std::ranges::any_of(source.guesses, [](const Guess& guess) { return guess.what == "depth kind"; });
+  }
+
+  void describe() {
+    const View view = view_of(source.camera, source.data, source.display);
+    add_planar(*found.depth, depth, planar_depths(depth, depth_map_of(source), view), source, reading);
+    look_at_normals();
+  }
+
   /// Looks at the pixels as they are understood.
   void look() {
     try {
       settle_frame();
-      const View view = view_of(source.camera, source.data, source.display);
-      add_planar(*found.depth, depth, planar_depths(depth, depth_map_of(source), view), source, reading);
-      look_at_normals();
-      found.suspicious = source.suspicious;
-      std::ranges::copy(findings(source, depth, normal), std::back_inserter(found.suspicious));
-      found.command = command_of(source, settings, has_camera, found.depth->median);
+      describe();
+      found.command = command_of(source, run, has_camera);
     } catch (const Error& error) {
       found.missing.push_back(error.what());
-      if (source.depth_kind_open) found.depth->kind = "undecided";
+      describe_refused();
     }
+    found.shows_surfaces = source.has_evidence;
+    found.suspicious = source.suspicious;
     found.guesses = source.guesses;
     found.notes = source.notes;
+  }
+
+  /// Describes what the refusal of a frame leaves, since that shows why.
+  void describe_refused() {
+    if (!knows_depth()) {
+      found.depth->kind = "undecided";
+      return;
+    }
+    try {
+      describe();
+    } catch (const Error&) {
+      // It is what the frame was refused for, such as planes that nobody gave.
+    }
+  }
+
+  /// Counts the samples of deep files.
+  void look_at_deep() {
+    for (const auto& file : source.files) try {
+        if (auto deep = deep_samples(source, file, settings)) found.deep.push_back(std::move(*deep));
+      } catch (const Error& error) {
+        found.suspicious.push_back({NoteCode::damaged_file, error.what()});
+      }
   }
 
   void find_beauty() {
@@ -201,14 +227,37 @@ struct Inspector {
 
 }  // namespace
 
+InputSettings with_some_camera(const InputSettings& settings) {
+  InputSettings with = settings;
+  with.fov = 50;
+  if (with.normal_space == NormalSpace::automatic) with.normal_space = NormalSpace::view;
+  return with;
+}
+
+bool has_a_camera(const InputSettings& settings) {
+  if (names_a_camera(settings)) return true;
+  try {
+    return header_has_camera(settings);
+  } catch (const Error&) {
+    return false;  // it fails later, with all that is missing
+  }
+}
+
 Inspection inspect_frame(const InputSettings& settings, int frame) {
-  const bool has_camera = names_a_camera(settings) || some_header_has_camera(settings);
-  Inspector inspector{settings, has_camera ? settings : with_some_camera(settings), has_camera, frame};
+  return inspect_frame(settings, frame, {.inputs = settings});
+}
+
+Inspection inspect_frame(const InputSettings& settings, int frame, const CommandNames& run) {
+  const bool has_camera = has_a_camera(settings);
+  Inspector inspector{settings, run, has_camera ? settings : with_some_camera(settings), has_camera, frame};
   if (!has_camera)
     inspector.found.missing.push_back(
         "camera: --camera FILE.json, or --fov, or --focal with --aperture, or --ortho-width");
-  if (inspector.find() && inspector.read()) {
-    inspector.look();
+  const bool is_found = inspector.find();
+  const bool is_read = is_found && inspector.read();
+  if (is_read) inspector.look();
+  if (is_found) inspector.look_at_deep();
+  if (is_read) {
     inspector.find_beauty();
   }
   inspector.found.files = files_of(inspector.source);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "core/base/settings.h"
+#include "core/inspect/command.h"
 #include "core/inspect/inspection.h"
 
 namespace alcove {
@@ -10,5 +11,14 @@ namespace alcove {
 /// Opens the files that the settings name and reads depth and normals. What `run` would refuse is part of the answer;
 /// only a file whose header cannot be read fails, with ErrorKind::input.
 Inspection inspect_frame(const InputSettings& settings, int frame);
+
+/// Does the same for a frame of a sequence. `run` is what the proposed command names instead of the frame's files.
+Inspection inspect_frame(const InputSettings& settings, int frame, const CommandNames& run);
+
+/// The settings with some camera where neither they nor the header give one, so that all else can be looked at.
+InputSettings with_some_camera(const InputSettings& settings);
+
+/// Whether the settings or the header give a camera; a file that cannot be opened has none.
+bool has_a_camera(const InputSettings& settings);
 
 }  // namespace alcove

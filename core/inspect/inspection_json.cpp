@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "core/base/json_text.h"
+#include "core/formats/sequence.h"
 #include "core/inspect/inspection.h"
 
 namespace alcove {
@@ -32,6 +33,22 @@ Json to_json(const InspectedFile& file) {
           {"display_window", to_string(file.display)},
           {"pixel_aspect", file.pixel_aspect},
           {"parts", parts}};
+}
+
+Json to_json(const InspectedDeep& deep) {
+  return {{"file", deep.file},
+          {"parts", deep.parts},
+          {"storage", deep.layout.is_tiled ? "tiles" : "lines"},
+          {"compression", deep.layout.compression},
+          {"state", deep.layout.state},
+          {"samples", deep.counts.samples},
+          {"samples_per_pixel", deep.samples_per_pixel()},
+          {"most_samples", deep.counts.most},
+          {"volumes", deep.counts.volumes},
+          {"repaired", deep.counts.repaired},
+          {"hidden_share", deep.hidden_share()},
+          {"shows_nothing_hidden", deep.shows_nothing_hidden()},
+          {"depth", deep.depth}};
 }
 
 Json to_json(const InspectedSource& source) { return {{"name", source.name}, {"by", source.by}}; }
@@ -75,11 +92,9 @@ Json to_json(const InspectedDepth& depth) {
 }
 
 Json to_json(const NormalScore& score) {
-  return {{"space", name_of(score.space)},
-          {"flips", to_string(score.flips)},
-          {"agreement", score.agreement},
-          {"angle", score.angle},
-          {"facing", score.facing}};
+  return {{"space", name_of(score.space)}, {"flips", to_string(score.flips)},
+          {"agreement", score.agreement},  {"close", score.close},
+          {"angle", score.angle},          {"facing", score.facing}};
 }
 
 Json to_json(const InspectedNormals& normals) {
@@ -95,6 +110,7 @@ Json to_json(const InspectedNormals& normals) {
                {"scores", scores}};
   if (!normals.chosen) return json;
   json["agreement"] = normals.chosen->agreement;
+  json["close"] = normals.chosen->close;
   json["angle"] = normals.chosen->angle;
   json["facing"] = normals.chosen->facing;
   return json;
@@ -103,6 +119,33 @@ Json to_json(const InspectedNormals& normals) {
 Json to_json(const Guess& guess) {
   return {{"what", guess.what}, {"chosen", guess.chosen}, {"why", guess.why}, {"option", guess.option}};
 }
+
+Json to_json(const SequenceChange& change) {
+  Json values = Json::array();
+  for (const auto& [value, frames] : change.values)
+    values.push_back({{"value", value}, {"frames", frames_text(frames)}});
+  return {{"what", change.what}, {"values", values}};
+}
+
+Json to_json(const SequenceCamera& camera) {
+  Json json = {{"widest", camera.widest}, {"narrowest", camera.narrowest}};
+  if (!camera.is_placed) return json;
+  json["farthest"] = camera.farthest;
+  json["largest_turn"] = camera.largest_turn;
+  json["largest_step"] = camera.largest_step;
+  json["at_largest_step"] = camera.at_largest_step;
+  return json;
+}
+
+Json to_json(const SequenceDepth& depth) {
+  return {{"frame", depth.frame},
+          {"sky_share", depth.sky_share},
+          {"nearest", number(depth.nearest)},
+          {"median", number(depth.median)},
+          {"farthest", number(depth.farthest)}};
+}
+
+Json to_json(const HiddenGuess& guess) { return {{"file", guess.file}, {"channel", guess.channel}}; }
 
 template <class T>
 Json to_json(const std::optional<T>& value) {
@@ -116,6 +159,23 @@ Json list_json(const std::vector<T>& values) {
   return list;
 }
 
+Json to_json(const InspectedSequence& sequence) {
+  return {{"shown", sequence.shown},
+          {"frames", frames_text(sequence.frames)},
+          {"count", sequence.frames.size()},
+          {"absent", frames_text(sequence.absent)},
+          {"changes", list_json(sequence.changes)},
+          {"same", sequence.same},
+          {"camera", sequence.camera ? to_json(*sequence.camera) : Json()},
+          {"depth", list_json(sequence.depth)}};
+}
+
+Json codes_of(const Notes& notes) {
+  Json codes = Json::array();
+  for (const auto& note : notes) codes.push_back(facts_of(note.code).name);
+  return codes;
+}
+
 }  // namespace
 
 std::string inspection_json(const Inspection& inspection) {
@@ -127,10 +187,16 @@ std::string inspection_json(const Inspection& inspection) {
                      {"camera", to_json(inspection.camera)},
                      {"depth", to_json(inspection.depth)},
                      {"normals", to_json(inspection.normals)},
+                     {"deep", list_json(inspection.deep)},
                      {"guesses", list_json(inspection.guesses)},
-                     {"notes", inspection.notes},
-                     {"suspicious", inspection.suspicious},
+                     {"hidden", list_json(inspection.hidden)},
+                     {"hidden_options", inspection.hidden_options},
+                     {"notes", texts_of(inspection.notes)},
+                     {"note_codes", codes_of(inspection.notes)},
+                     {"suspicious", texts_of(inspection.suspicious)},
+                     {"suspicious_codes", codes_of(inspection.suspicious)},
                      {"missing", inspection.missing},
+                     {"sequence", inspection.sequence ? to_json(*inspection.sequence) : Json()},
                      {"command", inspection.command}};
   return json_text(json, 1) + "\n";
 }

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "core/base/text.h"
+#include "core/formats/sequence.h"
 #include "core/inspect/inspection.h"
 
 namespace alcove {
@@ -26,6 +27,7 @@ namespace {
 
 constexpr std::size_t kShownScores = 8;        // of normals; the JSON has all of them
 constexpr std::size_t kShownCharacters = 100;  // of an attribute
+constexpr std::size_t kShownValue = 300;       // of what changes along a sequence
 
 std::string percent(double share) { return fmt::format("{:.1f} %", 100 * share); }
 
@@ -101,6 +103,52 @@ void add(Lines& lines, const InspectedNormals& normals) {
   }
 }
 
+void add(Lines& lines, const InspectedDeep& deep) {
+  lines.add("deep: {} part {}: {}, {}, {}; {:.2f} samples per pixel, {} at most; {} hidden behind opaque ones",
+            deep.file, fmt::join(deep.parts, ", "), deep.layout.is_tiled ? "tiles" : "lines", deep.layout.compression,
+            deep.layout.state, deep.samples_per_pixel(), deep.counts.most, percent(deep.hidden_share()));
+  if (deep.counts.volumes > 0) lines.add("  {} samples are volumes", deep.counts.volumes);
+  if (deep.counts.repaired > 0) lines.add("  {} samples had to be repaired", deep.counts.repaired);
+  if (!deep.depth.empty()) lines.add("  its Z is {}", deep.depth);
+  if (deep.shows_nothing_hidden()) lines.add("  holds no surface behind an opaque one: elements rendered in one go");
+}
+
+void add(Lines& lines, const SequenceCamera& camera, bool is_orthographic) {
+  const char* unit = is_orthographic ? "scene units" : "degrees";
+  const bool is_constant = camera.widest - camera.narrowest < 1e-6 * camera.widest;
+  std::string text = is_constant ? fmt::format("{:.2f} {} wide in all frames", camera.widest, unit)
+                                 : fmt::format("{:.2f} to {:.2f} {} wide", camera.narrowest, camera.widest, unit);
+  if (camera.is_placed && camera.farthest == 0 && camera.largest_turn < 1e-4)
+    text += ", stands still";
+  else if (camera.is_placed)
+    text += fmt::format(", moves up to {:.4g} scene units and turns up to {:.4g} degrees from its first place",
+                        camera.farthest, camera.largest_turn);
+  if (camera.largest_step > 0)
+    text += fmt::format("; its largest step is {:.4g}, to frame {}", camera.largest_step, camera.at_largest_step);
+  lines.add("  camera: {}", text);
+}
+
+void add(Lines& lines, const SequenceDepth& depth) {
+  if (depth.median)
+    lines.add("  depth of frame {}: distances {:.6g} to {:.6g}, median {:.6g}; sky {}", depth.frame, *depth.nearest,
+              *depth.farthest, *depth.median, percent(depth.sky_share));
+  else
+    lines.add("  depth of frame {}: all is sky", depth.frame);
+}
+
+void add(Lines& lines, const InspectedSequence& sequence, bool is_orthographic) {
+  lines.add("sequence: {} frames, {}; shown is frame {}", sequence.frames.size(), frames_text(sequence.frames),
+            sequence.shown);
+  if (!sequence.absent.empty()) lines.add("  missing frames: {}", frames_text(sequence.absent));
+  for (const auto& change : sequence.changes)
+    for (const auto& [value, frames] : change.values)
+      lines.add("  {}: {} ({} {})", change.what, value.substr(0, kShownValue), frames.size() == 1 ? "frame" : "frames",
+                frames_text(frames));
+  if (!sequence.same.empty()) lines.add("  the same in all frames: {}", fmt::join(sequence.same, ", "));
+  if (sequence.camera) add(lines, *sequence.camera, is_orthographic);
+  for (const auto& depth : sequence.depth) add(lines, depth);
+}
+
 }  // namespace
 
 std::string inspection_text(const Inspection& inspection) {
@@ -112,10 +160,15 @@ std::string inspection_text(const Inspection& inspection) {
   const bool is_orthographic = inspection.camera && inspection.camera->camera.orthographic;
   if (inspection.depth) add(lines, *inspection.depth, is_orthographic);
   if (inspection.normals) add(lines, *inspection.normals);
+  for (const auto& deep : inspection.deep) add(lines, deep);
+  if (inspection.sequence) add(lines, *inspection.sequence, is_orthographic);
   for (const auto& guess : inspection.guesses)
     lines.add("guess: {} {}, since {} ({})", guess.what, guess.chosen, guess.why, guess.option);
-  for (const auto& note : inspection.notes) lines.add("note: {}", note);
-  for (const auto& finding : inspection.suspicious) lines.add("suspicious: {}", finding);
+  for (const auto& guess : inspection.hidden)
+    lines.add("perhaps hidden surfaces: {} of {}; a run takes what --behind names", guess.channel, guess.file);
+  if (!inspection.hidden_options.empty()) lines.add("  {}", inspection.hidden_options);
+  for (const auto& note : inspection.notes) lines.add("note: {}", note.text);
+  for (const auto& finding : inspection.suspicious) lines.add("suspicious: {}", finding.text);
   for (const auto& missing : inspection.missing) lines.add("missing: {}", missing);
   if (!inspection.command.empty()) lines.add("{}", inspection.command);
   return lines.text();

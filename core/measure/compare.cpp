@@ -258,6 +258,35 @@ void measure_by_depth(FrameComparison& c, const Planes& planes, double sky) {
                   values.reference, values.reference_b);
 }
 
+/// Pixels that are 0 in one and 1 in the other count as sky from this share of all on, and where they make this share
+/// of the squared error. Of AO that is no sky, next to nothing is exactly 0 in one and exactly 1 in the other.
+constexpr double kSkyShare = 0.001, kSkyErrorShare = 0.1;
+
+/// The pixels all of whose values are `low` in one and 1 - `low` in the other.
+std::vector<std::uint8_t> opposite_pixels(const Planes& planes, float low) {
+  const auto& values = planes.values;
+  const std::size_t pixels = planes.data.pixels();
+  std::vector<std::uint8_t> opposite = values.mask;
+  for (std::size_t i = 0; i < values.result.size(); i++)
+    if (values.result[i] != low || values.reference[i] != 1 - low) opposite[i % pixels] = 0;
+  return opposite;
+}
+
+std::optional<SkyDifference> sky_difference(const Planes& planes, double rmse) {
+  const auto& values = planes.values;
+  for (const float low : {0.0f, 1.0f}) {
+    const auto sky = opposite_pixels(planes, low);
+    const auto count = std::size_t(std::ranges::count(sky, 1));
+    const bool matters = double(count) >= kSkyErrorShare * rmse * rmse * double(values.count);
+    if (double(count) < kSkyShare * double(values.count) || !matters || count == values.count) continue;
+    std::vector<std::uint8_t> others = values.mask;
+    for (std::size_t i = 0; i < others.size(); i++) others[i] = others[i] && !sky[i];
+    return SkyDifference{count, low == 0,
+                         compare_planes(values.result, values.reference, others, values.reference_b).rmse};
+  }
+  return {};
+}
+
 FrameComparison measure(const CompareSettings& settings, const Planes& planes, int frame) {
   const auto& values = planes.values;
   const int width = planes.data.width, height = planes.data.height;
@@ -273,6 +302,7 @@ FrameComparison measure(const CompareSettings& settings, const Planes& planes, i
   c.excluded = values.excluded;
   c.masked = values.masked;
   c.errors = compare_planes(values.result, values.reference, values.mask, values.reference_b);
+  c.sky_differs = sky_difference(planes, c.errors.rmse);
   c.psnr = psnr(c.errors.rmse, settings.peak);
   c.ssim = ssim(width, height, values.result, reference, values.mask, settings.peak);
   c.flip = mean_flip(planes, reference, settings.hdr);
@@ -336,6 +366,20 @@ CompareReport compare_pictures(const CompareSettings& settings) {
     fail(ErrorKind::usage, "--motion {}: it is for the flicker of a sequence, and RESULT is one picture",
          settings.motion);
   return {settings.result, settings.reference, false, {measure(settings, read_planes_of(settings), 0)}, {}};
+}
+
+std::vector<std::string> warnings_of(const CompareReport& report, const CompareSettings& settings) {
+  const auto pixels = [](const FrameComparison& frame) { return frame.sky_differs ? frame.sky_differs->count : 0; };
+  const FrameComparison& frame = *std::ranges::max_element(report.frames, {}, pixels);
+  if (!frame.sky_differs) return {};
+  const SkyDifference& sky = *frame.sky_differs;
+  const auto& [zero, one] =
+      sky.zero_in_result ? std::pair(frame.result, frame.reference) : std::pair(frame.reference, frame.result);
+  return {fmt::format(
+      "{:.1f} % of the pixels are 0 in {} and 1 in {}, as sky may be; without them rmse is {:.4f}, not {:.4f}: {}",
+      100 * double(sky.count) / double(frame.count), zero, one, sky.rmse_without, frame.errors.rmse,
+      settings.depth.empty() ? "--depth FRAME.exr leaves the sky out, --mask FILE what you like"
+                             : "--sky VALUE says from which depth on pixels are sky")};
 }
 
 const FrameComparison& worst_frame(const CompareReport& report) {

@@ -34,6 +34,14 @@ struct ComparePictures {
   std::string result, reference, error;
 };
 
+/// Pixels that are exactly 0 in one of the two and 1 in the other, where they make much of the error: sky, which
+/// renderers' AO passes fill with 0, and others with 1.
+struct SkyDifference {
+  std::size_t count = 0;  // pixels
+  bool zero_in_result = false;
+  double rmse_without = 0;  // of the others
+};
+
 struct FrameComparison {
   int frame = 0;
   std::string result, reference;  // files
@@ -47,6 +55,7 @@ struct FrameComparison {
   std::array<BandErrors, 4> bands;
   std::optional<EdgeErrors> edges;  // with depth
   std::optional<double> grain;      // with depth; nothing where no pixel is plain
+  std::optional<SkyDifference> sky_differs;
   std::optional<ComparePictures> pictures;
 };
 
@@ -67,6 +76,9 @@ CompareReport compare_pictures(const CompareSettings& settings);
 
 /// The frame with the largest rmse.
 const FrameComparison& worst_frame(const CompareReport& report);
+
+/// What the user should know although it broke no limit; sentences that end without a full stop.
+std::vector<std::string> warnings_of(const CompareReport& report, const CompareSettings& settings);
 
 /// Limits, each of which holds for every frame of a sequence.
 struct CompareLimits {

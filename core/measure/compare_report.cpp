@@ -58,7 +58,15 @@ const FrameComparison& worst_in(const CompareReport& report, const Measure& meas
 
 Json part_json(const PartErrors& part) { return {{"count", part.count}, {"rmse", part.rmse}, {"bias", part.bias}}; }
 
-/// Bands and edges of a frame.
+Json sky_json(const FrameComparison& frame) {
+  if (!frame.sky_differs) return nullptr;
+  const SkyDifference& sky = *frame.sky_differs;
+  return {{"count", sky.count},
+          {"zero_in", sky.zero_in_result ? "result" : "reference"},
+          {"rmse_without", number(sky.rmse_without)}};
+}
+
+/// Bands, sky and edges of a frame.
 void add_parts(Json& json, const FrameComparison& frame) {
   Json bands = Json::array();
   for (const auto& band : frame.bands) {
@@ -67,6 +75,7 @@ void add_parts(Json& json, const FrameComparison& frame) {
     bands.push_back(std::move(entry));
   }
   json["bands"] = std::move(bands);
+  json["sky_differs"] = sky_json(frame);
   json["edges"] =
       frame.edges ? Json{{"at", part_json(frame.edges->at)}, {"away", part_json(frame.edges->away)}} : Json(nullptr);
 }
@@ -103,6 +112,13 @@ Json mean_json(const CompareReport& report) {
     json[measure.name] = number(sum / double(report.frames.size()));
   }
   return json;
+}
+
+/// The names of both files without their folders; where these are the same, as they were given.
+std::pair<std::string, std::string> names_of(const CompareReport& report) {
+  const auto file = [](const std::string& path) { return std::filesystem::path(path).filename().string(); };
+  if (file(report.result) == file(report.reference)) return {report.result, report.reference};
+  return {file(report.result), file(report.reference)};
 }
 
 struct Limit {
@@ -156,10 +172,9 @@ std::string compare_json(const CompareReport& report, const std::vector<std::str
 }
 
 std::string compare_page(const CompareReport& report) {
-  const std::string name = std::filesystem::path(report.result).filename().string();
+  const auto [name, reference] = names_of(report);
   Json candidate = {{"name", name}, {"settings", "against " + report.reference}, {"ms", nullptr}, {"ms_min", nullptr}};
   candidate.update(mean_json(report));
-  if (report.flicker) candidate["flicker"] = *report.flicker;
   Json rows = Json::array(), images = Json::array();
   for (const auto& frame : report.frames) {
     const std::string label =
@@ -182,13 +197,19 @@ std::string compare_page(const CompareReport& report) {
                         {"truth", frame.pictures->reference},
                         {"error", frame.pictures->error}});
   }
-  const std::string title = name + " against " + std::filesystem::path(report.reference).filename().string();
+  const FrameComparison& worst = worst_frame(report);
+  const Json sequence = {{"worst_frame", std::to_string(worst.frame)},
+                         {"worst_rmse", number(worst.errors.rmse)},
+                         {"mean_rmse", mean_json(report)["rmse"]},
+                         {"flicker", number(report.flicker)}};
+  const std::string title = name + " against " + reference;
   return report_page(json_text({{"title", title},
                                 {"kind", "compare"},
                                 {"device", nullptr},
                                 {"yardstick_ms", nullptr},
                                 {"candidates", Json::array({candidate})},
                                 {"rows", rows},
+                                {"sequence", report.is_sequence ? sequence : Json(nullptr)},
                                 {"images", images}},
                                1));
 }

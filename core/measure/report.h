@@ -29,6 +29,8 @@ namespace alcove {
 ///                   "data:image/png;base64,..." URL; all three are of one size. "truth" may be null or absent where
 ///                   another image of the same frame has it, so that a frame's truth is stored once. "error" is
 ///                   result - truth in the colours of error_picture(), which the page's legend explains.
+///   "sequence"      optional, or null: {"worst_frame": string, "worst_rmse": number, "mean_rmse": number, "flicker":
+///                   number or null}: what is known of a sequence as a whole, shown above the table
 ///   "frames"        optional list of {"name": string, "yardstick_ms": number or null}: a frame's own yardstick, where
 ///                   frames differ in size; "yardstick_ms" above is then their mean
 ///

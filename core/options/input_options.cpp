@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/base/text.h"
+#include "core/frame/input_files.h"
 #include "core/frame/input_rules.h"
 #include "core/options/options.h"
 
@@ -45,7 +46,8 @@ bool read_roi(const std::string& text, std::optional<Region>& roi) {
 }
 
 /// Reads --flip-normal: axes, each once at most.
-bool read_flips(const std::string& text, NormalFlips& flips) {
+bool read_flips(const std::string& given, NormalFlips& flips) {
+  const std::string text = lower_case(given);
   NormalFlips read;
   for (const char axis : text) {
     if (axis < 'x' || axis > 'z') return false;
@@ -61,32 +63,71 @@ std::string text_of(const NormalFlips& flips) {
   return std::string(flips.x ? "x" : "") + (flips.y ? "y" : "") + (flips.z ? "z" : "");
 }
 
+Condition with_multi_bounce() {
+  return with_output("with --multi-bounce", "there is none",
+                     [](const OutputSettings& output) { return output.multi_bounce; });
+}
+
+Condition with_normals() {
+  return {"to frames with normals",
+          [](const Settings& all) { return wants_normals(all.input) ? "" : "--normal none leaves them out"; }};
+}
+
+/// Beauty and its file are for a composite; the file's diffuse colour also for --multi-bounce.
+Condition for_beauty() {
+  return {"with a --composite or with --multi-bounce without --albedo",
+          [](const Settings& all) {
+            const bool has_albedo = all.input.albedo_value || !all.input.albedo.empty();
+            const bool serves = !all.output.composite.empty() || (all.output.multi_bounce && !has_albedo);
+            return serves ? "" : "there is none";
+          },
+          true};
+}
+
 void add_file_rows(std::vector<OptionRow>& rows, InputSettings& s) {
   OptionGroup inputs(rows, "Input", Effect::input);
-  inputs.text("--depth", s.depth, "FILE", "an EXR, DDS or TIFF of the depth alone; else it is in INPUT");
-  inputs.text("--normal", s.normal, "FILE", "an EXR, DDS, TIFF or PNG of the normals alone");
-  inputs.text("--position", s.position, "FILE", "an EXR of the positions, instead of a depth");
-  inputs.text("--beauty", s.beauty, "FILE", "an EXR of the beauty, and of the indirect diffuse light, for --composite");
+  inputs.text("--depth", s.depth, "FILE", "an EXR, DDS or TIFF of the depth alone; else it is in INPUT").is_common =
+      true;
+  inputs
+      .text("--normal", s.normal, "FILE|none",
+            "an EXR, DDS, TIFF or PNG of the normals alone; none: they are left out, and reconstructed from depth")
+      .is_common = true;
+  inputs.text("--position", s.position, "FILE", "an EXR of the positions, instead of a depth")
+      .contradicts({"--depth", "--depth-channel"}, "both say how far away surfaces are");
+  OptionRow& beauty =
+      inputs.text("--beauty", s.beauty, "FILE", "an EXR of the beauty, and of the indirect diffuse light");
+  beauty.applies(for_beauty()).is_common = true;
   inputs.text("--material-ao", s.material_ao, "FILE", "an EXR of the materials' own AO, multiplied in");
   OptionGroup(rows, "Input", Effect::pixels_or_input)
       .own(
           {"--albedo", "FILE|NUMBER", "", "0 to 1",
-           "an EXR of the diffuse colour for --multi-bounce, or one number; else it is in the beauty's file"},
+           "an EXR of the diffuse colour, or one number; else it is in the beauty's file"},
           [&s] { return s.albedo_value ? fmt::format("{}", *s.albedo_value) : s.albedo; },
-          [&s](const std::string& text) { return read_albedo(text, s); }, "is neither a file nor a number from 0 to 1");
+          [&s](const std::string& text) { return read_albedo(text, s); }, "is neither a file nor a number from 0 to 1")
+      .applies(with_multi_bounce());
 }
 
 void add_channel_rows(std::vector<OptionRow>& rows, InputSettings& s) {
   OptionGroup pixels(rows, "Input", Effect::pixels);
-  pixels.text("--depth-channel", s.depth_channel, "NAME", "the depth channel; else found by its usual names");
-  pixels.text("--normal-channels", s.normal_channels, "LAYER|X,Y[,Z]",
-              "the normal's layer, or its channels; of two, z is rebuilt");
+  pixels.text("--depth-channel", s.depth_channel, "NAME", "the depth channel; else found by its usual names")
+      .applies(to_depth({DepthKind::planar, DepthKind::ray, DepthKind::inverse, DepthKind::device,
+                         DepthKind::normalized, DepthKind::log}))
+      .contradicts({"--position-channels"}, "depth is read from one of them");
+  pixels
+      .text("--normal-channels", s.normal_channels, "LAYER|X,Y[,Z]",
+            "the normal's layer, or its channels; of two, z is rebuilt")
+      .applies(with_normals());
   pixels.text("--position-channels", s.position_channels, "LAYER|X,Y,Z",
               "the position's layer, or its three channels, instead of a depth");
-  pixels.text("--beauty-channels", s.beauty_channels, "LAYER|R,G,B[,A]", "the beauty's layer, or its channels");
+  pixels.text("--beauty-channels", s.beauty_channels, "LAYER|R,G,B[,A]", "the beauty's layer, or its channels")
+      .applies(with_composite());
   pixels.text("--material-ao-channel", s.material_ao_channel, "NAME",
               "the material AO's channel, of --material-ao or else of INPUT");
-  pixels.text("--albedo-channels", s.albedo_channels, "LAYER|R,G,B", "the diffuse colour's layer, or its channels");
+  pixels.text("--albedo-channels", s.albedo_channels, "LAYER|R,G,B", "the diffuse colour's layer, or its channels")
+      .applies(with_multi_bounce())
+      .applies({"without a number for --albedo", [](const Settings& all) {
+                  return all.input.albedo_value ? fmt::format("--albedo is {}", *all.input.albedo_value) : "";
+                }});
   pixels.text("--layer", s.layer, "NAME", "look only at this layer or part");
   pixels.text("--view", s.view, "NAME", "the view of a stereo file; else its default view");
   const auto say_roi = [&roi = s.roi] {
@@ -104,50 +145,78 @@ void add_channel_rows(std::vector<OptionRow>& rows, InputSettings& s) {
 void add_depth_rows(std::vector<OptionRow>& rows, InputSettings& s) {
   OptionGroup pixels(rows, "Input", Effect::pixels);
   DepthRange& range = s.depth_range;
-  pixels.choice("--depth-kind", s.depth_kind,
-                "planar: along the optical axis; ray: to the eye; inverse: 1/planar; others: see Inputs in the README; "
-                "auto: what the camera file says, else what fits the frame");
-  pixels.number("--near", range.near, "file units", above(0),
-                "near plane of device or normalized depth; else the camera file's");
-  pixels.own(
-      {"--far", "NUMBER|inf", "file units", "above 0",
-       "far plane of device, normalized or log depth; else the camera file's"},
-      [&range] { return range.far ? fmt::format("{}", *range.far) : std::string(); },
-      [&range](const std::string& text) { return read_far(text, range.far); }, "is neither a distance above 0 nor inf");
-  pixels.flag("--reversed-z", range.reversed, "device, normalized or log depth is largest at the near plane");
-  pixels.choice("--device-range", range.device,
-                "of device depth between the planes; -1..1: OpenGL's normalized device coordinates");
-  pixels.number("--log-constant", range.log_constant, "1 / file units", above(0),
-                "C of log depth, z = ((1 + C far)^d - 1) / C");
+  const Condition between_planes = to_depth({DepthKind::device, DepthKind::normalized, DepthKind::log});
+  pixels
+      .choice("--depth-kind", s.depth_kind,
+              "planar: along the optical axis; ray: to the eye; inverse: 1/planar; others: see Inputs in the README; "
+              "auto: what the camera file says, else what fits the frame")
+      .applies(where_depth_is_read())
+      .harmless = {"auto"};
+  pixels.number("--near", range.near, "file units", at_least(0), "the near plane; else the camera file's")
+      .applies(to_depth({DepthKind::device, DepthKind::normalized}));
+  pixels
+      .own(
+          {"--far", "NUMBER|inf", "file units", "above 0", "the far plane; else the camera file's"},
+          [&range] { return range.far ? fmt::format("{}", *range.far) : std::string(); },
+          [&range](const std::string& text) { return read_far(text, range.far); },
+          "is neither a distance above 0 nor inf")
+      .applies(between_planes);
+  pixels.flag("--reversed-z", range.reversed, "depth is largest at the near plane").applies(between_planes);
+  pixels
+      .choice("--device-range", range.device,
+              "of the depth between the planes; -1..1: OpenGL's normalized device coordinates")
+      .applies(to_depth({DepthKind::device}));
+  pixels.number("--log-constant", range.log_constant, "1 / file units", above(0), "C of z = ((1 + C far)^d - 1) / C")
+      .applies(to_depth({DepthKind::log}));
   pixels.number("--depth-scale", s.depth_scale, "", above(0), "scene units per unit of the depth channel");
   pixels.number("--sky", s.sky, "file units", above(0), "depth at or beyond it is sky, as are 0, infinity and NaN");
 }
 
 void add_direction_rows(std::vector<OptionRow>& rows, InputSettings& s) {
   OptionGroup pixels(rows, "Input", Effect::pixels);
-  pixels.choice("--normal-space", s.normal_space,
-                "the space of the normals; auto: what the camera file says, else what fits the frame");
-  pixels.choice("--normal-encoding", s.normal_encoding,
-                "unorm: 0.5 + 0.5 n; octahedral, spheremap: two channels; auto: signed or unorm by their values");
-  pixels.own(
-      {"--flip-normal", "xyz", "", "", "axes of the normals that point the other way, in the normals' own space"},
-      [&s] { return text_of(s.flip_normal); },
-      [&s](const std::string& text) { return read_flips(text, s.flip_normal); }, "is none of x, y, z, xy, xz, yz, xyz");
-  pixels.choice("--position-space", s.position_space,
-                "the space of the positions; auto: the one that puts them onto their pixels");
+  pixels
+      .choice("--normal-space", s.normal_space,
+              "the space of the normals; auto: what the camera file says, else what fits the frame")
+      .applies(with_normals())
+      .harmless = {"auto"};
+  pixels
+      .choice("--normal-encoding", s.normal_encoding,
+              "unorm: 0.5 + 0.5 n; octahedral, spheremap: two channels; auto: signed or unorm by their values")
+      .applies(with_normals())
+      .harmless = {"auto"};
+  pixels
+      .own(
+          {"--flip-normal", "xyz", "", "", "axes of the normals that point the other way, in the normals' own space"},
+          [&s] { return text_of(s.flip_normal); },
+          [&s](const std::string& text) { return read_flips(text, s.flip_normal); },
+          "is none of x, y, z, xy, xz, yz, xyz")
+      .applies(with_normals());
+  pixels
+      .choice("--position-space", s.position_space,
+              "the space of the positions; auto: the one that puts them onto their pixels")
+      .applies(to_depth({DepthKind::position}))
+      .harmless = {"auto"};
 }
 
 void add_camera_rows(std::vector<OptionRow>& rows, InputSettings& s) {
-  OptionGroup(rows, "Input", Effect::none).flag("--strict", s.strict, "what could only be guessed is an error");
+  OptionGroup(rows, "Input", Effect::none)
+      .flag("--strict", s.strict, "what could only be guessed is an error, and so is a warning");
+  const char* const why = "each of them says what the camera sees";
   OptionGroup(rows, "Input", Effect::content)
-      .text("--camera", s.camera, "FILE.json", "the camera; see Cameras in the README");
+      .text("--camera", s.camera, "FILE.json", "the camera; see Cameras in the README")
+      .contradicts({"--fov", "--focal", "--aperture", "--ortho-width"}, why)
+      .is_common = true;
   OptionGroup pixels(rows, "Input", Effect::pixels);
-  pixels.number("--fov", s.fov, "degrees", strictly_between(0, 180),
-                "horizontal field of view, instead of a camera file");
-  pixels.number("--focal", s.focal, "mm", above(0), "focal length, with --aperture, instead of a camera file");
-  pixels.number("--aperture", s.aperture, "mm", above(0), "width of the film back");
-  pixels.number("--ortho-width", s.ortho_width, "scene units", above(0),
-                "width of an orthographic view, instead of a camera file");
+  pixels.number("--fov", s.fov, "degrees", strictly_between(0, 180), "horizontal field of view")
+      .contradicts({"--focal", "--aperture", "--ortho-width"}, why)
+      .is_common = true;
+  pixels.number("--focal", s.focal, "mm", above(0), "focal length")
+      .applies(with_option("--aperture", [](const Settings& all) { return all.input.aperture.has_value(); }))
+      .contradicts({"--ortho-width"}, why);
+  pixels.number("--aperture", s.aperture, "mm", above(0), "width of the film back")
+      .applies(with_option("--focal", [](const Settings& all) { return all.input.focal.has_value(); }))
+      .contradicts({"--ortho-width"}, why);
+  pixels.number("--ortho-width", s.ortho_width, "scene units", above(0), "width of an orthographic view");
 }
 
 }  // namespace

@@ -56,7 +56,8 @@ std::string text_of_memory(std::uint64_t bytes) {
 void add_frame_rows(std::vector<OptionRow>& rows, RunOptions& options) {
   FrameSettings& s = options.settings.frames;
   OptionGroup frames(rows, "Frames", Effect::none);
-  frames.text("--frames", s.frames, "LIST", "such as 1001-1100x2,1200; else those of INPUT on the disk");
+  frames.text("--frames", s.frames, "LIST", "such as 1001-1100x2,1200; else those of INPUT on the disk").is_common =
+      true;
   frames.number("--output-offset", s.output_offset, "frames", between(-1e9, 1e9),
                 "from the numbers of the inputs to those of the outputs");
   frames.own(
@@ -65,14 +66,18 @@ void add_frame_rows(std::vector<OptionRow>& rows, RunOptions& options) {
       [&s](const std::string& text) { return read_chunk(text, s); }, "is not I/N, with I from 1 to N");
   frames.choice("--missing", s.missing, "what a frame without its input is: an error before any work, or left out");
   frames.flag("--keep-going", s.keep_going, "a frame that fails does not end the run; the exit code is then 1");
-  frames.flag(
-      "--resume", s.resume,
-      "compute only frames whose outputs are missing, broken, older than their inputs or made with options that "
-      "give other pixels");
+  frames.flag("--warnings-as-errors", s.warnings_as_errors,
+              "a frame with a warning fails before anything of it is written; --strict does so too");
+  frames
+      .flag("--resume", s.resume,
+            "compute only frames whose outputs are missing, broken, older than their inputs or made with options that "
+            "give other pixels")
+      .is_common = true;
   frames.flag("--overwrite", s.overwrite,
               "compute all frames and replace their outputs, whatever --resume says; without --resume that is so "
               "anyway");
-  frames.flag("--dry-run", options.dry_run, "print frames, files and memory, and stop").is_key = false;
+  frames.flag("--dry-run", options.dry_run, "print frames, files, memory and about how long it takes, and stop")
+      .is_key = false;
 }
 
 void add_device_rows(std::vector<OptionRow>& rows, DeviceSettings& s) {
@@ -93,13 +98,16 @@ void add_device_rows(std::vector<OptionRow>& rows, DeviceSettings& s) {
 void add_report_rows(std::vector<OptionRow>& rows, RunOptions& options) {
   OptionGroup reports(rows, "Reports", Effect::none);
   reports.text("--stats", options.settings.output.stats, "FILE.json", "times of every pass, counts and totals");
-  reports.word("--progress", options.progress.kind, {"auto", "bar", "plain", "percent", "openjd", "none"},
-               "plain: one line per frame; percent, openjd: on standard output, as farms read it; auto: a bar on a "
-               "terminal, else plain");
+  reports
+      .word("--progress", options.progress.kind, {"auto", "bar", "plain", "percent", "openjd", "none"},
+            "plain: one line per frame; percent, openjd: on standard output, as farms read it; auto: a bar on a "
+            "terminal, else plain")
+      .harmless = {"auto", "none", "percent", "openjd"};
   reports.text("--log-json", options.settings.output.log_json, "FILE|-",
                "one JSON object per line for the beginning, every frame and the end");
   reports.flag("-v,--verbose", options.progress.verbose, "say more: the time of every pass");
-  reports.flag("-q,--quiet", options.progress.quiet, "say nothing but errors");
+  reports.flag("-q,--quiet", options.progress.quiet, "say nothing but errors")
+      .contradicts({"--verbose", "--progress"}, "one asks for lines, the other for none");
   reports.flag("--print-config", options.print_config, "print the settings as a preset and stop").is_key = false;
 }
 
@@ -136,6 +144,7 @@ std::string toml_of(const std::string& word) {
 std::vector<OptionRow> option_table(RunOptions& options) {
   std::vector<OptionRow> rows;
   add_input_rows(rows, options.settings.input);
+  add_hidden_rows(rows, options.settings);
   add_frame_rows(rows, options);
   add_estimator_rows(rows, options);
   add_output_rows(rows, options.settings.output);
@@ -158,7 +167,7 @@ std::string option_table_markdown() {
           fmt::format("{}| {} | unit, range | default | |\n|---|---|---|---|\n", group.empty() ? "" : "\n", row.group);
     group = row.group;
     text += fmt::format("| `{}`{} | {} | {} | {} |\n", row.name, row.value.empty() ? "" : " " + cell(row.value),
-                        cell(range_text(row)), row.default_text, cell(row.sentence));
+                        cell(range_text(row)), row.default_text, cell(row.whole_sentence()));
   }
   return text;
 }

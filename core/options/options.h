@@ -40,6 +40,7 @@ std::string preset_text(const std::vector<OptionRow>& rows);
 
 // The groups of the table, each in its own file.
 void add_input_rows(std::vector<OptionRow>& rows, InputSettings& settings);
+void add_hidden_rows(std::vector<OptionRow>& rows, Settings& settings);
 void add_estimator_rows(std::vector<OptionRow>& rows, RunOptions& options);
 void add_output_rows(std::vector<OptionRow>& rows, OutputSettings& settings);
 

@@ -20,18 +20,11 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// The last part: "--output" of "-o,--output".
 std::string long_name_of(const std::string& name) { return name.substr(name.find_last_of(',') + 1); }
 
-double number_in(const Range& range, const std::string& name, const std::string& text) {
-  const auto value = number_of(text);
-  if (!value || !std::isfinite(*value)) fail(ErrorKind::usage, "{}: {} is not a finite number", name, text);
-  if (!range.holds(*value)) fail(ErrorKind::usage, "{}: {} is not {}", name, text, range.text);
-  return *value;
-}
-
 template <class T>
 void take_number(const std::string& name, const Range& range, const std::string& text, T& value) {
   const double number = number_in(range, name, text);
   if constexpr (std::is_integral_v<T>)
-    if (std::trunc(number) != number) fail(ErrorKind::usage, "{}: {} is no whole number", name, text);
+    if (std::trunc(number) != number) fail(ErrorKind::usage, "{}: {} is no whole number", name, said(text));
   value = T(number);
 }
 
@@ -42,23 +35,37 @@ bool read_switch(const std::string& name, const std::string& text) {
     if (word == on) return true;
   for (const char* off : {"false", "off", "no", "0"})
     if (word == off) return false;
-  fail(ErrorKind::usage, "{}: {} is neither true nor false", name, text);
+  fail(ErrorKind::usage, "{}: {} is neither true nor false", name, said(text));
 }
 
 Words words_of(const std::string& text) { return text.empty() ? Words{} : Words{text}; }
 
 }  // namespace
 
+std::string said(const std::string& text) { return text.empty() ? "\"\"" : text; }
+
+double number_in(const Range& range, const std::string& name, const std::string& text) {
+  const auto value = number_of(text);
+  if (!value && text.find(',') != text.npos)
+    fail(ErrorKind::usage, "{}: {} is no single number; decimals are written with a point", name, text);
+  if (!value) fail(ErrorKind::usage, "{}: {} is not a number", name, said(text));
+  if (!std::isfinite(*value)) fail(ErrorKind::usage, "{}: {} is not a finite number", name, text);
+  if (!range.holds(*value)) fail(ErrorKind::usage, "{}: {} is out of range: {}", name, text, range.text);
+  return *value;
+}
+
 Range above(double low) { return {low, kInfinity, true, true, fmt::format("above {}", low)}; }
 Range at_least(double low) { return {low, kInfinity, false, true, fmt::format("{} or more", low)}; }
 Range between(double low, double high) { return {low, high, false, false, fmt::format("{} to {}", low, high)}; }
 Range below_and_at_least(double low, double high) {
-  return {low, high, false, true, fmt::format("{} to below {}", low, high)};
+  return {low, high, false, true, fmt::format("at least {} and below {}", low, high)};
 }
 Range strictly_between(double low, double high) {
-  return {low, high, true, true, fmt::format("above {} to below {}", low, high)};
+  return {low, high, true, true, fmt::format("above {} and below {}", low, high)};
 }
-Range above_to(double low, double high) { return {low, high, true, false, fmt::format("above {} to {}", low, high)}; }
+Range above_to(double low, double high) {
+  return {low, high, true, false, fmt::format("above {} and at most {}", low, high)};
+}
 
 std::optional<double> number_of(const std::string& text) {
   char* end = nullptr;
@@ -72,7 +79,47 @@ std::optional<int> whole_number_of(const std::string& text) {
   return fits ? std::optional(int(*value)) : std::nullopt;
 }
 
+OptionRow& OptionRow::applies(const Condition& condition) {
+  conditions.push_back(condition);
+  return *this;
+}
+
+OptionRow& OptionRow::contradicts(const Words& options, const std::string& why) {
+  contradictions.push_back({options, why});
+  return *this;
+}
+
+bool OptionRow::asks() const {
+  const Words present = words();
+  return !present.empty() && std::ranges::find(harmless, present.front()) == harmless.end();
+}
+
+std::string OptionRow::objection(const Settings& settings, bool looks_at_outputs) const {
+  if (!asks()) return "";
+  for (const auto& condition : conditions) {
+    if (condition.of_outputs && !looks_at_outputs) continue;
+    if (const std::string instead = condition.instead(settings); !instead.empty())
+      return fmt::format("{}: applies {} only{}{}, and {}", long_name(), condition.words,
+                         condition.otherwise.empty() ? "" : ", or ", condition.otherwise, instead);
+  }
+  return "";
+}
+
 std::string OptionRow::long_name() const { return long_name_of(name); }
+
+std::string OptionRow::whole_sentence() const {
+  std::string text = sentence;
+  Words always, usually;
+  std::string otherwise;
+  for (const auto& condition : conditions) {
+    (condition.otherwise.empty() ? always : usually).push_back(condition.words);
+    if (!condition.otherwise.empty()) otherwise = condition.otherwise;
+  }
+  if (!usually.empty()) text += fmt::format("; applies {} only, or {}", linked(usually, "and"), otherwise);
+  if (!always.empty()) text += fmt::format("; applies {} only", linked(always, "and"));
+  for (const auto& [options, why] : contradictions) text += fmt::format("; not with {}", linked(options, "or"));
+  return text;
+}
 
 OptionRow& OptionGroup::add(const Shown& shown, std::function<Words()> words, std::function<void(const Words&)> read) {
   const Words present = words();
@@ -95,7 +142,7 @@ OptionRow& OptionGroup::own(const Shown& shown, const std::function<std::string(
       shown, [say] { return words_of(say()); },
       [name = long_name_of(shown.name), take, complaint](const Words& words) {
         const std::string& text = words.front();
-        if (!take(text)) fail(ErrorKind::usage, "{}: {} {}", name, text, complaint);
+        if (!take(text)) fail(ErrorKind::usage, "{}: {} {}", name, said(text), complaint);
       });
 }
 
@@ -120,9 +167,10 @@ OptionRow& OptionGroup::choice_row(const std::string& name, const Words& words, 
   return add(
       {name, fmt::format("{}", fmt::join(words, "|")), "", "", sentence}, [say] { return words_of(say()); },
       [name, words, take](const Words& given) {
-        const std::string& word = given.front();
+        const std::string word = lower_case(given.front());
         if (std::ranges::find(words, word) == words.end())
-          fail(ErrorKind::usage, "{}: {} is none of {}{}", name, word, list_of(words), suggestion(word, words));
+          fail(ErrorKind::usage, "{}: {} is none of {}{}", name, said(given.front()), list_of(words),
+               suggestion(word, words));
         take(word);
       });
 }

@@ -9,20 +9,27 @@
 #include <vector>
 
 #include "core/base/option_words.h"
+#include "core/options/conditions.h"
 
 namespace alcove {
 
 /// What an option has to do with the pixels of an output: by this, --resume knows which files were made otherwise.
 enum class Effect {
-  none,             // The pixels come out the same: a device, threads, a report, the name or compression of an output.
-  pixels,           // Its value counts.
-  input,            // It names an input, which is known by its bytes (alcove/inputs): only whether it is given counts.
+  none,    // The pixels come out the same: a device, threads, a report, the name or compression of an output.
+  pixels,  // Its value counts.
+  input,   // It names an input, which is known by its bytes (alcove/inputs): only how often it is given counts.
   pixels_or_input,  // A number counts by its value, anything else as the name of an input.
   content,          // It names a file whose content counts, and not its place.
   display,          // As `content`, but only where a preview shows a composite.
 };
 
 using Words = std::vector<std::string>;
+
+/// Other options that say something else of the same thing.
+struct Contradiction {
+  Words options;    // long names
+  std::string why;  // "both give the camera"
+};
 
 /// A row of the table. Only OptionGroup makes them, so that none is without its effect.
 struct OptionRow {
@@ -32,19 +39,34 @@ struct OptionRow {
   std::string sentence;      // ends without a full stop
   std::string default_text;  // "" where there is none
   Effect effect;
-  // Gives the present value as it would be typed, exactly, or nothing where it is not set. Only --radius may have
-  // several words.
+  // Gives the present value as it would be typed, exactly, or nothing where it is not set. Only an option that
+  // repeats may have several words.
   std::function<Words()> words;
   // Takes a value. Fails with ErrorKind::usage, naming the option, what is wrong, and the nearest words.
   std::function<void(const Words&)> read;
   bool repeats = false;      // each value is one more
   bool is_required = false;  // of arguments without a name
   bool is_key = true;        // whether presets may hold it
+  bool is_common = false;    // among the few that --help shows; --help-all shows all
   std::string alone = {};    // its value where it is given without one; "": it must have one
+  // Where it has an effect: all of them hold. What is typed and has none is refused; of a preset it is left out.
+  std::vector<Condition> conditions = {};
+  std::vector<Contradiction> contradictions = {};  // of a pair one row is enough
+  // Values, as words() gives them, that ask for nothing: they apply anywhere and contradict nothing.
+  Words harmless = {};
+
+  OptionRow& applies(const Condition& condition);
+  OptionRow& contradicts(const Words& options, const std::string& why);
+  /// Whether the present value asks for something.
+  bool asks() const;
+  /// Tells why the present value has no effect, "" where it has one. `looks_at_outputs`: also by what is written.
+  std::string objection(const Settings& settings, bool looks_at_outputs = true) const;
 
   bool is_flag() const { return value.empty() && name.starts_with('-'); }
   /// "--output" of "-o,--output".
   std::string long_name() const;
+  /// The sentence, and behind it where the option applies and what it contradicts.
+  std::string whole_sentence() const;
 };
 
 /// A number's allowed range, as text and as a check.
@@ -62,6 +84,11 @@ Range below_and_at_least(double low, double high);
 Range strictly_between(double low, double high);
 Range above_to(double low, double high);
 
+/// A given text as messages quote it: an empty one by its quotation marks.
+std::string said(const std::string& text);
+
+/// Reads a finite number of the range. Fails with ErrorKind::usage, naming the option.
+double number_in(const Range& range, const std::string& name, const std::string& text);
 /// Reads a text that is a number and nothing else. The number may be infinite or NaN.
 std::optional<double> number_of(const std::string& text);
 /// Does the same for a whole number that an int can hold.

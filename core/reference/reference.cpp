@@ -140,28 +140,30 @@ class Blocking {
 
   Arcs arcs() {
     const ReferenceLine line = line_of(scene_, receiver_, side_, settings_);
-    Arcs arcs{by_samples(line.samples), {}};
+    Arcs arcs{by_samples(line), {}};
     for (const auto& segment : completed_segments(scene_, receiver_, side_, line, settings_))
       arcs.completed = arcs.completed + by_segment(segment);
     return arcs;
   }
 
  private:
-  Vector by_samples(const std::vector<Sample>& line) {
+  Vector by_samples(const ReferenceLine& line) {
     Vector sum;
-    for (std::size_t i = 1; i < line.size(); i++) {
-      const Vector offset = line[i].position - receiver_.position;
+    for (int i = line.surfaces; i < int(line.samples.size()); i++) {
+      const Sample& sample = line[i];
+      const Vector offset = sample.position - receiver_.position;
       const double distance = length(offset);
-      if (i > 1) {
-        const auto [low, high] = span_between(scene_, receiver_, side_, line[i - 1], line[i], settings_.radius);
-        const double before = length(line[i - 1].position - receiver_.position);
+      if (sample.nearer >= line.surfaces) {
+        const Sample& other = line[sample.nearer];
+        const auto [low, high] = span_between(scene_, receiver_, side_, other, sample, settings_.radius);
+        const double before = length(other.position - receiver_.position);
         const double weight = 0.5 * (weight_of(settings_, before) + weight_of(settings_, distance));
         if (low > 0 && low <= lowest_) sum = sum + weight * blocked_.add(low, std::min(high, limit_));
       }
-      if (line[i].depth == 0 || distance >= settings_.radius || distance == 0) continue;
+      if (sample.depth == 0 || distance >= settings_.radius || distance == 0) continue;
       const double front = angle_of(side_, offset);
       if (front <= 0 || front >= lowest_) continue;
-      const double back = back_of(line[i].position, offset, distance, front, line[i].thickness);
+      const double back = back_of(sample.position, offset, distance, front, sample.thickness);
       sum = sum + weight_of(settings_, distance) * blocked_.add(front, back);
     }
     return sum;
@@ -277,7 +279,7 @@ Openness openness(const Scene& scene, const Receiver& receiver, const ReferenceS
 
 }  // namespace
 
-ReferenceSettings reference_settings_of(const EstimatorSettings& settings) {
+ReferenceSettings reference_settings_of(const EstimatorSettings& settings, bool with_hidden) {
   ReferenceSettings reference;
   reference.radius = *settings.radius * settings.falloff_end;
   reference.falloff = settings.falloff;
@@ -288,7 +290,10 @@ ReferenceSettings reference_settings_of(const EstimatorSettings& settings) {
   reference.thickness_length = settings.thickness_length;
   reference.bias = settings.bias;
   reference.complete = settings.complete;
-  if (settings.complete == Completion::all) {
+  reference.hidden = settings.hidden;
+  reference.separation = settings.separation.value_or(-1);
+  // Width stands in for what is hidden. Where that is known or guessed, half of it is nearer to ray tracing.
+  if (settings.complete == Completion::all || (with_hidden && settings.hidden > 0)) {
     reference.width_share = 0.5;
     reference.width_pixels = 1;
   }
@@ -300,7 +305,7 @@ namespace {
 /// Calls `take` with the index and the openness of every pixel that was asked for and is no sky, from several threads.
 void for_pixels(const HostFrame& frame, const ReferenceSettings& settings, bool with_bent,
                 const std::function<void(std::size_t, const Openness&)>& take) {
-  const Scene scene(frame);
+  const Scene scene(frame, settings.hidden, settings.separation);
   constexpr std::size_t kChunk = 64;  // pixels that a thread takes at a time
   const std::size_t total = settings.pixels.empty() ? frame.data.pixels() : settings.pixels.size();
   std::atomic<std::size_t> next = 0;

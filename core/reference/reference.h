@@ -34,14 +34,16 @@ struct ReferenceSettings {
   // Where surfaces go on straight although the picture does not show it: docs/completion.md. Behind what is nearer they
   // do only where occluders have an end.
   Completion complete = Completion::none;
+  int hidden = 3;                   // surfaces behind the first that count, where the frame has any; 0 to 3
+  double separation = -1;           // scene units: surfaces closer than it are one; below 0: as layers.comp takes it
   double bias = 0;                  // sine of the elevation above the tangent plane below which nothing blocks
   int threads = 0;                  // 0: one per core
   std::vector<std::size_t> pixels;  // indices of those to compute; empty: all
 };
 
 /// What the estimators gtao and bitmask are meant to compute with these settings, but for intensity and power.
-/// settings.radius must be set.
-ReferenceSettings reference_settings_of(const EstimatorSettings& settings);
+/// settings.radius must be set. `with_hidden`: for a frame that knows surfaces behind the first.
+ReferenceSettings reference_settings_of(const EstimatorSettings& settings, bool with_hidden = false);
 
 /// One visibility in [0, 1] per pixel, 1 on sky and where no pixel was asked for. The frame must have planar depth and
 /// normals. Fails with ErrorKind::input otherwise.

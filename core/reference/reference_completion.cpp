@@ -25,32 +25,31 @@ constexpr int kLeastPixelsOfBorder = 3;
 /// The straight line along which a surface goes on from the end of its run.
 struct Course {
   int edge = 0;         // index of the end's sample
+  int step = 0;         // of it
   double nearness = 0;  // there, on the slice's image line
   double slope = 0;     // of nearness per step away from the receiver
 
-  double at(double step) const { return nearness + slope * (step - edge); }
+  double at(double at_step) const { return nearness + slope * (at_step - step); }
 };
 
 class Completer {
  public:
   Completer(const ReferenceScene& scene, const ReferenceReceiver& receiver, const ReferenceSide& side,
             const ReferenceLine& line, const ReferenceSettings& settings)
-      : scene_(scene),
-        receiver_(receiver),
-        side_(side),
-        line_(line),
-        settings_(settings),
-        count_(int(line.samples.size())) {}
+      : scene_(scene), receiver_(receiver), side_(side), line_(line), settings_(settings), steps_(line.steps()) {}
 
   std::vector<CompletedSegment> segments() {
-    if (line_.at_border) beyond_border_ = course_beyond_border();
+    if (line_.at_border) beyond_border_ = course_beyond_border((steps_ - 1) * line_.surfaces);
     if (completes_behind(settings_)) {
-      for (int first = 0, last; first < count_; first = last + 1) {
-        last = int(last_of_run(scene_, line_.samples, std::size_t(first)));
+      for (int first = 0; first < int(line_.samples.size()); first++) {
+        if (sample(first).depth == 0 || sample(first).nearer >= 0) continue;
+        const int last = last_of_run(line_, first);
         // The line of a single pixel is not known.
         if (last == first) continue;
-        if (first > 0 && nearer(first - 1, first)) go_on_behind(first, -1);
-        if (last + 1 < count_ && nearer(last + 1, last)) go_on_behind(last, 1);
+        const int begin = line_.step_of(first);
+        const int end = line_.step_of(last);
+        if (begin > 0 && is_seen(first) && hides(begin - 1, first)) go_on_behind(first, -1);
+        if (end + 1 < steps_ && is_seen(last) && hides(end + 1, last)) go_on_behind(last, 1);
       }
     }
     if (beyond_border_) add_ray(*beyond_border_, 1);
@@ -58,12 +57,20 @@ class Completer {
   }
 
  private:
-  const ReferenceSample& sample(int i) const { return line_.samples[std::size_t(i)]; }
-  bool nearer(int i, int than) const { return sample(i).depth > 0 && sample(i).depth < sample(than).depth; }
+  const ReferenceSample& sample(int i) const { return line_[i]; }
+  /// The surface of a pixel behind which nothing is known: the last, or the first where others than those that are
+  /// listed may be there.
+  int hiding_surface() const { return scene_.lists_all() ? line_.surfaces - 1 : 0; }
+  const ReferenceSample& hider(int step) const { return line_.at(step, hiding_surface()); }
+  /// Only what is seen goes on. Hidden surfaces are facts, and to guess further from them was worse: docs/hidden.md.
+  bool is_seen(int i) const { return i % line_.surfaces == 0; }
+  bool hides(int step, int what) const { return hider(step).depth > 0 && hider(step).depth < sample(what).depth; }
 
   double nearness_at(double depth) const { return scene_.orthographic() ? -depth : 1 / depth; }
   /// Sky is infinitely far.
-  double nearness_of(int i) const { return nearness_at(sample(i).depth > 0 ? sample(i).depth : INFINITY); }
+  double nearness_of(const ReferenceSample& sample) const {
+    return nearness_at(sample.depth > 0 ? sample.depth : INFINITY);
+  }
 
   /// A point on the slice, as an offset from the receiver.
   Vector point(double step, double nearness) const {
@@ -74,11 +81,11 @@ class Completer {
 
   /// The change of nearness on the plane through a sample across the normal there; none where that is seen edge on.
   std::optional<double> change_on_plane(int i, double x_px, double y_px) const {
-    const auto [x, y] = pixel_at(receiver_, side_, i);
+    const auto [x, y] = pixel_at(receiver_, side_, line_.step_of(i));
     const Vector ray = scene_.position(x, y, 1) - scene_.position(x, y, 0);
     const Vector normal = scene_.normal(x, y, scene_.toward_eye(sample(i).position));
     const double facing = dot(normal, ray);
-    if (facing > kLeastFacing) return std::nullopt;
+    if (facing > kLeastFacing || !is_seen(i)) return std::nullopt;
     const double scale = scene_.orthographic() ? 1 : 1 / sample(i).depth;
     return dot(normal, scene_.across(x_px, y_px, 1)) / facing * scale;
   }
@@ -86,10 +93,11 @@ class Completer {
   /// The nearness of the sample `i`, moved from its pixel's centre to the slice's image line along the plane of the
   /// sample `edge`.
   double on_line(int i, int edge) const {
-    const auto [x, y] = pixel_at(receiver_, side_, i);
-    const double off_x = receiver_.x + side_.step_x * i - x;
-    const double off_y = receiver_.y + side_.step_y * i - y;
-    return nearness_of(i) + change_on_plane(edge, off_x, off_y).value_or(0);
+    const int step = line_.step_of(i);
+    const auto [x, y] = pixel_at(receiver_, side_, step);
+    const double off_x = receiver_.x + side_.step_x * step - x;
+    const double off_y = receiver_.y + side_.step_y * step - y;
+    return nearness_of(sample(i)) + change_on_plane(edge, off_x, off_y).value_or(0);
   }
 
   /// The mean of two: the line from the sample `other` of the same run, and the plane of the end. The line follows
@@ -97,8 +105,9 @@ class Completer {
   Course course_from(int edge, int other) const {
     Course course;
     course.edge = edge;
+    course.step = line_.step_of(edge);
     course.nearness = on_line(edge, edge);
-    course.slope = (course.nearness - on_line(other, edge)) / (edge - other);
+    course.slope = (course.nearness - on_line(other, edge)) / (course.step - line_.step_of(other));
     const auto plane = change_on_plane(edge, side_.step_x, side_.step_y);
     if (plane) course.slope = 0.5 * (course.slope + *plane);
     return course;
@@ -116,31 +125,31 @@ class Completer {
     return (nearest > 0 || scene_.orthographic()) && nearness > nearness_at(nearest);
   }
 
-  std::optional<Course> course_beyond_border() const {
-    const int last = count_ - 1;
+  std::optional<Course> course_beyond_border(int last) const {
+    if (sample(last).depth == 0) return std::nullopt;
     int first = last;
-    while (first > 0 && last - first + 1 < kPixelsOfBorder && same_surface(scene_, sample(first - 1), sample(first)))
-      first--;
-    if (last - first + 1 < kLeastPixelsOfBorder) return std::nullopt;
+    int pixels = 1;
+    for (; pixels < kPixelsOfBorder && sample(first).nearer >= 0; pixels++) first = sample(first).nearer;
+    if (pixels < kLeastPixelsOfBorder) return std::nullopt;
     return course_from(last, first);
   }
 
   /// From the end of a run of several pixels: away from the receiver (way 1), or towards it (-1).
   void go_on_behind(int edge, int way) {
     if (!stands_above(edge)) return;
-    const Course course = course_from(edge, edge - way);
-    for (int step = edge + way;; step += way) {
+    const Course course = course_from(edge, way > 0 ? sample(edge).nearer : sample(edge).farther);
+    for (int step = course.step + way;; step += way) {
       if (step == 0) return add(course, 1);
-      if (step == count_) return add_beyond_border(course);
+      if (step == steps_) return add_beyond_border(course);
       const double nearness = course.at(step);
-      if (sample(step).depth == 0 || nearness >= nearness_of(step)) return add(course, step - way);
+      if (hider(step).depth == 0 || nearness >= nearness_of(hider(step))) return add(course, step - way);
       if ((way > 0 && step > side_.reach + 1) || has_left(nearness, course.slope * way)) return add_ray(course, way);
     }
   }
 
   /// What goes on behind the last surface before the border may come to lie before it beyond the border.
   void add_beyond_border(const Course& course) {
-    const int last = count_ - 1;
+    const int last = steps_ - 1;
     if (!beyond_border_) return add(course, last);
     const double behind = beyond_border_->nearness - course.at(last);
     const double closing = course.slope - beyond_border_->slope;
@@ -150,9 +159,9 @@ class Completer {
 
   /// As far as so many steps from the receiver.
   void add(const Course& course, double step) {
-    if (step == course.edge) return;
+    if (step == course.step) return;
     const Vector from = sample(course.edge).position - receiver_.position;
-    add_part(course, from, point(step, course.at(step)) - from, 1, step > course.edge);
+    add_part(course, from, point(step, course.at(step)) - from, 1, step > course.step);
   }
 
   /// As far as the sphere, or the plane of the eye.
@@ -161,8 +170,8 @@ class Completer {
     // The direction is that to a point a step away, or half the way to where the surface is infinitely far.
     const double change = course.slope * way;
     const bool vanishes = !scene_.orthographic() && change < 0;
-    const double step = course.edge + way * (vanishes ? std::min(1.0, 0.5 * course.nearness / -change) : 1);
-    const Vector along = point(step, course.at(step)) - point(course.edge, course.nearness);
+    const double step = course.step + way * (vanishes ? std::min(1.0, 0.5 * course.nearness / -change) : 1);
+    const Vector along = point(step, course.at(step)) - point(course.step, course.nearness);
     const bool meets_eye = !scene_.orthographic() && along.z > 0;
     add_part(course, from, along, meets_eye ? sample(course.edge).depth / along.z : INFINITY, way > 0);
   }
@@ -186,7 +195,7 @@ class Completer {
   const ReferenceSide& side_;
   const ReferenceLine& line_;
   const ReferenceSettings& settings_;
-  int count_;  // of the line's samples
+  int steps_;  // of the line
   std::optional<Course> beyond_border_;
   std::vector<CompletedSegment> segments_;
 };

@@ -2,21 +2,40 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/reference/reference_scene.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/base/error.h"
+#include "core/reference/reference_layers.h"
 
 namespace alcove {
 
 double length(Vector a) { return std::sqrt(dot(a, a)); }
 Vector normalized(Vector a) { return (1 / length(a)) * a; }
 
-ReferenceScene::ReferenceScene(const HostFrame& frame) : frame_(frame), camera_(frame.camera) {
+ReferenceScene::ReferenceScene(const HostFrame& frame, int hidden, double separation)
+    : frame_(frame), camera_(frame.camera) {
   if (frame.depth_kind != DepthKind::planar || frame.depth.size() != frame.data.pixels() ||
       frame.normal.size() != 3 * frame.data.pixels())
     fail(ErrorKind::input, "the reference takes planar depth and normals for every pixel of {}", to_string(frame.data));
   center_x_ = camera_.cx + frame.display.x - frame.data.x;
   center_y_ = camera_.cy + frame.display.y - frame.data.y;
+  // A pixel cannot hide more than was found of it.
+  hidden = std::min(hidden, int(frame.behind.size()));
+  if (hidden == 0) return;
+  ReferenceLayers layers = reference_layers(*this, frame, hidden, separation);
+  surfaces_ = 1 + hidden;
+  lists_all_ = layers.lists_all;
+  hidden_ = std::move(layers.planes);
+}
+
+double ReferenceScene::depth(int x, int y, int surface) const {
+  if (surface == 0) return depth(x, y);
+  return std::abs(double(hidden_[std::size_t(surface - 1) * frame_.data.pixels() + index(x, y)]));
+}
+
+bool ReferenceScene::closes(int x, int y, int surface) const {
+  return surface > 0 && hidden_[std::size_t(surface - 1) * frame_.data.pixels() + index(x, y)] < 0;
 }
 
 double ReferenceScene::depth(int x, int y) const {

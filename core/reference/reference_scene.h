@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <utility>
+#include <vector>
+
 #include "core/frame/host_frame.h"
 
 namespace alcove {
@@ -20,11 +23,18 @@ inline Vector cross(Vector a, Vector b) {
 double length(Vector a);
 Vector normalized(Vector a);
 
-/// The frame, which must outlive it, with planar depth and normals for every pixel.
+/// The frame, which must outlive it, with planar depth and normals for every pixel, and what is known of the surfaces
+/// behind the first one of a pixel.
 class ReferenceScene {
  public:
-  /// Fails with ErrorKind::input on another frame.
-  explicit ReferenceScene(const HostFrame& frame);
+  /// Keeps so many surfaces behind the first; for the separation see reference_layers.h. Fails with ErrorKind::input
+  /// on another frame.
+  explicit ReferenceScene(const HostFrame& frame, int hidden = 0, double separation = -1);
+
+  /// The most surfaces of a pixel, the first one among them.
+  int surfaces() const { return surfaces_; }
+  /// Whether a pixel that lists fewer surfaces has no more of them.
+  bool lists_all() const { return lists_all_; }
 
   int width() const { return frame_.data.width; }
   int height() const { return frame_.data.height; }
@@ -35,6 +45,10 @@ class ReferenceScene {
 
   /// Planar depth; 0 on sky.
   double depth(int x, int y) const;
+  /// The same of a surface, 0 the first one, nearer ones first; 0 where there is none.
+  double depth(int x, int y, int surface) const;
+  /// Whether it closes the solid of the surface before it.
+  bool closes(int x, int y, int surface) const;
   Vector position(int x, int y, double z) const;
   /// The offset in position of an offset on the image, px, at that planar depth.
   Vector across(double x_px, double y_px, double z) const;
@@ -50,6 +64,9 @@ class ReferenceScene {
   const HostFrame& frame_;
   const Camera& camera_;
   double center_x_, center_y_;
+  int surfaces_ = 1;
+  bool lists_all_ = false;
+  std::vector<float> hidden_;  // see ReferenceLayers
 };
 
 }  // namespace alcove

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace alcove {
 namespace {
@@ -21,66 +22,119 @@ double size_of_pixel(const ReferenceScene& scene, double depth) {
   return scene.orthographic() ? 1 / scene.fx() : depth / scene.fx();
 }
 
-/// Whether the line must go on beyond the reach, to a sample of the run that began at `run_start` if it is `same`.
+/// Whether the line must go on beyond the reach, to a sample of the run that began at `first` if the run is no wider.
 /// There a sample matters only as the other end of a crossing, as more of a run's width, and as what may go on into the
 /// sphere. A run that is thicker than the sphere is wide enough. A line of sight to the sky ends all that goes on.
-bool goes_on(const ReferenceSettings& settings, const ReferenceSide& side, int step, const ReferenceSample& sample,
-             bool same, double width) {
+bool goes_on(const ReferenceSettings& settings, const ReferenceSide& side, const ReferenceLine& line,
+             const std::vector<int>& firsts) {
+  const int step = line.steps() - 1;
   if (step <= side.reach + 1) return true;
-  if (settings.thickness == ThicknessRule::width && same && width * settings.width_share <= 2 * settings.radius)
-    return true;
-  return completes_behind(settings) && sample.depth > 0 && step <= kFarReach * side.reach + 1;
+  for (int k = 0; k < line.surfaces; k++) {
+    const int index = step * line.surfaces + k;
+    const ReferenceSample& sample = line[index];
+    const int first = firsts[std::size_t(index)];
+    if (settings.thickness == ThicknessRule::width && sample.nearer >= 0 &&
+        length(sample.position - line[first].position) * settings.width_share <= 2 * settings.radius)
+      return true;
+  }
+  return completes_behind(settings) && line.at(step, 0).depth > 0 && step <= kFarReach * side.reach + 1;
+}
+
+/// Links the samples of the last step to those of the one before that show the same surface: the nearest in depth
+/// first, and each to one at most.
+void link(const ReferenceScene& scene, ReferenceLine& line) {
+  const int after = (line.steps() - 1) * line.surfaces;
+  const int before = after - line.surfaces;
+  for (;;) {
+    int from = -1, to = -1;
+    double least = INFINITY;
+    for (int i = before; i < after; i++)
+      for (int k = after; k < after + line.surfaces; k++) {
+        if (line[i].farther >= 0 || line[k].nearer >= 0 || !same_surface(scene, line[i], line[k])) continue;
+        const double gap = std::abs(line[i].depth - line[k].depth);
+        if (gap < least) least = gap, from = i, to = k;
+      }
+    if (from < 0) return;
+    line[from].farther = to;
+    line[to].nearer = from;
+  }
+}
+
+/// Puts the surfaces of a pixel at the end of the line.
+void add_step(const ReferenceScene& scene, ReferenceLine& line, int x, int y) {
+  for (int k = 0; k < line.surfaces; k++) {
+    ReferenceSample sample;
+    sample.depth = scene.depth(x, y, k);
+    sample.position = scene.position(x, y, sample.depth);
+    sample.closes = scene.closes(x, y, k);
+    line.samples.push_back(sample);
+  }
 }
 
 ReferenceLine samples_of(const ReferenceScene& scene, const ReferenceReceiver& receiver, const ReferenceSide& side,
                          const ReferenceSettings& settings) {
   ReferenceLine line;
-  std::vector<ReferenceSample>& samples = line.samples;
-  samples = {{receiver.position, receiver.depth, 0}};
-  std::size_t run_start = 0;
-  for (int k = 1;; k++) {
-    const auto [x, y] = pixel_at(receiver, side, k);
+  line.surfaces = scene.surfaces();
+  add_step(scene, line, receiver.x, receiver.y);
+  line[0].position = receiver.position;
+  std::vector<int> firsts(line.samples.size());  // of each sample the one that its run begins with
+  std::iota(firsts.begin(), firsts.end(), 0);
+  for (int step = 1;; step++) {
+    const auto [x, y] = pixel_at(receiver, side, step);
     line.at_border = !scene.inside(x, y);
     if (line.at_border) break;
-    ReferenceSample sample;
-    sample.depth = scene.depth(x, y);
-    sample.position = scene.position(x, y, sample.depth);
-    const bool same = same_surface(scene, samples.back(), sample);
-    if (!same) run_start = samples.size();
-    if (!goes_on(settings, side, k, sample, same, same ? length(sample.position - samples[run_start].position) : 0))
+    add_step(scene, line, x, y);
+    link(scene, line);
+    for (int i = step * line.surfaces; i < int(line.samples.size()); i++)
+      firsts.push_back(line[i].nearer >= 0 ? firsts[std::size_t(line[i].nearer)] : i);
+    if (!goes_on(settings, side, line, firsts)) {
+      line.samples.resize(line.samples.size() - std::size_t(line.surfaces));
+      for (auto& sample : line.samples)
+        if (sample.farther >= int(line.samples.size())) sample.farther = -1;
       break;
-    samples.push_back(sample);
+    }
   }
   return line;
 }
 
 /// The thickness of the run between these two samples.
-double thickness_of_run(const ReferenceScene& scene, const ReferenceLine& line, std::size_t first, std::size_t last,
+double thickness_of_run(const ReferenceScene& scene, const ReferenceLine& line, int first, int last,
                         const ReferenceSettings& settings) {
-  const bool cut = line.at_border && last + 1 == line.samples.size();
+  const bool cut = line.at_border && line.step_of(last) + 1 == line.steps();
   if (first == 0) return INFINITY;
   // From outer edge to outer edge: n pixels are n wide, and their centres n - 1 apart. Without it single blades of
   // grass vanish.
-  const double pixel = size_of_pixel(scene, line.samples[first].depth);
-  const double chord = length(line.samples[last].position - line.samples[first].position) + pixel;
+  const double pixel = size_of_pixel(scene, line[first].depth);
+  const double chord = length(line[last].position - line[first].position) + pixel;
   const double thickness = settings.width_share * chord + settings.width_pixels * pixel;
   return cut && settings.complete != Completion::none ? std::max(thickness, kCutThickness * settings.radius)
                                                       : thickness;
 }
 
+/// Between a surface and the one that closes its solid in the same pixel all is solid. Of what is behind that nothing
+/// is known.
+void end_solids(ReferenceLine& line) {
+  for (int i = 0; i < int(line.samples.size()); i++) {
+    ReferenceSample& sample = line[i];
+    if (sample.closes) sample.thickness = 0;
+    const bool is_last = (i + 1) % line.surfaces == 0;
+    if (!is_last && line[i + 1].closes && sample.thickness < INFINITY)
+      sample.thickness = length(line[i + 1].position - sample.position);
+  }
+}
+
 void set_thickness(const ReferenceScene& scene, ReferenceLine& line, const ReferenceSettings& settings) {
-  std::vector<ReferenceSample>& samples = line.samples;
   if (settings.thickness != ThicknessRule::width) {
     const double value = settings.thickness == ThicknessRule::infinite ? INFINITY : settings.thickness_length;
-    for (auto& sample : samples) sample.thickness = value;
-    return;
+    for (auto& sample : line.samples) sample.thickness = value;
+  } else {
+    for (int first = 0; first < int(line.samples.size()); first++) {
+      if (line[first].depth == 0 || line[first].nearer >= 0) continue;
+      const double thickness = thickness_of_run(scene, line, first, last_of_run(line, first), settings);
+      for (int i = first; i >= 0; i = line[i].farther) line[i].thickness = thickness;
+    }
   }
-  for (std::size_t first = 0; first < samples.size();) {
-    const std::size_t last = last_of_run(scene, samples, first);
-    const double thickness = thickness_of_run(scene, line, first, last, settings);
-    for (std::size_t i = first; i <= last; i++) samples[i].thickness = thickness;
-    first = last + 1;
-  }
+  end_solids(line);
 }
 
 }  // namespace
@@ -99,9 +153,9 @@ bool same_surface(const ReferenceScene& scene, const ReferenceSample& a, const R
   return std::abs(a.depth - b.depth) < kRunSlope * pixel;
 }
 
-std::size_t last_of_run(const ReferenceScene& scene, const std::vector<ReferenceSample>& samples, std::size_t first) {
-  std::size_t last = first;
-  while (last + 1 < samples.size() && same_surface(scene, samples[last], samples[last + 1])) last++;
+int last_of_run(const ReferenceLine& line, int first) {
+  int last = first;
+  while (line[last].farther >= 0) last = line[last].farther;
   return last;
 }
 

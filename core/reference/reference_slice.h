@@ -10,11 +10,14 @@
 
 namespace alcove {
 
-/// One pixel on a slice's image line.
+/// One surface of a pixel on a slice's image line.
 struct ReferenceSample {
   Vector position;
-  double depth = 0;      // 0: sky
+  double depth = 0;      // 0: there is none; of the first surface: sky
   double thickness = 0;  // scene units, infinite allowed
+  bool closes = false;   // the solid of the surface before it in its pixel
+  // Where the same surface goes on, one step nearer to the receiver and one farther: indices of samples; -1: it ends.
+  int nearer = -1, farther = -1;
 };
 
 struct ReferenceReceiver {
@@ -31,10 +34,18 @@ struct ReferenceSide {
   double reach;           // steps within the radius; infinite when the sphere of the radius holds the eye
 };
 
-/// The samples of a side. The first is the receiver, and the k-th is k steps away.
+/// The samples of a side, as many for each step as a pixel may have surfaces, nearer to the eye first. The first of
+/// all is the receiver.
 struct ReferenceLine {
   std::vector<ReferenceSample> samples;
+  int surfaces = 1;        // of a step
   bool at_border = false;  // the line ends where the picture does
+
+  int steps() const { return int(samples.size()) / surfaces; }
+  int step_of(int index) const { return index / surfaces; }
+  const ReferenceSample& operator[](int index) const { return samples[std::size_t(index)]; }
+  ReferenceSample& operator[](int index) { return samples[std::size_t(index)]; }
+  const ReferenceSample& at(int step, int surface) const { return (*this)[step * surfaces + surface]; }
 };
 
 /// Whether surfaces go on behind what is nearer. Endless occluders block all that is behind them anyway.
@@ -47,7 +58,7 @@ std::pair<int, int> pixel_at(const ReferenceReceiver& receiver, const ReferenceS
 bool same_surface(const ReferenceScene& scene, const ReferenceSample& a, const ReferenceSample& b);
 
 /// The last sample of the run that the sample at index `first` begins.
-std::size_t last_of_run(const ReferenceScene& scene, const std::vector<ReferenceSample>& samples, std::size_t first);
+int last_of_run(const ReferenceLine& line, int first);
 
 /// The line with the thickness of every sample, as far as the settings need it.
 ReferenceLine line_of(const ReferenceScene& scene, const ReferenceReceiver& receiver, const ReferenceSide& side,

@@ -17,12 +17,14 @@
 #include "core/chain/aov.h"
 #include "core/chain/chain.h"
 #include "core/formats/color.h"
-#include "core/frame/settle.h"
 #include "core/run/check.h"
 #include "core/run/digest.h"
+#include "core/run/first_look.h"
+#include "core/run/frame_tally.h"
 #include "core/run/memory_plan.h"
 #include "core/run/pipeline.h"
 #include "core/run/resume.h"
+#include "core/run/shot_memory.h"
 
 namespace alcove {
 namespace {
@@ -44,6 +46,7 @@ void check_files(const Settings& settings) {
         fail(ErrorKind::usage, "{}: {} and {} name the same file", outputs[i].path, outputs[j].option,
              outputs[i].option);
   }
+  require_endings(settings.output);
 }
 
 /// All files that the run will write can be made; what killed runs have left beside them goes.
@@ -53,7 +56,10 @@ void prepare_outputs(const FramePlan& plan, const Settings& settings) {
   const auto prepare = [&](const OutputFile& file) {
     if (const auto [known, is_new] = options.try_emplace(file.path, file.option); !is_new)
       fail(ErrorKind::usage, "{}: {} and {} of two frames name the same file", file.path, known->second, file.option);
-    require_writable(file.path, file.option);
+    if (settings.output.no_mkdir)
+      require_writable(file.path, file.option);
+    else
+      require_makeable(file.path, file.option);
   };
   for (const int frame : plan.frames())
     for (const auto& file : outputs_of(plan.at(frame).output)) {
@@ -62,24 +68,6 @@ void prepare_outputs(const FramePlan& plan, const Settings& settings) {
     }
   for (const auto& file : reports_of(settings.output)) prepare(file);
   for (const auto& folder : folders) remove_unfinished(folder);
-}
-
-/// Settles one frame of the sequence, and all others are read in the same way. It is the first one that shows what
-/// files and options leave open; null where no frame can be read.
-std::optional<FrameSource> settle_sequence(const FramePlan& plan) {
-  std::optional<FrameSource> best;
-  for (const int frame : plan.evidence()) {
-    try {
-      const Settings settings = plan.at(frame);
-      FrameSource source = open_frame(settings, frame);
-      settle_by_rows(source, settings.input);
-      if (!best || source.has_evidence) best = std::move(source);
-      if (best->has_evidence) break;
-    } catch (const Error&) {
-      // The frame is computed like all others, and its report says then what is wrong with it.
-    }
-  }
-  return best;
 }
 
 int thread_count(const DeviceSettings& settings) { return settings.threads > 0 ? settings.threads : core_count(); }
@@ -97,43 +85,39 @@ void share_cores(int threads, int lanes, bool is_chosen) {
 /// A run from its plan to its report.
 class Batch {
  public:
-  Batch(const Settings& settings, const RunWatch& watch) : settings_(settings), watch_(watch), plan_(settings) {}
+  /// `notes` are on all frames.
+  Batch(const Settings& settings, Notes notes, const RunWatch& watch)
+      : settings_(settings), watch_(watch), plan_(settings) {
+    report_.notes = std::move(notes);
+  }
 
   RunReport run() {
     const Stopwatch wall;
     report_.is_sequence = plan_.is_sequence();
+    report_.input = main_input(settings_.input);
+    add_new(report_.notes, notes_on_names(plan_, settings_));
     report_.missing = plan_.missing();
     if (!plan_.frames().empty()) {
       const Settings first = plan_.at(plan_.frames().front());
       check_files(first);
       prepare_outputs(plan_, settings_);
       report_.options = options_digest(first);
-      first_camera_ = first.input.camera;
     }
-    const std::vector<int> wanted = without_whole();
+    const std::vector<int> wanted = frames_to_compute(plan_, settings_);
+    make_folders(reports_of(settings_.output), settings_.output);
     if (watch_.begin) watch_.begin(report_, int(plan_.frames().size()));
     tell_kept(wanted);
     if (!wanted.empty()) compute(wanted);
     sort_reports();
     report_.dropped = int(plan_.frames().size()) - report_.done - report_.failed - report_.kept;
+    if (report_.on_cpu_by_default && report_.done)
+      note({{NoteCode::no_gpu, fmt::format("no GPU found; computed on {}", report_.device)}});
     report_.wall_s = wall.ms() / 1000;
     if (!settings_.output.stats.empty()) write_whole(settings_.output.stats, stats_json(report_));
     return std::move(report_);
   }
 
  private:
-  /// The frames to compute: all but those whose outputs an earlier run has left whole.
-  std::vector<int> without_whole() const {
-    if (!settings_.frames.resume || settings_.frames.overwrite) return plan_.frames();
-    std::vector<int> wanted;
-    std::ranges::copy_if(plan_.frames(), std::back_inserter(wanted), [&](int frame) {
-      const Settings settings = plan_.at(frame);
-      const bool has_own_camera = settings.input.camera != first_camera_;
-      return !has_whole_outputs(settings, has_own_camera ? options_digest(settings) : report_.options);
-    });
-    return wanted;
-  }
-
   /// Tells of the frames that are not wanted any more.
   void tell_kept(const std::vector<int>& wanted) {
     const std::unordered_set<int> computed(wanted.begin(), wanted.end());
@@ -159,15 +143,28 @@ class Batch {
     std::ranges::sort(report_.frames, {}, [&](const FrameReport& frame) { return place.at(frame.frame); });
   }
 
+  /// Takes what was noted of all frames.
+  void note(const Notes& notes) {
+    add_new(report_.notes, notes);
+    if (watch_.noted) watch_.noted(report_);
+  }
+
   void compute(const std::vector<int>& frames) {
-    const auto settled = plan_.is_sequence() ? settle_sequence(plan_) : std::nullopt;
-    if (settled)
-      for (const auto* known : {&settled->suspicious, &settled->notes})
-        notes_of_all_.insert(notes_of_all_.end(), known->begin(), known->end());
+    const std::uint64_t bytes = memory_of_host(settings_.device).host_bytes;
+    set_exr_memory(bytes / kCodecPart);
+    const auto settled = plan_.is_sequence() ? settle_first(plan_, bytes) : std::nullopt;
+    if (settled) note(FrameTally::notes_on(*settled));
     std::optional<DisplayTransform> transform;
     if (shows_composite(settings_.output)) transform.emplace(settings_.output.ocio);
-    RunContext run{
-        plan_, settled ? &*settled : nullptr, transform ? &*transform : nullptr, {report_.options, ""}, watch_.stop};
+    RunContext run{plan_,
+                   identities_,
+                   settled ? &*settled : nullptr,
+                   transform ? &*transform : nullptr,
+                   nullptr,
+                   {report_.options, ""},
+                   watch_.stop};
+    std::optional<SharedFrames> shot;
+    if (takes_others(settings_.input)) run.shot = &shot.emplace(plan_, run.settled, frames);
 
     run_on_device(run, frames);
     if (!lost_ || report_.stop) return;  // a frame that failed beside the loss has ended the run
@@ -183,31 +180,39 @@ class Batch {
   /// The number of frames that are computed at once, of so many that are left.
   int lanes_for(const RunContext& run, std::size_t frames, const RunMemory& memory, int most) const {
     if (!run.settled || frames < 2) return 1;
-    const std::uint64_t room =
-        frames_in(memory, pixel_memory(*run.settled, settings_), run.settled->file_data.pixels());
-    return int(std::min({room, std::uint64_t(frames), std::uint64_t(most)}));
+    const FrameMemory frame = memory_with_others(plan_, *run.settled, settings_);
+    int lanes = int(std::min(std::uint64_t(frames), std::uint64_t(most)));
+    const auto has_room = [&] {
+      const RunMemory left = beside_shot(memory, plan_, *run.settled, settings_, lanes);
+      return frames_in(left, frame, run.settled->file_data) >= std::uint64_t(lanes);
+    };
+    while (lanes > 1 && !has_room()) lanes--;
+    return lanes;
   }
 
   void run_on_device(RunContext& run, const std::vector<int>& frames) {
     const DeviceSettings& d = settings_.device;
     // A CPU device reads its number of threads when it is made, and so before anybody knows whether it is one.
     const int threads = thread_count(d);
-    const RunMemory of_host{host_memory_for_frames(d), Room::kEndless};
+    const RunMemory of_host = memory_of_host(d);
     const int cpu_lanes = lanes_for(run, frames.size(), of_host, threads);
+    set_exr_memory(of_host.host_bytes / kCodecPart / std::uint64_t(cpu_lanes));
     share_cores(threads, cpu_lanes, d.threads > 0);
     Lanes lanes({d.device, d.require_gpu, d.validate, !d.no_pipeline_cache}, cpu_lanes);
 
     const gpu::DeviceInfo& device = lanes.device().info();
     const bool is_cpu = device.type == gpu::DeviceType::cpu;
-    const RunMemory memory = memory_for_frames(d, device);
+    RunMemory memory = memory_for_frames(d, device);
+    if (run.settled) require_room_for_others(memory, plan_, *run.settled, settings_);
     if (!is_cpu) lanes.set_count(lanes_for(run, frames.size(), memory, threads + kSpareLanes));
     report_.device = run.provenance.device = device.name;
     report_.on_cpu_by_default = is_cpu && d.device == "auto";
     report_.at_once = lanes.count();
+    if (run.settled) memory = beside_shot(memory, plan_, *run.settled, settings_, lanes.count());
 
     run_pipeline(lanes, run, room_of_lane(memory, lanes.count(), device), frames,
                  {[this](const FrameReport& frame) { return ends(frame); },
-                  [this](FrameReport&& frame) { take(std::move(frame)); }});
+                  [this](FrameReport&& frame) { take(std::move(frame)); }, watch_.working});
     report_.at_once = lanes.count();
     if (lanes.validation_messages())
       fail(ErrorKind::device, "--validate: the validation layer reported {} messages", lanes.validation_messages());
@@ -223,8 +228,7 @@ class Batch {
     if (frame.state == FrameState::dropped || frame.device_lost) return;
     if (frame.state == FrameState::done) {
       report_.done++;
-      for (const auto& note : std::exchange(notes_of_all_, {}))
-        if (std::ranges::find(frame.notes, note) == frame.notes.end()) frame.notes.push_back(note);
+      report_.warned += !warnings_of(frame.notes).empty();
     }
     if (frame.state == FrameState::failed) {
       report_.failed++;
@@ -244,10 +248,9 @@ class Batch {
   const Settings& settings_;
   const RunWatch& watch_;
   const FramePlan plan_;
-  std::string first_camera_;
-  std::optional<Error> lost_;              // why the device was lost
-  std::unordered_set<int> ended_;          // frames that were told of
-  std::vector<std::string> notes_of_all_;  // on how the sequence is read; the first frame that is done carries them
+  InputIdentities identities_{plan_};
+  std::optional<Error> lost_;      // why the device was lost
+  std::unordered_set<int> ended_;  // frames that were told of
   RunReport report_;
 };
 
@@ -255,7 +258,10 @@ class Batch {
 
 RunReport run_frames(const Settings& settings, const RunWatch& watch) {
   check_settings(settings);
-  return Batch(settings, watch).run();
+  keep_no_spare_memory();
+  Notes notes;
+  const Settings known = with_proposed_radius(settings, notes);
+  return Batch(known, notes, watch).run();
 }
 
 }  // namespace alcove

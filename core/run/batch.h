@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <span>
 #include <string>
 
 #include "core/base/settings.h"
@@ -14,10 +15,14 @@ namespace alcove {
 struct RunWatch {
   // Called before the first frame with the run as it is known then, and with the number of its frames.
   std::function<void(const RunReport&, int)> begin;
+  // Called where RunReport::notes has grown since.
+  std::function<void(const RunReport&)> noted;
   // Called for one frame after the other, in their order. Frames that a lost device took with it come later.
   std::function<void(const FrameReport&)> frame;
   // Asked by any thread. Once it is true no frame is begun, and those in flight are dropped before their next step.
   std::function<bool()> stop;
+  // Called about once a second, between calls of frame(), with the frames in flight.
+  std::function<void(std::span<const FrameProgress>)> working = {};
 };
 
 /// Computes the frames that the settings name and writes their outputs. After the loss of its device it goes on with a

@@ -8,6 +8,8 @@
 #include "core/base/estimator_facts.h"
 #include "core/chain/aov.h"
 #include "core/chain/debug_view.h"
+#include "core/frame/input_files.h"
+#include "core/options/said.h"
 
 namespace alcove {
 namespace {
@@ -15,44 +17,20 @@ namespace {
 // Each scale costs a search and a plane of its own.
 constexpr std::size_t kMostRadii = 8;
 
-/// An estimate by its error is a mean over exact searches of every pixel.
+/// Only an estimate by its error knows that error.
 void check_tolerance(const Settings& settings) {
   const auto& e = settings.estimator;
-  if (e.tolerance == 0) {
-    if (wants(settings.output, &FrameOutputs::error))
-      fail(ErrorKind::usage, "--aov error: only an estimate with a --tolerance knows its error");
-    return;
-  }
-  if (e.estimator != Estimator::gtao) fail(ErrorKind::usage, "--tolerance: only of --estimator gtao");
-  if (e.resolution != Resolution::full)
-    fail(ErrorKind::usage, "--tolerance: the error is that of every pixel: give --resolution full");
+  if (e.tolerance == 0 && wants(settings.output, &FrameOutputs::error))
+    fail(ErrorKind::usage, "--aov error: only an estimate with a --tolerance knows its error");
 }
 
-/// Leaving out nearly open tiles needs a proof, which only two estimators have.
-void check_skipping(const Settings& settings) {
-  const auto& e = settings.estimator;
-  if (e.skip_tolerance == 0) return;
-  if (searches_exactly(e))
-    fail(ErrorKind::usage, "--skip-tolerance: an exact search leaves out nothing; --search steps does");
-  if (e.estimator != Estimator::gtao && e.estimator != Estimator::bitmask)
-    fail(ErrorKind::usage,
-         "--skip-tolerance: only of --estimator gtao and bitmask, whose AO is weighted by the cosine");
-  if (e.no_skip) fail(ErrorKind::usage, "--skip-tolerance and --no-skip: give only one of them");
-}
-
-/// An exact search has no samples: it knows no fading hits and no pixels left out.
+/// An exact search leaves out no tiles.
 void check_search(const Settings& settings) {
   const auto& e = settings.estimator;
   if (!searches_exactly(e)) return;
   for (const auto* view : debug_views_of(settings.output))
     if (view->source == DebugSource::tiles)
       fail(ErrorKind::usage, "--debug tiles: an exact search leaves out none; --search steps does");
-  if (e.falloff != Falloff::none)
-    fail(ErrorKind::usage,
-         "--falloff: in an exact search all within the radius blocks fully; give --falloff none or --search steps");
-  if (e.stride > 1)
-    fail(ErrorKind::usage, "--stride {}: an exact search is made at every pixel; give --stride 1 or --search steps",
-         e.stride);
 }
 
 /// A view of what is completed needs something that is.
@@ -67,6 +45,18 @@ void check_completion(const Settings& settings) {
        e.estimator == Estimator::hbao ? "hbao" : "crytek");
 }
 
+/// What shows hidden surfaces needs some that are kept.
+void check_hidden(const Settings& settings) {
+  const auto views = debug_views_of(settings.output);
+  const bool is_drawn = std::ranges::find(views, DebugSource::hidden, &DebugView::source) != views.end();
+  const char* const option = wants(settings.output, &FrameOutputs::hidden) ? "--aov" : is_drawn ? "--debug" : nullptr;
+  if (!option) return;
+  if (settings.estimator.hidden == 0) fail(ErrorKind::usage, "{} hidden: with --hidden 0 nothing is kept", option);
+  if (!has_hidden_sources(settings.input))
+    fail(ErrorKind::usage, "{} hidden: nothing says what is hidden: --behind, --deep, --around and --other-views do",
+         option);
+}
+
 /// Several radii make sense once each; bent normals need an estimator that finds open directions.
 void check_scales(const Settings& settings) {
   const auto& e = settings.estimator;
@@ -76,59 +66,36 @@ void check_scales(const Settings& settings) {
   if (e.further_radii.empty()) return;
   const auto radii = radii_of(e);
   if (radii.size() > kMostRadii)
-    fail(ErrorKind::usage, "--radius: there are {}, and at most {} scales", radii.size(), kMostRadii);
+    fail(ErrorKind::usage, "--radius: there are {} of them; a run takes at most {}", radii.size(), kMostRadii);
   if (const auto twice = std::ranges::adjacent_find(radii); twice != radii.end())
     fail(ErrorKind::usage, "--radius {} is there twice: give each scale once", *twice);
 }
 
-/// Options of the fade, the albedo and the fog, each with what it is useless without.
-void check_shading(const Settings& settings) {
-  const auto& e = settings.estimator;
-  const auto& o = settings.output;
-  if (e.fade_start.has_value() != e.fade_end.has_value())
-    fail(ErrorKind::usage, "--fade-start and --fade-end belong together: depths in scene units");
-  if (e.fade_end && *e.fade_end <= *e.fade_start)
+/// Numbers that have an order, or a range of their own beside others.
+void check_numbers(const EstimatorSettings& e) {
+  if (e.fade_start && e.fade_end && *e.fade_end <= *e.fade_start)
     fail(ErrorKind::usage, "--fade-end {} is not beyond --fade-start {}", *e.fade_end, *e.fade_start);
-  const bool has_albedo =
-      !settings.input.albedo.empty() || settings.input.albedo_value || !settings.input.albedo_channels.empty();
-  if (has_albedo && !o.multi_bounce)
-    fail(ErrorKind::usage, "--albedo and --albedo-channels are for --multi-bounce: give it too");
-  if (o.multi_bounce && o.composite.empty() && !wants(o, &FrameOutputs::color_ao))
-    fail(ErrorKind::usage,
-         "--multi-bounce shows in the AO with --ao-channels rgb, and in a --composite: ask for one of them");
-  if (o.fog_density > 0 && o.composite.empty())
-    fail(ErrorKind::usage, "--fog-density is for a composite: name its file with --composite");
+  if (e.estimator != Estimator::crytek && e.bias >= 1)
+    fail(ErrorKind::usage, "--bias {}: of every estimator but crytek it is the sine of an elevation, below 1", e.bias);
+  if (e.falloff_end <= e.falloff_start)
+    fail(ErrorKind::usage, "--falloff-end {} is not above --falloff-start {}", e.falloff_end, e.falloff_start);
 }
 
 }  // namespace
 
 void check_settings(const Settings& settings) {
   if (settings.output.output.empty()) fail(ErrorKind::usage, "no output: name the AO file with -o FILE.exr");
-  if (settings.input.input.empty() && settings.input.depth.empty() && settings.input.position.empty())
+  if (main_input(settings.input).empty())
     fail(ErrorKind::usage, "no input: name an EXR file, or one with --depth or --position");
-  if (!settings.input.depth.empty() && !settings.input.position.empty())
-    fail(ErrorKind::usage, "--depth and --position are two ways to say the same: give one");
-  if (!settings.estimator.radius && needs_ao(settings.output))
+  if (!settings.estimator.radius && !settings.estimator.radius_auto && needs_ao(settings.output))
     fail(ErrorKind::usage, "no radius: say with --radius how far occluders reach, in scene units");
+  require_applicable(settings);
   check_tolerance(settings);
-  check_skipping(settings);
   check_search(settings);
   check_completion(settings);
+  check_hidden(settings);
   check_scales(settings);
-  if (settings.estimator.estimator != Estimator::crytek && settings.estimator.bias >= 1)
-    fail(ErrorKind::usage, "--bias {}: of every estimator but crytek it is the sine of an elevation, below 1",
-         settings.estimator.bias);
-  if (settings.estimator.falloff_end <= settings.estimator.falloff_start)
-    fail(ErrorKind::usage, "--falloff-end {} is not above --falloff-start {}", settings.estimator.falloff_end,
-         settings.estimator.falloff_start);
-  if (settings.estimator.stride > 1 && settings.estimator.denoise != Denoise::bilateral)
-    fail(ErrorKind::usage, "--stride {} leaves pixels to the denoiser: give --denoise bilateral, or --stride 1",
-         settings.estimator.stride);
-  if (settings.input.focal.has_value() != settings.input.aperture.has_value())
-    fail(ErrorKind::usage, "--focal and --aperture belong together: focal length and width of the film back in mm");
-  if (!settings.input.beauty.empty() && settings.output.composite.empty() && !settings.output.multi_bounce)
-    fail(ErrorKind::usage, "--beauty is for a composite: name its file with --composite");
-  check_shading(settings);
+  check_numbers(settings.estimator);
   if (settings.frames.chunk > settings.frames.chunks)
     fail(ErrorKind::usage, "--chunk {}/{}: there is no such chunk", settings.frames.chunk, settings.frames.chunks);
 }

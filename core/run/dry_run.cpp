@@ -8,9 +8,14 @@
 #include <vector>
 
 #include "core/base/text.h"
+#include "core/run/check.h"
+#include "core/run/first_look.h"
 #include "core/run/frame_files.h"
 #include "core/run/memory_plan.h"
 #include "core/run/plan.h"
+#include "core/run/resume.h"
+#include "core/run/shot_memory.h"
+#include "core/run/time_estimate.h"
 
 namespace alcove {
 namespace {
@@ -22,8 +27,12 @@ std::string span_text(const std::string& first, const std::string& last) {
 
 }  // namespace
 
-std::string plan_text(const Settings& settings) {
+std::string plan_text(const Settings& given) {
+  check_settings(given);
+  Notes notes;
+  const Settings settings = with_proposed_radius(given, notes);
   const FramePlan plan(settings);
+  add_new(notes, notes_on_names(plan, settings));
   std::string text;
   const auto line = [&](const std::string& name, const std::string& value) {
     text += printable(fmt::format("{:<14}{}", name, value)) + "\n";
@@ -32,12 +41,14 @@ std::string plan_text(const Settings& settings) {
        plan.frames().empty() ? "none" : fmt::format("{}: {}", plan.frames().size(), frames_text(plan.frames())));
   if (!plan.missing().empty())
     line("missing", fmt::format("{}: {}, left out", plan.missing().size(), frames_text(plan.missing())));
+  for (const auto& note : notes) line(level_of(note), fmt::format("{} [{}]", note.text, facts_of(note.code).name));
   if (plan.frames().empty()) return text;
   Settings first = plan.at(plan.frames().front()), last = plan.at(plan.frames().back());
+  require_endings(first.output);
   for (const auto& path : named_paths())
     if (!path.of(first).empty()) line(path.option, span_text(path.of(first), path.of(last)));
 
-  const FrameSource source = open_frame(first, plan.frames().front());
+  FrameSource source = open_frame(first, plan.frames().front());
   std::vector<std::string> channels;
   for (const auto& plane : source.planes.entries)
     for (const auto& channel : plane) channels.push_back(channel.channel);
@@ -45,12 +56,27 @@ std::string plan_text(const Settings& settings) {
   line("camera",
        fmt::format("{}, {:.6g} x {:.6g} px {}", source.camera.orthographic ? "orthographic" : "perspective",
                    source.camera.fx, source.camera.fy, source.camera.orthographic ? "per scene unit" : "focal length"));
-  const std::uint64_t bytes = pixel_memory(source, first).bytes * source.file_data.pixels();
-  const std::uint64_t memory = host_memory_for_frames(first.device);
+  const FrameMemory frame = memory_with_others(plan, source, first);
+  const std::uint64_t bytes = frame.on_host(source.file_data);
+  require_room_for_others(memory_of_host(first.device), plan, source, first);
+  const RunMemory run = beside_shot(memory_of_host(first.device), plan, source, first, 1);
+  const std::uint64_t memory = run.host_bytes;
   line("size", to_string(written_of(source)));
   const std::string at_once =
-      bytes > memory ? "in tiles" : fmt::format("up to {} at once", memory / std::max<std::uint64_t>(1, bytes));
+      bytes > memory ? "in tiles" : fmt::format("up to {} at once", frames_in(run, frame, source.file_data));
   line("memory", fmt::format("{} MiB per frame, {} MiB for frames: {}", bytes >> 20, memory >> 20, at_once));
+  if (around_of(first.input) > 0)
+    line("around",
+         fmt::format("up to {} of the {} frames of the shot: {} MiB of prepared frames for each at once, beside "
+                     "what it takes itself",
+                     most_others(plan, source, first.input), plan.shot().size(),
+                     bytes_of_shot(plan, source, first.input, 1) >> 20));
+  const auto wanted = frames_to_compute(plan, settings);
+  if (wanted.size() < plan.frames().size())
+    line("kept", fmt::format("{}: whole, by an earlier run", plan.frames().size() - wanted.size()));
+  // A sequence more often begins or ends with nothing than it has nothing in its middle.
+  const int middle = wanted.empty() ? plan.frames().front() : wanted[wanted.size() / 2];
+  line("time", time_text({plan.at(middle), middle, int(wanted.size())}));
   return text;
 }
 

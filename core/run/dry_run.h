@@ -8,7 +8,8 @@
 
 namespace alcove {
 
-/// The frames, files, size and memory of a run. Opens the headers of the first frame, and no device.
+/// The frames, files, size, memory and time of a run. Reads and computes a part of the first frame, and writes nothing.
+/// Fails as the run would on settings and names.
 std::string plan_text(const Settings& settings);
 
 }  // namespace alcove

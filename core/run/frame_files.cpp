@@ -7,9 +7,12 @@
 
 #include "core/base/error.h"
 #include "core/base/estimator_facts.h"
+#include "core/base/file.h"
 #include "core/base/version.h"
 #include "core/chain/aov.h"
-#include "core/frame/settle.h"
+#include "core/chain/margin.h"
+#include "core/frame/behind.h"
+#include "core/frame/settle_rows.h"
 #include "core/run/pictures.h"
 
 namespace alcove {
@@ -41,6 +44,13 @@ ExrOutput output_like(const FrameSource& source, const ChannelRef& like, const P
                            {"alcove/device", provenance.device},
                            {"alcove/inputs", provenance.inputs},
                            {"alcove/input", fs::path(source.depth_path()).filename().string()}};
+  if (const std::string hidden = hidden_sources_text(source); !hidden.empty())
+    output.own_attributes[kHiddenAttribute] = hidden;
+  if (!provenance.others.empty()) {
+    std::string& hidden_from = output.own_attributes[kHiddenAttribute];
+    hidden_from += (hidden_from.empty() ? "" : "; ") + provenance.others;
+  }
+  if (!provenance.notes.empty()) output.own_attributes[kNotesAttribute] = provenance.notes;
   return output;
 }
 
@@ -57,10 +67,12 @@ ExrOutput aov_file(const FrameSource& source, const EstimatorSettings& estimator
   ExrOutput output = output_like(source, source[RawPlane::depth][0], provenance);
   output.compression = settings.compression;
   const auto radii = estimator.radius ? radii_of(estimator) : std::vector<double>();
+  if (needs_ao(settings)) output.own_attributes["alcove/radius"] = fmt::format("{}", fmt::join(radii, " "));
   for (const auto& aov : aovs_of(settings)) {
     const SampleType type =
         settings.type == OutputType::half_float && !aov.is_float ? SampleType::half_float : SampleType::single_float;
-    for (const auto& channel : channels_of(aov, radii.size())) output.planes.push_back({channel, type, {}});
+    for (const auto& channel : channels_of(aov, planes_of(aov, estimator)))
+      output.planes.push_back({channel, type, {}});
   }
   if (wants(settings, &FrameOutputs::scales))
     output.own_attributes["alcove/radii"] = fmt::format("{}", fmt::join(radii, " "));
@@ -115,16 +127,33 @@ void require_for_outputs(const FrameSource& source, const OutputSettings& settin
 FrameSource open_frame(const Settings& settings, int frame) {
   FrameSource source = find_frame(settings.input, !settings.output.composite.empty(), frame,
                                   settings.output.multi_bounce && !settings.input.albedo_value);
+  if (settings.estimator.hidden == 0) {
+    source[RawPlane::behind].clear();
+    source.behind.clear();
+  }
   if (settings.input.roi) source.region = region_of(source, *settings.input.roi);
   require_for_outputs(source, settings.output);
   return source;
 }
 
+void settle_within(FrameSource& source, const Settings& settings, std::uint64_t most_bytes) {
+  const std::size_t most_pixels = evidence_within(source, most_bytes);
+  if (!source.region) return settle_by_rows(source, settings.input, most_pixels);
+  FrameRows rows(source, most_bytes / kRowsPart, existing_folder_of(settings.output.output));
+  settle_by_part(source, settings.input, rows, *source.region, most_pixels);
+}
+
+std::size_t evidence_within(const FrameSource& source, std::uint64_t most_bytes) {
+  constexpr std::uint64_t kLeastPixels = 1 << 18;  // fewer tell too little
+  const std::uint64_t planes = source[RawPlane::depth].size() + source[RawPlane::normal].size();
+  // What judges them makes planes of their own.
+  return std::clamp(most_bytes / (2 * sizeof(float) * planes), kLeastPixels, std::uint64_t(kEvidencePixels));
+}
+
 const Window& written_of(const FrameSource& source) { return source.region ? *source.region : source.file_data; }
 
-FrameInputs load_frame(gpu::Recorder& gpu, FrameSource& source, const Settings& all, int frame) {
+FrameInputs load_frame(gpu::Recorder& gpu, FrameSource& source, const Settings& all, int frame, FrameRows* rows) {
   const InputSettings& settings = all.input;
-  if (!source.settled && source.data.pixels() > kEvidencePixels) settle_by_rows(source, settings);
   RawPlaneArray<gpu::Buffer*> planes;
   std::vector<PlaneRead> reads;
   for (const auto& row : kRawPlanes) {
@@ -134,12 +163,18 @@ FrameInputs load_frame(gpu::Recorder& gpu, FrameSource& source, const Settings& 
     planes[row.plane] = &gpu.buffer(row.name, bytes, gpu::Use::upload);
     reads.push_back({&channels, planes[row.plane]->as<float>().data()});
   }
-  read_planes(source, reads);
+  if (rows) {
+    rows->need(source.data.y, source.data.y + source.data.height);
+    for (const auto& read : reads) rows->copy(*read.channels, source.data, read.to);
+  } else {
+    read_planes(source, reads);
+  }
   const auto values_of = [&](RawPlane plane) {
     return planes[plane] ? planes[plane]->as<float>() : std::span<float>();
   };
-  if (!source.settled) settle(source, settings, values_of(RawPlane::depth), values_of(RawPlane::normal));
+  if (!source.settled) settle_by_planes(source, settings, values_of(RawPlane::depth), values_of(RawPlane::normal));
   FrameInputs inputs = inputs_of(source, planes, frame);
+  inputs.margin = margin_of(source.data, source.file_data);
   inputs.albedo_value = settings.albedo_value.value_or(0);
   if (in_world(source, all.output)) inputs.aov_from_view = transposed(*source.camera.view_from_world);
   return inputs;
@@ -160,7 +195,8 @@ std::vector<std::span<const float>> result_planes(const FrameOutputs& outputs, c
   return results;
 }
 
-FrameWriter::FrameWriter(const FrameSource& source, const Settings& all, const Provenance& provenance) {
+FrameWriter::FrameWriter(const FrameSource& source, const Settings& all, const Provenance& provenance)
+    : notes_(provenance.notes) {
   const OutputSettings& settings = all.output;
   const auto add = [&](const std::string& path, const ExrOutput& output) {
     files_.emplace_back(path, output);
@@ -177,8 +213,10 @@ void FrameWriter::write(std::span<const std::span<const float>> planes) {
   }
 }
 
-void FrameWriter::finish() {
-  for (auto& file : files_) file.finish();
+void FrameWriter::finish(const std::string& notes) {
+  std::map<std::string, std::string> late;
+  if (notes != notes_) late[kNotesAttribute] = notes;
+  for (auto& file : files_) file.finish(late);
 }
 
 std::string made_by(const std::string& options, const std::string& inputs) { return options + " " + inputs; }

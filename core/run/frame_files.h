@@ -18,16 +18,36 @@ namespace alcove {
 /// within it.
 FrameSource open_frame(const Settings& settings, int frame);
 
+/// Settles a frame that is not computed now: by all of it, by as many rows from its middle as so many bytes have room
+/// for, or by those of its region. Fails as settle() does.
+void settle_within(FrameSource& source, const Settings& settings, std::uint64_t most_bytes);
+
+/// The most pixels that a frame may be settled by where there are so many bytes for it.
+std::size_t evidence_within(const FrameSource& source, std::uint64_t most_bytes);
+
 /// What is written of a frame: its region, or all of it.
 const Window& written_of(const FrameSource& source);
 
-/// Reads the planes within source.data into upload buffers, and says what they mean. Settles what is open.
-FrameInputs load_frame(gpu::Recorder& gpu, FrameSource& source, const Settings& settings, int frame);
+/// The part of a frame's memory that its decoded rows may take before they go to a file.
+constexpr std::uint64_t kRowsPart = 4;
+
+/// Reads the planes within source.data into upload buffers, and says what they mean. Settles what is open. They are
+/// taken from `rows`, or where there are none from the files.
+FrameInputs load_frame(gpu::Recorder& gpu, FrameSource& source, const Settings& settings, int frame,
+                       FrameRows* rows = nullptr);
+
+/// The attribute that holds the warnings of an output's frame; an output without warnings has none.
+inline constexpr const char* kNotesAttribute = "alcove/notes";
+
+/// The attribute that tells what frames and views a frame has taken surfaces from.
+inline constexpr const char* kHiddenAttribute = "alcove/hidden";
 
 /// What the header of an output says of its making.
 struct Provenance {
   std::string options, device;  // the digest of the settings, and the device's name
   std::string inputs = {};      // see identity_of_inputs()
+  std::string notes = {};       // see header_text()
+  std::string others = {};      // see text_of(); empty: it takes none
 };
 
 /// The text that tells in a picture what it was made with: whoever finds it there need not make the picture again.
@@ -44,9 +64,12 @@ class FrameWriter {
 
   /// The next rows of result_planes(), as wide as what is written.
   void write(std::span<const std::span<const float>> planes);
-  void finish();
+  /// `notes` is what is noted now that all is computed; see header_text().
+  void finish(const std::string& notes);
+  void finish() { finish(notes_); }
 
  private:
+  const std::string notes_;  // that the headers have
   std::vector<ExrWriter> files_;
   std::vector<std::size_t> planes_;  // the number of planes of each file
 };

@@ -5,30 +5,41 @@
 #include <algorithm>
 #include <new>
 #include <string_view>
+#include <utility>
 
 #include "core/base/error.h"
 #include "core/base/estimator_facts.h"
-#include "core/frame/settle.h"
+#include "core/base/file.h"
+#include "core/frame/settle_rows.h"
 #include "core/run/batch.h"
 #include "core/run/digest.h"
 #include "core/run/frame_tally.h"
 #include "core/run/pictures.h"
 #include "core/run/resume.h"
+#include "core/run/shot_memory.h"
 
 namespace alcove {
 namespace {
+
+std::uint64_t channels_in(const FrameSource& source) {
+  std::uint64_t channels = 0;
+  for (const auto& plane : source.planes.entries) channels += plane.size();
+  return channels;
+}
 
 /// The run ends before this frame does.
 struct Dropped {};
 
 class FrameRun {
  public:
-  FrameRun(Lane& lane, const RunContext& run, const Room& room, int frame, FrameReport& report)
+  FrameRun(Lane& lane, const RunContext& run, const Room& room, int frame, const PartWatch& begins_part,
+           FrameReport& report)
       : gpu_(lane.gpu),
         last_(lane.last),
         run_(run),
         room_(room),
         frame_(frame),
+        begins_part_(begins_part),
         settings_(run.plan.at(frame)),
         report_(report),
         tally_(report) {
@@ -42,13 +53,15 @@ class FrameRun {
     go_on();
     FrameSource source = open();
     require_numbered_lines(source, settings_.estimator);
-    require_room_for_preview(source);
-    const WindowLimits limits{pixel_memory(source, settings_), room_, longest_side(settings_.estimator)};
-    if (limits.allow(source.data))
-      run_whole(source);
+    const WindowLimits limits{memory_with_others(run_.plan, source, settings_), room_,
+                              longest_side(settings_.estimator)};
+    require_room_for_preview(source, limits);
+    take_others(source);
+    if (!source.region && limits.allow(source.data))
+      run_whole(source, nullptr);
     else
-      run_tiles(source, limits);
-    tally_.finish(source, settings_);
+      run_by_rows(source, limits);
+    if (report_.parts > 1) note_parts(source);
     report_.total_ms = total.ms();
   }
 
@@ -58,28 +71,80 @@ class FrameRun {
     if (run_.stop && run_.stop()) throw Dropped{};
   }
 
-  /// Reads the headers, and finds the window that is to be computed: source.data.
+  /// Reads the headers.
   FrameSource open() {
     const Stopwatch reading;
     FrameSource source = open_frame(settings_, frame_);
-    if (run_.settled) settle_like(source, *run_.settled);
-    if (source.region) {
-      if (!source.settled) settle_by_rows(source, settings_.input);
-      source.data = Surroundings(source, settings_, *source.region).around(*source.region);
-    }
+    if (run_.settled && settle_like(source, *run_.settled)) take_over_notes(source, *run_.settled);
     report_.read_ms += reading.ms();
+    refuse_by_notes(source);
     return source;
   }
 
-  /// Reads and computes source.data. reuses: what is as in the frame before is not computed again.
-  FrameOutputs compute(FrameSource& source, bool reuses) {
-    tally_.begin(source.data);
+  /// What was noted of the whole sequence comes before what this frame's own header told.
+  static void take_over_notes(FrameSource& source, const FrameSource& settled) {
+    const Notes own = std::exchange(source.notes, settled.notes);
+    add_new(source.notes, own);
+    source.suspicious = settled.suspicious;
+    // A damaged file harms its own frame alone; others that are damaged fail when they are read.
+    std::erase_if(source.suspicious, [](const Note& note) { return note.code == NoteCode::damaged_file; });
+  }
+
+  /// Ends the frame before it is computed where what is known then counts as an error.
+  void refuse_by_notes(const FrameSource& source) {
+    report_.notes = tally_.notes_on(source);
+    refuse_warnings(report_.notes, settings_, report_.input);
+  }
+
+  /// Computes what depends on a part of the frame, or the frame in tiles: each of its rows is decoded once.
+  void run_by_rows(FrameSource& source, const WindowLimits& limits) {
     const Stopwatch reading;
-    FrameInputs inputs = load_frame(gpu_, source, settings_, frame_);
+    const Window& whole = written_of(source);
+    FrameRows rows(source, bytes_of_rows(source, limits), existing_folder_of(settings_.output.output));
+    if (!source.settled)
+      settle_by_part(source, settings_.input, rows, whole, evidence_within(source, limits.room.bytes));
+    Surroundings surroundings(source, settings_, rows);
+    const Window computed = surroundings.around(whole);
+    report_.read_ms += reading.ms();
+    if (!limits.allow(computed)) return run_tiles(source, limits, surroundings, rows);
+    if (!limits.allow(computed, rows.bytes_in_memory())) rows.leave_memory();
+    source.data = computed;
+    run_whole(source, &rows);
+  }
+
+  /// How many bytes of decoded rows may stay in memory. Those of a frame in tiles stay there all or none: they are all
+  /// needed until the last tile, and tiles have the rest.
+  std::uint64_t bytes_of_rows(const FrameSource& source, const WindowLimits& limits) const {
+    const std::uint64_t most = limits.room.bytes / kRowsPart;
+    const std::uint64_t pixel = sizeof(float) * channels_in(source);
+    return source.region || pixel * source.file_data.pixels() <= most ? most : 0;
+  }
+
+  /// Finds what others see, once for all parts of the frame.
+  void take_others(const FrameSource& source) {
+    if (!run_.shot) return;
+    const Stopwatch reading;
+    PreparedOthers took;
+    others_ = run_.shot->others_of(gpu_, source, frame_, took);
+    tally_.add_others(took);
+    if (!others_.frames.empty() || !others_.missing.empty()) report_.frames_around = others_.frames;
+    report_.read_ms += reading.ms();
+    go_on();
+  }
+
+  /// Reads and computes source.data, from the rows where there are any. reuses: what is as in the frame before is not
+  /// computed again.
+  FrameOutputs compute(FrameSource& source, FrameRows* rows, bool reuses) {
+    tally_.begin(source.data);
+    begins_part_(++part_, parts_);
+    const Stopwatch reading;
+    FrameInputs inputs = load_frame(gpu_, source, settings_, frame_, rows);
+    inputs.others = others_.seen;
     const bool is_same = reuses && last_.is_same(gpu_, inputs, settings_.estimator);
     if (!reuses) last_.forget();
-    tally_.add_inputs(inputs);
+    tally_.add_inputs(source, inputs, written_of(source));
     report_.read_ms += reading.ms();
+    refuse_by_notes(source);
 
     go_on();
     const FrameOutputs outputs =
@@ -94,76 +159,104 @@ class FrameRun {
     return outputs;
   }
 
+  /// By what is noted so far.
   Provenance provenance() const {
     const bool has_own_camera = settings_.input.camera != run_.plan.at(run_.plan.frames().front()).input.camera;
     return {has_own_camera ? options_digest(settings_) : run_.provenance.options, run_.provenance.device,
-            identity_of_inputs(settings_)};
+            run_.identities.of(frame_), header_text(report_.notes), text_of(others_)};
   }
 
-  void run_whole(FrameSource& source) {
+  void run_whole(FrameSource& source, FrameRows* rows) {
     const bool reuses = run_.plan.frames().size() > 1 && !settings_.estimator.no_skip;
-    const FrameOutputs outputs = compute(source, reuses);
+    const FrameOutputs outputs = compute(source, rows, reuses);
+    finish_tally(source);
     const Stopwatch writing;
     std::vector<std::vector<float>> regions;
     auto planes = result_planes(outputs, source.data, settings_.output);
     for (auto& plane : planes)
       if (source.region) plane = regions.emplace_back(cropped(plane, source.data, *source.region));
     const Provenance by = provenance();
+    make_folders(outputs_of(settings_.output), settings_.output);
     FrameWriter writer(source, settings_, by);
     writer.write(planes);
     write_pictures(source, outputs, run_.transform, settings_.output, by);
-    writer.finish();
+    writer.finish(by.notes);
     report_.write_ms += writing.ms();
   }
 
-  void run_tiles(FrameSource& source, const WindowLimits& limits) {
-    refuse_pictures(source, limits);
-    const Window whole = written_of(source);
-    const Stopwatch reading;
-    if (!source.settled) settle_by_rows(source, settings_.input);
-    const Surroundings surroundings(source, settings_, whole);
-    report_.read_ms += reading.ms();
+  void finish_tally(const FrameSource& source) {
+    tally_.finish(source, settings_);
+    refuse_warnings(report_.notes, settings_, report_.input);
+  }
 
-    const auto rows = tiles_of(whole, surroundings, limits, source);
+  /// Rows in memory leave less of it to tiles: where that is too little, they leave it.
+  TileRows cut(const FrameSource& source, const WindowLimits& limits, Surroundings& surroundings, FrameRows& rows) {
+    const Window& whole = written_of(source);
+    WindowLimits beside_rows = limits;
+    beside_rows.room.bytes -= std::min(limits.room.bytes, rows.bytes_in_memory());
+    if (auto tiles = tiles_within(whole, surroundings, beside_rows)) return *std::move(tiles);
+    rows.leave_memory();
+    return tiles_of(whole, surroundings, limits, source);
+  }
+
+  void run_tiles(FrameSource& source, const WindowLimits& limits, Surroundings& surroundings, FrameRows& rows) {
+    const Window computed = surroundings.around(written_of(source));
+    why_in_parts_ = limits.why_not(computed);
+    refuse_pictures(limits, computed);
+    refuse_by_notes(source);
+    const Stopwatch cutting;
+    const auto tiles = cut(source, limits, surroundings, rows);
+    report_.read_ms += cutting.ms();
+    make_folders(outputs_of(settings_.output), settings_.output);
     FrameWriter writer(source, settings_, provenance());
     report_.parts = 0;
-    for (const auto& row : rows) {
-      const auto planes = compute_row(source, surroundings, row);
+    parts_ = 0;
+    for (const auto& row : tiles) parts_ += int(row.size());
+    for (const auto& row : tiles) {
+      const auto planes = compute_row(source, surroundings, rows, row);
       const Stopwatch writing;
       writer.write(std::vector<std::span<const float>>(planes.begin(), planes.end()));
       report_.write_ms += writing.ms();
     }
+    finish_tally(source);
     const Stopwatch writing;
-    writer.finish();
+    writer.finish(header_text(report_.notes));
     report_.write_ms += writing.ms();
   }
 
+  void note_parts(const FrameSource& source) {
+    report_.notes.push_back(
+        {NoteCode::in_parts,
+         fmt::format("computed in {} parts, {:.2g} times its pixels in all, since {}", report_.parts,
+                     double(report_.pixels) / double(written_of(source).pixels()), why_in_parts_)});
+  }
+
   /// A preview shows the display window, which a header may make far larger than the pixels that the file holds.
-  void require_room_for_preview(const FrameSource& source) const {
+  void require_room_for_preview(const FrameSource& source, const WindowLimits& limits) const {
     if (settings_.output.preview.empty()) return;
     constexpr std::uint64_t kBytes = 3 * (sizeof(float) + 1);  // per pixel: display values, and the bytes of a PNG
-    if (source.display.pixels() * kBytes > room_.bytes)
-      fail(
-          ErrorKind::device,
-          "{}: a preview shows the display window, {}, which takes {} MiB: leave out --preview, or allow more --memory "
-          "than the {} MiB that there are for this frame",
-          report_.input, to_string(source.display), source.display.pixels() * kBytes >> 20, room_.bytes >> 20);
+    const std::uint64_t bytes = source.display.pixels() * kBytes;
+    if (bytes > room_.bytes)
+      limits.refuse(fmt::format("{}: a preview shows the display window, {}: leave out --preview", report_.input,
+                                to_string(source.display)),
+                    bytes);
   }
 
   /// Pictures show a frame on a scale of its own, which no tile knows.
-  void refuse_pictures(const FrameSource& source, const WindowLimits& limits) const {
+  void refuse_pictures(const WindowLimits& limits, const Window& computed) const {
     if (settings_.output.preview.empty() && settings_.output.debug.empty()) return;
-    fail(ErrorKind::device, "{}: a frame this large is computed in tiles, and {} needs it whole: leave it out, or {}",
-         report_.input, settings_.output.preview.empty() ? "--debug" : "--preview", limits.mended_by(source.data));
+    limits.refuse(fmt::format("{}: a frame this large is computed in tiles, and {} needs it whole: leave it out",
+                              report_.input, settings_.output.preview.empty() ? "--debug" : "--preview"),
+                  computed);
   }
 
   /// The planes of the results over one row of tiles.
-  std::vector<std::vector<float>> compute_row(FrameSource& source, const Surroundings& surroundings,
+  std::vector<std::vector<float>> compute_row(FrameSource& source, Surroundings& surroundings, FrameRows& rows,
                                               const std::vector<Window>& row) {
     std::vector<std::vector<float>> planes;
     for (const auto& tile : row) {
       source.data = surroundings.around(tile);
-      const FrameOutputs outputs = compute(source, false);
+      const FrameOutputs outputs = compute(source, &rows, false);
       add_tile(result_planes(outputs, source.data, settings_.output), source.data, tile, row, planes);
       report_.parts++;
     }
@@ -191,18 +284,22 @@ class FrameRun {
   const RunContext& run_;
   const Room& room_;
   int frame_;
+  const PartWatch& begins_part_;
+  int part_ = 0, parts_ = 1;
+  std::string why_in_parts_;
   Settings settings_;
+  Others others_;  // that the frame takes
   FrameReport& report_;
   FrameTally tally_;
 };
 
 }  // namespace
 
-FrameReport run_frame(Lane& lane, const RunContext& run, const Room& room, int frame) {
+FrameReport run_frame(Lane& lane, const RunContext& run, const Room& room, int frame, const PartWatch& begins_part) {
   FrameReport report;
   lane.gpu.abandon();  // what a frame that failed has left
   try {
-    FrameRun(lane, run, room, frame, report).run();
+    FrameRun(lane, run, room, frame, begins_part, report).run();
     report.state = FrameState::done;
   } catch (const Dropped&) {
     report.state = FrameState::dropped;

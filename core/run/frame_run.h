@@ -9,7 +9,9 @@
 #include "core/formats/color.h"
 #include "core/run/frame_files.h"
 #include "core/run/plan.h"
+#include "core/run/resume.h"
 #include "core/run/run_report.h"
+#include "core/run/shot.h"
 #include "core/run/tiles.h"
 
 namespace alcove {
@@ -17,8 +19,10 @@ namespace alcove {
 /// What all frames of a run have in common.
 struct RunContext {
   const FramePlan& plan;
+  InputIdentities& identities;                  // of the plan
   const FrameSource* settled = nullptr;         // all frames are read as this one; null: each by itself
   const DisplayTransform* transform = nullptr;  // for the preview of a composite
+  SharedFrames* shot = nullptr;                 // where frames take what others see
   Provenance provenance;                        // of settings whose camera file is the same for all frames
   std::function<bool()> stop = {};              // asked between steps: true drops the frame
 };
@@ -31,7 +35,10 @@ struct Lane {
   LastFrame last;
 };
 
+/// Told which part of how many of a frame is computed next.
+using PartWatch = std::function<void(int, int)>;
+
 /// Reads, computes and writes one frame within the room. Never fails: what went wrong is in the report.
-FrameReport run_frame(Lane& lane, const RunContext& run, const Room& room, int frame);
+FrameReport run_frame(Lane& lane, const RunContext& run, const Room& room, int frame, const PartWatch& begins_part);
 
 }  // namespace alcove

@@ -6,6 +6,9 @@
 #include <numeric>
 
 #include "core/base/estimator_facts.h"
+#include "core/frame/deep.h"
+#include "kernels/layers.h"
+#include "kernels/warp.h"
 
 namespace alcove {
 
@@ -13,14 +16,35 @@ void FrameTally::begin(const Window& computed) {
   report_.pixels_at_once = std::max<std::uint64_t>(report_.pixels_at_once, computed.pixels());
 }
 
+void FrameTally::add_inputs(const FrameSource& source, const FrameInputs& inputs, const Window& written) {
+  const auto depth = inputs[RawPlane::depth]->as<float>();
+  sample_.add(inputs.view, inputs.depth_map, inputs.depth_precision, depth, source.data, written);
+  if (inputs[RawPlane::behind]) behind_.add(source, depth, inputs[RawPlane::behind]->as<float>(), source.data, written);
+}
+
+void FrameTally::add_others(const PreparedOthers& took) {
+  rows_of_others_ += took.rows_read;
+  for (const auto& pass : took.passes) {
+    const std::string name = "others " + pass.name;
+    auto found = std::ranges::find(report_.passes, name, &gpu::PassTime::name);
+    if (found == report_.passes.end()) found = report_.passes.insert(found, {name});
+    add(pass, *found);
+  }
+  before_ = report_.passes.size();
+}
+
 void FrameTally::add_passes(std::span<const gpu::PassTime> passes) {
   for (std::size_t i = 0; i < passes.size(); i++) {
-    if (i >= report_.passes.size()) report_.passes.push_back({passes[i].name});
-    report_.passes[i].ms += passes[i].ms;
-    report_.passes[i].bytes_read += passes[i].bytes_read;
-    report_.passes[i].bytes_written += passes[i].bytes_written;
-    report_.compute_ms += passes[i].ms;
+    if (before_ + i >= report_.passes.size()) report_.passes.push_back({passes[i].name});
+    add(passes[i], report_.passes[before_ + i]);
   }
+}
+
+void FrameTally::add(const gpu::PassTime& pass, gpu::PassTime& sum) {
+  sum.ms += pass.ms;
+  sum.bytes_read += pass.bytes_read;
+  sum.bytes_written += pass.bytes_written;
+  report_.compute_ms += pass.ms;
 }
 
 void FrameTally::add_outputs(const FrameOutputs& outputs, const Window& computed, bool is_same) {
@@ -33,6 +57,12 @@ void FrameTally::add_outputs(const FrameOutputs& outputs, const Window& computed
   report_.pixels += computed.pixels();
   has_ao_ = outputs.ao;
 
+  if (outputs.layer_counts) {
+    const auto layers = outputs.layer_counts->as<LayerCounts>()[0];
+    auto& hidden = report_.hidden ? *report_.hidden : report_.hidden.emplace();
+    hidden.surfaces += layers.surfaces;
+    hidden.dropped += layers.dropped;
+  }
   if (outputs.squares)
     for (const vec2& tile : outputs.squares->as<const vec2>()) {
       report_.error_squares += tile.x;
@@ -44,6 +74,11 @@ void FrameTally::add_outputs(const FrameOutputs& outputs, const Window& computed
       occlusion.by_completed += tile.x;
       occlusion.whole += tile.y;
     }
+  }
+  if (outputs.view_counts) {
+    const ViewCounts views = outputs.view_counts->as<ViewCounts>()[0];
+    report_.moved += views.moved;
+    report_.unconfirmed += views.unconfirmed;
   }
   if (outputs.tiles) {
     const auto tiles = outputs.tiles->as<TileCounts>()[0];
@@ -62,21 +97,22 @@ void FrameTally::add_outputs(const FrameOutputs& outputs, const Window& computed
 
 void FrameTally::finish(const FrameSource& source, const Settings& settings) {
   if (report_.pixels == 0) report_.pixels = source.data.pixels();
+  report_.rows_read = source.rows_read + rows_of_others_;
   report_.sky_pixels = counts_.sky;
   report_.repaired_pixels =
       counts_.repaired_depth + counts_.repaired_normals + counts_.repaired_material + counts_.repaired_beauty;
+  report_.notes = notes_on(source);
+  add_new(report_.notes, behind_.notes(source));
+  add_new(report_.notes, deep_notes(source));
   if (has_ao_) {
     const std::vector<double> radii = radii_of(settings.estimator);
-    report_.notes = sample_.notes(radii.front(), radii.back(), source.file_data.width, source.file_data.height);
+    add_new(report_.notes, sample_.notes(radii.front(), radii.back(), source.file_data.width, source.file_data.height));
     report_.samples_per_pixel =
         samples_per_estimate(settings.estimator) * estimates_of(settings.estimator) / double(report_.pixels);
     // An estimator that completes nothing, and sky, are no reason to leave the share out: it is 0.
     if (!settings.output.stats.empty() && !report_.occlusion) report_.occlusion.emplace();
   }
   note_repairs();
-  note_missing(source);
-  for (const auto* known : {&source.suspicious, &source.notes})
-    report_.notes.insert(report_.notes.begin(), known->begin(), known->end());
 }
 
 double FrameTally::estimates_of(const EstimatorSettings& settings) const {
@@ -89,26 +125,34 @@ void FrameTally::note_repairs() {
   auto& notes = report_.notes;
   if (counts_.repaired_depth)
     notes.push_back(
-        fmt::format("{} pixels had a depth that is NaN or negative; they count as sky", counts_.repaired_depth));
+        {NoteCode::repaired_depth,
+         fmt::format("{} pixels had a depth that is NaN or negative; they count as sky", counts_.repaired_depth)});
   if (counts_.repaired_normals)
     notes.push_back(
-        fmt::format("{} pixels had no usable normal; it was reconstructed from depth", counts_.repaired_normals));
+        {NoteCode::repaired_normals,
+         fmt::format("{} pixels had no usable normal; it was reconstructed from depth", counts_.repaired_normals)});
   if (counts_.repaired_material)
     notes.push_back(
-        fmt::format("{} pixels of the material AO were NaN or infinite; they count as 1", counts_.repaired_material));
+        {NoteCode::repaired_material_ao,
+         fmt::format("{} pixels of the material AO were NaN or infinite; they count as 1", counts_.repaired_material)});
   if (counts_.repaired_beauty)
-    notes.push_back(fmt::format("{} pixels of the beauty were NaN or infinite; they are 0 in the composite",
-                                counts_.repaired_beauty));
+    notes.push_back({NoteCode::repaired_beauty,
+                     fmt::format("{} pixels of the beauty were NaN or infinite; they are 0 in the composite",
+                                 counts_.repaired_beauty)});
 }
 
-void FrameTally::note_missing(const FrameSource& source) {
-  if (source[RawPlane::normal].empty())
-    report_.notes.push_back(
-        "there is no normal channel; normals were reconstructed from depth (--normal, --normal-channels)");
+Notes FrameTally::notes_on(const FrameSource& source) {
+  Notes notes = source.notes;
+  add_new(notes, source.suspicious);
+  if (source[RawPlane::normal].empty() && !source.normals_left_out)
+    notes.push_back(
+        {NoteCode::no_normals,
+         "there is no normal channel; normals were reconstructed from depth (--normal, --normal-channels)"});
   if (!source[RawPlane::beauty].empty() && source[RawPlane::indirect].empty())
-    report_.notes.push_back(
-        "the frame has no indirect diffuse part: the composite is the whole beauty times AO, which dims direct light "
-        "too");
+    notes.push_back({NoteCode::no_indirect_light,
+                     "the frame has no indirect diffuse part: the composite is the whole beauty times AO, which dims "
+                     "direct light too"});
+  return notes;
 }
 
 }  // namespace alcove

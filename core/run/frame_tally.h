@@ -5,9 +5,11 @@
 #include <span>
 
 #include "core/chain/chain.h"
+#include "core/frame/behind.h"
 #include "core/frame/gbuffer.h"
 #include "core/frame/scale_notes.h"
 #include "core/run/run_report.h"
+#include "core/run/shot.h"
 
 namespace alcove {
 
@@ -18,25 +20,33 @@ class FrameTally {
 
   /// A window is about to be computed.
   void begin(const Window& computed);
-  void add_inputs(const FrameInputs& inputs) {
-    sample_.add(inputs.view, inputs.depth_map, inputs.depth_precision, inputs[RawPlane::depth]->as<float>());
-  }
+  /// What was read of that window, source.data; `written` is all that is written of the frame.
+  void add_inputs(const FrameSource& source, const FrameInputs& inputs, const Window& written);
+  /// What preparing others took comes before the passes of the frame.
+  void add_others(const PreparedOthers& took);
   void add_passes(std::span<const gpu::PassTime> passes);
   /// is_same: all results were kept from the frame before.
   void add_outputs(const FrameOutputs& outputs, const Window& computed, bool is_same);
 
-  /// Writes the sums into the report, and what the user should know.
+  /// What the user should know before the frame is computed.
+  static Notes notes_on(const FrameSource& source);
+
+  /// Writes the sums into the report, and what the user should know. Fails with ErrorKind::input where the pixels show
+  /// that a layer of hidden surfaces cannot be one.
   void finish(const FrameSource& source, const Settings& settings);
 
  private:
   /// How many pixels have had an estimate; where each has its own, how many surfaces ask for one.
   double estimates_of(const EstimatorSettings& settings) const;
   void note_repairs();
-  void note_missing(const FrameSource& source);
+  void add(const gpu::PassTime& pass, gpu::PassTime& sum);
 
   FrameReport& report_;
   FrameCounts counts_{};
   DepthSample sample_;
+  BehindSample behind_;
+  std::uint64_t rows_of_others_ = 0;
+  std::size_t before_ = 0;  // passes that prepared others
   bool has_ao_ = false;
 };
 

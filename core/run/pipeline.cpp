@@ -3,6 +3,7 @@
 #include "core/run/pipeline.h"
 
 #include <algorithm>
+#include <chrono>
 #include <condition_variable>
 #include <exception>
 #include <map>
@@ -11,6 +12,8 @@
 
 namespace alcove {
 namespace {
+
+constexpr std::chrono::seconds kTold{1};  // between two times that it is told how far frames are
 
 /// Threads that take the next frame until none is left, and the thread that tells of the frames in their order. What
 /// they hand to each other passes under one mutex, and nobody prints or computes while holding it.
@@ -65,7 +68,7 @@ class Pipeline {
     Room room;
     int most_in_flight;      // frames, when it began
     bool was_alone = false;  // no other frame was in flight, and no buffers were left of earlier ones
-    std::vector<std::string> notes = {};
+    Notes notes = {};
     std::optional<Error> out_of_memory = {};
   };
 
@@ -75,6 +78,8 @@ class Pipeline {
     changed_.wait(lock, [&] { return ended_ || begun_ == frames_.size() || in_flight_ < most_in_flight_; });
     if (ended_ || begun_ == frames_.size() || (run_.stop && run_.stop())) return {};
     in_flight_++;
+    const int frame = frames_[begun_];
+    working_on_[frame] = {Stopwatch(), main_input(run_.plan.at(frame).input)};
     return Attempt{begun_++, room_, most_in_flight_};
   }
 
@@ -97,13 +102,20 @@ class Pipeline {
     finish(attempt.place, attempt.room, std::move(report));
   }
 
+  void begin_part(int frame, int part, int parts) {
+    const Lock lock(mutex_);
+    working_on_.at(frame).part = part;
+    working_on_.at(frame).parts = parts;
+  }
+
   /// Runs the frame on a lane. Where there is no memory for the lane itself, the report says so as for the frame.
   FrameReport run_on_lane(const Attempt& attempt) {
     const int frame = frames_[attempt.place];
     FrameReport report;
     try {
       lanes_.with([&](Lane& lane) {
-        report = run_frame(lane, run_, attempt.room, frame);
+        report =
+            run_frame(lane, run_, attempt.room, frame, [&](int part, int parts) { begin_part(frame, part, parts); });
         return !report.out_of_memory;
       });
     } catch (const gpu::OutOfMemory& error) {
@@ -125,18 +137,23 @@ class Pipeline {
     // Of several frames that fail side by side only the first one halves their number.
     const bool is_fewer_already = most_in_flight_ < attempt.most_in_flight;
     if (!is_fewer_already && most_in_flight_ > 1) {
-      attempt.notes.push_back(fmt::format("the device had no memory for {} frames at once; from here on it computes {}",
-                                          most_in_flight_, most_in_flight_ / 2));
+      attempt.notes.push_back(
+          {NoteCode::device_memory,
+           fmt::format("the device had no memory for {} frames at once; from here on it computes {}", most_in_flight_,
+                       most_in_flight_ / 2)});
       most_in_flight_ /= 2;
       lanes_.set_count(most_in_flight_);
     } else if (!is_fewer_already && !attempt.was_alone) {
-      attempt.notes.push_back("the device had no memory for this frame at first; it was computed again");
+      attempt.notes.push_back(
+          {NoteCode::device_memory, "the device had no memory for this frame at first; it was computed again"});
       attempt.was_alone = true;
       lanes_.set_count(1);
     } else if (!is_fewer_already) {
       if (pixels < 2) return false;
-      attempt.notes.push_back(fmt::format(
-          "the device had no memory for {} pixels at once; now at most {} are computed at once", pixels, pixels / 2));
+      attempt.notes.push_back(
+          {NoteCode::device_memory,
+           fmt::format("the device had no memory for {} pixels at once; now at most {} are computed at once", pixels,
+                       pixels / 2)});
       attempt.room.pixels = pixels / 2;
     }
     in_flight_--;
@@ -148,11 +165,13 @@ class Pipeline {
   }
 
   void finish(std::size_t place, const Room& room, FrameReport&& report) {
+    if (run_.shot) run_.shot->done(report.frame);
     const Lock lock(mutex_);
     in_flight_--;
     // Later frames begin with what this one has learned.
     if (report.state == FrameState::done) room_.pixels = std::min(room_.pixels, room.pixels);
     if (watch_.ends(report)) ended_ = true;
+    working_on_.erase(report.frame);
     finished_.emplace(place, std::move(report));
     changed_.notify_all();
   }
@@ -174,15 +193,35 @@ class Pipeline {
     }
   }
 
-  /// The report of the first frame that was not told of; nothing once there is none any more.
+  /// The report of the first frame that was not told of; nothing once there is none any more. Meanwhile it tells how
+  /// far the frames are.
   std::optional<FrameReport> next_report() {
     Lock lock(mutex_);
-    changed_.wait(lock, [&] { return finished_.contains(told_) || working_ == 0; });
+    while (!changed_.wait_for(lock, kTold, [&] { return finished_.contains(told_) || working_ == 0; })) {
+      const auto frames = in_work();
+      lock.unlock();
+      if (watch_.working) watch_.working(frames);
+      lock.lock();
+    }
     const auto found = finished_.find(told_);
     if (found == finished_.end()) return {};
     told_++;
     return std::move(finished_.extract(found).mapped());
   }
+
+  std::vector<FrameProgress> in_work() const {
+    std::vector<FrameProgress> frames;
+    for (const auto& [frame, work] : working_on_)
+      frames.push_back({frame, work.input, work.since.ms() / 1000, work.part, work.parts});
+    return frames;
+  }
+
+  /// A frame in flight.
+  struct Work {
+    Stopwatch since;
+    std::string input;
+    int part = 0, parts = 1;
+  };
 
   Lanes& lanes_;
   const RunContext& run_;
@@ -197,6 +236,7 @@ class Pipeline {
   int working_ = 0;                              // threads that may still finish a frame
   std::size_t begun_ = 0;                        // frames
   std::size_t told_ = 0;                         // frames
+  std::map<int, Work> working_on_;               // by frame
   std::map<std::size_t, FrameReport> finished_;  // by place; not told of yet
   bool ended_ = false;                           // no frame is begun any more
   std::exception_ptr error_;

@@ -52,6 +52,8 @@ struct PipelineWatch {
   /// Takes the reports in the order of the frames, on the thread that runs the pipeline. While it waits, for a terminal
   /// that stands still, say, frames go on.
   std::function<void(FrameReport&&)> tell;
+  /// Told about once a second how far the frames in flight are, on the same thread; may be empty.
+  std::function<void(std::span<const FrameProgress>)> working = {};
 };
 
 /// Runs the frames on the lanes, in any order. Where the device has no memory for a frame, the number of lanes is

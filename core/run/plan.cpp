@@ -4,12 +4,16 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <numeric>
+#include <regex>
 #include <unordered_set>
 
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/base/text.h"
 #include "core/chain/debug_view.h"
+#include "core/formats/frame_number.h"
+#include "core/formats/output_name.h"
 
 namespace alcove {
 namespace {
@@ -19,9 +23,51 @@ namespace fs = std::filesystem;
 // The most frames that are looked at for one that shows what the files do not say.
 constexpr std::size_t kEvidenceFrames = 8;
 
+// A file with another number far away makes as many holes as anybody wants to read of.
+constexpr std::size_t kMostHoles = 1'000'000;
+
+/// The numbers that are left out of rising ones. Three or more that keep a step are rendered on every second or third
+/// number; two tell of no step.
+std::vector<int> holes_in(const std::vector<int>& frames) {
+  int step = 0;
+  for (std::size_t i = 1; i < frames.size(); i++) step = std::gcd(step, frames[i] - frames[i - 1]);
+  if (frames.size() < 3) step = 1;
+  std::vector<int> holes;
+  for (std::size_t i = 1; i < frames.size(); i++)
+    for (int frame = frames[i - 1] + step; frame < frames[i] && holes.size() < kMostHoles; frame += step)
+      holes.push_back(frame);
+  return holes;
+}
+
+/// At most so many of the frames, which lie evenly from the first to the last.
+std::vector<int> evenly(const std::vector<int>& frames, std::size_t most) {
+  if (frames.size() <= most) return frames;
+  std::vector<int> some;
+  for (std::size_t i = 0; i < most; i++) some.push_back(frames[i * (frames.size() - 1) / (most - 1)]);
+  return some;
+}
+
 bool exists(const std::string& path) {
   std::error_code error;
   return fs::exists(path, error);
+}
+
+/// Fails where a name that is no file is what a shell would have taken for several.
+void refuse_glob(const std::string& path, const char* option) {
+  const std::size_t begin = path.find_first_of("*?");
+  if (begin == path.npos) return;
+  const std::size_t end = std::min(path.find_first_not_of("*?", begin), path.size());
+  const bool counts = path.find('*', begin) >= end;  // shot.????.exr says how many digits there are
+  const std::string pattern = path.substr(0, begin) + std::string(counts ? end - begin : 4, '#') + path.substr(end);
+  fail(ErrorKind::usage, "{}: {} takes a sequence as one name with a pattern: write {}", path, option,
+       pattern.find_first_of("*?") == pattern.npos ? pattern : "shot.####.exr");
+}
+
+/// Whether a name has a place for a frame number that no name has by chance, as one with a lone # may: ## or more, %d
+/// or %04d.
+bool has_clear_place(const std::string& name) {
+  static const std::regex place("##|%[0-9]*d");
+  return std::regex_search(name, place);
 }
 
 }  // namespace
@@ -30,10 +76,11 @@ std::span<const NamedPath> named_paths() {
   static const std::vector<NamedPath> paths = [] {
     std::vector<NamedPath> result;
     for (const auto& file : plane_file_options())
-      result.push_back({file.option, [path = file.path](Settings& s) -> std::string& { return s.input.*path; }, false});
+      result.push_back({file.option, [file](Settings& s) -> std::string& { return file.of(s.input); }, false});
     const auto add = [&](const char* option, auto member, auto path, bool is_output) {
       result.push_back({option, [=](Settings& s) -> std::string& { return s.*member.*path; }, is_output});
     };
+    add("--motion", &Settings::input, &InputSettings::motion, false);
     add("--camera", &Settings::input, &InputSettings::camera, false);
     add("--output", &Settings::output, &OutputSettings::output, true);
     add("--composite", &Settings::output, &OutputSettings::composite, true);
@@ -47,9 +94,15 @@ FramePlan::FramePlan(const Settings& settings) : settings_(settings) {
   find_patterns();
   const std::vector<int> all = all_frames();
   refuse_shared_files(all);
-  for (std::size_t i = 0; i < all.size() && evidence_.size() < kEvidenceFrames; i++)
-    if (!is_sequence_ || has_inputs(all[i])) evidence_.push_back(all[i]);
+  find_evidence(all);
   find_inputs(chunk_of(all, settings.frames.chunk, settings.frames.chunks));
+  if (settings.frames.frames.empty()) holes_ = holes_in(all);
+  // The first chunk tells of them where the settings say that frames may be missing.
+  if (settings.frames.missing == Missing::skip && settings.frames.chunk == 1)
+    missing_.insert(missing_.end(), holes_.begin(), holes_.end());
+  std::ranges::sort(missing_);
+  find_shot(all);
+  refuse_missing_around();
 }
 
 void FramePlan::find_patterns() {
@@ -57,12 +110,22 @@ void FramePlan::find_patterns() {
     for (const auto& path : named_paths()) {
       const std::string& text = path.of(settings_);
       if (path.is_output != outputs || text.empty() || (!outputs && exists(text))) continue;
+      if (outputs && !is_sequence_ && !has_clear_place(text)) continue;
+      if (!outputs) refuse_glob(text, path.option);
       if (const auto name = frame_pattern(text)) patterns_.push_back({path, *name});
     }
   };
   find(false);
   is_sequence_ = !settings_.frames.frames.empty() || !patterns_.empty();
-  if (is_sequence_) find(true);
+  find(true);
+  if (is_sequence_ || patterns_.empty()) return;
+  // The number of a single frame is that in its name.
+  const std::string& input = main_input(settings_.input);
+  const auto& output = patterns_.front();
+  if (!frame_number_in(input).number)
+    fail(ErrorKind::usage,
+         "{} {}: its name has a place for a frame number, and {} has no clear one: give --frames NUMBER",
+         output.path.option, output.path.of(settings_), input);
 }
 
 std::vector<int> FramePlan::all_frames() const {
@@ -96,6 +159,17 @@ void FramePlan::refuse_shared_files(const std::vector<int>& all) const {
       fail(ErrorKind::usage, "{}: {} would overwrite an input", report.path, report.option);
 }
 
+/// Takes frames from the beginning to the end, since a sequence may begin with nothing but sky. All frames are looked
+/// for only where one of these is missing.
+void FramePlan::find_evidence(const std::vector<int>& all) {
+  evidence_ = evenly(all, kEvidenceFrames);
+  const auto is_there = [&](int frame) { return !is_sequence_ || has_inputs(frame); };
+  if (std::ranges::all_of(evidence_, is_there)) return;
+  std::vector<int> there;
+  std::ranges::copy_if(all, std::back_inserter(there), is_there);
+  evidence_ = evenly(there, kEvidenceFrames);
+}
+
 bool FramePlan::has_inputs(int frame) const {
   return std::ranges::all_of(
       patterns_, [&](const Pattern& pattern) { return pattern.path.is_output || exists(pattern.name.path(frame)); });
@@ -119,6 +193,47 @@ void FramePlan::find_inputs(const std::vector<int>& chunk) {
   if (!chunk.empty() && frames_.empty()) fail(ErrorKind::input, "{}; there is nothing to compute", complaint);
 }
 
+void FramePlan::find_shot(const std::vector<int>& all) {
+  if (around_of(settings_.input) == 0) return;
+  const auto input = std::ranges::find_if(patterns_, [](const Pattern& pattern) { return !pattern.path.is_output; });
+  shot_ = input == patterns_.end() ? all : frames_on_disk(input->name, input->path.option);
+  const std::vector<int> holes = holes_in(shot_);
+  shot_.insert(shot_.end(), holes.begin(), holes.end());
+  std::ranges::sort(shot_);
+  std::ranges::copy_if(shot_, std::inserter(absent_, absent_.end()), [&](int frame) { return !has_inputs(frame); });
+}
+
+FramesAround FramePlan::around(int frame, int count) const {
+  const auto here = std::ranges::lower_bound(shot_, frame);
+  const auto before = std::min<std::ptrdiff_t>(count, here - shot_.begin());
+  const auto behind = here != shot_.end() && *here == frame ? here + 1 : here;
+  const auto after = std::min<std::ptrdiff_t>(count, shot_.end() - behind);
+  FramesAround found;
+  const auto add = [&](int other) { (absent_.contains(other) ? found.missing : found.there).push_back(other); };
+  std::for_each(here - before, here, add);
+  std::for_each(behind, behind + after, add);
+  return found;
+}
+
+void FramePlan::refuse_missing_around() const {
+  if (absent_.empty() || settings_.frames.missing == Missing::skip) return;
+  std::set<int> missing;
+  for (const int frame : frames_) {
+    const auto& of_frame = around(frame, around_of(settings_.input)).missing;
+    missing.insert(of_frame.begin(), of_frame.end());
+  }
+  if (missing.empty()) return;
+  const std::vector<int> absent(missing.begin(), missing.end());
+  const auto path = std::ranges::find_if(patterns_, [&](const Pattern& pattern) {
+    return !pattern.path.is_output && !exists(pattern.name.path(absent.front()));
+  });
+  fail(ErrorKind::input, "{}: --around needs {} of the shot that {} missing: {}; --missing skip does without",
+       path->name.path(absent.front()), absent.size() == 1 ? "a frame" : "frames", absent.size() == 1 ? "is" : "are",
+       frames_text(absent));
+}
+
+int around_of(const InputSettings& settings) { return settings.around_all ? kWholeShot : settings.around; }
+
 Settings FramePlan::at(int frame) const {
   Settings settings = settings_;
   for (const auto& pattern : patterns_)
@@ -127,11 +242,18 @@ Settings FramePlan::at(int frame) const {
   return settings;
 }
 
-int frame_number_of(const std::string& path) {
-  const std::string stem = fs::path(path).stem().string();
-  const std::size_t last = stem.find_last_not_of("0123456789");
-  const std::string digits = last == stem.npos ? stem : stem.substr(last + 1);
-  return digits.empty() || digits.size() > 9 ? 0 : std::stoi(digits);
+int frame_number_of(const std::string& path) { return frame_number_in(path).number.value_or(0); }
+
+bool fails_on_warnings(const Settings& settings) { return settings.frames.warnings_as_errors || settings.input.strict; }
+
+void refuse_warnings(const Notes& notes, const Settings& settings, const std::string& file) {
+  const Notes warnings = warnings_of(notes);
+  if (warnings.empty() || !fails_on_warnings(settings)) return;
+  std::string text;
+  for (const auto& note : warnings)
+    text += fmt::format("{}{} [{}]", text.empty() ? "" : "; ", note.text, facts_of(note.code).name);
+  fail(ErrorKind::input, "{}: {}: an error by {}", file, text,
+       settings.frames.warnings_as_errors ? "--warnings-as-errors" : "--strict");
 }
 
 std::vector<OutputFile> outputs_of(const OutputSettings& output) {
@@ -147,6 +269,17 @@ std::vector<OutputFile> reports_of(const OutputSettings& output) {
                                 {"--log-json", output.log_json == "-" ? "" : output.log_json}};
   std::erase_if(files, [](const OutputFile& file) { return file.path.empty(); });
   return files;
+}
+
+void make_folders(const std::vector<OutputFile>& files, const OutputSettings& settings) {
+  if (settings.no_mkdir) return;
+  for (const auto& file : files) make_folder_of(file.path, file.option);
+}
+
+void require_endings(const OutputSettings& output) {
+  require_ending(output.output, "--output", ".exr", "OpenEXR");
+  require_ending(output.composite, "--composite", ".exr", "OpenEXR");
+  require_ending(output.preview, "--preview", ".png", "PNG");
 }
 
 std::vector<int> chunk_of(const std::vector<int>& frames, int chunk, int chunks) {

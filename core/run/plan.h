@@ -3,10 +3,13 @@
 #pragma once
 
 #include <functional>
+#include <limits>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "core/base/note.h"
 #include "core/base/settings.h"
 #include "core/formats/sequence.h"
 #include "core/frame/input_files.h"
@@ -24,11 +27,21 @@ struct NamedPath {
 /// All files that settings can name for each frame, in the order in which people are told of them.
 std::span<const NamedPath> named_paths();
 
+/// Frames of the shot to both sides of one, in order.
+struct FramesAround {
+  std::vector<int> there, missing;  // missing: an input of theirs is not on the disk
+};
+
+/// As many frames as the shot has.
+constexpr int kWholeShot = std::numeric_limits<int>::max();
+/// The number of frames to each side that settings ask for.
+int around_of(const InputSettings& settings);
+
 /// A run's frames and the names of their files.
 class FramePlan {
  public:
   /// Finds the frames and looks for their inputs; opens nothing. A name is a pattern (core/formats/sequence.h) unless
-  /// it is an input that is there, or an output of a single frame.
+  /// it is an input that is there.
   /// Fails with ErrorKind::usage where two frames would write one file, or one overwrites another's input; with
   /// ErrorKind::input where inputs are missing, listing the frames of each, unless the settings say to skip them, and
   /// where no frame is left.
@@ -40,9 +53,17 @@ class FramePlan {
   const std::vector<int>& frames() const { return frames_; }
   /// The frames that are left out, since an input is missing.
   const std::vector<int>& missing() const { return missing_; }
-  /// The first frames that there are of the whole sequence, whatever the chunk. Guesses are made by them, so that all
-  /// chunks make the same guesses.
+  /// The numbers between the frames on the disk that have no file; none where the settings list the frames. Frames on
+  /// every second or third number have none where these are their only steps.
+  const std::vector<int>& holes() const { return holes_; }
+  /// A few frames of the whole sequence, from its beginning to its end, whatever the chunk. Guesses are made by the
+  /// first of them that shows enough, so that all chunks make the same guesses.
   const std::vector<int>& evidence() const { return evidence_; }
+  /// Up to `count` frames to each side of one, in the shot: that is all frames on the disk and the holes between them,
+  /// whichever of them are computed, so that no choice of frames and no chunk changes a frame.
+  FramesAround around(int frame, int count) const;
+  /// All of the shot.
+  const std::vector<int>& shot() const { return shot_; }
   /// The settings with the files of one frame.
   Settings at(int frame) const;
 
@@ -54,17 +75,26 @@ class FramePlan {
   void find_patterns();
   std::vector<int> all_frames() const;
   void refuse_shared_files(const std::vector<int>& all) const;
+  void find_evidence(const std::vector<int>& all);
   void find_inputs(const std::vector<int>& chunk);
   bool has_inputs(int frame) const;
+  void find_shot(const std::vector<int>& all);
+  void refuse_missing_around() const;
 
   Settings settings_;
   std::vector<Pattern> patterns_;
   bool is_sequence_ = false;
-  std::vector<int> frames_, missing_, evidence_;
+  std::vector<int> frames_, missing_, evidence_, holes_, shot_;
+  std::set<int> absent_;  // of the shot
 };
 
-/// The number at the end of a file name before its ending: shot.0042.exr is frame 42; 0 where there is none.
+/// The number of a single file's frame by its name (core/formats/frame_number.h); 0 where there is none.
 int frame_number_of(const std::string& path);
+
+/// Whether a frame with a warning fails.
+bool fails_on_warnings(const Settings& settings);
+/// Fails with ErrorKind::input, naming the file, where there is a warning and it counts as an error.
+void refuse_warnings(const Notes& notes, const Settings& settings, const std::string& file);
 
 /// All files that a frame writes.
 struct OutputFile {
@@ -75,6 +105,12 @@ std::vector<OutputFile> outputs_of(const OutputSettings& output);
 
 /// What a run writes once, whatever its frames.
 std::vector<OutputFile> reports_of(const OutputSettings& output);
+
+/// Makes the folders of these files, unless the settings say not to. Fails with ErrorKind::output.
+void make_folders(const std::vector<OutputFile>& files, const OutputSettings& settings);
+
+/// Fails with ErrorKind::usage where the name of an output ends as if it were of another format.
+void require_endings(const OutputSettings& output);
 
 /// The parts of a list, as long as each other to within one frame. 1 <= chunk <= chunks.
 std::vector<int> chunk_of(const std::vector<int>& frames, int chunk, int chunks);

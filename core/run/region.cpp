@@ -10,19 +10,22 @@
 #include "core/chain/aov.h"
 #include "core/frame/evidence.h"
 #include "core/frame/settle.h"
+#include "kernels/ends.h"
 #include "kernels/profile.h"
+#include "kernels/refine.h"
 
 namespace alcove {
 namespace {
 
-constexpr int kBlock = 64;  // px of a side of the blocks whose nearest depths are kept
+// The blocks whose nearest depths tell how far they reach, px. Most files compress so many rows together.
+constexpr int kBlockWidth = 64, kBlockHeight = 16;
 // Windows begin at multiples of so many px, the grid of the coarsest resolution, so that its pixels are the same ones.
 constexpr int kGrid = 4;
 
 /// An angle close to a right one, in radians: beyond it the image of a sphere has no end.
 constexpr double kWidestAngle = 1.57;
 /// More pixels than any frame has.
-constexpr double kEverywhere = 1e9;
+constexpr double kEverywhere = 1e9, kFarther = 1e6;
 
 Window grown(const Window& window, int margin_x, int margin_y, const Window& within) {
   const auto down = [](int x, int origin) { return origin + (x - origin) / kGrid * kGrid; };
@@ -33,10 +36,12 @@ Window grown(const Window& window, int margin_x, int margin_y, const Window& wit
   return {left, top, right - left, bottom - top};
 }
 
-/// How far filters reach, in px: the denoiser by pixels of the estimate, and upsampling by two of them.
+/// How far filters reach, in px: the denoiser by pixels of the estimate, and upsampling by two of them. So does the
+/// choice of how many directions a tile takes.
 int filter_reach(const EstimatorSettings& settings) {
   const int denoised = denoise_reach_of(settings) + (is_adaptive(settings) ? kSiteReach : 0);
-  return int(settings.resolution) * (denoised + (settings.resolution == Resolution::full ? 0 : 2));
+  const int refined = settings.tolerance > 0 ? kRefineReach : 0;
+  return int(settings.resolution) * (denoised + refined + (settings.resolution == Resolution::full ? 0 : 2));
 }
 
 /// The same of all that a frame's outputs are made from.
@@ -50,6 +55,13 @@ int filter_reach(const Settings& settings) {
 /// frame, in px; 0 for other searches.
 int line_reach(const EstimatorSettings& settings) {
   return searches_exactly(settings) ? int(settings.resolution) * (kProfileRestart + 2) : 0;
+}
+
+/// How far from a surface it is told which one closes its solid, in px; 0 where nothing is to be told.
+int pair_reach(const FrameSource& source, const EstimatorSettings& settings) {
+  const bool tells =
+      std::ranges::any_of(source.behind, [](const BehindPlane& plane) { return plane.kind == BehindKind::surfaces; });
+  return tells && settings.hidden > 0 ? kEndsReach + kEndsBeyond : 0;
 }
 
 /// The width, in radii, from which a run that begins within reach of a receiver is as good as endless. It is more than
@@ -80,58 +92,90 @@ Window region_of(const FrameSource& source, const Region& roi) {
   return region;
 }
 
-Surroundings::Surroundings(FrameSource& source, const Settings& settings, const Window& whole)
-    : file_data_(source.file_data),
-      read_(searches_exactly(settings.estimator)
-                ? file_data_
-                : grown(whole, filter_reach(settings), filter_reach(settings), file_data_)),
-      columns_((read_.width + kBlock - 1) / kBlock),
-      nearest_(std::size_t(columns_) * std::size_t((read_.height + kBlock - 1) / kBlock), kSkyDepth),
+Surroundings::Surroundings(const FrameSource& source, const Settings& settings, FrameRows& rows)
+    : source_(source),
+      rows_(rows),
+      file_data_(source.file_data),
+      columns_((file_data_.width + kBlockWidth - 1) / kBlockWidth),
+      blocks_(std::size_t(file_data_.height + kBlockHeight - 1) / kBlockHeight),
       view_(view_of(source.camera, source.file_data, source.display)),
       orthographic_(source.camera.orthographic),
       radius_(settings.estimator.radius ? radii_of(settings.estimator).back() : 0),
       filters_(filter_reach(settings)),
       lines_(line_reach(settings.estimator)),
-      widest_run_(widest_run(settings.estimator)) {
-  const Window data = source.data;
-  const DepthMap map = depth_map_of(source);
-  for (int top = 0; top < read_.height; top += kBlock) {
-    source.data = {read_.x, read_.y + top, read_.width, std::min(kBlock, read_.height - top)};
-    std::vector<float> depth(source[RawPlane::depth].size() * source.data.pixels());
-    read_planes(source, {{&source[RawPlane::depth], depth.data()}});
-    const auto planar = planar_depths(depth, map, view_of(source.camera, source.data, source.display));
-    for (std::size_t i = 0; i < planar.size(); i++) {
-      float& nearest = nearest_[std::size_t(top / kBlock * columns_) + i % std::size_t(read_.width) / kBlock];
-      nearest = std::min(nearest, planar[i]);
-    }
-  }
-  source.data = data;
+      pairs_(pair_reach(source, settings.estimator)),
+      widest_run_(widest_run(settings.estimator)) {}
+
+Window Surroundings::window_of(int block_row, int column) const {
+  const int left = column * kBlockWidth, top = block_row * kBlockHeight;
+  return {file_data_.x + left, file_data_.y + top, std::min(kBlockWidth, file_data_.width - left),
+          std::min(kBlockHeight, file_data_.height - top)};
 }
 
-double Surroundings::nearest_in(const Window& window) const {
-  float nearest = kSkyDepth;
-  for (int y = (window.y - read_.y) / kBlock; y <= (window.y + window.height - 1 - read_.y) / kBlock; y++)
-    for (int x = (window.x - read_.x) / kBlock; x <= (window.x + window.width - 1 - read_.x) / kBlock; x++)
-      nearest = std::min(nearest, nearest_[std::size_t(y) * std::size_t(columns_) + std::size_t(x)]);
+std::vector<float> Surroundings::nearest_depths(int block_row) {
+  Window window = window_of(block_row, 0);
+  window.width = file_data_.width;
+  rows_.need(window.y, window.y + window.height);
+  std::vector<float> depth(source_[RawPlane::depth].size() * window.pixels());
+  rows_.copy(source_[RawPlane::depth], window, depth.data());
+  const auto planar = planar_depths(depth, depth_map_of(source_), view_of(source_.camera, window, source_.display));
+  std::vector<float> nearest(std::size_t(columns_), kSkyDepth);
+  for (std::size_t i = 0; i < planar.size(); i++) {
+    float& of_block = nearest[i % std::size_t(window.width) / kBlockWidth];
+    of_block = std::min(of_block, planar[i]);
+  }
   return nearest;
 }
 
-Window Surroundings::within(double distance, const Window& window) const {
-  const double nearest = nearest_in(window);
-  const auto margin = [&](double low, double high, double center, double tangent_per_pixel) {
+Surroundings::Reach Surroundings::reach(double distance, double nearest, const Window& block) const {
+  const auto margin = [&](int low, int high, double center, double tangent_per_pixel) {
     const double tangent = std::max(std::abs(low - center), std::abs(high - center)) * std::abs(tangent_per_pixel);
-    return int(std::ceil(std::min(
-               sphere_reach(distance, nearest, tangent, 1 / std::abs(tangent_per_pixel), orthographic_), 1e6))) +
-           2;
+    const double pixels = sphere_reach(distance, nearest, tangent, 1 / std::abs(tangent_per_pixel), orthographic_);
+    return int(std::ceil(std::min(pixels, kFarther))) + 2;
   };
-  const int left = window.x - file_data_.x, top = window.y - file_data_.y;
-  return grown(window, margin(left, left + window.width, view_.center.x, view_.tangent_per_pixel.x),
-               margin(top, top + window.height, view_.center.y, view_.tangent_per_pixel.y), file_data_);
+  const int left = block.x - file_data_.x, top = block.y - file_data_.y;
+  return {margin(left, left + block.width, view_.center.x, view_.tangent_per_pixel.x),
+          margin(top, top + block.height, view_.center.y, view_.tangent_per_pixel.y)};
 }
 
-Window Surroundings::around(const Window& part) const {
-  const Window occluders = within(radius_, grown(part, filters_, filters_, file_data_));
-  return lines_ == 0 ? occluders : within(widest_run_ * radius_, grown(occluders, lines_, lines_, file_data_));
+const std::vector<Surroundings::Block>& Surroundings::blocks_of(int block_row) {
+  std::vector<Block>& blocks = blocks_[std::size_t(block_row)];
+  if (!blocks.empty()) return blocks;
+  const std::vector<float> nearest = nearest_depths(block_row);
+  for (int column = 0; column < columns_; column++) {
+    const Window window = window_of(block_row, column);
+    const double depth = nearest[std::size_t(column)];
+    blocks.push_back({reach(radius_, depth, window), reach(widest_run_ * radius_, depth, window)});
+  }
+  return blocks;
+}
+
+Window Surroundings::within(Reach Block::*reach, const Window& window) {
+  const int end_x = window.x + window.width, end_y = window.y + window.height;
+  rows_.need(window.y, end_y);  // all at once, for many threads
+  int left = window.x, top = window.y, right = end_x, bottom = end_y;
+  for (int row = (window.y - file_data_.y) / kBlockHeight; row <= (end_y - 1 - file_data_.y) / kBlockHeight; row++) {
+    const std::vector<Block>& blocks = blocks_of(row);
+    for (int i = (window.x - file_data_.x) / kBlockWidth; i <= (end_x - 1 - file_data_.x) / kBlockWidth; i++) {
+      const Window block = window_of(row, i);
+      const Reach& far = blocks[std::size_t(i)].*reach;
+      left = std::min(left, std::max(block.x, window.x) - far.x);
+      top = std::min(top, std::max(block.y, window.y) - far.y);
+      right = std::max(right, std::min(block.x + block.width, end_x) + far.x);
+      bottom = std::max(bottom, std::min(block.y + block.height, end_y) + far.y);
+    }
+  }
+  left = std::max(left, file_data_.x), top = std::max(top, file_data_.y);
+  right = std::min(right, file_data_.x + file_data_.width), bottom = std::min(bottom, file_data_.y + file_data_.height);
+  return grown({left, top, right - left, bottom - top}, 0, 0, file_data_);
+}
+
+Window Surroundings::direct(const Window& part) const { return grown(part, filters_, filters_, file_data_); }
+
+Window Surroundings::around(const Window& part) {
+  const Window occluders = within(&Block::occluders, direct(part));
+  const Window lines = lines_ == 0 ? occluders : within(&Block::runs, grown(occluders, lines_, lines_, file_data_));
+  return pairs_ == 0 ? lines : grown(lines, pairs_, pairs_, file_data_);
 }
 
 }  // namespace alcove

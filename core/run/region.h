@@ -3,7 +3,7 @@
 #pragma once
 
 #include "core/base/settings.h"
-#include "core/frame/gbuffer.h"
+#include "core/frame/frame_rows.h"
 
 namespace alcove {
 
@@ -15,27 +15,45 @@ Window region_of(const FrameSource& source, const Region& roi);
 /// and the filters of the settings.
 class Surroundings {
  public:
-  /// Reads the depth of all rows of a settled frame that results within `whole` depend on directly, a few at a time.
-  Surroundings(FrameSource& source, const Settings& settings, const Window& whole);
+  /// Of a settled frame. Nothing is read yet.
+  Surroundings(const FrameSource& source, const Settings& settings, FrameRows& rows);
 
-  /// The window to compute for the results in `part` of `whole` to be, to the bit, what they are in the whole frame.
-  Window around(const Window& part) const;
+  /// The window whose depths decide how far the surroundings of a part reach: the part with what filters need.
+  Window direct(const Window& part) const;
+  /// The window to compute for the results in a part to be, to the bit, what they are in the whole frame. Reads the
+  /// rows whose depths decide it.
+  Window around(const Window& part);
 
  private:
-  /// The nearest depth that a window shows.
-  double nearest_in(const Window& window) const;
-  /// The window of everything that may be seen within this distance of what a window shows.
-  Window within(double distance, const Window& window) const;
+  /// How far what is seen beside a block of pixels may be from it, px.
+  struct Reach {
+    int x = 0, y = 0;
+  };
+  /// What is known of a block once its depths have been read.
+  struct Block {
+    Reach occluders;  // within the radius
+    Reach runs;       // within the widest run of an exact search
+  };
 
+  /// One row of blocks.
+  const std::vector<Block>& blocks_of(int block_row);
+  Window window_of(int block_row, int column) const;
+  std::vector<float> nearest_depths(int block_row);
+  Reach reach(double distance, double nearest, const Window& block) const;
+  /// The window of everything that may be seen beside what a window shows.
+  Window within(Reach Block::*reach, const Window& window);
+
+  const FrameSource& source_;
+  FrameRows& rows_;
   const Window file_data_;
-  Window read_;                 // what the grid of nearest depths covers
-  int columns_ = 0;             // blocks of that grid, across
-  std::vector<float> nearest_;  // the nearest depth of every block, row by row
+  const int columns_;                       // blocks across the frame
+  std::vector<std::vector<Block>> blocks_;  // row by row; empty: not known yet
   View view_;
   bool orthographic_;
   double radius_;      // scene units
   int filters_;        // px that filters reach
   int lines_;          // px that the lines of an exact search need beyond the radius
+  int pairs_;          // px beyond all these within which solids are closed
   double widest_run_;  // radii, beyond which they need no more of a run
 };
 

@@ -11,12 +11,15 @@
 #include <optional>
 #include <vector>
 
+#include "core/base/file.h"
 #include "core/formats/exr.h"
 #include "core/formats/image_io.h"
 #include "core/formats/png.h"
 #include "core/frame/raw_plane.h"
+#include "core/run/digest.h"
 #include "core/run/frame_files.h"
 #include "core/run/plan.h"
+#include "core/run/shot.h"
 
 namespace alcove {
 namespace {
@@ -25,7 +28,8 @@ namespace fs = std::filesystem;
 
 std::vector<std::string> inputs_of(const Settings& frame) {
   std::vector<std::string> files;
-  for (const auto& file : plane_file_options()) files.push_back(frame.input.*file.path);
+  if (!frame.input.motion.empty()) files.push_back(frame.input.motion);
+  for (const auto& file : plane_file_options()) files.push_back(file.of(frame.input));
   return files;
 }
 
@@ -56,19 +60,53 @@ std::string identity_of_inputs(const Settings& frame) {
   return fmt::format("{:016x}", XXH3_64bits(text.data(), text.size()));
 }
 
-bool has_whole_outputs(const Settings& frame, const std::string& options_digest) {
+std::string InputIdentities::own(int frame) {
+  const std::lock_guard lock(mutex_);
+  const auto [known, is_new] = known_.try_emplace(frame);
+  if (is_new) known->second = identity_of_inputs(plan_.at(frame));
+  return known->second;
+}
+
+std::string InputIdentities::of(int frame) {
+  const Settings settings = plan_.at(frame);
+  const int count = around_of(settings.input);
+  std::string text = own(frame);
+  if (count == 0) return text;
+  for (const int other : plan_.around(frame, with_judges(count)).there) {
+    text += fmt::format("\n{} {}", other - frame, own(other));
+    if (const std::string camera = plan_.at(other).input.camera; camera != settings.input.camera)
+      text += read_text(camera, "camera", "--camera");
+  }
+  return fmt::format("{:016x}", XXH3_64bits(text.data(), text.size()));
+}
+
+bool has_whole_outputs(const Settings& frame, const std::string& options_digest, const std::string& inputs) {
   fs::file_time_type newest_input = fs::file_time_type::min();
   for (const auto& input : inputs_of(frame))
     if (!input.empty()) newest_input = std::max(newest_input, time_of(input).value_or(newest_input));
-  const std::string inputs = identity_of_inputs(frame);
   return std::ranges::all_of(outputs_of(frame.output), [&](const OutputFile& output) {
     const auto time = time_of(output.path);
     if (!time || *time < newest_input) return false;
     const bool is_picture = output.path != frame.output.output && output.path != frame.output.composite;
     if (is_picture) return is_whole_png(output.path, made_by(options_digest, inputs));
     return attribute_of_whole_exr(output.path, "alcove/options") == options_digest &&
-           attribute_of_whole_exr(output.path, "alcove/inputs") == inputs;
+           attribute_of_whole_exr(output.path, "alcove/inputs") == inputs &&
+           !(fails_on_warnings(frame) && attribute_of_whole_exr(output.path, kNotesAttribute));
   });
+}
+
+std::vector<int> frames_to_compute(const FramePlan& plan, const Settings& settings) {
+  if (!settings.frames.resume || settings.frames.overwrite || plan.frames().empty()) return plan.frames();
+  const Settings first = plan.at(plan.frames().front());
+  const std::string digest = options_digest(first);
+  InputIdentities identities(plan);
+  std::vector<int> wanted;
+  std::ranges::copy_if(plan.frames(), std::back_inserter(wanted), [&](int frame) {
+    const Settings of_frame = plan.at(frame);
+    const bool has_own_camera = of_frame.input.camera != first.input.camera;
+    return !has_whole_outputs(of_frame, has_own_camera ? options_digest(of_frame) : digest, identities.of(frame));
+  });
+  return wanted;
 }
 
 }  // namespace alcove

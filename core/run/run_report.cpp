@@ -16,6 +16,13 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+Json json_of(const Notes& notes) {
+  Json json = Json::array();
+  for (const auto& note : notes)
+    json.push_back({{"code", facts_of(note.code).name}, {"level", level_of(note)}, {"text", note.text}});
+  return json;
+}
+
 Json json_of(const FrameReport& frame) {
   Json passes = Json::array();
   for (const auto& pass : frame.passes)
@@ -31,6 +38,7 @@ Json json_of(const FrameReport& frame) {
       {"passes", passes},
       {"pixels", frame.pixels},
       {"sky_pixels", frame.sky_pixels},
+      {"rows_read", frame.rows_read},
       {"parts", frame.parts},
       {"tiles",
        {{"total", frame.tiles.sky + frame.tiles.proved + frame.tiles.kept + frame.tiles.computed},
@@ -40,11 +48,18 @@ Json json_of(const FrameReport& frame) {
         {"kept", frame.tiles.kept},
         {"computed", frame.tiles.computed}}},
       {"samples_per_pixel", frame.samples_per_pixel},
-      {"repaired_pixels", frame.repaired_pixels}};
+      {"repaired_pixels", frame.repaired_pixels},
+      {"notes", json_of(frame.notes)}};
   if (frame.estimates) {
     Json estimates = {{"total", std::accumulate(frame.estimates->begin(), frame.estimates->end(), 0ull)}};
     for (std::size_t k = 0; k < kLattices; k++) estimates[fmt::format("one_of_{}", 16 >> k)] = (*frame.estimates)[k];
     json["estimates"] = estimates;
+  }
+  if (frame.hidden) json["hidden"] = {{"surfaces", frame.hidden->surfaces}, {"dropped", frame.hidden->dropped}};
+  if (frame.frames_around) {
+    json["frames_around"] = *frame.frames_around;
+    json["moved"] = frame.moved;
+    json["unconfirmed"] = frame.unconfirmed;
   }
   if (frame.error_pixels > 0) json["error_estimate"] = std::sqrt(frame.error_squares / frame.error_pixels);
   if (frame.occlusion) json["completed"] = frame.occlusion->completed_share();
@@ -71,6 +86,7 @@ std::string stats_json(const RunReport& report) {
   for (const auto& frame : report.frames) frames.push_back(json_of(frame));
   const Json totals = {{"frames", report.done + report.failed + report.kept},
                        {"failed", report.failed},
+                       {"warned", report.warned},
                        {"kept", report.kept},
                        {"dropped", report.dropped},
                        {"missing", report.missing},
@@ -78,12 +94,17 @@ std::string stats_json(const RunReport& report) {
                        {"wall_s", report.wall_s},
                        {"cpu_s", cpu_seconds()},
                        {"peak_rss_mb", peak_memory_mib()}};
-  return json_text({{"device", report.device}, {"options", report.options}, {"frames", frames}, {"totals", totals}},
-                   1) +
-         "\n";
+  const Json json = {{"device", report.device},
+                     {"options", report.options},
+                     {"notes", json_of(report.notes)},
+                     {"frames", frames},
+                     {"totals", totals}};
+  return json_text(json, 1) + "\n";
 }
 
 std::string frame_json(const FrameReport& frame) { return json_text(json_of(frame)); }
+
+std::string notes_json(const Notes& notes) { return json_text(json_of(notes)); }
 
 std::string summary_of(const RunReport& report) {
   std::string text = fmt::format("{} frames done", report.done);
@@ -91,6 +112,7 @@ std::string summary_of(const RunReport& report) {
   if (!report.missing.empty())
     text += fmt::format(", {} missing ({})", report.missing.size(), frames_text(report.missing));
   if (report.failed) text += fmt::format(", {} failed ({})", report.failed, frames_text(report.failed_frames));
+  if (report.warned) text += fmt::format(", {} with warnings", report.warned);
   if (report.dropped) text += fmt::format(", {} not begun or dropped", report.dropped);
   return text + fmt::format(", in {:.1f} s on {}, {} at once, peak memory {:.0f} MiB", report.wall_s,
                             report.device.empty() ? "no device" : report.device, report.at_once, peak_memory_mib());

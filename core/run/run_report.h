@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/base/note.h"
 #include "core/gpu/pass_time.h"
 #include "kernels/shared.h"
 
@@ -26,6 +27,12 @@ struct TakenVisibility {
   double completed_share() const { return whole > 0 ? by_completed / whole : 0; }
 };
 
+/// Numbers of surfaces behind the first ones.
+struct HiddenCounts {
+  std::uint64_t surfaces = 0;  // that were kept
+  std::uint64_t dropped = 0;   // that lie behind those, and were not
+};
+
 /// What happened to one frame.
 struct FrameReport {
   int frame = 0;
@@ -37,6 +44,11 @@ struct FrameReport {
   double total_ms = 0;
   std::vector<gpu::PassTime> passes;
   std::uint64_t pixels = 0, sky_pixels = 0, repaired_pixels = 0;
+  std::uint64_t rows_read = 0;  // of the input that were decoded, each as often as it was
+  // of the shot, that it takes surfaces from; none: the run does not look around frames
+  std::optional<std::vector<int>> frames_around;
+  // pixels of others that it does not take: they move, or no other frame confirms them
+  std::uint64_t moved = 0, unconfirmed = 0;
   int parts = 1;  // the frame was computed in so many; what they share is counted in each
   /// Numbers of tiles of 8 x 8 pixels.
   struct Tiles {
@@ -49,6 +61,7 @@ struct FrameReport {
   // The sum of squared errors of an estimate with a tolerance, and the pixels that it is over.
   double error_squares = 0, error_pixels = 0;
   std::optional<TakenVisibility> occlusion;  // of a frame with an estimate, where --stats asks for it
+  std::optional<HiddenCounts> hidden;        // of a frame of which more than the first surfaces is known
   // Pixels with an estimate of their own, by the lattices that they lie on, of spacing 16, 8, 4, 2 and 1, and on no
   // wider one; where pixels share estimates. Of several radii for the largest.
   std::optional<std::array<std::uint64_t, kLattices>> estimates;
@@ -56,20 +69,32 @@ struct FrameReport {
   // ask for at surfaces.
   double samples_per_pixel = 0;
   std::uint64_t pixels_at_once = 0;  // the most that were computed at once
-  std::vector<std::string> notes;    // what the user should know, a sentence each
+  Notes notes;                       // what the user should know, also what was noted of the whole sequence
   std::optional<Error> error;        // why it failed
   bool device_lost = false;          // it failed since its device was lost
   bool out_of_memory = false;        // it failed since the device had no memory for it
 };
 
+/// How far a frame in flight is.
+struct FrameProgress {
+  int frame = 0;
+  std::string input;
+  double seconds = 0;  // since it was begun
+  int part = 0;        // that is being computed; 0: none yet
+  int parts = 1;       // that the frame is computed in
+};
+
 struct RunReport {
   bool is_sequence = false;
+  std::string input;                // of a sequence with the place for the frame number
+  Notes notes;                      // on all frames and on how they are computed, as they become known
   std::string device, options;      // options: the digest that the outputs carry
   bool on_cpu_by_default = false;   // nobody asked for the CPU, and there is no GPU
   int at_once = 0;                  // the frames in flight, at the end of the run
   std::vector<FrameReport> frames;  // in order, without the dropped ones; kept for --stats only
   std::vector<int> missing;         // frames that were left out, since an input is missing
   int done = 0, failed = 0, kept = 0, dropped = 0;
+  int warned = 0;  // of the frames that are done, those with a warning
   std::vector<int> failed_frames;
   std::optional<Error> stop;  // why the run ended early
   double wall_s = 0;
@@ -80,6 +105,9 @@ std::string stats_json(const RunReport& report);
 
 /// The same fields of one frame, on one line.
 std::string frame_json(const FrameReport& frame);
+
+/// A list of objects with `code`, `level` and `text`, on one line.
+std::string notes_json(const Notes& notes);
 
 /// One sentence on the whole run, the same words every time, for those who search logs.
 std::string summary_of(const RunReport& report);

@@ -8,150 +8,110 @@
 
 #include "core/base/error.h"
 #include "core/base/estimator_facts.h"
-#include "core/chain/aov.h"
-#include "core/chain/chain.h"
-#include "core/chain/debug_view.h"
-#include "kernels/bounds.h"
-#include "kernels/classify.h"
 #include "kernels/profile.h"
 
 namespace alcove {
 namespace {
 
+constexpr std::uint64_t kMebibyte = 1 << 20;
 constexpr int kLeastRows = 16;     // px of a tile: most files compress so many rows together
 constexpr int kLeastColumns = 64;  // px of a tile
-// Words per tile of 8 x 8: sectors, bounds of groups, runs of the filters, and how the frame before differs.
-constexpr std::size_t kTileLists = 8;
-constexpr std::size_t kCompletionSums = 2;  // words per tile
-// Words per tile where pixels share estimates: twice the words of its rows, those of flat links, and its sites.
-constexpr std::size_t kSiteLists = 3 * kTile + kTile * kTile;
-constexpr std::size_t kConvergeLists = 7;  // there is one after each power of two directions
-// A row of tiles is halved only while it is this many times as high as what it needs around it.
-constexpr int kFewBorders = 4;
+constexpr int kMostRows = 32;      // of tiles, unless they have to be lower
 
-/// The most groups of `group` pixels that there are per pixel along a side of the frame, however it is cut into tiles
-/// of at least so many pixels.
-double groups_per_pixel(int side, int group, int least) {
-  const int pixels = std::min(side, least);
-  return double((pixels + 2 * group - 2) / group) / pixels;
+std::uint64_t mebibytes_above(std::uint64_t bytes) { return (bytes + kMebibyte - 1) / kMebibyte; }
+
+/// The bytes of a row of results that is put together from tiles, and of its encoded twin.
+std::uint64_t row_bytes(const WindowLimits& limits, const Window& row) {
+  return 2 * limits.memory.written * row.pixels();
 }
 
-/// The bytes per pixel of the buffers that core/chain/chain.cpp makes for a frame.
-std::uint64_t chain_bytes(const FrameSource& source, const Settings& settings) {
-  const auto& e = settings.estimator;
-  const auto& o = settings.output;
-  const auto groups = [&](int group) {
-    return groups_per_pixel(source.file_data.width, group, kLeastColumns) *
-           groups_per_pixel(source.file_data.height, group, kLeastRows);
-  };
-  const std::size_t scales = 1 + e.further_radii.size();
-  const std::size_t bent = needs_bent(e, o) ? 3 : 0;
-  const std::size_t estimated = scales + bent + (scales > 1 ? 1 : 0);
-  const bool reduced = e.resolution != Resolution::full;
-  const bool converges = e.tolerance > 0;
-  // Planes of the estimate's resolution: the estimate, and its depth and normals.
-  std::size_t low = estimated + (reduced ? 2 : 0);
-  low += e.denoise == Denoise::none || converges ? 0 : 2 * estimated;  // rows, columns
-  low += searches_exactly(e) ? 4 : 0;                                  // vertices, marks, neighbours, whole arcs
-  low += searches_exactly(e) && completes_anywhere(e) ? 2 : 0;         // what goes on, and behind what
-  low += converges ? 2 : 0;                                            // blocked arcs, error
-  const bool sums_completed = Wanted(o).completed && completes_anywhere(e);
-  low += sums_completed ? 1 : 0;
-  std::size_t planes = 2 + (reduced ? estimated : 0);  // depth, normals, the whole estimate
-  planes += shapes(e) || !source[RawPlane::material_ao].empty() ? 1 + scales : 0;
-  planes += bent ? 1 : 0;
-  // thin, solid and perhaps completed: estimates, rows, columns
-  planes += wants(o, &FrameOutputs::confidence) ? (completes_anywhere(e) ? 3 : 2) * 3 : 0;
-  planes += (o.multi_bounce ? 3 : 0) + source[RawPlane::beauty].size() + debug_views_of(o).size();
-  for (const auto& aov : aovs_of(o)) planes += channels_of(aov, scales).size();
-  const bool has_bracket = wants(o, &FrameOutputs::confidence);
-  const int shares = (spacing_of(e) > 1 ? 1 : 0) + (has_bracket && spacing_of(bracket_of(e)) > 1 ? 1 : 0);
-  const double tiles =
-      double(sizeof(TileBounds) +
-             (kTileLists + (sums_completed ? kCompletionSums : 0) + std::size_t(shares) * kSiteLists) * sizeof(uint) +
-             (converges ? kConvergeLists : 1) * sizeof(ListedTile)) *
-      groups(kTile * int(e.resolution));
-  return std::uint64_t(
-      std::ceil(double(sizeof(float)) * (double(planes) + double(low) * groups(int(e.resolution))) + tiles));
-}
-
+/// Chooses, of all ways to cut a window into rows and each row into columns, the one in which the fewest pixels are
+/// computed: by the best way to cut what lies below a row, from the bottom up.
 class Cutter {
+  static constexpr std::uint64_t kNoWay = std::numeric_limits<std::uint64_t>::max();
+  struct Cut {
+    TileRows rows;
+    std::uint64_t pixels = kNoWay;  // that are computed
+  };
+
  public:
-  Cutter(const Surroundings& surroundings, const WindowLimits& limits, const FrameSource& source)
-      : surroundings_(surroundings), limits_(limits), source_(source) {}
+  Cutter(Surroundings& surroundings, const WindowLimits& limits) : surroundings_(surroundings), limits_(limits) {}
 
-  void cut(const Window& row) {
-    const Window computed = surroundings_.around(row);
-    if (limits_.allow(computed)) return rows_.push_back({row});
-    const bool can_halve = row.height >= 2 * kLeastRows;
-    const bool is_too_wide = computed.width > limits_.longest_side;
-    if (can_halve && !is_too_wide && row.height > kFewBorders * (computed.height - row.height)) return halve(row);
-    for (int columns = 2; row.width / columns >= kLeastColumns; columns *= 2)
-      if (auto tiles = columns_of(row, columns); !tiles.empty()) return rows_.push_back(std::move(tiles));
-    if (can_halve) return halve(row);
-    fail(ErrorKind::device,
-         "{}: within --radius a tile of the frame depends on {} pixels, too many to compute at once: use a smaller "
-         "--radius, or {}",
-         source_.depth_path(), to_string(computed), limits_.mended_by(computed));
+  /// Nothing where some of the window cannot be cut into tiles that are small enough. Where the borders cost much, it
+  /// is worth the time to look at more places.
+  std::optional<TileRows> cut(const Window& whole) {
+    Cut best;
+    for (int step = std::max(1, whole.height / kMostRows / kLeastRows) * kLeastRows; step >= kLeastRows;
+         step = step / 2 / kLeastRows * kLeastRows) {
+      if (Cut cut = cut_at(whole, step); cut.pixels < best.pixels) best = std::move(cut);
+      if (best.pixels < kMuch * whole.pixels()) break;
+    }
+    if (best.rows.empty()) return {};
+    return std::move(best.rows);
   }
-
-  std::vector<std::vector<Window>> take() { return std::move(rows_); }
 
  private:
-  void halve(const Window& row) {
-    const int upper = row.height / 2 / kLeastRows * kLeastRows;
-    cut({row.x, row.y, row.width, upper});
-    cut({row.x, row.y + upper, row.width, row.height - upper});
+  /// Rows from one of the places at which may be cut down to the bottom.
+  struct Way {
+    std::uint64_t pixels = kNoWay;  // that are computed
+    std::size_t next = 0;           // the place where the second row begins
+    std::vector<Window> first;      // the tiles of the first row
+  };
+  static constexpr std::uint64_t kMuch = 2;  // pixels computed for one of the results
+
+  /// Cuts at multiples of `step` rows.
+  Cut cut_at(const Window& whole, int step) {
+    const auto places = std::size_t((whole.height + step - 1) / step);
+    std::vector<Way> ways(places + 1);
+    ways[places].pixels = 0;
+    for (std::size_t from = places; from-- > 0;)
+      for (std::size_t to = from + 1; to <= places; to++) {
+        const int top = int(from) * step, bottom = std::min(int(to) * step, whole.height);
+        Way way = best_row({whole.x, whole.y + top, whole.width, bottom - top});
+        if (way.pixels == kNoWay) break;
+        if (ways[to].pixels == kNoWay || way.pixels + ways[to].pixels >= ways[from].pixels) continue;
+        ways[from] = {way.pixels + ways[to].pixels, to, std::move(way.first)};
+      }
+    Cut cut{{}, ways[0].pixels};
+    for (std::size_t at = 0; at < places && cut.pixels != kNoWay; at = ways[at].next)
+      cut.rows.push_back(std::move(ways[at].first));
+    return cut;
   }
 
-  /// The tiles of one row; none where one of them is too large beside the whole rows that are read and written.
-  std::vector<Window> columns_of(const Window& row, int columns) const {
-    std::vector<Window> tiles;
+  /// One row. Of the numbers of columns that are allowed the least few are tried: more make more borders.
+  Way best_row(const Window& row) {
+    Way best;
+    int tries = 0;
+    for (const int columns : {1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64}) {
+      if ((columns > 1 && row.width / columns < kLeastColumns) || tries > 2) break;
+      Way way = cut_row(row, columns);
+      tries += way.pixels != kNoWay || tries > 0 ? 1 : 0;
+      if (way.pixels < best.pixels) best = std::move(way);
+    }
+    return best;
+  }
+
+  /// No way where one of the tiles is too large beside the rows that are written.
+  Way cut_row(const Window& row, int columns) {
+    Way way;
+    std::uint64_t computed = 0;
     for (int i = 0; i < columns; i++) {
       const int left = int(std::int64_t(row.width) * i / columns);
       const int right = int(std::int64_t(row.width) * (i + 1) / columns);
-      tiles.push_back({row.x + left, row.y, right - left, row.height});
-      const Window computed = surroundings_.around(tiles.back());
-      const std::uint64_t rows =
-          limits_.pixel.read_bytes * std::uint64_t(source_.file_data.width) * std::uint64_t(computed.height) +
-          limits_.pixel.written_bytes * row.pixels();
-      WindowLimits beside = limits_;
-      beside.room.bytes -= std::min(beside.room.bytes, rows);
-      if (!beside.allow(computed)) return {};
+      way.first.push_back({row.x + left, row.y, right - left, row.height});
+      const Window window = surroundings_.around(way.first.back());
+      if (!limits_.allow(window, row_bytes(limits_, row))) return {};
+      computed += window.pixels();
     }
-    return tiles;
+    way.pixels = computed;
+    return way;
   }
 
-  const Surroundings& surroundings_;
+  Surroundings& surroundings_;
   const WindowLimits& limits_;
-  const FrameSource& source_;
-  std::vector<std::vector<Window>> rows_;
 };
 
 }  // namespace
-
-PixelMemory pixel_memory(const FrameSource& source, const Settings& settings) {
-  const std::size_t scales = 1 + settings.estimator.further_radii.size();
-  std::size_t read = 0, widest = std::max<std::size_t>(scales, needs_bent(settings.estimator, settings.output) ? 3 : 1);
-  for (const auto& channels : source.planes.entries) {
-    read += channels.size();
-    widest = std::max(widest, channels.size());
-  }
-  std::size_t written = source[RawPlane::beauty].size();
-  for (const auto& aov : aovs_of(settings.output)) {
-    written += channels_of(aov, scales).size();
-    widest = std::max(widest, aov.channels.size());
-  }
-  const std::size_t pictures = settings.output.preview.empty() ? 0 : 6;  // planes as shown, once more interleaved
-  PixelMemory memory;
-  memory.read_bytes = read * sizeof(float);
-  memory.written_bytes = written * sizeof(float);
-  memory.widest = widest * sizeof(float);
-  memory.device_bytes = memory.read_bytes + chain_bytes(source, settings);
-  // What is written may be there once more: cropped to a region, or as half.
-  memory.bytes = memory.device_bytes + pictures * sizeof(float) + memory.written_bytes;
-  return memory;
-}
 
 int longest_side(const EstimatorSettings& settings) {
   if (!searches_exactly(settings)) return std::numeric_limits<int>::max();
@@ -174,26 +134,71 @@ void require_numbered_lines(const FrameSource& source, const EstimatorSettings& 
          source.depth_path(), reach, farthest);
 }
 
-bool WindowLimits::allow(const Window& computed) const {
-  const std::uint64_t pixels = computed.pixels();
-  return pixels * pixel.bytes <= room.bytes && pixels * pixel.device_bytes <= room.device_bytes &&
-         pixels * pixel.widest <= room.buffer_bytes && pixels <= room.pixels &&
+std::uint64_t WindowLimits::with_larger_codecs(std::uint64_t bytes) const {
+  const std::uint64_t without = bytes - std::min(bytes, memory.codec_bytes(room.bytes));
+  // What codecs take grows step by step, and by less than what they may take, so that this ends.
+  for (std::uint64_t more; (more = without + memory.codec_bytes(bytes)) > bytes;) bytes = more;
+  return bytes;
+}
+
+bool WindowLimits::allow(const Window& computed, std::uint64_t beside) const {
+  return memory.on_host(computed) + beside <= room.bytes && memory.on_device(computed) <= room.device_bytes &&
+         memory.in_buffer(computed) <= room.buffer_bytes && computed.pixels() <= room.pixels &&
          std::max(computed.width, computed.height) <= longest_side;
 }
 
-std::string WindowLimits::mended_by(const Window& computed) const {
+std::string WindowLimits::why_not(const Window& computed) const {
   if (std::max(computed.width, computed.height) > longest_side)
-    return fmt::format("--search steps, since lines of an exact search have at most {} pixels", longest_side);
-  if (computed.pixels() * pixel.bytes > room.bytes)
-    return fmt::format("allow more --memory than the {} MiB that there are for this frame", room.bytes >> 20);
-  return "use another --device, with more memory or larger buffers";
+    return fmt::format("lines of an exact search have at most {} pixels", longest_side);
+  if (memory.on_host(computed) > room.bytes)
+    return fmt::format("{} leaves {} MiB for it, and at once it takes {} MiB",
+                       room.is_chosen ? "--memory" : "half of the free memory", room.bytes / kMebibyte,
+                       mebibytes_above(memory.on_host(computed)));
+  if (memory.in_buffer(computed) > room.buffer_bytes)
+    return fmt::format("the device takes buffers of {} MiB at most", room.buffer_bytes / kMebibyte);
+  return "the device has too little memory for it at once";
 }
 
-std::vector<std::vector<Window>> tiles_of(const Window& whole, const Surroundings& surroundings,
-                                          const WindowLimits& limits, const FrameSource& source) {
-  Cutter cutter(surroundings, limits, source);
-  cutter.cut(whole);
-  return cutter.take();
+void WindowLimits::refuse(const std::string& what, const Window& computed) const {
+  if (memory.on_host(computed) > room.bytes) refuse(what, memory.on_host(computed));
+  if (std::max(computed.width, computed.height) > longest_side)
+    fail(ErrorKind::device, "{}, or give --search steps, since lines of an exact search have at most {} pixels", what,
+         longest_side);
+  fail(ErrorKind::device, "{}, or use another --device, with more memory or larger buffers", what);
+}
+
+void WindowLimits::refuse(const std::string& what, std::uint64_t least) const {
+  least = with_larger_codecs(least);
+  fail(room.is_chosen ? ErrorKind::usage : ErrorKind::device,
+       "{}, or let the run take at least --memory {}M, of which {} MiB are for the program itself", what,
+       mebibytes_above(room.program_bytes + least), mebibytes_above(room.program_bytes));
+}
+
+std::optional<TileRows> tiles_within(const Window& whole, Surroundings& surroundings, const WindowLimits& limits) {
+  return Cutter(surroundings, limits).cut(whole);
+}
+
+TileRows tiles_of(const Window& whole, Surroundings& surroundings, const WindowLimits& limits,
+                  const FrameSource& source) {
+  if (auto rows = tiles_within(whole, surroundings, limits)) return *std::move(rows);
+  const std::string what = fmt::format(
+      "{}: within --radius a tile of the frame depends on too many pixels to compute at once: use a smaller --radius",
+      source.depth_path());
+  WindowLimits larger = limits;
+  const auto allows = [&](std::uint64_t bytes) {
+    larger.room.bytes = bytes;
+    return tiles_within(whole, surroundings, larger).has_value();
+  };
+  // More memory than all of the window takes at once is of no use.
+  std::uint64_t little = limits.room.bytes;
+  std::uint64_t enough = limits.memory.on_host(surroundings.around(whole)) + row_bytes(limits, whole);
+  if (!allows(enough))
+    limits.refuse(what, surroundings.around({whole.x, whole.y, std::min(whole.width, kLeastColumns), 1}));
+  while (enough - little > kMebibyte) {
+    const std::uint64_t middle = little + (enough - little) / 2;
+    (allows(middle) ? enough : little) = middle;
+  }
+  limits.refuse(what, enough);
 }
 
 }  // namespace alcove

@@ -1,24 +1,17 @@
-// How much memory a frame takes, and how a frame that is too large for memory or device is cut into tiles.
+// How a frame that is too large for memory or device is cut into tiles.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <cstdint>
 #include <limits>
+#include <optional>
+#include <string>
 #include <vector>
 
+#include "core/run/frame_memory.h"
 #include "core/run/region.h"
 
 namespace alcove {
-
-/// What each pixel that is computed takes. All are upper bounds.
-struct PixelMemory {
-  std::uint64_t bytes = 0;          // of host memory: buffers or their staging twins, and what is read and written
-  std::uint64_t device_bytes = 0;   // of the device's own memory: buffers
-  std::uint64_t read_bytes = 0;     // of `bytes`, for the planes as they are read
-  std::uint64_t written_bytes = 0;  // of `bytes`, for the planes that are written
-  std::uint64_t widest = 0;         // in the largest buffer
-};
-PixelMemory pixel_memory(const FrameSource& source, const Settings& settings);
 
 /// What one frame in flight may take.
 struct Room {
@@ -28,6 +21,9 @@ struct Room {
   std::uint64_t device_bytes = kEndless;  // of the device's own memory
   std::uint64_t buffer_bytes = 0;         // of one buffer of the device
   std::uint64_t pixels = kEndless;        // at once: fewer than those for which the device had no memory
+  // For messages: what the process takes without frames, and whether the user has said how much it may take.
+  std::uint64_t program_bytes = 0;
+  bool is_chosen = false;
 };
 
 /// The longest side of a window, in pixels, for the passes of these settings: the marks of an exact search hold the
@@ -40,19 +36,35 @@ void require_numbered_lines(const FrameSource& source, const EstimatorSettings& 
 
 /// What decides whether a window can be computed at once.
 struct WindowLimits {
-  PixelMemory pixel;
+  FrameMemory memory;
   Room room;
   int longest_side = std::numeric_limits<int>::max();  // px
 
-  bool allow(const Window& computed) const;
-  /// The option that makes larger windows possible, for messages.
-  std::string mended_by(const Window& computed) const;
+  /// `beside`: bytes of host memory that are taken meanwhile.
+  bool allow(const Window& computed, std::uint64_t beside = 0) const;
+  /// Why a window is not allowed: a clause for messages.
+  std::string why_not(const Window& computed) const;
+  /// Fails for a frame that cannot be computed since this window is too large. `what` says so, and names what would
+  /// mend it beside more memory.
+  [[noreturn]] void refuse(const std::string& what, const Window& computed) const;
+  /// The same where so many bytes of host memory would do. It is ErrorKind::usage where the user has given less.
+  [[noreturn]] void refuse(const std::string& what, std::uint64_t least) const;
+
+ private:
+  /// So many bytes of host memory with what codecs take beyond their present bytes where a run has them.
+  std::uint64_t with_larger_codecs(std::uint64_t bytes) const;
 };
 
+/// Rows of tiles from the top, each from the left.
+using TileRows = std::vector<std::vector<Window>>;
+
 /// Cuts the window of all results into rows of tiles, from the top, and each row into tiles, from the left, so that
-/// each tile is allowed with its surroundings. Rows are cut first, since whole rows are read of a file. Fails with
-/// ErrorKind::device where the radius reaches so far that no tile is small enough.
-std::vector<std::vector<Window>> tiles_of(const Window& whole, const Surroundings& surroundings,
-                                          const WindowLimits& limits, const FrameSource& source);
+/// each tile is allowed with its surroundings, and few pixels are computed twice. Nothing where the radius reaches so
+/// far that no tile is small enough.
+std::optional<TileRows> tiles_within(const Window& whole, Surroundings& surroundings, const WindowLimits& limits);
+
+/// The same, which fails as WindowLimits::refuse() does where no tile is small enough.
+TileRows tiles_of(const Window& whole, Surroundings& surroundings, const WindowLimits& limits,
+                  const FrameSource& source);
 
 }  // namespace alcove

@@ -111,6 +111,8 @@ TEST_F(Aovs, normals_are_in_world_space_where_the_camera_has_it_else_in_view_spa
   auto without = wall_camera();
   without.erase("world_to_camera");
   write_bytes(camera, without.dump());
+  turn_normals_to_view(input);
+  input.write(frame);
   good({"--aov", "normal", "--normal-space", "view"});
   EXPECT_EQ(text_in(read_header(ao), "alcove/normal_space"), "view");
   EXPECT_EQ(run({"--aov", "normal", "--normal-space", "view", "--aov-space", "world"}).code, 3);
@@ -164,8 +166,9 @@ TEST_F(Aovs, without_ao_no_radius_is_needed) {
 
 TEST_F(Aovs, unknown_ones_are_answered_with_all_there_are) {
   for (const char* list : {"nromal", "ao,nromal", "bent", "ao,,depth", ""})
-    expect_refused(2, {"--aov", "ao, ao-scales, normal, bent-normal, depth, confidence, error, specular-occlusion"},
-                   {"--aov", list});
+    expect_refused(
+        2, {"--aov", "ao, ao-scales, normal, bent-normal, depth, hidden, confidence, error, specular-occlusion"},
+        {"--aov", list});
   expect_refused(2, {"did you mean normal?"}, {"--aov", "nromal"});
 }
 

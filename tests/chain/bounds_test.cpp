@@ -47,8 +47,11 @@ Pyramid pyramid_of(const HostFrame& frame) {
       gpu.buffer("shown bounds", sizeof(TileBounds) * std::size_t(p.tile_count.x * p.tile_count.y), gpu::Use::device);
   gpu::Buffer& groups = gpu.buffer("shown groups", sizeof(GroupBounds) * std::size_t(p.group_count.x * p.group_count.y),
                                    gpu::Use::device);
-  gpu.dispatch("bounds", BoundsParams{p.view},
-               {{kBoundsDepth, *gbuffer.depth}, {kBoundsNormal, *gbuffer.normal}, {kBoundsTiles, tiles}},
+  gpu.dispatch("bounds", BoundsParams{p.view, 0},
+               {{kBoundsDepth, *gbuffer.depth},
+                {kBoundsNormal, *gbuffer.normal},
+                {kBoundsHidden, *gbuffer.depth},
+                {kBoundsTiles, tiles}},
                {uint(p.tile_count.x), uint(p.tile_count.y)});
   gpu.dispatch("coarsen", CoarsenParams{p.view.size}, {{kCoarsenTiles, tiles}, {kCoarsenGroups, groups}},
                {uint(p.group_count.x), uint(p.group_count.y)});
@@ -94,7 +97,8 @@ void expect_conservative(const Pyramid& p, const std::string& what) {
       }
       check(plane_at(group.gradient, group.plane, x, y, kGroup));
       check(plane_at({0, 0}, group.level, x, y, kGroup));
-      before += nearness < tile.farthest - 1e-6 * std::abs(double(tile.farthest)) || tile.farthest < group.farthest;
+      before += nearness < tile.farthest - 1e-6 * std::abs(double(tile.farthest)) || tile.farthest < tile.last ||
+                tile.last < group.last;
     }
   EXPECT_EQ(before, 0u) << what;
   for (std::size_t i = 0; i < p.tiles.size(); i++) {

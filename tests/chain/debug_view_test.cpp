@@ -1,5 +1,6 @@
 // The debug views: a picture each, with a scale, whole or not at all, and right where what it must show is known.
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -52,6 +53,14 @@ class DebugViews : public CommandLine {
     return color(picture, x * zoom + zoom / 2, y * zoom + zoom / 2);
   }
 
+  /// The arguments for all views: those of what is hidden need something that is.
+  std::vector<std::string> all_views() const {
+    FrameFile layer;
+    layer.planes["Z"] = std::vector<float>(layer.data.pixels(), 9);
+    layer.write(folder / "layer.exr");
+    return {"--debug", all_names(), "--behind", folder / "layer.exr"};
+  }
+
   void expect_refused(int code, const std::vector<std::string>& words, const std::vector<std::string>& more) {
     const auto before = names_in(folder.path());
     const Finished finished = run(more);
@@ -62,7 +71,9 @@ class DebugViews : public CommandLine {
 };
 
 TEST_F(DebugViews, every_one_is_a_picture_beside_the_output_with_a_scale_below) {
-  ASSERT_EQ(run({"--debug", all_names(), "--resolution", "full"}).code, 0);
+  std::vector<std::string> all = all_views();
+  all.insert(all.end(), {"--resolution", "full"});
+  ASSERT_EQ(run(all).code, 0);
   for (const auto& name : debug_view_names()) {
     const Image picture = written(name);
     EXPECT_EQ(picture.data.width, 560) << name << ": texts need the room";
@@ -78,7 +89,7 @@ TEST_F(DebugViews, sky_has_a_colour_that_no_number_has) {
   FrameFile input = wall_frame();
   input.planes["ViewLayer.Depth.Z"][3 * 64 + 5] = 1e10f;
   input.write(frame);
-  ASSERT_EQ(run({"--debug", all_names()}).code, 0);
+  ASSERT_EQ(run(all_views()).code, 0);
   for (const auto& name : debug_view_names()) {
     const Image picture = written(name);
     const auto sky = shown(picture, 5, 3);

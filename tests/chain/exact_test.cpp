@@ -311,6 +311,24 @@ TEST(Exact, directions_shared_by_a_block_come_close_to_all_of_them) {
   EXPECT_LE(std::abs(d.bias), 0.002);
 }
 
+// A block whose pixels did not all have their share would keep what the frame before has left in its buffers.
+TEST(Exact, directions_are_shared_by_all_pixels_of_a_block) {
+  const HostFrame other = furnished(true).frame;
+  for (const double stretch : {1.0, 1.5}) {
+    HostFrame frame = furnished().frame;
+    frame.camera.fy *= stretch;  // so that other directions go along columns
+    const std::vector<float> all = run(frame, settings_of(0.6));
+    for (int slices = 1; slices <= 8; slices++) {
+      EstimatorSettings settings = shared_directions(0.6);
+      settings.slices = slices;
+      const std::vector<float> ao = run(frame, settings);
+      run(other, settings);
+      EXPECT_TRUE(same_bits(ao, run(frame, settings))) << slices << " slices, pixels stretched by " << stretch;
+      EXPECT_LE(difference(ao, all).mean, 0.02) << slices << " slices, pixels stretched by " << stretch;
+    }
+  }
+}
+
 TEST(Exact, the_mirrored_frame_has_the_mirrored_ao) {
   HostFrame frame = furnished().frame;
   const auto mirrored = [&](std::vector<float> plane) {

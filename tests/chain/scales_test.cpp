@@ -261,7 +261,7 @@ TEST_F(ScaleFiles, that_make_no_sense_are_refused) {
     EXPECT_THAT(finished.err, HasSubstr(word));
   };
   refused({"--radius", "1", "--radius", "2", "--radius", "1"}, "--radius 1 is there twice");
-  refused({"--radius", "1", "--radius", "0"}, "--radius: 0 is not above 0");
+  refused({"--radius", "1", "--radius", "0"}, "--radius: 0 is out of range: above 0");
   refused({"--radius", "1", "--radius", "-2"}, "--radius");
   std::vector<std::string> nine;
   for (int i = 1; i <= 9; i++) nine.insert(nine.end(), {"--radius", std::to_string(i)});

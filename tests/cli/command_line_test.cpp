@@ -63,11 +63,96 @@ TEST_F(CommandLine, help_and_version_give_code_0) {
   EXPECT_THAT(finished.out, testing::MatchesRegex("alcove [0-9]+\\.[0-9]+\\.[0-9]+\n"));
 }
 
-TEST_F(CommandLine, help_of_run_prints_every_default) {
-  const std::string help = run_program({"run", "--help"}).out;
+TEST_F(CommandLine, help_all_of_run_prints_every_default) {
+  const std::string help = run_program({"run", "--help-all"}).out;
   for (const char* text : {"=auto", "=1000000000", "=none", "=half", "=zip",
                            "--slices NUMBER=", "--steps NUMBER=", "--seed NUMBER=0", "--threads NUMBER=0"})
     EXPECT_THAT(help, HasSubstr(text));
+}
+
+TEST_F(CommandLine, help_of_run_shows_a_dozen_options_and_help_all_the_rest) {
+  const std::string help = run_program({"run", "--help"}).out, all = run_program({"run", "--help-all"}).out;
+  const auto options_in = [](const std::string& text) {
+    return std::ranges::count_if(lines_of(text),
+                                 [](const auto& line) { return line.starts_with("  -") && line[3] != ' '; });
+  };
+  EXPECT_THAT(help, AllOf(HasSubstr("Examples:"), HasSubstr("--radius"), HasSubstr("--output"), HasSubstr("--camera"),
+                          HasSubstr("--help-all"), testing::Not(HasSubstr("--sample-kernel"))));
+  EXPECT_LE(options_in(help), 16);
+  RunOptions options;
+  for (const auto& row : option_table(options)) {
+    EXPECT_THAT(all, HasSubstr(row.long_name()));
+    if (row.is_common) EXPECT_THAT(help, HasSubstr(row.long_name()));
+  }
+  EXPECT_THAT(all, HasSubstr("applies to --estimator crytek only"));
+  EXPECT_EQ(run_program({"compare", "--help"}).out, run_program({"compare", "--help-all"}).out);
+}
+
+TEST_F(CommandLine, help_of_a_command_is_what_its_option_prints) {
+  EXPECT_EQ(run_program({"help"}).out, run_program({"--help"}).out);
+  for (const char* command : {"run", "inspect", "compare", "bench", "presets", "devices"}) {
+    const Finished finished = run_program({"help", command});
+    EXPECT_EQ(finished.code, 0) << finished;
+    EXPECT_EQ(finished.out, run_program({command, "--help"}).out) << command;
+    EXPECT_THAT(finished.out, HasSubstr(command));
+  }
+  expect_usage_error({"help", "rnu"}, {"rnu", "did you mean run?"});
+  expect_usage_error({"help", "run", "bench"}, {"one command"});
+}
+
+TEST_F(CommandLine, an_input_without_a_command_is_run) {
+  ASSERT_EQ(run({}).code, 0);
+  const std::string expected = read_bytes(ao);
+  const std::vector<std::string> options{"-o", ao, "--camera", camera, "--radius", "1"};
+  std::vector<std::string> first{frame}, last = options;
+  first.insert(first.end(), options.begin(), options.end());
+  last.push_back(frame);
+  for (const auto& arguments : {first, last}) {
+    fs::remove(ao);
+    const Finished finished = run_program(arguments);
+    EXPECT_EQ(finished.code, 0) << finished;
+    EXPECT_EQ(read_bytes(ao), expected) << testing::PrintToString(arguments);
+  }
+  for (const std::string name : {"/none/shot.0001.EXR", "/none/shot.tif", "/none/shot.####", "/none/shot.$F4.exr"}) {
+    const Finished finished = run_program({name, "-o", ao, "--camera", camera, "--radius", "1"});
+    EXPECT_EQ(finished.code, 3) << finished;
+    EXPECT_THAT(finished.err, HasSubstr("/none/")) << "not: there is no command";
+  }
+  expect_usage_error({"--radius", "1"}, {"--radius", "command"});
+  expect_usage_error({"frame"}, {"there is no command frame", "alcove FILE.exr"});
+}
+
+TEST_F(CommandLine, complaints_are_sentences_of_ours) {
+  const std::pair<std::vector<std::string>, const char*> cases[] = {
+      {{"run", frame, "--radius"},
+       "--radius needs a value: auto|NUMBER[,NUMBER...] (scene units, above 0 and at most 1e+18)"},
+      {{"run", frame, "--layer="}, "--layer needs a value: NAME"},
+      {{"run", frame, "--radius", "-1"}, "--radius: -1 is out of range: above 0 and at most 1e+18"},
+      {{"run", frame, "--slices", "65"}, "--slices: 65 is out of range: 1 to 64"},
+      {{"run", frame, "--slices", "1,5"}, "--slices: 1,5 is no single number; decimals are written with a point"},
+      {{"run", frame, "--slices", "1", "--slices", "2"}, "--slices is given more than once"},
+      {{"run", frame, "--denoise-kernel", "1,,2"}, "--denoise-kernel: \"\" is no weight of 0 or more"},
+      {{"run", frame, "shot.0002.exr"},
+       "shot.0002.exr: alcove run takes one INPUT; a sequence is one name with a pattern: write shot.####.exr"},
+      {{"run", frame, "shot.7.exr"}, "write shot.%d.exr"},
+      {{"run", frame, "shot.0007_v002.exr"}, "write shot.####_v002.exr"},
+      {{"run", frame, "shot_V002.exr"}, "shot_V002.exr: alcove run takes one INPUT; see"},
+      {{"run", frame, "v2.exr"}, "v2.exr: alcove run takes one INPUT; see"},
+      {{"inspect", frame, "--slcies", "2"}, "there is no option --slcies (did you mean --slices?); see alcove inspect"},
+      {{"run", frame, "--", "-x"}, "there is no option -x"},
+      {{"compare", "a.exr"}, "REFERENCE is missing: what it should be"},
+      {{"compare", "a.exr", "b.exr", "c.exr"}, "c.exr: alcove compare takes one RESULT and one REFERENCE; see"},
+      {{"compare", "a.exr", "b.exr", "--max-rmse", "-1"}, "--max-rmse: -1 is out of range: 0 or more"},
+      {{"bench", "a.toml", "--repeats", "1.5"}, "--repeats: 1.5 is no whole number"},
+      {{"bench", "a.toml", "--json"}, "--json needs a value: FILE.json"},
+      {{"bench", "a.toml", "--batch", "--limits", "l.toml"}, "--limits does not apply with --batch"},
+      {{"bench", "a.toml", "--batch", "2", "--repeats", "3"}, "--repeats does not apply with --batch"},
+      {{"bench", "a.toml", "--stability"}, "SUITE does not apply with --stability"},
+      {{"bench", "--stability", "--limits", "l.toml"}, "--limits does not apply with --stability"},
+      {{"devices", "first"}, "first: alcove devices takes options only"},
+      {{"presets", "draft", "standard"}, "standard: alcove presets takes one NAME; see alcove presets --help"},
+  };
+  for (const auto& [arguments, sentence] : cases) expect_usage_error(arguments, {sentence});
 }
 
 TEST_F(CommandLine, misspelt_words_are_answered_with_the_nearest) {
@@ -93,7 +178,7 @@ TEST_F(CommandLine, numbers_out_of_range_name_option_and_range) {
   for (const char* value : {"0", "-1", "nan", "inf", "wide"})
     expect_usage_error({"run", frame, "-o", ao, "--radius", value}, {"--radius"});
   const std::pair<const char*, std::vector<std::string>> cases[] = {
-      {"--radius", {"1e400", "", "1,5", "1 2", "2e18", "-inf"}},
+      {"--radius", {"1e400", "", "1,", "1 2", "2e18", "-inf"}},
       {"--fov", {"0", "180", "nan"}},
       {"--slices", {"0", "65", "2.5"}},
       {"--steps", {"0", "4097"}},
@@ -125,13 +210,36 @@ TEST_F(CommandLine, numbers_out_of_range_name_option_and_range) {
 }
 
 TEST_F(CommandLine, presets_are_listed_and_printed) {
-  const Finished list = run_program({"presets"});
-  EXPECT_EQ(list.code, 0);
-  EXPECT_THAT(lines_of(list.out), testing::IsSupersetOf({"draft", "production", "standard"}));
-  for (const auto& name : lines_of(list.out)) {
+  const Finished list = run_program({"presets", "--json"});
+  ASSERT_EQ(list.code, 0) << list;
+  std::vector<std::string> names;
+  for (const auto& preset : json::parse(list.out)) names.push_back(preset["name"]);
+  EXPECT_THAT(names, testing::IsSupersetOf({"draft", "production", "standard", "source/fp-asm", "input/arnold"}));
+  for (const auto& name : names) {
     EXPECT_EQ(run_program({"presets", name}).out, read_bytes(ALCOVE_SOURCE_DIR "/presets/" + name + ".toml"));
     EXPECT_NE(config({"--preset", name}), "") << name;
   }
+}
+
+TEST_F(CommandLine, presets_are_listed_with_what_each_is_for_ours_first_and_inputs_last) {
+  const Finished finished = run_program({"presets"});
+  ASSERT_EQ(finished.code, 0) << finished;
+  const auto place = [&](const char* text) {
+    EXPECT_THAT(finished.out, HasSubstr(text));
+    return finished.out.find(text);
+  };
+  EXPECT_LT(place("\n  draft "), place("\n  standard "));
+  EXPECT_LT(place("\n  production "), place("\n  reference "));
+  EXPECT_LT(place("\n  reference "), place("to match a frame of theirs"));
+  EXPECT_LT(place("to match a frame of theirs"), place("\n  source/fp-asm "));
+  EXPECT_LT(place("\n  source/taos-quality "), place("\n  input/3delight "));
+  for (const auto& preset : json::parse(run_program({"presets", "--json"}).out)) {
+    EXPECT_NE(preset["sentence"], "") << preset["name"];
+    EXPECT_THAT(finished.out, HasSubstr(preset["sentence"].get<std::string>()));
+    EXPECT_TRUE(fs::exists(preset["file"].get<std::string>()));
+  }
+  EXPECT_EQ(preset_sentence("# Blender 2.8. Old.\nx = 1\n"), "Blender 2.8");
+  EXPECT_EQ(preset_sentence("x = 1\n# What.\n"), "");
 }
 
 TEST_F(CommandLine, standard_is_what_no_preset_gives) {
@@ -179,9 +287,7 @@ TEST_F(CommandLine, printed_config_is_a_preset_that_gives_itself) {
                                       "-o",
                                       "out put.exr",
                                       "--preset",
-                                      "draft",
-                                      "--fov",
-                                      "60"});
+                                      "draft"});
   EXPECT_THAT(printed, AllOf(HasSubstr(odd_name), HasSubstr("0.1234567890123"), HasSubstr("out put.exr"),
                              HasSubstr("a.X,b.Y,c.Z"), HasSubstr("0.5,0.25,0.125"), HasSubstr("require-gpu")));
   const std::string preset = folder / "printed.toml";
@@ -243,7 +349,10 @@ TEST_F(CommandLine, presets_of_another_folder_have_their_path_as_name) {
   write_bytes(folder / "elsewhere.toml", "slices = 13\n");
   fs::create_symlink(folder / "elsewhere.toml", folder / "presets/linked.toml");
   const Surroundings surroundings{.environment = {{"ALCOVE_PRESETS", folder / "presets"}}};
-  EXPECT_EQ(run_program({"presets"}, surroundings).out, "linked\nshow/day\n");
+  const json listed = json::parse(run_program({"presets", "--json"}, surroundings).out);
+  ASSERT_EQ(listed.size(), 2);
+  EXPECT_EQ(listed[0]["name"], "linked");
+  EXPECT_EQ(listed[1]["name"], "show/day");
   EXPECT_THAT(lines_of(run_program({"run", "--preset", "linked", "--print-config"}, surroundings).out),
               Contains("slices=13"));
   EXPECT_THAT(lines_of(run_program({"run", "--preset", "show/day", "--print-config"}, surroundings).out),

@@ -92,6 +92,44 @@ TEST_F(Options, of_every_row_take_what_they_say) {
   }
 }
 
+TEST_F(Options, refuse_what_hidden_surfaces_cannot_be) {
+  const auto rows = option_table(options);
+  const auto read = [&](const char* option, const Words& words) {
+    std::ranges::find(rows, std::string(option), &OptionRow::long_name)->read(words);
+  };
+  const auto refusal = [&](const char* option, const Words& words) {
+    try {
+      read(option, words);
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_THAT(refusal("--behind", Words(9, "a.exr")), HasSubstr("there are 9 files; a run takes at most 8"));
+  EXPECT_EQ(refusal("--behind", Words(8, "a.exr")), "");
+  EXPECT_THAT(refusal("--behind-kind", {"fronts,back"}), HasSubstr("--behind-kind: back is none of"));
+  EXPECT_THAT(refusal("--around", {"33"}), HasSubstr("neither all nor a whole number from 0 to 32"));
+  for (const char* length : {"-1", "inf", "nan", "near"})
+    EXPECT_THAT(refusal("--separation", {length}), HasSubstr("neither auto nor a length")) << length;
+  EXPECT_THAT(refusal("--hidden", {"4"}), HasSubstr("out of range: 0 to 3"));
+  read("--around", {"ALL"});
+  EXPECT_TRUE(options.settings.input.around_all);
+  read("--around", {"4"});
+  EXPECT_FALSE(options.settings.input.around_all);
+  read("--separation", {"0.5"});
+  read("--separation", {"auto"});
+  EXPECT_FALSE(options.settings.estimator.separation);
+}
+
+TEST_F(Options, count_how_often_an_input_is_given_in_the_digest) {
+  options.settings.input.behind = {"a.exr"};
+  const std::string one = digest();
+  options.settings.input.behind = {"b.exr"};
+  EXPECT_EQ(digest(), one);
+  options.settings.input.behind = {"a.exr", "b.exr"};
+  EXPECT_NE(digest(), one);
+}
+
 TEST_F(Options, say_numbers_to_the_last_bit) {
   const auto rows = option_table(options);
   const auto& radius = *std::ranges::find(rows, "--radius", &OptionRow::name);
@@ -123,11 +161,12 @@ TEST_F(Options, that_change_no_pixels_are_these_and_not_in_the_digest) {
     EXPECT_EQ(digest(), plain) << row.name;
     names.push_back(row.long_name());
   });
-  EXPECT_THAT(names, ElementsAre("--strict", "--frames", "--output-offset", "--chunk", "--missing", "--keep-going",
-                                 "--resume", "--overwrite", "--dry-run", "--preset", "--no-skip", "--output",
-                                 "--composite", "--preview", "--debug", "--compression", "--device", "--require-gpu",
-                                 "--validate", "--no-pipeline-cache", "--memory", "--threads", "--stats", "--progress",
-                                 "--log-json", "--verbose", "--quiet", "--print-config"))
+  EXPECT_THAT(names,
+              ElementsAre("--strict", "--frames", "--output-offset", "--chunk", "--missing", "--keep-going",
+                          "--warnings-as-errors", "--resume", "--overwrite", "--dry-run", "--preset", "--no-skip",
+                          "--output", "--composite", "--preview", "--debug", "--compression", "--no-mkdir", "--device",
+                          "--require-gpu", "--validate", "--no-pipeline-cache", "--memory", "--threads", "--stats",
+                          "--progress", "--log-json", "--verbose", "--quiet", "--print-config"))
       << "whoever adds to this list says that the pixels come out the same";
 }
 

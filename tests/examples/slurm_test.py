@@ -13,7 +13,7 @@ import time
 
 PROGRAM, PROJECT, FRAME, CAMERA = sys.argv[1:5]
 FRAMES, CHUNKS, RADIUS = 24, 3, "0.35"
-NODE_MEMORY, JOB_MEMORY, PROGRAM_MEMORY = 1500, 1000, 192  # MiB; PROGRAM_MEMORY: what the program counts for itself
+NODE_MEMORY, JOB_MEMORY, PROGRAM_MEMORY = 1500, 1000, 176  # MiB; PROGRAM_MEMORY: what the program counts for itself
 
 
 def skip(reason):

@@ -166,11 +166,11 @@ TEST_F(BadInput, no_camera_names_the_options_that_give_one) {
 
 TEST_F(BadInput, world_normals_need_the_cameras_orientation) {
   const std::vector<std::string> arguments{frame, "-o", ao_out, "--radius", "1", "--fov", "60"};
-  expect_refused(3, {"wall.0042.exr", "world", "--camera", "--normal-space"}, arguments);
+  expect_refused(3, {"wall.0042.exr", "world", "--camera", "--normal none"}, arguments);
   json fields = wall_camera();
   fields.erase("world_to_camera");
   write_bytes(camera, fields.dump());
-  expect_bad_input(frame, {"wall.0042.exr", "world_to_camera", "--camera", "--normal-space"});
+  expect_bad_input(frame, {"wall.0042.exr", "world_to_camera", "--camera", "--normal none"});
 }
 
 // Every field and every way to get it wrong: camera_test.cpp. Here, that the program ends as it should.
@@ -238,10 +238,13 @@ TEST_F(BadInput, an_output_where_no_file_can_be) {
   const std::string missing = out + "/missing/ao.exr", below_file = ao_out + "/ao.exr";
   for (const std::string& path :
        {missing, below_file, out + "/folder.exr", std::string("/dev/full"), std::string("/dev/null"), out + "/"}) {
-    expect_refused(4, {path, "--output"}, {frame, "-o", path, "--camera", camera, "--radius", "1"});
-    for (const char* option : {"--composite", "--preview", "--stats"})
-      if (path == missing) expect_refused(4, {path, option}, good(frame, {option, path}));
+    expect_refused(4, {path, "--output"}, {frame, "-o", path, "--camera", camera, "--radius", "1", "--no-mkdir"});
+    if (path != missing)
+      expect_refused(4, {path, "--output"}, {frame, "-o", path, "--camera", camera, "--radius", "1"});
   }
+  for (const auto& [option, name] : std::map<std::string, std::string>{
+           {"--composite", "/missing/c.exr"}, {"--preview", "/missing/p.png"}, {"--stats", "/missing/s.json"}})
+    expect_refused(4, {out + name, option}, good(frame, {option, out + name, "--no-mkdir"}));
   expect_refused(4, {folder / "loop/ao.exr", "--output"},
                  {frame, "-o", folder / "loop/ao.exr", "--stats", folder / "loop/stats.json", "--camera", camera,
                   "--radius", "1"});

@@ -12,8 +12,8 @@
 #include "core/formats/dds.h"
 #include "core/formats/exr.h"
 #include "core/formats/open_image.h"
+#include "core/frame/findings.h"
 #include "core/frame/gbuffer.h"
-#include "core/inspect/findings.h"
 #include "tests/support/command_line.h"
 #include "tests/support/difference.h"
 

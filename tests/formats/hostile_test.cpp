@@ -13,7 +13,7 @@
 #include "core/formats/png.h"
 #include "core/formats/sequence.h"
 #include "core/frame/camera.h"
-#include "core/frame/settle.h"
+#include "core/frame/settle_rows.h"
 #include "tests/support/command_line.h"
 
 namespace alcove {
@@ -145,7 +145,7 @@ TEST_F(Hostile, no_header_makes_a_run_take_more_memory_than_it_may) {
 #ifdef __SANITIZE_ADDRESS__
   GTEST_SKIP() << "the address sanitizer takes memory of its own";
 #endif
-  const long plain = run({"--memory", "64M"}).peak_mib;
+  const long plain = run({"--memory", "184M"}).peak_mib;
   // depth and normals, while it is settled what they mean
   constexpr long evidence = (4 * sizeof(float) * kEvidencePixels) >> 20;
   ASSERT_GT(plain, 0);
@@ -156,10 +156,10 @@ TEST_F(Hostile, no_header_makes_a_run_take_more_memory_than_it_may) {
     for (const std::vector<std::string>& more :
          {std::vector<std::string>{}, {"--roi", "0,0,1,1"}, {"--preview", folder / "p.png"}}) {
       std::vector<std::string> arguments{"run",  claim,      "-o", ao,         "--fov", "60", "--normal-space",
-                                         "view", "--radius", "1",  "--memory", "64M"};
+                                         "view", "--radius", "1",  "--memory", "184M"};
       arguments.insert(arguments.end(), more.begin(), more.end());
       const Finished finished = run_program(arguments);
-      EXPECT_TRUE(finished.code == 3 || finished.code == 5) << finished;
+      EXPECT_TRUE(finished.code == 2 || finished.code == 3 || finished.code == 5) << finished;
       EXPECT_EQ(lines_of(finished.err).size(), 1) << finished;
       EXPECT_LT(finished.peak_mib, plain + 64 + evidence) << width << " x " << height << finished;
     }
@@ -171,7 +171,7 @@ TEST_F(Hostile, no_display_window_makes_a_preview_take_more_memory_than_it_may) 
   wall_frame(kWallWindow, display).write(frame);
   write_bytes(camera, wall_camera(display).dump());
   const Finished refused = run({"--memory", "256M", "--preview", folder / "p.png"});
-  EXPECT_EQ(refused.code, 5) << refused;
+  EXPECT_EQ(refused.code, 2) << refused;
   EXPECT_THAT(lines_of(refused.err).back(),
               AllOf(HasSubstr(frame), HasSubstr("60000x60000"), HasSubstr("--preview"), HasSubstr("--memory")));
   EXPECT_FALSE(fs::exists(ao));
@@ -187,7 +187,7 @@ TEST_F(Hostile, no_picture_makes_a_run_take_more_memory_than_its_rows) {
   write_png(black, 6000, 6000, 3, std::vector<float>(3 * 6000 * 6000));
   write_png(fits, 64, 36, 3, std::vector<float>(3 * 64 * 36, 0.5f));
   const auto with_normal = [&](const std::string& picture) {
-    return run({"--memory", "64M", "--normal", picture, "--normal-space", "view"});
+    return run({"--memory", "184M", "--normal", picture, "--normal-space", "view"});
   };
   const Finished plain = with_normal(fits);
   ASSERT_EQ(plain.code, 0) << plain;

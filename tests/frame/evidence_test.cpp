@@ -87,11 +87,11 @@ TEST_F(Evidence, tells_planar_ray_and_inverse_apart) {
   FrameSource source = settled();
   EXPECT_EQ(source.depth_kind, DepthKind::planar);
   EXPECT_EQ(source.normal_space, NormalSpace::world);
-  EXPECT_THAT(source.notes, testing::IsEmpty()) << "nothing unusual";
+  EXPECT_THAT(texts_of(source.notes), testing::IsEmpty()) << "nothing unusual";
   write([&](const test::Hit& hit) { return ray_of(hit); }, 1e10f);
   source = settled();
   EXPECT_EQ(source.depth_kind, DepthKind::ray);
-  EXPECT_THAT(source.notes, testing::ElementsAre(HasSubstr("--depth-kind")));
+  EXPECT_THAT(texts_of(source.notes), testing::ElementsAre(HasSubstr("--depth-kind")));
   write([](const test::Hit& hit) { return 30 / hit.distance; }, 0);
   EXPECT_EQ(settled().depth_kind, DepthKind::inverse);
 }
@@ -147,7 +147,7 @@ TEST_F(Evidence, finds_the_space_and_the_flips_of_normals) {
   const FrameSource source = settled();
   EXPECT_EQ(source.normal_space, NormalSpace::view);
   EXPECT_EQ(to_string(source.flip_normal), "z");
-  EXPECT_THAT(source.notes, testing::ElementsAre(HasSubstr("--flip-normal")));
+  EXPECT_THAT(texts_of(source.notes), testing::ElementsAre(HasSubstr("--flip-normal")));
 }
 
 TEST_F(Evidence, finds_normals_between_0_and_1) {
@@ -176,7 +176,8 @@ TEST_F(Evidence, half_depth_is_noted_with_its_step) {
   halves = {"Z"};
   settings.depth_kind = DepthKind::planar;
   write([](const test::Hit& hit) { return hit.distance; }, 65504);
-  EXPECT_THAT(settled().suspicious, testing::ElementsAre(testing::AllOf(HasSubstr("half float"), HasSubstr("0.0039"))));
+  EXPECT_THAT(texts_of(settled().suspicious),
+              testing::ElementsAre(testing::AllOf(HasSubstr("half float"), HasSubstr("0.0039"))));
 }
 
 }  // namespace

@@ -54,6 +54,7 @@ TEST_F(GBuffer, normals_are_found_under_renderers_names) {
         {"N.X", "N.Y", "N.Z"},
         {"n.x", "n.y", "n.z"},
         {"N.R", "N.G", "N.B"},
+        {"N.red", "N.green", "N.blue"},
         {"Nn.x", "Nn.y", "Nn.z"},
         {"normals.X", "normals.Y", "normals.Z"},
         {"NORMAL.x", "NORMAL.y", "NORMAL.z"},
@@ -67,6 +68,34 @@ TEST_F(GBuffer, normals_are_found_under_renderers_names) {
     write(all);
     EXPECT_EQ(normal(), channels) << testing::PrintToString(channels);
   }
+}
+
+TEST_F(GBuffer, a_layer_of_normals_may_be_chosen_whatever_its_components_are_called) {
+  for (const Names& channels : {Names{"Odd.X", "Odd.Y", "Odd.Z"},
+                                {"Odd.x", "Odd.y", "Odd.z"},
+                                {"Odd.R", "Odd.G", "Odd.B"},
+                                {"Odd.red", "Odd.green", "Odd.blue"},
+                                {"Odd.nx", "Odd.ny", "Odd.nz"},
+                                {"Odd.r", "Odd.g"}}) {
+    Names all = channels;
+    all.emplace_back("Z");
+    write(all);
+    settings.normal_channels = "Odd";
+    EXPECT_EQ(names_of(find()[RawPlane::normal]), channels);
+  }
+}
+
+TEST_F(GBuffer, a_file_of_the_depth_alone_may_call_its_one_channel_anything) {
+  for (const char* name : {"distance", "camera.dist.V", "A"}) {
+    write(Names{name});
+    expect_error({"no depth channel", "--depth-channel"});
+    std::swap(settings.depth, settings.input);
+    EXPECT_THAT(names_of(find()[RawPlane::depth]), ElementsAre(name));
+    std::swap(settings.depth, settings.input);
+  }
+  write(Names{"distance", "other"});
+  std::swap(settings.depth, settings.input);
+  expect_error({"no depth channel", "--depth-channel", "distance"});
 }
 
 TEST_F(GBuffer, a_frame_as_blender_writes_it) {
@@ -152,10 +181,10 @@ TEST_F(GBuffer, positions_stand_in_for_a_depth_that_is_missing) {
 TEST_F(GBuffer, a_part_a_view_is_chosen_by_its_name) {
   write_parts(settings.input, {{"left", {"Z"}, kWidth, "left"}, {"right", {"Z"}, kWidth, "right"}});
   EXPECT_THAT(depth(), ElementsAre("Z"));
-  EXPECT_THAT(find().notes, ElementsAre(AllOf(HasSubstr("left, right"), HasSubstr("--view"))));
+  EXPECT_THAT(texts_of(find().notes), ElementsAre(AllOf(HasSubstr("left, right"), HasSubstr("--view"))));
   settings.view = "right";
   EXPECT_THAT(depth(), ElementsAre("1:Z"));
-  EXPECT_THAT(find().notes, IsEmpty());
+  EXPECT_THAT(texts_of(find().notes), IsEmpty());
   settings.view = "middle";
   expect_error({"frame.exr", "middle", "--view", "left, right"});
 }

@@ -120,7 +120,7 @@ TEST_F(GBuffer, a_subsampled_channel_is_refused) {
   expect_error({"frame.exr", "Z", "subsampled"});
 }
 
-TEST_F(GBuffer, deep_data_is_refused) {
+TEST_F(GBuffer, deep_data_gives_its_first_surface) {
   Imf::Header header(2, 1);
   header.setType(Imf::DEEPSCANLINE);
   header.compression() = Imf::ZIPS_COMPRESSION;
@@ -135,7 +135,9 @@ TEST_F(GBuffer, deep_data_is_refused) {
     file.setFrameBuffer(pixels);
     file.writePixels(1);
   }
-  expect_error({"frame.exr", "deep"});
+  const FrameSource source = find_frame(settings, false, 0);
+  ASSERT_EQ(source[RawPlane::depth].size(), 1);
+  EXPECT_EQ(source[RawPlane::depth][0].channel, "deep1.Z");
 }
 
 }  // namespace

@@ -114,15 +114,13 @@ class Readings : public testing::Test {
 
   void say(const Written& depth) {
     settings.depth_kind = depth.kind;
-    const bool has_planes =
-        depth.kind == DepthKind::device || depth.kind == DepthKind::normalized || depth.kind == DepthKind::log;
+    const bool is_log = depth.kind == DepthKind::log;
+    const bool has_near = depth.kind == DepthKind::device || depth.kind == DepthKind::normalized;
     settings.depth_range = {};
-    if (has_planes) {
-      settings.depth_range.near = kNear;
-      settings.depth_range.far = kFar;
-    }
+    if (has_near) settings.depth_range.near = kNear;
+    if (has_near || is_log) settings.depth_range.far = kFar;
+    if (is_log) settings.depth_range.log_constant = 0.5;
     settings.depth_range.reversed = depth.reversed;
-    settings.depth_range.log_constant = 0.5;
   }
 
   FrameSource settled() const { return test::settled(settings); }
@@ -130,7 +128,7 @@ class Readings : public testing::Test {
   /// What is noted, or what the refusal says.
   std::vector<std::string> said() const {
     try {
-      return settled().notes;
+      return texts_of(settled().notes);
     } catch (const Error& error) {
       return {error.what()};
     }
@@ -320,7 +318,7 @@ TEST_F(Readings, of_what_is_beyond_half_floats_are_sky) {
   const FrameSource source = settled();
   EXPECT_TRUE(std::isinf(planar_depth(depth_map_of(source), {65504, 0, 0}, 1)));
   EXPECT_FALSE(std::isinf(planar_depth(depth_map_of(source), {65472, 0, 0}, 1)));
-  EXPECT_THAT(source.suspicious, testing::ElementsAre(HasSubstr("half float")));
+  EXPECT_THAT(texts_of(source.suspicious), testing::ElementsAre(HasSubstr("half float")));
 }
 
 }  // namespace

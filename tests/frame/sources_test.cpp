@@ -128,7 +128,7 @@ TEST_F(Sources, unreal_in_its_left_handed_world_and_half_depth) {
       {"unreal/camera/FinalImage/fov", kFov}};
   for (const auto& [name, value] : numbers) header.insert(name, Imf::StringAttribute(fmt::format("{}", value)));
   expect_same("unreal", 0.03, 100);  // half floats step by 0.25 cm here, and AO shows it
-  EXPECT_THAT(settled().suspicious, testing::ElementsAre(HasSubstr("half float")));
+  EXPECT_THAT(texts_of(settled().suspicious), testing::ElementsAre(HasSubstr("half float")));
 }
 
 TEST_F(Sources, nuke_with_inverse_depth) {
@@ -137,10 +137,41 @@ TEST_F(Sources, nuke_with_inverse_depth) {
   vectors("N", "XYZ", world_normal);
   give_camera();
   header.insert("nuke/version", Imf::StringAttribute("13.2"));
-  settings.depth_range.near = std::nullopt;
-  expect_refused(ErrorKind::input, {"device", "inverse", "--depth-kind"});
-  settings.depth_kind = DepthKind::inverse;
   expect_same("nuke");
+  EXPECT_THAT(texts_of(settled().notes), testing::IsEmpty());
+  header.erase("nuke/version");
+  expect_refused(ErrorKind::input, {"device", "inverse", "--depth-kind"});
+}
+
+TEST_F(Sources, nuke_with_distances_that_went_through_it) {
+  depth("depth.Z", planar, 1e12f);
+  vectors("N", "XYZ", world_normal);
+  give_camera();
+  header.insert("nuke/version", Imf::StringAttribute("13.2"));
+  expect_same("nuke");
+  EXPECT_THAT(texts_of(settled().notes), testing::IsEmpty());
+}
+
+TEST_F(Sources, nuke_without_flat_surfaces_is_read_as_its_normals_say) {
+  vectors("N", "XYZ", world_normal);
+  give_camera();
+  header.insert("nuke/version", Imf::StringAttribute("13.2"));
+  // Waves that are small enough for the normals, and large enough that nothing is straight.
+  const auto wavy = [](const test::Hit& hit) { return hit.distance * (1 + 2e-3 * std::sin(40 * hit.position.x)); };
+  depth(
+      "depth.Z", +[](const test::Hit& hit) { return hit.distance; }, 0);
+  for (const bool inverse : {true, false}) {
+    auto& plane = planes["depth.Z"];
+    for (std::size_t i = 0; i < plane.size(); i++) {
+      const test::Hit& hit = rendering().hits[i];
+      if (hit.primitive >= 0) plane[i] = float(inverse ? 1 / wavy(hit) : 0.1 * wavy(hit));
+    }
+    write(settings.input);
+    EXPECT_EQ(settled().depth_kind, inverse ? DepthKind::inverse : DepthKind::planar);
+  }
+  planes.erase("N.X");
+  for (float& d : planes["depth.Z"]) d = 0.3f + 0.1f * d;
+  expect_refused(ErrorKind::input, {"nuke", "--depth-kind inverse", "--depth-kind normalized --near 0 --far"});
 }
 
 TEST_F(Sources, pbrt_with_positions_and_matrices_for_column_vectors) {
@@ -207,7 +238,7 @@ TEST_F(Sources, every_wrong_reading_that_is_forced_is_noted) {
   vectors("N", "XYZ", world_normal);
   give_camera();
   write(settings.input);
-  EXPECT_THAT(settled().notes, testing::IsEmpty());
+  EXPECT_THAT(texts_of(settled().notes), testing::IsEmpty());
   const InputSettings right = settings;
   const auto expect_noted = [&](const char* what, const char* option,
                                 const std::function<void(InputSettings&)>& wrong) {
@@ -215,7 +246,7 @@ TEST_F(Sources, every_wrong_reading_that_is_forced_is_noted) {
     wrong(settings);
     std::vector<std::string> notes;
     try {
-      notes = settled().notes;
+      notes = texts_of(settled().notes);
     } catch (const Error& error) {
       notes = {error.what()};
     }
@@ -254,9 +285,9 @@ TEST_F(Sources, a_matrix_for_another_depth_range_is_noted) {
       R"("near": 0.5, "far": "inf", "depth_kind": "device", "projection": [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, -1], [0, 0, 1, 0]], )");
   write_bytes(settings.camera, text);
   write(settings.input);
-  EXPECT_THAT(settled().notes, testing::Contains(HasSubstr("2 times as large")));
+  EXPECT_THAT(texts_of(settled().notes), testing::Contains(HasSubstr("2 times as large")));
   settings.depth_range.near = 1;
-  EXPECT_THAT(settled().notes, testing::Contains(testing::AllOf(HasSubstr("--near"), HasSubstr("2 times"))));
+  EXPECT_THAT(texts_of(settled().notes), testing::Contains(testing::AllOf(HasSubstr("--near"), HasSubstr("2 times"))));
 }
 
 TEST(InputRules, all_names_are_there_and_unknown_ones_name_the_nearest) {

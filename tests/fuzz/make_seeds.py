@@ -133,6 +133,52 @@ CAMERAS = {
 }
 
 
+DEEP = [("A", 1), ("Z", 2), ("ZBack", 2)]
+
+
+def deep_row(y, columns):
+    """The counts of a line, and its samples: 0 to 3 at a pixel, with volumes among them."""
+    counts, samples = [(x + y) % 4 for x in columns], [[], [], []]
+    for count in counts:
+        for k in range(count):
+            for channel, number in zip(samples, (1.0 if k else 0.6, 2.0 + k, 2.0 + k + k % 2)):
+                channel.append(number)
+    data = b"".join(struct.pack("<%d%s" % (len(numbers), "e" if kind == 1 else "f"), *numbers) for (_, kind), numbers in zip(DEEP, samples))
+    return b"".join(struct.pack("<i", sum(counts[:i + 1])) for i in range(len(counts))), data
+
+
+def deep_body(place, lines, columns, compression):
+    rows = [deep_row(y, columns) for y in lines]
+    table, data = b"".join(row[0] for row in rows), b"".join(row[1] for row in rows)
+    pack = zipped if compression else bytes
+    packed, samples = pack(table), pack(data) if data else b""
+    return place + struct.pack("<QQQ", len(packed), len(samples), len(data)) + packed + samples
+
+
+def deep(compression=0, size=0):
+    """size: of tiles; 0: lines."""
+    extra = text("type", "deeptile" if size else "deepscanline") + attribute("version", "int", struct.pack("<i", 1)) + text("name", "deep")
+    if size:
+        places = [(tx, ty) for ty in range(math.ceil(HEIGHT / size)) for tx in range(math.ceil(WIDTH / size))]
+        bodies = [deep_body(struct.pack("<4i", tx, ty, 0, 0), range(ty * size, min(HEIGHT, ty * size + size)), range(tx * size, min(WIDTH, tx * size + size)), compression)
+                  for tx, ty in places]
+        extra += attribute("tiles", "tiledesc", struct.pack("<IIB", size, size, 0))
+    else:
+        bodies = [deep_body(struct.pack("<i", y), [y], range(WIDTH), compression) for y in range(HEIGHT)]
+    extra += attribute("chunkCount", "int", struct.pack("<i", len(bodies)))
+    start = struct.pack("<ii", 20000630, 2 | 0x800) + header(DEEP, compression, extra=extra)
+    offsets, at = b"", len(start) + 8 * len(bodies)
+    for body in bodies:
+        offsets += struct.pack("<Q", at)
+        at += len(body)
+    return start + offsets + b"".join(bodies)
+
+
+def deep_seeds():
+    for name, data in {"lines": deep(), "zips": deep(2), "tiles": deep(0, 2), "zipped-tiles": deep(2, 4)}.items():
+        write("deep", name + ".exr", data)
+
+
 def exr_seeds():
     frames = {"blender": exr(BLENDER), "half": exr(layer("depth", "Z", 1) + layer("N", "XYZ", 1)), "zips": exr(BLENDER, 2), "zip": exr(BLENDER, 3),
               "integer": exr([("id", 0), ("Z", 2)]), "tiled": tiled(BLENDER), "position": exr(layer("P", "XYZ") + layer("N", "XYZ")),
@@ -186,6 +232,7 @@ def text_seeds():
 
 
 exr_seeds()
+deep_seeds()
 dds_seeds()
 camera_seeds()
 text_seeds()

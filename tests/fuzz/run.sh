@@ -14,7 +14,7 @@ if [ "${1:-}" = --seconds ]; then
   shift 2
 fi
 targets=("$@")
-[ ${#targets[@]} -gt 0 ] || targets=(exr dds camera frames toml preset inspect)
+[ ${#targets[@]} -gt 0 ] || targets=(exr deep dds camera frames toml preset inspect)
 cmake -S . -B build-fuzz -G Ninja -DCMAKE_CXX_COMPILER=clang++ -DALCOVE_FUZZ=ON -DALCOVE_STRICT="${ALCOVE_STRICT:-OFF}" >/dev/null
 cmake --build build-fuzz --target "${targets[@]/%/_fuzz}" >build-fuzz/build.log || { cat build-fuzz/build.log; exit 1; }
 mkdir -p build-fuzz/found
@@ -23,6 +23,7 @@ mkdir -p build-fuzz/found
 runs_of() {
   case $1 in
     exr) echo 9000 ;;
+    deep) echo 2000 ;;
     dds) echo 400000 ;;
     camera) echo 80000 ;;
     frames) echo 10000 ;;

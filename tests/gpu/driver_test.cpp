@@ -408,7 +408,7 @@ TEST_F(Runs, in_memory_of_the_devices_own_give_the_bits_of_shared_memory_in_tile
   };
   const std::string shared = outputs({}, {});
   EXPECT_TRUE(outputs({}, own_memory) == shared);
-  EXPECT_TRUE(outputs({"--memory", "1M"}, own_memory) == shared);
+  EXPECT_TRUE(outputs({"--memory", "200M"}, own_memory) == shared);
 }
 
 }  // namespace

@@ -41,8 +41,9 @@ TEST(Reflection, reads_parameter_sizes_that_the_host_sends) {
 
 TEST(Reflection, reads_bindings_groups_and_constants) {
   const auto horizon = gpu::reflect(gpu::kernel_code("horizon"));
-  EXPECT_THAT(horizon.bindings, ElementsAre(kHorizonDepth, kHorizonNormal, kHorizonAo, kHorizonBent, kHorizonList,
-                                            kHorizonCounts, kHorizonCompleted, kHorizonSites, kHorizonSiteCounts));
+  EXPECT_THAT(horizon.bindings,
+              ElementsAre(kHorizonDepth, kHorizonNormal, kHorizonAo, kHorizonBent, kHorizonList, kHorizonCounts,
+                          kHorizonCompleted, kHorizonSites, kHorizonSiteCounts, kHorizonHidden));
   EXPECT_THAT(horizon.group, ElementsAre(kGroupX, kGroupY, 1u));
   EXPECT_THAT(horizon.constant_ids,
               ElementsAre(kHorizonSlicesId, kHorizonStepsId, kHorizonModeId, kHorizonSparseId, kHorizonSolidId));

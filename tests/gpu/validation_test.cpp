@@ -3,12 +3,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cstdlib>
 #include <filesystem>
 #include <set>
 
 #include "core/chain/chain.h"
 #include "core/chain/compute.h"
+#include "core/chain/warp.h"
 #include "tests/support/device.h"
 #include "tests/support/single_pass.h"
 
@@ -31,6 +33,7 @@ std::set<std::string> kernels_of(gpu::Recorder& gpu, const EstimatorSettings& se
   if (!output.composite.empty()) {
     for (const auto& row : kRawPlanes)
       if (!inputs[row.plane]) inputs[row.plane] = planes(row.name, row.most);
+    inputs.behind.assign(kMostBehindPlanes, {inputs.depth_map.form, BehindKind::surfaces, inputs.prepare.depth});
   }
   run_chain(gpu, inputs, settings, output);
   gpu.run();
@@ -39,15 +42,45 @@ std::set<std::string> kernels_of(gpu::Recorder& gpu, const EstimatorSettings& se
   return names;
 }
 
+/// The same of a room that another frame of it sees, from where it stands, with a margin for what that shows.
+std::set<std::string> kernels_of_views(gpu::Recorder& gpu, const EstimatorSettings& settings) {
+  std::set<std::string> names;
+  const auto run = [&] {
+    gpu.run();
+    for (const auto& pass : gpu.passes()) names.insert(pass.name);
+  };
+  const HostFrame frame = furnished_room(70, 45).frame;
+  FrameInputs other = upload(gpu, frame);
+  upload(gpu, other);
+  const GBuffer seen = prepare(gpu, other, "other ");
+  OtherView view;
+  view.view = seen.view;
+  view.to_here = {{{1, 0, 0, 0.1f}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
+  view.depth_precision = seen.depth_precision;
+  view.depth = seen.depth;
+  view.normal = seen.normal;
+  gpu::Buffer& moving = gpu.buffer("moving", seen.depth->bytes(), gpu::Use::device);
+  surfels(gpu, view, std::array{view}, moving);
+  run();
+  view.moving = &moving;
+  FrameInputs inputs = upload(gpu, frame);
+  inputs.others = {view};
+  inputs.margin = {{8, 8}, {8, 8}};
+  run_chain(gpu, inputs, settings);
+  run();
+  return names;
+}
+
 std::set<std::string> kernels_of_all_settings(gpu::Recorder& gpu) {
   EstimatorSettings settings;
   settings.radius = 0.4;
   settings.slices = 3, settings.steps = 16, settings.samples = 64;
   std::set<std::string> names = kernels_of(gpu, settings, {}, false);
+  names.merge(kernels_of_views(gpu, settings));
   const auto add = [&](const OutputSettings& output) { names.merge(kernels_of(gpu, settings, output)); };
 
   OutputSettings everything;
-  everything.aovs = "ao,ao-scales,normal,bent-normal,depth,specular-occlusion,confidence";
+  everything.aovs = "ao,ao-scales,normal,bent-normal,depth,specular-occlusion,confidence,hidden";
   everything.composite = "composite.exr";
   everything.multi_bounce = true;
   everything.fog_density = 0.1;

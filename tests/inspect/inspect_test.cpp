@@ -99,6 +99,20 @@ TEST_F(Inspect, the_command_it_gives_runs_and_guesses_nothing) {
   EXPECT_EQ(finished.code, 0) << finished;
 }
 
+TEST_F(Inspect, the_command_it_gives_has_no_option_that_does_not_apply) {
+  EXPECT_THAT(inspected({"--camera", camera, "--device-range=-1..1", "--log-constant", "2"})["command"],
+              testing::Not(testing::AnyOf(HasSubstr("--device-range"), HasSubstr("--log-constant"))))
+      << "of planar depth";
+  FrameFile file = wall_frame();
+  for (float& depth : file.planes["ViewLayer.Depth.Z"]) depth *= 0.1f;
+  file.write(frame);
+  json fields = wall_camera();
+  fields.update({{"depth", "log"}, {"near", 0.1}, {"far", 100}});
+  write_bytes(camera, fields.dump());
+  EXPECT_THAT(inspected({"--camera", camera})["command"],
+              testing::AllOf(HasSubstr("--depth-kind log --far 100"), testing::Not(HasSubstr("--near"))));
+}
+
 TEST_F(Inspect, names_what_is_missing_and_the_option_that_gives_it) {
   FrameFile file = wall_frame();
   for (const char* name : {"ViewLayer.Normal.X", "ViewLayer.Normal.Y", "ViewLayer.Normal.Z"}) file.planes.erase(name);
@@ -214,6 +228,125 @@ TEST_F(Inspect, without_a_camera_nothing_is_said_that_needs_one) {
   EXPECT_THAT(all["command"].get<std::string>(),
               testing::AllOf(HasSubstr("--camera CAMERA.json"), testing::Not(HasSubstr("--normal-space"))));
   EXPECT_THAT(inspect().out, HasSubstr("missing: camera"));
+}
+
+/// Frames 1 to 8 of a camera that moves, but for 5 and 6.
+class InspectSequence : public Inspect {
+ protected:
+  InspectSequence() {
+    json cameras = wall_camera();
+    for (const int number : {1, 2, 3, 4, 7, 8}) {
+      wall_frame().write(path(number));
+      json moved{{"frame", number}, {"world_to_camera", cameras["world_to_camera"]}};
+      moved["world_to_camera"][0][3] = 0.25 * number;
+      if (number == 8) moved["fx"] = 2 * cameras["fx"].get<double>(), moved["fy"] = 2 * cameras["fy"].get<double>();
+      cameras["frames"].push_back(moved);
+    }
+    write_bytes(camera, cameras.dump());
+  }
+
+  std::string path(int number) const { return folder / fmt::format("shot.{:04}.exr", number); }
+
+  Finished inspect_all(const std::vector<std::string>& more) const {
+    std::vector<std::string> arguments{"inspect", folder / "shot.####.exr", "--camera", camera};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_program(arguments);
+  }
+
+  json sequence(const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> arguments = more;
+    arguments.emplace_back("--json");
+    const Finished finished = inspect_all(arguments);
+    EXPECT_EQ(finished.code, 0) << finished;
+    return json::parse(finished.out)["sequence"];
+  }
+
+  static json change(const json& sequence, const std::string& what) {
+    for (const auto& each : sequence["changes"])
+      if (each["what"] == what) return each["values"];
+    return nullptr;
+  }
+};
+
+TEST_F(InspectSequence, says_which_frames_there_are_and_which_are_missing) {
+  const json all = sequence();
+  EXPECT_EQ(all["frames"], "1-4, 7-8");
+  EXPECT_EQ(all["count"], 6);
+  EXPECT_EQ(all["absent"], "5-6");
+  EXPECT_EQ(sequence({"--frames", "1-3,9"})["absent"], "9");
+  std::filesystem::remove(path(2));
+  std::filesystem::remove(path(4));
+  std::filesystem::remove(path(8));
+  EXPECT_EQ(sequence()["absent"], "5") << "the step of 1, 3 and 7 is 2";
+  EXPECT_EQ(inspected({"--camera", camera})["sequence"], nullptr) << "a single frame";
+}
+
+TEST_F(InspectSequence, follows_the_camera) {
+  const json moves = sequence()["camera"];
+  EXPECT_NEAR(moves["farthest"].get<double>(), 0.25 * 7, 1e-9);
+  EXPECT_NEAR(moves["largest_step"].get<double>(), 0.25 * 3, 1e-9);
+  EXPECT_EQ(moves["at_largest_step"], 7);
+  EXPECT_NEAR(moves["largest_turn"].get<double>(), 0, 1e-6);
+  EXPECT_NEAR(moves["widest"].get<double>(), 56.145, 1e-3);
+  EXPECT_LT(moves["narrowest"].get<double>(), 30);
+}
+
+TEST_F(InspectSequence, says_what_changes_and_what_does_not) {
+  json all = sequence();
+  EXPECT_EQ(all["changes"].size(), 0) << all["changes"];
+  EXPECT_THAT(all["same"].dump(), testing::AllOf(HasSubstr("data window"), HasSubstr("channels"), HasSubstr("source")));
+  FrameFile other = wall_frame({-4, 0, 72, 36});
+  other.planes["Extra"] = other.planes["ViewLayer.Depth.Z"];
+  other.write(path(4));
+  write_bytes(path(7), "no frame");
+  all = sequence();
+  const json window = change(all, "data window");
+  ASSERT_EQ(window.size(), 2) << all;
+  EXPECT_EQ(window[1]["value"], "72x36 at (-4, 0)");
+  EXPECT_EQ(window[1]["frames"], "4");
+  EXPECT_THAT(change(all, "channels").dump(), HasSubstr("Extra (float)"));
+  EXPECT_EQ(change(all, "refused")[0]["frames"], "7");
+  EXPECT_EQ(change(all, "display window"), nullptr);
+}
+
+TEST_F(InspectSequence, gives_distances_of_a_few_frames_and_the_command_of_all) {
+  const json all = json::parse(inspect_all({"--json"}).out);
+  EXPECT_EQ(all["sequence"]["depth"].size(), 5);
+  EXPECT_EQ(all["sequence"]["depth"][0]["frame"], 1);
+  EXPECT_EQ(all["sequence"]["depth"][4]["frame"], 8);
+  EXPECT_NEAR(all["sequence"]["depth"][0]["farthest"].get<double>(), 6, 1e-6);
+  const std::string command = all["command"];
+  EXPECT_THAT(command, testing::AllOf(HasSubstr("shot.####.exr"), HasSubstr("-o ao.%04d.exr")));
+  const std::string text = inspect_all({}).out;
+  for (const char* words : {"sequence: 6 frames, 1-4, 7-8", "missing frames: 5-6", "the same in all frames",
+                            "its largest step is 0.75, to frame 7", "depth of frame 8: distances"})
+    EXPECT_THAT(text, HasSubstr(words));
+}
+
+TEST_F(Inspect, finds_nothing_twice) {
+  FrameFile file = wall_frame({-4, 0, 72, 36});
+  file.halves = {"ViewLayer.Depth.Z"};
+  file.write(frame);
+  const json all = inspected({"--camera", camera});
+  EXPECT_EQ(all["suspicious_codes"], (json{"half-depth", "windows-differ"}));
+}
+
+TEST_F(Inspect, normals_that_are_left_out_are_not_missing) {
+  const json all = inspected({"--camera", camera, "--normal", "none"});
+  EXPECT_EQ(all["normals"], nullptr);
+  EXPECT_EQ(all["missing"].size(), 1) << all["missing"];  // a beauty
+  EXPECT_THAT(all["command"].get<std::string>(), HasSubstr("--normal none"));
+}
+
+TEST_F(Inspect, shows_the_scores_of_normals_that_run_refuses) {
+  json wrong = wall_camera();
+  wrong["world_to_camera"] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}};
+  write_bytes(camera, wrong.dump());
+  const json all = inspected({"--camera", camera});
+  EXPECT_THAT(all["missing"].dump(), HasSubstr("--normal none"));
+  EXPECT_FALSE(all["normals"]["scores"].empty());
+  EXPECT_EQ(all["depth"]["kind"], "planar");
+  EXPECT_EQ(all["command"], "");
 }
 
 TEST_F(Inspect, lengths_are_of_vectors_only) {

@@ -3,7 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <regex>
@@ -143,6 +145,15 @@ TEST_F(Compare, channels_match_by_name_then_by_its_last_part) {
   EXPECT_EQ(measured({a, folder / "c.exr", "--channel", "R=x.R,G=y.R"})["rmse"], 0);
 }
 
+TEST_F(Compare, ao_is_not_paired_with_a_component_of_a_normal) {
+  const auto ao = exr("ao.exr", {{"Y", ramp}});
+  const std::map<std::string, Plane> normal{{"N.X", box}, {"N.Y", box}, {"N.Z", box}};
+  expect_error(3, {exr("n.exr", normal), ao}, {"share no channel", "N.Y", "--channel"});
+  EXPECT_EQ(measured({folder / "n.exr", ao, "--channel", "N.Y=Y"})["count"], ramp.size());
+  EXPECT_EQ(measured({folder / "n.exr", exr("m.exr", {{"X", box}, {"Y", box}, {"Z", box}})})["rmse"], 0);
+  EXPECT_EQ(measured({exr("l.exr", {{"L.Y", ramp}, {"L.A", box}}), ao})["rmse"], 0) << "it is no vector";
+}
+
 TEST_F(Compare, no_common_channel_is_an_error_that_lists_both) {
   expect_error(3, {exr("a.exr", {{"Y", ramp}}), exr("b.exr", {{"U", ramp}, {"V", ramp}})},
                {"a.exr has Y", "b.exr has U, V", "--channel"});
@@ -253,9 +264,9 @@ TEST_F(Compare, a_broken_limit_ends_with_6_and_says_which) {
 
 TEST_F(Compare, mistakes_on_the_command_line_end_with_2) {
   const auto a = exr("a.exr", {{"Y", ramp}});
-  expect_error(2, {}, {"RESULT is required"});
-  expect_error(2, {a}, {"REFERENCE is required"});
-  expect_error(2, {a, a, a}, {"not expected"});
+  expect_error(2, {}, {"RESULT is missing"});
+  expect_error(2, {a}, {"REFERENCE is missing"});
+  expect_error(2, {a, a, a}, {a, "takes one RESULT and one REFERENCE"});
   expect_error(2, {a, a, "--max-rms", "1"}, {"--max-rms", "did you mean --max-rmse"});
   expect_error(2, {a, a, "--max-rmse", "nan"}, {"--max-rmse", "nan is not a finite number"});
   expect_error(2, {a, a, "--max-rmse", "-1"}, {"--max-rmse", "0 or more"});
@@ -359,6 +370,75 @@ TEST_F(CompareSequence, an_error_that_moves_with_its_surface_does_not_flicker) {
             0.1);
 }
 
+// What decides without being meant.
+
+/// A reference whose left half is 0, as renderers fill sky, and a result that has 1 there.
+TEST_F(Compare, sky_that_is_0_in_one_and_1_in_the_other_is_said_with_what_leaves_it_out) {
+  Plane far(kWindow.pixels(), 5.0f);
+  for (std::size_t i = 0; i < far.size(); i++)
+    if (i % kFormulaWidth < kFormulaWidth / 2) far[i] = 1e10f;
+  const auto result = exr("sky1.exr", {{"Y", with_left(constant(0.5f), 1)}});
+  const auto reference = exr("sky0.exr", {{"AO", with_left(constant(0.6f), 0)}});
+  const auto depth = exr("depth.exr", {{"ViewLayer.Depth.Z", far}});
+  const Finished finished = compare({result, reference});
+  EXPECT_EQ(finished.code, 0) << finished;
+  EXPECT_THAT(finished.err, AllOf(HasSubstr("warning: "), HasSubstr("50.0 % of the pixels are 0 in " + reference),
+                                  HasSubstr("1 in " + result), HasSubstr("0.1000"), HasSubstr("--depth")));
+  const json j = measured({result, reference});
+  EXPECT_EQ(j["sky_differs"]["count"], kWindow.pixels() / 2);
+  EXPECT_NEAR(j["sky_differs"]["rmse_without"].get<double>(), 0.1, 1e-6);
+  // The other way round it is the result that has 0.
+  EXPECT_THAT(compare({reference, result}).err, HasSubstr("are 0 in " + reference));
+  EXPECT_THAT(compare({result, reference, "--depth", depth}).err, IsEmpty());
+  EXPECT_TRUE(measured({result, reference, "--depth", depth})["sky_differs"].is_null());
+}
+
+TEST_F(Compare, few_pixels_that_are_0_and_1_are_errors_like_others) {
+  Plane holes = box;
+  holes[0] = 0;
+  Plane filled = with_left(box, 0.3f);
+  filled[0] = 1;
+  EXPECT_THAT(compare({exr("a.exr", {{"Y", filled}}), exr("b.exr", {{"Y", holes}})}).err, IsEmpty());
+}
+
+TEST_F(Compare, sky_that_is_little_of_the_error_is_not_told_of) {
+  Plane open = constant(0.9f), dark = constant(0.3f);
+  const auto few = std::ptrdiff_t(kWindow.pixels() / 50);
+  std::fill_n(open.begin(), few, 1.0f);
+  std::fill_n(dark.begin(), few, 0.0f);
+  EXPECT_THAT(compare({exr("a.exr", {{"Y", open}}), exr("b.exr", {{"Y", dark}})}).err, IsEmpty());
+}
+
+TEST_F(Compare, options_of_files_that_are_not_there_are_refused) {
+  const auto a = exr("a.exr", {{"Y", ramp}});
+  expect_error(2, {a, a, "--mask-channel", "M"}, {"--mask-channel: applies with --mask only"});
+  expect_error(2, {a, a, "--depth-channel", "Z"}, {"--depth-channel: applies with --depth only"});
+  expect_error(2, {a, a, "--sky", "5"}, {"--sky: applies with --depth only"});
+  expect_error(2, {a, a, "--motion-channels", "X,Y"}, {"--motion-channels: applies with --motion only"});
+}
+
+TEST_F(Compare, a_quiet_one_says_by_its_exit_code_alone) {
+  const auto a = exr("a.exr", {{"Y", with_left(ramp, 1)}}), b = exr("b.exr", {{"Y", with_left(ramp, 0)}});
+  for (const char* quiet : {"-q", "--quiet"}) {
+    const Finished finished = compare({a, b, quiet});
+    EXPECT_EQ(finished.code, 0) << finished;
+    EXPECT_EQ(finished.out + finished.err, "");
+  }
+  const Finished broken = compare({a, b, "-q", "--max-rmse", "0.1"});
+  EXPECT_EQ(broken.code, 6);
+  EXPECT_EQ(broken.out, "");
+  EXPECT_THAT(broken.err, HasSubstr("--max-rmse"));
+  EXPECT_EQ(measured({a, b, "-q"})["pass"], true) << "what --json asks for is printed";
+}
+
+TEST_F(Compare, channels_are_a_list_or_given_one_by_one) {
+  const auto a = exr("a.exr", {{"R", ramp}, {"G", box}, {"B", ramp}}),
+             b = exr("b.exr", {{"R", ramp}, {"G", box}, {"B", box}});
+  const json list = measured({a, b, "--channel", "R,G"}), single = measured({a, b, "--channel", "R", "--channel", "G"});
+  EXPECT_EQ(list["channels"], json({"R", "G"}));
+  EXPECT_EQ(single, list);
+}
+
 // Documents.
 
 TEST(CompareReadme, every_option_and_every_field_is_told) {
@@ -391,6 +471,21 @@ TEST_F(CompareSequence, the_report_is_one_page_with_pictures) {
   const std::string html = read_bytes(page);
   EXPECT_THAT(html, AllOf(HasSubstr("<html"), HasSubstr("\"kind\": \"compare\""), HasSubstr("data:image/png;base64,")));
   EXPECT_THAT(html, HasSubstr("ao.%04d.exr against truth.####.exr"));
+  const std::size_t begin = html.find('{', html.find("type=\"application/json\">"));
+  const json shown = json::parse(html.substr(begin, html.find("</script>", begin) - begin)),
+             told = measured({result, reference});
+  EXPECT_EQ(shown["sequence"]["flicker"], told["flicker"]);
+  EXPECT_EQ(shown["sequence"]["worst_frame"], std::to_string(told["worst"]["frame"].get<int>()));
+  for (const char* list : {"candidates", "rows"})
+    for (const auto& row : shown[list]) EXPECT_FALSE(row.contains("flicker")) << "it is that of the sequence: " << row;
+}
+
+TEST_F(Compare, files_of_one_name_are_told_apart_on_the_page) {
+  const std::string page = folder / "page.html";
+  for (const char* place : {"old", "new"}) std::filesystem::create_directory(folder / place);
+  const auto a = exr("old/ao.exr", {{"Y", box}}), b = exr("new/ao.exr", {{"Y", ramp}});
+  ASSERT_EQ(compare({a, b, "--report", page}).code, 0);
+  EXPECT_THAT(read_bytes(page), AllOf(HasSubstr("\"title\": \"" + a + " against " + b), HasSubstr("\"name\": \"" + a)));
 }
 
 TEST_F(CompareSequence, a_page_that_cannot_be_written_ends_with_4_before_any_work) {

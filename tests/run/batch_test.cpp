@@ -20,8 +20,12 @@ using testing::StartsWith;
 
 using Batch = SequenceFolder;
 
-/// What is behind a file's header, which has the digest of the options.
-std::string pixels(const std::string& bytes) { return bytes.substr(bytes.size() - 300); }
+/// What is behind a file's header, which has the digest of the options and the warnings, and behind its 3 offsets.
+std::string pixels(const std::string& bytes) {
+  const std::string last = std::string("screenWindowWidth\0float\0", 24);
+  constexpr std::size_t kSizeValueAndEnd = 4 + 4 + 1, kOffsets = 3 * 8;
+  return bytes.substr(bytes.find(last) + last.size() + kSizeValueAndEnd + kOffsets);
+}
 
 TEST_F(Batch, a_sequence_is_its_frames_one_by_one) {
   write_frames(8, 12);
@@ -159,13 +163,46 @@ TEST_F(Batch, guesses_are_made_once_by_the_first_frame_that_shows_anything) {
   coded.write(input(2));
   // By itself it would be taken for signed; every normal of it is of unit length either way.
   change(coded, "Normal", [](float n) { return n > 0.9f ? 1.0f : 0.0f; }).write(input(3));
-  ASSERT_EQ(run({"--frames", "1-3", "--normal-space", "view"}).code, 0);
+  ASSERT_EQ(run({"--frames", "1-3", "--normal-space", "world"}).code, 0);
   const auto guessed = outputs();
-  ASSERT_EQ(run({"--frames", "1-3", "--normal-space", "view", "--normal-encoding", "unorm"}).code, 0);
+  ASSERT_EQ(run({"--frames", "1-3", "--normal-space", "world", "--normal-encoding", "unorm"}).code, 0);
   for (const auto& [name, bytes] : outputs()) EXPECT_EQ(pixels(bytes), pixels(guessed.at(name))) << name;
-  ASSERT_EQ(run({"--frames", "3", "--normal-space", "view"}).code, 0);
+  ASSERT_EQ(run({"--frames", "3", "--normal-space", "world"}).code, 0);
   EXPECT_NE(pixels(read_bytes(output(3))), pixels(guessed.at("ao.0003.exr")))
       << "or else the frames of this test show nothing";
+}
+
+TEST_F(Batch, what_is_refused_is_refused_behind_sky_too) {
+  FrameFile sky = wall_frame();
+  for (float& depth : sky.planes["ViewLayer.Depth.Z"]) depth = 1e10f;
+  auto turned = wall_camera();
+  turned["world_to_camera"] = {{0, 0, 1, 0}, {1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 0, 1}};
+  write_bytes(camera, turned.dump());
+  for (const int first : {1, 2}) {
+    sky.write(input(first));
+    wall_frame().write(input(3 - first));
+    const Finished finished = run({"--frames", "1-2", "--keep-going"});
+    EXPECT_EQ(finished.code, 1) << finished;
+    EXPECT_THAT(finished.err, HasSubstr("--normal none")) << first;
+  }
+}
+
+TEST_F(Batch, sky_at_the_beginning_decides_nothing_however_long_it_is) {
+  FrameFile sky = wall_frame(), coded = wall_frame();
+  for (float& depth : sky.planes["ViewLayer.Depth.Z"]) depth = 1e10f;
+  for (const char* component : {"X", "Y", "Z"})
+    for (float& n : coded.planes[std::string("ViewLayer.Normal.") + component]) n = 0.5f + 0.5f * n;
+  sky.write(input(1));
+  for (int frame = 2; frame < 12; frame++) fs::copy_file(input(1), input(frame));
+  for (const int frame : {12, 13}) coded.write(input(frame));
+  ASSERT_EQ(run({"--frames", "12"}).code, 0);
+  const std::string alone = read_bytes(output(12));
+  remove_outputs();
+  const Finished finished = run();
+  ASSERT_EQ(finished.code, 0) << finished;
+  EXPECT_EQ(pixels(read_bytes(output(12))), pixels(alone)) << finished;
+  ASSERT_EQ(run({"--frames", "1-100", "--missing", "skip"}).code, 0);
+  EXPECT_EQ(pixels(read_bytes(output(12))), pixels(alone)) << "of a sequence of which most frames are missing";
 }
 
 TEST_F(Batch, what_is_noted_of_all_frames_is_said_once) {
@@ -181,7 +218,11 @@ TEST_F(Batch, what_is_noted_of_all_frames_is_said_once) {
 
 TEST_F(Batch, progress_for_farms_goes_to_the_standard_output) {
   write_frames(1, 4);
-  EXPECT_EQ(run({"--progress", "percent"}).out, "Progress: 25%\nProgress: 50%\nProgress: 75%\nProgress: 100%\n");
+  const std::string percents = "Progress: 25%\nProgress: 50%\nProgress: 75%\nProgress: 100%\n";
+  EXPECT_EQ(run({"--progress", "percent"}).out, percents);
+  const Finished quiet = run({"--progress", "percent", "-q"});
+  EXPECT_EQ(quiet.out, percents) << quiet;
+  EXPECT_THAT(quiet.err, IsEmpty());
   const auto lines = lines_of(run({"--progress", "openjd"}).out);
   ASSERT_EQ(lines.size(), 8);
   EXPECT_EQ(lines[0], "openjd_progress: 25.0");
@@ -221,7 +262,7 @@ TEST_F(Batch, the_log_has_an_object_a_line) {
   EXPECT_EQ(totals["frames"], 3);
   EXPECT_EQ(totals["at_once"], 2);
   EXPECT_THAT(run({"--log-json", "-", "--progress", "none"}).out, StartsWith("{\"event\":\"begin\""));
-  EXPECT_EQ(run({"--log-json", folder / "none/log"}).code, 4);
+  EXPECT_EQ(run({"--log-json", folder / "none/log", "--no-mkdir"}).code, 4);
 }
 
 TEST_F(Batch, memory_does_not_grow_with_the_frames) {

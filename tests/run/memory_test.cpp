@@ -34,11 +34,12 @@ class Memory : public testing::Test {
   Bytes bytes_of(const Settings& settings) const {
     gpu::Recorder gpu(device());
     FrameSource source = open_frame(settings, 0);
-    const PixelMemory expected = pixel_memory(source, settings);
+    const FrameMemory expected = memory_of(source, settings);
     const FrameInputs inputs = load_frame(gpu, source, settings, 0);
     run_chain(gpu, inputs, settings.estimator, settings.output);
     gpu.run();
-    return {double(gpu.bytes()) / double(window.pixels()), double(expected.device_bytes)};
+    return {double(gpu.bytes()) / double(window.pixels()),
+            double(expected.on_device(window)) / double(window.pixels())};
   }
 
   void expect_enough(const Settings& settings, const std::string& what) const {
@@ -101,6 +102,28 @@ TEST_F(Memory, is_expected_of_every_output) {
   settings.estimator.resolution = Resolution::half;
   settings.estimator.power = 2;
   expect_enough(settings, "all at half the resolution");
+}
+
+TEST_F(Memory, is_expected_of_what_is_hidden) {
+  Settings settings = all;
+  const Bytes without = bytes_of(settings);
+  FrameFile layer{window, window, 1, {}, {}, {}};
+  layer.planes["Z"] = std::vector<float>(window.pixels(), 9);
+  layer.write(folder / "layer.exr");
+  settings.input.behind = {folder / "layer.exr", folder / "layer.exr", folder / "layer.exr"};
+  const Bytes with = bytes_of(settings);
+  // three planes as read, as many that were found, and what is kept of them
+  EXPECT_LE(with.taken - without.taken, with.expected - without.expected + 1);
+  EXPECT_GE(with.expected - without.expected, 9 * sizeof(float));
+  expect_enough(settings, "hidden surfaces");
+  settings.output.aovs = "ao,hidden";
+  expect_enough(settings, "their AOV");
+  settings.estimator.resolution = Resolution::half;
+  expect_enough(settings, "at half the resolution");
+  settings.estimator.hidden = 0;
+  settings.output.aovs = "ao";
+  settings.estimator.resolution = Resolution::full;
+  EXPECT_EQ(bytes_of(settings).expected, without.expected) << "none is kept";
 }
 
 TEST_F(Memory, is_expected_of_what_completed_surfaces_take) {

@@ -4,8 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/formats/exr.h"
+#include "core/frame/settle_rows.h"
+#include "core/run/frame_files.h"
 #include "tests/support/command_line.h"
 #include "tests/support/difference.h"
 
@@ -49,6 +52,98 @@ TEST_F(CommandLine, a_small_radius_makes_a_region_cheap) {
                 .code,
             0);
   EXPECT_LT(nlohmann::json::parse(read_bytes(stats))["frames"][0]["pixels"].get<int>(), 24 * 24) << "of 64 x 36";
+}
+
+// How many directions a tile takes is decided by all of its pixels, and by its neighbours, at each of four comparisons.
+TEST_F(CommandLine, a_region_by_error_computes_the_tiles_that_decide) {
+  const std::string interior = ALCOVE_SOURCE_DIR "/examples/interior";
+  const std::string stats = folder / "stats.json";
+  const auto pixels = [&](const std::vector<std::string>& search) {
+    std::vector<std::string> arguments{"run",        interior + ".gbuffer.exr",
+                                       "-o",         ao,
+                                       "--camera",   interior + ".camera.json",
+                                       "--type",     "float",
+                                       "--roi",      "480,270,20,16",
+                                       "--radius",   "0.02",
+                                       "--complete", "none",
+                                       "--stats",    stats};
+    arguments.insert(arguments.end(), search.begin(), search.end());
+    const Finished finished = run_program(arguments);
+    EXPECT_EQ(finished.code, 0) << finished;
+    return std::sqrt(nlohmann::json::parse(read_bytes(stats))["frames"][0]["pixels"].get<double>());
+  };
+  const double plain = pixels({"--search", "exact", "--denoise", "none"}), by_error = pixels({"--tolerance", "0.004"});
+  EXPECT_GE(by_error, plain + 70) << "39 px on either side";
+}
+
+TEST_F(CommandLine, a_region_reads_its_own_rows_and_those_of_occluders_once) {
+  const Window tall{0, 0, 320, 960};
+  wall_frame(tall, tall).write(frame);
+  write_bytes(camera, wall_camera(tall).dump());
+  const std::string stats = folder / "stats.json";
+  const auto rows_of = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{"run",  frame,      "-o",   ao,        "--camera",
+                                       camera, "--radius", "0.02", "--stats", stats};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Finished finished = run_program(arguments);
+    EXPECT_EQ(finished.code, 0) << finished;
+    return nlohmann::json::parse(read_bytes(stats))["frames"][0]["rows_read"].get<int>();
+  };
+  EXPECT_EQ(rows_of({}), 960);
+  EXPECT_LE(rows_of({"--roi", "40,600,20,100"}), 240);
+  EXPECT_LE(rows_of({"--roi", "40,600,20,100", "--preset", "reference"}), 960) << "its lines reach far";
+  EXPECT_LE(rows_of({"--roi", "0,0,320,960"}), 960) << "each once";
+}
+
+TEST_F(CommandLine, a_region_that_shows_too_little_is_read_as_the_whole_is) {
+  const Window tall{0, 0, 320, 240};
+  FrameFile inverse = wall_frame(tall, tall);
+  for (float& z : inverse.planes.at("ViewLayer.Depth.Z")) z = 20 / z;
+  inverse.write(frame);
+  nlohmann::json silent = wall_camera(tall);
+  for (const char* key : {"depth", "depth_kind"}) silent.erase(key);
+  write_bytes(camera, silent.dump());
+  const std::vector<std::string> arguments{"run", frame, "-o", ao, "--camera", camera, "--radius", "0.1"};
+  const Finished all = run_program(arguments);
+  ASSERT_EQ(all.code, 0) << all;
+  EXPECT_THAT(all.err, HasSubstr("depth kind taken as inverse")) << "or else nothing is proved";
+  const Image whole = read_exr_image(ao);
+  std::vector<std::string> of_region = arguments;
+  of_region.insert(of_region.end(), {"--roi", "10,12,24,9"});
+  const Finished finished = run_program(of_region);
+  ASSERT_EQ(finished.code, 0) << finished;
+  EXPECT_THAT(finished.err, HasSubstr("depth kind taken as inverse")) << "or else nothing is proved";
+  const Image part = read_exr_image(ao);
+  EXPECT_EQ(part.pixels, cropped(whole.pixels, whole.data, part.data));
+}
+
+TEST_F(CommandLine, a_region_of_little_but_sky_knows_how_the_frame_is_rounded) {
+  // Depth of 16 bits: what rounding hides is no occluder. The rows of the region show 40 pixels of surface.
+  const Window tall{0, 0, 320, 240};
+  FrameFile rounded = wall_frame(tall, tall);
+  auto& depth = rounded.planes.at("ViewLayer.Depth.Z");
+  for (std::size_t i = 0; i < depth.size(); i++) {
+    const std::size_t x = i % 320, y = i / 320;
+    const double device = 1.001001 * (1 - 0.1 / depth[i]);
+    depth[i] = y < 64 && x >= 8 ? 1.0f : float(std::round(65535 * device) / 65535);
+  }
+  rounded.write(frame);
+  nlohmann::json silent = wall_camera(tall);
+  for (const char* key : {"depth", "depth_kind"}) silent.erase(key);
+  write_bytes(camera, silent.dump());
+  Settings settings;
+  settings.input.input = frame;
+  settings.input.camera = camera;
+  settings.input.depth_kind = DepthKind::device;
+  settings.input.depth_range.near = 0.1;
+  settings.input.depth_range.far = 100;
+  settings.estimator.radius = 1;
+  settings.output.output = ao;
+  FrameSource source = open_frame(settings, 0);
+  FrameRows rows(source, 1 << 24, folder / "");
+  settle_by_part(source, settings.input, rows, {0, 12, 24, 5});
+  EXPECT_DOUBLE_EQ(source.depth_step, 1 / 65535.0);
+  EXPECT_LT(rows.window().height, tall.height) << "no more are read than it takes";
 }
 
 TEST_F(CommandLine, a_region_outside_of_the_frame_is_refused) {

@@ -122,7 +122,7 @@ TEST_F(SurroundingsTest, presets_are_found_beside_the_program_above_it_and_in_sh
     write_bytes(install + "/" + place + "/mine.toml", "slices = 4\n");
     const Finished finished = run_program(
         {"presets"}, {.environment = {{"ALCOVE_PRESETS", std::nullopt}}, .program = install + "/bin/alcove"});
-    EXPECT_EQ(finished.out, "mine\n") << place << " " << finished;
+    EXPECT_THAT(finished.out, testing::HasSubstr("\n  mine\n")) << place << " " << finished;
   }
 }
 

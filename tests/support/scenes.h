@@ -97,4 +97,8 @@ struct Rendering {
 };
 Rendering render(const Scene& scene, const Shot& shot);
 
+/// Gives the frame the next surfaces of each ray behind the first: so many planes of what is seen from outside, and so
+/// many of what closes a sphere that the ray went into.
+void add_peels(Rendering& rendering, const Scene& scene, int peels);
+
 }  // namespace alcove::test

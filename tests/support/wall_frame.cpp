@@ -55,6 +55,12 @@ FrameFile wall_frame(const Window& data, const Window& display, double pixel_asp
   return frame;
 }
 
+void turn_normals_to_view(FrameFile& frame) {
+  auto &y = frame.planes.at("ViewLayer.Normal.Y"), &z = frame.planes.at("ViewLayer.Normal.Z");
+  y.swap(z);
+  for (float& toward : z) toward = -toward;
+}
+
 void add_beauty(FrameFile& frame) {
   std::size_t index = 1;
   for (const char* layer : {"Combined", "DiffInd", "DiffCol"})

@@ -31,6 +31,9 @@ struct FrameFile {
 /// world's z is up. On the wall, everything above the middle of the display window is farther than 1 from the floor.
 FrameFile wall_frame(const Window& data = kWallWindow, const Window& display = kWallWindow, double pixel_aspect = 1);
 
+/// Puts the normals into view space, whose y is the world's z and whose z is the world's -y.
+void turn_normals_to_view(FrameFile& frame);
+
 /// Adds Combined with alpha below 1 in places, DiffInd and DiffCol: uneven values, up to 2.
 void add_beauty(FrameFile& frame);
 

@@ -146,7 +146,7 @@ std::vector<std::string> notes_on(const Spec& spec) {
   DepthSample sample;
   const FrameInputs inputs = upload(recorder(), made.frame);
   sample.add(inputs.view, inputs.depth_map, inputs.depth_precision, inputs[RawPlane::depth]->as<float>());
-  return sample.notes(made.radius, made.radius, spec.width, spec.height);
+  return texts_of(sample.notes(made.radius, made.radius, spec.width, spec.height));
 }
 
 TEST(Accuracy, of_the_room) { expect({}); }

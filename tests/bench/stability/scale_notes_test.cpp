@@ -27,7 +27,7 @@ std::vector<std::string> said(const HostFrame& frame, double radius) {
   DepthSample sample;
   const FrameInputs inputs = upload(recorder(), frame);
   sample.add(inputs.view, inputs.depth_map, inputs.depth_precision, inputs[RawPlane::depth]->as<float>());
-  return sample.notes(radius, radius, frame.data.width, frame.data.height);
+  return texts_of(sample.notes(radius, radius, frame.data.width, frame.data.height));
 }
 
 TEST(ScaleNotes, are_silent_where_all_is_well) {
@@ -112,7 +112,7 @@ StabilityReport hostile() {
   report.axes.push_back({"a \"quoted\" <axis>",
                          "units & more",
                          true,
-                         {{1, {}}, {10, {"<b>radius</b>"}}, {100, {}}},
+                         {{1, {}}, {10, {{NoteCode::radius_below_pixel, "<b>radius</b>"}}}, {100, {}}},
                          {{"gtao", {0.01, 0.2, 0.3}, {1}, true}}});
   return report;
 }

@@ -1,4 +1,4 @@
-// What is suspicious about a frame's depth and normals, beyond what settling them noticed.
+// What is suspicious about a frame's depth, normals and files, beyond what reading them decided.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -11,9 +11,9 @@
 namespace alcove {
 
 /// Gives one sentence for each finding: anti-aliased depth, shortened normals, channels that a lossy codec has damaged,
-/// parts that are cut short or have other windows, overscan and crops. `depth` and `normal` are as read, of a settled
-/// frame.
-std::vector<std::string> findings(FrameSource& source, std::span<const float> depth, std::span<const float> normal);
+/// other parts that are cut short or have other windows, overscan and crops. `depth` and `normal` are as read, of
+/// source.data and of a frame whose meaning is settled; of large frames a part of the pixels is looked at.
+Notes findings(FrameSource& source, std::span<const float> depth, std::span<const float> normal);
 
 /// Whether the normals are vectors in x, y and z, which have a length to look at.
 bool has_lengths(const FrameSource& source);

@@ -1,0 +1,110 @@
+// The table of codes.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/base/note.h"
+
+#include <algorithm>
+#include <array>
+#include <iterator>
+
+namespace alcove {
+namespace {
+
+constexpr std::array kTable = {
+    NoteFacts{NoteCode::unusual_reading, "unusual-reading", true,
+              "the pixels decided for another reading than the usual one"},
+    NoteFacts{NoteCode::said_otherwise, "said-otherwise", true, "the pixels speak against what an option or file says"},
+    NoteFacts{NoteCode::near_plane, "near-plane", true, "two sources give different near planes"},
+    NoteFacts{NoteCode::negative_depth, "negative-depth", false, "all depth is below 0 and is read as a distance"},
+    NoteFacts{NoteCode::depth_below_1, "depth-below-1", true, "all depth lies within 0 to 1 and may be normalized"},
+    NoteFacts{NoteCode::default_view, "default-view", false, "a stereo file's default view is taken"},
+    NoteFacts{NoteCode::normals_disagree, "normals-disagree", true, "the normals do not agree with the depth"},
+    NoteFacts{NoteCode::principal_point, "principal-point", false,
+              "no pixel shows whether the picture's centre is right"},
+    NoteFacts{NoteCode::field_of_view, "field-of-view", true, "another field of view fits the normals better"},
+    NoteFacts{NoteCode::half_depth, "half-depth", true, "depth is stored as half float"},
+    NoteFacts{NoteCode::antialiased_depth, "antialiased-depth", true, "depth was averaged over edges"},
+    NoteFacts{NoteCode::shortened_normals, "shortened-normals", true, "normals were averaged over pixels"},
+    NoteFacts{NoteCode::averaged_normals, "averaged-normals", false,
+              "normals were averaged over pixels, as the program always does"},
+    NoteFacts{NoteCode::lossy_compression, "lossy-compression", true, "a codec has damaged data"},
+    NoteFacts{NoteCode::damaged_file, "damaged-file", true, "a part of a file cannot be read"},
+    NoteFacts{NoteCode::windows_differ, "windows-differ", false, "parts, data and display windows differ"},
+    NoteFacts{NoteCode::radius_below_precision, "radius-below-precision", true,
+              "the radius is near the depth's precision"},
+    NoteFacts{NoteCode::radius_below_pixel, "radius-below-pixel", true, "the radius is less than a pixel"},
+    NoteFacts{NoteCode::radius_beyond_picture, "radius-beyond-picture", true, "the radius is larger than the picture"},
+    NoteFacts{NoteCode::empty_layer, "empty-layer", false, "a layer of hidden surfaces has none"},
+    NoteFacts{NoteCode::nothing_hidden, "nothing-hidden", true, "a layer of hidden surfaces shows only the first one"},
+    NoteFacts{NoteCode::before_first, "before-first", true, "a layer of hidden surfaces lies before the first one"},
+    NoteFacts{NoteCode::repaired_samples, "repaired-samples", true, "deep samples with impossible values were repaired",
+              InHeader::meaning},
+    NoteFacts{NoteCode::repaired_depth, "repaired-depth", true, "pixels had no usable depth", InHeader::meaning},
+    NoteFacts{NoteCode::repaired_normals, "repaired-normals", true, "pixels had no usable normal", InHeader::meaning},
+    NoteFacts{NoteCode::repaired_material_ao, "repaired-material-ao", true, "pixels had no usable material AO",
+              InHeader::meaning},
+    NoteFacts{NoteCode::repaired_beauty, "repaired-beauty", true, "pixels had no usable beauty", InHeader::meaning},
+    NoteFacts{NoteCode::no_normals, "no-normals", false, "normals were reconstructed from depth"},
+    NoteFacts{NoteCode::unused_input, "unused-input", true, "no channel of INPUT is used, and there are no normals"},
+    NoteFacts{NoteCode::no_indirect_light, "no-indirect-light", true, "the composite dims direct light too"},
+    NoteFacts{NoteCode::device_memory, "device-memory", false, "the device had too little memory at first"},
+    NoteFacts{NoteCode::in_parts, "in-parts", false, "the frame was too large to compute at once", InHeader::nothing},
+    NoteFacts{NoteCode::no_gpu, "no-gpu", false, "there is no GPU, so the CPU computed"},
+    NoteFacts{NoteCode::sequence_hole, "sequence-hole", true, "numbers are left out between the frames on the disk",
+              InHeader::nothing},
+    NoteFacts{NoteCode::frame_number, "frame-number", false, "the number in a file's name chose the camera"},
+    NoteFacts{NoteCode::automatic_radius, "automatic-radius", false, "the radius was chosen by the frame"},
+};
+
+constexpr bool is_in_order() {
+  for (std::size_t i = 0; i < kTable.size(); i++)
+    if (std::size_t(kTable[i].code) != i) return false;
+  return true;
+}
+static_assert(is_in_order());
+
+}  // namespace
+
+std::span<const NoteFacts> note_table() { return kTable; }
+
+const NoteFacts& facts_of(NoteCode code) { return kTable[std::size_t(code)]; }
+
+const char* level_of(const Note& note) { return facts_of(note.code).is_warning ? "warning" : "note"; }
+
+void add_new(Notes& notes, const Notes& more) {
+  for (const auto& note : more)
+    if (std::ranges::find(notes, note) == notes.end()) notes.push_back(note);
+}
+
+Notes warnings_of(const Notes& notes) {
+  Notes warnings;
+  std::ranges::copy_if(notes, std::back_inserter(warnings),
+                       [](const Note& note) { return facts_of(note.code).is_warning; });
+  return warnings;
+}
+
+std::vector<std::string> texts_of(const Notes& notes) {
+  std::vector<std::string> texts;
+  for (const auto& note : notes) texts.push_back(note.text);
+  return texts;
+}
+
+std::string header_text(const Notes& notes) {
+  std::string text;
+  for (const auto& note : warnings_of(notes)) {
+    const NoteFacts& facts = facts_of(note.code);
+    if (facts.in_header == InHeader::nothing) continue;
+    if (!text.empty()) text += '\n';
+    text += std::string(facts.name) + ": " + (facts.in_header == InHeader::text ? note.text : facts.meaning);
+  }
+  return text;
+}
+
+std::string note_table_markdown() {
+  std::string text = "| code | | |\n|---|---|---|\n";
+  for (const auto& facts : note_table())
+    text += std::string("| `") + facts.name + "` | " + (facts.is_warning ? "warning" : "note") + " | " + facts.meaning +
+            " |\n";
+  return text;
+}
+
+}  // namespace alcove

@@ -1,0 +1,401 @@
+// Chunks of deep data: where they lie, threads that unpack them, and the surfaces of their pixels.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/formats/deep_exr.h"
+
+#include <IlmThreadPool.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <bit>
+#include <exception>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <iterator>
+#include <mutex>
+
+#include "core/base/error.h"
+#include "core/formats/deep_chunk.h"
+#include "core/formats/exr.h"
+
+namespace alcove {
+namespace {
+
+constexpr std::uint64_t kMostChunk = std::uint64_t(1) << 28;  // bytes: more than any line or tile that was ever seen
+constexpr std::uint64_t kCopies = 3;                          // of a chunk: packed, split in halves, as it is
+
+/// What a channel says of a sample.
+enum class Role { none, front, back, alpha };
+
+/// A channel that is read, and its place: chunks hold each line channel by channel.
+struct TakenChannel {
+  Role role;
+  DeepStored::Channel stored;
+  std::size_t offset;  // bytes of the channels before it, of a sample
+};
+
+std::size_t bytes_of(const DeepStored::Channel& channel) { return channel.is_half ? 2 : 4; }
+
+/// Where a chunk's table of counts and its samples lie; sizes in bytes.
+struct Chunk {
+  std::uint64_t table = 0, table_size = 0, packed_size = 0, unpacked_size = 0;
+};
+
+/// A part of the file, its chunks, and the channels that are read.
+struct Part : DeepStored {
+  explicit Part(const DeepStored& stored) : DeepStored(stored) {}
+
+  std::vector<Chunk> chunks;        // row by row
+  std::vector<TakenChannel> taken;  // that are read
+  std::size_t sample_bytes = 0;     // of all channels
+  // Of the counts of a whole tile, which tiles at the border may store too; 0: that is more than any chunk may hold.
+  std::uint64_t whole_table = 0;
+  bool has_back = false;
+  std::size_t alphas = 0;  // 1, or 3 of red, green and blue, whose mean counts; 0: all is opaque
+
+  int across() const { return (data.width + tile_width - 1) / tile_width; }
+  int down() const { return (data.height + tile_height - 1) / tile_height; }
+  std::size_t chunk_width(int column) const {
+    return std::size_t(std::min(tile_width, data.width - column * tile_width));
+  }
+  std::size_t chunk_height(int row) const {
+    return std::size_t(std::min(tile_height, data.height - row * tile_height));
+  }
+};
+
+std::uint32_t word_at(const std::uint8_t* at) {
+  return std::uint32_t(at[0]) | std::uint32_t(at[1]) << 8 | std::uint32_t(at[2]) << 16 | std::uint32_t(at[3]) << 24;
+}
+
+std::uint64_t long_at(const std::uint8_t* at) { return word_at(at) | std::uint64_t(word_at(at + 4)) << 32; }
+
+float value_at(const std::uint8_t* at, const DeepStored::Channel& channel) {
+  if (channel.is_half) return from_half(std::uint16_t(at[0] | at[1] << 8));
+  return channel.is_integer ? float(word_at(at)) : std::bit_cast<float>(word_at(at));
+}
+
+bool read_at(std::ifstream& file, std::uint64_t offset, std::span<std::uint8_t> to) {
+  file.clear();
+  return file.seekg(std::streamoff(offset)) &&
+         file.read(reinterpret_cast<char*>(to.data()), std::streamsize(to.size()));
+}
+
+/// What a thread works on: one chunk of each part at a time.
+struct Unpacked {
+  std::ifstream file;
+  std::vector<std::uint8_t> packed, table, data, scratch;
+  std::vector<std::uint32_t> counts;  // of each pixel
+  std::vector<std::size_t> lines;     // where the samples of each line begin, bytes
+  std::vector<DeepSample> samples;    // of one line
+  std::size_t next = 0;               // of them
+};
+
+/// Calls a function for all numbers below `count`, on several threads of OpenEXR's pool. The exception of the lowest
+/// number that failed is thrown again.
+class Crew {
+ public:
+  Crew(std::size_t count, std::function<void(std::size_t number, std::size_t worker)> work)
+      : count_(count), work_(std::move(work)) {}
+
+  void run(std::size_t workers) {
+    if (workers <= 1) {
+      help(0);
+    } else {
+      IlmThread::TaskGroup group;
+      for (std::size_t worker = 0; worker < workers; worker++)
+        IlmThread::ThreadPool::addGlobalTask(new Help(&group, *this, worker));
+    }
+    if (failure_) std::rethrow_exception(failure_);
+  }
+
+ private:
+  class Help : public IlmThread::Task {
+   public:
+    Help(IlmThread::TaskGroup* group, Crew& crew, std::size_t worker) : Task(group), crew_(crew), worker_(worker) {}
+    void execute() override { crew_.help(worker_); }
+
+   private:
+    Crew& crew_;
+    std::size_t worker_;
+  };
+
+  void help(std::size_t worker) {
+    for (std::size_t number = next_++; number < count_; number = next_++) try {
+        work_(number, worker);
+      } catch (...) {
+        const std::lock_guard lock(mutex_);
+        if (number < failed_) {
+          failed_ = number;
+          failure_ = std::current_exception();
+        }
+        next_ = count_;
+      }
+  }
+
+  std::size_t count_;
+  std::function<void(std::size_t, std::size_t)> work_;
+  std::atomic<std::size_t> next_ = 0;
+  std::mutex mutex_;
+  std::size_t failed_ = std::size_t(-1);
+  std::exception_ptr failure_;
+};
+
+}  // namespace
+
+struct DeepReader::Impl {
+  std::string path;
+  const char* option;
+  DeepRules rules;
+  std::uint64_t file_bytes = 0;
+  std::vector<Part> parts;
+  std::size_t workers = 1;
+  std::uint64_t chunk_bytes = 0;  // of the largest chunks of all parts, as they are
+  DeepCounts counts;
+
+  Impl(const std::string& path_, const char* option_, const DeepRules& rules_)
+      : path(path_), option(option_), rules(rules_) {
+    std::error_code error;
+    file_bytes = std::filesystem::file_size(path, error);
+    if (error) file_bytes = 0;
+  }
+
+  [[noreturn]] void refuse(const Part& part, const std::string& why) const {
+    fail(ErrorKind::input, "{}: the deep samples of part {} cannot be read ({}), the file is damaged or incomplete: {}",
+         path, part.part, option, why);
+  }
+
+  void add_part(const DeepStored& stored);
+  void find_channels(Part& part) const;
+  void require_alike(const Part& part) const;
+  void find_chunks(Part& part) const;
+  Chunk chunk_at(const Part& part, std::ifstream& file, std::uint64_t offset, int column, int row) const;
+  void share_out(std::uint64_t most_bytes);
+  void unpack(const Part& part, int column, int row, Unpacked& to) const;
+  void take_line(const Part& part, std::size_t line, Unpacked& chunk) const;
+};
+
+void DeepReader::Impl::add_part(const DeepStored& stored) {
+  Part part(stored);
+  if (part.tile_width <= 0 || part.tile_height <= 0) refuse(part, "its tiles are empty");
+  const std::uint64_t pixels = std::uint64_t(part.tile_width) * std::uint64_t(part.tile_height);
+  part.whole_table = pixels < kMostChunk / sizeof(std::uint32_t) ? sizeof(std::uint32_t) * pixels : 0;
+  // Larger ones hold nothing more.
+  part.tile_width = std::min(part.tile_width, part.data.width);
+  part.tile_height = std::min(part.tile_height, part.data.height);
+  find_channels(part);
+  require_alike(part);
+  find_chunks(part);
+  parts.push_back(std::move(part));
+}
+
+void DeepReader::Impl::find_channels(Part& part) const {
+  const auto has = [&](const char* name) {
+    return std::ranges::find(part.channels, name, &DeepStored::Channel::name) != part.channels.end();
+  };
+  const auto role_of = [&](const std::string& name) {
+    if (name == "Z") return Role::front;
+    if (name == "ZBack") return Role::back;
+    const bool is_alpha = has("A") ? name == "A" : name == "AR" || name == "AG" || name == "AB";
+    return is_alpha ? Role::alpha : Role::none;
+  };
+  for (const auto& channel : part.channels) {
+    const Role role = role_of(channel.name);
+    if (role != Role::none) part.taken.push_back({role, channel, part.sample_bytes});
+    part.has_back |= role == Role::back;
+    part.alphas += role == Role::alpha;
+    part.sample_bytes += bytes_of(channel);
+  }
+  if (!has("Z"))
+    fail(ErrorKind::input,
+         "{}: the base layer of deep part {} has no Z, so its samples lie nowhere; write it with Z, or name another "
+         "part with --layer ({})",
+         path, part.part, option);
+}
+
+void DeepReader::Impl::require_alike(const Part& part) const {
+  if (parts.empty()) return;
+  const Part& first = parts.front();
+  if (part.data != first.data || part.tile_width != first.tile_width || part.tile_height != first.tile_height)
+    fail(ErrorKind::input,
+         "{}: the deep parts {} and {} have other windows or tiles, so their samples are not put together; choose one "
+         "with --layer ({})",
+         path, first.part, part.part, option);
+}
+
+/// Reads where the chunks lie. Their number is what the file has room for.
+void DeepReader::Impl::find_chunks(Part& part) const {
+  constexpr std::uint64_t kOffset = 8;  // bytes
+  const std::uint64_t count = std::uint64_t(part.across()) * std::uint64_t(part.down());
+  if (part.offsets > file_bytes || count > (file_bytes - part.offsets) / kOffset)
+    refuse(part, "it has more chunks than the file has room for");
+  std::ifstream file(path, std::ios::binary);
+  std::vector<std::uint8_t> offsets(kOffset * count);
+  if (!read_at(file, part.offsets, offsets)) refuse(part, "it ends in the table of its chunks");
+  part.chunks.reserve(count);
+  for (int row = 0; row < part.down(); row++)
+    for (int column = 0; column < part.across(); column++)
+      part.chunks.push_back(chunk_at(part, file, long_at(offsets.data() + kOffset * part.chunks.size()), column, row));
+}
+
+/// Where a chunk lies. Its sizes are none that the file, or what packs it, could not hold.
+Chunk DeepReader::Impl::chunk_at(const Part& part, std::ifstream& file, std::uint64_t offset, int column,
+                                 int row) const {
+  std::array<std::uint8_t, 44> head{};  // the longest: part, place of a tile, three sizes
+  const std::size_t place = part.names_part ? 4 : 0, sizes = place + (part.is_tiled ? 16 : 4), length = sizes + 24;
+  const auto is_within = [&](std::uint64_t from, std::uint64_t size) {
+    return size <= file_bytes && from <= file_bytes - size;
+  };
+  if (offset == 0 || !is_within(offset, length) || !read_at(file, offset, std::span(head).first(length)))
+    refuse(part, fmt::format("chunk {}, {} is not there", column, row));
+  const auto says = [&](std::size_t at, std::int64_t number) {
+    return std::int64_t(std::int32_t(word_at(head.data() + at))) == number;
+  };
+  const bool is_right =
+      (!part.names_part || says(0, part.part)) &&
+      (part.is_tiled ? says(place, column) && says(place + 4, row) && says(place + 8, 0) && says(place + 12, 0)
+                     : says(place, std::int64_t(part.data.y) + std::int64_t(row) * part.tile_height));
+  if (!is_right) refuse(part, fmt::format("at the place of chunk {}, {} is something else", column, row));
+
+  const Chunk chunk{offset + length, long_at(head.data() + sizes), long_at(head.data() + sizes + 8),
+                    long_at(head.data() + sizes + 16)};
+  const std::uint64_t table = sizeof(std::uint32_t) * part.chunk_width(column) * part.chunk_height(row);
+  if (!is_within(chunk.table, chunk.table_size) || !is_within(chunk.table + chunk.table_size, chunk.packed_size) ||
+      chunk.table_size > std::max(table, part.whole_table) || chunk.packed_size > chunk.unpacked_size ||
+      table > longest_unpacked(part.compression, chunk.table_size) ||
+      chunk.unpacked_size > longest_unpacked(part.compression, chunk.packed_size))
+    refuse(part, fmt::format("chunk {}, {} claims more than the file can hold", column, row));
+  if (chunk.unpacked_size + table > kMostChunk)
+    refuse(part, fmt::format("chunk {}, {} holds more than {} MiB", column, row, kMostChunk >> 20));
+  return chunk;
+}
+
+/// Takes as many threads as may work on the largest chunks.
+void DeepReader::Impl::share_out(std::uint64_t most_bytes) {
+  for (const Part& part : parts) {
+    std::uint64_t largest = 0;
+    for (const Chunk& chunk : part.chunks) {
+      const bool may_be_whole = part.whole_table <= longest_unpacked(part.compression, chunk.table_size);
+      largest = std::max({largest, chunk.unpacked_size, may_be_whole ? part.whole_table : 0});
+    }
+    chunk_bytes +=
+        largest + 2 * sizeof(std::uint32_t) * std::uint64_t(part.tile_width) * std::uint64_t(part.tile_height);
+  }
+  const std::uint64_t of_worker = std::max<std::uint64_t>(1, kCopies * chunk_bytes);
+  const int threads = IlmThread::ThreadPool::globalThreadPool().numThreads();
+  workers = std::clamp<std::uint64_t>(most_bytes / of_worker, 1, std::uint64_t(std::max(1, threads)));
+}
+
+void DeepReader::Impl::unpack(const Part& part, int column, int row, Unpacked& to) const {
+  const Chunk& chunk = part.chunks[std::size_t(row) * std::size_t(part.across()) + std::size_t(column)];
+  const std::size_t width = part.chunk_width(column),
+                    table_bytes = sizeof(std::uint32_t) * width * part.chunk_height(row);
+  to.table.resize(chunk.table_size);
+  to.packed.resize(chunk.packed_size);
+  if (!to.file.is_open()) to.file.open(path, std::ios::binary);
+  if (!read_at(to.file, chunk.table, to.table) || !read_at(to.file, chunk.table + chunk.table_size, to.packed))
+    refuse(part, fmt::format("chunk {}, {} is not whole", column, row));
+  const bool may_be_whole = part.whole_table <= longest_unpacked(part.compression, chunk.table_size);
+  const std::size_t whole_bytes = may_be_whole ? part.whole_table : 0;
+  to.data.resize(std::max({table_bytes, whole_bytes, std::size_t(chunk.unpacked_size)}));
+  const auto table = std::span(to.data).first(table_bytes), data = std::span(to.data).first(chunk.unpacked_size);
+  const auto whole = std::span(to.data).first(whole_bytes);
+  const bool is_table = (whole.size() > table.size() && unpack_deep(part.compression, to.table, whole, to.scratch)) ||
+                        unpack_deep(part.compression, to.table, table, to.scratch);
+  if (!is_table || !counts_of_table(table, width, to.counts))
+    refuse(part, fmt::format("the counts of chunk {}, {} are damaged", column, row));
+  std::uint64_t bytes = 0;
+  to.lines.clear();
+  for (std::size_t i = 0; i < to.counts.size(); i++) {
+    if (i % width == 0) to.lines.push_back(bytes);
+    bytes += std::uint64_t(to.counts[i]) * part.sample_bytes;
+  }
+  to.lines.push_back(bytes);
+  if (bytes != chunk.unpacked_size)
+    refuse(part, fmt::format("the counts of chunk {}, {} are not those of its samples", column, row));
+  if (!unpack_deep(part.compression, to.packed, data, to.scratch))
+    refuse(part, fmt::format("the samples of chunk {}, {} are damaged", column, row));
+}
+
+/// Takes the samples of a line out of a chunk.
+void DeepReader::Impl::take_line(const Part& part, std::size_t line, Unpacked& chunk) const {
+  const std::size_t count = (chunk.lines[line + 1] - chunk.lines[line]) / part.sample_bytes;
+  chunk.samples.assign(count, {0, 0, part.alphas == 0 ? 1.0F : 0.0F});
+  chunk.next = 0;
+  for (const auto& channel : part.taken) {
+    const std::uint8_t* at = chunk.data.data() + chunk.lines[line] + channel.offset * count;
+    const auto each = [&](auto&& take) {
+      for (auto& sample : chunk.samples) {
+        take(sample, value_at(at, channel.stored));
+        at += bytes_of(channel.stored);
+      }
+    };
+    const float part_of_alpha = 1.0F / float(std::max<std::size_t>(1, part.alphas));
+    if (channel.role == Role::front) each([](DeepSample& sample, float z) { sample.front = z; });
+    if (channel.role == Role::back) each([](DeepSample& sample, float z) { sample.back = z; });
+    if (channel.role == Role::alpha) each([&](DeepSample& sample, float a) { sample.opacity += a * part_of_alpha; });
+  }
+  if (!part.has_back)
+    for (auto& sample : chunk.samples) sample.back = sample.front;
+}
+
+/// The samples of the next pixel of a line, of all parts.
+static std::span<DeepSample> next_pixel(std::vector<Unpacked>& chunks, std::size_t pixel,
+                                        std::vector<DeepSample>& together) {
+  const auto next = [&](Unpacked& chunk) {
+    const std::span samples = std::span(chunk.samples).subspan(chunk.next, chunk.counts[pixel]);
+    chunk.next += samples.size();
+    return samples;
+  };
+  if (chunks.size() == 1) return next(chunks[0]);
+  together.clear();
+  for (auto& chunk : chunks) std::ranges::copy(next(chunk), std::back_inserter(together));
+  return together;
+}
+
+DeepReader::DeepReader(const std::string& path, const char* option, const std::vector<DeepStored>& parts,
+                       const DeepRules& rules, std::uint64_t most_bytes)
+    : impl_(std::make_unique<Impl>(path, option, rules)) {
+  for (const auto& part : parts) impl_->add_part(part);
+  impl_->share_out(most_bytes);
+}
+
+DeepReader::~DeepReader() = default;
+const DeepCounts& DeepReader::counts() const { return impl_->counts; }
+std::uint64_t DeepReader::bytes() const { return kCopies * impl_->chunk_bytes * impl_->workers; }
+
+void DeepReader::read(std::span<const DeepRead> reads, int first, int rows) {
+  if (rows <= 0) return;
+  const auto& parts = impl_->parts;
+  const Part& grid = parts.front();
+  const int top = first / grid.tile_height, bottom = (first + rows - 1) / grid.tile_height + 1;
+  const std::size_t across = std::size_t(grid.across()), cells = across * std::size_t(bottom - top);
+  const std::size_t workers = std::min(impl_->workers, cells);
+  std::vector<std::vector<Unpacked>> chunks(workers);
+  for (auto& mine : chunks) mine.resize(parts.size());
+  std::vector<DeepCounts> counts(workers);
+
+  const auto read_cell = [&](std::size_t cell, std::size_t worker) {
+    const int column = int(cell % across), row = top + int(cell / across);
+    auto& mine = chunks[worker];
+    for (std::size_t i = 0; i < parts.size(); i++) impl_->unpack(parts[i], column, row, mine[i]);
+    const int left = column * grid.tile_width, upper = row * grid.tile_height;
+    const std::size_t width = grid.chunk_width(column);
+    const int height = int(grid.chunk_height(row));
+    DeepPixel deep(impl_->rules);
+    std::vector<DeepSample> together;
+    for (int y = std::max(0, first - upper); y < std::min(height, first + rows - upper); y++) {
+      for (std::size_t i = 0; i < parts.size(); i++) impl_->take_line(parts[i], std::size_t(y), mine[i]);
+      const std::size_t at = std::size_t(upper + y - first) * std::size_t(grid.data.width) + std::size_t(left);
+      for (std::size_t x = 0; x < width; x++) {
+        const auto samples = next_pixel(mine, std::size_t(y) * width + x, together);
+        const DeepSurfaces surfaces = deep.surfaces(samples, counts[worker]);
+        for (const auto& read : reads) read.to[at + x] = (read.back ? surfaces.back : surfaces.front)[read.surface];
+      }
+    }
+  };
+  Crew(cells, read_cell).run(workers);
+  for (const auto& part : counts) impl_->counts.add(part);
+}
+
+}  // namespace alcove

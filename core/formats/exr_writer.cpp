@@ -1,0 +1,186 @@
+// Writes EXR files through OpenEXR, into a stream that keeps what fails.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfIO.h>
+#include <ImfInputFile.h>
+#include <ImfOutputFile.h>
+#include <ImfStringAttribute.h>
+#include <half.h>
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <optional>
+#include <set>
+
+#include "core/base/error.h"
+#include "core/base/file.h"
+#include "core/formats/exr.h"
+#include "core/formats/exr_attributes.h"
+
+namespace alcove {
+
+/// Gives OpenEXR's description of an error on one line.
+std::string one_line(const std::exception& error) {
+  std::string text = error.what();
+  std::ranges::replace(text, '\n', ' ');
+  return text;
+}
+
+/// Whether an attribute says how the input is stored or what its channels are, which does not hold for another file.
+bool describes_storage(const std::string& name) {
+  static const std::set<std::string> kNames = {"channels",
+                                               "compression",
+                                               "dataWindow",
+                                               "displayWindow",
+                                               "pixelAspectRatio",
+                                               "lineOrder",
+                                               "tiles",
+                                               "chunkCount",
+                                               "type",
+                                               "version",
+                                               "name",
+                                               "preview",
+                                               "dwaCompressionLevel",
+                                               "zipCompressionLevel",
+                                               "multiView",
+                                               "deepImageState",
+                                               "maxSamplesPerPixel",
+                                               "idManifest",
+                                               "BlenderMultiChannel"};
+  return kNames.contains(name) || name.rfind("cryptomatte/", 0) == 0;
+}
+
+namespace {
+
+/// An output stream into a file in the making. OpenEXR swallows what fails while it closes a file; failed() keeps it.
+class FileStream : public Imf::OStream {
+ public:
+  explicit FileStream(const std::string& path) : Imf::OStream(path.c_str()), file_(path) {}
+  void write(const char data[], int count) override {
+    try {
+      file_.write_at(position_, {data, std::size_t(count)});
+    } catch (const Error& error) {
+      if (!failure_) failure_ = error;
+      throw;
+    }
+    position_ += std::uint64_t(count);
+  }
+  std::uint64_t tellp() override { return position_; }
+  void seekp(std::uint64_t position) override { position_ = position; }
+  const std::optional<Error>& failure() const { return failure_; }
+  void commit() { file_.commit(); }
+  const std::string& temporary() const { return file_.temporary(); }
+
+ private:
+  NewFile file_;
+  std::uint64_t position_ = 0;
+  std::optional<Error> failure_;
+};
+
+/// Whether an attribute says how Alcove has made the input, which does not hold for what is made from it.
+bool is_own(std::string_view name) { return name.starts_with("alcove/"); }
+
+Imf::Compression compression_of(const std::string& name) {
+  if (name == "none") return Imf::NO_COMPRESSION;
+  if (name == "rle") return Imf::RLE_COMPRESSION;
+  if (name == "zips") return Imf::ZIPS_COMPRESSION;
+  if (name == "piz") return Imf::PIZ_COMPRESSION;
+  return Imf::ZIP_COMPRESSION;
+}
+
+Imf::Header header_of(const ExrOutput& output) {
+  Imf::Header header(box_of(output.display), box_of(output.data), float(output.pixel_aspect));
+  header.compression() = compression_of(output.compression);
+  if (output.attributes)
+    for (auto attribute = output.attributes->header.begin(); attribute != output.attributes->header.end(); ++attribute)
+      if (!describes_storage(attribute.name()) && !is_own(attribute.name()))
+        header.insert(attribute.name(), attribute.attribute());
+  for (const auto& [name, value] : output.own_attributes) {
+    header.erase(name);  // the input's may be of another type
+    header.insert(name, Imf::StringAttribute(value));
+  }
+  for (const auto& plane : output.planes)
+    header.channels().insert(plane.channel,
+                             Imf::Channel(plane.type == SampleType::half_float ? Imf::HALF : Imf::FLOAT));
+  return header;
+}
+
+/// Rounds to nearest. Values beyond half's range become its largest value, not infinity.
+std::vector<half> to_half(std::span<const float> values) {
+  std::vector<half> halves(values.size());
+  std::ranges::transform(values, halves.begin(),
+                         [](float x) { return half(std::abs(x) > HALF_MAX ? std::copysign(HALF_MAX, x) : x); });
+  return halves;
+}
+
+}  // namespace
+
+struct ExrWriter::Impl {
+  std::string path;
+  ExrOutput output;  // without pixels
+  FileStream stream;
+  std::unique_ptr<Imf::OutputFile> file;
+  int rows = 0;  // that are written
+
+  Impl(const std::string& path_, const ExrOutput& output_) : path(path_), output(output_), stream(path_) {}
+
+  void begin() { file = std::make_unique<Imf::OutputFile>(stream, header_of(output)); }
+
+  /// Runs a step of writing. Where the stream failed, its error is the reason that OpenEXR does not tell.
+  template <class Function>
+  void run(Function&& function) {
+    try {
+      function();
+    } catch (const std::exception& error) {
+      if (!stream.failure()) fail(ErrorKind::output, "{}: could not be encoded: {}", path, one_line(error));
+    }
+    if (stream.failure()) throw *stream.failure();
+  }
+};
+
+ExrWriter::ExrWriter(const std::string& path, const ExrOutput& output) : impl_(std::make_unique<Impl>(path, output)) {
+  impl_->run([&] { impl_->begin(); });
+}
+ExrWriter::~ExrWriter() = default;
+ExrWriter::ExrWriter(ExrWriter&&) noexcept = default;
+
+void ExrWriter::write(std::span<const std::span<const float>> planes) {
+  Window band = impl_->output.data;
+  band.y += impl_->rows;
+  band.height = int(planes[0].size() / std::size_t(band.width));
+  std::deque<std::vector<half>> halves;
+  Imf::FrameBuffer frame_buffer;
+  for (std::size_t i = 0; i < planes.size(); i++) {
+    const bool is_half = impl_->output.planes[i].type == SampleType::half_float;
+    const std::size_t bytes = is_half ? sizeof(half) : sizeof(float);
+    const void* pixels =
+        is_half ? static_cast<const void*>(halves.emplace_back(to_half(planes[i])).data()) : planes[i].data();
+    frame_buffer.insert(impl_->output.planes[i].channel,
+                        Imf::Slice::Make(is_half ? Imf::HALF : Imf::FLOAT, pixels, box_of(band), bytes,
+                                         bytes * std::size_t(band.width)));
+  }
+  impl_->run([&] {
+    impl_->file->setFrameBuffer(frame_buffer);
+    impl_->file->writePixels(band.height);
+  });
+  impl_->rows += band.height;
+}
+
+void ExrWriter::finish(const std::map<std::string, std::string>& late) {
+  impl_->run([&] { impl_->file.reset(); });
+  if (late.empty()) return impl_->stream.commit();
+  for (const auto& [name, value] : late) impl_->output.own_attributes[name] = value;
+  Impl with_late(impl_->path, impl_->output);
+  with_late.run([&] {
+    Imf::InputFile rows(impl_->stream.temporary().c_str());
+    with_late.begin();
+    with_late.file->copyPixels(rows);
+    with_late.file.reset();
+  });
+  with_late.stream.commit();
+}
+
+}  // namespace alcove

@@ -1,0 +1,165 @@
+// Finding the planes behind the first surface.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/frame/behind.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "core/base/error.h"
+#include "core/base/text.h"
+#include "core/frame/header_camera.h"
+
+namespace alcove {
+namespace {
+
+const AovNames& behind_names() {
+  static const AovNames names = [] {
+    AovNames depth = kDepthNames;
+    depth.channel_option = "--behind-channel";
+    return depth;
+  }();
+  return names;
+}
+
+const ExrFile& file_of(const FrameSource& source, const ChannelRef& ref) { return source.files[ref.file]; }
+
+const ExrPart& part_of(const FrameSource& source, const ChannelRef& ref) {
+  return file_of(source, ref).parts()[std::size_t(ref.part)];
+}
+
+/// What is said of all files once, or of each.
+template <class T>
+T said_of(const std::vector<T>& all, std::size_t file, T otherwise) {
+  if (all.empty()) return otherwise;
+  return all.size() == 1 ? all.front() : all[file];
+}
+
+/// The view that a file is read by; "" where it has none.
+std::string view_in(const ExrFile& file, const InputSettings& settings) {
+  const auto views = views_of(file);
+  if (views.empty()) return "";
+  return lower_case(settings.view.empty() ? views.front() : settings.view);
+}
+
+/// The pixels of a plane are those of the depth.
+void require_same_pixels(const FrameSource& source, const ChannelRef& ref, const InputSettings& settings) {
+  const ChannelRef& depth = source[RawPlane::depth][0];
+  const ExrFile &file = file_of(source, ref), &own = file_of(source, depth);
+  const auto require_same = [&](const char* what, const Window& theirs, const Window& ours) {
+    if (theirs != ours)
+      fail(ErrorKind::input,
+           "{}: its {} window is {}, and that of the depth in {} is {}: both must show the same "
+           "pixels (--behind)",
+           file.path(), what, to_string(theirs), own.path(), to_string(ours));
+  };
+  require_same("data", part_of(source, ref).data, source.file_data);
+  require_same("display", file.display(), source.display);
+  const std::string theirs = view_in(file, settings), ours = view_in(own, settings);
+  if (!theirs.empty() && !ours.empty() && theirs != ours)
+    fail(ErrorKind::input,
+         "{}: its view is {}, and that of the depth in {} is {}: give the same of both (--behind, "
+         "--view)",
+         file.path(), theirs, own.path(), ours);
+}
+
+bool is_half(const FrameSource& source, const ChannelRef& ref) {
+  const auto& channels = part_of(source, ref).channels;
+  const auto channel = std::ranges::find(channels, ref.channel, &ExrChannel::name);
+  return channel != channels.end() && channel->type == SampleType::half_float;
+}
+
+bool is_near(double a, double b) {
+  constexpr double kSame = 1e-3;  // attributes are rounded
+  return std::abs(a - b) <= kSame * std::max({1.0, std::abs(a), std::abs(b)});
+}
+
+bool is_same_camera(const Camera& a, const Camera& b) {
+  if (!is_near(a.fx, b.fx) || !is_near(a.fy, b.fy) || !is_near(a.cx, b.cx) || !is_near(a.cy, b.cy)) return false;
+  if (!a.view_from_world || !b.view_from_world) return true;
+  for (std::size_t row = 0; row < 3; row++) {
+    if (!is_near(a.view_from_world_offset[row], b.view_from_world_offset[row])) return false;
+    for (std::size_t column = 0; column < 3; column++)
+      if (!is_near((*a.view_from_world)[row][column], (*b.view_from_world)[row][column])) return false;
+  }
+  return true;
+}
+
+/// Notes a header whose camera is not that of the depth's header: it may be of another frame.
+void note_other_camera(FrameSource& source, const ChannelRef& ref) {
+  const auto camera_of = [&](const ChannelRef& channel) {
+    const ExrFile& file = file_of(source, channel);
+    return header_camera(file.attribute_texts(channel.part), source.display, source.file_data, source.pixel_aspect);
+  };
+  const auto theirs = camera_of(ref), ours = camera_of(source[RawPlane::depth][0]);
+  if (theirs && ours && !is_same_camera(theirs->camera, ours->camera))
+    source.notes.push_back({NoteCode::said_otherwise,
+                            fmt::format("the camera in the header of {} is another than that in the header of {}: are "
+                                        "they of the same frame (--behind)?",
+                                        file_of(source, ref).path(), source.depth_path())});
+}
+
+/// The one channel of a file.
+ChannelRef find_channel(FrameSource& source, ChannelSearch& search, std::size_t file, const std::string& chosen) {
+  const ChannelRef& depth = source[RawPlane::depth][0];
+  const bool is_alone = file != depth.file;
+  auto found = search.find_by_rules(file, behind_names(), chosen, source.rules->depth).first;
+  if (found.empty()) found = search.require(file, behind_names(), chosen, is_alone, "Z");
+  if (found[0] == depth)
+    fail(ErrorKind::input,
+         "{}: {} is the depth of the frame itself: name what lies behind it with --behind-channel, "
+         "or another file with --behind",
+         source.files[file].path(), found[0].channel);
+  return found[0];
+}
+
+std::string base_name(const FrameSource& source, const ChannelRef& ref) {
+  return std::filesystem::path(file_of(source, ref).path()).filename().string();
+}
+
+const char* word_of(BehindKind kind) {
+  switch (kind) {
+    case BehindKind::surfaces: break;
+    case BehindKind::fronts: return "fronts";
+    case BehindKind::backs: return "backs";
+    case BehindKind::thickness: return "thickness";
+  }
+  return "surfaces";
+}
+
+}  // namespace
+
+void find_behind(FrameSource& source, ChannelSearch& search, const InputSettings& settings) {
+  std::size_t number = 0;
+  for (const auto& path : settings.behind) {
+    if (path.empty()) continue;
+    const std::size_t file = search.open(path, "--behind");
+    const ChannelRef ref =
+        find_channel(source, search, file, said_of<std::string>(settings.behind_channels, number, ""));
+    require_same_pixels(source, ref, settings);
+    if (ref.file != source[RawPlane::depth][0].file) note_other_camera(source, ref);
+    const BehindKind kind = said_of(settings.behind_kinds, number, BehindKind::surfaces);
+    source[RawPlane::behind].push_back(ref);
+    source.behind.push_back({.kind = kind, .is_half = is_half(source, ref)});
+    if (source.behind.back().is_half && !source.depth_is_half)
+      source.suspicious.push_back(
+          {NoteCode::half_depth, fmt::format("{} of {} is stored as half float, and the depth is not: what lies behind "
+                                             "is off by up to a 2048th of its depth; write it as float",
+                                             ref.channel, path)});
+    number++;
+  }
+}
+
+std::string hidden_sources_text(const FrameSource& source) {
+  std::vector<std::string> sources;
+  for (std::size_t i = 0; i < source[RawPlane::behind].size(); i++) {
+    const ChannelRef& ref = source[RawPlane::behind][i];
+    sources.push_back(fmt::format("{} {} {}", base_name(source, ref), ref.channel, word_of(source.behind[i].kind)));
+  }
+  std::ranges::sort(sources);
+  return fmt::format("{}", fmt::join(sources, "; "));
+}
+
+}  // namespace alcove

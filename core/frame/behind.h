@@ -1,0 +1,55 @@
+// The planes of depth behind the first surface that --behind names: where they lie, how they are read, and whether
+// their pixels can be what they are said to be.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/base/note.h"
+#include "core/frame/gbuffer.h"
+
+namespace alcove {
+
+/// Finds the channels of --behind, once the depth of the frame and the rules of its program are found. A file may be
+/// one that the frame has already. Fails with ErrorKind::input, naming both files and the option that mends it, where a
+/// channel is not found, is the frame's own depth, or has other windows or another view than the depth.
+void find_behind(FrameSource& source, ChannelSearch& search, const InputSettings& settings);
+
+/// What the header of an output says of where its hidden surfaces come from: "peel2.exr Z surfaces; ...", in an order
+/// that does not depend on how they were given; "" where there are none.
+std::string hidden_sources_text(const FrameSource& source);
+
+/// Looks at what planes behind the first surface show beside it, over a part of a frame's pixels.
+class BehindSample {
+ public:
+  /// Takes those of `window` that belong to some of `whole`. Windows that share pixels give each of them once, so that
+  /// it is all the same how the whole is cut into windows. `depth` and `behind` are as read, over the window.
+  void add(const Reading& reading, std::span<const float> depth, std::span<const float> behind, const Window& window,
+           const Window& whole);
+
+  /// Says what of the planes is useless. Fails with ErrorKind::input where a plane cannot be what it is said to be: it
+  /// lies before the first surface, is along the ray where the depth is planar or the reverse, or is a thickness below
+  /// 0. They are planes of `source` that --behind has named.
+  Notes notes(const FrameSource& source) const;
+
+ private:
+  /// Numbers of pixels.
+  struct Plane {
+    std::size_t surfaces = 0;   // where the plane has one, and the frame too
+    std::size_t before = 0;     // of those before the first surface
+    std::size_t same = 0;       // of those that are the first surface
+    std::size_t negative = 0;   // whose value is below 0
+    std::size_t oblique = 0;    // of the surfaces, those whose rays are clearly longer than their depth
+    std::size_t as_read = 0;    // of those that have the depth of the first surface
+    std::size_t otherwise = 0;  // of those that would have it if the plane were along the ray, or if it were not
+    std::vector<float> parts;   // depth of the surfaces as parts of the first one's
+  };
+  Notes notes_of(const FrameSource& source, std::size_t plane) const;
+
+  std::vector<bool> taken_;  // pixels of the sample
+  std::vector<Plane> planes_;
+};
+
+}  // namespace alcove

@@ -1,0 +1,148 @@
+// What the pixels of planes behind the first surface say for and against them.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/base/error.h"
+#include "core/frame/behind.h"
+#include "core/frame/deep.h"
+
+namespace alcove {
+namespace {
+
+constexpr std::size_t kSampled = 1 << 18;      // pixels of a frame: enough to find a thing of a few pixels
+constexpr std::size_t kLeastSurfaces = 64;     // fewer tell too little
+constexpr double kSameSurface = 4;             // precisions, beside a pixel's slope, within which two depths are one
+constexpr double kRefused = 0.9;               // share of the surfaces before the first one
+constexpr double kNoted = 0.05;                // the same; edges of antialiased elements give some
+constexpr double kOblique = 1.002;             // length of a ray, of unit depth
+constexpr double kEqual = 5e-4;                // of the depth: much less than the length of oblique rays makes
+constexpr double kLeastOtherwise = 0.05;       // share of the oblique surfaces
+constexpr std::size_t kFarMoreOtherwise = 10;  // times as many as read as it is
+
+std::string name_of(const FrameSource& source, std::size_t plane) {
+  const ChannelRef& ref = source[RawPlane::behind][plane];
+  return fmt::format("{}: {}", source.files[ref.file].path(), ref.channel);
+}
+
+double precision_at(const DepthPrecision& precision, double z) {
+  return precision.at[0] + z * (precision.at[1] + z * precision.at[2]);
+}
+
+double percent(std::size_t part, std::size_t whole) { return 100.0 * double(part) / double(whole); }
+
+}  // namespace
+
+void BehindSample::add(const Reading& reading, std::span<const float> depth, std::span<const float> behind,
+                       const Window& window, const Window& whole) {
+  planes_.resize(reading.behind.size());
+  if (planes_.empty()) return;
+  const std::size_t pixels = window.pixels(), step = whole.pixels() / kSampled + 1;
+  taken_.resize(whole.pixels() / step + 1);
+  const View view = view_of(reading.camera, window, reading.display);
+  const DepthMap own = depth_map_of(reading);
+  const DepthPrecision precision = hidden_precision_of(reading);
+  std::vector<DepthMap> maps;
+  for (const auto& plane : reading.behind) maps.push_back(behind_map_of(reading, plane));
+  for (std::size_t i = step / 2; i < whole.pixels(); i += step) {
+    const int column = whole.x + int(i % std::size_t(whole.width)) - window.x,
+              row = whole.y + int(i / std::size_t(whole.width)) - window.y;
+    if (column < 0 || column >= window.width || row < 0 || row >= window.height || taken_[i / step]) continue;
+    taken_[i / step] = true;
+    const std::size_t at = std::size_t(row) * std::size_t(window.width) + std::size_t(column);
+    std::array<double, 3> values{};
+    for (std::size_t axis = 0; axis < 3 && at + axis * pixels < depth.size(); axis++)
+      values[axis] = depth[at + axis * pixels];
+    const double x = (double(column) + 0.5 - view.center.x) * view.tangent_per_pixel.x;
+    const double y = (double(row) + 0.5 - view.center.y) * view.tangent_per_pixel.y;
+    const double ray = view.orthographic ? 1 : std::sqrt(1 + x * x + y * y);
+    const double first = planar_depth(own, values, ray);
+    const double pixel = std::abs(view.tangent_per_pixel.x) * (view.orthographic ? 1 : first);
+    const double separation = kSameSurface * precision_at(precision, first) + pixel;
+    for (std::size_t p = 0; p < planes_.size(); p++) {
+      Plane& plane = planes_[p];
+      const double raw = behind[at + p * pixels];
+      if (raw < 0) plane.negative++;
+      const double z = planar_depth(maps[p], {raw, 0, 0}, ray);
+      if (!std::isfinite(first) || !std::isfinite(z)) continue;
+      plane.surfaces++;
+      if (reading.behind[p].kind == BehindKind::thickness) continue;
+      plane.before += z < first - separation ? 1 : 0;
+      plane.same += std::abs(z - first) <= separation ? 1 : 0;
+      plane.parts.push_back(float(z / first));
+      if (ray < kOblique) continue;
+      const double other = maps[p].along_ray ? z * ray : z / ray;
+      plane.oblique++;
+      plane.as_read += std::abs(z - first) < kEqual * first ? 1 : 0;
+      plane.otherwise += std::abs(other - first) < kEqual * first ? 1 : 0;
+    }
+  }
+}
+
+Notes BehindSample::notes(const FrameSource& source) const {
+  Notes notes;
+  std::size_t new_surfaces = 0;  // of deep samples
+  for (std::size_t plane = 0; plane < planes_.size(); plane++)
+    if (is_deep_plane(source, plane))
+      new_surfaces += planes_[plane].surfaces - planes_[plane].before - planes_[plane].same;
+    else
+      add_new(notes, notes_of(source, plane));
+  if (source.deep && !planes_.empty() && new_surfaces == 0)
+    notes.push_back(
+        {NoteCode::nothing_hidden,
+         fmt::format("{} holds no surface behind the first one: its elements were rendered in one go; merge "
+                     "elements that were rendered apart, or give peels to --behind",
+                     source.files[*source.deep].path())});
+  return notes;
+}
+
+Notes BehindSample::notes_of(const FrameSource& source, std::size_t number) const {
+  const Plane& plane = planes_[number];
+  const BehindPlane& said = source.behind[number];
+  const std::string name = name_of(source, number);
+  const auto pixels = std::size_t(std::ranges::count(taken_, true));
+  if (said.kind == BehindKind::thickness && plane.negative > 0)
+    fail(ErrorKind::input,
+         "{} is below 0 on {:.2g} % of the pixels, and a thickness is how far a solid goes on behind its front: name "
+         "another channel with --behind-channel, or say with --behind-kind what it is",
+         name, percent(plane.negative, pixels));
+  if (plane.surfaces == 0)
+    return {{NoteCode::empty_layer, fmt::format("{} shows no surface where the depth has one (--behind)", name)}};
+  if (said.kind == BehindKind::thickness || plane.surfaces < kLeastSurfaces) return {};
+
+  const bool along_ray = behind_map_of(source, said).along_ray;
+  if (double(plane.otherwise) > kLeastOtherwise * double(plane.oblique) &&
+      plane.otherwise > kFarMoreOtherwise * plane.as_read)
+    fail(ErrorKind::input,
+         "{} is the frame's own depth on {:.0f} % of the pixels if it is {}, and is read as {} like the depth of {}: "
+         "write both alike, or name another channel with --behind-channel; --depth-kind says how both are read",
+         name, percent(plane.otherwise, plane.oblique), along_ray ? "planar" : "along the ray",
+         along_ray ? "along the ray" : "planar", source.depth_path());
+  if (double(plane.before) >= kRefused * double(plane.surfaces)) {
+    std::vector<float> parts = plane.parts;
+    const auto middle = parts.begin() + std::ptrdiff_t(parts.size() / 2);
+    std::ranges::nth_element(parts, middle);
+    fail(ErrorKind::input,
+         "{} lies before the first surface on {:.0f} % of the pixels, at {:.3g} times its depth: it has another scale "
+         "or kind than the depth of {}, or another camera; name another channel with --behind-channel, or say with "
+         "--depth-kind and --depth-scale how both are read",
+         name, percent(plane.before, plane.surfaces), *middle, source.depth_path());
+  }
+  Notes notes;
+  if (double(plane.before) > kNoted * double(plane.surfaces))
+    notes.push_back({NoteCode::before_first,
+                     fmt::format("{} lies before the first surface on {:.0f} % of the pixels, where it is left out: is "
+                                 "it of the same frame and camera (--behind)?",
+                                 name, percent(plane.before, plane.surfaces))});
+  if (plane.same == plane.surfaces)
+    notes.push_back({NoteCode::nothing_hidden,
+                     fmt::format("{} is the first surface wherever it has one, and shows nothing new: name the channel "
+                                 "of what lies behind with --behind-channel",
+                                 name)});
+  return notes;
+}
+
+}  // namespace alcove

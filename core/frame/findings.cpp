@@ -1,0 +1,152 @@
+// Looks at pixels and headers for what harms AO.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/frame/findings.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <set>
+
+#include "core/base/error.h"
+#include "core/base/text.h"
+#include "core/frame/evidence.h"
+#include "core/frame/settle.h"
+
+namespace alcove {
+namespace {
+
+constexpr double kStep = 0.1;     // relative change of depth that is an edge
+constexpr double kSmooth = 0.02;  // relative change within a surface
+constexpr double kBetween = 0.1;  // part of a step within which a value belongs to the surface on that side
+constexpr int kLeastEdges = 100;
+constexpr double kMostBlended = 0.3;            // of the edges; thin things give some by themselves
+constexpr double kMostShortened = 0.02;         // of the normals
+constexpr std::size_t kEdgePixels = 1 << 18;    // of whole rows: enough for edges, and no cost beside reading
+constexpr std::size_t kNormalPixels = 1 << 16;  // enough for shares to a percent
+
+/// DWA quantizes channels by the last part of their names.
+bool is_lossy(const FrameSource& source, const ChannelRef& ref) {
+  static const std::set<std::string> kNames{"r", "g", "b", "y", "ry", "by"};
+  const std::size_t dot = ref.channel.rfind('.');
+  const std::string last = lower_case(dot == ref.channel.npos ? ref.channel : ref.channel.substr(dot + 1));
+  return source.files[ref.file].parts()[std::size_t(ref.part)].dwa && kNames.contains(last);
+}
+
+/// Parts that the frame does not need and whose first or last rows cannot be read: of a file that was cut short behind
+/// the frame's own parts. Those are read anyway.
+Notes cut_parts(ExrFile& file, const std::set<int>& needed) {
+  Notes found;
+  for (std::size_t p = 0; p < file.parts().size(); p++) {
+    const ExrPart& part = file.parts()[p];
+    const auto channel = std::ranges::find(part.channels, false, &ExrChannel::subsampled);
+    if (part.deep || channel == part.channels.end() || needed.contains(int(p))) continue;
+    std::vector<float> row(std::size_t(part.data.width));
+    const ExrRead read{int(p), channel->name, row.data()};
+    try {
+      for (const int y : {0, part.data.height - 1}) file.read({&read, 1}, y, 1);
+    } catch (const Error& error) {
+      found.push_back({NoteCode::damaged_file, error.what()});
+    }
+  }
+  return found;
+}
+
+/// Depth that was averaged over the pixels, by some of its rows.
+Notes averaged_depth(const FrameSource& source, std::span<const float> depth) {
+  const int step = int(std::min<std::size_t>(source.data.pixels() / kEdgePixels + 1, std::size_t(source.data.height)));
+  const View view = view_of(source.camera, source.data, source.display);
+  const double blended = blended_edges(planar_depths(depth, depth_map_of(source), view, step), source.data.width);
+  if (blended <= kMostBlended) return {};
+  return {{NoteCode::antialiased_depth,
+           fmt::format("{:.0f} % of the depth's edges have a pixel in between: the depth is anti-aliased, and AO shows "
+                       "seams there; render it without filtering",
+                       100 * blended)}};
+}
+
+/// Normals that were averaged over the pixels, by some of them. It is no warning where the program does so always, for
+/// nobody can have it do otherwise.
+Notes averaged_normals(const FrameSource& source, std::span<const float> depth, std::span<const float> normal) {
+  if (!has_lengths(source)) return {};
+  std::size_t step = source.data.pixels() / kNormalPixels + 1;
+  while (std::gcd(step, std::size_t(source.data.width)) > 1) step++;  // so that no column is favoured
+  const NormalStatistics s = normal_statistics(normal, depth, depth_map_of(source), step);
+  const double unit = source.normal_unorm ? s.unorm_unit_share : s.unit_share;
+  if (!s.count || unit >= 1 - kMostShortened) return {};
+  const bool is_usual = source.rules->normal_averaged;
+  return {{is_usual ? NoteCode::averaged_normals : NoteCode::shortened_normals,
+           fmt::format("{:.0f} % of the normals are not of unit length: they were averaged over the pixel, at edges "
+                       "over several surfaces{}",
+                       100 * (1 - unit), is_usual ? ", as " + source.rules->name + " always does" : "")}};
+}
+
+/// What DWA has quantized, and where files end too early.
+Notes damage(FrameSource& source) {
+  Notes found;
+  std::vector<std::set<int>> needed(source.files.size());
+  for (const RawPlane plane : {RawPlane::depth, RawPlane::normal})
+    for (const auto& channel : source[plane]) {
+      needed[channel.file].insert(channel.part);
+      if (is_lossy(source, channel))
+        found.push_back(
+            {NoteCode::lossy_compression,
+             fmt::format("{} is compressed by DWA, which is lossy for a channel of that name; write data with zip",
+                         channel.channel)});
+    }
+  for (std::size_t file = 0; file < source.files.size(); file++)
+    std::ranges::move(cut_parts(source.files[file], needed[file]), std::back_inserter(found));
+  return found;
+}
+
+/// Windows that are not those of the depth.
+Notes windows(const FrameSource& source) {
+  Notes found;
+  for (const auto& part : source.files[source[RawPlane::depth][0].file].parts())
+    if (part.data != source.file_data) {
+      found.push_back({NoteCode::windows_differ, fmt::format("part {} is {}, and the depth is {}", part.name,
+                                                             to_string(part.data), to_string(source.file_data))});
+      break;
+    }
+  if (source.file_data != source.display)
+    found.push_back(
+        {NoteCode::windows_differ,
+         fmt::format("the data window is {} and the display window {}: AO is computed on the data window, and the "
+                     "camera is for the display window",
+                     to_string(source.file_data), to_string(source.display))});
+  return found;
+}
+
+}  // namespace
+
+bool has_lengths(const FrameSource& source) {
+  return source[RawPlane::normal].size() == 3 &&
+         (source.normal_encoding == NormalEncoding::signed_float || source.normal_encoding == NormalEncoding::unorm);
+}
+
+double blended_edges(std::span<const float> planar, int width) {
+  int sharp = 0, blended = 0;
+  const auto close = [](double a, double b) { return std::abs(a - b) < kSmooth * std::min(a, b); };
+  for (std::size_t row = 0; row + std::size_t(width) <= planar.size(); row += std::size_t(width))
+    for (int x = 2; x + 2 < width; x++) {
+      const float* z = &planar[row + std::size_t(x)];
+      if (std::any_of(z - 2, z + 3, [](float v) { return std::isinf(v); })) continue;
+      const double before = z[-1], here = z[0], after = z[1];
+      if (!close(z[-2], before) || !close(after, z[2]) || std::abs(after - before) < kStep * std::min(before, after))
+        continue;
+      const double place = (here - before) / (after - before);
+      if (place > kBetween && place < 1 - kBetween) blended++;
+      // An edge without a pixel in between is seen from both of its sides, and is counted once.
+      else if (place <= kBetween)
+        sharp++;
+    }
+  return sharp + blended < kLeastEdges ? 0 : double(blended) / (sharp + blended);
+}
+
+Notes findings(FrameSource& source, std::span<const float> depth, std::span<const float> normal) {
+  Notes found;
+  for (Notes some :
+       {averaged_depth(source, depth), averaged_normals(source, depth, normal), damage(source), windows(source)})
+    std::ranges::move(some, std::back_inserter(found));
+  return found;
+}
+
+}  // namespace alcove

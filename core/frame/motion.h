@@ -1,0 +1,57 @@
+// Motion vectors of a frame: which way they are to be read, as the cameras prove it, and what moves by them.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/frame/camera.h"
+
+namespace alcove {
+
+/// Motion vectors as they were read. Files with vectors to both the previous and the next frame hold two pairs.
+struct MotionPlanes {
+  struct Pair {
+    std::vector<float> x, y;
+  };
+  std::string path;
+  std::vector<Pair> pairs;
+};
+
+/// Reads the vectors that the settings name, of a frame whose planes lie over this window. Fails with ErrorKind::input
+/// where there are none, or where they lie over other pixels.
+MotionPlanes read_motion(const InputSettings& settings, const Window& data);
+
+/// Another frame of the shot as this one's pixels are seen from it.
+struct FromThere {
+  ViewMap map{};  // this frame's view space -> its own
+  View view{};    // of its camera, over this frame's pixels
+};
+
+/// A frame, and the two beside it.
+struct MotionFrame {
+  std::span<const float> depth;  // planar; kSkyDepth for sky
+  View view{};
+  std::optional<FromThere> previous, next;  // none at the ends of the shot
+};
+
+/// How vectors are read: to where a surface is in that frame, less where it is now.
+struct MotionReading {
+  std::size_t pair = 0;
+  MotionKind kind = MotionKind::previous;  // not automatic
+  std::array<double, 2> scale{};           // px per unit, x to the right and y down
+  double share = 0;                        // of the surfaces whose vectors are what the cameras alone would make them
+};
+
+/// Gives the reading by which the most surfaces stand still: vectors may have either sign, y up or down, and be in
+/// pixels, in parts of the picture, or in parts of its half. None where no reading is right for more than a few:
+/// then the vectors are of other frames or of another unit. `kind` may say to which frame they lead.
+std::optional<MotionReading> best_motion_reading(const MotionPlanes& planes, const MotionFrame& frame, MotionKind kind);
+
+/// Gives 1 for each pixel whose surface moves by its vector, or that lies beside such a one; else 0. Sky stands still.
+std::vector<std::uint8_t> moving_by(const MotionPlanes& planes, const MotionReading& reading, const MotionFrame& frame);
+
+}  // namespace alcove

@@ -1,0 +1,131 @@
+// The mistakes that cameras come with, each undone.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/frame/other_cameras.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "core/base/error.h"
+
+namespace alcove {
+namespace {
+
+/// Of the picture's width or height: a principal point that far from the centre is no rounding.
+constexpr double kOffCentre = 0.02;
+
+struct Hypothesis {
+  std::string what;
+  Camera camera;
+  View view;
+};
+
+Matrix3 product(const Matrix3& a, const Matrix3& b) {
+  Matrix3 result{};
+  for (std::size_t i = 0; i < 3; i++)
+    for (std::size_t j = 0; j < 3; j++)
+      for (std::size_t k = 0; k < 3; k++) result[i][j] += a[i][k] * b[k][j];
+  return result;
+}
+
+Matrix3 transposed(const Matrix3& m) {
+  Matrix3 result{};
+  for (std::size_t i = 0; i < 3; i++)
+    for (std::size_t j = 0; j < 3; j++) result[i][j] = m[j][i];
+  return result;
+}
+
+/// The hypothesis that agrees best, where the frame can tell.
+std::optional<OtherCamera> best_of(const std::vector<Hypothesis>& hypotheses, const NormalPlanes& planes,
+                                   const NormalScore& as) {
+  std::optional<OtherCamera> best;
+  for (const auto& [what, camera, view] : hypotheses)
+    if (const auto score = score_normals_as(as.space, as.flips, planes, camera, view))
+      if (!best || score->close > best->score.close) best = OtherCamera{what, *score};
+  return best;
+}
+
+/// The same camera with its matrix replaced.
+std::vector<Hypothesis> turned_worlds(const Camera& camera, const View& view) {
+  if (!camera.view_from_world) return {};
+  constexpr Matrix3 kOpenCv{{{1, 0, 0}, {0, -1, 0}, {0, 0, -1}}};
+  constexpr Matrix3 kYUp{{{1, 0, 0}, {0, 0, -1}, {0, 1, 0}}};
+  const Matrix3 given = *camera.view_from_world, inverse = transposed(given);
+  std::vector<Hypothesis> turned;
+  const auto add = [&](const char* what, const Matrix3& matrix) {
+    turned.push_back({what, camera, view});
+    turned.back().camera.view_from_world = matrix;
+  };
+  add("its world_to_camera looks like camera_to_world: give the inverse", inverse);
+  add("its world_to_camera looks like that of a camera with y down that looks along +z, as OpenCV's: negate its second "
+      "and its third row",
+      product(kOpenCv, given));
+  add("its world_to_camera looks like camera_to_world of a camera with y down that looks along +z, as OpenCV's: give "
+      "the inverse, with its second and its third row negated",
+      product(kOpenCv, inverse));
+  for (const Matrix3& up : {kYUp, transposed(kYUp)})
+    add("its world_to_camera looks like that of a world with another axis up than the normals have (y, or z): give it "
+        "for the world of the normals",
+        product(given, up));
+  return turned;
+}
+
+/// The same camera on a picture whose rows or columns run the other way.
+std::vector<Hypothesis> turned_pictures(const Camera& camera, const View& view) {
+  View upside_down = view, mirrored = view;
+  upside_down.center.y = float(view.size.y) - view.center.y;
+  upside_down.tangent_per_pixel.y = -view.tangent_per_pixel.y;
+  mirrored.center.x = float(view.size.x) - view.center.x;
+  mirrored.tangent_per_pixel.x = -view.tangent_per_pixel.x;
+  return {{"its rows seem to run from the bottom to the top: turn the picture upside down", camera, upside_down},
+          {"its columns seem to run from the right to the left: mirror the picture", camera, mirrored}};
+}
+
+bool is_off(double centre, int size) { return std::abs(2 * centre - size) > 2 * kOffCentre * size; }
+
+}  // namespace
+
+bool is_off_centre(const Camera& camera) { return is_off(camera.cx, camera.width) || is_off(camera.cy, camera.height); }
+
+std::optional<OtherCamera> best_turned_camera(const NormalPlanes& planes, const NormalScore& as, const Camera& camera,
+                                              const View& view) {
+  std::vector<Hypothesis> hypotheses = turned_pictures(camera, view);
+  if (as.space == NormalSpace::world) std::ranges::move(turned_worlds(camera, view), std::back_inserter(hypotheses));
+  return best_of(hypotheses, planes, as);
+}
+
+std::optional<OtherCamera> best_other_point(const NormalPlanes& planes, const NormalScore& as, const Camera& camera,
+                                            const View& view) {
+  const double x = camera.width - camera.cx, y = camera.height - camera.cy;
+  const float by_x = float(x - camera.cx), by_y = float(y - camera.cy);
+  const bool x_is_off = is_off(camera.cx, camera.width), y_is_off = is_off(camera.cy, camera.height);
+  std::vector<Hypothesis> hypotheses;
+  const auto add = [&](const std::string& what, float dx, float dy) {
+    hypotheses.push_back({what, camera, view});
+    hypotheses.back().view.center = {view.center.x + dx, view.center.y + dy};
+  };
+  const std::string mirrored = "its principal point looks mirrored: try ";
+  if (x_is_off) add(fmt::format("{}\"cx\": {:.6g}", mirrored, x), by_x, 0);
+  if (y_is_off) add(fmt::format("{}\"cy\": {:.6g}", mirrored, y), 0, by_y);
+  if (x_is_off && y_is_off) add(fmt::format("{}\"cx\": {:.6g}, \"cy\": {:.6g}", mirrored, x, y), by_x, by_y);
+  add(fmt::format("its principal point looks wrong: try \"cx\": {}, \"cy\": {}, the centre", 0.5 * camera.width,
+                  0.5 * camera.height),
+      0.5f * by_x, 0.5f * by_y);
+  return best_of(hypotheses, planes, as);
+}
+
+std::optional<OtherCamera> best_other_width(const NormalPlanes& planes, const NormalScore& as, const Camera& camera,
+                                            const View& view) {
+  if (camera.orthographic) return std::nullopt;
+  std::vector<Hypothesis> hypotheses;
+  for (const double factor : {0.5, 0.7, 0.85, 1.2, 1.4, 2.0}) {
+    const double degrees = 2 * std::atan(0.5 * camera.width / camera.fx / factor) * 180 / std::numbers::pi;
+    hypotheses.push_back({fmt::format("a field of view of about {:.0f} degrees", degrees), camera, view});
+    auto& tangent = hypotheses.back().view.tangent_per_pixel;
+    tangent = {float(tangent.x / factor), float(tangent.y / factor)};
+  }
+  return best_of(hypotheses, planes, as);
+}
+
+}  // namespace alcove

@@ -1,0 +1,36 @@
+// Tries whether the normals agree with depth by another camera than the one that was given.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "core/frame/evidence.h"
+
+namespace alcove {
+
+/// A camera that was tried: what is wrong with the one that was given if this one is right, and its score.
+struct OtherCamera {
+  std::string what;  // a sentence that says what to do, without a full stop
+  NormalScore score;
+};
+
+/// Gives the best of the usual mistakes by which a camera turns the world or the picture: the inverse of its matrix,
+/// axes of another convention, another axis up, a picture that is upside down. None where too little of the frame is
+/// smooth. `as` is the reading of the normals that is tried.
+std::optional<OtherCamera> best_turned_camera(const NormalPlanes& planes, const NormalScore& as, const Camera& camera,
+                                              const View& view);
+
+/// Gives the best of the cameras with the principal point on the other side of the picture's centre, by x, by y or by
+/// both, or in the centre.
+std::optional<OtherCamera> best_other_point(const NormalPlanes& planes, const NormalScore& as, const Camera& camera,
+                                            const View& view);
+
+/// Gives the best of a few wider and narrower fields of view; none for an orthographic camera.
+std::optional<OtherCamera> best_other_width(const NormalPlanes& planes, const NormalScore& as, const Camera& camera,
+                                            const View& view);
+
+/// Whether the principal point is so far from the picture's centre that it matters on which side.
+bool is_off_centre(const Camera& camera);
+
+}  // namespace alcove

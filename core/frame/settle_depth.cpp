@@ -1,0 +1,391 @@
+// Scores the ways in which a frame's depth may be read, and chooses one.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "core/base/error.h"
+#include "core/frame/evidence.h"
+#include "core/frame/settle.h"
+#include "core/frame/settlement.h"
+
+namespace alcove {
+namespace {
+
+/// Where a smaller part of the smooth places is straight, the frame has no flat surfaces that could tell.
+constexpr double kLeastStraight = 0.02;
+/// From this part of the smooth places on, flat surfaces speak for a kind by themselves.
+constexpr double kSurelyStraight = 0.1;
+/// From this share on normals that agree with depth speak for it; see settle_normals.cpp.
+constexpr double kLeastAgreement = 0.6;
+/// If this part of the pixels is exactly 1, that is a background.
+constexpr double kPlateau = 0.001;
+/// Pixels. If the median is farther off than this, positions are not what they are taken for.
+constexpr double kLargestError = 2;
+
+class DepthSettlement : private Settlement {
+ public:
+  DepthSettlement(FrameSource& source, const InputSettings& settings, std::span<const float> depth,
+                  std::span<const float> normal)
+      : Settlement(source, settings, depth, normal), values_(statistics_of(depth, kSparse)) {
+    std::vector<float> surfaces;
+    for (std::size_t i = 0; i < depth.size(); i += kSparse)
+      if (depth[i] > 0 && depth[i] < settings.sky) surfaces.push_back(depth[i]);
+    surfaces_ = statistics_of(surfaces);
+  }
+
+  void run() {
+    const auto is_near = [&](std::size_t i) {
+      return std::isfinite(depth_[i]) && depth_[i] != 0 && std::abs(depth_[i]) < settings_.sky;
+    };
+    source_.has_evidence = false;
+    for (std::size_t i = 0; i < depth_.size() && !source_.has_evidence; i += kSparse) source_.has_evidence = is_near(i);
+    if (source_.depth_kind == DepthKind::position)
+      settle_position();
+    else
+      settle_plane();
+    note_unused_range();
+  }
+
+ private:
+  void settle_plane() {
+    if (source_.depth_kind_open)
+      settle_kind();
+    else
+      doubt_kind();
+    compare_planes();
+    const bool signed_kind = source_.depth_kind == DepthKind::planar || source_.depth_kind == DepthKind::ray ||
+                             source_.depth_kind == DepthKind::inverse;
+    if (!signed_kind || values_.positive || !values_.negative || values_.least == values_.most) return;
+    source_.depth_range.negative = true;
+    source_.notes.push_back(
+        {NoteCode::negative_depth, "all depth values are negative: their distance from 0 is the depth"});
+  }
+
+  /// Notes what the user said of a range that depth of this kind has not.
+  void note_unused_range() {
+    const DepthRange& said = settings_.depth_range;
+    const DepthKind kind = source_.depth_kind;
+    const bool is_device = kind == DepthKind::device, is_log = kind == DepthKind::log,
+               is_normalized = kind == DepthKind::normalized;
+    const bool is_between_planes = is_device || is_normalized || is_log;
+    std::vector<const char*> unused;
+    if (said.near && !is_device && !is_normalized) unused.push_back("--near");
+    if (said.far && !is_between_planes) unused.push_back("--far");
+    if (said.reversed && !is_between_planes) unused.push_back("--reversed-z");
+    if (said.device != DeviceRange::zero_to_one && !is_device) unused.push_back("--device-range");
+    if (said.log_constant != DepthRange{}.log_constant && !is_log) unused.push_back("--log-constant");
+    if (unused.empty()) return;
+    note(
+        NoteCode::said_otherwise,
+        fmt::format("{} {} no effect, since the depth is read as {}: leave {} out, or say with --depth-kind what it is",
+                    fmt::join(unused, ", "), unused.size() == 1 ? "has" : "have", name_of(kind),
+                    unused.size() == 1 ? "it" : "them"));
+  }
+
+  std::string straight(const DepthScore& score) const {
+    return fmt::format("{} is straight on {:.0f} % only as {}", source_.camera.orthographic ? "z" : "1/z",
+                       100 * score.straight, name_of(score.kind));
+  }
+
+  /// Reads the depth as the program that wrote the frame, or most programs, write it. It is no guess where the user
+  /// named the program.
+  void take_usual(const std::string& why) {
+    source_.depth_kind = source_.usual_depth_kind;
+    const std::string by =
+        source_.rules_by.empty() ? "" : fmt::format("{} writes it ({}); ", source_.rules->name, source_.rules_by);
+    guess("depth kind", name_of(source_.depth_kind), by + why, "--depth-kind", false);
+  }
+
+  void settle_kind() {
+    const DepthKind usual = source_.usual_depth_kind;
+    const bool between_planes = usual == DepthKind::device || usual == DepthKind::normalized || usual == DepthKind::log;
+    if (between_planes && values_.least >= 0 && values_.most <= 1) return take_usual("all in 0 to 1");
+    if (between_planes) source_.usual_depth_kind = source_.depth_kind = DepthKind::planar;
+    const auto scores = score_depth(depth_, view_, settings_.sky, depth_rounding(source_));
+    if (usual == DepthKind::inverse) return settle_inverse_or_passed_on(scores);
+    const bool tells = !scores.empty() && scores[0].straight >= kLeastStraight;
+    if (!tells) source_.has_evidence = false;
+    refuse_fractions(scores);
+    if (scores.empty()) return take_usual("too little of the frame is smooth to tell");
+    const auto& expected = *std::ranges::find(scores, source_.usual_depth_kind, &DepthScore::kind);
+    const std::string why = text_of(scores);
+    const DepthScore &best = scores[0], &second = scores[1];
+    if (!tells) return take_usual("the frame has no flat surfaces that tell: " + why);
+    if (expected.straight >= kAsGood * best.straight) return take_usual(why);
+    if (best.straight < kClear * second.straight)
+      fail(ErrorKind::input, "{}: the depth may be {} or {} ({}): say which with --depth-kind {} or --depth-kind {}",
+           depth_path(), name_of(best.kind), name_of(second.kind), why, name_of(best.kind), name_of(second.kind));
+    source_.depth_kind = best.kind;
+    if (best.kind == DepthKind::inverse && values_.least >= 0 && values_.most <= 1) return settle_device(why);
+    guess("depth kind", name_of(best.kind), why, "--depth-kind", true);
+  }
+
+  std::string text_of(const std::vector<DepthScore>& scores) const {
+    return fmt::format("{}, {}, {}", straight(scores[0]), straight(scores[1]), straight(scores[2]));
+  }
+
+  /// Settles the depth of a program that writes 1/z itself and passes on what other programs wrote. Neither is unusual.
+  void settle_inverse_or_passed_on(const std::vector<DepthScore>& scores) {
+    const auto take = [&](DepthKind kind, const std::string& why) {
+      source_.depth_kind = kind;
+      guess("depth kind", name_of(kind),
+            fmt::format("{} ({}) writes 1/z, and passes on what others wrote; {}", source_.rules->name,
+                        source_.rules_by, why),
+            "--depth-kind", false);
+    };
+    if (!scores.empty() && scores[0].straight >= kLeastStraight) {
+      refuse_fractions(scores);
+      return take(scores[0].kind, text_of(scores));
+    }
+    source_.has_evidence = false;
+    const double inverse = agreement_as(DepthKind::inverse), planar = agreement_as(DepthKind::planar);
+    const std::string why =
+        fmt::format("{:.0f} % of the normals agree with 1/z, {:.0f} % with z", 100 * inverse, 100 * planar);
+    if (std::max(inverse, planar) >= kLeastAgreement)
+      return take(inverse > planar ? DepthKind::inverse : DepthKind::planar, why);
+    if (is_fraction())
+      fail(ErrorKind::input,
+           "{}: {}, and neither flat surfaces nor normals tell whether it is 1/z, as {} writes it: give --depth-kind "
+           "inverse; where it is normalized, {}",
+           depth_path(), text_of_range(), source_.rules->name, normalized_line(false));
+    take(DepthKind::planar, "the frame does not tell, and it holds more than 1");
+  }
+
+  /// The share of the normals that agree with the depth if it is of that kind, in their best space; 0 without normals.
+  double agreement_as(DepthKind kind) const {
+    if (source_[RawPlane::normal].size() != 3) return 0;
+    const NormalStatistics n = normal_statistics(normal_, depth_, depth_map_of(source_), kSparse);
+    Reading reading = source_;
+    reading.depth_kind = kind;
+    const auto scores = score_normals(
+        {normal_, NormalEncoding::signed_float, n.unorm_unit_share > n.unit_share, depth_, depth_map_of(reading)},
+        source_.camera, view_);
+    return scores.empty() ? 0 : scores[0].agreement;
+  }
+
+  /// Whether all surfaces lie within 0 to 1, whatever stands for the sky.
+  bool is_fraction() const { return surfaces_.positive && surfaces_.most <= 1; }
+
+  std::string text_of_range() const {
+    return fmt::format("all depth lies within 0 to 1 ({:.3g} to {:.3g})", surfaces_.least, surfaces_.most);
+  }
+
+  /// How straight flat surfaces are if the depth falls from 1 at the eye to 0 at its far end.
+  double straightness_from_1() const {
+    std::vector<float> turned(depth_.begin(), depth_.end());
+    for (float& d : turned) d = d > 0 && d < 1 ? 1 - d : 0;
+    const double rounding = 3 * depth_rounding(source_) / std::max(1 - surfaces_.most, 0.01);
+    return straightness(score_depth(turned, view_, settings_.sky, rounding), DepthKind::planar);
+  }
+
+  /// The options that read normalized depth, and what their number is.
+  static std::string normalized_line(bool reversed) {
+    return fmt::format(
+        "--depth-kind normalized{} --near 0 --far F, where F is the distance, in scene units, that {} stands for",
+        reversed ? " --reversed-z" : "", reversed ? 0 : 1);
+  }
+
+  /// Depth within 0 to 1 is the part of a range more often than a distance, and no pixel shows how long that range is.
+  /// It is refused where nothing supports distances, and noted where straight lines do: z / far has them too.
+  void refuse_fractions(const std::vector<DepthScore>& scores) {
+    if (!is_fraction()) return;
+    const double straight = scores.empty() ? 0 : scores[0].straight, from_1 = straightness_from_1();
+    if (from_1 >= kLeastStraight && from_1 > kClear * straight)
+      fail(ErrorKind::input,
+           "{}: {}, and flat surfaces are straight on {:.0f} % as 1 - depth, on {:.0f} % as depth: it is normalized, "
+           "and 1 at the eye: give {}; if it is a distance all the same, --depth-kind planar",
+           depth_path(), text_of_range(), 100 * from_1, 100 * straight, normalized_line(true));
+    const bool is_supported = straight >= kSurelyStraight;
+    const bool is_inverse =
+        straight >= kLeastStraight && scores[0].kind == DepthKind::inverse && straight >= kClear * scores[1].straight;
+    if (source_.rules->depth_kind != DepthKind::automatic || is_inverse) return;
+    refuse_plateau();
+    if (!is_supported)
+      fail(ErrorKind::input,
+           "{}: {}, and no flat surfaces show that these are distances: where it is 0 at the eye, give {}; where it is "
+           "1 at the eye, {}; where it is a distance, --depth-kind planar; where it is 1/z, --depth-kind inverse; "
+           "where it is a z-buffer, --depth-kind device with --near and --far",
+           depth_path(), text_of_range(), normalized_line(false), normalized_line(true));
+    refuse_before_near_plane();
+    note(NoteCode::depth_below_1,
+         fmt::format("{} and is read as distances of less than 1 scene unit; where it is normalized, give {}",
+                     text_of_range(), normalized_line(false)));
+  }
+
+  /// No surface is seen that is nearer than the near plane, so the depth of such is no distance.
+  void refuse_before_near_plane() const {
+    constexpr double kMostNearer = 0.01;  // of the surfaces: matrices and planes are rounded
+    if (!source_.camera.near) return;
+    const double near = 0.99 * *source_.camera.near / source_.depth_scale;
+    std::size_t count = 0, nearer = 0;
+    for (std::size_t i = 0; i < depth_.size(); i += kSparse)
+      if (depth_[i] > 0 && depth_[i] < settings_.sky) count++, nearer += depth_[i] < near;
+    if (double(nearer) <= kMostNearer * double(count)) return;
+    fail(
+        ErrorKind::input,
+        "{}: {}, and {:.0f} % of it is nearer than the camera's near plane at {:.3g}, so these are no distances: where "
+        "they are normalized, give {}; if they are all the same, --depth-kind planar",
+        depth_path(), text_of_range(), 100 * double(nearer) / double(count), *source_.camera.near,
+        normalized_line(false));
+  }
+
+  /// A background of exactly 1 behind depths of 0 to 1 is the far end of a range.
+  void refuse_plateau() const {
+    if (values_.least < 0 || values_.most != 1 || double(values_.one) < kPlateau * double(values_.pixels)) return;
+    fail(ErrorKind::input,
+         "{}: the depth may be normalized or planar (all in 0 to 1, {:.1f} % of exactly 1): say --depth-kind "
+         "normalized with --near and --far (or log, with "
+         "--far and --log-constant), or --depth-kind planar",
+         depth_path(), 100 * double(values_.one) / double(values_.pixels));
+  }
+
+  /// Notes near planes that differ. A projection matrix made for another depth range than the buffer's scales all
+  /// distances, which no pixel shows.
+  void compare_planes() {
+    const auto near = source_.depth_range.near;
+    const auto by_file = source_.camera.near;
+    const auto by_matrix = source_.camera.matrix_near;
+    constexpr double kSame = 0.01;  // matrices are rounded
+    if (source_.depth_kind == DepthKind::device && settings_.depth_range.near && by_file &&
+        std::abs(*near / *by_file - 1) >= kSame)
+      source_.notes.push_back(
+          {NoteCode::near_plane,
+           fmt::format("--near is {:.4g}, and the camera file's near plane is at {:.4g}: distances are {:.3g} times "
+                       "what they are by that",
+                       *near, *by_file, *near / *by_file)});
+    if (source_.depth_kind != DepthKind::device || source_.depth_range.reversed ||
+        source_.depth_range.device != DeviceRange::zero_to_one)
+      return;
+    if (!near || !by_matrix || std::abs(*by_matrix / *near - 1) < kSame) return;
+    source_.notes.push_back(
+        {NoteCode::near_plane,
+         fmt::format("the near plane is {:.4g}, but the camera file's projection, read with z = depth, has it at "
+                     "{:.4g}: so read, distances would be {:.3g} "
+                     "times as large; trust the one that was measured (--near, --device-range)",
+                     *near, *by_matrix, *by_matrix / *near)});
+  }
+
+  /// Notes distances that look like a part of a range. They are read as distances all the same.
+  void doubt_fractions(const std::vector<DepthScore>& scores) {
+    const bool is_distance = source_.depth_kind == DepthKind::planar || source_.depth_kind == DepthKind::ray;
+    if (!is_distance || !is_fraction()) return;
+    const double straight = scores.empty() ? 0 : scores[0].straight, from_1 = straightness_from_1();
+    if (from_1 >= kLeastStraight && from_1 > kClear * straight)
+      note(NoteCode::said_otherwise,
+           fmt::format("{}, and flat surfaces are straight on {:.0f} % as 1 - depth, on {:.0f} % as depth: it is read "
+                       "as {}, as --depth-kind, --source or the camera file says; where it is normalized, give {}",
+                       text_of_range(), 100 * from_1, 100 * straight, name_of(source_.depth_kind),
+                       normalized_line(true)));
+    else if (settings_.depth_kind == DepthKind::automatic && source_.rules->depth_kind == DepthKind::automatic)
+      note(NoteCode::depth_below_1,
+           fmt::format("{} and is read as {}, as the camera file says; where it is normalized, give {}; "
+                       "--depth-kind {} says that these are distances",
+                       text_of_range(), name_of(source_.depth_kind), normalized_line(false),
+                       name_of(source_.depth_kind)));
+  }
+
+  /// Notes where the pixels speak against the kind of depth that is said. It is read so all the same.
+  void doubt_kind() {
+    doubt_range();
+    const bool linear = source_.depth_kind == DepthKind::normalized || source_.depth_kind == DepthKind::log;
+    const DepthKind said = source_.depth_kind != DepthKind::device ? source_.depth_kind
+                           : source_.camera.orthographic           ? DepthKind::planar
+                                                                   : DepthKind::inverse;
+    const auto scores = score_depth(depth_, view_, settings_.sky, depth_rounding(source_));
+    doubt_fractions(scores);
+    if (scores.empty() || scores[0].straight < (linear ? kSurelyStraight : kLeastStraight)) return;
+    if (kClear * straightness(linear ? scores_as_said() : scores, linear ? DepthKind::planar : said) >
+        scores[0].straight)
+      return;
+    source_.notes.push_back(
+        {NoteCode::said_otherwise,
+         fmt::format("depth is read as {}, as --depth-kind, --source or the camera file says, but {}: is it {}?",
+                     name_of(source_.depth_kind), straight(scores[0]),
+                     scores[0].kind == DepthKind::inverse ? "inverse or device" : name_of(scores[0].kind))});
+  }
+
+  /// The scores of the distances that the depth gives if it is read as is said.
+  std::vector<DepthScore> scores_as_said() const {
+    return score_depth(planar_depths(depth_, depth_map_of(source_), view_), view_, settings_.sky,
+                       2 * depth_rounding(source_));
+  }
+
+  double straightness(const std::vector<DepthScore>& scores, DepthKind kind) const {
+    if (source_.camera.orthographic && kind == DepthKind::ray) kind = DepthKind::planar;
+    const auto found = std::ranges::find(scores, kind, &DepthScore::kind);
+    return found == scores.end() ? 0 : found->straight;
+  }
+
+  /// Notes a z-buffer that uses only half of its range, or that leaves it.
+  void doubt_range() {
+    if (source_.depth_kind != DepthKind::device) return;
+    const auto below = std::ranges::count_if(depth_, [](float d) { return d > -1 && d < 0; });
+    if (source_.depth_range.device == DeviceRange::zero_to_one && below > 0)
+      source_.notes.push_back(
+          {NoteCode::said_otherwise,
+           fmt::format("{} pixels have a depth of -1 to 0 and count as sky: is it that of --device-range=-1..1?",
+                       below)});
+    if (source_.depth_range.device == DeviceRange::minus_one_to_one && values_.least >= 0)
+      source_.notes.push_back(
+          {NoteCode::said_otherwise,
+           "no depth is below 0, so the nearest surface is beyond twice the near plane, or the depth is not that of "
+           "--device-range=-1..1"});
+  }
+
+  /// Inverse depth and that of a z-buffer are both affine in 1/z. A near plane that somebody knows tells them apart.
+  /// Sky is at the far plane.
+  void settle_device(const std::string& why) {
+    const bool reversed = source_.depth_range.reversed || (values_.zero && !values_.one);
+    if (!settings_.depth_range.near || !source_.depth_range.far || !(reversed || values_.one))
+      fail(ErrorKind::input,
+           "{}: the depth may be device or inverse (all in 0 to 1, {}): say --depth-kind device with --near and --far "
+           "(inf where there is none) and, "
+           "where near is 1, --reversed-z; or --depth-kind inverse",
+           depth_path(), why);
+    source_.depth_range.reversed = reversed;
+    source_.depth_kind = DepthKind::device;
+    guess("depth kind", reversed ? "device with --reversed-z" : "device", "all in 0 to 1, --near is given, and " + why,
+          "--depth-kind", true);
+  }
+
+  void settle_position() {
+    struct Candidate {
+      PositionSpace space;
+      bool forward;  // the camera looks along +z
+      std::optional<double> error;
+    };
+    std::vector<Candidate> candidates;
+    for (const PositionSpace space : {PositionSpace::world, PositionSpace::view})
+      for (const bool forward : {false, true})
+        if ((settings_.position_space == PositionSpace::automatic || settings_.position_space == space) &&
+            (space == PositionSpace::view || (source_.camera.view_from_world && !forward)))
+          candidates.push_back({space, forward, reprojection_error(depth_, space, forward, source_.camera, view_)});
+    // no world matrix, which the map complains about; or nothing but sky
+    if (candidates.empty() || !candidates[0].error) return;
+    const auto best = std::ranges::min_element(candidates, {}, &Candidate::error);
+    if (!(*best->error <= kLargestError))
+      fail(
+          ErrorKind::input,
+          "{}: its positions lie {} from the pixels that hold them: check --position-space and --camera", depth_path(),
+          *best->error < 1e6 ? fmt::format("{:.1f} pixels (median)", *best->error) : "on the other side of the camera");
+    source_.position_space = best->space;
+    source_.depth_range.negative = best->forward;
+    if (settings_.position_space == PositionSpace::automatic)
+      guess("position space", best->space == PositionSpace::world ? "world" : "view",
+            fmt::format("positions lie {:.3f} pixels (median) from the pixels that hold them", *best->error),
+            "--position-space", false);
+  }
+
+  ValueStatistics values_;    // of all pixels
+  ValueStatistics surfaces_;  // above 0 and before the sky: of distances, all that are surfaces
+};
+
+}  // namespace
+
+void settle_depth(FrameSource& source, const InputSettings& settings, std::span<const float> depth,
+                  std::span<const float> normal) {
+  DepthSettlement(source, settings, depth, normal).run();
+}
+
+}  // namespace alcove

@@ -1,0 +1,53 @@
+// What the steps of settling a frame share: the frame, its pixels, and how a guess is made known.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "core/base/settings.h"
+#include "core/frame/gbuffer.h"
+
+namespace alcove {
+
+/// A frame that is being settled, by planes of depth and normals as they were read.
+class Settlement {
+ public:
+  Settlement(FrameSource& source, const InputSettings& settings, std::span<const float> depth,
+             std::span<const float> normal);
+
+ protected:
+  /// The usual reading stays where its score is at least this part of the best one.
+  static constexpr double kAsGood = 0.8;
+  /// Another reading is taken only where it is this many times as good as the second best.
+  static constexpr double kClear = 2;
+  /// One of so many pixels is enough for statistics. It is a prime, so that no column is favoured.
+  static constexpr std::size_t kSparse = 31;
+
+  const std::string& depth_path() const { return source_.depth_path(); }
+  const std::string& normal_path() const { return source_.files[source_[RawPlane::normal][0].file].path(); }
+
+  /// Takes down what was chosen; `unusual` guesses are noted too. Fails with ErrorKind::input under --strict.
+  void guess(const std::string& what, const std::string& chosen, const std::string& why, const std::string& option,
+             bool unusual);
+  void note(NoteCode code, std::string text) { source_.notes.push_back({code, std::move(text)}); }
+
+  FrameSource& source_;
+  const InputSettings& settings_;
+  std::span<const float> depth_, normal_;
+  View view_;
+};
+
+/// Settles kind and sign of the depth, or the space of positions.
+void settle_depth(FrameSource& source, const InputSettings& settings, std::span<const float> depth,
+                  std::span<const float> normal);
+
+/// Settles encoding and space of the normals of a frame whose depth is settled. Refuses those that depth and camera
+/// refute.
+void settle_normals(FrameSource& source, const InputSettings& settings, std::span<const float> depth,
+                    std::span<const float> normal);
+
+/// Notes a principal point beside the centre that the pixels neither confirm nor refute.
+void note_centre(FrameSource& source);
+
+}  // namespace alcove

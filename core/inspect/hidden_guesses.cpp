@@ -1,0 +1,69 @@
+// Matches names with those that have been seen of back faces and of peels.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/inspect/hidden_guesses.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+#include <regex>
+
+#include "core/base/option_words.h"
+#include "core/base/text.h"
+
+namespace alcove {
+namespace {
+
+/// What a channel of this full name, in lower case, may hold.
+std::optional<BehindKind> kind_by(const std::string& name) {
+  static const std::regex backs(R"((.*\.)?(zback|z\.back|depth_back|backz))");
+  static const std::regex peels(R"((.*\.)?(peel[^.]*|depth[2-9]|layer[2-9])(\.z)?)");
+  if (std::regex_match(name, backs)) return BehindKind::backs;
+  return std::regex_match(name, peels) ? std::optional(BehindKind::surfaces) : std::nullopt;
+}
+
+/// Whether the frame reads the channel already.
+bool is_read(const FrameSource& source, const ChannelRef& ref) {
+  const auto has = [&](const std::vector<ChannelRef>& plane) { return std::ranges::find(plane, ref) != plane.end(); };
+  return std::ranges::any_of(source.planes.entries, has);
+}
+
+std::string word_of(BehindKind kind) {
+  for (const auto& [word, meaning] : names_of<BehindKind>())
+    if (meaning == kind) return word;
+  return "";
+}
+
+}  // namespace
+
+std::vector<HiddenGuess> hidden_guesses(const FrameSource& source) {
+  std::vector<HiddenGuess> guesses;
+  for (std::size_t file = 0; file < source.files.size(); file++)
+    for (std::size_t part = 0; part < source.files[file].parts().size(); part++) {
+      const ExrPart& header = source.files[file].parts()[part];
+      if (header.deep) continue;  // its channels are no planes
+      for (const auto& channel : header.channels) {
+        const bool is_whole = header.name.empty() || channel.name.starts_with(header.name + ".");
+        const std::string full = is_whole ? channel.name : header.name + "." + channel.name;
+        const auto kind = kind_by(lower_case(full));
+        const bool fits = kind && !channel.subsampled && header.data == source.file_data;
+        if (fits && !is_read(source, {file, int(part), channel.name}))
+          guesses.push_back({source.files[file].path(), full, *kind});
+      }
+    }
+  if (guesses.size() > kMostBehind) guesses.resize(kMostBehind);
+  return guesses;
+}
+
+std::string options_for(const std::vector<HiddenGuess>& guesses) {
+  std::string files, channels, kinds;
+  for (const auto& guess : guesses) {
+    files += fmt::format(" --behind {}", for_shell(guess.file));
+    channels += (channels.empty() ? "" : ",") + guess.channel;
+    kinds += (kinds.empty() ? "" : ",") + word_of(guess.kind);
+  }
+  if (guesses.empty()) return "";
+  return fmt::format("{} --behind-channel {} --behind-kind {}", files.substr(1), for_shell(channels), kinds);
+}
+
+}  // namespace alcove

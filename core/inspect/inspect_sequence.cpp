@@ -1,0 +1,246 @@
+// Compares the headers of all frames and the pixels of a few.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/inspect/inspect_sequence.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <set>
+
+#include "core/base/error.h"
+#include "core/frame/input_files.h"
+#include "core/frame/settle.h"
+#include "core/inspect/inspect.h"
+
+namespace alcove {
+namespace {
+
+constexpr std::size_t kReadFrames = 5;  // whose pixels are looked at, from the first to the last
+constexpr double kDegrees = 180 / std::numbers::pi;
+
+using Values = std::map<std::string, std::string>;  // what is compared, by its name
+
+/// The channels of all files of a frame, with their types.
+std::string channels_of(const FrameSource& source) {
+  std::string text;
+  for (const auto& file : source.files)
+    for (const auto& part : file.parts())
+      for (const auto& channel : part.channels)
+        text += fmt::format("{}{}{}{} ({})", text.empty() ? "" : ", ", part.name, part.name.empty() ? "" : ": ",
+                            channel.name, name_of(channel.type));
+  return text;
+}
+
+std::string names_of(const std::vector<ChannelRef>& channels) {
+  std::string text;
+  for (const auto& channel : channels) text += (text.empty() ? "" : ", ") + channel.channel;
+  return text.empty() ? "none" : text;
+}
+
+std::string plane_text(const std::optional<double>& distance) {
+  return distance ? fmt::format("{:.6g}", *distance) : "unknown";
+}
+
+/// What the headers of a frame say.
+Values values_of(const FrameSource& source, bool has_camera) {
+  Values values{{"data window", to_string(source.file_data)},
+                {"display window", to_string(source.display)},
+                {"pixel aspect", fmt::format("{:.4g}", source.pixel_aspect)},
+                {"channels", channels_of(source)},
+                {"depth", names_of(source[RawPlane::depth])},
+                {"normals", names_of(source[RawPlane::normal])},
+                {"source", source.rules->name}};
+  if (!has_camera) return values;
+  values["camera by"] = source.camera_from.empty() ? "options" : "the header's " + source.camera_from;
+  values["near plane"] = plane_text(source.camera.near);
+  values["far plane"] = plane_text(source.camera.far);
+  return values;
+}
+
+/// How a frame would be read by itself.
+std::string reading_of(const FrameSource& source) {
+  std::string text = std::string(name_of(source.depth_kind)) + " depth";
+  if (source[RawPlane::normal].empty()) return text;
+  text += fmt::format(", {} normals, {}", name_of(source.normal_space), encoding_name(source));
+  if (to_string(source.flip_normal) != "none") text += ", flips " + to_string(source.flip_normal);
+  return text;
+}
+
+std::array<double, 3> eye_of(const Camera& camera) {
+  std::array<double, 3> eye{};
+  for (std::size_t axis = 0; axis < 3; axis++)
+    for (std::size_t row = 0; row < 3; row++)
+      eye[axis] -= (*camera.view_from_world)[row][axis] * camera.view_from_world_offset[row];
+  return eye;
+}
+
+double distance(const std::array<double, 3>& a, const std::array<double, 3>& b) {
+  return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
+}
+
+/// The angle of the rotation from one camera to the other, in degrees.
+double turn(const Camera& a, const Camera& b) {
+  double trace = 0;
+  for (std::size_t i = 0; i < 3; i++)
+    for (std::size_t j = 0; j < 3; j++) trace += (*a.view_from_world)[i][j] * (*b.view_from_world)[i][j];
+  return std::acos(std::clamp(0.5 * (trace - 1), -1.0, 1.0)) * kDegrees;
+}
+
+double width_of(const Camera& camera) {
+  return camera.orthographic ? camera.width / camera.fx : 2 * std::atan(0.5 * camera.width / camera.fx) * kDegrees;
+}
+
+/// A sequence being looked at.
+class SequenceInspector {
+ public:
+  explicit SequenceInspector(const SequenceNames& names) : names_(names) {}
+
+  Inspection inspect() {
+    Inspection found = first_that_shows();
+    shown_.shown = shown_frame_;
+    shown_.frames = names_.frames;
+    shown_.absent = names_.absent;
+    has_camera_ = has_a_camera(names_.of(shown_frame_));
+    for (const int frame : names_.frames) look_at_header(frame);
+    for (const int frame : few()) look_at_pixels(frame);
+    sort_out();
+    found.sequence = std::move(shown_);
+    return found;
+  }
+
+ private:
+  /// The frame that a run would settle the sequence by.
+  Inspection first_that_shows() {
+    const CommandNames run{names_.named, "ao.%04d.exr", names_.said};
+    std::optional<Inspection> first;
+    for (const int frame : names_.evidence) {
+      Inspection found = inspect_frame(names_.of(frame), frame, run);
+      if (first && !found.shows_surfaces) continue;
+      shown_frame_ = frame;
+      first = std::move(found);
+      if (first->shows_surfaces) break;
+    }
+    return *first;
+  }
+
+  FrameSource open(int frame) const {
+    const InputSettings settings = names_.of(frame);
+    FrameSource source = find_frame(has_camera_ ? settings : with_some_camera(settings), false, frame);
+    source.camera_is_assumed = !has_camera_;
+    return source;
+  }
+
+  void look_at_header(int frame) {
+    try {
+      const FrameSource source = open(frame);
+      for (const auto& [what, value] : values_of(source, has_camera_)) take(what, value, frame);
+      if (has_camera_) follow(source.camera, frame);
+    } catch (const Error& error) {
+      refuse(error, frame);
+    }
+  }
+
+  /// Takes down that a frame is refused, without the name of its file, so that frames with one fault stand together.
+  void refuse(const Error& error, int frame) {
+    std::string text = error.what();
+    const std::string name = main_input(names_.of(frame)) + ": ";
+    if (text.starts_with(name)) text.erase(0, name.size());
+    take(kRefused, text, frame);
+  }
+
+  void take(const std::string& what, const std::string& value, int frame) {
+    auto& values = found_[what];
+    const auto known = std::ranges::find(values, value, [](const auto& pair) { return pair.first; });
+    if (known == values.end())
+      values.push_back({value, {frame}});
+    else
+      known->second.push_back(frame);
+  }
+
+  void follow(const Camera& camera, int frame) {
+    SequenceCamera& path = shown_.camera ? *shown_.camera : shown_.camera.emplace();
+    const double width = width_of(camera);
+    path.widest = std::max(path.widest, width);
+    path.narrowest = first_camera_ ? std::min(path.narrowest, width) : width;
+    if (camera.view_from_world && first_camera_ && first_camera_->view_from_world) {
+      path.is_placed = true;
+      path.farthest = std::max(path.farthest, distance(eye_of(camera), eye_of(*first_camera_)));
+      path.largest_turn = std::max(path.largest_turn, turn(camera, *first_camera_));
+      const double step = distance(eye_of(camera), eye_of(last_camera_));
+      if (step > path.largest_step) path.largest_step = step, path.at_largest_step = frame;
+    }
+    if (!first_camera_) first_camera_ = camera;
+    last_camera_ = camera;
+  }
+
+  /// The first frame, the last, and a few between them.
+  std::set<int> few() const {
+    std::set<int> frames{shown_frame_};
+    const std::size_t count = std::min(kReadFrames, names_.frames.size());
+    for (std::size_t i = 0; i < count; i++)
+      frames.insert(names_.frames[i * (names_.frames.size() - 1) / std::max<std::size_t>(1, count - 1)]);
+    return frames;
+  }
+
+  void look_at_pixels(int frame) {
+    try {
+      FrameSource source = open(frame);
+      require_host_room(source.depth_path(), source.data);
+      std::vector<float> depth(source[RawPlane::depth].size() * source.data.pixels()),
+          normal(source[RawPlane::normal].size() * source.data.pixels());
+      read_planes(source, {{&source[RawPlane::depth], depth.data()}, {&source[RawPlane::normal], normal.data()}});
+      const InputSettings settings = names_.of(frame);
+      settle(source, has_camera_ ? settings : with_some_camera(settings), depth, normal);
+      if (has_camera_ && source.has_evidence) take("reading", reading_of(source), frame);
+      for (const auto& note : source.suspicious) suspicious_[facts_of(note.code).meaning].insert(frame);
+      shown_.depth.push_back(distances(source, depth, frame));
+    } catch (const Error& error) {
+      refuse(error, frame);
+    }
+  }
+
+  static SequenceDepth distances(const FrameSource& source, std::span<const float> raw, int frame) {
+    std::vector<float> planar =
+        planar_depths(raw, depth_map_of(source), view_of(source.camera, source.data, source.display));
+    const std::size_t pixels = planar.size();
+    std::erase_if(planar, [](float z) { return std::isinf(z); });
+    SequenceDepth depth{frame, 1 - double(planar.size()) / double(pixels), {}, {}, {}};
+    if (planar.empty()) return depth;
+    const auto middle = planar.begin() + std::ptrdiff_t(planar.size() / 2);
+    std::ranges::nth_element(planar, middle);
+    depth.median = *middle;
+    depth.nearest = *std::ranges::min_element(planar);
+    depth.farthest = *std::ranges::max_element(planar);
+    return depth;
+  }
+
+  /// Parts what changes from what is the same in all frames.
+  void sort_out() {
+    for (const auto& [meaning, frames] : suspicious_)
+      if (frames.size() < shown_.depth.size())
+        shown_.changes.push_back({"suspicious", {{meaning, {frames.begin(), frames.end()}}}});
+    for (auto& [what, values] : found_)
+      if (values.size() > 1 || what == kRefused)
+        shown_.changes.push_back({what, std::move(values)});
+      else
+        shown_.same.push_back(what);
+  }
+
+  static constexpr const char* kRefused = "refused";
+
+  const SequenceNames& names_;
+  int shown_frame_ = 0;
+  bool has_camera_ = false;
+  InspectedSequence shown_{};
+  std::optional<Camera> first_camera_;
+  Camera last_camera_;
+  std::map<std::string, std::vector<std::pair<std::string, std::vector<int>>>> found_;
+  std::map<std::string, std::set<int>> suspicious_;
+};
+
+}  // namespace
+
+Inspection inspect_sequence(const SequenceNames& names) { return SequenceInspector(names).inspect(); }
+
+}  // namespace alcove

@@ -1,0 +1,125 @@
+// Values are read into settings of their own first, by which the conditions of the table are checked.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/options/said.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/base/error.h"
+
+namespace alcove {
+namespace {
+
+const OptionRow& row_of(const std::vector<OptionRow>& table, const std::string& option) {
+  const auto row = std::ranges::find(table, option, &OptionRow::long_name);
+  if (row == table.end()) fail(ErrorKind::usage, "there is no option {}", option);
+  return *row;
+}
+
+/// Why two options contradict each other, by the row of either; "" where they do not.
+std::string quarrel(const OptionRow& a, const OptionRow& b) {
+  const auto named = [](const OptionRow& row, const std::string& other) -> std::string {
+    for (const auto& [options, why] : row.contradictions)
+      if (std::ranges::find(options, other) != options.end()) return why;
+    return "";
+  };
+  const std::string why = named(a, b.long_name());
+  return why.empty() ? named(b, a.long_name()) : why;
+}
+
+[[noreturn]] void refuse_pair(const OptionRow& a, const OptionRow& b, const std::string& preset) {
+  const std::string place = preset.empty() ? "" : preset + " (--preset): ";
+  fail(ErrorKind::usage, "{}{} and {} contradict each other: {}; give only one of them", place, a.long_name(),
+       b.long_name(), quarrel(a, b));
+}
+
+/// Reads a value, and names its preset in what is wrong with it.
+void read_one(const std::vector<OptionRow>& table, const Said& one) {
+  try {
+    row_of(table, one.option).read(one.words);
+  } catch (const Error& error) {
+    if (one.is_typed()) throw;
+    fail(error.kind(), "{} (--preset): {}", one.preset, error.what());
+  }
+}
+
+/// Whether the value asks for something; fails where it is none.
+bool asks(const RunOptions& initial, const Said& one) {
+  RunOptions trial = initial;
+  const auto table = option_table(trial);
+  read_one(table, one);
+  return row_of(table, one.option).asks();
+}
+
+/// Leaves of options that contradict each other the one that was said last.
+std::vector<Said> without_contradictions(const RunOptions& initial, const std::vector<Said>& said) {
+  RunOptions unused = initial;
+  const auto table = option_table(unused);
+  std::vector<Said> kept;
+  for (const auto& one : said) {
+    const OptionRow& row = row_of(table, one.option);
+    const bool one_asks = asks(initial, one);
+    const auto contradicts = [&](const Said& earlier) {
+      const OptionRow& other = row_of(table, earlier.option);
+      if (!one_asks || quarrel(row, other).empty() || !asks(initial, earlier)) return false;
+      if (earlier.preset == one.preset) refuse_pair(other, row, one.preset);
+      return true;
+    };
+    std::erase_if(kept, contradicts);
+    kept.push_back(one);
+  }
+  return kept;
+}
+
+RunOptions options_of(const RunOptions& initial, const std::vector<Said>& said) {
+  RunOptions options = initial;
+  const auto table = option_table(options);
+  for (const auto& one : said) read_one(table, one);
+  return options;
+}
+
+/// Finds what does not apply to the settings that all of it makes, among what is typed or among the rest.
+std::vector<Said>::const_iterator inapplicable(const RunOptions& initial, const std::vector<Said>& said, bool typed,
+                                               Reader reader, std::string& objection) {
+  RunOptions options = options_of(initial, said);
+  const auto table = option_table(options);
+  return std::ranges::find_if(said, [&](const Said& one) {
+    if (one.is_typed() != typed) return false;
+    objection = row_of(table, one.option).objection(options.settings, reader == Reader::run);
+    return !objection.empty();
+  });
+}
+
+}  // namespace
+
+void read_said(RunOptions& options, std::vector<Said> said, Reader reader) {
+  said = without_contradictions(options, said);
+  std::string objection;
+  // One after the other: what is left out may be what another one did not apply to.
+  for (auto found = inapplicable(options, said, false, reader, objection); found != said.end();
+       found = inapplicable(options, said, false, reader, objection))
+    said.erase(found);
+  if (inapplicable(options, said, true, reader, objection) != said.end()) fail(ErrorKind::usage, "{}", objection);
+  options = options_of(options, said);
+}
+
+void require_applicable(const Settings& settings) {
+  RunOptions defaults;
+  RunOptions options;
+  options.settings = settings;
+  const auto table = option_table(options);
+  const auto usual = option_table(defaults);
+  std::vector<const OptionRow*> set;
+  for (std::size_t i = 0; i < table.size(); i++) {
+    const OptionRow& row = table[i];
+    if (!row.asks() || row.words() == usual[i].words()) continue;
+    for (const auto* other : set)
+      if (!quarrel(*other, row).empty()) refuse_pair(*other, row, "");
+    if (const std::string objection = row.objection(settings); !objection.empty())
+      fail(ErrorKind::usage, "{}", objection);
+    set.push_back(&row);
+  }
+}
+
+}  // namespace alcove

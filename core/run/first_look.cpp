@@ -1,0 +1,162 @@
+// Looks at names, headers, and the pixels of one frame.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/run/first_look.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "core/chain/aov.h"
+#include "core/formats/frame_number.h"
+#include "core/frame/radius.h"
+#include "core/frame/settle_rows.h"
+#include "core/run/frame_files.h"
+
+namespace alcove {
+namespace {
+
+std::string file_name(const std::string& path) { return std::filesystem::path(path).filename().string(); }
+
+/// The note on the numbers between the frames on the disk that have no file.
+Notes notes_on_holes(const FramePlan& plan, const Settings& settings) {
+  if (plan.holes().empty() || settings.frames.missing == Missing::skip) return {};
+  return {{NoteCode::sequence_hole,
+           fmt::format("{} between the frames on the disk: {} missing; --frames says which frames there are, --missing "
+                       "skip that some may be missing",
+                       plan.holes().size() == 1 ? "there is a hole" : "there are holes",
+                       frames_text(plan.holes()) + (plan.holes().size() == 1 ? " is" : " are"))}};
+}
+
+/// The note on the number that a single file's name has, where it chooses a camera.
+Notes notes_on_number(const FramePlan& plan, const Settings& settings) {
+  const std::string& camera = settings.input.camera;
+  if (plan.is_sequence() || camera.empty() || !lists_frames(camera)) return {};
+  const std::string& input = main_input(settings.input);
+  const FrameNumber found = frame_number_in(input);
+  if (!found.number)
+    fail(ErrorKind::usage,
+         "{}: it lists cameras by frame, and {} has no clear frame number{}: say which frame it is with --frames "
+         "NUMBER",
+         camera, file_name(input), found.doubt.empty() ? "" : fmt::format(" ({})", found.doubt));
+  try {
+    read_camera(camera, *found.number);
+  } catch (const Error& error) {
+    fail(error.kind(), "{}; that it is frame {} say the digits {} of the name {}, and --frames says another",
+         error.what(), *found.number, found.digits, file_name(input));
+  }
+  return {{NoteCode::frame_number,
+           fmt::format("the camera is that of frame {} in {}, by the digits {} of the name; --frames says another",
+                       *found.number, file_name(camera), found.digits)}};
+}
+
+constexpr double kSomeFov = 50;  // degrees, as inspect takes it for a frame without a camera
+
+/// The radius that is proposed for the first frame that shows a surface, and why others could not be looked at.
+std::optional<double> radius_for(const FramePlan& plan, bool has_camera, std::optional<Error>& error) {
+  for (const int frame : plan.evidence()) {
+    try {
+      Settings settings = plan.at(frame);
+      if (!has_camera) settings.input.fov = kSomeFov;
+      if (!has_camera && settings.input.normal_space == NormalSpace::automatic)
+        settings.input.normal_space = NormalSpace::view;
+      FrameSource source = find_frame(settings.input, false, frame);
+      source.camera_is_assumed = !has_camera;
+      settle_by_rows(source, settings.input);
+      if (const auto radius = proposed_radius(source)) return radius;
+    } catch (const Error& failure) {
+      if (!error) error = failure;
+    }
+  }
+  return std::nullopt;
+}
+
+/// Whether an option or the header of the first frame gives a camera. A plan without frames, of a chunk of nothing,
+/// needs none.
+bool has_camera(const FramePlan& plan) {
+  if (plan.evidence().empty()) return true;
+  const Settings first = plan.at(plan.evidence().front());
+  return names_a_camera(first.input) || header_has_camera(first.input);
+}
+
+}  // namespace
+
+std::optional<FrameSource> settle_first(const FramePlan& plan, std::uint64_t most_bytes) {
+  std::optional<FrameSource> best;
+  bool is_refused = false;
+  for (const int frame : plan.evidence()) {
+    try {
+      const Settings settings = plan.at(frame);
+      FrameSource source = open_frame(settings, frame);
+      settle_within(source, settings, most_bytes);
+      if (!best || source.has_evidence) best = std::move(source);
+      if (best->has_evidence) break;
+    } catch (const Error&) {
+      // The frame is computed like all others, and its report says then what is wrong with it.
+      is_refused = true;
+    }
+  }
+  // A frame that shows nothing, such as one of sky, must not have others read that are refused by themselves.
+  if (is_refused && best && !best->has_evidence) return std::nullopt;
+  if (best)
+    for (auto& file : best->files) file.close();
+  return best;
+}
+
+Notes notes_on_names(const FramePlan& plan, const Settings& settings) {
+  Notes notes = notes_on_holes(plan, settings);
+  refuse_warnings(notes, settings, main_input(settings.input));
+  add_new(notes, notes_on_number(plan, settings));
+  return notes;
+}
+
+Settings with_proposed_radius(const Settings& settings, Notes& notes) {
+  if (!settings.estimator.radius_auto) return settings;
+  const FramePlan plan(settings);
+  std::optional<Error> error;
+  const auto radius = radius_for(plan, true, error);
+  if (!radius && error) throw *error;
+  if (!radius)
+    fail(ErrorKind::input, "{}: --radius auto finds no surface in {}: give --radius NUMBER, in scene units",
+         main_input(settings.input), plan.is_sequence() ? "frames " + frames_text(plan.evidence()) : "the frame");
+  Settings known = settings;
+  known.estimator.radius = radius;
+  known.estimator.radius_auto = false;
+  notes.push_back({NoteCode::automatic_radius,
+                   fmt::format("--radius auto takes {}{}", *radius, plan.is_sequence() ? " for all frames" : "")});
+  return known;
+}
+
+Lacking lacking_in(const Settings& settings) {
+  Lacking lacking;
+  lacking.input = main_input(settings.input).empty();
+  lacking.output = settings.output.output.empty();
+  lacking.radius = !settings.estimator.radius && !settings.estimator.radius_auto && needs_ao(settings.output);
+  lacking.camera = lacking.input && !names_a_camera(settings.input);
+  if (lacking.input || (names_a_camera(settings.input) && !lacking.radius)) return lacking;
+  try {
+    const FramePlan plan(settings);
+    lacking.camera = !has_camera(plan);
+    if (lacking.radius) lacking.proposed_radius = radius_for(plan, !lacking.camera, lacking.unreadable);
+  } catch (const Error& error) {
+    // A name that no command could have comes first, since it would be a part of the one that is proposed.
+    if (error.kind() == ErrorKind::usage) throw;
+    lacking.unreadable = error;
+  }
+  return lacking;
+}
+
+std::string text_of(const Lacking& lacking) {
+  std::vector<std::string> things;
+  if (lacking.input)
+    things.emplace_back("INPUT, an EXR file with depth and normals, or --depth FILE, or --position FILE");
+  if (lacking.output) things.emplace_back("-o FILE.exr, the AO");
+  if (lacking.camera)
+    things.emplace_back(
+        "a camera: --camera FILE.json, or --fov DEGREES, or --focal MM with --aperture MM, or --ortho-width UNITS");
+  if (lacking.radius) things.emplace_back("--radius NUMBER, how far occluders reach in scene units, or --radius auto");
+  std::string text = fmt::format("missing: {}", fmt::join(things, "; "));
+  if (lacking.unreadable) text += fmt::format("; and the frame cannot be looked at: {}", lacking.unreadable->what());
+  return text;
+}
+
+}  // namespace alcove

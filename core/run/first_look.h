@@ -1,0 +1,44 @@
+// What is looked at before any frame of a run is computed: how its frames are read, what is noted of all of them, and
+// what the command line lacks.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+
+#include "core/base/error.h"
+#include "core/frame/gbuffer.h"
+#include "core/run/plan.h"
+
+namespace alcove {
+
+/// Settles one frame of the plan, and all others are read in the same way. It is the first one that shows what files
+/// and options leave open. None where no frame can be read, or only such as show nothing while others are refused: then
+/// each is settled by itself.
+std::optional<FrameSource> settle_first(const FramePlan& plan, std::uint64_t most_bytes);
+
+/// What the names of the files tell: numbers that are left out, and the number that decides which camera of a list a
+/// single frame has. Fails with ErrorKind::usage where there is such a list and the name has no clear number, and with
+/// ErrorKind::input where a warning counts as an error.
+Notes notes_on_names(const FramePlan& plan, const Settings& settings);
+
+/// The settings with the radius that is proposed for the frames, where they ask for it; the note says so. It is the
+/// same for every chunk of a sequence. Fails with ErrorKind::input where no frame that is looked at shows a surface.
+Settings with_proposed_radius(const Settings& settings, Notes& notes);
+
+/// What a run cannot do without, and has not been given.
+struct Lacking {
+  bool input = false, output = false, camera = false, radius = false;
+  std::optional<double> proposed_radius;  // where there is no radius, and the first frame can be read
+  std::optional<Error> unreadable;        // why the first frame cannot be looked at
+
+  bool any() const { return input || output || camera || radius; }
+};
+
+/// Opens the first frame only where no option gives a camera or a radius. Fails with ErrorKind::usage on names that
+/// make no sense.
+Lacking lacking_in(const Settings& settings);
+
+/// One sentence that lists all of it, with the options that give it.
+std::string text_of(const Lacking& lacking);
+
+}  // namespace alcove

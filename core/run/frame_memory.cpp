@@ -1,0 +1,159 @@
+// Adds up the buffers that core/chain/chain.cpp makes for a frame, and what reading and writing takes beside them.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/run/frame_memory.h"
+
+#include <algorithm>
+
+#include "core/base/estimator_facts.h"
+#include "core/chain/aov.h"
+#include "core/chain/chain.h"
+#include "core/chain/debug_view.h"
+#include "core/chain/margin.h"
+#include "kernels/bounds.h"
+#include "kernels/classify.h"
+#include "kernels/profile.h"
+#include "kernels/refine.h"
+
+namespace alcove {
+namespace {
+
+// Words per tile of 8 x 8: sectors, bounds of groups, runs of the filters, and how the frame before differs.
+constexpr std::size_t kTileLists = 8;
+constexpr std::size_t kCompletionSums = 2;  // words per tile
+// Words per tile where pixels share estimates: twice the words of its rows, those of flat links, and its sites.
+constexpr std::size_t kSiteLists = 3 * kTile + kTile * kTile;
+constexpr std::size_t kRefineLists = 7;  // there is one after each power of two directions
+// The lists of the smallest window: words and counts.
+constexpr std::uint64_t kListBytes = 16 << 10;
+
+/// The most groups of `group` pixels that a window touches, wherever it lies.
+std::uint64_t groups_in(const Window& window, int group) {
+  const auto along = [&](int side) {
+    return (std::uint64_t(side) + 2 * std::uint64_t(group) - 2) / std::uint64_t(group);
+  };
+  return along(window.width) * along(window.height);
+}
+
+/// Whether an AOV has buffers of its own, beside those of the estimate and of the frame.
+bool has_own_planes(const Aov& aov) {
+  return aov.planes != &FrameOutputs::ao && aov.planes != &FrameOutputs::scales && aov.planes != &FrameOutputs::depth &&
+         aov.planes != &FrameOutputs::error;
+}
+
+/// The profiles of a line in an exact search: one of each surface of a pixel, and one more for what goes on unseen.
+std::size_t profiles_of(const FrameSource& source, const EstimatorSettings& settings) {
+  return source.behind.empty() ? 1 : 1 + std::size_t(settings.hidden) + 1;
+}
+
+/// Planes of the estimate's resolution: the estimate, what filters and searches make beside it, and its depth and
+/// normals.
+std::size_t estimate_planes(const FrameSource& source, const Settings& settings, std::size_t estimated) {
+  const auto& e = settings.estimator;
+  std::size_t planes = estimated + (e.resolution == Resolution::full ? 0 : 2);
+  planes += e.denoise == Denoise::none || e.tolerance > 0 ? 0 : 2 * estimated;  // rows, columns
+  // what is hidden, of the estimate's pixels
+  planes += e.resolution == Resolution::full || source.behind.empty() ? 0 : std::size_t(e.hidden);
+  const std::size_t profiles = profiles_of(source, e);
+  planes += searches_exactly(e) ? 3 * profiles + 1 : 0;                       // vertices, marks, neighbours; whole arcs
+  planes += searches_exactly(e) && profiles > 1 ? 1 : 0;                      // slots
+  planes += searches_exactly(e) && completes_anywhere(e) ? profiles + 1 : 0;  // what goes on, and behind what
+  planes += e.tolerance > 0 ? 2 : 0;                                          // blocked arcs, error
+  return planes + (Wanted(settings.output).completed && completes_anywhere(e) ? 1 : 0);
+}
+
+/// Planes of what lies behind the first surface: all that was found, what is kept, and where it ends and of what kind
+/// it is, of which pairing is made.
+std::size_t hidden_planes(const FrameSource& source, const Settings& settings) {
+  return source.behind.empty() ? 0 : source.behind.size() + std::size_t(settings.estimator.hidden) + 3;
+}
+
+/// Planes of the frame's resolution, beside those that are read.
+std::size_t frame_planes(const FrameSource& source, const Settings& settings, std::size_t estimated) {
+  const auto& e = settings.estimator;
+  const auto& o = settings.output;
+  const std::size_t scales = 1 + e.further_radii.size();
+  std::size_t planes = 2 + (e.resolution == Resolution::full ? 0 : estimated);  // depth, normals, the whole estimate
+  planes += shapes(e) || !source[RawPlane::material_ao].empty() ? 1 + scales : 0;
+  planes += needs_bent(e, o) ? 1 : 0;
+  // thin, solid and perhaps completed: estimates, rows, columns
+  planes += wants(o, &FrameOutputs::confidence) ? (completes_anywhere(e) ? 3 : 2) * 3 : 0;
+  // the lists of its tiles, where those of the estimate are larger
+  planes += wants(o, &FrameOutputs::confidence) && e.resolution != Resolution::full ? 2 : 0;
+  planes += (o.multi_bounce ? 3 : 0) + source[RawPlane::beauty].size() + debug_views_of(o).size();
+  for (const auto& aov : aovs_of(o)) planes += has_own_planes(aov) ? channels_of(aov, planes_of(aov, e)).size() : 0;
+  planes += hidden_planes(source, settings);
+  return planes;
+}
+
+/// Whether frames take anything from other frames or views.
+bool looks_at_others(const InputSettings& input) { return input.around > 0 || input.around_all || input.other_views; }
+
+/// The bytes of the lists of a tile of 8 x 8 pixels.
+std::uint64_t tile_bytes(const Settings& settings) {
+  const auto& e = settings.estimator;
+  const auto& o = settings.output;
+  const bool has_bracket = wants(o, &FrameOutputs::confidence);
+  const int shares = (spacing_of(e) > 1 ? 1 : 0) + (has_bracket && spacing_of(bracket_of(e)) > 1 ? 1 : 0);
+  const bool sums_completed = Wanted(o).completed && completes_anywhere(e);
+  return sizeof(TileBounds) +
+         (kTileLists + (sums_completed ? kCompletionSums : 0) + std::size_t(shares) * kSiteLists) * sizeof(uint) +
+         (e.tolerance > 0 ? sizeof(JudgedTile) + sizeof(vec2) : 0) +
+         (e.tolerance > 0 ? kRefineLists : 1) * sizeof(ListedTile);
+}
+
+}  // namespace
+
+std::uint64_t FrameMemory::on_device(const Window& window) const {
+  const Window computed{window.x, window.y, window.width + 2 * margin, window.height + 2 * margin};
+  return computed.pixels() * planes + groups_in(computed, factor) * estimate +
+         groups_in(computed, factor * kTile) * tile + kListBytes + fixed_on_device;
+}
+
+std::uint64_t FrameMemory::on_host(const Window& computed) const {
+  return on_device(computed) + computed.pixels() * beside + fixed_bytes;
+}
+
+std::uint64_t FrameMemory::codec_bytes(std::uint64_t room) const {
+  std::uint64_t bytes = 0;
+  for (const std::uint64_t group : codec_groups) bytes += exr_codec_bytes(group, room / kCodecPart);
+  return bytes;
+}
+
+FrameMemory memory_of(const FrameSource& source, const Settings& settings) {
+  const std::size_t scales = 1 + settings.estimator.further_radii.size();
+  const std::size_t bent = needs_bent(settings.estimator, settings.output) ? 3 : 0;
+  const std::size_t estimated = scales + bent + (scales > 1 ? 1 : 0);
+  std::size_t read = 0, widest = std::max<std::size_t>(scales, bent ? bent : 1);
+  for (const auto& channels : source.planes.entries) {
+    read += channels.size();
+    widest = std::max(widest, channels.size());
+  }
+  if (searches_exactly(settings.estimator)) widest = std::max(widest, profiles_of(source, settings.estimator));
+  if (!source.behind.empty()) widest = std::max(widest, std::size_t(settings.estimator.hidden));
+  std::size_t written = source[RawPlane::beauty].size();
+  for (const auto& aov : aovs_of(settings.output)) {
+    const std::size_t channels = channels_of(aov, planes_of(aov, settings.estimator)).size();
+    written += channels;
+    widest = std::max(widest, channels);
+  }
+  const std::size_t pictures = settings.output.preview.empty() ? 0 : 6;  // planes as shown, once more interleaved
+  FrameMemory memory;
+  memory.planes = sizeof(float) * (read + frame_planes(source, settings, estimated));
+  memory.estimate = sizeof(float) * estimate_planes(source, settings, estimated);
+  memory.tile = tile_bytes(settings);
+  memory.factor = int(settings.estimator.resolution);
+  memory.margin = looks_at_others(settings.input) ? margin_of(source.file_data, source.file_data).before.x : 0;
+  memory.written = sizeof(float) * written;
+  // What is written may be there once more: cropped to a region, or as half.
+  memory.beside = memory.written + sizeof(float) * pictures;
+  memory.widest = sizeof(float) * widest;
+  memory.codec_groups = {kRowsOfOutput * memory.written * std::uint64_t(source.file_data.width)};
+  memory.fixed_bytes = exr_codec_bytes(memory.codec_groups[0]);
+  for (const auto& file : source.files) {
+    memory.fixed_bytes += file.bytes_beside_pixels();
+    if (file.codec_group() > 0) memory.codec_groups.push_back(file.codec_group());
+  }
+  return memory;
+}
+
+}  // namespace alcove

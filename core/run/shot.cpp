@@ -1,0 +1,276 @@
+// Prepares frames for those around them, and lets them go.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/run/shot.h"
+
+#include <algorithm>
+#include <string_view>
+
+#include "core/base/error.h"
+#include "core/base/text.h"
+#include "core/chain/geometry.h"
+#include "core/chain/warp.h"
+#include "core/frame/motion.h"
+#include "core/frame/settle.h"
+#include "core/run/frame_files.h"
+#include "kernels/reprojection.h"
+
+namespace alcove {
+namespace {
+
+constexpr int kJudges = 2;  // frames to each side of one that tell what moves in it
+
+/// Of a frame that others take only what its first surface shows.
+InputSettings of_first_surface(InputSettings input) {
+  input.behind = {};
+  input.behind_channels.clear();
+  input.behind_kinds.clear();
+  if (!main_input(input).empty()) input.deep.clear();
+  input.material_ao.clear();
+  input.material_ao_channel.clear();
+  input.roi.reset();
+  return input;
+}
+
+/// Fails where nobody knows where a frame's camera stands.
+void require_place(const FrameSource& source, int frame, const char* option) {
+  if (!source.camera.view_from_world)
+    fail(
+        ErrorKind::input,
+        "{}: {} needs to know where the camera of frame {} stands, and it has no world_to_camera: give a --camera file "
+        "with it",
+        source.depth_path(), option, frame);
+}
+
+/// The views of a file beside the one that is looked at.
+std::vector<std::string> other_views_of(const FrameSource& source, const std::string& chosen) {
+  std::vector<std::string> views = views_of(source.files[source[RawPlane::depth][0].file]);
+  if (views.size() < 2)
+    fail(ErrorKind::input, "{}: it has no other view for --other-views: leave that out", source.depth_path());
+  const std::string own = lower_case(chosen.empty() ? views.front() : chosen);
+  std::erase_if(views, [&](const std::string& view) { return lower_case(view) == own; });
+  return views;
+}
+
+/// Puts what was seen into upload buffers, the `place`-th of the frame that is computed.
+OtherView filled(gpu::Recorder& gpu, const SeenFrame& seen, const std::vector<std::uint32_t>& moving,
+                 const Camera& here, std::size_t place) {
+  const auto plane = [&]<class T>(const char* name, const std::vector<T>& values) -> const gpu::Buffer* {
+    if (values.empty()) return nullptr;
+    gpu::Buffer& buffer =
+        gpu.buffer(fmt::format("other {} {}", place, name), values.size() * sizeof(T), gpu::Use::upload);
+    std::ranges::copy(values, buffer.as<T>().begin());
+    return &buffer;
+  };
+  OtherView view;
+  view.view = seen.view;
+  const ViewMap map = view_from_view(here, seen.camera);
+  for (std::size_t row = 0; row < 3; row++)
+    std::ranges::transform(map[row], view.to_here[row].begin(), [](double x) { return float(x); });
+  view.depth_precision = seen.depth_precision;
+  view.depth = plane("depth", seen.depth);
+  view.normal = plane("normal", seen.normal);
+  view.moving = plane("moving", moving);
+  return view;
+}
+
+bool is_same_place(const Camera& a, const Camera& b) {
+  return a.view_from_world == b.view_from_world && a.view_from_world_offset == b.view_from_world_offset;
+}
+
+}  // namespace
+
+bool takes_others(const InputSettings& settings) { return around_of(settings) > 0 || settings.other_views; }
+
+std::string text_of(const Others& others) {
+  std::vector<std::string> parts;
+  if (!others.frames.empty()) parts.push_back("frames " + frames_text(others.frames));
+  if (!others.missing.empty()) parts.push_back("missing " + frames_text(others.missing));
+  if (!others.views.empty()) parts.push_back("views " + list_of(others.views));
+  return fmt::format("{}", fmt::join(parts, "; "));
+}
+
+SharedFrames::SharedFrames(const FramePlan& plan, const FrameSource* settled, std::span<const int> frames)
+    : plan_(plan), settled_(settled), left_(frames.begin(), frames.end()) {}
+
+std::shared_ptr<SharedFrames::Entry> SharedFrames::entry_of(int frame) {
+  const std::lock_guard lock(mutex_);
+  auto& entry = entries_[frame];
+  if (!entry) entry = std::make_shared<Entry>();
+  return entry;
+}
+
+std::size_t SharedFrames::kept() const {
+  const std::lock_guard lock(mutex_);
+  return entries_.size();
+}
+
+void SharedFrames::done(int frame) {
+  const std::lock_guard lock(mutex_);
+  left_.erase(frame);
+  const std::vector<int>& shot = plan_.shot();
+  const auto place_of = [&](int number) { return std::ranges::lower_bound(shot, number) - shot.begin(); };
+  const std::int64_t reach = with_judges(around_of(plan_.at(frame).input));
+  std::erase_if(entries_, [&](const auto& entry) {
+    const std::int64_t place = place_of(entry.first);
+    const auto first = std::ranges::find_if(left_, [&](int number) { return place_of(number) >= place - reach; });
+    return first == left_.end() || place_of(*first) > place + reach;
+  });
+}
+
+SharedFrames::Seen SharedFrames::prepare(gpu::Recorder& gpu, const InputSettings& input, const FrameSource* like,
+                                         int frame, PreparedOthers& took) const {
+  Settings settings;
+  settings.input = input;
+  FrameSource source = find_frame(input, false, frame);
+  require_place(source, frame, input.other_views ? "--other-views" : "--around");
+  if (like) settle_like(source, *like);
+  const FrameInputs inputs = load_frame(gpu, source, settings, frame);
+  upload(gpu, inputs);
+  const GBuffer gbuffer = reconstruct(gpu, alcove::prepare(gpu, inputs, "other "));
+  gpu.download(*gbuffer.depth);
+  gpu.download(*gbuffer.normal);
+  gpu.run();
+  took.rows_read += source.rows_read;
+  took.passes.insert(took.passes.end(), gpu.passes().begin(), gpu.passes().end());
+  auto seen = std::make_shared<SeenFrame>();
+  seen->camera = source.camera;
+  seen->data = source.data;
+  seen->display = source.display;
+  seen->view = gbuffer.view;
+  seen->depth_precision = gbuffer.depth_precision;
+  const auto depth = gbuffer.depth->as<const float>();
+  const auto normal = gbuffer.normal->as<const std::uint32_t>();
+  seen->depth.assign(depth.begin(), depth.end());
+  seen->normal.assign(normal.begin(), normal.end());
+  return seen;
+}
+
+SharedFrames::Seen SharedFrames::seen(gpu::Recorder& gpu, int frame, PreparedOthers& took) {
+  const auto entry = entry_of(frame);
+  const std::lock_guard lock(entry->preparing);
+  if (!entry->seen) entry->seen = prepare(gpu, of_first_surface(plan_.at(frame).input), settled_, frame, took);
+  return entry->seen;
+}
+
+/// Prepares those that no other lane is at, so that lanes which need the same ones share the work.
+void SharedFrames::prepare_free_ones(gpu::Recorder& gpu, std::span<const int> frames, PreparedOthers& took) {
+  for (const int frame : frames) {
+    const auto entry = entry_of(frame);
+    const std::unique_lock lock(entry->preparing, std::try_to_lock);
+    if (lock && !entry->seen)
+      entry->seen = prepare(gpu, of_first_surface(plan_.at(frame).input), settled_, frame, took);
+  }
+}
+
+SharedFrames::Moving SharedFrames::moving(gpu::Recorder& gpu, int frame, PreparedOthers& took) {
+  const auto entry = entry_of(frame);
+  const std::lock_guard lock(entry->judging);
+  if (entry->moving) return entry->moving;
+  const Seen here = seen(gpu, frame, took);
+  const auto vectors = plan_.at(frame).input.motion.empty() ? std::nullopt : by_vectors(gpu, frame, took);
+  std::vector<Seen> witnesses;
+  if (!vectors)
+    for (const int other : plan_.around(frame, kJudges).there) witnesses.push_back(seen(gpu, other, took));
+  std::vector<std::uint32_t> moving = judged(gpu, *here, witnesses, took);
+  for (std::size_t i = 0; vectors && i < moving.size(); i++)
+    if (moving[i] == 0 && (*vectors)[i] != 0) moving[i] = kFlagMoves;
+  return entry->moving = std::make_shared<std::vector<std::uint32_t>>(std::move(moving));
+}
+
+std::vector<std::uint32_t> SharedFrames::judged(gpu::Recorder& gpu, const SeenFrame& seen,
+                                                std::span<const Seen> witnesses, PreparedOthers& took) {
+  FrameInputs inputs;
+  for (const auto& witness : witnesses)
+    inputs.others.push_back(filled(gpu, *witness, {}, seen.camera, inputs.others.size()));
+  const std::vector<OtherView> by = inputs.others;
+  const OtherView view = inputs.others.emplace_back(filled(gpu, seen, {}, seen.camera, by.size()));
+  upload(gpu, inputs);
+  const gpu::Buffer& moving = gpu.buffer("other moves", seen.depth.size() * sizeof(std::uint32_t), gpu::Use::device);
+  surfels(gpu, view, by, moving);
+  gpu.download(moving);
+  gpu.run();
+  took.passes.insert(took.passes.end(), gpu.passes().begin(), gpu.passes().end());
+  const auto values = moving.as<const std::uint32_t>();
+  return {values.begin(), values.end()};
+}
+
+std::optional<std::vector<std::uint8_t>> SharedFrames::by_vectors(gpu::Recorder& gpu, int frame, PreparedOthers& took) {
+  const InputSettings input = plan_.at(frame).input;
+  const Seen here = seen(gpu, frame, took);
+  MotionFrame motion{here->depth, here->view, {}, {}};
+  for (const int other : plan_.around(frame, 1).there) {
+    const Seen beside = seen(gpu, other, took);
+    std::optional<FromThere>& there = other < frame ? motion.previous : motion.next;
+    there.emplace(
+        FromThere{view_from_view(beside->camera, here->camera), view_of(beside->camera, here->data, here->display)});
+  }
+  const MotionPlanes planes = read_motion(input, here->data);
+  if (const auto reading = best_motion_reading(planes, motion, input.motion_kind))
+    return moving_by(planes, *reading, motion);
+  // At the ends of the shot the frame that the vectors lead to may not be there.
+  const bool has_both = motion.previous && motion.next;
+  const bool has_own = input.motion_kind == MotionKind::previous ? motion.previous.has_value()
+                       : input.motion_kind == MotionKind::next   ? motion.next.has_value()
+                                                                 : has_both;
+  if (!has_own) return std::nullopt;
+  fail(ErrorKind::input,
+       "{}: by no reading of its motion vectors does anything stand still as the cameras of frame {} and those beside "
+       "it "
+       "say: give other --motion-channels or another --motion-kind, or leave out --motion",
+       planes.path, frame);
+}
+
+std::vector<SharedFrames::Judged> SharedFrames::frames_around(gpu::Recorder& gpu, const FrameSource& target, int frame,
+                                                              Others& others, PreparedOthers& took) {
+  const int count = around_of(plan_.at(frame).input);
+  const FramesAround around = plan_.around(frame, count);
+  others.frames = around.there;
+  others.missing = around.missing;
+  require_place(target, frame, "--around");
+  prepare_free_ones(gpu, plan_.around(frame, with_judges(count)).there, took);
+  std::vector<Judged> found;
+  for (const int other : around.there) {
+    found.push_back({seen(gpu, other, took), moving(gpu, other, took)});
+    const auto projection = [](const Camera& camera) { return camera.orthographic ? "orthographic" : "perspective"; };
+    const char *here = projection(target.camera), *there = projection(found.back().seen->camera);
+    if (std::string_view(here) != there)
+      fail(
+          ErrorKind::input,
+          "{}: frame {} is {}, and frame {} is {}: --around takes frames of one projection: give another --camera file",
+          target.depth_path(), frame, here, other, there);
+  }
+  return found;
+}
+
+std::vector<SharedFrames::Judged> SharedFrames::other_views(gpu::Recorder& gpu, const FrameSource& target, int frame,
+                                                            Others& others, PreparedOthers& took) const {
+  InputSettings input = of_first_surface(plan_.at(frame).input);
+  others.views = other_views_of(target, input.view);
+  require_place(target, frame, "--other-views");
+  std::vector<Judged> found;
+  for (const auto& view : others.views) {
+    input.view = view;
+    const Seen other = prepare(gpu, input, settled_, frame, took);
+    if (is_same_place(other->camera, target.camera))
+      fail(ErrorKind::input,
+           "{}: its views have one camera, and --other-views needs that of each: give a --camera file with \"views\"",
+           target.depth_path());
+    found.push_back({other, std::make_shared<std::vector<std::uint32_t>>(judged(gpu, *other, {}, took))});
+  }
+  return found;
+}
+
+Others SharedFrames::others_of(gpu::Recorder& gpu, const FrameSource& target, int frame, PreparedOthers& took) {
+  const InputSettings input = plan_.at(frame).input;
+  Others others;
+  std::vector<Judged> found;
+  if (around_of(input) > 0) found = frames_around(gpu, target, frame, others, took);
+  if (input.other_views) std::ranges::move(other_views(gpu, target, frame, others, took), std::back_inserter(found));
+  for (const auto& [seen, moving] : found)
+    others.seen.push_back(filled(gpu, *seen, *moving, target.camera, others.seen.size()));
+  return others;
+}
+
+int with_judges(int count) { return count == kWholeShot ? count : count + kJudges; }
+
+}  // namespace alcove

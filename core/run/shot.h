@@ -1,0 +1,107 @@
+// What the frames of a shot see of each other: every frame is read and prepared once for all that it lies around.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/chain/other_views.h"
+#include "core/frame/gbuffer.h"
+#include "core/gpu/recorder.h"
+#include "core/run/plan.h"
+
+namespace alcove {
+
+/// What one view of a frame sees, in host memory.
+struct SeenFrame {
+  Camera camera;
+  Window data, display;
+  View view{};
+  vec3 depth_precision{};
+  std::vector<float> depth;           // planar; kSkyDepth for sky
+  std::vector<std::uint32_t> normal;  // packed, in its own view space
+};
+
+/// What a frame takes from others.
+struct Others {
+  std::vector<OtherView> seen;
+  std::vector<int> frames, missing;  // around it: those that it takes, and those that are not there
+  std::vector<std::string> views;    // that it takes of its own instant
+};
+
+/// Names them, for a header; empty where it takes none: "frames 3-5, 7; missing 6; views right".
+std::string text_of(const Others& others);
+
+/// What it took to prepare others.
+struct PreparedOthers {
+  std::uint64_t rows_read = 0;
+  std::vector<gpu::PassTime> passes = {};
+};
+
+/// Whether frames take anything from other frames or views.
+bool takes_others(const InputSettings& settings);
+
+/// Frames that are prepared, each once, and kept for as long as any frame that is to be computed needs them. What one
+/// takes from others is the same whatever lane asks, and in whatever order.
+class SharedFrames {
+ public:
+  /// `frames` are those that are to be computed; each must be told of by done(). All are read as `settled` is; null:
+  /// each by itself.
+  SharedFrames(const FramePlan& plan, const FrameSource* settled, std::span<const int> frames);
+
+  /// Gives what a frame takes from others, in upload buffers of the recorder, which is free before and after. Fails
+  /// with ErrorKind::input, naming the file, where one of them cannot be read or its camera says not where it stands.
+  Others others_of(gpu::Recorder& gpu, const FrameSource& target, int frame, PreparedOthers& took);
+
+  /// No one will ask for what this frame takes.
+  void done(int frame);
+
+  /// Frames that are kept now.
+  std::size_t kept() const;
+
+ private:
+  struct Entry {
+    std::mutex preparing, judging;  // judging is locked first
+    std::shared_ptr<const SeenFrame> seen;
+    std::shared_ptr<const std::vector<std::uint32_t>> moving;  // see OtherView; empty: nothing does
+  };
+  using Seen = std::shared_ptr<const SeenFrame>;
+
+  std::shared_ptr<Entry> entry_of(int frame);
+  using Moving = std::shared_ptr<const std::vector<std::uint32_t>>;
+  struct Judged {
+    Seen seen;
+    Moving moving;
+  };
+
+  std::vector<Judged> frames_around(gpu::Recorder& gpu, const FrameSource& target, int frame, Others& others,
+                                    PreparedOthers& took);
+  std::vector<Judged> other_views(gpu::Recorder& gpu, const FrameSource& target, int frame, Others& others,
+                                  PreparedOthers& took) const;
+  Seen seen(gpu::Recorder& gpu, int frame, PreparedOthers& took);
+  std::optional<std::vector<std::uint8_t>> by_vectors(gpu::Recorder& gpu, int frame, PreparedOthers& took);
+  /// What of a frame counts in no other one: it moves as the witnesses tell, or cannot stand for its surface.
+  static std::vector<std::uint32_t> judged(gpu::Recorder& gpu, const SeenFrame& seen, std::span<const Seen> witnesses,
+                                           PreparedOthers& took);
+  Moving moving(gpu::Recorder& gpu, int frame, PreparedOthers& took);
+  void prepare_free_ones(gpu::Recorder& gpu, std::span<const int> frames, PreparedOthers& took);
+  Seen prepare(gpu::Recorder& gpu, const InputSettings& settings, const FrameSource* like, int frame,
+               PreparedOthers& took) const;
+
+  const FramePlan& plan_;
+  const FrameSource* settled_;
+  mutable std::mutex mutex_;  // of all below
+  std::map<int, std::shared_ptr<Entry>> entries_;
+  std::set<int> left_;  // to be computed
+};
+
+/// The frames to each side that are prepared for so many that are taken: some tell what moves in others.
+int with_judges(int count);
+
+}  // namespace alcove

@@ -1,0 +1,78 @@
+// Adds up buffers and prepared frames.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/run/shot_memory.h"
+
+#include <algorithm>
+
+#include "core/base/error.h"
+#include "core/run/shot.h"
+
+namespace alcove {
+namespace {
+
+constexpr std::size_t kPlanesOfSeen = 3;    // depth, normals, what moves
+constexpr std::size_t kPlanesPrepared = 5;  // that passes make of it: depth, normals, flags, what moves, surfels
+constexpr std::uint64_t kMebibyte = 1 << 20;
+
+/// What one frame at a time takes with all around it.
+std::uint64_t bytes_of_one(const FramePlan& plan, const FrameSource& frame, const Settings& settings) {
+  return bytes_of_shot(plan, frame, settings.input, 1) +
+         memory_with_others(plan, frame, settings).on_host(frame.file_data);
+}
+
+/// What it takes at least, in the smallest of tiles.
+std::uint64_t bytes_without_frame(const FramePlan& plan, const FrameSource& frame, const Settings& settings) {
+  const FrameMemory memory = memory_with_others(plan, frame, settings);
+  return bytes_of_shot(plan, frame, settings.input, 1) + memory.fixed_on_device + memory.fixed_bytes;
+}
+
+}  // namespace
+
+std::size_t most_others(const FramePlan& plan, const FrameSource& frame, const InputSettings& settings) {
+  const std::size_t around =
+      around_of(settings) == 0 ? 0 : std::min(plan.shot().size(), 2 * std::size_t(around_of(settings)));
+  return around + (settings.other_views ? views_of(frame.files[frame[RawPlane::depth][0].file]).size() : 0);
+}
+
+FrameMemory memory_with_others(const FramePlan& plan, const FrameSource& frame, const Settings& settings) {
+  FrameMemory memory = memory_of(frame, settings);
+  const std::size_t others = most_others(plan, frame, settings.input);
+  if (others == 0) return memory;
+  // What tells what moves in one of them takes those around it.
+  const std::size_t buffers = kPlanesOfSeen * std::max(others, std::size_t(2 * with_judges(1) + 1));
+  const std::size_t prepared = frame[RawPlane::depth].size() + frame[RawPlane::normal].size() + kPlanesPrepared;
+  memory.planes += sizeof(float) * std::size_t(settings.estimator.hidden);  // what others show behind the first surface
+  memory.fixed_on_device = sizeof(float) * frame.file_data.pixels() * (buffers + prepared);
+  return memory;
+}
+
+std::uint64_t bytes_of_shot(const FramePlan& plan, const FrameSource& frame, const InputSettings& settings, int lanes) {
+  const int count = around_of(settings);
+  if (count == 0) return 0;
+  const std::uint64_t window = std::uint64_t(lanes) * (2 * std::uint64_t(with_judges(count)) + 1);
+  return kPlanesOfSeen * sizeof(float) * frame.file_data.pixels() * std::min<std::uint64_t>(plan.shot().size(), window);
+}
+
+RunMemory beside_shot(const RunMemory& memory, const FramePlan& plan, const FrameSource& frame,
+                      const Settings& settings, int lanes) {
+  RunMemory left = memory;
+  const std::uint64_t bytes = std::min(memory.host_bytes, bytes_of_shot(plan, frame, settings.input, lanes));
+  left.host_bytes -= bytes;
+  left.program_bytes += bytes;
+  return left;
+}
+
+void require_room_for_others(const RunMemory& memory, const FramePlan& plan, const FrameSource& frame,
+                             const Settings& settings) {
+  if (around_of(settings.input) == 0 || bytes_without_frame(plan, frame, settings) <= memory.host_bytes) return;
+  Settings fewer = settings;
+  fewer.input.around = int(std::min<std::size_t>(plan.shot().size(), std::size_t(around_of(settings.input))));
+  fewer.input.around_all = false;
+  while (fewer.input.around > 0 && bytes_of_one(plan, frame, fewer) > memory.host_bytes) fewer.input.around--;
+  fail(memory.is_chosen ? ErrorKind::usage : ErrorKind::device,
+       "{}: {} leaves {} MiB for frames, too few for those around each: give --around {}, or --memory {}M",
+       frame.depth_path(), memory.is_chosen ? "--memory" : "half of the free memory", memory.host_bytes / kMebibyte,
+       fewer.input.around, (memory.program_bytes + bytes_of_one(plan, frame, settings)) / kMebibyte + 1);
+}
+
+}  // namespace alcove

@@ -1,0 +1,30 @@
+// How much memory a run takes for what its frames see of each other.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+
+#include "core/run/memory_plan.h"
+#include "core/run/plan.h"
+
+namespace alcove {
+
+/// The number of others that a frame takes at most.
+std::size_t most_others(const FramePlan& plan, const FrameSource& frame, const InputSettings& settings);
+
+/// What a frame of the plan takes, and what its lane takes for its others.
+FrameMemory memory_with_others(const FramePlan& plan, const FrameSource& frame, const Settings& settings);
+
+/// What the prepared frames take that so many lanes keep, bytes of host memory.
+std::uint64_t bytes_of_shot(const FramePlan& plan, const FrameSource& frame, const InputSettings& settings, int lanes);
+
+/// What is left for the frames themselves.
+RunMemory beside_shot(const RunMemory& memory, const FramePlan& plan, const FrameSource& frame,
+                      const Settings& settings, int lanes);
+
+/// Fails with ErrorKind::usage where --memory has no room for the frames around one, naming how many it has room for,
+/// and what would be enough; with ErrorKind::device where nobody has said --memory.
+void require_room_for_others(const RunMemory& memory, const FramePlan& plan, const FrameSource& frame,
+                             const Settings& settings);
+
+}  // namespace alcove

@@ -1,0 +1,136 @@
+// Reads, computes and encodes windows about the middle of a frame, and scales what they take.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/run/time_estimate.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <utility>
+
+#include "core/base/error.h"
+#include "core/base/file.h"
+#include "core/base/stopwatch.h"
+#include "core/base/system.h"
+#include "core/frame/settle_rows.h"
+#include "core/run/memory_plan.h"
+#include "core/run/tiles.h"
+
+namespace alcove {
+namespace {
+
+constexpr double kEnoughMs = 600;         // a window that takes so long is large enough
+constexpr double kLeastPixels = 1 << 14;  // of the first window
+constexpr double kGrowth = 4;             // from one window's pixels to the next one's
+constexpr double kMostPixels = 1 << 23;   // of the last window, so that it fits into memory
+// An exact search of a larger frame costs more per pixel, as far as its radius reaches: at most as the square root, of
+// which half is expected.
+constexpr double kSteepest = 1.25;
+
+/// What a window takes, in milliseconds.
+struct Sample {
+  double pixels = 0;
+  double read = 0, compute = 0, write = 0;
+};
+
+/// About `pixels` pixels of a window, about its middle and of its shape.
+Window middle_of(const Window& whole, double pixels) {
+  const double part = std::min(1.0, std::sqrt(pixels / double(whole.pixels())));
+  const int width = std::max(1, int(part * whole.width)), height = std::max(1, int(part * whole.height));
+  return {whole.x + (whole.width - width) / 2, whole.y + (whole.height - height) / 2, width, height};
+}
+
+Sample time_window(gpu::Recorder& gpu, FrameSource& source, const Settings& settings, int frame, const Window& window) {
+  Sample sample{double(window.pixels())};
+  source.data = window;
+  source.region = window;
+  const Stopwatch reading;
+  FrameRows rows(source, memory_of(source, settings).on_host(window), existing_folder_of(settings.output.output));
+  const FrameInputs inputs = load_frame(gpu, source, settings, frame, &rows);
+  sample.read = reading.ms();
+  const FrameOutputs outputs = run_chain(gpu, inputs, settings.estimator, settings.output);
+  gpu.run();
+  for (const auto& pass : gpu.passes()) sample.compute += pass.ms;
+  const Stopwatch writing;
+  FrameWriter writer(source, settings, {});  // which takes with it what was not finished
+  writer.write(result_planes(outputs, window, settings.output));
+  sample.write = writing.ms();
+  return sample;
+}
+
+/// The milliseconds of a whole from those of two of its parts.
+double scaled(double small_ms, double large_ms, const Sample& small, const Sample& large, double pixels) {
+  double steepness = 1;
+  if (small.pixels < large.pixels && small_ms > 0 && large_ms > small_ms)
+    steepness = std::clamp(std::log(large_ms / small_ms) / std::log(large.pixels / small.pixels), 1.0, kSteepest);
+  return large_ms * std::pow(pixels / large.pixels, steepness);
+}
+
+std::string duration_text(double seconds) {
+  if (seconds < 10) return fmt::format("{:.1f} s", seconds);
+  if (seconds < 120) return fmt::format("{:.0f} s", seconds);
+  if (seconds < 7200) return fmt::format("{:.0f} min", seconds / 60);
+  return fmt::format("{:.1f} h", seconds / 3600);
+}
+
+/// The settings with outputs that may be begun anywhere.
+Settings with_scratch(Settings settings) {
+  const std::string folder = std::filesystem::temp_directory_path().string();
+  settings.output.output = folder + "/alcove-dry-run.exr";
+  if (!settings.output.composite.empty()) settings.output.composite = folder + "/alcove-dry-run-composite.exr";
+  return settings;
+}
+
+std::string estimate(const TimedRun& run) {
+  const Settings settings = with_scratch(run.settings);
+  FrameSource source = open_frame(settings, run.frame);
+  const DeviceSettings& d = settings.device;
+  gpu::Device device({d.device, d.require_gpu, d.validate, !d.no_pipeline_cache});
+  gpu::Recorder gpu(device);
+  const Window whole = written_of(source);
+  if (!source.settled) settle_by_rows(source, settings.input);
+
+  // As much of the memory as one frame may take.
+  const FrameMemory memory = memory_of(source, settings);
+  const double room_px = double(memory_of_host(d).host_bytes) * double(whole.pixels()) / double(memory.on_host(whole)),
+               most = std::min(kMostPixels, std::max(room_px, kLeastPixels));
+
+  Sample before, last;
+  for (double pixels = kLeastPixels;; pixels *= kGrowth) {
+    const Window window = middle_of(whole, std::min(pixels, most));
+    before = std::exchange(last, time_window(gpu, source, settings, run.frame, window));
+    const bool is_all = last.pixels >= 0.99 * double(whole.pixels()) || pixels >= most;
+    if (is_all || last.read + last.compute + last.write > kEnoughMs) break;
+  }
+  if (before.pixels == 0) before = last;
+
+  const double pixels = double(whole.pixels()), files = (last.read + last.write) * pixels / last.pixels,
+               compute = scaled(before.compute, last.compute, before, last, pixels);
+  const bool is_cpu = device.info().type == gpu::DeviceType::cpu;
+  const int threads = d.threads > 0 ? d.threads : core_count();
+  const auto room = frames_in(memory_for_frames(d, device.info()), memory, whole);
+  const double at_once = double(std::min({room, std::uint64_t(run.frames), std::uint64_t(threads)}));
+  // A GPU computes while other frames are read and written; on a CPU all of it takes the same cores.
+  const double each = is_cpu || at_once == 1 ? compute + files / at_once : std::max(compute, files / at_once);
+  return fmt::format(
+      "about {}: {} per frame on {}, by computing {} of {}", duration_text(each * run.frames / 1000),
+      duration_text(each / 1000), device.info().name,
+      last.pixels >= 0.99 * pixels ? "all" : fmt::format("{}x{} pixels", source.data.width, source.data.height),
+      std::filesystem::path(source.depth_path()).filename().string());
+}
+
+}  // namespace
+
+std::string time_text(const TimedRun& run) {
+  if (run.frames == 0) return "none: all outputs are whole";
+  try {
+    return estimate(run);
+  } catch (const Error& error) {
+    // What is wrong with the frame or the settings ends the run too; a device may be there elsewhere.
+    if (error.kind() != ErrorKind::device) throw;
+    return fmt::format("unknown: {}", error.what());
+  }
+}
+
+}  // namespace alcove

@@ -1,0 +1,30 @@
+// Makes planar depth of a plane of surfaces behind the first, as a file holds them.
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// In: raw depth, planar depth of the first surface.
+// Out: planar depth > 0, below 0 of a surface that closes the solid before it; kSkyDepth where there is none.
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#include "behind.h"
+#include "finite.glsl"
+#include "view.glsl"
+#include "depth_terms.glsl"
+
+layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
+layout(constant_id = kBehindFormId) const uint kForm = kDepthLinear;
+layout(constant_id = kBehindKindId) const uint kKind = kBehindSurfaces;
+layout(scalar, push_constant) uniform Push { BehindParams params; };
+layout(scalar, binding = kBehindRaw) readonly buffer Raw { float raw[]; };
+layout(scalar, binding = kBehindDepth) readonly buffer Depth { float depth[]; };
+layout(scalar, binding = kBehindFound) writeonly buffer Found { float found[]; };
+
+void main() {
+  const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  if (!inside(params.view, pixel)) return;
+  const int index = index_of(params.view, pixel);
+  const int at = index + int(params.plane) * params.view.size.x * params.view.size.y;
+  const float z = planar_depth(kForm, params.depth, params.view, pixel, vec3(raw[at], 0, 0));
+  const float whole = kKind == kBehindThickness ? depth[index] + z : z;
+  const bool exists = z < kSkyDepth && whole < kSkyDepth && depth[index] < kSkyDepth;
+  found[at] = exists ? (kKind == kBehindSurfaces ? whole : -whole) : kSkyDepth;
+}

@@ -1,0 +1,21 @@
+// Raw depth -> planar depth. Pure: no bindings.
+// SPDX-License-Identifier: BSD-3-Clause
+
+/// Planar depth in scene units, kSkyDepth where there is no surface. raw: of kDepthPosition x, y and z, else x alone.
+float planar_depth(uint form, DepthTerms terms, View view, ivec2 pixel, vec3 raw) {
+  float z;
+  if (form == kDepthPosition) {
+    if (raw == vec3(0)) return kSkyDepth;
+    z = terms.base + dot(terms.axis, raw);
+  } else {
+    if (!(raw.x > terms.sky_below && raw.x < terms.sky_above)) return kSkyDepth;
+    const float value = terms.slope * (raw.x - terms.origin);
+    z = form == kDepthReciprocal    ? 1.0 / (terms.base + value)
+        : form == kDepthExponential ? terms.base * (exp(value) - 1.0)
+                                    : terms.base + value;
+  }
+  if (!is_finite(z) || !(z > 0.0 && z < terms.sky_depth)) return kSkyDepth;
+  const vec2 t = tangent_of(view, vec2(pixel) + 0.5);
+  if (terms.along_ray != 0) z *= inversesqrt(1.0 + dot(t, t));
+  return z < kSkyDepth ? z : kSkyDepth;
+}

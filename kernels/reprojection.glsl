@@ -1,0 +1,25 @@
+// A surface that one view shows, as another view sees it. Pure: no bindings. After view.glsl, with reprojection.h.
+// SPDX-License-Identifier: BSD-3-Clause
+
+/// Surfaces are one if they are no farther apart than so many times what a depth may be off.
+const float kPrecisions = 4.0;
+
+/// How many scene units a pixel is wide at planar depth z.
+float pixel_width(View view, float z) { return view.tangent_per_pixel.x * (view.orthographic != 0 ? 1.0 : z); }
+
+float error_at(vec3 error, float z) { return error.x + z * (error.y + z * error.z); }
+
+/// How far from a surface at planar depth z another one is another one.
+float separation_at(Reprojection r, float z) {
+  return r.separation >= 0.0 ? r.separation : kPrecisions * error_at(r.depth_precision, z) + pixel_width(r.to, z);
+}
+
+vec3 direction_there(Reprojection r, vec3 v) { return vec3(dot(r.row_x, v), dot(r.row_y, v), dot(r.row_z, v)); }
+vec3 position_there(Reprojection r, vec3 p) { return direction_there(r, p) + r.offset; }
+
+/// Planar depth at an image point of the plane through `position`.
+float plane_depth(View view, vec2 point_px, vec3 position, vec3 normal) {
+  const vec2 t = tangent_of(view, point_px);
+  const float height = dot(normal, position);
+  return view.orthographic != 0 ? (dot(normal.xy, t) - height) / normal.z : height / (dot(normal.xy, t) - normal.z);
+}

@@ -1,0 +1,191 @@
+// The sampled estimators with surfaces behind the first: what these must change, and what they must not.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/chain/chain.h"
+#include "core/chain/compute.h"
+#include "tests/support/device.h"
+#include "tests/support/difference.h"
+#include "tests/support/hidden_truth.h"
+#include "tests/support/random_scenes.h"
+#include "tests/support/single_pass.h"
+
+namespace alcove {
+namespace {
+
+using namespace test;
+
+constexpr Estimator kLayered[] = {Estimator::gtao, Estimator::bitmask};
+
+/// AO and bent normals.
+std::vector<float> run(const HostFrame& frame, const EstimatorSettings& settings) {
+  OutputSettings output;
+  output.aovs = "ao,bent-normal";
+  const FrameOutputs outputs = run_chain(recorder(), upload(recorder(), frame), settings, output);
+  recorder().run();
+  std::vector<float> values;
+  for (const auto* planes : {outputs.ao, outputs.bent_normal})
+    values.insert(values.end(), planes->as<float>().begin(), planes->as<float>().end());
+  return values;
+}
+
+EstimatorSettings settings_of(Estimator estimator, double radius) {
+  EstimatorSettings settings = plain_settings();
+  settings.estimator = estimator;
+  settings.radius = radius;
+  settings.thickness = ThicknessKind::automatic;
+  settings.complete = Completion::all;
+  settings.slices = 3;
+  settings.steps = 12;
+  return settings;
+}
+
+HostFrame with_plane(HostFrame frame, const std::vector<float>& depth, BehindKind kind = BehindKind::surfaces) {
+  frame.behind.push_back({.kind = kind});
+  frame.behind_depth.insert(frame.behind_depth.end(), depth.begin(), depth.end());
+  return frame;
+}
+
+/// What every kind of occluder and falloff must hold of.
+template <class Check>
+void with_all_kinds(double radius, const Check& check) {
+  for (const Estimator estimator : kLayered)
+    for (const auto thickness : {ThicknessKind::automatic, ThicknessKind::constant, ThicknessKind::infinite})
+      for (const auto falloff : {Falloff::none, Falloff::smooth}) {
+        EstimatorSettings settings = settings_of(estimator, radius);
+        settings.thickness = thickness;
+        settings.thickness_length = radius / 4;
+        settings.falloff = falloff;
+        check(settings,
+              fmt::format("estimator {}, thickness {}, falloff {}", int(estimator), int(thickness), int(falloff)));
+      }
+}
+
+TEST(Hidden, a_copy_of_the_first_depth_and_a_surface_beyond_the_radius_change_no_bit) {
+  const double radius = 0.3;
+  const HostFrame room = furnished_room(61, 47).frame;
+  float deepest = 0;
+  for (const float z : room.depth) deepest = z < kSky ? std::max(deepest, z) : deepest;
+  const std::vector<float> far(room.depth.size(), deepest + 4 * float(radius));
+  HostFrame layered = room;
+  // Of surfaces of unknown kind a far one could be the back of the first.
+  for (int i = 0; i < 3; i++)
+    layered = i == 1 ? with_plane(layered, far, BehindKind::fronts) : with_plane(layered, room.depth);
+  with_all_kinds(radius, [&](const EstimatorSettings& settings, const std::string& what) {
+    EXPECT_TRUE(same_bits(run(room, settings), run(layered, settings))) << what;
+  });
+}
+
+/// A ball before a ball, over a floor and before a wall, with all that they hide.
+struct Balls {
+  Scene scene{{parallelogram({-20, -20, 0}, {40, 0, 0}, {0, 40, 0}), Plane{{0, 1.2, 0}, {0, -1, 0}},
+               Sphere{.center = {-0.1, -0.5, 0.35}, .radius = 0.3}, Sphere{.center = {0.1, 0.4, 0.4}, .radius = 0.35}}};
+  Rendering rendering = render(scene, Shot::perspective({0.1, -3.2, 1.1}, {0, 0.2, 0.3}, 38, 121, 91));
+};
+
+TEST(Hidden, the_order_of_planes_changes_no_bit) {
+  Balls balls;
+  add_peels(balls.rendering, balls.scene, 3);
+  const HostFrame& frame = balls.rendering.frame;
+  HostFrame turned = frame;
+  const std::size_t pixels = frame.data.pixels(), planes = frame.behind.size();
+  for (std::size_t i = 0; i < planes; i++) {
+    turned.behind[i] = frame.behind[planes - 1 - i];
+    std::copy_n(frame.behind_depth.begin() + std::ptrdiff_t((planes - 1 - i) * pixels), pixels,
+                turned.behind_depth.begin() + std::ptrdiff_t(i * pixels));
+  }
+  for (const Estimator estimator : kLayered)
+    EXPECT_TRUE(same_bits(run(frame, settings_of(estimator, 0.6)), run(turned, settings_of(estimator, 0.6))));
+}
+
+/// RMS error against ray tracing, at receivers whose sphere is seen whole.
+double error_of(const Rendering& rendering, const Scene& scene, const EstimatorSettings& settings) {
+  const std::vector<float> ao = compute_ao(recorder(), rendering.frame, settings).ao;
+  const double radius = *settings.radius;
+  double sum = 0;
+  std::size_t count = 0;
+  for (const std::size_t pixel : receivers(rendering, radius, 4, [](const Hit&) { return true; })) {
+    const double error = ao[pixel] - true_ao(scene, rendering.hits[pixel], radius, 32);
+    sum += error * error;
+    count++;
+  }
+  EXPECT_GT(count, 40u);
+  return std::sqrt(sum / double(count));
+}
+
+EstimatorSettings dense(Estimator estimator, double radius) {
+  EstimatorSettings settings = settings_of(estimator, radius);
+  settings.slices = 16;
+  settings.steps = 64;
+  return settings;
+}
+
+TEST(Hidden, balls_block_from_their_fronts_to_their_backs) {
+  Balls balls;
+  for (const Estimator estimator : kLayered) {
+    Balls peeled;
+    add_peels(peeled.rendering, peeled.scene, 3);
+    const EstimatorSettings settings = dense(estimator, 0.6);
+    const double before = error_of(balls.rendering, balls.scene, settings);
+    const double after = error_of(peeled.rendering, peeled.scene, settings);
+    EXPECT_LT(after, 0.02) << "estimator " << int(estimator) << ", without peels " << before;
+    EXPECT_LT(after, 0.6 * before) << "estimator " << int(estimator);
+  }
+}
+
+TEST(Hidden, a_plate_hides_a_post_that_blocks_the_floor_behind_it) {
+  const Scene scene{{parallelogram({-20, -20, 0}, {40, 0, 0}, {0, 40, 0}),
+                     parallelogram({-0.5, -0.3, 0.15}, {1, 0, 0}, {0, 0, 0.5}),
+                     parallelogram({-0.25, 0.3, 0.05}, {0.5, 0, 0}, {0, 0, 0.4})}};
+  const Rendering plain = render(scene, Shot::perspective({0, -3, 1.4}, {0, 0, 0.1}, 36, 241, 181));
+  Rendering peeled = plain;
+  add_peels(peeled, scene, 3);
+  EstimatorSettings settings = dense(Estimator::gtao, 0.5);
+  settings.thickness = ThicknessKind::constant;
+  settings.thickness_length = 0.01;
+  settings.complete = Completion::none;
+  const double before = error_of(plain, scene, settings), after = error_of(peeled, scene, settings);
+  EXPECT_LT(after, 0.008) << "without peels " << before;
+  EXPECT_LT(after, 0.4 * before);
+}
+
+// The searches cover other samples where a range is known, so a bit that differs shows that a proof left something out.
+TEST(Hidden, what_is_left_out_by_proof_has_the_bits_of_what_is_computed) {
+  RandomScenes scenes(20);
+  for (int i = 0; i < 24; i++) {
+    HostFrame frame = scenes.next();
+    const std::vector<float> first = frame.depth;
+    const double radius = scenes.radius();
+    for (int k = 1; k <= 3; k++) {
+      std::vector<float> behind = first;
+      const float apart = float(radius) * 0.01f * float(scenes.whole(1, 120));
+      for (std::size_t p = 0; p < behind.size(); p++)
+        behind[p] = behind[p] < kSky && (p / 7 + std::size_t(k)) % 3 != 0 ? behind[p] + float(k) * apart : kSky;
+      frame = with_plane(frame, behind, scenes.whole(0, 2) == 0 ? BehindKind::backs : BehindKind::surfaces);
+    }
+    EstimatorSettings settings = settings_of(kLayered[scenes.whole(0, 1)], radius);
+    settings.thickness = scenes.thickness();
+    settings.thickness_length = radius / 4;
+    settings.steps = 24;
+    std::vector<float> skipped = run(frame, settings);
+    settings.no_skip = true;
+    EXPECT_TRUE(same_bits(skipped, run(frame, settings))) << "scene " << i;
+  }
+}
+
+TEST(Hidden, smaller_images_keep_what_their_pixels_hide) {
+  Balls balls;
+  Balls peeled;
+  add_peels(peeled.rendering, peeled.scene, 3);
+  EstimatorSettings settings = dense(Estimator::gtao, 0.6);
+  settings.resolution = Resolution::half;
+  EXPECT_LT(error_of(peeled.rendering, peeled.scene, settings),
+            0.75 * error_of(balls.rendering, balls.scene, settings));
+}
+
+}  // namespace
+}  // namespace alcove

@@ -1,0 +1,274 @@
+// What other frames and views show behind the first surface lies where it is in the world, and stands still.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <random>
+
+#include "core/chain/chain.h"
+#include "core/chain/margin.h"
+#include "kernels/reprojection.h"
+#include "tests/support/difference.h"
+#include "tests/support/seen_views.h"
+#include "tests/support/single_pass.h"
+
+namespace alcove {
+namespace {
+
+using namespace test;
+
+constexpr int kWidth = 96, kHeight = 64;
+
+/// A plate before a wall that is 4 away and turned away from the camera at the origin, which looks along y.
+const Polygon kPlate = parallelogram({-0.4, 2, -0.4}, {0.8, 0, 0}, {0, 0, 0.8});
+const Plane kWall{{0, 4, 0}, unit({0.3, -1, 0.2})};
+
+Shot looking(Vec3 eye, Vec3 target, bool orthographic) {
+  return orthographic ? Shot::orthographic(eye, target, 3.2, kWidth, kHeight)
+                      : Shot::perspective(eye, target, 60, kWidth, kHeight);
+}
+
+/// The largest relative error of what was found, and the part of the hidden wall that was found.
+struct Outcome {
+  double error = 0, found = 0;
+};
+Outcome wall_behind_plate(const Rendering& here, const Hidden& hidden) {
+  const Scene wall{{kWall}};
+  Outcome outcome;
+  int behind = 0, found = 0;
+  for (int y = 0; y < kHeight; y++) {
+    for (int x = 0; x < kWidth; x++) {
+      const float z = hidden.planes[std::size_t(y * kWidth + x)];
+      behind += here.at(x, y).primitive == 0;
+      if (z >= kSkyDepth) continue;
+      found++;
+      const double truth = wall.hit(here.shot.ray(x + 0.5, y + 0.5)).distance;
+      EXPECT_EQ(here.at(x, y).primitive, 0) << "nothing is hidden behind the wall at " << x << " " << y;
+      outcome.error = std::max(outcome.error, std::abs(double(z) - truth) / truth);
+    }
+  }
+  outcome.found = double(found) / behind;
+  return outcome;
+}
+
+class Projections : public testing::TestWithParam<std::pair<bool, bool>> {};
+INSTANTIATE_TEST_SUITE_P(All, Projections,
+                         testing::Values(std::pair{false, false}, std::pair{false, true}, std::pair{true, false},
+                                         std::pair{true, true}));
+
+TEST_P(Projections, a_wall_that_another_view_sees_is_found_behind_what_hides_it) {
+  const auto [of_other, of_here] = GetParam();
+  const Rendering here = render({{kPlate, kWall}}, looking({0, 0, 0}, {0, 4, 0}, of_here));
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> any(-1, 1);
+  for (int i = 0; i < 8; i++) {
+    // From beside the plate, where it hides nothing that it hides here.
+    const Vec3 eye{i % 2 ? 1.4 : -1.4, 2.2 + 0.3 * any(random), 0.5 * any(random)};
+    const Rendering other =
+        render({{kPlate, kWall}}, looking(eye, {0.1 * any(random), 4, 0.1 * any(random)}, of_other));
+    const Outcome outcome = wall_behind_plate(here, hidden_of(here, {seen_by(other, here.shot, "other")}));
+    EXPECT_LE(outcome.error, 1e-4) << i;
+    EXPECT_GE(outcome.found, of_other ? 0.5 : 0.9) << i;
+  }
+}
+
+TEST(OtherViews, the_same_view_shows_nothing_behind) {
+  const Rendering room = furnished_room(kWidth, kHeight);
+  const Hidden hidden = hidden_of(room, {seen_by(room, room.shot, "other")});
+  EXPECT_THAT(hidden.planes, testing::Each(kSkyDepth));
+  EXPECT_EQ(hidden.counts.moved, 0);
+}
+
+/// Five frames of a shot: the camera goes to the right along a wall, before which a box jumps to and fro, each time by
+/// more than it is wide. In each frame a post hides a place where another frame shows the box.
+struct MovingBox {
+  static constexpr int kFrames = 5;
+
+  static Scene still() {
+    return {{Plane{{0, 5, 0}, unit({0.1, -1, 0.1})}, parallelogram({-0.3, 2, -2}, {0.5, 0, 0}, {0, 0, 4})}};
+  }
+  static Scene at(int frame) {
+    Scene scene = still();
+    const double left = std::array{-0.6, -1.05, 0.65, 0.2, 1.1}[std::size_t(frame)];
+    scene.primitives.push_back(parallelogram({left, 3.5, -0.3}, {0.4, 0, 0}, {0, 0, 0.6}));
+    scene.primitives.push_back(parallelogram({left, 3.5, -0.3}, {0, 0.4, 0}, {0, 0, 0.6}));
+    scene.primitives.push_back(parallelogram({left + 0.4, 3.5, -0.3}, {0, 0.4, 0}, {0, 0, 0.6}));
+    scene.primitives.push_back(parallelogram({left, 3.5, 0.3}, {0.4, 0, 0}, {0, 0.4, 0}));
+    return scene;
+  }
+  static std::vector<Rendering> renderings() {
+    std::vector<Rendering> all;
+    for (int frame = 0; frame < kFrames; frame++) {
+      const Vec3 eye{-0.6 + 0.3 * frame, 0, 0.1};
+      all.push_back(render(at(frame), Shot::perspective(eye, eye + Vec3{0, 5, 0}, 50, kWidth, kHeight)));
+    }
+    return all;
+  }
+};
+
+/// The others of a frame of the shot; with what moves, or without.
+std::vector<OtherView> others_of(const std::vector<Rendering>& shot, std::size_t frame, bool judged) {
+  std::vector<OtherView> others;
+  for (std::size_t i = 0; i < shot.size(); i++) {
+    if (i == frame) continue;
+    OtherView view = seen_by(shot[i], shot[frame].shot, "frame " + std::to_string(i));
+    if (judged) view.moving = &moving_in(shot, i, "moving " + std::to_string(i));
+    others.push_back(view);
+  }
+  return others;
+}
+
+/// Hidden surfaces that are none of the scene's that stands still.
+int ghosts(const Rendering& here, const Hidden& hidden) {
+  const Scene still = MovingBox::still();
+  int count = 0;
+  for (std::size_t i = 0; i < hidden.planes.size(); i++) {
+    const float z = hidden.planes[i];
+    if (z >= kSkyDepth) continue;
+    const auto pixel = int(i % here.hits.size());
+    const Ray ray = here.shot.ray(pixel % kWidth + 0.5, pixel / kWidth + 0.5);
+    const bool is_still = std::ranges::any_of(still.primitives, [&](const auto& primitive) {
+      return std::abs(Scene{{primitive}}.hit(ray).distance / double(z) - 1) < 0.005;
+    });
+    count += !is_still;
+  }
+  return count;
+}
+
+int surfaces(const Hidden& hidden) {
+  return int(std::ranges::count_if(hidden.planes, [](float z) { return z < kSkyDepth; }));
+}
+
+TEST(OtherViews, what_moves_leaves_nothing_behind) {
+  const std::vector<Rendering> shot = MovingBox::renderings();
+  for (std::size_t frame = 0; frame < shot.size(); frame++) {
+    const Hidden hidden = hidden_of(shot[frame], others_of(shot, frame, true));
+    EXPECT_EQ(ghosts(shot[frame], hidden), 0) << frame;
+    EXPECT_GT(surfaces(hidden), 500) << frame;
+    EXPECT_GT(hidden.counts.moved, 200u) << frame;
+    EXPECT_GT(ghosts(shot[frame], hidden_of(shot[frame], others_of(shot, frame, false))), 20)
+        << "the test shows nothing: without judging nothing goes wrong in frame " << frame;
+  }
+}
+
+TEST(OtherViews, what_stands_still_is_confirmed) {
+  const Scene still = MovingBox::still();
+  std::vector<Rendering> shot;
+  for (int frame = 0; frame < 3; frame++) {
+    const Vec3 eye{-0.3 + 0.3 * frame, 0, 0.1};
+    shot.push_back(render(still, Shot::perspective(eye, eye + Vec3{0, 5, 0}, 50, kWidth, kHeight)));
+  }
+  const gpu::Buffer& moving = moving_in(shot, 1, "moving");
+  recorder().download(moving);
+  recorder().run();
+  const auto flags = moving.as<const uint>();
+  EXPECT_EQ(std::ranges::count(flags, kFlagMoves), 0);
+  EXPECT_GT(std::ranges::count(flags, 0u), std::ptrdiff_t(0.95 * double(flags.size())));
+}
+
+TEST(OtherViews, their_order_changes_no_bit) {
+  const std::vector<Rendering> shot = MovingBox::renderings();
+  std::vector<OtherView> others = others_of(shot, 2, true);
+  const Hidden hidden = hidden_of(shot[2], others);
+  std::ranges::reverse(others);
+  EXPECT_EQ(hidden_of(shot[2], others).planes, hidden.planes);
+  std::swap(others[0], others[1]);
+  EXPECT_EQ(hidden_of(shot[2], others).planes, hidden.planes);
+}
+
+TEST(OtherViews, a_part_of_the_frame_has_the_bits_of_the_whole) {
+  const std::vector<Rendering> shot = MovingBox::renderings();
+  const std::vector<OtherView> others = others_of(shot, 2, true);
+  const Hidden whole = hidden_of(shot[2], others);
+  Shot part = shot[2].shot;
+  part.data = {31, 7, 40, 45};
+  const Rendering cut = render(MovingBox::at(2), part);
+  EXPECT_EQ(hidden_of(cut, others).planes, cropped(whole.planes, shot[2].shot.data, part.data));
+  EXPECT_GT(surfaces(hidden_of(cut, others)), 100);
+}
+
+TEST(OtherViews, surfaces_of_files_and_of_views_are_one_list) {
+  const std::vector<Rendering> shot = MovingBox::renderings();
+  Rendering here = shot[2];
+  here.frame.behind = {{}};
+  here.frame.behind_depth.assign(here.hits.size(), 3.0f);
+  const Hidden of_views = hidden_of(shot[2], others_of(shot, 2, true), 1);
+  const Hidden of_both = hidden_of(here, others_of(shot, 2, true), 2);
+  int both = 0;
+  for (std::size_t i = 0; i < here.hits.size(); i++) {
+    if (here.frame.depth[i] > 2.5f || of_views.planes[i] < 3.5f || of_views.planes[i] >= kSkyDepth) continue;
+    both++;
+    EXPECT_EQ(of_both.planes[i], 3.0f) << i;
+    EXPECT_EQ(of_both.planes[i + here.hits.size()], of_views.planes[i]) << i;
+  }
+  EXPECT_GT(both, 300);
+}
+
+/// A room, and the part of its picture in the middle, which others see whole.
+struct Part {
+  static constexpr ivec2 kAround{24, 16};  // px of the whole to each side of the part
+
+  Rendering whole = furnished_room(kWidth, kHeight), part = whole;
+  Part() {
+    const Window window{kAround.x, kAround.y, kWidth - 2 * kAround.x, kHeight - 2 * kAround.y};
+    part.frame.depth = cropped(whole.frame.depth, whole.shot.data, window);
+    part.frame.normal = cropped(whole.frame.normal, whole.shot.data, window);
+    part.shot.data = part.frame.data = window;
+  }
+
+  std::vector<float> ao_with(const Margin& margin, const EstimatorSettings& settings) const {
+    const OtherView other = seen_by(whole, whole.shot, "other");
+    FrameInputs inputs = upload(recorder(), part.frame);
+    inputs.others = {other};
+    inputs.margin = margin;
+    const FrameOutputs outputs = run_chain(recorder(), inputs, settings);
+    recorder().run();
+    const auto ao = outputs.ao->as<float>();
+    return {ao.begin(), ao.end()};
+  }
+};
+
+TEST(OtherViews, what_they_show_around_the_picture_blocks_at_its_border) {
+  const Part room;
+  EstimatorSettings settings = plain_settings();
+  settings.radius = 1;
+  settings.slices = 16;
+  const std::vector<float> truth =
+      cropped(compute_ao(recorder(), room.whole.frame, settings).ao, room.whole.shot.data, room.part.shot.data);
+  const double without = difference(room.ao_with({}, settings), truth).rmse;
+  const double with = difference(room.ao_with({Part::kAround, Part::kAround}, settings), truth).rmse;
+  const double half = difference(room.ao_with({{12, 8}, {12, 8}}, settings), truth).rmse;
+  EXPECT_GT(without, 0.02);
+  EXPECT_LT(half, 0.7 * without);
+  EXPECT_LT(with, 0.1 * without);
+}
+
+TEST(OtherViews, a_margin_on_one_side_leaves_the_frame_in_its_place) {
+  const Part room;
+  EstimatorSettings settings;
+  settings.radius = 0.3;
+  const std::vector<float> without = room.ao_with({}, settings);
+  for (const Margin& margin : {Margin{{8, 0}, {}}, Margin{{0, 16}, {}}, Margin{{}, {8, 0}}, Margin{{}, {0, 8}}}) {
+    const Difference shift = difference(room.ao_with(margin, settings), without);
+    EXPECT_LT(shift.rmse, 0.05) << "it moved";
+    EXPECT_GT(shift.rmse, 0) << "there is no margin";
+  }
+}
+
+TEST(OtherViews, a_part_has_a_margin_where_it_ends_with_the_frame) {
+  const Window frame{-4, 2, 80, 40};
+  const auto sides = [&](const Window& part) {
+    const Margin m = margin_of(part, frame);
+    return std::array{m.before.x, m.before.y, m.after.x, m.after.y};
+  };
+  EXPECT_EQ(sides(frame), (std::array{10, 10, 10, 10}));
+  EXPECT_EQ(sides({-4, 2, 40, 20}), (std::array{10, 10, 0, 0}));
+  EXPECT_EQ(sides({36, 22, 40, 20}), (std::array{0, 0, 10, 10}));
+  EXPECT_EQ(sides({0, 10, 20, 20}), (std::array{0, 0, 0, 0}));
+}
+
+}  // namespace
+}  // namespace alcove

@@ -1,0 +1,65 @@
+// A frame that takes long is told of while it is computed: at a terminal all the time, in logs ever more seldom.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cli/progress.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/support/program.h"
+
+namespace alcove {
+namespace {
+
+using namespace test;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+/// What is printed while one frame in 17 parts is in work for so many seconds, and then for so many.
+std::string printed(const std::string& kind, bool is_quiet, const std::vector<double>& seconds) {
+  ProgressOptions options;
+  options.kind = kind;
+  options.quiet = is_quiet;
+  Progress progress(options, "");
+  testing::internal::CaptureStderr();
+  for (const double s : seconds) {
+    const FrameProgress frame{.frame = 1, .input = "shot.exr", .seconds = s, .part = 3, .parts = 17};
+    progress.working({&frame, 1});
+  }
+  return testing::internal::GetCapturedStderr();
+}
+
+TEST(Progress, tells_a_terminal_of_a_frame_from_two_seconds_on) {
+  EXPECT_THAT(printed("bar", false, {0.5, 1.9}), IsEmpty());
+  EXPECT_THAT(printed("bar", false, {2.5}), AllOf(HasSubstr("shot.exr: 0:02"), HasSubstr("part 3 of 17")));
+}
+
+TEST(Progress, tells_logs_of_a_frame_ever_more_seldom) {
+  EXPECT_THAT(printed("plain", false, {2.5, 9.5}), IsEmpty());
+  const auto lines = lines_of(printed("plain", false, {10, 11, 19, 20, 21, 39, 40}));
+  ASSERT_EQ(lines.size(), 3);
+  EXPECT_THAT(lines[1], AllOf(HasSubstr("shot.exr: 0:20"), HasSubstr("part 3 of 17")));
+}
+
+TEST(Progress, takes_its_line_away_at_the_end_of_a_run) {
+  ProgressOptions options;
+  options.kind = "bar";
+  Progress progress(options, "");
+  const FrameProgress work{.frame = 1, .input = "shot.exr", .seconds = 5};
+  FrameReport failed;
+  failed.state = FrameState::failed;
+  failed.error = Error(ErrorKind::input, "shot.exr: damaged");
+  testing::internal::CaptureStderr();
+  progress.working({&work, 1});
+  progress.frame(failed);
+  progress.end({});
+  EXPECT_THAT(testing::internal::GetCapturedStderr(), testing::EndsWith("\r\x1b[K")) << "an error follows it";
+}
+
+TEST(Progress, is_silent_where_nobody_wants_it) {
+  for (const char* kind : {"bar", "plain"}) EXPECT_THAT(printed(kind, true, {60}), IsEmpty());
+  EXPECT_THAT(printed("none", false, {60}), IsEmpty());
+}
+
+}  // namespace
+}  // namespace alcove

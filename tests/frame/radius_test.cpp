@@ -1,0 +1,67 @@
+// The radius that is proposed fits what the frame shows.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/frame/radius.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "tests/support/program.h"
+#include "tests/support/settled.h"
+#include "tests/support/wall_frame.h"
+
+namespace alcove {
+namespace {
+
+using namespace test;
+
+/// A frame of 100 pixels across whose surfaces have this median depth.
+FrameSource frame_at(double median, double fx, bool orthographic = false) {
+  FrameSource source;
+  source.camera.width = source.camera.height = 100;
+  source.camera.fx = source.camera.fy = fx;
+  source.camera.orthographic = orthographic;
+  source.median_depth = median;
+  return source;
+}
+
+TEST(Radius, is_a_tenth_of_the_distance_by_one_figure) {
+  EXPECT_EQ(proposed_radius(frame_at(6.2, 100)), 0.6);
+  EXPECT_EQ(proposed_radius(frame_at(843, 100)), 80);
+}
+
+TEST(Radius, is_no_more_than_a_quarter_of_what_a_long_lens_shows) {
+  EXPECT_EQ(proposed_radius(frame_at(1000, 10000)), 2);  // 10 units are seen, and the quarter is rounded to even
+}
+
+TEST(Radius, of_an_orthographic_camera_hangs_on_its_width_and_not_on_its_place) {
+  for (const double distance : {1.0, 1e6}) EXPECT_EQ(proposed_radius(frame_at(distance, 10, true)), 1) << distance;
+}
+
+TEST(Radius, needs_a_surface) {
+  FrameSource source = frame_at(1, 100);
+  source.median_depth = std::nullopt;
+  EXPECT_EQ(proposed_radius(source), std::nullopt);
+}
+
+TEST(Radius, of_a_settled_frame_follows_its_surfaces_alone) {
+  const TemporaryFolder folder;
+  InputSettings settings;
+  settings.input = folder / "frame.exr";
+  settings.camera = folder / "camera.json";
+  FrameFile file = wall_frame();
+  auto& depth = file.planes["ViewLayer.Depth.Z"];
+  for (std::size_t i = 0; i < depth.size() / 3; i++) depth[i] = 1e10f;
+  file.write(settings.input);
+  write_bytes(settings.camera, wall_camera().dump());
+  const FrameSource source = settled(settings);
+  ASSERT_TRUE(source.median_depth);
+  EXPECT_GT(*source.median_depth, 1.5);
+  EXPECT_LE(*source.median_depth, 6);
+  for (auto& z : depth) z = 1e10f;
+  file.write(settings.input);
+  EXPECT_EQ(settled(settings).median_depth, std::nullopt);
+}
+
+}  // namespace
+}  // namespace alcove

@@ -1,0 +1,104 @@
+// Hidden surfaces in the CPU reference: analytic peels against rays, and what must change nothing.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "core/reference/reference.h"
+#include "tests/support/hidden_truth.h"
+#include "tests/support/peels.h"
+#include "tests/support/random_scenes.h"
+#include "tests/support/scenes.h"
+
+namespace alcove {
+namespace {
+
+using namespace test;
+
+constexpr int kRaysAcross = 120;
+const Plane kFloor{.point = {}, .normal = {0, 0, 1}};
+const Plane kWall{.point = {}, .normal = {1, 0, 0}};
+
+/// Occluders without thickness, but for what is known to be solid, and nothing guessed.
+ReferenceSettings known_alone(double radius) {
+  ReferenceSettings settings;
+  settings.radius = radius;
+  settings.slices = 48;
+  settings.thickness = ThicknessRule::constant;
+  settings.thickness_length = 1e-4;
+  return settings;
+}
+
+double mean_error(const HostFrame& frame, const ReferenceSettings& settings, const std::vector<double>& truth) {
+  const std::vector<float> ao = reference_ao(frame, settings);
+  double sum = 0;
+  for (std::size_t i = 0; i < truth.size(); i++)
+    sum += std::abs(ao[settings.pixels[i]] - truth[i]) / double(truth.size());
+  return sum;
+}
+
+/// With all surfaces known the floor has its true AO to the bound, and with the first ones alone it has not.
+void expect_known(const char* what, const Scene& scene, const Shot& shot, double radius, double least_error) {
+  const Rendering rendering = render(scene, shot);
+  const HostFrame frame = peeled(scene, shot, 4);
+  ReferenceSettings settings = known_alone(radius);
+  std::vector<double> truth;
+  settings.pixels = receivers(rendering, radius, 7, [](const Hit& hit) { return hit.primitive == 0; });
+  for (const std::size_t i : settings.pixels) truth.push_back(true_ao(scene, rendering.hits[i], radius, kRaysAcross));
+  ASSERT_GE(truth.size(), 15u) << what;
+  const double known = mean_error(frame, settings, truth);
+  settings.hidden = 0;
+  const double first_alone = mean_error(frame, settings, truth);
+  EXPECT_LE(known, 0.005) << what << ", the first surfaces alone " << first_alone;
+  EXPECT_GE(first_alone, least_error) << what << ", known " << known;
+}
+
+TEST(Hidden, a_plate_before_a_wall_hides_nothing_of_it) {
+  expect_known("plate", {{kFloor, kWall, parallelogram({0.8, -0.5, 0.3}, {0, 1, 0}, {0, 0, 0.8})}},
+               Shot::perspective({5, 0.3, 1.8}, {0.3, 0, 0.6}, 50, 240, 180), 1, 0.01);
+}
+
+TEST(Hidden, a_sphere_before_a_sphere_is_solid_and_hides_nothing_of_it) {
+  const Scene scene{
+      {kFloor, Sphere{.center = {0.7, 0.1, 0.45}, .radius = 0.35}, Sphere{.center = {-0.3, 0, 0.5}, .radius = 0.4}}};
+  expect_known("spheres", scene, Shot::perspective({5, 0.3, 2.6}, {0.2, 0, 0.3}, 40, 240, 180), 1, 0.01);
+}
+
+TEST(Hidden, a_corridor_knows_its_wall_behind_a_post) {
+  const Plane other_wall{.point = {0, 1.2, 0}, .normal = {0, -1, 0}};
+  const Scene scene{{kFloor, kWall, other_wall, parallelogram({0.9, -0.6, 0.1}, {0, 0.5, 0}, {0, 0, 1.2}),
+                     parallelogram({1.2, 0.3, 0.1}, {0, 0.4, 0}, {0, 0, 1.2})}};
+  expect_known("corridor", scene, Shot::perspective({5, -0.3, 1.8}, {0.3, 0.2, 0.5}, 50, 240, 180), 0.9, 0.01);
+}
+
+/// Width as thickness, and all that can be completed.
+ReferenceSettings usual(double radius) {
+  ReferenceSettings settings;
+  settings.radius = radius;
+  settings.slices = 4;
+  settings.thickness = ThicknessRule::width;
+  settings.complete = Completion::border;
+  return settings;
+}
+
+TEST(Hidden, a_copy_of_the_first_depth_and_what_lies_beyond_the_sphere_change_no_bit) {
+  RandomScenes scenes(3);
+  for (int i = 0; i < 3; i++) {
+    const HostFrame frame = scenes.next();
+    if (frame.normal.empty() || frame.depth_kind != DepthKind::planar) continue;
+    const std::vector<float> expected = reference_ao(frame, usual(0.5));
+    HostFrame copied = frame;
+    copied.behind.assign(1, {});
+    copied.behind_depth = frame.depth;
+    EXPECT_EQ(reference_ao(copied, usual(0.5)), expected) << i;
+    for (float& z : copied.behind_depth)
+      if (z < 1e9f) z = 5000;
+    EXPECT_EQ(reference_ao(copied, usual(0.5)), expected) << i;
+  }
+}
+
+}  // namespace
+}  // namespace alcove

@@ -1,0 +1,231 @@
+// Runs with deep files: the bits of --behind, a frame of samples alone, crops and tiles, what inspect says, and every
+// mistake in files and options.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/formats/exr.h"
+#include "tests/support/command_line.h"
+#include "tests/support/deep_file.h"
+
+namespace alcove {
+namespace {
+
+using namespace test;
+using nlohmann::json;
+using testing::HasSubstr;
+using testing::Not;
+
+using Options = std::vector<std::string>;
+
+/// A plate before the wall and the floor, and what lies behind them, as peels and as samples.
+class DeepRun : public CommandLine {
+ protected:
+  DeepRun() {
+    FrameFile wall = wall_frame();
+    std::vector<float>& z = wall.planes.at("ViewLayer.Depth.Z");
+    for (std::size_t i = 0; i < z.size(); i++) {
+      const int x = int(i) % kWallWindow.width, y = int(i) / kWallWindow.width;
+      const bool is_plate = x >= 20 && x < 40 && y >= 8 && y < 28;
+      second.push_back(is_plate ? z[i] : 9 + 0.5F * float(i % 3));
+      third.push_back(is_plate ? 8.25F : 0);
+      if (is_plate) z[i] = 2.5F;
+    }
+    first = z;
+    wall.write(frame);
+    write_layer("second.exr", second);
+    write_layer("third.exr", third);
+    write_layer("flat.exr", first);
+    write_deep(deep, {samples()});
+  }
+
+  /// Every surface as an opaque sample, in no order; each times its pixel's factor.
+  DeepFilePart samples(const std::vector<float>& factors = {}) const {
+    DeepFilePart part;
+    part.data = kWallWindow;
+    for (std::size_t i = 0; i < first.size(); i++) {
+      const float by = factors.empty() ? 1 : factors[i];
+      part.pixels.push_back({{1, second[i] * by}, {1, first[i] * by}, {0.25F, 2 * by}});
+      if (third[i] > 0) part.pixels.back().insert(part.pixels.back().begin(), {1, third[i] * by});
+    }
+    return part;
+  }
+
+  /// The length of each pixel's ray, of unit depth.
+  static std::vector<float> rays() {
+    std::vector<float> lengths;
+    for (int y = 0; y < kWallWindow.height; y++)
+      for (int x = 0; x < kWallWindow.width; x++)
+        lengths.push_back(float(std::sqrt(1 + std::pow((x + 0.5 - 32) / 60, 2) + std::pow((y + 0.5 - 18) / 60, 2))));
+    return lengths;
+  }
+
+  void write_layer(const std::string& name, const std::vector<float>& z) const {
+    FrameFile layer;
+    layer.planes["Z"] = z;
+    layer.write(folder / name);
+  }
+
+  std::vector<float> pixels_of(const std::string& path) const { return read_exr_image(path).pixels; }
+
+  std::vector<float> result(const Options& more) const {
+    Options options{"--type", "float"};
+    options.insert(options.end(), more.begin(), more.end());
+    const Finished finished = run(options);
+    EXPECT_EQ(finished.code, 0) << finished;
+    return finished.code == 0 ? pixels_of(ao) : std::vector<float>();
+  }
+
+  /// A run of files of its own.
+  Finished run_on(const Options& inputs) const {
+    Options options{"run"};
+    options.insert(options.end(), inputs.begin(), inputs.end());
+    options.insert(options.end(), {"-o", ao, "--camera", camera, "--radius", "1", "--type", "float"});
+    return run_program(options);
+  }
+
+  void expect_refused(const Finished& finished, const std::vector<std::string>& words, int code = 3) const {
+    EXPECT_EQ(finished.code, code) << finished;
+    EXPECT_EQ(lines_of(finished.err).size(), 1) << finished;
+    for (const auto& word : words) EXPECT_THAT(finished.err, HasSubstr(word));
+  }
+
+  const std::string deep = folder / "deep.exr";
+  std::vector<float> first, second, third;
+};
+
+TEST_F(DeepRun, peels_as_samples_give_the_bits_of_behind) {
+  const auto behind =
+      result({"--aov", "ao,hidden", "--behind", folder / "second.exr", "--behind", folder / "third.exr"});
+  EXPECT_TRUE(std::ranges::find(behind, 8.25F) != behind.end()) << "or else nothing was shown";
+  EXPECT_TRUE(result({"--aov", "ao,hidden", "--deep", deep}) == behind);
+  DeepFilePart tiles = samples();
+  tiles.is_tiled = true;
+  tiles.tile = 16;
+  write_deep(deep, {tiles});
+  EXPECT_TRUE(result({"--aov", "ao,hidden", "--deep", deep}) == behind);
+}
+
+TEST_F(DeepRun, samples_along_the_ray_are_told_by_the_flat_depth) {
+  const auto planar = result({"--deep", deep, "--aov", "hidden"});
+  write_deep(deep, {samples(rays())});
+  const auto along = result({"--deep", deep, "--aov", "hidden"});
+  ASSERT_EQ(along.size(), planar.size());
+  for (std::size_t i = 0; i < along.size(); i++)
+    ASSERT_NEAR(along[i] / (planar[i] + 1), planar[i] / (planar[i] + 1), 1e-5) << i;
+}
+
+TEST_F(DeepRun, crops_and_tiles_of_a_large_frame_have_the_bits_of_the_whole) {
+  const auto whole = result({"--deep", deep});
+  const auto crop = result({"--deep", deep, "--roi", "16,5,30,20"});
+  const Image image = read_exr_image(ao);
+  ASSERT_EQ(image.data.width, 30);
+  for (int y = 0; y < image.data.height; y++)
+    for (int x = 0; x < image.data.width; x++)
+      ASSERT_EQ(crop[std::size_t(y * 30 + x)], whole[std::size_t((y + image.data.y) * 64 + x + image.data.x)]);
+}
+
+TEST_F(DeepRun, samples_alone_are_a_frame) {
+  const Finished flat =
+      run_on({folder / "flat.exr", "--behind", folder / "second.exr", "--behind", folder / "third.exr"});
+  ASSERT_EQ(flat.code, 0) << flat;
+  const auto expected = pixels_of(ao);
+  for (const Options& inputs : {Options{deep}, Options{"--depth", deep}, Options{"--deep", deep}}) {
+    const Finished finished = run_on(inputs);
+    ASSERT_EQ(finished.code, 0) << finished;
+    EXPECT_TRUE(pixels_of(ao) == expected) << inputs[0];
+  }
+}
+
+TEST_F(DeepRun, flat_parts_beside_samples_are_the_frame) {
+  DeepFilePart flat;
+  flat.is_flat = true;
+  flat.name = "flat";
+  flat.data = kWallWindow;
+  flat.channels = {"Z"};
+  for (const float z : first) flat.pixels.push_back({{z}});
+  write_deep(folder / "both.exr", {samples(), flat});
+  ASSERT_EQ(run_on({folder / "flat.exr"}).code, 0);
+  const auto plain = pixels_of(ao);
+  const Finished finished = run_on({folder / "both.exr"});
+  ASSERT_EQ(finished.code, 0) << finished;
+  EXPECT_TRUE(pixels_of(ao) == plain) << "samples that nobody asked for are not read";
+  ASSERT_EQ(run_on({folder / "both.exr", "--deep", folder / "both.exr", "--aov", "hidden"}).code, 0);
+  const auto hidden = pixels_of(ao);
+  EXPECT_TRUE(std::ranges::find(hidden, 8.25F) != hidden.end());
+}
+
+TEST_F(DeepRun, samples_without_anything_hidden_are_noted) {
+  DeepFilePart part = samples();
+  for (std::size_t i = 0; i < part.pixels.size(); i++) part.pixels[i] = {{1, first[i]}};
+  write_deep(deep, {part});
+  const Finished finished = run({"--deep", deep});
+  EXPECT_EQ(finished.code, 0) << finished;
+  EXPECT_THAT(finished.err, HasSubstr("rendered in one go"));
+}
+
+TEST_F(DeepRun, impossible_opacities_are_noted) {
+  DeepFilePart part = samples();
+  for (auto& pixel : part.pixels) pixel[0][0] = 1.5F;
+  write_deep(deep, {part});
+  const Finished finished = run({"--deep", deep});
+  EXPECT_EQ(finished.code, 0) << finished;
+  EXPECT_THAT(finished.err, HasSubstr("opacity"));
+}
+
+TEST_F(DeepRun, mistakes_are_refused_in_one_line) {
+  expect_refused(run({"--deep", folder / "flat.exr"}), {"flat.exr", "no deep data", "--behind", "--deep"});
+  expect_refused(run({"--normal", deep}), {"deep.exr", "deep data", "--normal"});
+  expect_refused(run({"--behind", deep}), {"deep.exr", "deep data", "--behind"});
+  expect_refused(run_program({"compare", deep, folder / "flat.exr"}), {"deep.exr", "deep data"});
+
+  DeepFilePart other = samples(std::vector<float>(first.size(), 3.7F));
+  write_deep(folder / "other.exr", {other});
+  expect_refused(run({"--deep", folder / "other.exr"}), {"other.exr", "--depth-scale"});
+
+  DeepFilePart small = samples();
+  small.data.height = 20;
+  small.pixels.resize(64 * 20);
+  write_deep(folder / "small.exr", {small}, kWallWindow);
+  expect_refused(run({"--deep", folder / "small.exr"}), {"small.exr", "same pixels", "--deep"});
+
+  DeepFilePart without = samples();
+  without.channels = {"A", "depth.Z"};
+  write_deep(folder / "without.exr", {without});
+  expect_refused(run({"--deep", folder / "without.exr"}), {"without.exr", "no Z", "--deep"});
+
+  const std::string bytes = read_bytes(deep);
+  write_bytes(folder / "cut.exr", bytes.substr(0, bytes.size() - 100));
+  expect_refused(run({"--deep", folder / "cut.exr"}), {"cut.exr", "--deep"});
+}
+
+TEST_F(DeepRun, inspect_says_what_samples_hold) {
+  const auto inspected = [&](const Options& inputs) {
+    Options options{"inspect", "--json", "--camera", camera};
+    options.insert(options.end(), inputs.begin(), inputs.end());
+    const Finished finished = run_program(options);
+    EXPECT_EQ(finished.code, 0) << finished;
+    return json::parse(finished.out)["deep"];
+  };
+  const json alone = inspected({deep});
+  ASSERT_EQ(alone.size(), 1);
+  EXPECT_NEAR(alone[0]["samples_per_pixel"].get<double>(), 3 + 400.0 / 2304, 1e-6);
+  EXPECT_EQ(alone[0]["most_samples"], 4);
+  EXPECT_NEAR(alone[0]["hidden_share"].get<double>(), (2304 + 400) / (3 * 2304 + 400.0), 0.1);
+  EXPECT_EQ(alone[0]["depth"], "the depth of the frame");
+  EXPECT_EQ(alone[0]["state"], "messy");
+  EXPECT_EQ(inspected({frame, "--deep", deep})[0]["depth"], "planar");
+  write_deep(deep, {samples(rays())});
+  EXPECT_EQ(inspected({frame, "--deep", deep})[0]["depth"], "along the ray");
+
+  DeepFilePart part = samples();
+  for (std::size_t i = 0; i < part.pixels.size(); i++) part.pixels[i] = {{1, first[i]}};
+  write_deep(deep, {part});
+  EXPECT_THAT(run_program({"inspect", deep, "--camera", camera}).out, HasSubstr("rendered in one go"));
+}
+
+}  // namespace
+}  // namespace alcove

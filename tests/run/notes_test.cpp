@@ -1,0 +1,179 @@
+// Warnings and notes: where they are said and recorded, and how they end a run.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "core/base/note.h"
+#include "tests/support/command_line.h"
+#include "tests/support/exr_header.h"
+#include "tests/support/sequence_folder.h"
+
+namespace alcove {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace test;
+using nlohmann::json;
+using testing::AllOf;
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+using testing::StartsWith;
+
+/// A frame with a warning, since its depth is half.
+FrameFile half_frame() {
+  FrameFile file = wall_frame();
+  file.halves = {"ViewLayer.Depth.Z"};
+  return file;
+}
+
+/// A frame with a note and without a warning, since it has no normals.
+FrameFile frame_without_normals() {
+  FrameFile file = wall_frame();
+  std::erase_if(file.planes, [](const auto& plane) { return plane.first.find("Normal") != std::string::npos; });
+  return file;
+}
+
+/// A frame of which so many pixels have no normal.
+FrameFile frame_with_repairs(std::size_t count) {
+  FrameFile file = wall_frame();
+  for (std::size_t i = 0; i < count; i++) file.planes.at("ViewLayer.Normal.X")[900 + i] = std::nanf("");
+  return file;
+}
+
+std::vector<std::string> codes_in(const json& notes) {
+  std::vector<std::string> codes;
+  for (const auto& note : notes) codes.push_back(note["code"]);
+  return codes;
+}
+
+class Notes : public CommandLine {};
+class SequenceNotes : public SequenceFolder {};
+
+TEST_F(Notes, have_their_level_and_their_code) {
+  half_frame().write(frame);
+  EXPECT_THAT(lines_of(run({}).err), Contains(AllOf(StartsWith("alcove: warning: " + frame + ": "),
+                                                    HasSubstr("half float"), testing::EndsWith(" [half-depth]"))));
+  frame_without_normals().write(frame);
+  EXPECT_THAT(lines_of(run({}).err),
+              Contains(AllOf(StartsWith("alcove: note: " + frame + ": "), testing::EndsWith(" [no-normals]"))));
+  EXPECT_THAT(run({"-q"}).err, IsEmpty());
+}
+
+TEST_F(Notes, stand_in_log_and_statistics) {
+  half_frame().write(frame);
+  const std::string stats = folder / "stats.json", log = folder / "log.jsonl";
+  ASSERT_EQ(run({"--stats", stats, "--log-json", log, "-q"}).code, 0);
+  const json all = json::parse(read_bytes(stats)), notes = all["frames"][0]["notes"];
+  ASSERT_THAT(codes_in(notes), ElementsAre("half-depth"));
+  EXPECT_EQ(notes[0]["level"], "warning");
+  EXPECT_THAT(notes[0]["text"].get<std::string>(), HasSubstr("half float"));
+  EXPECT_EQ(all["totals"]["warned"], 1);
+  EXPECT_EQ(json::parse(lines_of(read_bytes(log))[1])["notes"], notes);
+}
+
+TEST_F(Notes, that_are_warnings_stand_in_the_header) {
+  half_frame().write(frame);
+  const std::string composite = folder / "composite.exr";
+  ASSERT_EQ(run({}).code, 0);
+  EXPECT_THAT(text_in(read_header(ao), "alcove/notes"), StartsWith("half-depth: ViewLayer.Depth.Z is stored as half"));
+  const std::string bytes = read_bytes(ao);
+  ASSERT_EQ(run({}).code, 0);
+  EXPECT_TRUE(read_bytes(ao) == bytes);
+
+  FrameFile repaired = frame_with_repairs(3);
+  add_beauty(repaired);
+  repaired.write(frame);
+  ASSERT_EQ(run({"--composite", composite}).code, 0);
+  EXPECT_EQ(text_in(read_header(ao), "alcove/notes"), "repaired-normals: pixels had no usable normal");
+  EXPECT_EQ(text_in(read_header(composite), "alcove/notes"), "repaired-normals: pixels had no usable normal");
+
+  frame_without_normals().write(frame);
+  ASSERT_EQ(run({}).code, 0);
+  EXPECT_EQ(text_in(read_header(ao), "alcove/notes"), "(none)") << "a note is no warning";
+}
+
+TEST_F(Notes, of_an_input_that_alcove_has_made_are_not_those_of_the_output) {
+  FrameFile made = wall_frame();
+  made.attributes = {{"alcove/notes", "half-depth: of another file"}, {"owner", "a studio"}};
+  made.write(frame);
+  ASSERT_EQ(run({}).code, 0);
+  EXPECT_EQ(text_in(read_header(ao), "alcove/notes"), "(none)");
+  EXPECT_EQ(text_in(read_header(ao), "owner"), "a studio");
+}
+
+TEST_F(Notes, that_are_warnings_fail_where_they_count_as_errors) {
+  write_bytes(ao, "what was there");
+  for (const FrameFile& file : {half_frame(), frame_with_repairs(1)})
+    for (const char* option : {"--warnings-as-errors", "--strict"}) {
+      file.write(frame);
+      const Finished finished =
+          run({option, "--depth-kind", "planar", "--normal-space", "world", "--normal-encoding", "signed"});
+      EXPECT_EQ(finished.code, 3) << finished;
+      EXPECT_THAT(finished.err, AllOf(HasSubstr(frame), HasSubstr(option),
+                                      testing::ContainsRegex("\\[(half-depth|repaired-normals)\\]")));
+      EXPECT_EQ(read_bytes(ao), "what was there");
+      EXPECT_THAT(names_in(folder.path()), ElementsAre("ao.exr", "camera.json", "wall.0042.exr"));
+    }
+  frame_without_normals().write(frame);
+  EXPECT_EQ(run({"--warnings-as-errors"}).code, 0) << "a note is no warning";
+}
+
+TEST_F(SequenceNotes, are_said_once_and_recorded_for_every_frame) {
+  for (const int frame : {1, 2, 3}) half_frame().write(input(frame));
+  const std::string stats = folder / "stats.json";
+  const Finished finished = run({"--stats", stats});
+  ASSERT_EQ(finished.code, 0) << finished;
+  const std::size_t first = finished.err.find("[half-depth]");
+  EXPECT_NE(first, std::string::npos) << finished;
+  EXPECT_EQ(finished.err.find("[half-depth]", first + 1), std::string::npos) << finished;
+  const json all = json::parse(read_bytes(stats));
+  EXPECT_THAT(codes_in(all["notes"]), Contains("half-depth"));
+  for (const int frame : {1, 2, 3}) {
+    EXPECT_THAT(codes_in(all["frames"][std::size_t(frame - 1)]["notes"]), ElementsAre("half-depth")) << frame;
+    EXPECT_THAT(text_in(read_header(output(frame)), "alcove/notes"), StartsWith("half-depth: ")) << frame;
+  }
+  EXPECT_THAT(lines_of(finished.err).back(), HasSubstr(", 3 with warnings"));
+}
+
+TEST_F(SequenceNotes, of_single_frames_are_said_once_and_counted) {
+  wall_frame().write(input(1));
+  for (const int frame : {2, 3, 4}) frame_with_repairs(std::size_t(frame)).write(input(frame));
+  const std::string stats = folder / "stats.json";
+  const Finished finished = run({"--stats", stats});
+  ASSERT_EQ(finished.code, 0) << finished;
+  std::vector<std::string> said = lines_of(finished.err);
+  std::erase_if(said, [](const std::string& line) { return line.find("[repaired-normals]") == std::string::npos; });
+  ASSERT_EQ(said.size(), 2) << finished;
+  EXPECT_THAT(said[0], AllOf(HasSubstr(input(2)), HasSubstr("2 pixels")));
+  EXPECT_THAT(said[1], AllOf(StartsWith("alcove: warning: "), HasSubstr("2 further frames")));
+  const json frames = json::parse(read_bytes(stats))["frames"];
+  EXPECT_THAT(frames[0]["notes"], IsEmpty());
+  EXPECT_THAT(frames[3]["notes"][0]["text"].get<std::string>(), HasSubstr("4 pixels"));
+}
+
+TEST_F(SequenceNotes, that_are_warnings_fail_only_their_frames) {
+  for (const int frame : {1, 2, 3}) frame_with_repairs(frame == 2).write(input(frame));
+  ASSERT_EQ(run().code, 0);
+  ASSERT_EQ(run({"--resume"}).code, 0);
+  const Finished going = run({"--resume", "--warnings-as-errors", "--keep-going"});
+  EXPECT_EQ(going.code, 1) << going;
+  EXPECT_THAT(going.err, AllOf(HasSubstr("2 kept"), HasSubstr("1 failed (2)"))) << "no bad output looks good";
+  remove_outputs();
+  EXPECT_EQ(run({"--warnings-as-errors", "--keep-going"}).code, 1);
+  EXPECT_THAT(names_in(out), ElementsAre("ao.0001.exr", "ao.0003.exr"));
+  EXPECT_EQ(run({"--warnings-as-errors"}).code, 3);
+}
+
+TEST(NoteTable, is_that_of_the_readme) {
+  const std::string readme = read_bytes(ALCOVE_SOURCE_DIR "/README.md"), begin = "<!-- notes -->\n";
+  const std::size_t from = readme.find(begin) + begin.size(), to = readme.find("<!-- /notes -->");
+  ASSERT_LE(from, to);
+  EXPECT_TRUE(readme.substr(from, to - from) == note_table_markdown()) << note_table_markdown();
+}
+
+}  // namespace
+}  // namespace alcove

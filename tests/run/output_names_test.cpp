@@ -1,0 +1,141 @@
+// Names of inputs and outputs: endings, folders that are made, what shells make of sequences; and what a dry run says.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gmock/gmock.h>
+
+#include "core/formats/exr.h"
+#include "tests/support/command_line.h"
+#include "tests/support/sequence_folder.h"
+
+namespace alcove {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace test;
+using nlohmann::json;
+using testing::AllOf;
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::MatchesRegex;
+using testing::Not;
+
+class OutputNames : public CommandLine {
+ protected:
+  /// `run` to this output, with these arguments.
+  Finished to(const std::string& output, std::vector<std::string> more = {}) const {
+    more.insert(more.begin(), {"run", frame, "-o", output, "--camera", camera, "--radius", "1"});
+    return run_program(more);
+  }
+};
+
+TEST_F(OutputNames, that_end_in_another_format_are_refused) {
+  FrameFile file = wall_frame();
+  add_beauty(file);
+  file.write(frame);
+  const auto before = names_in(folder.path());
+  const auto expect_refused = [&](const Finished& finished, const std::string& name, const char* option,
+                                  const char* ending) {
+    EXPECT_EQ(finished.code, 2) << name << finished;
+    EXPECT_THAT(finished.err, AllOf(HasSubstr(name), HasSubstr(option), HasSubstr(ending)));
+    EXPECT_EQ(names_in(folder.path()), before);
+  };
+  for (const char* name : {"x.png", "x.tif", "x.JPG", "x.png.tmp", "x.png.0001", "x.json", "x.exr.zip"}) {
+    expect_refused(to(folder / name), name, "--output", ".exr");
+    expect_refused(to(ao, {"--composite", folder / name}), name, "--composite", ".exr");
+  }
+  for (const char* name : {"x.jpg", "x.exr", "x.tif", "x.jpg.part"})
+    for (const Finished& finished : {to(ao, {"--preview", folder / name}),
+                                     run_program({"inspect", frame, "--camera", camera, "--preview", folder / name})})
+      expect_refused(finished, name, "--preview", ".png");
+  expect_refused(to(folder / "x.####.png", {"--frames", "1-2"}), "x.0001.png", "--output", ".exr");
+  expect_refused(to(folder / "x.png", {"--dry-run"}), "x.png", "--output", ".exr");
+}
+
+TEST_F(OutputNames, without_an_ending_or_of_files_in_the_making_are_as_good) {
+  for (const char* name : {"ao", "ao.EXR", "ao.exr.tmp", "ao.0001", "ao.exr.0001", "v1.2.exr"}) {
+    const Finished finished = to(folder / name, {"--preview", folder / "preview"});
+    EXPECT_EQ(finished.code, 0) << finished;
+    EXPECT_EQ(read_exr_image(folder / name).data, kWallWindow) << name;
+    EXPECT_EQ(read_bytes(folder / "preview").substr(1, 3), "PNG");
+  }
+}
+
+TEST_F(OutputNames, have_their_folders_made) {
+  const std::string made = folder / "a/b";
+  const std::vector<std::string> everywhere{"--preview",  folder / "p/p.png",   "--stats", folder / "s/t/s.json",
+                                            "--log-json", folder / "l/l.jsonl", "--debug", "edges"};
+  const Finished refused = to(made + "/ao.exr", {"--no-mkdir"});
+  EXPECT_EQ(refused.code, 4) << refused;
+  EXPECT_THAT(refused.err, HasSubstr(made));
+  EXPECT_FALSE(fs::exists(folder / "a"));
+
+  EXPECT_EQ(to(made + "/ao.exr", {"--dry-run"}).code, 0);
+  EXPECT_FALSE(fs::exists(folder / "a")) << "a dry run makes nothing";
+  EXPECT_NE(to(made + "/ao.exr", {"--device", "99"}).code, 0);
+  EXPECT_NE(to(made + "/ao.exr", {"--normal-channels", "none.of.them"}).code, 0);
+  EXPECT_FALSE(fs::exists(folder / "a")) << "a run that fails leaves no empty folders";
+
+  const Finished finished = to(made + "/ao.exr", everywhere);
+  EXPECT_EQ(finished.code, 0) << finished;
+  for (const char* name : {"a/b/ao.exr", "a/b/ao.edges.png", "p/p.png", "s/t/s.json", "l/l.jsonl"})
+    EXPECT_TRUE(fs::is_regular_file(folder / name)) << name;
+}
+
+TEST_F(OutputNames, in_folders_that_cannot_be_made_are_refused_before_any_work) {
+  write_bytes(folder / "file", "no folder");
+  const Finished finished = to(folder / "file/ao.exr");
+  EXPECT_EQ(finished.code, 4) << finished;
+  EXPECT_THAT(finished.err, AllOf(HasSubstr(folder / "file"), HasSubstr("--output"), Not(HasSubstr("read"))));
+  EXPECT_EQ(to(folder / "file/a/b/ao.exr").code, 4);
+  EXPECT_EQ(to("/proc/none/ao.exr").code, 4);
+}
+
+class InputNames : public SequenceFolder {};
+
+TEST_F(InputNames, that_are_globs_are_answered_with_the_pattern) {
+  write_frames(1, 2);
+  const auto expect_answer = [&](const std::string& glob, const std::string& pattern) {
+    const Finished finished =
+        run_program({"run", glob, "-o", out + "/ao.####.exr", "--camera", camera, "--radius", "1"});
+    EXPECT_EQ(finished.code, 2) << finished;
+    EXPECT_THAT(finished.err, AllOf(HasSubstr(glob), HasSubstr("write " + pattern)));
+    EXPECT_THAT(names_in(out), IsEmpty());
+  };
+  expect_answer(in + "/f.*.exr", in + "/f.####.exr");
+  expect_answer(in + "/f.?????.exr", in + "/f.#####.exr");
+  expect_answer(in + "/*.*", "shot.####.exr");
+  const Finished bare = run_program({"run", in + "/f.*.exr"});
+  EXPECT_EQ(bare.code, 2) << bare;
+  EXPECT_THAT(bare.err, AllOf(HasSubstr("write " + in + "/f.####.exr"), Not(HasSubstr("such as"))));
+  const Finished expanded = run_program({"run", input(1), input(2), "-o", out + "/ao.exr", "--camera", camera});
+  EXPECT_EQ(expanded.code, 2) << expanded;
+  EXPECT_THAT(expanded.err, HasSubstr("write " + in + "/f.####.exr"));
+  // A file of that very name is no glob.
+  fs::copy_file(input(1), in + "/what?.exr");
+  EXPECT_EQ(run_program({"run", in + "/what?.exr", "-o", out + "/ao.exr", "--camera", camera, "--radius", "1"}).code,
+            0);
+}
+
+TEST_F(InputNames, of_a_dry_run_come_with_the_time_it_takes) {
+  write_frames(1, 4);
+  const auto before = names_in(folder.path());
+  const Finished finished = run({"--dry-run"});
+  EXPECT_EQ(finished.code, 0) << finished;
+  EXPECT_THAT(lines_of(finished.out),
+              Contains(MatchesRegex("time +about [0-9.]+ s: [0-9.]+ s per frame on .*, by computing all of "
+                                    "f.0003.exr")))
+      << "the first frames of a sequence are often empty";
+  EXPECT_EQ(names_in(folder.path()), before);
+  const Finished without = run({"--dry-run", "--device", "99"});
+  EXPECT_EQ(without.code, 0) << without;
+  EXPECT_THAT(lines_of(without.out), Contains(MatchesRegex("time +unknown: .*--device.*")));
+
+  ASSERT_EQ(run().code, 0);
+  fs::remove(output(2));
+  EXPECT_THAT(lines_of(run({"--dry-run", "--resume"}).out), Contains(MatchesRegex("kept +3: .*")));
+  EXPECT_THAT(lines_of(run({"--dry-run", "--resume", "--frames", "3"}).out), Contains(MatchesRegex("time +none: .*")));
+}
+
+}  // namespace
+}  // namespace alcove

@@ -1,0 +1,306 @@
+// What the frames of a shot take from each other: the same whatever is computed beside them, each read once.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfMultiPartOutputFile.h>
+#include <ImfOutputPart.h>
+#include <ImfPartType.h>
+#include <gmock/gmock.h>
+
+#include "core/formats/exr.h"
+#include "core/run/plan.h"
+#include "core/run/shot.h"
+#include "tests/support/sequence_folder.h"
+
+namespace alcove {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace test;
+using nlohmann::json;
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::Eq;
+using testing::FloatEq;
+using testing::HasSubstr;
+using testing::Pointwise;
+
+constexpr int kFrames = 7;
+constexpr double kStep = 0.08;  // scene units to the right that the camera moves from frame to frame
+
+/// A floor, a wall, and a board that stands before the wall, from a camera that walks by.
+class Shots : public SequenceFolder {
+ protected:
+  Shots() {
+    json cameras = wall_camera();
+    for (int frame = 1; frame <= kFrames; frame++) {
+      json matrix = cameras["world_to_camera"];
+      matrix[0][3] = -kStep * frame;
+      cameras["frames"].push_back({{"frame", frame}, {"world_to_camera", matrix}});
+      with_board(frame).write(input(frame));
+    }
+    write_bytes(camera, cameras.dump());
+  }
+
+  static FrameFile with_board(int frame) {
+    FrameFile file = wall_frame();
+    auto& depth = file.planes.at("ViewLayer.Depth.Z");
+    for (std::size_t i = 0; i < depth.size(); i++) {
+      const double x = (double(i % 64) + 0.5 - 32) / 60 * kBoardDepth + kStep * frame;
+      const double y = (18 - double(i / 64) - 0.5) / 60 * kBoardDepth;
+      if (std::abs(x) > 0.6 || std::abs(y) > 0.7 || kBoardDepth > double(depth[i])) continue;
+      depth[i] = float(kBoardDepth);
+      file.planes.at("ViewLayer.Normal.Y")[i] = -1;
+      file.planes.at("ViewLayer.Normal.Z")[i] = 0;
+    }
+    return file;
+  }
+  static constexpr double kBoardDepth = 4;
+
+  json stats() const { return json::parse(read_bytes(folder / "stats.json")); }
+  Finished run_with_stats(std::vector<std::string> more) const {
+    more.insert(more.end(), {"--stats", folder / "stats.json"});
+    return run(more);
+  }
+  std::string header(int frame) const { return attribute_of_whole_exr(output(frame), "alcove/hidden").value_or(""); }
+};
+
+/// The word that stands behind another text.
+std::string word_behind(const std::string& text, const std::string& before) {
+  const std::size_t at = text.find(before);
+  if (at == text.npos) return "";
+  const std::size_t begin = at + before.size();
+  return text.substr(begin, text.find_first_of(" \n", begin) - begin);
+}
+
+TEST_F(Shots, threads_chunks_and_order_change_no_bit) {
+  ASSERT_EQ(run({"--threads", "1", "--around", "2"}).code, 0);
+  const auto one_thread = outputs();
+  EXPECT_EQ(one_thread.size(), kFrames);
+  const auto again = [&](const std::vector<std::vector<std::string>>& runs) {
+    remove_outputs();
+    for (auto arguments : runs) {
+      arguments.insert(arguments.end(), {"--around", "2"});
+      const Finished finished = run(arguments);
+      EXPECT_EQ(finished.code, 0) << finished;
+    }
+    EXPECT_TRUE(outputs() == one_thread) << testing::PrintToString(runs);
+  };
+  again({{"--threads", "5"}});
+  again({{"--chunk", "3/3"}, {"--chunk", "1/3"}, {"--chunk", "2/3"}});
+  again({{"--frames", "7-1"}});
+  again({{"--frames", "1-7x2"}, {"--frames", "2-6:2"}});
+}
+
+TEST_F(Shots, each_frame_is_read_once_for_all_around_it) {
+  ASSERT_EQ(run_with_stats({"--around", "2", "--threads", "1"}).code, 0);
+  std::uint64_t rows = 0;
+  const json frames = stats()["frames"];
+  for (const auto& frame : frames) rows += frame["rows_read"].get<std::uint64_t>();
+  EXPECT_EQ(rows, 2 * kFrames * 36) << "once as itself, and once as one of those around";
+  EXPECT_THAT(frames[0]["frames_around"], Eq(json({2, 3})));
+  EXPECT_THAT(frames[3]["frames_around"], Eq(json({2, 3, 5, 6})));
+}
+
+TEST_F(Shots, headers_name_the_frames_around) {
+  ASSERT_EQ(run({"--around", "2"}).code, 0);
+  EXPECT_EQ(header(1), "frames 2-3");
+  EXPECT_EQ(header(4), "frames 2-3, 5-6");
+  ASSERT_EQ(run({"--around", "all"}).code, 0);
+  EXPECT_EQ(header(1), "frames 2-7");
+  ASSERT_EQ(run({}).code, 0);
+  EXPECT_EQ(header(1), "");
+}
+
+TEST_F(Shots, of_one_frame_have_none_around_it) {
+  ASSERT_EQ(run({}).code, 0);
+  const auto without = outputs();
+  for (int frame = 2; frame <= kFrames; frame++) fs::remove(input(frame));
+  remove_outputs();
+  for (const char* around : {"3", "all"}) {
+    const Finished finished = run({"--around", around});
+    ASSERT_EQ(finished.code, 0) << finished;
+    EXPECT_EQ(header(1), "");
+  }
+  const Finished single =
+      run_program({"run", input(1), "-o", output(1), "--camera", camera, "--radius", "1", "--around", "3"});
+  EXPECT_EQ(single.code, 0) << single;
+}
+
+TEST_F(Shots, resumed_runs_compute_what_a_changed_neighbour_changes) {
+  ASSERT_EQ(run({"--around", "1"}).code, 0);
+  FrameFile changed = with_board(1);
+  changed.planes.at("ViewLayer.Depth.Z")[0] = 5;
+  changed.write(input(1));
+  const auto old = fs::last_write_time(input(2));
+  fs::last_write_time(input(1), old);
+  ASSERT_EQ(run_with_stats({"--around", "1", "--resume"}).code, 0);
+  std::vector<int> computed;
+  const json frames = stats()["frames"];
+  for (const auto& frame : frames)
+    if (frame["state"] == "done") computed.push_back(frame["frame"]);
+  // Frame 1 tells what moves in 2 and 3, which 4 takes.
+  EXPECT_THAT(computed, ElementsAre(1, 2, 3, 4));
+}
+
+TEST_F(Shots, missing_frames_are_an_error_or_left_out) {
+  fs::remove(input(4));
+  const Finished refused = run({"--around", "2", "--frames", "2"});
+  EXPECT_EQ(refused.code, 3);
+  EXPECT_THAT(refused.err, AllOf(HasSubstr("f.0004.exr"), HasSubstr("--around"), HasSubstr("--missing skip")));
+  const Finished skipped = run({"--around", "2", "--missing", "skip"});
+  ASSERT_EQ(skipped.code, 0) << skipped;
+  EXPECT_EQ(header(3), "frames 1-2, 5; missing 4");
+  EXPECT_EQ(header(1), "frames 2-3");
+}
+
+TEST_F(Shots, need_to_know_where_every_camera_stands) {
+  json cameras = json::parse(read_bytes(camera));
+  cameras.erase("world_to_camera");
+  cameras["frames"][3].erase("world_to_camera");
+  cameras["normal_space"] = "view";
+  write_bytes(camera, cameras.dump());
+  for (int frame = 1; frame <= kFrames; frame++) {
+    FrameFile file = with_board(frame);
+    turn_normals_to_view(file);
+    file.write(input(frame));
+  }
+  const Finished finished = run({"--around", "2", "--frames", "2"});
+  EXPECT_EQ(finished.code, 3) << finished;
+  EXPECT_THAT(finished.err, AllOf(HasSubstr("f.0004.exr"), HasSubstr("frame 4"), HasSubstr("--camera")));
+}
+
+TEST_F(Shots, refuse_two_projections) {
+  json cameras = json::parse(read_bytes(camera));
+  cameras["frames"][3]["projection"] = "orthographic";
+  write_bytes(camera, cameras.dump());
+  const Finished finished = run({"--around", "1", "--frames", "3"});
+  EXPECT_EQ(finished.code, 3) << finished;
+  EXPECT_THAT(finished.err, AllOf(HasSubstr("orthographic"), HasSubstr("frame 4"), HasSubstr("--camera")));
+}
+
+TEST_F(Shots, keep_no_more_frames_than_their_windows) {
+  Settings settings;
+  settings.input.input = in + "/f.####.exr";
+  settings.input.around = 1;
+  const FramePlan plan(settings);
+  EXPECT_THAT(plan.around(1, 2).there, ElementsAre(2, 3));
+  EXPECT_THAT(plan.around(7, 1).there, ElementsAre(6));
+  EXPECT_THAT(plan.around(4, kWholeShot).there, ElementsAre(1, 2, 3, 5, 6, 7));
+}
+
+TEST_F(Shots, regions_have_the_bits_of_the_whole) {
+  const Window region{9, 6, 40, 22};
+  ASSERT_EQ(run({"--around", "2", "--type", "float", "--frames", "4"}).code, 0);
+  const Image whole = read_exr_image(output(4));
+  const Finished finished = run({"--around", "2", "--type", "float", "--frames", "4", "--roi", "9,6,40,22"});
+  ASSERT_EQ(finished.code, 0) << finished;
+  EXPECT_THAT(read_exr_image(output(4)).pixels, Pointwise(FloatEq(), cropped(whole.pixels, whole.data, region)));
+}
+
+/// Frames that are so large that their number matters.
+TEST_F(Shots, tell_how_many_frames_memory_has_room_for) {
+  const Window large{0, 0, 480, 270};
+  wall_frame(large, large).write(input(1));
+  for (int frame = 2; frame <= kFrames; frame++)
+    fs::copy_file(input(1), input(frame), fs::copy_options::overwrite_existing);
+  json cameras = wall_camera(large);
+  write_bytes(camera, cameras.dump());
+  const Finished refused = run({"--around", "all", "--memory", "182M"});
+  ASSERT_EQ(refused.code, 2) << refused;
+  EXPECT_THAT(refused.err, AllOf(HasSubstr("f.0001.exr"), HasSubstr("--around "), HasSubstr("--memory ")));
+  const Finished dry = run({"--around", "all", "--memory", "182M", "--dry-run"});
+  EXPECT_EQ(dry.code, 2) << dry;
+  const std::string enough = word_behind(refused.err, "or --memory ");
+  const Finished with_enough = run({"--around", "all", "--memory", enough, "--frames", "4"});
+  EXPECT_EQ(with_enough.code, 0) << with_enough;
+}
+
+/// Adds motion vectors of what stands still, as Blender writes them: to the place in the frame before.
+void add_motion(FrameFile& file, float factor) {
+  const auto& depth = file.planes.at("ViewLayer.Depth.Z");
+  auto& x = file.planes["ViewLayer.Vector.X"] = std::vector<float>(depth.size());
+  file.planes["ViewLayer.Vector.Y"] = std::vector<float>(depth.size());
+  for (std::size_t i = 0; i < depth.size(); i++) x[i] = factor * float(kStep) / depth[i] * 60;
+}
+
+TEST_F(Shots, take_what_motion_vectors_prove_to_stand_still) {
+  for (int frame = 1; frame <= kFrames; frame++) {
+    FrameFile file = with_board(frame);
+    add_motion(file, 1);
+    file.write(input(frame));
+  }
+  const Finished finished = run({"--around", "2", "--motion", in + "/f.%04d.exr"});
+  EXPECT_EQ(finished.code, 0) << finished;
+  const Finished of_next = run({"--around", "2", "--motion", in + "/f.%04d.exr", "--motion-kind", "next"});
+  EXPECT_EQ(of_next.code, 0) << "this camera's steps are all the same, so that the way back is the way on";
+}
+
+TEST_F(Shots, refuse_motion_vectors_that_no_camera_agrees_with) {
+  for (int frame = 1; frame <= kFrames; frame++) {
+    FrameFile file = with_board(frame);
+    add_motion(file, 3.7f);
+    file.write(input(frame));
+  }
+  const Finished finished = run({"--around", "2", "--motion", in + "/f.%04d.exr"});
+  EXPECT_EQ(finished.code, 3) << finished;
+  EXPECT_THAT(finished.err, AllOf(HasSubstr("f.000"), HasSubstr("--motion-channels"), HasSubstr("--motion-kind")));
+}
+
+/// A file of two views, each a part.
+void write_stereo(const std::string& path, const FrameFile& left, const FrameFile& right) {
+  std::vector<Imf::Header> headers;
+  for (const char* view : {"left", "right"}) {
+    Imf::Header& header = headers.emplace_back(64, 36);
+    header.setName(view);
+    header.setView(view);
+    header.setType(Imf::SCANLINEIMAGE);
+    for (const auto& [name, plane] : left.planes) header.channels().insert(name, Imf::Channel(Imf::FLOAT));
+  }
+  Imf::MultiPartOutputFile file(path.c_str(), headers.data(), 2);
+  for (int part = 0; part < 2; part++) {
+    Imf::FrameBuffer pixels;
+    for (const auto& [name, plane] : part == 0 ? left.planes : right.planes)
+      pixels.insert(name, Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(const_cast<float*>(plane.data())),
+                                     sizeof(float), sizeof(float) * 64));
+    Imf::OutputPart out(file, part);
+    out.setFrameBuffer(pixels);
+    out.writePixels(36);
+  }
+}
+
+TEST_F(Shots, other_views_are_those_of_the_same_instant) {
+  write_stereo(folder / "stereo.exr", with_board(1), with_board(2));
+  const auto run_stereo = [&](const json& cameras, std::vector<std::string> more) {
+    write_bytes(camera, cameras.dump());
+    more.insert(more.begin(), {"run", folder / "stereo.exr", "-o", output(1), "--camera", camera, "--radius", "1"});
+    return run_program(more);
+  };
+  json cameras = wall_camera();
+  const Finished same = run_stereo(cameras, {"--other-views"});
+  EXPECT_EQ(same.code, 3) << same;
+  EXPECT_THAT(same.err, AllOf(HasSubstr("stereo.exr"), HasSubstr("--camera"), HasSubstr("views")));
+  for (int frame = 1; frame <= 2; frame++) {
+    json matrix = cameras["world_to_camera"];
+    matrix[0][3] = -kStep * frame;
+    cameras["views"][frame == 1 ? "left" : "right"]["world_to_camera"] = matrix;
+  }
+  const Finished finished = run_stereo(cameras, {"--other-views"});
+  EXPECT_EQ(finished.code, 0) << finished;
+  EXPECT_EQ(header(1), "views right");
+  EXPECT_EQ(run_stereo(cameras, {"--other-views", "--view", "right"}).code, 0);
+  EXPECT_EQ(header(1), "views left");
+  const Finished alone = run({"--other-views", "--frames", "1"});
+  EXPECT_EQ(alone.code, 3) << alone;
+  EXPECT_THAT(alone.err, AllOf(HasSubstr("f.0001.exr"), HasSubstr("--other-views")));
+}
+
+TEST_F(Shots, dry_runs_tell_what_the_window_takes) {
+  const Finished finished = run({"--around", "2", "--dry-run"});
+  EXPECT_EQ(finished.code, 0) << finished;
+  EXPECT_THAT(finished.out, AllOf(HasSubstr("around "), HasSubstr("4 of the 7 frames")));
+}
+
+}  // namespace
+}  // namespace alcove
