@@ -30,8 +30,7 @@ FrameRows::FrameRows(FrameSource& source, std::uint64_t most_bytes, const std::s
   require_rows(source);
   for (const auto& plane : source.planes.entries) channels_.insert(channels_.end(), plane.begin(), plane.end());
   std::ranges::sort(channels_);
-  const auto repeated = std::ranges::unique(channels_);
-  channels_.erase(repeated.begin(), repeated.end());
+  channels_.erase(std::unique(channels_.begin(), channels_.end()), channels_.end());
   for (const auto& channel : channels_)
     together_ = std::max(together_, source.files[channel.file].parts()[std::size_t(channel.part)].rows_together);
 }
