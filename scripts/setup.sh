@@ -59,7 +59,10 @@ show_progress() {
 }
 
 mkdir -p build
+# Where all is compiled once, sources together take less than half the time; where one is changed, each for itself does.
+together=()
+[ -f build/CMakeCache.txt ] || { [ "$testing" = ON ] && [ -z "${CI:-}" ]; } || together=(-DCMAKE_UNITY_BUILD=ON)
 echo "Configuring"
-cmake -S . -B build -G Ninja -DCMAKE_BUILD_TYPE=Release -DBUILD_TESTING="$testing" -DALCOVE_STRICT="${ALCOVE_STRICT:-OFF}" "$@" >build/build.log 2>&1 || { cat build/build.log; exit 1; }
+cmake -S . -B build -G Ninja -DCMAKE_BUILD_TYPE=Release -DBUILD_TESTING="$testing" -DALCOVE_STRICT="${ALCOVE_STRICT:-OFF}" "${together[@]}" "$@" >build/build.log 2>&1 || { cat build/build.log; exit 1; }
 echo "Compiling"
 NINJA_STATUS='[%f/%t] ' cmake --build build --target "$target" 2>&1 | tee -a build/build.log | show_progress || { cat build/build.log; exit 1; }
