@@ -11,6 +11,7 @@
 #include "core/chain/compute.h"
 #include "tests/support/device.h"
 #include "tests/support/difference.h"
+#include "tests/support/long_tests.h"
 #include "tests/support/scenes.h"
 #include "tests/support/solid_peels.h"
 
@@ -105,6 +106,7 @@ TEST(ExactHidden, a_wall_blocks_where_a_plate_hides_it) {
     };
     for (const SliceSearch search : {SliceSearch::exact, SliceSearch::every_pixel}) {
       for (const Completion complete : {Completion::none, Completion::all}) {
+        if (!tried(shot.camera.orthographic + (search == SliceSearch::exact) + (complete == Completion::none), 2)) continue;
         const EstimatorSettings settings = settings_of(1, complete, search);
         known = std::max(known, mean_error(rendering, rendering.frame, settings, truth));
         EXPECT_LE(known, 0.004) << int(complete);
@@ -173,6 +175,7 @@ TEST(ExactHidden, outlines_give_what_every_pixel_gives) {
     Rendering rendering = furnished(orthographic);
     add_solid_peels(rendering, kFurniture, 3, kSolidFurniture);
     for (const Completion complete : {Completion::none, Completion::border, Completion::all}) {
+      if (!tried(orthographic + int(complete), 2)) continue;
       const std::vector<float> marched = run(rendering.frame, settings_of(0.6, complete, SliceSearch::every_pixel));
       const Difference d = difference(run(rendering.frame, settings_of(0.6, complete)), marched);
       EXPECT_LE(d.rmse, complete == Completion::all ? 0.006 : 0.003)

@@ -448,7 +448,7 @@ void expect_same_in_random_scenes(unsigned seed, int count) {
   EXPECT_GT(proved, std::uint64_t(count)) << "tiles";
 }
 
-TEST(Skip, a_hundred_random_scenes) { expect_same_in_random_scenes(seed_or(20261121), 100); }
+TEST(Skip, a_hundred_random_scenes) { expect_same_in_random_scenes(seed_or(20261121), cases_of(100)); }
 
 TEST(Skip, thousands_of_random_scenes) { expect_same_in_random_scenes(seed_or(20261124), long_tests() ? 1900 : 200); }
 
