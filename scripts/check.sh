@@ -26,7 +26,7 @@ build() {  # folder, CMake's arguments, -- targets
   shift
   while [ "$1" != -- ]; do arguments+=("$1"); shift; done
   shift
-  cmake -S . -B "$folder" -G Ninja -DCMAKE_UNITY_BUILD=ON -DALCOVE_STRICT="${ALCOVE_STRICT:-OFF}" "${arguments[@]}" >/dev/null
+  cmake -S . -B "$folder" -G Ninja -DCMAKE_UNITY_BUILD=ON -DALCOVE_TEST_CACHE="$PWD/build/cache" -DALCOVE_STRICT="${ALCOVE_STRICT:-OFF}" "${arguments[@]}" >/dev/null
   cmake --build "$folder" --target "$@" >"$folder/build.log" || { cat "$folder/build.log"; exit 1; }
 }
 
