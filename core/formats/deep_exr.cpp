@@ -24,6 +24,7 @@ namespace {
 
 constexpr std::uint64_t kMostChunk = std::uint64_t(1) << 28;  // bytes: more than any line or tile that was ever seen
 constexpr std::uint64_t kCopies = 3;                          // of a chunk: packed, split in halves, as it is
+constexpr std::uint64_t kMebibyte = 1 << 20;
 
 /// What a channel says of a sample.
 enum class Role { none, front, back, alpha };
@@ -54,8 +55,8 @@ struct Part : DeepStored {
   bool has_back = false;
   std::size_t alphas = 0;  // 1, or 3 of red, green and blue, whose mean counts; 0: all is opaque
 
-  int across() const { return (data.width + tile_width - 1) / tile_width; }
-  int down() const { return (data.height + tile_height - 1) / tile_height; }
+  std::int64_t across() const { return (std::int64_t(data.width) + tile_width - 1) / tile_width; }
+  std::int64_t down() const { return (std::int64_t(data.height) + tile_height - 1) / tile_height; }
   std::size_t chunk_width(int column) const {
     return std::size_t(std::min(tile_width, data.width - column * tile_width));
   }
@@ -150,8 +151,9 @@ struct DeepReader::Impl {
   std::uint64_t file_bytes = 0;
   std::vector<Part> parts;
   std::size_t workers = 1;
-  std::uint64_t chunk_bytes = 0;  // of the largest chunks of all parts, as they are
+  std::uint64_t worker_bytes = 0;  // that one takes for the largest chunks of all parts
   DeepCounts counts;
+  std::vector<bool> counted;  // lines that were read before
 
   Impl(const std::string& path_, const char* option_, const DeepRules& rules_)
       : path(path_), option(option_), rules(rules_) {
@@ -270,20 +272,36 @@ Chunk DeepReader::Impl::chunk_at(const Part& part, std::ifstream& file, std::uin
   return chunk;
 }
 
+/// The bytes that making surfaces takes for each sample of a line, if all are of one pixel: vectors that grow are up to
+/// twice as long as what they hold.
+static std::uint64_t bytes_of_sample(const Part& part, bool is_alone) {
+  constexpr std::uint64_t kSurface = 2 * sizeof(float), kGrowth = 2;
+  const std::uint64_t together = is_alone ? 0 : kGrowth * sizeof(DeepSample);
+  const std::uint64_t volumes = part.has_back ? (kGrowth + 1) * sizeof(DeepSample) : 0;
+  return sizeof(DeepSample) + together + volumes + kGrowth * kSurface;
+}
+
 /// Takes as many threads as may work on the largest chunks.
 void DeepReader::Impl::share_out(std::uint64_t most_bytes) {
   for (const Part& part : parts) {
-    std::uint64_t largest = 0;
+    std::uint64_t largest = 0, samples = 0;
     for (const Chunk& chunk : part.chunks) {
       const bool may_be_whole = part.whole_table <= longest_unpacked(part.compression, chunk.table_size);
       largest = std::max({largest, chunk.unpacked_size, may_be_whole ? part.whole_table : 0});
+      samples = std::max(samples, chunk.unpacked_size / part.sample_bytes);
     }
-    chunk_bytes +=
-        largest + 2 * sizeof(std::uint32_t) * std::uint64_t(part.tile_width) * std::uint64_t(part.tile_height);
+    const std::uint64_t tables =
+        2 * sizeof(std::uint32_t) * std::uint64_t(part.tile_width) * std::uint64_t(part.tile_height);
+    worker_bytes += kCopies * (largest + tables) + samples * bytes_of_sample(part, parts.size() == 1);
   }
-  const std::uint64_t of_worker = std::max<std::uint64_t>(1, kCopies * chunk_bytes);
+  if (worker_bytes > most_bytes)
+    fail(ErrorKind::input,
+         "{}: its largest deep lines or tiles take {} MiB to read, and {} MiB are there for that: let the run take more "
+         "by --memory, or write smaller ones ({})",
+         path, worker_bytes / kMebibyte + 1, most_bytes / kMebibyte, option);
   const int threads = IlmThread::ThreadPool::globalThreadPool().numThreads();
-  workers = std::clamp<std::uint64_t>(most_bytes / of_worker, 1, std::uint64_t(std::max(1, threads)));
+  workers = std::clamp<std::uint64_t>(most_bytes / std::max<std::uint64_t>(1, worker_bytes), 1,
+                                      std::uint64_t(std::max(1, threads)));
 }
 
 void DeepReader::Impl::unpack(const Part& part, int column, int row, Unpacked& to) const {
@@ -362,7 +380,7 @@ DeepReader::DeepReader(const std::string& path, const char* option, const std::v
 
 DeepReader::~DeepReader() = default;
 const DeepCounts& DeepReader::counts() const { return impl_->counts; }
-std::uint64_t DeepReader::bytes() const { return kCopies * impl_->chunk_bytes * impl_->workers; }
+std::uint64_t DeepReader::bytes() const { return impl_->worker_bytes * impl_->workers; }
 
 void DeepReader::read(std::span<const DeepRead> reads, int first, int rows) {
   if (rows <= 0) return;
@@ -374,6 +392,7 @@ void DeepReader::read(std::span<const DeepRead> reads, int first, int rows) {
   std::vector<std::vector<Unpacked>> chunks(workers);
   for (auto& mine : chunks) mine.resize(parts.size());
   std::vector<DeepCounts> counts(workers);
+  impl_->counted.resize(std::size_t(grid.data.height));
 
   const auto read_cell = [&](std::size_t cell, std::size_t worker) {
     const int column = int(cell % across), row = top + int(cell / across);
@@ -386,16 +405,19 @@ void DeepReader::read(std::span<const DeepRead> reads, int first, int rows) {
     std::vector<DeepSample> together;
     for (int y = std::max(0, first - upper); y < std::min(height, first + rows - upper); y++) {
       for (std::size_t i = 0; i < parts.size(); i++) impl_->take_line(parts[i], std::size_t(y), mine[i]);
+      DeepCounts again;
+      DeepCounts& of_line = impl_->counted[std::size_t(upper + y)] ? again : counts[worker];
       const std::size_t at = std::size_t(upper + y - first) * std::size_t(grid.data.width) + std::size_t(left);
       for (std::size_t x = 0; x < width; x++) {
         const auto samples = next_pixel(mine, std::size_t(y) * width + x, together);
-        const DeepSurfaces surfaces = deep.surfaces(samples, counts[worker]);
+        const DeepSurfaces surfaces = deep.surfaces(samples, of_line);
         for (const auto& read : reads) read.to[at + x] = (read.back ? surfaces.back : surfaces.front)[read.surface];
       }
     }
   };
   Crew(cells, read_cell).run(workers);
   for (const auto& part : counts) impl_->counts.add(part);
+  std::fill_n(impl_->counted.begin() + first, rows, true);
 }
 
 }  // namespace alcove

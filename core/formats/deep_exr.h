@@ -43,7 +43,7 @@ class DeepReader {
  public:
   /// Takes the samples of several parts together, which must have one data window and the same lines or tiles. Fails
   /// where a part's base layer has no Z, where the parts do not fit each other, and where a chunk's sizes cannot be
-  /// right. `most_bytes` is what threads may work on together.
+  /// right. `most_bytes` is what threads may work on together; fails where the largest chunk takes more.
   DeepReader(const std::string& path, const char* option, const std::vector<DeepStored>& parts, const DeepRules& rules,
              std::uint64_t most_bytes);
   ~DeepReader();
@@ -51,7 +51,7 @@ class DeepReader {
   /// Reads `rows` rows of the parts' data window, from the `first` one on.
   void read(std::span<const DeepRead> reads, int first, int rows);
 
-  /// What was met in all that was read so far.
+  /// What was met in all that was read so far, each row once.
   const DeepCounts& counts() const;
   /// That reading takes beside what it reads to.
   std::uint64_t bytes() const;

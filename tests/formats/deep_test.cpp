@@ -271,6 +271,46 @@ TEST_F(DeepFile, several_threads_give_the_same_bits) {
   EXPECT_EQ(of_more.samples, counts.samples);
 }
 
+TEST_F(DeepFile, rows_that_are_read_again_are_counted_once) {
+  write_deep(path, {some_part()});
+  read();
+  ExrFile file(path, "--deep");
+  file.take_deep({0}, {});
+  std::vector<float> plane(13 * 9);
+  const ExrRead read_first{0, deep_channel(0, false), plane.data()};
+  file.read(std::span(&read_first, 1), 4, 1);
+  file.read(std::span(&read_first, 1), 0, 9);
+  file.read(std::span(&read_first, 1), 2, 3);
+  EXPECT_EQ(file.deep_counts().pixels, 13 * 9);
+  EXPECT_EQ(file.deep_counts().samples, counts.samples);
+}
+
+/// Bytes that reading may take are of the whole process.
+class LittleMemory {
+ public:
+  explicit LittleMemory(std::uint64_t bytes) { set_exr_memory(bytes); }
+  ~LittleMemory() { set_exr_memory(std::numeric_limits<std::uint64_t>::max()); }
+  LittleMemory(const LittleMemory&) = delete;
+  LittleMemory& operator=(const LittleMemory&) = delete;
+};
+
+TEST_F(DeepFile, what_a_dense_pixel_takes_is_counted_and_must_be_there) {
+  constexpr std::uint64_t kSamples = 10'000;
+  DeepFilePart part;
+  part.pixels.assign(6, {});
+  part.pixels[1].assign(kSamples, {0, 2});
+  write_deep(path, {part});
+  set_exr_threads(0);
+  ExrFile file(path, "--deep");
+  const std::uint64_t without = file.bytes_beside_pixels();
+  file.take_deep({0}, {});
+  // Three copies of the chunk, the samples of the line, and the surfaces that they may make.
+  EXPECT_GE(file.bytes_beside_pixels() - without, kSamples * (3 * 8 + sizeof(DeepSample) + 2 * sizeof(float)));
+  EXPECT_EQ(refusal(), "");
+  const LittleMemory little(kSamples * 30);
+  EXPECT_THAT(refusal(), testing::AllOf(HasSubstr("deep.exr"), HasSubstr("--memory"), HasSubstr("--deep")));
+}
+
 TEST_F(DeepFile, samples_of_several_parts_count_together) {
   DeepFilePart one = some_part(1), other = some_part(2);
   one.name = "one";
