@@ -295,10 +295,11 @@ void DeepReader::Impl::share_out(std::uint64_t most_bytes) {
     worker_bytes += kCopies * (largest + tables) + samples * bytes_of_sample(part, parts.size() == 1);
   }
   if (worker_bytes > most_bytes)
-    fail(ErrorKind::input,
-         "{}: its largest deep lines or tiles take {} MiB to read, and {} MiB are there for that: let the run take more "
-         "by --memory, or write smaller ones ({})",
-         path, worker_bytes / kMebibyte + 1, most_bytes / kMebibyte, option);
+    fail(
+        ErrorKind::input,
+        "{}: its largest deep lines or tiles take {} MiB to read, and {} MiB are there for that: let the run take more "
+        "by --memory, or write smaller ones ({})",
+        path, worker_bytes / kMebibyte + 1, most_bytes / kMebibyte, option);
   const int threads = IlmThread::ThreadPool::globalThreadPool().numThreads();
   workers = std::clamp<std::uint64_t>(most_bytes / std::max<std::uint64_t>(1, worker_bytes), 1,
                                       std::uint64_t(std::max(1, threads)));
