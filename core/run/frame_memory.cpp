@@ -17,6 +17,7 @@
 namespace alcove {
 namespace {
 
+constexpr std::size_t kEndPlanes = 2;  // along rows and columns
 // Words per tile of 8 x 8: sectors, bounds of groups, runs of the filters, and how the frame before differs.
 constexpr std::size_t kTileLists = 8;
 constexpr std::size_t kCompletionSums = 2;  // words per tile
@@ -40,9 +41,28 @@ bool has_own_planes(const Aov& aov) {
          aov.planes != &FrameOutputs::error;
 }
 
+/// Whether frames take anything from other frames or views.
+bool looks_at_others(const InputSettings& input) { return input.around > 0 || input.around_all || input.other_views; }
+
+/// Whether pixels have surfaces behind the first: of files, or of other frames and views.
+bool is_layered(const FrameSource& source, const Settings& settings) {
+  return settings.estimator.hidden > 0 && (!source.behind.empty() || looks_at_others(settings.input));
+}
+
+/// Whether others show what lies around the frame: surfaces that files show behind the first end with it.
+bool has_margin(const FrameSource& source, const Settings& settings) {
+  return source.behind.empty() && looks_at_others(settings.input);
+}
+
 /// The profiles of a line in an exact search: one of each surface of a pixel, and one more for what goes on unseen.
-std::size_t profiles_of(const FrameSource& source, const EstimatorSettings& settings) {
-  return source.behind.empty() ? 1 : 1 + std::size_t(settings.hidden) + 1;
+std::size_t profiles_of(const FrameSource& source, const Settings& settings) {
+  return is_layered(source, settings) ? 1 + std::size_t(settings.estimator.hidden) + 1 : 1;
+}
+
+/// Planes of what others show behind the first surface, or in a margin alone.
+std::size_t found_by_others(const FrameSource& source, const Settings& settings) {
+  if (!looks_at_others(settings.input)) return 0;
+  return std::max(std::size_t(settings.estimator.hidden), std::size_t(has_margin(source, settings)));
 }
 
 /// Planes of the estimate's resolution: the estimate, what filters and searches make beside it, and its depth and
@@ -52,8 +72,8 @@ std::size_t estimate_planes(const FrameSource& source, const Settings& settings,
   std::size_t planes = estimated + (e.resolution == Resolution::full ? 0 : 2);
   planes += e.denoise == Denoise::none || e.tolerance > 0 ? 0 : 2 * estimated;  // rows, columns
   // what is hidden, of the estimate's pixels
-  planes += e.resolution == Resolution::full || source.behind.empty() ? 0 : std::size_t(e.hidden);
-  const std::size_t profiles = profiles_of(source, e);
+  planes += e.resolution == Resolution::full || !is_layered(source, settings) ? 0 : std::size_t(e.hidden);
+  const std::size_t profiles = profiles_of(source, settings);
   planes += searches_exactly(e) ? 3 * profiles + 1 : 0;                       // vertices, marks, neighbours; whole arcs
   planes += searches_exactly(e) && profiles > 1 ? 1 : 0;                      // slots
   planes += searches_exactly(e) && completes_anywhere(e) ? profiles + 1 : 0;  // what goes on, and behind what
@@ -61,10 +81,21 @@ std::size_t estimate_planes(const FrameSource& source, const Settings& settings,
   return planes + (Wanted(settings.output).completed && completes_anywhere(e) ? 1 : 0);
 }
 
-/// Planes of what lies behind the first surface: all that was found, what is kept, and where it ends and of what kind
-/// it is, of which pairing is made.
+/// Planes of what lies behind the first surface: all that was found, what is kept and of what kind it is, and of files
+/// also where it ends, of which pairing is made.
 std::size_t hidden_planes(const FrameSource& source, const Settings& settings) {
-  return source.behind.empty() ? 0 : source.behind.size() + std::size_t(settings.estimator.hidden) + 3;
+  const std::size_t found = source.behind.size() + found_by_others(source, settings);
+  if (!is_layered(source, settings)) return found;
+  return found + std::size_t(settings.estimator.hidden) + 1 + (source.behind.empty() ? 0 : kEndPlanes);
+}
+
+/// Planes of a frame with a margin, and of all that is cut to the frame again.
+std::size_t margin_planes(const FrameSource& source, const Settings& settings, std::size_t estimated) {
+  if (!has_margin(source, settings)) return 0;
+  const auto& o = settings.output;
+  constexpr std::size_t kWide = 2, kCutNormal = 1;  // depth and normals with the margin
+  const std::size_t cut_aovs = std::size_t(wants(o, &FrameOutputs::confidence)) + wants(o, &FrameOutputs::error);
+  return kWide + kCutNormal + estimated + cut_aovs + std::size_t(settings.estimator.hidden);
 }
 
 /// Planes of the frame's resolution, beside those that are read.
@@ -81,12 +112,9 @@ std::size_t frame_planes(const FrameSource& source, const Settings& settings, st
   planes += wants(o, &FrameOutputs::confidence) && e.resolution != Resolution::full ? 2 : 0;
   planes += (o.multi_bounce ? 3 : 0) + source[RawPlane::beauty].size() + debug_views_of(o).size();
   for (const auto& aov : aovs_of(o)) planes += has_own_planes(aov) ? channels_of(aov, planes_of(aov, e)).size() : 0;
-  planes += hidden_planes(source, settings);
+  planes += hidden_planes(source, settings) + margin_planes(source, settings, estimated);
   return planes;
 }
-
-/// Whether frames take anything from other frames or views.
-bool looks_at_others(const InputSettings& input) { return input.around > 0 || input.around_all || input.other_views; }
 
 /// The bytes of the lists of a tile of 8 x 8 pixels.
 std::uint64_t tile_bytes(const Settings& settings) {
@@ -103,8 +131,12 @@ std::uint64_t tile_bytes(const Settings& settings) {
 
 }  // namespace
 
+Window FrameMemory::with_margin(const Window& window) const {
+  return {window.x, window.y, window.width + 2 * margin, window.height + 2 * margin};
+}
+
 std::uint64_t FrameMemory::on_device(const Window& window) const {
-  const Window computed{window.x, window.y, window.width + 2 * margin, window.height + 2 * margin};
+  const Window computed = with_margin(window);
   return computed.pixels() * planes + groups_in(computed, factor) * estimate +
          groups_in(computed, factor * kTile) * tile + kListBytes + fixed_on_device;
 }
@@ -128,8 +160,9 @@ FrameMemory memory_of(const FrameSource& source, const Settings& settings) {
     read += channels.size();
     widest = std::max(widest, channels.size());
   }
-  if (searches_exactly(settings.estimator)) widest = std::max(widest, profiles_of(source, settings.estimator));
-  if (!source.behind.empty()) widest = std::max(widest, std::size_t(settings.estimator.hidden));
+  if (searches_exactly(settings.estimator)) widest = std::max(widest, profiles_of(source, settings));
+  if (is_layered(source, settings)) widest = std::max(widest, std::size_t(settings.estimator.hidden));
+  if (is_layered(source, settings) && !source.behind.empty()) widest = std::max(widest, kEndPlanes);
   std::size_t written = source[RawPlane::beauty].size();
   for (const auto& aov : aovs_of(settings.output)) {
     const std::size_t channels = channels_of(aov, planes_of(aov, settings.estimator)).size();
@@ -142,7 +175,7 @@ FrameMemory memory_of(const FrameSource& source, const Settings& settings) {
   memory.estimate = sizeof(float) * estimate_planes(source, settings, estimated);
   memory.tile = tile_bytes(settings);
   memory.factor = int(settings.estimator.resolution);
-  memory.margin = looks_at_others(settings.input) ? margin_of(source.file_data, source.file_data).before.x : 0;
+  memory.margin = has_margin(source, settings) ? margin_of(source.file_data, source.file_data).before.x : 0;
   memory.written = sizeof(float) * written;
   // What is written may be there once more: cropped to a region, or as half.
   memory.beside = memory.written + sizeof(float) * pictures;

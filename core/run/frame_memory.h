@@ -22,7 +22,10 @@ struct FrameMemory {
   /// Of host memory: buffers or their staging twins, and what is read, shown and written.
   std::uint64_t on_host(const Window& computed) const;
   /// Of the largest buffer.
-  std::uint64_t in_buffer(const Window& computed) const { return computed.pixels() * widest; }
+  std::uint64_t in_buffer(const Window& window) const { return with_margin(window).pixels() * widest; }
+
+  /// A window with all that others show around it.
+  Window with_margin(const Window& window) const;
 
   std::uint64_t planes = 0;                 // in buffers, for each pixel
   std::uint64_t estimate = 0;               // in buffers, for each pixel of the estimate

@@ -291,15 +291,30 @@ TEST_F(HiddenRun, outputs_of_what_is_hidden_need_something_that_is) {
 }
 
 TEST_F(HiddenRun, a_dry_run_names_the_files_and_their_memory) {
-  const auto memory_of = [&](const Options& options) {
+  const auto told = [&](const Options& options) {
     Options with = options;
     with.emplace_back("--dry-run");
     const Finished finished = run(with);
     EXPECT_EQ(finished.code, 0) << finished;
     return finished.out;
   };
-  EXPECT_THAT(memory_of(behind({"plate.exr", "wall.exr"})),
+  EXPECT_THAT(told(behind({"plate.exr", "wall.exr"})),
               AllOf(HasSubstr("--behind"), HasSubstr(folder / "plate.exr"), HasSubstr(folder / "wall.exr")));
+  // A frame of which a plane is 1 MiB.
+  const Window large{0, 0, 512, 512};
+  wall_frame(large, large).write(frame);
+  write_bytes(camera, wall_camera(large).dump());
+  FrameFile layer{large, large, 1, {}, {}, {}};
+  layer.planes["Z"] = std::vector<float>(large.pixels(), 9);
+  layer.write(folder / "large.exr");
+  const auto memory = [&](const Options& options) {
+    const std::string text = told(options);
+    return std::stoi(text.substr(text.find("memory ") + std::string("memory ").size()));
+  };
+  const int none = memory({}), one = memory(behind({"large.exr"})), two = memory(behind({"large.exr", "large.exr"}));
+  const int plane = 4 * 512 * 512 >> 20;
+  EXPECT_GE(one, none + 6 * plane - 1) << "as it is read and found, what is kept, of what kind, and where it ends";
+  EXPECT_GE(two, one + 2 * plane - 1);
 }
 
 TEST_F(HiddenRun, layers_of_a_sequence_go_with_its_frames) {

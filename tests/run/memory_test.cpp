@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "core/run/frame_files.h"
+#include "core/run/shot.h"
 #include "core/run/tiles.h"
 #include "tests/support/device.h"
 #include "tests/support/program.h"
@@ -35,11 +36,30 @@ class Memory : public testing::Test {
     gpu::Recorder gpu(device());
     FrameSource source = open_frame(settings, 0);
     const FrameMemory expected = memory_of(source, settings);
-    const FrameInputs inputs = load_frame(gpu, source, settings, 0);
+    FrameInputs inputs = load_frame(gpu, source, settings, 0);
+    if (takes_others(settings.input)) inputs.others = {from_beside(gpu, inputs)};
+    const std::size_t of_others = takes_others(settings.input) ? 3 * sizeof(float) * window.pixels() : 0;
     run_chain(gpu, inputs, settings.estimator, settings.output);
     gpu.run();
-    return {double(gpu.bytes()) / double(window.pixels()),
+    return {double(gpu.bytes() - of_others) / double(window.pixels()),
             double(expected.on_device(window)) / double(window.pixels())};
+  }
+
+  /// A camera a step to the right that sees a wall where this frame shows none.
+  OtherView from_beside(gpu::Recorder& gpu, const FrameInputs& inputs) const {
+    const auto plane = [&](const char* name) -> gpu::Buffer& {
+      return gpu.buffer(name, sizeof(float) * window.pixels(), gpu::Use::upload);
+    };
+    OtherView other;
+    other.view = inputs.view;
+    other.to_here = {{{1, 0, 0, 0.5f}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
+    std::ranges::fill(plane("other depth").as<float>(), 9.0f);
+    std::ranges::fill(plane("other normal").as<std::uint32_t>(), 0u);
+    std::ranges::fill(plane("other moving").as<std::uint32_t>(), 0u);
+    other.depth = &plane("other depth");
+    other.normal = &plane("other normal");
+    other.moving = &plane("other moving");
+    return other;
   }
 
   void expect_enough(const Settings& settings, const std::string& what) const {
@@ -124,6 +144,36 @@ TEST_F(Memory, is_expected_of_what_is_hidden) {
   settings.output.aovs = "ao";
   settings.estimator.resolution = Resolution::full;
   EXPECT_EQ(bytes_of(settings).expected, without.expected) << "none is kept";
+}
+
+TEST_F(Memory, is_expected_of_what_others_show) {
+  Settings settings = all;
+  settings.input.around = 1;
+  settings.estimator.hidden = 0;
+  expect_enough(settings, "in the margin alone");
+  settings.estimator.hidden = 3;
+  expect_enough(settings, "behind the first surface");
+  settings.estimator.search = SliceSearch::exact;
+  settings.output.aovs = "ao,hidden,bent-normal,confidence,normal";
+  expect_enough(settings, "in an exact search");
+  settings.estimator.resolution = Resolution::half;
+  expect_enough(settings, "at half the resolution");
+  settings.estimator.resolution = Resolution::full;
+  FrameFile layer{window, window, 1, {}, {}, {}};
+  layer.planes["Z"] = std::vector<float>(window.pixels(), 9);
+  layer.write(folder / "layer.exr");
+  settings.input.behind = {folder / "layer.exr"};
+  expect_enough(settings, "files too, and no margin then");
+}
+
+TEST_F(Memory, of_the_largest_buffer_is_that_of_all_hidden_surfaces_with_the_margin) {
+  Settings settings = all;
+  settings.input.around = 1;
+  const FrameMemory steps = memory_of(open_frame(settings, 0), settings);
+  const std::uint64_t plane = sizeof(float) * std::uint64_t(320 + 2 * 40) * std::uint64_t(180 + 2 * 40);
+  EXPECT_GE(steps.in_buffer(window), 3 * plane);
+  settings.estimator.search = SliceSearch::exact;
+  EXPECT_GE(memory_of(open_frame(settings, 0), settings).in_buffer(window), 5 * plane);
 }
 
 TEST_F(Memory, is_expected_of_what_completed_surfaces_take) {
