@@ -57,17 +57,20 @@ void main() {
   if (!inside(from, pixel)) return;
   const int index = index_of(from, pixel);
   const uint why_not = use[index];
-  if (params.round == 0u && (why_not & (kFlagMoves | kFlagUnconfirmed)) != 0u) {
-    if (why_not == kFlagMoves) atomicAdd(counts.moved, 1u);
-    if (why_not == kFlagUnconfirmed) atomicAdd(counts.unconfirmed, 1u);
-  }
-  if (why_not != 0u) return;
+  const bool is_counted = params.round == 0u && (why_not & (kFlagMoves | kFlagUnconfirmed)) != 0u;
+  if (why_not != 0u && !is_counted) return;
 
   const vec3 seen = position_of(from, vec2(pixel) + 0.5, depth[index]);
   const vec3 position = position_there(params.by, seen);
-  const vec3 n = direction_there(params.by, unpack_normal(normal[index]));
   const ivec2 corner = corner_of(to, position);
   if (!(-position.z > 0.0) || any(lessThan(corner, ivec2(-1))) || any(greaterThanEqual(corner, to.size))) return;
+  // Of a frame in tiles, each tile counts what would lie in it.
+  if (is_counted) {
+    if (why_not == kFlagMoves) atomicAdd(counts.moved, 1u);
+    if (why_not == kFlagUnconfirmed) atomicAdd(counts.unconfirmed, 1u);
+    return;
+  }
+  const vec3 n = direction_there(params.by, unpack_normal(normal[index]));
   const vec3 gradient_x = gradient_there(from, seen, ivec2(1, 0)), gradient_y = gradient_there(from, seen, ivec2(0, 1));
   const int plane = int(params.round) * to.size.x * to.size.y;
   uint covered = 0u, before = 0u;

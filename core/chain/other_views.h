@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 
 #include "core/gpu/recorder.h"
 #include "kernels/shared.h"
@@ -19,6 +20,7 @@ struct OtherView {
   const gpu::Buffer* normal = nullptr;  // a plane of packed normals, in its own view space
   // a plane of uints, not 0 where it shows what moves or may move; null: nothing does
   const gpu::Buffer* moving = nullptr;
+  std::uint64_t content = 0;  // a hash of all three planes; 0: nobody has made it
 };
 
 }  // namespace alcove

@@ -48,7 +48,10 @@ void add(std::uint64_t& hash, const OtherView& other) {
       other.depth_precision.y, other.depth_precision.z);
   for (const auto& row : other.to_here)
     for (const float value : row) add(hash, value);
-  for (const gpu::Buffer* plane : {other.depth, other.normal, other.moving}) add(hash, plane);
+  if (other.content != 0)
+    add(hash, other.content);
+  else
+    for (const gpu::Buffer* plane : {other.depth, other.normal, other.moving}) add(hash, plane);
 }
 
 /// Blocks in x and y.

@@ -190,6 +190,24 @@ TEST(OtherViews, a_part_of_the_frame_has_the_bits_of_the_whole) {
   EXPECT_GT(surfaces(hidden_of(cut, others)), 100);
 }
 
+TEST(OtherViews, parts_of_the_frame_share_what_is_counted) {
+  const std::vector<Rendering> shot = MovingBox::renderings();
+  const std::vector<OtherView> others = others_of(shot, 2, true);
+  const ViewCounts whole = hidden_of(shot[2], others).counts;
+  ViewCounts sum{};
+  for (const int left : {0, kWidth / 2}) {
+    Shot part = shot[2].shot;
+    part.data = {left, 0, kWidth / 2, kHeight};
+    const ViewCounts counts = hidden_of(render(MovingBox::at(2), part), others).counts;
+    sum.moved += counts.moved;
+    sum.unconfirmed += counts.unconfirmed;
+  }
+  EXPECT_GT(whole.moved, 200u);
+  EXPECT_GE(sum.moved, whole.moved);
+  EXPECT_LE(sum.moved, whole.moved + whole.moved / 8) << "what lies on the border is of both";
+  EXPECT_LE(sum.unconfirmed, whole.unconfirmed + whole.unconfirmed / 8 + 8);
+}
+
 TEST(OtherViews, surfaces_of_files_and_of_views_are_one_list) {
   const std::vector<Rendering> shot = MovingBox::renderings();
   Rendering here = shot[2];
