@@ -86,9 +86,11 @@ ReferenceSettings usual(double radius) {
 
 TEST(Hidden, a_copy_of_the_first_depth_and_what_lies_beyond_the_sphere_change_no_bit) {
   RandomScenes scenes(3);
-  for (int i = 0; i < 3; i++) {
+  for (int i = 0, compared = 0; compared < 3; i++) {
+    ASSERT_LT(i, 30) << "too few scenes have what this takes";
     const HostFrame frame = scenes.next();
     if (frame.normal.empty() || frame.depth_kind != DepthKind::planar) continue;
+    compared++;
     const std::vector<float> expected = reference_ao(frame, usual(0.5));
     HostFrame copied = frame;
     copied.behind.assign(1, {});
