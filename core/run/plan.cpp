@@ -215,6 +215,16 @@ FramesAround FramePlan::around(int frame, int count) const {
   return found;
 }
 
+std::vector<int> FramePlan::nearest(int frame, int count) const {
+  const auto size = std::ptrdiff_t(shot_.size()), reach = std::min<std::ptrdiff_t>(count, size);
+  const auto place = std::ranges::lower_bound(shot_, frame) - shot_.begin();
+  const auto first = std::clamp<std::ptrdiff_t>(place - reach, 0, std::max<std::ptrdiff_t>(0, size - 2 * reach - 1));
+  std::vector<int> found;
+  std::copy_if(shot_.begin() + first, shot_.begin() + std::min(size, first + 2 * reach + 1), std::back_inserter(found),
+               [&](int other) { return other != frame && !absent_.contains(other); });
+  return found;
+}
+
 void FramePlan::refuse_missing_around() const {
   if (absent_.empty() || settings_.frames.missing == Missing::skip) return;
   std::set<int> missing;

@@ -62,6 +62,8 @@ class FramePlan {
   /// Up to `count` frames to each side of one, in the shot: that is all frames on the disk and the holes between them,
   /// whichever of them are computed, so that no choice of frames and no chunk changes a frame.
   FramesAround around(int frame, int count) const;
+  /// As many frames as lie so far to each side of one within the shot; near its ends more of the other side.
+  std::vector<int> nearest(int frame, int count) const;
   /// All of the shot.
   const std::vector<int>& shot() const { return shot_; }
   /// The settings with the files of one frame.

@@ -72,7 +72,7 @@ std::string InputIdentities::of(int frame) {
   const int count = around_of(settings.input);
   std::string text = own(frame);
   if (count == 0) return text;
-  for (const int other : plan_.around(frame, with_judges(count)).there) {
+  for (const int other : frames_seen_for(plan_, frame)) {
     text += fmt::format("\n{} {}", other - frame, own(other));
     if (const std::string camera = plan_.at(other).input.camera; camera != settings.input.camera)
       text += read_text(camera, "camera", "--camera");

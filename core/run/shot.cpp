@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/run/shot.h"
 
+#include <xxhash.h>
+
 #include <algorithm>
 #include <string_view>
 
@@ -17,18 +19,34 @@
 namespace alcove {
 namespace {
 
-constexpr int kJudges = 2;  // frames to each side of one that tell what moves in it
+/// The least frames to each side of one that tell what moves in it. As many do as are taken, since what rests for a
+/// while is told by those alone that see the place before it comes or after it has left.
+constexpr int kLeastJudges = 2;
 
-/// Of a frame that others take only what its first surface shows.
-InputSettings of_first_surface(InputSettings input) {
+int judges_to_each_side(int count) { return std::max(count, kLeastJudges); }
+
+bool has_deep_depth(const FrameSource& source) {
+  const ChannelRef& depth = source[RawPlane::depth][0];
+  return source.files[depth.file].parts()[std::size_t(depth.part)].deep.has_value();
+}
+
+/// Of a frame that others take only what its first surface shows. `settled`: another one of the shot, or null.
+InputSettings of_first_surface(InputSettings input, const FrameSource* settled) {
   input.behind = {};
   input.behind_channels.clear();
   input.behind_kinds.clear();
-  if (!main_input(input).empty()) input.deep.clear();
+  if (settled && !has_deep_depth(*settled)) input.deep.clear();
   input.material_ao.clear();
   input.material_ao_channel.clear();
   input.roi.reset();
   return input;
+}
+
+/// The same of a frame that was found: samples hold more than the first surface.
+void leave_out_hidden(FrameSource& source) {
+  source[RawPlane::behind].clear();
+  source.behind.clear();
+  if (!has_deep_depth(source)) source.deep.reset();
 }
 
 /// Fails where nobody knows where a frame's camera stands.
@@ -51,9 +69,19 @@ std::vector<std::string> other_views_of(const FrameSource& source, const std::st
   return views;
 }
 
+template <class T>
+std::uint64_t hash_of(const std::vector<T>& values, std::uint64_t seed = 0) {
+  return XXH3_64bits_withSeed(values.data(), values.size() * sizeof(T), seed);
+}
+
+std::shared_ptr<const Movement> movement(std::vector<std::uint32_t> flags) {
+  const std::uint64_t hash = hash_of(flags);
+  return std::make_shared<const Movement>(Movement{std::move(flags), hash});
+}
+
 /// Puts what was seen into upload buffers, the `place`-th of the frame that is computed.
-OtherView filled(gpu::Recorder& gpu, const SeenFrame& seen, const std::vector<std::uint32_t>& moving,
-                 const Camera& here, std::size_t place) {
+OtherView filled(gpu::Recorder& gpu, const SeenFrame& seen, const Movement& moving, const Camera& here,
+                 std::size_t place) {
   const auto plane = [&]<class T>(const char* name, const std::vector<T>& values) -> const gpu::Buffer* {
     if (values.empty()) return nullptr;
     gpu::Buffer& buffer =
@@ -69,7 +97,8 @@ OtherView filled(gpu::Recorder& gpu, const SeenFrame& seen, const std::vector<st
   view.depth_precision = seen.depth_precision;
   view.depth = plane("depth", seen.depth);
   view.normal = plane("normal", seen.normal);
-  view.moving = plane("moving", moving);
+  view.moving = plane("moving", moving.flags);
+  view.content = XXH3_64bits_withSeed(&moving.hash, sizeof(moving.hash), seen.hash);
   return view;
 }
 
@@ -122,6 +151,7 @@ SharedFrames::Seen SharedFrames::prepare(gpu::Recorder& gpu, const InputSettings
   Settings settings;
   settings.input = input;
   FrameSource source = find_frame(input, false, frame);
+  leave_out_hidden(source);
   require_place(source, frame, input.other_views ? "--other-views" : "--around");
   if (like) settle_like(source, *like);
   const FrameInputs inputs = load_frame(gpu, source, settings, frame);
@@ -142,13 +172,15 @@ SharedFrames::Seen SharedFrames::prepare(gpu::Recorder& gpu, const InputSettings
   const auto normal = gbuffer.normal->as<const std::uint32_t>();
   seen->depth.assign(depth.begin(), depth.end());
   seen->normal.assign(normal.begin(), normal.end());
+  seen->hash = hash_of(seen->normal, hash_of(seen->depth));
   return seen;
 }
 
 SharedFrames::Seen SharedFrames::seen(gpu::Recorder& gpu, int frame, PreparedOthers& took) {
   const auto entry = entry_of(frame);
   const std::lock_guard lock(entry->preparing);
-  if (!entry->seen) entry->seen = prepare(gpu, of_first_surface(plan_.at(frame).input), settled_, frame, took);
+  if (!entry->seen)
+    entry->seen = prepare(gpu, of_first_surface(plan_.at(frame).input, settled_), settled_, frame, took);
   return entry->seen;
 }
 
@@ -158,7 +190,7 @@ void SharedFrames::prepare_free_ones(gpu::Recorder& gpu, std::span<const int> fr
     const auto entry = entry_of(frame);
     const std::unique_lock lock(entry->preparing, std::try_to_lock);
     if (lock && !entry->seen)
-      entry->seen = prepare(gpu, of_first_surface(plan_.at(frame).input), settled_, frame, took);
+      entry->seen = prepare(gpu, of_first_surface(plan_.at(frame).input, settled_), settled_, frame, took);
   }
 }
 
@@ -169,12 +201,13 @@ SharedFrames::Moving SharedFrames::moving(gpu::Recorder& gpu, int frame, Prepare
   const Seen here = seen(gpu, frame, took);
   const auto vectors = plan_.at(frame).input.motion.empty() ? std::nullopt : by_vectors(gpu, frame, took);
   std::vector<Seen> witnesses;
-  if (!vectors)
-    for (const int other : plan_.around(frame, kJudges).there) witnesses.push_back(seen(gpu, other, took));
+  for (const int other : judges_of(plan_, frame)) witnesses.push_back(seen(gpu, other, took));
   std::vector<std::uint32_t> moving = judged(gpu, *here, witnesses, took);
+  // Vectors tell of one step: what another frame sees through has moved later or before. Who else has seen it does not
+  // matter then.
   for (std::size_t i = 0; vectors && i < moving.size(); i++)
-    if (moving[i] == 0 && (*vectors)[i] != 0) moving[i] = kFlagMoves;
-  return entry->moving = std::make_shared<std::vector<std::uint32_t>>(std::move(moving));
+    if (moving[i] == 0 || moving[i] == kFlagUnconfirmed) moving[i] = (*vectors)[i] != 0 ? kFlagMoves : 0;
+  return entry->moving = movement(std::move(moving));
 }
 
 std::vector<std::uint32_t> SharedFrames::judged(gpu::Recorder& gpu, const SeenFrame& seen,
@@ -227,7 +260,7 @@ std::vector<SharedFrames::Judged> SharedFrames::frames_around(gpu::Recorder& gpu
   others.frames = around.there;
   others.missing = around.missing;
   require_place(target, frame, "--around");
-  prepare_free_ones(gpu, plan_.around(frame, with_judges(count)).there, took);
+  prepare_free_ones(gpu, frames_seen_for(plan_, frame), took);
   std::vector<Judged> found;
   for (const int other : around.there) {
     found.push_back({seen(gpu, other, took), moving(gpu, other, took)});
@@ -244,7 +277,7 @@ std::vector<SharedFrames::Judged> SharedFrames::frames_around(gpu::Recorder& gpu
 
 std::vector<SharedFrames::Judged> SharedFrames::other_views(gpu::Recorder& gpu, const FrameSource& target, int frame,
                                                             Others& others, PreparedOthers& took) const {
-  InputSettings input = of_first_surface(plan_.at(frame).input);
+  InputSettings input = of_first_surface(plan_.at(frame).input, settled_);
   others.views = other_views_of(target, input.view);
   require_place(target, frame, "--other-views");
   std::vector<Judged> found;
@@ -255,7 +288,7 @@ std::vector<SharedFrames::Judged> SharedFrames::other_views(gpu::Recorder& gpu, 
       fail(ErrorKind::input,
            "{}: its views have one camera, and --other-views needs that of each: give a --camera file with \"views\"",
            target.depth_path());
-    found.push_back({other, std::make_shared<std::vector<std::uint32_t>>(judged(gpu, *other, {}, took))});
+    found.push_back({other, movement(judged(gpu, *other, {}, took))});
   }
   return found;
 }
@@ -271,6 +304,27 @@ Others SharedFrames::others_of(gpu::Recorder& gpu, const FrameSource& target, in
   return others;
 }
 
-int with_judges(int count) { return count == kWholeShot ? count : count + kJudges; }
+std::vector<int> judges_of(const FramePlan& plan, int frame) {
+  return plan.nearest(frame, judges_to_each_side(around_of(plan.at(frame).input)));
+}
+
+int most_judges(int count) { return count == kWholeShot ? count : 2 * judges_to_each_side(count); }
+
+std::vector<int> frames_seen_for(const FramePlan& plan, int frame) {
+  const int count = around_of(plan.at(frame).input);
+  const std::vector<int> around = plan.around(frame, count).there;
+  if (count == kWholeShot) return around;
+  std::set<int> seen(around.begin(), around.end());
+  for (const int other : around)
+    for (const int judge : judges_of(plan, other)) seen.insert(judge);
+  seen.erase(frame);
+  return {seen.begin(), seen.end()};
+}
+
+int with_judges(int count) {
+  const int judges = judges_to_each_side(count);
+  // At the ends of the shot they all lie on one side.
+  return count == kWholeShot ? count : std::max(count + judges, 2 * judges);
+}
 
 }  // namespace alcove

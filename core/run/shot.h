@@ -26,6 +26,13 @@ struct SeenFrame {
   vec3 depth_precision{};
   std::vector<float> depth;           // planar; kSkyDepth for sky
   std::vector<std::uint32_t> normal;  // packed, in its own view space
+  std::uint64_t hash = 0;             // of both planes
+};
+
+/// What of a frame counts in no other one.
+struct Movement {
+  std::vector<std::uint32_t> flags;  // of each pixel, see OtherView::moving
+  std::uint64_t hash = 0;            // of them
 };
 
 /// What a frame takes from others.
@@ -69,12 +76,12 @@ class SharedFrames {
   struct Entry {
     std::mutex preparing, judging;  // judging is locked first
     std::shared_ptr<const SeenFrame> seen;
-    std::shared_ptr<const std::vector<std::uint32_t>> moving;  // see OtherView; empty: nothing does
+    std::shared_ptr<const Movement> moving;
   };
   using Seen = std::shared_ptr<const SeenFrame>;
 
   std::shared_ptr<Entry> entry_of(int frame);
-  using Moving = std::shared_ptr<const std::vector<std::uint32_t>>;
+  using Moving = std::shared_ptr<const Movement>;
   struct Judged {
     Seen seen;
     Moving moving;
@@ -86,7 +93,7 @@ class SharedFrames {
                                   PreparedOthers& took) const;
   Seen seen(gpu::Recorder& gpu, int frame, PreparedOthers& took);
   std::optional<std::vector<std::uint8_t>> by_vectors(gpu::Recorder& gpu, int frame, PreparedOthers& took);
-  /// What of a frame counts in no other one: it moves as the witnesses tell, or cannot stand for its surface.
+  /// What moves as the witnesses tell, or cannot stand for its surface.
   static std::vector<std::uint32_t> judged(gpu::Recorder& gpu, const SeenFrame& seen, std::span<const Seen> witnesses,
                                            PreparedOthers& took);
   Moving moving(gpu::Recorder& gpu, int frame, PreparedOthers& took);
@@ -101,7 +108,14 @@ class SharedFrames {
   std::set<int> left_;  // to be computed
 };
 
-/// The frames to each side that are prepared for so many that are taken: some tell what moves in others.
+/// The frames that tell what moves in one, of which frames take what stands still.
+std::vector<int> judges_of(const FramePlan& plan, int frame);
+/// How many of them there are at most, where so many frames to each side are taken.
+int most_judges(int count);
+
+/// All frames that change what a frame takes: those around it, and their judges. In order.
+std::vector<int> frames_seen_for(const FramePlan& plan, int frame);
+/// How far from a frame they lie at most, in frames of the shot.
 int with_judges(int count);
 
 }  // namespace alcove

@@ -39,9 +39,10 @@ FrameMemory memory_with_others(const FramePlan& plan, const FrameSource& frame, 
   const std::size_t others = most_others(plan, frame, settings.input);
   if (others == 0) return memory;
   // What tells what moves in one of them takes those around it.
-  const std::size_t buffers = kPlanesOfSeen * std::max(others, std::size_t(2 * with_judges(1) + 1));
+  const int count = around_of(settings.input);
+  const std::size_t judges = count == 0 ? 0 : std::min(plan.shot().size(), std::size_t(most_judges(count)));
+  const std::size_t buffers = kPlanesOfSeen * std::max(others, judges + 1);
   const std::size_t prepared = frame[RawPlane::depth].size() + frame[RawPlane::normal].size() + kPlanesPrepared;
-  memory.planes += sizeof(float) * std::size_t(settings.estimator.hidden);  // what others show behind the first surface
   memory.fixed_on_device = sizeof(float) * frame.file_data.pixels() * (buffers + prepared);
   return memory;
 }

@@ -48,15 +48,10 @@ TEST_F(Batch, threads_chunks_and_order_change_no_bit) {
   write_frames(1, 7);
   ASSERT_EQ(run({"--threads", "1"}).code, 0);
   const auto one_thread = outputs();
-  const auto again = [&](const std::vector<std::vector<std::string>>& runs) {
-    remove_outputs();
-    for (const auto& arguments : runs) EXPECT_EQ(run(arguments).code, 0);
-    EXPECT_TRUE(outputs() == one_thread) << testing::PrintToString(runs);
-  };
-  again({{"--threads", "5"}});
-  again({{"--chunk", "3/3"}, {"--chunk", "1/3"}, {"--chunk", "2/3"}});
-  again({{"--frames", "7-1"}});
-  again({{"--frames", "1-7x2"}, {"--frames", "2-6:2"}});
+  expect_same_outputs(one_thread, {{"--threads", "5"}});
+  expect_same_outputs(one_thread, {{"--chunk", "3/3"}, {"--chunk", "1/3"}, {"--chunk", "2/3"}});
+  expect_same_outputs(one_thread, {{"--frames", "7-1"}});
+  expect_same_outputs(one_thread, {{"--frames", "1-7x2"}, {"--frames", "2-6:2"}});
 }
 
 TEST(Chunks, share_the_frames_evenly) {

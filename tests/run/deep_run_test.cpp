@@ -140,6 +140,30 @@ TEST_F(DeepRun, samples_alone_are_a_frame) {
   }
 }
 
+TEST_F(DeepRun, samples_are_the_depth_of_the_frames_around_too) {
+  FrameFile normals = wall_frame();
+  std::erase_if(normals.planes, [](const auto& plane) { return plane.first.find("Depth") != std::string::npos; });
+  json cameras = wall_camera();
+  for (int number = 1; number <= 3; number++) {
+    normals.write(folder / fmt::format("n.{}.exr", number));
+    std::filesystem::copy_file(deep, folder / fmt::format("d.{}.exr", number));
+    json matrix = cameras["world_to_camera"];
+    matrix[0][3] = -0.2 * number;
+    cameras["frames"].push_back({{"frame", number}, {"world_to_camera", matrix}});
+  }
+  write_bytes(camera, cameras.dump());
+  for (const Options& inputs :
+       {Options{folder / "n.%d.exr", "--deep", folder / "d.%d.exr"}, Options{folder / "d.%d.exr"}}) {
+    Options options{"run"};
+    options.insert(options.end(), inputs.begin(), inputs.end());
+    options.insert(options.end(), {"-o", folder / "out.%d.exr", "--camera", camera, "--radius", "1", "--around", "1",
+                                   "--frames", "2", "--aov", "depth,hidden"});
+    const Finished finished = run_program(options);
+    ASSERT_EQ(finished.code, 0) << finished;
+    EXPECT_THAT(attribute_of_whole_exr(folder / "out.2.exr", "alcove/hidden").value_or(""), HasSubstr("frames 1, 3"));
+  }
+}
+
 TEST_F(DeepRun, flat_parts_beside_samples_are_the_frame) {
   DeepFilePart flat;
   flat.is_flat = true;

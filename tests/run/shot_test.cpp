@@ -9,8 +9,11 @@
 #include <gmock/gmock.h>
 
 #include "core/formats/exr.h"
+#include "core/run/frame_files.h"
 #include "core/run/plan.h"
 #include "core/run/shot.h"
+#include "core/run/shot_memory.h"
+#include "tests/support/device.h"
 #include "tests/support/sequence_folder.h"
 
 namespace alcove {
@@ -27,7 +30,7 @@ using testing::HasSubstr;
 using testing::Pointwise;
 
 constexpr int kFrames = 7;
-constexpr double kStep = 0.08;  // scene units to the right that the camera moves from frame to frame
+constexpr double kStep = 0.2;  // scene units to the right that the camera moves from frame to frame
 
 /// A floor, a wall, and a board that stands before the wall, from a camera that walks by.
 class Shots : public SequenceFolder {
@@ -45,18 +48,32 @@ class Shots : public SequenceFolder {
 
   static FrameFile with_board(int frame) {
     FrameFile file = wall_frame();
+    put_board(file, kStep * frame, {-0.6, 0.6, 0.7, 4});
+    return file;
+  }
+
+  /// A rectangle that faces the camera: from `left` to `right`, and as high above the eye as below it.
+  struct Board {
+    double left, right, height, depth;
+  };
+  static void put_board(FrameFile& file, double eye, const Board& board) {
     auto& depth = file.planes.at("ViewLayer.Depth.Z");
     for (std::size_t i = 0; i < depth.size(); i++) {
-      const double x = (double(i % 64) + 0.5 - 32) / 60 * kBoardDepth + kStep * frame;
-      const double y = (18 - double(i / 64) - 0.5) / 60 * kBoardDepth;
-      if (std::abs(x) > 0.6 || std::abs(y) > 0.7 || kBoardDepth > double(depth[i])) continue;
-      depth[i] = float(kBoardDepth);
+      const double x = (double(i % 64) + 0.5 - 32) / 60 * board.depth + eye;
+      const double y = (18 - double(i / 64) - 0.5) / 60 * board.depth;
+      if (x < board.left || x > board.right || std::abs(y) > board.height || board.depth > double(depth[i])) continue;
+      depth[i] = float(board.depth);
       file.planes.at("ViewLayer.Normal.Y")[i] = -1;
       file.planes.at("ViewLayer.Normal.Z")[i] = 0;
     }
-    return file;
   }
-  static constexpr double kBoardDepth = 4;
+
+  /// The first surface that a frame hides, as it is written.
+  std::vector<float> hidden(int frame) const { return read_exr_image(output(frame), {"hidden1.Z"}).pixels; }
+  Finished run_hidden(int frame, std::vector<std::string> more) const {
+    more.insert(more.end(), {"--frames", std::to_string(frame), "--aov", "hidden", "--type", "float"});
+    return run_with_stats(more);
+  }
 
   json stats() const { return json::parse(read_bytes(folder / "stats.json")); }
   Finished run_with_stats(std::vector<std::string> more) const {
@@ -76,21 +93,12 @@ std::string word_behind(const std::string& text, const std::string& before) {
 
 TEST_F(Shots, threads_chunks_and_order_change_no_bit) {
   ASSERT_EQ(run({"--threads", "1", "--around", "2"}).code, 0);
-  const auto one_thread = outputs();
-  EXPECT_EQ(one_thread.size(), kFrames);
-  const auto again = [&](const std::vector<std::vector<std::string>>& runs) {
-    remove_outputs();
-    for (auto arguments : runs) {
-      arguments.insert(arguments.end(), {"--around", "2"});
-      const Finished finished = run(arguments);
-      EXPECT_EQ(finished.code, 0) << finished;
-    }
-    EXPECT_TRUE(outputs() == one_thread) << testing::PrintToString(runs);
-  };
-  again({{"--threads", "5"}});
-  again({{"--chunk", "3/3"}, {"--chunk", "1/3"}, {"--chunk", "2/3"}});
-  again({{"--frames", "7-1"}});
-  again({{"--frames", "1-7x2"}, {"--frames", "2-6:2"}});
+  const auto before = outputs();
+  EXPECT_EQ(before.size(), kFrames);
+  expect_same_outputs(before, {{"--around", "2", "--threads", "3", "--frames", "7-1"}});
+  expect_same_outputs(before, {{"--around", "2", "--chunk", "3/3", "--threads", "1"},
+                               {"--around", "2", "--chunk", "1/3", "--threads", "1"},
+                               {"--around", "2", "--chunk", "2/3", "--threads", "1"}});
 }
 
 TEST_F(Shots, each_frame_is_read_once_for_all_around_it) {
@@ -104,20 +112,22 @@ TEST_F(Shots, each_frame_is_read_once_for_all_around_it) {
 }
 
 TEST_F(Shots, headers_name_the_frames_around) {
-  ASSERT_EQ(run({"--around", "2"}).code, 0);
+  const auto run_two = [&](std::vector<std::string> more) {
+    more.insert(more.end(), {"--frames", "1,4", "--aov", "depth,normal", "--threads", "1"});
+    const Finished finished = run(more);
+    EXPECT_EQ(finished.code, 0) << finished;
+  };
+  run_two({"--around", "2"});
   EXPECT_EQ(header(1), "frames 2-3");
   EXPECT_EQ(header(4), "frames 2-3, 5-6");
-  ASSERT_EQ(run({"--around", "all"}).code, 0);
+  run_two({"--around", "all"});
   EXPECT_EQ(header(1), "frames 2-7");
-  ASSERT_EQ(run({}).code, 0);
+  run_two({});
   EXPECT_EQ(header(1), "");
 }
 
 TEST_F(Shots, of_one_frame_have_none_around_it) {
-  ASSERT_EQ(run({}).code, 0);
-  const auto without = outputs();
   for (int frame = 2; frame <= kFrames; frame++) fs::remove(input(frame));
-  remove_outputs();
   for (const char* around : {"3", "all"}) {
     const Finished finished = run({"--around", around});
     ASSERT_EQ(finished.code, 0) << finished;
@@ -129,13 +139,13 @@ TEST_F(Shots, of_one_frame_have_none_around_it) {
 }
 
 TEST_F(Shots, resumed_runs_compute_what_a_changed_neighbour_changes) {
-  ASSERT_EQ(run({"--around", "1"}).code, 0);
+  ASSERT_EQ(run({"--around", "1", "--aov", "depth,hidden"}).code, 0);
   FrameFile changed = with_board(1);
   changed.planes.at("ViewLayer.Depth.Z")[0] = 5;
   changed.write(input(1));
   const auto old = fs::last_write_time(input(2));
   fs::last_write_time(input(1), old);
-  ASSERT_EQ(run_with_stats({"--around", "1", "--resume"}).code, 0);
+  ASSERT_EQ(run_with_stats({"--around", "1", "--aov", "depth,hidden", "--resume"}).code, 0);
   std::vector<int> computed;
   const json frames = stats()["frames"];
   for (const auto& frame : frames)
@@ -149,7 +159,7 @@ TEST_F(Shots, missing_frames_are_an_error_or_left_out) {
   const Finished refused = run({"--around", "2", "--frames", "2"});
   EXPECT_EQ(refused.code, 3);
   EXPECT_THAT(refused.err, AllOf(HasSubstr("f.0004.exr"), HasSubstr("--around"), HasSubstr("--missing skip")));
-  const Finished skipped = run({"--around", "2", "--missing", "skip"});
+  const Finished skipped = run({"--around", "2", "--missing", "skip", "--aov", "depth,hidden"});
   ASSERT_EQ(skipped.code, 0) << skipped;
   EXPECT_EQ(header(3), "frames 1-2, 5; missing 4");
   EXPECT_EQ(header(1), "frames 2-3");
@@ -180,7 +190,7 @@ TEST_F(Shots, refuse_two_projections) {
   EXPECT_THAT(finished.err, AllOf(HasSubstr("orthographic"), HasSubstr("frame 4"), HasSubstr("--camera")));
 }
 
-TEST_F(Shots, keep_no_more_frames_than_their_windows) {
+TEST_F(Shots, know_the_frames_around_each) {
   Settings settings;
   settings.input.input = in + "/f.####.exr";
   settings.input.around = 1;
@@ -188,6 +198,43 @@ TEST_F(Shots, keep_no_more_frames_than_their_windows) {
   EXPECT_THAT(plan.around(1, 2).there, ElementsAre(2, 3));
   EXPECT_THAT(plan.around(7, 1).there, ElementsAre(6));
   EXPECT_THAT(plan.around(4, kWholeShot).there, ElementsAre(1, 2, 3, 5, 6, 7));
+  EXPECT_THAT(judges_of(plan, 4), ElementsAre(2, 3, 5, 6));
+  EXPECT_THAT(judges_of(plan, 1), ElementsAre(2, 3, 4, 5)) << "at the ends of the shot the others are on one side";
+  EXPECT_THAT(judges_of(plan, 6), ElementsAre(3, 4, 5, 7));
+  EXPECT_THAT(frames_seen_for(plan, 4), ElementsAre(1, 2, 3, 5, 6, 7));
+  EXPECT_THAT(frames_seen_for(plan, 1), ElementsAre(2, 3, 4, 5));
+  settings.input.around = 3;
+  EXPECT_THAT(judges_of(FramePlan(settings), 4), ElementsAre(1, 2, 3, 5, 6, 7));
+}
+
+TEST_F(Shots, keep_no_more_frames_than_their_windows) {
+  constexpr int kLong = 16;
+  json cameras = json::parse(read_bytes(camera));
+  for (int frame = kFrames + 1; frame <= kLong; frame++) {
+    json of_frame = cameras["frames"].back();
+    of_frame["frame"] = frame;
+    cameras["frames"].push_back(of_frame);
+    fs::copy_file(input(kFrames), input(frame));
+  }
+  write_bytes(camera, cameras.dump());
+  Settings settings;
+  settings.input.input = in + "/f.####.exr";
+  settings.input.camera = camera;
+  settings.input.around = 2;
+  settings.estimator.radius = 1;
+  settings.output.output = out + "/ao.####.exr";
+  const FramePlan plan(settings);
+  SharedFrames shared(plan, nullptr, plan.frames());
+  gpu::Recorder gpu(device());
+  for (const int frame : plan.frames()) {
+    PreparedOthers took;
+    FrameSource target = open_frame(plan.at(frame), frame);
+    shared.others_of(gpu, target, frame, took);
+    EXPECT_LE(shared.kept(), std::size_t(2 * with_judges(2) + 1)) << frame;
+    EXPECT_GE(shared.kept(), 5u) << frame;
+    shared.done(frame);
+  }
+  EXPECT_EQ(shared.kept(), 0u);
 }
 
 TEST_F(Shots, regions_have_the_bits_of_the_whole) {
@@ -229,12 +276,55 @@ TEST_F(Shots, take_what_motion_vectors_prove_to_stand_still) {
   for (int frame = 1; frame <= kFrames; frame++) {
     FrameFile file = with_board(frame);
     add_motion(file, 1);
+    // The middle of the board would move.
+    for (const std::size_t y : {16, 17, 18})
+      for (std::size_t x = 30; x < 34; x++) file.planes.at("ViewLayer.Vector.Y")[64 * y + x] = 3;
     file.write(input(frame));
   }
-  const Finished finished = run({"--around", "2", "--motion", in + "/f.%04d.exr"});
-  EXPECT_EQ(finished.code, 0) << finished;
-  const Finished of_next = run({"--around", "2", "--motion", in + "/f.%04d.exr", "--motion-kind", "next"});
-  EXPECT_EQ(of_next.code, 0) << "this camera's steps are all the same, so that the way back is the way on";
+  const auto numbers = [&](std::vector<std::string> more) {
+    more.insert(more.end(), {"--around", "2"});
+    const Finished finished = run_hidden(5, more);
+    EXPECT_EQ(finished.code, 0) << finished;
+    const json frame = stats()["frames"][0];
+    return std::pair(frame["moved"].get<int>(), frame["unconfirmed"].get<int>());
+  };
+  const auto [moved, unconfirmed] = numbers({});
+  EXPECT_GT(unconfirmed, 0) << "the last frame alone sees the wall at its right border";
+  constexpr int kMoving = 5 * 6;  // pixels of a frame, with those beside them
+  const auto by_vectors = numbers({"--motion", in + "/f.%04d.exr"});
+  EXPECT_EQ(by_vectors, std::pair(moved + 4 * kMoving, 0)) << "vectors confirm what no other frame sees";
+  // This camera's steps are all the same, so that the way back is the way on. The last frame's vectors lead nowhere.
+  const auto of_next = numbers({"--motion", in + "/f.%04d.exr", "--motion-kind", "next"});
+  EXPECT_EQ(of_next, std::pair(moved + 3 * kMoving, unconfirmed));
+}
+
+/// A box that rests for five frames where a post hides it in the ninth, and has gone before.
+TEST_F(Shots, take_nothing_of_what_rested_and_has_left) {
+  constexpr int kTarget = 9;
+  constexpr double kStride = 0.2;
+  json cameras = wall_camera();
+  for (int frame = 1; frame <= kTarget; frame++) {
+    json matrix = cameras["world_to_camera"];
+    matrix[0][3] = -kStride * frame;
+    cameras["frames"].push_back({{"frame", frame}, {"world_to_camera", matrix}});
+    FrameFile file = wall_frame();
+    if (frame <= 5) put_board(file, kStride * frame, {0, 0.6, 0.3, 4});
+    put_board(file, kStride * frame, {0.98, 1.22, 0.4, 2});
+    add_motion(file, float(kStride / kStep));
+    file.write(input(frame));
+  }
+  write_bytes(camera, cameras.dump());
+  const auto ghosts = [&](const std::vector<std::string>& more) {
+    const Finished finished = run_hidden(kTarget, more);
+    EXPECT_EQ(finished.code, 0) << finished;
+    const std::vector<float> planes = hidden(kTarget);
+    EXPECT_GT(std::ranges::count_if(planes, [](float z) { return std::abs(z - 6) < 0.01f; }), 50)
+        << "the wall behind the post";
+    return std::ranges::count_if(planes, [](float z) { return std::abs(z - 4) < 0.1f; });
+  };
+  EXPECT_EQ(ghosts({"--around", "8"}), 0);
+  EXPECT_EQ(ghosts({"--around", "all"}), 0);
+  EXPECT_EQ(ghosts({"--around", "8", "--motion", in + "/f.%04d.exr"}), 0) << "it rests by its vectors too";
 }
 
 TEST_F(Shots, refuse_motion_vectors_that_no_camera_agrees_with) {
@@ -286,14 +376,48 @@ TEST_F(Shots, other_views_are_those_of_the_same_instant) {
     matrix[0][3] = -kStep * frame;
     cameras["views"][frame == 1 ? "left" : "right"]["world_to_camera"] = matrix;
   }
-  const Finished finished = run_stereo(cameras, {"--other-views"});
+  const Finished finished = run_stereo(cameras, {"--other-views", "--aov", "ao,depth,hidden", "--type", "float"});
   EXPECT_EQ(finished.code, 0) << finished;
   EXPECT_EQ(header(1), "views right");
-  EXPECT_EQ(run_stereo(cameras, {"--other-views", "--view", "right"}).code, 0);
+  const std::vector<float> behind = hidden(1), ao = read_exr_image(output(1), {"Y"}).pixels;
+  const std::vector<float> wall = wall_frame().planes.at("ViewLayer.Depth.Z");
+  int found = 0;
+  for (std::size_t i = 0; i < behind.size(); i++) {
+    if (behind[i] >= 1e9f) continue;
+    found++;
+    EXPECT_NEAR(behind[i], wall[i], 1e-4 * double(wall[i])) << i;
+  }
+  EXPECT_GT(found, 20) << "a step to the side shows a column or two of the wall behind the board";
+  EXPECT_EQ(run_stereo(cameras, {"--aov", "ao", "--type", "float"}).code, 0);
+  EXPECT_NE(read_exr_image(output(1), {"Y"}).pixels, ao);
+  EXPECT_EQ(run_stereo(cameras, {"--other-views", "--view", "right", "--aov", "depth,hidden"}).code, 0);
   EXPECT_EQ(header(1), "views left");
   const Finished alone = run({"--other-views", "--frames", "1"});
   EXPECT_EQ(alone.code, 3) << alone;
   EXPECT_THAT(alone.err, AllOf(HasSubstr("f.0001.exr"), HasSubstr("--other-views")));
+}
+
+TEST_F(Shots, take_more_memory_the_more_frames_lie_around) {
+  Settings settings;
+  settings.input.input = in + "/f.####.exr";
+  settings.input.camera = camera;
+  settings.estimator.radius = 1;
+  settings.output.output = out + "/ao.####.exr";
+  std::uint64_t frame_before = 0, shot_before = 0;
+  for (const int around : {0, 1, 2, 3}) {
+    settings.input.around = around;
+    const FramePlan plan(settings);
+    const FrameSource source = open_frame(plan.at(4), 4);
+    const std::uint64_t of_frame = memory_with_others(plan, source, settings).on_host(source.file_data);
+    const std::uint64_t of_shot = bytes_of_shot(plan, source, settings.input, 1);
+    if (around != 2) {
+      EXPECT_GT(of_frame, frame_before) << around;
+    }
+    EXPECT_GE(of_frame, frame_before) << "two frames to each side tell what moves, if no more are taken";
+    EXPECT_GE(of_shot, shot_before) << around;
+    frame_before = of_frame, shot_before = of_shot;
+  }
+  EXPECT_EQ(shot_before, kFrames * 12 * kWallWindow.pixels()) << "there are no more";
 }
 
 TEST_F(Shots, dry_runs_tell_what_the_window_takes) {

@@ -50,6 +50,17 @@ class SequenceFolder : public testing::Test {
     return files;
   }
 
+  /// Whether these runs, one after the other, write what was written before.
+  void expect_same_outputs(const std::map<std::string, std::string>& before,
+                           const std::vector<std::vector<std::string>>& runs) const {
+    remove_outputs();
+    for (const auto& arguments : runs) {
+      const Finished finished = run(arguments);
+      EXPECT_EQ(finished.code, 0) << finished;
+    }
+    EXPECT_TRUE(outputs() == before) << testing::PrintToString(runs);
+  }
+
   TemporaryFolder folder;
   const std::string in = folder / "in", out = folder / "out", camera = folder / "camera.json";
 };
