@@ -1,11 +1,13 @@
 // Runs with deep files: the bits of --behind, a frame of samples alone, crops and tiles, what inspect says, and every
 // mistake in files and options.
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 #include "core/formats/exr.h"
 #include "tests/support/command_line.h"
