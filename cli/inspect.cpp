@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <optional>
+#include <utility>
 
 #include "cli/commands.h"
 #include "cli/options.h"
@@ -13,19 +13,34 @@
 #include "core/inspect/contact_sheet.h"
 #include "core/inspect/inspect.h"
 #include "core/inspect/inspect_sequence.h"
+#include "core/run/first_look.h"
 #include "core/run/plan.h"
 
 namespace alcove {
 
 namespace {
 
-/// The frames of a sequence; nothing for a single frame. Frames that are not there are no error here.
-std::optional<FramePlan> plan_of(const Settings& settings) {
+/// Frames that are not there are no error here.
+FramePlan plan_of(const Settings& settings) {
   Settings inputs = settings;
   inputs.output = {};
   inputs.frames.missing = Missing::skip;
-  FramePlan plan(inputs);
-  return plan.is_sequence() ? std::optional(std::move(plan)) : std::nullopt;
+  return FramePlan(inputs);
+}
+
+/// Fails with ErrorKind::usage where nothing tells which camera of a list the frame has.
+Inspection inspect_one(const FramePlan& plan, const Settings& settings, int frame) {
+  Notes notes;
+  try {
+    notes = notes_on_number(plan, settings);
+  } catch (const Error& error) {
+    if (error.kind() == ErrorKind::usage) throw;
+    // What is wrong with the camera file is a part of what is found.
+  }
+  Inspection found = inspect_frame(settings.input, frame);
+  add_new(notes, found.notes);
+  found.notes = std::move(notes);
+  return found;
 }
 
 SequenceNames names_of(const FramePlan& plan, const Settings& settings) {
@@ -54,15 +69,16 @@ int inspect_command(const std::vector<std::string>& arguments) {
   const InputSettings& input = options.settings.input;
   const std::string& path = main_input(input);
   if (path.empty()) fail(ErrorKind::usage, "no input: name an EXR file, or one with --depth or --position");
-  const auto plan = plan_of(options.settings);
-  const Inspection inspection =
-      plan ? inspect_sequence(names_of(*plan, options.settings)) : inspect_frame(input, frame_number_of(path));
+  const FramePlan plan = plan_of(options.settings);
+  const int frame = frame_number_of(path);
+  const Inspection inspection = plan.is_sequence() ? inspect_sequence(names_of(plan, options.settings))
+                                                   : inspect_one(plan, options.settings, frame);
   fmt::print("{}", json ? inspection_json(inspection) : inspection_text(inspection));
   if (inspection.unreadable) throw *inspection.unreadable;
   if (options.settings.output.preview.empty()) return 0;
   Settings shown = options.settings;
-  if (plan) shown.input = plan->at(inspection.sequence->shown).input;
-  write_contact_sheet(shown, plan ? inspection.sequence->shown : frame_number_of(path));
+  if (plan.is_sequence()) shown.input = plan.at(inspection.sequence->shown).input;
+  write_contact_sheet(shown, plan.is_sequence() ? inspection.sequence->shown : frame);
   return 0;
 }
 

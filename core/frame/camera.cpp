@@ -308,6 +308,8 @@ Camera read_camera(const std::string& path, int frame, const std::string& view) 
 
 bool lists_frames(const std::string& path) { return object_in(path).contains("frames"); }
 
+void require_listed(const std::string& path, int frame) { frame_entry({.path = path, .top = object_in(path)}, frame); }
+
 bool names_a_camera(const InputSettings& settings) {
   return !settings.camera.empty() || settings.fov || settings.focal || settings.ortho_width;
 }

@@ -48,6 +48,10 @@ Camera read_camera(const std::string& path, int frame, const std::string& view =
 /// Whether a camera file lists `frames`. Fails with ErrorKind::input where it cannot be read.
 bool lists_frames(const std::string& path);
 
+/// Fails with ErrorKind::input where a camera file lists `frames` and none of them has this number. What stands in the
+/// entry is not looked at: its fields may be those of views.
+void require_listed(const std::string& path, int frame);
+
 /// Whether the settings give a camera, or at least try to.
 bool names_a_camera(const InputSettings& settings);
 

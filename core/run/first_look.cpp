@@ -27,28 +27,6 @@ Notes notes_on_holes(const FramePlan& plan, const Settings& settings) {
                        frames_text(plan.holes()) + (plan.holes().size() == 1 ? " is" : " are"))}};
 }
 
-/// The note on the number that a single file's name has, where it chooses a camera.
-Notes notes_on_number(const FramePlan& plan, const Settings& settings) {
-  const std::string& camera = settings.input.camera;
-  if (plan.is_sequence() || camera.empty() || !lists_frames(camera)) return {};
-  const std::string& input = main_input(settings.input);
-  const FrameNumber found = frame_number_in(input);
-  if (!found.number)
-    fail(ErrorKind::usage,
-         "{}: it lists cameras by frame, and {} has no clear frame number{}: say which frame it is with --frames "
-         "NUMBER",
-         camera, file_name(input), found.doubt.empty() ? "" : fmt::format(" ({})", found.doubt));
-  try {
-    read_camera(camera, *found.number);
-  } catch (const Error& error) {
-    fail(error.kind(), "{}; that it is frame {} say the digits {} of the name {}, and --frames says another",
-         error.what(), *found.number, found.digits, file_name(input));
-  }
-  return {{NoteCode::frame_number,
-           fmt::format("the camera is that of frame {} in {}, by the digits {} of the name; --frames says another",
-                       *found.number, file_name(camera), found.digits)}};
-}
-
 constexpr double kSomeFov = 50;  // degrees, as inspect takes it for a frame without a camera
 
 /// The radius that is proposed for the first frame that shows a surface, and why others could not be looked at.
@@ -102,6 +80,27 @@ std::optional<FrameSource> settle_first(const FramePlan& plan, std::uint64_t mos
   return best;
 }
 
+Notes notes_on_number(const FramePlan& plan, const Settings& settings) {
+  const std::string& camera = settings.input.camera;
+  if (plan.is_sequence() || camera.empty() || !lists_frames(camera)) return {};
+  const std::string& input = main_input(settings.input);
+  const FrameNumber found = frame_number_in(input);
+  if (!found.number)
+    fail(ErrorKind::usage,
+         "{}: it lists cameras by frame, and {} has no clear frame number{}: say which frame it is with --frames "
+         "NUMBER",
+         camera, file_name(input), found.doubt.empty() ? "" : fmt::format(" ({})", found.doubt));
+  try {
+    require_listed(camera, *found.number);
+  } catch (const Error& error) {
+    fail(error.kind(), "{}; that it is frame {} say the digits {} of the name {}, and --frames says another",
+         error.what(), *found.number, found.digits, file_name(input));
+  }
+  return {{NoteCode::frame_number,
+           fmt::format("the camera is that of frame {} in {}, by the digits {} of the name; --frames says another",
+                       *found.number, file_name(camera), found.digits)}};
+}
+
 Notes notes_on_names(const FramePlan& plan, const Settings& settings) {
   Notes notes = notes_on_holes(plan, settings);
   refuse_warnings(notes, settings, main_input(settings.input));
@@ -112,6 +111,7 @@ Notes notes_on_names(const FramePlan& plan, const Settings& settings) {
 Settings with_proposed_radius(const Settings& settings, Notes& notes) {
   if (!settings.estimator.radius_auto) return settings;
   const FramePlan plan(settings);
+  notes_on_number(plan, settings);  // which fails before a camera is taken of which nothing tells
   std::optional<Error> error;
   const auto radius = radius_for(plan, true, error);
   if (!radius && error) throw *error;
@@ -132,9 +132,12 @@ Lacking lacking_in(const Settings& settings) {
   lacking.output = settings.output.output.empty();
   lacking.radius = !settings.estimator.radius && !settings.estimator.radius_auto && needs_ao(settings.output);
   lacking.camera = lacking.input && !names_a_camera(settings.input);
-  if (lacking.input || (names_a_camera(settings.input) && !lacking.radius)) return lacking;
+  const bool needs_frame = lacking.radius || !names_a_camera(settings.input);
+  if (lacking.input || !(needs_frame || lacking.output)) return lacking;
   try {
     const FramePlan plan(settings);
+    notes_on_number(plan, settings);  // or the command that is proposed would be refused
+    if (!needs_frame) return lacking;
     lacking.camera = !has_camera(plan);
     if (lacking.radius) lacking.proposed_radius = radius_for(plan, !lacking.camera, lacking.unreadable);
   } catch (const Error& error) {

@@ -16,8 +16,12 @@ namespace alcove {
 /// each is settled by itself.
 std::optional<FrameSource> settle_first(const FramePlan& plan, std::uint64_t most_bytes);
 
-/// What the names of the files tell: numbers that are left out, and the number that decides which camera of a list a
-/// single frame has. Fails with ErrorKind::usage where there is such a list and the name has no clear number, and with
+/// The note on the number that a single file's name has, where it decides which camera of a list the frame has. Fails
+/// with ErrorKind::usage where there is such a list and the name has no clear number, and with ErrorKind::input where
+/// the list has no such frame or cannot be read.
+Notes notes_on_number(const FramePlan& plan, const Settings& settings);
+
+/// What the names of the files tell: numbers that are left out, and notes_on_number(). Fails as that does, and with
 /// ErrorKind::input where a warning counts as an error.
 Notes notes_on_names(const FramePlan& plan, const Settings& settings);
 

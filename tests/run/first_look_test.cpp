@@ -123,6 +123,52 @@ TEST_F(CameraList, needs_a_frame_where_the_name_tells_none) {
   EXPECT_EQ(compute("shot_v002.exr", {"--camera", camera}).code, 0) << "one camera is that of every frame";
 }
 
+TEST_F(CameraList, needs_a_frame_for_all_that_looks_at_it) {
+  json list = json::parse(read_bytes(cameras));
+  list["frames"][0]["frame"] = 0;
+  write_bytes(cameras, list.dump());
+  wall_frame().write(folder / "shot_v002.exr");
+  const auto refused = AllOf(HasSubstr("shot_v002.exr"), HasSubstr(cameras), HasSubstr("--frames"));
+  const std::vector<std::string> run{"run", folder / "shot_v002.exr", "--camera", cameras};
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), run.begin(), run.end());
+    return run_program(more);
+  };
+  for (const auto& finished : {run_program({"inspect", folder / "shot_v002.exr", "--camera", cameras}),
+                               with({"-o", ao, "--radius", "auto"}), with({"-o", ao, "--radius", "auto", "--dry-run"}),
+                               with({"-o", ao}), with({"--radius", "1"}), with({})}) {
+    EXPECT_EQ(finished.code, 2) << finished;
+    EXPECT_THAT(finished.err, refused);
+    EXPECT_THAT(finished.err, Not(HasSubstr("such as"))) << "no command would do";
+  }
+  EXPECT_EQ(with({"-o", ao, "--radius", "auto", "--frames", "5"}).code, 0);
+}
+
+TEST_F(CameraList, is_asked_by_inspect_too) {
+  wall_frame().write(folder / "shot.0005.exr");
+  const Finished finished = run_program({"inspect", folder / "shot.0005.exr", "--camera", cameras});
+  EXPECT_EQ(finished.code, 0) << finished;
+  EXPECT_THAT(finished.out, AllOf(HasSubstr("frame 5 "), HasSubstr("0005")));
+  const auto found = json::parse(run_program({"inspect", folder / "shot.0005.exr", "--camera", cameras, "--json"}).out);
+  EXPECT_THAT(found["notes"].dump(), HasSubstr("frame 5 in cameras.json"));
+  const Finished none = run_program({"inspect", folder / "shot.0005.exr", "--camera", folder / "none.json"});
+  EXPECT_THAT(none.out, HasSubstr("none.json")) << none;
+}
+
+TEST_F(CameraList, may_leave_its_fields_to_views) {
+  json list = wall_camera(), view;
+  for (const char* field : {"fx", "fy", "cx", "cy"}) {
+    view[field] = list[field];
+    list.erase(field);
+  }
+  list["frames"] = {{{"frame", 5}, {"views", {{"left", view}, {"right", view}}}}};
+  write_bytes(cameras, list.dump());
+  wall_frame().write(folder / "shot.0005.exr");
+  const Finished finished = compute("shot.0005.exr", {"--view", "left"});
+  EXPECT_EQ(finished.code, 0) << finished;
+  EXPECT_TRUE(read_exr_image(ao).pixels == right);
+}
+
 class SingleFrame : public CommandLine {};
 
 TEST_F(SingleFrame, that_fails_says_why_though_others_would_go_on) {
