@@ -134,9 +134,9 @@ TEST_F(CameraList, needs_a_frame_for_all_that_looks_at_it) {
     more.insert(more.begin(), run.begin(), run.end());
     return run_program(more);
   };
-  for (const auto& finished : {run_program({"inspect", folder / "shot_v002.exr", "--camera", cameras}),
-                               with({"-o", ao, "--radius", "auto"}), with({"-o", ao, "--radius", "auto", "--dry-run"}),
-                               with({"-o", ao}), with({"--radius", "1"}), with({})}) {
+  for (const auto& finished :
+       {run_program({"inspect", folder / "shot_v002.exr", "--camera", cameras}), with({"-o", ao, "--radius", "auto"}),
+        with({"-o", ao, "--radius", "auto", "--dry-run"}), with({"-o", ao}), with({"--radius", "1"}), with({})}) {
     EXPECT_EQ(finished.code, 2) << finished;
     EXPECT_THAT(finished.err, refused);
     EXPECT_THAT(finished.err, Not(HasSubstr("such as"))) << "no command would do";
