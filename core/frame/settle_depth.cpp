@@ -199,6 +199,7 @@ class DepthSettlement : private Settlement {
     const bool is_supported = straight >= kSurelyStraight;
     const bool is_inverse =
         straight >= kLeastStraight && scores[0].kind == DepthKind::inverse && straight >= kClear * scores[1].straight;
+    if (source_.rules->depth_kind != DepthKind::automatic && !is_supported && !is_inverse) return note_fractions();
     if (source_.rules->depth_kind != DepthKind::automatic || is_inverse) return;
     refuse_plateau();
     if (!is_supported)
@@ -208,6 +209,13 @@ class DepthSettlement : private Settlement {
            "where it is a z-buffer, --depth-kind device with --near and --far",
            depth_path(), text_of_range(), normalized_line(false), normalized_line(true));
     refuse_before_near_plane();
+    note_fractions();
+  }
+
+  /// It is all that is said where the program is known to write distances: those of a macro scene are below 1.
+  void note_fractions() {
+    const DepthKind kind = source_.usual_depth_kind;
+    if (kind != DepthKind::planar && kind != DepthKind::ray) return;
     note(NoteCode::depth_below_1,
          fmt::format("{} and is read as distances of less than 1 scene unit; where it is normalized, give {}",
                      text_of_range(), normalized_line(false)));

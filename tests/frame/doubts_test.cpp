@@ -117,6 +117,8 @@ TEST_F(Doubts, straight_distances_below_1_are_taken_and_noted) {
   header.insert("Software", Imf::StringAttribute("Blender 3.4"));
   write_depth([](double z) { return z / 100; }, 1e12f);
   EXPECT_THAT(said(), IsEmpty()) << "it writes distances";
+  write_depth([](double z) { return std::sqrt(z / 100); }, 1e12f);
+  EXPECT_THAT(said(), testing::ElementsAre(HasSubstr("--depth-kind normalized --near 0 --far F"))) << "its Normalize";
 }
 
 TEST_F(Doubts, straight_depth_before_the_near_plane_is_refused) {
