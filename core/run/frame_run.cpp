@@ -105,8 +105,11 @@ class FrameRun {
       settle_by_part(source, settings_.input, rows, whole, evidence_within(source, limits.room.bytes));
     Surroundings surroundings(source, settings_, rows);
     const Window computed = surroundings.around(whole);
+    const bool is_whole = limits.allow(computed);
+    // All of it, for what is decoded later would not be counted.
+    if (is_whole) rows.need(computed.y, computed.y + computed.height);
     report_.read_ms += reading.ms();
-    if (!limits.allow(computed)) return run_tiles(source, limits, surroundings, rows);
+    if (!is_whole) return run_tiles(source, limits, surroundings, rows);
     if (!limits.allow(computed, rows.bytes_in_memory())) rows.leave_memory();
     source.data = computed;
     run_whole(source, &rows);
@@ -191,7 +194,8 @@ class FrameRun {
 
   /// Rows in memory leave less of it to tiles: where that is too little, they leave it.
   TileRows cut(const FrameSource& source, const WindowLimits& limits, Surroundings& surroundings, FrameRows& rows) {
-    const Window& whole = written_of(source);
+    const Window &whole = written_of(source), computed = surroundings.around(whole);
+    rows.need(computed.y, computed.y + computed.height);
     WindowLimits beside_rows = limits;
     beside_rows.room.bytes -= std::min(limits.room.bytes, rows.bytes_in_memory());
     if (auto tiles = tiles_within(whole, surroundings, beside_rows)) return *std::move(tiles);
