@@ -13,6 +13,7 @@
 #include "core/base/estimator_facts.h"
 #include "core/base/file.h"
 #include "core/base/system.h"
+#include "core/base/text.h"
 #include "core/base/version.h"
 #include "core/chain/aov.h"
 #include "core/chain/chain.h"
@@ -206,7 +207,7 @@ class Batch {
     if (run.settled) require_room_for_others(memory, plan_, *run.settled, settings_);
     if (!is_cpu) lanes.set_count(lanes_for(run, frames.size(), memory, threads + kSpareLanes));
     report_.device = run.provenance.device = device.name;
-    report_.on_cpu_by_default = is_cpu && d.device == "auto";
+    report_.on_cpu_by_default = is_cpu && lower_case(d.device) == "auto";
     report_.at_once = lanes.count();
     if (run.settled) memory = beside_shot(memory, plan_, *run.settled, settings_, lanes.count());
 
