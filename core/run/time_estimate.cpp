@@ -30,7 +30,7 @@ constexpr double kSteepest = 1.25;
 
 /// What a window takes, in milliseconds.
 struct Sample {
-  double pixels = 0;
+  double pixels = 0, rows = 0;  // rows that were decoded, over the whole width of the file
   double read = 0, compute = 0, write = 0;
 };
 
@@ -47,8 +47,10 @@ Sample time_window(gpu::Recorder& gpu, FrameSource& source, const Settings& sett
   source.region = window;
   const Stopwatch reading;
   FrameRows rows(source, memory_of(source, settings).on_host(window), existing_folder_of(settings.output.output));
+  const auto rows_before = source.rows_read;
   const FrameInputs inputs = load_frame(gpu, source, settings, frame, &rows);
   sample.read = reading.ms();
+  sample.rows = double(source.rows_read - rows_before);
   const FrameOutputs outputs = run_chain(gpu, inputs, settings.estimator, settings.output);
   gpu.run();
   for (const auto& pass : gpu.passes()) sample.compute += pass.ms;
@@ -74,9 +76,11 @@ std::string duration_text(double seconds) {
   return fmt::format("{:.1f} h", seconds / 3600);
 }
 
-/// The settings with outputs that may be begun anywhere.
+/// The settings with outputs that may be begun anywhere. What is wrong there says nothing of the run.
 Settings with_scratch(Settings settings) {
-  const std::string folder = std::filesystem::temp_directory_path().string();
+  std::error_code error;
+  const std::string folder = std::filesystem::temp_directory_path(error).string();
+  if (error) fail(ErrorKind::output, "no temporary folder: {}", error.message());
   settings.output.output = folder + "/alcove-dry-run.exr";
   if (!settings.output.composite.empty()) settings.output.composite = folder + "/alcove-dry-run-composite.exr";
   return settings;
@@ -105,7 +109,8 @@ std::string estimate(const TimedRun& run) {
   }
   if (before.pixels == 0) before = last;
 
-  const double pixels = double(whole.pixels()), files = (last.read + last.write) * pixels / last.pixels,
+  const double pixels = double(whole.pixels()), read = last.read * whole.height / std::max(last.rows, 1.0),
+               files = std::max(read, last.read) + last.write * pixels / last.pixels,
                compute = scaled(before.compute, last.compute, before, last, pixels);
   const bool is_cpu = device.info().type == gpu::DeviceType::cpu;
   const int threads = d.threads > 0 ? d.threads : core_count();
@@ -127,8 +132,9 @@ std::string time_text(const TimedRun& run) {
   try {
     return estimate(run);
   } catch (const Error& error) {
-    // What is wrong with the frame or the settings ends the run too; a device may be there elsewhere.
-    if (error.kind() != ErrorKind::device) throw;
+    // What is wrong with the frame or the settings ends the run too; a device may be there elsewhere, and all outputs
+    // of an estimate are scratch files.
+    if (error.kind() != ErrorKind::device && error.kind() != ErrorKind::output) throw;
     return fmt::format("unknown: {}", error.what());
   }
 }

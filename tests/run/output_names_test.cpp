@@ -130,6 +130,12 @@ TEST_F(InputNames, of_a_dry_run_come_with_the_time_it_takes) {
   const Finished without = run({"--dry-run", "--device", "99"});
   EXPECT_EQ(without.code, 0) << without;
   EXPECT_THAT(lines_of(without.out), Contains(MatchesRegex("time +unknown: .*--device.*")));
+  const Finished nowhere = run({"--dry-run"}, {.environment = {{"TMPDIR", "/none"}}});
+  EXPECT_EQ(nowhere.code, 0) << nowhere;
+  EXPECT_THAT(lines_of(nowhere.out), Contains(MatchesRegex("time +unknown: no temporary folder.*")));
+  fs::create_directory(folder / "scratch");
+  EXPECT_EQ(run({"--dry-run"}, {.environment = {{"TMPDIR", folder / "scratch"}}}).code, 0);
+  EXPECT_THAT(names_in(folder / "scratch"), testing::IsEmpty());
 
   ASSERT_EQ(run().code, 0);
   fs::remove(output(2));
