@@ -87,10 +87,6 @@ shared uint unsettled[kGroupY * kGroupWords];
 shared uint first[kGroupY * kSectorsOfTurn], last[kGroupY * kSectorsOfTurn];
 const uint kAllTiles = (1u << (kBlock * kBlock)) - 1u;
 
-/// Pixels of the frame beyond the reach whose depth may decide a normal that was reconstructed, or which surface a
-/// pixel of a smaller image shows.
-const int kChangeMargin = 8;
-
 uint changes_at(ivec2 corner, ivec2 blocks) { return changes[corner.y * (blocks.x + 1) + corner.x]; }
 
 /// Whether everything that the estimates of a block of tiles are made from is as it was in the frame before.
@@ -98,7 +94,7 @@ bool is_as_before(View view, ivec2 tile, float near, float far) {
   const Rect rect =
       image_of_reach(view, box_of(view, tile, kBlock, near, far), reach_of_samples(view, params.radius, far));
   const ivec2 most = params.frame_size - 1;
-  const int margin = kChangeMargin + (kSparse != 0u ? kSiteReach * params.factor : 0);
+  const int margin = params.margin + (kSparse != 0u ? kSiteReach * params.factor : 0);
   const ivec2 blocks = (params.frame_size + kChangeBlock - 1) / kChangeBlock;
   const ivec2 from = clamp(ivec2(rect.least) * params.factor - params.overhang - margin, ivec2(0), most) / kChangeBlock;
   const ivec2 to =

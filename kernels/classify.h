@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #ifndef ALCOVE_CLASSIFY_H
 #define ALCOVE_CLASSIFY_H
+#include "ends.h"
 #include "shared.h"
 ALCOVE_BEGIN
 
@@ -37,6 +38,11 @@ ALCOVE_CONSTANT uint kClassifyTolerates = 32;  // with kClassifyProves
 ALCOVE_CONSTANT uint kClassifyWithCompleted = 64;
 ALCOVE_CONSTANT uint kClassifyCompletes = 128;  // with kClassifyProves: surfaces go on beyond what is seen of them
 
+// px of the frame beyond the reach: their depths may decide a normal that was reconstructed, or which surface a pixel
+// of a smaller image shows; of hidden surfaces also which ends with the one before it, and closes its solid
+ALCOVE_CONSTANT int kChangeMargin = 8;
+ALCOVE_CONSTANT int kHiddenChangeMargin = kChangeMargin + kEndsReach + kEndsBeyond;
+
 ALCOVE_CONSTANT int kChangeBlock = 32;  // px of the frame a side of the blocks whose changes are known
 
 struct ClassifyParams {
@@ -49,6 +55,7 @@ struct ClassifyParams {
   ivec2 frame_size;      // px; the frame is the image, or `factor` times as large
   ivec2 overhang;        // px of the first pixel of the image that are outside of the frame
   int factor;
+  int margin;  // px of the frame beyond the reach whose depths may decide what is within it
 };
 ALCOVE_PARAMS(ClassifyParams)
 

@@ -230,7 +230,8 @@ TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const Bounds& boun
                               plane,
                               gbuffer.grid.frame_size,
                               gbuffer.grid.overhang,
-                              gbuffer.grid.factor};
+                              gbuffer.grid.factor,
+                              gbuffer.surfaces > 1 ? kHiddenChangeMargin : kChangeMargin};
   gpu.dispatch("classify", params,
                {{kClassifyBounds, bounds.tiles ? *bounds.tiles : *list.tiles},
                 {kClassifyGroups, bounds.groups ? *bounds.groups : *list.tiles},

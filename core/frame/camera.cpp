@@ -308,7 +308,9 @@ Camera read_camera(const std::string& path, int frame, const std::string& view) 
 
 bool lists_frames(const std::string& path) { return object_in(path).contains("frames"); }
 
-void require_listed(const std::string& path, int frame) { frame_entry({.path = path, .top = object_in(path)}, frame); }
+void require_listed(const std::string& path, int frame) {
+  frame_entry({path, object_in(path), Json::object(), Json::object(), Json::object()}, frame);
+}
 
 bool names_a_camera(const InputSettings& settings) {
   return !settings.camera.empty() || settings.fov || settings.focal || settings.ortho_width;
