@@ -106,7 +106,8 @@ TEST(ExactHidden, a_wall_blocks_where_a_plate_hides_it) {
     };
     for (const SliceSearch search : {SliceSearch::exact, SliceSearch::every_pixel}) {
       for (const Completion complete : {Completion::none, Completion::all}) {
-        if (!tried(shot.camera.orthographic + (search == SliceSearch::exact) + (complete == Completion::none), 2)) continue;
+        if (!tried(shot.camera.orthographic + (search == SliceSearch::exact) + (complete == Completion::none), 2))
+          continue;
         const EstimatorSettings settings = settings_of(1, complete, search);
         known = std::max(known, mean_error(rendering, rendering.frame, settings, truth));
         EXPECT_LE(known, 0.004) << int(complete);

@@ -283,8 +283,8 @@ TEST_F(BadInput, a_full_disk) {
     write_bytes(disk + name, kBefore);
   // Without a denoiser, whose smooth pictures would fit.
   const auto expect_full = [&](const std::string& name, std::vector<std::string> more) {
-    more.insert(more.begin(), {"run", frame, "--camera", camera, "--radius", "1", "--denoise", "none", "--progress",
-                               "none"});
+    more.insert(more.begin(),
+                {"run", frame, "--camera", camera, "--radius", "1", "--denoise", "none", "--progress", "none"});
     const Finished finished = run_program(more);
     EXPECT_EQ(finished.code, 4) << finished;
     EXPECT_EQ(lines_of(finished.err).size(), 1) << finished;

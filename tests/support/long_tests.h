@@ -15,8 +15,6 @@ inline bool tried(int sum_of_numbers, int parts) { return long_tests() || sum_of
 
 /// How many of `count` random cases are tried: where the program runs once more with vectors of another width, which
 /// shows what differs by the width alone, a third of them.
-inline int cases_of(int count) {
-  return long_tests() || !std::getenv("LP_NATIVE_VECTOR_WIDTH") ? count : count / 3;
-}
+inline int cases_of(int count) { return long_tests() || !std::getenv("LP_NATIVE_VECTOR_WIDTH") ? count : count / 3; }
 
 }  // namespace alcove::test
