@@ -111,6 +111,17 @@ int wait_for(pid_t child, double seconds, rusage& usage) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
+/// What was said, but for the lines that tell how long a frame takes: only slow machines print them.
+std::string without_durations(const std::string& said) {
+  std::string rest;
+  for (std::size_t at = 0, end = 0; at < said.size(); at = end) {
+    end = std::min(said.find('\n', at), said.size() - 1) + 1;
+    const std::string line = said.substr(at, end - at);
+    if (!line.ends_with(" so far\n") && line.find(" so far, part ") == line.npos) rest += line;
+  }
+  return rest;
+}
+
 }  // namespace
 
 std::ostream& operator<<(std::ostream& stream, const Finished& finished) {
@@ -146,7 +157,7 @@ Finished run_program(const std::vector<std::string>& arguments, const Surroundin
   if (surroundings.meanwhile) surroundings.meanwhile(child);
   rusage usage{};
   const int code = wait_for(child, surroundings.seconds, usage);
-  return {code, out.text(), err.text(), usage.ru_maxrss >> 10};
+  return {code, out.text(), without_durations(err.text()), usage.ru_maxrss >> 10};
 }
 
 std::vector<std::string> lines_of(const std::string& text) {

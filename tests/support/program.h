@@ -33,7 +33,8 @@ struct Surroundings {
 };
 
 /// Runs the program with these arguments and waits for its end. It finds the presets of the project unless the
-/// surroundings say otherwise, and computes on the device that ALCOVE_TEST_DEVICE names unless the arguments do.
+/// surroundings say otherwise, and computes on the device that ALCOVE_TEST_DEVICE names unless the arguments do. What
+/// slow machines alone print, how long a frame takes, is left out of Finished::err.
 Finished run_program(const std::vector<std::string>& arguments, const Surroundings& surroundings = {});
 
 std::vector<std::string> lines_of(const std::string& text);
