@@ -115,12 +115,16 @@ void require_no_input(const std::string& path, const char* option, std::span<con
       fail(ErrorKind::usage, "{}: {} would overwrite an input", path, option);
 }
 
+std::string unfinished_name(const std::string& folder) {
+  return (fs::path(folder) /
+          fmt::format("{}{}-{:08x}{}", kUnfinishedPrefix, process_id(), std::random_device()(), kUnfinishedSuffix))
+      .string();
+}
+
 NewFile::NewFile(const std::string& path) : target_(path) {
   // Whoever cleans up may take the file in the moment before it is locked.
   do {
-    temporary_ = (fs::path(folder_of(target_)) / fmt::format("{}{}-{:08x}{}", kUnfinishedPrefix, process_id(),
-                                                             std::random_device()(), kUnfinishedSuffix))
-                     .string();
+    temporary_ = unfinished_name(folder_of(target_));
     if (const auto error = file_.make(temporary_)) give_up("make a temporary file for", error);
   } while (file_.is_removed());
 }

@@ -37,6 +37,9 @@ bool same_file(const std::string& a, const std::string& b);
 /// Fails with ErrorKind::usage where `path`, which is to be written, is one of the inputs. Empty names are none.
 void require_no_input(const std::string& path, const char* option, std::span<const std::string> inputs);
 
+/// A hidden name in a folder that nobody else has, for a file in the making: remove_unfinished() knows it.
+std::string unfinished_name(const std::string& folder);
+
 /// A file in the making. It has a hidden name beside `path` that does not end as images do, so that folder watchers
 /// pass it by, and a lock for as long as its process lives. Unless it is committed nothing of it is left, and what was
 /// at `path` is as it was. All failures are ErrorKind::output.

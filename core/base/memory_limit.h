@@ -8,6 +8,7 @@
 
 namespace alcove {
 
+constexpr std::uint64_t kMebibyte = 1 << 20;  // bytes
 constexpr std::uint64_t kNoMemoryLimit = std::numeric_limits<std::uint64_t>::max();
 
 /// The bytes that the control groups of this process leave it: the least that is left in its own group or in any group

@@ -223,12 +223,10 @@ ScratchFile::~ScratchFile() {
   if (descriptor_ >= 0) ::close(descriptor_);
 }
 
-std::error_code ScratchFile::make(const std::string& folder) {
+std::error_code ScratchFile::make(const std::string& folder, const std::string& path) {
   descriptor_ = ::open(folder.c_str(), O_RDWR | O_TMPFILE | O_CLOEXEC, 0600);
   if (descriptor_ >= 0) return {};
-  // File systems of networks know no files without names: there the name is taken away again.
-  std::string path = folder + "/.alcove-XXXXXX";
-  descriptor_ = ::mkostemp(path.data(), O_CLOEXEC);
+  descriptor_ = ::open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
   if (descriptor_ < 0) return last_error();
   ::unlink(path.c_str());
   return {};

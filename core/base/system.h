@@ -107,7 +107,9 @@ class ScratchFile {
   ScratchFile& operator=(const ScratchFile&) = delete;
   ~ScratchFile();
 
-  std::error_code make(const std::string& folder);
+  /// File systems of networks know no files without names: there it has the name `path`, which nobody else has, for a
+  /// moment.
+  std::error_code make(const std::string& folder, const std::string& path);
   bool is_open() const { return descriptor_ >= 0; }
   std::error_code write_at(std::uint64_t offset, std::span<const char> bytes);
   std::error_code read_at(std::uint64_t offset, std::span<char> bytes) const;

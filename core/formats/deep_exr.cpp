@@ -16,6 +16,7 @@
 #include <mutex>
 
 #include "core/base/error.h"
+#include "core/base/memory_limit.h"
 #include "core/formats/deep_chunk.h"
 #include "core/formats/exr.h"
 
@@ -24,7 +25,6 @@ namespace {
 
 constexpr std::uint64_t kMostChunk = std::uint64_t(1) << 28;  // bytes: more than any line or tile that was ever seen
 constexpr std::uint64_t kCopies = 3;                          // of a chunk: packed, split in halves, as it is
-constexpr std::uint64_t kMebibyte = 1 << 20;
 
 /// What a channel says of a sample.
 enum class Role { none, front, back, alpha };

@@ -26,10 +26,6 @@ const AovNames& behind_names() {
 
 const ExrFile& file_of(const FrameSource& source, const ChannelRef& ref) { return source.files[ref.file]; }
 
-const ExrPart& part_of(const FrameSource& source, const ChannelRef& ref) {
-  return file_of(source, ref).parts()[std::size_t(ref.part)];
-}
-
 /// What is said of all files once, or of each.
 template <class T>
 T said_of(const std::vector<T>& all, std::size_t file, T otherwise) {
@@ -55,7 +51,7 @@ void require_same_pixels(const FrameSource& source, const ChannelRef& ref, const
            "pixels (--behind)",
            file.path(), what, to_string(theirs), own.path(), to_string(ours));
   };
-  require_same("data", part_of(source, ref).data, source.file_data);
+  require_same("data", source.part_of(ref).data, source.file_data);
   require_same("display", file.display(), source.display);
   const std::string theirs = view_in(file, settings), ours = view_in(own, settings);
   if (!theirs.empty() && !ours.empty() && theirs != ours)
@@ -66,7 +62,7 @@ void require_same_pixels(const FrameSource& source, const ChannelRef& ref, const
 }
 
 bool is_half(const FrameSource& source, const ChannelRef& ref) {
-  const auto& channels = part_of(source, ref).channels;
+  const auto& channels = source.part_of(ref).channels;
   const auto channel = std::ranges::find(channels, ref.channel, &ExrChannel::name);
   return channel != channels.end() && channel->type == SampleType::half_float;
 }

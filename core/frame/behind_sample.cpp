@@ -9,6 +9,7 @@
 #include "core/base/error.h"
 #include "core/frame/behind.h"
 #include "core/frame/deep.h"
+#include "core/frame/sampling.h"
 
 namespace alcove {
 namespace {
@@ -28,10 +29,6 @@ std::string name_of(const FrameSource& source, std::size_t plane) {
   return fmt::format("{}: {}", source.files[ref.file].path(), ref.channel);
 }
 
-double precision_at(const DepthPrecision& precision, double z) {
-  return precision.at[0] + z * (precision.at[1] + z * precision.at[2]);
-}
-
 double percent(std::size_t part, std::size_t whole) { return 100.0 * double(part) / double(whole); }
 
 }  // namespace
@@ -40,46 +37,37 @@ void BehindSample::add(const Reading& reading, std::span<const float> depth, std
                        const Window& window, const Window& whole) {
   planes_.resize(reading.behind.size());
   if (planes_.empty()) return;
-  const std::size_t pixels = window.pixels(), step = whole.pixels() / kSampled + 1;
-  taken_.resize(whole.pixels() / step + 1);
+  const std::size_t pixels = window.pixels();
+  taken_.resize(whole.pixels() / sampling_step(whole, kSampled) + 1);
   const View view = view_of(reading.camera, window, reading.display);
   const DepthMap own = depth_map_of(reading);
   const DepthPrecision precision = hidden_precision_of(reading);
   std::vector<DepthMap> maps;
   for (const auto& plane : reading.behind) maps.push_back(behind_map_of(reading, plane));
-  for (std::size_t i = step / 2; i < whole.pixels(); i += step) {
-    const int column = whole.x + int(i % std::size_t(whole.width)) - window.x,
-              row = whole.y + int(i / std::size_t(whole.width)) - window.y;
-    if (column < 0 || column >= window.width || row < 0 || row >= window.height || taken_[i / step]) continue;
-    taken_[i / step] = true;
-    const std::size_t at = std::size_t(row) * std::size_t(window.width) + std::size_t(column);
-    std::array<double, 3> values{};
-    for (std::size_t axis = 0; axis < 3 && at + axis * pixels < depth.size(); axis++)
-      values[axis] = depth[at + axis * pixels];
-    const double x = (double(column) + 0.5 - view.center.x) * view.tangent_per_pixel.x;
-    const double y = (double(row) + 0.5 - view.center.y) * view.tangent_per_pixel.y;
-    const double ray = view.orthographic ? 1 : std::sqrt(1 + x * x + y * y);
-    const double first = planar_depth(own, values, ray);
-    const double pixel = std::abs(view.tangent_per_pixel.x) * (view.orthographic ? 1 : first);
-    const double separation = kSameSurface * precision_at(precision, first) + pixel;
+  for_each_sampled(view, depth, window, whole, kSampled, [&](const SampledPixel& pixel) {
+    if (taken_[pixel.number]) return;
+    taken_[pixel.number] = true;
+    const double first = planar_depth(own, pixel.values, pixel.ray);
+    const double width = std::abs(view.tangent_per_pixel.x) * (view.orthographic ? 1 : first);
+    const double separation = kSameSurface * precision.at_depth(first) + width;
     for (std::size_t p = 0; p < planes_.size(); p++) {
       Plane& plane = planes_[p];
-      const double raw = behind[at + p * pixels];
+      const double raw = behind[pixel.at + p * pixels];
       if (raw < 0) plane.negative++;
-      const double z = planar_depth(maps[p], {raw, 0, 0}, ray);
+      const double z = planar_depth(maps[p], {raw, 0, 0}, pixel.ray);
       if (!std::isfinite(first) || !std::isfinite(z)) continue;
       plane.surfaces++;
       if (reading.behind[p].kind == BehindKind::thickness) continue;
       plane.before += z < first - separation ? 1 : 0;
       plane.same += std::abs(z - first) <= separation ? 1 : 0;
       plane.parts.push_back(float(z / first));
-      if (ray < kOblique) continue;
-      const double other = maps[p].along_ray ? z * ray : z / ray;
+      if (pixel.ray < kOblique) continue;
+      const double other = maps[p].along_ray ? z * pixel.ray : z / pixel.ray;
       plane.oblique++;
       plane.as_read += std::abs(z - first) < kEqual * first ? 1 : 0;
       plane.otherwise += std::abs(other - first) < kEqual * first ? 1 : 0;
     }
-  }
+  });
 }
 
 Notes BehindSample::notes(const FrameSource& source) const {

@@ -131,7 +131,7 @@ void take_deep(FrameSource& source, const InputSettings& settings) {
 
 bool is_deep_plane(const FrameSource& source, std::size_t plane) {
   const ChannelRef& ref = source[RawPlane::behind][plane];
-  return source.files[ref.file].parts()[std::size_t(ref.part)].deep.has_value();
+  return source.part_of(ref).deep.has_value();
 }
 
 void read_deep_like_meaning(FrameSource& source) {
@@ -146,7 +146,7 @@ void read_deep_like_meaning(FrameSource& source) {
 void settle_deep(FrameSource& source, std::span<const float> depth) {
   if (!source.deep) return;
   const ChannelRef& own = source[RawPlane::depth][0];
-  if (own.file == *source.deep && source.files[own.file].parts()[std::size_t(own.part)].deep) return;
+  if (own.file == *source.deep && source.part_of(own).deep) return;
   std::vector<DeepReading> readings;
   for (const double scale : {source.depth_scale, 1.0})
     for (const DepthKind kind : {DepthKind::planar, DepthKind::ray}) readings.push_back({kind, scale});

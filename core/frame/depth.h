@@ -27,6 +27,8 @@ struct DepthMap {
 /// How far a planar depth z may be from the surface's: at[0] + at[1] z + at[2] z^2, scene units.
 struct DepthPrecision {
   std::array<double, 3> at{};
+
+  double at_depth(double z) const { return at[0] + z * (at[1] + z * at[2]); }
 };
 
 /// With d the value and n, f the planes:

@@ -29,7 +29,7 @@ bool is_lossy(const FrameSource& source, const ChannelRef& ref) {
   static const std::set<std::string> kNames{"r", "g", "b", "y", "ry", "by"};
   const std::size_t dot = ref.channel.rfind('.');
   const std::string last = lower_case(dot == ref.channel.npos ? ref.channel : ref.channel.substr(dot + 1));
-  return source.files[ref.file].parts()[std::size_t(ref.part)].dwa && kNames.contains(last);
+  return source.part_of(ref).dwa && kNames.contains(last);
 }
 
 /// Parts that the frame does not need and whose first or last rows cannot be read: of a file that was cut short behind

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/base/error.h"
+#include "core/base/file.h"
 
 namespace alcove {
 namespace {
@@ -31,8 +32,7 @@ FrameRows::FrameRows(FrameSource& source, std::uint64_t most_bytes, const std::s
   for (const auto& plane : source.planes.entries) channels_.insert(channels_.end(), plane.begin(), plane.end());
   std::ranges::sort(channels_);
   channels_.erase(std::unique(channels_.begin(), channels_.end()), channels_.end());
-  for (const auto& channel : channels_)
-    together_ = std::max(together_, source.files[channel.file].parts()[std::size_t(channel.part)].rows_together);
+  for (const auto& channel : channels_) together_ = std::max(together_, source.part_of(channel).rows_together);
 }
 
 std::uint64_t FrameRows::row_bytes() const {
@@ -89,7 +89,7 @@ void FrameRows::put_aside(Block& block) {
          source_.depth_path(), row_bytes() * std::uint64_t(source_.file_data.height) >> 20, folder_, error.message());
   };
   if (!file_.is_open())
-    if (const auto error = file_.make(folder_)) give_up(error);
+    if (const auto error = file_.make(folder_, unfinished_name(folder_))) give_up(error);
   const std::uint64_t bytes = row_bytes() * std::uint64_t(block.rows);
   if (const auto error = file_.write_at(file_bytes_, {reinterpret_cast<const char*>(block.pixels.get()), bytes}))
     give_up(error);

@@ -20,12 +20,8 @@
 namespace alcove {
 namespace {
 
-const ExrPart& part_of(const FrameSource& source, const ChannelRef& ref) {
-  return source.files[ref.file].parts()[std::size_t(ref.part)];
-}
-
 bool has_half_channel(const FrameSource& source, const ChannelRef& ref) {
-  const auto& channels = part_of(source, ref).channels;
+  const auto& channels = source.part_of(ref).channels;
   const auto channel = std::ranges::find(channels, ref.channel, &ExrChannel::name);
   return channel != channels.end() && channel->type == SampleType::half_float;
 }
@@ -34,7 +30,7 @@ bool has_half_channel(const FrameSource& source, const ChannelRef& ref) {
 void require_same_window(const FrameSource& source, const std::vector<ChannelRef>& channels, const char* what,
                          const char* option) {
   for (const auto& channel : channels) {
-    const Window& data = part_of(source, channel).data;
+    const Window& data = source.part_of(channel).data;
     if (data != source.data)
       fail(ErrorKind::input, "{}: the {} channel {} is {}, and the depth is {}: both must cover the same pixels ({})",
            source.files[channel.file].path(), what, channel.channel, to_string(data), to_string(source.data), option);
@@ -237,7 +233,7 @@ FrameSource find_frame(const InputSettings& settings, bool with_beauty, int fram
   if (source[RawPlane::depth].empty())
     source[RawPlane::depth] = find_depth(source, search, depth_file, settings, by_position);
   depth_file = source[RawPlane::depth][0].file;
-  source.data = source.file_data = part_of(source, source[RawPlane::depth][0]).data;
+  source.data = source.file_data = source.part_of(source[RawPlane::depth][0]).data;
   source.display = source.files[depth_file].display();
   source.pixel_aspect = source.files[depth_file].pixel_aspect();
   source.depth_is_half = has_half_channel(source, source[RawPlane::depth][0]) || source.deep_depth_is_half;

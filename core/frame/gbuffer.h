@@ -33,6 +33,8 @@ struct FrameSource : Reading {
   const std::vector<ChannelRef>& operator[](RawPlane plane) const { return planes[plane]; }
   /// The file of the depth or the positions, after which the frame is called in messages.
   const std::string& depth_path() const { return files[planes[RawPlane::depth][0].file].path(); }
+  /// The part of a file that a channel lies in.
+  const ExrPart& part_of(const ChannelRef& ref) const { return files[ref.file].parts()[std::size_t(ref.part)]; }
 
   std::vector<ExrFile> files;
   std::optional<std::size_t> deep;  // of them, whose samples are the depth, or give planes behind it

@@ -22,9 +22,6 @@ constexpr double kWidest = 180;     // degrees: no plane shows a field of view a
 constexpr double kFarthest = 1e29;  // scene units: programs write 1e30 where there is no far plane
 
 double dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-Matrix3 transposed(const Matrix3& m) {
-  return {{{m[0][0], m[1][0], m[2][0]}, {m[0][1], m[1][1], m[2][1]}, {m[0][2], m[1][2], m[2][2]}}};
-}
 
 /// Attributes by their names without Nuke's prefixes.
 struct Attributes {

@@ -8,6 +8,7 @@
 #include "core/base/error.h"
 #include "core/base/text.h"
 #include "core/frame/channels.h"
+#include "core/frame/sampling.h"
 
 namespace alcove {
 namespace {
@@ -17,8 +18,6 @@ namespace {
 constexpr double kStill = 0.1, kStillPart = 0x1p-10;
 /// The least share of surfaces that agree with the cameras by the right reading: the others may all move.
 constexpr double kLeastShare = 0.05;
-/// One of so many pixels is enough to choose the reading. It is a prime, so that no column is favoured.
-constexpr std::size_t kSparse = 31;
 
 const AovNames kMotionNames{
     .what = "motion vectors",

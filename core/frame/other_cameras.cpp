@@ -29,13 +29,6 @@ Matrix3 product(const Matrix3& a, const Matrix3& b) {
   return result;
 }
 
-Matrix3 transposed(const Matrix3& m) {
-  Matrix3 result{};
-  for (std::size_t i = 0; i < 3; i++)
-    for (std::size_t j = 0; j < 3; j++) result[i][j] = m[j][i];
-  return result;
-}
-
 /// The hypothesis that agrees best, where the frame can tell.
 std::optional<OtherCamera> best_of(const std::vector<Hypothesis>& hypotheses, const NormalPlanes& planes,
                                    const NormalScore& as) {

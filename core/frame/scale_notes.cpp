@@ -5,8 +5,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+
+#include "core/frame/sampling.h"
 
 namespace alcove {
 namespace {
@@ -14,10 +15,6 @@ namespace {
 constexpr std::size_t kSampled = 4096;      // pixels of a window
 constexpr double kFullPrecision = 0x1p-16;  // of the depth: no file of floats is worse
 constexpr double kMostBelowPixel = 0.5;     // share of the surfaces
-
-double precision_at(const DepthPrecision& precision, double z) {
-  return precision.at[0] + z * (precision.at[1] + z * precision.at[2]);
-}
 
 }  // namespace
 
@@ -31,20 +28,10 @@ void DepthSample::add(const View& view, const DepthMap& map, const DepthPrecisio
                       std::span<const float> raw, const Window& window, const Window& whole) {
   view_ = view;
   precision_ = precision;
-  const std::size_t pixels = window.pixels(), step = whole.pixels() / kSampled + 1;
-  for (std::size_t i = step / 2; i < whole.pixels(); i += step) {
-    const int column = whole.x + int(i % std::size_t(whole.width)) - window.x,
-              row = whole.y + int(i / std::size_t(whole.width)) - window.y;
-    if (column < 0 || column >= window.width || row < 0 || row >= window.height) continue;
-    const std::size_t at = std::size_t(row) * std::size_t(window.width) + std::size_t(column);
-    std::array<double, 3> values{};
-    for (std::size_t axis = 0; axis < 3 && at + axis * pixels < raw.size(); axis++)
-      values[axis] = raw[at + axis * pixels];
-    const double x = (double(column) + 0.5 - view.center.x) * view.tangent_per_pixel.x;
-    const double y = (double(row) + 0.5 - view.center.y) * view.tangent_per_pixel.y;
-    const double z = planar_depth(map, values, view.orthographic ? 1 : std::sqrt(1 + x * x + y * y));
-    if (std::isfinite(z)) depths_.emplace(i, z);
-  }
+  for_each_sampled(view, raw, window, whole, kSampled, [&](const SampledPixel& pixel) {
+    const double z = planar_depth(map, pixel.values, pixel.ray);
+    if (std::isfinite(z)) depths_.emplace(pixel.number, z);
+  });
 }
 
 /// How wide a pixel is there, in scene units.
@@ -61,7 +48,7 @@ Notes DepthSample::notes(double smallest_radius, double largest_radius, int widt
   std::ranges::nth_element(depths, middle);
   const double z = *middle;
 
-  const double precision = precision_at(precision_, z);
+  const double precision = precision_.at_depth(z);
   if (smallest_radius < kLeastPrecisions * precision)
     notes.push_back(
         {NoteCode::radius_below_precision,

@@ -32,7 +32,7 @@ class DepthSample {
  private:
   double pixel_at(double depth) const;
 
-  std::map<std::size_t, double> depths_;  // by the number of the pixel in the whole
+  std::map<std::size_t, double> depths_;  // by the pixel's number: SampledPixel
   View view_{};
   DepthPrecision precision_;
 };

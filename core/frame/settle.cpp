@@ -11,13 +11,11 @@
 #include "core/frame/evidence.h"
 #include "core/frame/findings.h"
 #include "core/frame/radius.h"
+#include "core/frame/sampling.h"
 #include "core/frame/settlement.h"
 
 namespace alcove {
 namespace {
-
-/// One of so many pixels is enough to tell grey pictures and steps. It is a prime, so that no column is favoured.
-constexpr std::size_t kSparse = 31;
 
 /// Refuses depth that was saved as a grey picture: it has no more than 256 distances.
 void refuse_8_bits(const FrameSource& source, std::span<const float> depth) {

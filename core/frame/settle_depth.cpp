@@ -6,6 +6,7 @@
 
 #include "core/base/error.h"
 #include "core/frame/evidence.h"
+#include "core/frame/sampling.h"
 #include "core/frame/settle.h"
 #include "core/frame/settlement.h"
 
@@ -16,8 +17,6 @@ namespace {
 constexpr double kLeastStraight = 0.02;
 /// From this part of the smooth places on, flat surfaces speak for a kind by themselves.
 constexpr double kSurelyStraight = 0.1;
-/// From this share on normals that agree with depth speak for it; see settle_normals.cpp.
-constexpr double kLeastAgreement = 0.6;
 /// If this part of the pixels is exactly 1, that is a background.
 constexpr double kPlateau = 0.001;
 /// Pixels. If the median is farther off than this, positions are not what they are taken for.

@@ -5,6 +5,7 @@
 #include "core/base/error.h"
 #include "core/frame/evidence.h"
 #include "core/frame/other_cameras.h"
+#include "core/frame/sampling.h"
 #include "core/frame/settle.h"
 #include "core/frame/settlement.h"
 
@@ -14,8 +15,6 @@ namespace {
 /// Where the normals agree with depth less than this part of the best agreement, another reading of them is chosen, or
 /// noted.
 constexpr double kNoBetter = 0.95;
-/// So many of the normals must agree with depth. Some reading reaches half by chance, as rooms have three directions.
-constexpr double kLeastAgreement = 0.6;
 /// Degrees. If the best quarter of the normals is farther off than this, normals and depth are of different cameras or
 /// planes.
 constexpr double kLargestAngle = 2;

@@ -21,8 +21,8 @@ class Settlement {
   static constexpr double kAsGood = 0.8;
   /// Another reading is taken only where it is this many times as good as the second best.
   static constexpr double kClear = 2;
-  /// One of so many pixels is enough for statistics. It is a prime, so that no column is favoured.
-  static constexpr std::size_t kSparse = 31;
+  /// So many of the normals must agree with depth. Some reading reaches half by chance, as rooms have three directions.
+  static constexpr double kLeastAgreement = 0.6;
 
   const std::string& depth_path() const { return source_.depth_path(); }
   const std::string& normal_path() const { return source_.files[source_[RawPlane::normal][0].file].path(); }

@@ -13,7 +13,7 @@ namespace {
 std::string depth_of(const FrameSource& source, const ExrFile& file) {
   if (!source.deep || source.files[*source.deep].path() != file.path() || !source.settled) return "";
   const ChannelRef& own = source[RawPlane::depth][0];
-  if (source.files[own.file].parts()[std::size_t(own.part)].deep) return "the depth of the frame";
+  if (source.part_of(own).deep) return "the depth of the frame";
   const DepthKind kind = source.deep_kind == DepthKind::automatic ? source.depth_kind : source.deep_kind;
   return kind == DepthKind::ray ? "along the ray" : kind == DepthKind::planar ? "planar" : name_of(kind);
 }

@@ -13,8 +13,6 @@ namespace {
 
 /// Surfaces are one if they are no farther apart than so many times what a depth may be off, and a pixel.
 constexpr double kPrecisions = 4;
-/// As in reference_slice.cpp.
-constexpr double kRunSlope = 8;
 /// The ends of a surface count that are no more pixels away.
 constexpr int kReach = 64;
 /// A solid is at most so many times as thick as its front is wide.
@@ -39,7 +37,7 @@ class Layers {
     const DepthPrecision precision = hidden_precision_of(frame_);
     const auto separation_at = [&](double z) {
       if (separation >= 0) return separation;
-      return kPrecisions * (precision.at[0] + z * (precision.at[1] + z * precision.at[2])) + pixel_size(z);
+      return kPrecisions * precision.at_depth(z) + pixel_size(z);
     };
     for_pixels([&](int x, int y) {
       double last = scene_.depth(x, y);

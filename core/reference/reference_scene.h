@@ -9,6 +9,9 @@
 
 namespace alcove {
 
+/// Neighbours on a line of pixels whose depth differs by less than this many pixels' worth of slope are one surface.
+constexpr double kRunSlope = 8;
+
 /// A vector of view space: x right, y up, the camera looks along -z.
 struct Vector {
   double x = 0, y = 0, z = 0;

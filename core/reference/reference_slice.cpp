@@ -9,8 +9,6 @@
 namespace alcove {
 namespace {
 
-/// Neighbours on a slice whose depth differs by less than this many pixels' worth of slope are one surface.
-constexpr double kRunSlope = 8;
 /// What the picture's border cuts is taken to be at least so thick, in radii: its width is not known.
 constexpr double kCutThickness = 0.5;
 

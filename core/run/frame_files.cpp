@@ -26,13 +26,6 @@ bool in_world(const FrameSource& source, const OutputSettings& settings) {
 }
 
 /// Of a rotation the way back.
-Matrix3 transposed(const Matrix3& matrix) {
-  Matrix3 result{};
-  for (std::size_t row = 0; row < 3; row++)
-    for (std::size_t column = 0; column < 3; column++) result[row][column] = matrix[column][row];
-  return result;
-}
-
 ExrOutput output_like(const FrameSource& source, const ChannelRef& like, const Provenance& provenance) {
   ExrOutput output;
   output.data = written_of(source);
@@ -55,7 +48,7 @@ ExrOutput output_like(const FrameSource& source, const ChannelRef& like, const P
 }
 
 SampleType type_of(const FrameSource& source, const ChannelRef& ref) {
-  const auto& channels = source.files[ref.file].parts()[std::size_t(ref.part)].channels;
+  const auto& channels = source.part_of(ref).channels;
   const auto found = std::ranges::find(channels, ref.channel, &ExrChannel::name);
   return found != channels.end() && found->type == SampleType::half_float ? SampleType::half_float
                                                                           : SampleType::single_float;

@@ -27,7 +27,7 @@ int judges_to_each_side(int count) { return std::max(count, kLeastJudges); }
 
 bool has_deep_depth(const FrameSource& source) {
   const ChannelRef& depth = source[RawPlane::depth][0];
-  return source.files[depth.file].parts()[std::size_t(depth.part)].deep.has_value();
+  return source.part_of(depth).deep.has_value();
 }
 
 /// Of a frame that others take only what its first surface shows. `settled`: another one of the shot, or null.
@@ -179,9 +179,12 @@ SharedFrames::Seen SharedFrames::prepare(gpu::Recorder& gpu, const InputSettings
 SharedFrames::Seen SharedFrames::seen(gpu::Recorder& gpu, int frame, PreparedOthers& took) {
   const auto entry = entry_of(frame);
   const std::lock_guard lock(entry->preparing);
-  if (!entry->seen)
-    entry->seen = prepare(gpu, of_first_surface(plan_.at(frame).input, settled_), settled_, frame, took);
-  return entry->seen;
+  return seen_in(*entry, gpu, frame, took);
+}
+
+SharedFrames::Seen SharedFrames::seen_in(Entry& entry, gpu::Recorder& gpu, int frame, PreparedOthers& took) const {
+  if (!entry.seen) entry.seen = prepare(gpu, of_first_surface(plan_.at(frame).input, settled_), settled_, frame, took);
+  return entry.seen;
 }
 
 /// Prepares those that no other lane is at, so that lanes which need the same ones share the work.
@@ -189,8 +192,7 @@ void SharedFrames::prepare_free_ones(gpu::Recorder& gpu, std::span<const int> fr
   for (const int frame : frames) {
     const auto entry = entry_of(frame);
     const std::unique_lock lock(entry->preparing, std::try_to_lock);
-    if (lock && !entry->seen)
-      entry->seen = prepare(gpu, of_first_surface(plan_.at(frame).input, settled_), settled_, frame, took);
+    if (lock) seen_in(*entry, gpu, frame, took);
   }
 }
 

@@ -92,6 +92,8 @@ class SharedFrames {
   std::vector<Judged> other_views(gpu::Recorder& gpu, const FrameSource& target, int frame, Others& others,
                                   PreparedOthers& took) const;
   Seen seen(gpu::Recorder& gpu, int frame, PreparedOthers& took);
+  /// The entry's preparing is locked.
+  Seen seen_in(Entry& entry, gpu::Recorder& gpu, int frame, PreparedOthers& took) const;
   std::optional<std::vector<std::uint8_t>> by_vectors(gpu::Recorder& gpu, int frame, PreparedOthers& took);
   /// What moves as the witnesses tell, or cannot stand for its surface.
   static std::vector<std::uint32_t> judged(gpu::Recorder& gpu, const SeenFrame& seen, std::span<const Seen> witnesses,

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/base/error.h"
+#include "core/base/memory_limit.h"
 #include "core/run/shot.h"
 
 namespace alcove {
@@ -12,7 +13,6 @@ namespace {
 
 constexpr std::size_t kPlanesOfSeen = 3;    // depth, normals, what moves
 constexpr std::size_t kPlanesPrepared = 5;  // that passes make of it: depth, normals, flags, what moves, surfels
-constexpr std::uint64_t kMebibyte = 1 << 20;
 
 /// What one frame at a time takes with all around it.
 std::uint64_t bytes_of_one(const FramePlan& plan, const FrameSource& frame, const Settings& settings) {

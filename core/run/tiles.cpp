@@ -8,12 +8,12 @@
 
 #include "core/base/error.h"
 #include "core/base/estimator_facts.h"
+#include "core/base/memory_limit.h"
 #include "kernels/profile.h"
 
 namespace alcove {
 namespace {
 
-constexpr std::uint64_t kMebibyte = 1 << 20;
 constexpr int kLeastRows = 16;     // px of a tile: most files compress so many rows together
 constexpr int kLeastColumns = 64;  // px of a tile
 constexpr int kMostRows = 32;      // of tiles, unless they have to be lower

@@ -1,0 +1,49 @@
+// Some pixels of a frame that is looked at window by window.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <span>
+
+#include "core/base/image.h"
+#include "core/frame/camera.h"
+
+namespace alcove {
+
+/// One of so many pixels is enough for the statistics of a frame. It is a prime, so that no column is favoured.
+constexpr std::size_t kSparse = 31;
+
+/// One pixel of those that are looked at.
+struct SampledPixel {
+  std::size_t number;            // among those of the whole
+  std::size_t at;                // in the planes of the window
+  std::array<double, 3> values;  // of the depth as the file has it: one, or three of a position
+  double ray;                    // length of the pixel's ray of unit depth; 1 where it is orthographic
+};
+
+/// How far apart they are, if about `count` pixels of the whole are looked at.
+inline std::size_t sampling_step(const Window& whole, std::size_t count) { return whole.pixels() / count + 1; }
+
+/// Calls `visit` with those of `window` that belong to about `count` of `whole`. Windows that share pixels give each of
+/// them the same number, so that it is all the same how the whole is cut into windows. `depth` and `view` are the
+/// window's.
+template <class Visit>
+void for_each_sampled(const View& view, std::span<const float> depth, const Window& window, const Window& whole,
+                      std::size_t count, const Visit& visit) {
+  const std::size_t pixels = window.pixels(), step = sampling_step(whole, count);
+  for (std::size_t i = step / 2; i < whole.pixels(); i += step) {
+    const int column = whole.x + int(i % std::size_t(whole.width)) - window.x,
+              row = whole.y + int(i / std::size_t(whole.width)) - window.y;
+    if (column < 0 || column >= window.width || row < 0 || row >= window.height) continue;
+    SampledPixel pixel{i / step, std::size_t(row) * std::size_t(window.width) + std::size_t(column), {}, 1};
+    for (std::size_t axis = 0; axis < 3 && pixel.at + axis * pixels < depth.size(); axis++)
+      pixel.values[axis] = depth[pixel.at + axis * pixels];
+    const double x = (double(column) + 0.5 - view.center.x) * view.tangent_per_pixel.x;
+    const double y = (double(row) + 0.5 - view.center.y) * view.tangent_per_pixel.y;
+    if (!view.orthographic) pixel.ray = std::sqrt(1 + x * x + y * y);
+    visit(pixel);
+  }
+}
+
+}  // namespace alcove
