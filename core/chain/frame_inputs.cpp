@@ -30,7 +30,7 @@ DepthTerms depth_terms(const DepthMap& map) {
 /// The terms of a plane behind the first surface.
 LayerTerms layer_terms(const Reading& reading, const BehindPlane& plane) {
   const DepthMap map = behind_map_of(reading, plane);
-  return {map.form, plane.kind, depth_terms(map)};
+  return {map.form, plane.kind, depth_terms(map), plane.is_whole};
 }
 
 PrepareParams prepare_params(const Reading& reading, const DepthMap& map, const View& view, bool has_normals) {

@@ -17,6 +17,7 @@ struct LayerTerms {
   uint form;  // kDepth*
   BehindKind kind;
   DepthTerms depth;
+  bool is_whole = false;  // see BehindPlane
 };
 
 /// Pixels around a frame.

@@ -27,7 +27,7 @@ void add(std::uint64_t& hash, const PrepareParams& params) {
 
 void add(std::uint64_t& hash, const LayerTerms& terms) {
   static_assert(std::has_unique_object_representations_v<uint> && sizeof(DepthTerms) == 10 * sizeof(float));
-  add(hash, terms.form, std::uint32_t(terms.kind));
+  add(hash, terms.form, std::uint32_t(terms.kind), terms.is_whole);
   hash = XXH3_64bits_withSeed(&terms.depth, sizeof(terms.depth), hash);
 }
 

@@ -15,6 +15,7 @@ namespace {
 constexpr double kPrecisions = 4;            // surfaces are one within so many times what a depth may be off
 constexpr double kLeastPrecision = 0x1p-16;  // of the depth, see depth_precision()
 constexpr int kEvidenceRows = 64;            // of the frame, by which the kind of samples is settled
+constexpr double kWhole = 0.5;               // share of the surfaces with another one behind
 constexpr std::size_t kLeastPixels = 64;     // fewer tell too little
 constexpr double kLeastSame = 0.1;           // share of the pixels whose first surface must be the depth's
 
@@ -34,6 +35,24 @@ bool is_half(const ExrFile& file, const std::vector<int>& parts) {
 void choose(FrameSource& source, std::size_t file, const InputSettings& settings) {
   source.deep = file;
   source.deep_parts = deep_parts_of(source.files[file], settings);
+}
+
+/// Whether samples go on behind the first surface: those of a renderer end there, however much is hidden. Rows all over
+/// the file tell, so that each part of a frame has the answer of the whole.
+bool goes_on_behind(ExrFile& file, int part, const Window& data) {
+  const auto width = std::size_t(data.width);
+  std::vector<float> first(width), second(width);
+  const std::array reads{ExrRead{part, deep_channel(0, false), first.data()},
+                         ExrRead{part, deep_channel(1, false), second.data()}};
+  std::size_t surfaces = 0, more = 0;
+  const int rows = std::min(kEvidenceRows, data.height);
+  for (int i = 0; i < rows; i++) {
+    file.read(reads, int((std::int64_t(2 * i + 1) * data.height) / (2 * rows)), 1);
+    const auto is_surface = [](float z) { return z < kNoDeepSurface; };
+    surfaces += std::size_t(std::ranges::count_if(first, is_surface));
+    more += std::size_t(std::ranges::count_if(second, is_surface));
+  }
+  return surfaces > 0 && double(more) >= kWhole * double(surfaces);
 }
 
 /// One way to read the depth of samples.
@@ -104,7 +123,8 @@ void find_deep(FrameSource& source, ChannelSearch& search, const InputSettings& 
       source.deep_parts, [&](int part) { return has_channel(file.parts()[std::size_t(part)], "ZBack"); });
   const auto add = [&](std::size_t surface, bool back) {
     source[RawPlane::behind].push_back({*source.deep, first, deep_channel(surface, back)});
-    source.behind.push_back({.kind = back ? BehindKind::backs : BehindKind::surfaces, .is_half = half});
+    source.behind.push_back(
+        {.kind = back ? BehindKind::backs : BehindKind::surfaces, .is_half = half, .is_whole = false});
   };
   for (std::size_t surface = is_depth ? 1 : 0; surface < kMostDeepSurfaces; surface++) add(surface, false);
   for (std::size_t surface = 0; has_backs && surface < kMostDeepSurfaces; surface++) add(surface, true);
@@ -140,11 +160,15 @@ void read_deep_like_meaning(FrameSource& source) {
     if (is_deep_plane(source, plane)) {
       source.behind[plane].depth_kind = source.deep_kind;
       source.behind[plane].scale = source.deep_scale;
+      source.behind[plane].is_whole = source.deep_is_whole;
     }
 }
 
 void settle_deep(FrameSource& source, std::span<const float> depth) {
   if (!source.deep) return;
+  source.deep_is_whole =
+      !source.behind.empty() && goes_on_behind(source.files[*source.deep], source.deep_parts.front(), source.file_data);
+  read_deep_like_meaning(source);
   const ChannelRef& own = source[RawPlane::depth][0];
   if (own.file == *source.deep && source.part_of(own).deep) return;
   std::vector<DeepReading> readings;

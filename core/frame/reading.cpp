@@ -18,6 +18,11 @@ double sky_of(DepthKind kind, bool is_half, double sky) {
 
 }  // namespace
 
+bool list_all(std::span<const BehindPlane> planes) {
+  return std::ranges::all_of(
+      planes, [](const BehindPlane& plane) { return plane.kind == BehindKind::surfaces && plane.is_whole; });
+}
+
 void read_like(Reading& reading, const Meaning& settled) {
   const DepthRange own = reading.depth_range;
   static_cast<Meaning&>(reading) = settled;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "core/base/image.h"
@@ -25,6 +26,7 @@ struct Meaning {
   // of deep samples beside a flat depth, as BehindPlane has them
   DepthKind deep_kind = DepthKind::automatic;
   double deep_scale = 1;
+  bool deep_is_whole = false;
 };
 
 /// One plane of depth behind the first surface.
@@ -34,7 +36,11 @@ struct BehindPlane {
   DepthKind depth_kind = DepthKind::automatic;
   double scale = 1;      // scene units per unit; with planar and ray
   bool is_half = false;  // the values were rounded to half floats
+  bool is_whole = true;  // with surfaces: a pixel without one has none; deep samples often end at the first opaque one
 };
+
+/// Whether planes together show all that is hidden: a pixel that has fewer surfaces than planes has no more of them.
+bool list_all(std::span<const BehindPlane> planes);
 
 /// The meaning of one frame, with its windows and its camera.
 struct Reading : Meaning {

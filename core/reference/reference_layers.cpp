@@ -190,9 +190,7 @@ ReferenceLayers reference_layers(const ReferenceScene& scene, const HostFrame& f
   Layers layers(scene, frame, hidden);
   layers.merge(separation);
   layers.pair();
-  const bool all =
-      std::ranges::all_of(frame.behind, [](const BehindPlane& plane) { return plane.kind == BehindKind::surfaces; });
-  return {layers.take(), all};
+  return {layers.take(), list_all(frame.behind)};
 }
 
 }  // namespace alcove

@@ -84,6 +84,27 @@ ReferenceSettings usual(double radius) {
   return settings;
 }
 
+TEST(Hidden, planes_that_do_not_list_all_leave_what_goes_on_as_it_was) {
+  RandomScenes scenes(3);
+  ReferenceSettings all = usual(0.5);
+  all.complete = Completion::all;
+  int compared = 0, changed = 0;
+  for (int i = 0; i < 12 && compared < 3; i++) {
+    const HostFrame frame = scenes.next();
+    if (frame.normal.empty() || frame.depth_kind != DepthKind::planar) continue;
+    compared++;
+    const std::vector<float> expected = reference_ao(frame, all);
+    HostFrame empty = frame;
+    empty.behind.assign(1, {.is_whole = false});
+    empty.behind_depth.assign(frame.depth.size(), 0);
+    EXPECT_EQ(reference_ao(empty, all), expected) << i;
+    empty.behind[0].is_whole = true;
+    changed += reference_ao(empty, all) != expected ? 1 : 0;
+  }
+  EXPECT_EQ(compared, 3);
+  EXPECT_GT(changed, 0) << "or else nothing goes on in these scenes";
+}
+
 TEST(Hidden, a_copy_of_the_first_depth_and_what_lies_beyond_the_sphere_change_no_bit) {
   RandomScenes scenes(3);
   for (int i = 0, compared = 0; compared < 3; i++) {

@@ -104,6 +104,8 @@ TEST_F(DeepRun, peels_as_samples_give_the_bits_of_behind) {
       result({"--aov", "ao,hidden", "--behind", folder / "second.exr", "--behind", folder / "third.exr"});
   EXPECT_TRUE(std::ranges::find(behind, 8.25F) != behind.end()) << "or else nothing was shown";
   EXPECT_TRUE(result({"--aov", "ao,hidden", "--deep", deep}) == behind);
+  const Options peels{"--search", "exact", "--behind", folder / "second.exr", "--behind", folder / "third.exr"};
+  EXPECT_TRUE(result({"--search", "exact", "--deep", deep}) == result(peels));
   DeepFilePart tiles = samples();
   tiles.is_tiled = true;
   tiles.tile = 16;
@@ -191,6 +193,42 @@ TEST_F(DeepRun, samples_without_anything_hidden_are_noted) {
   const Finished finished = run({"--deep", deep});
   EXPECT_EQ(finished.code, 0) << finished;
   EXPECT_THAT(finished.err, HasSubstr("rendered in one go"));
+}
+
+/// The samples of a renderer, which end at the first opaque surface: their lists say nothing of what is hidden.
+TEST_F(DeepRun, samples_that_end_at_the_first_surface_switch_no_completion_off) {
+  DeepFilePart part = samples();
+  for (std::size_t i = 0; i < part.pixels.size(); i++) part.pixels[i] = {{1, first[i]}};
+  write_deep(deep, {part});
+  for (const Options& search : {Options{"--search", "exact"}, Options{"--preset", "reference"}}) {
+    Options with = search;
+    with.insert(with.end(), {"--deep", deep});
+    EXPECT_TRUE(result(with) == result(search)) << search[1];
+  }
+}
+
+TEST_F(DeepRun, few_surfaces_behind_others_tell_of_no_more) {
+  const Options search{"--search", "exact"};
+  const auto ao_with = [&](std::size_t lists, const Options& more = {}) {
+    DeepFilePart part = samples();
+    for (std::size_t i = 0; i < part.pixels.size(); i++) {
+      part.pixels[i] = {{1, first[i]}};
+      if (i % 16 < lists) part.pixels[i].push_back({1, 50});
+    }
+    write_deep(deep, {part});
+    Options with{"--search", "exact", "--deep", deep};
+    with.insert(with.end(), more.begin(), more.end());
+    return result(with);
+  };
+  const auto plain = result(search);
+  // What lies beyond the radius hides nothing, but a pixel that lists it and nothing before it has nothing there.
+  EXPECT_TRUE(ao_with(7) == plain);
+  EXPECT_FALSE(ao_with(9) == plain);
+  // The samples of the region alone would tell otherwise.
+  const auto whole = ao_with(9);
+  const auto crop = ao_with(9, {"--roi", "11,5,4,20"});
+  for (int y = 0; y < 20; y++)
+    for (int x = 0; x < 4; x++) ASSERT_EQ(crop[std::size_t(y * 4 + x)], whole[std::size_t((y + 5) * 64 + x + 11)]);
 }
 
 TEST_F(DeepRun, impossible_opacities_are_noted) {
