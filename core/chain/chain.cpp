@@ -34,9 +34,9 @@ FrameOutputs run_chain(gpu::Recorder& gpu, const FrameInputs& frame, const Estim
   const Layering layering = layering_of(settings);
   const FrameInputs inputs = with_margin(frame);
   const GBuffer prepared = prepare(gpu, frame);
+  reconstruct(gpu, prepared);
   const GBuffer warped = warp(gpu, prepared, frame, layering);
-  const GBuffer layered = layers(gpu, warped, frame, layering);
-  const GBuffer wide = reconstruct(gpu, layered);
+  const GBuffer wide = layers(gpu, warped, frame, layering);
   const GBuffer gbuffer = cut(gpu, frame, wide, prepared);
   FrameOutputs out;
   out.counts = gbuffer.counts;

@@ -65,7 +65,9 @@ GBuffer widen(gpu::Recorder& gpu, const GBuffer& prepared, const FrameInputs& fr
 
 void widen(gpu::Recorder& gpu, const GBuffer& prepared, const GBuffer& wide, const FrameInputs& frame,
            const gpu::Buffer& found) {
-  if (has_margin(frame)) run_widen(gpu, prepared, wide, frame, found, kWidenFilled);
+  if (!has_margin(frame)) return;
+  run_widen(gpu, prepared, wide, frame, found, kWidenFilled);
+  reconstruct(gpu, wide);
 }
 
 gpu::Buffer* cut(gpu::Recorder& gpu, const FrameInputs& frame, gpu::Buffer* planes, const std::string& name) {

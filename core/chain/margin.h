@@ -15,7 +15,8 @@ FrameInputs with_margin(const FrameInputs& frame);
 
 /// The G-buffer with an empty margin: all that others show there is behind it.
 GBuffer widen(gpu::Recorder& gpu, const GBuffer& prepared, const FrameInputs& wide);
-/// Fills the margin of `wide` with the nearest surfaces that others show there, the first plane of `found`.
+/// Fills the margin of `wide` with the nearest surfaces that others show there, the first plane of `found`, and gives
+/// it normals. Those of the frame are there already: at its border the margin must not change them.
 void widen(gpu::Recorder& gpu, const GBuffer& prepared, const GBuffer& wide, const FrameInputs& frame,
            const gpu::Buffer& found);
 

@@ -276,6 +276,28 @@ TEST(OtherViews, a_margin_on_one_side_leaves_the_frame_in_its_place) {
   }
 }
 
+/// Where others show the frame alone, the margin must go on from the surfaces as they are.
+TEST(OtherViews, normals_at_the_border_are_those_without_a_margin) {
+  const Part room;
+  HostFrame without_normals = room.part.frame;
+  without_normals.normal.clear();
+  EstimatorSettings settings = plain_settings();
+  settings.radius = 0.5;
+  OutputSettings output;
+  output.aovs = "ao,normal";
+  const auto normals_with = [&](const Margin& margin) {
+    const OtherView other = seen_by(room.part, room.part.shot, "other");
+    FrameInputs inputs = upload(recorder(), without_normals);
+    inputs.others = {other};
+    inputs.margin = margin;
+    const FrameOutputs outputs = run_chain(recorder(), inputs, settings, output);
+    recorder().run();
+    const auto normal = outputs.normal->as<float>();
+    return std::vector<float>(normal.begin(), normal.end());
+  };
+  EXPECT_EQ(normals_with({{8, 8}, {8, 8}}), normals_with({}));
+}
+
 TEST(OtherViews, a_part_has_a_margin_where_it_ends_with_the_frame) {
   const Window frame{-4, 2, 80, 40};
   const auto sides = [&](const Window& part) {
