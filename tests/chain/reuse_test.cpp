@@ -152,6 +152,46 @@ TEST(Reuse, looks_as_far_as_a_receiver_reaches) {
   }
 }
 
+/// A bar before a wall, from the left border to the middle, with a step behind it that goes on below the bar; and to its
+/// right where `goes_on`. Along the whole bar the step closes a solid, or does not, by how they end there.
+HostFrame bar_before_step(bool goes_on) {
+  constexpr std::size_t kWidth = 128, kHeight = 64, kEnd = 64;
+  const Scene wall{{Plane{{0, 0, 0}, {0, 0, 1}}}};
+  HostFrame frame = render(wall, Shot::orthographic({0, 0, 5}, {0, 0.001, 0}, 1.28, kWidth, kHeight)).frame;
+  frame.behind.assign(2, {});
+  frame.behind_depth.assign(2 * kWidth * kHeight, 0);
+  for (std::size_t y = 24; y < 40; y++)
+    for (std::size_t x = 0; x < kEnd + 16; x++) {
+      const std::size_t i = y * kWidth + x;
+      const bool is_bar = y < 34 && x < kEnd, is_step = x < kEnd || goes_on;
+      frame.depth[i] = is_bar ? 4.8f : is_step ? 4.9f : 5.0f;
+      if (is_bar) frame.behind_depth[i] = 4.9f;
+      if (is_step) frame.behind_depth[kWidth * kHeight + i] = 5.0f;
+    }
+  return frame;
+}
+
+TEST(Reuse, looks_as_far_as_the_ends_of_hidden_surfaces_are_followed) {
+  const HostFrame solid = bar_before_step(false), open = bar_before_step(true);
+  for (const Estimator estimator : {Estimator::gtao, Estimator::bitmask}) {
+    EstimatorSettings settings = plain_settings();
+    settings.estimator = estimator;
+    settings.radius = 0.25;  // 25 px, and the bar's other end is 64 px away from the changed block
+    settings.slices = 4;
+    settings.steps = 16;
+    const std::vector<float> of_solid = alone(solid, settings), of_open = alone(open, settings);
+    int far_changes = 0;
+    for (std::size_t y = 0; y < 64; y++)
+      for (std::size_t x = 0; x < 16; x++) far_changes += of_solid[y * 128 + x] != of_open[y * 128 + x] ? 1 : 0;
+    EXPECT_GT(far_changes, 20) << "or else all that changes is near";
+    Lane lane(device());
+    next_of(lane, solid, settings);
+    const Outcome opened = next_of(lane, open, settings);
+    EXPECT_TRUE(same_bits(opened.values, of_open)) << int(estimator);
+    EXPECT_TRUE(same_bits(next_of(lane, solid, settings).values, of_solid)) << int(estimator);
+  }
+}
+
 TEST(Reuse, is_of_what_was_computed_in_the_same_way) {
   const HostFrame room = furnished_room(96, 64).frame;
   EstimatorSettings settings = plain_settings();
