@@ -90,6 +90,17 @@ ExrOutput composite_file(const FrameSource& source, const OutputSettings& settin
   return output;
 }
 
+/// Fails with ErrorKind::usage where deep samples beside a flat depth are of no use to the estimator. Only now it is
+/// known whether they are beside one.
+void require_use_of_deep(const FrameSource& source, const EstimatorSettings& settings) {
+  const bool has_use = searches_slices(settings) || settings.hidden == 0 || !source.deep;
+  if (has_use || source.part_of(source[RawPlane::depth][0]).deep) return;
+  fail(ErrorKind::usage,
+       "{}: beside a flat depth --deep applies to --estimator gtao or bitmask only: give one of these, or --hidden 0, "
+       "or leave --deep out",
+       source.files[*source.deep].path());
+}
+
 /// Fails with ErrorKind::input where a frame lacks what an output is made from.
 void require_for_outputs(const FrameSource& source, const OutputSettings& settings) {
   const std::string& file = source.depth_path();
@@ -120,6 +131,7 @@ void require_for_outputs(const FrameSource& source, const OutputSettings& settin
 FrameSource open_frame(const Settings& settings, int frame) {
   FrameSource source = find_frame(settings.input, !settings.output.composite.empty(), frame,
                                   settings.output.multi_bounce && !settings.input.albedo_value);
+  require_use_of_deep(source, settings.estimator);
   if (settings.estimator.hidden == 0) {
     source[RawPlane::behind].clear();
     source.behind.clear();

@@ -15,7 +15,7 @@ namespace alcove {
 
 /// The frame that the settings name, with all that its outputs need; nothing but headers is read.
 /// Fails with ErrorKind::input where it lacks what an output is made from, with ErrorKind::usage where --roi is not
-/// within it.
+/// within it, or the estimator cannot use its --deep.
 FrameSource open_frame(const Settings& settings, int frame);
 
 /// Settles a frame that is not computed now: by all of it, by as many rows from its middle as so many bytes have room

@@ -266,6 +266,17 @@ TEST_F(DeepRun, mistakes_are_refused_in_one_line) {
   expect_refused(run({"--deep", folder / "cut.exr"}), {"cut.exr", "--deep"});
 }
 
+TEST_F(DeepRun, estimators_that_know_no_layers_take_samples_as_the_depth_alone) {
+  for (const char* estimator : {"hbao", "crytek"}) {
+    const Options with{"--deep", deep, "--estimator", estimator};
+    expect_refused(run(with), {"deep.exr", "--estimator gtao or bitmask", "--deep", "--hidden 0"}, 2);
+    Options without_hidden = with;
+    without_hidden.insert(without_hidden.end(), {"--hidden", "0"});
+    EXPECT_TRUE(result(without_hidden) == result({"--estimator", estimator}));
+    EXPECT_EQ(run_on({deep, "--estimator", estimator}).code, 0);
+  }
+}
+
 TEST_F(DeepRun, inspect_says_what_samples_hold) {
   const auto inspected = [&](const Options& inputs) {
     Options options{"inspect", "--json", "--camera", camera};
