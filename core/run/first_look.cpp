@@ -27,6 +27,17 @@ Notes notes_on_holes(const FramePlan& plan, const Settings& settings) {
                        frames_text(plan.holes()) + (plan.holes().size() == 1 ? " is" : " are"))}};
 }
 
+/// The note on frames that others do without.
+Notes notes_on_missing_around(const FramePlan& plan) {
+  const std::vector<int> missing = plan.missing_around();
+  if (missing.empty()) return {};
+  return {{NoteCode::sequence_hole,
+           fmt::format("{} of the shot {} missing: {}; those around do without, and their headers say so (--around, "
+                       "--missing skip)",
+                       missing.size() == 1 ? "a frame" : "frames", missing.size() == 1 ? "is" : "are",
+                       frames_text(missing))}};
+}
+
 constexpr double kSomeFov = 50;  // degrees, as inspect takes it for a frame without a camera
 
 /// The radius that is proposed for the first frame that shows a surface, and why others could not be looked at.
@@ -104,6 +115,8 @@ Notes notes_on_number(const FramePlan& plan, const Settings& settings) {
 Notes notes_on_names(const FramePlan& plan, const Settings& settings) {
   Notes notes = notes_on_holes(plan, settings);
   refuse_warnings(notes, settings, main_input(settings.input));
+  // The settings say that frames may be missing, so that this is never an error.
+  add_new(notes, notes_on_missing_around(plan));
   add_new(notes, notes_on_number(plan, settings));
   return notes;
 }

@@ -21,8 +21,8 @@ std::optional<FrameSource> settle_first(const FramePlan& plan, std::uint64_t mos
 /// the list has no such frame or cannot be read.
 Notes notes_on_number(const FramePlan& plan, const Settings& settings);
 
-/// What the names of the files tell: numbers that are left out, and notes_on_number(). Fails as that does, and with
-/// ErrorKind::input where a warning counts as an error.
+/// What the names of the files tell: numbers that are left out, frames that others do without, and notes_on_number().
+/// Fails as that does, and with ErrorKind::input where a warning counts as an error.
 Notes notes_on_names(const FramePlan& plan, const Settings& settings);
 
 /// The settings with the radius that is proposed for the frames, where they ask for it; the note says so. It is the

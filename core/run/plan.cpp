@@ -63,6 +63,15 @@ void refuse_glob(const std::string& path, const char* option) {
        pattern.find_first_of("*?") == pattern.npos ? pattern : "shot.####.exr");
 }
 
+/// The pattern that a single file's name belongs to, or one as an example.
+std::string pattern_for(const std::string& path) {
+  const std::string digits = frame_number_in(path).number ? frame_number_in(path).digits : "";
+  const std::size_t at = digits.empty() ? path.npos : path.rfind(digits);
+  if (at == path.npos) return "shot.####.exr";
+  const std::string place = digits.size() == 1 ? "%d" : std::string(digits.size(), '#');
+  return path.substr(0, at) + place + path.substr(at + digits.size());
+}
+
 /// Whether a name has a place for a frame number that no name has by chance, as one with a lone # may: ## or more, %d
 /// or %04d.
 bool has_clear_place(const std::string& name) {
@@ -101,7 +110,7 @@ FramePlan::FramePlan(const Settings& settings) : settings_(settings) {
   if (settings.frames.missing == Missing::skip && settings.frames.chunk == 1)
     missing_.insert(missing_.end(), holes_.begin(), holes_.end());
   std::ranges::sort(missing_);
-  find_shot(all);
+  find_shot();
   refuse_missing_around();
 }
 
@@ -193,10 +202,15 @@ void FramePlan::find_inputs(const std::vector<int>& chunk) {
   if (!chunk.empty() && frames_.empty()) fail(ErrorKind::input, "{}; there is nothing to compute", complaint);
 }
 
-void FramePlan::find_shot(const std::vector<int>& all) {
+void FramePlan::find_shot() {
   if (around_of(settings_.input) == 0) return;
   const auto input = std::ranges::find_if(patterns_, [](const Pattern& pattern) { return !pattern.path.is_output; });
-  shot_ = input == patterns_.end() ? all : frames_on_disk(input->name, input->path.option);
+  if (input == patterns_.end())
+    fail(ErrorKind::usage,
+         "{}: --around takes other frames of a sequence, and this names one file: give a pattern such as {}, with "
+         "--frames for this frame alone, or leave --around out",
+         main_input(settings_.input), pattern_for(main_input(settings_.input)));
+  shot_ = frames_on_disk(input->name, input->path.option);
   const std::vector<int> holes = holes_in(shot_);
   shot_.insert(shot_.end(), holes.begin(), holes.end());
   std::ranges::sort(shot_);
@@ -225,15 +239,20 @@ std::vector<int> FramePlan::nearest(int frame, int count) const {
   return found;
 }
 
-void FramePlan::refuse_missing_around() const {
-  if (absent_.empty() || settings_.frames.missing == Missing::skip) return;
+std::vector<int> FramePlan::missing_around() const {
   std::set<int> missing;
   for (const int frame : frames_) {
+    if (absent_.empty()) break;
     const auto& of_frame = around(frame, around_of(settings_.input)).missing;
     missing.insert(of_frame.begin(), of_frame.end());
   }
-  if (missing.empty()) return;
-  const std::vector<int> absent(missing.begin(), missing.end());
+  return {missing.begin(), missing.end()};
+}
+
+void FramePlan::refuse_missing_around() const {
+  if (settings_.frames.missing == Missing::skip) return;
+  const std::vector<int> absent = missing_around();
+  if (absent.empty()) return;
   const auto path = std::ranges::find_if(patterns_, [&](const Pattern& pattern) {
     return !pattern.path.is_output && !exists(pattern.name.path(absent.front()));
   });

@@ -64,6 +64,8 @@ class FramePlan {
   FramesAround around(int frame, int count) const;
   /// As many frames as lie so far to each side of one within the shot; near its ends more of the other side.
   std::vector<int> nearest(int frame, int count) const;
+  /// Those that lie around frames to compute and have no file; none but where the settings say to skip them.
+  std::vector<int> missing_around() const;
   /// All of the shot.
   const std::vector<int>& shot() const { return shot_; }
   /// The settings with the files of one frame.
@@ -80,7 +82,7 @@ class FramePlan {
   void find_evidence(const std::vector<int>& all);
   void find_inputs(const std::vector<int>& chunk);
   bool has_inputs(int frame) const;
-  void find_shot(const std::vector<int>& all);
+  void find_shot();
   void refuse_missing_around() const;
 
   Settings settings_;

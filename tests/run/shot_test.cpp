@@ -133,9 +133,19 @@ TEST_F(Shots, of_one_frame_have_none_around_it) {
     ASSERT_EQ(finished.code, 0) << finished;
     EXPECT_EQ(header(1), "");
   }
-  const Finished single =
-      run_program({"run", input(1), "-o", output(1), "--camera", camera, "--radius", "1", "--around", "3"});
-  EXPECT_EQ(single.code, 0) << single;
+}
+
+TEST_F(Shots, of_a_single_file_are_none) {
+  const auto run_single = [&](const std::string& file, const char* around) {
+    return run_program({"run", file, "-o", output(1), "--camera", camera, "--radius", "1", "--around", around});
+  };
+  for (const char* around : {"3", "all"}) {
+    const Finished single = run_single(input(1), around);
+    EXPECT_EQ(single.code, 2) << single;
+    EXPECT_THAT(single.err, AllOf(HasSubstr("--around"), HasSubstr("such as " + in + "/f.####.exr")));
+  }
+  fs::copy_file(input(1), folder / "wall.exr");
+  EXPECT_THAT(run_single(folder / "wall.exr", "3").err, HasSubstr("such as shot.####.exr"));
 }
 
 TEST_F(Shots, resumed_runs_compute_what_a_changed_neighbour_changes) {
@@ -161,6 +171,10 @@ TEST_F(Shots, missing_frames_are_an_error_or_left_out) {
   EXPECT_THAT(refused.err, AllOf(HasSubstr("f.0004.exr"), HasSubstr("--around"), HasSubstr("--missing skip")));
   const Finished skipped = run({"--around", "2", "--missing", "skip", "--aov", "depth,hidden"});
   ASSERT_EQ(skipped.code, 0) << skipped;
+  EXPECT_EQ(lines_of(skipped.err).front(),
+            "alcove: warning: " + in +
+                "/f.%04d.exr: a frame of the shot is missing: 4; those around do without, and their headers say so "
+                "(--around, --missing skip) [sequence-hole]");
   EXPECT_EQ(header(3), "frames 1-2, 5; missing 4");
   EXPECT_EQ(header(1), "frames 2-3");
 }
