@@ -34,7 +34,7 @@ constexpr std::array kTable = {
     NoteFacts{NoteCode::radius_below_pixel, "radius-below-pixel", true, "the radius is less than a pixel"},
     NoteFacts{NoteCode::radius_beyond_picture, "radius-beyond-picture", true, "the radius is larger than the picture"},
     NoteFacts{NoteCode::empty_layer, "empty-layer", false, "a layer of hidden surfaces has none"},
-    NoteFacts{NoteCode::nothing_hidden, "nothing-hidden", true, "a layer of hidden surfaces shows only the first one"},
+    NoteFacts{NoteCode::nothing_hidden, "nothing-hidden", true, "a layer of hidden surfaces shows nothing new"},
     NoteFacts{NoteCode::before_first, "before-first", true, "a layer of hidden surfaces lies before the first one"},
     NoteFacts{NoteCode::repaired_samples, "repaired-samples", true, "deep samples with impossible values were repaired",
               InHeader::meaning},

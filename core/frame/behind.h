@@ -40,6 +40,8 @@ class BehindSample {
     std::size_t surfaces = 0;   // where the plane has one, and the frame too
     std::size_t before = 0;     // of those before the first surface
     std::size_t same = 0;       // of those that are the first surface
+    std::size_t known = 0;      // of those that are it, or that a plane before this one has
+    std::size_t as_deep = 0;    // of a thickness, those where it is no less than the depth
     std::size_t negative = 0;   // whose value is below 0
     std::size_t oblique = 0;    // of the surfaces, those whose rays are clearly longer than their depth
     std::size_t as_read = 0;    // of those that have the depth of the first surface

@@ -17,8 +17,9 @@ namespace {
 constexpr std::size_t kSampled = 1 << 18;      // pixels of a frame: enough to find a thing of a few pixels
 constexpr std::size_t kLeastSurfaces = 64;     // fewer tell too little
 constexpr double kSameSurface = 4;             // precisions, beside a pixel's slope, within which two depths are one
-constexpr double kRefused = 0.9;               // share of the surfaces before the first one
+constexpr double kRefused = 0.5;               // share of the surfaces before the first one
 constexpr double kNoted = 0.05;                // the same; edges of antialiased elements give some
+constexpr double kAsDeep = 0.9;                // share of the surfaces whose thickness is no less than their depth
 constexpr double kOblique = 1.002;             // length of a ray, of unit depth
 constexpr double kEqual = 5e-4;                // of the depth: much less than the length of oblique rays makes
 constexpr double kLeastOtherwise = 0.05;       // share of the oblique surfaces
@@ -57,9 +58,18 @@ void BehindSample::add(const Reading& reading, std::span<const float> depth, std
       const double z = planar_depth(maps[p], {raw, 0, 0}, pixel.ray);
       if (!std::isfinite(first) || !std::isfinite(z)) continue;
       plane.surfaces++;
-      if (reading.behind[p].kind == BehindKind::thickness) continue;
+      if (reading.behind[p].kind == BehindKind::thickness) {
+        plane.as_deep += z >= first - separation ? 1 : 0;
+        continue;
+      }
+      const auto is_same = [&](double other) { return std::abs(z - other) <= separation; };
       plane.before += z < first - separation ? 1 : 0;
-      plane.same += std::abs(z - first) <= separation ? 1 : 0;
+      plane.same += is_same(first) ? 1 : 0;
+      bool is_known = is_same(first);
+      for (std::size_t q = 0; q < p && !is_known; q++)
+        is_known = reading.behind[q].kind == reading.behind[p].kind &&
+                   is_same(planar_depth(maps[q], {behind[pixel.at + q * pixels], 0, 0}, pixel.ray));
+      plane.known += is_known ? 1 : 0;
       plane.parts.push_back(float(z / first));
       if (pixel.ray < kOblique) continue;
       const double other = maps[p].along_ray ? z * pixel.ray : z / pixel.ray;
@@ -99,7 +109,14 @@ Notes BehindSample::notes_of(const FrameSource& source, std::size_t number) cons
          name, percent(plane.negative, pixels));
   if (plane.surfaces == 0)
     return {{NoteCode::empty_layer, fmt::format("{} shows no surface where the depth has one (--behind)", name)}};
-  if (said.kind == BehindKind::thickness || plane.surfaces < kLeastSurfaces) return {};
+  if (plane.surfaces < kLeastSurfaces) return {};
+  if (said.kind == BehindKind::thickness) {
+    if (double(plane.as_deep) < kAsDeep * double(plane.surfaces)) return {};
+    return {{NoteCode::said_otherwise,
+             fmt::format("{} is no less than the depth on {:.0f} % of the surfaces, and as a thickness it is added to "
+                         "that: if it is the depth of back faces, give --behind-kind backs",
+                         name, percent(plane.as_deep, plane.surfaces))}};
+  }
 
   const bool along_ray = behind_map_of(source, said).along_ray;
   if (double(plane.otherwise) > kLeastOtherwise * double(plane.oblique) &&
@@ -113,11 +130,12 @@ Notes BehindSample::notes_of(const FrameSource& source, std::size_t number) cons
     std::vector<float> parts = plane.parts;
     const auto middle = parts.begin() + std::ptrdiff_t(parts.size() / 2);
     std::ranges::nth_element(parts, middle);
-    fail(ErrorKind::input,
-         "{} lies before the first surface on {:.0f} % of the pixels, at {:.3g} times its depth: it has another scale "
-         "or kind than the depth of {}, or another camera; name another channel with --behind-channel, or say with "
-         "--depth-kind and --depth-scale how both are read",
-         name, percent(plane.before, plane.surfaces), *middle, source.depth_path());
+    fail(
+        ErrorKind::input,
+        "{} lies before the first surface on {:.0f} % of the pixels, at {:.3g} times its depth: it is of another frame "
+        "or camera than the depth of {}, or has another scale or kind; give another file with --behind, name another "
+        "channel with --behind-channel, or say with --depth-kind and --depth-scale how both are read",
+        name, percent(plane.before, plane.surfaces), *middle, source.depth_path());
   }
   Notes notes;
   if (double(plane.before) > kNoted * double(plane.surfaces))
@@ -128,7 +146,12 @@ Notes BehindSample::notes_of(const FrameSource& source, std::size_t number) cons
   if (plane.same == plane.surfaces)
     notes.push_back({NoteCode::nothing_hidden,
                      fmt::format("{} is the first surface wherever it has one, and shows nothing new: name the channel "
-                                 "of what lies behind with --behind-channel",
+                                 "of what lies behind with --behind-channel, or give another file with --behind",
+                                 name)});
+  else if (plane.known == plane.surfaces)
+    notes.push_back({NoteCode::nothing_hidden,
+                     fmt::format("{} shows nothing new: what is given before it has all of its surfaces; name another "
+                                 "channel with --behind-channel, give another file, or leave it out (--behind)",
                                  name)});
   return notes;
 }

@@ -268,7 +268,8 @@ TEST_F(HiddenRun, another_scale_or_kind_of_depth_is_refused) {
 }
 
 TEST_F(HiddenRun, layers_without_use_are_noted) {
-  EXPECT_THAT(run(behind({"copy.exr"})).err, AllOf(HasSubstr("[nothing-hidden]"), HasSubstr(folder / "copy.exr")));
+  EXPECT_THAT(run(behind({"copy.exr"})).err, AllOf(HasSubstr("[nothing-hidden]"), HasSubstr(folder / "copy.exr"),
+                                                   HasSubstr("--behind-channel"), HasSubstr("or give another file")));
   write_layer("empty.exr", std::vector<float>(kWallWindow.pixels(), NAN));
   EXPECT_THAT(run(behind({"empty.exr"})).err, HasSubstr("[empty-layer]"));
   std::vector<float> shifted = first;
@@ -282,6 +283,32 @@ TEST_F(HiddenRun, layers_without_use_are_noted) {
   EXPECT_THAT(run(behind({"half.exr"})).err, AllOf(HasSubstr("[half-depth]"), HasSubstr("stored as half float")));
   const std::string none = run(behind({"plate.exr", "wall.exr"})).err;
   for (const char* code : {"nothing-hidden", "empty-layer", "before-first"}) EXPECT_THAT(none, Not(HasSubstr(code)));
+}
+
+TEST_F(HiddenRun, a_layer_that_is_given_twice_is_noted) {
+  std::filesystem::copy_file(folder / "wall.exr", folder / "same.exr");
+  const std::string nothing_new = "wall.exr: Z shows nothing new: what is given before it";
+  EXPECT_THAT(run(behind({"wall.exr", "wall.exr"})).err, AllOf(HasSubstr("[nothing-hidden]"), HasSubstr(nothing_new)));
+  EXPECT_THAT(run(behind({"same.exr", "plate.exr", "wall.exr"})).err, HasSubstr(nothing_new));
+  EXPECT_THAT(run(behind({"wall.exr", "same.exr"}, {"--behind-kind", "surfaces,backs"})).err,
+              Not(HasSubstr("nothing new")))
+      << "that they are backs is new";
+}
+
+TEST_F(HiddenRun, a_layer_before_most_of_the_first_surface_is_refused) {
+  std::vector<float> other = first;
+  for (std::size_t i = 0; i < other.size(); i++) other[i] = i % 5 < 3 ? 0.8f * first[i] : 7;
+  write_layer("other.exr", other);
+  expect_refused(behind({"other.exr"}),
+                 {folder / "other.exr", "before the first surface on 60 %", "--behind", "--behind-channel", frame});
+}
+
+TEST_F(HiddenRun, a_depth_that_is_said_to_be_a_thickness_is_noted) {
+  const Options thickness{"--behind-kind", "thickness"};
+  EXPECT_THAT(run(behind({"far.exr"}, thickness)).err,
+              AllOf(HasSubstr("[said-otherwise]"), HasSubstr(folder / "far.exr"), HasSubstr("--behind-kind backs")));
+  write_layer("thickness.exr", std::vector<float>(kWallWindow.pixels(), 0.25f));
+  EXPECT_THAT(run(behind({"thickness.exr"}, thickness)).err, Not(HasSubstr("said-otherwise")));
 }
 
 TEST_F(HiddenRun, outputs_of_what_is_hidden_need_something_that_is) {
