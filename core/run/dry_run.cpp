@@ -74,9 +74,7 @@ std::string plan_text(const Settings& given) {
   const auto wanted = frames_to_compute(plan, settings);
   if (wanted.size() < plan.frames().size())
     line("kept", fmt::format("{}: whole, by an earlier run", plan.frames().size() - wanted.size()));
-  // A sequence more often begins or ends with nothing than it has nothing in its middle.
-  const int middle = wanted.empty() ? plan.frames().front() : wanted[wanted.size() / 2];
-  line("time", time_text({plan.at(middle), middle, int(wanted.size())}));
+  line("time", time_text({plan, settings, wanted}));
   return text;
 }
 
