@@ -47,6 +47,26 @@ std::vector<ChannelPair> chosen_pairs(const Picture& result, const Picture& refe
   return pairs;
 }
 
+/// The one channel of a picture that is AO by its name, or its only one; none where several are.
+std::string likely_ao(const Picture& picture) {
+  if (picture.channels().size() == 1) return picture.channels()[0].name;
+  std::string found;
+  for (const auto& channel : picture.channels()) {
+    const std::string name = lower_case(channel.name);
+    if (name != "y" && !is_end_of("ao", name)) continue;
+    if (!found.empty()) return "";
+    found = channel.name;
+  }
+  return found;
+}
+
+/// What --channel is likely to say of two pictures.
+std::string likely_pair(const Picture& result, const Picture& reference) {
+  const std::string of_result = likely_ao(result), of_reference = likely_ao(reference);
+  const bool knows = !of_result.empty() && !of_reference.empty();
+  return "RESULT=REFERENCE" + (knows ? fmt::format(", such as --channel {}={}", of_result, of_reference) : "");
+}
+
 /// Pairs the channels whose names are the same once `key` has been applied to them.
 template <class Key>
 std::vector<ChannelPair> same_names(const Picture& result, const Picture& reference, const Key& key) {
@@ -135,8 +155,8 @@ std::vector<ChannelPair> match_channels(const Picture& result, const Picture& re
     });
   }
   if (pairs.empty())
-    fail(ErrorKind::input, "the pictures share no channel: {}; say what to compare with --channel RESULT=REFERENCE",
-         both_lists(result, reference));
+    fail(ErrorKind::input, "the pictures share no channel: {}; say what to compare with --channel {}",
+         both_lists(result, reference), likely_pair(result, reference));
   std::vector<std::size_t> seen_result, seen_reference;
   for (const auto& pair : pairs) {
     if (std::ranges::count(seen_result, pair.result) || std::ranges::count(seen_reference, pair.reference))
