@@ -83,8 +83,7 @@ class DepthSettlement : private Settlement {
   }
 
   std::string straight(const DepthScore& score) const {
-    return fmt::format("{} is straight on {:.0f} % only as {}", source_.camera.orthographic ? "z" : "1/z",
-                       100 * score.straight, name_of(score.kind));
+    return fmt::format("as {} alone flat surfaces are flat on {:.0f} %", name_of(score.kind), 100 * score.straight);
   }
 
   /// Reads the depth as the program that wrote the frame, or most programs, write it. It is no guess where the user

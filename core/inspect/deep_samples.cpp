@@ -27,11 +27,23 @@ std::optional<InspectedDeep> deep_samples(const FrameSource& source, const ExrFi
   const ExrPart& first = file.parts()[std::size_t(parts.front())];
   ExrFile samples(file.path(), "INPUT");
   samples.take_deep(parts, deep_rules(source, file, parts, settings));
-  std::vector<float> band(std::size_t(first.data.width) * std::size_t(first.rows_together));
-  const ExrRead read{parts.front(), deep_channel(0, false), band.data()};
-  for (int y = 0; y < first.data.height; y += first.rows_together)
-    samples.read(std::span(&read, 1), y, std::min(first.rows_together, first.data.height - y));
-  return InspectedDeep{file.path(), parts, *first.deep, samples.deep_counts(), depth_of(source, file)};
+  const std::size_t band = std::size_t(first.data.width) * std::size_t(first.rows_together);
+  std::vector<float> surfaces(2 * kMostDeepSurfaces * band, kNoDeepSurface);
+  std::vector<ExrRead> reads;
+  for (const bool back : {false, true})
+    for (std::size_t i = 0; i < kMostDeepSurfaces; i++)
+      reads.push_back({parts.front(), deep_channel(i, back), surfaces.data() + reads.size() * band});
+  const auto is_surface = [](float z) { return z < kNoDeepSurface; };
+  std::vector<bool> has_any(reads.size());
+  for (int y = 0; y < first.data.height; y += first.rows_together) {
+    samples.read(reads, y, std::min(first.rows_together, first.data.height - y));
+    for (std::size_t i = 0; i < reads.size(); i++)
+      has_any[i] = has_any[i] || std::ranges::any_of(std::span(reads[i].to, band), is_surface);
+  }
+  InspectedDeep deep{file.path(), parts, *first.deep, samples.deep_counts(), depth_of(source, file), {}};
+  for (std::size_t i = 0; i < reads.size(); i++)
+    if (has_any[i]) deep.channels.push_back(reads[i].channel);
+  return deep;
 }
 
 }  // namespace alcove

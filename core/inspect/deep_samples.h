@@ -18,6 +18,7 @@ struct InspectedDeep {
   DeepCounts counts;       // over the whole file
   // "planar" or "along the ray", by the flat depth beside it; "the depth of the frame"; empty: nothing tells
   std::string depth;
+  std::vector<std::string> channels;  // of the surfaces that its samples make, those that any pixel has
 
   double samples_per_pixel() const { return double(counts.samples) / double(counts.pixels); }
   /// Of the samples, those that lie behind an opaque one.

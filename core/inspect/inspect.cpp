@@ -100,10 +100,40 @@ struct Inspector {
   std::vector<float> depth = {}, normal = {};
   Inspection found = {};
 
+  /// Adds those that can be opened: why others cannot is told.
+  void add_files(std::span<const std::string> paths) {
+    for (const auto& path : paths) try {
+        const auto is_it = [&](const ExrFile& file) { return file.path() == path; };
+        if (!path.empty() && std::ranges::none_of(source.files, is_it))
+          source.files.push_back(open_image(path, "INPUT", Formats::of_frames));
+      } catch (const Error&) {
+        continue;
+      }
+  }
+
+  /// Finds the frame, if need be without what lies behind its first surface: that says more than that it is refused.
+  void find_source() {
+    try {
+      source = find_frame(reading, false, frame);
+    } catch (const Error& error) {
+      InputSettings without = reading;
+      without.behind = {};
+      without.behind_channels.clear();
+      without.behind_kinds.clear();
+      without.deep.clear();
+      if (!has_hidden_sources(reading) || main_input(without).empty()) throw;
+      source = find_frame(without, false, frame);
+      found.refused.push_back(error.what());
+      reading = without;
+      add_files(settings.behind);
+      add_files(std::span(&settings.deep, 1));
+    }
+  }
+
   /// Finds the channels. Returns false where some are missing, which is then part of what was found.
   bool find() {
     try {
-      source = find_frame(reading, false, frame);
+      find_source();
     } catch (const Error& error) {
       for (const std::string& path :
            {settings.input, settings.depth, wants_normals(settings) ? settings.normal : "", settings.position})
@@ -180,7 +210,7 @@ struct Inspector {
     try {
       settle_frame();
       describe();
-      found.command = command_of(source, run, has_camera);
+      if (found.refused.empty()) found.command = command_of(source, run, has_camera);
     } catch (const Error& error) {
       found.missing.push_back(error.what());
       describe_refused();
@@ -204,10 +234,20 @@ struct Inspector {
     }
   }
 
+  /// Samples may make more surfaces than any pixel of theirs does.
+  void leave_out_empty(const InspectedDeep& deep) {
+    const auto is_empty = [&](const InspectedAov& aov) {
+      return aov.name.starts_with("behind") && aov.file == deep.file && std::ranges::count(deep.parts, aov.part) > 0 &&
+             std::ranges::count(deep.channels, aov.channels.front()) == 0;
+    };
+    std::erase_if(found.aovs, is_empty);
+  }
+
   /// Counts the samples of deep files.
   void look_at_deep() {
     for (const auto& file : source.files) try {
         if (auto deep = deep_samples(source, file, settings)) found.deep.push_back(std::move(*deep));
+        if (!found.deep.empty() && found.deep.back().file == file.path()) leave_out_empty(found.deep.back());
       } catch (const Error& error) {
         found.suspicious.push_back({NoteCode::damaged_file, error.what()});
       }

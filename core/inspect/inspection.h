@@ -116,6 +116,7 @@ struct Inspection {
   std::string hidden_options;       // by which it takes all of them; "" where there are none
   Notes notes, suspicious;
   std::vector<std::string> missing;           // one sentence each
+  std::vector<std::string> refused;           // what is given and a run would fail on; the rest is without it
   std::string command;                        // the run that reads the frame so; empty if there is none
   bool shows_surfaces = false;                // the pixels show how they are to be read
   std::optional<InspectedSequence> sequence;  // none of a single frame

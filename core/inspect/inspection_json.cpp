@@ -196,6 +196,7 @@ std::string inspection_json(const Inspection& inspection) {
                      {"suspicious", texts_of(inspection.suspicious)},
                      {"suspicious_codes", codes_of(inspection.suspicious)},
                      {"missing", inspection.missing},
+                     {"refused", inspection.refused},
                      {"sequence", inspection.sequence ? to_json(*inspection.sequence) : Json()},
                      {"command", inspection.command}};
   return json_text(json, 1) + "\n";

@@ -76,7 +76,7 @@ void add(Lines& lines, const InspectedCamera& inspected) {
             camera.view_from_world ? "with" : "without");
 }
 
-void add(Lines& lines, const InspectedDepth& depth, bool is_orthographic) {
+void add(Lines& lines, const InspectedDepth& depth) {
   const ValueStatistics& values = depth.values;
   lines.add("depth: {}, values {:.6g} to {:.6g}; {} NaN, {} infinite, {} negative, {} of 0, {} of 1", depth.kind,
             values.least, values.most, values.nan, values.infinite, values.negative, values.zero, values.one);
@@ -85,7 +85,7 @@ void add(Lines& lines, const InspectedDepth& depth, bool is_orthographic) {
               percent(*depth.sky_share));
   if (!depth.scores) return;
   for (const auto& score : *depth.scores)
-    lines.add("  only as {}: {} straight on {}", name_of(score.kind), is_orthographic ? "z" : "1/z",
+    lines.add("  as {} alone flat surfaces are flat on {} of the smooth pixels", name_of(score.kind),
               percent(score.straight));
 }
 
@@ -158,7 +158,7 @@ std::string inspection_text(const Inspection& inspection) {
   for (const auto& aov : inspection.aovs) add(lines, aov);
   if (inspection.camera) add(lines, *inspection.camera);
   const bool is_orthographic = inspection.camera && inspection.camera->camera.orthographic;
-  if (inspection.depth) add(lines, *inspection.depth, is_orthographic);
+  if (inspection.depth) add(lines, *inspection.depth);
   if (inspection.normals) add(lines, *inspection.normals);
   for (const auto& deep : inspection.deep) add(lines, deep);
   if (inspection.sequence) add(lines, *inspection.sequence, is_orthographic);
@@ -170,6 +170,7 @@ std::string inspection_text(const Inspection& inspection) {
   for (const auto& note : inspection.notes) lines.add("note: {}", note.text);
   for (const auto& finding : inspection.suspicious) lines.add("suspicious: {}", finding.text);
   for (const auto& missing : inspection.missing) lines.add("missing: {}", missing);
+  for (const auto& refused : inspection.refused) lines.add("refused: {}", refused);
   if (!inspection.command.empty()) lines.add("{}", inspection.command);
   return lines.text();
 }

@@ -277,6 +277,30 @@ TEST_F(DeepRun, estimators_that_know_no_layers_take_samples_as_the_depth_alone) 
   }
 }
 
+TEST_F(DeepRun, inspect_lists_the_surfaces_that_there_are) {
+  const Finished finished = run_program({"inspect", "--json", frame, "--deep", deep, "--camera", camera});
+  ASSERT_EQ(finished.code, 0) << finished;
+  const json aovs = json::parse(finished.out)["aovs"];
+  EXPECT_TRUE(aovs.contains("behind3")) << "the plate, the wall behind it, and what is behind that";
+  EXPECT_FALSE(aovs.contains("behind4"));
+}
+
+TEST_F(DeepRun, inspect_looks_at_a_frame_without_samples_that_are_refused) {
+  DeepFilePart small = samples();
+  small.data.height = 20;
+  small.pixels.resize(64 * 20);
+  write_deep(folder / "small.exr", {small}, kWallWindow);
+  const Finished finished =
+      run_program({"inspect", "--json", frame, "--deep", folder / "small.exr", "--camera", camera});
+  ASSERT_EQ(finished.code, 0) << finished;
+  const json found = json::parse(finished.out);
+  EXPECT_THAT(found["refused"].dump(), HasSubstr("same pixels"));
+  EXPECT_THAT(found["missing"].dump(), Not(HasSubstr("same pixels")));
+  EXPECT_EQ(found["depth"]["kind"], "planar");
+  EXPECT_EQ(found["deep"].size(), 1);
+  EXPECT_EQ(found["command"], "") << "a run would fail";
+}
+
 TEST_F(DeepRun, inspect_says_what_samples_hold) {
   const auto inspected = [&](const Options& inputs) {
     Options options{"inspect", "--json", "--camera", camera};
@@ -299,7 +323,10 @@ TEST_F(DeepRun, inspect_says_what_samples_hold) {
   DeepFilePart part = samples();
   for (std::size_t i = 0; i < part.pixels.size(); i++) part.pixels[i] = {{1, first[i]}};
   write_deep(deep, {part});
-  EXPECT_THAT(run_program({"inspect", deep, "--camera", camera}).out, HasSubstr("rendered in one go"));
+  const std::string text = run_program({"inspect", deep, "--camera", camera}).out;
+  EXPECT_THAT(text, HasSubstr("rendered in one go"));
+  EXPECT_THAT(text, Not(HasSubstr("behind1"))) << "no pixel has a second surface";
+  EXPECT_THAT(text, HasSubstr("as planar alone flat surfaces are flat on "));
 }
 
 }  // namespace
