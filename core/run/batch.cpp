@@ -205,6 +205,7 @@ class Batch {
     const bool is_cpu = device.type == gpu::DeviceType::cpu;
     RunMemory memory = memory_for_frames(d, device);
     if (run.settled) require_room_for_others(memory, plan_, *run.settled, settings_);
+    if (run.settled) require_buffers_for_others(device.buffer_bytes, *run.settled, settings_.input);
     if (!is_cpu) lanes.set_count(lanes_for(run, frames.size(), memory, threads + kSpareLanes));
     report_.device = run.provenance.device = device.name;
     report_.on_cpu_by_default = is_cpu && lower_case(d.device) == "auto";

@@ -76,4 +76,18 @@ void require_room_for_others(const RunMemory& memory, const FramePlan& plan, con
        fewer.input.around, (memory.program_bytes + bytes_of_one(plan, frame, settings)) / kMebibyte + 1);
 }
 
+void require_buffers_for_others(std::uint64_t most_bytes, const FrameSource& frame, const InputSettings& settings) {
+  if (!takes_others(settings)) return;
+  const auto bytes_of = [&](RawPlane plane) { return sizeof(float) * frame[plane].size() * frame.file_data.pixels(); };
+  const std::uint64_t of_depth = bytes_of(RawPlane::depth), of_normals = bytes_of(RawPlane::normal);
+  if (std::max(of_depth, of_normals) <= most_bytes) return;
+  const char* const option = settings.other_views ? "--other-views" : "--around";
+  fail(ErrorKind::device,
+       "{}: {} takes frames whole, and {} take a buffer of {} MiB, where the device has {} MiB at most: {}leave {} "
+       "out, or use another --device",
+       frame.depth_path(), option, of_depth > most_bytes ? "their depth" : "their normals",
+       std::max(of_depth, of_normals) / kMebibyte, most_bytes / kMebibyte,
+       of_depth > most_bytes ? "" : "give --normal none, ", option);
+}
+
 }  // namespace alcove

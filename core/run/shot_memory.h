@@ -27,4 +27,8 @@ RunMemory beside_shot(const RunMemory& memory, const FramePlan& plan, const Fram
 void require_room_for_others(const RunMemory& memory, const FramePlan& plan, const FrameSource& frame,
                              const Settings& settings);
 
+/// Fails with ErrorKind::device where frames that others take from have planes that no buffer of `most_bytes` holds:
+/// they are prepared whole, and only frames that are computed are cut into tiles.
+void require_buffers_for_others(std::uint64_t most_bytes, const FrameSource& frame, const InputSettings& settings);
+
 }  // namespace alcove

@@ -435,6 +435,29 @@ TEST_F(Shots, take_more_memory_the_more_frames_lie_around) {
   EXPECT_EQ(shot_before, kFrames * 12 * kWallWindow.pixels()) << "there are no more";
 }
 
+TEST_F(Shots, need_buffers_for_whole_frames) {
+  Settings settings;
+  settings.input.input = in + "/f.####.exr";
+  settings.input.camera = camera;
+  settings.input.around = 1;
+  const FrameSource source = open_frame(FramePlan(settings).at(4), 4);
+  const std::uint64_t plane = sizeof(float) * kWallWindow.pixels();
+  const auto refusal = [&](std::uint64_t most_bytes) -> std::string {
+    try {
+      require_buffers_for_others(most_bytes, source, settings.input);
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::device);
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(refusal(3 * plane), "");
+  EXPECT_THAT(refusal(2 * plane), AllOf(HasSubstr("f.0004.exr"), HasSubstr("--around"), HasSubstr("--normal none")));
+  EXPECT_THAT(refusal(plane - 1), AllOf(HasSubstr("--around"), HasSubstr("--device"), Not(HasSubstr("--normal"))));
+  settings.input.around = 0;
+  EXPECT_EQ(refusal(1), "") << "a frame alone is cut into tiles";
+}
+
 TEST_F(Shots, dry_runs_tell_what_the_window_takes) {
   const Finished finished = run({"--around", "2", "--dry-run"});
   EXPECT_EQ(finished.code, 0) << finished;
