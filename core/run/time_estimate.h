@@ -18,9 +18,9 @@ struct TimedRun {
 };
 
 /// Computes more and more of a frame, up to all of it, until that takes long enough to be told from noise, and says
-/// how long the run will take by that: "about 2 min: ...". It takes a few seconds at most, and the time of a few frames
-/// more where frames take from others; it writes nothing that stays. Where nothing can be computed, it says why the time
-/// is unknown.
+/// how long the run will take by that: "about 2 min: ...". It takes a few seconds at most, and the time of a few
+/// frames more where frames take from others; it writes nothing that stays. Where nothing can be computed, it says why
+/// the time is unknown.
 std::string time_text(const TimedRun& run);
 
 }  // namespace alcove

@@ -152,8 +152,8 @@ TEST(Reuse, looks_as_far_as_a_receiver_reaches) {
   }
 }
 
-/// A bar before a wall, from the left border to the middle, with a step behind it that goes on below the bar; and to its
-/// right where `goes_on`. Along the whole bar the step closes a solid, or does not, by how they end there.
+/// A bar before a wall, from the left border to the middle, with a step behind it that goes on below the bar, and with
+/// `goes_on` to its right. Along the whole bar the step closes a solid, or does not, by how they end there.
 HostFrame bar_before_step(bool goes_on) {
   constexpr std::size_t kWidth = 128, kHeight = 64, kEnd = 64;
   const Scene wall{{Plane{{0, 0, 0}, {0, 0, 1}}}};

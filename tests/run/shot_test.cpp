@@ -14,7 +14,7 @@
 #include "core/run/shot.h"
 #include "core/run/shot_memory.h"
 #include "tests/support/device.h"
-#include "tests/support/sequence_folder.h"
+#include "tests/support/walked_shot.h"
 
 namespace alcove {
 namespace {
@@ -31,43 +31,10 @@ using testing::Not;
 using testing::Pointwise;
 
 constexpr int kFrames = 7;
-constexpr double kStep = 0.2;  // scene units to the right that the camera moves from frame to frame
 
-/// A floor, a wall, and a board that stands before the wall, from a camera that walks by.
-class Shots : public SequenceFolder {
+class Shots : public WalkedShot {
  protected:
-  Shots() {
-    json cameras = wall_camera();
-    for (int frame = 1; frame <= kFrames; frame++) {
-      json matrix = cameras["world_to_camera"];
-      matrix[0][3] = -kStep * frame;
-      cameras["frames"].push_back({{"frame", frame}, {"world_to_camera", matrix}});
-      with_board(frame).write(input(frame));
-    }
-    write_bytes(camera, cameras.dump());
-  }
-
-  static FrameFile with_board(int frame) {
-    FrameFile file = wall_frame();
-    put_board(file, kStep * frame, {-0.6, 0.6, 0.7, 4});
-    return file;
-  }
-
-  /// A rectangle that faces the camera: from `left` to `right`, and as high above the eye as below it.
-  struct Board {
-    double left, right, height, depth;
-  };
-  static void put_board(FrameFile& file, double eye, const Board& board) {
-    auto& depth = file.planes.at("ViewLayer.Depth.Z");
-    for (std::size_t i = 0; i < depth.size(); i++) {
-      const double x = (double(i % 64) + 0.5 - 32) / 60 * board.depth + eye;
-      const double y = (18 - double(i / 64) - 0.5) / 60 * board.depth;
-      if (x < board.left || x > board.right || std::abs(y) > board.height || board.depth > double(depth[i])) continue;
-      depth[i] = float(board.depth);
-      file.planes.at("ViewLayer.Normal.Y")[i] = -1;
-      file.planes.at("ViewLayer.Normal.Z")[i] = 0;
-    }
-  }
+  Shots() { write_shot(kFrames); }
 
   /// The first surface that a frame hides, as it is written.
   std::vector<float> hidden(int frame) const { return read_exr_image(output(frame), {"hidden1.Z"}).pixels; }

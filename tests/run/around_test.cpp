@@ -1,0 +1,103 @@
+// Runs with --around beside what else changes a frame: files of hidden surfaces, other searches and estimators, frames
+// without normals, and tiles.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gmock/gmock.h>
+
+#include "cli/options.h"
+#include "core/formats/exr.h"
+#include "core/run/batch.h"
+#include "tests/support/difference.h"
+#include "tests/support/walked_shot.h"
+
+namespace alcove {
+namespace {
+
+using namespace test;
+
+using Options = std::vector<std::string>;
+
+constexpr int kFrames = 5;
+
+class Around : public WalkedShot {
+ protected:
+  /// What lies behind the board, of each frame; 0 where nothing does.
+  void write_peels() const {
+    for (int frame = 1; frame <= kFrames; frame++) {
+      const auto first = with_board(frame).planes.at("ViewLayer.Depth.Z");
+      FrameFile peel;
+      auto& z = peel.planes["Z"] = wall_frame().planes.at("ViewLayer.Depth.Z");
+      for (std::size_t i = 0; i < z.size(); i++) z[i] = z[i] == first[i] ? 0 : z[i];
+      peel.write(folder / fmt::format("peel.{}.exr", frame));
+    }
+  }
+
+  std::vector<float> ao_of(int frame, Options more) const {
+    more.insert(more.end(), {"--frames", std::to_string(frame), "--type", "float"});
+    const Finished finished = run(more);
+    EXPECT_EQ(finished.code, 0) << finished;
+    return finished.code == 0 ? read_exr_image(output(frame)).pixels : std::vector<float>();
+  }
+
+  const Options peels{"--behind", folder / "peel.%d.exr"};
+};
+
+Options joined(Options options, const Options& more) {
+  options.insert(options.end(), more.begin(), more.end());
+  return options;
+}
+
+TEST_F(Around, chunks_and_threads_change_no_bit_of_any_search) {
+  write_shot(kFrames);
+  write_peels();
+  for (const Options& options :
+       {Options{"--preset", "reference"}, Options{"--estimator", "bitmask"}, joined(peels, {"--search", "exact"})}) {
+    const Options around = joined(options, {"--around", "1"});
+    remove_outputs();
+    ASSERT_EQ(run(joined(around, {"--threads", "1"})).code, 0) << testing::PrintToString(options);
+    expect_same_outputs(outputs(), {joined(around, {"--chunk", "2/2", "--threads", "2"}),
+                                    joined(around, {"--chunk", "1/2", "--threads", "2"})});
+  }
+}
+
+TEST_F(Around, frames_without_normals_are_as_right_as_alone) {
+  write_shot(kFrames);
+  constexpr int kFrame = 3;
+  const auto off = [&](const Options& options) {
+    return difference(ao_of(kFrame, joined(options, {"--normal", "none"})), ao_of(kFrame, options)).rmse;
+  };
+  const Options plain{"--denoise", "none", "--slices", "8"};
+  EXPECT_LE(off(joined(plain, {"--around", "2"})), off(plain) + 0.002);
+}
+
+TEST_F(Around, files_that_know_what_is_hidden_leave_others_nothing_to_add) {
+  write_shot(kFrames);
+  write_peels();
+  const Options all = joined(peels, {"--complete", "none"});
+  EXPECT_LT(difference(ao_of(3, joined(all, {"--around", "2"})), ao_of(3, all)).rmse, 0.01);
+}
+
+TEST_F(Around, tiles_have_the_bits_of_the_whole) {
+  const Window large{0, 0, 512, 288};
+  write_shot(3, large);
+  const auto run_with = [&](std::uint64_t bytes) {
+    const Options arguments{in + "/f.%04d.exr", "-o",      out + "/ao.%04d.exr", "--camera", camera, "--radius", "0.3",
+                            "--around",         "1",       "--frames",           "2",        "--type", "float",
+                            "--stats",          folder / "stats.json"};
+    RunOptions options;
+    EXPECT_TRUE(parse_run_options(arguments, options));
+    if (bytes) options.settings.device.memory = 1;
+    if (bytes) options.settings.device.least_memory = bytes;
+    const RunReport report = run_frames(options.settings);
+    EXPECT_EQ(report.done, 1) << (report.stop ? report.stop->what() : "");
+    return report.done == 1 ? std::pair(report.frames[0].parts, read_exr_image(output(2)).pixels)
+                            : std::pair(0, std::vector<float>());
+  };
+  const auto [one, whole] = run_with(0);
+  const auto [many, tiled] = run_with(40 << 20);
+  EXPECT_EQ(one, 1);
+  EXPECT_GT(many, 1);
+  EXPECT_TRUE(whole == tiled) << difference(tiled, whole).rmse;
+}
+
+}  // namespace
+}  // namespace alcove

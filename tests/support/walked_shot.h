@@ -1,0 +1,57 @@
+// A shot for tests: a floor, a wall, and a board that stands before the wall, from a camera that walks by.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "tests/support/sequence_folder.h"
+
+namespace alcove::test {
+
+constexpr double kStep = 0.2;  // scene units to the right that the camera moves from frame to frame
+
+/// A rectangle that faces the camera: from `left` to `right`, and as high above the eye as below it.
+struct Board {
+  double left, right, height, depth;
+};
+inline constexpr Board kBoard{-0.6, 0.6, 0.7, 4};
+
+/// Puts it into a frame of the wall whose windows are one, of an eye so far to the right.
+inline void put_board(FrameFile& file, double eye, const Board& board) {
+  const auto width = std::size_t(file.data.width);
+  const double focal_px = 60.0 * double(width) / 64;
+  auto& depth = file.planes.at("ViewLayer.Depth.Z");
+  for (std::size_t i = 0; i < depth.size(); i++) {
+    const double x = (double(i % width) + 0.5 - 0.5 * double(width)) / focal_px * board.depth + eye;
+    const double y = (0.5 * file.data.height - double(i / width) - 0.5) / focal_px * board.depth;
+    if (x < board.left || x > board.right || std::abs(y) > board.height || board.depth > double(depth[i])) continue;
+    depth[i] = float(board.depth);
+    file.planes.at("ViewLayer.Normal.Y")[i] = -1;
+    file.planes.at("ViewLayer.Normal.Z")[i] = 0;
+  }
+}
+
+inline FrameFile with_board(int frame, const Window& window = kWallWindow) {
+  FrameFile file = wall_frame(window, window);
+  put_board(file, kStep * frame, kBoard);
+  return file;
+}
+
+class WalkedShot : public SequenceFolder {
+ protected:
+  /// Frames 1 to `frames`, and their cameras.
+  void write_shot(int frames, const Window& window = kWallWindow) const {
+    nlohmann::json cameras = wall_camera(window);
+    for (int frame = 1; frame <= frames; frame++) {
+      nlohmann::json matrix = cameras["world_to_camera"];
+      matrix[0][3] = -kStep * frame;
+      cameras["frames"].push_back({{"frame", frame}, {"world_to_camera", matrix}});
+      with_board(frame, window).write(input(frame));
+    }
+    write_bytes(camera, cameras.dump());
+  }
+};
+
+}  // namespace alcove::test
