@@ -10,4 +10,4 @@ if [ "${1:-}" = --device ]; then
   export ALCOVE_TEST_DEVICE=${2:?--device NAME}
 fi
 scripts/setup.sh
-ctest --test-dir build --output-on-failure -j "$(nproc)"
+ctest --test-dir build -LE long --output-on-failure -j "$(nproc)"

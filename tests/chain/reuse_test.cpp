@@ -102,8 +102,10 @@ TEST(Reuse, of_parts_and_of_whole_frames_changes_no_bit) {
     settings.radius = random.radius() / random.whole(2, 10);  // some reach farther than a block of changes
     settings.thickness = random.thickness();
     settings.thickness_length = *settings.radius / 4;
-    settings.slices = random.whole(1, 4);
-    settings.steps = settings.samples = random.whole(4, 20);
+    // Few, since the driver compiles each of them.
+    std::tie(settings.slices, settings.steps) =
+        std::array{std::pair(1, 4), std::pair(2, 10), std::pair(4, 19)}[std::size_t(random.whole(0, 2))];
+    settings.samples = settings.steps;
     if (random.whole(0, 3) == 0) settings.further_radii = {*settings.radius / 3};
     if (random.whole(0, 2) == 0) settings.resolution = random.whole(0, 1) == 0 ? Resolution::half : Resolution::quarter;
     settings.denoise = std::array{Denoise::none, Denoise::bilateral, Denoise::bilateral,

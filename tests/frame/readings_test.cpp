@@ -25,7 +25,6 @@ using nlohmann::json;
 using testing::HasSubstr;
 
 constexpr double kNear = 0.5, kFar = 50;
-constexpr float kInfinite = std::numeric_limits<float>::infinity();
 
 /// A value of depth, and of the sky.
 struct Written {
