@@ -80,9 +80,10 @@ TEST_F(Around, tiles_have_the_bits_of_the_whole) {
   const Window large{0, 0, 512, 288};
   write_shot(3, large);
   const auto run_with = [&](std::uint64_t bytes) {
-    const Options arguments{in + "/f.%04d.exr", "-o",      out + "/ao.%04d.exr", "--camera", camera, "--radius", "0.3",
-                            "--around",         "1",       "--frames",           "2",        "--type", "float",
-                            "--stats",          folder / "stats.json"};
+    const Options arguments{
+        in + "/f.%04d.exr",   "-o", out + "/ao.%04d.exr", "--camera", camera,   "--radius", "0.3",
+        "--around",           "1",  "--frames",           "2",        "--type", "float",    "--stats",
+        folder / "stats.json"};
     RunOptions options;
     EXPECT_TRUE(parse_run_options(arguments, options));
     if (bytes) options.settings.device.memory = 1;
