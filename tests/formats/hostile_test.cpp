@@ -142,7 +142,7 @@ TEST_F(Hostile, the_command_that_inspect_proposes_quotes_what_a_shell_would_run)
 // Memory.
 
 TEST_F(Hostile, no_header_makes_a_run_take_more_memory_than_it_may) {
-#ifdef __SANITIZE_ADDRESS__
+#ifdef ALCOVE_SANITIZE_ADDRESS
   GTEST_SKIP() << "the address sanitizer takes memory of its own";
 #endif
   const long plain = run({"--memory", "184M"}).peak_mib;
@@ -179,7 +179,7 @@ TEST_F(Hostile, no_display_window_makes_a_preview_take_more_memory_than_it_may) 
 }
 
 TEST_F(Hostile, no_picture_makes_a_run_take_more_memory_than_its_rows) {
-#ifdef __SANITIZE_ADDRESS__
+#ifdef ALCOVE_SANITIZE_ADDRESS
   GTEST_SKIP() << "the address sanitizer takes memory of its own";
 #endif
   const std::string claim = folder / "claim.png", black = folder / "black.png", fits = folder / "fits.png";

@@ -261,7 +261,7 @@ TEST_F(Batch, the_log_has_an_object_a_line) {
 }
 
 TEST_F(Batch, memory_does_not_grow_with_the_frames) {
-#ifdef __SANITIZE_ADDRESS__
+#ifdef ALCOVE_SANITIZE_ADDRESS
   GTEST_SKIP() << "the address sanitizer keeps what is freed";
 #endif
   write_frames(1, 200);

@@ -15,7 +15,7 @@ using namespace test;
 class MemoryLimit : public SequenceFolder {
  protected:
   void SetUp() override {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#if defined(ALCOVE_SANITIZE_ADDRESS) || defined(ALCOVE_SANITIZE_THREAD)
     GTEST_SKIP() << "sanitizers take memory of their own";
 #endif
   }

@@ -390,7 +390,7 @@ TEST_F(Refusals, a_picture_that_is_cut_short_is_an_input_that_cannot_be_read) {
 }
 
 TEST_F(Refusals, a_broken_module_of_pictures_is_named_and_leaves_no_output) {
-#ifdef __SANITIZE_ADDRESS__
+#ifdef ALCOVE_SANITIZE_ADDRESS
   GTEST_SKIP() << "the program's own folder comes before LD_LIBRARY_PATH";
 #endif
   fs::create_directory(folder / "lib");
