@@ -188,8 +188,9 @@ void search_layers(inout Found found, Receiver r, Side side, Reach reach, Draw d
   const int plane = params.view.size.x * params.view.size.y;
   Sample last = receiver_sample(r);
   Slot slots[kMostSurfaces];
-  for (int j = 0; j < kSurfaces; j++)
+  for (int j = 0; j < kSurfaces; j++) {
     slots[j] = Slot(j == 0 ? r.z : kNoLastSurface, vec2(0), true, true, vec2(side.plane_cot));
+  }
   int k = first_sample(range, int(kSteps), count, side.reach, draw.jitter, step_exponent(int(kSteps), side.reach));
   Interruptions interrupted = Interruptions(k & ~(kWordBits - 1), 0u, 0u);
   for (; k < count && last.offset <= last_step; k++) {
@@ -271,5 +272,5 @@ Draw draw_of(vec2 noise, uint slice, uint side) {
 
 void main() {
   const ListedPixel here = listed_pixel(gl_WorkGroupID.xy, gl_LocalInvocationIndex);
-  if (here.exists) estimate(here.pixel, here.tile);
+  if (both(here.exists, is_mine(list[here.tile].place))) estimate(here.pixel, here.tile);
 }

@@ -46,14 +46,15 @@ vec2 gradient_of(ivec2 tile, ivec2 size) {
   return 0.5 * vec2(b - a + d - c, c - a + d - b) / vec2(max(last - first, ivec2(1)));
 }
 
-/// The depth of the last surface of a pixel.
-float last_of(int index, float first) {
-  float last = first;
+/// The nearness of the hidden surfaces of a pixel: the least, or what is given, and the largest.
+vec2 hidden_range(int index, float first) {
+  vec2 range = vec2(first, -kFar);
   for (uint k = 0u; k < params.hidden; k++) {
     const float z = abs(hidden[index + int(k) * params.view.size.x * params.view.size.y]);
-    last = z < kSkyDepth ? max(last, z) : last;
+    const float near = nearness(z);
+    range = z < kSkyDepth ? vec2(min(range.x, near), max(range.y, near)) : range;
   }
-  return last;
+  return range;
 }
 
 void main() {
@@ -76,6 +77,7 @@ void main() {
   float level = -kFar;
   float farthest = kFar;
   float last = kFar;
+  float nearest_hidden = -kFar;
   float deepest = 0.0;
   for (int y = first.y; y < end.y; y++)
     for (int x = first.x; x < end.x; x++) {
@@ -87,7 +89,9 @@ void main() {
       for (int k = 0; k < kNeighbors; k++) plane[k] = max(plane[k], near - dot(gradient[k], from_middle));
       level = max(level, near);
       farthest = min(farthest, z < kSkyDepth ? near : kFar);
-      last = min(last, z < kSkyDepth ? nearness(last_of(y * size.x + x, z)) : kFar);
+      const vec2 hidden_there = z < kSkyDepth ? hidden_range(y * size.x + x, near) : vec2(kFar, -kFar);
+      last = min(last, hidden_there.x);
+      nearest_hidden = max(nearest_hidden, hidden_there.y);
     }
 
   const ivec2 centre = min(first + kTile / 2, size - 1);
@@ -120,6 +124,7 @@ void main() {
   result.plane[kTilePlanes - 1u] = level;
   result.farthest = farthest;
   result.last = last;
+  result.hidden = nearest_hidden;
   result.mixed = mixed ? 1u : 0u;
   result.normal = word;
   result.turned = turned;

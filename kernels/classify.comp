@@ -24,6 +24,9 @@
 // the border goes on what stands above the tangent planes already, and what faces another way than the receivers, so
 // that it may rise.
 //
+// Where nothing is hidden within kFarEnd radii of the receivers, an estimator finds what it finds where nothing is
+// hidden at all, to the bit (surfaces.glsl). Such tiles are listed without kTileLayered.
+//
 // With a tolerance a tile is left out, too, where nothing within the radius rises more than an angle: what is that low
 // takes at most the squared sine of the angle from the visibility. The proof is the same with another height: |Q - P| /
 // z is at least the distance on the image over the length of P's ray.
@@ -48,6 +51,7 @@ const bool kSkips = (kMode & kClassifySkips) != 0u;
 const bool kProves = (kMode & kClassifyProves) != 0u;
 const bool kReuses = (kMode & kClassifyReuses) != 0u;
 const bool kCompletes = (kMode & kClassifyCompletes) != 0u;
+const bool kLayered = (kMode & kClassifyLayered) != 0u;
 const bool kTolerates = (kMode & kClassifyTolerates) != 0u;
 layout(scalar, push_constant) uniform Push { ClassifyParams params; };
 layout(scalar, binding = kClassifyBounds) readonly buffer Bounds { TileBounds bounds[]; };
@@ -77,6 +81,8 @@ const int kFarGroup = 32;
 shared uint found[kGroupY], beside[kGroupY];
 // Whether something within the radius rises more than the tolerance; without one, more than is harmless.
 shared uint risen[kGroupY];
+// Whether hidden surfaces may count.
+shared uint layered[kGroupY];
 // Tiles of the block that show a surface, as bits; where in the list the tiles are.
 shared uint surfaces[kGroupY], place[kGroupY * kBlock * kBlock];
 // Depths of the block, as bits: those of positive floats have the order of the floats.
@@ -302,6 +308,33 @@ void find_sectors(View view, Receivers r) {
   barrier();
 }
 
+/// Whether something is hidden so near to the receivers that an estimator looks at it.
+bool is_hidden_near(View view, Receivers r, ivec2 first_tile, int tiles, float nearest, float farthest) {
+  if (nearest <= -kFar) return false;
+  return distance_sq(r.box, box_of(view, first_tile, tiles, depth_of(view, nearest), depth_of(view, farthest))) <=
+         kFarEnd * kFarEnd * r.reach * r.reach;
+}
+
+/// Finds whether hidden surfaces may count for a block, with all invocations of its row.
+void find_hidden(View view, Receivers r, bool has_receivers) {
+  const ivec2 count = tiles_of(view.size);
+  const Rect rect = image_of_reach(view, r.box, r.reach);
+  const ivec2 from = ivec2(rect.least / float(kGroupSide));
+  const ivec2 extent = has_receivers ? ivec2(rect.most / float(kGroupSide)) - from + 1 : ivec2(0);
+  bool is_found = false;
+  for (int i = int(gl_LocalInvocationID.x); i < extent.x * extent.y && !is_found; i += int(kGroupX)) {
+    const ivec2 group = from + ivec2(i % extent.x, i / extent.x);
+    const GroupBounds b = bounds_of(view, group);
+    const bool is_near = is_hidden_near(view, r, group * kTileGroup, kTileGroup, b.hidden, b.last);
+    for (int k = 0; k < kTileGroup * kTileGroup && is_near && !is_found; k++) {
+      const ivec2 tile = group * kTileGroup + ivec2(k % kTileGroup, k / kTileGroup);
+      const int index = min(tile.y, count.y - 1) * count.x + min(tile.x, count.x - 1);
+      is_found = is_hidden_near(view, r, tile, 1, bounds[index].hidden, bounds[index].last);
+    }
+  }
+  if (is_found) atomicOr(layered[gl_LocalInvocationID.y], 1u);
+}
+
 /// Lists a tile, by all invocations of a row, which each put down the ranges of their own sectors.
 void list_tile(uint at, ivec2 tile, bool is_whole) {
   const uint row = gl_LocalInvocationID.y;
@@ -312,7 +345,8 @@ void list_tile(uint at, ivec2 tile, bool is_whole) {
                                     : 0u;
   }
   if (gl_LocalInvocationID.x != 0u) return;
-  list[at].place = pack_tile(tile);
+  list[at].place = pack_tile(tile) | (layered[row] != 0u ? kTileLayered : 0u);
+  if (layered[row] != 0u) atomicAdd(counts.layered, 1u);
   const uvec2 groups = dispatch_of_tiles(at + 1u, kSparse != 0u ? 1u : kTilePixels);
   atomicMax(counts.groups.x, groups.x);
   atomicMax(counts.groups.y, groups.y);
@@ -372,6 +406,7 @@ void main() {
     nearest[row] = floatBitsToUint(kSkyDepth);
     farthest[row] = 0u;
     beside[row] = kEverySector;  // unless a search finds less
+    layered[row] = kLayered && !kProves ? 1u : 0u;
   }
   barrier();
   // Each invocation looks down its own column of the tiles, until it has seen a surface in each of them or, where
@@ -399,7 +434,9 @@ void main() {
                            : false;
   Shared own = Shared(1.0, 1.0, kNoNormal, 0.0, 0.0, 0.0);
   if (kProves && tile.x < count.x && !is_kept) own = shared_by(tile, count);
-  if (kProves) find_sectors(view, receivers_of(view, tile, own));
+  const Receivers receivers = receivers_of(view, tile, own);
+  if (kProves && kLayered) find_hidden(view, receivers, tile.x < count.x && !is_kept && own.farthest <= own.nearest);
+  if (kProves) find_sectors(view, receivers);
   if (tile == ivec2(0) && gl_LocalInvocationID.x == 0u) counts.groups.z = 1u;
   const bool is_whole = beside[row] == kEverySector;
   const uint sectors = is_whole ? kEverySector : risen[row] != 0u ? found[row] : 0u;

@@ -33,6 +33,7 @@ void main() {
   float surfaces = 0.0;
   float level = -kFar;
   float last = kFar;
+  float hidden = -kFar;
   for (int y = from.y; y < to.y; y++)
     for (int x = from.x; x < to.x; x++) {
       const int i = y * count.x + x;
@@ -41,6 +42,7 @@ void main() {
       surfaces += is_sky ? 0.0 : 1.0;
       level = max(level, tiles[i].plane[kLevel]);
       last = min(last, tiles[i].last);
+      hidden = max(hidden, tiles[i].hidden);
     }
   gradient /= max(surfaces, 1.0);
   float plane = -kFar;
@@ -59,5 +61,5 @@ void main() {
       const float size = abs(own) + abs(tile_level) + abs(gradient.x * offset.x) + abs(gradient.y * offset.y);
       plane = max(plane, tiles[i].farthest > tile_level ? -kFar : before + kPad * size);
     }
-  groups[group.y * groups_in.x + group.x] = GroupBounds(gradient, plane, level, last);
+  groups[group.y * groups_in.x + group.x] = GroupBounds(gradient, plane, level, last, hidden);
 }

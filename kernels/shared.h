@@ -98,6 +98,7 @@ struct TileBounds {
   float plane[kTilePlanes];
   float farthest;         // least nearness; above the level plane where the tile is all sky
   float last;             // the same, of hidden surfaces too
+  float hidden;           // largest nearness of a hidden surface; none: below every nearness
   uint mixed;             // 1: its surfaces leave the plane with its own gradient, so that another one may be lower
   uint normal;            // of its receivers, packed; kNoNormal: they have none in common
   float turned;           // length of the largest difference between a receiver's normal and it
@@ -108,16 +109,19 @@ struct TileBounds {
 struct GroupBounds {
   vec2 gradient;       // nearness per pixel
   float plane, level;  // nearness at the group's centre of planes that no surface is before: with that gradient, level
-  float last;          // as of a tile
+  float last, hidden;  // as of a tile
 };
 
 /// A tile that is to be estimated.
 struct ListedTile {
-  uint place;  // column + (row << 16), in tiles
+  uint place;  // column + (row << 16), in tiles, and kTileLayered
   // for each sector of directions on the image the steps at which something may stand above, first + (last << 16); 0:
   // nothing blocks
   uint ranges[kSectorsOfTurn];
 };
+
+/// Of a ListedTile: hidden surfaces may count. Without it nothing is hidden so near that an estimator looks at it.
+ALCOVE_CONSTANT uint kTileLayered = 0x80000000u;
 
 /// How many tiles are listed, and why the others are not.
 struct TileCounts {
@@ -127,6 +131,7 @@ struct TileCounts {
   uint open;       // proved to be
   uint tolerated;  // of them, those that are so only within the tolerance
   uint kept;       // as the frame before has them
+  uint layered;    // of the listed ones, those with kTileLayered
 };
 
 // How far from a pixel others decide whether it is a site, in px: 3 for each of the four passes of sites.comp, and the

@@ -82,3 +82,6 @@ bool is_taken(int from[kMostSurfaces], int j) {
   for (int i = 0; i < kSurfaces; i++) taken = from[i] == j ? true : taken;
   return taken;
 }
+
+/// Whether a listed tile is this dispatch's: one takes the tiles where hidden surfaces may count, another one the rest.
+bool is_mine(uint place) { return ((place & kTileLayered) != 0u) == (kSurfaces > 1); }

@@ -12,7 +12,7 @@ ivec2 groups_of_tiles(ivec2 size) { return (tiles_of(size) + kTileGroup - 1) / k
 ivec2 neighbor_step(int k) { return k < 3 ? ivec2(k - 1, -1) : k < 6 ? ivec2(k - 4, 1) : ivec2(k * 2 - 13, 0); }
 
 uint pack_tile(ivec2 tile) { return uint(tile.x) | uint(tile.y) << 16; }
-ivec2 unpack_tile(uint place) { return ivec2(place & 0xffffu, place >> 16); }
+ivec2 unpack_tile(uint place) { return ivec2(place & 0xffffu, (place & ~kTileLayered) >> 16); }
 
 /// The workgroups in x and y of a dispatch over so many tiles, of which each takes so many invocations.
 uvec2 dispatch_of_tiles(uint tiles, uint invocations) {

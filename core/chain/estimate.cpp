@@ -76,6 +76,12 @@ std::vector<uint> slice_constants(const Reach& reach, const Sampling& sampling, 
           out.listed.sites ? 1u : 0u};
 }
 
+/// How many surfaces a pixel may have in each dispatch of an estimator that searches slices: hidden ones cost much, and
+/// most tiles may have none within reach.
+std::vector<uint> surfaces_searched(const GBuffer& gbuffer) {
+  return gbuffer.surfaces > 1 ? std::vector<uint>{1, gbuffer.surfaces} : std::vector<uint>{1};
+}
+
 /// What is completed, as kernels take it.
 uint completion_of(const Reach& reach) {
   switch (reach.complete) {
@@ -222,7 +228,8 @@ TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const Bounds& boun
   const uint mode = (skipping.skips_sky ? kClassifySkips : 0) | (skipping.proves ? kClassifyProves : 0) |
                     (skipping.is_ranged ? kClassifyRanged : 0) | (out.bent ? kClassifyWithBent : 0) |
                     (skipping.changes ? kClassifyReuses : 0) | (skipping.tolerance > 0 ? kClassifyTolerates : 0) |
-                    (out.completed ? kClassifyWithCompleted : 0) | (skipping.completes ? kClassifyCompletes : 0);
+                    (out.completed ? kClassifyWithCompleted : 0) | (skipping.completes ? kClassifyCompletes : 0) |
+                    (gbuffer.surfaces > 1 ? kClassifyLayered : 0);
   const ClassifyParams params{gbuffer.view,
                               radius,
                               float(std::sqrt(skipping.tolerance)),
@@ -252,39 +259,42 @@ TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const Bounds& boun
 
 void horizon(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, const Sampling& sampling,
              const Estimate& out, uint plane) {
-  std::vector<uint> constants = slice_constants(reach, sampling, out);
-  constants.push_back(thickness_rule_of(reach.thickness) | completion_of(reach) |
-                      kHiddenSurface * (gbuffer.surfaces - 1));
-  gpu.dispatch("horizon", slice_parameters<HorizonParams>(gbuffer, reach, sampling, plane),
-               {{kHorizonDepth, *gbuffer.depth},
-                {kHorizonNormal, *gbuffer.normal},
-                {kHorizonAo, *out.ao},
-                {kHorizonBent, out.bent ? *out.bent : *out.ao},
-                {kHorizonList, *out.listed.tiles},
-                {kHorizonCounts, *out.listed.counts},
-                {kHorizonSites, out.listed.sites ? *out.listed.sites : *out.listed.tiles},
-                {kHorizonSiteCounts, out.listed.sites ? *out.listed.site_counts : *out.listed.counts},
-                {kHorizonCompleted, out.completed ? *out.completed : *out.ao},
-                {kHorizonHidden, gbuffer.hidden ? *gbuffer.hidden : *gbuffer.depth}},
-               estimate_extent(out.listed), constants);
+  for (const uint surfaces : surfaces_searched(gbuffer)) {
+    std::vector<uint> constants = slice_constants(reach, sampling, out);
+    constants.push_back(thickness_rule_of(reach.thickness) | completion_of(reach) | kHiddenSurface * (surfaces - 1));
+    gpu.dispatch("horizon", slice_parameters<HorizonParams>(gbuffer, reach, sampling, plane),
+                 {{kHorizonDepth, *gbuffer.depth},
+                  {kHorizonNormal, *gbuffer.normal},
+                  {kHorizonAo, *out.ao},
+                  {kHorizonBent, out.bent ? *out.bent : *out.ao},
+                  {kHorizonList, *out.listed.tiles},
+                  {kHorizonCounts, *out.listed.counts},
+                  {kHorizonSites, out.listed.sites ? *out.listed.sites : *out.listed.tiles},
+                  {kHorizonSiteCounts, out.listed.sites ? *out.listed.site_counts : *out.listed.counts},
+                  {kHorizonCompleted, out.completed ? *out.completed : *out.ao},
+                  {kHorizonHidden, gbuffer.hidden ? *gbuffer.hidden : *gbuffer.depth}},
+                 estimate_extent(out.listed), constants);
+  }
 }
 
 void bitmask(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, const Sampling& sampling,
              const Estimate& out, uint plane) {
-  std::vector<uint> constants = slice_constants(reach, sampling, out);
-  constants.push_back(completion_of(reach) | kHiddenSurface * (gbuffer.surfaces - 1));
-  gpu.dispatch("bitmask", slice_parameters<BitmaskParams>(gbuffer, reach, sampling, plane),
-               {{kBitmaskDepth, *gbuffer.depth},
-                {kBitmaskNormal, *gbuffer.normal},
-                {kBitmaskAo, *out.ao},
-                {kBitmaskBent, out.bent ? *out.bent : *out.ao},
-                {kBitmaskList, *out.listed.tiles},
-                {kBitmaskCounts, *out.listed.counts},
-                {kBitmaskSites, out.listed.sites ? *out.listed.sites : *out.listed.tiles},
-                {kBitmaskSiteCounts, out.listed.sites ? *out.listed.site_counts : *out.listed.counts},
-                {kBitmaskCompleted, out.completed ? *out.completed : *out.ao},
-                {kBitmaskHidden, gbuffer.hidden ? *gbuffer.hidden : *gbuffer.depth}},
-               estimate_extent(out.listed), constants);
+  for (const uint surfaces : surfaces_searched(gbuffer)) {
+    std::vector<uint> constants = slice_constants(reach, sampling, out);
+    constants.push_back(completion_of(reach) | kHiddenSurface * (surfaces - 1));
+    gpu.dispatch("bitmask", slice_parameters<BitmaskParams>(gbuffer, reach, sampling, plane),
+                 {{kBitmaskDepth, *gbuffer.depth},
+                  {kBitmaskNormal, *gbuffer.normal},
+                  {kBitmaskAo, *out.ao},
+                  {kBitmaskBent, out.bent ? *out.bent : *out.ao},
+                  {kBitmaskList, *out.listed.tiles},
+                  {kBitmaskCounts, *out.listed.counts},
+                  {kBitmaskSites, out.listed.sites ? *out.listed.sites : *out.listed.tiles},
+                  {kBitmaskSiteCounts, out.listed.sites ? *out.listed.site_counts : *out.listed.counts},
+                  {kBitmaskCompleted, out.completed ? *out.completed : *out.ao},
+                  {kBitmaskHidden, gbuffer.hidden ? *gbuffer.hidden : *gbuffer.depth}},
+                 estimate_extent(out.listed), constants);
+  }
 }
 
 void hbao(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, const Sampling& sampling, Elevation elevation,

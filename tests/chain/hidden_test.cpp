@@ -177,6 +177,59 @@ TEST(Hidden, what_is_left_out_by_proof_has_the_bits_of_what_is_computed) {
   }
 }
 
+/// Tiles that are searched with hidden surfaces, and all that are searched.
+std::pair<uint, uint> searched(const HostFrame& frame, const EstimatorSettings& settings) {
+  const FrameOutputs outputs = run_chain(recorder(), upload(recorder(), frame), settings, OutputSettings{});
+  recorder().run();
+  const auto tiles = outputs.tiles->as<TileCounts>()[0];
+  return {tiles.layered, tiles.listed};
+}
+
+/// With something hidden in some columns of the image.
+HostFrame with_hidden_part(HostFrame frame, int first_x, int last_x, float behind, BehindKind kind) {
+  std::vector<float> depth(frame.depth.size(), kSky);
+  const int width = frame.data.width;
+  for (std::size_t p = 0; p < depth.size(); p++) {
+    const int x = int(p) % width;
+    if (x >= first_x && x <= last_x && frame.depth[p] < kSky) depth[p] = frame.depth[p] + behind;
+  }
+  return with_plane(std::move(frame), depth, kind);
+}
+
+// Where nothing is hidden within reach another kernel searches. A bit that differs shows that something was.
+TEST(Hidden, tiles_far_from_what_is_hidden_have_the_bits_of_a_search_for_it) {
+  RandomScenes scenes(21);
+  uint layered = 0, listed = 0;
+  for (int i = 0; i < 12; i++) {
+    HostFrame frame = scenes.next();
+    const double radius = scenes.radius();
+    const int first = scenes.whole(0, frame.data.width - 1);
+    const float behind = float(radius) * 0.01f * float(scenes.whole(1, 150));
+    frame = with_hidden_part(frame, first, first + scenes.whole(0, 12), behind,
+                             i % 2 == 0 ? BehindKind::fronts : BehindKind::backs);
+    EstimatorSettings settings = settings_of(kLayered[i % 6 / 3], radius);
+    settings.falloff = i % 4 != 3 ? Falloff::none : Falloff::smooth;
+    settings.stride = i % 2 == 0 ? 4 : 1;
+    const auto [hidden, all] = searched(frame, settings);
+    layered += hidden;
+    listed += all;
+    const std::vector<float> skipped = run(frame, settings);
+    settings.no_skip = true;
+    EXPECT_TRUE(same_bits(skipped, run(frame, settings))) << "scene " << i;
+  }
+  EXPECT_GT(layered, 0u);
+  EXPECT_LT(layered, listed);
+}
+
+TEST(Hidden, a_tenth_of_the_picture_leaves_the_rest_to_the_plain_search) {
+  const HostFrame room = furnished_room(321, 121).frame;
+  const HostFrame part = with_hidden_part(room, 0, 32, 0.05f, BehindKind::fronts);
+  const auto [layered, listed] = searched(part, settings_of(Estimator::gtao, 0.1));
+  EXPECT_GT(layered, 0u);
+  EXPECT_LT(layered, listed / 3) << "of " << listed;
+  EXPECT_EQ(searched(room, settings_of(Estimator::gtao, 0.1)).first, 0u);
+}
+
 TEST(Hidden, smaller_images_keep_what_their_pixels_hide) {
   Balls balls;
   Balls peeled;
