@@ -43,7 +43,7 @@ class DepthSettlement : private Settlement {
       settle_position();
     else
       settle_plane();
-    note_unused_range();
+    refuse_unused_range();
   }
 
  private:
@@ -61,25 +61,26 @@ class DepthSettlement : private Settlement {
         {NoteCode::negative_depth, "all depth values are negative: their distance from 0 is the depth"});
   }
 
-  /// Notes what the user said of a range that depth of this kind has not.
-  void note_unused_range() {
+  /// Fails with what the user said of a range that depth of this kind has not. Presets serve frames of every kind.
+  void refuse_unused_range() const {
     const DepthRange& said = settings_.depth_range;
     const DepthKind kind = source_.depth_kind;
     const bool is_device = kind == DepthKind::device, is_log = kind == DepthKind::log,
                is_normalized = kind == DepthKind::normalized;
     const bool is_between_planes = is_device || is_normalized || is_log;
-    std::vector<const char*> unused;
+    std::vector<std::string> unused;
     if (said.near && !is_device && !is_normalized) unused.push_back("--near");
     if (said.far && !is_between_planes) unused.push_back("--far");
     if (said.reversed && !is_between_planes) unused.push_back("--reversed-z");
     if (said.device != DeviceRange::zero_to_one && !is_device) unused.push_back("--device-range");
     if (said.log_constant != DepthRange{}.log_constant && !is_log) unused.push_back("--log-constant");
+    const auto& left_out = settings_.from_presets;
+    std::erase_if(unused, [&](const auto& option) { return std::ranges::find(left_out, option) != left_out.end(); });
     if (unused.empty()) return;
-    note(
-        NoteCode::said_otherwise,
-        fmt::format("{} {} no effect, since the depth is read as {}: leave {} out, or say with --depth-kind what it is",
-                    fmt::join(unused, ", "), unused.size() == 1 ? "has" : "have", name_of(kind),
-                    unused.size() == 1 ? "it" : "them"));
+    fail(ErrorKind::usage,
+         "{}: {} {} no effect, since the depth is read as {}: leave {} out, or say with --depth-kind what it is",
+         depth_path(), fmt::join(unused, ", "), unused.size() == 1 ? "has" : "have", name_of(kind),
+         unused.size() == 1 ? "it" : "them");
   }
 
   std::string straight(const DepthScore& score) const {

@@ -79,6 +79,17 @@ RunOptions options_of(const RunOptions& initial, const std::vector<Said>& said) 
   return options;
 }
 
+/// The options that only presets say.
+Words only_in_presets(const std::vector<Said>& said) {
+  Words options;
+  for (const auto& one : said) {
+    const bool is_typed =
+        std::ranges::any_of(said, [&](const Said& other) { return other.is_typed() && other.option == one.option; });
+    if (!is_typed) options.push_back(one.option);
+  }
+  return options;
+}
+
 /// Finds what does not apply to the settings that all of it makes, among what is typed or among the rest.
 std::vector<Said>::const_iterator inapplicable(const RunOptions& initial, const std::vector<Said>& said, bool typed,
                                                Reader reader, std::string& objection) {
@@ -102,6 +113,7 @@ void read_said(RunOptions& options, std::vector<Said> said, Reader reader) {
     said.erase(found);
   if (inapplicable(options, said, true, reader, objection) != said.end()) fail(ErrorKind::usage, "{}", objection);
   options = options_of(options, said);
+  options.settings.input.from_presets = only_in_presets(said);
 }
 
 void require_applicable(const Settings& settings) {

@@ -147,7 +147,7 @@ TEST_F(Doubts, distances_beyond_1_are_not_doubted) {
   EXPECT_THAT(said(), IsEmpty());
 }
 
-TEST_F(Doubts, options_that_the_kind_of_depth_takes_not_are_named) {
+TEST_F(Doubts, options_that_the_kind_of_depth_takes_not_are_refused_and_named) {
   give();
   settings.depth_range.near = 0.1;
   settings.depth_range.far = 100;
@@ -155,18 +155,26 @@ TEST_F(Doubts, options_that_the_kind_of_depth_takes_not_are_named) {
   settings.depth_range.device = DeviceRange::minus_one_to_one;
   settings.depth_range.log_constant = 0.5;
   write_depth([](double z) { return z; }, 1e12f);
-  Notes notes = settled().notes;
-  ASSERT_EQ(notes.size(), 1);
-  EXPECT_EQ(notes[0].code, NoteCode::said_otherwise);
-  EXPECT_THAT(notes[0].text, AllOf(HasSubstr("--near, --far, --reversed-z, --device-range, --log-constant"),
-                                   HasSubstr("planar"), HasSubstr("--depth-kind")));
+  const std::string all = "--near, --far, --reversed-z, --device-range, --log-constant";
+  expect_refused(ErrorKind::usage, {settings.input, all, "planar", "--depth-kind"});
   settings.depth_range = {};
   settings.depth_range.near = 0.1;
   give({{"depth_kind", "log"}, {"far", 100}});
   write_depth([](double z) { return std::log2(1 + z) / std::log2(101.); }, 1);
-  notes = settled().notes;
-  ASSERT_EQ(notes.size(), 1) << "what the camera file says is a kind too";
-  EXPECT_THAT(notes[0].text, AllOf(HasSubstr("--near"), HasSubstr("log"), testing::Not(HasSubstr("--far"))));
+  settings.depth_range.far = 100;
+  expect_refused(ErrorKind::usage, {"--near has no effect", "log"});  // what the camera file says is a kind too
+}
+
+TEST_F(Doubts, of_presets_options_that_the_kind_of_depth_takes_not_are_left_out) {
+  give();
+  settings.depth_range.near = 0.1;
+  settings.depth_range.far = 100;
+  settings.depth_range.reversed = true;
+  settings.from_presets = {"--near", "--far", "--reversed-z"};
+  write_depth([](double z) { return z; }, 1e12f);
+  EXPECT_THAT(said(), IsEmpty());
+  settings.from_presets = {"--near", "--reversed-z"};
+  expect_refused(ErrorKind::usage, {"--far has no effect"});
 }
 
 TEST_F(Doubts, planes_of_a_camera_file_and_those_that_are_used_are_not_doubted) {
