@@ -100,6 +100,15 @@ Condition or_confidence(Condition condition) {
   return condition;
 }
 
+Condition as_search(std::initializer_list<SliceSearch> searches, Condition condition) {
+  const std::vector<SliceSearch> list(searches);
+  condition.words = fmt::format("as {} {}", words_of(list), condition.words);
+  condition.instead = [list, instead = std::move(condition.instead)](const Settings& settings) {
+    return holds(list, settings.estimator.search) ? instead(settings) : "";
+  };
+  return condition;
+}
+
 Condition with_falloff() {
   return {"with a --falloff", [](const Settings& settings) {
             return settings.estimator.falloff == Falloff::none ? "the falloff is none" : "";

@@ -28,6 +28,8 @@ Condition to_steps();
 Condition without_tolerance();
 /// The same, but --aov confidence makes estimates by slices and steps of its own, whatever estimates the AO.
 Condition or_confidence(Condition condition);
+/// The condition is that of these values of --search: its others apply anywhere.
+Condition as_search(std::initializer_list<SliceSearch> searches, Condition condition);
 Condition with_falloff();
 Condition with_denoise(std::initializer_list<Denoise> kinds);
 /// Some pixels take the estimates of others, be it at another density.

@@ -113,8 +113,8 @@ void add_search_rows(std::vector<OptionRow>& rows, EstimatorSettings& s) {
       .choice("--search", s.search,
               "the search along a slice; steps: as many samples as --steps; exact: all pixels, by the outlines of "
               "surfaces; every-pixel: the same one by one, slowly")
-      .applies(to_estimators({Estimator::gtao}))
-      .harmless = {"steps"};
+      .applies(as_search({SliceSearch::exact, SliceSearch::every_pixel}, to_estimators({Estimator::gtao})))
+      .applies(as_search({SliceSearch::steps}, without_tolerance()));
   pixels
       .number("--tolerance", s.tolerance, "", between(0, 1),
               "RMS error of the AO by its search: as many directions of an exact search, tile by tile, as that "

@@ -89,7 +89,8 @@ const std::map<std::string, ConditionCase>& condition_cases() {
        {{with({"--slices", "3"}, crytek), with({"--slices", "3"}, by_error)}, with({"--slices", "3"}, exact)}},
       {"--steps",
        {{with({"--steps", "3"}, crytek), with({"--steps", "3"}, exact)}, {"--steps", "3", "--estimator", "hbao"}}},
-      {"--search", {{with({"--search", "exact"}, crytek)}, {"--search", "every-pixel"}}},
+      {"--search",
+       {{with({"--search", "exact"}, crytek), with({"--search", "steps"}, by_error)}, {"--search", "every-pixel"}}},
       {"--tolerance", {{{"--tolerance", "0.1", "--estimator", "bitmask"}}, {"--tolerance", "0.1"}}},
       {"--samples", {{{"--samples", "8"}}, with({"--samples", "8"}, crytek)}},
       {"--elevation", {{with({"--elevation", "surface"}, crytek)}, {"--elevation", "surface", "--estimator", "hbao"}}},
@@ -308,6 +309,8 @@ TEST_F(Said, values_that_ask_for_nothing_are_taken_anywhere) {
                                                {"--fog-density", "0"},
                                                {"--hidden", "0", "--separation", "auto", "--around", "0"},
                                                {"--stride", "1", "--search", "exact"},
+                                               {"--search", "steps", "--estimator", "crytek"},
+                                               {"--search", "steps", "--tolerance", "0"},
                                                {"--multi-bounce=false"},
                                                {"--depth-kind", "auto", "--position", "p.exr"}})
     EXPECT_EQ(refusal(words), "") << testing::PrintToString(words);
@@ -338,6 +341,13 @@ TEST_F(Said, a_density_is_taken_where_the_other_one_would_share_estimates) {
 TEST_F(Said, the_space_of_positions_may_be_said_of_every_source) {
   for (const char* source : {"arnold", "corona", "pbrt"})
     EXPECT_EQ(refusal({"--source", source, "--position-space", "view"}), "") << source;
+}
+
+// Whether it applies shows only with the frame: then what a preset says is left out, and what is typed is refused.
+TEST_F(Said, options_that_only_presets_say_are_known_as_such) {
+  const Words far = preset("far.toml", {{"--far", {"100"}}, {"--near", {"1"}}});
+  EXPECT_THAT(read(far).settings.input.from_presets, testing::UnorderedElementsAre("--near", "--far"));
+  EXPECT_THAT(read(joined(far, {"--far", "9"})).settings.input.from_presets, ElementsAre("--near"));
 }
 
 // What --aov confidence does not make good is told apart from what it does.
