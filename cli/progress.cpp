@@ -115,13 +115,21 @@ void Progress::show_bar() {
 }
 
 void Progress::working(std::span<const FrameProgress> frames) {
-  constexpr double kLong = 2;  // seconds, from which on a person wants to know
+  if (!options_.quiet) tell_people_of_work(frames);
+  tell_farm_of_work(frames);
+}
+
+void Progress::tell_people_of_work(std::span<const FrameProgress> frames) {
+  constexpr double kLong = 2;          // seconds, from which on a person wants to know
+  constexpr double kMostSilent = 300;  // seconds
   const auto slowest = std::ranges::max_element(frames, {}, &FrameProgress::seconds);
-  if (options_.quiet || slowest == frames.end() || slowest->seconds < kLong) return;
+  if (slowest == frames.end() || slowest->seconds < kLong) return;
   std::string text = fmt::format("{}: {} so far", slowest->input, clock_text(slowest->seconds));
   if (slowest->parts > 1) text += fmt::format(", part {} of {}", slowest->part, slowest->parts);
+  if (slowest->done > 0) text += fmt::format(", {:.0f} % of it computed", std::floor(100 * slowest->done));
   if (options_.kind == "plain" && slowest->seconds >= next_told_s_) {
-    next_told_s_ = 2 * slowest->seconds;  // ever more seldom, so that logs stay short
+    // Ever more seldom, so that logs stay short, but not so seldom that a run seems to hang.
+    next_told_s_ = slowest->seconds + std::min(slowest->seconds, kMostSilent);
     say(printable(text));
   }
   if (options_.kind != "bar") return;
@@ -158,11 +166,31 @@ void Progress::tell_people(const FrameReport& frame) {
   if (options_.kind == "bar" && is_sequence_) show_bar();
 }
 
-void Progress::tell_farm(const FrameReport& frame) const {
-  const double percent = 100.0 * ended_ / std::max(1, frames_);
-  if (options_.kind == "percent") fmt::print("Progress: {:.0f}%\n", std::floor(percent));
-  if (options_.kind == "openjd")
-    fmt::print("openjd_progress: {:.1f}\nopenjd_status: frame {} {}\n", percent, frame.frame, name_of(frame.state));
+/// Whether the run is farther than was told, in the steps that are printed.
+bool Progress::raise_percent(double percent) {
+  const double step = options_.kind == "percent" ? 1 : 0.1;
+  const double before = std::exchange(percent_, std::max(percent_, percent));
+  return std::floor(percent_ / step) > std::floor(before / step);
+}
+
+void Progress::print_percent() const {
+  if (options_.kind == "percent") fmt::print("Progress: {:.0f}%\n", std::floor(percent_));
+  if (options_.kind == "openjd") fmt::print("openjd_progress: {:.1f}\n", percent_);
+}
+
+void Progress::tell_farm(const FrameReport& frame) {
+  raise_percent(100.0 * ended_ / std::max(1, frames_));
+  print_percent();
+  if (options_.kind == "openjd") fmt::print("openjd_status: frame {} {}\n", frame.frame, name_of(frame.state));
+  (void)std::fflush(stdout);
+}
+
+void Progress::tell_farm_of_work(std::span<const FrameProgress> frames) {
+  // A run is whole only once its last frame is written.
+  constexpr double kMost = 99.9;
+  double done = ended_;
+  for (const auto& frame : frames) done += frame.done;
+  if (raise_percent(std::min(100 * done / std::max(1, frames_), kMost))) print_percent();
   (void)std::fflush(stdout);
 }
 

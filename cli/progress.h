@@ -42,8 +42,12 @@ class Progress {
   void say_further();
   void show_bar();
   void tell_people(const FrameReport& frame);
+  void tell_people_of_work(std::span<const FrameProgress> frames);
   /// Lines that a farm reads: it asked for them, so even a quiet run prints them.
-  void tell_farm(const FrameReport& frame) const;
+  void tell_farm(const FrameReport& frame);
+  void tell_farm_of_work(std::span<const FrameProgress> frames);
+  bool raise_percent(double percent);
+  void print_percent() const;
   void take_line_away();
   void log(const std::string& event, const std::string& members);
   std::string rate_text() const;
@@ -57,6 +61,7 @@ class Progress {
   int frames_ = 0, ended_ = 0, computed_ = 0;
   bool is_line_shown_ = false;       // of a bar, or of a frame in work: the next line takes its place
   double next_told_s_ = kFirstTold;  // from when on plain lines tell of a frame again
+  double percent_ = 0;               // of the run, in tenths, the most that was told: it never falls
   Notes of_all_;                     // what was said of the whole run
   std::map<NoteCode, int> further_;  // of a sequence: codes that were said of a frame, and the further frames with them
 };

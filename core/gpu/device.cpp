@@ -204,15 +204,14 @@ void free_memory(Device* device, VkDeviceMemory memory, const VkAllocationCallba
   device->allocations_--;
 }
 
-void Device::submit(std::span<const VkCommandBuffer> submissions, VkFence fence) {
+void Device::submit(std::span<const VkCommandBuffer> submissions, std::span<const VkFence> fences) {
   for (std::size_t i = 0; i < submissions.size(); i++) {
     VkSubmitInfo info{};
     info.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;
     info.commandBufferCount = 1;
     info.pCommandBuffers = &submissions[i];
-    const bool is_last = i + 1 == submissions.size();
     const std::lock_guard lock(mutex_);
-    const VkResult result = vkQueueSubmit(queue_, 1, &info, is_last ? fence : VK_NULL_HANDLE);
+    const VkResult result = vkQueueSubmit(queue_, 1, &info, fences[i]);
     // Whoever recorded them is about to reuse or free what the earlier ones still work on.
     if (result != VK_SUCCESS && i > 0) vkQueueWaitIdle(queue_);
     check(result, "vkQueueSubmit");

@@ -81,9 +81,9 @@ class Device {
   Memory allocate(VkDeviceSize bytes, std::uint32_t type);
 
   VkDevice handle() const { return device_; }
-  /// Hands submissions to the queue, one after the other; `fence` tells when all are done. Where this fails, none of
-  /// them is under way any more.
-  void submit(std::span<const VkCommandBuffer> submissions, VkFence fence);
+  /// Hands submissions to the queue, one after the other; as many fences tell when each is done. Where this fails, none
+  /// of them is under way any more.
+  void submit(std::span<const VkCommandBuffer> submissions, std::span<const VkFence> fences);
   std::uint32_t queue_family() const { return queue_family_; }
   VkPipelineCache pipeline_cache() const { return pipeline_cache_; }
   const VkPhysicalDeviceMemoryProperties& memory() const { return memory_; }

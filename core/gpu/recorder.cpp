@@ -10,8 +10,9 @@
 namespace alcove::gpu {
 namespace {
 
-/// The most dispatches of one submission. A frame of an exact search with 64 slices and eight radii has 4096.
-constexpr std::uint32_t kMostDispatches = 64;
+/// The most dispatches of one submission. A frame of an exact search with 64 slices and eight radii has 4096. Whoever
+/// waits is told how far they are by submissions, so that long frames need some, and a submission costs little.
+constexpr std::uint32_t kMostDispatches = 16;
 
 /// The most workgroups of a slice of a pass that has not been measured. They are half a million pixels: with 8192
 /// samples per pixel (64 slices with 64 steps to each side) they take an integrated GPU some 0.4 s, at the 10^10
@@ -63,12 +64,6 @@ Recorder::Recorder(Device& device) : device_(device) {
   VkCommandPool pool = VK_NULL_HANDLE;
   check(vkCreateCommandPool(device.handle(), &pool_info, nullptr, &pool), "vkCreateCommandPool");
   pool_ = {device.handle(), pool};
-
-  VkFenceCreateInfo fence_info{};
-  fence_info.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO;
-  VkFence fence = VK_NULL_HANDLE;
-  check(vkCreateFence(device.handle(), &fence_info, nullptr, &fence), "vkCreateFence");
-  fence_ = {device.handle(), fence};
 }
 
 Recorder::Submission Recorder::make_submission() {
@@ -78,7 +73,13 @@ Recorder::Submission Recorder::make_submission() {
   query_info.queryCount = 2 * kMostDispatches;
   VkQueryPool queries = VK_NULL_HANDLE;
   check(vkCreateQueryPool(device_.handle(), &query_info, nullptr, &queries), "vkCreateQueryPool");
-  Submission submission{VK_NULL_HANDLE, {device_.handle(), queries}};
+  Submission submission{VK_NULL_HANDLE, {device_.handle(), queries}, {}};
+
+  VkFenceCreateInfo fence_info{};
+  fence_info.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO;
+  VkFence done = VK_NULL_HANDLE;
+  check(vkCreateFence(device_.handle(), &fence_info, nullptr, &done), "vkCreateFence");
+  submission.done = {device_.handle(), done};
 
   VkCommandBufferAllocateInfo buffer_info{};
   buffer_info.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO;
@@ -294,18 +295,33 @@ void Recorder::record_slice(const Kernel& kernel, std::span<const std::byte> par
   submission.timed.push_back(recorded_.size() - 1);
 }
 
-void Recorder::run() {
+/// Waits for the submissions one by one, in the order in which they end.
+void Recorder::wait(const std::function<void(double)>& watch) const {
+  std::size_t all = 0, done = 0;
+  for (std::size_t i = 0; i < used_; i++) all += submissions_[i].timed.size();
+  for (std::size_t i = 0; i < used_; i++) {
+    const VkFence fence = submissions_[i].done;
+    check(vkWaitForFences(device_.handle(), 1, &fence, VK_TRUE, UINT64_MAX), "vkWaitForFences");
+    done += submissions_[i].timed.size();
+    if (watch && all > 0) watch(double(done) / double(all));
+  }
+}
+
+void Recorder::run(const std::function<void(double)>& watch) {
   begin();
   if (!touched_.empty()) barrier();
   end_submission();
   recording_ = false;
   recordings_++;
   std::vector<VkCommandBuffer> submissions;
-  for (std::size_t i = 0; i < used_; i++) submissions.push_back(submissions_[i].commands);
-  const VkFence fence = fence_;
-  check(vkResetFences(device_.handle(), 1, &fence), "vkResetFences");
-  device_.submit(submissions, fence);
-  check(vkWaitForFences(device_.handle(), 1, &fence, VK_TRUE, UINT64_MAX), "vkWaitForFences");
+  std::vector<VkFence> fences;
+  for (std::size_t i = 0; i < used_; i++) {
+    submissions.push_back(submissions_[i].commands);
+    fences.push_back(submissions_[i].done);
+  }
+  check(vkResetFences(device_.handle(), std::uint32_t(fences.size()), fences.data()), "vkResetFences");
+  device_.submit(submissions, fences);
+  wait(watch);
   check_guards();
   replaced_.clear();
   if (device_.has_timestamps()) read_times();
@@ -332,7 +348,7 @@ void Recorder::abandon() {
 /// A pass takes what its slices take together: what other recorders run between them is not its own.
 void Recorder::read_times() {
   for (std::size_t i = 0; i < used_; i++) {
-    const auto& [commands, queries, timed, ms] = submissions_[i];
+    const auto& [commands, queries, fence, timed, ms] = submissions_[i];
     if (timed.empty()) continue;
     std::vector<std::uint64_t> ticks(2 * timed.size());
     check(vkGetQueryPoolResults(device_.handle(), queries, 0, std::uint32_t(ticks.size()), ticks.size() * 8,

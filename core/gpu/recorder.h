@@ -3,6 +3,7 @@
 #pragma once
 
 #include <concepts>
+#include <functional>
 #include <initializer_list>
 #include <map>
 #include <optional>
@@ -79,8 +80,9 @@ class Recorder {
     dispatch_bytes(stem, std::as_bytes(std::span(&params, 1)), bindings, extent, specialization);
   }
 
-  /// Submits what was recorded and waits for it. The recorder is then empty again.
-  void run();
+  /// Submits what was recorded and waits for it. The recorder is then empty again. `watch` is told meanwhile, ever
+  /// again, which share of the dispatches is done, 0 to 1.
+  void run(const std::function<void(double)>& watch = {});
 
   /// Drops what was recorded and not run: its buffers may go.
   void abandon();
@@ -100,6 +102,7 @@ class Recorder {
   struct Submission {
     VkCommandBuffer commands;
     DeviceHandle<VkQueryPool, vkDestroyQueryPool> queries;
+    DeviceHandle<VkFence, vkDestroyFence> done;
     std::vector<std::size_t> timed = {};  // the pass that every two queries are of
     double ms = 0;                        // that it is expected to take
   };
@@ -124,13 +127,13 @@ class Recorder {
                     const Dispatch& dispatch);
   std::optional<double> measured_ms(const RecordedPass& pass) const;
   double slices_of(std::optional<double> ms, double groups, bool is_list) const;
+  void wait(const std::function<void(double)>& watch) const;
   void check_guards() const;
   void read_times();
   void learn();
 
   Device& device_;
   DeviceHandle<VkCommandPool, vkDestroyCommandPool> pool_;
-  DeviceHandle<VkFence, vkDestroyFence> fence_;
   std::vector<Submission> submissions_;
   std::size_t used_ = 0;  // submissions that this recording has begun
   bool recording_ = false;

@@ -32,14 +32,13 @@ struct Dropped {};
 
 class FrameRun {
  public:
-  FrameRun(Lane& lane, const RunContext& run, const Room& room, int frame, const PartWatch& begins_part,
-           FrameReport& report)
+  FrameRun(Lane& lane, const RunContext& run, const Room& room, int frame, const PartWatch& watch, FrameReport& report)
       : gpu_(lane.gpu),
         last_(lane.last),
         run_(run),
         room_(room),
         frame_(frame),
-        begins_part_(begins_part),
+        watch_(watch),
         settings_(run.plan.at(frame)),
         report_(report),
         tally_(report) {
@@ -139,7 +138,7 @@ class FrameRun {
   /// computed again.
   FrameOutputs compute(FrameSource& source, FrameRows* rows, bool reuses) {
     tally_.begin(source.data);
-    begins_part_(++part_, parts_);
+    watch_(++part_, parts_, 0);
     const Stopwatch reading;
     FrameInputs inputs = load_frame(gpu_, source, settings_, frame_, rows);
     inputs.others = others_.seen;
@@ -153,7 +152,7 @@ class FrameRun {
     const FrameOutputs outputs =
         is_same ? last_.outputs() : run_chain(gpu_, inputs, settings_.estimator, settings_.output);
     if (!is_same) {
-      gpu_.run();
+      gpu_.run([&](double done) { watch_(part_, parts_, done); });
       tally_.add_passes(gpu_.passes());
     }
     if (reuses) last_.keep(outputs);
@@ -288,7 +287,7 @@ class FrameRun {
   const RunContext& run_;
   const Room& room_;
   int frame_;
-  const PartWatch& begins_part_;
+  const PartWatch& watch_;
   int part_ = 0, parts_ = 1;
   std::string why_in_parts_;
   Settings settings_;
@@ -299,11 +298,11 @@ class FrameRun {
 
 }  // namespace
 
-FrameReport run_frame(Lane& lane, const RunContext& run, const Room& room, int frame, const PartWatch& begins_part) {
+FrameReport run_frame(Lane& lane, const RunContext& run, const Room& room, int frame, const PartWatch& watch) {
   FrameReport report;
   lane.gpu.abandon();  // what a frame that failed has left
   try {
-    FrameRun(lane, run, room, frame, begins_part, report).run();
+    FrameRun(lane, run, room, frame, watch, report).run();
     report.state = FrameState::done;
   } catch (const Dropped&) {
     report.state = FrameState::dropped;

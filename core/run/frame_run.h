@@ -35,10 +35,10 @@ struct Lane {
   LastFrame last;
 };
 
-/// Told which part of how many of a frame is computed next.
-using PartWatch = std::function<void(int, int)>;
+/// Told which part of how many of a frame is computed, and which share of that part is done, 0 to 1.
+using PartWatch = std::function<void(int part, int parts, double done)>;
 
 /// Reads, computes and writes one frame within the room. Never fails: what went wrong is in the report.
-FrameReport run_frame(Lane& lane, const RunContext& run, const Room& room, int frame, const PartWatch& begins_part);
+FrameReport run_frame(Lane& lane, const RunContext& run, const Room& room, int frame, const PartWatch& watch);
 
 }  // namespace alcove

@@ -102,10 +102,12 @@ class Pipeline {
     finish(attempt.place, attempt.room, std::move(report));
   }
 
-  void begin_part(int frame, int part, int parts) {
+  void note_part(int frame, int part, int parts, double done) {
     const Lock lock(mutex_);
-    working_on_.at(frame).part = part;
-    working_on_.at(frame).parts = parts;
+    Work& work = working_on_.at(frame);
+    work.part = part;
+    work.parts = parts;
+    work.done = (part - 1 + done) / parts;
   }
 
   /// Runs the frame on a lane. Where there is no memory for the lane itself, the report says so as for the frame.
@@ -114,8 +116,8 @@ class Pipeline {
     FrameReport report;
     try {
       lanes_.with([&](Lane& lane) {
-        report =
-            run_frame(lane, run_, attempt.room, frame, [&](int part, int parts) { begin_part(frame, part, parts); });
+        report = run_frame(lane, run_, attempt.room, frame,
+                           [&](int part, int parts, double done) { note_part(frame, part, parts, done); });
         return !report.out_of_memory;
       });
     } catch (const gpu::OutOfMemory& error) {
@@ -212,7 +214,7 @@ class Pipeline {
   std::vector<FrameProgress> in_work() const {
     std::vector<FrameProgress> frames;
     for (const auto& [frame, work] : working_on_)
-      frames.push_back({frame, work.input, work.since.ms() / 1000, work.part, work.parts});
+      frames.push_back({frame, work.input, work.since.ms() / 1000, work.part, work.parts, work.done});
     return frames;
   }
 
@@ -221,6 +223,7 @@ class Pipeline {
     Stopwatch since;
     std::string input;
     int part = 0, parts = 1;
+    double done = 0;  // share
   };
 
   Lanes& lanes_;

@@ -82,6 +82,7 @@ struct FrameProgress {
   double seconds = 0;  // since it was begun
   int part = 0;        // that is being computed; 0: none yet
   int parts = 1;       // that the frame is computed in
+  double done = 0;     // the share of the frame that is computed, 0 to 1
 };
 
 struct RunReport {

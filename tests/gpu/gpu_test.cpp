@@ -238,6 +238,17 @@ std::span<const float> copied_64(std::size_t from, std::size_t to) {
   return copy.as<const float>();
 }
 
+TEST(Recorder, tells_which_share_of_a_long_recording_is_done) {
+  auto& gpu = test::recorder();
+  for (int i = 0; i < 40; i++) record_copy_of_64(64, 64);
+  std::vector<double> shares;
+  gpu.run([&](double share) { shares.push_back(share); });
+  EXPECT_GE(shares.size(), 3u);
+  EXPECT_TRUE(std::ranges::is_sorted(shares)) << testing::PrintToString(shares);
+  EXPECT_LT(shares.front(), 0.5);
+  EXPECT_EQ(shares.back(), 1);
+}
+
 TEST(Guards, who_writes_beside_a_buffer_fails_the_run_by_its_name) {
   EXPECT_EQ(error_of([] { copied_64(64, 64); }), "");
   EXPECT_THAT(error_of([] { copied_64(64, 60); }), HasSubstr("beside the buffer \"copy\""));

@@ -211,18 +211,30 @@ TEST_F(Batch, what_is_noted_of_all_frames_is_said_once) {
   EXPECT_EQ(finished.err.find("half float", first + 1), std::string::npos) << finished;
 }
 
+// Where frames take long there are lines between them, too.
 TEST_F(Batch, progress_for_farms_goes_to_the_standard_output) {
   write_frames(1, 4);
-  const std::string percents = "Progress: 25%\nProgress: 50%\nProgress: 75%\nProgress: 100%\n";
-  EXPECT_EQ(run({"--progress", "percent"}).out, percents);
+  const auto percents_of = [](const std::string& out) {
+    std::vector<int> percents;
+    for (const auto& line : lines_of(out)) {
+      EXPECT_TRUE(line.starts_with("Progress: ") && line.ends_with("%")) << line;
+      percents.push_back(std::stoi(line.substr(10)));
+    }
+    EXPECT_TRUE(std::ranges::is_sorted(percents)) << out;
+    return percents;
+  };
+  EXPECT_THAT(percents_of(run({"--progress", "percent"}).out), testing::IsSupersetOf({25, 50, 75, 100}));
   const Finished quiet = run({"--progress", "percent", "-q"});
-  EXPECT_EQ(quiet.out, percents) << quiet;
+  EXPECT_THAT(percents_of(quiet.out), testing::IsSupersetOf({25, 50, 75, 100})) << quiet;
   EXPECT_THAT(quiet.err, IsEmpty());
   const auto lines = lines_of(run({"--progress", "openjd"}).out);
-  ASSERT_EQ(lines.size(), 8);
-  EXPECT_EQ(lines[0], "openjd_progress: 25.0");
-  EXPECT_THAT(lines[1], StartsWith("openjd_status: frame 1"));
-  EXPECT_EQ(lines[6], "openjd_progress: 100.0");
+  const auto at = [&](const char* begin) {
+    return std::ranges::find_if(lines, [&](const std::string& line) { return line.starts_with(begin); });
+  };
+  ASSERT_NE(at("openjd_status: frame 1"), lines.end());
+  EXPECT_EQ(*std::prev(at("openjd_status: frame 1")), "openjd_progress: 25.0");
+  ASSERT_NE(at("openjd_status: frame 4"), lines.end());
+  EXPECT_EQ(*std::prev(at("openjd_status: frame 4")), "openjd_progress: 100.0");
 }
 
 TEST_F(Batch, plain_progress_is_whole_lines_and_a_summary_at_the_end) {
