@@ -50,6 +50,34 @@ void check_files(const Settings& settings) {
   require_endings(settings.output);
 }
 
+/// The folders of a run's files that are not there before it. At its end those that it has made and put nothing into
+/// are gone again, so that nothing is left of a run that is refused only once its frames are read.
+class NewFolders {
+ public:
+  NewFolders(const FramePlan& plan, const Settings& settings) {
+    for (const int frame : plan.frames()) add(outputs_of(plan.at(frame).output));
+    add(reports_of(settings.output));
+  }
+  NewFolders(const NewFolders&) = delete;
+  NewFolders& operator=(const NewFolders&) = delete;
+  ~NewFolders() {
+    std::error_code not_empty;
+    for (auto folder = folders_.rbegin(); folder != folders_.rend(); folder++) fs::remove(*folder, not_empty);
+  }
+
+ private:
+  void add(const std::vector<OutputFile>& files) {
+    std::error_code error;
+    for (const auto& file : files)
+      for (std::string folder = folder_of(file.path);
+           !folders_.contains(folder) && fs::status(folder, error).type() == fs::file_type::not_found;
+           folder = folder_of(folder))
+        folders_.insert(folder);
+  }
+
+  std::set<std::string> folders_;  // what lies in another one comes after it
+};
+
 /// All files that the run will write can be made; what killed runs have left beside them goes.
 void prepare_outputs(const FramePlan& plan, const Settings& settings) {
   std::set<std::string> folders;
@@ -98,6 +126,7 @@ class Batch {
     report_.input = main_input(settings_.input);
     add_new(report_.notes, notes_on_names(plan_, settings_));
     report_.missing = plan_.missing();
+    const NewFolders new_folders(plan_, settings_);
     if (!plan_.frames().empty()) {
       const Settings first = plan_.at(plan_.frames().front());
       check_files(first);

@@ -220,6 +220,22 @@ TEST_F(Tiles, a_note_says_how_many_there_are_and_why) {
   EXPECT_THAT(note->text, AllOf(HasSubstr(fmt::format("in {} parts", report.frames[0].parts)), HasSubstr("--memory")));
 }
 
+TEST_F(Tiles, that_are_refused_leave_no_folder) {
+  FrameFile repaired = wall_frame(data, display);
+  add_beauty(repaired);
+  repaired.planes.at("ViewLayer.Normal.X")[140000] = NAN;
+  repaired.write(frame);
+  const std::string inner = folder / "new/inner";
+  const Options options{"--radius", "0.05", "--warnings-as-errors", "--composite", inner + "/c.exr"};
+  const RunReport report = run_here(options, 2 * little_memory);
+  ASSERT_TRUE(report.stop);
+  EXPECT_THAT(report.stop->what(), HasSubstr("repaired-normals")) << "or else no tile was begun";
+  EXPECT_FALSE(std::filesystem::exists(folder / "new"));
+  std::filesystem::create_directories(inner);
+  ASSERT_TRUE(run_here(options, 2 * little_memory).stop);
+  EXPECT_TRUE(std::filesystem::exists(inner)) << "it was there before";
+}
+
 TEST_F(Tiles, decode_each_row_once) {
   const RunReport report = run_here({"--radius", "0.05"}, little_memory);
   ASSERT_EQ(report.done, 1) << (report.stop ? report.stop->what() : "");
