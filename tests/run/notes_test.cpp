@@ -1,5 +1,9 @@
 // Warnings and notes: where they are said and recorded, and how they end a run.
 // SPDX-License-Identifier: BSD-3-Clause
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfOutputFile.h>
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -42,6 +46,42 @@ FrameFile frame_with_repairs(std::size_t count) {
   FrameFile file = wall_frame();
   for (std::size_t i = 0; i < count; i++) file.planes.at("ViewLayer.Normal.X")[900 + i] = std::nanf("");
   return file;
+}
+
+/// Posts that stand before the wall, with a pixel between either side and what is behind as wide filters make it.
+void write_with_averaged_edges(const std::string& path) {
+  FrameFile file = wall_frame();
+  auto& depth = file.planes.at("ViewLayer.Depth.Z");
+  constexpr std::array<float, 8> kPosts = {1, 1, 1, 0.9f, 0.8f, 0.8f, 0.8f, 0.9f};
+  for (std::size_t i = 0; i < depth.size(); i++) depth[i] *= kPosts[i % kPosts.size()];
+  file.write(path);
+}
+
+void write_with_short_normals(const std::string& path) {
+  FrameFile file = wall_frame();
+  for (auto& [name, plane] : file.planes)
+    for (std::size_t i = 0; i < plane.size() && name.find("Normal") != name.npos; i += 4) plane[i] *= 0.5f;
+  // Not Blender's names: its Cycles averages them always.
+  file.rename("ViewLayer.Depth.Z", "Z");
+  for (const std::string axis : {"X", "Y", "Z"}) file.rename("ViewLayer.Normal." + axis, "N." + axis);
+  file.write(path);
+}
+
+/// Normals whose channels are named as colours are, which DWA quantizes.
+void write_with_dwa(const std::string& path) {
+  FrameFile file = wall_frame();
+  for (const auto& [axis, color] : {std::pair("X", "R"), {"Y", "G"}, {"Z", "B"}})
+    file.rename(std::string("ViewLayer.Normal.") + axis, std::string("ViewLayer.Normal.") + color);
+  Imf::Header header(file.data.width, file.data.height);
+  header.compression() = Imf::DWAA_COMPRESSION;
+  Imf::FrameBuffer pixels;
+  for (const auto& [name, plane] : file.planes) {
+    header.channels().insert(name, Imf::Channel(Imf::FLOAT));
+    pixels.insert(name, Imf::Slice::Make(Imf::FLOAT, plane.data(), header.dataWindow()));
+  }
+  Imf::OutputFile out(path.c_str(), header);
+  out.setFrameBuffer(pixels);
+  out.writePixels(file.data.height);
 }
 
 std::vector<std::string> codes_in(const json& notes) {
@@ -94,6 +134,25 @@ TEST_F(Notes, that_are_warnings_stand_in_the_header) {
   frame_without_normals().write(frame);
   ASSERT_EQ(run({}).code, 0);
   EXPECT_EQ(text_in(read_header(ao), "alcove/notes"), "(none)") << "a note is no warning";
+}
+
+TEST_F(Notes, tell_of_frames_whose_making_harms_ao) {
+  for (const auto& [write, code, words] :
+       {std::tuple(&write_with_averaged_edges, "antialiased-depth", "render it without filtering"),
+        {&write_with_short_normals, "shortened-normals", "were averaged over the pixel"},
+        {&write_with_dwa, "lossy-compression", "write data with zip"}}) {
+    write(frame);
+    const Finished finished = run({});
+    ASSERT_EQ(finished.code, 0) << finished;
+    EXPECT_THAT(lines_of(finished.err), Contains(AllOf(StartsWith("alcove: warning: " + frame + ": "), HasSubstr(words),
+                                                       testing::EndsWith(fmt::format(" [{}]", code)))))
+        << finished;
+    EXPECT_THAT(text_in(read_header(ao), "alcove/notes"), HasSubstr(std::string(code) + ": "));
+    fs::remove(ao);
+    const Finished refused = run({"--warnings-as-errors"});
+    EXPECT_EQ(refused.code, 3) << refused;
+    EXPECT_FALSE(fs::exists(ao)) << code;
+  }
 }
 
 TEST_F(Notes, of_an_input_that_alcove_has_made_are_not_those_of_the_output) {
