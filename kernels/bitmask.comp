@@ -188,9 +188,8 @@ void search_layers(inout Found found, Receiver r, Side side, Reach reach, Draw d
   const int plane = params.view.size.x * params.view.size.y;
   Sample last = receiver_sample(r);
   Slot slots[kMostSurfaces];
-  for (int j = 0; j < kSurfaces; j++) {
+  for (int j = 0; j < kSurfaces; j++)
     slots[j] = Slot(j == 0 ? r.z : kNoLastSurface, vec2(0), true, true, vec2(side.plane_cot));
-  }
   int k = first_sample(range, int(kSteps), count, side.reach, draw.jitter, step_exponent(int(kSteps), side.reach));
   Interruptions interrupted = Interruptions(k & ~(kWordBits - 1), 0u, 0u);
   for (; k < count && last.offset <= last_step; k++) {

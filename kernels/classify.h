@@ -36,9 +36,8 @@ ALCOVE_CONSTANT uint kClassifyWithBent = 4;
 ALCOVE_CONSTANT uint kClassifyReuses = 16;
 ALCOVE_CONSTANT uint kClassifyTolerates = 32;  // with kClassifyProves
 ALCOVE_CONSTANT uint kClassifyWithCompleted = 64;
-ALCOVE_CONSTANT uint kClassifyLayered =
-    256;  // surfaces may be hidden: tiles are listed as layered where they may count
 ALCOVE_CONSTANT uint kClassifyCompletes = 128;  // with kClassifyProves: surfaces go on beyond what is seen of them
+ALCOVE_CONSTANT uint kClassifyLayered = 256;    // surfaces may be hidden: listed tiles say where these may count
 
 // px of the frame beyond the reach: their depths may decide a normal that was reconstructed, or which surface a pixel
 // of a smaller image shows; of hidden surfaces also which ends with the one before it, and closes its solid

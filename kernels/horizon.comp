@@ -346,9 +346,8 @@ uint sectors_of(Receiver r, Reach reach, Slot slot, float gap_behind, float shif
 /// sectors_of() the runs of those slots whose bits are set; most of the time it is none or one.
 uint sectors_of_ending(Receiver r, Reach reach, Slot slots[kMostSurfaces], uint ending, float gap_behind, float shift) {
   uint sectors = 0u;
-  for (int j = 0; j < kSurfaces; j++) {
+  for (int j = 0; j < kSurfaces; j++)
     sectors |= (ending >> j & 1u) != 0u ? sectors_of(r, reach, slots[j], gap_behind, shift) : 0u;
-  }
   return sectors;
 }
 
@@ -359,9 +358,8 @@ void search_layers(inout Found found, Receiver r, Side side, Reach reach, Draw d
   Sample last = receiver_sample(r);
   const Run nothing = Run(vec2(0), vec2(0), 0.0, 1.0, -1.0, 1.0);
   Slot slots[kMostSurfaces];
-  for (int i = 0; i < kSurfaces; i++) {
+  for (int i = 0; i < kSurfaces; i++)
     slots[i] = Slot(i == 0 ? r.z : kNoLastSurface, 0.0, kSlotAbove | kSlotWithin | kSlotOwn, nothing);
-  }
   int k = first_sample(range, int(kSteps), count, side.reach, draw.jitter, step_exponent(int(kSteps), side.reach));
   Interruptions interrupted = Interruptions(k & ~(kWordBits - 1), 0u, 0u);
   for (; k < count && last.offset <= last_step; k++) {

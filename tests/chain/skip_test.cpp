@@ -355,7 +355,7 @@ TEST(Skip, hundreds_of_random_settings) {
     double open = 0, all = 0;  // tiles with surfaces
   };
   std::map<std::string, Proved> proved;
-  const int count = long_tests() ? 260 : 48;
+  const int count = long_tests() ? 260 : 72;
   for (int i = 0; i < count && !HasFailure(); i++) {
     const EstimatorSettings settings = any_proving(scenes, i);
     HostFrame frame = scenes.next(settings.resolution == Resolution::full ? size_of(i) : 2);
