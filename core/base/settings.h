@@ -77,8 +77,7 @@ struct InputSettings {
   std::optional<double> fov;              // horizontal, degrees, 0 to 180 exclusive
   std::optional<double> focal, aperture;  // mm, > 0: focal length and width of the film back
   std::optional<double> ortho_width;      // scene units across the display window, > 0
-  // options that only presets say, by their long names: where the frame gives one no effect, it is left out
-  std::vector<std::string> from_presets;
+  std::vector<std::string> from_presets;  // long names of options that only presets say: left out where of no effect
 };
 
 /// The estimate of ambient occlusion. The defaults are the preset `standard`.
