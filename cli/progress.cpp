@@ -190,7 +190,8 @@ void Progress::tell_farm_of_work(std::span<const FrameProgress> frames) {
   constexpr double kMost = 99.9;
   double done = ended_;
   for (const auto& frame : frames) done += frame.done;
-  if (raise_percent(std::min(100 * done / std::max(1, frames_), kMost))) print_percent();
+  if (!raise_percent(std::min(100 * done / std::max(1, frames_), kMost))) return;
+  print_percent();
   (void)std::fflush(stdout);
 }
 

@@ -46,13 +46,16 @@ vec2 gradient_of(ivec2 tile, ivec2 size) {
   return 0.5 * vec2(b - a + d - c, c - a + d - b) / vec2(max(last - first, ivec2(1)));
 }
 
-/// The nearness of the hidden surfaces of a pixel: the least, or what is given, and the largest.
+/// The nearness of what is known behind the first surface of a pixel: the least, or what is given, and the largest. One
+/// that closes a solid says something from the front of that on.
 vec2 hidden_range(int index, float first) {
   vec2 range = vec2(first, -kFar);
+  float before = first;
   for (uint k = 0u; k < params.hidden; k++) {
-    const float z = abs(hidden[index + int(k) * params.view.size.x * params.view.size.y]);
-    const float near = nearness(z);
-    range = z < kSkyDepth ? vec2(min(range.x, near), max(range.y, near)) : range;
+    const float z = hidden[index + int(k) * params.view.size.x * params.view.size.y], near = nearness(abs(z));
+    const float begin = z < 0.0 ? before : near;
+    range = abs(z) < kSkyDepth ? vec2(min(range.x, near), max(range.y, begin)) : range;
+    before = near;
   }
   return range;
 }

@@ -24,8 +24,9 @@
 // the border goes on what stands above the tangent planes already, and what faces another way than the receivers, so
 // that it may rise.
 //
-// Where nothing is hidden within kFarEnd radii of the receivers, an estimator finds what it finds where nothing is
-// hidden at all, to the bit (surfaces.glsl). Such tiles are listed without kTileLayered.
+// Where nothing is hidden within kFarEnd radii of the receivers, nor closes a solid whose front is there, an estimator
+// finds what it finds where nothing is hidden at all, to the bit (surfaces.glsl). Such tiles are listed without
+// kTileLayered.
 //
 // With a tolerance a tile is left out, too, where nothing within the radius rises more than an angle: what is that low
 // takes at most the squared sine of the angle from the visibility. The proof is the same with another height: |Q - P| /

@@ -98,7 +98,7 @@ struct TileBounds {
   float plane[kTilePlanes];
   float farthest;         // least nearness; above the level plane where the tile is all sky
   float last;             // the same, of hidden surfaces too
-  float hidden;           // largest nearness of a hidden surface; none: below every nearness
+  float hidden;           // the same, largest: of surfaces, and of the fronts of solids that they close; none: -kFar
   uint mixed;             // 1: its surfaces leave the plane with its own gradient, so that another one may be lower
   uint normal;            // of its receivers, packed; kNoNormal: they have none in common
   float turned;           // length of the largest difference between a receiver's normal and it

@@ -3,8 +3,8 @@
 #   scripts/check.sh           what reads others' bytes, every estimator, and sequences, as continuous integration does
 #   scripts/check.sh all       all sources and all tests
 #   scripts/check.sh coverage  only this: lines and branches of core/ and cli/ that the tests reach
-# Builds are in build-asan/, build-tsan/, build-tidy/, build-fuzz/ and build-coverage/. ALCOVE_STRICT=ON makes warnings in our code errors. Without clang, which only
-# clang-tidy and fuzzing need, both say so and are left out, unless CI is set.
+# Builds are in build-fuzz/ (fuzzing, and the address sanitizer with clang), build-asan/ (without it), build-tsan/, build-tidy/ and build-coverage/. ALCOVE_STRICT=ON
+# makes warnings in our code errors. Without clang, clang-tidy and fuzzing say so and are left out, unless CI is set.
 # SPDX-License-Identifier: BSD-3-Clause
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -58,9 +58,12 @@ fi
 
 # With clang, fuzzing takes the same build.
 sanitized=build-asan arguments=(-DALCOVE_SANITIZE=address,undefined) fuzz_targets=()
+replays=({exr,deep,dds,camera,frames,toml,preset,inspect}_fuzz)
 if has_clang fuzzing; then
   sanitized=build-fuzz arguments=(-DCMAKE_CXX_COMPILER=clang++ -DALCOVE_FUZZ=ON)
-  fuzz_targets=({exr,deep,dds,camera,frames,toml,preset,inspect}_fuzz)
+  fuzz_targets=("${replays[@]}")
+elif [ "${1:-}" != all ]; then
+  tests+=("${replays[@]}")
 fi
 
 step "address and undefined behaviour"

@@ -173,7 +173,7 @@ class Pipeline {
     // Later frames begin with what this one has learned.
     if (report.state == FrameState::done) room_.pixels = std::min(room_.pixels, room.pixels);
     if (watch_.ends(report)) ended_ = true;
-    working_on_.erase(report.frame);
+    if (const auto work = working_on_.find(report.frame); work != working_on_.end()) work->second.has_ended = true;
     finished_.emplace(place, std::move(report));
     changed_.notify_all();
   }
@@ -208,22 +208,26 @@ class Pipeline {
     const auto found = finished_.find(told_);
     if (found == finished_.end()) return {};
     told_++;
+    working_on_.erase(found->second.frame);
     return std::move(finished_.extract(found).mapped());
   }
 
+  /// The frames that are begun and not told of yet.
   std::vector<FrameProgress> in_work() const {
     std::vector<FrameProgress> frames;
     for (const auto& [frame, work] : working_on_)
-      frames.push_back({frame, work.input, work.since.ms() / 1000, work.part, work.parts, work.done});
+      frames.push_back({frame, work.input, work.has_ended ? 0 : work.since.ms() / 1000, work.part, work.parts,
+                        work.has_ended ? 1 : work.done});
     return frames;
   }
 
-  /// A frame in flight.
+  /// A frame that is begun and not told of yet.
   struct Work {
     Stopwatch since;
     std::string input;
     int part = 0, parts = 1;
     double done = 0;  // share
+    bool has_ended = false;
   };
 
   Lanes& lanes_;

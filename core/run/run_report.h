@@ -79,7 +79,7 @@ struct FrameReport {
 struct FrameProgress {
   int frame = 0;
   std::string input;
-  double seconds = 0;  // since it was begun
+  double seconds = 0;  // since it was begun; 0 once it has ended, while it waits for earlier ones to be told
   int part = 0;        // that is being computed; 0: none yet
   int parts = 1;       // that the frame is computed in
   double done = 0;     // the share of the frame that is computed, 0 to 1

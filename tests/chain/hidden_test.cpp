@@ -200,13 +200,15 @@ HostFrame with_hidden_part(HostFrame frame, int first_x, int last_x, float behin
 TEST(Hidden, tiles_far_from_what_is_hidden_have_the_bits_of_a_search_for_it) {
   RandomScenes scenes(21);
   uint layered = 0, listed = 0;
-  for (int i = 0; i < 12; i++) {
+  for (int i = 0; i < 24; i++) {
     HostFrame frame = scenes.next();
     const double radius = scenes.radius();
     const int first = scenes.whole(0, frame.data.width - 1);
-    const float behind = float(radius) * 0.01f * float(scenes.whole(1, 150));
+    // A back that lies far away says how thick a near front is.
+    const bool has_backs = i % 2 == 1;
+    const float behind = float(radius) * 0.01f * float(scenes.whole(1, has_backs ? 1000 : 150));
     frame = with_hidden_part(frame, first, first + scenes.whole(0, 12), behind,
-                             i % 2 == 0 ? BehindKind::fronts : BehindKind::backs);
+                             has_backs ? BehindKind::backs : BehindKind::fronts);
     EstimatorSettings settings = settings_of(kLayered[i % 6 / 3], radius);
     settings.falloff = i % 4 != 3 ? Falloff::none : Falloff::smooth;
     settings.stride = i % 2 == 0 ? 4 : 1;

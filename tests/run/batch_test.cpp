@@ -211,7 +211,7 @@ TEST_F(Batch, what_is_noted_of_all_frames_is_said_once) {
   EXPECT_EQ(finished.err.find("half float", first + 1), std::string::npos) << finished;
 }
 
-// Where frames take long there are lines between them, too.
+// Where frames take long there are lines between them, too. One after the other, so that no later one is told before.
 TEST_F(Batch, progress_for_farms_goes_to_the_standard_output) {
   write_frames(1, 4);
   const auto percents_of = [](const std::string& out) {
@@ -223,11 +223,12 @@ TEST_F(Batch, progress_for_farms_goes_to_the_standard_output) {
     EXPECT_TRUE(std::ranges::is_sorted(percents)) << out;
     return percents;
   };
-  EXPECT_THAT(percents_of(run({"--progress", "percent"}).out), testing::IsSupersetOf({25, 50, 75, 100}));
-  const Finished quiet = run({"--progress", "percent", "-q"});
+  EXPECT_THAT(percents_of(run({"--progress", "percent", "--threads", "1"}).out),
+              testing::IsSupersetOf({25, 50, 75, 100}));
+  const Finished quiet = run({"--progress", "percent", "--threads", "1", "-q"});
   EXPECT_THAT(percents_of(quiet.out), testing::IsSupersetOf({25, 50, 75, 100})) << quiet;
   EXPECT_THAT(quiet.err, IsEmpty());
-  const auto lines = lines_of(run({"--progress", "openjd"}).out);
+  const auto lines = lines_of(run({"--progress", "openjd", "--threads", "1"}).out);
   const auto at = [&](const char* begin) {
     return std::ranges::find_if(lines, [&](const std::string& line) { return line.starts_with(begin); });
   };
