@@ -259,8 +259,10 @@ TEST_F(Driver, of_a_cpu_gets_a_frame_at_once_unless_it_is_very_long) {
   EXPECT_EQ(fake.submissions, 1);
   fake.submissions = 0;
   ao_of(recorder, exact_settings(40));
-  EXPECT_THAT(fake.submissions, AllOf(testing::Ge(2), testing::Le(4)));
-  EXPECT_THAT(recorder.passes(), SizeIs(testing::Ge(80)));
+  const int passes = int(recorder.passes().size());
+  EXPECT_GE(passes, 80);
+  // So that whoever waits is told how far it is, but far fewer than passes.
+  EXPECT_THAT(fake.submissions, AllOf(testing::Ge(passes / 32), testing::Le(passes / 10)));
 }
 
 TEST_F(Driver, that_refuses_a_part_leaves_the_recorder_usable) {
