@@ -1,23 +1,9 @@
-// Parameters and bindings of horizon.comp.
+// Specialization of horizon.comp; its parameters and bindings are those of slices.h.
 // SPDX-License-Identifier: BSD-3-Clause
 #ifndef ALCOVE_HORIZON_H
 #define ALCOVE_HORIZON_H
-#include "shared.h"
+#include "slices.h"
 ALCOVE_BEGIN
-
-ALCOVE_CONSTANT uint kHorizonDepth = 0;   // in: one float per pixel, from prepare
-ALCOVE_CONSTANT uint kHorizonNormal = 1;  // in: one uint per pixel, from prepare
-// out: one float per pixel, visibility in [0, 1], 1 = open; the plane of the parameters
-ALCOVE_CONSTANT uint kHorizonAo = 2;
-// out: planes x, y, z of the mean open direction b in view space as 0.5 + 0.5 b; only with kWithBent
-ALCOVE_CONSTANT uint kHorizonBent = 3;
-ALCOVE_CONSTANT uint kHorizonList = 4;        // in: one ListedTile per tile, from classify: what to estimate
-ALCOVE_CONSTANT uint kHorizonCounts = 5;      // in: TileCounts
-ALCOVE_CONSTANT uint kHorizonSites = 7;       // in: one uint per site, from list_sites; only if sparse
-ALCOVE_CONSTANT uint kHorizonSiteCounts = 8;  // in: SiteCounts; only if sparse
-// out: one float per pixel, the visibility that completed surfaces took; only with kWithCompleted
-ALCOVE_CONSTANT uint kHorizonCompleted = 6;
-ALCOVE_CONSTANT uint kHorizonHidden = 9;  // in: planes of hidden surfaces, see GBuffer; with more than one surface
 
 ALCOVE_CONSTANT uint kHorizonSlicesId = 0;  // specialization: slices per pixel
 ALCOVE_CONSTANT uint kHorizonStepsId = 1;   // specialization: steps to each side of a slice
@@ -30,24 +16,11 @@ ALCOVE_CONSTANT uint kHorizonSolidId = 4;
 ALCOVE_CONSTANT uint kWithBent = 4;          // a bit beside kFalloff*: bent normals too
 ALCOVE_CONSTANT uint kWithCompleted = 8;     // another one: what completed surfaces take, too
 ALCOVE_CONSTANT uint kThicknessWidth = 0;    // as deep as wide
-ALCOVE_CONSTANT uint kThicknessLength = 1;   // as HorizonParams says
+ALCOVE_CONSTANT uint kThicknessLength = 1;   // as SlicesParams says
 ALCOVE_CONSTANT uint kThicknessEndless = 2;  // solid as far as the sphere of the radius
 ALCOVE_CONSTANT uint kCompletesBorder = 4;   // a bit beside them: surfaces go on beyond the image's border
 ALCOVE_CONSTANT uint kCompletesHidden = 8;   // another one: they go on behind what is nearer, if not kThicknessEndless
 ALCOVE_CONSTANT uint kHiddenSurface = 16;
-
-struct HorizonParams {
-  View view;
-  float radius;          // scene units
-  float falloff_start;   // scene units, below the radius
-  ivec2 noise_origin;    // px: added to a pixel, so that crops and tiles share one noise pattern
-  vec2 noise_shift;      // in [0, 1): the pattern's shift for this frame and seed
-  float bias;            // sine of the elevation above the tangent plane below which nothing blocks
-  float thickness;       // scene units, of kThicknessLength; infinite of kThicknessEndless
-  uint plane;            // of the output, which has one plane per radius
-  vec3 depth_precision;  // scene units: a depth z may be off by x + y z + z z^2
-};
-ALCOVE_PARAMS(HorizonParams)
 
 ALCOVE_END
 #endif

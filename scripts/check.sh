@@ -58,7 +58,9 @@ fi
 
 # With clang, fuzzing takes the same build.
 sanitized=build-asan arguments=(-DALCOVE_SANITIZE=address,undefined) fuzz_targets=()
-replays=({exr,deep,dds,camera,frames,toml,preset,inspect}_fuzz)
+replays=(tests/fuzz/*_fuzz.cpp)
+replays=("${replays[@]##*/}")
+replays=("${replays[@]%.cpp}")
 if has_clang fuzzing; then
   sanitized=build-fuzz arguments=(-DCMAKE_CXX_COMPILER=clang++ -DALCOVE_FUZZ=ON)
   fuzz_targets=("${replays[@]}")

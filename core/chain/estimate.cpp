@@ -54,32 +54,10 @@ vec2 noise_shift(int frame, std::uint32_t seed) {
   return {shift(kR2X, kRootX), shift(kR2Y, kRootY)};
 }
 
-/// The parameters of an estimator that searches slices.
-template <class Params>
-Params slice_parameters(const GBuffer& gbuffer, const Reach& reach, const Sampling& sampling, uint plane) {
-  Params params{};
-  params.view = gbuffer.view;
-  params.radius = reach.radius;
-  params.falloff_start = reach.falloff_start;
-  params.noise_origin = gbuffer.grid.origin;
-  params.noise_shift = sampling.noise_shift;
-  params.thickness = reach.thickness;
-  params.bias = reach.bias;
-  params.plane = plane;
-  params.depth_precision = gbuffer.depth_precision;
-  return params;
-}
-
 std::vector<uint> slice_constants(const Reach& reach, const Sampling& sampling, const Estimate& out) {
   return {uint(sampling.slices), uint(sampling.steps),
           uint(reach.falloff) | (out.bent ? kWithBent : 0) | (out.completed ? kWithCompleted : 0),
           out.listed.sites ? 1u : 0u};
-}
-
-/// How many surfaces a pixel may have in each dispatch of an estimator that searches slices: hidden ones cost much, and
-/// most tiles may have none within reach.
-std::vector<uint> surfaces_searched(const GBuffer& gbuffer) {
-  return gbuffer.surfaces > 1 ? std::vector<uint>{1, gbuffer.surfaces} : std::vector<uint>{1};
 }
 
 /// What is completed, as kernels take it.
@@ -100,6 +78,38 @@ gpu::Extent tile_extent(const View& view) {
 /// Groups of tiles in x and y.
 gpu::Extent group_extent(const View& view) {
   return {groups_of(view.size.x, uint(kTile * kTileGroup)), groups_of(view.size.y, uint(kTile * kTileGroup))};
+}
+
+/// Estimates by one of the kernels that search slices; behind: how they take what is behind samples, bits below
+/// kHiddenSurface. Hidden surfaces cost much, and most tiles may have none within reach: those are dispatched apart.
+void search_slices(gpu::Recorder& gpu, const char* kernel, const GBuffer& gbuffer, const Reach& reach,
+                   const Sampling& sampling, const Estimate& out, uint plane, uint behind) {
+  SlicesParams params{};
+  params.view = gbuffer.view;
+  params.radius = reach.radius;
+  params.falloff_start = reach.falloff_start;
+  params.noise_origin = gbuffer.grid.origin;
+  params.noise_shift = sampling.noise_shift;
+  params.thickness = reach.thickness;
+  params.bias = reach.bias;
+  params.plane = plane;
+  params.depth_precision = gbuffer.depth_precision;
+  for (const uint surfaces : gbuffer.surfaces > 1 ? std::vector<uint>{1, gbuffer.surfaces} : std::vector<uint>{1}) {
+    std::vector<uint> constants = slice_constants(reach, sampling, out);
+    constants.push_back(behind | kHiddenSurface * (surfaces - 1));
+    gpu.dispatch(kernel, params,
+                 {{kSlicesDepth, *gbuffer.depth},
+                  {kSlicesNormal, *gbuffer.normal},
+                  {kSlicesAo, *out.ao},
+                  {kSlicesBent, out.bent ? *out.bent : *out.ao},
+                  {kSlicesList, *out.listed.tiles},
+                  {kSlicesCounts, *out.listed.counts},
+                  {kSlicesSites, out.listed.sites ? *out.listed.sites : *out.listed.tiles},
+                  {kSlicesSiteCounts, out.listed.sites ? *out.listed.site_counts : *out.listed.counts},
+                  {kSlicesCompleted, out.completed ? *out.completed : *out.ao},
+                  {kSlicesHidden, gbuffer.hidden ? *gbuffer.hidden : *gbuffer.depth}},
+                 estimate_extent(out.listed), constants);
+  }
 }
 
 }  // namespace
@@ -259,42 +269,13 @@ TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const Bounds& boun
 
 void horizon(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, const Sampling& sampling,
              const Estimate& out, uint plane) {
-  for (const uint surfaces : surfaces_searched(gbuffer)) {
-    std::vector<uint> constants = slice_constants(reach, sampling, out);
-    constants.push_back(thickness_rule_of(reach.thickness) | completion_of(reach) | kHiddenSurface * (surfaces - 1));
-    gpu.dispatch("horizon", slice_parameters<HorizonParams>(gbuffer, reach, sampling, plane),
-                 {{kHorizonDepth, *gbuffer.depth},
-                  {kHorizonNormal, *gbuffer.normal},
-                  {kHorizonAo, *out.ao},
-                  {kHorizonBent, out.bent ? *out.bent : *out.ao},
-                  {kHorizonList, *out.listed.tiles},
-                  {kHorizonCounts, *out.listed.counts},
-                  {kHorizonSites, out.listed.sites ? *out.listed.sites : *out.listed.tiles},
-                  {kHorizonSiteCounts, out.listed.sites ? *out.listed.site_counts : *out.listed.counts},
-                  {kHorizonCompleted, out.completed ? *out.completed : *out.ao},
-                  {kHorizonHidden, gbuffer.hidden ? *gbuffer.hidden : *gbuffer.depth}},
-                 estimate_extent(out.listed), constants);
-  }
+  search_slices(gpu, "horizon", gbuffer, reach, sampling, out, plane,
+                thickness_rule_of(reach.thickness) | completion_of(reach));
 }
 
 void bitmask(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, const Sampling& sampling,
              const Estimate& out, uint plane) {
-  for (const uint surfaces : surfaces_searched(gbuffer)) {
-    std::vector<uint> constants = slice_constants(reach, sampling, out);
-    constants.push_back(completion_of(reach) | kHiddenSurface * (surfaces - 1));
-    gpu.dispatch("bitmask", slice_parameters<BitmaskParams>(gbuffer, reach, sampling, plane),
-                 {{kBitmaskDepth, *gbuffer.depth},
-                  {kBitmaskNormal, *gbuffer.normal},
-                  {kBitmaskAo, *out.ao},
-                  {kBitmaskBent, out.bent ? *out.bent : *out.ao},
-                  {kBitmaskList, *out.listed.tiles},
-                  {kBitmaskCounts, *out.listed.counts},
-                  {kBitmaskSites, out.listed.sites ? *out.listed.sites : *out.listed.tiles},
-                  {kBitmaskSiteCounts, out.listed.sites ? *out.listed.site_counts : *out.listed.counts},
-                  {kBitmaskCompleted, out.completed ? *out.completed : *out.ao},
-                  {kBitmaskHidden, gbuffer.hidden ? *gbuffer.hidden : *gbuffer.depth}},
-                 estimate_extent(out.listed), constants);
-  }
+  search_slices(gpu, "bitmask", gbuffer, reach, sampling, out, plane, completion_of(reach));
 }
 
 void hbao(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, const Sampling& sampling, Elevation elevation,

@@ -30,7 +30,7 @@ DepthTerms depth_terms(const DepthMap& map) {
 /// The terms of a plane behind the first surface.
 LayerTerms layer_terms(const Reading& reading, const BehindPlane& plane) {
   const DepthMap map = behind_map_of(reading, plane);
-  return {map.form, plane.kind, depth_terms(map), plane.is_whole};
+  return {map.form, plane.kind, depth_terms(map)};
 }
 
 PrepareParams prepare_params(const Reading& reading, const DepthMap& map, const View& view, bool has_normals) {
@@ -62,6 +62,7 @@ FrameInputs inputs_of(const Reading& reading, const RawPlaneArray<gpu::Buffer*>&
   inputs.prepare = prepare_params(reading, inputs.depth_map, inputs.view, normal != nullptr);
   inputs.normal_form = normal_form_of(reading, normal ? planes_in(*normal, inputs.view) : 0);
   for (const auto& plane : reading.behind) inputs.behind.push_back(layer_terms(reading, plane));
+  inputs.behind_lists_all = list_all(reading.behind);
   inputs.is_sky = is_all_sky(inputs.depth_map, planes[RawPlane::depth]->as<const float>());
   return inputs;
 }

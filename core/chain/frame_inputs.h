@@ -17,7 +17,6 @@ struct LayerTerms {
   uint form;  // kDepth*
   BehindKind kind;
   DepthTerms depth;
-  bool is_whole = false;  // see BehindPlane
 };
 
 /// Pixels around a frame.
@@ -42,6 +41,7 @@ struct FrameInputs {
   PrepareParams prepare{};            // the meaning of depth and normals, as prepare.comp takes it
   uint normal_form = kNormalNone;     // of kernels/prepare.h
   std::vector<LayerTerms> behind;     // of each plane of RawPlane::behind
+  bool behind_lists_all = false;      // see list_all()
   std::vector<OtherView> others;      // in any order: what they see behind the first surface counts as hidden
   Margin margin{};                    // where others show what lies around the frame; see margin.h
   double albedo_value = 0;            // for multi-bounce where there are no planes of it

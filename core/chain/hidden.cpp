@@ -75,9 +75,7 @@ GBuffer layers(gpu::Recorder& gpu, const GBuffer& prepared, const FrameInputs& f
   const uint kept = std::min(uint(layering.kept), planes + warped_planes);
   gbuffer.surfaces = 1 + kept;
   gbuffer.hidden = &gpu.buffer("hidden", kept * plane_bytes(prepared.view), gpu::Use::device);
-  gbuffer.hides_no_more = !warped && std::ranges::all_of(frame.behind, [](const LayerTerms& terms) {
-    return terms.kind == BehindKind::surfaces && terms.is_whole;
-  });
+  gbuffer.hides_no_more = !warped && frame.behind_lists_all;
   gbuffer.layer_counts = &gpu.buffer("layer counts", sizeof(LayerCounts), gpu::Use::device);
   gpu.clear(*gbuffer.layer_counts);
   const gpu::Buffer& open = gpu.buffer("open surfaces", plane_bytes(prepared.view), gpu::Use::device);

@@ -27,7 +27,7 @@ void add(std::uint64_t& hash, const PrepareParams& params) {
 
 void add(std::uint64_t& hash, const LayerTerms& terms) {
   static_assert(std::has_unique_object_representations_v<uint> && sizeof(DepthTerms) == 10 * sizeof(float));
-  add(hash, terms.form, std::uint32_t(terms.kind), terms.is_whole);
+  add(hash, terms.form, std::uint32_t(terms.kind));
   hash = XXH3_64bits_withSeed(&terms.depth, sizeof(terms.depth), hash);
 }
 
@@ -81,7 +81,7 @@ LastFrame::Hashes LastFrame::hashes_of(const FrameInputs& frame, const Estimator
   Hashes hashes;
   add(hashes.meaning, frame.prepare);
   add(hashes.meaning, frame.depth_map.form, frame.normal_form, frame.noise_origin.x, frame.noise_origin.y,
-      frame.albedo_value);
+      frame.albedo_value, frame.behind_lists_all);
   for (const double at : frame.depth_precision.at) add(hashes.meaning, at);
   for (const double at : frame.hidden_precision.at) add(hashes.meaning, at);
   for (const auto& terms : frame.behind) add(hashes.meaning, terms);

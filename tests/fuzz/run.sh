@@ -14,7 +14,11 @@ if [ "${1:-}" = --seconds ]; then
   shift 2
 fi
 targets=("$@")
-[ ${#targets[@]} -gt 0 ] || targets=(exr deep dds camera frames toml preset inspect)
+if [ ${#targets[@]} = 0 ]; then
+  targets=(tests/fuzz/*_fuzz.cpp)
+  targets=("${targets[@]##*/}")
+  targets=("${targets[@]%_fuzz.cpp}")
+fi
 cmake -S . -B build-fuzz -G Ninja -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_UNITY_BUILD=ON -DALCOVE_FUZZ=ON -DALCOVE_STRICT="${ALCOVE_STRICT:-OFF}" >/dev/null
 cmake --build build-fuzz --target "${targets[@]/%/_fuzz}" >build-fuzz/build.log || { cat build-fuzz/build.log; exit 1; }
 mkdir -p build-fuzz/found
