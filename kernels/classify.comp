@@ -397,6 +397,18 @@ Shared shared_by(ivec2 tile, ivec2 count) {
   return block;
 }
 
+/// The tiles of a block whose estimates anybody needs, as bits.
+uint needed_tiles(ivec2 tile) {
+  uint needed = 0u;
+  for (int i = 0; i < kBlock * kBlock; i++) {
+    const ivec2 first = tile_of_block(tile, i) * kTile;
+    const bool is_needed =
+        all(lessThan(first, params.needed_to)) && all(greaterThan(first + kTile, params.needed_from));
+    needed |= is_needed ? 1u << uint(i) : 0u;
+  }
+  return needed;
+}
+
 void main() {
   const View view = params.view;
   const ivec2 count = tiles_of(view.size);
@@ -424,6 +436,7 @@ void main() {
     near = min(near, z);
     far = max(far, z);
   }
+  if (kSkips) seen &= needed_tiles(tile);
   atomicOr(surfaces[row], seen);
   if (kReuses) {
     atomicMin(nearest[row], floatBitsToUint(near));

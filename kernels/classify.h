@@ -57,6 +57,8 @@ struct ClassifyParams {
   ivec2 overhang;        // px of the first pixel of the image that are outside of the frame
   int factor;
   int margin;  // px of the frame beyond the reach whose depths may decide what is within it
+  // px of the image: from and up to where anybody needs estimates; with kClassifySkips tiles outside count as sky
+  ivec2 needed_from, needed_to;
 };
 ALCOVE_PARAMS(ClassifyParams)
 

@@ -26,7 +26,7 @@ struct SlicesParams {
   ivec2 noise_origin;    // px: added to a pixel, so that crops and tiles share one noise pattern
   vec2 noise_shift;      // in [0, 1): the pattern's shift for this frame and seed
   float bias;            // sine of the elevation above the tangent plane below which nothing blocks
-  float thickness;       // scene units; infinite allowed; of horizon with kThicknessLength, of bitmask 0: as deep as wide
+  float thickness;       // scene units; infinite allowed; horizon: with kThicknessLength; bitmask: 0: as deep as wide
   uint plane;            // of the output, which has one plane per radius
   vec3 depth_precision;  // scene units: a depth z may be off by x + y z + z z^2
 };

@@ -23,7 +23,7 @@ gpu::Buffer& confidence(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameI
   const EstimatorSettings bracket = bracket_of(settings);
   const double radius = radii_of(settings).back();
   const Sampling sampling = sampling_of(bracket, frame.frame);
-  const Skipping skipping = skipping_of(bracket, frame.changes);
+  const Skipping skipping = skipping_of(bracket, frame, gbuffer.grid);
   const Denoiser denoiser = denoiser_of(bracket);
   const Sites chosen = sites(gpu, gbuffer, site_rule_of(bracket), "bracket ");
   const Bounds surfaces = bounds(gpu, gbuffer, skipping);

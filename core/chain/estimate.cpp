@@ -16,6 +16,7 @@
 #include "kernels/crytek.h"
 #include "kernels/hbao.h"
 #include "kernels/horizon.h"
+#include "kernels/refine.h"
 
 namespace alcove {
 namespace {
@@ -80,10 +81,8 @@ gpu::Extent group_extent(const View& view) {
   return {groups_of(view.size.x, uint(kTile * kTileGroup)), groups_of(view.size.y, uint(kTile * kTileGroup))};
 }
 
-/// Estimates by one of the kernels that search slices; behind: how they take what is behind samples, bits below
-/// kHiddenSurface. Hidden surfaces cost much, and most tiles may have none within reach: those are dispatched apart.
-void search_slices(gpu::Recorder& gpu, const char* kernel, const GBuffer& gbuffer, const Reach& reach,
-                   const Sampling& sampling, const Estimate& out, uint plane, uint behind) {
+/// The parameters of an estimator that searches slices.
+SlicesParams slice_parameters(const GBuffer& gbuffer, const Reach& reach, const Sampling& sampling, uint plane) {
   SlicesParams params{};
   params.view = gbuffer.view;
   params.radius = reach.radius;
@@ -94,22 +93,27 @@ void search_slices(gpu::Recorder& gpu, const char* kernel, const GBuffer& gbuffe
   params.bias = reach.bias;
   params.plane = plane;
   params.depth_precision = gbuffer.depth_precision;
-  for (const uint surfaces : gbuffer.surfaces > 1 ? std::vector<uint>{1, gbuffer.surfaces} : std::vector<uint>{1}) {
-    std::vector<uint> constants = slice_constants(reach, sampling, out);
-    constants.push_back(behind | kHiddenSurface * (surfaces - 1));
-    gpu.dispatch(kernel, params,
-                 {{kSlicesDepth, *gbuffer.depth},
-                  {kSlicesNormal, *gbuffer.normal},
-                  {kSlicesAo, *out.ao},
-                  {kSlicesBent, out.bent ? *out.bent : *out.ao},
-                  {kSlicesList, *out.listed.tiles},
-                  {kSlicesCounts, *out.listed.counts},
-                  {kSlicesSites, out.listed.sites ? *out.listed.sites : *out.listed.tiles},
-                  {kSlicesSiteCounts, out.listed.sites ? *out.listed.site_counts : *out.listed.counts},
-                  {kSlicesCompleted, out.completed ? *out.completed : *out.ao},
-                  {kSlicesHidden, gbuffer.hidden ? *gbuffer.hidden : *gbuffer.depth}},
-                 estimate_extent(out.listed), constants);
-  }
+  return params;
+}
+
+/// The buffers of such an estimator.
+std::vector<gpu::Binding> slice_buffers(const GBuffer& gbuffer, const Estimate& out) {
+  return {{kSlicesDepth, *gbuffer.depth},
+          {kSlicesNormal, *gbuffer.normal},
+          {kSlicesAo, *out.ao},
+          {kSlicesBent, out.bent ? *out.bent : *out.ao},
+          {kSlicesList, *out.listed.tiles},
+          {kSlicesCounts, *out.listed.counts},
+          {kSlicesSites, out.listed.sites ? *out.listed.sites : *out.listed.tiles},
+          {kSlicesSiteCounts, out.listed.sites ? *out.listed.site_counts : *out.listed.counts},
+          {kSlicesCompleted, out.completed ? *out.completed : *out.ao},
+          {kSlicesHidden, gbuffer.hidden ? *gbuffer.hidden : *gbuffer.depth}};
+}
+
+/// How many surfaces a pixel may have in each dispatch of an estimator that searches slices: hidden ones cost much, and
+/// most tiles may have none within reach.
+std::vector<uint> surfaces_searched(const GBuffer& gbuffer) {
+  return gbuffer.surfaces > 1 ? std::vector<uint>{1, gbuffer.surfaces} : std::vector<uint>{1};
 }
 
 }  // namespace
@@ -139,20 +143,27 @@ Sampling sampling_of(const EstimatorSettings& settings, int frame) {
   return {settings.slices, settings.steps, noise_shift(settings.noise == Noise::animated ? frame : 0, settings.seed)};
 }
 
-Skipping skipping_of(const EstimatorSettings& settings, const gpu::Buffer* changes) {
+int filter_reach_of(const EstimatorSettings& settings) {
+  const int denoised = denoise_reach_of(settings) + (is_adaptive(settings) ? kSiteReach : 0);
+  const int refined = settings.tolerance > 0 ? kRefineReach : 0;
+  return int(settings.resolution) * (denoised + refined + (settings.resolution == Resolution::full ? 0 : 2));
+}
+
+Skipping skipping_of(const EstimatorSettings& settings, const FrameInputs& frame, const BlockGrid& grid) {
   return {!settings.no_skip,
           proves(settings),
           searches_slices(settings),
           settings.skip_tolerance,
-          settings.no_skip ? nullptr : changes,
-          completes_anywhere(settings)};
+          settings.no_skip ? nullptr : frame.changes,
+          completes_anywhere(settings),
+          without_margin(frame, grid, filter_reach_of(settings))};
 }
 
 Estimate estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const Sites& sites, const FrameInputs& frame,
                   const EstimatorSettings& settings, bool with_bent, bool with_completed) {
   const auto radii = radii_of(settings);
   const Sampling sampling = sampling_of(settings, frame.frame);
-  const Skipping skipping = skipping_of(settings, frame.changes);
+  const Skipping skipping = skipping_of(settings, frame, gbuffer.grid);
   const SearchDirections directions = search_directions(settings);
   const VolumeSamples volume{settings.samples, settings.sample_kernel, settings.range_check};
   const bool is_exact = searches_exactly(settings);
@@ -248,7 +259,9 @@ TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const Bounds& boun
                               gbuffer.grid.frame_size,
                               gbuffer.grid.overhang,
                               gbuffer.grid.factor,
-                              gbuffer.surfaces > 1 ? kHiddenChangeMargin : kChangeMargin};
+                              gbuffer.surfaces > 1 ? kHiddenChangeMargin : kChangeMargin,
+                              skipping.needed.from,
+                              skipping.needed.to};
   gpu.dispatch("classify", params,
                {{kClassifyBounds, bounds.tiles ? *bounds.tiles : *list.tiles},
                 {kClassifyGroups, bounds.groups ? *bounds.groups : *list.tiles},
@@ -269,13 +282,22 @@ TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const Bounds& boun
 
 void horizon(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, const Sampling& sampling,
              const Estimate& out, uint plane) {
-  search_slices(gpu, "horizon", gbuffer, reach, sampling, out, plane,
-                thickness_rule_of(reach.thickness) | completion_of(reach));
+  for (const uint surfaces : surfaces_searched(gbuffer)) {
+    std::vector<uint> constants = slice_constants(reach, sampling, out);
+    constants.push_back(thickness_rule_of(reach.thickness) | completion_of(reach) | kHiddenSurface * (surfaces - 1));
+    gpu.dispatch("horizon", slice_parameters(gbuffer, reach, sampling, plane), slice_buffers(gbuffer, out),
+                 estimate_extent(out.listed), constants);
+  }
 }
 
 void bitmask(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, const Sampling& sampling,
              const Estimate& out, uint plane) {
-  search_slices(gpu, "bitmask", gbuffer, reach, sampling, out, plane, completion_of(reach));
+  for (const uint surfaces : surfaces_searched(gbuffer)) {
+    std::vector<uint> constants = slice_constants(reach, sampling, out);
+    constants.push_back(completion_of(reach) | kHiddenSurface * (surfaces - 1));
+    gpu.dispatch("bitmask", slice_parameters(gbuffer, reach, sampling, plane), slice_buffers(gbuffer, out),
+                 estimate_extent(out.listed), constants);
+  }
 }
 
 void hbao(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, const Sampling& sampling, Elevation elevation,

@@ -73,6 +73,10 @@ struct VolumeSamples {
   RangeCheck range_check;
 };
 
+/// How far estimates count beyond their own pixels, in px of the frame: the denoiser by pixels of the estimate, and
+/// upsampling by two of them. So does the choice of how many directions a tile takes.
+int filter_reach_of(const EstimatorSettings& settings);
+
 /// What may be left out.
 struct Skipping {
   bool skips_sky;
@@ -80,9 +84,10 @@ struct Skipping {
   bool is_ranged;              // the estimator takes the range of steps in which something may block
   double tolerance;            // tiles whose visibility is at least 1 less this are left out as open, too
   const gpu::Buffer* changes;  // against the frame before; null: it gives nothing
-  bool completes = false;      // surfaces go on beyond what is seen of them
+  bool completes;              // surfaces go on beyond what is seen of them
+  ImagePart needed;            // the image without what of a margin nobody needs
 };
-Skipping skipping_of(const EstimatorSettings& settings, const gpu::Buffer* changes);
+Skipping skipping_of(const EstimatorSettings& settings, const FrameInputs& frame, const BlockGrid& grid);
 
 /// What surfaces tiles show.
 struct Bounds {

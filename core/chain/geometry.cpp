@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/chain/geometry.h"
 
+#include <algorithm>
+
 #include "core/chain/pass_common.h"
 #include "kernels/downsample.h"
 #include "kernels/reconstruct.h"
@@ -19,6 +21,17 @@ BlockGrid block_grid(const FrameInputs& frame, int factor) {
   grid.size = {floored(grid.overhang.x + size.x + factor - 1), floored(grid.overhang.y + size.y + factor - 1)};
   grid.frame_size = size;
   return grid;
+}
+
+ImagePart without_margin(const FrameInputs& frame, const BlockGrid& grid, int around) {
+  const auto& [before, after] = frame.margin;
+  const auto from = [&](int px, int overhang) { return std::max(0, (px - around + overhang) / grid.factor); };
+  const auto to = [&](int px, int overhang, int blocks) {
+    return std::min(blocks, (px + around + overhang + grid.factor - 1) / grid.factor);
+  };
+  const ivec2 overhang = grid.overhang, size = frame.view.size;
+  return {{from(before.x, overhang.x), from(before.y, overhang.y)},
+          {to(size.x - after.x, overhang.x, grid.size.x), to(size.y - after.y, overhang.y, grid.size.y)}};
 }
 
 GBuffer prepare(gpu::Recorder& gpu, const FrameInputs& frame, const std::string& prefix) {

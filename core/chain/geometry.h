@@ -19,6 +19,13 @@ struct BlockGrid {
 };
 BlockGrid block_grid(const FrameInputs& frame, int factor);
 
+/// A part of an image, in its pixels: up to `to`, exclusive.
+struct ImagePart {
+  ivec2 from, to;
+};
+/// The part of an image of these blocks that shows the frame without its margin, and so many px around it.
+ImagePart without_margin(const FrameInputs& frame, const BlockGrid& grid, int around);
+
 /// Depth and normals, one value per block of the grid: see prepare.comp and reconstruct.comp.
 struct GBuffer {
   View view{};

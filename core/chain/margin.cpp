@@ -39,9 +39,12 @@ Margin margin_of(const Window& part, const Window& frame) {
 }
 
 FrameInputs with_margin(const FrameInputs& frame) {
-  if (!has_margin(frame)) return frame;
   const auto& [before, after] = frame.margin;
   FrameInputs wide = frame;
+  if (!has_margin(frame)) {
+    wide.margin = {};
+    return wide;
+  }
   wide.view.size = {frame.view.size.x + before.x + after.x, frame.view.size.y + before.y + after.y};
   wide.view.center = {frame.view.center.x + float(before.x), frame.view.center.y + float(before.y)};
   wide.noise_origin = {frame.noise_origin.x - before.x, frame.noise_origin.y - before.y};

@@ -4,7 +4,6 @@
 
 #include <concepts>
 #include <functional>
-#include <initializer_list>
 #include <map>
 #include <optional>
 #include <span>
@@ -75,7 +74,7 @@ class Recorder {
   /// Runs the kernel of that stem over the extent, after all that was recorded before. Fails unless parameters and
   /// bindings are the kernel's.
   template <KernelParams Params>
-  void dispatch(const std::string& stem, const Params& params, std::initializer_list<Binding> bindings, Extent extent,
+  void dispatch(const std::string& stem, const Params& params, const std::vector<Binding>& bindings, Extent extent,
                 const std::vector<std::uint32_t>& specialization = {}) {
     dispatch_bytes(stem, std::as_bytes(std::span(&params, 1)), bindings, extent, specialization);
   }

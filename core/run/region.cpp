@@ -8,11 +8,11 @@
 #include "core/base/error.h"
 #include "core/base/estimator_facts.h"
 #include "core/chain/aov.h"
+#include "core/chain/estimate.h"
 #include "core/frame/evidence.h"
 #include "core/frame/settle.h"
 #include "kernels/ends.h"
 #include "kernels/profile.h"
-#include "kernels/refine.h"
 
 namespace alcove {
 namespace {
@@ -36,19 +36,11 @@ Window grown(const Window& window, int margin_x, int margin_y, const Window& wit
   return {left, top, right - left, bottom - top};
 }
 
-/// How far filters reach, in px: the denoiser by pixels of the estimate, and upsampling by two of them. So does the
-/// choice of how many directions a tile takes.
-int filter_reach(const EstimatorSettings& settings) {
-  const int denoised = denoise_reach_of(settings) + (is_adaptive(settings) ? kSiteReach : 0);
-  const int refined = settings.tolerance > 0 ? kRefineReach : 0;
-  return int(settings.resolution) * (denoised + refined + (settings.resolution == Resolution::full ? 0 : 2));
-}
-
-/// The same of all that a frame's outputs are made from.
+/// How far the filters of all that a frame's outputs are made from reach, in px.
 int filter_reach(const Settings& settings) {
-  const int own = filter_reach(settings.estimator);
+  const int own = filter_reach_of(settings.estimator);
   if (!wants(settings.output, &FrameOutputs::confidence)) return own;
-  return std::max(own, filter_reach(bracket_of(settings.estimator)));
+  return std::max(own, filter_reach_of(bracket_of(settings.estimator)));
 }
 
 /// How far lines of an exact search reach beyond the sphere of the radius until they have the vertices of the whole

@@ -237,13 +237,14 @@ struct Part {
     part.shot.data = part.frame.data = window;
   }
 
-  std::vector<float> ao_with(const Margin& margin, const EstimatorSettings& settings) const {
+  std::vector<float> ao_with(const Margin& margin, const EstimatorSettings& settings, uint* tiles = nullptr) const {
     const OtherView other = seen_by(whole, whole.shot, "other");
     FrameInputs inputs = upload(recorder(), part.frame);
     inputs.others = {other};
     inputs.margin = margin;
     const FrameOutputs outputs = run_chain(recorder(), inputs, settings);
     recorder().run();
+    if (tiles) *tiles = outputs.tiles->as<TileCounts>()[0].listed;
     const auto ao = outputs.ao->as<float>();
     return {ao.begin(), ao.end()};
   }
@@ -262,6 +263,34 @@ TEST(OtherViews, what_they_show_around_the_picture_blocks_at_its_border) {
   EXPECT_GT(without, 0.02);
   EXPECT_LT(half, 0.7 * without);
   EXPECT_LT(with, 0.1 * without);
+}
+
+TEST(OtherViews, estimates_of_a_margin_that_nobody_needs_are_left_out) {
+  const Part room;
+  EstimatorSettings plain = plain_settings();
+  plain.radius = 0.3;
+  EstimatorSettings filtered = plain, box = plain, shared = plain, half = plain, bitmask = plain;
+  filtered.denoise = Denoise::bilateral;
+  box.denoise = Denoise::box;
+  shared.denoise = Denoise::bilateral;
+  shared.slices = 2;
+  shared.density = Density::adaptive;
+  half.resolution = Resolution::half;
+  half.denoise = Denoise::bilateral;
+  bitmask.estimator = Estimator::bitmask;
+  for (const EstimatorSettings& settings : {plain, filtered, box, shared, half, bitmask})
+    for (const Margin& margin : {Margin{{24, 16}, {24, 16}}, Margin{{23, 9}, {17, 13}}, Margin{{24, 0}, {0, 16}}}) {
+      uint some = 0, all = 0;
+      const std::vector<float> ao = room.ao_with(margin, settings, &some);
+      EstimatorSettings without = settings;
+      without.no_skip = true;
+      const std::vector<float> whole = room.ao_with(margin, without, &all);
+      EXPECT_TRUE(same_bits(ao, whole)) << int(settings.denoise) << " " << margin.before.x;
+      if (filter_reach_of(settings) < kTile) EXPECT_LT(some, all) << int(settings.denoise) << " " << margin.before.x;
+    }
+  uint tiles = 0;
+  room.ao_with({Part::kAround, Part::kAround}, plain, &tiles);
+  EXPECT_EQ(tiles, room.part.shot.data.pixels() / (kTile * kTile)) << "those of the frame alone";
 }
 
 TEST(OtherViews, a_margin_on_one_side_leaves_the_frame_in_its_place) {

@@ -180,7 +180,7 @@ TEST(Grid, estimators_write_their_own_plane_and_all_of_it) {
         Estimate out{&planes};
         const Reach reach = reach_of(settings, *settings.radius);
         const Sampling sampling = sampling_of(settings, 0);
-        const Skipping skipping = skipping_of(settings, nullptr);
+        const Skipping skipping = skipping_of(settings, inputs, gbuffer.grid);
         const SearchDirections directions = search_directions(settings);
         if (searches_exactly(settings)) {
           for (int direction = 0; direction < directions.count; direction++) {
