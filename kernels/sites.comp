@@ -12,15 +12,15 @@
 // invocation decides three tiles, and reads kReach pixels beyond them.
 #version 450
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
 #include "sites.h"
 #include "lattice.glsl"
 #include "tiles.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
-layout(constant_id = kSitesSpacingId) const int kSpacing = 4;
 layout(scalar, push_constant) uniform Push { SitesParams params; };
 layout(scalar, binding = kSitesRows) readonly buffer Rows { uint rows[]; };
-layout(scalar, binding = kSitesFlat) readonly buffer Flat { uint flat_rows[]; };
+layout(scalar, binding = kSitesLinks) readonly buffer Links { uint linked_rows[]; };
 layout(scalar, binding = kSitesResult) writeonly buffer Result { uint result[]; };
 
 const int kReach = 3;                   // px
@@ -34,29 +34,46 @@ struct Surroundings {
 /// Pixels of three tiles in a row, and kBeside of their neighbours, as bits.
 uint bits_of(uint words[kSitesTiles + 2], uint first) {
   uint bits = bitfieldExtract(words[0], int(first) + kTile - kBeside, kBeside);
-  for (int k = 0; k < kSitesTiles; k++)
-    bits |= bitfieldExtract(words[k + 1], int(first), kTile) << uint(kBeside + k * kTile);
+  [[unroll]] for (int k = 0; k < kSitesTiles; k++) bits |= bitfieldExtract(words[k + 1], int(first), kTile)
+                                                           << uint(kBeside + k * kTile);
   return bits | bitfieldExtract(words[kSitesTiles + 1], int(first), kBeside) << uint(kBeside + kSitesTiles * kTile);
 }
 
+// A row's sites, and what is linked to them up to kReach pixels to their right or left.
+uint to_right(uint site, uint linked) {
+  [[unroll]] for (int k = 0; k < kReach; k++) site |= (site & linked) << 1;
+  return site;
+}
+uint to_left(uint site, uint linked) {
+  [[unroll]] for (int k = 0; k < kReach; k++) site |= site >> 1 & linked;
+  return site;
+}
+
 void spread_right(inout uint site[kCount], Surroundings s) {
-  for (int k = 0; k < kReach; k++)
-    for (int y = 0; y < kCount; y++) site[y] |= (site[y] & s.right[y]) << 1;
+  [[unroll]] for (int y = 0; y < kCount; y++) site[y] = to_right(site[y], s.right[y]);
 }
 
 void spread_left(inout uint site[kCount], Surroundings s) {
-  for (int k = 0; k < kReach; k++)
-    for (int y = 0; y < kCount; y++) site[y] |= site[y] >> 1 & s.right[y];
+  [[unroll]] for (int y = 0; y < kCount; y++) site[y] = to_left(site[y], s.right[y]);
 }
 
+// Sites come down as far from the rows above: `last` holds what came to the row before by 0, 1 and 2 pixels.
 void spread_down(inout uint site[kCount], Surroundings s) {
-  for (int k = 0; k < kReach; k++)
-    for (int y = kCount - 1; y > 0; y--) site[y] |= site[y - 1] & s.below[y - 1];
+  uvec3 last = uvec3(0);
+  [[unroll]] for (int y = 0; y < kCount; y++) {
+    const uvec3 next = last & (y > 0 ? s.below[max(y - 1, 0)] : 0u);
+    last = uvec3(site[y], next.xy);
+    site[y] |= next.x | next.y | next.z;
+  }
 }
 
 void spread_up(inout uint site[kCount], Surroundings s) {
-  for (int k = 0; k < kReach; k++)
-    for (int y = 0; y + 1 < kCount; y++) site[y] |= site[y + 1] & s.below[y];
+  uvec3 last = uvec3(0);
+  [[unroll]] for (int y = kCount - 1; y >= 0; y--) {
+    const uvec3 next = last & s.below[y];
+    last = uvec3(site[y], next.xy);
+    site[y] |= next.x | next.y | next.z;
+  }
 }
 
 void main() {
@@ -65,24 +82,25 @@ void main() {
   if (any(greaterThanEqual(first, tiles))) return;
   const ivec2 corner = first * kTile - ivec2(kBeside, kReach);
   const uint columns = ~0u >> uint(max(32 - (params.size.x - corner.x), 0)) & ~0u << uint(max(-corner.x, 0));
+  const bool is_dense = params.spacing == 1;
   Surroundings s;
   uint site[kCount], outside[kCount], own[kTile];
-  for (int y = 0; y < kCount; y++) {
+  [[unroll]] for (int y = 0; y < kCount; y++) {
     const int line = clamp(corner.y + y, 0, params.size.y - 1);
     uint words[kSitesTiles + 2], links[kSitesTiles + 2];
-    for (int k = 0; k < kSitesTiles + 2; k++) {
+    [[unroll]] for (int k = 0; k < kSitesTiles + 2; k++) {
       const ivec2 tile = ivec2(clamp(first.x + k - 1, 0, tiles.x - 1), line / kTile);
       const int at = words_of_tile(tile, tiles) + line % kTile;
       words[k] = rows[at];
-      links[k] = kSpacing >= 4 ? flat_rows[at] : words[k];
+      links[k] = linked_rows[at];
     }
     outside[y] = line == corner.y + y ? ~columns : ~0u;
-    site[y] = bits_of(words, kSiteByte) & ~outside[y] | (kSpacing >= 2 ? outside[y] : 0u);
+    site[y] = bits_of(words, kSiteByte) & ~outside[y] | (is_dense ? 0u : outside[y]);
     s.right[y] = bits_of(links, 0u) | outside[y] | outside[y] >> 1;
     s.below[y] = bits_of(links, kBelowByte) | outside[y];
     if (y >= kReach && y < kReach + kTile) own[y - kReach] = bits_of(words, kSurfaceByte) & ~outside[y];
   }
-  for (int y = 0; y + 1 < kCount; y++) s.below[y] |= outside[y + 1];
+  [[unroll]] for (int y = 0; y + 1 < kCount; y++) s.below[y] |= outside[y + 1];
 
   uint right[kCount] = site, left[kCount] = site, down[kCount] = site, up[kCount] = site;
   spread_right(right, s);
@@ -99,13 +117,13 @@ void main() {
   spread_right(f, s);
   spread_left(g, s);
   spread_left(h, s);
-  for (int y = 0; y < kTile; y++) {
+  [[unroll]] for (int y = 0; y < kTile; y++) {
     const int k = y + kReach;
     const uint p = a[k] | e[k], q = b[k] | f[k], r = c[k] | g[k], t = d[k] | h[k];
     const uint three = p & q & (r | t) | r & t & (p | q);
     const uint two = p & q | r & t | (p | q) & (r | t);
-    const uint lattice = lattice_row(corner + ivec2(0, k) + params.origin, kSpacing);
-    const uint sites = (site[k] | lattice & ~(kSpacing >= 2 ? three : two)) & own[y];
+    const uint lattice = lattice_row(corner + ivec2(0, k) + params.origin, params.spacing);
+    const uint sites = (site[k] | lattice & ~(is_dense ? two : three)) & own[y];
     for (int tile = 0; tile < kSitesTiles; tile++) {
       if (first.x + tile >= tiles.x) continue;
       const int at = words_of_tile(first + ivec2(tile, 0), tiles) + y;

@@ -1,4 +1,4 @@
-// Parameters and bindings of the estimators that search slices: horizon.comp and bitmask.comp.
+// Parameters and bindings of the estimators that search slices: horizon.comp, bitmask.comp, and both with layers.
 // SPDX-License-Identifier: BSD-3-Clause
 #ifndef ALCOVE_SLICES_H
 #define ALCOVE_SLICES_H
@@ -17,7 +17,7 @@ ALCOVE_CONSTANT uint kSlicesSites = 7;       // in: one uint per site, from list
 ALCOVE_CONSTANT uint kSlicesSiteCounts = 8;  // in: SiteCounts; only if sparse
 // out: one float per pixel, the visibility that completed surfaces took; only with kWithCompleted
 ALCOVE_CONSTANT uint kSlicesCompleted = 6;
-ALCOVE_CONSTANT uint kSlicesHidden = 9;  // in: planes of hidden surfaces, see GBuffer; with more than one surface
+ALCOVE_CONSTANT uint kSlicesHidden = 9;  // in: planes of hidden surfaces, see GBuffer; with layers only
 
 struct SlicesParams {
   View view;

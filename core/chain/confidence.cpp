@@ -36,6 +36,7 @@ gpu::Buffer& confidence(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameI
     out.listed = classify(gpu, gbuffer, surfaces, skipping, reach.radius, chosen, out, 0, prefix);
     list_sites(gpu, gbuffer, chosen, out.listed, prefix);
     horizon(gpu, gbuffer, reach, sampling, out, 0);
+    horizon_layers(gpu, gbuffer, reach, sampling, out, 0);
     return chosen.rows ? interpolate(gpu, gbuffer, *out.ao, chosen, denoiser, prefix)
                        : denoise(gpu, gbuffer, *out.ao, denoiser, prefix);
   };

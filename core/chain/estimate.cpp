@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "core/base/estimator_facts.h"
@@ -55,10 +56,13 @@ vec2 noise_shift(int frame, std::uint32_t seed) {
   return {shift(kR2X, kRootX), shift(kR2Y, kRootY)};
 }
 
-std::vector<uint> slice_constants(const Reach& reach, const Sampling& sampling, const Estimate& out) {
-  return {uint(sampling.slices), uint(sampling.steps),
-          uint(reach.falloff) | (out.bent ? kWithBent : 0) | (out.completed ? kWithCompleted : 0),
-          out.listed.sites ? 1u : 0u};
+std::vector<uint> slice_constants(const Reach& reach, const Sampling& sampling, const Estimate& out,
+                                  std::optional<uint> behind = {}) {
+  std::vector<uint> constants{uint(sampling.slices), uint(sampling.steps),
+                              uint(reach.falloff) | (out.bent ? kWithBent : 0) | (out.completed ? kWithCompleted : 0),
+                              out.listed.sites ? 1u : 0u};
+  if (behind) constants.push_back(*behind);
+  return constants;
 }
 
 /// What is completed, as kernels take it.
@@ -106,14 +110,14 @@ std::vector<gpu::Binding> slice_buffers(const GBuffer& gbuffer, const Estimate& 
           {kSlicesCounts, *out.listed.counts},
           {kSlicesSites, out.listed.sites ? *out.listed.sites : *out.listed.tiles},
           {kSlicesSiteCounts, out.listed.sites ? *out.listed.site_counts : *out.listed.counts},
-          {kSlicesCompleted, out.completed ? *out.completed : *out.ao},
-          {kSlicesHidden, gbuffer.hidden ? *gbuffer.hidden : *gbuffer.depth}};
+          {kSlicesCompleted, out.completed ? *out.completed : *out.ao}};
 }
 
-/// How many surfaces a pixel may have in each dispatch of an estimator that searches slices: hidden ones cost much, and
-/// most tiles may have none within reach.
-std::vector<uint> surfaces_searched(const GBuffer& gbuffer) {
-  return gbuffer.surfaces > 1 ? std::vector<uint>{1, gbuffer.surfaces} : std::vector<uint>{1};
+/// The same with the hidden surfaces.
+std::vector<gpu::Binding> layered_slice_buffers(const GBuffer& gbuffer, const Estimate& out) {
+  std::vector<gpu::Binding> buffers = slice_buffers(gbuffer, out);
+  buffers.push_back({kSlicesHidden, *gbuffer.hidden});
+  return buffers;
 }
 
 }  // namespace
@@ -191,7 +195,10 @@ Estimate estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const Sites& sites
     result.listed = out.listed;
     switch (settings.estimator) {
       case Estimator::gtao:
-        if (!is_exact) horizon(gpu, gbuffer, reach, sampling, out, plane);
+        if (!is_exact) {
+          horizon(gpu, gbuffer, reach, sampling, out, plane);
+          horizon_layers(gpu, gbuffer, reach, sampling, out, plane);
+        }
         for (int i = 0; is_exact && settings.tolerance == 0 && i < directions.count; i++) {
           Profile lines = profile(gpu, gbuffer, directions, i, reach);
           complete(gpu, gbuffer, lines, reach);
@@ -206,7 +213,10 @@ Estimate estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const Sites& sites
           }
         }
         break;
-      case Estimator::bitmask: bitmask(gpu, gbuffer, reach, sampling, out, plane); break;
+      case Estimator::bitmask:
+        bitmask(gpu, gbuffer, reach, sampling, out, plane);
+        bitmask_layers(gpu, gbuffer, reach, sampling, out, plane);
+        break;
       case Estimator::hbao: hbao(gpu, gbuffer, reach, sampling, settings.elevation, out, plane); break;
       case Estimator::crytek: crytek(gpu, gbuffer, reach, sampling, volume, out, plane); break;
     }
@@ -282,22 +292,33 @@ TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const Bounds& boun
 
 void horizon(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, const Sampling& sampling,
              const Estimate& out, uint plane) {
-  for (const uint surfaces : surfaces_searched(gbuffer)) {
-    std::vector<uint> constants = slice_constants(reach, sampling, out);
-    constants.push_back(thickness_rule_of(reach.thickness) | completion_of(reach) | kHiddenSurface * (surfaces - 1));
-    gpu.dispatch("horizon", slice_parameters(gbuffer, reach, sampling, plane), slice_buffers(gbuffer, out),
-                 estimate_extent(out.listed), constants);
-  }
+  const uint behind = thickness_rule_of(reach.thickness) | completion_of(reach);
+  gpu.dispatch("horizon", slice_parameters(gbuffer, reach, sampling, plane), slice_buffers(gbuffer, out),
+               estimate_extent(out.listed), slice_constants(reach, sampling, out, behind));
+}
+
+void horizon_layers(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, const Sampling& sampling,
+                    const Estimate& out, uint plane) {
+  if (gbuffer.surfaces == 1) return;
+  const uint behind =
+      thickness_rule_of(reach.thickness) | completion_of(reach) | kHiddenSurface * (gbuffer.surfaces - 1);
+  gpu.dispatch("horizon_layers", slice_parameters(gbuffer, reach, sampling, plane), layered_slice_buffers(gbuffer, out),
+               estimate_extent(out.listed), slice_constants(reach, sampling, out, behind));
 }
 
 void bitmask(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, const Sampling& sampling,
              const Estimate& out, uint plane) {
-  for (const uint surfaces : surfaces_searched(gbuffer)) {
-    std::vector<uint> constants = slice_constants(reach, sampling, out);
-    constants.push_back(completion_of(reach) | kHiddenSurface * (surfaces - 1));
-    gpu.dispatch("bitmask", slice_parameters(gbuffer, reach, sampling, plane), slice_buffers(gbuffer, out),
-                 estimate_extent(out.listed), constants);
-  }
+  const uint behind = completion_of(reach);
+  gpu.dispatch("bitmask", slice_parameters(gbuffer, reach, sampling, plane), slice_buffers(gbuffer, out),
+               estimate_extent(out.listed), slice_constants(reach, sampling, out, behind));
+}
+
+void bitmask_layers(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, const Sampling& sampling,
+                    const Estimate& out, uint plane) {
+  if (gbuffer.surfaces == 1) return;
+  const uint behind = completion_of(reach) | kHiddenSurface * (gbuffer.surfaces - 1);
+  gpu.dispatch("bitmask_layers", slice_parameters(gbuffer, reach, sampling, plane), layered_slice_buffers(gbuffer, out),
+               estimate_extent(out.listed), slice_constants(reach, sampling, out, behind));
 }
 
 void hbao(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, const Sampling& sampling, Elevation elevation,

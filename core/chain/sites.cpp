@@ -38,9 +38,10 @@ Sites sites(gpu::Recorder& gpu, const GBuffer& gbuffer, const SiteRule& rule, co
     // Each pass reads what the one before it wrote.
     const bool is_odd = std::countr_zero(unsigned(rule.spacing / spacing)) % 2 == 1;
     gpu::Buffer& more = gpu.buffer(prefix + (is_odd ? "more sites" : "sites"), rows_bytes(view), gpu::Use::device);
-    gpu.dispatch("sites", SitesParams{view.size, gbuffer.grid.origin},
-                 {{kSitesRows, *rows}, {kSitesFlat, flat_links(gpu, view, prefix)}, {kSitesResult, more}}, strips,
-                 {uint(spacing)});
+    // On the denser lattices a path may lead over round surfaces.
+    const gpu::Buffer& links = spacing >= 4 ? flat_links(gpu, view, prefix) : *rows;
+    gpu.dispatch("sites", SitesParams{view.size, gbuffer.grid.origin, spacing},
+                 {{kSitesRows, *rows}, {kSitesLinks, links}, {kSitesResult, more}}, strips);
     rows = &more;
   }
   return {rows, rule.spacing};
