@@ -98,7 +98,7 @@ std::vector<std::string> texts_of(const Notes& notes);
 /// The attribute alcove/notes: a line per warning, "CODE: TEXT"; "" where there is none.
 std::string header_text(const Notes& notes);
 
-/// The table of all codes as README.md shows it.
+/// The table of all codes as docs/troubleshooting.md shows it.
 std::string note_table_markdown();
 
 }  // namespace alcove

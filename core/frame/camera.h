@@ -41,7 +41,7 @@ struct Camera {
   NormalEncoding normal_encoding = NormalEncoding::automatic;
 };
 
-/// Reads a camera JSON file, whose keys README.md lists; if the file lists `frames`, the one of that number, and
+/// Reads a camera JSON file, whose keys docs/inputs.md lists; if the file lists `frames`, the one of that number, and
 /// where it has `views`, the one of that name; "": what all views share. Fails with ErrorKind::input, naming file and
 /// field, on anything missing or senseless.
 Camera read_camera(const std::string& path, int frame, const std::string& view = "");

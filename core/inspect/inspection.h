@@ -126,7 +126,7 @@ struct Inspection {
 /// Lines for people, without any character that a terminal would obey.
 std::string inspection_text(const Inspection& inspection);
 
-/// JSON with the fields that README.md lists.
+/// JSON with the fields that docs/inputs.md lists.
 std::string inspection_json(const Inspection& inspection);
 
 const char* name_of(NormalSpace space);

@@ -96,7 +96,7 @@ struct BrokenLimits {
 /// Checks each limit on the frame where its measure is worst.
 BrokenLimits broken_limits(const CompareReport& report, const CompareLimits& limits);
 
-/// See the README for the fields.
+/// See docs/compare-and-bench.md for the fields.
 std::string compare_json(const CompareReport& report, const std::vector<std::string>& broken);
 
 /// The page of core/measure/report.h.

@@ -148,7 +148,7 @@ void add_depth_rows(std::vector<OptionRow>& rows, InputSettings& s) {
   const Condition between_planes = to_depth({DepthKind::device, DepthKind::normalized, DepthKind::log});
   pixels
       .choice("--depth-kind", s.depth_kind,
-              "planar: along the optical axis; ray: to the eye; inverse: 1/planar; others: see Inputs in the README; "
+              "planar: along the optical axis; ray: to the eye; inverse: 1/planar; others: see docs/inputs.md; "
               "auto: what the camera file says, else what fits the frame")
       .applies(where_depth_is_read())
       .harmless = {"auto"};
@@ -203,7 +203,7 @@ void add_camera_rows(std::vector<OptionRow>& rows, InputSettings& s) {
       .flag("--strict", s.strict, "what could only be guessed is an error, and so is a warning");
   const char* const why = "each of them says what the camera sees";
   OptionGroup(rows, "Input", Effect::content)
-      .text("--camera", s.camera, "FILE.json", "the camera; see Cameras in the README")
+      .text("--camera", s.camera, "FILE.json", "the camera; see docs/inputs.md")
       .contradicts({"--fov", "--focal", "--aperture", "--ortho-width"}, why)
       .is_common = true;
   OptionGroup pixels(rows, "Input", Effect::pixels);

@@ -1,5 +1,5 @@
-// ONE table of options: it serves the command line, --help, the keys of presets, --print-config, the README, and the
-// digest by which --resume knows its files.
+// ONE table of options: it serves the command line, --help, the keys of presets, --print-config, docs/options.md,
+// and the digest by which --resume knows its files.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -32,7 +32,7 @@ std::vector<OptionRow> option_table(RunOptions& options);
 /// Gives unit and range of a number, as help shows them; "" where there is neither.
 std::string range_text(const OptionRow& row);
 
-/// Gives the table as README.md shows it.
+/// Gives the table as docs/options.md shows it.
 std::string option_table_markdown();
 
 /// Gives the present values as a preset in TOML, one line per option that is set.

@@ -1,4 +1,4 @@
-// A row of the table of options: what stands in help and README, and how its value is read and said.
+// A row of the table of options: what stands in help and docs/options.md, and how its value is read and said.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 

@@ -101,7 +101,7 @@ struct RunReport {
   double wall_s = 0;
 };
 
-/// The text of `--stats`; the README lists its fields.
+/// The text of `--stats`; docs/json.md lists its fields.
 std::string stats_json(const RunReport& report);
 
 /// The same fields of one frame, on one line.

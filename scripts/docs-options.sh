@@ -1,5 +1,5 @@
 #!/bin/sh
-# Writes the program's option table into the README, after an option was added or changed: scripts/readme-options.sh [build/alcove]
+# Writes the program's option table into docs/options.md, after an option was added or changed: scripts/docs-options.sh [build/alcove]
 # SPDX-License-Identifier: BSD-3-Clause
 set -eu
 program=${1:-build/alcove}
@@ -10,5 +10,5 @@ trap 'rm -f "$table" "$table.md"' EXIT
 awk -v table="$table" '
   /^<!-- options -->$/ { print; while ((getline line < table) > 0) print line; skip = 1 }
   /^<!-- \/options -->$/ { skip = 0 }
-  !skip' README.md > "$table.md"
-cat "$table.md" > README.md
+  !skip' docs/options.md > "$table.md"
+cat "$table.md" > docs/options.md
