@@ -15,9 +15,9 @@
 //   receivers see; nearly all that matters is shorter.
 // - The image's border hides all that is beyond it, so there a surface goes on as far as that. Where the image is a
 //   part of the frame, no result lies within the radius of a border that is not the frame's: see core/run/region.h.
-// - Where hidden surfaces are known, those of each slot go on beyond the border. Behind what is nearer goes on, where
-//   the frame tells all surfaces of a pixel up to so many, the deepest surface of its pixel, behind the deepest of
-//   others that have as many; else the first surface behind the first of others, if it is not known to go on there.
+// - Where hidden surfaces are known, those of each slot go on beyond the border. Behind what is nearer goes on
+//   the first surface of a pixel, if it is not known to go on there: where the frame tells all surfaces of a pixel up
+//   to so many, behind the last of others that have as many; else behind the first of others.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "complete.h"
@@ -60,14 +60,26 @@ struct Corner {
   uint marked;
   int at;          // the step
   float nearness;  // what is straight along a line, larger where the surface is nearer: 1/z, orthographic -z
+  float hides;     // the nearness of the surface behind which nothing is known there; kNothing: all is known
 };
 
-Corner corner_at(bool perspective, int index) {
+const float kNothing = -1e30;
+
+float nearness_of(bool perspective, float z) { return perspective ? value_of(true, z) : -value_of(false, z); }
+
+/// The nearness of the last surface of a pixel where the frame tells all up to so many: behind fewer there are no more.
+float last_of_full(View view, Lines lines, int line, int step) {
+  const int pixel = index_at(view, lines, step, line + shift_at(lines, step));
+  const float z = abs(hidden[int(kSurfaces - 2u) * view.size.x * view.size.y + pixel]);
+  return z < kSkyDepth ? nearness_of(view.orthographic == 0, z) : kNothing;
+}
+
+Corner corner_at(View view, Lines lines, int line, int index) {
   Corner c;
   c.marked = mark[index];
   c.at = int(c.marked >> 16);
-  const float value = value_of(perspective, abs(vertex[index]));
-  c.nearness = perspective ? value : -value;
+  c.nearness = nearness_of(view.orthographic == 0, abs(vertex[index]));
+  c.hides = kWhole != 0u ? last_of_full(view, lines, line, c.at) : c.nearness;
   return c;
 }
 
@@ -173,8 +185,8 @@ void close(inout Open open, View view, LinePlane plane, int way, float steps) {
 /// Goes on from the walk's last vertex to the next one, and ends what would be seen until there.
 void go_on(inout Open open, View view, LinePlane plane, Walk walk, Corner next, bool begins_run) {
   const float to_before = abs(float(walk.before.at) - open.from), to_next = abs(float(next.at) - open.from);
-  const float behind_before = walk.before.nearness - open.nearness - open.slope * to_before;
-  const float behind_next = next.nearness - open.nearness - open.slope * to_next;
+  const float behind_before = walk.before.hides - open.nearness - open.slope * to_before;
+  const float behind_next = next.hides - open.nearness - open.slope * to_next;
   const bool after_sky = begins_run && abs(next.at - walk.before.at) > 1;
   const bool is_hidden = !after_sky && behind_next > 0.0;
   const bool ends = !is_hidden || to_next >= open.farthest;
@@ -189,35 +201,27 @@ void go_on(inout Open open, View view, LinePlane plane, Walk walk, Corner next, 
 /// would come before that.
 void go_beyond(inout Open open, View view, LinePlane plane, Open last, Walk walk, bool goes_beyond) {
   const float steps = abs(float(walk.before.at) - open.from);
-  const float behind_last = walk.before.nearness - open.nearness - open.slope * steps;
+  const float behind_last = walk.before.hides - open.nearness - open.slope * steps;
   const float closing = open.slope - last.slope;
   const float further = closing > 0.0 ? behind_last / max(closing, behind_last / kLongestStroke) : kLongestStroke;
   for (bool once = open.is_open; once; once = false)
     close(open, view, plane, walk.way, min(goes_beyond ? steps + further : steps, open.farthest));
 }
 
-/// Whether it is to be told behind what vertices a surface goes on: in a plane of several, only of the deepest.
+/// Whether it is to be told behind what vertices a surface goes on: in a plane of several, only of the first.
 bool tells_behind() { return kSurfaces == 1u || params.behind != 0u; }
 
 /// The index at which the plane of the profile begins.
 int first_of_plane(View view) { return kSurfaces == 1u ? 0 : int(params.slot) * view.size.x * view.size.y; }
 
-/// Whether there may be more surfaces at a step of a line than the frame tells.
-bool may_have_more(View view, Lines lines, int line, int step) {
-  if (kWhole == 0u) return true;
-  const int pixel = index_at(view, lines, step, line + shift_at(lines, step));
-  return abs(hidden[int(kSurfaces - 2u) * view.size.x * view.size.y + pixel]) < kSkyDepth;
-}
-
 /// Walks along the vertices of a line from `first` on; it has one at least.
 void complete(View view, Lines lines, LinePlane plane, int line, ivec2 steps, int row, int first, int way) {
-  const bool perspective = view.orthographic == 0;
   Walk walk;
   walk.way = way;
   walk.begins = way > 0 ? kVertexBegins : kVertexEnds;
   walk.is_last = way > 0 ? kVertexLast : kVertexFirst;
   const uint both_ends = kVertexBegins | kVertexEnds;
-  walk.before = corner_at(perspective, first);
+  walk.before = corner_at(view, lines, line, first);
   walk.prior = walk.before;
   walk.inner = walk.before;
   Open none;
@@ -229,11 +233,10 @@ void complete(View view, Lines lines, LinePlane plane, int line, ivec2 steps, in
   bool goes = (walk.before.marked & walk.is_last) == 0u;
   while (goes) {
     index += way;
-    const Corner next = corner_at(perspective, index);
+    const Corner next = corner_at(view, lines, line, index);
     const bool begins_run = (next.marked & walk.begins) != 0u;
     const bool is_interrupted = params.behind != 0 && begins_run && (walk.before.marked & both_ends) != both_ends &&
-                                next.at == walk.before.at + way && next.nearness > walk.before.nearness &&
-                                may_have_more(view, lines, line, next.at);
+                                next.at == walk.before.at + way && next.hides > walk.before.nearness;
     goes = (next.marked & walk.is_last) == 0u;
     for (bool once = is_interrupted; once; once = false) {
       if (opens.a.is_open && opens.b.is_open) {
@@ -269,7 +272,7 @@ void complete(View view, Lines lines, LinePlane plane, int line, ivec2 steps, in
     in_run = abs(walk.before.at - inner.at) < kStepsAtBorder && (inner.marked & walk.begins) == 0u;
     if (in_run) {
       behind_end -= way;
-      inner = corner_at(perspective, behind_end);
+      inner = corner_at(view, lines, line, behind_end);
     }
   }
   const bool goes_beyond = abs(walk.before.at - inner.at) >= kLeastStepsAtBorder;

@@ -197,7 +197,6 @@ struct BlockedArcs {
 
 /// The walks along the profiles of a line: one of each slot, and one for what is unseen.
 const int kWalks = int(kSlots + (kUnseen != 0u ? 1u : 0u));
-const uint kUnseenOfFirst = 2;
 
 /// Farther away than any step of a line.
 const int kNever = 0x10000;
@@ -331,20 +330,14 @@ BlockedArcs blocked_arcs(View view, LinePlane plane, Point point, Side side, Sea
     // What is seen from the receiver to the first vertex need not be straight with what goes on there: where that is
     // beyond the sphere, only the former matters.
     const bool is_first_beyond = both(walk.starts, dot(corner.place, corner.place) > radius_sq);
-    const bool goes_on = kCompletes != kCompletesNothing && (stored < 0.0 || twin_goes_on) && !is_first_beyond &&
-                         !(is_unseen && kUnseen == kUnseenOfFirst);
+    const bool goes_on = kCompletes != kCompletesNothing && (stored < 0.0 || twin_goes_on) && !is_first_beyond;
     if (kCompletes != kCompletesNothing) {
-      // What is seen of them the slots have.
-      if (is_unseen) {
-        stroke = Stroke(corner.place, corner.place);
-        walk.thickness = thickness_at(marked);
-        walk.change = 0.0;
-      }
       const Stroke whole = with_unseen(stroke, begins, corner.unseen);
       stroke.from = goes_on ? whole.from : stroke.from;
       stroke.to = goes_on ? whole.to : stroke.to;
     }
-    for (bool once = goes_on || !is_unseen; once; once = false)
+    // What is seen of the first surfaces the slots have, and where one goes on in a slot it does not go on unseen.
+    for (bool once = !is_unseen; once; once = false)
       block(all, walk, search, clip_to_sphere(stroke, radius_sq, search.unit), goes_on, corner.place,
             point.eye_distance, least, radius_sq);
     const bool ends = ends_at(marked, corner, search);

@@ -31,8 +31,7 @@ ALCOVE_CONSTANT uint kExactListedId = 0;
 ALCOVE_CONSTANT uint kExactCompletesId = 1;
 ALCOVE_CONSTANT uint kExactBentId = 2;   // specialization: 1: bent normals too
 ALCOVE_CONSTANT uint kExactSlotsId = 3;  // specialization: of the profile, 1 to 1 + kMostHidden of layers.h
-// specialization: behind the slots' planes is one of which only what goes on unseen blocks. 1: of the deepest surfaces;
-// 2: of the first, which go on unseen where they go on in no slot
+// specialization: 1: behind the slots' planes is one of the first surfaces, which go on unseen where no slot goes on
 ALCOVE_CONSTANT uint kExactUnseenId = 4;
 
 struct ExactParams {

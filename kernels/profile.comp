@@ -21,8 +21,8 @@
 //   first.
 // - Where a surface's solid is known to be closed by the next surface of its pixel, that one says how thick it is
 //   there; what closes a solid has no thickness.
-// - The deepest surfaces of all pixels, or the first, are a profile of their own besides, of which complete.comp finds
-//   what goes on behind others.
+// - The first surfaces of all pixels are a profile of their own besides, of which complete.comp finds what goes on
+//   behind others.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "profile.h"
@@ -36,7 +36,7 @@
 layout(local_size_x = kProfileGroup) in;
 layout(constant_id = kProfileEveryPixelId) const uint kEveryPixel = 0;
 layout(constant_id = kProfileSurfacesId) const uint kSurfaces = 1;
-layout(constant_id = kProfileSlotsId) const uint kSlotsOrDeepest = 1;
+layout(constant_id = kProfileSlotsId) const uint kSlots = 1;
 layout(scalar, push_constant) uniform Push { ProfileParams params; };
 layout(scalar, binding = kProfileDepth) readonly buffer Depth { float depth[]; };
 layout(scalar, binding = kProfileVertex) writeonly buffer Vertex { float vertex[]; };
@@ -44,9 +44,6 @@ layout(scalar, binding = kProfileMark) buffer Mark { uint mark[]; };
 layout(scalar, binding = kProfileNeighbor) writeonly buffer Neighbor { uint neighbor[]; };
 layout(scalar, binding = kProfileHidden) readonly buffer Hidden { float hidden[]; };
 layout(scalar, binding = kProfileOwn) writeonly buffer Own { uint own[]; };
-
-const bool kDeepest = kSlotsOrDeepest == 0u;
-const uint kSlots = kSlotsOrDeepest == 0u ? 1u : kSlotsOrDeepest;
 
 /// Three pixels across a line whose values change by amounts that differ by less than this part are one surface however
 /// steep it is, as a floor seen aslant.
@@ -98,13 +95,6 @@ bool connected(bool perspective, float pixel, float a, float b) {
 /// The signed depth of a surface of a pixel; sky, where it has fewer.
 float surface_at(View view, int index, uint k) {
   return k == 0u ? depth[index] : hidden[int(k - 1u) * view.size.x * view.size.y + index];
-}
-
-/// Which surface of a pixel is the deepest.
-uint deepest_at(View view, int index) {
-  uint last = 0u;
-  for (uint k = 1u; k < kSurfaces; k++) last = surface_at(view, index, k) < kSkyDepth ? k : last;
-  return last;
 }
 
 /// The depth of a pixel's surface that goes on from one of depth z: the nearest to it that does, else the first.
@@ -171,8 +161,7 @@ Step step_at(View view, Lines lines, LinePlane plane, int rows, int line, int at
   const int column = min(at, end - 1), across = line + shift_at(lines, column);
   const float rest = rest_at(lines, column);
   const int index = index_at(view, lines, column, across);
-  const uint k = kDeepest ? deepest_at(view, index) : surface;
-  const float nearest = abs(surface_at(view, index, k));
+  const float nearest = abs(surface_at(view, index, surface));
   const float here = value_of(perspective, nearest);
   const float change = change_across(view, lines, rows, column, across, rest < 0.0 ? -1 : 1, nearest);
   const float between = here + abs(rest) * change;
@@ -182,7 +171,7 @@ Step step_at(View view, Lines lines, LinePlane plane, int rows, int line, int at
   s.value = perspective ? max(between, kLeastNearness * here) : between;
   s.z = value_of(perspective, s.value);
   s.place = place_at(view, plane, float(at), s.z);
-  s.known = known_thickness(view, plane, column, index, k, nearest);
+  s.known = known_thickness(view, plane, column, index, surface, nearest);
   return s;
 }
 

@@ -20,7 +20,7 @@ ALCOVE_CONSTANT uint kProfileOwn = 5;
 
 ALCOVE_CONSTANT uint kProfileEveryPixelId = 0;  // specialization: 1: every pixel is a vertex
 ALCOVE_CONSTANT uint kProfileSurfacesId = 1;    // specialization: of a pixel, 1 to 1 + kMostHidden of layers.h
-// specialization: as many as surfaces; or 1 for the first surface of each pixel, 0 for the deepest
+// specialization: as many as surfaces; or 1 for the first surface of each pixel
 ALCOVE_CONSTANT uint kProfileSlotsId = 2;
 
 ALCOVE_CONSTANT uint kProfileGroup = 32;  // lines of a workgroup

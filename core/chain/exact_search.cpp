@@ -92,9 +92,6 @@ TileList next_list(gpu::Recorder& gpu, const GBuffer& gbuffer, int directions) {
   return next;
 }
 
-/// For kProfileSlotsId.
-constexpr uint kDeepestSurfaces = 0;
-
 /// The planes of a profile.
 uint planes_of(const Profile& profile) { return profile.slots + (profile.has_unseen ? 1 : 0); }
 
@@ -114,8 +111,6 @@ void draw_profile(gpu::Recorder& gpu, const GBuffer& gbuffer, const SearchDirect
                        slot};
   // With several slots a thickness of 0 is one that is not known, for which exact takes the given one.
   if (gbuffer.hidden && reach.thickness != 0) params.depth_per_width = params.more_pixels = params.least_at_border = 0;
-  uint slots = profile.slots;
-  if (slot > 0) slots = gbuffer.hides_no_more ? kDeepestSurfaces : 1;
   gpu.dispatch("profile", params,
                {{kProfileDepth, *gbuffer.depth},
                 {kProfileVertex, *profile.vertex},
@@ -124,7 +119,7 @@ void draw_profile(gpu::Recorder& gpu, const GBuffer& gbuffer, const SearchDirect
                 {kProfileHidden, gbuffer.hidden ? *gbuffer.hidden : *gbuffer.depth},
                 {kProfileOwn, profile.own ? *profile.own : *profile.neighbor}},
                groups ? gpu::Extent(*groups) : gpu::Extent(profile.count),
-               {directions.every_pixel ? 1u : 0u, profile.slots, slots});
+               {directions.every_pixel ? 1u : 0u, profile.slots, slot > 0 ? 1 : profile.slots});
 }
 
 }  // namespace
@@ -283,8 +278,6 @@ void exact(gpu::Recorder& gpu, const GBuffer& gbuffer, const Profile& profile, c
   const gpu::Extent pixels = lines.steep ? gpu::Extent{rows, columns} : gpu::Extent{columns, rows};
   uint completing = profile.goes_on ? 1 : 0;
   if (profile.goes_on && out.completed) completing = 2;
-  uint unseen = profile.has_unseen ? 1 : 0;
-  if (profile.has_unseen && !gbuffer.hides_no_more) unseen = 2;
   gpu.dispatch("exact", params,
                {{kExactDepth, *gbuffer.depth},
                 {kExactNormal, *gbuffer.normal},
@@ -301,7 +294,7 @@ void exact(gpu::Recorder& gpu, const GBuffer& gbuffer, const Profile& profile, c
                 {kExactBent, out.bent ? *out.bent : *out.ao},
                 {kExactOwn, profile.own ? *profile.own : *profile.neighbor}},
                is_listed ? list_extent(out.listed) : pixels,
-               {is_listed ? 1u : 0u, completing, out.bent ? 1u : 0u, profile.slots, unseen});
+               {is_listed ? 1u : 0u, completing, out.bent ? 1u : 0u, profile.slots, profile.has_unseen ? 1u : 0u});
 }
 
 }  // namespace alcove

@@ -288,6 +288,33 @@ TEST(ExactHidden, a_known_back_ends_what_is_blocked) {
   EXPECT_LE(off / receivers, 0.003);
 }
 
+/// A wall at 5, and before its left part a board far before it. Behind that, up to column 40, a sheet at `sheet`, and
+/// from there on one at 4.8 that goes on to column 60, beside the board.
+HostFrame sheets_behind_board(float sheet) {
+  constexpr int kWidth = 128, kHeight = 64;
+  const Scene wall{{Plane{{0, 0, 0}, {0, 0, 1}}}};
+  HostFrame frame = render(wall, Shot::orthographic({0, 0, 5}, {0, 0.001, 0}, 1.28, kWidth, kHeight)).frame;
+  frame.behind.assign(1, {});
+  frame.behind_depth.assign(std::size_t(kWidth * kHeight), 0);
+  for (int y = 0; y < kHeight; y++)
+    for (int x = 0; x < 60; x++) {
+      const auto i = std::size_t(y * kWidth + x);
+      frame.depth[i] = x < 58 ? 4.5F : 4.8F;
+      if (x < 58) frame.behind_depth[i] = x < 40 ? sheet : 4.8F;
+    }
+  return frame;
+}
+
+// Its pixels list as many surfaces as there are, so more may be behind them: what is seen goes on there, but not what
+// is hidden itself.
+TEST(ExactHidden, hidden_surfaces_do_not_go_on) {
+  const EstimatorSettings settings = settings_of(0.3, Completion::all);  // 30 px
+  const std::vector<float> near = run(sheets_behind_board(4.95F), settings);
+  const std::vector<float> nearer = run(sheets_behind_board(4.9F), settings);
+  for (std::size_t i = 0; i < near.size(); i++)
+    if (i % 128 >= 72) EXPECT_EQ(near[i], nearer[i]) << i % 128 << " " << i / 128;
+}
+
 TEST(ExactHidden, a_tolerance_comes_to_the_same) {
   Rendering rendering = furnished(false, 96, 72);
   add_solid_peels(rendering, kFurniture, 3, kSolidFurniture);

@@ -62,8 +62,8 @@ class Documents : public Sources {
     write(folder / "beauty.exr");
     for (int frame = 1001; frame <= 1100; frame++)
       for (const std::string name : {"frame.exr", "beauty.exr"})
-        fs::create_hard_link(folder / name, fmt::format("{}/{}.{}.exr", folder.path(),
-                                                        name == "frame.exr" ? "shot" : "beauty", frame));
+        fs::create_hard_link(
+            folder / name, fmt::format("{}/{}.{}.exr", folder.path(), name == "frame.exr" ? "shot" : "beauty", frame));
   }
 
   /// Peels a step behind each surface, and the same as deep samples.
