@@ -84,8 +84,8 @@ struct Skipping {
   bool is_ranged;              // the estimator takes the range of steps in which something may block
   double tolerance;            // tiles whose visibility is at least 1 less this are left out as open, too
   const gpu::Buffer* changes;  // against the frame before; null: it gives nothing
-  bool completes;              // surfaces go on beyond what is seen of them
-  ImagePart needed;            // the image without what of a margin nobody needs
+  bool completes = false;      // surfaces go on beyond what is seen of them
+  ImagePart needed = {};       // the image without what of a margin nobody needs
 };
 Skipping skipping_of(const EstimatorSettings& settings, const FrameInputs& frame, const BlockGrid& grid);
 

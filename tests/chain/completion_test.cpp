@@ -176,7 +176,12 @@ TEST_F(Planes, are_shown_in_grey_from_0_to_1_and_sky_apart) {
 
 TEST_F(Planes, are_0_in_tiles_that_are_left_out_and_else_as_they_were) {
   const float radius = 0.05f;
-  const Skipping skipping{.skips_sky = true, .proves = true, .is_ranged = true, .tolerance = 0, .changes = nullptr};
+  const Skipping skipping{.skips_sky = true,
+                          .proves = true,
+                          .is_ranged = true,
+                          .tolerance = 0,
+                          .changes = nullptr,
+                          .needed = {{0, 0}, gbuffer.view.size}};
   for (const int spacing : {1, 4, 16}) {
     const Bounds surfaces = bounds(recorder(), gbuffer, skipping);
     coarsen(recorder(), gbuffer, surfaces);
