@@ -143,9 +143,18 @@ float change_behind(View view, Lines lines, int rows, int column, int across, in
 }
 
 /// How much the value changes from the pixel that a line passes to the next one on the side where the line lies.
-float change_across(View view, Lines lines, int rows, int column, int across, int side, float nearest) {
+float change_across(View view, Lines lines, int rows, int column, int across, int side, float nearest, uint surface) {
   const bool perspective = view.orthographic == 0;
-  const int beside = clamp(across + side, 0, rows - 1);
+  const int beside = clamp(across + side, 0, rows - 1), opposite = clamp(across - side, 0, rows - 1);
+  if (kSurfaces > 1u) {
+    // What is seen aslant goes on straight, though a hidden surface of the next pixel may be nearer to it in depth.
+    const float own = abs(surface_at(view, index_at(view, lines, column, beside), surface));
+    const float back = abs(surface_at(view, index_at(view, lines, column, opposite), surface));
+    const float here = value_of(perspective, nearest), ahead = value_of(perspective, own) - here;
+    const bool is_inside = beside != across && opposite != across;
+    const bool is_straight = abs(ahead - here + value_of(perspective, back)) < kStraight * abs(ahead);
+    if (is_inside && is_straight && max(max(nearest, own), back) < kSkyDepth) return ahead;
+  }
   const float other = depth_like(view, index_at(view, lines, column, beside), nearest);
   const bool known = other < kSkyDepth && beside != across;
   const bool same = known && connected(perspective, view.tangent_per_pixel.x, nearest, other);
@@ -163,7 +172,7 @@ Step step_at(View view, Lines lines, LinePlane plane, int rows, int line, int at
   const int index = index_at(view, lines, column, across);
   const float nearest = abs(surface_at(view, index, surface));
   const float here = value_of(perspective, nearest);
-  const float change = change_across(view, lines, rows, column, across, rest < 0.0 ? -1 : 1, nearest);
+  const float change = change_across(view, lines, rows, column, across, rest < 0.0 ? -1 : 1, nearest, surface);
   const float between = here + abs(rest) * change;
   Step s;
   s.at = at;

@@ -315,6 +315,23 @@ TEST(ExactHidden, hidden_surfaces_do_not_go_on) {
     if (i % 128 >= 72) EXPECT_EQ(near[i], nearer[i]) << i % 128 << " " << i / 128;
 }
 
+// From row to row its depth changes by as much as the two are apart, somewhere.
+TEST(ExactHidden, a_floor_seen_aslant_is_open_above_its_underside) {
+  const Shot shot = Shot::perspective({0, 0, 1.7}, {0, 10, 1}, 60, 160, 120);
+  HostFrame frame = render(Scene{{kFloor}}, shot).frame;
+  frame.behind.assign(1, {});
+  frame.behind_depth = render(Scene{{Plane{.point = {0, 0, -0.1}, .normal = {0, 0, 1}}}}, shot).frame.depth;
+  EstimatorSettings settings = settings_of(1);
+  const std::vector<float> ao = run(frame, settings), alone = run(without_peels(frame), settings);
+  int floor = 0;
+  for (std::size_t i = 0; i < ao.size(); i++) {
+    if (frame.depth[i] > 60) continue;
+    floor++;
+    EXPECT_NEAR(ao[i], alone[i], 1e-3) << i % 160 << " " << i / 160 << " z " << frame.depth[i];
+  }
+  EXPECT_GT(floor, 5000);
+}
+
 TEST(ExactHidden, a_tolerance_comes_to_the_same) {
   Rendering rendering = furnished(false, 96, 72);
   add_solid_peels(rendering, kFurniture, 3, kSolidFurniture);
