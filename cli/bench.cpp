@@ -87,13 +87,16 @@ void check_purpose(const BenchArguments& a) {
                        {"--reference-slices", has_slices}});
 }
 
+Command bench_for(BenchArguments& a) {
+  return {"alcove bench",
+          "Measures device time against error for the candidates of a suite.\n\n"
+          "Example:\n  alcove bench examples/bench/suite.toml --report bench.html\n",
+          rows_of(a)};
+}
+
 /// Returns false where help was asked for.
 bool parse(const std::vector<std::string>& arguments, BenchArguments& a) {
-  const Command command{"alcove bench",
-                        "Measures device time against error for the candidates of a suite.\n\n"
-                        "Example:\n  alcove bench examples/bench/suite.toml --report bench.html\n",
-                        rows_of(a)};
-  if (!parse_arguments(command, arguments)) return false;
+  if (!parse_arguments(bench_for(a), arguments)) return false;
   if (a.suite.empty() && !a.stability)
     fail(ErrorKind::usage, "alcove bench: SUITE is required; try alcove bench --help");
   check_purpose(a);
@@ -187,6 +190,8 @@ int report_stability(const BenchArguments& a) {
 }
 
 }  // namespace
+
+Command describe_bench() { return shown(bench_for); }
 
 int bench_command(const std::vector<std::string>& arguments) {
   BenchArguments a;

@@ -79,16 +79,13 @@ void check_files(const CompareSettings& s) {
   require(!s.motion_channels.empty(), "--motion-channels", s.motion, "--motion");
 }
 
-/// Returns false where help was asked for.
-bool parse(const std::vector<std::string>& arguments, CompareArguments& a) {
-  return parse_arguments(
-      {"alcove compare",
-       "Measures how far a picture or a sequence is from a reference.\n\n"
-       "Examples:\n"
-       "  alcove compare ao.exr truth.exr --depth frame.exr --max-rmse 0.1\n"
-       "  alcove compare ao.%04d.exr truth.%04d.exr --depth frame.%04d.exr --motion frame.%04d.exr --json\n",
-       rows_of(a)},
-      arguments);
+Command compare_for(CompareArguments& a) {
+  return {"alcove compare",
+          "Measures how far a picture or a sequence is from a reference.\n\n"
+          "Examples:\n"
+          "  alcove compare ao.exr truth.exr --depth frame.exr --max-rmse 0.1\n"
+          "  alcove compare ao.%04d.exr truth.%04d.exr --depth frame.%04d.exr --motion frame.%04d.exr --json\n",
+          rows_of(a)};
 }
 
 std::string optional_number(std::optional<double> value) { return value ? fmt::format("{:.4f}", *value) : "-"; }
@@ -134,9 +131,11 @@ void print_sequence(const CompareReport& report) {
 
 }  // namespace
 
+Command describe_compare() { return shown(compare_for); }
+
 int compare_command(const std::vector<std::string>& arguments) {
   CompareArguments a;
-  if (!parse(arguments, a)) return 0;
+  if (!parse_arguments(compare_for(a), arguments)) return 0;
   check_files(a.settings);
   if (!a.report.empty()) {
     const CompareSettings& s = a.settings;

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/commands.h"
+#include "cli/device_text.h"
 #include "cli/parsing.h"
 #include "core/base/error.h"
 #include "core/base/json_text.h"
@@ -13,31 +14,52 @@
 
 namespace alcove {
 
-int devices_command(const std::vector<std::string>& arguments) {
+namespace {
+
+struct DevicesArguments {
   bool json = false;
+};
+
+Command devices_for(DevicesArguments& a) {
   Command command{
       "alcove devices", "Lists the Vulkan devices; --device of alcove run takes an index, a name or a UUID.\n", {}};
-  OptionGroup(command.rows, "Options", Effect::none).flag("--json", json, "print JSON");
-  if (!parse_arguments(command, arguments)) return 0;
+  OptionGroup(command.rows, "Options", Effect::none).flag("--json", a.json, "print JSON");
+  return command;
+}
+
+}  // namespace
+
+nlohmann::ordered_json json_of(const gpu::DeviceInfo& d) {
+  return {{"index", d.index},
+          {"name", d.name},
+          {"type", gpu::name_of(d.type)},
+          {"uuid", d.uuid},
+          {"driver", d.driver},
+          {"api_version", d.api_version},
+          {"memory_bytes", d.memory_bytes},
+          {"buffer_bytes", d.buffer_bytes},
+          {"usable", d.unusable.empty()},
+          {"reason", d.unusable}};
+}
+
+std::string text_of(const gpu::DeviceInfo& d) {
+  return fmt::format("{}  {}  {}  {}  Vulkan {}  {:.1f} GiB  {}{}", d.index, printable(d.name), gpu::name_of(d.type),
+                     printable(d.driver), d.api_version, double(d.memory_bytes) / (1 << 30), d.uuid,
+                     d.unusable.empty() ? "" : "  not usable: " + printable(d.unusable));
+}
+
+Command describe_devices() { return shown(devices_for); }
+
+int devices_command(const std::vector<std::string>& arguments) {
+  DevicesArguments a;
+  if (!parse_arguments(devices_for(a), arguments)) return 0;
   const auto devices = gpu::list_devices();
   auto list = nlohmann::ordered_json::array();
-  for (const auto& d : devices) {
-    list.push_back({{"index", d.index},
-                    {"name", d.name},
-                    {"type", gpu::name_of(d.type)},
-                    {"uuid", d.uuid},
-                    {"driver", d.driver},
-                    {"api_version", d.api_version},
-                    {"memory_bytes", d.memory_bytes},
-                    {"buffer_bytes", d.buffer_bytes},
-                    {"usable", d.unusable.empty()},
-                    {"reason", d.unusable}});
-    if (!json)
-      fmt::print("{}  {}  {}  {}  Vulkan {}  {:.1f} GiB  {}{}\n", d.index, printable(d.name), gpu::name_of(d.type),
-                 printable(d.driver), d.api_version, double(d.memory_bytes) / (1 << 30), d.uuid,
-                 d.unusable.empty() ? "" : "  not usable: " + printable(d.unusable));
-  }
-  if (json) fmt::print("{}\n", json_text(list, 1));
+  for (const auto& d : devices) list.push_back(json_of(d));
+  if (a.json)
+    fmt::print("{}\n", json_text(list, 1));
+  else
+    for (const auto& d : devices) fmt::print("{}\n", text_of(d));
   if (devices.empty())
     fail(ErrorKind::device, "no Vulkan device found; lavapipe computes on the CPU (Debian: mesa-vulkan-drivers)");
   return 0;

@@ -3,7 +3,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <utility>
 
 #include "cli/commands.h"
@@ -51,21 +50,9 @@ SequenceNames names_of(const FramePlan& plan, const Settings& settings) {
 }  // namespace
 
 int inspect_command(const std::vector<std::string>& arguments) {
-  std::vector<std::string> rest = arguments;
-  const bool json = std::erase(rest, "--json") > 0;
-  if (std::ranges::any_of(rest, [](const auto& a) { return a == "--help" || a == "-h"; })) {
-    fmt::print(
-        "Usage: alcove inspect INPUT [--json] [--preview FILE.png] [input options]\n\nSays what the frame's files "
-        "hold, which channels would be used and how they would "
-        "be understood, with the evidence,\n"
-        "what is suspicious or missing, and the command that would run it. Of a sequence (shot.####.exr, with or "
-        "without --frames) also what changes along it, by all\n"
-        "headers and the pixels of a few frames. --preview shows depth, normals and AO in a picture. Takes the input "
-        "options of alcove run.\n");
-    return 0;
-  }
   RunOptions options;
-  if (!parse_run_options(rest, options, Reader::inspect)) return 0;
+  bool json = false;
+  if (!parse_inspect_options(arguments, options, json)) return 0;
   const InputSettings& input = options.settings.input;
   const std::string& path = main_input(input);
   if (path.empty()) fail(ErrorKind::usage, "no input: name an EXR file, or one with --depth or --position");

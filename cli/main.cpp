@@ -3,52 +3,37 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cstdio>
 #include <new>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "cli/commands.h"
+#include "cli/generate.h"
 #include "cli/input_words.h"
 #include "cli/print.h"
+#include "cli/version_text.h"
 #include "core/base/error.h"
 #include "core/base/text.h"
 #include "core/base/version.h"
 
 namespace {
 
-struct Command {
-  std::string_view name;
-  int (*run)(const std::vector<std::string>&);
-  const char* sentence;
-};
-
-constexpr std::array kCommands = {
-    Command{"run", alcove::run_command, "compute ambient occlusion from a frame's depth and normals"},
-    Command{"inspect", alcove::inspect_command, "say what a frame holds, how it would be read, and what is missing"},
-    Command{"compare", alcove::compare_command, "measure the error of a result against a reference"},
-    Command{"bench", alcove::bench_command, "measure device time against error"},
-    Command{"presets", alcove::presets_command, "list the presets, or print one"},
-    Command{"devices", alcove::devices_command, "list the Vulkan devices"},
-};
-
 void print_help() {
   fmt::print(
       "alcove {}: ambient occlusion from rendered depth and normals\n\nUsage: alcove COMMAND [options]\n"
       "       alcove FILE.exr [options]\n\n",
       alcove::kVersion);
-  for (const auto& command : kCommands) fmt::print("  {:<10}{}\n", command.name, command.sentence);
+  for (const auto& command : alcove::subcommands()) fmt::print("  {:<10}{}\n", command.name, command.sentence);
   fmt::print("\nWithout a command an input is run. alcove help COMMAND, or alcove COMMAND --help, tells the rest.\n");
 }
 
 /// The command of that name. Fails with the nearest names where there is none.
-const Command& command_of(const std::string& name) {
+const alcove::Subcommand& command_of(const std::string& name) {
   std::vector<std::string> names;
-  for (const auto& command : kCommands) {
+  for (const auto& command : alcove::subcommands()) {
     if (name == command.name) return command;
-    names.emplace_back(command.name);
+    names.push_back(command.name);
   }
   names.emplace_back("help");
   alcove::fail(alcove::ErrorKind::usage, "there is no command {}{}; there is {}, and alcove FILE.exr is alcove run",
@@ -70,11 +55,13 @@ int dispatch(const std::vector<std::string>& arguments) {
   }
   const std::string& first = arguments[0];
   if (first == "--version") {
-    fmt::print("alcove {}\n", alcove::kVersion);
+    fmt::print("{}", alcove::version_text());
     return 0;
   }
+  if (first == "--generate") return alcove::generate({arguments.begin() + 1, arguments.end()});
   if (first == "help") return help({arguments.begin() + 1, arguments.end()});
-  const bool is_known = std::ranges::find(kCommands, first, &Command::name) != kCommands.end();
+  const auto& commands = alcove::subcommands();
+  const bool is_known = std::ranges::find(commands, first, &alcove::Subcommand::name) != commands.end();
   const bool is_run =
       alcove::names_input(first) || (first.starts_with('-') && std::ranges::any_of(arguments, alcove::names_input));
   if (!is_known && is_run) return alcove::run_command(arguments);

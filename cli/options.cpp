@@ -6,13 +6,14 @@
 
 #include <algorithm>
 
+#include "cli/commands.h"
 #include "cli/parsing.h"
 #include "core/base/error.h"
 
 namespace alcove {
 namespace {
 
-/// What presets and then the command line say; INPUT, which is in no table, is read at once.
+/// What presets and then the command line say; what is in no table (INPUT, and --json of inspect) is read at once.
 std::vector<Said> all_said(const std::vector<Typed>& typed, const std::vector<OptionRow>& table) {
   std::vector<Said> said;
   const auto presets = std::ranges::find_if(typed, [](const Typed& one) { return one.row->name == "--preset"; });
@@ -20,7 +21,7 @@ std::vector<Said> all_said(const std::vector<Typed>& typed, const std::vector<Op
     for (const auto& preset : presets_of(presets->words))
       std::ranges::copy(said_by_preset(preset, table), std::back_inserter(said));
   for (const auto& [row, words] : typed) {
-    if (row->name.starts_with('-'))
+    if (std::ranges::find(table, row->name, &OptionRow::name) != table.end())
       said.push_back({row->long_name(), words});
     else
       row->read(words);
@@ -37,10 +38,19 @@ constexpr const char* kRun =
     "production\n";
 
 constexpr const char* kInspect =
-    "Says what a frame holds; these options of alcove run say what it would otherwise guess.\n";
+    "Says what a frame's files hold, which channels would be used and how they would be understood, with the "
+    "evidence,\nwhat is suspicious or missing, and the command that would run it. Of a sequence (shot.####.exr, with "
+    "or "
+    "without\n--frames) also what changes along it, by all headers and the pixels of a few frames. All options of "
+    "alcove run are\ntaken; these say what would otherwise be guessed.\n\n"
+    "Examples:\n"
+    "  alcove inspect frame.exr\n"
+    "  alcove inspect frame.exr --camera camera.json --preview sheet.png\n"
+    "  alcove inspect frame.%04d.exr --json\n";
 
-Command command_for(Reader reader, RunOptions& options, const std::vector<OptionRow>& table) {
-  Command command = reader == Reader::run ? Command{"alcove run", kRun, {}} : Command{"alcove inspect", kInspect, {}};
+/// INPUT first, and then the table.
+Command run_with(RunOptions& options, const std::vector<OptionRow>& table) {
+  Command command{"alcove run", kRun, {}};
   OptionGroup(command.rows, "", Effect::input)
       .text("INPUT", options.settings.input.input, "",
             "an EXR file with depth and normals, or a pattern such as frame.%04d.exr")
@@ -49,15 +59,25 @@ Command command_for(Reader reader, RunOptions& options, const std::vector<Option
   return command;
 }
 
-}  // namespace
+/// Whether inspect looks at an option of run.
+bool is_inspected(const OptionRow& row) {
+  static const Words kOthers{"--frames", "--preset", "--radius", "--device", "--preview"};
+  return row.group == "Input" || row.group == "Hidden surfaces" ||
+         std::ranges::find(kOthers, row.name) != kOthers.end();
+}
 
-bool parse_run_options(const std::vector<std::string>& arguments, RunOptions& options, Reader reader) {
-  if (arguments == std::vector<std::string>{"--help-markdown"}) {
-    fmt::print("{}", option_table_markdown());
-    return false;
-  }
-  const std::vector<OptionRow> table = option_table(options);
-  const Command command = command_for(reader, options, table);
+Command inspect_with(RunOptions& options, const std::vector<OptionRow>& table, bool& json) {
+  Command command = run_with(options, table);
+  command.name = "alcove inspect";
+  command.description = kInspect;
+  for (auto& row : command.rows) row.is_common = is_inspected(row);
+  OptionGroup(command.rows, "Reports", Effect::none).flag("--json", json, "print JSON").is_common = true;
+  return command;
+}
+
+/// Reads what the command line says; false where it asks for what is only printed.
+bool read_arguments(const Command& command, const std::vector<std::string>& arguments,
+                    const std::vector<OptionRow>& table, RunOptions& options, Reader reader) {
   const auto typed = find_typed(command, arguments);
   if (!typed) return false;
   try {
@@ -68,6 +88,40 @@ bool parse_run_options(const std::vector<std::string>& arguments, RunOptions& op
   }
   if (options.print_config) fmt::print("{}", preset_text(table));
   return !options.print_config;
+}
+
+struct InspectArguments {
+  RunOptions options;
+  bool json = false;
+};
+
+Command run_for(RunOptions& options) { return run_with(options, option_table(options)); }
+
+/// Only what inspect looks at.
+Command inspect_for(InspectArguments& a) {
+  Command command = inspect_with(a.options, option_table(a.options), a.json);
+  std::erase_if(command.rows, [](const OptionRow& row) { return row.name.starts_with('-') && !row.is_common; });
+  for (auto& row : command.rows) row.is_common = false;
+  return command;
+}
+
+}  // namespace
+
+Command describe_run() { return shown(run_for); }
+Command describe_inspect() { return shown(inspect_for); }
+
+bool parse_run_options(const std::vector<std::string>& arguments, RunOptions& options) {
+  if (arguments == std::vector<std::string>{"--help-markdown"}) {
+    fmt::print("{}", option_table_markdown());
+    return false;
+  }
+  const auto table = option_table(options);
+  return read_arguments(run_with(options, table), arguments, table, options, Reader::run);
+}
+
+bool parse_inspect_options(const std::vector<std::string>& arguments, RunOptions& options, bool& json) {
+  const auto table = option_table(options);
+  return read_arguments(inspect_with(options, table, json), arguments, table, options, Reader::inspect);
 }
 
 }  // namespace alcove

@@ -13,7 +13,9 @@ namespace alcove {
 /// Fills `options` from presets and arguments (argv without program and subcommand; later wins over earlier, arguments
 /// over presets). Returns false where --help, --help-markdown or --print-config was asked for and printed. Fails with
 /// ErrorKind::usage, naming the nearest options or presets, and on options that have no effect or contradict another.
-bool parse_run_options(const std::vector<std::string>& arguments, RunOptions& options, Reader reader = Reader::run);
+bool parse_run_options(const std::vector<std::string>& arguments, RunOptions& options);
+/// Does the same for `alcove inspect`, which writes no outputs: there, no option can lack one.
+bool parse_inspect_options(const std::vector<std::string>& arguments, RunOptions& options, bool& json);
 
 /// Gives the folder of presets: ALCOVE_PRESETS, else beside the program, above it, or in ../share/alcove. Fails with
 /// ErrorKind::usage.

@@ -28,8 +28,6 @@ CLI::Option* add_option(CLI::App& app, const OptionRow& row) {
   return option->required(row.is_required);
 }
 
-bool has_common_rows(const Command& command) { return std::ranges::any_of(command.rows, &OptionRow::is_common); }
-
 /// An app and, row by row, its options.
 struct Parser {
   CLI::App app;
@@ -148,6 +146,8 @@ void print_help(const Command& command, bool shows_all) {
 }
 
 }  // namespace
+
+bool has_common_rows(const Command& command) { return std::ranges::any_of(command.rows, &OptionRow::is_common); }
 
 std::string see_help(const std::string& command) { return fmt::format("; see {} --help", command); }
 

@@ -84,16 +84,27 @@ void print_json(const std::vector<Listed>& presets) {
   fmt::print("{}\n", json_text(list, 1));
 }
 
-}  // namespace
-
-int presets_command(const std::vector<std::string>& arguments) {
+struct PresetsArguments {
   std::string name;
   bool json = false;
+};
+
+Command presets_for(PresetsArguments& a) {
   Command command{"alcove presets", "Lists the presets with what each is for, or prints the one of that name.\n", {}};
-  OptionGroup(command.rows, "", Effect::none).text("NAME", name, "", "a preset to print, or a TOML file");
+  OptionGroup(command.rows, "", Effect::none).text("NAME", a.name, "", "a preset to print, or a TOML file");
   OptionGroup(command.rows, "Options", Effect::none)
-      .flag("--json", json, "print the list as JSON: name, group, sentence, file");
-  if (!parse_arguments(command, arguments)) return 0;
+      .flag("--json", a.json, "print the list as JSON: name, group, sentence, file");
+  return command;
+}
+
+}  // namespace
+
+Command describe_presets() { return shown(presets_for); }
+
+int presets_command(const std::vector<std::string>& arguments) {
+  PresetsArguments a;
+  if (!parse_arguments(presets_for(a), arguments)) return 0;
+  const auto& [name, json] = a;
   if (!name.empty() && json) fail(ErrorKind::usage, "--json is of the list; {} is printed as it is", name);
   if (!name.empty())
     fmt::print("{}", read_text(preset_file(name), "preset", "NAME"));

@@ -10,6 +10,7 @@
 #include <sys/file.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/utsname.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -22,6 +23,7 @@
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <string_view>
 #include <thread>
 #include <utility>
 
@@ -75,6 +77,16 @@ int process_id() { return int(::getpid()); }
 std::string program_folder() {
   std::error_code error;
   return std::filesystem::read_symlink("/proc/self/exe", error).parent_path().string();
+}
+
+std::string system_name() {
+  std::string name, line;
+  constexpr std::string_view kKey = "PRETTY_NAME=\"";
+  for (std::ifstream file("/etc/os-release"); std::getline(file, line);)
+    if (line.starts_with(kKey)) name = line.substr(kKey.size(), line.find('"', kKey.size()) - kKey.size()) + ", ";
+  utsname kernel{};
+  ::uname(&kernel);
+  return name + kernel.sysname + " " + kernel.release + " " + kernel.machine;
 }
 
 int core_count() { return int(std::max(1u, std::thread::hardware_concurrency())); }

@@ -17,6 +17,9 @@ int process_id();
 /// The folder that the running program lies in; empty where the system does not say.
 std::string program_folder();
 
+/// The system and its kernel, such as "Debian GNU/Linux 12 (bookworm), Linux 6.1.0 x86_64".
+std::string system_name();
+
 /// The number of cores that the process may use, at least 1.
 int core_count();
 

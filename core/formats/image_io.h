@@ -43,6 +43,9 @@ struct Chart {
 /// Display values of sky in pictures: no grey, not on a chart's ramp, and no normal that faces the camera.
 inline constexpr std::array kSkyColor{0.74f, 0.4f, 0.36f};
 
+/// Why neither pictures of other formats than EXR and DDS can be read nor charts drawn; empty where they can.
+std::string why_no_image_io();
+
 /// Opens a picture of any format that OpenImageIO reads. Fails with ErrorKind::input, also if a header claims more
 /// pixels than its file can hold; `option` is for the message.
 std::unique_ptr<PictureReader> open_picture(const std::string& path, const char* option);

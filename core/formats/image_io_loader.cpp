@@ -8,23 +8,33 @@
 namespace alcove {
 namespace {
 
+/// Null, and why in `why`, where the module cannot be loaded. It is found beside the program or in ../lib/alcove, by
+/// the program's run path.
+const ImageIoModule* load(std::string& why) {
+  return static_cast<const ImageIoModule*>(symbol_of(kImageIoFile, kImageIoSymbol, why));
+}
+
 /// `path` is the picture that needs it.
 const ImageIoModule& module(const std::string& path, ErrorKind kind) {
   static const ImageIoModule* loaded = [&] {
-    // found beside the program or in ../lib/alcove, by the program's run path
     std::string why;
-    void* symbol = symbol_of(kImageIoFile, kImageIoSymbol, why);
-    if (!symbol)
+    const ImageIoModule* found = load(why);
+    if (!found)
       fail(kind,
            "{}: to read a picture that is no EXR, and to draw debug views, Alcove needs {}, which is built where "
            "OpenImageIO is installed (Debian package libopenimageio-dev): {}",
            path, kImageIoFile, why);
-    return static_cast<const ImageIoModule*>(symbol);
+    return found;
   }();
   return *loaded;
 }
 
 }  // namespace
+
+std::string why_no_image_io() {
+  std::string why;
+  return load(why) ? "" : why;
+}
 
 std::unique_ptr<PictureReader> open_picture(const std::string& path, const char* option) {
   return module(path, ErrorKind::input).open_picture(path, option);

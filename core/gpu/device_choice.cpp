@@ -210,6 +210,12 @@ std::vector<DeviceInfo> list_devices() {
   return infos;
 }
 
+std::string loader_version() {
+  std::uint32_t version = VK_API_VERSION_1_0;  // the only one without the call
+  check(vkEnumerateInstanceVersion(&version), "vkEnumerateInstanceVersion");
+  return version_text(version);
+}
+
 PhysicalDevice choose_device(const std::vector<PhysicalDevice>& devices, const DeviceOptions& options) {
   const PhysicalDevice* best = nullptr;
   for (const auto& device : devices) {

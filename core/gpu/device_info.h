@@ -26,6 +26,9 @@ const char* name_of(DeviceType type);
 /// All devices that the loader finds; empty when there is none. Fails only when the loader itself does.
 std::vector<DeviceInfo> list_devices();
 
+/// The version of the Vulkan loader, such as 1.3.239.
+std::string loader_version();
+
 /// How long one submission may keep the device from others. A display that shares it stutters from some 0.1 s on, and
 /// systems reset a device that does not answer for 2 s (Windows' default).
 constexpr double kSubmissionMs = 250;

@@ -42,21 +42,20 @@ bool is_owned(std::span<const char> data, const CacheOwner& owner) {
   return owner == CacheOwner{header.vendorID, header.deviceID, std::to_array(header.pipelineCacheUUID)};
 }
 
-/// The folder after the XDG base directory specification; empty when there is no home.
-fs::path cache_folder() {
-  if (const char* cache = std::getenv("XDG_CACHE_HOME"); cache && *cache == '/') return fs::path(cache) / "alcove";
-  if (const char* home = std::getenv("HOME"); home && *home == '/') return fs::path(home) / ".cache" / "alcove";
-  return {};
-}
-
 }  // namespace
 
+std::string cache_folder() {
+  if (const char* cache = std::getenv("XDG_CACHE_HOME"); cache && *cache == '/') return fs::path(cache) / "alcove";
+  if (const char* home = std::getenv("HOME"); home && *home == '/') return fs::path(home) / ".cache" / "alcove";
+  return "";
+}
+
 std::string cache_file(const CacheOwner& owner) {
-  const fs::path folder = cache_folder();
+  const std::string folder = cache_folder();
   if (folder.empty()) return "";
   std::string uuid;
   for (const std::uint8_t byte : owner.uuid) uuid += fmt::format("{:02x}", byte);
-  return folder / fmt::format("pipelines-{:04x}-{:04x}-{}.bin", owner.vendor, owner.device, uuid);
+  return fs::path(folder) / fmt::format("pipelines-{:04x}-{:04x}-{}.bin", owner.vendor, owner.device, uuid);
 }
 
 std::string packed_cache(std::span<const char> data) {

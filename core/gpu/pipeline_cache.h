@@ -18,6 +18,9 @@ struct CacheOwner {
   bool operator==(const CacheOwner&) const = default;
 };
 
+/// The folder of all owners, after the XDG base directory specification; empty when there is no home.
+std::string cache_folder();
+
 /// The path of the owner's file in the XDG cache folder; empty when there is no home.
 std::string cache_file(const CacheOwner& owner);
 

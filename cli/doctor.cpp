@@ -1,0 +1,161 @@
+// `alcove doctor [--json]`: what a report of a bug needs to say of the machine, and what is amiss with it. Also --version.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "cli/build_facts.h"
+#include "cli/commands.h"
+#include "cli/device_text.h"
+#include "cli/options.h"
+#include "cli/version_text.h"
+#include "core/base/error.h"
+#include "core/base/json_text.h"
+#include "core/base/memory_limit.h"
+#include "core/base/system.h"
+#include "core/base/text.h"
+#include "core/base/version.h"
+#include "core/formats/image_io.h"
+#include "core/gpu/device_info.h"
+#include "core/gpu/pipeline_cache.h"
+
+namespace alcove {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Facts {
+  std::vector<std::pair<std::string, std::string>> lines;  // name and text
+  std::vector<gpu::DeviceInfo> devices;
+  std::vector<std::string> problems;  // sentences
+};
+
+std::string gibibytes(std::uint64_t bytes) { return fmt::format("{:.1f} GiB", double(bytes) / (1 << 30)); }
+
+std::string memory_text() {
+  // The kernel's own word for no limit is a number close to 2^63.
+  constexpr std::uint64_t kAbsurd = std::uint64_t(1) << 60;
+  const auto limit = [](std::uint64_t bytes) { return bytes >= kAbsurd ? "no limit" : gibibytes(bytes); };
+  return fmt::format("{} free on the machine; left by control groups: {}; asked of Slurm: {}; a run takes up to {}",
+                     gibibytes(memory_left_on_machine()), limit(memory_left_in_groups()), limit(memory_of_slurm_job()),
+                     gibibytes(free_memory() / 2));
+}
+
+std::string preset_text(Facts& facts) {
+  try {
+    return fmt::format("{}, {} of them", preset_folder(), preset_names().size());
+  } catch (const Error& error) {
+    facts.problems.emplace_back(error.what());
+    return "none";
+  }
+}
+
+/// The folder of compiled kernels, with how much it holds, or why nothing is kept.
+std::string cache_text() {
+  const std::string folder = gpu::cache_folder();
+  if (folder.empty()) return "none: neither XDG_CACHE_HOME nor HOME is set";
+  std::uintmax_t bytes = 0;
+  int files = 0;
+  std::error_code error;
+  for (fs::directory_iterator file(folder, error), end; !error && file != end; file.increment(error)) {
+    const std::uintmax_t size = file->file_size(error);
+    if (error) continue;
+    bytes += size;
+    files++;
+  }
+  const std::string held = fmt::format("{}, {} files, {:.1f} MiB", folder, files, double(bytes) / kMebibyte);
+  std::error_code refused;
+  if (fs::exists(folder, error)) refused = may_make_files_in(folder);
+  return held + (refused ? fmt::format("; it cannot be written: {}", refused.message()) : "");
+}
+
+std::string picture_text() {
+  const std::string why = why_no_image_io();
+  return why.empty() ? "TIFF, PNG and others can be read, debug views drawn" : "EXR and DDS only: " + why;
+}
+
+/// The variables that change what a run does, those that are set.
+std::string environment_text() {
+  std::vector<std::string> set;
+  for (const char* name : {"ALCOVE_PRESETS", "OCIO", "XDG_CACHE_HOME", "TMPDIR", "VK_DRIVER_FILES", "VK_ICD_FILENAMES",
+                           "VK_INSTANCE_LAYERS", "LP_NUM_THREADS", "LP_NATIVE_VECTOR_WIDTH", "CUDA_VISIBLE_DEVICES",
+                           "SLURM_JOB_ID"})
+    if (const char* value = std::getenv(name)) set.push_back(fmt::format("{}={}", name, value));
+  return set.empty() ? "nothing of note" : fmt::format("{}", fmt::join(set, " "));
+}
+
+Facts gather() {
+  Facts facts;
+  const auto tell = [&](const char* name, const std::string& text) { facts.lines.emplace_back(name, text); };
+  tell("version", kVersion);
+  tell("build", kBuild);
+  tell("libraries", kLibraries);
+  tell("system", system_name());
+  tell("cores", std::to_string(core_count()));
+  tell("memory", memory_text());
+  tell("program", program_folder());
+  tell("presets", preset_text(facts));
+  tell("compiled kernels", cache_text());
+  tell("other pictures", picture_text());
+  tell("environment", environment_text());
+  try {
+    tell("vulkan loader", gpu::loader_version());
+    facts.devices = gpu::list_devices();
+  } catch (const Error& error) {
+    facts.problems.emplace_back(error.what());
+  }
+  const auto is_usable = [](const gpu::DeviceInfo& device) { return device.unusable.empty(); };
+  if (std::ranges::none_of(facts.devices, is_usable))
+    facts.problems.emplace_back(
+        "no Vulkan device can compute; lavapipe does on the CPU (Debian: mesa-vulkan-drivers), and a GPU needs its "
+        "maker's driver");
+  return facts;
+}
+
+void print_text(const Facts& facts) {
+  for (const auto& [name, text] : facts.lines) fmt::print("{:<17} {}\n", name, printable(text));
+  for (const auto& device : facts.devices) fmt::print("{:<17} {}\n", "device", text_of(device));
+  for (const auto& problem : facts.problems) fmt::print("{:<17} {}\n", "problem", printable(problem));
+  if (facts.problems.empty()) fmt::print("{:<17} none\n", "problems");
+}
+
+void print_json(const Facts& facts) {
+  nlohmann::ordered_json all;
+  for (const auto& [name, text] : facts.lines) all[name] = text;
+  all["devices"] = nlohmann::ordered_json::array();
+  for (const auto& device : facts.devices) all["devices"].push_back(json_of(device));
+  all["problems"] = facts.problems;
+  fmt::print("{}\n", json_text(all, 1));
+}
+
+struct DoctorArguments {
+  bool json = false;
+};
+
+Command doctor_for(DoctorArguments& a) {
+  Command command{"alcove doctor",
+                  "Says what a report of a bug needs: version, libraries, devices and drivers, memory and its limits, "
+                  "folders; and what is amiss, where nothing can be computed. Nothing is sent anywhere.\n",
+                  {}};
+  OptionGroup(command.rows, "Options", Effect::none).flag("--json", a.json, "print JSON");
+  return command;
+}
+
+}  // namespace
+
+std::string version_text() { return fmt::format("alcove {}\n{}\n{}\n", kVersion, kBuild, kLibraries); }
+
+Command describe_doctor() { return shown(doctor_for); }
+
+int doctor_command(const std::vector<std::string>& arguments) {
+  DoctorArguments a;
+  if (!parse_arguments(doctor_for(a), arguments)) return 0;
+  const Facts facts = gather();
+  a.json ? print_json(facts) : print_text(facts);
+  return facts.problems.empty() ? 0 : int(ErrorKind::device);
+}
+
+}  // namespace alcove
