@@ -33,7 +33,9 @@ Value value_of(const OptionRow& row) {
   value.is_file = is_place || contains(row.value, "FILE") || contains(row.value, "PROGRAM");
   std::istringstream words(row.value);
   for (std::string word; std::getline(words, word, '|');) {
-    const bool is_typed = std::ranges::all_of(word, [](char c) { return std::islower((unsigned char)c) || std::isdigit((unsigned char)c) || c == '-' || c == '.'; });
+    const bool is_typed = std::ranges::all_of(word, [](char c) {
+      return std::islower((unsigned char)c) || std::isdigit((unsigned char)c) || c == '-' || c == '.';
+    });
     if (is_typed && word.size() > 1 && row.value.find('|') != row.value.npos) value.words.push_back(word);
   }
   return value;
@@ -134,19 +136,17 @@ std::string for_brackets(const std::string& text) {
   return out;
 }
 
+/// A call that offers the value; " " offers nothing, and zsh shows what is wanted. Without the space in front,
+/// _arguments would put options before ours.
 std::string zsh_action(const Value& value) {
-  std::vector<std::string> ways;
-  if (!value.words.empty()) ways.push_back(fmt::format("words:word:({})", fmt::join(value.words, " ")));
-  if (!value.listed.empty()) ways.push_back("listed:name:_alcove_listed " + value.listed);
-  if (value.is_file) ways.emplace_back("files:file:_files");
-  if (value.is_folder) ways.emplace_back("folders:folder:_files -/");
-  if (ways.empty()) return " ";
-  for (auto& way : ways) way = "\"" + way + "\"";
-  return fmt::format("_alternative {}", fmt::join(ways, " "));
+  const char* const places = value.is_file ? "files" : value.is_folder ? "folders" : "";
+  if (value.words.empty() && value.listed.empty() && !*places) return " ";
+  return fmt::format(" _alcove_value \"{}\" \"{}\" \"{}\"", fmt::join(value.words, " "), value.listed, places);
 }
 
 std::string zsh_argument(const OptionRow& row) {
-  const std::string what = fmt::format(":{}:{}", for_brackets(row.value.empty() ? row.name : row.value), zsh_action(value_of(row)));
+  const std::string what =
+      fmt::format(":{}:{}", for_brackets(row.value.empty() ? row.name : row.value), zsh_action(value_of(row)));
   if (!row.name.starts_with('-')) return quoted((row.is_required ? ":" : "::") + what.substr(1));
   const auto names = names_of_row(row);
   const std::string text = fmt::format("[{}]{}", for_brackets(row.sentence), row.is_flag() ? "" : what);
@@ -171,17 +171,25 @@ std::string zsh_completion() {
   }
   return fmt::format(R"SH(#compdef alcove
 # zsh completion for alcove. This file is made by `alcove --generate zsh`.
-_alcove_listed() {{
-  local -a names=(${{(f)"$(alcove --generate $1 2>/dev/null)"}})
-  shift
-  compadd "$@" -- $names
+# words, what the program lists, files or folders
+_alcove_value() {{
+  local offered=1
+  [[ -n $1 ]] && compadd -- ${{=1}} && offered=0
+  [[ -n $2 ]] && compadd -- ${{(f)"$(alcove --generate $2 2>/dev/null)"}} && offered=0
+  case $3 in
+    files) _files && offered=0 ;;
+    folders) _files -/ && offered=0 ;;
+  esac
+  return offered
 }}
 _alcove() {{
   local -a commands=(
 {0}    'help:print the help of a command'
   )
   if (( CURRENT == 2 )); then
-    _alternative "commands:command:{{_describe command commands}}" "files:input:_files" "options:option:(--help --version)"
+    _describe command commands
+    _files
+    compadd -- --help --version
     return
   fi
   local command=$words[2]

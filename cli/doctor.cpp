@@ -80,9 +80,9 @@ std::string picture_text() {
 /// The variables that change what a run does, those that are set.
 std::string environment_text() {
   std::vector<std::string> set;
-  for (const char* name : {"ALCOVE_PRESETS", "OCIO", "XDG_CACHE_HOME", "TMPDIR", "VK_DRIVER_FILES", "VK_ICD_FILENAMES",
-                           "VK_INSTANCE_LAYERS", "LP_NUM_THREADS", "LP_NATIVE_VECTOR_WIDTH", "CUDA_VISIBLE_DEVICES",
-                           "SLURM_JOB_ID"})
+  for (const char* name :
+       {"ALCOVE_PRESETS", "OCIO", "XDG_CACHE_HOME", "TMPDIR", "VK_DRIVER_FILES", "VK_ICD_FILENAMES",
+        "VK_INSTANCE_LAYERS", "LP_NUM_THREADS", "LP_NATIVE_VECTOR_WIDTH", "CUDA_VISIBLE_DEVICES", "SLURM_JOB_ID"})
     if (const char* value = std::getenv(name)) set.push_back(fmt::format("{}={}", name, value));
   return set.empty() ? "nothing of note" : fmt::format("{}", fmt::join(set, " "));
 }

@@ -70,9 +70,8 @@ char upper(char c) { return c >= 'a' && c <= 'z' ? char(c - 'a' + 'A') : c; }
 std::string title(const std::string& name, const std::string& sentence) {
   std::string heading = name;
   std::ranges::transform(heading, heading.begin(), upper);
-  return fmt::format(
-      ".TH {} 1 \"{}\" \"alcove {}\" \"User Commands\"\n.ad l\n.SH NAME\n{} \\- {}\n", escaped(heading), kReleaseDate, kVersion,
-      escaped(name), escaped(sentence));
+  return fmt::format(".TH {} 1 \"{}\" \"alcove {}\" \"User Commands\"\n.ad l\n.SH NAME\n{} \\- {}\n", escaped(heading),
+                     kReleaseDate, kVersion, escaped(name), escaped(sentence));
 }
 
 std::string heading_of(const OptionRow& row) {
@@ -101,7 +100,8 @@ std::string options_of(const Command& command) {
 }
 
 constexpr const char* kExitStatus =
-    ".SH EXIT STATUS\n.TP\n0\nAll was done.\n.TP\n1\nSome frames failed.\n.TP\n2\nUsage or settings.\n.TP\n3\nAn input is "
+    ".SH EXIT STATUS\n.TP\n0\nAll was done.\n.TP\n1\nSome frames failed.\n.TP\n2\nUsage or settings.\n.TP\n3\nAn input "
+    "is "
     "missing or cannot be read.\n.TP\n4\nAn output could not be written.\n.TP\n5\nThere is no device, or it was lost.\n"
     ".TP\n6\nA comparison failed.\n.TP\n128 and more\nThe number of the signal that ended the run, plus 128.\n";
 
