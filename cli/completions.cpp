@@ -1,5 +1,5 @@
-// Completions for bash, zsh and fish. Options and their words stand in the scripts; presets and devices are asked of the
-// program when they are wanted.
+// Completions for bash, zsh and fish. Options and their words stand in the scripts; presets and devices are asked of
+// the program when they are wanted.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 

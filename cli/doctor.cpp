@@ -1,4 +1,4 @@
-// `alcove doctor [--json]`: what a report of a bug needs to say of the machine, and what is amiss with it. Also --version.
+// `alcove doctor [--json]`: what a report of a bug needs to say of the machine, and what is amiss with it; --version.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 
@@ -79,11 +79,10 @@ std::string picture_text() {
 
 /// The variables that change what a run does, those that are set.
 std::string environment_text() {
-  std::vector<std::string> set;
-  for (const char* name :
-       {"ALCOVE_PRESETS", "OCIO", "XDG_CACHE_HOME", "TMPDIR", "VK_DRIVER_FILES", "VK_ICD_FILENAMES",
-        "VK_INSTANCE_LAYERS", "LP_NUM_THREADS", "LP_NATIVE_VECTOR_WIDTH", "CUDA_VISIBLE_DEVICES", "SLURM_JOB_ID"})
-    if (const char* value = std::getenv(name)) set.push_back(fmt::format("{}={}", name, value));
+  std::vector<std::string> names = gpu::driver_variables(), set;
+  names.insert(names.end(), {"ALCOVE_PRESETS", "OCIO", "XDG_CACHE_HOME", "TMPDIR", "SLURM_JOB_ID"});
+  for (const auto& name : names)
+    if (const char* value = std::getenv(name.c_str())) set.push_back(fmt::format("{}={}", name, value));
   return set.empty() ? "nothing of note" : fmt::format("{}", fmt::join(set, " "));
 }
 

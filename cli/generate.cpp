@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 
 #include "cli/commands.h"
 #include "cli/options.h"
@@ -49,10 +50,12 @@ int generate(const std::vector<std::string>& arguments) {
 std::vector<OptionRow> rows_with_help(const Command& command) {
   static bool unused = false;
   std::vector<OptionRow> rows;
+  const auto is_place = [](const OptionRow& row) { return !row.name.starts_with('-'); };
+  std::ranges::copy_if(command.rows, std::back_inserter(rows), is_place);
   OptionGroup help(rows, "Help", Effect::none);
   help.flag("-h,--help", unused, "print the help and stop");
   if (has_common_rows(command)) help.flag("--help-all", unused, "print all options and stop");
-  rows.insert(rows.end(), command.rows.begin(), command.rows.end());
+  std::ranges::copy_if(command.rows, std::back_inserter(rows), std::not_fn(is_place));
   return rows;
 }
 

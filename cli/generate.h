@@ -13,7 +13,7 @@ namespace alcove {
 /// `preset-names` or `device-names`, a line each. Gives the exit code. Fails with ErrorKind::usage.
 int generate(const std::vector<std::string>& arguments);
 
-/// A command's rows, and before them those of its help.
+/// A command's rows: its places, its help, and its options.
 std::vector<OptionRow> rows_with_help(const Command& command);
 /// The names of a row: "-o" and "--output".
 std::vector<std::string> names_of_row(const OptionRow& row);

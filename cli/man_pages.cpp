@@ -70,8 +70,8 @@ char upper(char c) { return c >= 'a' && c <= 'z' ? char(c - 'a' + 'A') : c; }
 std::string title(const std::string& name, const std::string& sentence) {
   std::string heading = name;
   std::ranges::transform(heading, heading.begin(), upper);
-  return fmt::format(".TH {} 1 \"{}\" \"alcove {}\" \"User Commands\"\n.ad l\n.SH NAME\n{} \\- {}\n", escaped(heading),
-                     kReleaseDate, kVersion, escaped(name), escaped(sentence));
+  return fmt::format(".TH {} 1 \"{}\" \"alcove {}\" \"User Commands\"\n.ad l\n.nh\n.SH NAME\n{} \\- {}\n",
+                     escaped(heading), kReleaseDate, kVersion, escaped(name), escaped(sentence));
 }
 
 std::string heading_of(const OptionRow& row) {
@@ -85,8 +85,9 @@ std::string text_of(const OptionRow& row) {
   std::vector<std::string> facts;
   if (const std::string range = range_text(row); !range.empty()) facts.push_back(range);
   if (!row.default_text.empty()) facts.push_back("default: " + row.default_text);
-  if (row.repeats) facts.emplace_back("may be given more than once");
-  return row.whole_sentence() + (facts.empty() ? "." : fmt::format(" ({}).", fmt::join(facts, "; ")));
+  const std::string sentence = row.whole_sentence();
+  return upper(sentence[0]) + sentence.substr(1) +
+         (facts.empty() ? "." : fmt::format(" ({}).", fmt::join(facts, "; ")));
 }
 
 std::string options_of(const Command& command) {

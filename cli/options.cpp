@@ -101,7 +101,6 @@ Command run_for(RunOptions& options) { return run_with(options, option_table(opt
 Command inspect_for(InspectArguments& a) {
   Command command = inspect_with(a.options, option_table(a.options), a.json);
   std::erase_if(command.rows, [](const OptionRow& row) { return row.name.starts_with('-') && !row.is_common; });
-  for (auto& row : command.rows) row.is_common = false;
   return command;
 }
 

@@ -216,6 +216,11 @@ std::string loader_version() {
   return version_text(version);
 }
 
+std::vector<std::string> driver_variables() {
+  return {"VK_DRIVER_FILES", "VK_ICD_FILENAMES",       "VK_INSTANCE_LAYERS",
+          "LP_NUM_THREADS",  "LP_NATIVE_VECTOR_WIDTH", "CUDA_VISIBLE_DEVICES"};
+}
+
 PhysicalDevice choose_device(const std::vector<PhysicalDevice>& devices, const DeviceOptions& options) {
   const PhysicalDevice* best = nullptr;
   for (const auto& device : devices) {

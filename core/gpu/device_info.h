@@ -28,6 +28,8 @@ std::vector<DeviceInfo> list_devices();
 
 /// The version of the Vulkan loader, such as 1.3.239.
 std::string loader_version();
+/// The variables of the environment by which the loader and drivers choose devices and threads.
+std::vector<std::string> driver_variables();
 
 /// How long one submission may keep the device from others. A display that shares it stutters from some 0.1 s on, and
 /// systems reset a device that does not answer for 2 s (Windows' default).

@@ -60,7 +60,7 @@ TEST_F(CommandLine, help_and_version_give_code_0) {
   }
   const Finished finished = run_program({"--version"});
   EXPECT_EQ(finished.code, 0);
-  EXPECT_THAT(finished.out, testing::MatchesRegex("alcove [0-9]+\\.[0-9]+\\.[0-9]+\n"));
+  EXPECT_THAT(finished.out, testing::MatchesRegex("alcove [0-9]+\\.[0-9]+\\.[0-9]+\n.+, .+\nOpenEXR 3\\..+\n"));
 }
 
 TEST_F(CommandLine, help_all_of_run_prints_every_default) {
@@ -90,7 +90,7 @@ TEST_F(CommandLine, help_of_run_shows_a_dozen_options_and_help_all_the_rest) {
 
 TEST_F(CommandLine, help_of_a_command_is_what_its_option_prints) {
   EXPECT_EQ(run_program({"help"}).out, run_program({"--help"}).out);
-  for (const char* command : {"run", "inspect", "compare", "bench", "presets", "devices"}) {
+  for (const char* command : {"run", "inspect", "compare", "bench", "presets", "devices", "doctor"}) {
     const Finished finished = run_program({"help", command});
     EXPECT_EQ(finished.code, 0) << finished;
     EXPECT_EQ(finished.out, run_program({command, "--help"}).out) << command;
@@ -375,6 +375,36 @@ TEST_F(CommandLine, devices_are_listed_as_text_and_json) {
   const std::string uuid = devices[0]["uuid"], name = devices[0]["name"];
   for (const std::string& choice : {std::string("0"), uuid, name})
     EXPECT_EQ(run({"--device", choice}).code, 0) << choice;
+}
+
+TEST_F(CommandLine, doctor_tells_what_a_report_needs) {
+  const Finished text = run_program({"doctor"}), finished = run_program({"doctor", "--json"});
+  EXPECT_EQ(text.code, 0) << text;
+  const json facts = json::parse(finished.out), devices = json::parse(run_program({"devices", "--json"}).out);
+  EXPECT_EQ(facts["devices"], devices);
+  EXPECT_THAT(facts["problems"], IsEmpty());
+  EXPECT_EQ("alcove " + facts["version"].get<std::string>(), lines_of(run_program({"--version"}).out)[0]);
+  EXPECT_THAT(facts["presets"].get<std::string>(), StartsWith(std::string(ALCOVE_SOURCE_DIR "/presets, ")));
+  EXPECT_THAT(facts["compiled kernels"].get<std::string>(), HasSubstr("/alcove, "));
+  EXPECT_THAT(facts["memory"].get<std::string>(), testing::Not(HasSubstr("0000000")));
+  for (const auto& fact : facts.items())
+    if (fact.value().is_string()) EXPECT_THAT(text.out, HasSubstr(fact.key())) << fact.key();
+}
+
+TEST_F(CommandLine, doctor_tells_what_is_amiss) {
+  const Finished without_device =
+      run_program({"doctor"}, {.environment = {{"VK_DRIVER_FILES", "/none"}, {"VK_ICD_FILENAMES", "/none"}}});
+  EXPECT_EQ(without_device.code, 5) << without_device;
+  EXPECT_THAT(without_device.out,
+              AllOf(HasSubstr("problem "), HasSubstr("lavapipe"), HasSubstr("VK_DRIVER_FILES=/none")));
+  const Finished without_presets = run_program({"doctor"}, {.environment = {{"ALCOVE_PRESETS", "/none"}}});
+  EXPECT_EQ(without_presets.code, 5) << without_presets;
+  EXPECT_THAT(without_presets.out, AllOf(HasSubstr("problem "), HasSubstr("no folder of presets at /none")));
+  const Finished limited = run_program({"doctor"}, {.environment = {{"SLURM_JOB_ID", "7"},
+                                                                    {"SLURM_MEM_PER_NODE", "2048"},
+                                                                    {"HOME", std::nullopt},
+                                                                    {"XDG_CACHE_HOME", std::nullopt}}});
+  EXPECT_THAT(limited.out, AllOf(HasSubstr("asked of Slurm: 2.0 GiB"), HasSubstr("neither XDG_CACHE_HOME nor HOME")));
 }
 
 }  // namespace
