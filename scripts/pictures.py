@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
-"""Draws the pictures of README.md into docs/pictures/: scripts/pictures.py FRAMES [build/alcove]
+"""Draws the pictures of README.md and docs/ into docs/pictures/: scripts/pictures.py FRAMES [build/alcove]
 
-FRAMES is the folder of the rendered test scenes. Each picture is two halves of one frame side by side: what there was
-before, and what Alcove makes of it; or AO by Alcove, and by ray tracing.
+FRAMES is the folder of the rendered test scenes. The pictures of the README are two halves of one frame side by side:
+what there was before, and what Alcove makes of it; or AO by Alcove, and by ray tracing. Those of docs/settings.md are
+the same part of a frame several times, by other settings and by ray tracing.
 SPDX-License-Identifier: BSD-3-Clause
 """
 import pathlib
@@ -55,41 +56,66 @@ def write_png(path, rows):
     path.write_bytes(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(raw, 9)) + chunk(b"IEND", b""))
 
 
-def beside(left, right, first, last):
-    """The columns from first to last of both."""
-    return [a[3 * first : 3 * last] + b"\xff" * 3 * GAP + b[3 * first : 3 * last] for a, b in zip(left, right)]
+def beside(pictures, columns, rows):
+    """That part of each."""
+    gap = b"\xff" * 3 * GAP
+    return [gap.join(p[y][3 * columns[0] : 3 * columns[1]] for p in pictures) for y in range(*rows)]
+
+
+class Scene:
+    """A rendered frame and its truth."""
+
+    def __init__(self, frames, program, scratch, name, radius):
+        self.frames, self.program, self.scratch, self.name, self.radius = frames, program, scratch, name, radius
+
+    def run(self, *options):
+        """A run in production quality, where the options say no other, into ao.exr."""
+        frame, camera = (self.frames / f"{self.name}.{end}" for end in ("gbuffer.exr", "camera.json"))
+        command = [self.program, "run", frame, "--camera", camera, "-o", self.scratch / "ao.exr", "--overwrite", "-q"]
+        command += [] if "--preset" in options else ["--preset", "production"]
+        command += [] if "--radius" in options else ["--radius", self.radius]
+        subprocess.run([str(word) for word in [*command, *options]], check=True)
+
+    def composite(self, beauty, *options):
+        """As displays show it."""
+        preview = self.scratch / "preview.png"
+        self.run("--beauty", beauty, "--composite", self.scratch / "comp.exr", "--preview", preview, *options)
+        return read_png(preview)
+
+    def shown(self, ao, channel):
+        """AO as it is, through the same transform as all pictures: a beauty that no AO is put into."""
+        return self.composite(ao, "--beauty-channels", ",".join([channel] * 3), "--intensity", "0", "--preset", "draft")
+
+    def ao(self, *options):
+        self.run(*options)
+        (self.scratch / "ao.exr").rename(self.scratch / "shown.exr")
+        return self.shown(self.scratch / "shown.exr", "Y")
+
+    def truth(self):
+        return self.shown(self.frames / f"{self.name}.ao.R.a.exr", "AO")
 
 
 def main():
-    frames = pathlib.Path(sys.argv[1])
-    program = sys.argv[2] if len(sys.argv) > 2 else "build/alcove"
     pictures = pathlib.Path("docs/pictures")
     pictures.mkdir(exist_ok=True)
     with tempfile.TemporaryDirectory() as folder:
-        scratch = pathlib.Path(folder)
+        program = sys.argv[2] if len(sys.argv) > 2 else "build/alcove"
+        given = (pathlib.Path(sys.argv[1]), program, pathlib.Path(folder))
+        interior, foliage = Scene(*given, "interior", "0.35"), Scene(*given, "foliage", "0.2")
+        colonnade = Scene(*given, "colonnade", "0.75")
 
-        def picture(scene, radius, *options):
-            """The preview of a run in production quality."""
-            command = [program, "run", frames / f"{scene}.gbuffer.exr", "--camera", frames / f"{scene}.camera.json"]
-            command += ["--radius", radius, "--preset", "production", "-o", scratch / "ao.exr", "--overwrite", "-q"]
-            command += ["--preview", scratch / "preview.png", *options]
-            subprocess.run([str(word) for word in command], check=True)
-            return read_png(scratch / "preview.png")
+        def draw(name, parts, columns, rows):
+            write_png(pictures / f"{name}.png", beside(parts, columns, rows))
 
-        def with_beauty(beauty, *options):
-            return picture("interior", "0.35", "--beauty", beauty, "--composite", scratch / "comp.exr", *options)
-
-        def shown(ao, channel):
-            """AO as it is, through the same transform as all pictures: a beauty that no AO is put into."""
-            return with_beauty(ao, "--beauty-channels", ",".join([channel] * 3), "--intensity", "0")
-
-        raster = frames / "interior.raster.exr"
-        flat, comp = with_beauty(raster, "--intensity", "0"), with_beauty(raster)
-        write_png(pictures / "interior.png", beside(flat, comp, 180, 780))
-        ours = scratch / "ours.exr"
-        (scratch / "ao.exr").rename(ours)
-        truth = frames / "interior.ao.R.a.exr"
-        write_png(pictures / "interior-ao.png", beside(shown(ours, "Y"), shown(truth, "AO"), 180, 780))
+        raster = interior.frames / "interior.raster.exr"
+        whole = (180, 780), (0, 540)
+        draw("interior", [interior.composite(raster, "--intensity", "0"), interior.composite(raster)], *whole)
+        draw("interior-ao", [interior.ao(), interior.truth()], *whole)
+        draw("radius", [interior.ao("--radius", r) for r in ("0.1", "0.35", "1")], (420, 780), (150, 450))
+        draw("preset", [foliage.ao("--preset", p) for p in ("draft", "standard", "production")] + [foliage.truth()], (300, 560), (220, 460))
+        estimators = [colonnade.ao("--preset", "standard", "--estimator", e) for e in ("gtao", "bitmask", "hbao", "crytek")]
+        draw("estimator", estimators + [colonnade.truth()], (380, 600), (200, 440))
+        draw("thickness", [foliage.ao("--thickness", x) for x in ("auto", "0.01", "infinite")] + [foliage.truth()], (300, 560), (220, 460))
 
 
 if __name__ == "__main__":
