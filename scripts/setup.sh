@@ -1,17 +1,25 @@
 #!/usr/bin/env bash
 # Installs the Debian packages that are missing and builds Alcove into build/ in Release. Takes seconds when all is there.
 #   scripts/setup.sh [--only-program] [CMAKE ARGUMENTS]
+#   scripts/setup.sh --only-packages SECTION...
 # ALCOVE_STRICT=ON makes warnings in our code errors, as continuous integration does.
 # --only-program: build/alcove, with the packages of [run] and [build] and no tests. Without it, all of packages.txt and the tests.
+# --only-packages: the packages of these sections of packages.txt, and nothing is built.
 # SPDX-License-Identifier: BSD-3-Clause
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-sections="run build pictures test" testing=ON target=all
-if [ "${1:-}" = --only-program ]; then
-  sections="run build" testing=OFF target=alcove
-  shift
-fi
+sections="run build pictures package test" testing=ON
+case "${1:-}" in
+  --only-program)
+    sections="run build" testing=OFF
+    shift
+    ;;
+  --only-packages)
+    shift
+    sections=$* testing=
+    ;;
+esac
 
 packages_of() {  # the packages of the named sections of packages.txt
   awk -v wanted=" $* " '/^\[/ { gsub(/[][]/, ""); is_in = index(wanted, " " $0 " "); next } is_in && NF && !/^#/' packages.txt
@@ -58,6 +66,7 @@ show_progress() {
   if [ -n "$has_shown" ]; then echo; fi
 }
 
+[ -n "$testing" ] || exit 0
 mkdir -p build
 # Where all is compiled once, sources together take less than half the time; where one is changed, each for itself does.
 together=()
@@ -65,4 +74,4 @@ together=()
 echo "Configuring"
 cmake -S . -B build -G Ninja -DCMAKE_BUILD_TYPE=Release -DBUILD_TESTING="$testing" -DALCOVE_STRICT="${ALCOVE_STRICT:-OFF}" "${together[@]}" "$@" >build/build.log 2>&1 || { cat build/build.log; exit 1; }
 echo "Compiling"
-NINJA_STATUS='[%f/%t] ' cmake --build build --target "$target" 2>&1 | tee -a build/build.log | show_progress || { cat build/build.log; exit 1; }
+NINJA_STATUS='[%f/%t] ' cmake --build build 2>&1 | tee -a build/build.log | show_progress || { cat build/build.log; exit 1; }

@@ -1,0 +1,53 @@
+# What `cpack -G DEB` and `cpack -G TGZ` make; scripts/package.sh calls both.
+# SPDX-License-Identifier: BSD-3-Clause
+set(CPACK_GENERATOR DEB TGZ)
+set(CPACK_PACKAGE_CONTACT "Alcove developers <alcove@alcove.invalid>")  # a field must have an address; this one is none
+set(CPACK_STRIP_FILES ON)
+# Not what the umask of the builder leaves.
+set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
+set(CPACK_THREADS 0)
+
+# Two Debian packages; the archive holds all. The module is loaded by its name, so that only its own package depends on OpenImageIO.
+set(CPACK_COMPONENTS_ALL alcove)
+if(TARGET alcove_image_io)
+  list(APPEND CPACK_COMPONENTS_ALL pictures)
+endif()
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_COMPRESSION_TYPE xz)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
+
+# Render nodes have a driver of their own, hence no dependency on one: in the words of libvulkan1.
+set(CPACK_DEBIAN_ALCOVE_PACKAGE_NAME alcove)
+set(CPACK_DEBIAN_ALCOVE_PACKAGE_RECOMMENDS "alcove-pictures, mesa-vulkan-drivers | vulkan-icd")
+set(CPACK_DEBIAN_ALCOVE_DESCRIPTION "ambient occlusion from rendered depth and normals
+Alcove computes ambient occlusion offline from the depth and normals that a
+renderer or a game has already written. It reads OpenEXR files and DDS
+captures, and writes the AO, and composites with the beauty, as OpenEXR.
+
+It computes with Vulkan: on a GPU, or on the CPU with mesa-vulkan-drivers.")
+
+# By its version, since the interface between program and module is no promise.
+set(CPACK_DEBIAN_ENABLE_COMPONENT_DEPENDS ON)
+set(CPACK_COMPONENT_PICTURES_DEPENDS alcove)
+set(CPACK_DEBIAN_PICTURES_PACKAGE_NAME alcove-pictures)
+set(CPACK_DEBIAN_PICTURES_PACKAGE_DEPENDS fonts-dejavu-core)
+set(CPACK_DEBIAN_PICTURES_DESCRIPTION "TIFF, PNG and other pictures for Alcove
+With this module, Alcove reads depth, normals and beauties from TIFF, PNG and
+what else OpenImageIO reads, and draws charts and debug views.")
+set(CPACK_DEBIAN_PICTURES_PACKAGE_SOURCE alcove)
+
+# What only Debian packages have: a changelog in Debian's form, and for both one folder of documents.
+set(debian ${CMAKE_BINARY_DIR}/generated/debian)
+find_program(DPKG_DEB dpkg-deb)
+if(DPKG_DEB)
+  execute_process(COMMAND date -uR -d ${ALCOVE_RELEASE_DATE} OUTPUT_VARIABLE date OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
+  file(WRITE ${debian}/changelog "alcove (${PROJECT_VERSION}) stable; urgency=medium\n\n  * CHANGELOG.md says what changed.\n\n"
+    " -- ${CPACK_PACKAGE_CONTACT}  ${date}\n")
+  execute_process(COMMAND gzip -9nc ${debian}/changelog OUTPUT_FILE ${debian}/changelog.gz COMMAND_ERROR_IS_FATAL ANY)
+  install(FILES ${debian}/changelog.gz DESTINATION share/doc/alcove EXCLUDE_FROM_ALL)
+  file(CREATE_LINK alcove ${debian}/alcove-pictures SYMBOLIC)
+  install(FILES ${debian}/alcove-pictures DESTINATION share/doc COMPONENT pictures EXCLUDE_FROM_ALL)
+endif()
+include(CPack)

@@ -1,0 +1,17 @@
+#!/usr/bin/env bash
+# Builds what is given away, into build-package/: Debian packages of the program and of its module for pictures, and an archive of both.
+#   scripts/package.sh [CMAKE ARGUMENTS]
+# SPDX-License-Identifier: BSD-3-Clause
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+scripts/setup.sh --only-packages run build pictures package
+# Debian's flags, all of its hardening, and no debug information, which would be stripped again.
+export DEB_BUILD_MAINT_OPTIONS=hardening=+all DEB_CXXFLAGS_MAINT_STRIP=-g
+linker_flags=$(dpkg-buildflags --get LDFLAGS)
+cmake -S . -B build-package -G Ninja -DCMAKE_BUILD_TYPE=Release -DBUILD_TESTING=OFF -DCMAKE_UNITY_BUILD=ON \
+  -DCMAKE_CXX_FLAGS="$(dpkg-buildflags --get CXXFLAGS) $(dpkg-buildflags --get CPPFLAGS)" \
+  -DCMAKE_EXE_LINKER_FLAGS="$linker_flags" -DCMAKE_MODULE_LINKER_FLAGS="$linker_flags" "$@"
+cmake --build build-package
+rm -f build-package/*.deb build-package/*.tar.gz
+cpack --config build-package/CPackConfig.cmake -B build-package

@@ -1,0 +1,106 @@
+#!/usr/bin/env bash
+# A stranger's first minutes: installs packages into a fresh Debian that has no compiler, runs the README's commands there, and takes all away again.
+# tests/package.sh --bootstrap calls it, as root; archives come from where this machine's apt has them.
+#   tests/package_bootstrap.sh PACKAGES BUILD
+# SPDX-License-Identifier: BSD-3-Clause
+set -euo pipefail
+cd "$(dirname "$0")/.."
+packages=$1 build=$2
+fail() {
+  echo "tests/package_bootstrap.sh: $*" >&2
+  exit 1
+}
+[ "$(id -u)" = 0 ] || fail "only root can make a Debian in a folder"
+[ -x "$(command -v debootstrap)" ] || fail "there is no debootstrap (Debian package debootstrap)"
+# With mounts of its own, which end with it.
+if [ -z "${ALCOVE_BOOTSTRAP_MOUNTS:-}" ]; then
+  ALCOVE_BOOTSTRAP_MOUNTS=own exec unshare --mount --propagation private "$0" "$packages" "$build"
+fi
+
+root=$(mktemp -d)
+chmod 755 "$root"  # apt downloads as a user of its own
+trap 'umount -q "$root/proc" || true; rm -rf --one-file-system "$root"' EXIT
+begin=$(date +%s)
+step() { echo "$(date +%T) $*"; }
+inside() { chroot "$root" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C.UTF-8 DEBIAN_FRONTEND=noninteractive "$@"; }
+install() { inside apt-get install -y -qq "$@" >"$root/log" 2>&1 || fail "apt-get install $*: $(cat "$root/log")"; }
+state() { inside dpkg-query -W -f '${db:Status-Abbrev}${Installed-Size}\n' | awk '$1 == "ii" { count++; size += $2 } END { printf "%d packages, %d MB\n", count, size / 1024 }'; }
+seconds() {  # how long a command takes
+  local start=$EPOCHREALTIME
+  "$@"
+  awk -v start="$start" -v end="$EPOCHREALTIME" 'BEGIN { printf "%.1f s\n", end - start }'
+}
+
+sources=$(apt-get indextargets --format 'deb $(REPO_URI) $(CODENAME) $(COMPONENT)' 'Identifier: Packages' 'Origin: Debian')
+read -r _ mirror suite _ <<<"$(grep -v -e security -e updates <<<"$sources" | head -n 1)"
+[ -n "${suite:-}" ] || fail "apt knows no archive of Debian: run apt-get update"
+step "a fresh Debian ($suite)"
+debootstrap --variant=minbase "$suite" "$root" "$mirror" >"$packages/debootstrap.log" 2>&1 || fail "debootstrap: $(tail "$packages/debootstrap.log")"
+mount -t proc proc "$root/proc"
+echo "$sources" >"$root/etc/apt/sources.list"
+# Proxies, and what this machine takes for valid; archives that have come stay, so that what is timed is no download.
+{ apt-config dump | grep -E '^Acquire::(http|https|Check-)'; echo 'APT::Keep-Downloaded-Packages "true";'; } >"$root/etc/apt/apt.conf.d/99machine" || true
+cp /etc/resolv.conf /etc/hosts "$root/etc/"
+printf '#!/bin/sh\nexit 101\n' >"$root/usr/sbin/policy-rc.d"  # no services
+chmod +x "$root/usr/sbin/policy-rc.d"
+mkdir "$root/packages"
+cp "$packages"/*.deb "$root/packages/"
+alcove=/packages/$(basename "$packages"/alcove_*.deb) pictures=/packages/$(basename "$packages"/alcove-pictures_*.deb)
+inside apt-get update -qq || fail "apt-get update failed in the fresh Debian"
+step "fresh: $(state)"
+! inside sh -c 'command -v gcc c++ cmake' || fail "the fresh Debian has a compiler"
+all_files() { inside find / -xdev -not -path '/var/cache/*' -not -path '/var/lib/*' -not -path '/var/log/*' -iname '*alcove*' -not -path '/packages/*' -not -path '/work/*'; }
+
+install --no-install-recommends "$alcove"
+step "alcove alone: $(state)"
+said=$(inside alcove run /usr/share/doc/alcove/examples/interior.gbuffer.exr --camera /usr/share/doc/alcove/examples/interior.camera.json --radius 0.35 \
+  -o /tmp/none.exr 2>&1) && fail "without a Vulkan driver a run ended well"
+grep -q mesa-vulkan-drivers <<<"$said" || fail "without a Vulkan driver a run does not say what to install: $said"
+inside apt-get purge -y -qq --autoremove alcove >/dev/null 2>&1
+
+# As the README has it, with what is recommended.
+inside apt-get install -y -qq -d "$alcove" >"$root/log" 2>&1 || fail "apt-get install -d: $(cat "$root/log")"
+first_picture() {
+  install "$alcove"
+  inside sh -c 'cp -r /usr/share/doc/alcove/examples /work && cd /work && alcove run interior.gbuffer.exr --camera interior.camera.json --radius 0.35 \
+    -o ao.exr --preview ao.png' >"$root/log" 2>&1 || fail "the first picture: $(cat "$root/log")"
+}
+step "from apt install, with archives downloaded, to the first picture: $(seconds first_picture)"
+step "with what is recommended: $(state)"
+inside ldconfig -p | grep -q OpenImageIO && fail "alcove has brought OpenImageIO"
+
+# Sequences are not shipped; all else must run.
+commands=0
+while read -r line; do
+  inside sh -c "cd /work && $line" >"$root/log" 2>&1 || fail "README.md: $line: $(cat "$root/log")"
+  commands=$((commands + 1))
+done < <(grep -h '^    alcove ' README.md | grep -v -e '####' -e '%0')
+[ "$commands" -ge 3 ] || fail "README.md has $commands commands that can be run"
+inside sh -c 'cd /work && alcove run interior.gbuffer.exr --camera interior.camera.json --radius 0.35 --preset draft -o draft.exr &&
+  alcove compare draft.exr ao.exr --report report.html && alcove doctor' >"$root/log" 2>&1 || fail "draft, compare and doctor: $(cat "$root/log")"
+step "$commands commands of README.md, a page of compare and doctor, without alcove-pictures"
+
+install "$pictures"
+step "with alcove-pictures: $(state)"
+inside sh -c 'cd /work && alcove run interior.gbuffer.exr --camera interior.camera.json --radius 0.35 -o ao.exr --debug view-z && test -s ao.view-z.png' \
+  >"$root/log" 2>&1 || fail "with alcove-pictures: $(cat "$root/log")"
+
+version=$(dpkg-deb -f "$root$alcove" Version)+1
+cpack --config "$build/CPackConfig.cmake" -G DEB -R "$version" -B "$packages/next" >"$root/log" 2>&1 || fail "cpack: $(cat "$root/log")"
+mkdir "$root/packages/next"
+cp "$packages"/next/*.deb "$root/packages/next/"
+install /packages/next/{alcove,alcove-pictures}_"${version}_$(dpkg --print-architecture).deb"
+for package in alcove alcove-pictures; do
+  [ "$(inside dpkg-query -W -f '${Version}' "$package")" = "$version" ] || fail "$package is not upgraded to $version"
+done
+inside alcove presets >/dev/null || fail "after the upgrade alcove presets fails"
+step "an upgrade"
+
+inside apt-get remove -y -qq alcove >/dev/null 2>&1 || fail "apt-get remove alcove"
+rm -rf "$root/work" "$root/root/.cache"
+left=$(all_files)
+[ -z "$left" ] || fail "left after removal: $left"
+inside apt-get purge -y -qq alcove alcove-pictures >/dev/null 2>&1 || fail "apt-get purge"
+left=$(all_files; inside dpkg-query -W 2>/dev/null | grep alcove || true)
+[ -z "$left" ] || fail "left after purge: $left"
+step "removed and purged; all in $(($(date +%s) - begin)) s"
