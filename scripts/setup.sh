@@ -3,13 +3,13 @@
 #   scripts/setup.sh [--only-program] [CMAKE ARGUMENTS]
 #   scripts/setup.sh --only-packages SECTION...
 # ALCOVE_STRICT=ON makes warnings in our code errors, as continuous integration does.
-# --only-program: build/alcove, with the packages of [run] and [build] and no tests. Without it, all of packages.txt and the tests.
+# --only-program: build/alcove, with the packages of [run] and [build] and no tests. Without it, [pictures], [test] and the tests too.
 # --only-packages: the packages of these sections of packages.txt, and nothing is built.
 # SPDX-License-Identifier: BSD-3-Clause
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-sections="run build pictures package test" testing=ON
+sections="run build pictures test" testing=ON
 case "${1:-}" in
   --only-program)
     sections="run build" testing=OFF
