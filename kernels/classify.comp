@@ -51,6 +51,7 @@ layout(constant_id = kClassifyModeId) const uint kMode = kClassifySkips;
 const bool kSkips = (kMode & kClassifySkips) != 0u;
 const bool kProves = (kMode & kClassifyProves) != 0u;
 const bool kReuses = (kMode & kClassifyReuses) != 0u;
+const bool kSelects = (kMode & kClassifySelects) != 0u;
 const bool kCompletes = (kMode & kClassifyCompletes) != 0u;
 const bool kLayered = (kMode & kClassifyLayered) != 0u;
 const bool kTolerates = (kMode & kClassifyTolerates) != 0u;
@@ -65,6 +66,7 @@ layout(scalar, binding = kClassifyCounts) buffer Counts { TileCounts counts; };
 layout(scalar, binding = kClassifyAo) writeonly buffer Ao { float ao[]; };
 layout(scalar, binding = kClassifyBent) writeonly buffer Bent { float bent[]; };
 layout(scalar, binding = kClassifyCompleted) writeonly buffer Completed { float completed[]; };
+layout(scalar, binding = kClassifyReceivers) readonly buffer Needed { uint receivers[]; };
 layout(scalar, binding = kClassifyRows) readonly buffer Rows { uint rows[]; };
 layout(scalar, binding = kClassifySectors) writeonly buffer Sectors { uint sectors_of_tile[]; };
 
@@ -398,12 +400,12 @@ Shared shared_by(ivec2 tile, ivec2 count) {
 }
 
 /// The tiles of a block whose estimates anybody needs, as bits.
-uint needed_tiles(ivec2 tile) {
+uint needed_tiles(ivec2 tile, ivec2 count) {
   uint needed = 0u;
   for (int i = 0; i < kBlock * kBlock; i++) {
-    const ivec2 first = tile_of_block(tile, i) * kTile;
-    const bool is_needed =
-        all(lessThan(first, params.needed_to)) && all(greaterThan(first + kTile, params.needed_from));
+    const ivec2 part = tile_of_block(tile, i), first = part * kTile;
+    bool is_needed = all(lessThan(first, params.needed_to)) && all(greaterThan(first + kTile, params.needed_from));
+    if (kSelects && all(lessThan(part, count))) is_needed = is_needed && receivers[part.y * count.x + part.x] != 0u;
     needed |= is_needed ? 1u << uint(i) : 0u;
   }
   return needed;
@@ -436,7 +438,7 @@ void main() {
     near = min(near, z);
     far = max(far, z);
   }
-  if (kSkips) seen &= needed_tiles(tile);
+  if (kSkips) seen &= needed_tiles(tile, count);
   atomicOr(surfaces[row], seen);
   if (kReuses) {
     atomicMin(nearest[row], floatBitsToUint(near));

@@ -23,6 +23,8 @@ ALCOVE_CONSTANT uint kClassifyGroups = 8;  // in: one GroupBounds per group of t
 ALCOVE_CONSTANT uint kClassifyCompleted = 10;
 // in: one uint per corner of blocks, (columns + 1) x (rows + 1): how many blocks above and left of it have changed
 ALCOVE_CONSTANT uint kClassifyChanges = 9;
+// in: one uint per tile, from receivers: not 0 where estimates are needed; only with kClassifySelects
+ALCOVE_CONSTANT uint kClassifyReceivers = 12;
 ALCOVE_CONSTANT uint kClassifyRows = 11;  // in: 8 words per tile, see lattice.glsl; only if sparse
 
 ALCOVE_CONSTANT uint kClassifySparseId = 0;  // specialization: 1: only sites have an estimate
@@ -37,6 +39,7 @@ ALCOVE_CONSTANT uint kClassifyReuses = 16;
 ALCOVE_CONSTANT uint kClassifyTolerates = 32;  // with kClassifyProves
 ALCOVE_CONSTANT uint kClassifyWithCompleted = 64;
 ALCOVE_CONSTANT uint kClassifyCompletes = 128;  // with kClassifyProves: surfaces go on beyond what is seen of them
+ALCOVE_CONSTANT uint kClassifySelects = 512;    // with kClassifySkips: other tiles count as sky
 ALCOVE_CONSTANT uint kClassifyLayered = 256;    // surfaces may be hidden: listed tiles say where these may count
 
 // px of the frame beyond the reach: their depths may decide a normal that was reconstructed, or which surface a pixel

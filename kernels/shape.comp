@@ -1,11 +1,11 @@
-// Shapes the visibility as the user asks: m (v + (1 - v) f), with v = max(0, 1 - intensity (1 - ao)) ^ power, f how far
-// the distance fade has come, from 0 to 1, and m the material's own AO.
+// Shapes the visibility as the user asks: o + c (m (v + (1 - v) f) - o), with v = max(0, 1 - intensity (1 - ao)) ^ power, f how far
+// the distance fade has come, from 0 to 1, m the material's own AO, c the matte and o the visibility outside of it.
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // In: planes of visibility, each by itself; planar depth and material AO where they are asked for.
 // Out: visibility, and how many values of the material AO were repaired.
 //
-// Without fade and material 1 stays 1, and sky is 1 in any case. The fade is of the screen-space AO alone: what a
+// Without fade and material 1 stays 1, and sky within the matte is 1 in any case. The fade is of the screen-space AO alone: what a
 // material's own AO holds is as true far away as nearby.
 #version 450
 #extension GL_GOOGLE_include_directive : require
@@ -17,6 +17,7 @@ layout(scalar, push_constant) uniform Push { ShapeParams params; };
 layout(scalar, binding = kShapeAo) readonly buffer Ao { float ao[]; };
 layout(scalar, binding = kShapeDepth) readonly buffer Depth { float depth[]; };
 layout(scalar, binding = kShapeMaterial) readonly buffer Material { float material[]; };
+layout(scalar, binding = kShapeMatte) readonly buffer Matte { float matte[]; };
 layout(scalar, binding = kShapeShaped) writeonly buffer Shaped { float shaped[]; };
 layout(scalar, binding = kShapeCounts) buffer Counts { FrameCounts counts; };
 
@@ -31,6 +32,7 @@ float shaped_of(float value, int index) {
     const float own = material[index];
     if (is_finite(own)) value *= clamp(own, 0.0, 1.0);
   }
+  if (params.has_matte != 0 && matte[index] < 1.0) value = params.outside + matte[index] * (value - params.outside);
   return value;
 }
 

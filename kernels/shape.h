@@ -10,6 +10,7 @@ ALCOVE_CONSTANT uint kShapeShaped = 1;  // out: as many planes, in [0, 1]
 // in: one float per pixel, planar depth, kSkyDepth for sky; not read without fade and material
 ALCOVE_CONSTANT uint kShapeDepth = 2;
 ALCOVE_CONSTANT uint kShapeMaterial = 3;  // in: one float per pixel, visibility; not read without
+ALCOVE_CONSTANT uint kShapeMatte = 5;     // in: one float per pixel, from matte; not read without
 ALCOVE_CONSTANT uint kShapeCounts = 4;    // in and out: FrameCounts
 
 struct ShapeParams {
@@ -20,6 +21,8 @@ struct ShapeParams {
   float fade_end;        // scene units, > fade_start: where it is 1
   uint has_fade;         // 0 or 1
   uint has_material;     // 0 or 1
+  uint has_matte;        // 0 or 1
+  float outside;         // visibility where the matte is 0
   uint planes;           // how many
   uint counts_repaired;  // 0: the frame's material AO has been counted
 };

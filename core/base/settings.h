@@ -33,12 +33,12 @@ struct InputSettings {
   std::string depth, normal, position, beauty;  // files of single AOVs; empty: the input
   std::string depth_channel;                    // a channel's full name; empty: found by its usual names
   // three names with commas, or a layer; empty: found. Normals may have two
-  std::string normal_channels, beauty_channels;
-  std::string position_channels;  // three names with commas, or a layer; empty: found
-  // a file of the materials' own AO; empty: the input, where material_ao_channel is set
-  std::string material_ao;
-  // a channel's full name; empty: the only channel, or the usual names, of material_ao
-  std::string material_ao_channel;
+  std::string normal_channels, beauty_channels, position_channels;
+  // the materials' own AO: a file, empty: the input, where a channel is named; its full name, empty: found
+  std::string material_ao, material_ao_channel;
+  // where AO is wanted: the same, and what of it, see core/frame/matte.h; the AO elsewhere, 0 to 1
+  std::string matte, matte_channel, matte_object;
+  double matte_outside = 1;
   // the diffuse colour for multi-bounce: a file; empty: the beauty's. Three names, or a layer; empty: found
   std::string albedo, albedo_channels;
   std::optional<double> albedo_value;  // instead: one for all surfaces, 0 to 1

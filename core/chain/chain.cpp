@@ -8,6 +8,7 @@
 #include "core/chain/debug.h"
 #include "core/chain/hidden.h"
 #include "core/chain/margin.h"
+#include "core/chain/matte.h"
 #include "core/chain/open_sky.h"
 #include "core/chain/shading.h"
 #include "core/chain/warp.h"
@@ -46,7 +47,9 @@ FrameOutputs run_chain(gpu::Recorder& gpu, const FrameInputs& frame, const Estim
   const gpu::Buffer* open_directions = gbuffer.normal;
   DebugStages stages;
   if (wanted.visibility || frame[RawPlane::beauty]) {
-    const GBuffer work = downsample(gpu, wide, block_grid(inputs, int(settings.resolution)));
+    const Matte wanted_at = matte(gpu, frame);
+    const GBuffer blocks = downsample(gpu, wide, block_grid(inputs, int(settings.resolution)));
+    const GBuffer work = receivers(gpu, blocks, frame, wanted_at, filter_reach_of(settings));
     const bool with_completed = wanted.completed && completes_anywhere(settings);
     const Sites chosen = sites(gpu, work, site_rule_of(settings));
     const Estimate estimated =
@@ -59,7 +62,7 @@ FrameOutputs run_chain(gpu::Recorder& gpu, const FrameInputs& frame, const Estim
         chosen.rows ? interpolate(gpu, work, noisy, chosen, denoiser, runs) : denoise(gpu, work, noisy, denoiser, runs);
     const Visibility whole = cut(gpu, frame, upsample(gpu, wide, work, smooth, runs));
     open_directions = &bent_normal(gpu, gbuffer, whole.bent);
-    visibility = shape(gpu, gbuffer, whole, shaping_of(settings), frame[RawPlane::material_ao]);
+    visibility = shape(gpu, gbuffer, whole, shaping_of(settings), frame[RawPlane::material_ao], wanted_at);
     stages = {work, noisy.ao, chosen, smooth.ao, estimated.completed, estimated.listed.sectors};
     out.tiles = estimated.listed.counts;
     out.sites = estimated.listed.site_counts;

@@ -254,13 +254,14 @@ TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const Bounds& boun
   list.tiles = &gpu.buffer("tiles", sizeof(ListedTile) * tiles.x * tiles.y, gpu::Use::device);
   list.counts = &gpu.buffer(prefix + "tile counts", sizeof(TileCounts), gpu::Use::device);
   list.sectors = &gpu.buffer(prefix + "tile sectors", sizeof(uint) * tiles.x * tiles.y, gpu::Use::device);
-  list.skips_surfaces = skipping.proves || skipping.changes;
+  const bool selects = skipping.skips_sky && gbuffer.receivers;
+  list.skips_surfaces = skipping.proves || skipping.changes || selects;
   gpu.clear(*list.counts);
   const uint mode = (skipping.skips_sky ? kClassifySkips : 0) | (skipping.proves ? kClassifyProves : 0) |
                     (skipping.is_ranged ? kClassifyRanged : 0) | (out.bent ? kClassifyWithBent : 0) |
                     (skipping.changes ? kClassifyReuses : 0) | (skipping.tolerance > 0 ? kClassifyTolerates : 0) |
                     (out.completed ? kClassifyWithCompleted : 0) | (skipping.completes ? kClassifyCompletes : 0) |
-                    (gbuffer.surfaces > 1 ? kClassifyLayered : 0);
+                    (gbuffer.surfaces > 1 ? kClassifyLayered : 0) | (selects ? kClassifySelects : 0);
   const ClassifyParams params{gbuffer.view,
                               radius,
                               float(std::sqrt(skipping.tolerance)),
@@ -276,6 +277,7 @@ TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const Bounds& boun
                {{kClassifyBounds, bounds.tiles ? *bounds.tiles : *list.tiles},
                 {kClassifyGroups, bounds.groups ? *bounds.groups : *list.tiles},
                 {kClassifyChanges, skipping.changes ? *skipping.changes : *list.tiles},
+                {kClassifyReceivers, selects ? *gbuffer.receivers : *list.tiles},
                 {kClassifyDepth, *gbuffer.depth},
                 {kClassifyNormal, *gbuffer.normal},
                 {kClassifyRows, sites.rows ? *sites.rows : *list.tiles},

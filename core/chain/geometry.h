@@ -42,8 +42,15 @@ struct GBuffer {
   gpu::Buffer* layer_counts = nullptr;  // one LayerCounts of layers.h; null as `hidden`
   gpu::Buffer* warped = nullptr;        // what other views show behind the first surface: see warp.h; null: nothing
   gpu::Buffer* view_counts = nullptr;   // one ViewCounts of warp.h; null as `warped`
+  gpu::Buffer* receivers = nullptr;     // one uint per tile: whether its estimates are needed; null: all are
   gpu::Buffer* counts = nullptr;        // one FrameCounts, for the host
   gpu::Buffer* missing = nullptr;       // the GroupCount of reconstruct
+};
+
+/// How much of each pixel wants AO.
+struct Matte {
+  gpu::Buffer* plane = nullptr;  // coverage, 0 to 1, over the frame; null: all want it
+  double outside = 1;            // the AO where it is 0
 };
 
 /// Makes the G-buffer from the raw planes. `prefix` stands before the names of its buffers where there is another

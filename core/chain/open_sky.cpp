@@ -13,7 +13,7 @@ namespace alcove {
 
 bool is_open_sky(const FrameInputs& frame, const EstimatorSettings& settings, const Wanted& wanted) {
   return frame.is_sky && !settings.no_skip && wanted.is_only_visibility() && !frame[RawPlane::beauty] &&
-         !frame[RawPlane::material_ao];
+         !frame[RawPlane::material_ao] && !frame[RawPlane::matte];
 }
 
 FrameOutputs open_sky(gpu::Recorder& gpu, const FrameInputs& frame, const EstimatorSettings& settings) {

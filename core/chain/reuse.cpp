@@ -87,6 +87,8 @@ LastFrame::Hashes LastFrame::hashes_of(const FrameInputs& frame, const Estimator
   for (const auto& terms : frame.behind) add(hashes.meaning, terms);
   add(hashes.meaning, frame.aov_from_view);
   for (const auto& other : frame.others) add(hashes.meaning, other);
+  add(hashes.meaning, std::uint32_t(frame.matte.kind), frame.matte.outside);
+  for (const std::uint32_t object : frame.matte.objects) add(hashes.meaning, object);
   for (const auto* plane : frame.planes.entries) add(hashes.meaning, plane ? planes_in(*plane, frame.view) : 0u);
   if (settings.noise == Noise::animated) add(hashes.meaning, frame.frame);
   hashes.blocks.assign(std::size_t(blocks_of(frame.view).x) * std::size_t(blocks_of(frame.view).y), 0);
@@ -94,6 +96,8 @@ LastFrame::Hashes LastFrame::hashes_of(const FrameInputs& frame, const Estimator
     const gpu::Buffer* plane = frame[row.plane];
     if (row.content == PlaneContent::color)
       add(hashes.colors, plane);
+    else if (row.content == PlaneContent::selection)
+      add(hashes.meaning, plane);
     else if (plane)
       add_blocks(hashes.blocks, *plane, frame.view.size);
   }

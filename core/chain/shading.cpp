@@ -17,7 +17,7 @@ Shaping shaping_of(const EstimatorSettings& settings) {
 }
 
 gpu::Buffer& shape(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer& planes, const Shaping& shaping,
-                   const gpu::Buffer* material_ao, const std::string& prefix) {
+                   const gpu::Buffer* material_ao, const Matte& matte, const std::string& prefix) {
   gpu::Buffer& shaped = gpu.buffer(prefix + "shaped", planes.bytes(), gpu::Use::device);
   ShapeParams params{};
   params.size = gbuffer.view.size;
@@ -27,6 +27,8 @@ gpu::Buffer& shape(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer& plan
   params.fade_end = float(shaping.fade_end.value_or(0));
   params.has_fade = shaping.fade_end ? 1 : 0;
   params.has_material = material_ao ? 1 : 0;
+  params.has_matte = matte.plane ? 1 : 0;
+  params.outside = float(matte.outside);
   params.planes = planes_in(planes, gbuffer.view);
   params.counts_repaired = prefix.empty() ? 1 : 0;
   gpu.dispatch("shape", params,
@@ -34,18 +36,20 @@ gpu::Buffer& shape(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer& plan
                 {kShapeShaped, shaped},
                 {kShapeDepth, *gbuffer.depth},
                 {kShapeMaterial, material_ao ? *material_ao : planes},
+                {kShapeMatte, matte.plane ? *matte.plane : planes},
                 {kShapeCounts, *gbuffer.counts}},
                extent_of(gbuffer.view));
   return shaped;
 }
 
 Visibility shape(gpu::Recorder& gpu, const GBuffer& gbuffer, const Visibility& visibility, const Shaping& shaping,
-                 const gpu::Buffer* material_ao) {
-  const bool changes = shaping.intensity != 1 || shaping.power != 1 || shaping.fade_end || material_ao;
+                 const gpu::Buffer* material_ao, const Matte& matte) {
+  const bool changes = shaping.intensity != 1 || shaping.power != 1 || shaping.fade_end || material_ao || matte.plane;
   if (!changes) return visibility;
   Visibility result = visibility;
-  result.ao = &shape(gpu, gbuffer, *visibility.ao, shaping, material_ao);
-  if (visibility.scales) result.scales = &shape(gpu, gbuffer, *visibility.scales, shaping, material_ao, kScalesPrefix);
+  result.ao = &shape(gpu, gbuffer, *visibility.ao, shaping, material_ao, matte);
+  if (visibility.scales)
+    result.scales = &shape(gpu, gbuffer, *visibility.scales, shaping, material_ao, matte, kScalesPrefix);
   return result;
 }
 

@@ -19,12 +19,13 @@ struct Shaping {
 };
 Shaping shaping_of(const EstimatorSettings& settings);
 
-/// Shapes the AO and the planes of the radii; the input where nothing asks for any shaping. material_ao may be null.
+/// Shapes the AO and the planes of the radii; the input where nothing asks for any shaping. material_ao may be
+/// null.
 Visibility shape(gpu::Recorder& gpu, const GBuffer& gbuffer, const Visibility& visibility, const Shaping& shaping,
-                 const gpu::Buffer* material_ao);
+                 const gpu::Buffer* material_ao, const Matte& matte = {});
 /// The same for one buffer of planes. What it repairs is counted with the first one of a frame, whose prefix is empty.
 gpu::Buffer& shape(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer& planes, const Shaping& shaping,
-                   const gpu::Buffer* material_ao, const std::string& prefix = "");
+                   const gpu::Buffer* material_ao, const Matte& matte = {}, const std::string& prefix = "");
 
 /// The mean open directions as unit vectors, packed as the normals are. `bent` may be null, of an estimator that finds
 /// none: then they are the normals.

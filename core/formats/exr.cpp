@@ -303,6 +303,17 @@ std::map<std::string, std::string> ExrFile::attribute_texts(int part) const {
   return texts;
 }
 
+std::map<std::string, std::string> ExrFile::whole_texts(int part, const std::string& prefix) const {
+  std::map<std::string, std::string> texts;
+  if (!impl_->file) return texts;
+  const Imf::Header& header = impl_->file->header(part);
+  for (auto entry = header.begin(); entry != header.end(); ++entry)
+    if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&entry.attribute());
+        text && std::string_view(entry.name()).starts_with(prefix))
+      texts[entry.name()] = text->value();
+  return texts;
+}
+
 std::uint64_t ExrFile::bytes_beside_pixels() const {
   return impl_->image.pixels.size() * sizeof(float) + impl_->codec_bytes + impl_->deep_bytes;
 }

@@ -78,6 +78,8 @@ class ExrFile {
   /// Gives as text the attributes of a part that do not describe its storage. Numbers, strings and matrices are given
   /// by value, of which the first 64 KiB count, and all else by type.
   std::map<std::string, std::string> attribute_texts(int part) const;
+  /// Gives the attributes that are texts and whose names begin so, whole, whatever they describe.
+  std::map<std::string, std::string> whole_texts(int part, const std::string& prefix) const;
 
   /// The most that the file takes in memory while it is open and while it is read, in bytes: what codecs work on, and a
   /// picture that was read whole.

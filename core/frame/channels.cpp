@@ -88,6 +88,15 @@ const AovNames kAlbedoNames{
     .alone = {{"r", "g", "b"}, {"red", "green", "blue"}},
 };
 
+const AovNames kMatteNames{
+    .what = "matte",
+    .channel_option = "--matte-channel",
+    .layers = {"matte", "mask"},
+    .in_layer = {{"y"}, {"a"}, {"r"}},
+    .bare = {{"matte"}, {"mask"}},
+    .alone = {{"y"}, {"a"}, {"alpha"}, {"r"}},
+};
+
 namespace {
 
 /// Gives the name without the layer; nothing if it lies elsewhere. Without a layer it gives the name.

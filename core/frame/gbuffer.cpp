@@ -16,6 +16,7 @@
 #include "core/frame/deep.h"
 #include "core/frame/header_camera.h"
 #include "core/frame/input_files.h"
+#include "core/frame/matte.h"
 
 namespace alcove {
 namespace {
@@ -24,17 +25,6 @@ bool has_half_channel(const FrameSource& source, const ChannelRef& ref) {
   const auto& channels = source.part_of(ref).channels;
   const auto channel = std::ranges::find(channels, ref.channel, &ExrChannel::name);
   return channel != channels.end() && channel->type == SampleType::half_float;
-}
-
-/// All planes of a frame lie over the same pixels.
-void require_same_window(const FrameSource& source, const std::vector<ChannelRef>& channels, const char* what,
-                         const char* option) {
-  for (const auto& channel : channels) {
-    const Window& data = source.part_of(channel).data;
-    if (data != source.data)
-      fail(ErrorKind::input, "{}: the {} channel {} is {}, and the depth is {}: both must cover the same pixels ({})",
-           source.files[channel.file].path(), what, channel.channel, to_string(data), to_string(source.data), option);
-  }
 }
 
 void find_beauty(FrameSource& source, const ChannelSearch& search, std::size_t file, const InputSettings& settings) {
@@ -210,6 +200,16 @@ void note_unused_input(FrameSource& source, const InputSettings& settings) {
 
 }  // namespace
 
+void require_same_window(const FrameSource& source, const std::vector<ChannelRef>& channels, const char* what,
+                         const char* option) {
+  for (const auto& channel : channels) {
+    const Window& data = source.part_of(channel).data;
+    if (data != source.data)
+      fail(ErrorKind::input, "{}: the {} channel {} is {}, and the depth is {}: both must cover the same pixels ({})",
+           source.files[channel.file].path(), what, channel.channel, to_string(data), to_string(source.data), option);
+  }
+}
+
 FrameSource find_frame(const InputSettings& settings, bool with_beauty, int frame, bool with_albedo) {
   FrameSource source;
   ChannelSearch search(settings, source.files);
@@ -248,6 +248,7 @@ FrameSource find_frame(const InputSettings& settings, bool with_beauty, int fram
   if (with_beauty) find_beauty(source, search, search.open(beauty_path, "--beauty"), settings);
   if (with_albedo) find_albedo(source, search, beauty_path, settings);
   find_material(source, search, settings);
+  find_matte(source, search, settings);
   find_behind(source, search, settings);
   find_deep(source, search, settings);
 

@@ -71,6 +71,11 @@ struct FrameSource : Reading {
 /// is found twice, is subsampled, or has another size than the depth.
 FrameSource find_frame(const InputSettings& settings, bool with_beauty, int frame, bool with_albedo = false);
 
+/// Fails with ErrorKind::input where channels, what they hold and the option that names them, have another window than
+/// the depth.
+void require_same_window(const FrameSource& source, const std::vector<ChannelRef>& channels, const char* what,
+                         const char* option);
+
 /// What to do about normals in world space where the camera has no world_to_camera.
 constexpr const char* kWorldWithoutMatrix =
     "its normals are in world space, and the camera has no world_to_camera: give a --camera file with it, or --normal "

@@ -12,13 +12,17 @@
 namespace alcove {
 
 /// A plane may have several components: depth may be a position's x, y, z.
-enum class RawPlane { depth, normal, behind, beauty, indirect, diffuse_color, material_ao, albedo };
+enum class RawPlane { depth, normal, behind, beauty, indirect, diffuse_color, material_ao, albedo, matte };
 
-/// Whether an estimate is made from a plane, or whether the plane only colours or dims it afterwards.
-enum class PlaneContent { geometry, color };
+/// Whether an estimate is made from a plane, whether the plane only colours or dims it afterwards, or whether it says
+/// where there is to be one.
+enum class PlaneContent { geometry, color, selection };
 
 /// The most planes of depth behind the first surface that files may give.
 constexpr std::size_t kMostBehindPlanes = 16;
+
+/// The most planes of a matte: those of an identifier and its coverage, for each rank of a Cryptomatte.
+constexpr std::size_t kMostMattePlanes = 32;
 
 /// An option that names a file, or one of its files.
 struct FileOption {
@@ -94,6 +98,12 @@ inline constexpr std::array kRawPlanes{
                   .most = 3,
                   .content = PlaneContent::color,
                   .file = {"--albedo", &InputSettings::albedo}},
+    RawPlaneFacts{.plane = RawPlane::matte,
+                  .name = "raw matte",
+                  .least = 1,
+                  .most = kMostMattePlanes,
+                  .content = PlaneContent::selection,
+                  .file = {"--matte", &InputSettings::matte}},
 };
 
 /// One entry for each plane.

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -42,6 +43,19 @@ struct BehindPlane {
 /// Whether planes together show all that is hidden: a pixel that has fewer surfaces than planes has no more of them.
 bool list_all(std::span<const BehindPlane> planes);
 
+/// What the planes of a matte hold.
+enum class MatteKind {
+  coverage,  // how much of each pixel it takes, 0 to 1
+  objects,   // the object of each pixel
+  ranked,    // of Cryptomatte: an object and its coverage, and again for each further rank
+};
+/// How the planes of RawPlane::matte are read.
+struct MatteReading {
+  MatteKind kind = MatteKind::coverage;
+  std::vector<std::uint32_t> objects = {};  // those that are meant, by the bits of their floats
+  double outside = 1;                       // the AO where it takes nothing, 0 to 1
+};
+
 /// The meaning of one frame, with its windows and its camera.
 struct Reading : Meaning {
   Window data;  // of the planes
@@ -52,6 +66,7 @@ struct Reading : Meaning {
   double sky = 1e9;                 // depth at or beyond it is sky, in the file's units
   bool depth_is_half = false;       // the depth values were rounded to half floats
   std::vector<BehindPlane> behind;  // of the planes of RawPlane::behind, one for each
+  MatteReading matte;
 };
 
 /// Takes over the meaning of another frame of the sequence. The clip planes stay this frame's own, as its own camera

@@ -84,6 +84,12 @@ Condition for_beauty() {
           true};
 }
 
+Condition with_matte() {
+  return with_option("--matte, --matte-channel or --matte-object", [](const Settings& all) {
+    return !all.input.matte.empty() || !all.input.matte_channel.empty() || !all.input.matte_object.empty();
+  });
+}
+
 void add_file_rows(std::vector<OptionRow>& rows, InputSettings& s) {
   OptionGroup inputs(rows, "Input", Effect::input);
   inputs.text("--depth", s.depth, "FILE", "an EXR, DDS or TIFF of the depth alone; else it is in INPUT").is_common =
@@ -98,6 +104,8 @@ void add_file_rows(std::vector<OptionRow>& rows, InputSettings& s) {
       inputs.text("--beauty", s.beauty, "FILE", "an EXR of the beauty, and of the indirect diffuse light");
   beauty.applies(for_beauty()).is_common = true;
   inputs.text("--material-ao", s.material_ao, "FILE", "an EXR of the materials' own AO, multiplied in");
+  inputs.text("--matte", s.matte, "FILE",
+              "where AO is wanted, as coverage from 0 to 1, an EXR or another picture; nothing is estimated elsewhere");
   OptionGroup(rows, "Input", Effect::pixels_or_input)
       .own(
           {"--albedo", "FILE|NUMBER", "", "0 to 1",
@@ -128,6 +136,13 @@ void add_channel_rows(std::vector<OptionRow>& rows, InputSettings& s) {
       .applies({"without a number for --albedo", [](const Settings& all) {
                   return all.input.albedo_value ? fmt::format("--albedo is {}", *all.input.albedo_value) : "";
                 }});
+  pixels.text("--matte-channel", s.matte_channel, "NAME",
+              "the matte's channel, of --matte or else of INPUT; or the layer of a Cryptomatte");
+  pixels.text("--matte-object", s.matte_object, "NAME[,NAME...]",
+              "the matte is what these objects of a Cryptomatte cover, by names, in which * and ? stand for others; or "
+              "by the numbers of the matte's channel");
+  pixels.number("--matte-outside", s.matte_outside, "", between(0, 1), "the AO where the matte is 0")
+      .applies(with_matte());
   pixels.text("--layer", s.layer, "NAME", "look only at this layer or part");
   pixels.text("--view", s.view, "NAME", "the view of a stereo file; else its default view");
   const auto say_roi = [&roi = s.roi] {

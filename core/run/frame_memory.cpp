@@ -104,7 +104,9 @@ std::size_t frame_planes(const FrameSource& source, const Settings& settings, st
   const auto& o = settings.output;
   const std::size_t scales = 1 + e.further_radii.size();
   std::size_t planes = 2 + (e.resolution == Resolution::full ? 0 : estimated);  // depth, normals, the whole estimate
-  planes += shapes(e) || !source[RawPlane::material_ao].empty() ? 1 + scales : 0;
+  const bool has_matte = !source[RawPlane::matte].empty();
+  planes += shapes(e) || has_matte || !source[RawPlane::material_ao].empty() ? 1 + scales : 0;
+  planes += has_matte ? 1 : 0;
   planes += needs_bent(e, o) ? 1 : 0;
   // thin, solid and perhaps completed: estimates, rows, columns
   planes += wants(o, &FrameOutputs::confidence) ? (completes_anywhere(e) ? 3 : 2) * 3 : 0;

@@ -38,6 +38,7 @@ InputSettings of_first_surface(InputSettings input, const FrameSource* settled) 
   if (settled && !has_deep_depth(*settled)) input.deep.clear();
   input.material_ao.clear();
   input.material_ao_channel.clear();
+  for (std::string* matte : {&input.matte, &input.matte_channel, &input.matte_object}) matte->clear();
   input.roi.reset();
   return input;
 }

@@ -156,15 +156,19 @@ TEST_F(Generated, zsh_completes) {
   EXPECT_EQ(said("zsh -n " + (folder / "_alcove")), "");
   // zsh completes only for a terminal: a shell of its own gets the keys, and shows at its end what the line has become.
   const auto completed = [&](const std::string& typed) {
-    const std::string script = kept(
-        "try.zsh",
-        "zmodload zsh/zpty\nzpty shell 'PS1=\"> \" TERM=dumb zsh -f -i'\n"
-        "zpty -w shell 'fpath=(" + folder.path() + " $fpath); autoload -U compinit; compinit -u -D; '"
-        "'show() { print -r -- \"LINE<$BUFFER>\"; zle kill-buffer; }; zle -N show; bindkey \"^X\" show; "
-        "bindkey \"^I\" complete-word; print REA''DY'\n"
-        "zpty -r -m shell out '*READY*'\n"
-        "zpty -w -n shell '" + typed + "'$'\\t\\x18'\n"
-        "zpty -r -m shell out '*LINE<*>*'\nprint -r -- \"$out\"\n");
+    const std::string script =
+        kept("try.zsh",
+             "zmodload zsh/zpty\nzpty shell 'PS1=\"> \" TERM=dumb zsh -f -i'\n"
+             "zpty -w shell 'fpath=(" +
+                 folder.path() +
+                 " $fpath); autoload -U compinit; compinit -u -D; '"
+                 "'show() { print -r -- \"LINE<$BUFFER>\"; zle kill-buffer; }; zle -N show; bindkey \"^X\" show; "
+                 "bindkey \"^I\" complete-word; print REA''DY'\n"
+                 "zpty -r -m shell out '*READY*'\n"
+                 "zpty -w -n shell '" +
+                 typed +
+                 "'$'\\t\\x18'\n"
+                 "zpty -r -m shell out '*LINE<*>*'\nprint -r -- \"$out\"\n");
     const std::string shown = said("timeout 60 zsh -f " + script);
     const std::size_t begin = shown.rfind("LINE<");
     return begin == shown.npos ? shown : shown.substr(begin + 5, shown.find('>', begin) - begin - 5);

@@ -1,0 +1,19 @@
+// Where AO is wanted: finds the planes of --matte, and what they mean.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "core/frame/gbuffer.h"
+
+namespace alcove {
+
+/// Whether the settings ask for a matte.
+bool wants_matte(const InputSettings& settings);
+
+/// Finds the matte where the settings ask for one, in --matte or else in INPUT. Without objects it is a plane of
+/// coverage. With objects it is what they cover in a Cryptomatte: names, in which * and ? stand for others, are looked
+/// up in its manifest, and are taken as they are where there is none. With --matte-channel of another channel objects
+/// are its numbers. Fails with ErrorKind::input, naming the file and what it has, where nothing is found, and where
+/// the matte has another window than the depth.
+void find_matte(FrameSource& source, ChannelSearch& search, const InputSettings& settings);
+
+}  // namespace alcove
