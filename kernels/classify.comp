@@ -449,9 +449,10 @@ void main() {
                            ? is_as_before(view, tile, uintBitsToFloat(nearest[row]), uintBitsToFloat(farthest[row]))
                            : false;
   Shared own = Shared(1.0, 1.0, kNoNormal, 0.0, 0.0, 0.0);
-  if (kProves && tile.x < count.x && !is_kept) own = shared_by(tile, count);
+  const bool is_asked = tile.x < count.x && !is_kept && surfaces[row] != 0u;
+  if (kProves && is_asked) own = shared_by(tile, count);
   const Receivers receivers = receivers_of(view, tile, own);
-  if (kProves && kLayered) find_hidden(view, receivers, tile.x < count.x && !is_kept && own.farthest <= own.nearest);
+  if (kProves && kLayered) find_hidden(view, receivers, is_asked && own.farthest <= own.nearest);
   if (kProves) find_sectors(view, receivers);
   if (tile == ivec2(0) && gl_LocalInvocationID.x == 0u) counts.groups.z = 1u;
   const bool is_whole = beside[row] == kEverySector;

@@ -13,10 +13,11 @@ ALCOVE_CONSTANT uint kMatteCoverage = 0;  // one plane of it
 ALCOVE_CONSTANT uint kMatteNumbers = 1;   // one plane of objects
 ALCOVE_CONSTANT uint kMatteRanked = 2;    // pairs of planes: an object, and its coverage
 
+ALCOVE_CONSTANT uint kMatteFormId = 0;   // specialization: one of the above
+ALCOVE_CONSTANT uint kMatteRanksId = 1;  // specialization: pairs of planes; of other forms 1
+
 struct MatteParams {
   ivec2 size;    // px
-  uint form;     // one of the above
-  uint planes;   // of kMatteRaw
   uint objects;  // of kMatteObjects
 };
 ALCOVE_PARAMS(MatteParams)

@@ -9,36 +9,35 @@
 #include "receivers.h"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
+layout(constant_id = kReceiversFactorId) const int kFactor = 1;
 layout(scalar, push_constant) uniform Push { ReceiversParams params; };
 layout(scalar, binding = kReceiversMatte) readonly buffer Matte { float matte[]; };
 layout(scalar, binding = kReceiversTiles) buffer Tiles { uint tiles[]; };
 
-shared uint takes;
-
 /// Whether the matte takes something of a block.
 bool takes_block(ivec2 block) {
-  const ivec2 first = block * params.factor + params.offset;
-  for (int i = 0; i < params.factor * params.factor; i++) {
-    const ivec2 pixel = first + ivec2(i % params.factor, i / params.factor);
+  const ivec2 first = block * kFactor + params.offset;
+  bool takes = false;
+  for (int i = 0; i < kFactor * kFactor; i++) {
+    const ivec2 pixel = first + ivec2(i % kFactor, i / kFactor);
     const bool is_inside = all(greaterThanEqual(pixel, ivec2(0))) && all(lessThan(pixel, params.frame_size));
-    if (is_inside && matte[pixel.y * params.frame_size.x + pixel.x] > 0.0) return true;
+    if (is_inside) takes = takes || matte[pixel.y * params.frame_size.x + pixel.x] > 0.0;
   }
-  return false;
+  return takes;
 }
 
 void main() {
-  // A workgroup is a tile.
-  if (gl_LocalInvocationIndex == 0u) takes = 0u;
-  barrier();
-  const ivec2 block = ivec2(gl_GlobalInvocationID.xy);
-  if (all(lessThan(block, params.size)) && takes_block(block)) atomicOr(takes, 1u);
-  barrier();
-  if (takes == 0u) return;
   const ivec2 count = (params.size + kTile - 1) / kTile;
-  const int side = 2 * params.reach + 1;
-  for (int i = int(gl_LocalInvocationIndex); i < side * side; i += int(kGroupX * kGroupY)) {
-    const ivec2 tile = ivec2(gl_WorkGroupID.xy) + ivec2(i % side, i / side) - params.reach;
-    // Every invocation that writes it writes the same.
-    if (all(greaterThanEqual(tile, ivec2(0))) && all(lessThan(tile, count))) tiles[tile.y * count.x + tile.x] = 1u;
+  const ivec2 tile = ivec2(gl_GlobalInvocationID.xy);
+  if (any(greaterThanEqual(tile, count))) return;
+  bool takes = false;
+  for (int i = 0; i < kTile * kTile && !takes; i++) {
+    const ivec2 block = tile * kTile + ivec2(i % kTile, i / kTile);
+    takes = all(lessThan(block, params.size)) && takes_block(block);
   }
+  if (!takes) return;
+  // Every invocation that writes a tile writes the same.
+  const ivec2 from = max(tile - params.reach, ivec2(0)), to = min(tile + params.reach, count - 1);
+  for (int y = from.y; y <= to.y; y++)
+    for (int x = from.x; x <= to.x; x++) tiles[y * count.x + x] = 1u;
 }

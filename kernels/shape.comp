@@ -1,18 +1,19 @@
-// Shapes the visibility as the user asks: o + c (m (v + (1 - v) f) - o), with v = max(0, 1 - intensity (1 - ao)) ^ power, f how far
-// the distance fade has come, from 0 to 1, m the material's own AO, c the matte and o the visibility outside of it.
+// Shapes the visibility as the user asks: o + c (m (v + (1 - v) f) - o), with v = max(0, 1 - intensity (1 - ao)) ^ power,
+// f how far the distance fade has come, from 0 to 1, m the material's own AO, c the matte and o what is outside of it.
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // In: planes of visibility, each by itself; planar depth and material AO where they are asked for.
 // Out: visibility, and how many values of the material AO were repaired.
 //
-// Without fade and material 1 stays 1, and sky within the matte is 1 in any case. The fade is of the screen-space AO alone: what a
-// material's own AO holds is as true far away as nearby.
+// Without fade and material 1 stays 1, and sky within the matte is 1 in any case. The fade is of the screen-space AO
+// alone: what a material's own AO holds is as true far away as nearby.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "shape.h"
 #include "finite.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
+layout(constant_id = kShapeModeId) const uint kMode = 0;
 layout(scalar, push_constant) uniform Push { ShapeParams params; };
 layout(scalar, binding = kShapeAo) readonly buffer Ao { float ao[]; };
 layout(scalar, binding = kShapeDepth) readonly buffer Depth { float depth[]; };
@@ -21,18 +22,20 @@ layout(scalar, binding = kShapeMatte) readonly buffer Matte { float matte[]; };
 layout(scalar, binding = kShapeShaped) writeonly buffer Shaped { float shaped[]; };
 layout(scalar, binding = kShapeCounts) buffer Counts { FrameCounts counts; };
 
+bool shapes_by(uint what) { return (kMode & what) != 0u; }
+
 /// The shaped visibility of the pixel of that index. What is not asked for leaves every bit as it is.
 float shaped_of(float value, int index) {
-  if (params.intensity != 1.0) value = clamp(1.0 - params.intensity * (1.0 - value), 0.0, 1.0);
-  if (params.power != 1.0) value = value > 0.0 ? pow(value, params.power) : 0.0;
-  if (params.has_fade != 0)
+  if (shapes_by(kShapeByIntensity)) value = clamp(1.0 - params.intensity * (1.0 - value), 0.0, 1.0);
+  if (shapes_by(kShapeByPower)) value = value > 0.0 ? pow(value, params.power) : 0.0;
+  if (shapes_by(kShapeByFade))
     value +=
         (1.0 - value) * clamp((depth[index] - params.fade_start) / (params.fade_end - params.fade_start), 0.0, 1.0);
-  if (params.has_material != 0 && depth[index] < kSkyDepth) {
+  if (shapes_by(kShapeByMaterial) && depth[index] < kSkyDepth) {
     const float own = material[index];
     if (is_finite(own)) value *= clamp(own, 0.0, 1.0);
   }
-  if (params.has_matte != 0 && matte[index] < 1.0) value = params.outside + matte[index] * (value - params.outside);
+  if (shapes_by(kShapeByMatte) && matte[index] < 1.0) value = params.outside + matte[index] * (value - params.outside);
   return value;
 }
 
@@ -41,6 +44,6 @@ void main() {
   if (any(greaterThanEqual(pixel, params.size))) return;
   const int index = pixel.y * params.size.x + pixel.x, plane = params.size.x * params.size.y;
   for (int p = 0; p < int(params.planes); p++) shaped[index + p * plane] = shaped_of(ao[index + p * plane], index);
-  if (params.has_material == 0 || params.counts_repaired == 0 || depth[index] >= kSkyDepth) return;
+  if (!shapes_by(kShapeCountsRepaired) || depth[index] >= kSkyDepth) return;
   if (!is_finite(material[index])) atomicAdd(counts.repaired_material, 1u);
 }

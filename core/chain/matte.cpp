@@ -31,21 +31,20 @@ Matte matte(gpu::Recorder& gpu, const FrameInputs& frame) {
   std::ranges::copy(wanted, objects.as<uint>().begin());
   gpu.upload(objects);
   gpu::Buffer& result = gpu.buffer("matte", plane_bytes(frame.view), gpu::Use::device);
-  gpu.dispatch(
-      "matte",
-      MatteParams{frame.view.size, form_of(frame.matte.kind), planes_in(*raw, frame.view), uint(wanted.size())},
-      {{kMatteRaw, *raw}, {kMatteObjects, objects}, {kMatteResult, result}}, extent_of(frame.view));
+  const bool is_ranked = frame.matte.kind == MatteKind::ranked;
+  gpu.dispatch("matte", MatteParams{frame.view.size, uint(wanted.size())},
+               {{kMatteRaw, *raw}, {kMatteObjects, objects}, {kMatteResult, result}}, extent_of(frame.view),
+               {form_of(frame.matte.kind), is_ranked ? planes_in(*raw, frame.view) / 2 : 1});
   return {&result, frame.matte.outside};
 }
 
-GBuffer receivers(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const Matte& matte,
-                  int reach) {
+GBuffer receivers(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const Matte& matte, int reach) {
   if (!matte.plane) return gbuffer;
   const View& view = gbuffer.view;
   const BlockGrid& grid = gbuffer.grid;
-  const std::size_t tiles = std::size_t(groups_of(view.size.x, uint(kTile))) * groups_of(view.size.y, uint(kTile));
+  const gpu::Extent tiles{groups_of(view.size.x, uint(kTile)), groups_of(view.size.y, uint(kTile))};
   GBuffer result = gbuffer;
-  result.receivers = &gpu.buffer("receivers", tiles * sizeof(uint), gpu::Use::device);
+  result.receivers = &gpu.buffer("receivers", sizeof(uint) * tiles.x * tiles.y, gpu::Use::device);
   gpu.clear(*result.receivers);
   const ivec2 before = frame.margin.before;
   const int tile = kTile * grid.factor;  // px of the frame
@@ -53,9 +52,8 @@ GBuffer receivers(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs&
                ReceiversParams{view.size,
                                frame.view.size,
                                {-grid.overhang.x - before.x, -grid.overhang.y - before.y},
-                               grid.factor,
                                (reach + tile - 1) / tile},
-               {{kReceiversMatte, *matte.plane}, {kReceiversTiles, *result.receivers}}, extent_of(view));
+               {{kReceiversMatte, *matte.plane}, {kReceiversTiles, *result.receivers}}, tiles, {uint(grid.factor)});
   return result;
 }
 

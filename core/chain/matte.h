@@ -11,7 +11,6 @@ Matte matte(gpu::Recorder& gpu, const FrameInputs& frame);
 
 /// The G-buffer with the tiles whose estimates anybody needs, who looks up to `reach` px of the frame beyond the matte;
 /// the same one where there is none. `frame` is without its margin.
-GBuffer receivers(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const Matte& matte,
-                  int reach);
+GBuffer receivers(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const Matte& matte, int reach);
 
 }  // namespace alcove

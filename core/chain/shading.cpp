@@ -25,12 +25,11 @@ gpu::Buffer& shape(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer& plan
   params.power = float(shaping.power);
   params.fade_start = float(shaping.fade_start);
   params.fade_end = float(shaping.fade_end.value_or(0));
-  params.has_fade = shaping.fade_end ? 1 : 0;
-  params.has_material = material_ao ? 1 : 0;
-  params.has_matte = matte.plane ? 1 : 0;
   params.outside = float(matte.outside);
   params.planes = planes_in(planes, gbuffer.view);
-  params.counts_repaired = prefix.empty() ? 1 : 0;
+  const uint mode = (shaping.intensity != 1 ? kShapeByIntensity : 0) | (shaping.power != 1 ? kShapeByPower : 0) |
+                    (shaping.fade_end ? kShapeByFade : 0) | (material_ao ? kShapeByMaterial : 0) |
+                    (matte.plane ? kShapeByMatte : 0) | (material_ao && prefix.empty() ? kShapeCountsRepaired : 0);
   gpu.dispatch("shape", params,
                {{kShapeAo, planes},
                 {kShapeShaped, shaped},
@@ -38,7 +37,7 @@ gpu::Buffer& shape(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer& plan
                 {kShapeMaterial, material_ao ? *material_ao : planes},
                 {kShapeMatte, matte.plane ? *matte.plane : planes},
                 {kShapeCounts, *gbuffer.counts}},
-               extent_of(gbuffer.view));
+               extent_of(gbuffer.view), {mode});
   return shaped;
 }
 

@@ -44,10 +44,11 @@ std::vector<std::uint32_t> objects_of(const std::string& path, const Cryptomatte
   if (!objects.empty()) return objects;
   if (matte.manifest.empty() && !is_pattern(word)) return {cryptomatte_id(word)};
   if (matte.manifest.empty())
-    fail(ErrorKind::input, "{}: --matte-object {}: Cryptomatte {} has no manifest{}, so that only whole names are known",
-         path, word, matte.name, matte.lacking.empty() ? "" : " (" + matte.lacking + ")");
-  fail(ErrorKind::input, "{}: --matte-object {}: Cryptomatte {} has no such object{}; it has {}", path, word, matte.name,
-       suggestion(word, names), list_of(names));
+    fail(ErrorKind::input,
+         "{}: --matte-object {}: Cryptomatte {} has no manifest{}, so that only whole names are known", path, word,
+         matte.name, matte.lacking.empty() ? "" : " (" + matte.lacking + ")");
+  fail(ErrorKind::input, "{}: --matte-object {}: Cryptomatte {} has no such object{}; it has {}", path, word,
+       matte.name, suggestion(word, names), list_of(names));
 }
 
 /// The Cryptomatte of that layer; without a layer the only one, or the only one that knows the objects.
@@ -68,8 +69,9 @@ const Cryptomatte& chosen(const std::vector<Cryptomatte>& mattes, const std::str
   if (fitting.size() == 1 || mattes.size() == 1) return fitting.empty() ? mattes.front() : *fitting.front();
   if (fitting.empty())
     fail(ErrorKind::input, "{}: --matte-object {}: none of the Cryptomattes {} has it", path, objects, list_of(names));
-  fail(ErrorKind::input, "{}: --matte-object {}: several of the Cryptomattes {} have it: say which with --matte-channel",
-       path, objects, list_of(names));
+  fail(ErrorKind::input,
+       "{}: --matte-object {}: several of the Cryptomattes {} have it: say which with --matte-channel", path, objects,
+       list_of(names));
 }
 
 /// Takes the ranks and the objects of a Cryptomatte.
@@ -96,8 +98,8 @@ void find_matte(FrameSource& source, ChannelSearch& search, const InputSettings&
   const std::string& path = source.files[file].path();
   const std::string& objects = settings.matte_object;
   const auto mattes = cryptomattes_of(source.files[file]);
-  const bool is_layer = std::ranges::any_of(
-      mattes, [&](const Cryptomatte& matte) { return matte.name == settings.matte_channel; });
+  const bool is_layer =
+      std::ranges::any_of(mattes, [&](const Cryptomatte& matte) { return matte.name == settings.matte_channel; });
   if (is_layer && objects.empty())
     fail(ErrorKind::input, "{}: --matte-channel {} is a Cryptomatte: name its objects with --matte-object", path,
          settings.matte_channel);
