@@ -23,6 +23,8 @@ trap 'umount -q "$root/proc" || true; rm -rf --one-file-system "$root"' EXIT
 begin=$(date +%s)
 step() { echo "$(date +%T) $*"; }
 inside() { chroot "$root" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C.UTF-8 DEBIAN_FRONTEND=noninteractive "$@"; }
+# Who may write nowhere else, in a folder of their own.
+as_user() { chroot --userspec=1000:1000 "$root" env -i PATH=/usr/bin:/bin HOME=/work LC_ALL=C.UTF-8 sh -c "cd /work && $1"; }
 install() { inside apt-get install -y -qq "$@" >"$root/log" 2>&1 || fail "apt-get install $*: $(cat "$root/log")"; }
 state() { inside dpkg-query -W -f '${db:Status-Abbrev}${Installed-Size}\n' | awk '$1 == "ii" { count++; size += $2 } END { printf "%d packages, %d MB\n", count, size / 1024 }'; }
 seconds() {  # how long a command takes
@@ -43,7 +45,8 @@ echo "$sources" >"$root/etc/apt/sources.list"
 cp /etc/resolv.conf /etc/hosts "$root/etc/"
 printf '#!/bin/sh\nexit 101\n' >"$root/usr/sbin/policy-rc.d"  # no services
 chmod +x "$root/usr/sbin/policy-rc.d"
-mkdir "$root/packages"
+mkdir "$root/packages" "$root/work"
+chown 1000:1000 "$root/work"
 cp "$packages"/*.deb "$root/packages/"
 alcove=/packages/$(basename "$packages"/alcove_*.deb) pictures=/packages/$(basename "$packages"/alcove-pictures_*.deb)
 inside apt-get update -qq || fail "apt-get update failed in the fresh Debian"
@@ -53,8 +56,8 @@ all_files() { inside find / -xdev -not -path '/var/cache/*' -not -path '/var/lib
 
 install --no-install-recommends "$alcove"
 step "alcove alone: $(state)"
-said=$(inside alcove run /usr/share/doc/alcove/examples/interior.gbuffer.exr --camera /usr/share/doc/alcove/examples/interior.camera.json --radius 0.35 \
-  -o /tmp/none.exr 2>&1) && fail "without a Vulkan driver a run ended well"
+examples=/usr/share/doc/alcove/examples
+said=$(as_user "alcove run $examples/interior.gbuffer.exr --camera $examples/interior.camera.json --radius 0.35 -o none.exr" 2>&1) && fail "without a Vulkan driver a run ended well"
 grep -q mesa-vulkan-drivers <<<"$said" || fail "without a Vulkan driver a run does not say what to install: $said"
 inside apt-get purge -y -qq --autoremove alcove >/dev/null 2>&1
 
@@ -62,27 +65,28 @@ inside apt-get purge -y -qq --autoremove alcove >/dev/null 2>&1
 inside apt-get install -y -qq -d "$alcove" >"$root/log" 2>&1 || fail "apt-get install -d: $(cat "$root/log")"
 first_picture() {
   install "$alcove"
-  inside sh -c 'cp -r /usr/share/doc/alcove/examples /work && cd /work && alcove run interior.gbuffer.exr --camera interior.camera.json --radius 0.35 \
-    -o ao.exr --preview ao.png' >"$root/log" 2>&1 || fail "the first picture: $(cat "$root/log")"
+  as_user "cp -r $examples/* . && alcove run interior.gbuffer.exr --camera interior.camera.json --radius 0.35 -o ao.exr --preview ao.png" \
+    >"$root/log" 2>&1 || fail "the first picture: $(cat "$root/log")"
 }
-step "from apt install, with archives downloaded, to the first picture: $(seconds first_picture)"
+taken=$(seconds first_picture)
+step "from apt install, with archives downloaded, to the first picture: $taken"
 step "with what is recommended: $(state)"
 inside ldconfig -p | grep -q OpenImageIO && fail "alcove has brought OpenImageIO"
 
 # Sequences are not shipped; all else must run.
 commands=0
 while read -r line; do
-  inside sh -c "cd /work && $line" >"$root/log" 2>&1 || fail "README.md: $line: $(cat "$root/log")"
+  as_user "$line" >"$root/log" 2>&1 || fail "README.md: $line: $(cat "$root/log")"
   commands=$((commands + 1))
 done < <(grep -h '^    alcove ' README.md | grep -v -e '####' -e '%0')
 [ "$commands" -ge 3 ] || fail "README.md has $commands commands that can be run"
-inside sh -c 'cd /work && alcove run interior.gbuffer.exr --camera interior.camera.json --radius 0.35 --preset draft -o draft.exr &&
+as_user 'alcove run interior.gbuffer.exr --camera interior.camera.json --radius 0.35 --preset draft -o draft.exr &&
   alcove compare draft.exr ao.exr --report report.html && alcove doctor' >"$root/log" 2>&1 || fail "draft, compare and doctor: $(cat "$root/log")"
 step "$commands commands of README.md, a page of compare and doctor, without alcove-pictures"
 
 install "$pictures"
 step "with alcove-pictures: $(state)"
-inside sh -c 'cd /work && alcove run interior.gbuffer.exr --camera interior.camera.json --radius 0.35 -o ao.exr --debug view-z && test -s ao.view-z.png' \
+as_user 'alcove run interior.gbuffer.exr --camera interior.camera.json --radius 0.35 -o ao.exr --debug view-z && test -s ao.view-z.png' \
   >"$root/log" 2>&1 || fail "with alcove-pictures: $(cat "$root/log")"
 
 version=$(dpkg-deb -f "$root$alcove" Version)+1
@@ -97,7 +101,7 @@ inside alcove presets >/dev/null || fail "after the upgrade alcove presets fails
 step "an upgrade"
 
 inside apt-get remove -y -qq alcove >/dev/null 2>&1 || fail "apt-get remove alcove"
-rm -rf "$root/work" "$root/root/.cache"
+rm -rf "$root/work"
 left=$(all_files)
 [ -z "$left" ] || fail "left after removal: $left"
 inside apt-get purge -y -qq alcove alcove-pictures >/dev/null 2>&1 || fail "apt-get purge"
