@@ -66,7 +66,7 @@ layout(scalar, binding = kClassifyCounts) buffer Counts { TileCounts counts; };
 layout(scalar, binding = kClassifyAo) writeonly buffer Ao { float ao[]; };
 layout(scalar, binding = kClassifyBent) writeonly buffer Bent { float bent[]; };
 layout(scalar, binding = kClassifyCompleted) writeonly buffer Completed { float completed[]; };
-layout(scalar, binding = kClassifyReceivers) readonly buffer Needed { uint receivers[]; };
+layout(scalar, binding = kClassifyNeeded) readonly buffer Needed { uint wanted[]; };
 layout(scalar, binding = kClassifyRows) readonly buffer Rows { uint rows[]; };
 layout(scalar, binding = kClassifySectors) writeonly buffer Sectors { uint sectors_of_tile[]; };
 
@@ -405,7 +405,7 @@ uint needed_tiles(ivec2 tile, ivec2 count) {
   for (int i = 0; i < kBlock * kBlock; i++) {
     const ivec2 part = tile_of_block(tile, i), first = part * kTile;
     bool is_needed = all(lessThan(first, params.needed_to)) && all(greaterThan(first + kTile, params.needed_from));
-    if (kSelects && all(lessThan(part, count))) is_needed = is_needed && receivers[part.y * count.x + part.x] != 0u;
+    if (kSelects && all(lessThan(part, count))) is_needed = is_needed && wanted[part.y * count.x + part.x] != 0u;
     needed |= is_needed ? 1u << uint(i) : 0u;
   }
   return needed;

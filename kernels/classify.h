@@ -23,8 +23,8 @@ ALCOVE_CONSTANT uint kClassifyGroups = 8;  // in: one GroupBounds per group of t
 ALCOVE_CONSTANT uint kClassifyCompleted = 10;
 // in: one uint per corner of blocks, (columns + 1) x (rows + 1): how many blocks above and left of it have changed
 ALCOVE_CONSTANT uint kClassifyChanges = 9;
-// in: one uint per tile, from receivers: not 0 where estimates are needed; only with kClassifySelects
-ALCOVE_CONSTANT uint kClassifyReceivers = 12;
+// in: one uint per tile, from needed: not 0 where estimates are needed; only with kClassifySelects
+ALCOVE_CONSTANT uint kClassifyNeeded = 12;
 ALCOVE_CONSTANT uint kClassifyRows = 11;  // in: 8 words per tile, see lattice.glsl; only if sparse
 
 ALCOVE_CONSTANT uint kClassifySparseId = 0;  // specialization: 1: only sites have an estimate

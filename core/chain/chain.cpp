@@ -49,7 +49,7 @@ FrameOutputs run_chain(gpu::Recorder& gpu, const FrameInputs& frame, const Estim
   if (wanted.visibility || frame[RawPlane::beauty]) {
     const Matte wanted_at = matte(gpu, frame);
     const GBuffer blocks = downsample(gpu, wide, block_grid(inputs, int(settings.resolution)));
-    const GBuffer work = receivers(gpu, blocks, frame, wanted_at, filter_reach_of(settings));
+    const GBuffer work = needed(gpu, blocks, inputs, wanted_at, filter_reach_of(settings));
     const bool with_completed = wanted.completed && completes_anywhere(settings);
     const Sites chosen = sites(gpu, work, site_rule_of(settings));
     const Estimate estimated =

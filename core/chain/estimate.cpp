@@ -254,7 +254,7 @@ TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const Bounds& boun
   list.tiles = &gpu.buffer("tiles", sizeof(ListedTile) * tiles.x * tiles.y, gpu::Use::device);
   list.counts = &gpu.buffer(prefix + "tile counts", sizeof(TileCounts), gpu::Use::device);
   list.sectors = &gpu.buffer(prefix + "tile sectors", sizeof(uint) * tiles.x * tiles.y, gpu::Use::device);
-  const bool selects = skipping.skips_sky && gbuffer.receivers;
+  const bool selects = skipping.skips_sky && gbuffer.needed;
   list.skips_surfaces = skipping.proves || skipping.changes || selects;
   gpu.clear(*list.counts);
   const uint mode = (skipping.skips_sky ? kClassifySkips : 0) | (skipping.proves ? kClassifyProves : 0) |
@@ -277,7 +277,7 @@ TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const Bounds& boun
                {{kClassifyBounds, bounds.tiles ? *bounds.tiles : *list.tiles},
                 {kClassifyGroups, bounds.groups ? *bounds.groups : *list.tiles},
                 {kClassifyChanges, skipping.changes ? *skipping.changes : *list.tiles},
-                {kClassifyReceivers, selects ? *gbuffer.receivers : *list.tiles},
+                {kClassifyNeeded, selects ? *gbuffer.needed : *list.tiles},
                 {kClassifyDepth, *gbuffer.depth},
                 {kClassifyNormal, *gbuffer.normal},
                 {kClassifyRows, sites.rows ? *sites.rows : *list.tiles},

@@ -42,7 +42,7 @@ struct GBuffer {
   gpu::Buffer* layer_counts = nullptr;  // one LayerCounts of layers.h; null as `hidden`
   gpu::Buffer* warped = nullptr;        // what other views show behind the first surface: see warp.h; null: nothing
   gpu::Buffer* view_counts = nullptr;   // one ViewCounts of warp.h; null as `warped`
-  gpu::Buffer* receivers = nullptr;     // one uint per tile: whether its estimates are needed; null: all are
+  gpu::Buffer* needed = nullptr;        // one uint per tile: whether its estimates are needed; null: all are
   gpu::Buffer* counts = nullptr;        // one FrameCounts, for the host
   gpu::Buffer* missing = nullptr;       // the GroupCount of reconstruct
 };

@@ -1,4 +1,4 @@
-// Host side of matte.comp and receivers.comp.
+// Host side of matte.comp and needed.comp.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/chain/matte.h"
 
@@ -6,7 +6,7 @@
 
 #include "core/chain/pass_common.h"
 #include "kernels/matte.h"
-#include "kernels/receivers.h"
+#include "kernels/needed.h"
 
 namespace alcove {
 namespace {
@@ -38,22 +38,22 @@ Matte matte(gpu::Recorder& gpu, const FrameInputs& frame) {
   return {&result, frame.matte.outside};
 }
 
-GBuffer receivers(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const Matte& matte, int reach) {
+GBuffer needed(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& wide, const Matte& matte, int reach) {
   if (!matte.plane) return gbuffer;
   const View& view = gbuffer.view;
   const BlockGrid& grid = gbuffer.grid;
   const gpu::Extent tiles{groups_of(view.size.x, uint(kTile)), groups_of(view.size.y, uint(kTile))};
   GBuffer result = gbuffer;
-  result.receivers = &gpu.buffer("receivers", sizeof(uint) * tiles.x * tiles.y, gpu::Use::device);
-  gpu.clear(*result.receivers);
-  const ivec2 before = frame.margin.before;
-  const int tile = kTile * grid.factor;  // px of the frame
-  gpu.dispatch("receivers",
-               ReceiversParams{view.size,
-                               frame.view.size,
-                               {-grid.overhang.x - before.x, -grid.overhang.y - before.y},
-                               (reach + tile - 1) / tile},
-               {{kReceiversMatte, *matte.plane}, {kReceiversTiles, *result.receivers}}, tiles, {uint(grid.factor)});
+  result.needed = &gpu.buffer("needed", sizeof(uint) * tiles.x * tiles.y, gpu::Use::device);
+  gpu.clear(*result.needed);
+  const auto& [before, after] = wide.margin;
+  const ivec2 whole = wide.view.size;
+  gpu.dispatch("needed",
+               NeededParams{view.size,
+                            {whole.x - before.x - after.x, whole.y - before.y - after.y},
+                            {-grid.overhang.x - before.x, -grid.overhang.y - before.y},
+                            (reach + grid.factor - 1) / grid.factor},
+               {{kNeededMatte, *matte.plane}, {kNeededTiles, *result.needed}}, tiles, {uint(grid.factor)});
   return result;
 }
 

@@ -10,7 +10,8 @@ namespace alcove {
 Matte matte(gpu::Recorder& gpu, const FrameInputs& frame);
 
 /// The G-buffer with the tiles whose estimates anybody needs, who looks up to `reach` px of the frame beyond the matte;
-/// the same one where there is none. `frame` is without its margin.
-GBuffer receivers(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, const Matte& matte, int reach);
+/// the same one where there is none. `wide` is the frame with its
+/// margin: see with_margin().
+GBuffer needed(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& wide, const Matte& matte, int reach);
 
 }  // namespace alcove

@@ -6,13 +6,13 @@
 // frame's, and which may be larger than the frame.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#include "receivers.h"
+#include "needed.h"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
-layout(constant_id = kReceiversFactorId) const int kFactor = 1;
-layout(scalar, push_constant) uniform Push { ReceiversParams params; };
-layout(scalar, binding = kReceiversMatte) readonly buffer Matte { float matte[]; };
-layout(scalar, binding = kReceiversTiles) buffer Tiles { uint tiles[]; };
+layout(constant_id = kNeededFactorId) const int kFactor = 1;
+layout(scalar, push_constant) uniform Push { NeededParams params; };
+layout(scalar, binding = kNeededMatte) readonly buffer Matte { float matte[]; };
+layout(scalar, binding = kNeededTiles) buffer Tiles { uint tiles[]; };
 
 /// Whether the matte takes something of a block.
 bool takes_block(ivec2 block) {
@@ -30,14 +30,18 @@ void main() {
   const ivec2 count = (params.size + kTile - 1) / kTile;
   const ivec2 tile = ivec2(gl_GlobalInvocationID.xy);
   if (any(greaterThanEqual(tile, count))) return;
-  bool takes = false;
-  for (int i = 0; i < kTile * kTile && !takes; i++) {
+  // The blocks of the tile in which the matte takes something.
+  ivec2 from = params.size, to = ivec2(-1);
+  for (int i = 0; i < kTile * kTile; i++) {
     const ivec2 block = tile * kTile + ivec2(i % kTile, i / kTile);
-    takes = all(lessThan(block, params.size)) && takes_block(block);
+    if (any(greaterThanEqual(block, params.size)) || !takes_block(block)) continue;
+    from = min(from, block);
+    to = max(to, block);
   }
-  if (!takes) return;
+  if (to.x < 0) return;
+  from = max(from - params.reach, ivec2(0)) / kTile;
+  to = min((to + params.reach) / kTile, count - 1);
   // Every invocation that writes a tile writes the same.
-  const ivec2 from = max(tile - params.reach, ivec2(0)), to = min(tile + params.reach, count - 1);
   for (int y = from.y; y <= to.y; y++)
     for (int x = from.x; x <= to.x; x++) tiles[y * count.x + x] = 1u;
 }
