@@ -94,13 +94,15 @@ std::string bash_completion() {
   return fmt::format(
       R"SH(# bash completion for alcove. This file is made by `alcove --generate bash`.
 _alcove() {{
-  local current="${{COMP_WORDS[COMP_CWORD]}}" previous="${{COMP_WORDS[COMP_CWORD-1]}}" command="${{COMP_WORDS[1]}}" words= none=
+  local current="${{COMP_WORDS[COMP_CWORD]}}" previous="${{COMP_WORDS[COMP_CWORD-1]}}" command="${{COMP_WORDS[1]}}"
+  local words= none=
   COMPREPLY=()
   # --option=value comes as three words.
   if [ "$current" = = ]; then current=
   elif [ "$previous" = = ]; then previous="${{COMP_WORDS[COMP_CWORD-2]}}"; fi
   if [ "$COMP_CWORD" -eq 1 ]; then
-    mapfile -t COMPREPLY < <(compgen -W "{0} help --help --version" -- "$current"; [ -z "$current" ] || compgen -f -- "$current")
+    mapfile -t COMPREPLY < <(compgen -W "{0} help --help --version" -- "$current"
+      [ -z "$current" ] || compgen -f -- "$current")
     return
   fi
   if [ "$command" = help ]; then

@@ -1,5 +1,5 @@
-// Finds the tiles whose estimates anybody needs: those in which the matte takes something, and those within reach of the
-// filters about them.
+// Finds the tiles whose estimates anybody needs: those in which the matte takes something, and those about them within
+// reach of the filters.
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // In: the matte of the frame. Out: 1 for each such tile of the image that is estimated, whose pixels are blocks of the

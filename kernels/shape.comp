@@ -1,5 +1,5 @@
-// Shapes the visibility as the user asks: o + c (m (v + (1 - v) f) - o), with v = max(0, 1 - intensity (1 - ao)) ^ power,
-// f how far the distance fade has come, from 0 to 1, m the material's own AO, c the matte and o what is outside of it.
+// Shapes the visibility as the user asks: o + c (m (v + (1 - v) f) - o), with v = max(0, 1 - intensity (1 - ao)) ^ p, f
+// how far the distance fade has come, from 0 to 1, m the material's own AO, c the matte and o what is outside of it.
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // In: planes of visibility, each by itself; planar depth and material AO where they are asked for.

@@ -148,9 +148,13 @@ Sampling sampling_of(const EstimatorSettings& settings, int frame) {
 }
 
 int filter_reach_of(const EstimatorSettings& settings) {
-  const int denoised = denoise_reach_of(settings) + (is_adaptive(settings) ? kSiteReach : 0);
+  const int denoised = denoise_reach_of(settings);
   const int refined = settings.tolerance > 0 ? kRefineReach : 0;
   return int(settings.resolution) * (denoised + refined + (settings.resolution == Resolution::full ? 0 : 2));
+}
+
+int site_reach_of(const EstimatorSettings& settings) {
+  return is_adaptive(settings) ? int(settings.resolution) * kSiteReach : 0;
 }
 
 Skipping skipping_of(const EstimatorSettings& settings, const FrameInputs& frame, const BlockGrid& grid) {

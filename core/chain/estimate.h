@@ -76,6 +76,8 @@ struct VolumeSamples {
 /// How far estimates count beyond their own pixels, in px of the frame: the denoiser by pixels of the estimate, and
 /// upsampling by two of them. So does the choice of how many directions a tile takes.
 int filter_reach_of(const EstimatorSettings& settings);
+/// How far depths count for where estimates are made, in px of the frame: see sites.h.
+int site_reach_of(const EstimatorSettings& settings);
 
 /// What may be left out.
 struct Skipping {

@@ -19,7 +19,7 @@ namespace {
 std::vector<InspectedFile> files_of(const FrameSource& source) {
   std::vector<InspectedFile> files;
   for (const auto& file : source.files) {
-    files.push_back({file.path(), file.display(), file.pixel_aspect(), {}});
+    files.push_back({file.path(), file.display(), file.pixel_aspect(), {}, cryptomattes_of(file)});
     for (std::size_t part = 0; part < file.parts().size(); part++)
       files.back().parts.push_back({file.parts()[part], file.attribute_texts(int(part))});
   }

@@ -11,6 +11,7 @@
 #include "core/base/image.h"
 #include "core/base/note.h"
 #include "core/formats/exr.h"
+#include "core/frame/cryptomatte.h"
 #include "core/frame/evidence.h"
 #include "core/frame/gbuffer.h"
 #include "core/inspect/deep_samples.h"
@@ -27,6 +28,7 @@ struct InspectedFile {
   Window display;
   double pixel_aspect;
   std::vector<InspectedPart> parts;
+  std::vector<Cryptomatte> cryptomattes = {};
 };
 
 /// The rules by which the frame is read, and the attribute, channel or option that told.

@@ -26,13 +26,26 @@ Json to_json(const InspectedPart& part) {
           {"attributes", part.attributes}};
 }
 
+Json to_json(const Cryptomatte& matte) {
+  Json objects = Json::array();
+  for (const auto& [name, id] : matte.manifest) objects.push_back(name);
+  return {{"name", matte.name},
+          {"part", matte.part},
+          {"ranks", matte.ranks.size()},
+          {"objects", objects},
+          {"lacking", matte.lacking}};
+}
+
 Json to_json(const InspectedFile& file) {
   Json parts = Json::array();
+  Json mattes = Json::array();
+  for (const auto& matte : file.cryptomattes) mattes.push_back(to_json(matte));
   for (const auto& part : file.parts) parts.push_back(to_json(part));
   return {{"path", file.path},
           {"display_window", to_string(file.display)},
           {"pixel_aspect", file.pixel_aspect},
-          {"parts", parts}};
+          {"parts", parts},
+          {"cryptomattes", mattes}};
 }
 
 Json to_json(const InspectedDeep& deep) {

@@ -55,6 +55,12 @@ void add(Lines& lines, const InspectedPart& part) {
 void add(Lines& lines, const InspectedFile& file) {
   lines.add("{}: display window {}, pixel aspect {:.4g}", file.path, to_string(file.display), file.pixel_aspect);
   for (const auto& part : file.parts) add(lines, part);
+  for (const auto& matte : file.cryptomattes) {
+    std::vector<std::string> names;
+    for (const auto& [name, id] : matte.manifest) names.push_back(name);
+    const std::string lacking = matte.lacking.empty() ? "no manifest" : matte.lacking;
+    lines.add("  Cryptomatte {}, for --matte-object: {}", matte.name, names.empty() ? lacking : list_of(names));
+  }
 }
 
 void add(Lines& lines, const InspectedSource& source) {

@@ -36,11 +36,14 @@ Window grown(const Window& window, int margin_x, int margin_y, const Window& wit
   return {left, top, right - left, bottom - top};
 }
 
-/// How far the filters of all that a frame's outputs are made from reach, in px.
+/// How far pixels count for what filters make of another one, in px: by their estimates, and by whether they have one.
+int reach_of_filters(const EstimatorSettings& settings) { return filter_reach_of(settings) + site_reach_of(settings); }
+
+/// The same for all that a frame's outputs are made from.
 int filter_reach(const Settings& settings) {
-  const int own = filter_reach_of(settings.estimator);
+  const int own = reach_of_filters(settings.estimator);
   if (!wants(settings.output, &FrameOutputs::confidence)) return own;
-  return std::max(own, filter_reach_of(bracket_of(settings.estimator)));
+  return std::max(own, reach_of_filters(bracket_of(settings.estimator)));
 }
 
 /// How far lines of an exact search reach beyond the sphere of the radius until they have the vertices of the whole

@@ -60,6 +60,8 @@ class Documents : public Sources {
     for (const char* layer : {"Combined.", "DiffInd.", "DiffCol."})
       for (const char* color : {"R", "G", "B"}) planes[std::string(layer) + color].assign(z.size(), 0.5F);
     write(folder / "beauty.exr");
+    planes = {{"A", std::vector<float>(z.size(), 1)}};
+    write(folder / "hero.exr");
     for (int frame = 1001; frame <= 1100; frame++)
       for (const std::string name : {"frame.exr", "beauty.exr"})
         fs::create_hard_link(

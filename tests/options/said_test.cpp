@@ -158,7 +158,11 @@ class Said : public testing::Test {
   static RunOptions read(Words words, Reader reader = Reader::run) {
     words.insert(words.begin(), {"in.exr", "-o", "ao.exr"});
     RunOptions options;
-    parse_run_options(words, options, reader);
+    bool json = false;
+    if (reader == Reader::run)
+      parse_run_options(words, options);
+    else
+      parse_inspect_options(words, options, json);
     return options;
   }
 

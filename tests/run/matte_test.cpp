@@ -97,7 +97,8 @@ TEST_F(Matte, within_it_the_ao_is_that_of_the_whole_frame_and_elsewhere_what_is_
     }
     EXPECT_GT(occluded, 40) << "or else there is nothing to compare" << testing::PrintToString(options);
     const bool lists_tiles = options.empty() || (options[0] != "--search" && options[0] != "--tolerance");
-    if (lists_tiles) EXPECT_LT(tiles()["computed"], before["computed"].get<int>() / 2) << testing::PrintToString(options);
+    if (lists_tiles)
+      EXPECT_LT(tiles()["computed"], before["computed"].get<int>() / 2) << testing::PrintToString(options);
   }
 }
 
@@ -148,11 +149,17 @@ TEST(Cryptomatte, names_have_their_published_identifiers) {
 }
 
 TEST(Cryptomatte, patterns_match_whole_names) {
-  for (const auto& [name, pattern] : {std::pair("Column.01", "Column*"), {"Column.01", "*"}, {"Column.01", "*.0?"},
-                                      {"a", "?"}, {"", "*"}, {"aXbXc", "a*X*c"}, {"aaab", "*ab"}, {"x*y", "x*y"}})
+  for (const auto& [name, pattern] : {std::pair("Column.01", "Column*"),
+                                      {"Column.01", "*"},
+                                      {"Column.01", "*.0?"},
+                                      {"a", "?"},
+                                      {"", "*"},
+                                      {"aXbXc", "a*X*c"},
+                                      {"aaab", "*ab"},
+                                      {"x*y", "x*y"}})
     EXPECT_TRUE(is_of_pattern(name, pattern)) << name << " " << pattern;
-  for (const auto& [name, pattern] : {std::pair("Column.01", "Col"), {"Column", "column"}, {"ab", "?"}, {"a", "a?"},
-                                      {"aXb", "a*X*c"}, {"a", ""}})
+  for (const auto& [name, pattern] :
+       {std::pair("Column.01", "Col"), {"Column", "column"}, {"ab", "?"}, {"a", "a?"}, {"aXb", "a*X*c"}, {"a", ""}})
     EXPECT_FALSE(is_of_pattern(name, pattern)) << name << " " << pattern;
 }
 
@@ -189,9 +196,8 @@ class Crypto : public Matte {
 
   const Plane ball = disc(150, 100, 30);
   Plane both;
-  const std::string manifest =
-      fmt::format(R"({{"Ball":"{:08x}","Ball.2":"{:08x}","Floor":"{:08x}"}})", cryptomatte_id("Ball"),
-                  cryptomatte_id("Ball.2"), cryptomatte_id("Floor"));
+  const std::string manifest = fmt::format(R"({{"Ball":"{:08x}","Ball.2":"{:08x}","Floor":"{:08x}"}})",
+                                           cryptomatte_id("Ball"), cryptomatte_id("Ball.2"), cryptomatte_id("Floor"));
   FrameFile file;
 };
 
@@ -220,7 +226,8 @@ TEST_F(Crypto, manifests_may_lie_beside_the_file_or_be_missing) {
 TEST_F(Crypto, mistakes_are_named) {
   expect_error(file, 3, {"--matte-object", "Bal"}, {frame, "Crypto", "did you mean Ball", "--matte-object"});
   expect_error(file, 3, {"--matte-channel", "Crypto"}, {frame, "--matte-object"});
-  expect_error(wall_frame(kWindow, kWindow), 3, {"--matte-object", "Ball"}, {frame, "no Cryptomatte", "--matte-channel"});
+  expect_error(wall_frame(kWindow, kWindow), 3, {"--matte-object", "Ball"},
+               {frame, "no Cryptomatte", "--matte-channel"});
   expect_error(with("IndexOB.X", ball), 3, {"--matte-channel", "IndexOB.X", "--matte-object", "Ball"},
                {frame, "IndexOB.X", "numbers"});
   expect_error(wall_frame(kWindow, kWindow), 3, {"--matte-channel", "Matte.Y"}, {frame, "Matte.Y", "--matte-channel"});
