@@ -21,8 +21,8 @@ const ImageIoModule& module(const std::string& path, ErrorKind kind) {
     const ImageIoModule* found = load(why);
     if (!found)
       fail(kind,
-           "{}: to read a picture that is no EXR, and to draw debug views, Alcove needs {}, which is built where "
-           "OpenImageIO is installed (Debian package libopenimageio-dev): {}",
+           "{}: to read a picture that is no EXR, and to draw debug views, Alcove needs {}, of the package "
+           "alcove-pictures, which is built where OpenImageIO is installed (libopenimageio-dev): {}",
            path, kImageIoFile, why);
     return found;
   }();
