@@ -70,7 +70,7 @@ TEST(Kernel, refuses_parameters_of_another_size) {
   auto& buffer = gpu.buffer("test", 256, gpu::Use::device);
   const PrepareParams wrong{};
   EXPECT_THAT(error_of([&] {
-                gpu.dispatch("shape", wrong, {{kShapeAo, buffer}, {kShapeShaped, buffer}}, {8, 8});
+                gpu.dispatch("shape", wrong, {{kShapeAo, buffer}, {kShapeShaped, buffer}}, {8, 8}, {0});
               }),
               HasSubstr("kernel shape takes"));
 }
@@ -80,7 +80,7 @@ TEST(Kernel, refuses_bindings_that_are_not_its_own) {
   auto& buffer = gpu.buffer("test", 256, gpu::Use::device);
   const ShapeParams params{};
   EXPECT_THAT(error_of([&] {
-                gpu.dispatch("shape", params, {{kShapeAo, buffer}}, {8, 8});
+                gpu.dispatch("shape", params, {{kShapeAo, buffer}}, {8, 8}, {0});
               }),
               HasSubstr("kernel shape has the bindings"));
 }
@@ -226,8 +226,9 @@ const gpu::Buffer& record_copy_of_64(std::size_t from, std::size_t to) {
                 {kShapeShaped, copy},
                 {kShapeDepth, unread},
                 {kShapeMaterial, unread},
+                {kShapeMatte, unread},
                 {kShapeCounts, unread}},
-               {64, 1});
+               {64, 1}, {0});
   gpu.download(copy);
   return copy;
 }
@@ -303,8 +304,9 @@ void record_copy_of_1(gpu::Recorder& gpu, const gpu::Buffer& source, const gpu::
                 {kShapeShaped, target},
                 {kShapeDepth, unread},
                 {kShapeMaterial, unread},
+                {kShapeMatte, unread},
                 {kShapeCounts, unread}},
-               {1, 1});
+               {1, 1}, {0});
 }
 
 TEST(Recorder, writes_small_values_in_the_order_of_what_is_recorded) {

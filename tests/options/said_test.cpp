@@ -73,6 +73,7 @@ const std::map<std::string, ConditionCase>& condition_cases() {
          {"--behind-kind", "backs,fronts", "--behind", "a.exr", "--behind", "b.exr", "--behind", "c.exr"}},
         {"--behind-kind", "backs", "--behind", "a.exr", "--behind", "b.exr"}}},
       {"--deep-opacity", {{{"--deep-opacity", "0.2"}}, {"--deep-opacity", "0.2", "--deep", "d.exr"}}},
+      {"--matte-outside", {{{"--matte-outside", "0.5"}}, {"--matte-outside", "0.5", "--matte-object", "Hero"}}},
       {"--motion",
        {{{"--motion", "m.exr"}, {"--motion", "m.exr", "--around", "0"}}, {"--motion", "m.exr", "--around", "2"}}},
       {"--motion-channels", {{{"--motion-channels", "U,V"}}, {"--motion-channels", "U,V", "--around", "all"}}},

@@ -396,7 +396,7 @@ TEST_F(Refusals, a_broken_module_of_pictures_is_named_and_leaves_no_output) {
   fs::create_directory(folder / "lib");
   write_bytes(folder / "lib/libalcove_image_io.so", "no library");
   const Surroundings broken{.environment = {{"LD_LIBRARY_PATH", folder / "lib"}}};
-  expect_refused(4, {".png", "libalcove_image_io.so", "libopenimageio-dev"},
+  expect_refused(4, {".png", "libalcove_image_io.so", "alcove-pictures"},
                  {"run", frame, "-o", ao, "--debug", "linear-depth", "--camera", camera, "--radius", "1"}, broken);
   write_bytes(folder / "a.png", "x");
   expect_refused(3, {folder / "a.png", "libalcove_image_io.so"}, {"compare", folder / "a.png", frame}, broken);
