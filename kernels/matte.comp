@@ -16,16 +16,28 @@ layout(scalar, binding = kMatteRaw) readonly buffer Raw { float raw[]; };
 layout(scalar, binding = kMatteObjects) readonly buffer Objects { uint objects[]; };
 layout(scalar, binding = kMatteResult) writeonly buffer Result { float result[]; };
 
+/// Whether an object is among those that are meant.
+bool is_meant(uint object) {
+  uint from = 0u, to = params.objects;  // it is not before the one, and before the other
+  while (to - from > 1u) {
+    const uint middle = (from + to) / 2u;
+    if (objects[middle] <= object)
+      from = middle;
+    else
+      to = middle;
+  }
+  return params.objects > 0u && objects[from] == object;
+}
+
 void main() {
   const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   if (any(greaterThanEqual(pixel, params.size))) return;
   const uint index = uint(pixel.y * params.size.x + pixel.x), plane = uint(params.size.x * params.size.y);
   float taken = kForm == kMatteCoverage ? raw[index] : 0.0;
-  for (uint i = 0u; i < params.objects; i++)
-    for (uint rank = 0u; rank < kRanks; rank++) {
-      const bool is_meant = floatBitsToUint(raw[index + 2u * rank * plane]) == objects[i];
-      const float coverage = kForm == kMatteRanked ? raw[index + (2u * rank + 1u) * plane] : 1.0;
-      taken += is_meant ? coverage : 0.0;
-    }
+  for (uint rank = 0u; rank < kRanks && kForm != kMatteCoverage; rank++) {
+    const float coverage = kForm == kMatteRanked ? raw[index + (2u * rank + 1u) * plane] : 1.0;
+    if (coverage == 0.0) continue;  // as are most beyond the first rank
+    if (is_meant(floatBitsToUint(raw[index + 2u * rank * plane]))) taken += coverage;
+  }
   result[index] = is_finite(taken) ? clamp(taken, 0.0, 1.0) : 0.0;
 }

@@ -6,7 +6,7 @@
 ALCOVE_BEGIN
 
 ALCOVE_CONSTANT uint kMatteRaw = 0;      // in: planes of floats, as in the file
-ALCOVE_CONSTANT uint kMatteObjects = 1;  // in: one uint per object that is meant, the bits of its float
+ALCOVE_CONSTANT uint kMatteObjects = 1;  // in: one uint per object that is meant, the bits of its float; rising
 ALCOVE_CONSTANT uint kMatteResult = 2;   // out: one float per pixel, 0 to 1
 
 ALCOVE_CONSTANT uint kMatteCoverage = 0;  // one plane of it

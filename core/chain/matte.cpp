@@ -28,7 +28,7 @@ Matte matte(gpu::Recorder& gpu, const FrameInputs& frame) {
   const auto& wanted = frame.matte.objects;
   gpu::Buffer& objects =
       gpu.buffer("matte objects", std::max<std::size_t>(1, wanted.size()) * sizeof(uint), gpu::Use::upload);
-  std::ranges::copy(wanted, objects.as<uint>().begin());
+  std::ranges::partial_sort_copy(wanted, objects.as<uint>());
   gpu.upload(objects);
   gpu::Buffer& result = gpu.buffer("matte", plane_bytes(frame.view), gpu::Use::device);
   const bool is_ranked = frame.matte.kind == MatteKind::ranked;
