@@ -15,6 +15,10 @@ const std::string& main_input(const InputSettings& settings) {
 
 bool wants_normals(const InputSettings& settings) { return lower_case(settings.normal) != "none"; }
 
+bool wants_matte(const InputSettings& settings) {
+  return !settings.matte.empty() || !settings.matte_channel.empty() || !settings.matte_object.empty();
+}
+
 bool has_hidden_sources(const InputSettings& settings) {
   const bool has_files = settings.behind != FileList{} || !settings.deep.empty();
   return has_files || settings.around > 0 || settings.around_all || settings.other_views;

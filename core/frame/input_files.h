@@ -15,6 +15,9 @@ const std::string& main_input(const InputSettings& settings);
 /// Whether the frame's normals are read; `--normal none` leaves them out.
 bool wants_normals(const InputSettings& settings);
 
+/// Whether AO is wanted in parts of the frame only.
+bool wants_matte(const InputSettings& settings);
+
 /// Whether anything is named that may show more than the first surface of each pixel.
 bool has_hidden_sources(const InputSettings& settings);
 

@@ -87,10 +87,6 @@ void take(FrameSource& source, std::size_t file, const Cryptomatte& matte, const
 
 }  // namespace
 
-bool wants_matte(const InputSettings& settings) {
-  return !settings.matte.empty() || !settings.matte_channel.empty() || !settings.matte_object.empty();
-}
-
 void find_matte(FrameSource& source, ChannelSearch& search, const InputSettings& settings) {
   if (!wants_matte(settings)) return;
   source.matte.outside = settings.matte_outside;

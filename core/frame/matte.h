@@ -6,9 +6,6 @@
 
 namespace alcove {
 
-/// Whether the settings ask for a matte.
-bool wants_matte(const InputSettings& settings);
-
 /// Finds the matte where the settings ask for one, in --matte or else in INPUT. Without objects it is a plane of
 /// coverage. With objects it is what they cover in a Cryptomatte: names, in which * and ? stand for others, are looked
 /// up in its manifest, and are taken as they are where there is none. With --matte-channel of another channel objects

@@ -85,9 +85,8 @@ Condition for_beauty() {
 }
 
 Condition with_matte() {
-  return with_option("--matte, --matte-channel or --matte-object", [](const Settings& all) {
-    return !all.input.matte.empty() || !all.input.matte_channel.empty() || !all.input.matte_object.empty();
-  });
+  return with_option("--matte, --matte-channel or --matte-object",
+                     [](const Settings& all) { return wants_matte(all.input); });
 }
 
 void add_file_rows(std::vector<OptionRow>& rows, InputSettings& s) {
