@@ -119,23 +119,4 @@ std::vector<Cryptomatte> cryptomattes_of(const ExrFile& file) {
   return found;
 }
 
-bool is_of_pattern(const std::string& name, const std::string& pattern) {
-  std::size_t at = 0, star = pattern.npos, retry = 0, p = 0;
-  while (at < name.size()) {
-    if (p < pattern.size() && (pattern[p] == '?' || (pattern[p] == name[at] && pattern[p] != '*'))) {
-      p++;
-      at++;
-    } else if (p < pattern.size() && pattern[p] == '*') {
-      star = p++;
-      retry = at;
-    } else if (star != pattern.npos) {
-      p = star + 1;
-      at = ++retry;
-    } else {
-      return false;
-    }
-  }
-  return pattern.find_first_not_of('*', p) == pattern.npos;
-}
-
 }  // namespace alcove

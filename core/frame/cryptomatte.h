@@ -32,7 +32,4 @@ std::vector<Cryptomatte> cryptomattes_of(const ExrFile& file);
 /// The identifier of a name: MurmurHash3 (32 bits, Appleby) of its UTF-8, changed where it is no normal number.
 std::uint32_t cryptomatte_id(const std::string& name);
 
-/// Whether a name is of a pattern, in which * stands for any characters and ? for one.
-bool is_of_pattern(const std::string& name, const std::string& pattern);
-
 }  // namespace alcove

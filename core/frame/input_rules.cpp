@@ -9,6 +9,7 @@
 #include "core/base/flat_toml.h"
 #include "core/base/text.h"
 #include "core/frame/depth.h"
+#include "core/frame/name_pattern.h"
 
 namespace alcove {
 namespace {
@@ -43,26 +44,6 @@ std::vector<AovCandidate> candidates_of(const std::vector<std::string>& words) {
                           space.value_or(NormalSpace::automatic)});
   }
   return candidates;
-}
-
-/// Whether a text fits a pattern, in which * stands for any text; case is ignored.
-bool fits(std::string_view text, std::string_view pattern) {
-  std::size_t t = 0, p = 0, star = pattern.npos, resume = 0;
-  while (t < text.size()) {
-    if (p < pattern.size() && pattern[p] == '*') {
-      star = p++;
-      resume = t;
-    } else if (p < pattern.size() && pattern[p] == text[t]) {
-      p++;
-      t++;
-    } else if (star != pattern.npos) {
-      p = star + 1;
-      t = ++resume;
-    } else {
-      return false;
-    }
-  }
-  return pattern.find_first_not_of('*', p) == pattern.npos;
 }
 
 /// Lists what identifies a file, in lower case: attributes as "name" and "name=value", channels as "channel:name". Nuke
@@ -162,8 +143,8 @@ DetectedRules detect_rules(const ExrFile& file) {
   for (const bool last : {false, true})
     for (const auto& rules : all_input_rules())
       for (const auto& pattern : rules.detect)
-        if (const auto mark =
-                std::ranges::find_if(marks, [wanted = lower_case(pattern)](const auto& m) { return fits(m, wanted); });
+        if (const auto mark = std::ranges::find_if(
+                marks, [wanted = lower_case(pattern)](const auto& m) { return fits_pattern(m, wanted); });
             rules.last == last && mark != marks.end())
           return {&rules, *mark};
   return {&input_rules("generic"), ""};

@@ -12,6 +12,7 @@
 #include "core/base/text.h"
 #include "core/frame/cryptomatte.h"
 #include "core/frame/input_files.h"
+#include "core/frame/name_pattern.h"
 
 namespace alcove {
 namespace {
@@ -39,7 +40,7 @@ std::vector<std::uint32_t> objects_of(const std::string& path, const Cryptomatte
   std::vector<std::string> names;
   for (const auto& [name, id] : matte.manifest) {
     names.push_back(name);
-    if (is_pattern(word) ? is_of_pattern(name, word) : name == word) objects.push_back(id);
+    if (is_pattern(word) ? fits_pattern(name, word) : name == word) objects.push_back(id);
   }
   if (!objects.empty()) return objects;
   if (matte.manifest.empty() && !is_pattern(word)) return {cryptomatte_id(word)};
@@ -60,7 +61,7 @@ const Cryptomatte& chosen(const std::vector<Cryptomatte>& mattes, const std::str
     names.push_back(matte.name);
     const auto is_known = [&](const std::string& word) {
       return std::ranges::any_of(matte.manifest, [&](const auto& entry) {
-        return is_pattern(word) ? is_of_pattern(entry.first, word) : entry.first == word;
+        return is_pattern(word) ? fits_pattern(entry.first, word) : entry.first == word;
       });
     };
     const auto words = split(objects);

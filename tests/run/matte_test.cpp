@@ -9,6 +9,7 @@
 
 #include "core/formats/exr.h"
 #include "core/frame/cryptomatte.h"
+#include "core/frame/name_pattern.h"
 #include "tests/support/command_line.h"
 #include "tests/support/difference.h"
 
@@ -157,10 +158,10 @@ TEST(Cryptomatte, patterns_match_whole_names) {
                                       {"aXbXc", "a*X*c"},
                                       {"aaab", "*ab"},
                                       {"x*y", "x*y"}})
-    EXPECT_TRUE(is_of_pattern(name, pattern)) << name << " " << pattern;
+    EXPECT_TRUE(fits_pattern(name, pattern)) << name << " " << pattern;
   for (const auto& [name, pattern] :
        {std::pair("Column.01", "Col"), {"Column", "column"}, {"ab", "?"}, {"a", "a?"}, {"aXb", "a*X*c"}, {"a", ""}})
-    EXPECT_FALSE(is_of_pattern(name, pattern)) << name << " " << pattern;
+    EXPECT_FALSE(fits_pattern(name, pattern)) << name << " " << pattern;
 }
 
 /// Two ranks and one of a third channel file: Ball covers a soft disc, Floor the rest, and a strip is Ball.2 in the
