@@ -102,8 +102,8 @@ std::string options_of(const Command& command) {
 
 constexpr const char* kExitStatus =
     ".SH EXIT STATUS\n.TP\n0\nAll was done.\n.TP\n1\nSome frames failed.\n.TP\n2\nUsage or settings.\n.TP\n3\nAn input "
-    "is "
-    "missing or cannot be read.\n.TP\n4\nAn output could not be written.\n.TP\n5\nThere is no device, or it was lost.\n"
+    "is missing or cannot be read.\n.TP\n4\nAn output could not be written.\n.TP\n5\nThere is no device, or it was "
+    "lost.\n"
     ".TP\n6\nA comparison failed.\n.TP\n128 and more\nThe number of the signal that ended the run, plus 128.\n";
 
 constexpr const char* kEnvironment =

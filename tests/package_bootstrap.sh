@@ -24,7 +24,7 @@ begin=$(date +%s)
 step() { echo "$(date +%T) $*"; }
 inside() { chroot "$root" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C.UTF-8 DEBIAN_FRONTEND=noninteractive "$@"; }
 # Who may write nowhere else, in a folder of their own.
-as_user() { chroot --userspec=1000:1000 "$root" env -i PATH=/usr/bin:/bin HOME=/work LC_ALL=C.UTF-8 sh -c "cd /work && $1"; }
+as_user() { chroot --userspec=1000:1000 "$root" env -i PATH=/usr/bin:/bin HOME=/home/stranger LC_ALL=C.UTF-8 sh -c "cd /home/stranger && $1"; }
 install() { inside apt-get install -y -qq "$@" >"$root/log" 2>&1 || fail "apt-get install $*: $(cat "$root/log")"; }
 state() { inside dpkg-query -W -f '${db:Status-Abbrev}${Installed-Size}\n' | awk '$1 == "ii" { count++; size += $2 } END { printf "%d packages, %d MB\n", count, size / 1024 }'; }
 seconds() {  # how long a command takes
@@ -45,14 +45,14 @@ echo "$sources" >"$root/etc/apt/sources.list"
 cp /etc/resolv.conf /etc/hosts "$root/etc/"
 printf '#!/bin/sh\nexit 101\n' >"$root/usr/sbin/policy-rc.d"  # no services
 chmod +x "$root/usr/sbin/policy-rc.d"
-mkdir "$root/packages" "$root/work"
-chown 1000:1000 "$root/work"
+mkdir "$root/packages" "$root/home/stranger"
+chown 1000:1000 "$root/home/stranger"
 cp "$packages"/*.deb "$root/packages/"
 alcove=/packages/$(basename "$packages"/alcove_*.deb) pictures=/packages/$(basename "$packages"/alcove-pictures_*.deb)
 inside apt-get update -qq || fail "apt-get update failed in the fresh Debian"
 step "fresh: $(state)"
 ! inside sh -c 'command -v gcc c++ cmake' || fail "the fresh Debian has a compiler"
-all_files() { inside find / -xdev -not -path '/var/cache/*' -not -path '/var/lib/*' -not -path '/var/log/*' -iname '*alcove*' -not -path '/packages/*' -not -path '/work/*'; }
+all_files() { inside find / -xdev -not -path '/var/cache/*' -not -path '/var/lib/*' -not -path '/var/log/*' -iname '*alcove*' -not -path '/packages/*' -not -path '/home/*'; }
 
 install --no-install-recommends "$alcove"
 step "alcove alone: $(state)"
@@ -101,7 +101,7 @@ inside alcove presets >/dev/null || fail "after the upgrade alcove presets fails
 step "an upgrade"
 
 inside apt-get remove -y -qq alcove >/dev/null 2>&1 || fail "apt-get remove alcove"
-rm -rf "$root/work"
+rm -rf "$root/home/stranger"
 left=$(all_files)
 [ -z "$left" ] || fail "left after removal: $left"
 inside apt-get purge -y -qq alcove alcove-pictures >/dev/null 2>&1 || fail "apt-get purge"

@@ -40,7 +40,7 @@ std::vector<std::uint32_t> objects_of(const std::string& path, const Cryptomatte
   std::vector<std::string> names;
   for (const auto& [name, id] : matte.manifest) {
     names.push_back(name);
-    if (is_pattern(word) ? fits_pattern(name, word) : name == word) objects.push_back(id);
+    if (fits_pattern(name, word)) objects.push_back(id);
   }
   if (!objects.empty()) return objects;
   if (matte.manifest.empty() && !is_pattern(word)) return {cryptomatte_id(word)};
@@ -60,9 +60,7 @@ const Cryptomatte& chosen(const std::vector<Cryptomatte>& mattes, const std::str
   for (const auto& matte : mattes) {
     names.push_back(matte.name);
     const auto is_known = [&](const std::string& word) {
-      return std::ranges::any_of(matte.manifest, [&](const auto& entry) {
-        return is_pattern(word) ? fits_pattern(entry.first, word) : entry.first == word;
-      });
+      return std::ranges::any_of(matte.manifest, [&](const auto& entry) { return fits_pattern(entry.first, word); });
     };
     const auto words = split(objects);
     if (layer.empty() ? std::ranges::any_of(words, is_known) : matte.name == layer) fitting.push_back(&matte);
@@ -94,7 +92,9 @@ void find_matte(FrameSource& source, ChannelSearch& search, const InputSettings&
   const std::size_t file = search.open(settings.matte.empty() ? main_input(settings) : settings.matte, "--matte");
   const std::string& path = source.files[file].path();
   const std::string& objects = settings.matte_object;
-  const auto mattes = cryptomattes_of(source.files[file]);
+  // A manifest may be long, and a file of coverage alone needs none.
+  const bool may_be_ranked = !objects.empty() || !settings.matte_channel.empty();
+  const auto mattes = may_be_ranked ? cryptomattes_of(source.files[file]) : std::vector<Cryptomatte>();
   const bool is_layer =
       std::ranges::any_of(mattes, [&](const Cryptomatte& matte) { return matte.name == settings.matte_channel; });
   if (is_layer && objects.empty())
