@@ -96,7 +96,7 @@ void search_runs(inout Found found, Receiver r, Side side, Reach reach, Draw dra
     const float offset = step_offset(k, int(kSteps), count, side.reach, jitter);
     const vec2 beside = round(side.direction_px * offset);
     const ivec2 hit = r.pixel + ivec2(beside);
-    const Sample s = surface_at(r, side, reach, offset, beside, depth[hit.y * reach.width + hit.x]);
+    const Sample s = surface_at(r, side, reach, offset, beside, occluder_depth[hit.y * reach.width + hit.x]);
     const vec2 place = s.place;
     const float cot = place.y / place.x;
     const bool connected = same_surface(r, reach, s.z, last.z, offset - last.offset);

@@ -24,6 +24,7 @@ layout(constant_id = kBitmaskSparseId) const uint kSparse = 0;
 layout(constant_id = kBitmaskCompleteId) const uint kComplete = 0;
 layout(scalar, push_constant) uniform Push { SlicesParams params; };
 layout(scalar, binding = kSlicesDepth) readonly buffer Depth { float depth[]; };
+layout(scalar, binding = kSlicesOccluders) readonly buffer Occluders { float occluder_depth[]; };
 layout(scalar, binding = kSlicesNormal) readonly buffer Normal { uint normal[]; };
 layout(scalar, binding = kSlicesAo) writeonly buffer Ao { float ao[]; };
 layout(scalar, binding = kSlicesList) readonly buffer List { ListedTile list[]; };

@@ -15,7 +15,7 @@ ALCOVE_CONSTANT uint kCompleteGoesOn = 2;
 ALCOVE_CONSTANT uint kCompleteBehind = 3;
 ALCOVE_CONSTANT uint kCompleteNormal = 4;  // in: one uint per pixel, from prepare
 // Only with several surfaces:
-ALCOVE_CONSTANT uint kCompleteDepth = 5;   // in: one float per pixel, from prepare
+ALCOVE_CONSTANT uint kCompleteDepth = 5;   // in: as profile's
 ALCOVE_CONSTANT uint kCompleteHidden = 6;  // in: planes of floats, see GBuffer::hidden
 
 // specialization: of a pixel. Of several, the profile is a plane among others, and `behind` is of that one alone of

@@ -29,6 +29,7 @@ layout(constant_id = kCrytekSamplesId) const uint kSamples = 16;
 layout(constant_id = kCrytekSparseId) const uint kSparse = 0;
 layout(scalar, push_constant) uniform Push { CrytekParams params; };
 layout(scalar, binding = kCrytekDepth) readonly buffer Depth { float depth[]; };
+layout(scalar, binding = kCrytekOccluders) readonly buffer Occluders { float occluder_depth[]; };
 layout(scalar, binding = kCrytekNormal) readonly buffer Normal { uint normal[]; };
 layout(scalar, binding = kCrytekAo) writeonly buffer Ao { float ao[]; };
 layout(scalar, binding = kCrytekList) readonly buffer List { ListedTile list[]; };
@@ -94,7 +95,7 @@ void main() {
     if (perspective && !(-at.z > 0.0)) continue;
     const ivec2 hit = pixel_of(params.view, at);
     if (!inside(params.view, hit)) continue;
-    const float hit_z = depth[index_of(params.view, hit)];
+    const float hit_z = occluder_depth[index_of(params.view, hit)];
     if (hit_z >= kSkyDepth) continue;
     valid += 1.0;
 

@@ -13,6 +13,7 @@ ALCOVE_CONSTANT uint kCrytekList = 3;        // in: one ListedTile per tile, fro
 ALCOVE_CONSTANT uint kCrytekCounts = 4;      // in: TileCounts
 ALCOVE_CONSTANT uint kCrytekSites = 5;       // in: one uint per site, from list_sites; only if sparse
 ALCOVE_CONSTANT uint kCrytekSiteCounts = 6;  // in: SiteCounts; only if sparse
+ALCOVE_CONSTANT uint kCrytekOccluders = 7;   // in: one float per pixel, depth of the first surfaces that may block
 
 ALCOVE_CONSTANT uint kCrytekSamplesId = 0;  // specialization: samples per pixel
 ALCOVE_CONSTANT uint kCrytekSparseId = 1;   // specialization: 1: only the sites of the list are estimated

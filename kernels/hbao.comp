@@ -35,6 +35,7 @@ layout(constant_id = kHbaoFalloffId) const uint kFalloff = kFalloffNone;
 layout(constant_id = kHbaoSparseId) const uint kSparse = 0;
 layout(scalar, push_constant) uniform Push { HbaoParams params; };
 layout(scalar, binding = kHbaoDepth) readonly buffer Depth { float depth[]; };
+layout(scalar, binding = kHbaoOccluders) readonly buffer Occluders { float occluder_depth[]; };
 layout(scalar, binding = kHbaoNormal) readonly buffer Normal { uint normal[]; };
 layout(scalar, binding = kHbaoAo) writeonly buffer Ao { float ao[]; };
 layout(scalar, binding = kHbaoList) readonly buffer List { ListedTile list[]; };
@@ -68,7 +69,7 @@ float occlusion(Direction side, ivec2 pixel, vec3 position, float jitter, uint r
     // Dense near the receiver, and never two samples in one pixel.
     step_px = count < steps ? float(k + 1) : max(float(k + 1), x * x * side.reach);
     const ivec2 hit = pixel + ivec2(round(side.direction_px * step_px));
-    const float z = depth[index_of(params.view, hit)];
+    const float z = occluder_depth[index_of(params.view, hit)];
     if (z >= kSkyDepth) continue;
     const vec3 delta = position_of(params.view, vec2(hit) + 0.5, z) - position;
     const vec2 in_slice = vec2(dot(delta, side.along_t), dot(delta, side.along_v));

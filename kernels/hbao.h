@@ -13,6 +13,7 @@ ALCOVE_CONSTANT uint kHbaoList = 3;        // in: one ListedTile per tile, from 
 ALCOVE_CONSTANT uint kHbaoCounts = 4;      // in: TileCounts
 ALCOVE_CONSTANT uint kHbaoSites = 5;       // in: one uint per site, from list_sites; only if sparse
 ALCOVE_CONSTANT uint kHbaoSiteCounts = 6;  // in: SiteCounts; only if sparse
+ALCOVE_CONSTANT uint kHbaoOccluders = 7;   // in: one float per pixel, depth of the first surfaces that may block
 
 ALCOVE_CONSTANT uint kHbaoSlicesId = 0;   // specialization: lines through a pixel, each searched to both sides
 ALCOVE_CONSTANT uint kHbaoStepsId = 1;    // specialization: steps to each side

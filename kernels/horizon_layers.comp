@@ -25,6 +25,7 @@ layout(constant_id = kHorizonSolidId) const uint kSolid = kThicknessWidth;
 layout(constant_id = kHorizonSparseId) const uint kSparse = 0;
 layout(scalar, push_constant) uniform Push { SlicesParams params; };
 layout(scalar, binding = kSlicesDepth) readonly buffer Depth { float depth[]; };
+layout(scalar, binding = kSlicesOccluders) readonly buffer Occluders { float occluder_depth[]; };
 layout(scalar, binding = kSlicesNormal) readonly buffer Normal { uint normal[]; };
 layout(scalar, binding = kSlicesAo) writeonly buffer Ao { float ao[]; };
 layout(scalar, binding = kSlicesList) readonly buffer List { ListedTile list[]; };

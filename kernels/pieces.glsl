@@ -9,7 +9,7 @@
 // Only what stands above the receiver's tangent plane goes on behind something. There, a deeper point of a ray never
 // stands higher above that plane than what is seen on the ray, measured by depth, so classify.comp's proofs hold.
 //
-// The kernel has declared its buffers `depth` and `normal`, and how many steps a side takes, kSteps.
+// The kernel has declared its buffers `occluder_depth` and `normal`, and how many steps a side takes, kSteps.
 
 const float kNone = 1e30;
 
@@ -91,7 +91,7 @@ Sample sample_of(Receiver r, Side side, Reach reach, float offset, vec2 beside, 
 Sample sample_at(Receiver r, Side side, Reach reach, float offset) {
   const vec2 beside = round(side.direction_px * offset);
   const ivec2 hit = r.pixel + ivec2(beside);
-  return sample_of(r, side, reach, offset, beside, depth[hit.y * reach.width + hit.x]);
+  return sample_of(r, side, reach, offset, beside, occluder_depth[hit.y * reach.width + hit.x]);
 }
 
 /// The sample before the first one.

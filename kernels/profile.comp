@@ -82,8 +82,8 @@ struct Run {
   float anchor_value;  // value_of() it
   float low, high;     // slopes of the strokes from the last vertex that keep to all steps since
   uint last_mark;      // of the last vertex of a run that is closed
+  int filled;          // step up to which steps know their neighbors
   // Only with several slots:
-  int filled;                // step up to which steps know their neighbors
   float anchor_known;        // the thickness known at the last vertex
   float thinnest, thickest;  // changes of it per step, that keep to all steps since
 };
@@ -245,7 +245,7 @@ void fill(inout Run run, int end, int after) {
 }
 
 void begin_run(inout Run run, Step start) {
-  if (kSlots > 1u) fill(run, start.at, run.next);
+  fill(run, start.at, run.next);
   run.first = run.next;
   run.start = start;
   run.is_open = true;
@@ -300,14 +300,14 @@ void finish(inout Run run, ivec2 steps) {
   } else if (steps.x < steps.y) {
     mark[run.row + run.begin] = 0u;
   }
-  if (kSlots > 1u) fill(run, steps.y, -1);
+  fill(run, steps.y, -1);
 }
 
 /// The surfaces of a step in their slots: `here` has a step of each slot, which is without a surface. Returns the slot
-/// of the first surface. No choice depends on the slots' numbers, since a crop has others.
+/// of the first surface, kSlots where it is none. No choice depends on the slots' numbers, since a crop has others.
 uint share_out(bool perspective, float pixel, Run runs[kSlots], Step lasts[kSlots], Step surfaces[kSlots],
                inout Step here[kSlots]) {
-  uint slots = 0u, shared_out = 0u, own_slot = 0u;
+  uint slots = 0u, shared_out = 0u, own_slot = kSlots;
   for (uint round = 0u; round < kSlots; round++) {
     float least = kFar, last = kFar;
     uint best_slot = kSlots, best = kSlots;
@@ -367,7 +367,7 @@ void main() {
     if (kSlots > 1u) {
       Step surfaces[kSlots];
       surfaces[0] = here[0];
-      bool goes = here[0].is_surface;
+      bool goes = true;  // the first one may be no occluder
       for (uint k = 1u; k < kSlots; k++) {
         surfaces[k] = none;
         for (bool once = goes; once; once = false)

@@ -5,7 +5,7 @@
 #include "shared.h"
 ALCOVE_BEGIN
 
-ALCOVE_CONSTANT uint kProfileDepth = 0;  // in: one float per pixel, from prepare
+ALCOVE_CONSTANT uint kProfileDepth = 0;  // in: one float per pixel, depth of the first surfaces that may block
 // What comes out has a plane of the image's size for each slot.
 ALCOVE_CONSTANT uint kProfileVertex = 1;  // out: one float per vertex, its planar depth
 // out: one uint per vertex: its step in the high half, its run's thickness (pack_width()) and kVertex* in the low; 0
@@ -15,7 +15,8 @@ ALCOVE_CONSTANT uint kProfileMark = 2;
 ALCOVE_CONSTANT uint kProfileNeighbor = 3;
 
 ALCOVE_CONSTANT uint kProfileHidden = 4;  // in: planes of floats, see GBuffer::hidden; only with several surfaces
-// out: one uint per step, the slot of its first surface; only with several slots
+// out: one uint per step, the slot of its first surface, as many as there are slots if that may not block; only with
+// several slots
 ALCOVE_CONSTANT uint kProfileOwn = 5;
 
 ALCOVE_CONSTANT uint kProfileEveryPixelId = 0;  // specialization: 1: every pixel is a vertex

@@ -17,7 +17,8 @@ ALCOVE_CONSTANT uint kSlicesSites = 7;       // in: one uint per site, from list
 ALCOVE_CONSTANT uint kSlicesSiteCounts = 8;  // in: SiteCounts; only if sparse
 // out: one float per pixel, the visibility that completed surfaces took; only with kWithCompleted
 ALCOVE_CONSTANT uint kSlicesCompleted = 6;
-ALCOVE_CONSTANT uint kSlicesHidden = 9;  // in: planes of hidden surfaces, see GBuffer; with layers only
+ALCOVE_CONSTANT uint kSlicesHidden = 9;  // in: planes of hidden surfaces that may block, see GBuffer; with layers only
+ALCOVE_CONSTANT uint kSlicesOccluders = 10;  // in: one float per pixel, depth of the first surfaces that may block
 
 struct SlicesParams {
   View view;

@@ -38,6 +38,11 @@ struct InputSettings {
   // where AO is wanted: the same, and what of it, see core/frame/matte.h; the AO elsewhere, 0 to 1
   std::string matte, matte_channel, matte_object;
   double matte_outside = 1;
+  // which first surfaces are occluders: these alone, or all but these, as a file of coverage, or as objects, names or
+  // numbers with commas; at most one is not empty
+  std::string occluders, occluder_objects, ignore, ignored_objects;
+  // where those objects are told: a file, empty: the input; a channel of numbers or a Cryptomatte's layer, empty: found
+  std::string objects, object_channel;
   // the diffuse colour for multi-bounce: a file; empty: the beauty's. Three names, or a layer; empty: found
   std::string albedo, albedo_channels;
   std::optional<double> albedo_value;  // instead: one for all surfaces, 0 to 1

@@ -9,6 +9,7 @@
 #include "core/chain/hidden.h"
 #include "core/chain/margin.h"
 #include "core/chain/matte.h"
+#include "core/chain/occluders.h"
 #include "core/chain/open_sky.h"
 #include "core/chain/shading.h"
 #include "core/chain/warp.h"
@@ -48,7 +49,8 @@ FrameOutputs run_chain(gpu::Recorder& gpu, const FrameInputs& frame, const Estim
   DebugStages stages;
   if (wanted.visibility || frame[RawPlane::beauty]) {
     const Matte wanted_at = matte(gpu, frame);
-    const GBuffer blocks = downsample(gpu, wide, block_grid(inputs, int(settings.resolution)));
+    const GBuffer counted = occluders(gpu, wide, frame);
+    const GBuffer blocks = downsample(gpu, counted, block_grid(inputs, int(settings.resolution)));
     const GBuffer work = needed(gpu, blocks, inputs, wanted_at, filter_reach_of(settings));
     const bool with_completed = wanted.completed && completes_anywhere(settings);
     const Sites chosen = sites(gpu, work, site_rule_of(settings));

@@ -7,6 +7,7 @@
 #include "core/base/estimator_facts.h"
 #include "core/chain/estimate.h"
 #include "core/chain/filters.h"
+#include "core/chain/occluders.h"
 #include "core/chain/pass_common.h"
 #include "kernels/confidence.h"
 
@@ -28,25 +29,27 @@ gpu::Buffer& confidence(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameI
   const Sites chosen = sites(gpu, gbuffer, site_rule_of(bracket), "bracket ");
   const Bounds surfaces = bounds(gpu, gbuffer, skipping);
   coarsen(gpu, gbuffer, surfaces);
-  const auto visibility = [&](float thickness, Completion complete, const std::string& prefix) -> const gpu::Buffer& {
+  const GBuffer least = occluders(gpu, gbuffer, frame), most = occluders(gpu, gbuffer, frame, Unknown::blocked);
+  const auto visibility = [&](const GBuffer& counted, float thickness, Completion complete,
+                              const std::string& prefix) -> const gpu::Buffer& {
     Reach reach = reach_of(bracket, radius);
     reach.thickness = thickness;
     reach.complete = complete;
     Estimate out{&gpu.buffer(prefix + "ao", plane_bytes(gbuffer.view), gpu::Use::device)};
     out.listed = classify(gpu, gbuffer, surfaces, skipping, reach.radius, chosen, out, 0, prefix);
     list_sites(gpu, gbuffer, chosen, out.listed, prefix);
-    horizon(gpu, gbuffer, reach, sampling, out, 0);
-    horizon_layers(gpu, gbuffer, reach, sampling, out, 0);
+    horizon(gpu, counted, reach, sampling, out, 0);
+    horizon_layers(gpu, counted, reach, sampling, out, 0);
     return chosen.rows ? interpolate(gpu, gbuffer, *out.ao, chosen, denoiser, prefix)
                        : denoise(gpu, gbuffer, *out.ao, denoiser, prefix);
   };
-  const gpu::Buffer& thin = visibility(float(kThin * radius), Completion::none, "thin ");
+  const gpu::Buffer& thin = visibility(least, float(kThin * radius), Completion::none, "thin ");
   // Endless occluders block all that anything behind them does, but nothing beyond the border.
   const Completion beyond = completes_anywhere(settings) ? Completion::border : Completion::none;
-  const gpu::Buffer& solid = visibility(std::numeric_limits<float>::infinity(), beyond, "solid ");
+  const gpu::Buffer& solid = visibility(most, std::numeric_limits<float>::infinity(), beyond, "solid ");
   // What is nearer than the sphere is no occluder, but may hide surfaces within it.
   const gpu::Buffer& completed =
-      completes_anywhere(settings) ? visibility(float(kThin * radius), bracket.complete, "completed ") : thin;
+      completes_anywhere(settings) ? visibility(least, float(kThin * radius), bracket.complete, "completed ") : thin;
   gpu::Buffer& result = gpu.buffer("confidence", plane_bytes(gbuffer.view), gpu::Use::device);
   gpu.dispatch("confidence", ConfidenceParams{gbuffer.view, float(radius), gbuffer.depth_precision},
                {{kConfidenceDepth, *gbuffer.depth},

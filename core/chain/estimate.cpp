@@ -110,13 +110,14 @@ std::vector<gpu::Binding> slice_buffers(const GBuffer& gbuffer, const Estimate& 
           {kSlicesCounts, *out.listed.counts},
           {kSlicesSites, out.listed.sites ? *out.listed.sites : *out.listed.tiles},
           {kSlicesSiteCounts, out.listed.sites ? *out.listed.site_counts : *out.listed.counts},
-          {kSlicesCompleted, out.completed ? *out.completed : *out.ao}};
+          {kSlicesCompleted, out.completed ? *out.completed : *out.ao},
+          {kSlicesOccluders, occluder_depth_of(gbuffer)}};
 }
 
 /// The same with the hidden surfaces.
 std::vector<gpu::Binding> layered_slice_buffers(const GBuffer& gbuffer, const Estimate& out) {
   std::vector<gpu::Binding> buffers = slice_buffers(gbuffer, out);
-  buffers.push_back({kSlicesHidden, *gbuffer.hidden});
+  buffers.push_back({kSlicesHidden, *occluder_hidden_of(gbuffer)});
   return buffers;
 }
 
@@ -341,6 +342,7 @@ void hbao(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, const 
   params.depth_precision = gbuffer.depth_precision;
   gpu.dispatch("hbao", params,
                {{kHbaoDepth, *gbuffer.depth},
+                {kHbaoOccluders, occluder_depth_of(gbuffer)},
                 {kHbaoNormal, *gbuffer.normal},
                 {kHbaoAo, *out.ao},
                 {kHbaoList, *out.listed.tiles},
@@ -364,6 +366,7 @@ void crytek(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, cons
   params.depth_precision = gbuffer.depth_precision;
   gpu.dispatch("crytek", params,
                {{kCrytekDepth, *gbuffer.depth},
+                {kCrytekOccluders, occluder_depth_of(gbuffer)},
                 {kCrytekNormal, *gbuffer.normal},
                 {kCrytekAo, *out.ao},
                 {kCrytekList, *out.listed.tiles},

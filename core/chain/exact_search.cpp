@@ -112,11 +112,11 @@ void draw_profile(gpu::Recorder& gpu, const GBuffer& gbuffer, const SearchDirect
   // With several slots a thickness of 0 is one that is not known, for which exact takes the given one.
   if (gbuffer.hidden && reach.thickness != 0) params.depth_per_width = params.more_pixels = params.least_at_border = 0;
   gpu.dispatch("profile", params,
-               {{kProfileDepth, *gbuffer.depth},
+               {{kProfileDepth, occluder_depth_of(gbuffer)},
                 {kProfileVertex, *profile.vertex},
                 {kProfileMark, *profile.mark},
                 {kProfileNeighbor, *profile.neighbor},
-                {kProfileHidden, gbuffer.hidden ? *gbuffer.hidden : *gbuffer.depth},
+                {kProfileHidden, gbuffer.hidden ? *occluder_hidden_of(gbuffer) : *gbuffer.depth},
                 {kProfileOwn, profile.own ? *profile.own : *profile.neighbor}},
                groups ? gpu::Extent(*groups) : gpu::Extent(profile.count),
                {directions.every_pixel ? 1u : 0u, profile.slots, slot > 0 ? 1 : profile.slots});
@@ -243,8 +243,8 @@ void complete(gpu::Recorder& gpu, const GBuffer& gbuffer, Profile& profile, cons
                   {kCompleteMark, *profile.mark},
                   {kCompleteGoesOn, *profile.goes_on},
                   {kCompleteBehind, *profile.behind},
-                  {kCompleteDepth, *gbuffer.depth},
-                  {kCompleteHidden, gbuffer.hidden ? *gbuffer.hidden : *gbuffer.depth}},
+                  {kCompleteDepth, occluder_depth_of(gbuffer)},
+                  {kCompleteHidden, gbuffer.hidden ? *occluder_hidden_of(gbuffer) : *gbuffer.depth}},
                  groups ? gpu::Extent(*groups) : gpu::Extent(profile.count),
                  {profile.slots, gbuffer.hides_no_more ? 1u : 0u});
   }

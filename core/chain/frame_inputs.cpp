@@ -64,6 +64,7 @@ FrameInputs inputs_of(const Reading& reading, const RawPlaneArray<gpu::Buffer*>&
   for (const auto& plane : reading.behind) inputs.behind.push_back(layer_terms(reading, plane));
   inputs.behind_lists_all = list_all(reading.behind);
   inputs.matte = reading.matte;
+  inputs.occluders = reading.occluders;
   inputs.is_sky = is_all_sky(inputs.depth_map, planes[RawPlane::depth]->as<const float>());
   return inputs;
 }

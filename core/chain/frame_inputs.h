@@ -45,6 +45,7 @@ struct FrameInputs {
   std::vector<OtherView> others;      // in any order: what they see behind the first surface counts as hidden
   Margin margin{};                    // where others show what lies around the frame; see margin.h
   MatteReading matte;                 // how its planes are read
+  MatteReading occluders;             // the same of RawPlane::occluders
   double albedo_value = 0;            // for multi-bounce where there are no planes of it
   Matrix3 aov_from_view{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};  // rotation to the space of the directions that are written
   bool is_sky = false;  // no pixel shows a surface, and none had to be repaired for that

@@ -10,6 +10,14 @@
 
 namespace alcove {
 
+const gpu::Buffer& occluder_depth_of(const GBuffer& gbuffer) {
+  return gbuffer.occluder_depth ? *gbuffer.occluder_depth : *gbuffer.depth;
+}
+
+const gpu::Buffer* occluder_hidden_of(const GBuffer& gbuffer) {
+  return gbuffer.occluder_hidden ? gbuffer.occluder_hidden : gbuffer.hidden;
+}
+
 BlockGrid block_grid(const FrameInputs& frame, int factor) {
   const auto floored = [&](int px) { return px / factor - (px % factor < 0 ? 1 : 0); };
   const ivec2 begin = frame.noise_origin;
@@ -66,7 +74,7 @@ GBuffer reconstruct(gpu::Recorder& gpu, const GBuffer& gbuffer) {
   return gbuffer;
 }
 
-GBuffer downsample(gpu::Recorder& gpu, const GBuffer& gbuffer, const BlockGrid& grid) {
+GBuffer downsample(gpu::Recorder& gpu, const GBuffer& gbuffer, const BlockGrid& grid, const std::string& prefix) {
   if (grid.factor == 1) return gbuffer;
   const auto factor = float(grid.factor);
   GBuffer low = gbuffer;
@@ -75,10 +83,11 @@ GBuffer downsample(gpu::Recorder& gpu, const GBuffer& gbuffer, const BlockGrid& 
   low.view.center = {(gbuffer.view.center.x + float(grid.overhang.x)) / factor,
                      (gbuffer.view.center.y + float(grid.overhang.y)) / factor};
   low.view.tangent_per_pixel = {gbuffer.view.tangent_per_pixel.x * factor, gbuffer.view.tangent_per_pixel.y * factor};
+  low.occluder_depth = low.occluder_hidden = nullptr;
   const uint hidden = gbuffer.surfaces - 1;
-  if (gbuffer.hidden) low.hidden = &gpu.buffer("low hidden", hidden * plane_bytes(low.view), gpu::Use::device);
-  low.depth = &gpu.buffer("low depth", plane_bytes(low.view), gpu::Use::device);
-  low.normal = &gpu.buffer("low normal", plane_bytes(low.view), gpu::Use::device);
+  if (gbuffer.hidden) low.hidden = &gpu.buffer(prefix + "low hidden", hidden * plane_bytes(low.view), gpu::Use::device);
+  low.depth = &gpu.buffer(prefix + "low depth", plane_bytes(low.view), gpu::Use::device);
+  low.normal = &gpu.buffer(prefix + "low normal", plane_bytes(low.view), gpu::Use::device);
   gpu.dispatch("downsample", DownsampleParams{gbuffer.view, grid.size, grid.overhang, hidden},
                {{kDownsampleDepth, *gbuffer.depth},
                 {kDownsampleNormal, *gbuffer.normal},
@@ -87,6 +96,14 @@ GBuffer downsample(gpu::Recorder& gpu, const GBuffer& gbuffer, const BlockGrid& 
                 {kDownsampleHidden, gbuffer.hidden ? *gbuffer.hidden : *gbuffer.depth},
                 {kDownsampleLowHidden, low.hidden ? *low.hidden : *low.depth}},
                extent_of(low.view), {uint(grid.factor)});
+  if (!gbuffer.occluder_depth) return low;
+  GBuffer blocking = gbuffer;
+  blocking.depth = gbuffer.occluder_depth;
+  blocking.hidden = gbuffer.occluder_hidden;
+  blocking.occluder_depth = blocking.occluder_hidden = nullptr;
+  const GBuffer low_blocking = downsample(gpu, blocking, grid, "occluder ");
+  low.occluder_depth = low_blocking.depth;
+  low.occluder_hidden = low_blocking.hidden;
   return low;
 }
 

@@ -42,10 +42,17 @@ struct GBuffer {
   gpu::Buffer* layer_counts = nullptr;  // one LayerCounts of layers.h; null as `hidden`
   gpu::Buffer* warped = nullptr;        // what other views show behind the first surface: see warp.h; null: nothing
   gpu::Buffer* view_counts = nullptr;   // one ViewCounts of warp.h; null as `warped`
-  gpu::Buffer* needed = nullptr;        // one uint per tile: whether its estimates are needed; null: all are
-  gpu::Buffer* counts = nullptr;        // one FrameCounts, for the host
-  gpu::Buffer* missing = nullptr;       // the GroupCount of reconstruct
+  // As `depth` and `hidden`, without what is no occluder: see occluders.comp; null: all are, see occluder_depth_of().
+  gpu::Buffer* occluder_depth = nullptr;
+  gpu::Buffer* occluder_hidden = nullptr;
+  gpu::Buffer* needed = nullptr;   // one uint per tile: whether its estimates are needed; null: all are
+  gpu::Buffer* counts = nullptr;   // one FrameCounts, for the host
+  gpu::Buffer* missing = nullptr;  // the GroupCount of reconstruct
 };
+
+/// The depth of the first surfaces that may block, and the planes of those behind them; null: there are none.
+const gpu::Buffer& occluder_depth_of(const GBuffer& gbuffer);
+const gpu::Buffer* occluder_hidden_of(const GBuffer& gbuffer);
 
 /// How much of each pixel wants AO.
 struct Matte {
@@ -60,7 +67,7 @@ GBuffer prepare(gpu::Recorder& gpu, const FrameInputs& frame, const std::string&
 /// Puts normals where prepare found none, and returns the same G-buffer.
 GBuffer reconstruct(gpu::Recorder& gpu, const GBuffer& gbuffer);
 
-/// Makes the G-buffer of the blocks of a grid, or returns the same one where each block is a pixel.
-GBuffer downsample(gpu::Recorder& gpu, const GBuffer& gbuffer, const BlockGrid& grid);
+/// Makes the G-buffer of the blocks of a grid, or returns the same one where each block is a pixel. `prefix`: as above.
+GBuffer downsample(gpu::Recorder& gpu, const GBuffer& gbuffer, const BlockGrid& grid, const std::string& prefix = "");
 
 }  // namespace alcove

@@ -22,20 +22,23 @@ uint form_of(MatteKind kind) {
 
 }  // namespace
 
-Matte matte(gpu::Recorder& gpu, const FrameInputs& frame) {
-  const gpu::Buffer* raw = frame[RawPlane::matte];
+Matte matte(gpu::Recorder& gpu, const FrameInputs& frame, RawPlane which) {
+  const gpu::Buffer* raw = frame[which];
   if (!raw) return {};
-  const auto& wanted = frame.matte.objects;
+  const bool is_of_receivers = which == RawPlane::matte;
+  const MatteReading& reading = is_of_receivers ? frame.matte : frame.occluders;
+  const std::string prefix = is_of_receivers ? "" : "occluder ";
+  const auto& wanted = reading.objects;
   gpu::Buffer& objects =
-      gpu.buffer("matte objects", std::max<std::size_t>(1, wanted.size()) * sizeof(uint), gpu::Use::upload);
+      gpu.buffer(prefix + "matte objects", std::max<std::size_t>(1, wanted.size()) * sizeof(uint), gpu::Use::upload);
   std::ranges::partial_sort_copy(wanted, objects.as<uint>());
   gpu.upload(objects);
-  gpu::Buffer& result = gpu.buffer("matte", plane_bytes(frame.view), gpu::Use::device);
-  const bool is_ranked = frame.matte.kind == MatteKind::ranked;
+  gpu::Buffer& result = gpu.buffer(prefix + "matte", plane_bytes(frame.view), gpu::Use::device);
+  const bool is_ranked = reading.kind == MatteKind::ranked;
   gpu.dispatch("matte", MatteParams{frame.view.size, uint(wanted.size())},
                {{kMatteRaw, *raw}, {kMatteObjects, objects}, {kMatteResult, result}}, extent_of(frame.view),
-               {form_of(frame.matte.kind), is_ranked ? planes_in(*raw, frame.view) / 2 : 1});
-  return {&result, frame.matte.outside};
+               {form_of(reading.kind), is_ranked ? planes_in(*raw, frame.view) / 2 : 1});
+  return {&result, reading.outside};
 }
 
 GBuffer needed(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& wide, const Matte& matte, int reach) {

@@ -6,8 +6,8 @@
 
 namespace alcove {
 
-/// The matte as one plane of coverage over the frame; none where the frame has none.
-Matte matte(gpu::Recorder& gpu, const FrameInputs& frame);
+/// A matte, or that of RawPlane::occluders, as one plane of coverage over the frame; none where the frame has none.
+Matte matte(gpu::Recorder& gpu, const FrameInputs& frame, RawPlane which = RawPlane::matte);
 
 /// The G-buffer with the tiles whose estimates anybody needs, who looks up to `reach` px of the frame beyond the matte;
 /// the same one where there is none. `wide` is the frame with its

@@ -87,8 +87,10 @@ LastFrame::Hashes LastFrame::hashes_of(const FrameInputs& frame, const Estimator
   for (const auto& terms : frame.behind) add(hashes.meaning, terms);
   add(hashes.meaning, frame.aov_from_view);
   for (const auto& other : frame.others) add(hashes.meaning, other);
-  add(hashes.meaning, std::uint32_t(frame.matte.kind), frame.matte.outside);
-  for (const std::uint32_t object : frame.matte.objects) add(hashes.meaning, object);
+  for (const auto* matte : {&frame.matte, &frame.occluders}) {
+    add(hashes.meaning, std::uint32_t(matte->kind), matte->outside, matte->ignores);
+    for (const std::uint32_t object : matte->objects) add(hashes.meaning, object);
+  }
   for (const auto* plane : frame.planes.entries) add(hashes.meaning, plane ? planes_in(*plane, frame.view) : 0u);
   if (settings.noise == Noise::animated) add(hashes.meaning, frame.frame);
   hashes.blocks.assign(std::size_t(blocks_of(frame.view).x) * std::size_t(blocks_of(frame.view).y), 0);

@@ -97,6 +97,15 @@ const AovNames kMatteNames{
     .alone = {{"y"}, {"a"}, {"alpha"}, {"r"}},
 };
 
+const AovNames kObjectNames{
+    .what = "numbers of objects",
+    .channel_option = "--object-channel",
+    .layers = {"indexob", "object index", "objectid", "object_id", "vrayobjectid", "id"},
+    .in_layer = {{"x"}, {"y"}, {"r"}},
+    .bare = {{"objectid"}, {"object_id"}, {"id"}},
+    .alone = {{"y"}, {"x"}, {"r"}},
+};
+
 namespace {
 
 /// Gives the name without the layer; nothing if it lies elsewhere. Without a layer it gives the name.

@@ -45,6 +45,7 @@ extern const AovNames kDiffuseColorNames;
 extern const AovNames kMaterialNames;
 extern const AovNames kAlbedoNames;
 extern const AovNames kMatteNames;
+extern const AovNames kObjectNames;
 
 /// A channel under its full name: in a file of several parts, the part's name stands for a layer where the channel does
 /// not repeat it.

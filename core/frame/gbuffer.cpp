@@ -249,6 +249,7 @@ FrameSource find_frame(const InputSettings& settings, bool with_beauty, int fram
   if (with_albedo) find_albedo(source, search, beauty_path, settings);
   find_material(source, search, settings);
   find_matte(source, search, settings);
+  find_occluders(source, search, settings);
   find_behind(source, search, settings);
   find_deep(source, search, settings);
 

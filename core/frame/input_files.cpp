@@ -19,6 +19,11 @@ bool wants_matte(const InputSettings& settings) {
   return !settings.matte.empty() || !settings.matte_channel.empty() || !settings.matte_object.empty();
 }
 
+bool chooses_occluders(const InputSettings& settings) {
+  return !settings.occluders.empty() || !settings.occluder_objects.empty() || !settings.ignore.empty() ||
+         !settings.ignored_objects.empty();
+}
+
 bool has_hidden_sources(const InputSettings& settings) {
   const bool has_files = settings.behind != FileList{} || !settings.deep.empty();
   return has_files || settings.around > 0 || settings.around_all || settings.other_views;

@@ -18,6 +18,9 @@ bool wants_normals(const InputSettings& settings);
 /// Whether AO is wanted in parts of the frame only.
 bool wants_matte(const InputSettings& settings);
 
+/// Whether some surfaces are no occluders.
+bool chooses_occluders(const InputSettings& settings);
+
 /// Whether anything is named that may show more than the first surface of each pixel.
 bool has_hidden_sources(const InputSettings& settings);
 

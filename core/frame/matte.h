@@ -1,4 +1,4 @@
-// Where AO is wanted: finds the planes of --matte, and what they mean.
+// Where AO is wanted, and what makes it: finds the planes of --matte, --occluders and --ignore, and what they mean.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -12,5 +12,9 @@ namespace alcove {
 /// are its numbers. Fails with ErrorKind::input, naming the file and what it has, where nothing is found, and where
 /// the matte has another window than the depth.
 void find_matte(FrameSource& source, ChannelSearch& search, const InputSettings& settings);
+
+/// Finds what tells occluders from the rest, where the settings ask for it: a file of coverage; or objects, in --objects
+/// or else in INPUT, as above, where numbers need no --object-channel if it has a usual name. Fails alike.
+void find_occluders(FrameSource& source, ChannelSearch& search, const InputSettings& settings);
 
 }  // namespace alcove

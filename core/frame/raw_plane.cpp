@@ -7,7 +7,7 @@ namespace alcove {
 std::vector<FileOption> plane_file_options() {
   std::vector<FileOption> options{{"INPUT", &InputSettings::input}};
   for (const auto& row : kRawPlanes)
-    for (const FileOption& file : {row.file, row.other_file})
+    for (const FileOption& file : {row.file, row.other_file, row.third_file})
       if (file.path)
         options.push_back(file);
       else if (file.list)

@@ -12,7 +12,7 @@
 namespace alcove {
 
 /// A plane may have several components: depth may be a position's x, y, z.
-enum class RawPlane { depth, normal, behind, beauty, indirect, diffuse_color, material_ao, albedo, matte };
+enum class RawPlane { depth, normal, behind, beauty, indirect, diffuse_color, material_ao, albedo, matte, occluders };
 
 /// Whether an estimate is made from a plane, whether the plane only colours or dims it afterwards, or whether it says
 /// where there is to be one.
@@ -45,6 +45,7 @@ struct RawPlaneFacts {
   PlaneContent content;
   FileOption file;             // null: it lies in the beauty's file
   FileOption other_file = {};  // null: there is no second option for it
+  FileOption third_file = {};  // the same
 };
 
 inline constexpr std::array kRawPlanes{
@@ -104,6 +105,14 @@ inline constexpr std::array kRawPlanes{
                   .most = kMostMattePlanes,
                   .content = PlaneContent::selection,
                   .file = {"--matte", &InputSettings::matte}},
+    RawPlaneFacts{.plane = RawPlane::occluders,
+                  .name = "raw occluders",
+                  .least = 1,
+                  .most = kMostMattePlanes,
+                  .content = PlaneContent::geometry,
+                  .file = {"--occluders", &InputSettings::occluders},
+                  .other_file = {"--ignore", &InputSettings::ignore},
+                  .third_file = {"--objects", &InputSettings::objects}},
 };
 
 /// One entry for each plane.

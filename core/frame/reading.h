@@ -49,11 +49,12 @@ enum class MatteKind {
   objects,   // the object of each pixel
   ranked,    // of Cryptomatte: an object and its coverage, and again for each further rank
 };
-/// How the planes of RawPlane::matte are read.
+/// How the planes of RawPlane::matte are read, or those of RawPlane::occluders.
 struct MatteReading {
   MatteKind kind = MatteKind::coverage;
   std::vector<std::uint32_t> objects = {};  // those that are meant, by the bits of their floats
   double outside = 1;                       // the AO where it takes nothing, 0 to 1
+  bool ignores = false;                     // of occluders: what it takes is none; else all others are none
 };
 
 /// The meaning of one frame, with its windows and its camera.
@@ -66,7 +67,7 @@ struct Reading : Meaning {
   double sky = 1e9;                 // depth at or beyond it is sky, in the file's units
   bool depth_is_half = false;       // the depth values were rounded to half floats
   std::vector<BehindPlane> behind;  // of the planes of RawPlane::behind, one for each
-  MatteReading matte;
+  MatteReading matte, occluders;
 };
 
 /// Takes over the meaning of another frame of the sequence. The clip planes stay this frame's own, as its own camera

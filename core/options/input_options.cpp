@@ -84,9 +84,61 @@ Condition for_beauty() {
           true};
 }
 
+/// Whether a text names a picture file rather than objects.
+bool is_picture(const std::string& text) {
+  const auto dot = text.rfind('.');
+  if (dot == text.npos || text.find(',') != text.npos) return false;
+  const std::string ending = lower_case(text.substr(dot + 1));
+  return std::ranges::any_of(std::array{"exr", "dds", "png", "tif", "tiff", "tga", "bmp", "hdr"},
+                             [&](const char* known) { return ending == known; });
+}
+
+Condition with_objects() {
+  return with_option("names or numbers for --occluders or --ignore", [](const Settings& all) {
+    return !all.input.occluder_objects.empty() || !all.input.ignored_objects.empty();
+  });
+}
+
 Condition with_matte() {
   return with_option("--matte, --matte-channel or --matte-object",
                      [](const Settings& all) { return wants_matte(all.input); });
+}
+
+/// A row of a text that is a file, or else names objects.
+OptionRow& file_or_objects(OptionGroup& group, const char* option, std::string& file, std::string& objects,
+                           const char* help) {
+  return group.own(
+      {option, "FILE|NAME[,NAME...]", "", "", help}, [&] { return file.empty() ? objects : file; },
+      [&](const std::string& text) {
+        file = is_picture(text) ? text : "";
+        objects = is_picture(text) ? "" : text;
+        return true;
+      },
+      "");
+}
+
+void add_occluder_rows(std::vector<OptionRow>& rows, InputSettings& s) {
+  OptionGroup choice(rows, "Input", Effect::pixels_or_input);
+  const char* reason = "what they show behind an object may be the object itself";
+  file_or_objects(
+      choice, "--occluders", s.occluders, s.occluder_objects,
+      "only these block: as coverage from 0 to 1, an EXR or another picture; or objects, as in --matte-object")
+      .contradicts({"--ignore"}, "each says what blocks")
+      .contradicts({"--around", "--other-views"}, reason);
+  file_or_objects(
+      choice, "--ignore", s.ignore, s.ignored_objects,
+      "these do not block, and what is behind them does where --behind or --deep show it; else as --occluders")
+      .contradicts({"--around", "--other-views"}, reason);
+  OptionGroup inputs(rows, "Input", Effect::input);
+  inputs
+      .text("--objects", s.objects, "FILE",
+            "an EXR whose Cryptomatte or numbers tell the objects of --occluders and --ignore; else INPUT")
+      .applies(with_objects());
+  OptionGroup pixels(rows, "Input", Effect::pixels);
+  pixels
+      .text("--object-channel", s.object_channel, "NAME",
+            "the channel of their numbers, else found by its usual names; or the layer of a Cryptomatte")
+      .applies(with_objects());
 }
 
 void add_file_rows(std::vector<OptionRow>& rows, InputSettings& s) {
@@ -105,6 +157,7 @@ void add_file_rows(std::vector<OptionRow>& rows, InputSettings& s) {
   inputs.text("--material-ao", s.material_ao, "FILE", "an EXR of the materials' own AO, multiplied in");
   inputs.text("--matte", s.matte, "FILE",
               "where AO is wanted, as coverage from 0 to 1, an EXR or another picture; nothing is estimated elsewhere");
+  add_occluder_rows(rows, s);
   OptionGroup(rows, "Input", Effect::pixels_or_input)
       .own(
           {"--albedo", "FILE|NUMBER", "", "0 to 1",

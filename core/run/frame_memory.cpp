@@ -98,6 +98,16 @@ std::size_t margin_planes(const FrameSource& source, const Settings& settings, s
   return kWide + kCutNormal + estimated + cut_aovs + std::size_t(settings.estimator.hidden);
 }
 
+/// Planes of what tells occluders from the rest: their matte, their depth and what is hidden behind it, at full
+/// resolution and at that of the estimate, and once more for the confidence.
+std::size_t occluder_planes(const FrameSource& source, const Settings& settings) {
+  if (source[RawPlane::occluders].empty()) return 0;
+  const std::size_t planes = 1 + (source[RawPlane::behind].empty() ? 0 : std::size_t(settings.estimator.hidden));
+  const bool is_low = settings.estimator.resolution != Resolution::full;
+  // The blocks of a low resolution have at most a quarter of the pixels, and normals that nobody reads.
+  return 1 + planes * (wants(settings.output, &FrameOutputs::confidence) ? 2 : 1) + (is_low ? planes + 1 : 0);
+}
+
 /// Planes of the frame's resolution, beside those that are read.
 std::size_t frame_planes(const FrameSource& source, const Settings& settings, std::size_t estimated) {
   const auto& e = settings.estimator;
@@ -107,6 +117,7 @@ std::size_t frame_planes(const FrameSource& source, const Settings& settings, st
   const bool has_matte = !source[RawPlane::matte].empty();
   planes += shapes(e) || has_matte || !source[RawPlane::material_ao].empty() ? 1 + scales : 0;
   planes += has_matte ? 1 : 0;
+  planes += occluder_planes(source, settings);
   planes += needs_bent(e, o) ? 1 : 0;
   // thin, solid and perhaps completed: estimates, rows, columns
   planes += wants(o, &FrameOutputs::confidence) ? (completes_anywhere(e) ? 3 : 2) * 3 : 0;

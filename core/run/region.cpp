@@ -12,6 +12,7 @@
 #include "core/frame/evidence.h"
 #include "core/frame/settle.h"
 #include "kernels/ends.h"
+#include "kernels/occluders.h"
 #include "kernels/profile.h"
 
 namespace alcove {
@@ -52,11 +53,13 @@ int line_reach(const EstimatorSettings& settings) {
   return searches_exactly(settings) ? int(settings.resolution) * (kProfileRestart + 2) : 0;
 }
 
-/// How far from a surface it is told which one closes its solid, in px; 0 where nothing is to be told.
+/// How far from a surface it is told which one closes its solid, and whether it is an occluder, in px; 0 where nothing
+/// is to be told.
 int pair_reach(const FrameSource& source, const EstimatorSettings& settings) {
   const bool tells =
       std::ranges::any_of(source.behind, [](const BehindPlane& plane) { return plane.kind == BehindKind::surfaces; });
-  return tells && settings.hidden > 0 ? kEndsReach + kEndsBeyond : 0;
+  const int occluders = source[RawPlane::occluders].empty() ? 0 : kOccludersReach;
+  return occluders + (tells && settings.hidden > 0 ? kEndsReach + kEndsBeyond : 0);
 }
 
 /// The width, in radii, from which a run that begins within reach of a receiver is as good as endless. It is more than

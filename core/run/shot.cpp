@@ -38,7 +38,9 @@ InputSettings of_first_surface(InputSettings input, const FrameSource* settled) 
   if (settled && !has_deep_depth(*settled)) input.deep.clear();
   input.material_ao.clear();
   input.material_ao_channel.clear();
-  for (std::string* matte : {&input.matte, &input.matte_channel, &input.matte_object}) matte->clear();
+  for (std::string* matte : {&input.matte, &input.matte_channel, &input.matte_object, &input.occluders,
+                             &input.occluder_objects, &input.ignore, &input.ignored_objects})
+    matte->clear();
   input.roi.reset();
   return input;
 }

@@ -1,0 +1,35 @@
+// Host side of occluders.comp.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/chain/occluders.h"
+
+#include "core/chain/matte.h"
+#include "core/chain/pass_common.h"
+#include "kernels/occluders.h"
+
+namespace alcove {
+
+GBuffer occluders(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame, Unknown unknown) {
+  const gpu::Buffer* counted = matte(gpu, frame, RawPlane::occluders).plane;
+  if (!counted) return gbuffer;
+  const View& view = gbuffer.view;
+  const bool keeps = unknown == Unknown::blocked;
+  const std::string prefix = keeps ? "bracket " : "";
+  const uint hidden = gbuffer.surfaces - 1;
+  GBuffer result = gbuffer;
+  result.occluder_depth = &gpu.buffer(prefix + "occluder depth", plane_bytes(view), gpu::Use::device);
+  if (hidden > 0)
+    result.occluder_hidden = &gpu.buffer(prefix + "occluder hidden", hidden * plane_bytes(view), gpu::Use::device);
+  const OccludersParams params{view, frame.occluders.ignores ? 1u : 0u, keeps ? 1u : 0u,
+                               gbuffer.hides_no_more ? 1u : 0u};
+  gpu.dispatch("occluders", params,
+               {{kOccludersDepth, *gbuffer.depth},
+                {kOccludersNormal, *gbuffer.normal},
+                {kOccludersMatte, *counted},
+                {kOccludersHidden, hidden > 0 ? *gbuffer.hidden : *gbuffer.depth},
+                {kOccludersResult, *result.occluder_depth},
+                {kOccludersBehind, hidden > 0 ? *result.occluder_hidden : *result.occluder_depth}},
+               extent_of(view), {hidden});
+  return result;
+}
+
+}  // namespace alcove
