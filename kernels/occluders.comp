@@ -29,9 +29,10 @@ const float kAlone = 0.98;
 
 /// Whether the matte takes the surface that a pixel's depth is of.
 bool is_taken(ivec2 pixel, float z) {
-  const float own = matte[index_of(params.view, pixel)];
+  const int own_index = index_of(params.view, pixel);
+  const float own = matte[own_index];
   if (own >= kAlone || own <= 1.0 - kAlone) return own >= 0.5;
-  const vec3 position = position_of(params.view, vec2(pixel) + 0.5, z), n = unpack_normal(normal[index_of(params.view, pixel)]);
+  const vec3 position = position_of(params.view, vec2(pixel) + 0.5, z), n = unpack_normal(normal[own_index]);
   bool taken = own >= 0.5;
   float least = kSkyDepth;
   for (int y = -kOccludersReach; y <= kOccludersReach; y++)

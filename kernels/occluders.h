@@ -18,9 +18,9 @@ ALCOVE_CONSTANT int kOccludersReach = 2;
 
 struct OccludersParams {
   View view;
-  uint ignores;      // 1: what the matte takes is no occluder; 0: what it does not take
-  uint keeps;        // 1: where nothing is known behind such a surface, it stays
-  uint lists_all;    // 1: a pixel with fewer hidden surfaces has no more: see GBuffer::hides_no_more
+  uint ignores;    // 1: what the matte takes is no occluder; 0: what it does not take
+  uint keeps;      // 1: where nothing is known behind such a surface, it stays
+  uint lists_all;  // 1: a pixel with fewer hidden surfaces has no more: see GBuffer::hides_no_more
 };
 ALCOVE_PARAMS(OccludersParams)
 

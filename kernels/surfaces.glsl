@@ -5,8 +5,8 @@
 // back of a column, then the first again. One that closes a solid is the exact back of the one before it, and by itself
 // as thin as a sheet.
 //
-// The kernel has declared its buffers `occluder_depth` and `hidden`, how many surfaces a pixel has at most, kSurfaces, and how
-// it makes a sample of a surface, surface_at(). To be included after pieces.glsl.
+// The kernel has declared its buffers `occluder_depth` and `hidden`, how many surfaces a pixel has at most, kSurfaces,
+// and how it makes a sample of a surface, surface_at(). To be included after pieces.glsl.
 
 #include "layers.h"
 

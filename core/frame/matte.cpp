@@ -102,8 +102,8 @@ bool has_layer(const std::vector<Cryptomatte>& mattes, const std::string& layer)
   return std::ranges::any_of(mattes, [&](const Cryptomatte& matte) { return matte.name == layer; });
 }
 
-/// Finds the objects that are occluders, or are none: by the Cryptomatte of the file, or by its channel of numbers, where
-/// the settings name it or all objects are numbers.
+/// Finds the objects that are occluders, or are none: by the Cryptomatte of the file, or by its channel of numbers,
+/// where the settings name it or all objects are numbers.
 void find_objects(FrameSource& source, ChannelSearch& search, std::size_t file, const Objects& meant, bool own_file) {
   const std::string& path = source.files[file].path();
   const auto mattes = cryptomattes_of(source.files[file]);

@@ -13,8 +13,8 @@ namespace alcove {
 /// the matte has another window than the depth.
 void find_matte(FrameSource& source, ChannelSearch& search, const InputSettings& settings);
 
-/// Finds what tells occluders from the rest, where the settings ask for it: a file of coverage; or objects, in --objects
-/// or else in INPUT, as above, where numbers need no --object-channel if it has a usual name. Fails alike.
+/// Finds what tells occluders from the rest, where the settings ask for it: a file of coverage; or objects, in
+/// --objects or else in INPUT, as above, where numbers need no --object-channel if it has a usual name. Fails alike.
 void find_occluders(FrameSource& source, ChannelSearch& search, const InputSettings& settings);
 
 }  // namespace alcove

@@ -74,6 +74,8 @@ const std::map<std::string, ConditionCase>& condition_cases() {
         {"--behind-kind", "backs", "--behind", "a.exr", "--behind", "b.exr"}}},
       {"--deep-opacity", {{{"--deep-opacity", "0.2"}}, {"--deep-opacity", "0.2", "--deep", "d.exr"}}},
       {"--matte-outside", {{{"--matte-outside", "0.5"}}, {"--matte-outside", "0.5", "--matte-object", "Hero"}}},
+      {"--objects", {{{"--objects", "o.exr", "--ignore", "a.exr"}}, {"--objects", "o.exr", "--ignore", "Hero"}}},
+      {"--object-channel", {{{"--object-channel", "Id"}}, {"--object-channel", "Id", "--occluders", "3"}}},
       {"--motion",
        {{{"--motion", "m.exr"}, {"--motion", "m.exr", "--around", "0"}}, {"--motion", "m.exr", "--around", "2"}}},
       {"--motion-channels", {{{"--motion-channels", "U,V"}}, {"--motion-channels", "U,V", "--around", "all"}}},
@@ -148,6 +150,8 @@ const std::map<std::string, Words>& contradicting_values() {
       {"--denoise-radius", {"3"}}, {"--skip-tolerance", {"0.01"}},
       {"--no-skip", {"true"}},     {"--quiet", {"true"}},
       {"--verbose", {"true"}},     {"--progress", {"plain"}},
+      {"--occluders", {"Hero"}},   {"--ignore", {"Set*"}},
+      {"--around", {"2"}},         {"--other-views", {"true"}},
   };
   return values;
 }

@@ -61,9 +61,7 @@ class Occluders : public CommandLine {
     set_matte(is_board);
   }
 
-  void set_matte(const Plane& matte) const {
-    FrameFile{kWindow, kWindow, 1, {{"Y", matte}}, {}, {}}.write(board);
-  }
+  void set_matte(const Plane& matte) const { FrameFile{kWindow, kWindow, 1, {{"Y", matte}}, {}, {}}.write(board); }
 
   Plane ao_of(const FrameFile& of, const Options& more) const {
     of.write(frame);
@@ -184,8 +182,8 @@ TEST_F(Occluders, take_their_backs_with_them) {
   Plane back = file.planes["Behind.Z"];
   for (float& z : back) z = z < 1e9F ? kBoard + 0.3F : 1e10F;
   file.planes["Back.Z"] = back;
-  const Options backs{"--behind", frame,           "--behind-channel", "Behind.Z", "--behind-kind", "fronts",
-                      "--behind", frame,           "--behind-channel", "Back.Z",   "--behind-kind", "backs",
+  const Options backs{"--behind", frame, "--behind-channel", "Behind.Z", "--behind-kind", "fronts",
+                      "--behind", frame, "--behind-channel", "Back.Z",   "--behind-kind", "backs",
                       "--ignore", board};
   const Plane without = ao_of(empty, {});
   EXPECT_LT(beside_board(ao_of(backs), without, 24).max, 0.02);
@@ -229,13 +227,12 @@ TEST_F(Occluders, are_named_by_numbers_or_as_in_a_cryptomatte) {
   expect_error(file, 3, {"--ignore", folder / "small.exr"}, {"small.exr", "--ignore", "10x10"});
 }
 
-TEST_F(Occluders, of_a_region_and_of_tiles_are_those_of_the_whole_frame) {
+TEST_F(Occluders, of_a_region_are_those_of_the_whole_frame) {
   for (const Options& search : {Options(), Options{"--resolution", "half"}, Options{"--search", "exact"}}) {
     const Options ignoring = joined(joined(search, behind), {"--ignore", board});
     const Plane whole = ao_of(ignoring);
-    EXPECT_EQ(difference(ao_of(joined(ignoring, {"--roi", "170,90,60,50"})), cropped(whole, kWindow, {170, 90, 60, 50})).max,
-              0)
-        << testing::PrintToString(search);
+    const Plane part = ao_of(joined(ignoring, {"--roi", "170,90,60,50"}));
+    EXPECT_EQ(part, cropped(whole, kWindow, {170, 90, 60, 50})) << testing::PrintToString(search);
   }
 }
 
@@ -251,9 +248,9 @@ TEST_F(Occluders, that_change_along_a_sequence_are_each_frame_s_own) {
     std::filesystem::copy_file(board, fmt::format("{}/matte.{:04}.exr", folder.path(), i + 1));
   }
   EXPECT_NE(alone[0], alone[1]);
-  const Finished finished = run_program({"run", folder / "shot.####.exr", "-o", folder / "out.####.exr", "--camera",
-                                         camera, "--radius", "1", "--type", "float", "--threads", "1", "--ignore",
-                                         folder / "matte.####.exr"});
+  const Finished finished =
+      run_program({"run", folder / "shot.####.exr", "-o", folder / "out.####.exr", "--camera", camera, "--radius", "1",
+                   "--type", "float", "--threads", "1", "--ignore", folder / "matte.####.exr"});
   ASSERT_EQ(finished.code, 0) << finished;
   for (std::size_t i = 0; i < mattes.size(); i++)
     EXPECT_EQ(read_exr_image(fmt::format("{}/out.{:04}.exr", folder.path(), i + 1)).pixels, alone[i]) << i;
