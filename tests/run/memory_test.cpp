@@ -146,6 +146,23 @@ TEST_F(Memory, is_expected_of_what_is_hidden) {
   EXPECT_EQ(bytes_of(settings).expected, without.expected) << "none is kept";
 }
 
+TEST_F(Memory, is_expected_of_what_tells_occluders_from_the_rest) {
+  Settings settings = all;
+  FrameFile{window, window, 1, {{"Y", std::vector<float>(window.pixels(), 1)}}, {}, {}}.write(folder / "matte.exr");
+  FrameFile{window, window, 1, {{"Z", std::vector<float>(window.pixels(), 9)}}, {}, {}}.write(folder / "layer.exr");
+  const Bytes without = bytes_of(settings);
+  settings.input.ignore = folder / "matte.exr";
+  const Bytes with = bytes_of(settings);
+  // the matte as read and as made, and the depth of what may block
+  EXPECT_GE(with.taken - without.taken, 3 * sizeof(float));
+  EXPECT_LE(with.taken - without.taken, with.expected - without.expected + 1);
+  settings.output.aovs = "ao,confidence";
+  expect_enough(settings, "with the confidence");
+  settings.input.behind = {folder / "layer.exr"};
+  settings.estimator.resolution = Resolution::half;
+  expect_enough(settings, "and at half the resolution, with hidden surfaces");
+}
+
 TEST_F(Memory, is_expected_of_what_others_show) {
   Settings settings = all;
   settings.input.around = 1;
