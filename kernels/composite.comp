@@ -1,13 +1,15 @@
-// Puts AO into a beauty: beauty - D + D f where the ambient part D is known, beauty x f where it is not.
+// Puts AO into a beauty: into its ambient lights where they are known, else into all of it.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// In: visibility (one, or one per colour), beauty, the parts of D, planar depth where there is fog.
+// In: visibility (one, or one per colour), beauty, the ambient lights and the colours of some, planar depth where there
+// is fog.
 // Out: colour; alpha as it was.
 //
-// f = 1 - alpha t (1 - ao): a pixel at an edge is part background, which the AO of the surface must not dim. The
-// difference form keeps all other light as it is, even where the passes do not sum to the beauty exactly. t =
-// exp(-density distance) is how much of the surface's light comes through the fog that the beauty shows (Beer and
-// Lambert's law): the fog before a surface is not in its corners.
+// beauty - D o (1 - tint), where D is the sum of weight x light x colour, or the beauty, and o = mix alpha t
+// min(gain (1 - ao), 1) is the occlusion. A pixel at an edge is part background, which the AO of the surface must not
+// dim: so alpha. The difference form keeps all other light as it is, even where the passes do not sum to the beauty
+// exactly. t = exp(-density distance) is how much of the surface's light comes through the fog that the beauty shows
+// (Beer and Lambert's law): the fog before a surface is not in its corners.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "composite.h"
@@ -18,8 +20,9 @@ layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 layout(scalar, push_constant) uniform Push { CompositeParams params; };
 layout(scalar, binding = kCompositeAo) readonly buffer Ao { float ao[]; };
 layout(scalar, binding = kCompositeBeauty) readonly buffer Beauty { float beauty[]; };
-layout(scalar, binding = kCompositeIndirect) readonly buffer Indirect { float indirect[]; };
-layout(scalar, binding = kCompositeDiffuseColor) readonly buffer DiffuseColor { float diffuse_color[]; };
+layout(scalar, binding = kCompositeLight) readonly buffer Light { float light[]; };
+layout(scalar, binding = kCompositeColor) readonly buffer Color { float light_color[]; };
+layout(scalar, binding = kCompositeLights) readonly buffer Lights { AmbientLight lights[]; };
 layout(scalar, binding = kCompositeResult) writeonly buffer Result { float result[]; };
 layout(scalar, binding = kCompositeDepth) readonly buffer Depth { float depth[]; };
 layout(scalar, binding = kCompositeCounts) buffer Counts { FrameCounts counts; };
@@ -31,6 +34,19 @@ float sane(float x) {
   if (is_finite(x)) return x;
   broken = true;
   return 0.0;
+}
+
+/// The light of a colour that AO may dim.
+float ambient_at(int index, int component, int plane, float beauty_color) {
+  if (params.lights == 0u) return beauty_color;
+  float sum = 0.0;
+  for (uint k = 0u; k < params.lights; k++) {
+    const int at = index + (3 * int(k) + component) * plane;
+    const int color = lights[k].color;
+    const float of_color = color < 0 ? 1.0 : light_color[index + (3 * color + component) * plane];
+    sum += lights[k].weight * sane(light[at] * of_color);
+  }
+  return sum;
 }
 
 void main() {
@@ -47,9 +63,10 @@ void main() {
   for (int c = 0; c < 3; c++) {
     const int i = index + c * plane;
     const float color = sane(beauty[i]);
-    float ambient = color;
-    if (params.has_ambient != 0) ambient = sane(indirect[i] * (params.has_diffuse_color != 0 ? diffuse_color[i] : 1.0));
-    result[i] = sane(color - ambient * surface * (1.0 - ao[params.has_color != 0 ? i : index]));
+    const float ambient = ambient_at(index, c, plane, color);
+    const float visible = ao[params.has_color != 0 ? i : index];
+    const float occlusion = params.mix * clamp(params.gain * (1.0 - visible), 0.0, 1.0);
+    result[i] = sane(color - ambient * surface * occlusion * (1.0 - params.tint[c]));
   }
   if (broken) atomicAdd(counts.repaired_beauty, 1u);
 }

@@ -33,6 +33,8 @@ struct InputSettings {
   std::string depth_channel;                    // a channel's full name; empty: found by its usual names
   // three names with commas, or a layer; empty: found. Normals may have two
   std::string normal_channels, beauty_channels, position_channels;
+  // the light that AO may dim, see core/frame/ambient.h; empty: found
+  std::string ambient;
   // the materials' own AO: a file, empty: the input, where a channel is named; its full name, empty: found
   std::string material_ao, material_ao_channel;
   // where AO is wanted: the same, and what of it, see core/frame/matte.h; the AO elsewhere, 0 to 1

@@ -2,11 +2,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <string>
 
 #include "core/base/setting_words.h"
 
 namespace alcove {
+
+/// How AO goes into the beauty: see composite.comp.
+struct CompositeLook {
+  // 1 / scene units, >= 0: of the exponential fog in the beauty, which hides AO
+  double fog_density = 0;
+  double gain = 1;                      // factor on the occlusion, 0 to 100
+  std::array<double, 3> tint{0, 0, 0};  // what occlusion makes of white light, each 0 to 1
+  double mix = 1;                       // of the composite and the beauty, 0 to 1
+};
 
 /// What to write.
 struct OutputSettings {
@@ -21,8 +31,14 @@ struct OutputSettings {
   NormalSpace aov_space = NormalSpace::automatic;
   // light thrown back by the occluders brightens the rgb AO, and the composite's ambient light
   bool multi_bounce = false;
-  // 1 / scene units, >= 0: of the exponential fog in the beauty, which hides AO from the composite
-  double fog_density = 0;
+  CompositeLook look;
+  // all: the composite is the beauty's file with another beauty; rgba: R, G, B and A alone
+  std::string composite_layers = "all";
+  // of the beauty in the composite, as that of ExrOutput; keep: as the file has it, or zip if that loses bits
+  std::string composite_compression = "keep";
+  std::string append_ao;  // a channel of the composite that the AO becomes, or its layer; empty: none
+  // of the AO in `output`: its channel, or with rgb its layer; empty: Y, or R, G, B
+  std::string ao_name;
   // names of core/chain/debug_view.h with commas: a picture of each beside `output`
   std::string debug;
   OutputType type = OutputType::half_float;  // of all channels of `output` but depth, which is float

@@ -33,8 +33,10 @@ std::vector<Aov> aovs_of(const OutputSettings& settings) {
            list_of(aov_names()));
     if (std::ranges::find(aovs, name, &Aov::name) != aovs.end()) continue;
     aovs.push_back({name, split(row->channels), row->planes, row->source, row->is_float});
+    if (name == "ao" && !settings.ao_name.empty()) aovs.back().channels = {settings.ao_name};
     if (name != "ao" || settings.ao_channels == AoChannels::mono) continue;
-    aovs.back().channels = {"R", "G", "B"};
+    const std::string layer = settings.ao_name.empty() ? "" : settings.ao_name + ".";
+    aovs.back().channels = {layer + "R", layer + "G", layer + "B"};
     if (settings.multi_bounce) aovs.back().planes = &FrameOutputs::color_ao;
   }
   return aovs;
@@ -63,7 +65,7 @@ Wanted::Wanted(const OutputSettings& settings)
     : aovs(aovs_of(settings)),
       debug_views(debug_views_of(settings)),
       multi_bounce(settings.multi_bounce),
-      fog_density(settings.fog_density) {
+      look(settings.look) {
   const auto is_at_least = [](AovSource source) { return [source](const Aov& aov) { return aov.source >= source; }; };
   const auto shows_completed = [](const DebugView* view) { return view->source == DebugSource::completed; };
   completed = !settings.stats.empty() || std::ranges::any_of(debug_views, shows_completed);

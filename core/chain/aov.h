@@ -51,7 +51,7 @@ struct Wanted {
   bool open_directions = false;  // what is made from them, of an estimator that finds them
   bool completed = false;        // what completed surfaces took of the visibility
   bool multi_bounce = false;
-  double fog_density = 0;  // 1 / scene units
+  CompositeLook look;
 };
 
 /// Whether any output is AO or made from it.

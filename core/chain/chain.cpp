@@ -87,7 +87,7 @@ FrameOutputs run_chain(gpu::Recorder& gpu, const FrameInputs& frame, const Estim
     out.specular_occlusion = &specular_occlusion(gpu, gbuffer, *open_directions, *visibility.ao, settings.roughness);
   if (wanted.multi_bounce) out.color_ao = &multi_bounce(gpu, gbuffer, *visibility.ao, frame);
   if (frame[RawPlane::beauty])
-    out.composite = &composite(gpu, gbuffer, *(out.color_ao ? out.color_ao : visibility.ao), frame, wanted.fog_density);
+    out.composite = &composite(gpu, gbuffer, *(out.color_ao ? out.color_ao : visibility.ao), frame, wanted.look);
   for (const auto* view : wanted.debug_views) out.debug.push_back(debug(gpu, *view, gbuffer, stages, frame));
   download(gpu, out);
   return out;

@@ -65,6 +65,7 @@ FrameInputs inputs_of(const Reading& reading, const RawPlaneArray<gpu::Buffer*>&
   inputs.behind_lists_all = list_all(reading.behind);
   inputs.matte = reading.matte;
   inputs.occluders = reading.occluders;
+  inputs.ambient = reading.ambient;
   inputs.is_sky = is_all_sky(inputs.depth_map, planes[RawPlane::depth]->as<const float>());
   return inputs;
 }

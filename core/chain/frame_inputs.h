@@ -36,17 +36,18 @@ struct FrameInputs {
   ivec2 noise_origin{};  // px: the data window's corner, so that a crop has the noise of the whole
   int frame = 0;
   DepthMap depth_map;
-  DepthPrecision depth_precision{};   // of the planar depth that it gives
-  DepthPrecision hidden_precision{};  // of the least precise of it and of what lies behind
-  PrepareParams prepare{};            // the meaning of depth and normals, as prepare.comp takes it
-  uint normal_form = kNormalNone;     // of kernels/prepare.h
-  std::vector<LayerTerms> behind;     // of each plane of RawPlane::behind
-  bool behind_lists_all = false;      // see list_all()
-  std::vector<OtherView> others;      // in any order: what they see behind the first surface counts as hidden
-  Margin margin{};                    // where others show what lies around the frame; see margin.h
-  MatteReading matte;                 // how its planes are read
-  MatteReading occluders;             // the same of RawPlane::occluders
-  double albedo_value = 0;            // for multi-bounce where there are no planes of it
+  DepthPrecision depth_precision{};     // of the planar depth that it gives
+  DepthPrecision hidden_precision{};    // of the least precise of it and of what lies behind
+  PrepareParams prepare{};              // the meaning of depth and normals, as prepare.comp takes it
+  uint normal_form = kNormalNone;       // of kernels/prepare.h
+  std::vector<LayerTerms> behind;       // of each plane of RawPlane::behind
+  bool behind_lists_all = false;        // see list_all()
+  std::vector<OtherView> others;        // in any order: what they see behind the first surface counts as hidden
+  Margin margin{};                      // where others show what lies around the frame; see margin.h
+  MatteReading matte;                   // how its planes are read
+  MatteReading occluders;               // the same of RawPlane::occluders
+  std::vector<AmbientReading> ambient;  // how those of RawPlane::indirect are read
+  double albedo_value = 0;              // for multi-bounce where there are no planes of it
   Matrix3 aov_from_view{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};  // rotation to the space of the directions that are written
   bool is_sky = false;  // no pixel shows a surface, and none had to be repaired for that
   // how the blocks differ from the frame before, whose estimate the buffers still hold: see classify.h; null: the

@@ -91,6 +91,7 @@ LastFrame::Hashes LastFrame::hashes_of(const FrameInputs& frame, const Estimator
     add(hashes.meaning, std::uint32_t(matte->kind), matte->outside, matte->ignores);
     for (const std::uint32_t object : matte->objects) add(hashes.meaning, object);
   }
+  for (const auto& light : frame.ambient) add(hashes.colors, light.weight, light.color);
   for (const auto* plane : frame.planes.entries) add(hashes.meaning, plane ? planes_in(*plane, frame.view) : 0u);
   if (settings.noise == Noise::animated) add(hashes.meaning, frame.frame);
   hashes.blocks.assign(std::size_t(blocks_of(frame.view).x) * std::size_t(blocks_of(frame.view).y), 0);

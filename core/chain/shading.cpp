@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/chain/shading.h"
 
+#include <algorithm>
+
 #include "core/chain/pass_common.h"
 #include "kernels/bent_normal.h"
 #include "kernels/composite.h"
@@ -95,23 +97,32 @@ gpu::Buffer& multi_bounce(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu:
 }
 
 gpu::Buffer& composite(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& ao, const FrameInputs& frame,
-                       double fog_density) {
+                       const CompositeLook& look) {
   const gpu::Buffer& beauty = *frame[RawPlane::beauty];
-  const gpu::Buffer* indirect = frame[RawPlane::indirect];
-  const gpu::Buffer* diffuse_color = frame[RawPlane::diffuse_color];
+  const gpu::Buffer* light = frame[RawPlane::indirect];
+  const gpu::Buffer* color = frame[RawPlane::diffuse_color];
   gpu::Buffer& result = gpu.buffer("composite", beauty.bytes(), gpu::Use::device);
+  gpu::Buffer& lights = gpu.buffer(
+      "ambient lights", std::max<std::size_t>(1, frame.ambient.size()) * sizeof(AmbientLight), gpu::Use::upload);
+  std::ranges::transform(frame.ambient, lights.as<AmbientLight>().begin(), [](const AmbientReading& reading) {
+    return AmbientLight{float(reading.weight), reading.color};
+  });
+  gpu.upload(lights);
   CompositeParams params{};
   params.view = frame.view;
   params.has_alpha = planes_in(beauty, frame.view) == 4 ? 1 : 0;
-  params.has_ambient = indirect ? 1 : 0;
-  params.has_diffuse_color = diffuse_color ? 1 : 0;
+  params.lights = light ? uint(frame.ambient.size()) : 0;
   params.has_color = planes_in(ao, frame.view) == 3 ? 1 : 0;
-  params.fog_density = float(fog_density);
+  params.fog_density = float(look.fog_density);
+  params.gain = float(look.gain);
+  params.mix = float(look.mix);
+  params.tint = to_vec3(look.tint);
   gpu.dispatch("composite", params,
                {{kCompositeAo, ao},
                 {kCompositeBeauty, beauty},
-                {kCompositeIndirect, indirect ? *indirect : beauty},
-                {kCompositeDiffuseColor, diffuse_color ? *diffuse_color : beauty},
+                {kCompositeLight, light ? *light : beauty},
+                {kCompositeColor, color ? *color : beauty},
+                {kCompositeLights, lights},
                 {kCompositeResult, result},
                 {kCompositeCounts, *gbuffer.counts},
                 {kCompositeDepth, *gbuffer.depth}},

@@ -124,7 +124,7 @@ struct ExrPlane {
 struct ExrOutput {
   Window data, display;
   double pixel_aspect = 1;
-  std::string compression = "zip";  // none, rle, zips, zip, piz
+  std::string compression = "zip";  // none, rle, zips, zip, piz, dwaa, dwab
   // carried over, but those that describe the input's own channels and storage
   std::shared_ptr<const ExrAttributes> attributes;
   std::map<std::string, std::string> own_attributes;  // added as strings
@@ -158,7 +158,7 @@ void write_exr(const std::string& path, const ExrOutput& output);
 /// part. Fails with ErrorKind::input.
 Image read_exr_image(const std::string& path, const std::vector<std::string>& channels = {});
 
-/// Gives a text attribute of a file that is whole, with every chunk of its first part within it; a file that was cut
+/// Gives a text attribute of the first part of a file that is whole, with every chunk within it; a file that was cut
 /// short shows it in no other way. Gives nothing if the file is cut, is no EXR, or has no such attribute.
 std::optional<std::string> attribute_of_whole_exr(const std::string& path, const std::string& name);
 

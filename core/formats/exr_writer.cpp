@@ -3,22 +3,18 @@
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
-#include <ImfIO.h>
 #include <ImfInputFile.h>
 #include <ImfOutputFile.h>
 #include <ImfStringAttribute.h>
-#include <half.h>
 
 #include <algorithm>
 #include <cmath>
 #include <deque>
-#include <optional>
 #include <set>
 
 #include "core/base/error.h"
-#include "core/base/file.h"
 #include "core/formats/exr.h"
-#include "core/formats/exr_attributes.h"
+#include "core/formats/exr_stream.h"
 
 namespace alcove {
 
@@ -53,50 +49,33 @@ bool describes_storage(const std::string& name) {
   return kNames.contains(name) || name.rfind("cryptomatte/", 0) == 0;
 }
 
-namespace {
-
-/// An output stream into a file in the making. OpenEXR swallows what fails while it closes a file; failed() keeps it.
-class FileStream : public Imf::OStream {
- public:
-  explicit FileStream(const std::string& path) : Imf::OStream(path.c_str()), file_(path) {}
-  void write(const char data[], int count) override {
-    try {
-      file_.write_at(position_, {data, std::size_t(count)});
-    } catch (const Error& error) {
-      if (!failure_) failure_ = error;
-      throw;
-    }
-    position_ += std::uint64_t(count);
-  }
-  std::uint64_t tellp() override { return position_; }
-  void seekp(std::uint64_t position) override { position_ = position; }
-  const std::optional<Error>& failure() const { return failure_; }
-  void commit() { file_.commit(); }
-  const std::string& temporary() const { return file_.temporary(); }
-
- private:
-  NewFile file_;
-  std::uint64_t position_ = 0;
-  std::optional<Error> failure_;
-};
-
-/// Whether an attribute says how Alcove has made the input, which does not hold for what is made from it.
-bool is_own(std::string_view name) { return name.starts_with("alcove/"); }
+bool is_own_attribute(std::string_view name) { return name.starts_with("alcove/"); }
 
 Imf::Compression compression_of(const std::string& name) {
   if (name == "none") return Imf::NO_COMPRESSION;
   if (name == "rle") return Imf::RLE_COMPRESSION;
   if (name == "zips") return Imf::ZIPS_COMPRESSION;
   if (name == "piz") return Imf::PIZ_COMPRESSION;
+  if (name == "dwaa") return Imf::DWAA_COMPRESSION;
+  if (name == "dwab") return Imf::DWAB_COMPRESSION;
   return Imf::ZIP_COMPRESSION;
 }
+
+std::vector<half> to_half(std::span<const float> values) {
+  std::vector<half> halves(values.size());
+  std::ranges::transform(values, halves.begin(),
+                         [](float x) { return half(std::abs(x) > HALF_MAX ? std::copysign(HALF_MAX, x) : x); });
+  return halves;
+}
+
+namespace {
 
 Imf::Header header_of(const ExrOutput& output) {
   Imf::Header header(box_of(output.display), box_of(output.data), float(output.pixel_aspect));
   header.compression() = compression_of(output.compression);
   if (output.attributes)
     for (auto attribute = output.attributes->header.begin(); attribute != output.attributes->header.end(); ++attribute)
-      if (!describes_storage(attribute.name()) && !is_own(attribute.name()))
+      if (!describes_storage(attribute.name()) && !is_own_attribute(attribute.name()))
         header.insert(attribute.name(), attribute.attribute());
   for (const auto& [name, value] : output.own_attributes) {
     header.erase(name);  // the input's may be of another type
@@ -106,14 +85,6 @@ Imf::Header header_of(const ExrOutput& output) {
     header.channels().insert(plane.channel,
                              Imf::Channel(plane.type == SampleType::half_float ? Imf::HALF : Imf::FLOAT));
   return header;
-}
-
-/// Rounds to nearest. Values beyond half's range become its largest value, not infinity.
-std::vector<half> to_half(std::span<const float> values) {
-  std::vector<half> halves(values.size());
-  std::ranges::transform(values, halves.begin(),
-                         [](float x) { return half(std::abs(x) > HALF_MAX ? std::copysign(HALF_MAX, x) : x); });
-  return halves;
 }
 
 }  // namespace

@@ -61,6 +61,15 @@ const AovNames kIndirectNames{
     .alone = {},
 };
 
+const AovNames kLightNames{
+    .what = "light",
+    .channel_option = "--ambient",
+    .layers = {},
+    .in_layer = {{"r", "g", "b"}, {"red", "green", "blue"}},
+    .bare = {},
+    .alone = {},
+};
+
 const AovNames kDiffuseColorNames{
     .what = "diffuse colour",
     .channel_option = "--layer",

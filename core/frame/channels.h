@@ -41,6 +41,7 @@ extern const AovNames kNormalNames;
 extern const AovNames kPositionNames;
 extern const AovNames kBeautyNames;
 extern const AovNames kIndirectNames;
+extern const AovNames kLightNames;
 extern const AovNames kDiffuseColorNames;
 extern const AovNames kMaterialNames;
 extern const AovNames kAlbedoNames;

@@ -12,6 +12,7 @@
 #include "core/base/error.h"
 #include "core/base/text.h"
 #include "core/formats/open_image.h"
+#include "core/frame/ambient.h"
 #include "core/frame/behind.h"
 #include "core/frame/deep.h"
 #include "core/frame/header_camera.h"
@@ -30,18 +31,8 @@ bool has_half_channel(const FrameSource& source, const ChannelRef& ref) {
 void find_beauty(FrameSource& source, const ChannelSearch& search, std::size_t file, const InputSettings& settings) {
   source[RawPlane::beauty] = search.with_alpha(
       search.require(file, kBeautyNames, settings.beauty_channels, !settings.beauty.empty(), "Combined.R"));
-  source[RawPlane::indirect] = search.find(file, kIndirectNames, "", false);
-  source[RawPlane::diffuse_color] = search.find(file, kDiffuseColorNames, "", false);
-  // Blender's indirect light (DiffInd, from version 5 on Diffuse Indirect) is without the surface's colour; without the
-  // colour pass the part is unknown. Others' includes it.
-  const std::string indirect =
-      source[RawPlane::indirect].empty() ? "" : lower_case(source[RawPlane::indirect][0].channel);
-  const bool is_blender =
-      indirect.find("diffind") != indirect.npos || indirect.find("diffuse indirect") != indirect.npos;
-  if (is_blender && source[RawPlane::diffuse_color].empty()) source[RawPlane::indirect].clear();
-  if (!is_blender) source[RawPlane::diffuse_color].clear();
-  for (const auto* aov : {&source[RawPlane::beauty], &source[RawPlane::indirect], &source[RawPlane::diffuse_color]})
-    require_same_window(source, *aov, "beauty", "--beauty");
+  require_same_window(source, source[RawPlane::beauty], "beauty", "--beauty");
+  find_ambient(source, search, file, settings);
 }
 
 /// What is multiplied in, where the settings name a file or a channel of it.

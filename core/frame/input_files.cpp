@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/frame/input_files.h"
 
+#include <algorithm>
+#include <array>
+
 #include "core/base/text.h"
 #include "core/frame/raw_plane.h"
 
@@ -17,6 +20,14 @@ bool wants_normals(const InputSettings& settings) { return lower_case(settings.n
 
 bool wants_matte(const InputSettings& settings) {
   return !settings.matte.empty() || !settings.matte_channel.empty() || !settings.matte_object.empty();
+}
+
+bool names_picture(const std::string& text) {
+  const auto dot = text.rfind('.');
+  if (dot == text.npos || text.find(',') != text.npos) return false;
+  const std::string ending = lower_case(text.substr(dot + 1));
+  return std::ranges::any_of(std::array{"exr", "dds", "png", "tif", "tiff", "tga", "bmp", "hdr"},
+                             [&](const char* known) { return ending == known; });
 }
 
 bool chooses_occluders(const InputSettings& settings) {

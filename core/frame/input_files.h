@@ -18,6 +18,9 @@ bool wants_normals(const InputSettings& settings);
 /// Whether AO is wanted in parts of the frame only.
 bool wants_matte(const InputSettings& settings);
 
+/// Whether a text names a picture by its ending, rather than objects.
+bool names_picture(const std::string& text);
+
 /// Whether some surfaces are no occluders.
 bool chooses_occluders(const InputSettings& settings);
 

@@ -24,6 +24,9 @@ constexpr std::size_t kMostBehindPlanes = 16;
 /// The most planes of a matte: those of an identifier and its coverage, for each rank of a Cryptomatte.
 constexpr std::size_t kMostMattePlanes = 32;
 
+/// The most lights that AO may dim.
+constexpr std::size_t kMostAmbientLights = 16;
+
 /// An option that names a file, or one of its files.
 struct FileOption {
   const char* option = nullptr;
@@ -78,13 +81,13 @@ inline constexpr std::array kRawPlanes{
     RawPlaneFacts{.plane = RawPlane::indirect,
                   .name = "raw indirect",
                   .least = 3,
-                  .most = 3,
+                  .most = 3 * kMostAmbientLights,
                   .content = PlaneContent::color,
                   .file = {}},
     RawPlaneFacts{.plane = RawPlane::diffuse_color,
                   .name = "raw diffuse color",
                   .least = 3,
-                  .most = 3,
+                  .most = 3 * kMostAmbientLights,
                   .content = PlaneContent::color,
                   .file = {}},
     RawPlaneFacts{.plane = RawPlane::material_ao,

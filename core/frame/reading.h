@@ -57,6 +57,12 @@ struct MatteReading {
   bool ignores = false;                     // of occluders: what it takes is none; else all others are none
 };
 
+/// How a light of the planes of RawPlane::indirect is read: see composite.comp.
+struct AmbientReading {
+  double weight = 1;
+  int color = -1;  // of those in RawPlane::diffuse_color, which multiplies it; below 0: none
+};
+
 /// The meaning of one frame, with its windows and its camera.
 struct Reading : Meaning {
   Window data;  // of the planes
@@ -68,6 +74,7 @@ struct Reading : Meaning {
   bool depth_is_half = false;       // the depth values were rounded to half floats
   std::vector<BehindPlane> behind;  // of the planes of RawPlane::behind, one for each
   MatteReading matte, occluders;
+  std::vector<AmbientReading> ambient;  // the lights that AO may dim; none: it dims the whole beauty
 };
 
 /// Takes over the meaning of another frame of the sequence. The clip planes stay this frame's own, as its own camera

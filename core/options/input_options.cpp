@@ -84,15 +84,6 @@ Condition for_beauty() {
           true};
 }
 
-/// Whether a text names a picture file rather than objects.
-bool is_picture(const std::string& text) {
-  const auto dot = text.rfind('.');
-  if (dot == text.npos || text.find(',') != text.npos) return false;
-  const std::string ending = lower_case(text.substr(dot + 1));
-  return std::ranges::any_of(std::array{"exr", "dds", "png", "tif", "tiff", "tga", "bmp", "hdr"},
-                             [&](const char* known) { return ending == known; });
-}
-
 Condition with_objects() {
   return with_option("names or numbers for --occluders or --ignore", [](const Settings& all) {
     return !all.input.occluder_objects.empty() || !all.input.ignored_objects.empty();
@@ -110,8 +101,8 @@ OptionRow& file_or_objects(OptionGroup& group, const char* option, std::string& 
   return group.own(
       {option, "FILE|NAME[,NAME...]", "", "", help}, [&] { return file.empty() ? objects : file; },
       [&](const std::string& text) {
-        file = is_picture(text) ? text : "";
-        objects = is_picture(text) ? "" : text;
+        file = names_picture(text) ? text : "";
+        objects = names_picture(text) ? "" : text;
         return true;
       },
       "");
@@ -180,6 +171,12 @@ void add_channel_rows(std::vector<OptionRow>& rows, InputSettings& s) {
   pixels.text("--position-channels", s.position_channels, "LAYER|X,Y,Z",
               "the position's layer, or its three channels, instead of a depth");
   pixels.text("--beauty-channels", s.beauty_channels, "LAYER|R,G,B[,A]", "the beauty's layer, or its channels")
+      .applies(with_composite());
+  pixels
+      .text("--ambient", s.ambient, "LIGHT[*LAYER][*NUMBER],...",
+            "layers of the beauty's file, which alone AO dims, each by that much, 0 to 1; else its indirect diffuse "
+            "light, "
+            "else the whole beauty")
       .applies(with_composite());
   pixels.text("--material-ao-channel", s.material_ao_channel, "NAME",
               "the material AO's channel, of --material-ao or else of INPUT");

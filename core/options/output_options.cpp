@@ -21,6 +21,59 @@ OptionRow& word_list(OptionGroup& group, const std::string& name, std::string& v
       "");
 }
 
+/// Reads --tint: three numbers from 0 to 1.
+bool read_tint(const std::string& text, std::array<double, 3>& tint) {
+  const auto words = split(text);
+  std::array<double, 3> values{};
+  if (words.size() != values.size()) return false;
+  for (std::size_t c = 0; c < values.size(); c++) {
+    const auto value = number_of(words[c]);
+    if (!value || !(*value >= 0 && *value <= 1)) return false;
+    values[c] = *value;
+  }
+  tint = values;
+  return true;
+}
+
+void add_composite_rows(std::vector<OptionRow>& rows, OutputSettings& s) {
+  OptionGroup pixels(rows, "Output", Effect::pixels);
+  pixels
+      .number("--fog-density", s.look.fog_density, "1 / scene units", between(0, 1e30),
+              "of exponential fog in the beauty, which hides the AO of what lies behind it")
+      .applies(with_composite())
+      .harmless = {"0"};
+  pixels.number("--gain", s.look.gain, "", between(0, 100), "factor on the occlusion in the composite")
+      .applies(with_composite())
+      .harmless = {"1"};
+  pixels
+      .own(
+          {"--tint", "R,G,B", "", "0 to 1", "what occlusion makes of white light in the composite"},
+          [&s] {
+            const auto& tint = s.look.tint;
+            return tint == std::array<double, 3>{} ? "" : fmt::format("{}", fmt::join(tint, ","));
+          },
+          [&s](const std::string& text) { return read_tint(text, s.look.tint); }, "is not three numbers from 0 to 1")
+      .applies(with_composite())
+      .harmless = {"0,0,0"};
+  pixels.number("--mix", s.look.mix, "", between(0, 1), "of the composite and the beauty; 0: the beauty")
+      .applies(with_composite())
+      .harmless = {"1"};
+  pixels
+      .word("--composite-layers", s.composite_layers, {"all", "rgba"},
+            "all: every channel, part and attribute of the beauty's file, with another beauty in it; rgba: R, G, B, A "
+            "alone")
+      .applies(with_composite())
+      .harmless = {"all"};
+  pixels
+      .word("--composite-compression", s.composite_compression,
+            {"keep", "none", "rle", "zips", "zip", "piz", "dwaa", "dwab"},
+            "of the beauty's part in the composite; keep: as its file has it, or zip if that would lose bits again")
+      .applies(with_composite())
+      .harmless = {"keep"};
+  pixels.text("--append-ao", s.append_ao, "LAYER[.CHANNEL]", "the AO as one more channel of the composite: AO is AO.Y")
+      .applies(with_composite());
+}
+
 }  // namespace
 
 void add_output_rows(std::vector<OptionRow>& rows, OutputSettings& s) {
@@ -30,6 +83,10 @@ void add_output_rows(std::vector<OptionRow>& rows, OutputSettings& s) {
   word_list(pixels, "--aov", s.aovs, fmt::format("what OUTPUT holds, with commas: {}", fmt::join(aov_names(), ", ")))
       .is_common = true;
   pixels.choice("--ao-channels", s.ao_channels, "mono: Y; rgb: R, G, B").applies(with_aovs({"ao"})).harmless = {"mono"};
+  pixels
+      .text("--ao-name", s.ao_name, "NAME",
+            "of the AO in OUTPUT: its channel instead of Y; with rgb its layer: NAME.R ...")
+      .applies(with_aovs({"ao"}));
   pixels
       .choice("--aov-space", s.aov_space,
               "the space of the normals in OUTPUT; auto: world where the camera has world_to_camera, else view")
@@ -47,11 +104,7 @@ void add_output_rows(std::vector<OptionRow>& rows, OutputSettings& s) {
       .text("--composite", s.composite, "FILE.exr",
             "the beauty with AO in its ambient light, or in all of it where the parts are missing")
       .is_common = true;
-  pixels
-      .number("--fog-density", s.fog_density, "1 / scene units", between(0, 1e30),
-              "of exponential fog in the beauty, which hides the AO of what lies behind it")
-      .applies(with_composite())
-      .harmless = {"0"};
+  add_composite_rows(rows, s);
   files.text("--preview", s.preview, "FILE.png", "a picture of the composite, or of the AO where there is none")
       .is_common = true;
   word_list(files, "--debug", s.debug,
@@ -59,7 +112,7 @@ void add_output_rows(std::vector<OptionRow>& rows, OutputSettings& s) {
                         fmt::join(debug_view_names(), ", ")));
   pixels.choice("--type", s.type, "sample type of OUTPUT; depth is always float");
   files.word("--compression", s.compression, {"none", "rle", "zips", "zip", "piz"},
-             "of the AO file; a composite keeps OpenEXR's zip");
+             "of OUTPUT; see --composite-compression");
   files.flag("--no-mkdir", s.no_mkdir, "a folder of an output that is not there is an error; else it is made");
   OptionGroup(rows, "Output", Effect::display)
       .text("--ocio", s.ocio, "FILE",

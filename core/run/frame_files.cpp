@@ -3,6 +3,7 @@
 #include "core/run/frame_files.h"
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 
 #include "core/base/error.h"
@@ -74,20 +75,99 @@ ExrOutput aov_file(const FrameSource& source, const EstimatorSettings& estimator
   return output;
 }
 
+/// What the composite is made by, in words.
+std::string composite_text(const FrameSource& source, const Settings& all) {
+  const CompositeLook& look = all.output.look;
+  std::string text = "multiply: beauty * ao";
+  if (!source[RawPlane::indirect].empty())
+    text = fmt::format("ambient: beauty - D + D * ao, D = {}",
+                       all.input.ambient.empty() ? "indirect diffuse" : all.input.ambient);
+  if (all.output.multi_bounce) text += "; ao with multi-bounce";
+  if (look.fog_density > 0) text += fmt::format("; ao seen through fog of density {}", look.fog_density);
+  if (look.gain != 1) text += fmt::format("; gain {}", look.gain);
+  if (look.tint != std::array<double, 3>{}) text += fmt::format("; tint {}", fmt::join(look.tint, " "));
+  if (look.mix != 1) text += fmt::format("; mix {}", look.mix);
+  return text;
+}
+
+/// The channel that the AO becomes in the composite.
+std::string appended_channel(const OutputSettings& settings) {
+  return settings.append_ao.find('.') == settings.append_ao.npos ? settings.append_ao + ".Y" : settings.append_ao;
+}
+
+SampleType type_of(const OutputSettings& settings) {
+  return settings.type == OutputType::half_float ? SampleType::half_float : SampleType::single_float;
+}
+
+/// Whether the composite is a copy of the beauty's file, which is an EXR.
+bool keeps_layers(const FrameSource& source, const OutputSettings& settings) {
+  return settings.composite_layers == "all" && source.files[source[RawPlane::beauty][0].file].codec_group() > 0;
+}
+
 /// The composite, without pixels. Every channel keeps the beauty's precision.
-ExrOutput composite_file(const FrameSource& source, const OutputSettings& settings, const Provenance& provenance) {
+ExrOutput composite_file(const FrameSource& source, const Settings& all, const Provenance& provenance) {
+  const OutputSettings& settings = all.output;
   ExrOutput output = output_like(source, source[RawPlane::beauty][0], provenance);
-  output.own_attributes["alcove/composite"] = source[RawPlane::indirect].empty()
-                                                  ? "multiply: beauty * ao"
-                                                  : "ambient: beauty - D + D * ao, D = indirect diffuse";
-  if (settings.multi_bounce) output.own_attributes["alcove/composite"] += "; ao with multi-bounce";
-  if (settings.fog_density > 0)
-    output.own_attributes["alcove/composite"] +=
-        fmt::format("; ao seen through fog of density {}", settings.fog_density);
+  output.own_attributes["alcove/composite"] = composite_text(source, all);
+  output.compression = settings.composite_compression;
   const char* names[] = {"R", "G", "B", "A"};
   for (std::size_t c = 0; c < source[RawPlane::beauty].size(); c++)
     output.planes.push_back({names[c], type_of(source, source[RawPlane::beauty][c]), {}});
+  if (!settings.append_ao.empty()) output.planes.push_back({appended_channel(settings), type_of(settings), {}});
   return output;
+}
+
+/// The same as a copy of the beauty's file.
+ExrCopySettings composite_copy(const FrameSource& source, const ExrOutput& composite) {
+  const auto& beauty = source[RawPlane::beauty];
+  ExrCopySettings copy{
+      source.files[beauty[0].file].path(), composite.data, composite.compression, {}, composite.own_attributes};
+  for (std::size_t c = 0; c < composite.planes.size(); c++) {
+    const bool is_beauty = c < beauty.size();
+    const ChannelRef& place = beauty[is_beauty ? c : 0];
+    copy.planes.push_back(
+        {place.part, is_beauty ? place.channel : composite.planes[c].channel, composite.planes[c].type});
+  }
+  return copy;
+}
+
+/// Fails where the AO has no place in the composite.
+void require_place_for_ao(const FrameSource& source, const OutputSettings& settings) {
+  if (settings.append_ao.empty() || source[RawPlane::beauty].empty()) return;
+  const std::string channel = appended_channel(settings);
+  const ChannelRef& beauty = source[RawPlane::beauty][0];
+  const auto& there = source.part_of(beauty).channels;
+  const bool is_taken = keeps_layers(source, settings)
+                            ? std::ranges::find(there, channel, &ExrChannel::name) != there.end()
+                            : channel.size() == 1 && std::string("RGBA").find(channel) != std::string::npos;
+  if (is_taken)
+    fail(ErrorKind::input, "{}: it has a channel {} already: give --append-ao another name",
+         source.files[beauty.file].path(), channel);
+  // DWA is lossy for channels by the ends of their names; others' are exact.
+  const std::string end = channel.substr(channel.rfind('.') + 1);
+  const bool is_lossy =
+      std::ranges::any_of(std::array{"R", "G", "B", "Y", "RY", "BY"}, [&](const char* lossy) { return end == lossy; });
+  if (settings.composite_compression.starts_with("dwa") && is_lossy)
+    fail(ErrorKind::usage,
+         "--append-ao {}: --composite-compression {} is lossy for channels that end in R, G, B or Y: name it {}.ao",
+         settings.append_ao, settings.composite_compression, channel.substr(0, channel.rfind('.')));
+}
+
+/// Fails with ErrorKind::input where a beauty has one colour all over: Blender writes a layer of zeros where it rendered
+/// none.
+void require_picture(const FrameSource& source, std::span<const float> beauty) {
+  const auto colors = beauty.first(3 * source.data.pixels());
+  if (source.data != source.file_data) return;  // a part may be of one colour
+  for (std::size_t c = 0; c < 3; c++) {
+    const auto plane = colors.subspan(c * source.data.pixels(), source.data.pixels());
+    if (std::ranges::any_of(plane, [&](float x) { return !(x == plane[0]); })) return;
+  }
+  const ChannelRef& red = source[RawPlane::beauty][0];
+  fail(ErrorKind::input,
+       "{}: the beauty {} has one colour in all pixels{}: give the picture with --beauty, or name it with "
+       "--beauty-channels",
+       source.files[red.file].path(), red.channel,
+       colors[0] == 0 ? ", black, as renderers write a layer that they did not render" : "");
 }
 
 /// Fails with ErrorKind::usage where deep samples beside a flat depth are of no use to the estimator. Only now it is
@@ -112,6 +192,7 @@ void require_for_outputs(const FrameSource& source, const OutputSettings& settin
          "{}: --multi-bounce is for indirect light, and the frame has no indirect diffuse part for the --composite "
          "(--beauty)",
          file);
+  require_place_for_ao(source, settings);
   for (const auto* view : debug_views_of(settings)) {
     if (view->source == DebugSource::raw_depth && source[RawPlane::depth].size() > 1)
       fail(ErrorKind::input,
@@ -177,6 +258,7 @@ FrameInputs load_frame(gpu::Recorder& gpu, FrameSource& source, const Settings& 
   const auto values_of = [&](RawPlane plane) {
     return planes[plane] ? planes[plane]->as<float>() : std::span<float>();
   };
+  if (planes[RawPlane::beauty]) require_picture(source, values_of(RawPlane::beauty));
   if (!source.settled) settle_by_planes(source, settings, values_of(RawPlane::depth), values_of(RawPlane::normal));
   FrameInputs inputs = inputs_of(source, planes, frame);
   inputs.margin = margin_of(source.data, source.file_data);
@@ -197,23 +279,28 @@ std::vector<std::span<const float>> result_planes(const FrameOutputs& outputs, c
   }
   const auto composite = outputs.composite ? outputs.composite->as<const float>() : std::span<const float>();
   for (std::size_t at = 0; at < composite.size(); at += pixels) results.push_back(composite.subspan(at, pixels));
+  if (outputs.composite && !settings.append_ao.empty()) results.push_back(outputs.ao->as<const float>());
   return results;
 }
 
 FrameWriter::FrameWriter(const FrameSource& source, const Settings& all, const Provenance& provenance)
     : notes_(provenance.notes) {
   const OutputSettings& settings = all.output;
-  const auto add = [&](const std::string& path, const ExrOutput& output) {
-    files_.emplace_back(path, output);
-    planes_.push_back(output.planes.size());
-  };
-  add(settings.output, aov_file(source, all.estimator, settings, provenance));
-  if (!settings.composite.empty()) add(settings.composite, composite_file(source, settings, provenance));
+  const ExrOutput aovs = aov_file(source, all.estimator, settings, provenance);
+  files_.emplace_back(ExrWriter(settings.output, aovs));
+  planes_.push_back(aovs.planes.size());
+  if (settings.composite.empty()) return;
+  const ExrOutput composite = composite_file(source, all, provenance);
+  if (keeps_layers(source, settings))
+    files_.emplace_back(ExrCopy(settings.composite, composite_copy(source, composite)));
+  else
+    files_.emplace_back(ExrWriter(settings.composite, composite));
+  planes_.push_back(composite.planes.size());
 }
 
 void FrameWriter::write(std::span<const std::span<const float>> planes) {
   for (std::size_t i = 0; i < files_.size(); i++) {
-    files_[i].write(planes.first(planes_[i]));
+    std::visit([&](auto& file) { file.write(planes.first(planes_[i])); }, files_[i]);
     planes = planes.subspan(planes_[i]);
   }
 }
@@ -221,7 +308,7 @@ void FrameWriter::write(std::span<const std::span<const float>> planes) {
 void FrameWriter::finish(const std::string& notes) {
   std::map<std::string, std::string> late;
   if (notes != notes_) late[kNotesAttribute] = notes;
-  for (auto& file : files_) file.finish(late);
+  for (auto& file : files_) std::visit([&](auto& open) { open.finish(late); }, file);
 }
 
 std::string made_by(const std::string& options, const std::string& inputs) { return options + " " + inputs; }

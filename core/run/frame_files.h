@@ -4,10 +4,12 @@
 
 #include <span>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "core/chain/chain.h"
 #include "core/formats/exr.h"
+#include "core/formats/exr_copy.h"
 #include "core/frame/gbuffer.h"
 #include "core/run/region.h"
 
@@ -53,7 +55,8 @@ struct Provenance {
 /// The text that tells in a picture what it was made with: whoever finds it there need not make the picture again.
 std::string made_by(const std::string& options, const std::string& inputs);
 
-/// The results over a window, plane by plane: the AO file's channels, then the composite's.
+/// The results over a window, plane by plane: the AO file's channels, then the composite's, the AO last where it is one
+/// of them.
 std::vector<std::span<const float>> result_planes(const FrameOutputs& outputs, const Window& computed,
                                                   const OutputSettings& settings);
 
@@ -70,7 +73,7 @@ class FrameWriter {
 
  private:
   const std::string notes_;  // that the headers have
-  std::vector<ExrWriter> files_;
+  std::vector<std::variant<ExrWriter, ExrCopy>> files_;
   std::vector<std::size_t> planes_;  // the number of planes of each file
 };
 

@@ -9,6 +9,7 @@
 #include "core/chain/chain.h"
 #include "core/chain/debug_view.h"
 #include "core/chain/margin.h"
+#include "core/formats/exr_copy.h"
 #include "kernels/bounds.h"
 #include "kernels/classify.h"
 #include "kernels/profile.h"
@@ -129,6 +130,14 @@ std::size_t frame_planes(const FrameSource& source, const Settings& settings, st
   return planes;
 }
 
+/// What copying the beauty's file into the composite takes: rows of its channels, and two codecs.
+std::uint64_t copied_bytes(const FrameSource& source, const OutputSettings& settings) {
+  if (source[RawPlane::beauty].empty() || settings.composite_layers != "all") return 0;
+  const ExrPart& part = source.part_of(source[RawPlane::beauty][0]);
+  const std::uint64_t row = sizeof(float) * part.channels.size() * std::uint64_t(part.data.width);
+  return kRowsOfOriginal * row + 2 * exr_codec_bytes(kRowsOfOutput * row);
+}
+
 /// The bytes of the lists of a tile of 8 x 8 pixels.
 std::uint64_t tile_bytes(const Settings& settings) {
   const auto& e = settings.estimator;
@@ -176,7 +185,8 @@ FrameMemory memory_of(const FrameSource& source, const Settings& settings) {
   if (searches_exactly(settings.estimator)) widest = std::max(widest, profiles_of(source, settings));
   if (is_layered(source, settings)) widest = std::max(widest, std::size_t(settings.estimator.hidden));
   if (is_layered(source, settings) && !source.behind.empty()) widest = std::max(widest, kEndPlanes);
-  std::size_t written = source[RawPlane::beauty].size();
+  const bool appends_ao = !source[RawPlane::beauty].empty() && !settings.output.append_ao.empty();
+  std::size_t written = source[RawPlane::beauty].size() + (appends_ao ? 1 : 0);
   for (const auto& aov : aovs_of(settings.output)) {
     const std::size_t channels = channels_of(aov, planes_of(aov, settings.estimator)).size();
     written += channels;
@@ -194,7 +204,7 @@ FrameMemory memory_of(const FrameSource& source, const Settings& settings) {
   memory.beside = memory.written + sizeof(float) * pictures;
   memory.widest = sizeof(float) * widest;
   memory.codec_groups = {kRowsOfOutput * memory.written * std::uint64_t(source.file_data.width)};
-  memory.fixed_bytes = exr_codec_bytes(memory.codec_groups[0]);
+  memory.fixed_bytes = exr_codec_bytes(memory.codec_groups[0]) + copied_bytes(source, settings.output);
   for (const auto& file : source.files) {
     memory.fixed_bytes += file.bytes_beside_pixels();
     if (file.codec_group() > 0) memory.codec_groups.push_back(file.codec_group());

@@ -337,7 +337,7 @@ TEST(Digest, changes_with_every_setting_of_what_comes_out) {
       {"--ao-channels", [](Settings& s) { s.output.ao_channels = AoChannels::rgb; }},
       {"--aov-space", [](Settings& s) { s.output.aov_space = NormalSpace::view; }},
       {"--multi-bounce", [](Settings& s) { s.output.multi_bounce = true; }},
-      {"--fog-density", [](Settings& s) { s.output.fog_density = 0.1; }},
+      {"--fog-density", [](Settings& s) { s.output.look.fog_density = 0.1; }},
       {"--fade-start", [](Settings& s) { s.estimator.fade_start = 0; }},
       {"--fade-end", [](Settings& s) { s.estimator.fade_end = 1; }},
       {"--roughness", [](Settings& s) { s.estimator.roughness = 0.1; }},

@@ -105,7 +105,8 @@ class Composites : public CommandLine {
   Composite compute(const FrameFile& input, std::vector<std::string> more = {}) {
     input.write(frame);
     const std::string composite = folder / "composite.exr";
-    more.insert(more.end(), {"--composite", composite, "--type", "float", "--compression", "none"});
+    more.insert(more.end(),
+                {"--composite-layers", "rgba", "--composite", composite, "--type", "float", "--compression", "none"});
     const Finished finished = run(more);
     EXPECT_EQ(finished.code, 0) << finished;
     return {read_exr_image(frame), read_exr_image(ao), read_exr_image(composite)};
@@ -176,7 +177,8 @@ TEST_F(Composites, beauty_of_its_own_file_keeps_that_files_attributes) {
   beauty.attributes = {{"grade", "none"}};
   beauty.write(folder / "beauty.exr");
   const std::string composite = folder / "composite.exr";
-  const Finished finished = run({"--beauty", folder / "beauty.exr", "--composite", composite});
+  const Finished finished =
+      run({"--beauty", folder / "beauty.exr", "--composite", composite, "--composite-layers", "rgba"});
   ASSERT_EQ(finished.code, 0) << finished;
   EXPECT_EQ(text_in(read_header(composite), "grade"), "none");
   EXPECT_EQ(text_in(read_header(ao), "grade"), "(none)");

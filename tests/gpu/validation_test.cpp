@@ -83,7 +83,7 @@ std::set<std::string> kernels_of_all_settings(gpu::Recorder& gpu) {
   everything.aovs = "ao,ao-scales,normal,bent-normal,depth,specular-occlusion,confidence,hidden";
   everything.composite = "composite.exr";
   everything.multi_bounce = true;
-  everything.fog_density = 0.1;
+  everything.look.fog_density = 0.1;
   for (const auto& view : debug_view_names()) everything.debug += (everything.debug.empty() ? "" : ",") + view;
   settings.power = 1.5;
   add(everything);

@@ -265,7 +265,7 @@ TEST_F(Matte, composites_keep_every_bit_outside_of_it) {
   add_beauty(file);
   file.write(frame);
   const std::string composite = folder / "composite.exr";
-  ASSERT_EQ(run({"--matte-channel", "Matte.Y", "--composite", composite}).code, 0);
+  ASSERT_EQ(run({"--matte-channel", "Matte.Y", "--composite", composite, "--composite-layers", "rgba"}).code, 0);
   const Image result = read_exr_image(composite);
   const Plane& red = file.planes["ViewLayer.Combined.R"];
   ASSERT_EQ(red.size(), matte.size()) << "the beauty of add_beauty() has other names";

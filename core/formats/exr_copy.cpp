@@ -1,0 +1,234 @@
+// Copies EXR files part by part: chunks where nothing changes, rows where planes are put in.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/formats/exr_copy.h"
+
+#include <ImfChannelList.h>
+#include <ImfDeepScanLineInputPart.h>
+#include <ImfDeepScanLineOutputPart.h>
+#include <ImfDeepTiledInputPart.h>
+#include <ImfDeepTiledOutputPart.h>
+#include <ImfFrameBuffer.h>
+#include <ImfInputPart.h>
+#include <ImfMultiPartInputFile.h>
+#include <ImfMultiPartOutputFile.h>
+#include <ImfOutputPart.h>
+#include <ImfPartType.h>
+#include <ImfStringAttribute.h>
+#include <ImfTiledInputPart.h>
+#include <ImfTiledOutputPart.h>
+
+#include <algorithm>
+#include <deque>
+#include <set>
+
+#include "core/formats/exr_stream.h"
+
+namespace alcove {
+namespace {
+
+/// Whether decoding and encoding again changes numbers that were encoded once.
+bool loses(Imf::Compression compression) {
+  return compression == Imf::B44_COMPRESSION || compression == Imf::B44A_COMPRESSION ||
+         compression == Imf::DWAA_COMPRESSION || compression == Imf::DWAB_COMPRESSION;
+}
+
+std::string type_of(const Imf::Header& header) {
+  if (header.hasType()) return header.type();
+  return header.hasTileDescription() ? Imf::TILEDIMAGE : Imf::SCANLINEIMAGE;
+}
+
+/// Copies a part as it is compressed.
+void copy_chunks(Imf::MultiPartInputFile& from, Imf::MultiPartOutputFile& to, int part) {
+  const std::string type = type_of(from.header(part));
+  const auto copy = [&](auto input, auto output) { output.copyPixels(input); };
+  if (type == Imf::DEEPSCANLINE)
+    copy(Imf::DeepScanLineInputPart(from, part), Imf::DeepScanLineOutputPart(to, part));
+  else if (type == Imf::DEEPTILE)
+    copy(Imf::DeepTiledInputPart(from, part), Imf::DeepTiledOutputPart(to, part));
+  else if (type == Imf::TILEDIMAGE)
+    copy(Imf::TiledInputPart(from, part), Imf::TiledOutputPart(to, part));
+  else
+    copy(Imf::InputPart(from, part), Imf::OutputPart(to, part));
+}
+
+}  // namespace
+
+struct ExrCopy::Impl {
+  std::string path;
+  ExrCopySettings settings;
+  FileStream stream;
+  std::unique_ptr<Imf::MultiPartInputFile> original;
+  std::unique_ptr<Imf::MultiPartOutputFile> file;
+  std::vector<bool> by_rows;  // of each part; else by chunks
+  std::map<std::pair<int, std::string>, std::vector<char>> passed;  // rows of channels that pass through
+  int rows = 0;                                                     // that are written
+
+  Impl(const std::string& path_, const ExrCopySettings& settings_) : path(path_), settings(settings_), stream(path_) {}
+
+  /// Runs a step that reads the original.
+  template <class Function>
+  void read(Function&& function) {
+    try {
+      function();
+    } catch (const std::exception& error) {
+      fail(ErrorKind::input, "{}: could not be read for the composite: {}", settings.original, one_line(error));
+    }
+  }
+
+  /// Runs a step of writing. Where the stream failed, its error is the reason that OpenEXR does not tell.
+  template <class Function>
+  void run(Function&& function) {
+    try {
+      function();
+    } catch (const Error&) {
+      throw;
+    } catch (const std::exception& error) {
+      if (!stream.failure()) fail(ErrorKind::output, "{}: could not be encoded: {}", path, one_line(error));
+    }
+    if (stream.failure()) throw *stream.failure();
+  }
+
+  bool has_planes(int part) const {
+    return std::ranges::any_of(settings.planes, [&](const CopiedPlane& plane) { return plane.part == part; });
+  }
+
+  void open() {
+    read([&] { original = std::make_unique<Imf::MultiPartInputFile>(settings.original.c_str()); });
+    const Window whole = window_of(original->header(settings.planes.front().part).dataWindow());
+    for (int part = 0; part < original->parts(); part++) {
+      const Imf::Header& header = original->header(part);
+      const bool is_flat = type_of(header) == Imf::SCANLINEIMAGE || type_of(header) == Imf::TILEDIMAGE;
+      const bool is_cut = settings.window != whole && is_flat && window_of(header.dataWindow()) == whole;
+      by_rows.push_back(has_planes(part) || is_cut);
+    }
+  }
+
+  Imf::Header header_of(int part) const {
+    Imf::Header header = original->header(part);
+    std::vector<std::string> stale;
+    for (auto attribute = header.begin(); attribute != header.end(); ++attribute)
+      if (is_own_attribute(attribute.name())) stale.push_back(attribute.name());
+    if (by_rows[std::size_t(part)]) stale.insert(stale.end(), {"tiles", "chunkCount"});
+    for (const auto& name : stale) header.erase(name);
+    if (by_rows[std::size_t(part)]) {
+      if (header.hasType()) header.setType(Imf::SCANLINEIMAGE);
+      header.lineOrder() = Imf::INCREASING_Y;
+      header.dataWindow() = box_of(settings.window);
+      if (loses(header.compression())) header.compression() = Imf::ZIP_COMPRESSION;
+    }
+    // OpenEXR's C API reads no deep part without it, and its C++ API writes such.
+    const bool is_deep = type_of(header) == Imf::DEEPSCANLINE || type_of(header) == Imf::DEEPTILE;
+    if (is_deep && !header.hasVersion()) header.setVersion(1);
+    const bool is_changed = has_planes(part);
+    if (is_changed && settings.compression != "keep") header.compression() = compression_of(settings.compression);
+    for (const auto& plane : settings.planes)
+      if (plane.part == part && !header.channels().findChannel(plane.channel))
+        header.channels().insert(plane.channel,
+                                 Imf::Channel(plane.type == SampleType::half_float ? Imf::HALF : Imf::FLOAT));
+    if (is_changed || part == 0)
+      for (const auto& [name, value] : settings.own_attributes) header.insert(name, Imf::StringAttribute(value));
+    return header;
+  }
+
+  void begin() {
+    std::vector<Imf::Header> headers;
+    for (int part = 0; part < original->parts(); part++) headers.push_back(header_of(part));
+    file = std::make_unique<Imf::MultiPartOutputFile>(stream, headers.data(), int(headers.size()));
+  }
+
+  /// Reads rows of all channels of a part that pass through, and adds them to what is written of it.
+  void read_rows(int part, const Window& band, Imf::FrameBuffer& to) {
+    std::set<std::string> replaced;
+    for (const auto& plane : settings.planes)
+      if (plane.part == part) replaced.insert(plane.channel);
+    const Imf::Header& header = original->header(part);
+    const Window whole = window_of(header.dataWindow());
+    const Window rows_of_original{whole.x, band.y, whole.width, band.height};
+    Imf::FrameBuffer from;
+    for (auto at = header.channels().begin(); at != header.channels().end(); ++at) {
+      if (replaced.contains(at.name())) continue;
+      const Imf::Channel& channel = at.channel();
+      const std::size_t bytes = channel.type == Imf::HALF ? sizeof(half) : sizeof(float);
+      std::vector<char>& samples = passed[{part, at.name()}];
+      samples.resize(bytes * rows_of_original.pixels());
+      // Whether rows are read or written, the slice begins at the same sample.
+      const auto slice = Imf::Slice::Make(channel.type, samples.data(), box_of(rows_of_original), bytes, 0,
+                                          channel.xSampling, channel.ySampling);
+      from.insert(at.name(), slice);
+      to.insert(at.name(), slice);
+    }
+    if (from.begin() == from.end()) return;
+    read([&] {
+      Imf::InputPart input(*original, part);
+      input.setFrameBuffer(from);
+      input.readPixels(band.y, band.y + band.height - 1);
+    });
+  }
+
+  /// Writes rows of every part that is copied by rows.
+  void write_rows(const Window& band, const Imf::FrameBuffer& planes) {
+    for (int part = 0; part < original->parts(); part++) {
+      if (!by_rows[std::size_t(part)]) continue;
+      Imf::FrameBuffer rows_of_part;
+      for (const auto& plane : settings.planes)
+        if (plane.part == part) rows_of_part.insert(plane.channel, *planes.findSlice(plane_key(plane)));
+      read_rows(part, band, rows_of_part);
+      Imf::OutputPart output(*file, part);
+      output.setFrameBuffer(rows_of_part);
+      output.writePixels(band.height);
+    }
+  }
+
+  static std::string plane_key(const CopiedPlane& plane) { return std::to_string(plane.part) + "/" + plane.channel; }
+};
+
+ExrCopy::ExrCopy(const std::string& path, const ExrCopySettings& settings)
+    : impl_(std::make_unique<Impl>(path, settings)) {
+  impl_->open();
+  impl_->run([&] { impl_->begin(); });
+}
+ExrCopy::~ExrCopy() = default;
+ExrCopy::ExrCopy(ExrCopy&&) noexcept = default;
+
+void ExrCopy::write(std::span<const std::span<const float>> planes) {
+  Window band = impl_->settings.window;
+  band.y += impl_->rows;
+  band.height = int(planes[0].size() / std::size_t(band.width));
+  std::deque<std::vector<half>> halves;
+  Imf::FrameBuffer buffers;
+  for (std::size_t i = 0; i < planes.size(); i++) {
+    const CopiedPlane& plane = impl_->settings.planes[i];
+    const bool is_half = plane.type == SampleType::half_float;
+    const std::size_t bytes = is_half ? sizeof(half) : sizeof(float);
+    const void* pixels =
+        is_half ? static_cast<const void*>(halves.emplace_back(to_half(planes[i])).data()) : planes[i].data();
+    buffers.insert(Impl::plane_key(plane), Imf::Slice::Make(is_half ? Imf::HALF : Imf::FLOAT, pixels, box_of(band),
+                                                            bytes, bytes * std::size_t(band.width)));
+  }
+  for (int done = 0; done < band.height; done += int(kRowsOfOriginal)) {
+    const Window part{band.x, band.y + done, band.width, std::min(int(kRowsOfOriginal), band.height - done)};
+    impl_->run([&] { impl_->write_rows(part, buffers); });
+  }
+  impl_->rows += band.height;
+}
+
+void ExrCopy::finish(const std::map<std::string, std::string>& late) {
+  impl_->run([&] {
+    for (int part = 0; part < impl_->original->parts(); part++)
+      if (!impl_->by_rows[std::size_t(part)]) copy_chunks(*impl_->original, *impl_->file, part);
+    impl_->file.reset();
+  });
+  if (late.empty()) return impl_->stream.commit();
+  for (const auto& [name, value] : late) impl_->settings.own_attributes[name] = value;
+  Impl with_late(impl_->path, impl_->settings);
+  with_late.open();
+  with_late.run([&] {
+    with_late.begin();
+    Imf::MultiPartInputFile whole(impl_->stream.temporary().c_str());
+    for (int part = 0; part < whole.parts(); part++) copy_chunks(whole, *with_late.file, part);
+    with_late.file.reset();
+  });
+  with_late.stream.commit();
+}
+
+}  // namespace alcove
