@@ -42,7 +42,8 @@ gpu::Buffer& specular_occlusion(gpu::Recorder& gpu, const GBuffer& gbuffer, cons
 /// Visibility for each of red, green and blue.
 gpu::Buffer& multi_bounce(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& ao, const FrameInputs& frame);
 
-/// The beauty's planes, for the host. `ao` has one plane, or three with multi-bounce. Light is dimmed as frame.ambient says; without it, all of it.
+/// The beauty's planes, for the host. `ao` has one plane, or three with multi-bounce. What it dims is as
+/// frame.ambient says; the whole beauty without.
 gpu::Buffer& composite(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& ao, const FrameInputs& frame,
                        const CompositeLook& look);
 

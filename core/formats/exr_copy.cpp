@@ -59,7 +59,7 @@ struct ExrCopy::Impl {
   FileStream stream;
   std::unique_ptr<Imf::MultiPartInputFile> original;
   std::unique_ptr<Imf::MultiPartOutputFile> file;
-  std::vector<bool> by_rows;  // of each part; else by chunks
+  std::vector<bool> by_rows;                                        // of each part; else by chunks
   std::map<std::pair<int, std::string>, std::vector<char>> passed;  // rows of channels that pass through
   int rows = 0;                                                     // that are written
 
@@ -116,9 +116,6 @@ struct ExrCopy::Impl {
       header.dataWindow() = box_of(settings.window);
       if (loses(header.compression())) header.compression() = Imf::ZIP_COMPRESSION;
     }
-    // OpenEXR's C API reads no deep part without it, and its C++ API writes such.
-    const bool is_deep = type_of(header) == Imf::DEEPSCANLINE || type_of(header) == Imf::DEEPTILE;
-    if (is_deep && !header.hasVersion()) header.setVersion(1);
     const bool is_changed = has_planes(part);
     if (is_changed && settings.compression != "keep") header.compression() = compression_of(settings.compression);
     for (const auto& plane : settings.planes)

@@ -11,8 +11,8 @@ namespace alcove {
 /// that is found; else there is none.
 ///
 /// Blender's light passes are without the surface's colour. It is taken from the pass beside them (DiffInd x DiffCol,
-/// GlossDir x GlossCol) where nothing else is said. Fails with ErrorKind::usage on a text that is no such list, and with
-/// ErrorKind::input where a layer is missing.
+/// GlossDir x GlossCol) where nothing else is said. Fails with ErrorKind::usage on a text that is no such list, and
+/// with ErrorKind::input where a layer is missing.
 void find_ambient(FrameSource& source, const ChannelSearch& search, std::size_t file, const InputSettings& settings);
 
 }  // namespace alcove

@@ -109,7 +109,7 @@ OptionRow& file_or_objects(OptionGroup& group, const char* option, std::string& 
 }
 
 void add_occluder_rows(std::vector<OptionRow>& rows, InputSettings& s) {
-  OptionGroup choice(rows, "Input", Effect::pixels_or_input);
+  OptionGroup choice(rows, "Input", Effect::pixels_or_picture);
   const char* reason = "what they show behind an object may be the object itself";
   file_or_objects(
       choice, "--occluders", s.occluders, s.occluder_objects,

@@ -18,9 +18,10 @@ enum class Effect {
   none,    // The pixels come out the same: a device, threads, a report, the name or compression of an output.
   pixels,  // Its value counts.
   input,   // It names an input, which is known by its bytes (alcove/inputs): only how often it is given counts.
-  pixels_or_input,  // A picture's name counts as that of an input, anything else by its value.
-  content,          // It names a file whose content counts, and not its place.
-  display,          // As `content`, but only where a preview shows a composite.
+  pixels_or_input,    // A number counts by its value, anything else as the name of an input.
+  pixels_or_picture,  // The name of a picture counts as that of an input, anything else by its value.
+  content,            // It names a file whose content counts, and not its place.
+  display,            // As `content`, but only where a preview shows a composite.
 };
 
 using Words = std::vector<std::string>;

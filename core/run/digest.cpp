@@ -30,7 +30,8 @@ Words telling_words(const OptionRow& row, const OutputSettings& output) {
     case Effect::none: return {};
     case Effect::pixels: return words;
     case Effect::input: return Words(words.size(), "given");
-    case Effect::pixels_or_input: return words.empty() || !names_picture(words.front()) ? words : Words{"given"};
+    case Effect::pixels_or_input: return words.empty() || number_of(words.front()) ? words : Words{"given"};
+    case Effect::pixels_or_picture: return words.empty() || !names_picture(words.front()) ? words : Words{"given"};
     case Effect::content:
       return words.empty() ? Words{} : Words{read_text(words.front(), row.long_name().c_str() + 2, row.name.c_str())};
     case Effect::display: return shows_composite(output) ? Words{display_text(output.ocio)} : Words{};

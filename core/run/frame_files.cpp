@@ -153,8 +153,8 @@ void require_place_for_ao(const FrameSource& source, const OutputSettings& setti
          settings.append_ao, settings.composite_compression, channel.substr(0, channel.rfind('.')));
 }
 
-/// Fails with ErrorKind::input where a beauty has one colour all over: Blender writes a layer of zeros where it rendered
-/// none.
+/// Fails with ErrorKind::input where a beauty has one colour all over: Blender writes a layer of zeros where it
+/// rendered none.
 void require_picture(const FrameSource& source, std::span<const float> beauty) {
   const auto colors = beauty.first(3 * source.data.pixels());
   if (source.data != source.file_data) return;  // a part may be of one colour

@@ -244,8 +244,8 @@ TEST_F(Aovs, composite_dims_each_colour_of_the_indirect_light_by_its_own_ao_and_
   const Image source = read_exr_image(frame);
   const auto in = [&](const std::string& name, std::size_t i) { return double(source.plane("ViewLayer." + name)[i]); };
   for (const double density : {0.0, 0.3}) {
-    const Image plain =
-        good({"--type", "float", "--multi-bounce", "--composite", composite, "--fog-density", std::to_string(density)});
+    const Image plain = good({"--type", "float", "--multi-bounce", "--composite", composite, "--fog-density",
+                              std::to_string(density), "--composite-layers", "rgba"});
     const Image result = read_exr_image(composite);
     const std::string how = text_in(read_header(composite), "alcove/composite");
     EXPECT_THAT(how, HasSubstr("multi-bounce"));

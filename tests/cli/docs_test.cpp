@@ -58,7 +58,11 @@ class Documents : public Sources {
     write_capture(z);
     planes.clear();
     for (const char* layer : {"Combined.", "DiffInd.", "DiffCol."})
-      for (const char* color : {"R", "G", "B"}) planes[std::string(layer) + color].assign(z.size(), 0.5F);
+      for (const char* color : {"R", "G", "B"}) {
+        auto& plane = planes[std::string(layer) + color];
+        plane.assign(z.size(), 0.5F);
+        plane[0] = 0.25F;  // a picture has more than one colour
+      }
     write(folder / "beauty.exr");
     planes = {{"A", std::vector<float>(z.size(), 1)}};
     write(folder / "hero.exr");

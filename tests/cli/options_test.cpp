@@ -48,7 +48,7 @@ class Options : public CommandLine {
       candidates.push_back(row.value.substr(at, bar - at));
       at = bar + 1;
     }
-    candidates.insert(candidates.end(), {"0.5", "0.05", "2", "5", "x", "1,2", "1,2,3,4", "2/3", "4G"});
+    candidates.insert(candidates.end(), {"0.5", "0.05", "2", "5", "x", "1,2", "1,2,3,4", "0.1,0.2,0.3", "2/3", "4G"});
     for (const auto& candidate : candidates) {
       try {
         row.read({candidate});
@@ -184,6 +184,22 @@ TEST_F(Options, that_name_inputs_count_by_being_given) {
   const std::string half = digest();
   options.settings.input.albedo_value = 0.25;
   EXPECT_NE(digest(), half);
+}
+
+TEST_F(Options, that_name_a_picture_or_objects_count_by_being_given_or_by_the_objects) {
+  const std::string plain = digest();
+  for_each(Effect::pixels_or_picture, [&](const OptionRow& row) {
+    row.read({"a.exr"});
+    const std::string given = digest();
+    EXPECT_NE(given, plain) << row.name;
+    row.read({"folder/b.####.PNG"});
+    EXPECT_EQ(digest(), given) << row.name << ": inputs are known by their bytes";
+    row.read({"Hero"});
+    const std::string hero = digest();
+    EXPECT_NE(hero, given) << row.name;
+    row.read({"Villain"});
+    EXPECT_NE(digest(), hero) << row.name;
+  });
 }
 
 TEST_F(Options, that_name_a_file_count_by_its_content) {

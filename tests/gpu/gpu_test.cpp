@@ -41,8 +41,9 @@ TEST(Reflection, reads_parameter_sizes_that_the_host_sends) {
 
 TEST(Reflection, reads_bindings_groups_and_constants) {
   const auto horizon = gpu::reflect(gpu::kernel_code("horizon"));
-  EXPECT_THAT(horizon.bindings, ElementsAre(kSlicesDepth, kSlicesNormal, kSlicesAo, kSlicesBent, kSlicesList,
-                                            kSlicesCounts, kSlicesCompleted, kSlicesSites, kSlicesSiteCounts));
+  EXPECT_THAT(horizon.bindings,
+              ElementsAre(kSlicesDepth, kSlicesNormal, kSlicesAo, kSlicesBent, kSlicesList, kSlicesCounts,
+                          kSlicesCompleted, kSlicesSites, kSlicesSiteCounts, kSlicesOccluders));
   EXPECT_TRUE(gpu::reflect(gpu::kernel_code("horizon_layers")).bindings.contains(kSlicesHidden));
   EXPECT_THAT(horizon.group, ElementsAre(kGroupX, kGroupY, 1u));
   EXPECT_THAT(horizon.constant_ids,

@@ -133,9 +133,9 @@ class Planes {
           std::memcpy(&bytes[4 * i], is_color ? static_cast<const void*>(&color) : &bits, 4);
         }
       }
-      buffer.insert(name, Imf::Slice::Make(channel.type, bytes.data(), box, size,
-                                           size * width / std::size_t(channel.xSampling), channel.xSampling,
-                                           channel.ySampling));
+      buffer.insert(
+          name, Imf::Slice::Make(channel.type, bytes.data(), box, size, size * width / std::size_t(channel.xSampling),
+                                 channel.xSampling, channel.ySampling));
     }
   }
   Imf::FrameBuffer buffer;
@@ -223,9 +223,9 @@ class CompositeLayers : public CommandLine {
     for (std::size_t p = 0; p < before.size(); p++) {
       EXPECT_EQ(before[p].data, after[p].data) << p;
       for (const auto& [name, value] : before[p].attributes)
-        if (int(p) != part || !std::set<std::string>{"channels", "chunkCount", "lineOrder", "tiles", "type",
-                                                     "compression"}
-                                   .contains(name))
+        if (int(p) != part ||
+            !std::set<std::string>{"channels", "chunkCount", "lineOrder", "tiles", "type", "compression"}.contains(
+                name))
           EXPECT_EQ(after[p].attributes.contains(name) ? after[p].attributes.at(name) : "none", value) << p << name;
       for (const auto& [name, samples] : before[p].channels) {
         ASSERT_TRUE(after[p].channels.contains(name)) << p << name;
@@ -246,8 +246,8 @@ class CompositeLayers : public CommandLine {
 };
 
 TEST_F(CompositeLayers, of_one_part_keep_every_bit_beside_the_beauty) {
-  for (const auto compression : {Imf::NO_COMPRESSION, Imf::RLE_COMPRESSION, Imf::ZIPS_COMPRESSION,
-                                 Imf::ZIP_COMPRESSION, Imf::PIZ_COMPRESSION, Imf::PXR24_COMPRESSION}) {
+  for (const auto compression : {Imf::NO_COMPRESSION, Imf::RLE_COMPRESSION, Imf::ZIPS_COMPRESSION, Imf::ZIP_COMPRESSION,
+                                 Imf::PIZ_COMPRESSION, Imf::PXR24_COMPRESSION}) {
     write({header("", "", beauty_channels(), compression)});
     const auto before = content_of(beauty), after = composited();
     expect_kept(before, after, 0, "Combined.");
@@ -333,8 +333,8 @@ TEST_F(CompositeLayers, of_a_region_are_cut_to_it_where_they_are_of_its_window) 
 
 TEST_F(CompositeLayers, of_frames_that_are_done_are_left_by_resume_and_others_are_not) {
   write({header("beauty", Imf::SCANLINEIMAGE, beauty_channels()),
-         header("tiles", Imf::TILEDIMAGE, {{"T.h", Imf::HALF}}),
-         header("deep", Imf::DEEPSCANLINE, {{"Z", Imf::FLOAT}}, Imf::ZIPS_COMPRESSION)});
+         header("more", Imf::SCANLINEIMAGE, {{"Q.X", Imf::FLOAT}}, Imf::PIZ_COMPRESSION),
+         header("tiles", Imf::TILEDIMAGE, {{"T.h", Imf::HALF}})});
   const Options options{"--beauty", beauty, "--composite", composite, "--resume", "-v"};
   const auto with = [&](const Options& more) {
     Options all = options;
@@ -384,7 +384,8 @@ TEST_F(CompositeLayers, mistakes_are_named_in_one_line) {
   expect_error(2, {"--append-ao", "AO", "--composite-compression", "dwaa"}, {"--append-ao AO", "dwaa", "AO.ao"});
   expect_error(2, {"--composite-layers", "some"}, {"--composite-layers", "all"});
   expect_error(3, {"--ambient", "Combinet"}, {beauty, "Combinet", "--ambient"});
-  for (const char* text : {"Combined*2", "Combined*-1", "Combined**1", "*1", "Combined*a*b", "Combined*1*1", "Combined,"})
+  for (const char* text :
+       {"Combined*2", "Combined*-1", "Combined**1", "*1", "Combined*a*b", "Combined*1*1", "Combined,"})
     expect_error(2, {"--ambient", text}, {"--ambient", "LIGHT*NUMBER"});
   for (const char* text : {"1,1", "1,1,2", "a,b,c", "0.5"}) expect_error(2, {"--tint", text}, {"--tint", text});
   // The file is cut within its pixels.
@@ -463,7 +464,9 @@ TEST_F(Lights, are_dimmed_by_their_weights_and_take_the_colours_that_belong_to_t
                   [&](std::size_t i, const char* c) { return diffuse(i, c) + 0.25 * gloss(i, c); }),
             1e-5);
   EXPECT_LT(error({"--ambient", "GI*DiffCol*0.5,key_light"},
-                  [&](std::size_t i, const char* c) { return 0.5 * at("GI", c, i) * at("DiffCol", c, i) + at("key_light", c, i); }),
+                  [&](std::size_t i, const char* c) {
+                    return 0.5 * at("GI", c, i) * at("DiffCol", c, i) + at("key_light", c, i);
+                  }),
             1e-5);
   EXPECT_LT(error({"--ambient", "ViewLayer.GI"}, [&](std::size_t i, const char* c) { return at("GI", c, i); }), 1e-5);
   EXPECT_LT(error({"--ambient", "Combined"}, [&](std::size_t i, const char* c) { return at("Combined", c, i); }), 1e-5);
