@@ -13,6 +13,7 @@
 #include "core/frame/cryptomatte.h"
 #include "core/frame/input_files.h"
 #include "core/frame/name_pattern.h"
+#include "core/frame/plane_windows.h"
 
 namespace alcove {
 namespace {
@@ -114,7 +115,7 @@ void find_matte(FrameSource& source, ChannelSearch& search, const InputSettings&
       source.matte.objects = numbers_of(path, settings.matte_channel, objects);
     }
   }
-  require_same_window(source, source[RawPlane::matte], "matte", "--matte");
+  require_common_window(source, source[RawPlane::matte], "matte", "--matte", "where it has no pixels nothing is in it");
 }
 
 }  // namespace alcove

@@ -12,6 +12,7 @@
 #include "core/chain/aov.h"
 #include "core/chain/margin.h"
 #include "core/frame/behind.h"
+#include "core/frame/plane_windows.h"
 #include "core/frame/settle_rows.h"
 #include "core/run/pictures.h"
 
@@ -26,9 +27,10 @@ bool in_world(const FrameSource& source, const OutputSettings& settings) {
 }
 
 /// Of a rotation the way back.
-ExrOutput output_like(const FrameSource& source, const ChannelRef& like, const Provenance& provenance) {
+ExrOutput output_like(const FrameSource& source, const ChannelRef& like, const Window& data,
+                      const Provenance& provenance) {
   ExrOutput output;
-  output.data = written_of(source);
+  output.data = data;
   output.display = source.display;
   output.pixel_aspect = source.pixel_aspect;
   output.attributes = source.files[like.file].attributes(like.part);
@@ -57,7 +59,7 @@ SampleType type_of(const FrameSource& source, const ChannelRef& ref) {
 /// The AO file, without pixels.
 ExrOutput aov_file(const FrameSource& source, const EstimatorSettings& estimator, const OutputSettings& settings,
                    const Provenance& provenance) {
-  ExrOutput output = output_like(source, source[RawPlane::depth][0], provenance);
+  ExrOutput output = output_like(source, source[RawPlane::depth][0], written_of(source), provenance);
   output.compression = settings.compression;
   const auto radii = estimator.radius ? radii_of(estimator) : std::vector<double>();
   if (needs_ao(settings)) output.own_attributes["alcove/radius"] = fmt::format("{}", fmt::join(radii, " "));
@@ -76,7 +78,7 @@ ExrOutput aov_file(const FrameSource& source, const EstimatorSettings& estimator
 
 /// The composite, without pixels. Every channel keeps the beauty's precision.
 ExrOutput composite_file(const FrameSource& source, const OutputSettings& settings, const Provenance& provenance) {
-  ExrOutput output = output_like(source, source[RawPlane::beauty][0], provenance);
+  ExrOutput output = output_like(source, source[RawPlane::beauty][0], composite_window(source), provenance);
   output.own_attributes["alcove/composite"] = source[RawPlane::indirect].empty()
                                                   ? "multiply: beauty * ao"
                                                   : "ambient: beauty - D + D * ao, D = indirect diffuse";
@@ -137,6 +139,10 @@ FrameSource open_frame(const Settings& settings, int frame) {
     source.behind.clear();
   }
   if (settings.input.roi) source.region = region_of(source, *settings.input.roi);
+  if (source.region && !source[RawPlane::beauty].empty() && composite_window(source).pixels() == 0)
+    fail(ErrorKind::usage,
+         "{}: the beauty has no pixel of --roi, which is {}: give a region within it, or no --composite",
+         source.files[source[RawPlane::beauty][0].file].path(), to_string(*source.region));
   require_for_outputs(source, settings.output);
   return source;
 }
@@ -174,6 +180,8 @@ FrameInputs load_frame(gpu::Recorder& gpu, FrameSource& source, const Settings& 
   } else {
     read_planes(source, reads);
   }
+  for (const auto& row : kRawPlanes)
+    if (planes[row.plane]) fill_missing(source, row.plane, planes[row.plane]->as<float>());
   const auto values_of = [&](RawPlane plane) {
     return planes[plane] ? planes[plane]->as<float>() : std::span<float>();
   };
@@ -200,20 +208,27 @@ std::vector<std::span<const float>> result_planes(const FrameOutputs& outputs, c
   return results;
 }
 
-FrameWriter::FrameWriter(const FrameSource& source, const Settings& all, const Provenance& provenance)
+FrameWriter::FrameWriter(FrameSource& source, const Settings& all, const Provenance& provenance)
     : notes_(provenance.notes) {
   const OutputSettings& settings = all.output;
   const auto add = [&](const std::string& path, const ExrOutput& output) {
     files_.emplace_back(path, output);
     planes_.push_back(output.planes.size());
   };
+  files_.reserve(2);  // the composite's rows know their file
   add(settings.output, aov_file(source, all.estimator, settings, provenance));
-  if (!settings.composite.empty()) add(settings.composite, composite_file(source, settings, provenance));
+  // A part of a frame that is only timed may share no pixel with the beauty.
+  if (settings.composite.empty() || composite_window(source).pixels() == 0) return;
+  add(settings.composite, composite_file(source, settings, provenance));
+  if (composite_window(source) != written_of(source)) composite_.emplace(source, written_of(source), files_.back());
 }
 
 void FrameWriter::write(std::span<const std::span<const float>> planes) {
   for (std::size_t i = 0; i < files_.size(); i++) {
-    files_[i].write(planes.first(planes_[i]));
+    if (i > 0 && composite_)
+      composite_->write(planes.first(planes_[i]));
+    else
+      files_[i].write(planes.first(planes_[i]));
     planes = planes.subspan(planes_[i]);
   }
 }
@@ -221,6 +236,7 @@ void FrameWriter::write(std::span<const std::span<const float>> planes) {
 void FrameWriter::finish(const std::string& notes) {
   std::map<std::string, std::string> late;
   if (notes != notes_) late[kNotesAttribute] = notes;
+  if (composite_) composite_->finish();
   for (auto& file : files_) file.finish(late);
 }
 

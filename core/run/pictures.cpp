@@ -10,6 +10,7 @@
 #include "core/chain/debug_view.h"
 #include "core/formats/image_io.h"
 #include "core/formats/png.h"
+#include "core/run/composite_window.h"
 
 namespace alcove {
 namespace {
@@ -62,9 +63,8 @@ void write_debug_view(const std::string& path, const DebugView& view, int width,
   write_whole(path, encode_chart(path, chart));
 }
 
-/// The display window of `planes` planes, interleaved; black where there are no pixels.
-std::vector<float> displayed(const FrameSource& source, std::span<const float> pixels, int planes) {
-  const Window data = written_of(source), &display = source.display;
+/// The display window of `planes` planes over a data window, interleaved; black where there are no pixels.
+std::vector<float> displayed(const Window& display, const Window& data, std::span<const float> pixels, int planes) {
   std::vector<float> interleaved(display.pixels() * std::size_t(planes));
   for (int y = std::max(data.y, display.y); y < std::min(data.y + data.height, display.y + display.height); y++)
     for (int x = std::max(data.x, display.x); x < std::min(data.x + data.width, display.x + display.width); x++)
@@ -77,9 +77,21 @@ std::vector<float> displayed(const FrameSource& source, std::span<const float> p
   return interleaved;
 }
 
+/// The composite over all of its window.
+std::vector<float> whole_composite(FrameSource& source, const gpu::Buffer& computed) {
+  std::vector<std::span<const float>> planes;
+  const auto values = computed.as<const float>();
+  for (std::size_t at = 0; at < values.size(); at += source.data.pixels())
+    planes.push_back(values.subspan(at, source.data.pixels()));
+  std::vector<float> pixels;
+  for (const auto& plane : composite_over(source, composite_window(source), source.data, planes))
+    pixels.insert(pixels.end(), plane.begin(), plane.end());
+  return pixels;
+}
+
 }  // namespace
 
-void write_pictures(const FrameSource& source, const FrameOutputs& outputs, const DisplayTransform* transform,
+void write_pictures(FrameSource& source, const FrameOutputs& outputs, const DisplayTransform* transform,
                     const OutputSettings& settings, const Provenance& provenance) {
   const std::string text = made_by(provenance.options, provenance.inputs);
   for (const auto& plane : outputs.debug)
@@ -88,9 +100,10 @@ void write_pictures(const FrameSource& source, const FrameOutputs& outputs, cons
   if (settings.preview.empty()) return;
   // The composite through the view transform; AO by itself is data, and shown as it is.
   const int planes = outputs.composite ? 3 : 1;
-  const auto shown =
-      cropped((outputs.composite ? outputs.composite : outputs.ao)->as<float>(), source.data, written_of(source));
-  auto pixels = displayed(source, shown, planes);
+  const Window data = outputs.composite ? composite_window(source) : written_of(source);
+  const auto shown = outputs.composite ? whole_composite(source, *outputs.composite)
+                                       : cropped(outputs.ao->as<float>(), source.data, data);
+  auto pixels = displayed(source.display, data, shown, planes);
   if (transform) transform->apply(pixels);
   write_png(settings.preview, source.display.width, source.display.height, planes, pixels, text);
 }
