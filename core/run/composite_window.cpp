@@ -16,6 +16,11 @@ constexpr std::uint64_t kBytesAtOnce = 8 << 20;
 
 const Window& window_of_beauty(const FrameSource& source) { return source.part_of(source[RawPlane::beauty][0]).data; }
 
+/// Of all planes.
+std::uint64_t row_bytes(const FrameSource& source) {
+  return sizeof(float) * source[RawPlane::beauty].size() * std::uint64_t(window_of_beauty(source).width);
+}
+
 }  // namespace
 
 Window composite_window(const FrameSource& source) {
@@ -41,6 +46,11 @@ std::vector<std::vector<float>> composite_over(FrameSource& source, const Window
   return composite;
 }
 
+std::uint64_t composite_bytes(const FrameSource& source) {
+  if (source[RawPlane::beauty].empty() || composite_window(source) == written_of(source)) return 0;
+  return 2 * std::max(kBytesAtOnce, kRowsOfOutput * row_bytes(source));  // what is read, and what is made of it
+}
+
 CompositeRows::CompositeRows(FrameSource& source, const Window& computed, ExrWriter& file)
     : source_(source),
       file_(file),
@@ -60,9 +70,7 @@ void CompositeRows::write(std::span<const std::span<const float>> planes) {
 void CompositeRows::finish() { write_until(window_.y + window_.height, {}, {}); }
 
 void CompositeRows::write_until(int bottom, const Window& from, std::span<const std::span<const float>> planes) {
-  const std::uint64_t row_bytes =
-      sizeof(float) * source_[RawPlane::beauty].size() * std::uint64_t(window_of_beauty(source_).width);
-  const int step = int(std::clamp<std::uint64_t>(kBytesAtOnce / row_bytes, kRowsOfOutput, 1 << 20));
+  const int step = int(std::clamp<std::uint64_t>(kBytesAtOnce / row_bytes(source_), kRowsOfOutput, 1 << 20));
   for (const int end = std::min(bottom, window_.y + window_.height); row_ < end;) {
     const Window part{window_.x, row_, window_.width, std::min(step, end - row_)};
     const auto composite = composite_over(source_, part, from, planes);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -17,6 +18,9 @@ Window composite_window(const FrameSource& source);
 /// beauty's, which are read then. Fails as reading a frame does.
 std::vector<std::vector<float>> composite_over(FrameSource& source, const Window& part, const Window& from,
                                                std::span<const std::span<const float>> planes);
+
+/// The bytes that putting it together takes beside what is computed; 0 where its window is that of the AO.
+std::uint64_t composite_bytes(const FrameSource& source);
 
 /// Puts the rows of the composite's window into its file while those of another window are computed.
 class CompositeRows {

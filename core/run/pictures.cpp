@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "core/base/file.h"
+#include "core/base/windows.h"
 #include "core/chain/debug_view.h"
 #include "core/formats/image_io.h"
 #include "core/formats/png.h"
@@ -77,15 +78,20 @@ std::vector<float> displayed(const Window& display, const Window& data, std::spa
   return interleaved;
 }
 
-/// The composite over all of its window.
-std::vector<float> whole_composite(FrameSource& source, const gpu::Buffer& computed) {
+/// The composite over a window, band by band, since the beauty's rows may be far longer than those of the display.
+std::vector<float> shown_composite(FrameSource& source, const gpu::Buffer& computed, const Window& shown) {
+  constexpr int kBand = 64;  // rows; files compress no more together, but for a few
   std::vector<std::span<const float>> planes;
   const auto values = computed.as<const float>();
   for (std::size_t at = 0; at < values.size(); at += source.data.pixels())
     planes.push_back(values.subspan(at, source.data.pixels()));
-  std::vector<float> pixels;
-  for (const auto& plane : composite_over(source, composite_window(source), source.data, planes))
-    pixels.insert(pixels.end(), plane.begin(), plane.end());
+  std::vector<float> pixels(planes.size() * shown.pixels());
+  for (int y = shown.y; y < shown.y + shown.height; y += kBand) {
+    const Window band{shown.x, y, shown.width, std::min(kBand, shown.y + shown.height - y)};
+    const auto composite = composite_over(source, band, source.data, planes);
+    for (std::size_t c = 0; c < composite.size(); c++)
+      copy_common(composite[c].data(), band, pixels.data() + c * shown.pixels(), shown);
+  }
   return pixels;
 }
 
@@ -100,8 +106,8 @@ void write_pictures(FrameSource& source, const FrameOutputs& outputs, const Disp
   if (settings.preview.empty()) return;
   // The composite through the view transform; AO by itself is data, and shown as it is.
   const int planes = outputs.composite ? 3 : 1;
-  const Window data = outputs.composite ? composite_window(source) : written_of(source);
-  const auto shown = outputs.composite ? whole_composite(source, *outputs.composite)
+  const Window data = outputs.composite ? common_part(composite_window(source), source.display) : written_of(source);
+  const auto shown = outputs.composite ? shown_composite(source, *outputs.composite, data)
                                        : cropped(outputs.ao->as<float>(), source.data, data);
   auto pixels = displayed(source.display, data, shown, planes);
   if (transform) transform->apply(pixels);

@@ -107,6 +107,19 @@ TEST_F(Windows, a_region_is_that_part_of_the_composite) {
   EXPECT_EQ(part.pixels, cropped(whole.pixels, whole.data, common));
 }
 
+TEST_F(Windows, a_preview_shows_the_beauty_where_there_is_no_depth) {
+  const std::string shown = folder / "shown.png", plain = folder / "plain.png";
+  computed(kDisplay, kDisplay, {"--intensity", "0", "--preview", plain});
+  computed(kShifted, kDisplay, {"--preview", shown});
+  Plane outside(kDisplay.pixels(), 1);
+  copy_common(Plane(kShifted.pixels()).data(), kShifted, outside.data(), kDisplay);
+  write_plane(other, "Y", kDisplay, outside);
+  const Finished there = run_program({"compare", shown, plain, "--mask", other, "--max-rmse", "0"});
+  EXPECT_EQ(there.code, 0) << there;
+  const Finished all = run_program({"compare", shown, plain, "--max-rmse", "0"});
+  EXPECT_EQ(all.code, 6) << all;
+}
+
 TEST_F(Windows, other_windows_are_noted_once) {
   write_beauty(kCrop);
   const Finished finished = composite_with();
