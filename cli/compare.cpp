@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -101,6 +102,7 @@ void print_heading(const std::string& result, const std::string& reference, cons
 void print_picture(const FrameComparison& c) {
   print_heading(c.result, c.reference, c.channels);
   fmt::print("  {} pixels compared, {} masked, {} not finite\n", c.count, c.masked, c.excluded);
+  if (c.common) fmt::print("  the files' windows differ: compared {}, which all have\n", to_string(*c.common));
   const PlaneErrors& e = c.errors;
   fmt::print("  rmse {:.4f}   mae {:.4f}   bias {:+.4f}   max {:.4f}   p95 {:.4f}   p99 {:.4f}\n", e.rmse, e.mae,
              e.bias, e.max, e.p95, e.p99);
@@ -124,6 +126,10 @@ void print_sequence(const CompareReport& report) {
                e.rmse, e.mae, e.bias, e.p99, c.psnr, optional_number(c.ssim), c.flip, optional_number(c.grain));
     sum += e.rmse;
   }
+  const auto part = std::ranges::find_if(report.frames, [](const auto& c) { return c.common.has_value(); });
+  if (part != report.frames.end())
+    fmt::print("the files' windows differ: compared what all have, in frame {} {}\n", part->frame,
+               to_string(*part->common));
   const auto& worst = worst_frame(report);
   fmt::print("worst: frame {}, rmse {:.4f}; mean rmse {:.4f}; flicker {}\n", worst.frame, worst.errors.rmse,
              sum / double(report.frames.size()), optional_number(report.flicker));

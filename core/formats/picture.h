@@ -26,6 +26,7 @@ class Picture {
   Picture(const std::string& path, const char* option);
 
   const std::string& path() const { return path_; }
+  const Window& display() const { return file_.display(); }
   /// Lists the channels that have a sample for every pixel.
   const std::vector<PictureChannel>& channels() const { return channels_; }
   std::vector<std::string> names() const;

@@ -117,8 +117,6 @@ void find_ambient(FrameSource& source, const ChannelSearch& search, std::size_t 
          lights.size());
   for (const auto& light : lights) add_typed(source, search, file, light);
   if (lights.empty()) find_usual(source, search, file);
-  for (const auto plane : {RawPlane::indirect, RawPlane::diffuse_color})
-    require_same_window(source, source[plane], "ambient light", "--ambient");
 }
 
 }  // namespace alcove

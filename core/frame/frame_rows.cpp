@@ -6,6 +6,7 @@
 
 #include "core/base/error.h"
 #include "core/base/file.h"
+#include "core/frame/plane_windows.h"
 
 namespace alcove {
 namespace {
@@ -67,11 +68,9 @@ void FrameRows::decode(int top, int bottom) {
 void FrameRows::decode_block(int top, int rows) {
   const std::size_t plane = std::size_t(rows) * std::size_t(source_.file_data.width);
   Block block{top, rows, std::make_unique_for_overwrite<float[]>(channels_.size() * plane), 0};
-  std::vector<std::vector<ExrRead>> by_file(source_.files.size());
-  for (std::size_t i = 0; i < channels_.size(); i++)
-    by_file[channels_[i].file].push_back({channels_[i].part, channels_[i].channel, block.pixels.get() + i * plane});
-  for (std::size_t file = 0; file < by_file.size(); file++)
-    source_.files[file].read(by_file[file], top - source_.file_data.y, rows);
+  std::vector<ChannelRead> reads;
+  for (std::size_t i = 0; i < channels_.size(); i++) reads.push_back({channels_[i], block.pixels.get() + i * plane});
+  read_rows(source_, reads, top, rows);
   source_.rows_read += std::uint64_t(rows);
   const std::uint64_t bytes = row_bytes() * std::uint64_t(rows);
   if (bytes_in_memory_ + bytes > most_bytes_)

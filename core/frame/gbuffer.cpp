@@ -18,6 +18,7 @@
 #include "core/frame/header_camera.h"
 #include "core/frame/input_files.h"
 #include "core/frame/matte.h"
+#include "core/frame/plane_windows.h"
 
 namespace alcove {
 namespace {
@@ -31,8 +32,18 @@ bool has_half_channel(const FrameSource& source, const ChannelRef& ref) {
 void find_beauty(FrameSource& source, const ChannelSearch& search, std::size_t file, const InputSettings& settings) {
   source[RawPlane::beauty] = search.with_alpha(
       search.require(file, kBeautyNames, settings.beauty_channels, !settings.beauty.empty(), "Combined.R"));
-  require_same_window(source, source[RawPlane::beauty], "beauty", "--beauty");
   find_ambient(source, search, file, settings);
+  for (const auto* aov : {&source[RawPlane::beauty], &source[RawPlane::indirect], &source[RawPlane::diffuse_color]})
+    require_common_window(source, *aov, "beauty", "--beauty",
+                          "the composite is as large as the beauty, which stays as it is where there is no depth");
+  const auto window_of = [&](const ChannelRef& channel) { return source.part_of(channel).data; };
+  const auto& beauty = source[RawPlane::beauty];
+  const auto other = std::ranges::find_if(
+      beauty, [&](const ChannelRef& channel) { return window_of(channel) != window_of(beauty[0]); });
+  if (other != beauty.end())
+    fail(ErrorKind::input, "{}: the beauty's channel {} is {}, and {} is {}: all must cover the same pixels (--beauty)",
+         source.files[other->file].path(), other->channel, to_string(window_of(*other)), beauty[0].channel,
+         to_string(window_of(beauty[0])));
 }
 
 /// What is multiplied in, where the settings name a file or a channel of it.
@@ -42,7 +53,8 @@ void find_material(FrameSource& source, ChannelSearch& search, const InputSettin
       search.open(settings.material_ao.empty() ? settings.input : settings.material_ao, "--material-ao");
   source[RawPlane::material_ao] =
       search.require(file, kMaterialNames, settings.material_ao_channel, !settings.material_ao.empty(), "AO");
-  require_same_window(source, source[RawPlane::material_ao], "material AO", "--material-ao");
+  require_common_window(source, source[RawPlane::material_ao], "material AO", "--material-ao",
+                        "where it has no pixels it counts as 1");
 }
 
 /// The colour that light takes at the surfaces.
@@ -55,7 +67,8 @@ void find_albedo(FrameSource& source, ChannelSearch& search, const std::string& 
          "{}: no diffuse colour found for --multi-bounce: name its channels with --albedo-channels, or give --albedo a "
          "file or a number",
          source.files[file].path());
-  require_same_window(source, source[RawPlane::albedo], "diffuse colour", "--albedo");
+  require_common_window(source, source[RawPlane::albedo], "diffuse colour", "--albedo",
+                        "where it has no pixels it counts as black");
 }
 
 /// The rules that the settings name, or those of the file.
@@ -276,7 +289,7 @@ bool header_has_camera(const InputSettings& settings) {
 
 void read_planes(FrameSource& source, const std::vector<PlaneRead>& reads) {
   source.rows_read += std::uint64_t(source.data.height);
-  std::vector<std::vector<ExrRead>> by_file(source.files.size());
+  std::vector<ChannelRead> firsts;
   // a channel that serves two purposes is decoded to the first place, and copied from there
   std::map<ChannelRef, float*> first;
   std::vector<std::pair<float*, float*>> copies;
@@ -285,12 +298,11 @@ void read_planes(FrameSource& source, const std::vector<PlaneRead>& reads) {
       const auto& channel = (*read.channels)[i];
       float* to = read.to + i * source.data.pixels();
       if (const auto [known, is_new] = first.try_emplace(channel, to); is_new)
-        by_file[channel.file].push_back({channel.part, channel.channel, to});
+        firsts.push_back({channel, to});
       else
         copies.emplace_back(known->second, to);
     }
-  for (std::size_t file = 0; file < by_file.size(); file++)
-    source.files[file].read(by_file[file], source.data.y - source.file_data.y, source.data.height);
+  read_rows(source, firsts, source.data.y, source.data.height);
   for (const auto& [from, to] : copies) std::copy_n(from, source.data.pixels(), to);
 }
 

@@ -14,6 +14,7 @@
 #include "core/frame/cryptomatte.h"
 #include "core/frame/input_files.h"
 #include "core/frame/name_pattern.h"
+#include "core/frame/plane_windows.h"
 
 namespace alcove {
 namespace {
@@ -155,7 +156,7 @@ void find_matte(FrameSource& source, ChannelSearch& search, const InputSettings&
       source.matte.objects = numbers_of(path, meant);
     }
   }
-  require_same_window(source, source[RawPlane::matte], "matte", "--matte");
+  require_common_window(source, source[RawPlane::matte], "matte", "--matte", "where it has no pixels nothing is in it");
 }
 
 void find_occluders(FrameSource& source, ChannelSearch& search, const InputSettings& settings) {
@@ -172,7 +173,9 @@ void find_occluders(FrameSource& source, ChannelSearch& search, const InputSetti
     const std::size_t file = search.open(own_file ? settings.objects : main_input(settings), "--objects");
     find_objects(source, search, file, {words, option, settings.object_channel, kObjectNames}, own_file);
   }
-  require_same_window(source, source[RawPlane::occluders], "choice of occluders", option);
+  require_common_window(
+      source, source[RawPlane::occluders], "choice of occluders", option,
+      source.occluders.ignores ? "nothing is ignored where it has no pixels" : "nothing blocks where it has no pixels");
 }
 
 }  // namespace alcove

@@ -11,6 +11,7 @@
 
 #include "core/base/error.h"
 #include "core/base/text.h"
+#include "core/base/windows.h"
 #include "core/formats/picture.h"
 #include "core/formats/sequence.h"
 #include "core/frame/gbuffer.h"
@@ -79,16 +80,51 @@ std::string message_name(const CompareSettings& settings) {
   return fmt::format("{} against {}", settings.result, settings.reference);
 }
 
-void require_same_pixels(const Window& window, const std::string& path, const Window& wanted,
-                         const std::string& result) {
-  if (window != wanted)
-    fail(ErrorKind::input, "{} is {}, and {} is {}: they must cover the same pixels", result, to_string(wanted), path,
-         to_string(window));
-}
+/// The pixels that all files of a comparison have.
+class CommonWindow {
+ public:
+  /// Leaves out what this file lacks. Fails where nothing is left, and where nothing tells which pixels of two files
+  /// belong together, since both their windows differ.
+  void take(const std::string& path, const Window& data, const Window& display) {
+    if (first_.empty()) {
+      first_ = path;
+      data_ = first_data_ = data;
+      display_ = display;
+    }
+    if (data == first_data_) return;
+    const auto refuse = [&](const char* why) {
+      fail(ErrorKind::input, "{} is {}, and {} is {}: {}", first_, to_string(first_data_), path, to_string(data), why);
+    };
+    if (display != display_) refuse("their display windows differ too, so they must cover the same pixels");
+    data_ = common_part(data_, data);
+    if (data_.pixels() == 0) refuse("they share no pixel");
+    is_part_ = true;
+  }
+
+  const Window& data() const { return data_; }
+  /// Whether some file has more than this window.
+  bool is_part() const { return is_part_; }
+
+ private:
+  std::string first_;
+  Window data_, first_data_, display_;
+  bool is_part_ = false;
+};
+
+/// What a file holds.
+struct FilePlanes {
+  Window data;
+  std::vector<float> values;  // empty: there is no such file
+
+  void cut(const Window& part) {
+    if (!values.empty() && data != part) values = cropped(values, data, part);
+  }
+};
 
 /// A frame's planes, and what they mean.
 struct Planes {
   Window data;
+  bool is_part = false;               // some file has more than this window
   std::vector<std::string> channels;  // names in the result
   Comparable values;
   std::vector<float> depth;  // empty: none
@@ -99,7 +135,7 @@ struct Planes {
   }
 };
 
-std::vector<float> read_depth(const CompareSettings& settings, const Window& data) {
+FilePlanes read_depth(const CompareSettings& settings, CommonWindow& common) {
   if (settings.depth.empty()) return {};
   InputSettings input;
   input.depth = settings.depth;
@@ -109,10 +145,17 @@ std::vector<float> read_depth(const CompareSettings& settings, const Window& dat
   input.fov = 90;  // the search for channels asks for a camera, which depth alone has no use for
   input.normal_space = NormalSpace::view;
   FrameSource source = find_frame(input, false, 0);
-  require_same_pixels(source.data, settings.depth, data, settings.result);
-  std::vector<float> depth(data.pixels());
-  read_planes(source, {{&source[RawPlane::depth], depth.data()}});
+  common.take(settings.depth, source.data, source.display);
+  FilePlanes depth{source.data, std::vector<float>(source.data.pixels())};
+  read_planes(source, {{&source[RawPlane::depth], depth.values.data()}});
   return depth;
+}
+
+/// Reads channels of a picture, which have one window.
+FilePlanes read_channels(Picture& picture, std::span<const std::size_t> channels, CommonWindow& common) {
+  const Window& data = picture.channels()[channels[0]].data;
+  common.take(picture.path(), data, picture.display());
+  return {data, picture.read(channels)};
 }
 
 std::size_t mask_channel_of(const Picture& picture, const std::string& chosen) {
@@ -126,31 +169,30 @@ std::size_t mask_channel_of(const Picture& picture, const std::string& chosen) {
        list_of(picture.names()));
 }
 
-/// Marks the pixels to be compared, by the mask's file and the depth's sky; empty if all are.
-std::vector<std::uint8_t> read_mask(const CompareSettings& settings, const Window& data, Values depth) {
-  std::vector<std::uint8_t> mask = surfaces(depth, settings.sky);
-  if (settings.mask.empty()) return mask;
+FilePlanes read_mask(const CompareSettings& settings, CommonWindow& common) {
+  if (settings.mask.empty()) return {};
   Picture picture(settings.mask, "--mask");
-  const std::size_t channel = mask_channel_of(picture, settings.mask_channel);
-  require_same_pixels(picture.channels()[channel].data, settings.mask, data, settings.result);
-  const auto values = picture.read(std::array{channel});
+  return read_channels(picture, std::array{mask_channel_of(picture, settings.mask_channel)}, common);
+}
+
+/// Marks the pixels to be compared, by the mask's values and the depth's sky; empty if all are.
+std::vector<std::uint8_t> mask_of(const CompareSettings& settings, const std::vector<float>& values, Values depth) {
+  std::vector<std::uint8_t> mask = surfaces(depth, settings.sky);
+  if (values.empty()) return mask;
   if (mask.empty()) mask.assign(values.size(), 1);
   for (std::size_t i = 0; i < mask.size(); i++) mask[i] = mask[i] && values[i] > 0;
   return mask;
 }
 
-void read_motion(const CompareSettings& settings, Planes& planes) {
-  if (settings.motion.empty()) return;
+FilePlanes read_motion(const CompareSettings& settings, CommonWindow& common) {
+  if (settings.motion.empty()) return {};
   Picture picture(settings.motion, "--motion");
   const std::string names = settings.motion_channels.empty() ? "Vector.X,Vector.Y" : settings.motion_channels;
   const std::size_t comma = names.find(',');
   if (comma == names.npos) fail(ErrorKind::usage, "--motion-channels {}: give two names, X,Y", names);
   const std::array channels{picture.find(names.substr(0, comma), "--motion-channels"),
                             picture.find(names.substr(comma + 1), "--motion-channels")};
-  require_same_pixels(picture.channels()[channels[0]].data, settings.motion, planes.data, settings.result);
-  const auto both = picture.read(channels);
-  planes.motion_x.assign(both.begin(), both.begin() + std::ptrdiff_t(planes.data.pixels()));
-  planes.motion_y.assign(both.begin() + std::ptrdiff_t(planes.data.pixels()), both.end());
+  return read_channels(picture, channels, common);
 }
 
 Planes read_planes_of(const CompareSettings& settings) {
@@ -163,23 +205,30 @@ Planes read_planes_of(const CompareSettings& settings) {
     of_reference.push_back(pair.reference);
     planes.channels.push_back(result.channels()[pair.result].name);
   }
-  planes.data = result.channels()[of_result[0]].data;
-  require_same_pixels(reference.channels()[of_reference[0]].data, settings.reference, planes.data, settings.result);
-  const auto result_planes = result.read(of_result), reference_planes = reference.read(of_reference);
-  std::vector<float> reference_b;
+  CommonWindow common;
+  FilePlanes results = read_channels(result, of_result, common),
+             references = read_channels(reference, of_reference, common);
+  FilePlanes references_b;
   if (!settings.reference_b.empty()) {
     Picture second(settings.reference_b, "--reference-b");
     std::vector<std::size_t> of_second;
     for (const std::size_t channel : of_reference)
       of_second.push_back(second.find(reference.channels()[channel].name, "--reference-b"));
-    require_same_pixels(second.channels()[of_second[0]].data, settings.reference_b, planes.data, settings.result);
-    reference_b = second.read(of_second);
+    references_b = read_channels(second, of_second, common);
   }
-  planes.depth = read_depth(settings, planes.data);
-  const auto mask = read_mask(settings, planes.data, planes.depth);
-  planes.values =
-      make_comparable(message_name(settings), planes.data.pixels(), result_planes, reference_planes, reference_b, mask);
-  read_motion(settings, planes);
+  FilePlanes depth = read_depth(settings, common), mask = read_mask(settings, common);
+  FilePlanes motion = read_motion(settings, common);
+  planes.data = common.data();
+  planes.is_part = common.is_part();
+  for (auto* file : {&results, &references, &references_b, &depth, &mask, &motion}) file->cut(planes.data);
+  planes.depth = std::move(depth.values);
+  planes.values = make_comparable(message_name(settings), planes.data.pixels(), results.values, references.values,
+                                  references_b.values, mask_of(settings, mask.values, planes.depth));
+  if (!motion.values.empty()) {
+    const auto middle = motion.values.begin() + std::ptrdiff_t(planes.data.pixels());
+    planes.motion_x.assign(motion.values.begin(), middle);
+    planes.motion_y.assign(middle, motion.values.end());
+  }
   return planes;
 }
 
@@ -298,6 +347,7 @@ FrameComparison measure(const CompareSettings& settings, const Planes& planes, i
   c.channels = planes.channels;
   c.width = width;
   c.height = height;
+  if (planes.is_part) c.common = planes.data;
   c.count = values.count;
   c.excluded = values.excluded;
   c.masked = values.masked;

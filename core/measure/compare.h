@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/base/image.h"
 #include "core/measure/metrics.h"
 
 namespace alcove {
@@ -47,6 +48,7 @@ struct FrameComparison {
   std::string result, reference;  // files
   std::vector<std::string> channels;
   int width = 0, height = 0;
+  std::optional<Window> common;                     // what was compared, where the files have different windows
   std::size_t count = 0, excluded = 0, masked = 0;  // pixels; see Comparable
   PlaneErrors errors;
   double psnr = 0;             // infinite for equal pictures
@@ -70,8 +72,8 @@ struct CompareReport {
 inline constexpr std::size_t kMostPicturedFrames = 12;
 
 /// Reads and measures the frames. Fails with ErrorKind::usage on settings that contradict each other, and with
-/// ErrorKind::input on missing and unreadable files, on pictures that do not cover the same pixels or share no channel,
-/// and when no pixel is left to compare.
+/// ErrorKind::input on missing and unreadable files, on pictures that share no pixel or no channel, on pictures of
+/// different windows whose display windows differ too, and when no pixel is left to compare.
 CompareReport compare_pictures(const CompareSettings& settings);
 
 /// The frame with the largest rmse.

@@ -66,7 +66,12 @@ Json sky_json(const FrameComparison& frame) {
           {"rmse_without", number(sky.rmse_without)}};
 }
 
-/// Bands, sky and edges of a frame.
+Json window_json(const std::optional<Window>& window) {
+  if (!window) return nullptr;
+  return {{"x", window->x}, {"y", window->y}, {"width", window->width}, {"height", window->height}};
+}
+
+/// Bands, sky, edges and window of a frame.
 void add_parts(Json& json, const FrameComparison& frame) {
   Json bands = Json::array();
   for (const auto& band : frame.bands) {
@@ -78,6 +83,7 @@ void add_parts(Json& json, const FrameComparison& frame) {
   json["sky_differs"] = sky_json(frame);
   json["edges"] =
       frame.edges ? Json{{"at", part_json(frame.edges->at)}, {"away", part_json(frame.edges->away)}} : Json(nullptr);
+  json["common_window"] = window_json(frame.common);
 }
 
 void add_measures(Json& json, const FrameComparison& frame) {

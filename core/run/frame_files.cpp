@@ -13,6 +13,7 @@
 #include "core/chain/aov.h"
 #include "core/chain/margin.h"
 #include "core/frame/behind.h"
+#include "core/frame/plane_windows.h"
 #include "core/frame/settle_rows.h"
 #include "core/run/pictures.h"
 
@@ -27,9 +28,10 @@ bool in_world(const FrameSource& source, const OutputSettings& settings) {
 }
 
 /// Of a rotation the way back.
-ExrOutput output_like(const FrameSource& source, const ChannelRef& like, const Provenance& provenance) {
+ExrOutput output_like(const FrameSource& source, const ChannelRef& like, const Window& data,
+                      const Provenance& provenance) {
   ExrOutput output;
-  output.data = written_of(source);
+  output.data = data;
   output.display = source.display;
   output.pixel_aspect = source.pixel_aspect;
   output.attributes = source.files[like.file].attributes(like.part);
@@ -58,7 +60,7 @@ SampleType type_of(const FrameSource& source, const ChannelRef& ref) {
 /// The AO file, without pixels.
 ExrOutput aov_file(const FrameSource& source, const EstimatorSettings& estimator, const OutputSettings& settings,
                    const Provenance& provenance) {
-  ExrOutput output = output_like(source, source[RawPlane::depth][0], provenance);
+  ExrOutput output = output_like(source, source[RawPlane::depth][0], written_of(source), provenance);
   output.compression = settings.compression;
   const auto radii = estimator.radius ? radii_of(estimator) : std::vector<double>();
   if (needs_ao(settings)) output.own_attributes["alcove/radius"] = fmt::format("{}", fmt::join(radii, " "));
@@ -107,7 +109,7 @@ bool keeps_layers(const FrameSource& source, const OutputSettings& settings) {
 /// The composite, without pixels. Every channel keeps the beauty's precision.
 ExrOutput composite_file(const FrameSource& source, const Settings& all, const Provenance& provenance) {
   const OutputSettings& settings = all.output;
-  ExrOutput output = output_like(source, source[RawPlane::beauty][0], provenance);
+  ExrOutput output = output_like(source, source[RawPlane::beauty][0], composite_window(source), provenance);
   output.own_attributes["alcove/composite"] = composite_text(source, all);
   output.compression = settings.composite_compression;
   const char* names[] = {"R", "G", "B", "A"};
@@ -218,6 +220,10 @@ FrameSource open_frame(const Settings& settings, int frame) {
     source.behind.clear();
   }
   if (settings.input.roi) source.region = region_of(source, *settings.input.roi);
+  if (source.region && !source[RawPlane::beauty].empty() && composite_window(source).pixels() == 0)
+    fail(ErrorKind::usage,
+         "{}: the beauty has no pixel of --roi, which is {}: give a region within it, or no --composite",
+         source.files[source[RawPlane::beauty][0].file].path(), to_string(*source.region));
   require_for_outputs(source, settings.output);
   return source;
 }
@@ -255,6 +261,8 @@ FrameInputs load_frame(gpu::Recorder& gpu, FrameSource& source, const Settings& 
   } else {
     read_planes(source, reads);
   }
+  for (const auto& row : kRawPlanes)
+    if (planes[row.plane]) fill_missing(source, row.plane, planes[row.plane]->as<float>());
   const auto values_of = [&](RawPlane plane) {
     return planes[plane] ? planes[plane]->as<float>() : std::span<float>();
   };
@@ -283,24 +291,33 @@ std::vector<std::span<const float>> result_planes(const FrameOutputs& outputs, c
   return results;
 }
 
-FrameWriter::FrameWriter(const FrameSource& source, const Settings& all, const Provenance& provenance)
+FrameWriter::FrameWriter(FrameSource& source, const Settings& all, const Provenance& provenance)
     : notes_(provenance.notes) {
   const OutputSettings& settings = all.output;
   const ExrOutput aovs = aov_file(source, all.estimator, settings, provenance);
   files_.emplace_back(ExrWriter(settings.output, aovs));
   planes_.push_back(aovs.planes.size());
-  if (settings.composite.empty()) return;
+  // A part of a frame that is only timed may share no pixel with the beauty.
+  if (settings.composite.empty() || composite_window(source).pixels() == 0) return;
   const ExrOutput composite = composite_file(source, all, provenance);
   if (keeps_layers(source, settings))
     files_.emplace_back(ExrCopy(settings.composite, composite_copy(source, composite)));
   else
     files_.emplace_back(ExrWriter(settings.composite, composite));
   planes_.push_back(composite.planes.size());
+  if (composite_window(source) != written_of(source))
+    composite_.emplace(source, written_of(source), composite.planes.size());
 }
 
 void FrameWriter::write(std::span<const std::span<const float>> planes) {
   for (std::size_t i = 0; i < files_.size(); i++) {
-    std::visit([&](auto& file) { file.write(planes.first(planes_[i])); }, files_[i]);
+    const auto write = [&](std::span<const std::span<const float>> rows) {
+      std::visit([&](auto& file) { file.write(rows); }, files_[i]);
+    };
+    if (i > 0 && composite_)
+      composite_->write(planes.first(planes_[i]), write);
+    else
+      write(planes.first(planes_[i]));
     planes = planes.subspan(planes_[i]);
   }
 }
@@ -308,6 +325,10 @@ void FrameWriter::write(std::span<const std::span<const float>> planes) {
 void FrameWriter::finish(const std::string& notes) {
   std::map<std::string, std::string> late;
   if (notes != notes_) late[kNotesAttribute] = notes;
+  if (composite_)
+    composite_->finish([&](std::span<const std::span<const float>> rows) {
+      std::visit([&](auto& file) { file.write(rows); }, files_.back());
+    });
   for (auto& file : files_) std::visit([&](auto& open) { open.finish(late); }, file);
 }
 

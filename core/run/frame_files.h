@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <variant>
@@ -11,6 +12,7 @@
 #include "core/formats/exr.h"
 #include "core/formats/exr_copy.h"
 #include "core/frame/gbuffer.h"
+#include "core/run/composite_window.h"
 #include "core/run/region.h"
 
 namespace alcove {
@@ -63,7 +65,8 @@ std::vector<std::span<const float>> result_planes(const FrameOutputs& outputs, c
 /// The AO file and the composite, written from top to bottom, each whole or not at all. Fails with ErrorKind::output.
 class FrameWriter {
  public:
-  FrameWriter(const FrameSource& source, const Settings& settings, const Provenance& provenance);
+  /// The source must stay: where the beauty has another window than what is written of the frame, the rest is read.
+  FrameWriter(FrameSource& source, const Settings& settings, const Provenance& provenance);
 
   /// The next rows of result_planes(), as wide as what is written.
   void write(std::span<const std::span<const float>> planes);
@@ -74,7 +77,8 @@ class FrameWriter {
  private:
   const std::string notes_;  // that the headers have
   std::vector<std::variant<ExrWriter, ExrCopy>> files_;
-  std::vector<std::size_t> planes_;  // the number of planes of each file
+  std::vector<std::size_t> planes_;         // the number of planes of each file
+  std::optional<CompositeRows> composite_;  // where it has another window than the AO
 };
 
 }  // namespace alcove

@@ -10,6 +10,7 @@
 #include "core/chain/debug_view.h"
 #include "core/chain/margin.h"
 #include "core/formats/exr_copy.h"
+#include "core/run/composite_window.h"
 #include "kernels/bounds.h"
 #include "kernels/classify.h"
 #include "kernels/profile.h"
@@ -204,7 +205,8 @@ FrameMemory memory_of(const FrameSource& source, const Settings& settings) {
   memory.beside = memory.written + sizeof(float) * pictures;
   memory.widest = sizeof(float) * widest;
   memory.codec_groups = {kRowsOfOutput * memory.written * std::uint64_t(source.file_data.width)};
-  memory.fixed_bytes = exr_codec_bytes(memory.codec_groups[0]) + copied_bytes(source, settings.output);
+  memory.fixed_bytes =
+      exr_codec_bytes(memory.codec_groups[0]) + copied_bytes(source, settings.output) + composite_bytes(source);
   for (const auto& file : source.files) {
     memory.fixed_bytes += file.bytes_beside_pixels();
     if (file.codec_group() > 0) memory.codec_groups.push_back(file.codec_group());

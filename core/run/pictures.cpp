@@ -7,9 +7,11 @@
 #include <limits>
 
 #include "core/base/file.h"
+#include "core/base/windows.h"
 #include "core/chain/debug_view.h"
 #include "core/formats/image_io.h"
 #include "core/formats/png.h"
+#include "core/run/composite_window.h"
 
 namespace alcove {
 namespace {
@@ -62,9 +64,8 @@ void write_debug_view(const std::string& path, const DebugView& view, int width,
   write_whole(path, encode_chart(path, chart));
 }
 
-/// The display window of `planes` planes, interleaved; black where there are no pixels.
-std::vector<float> displayed(const FrameSource& source, std::span<const float> pixels, int planes) {
-  const Window data = written_of(source), &display = source.display;
+/// The display window of `planes` planes over a data window, interleaved; black where there are no pixels.
+std::vector<float> displayed(const Window& display, const Window& data, std::span<const float> pixels, int planes) {
   std::vector<float> interleaved(display.pixels() * std::size_t(planes));
   for (int y = std::max(data.y, display.y); y < std::min(data.y + data.height, display.y + display.height); y++)
     for (int x = std::max(data.x, display.x); x < std::min(data.x + data.width, display.x + display.width); x++)
@@ -77,9 +78,26 @@ std::vector<float> displayed(const FrameSource& source, std::span<const float> p
   return interleaved;
 }
 
+/// The composite over a window, band by band, since the beauty's rows may be far longer than those of the display.
+std::vector<float> shown_composite(FrameSource& source, const gpu::Buffer& computed, const Window& shown) {
+  constexpr int kBand = 64;  // rows; files compress no more together, but for a few
+  std::vector<std::span<const float>> planes;
+  const auto values = computed.as<const float>();
+  for (std::size_t at = 0; at < values.size(); at += source.data.pixels())
+    planes.push_back(values.subspan(at, source.data.pixels()));
+  std::vector<float> pixels(planes.size() * shown.pixels());
+  for (int y = shown.y; y < shown.y + shown.height; y += kBand) {
+    const Window band{shown.x, y, shown.width, std::min(kBand, shown.y + shown.height - y)};
+    const auto composite = composite_over(source, planes.size(), band, source.data, planes);
+    for (std::size_t c = 0; c < composite.size(); c++)
+      copy_common(composite[c].data(), band, pixels.data() + c * shown.pixels(), shown);
+  }
+  return pixels;
+}
+
 }  // namespace
 
-void write_pictures(const FrameSource& source, const FrameOutputs& outputs, const DisplayTransform* transform,
+void write_pictures(FrameSource& source, const FrameOutputs& outputs, const DisplayTransform* transform,
                     const OutputSettings& settings, const Provenance& provenance) {
   const std::string text = made_by(provenance.options, provenance.inputs);
   for (const auto& plane : outputs.debug)
@@ -88,9 +106,10 @@ void write_pictures(const FrameSource& source, const FrameOutputs& outputs, cons
   if (settings.preview.empty()) return;
   // The composite through the view transform; AO by itself is data, and shown as it is.
   const int planes = outputs.composite ? 3 : 1;
-  const auto shown =
-      cropped((outputs.composite ? outputs.composite : outputs.ao)->as<float>(), source.data, written_of(source));
-  auto pixels = displayed(source, shown, planes);
+  const Window data = outputs.composite ? common_part(composite_window(source), source.display) : written_of(source);
+  const auto shown = outputs.composite ? shown_composite(source, *outputs.composite, data)
+                                       : cropped(outputs.ao->as<float>(), source.data, data);
+  auto pixels = displayed(source.display, data, shown, planes);
   if (transform) transform->apply(pixels);
   write_png(settings.preview, source.display.width, source.display.height, planes, pixels, text);
 }

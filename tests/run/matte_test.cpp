@@ -234,7 +234,7 @@ TEST_F(Crypto, mistakes_are_named) {
   expect_error(wall_frame(kWindow, kWindow), 3, {"--matte-channel", "Matte.Y"}, {frame, "Matte.Y", "--matte-channel"});
   expect_error(wall_frame(kWindow, kWindow), 2, {"--matte-outside", "0.5"}, {"--matte-outside", "--matte"});
   expect_error(with("Matte.Y", ball), 2, {"--matte-channel", "Matte.Y", "--matte-outside", "2"}, {"--matte-outside"});
-  FrameFile small{{0, 0, 10, 10}, kWindow, 1, {{"A", Plane(100, 1)}}, {}, {}};
+  FrameFile small{{0, 0, 10, 10}, {0, 0, 10, 10}, 1, {{"A", Plane(100, 1)}}, {}, {}};
   small.write(folder / "small.exr");
   expect_error(file, 3, {"--matte", folder / "small.exr"}, {"small.exr", "--matte", "10x10"});
   // A second Cryptomatte that knows the name, too.

@@ -113,6 +113,18 @@ TEST_F(Tiles, give_the_bits_of_the_whole) {
   }
 }
 
+TEST_F(Tiles, give_the_bits_of_the_whole_with_a_beauty_of_another_window) {
+  for (const Window& window : {Window{-20, -30, 530, 340}, Window{40, 60, 300, 150}, Window{100, -30, 20, 340}}) {
+    FrameFile beauty{window, display, 1, {}, {}, {}};
+    for (const char* name : {"R", "G", "B"}) {
+      auto& plane = beauty.planes[name] = std::vector<float>(window.pixels());
+      for (std::size_t i = 0; i < plane.size(); i++) plane[i] = float(i % 97) / 32;
+    }
+    beauty.write(folder / "beauty.exr");
+    expect_same({"--radius", "0.2", "--beauty", folder / "beauty.exr", "--composite", folder / "composite.exr"});
+  }
+}
+
 TEST_F(Tiles, give_the_bits_of_the_whole_with_hidden_surfaces) {
   for (const char* name : {"near.exr", "far.exr"}) {
     FrameFile layer{data, display, 1, {}, {}, {}};
