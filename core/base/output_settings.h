@@ -22,7 +22,7 @@ struct CompositeLook {
 struct OutputSettings {
   std::string output;     // the AO EXR
   std::string composite;  // the composite EXR
-  std::string preview;    // a PNG of the composite, or of the AO where there is none
+  std::string preview;    // a PNG, see preview_style
   // what the file of `output` holds: names of AOVs with commas, see core/chain/outputs.h
   std::string aovs = "ao";
   // mono: Y; rgb: R, G, B, as compositors' shuffles expect, and coloured with multi_bounce
@@ -44,8 +44,11 @@ struct OutputSettings {
   OutputType type = OutputType::half_float;  // of all channels of `output` but depth, which is float
   std::string compression = "zip";           // of the AO file: none, rle, zips, zip or piz
   std::string ocio;                          // an OpenColorIO configuration for the preview
-  std::string stats;                         // a JSON file
-  bool no_mkdir = false;                     // a folder that is missing is an error, and is not made
+  std::string display, view_transform;       // of it; empty: its default ones
+  // auto: the composite, or the AO where there is none; ao; composite; split: the beauty beside the composite
+  std::string preview_style = "auto";
+  std::string stats;      // a JSON file
+  bool no_mkdir = false;  // a folder that is missing is an error, and is not made
   // a file of JSON objects, one per line, or - for the standard output; whoever watches the run writes it
   std::string log_json;
 };

@@ -7,9 +7,11 @@
 #include <algorithm>
 #include <cstdlib>
 #include <sstream>
+#include <vector>
 
 #include "core/base/error.h"
 #include "core/base/file.h"
+#include "core/base/text.h"
 
 namespace alcove {
 namespace {
@@ -51,6 +53,32 @@ OCIO::ConstConfigRcPtr open_config(const std::string& path) {
   return OCIO::Config::CreateFromFile(file.c_str());
 }
 
+/// The name as the configuration spells it, in any case of letters; fails where it has none such.
+std::string known_name(const std::string& config, const char* option, const std::string& name,
+                       const std::vector<std::string>& names) {
+  for (const auto& known : names)
+    if (lower_case(known) == lower_case(name)) return known;
+  const std::string file = display_config_file(config);
+  fail(ErrorKind::input, "{}: {} {}: the configuration has no such name{}; it has {}",
+       file.empty() ? "the built-in OpenColorIO configuration (--ocio names another)" : file, option, name,
+       suggestion(name, names), list_of(names));
+}
+
+std::string known_display(const OCIO::Config& opened, const std::string& config, const std::string& name) {
+  if (name.empty()) return opened.getDefaultDisplay();
+  std::vector<std::string> names;
+  for (int i = 0; i < opened.getNumDisplays(); i++) names.emplace_back(opened.getDisplay(i));
+  return known_name(config, "--display", name, names);
+}
+
+std::string known_view(const OCIO::Config& opened, const std::string& config, const std::string& display,
+                       const std::string& name) {
+  if (name.empty()) return opened.getDefaultView(display.c_str());
+  std::vector<std::string> names;
+  for (int i = 0; i < opened.getNumViews(display.c_str()); i++) names.emplace_back(opened.getView(display.c_str(), i));
+  return known_name(config, "--view-transform", name, names);
+}
+
 }  // namespace
 
 std::string display_config_file(const std::string& config) {
@@ -62,17 +90,18 @@ struct DisplayTransform::Impl {
   OCIO::ConstCPUProcessorRcPtr processor;
 };
 
-DisplayTransform::DisplayTransform(const std::string& config) : impl_(std::make_unique<Impl>()) {
+DisplayTransform::DisplayTransform(const std::string& config, const std::string& display, const std::string& view)
+    : impl_(std::make_unique<Impl>()) {
   try {
     const auto opened = open_config(config);
-    const char* display = opened->getDefaultDisplay();
-    const char* view = opened->getDefaultView(display);
+    const std::string used = known_display(*opened, config, display);
+    const std::string shown = known_view(*opened, config, used, view);
     const auto transform = OCIO::DisplayViewTransform::Create();
     transform->setSrc(OCIO::ROLE_SCENE_LINEAR);
-    transform->setDisplay(display);
-    transform->setView(view);
+    transform->setDisplay(used.c_str());
+    transform->setView(shown.c_str());
     impl_->processor = opened->getProcessor(transform)->getDefaultCPUProcessor();
-    description_ = std::string(display) + " / " + view;
+    description_ = used + " / " + shown;
   } catch (const OCIO::Exception& error) {
     std::string text = error.what();
     std::ranges::replace(text, '\n', ' ');

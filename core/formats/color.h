@@ -11,12 +11,12 @@ namespace alcove {
 /// The file that DisplayTransform reads: `config`, else what the OCIO variable names; "" where the built-in one serves.
 std::string display_config_file(const std::string& config);
 
-/// The default view of the default display of a configuration: `config` (a file), else what the OCIO variable names,
-/// else a small built-in one (linear Rec.709 to sRGB). Fails with ErrorKind::input when the configuration cannot be
-/// used.
+/// A view of a display of a configuration: `config` (a file), else what the OCIO variable names, else a small built-in
+/// one (linear Rec.709 to sRGB). Empty names stand for the defaults. Fails with ErrorKind::input when the configuration
+/// cannot be used, and where it has no such display or view, listing those that it has.
 class DisplayTransform {
  public:
-  explicit DisplayTransform(const std::string& config);
+  explicit DisplayTransform(const std::string& config, const std::string& display = "", const std::string& view = "");
   ~DisplayTransform();
   /// Interleaved r, g, b from the role scene_linear to display values, in place.
   void apply(std::span<float> rgb) const;

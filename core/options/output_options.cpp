@@ -21,6 +21,11 @@ OptionRow& word_list(OptionGroup& group, const std::string& name, std::string& v
       "");
 }
 
+Condition with_shown_composite() {
+  return with_output("with a --preview of a --composite", "there is none",
+                     [](const OutputSettings& output) { return !output.preview.empty() && !output.composite.empty(); });
+}
+
 /// Reads --tint: three numbers from 0 to 1.
 bool read_tint(const std::string& text, std::array<double, 3>& tint) {
   const auto words = split(text);
@@ -105,7 +110,9 @@ void add_output_rows(std::vector<OptionRow>& rows, OutputSettings& s) {
             "the beauty with AO in its ambient light, or in all of it where the parts are missing")
       .is_common = true;
   add_composite_rows(rows, s);
-  files.text("--preview", s.preview, "FILE.png", "a picture of the composite, or of the AO where there is none")
+  files
+      .text("--preview", s.preview, "FILE.png",
+            "a picture of the composite, or of the AO where there is none; see --preview-style")
       .is_common = true;
   word_list(files, "--debug", s.debug,
             fmt::format("pictures beside OUTPUT, ao.exr -> ao.VIEW.png, with commas: {}",
@@ -117,9 +124,18 @@ void add_output_rows(std::vector<OptionRow>& rows, OutputSettings& s) {
   OptionGroup(rows, "Output", Effect::display)
       .text("--ocio", s.ocio, "FILE",
             "OpenColorIO configuration for the preview; else the OCIO variable, else linear Rec.709 to sRGB")
-      .applies(with_output("with a --preview of a --composite", "there is none", [](const OutputSettings& output) {
-        return !output.preview.empty() && !output.composite.empty();
-      }));
+      .applies(with_shown_composite());
+  pixels.text("--display", s.display, "NAME", "of the OpenColorIO configuration, for the preview; else its default one")
+      .applies(with_shown_composite());
+  pixels
+      .text("--view-transform", s.view_transform, "NAME",
+            "the view of the display, for the preview; else the display's default one")
+      .applies(with_shown_composite());
+  pixels
+      .word("--preview-style", s.preview_style, {"auto", "ao", "composite", "split"},
+            "auto: the composite, or the AO where there is none; split: the beauty, and the composite to its right")
+      .applies(with_shown_composite())
+      .harmless = {"auto", "ao"};
 }
 
 }  // namespace alcove

@@ -185,7 +185,10 @@ class Batch {
     const auto settled = plan_.is_sequence() ? settle_first(plan_, bytes) : std::nullopt;
     if (settled) note(FrameTally::notes_on(*settled));
     std::optional<DisplayTransform> transform;
-    if (shows_composite(settings_.output)) transform.emplace(settings_.output.ocio);
+    if (shows_composite(settings_.output)) {
+      const OutputSettings& output = settings_.output;
+      transform.emplace(output.ocio, output.display, output.view_transform);
+    }
     RunContext run{plan_,
                    identities_,
                    settled ? &*settled : nullptr,

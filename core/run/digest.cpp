@@ -41,7 +41,9 @@ Words telling_words(const OptionRow& row, const OutputSettings& output) {
 
 }  // namespace
 
-bool shows_composite(const OutputSettings& output) { return !output.preview.empty() && !output.composite.empty(); }
+bool shows_composite(const OutputSettings& output) {
+  return !output.preview.empty() && !output.composite.empty() && output.preview_style != "ao";
+}
 
 std::string options_digest(const Settings& settings) {
   RunOptions options;

@@ -238,7 +238,8 @@ class FrameRun {
   void require_room_for_preview(const FrameSource& source, const WindowLimits& limits) const {
     if (settings_.output.preview.empty()) return;
     constexpr std::uint64_t kBytes = 3 * (sizeof(float) + 1);  // per pixel: display values, and the bytes of a PNG
-    const std::uint64_t bytes = source.display.pixels() * kBytes;
+    const std::uint64_t side_by_side = settings_.output.preview_style == "split" ? 4 : 1;  // each, and both
+    const std::uint64_t bytes = source.display.pixels() * kBytes * side_by_side;
     if (bytes > room_.bytes)
       limits.refuse(fmt::format("{}: a preview shows the display window, {}: leave out --preview", report_.input,
                                 to_string(source.display)),

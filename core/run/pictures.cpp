@@ -78,21 +78,68 @@ std::vector<float> displayed(const Window& display, const Window& data, std::spa
   return interleaved;
 }
 
-/// The composite over a window, band by band, since the beauty's rows may be far longer than those of the display.
-std::vector<float> shown_composite(FrameSource& source, const gpu::Buffer& computed, const Window& shown) {
+/// The composite over a window, band by band, since the beauty's rows may be far longer than those of the display. Where
+/// nothing is computed it is the beauty.
+std::vector<float> shown_composite(FrameSource& source, const gpu::Buffer* computed, const Window& shown) {
   constexpr int kBand = 64;  // rows; files compress no more together, but for a few
   std::vector<std::span<const float>> planes;
-  const auto values = computed.as<const float>();
+  const auto values = computed ? computed->as<const float>() : std::span<const float>();
   for (std::size_t at = 0; at < values.size(); at += source.data.pixels())
     planes.push_back(values.subspan(at, source.data.pixels()));
-  std::vector<float> pixels(planes.size() * shown.pixels());
+  const std::size_t count = source[RawPlane::beauty].size();
+  std::vector<float> pixels(count * shown.pixels());
   for (int y = shown.y; y < shown.y + shown.height; y += kBand) {
     const Window band{shown.x, y, shown.width, std::min(kBand, shown.y + shown.height - y)};
-    const auto composite = composite_over(source, planes.size(), band, source.data, planes);
+    const auto composite = composite_over(source, count, band, computed ? source.data : Window{}, planes);
     for (std::size_t c = 0; c < composite.size(); c++)
       copy_common(composite[c].data(), band, pixels.data() + c * shown.pixels(), shown);
   }
   return pixels;
+}
+
+/// Interleaved display values.
+struct Shown {
+  int width, planes;
+  std::vector<float> pixels;
+};
+
+/// AO by itself is data, and shown as it is.
+Shown shown_ao(const FrameSource& source, const gpu::Buffer& ao) {
+  const Window& data = written_of(source);
+  return {source.display.width, 1, displayed(source.display, data, cropped(ao.as<float>(), source.data, data), 1)};
+}
+
+/// A beauty, or a composite, through the view transform.
+Shown shown_colors(FrameSource& source, const gpu::Buffer* computed, const DisplayTransform* transform) {
+  const Window data = common_part(composite_window(source), source.display);
+  Shown shown{source.display.width, 3, displayed(source.display, data, shown_composite(source, computed, data), 3)};
+  if (transform) transform->apply(shown.pixels);
+  return shown;
+}
+
+/// Both side by side, with a grey line between.
+Shown beside(const Shown& left, const Shown& right) {
+  constexpr int kLine = 4;  // px
+  constexpr float kGrey = 0.5F;
+  Shown both{left.width + kLine + right.width, 3, {}};
+  const auto of_row = [](const Shown& shown, std::size_t row) {
+    const std::size_t values = 3 * std::size_t(shown.width);
+    return std::span(shown.pixels).subspan(row * values, values);
+  };
+  const std::size_t rows = left.pixels.size() / (3 * std::size_t(left.width));
+  for (std::size_t row = 0; row < rows; row++) {
+    std::ranges::copy(of_row(left, row), std::back_inserter(both.pixels));
+    both.pixels.insert(both.pixels.end(), 3 * kLine, kGrey);
+    std::ranges::copy(of_row(right, row), std::back_inserter(both.pixels));
+  }
+  return both;
+}
+
+Shown preview_of(FrameSource& source, const FrameOutputs& outputs, const DisplayTransform* transform,
+                 const std::string& style) {
+  if (!outputs.composite || style == "ao") return shown_ao(source, *outputs.ao);
+  const Shown composite = shown_colors(source, outputs.composite, transform);
+  return style == "split" ? beside(shown_colors(source, nullptr, transform), composite) : composite;
 }
 
 }  // namespace
@@ -104,14 +151,8 @@ void write_pictures(FrameSource& source, const FrameOutputs& outputs, const Disp
     write_debug_view(debug_path(settings, *plane.view), *plane.view, plane.size.x, plane.size.y,
                      plane.values->as<float>(), text);
   if (settings.preview.empty()) return;
-  // The composite through the view transform; AO by itself is data, and shown as it is.
-  const int planes = outputs.composite ? 3 : 1;
-  const Window data = outputs.composite ? common_part(composite_window(source), source.display) : written_of(source);
-  const auto shown = outputs.composite ? shown_composite(source, *outputs.composite, data)
-                                       : cropped(outputs.ao->as<float>(), source.data, data);
-  auto pixels = displayed(source.display, data, shown, planes);
-  if (transform) transform->apply(pixels);
-  write_png(settings.preview, source.display.width, source.display.height, planes, pixels, text);
+  const Shown shown = preview_of(source, outputs, transform, settings.preview_style);
+  write_png(settings.preview, shown.width, source.display.height, shown.planes, shown.pixels, text);
 }
 
 }  // namespace alcove
