@@ -21,6 +21,7 @@
 #include <deque>
 #include <set>
 
+#include "core/base/text.h"
 #include "core/formats/exr_stream.h"
 
 namespace alcove {
@@ -53,6 +54,12 @@ void copy_chunks(Imf::MultiPartInputFile& from, Imf::MultiPartOutputFile& to, in
 
 }  // namespace
 
+bool is_lossy_in_dwa(const std::string& channel) {
+  static const std::set<std::string> kNames{"r", "g", "b", "y", "ry", "by"};
+  const std::size_t dot = channel.rfind('.');
+  return kNames.contains(lower_case(dot == channel.npos ? channel : channel.substr(dot + 1)));
+}
+
 struct ExrCopy::Impl {
   std::string path;
   ExrCopySettings settings;
@@ -75,17 +82,9 @@ struct ExrCopy::Impl {
     }
   }
 
-  /// Runs a step of writing. Where the stream failed, its error is the reason that OpenEXR does not tell.
   template <class Function>
   void run(Function&& function) {
-    try {
-      function();
-    } catch (const Error&) {
-      throw;
-    } catch (const std::exception& error) {
-      if (!stream.failure()) fail(ErrorKind::output, "{}: could not be encoded: {}", path, one_line(error));
-    }
-    if (stream.failure()) throw *stream.failure();
+    run_writing(stream, path, function);
   }
 
   bool has_planes(int part) const {
@@ -120,8 +119,7 @@ struct ExrCopy::Impl {
     if (is_changed && settings.compression != "keep") header.compression() = compression_of(settings.compression);
     for (const auto& plane : settings.planes)
       if (plane.part == part && !header.channels().findChannel(plane.channel))
-        header.channels().insert(plane.channel,
-                                 Imf::Channel(plane.type == SampleType::half_float ? Imf::HALF : Imf::FLOAT));
+        header.channels().insert(plane.channel, Imf::Channel(pixel_type_of(plane.type)));
     if (is_changed || part == 0)
       for (const auto& [name, value] : settings.own_attributes) header.insert(name, Imf::StringAttribute(value));
     return header;
@@ -162,21 +160,19 @@ struct ExrCopy::Impl {
     });
   }
 
-  /// Writes rows of every part that is copied by rows.
-  void write_rows(const Window& band, const Imf::FrameBuffer& planes) {
+  /// Writes rows of every part that is copied by rows; `planes` has a slice for each plane.
+  void write_rows(const Window& band, const std::vector<Imf::Slice>& planes) {
     for (int part = 0; part < original->parts(); part++) {
       if (!by_rows[std::size_t(part)]) continue;
       Imf::FrameBuffer rows_of_part;
-      for (const auto& plane : settings.planes)
-        if (plane.part == part) rows_of_part.insert(plane.channel, *planes.findSlice(plane_key(plane)));
+      for (std::size_t i = 0; i < planes.size(); i++)
+        if (settings.planes[i].part == part) rows_of_part.insert(settings.planes[i].channel, planes[i]);
       read_rows(part, band, rows_of_part);
       Imf::OutputPart output(*file, part);
       output.setFrameBuffer(rows_of_part);
       output.writePixels(band.height);
     }
   }
-
-  static std::string plane_key(const CopiedPlane& plane) { return std::to_string(plane.part) + "/" + plane.channel; }
 };
 
 ExrCopy::ExrCopy(const std::string& path, const ExrCopySettings& settings)
@@ -192,19 +188,12 @@ void ExrCopy::write(std::span<const std::span<const float>> planes) {
   band.y += impl_->rows;
   band.height = int(planes[0].size() / std::size_t(band.width));
   std::deque<std::vector<half>> halves;
-  Imf::FrameBuffer buffers;
-  for (std::size_t i = 0; i < planes.size(); i++) {
-    const CopiedPlane& plane = impl_->settings.planes[i];
-    const bool is_half = plane.type == SampleType::half_float;
-    const std::size_t bytes = is_half ? sizeof(half) : sizeof(float);
-    const void* pixels =
-        is_half ? static_cast<const void*>(halves.emplace_back(to_half(planes[i])).data()) : planes[i].data();
-    buffers.insert(Impl::plane_key(plane), Imf::Slice::Make(is_half ? Imf::HALF : Imf::FLOAT, pixels, box_of(band),
-                                                            bytes, bytes * std::size_t(band.width)));
-  }
+  std::vector<Imf::Slice> slices;
+  for (std::size_t i = 0; i < planes.size(); i++)
+    slices.push_back(slice_of(band, impl_->settings.planes[i].type, planes[i], halves));
   for (int done = 0; done < band.height; done += int(kRowsOfOriginal)) {
     const Window part{band.x, band.y + done, band.width, std::min(int(kRowsOfOriginal), band.height - done)};
-    impl_->run([&] { impl_->write_rows(part, buffers); });
+    impl_->run([&] { impl_->write_rows(part, slices); });
   }
   impl_->rows += band.height;
 }

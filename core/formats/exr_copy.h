@@ -50,6 +50,9 @@ class ExrCopy {
   std::unique_ptr<Impl> impl_;
 };
 
+/// Whether DWAA and DWAB lose bits of a channel, which they judge by the last part of its name.
+bool is_lossy_in_dwa(const std::string& channel);
+
 /// The rows of an original that are copied at a time.
 constexpr std::uint64_t kRowsOfOriginal = 64;
 

@@ -4,11 +4,16 @@
 #pragma once
 
 #include <ImfCompression.h>
+#include <ImfFrameBuffer.h>
 #include <ImfIO.h>
+#include <ImfPixelType.h>
 #include <half.h>
 
+#include <deque>
 #include <optional>
+#include <span>
 #include <string_view>
+#include <vector>
 
 #include "core/base/error.h"
 #include "core/base/file.h"
@@ -41,13 +46,32 @@ class FileStream : public Imf::OStream {
   std::optional<Error> failure_;
 };
 
+/// Runs a step of writing a file into a stream. Where the stream failed, its error is the reason that OpenEXR does not
+/// tell. What is wrong with a file that is read for it is an Error, which passes.
+template <class Function>
+void run_writing(const FileStream& stream, const std::string& path, Function&& function) {
+  try {
+    function();
+  } catch (const Error&) {
+    throw;
+  } catch (const std::exception& error) {
+    if (!stream.failure()) fail(ErrorKind::output, "{}: could not be encoded: {}", path, one_line(error));
+  }
+  if (stream.failure()) throw *stream.failure();
+}
+
 /// Whether an attribute says how Alcove has made the input, which does not hold for what is made from it.
 bool is_own_attribute(std::string_view name);
 
 /// The compression of that name of ExrOutput; ZIP where there is none.
 Imf::Compression compression_of(const std::string& name);
 
-/// Rounds to nearest. Values beyond half's range become its largest value, not infinity.
-std::vector<half> to_half(std::span<const float> values);
+/// The type of a plane's channel.
+Imf::PixelType pixel_type_of(SampleType type);
+
+/// Rows of a plane as OpenEXR takes them; `halves` keeps those that are converted. Values are rounded to the nearest
+/// half; beyond half's range they become its largest value, not infinity.
+Imf::Slice slice_of(const Window& rows, SampleType type, std::span<const float> pixels,
+                    std::deque<std::vector<half>>& halves);
 
 }  // namespace alcove

@@ -61,11 +61,17 @@ Imf::Compression compression_of(const std::string& name) {
   return Imf::ZIP_COMPRESSION;
 }
 
-std::vector<half> to_half(std::span<const float> values) {
-  std::vector<half> halves(values.size());
-  std::ranges::transform(values, halves.begin(),
-                         [](float x) { return half(std::abs(x) > HALF_MAX ? std::copysign(HALF_MAX, x) : x); });
-  return halves;
+Imf::PixelType pixel_type_of(SampleType type) { return type == SampleType::half_float ? Imf::HALF : Imf::FLOAT; }
+
+Imf::Slice slice_of(const Window& rows, SampleType type, std::span<const float> pixels,
+                    std::deque<std::vector<half>>& halves) {
+  const bool is_half = type == SampleType::half_float;
+  const std::size_t bytes = is_half ? sizeof(half) : sizeof(float);
+  if (is_half)
+    std::ranges::transform(pixels, std::back_inserter(halves.emplace_back()),
+                           [](float x) { return half(std::abs(x) > HALF_MAX ? std::copysign(HALF_MAX, x) : x); });
+  const void* values = is_half ? static_cast<const void*>(halves.back().data()) : pixels.data();
+  return Imf::Slice::Make(pixel_type_of(type), values, box_of(rows), bytes, bytes * std::size_t(rows.width));
 }
 
 namespace {
@@ -82,8 +88,7 @@ Imf::Header header_of(const ExrOutput& output) {
     header.insert(name, Imf::StringAttribute(value));
   }
   for (const auto& plane : output.planes)
-    header.channels().insert(plane.channel,
-                             Imf::Channel(plane.type == SampleType::half_float ? Imf::HALF : Imf::FLOAT));
+    header.channels().insert(plane.channel, Imf::Channel(pixel_type_of(plane.type)));
   return header;
 }
 
@@ -100,15 +105,9 @@ struct ExrWriter::Impl {
 
   void begin() { file = std::make_unique<Imf::OutputFile>(stream, header_of(output)); }
 
-  /// Runs a step of writing. Where the stream failed, its error is the reason that OpenEXR does not tell.
   template <class Function>
   void run(Function&& function) {
-    try {
-      function();
-    } catch (const std::exception& error) {
-      if (!stream.failure()) fail(ErrorKind::output, "{}: could not be encoded: {}", path, one_line(error));
-    }
-    if (stream.failure()) throw *stream.failure();
+    run_writing(stream, path, function);
   }
 };
 
@@ -125,13 +124,8 @@ void ExrWriter::write(std::span<const std::span<const float>> planes) {
   std::deque<std::vector<half>> halves;
   Imf::FrameBuffer frame_buffer;
   for (std::size_t i = 0; i < planes.size(); i++) {
-    const bool is_half = impl_->output.planes[i].type == SampleType::half_float;
-    const std::size_t bytes = is_half ? sizeof(half) : sizeof(float);
-    const void* pixels =
-        is_half ? static_cast<const void*>(halves.emplace_back(to_half(planes[i])).data()) : planes[i].data();
-    frame_buffer.insert(impl_->output.planes[i].channel,
-                        Imf::Slice::Make(is_half ? Imf::HALF : Imf::FLOAT, pixels, box_of(band), bytes,
-                                         bytes * std::size_t(band.width)));
+    const ExrPlane& plane = impl_->output.planes[i];
+    frame_buffer.insert(plane.channel, slice_of(band, plane.type, planes[i], halves));
   }
   impl_->run([&] {
     impl_->file->setFrameBuffer(frame_buffer);

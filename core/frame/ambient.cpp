@@ -5,10 +5,11 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <charconv>
+#include <optional>
 
 #include "core/base/error.h"
 #include "core/base/text.h"
+#include "core/frame/typed_number.h"
 
 namespace alcove {
 namespace {
@@ -36,12 +37,6 @@ constexpr std::array kBlenderPasses{Pass{"diffdir", "DiffCol"},
                                     Pass{"transmission direct", "Transmission Color"},
                                     Pass{"transmission indirect", "Transmission Color"}};
 
-std::optional<double> weight_of(const std::string& word) {
-  double weight = 0;
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), weight);
-  return error == std::errc() && end == word.data() + word.size() ? std::optional(weight) : std::nullopt;
-}
-
 [[noreturn]] void refuse(const std::string& text, const char* why) {
   fail(ErrorKind::usage,
        "--ambient {}: {}: it takes LIGHT, LIGHT*LAYER, LIGHT*NUMBER or LIGHT*LAYER*NUMBER, several with commas", text,
@@ -56,12 +51,12 @@ TypedLight typed_light(const std::string& text) {
     to = text.find('*', from);
     const std::string word = text.substr(from, to == text.npos ? to : to - from);
     if (word.empty()) refuse(text, "a name is missing");
-    const auto weight = from > 0 ? weight_of(word) : std::nullopt;
+    const auto weight = from > 0 ? number_in(word) : std::optional<float>();
     if (has_weight) refuse(text, "nothing follows the number");
     if (weight && !(*weight >= 0 && *weight <= 1)) refuse(text, "a weight is from 0 to 1");
     if (!weight && from > 0 && !typed.color.empty()) refuse(text, "two layers multiply the light");
     if (weight)
-      typed.weight = *weight;
+      typed.weight = double(*weight);
     else
       (from == 0 ? typed.light : typed.color) = word;
     has_weight = weight.has_value();

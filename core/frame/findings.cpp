@@ -9,6 +9,7 @@
 
 #include "core/base/error.h"
 #include "core/base/text.h"
+#include "core/formats/exr_copy.h"
 #include "core/frame/evidence.h"
 #include "core/frame/settle.h"
 
@@ -24,12 +25,8 @@ constexpr double kMostShortened = 0.02;         // of the normals
 constexpr std::size_t kEdgePixels = 1 << 18;    // of whole rows: enough for edges, and no cost beside reading
 constexpr std::size_t kNormalPixels = 1 << 16;  // enough for shares to a percent
 
-/// DWA quantizes channels by the last part of their names.
 bool is_lossy(const FrameSource& source, const ChannelRef& ref) {
-  static const std::set<std::string> kNames{"r", "g", "b", "y", "ry", "by"};
-  const std::size_t dot = ref.channel.rfind('.');
-  const std::string last = lower_case(dot == ref.channel.npos ? ref.channel : ref.channel.substr(dot + 1));
-  return source.part_of(ref).dwa && kNames.contains(last);
+  return source.part_of(ref).dwa && is_lossy_in_dwa(ref.channel);
 }
 
 /// Parts that the frame does not need and whose first or last rows cannot be read: of a file that was cut short behind

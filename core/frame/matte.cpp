@@ -6,8 +6,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <charconv>
-#include <optional>
 
 #include "core/base/error.h"
 #include "core/base/text.h"
@@ -15,6 +13,7 @@
 #include "core/frame/input_files.h"
 #include "core/frame/name_pattern.h"
 #include "core/frame/plane_windows.h"
+#include "core/frame/typed_number.h"
 
 namespace alcove {
 namespace {
@@ -26,12 +25,6 @@ struct Objects {
   const std::string& channel;
   const AovNames& channel_names;
 };
-
-std::optional<float> number_in(const std::string& word) {
-  float number = 0;
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
-  return error == std::errc() && end == word.data() + word.size() ? std::optional(number) : std::nullopt;
-}
 
 /// The numbers of objects as the bits of the floats that a channel holds.
 std::vector<std::uint32_t> numbers_of(const std::string& path, const Objects& meant) {

@@ -139,17 +139,10 @@ void require_place_for_ao(const FrameSource& source, const OutputSettings& setti
   const std::string channel = appended_channel(settings);
   const ChannelRef& beauty = source[RawPlane::beauty][0];
   const auto& there = source.part_of(beauty).channels;
-  const bool is_taken = keeps_layers(source, settings)
-                            ? std::ranges::find(there, channel, &ExrChannel::name) != there.end()
-                            : channel.size() == 1 && std::string("RGBA").find(channel) != std::string::npos;
-  if (is_taken)
+  if (keeps_layers(source, settings) && std::ranges::find(there, channel, &ExrChannel::name) != there.end())
     fail(ErrorKind::input, "{}: it has a channel {} already: give --append-ao another name",
          source.files[beauty.file].path(), channel);
-  // DWA is lossy for channels by the ends of their names; others' are exact.
-  const std::string end = channel.substr(channel.rfind('.') + 1);
-  const bool is_lossy =
-      std::ranges::any_of(std::array{"R", "G", "B", "Y", "RY", "BY"}, [&](const char* lossy) { return end == lossy; });
-  if (settings.composite_compression.starts_with("dwa") && is_lossy)
+  if (settings.composite_compression.starts_with("dwa") && is_lossy_in_dwa(channel))
     fail(ErrorKind::usage,
          "--append-ao {}: --composite-compression {} is lossy for channels that end in R, G, B or Y: name it {}.ao",
          settings.append_ao, settings.composite_compression, channel.substr(0, channel.rfind('.')));

@@ -78,8 +78,8 @@ std::vector<float> displayed(const Window& display, const Window& data, std::spa
   return interleaved;
 }
 
-/// The composite over a window, band by band, since the beauty's rows may be far longer than those of the display. Where
-/// nothing is computed it is the beauty.
+/// The composite over a window, band by band, since the beauty's rows may be far longer than those of the display.
+/// Where nothing is computed it is the beauty.
 std::vector<float> shown_composite(FrameSource& source, const gpu::Buffer* computed, const Window& shown) {
   constexpr int kBand = 64;  // rows; files compress no more together, but for a few
   std::vector<std::span<const float>> planes;

@@ -223,7 +223,7 @@ TEST_F(Occluders, are_named_by_numbers_or_as_in_a_cryptomatte) {
   expect_error(file, 2, {"--ignore", "4", "--occluders", "1"}, {"--ignore", "--occluders"});
   expect_error(file, 2, {"--ignore", "4", "--other-views"}, {"--ignore", "--other-views"});
   expect_error(file, 2, {"--objects", named}, {"--objects", "--ignore"});
-  FrameFile{{0, 0, 10, 10}, kWindow, 1, {{"Y", Plane(100, 1)}}, {}, {}}.write(folder / "small.exr");
+  FrameFile{{0, 0, 10, 10}, {0, 0, 10, 10}, 1, {{"Y", Plane(100, 1)}}, {}, {}}.write(folder / "small.exr");
   expect_error(file, 3, {"--ignore", folder / "small.exr"}, {"small.exr", "--ignore", "10x10"});
 }
 

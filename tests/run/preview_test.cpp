@@ -113,7 +113,8 @@ TEST_F(Preview, names_the_displays_and_views_that_there_are) {
     EXPECT_EQ(lines_of(finished.err).size(), 1) << finished;
     for (const auto& word : words) EXPECT_THAT(finished.err, HasSubstr(word));
   };
-  expect_error({"--ocio", config, "--display", "scren"}, {config, "--display scren", "did you mean screen", "projector"});
+  expect_error({"--ocio", config, "--display", "scren"},
+               {config, "--display scren", "did you mean screen", "projector"});
   expect_error({"--ocio", config, "--display", "projector", "--view-transform", "Darker"},
                {config, "--view-transform Darker", "it has plain"});
   expect_error({"--display", "P3"}, {"built-in", "--display P3", "sRGB", "--ocio"});
@@ -124,8 +125,8 @@ TEST_F(Preview, of_another_look_is_made_again_by_resume) {
   const auto resumed = [&](const Options& more) {
     Options options{"--composite", folder / "composite.exr", "--preview", png, "--resume"};
     options.insert(options.end(), more.begin(), more.end());
-    const auto before = std::filesystem::exists(png) ? std::filesystem::last_write_time(png)
-                                                     : std::filesystem::file_time_type();
+    const auto before =
+        std::filesystem::exists(png) ? std::filesystem::last_write_time(png) : std::filesystem::file_time_type();
     EXPECT_EQ(run(options).code, 0);
     return std::filesystem::last_write_time(png) != before;
   };
