@@ -59,7 +59,8 @@ void add(Lines& lines, const InspectedFile& file) {
     std::vector<std::string> names;
     for (const auto& [name, id] : matte.manifest) names.push_back(name);
     const std::string lacking = matte.lacking.empty() ? "no manifest" : matte.lacking;
-    lines.add("  Cryptomatte {}, for --matte-object: {}", matte.name, names.empty() ? lacking : list_of(names));
+    lines.add("  Cryptomatte {}, for --matte-object, --occluders and --ignore: {}", matte.name,
+              names.empty() ? lacking : list_of(names));
   }
 }
 
