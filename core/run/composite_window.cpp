@@ -12,7 +12,7 @@ namespace alcove {
 namespace {
 
 /// The most that is put together at once, so that a beauty which is much larger than the depth needs no more memory.
-constexpr std::uint64_t kBytesAtOnce = 8 << 20;
+constexpr std::uint64_t kBytesAtOnce = 1 << 20;
 
 const Window& window_of_beauty(const FrameSource& source) { return source.part_of(source[RawPlane::beauty][0]).data; }
 
