@@ -48,8 +48,10 @@ float similarity(Tap a, Tap b, float pixels, float least) {
     const float steps = abs(further) / (params.depth_sigma * min(a.z, b.z));
     return max(least / (1.0 + steps * steps), exp(-steps));
   }
-  const float above_a = a.ahead * further + a.across * pixels * b.scale;
-  const float above_b = b.ahead * further + b.across * pixels * a.scale;
-  const float above_sq = max(above_a * above_a, above_b * above_b);
+  // Unrolled, each pixel of a run has a product of its own that a driver may order in its own way; but the bits of a
+  // pixel must not depend on where runs begin.
+  precise const float above_a = a.ahead * further + a.across * pixels * b.scale;
+  precise const float above_b = b.ahead * further + b.across * pixels * a.scale;
+  precise const float above_sq = max(above_a * above_a, above_b * above_b);
   return max(least / (1.0 + above_sq), 1.0 - above_sq);
 }

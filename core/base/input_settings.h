@@ -62,9 +62,11 @@ struct InputSettings {
   // motion vectors, which tell what moves: a file, two channels, and what they point to
   std::string motion, motion_channels;
   MotionKind motion_kind = MotionKind::automatic;
-  std::string layer;          // look only at channels of this layer or part
-  std::string view;           // of a stereo file; empty: its default
-  std::optional<Region> roi;  // compute and write no more than this; none: the data window
+  std::string layer;  // look only at channels of this layer or part
+  std::string view;   // of a stereo file; empty: its default
+  // px of depth and normals for each of the picture, in x and in y, 1 to 4; auto: by the beauty's size
+  std::string supersampling = "auto";
+  std::optional<Region> roi;  // compute and write no more than this, in px of the picture; none: the data window
   // the program that wrote the frame, of presets/input; auto: by its header and channels
   std::string source = "auto";
   DepthKind depth_kind = DepthKind::automatic;  // automatic: what the camera file says, else planar

@@ -128,6 +128,13 @@ inline const std::map<std::string, Noise>& names_of() {
   return names;
 }
 template <>
+inline const std::map<std::string, PixelFilterKind>& names_of() {
+  static const std::map<std::string, PixelFilterKind> names = {{"box", PixelFilterKind::box},
+                                                               {"gaussian", PixelFilterKind::gaussian},
+                                                               {"blackman-harris", PixelFilterKind::blackman_harris}};
+  return names;
+}
+template <>
 inline const std::map<std::string, AoChannels>& names_of() {
   static const std::map<std::string, AoChannels> names = {{"mono", AoChannels::mono}, {"rgb", AoChannels::rgb}};
   return names;

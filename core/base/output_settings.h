@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 
 #include "core/base/setting_words.h"
@@ -18,6 +19,16 @@ struct CompositeLook {
   double mix = 1;                       // of the composite and the beauty, 0 to 1
 };
 
+/// How pixels of a G-buffer that is larger than the picture make one of the picture's.
+struct PixelFilter {
+  PixelFilterKind kind = PixelFilterKind::blackman_harris;
+  std::optional<double> width;  // px of the picture from one end to the other, 1 to 16; none: see usual_width()
+};
+/// As renderers set it: Arnold and RenderMan 2 for Gaussian; Cycles 3 for Blackman-Harris, of which it says half.
+constexpr double usual_width(PixelFilterKind kind) {
+  return kind == PixelFilterKind::box ? 1 : kind == PixelFilterKind::gaussian ? 2 : 3;
+}
+
 /// What to write.
 struct OutputSettings {
   std::string output;     // the AO EXR
@@ -31,6 +42,7 @@ struct OutputSettings {
   NormalSpace aov_space = NormalSpace::automatic;
   // light thrown back by the occluders brightens the rgb AO, and the composite's ambient light
   bool multi_bounce = false;
+  PixelFilter filter;  // with InputSettings::supersampling
   CompositeLook look;
   // all: the composite is the beauty's file with another beauty; rgba: R, G, B and A alone
   std::string composite_layers = "all";

@@ -1,6 +1,9 @@
-// What two windows share.
+// What two windows share, and windows of pictures that are so many times smaller.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+
+#include <span>
+#include <vector>
 
 #include "core/base/image.h"
 
@@ -11,5 +14,21 @@ Window common_part(const Window& a, const Window& b);
 
 /// Copies the pixels that both windows have from one plane into the other.
 void copy_common(const float* from, const Window& from_window, float* to, const Window& to_window);
+
+// Below, each pixel of a smaller picture is a block of `factor` x `factor` pixels of a larger one, counted from the
+// upper left corner of the larger one's display window. That of the smaller one's is as much nearer to 0, rounded down.
+
+/// The pixels of the smaller picture whose middle, to the right and below where there are two, the window has.
+Window reduced(const Window& window, const Window& display, int factor);
+/// All pixels of the blocks of a window of the smaller picture.
+Window enlarged(const Window& small, const Window& display, int factor);
+/// The window of the smaller picture whose blocks cover a window.
+Window covering(const Window& window, const Window& display, int factor);
+
+/// The middle pixel of each block of a plane over `window`: a plane over its reduced() window.
+std::vector<float> middle_pixels(std::span<const float> plane, const Window& window, const Window& display, int factor);
+/// Copies each pixel of a plane over `small` to those of its block that `to_window` has.
+void copy_enlarged(const float* from, const Window& small, float* to, const Window& to_window, const Window& display,
+                   int factor);
 
 }  // namespace alcove

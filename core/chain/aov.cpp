@@ -65,6 +65,7 @@ Wanted::Wanted(const OutputSettings& settings)
     : aovs(aovs_of(settings)),
       debug_views(debug_views_of(settings)),
       multi_bounce(settings.multi_bounce),
+      filter(settings.filter),
       look(settings.look) {
   const auto is_at_least = [](AovSource source) { return [source](const Aov& aov) { return aov.source >= source; }; };
   const auto shows_completed = [](const DebugView* view) { return view->source == DebugSource::completed; };

@@ -51,6 +51,7 @@ struct Wanted {
   bool open_directions = false;  // what is made from them, of an estimator that finds them
   bool completed = false;        // what completed surfaces took of the visibility
   bool multi_bounce = false;
+  PixelFilter filter;
   CompositeLook look;
 };
 

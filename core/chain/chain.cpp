@@ -11,6 +11,7 @@
 #include "core/chain/matte.h"
 #include "core/chain/occluders.h"
 #include "core/chain/open_sky.h"
+#include "core/chain/reduce.h"
 #include "core/chain/shading.h"
 #include "core/chain/warp.h"
 
@@ -86,8 +87,9 @@ FrameOutputs run_chain(gpu::Recorder& gpu, const FrameInputs& frame, const Estim
   if (wanted.has(&FrameOutputs::specular_occlusion))
     out.specular_occlusion = &specular_occlusion(gpu, gbuffer, *open_directions, *visibility.ao, settings.roughness);
   if (wanted.multi_bounce) out.color_ao = &multi_bounce(gpu, gbuffer, *visibility.ao, frame);
+  out = reduce(gpu, frame, wanted.filter, out);
   if (frame[RawPlane::beauty])
-    out.composite = &composite(gpu, gbuffer, *(out.color_ao ? out.color_ao : visibility.ao), frame, wanted.look);
+    out.composite = &composite(gpu, gbuffer, *(out.color_ao ? out.color_ao : out.ao), frame, wanted.look);
   for (const auto* view : wanted.debug_views) out.debug.push_back(debug(gpu, *view, gbuffer, stages, frame));
   download(gpu, out);
   return out;

@@ -63,6 +63,7 @@ FrameInputs inputs_of(const Reading& reading, const RawPlaneArray<gpu::Buffer*>&
   inputs.normal_form = normal_form_of(reading, normal ? planes_in(*normal, inputs.view) : 0);
   for (const auto& plane : reading.behind) inputs.behind.push_back(layer_terms(reading, plane));
   inputs.behind_lists_all = list_all(reading.behind);
+  inputs.supersampling = reading.supersampling;
   inputs.matte = reading.matte;
   inputs.occluders = reading.occluders;
   inputs.ambient = reading.ambient;

@@ -43,6 +43,7 @@ struct FrameInputs {
   std::vector<LayerTerms> behind;       // of each plane of RawPlane::behind
   bool behind_lists_all = false;        // see list_all()
   std::vector<OtherView> others;        // in any order: what they see behind the first surface counts as hidden
+  int supersampling = 1;                // px of the frame for each of its picture, in x and in y
   Margin margin{};                      // where others show what lies around the frame; see margin.h
   MatteReading matte;                   // how its planes are read
   MatteReading occluders;               // the same of RawPlane::occluders

@@ -33,6 +33,7 @@ void find_beauty(FrameSource& source, const ChannelSearch& search, std::size_t f
   source[RawPlane::beauty] = search.with_alpha(
       search.require(file, kBeautyNames, settings.beauty_channels, !settings.beauty.empty(), "Combined.R"));
   find_ambient(source, search, file, settings);
+  source.supersampling = supersampling_of(source, source[RawPlane::beauty][0], settings);
   for (const auto* aov : {&source[RawPlane::beauty], &source[RawPlane::indirect], &source[RawPlane::diffuse_color]})
     require_common_window(source, *aov, "beauty", "--beauty",
                           "the composite is as large as the beauty, which stays as it is where there is no depth");
@@ -240,6 +241,7 @@ FrameSource find_frame(const InputSettings& settings, bool with_beauty, int fram
   source.data = source.file_data = source.part_of(source[RawPlane::depth][0]).data;
   source.display = source.files[depth_file].display();
   source.pixel_aspect = source.files[depth_file].pixel_aspect();
+  source.supersampling = supersampling_of(source, settings);
   source.depth_is_half = has_half_channel(source, source[RawPlane::depth][0]) || source.deep_depth_is_half;
   source.depth_scale = settings.depth_scale;
   source.sky = settings.sky;

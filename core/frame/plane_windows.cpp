@@ -1,4 +1,4 @@
-// Planes whose files have another data window than the depth.
+// Planes whose files have another data window than the depth, or are of a picture that is so many times smaller.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/frame/plane_windows.h"
 
@@ -17,11 +17,22 @@ namespace {
 /// The most that is decoded at once of a file whose window is larger than what is wanted of it.
 constexpr std::uint64_t kBandBytes = 8 << 20;
 
+/// How many pixels of the depth are one of a channel's file, in x and in y.
+int scale_of(const FrameSource& source, const ChannelRef& channel) {
+  const bool is_of_picture = source.files[channel.file].display() == picture_of(source, source.display);
+  return is_of_picture ? source.supersampling : 1;
+}
+
+/// The pixels of the depth that a channel's file shows, whether the depth has them or not.
+Window shown_by(const FrameSource& source, const ChannelRef& channel) {
+  return enlarged(source.part_of(channel).data, source.display, scale_of(source, channel));
+}
+
 /// Decodes channels of one file and one window, which is not that of the destination, band by band.
 void read_from_other(ExrFile& file, const Window& from, int rows_together, const std::vector<ExrRead>& reads,
-                     const Window& to) {
+                     const Window& to, const Window& display, int scale) {
   for (const auto& read : reads) std::fill_n(read.to, to.pixels(), 0.0f);
-  const Window part = common_part(from, to);
+  const Window part = common_part(from, covering(to, display, scale));
   if (part.pixels() == 0) return;
   const std::uint64_t row_bytes = sizeof(float) * std::uint64_t(from.width) * reads.size();
   const int most = int(std::clamp<std::uint64_t>(kBandBytes / row_bytes, 1, std::uint64_t(part.height)));
@@ -32,26 +43,65 @@ void read_from_other(ExrFile& file, const Window& from, int rows_together, const
     std::vector<ExrRead> of_band = reads;
     for (std::size_t i = 0; i < reads.size(); i++) of_band[i].to = pixels.data() + i * band.pixels();
     file.read(of_band, y - from.y, band.height);
-    for (std::size_t i = 0; i < reads.size(); i++) copy_common(of_band[i].to, band, reads[i].to, to);
+    for (std::size_t i = 0; i < reads.size(); i++) copy_enlarged(of_band[i].to, band, reads[i].to, to, display, scale);
   }
 }
 
+/// What to do about a file of another size than the depth.
+std::string way_out(const FrameSource& source, const Window& display) {
+  if (display.width > source.display.width)
+    return "compute from a depth of that size, if need be with --resolution half, or render both at the same size";
+  return "render both at the same size, or the depth at 2, 3 or 4 times that of the picture, with --supersampling";
+}
+
+/// Whether the depth's display window is that of a picture, with so many pixels for each.
+bool is_times(const Window& display, const Window& picture, int factor) {
+  return display.width == picture.width * factor && display.height == picture.height * factor &&
+         reduced(display, display, factor) == picture;
+}
+
 }  // namespace
+
+int supersampling_of(const FrameSource& source, const InputSettings& settings) {
+  if (settings.supersampling == "auto") return 1;
+  const int factor = std::stoi(settings.supersampling);
+  if (source.display.width % factor != 0 || source.display.height % factor != 0)
+    fail(ErrorKind::input, "{}: the display window is {}, which --supersampling {} cannot divide", source.depth_path(),
+         to_string(source.display), factor);
+  return factor;
+}
+
+int supersampling_of(const FrameSource& source, const ChannelRef& beauty, const InputSettings& settings) {
+  const ExrFile& file = source.files[beauty.file];
+  if (settings.supersampling == "auto") {
+    for (const int factor : {2, 3, 4})
+      if (is_times(source.display, file.display(), factor)) return factor;
+    return 1;
+  }
+  const int factor = supersampling_of(source, settings);
+  if (!is_times(source.display, file.display(), factor))
+    fail(ErrorKind::input, "{}: the beauty is of a picture of {}, and --supersampling {} of the depth, {}, makes {}",
+         file.path(), to_string(file.display()), factor, to_string(source.display),
+         to_string(reduced(source.display, source.display, factor)));
+  return factor;
+}
 
 void require_common_window(FrameSource& source, const std::vector<ChannelRef>& channels, const char* what,
                            const char* option, const char* without) {
   for (const auto& channel : channels) {
     const ExrFile& file = source.files[channel.file];
     const Window& data = source.part_of(channel).data;
-    if (data == source.file_data) continue;
-    if (file.display() != source.display)
+    if (data == source.file_data && source.supersampling == 1) continue;
+    if (file.display() != source.display && file.display() != picture_of(source, source.display))
       fail(
           ErrorKind::input,
           "{}: the {} channel {} is {} of a picture of {}, and the depth is {} of {}: only files with the same display "
-          "window show which pixels belong together: render both at the same size ({})",
+          "window show which pixels belong together: {} ({})",
           file.path(), what, channel.channel, to_string(data), to_string(file.display()), to_string(source.file_data),
-          to_string(source.display), option);
-    if (common_part(data, source.file_data).pixels() == 0)
+          to_string(source.display), way_out(source, file.display()), option);
+    const Window shown = shown_by(source, channel);
+    if (shown == source.file_data) continue;
+    if (common_part(shown, source.file_data).pixels() == 0)
       fail(ErrorKind::input, "{}: the {} channel {} is {}, and the depth is {}: they share no pixel ({})", file.path(),
            what, channel.channel, to_string(data), to_string(source.file_data), option);
     add_new(source.notes,
@@ -73,10 +123,12 @@ void read_rows(FrameSource& source, std::span<const ChannelRead> reads, int top,
     const ExrPart& part = source.part_of(group[0]->channel);
     std::vector<ExrRead> of_file;
     for (const auto* read : group) of_file.push_back({read->channel.part, read->channel.channel, read->to});
-    if (part.data == own)
+    const int scale = scale_of(source, group[0]->channel);
+    if (scale == 1 && part.data == own)
       file.read(of_file, top - own.y, rows);
     else
-      read_from_other(file, part.data, part.rows_together, of_file, {own.x, top, own.width, rows});
+      read_from_other(file, part.data, part.rows_together, of_file, {own.x, top, own.width, rows}, source.display,
+                      scale);
   }
 }
 
@@ -86,8 +138,7 @@ void fill_missing(const FrameSource& source, RawPlane plane, std::span<float> va
   if (plane != RawPlane::material_ao && !is_objects) return;
   // The number 0 may be that of an object.
   const float neutral = is_objects ? std::numeric_limits<float>::quiet_NaN() : 1;
-  const Window& there = source.part_of(source[plane][0]).data;
-  const Window part = common_part(there, source.data);
+  const Window part = common_part(shown_by(source, source[plane][0]), source.data);
   if (part == source.data) return;
   const std::vector<float> kept = cropped(values, source.data, part);
   std::ranges::fill(values, neutral);

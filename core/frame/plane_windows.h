@@ -1,4 +1,4 @@
-// Planes whose files have another data window than the depth.
+// Planes whose files have another data window than the depth, or are of a picture that is so many times smaller.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -8,9 +8,17 @@
 
 namespace alcove {
 
+/// How many pixels of the depth, in x and in y, are one of a beauty's: what the option says, or with auto as their
+/// display windows have it, and 1 where they are of no such size. Fails with ErrorKind::input where the depth's window
+/// cannot be divided so, or the beauty's is another.
+int supersampling_of(const FrameSource& source, const ChannelRef& beauty, const InputSettings& settings);
+/// The same without a beauty: 1 with auto.
+int supersampling_of(const FrameSource& source, const InputSettings& settings);
+
 /// Fails with ErrorKind::input where channels, what they hold and the option that names them, share no pixel with the
-/// depth, or have another data window than it and another display window too, since nothing then tells which pixels
-/// belong together. Notes another data window; `without` says what holds where one of them has no pixels.
+/// depth, or have another data window than it and a display window that is neither its own nor the picture's, since
+/// nothing then tells which pixels belong together. Notes another data window; `without` says what holds where one of
+/// them has no pixels.
 void require_common_window(FrameSource& source, const std::vector<ChannelRef>& channels, const char* what,
                            const char* option, const char* without);
 
@@ -21,7 +29,7 @@ struct ChannelRead {
 };
 
 /// Reads rows of source.file_data, from `top` on. Every part of every file is decoded once. Channels have 0 where their
-/// files have no pixels.
+/// files have no pixels, and those of the smaller picture their value in all pixels of a block.
 void read_rows(FrameSource& source, std::span<const ChannelRead> reads, int top, int rows);
 
 /// Puts what changes nothing into the pixels of a plane over source.data that its files do not have: AO 1 of materials,

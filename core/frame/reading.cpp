@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "core/base/windows.h"
+
 namespace alcove {
 namespace {
 
@@ -21,6 +23,10 @@ double sky_of(DepthKind kind, bool is_half, double sky) {
 bool list_all(std::span<const BehindPlane> planes) {
   return std::ranges::all_of(
       planes, [](const BehindPlane& plane) { return plane.kind == BehindKind::surfaces && plane.is_whole; });
+}
+
+Window picture_of(const Reading& reading, const Window& part) {
+  return reduced(part, reading.display, reading.supersampling);
 }
 
 void read_like(Reading& reading, const Meaning& settled) {

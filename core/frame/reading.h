@@ -67,6 +67,8 @@ struct AmbientReading {
 struct Reading : Meaning {
   Window data;  // of the planes
   Window display;
+  // px for each of the picture that is written, in x and in y: what is written is filtered to those
+  int supersampling = 1;
   double pixel_aspect = 1;          // width / height of a pixel
   Camera camera;                    // for the display window
   double depth_scale = 1;           // scene units per unit of the depth values
@@ -76,6 +78,9 @@ struct Reading : Meaning {
   MatteReading matte, occluders;
   std::vector<AmbientReading> ambient;  // the lights that AO may dim; none: it dims the whole beauty
 };
+
+/// The part of the picture that is written for a part of the frame: see core/base/windows.h.
+Window picture_of(const Reading& reading, const Window& part);
 
 /// Takes over the meaning of another frame of the sequence. The clip planes stay this frame's own, as its own camera
 /// has them.

@@ -202,6 +202,10 @@ void add_channel_rows(std::vector<OptionRow>& rows, InputSettings& s) {
        "compute and write only this region; its surroundings are read as far as occluders reach"},
       say_roi, [&s](const std::string& text) { return read_roi(text, s.roi); },
       "is not X,Y,WIDTH,HEIGHT in whole pixels");
+  pixels.word(
+      "--supersampling", s.supersampling, {"auto", "1", "2", "3", "4"},
+      "what is written has so many times fewer pixels than depth and normals, in x and in y, each filtered from "
+      "theirs: see --filter; auto: as many as the beauty has");
   pixels.word("--source", s.source, source_names(),
               "the program that wrote the frame, of presets/input; auto: by its header and channels");
 }

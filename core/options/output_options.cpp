@@ -79,6 +79,15 @@ void add_composite_rows(std::vector<OptionRow>& rows, OutputSettings& s) {
       .applies(with_composite());
 }
 
+/// Whether depth and normals may be larger than what is written is seen from their files.
+Condition with_supersampling() {
+  return {"with --supersampling, or a beauty that is smaller than the depth", [](const Settings& all) {
+            const std::string& factor = all.input.supersampling;
+            if (factor == "1") return "--supersampling is 1";
+            return factor == "auto" && all.output.composite.empty() ? "there is neither" : "";
+          }};
+}
+
 }  // namespace
 
 void add_output_rows(std::vector<OptionRow>& rows, OutputSettings& s) {
@@ -92,6 +101,15 @@ void add_output_rows(std::vector<OptionRow>& rows, OutputSettings& s) {
       .text("--ao-name", s.ao_name, "NAME",
             "of the AO in OUTPUT: its channel instead of Y; with rgb its layer: NAME.R ...")
       .applies(with_aovs({"ao"}));
+  pixels
+      .choice("--filter", s.filter.kind,
+              "how pixels of depth and normals make one that is written; blackman-harris as Blender has it")
+      .applies(with_supersampling())
+      .harmless = {"blackman-harris"};
+  pixels
+      .number("--filter-width", s.filter.width, "px of what is written", between(1, 16),
+              "from one end to the other; else box 1, gaussian 2, blackman-harris 3, which Blender calls 1.5")
+      .applies(with_supersampling());
   pixels
       .choice("--aov-space", s.aov_space,
               "the space of the normals in OUTPUT; auto: world where the camera has world_to_camera, else view")

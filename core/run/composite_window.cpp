@@ -24,7 +24,8 @@ std::uint64_t row_bytes(const FrameSource& source) {
 }  // namespace
 
 Window composite_window(const FrameSource& source) {
-  return source.region ? common_part(*source.region, window_of_beauty(source)) : window_of_beauty(source);
+  const Window& beauty = window_of_beauty(source);
+  return source.region ? common_part(picture_of(source, *source.region), beauty) : beauty;
 }
 
 std::vector<std::vector<float>> composite_over(FrameSource& source, std::size_t count, const Window& part,
@@ -47,7 +48,7 @@ std::vector<std::vector<float>> composite_over(FrameSource& source, std::size_t 
 }
 
 std::uint64_t composite_bytes(const FrameSource& source) {
-  if (source[RawPlane::beauty].empty() || composite_window(source) == written_of(source)) return 0;
+  if (source[RawPlane::beauty].empty() || composite_window(source) == written_picture(source)) return 0;
   return 2 * std::max(kBytesAtOnce, kRowsOfOutput * row_bytes(source));  // what is read, and what is made of it
 }
 

@@ -61,7 +61,7 @@ std::string plan_text(const Settings& given) {
   require_room_for_others(memory_of_host(first.device), plan, source, first);
   const RunMemory run = beside_shot(memory_of_host(first.device), plan, source, first, 1);
   const std::uint64_t memory = run.host_bytes;
-  line("size", to_string(written_of(source)));
+  line("size", to_string(written_picture(source)));
   const std::string at_once =
       bytes > memory ? "in tiles" : fmt::format("up to {} at once", frames_in(run, frame, source.file_data));
   line("memory", fmt::format("{} MiB per frame, {} MiB for frames: {}", bytes >> 20, memory >> 20, at_once));

@@ -9,7 +9,9 @@
 #include "core/base/error.h"
 #include "core/base/estimator_facts.h"
 #include "core/base/file.h"
+#include "core/base/option_words.h"
 #include "core/base/version.h"
+#include "core/base/windows.h"
 #include "core/chain/aov.h"
 #include "core/chain/margin.h"
 #include "core/frame/behind.h"
@@ -27,12 +29,18 @@ bool in_world(const FrameSource& source, const OutputSettings& settings) {
   return settings.aov_space != NormalSpace::view && source.camera.view_from_world.has_value();
 }
 
-/// Of a rotation the way back.
+/// By its word, and its width in px of the picture.
+std::string text_of(const PixelFilter& filter) {
+  const auto is_kind = [&](const auto& name) { return name.second == filter.kind; };
+  const auto name = std::ranges::find_if(names_of<PixelFilterKind>(), is_kind);
+  return fmt::format("{} {}", name->first, filter.width.value_or(usual_width(filter.kind)));
+}
+
 ExrOutput output_like(const FrameSource& source, const ChannelRef& like, const Window& data,
-                      const Provenance& provenance) {
+                      const OutputSettings& settings, const Provenance& provenance) {
   ExrOutput output;
   output.data = data;
-  output.display = source.display;
+  output.display = picture_of(source, source.display);
   output.pixel_aspect = source.pixel_aspect;
   output.attributes = source.files[like.file].attributes(like.part);
   output.own_attributes = {{"alcove/version", kVersion},
@@ -40,6 +48,9 @@ ExrOutput output_like(const FrameSource& source, const ChannelRef& like, const W
                            {"alcove/device", provenance.device},
                            {"alcove/inputs", provenance.inputs},
                            {"alcove/input", fs::path(source.depth_path()).filename().string()}};
+  if (source.supersampling > 1)
+    output.own_attributes["alcove/filter"] =
+        fmt::format("{} x {} px by {}", source.supersampling, source.supersampling, text_of(settings.filter));
   if (const std::string hidden = hidden_sources_text(source); !hidden.empty())
     output.own_attributes[kHiddenAttribute] = hidden;
   if (!provenance.others.empty()) {
@@ -60,7 +71,7 @@ SampleType type_of(const FrameSource& source, const ChannelRef& ref) {
 /// The AO file, without pixels.
 ExrOutput aov_file(const FrameSource& source, const EstimatorSettings& estimator, const OutputSettings& settings,
                    const Provenance& provenance) {
-  ExrOutput output = output_like(source, source[RawPlane::depth][0], written_of(source), provenance);
+  ExrOutput output = output_like(source, source[RawPlane::depth][0], written_picture(source), settings, provenance);
   output.compression = settings.compression;
   const auto radii = estimator.radius ? radii_of(estimator) : std::vector<double>();
   if (needs_ao(settings)) output.own_attributes["alcove/radius"] = fmt::format("{}", fmt::join(radii, " "));
@@ -109,7 +120,7 @@ bool keeps_layers(const FrameSource& source, const OutputSettings& settings) {
 /// The composite, without pixels. Every channel keeps the beauty's precision.
 ExrOutput composite_file(const FrameSource& source, const Settings& all, const Provenance& provenance) {
   const OutputSettings& settings = all.output;
-  ExrOutput output = output_like(source, source[RawPlane::beauty][0], composite_window(source), provenance);
+  ExrOutput output = output_like(source, source[RawPlane::beauty][0], composite_window(source), settings, provenance);
   output.own_attributes["alcove/composite"] = composite_text(source, all);
   output.compression = settings.composite_compression;
   const char* names[] = {"R", "G", "B", "A"};
@@ -237,6 +248,8 @@ std::size_t evidence_within(const FrameSource& source, std::uint64_t most_bytes)
 
 const Window& written_of(const FrameSource& source) { return source.region ? *source.region : source.file_data; }
 
+Window written_picture(const FrameSource& source) { return picture_of(source, written_of(source)); }
+
 FrameInputs load_frame(gpu::Recorder& gpu, FrameSource& source, const Settings& all, int frame, FrameRows* rows) {
   const InputSettings& settings = all.input;
   RawPlaneArray<gpu::Buffer*> planes;
@@ -285,7 +298,7 @@ std::vector<std::span<const float>> result_planes(const FrameOutputs& outputs, c
 }
 
 FrameWriter::FrameWriter(FrameSource& source, const Settings& all, const Provenance& provenance)
-    : notes_(provenance.notes) {
+    : source_(source), row_(written_of(source).y), notes_(provenance.notes) {
   const OutputSettings& settings = all.output;
   const ExrOutput aovs = aov_file(source, all.estimator, settings, provenance);
   files_.emplace_back(ExrWriter(settings.output, aovs));
@@ -298,11 +311,23 @@ FrameWriter::FrameWriter(FrameSource& source, const Settings& all, const Provena
   else
     files_.emplace_back(ExrWriter(settings.composite, composite));
   planes_.push_back(composite.planes.size());
-  if (composite_window(source) != written_of(source))
-    composite_.emplace(source, written_of(source), composite.planes.size());
+  if (composite_window(source) != written_picture(source))
+    composite_.emplace(source, written_picture(source), composite.planes.size());
 }
 
 void FrameWriter::write(std::span<const std::span<const float>> planes) {
+  if (source_.supersampling == 1) return write_pixels(planes);
+  Window rows = written_of(source_);
+  rows.y = row_;
+  rows.height = int(planes[0].size() / std::size_t(rows.width));
+  row_ += rows.height;
+  if (picture_of(source_, rows).pixels() == 0) return;
+  std::vector<std::vector<float>> pixels;
+  for (const auto& plane : planes) pixels.push_back(middle_pixels(plane, rows, source_.display, source_.supersampling));
+  write_pixels(std::vector<std::span<const float>>(pixels.begin(), pixels.end()));
+}
+
+void FrameWriter::write_pixels(std::span<const std::span<const float>> planes) {
   for (std::size_t i = 0; i < files_.size(); i++) {
     const auto write = [&](std::span<const std::span<const float>> rows) {
       std::visit([&](auto& file) { file.write(rows); }, files_[i]);

@@ -31,6 +31,8 @@ std::size_t evidence_within(const FrameSource& source, std::uint64_t most_bytes)
 
 /// What is written of a frame: its region, or all of it.
 const Window& written_of(const FrameSource& source);
+/// The window of the files that it is written to: as many pixels fewer as the frame is supersampled.
+Window written_picture(const FrameSource& source);
 
 /// The part of a frame's memory that its decoded rows may take before they go to a file.
 constexpr std::uint64_t kRowsPart = 4;
@@ -68,13 +70,18 @@ class FrameWriter {
   /// The source must stay: where the beauty has another window than what is written of the frame, the rest is read.
   FrameWriter(FrameSource& source, const Settings& settings, const Provenance& provenance);
 
-  /// The next rows of result_planes(), as wide as what is written.
+  /// The next rows of result_planes(), as wide as what is written of the frame.
   void write(std::span<const std::span<const float>> planes);
   /// `notes` is what is noted now that all is computed; see header_text().
   void finish(const std::string& notes);
   void finish() { finish(notes_); }
 
  private:
+  /// Gives the files pixels of their own window.
+  void write_pixels(std::span<const std::span<const float>> planes);
+
+  const FrameSource& source_;
+  int row_;                  // of the frame, the next one
   const std::string notes_;  // that the headers have
   std::vector<std::variant<ExrWriter, ExrCopy>> files_;
   std::vector<std::size_t> planes_;         // the number of planes of each file

@@ -110,6 +110,14 @@ std::size_t occluder_planes(const FrameSource& source, const Settings& settings)
   return 1 + planes * (wants(settings.output, &FrameOutputs::confidence) ? 2 : 1) + (is_low ? planes + 1 : 0);
 }
 
+/// Planes that are filtered to those of the picture.
+std::size_t reduced_planes(const FrameSource& source, const Settings& settings) {
+  if (source.supersampling == 1) return 0;
+  std::size_t planes = 1 + (settings.output.multi_bounce ? 3 : 0);
+  for (const auto& aov : aovs_of(settings.output)) planes += planes_of(aov, settings.estimator);
+  return planes;
+}
+
 /// Planes of the frame's resolution, beside those that are read.
 std::size_t frame_planes(const FrameSource& source, const Settings& settings, std::size_t estimated) {
   const auto& e = settings.estimator;
@@ -119,7 +127,7 @@ std::size_t frame_planes(const FrameSource& source, const Settings& settings, st
   const bool has_matte = !source[RawPlane::matte].empty();
   planes += shapes(e) || has_matte || !source[RawPlane::material_ao].empty() ? 1 + scales : 0;
   planes += has_matte ? 1 : 0;
-  planes += occluder_planes(source, settings);
+  planes += occluder_planes(source, settings) + reduced_planes(source, settings);
   planes += needs_bent(e, o) ? 1 : 0;
   // thin, solid and perhaps completed: estimates, rows, columns
   planes += wants(o, &FrameOutputs::confidence) ? (completes_anywhere(e) ? 3 : 2) * 3 : 0;

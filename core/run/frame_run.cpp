@@ -239,7 +239,7 @@ class FrameRun {
     if (settings_.output.preview.empty()) return;
     constexpr std::uint64_t kBytes = 3 * (sizeof(float) + 1);  // per pixel: display values, and the bytes of a PNG
     const std::uint64_t side_by_side = settings_.output.preview_style == "split" ? 4 : 1;  // each, and both
-    const std::uint64_t bytes = source.display.pixels() * kBytes * side_by_side;
+    const std::uint64_t bytes = picture_of(source, source.display).pixels() * kBytes * side_by_side;
     if (bytes > room_.bytes)
       limits.refuse(fmt::format("{}: a preview shows the display window, {}: leave out --preview", report_.input,
                                 to_string(source.display)),

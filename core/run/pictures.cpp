@@ -78,26 +78,33 @@ std::vector<float> displayed(const Window& display, const Window& data, std::spa
   return interleaved;
 }
 
+/// A plane over source.data as pixels of the picture.
+std::vector<float> in_picture(const FrameSource& source, std::span<const float> plane) {
+  return middle_pixels(plane, source.data, source.display, source.supersampling);
+}
+
 /// The composite over a window, band by band, since the beauty's rows may be far longer than those of the display.
 /// Where nothing is computed it is the beauty.
 std::vector<float> shown_composite(FrameSource& source, const gpu::Buffer* computed, const Window& shown) {
   constexpr int kBand = 64;  // rows; files compress no more together, but for a few
-  std::vector<std::span<const float>> planes;
+  std::vector<std::vector<float>> planes;
   const auto values = computed ? computed->as<const float>() : std::span<const float>();
   for (std::size_t at = 0; at < values.size(); at += source.data.pixels())
-    planes.push_back(values.subspan(at, source.data.pixels()));
+    planes.push_back(in_picture(source, values.subspan(at, source.data.pixels())));
+  const Window from = computed ? picture_of(source, source.data) : Window{};
   const std::size_t count = source[RawPlane::beauty].size();
   std::vector<float> pixels(count * shown.pixels());
   for (int y = shown.y; y < shown.y + shown.height; y += kBand) {
     const Window band{shown.x, y, shown.width, std::min(kBand, shown.y + shown.height - y)};
-    const auto composite = composite_over(source, count, band, computed ? source.data : Window{}, planes);
+    const auto composite =
+        composite_over(source, count, band, from, std::vector<std::span<const float>>(planes.begin(), planes.end()));
     for (std::size_t c = 0; c < composite.size(); c++)
       copy_common(composite[c].data(), band, pixels.data() + c * shown.pixels(), shown);
   }
   return pixels;
 }
 
-/// Interleaved display values.
+/// Interleaved display values, over the picture's display window.
 struct Shown {
   int width, planes;
   std::vector<float> pixels;
@@ -105,14 +112,17 @@ struct Shown {
 
 /// AO by itself is data, and shown as it is.
 Shown shown_ao(const FrameSource& source, const gpu::Buffer& ao) {
-  const Window& data = written_of(source);
-  return {source.display.width, 1, displayed(source.display, data, cropped(ao.as<float>(), source.data, data), 1)};
+  const Window display = picture_of(source, source.display), data = picture_of(source, source.data);
+  const std::vector<float> pixels = in_picture(source, ao.as<float>());
+  const Window written = written_picture(source);
+  return {display.width, 1, displayed(display, written, cropped(pixels, data, written), 1)};
 }
 
 /// A beauty, or a composite, through the view transform.
 Shown shown_colors(FrameSource& source, const gpu::Buffer* computed, const DisplayTransform* transform) {
-  const Window data = common_part(composite_window(source), source.display);
-  Shown shown{source.display.width, 3, displayed(source.display, data, shown_composite(source, computed, data), 3)};
+  const Window display = picture_of(source, source.display);
+  const Window data = common_part(composite_window(source), display);
+  Shown shown{display.width, 3, displayed(display, data, shown_composite(source, computed, data), 3)};
   if (transform) transform->apply(shown.pixels);
   return shown;
 }
@@ -152,7 +162,8 @@ void write_pictures(FrameSource& source, const FrameOutputs& outputs, const Disp
                      plane.values->as<float>(), text);
   if (settings.preview.empty()) return;
   const Shown shown = preview_of(source, outputs, transform, settings.preview_style);
-  write_png(settings.preview, shown.width, source.display.height, shown.planes, shown.pixels, text);
+  const int height = int(shown.pixels.size()) / shown.planes / shown.width;
+  write_png(settings.preview, shown.width, height, shown.planes, shown.pixels, text);
 }
 
 }  // namespace alcove

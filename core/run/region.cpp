@@ -7,8 +7,10 @@
 
 #include "core/base/error.h"
 #include "core/base/estimator_facts.h"
+#include "core/base/windows.h"
 #include "core/chain/aov.h"
 #include "core/chain/estimate.h"
+#include "core/chain/reduce.h"
 #include "core/frame/evidence.h"
 #include "core/frame/settle.h"
 #include "kernels/ends.h"
@@ -80,13 +82,15 @@ double sphere_reach(double radius, double nearest, double tangent, double pixels
 
 Window region_of(const FrameSource& source, const Region& roi) {
   const Window& data = source.file_data;
-  const Window region{source.display.x + roi.x, source.display.y + roi.y, roi.width, roi.height};
+  const Window picture = picture_of(source, source.display);
+  const Window region =
+      enlarged({picture.x + roi.x, picture.y + roi.y, roi.width, roi.height}, source.display, source.supersampling);
   const bool inside = region.x >= data.x && region.y >= data.y &&
                       std::int64_t(region.x) + region.width <= std::int64_t(data.x) + data.width &&
                       std::int64_t(region.y) + region.height <= std::int64_t(data.y) + data.height;
   if (!inside)
     fail(ErrorKind::usage, "{}: --roi is {}, and the data window is {}: give a region within it", source.depth_path(),
-         to_string(region), to_string(data));
+         to_string(picture_of(source, region)), to_string(picture_of(source, data)));
   return region;
 }
 
@@ -99,7 +103,7 @@ Surroundings::Surroundings(const FrameSource& source, const Settings& settings, 
       view_(view_of(source.camera, source.file_data, source.display)),
       orthographic_(source.camera.orthographic),
       radius_(settings.estimator.radius ? radii_of(settings.estimator).back() : 0),
-      filters_(filter_reach(settings)),
+      filters_(filter_reach(settings) + reduce_reach(settings.output.filter, source.supersampling)),
       lines_(line_reach(settings.estimator)),
       pairs_(pair_reach(source, settings.estimator)),
       widest_run_(widest_run(settings.estimator)) {}

@@ -31,6 +31,7 @@ std::set<std::string> kernels_of(gpu::Recorder& gpu, const EstimatorSettings& se
     return &buffer;
   };
   if (!output.composite.empty()) {
+    inputs.supersampling = 2;
     for (const auto& row : kRawPlanes)
       if (!inputs[row.plane]) inputs[row.plane] = planes(row.name, row.most);
     inputs.behind.assign(kMostBehindPlanes, {inputs.depth_map.form, BehindKind::surfaces, inputs.prepare.depth});

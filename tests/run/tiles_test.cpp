@@ -93,7 +93,7 @@ class Tiles : public CommandLine {
 
   std::string shot = frame, shot_camera = camera;
   std::uint64_t little_memory = kLittleMemory;
-  const Window data{-6, -3, 507, 286}, display{0, 0, 500, 281};
+  const Window data{-6, -3, 507, 286}, display{0, 0, 500, 282};
 };
 
 TEST_F(Tiles, give_the_bits_of_the_whole) {
@@ -108,6 +108,7 @@ TEST_F(Tiles, give_the_bits_of_the_whole) {
         {"--radius", "0.2", "--stride", "4"},
         {"--radius", "0.2", "--stride", "8", "--density", "uniform"},
         {"--radius", "0.2", "--stride", "1"},
+        {"--radius", "0.2", "--supersampling", "2", "--filter-width", "5", "--roi", "3,5,225,125"},
         {"--radius", "0.2", "--roi", "3,5,450,250", "--falloff", "smooth"}}) {
     expect_same(options);
   }

@@ -1,0 +1,317 @@
+// Depth and normals that are so many times larger than what is written: it is filtered as a renderer filters its
+// samples.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/formats/exr.h"
+#include "core/formats/open_image.h"
+#include "tests/support/command_line.h"
+#include "tests/support/exr_header.h"
+
+namespace alcove {
+namespace {
+
+using namespace test;
+using testing::AllOf;
+using testing::HasSubstr;
+using Options = std::vector<std::string>;
+using Plane = std::vector<float>;
+
+const Window kSmall = kWallWindow;
+
+Window times(const Window& window, int factor) {
+  return {window.x * factor, window.y * factor, window.width * factor, window.height * factor};
+}
+
+/// At a distance from the middle, in px of the picture.
+double weight(const std::string& filter, double width, double distance) {
+  const double x = std::abs(distance) / width;
+  if (x > 0.5) return 0;
+  if (filter == "box") return 1;
+  if (filter == "gaussian") return std::exp(-2 * 4 * x * x);
+  const double turn = 2 * std::numbers::pi * (x + 0.5);
+  return 0.35875 - 0.48829 * std::cos(turn) + 0.14128 * std::cos(2 * turn) - 0.01168 * std::cos(3 * turn);
+}
+
+/// A plane over `large` as a renderer filters it to the pixels of `small`, for display windows that begin at 0, 0.
+Plane filtered(const Plane& plane, const Window& large, const Window& small, int factor, const std::string& filter,
+               double width) {
+  Plane result;
+  for (int y = small.y; y < small.y + small.height; y++)
+    for (int x = small.x; x < small.x + small.width; x++) {
+      double sum = 0, weights = 0;
+      for (int v = large.y; v < large.y + large.height; v++) {
+        const double of_row = weight(filter, width, (v + 0.5) / factor - (y + 0.5));
+        if (of_row == 0) continue;
+        for (int u = large.x; u < large.x + large.width; u++) {
+          const double w = of_row * weight(filter, width, (u + 0.5) / factor - (x + 0.5));
+          sum += w * plane[std::size_t(v - large.y) * std::size_t(large.width) + std::size_t(u - large.x)];
+          weights += w;
+        }
+      }
+      result.push_back(float(sum / weights));
+    }
+  return result;
+}
+
+float value_at(int x, int y, int channel) {
+  return 0.25f + float(((x + 50) * 7 + (y + 50) * 13 + channel * 5) % 32) / 16;
+}
+
+class Supersampling : public CommandLine {
+ protected:
+  /// The wall, with blocks before it that make edges everywhere.
+  void write_frame(const Window& data, const Window& display) const {
+    FrameFile file = wall_frame(data, display);
+    auto& depth = file.planes.at("ViewLayer.Depth.Z");
+    for (std::size_t i = 0; i < depth.size(); i++)
+      depth[i] -= 0.1f * float((7 * (i % std::size_t(data.width) / 5) + 13 * (i / std::size_t(data.width) / 4)) % 5);
+    file.write(frame);
+    write_bytes(camera, wall_camera(display).dump());
+  }
+
+  void write_beauty(const Window& data, const Window& display) const {
+    FrameFile file{data, display, 1, {}, {}, {}};
+    for (int c = 0; c < 3; c++) {
+      Plane& plane = file.planes[std::string(1, "RGB"[c])];
+      for (int y = data.y; y < data.y + data.height; y++)
+        for (int x = data.x; x < data.x + data.width; x++) plane.push_back(value_at(x, y, c));
+    }
+    file.write(beauty);
+  }
+
+  Image computed(const Options& more) const {
+    Options options{"--type", "float"};
+    options.insert(options.end(), more.begin(), more.end());
+    const Finished finished = run(options);
+    EXPECT_EQ(finished.code, 0) << finished;
+    return read_exr_image(ao);
+  }
+
+  void expect_error(const Options& options, const std::vector<std::string>& words) const {
+    const Finished finished = run(options);
+    EXPECT_EQ(finished.code, 3) << finished;
+    EXPECT_EQ(lines_of(finished.err).size(), 1) << finished;
+    for (const auto& word : words) EXPECT_THAT(finished.err, HasSubstr(word));
+  }
+
+  const std::string beauty = folder / "beauty.exr", composite = folder / "composite.exr";
+};
+
+double largest_difference(std::span<const float> a, std::span<const float> b) {
+  EXPECT_EQ(a.size(), b.size());
+  double largest = 0;
+  for (std::size_t i = 0; i < std::min(a.size(), b.size()); i++)
+    largest = std::max(largest, std::abs(double(a[i]) - b[i]));
+  return largest;
+}
+
+struct FilterCase {
+  int factor;
+  std::string filter;
+  double width;
+  Options options;
+};
+
+TEST_F(Supersampling, filters_as_the_formulas_say) {
+  for (const FilterCase& c : {FilterCase{2, "blackman-harris", 3, {}},
+                              {3, "blackman-harris", 3, {}},
+                              {2, "box", 1, {"--filter", "box"}},
+                              {4, "gaussian", 2, {"--filter", "gaussian"}},
+                              {2, "gaussian", 3.5, {"--filter", "gaussian", "--filter-width", "3.5"}},
+                              {3, "box", 2, {"--filter", "box", "--filter-width", "2"}}}) {
+    SCOPED_TRACE(std::to_string(c.factor) + " " + c.filter);
+    const Window display = times(kSmall, c.factor);
+    write_frame(display, display);
+    const Image full = computed({});
+    Options options{"--supersampling", std::to_string(c.factor)};
+    options.insert(options.end(), c.options.begin(), c.options.end());
+    const Image small = computed(options);
+    EXPECT_EQ(small.data, kSmall);
+    EXPECT_EQ(small.display, kSmall);
+    EXPECT_EQ(text_in(read_header(ao), "alcove/filter"),
+              fmt::format("{} x {} px by {} {}", c.factor, c.factor, c.filter, c.width));
+    const Plane expected = filtered(full.pixels, display, kSmall, c.factor, c.filter, c.width);
+    EXPECT_LT(largest_difference(small.pixels, expected), 1e-6);
+    // Else any filter would do.
+    EXPECT_GT(largest_difference(expected, filtered(full.pixels, display, kSmall, c.factor, "box", 4)), 0.01);
+  }
+}
+
+TEST_F(Supersampling, a_picture_has_the_pixels_whose_middle_the_depth_has) {
+  struct Windows {
+    Window depth, picture;
+  };
+  // The middle of a block of 2 is its lower right pixel.
+  for (const auto& [depth, picture] :
+       {Windows{{-7, -3, 140, 80}, {-4, -2, 70, 40}}, Windows{{13, 8, 61, 30}, {6, 4, 31, 15}},
+        Windows{{12, 7, 61, 31}, {6, 3, 30, 16}}}) {
+    write_frame(depth, times(kSmall, 2));
+    const Image full = computed({});
+    const Image small = computed({"--supersampling", "2"});
+    EXPECT_EQ(small.data, picture);
+    EXPECT_EQ(small.display, kSmall);
+    EXPECT_LT(largest_difference(small.pixels, filtered(full.pixels, depth, picture, 2, "blackman-harris", 3)), 1e-6);
+  }
+}
+
+TEST_F(Supersampling, a_smaller_beauty_asks_for_it_and_takes_the_filtered_ao) {
+  for (const int factor : {2, 3, 4}) {
+    const Window display = times(kSmall, factor);
+    write_frame(display, display);
+    const Image filtered_ao = computed({"--supersampling", std::to_string(factor)});
+    for (const Window& window : {kSmall, Window{-3, 2, 40, 50}}) {
+      write_beauty(window, kSmall);
+      const Image with = computed({"--beauty", beauty, "--composite", composite, "--append-ao", "AO"});
+      EXPECT_EQ(with.pixels, filtered_ao.pixels);
+      const Image result = read_exr_image(composite);
+      EXPECT_EQ(result.data, window);
+      EXPECT_EQ(result.display, kSmall);
+      for (int y = window.y; y < window.y + window.height; y++)
+        for (int x = window.x; x < window.x + window.width; x++) {
+          const auto at = std::size_t(y - window.y) * std::size_t(window.width) + std::size_t(x - window.x);
+          const bool has_ao = x >= 0 && y >= 0 && x < kSmall.width && y < kSmall.height;
+          const float ao_there =
+              has_ao ? filtered_ao.pixels[std::size_t(y) * std::size_t(kSmall.width) + std::size_t(x)] : 1;
+          ASSERT_EQ(result.plane("AO.Y")[at], ao_there) << x << ", " << y;
+          for (int c = 0; c < 3; c++)
+            ASSERT_NEAR(result.plane(std::string(1, "RGB"[c]))[at], ao_there * value_at(x, y, c), 1e-6)
+                << x << ", " << y;
+        }
+    }
+  }
+}
+
+TEST_F(Supersampling, a_region_counts_in_pixels_of_the_picture_and_has_the_bits_of_the_whole) {
+  const Window display = times(kSmall, 3), region{11, 7, 30, 20};
+  write_frame(display, display);
+  write_beauty(kSmall, kSmall);
+  const Image whole = computed({"--beauty", beauty, "--composite", composite});
+  const Image whole_composite = read_exr_image(composite);
+  const Image part = computed({"--beauty", beauty, "--composite", composite, "--roi", "11,7,30,20"});
+  EXPECT_EQ(part.data, region);
+  EXPECT_EQ(part.pixels, cropped(whole.pixels, kSmall, region));
+  const Image part_composite = read_exr_image(composite);
+  EXPECT_EQ(part_composite.data, region);
+  EXPECT_EQ(part_composite.pixels, cropped(whole_composite.pixels, kSmall, region));
+  const Finished outside = run({"--supersampling", "3", "--roi", "40,7,30,20"});
+  EXPECT_EQ(outside.code, 2) << outside;
+  EXPECT_THAT(outside.err, AllOf(HasSubstr("30x20 at (40, 7)"), HasSubstr(to_string(kSmall))));
+}
+
+TEST_F(Supersampling, amounts_and_directions_are_filtered_and_depth_is_that_of_the_middle) {
+  const Window display = times(kSmall, 2);
+  write_frame(display, display);
+  const Options aovs{"--aov",       "ao,normal,bent-normal,depth,confidence,specular-occlusion,ao-scales",
+                     "--radius",    "0.4",
+                     "--aov-space", "view"};
+  const Image full = computed(aovs);
+  Options options = aovs;
+  options.insert(options.end(), {"--supersampling", "2"});
+  const Image small = computed(options);
+  ASSERT_EQ(small.names, full.names);
+  for (const std::string& name : full.names) {
+    const auto of_full = full.plane(name);
+    Plane expected = filtered({of_full.begin(), of_full.end()}, display, kSmall, 2, "blackman-harris", 3);
+    if (name == "Z")
+      for (std::size_t i = 0; i < expected.size(); i++)
+        expected[i] = of_full[(2 * (i / 64) + 1) * 128 + 2 * (i % 64) + 1];
+    EXPECT_LT(largest_difference(small.plane(name), expected), 1e-6) << name;
+  }
+}
+
+TEST_F(Supersampling, multi_bounce_is_that_of_each_sample) {
+  const Window display = times(kSmall, 2);
+  write_frame(display, display);
+  const Options colored{"--ao-channels", "rgb", "--multi-bounce", "--albedo", "0.8"};
+  const Image full = computed(colored);
+  Options options = colored;
+  options.insert(options.end(), {"--supersampling", "2"});
+  const Image small = computed(options);
+  for (const std::string name : {"R", "G", "B"}) {
+    const auto plane = full.plane(name);
+    const Plane expected = filtered({plane.begin(), plane.end()}, display, kSmall, 2, "blackman-harris", 3);
+    EXPECT_LT(largest_difference(small.plane(name), expected), 1e-6) << name;
+  }
+}
+
+TEST_F(Supersampling, a_matte_of_the_pictures_size_counts_for_its_blocks) {
+  const Window display = times(kSmall, 2);
+  write_frame(display, display);
+  const std::string large_matte = folder / "large.exr", small_matte = folder / "small.exr";
+  FrameFile large{display, display, 1, {}, {}, {}}, small{kSmall, kSmall, 1, {}, {}, {}};
+  const auto is_in = [](int x, int y) { return x > 20 && (x + y) % 11 > 3 ? 1.0f : 0.0f; };
+  for (int y = 0; y < display.height; y++)
+    for (int x = 0; x < display.width; x++) large.planes["Y"].push_back(is_in(x / 2, y / 2));
+  for (int y = 0; y < kSmall.height; y++)
+    for (int x = 0; x < kSmall.width; x++) small.planes["Y"].push_back(is_in(x, y));
+  large.write(large_matte);
+  small.write(small_matte);
+  const Image by_large = computed({"--supersampling", "2", "--matte", large_matte});
+  EXPECT_EQ(computed({"--supersampling", "2", "--matte", small_matte}).pixels, by_large.pixels);
+  EXPECT_NE(computed({"--supersampling", "2"}).pixels, by_large.pixels);
+}
+
+TEST_F(Supersampling, a_preview_is_as_large_as_the_picture) {
+  const Window display = times(kSmall, 2);
+  const std::string preview = folder / "preview.png";
+  write_frame(display, display);
+  write_beauty(kSmall, kSmall);
+  for (const char* style : {"ao", "composite"}) {
+    computed({"--beauty", beauty, "--composite", composite, "--preview", preview, "--preview-style", style});
+    ExrFile shown = open_image(preview, "the test", Formats::all);
+    EXPECT_EQ(shown.parts()[0].data, kSmall);
+  }
+  // Two bytes of a PNG may differ by rounding.
+  const Image small = computed({"--supersampling", "2", "--preview", preview});
+  const Finished compared = run_program({"compare", preview, ao, "--max-rmse", "0.003"});
+  EXPECT_EQ(compared.code, 0) << compared;
+}
+
+TEST_F(Supersampling, sky_counts_as_open) {
+  const Window display = times(kSmall, 2);
+  FrameFile file = wall_frame(display, display);
+  Plane& depth = file.planes.at("ViewLayer.Depth.Z");
+  for (std::size_t i = 0; i < depth.size(); i++)
+    if (i % 128 > 63) depth[i] = 1e10f;
+  file.write(frame);
+  write_bytes(camera, wall_camera(display).dump());
+  const Image full = computed({});
+  const Image small = computed({"--supersampling", "2"});
+  EXPECT_EQ(small.pixels[63], 1);
+  EXPECT_LT(largest_difference(small.pixels, filtered(full.pixels, display, kSmall, 2, "blackman-harris", 3)), 1e-6);
+}
+
+TEST_F(Supersampling, sizes_that_do_not_fit_are_refused) {
+  const Window display = times(kSmall, 2);
+  write_frame(display, display);
+  write_beauty(display, display);
+  expect_error({"--supersampling", "2", "--beauty", beauty, "--composite", composite},
+               {"beauty.exr", "128x72", "--supersampling 2", "64x36"});
+  write_beauty({0, 0, 42, 24}, {0, 0, 42, 24});
+  expect_error({"--beauty", beauty, "--composite", composite}, {"beauty.exr", "--supersampling"});
+  write_beauty({0, 0, 256, 144}, {0, 0, 256, 144});
+  expect_error({"--beauty", beauty, "--composite", composite}, {"beauty.exr", "--resolution half"});
+  write_frame(kSmall, {0, 0, 64, 37});
+  expect_error({"--supersampling", "2"}, {"wall.0042.exr", "64x37", "--supersampling 2"});
+}
+
+TEST_F(Supersampling, of_one_keeps_every_pixel) {
+  const Window display = times(kSmall, 2);
+  write_frame(display, display);
+  const Image full = computed({});
+  EXPECT_EQ(full.data, display);
+  EXPECT_EQ(computed({"--supersampling", "1"}).pixels, full.pixels);
+  write_beauty(kSmall, kSmall);
+  expect_error({"--supersampling", "1", "--beauty", beauty, "--composite", composite},
+               {"beauty.exr", "--supersampling"});
+}
+
+}  // namespace
+}  // namespace alcove
