@@ -163,6 +163,16 @@ TEST_F(Memory, is_expected_of_what_tells_occluders_from_the_rest) {
   expect_enough(settings, "and at half the resolution, with hidden surfaces");
 }
 
+TEST_F(Memory, is_expected_of_what_is_filtered_to_a_smaller_picture) {
+  Settings settings = all;
+  settings.output.aovs = "ao,normal,confidence";
+  const Bytes without = bytes_of(settings);
+  settings.input.supersampling = "2";
+  const Bytes with = bytes_of(settings);
+  EXPECT_GE(with.taken - without.taken, 5 * sizeof(float));
+  EXPECT_LE(with.taken - without.taken, with.expected - without.expected + 1);
+}
+
 TEST_F(Memory, is_expected_of_what_others_show) {
   Settings settings = all;
   settings.input.around = 1;
