@@ -312,6 +312,11 @@ void require_listed(const std::string& path, int frame) {
   frame_entry({path, object_in(path), Json::object(), Json::object(), Json::object()}, frame);
 }
 
+NoCamera::NoCamera(const std::string& file, const std::string& why)
+    : Error(ErrorKind::usage,
+            fmt::format("no camera for {}: {}give {}", file, why.empty() ? "" : why + ": ", kCameraOptions)),
+      why(why) {}
+
 bool names_a_camera(const InputSettings& settings) {
   return !settings.camera.empty() || settings.fov || settings.focal || settings.ortho_width;
 }
@@ -325,12 +330,9 @@ Camera camera_for(const InputSettings& settings, const Window& display, double p
   if (settings.focal && settings.aperture)
     return centred(display, 2 * half_width * *settings.focal / *settings.aperture, pixel_aspect, false);
   if (settings.ortho_width) return centred(display, 2 * half_width / *settings.ortho_width, pixel_aspect, true);
-  fail(ErrorKind::usage,
-       "no camera for {}: give --camera FILE.json, or --fov DEGREES, or --focal MM with --aperture MM, or "
-       "--ortho-width UNITS",
-       !settings.input.empty()  ? settings.input
-       : settings.depth.empty() ? settings.position
-                                : settings.depth);
+  throw NoCamera(!settings.input.empty()  ? settings.input
+                 : settings.depth.empty() ? settings.position
+                                          : settings.depth);
 }
 
 Matrix3 transposed(const Matrix3& m) {

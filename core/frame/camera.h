@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "core/base/error.h"
 #include "core/base/image.h"
 #include "core/base/settings.h"
 #include "kernels/shared.h"
@@ -41,6 +42,16 @@ struct Camera {
   NormalEncoding normal_encoding = NormalEncoding::automatic;
 };
 
+/// The options that give a camera.
+inline constexpr const char* kCameraOptions =
+    "--camera FILE.json, or --fov DEGREES, or --focal MM with --aperture MM, or --ortho-width UNITS";
+
+/// ErrorKind::usage: nothing gives a camera to the frame of this file; `why` says of what might have why it does not.
+struct NoCamera : Error {
+  explicit NoCamera(const std::string& file, const std::string& why = "");
+  const std::string why;
+};
+
 /// Reads a camera JSON file, whose keys docs/inputs.md lists; if the file lists `frames`, the one of that number, and
 /// where it has `views`, the one of that name; "": what all views share. Fails with ErrorKind::input, naming file and
 /// field, on anything missing or senseless.
@@ -57,7 +68,7 @@ void require_listed(const std::string& path, int frame);
 bool names_a_camera(const InputSettings& settings);
 
 /// Gives the camera of the settings for a frame of this display window and pixel aspect (width / height of a pixel): by
-/// its file, by fov, by focal and aperture, or by ortho_width. Fails with ErrorKind::usage if there is none, and with
+/// its file, by fov, by focal and aperture, or by ortho_width. Fails with NoCamera if there is none, and with
 /// ErrorKind::input if it does not fit.
 Camera camera_for(const InputSettings& settings, const Window& display, double pixel_aspect, int frame,
                   const std::string& view = "");

@@ -19,6 +19,7 @@
 #include "core/frame/input_files.h"
 #include "core/frame/matte.h"
 #include "core/frame/plane_windows.h"
+#include "core/frame/position_pass.h"
 
 namespace alcove {
 namespace {
@@ -137,16 +138,40 @@ void note_pixel_aspect(FrameSource& source, const std::string& camera) {
                                       source.camera.fx, source.camera.fy, camera, aspect, source.pixel_aspect)});
 }
 
-/// The settings' camera, or else the header's. Options that give no more than a projection leave the camera where the
-/// header says that it stands.
-void find_camera(FrameSource& source, const InputSettings& settings, const ChannelRef& depth, int frame) {
+/// What the positions say of the camera that saw them: it, or why they tell none. Nothing where there are no positions
+/// that fit the depth.
+std::optional<std::variant<Resection, std::string>> camera_by_positions(const ChannelSearch& search,
+                                                                        std::vector<ExrFile>& files,
+                                                                        const std::vector<ChannelRef>& depth,
+                                                                        const InputSettings& settings) {
+  const auto positions = find_positions(search, depth, settings);
+  if (positions.empty()) return std::nullopt;
+  ExrFile& file = files[positions.front().file];
+  const auto window_of = [&](const ChannelRef& channel) { return file.parts()[std::size_t(channel.part)].data; };
+  const auto has_window = [&](const ChannelRef& channel) { return window_of(channel) == window_of(depth.front()); };
+  if (!std::ranges::all_of(positions, has_window)) return std::nullopt;
+  return resection_of(points_of(file, positions, settings.sky), file.display());
+}
+
+/// The settings' camera, or else the header's, or else that of the positions. Options that give no more than a
+/// projection leave the camera where the header says that it stands.
+void find_camera(FrameSource& source, const ChannelSearch& search, const InputSettings& settings, int frame) {
+  const ChannelRef& depth = source[RawPlane::depth].front();
   const ExrFile& file = source.files[depth.file];
   const auto attributes = file.attribute_texts(depth.part);
   require_no_panorama(attributes, file.path());
   if (!names_a_camera(settings))
     if (auto found = header_camera(attributes, source.display, source.file_data, source.pixel_aspect)) {
       source.camera = found->camera;
-      source.camera_from = found->from;
+      source.camera_from = "the header's " + found->from;
+      return;
+    }
+  if (!names_a_camera(settings))
+    if (const auto found = camera_by_positions(search, source.files, source[RawPlane::depth], settings)) {
+      if (const auto* why = std::get_if<std::string>(&*found))
+        throw NoCamera(file.path(), "its positions tell none, since " + *why);
+      source.camera = std::get<Resection>(*found).camera;
+      source.camera_from = "its positions";
       return;
     }
   const auto views = views_of(file);
@@ -269,7 +294,7 @@ FrameSource find_frame(const InputSettings& settings, bool with_beauty, int fram
   if (!settings.view.empty() && std::ranges::none_of(source.files, has_views))
     source.notes.push_back({NoteCode::said_otherwise,
                             fmt::format("--view {} chooses nothing: the frame's files name no views", settings.view)});
-  find_camera(source, settings, source[RawPlane::depth][0], frame);
+  find_camera(source, search, settings, frame);
   find_meaning(source, settings);
   take_deep(source, settings);
   if (!source[RawPlane::normal].empty() && source.normal_space == NormalSpace::world && !source.normal_space_open &&
@@ -278,15 +303,18 @@ FrameSource find_frame(const InputSettings& settings, bool with_beauty, int fram
   return source;
 }
 
-bool header_has_camera(const InputSettings& settings) {
-  const ExrFile file = open_image(!settings.depth.empty()  ? settings.depth
-                                  : settings.input.empty() ? main_input(settings)
-                                                           : settings.input,
-                                  "INPUT", Formats::of_frames);
+bool may_tell_camera(const InputSettings& settings) {
+  std::vector<ExrFile> files;
+  ChannelSearch search(settings, files);
+  const std::size_t place = search.open(!settings.depth.empty()  ? settings.depth
+                                        : settings.input.empty() ? main_input(settings)
+                                                                 : settings.input,
+                                        "INPUT");
+  const ExrFile& file = files[place];
   for (std::size_t part = 0; part < file.parts().size(); part++)
     if (header_camera(file.attribute_texts(int(part)), file.display(), file.parts()[part].data, file.pixel_aspect()))
       return true;
-  return false;
+  return !search.find(place, kPositionNames, settings.position_channels, !settings.position.empty()).empty();
 }
 
 void read_planes(FrameSource& source, const std::vector<PlaneRead>& reads) {

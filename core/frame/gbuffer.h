@@ -56,7 +56,7 @@ struct FrameSource : Reading {
   // Nobody says it, so the pixels decide.
   bool depth_kind_open = false, normal_space_open = false, normal_encoding_open = false;
   bool normals_left_out = false;  // the settings say so
-  std::string camera_from;        // the attributes that gave it; empty: the settings did
+  std::string camera_from;        // what of the frame gave it; empty: the settings did
   // Nobody gave a camera, and this one only stands in for it, so that the pixels cannot speak against it.
   bool camera_is_assumed = false;
   std::vector<Guess> guesses;
@@ -68,7 +68,7 @@ struct FrameSource : Reading {
 /// Opens the files that the settings name and finds the channels. `with_beauty` asks for the beauty and its ambient
 /// parts too, `with_albedo` for the diffuse colour.
 /// Fails with ErrorKind::input, listing what there is and naming the option that decides, when a channel is not found,
-/// is found twice, is subsampled, or has another size than the depth.
+/// is found twice, is subsampled, or has another size than the depth; with NoCamera where nothing gives one.
 FrameSource find_frame(const InputSettings& settings, bool with_beauty, int frame, bool with_albedo = false);
 
 /// Fails with ErrorKind::input where channels, what they hold and the option that names them, have another window than
@@ -81,8 +81,9 @@ constexpr const char* kWorldWithoutMatrix =
     "its normals are in world space, and the camera has no world_to_camera: give a --camera file with it, or --normal "
     "none, which reconstructs them from depth";
 
-/// Whether the header of the frame's depth or position file has a camera. Fails as opening it does.
-bool header_has_camera(const InputSettings& settings);
+/// Whether the header of the frame's depth or position file has a camera, or the file has positions, which may tell
+/// one. Fails as opening it does.
+bool may_tell_camera(const InputSettings& settings);
 
 /// A plane, or several one behind the other, and where it goes.
 struct PlaneRead {

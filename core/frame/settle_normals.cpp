@@ -267,7 +267,7 @@ class NormalSettlement : private Settlement {
 
   /// Names the file of the camera, or the header's attributes.
   std::string from() const {
-    if (!source_.camera_from.empty()) return " of the header (" + source_.camera_from + ")";
+    if (!source_.camera_from.empty()) return " of " + source_.camera_from;
     return settings_.camera.empty() ? std::string() : " " + settings_.camera;
   }
 

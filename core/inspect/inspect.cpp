@@ -43,7 +43,7 @@ std::string options_of_camera(const InputSettings& settings) {
 
 InspectedCamera camera_of(const FrameSource& source, const InputSettings& settings) {
   const Camera& camera = source.camera;
-  if (!source.camera_from.empty()) return {camera, "the header's " + source.camera_from};
+  if (!source.camera_from.empty()) return {camera, source.camera_from};
   const std::string placed = camera.placement_from.empty() ? "" : " and the header's " + camera.placement_from;
   return {camera, options_of_camera(settings) + placed};
 }
@@ -274,13 +274,22 @@ InputSettings with_some_camera(const InputSettings& settings) {
   return with;
 }
 
-bool has_a_camera(const InputSettings& settings) {
-  if (names_a_camera(settings)) return true;
+std::string lacking_camera(const InputSettings& settings, int frame) {
+  if (names_a_camera(settings)) return "";
   try {
-    return header_has_camera(settings);
+    find_frame(settings, false, frame);
+    return "";
+  } catch (const NoCamera& error) {
+    return fmt::format("camera: {}{}", error.why.empty() ? "" : error.why + "; ", kCameraOptions);
   } catch (const Error&) {
-    return false;  // it fails later, with all that is missing
+    // Something else is missing too, which comes later.
   }
+  try {
+    if (may_tell_camera(settings)) return "";
+  } catch (const Error&) {
+    // So is this.
+  }
+  return fmt::format("camera: {}", kCameraOptions);
 }
 
 Inspection inspect_frame(const InputSettings& settings, int frame) {
@@ -288,11 +297,10 @@ Inspection inspect_frame(const InputSettings& settings, int frame) {
 }
 
 Inspection inspect_frame(const InputSettings& settings, int frame, const CommandNames& run) {
-  const bool has_camera = has_a_camera(settings);
+  const std::string lacking = lacking_camera(settings, frame);
+  const bool has_camera = lacking.empty();
   Inspector inspector{settings, run, has_camera ? settings : with_some_camera(settings), has_camera, frame};
-  if (!has_camera)
-    inspector.found.missing.push_back(
-        "camera: --camera FILE.json, or --fov, or --focal with --aperture, or --ortho-width");
+  if (!has_camera) inspector.found.missing.push_back(lacking);
   const bool is_found = inspector.find();
   const bool is_read = is_found && inspector.read();
   if (is_read) inspector.look();

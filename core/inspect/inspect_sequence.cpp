@@ -52,7 +52,7 @@ Values values_of(const FrameSource& source, bool has_camera) {
                 {"normals", names_of(source[RawPlane::normal])},
                 {"source", source.rules->name}};
   if (!has_camera) return values;
-  values["camera by"] = source.camera_from.empty() ? "options" : "the header's " + source.camera_from;
+  values["camera by"] = source.camera_from.empty() ? "options" : source.camera_from;
   values["near plane"] = plane_text(source.camera.near);
   values["far plane"] = plane_text(source.camera.far);
   return values;
@@ -101,7 +101,7 @@ class SequenceInspector {
     shown_.shown = shown_frame_;
     shown_.frames = names_.frames;
     shown_.absent = names_.absent;
-    has_camera_ = has_a_camera(names_.of(shown_frame_));
+    has_camera_ = lacking_camera(names_.of(shown_frame_), shown_frame_).empty();
     for (const int frame : names_.frames) look_at_header(frame);
     for (const int frame : few()) look_at_pixels(frame);
     sort_out();

@@ -64,7 +64,7 @@ std::optional<double> radius_for(const FramePlan& plan, bool has_camera, std::op
 bool has_camera(const FramePlan& plan) {
   if (plan.evidence().empty()) return true;
   const Settings first = plan.at(plan.evidence().front());
-  return names_a_camera(first.input) || header_has_camera(first.input);
+  return names_a_camera(first.input) || may_tell_camera(first.input);
 }
 
 }  // namespace
@@ -166,9 +166,7 @@ std::string text_of(const Lacking& lacking) {
   if (lacking.input)
     things.emplace_back("INPUT, an EXR file with depth and normals, or --depth FILE, or --position FILE");
   if (lacking.output) things.emplace_back("-o FILE.exr, the AO");
-  if (lacking.camera)
-    things.emplace_back(
-        "a camera: --camera FILE.json, or --fov DEGREES, or --focal MM with --aperture MM, or --ortho-width UNITS");
+  if (lacking.camera) things.push_back(fmt::format("a camera: {}", kCameraOptions));
   if (lacking.radius) things.emplace_back("--radius NUMBER, how far occluders reach in scene units, or --radius auto");
   std::string text = fmt::format("missing: {}", fmt::join(things, "; "));
   if (lacking.unreadable) text += fmt::format("; and the frame cannot be looked at: {}", lacking.unreadable->what());

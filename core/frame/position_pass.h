@@ -1,0 +1,22 @@
+// The camera of a frame whose file has a pass of positions.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include "core/frame/channels.h"
+#include "core/frame/resection.h"
+
+namespace alcove {
+
+/// The three channels of a frame's positions: those of its depth where they are positions, else those that stand beside
+/// it in its file, by the option or by their usual names. None where there are none.
+std::vector<ChannelRef> find_positions(const ChannelSearch& search, const std::vector<ChannelRef>& depth,
+                                       const InputSettings& settings);
+
+/// Some two thousand points, well spread over the picture: of each place the pixel whose surroundings are smoothest, so
+/// that neither edges nor filters matter. Sky has none: 0, not finite, beyond `sky`, or the same in all pixels about.
+/// Reads every part of the file's rows once, and no more of them than it needs.
+std::vector<SeenPoint> points_of(ExrFile& file, const std::vector<ChannelRef>& positions, double sky);
+
+}  // namespace alcove

@@ -1,0 +1,494 @@
+// Direct linear transforms of samples, and least squares over what fits the best of them.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/frame/resection.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <random>
+#include <vector>
+
+namespace alcove {
+namespace {
+
+using Vec3 = std::array<double, 3>;
+
+double inner(const Vec3& a, const Vec3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+Vec3 scaled(const Vec3& a, double s) { return {a[0] * s, a[1] * s, a[2] * s}; }
+Vec3 minus(const Vec3& a, const Vec3& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
+double length(const Vec3& a) { return std::sqrt(inner(a, a)); }
+
+/// A symmetric matrix of N x N.
+template <std::size_t N>
+using Square = std::array<std::array<double, N>, N>;
+
+/// Eigenvalues, and eigenvectors as columns, by Jacobi's rotations; in no order.
+template <std::size_t N>
+std::pair<std::array<double, N>, Square<N>> eigen_of(Square<N> a) {
+  constexpr int kSweeps = 30;
+  Square<N> v{};
+  for (std::size_t i = 0; i < N; i++) v[i][i] = 1;
+  for (int sweep = 0; sweep < kSweeps; sweep++) {
+    double beside = 0;
+    for (std::size_t p = 0; p < N; p++)
+      for (std::size_t q = p + 1; q < N; q++) {
+        beside += std::abs(a[p][q]);
+        if (a[p][q] == 0) continue;
+        const double theta = (a[q][q] - a[p][p]) / (2 * a[p][q]);
+        const double t = (theta >= 0 ? 1 : -1) / (std::abs(theta) + std::sqrt(theta * theta + 1));
+        const double c = 1 / std::sqrt(t * t + 1), s = t * c;
+        for (std::size_t k = 0; k < N; k++) {
+          const double kp = a[k][p], kq = a[k][q];
+          a[k][p] = c * kp - s * kq;
+          a[k][q] = s * kp + c * kq;
+        }
+        for (std::size_t k = 0; k < N; k++) {
+          const double pk = a[p][k], qk = a[q][k];
+          a[p][k] = c * pk - s * qk;
+          a[q][k] = s * pk + c * qk;
+          const double vp = v[k][p], vq = v[k][q];
+          v[k][p] = c * vp - s * vq;
+          v[k][q] = s * vp + c * vq;
+        }
+      }
+    if (beside < 1e-300) break;
+  }
+  std::array<double, N> values{};
+  for (std::size_t i = 0; i < N; i++) values[i] = a[i][i];
+  return {values, v};
+}
+
+/// Inverse of a symmetric positive matrix of the first n rows and columns; none where it is singular.
+template <std::size_t N>
+std::optional<Square<N>> inverse_of(Square<N> a) {
+  Square<N> inverse{};
+  for (std::size_t i = 0; i < N; i++) inverse[i][i] = 1;
+  for (std::size_t column = 0; column < N; column++) {
+    std::size_t pivot = column;
+    for (std::size_t row = column; row < N; row++)
+      if (std::abs(a[row][column]) > std::abs(a[pivot][column])) pivot = row;
+    if (!(std::abs(a[pivot][column]) > std::numeric_limits<double>::min())) return std::nullopt;
+    std::swap(a[pivot], a[column]);
+    std::swap(inverse[pivot], inverse[column]);
+    const double over = 1 / a[column][column];
+    for (std::size_t k = 0; k < N; k++) a[column][k] *= over, inverse[column][k] *= over;
+    for (std::size_t row = 0; row < N; row++) {
+      const double factor = a[row][column];
+      if (row == column || factor == 0) continue;
+      for (std::size_t k = 0; k < N; k++)
+        a[row][k] -= factor * a[column][k], inverse[row][k] -= factor * inverse[column][k];
+    }
+  }
+  return inverse;
+}
+
+/// A camera as it is solved: x right, y down, z forward, in a space where the points are about 1 in size.
+struct Pinhole {
+  bool orthographic = false;
+  double fx = 1, fy = 1, cx = 0, cy = 0;
+  std::array<Vec3, 3> axes{};  // rows
+  Vec3 offset{};
+
+  Vec3 in_view(const Vec3& p) const {
+    return {inner(axes[0], p) + offset[0], inner(axes[1], p) + offset[1], inner(axes[2], p) + offset[2]};
+  }
+};
+
+/// A view point's distance from its pixel.
+std::array<double, 2> error_of(const Pinhole& camera, const Vec3& view, const SeenPoint& seen) {
+  const double over = camera.orthographic ? 1 : 1 / view[2];
+  return {camera.cx + camera.fx * view[0] * over - seen.x, camera.cy + camera.fy * view[1] * over - seen.y};
+}
+
+double distance_of(const Pinhole& camera, const SeenPoint& seen) {
+  const Vec3 view = camera.in_view(seen.position);
+  if (!camera.orthographic && !(view[2] > 0)) return std::numeric_limits<double>::infinity();
+  const auto [x, y] = error_of(camera, view, seen);
+  const double distance = std::hypot(x, y);
+  return std::isnan(distance) ? std::numeric_limits<double>::infinity() : distance;
+}
+
+double median_of(std::vector<double> values) {
+  const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
+
+double median_distance(const Pinhole& camera, std::span<const SeenPoint> points) {
+  std::vector<double> distances;
+  for (const auto& point : points) distances.push_back(distance_of(camera, point));
+  return median_of(std::move(distances));
+}
+
+using Picked = std::vector<const SeenPoint*>;
+
+/// Where the pixels lie, so that they are about 1 in size too.
+struct ImageScale {
+  double x, y, size;
+};
+
+/// The rows of the projection that maps points to pixels up to a factor, with a last row (0, 0, 0, 1) if orthographic.
+using Projection = std::array<std::array<double, 4>, 3>;
+
+std::optional<Projection> perspective_of(const Picked& points, const ImageScale& image) {
+  Square<12> sums{};
+  for (const auto* seen : points) {
+    const std::array<double, 4> p{seen->position[0], seen->position[1], seen->position[2], 1};
+    const double u = (seen->x - image.x) / image.size, v = (seen->y - image.y) / image.size;
+    std::array<double, 12> of_x{}, of_y{};
+    for (std::size_t k = 0; k < 4; k++) {
+      of_x[k] = of_y[4 + k] = p[k];
+      of_x[8 + k] = -u * p[k];
+      of_y[8 + k] = -v * p[k];
+    }
+    for (std::size_t i = 0; i < 12; i++)
+      for (std::size_t j = 0; j < 12; j++) sums[i][j] += of_x[i] * of_x[j] + of_y[i] * of_y[j];
+  }
+  const auto [values, vectors] = eigen_of(sums);
+  const auto least = std::size_t(std::ranges::min_element(values) - values.begin());
+  Projection projection{};
+  for (std::size_t i = 0; i < 12; i++) projection[i / 4][i % 4] = vectors[i][least];
+  for (std::size_t k = 0; k < 4; k++) {
+    projection[0][k] = projection[0][k] * image.size + projection[2][k] * image.x;
+    projection[1][k] = projection[1][k] * image.size + projection[2][k] * image.y;
+  }
+  return projection;
+}
+
+std::optional<Projection> orthographic_of(const Picked& points, const ImageScale& image) {
+  Square<4> sums{};
+  std::array<double, 4> of_x{}, of_y{};
+  for (const auto* seen : points) {
+    const std::array<double, 4> p{seen->position[0], seen->position[1], seen->position[2], 1};
+    for (std::size_t i = 0; i < 4; i++) {
+      of_x[i] += p[i] * (seen->x - image.x);
+      of_y[i] += p[i] * (seen->y - image.y);
+      for (std::size_t j = 0; j < 4; j++) sums[i][j] += p[i] * p[j];
+    }
+  }
+  const auto inverse = inverse_of(sums);
+  if (!inverse) return std::nullopt;
+  Projection projection{};
+  for (std::size_t i = 0; i < 4; i++)
+    for (std::size_t j = 0; j < 4; j++) {
+      projection[0][i] += (*inverse)[i][j] * of_x[j];
+      projection[1][i] += (*inverse)[i][j] * of_y[j];
+    }
+  projection[0][3] += image.x;
+  projection[1][3] += image.y;
+  projection[2] = {0, 0, 0, 1};
+  return projection;
+}
+
+Vec3 first_three(const std::array<double, 4>& row) { return {row[0], row[1], row[2]}; }
+
+Vec3 cross(const Vec3& a, const Vec3& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+/// Takes a perspective projection apart, without its skew. The points are in front.
+std::optional<Pinhole> pinhole_of_perspective(Projection m, const Picked& points) {
+  const double size = length(first_three(m[2]));
+  if (!(size > 0)) return std::nullopt;
+  std::size_t behind = 0;
+  for (const auto* seen : points) behind += inner(first_three(m[2]), seen->position) + m[2][3] < 0;
+  for (auto& row : m)
+    for (auto& x : row) x *= (2 * behind > points.size() ? -1 : 1) / size;
+  Pinhole camera;
+  const Vec3 ahead = first_three(m[2]), x = first_three(m[0]), y = first_three(m[1]);
+  camera.cx = inner(x, ahead);
+  camera.cy = inner(y, ahead);
+  const Vec3 down = minus(y, scaled(ahead, camera.cy));
+  camera.fy = length(down);
+  camera.axes[1] = scaled(down, 1 / camera.fy);
+  const Vec3 beside = minus(x, scaled(ahead, camera.cx));
+  const Vec3 right = minus(beside, scaled(camera.axes[1], inner(beside, camera.axes[1])));
+  camera.fx = length(right);
+  camera.axes[0] = scaled(right, 1 / camera.fx);
+  camera.axes[2] = ahead;
+  camera.offset = {(m[0][3] - camera.cx * m[2][3]) / camera.fx, (m[1][3] - camera.cy * m[2][3]) / camera.fy, m[2][3]};
+  return camera;
+}
+
+/// The same of an orthographic one. It looks along the axis that makes the space right-handed; nothing tells how far
+/// away it is, so the principal point is where the picture's middle is and the points are in front.
+std::optional<Pinhole> pinhole_of_orthographic(const Projection& m, const Window& display) {
+  Pinhole camera;
+  camera.orthographic = true;
+  const Vec3 x = first_three(m[0]), y = first_three(m[1]);
+  camera.fy = length(y);
+  if (!(camera.fy > 0)) return std::nullopt;
+  camera.axes[1] = scaled(y, 1 / camera.fy);
+  const Vec3 right = minus(x, scaled(camera.axes[1], inner(x, camera.axes[1])));
+  camera.fx = length(right);
+  if (!(camera.fx > 0)) return std::nullopt;
+  camera.axes[0] = scaled(right, 1 / camera.fx);
+  camera.axes[2] = cross(camera.axes[0], camera.axes[1]);
+  camera.cx = 0.5 * display.width;
+  camera.cy = 0.5 * display.height;
+  camera.offset = {(m[0][3] - camera.cx) / camera.fx, (m[1][3] - camera.cy) / camera.fy, 0};
+  return camera;
+}
+
+constexpr std::size_t kUnknowns = 10;  // fx, fy, cx, cy, a turn, an offset
+using Gradient = std::array<double, kUnknowns>;
+
+/// How the place of a point in the picture changes with the unknowns, in x and in y. What an orthographic view does not
+/// depend on is 0.
+std::array<Gradient, 2> gradients_of(const Pinhole& camera, const Vec3& view) {
+  const double over = camera.orthographic ? 1 : 1 / view[2];
+  const Vec3 turned = minus(view, camera.offset);
+  std::array<Gradient, 2> gradients{};
+  for (std::size_t c = 0; c < 2; c++) {
+    Gradient& g = gradients[c];
+    const double focal = c == 0 ? camera.fx : camera.fy;
+    const double by_own = focal * over, by_depth = camera.orthographic ? 0 : -focal * view[c] * over * over;
+    g[c] = view[c] * over;
+    g[2 + c] = camera.orthographic ? 0 : 1;
+    // A turn moves a point by its cross product with it.
+    const std::array<Vec3, 2> own{Vec3{0, turned[2], -turned[1]}, Vec3{-turned[2], 0, turned[0]}};
+    const Vec3 depth{turned[1], -turned[0], 0};
+    for (std::size_t k = 0; k < 3; k++) g[4 + k] = by_own * own[c][k] + by_depth * depth[k];
+    g[7 + c] = by_own;
+    g[9] = by_depth;
+  }
+  return gradients;
+}
+
+/// Sums of products of the gradients over points; 1 in the diagonal for what nothing depends on.
+Square<kUnknowns> products_of(const Pinhole& camera, const Picked& points, Gradient& toward) {
+  Square<kUnknowns> sums{};
+  toward = {};
+  for (const auto* seen : points) {
+    const Vec3 view = camera.in_view(seen->position);
+    const auto error = error_of(camera, view, *seen);
+    const auto gradients = gradients_of(camera, view);
+    for (std::size_t c = 0; c < 2; c++)
+      for (std::size_t i = 0; i < kUnknowns; i++) {
+        toward[i] -= gradients[c][i] * error[c];
+        for (std::size_t j = 0; j < kUnknowns; j++) sums[i][j] += gradients[c][i] * gradients[c][j];
+      }
+  }
+  for (std::size_t i = 0; i < kUnknowns; i++)
+    if (sums[i][i] == 0) sums[i][i] = 1;
+  return sums;
+}
+
+void make_unit_and_square(std::array<Vec3, 3>& axes) {
+  const double handed = inner(cross(axes[0], axes[1]), axes[2]) < 0 ? -1 : 1;
+  axes[0] = scaled(axes[0], 1 / length(axes[0]));
+  axes[1] = minus(axes[1], scaled(axes[0], inner(axes[0], axes[1])));
+  axes[1] = scaled(axes[1], 1 / length(axes[1]));
+  axes[2] = scaled(cross(axes[0], axes[1]), handed);
+}
+
+Pinhole moved(Pinhole camera, const Gradient& by) {
+  camera.fx += by[0];
+  camera.fy += by[1];
+  camera.cx += by[2];
+  camera.cy += by[3];
+  const Vec3 turn{by[4], by[5], by[6]};
+  std::array<Vec3, 3> axes = camera.axes;
+  for (std::size_t column = 0; column < 3; column++) {
+    const Vec3 step = cross(turn, {camera.axes[0][column], camera.axes[1][column], camera.axes[2][column]});
+    for (std::size_t row = 0; row < 3; row++) axes[row][column] += step[row];
+  }
+  make_unit_and_square(axes);
+  camera.axes = axes;
+  for (std::size_t k = 0; k < 3; k++) camera.offset[k] += by[7 + k];
+  return camera;
+}
+
+double sum_of_squares(const Pinhole& camera, const Picked& points) {
+  double sum = 0;
+  for (const auto* seen : points) {
+    const double distance = distance_of(camera, *seen);
+    sum += distance * distance;
+  }
+  return sum;
+}
+
+/// Least squares, by Gauss and Newton.
+Pinhole refined(Pinhole camera, const Picked& points) {
+  constexpr int kSteps = 12;
+  double sum = sum_of_squares(camera, points);
+  for (int step = 0; step < kSteps; step++) {
+    Gradient toward;
+    const auto inverse = inverse_of(products_of(camera, points, toward));
+    if (!inverse) break;
+    Gradient by{};
+    for (std::size_t i = 0; i < kUnknowns; i++)
+      for (std::size_t j = 0; j < kUnknowns; j++) by[i] += (*inverse)[i][j] * toward[j];
+    const Pinhole next = moved(camera, by);
+    const double next_sum = sum_of_squares(next, points);
+    if (!(next_sum < sum)) break;
+    camera = next;
+    sum = next_sum;
+  }
+  return camera;
+}
+
+bool is_near(const Pinhole& camera, const SeenPoint& seen, double within) {
+  return distance_of(camera, seen) <= within + seen.rounding;
+}
+
+double share_within(const Pinhole& camera, std::span<const SeenPoint> points) {
+  const auto count =
+      std::ranges::count_if(points, [&](const SeenPoint& seen) { return is_near(camera, seen, kSeenWithin); });
+  return double(count) / double(points.size());
+}
+
+/// The camera of one kind that sees most points where they are.
+std::optional<Pinhole> solved(bool orthographic, std::span<const SeenPoint> points, const Window& display) {
+  constexpr int kSamples = 50, kRounds = 6;
+  constexpr std::size_t kOfSample = 14;
+  const ImageScale image{0.5 * display.width, 0.5 * display.height, 0.5 * std::max(display.width, display.height)};
+  const auto guess = [&](const Picked& picked) -> std::optional<Pinhole> {
+    const auto projection = orthographic ? orthographic_of(picked, image) : perspective_of(picked, image);
+    if (!projection) return std::nullopt;
+    return orthographic ? pinhole_of_orthographic(*projection, display) : pinhole_of_perspective(*projection, picked);
+  };
+  Picked all;
+  for (const auto& seen : points) all.push_back(&seen);
+  std::optional<Pinhole> best = guess(all);
+  double least = best ? median_distance(*best, points) : std::numeric_limits<double>::infinity();
+  std::mt19937 random(1);  // the same frame has the same camera
+  for (int i = 0; i < kSamples; i++) {
+    Picked sample;
+    std::ranges::sample(all, std::back_inserter(sample), kOfSample, random);
+    const auto camera = guess(sample);
+    const double median = camera ? median_distance(*camera, points) : least;
+    if (!(median < least)) continue;
+    least = median;
+    best = camera;
+  }
+  if (!best) return std::nullopt;
+  for (int round = 0; round < kRounds; round++) {
+    // Three standard deviations, of which the median is two thirds.
+    const double within = std::max(4.5 * median_distance(*best, points), kSeenWithin);
+    Picked near;
+    for (const auto& seen : points)
+      if (is_near(*best, seen, within)) near.push_back(&seen);
+    if (near.size() < kLeastPoints / 2) break;
+    best = refined(*best, near);
+  }
+  return best;
+}
+
+/// The standard deviation of fx, relative to it, if pixels were off by half of what is allowed.
+double focal_error(const Pinhole& camera, std::span<const SeenPoint> points) {
+  Picked near;
+  for (const auto& seen : points)
+    if (is_near(camera, seen, kSeenWithin)) near.push_back(&seen);
+  Gradient toward;
+  const auto inverse = inverse_of(products_of(camera, near, toward));
+  const double variance = inverse ? (*inverse)[0][0] : -1;
+  // Rounding may leave a singular matrix with any inverse.
+  if (!(variance > 0)) return std::numeric_limits<double>::infinity();
+  return 0.5 * kSeenWithin * std::sqrt(variance) / camera.fx;
+}
+
+/// The points moved and scaled to be about 1 in size, and the way back.
+struct Normalized {
+  std::vector<SeenPoint> points;
+  Vec3 middle{};
+  double size = 1;
+};
+
+Normalized normalized(std::span<const SeenPoint> points) {
+  Normalized result{{points.begin(), points.end()}, {}, 1};
+  for (std::size_t k = 0; k < 3; k++) {
+    std::vector<double> values;
+    for (const auto& seen : points) values.push_back(seen.position[k]);
+    result.middle[k] = median_of(std::move(values));
+  }
+  std::vector<double> distances;
+  for (const auto& seen : points) distances.push_back(length(minus(seen.position, result.middle)));
+  if (const double median = median_of(std::move(distances)); median > 0) result.size = median;
+  for (auto& seen : result.points) seen.position = scaled(minus(seen.position, result.middle), 1 / result.size);
+  return result;
+}
+
+/// The solved camera in scene units, as Camera has it.
+Resection result_of(Pinhole solved, const Normalized& from, const Window& display) {
+  Resection result;
+  result.within = share_within(solved, from.points);
+  result.median = median_distance(solved, from.points);
+  result.focal_error = focal_error(solved, from.points);
+  Camera& camera = result.camera;
+  camera.width = display.width;
+  camera.height = display.height;
+  camera.orthographic = solved.orthographic;
+  const double per_unit = solved.orthographic ? 1 / from.size : 1;
+  camera.fx = solved.fx * per_unit;
+  camera.fy = solved.fy * per_unit;
+  camera.cx = solved.cx;
+  camera.cy = solved.cy;
+  Matrix3 view_from_world{};
+  Vec3 offset{};
+  for (std::size_t row = 0; row < 3; row++) {
+    const double sign = row == 0 ? 1 : -1;  // up, and backwards
+    view_from_world[row] = scaled(solved.axes[row], sign);
+    offset[row] = sign * (from.size * solved.offset[row] - inner(solved.axes[row], from.middle));
+  }
+  // Turned or moved by so little, in radians and in what the scene measures, it stands at the origin.
+  constexpr double kLittle = 1e-3;
+  const double ahead = view_from_world[2][2] < 0 ? -1 : 1;
+  double apart = 0;
+  for (std::size_t row = 0; row < 3; row++) {
+    for (std::size_t column = 0; column < 3; column++)
+      apart = std::max(apart, std::abs(view_from_world[row][column] - (row != column ? 0 : row == 2 ? ahead : 1)));
+    if (row < 2 || !solved.orthographic) apart = std::max(apart, std::abs(offset[row]) / from.size);
+  }
+  const auto view_z = [&](const SeenPoint& seen) {
+    return inner(view_from_world[2], seen.position) * from.size + inner(view_from_world[2], from.middle);
+  };
+  const auto [nearest, farthest] = [&] {
+    double least = std::numeric_limits<double>::infinity(), most = -least;
+    for (const auto& seen : from.points)
+      if (is_near(solved, seen, kSeenWithin))
+        least = std::min(least, -view_z(seen)), most = std::max(most, -view_z(seen));
+    return std::pair(least, most);
+  }();
+  result.is_camera_space = apart < kLittle && (!solved.orthographic || nearest > 0);
+  if (result.is_camera_space) {
+    camera.left_handed = ahead < 0;
+    return result;
+  }
+  // An orthographic view may be anywhere before what it sees.
+  if (solved.orthographic) offset[2] = nearest - 2 * (farthest - nearest) - from.size;
+  camera.view_from_world = view_from_world;
+  camera.view_from_world_offset = offset;
+  camera.left_handed = determinant(view_from_world) < 0;
+  return result;
+}
+
+}  // namespace
+
+std::variant<Resection, std::string> resection_of(std::span<const SeenPoint> points, const Window& display) {
+  if (points.size() < kLeastPoints) return fmt::format("only {} of them are on smooth surfaces", points.size());
+  constexpr double kLargestFocalError = 1e-3;
+  const Normalized from = normalized(points);
+  // Perspective views see all that orthographic ones do, from very far.
+  std::optional<Resection> best;
+  for (const bool orthographic : {true, false}) {
+    const auto camera = solved(orthographic, from.points, display);
+    if (!camera) continue;
+    const Resection found = result_of(*camera, from, display);
+    if (!best || found.within > best->within) best = found;
+    if (best->within >= kNearlyAll) break;
+  }
+  if (!best || best->within < kNearlyAll)
+    return fmt::format(
+        "{:.0f} % of them lie within {} px of their pixels by the camera that fits best, {:.2g} px in the "
+        "median: they are filtered, or no positions",
+        best ? 100 * best->within : 0, kSeenWithin, best ? best->median : std::numeric_limits<double>::infinity());
+  if (!(best->focal_error <= kLargestFocalError))
+    return std::string("they lie in one plane, or nearly so, which many cameras see alike");
+  return *best;
+}
+
+}  // namespace alcove

@@ -1,0 +1,45 @@
+// The camera from points whose place in space and in the picture is known: resection, as photogrammetry calls it.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <span>
+#include <string>
+#include <variant>
+
+#include "core/frame/camera.h"
+
+namespace alcove {
+
+/// A point that a pixel shows.
+struct SeenPoint {
+  std::array<double, 3> position;  // scene units, in the world or in the camera's space
+  double x, y;                     // px from the display window's upper left corner
+  double rounding = 0;             // px that it may be beside its place, since its numbers are rounded
+};
+
+struct Resection {
+  Camera camera;           // without a rotation where the points are in the camera's own space
+  bool is_camera_space;    // whether they are: then left_handed says whether it looks along +z
+  double within = 0;       // share of the points that lie within kSeenWithin of their pixels
+  double median = 0;       // px from point to pixel
+  double focal_error = 0;  // standard deviation of fx, relative to it
+};
+
+/// A camera is found where nearly all points lie so near to their pixels, px, beyond their rounding.
+constexpr double kSeenWithin = 0.1;
+/// The share of all points that is nearly all.
+constexpr double kNearlyAll = 0.9;
+/// The fewest points.
+constexpr std::size_t kLeastPoints = 60;
+
+/// Finds the camera that sees points where their pixels are: projection, principal point, rotation and place, of a
+/// perspective or an orthographic view. Some of the points may lie anywhere, as at edges of averaged positions. Gives a
+/// reason where it finds none: too few points, all in one plane, or too many beside their pixels.
+///
+/// The first guess is the direct linear transform (Abdel-Aziz and Karara, 1971; normalized as by Hartley, In Defense of
+/// the Eight-Point Algorithm, 1997) of the sample of points that fits best in the median (Rousseeuw, Least Median of
+/// Squares Regression, 1984); it is refined by least squares over all points that fit, with a camera without skew.
+std::variant<Resection, std::string> resection_of(std::span<const SeenPoint> points, const Window& display);
+
+}  // namespace alcove
