@@ -1,14 +1,17 @@
-// `alcove inspect INPUT [--json] [--preview FILE.png] [input options of run]`: what a frame holds and how it would be
-// read.
+// `alcove inspect INPUT [--json] [--preview FILE.png] [--write-camera FILE.json] [input options of run]`: what a frame
+// holds and how it would be read.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 
+#include <map>
 #include <utility>
 
 #include "cli/commands.h"
 #include "cli/options.h"
 #include "core/base/error.h"
+#include "core/base/file.h"
 #include "core/frame/input_files.h"
+#include "core/inspect/camera_file.h"
 #include "core/inspect/contact_sheet.h"
 #include "core/inspect/inspect.h"
 #include "core/inspect/inspect_sequence.h"
@@ -47,12 +50,20 @@ SequenceNames names_of(const FramePlan& plan, const Settings& settings) {
           plan.evidence(), settings.frames.frames, [&plan](int frame) { return plan.at(frame).input; }};
 }
 
+/// The camera of the frame, or of each that is there, as a file.
+void write_cameras(const std::string& path, const FramePlan& plan, const InputSettings& input, int frame) {
+  std::map<int, Camera> cameras;
+  for (const int number : plan.is_sequence() ? plan.frames() : std::vector<int>{})
+    cameras[number] = find_frame(plan.at(number).input, false, number).camera;
+  write_whole(path, plan.is_sequence() ? camera_file(cameras) : camera_file(find_frame(input, false, frame).camera));
+}
+
 }  // namespace
 
 int inspect_command(const std::vector<std::string>& arguments) {
-  RunOptions options;
-  bool json = false;
-  if (!parse_inspect_options(arguments, options, json)) return 0;
+  InspectOptions asked;
+  if (!parse_inspect_options(arguments, asked)) return 0;
+  const RunOptions& options = asked.run;
   const InputSettings& input = options.settings.input;
   const std::string& path = main_input(input);
   if (path.empty()) fail(ErrorKind::usage, "no input: name an EXR file, or one with --depth or --position");
@@ -60,8 +71,9 @@ int inspect_command(const std::vector<std::string>& arguments) {
   const int frame = frame_number_of(path);
   const Inspection inspection = plan.is_sequence() ? inspect_sequence(names_of(plan, options.settings))
                                                    : inspect_one(plan, options.settings, frame);
-  fmt::print("{}", json ? inspection_json(inspection) : inspection_text(inspection));
+  fmt::print("{}", asked.json ? inspection_json(inspection) : inspection_text(inspection));
   if (inspection.unreadable) throw *inspection.unreadable;
+  if (!asked.write_camera.empty()) write_cameras(asked.write_camera, plan, input, frame);
   if (options.settings.output.preview.empty()) return 0;
   Settings shown = options.settings;
   if (plan.is_sequence()) shown.input = plan.at(inspection.sequence->shown).input;

@@ -66,12 +66,17 @@ bool is_inspected(const OptionRow& row) {
          std::ranges::find(kOthers, row.name) != kOthers.end();
 }
 
-Command inspect_with(RunOptions& options, const std::vector<OptionRow>& table, bool& json) {
-  Command command = run_with(options, table);
+Command inspect_with(InspectOptions& options, const std::vector<OptionRow>& table) {
+  Command command = run_with(options.run, table);
   command.name = "alcove inspect";
   command.description = kInspect;
   for (auto& row : command.rows) row.is_common = is_inspected(row);
-  OptionGroup(command.rows, "Reports", Effect::none).flag("--json", json, "print JSON").is_common = true;
+  OptionGroup reports(command.rows, "Reports", Effect::none);
+  reports.flag("--json", options.json, "print JSON").is_common = true;
+  reports
+      .text("--write-camera", options.write_camera, "FILE.json",
+            "the camera that is found, for --camera; of a sequence with that of each frame")
+      .is_common = true;
   return command;
 }
 
@@ -90,16 +95,11 @@ bool read_arguments(const Command& command, const std::vector<std::string>& argu
   return !options.print_config;
 }
 
-struct InspectArguments {
-  RunOptions options;
-  bool json = false;
-};
-
 Command run_for(RunOptions& options) { return run_with(options, option_table(options)); }
 
 /// Only what inspect looks at.
-Command inspect_for(InspectArguments& a) {
-  Command command = inspect_with(a.options, option_table(a.options), a.json);
+Command inspect_for(InspectOptions& options) {
+  Command command = inspect_with(options, option_table(options.run));
   std::erase_if(command.rows, [](const OptionRow& row) { return row.name.starts_with('-') && !row.is_common; });
   return command;
 }
@@ -118,9 +118,9 @@ bool parse_run_options(const std::vector<std::string>& arguments, RunOptions& op
   return read_arguments(run_with(options, table), arguments, table, options, Reader::run);
 }
 
-bool parse_inspect_options(const std::vector<std::string>& arguments, RunOptions& options, bool& json) {
-  const auto table = option_table(options);
-  return read_arguments(inspect_with(options, table, json), arguments, table, options, Reader::inspect);
+bool parse_inspect_options(const std::vector<std::string>& arguments, InspectOptions& options) {
+  const auto table = option_table(options.run);
+  return read_arguments(inspect_with(options, table), arguments, table, options.run, Reader::inspect);
 }
 
 }  // namespace alcove

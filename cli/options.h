@@ -14,8 +14,14 @@ namespace alcove {
 /// over presets). Returns false where --help, --help-markdown or --print-config was asked for and printed. Fails with
 /// ErrorKind::usage, naming the nearest options or presets, and on options that have no effect or contradict another.
 bool parse_run_options(const std::vector<std::string>& arguments, RunOptions& options);
+/// What `alcove inspect` tells, and where to.
+struct InspectOptions {
+  RunOptions run;
+  bool json = false;
+  std::string write_camera;  // a file; empty: none
+};
 /// Does the same for `alcove inspect`, which writes no outputs: there, no option can lack one.
-bool parse_inspect_options(const std::vector<std::string>& arguments, RunOptions& options, bool& json);
+bool parse_inspect_options(const std::vector<std::string>& arguments, InspectOptions& options);
 
 /// Gives the folder of presets: ALCOVE_PRESETS, else beside the program, above it, or in ../share/alcove. Fails with
 /// ErrorKind::usage.

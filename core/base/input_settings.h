@@ -81,7 +81,8 @@ struct InputSettings {
   // automatic: the one whose points lie on the rays of their pixels
   PositionSpace position_space = PositionSpace::automatic;
   bool strict = false;                    // what only a guess could decide is an error, and so is a warning
-  std::string camera;                     // a camera JSON file
+  std::string camera;                     // a camera file: JSON, or .chan
+  std::string chan_rotation = "zxy";      // of a .chan file: the axes in the order of their turns
   std::optional<double> fov;              // horizontal, degrees, 0 to 180 exclusive
   std::optional<double> focal, aperture;  // mm, > 0: focal length and width of the film back
   std::optional<double> ortho_width;      // scene units across the display window, > 0

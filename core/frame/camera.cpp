@@ -10,6 +10,7 @@
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/base/text.h"
+#include "core/frame/chan_file.h"
 
 namespace alcove {
 namespace {
@@ -306,9 +307,10 @@ Camera read_camera(const std::string& path, int frame, const std::string& view) 
   return camera;
 }
 
-bool lists_frames(const std::string& path) { return object_in(path).contains("frames"); }
+bool lists_frames(const std::string& path) { return is_chan_file(path) || object_in(path).contains("frames"); }
 
 void require_listed(const std::string& path, int frame) {
+  if (is_chan_file(path)) return require_in_chan(path, frame);
   frame_entry({path, object_in(path), Json::object(), Json::object(), Json::object()}, frame);
 }
 
@@ -323,6 +325,8 @@ bool names_a_camera(const InputSettings& settings) {
 
 Camera camera_for(const InputSettings& settings, const Window& display, double pixel_aspect, int frame,
                   const std::string& view) {
+  if (is_chan_file(settings.camera))
+    return read_chan(settings.camera, frame, settings.chan_rotation, display, pixel_aspect);
   if (!settings.camera.empty()) return fitted(read_camera(settings.camera, frame, view), display, settings.camera);
   const double half_width = 0.5 * display.width;
   if (settings.fov)
@@ -333,15 +337,6 @@ Camera camera_for(const InputSettings& settings, const Window& display, double p
   throw NoCamera(!settings.input.empty()  ? settings.input
                  : settings.depth.empty() ? settings.position
                                           : settings.depth);
-}
-
-Matrix3 transposed(const Matrix3& m) {
-  return {{{m[0][0], m[1][0], m[2][0]}, {m[0][1], m[1][1], m[2][1]}, {m[0][2], m[1][2], m[2][2]}}};
-}
-
-double determinant(const Matrix3& m) {
-  return m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) - m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
-         m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
 }
 
 Matrix3 view_from_normal(const Camera& camera, NormalSpace space, const NormalFlips& flips) {

@@ -9,15 +9,10 @@
 #include "core/base/error.h"
 #include "core/base/image.h"
 #include "core/base/settings.h"
+#include "core/frame/linear.h"
 #include "kernels/shared.h"
 
 namespace alcove {
-
-/// Rows of a rotation (or any linear map): to = M * from.
-using Matrix3 = std::array<std::array<double, 3>, 3>;
-/// Below 0 where the map mirrors.
-double determinant(const Matrix3& m);
-Matrix3 transposed(const Matrix3& m);
 
 /// Projection onto the display window: view space is right-handed, x right, y up, the camera looks along -z.
 /// A point is seen at (cx + fx x / -z, cy - fy y / -z), or (cx + fx x, cy - fy y) when orthographic.

@@ -19,42 +19,34 @@ constexpr double kCloseDegrees = 3;         // to it; less than a wrong camera t
 constexpr std::size_t kLeastSamples = 200;  // fewer smooth places tell nothing
 constexpr int kSamplesAcross = 160;         // places that are looked at in x and in y: enough for shares to a percent
 
-using Vector = std::array<double, 3>;
-
-double dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-Vector cross(const Vector& a, const Vector& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-Vector times(const Matrix3& m, const Vector& v) { return {dot(m[0], v), dot(m[1], v), dot(m[2], v)}; }
-
 int sparseness(const View& view) { return std::max(1, std::max(view.size.x, view.size.y) / kSamplesAcross); }
 std::size_t index_of(const View& view, int x, int y) {
   return std::size_t(y) * std::size_t(view.size.x) + std::size_t(x);
 }
 
 /// Gives the point where the pixel's ray meets the plane at unit depth; orthographic: the pixel's place in the plane.
-Vector tangent_at(const View& view, int x, int y) {
+Vector3 tangent_at(const View& view, int x, int y) {
   return {(x + 0.5 - view.center.x) * view.tangent_per_pixel.x, (y + 0.5 - view.center.y) * view.tangent_per_pixel.y,
           -1};
 }
 
 double ray_length(const View& view, int x, int y) {
-  const Vector t = tangent_at(view, x, y);
+  const Vector3 t = tangent_at(view, x, y);
   return view.orthographic ? 1 : std::sqrt(dot(t, t));
 }
 
-Vector position_at(const View& view, int x, int y, double z) {
-  const Vector t = tangent_at(view, x, y);
-  return view.orthographic ? Vector{t[0], t[1], -z} : Vector{t[0] * z, t[1] * z, -z};
+Vector3 position_at(const View& view, int x, int y, double z) {
+  const Vector3 t = tangent_at(view, x, y);
+  return view.orthographic ? Vector3{t[0], t[1], -z} : Vector3{t[0] * z, t[1] * z, -z};
 }
 
-Vector value_at(std::span<const float> raw, std::size_t plane, std::size_t i) {
-  return raw.size() == 3 * plane ? Vector{raw[i], raw[i + plane], raw[i + 2 * plane]} : Vector{raw[i], 0, 0};
+Vector3 value_at(std::span<const float> raw, std::size_t plane, std::size_t i) {
+  return raw.size() == 3 * plane ? Vector3{raw[i], raw[i + plane], raw[i + 2 * plane]} : Vector3{raw[i], 0, 0};
 }
 
-Vector decoded_normal(std::span<const float> raw, std::size_t pixels, std::size_t i, NormalEncoding encoding,
-                      bool unorm) {
-  Vector n{};
+Vector3 decoded_normal(std::span<const float> raw, std::size_t pixels, std::size_t i, NormalEncoding encoding,
+                       bool unorm) {
+  Vector3 n{};
   for (std::size_t c = 0; c * pixels < raw.size(); c++)
     n[c] = unorm ? 2 * raw[c * pixels + i] - 1.0 : raw[c * pixels + i];
   const double squared = n[0] * n[0] + n[1] * n[1];
@@ -63,7 +55,7 @@ Vector decoded_normal(std::span<const float> raw, std::size_t pixels, std::size_
     if (n[2] < 0) n = {std::copysign(1 - std::abs(n[1]), n[0]), std::copysign(1 - std::abs(n[0]), n[1]), n[2]};
   } else if (encoding == NormalEncoding::spheremap) {
     const double across = 2 * std::sqrt(std::max(1 - squared, 0.0));
-    n = squared <= 1 ? Vector{across * n[0], across * n[1], 2 * squared - 1} : Vector{};
+    n = squared <= 1 ? Vector3{across * n[0], across * n[1], 2 * squared - 1} : Vector3{};
   } else if (raw.size() < 3 * pixels) {
     n[2] = std::sqrt(std::max(1 - squared, 0.0));
   }
@@ -105,8 +97,8 @@ void count_value(ValueStatistics& s, float x) {
 constexpr double kUnitTolerance = 0.05;  // of a length that is taken for 1
 
 /// Counts a normal as it stands in the file, unless it is zero or not finite. Components beyond `components` are 0.
-void count_normal(NormalStatistics& s, const Vector& n, std::size_t components) {
-  Vector unorm{};
+void count_normal(NormalStatistics& s, const Vector3& n, std::size_t components) {
+  Vector3 unorm{};
   for (std::size_t c = 0; c < components; c++) unorm[c] = 2 * n[c] - 1;
   const double length = std::sqrt(dot(n, n));
   const double unorm_length = std::sqrt(dot(unorm, unorm));
@@ -160,11 +152,9 @@ std::vector<NormalScore> readings_of_normals(const Camera& camera) {
   return scores;
 }
 
-Vector difference(const Vector& a, const Vector& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
-
 /// A place of a smooth surface: the normal that depth gives it, of any length, and the way to the eye.
 struct SurfacePlace {
-  Vector normal, eye;
+  Vector3 normal, eye;
 };
 
 /// Gives nothing at edges, where the depths around the pixel are not those of a plane.
@@ -178,19 +168,19 @@ std::optional<SurfacePlace> surface_at(std::span<const float> raw, const DepthMa
   const double left = depth(-1, 0), right = depth(1, 0), up = depth(0, -1), down = depth(0, 1), here = depth(0, 0);
   if (!(bend(1 / left, 1 / here, 1 / right) < kSmooth) || !(bend(1 / up, 1 / here, 1 / down) < kSmooth))
     return std::nullopt;
-  const Vector along_y = difference(position_at(view, x, y + 1, down), position_at(view, x, y - 1, up));
-  const Vector along_x = difference(position_at(view, x + 1, y, right), position_at(view, x - 1, y, left));
-  const Vector p = position_at(view, x, y, here);
+  const Vector3 along_y = difference(position_at(view, x, y + 1, down), position_at(view, x, y - 1, up));
+  const Vector3 along_x = difference(position_at(view, x + 1, y, right), position_at(view, x - 1, y, left));
+  const Vector3 p = position_at(view, x, y, here);
   // A view in which the picture is mirrored turns the product around.
   const bool is_mirrored = (view.tangent_per_pixel.x > 0) == (view.tangent_per_pixel.y > 0);
   return SurfacePlace{is_mirrored ? cross(along_x, along_y) : cross(along_y, along_x),
-                      view.orthographic ? Vector{0, 0, 1} : Vector{-p[0], -p[1], -p[2]}};
+                      view.orthographic ? Vector3{0, 0, 1} : Vector3{-p[0], -p[1], -p[2]}};
 }
 
 /// How far a point of view space is seen from the pixel, in pixels; infinite where it is behind the camera.
-double pixels_beside(const View& view, int x, int y, const Vector& p) {
+double pixels_beside(const View& view, int x, int y, const Vector3& p) {
   if (!(-p[2] > 0)) return kInfinity;
-  const Vector t = tangent_at(view, x, y);
+  const Vector3 t = tangent_at(view, x, y);
   const double scale = view.orthographic ? 1 : -p[2];
   return std::hypot((p[0] / scale - t[0]) / view.tangent_per_pixel.x, (p[1] / scale - t[1]) / view.tangent_per_pixel.y);
 }
@@ -210,12 +200,12 @@ bool score(std::vector<NormalScore>& scores, const NormalPlanes& planes, const C
     for (int x = 1; x + 1 < view.size.x; x += stride) {
       const auto surface = surface_at(planes.raw, planes.map, view, x, y);
       if (!surface) continue;
-      const Vector vector = decoded_normal(planes.normal, plane, index_of(view, x, y), planes.encoding, planes.unorm);
+      const Vector3 vector = decoded_normal(planes.normal, plane, index_of(view, x, y), planes.encoding, planes.unorm);
       const double lengths = std::sqrt(dot(vector, vector) * dot(surface->normal, surface->normal));
       if (!(lengths > 0) || std::isinf(lengths)) continue;
       count++;
       for (std::size_t k = 0; k < scores.size(); k++) {
-        const Vector n = times(rotations[k], vector);
+        const Vector3 n = times(rotations[k], vector);
         scores[k].facing += dot(n, surface->eye) > 0;
         cosines[k].push_back(std::min(1.0, dot(n, surface->normal) / lengths));
         scores[k].agreement += cosines[k].back() > agreeing;
@@ -252,7 +242,7 @@ NormalStatistics normal_statistics(std::span<const float> normal, std::span<cons
   const std::size_t components = normal.size() / plane;
   for (std::size_t i = 0; i < plane; i += step) {
     if (std::isinf(planar_depth(map, value_at(raw, plane, i), 1))) continue;
-    Vector n{};
+    Vector3 n{};
     for (std::size_t c = 0; c < components; c++) n[c] = normal[c * plane + i];
     count_normal(s, n, components);
   }
@@ -276,7 +266,7 @@ std::vector<float> decoded_normals(std::span<const float> raw, std::size_t pixel
                                    bool unorm) {
   std::vector<float> decoded(3 * pixels);
   for (std::size_t i = 0; i < pixels; i++) {
-    const Vector n = decoded_normal(raw, pixels, i, encoding, unorm);
+    const Vector3 n = decoded_normal(raw, pixels, i, encoding, unorm);
     for (std::size_t c = 0; c < 3; c++) decoded[c * pixels + i] = float(n[c]);
   }
   return decoded;
@@ -290,7 +280,7 @@ std::optional<double> reprojection_error(std::span<const float> position, Positi
   for (int y = 0; y < view.size.y; y += stride)
     for (int x = 0; x < view.size.x; x += stride) {
       const std::size_t i = index_of(view, x, y);
-      Vector p{position[i], position[i + plane], position[i + 2 * plane]};
+      Vector3 p{position[i], position[i + plane], position[i + 2 * plane]};
       if (!(dot(p, p) > 0) || !(dot(p, p) < 1e18)) continue;
       if (space == PositionSpace::world) {
         p = times(*camera.view_from_world, p);

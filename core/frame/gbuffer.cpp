@@ -171,6 +171,11 @@ void find_camera(FrameSource& source, const ChannelSearch& search, const InputSe
       if (const auto* why = std::get_if<std::string>(&*found))
         throw NoCamera(file.path(), "its positions tell none, since " + *why);
       source.camera = std::get<Resection>(*found).camera;
+      const bool looks_around = settings.around > 0 || settings.around_all;
+      if (source.camera.orthographic && looks_around && source[RawPlane::depth].size() == 1)
+        throw NoCamera(file.path(),
+                       "its positions do not tell how far away an orthographic camera stands, and --around "
+                       "needs that");
       source.camera_from = "its positions";
       return;
     }

@@ -14,14 +14,11 @@
 namespace alcove {
 namespace {
 
-using Vector = std::array<double, 3>;
 using Matrix4 = std::array<std::array<double, 4>, 4>;  // rows, for column vectors
 
 constexpr double kRadian = std::numbers::pi / 180;
 constexpr double kWidest = 180;     // degrees: no plane shows a field of view as wide
 constexpr double kFarthest = 1e29;  // scene units: programs write 1e30 where there is no far plane
-
-double dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 /// Attributes by their names without Nuke's prefixes.
 struct Attributes {
@@ -66,7 +63,7 @@ struct Attributes {
 /// A rigid map: to = rotation * from + offset. The rotation may mirror.
 struct Placement {
   Matrix3 rotation;
-  Vector offset;
+  Vector3 offset;
   bool row_vectors;  // as it was stored
 };
 
@@ -160,9 +157,9 @@ std::optional<Pose> unreal_pose(const Attributes& a) {
   const double cos_yaw = std::cos(*yaw * kRadian), sin_yaw = std::sin(*yaw * kRadian);
   const double cos_pitch = std::cos(*pitch * kRadian), sin_pitch = std::sin(*pitch * kRadian);
   const double cos_roll = std::cos(*roll * kRadian), sin_roll = std::sin(*roll * kRadian);
-  const Vector forward{cos_pitch * cos_yaw, cos_pitch * sin_yaw, sin_pitch};
-  const Vector level{-sin_yaw, cos_yaw, 0};
-  const Vector above{-sin_pitch * cos_yaw, -sin_pitch * sin_yaw, cos_pitch};
+  const Vector3 forward{cos_pitch * cos_yaw, cos_pitch * sin_yaw, sin_pitch};
+  const Vector3 level{-sin_yaw, cos_yaw, 0};
+  const Vector3 above{-sin_pitch * cos_yaw, -sin_pitch * sin_yaw, cos_pitch};
   Placement view{};
   for (std::size_t i = 0; i < 3; i++) {
     view.rotation[0][i] = cos_roll * level[i] - sin_roll * above[i];
@@ -202,7 +199,7 @@ std::optional<Camera> projected(const Placement& view, const std::vector<double>
   const Placement world = inverted(view);
   Matrix4 p{};  // NDC from camera space
   for (std::size_t row = 0; row < 4; row++) {
-    const Vector of_world{ndc[row][0], ndc[row][1], ndc[row][2]};
+    const Vector3 of_world{ndc[row][0], ndc[row][1], ndc[row][2]};
     for (std::size_t column = 0; column < 3; column++)
       p[row][column] = dot(of_world, transposed(world.rotation)[column]);
     p[row][3] = dot(of_world, world.offset) + ndc[row][3];

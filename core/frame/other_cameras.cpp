@@ -21,14 +21,6 @@ struct Hypothesis {
   View view;
 };
 
-Matrix3 product(const Matrix3& a, const Matrix3& b) {
-  Matrix3 result{};
-  for (std::size_t i = 0; i < 3; i++)
-    for (std::size_t j = 0; j < 3; j++)
-      for (std::size_t k = 0; k < 3; k++) result[i][j] += a[i][k] * b[k][j];
-  return result;
-}
-
 /// The hypothesis that agrees best, where the frame can tell.
 std::optional<OtherCamera> best_of(const std::vector<Hypothesis>& hypotheses, const NormalPlanes& planes,
                                    const NormalScore& as) {

@@ -14,13 +14,6 @@
 namespace alcove {
 namespace {
 
-using Vec3 = std::array<double, 3>;
-
-double inner(const Vec3& a, const Vec3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-Vec3 scaled(const Vec3& a, double s) { return {a[0] * s, a[1] * s, a[2] * s}; }
-Vec3 minus(const Vec3& a, const Vec3& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
-double length(const Vec3& a) { return std::sqrt(inner(a, a)); }
-
 /// A symmetric matrix of N x N.
 template <std::size_t N>
 using Square = std::array<std::array<double, N>, N>;
@@ -89,22 +82,22 @@ std::optional<Square<N>> inverse_of(Square<N> a) {
 struct Pinhole {
   bool orthographic = false;
   double fx = 1, fy = 1, cx = 0, cy = 0;
-  std::array<Vec3, 3> axes{};  // rows
-  Vec3 offset{};
+  std::array<Vector3, 3> axes{};  // rows
+  Vector3 offset{};
 
-  Vec3 in_view(const Vec3& p) const {
-    return {inner(axes[0], p) + offset[0], inner(axes[1], p) + offset[1], inner(axes[2], p) + offset[2]};
+  Vector3 in_view(const Vector3& p) const {
+    return {dot(axes[0], p) + offset[0], dot(axes[1], p) + offset[1], dot(axes[2], p) + offset[2]};
   }
 };
 
 /// A view point's distance from its pixel.
-std::array<double, 2> error_of(const Pinhole& camera, const Vec3& view, const SeenPoint& seen) {
+std::array<double, 2> error_of(const Pinhole& camera, const Vector3& view, const SeenPoint& seen) {
   const double over = camera.orthographic ? 1 : 1 / view[2];
   return {camera.cx + camera.fx * view[0] * over - seen.x, camera.cy + camera.fy * view[1] * over - seen.y};
 }
 
 double distance_of(const Pinhole& camera, const SeenPoint& seen) {
-  const Vec3 view = camera.in_view(seen.position);
+  const Vector3 view = camera.in_view(seen.position);
   if (!camera.orthographic && !(view[2] > 0)) return std::numeric_limits<double>::infinity();
   const auto [x, y] = error_of(camera, view, seen);
   const double distance = std::hypot(x, y);
@@ -183,29 +176,25 @@ std::optional<Projection> orthographic_of(const Picked& points, const ImageScale
   return projection;
 }
 
-Vec3 first_three(const std::array<double, 4>& row) { return {row[0], row[1], row[2]}; }
-
-Vec3 cross(const Vec3& a, const Vec3& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
+Vector3 first_three(const std::array<double, 4>& row) { return {row[0], row[1], row[2]}; }
 
 /// Takes a perspective projection apart, without its skew. The points are in front.
 std::optional<Pinhole> pinhole_of_perspective(Projection m, const Picked& points) {
   const double size = length(first_three(m[2]));
   if (!(size > 0)) return std::nullopt;
   std::size_t behind = 0;
-  for (const auto* seen : points) behind += inner(first_three(m[2]), seen->position) + m[2][3] < 0;
+  for (const auto* seen : points) behind += dot(first_three(m[2]), seen->position) + m[2][3] < 0;
   for (auto& row : m)
     for (auto& x : row) x *= (2 * behind > points.size() ? -1 : 1) / size;
   Pinhole camera;
-  const Vec3 ahead = first_three(m[2]), x = first_three(m[0]), y = first_three(m[1]);
-  camera.cx = inner(x, ahead);
-  camera.cy = inner(y, ahead);
-  const Vec3 down = minus(y, scaled(ahead, camera.cy));
+  const Vector3 ahead = first_three(m[2]), x = first_three(m[0]), y = first_three(m[1]);
+  camera.cx = dot(x, ahead);
+  camera.cy = dot(y, ahead);
+  const Vector3 down = difference(y, scaled(ahead, camera.cy));
   camera.fy = length(down);
   camera.axes[1] = scaled(down, 1 / camera.fy);
-  const Vec3 beside = minus(x, scaled(ahead, camera.cx));
-  const Vec3 right = minus(beside, scaled(camera.axes[1], inner(beside, camera.axes[1])));
+  const Vector3 beside = difference(x, scaled(ahead, camera.cx));
+  const Vector3 right = difference(beside, scaled(camera.axes[1], dot(beside, camera.axes[1])));
   camera.fx = length(right);
   camera.axes[0] = scaled(right, 1 / camera.fx);
   camera.axes[2] = ahead;
@@ -218,11 +207,11 @@ std::optional<Pinhole> pinhole_of_perspective(Projection m, const Picked& points
 std::optional<Pinhole> pinhole_of_orthographic(const Projection& m, const Window& display) {
   Pinhole camera;
   camera.orthographic = true;
-  const Vec3 x = first_three(m[0]), y = first_three(m[1]);
+  const Vector3 x = first_three(m[0]), y = first_three(m[1]);
   camera.fy = length(y);
   if (!(camera.fy > 0)) return std::nullopt;
   camera.axes[1] = scaled(y, 1 / camera.fy);
-  const Vec3 right = minus(x, scaled(camera.axes[1], inner(x, camera.axes[1])));
+  const Vector3 right = difference(x, scaled(camera.axes[1], dot(x, camera.axes[1])));
   camera.fx = length(right);
   if (!(camera.fx > 0)) return std::nullopt;
   camera.axes[0] = scaled(right, 1 / camera.fx);
@@ -238,9 +227,9 @@ using Gradient = std::array<double, kUnknowns>;
 
 /// How the place of a point in the picture changes with the unknowns, in x and in y. What an orthographic view does not
 /// depend on is 0.
-std::array<Gradient, 2> gradients_of(const Pinhole& camera, const Vec3& view) {
+std::array<Gradient, 2> gradients_of(const Pinhole& camera, const Vector3& view) {
   const double over = camera.orthographic ? 1 : 1 / view[2];
-  const Vec3 turned = minus(view, camera.offset);
+  const Vector3 turned = difference(view, camera.offset);
   std::array<Gradient, 2> gradients{};
   for (std::size_t c = 0; c < 2; c++) {
     Gradient& g = gradients[c];
@@ -249,8 +238,8 @@ std::array<Gradient, 2> gradients_of(const Pinhole& camera, const Vec3& view) {
     g[c] = view[c] * over;
     g[2 + c] = camera.orthographic ? 0 : 1;
     // A turn moves a point by its cross product with it.
-    const std::array<Vec3, 2> own{Vec3{0, turned[2], -turned[1]}, Vec3{-turned[2], 0, turned[0]}};
-    const Vec3 depth{turned[1], -turned[0], 0};
+    const std::array<Vector3, 2> own{Vector3{0, turned[2], -turned[1]}, Vector3{-turned[2], 0, turned[0]}};
+    const Vector3 depth{turned[1], -turned[0], 0};
     for (std::size_t k = 0; k < 3; k++) g[4 + k] = by_own * own[c][k] + by_depth * depth[k];
     g[7 + c] = by_own;
     g[9] = by_depth;
@@ -263,7 +252,7 @@ Square<kUnknowns> products_of(const Pinhole& camera, const Picked& points, Gradi
   Square<kUnknowns> sums{};
   toward = {};
   for (const auto* seen : points) {
-    const Vec3 view = camera.in_view(seen->position);
+    const Vector3 view = camera.in_view(seen->position);
     const auto error = error_of(camera, view, *seen);
     const auto gradients = gradients_of(camera, view);
     for (std::size_t c = 0; c < 2; c++)
@@ -277,10 +266,10 @@ Square<kUnknowns> products_of(const Pinhole& camera, const Picked& points, Gradi
   return sums;
 }
 
-void make_unit_and_square(std::array<Vec3, 3>& axes) {
-  const double handed = inner(cross(axes[0], axes[1]), axes[2]) < 0 ? -1 : 1;
+void make_unit_and_square(std::array<Vector3, 3>& axes) {
+  const double handed = dot(cross(axes[0], axes[1]), axes[2]) < 0 ? -1 : 1;
   axes[0] = scaled(axes[0], 1 / length(axes[0]));
-  axes[1] = minus(axes[1], scaled(axes[0], inner(axes[0], axes[1])));
+  axes[1] = difference(axes[1], scaled(axes[0], dot(axes[0], axes[1])));
   axes[1] = scaled(axes[1], 1 / length(axes[1]));
   axes[2] = scaled(cross(axes[0], axes[1]), handed);
 }
@@ -290,10 +279,10 @@ Pinhole moved(Pinhole camera, const Gradient& by) {
   camera.fy += by[1];
   camera.cx += by[2];
   camera.cy += by[3];
-  const Vec3 turn{by[4], by[5], by[6]};
-  std::array<Vec3, 3> axes = camera.axes;
+  const Vector3 turn{by[4], by[5], by[6]};
+  std::array<Vector3, 3> axes = camera.axes;
   for (std::size_t column = 0; column < 3; column++) {
-    const Vec3 step = cross(turn, {camera.axes[0][column], camera.axes[1][column], camera.axes[2][column]});
+    const Vector3 step = cross(turn, {camera.axes[0][column], camera.axes[1][column], camera.axes[2][column]});
     for (std::size_t row = 0; row < 3; row++) axes[row][column] += step[row];
   }
   make_unit_and_square(axes);
@@ -341,9 +330,20 @@ double share_within(const Pinhole& camera, std::span<const SeenPoint> points) {
   return double(count) / double(points.size());
 }
 
+/// How badly a camera sees points, of which those that are far off count alike, however far (MSAC).
+double cost_of(const Pinhole& camera, std::span<const SeenPoint> points) {
+  constexpr double kFarOff = 5 * kSeenWithin;
+  double cost = 0;
+  for (const auto& seen : points) {
+    const double off = std::min(distance_of(camera, seen) / (kFarOff + seen.rounding), 1.0);
+    cost += off * off;
+  }
+  return cost;
+}
+
 /// The camera of one kind that sees most points where they are.
 std::optional<Pinhole> solved(bool orthographic, std::span<const SeenPoint> points, const Window& display) {
-  constexpr int kSamples = 50, kRounds = 6;
+  constexpr int kSamples = 50;
   constexpr std::size_t kOfSample = 14;
   const ImageScale image{0.5 * display.width, 0.5 * display.height, 0.5 * std::max(display.width, display.height)};
   const auto guess = [&](const Picked& picked) -> std::optional<Pinhole> {
@@ -354,21 +354,20 @@ std::optional<Pinhole> solved(bool orthographic, std::span<const SeenPoint> poin
   Picked all;
   for (const auto& seen : points) all.push_back(&seen);
   std::optional<Pinhole> best = guess(all);
-  double least = best ? median_distance(*best, points) : std::numeric_limits<double>::infinity();
+  double least = best ? cost_of(*best, points) : std::numeric_limits<double>::infinity();
   std::mt19937 random(1);  // the same frame has the same camera
   for (int i = 0; i < kSamples; i++) {
     Picked sample;
     std::ranges::sample(all, std::back_inserter(sample), kOfSample, random);
     const auto camera = guess(sample);
-    const double median = camera ? median_distance(*camera, points) : least;
-    if (!(median < least)) continue;
-    least = median;
+    const double cost = camera ? cost_of(*camera, points) : least;
+    if (!(cost < least)) continue;
+    least = cost;
     best = camera;
   }
   if (!best) return std::nullopt;
-  for (int round = 0; round < kRounds; round++) {
-    // Three standard deviations, of which the median is two thirds.
-    const double within = std::max(4.5 * median_distance(*best, points), kSeenWithin);
+  for (const double times : {100, 20, 5, 2, 1, 1}) {
+    const double within = times * kSeenWithin;
     Picked near;
     for (const auto& seen : points)
       if (is_near(*best, seen, within)) near.push_back(&seen);
@@ -394,7 +393,7 @@ double focal_error(const Pinhole& camera, std::span<const SeenPoint> points) {
 /// The points moved and scaled to be about 1 in size, and the way back.
 struct Normalized {
   std::vector<SeenPoint> points;
-  Vec3 middle{};
+  Vector3 middle{};
   double size = 1;
 };
 
@@ -406,9 +405,9 @@ Normalized normalized(std::span<const SeenPoint> points) {
     result.middle[k] = median_of(std::move(values));
   }
   std::vector<double> distances;
-  for (const auto& seen : points) distances.push_back(length(minus(seen.position, result.middle)));
+  for (const auto& seen : points) distances.push_back(length(difference(seen.position, result.middle)));
   if (const double median = median_of(std::move(distances)); median > 0) result.size = median;
-  for (auto& seen : result.points) seen.position = scaled(minus(seen.position, result.middle), 1 / result.size);
+  for (auto& seen : result.points) seen.position = scaled(difference(seen.position, result.middle), 1 / result.size);
   return result;
 }
 
@@ -428,11 +427,11 @@ Resection result_of(Pinhole solved, const Normalized& from, const Window& displa
   camera.cx = solved.cx;
   camera.cy = solved.cy;
   Matrix3 view_from_world{};
-  Vec3 offset{};
+  Vector3 offset{};
   for (std::size_t row = 0; row < 3; row++) {
     const double sign = row == 0 ? 1 : -1;  // up, and backwards
     view_from_world[row] = scaled(solved.axes[row], sign);
-    offset[row] = sign * (from.size * solved.offset[row] - inner(solved.axes[row], from.middle));
+    offset[row] = sign * (from.size * solved.offset[row] - dot(solved.axes[row], from.middle));
   }
   // Turned or moved by so little, in radians and in what the scene measures, it stands at the origin.
   constexpr double kLittle = 1e-3;
@@ -444,7 +443,7 @@ Resection result_of(Pinhole solved, const Normalized& from, const Window& displa
     if (row < 2 || !solved.orthographic) apart = std::max(apart, std::abs(offset[row]) / from.size);
   }
   const auto view_z = [&](const SeenPoint& seen) {
-    return inner(view_from_world[2], seen.position) * from.size + inner(view_from_world[2], from.middle);
+    return dot(view_from_world[2], seen.position) * from.size + dot(view_from_world[2], from.middle);
   };
   const auto [nearest, farthest] = [&] {
     double least = std::numeric_limits<double>::infinity(), most = -least;

@@ -13,9 +13,9 @@ namespace alcove {
 
 /// A point that a pixel shows.
 struct SeenPoint {
-  std::array<double, 3> position;  // scene units, in the world or in the camera's space
-  double x, y;                     // px from the display window's upper left corner
-  double rounding = 0;             // px that it may be beside its place, since its numbers are rounded
+  Vector3 position;     // scene units, in the world or in the camera's space
+  double x, y;          // px from the display window's upper left corner
+  double rounding = 0;  // px that it may be beside its place, since its numbers are rounded
 };
 
 struct Resection {
@@ -38,8 +38,8 @@ constexpr std::size_t kLeastPoints = 60;
 /// reason where it finds none: too few points, all in one plane, or too many beside their pixels.
 ///
 /// The first guess is the direct linear transform (Abdel-Aziz and Karara, 1971; normalized as by Hartley, In Defense of
-/// the Eight-Point Algorithm, 1997) of the sample of points that fits best in the median (Rousseeuw, Least Median of
-/// Squares Regression, 1984); it is refined by least squares over all points that fit, with a camera without skew.
+/// the Eight-Point Algorithm, 1997) of the sample of points that leaves the fewest others beside their pixels (Torr and
+/// Zisserman, MLESAC, 2000); it is refined by least squares over all points that fit, with a camera without skew.
 std::variant<Resection, std::string> resection_of(std::span<const SeenPoint> points, const Window& display);
 
 }  // namespace alcove

@@ -5,6 +5,7 @@
 #include "core/base/error.h"
 #include "core/base/option_words.h"
 #include "core/base/text.h"
+#include "core/frame/chan_file.h"
 #include "core/frame/evidence.h"
 #include "core/frame/radius.h"
 #include "core/inspect/inspection.h"
@@ -87,6 +88,7 @@ void add_normals(Command& command, const FrameSource& source, const InputSetting
 
 void add_camera(Command& command, const InputSettings& settings, bool has_camera) {
   command.add("--camera", settings.camera);
+  if (is_chan_file(settings.camera)) command.add("--chan-rotation", settings.chan_rotation);
   command.add("--fov", settings.fov);
   command.add("--focal", settings.focal);
   command.add("--aperture", settings.aperture);

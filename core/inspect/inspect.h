@@ -18,8 +18,8 @@ Inspection inspect_frame(const InputSettings& settings, int frame, const Command
 /// The settings with some camera where neither they nor the header give one, so that all else can be looked at.
 InputSettings with_some_camera(const InputSettings& settings);
 
-/// What to give where neither the settings nor the frame give a camera, and why its positions, if it has any, do not; ""
-/// where they do. A file that cannot be opened has none.
+/// What to give where neither the settings nor the frame give a camera, and why its positions, if it has any, do not;
+/// "" where they do. A file that cannot be opened has none.
 std::string lacking_camera(const InputSettings& settings, int frame);
 
 }  // namespace alcove

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/base/text.h"
+#include "core/frame/chan_file.h"
 #include "core/frame/input_files.h"
 #include "core/frame/input_rules.h"
 #include "core/options/options.h"
@@ -71,6 +72,11 @@ Condition with_multi_bounce() {
 Condition with_normals() {
   return {"to frames with normals",
           [](const Settings& all) { return wants_normals(all.input) ? "" : "--normal none leaves them out"; }};
+}
+
+Condition with_chan_file() {
+  return {"with --camera FILE.chan",
+          [](const Settings& all) { return is_chan_file(all.input.camera) ? "" : "--camera names none"; }};
 }
 
 /// Beauty and its file are for a composite; the file's diffuse colour also for --multi-bounce.
@@ -271,10 +277,16 @@ void add_camera_rows(std::vector<OptionRow>& rows, InputSettings& s) {
       .flag("--strict", s.strict, "what could only be guessed is an error, and so is a warning");
   const char* const why = "each of them says what the camera sees";
   OptionGroup(rows, "Input", Effect::content)
-      .text("--camera", s.camera, "FILE.json", "the camera; see docs/inputs.md")
+      .text("--camera", s.camera, "FILE.json|.chan", "the camera; see docs/inputs.md")
       .contradicts({"--fov", "--focal", "--aperture", "--ortho-width"}, why)
       .is_common = true;
   OptionGroup pixels(rows, "Input", Effect::pixels);
+  pixels
+      .word("--chan-rotation", s.chan_rotation, {"xyz", "xzy", "yxz", "yzx", "zxy", "zyx"},
+            "the axes about which the camera of a .chan file is turned, the first one first; zxy: Nuke's, xyz: "
+            "Blender's and Maya's")
+      .applies(with_chan_file())
+      .harmless = {"zxy"};
   pixels.number("--fov", s.fov, "degrees", strictly_between(0, 180), "horizontal field of view")
       .contradicts({"--focal", "--aperture", "--ortho-width"}, why)
       .is_common = true;

@@ -15,7 +15,7 @@ TEST_F(Sources, arnold_without_flags) {
   add_matrices(header, true);
   header.insert("arnold/camera/near_clip", Imf::FloatAttribute(0.1f));
   expect_same("arnold");
-  EXPECT_EQ(find_frame(settings, false, 0).camera_from, "worldToCamera, worldToNDC");
+  EXPECT_EQ(find_frame(settings, false, 0).camera_from, "the header's worldToCamera, worldToNDC");
 }
 
 TEST_F(Sources, renderman_with_normals_in_camera_space) {

@@ -146,6 +146,9 @@ const std::map<std::string, ConditionCase>& condition_cases() {
       {"--composite-compression",
        {{{"--composite-compression", "dwaa"}}, {"--composite-compression", "dwaa", "--composite", "c.exr"}}},
       {"--append-ao", {{{"--append-ao", "AO"}}, {"--append-ao", "AO", "--composite", "c.exr"}}},
+      {"--chan-rotation",
+       {{{"--chan-rotation", "xyz"}, {"--chan-rotation", "xyz", "--camera", "c.json"}},
+        {"--chan-rotation", "xyz", "--camera", "c.chan"}}},
       {"--ao-name", {{{"--ao-name", "AO", "--aov", "depth"}}, {"--ao-name", "AO"}}},
       {"--filter",
        {{{"--filter", "box"}, {"--filter", "box", "--supersampling", "1", "--composite", "c.exr"}},
@@ -183,13 +186,12 @@ class Said : public testing::Test {
 
   static RunOptions read(Words words, Reader reader = Reader::run) {
     words.insert(words.begin(), {"in.exr", "-o", "ao.exr"});
-    RunOptions options;
-    bool json = false;
+    InspectOptions options;
     if (reader == Reader::run)
-      parse_run_options(words, options);
+      parse_run_options(words, options.run);
     else
-      parse_inspect_options(words, options, json);
-    return options;
+      parse_inspect_options(words, options);
+    return options.run;
   }
 
   /// What is said where the words are refused, "" where they are taken.

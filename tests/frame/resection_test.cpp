@@ -1,0 +1,315 @@
+// Cameras are found from the points that they see.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/frame/resection.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "core/formats/exr.h"
+#include "core/inspect/camera_file.h"
+#include "tests/support/command_line.h"
+
+namespace alcove {
+namespace {
+
+using namespace test;
+using testing::HasSubstr;
+
+const Window kPicture{0, 0, 320, 180};
+
+/// Turned about x, then y, then z.
+Matrix3 turned(double x, double y, double z) {
+  const Matrix3 about_x{{{1, 0, 0}, {0, std::cos(x), -std::sin(x)}, {0, std::sin(x), std::cos(x)}}};
+  const Matrix3 about_y{{{std::cos(y), 0, std::sin(y)}, {0, 1, 0}, {-std::sin(y), 0, std::cos(y)}}};
+  const Matrix3 about_z{{{std::cos(z), -std::sin(z), 0}, {std::sin(z), std::cos(z), 0}, {0, 0, 1}}};
+  return product(about_z, product(about_y, about_x));
+}
+
+Camera made_camera(bool orthographic = false) {
+  Camera camera;
+  camera.width = kPicture.width;
+  camera.height = kPicture.height;
+  camera.fx = camera.fy = orthographic ? 40 : 311;
+  camera.cx = 160;
+  camera.cy = 90;
+  camera.orthographic = orthographic;
+  camera.view_from_world = turned(0.7, -0.4, 1.9);
+  camera.view_from_world_offset = {-3, 2, -7};
+  return camera;
+}
+
+/// Pixels of a picture of uneven things: what the camera sees at them, at depths of 4 to 12.
+std::vector<SeenPoint> seen_by(const Camera& camera, double far = 12) {
+  std::vector<SeenPoint> points;
+  const Matrix3 world_from_view =
+      transposed(camera.view_from_world.value_or(Matrix3{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}));
+  for (int y = 4; y < kPicture.height; y += 8)
+    for (int x = 4; x < kPicture.width; x += 8) {
+      const double depth = 4 + (far - 4) * (0.5 + 0.5 * std::sin(0.31 * x + 0.7 * y));
+      const double along = camera.orthographic ? 1 : depth;
+      const Vector3 view{(x + 0.5 - camera.cx) / camera.fx * along, -(y + 0.5 - camera.cy) / camera.fy * along, -depth};
+      points.push_back({times(world_from_view, difference(view, camera.view_from_world_offset)), x + 0.5, y + 0.5});
+    }
+  return points;
+}
+
+Resection found(const std::vector<SeenPoint>& points) {
+  const auto result = resection_of(points, kPicture);
+  EXPECT_TRUE(std::holds_alternative<Resection>(result)) << std::get<std::string>(result);
+  return std::holds_alternative<Resection>(result) ? std::get<Resection>(result) : Resection{};
+}
+
+std::string reason(const std::vector<SeenPoint>& points) {
+  const auto result = resection_of(points, kPicture);
+  EXPECT_TRUE(std::holds_alternative<std::string>(result));
+  return std::holds_alternative<std::string>(result) ? std::get<std::string>(result) : "";
+}
+
+void expect_same(const Camera& camera, const Camera& expected, double within) {
+  EXPECT_EQ(camera.orthographic, expected.orthographic);
+  EXPECT_NEAR(camera.fx / expected.fx, 1, within);
+  EXPECT_NEAR(camera.fy / expected.fy, 1, within);
+  if (!expected.orthographic) {
+    EXPECT_NEAR(camera.cx, expected.cx, within * 320);
+    EXPECT_NEAR(camera.cy, expected.cy, within * 320);
+  }
+  ASSERT_TRUE(camera.view_from_world);
+  for (std::size_t row = 0; row < 3; row++)
+    for (std::size_t column = 0; column < 3; column++)
+      EXPECT_NEAR((*camera.view_from_world)[row][column], (*expected.view_from_world)[row][column], within)
+          << row << ", " << column;
+}
+
+TEST(Resections, find_the_camera_of_perspective_views) {
+  Camera camera = made_camera();
+  const Resection plain = found(seen_by(camera));
+  expect_same(plain.camera, camera, 1e-9);
+  EXPECT_FALSE(plain.is_camera_space);
+  EXPECT_EQ(plain.within, 1);
+  for (std::size_t k = 0; k < 3; k++)
+    EXPECT_NEAR(plain.camera.view_from_world_offset[k], camera.view_from_world_offset[k], 1e-8);
+  camera.cx = 40, camera.cy = 130;  // lens shift
+  expect_same(found(seen_by(camera)).camera, camera, 1e-9);
+  camera.fy = 622;  // pixels twice as wide as high
+  expect_same(found(seen_by(camera)).camera, camera, 1e-9);
+  camera.fx = camera.fy = 3000;  // 6 degrees
+  expect_same(found(seen_by(camera)).camera, camera, 1e-7);
+  camera.view_from_world_offset = {20000, -5000, 300};  // far from the origin
+  expect_same(found(seen_by(camera)).camera, camera, 1e-6);
+}
+
+TEST(Resections, find_the_camera_of_orthographic_views) {
+  const Camera camera = made_camera(true);
+  const auto points = seen_by(camera);
+  const Resection result = found(points);
+  expect_same(result.camera, camera, 1e-9);
+  // All of it is in front, and where the pixels show it.
+  for (const auto& seen : points) {
+    const Vector3 turned = times(*result.camera.view_from_world, seen.position);
+    const auto& offset = result.camera.view_from_world_offset;
+    EXPECT_LT(turned[2] + offset[2], 0);
+    EXPECT_NEAR(result.camera.cx + result.camera.fx * (turned[0] + offset[0]), seen.x, 1e-6);
+    EXPECT_NEAR(result.camera.cy - result.camera.fy * (turned[1] + offset[1]), seen.y, 1e-6);
+  }
+}
+
+TEST(Resections, find_cameras_of_mirrored_worlds) {
+  Camera camera = made_camera();
+  for (auto& row : *camera.view_from_world) row[1] = -row[1];
+  const Resection result = found(seen_by(camera));
+  expect_same(result.camera, camera, 1e-9);
+  EXPECT_TRUE(result.camera.left_handed);
+}
+
+TEST(Resections, tell_positions_in_the_cameras_space) {
+  for (const bool orthographic : {false, true}) {
+    Camera camera = made_camera(orthographic);
+    camera.view_from_world.reset();
+    camera.view_from_world_offset = {};
+    auto points = seen_by(camera);
+    for (const bool looks_along_z : {false, true}) {
+      const Resection result = found(points);
+      EXPECT_TRUE(result.is_camera_space);
+      EXPECT_FALSE(result.camera.view_from_world);
+      EXPECT_EQ(result.camera.left_handed, looks_along_z);
+      EXPECT_NEAR(result.camera.fx, camera.fx, 1e-6);
+      if (orthographic) break;  // nothing tells on which side of it the points are
+      for (auto& seen : points) seen.position[2] = -seen.position[2];
+    }
+  }
+}
+
+TEST(Resections, do_not_mind_some_points_that_lie_elsewhere) {
+  const Camera camera = made_camera();
+  auto points = seen_by(camera);
+  std::mt19937 random(5);
+  std::normal_distribution<double> off(0, 1);
+  for (std::size_t i = 0; i < points.size(); i += 11)
+    for (auto& x : points[i].position) x += off(random);
+  const Resection result = found(points);
+  expect_same(result.camera, camera, 1e-9);
+  EXPECT_NEAR(result.within, 10.0 / 11, 0.01);
+}
+
+TEST(Resections, take_rounded_positions_for_what_they_are) {
+  const Camera camera = made_camera();
+  auto points = seen_by(camera);
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> rounding(-1, 1);
+  for (auto& seen : points) {
+    for (auto& x : seen.position) x += rounding(random) * 0x1p-9;  // half floats of 4 to 8
+    seen.rounding = 1;
+  }
+  expect_same(found(points).camera, camera, 1e-3);
+  for (auto& seen : points) seen.rounding = 0;
+  EXPECT_THAT(reason(points), HasSubstr("px of their pixels"));
+}
+
+TEST(Resections, are_refused_where_many_cameras_see_the_same) {
+  Camera camera = made_camera();
+  auto points = seen_by(camera);
+  for (auto& seen : points) {
+    const Vector3 there = times(*camera.view_from_world, seen.position);
+    // Where its ray meets one plane.
+    const Vector3 view{there[0] + camera.view_from_world_offset[0], there[1] + camera.view_from_world_offset[1],
+                       there[2] + camera.view_from_world_offset[2]};
+    const double scale = -6 / (view[2] + 0.2 * view[0]);
+    seen.position =
+        times(transposed(*camera.view_from_world), difference(scaled(view, scale), camera.view_from_world_offset));
+  }
+  EXPECT_THAT(reason(points), HasSubstr("in one plane"));
+  points.resize(20);
+  EXPECT_THAT(reason(points), HasSubstr("only 20"));
+  auto anywhere = seen_by(camera);
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> place(-5, 5);
+  for (auto& seen : anywhere)
+    for (auto& x : seen.position) x = place(random);
+  EXPECT_THAT(reason(anywhere), HasSubstr("no positions"));
+}
+
+using Plane = std::vector<float>;
+
+/// Runs of the program on a frame with positions.
+class PositionPass : public CommandLine {
+ protected:
+  /// The floor, the wall and a board before it, and where each pixel lies in the world.
+  void write_positions(const std::string& layer) const {
+    FrameFile file = wall_frame();
+    Plane& depth = file.planes.at("ViewLayer.Depth.Z");
+    for (int y = 0; y < 36; y++)
+      for (int x = 0; x < 64; x++)
+        if (x > 20 && x < 40 && y > 8 && y < 26) depth[std::size_t(y * 64 + x)] = 2.5F;
+    const Camera seen = read_camera(camera, 0);
+    for (std::size_t i = 0; i < depth.size(); i++) {
+      const double z = depth[i];
+      const Vector3 view{(double(i % 64) + 0.5 - seen.cx) / seen.fx * z,
+                         -(double(i / 64) + 0.5 - seen.cy) / seen.fy * z, -z};
+      const Vector3 world = times(transposed(*seen.view_from_world), difference(view, seen.view_from_world_offset));
+      for (std::size_t k = 0; k < 3; k++)
+        file.planes[layer + "." + std::string(1, "XYZ"[k])].push_back(float(world[k]));
+    }
+    file.write(frame);
+  }
+
+  Plane ao_of(const std::vector<std::string>& options) const {
+    std::vector<std::string> arguments{"run", frame, "-o", ao, "--type", "float", "--radius", "1"};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    const Finished finished = run_program(arguments);
+    EXPECT_EQ(finished.code, 0) << finished;
+    return read_exr_image(ao).pixels;
+  }
+};
+
+double largest_difference(const std::vector<float>& a, const std::vector<float>& b) {
+  EXPECT_EQ(a.size(), b.size());
+  double largest = 0;
+  for (std::size_t i = 0; i < std::min(a.size(), b.size()); i++)
+    largest = std::max(largest, std::abs(double(a[i]) - b[i]));
+  return largest;
+}
+
+TEST_F(PositionPass, gives_the_camera_that_nobody_said) {
+  write_positions("ViewLayer.Position");
+  const Plane by_file = ao_of({"--camera", camera});
+  EXPECT_LT(largest_difference(ao_of({}), by_file), 0.002);
+  EXPECT_LT(largest_difference(ao_of({"--depth-kind", "position"}), by_file), 0.002);
+  const Finished inspected = run_program({"inspect", frame});
+  EXPECT_THAT(inspected.out, HasSubstr("by its positions"));
+  EXPECT_THAT(inspected.out, testing::Not(HasSubstr("missing: camera")));
+}
+
+TEST_F(PositionPass, is_found_by_the_option) {
+  write_positions("strange");
+  const Finished without = run_program({"run", frame, "-o", ao, "--radius", "1"});
+  EXPECT_EQ(without.code, 2) << without;
+  EXPECT_THAT(without.err, HasSubstr("--camera"));
+  const Plane by_file = ao_of({"--camera", camera});
+  EXPECT_LT(largest_difference(ao_of({"--position-channels", "strange"}), by_file), 0.002);
+}
+
+TEST_F(PositionPass, is_written_as_a_camera_file) {
+  write_positions("ViewLayer.Position");
+  const std::string written = folder / "written.json";
+  const Finished inspected = run_program({"inspect", frame, "--write-camera", written});
+  ASSERT_EQ(inspected.code, 0) << inspected;
+  const Camera expected = read_camera(camera, 0), given = read_camera(written, 0);
+  expect_same(given, expected, 1e-5);
+  EXPECT_EQ(ao_of({"--camera", written}), ao_of({}));
+}
+
+TEST_F(PositionPass, of_a_sequence_is_written_with_its_frames) {
+  write_positions("ViewLayer.Position");
+  for (const char* number : {"7", "9"}) write_bytes(folder / "shot.000" + number + ".exr", read_bytes(frame));
+  const std::string written = folder / "written.json";
+  const Finished inspected = run_program({"inspect", folder / "shot.####.exr", "--write-camera", written});
+  ASSERT_EQ(inspected.code, 0) << inspected;
+  expect_same(read_camera(written, 9), read_camera(camera, 0), 1e-5);
+  EXPECT_THROW(read_camera(written, 8), Error);
+}
+
+TEST_F(PositionPass, that_is_none_is_told) {
+  write_positions("ViewLayer.Position");
+  FrameFile file = wall_frame();
+  std::mt19937 random(5);
+  for (const char* c : {"X", "Y", "Z"})
+    for (std::size_t i = 0; i < file.data.pixels(); i++)
+      file.planes[std::string("ViewLayer.Position.") + c].push_back(float(random() % 1000));
+  file.write(frame);
+  const Finished finished = run_program({"run", frame, "-o", ao, "--radius", "1"});
+  EXPECT_EQ(finished.code, 2) << finished;
+  EXPECT_THAT(finished.err,
+              testing::AllOf(HasSubstr(frame), HasSubstr("its positions tell none"), HasSubstr("--camera")));
+  const Finished inspected = run_program({"inspect", frame});
+  EXPECT_EQ(inspected.code, 0);
+  EXPECT_THAT(inspected.out, HasSubstr("its positions tell none"));
+}
+
+TEST(CameraFiles, are_read_as_they_were_written) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "camera.json";
+  Camera camera = made_camera();
+  camera.near = 0.1;
+  camera.far = INFINITY;
+  camera.reversed_z = true;
+  for (const bool left_handed : {false, true}) {
+    camera.left_handed = left_handed;
+    if (left_handed)
+      for (auto& row : *camera.view_from_world) row[1] = -row[1];
+    write_bytes(path, camera_file(camera));
+    const Camera read = read_camera(path, 0);
+    expect_same(read, camera, 1e-12);
+    EXPECT_EQ(read.left_handed, left_handed);
+    EXPECT_EQ(read.near, camera.near);
+    EXPECT_EQ(read.far, camera.far);
+    EXPECT_TRUE(read.reversed_z);
+    for (std::size_t k = 0; k < 3; k++)
+      EXPECT_NEAR(read.view_from_world_offset[k], camera.view_from_world_offset[k], 1e-12);
+  }
+}
+
+}  // namespace
+}  // namespace alcove
