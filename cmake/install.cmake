@@ -9,6 +9,7 @@ add_custom_command(OUTPUT ${texts}/man/man1/alcove.1.gz
   DEPENDS alcove ${CMAKE_SOURCE_DIR}/cmake/generate_texts.cmake COMMENT "Writing man pages and completions" VERBATIM)
 add_custom_target(alcove_texts ALL DEPENDS ${texts}/man/man1/alcove.1.gz)
 install(DIRECTORY ${texts} DESTINATION .)
+install(DIRECTORY hosts DESTINATION share/alcove FILES_MATCHING PATTERN *.py)
 install(DIRECTORY presets DESTINATION share/alcove FILES_MATCHING PATTERN *.toml)
 
 # The documents, in the folders that their links name, and the frame of the first steps.

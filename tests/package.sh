@@ -29,6 +29,7 @@ wanted() {
   printf '%s\n' bin/alcove lib/alcove/libalcove_image_io.so
   printf 'share/%s\n' bash-completion/completions/alcove fish/vendor_completions.d/alcove.fish zsh/vendor-completions/_alcove man/man1/alcove.1.gz
   "$build/alcove" --help | sed -n 's,^  \([a-z][a-z]*\)   .*,share/man/man1/alcove-\1.1.gz,p'
+  echo share/alcove/hosts/blender/alcove.py
   find presets -name '*.toml' -printf 'share/alcove/%p\n'
   printf 'share/doc/alcove/%s\n' README.md CHANGELOG.md copyright examples/interior.{gbuffer.exr,beauty.exr,camera.json} \
     examples/farm/{README.md,alcove.openjd.json,slurm.sh}

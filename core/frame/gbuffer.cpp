@@ -35,6 +35,13 @@ void find_beauty(FrameSource& source, const ChannelSearch& search, std::size_t f
       search.require(file, kBeautyNames, settings.beauty_channels, !settings.beauty.empty(), "Combined.R"));
   find_ambient(source, search, file, settings);
   source.supersampling = supersampling_of(source, source[RawPlane::beauty][0], settings);
+  if (source.supersampling > 1 && settings.supersampling == "auto")
+    source.notes.push_back(
+        {NoteCode::windows_differ,
+         fmt::format(
+             "the depth is of {} times the beauty's size: what is written is filtered to that of the beauty, {} "
+             "(--supersampling, --filter)",
+             source.supersampling, to_string(picture_of(source, source.display)))});
   for (const auto* aov : {&source[RawPlane::beauty], &source[RawPlane::indirect], &source[RawPlane::diffuse_color]})
     require_common_window(source, *aov, "beauty", "--beauty",
                           "the composite is as large as the beauty, which stays as it is where there is no depth");

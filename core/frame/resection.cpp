@@ -377,8 +377,9 @@ std::optional<Pinhole> solved(bool orthographic, std::span<const SeenPoint> poin
   return best;
 }
 
-/// The standard deviation of fx, relative to it, if pixels were off by half of what is allowed.
+/// The standard deviation of fx, relative to it, if points were as far off as half of them are, and a little at least.
 double focal_error(const Pinhole& camera, std::span<const SeenPoint> points) {
+  constexpr double kLittle = 0.01;  // px
   Picked near;
   for (const auto& seen : points)
     if (is_near(camera, seen, kSeenWithin)) near.push_back(&seen);
@@ -387,7 +388,7 @@ double focal_error(const Pinhole& camera, std::span<const SeenPoint> points) {
   const double variance = inverse ? (*inverse)[0][0] : -1;
   // Rounding may leave a singular matrix with any inverse.
   if (!(variance > 0)) return std::numeric_limits<double>::infinity();
-  return 0.5 * kSeenWithin * std::sqrt(variance) / camera.fx;
+  return std::max(median_distance(camera, points), kLittle) * std::sqrt(variance) / camera.fx;
 }
 
 /// The points moved and scaled to be about 1 in size, and the way back.

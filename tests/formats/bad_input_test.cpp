@@ -137,10 +137,10 @@ TEST_F(BadInput, normals_of_another_size) {
 
 TEST_F(BadInput, beauty_missing_or_of_another_size) {
   expect_bad_input(frame, {"wall.0042.exr", "--beauty"}, {"--composite", composite});
-  FrameFile beauty = wall_frame({0, 0, 32, 18}, {0, 0, 32, 18});
+  FrameFile beauty = wall_frame({0, 0, 40, 20}, {0, 0, 40, 20});
   add_beauty(beauty);
   beauty.write(folder / "small.exr");
-  expect_bad_input(frame, {"small.exr", "--beauty", "32x18", "64x36"},
+  expect_bad_input(frame, {"small.exr", "--beauty", "40x20", "64x36"},
                    {"--composite", composite, "--beauty", folder / "small.exr"});
   expect_bad_input(frame, {"missing.exr", "--beauty"}, {"--composite", composite, "--beauty", folder / "missing.exr"});
 }

@@ -168,6 +168,8 @@ TEST_F(Supersampling, a_smaller_beauty_asks_for_it_and_takes_the_filtered_ao) {
     const Image filtered_ao = computed({"--supersampling", std::to_string(factor)});
     for (const Window& window : {kSmall, Window{-3, 2, 40, 50}}) {
       write_beauty(window, kSmall);
+      const Finished noted = run({"--beauty", beauty, "--composite", composite});
+      EXPECT_THAT(noted.err, HasSubstr("--supersampling")) << "nobody has asked for it";
       const Image with = computed({"--beauty", beauty, "--composite", composite, "--append-ao", "AO"});
       EXPECT_EQ(with.pixels, filtered_ao.pixels);
       const Image result = read_exr_image(composite);

@@ -1,0 +1,112 @@
+#!/usr/bin/env python3
+# The add-on in a real Blender, without a window: stills, an animation, composites, errors, and cameras against those that positions tell.
+# SPDX-License-Identifier: BSD-3-Clause
+"""blender_test.py PROGRAM SOURCE_FOLDER: exit code 77 where there is no Blender, which in CI is an error."""
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+PROGRAM, SOURCE = os.path.abspath(sys.argv[1]), sys.argv[2]
+FOLDER = tempfile.mkdtemp(prefix="alcove-blender-")
+
+
+def alcove(*words):
+    done = subprocess.run([PROGRAM, *words], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+def path(name):
+    return os.path.join(FOLDER, name)
+
+
+class Blender(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        here = os.path.dirname(os.path.abspath(__file__))
+        done = subprocess.run(
+            ["blender", "-b", "--factory-startup", "--python-exit-code", "9", "--python", os.path.join(here, "blender_scene.py"),
+             "--", os.path.join(SOURCE, "hosts/blender/alcove.py"), FOLDER],
+            env=dict(os.environ, ALCOVE=PROGRAM), capture_output=True, text=True, check=False)
+        assert done.returncode == 0, done.stdout + done.stderr
+        with open(path("facts.json"), encoding="utf-8") as file:
+            cls.facts = json.load(file)
+
+    def test_a_still_is_computed_and_loaded(self):
+        self.assertEqual(self.facts["still"], ["FINISHED"])
+        [(image, source, has_data)] = self.facts["image of the still"]
+        self.assertEqual((image, source, has_data), (path("ao.0002.exr"), "FILE", True))
+        self.assertEqual(self.facts["wired"], ["CompositorNodeMixRGB"])
+
+    def test_nothing_of_the_users_changes(self):
+        self.assertTrue(self.facts["output is the user's"])
+        self.assertTrue(self.facts["the compositor that was there stays"])
+        self.assertEqual(self.facts["frame stays"], 5)
+        self.assertEqual(self.facts["handlers"], 0)
+        self.assertEqual(self.facts["handlers at the end"], 0)
+
+    def test_an_animation_is_computed_and_loaded(self):
+        self.assertEqual(self.facts["animation"], ["FINISHED"])
+        self.assertEqual(self.facts["images of the animation"], [["SEQUENCE", 1, 5]])
+        for frame in range(1, 6):
+            self.assertTrue(os.path.getsize(path("ao.%04d.exr" % frame)) > 0)
+
+    def test_the_ao_is_that_of_the_command_line(self):
+        for frame in (1, 4):
+            alcove("run", path("frame.%04d.exr" % frame), "-o", path("again.exr"), "--camera", path("written.json"), "--radius",
+                   "0.5", "--frames", str(frame), "-q")
+            alcove("compare", path("again.exr"), path("ao.%04d.exr" % frame), "--max-rmse", "0")
+
+    def test_a_composite_is_made(self):
+        self.assertEqual(self.facts["composite"], ["FINISHED"])
+        self.assertIn("ViewLayer.Combined.R", alcove("inspect", path("composite.0005.exr")))
+
+    def test_cameras_are_those_that_the_positions_tell(self):
+        with open(path("written.json"), encoding="utf-8") as file:
+            written = {entry["frame"]: entry for entry in json.load(file)["frames"]}
+        with open(path("animation.json"), encoding="utf-8") as file:
+            rendered = {entry["frame"]: entry for entry in json.load(file)["frames"]}
+        self.assertEqual(sorted(written), [1, 2, 3, 4, 5])
+        self.assertNotEqual(written[3]["fx"], written[4]["fx"])  # a marker switches cameras
+        self.assertNotEqual(written[1]["world_to_camera"], written[2]["world_to_camera"])
+        for frame, camera in written.items():
+            alcove("inspect", path("frame.%04d.exr" % frame), "--write-camera", path("told.json"))
+            with open(path("told.json"), encoding="utf-8") as file:
+                told = json.load(file)
+            self.assertEqual(camera["resolution"], [80, 60])
+            self.assertEqual(camera, rendered[frame])
+            for name in ("fx", "fy", "cx", "cy"):
+                self.assertAlmostEqual(camera[name], told[name], delta=0.01)
+            for row, other in zip(camera["world_to_camera"], told["world_to_camera"]):
+                for x, y in zip(row, other):
+                    self.assertAlmostEqual(x, y, delta=1e-4)
+
+    def test_an_orthographic_camera_sees_what_blender_sees(self):
+        camera, point = self.facts["orthographic"], self.facts["Suzanne"]
+        self.assertEqual(camera["projection"], "orthographic")
+        view = [sum(m * p for m, p in zip(row, point + [1])) for row in camera["world_to_camera"]]
+        x, y, _ = self.facts["where Blender sees Suzanne"]
+        self.assertAlmostEqual(camera["cx"] + camera["fx"] * view[0], 80 * x, delta=1e-3)
+        self.assertAlmostEqual(camera["cy"] - camera["fy"] * view[1], 60 * (1 - y), delta=1e-3)
+
+    def test_errors_reach_the_user(self):
+        self.assertIn("ao.0006.exr", self.facts["error of the program"])
+        self.assertIn("exit code 4", self.facts["error of the program"])
+        self.assertIn("no camera", self.facts["error without a camera"])
+        self.assertIn("preferences", self.facts["error without the program"])
+
+
+if __name__ == "__main__":
+    if not shutil.which("blender"):
+        print("there is no blender: the add-on is not tested")
+        sys.exit(1 if os.environ.get("CI") else 77)
+    try:
+        result = unittest.main(argv=sys.argv[:1], exit=False).result
+    finally:
+        shutil.rmtree(FOLDER)
+    sys.exit(not result.wasSuccessful())
