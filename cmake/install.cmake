@@ -9,13 +9,13 @@ add_custom_command(OUTPUT ${texts}/man/man1/alcove.1.gz
   DEPENDS alcove ${CMAKE_SOURCE_DIR}/cmake/generate_texts.cmake COMMENT "Writing man pages and completions" VERBATIM)
 add_custom_target(alcove_texts ALL DEPENDS ${texts}/man/man1/alcove.1.gz)
 install(DIRECTORY ${texts} DESTINATION .)
-install(DIRECTORY hosts DESTINATION share/alcove FILES_MATCHING PATTERN *.py)
+install(DIRECTORY hosts DESTINATION share/alcove FILES_MATCHING PATTERN *.py PATTERN *.toml PATTERN py.typed)
 install(DIRECTORY presets DESTINATION share/alcove FILES_MATCHING PATTERN *.toml)
 
 # The documents, in the folders that their links name, and the frame of the first steps.
 set(documents share/doc/alcove)
 install(FILES README.md CHANGELOG.md DESTINATION ${documents})
-install(DIRECTORY docs DESTINATION ${documents} FILES_MATCHING PATTERN *.md PATTERN *.png)
+install(DIRECTORY docs DESTINATION ${documents} FILES_MATCHING PATTERN *.md PATTERN *.png PATTERN *.json)
 install(FILES examples/interior.gbuffer.exr examples/interior.beauty.exr examples/interior.camera.json DESTINATION ${documents}/examples)
 install(DIRECTORY examples/farm DESTINATION ${documents}/examples USE_SOURCE_PERMISSIONS)
 

@@ -29,11 +29,11 @@ wanted() {
   printf '%s\n' bin/alcove lib/alcove/libalcove_image_io.so
   printf 'share/%s\n' bash-completion/completions/alcove fish/vendor_completions.d/alcove.fish zsh/vendor-completions/_alcove man/man1/alcove.1.gz
   "$build/alcove" --help | sed -n 's,^  \([a-z][a-z]*\)   .*,share/man/man1/alcove-\1.1.gz,p'
-  echo share/alcove/hosts/blender/alcove.py
+  printf 'share/alcove/hosts/%s\n' blender/alcove.py python/pyproject.toml python/alcove/__init__.py python/alcove/py.typed
   find presets -name '*.toml' -printf 'share/alcove/%p\n'
   printf 'share/doc/alcove/%s\n' README.md CHANGELOG.md copyright examples/interior.{gbuffer.exr,beauty.exr,camera.json} \
     examples/farm/{README.md,alcove.openjd.json,slurm.sh}
-  find docs -name '*.md' -o -name '*.png' | sed 's,^,share/doc/alcove/,'
+  find docs -name '*.md' -o -name '*.png' -o -name '*.json' | sed 's,^,share/doc/alcove/,'
 }
 expect_files() {  # what it is, then file names on two inputs: wanted, and there
   diff <(LC_ALL=C sort "$2") <(LC_ALL=C sort "$3") >"$folder/difference" || fail "$1: < is missing, > is too much

@@ -64,10 +64,11 @@ std::optional<std::pair<int, int>> place_in(const Band& band, const Window& cell
   return smooth.empty() ? best : smooth[random() % smooth.size()];
 }
 
-/// How far a point may be from its pixel because its numbers are rounded, px: as far as the pixels about it are apart.
+/// How far a point may be from its pixel because its numbers are rounded, px.
 double rounding_at(const Band& band, int x, int y, double relative) {
-  const Vector3 here = band.at(x, y), beside = band.at(x + 1, y), below = band.at(x, y + 1);
-  return relative * length(here) / std::min(length(difference(beside, here)), length(difference(below, here)));
+  const double across = length(difference(band.at(x + 1, y), band.at(x - 1, y)));
+  const double down = length(difference(band.at(x, y + 1), band.at(x, y - 1)));
+  return relative * length(band.at(x, y)) / (0.5 * std::min(across, down));
 }
 
 }  // namespace

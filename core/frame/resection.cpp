@@ -473,14 +473,12 @@ std::variant<Resection, std::string> resection_of(std::span<const SeenPoint> poi
   constexpr double kLargestFocalError = 1e-3;
   const Normalized from = normalized(points);
   // Perspective views see all that orthographic ones do, from very far.
-  std::optional<Resection> best;
-  for (const bool orthographic : {true, false}) {
-    const auto camera = solved(orthographic, from.points, display);
-    if (!camera) continue;
-    const Resection found = result_of(*camera, from, display);
-    if (!best || found.within > best->within) best = found;
-    if (best->within >= kNearlyAll) break;
-  }
+  constexpr double kAlike = 1.5, kExact = 1e-4;
+  const auto flat = solved(true, from.points, display), deep = solved(false, from.points, display);
+  const bool is_flat = flat && (!deep || cost_of(*flat, from.points) <=
+                                             kAlike * cost_of(*deep, from.points) + kExact * double(points.size()));
+  const auto& camera = is_flat ? flat : deep;
+  const auto best = camera ? std::optional(result_of(*camera, from, display)) : std::nullopt;
   if (!best || best->within < kNearlyAll)
     return fmt::format(
         "{:.0f} % of them lie within {} px of their pixels by the camera that fits best, {:.2g} px in the "

@@ -168,6 +168,13 @@ TEST(Resections, take_rounded_positions_for_what_they_are) {
   EXPECT_THAT(reason(points), HasSubstr("px of their pixels"));
 }
 
+TEST(Resections, tell_flat_things_in_perspective_from_orthographic_views) {
+  const Camera camera = made_camera();
+  auto points = seen_by(camera, 4.1);
+  for (auto& seen : points) seen.rounding = 4;  // within which an orthographic view would do
+  expect_same(found(points).camera, camera, 1e-6);
+}
+
 TEST(Resections, are_refused_where_many_cameras_see_the_same) {
   Camera camera = made_camera();
   auto points = seen_by(camera);

@@ -1,0 +1,177 @@
+# Alcove for Python: the program's commands as functions.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Ambient occlusion of rendered frames, by the program `alcove`. Pure Python, from 3.9 on; needs nothing but the program.
+
+    import alcove
+
+    alcove.run("shot.####.exr", output="ao/shot.####.exr", radius=0.5, preset="production", resume=True,
+               progress=lambda event: print(event["event"], event.get("frame")))
+    alcove.inspect("frame.exr")["camera"]["fx"]
+
+Options are those of the command line, by the same names with `_` for `-`: `slices=4` is `--slices 4`; True is a flag that
+is given, False and None are options that are not; a list becomes words with commas, or for `behind` and its like the
+option once for each.
+"""
+
+import collections
+import json
+import os
+import shutil
+import subprocess
+import threading
+from typing import Any, Callable, Dict, List, Optional
+
+__all__ = ["Error", "FramesFailed", "UsageError", "InputError", "OutputError", "DeviceError", "ComparisonError", "run", "inspect",
+           "compare", "version", "program"]
+
+# Each value of such an option stands by itself: file names may hold commas.
+_REPEATED = ("behind", "behind_channel")
+
+
+class Error(Exception):
+    """The program failed. `code` is its exit code, `events` what it had told until then."""
+
+    code = 0
+
+    def __init__(self, message: str, events: Optional[List[Dict[str, Any]]] = None):
+        super().__init__(message)
+        self.events = events or []
+
+
+class FramesFailed(Error):
+    """Some frames of a run failed; `events` says which."""
+
+    code = 1
+
+
+class UsageError(Error):
+    """Options that are none, contradict each other, or lack another."""
+
+    code = 2
+
+
+class InputError(Error):
+    """An input is missing or makes no sense."""
+
+    code = 3
+
+
+class OutputError(Error):
+    """An output could not be written."""
+
+    code = 4
+
+
+class DeviceError(Error):
+    """There is no device, or it was lost."""
+
+    code = 5
+
+
+class ComparisonError(Error):
+    """A comparison exceeds its limits."""
+
+    code = 6
+
+
+_ERRORS = {kind.code: kind for kind in (FramesFailed, UsageError, InputError, OutputError, DeviceError, ComparisonError)}
+
+
+def program() -> str:
+    """The path of the program: that of the variable ALCOVE, else the one on the path. Fails with DeviceError."""
+    found = shutil.which(os.environ.get("ALCOVE", "alcove"))
+    if not found:
+        raise DeviceError("the program alcove is not on the path: install it, or name it in the variable ALCOVE")
+    return found
+
+
+def _words(options: Dict[str, Any]) -> List[str]:
+    """Options as the command line has them. A value is never taken for an option."""
+    words = []
+    for name, value in options.items():
+        option = "--" + name.rstrip("_").replace("_", "-")
+        if value is None or value is False:
+            continue
+        if value is True:
+            words.append(option)
+        elif isinstance(value, (list, tuple)):
+            values = [_text(part) for part in value]
+            words += [f"{option}={part}" for part in (values if name in _REPEATED else [",".join(values)])]
+        else:
+            words.append(f"{option}={_text(value)}")
+    return words
+
+
+def _text(value: Any) -> str:
+    return repr(value) if isinstance(value, float) else os.fspath(value) if isinstance(value, os.PathLike) else str(value)
+
+
+def _message(code: int, said: str) -> str:
+    lines = [line for line in said.splitlines() if line.strip()]
+    errors = [line for line in lines if "error" in line] or lines or [f"alcove ended with exit code {code}"]
+    prefix = "alcove: error: "
+    return errors[-1][len(prefix):] if errors[-1].startswith(prefix) else errors[-1]
+
+
+def _fail(code: int, said: str, events: Optional[List[Dict[str, Any]]] = None) -> None:
+    raise _ERRORS.get(code, Error)(_message(code, said), events)
+
+
+def _output_of(*words: str) -> str:
+    done = subprocess.run([program(), *words], capture_output=True, text=True, check=False, stdin=subprocess.DEVNULL)
+    if done.returncode != 0:
+        _fail(done.returncode, done.stderr)
+    return done.stdout
+
+
+def run(input: Optional[str] = None, *, output: str, progress: Optional[Callable[[Dict[str, Any]], None]] = None,
+        **options: Any) -> Dict[str, Any]:
+    """Computes a frame, or a sequence whose names have a pattern such as `####`, and returns the totals of the run: the
+    counts `done`, `kept`, `failed`, `warned`, `dropped` and `missing`, and `frames`, what is told of each.
+
+    input: an EXR file, or None where `depth` or `position` names one. output: the AO's EXR file.
+    progress: is called with each event of --log-json as it comes, in this thread: `begin`, `frame` and `end`. An exception
+    of it stops the program, which leaves nothing partial, and goes on to the caller.
+    options: those of `alcove run`. Fails with a kind of Error by the program's exit code.
+    """
+    if "log_json" in options:
+        raise UsageError("log_json is what progress is told by: give that")
+    words = [program(), "run", *([] if input is None else [os.fspath(input)]), "--output", os.fspath(output),
+             "--log-json", "-", *_words({"progress": "none", **options})]
+    events: List[Dict[str, Any]] = []
+    said: "collections.deque[str]" = collections.deque(maxlen=200)
+    with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, stdin=subprocess.DEVNULL, text=True) as running:
+        listener = threading.Thread(target=lambda: said.extend(running.stderr), daemon=True)
+        listener.start()
+        try:
+            for line in running.stdout:
+                events.append(json.loads(line))
+                if progress:
+                    progress(events[-1])
+        except BaseException:
+            running.terminate()
+            raise
+        code = running.wait()
+        listener.join()
+    if code != 0:
+        _fail(code, "".join(said), events)
+    totals = dict(events[-1]) if events else {}
+    totals.pop("event", None)
+    totals["frames"] = [event for event in events if event["event"] == "frame"]
+    return totals
+
+
+def inspect(input: Optional[str] = None, **options: Any) -> Dict[str, Any]:
+    """What a frame, or a sequence, holds and how it would be read, as `alcove inspect --json` prints it. Fails as run() does."""
+    return json.loads(_output_of("inspect", *([] if input is None else [os.fspath(input)]), "--json", *_words(options)))
+
+
+def compare(result: str, reference: str, **options: Any) -> Dict[str, Any]:
+    """The measures of `alcove compare --json`: rmse, ssim and others. A limit that is exceeded, such as max_rmse=0.01, fails
+    with ComparisonError; all else as in run()."""
+    return json.loads(_output_of("compare", os.fspath(result), os.fspath(reference), "--json", *_words(options)))
+
+
+def version() -> str:
+    """The program's, such as 0.2.0."""
+    return _output_of("--version").split()[1]
