@@ -12,7 +12,7 @@ cd "$(dirname "$0")/.."
 readers=(core/formats/{exr_header,dds,image_io,open_image,png,sequence}.cpp core/frame/{header_camera,camera,cryptomatte}.cpp core/base/{file,text}.cpp)
 tests=({text,new_file,memory_limit}_test
        {file,file_names,open_image,bad_input,capture_formats,color,hostile,layouts,sequence}_test
-       {camera,header_camera,gbuffer,parts,evidence,inputs,readings,sources}_test
+       {camera,chan,resection,header_camera,gbuffer,parts,evidence,inputs,readings,sources}_test
        {refusals,region,matte,compare,inspect,options}_test
        {gpu,property,confidence}_test)
 if [ "${1:-}" = all ]; then
