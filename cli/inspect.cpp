@@ -50,12 +50,16 @@ SequenceNames names_of(const FramePlan& plan, const Settings& settings) {
           plan.evidence(), settings.frames.frames, [&plan](int frame) { return plan.at(frame).input; }};
 }
 
-/// The camera of the frame, or of each that is there, as a file.
-void write_cameras(const std::string& path, const FramePlan& plan, const InputSettings& input, int frame) {
+/// The camera of what was inspected, or of each frame that is there, as a file.
+void write_cameras(const std::string& path, const FramePlan& plan, const InputSettings& input, int frame,
+                   const Inspection& inspected) {
+  if (!plan.is_sequence()) {
+    const auto& known = inspected.camera;
+    return write_whole(path, camera_file(known ? known->camera : find_frame(input, false, frame).camera));
+  }
   std::map<int, Camera> cameras;
-  for (const int number : plan.is_sequence() ? plan.frames() : std::vector<int>{})
-    cameras[number] = find_frame(plan.at(number).input, false, number).camera;
-  write_whole(path, plan.is_sequence() ? camera_file(cameras) : camera_file(find_frame(input, false, frame).camera));
+  for (const int number : plan.frames()) cameras[number] = find_frame(plan.at(number).input, false, number).camera;
+  write_whole(path, camera_file(cameras));
 }
 
 }  // namespace
@@ -73,7 +77,7 @@ int inspect_command(const std::vector<std::string>& arguments) {
                                                    : inspect_one(plan, options.settings, frame);
   fmt::print("{}", asked.json ? inspection_json(inspection) : inspection_text(inspection));
   if (inspection.unreadable) throw *inspection.unreadable;
-  if (!asked.write_camera.empty()) write_cameras(asked.write_camera, plan, input, frame);
+  if (!asked.write_camera.empty()) write_cameras(asked.write_camera, plan, input, frame, inspection);
   if (options.settings.output.preview.empty()) return 0;
   Settings shown = options.settings;
   if (plan.is_sequence()) shown.input = plan.at(inspection.sequence->shown).input;

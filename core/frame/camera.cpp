@@ -247,15 +247,9 @@ NormalEncoding normal_encoding(const CameraFile& file) {
               fmt::format("must begin with signed, unorm, octahedral or spheremap, not \"{}\"", text));
 }
 
-/// Puts the optical axis into the middle. A pixel that is `aspect` times as wide as high covers that much more in x.
-Camera centred(const Window& display, double fx, double aspect, bool orthographic) {
-  Camera camera;
-  camera.width = display.width;
-  camera.height = display.height;
-  camera.fx = fx;
-  camera.fy = fx * aspect;
-  camera.cx = 0.5 * display.width;
-  camera.cy = 0.5 * display.height;
+/// The same from numbers of options. Fails with ErrorKind::usage where it sees nothing.
+Camera centred_by_options(const Window& display, double fx, double aspect, bool orthographic) {
+  Camera camera = centred(display, fx, aspect);
   camera.orthographic = orthographic;
   if (!is_scale(camera.fx) || !is_scale(camera.fy))
     fail(ErrorKind::usage,
@@ -319,6 +313,17 @@ NoCamera::NoCamera(const std::string& file, const std::string& why)
             fmt::format("no camera for {}: {}give {}", file, why.empty() ? "" : why + ": ", kCameraOptions)),
       why(why) {}
 
+Camera centred(const Window& display, double fx, double pixel_aspect) {
+  Camera camera;
+  camera.width = display.width;
+  camera.height = display.height;
+  camera.fx = fx;
+  camera.fy = fx * pixel_aspect;
+  camera.cx = 0.5 * display.width;
+  camera.cy = 0.5 * display.height;
+  return camera;
+}
+
 bool names_a_camera(const InputSettings& settings) {
   return !settings.camera.empty() || settings.fov || settings.focal || settings.ortho_width;
 }
@@ -330,10 +335,12 @@ Camera camera_for(const InputSettings& settings, const Window& display, double p
   if (!settings.camera.empty()) return fitted(read_camera(settings.camera, frame, view), display, settings.camera);
   const double half_width = 0.5 * display.width;
   if (settings.fov)
-    return centred(display, half_width / std::tan(*settings.fov * std::numbers::pi / 360), pixel_aspect, false);
+    return centred_by_options(display, half_width / std::tan(*settings.fov * std::numbers::pi / 360), pixel_aspect,
+                              false);
   if (settings.focal && settings.aperture)
-    return centred(display, 2 * half_width * *settings.focal / *settings.aperture, pixel_aspect, false);
-  if (settings.ortho_width) return centred(display, 2 * half_width / *settings.ortho_width, pixel_aspect, true);
+    return centred_by_options(display, 2 * half_width * *settings.focal / *settings.aperture, pixel_aspect, false);
+  if (settings.ortho_width)
+    return centred_by_options(display, 2 * half_width / *settings.ortho_width, pixel_aspect, true);
   throw NoCamera(!settings.input.empty()  ? settings.input
                  : settings.depth.empty() ? settings.position
                                           : settings.depth);

@@ -82,17 +82,9 @@ Camera read_chan(const std::string& path, int frame, const std::string& rotation
     const auto place = std::size_t(axis - 'x');
     turned = product(turn_about(place, radians(numbers[4 + place])), turned);
   }
-  Camera camera;
-  camera.width = display.width;
-  camera.height = display.height;
-  camera.fy = 0.5 * display.height / std::tan(0.5 * radians(fov));
-  camera.fx = camera.fy / pixel_aspect;
-  camera.cx = 0.5 * display.width;
-  camera.cy = 0.5 * display.height;
+  Camera camera = centred(display, 0.5 * display.height / std::tan(0.5 * radians(fov)) / pixel_aspect, pixel_aspect);
   camera.view_from_world = transposed(turned);
-  for (std::size_t i = 0; i < 3; i++)
-    for (std::size_t k = 0; k < 3; k++)
-      camera.view_from_world_offset[i] -= (*camera.view_from_world)[i][k] * numbers[1 + k];
+  camera.view_from_world_offset = scaled(times(*camera.view_from_world, {numbers[1], numbers[2], numbers[3]}), -1);
   return camera;
 }
 

@@ -11,8 +11,8 @@ namespace alcove {
 /// Whether a file is one by its name.
 bool is_chan_file(const std::string& path);
 
-/// Reads a .chan file: a line for each frame, of its number, the place x y z, the angles x y z in degrees and, unless
-/// options give another projection, the vertical field of view in degrees. `rotation`: the axes in the order in which
+/// Reads a .chan file: a line for each frame, of its number, the place x y z, the angles x y z in degrees and the
+/// vertical field of view in degrees. `rotation`: the axes in the order in which
 /// the angles turn the camera, such as zxy (Nuke's). The camera looks along -z, with y up; its projection is centred on
 /// the display window. Fails with ErrorKind::input, naming file, frame and what is wrong.
 Camera read_chan(const std::string& path, int frame, const std::string& rotation, const Window& display,

@@ -170,17 +170,6 @@ std::optional<Pose> unreal_pose(const Attributes& a) {
   return Pose{view, false, "unreal/camera"};
 }
 
-Camera centred(const Window& display, double fx, double pixel_aspect) {
-  Camera camera;
-  camera.width = display.width;
-  camera.height = display.height;
-  camera.fx = fx;
-  camera.fy = fx * pixel_aspect;
-  camera.cx = 0.5 * display.width;
-  camera.cy = 0.5 * display.height;
-  return camera;
-}
-
 double focal_px(double width, double fov_degrees) { return 0.5 * width / std::tan(0.5 * fov_degrees * kRadian); }
 
 /// One row of the projection: image coordinate * w = along * x + shift * depth (perspective), or along * x + shift

@@ -453,8 +453,7 @@ Resection result_of(Pinhole solved, const Normalized& from, const Window& displa
         least = std::min(least, -view_z(seen)), most = std::max(most, -view_z(seen));
     return std::pair(least, most);
   }();
-  result.is_camera_space = apart < kLittle && (!solved.orthographic || nearest > 0);
-  if (result.is_camera_space) {
+  if (apart < kLittle && (!solved.orthographic || nearest > 0)) {
     camera.left_handed = ahead < 0;
     return result;
   }

@@ -19,11 +19,13 @@ struct SeenPoint {
 };
 
 struct Resection {
-  Camera camera;           // without a rotation where the points are in the camera's own space
-  bool is_camera_space;    // whether they are: then left_handed says whether it looks along +z
+  // Without a rotation where the points are in the camera's own space: then left_handed says whether it looks along +z.
+  Camera camera;
   double within = 0;       // share of the points that lie within kSeenWithin of their pixels
   double median = 0;       // px from point to pixel
   double focal_error = 0;  // standard deviation of fx, relative to it
+
+  bool is_camera_space() const { return !camera.view_from_world; }
 };
 
 /// A camera is found where nearly all points lie so near to their pixels, px, beyond their rounding.

@@ -96,6 +96,7 @@ struct Inspector {
   InputSettings reading;          // with a camera in any case
   bool has_camera;
   int frame;
+  std::optional<FrameSource> known;  // the same frame, where it was found already
   FrameSource source = {};
   std::vector<float> depth = {}, normal = {};
   Inspection found = {};
@@ -114,7 +115,7 @@ struct Inspector {
   /// Finds the frame, if need be without what lies behind its first surface: that says more than that it is refused.
   void find_source() {
     try {
-      source = find_frame(reading, false, frame);
+      source = known ? *std::move(known) : find_frame(reading, false, frame);
     } catch (const Error& error) {
       InputSettings without = reading;
       without.behind = {};
@@ -253,9 +254,12 @@ struct Inspector {
       }
   }
 
+  /// Neither camera nor normals matter for it, so that no camera is solved again.
   void find_beauty() {
+    InputSettings alone = names_a_camera(reading) ? reading : with_some_camera(reading);
+    alone.normal = "none";
     try {
-      const FrameSource beauty = find_frame(reading, true, frame);
+      const FrameSource beauty = find_frame(alone, true, frame);
       add_aov(found, "beauty", beauty, beauty[RawPlane::beauty], !settings.beauty_channels.empty());
       add_aov(found, "indirect", beauty, beauty[RawPlane::indirect], false);
       add_aov(found, "diffuse_color", beauty, beauty[RawPlane::diffuse_color], false);
@@ -274,22 +278,21 @@ InputSettings with_some_camera(const InputSettings& settings) {
   return with;
 }
 
-std::string lacking_camera(const InputSettings& settings, int frame) {
-  if (names_a_camera(settings)) return "";
+CameraSearch look_for_camera(const InputSettings& settings, int frame) {
+  if (names_a_camera(settings)) return {};
   try {
-    find_frame(settings, false, frame);
-    return "";
+    return {"", find_frame(settings, false, frame)};
   } catch (const NoCamera& error) {
-    return fmt::format("camera: {}{}", error.why.empty() ? "" : error.why + "; ", kCameraOptions);
+    return {fmt::format("camera: {}{}", error.why.empty() ? "" : error.why + "; ", kCameraOptions), {}};
   } catch (const Error&) {
     // Something else is missing too, which comes later.
   }
   try {
-    if (may_tell_camera(settings)) return "";
+    if (may_tell_camera(settings)) return {};
   } catch (const Error&) {
     // So is this.
   }
-  return fmt::format("camera: {}", kCameraOptions);
+  return {fmt::format("camera: {}", kCameraOptions), {}};
 }
 
 Inspection inspect_frame(const InputSettings& settings, int frame) {
@@ -297,10 +300,11 @@ Inspection inspect_frame(const InputSettings& settings, int frame) {
 }
 
 Inspection inspect_frame(const InputSettings& settings, int frame, const CommandNames& run) {
-  const std::string lacking = lacking_camera(settings, frame);
-  const bool has_camera = lacking.empty();
-  Inspector inspector{settings, run, has_camera ? settings : with_some_camera(settings), has_camera, frame};
-  if (!has_camera) inspector.found.missing.push_back(lacking);
+  CameraSearch search = look_for_camera(settings, frame);
+  const bool has_camera = search.lacking.empty();
+  Inspector inspector{settings,   run,   has_camera ? settings : with_some_camera(settings),
+                      has_camera, frame, std::move(search.found)};
+  if (!has_camera) inspector.found.missing.push_back(search.lacking);
   const bool is_found = inspector.find();
   const bool is_read = is_found && inspector.read();
   if (is_read) inspector.look();

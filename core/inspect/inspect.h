@@ -2,7 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
+#include <string>
+
 #include "core/base/settings.h"
+#include "core/frame/gbuffer.h"
 #include "core/inspect/command.h"
 #include "core/inspect/inspection.h"
 
@@ -18,8 +22,13 @@ Inspection inspect_frame(const InputSettings& settings, int frame, const Command
 /// The settings with some camera where neither they nor the header give one, so that all else can be looked at.
 InputSettings with_some_camera(const InputSettings& settings);
 
-/// What to give where neither the settings nor the frame give a camera, and why its positions, if it has any, do not;
-/// "" where they do. A file that cannot be opened has none.
-std::string lacking_camera(const InputSettings& settings, int frame);
+/// Whether the settings or the frame give a camera.
+struct CameraSearch {
+  // what to give where nothing gives one, and why the frame's positions, if it has any, do not; "" where there is one
+  std::string lacking;
+  std::optional<FrameSource> found;  // the frame, where it had to be found to know
+};
+/// A file that cannot be opened has no camera.
+CameraSearch look_for_camera(const InputSettings& settings, int frame);
 
 }  // namespace alcove

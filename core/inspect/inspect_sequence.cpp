@@ -101,7 +101,7 @@ class SequenceInspector {
     shown_.shown = shown_frame_;
     shown_.frames = names_.frames;
     shown_.absent = names_.absent;
-    has_camera_ = lacking_camera(names_.of(shown_frame_), shown_frame_).empty();
+    has_camera_ = look_for_camera(names_.of(shown_frame_), shown_frame_).lacking.empty();
     for (const int frame : names_.frames) look_at_header(frame);
     for (const int frame : few()) look_at_pixels(frame);
     sort_out();

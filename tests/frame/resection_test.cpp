@@ -11,6 +11,7 @@
 #include "core/formats/exr.h"
 #include "core/inspect/camera_file.h"
 #include "tests/support/command_line.h"
+#include "tests/support/difference.h"
 
 namespace alcove {
 namespace {
@@ -87,7 +88,7 @@ TEST(Resections, find_the_camera_of_perspective_views) {
   Camera camera = made_camera();
   const Resection plain = found(seen_by(camera));
   expect_same(plain.camera, camera, 1e-9);
-  EXPECT_FALSE(plain.is_camera_space);
+  EXPECT_FALSE(plain.is_camera_space());
   EXPECT_EQ(plain.within, 1);
   for (std::size_t k = 0; k < 3; k++)
     EXPECT_NEAR(plain.camera.view_from_world_offset[k], camera.view_from_world_offset[k], 1e-8);
@@ -132,7 +133,7 @@ TEST(Resections, tell_positions_in_the_cameras_space) {
     auto points = seen_by(camera);
     for (const bool looks_along_z : {false, true}) {
       const Resection result = found(points);
-      EXPECT_TRUE(result.is_camera_space);
+      EXPECT_TRUE(result.is_camera_space());
       EXPECT_FALSE(result.camera.view_from_world);
       EXPECT_EQ(result.camera.left_handed, looks_along_z);
       EXPECT_NEAR(result.camera.fx, camera.fx, 1e-6);
@@ -227,23 +228,17 @@ class PositionPass : public CommandLine {
     arguments.insert(arguments.end(), options.begin(), options.end());
     const Finished finished = run_program(arguments);
     EXPECT_EQ(finished.code, 0) << finished;
-    return read_exr_image(ao).pixels;
+    Plane pixels = read_exr_image(ao).pixels;
+    EXPECT_EQ(pixels.size(), kWallWindow.pixels());
+    return pixels;
   }
 };
-
-double largest_difference(const std::vector<float>& a, const std::vector<float>& b) {
-  EXPECT_EQ(a.size(), b.size());
-  double largest = 0;
-  for (std::size_t i = 0; i < std::min(a.size(), b.size()); i++)
-    largest = std::max(largest, std::abs(double(a[i]) - b[i]));
-  return largest;
-}
 
 TEST_F(PositionPass, gives_the_camera_that_nobody_said) {
   write_positions("ViewLayer.Position");
   const Plane by_file = ao_of({"--camera", camera});
-  EXPECT_LT(largest_difference(ao_of({}), by_file), 0.002);
-  EXPECT_LT(largest_difference(ao_of({"--depth-kind", "position"}), by_file), 0.002);
+  EXPECT_LT(difference(ao_of({}), by_file).max, 0.002);
+  EXPECT_LT(difference(ao_of({"--depth-kind", "position"}), by_file).max, 0.002);
   const Finished inspected = run_program({"inspect", frame});
   EXPECT_THAT(inspected.out, HasSubstr("by its positions"));
   EXPECT_THAT(inspected.out, testing::Not(HasSubstr("missing: camera")));
@@ -255,7 +250,7 @@ TEST_F(PositionPass, is_found_by_the_option) {
   EXPECT_EQ(without.code, 2) << without;
   EXPECT_THAT(without.err, HasSubstr("--camera"));
   const Plane by_file = ao_of({"--camera", camera});
-  EXPECT_LT(largest_difference(ao_of({"--position-channels", "strange"}), by_file), 0.002);
+  EXPECT_LT(difference(ao_of({"--position-channels", "strange"}), by_file).max, 0.002);
 }
 
 TEST_F(PositionPass, is_written_as_a_camera_file) {
