@@ -13,7 +13,7 @@
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/gpu/device.h"
-#include "core/run/check.h"
+#include "core/options/check.h"
 
 namespace alcove {
 namespace {

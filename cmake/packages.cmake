@@ -7,8 +7,13 @@ set(CPACK_STRIP_FILES ON)
 set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
 set(CPACK_THREADS 0)
 
-# Two Debian packages; the archive holds all. The module is loaded by its name, so that only its own package depends on OpenImageIO.
-set(CPACK_COMPONENTS_ALL alcove)
+find_program(DPKG_DEB dpkg-deb)
+# The program, the library for other programs, and Python's package; the archive holds all. The module is loaded by its name, so that only its own
+# package depends on OpenImageIO.
+set(CPACK_COMPONENTS_ALL alcove library dev)
+if(DPKG_DEB)
+  list(APPEND CPACK_COMPONENTS_ALL python)
+endif()
 if(TARGET alcove_image_io)
   list(APPEND CPACK_COMPONENTS_ALL pictures)
 endif()
@@ -38,16 +43,55 @@ With this module, Alcove reads depth, normals and beauties from TIFF, PNG and
 what else OpenImageIO reads, and draws charts and debug views.")
 set(CPACK_DEBIAN_PICTURES_PACKAGE_SOURCE alcove)
 
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME libalcove0)
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_SECTION libs)
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_SOURCE alcove)
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_GENERATE_SHLIBS ON)
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_RECOMMENDS "mesa-vulkan-drivers | vulkan-icd")
+set(CPACK_DEBIAN_LIBRARY_DESCRIPTION "ambient occlusion of planes in memory
+The library of Alcove, for programs that have depth and normals in memory. It
+computes with Vulkan, reads no files, and loads no OpenEXR.")
+
+set(CPACK_COMPONENT_DEV_DEPENDS library)
+set(CPACK_DEBIAN_DEV_PACKAGE_NAME libalcove-dev)
+set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
+set(CPACK_DEBIAN_DEV_PACKAGE_SOURCE alcove)
+set(CPACK_DEBIAN_DEV_DESCRIPTION "ambient occlusion of planes in memory (development files)
+The header of libalcove, and what CMake and pkg-config know of it.")
+
+set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-alcove)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SOURCE alcove)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_ARCHITECTURE all)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS OFF)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS python3)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS "alcove, libalcove0, python3-numpy")
+set(CPACK_DEBIAN_PYTHON_DESCRIPTION "ambient occlusion from Python, of files and of arrays
+Runs Alcove over files with its progress and its errors as exceptions, and
+computes the AO of numpy arrays with its library.")
+
 # What only Debian packages have: a changelog in Debian's form, and for both one folder of documents.
 set(debian ${CMAKE_BINARY_DIR}/generated/debian)
-find_program(DPKG_DEB dpkg-deb)
 if(DPKG_DEB)
   execute_process(COMMAND date -uR -d ${ALCOVE_RELEASE_DATE} OUTPUT_VARIABLE date OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
   file(WRITE ${debian}/changelog "alcove (${PROJECT_VERSION}) stable; urgency=medium\n\n  * CHANGELOG.md says what changed.\n\n"
     " -- ${CPACK_PACKAGE_CONTACT}  ${date}\n")
   execute_process(COMMAND gzip -9nc ${debian}/changelog OUTPUT_FILE ${debian}/changelog.gz COMMAND_ERROR_IS_FATAL ANY)
   install(FILES ${debian}/changelog.gz DESTINATION share/doc/alcove EXCLUDE_FROM_ALL)
-  file(CREATE_LINK alcove ${debian}/alcove-pictures SYMBOLIC)
-  install(FILES ${debian}/alcove-pictures DESTINATION share/doc COMPONENT pictures EXCLUDE_FROM_ALL)
+  # One folder of documents for all. Python's package, which other architectures have too, has its own.
+  foreach(pair pictures:alcove-pictures dev:libalcove-dev)
+    string(REPLACE ":" ";" pair ${pair})
+    list(GET pair 0 component)
+    list(GET pair 1 package)
+    file(CREATE_LINK alcove ${debian}/${package} SYMBOLIC)
+    install(FILES ${debian}/${package} DESTINATION share/doc COMPONENT ${component} EXCLUDE_FROM_ALL)
+  endforeach()
+  foreach(pair library:libalcove0 python:python3-alcove)
+    string(REPLACE ":" ";" pair ${pair})
+    list(GET pair 0 component)
+    list(GET pair 1 package)
+    install(FILES ${debian}/changelog.gz ${CMAKE_BINARY_DIR}/generated/copyright DESTINATION share/doc/${package} COMPONENT ${component} EXCLUDE_FROM_ALL)
+  endforeach()
+  install(DIRECTORY ${CMAKE_SOURCE_DIR}/hosts/python/alcove DESTINATION lib/python3/dist-packages COMPONENT python EXCLUDE_FROM_ALL FILES_MATCHING PATTERN *.py PATTERN py.typed)
 endif()
 include(CPack)

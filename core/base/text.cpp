@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
+#include <limits>
 #include <array>
 #include <cctype>
 #include <numeric>
@@ -162,6 +164,19 @@ std::vector<std::string> nearest_names(std::string_view name, std::span<const st
   for (const auto& [distance, candidate] : ranked)
     if (names.size() < most) names.push_back(candidate);
   return names;
+}
+
+std::optional<double> number_of(std::string_view text) {
+  if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (end != text.data() + text.size() || error == std::errc::invalid_argument) return std::nullopt;
+  if (error != std::errc::result_out_of_range) return value;
+  // It leaves the value as it was, be it too large or too near to 0.
+  const std::size_t exponent = text.find_first_of("eE");
+  const bool is_small = exponent != text.npos ? text[exponent + 1] == '-' : text.find_first_of("123456789") > text.find('.');
+  const double size = is_small ? 0 : std::numeric_limits<double>::infinity();
+  return text.starts_with('-') ? -size : size;
 }
 
 std::string suggestion(std::string_view name, std::span<const std::string> candidates) {

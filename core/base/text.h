@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -37,6 +38,10 @@ std::string printable(std::string_view text);
 
 /// A word as a shell takes it: quoted where it must be.
 std::string for_shell(const std::string& word);
+
+/// Reads a text that is a number and nothing else, in whatever language the process speaks: decimals have a point. The
+/// number may be infinite or NaN, and is infinite where it is too large.
+std::optional<double> number_of(std::string_view text);
 
 /// Gives " (did you mean a or b?)" to be put behind a message, or an empty text if no candidate is near.
 std::string suggestion(std::string_view name, std::span<const std::string> candidates);

@@ -87,6 +87,10 @@ bool Wanted::is_only_visibility() const {
   return visibility && std::ranges::all_of(aovs, is_ao) && !multi_bounce && debug_views.empty();
 }
 
+bool in_world(const Camera& camera, const OutputSettings& settings) {
+  return settings.aov_space != NormalSpace::view && camera.view_from_world.has_value();
+}
+
 bool needs_ao(const OutputSettings& output) { return Wanted(output).visibility; }
 
 bool needs_bent(const EstimatorSettings& settings, const Wanted& wanted) {

@@ -8,6 +8,7 @@
 #include "core/base/settings.h"
 #include "core/chain/debug_view.h"
 #include "core/chain/outputs.h"
+#include "core/frame/camera.h"
 
 namespace alcove {
 
@@ -54,6 +55,9 @@ struct Wanted {
   PixelFilter filter;
   CompositeLook look;
 };
+
+/// Whether the directions that are given to the host are in world space.
+bool in_world(const Camera& camera, const OutputSettings& settings);
 
 /// Whether any output is AO or made from it.
 bool needs_ao(const OutputSettings& output);

@@ -27,21 +27,30 @@ bool fills(RawPlane plane, std::size_t values, std::size_t pixels) {
 
 }  // namespace
 
+FrameInputs upload(gpu::Recorder& gpu, const Reading& reading, const HostPlanes& planes, int frame) {
+  const std::size_t pixels = reading.data.pixels();
+  const auto depth = planes[RawPlane::depth], behind = planes[RawPlane::behind];
+  if (depth.size() != (reading.depth_kind == DepthKind::position ? 3 : 1) * pixels)
+    fail(ErrorKind::input, "a frame of {} has {} depth values", to_string(reading.data), depth.size());
+  if (behind.size() != reading.behind.size() * pixels || reading.behind.size() > kMostBehindPlanes)
+    fail(ErrorKind::input, "a frame of {} with {} planes behind has {} values of theirs", to_string(reading.data),
+         reading.behind.size(), behind.size());
+  RawPlaneArray<gpu::Buffer*> buffers;
+  for (const auto& row : kRawPlanes) {
+    const auto values = planes[row.plane];
+    if (!values.empty() && !fills(row.plane, values.size(), pixels))
+      fail(ErrorKind::input, "a frame of {} has {} values of its {}", to_string(reading.data), values.size(), row.name);
+    buffers[row.plane] = filled(gpu, row.plane, values);
+  }
+  return inputs_of(reading, buffers, frame);
+}
+
 FrameInputs upload(gpu::Recorder& gpu, const HostFrame& frame) {
-  const std::size_t pixels = frame.data.pixels();
-  const std::size_t of_depth = frame.depth_kind == DepthKind::position ? 3 : 1;
-  if (frame.depth.size() != of_depth * pixels ||
-      (!frame.normal.empty() && !fills(RawPlane::normal, frame.normal.size(), pixels)))
-    fail(ErrorKind::input, "a frame of {} has {} depth and {} normal values", to_string(frame.data), frame.depth.size(),
-         frame.normal.size());
-  if (frame.behind_depth.size() != frame.behind.size() * pixels || frame.behind.size() > kMostBehindPlanes)
-    fail(ErrorKind::input, "a frame of {} with {} planes behind has {} values of theirs", to_string(frame.data),
-         frame.behind.size(), frame.behind_depth.size());
-  RawPlaneArray<gpu::Buffer*> planes;
-  planes[RawPlane::depth] = filled(gpu, RawPlane::depth, frame.depth);
-  planes[RawPlane::normal] = filled(gpu, RawPlane::normal, frame.normal);
-  planes[RawPlane::behind] = filled(gpu, RawPlane::behind, frame.behind_depth);
-  return inputs_of(frame, planes, frame.frame);
+  HostPlanes planes;
+  planes[RawPlane::depth] = frame.depth;
+  planes[RawPlane::normal] = frame.normal;
+  planes[RawPlane::behind] = frame.behind_depth;
+  return upload(gpu, frame, planes, frame.frame);
 }
 
 HostResult compute_ao(gpu::Recorder& gpu, const HostFrame& frame, const EstimatorSettings& settings) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/base/settings.h"
@@ -11,8 +12,12 @@
 
 namespace alcove {
 
-/// The frame in upload buffers, as run_chain() takes it. Fails with ErrorKind::input when its planes do not fill its
-/// data window.
+/// Planes of a frame in host memory, the components of each one behind the other; empty: the frame has no such plane.
+using HostPlanes = RawPlaneArray<std::span<const float>>;
+
+/// The planes in upload buffers, as run_chain() takes them. Fails with ErrorKind::input when they do not fill the data
+/// window.
+FrameInputs upload(gpu::Recorder& gpu, const Reading& reading, const HostPlanes& planes, int frame);
 FrameInputs upload(gpu::Recorder& gpu, const HostFrame& frame);
 
 /// What the chain makes of a frame in host memory.

@@ -86,17 +86,19 @@ struct CameraFile {
   }
 };
 
-/// The object that a camera file is.
-Json object_in(const std::string& path) {
+/// The object that the text of a camera file is.
+Json object_of(const std::string& text, const std::string& path) {
   const auto bounded = [&](int depth, Json::parse_event_t, Json&) {
     if (depth > kDeepest)
       fail(ErrorKind::input, "{}: JSON that nests deeper than {}; --camera takes a camera file", path, kDeepest);
     return true;
   };
-  Json top = Json::parse(read_text(path, "camera", "--camera"), bounded, false);
+  Json top = Json::parse(text, bounded, false);
   if (!top.is_object()) fail(ErrorKind::input, "{}: not a JSON object; --camera takes a camera file", path);
   return top;
 }
+
+Json object_in(const std::string& path) { return object_of(read_text(path, "camera", "--camera"), path); }
 
 bool starts_with(const std::string& text, const char* start) { return text.rfind(start, 0) == 0; }
 
@@ -272,10 +274,7 @@ Camera fitted(Camera camera, const Window& display, const std::string& path) {
   return camera;
 }
 
-}  // namespace
-
-Camera read_camera(const std::string& path, int frame, const std::string& view) {
-  CameraFile file{path, object_in(path), Json::object(), Json::object(), Json::object()};
+Camera camera_in(CameraFile file, int frame, const std::string& view) {
   file.frame = frame_entry(file, frame);
   file.view_of_top = view_entry(file, file.top, view);
   file.view_of_frame = view_entry(file, file.frame, view);
@@ -299,6 +298,17 @@ Camera read_camera(const std::string& path, int frame, const std::string& view) 
   camera.normal_encoding = normal_encoding(file);
   if (file.find("pixel_aspect")) file.positive("pixel_aspect");
   return camera;
+}
+
+}  // namespace
+
+Camera read_camera(const std::string& path, int frame, const std::string& view) {
+  return camera_in({path, object_in(path), Json::object(), Json::object(), Json::object()}, frame, view);
+}
+
+Camera camera_of(const std::string& text, const std::string& name, const Window& display, int frame) {
+  CameraFile file{name, object_of(text, name), Json::object(), Json::object(), Json::object()};
+  return fitted(camera_in(std::move(file), frame, ""), display, name);
 }
 
 bool lists_frames(const std::string& path) { return is_chan_file(path) || object_in(path).contains("frames"); }

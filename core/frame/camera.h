@@ -56,6 +56,10 @@ Camera centred(const Window& display, double fx, double pixel_aspect);
 /// field, on anything missing or senseless.
 Camera read_camera(const std::string& path, int frame, const std::string& view = "");
 
+/// Gives the camera in the text of a camera file for a frame of this display window; `name` is for messages. Fails as
+/// read_camera() does, and where it does not fit.
+Camera camera_of(const std::string& text, const std::string& name, const Window& display, int frame);
+
 /// Whether a camera file lists `frames`. Fails with ErrorKind::input where it cannot be read.
 bool lists_frames(const std::string& path);
 

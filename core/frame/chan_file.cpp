@@ -23,11 +23,10 @@ std::vector<double> numbers_in(const std::string& path, const std::string& line,
   std::vector<double> numbers;
   std::istringstream words(line);
   for (std::string word; words >> word;) {
-    char* end = nullptr;
-    const double value = std::strtod(word.c_str(), &end);
-    if (end != word.c_str() + word.size() || !std::isfinite(value))
+    const auto value = number_of(word);
+    if (!value || !std::isfinite(*value))
       fail(ErrorKind::input, "{}: line {} has \"{}\" where a number belongs (--camera)", path, number, word);
-    numbers.push_back(value);
+    numbers.push_back(*value);
   }
   return numbers;
 }

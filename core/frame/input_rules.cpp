@@ -1,15 +1,13 @@
-// Reads the rules, and matches them with headers.
+// Reads the rules.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/frame/input_rules.h"
 
 #include <algorithm>
-#include <cstdlib>
 
 #include "core/base/error.h"
 #include "core/base/flat_toml.h"
 #include "core/base/text.h"
 #include "core/frame/depth.h"
-#include "core/frame/name_pattern.h"
 
 namespace alcove {
 namespace {
@@ -46,28 +44,6 @@ std::vector<AovCandidate> candidates_of(const std::vector<std::string>& words) {
   return candidates;
 }
 
-/// Lists what identifies a file, in lower case: attributes as "name" and "name=value", channels as "channel:name". Nuke
-/// puts prefixes before others' attributes.
-std::vector<std::string> marks_of(const ExrFile& file) {
-  constexpr std::size_t kLongest = 200;  // characters of a mark that count
-  std::vector<std::string> marks;
-  for (std::size_t p = 0; p < file.parts().size(); p++) {
-    for (const auto& [name, value] : file.attribute_texts(int(p))) {
-      std::string plain = name.substr(0, kLongest);
-      if (plain.starts_with("nuke/exr/")) plain.erase(0, 9);
-      if (plain.starts_with("exr/")) plain.erase(0, 4);
-      marks.push_back(lower_case(plain));
-      marks.push_back(lower_case(plain + "=" + value.substr(0, kLongest)));
-    }
-    for (const auto& channel : file.parts()[p].channels) {
-      marks.push_back("channel:" + lower_case(channel.name.substr(0, kLongest)));
-      if (!file.parts()[p].name.empty())
-        marks.push_back("channel:" + lower_case((file.parts()[p].name + "." + channel.name).substr(0, kLongest)));
-    }
-  }
-  return marks;
-}
-
 }  // namespace
 
 InputRules parse_input_rules(const std::string& name, const std::string& text) {
@@ -80,8 +56,8 @@ InputRules parse_input_rules(const std::string& name, const std::string& text) {
       return *value;
     };
     const auto distance = [&] {
-      const double value = std::strtod(word.c_str(), nullptr);
-      return known(value > 0 ? std::optional(value) : std::nullopt);
+      const auto value = number_of(word);
+      return known(value && *value > 0 ? value : std::nullopt);
     };
     if (key == "source")
       known(word == name ? std::optional(0) : std::nullopt);
@@ -136,18 +112,6 @@ const InputRules& input_rules(const std::string& name) {
   if (found != all_input_rules().end()) return *found;
   const auto names = source_names();
   fail(ErrorKind::usage, "there is no source {}{}; --source takes {}", name, suggestion(name, names), list_of(names));
-}
-
-DetectedRules detect_rules(const ExrFile& file) {
-  const auto marks = marks_of(file);
-  for (const bool last : {false, true})
-    for (const auto& rules : all_input_rules())
-      for (const auto& pattern : rules.detect)
-        if (const auto mark = std::ranges::find_if(
-                marks, [wanted = lower_case(pattern)](const auto& m) { return fits_pattern(m, wanted); });
-            rules.last == last && mark != marks.end())
-          return {&rules, *mark};
-  return {&input_rules("generic"), ""};
 }
 
 }  // namespace alcove

@@ -16,9 +16,10 @@
 #include <vector>
 
 #include "core/base/settings.h"
-#include "core/formats/exr.h"
 
 namespace alcove {
+
+class ExrFile;
 
 /// A layer or a channel, and what is known of it alone. Where that is automatic, the program's rules hold.
 struct AovCandidate {

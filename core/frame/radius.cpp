@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/base/text.h"
 #include "core/frame/depth.h"
 
 namespace alcove {
@@ -42,14 +43,13 @@ std::optional<double> median_depth(const Reading& reading, std::span<const float
   return *middle;
 }
 
-std::optional<double> proposed_radius(const FrameSource& settled) {
-  const Camera& camera = settled.camera;
-  if (!settled.median_depth) return std::nullopt;
-  const double width = camera.width / camera.fx * (camera.orthographic ? 1 : *settled.median_depth);
+std::optional<double> proposed_radius(const Camera& camera, std::optional<double> median_depth) {
+  if (!median_depth) return std::nullopt;
+  const double width = camera.width / camera.fx * (camera.orthographic ? 1 : *median_depth);
   const double radius =
-      camera.orthographic ? kOfWidth * width : std::min(kOfDistance * *settled.median_depth, kMostOfWidth * width);
+      camera.orthographic ? kOfWidth * width : std::min(kOfDistance * *median_depth, kMostOfWidth * width);
   if (!(radius > kLeast && radius < kMost)) return std::nullopt;
-  return std::stod(fmt::format("{:.1g}", radius));
+  return number_of(fmt::format("{:.1g}", radius));
 }
 
 }  // namespace alcove

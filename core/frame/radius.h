@@ -5,7 +5,7 @@
 #include <optional>
 #include <span>
 
-#include "core/frame/gbuffer.h"
+#include "core/frame/reading.h"
 
 namespace alcove {
 
@@ -13,9 +13,9 @@ namespace alcove {
 /// has it, or the positions, of the pixels of `reading.data`; a few ten thousand of them are looked at.
 std::optional<double> median_depth(const Reading& reading, std::span<const float> raw);
 
-/// Gives a radius in scene units for a frame that is settled, by one figure, which is as much as a guess deserves. None
-/// where the frame shows no surface. It is the same for every frame of a sequence if it is asked of the one by which
+/// Gives a radius in scene units by one figure, which is as much as a guess deserves. None where the frame shows no
+/// surface, and so has no median depth. It is the same for every frame of a sequence if it is asked of the one by which
 /// the sequence is settled.
-std::optional<double> proposed_radius(const FrameSource& settled);
+std::optional<double> proposed_radius(const Camera& camera, std::optional<double> median_depth);
 
 }  // namespace alcove

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <limits>
 
 #include "core/base/error.h"
@@ -65,12 +64,6 @@ Range strictly_between(double low, double high) {
 }
 Range above_to(double low, double high) {
   return {low, high, true, false, fmt::format("above {} and at most {}", low, high)};
-}
-
-std::optional<double> number_of(const std::string& text) {
-  char* end = nullptr;
-  const double value = std::strtod(text.c_str(), &end);
-  return text.empty() || end != text.c_str() + text.size() ? std::nullopt : std::optional(value);
 }
 
 std::optional<int> whole_number_of(const std::string& text) {

@@ -90,9 +90,7 @@ std::string said(const std::string& text);
 
 /// Reads a finite number of the range. Fails with ErrorKind::usage, naming the option.
 double number_in(const Range& range, const std::string& name, const std::string& text);
-/// Reads a text that is a number and nothing else. The number may be infinite or NaN.
-std::optional<double> number_of(const std::string& text);
-/// Does the same for a whole number that an int can hold.
+/// Reads a text that is a whole number which an int can hold, and nothing else.
 std::optional<int> whole_number_of(const std::string& text);
 
 /// Appends rows of one group and one effect to a table. What they bind must outlive the rows; its present values are

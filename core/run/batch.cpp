@@ -18,7 +18,7 @@
 #include "core/chain/aov.h"
 #include "core/chain/chain.h"
 #include "core/formats/color.h"
-#include "core/run/check.h"
+#include "core/options/check.h"
 #include "core/run/digest.h"
 #include "core/run/first_look.h"
 #include "core/run/frame_tally.h"

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/base/text.h"
-#include "core/run/check.h"
+#include "core/options/check.h"
 #include "core/run/first_look.h"
 #include "core/run/frame_files.h"
 #include "core/run/memory_plan.h"

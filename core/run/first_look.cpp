@@ -51,7 +51,7 @@ std::optional<double> radius_for(const FramePlan& plan, bool has_camera, std::op
       FrameSource source = find_frame(settings.input, false, frame);
       source.camera_is_assumed = !has_camera;
       settle_by_rows(source, settings.input);
-      if (const auto radius = proposed_radius(source)) return radius;
+      if (const auto radius = proposed_radius(source.camera, source.median_depth)) return radius;
     } catch (const Error& failure) {
       if (!error) error = failure;
     }

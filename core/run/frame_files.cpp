@@ -24,11 +24,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Whether the directions that are written are in world space.
-bool in_world(const FrameSource& source, const OutputSettings& settings) {
-  return settings.aov_space != NormalSpace::view && source.camera.view_from_world.has_value();
-}
-
 /// By its word, and its width in px of the picture.
 std::string text_of(const PixelFilter& filter) {
   const auto is_kind = [&](const auto& name) { return name.second == filter.kind; };
@@ -84,7 +79,7 @@ ExrOutput aov_file(const FrameSource& source, const EstimatorSettings& estimator
   if (wants(settings, &FrameOutputs::scales))
     output.own_attributes["alcove/radii"] = fmt::format("{}", fmt::join(radii, " "));
   if (wants(settings, &FrameOutputs::normal) || wants(settings, &FrameOutputs::bent_normal))
-    output.own_attributes["alcove/normal_space"] = in_world(source, settings) ? "world" : "view";
+    output.own_attributes["alcove/normal_space"] = in_world(source.camera, settings) ? "world" : "view";
   return output;
 }
 
@@ -277,7 +272,7 @@ FrameInputs load_frame(gpu::Recorder& gpu, FrameSource& source, const Settings& 
   FrameInputs inputs = inputs_of(source, planes, frame);
   inputs.margin = margin_of(source.data, source.file_data);
   inputs.albedo_value = settings.albedo_value.value_or(0);
-  if (in_world(source, all.output)) inputs.aov_from_view = transposed(*source.camera.view_from_world);
+  if (in_world(source.camera, all.output)) inputs.aov_from_view = transposed(*source.camera.view_from_world);
   return inputs;
 }
 

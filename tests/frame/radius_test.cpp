@@ -25,23 +25,27 @@ FrameSource frame_at(double median, double fx, bool orthographic = false) {
   return source;
 }
 
+std::optional<double> radius_of(const FrameSource& source) {
+  return proposed_radius(source.camera, source.median_depth);
+}
+
 TEST(Radius, is_a_tenth_of_the_distance_by_one_figure) {
-  EXPECT_EQ(proposed_radius(frame_at(6.2, 100)), 0.6);
-  EXPECT_EQ(proposed_radius(frame_at(843, 100)), 80);
+  EXPECT_EQ(radius_of(frame_at(6.2, 100)), 0.6);
+  EXPECT_EQ(radius_of(frame_at(843, 100)), 80);
 }
 
 TEST(Radius, is_no_more_than_a_quarter_of_what_a_long_lens_shows) {
-  EXPECT_EQ(proposed_radius(frame_at(1000, 10000)), 2);  // 10 units are seen, and the quarter is rounded to even
+  EXPECT_EQ(radius_of(frame_at(1000, 10000)), 2);  // 10 units are seen, and the quarter is rounded to even
 }
 
 TEST(Radius, of_an_orthographic_camera_hangs_on_its_width_and_not_on_its_place) {
-  for (const double distance : {1.0, 1e6}) EXPECT_EQ(proposed_radius(frame_at(distance, 10, true)), 1) << distance;
+  for (const double distance : {1.0, 1e6}) EXPECT_EQ(radius_of(frame_at(distance, 10, true)), 1) << distance;
 }
 
 TEST(Radius, needs_a_surface) {
   FrameSource source = frame_at(1, 100);
   source.median_depth = std::nullopt;
-  EXPECT_EQ(proposed_radius(source), std::nullopt);
+  EXPECT_EQ(radius_of(source), std::nullopt);
 }
 
 TEST(Radius, of_a_settled_frame_follows_its_surfaces_alone) {

@@ -11,7 +11,7 @@
 
 #include "cli/options.h"
 #include "core/base/error.h"
-#include "core/run/check.h"
+#include "core/options/check.h"
 #include "tests/support/program.h"
 
 namespace alcove {

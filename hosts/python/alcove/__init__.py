@@ -1,12 +1,19 @@
 # Alcove for Python: the program's commands as functions.
 # SPDX-License-Identifier: BSD-3-Clause
-"""Ambient occlusion of rendered frames, by the program `alcove`. Pure Python, from 3.9 on; needs nothing but the program.
+"""Ambient occlusion of rendered frames. Pure Python, from 3.9 on.
+
+Files, by the program `alcove`, without any other package:
 
     import alcove
 
     alcove.run("shot.####.exr", output="ao/shot.####.exr", radius=0.5, preset="production", resume=True,
                progress=lambda event: print(event["event"], event.get("frame")))
     alcove.inspect("frame.exr")["camera"]["fx"]
+
+Arrays, by the library libalcove, with numpy:
+
+    ao = alcove.ao(depth, radius=0.5, fov=40)                            # (H, W), float32, 1 = open
+    made = alcove.compute(depth, normal, camera="shot.json", frame=1001, radius=[0.1, 0.5], aov=["ao", "bent-normal"])
 
 Options are those of the command line, by the same names with `_` for `-`: `slices=4` is `--slices 4`; True is a flag that
 is given, False and None are options that are not; a list becomes words with commas, or for `behind` and its like the
@@ -19,10 +26,13 @@ import os
 import shutil
 import subprocess
 import threading
-from typing import Any, Callable, Dict, List, Optional
+from typing import TYPE_CHECKING, Any, Callable, Dict, List, Optional
+
+if TYPE_CHECKING:
+    import numpy
 
 __all__ = ["Error", "FramesFailed", "UsageError", "InputError", "OutputError", "DeviceError", "ComparisonError", "run", "inspect",
-           "compare", "version", "program"]
+           "compare", "version", "program", "ao", "compute"]
 
 # Each value of such an option stands by itself: file names may hold commas.
 _REPEATED = ("behind", "behind_channel")
@@ -175,3 +185,34 @@ def compare(result: str, reference: str, **options: Any) -> Dict[str, Any]:
 def version() -> str:
     """The program's, such as 0.2.0."""
     return _output_of("--version").split()[1]
+
+
+def ao(depth: "numpy.ndarray", normal: Optional["numpy.ndarray"] = None, *, camera: Any = None, radius: Any = None,
+       **options: Any) -> "numpy.ndarray":
+    """The ambient occlusion of a frame in arrays: (H, W), float32, visibility from 0 to 1, 1 = open. As compute(), with this
+    one result."""
+    return compute(depth, normal, camera=camera, radius=radius, aov="ao", **options)["ao"]
+
+
+def compute(depth: Optional["numpy.ndarray"] = None, normal: Optional["numpy.ndarray"] = None, *, camera: Any = None,
+            aov: Any = "ao", frame: int = 0, **options: Any) -> Dict[str, Any]:
+    """Everything that a frame in arrays gives, by the names of `aov`: arrays of (H, W), or (H, W, C) of results with several
+    components, float32. Beside them `stats`: compute_ms (of the device), sky_pixels, repaired_depth, repaired_normals, radius,
+    device.
+
+    depth: (H, W), planar and positive in scene units, upper left pixel first; other kinds by depth_kind. 0, infinite and
+        NaN are sky. float16 and float32 are taken as they lie, whatever their strides; all else becomes float32.
+    normal: (H, W, 3), or (H, W, 2) by normal_encoding; None: reconstructed from depth. Where the camera has a place,
+        normal_space must be "world" or "view", or stand in the camera.
+    camera: a camera file's fields as a dict, or its path, of which `frame` picks the entry; or fov=DEGREES (horizontal),
+        focal=MM and aperture=MM, or ortho_width=UNITS instead.
+    frame: the frame's number, by which noise="animated" changes.
+    position: (H, W, 3) instead of depth. behind: an array of depth behind the first surface, or a list of them.
+    material_ao, matte, occluders, ignore: (H, W). albedo: (H, W, 3), or one number.
+    options: those of `alcove run` that are not about files: radius (required; "auto" proposes one), preset, slices, ...
+
+    Fails with UsageError, InputError or DeviceError. Other threads go on meanwhile; each thread has a device of its own, which
+    is opened by its first call and stays open.
+    """
+    from . import _arrays  # numpy and the library are loaded on first use
+    return _arrays.compute(depth, normal, camera, aov, frame, options)

@@ -1,6 +1,6 @@
 // Finds settings that contradict each other, and names the option that mends each.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/run/check.h"
+#include "core/options/check.h"
 
 #include <algorithm>
 

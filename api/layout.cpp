@@ -1,0 +1,110 @@
+// Walks over strides, and converts half floats.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "api/layout.h"
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+
+#include "core/base/error.h"
+
+namespace alcove {
+namespace {
+
+constexpr int kMostSide = 1 << 24, kMostComponents = 64;
+
+std::size_t bytes_of(alcove_type type) { return type == ALCOVE_HALF ? 2 : 4; }
+
+float float_of(std::uint16_t half) {
+  const int exponent = half >> 10 & 31;
+  const float fraction = float(half & 1023), sign = half >> 15 ? -1.0F : 1.0F;
+  if (exponent == 31) return fraction > 0 ? std::nanf("") : sign * INFINITY;
+  return exponent ? sign * std::ldexp(1024 + fraction, exponent - 25) : sign * std::ldexp(fraction, -24);
+}
+
+std::uint16_t half_of(float value) {
+  const auto sign = std::uint16_t(std::signbit(value) ? 0x8000 : 0);
+  const float size = std::abs(value);
+  if (std::isnan(value)) return std::uint16_t(sign | 0x7e00);
+  if (size >= 65520) return std::uint16_t(sign | 0x7c00);
+  if (size < 0x1p-14F) return std::uint16_t(sign | std::uint16_t(std::nearbyint(size * 0x1p24F)));
+  // To the nearest of ten bits of fraction, to even; a fraction that becomes too large goes over into the exponent.
+  const auto bits = std::bit_cast<std::uint32_t>(size);
+  const std::uint32_t rounded = bits + 0xfff + (bits >> 13 & 1);
+  return std::uint16_t(sign | ((rounded - (112U << 23)) >> 13));
+}
+
+struct Strides {
+  std::ptrdiff_t pixel, row, component;
+};
+
+Strides strides_of(const alcove_layout& layout) {
+  const auto bytes = std::ptrdiff_t(bytes_of(layout.type));
+  Strides strides{layout.pixel_stride, layout.row_stride, layout.component_stride ? layout.component_stride : bytes};
+  if (!strides.pixel) strides.pixel = bytes * layout.components;
+  if (!strides.row) strides.row = strides.pixel * layout.width;
+  return strides;
+}
+
+/// Calls use(place, byte, stride) for each row of each component, in our order.
+template <class Byte, class Use>
+void for_rows(Byte* data, const alcove_layout& layout, const Use& use) {
+  const Strides strides = strides_of(layout);
+  std::size_t place = 0;
+  for (int c = 0; c < layout.components; c++)
+    for (int y = 0; y < layout.height; y++, place += std::size_t(layout.width))
+      use(place, data + c * strides.component + y * strides.row, strides.pixel);
+}
+
+}  // namespace
+
+void check_layout(const std::string& name, const alcove_layout& layout) {
+  if (layout.width < 1 || layout.height < 1 || layout.width > kMostSide || layout.height > kMostSide)
+    fail(ErrorKind::usage, "{}: a plane of {} x {} pixels", name, layout.width, layout.height);
+  if (layout.components < 1 || layout.components > kMostComponents)
+    fail(ErrorKind::usage, "{}: a plane of {} components", name, layout.components);
+  if (layout.type != ALCOVE_FLOAT && layout.type != ALCOVE_HALF)
+    fail(ErrorKind::usage, "{}: a plane of type {}, which is neither ALCOVE_FLOAT nor ALCOVE_HALF", name,
+         int(layout.type));
+}
+
+std::vector<float> planes_from(const void* data, const alcove_layout& layout) {
+  const auto width = std::size_t(layout.width);
+  std::vector<float> planes(width * std::size_t(layout.height) * std::size_t(layout.components));
+  for_rows(static_cast<const std::byte*>(data), layout,
+           [&](std::size_t place, const std::byte* from, std::ptrdiff_t stride) {
+             float* to = &planes[place];
+             if (layout.type == ALCOVE_FLOAT && stride == sizeof(float)) {
+               std::memcpy(to, from, width * sizeof(float));
+             } else if (layout.type == ALCOVE_FLOAT) {
+               for (std::size_t x = 0; x < width; x++, from += stride) std::memcpy(to + x, from, sizeof(float));
+             } else {
+               for (std::size_t x = 0; x < width; x++, from += stride) {
+                 std::uint16_t half = 0;
+                 std::memcpy(&half, from, sizeof half);
+                 to[x] = float_of(half);
+               }
+             }
+           });
+  return planes;
+}
+
+void planes_to(std::span<const float> planes, void* data, const alcove_layout& layout) {
+  const auto width = std::size_t(layout.width);
+  for_rows(static_cast<std::byte*>(data), layout, [&](std::size_t place, std::byte* to, std::ptrdiff_t stride) {
+    const float* from = &planes[place];
+    if (layout.type == ALCOVE_FLOAT && stride == sizeof(float)) {
+      std::memcpy(to, from, width * sizeof(float));
+    } else if (layout.type == ALCOVE_FLOAT) {
+      for (std::size_t x = 0; x < width; x++, to += stride) std::memcpy(to, from + x, sizeof(float));
+    } else {
+      for (std::size_t x = 0; x < width; x++, to += stride) {
+        const std::uint16_t half = half_of(from[x]);
+        std::memcpy(to, &half, sizeof half);
+      }
+    }
+  });
+}
+
+}  // namespace alcove

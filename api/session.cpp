@@ -1,0 +1,357 @@
+// Options, planes and camera -> a reading -> the chain -> results.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "api/session.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "api/layout.h"
+#include "core/base/error.h"
+#include "core/base/text.h"
+#include "core/chain/compute.h"
+#include "core/frame/radius.h"
+#include "core/options/check.h"
+#include "core/options/presets.h"
+
+namespace alcove {
+namespace {
+
+/// The option as it stands in the table, with its two dashes.
+std::string long_name(const std::string& option) { return option.starts_with("--") ? option : "--" + option; }
+
+/// The row of an option that the library takes.
+const OptionRow& row_of(const std::vector<OptionRow>& table, const std::string& option) {
+  std::vector<std::string> names;
+  for (const auto& row : table)
+    if (is_for_library(row)) names.push_back(row.long_name());
+  const auto row = std::ranges::find(table, option, &OptionRow::long_name);
+  if (row == table.end()) fail(ErrorKind::usage, "there is no option {}{}", option, suggestion(option, names));
+  if (!is_for_library(*row))
+    fail(ErrorKind::usage, "{} is of files: the library takes planes, and alcove run takes files", option);
+  return *row;
+}
+
+/// Values in 0 to 1 throughout are 0.5 + 0.5 n, as they are where frames are read from files.
+bool is_unorm(const std::vector<float>& values) {
+  return std::ranges::all_of(values, [](float x) { return !std::isfinite(x) || (x >= 0 && x <= 1); });
+}
+
+template <class T>
+T decided(T said, T by_camera, T otherwise) {
+  return said != T::automatic ? said : by_camera != T::automatic ? by_camera : otherwise;
+}
+
+/// The components that a plane of that name may have.
+struct Components {
+  int least, most;
+};
+constexpr std::pair<const char*, Components> kPlanes[] = {
+    {"depth", {1, 1}},       {"position", {3, 3}}, {"normal", {2, 3}},    {"behind", {1, 1}}, {"material-ao", {1, 1}},
+    {"matte", {1, 1}},       {"occluders", {1, 1}}, {"ignore", {1, 1}},   {"albedo", {3, 3}},
+};
+
+Components components_of(const std::string& name) {
+  std::vector<std::string> names;
+  for (const auto& [known, components] : kPlanes) {
+    if (name == known) return components;
+    names.emplace_back(known);
+  }
+  fail(ErrorKind::usage, "there is no plane {}{}; there is {}", name, suggestion(name, names), list_of(names));
+}
+
+}  // namespace
+
+bool is_for_library(const OptionRow& row) {
+  static const Words kOthers{"--aov",          "--aov-space",  "--ao-channels",  "--multi-bounce", "--hidden",
+                             "--separation",   "--behind-kind", "--device",      "--require-gpu",  "--validate",
+                             "--no-pipeline-cache", "--albedo", "--matte-outside", "--depth-kind", "--near",
+                             "--far",          "--reversed-z", "--device-range", "--log-constant", "--depth-scale",
+                             "--sky",          "--normal-space", "--normal-encoding", "--flip-normal",
+                             "--position-space", "--fov",      "--focal",        "--aperture",     "--ortho-width"};
+  if (row.group == "Estimator") return row.name != "--preset";
+  return std::ranges::find(kOthers, row.long_name()) != kOthers.end();
+}
+
+void Session::set(const std::string& option, const char* value) {
+  const std::string name = long_name(option);
+  RunOptions trial;
+  const auto table = option_table(trial);
+  const OptionRow& row = row_of(table, name);
+  if (value) row.read({value});
+  if (value && name == "--albedo" && !trial.settings.input.albedo_value)
+    fail(ErrorKind::usage, "--albedo: {} is no number from 0 to 1; colours are the plane albedo", said(value));
+  std::erase_if(said_, [&](const Said& one) { return one.option == name; });
+  if (value) said_.push_back({name, {value}});
+}
+
+void Session::preset(const char* name) {
+  if (!name) return presets_.clear();
+  std::vector<std::string> names;
+  for (const auto& [known, text] : preset_texts()) names.push_back(known);
+  const auto known = std::ranges::find(names, lower_case(name), lower_case);
+  if (known == names.end())
+    fail(ErrorKind::usage, "there is no preset {}{}; there is {}", name, suggestion(name, names), list_of(names));
+  presets_.push_back(*known);
+}
+
+Session::Planes& Session::planes_named(const std::string& name) {
+  if (name == "position") return position_;
+  if (name == "ignore") return ignored_;
+  if (name == "material-ao") return planes_[RawPlane::material_ao];
+  for (const auto& row : kRawPlanes)
+    if (std::string(row.name) == "raw " + name) return planes_[row.plane];
+  fail(ErrorKind::usage, "there is no plane {}", name);
+}
+
+void Session::plane(const std::string& name, const void* data, const alcove_layout* layout) {
+  const auto [least, most] = components_of(name);
+  Planes& planes = planes_named(name);
+  if (!data) return planes.clear();
+  if (!layout) fail(ErrorKind::usage, "{}: a plane without a layout", name);
+  check_layout(name, *layout);
+  if (layout->components < least || layout->components > most)
+    fail(ErrorKind::usage, "{}: {} components, where {} belong", name, layout->components,
+         least == most ? fmt::format("{}", least) : fmt::format("{} or {}", least, most));
+  if (name != "behind") planes.clear();
+  if (planes.size() == kMostBehind) fail(ErrorKind::usage, "behind: more than {} planes", kMostBehind);
+  planes.push_back({layout->width, layout->height, layout->type == ALCOVE_HALF, planes_from(data, *layout)});
+}
+
+void Session::camera(const std::array<double, 4>& projection, const double* world_to_camera) {
+  std::vector<double> numbers(projection.begin(), projection.end());
+  if (world_to_camera) numbers.insert(numbers.end(), world_to_camera, world_to_camera + 16);
+  if (!std::ranges::all_of(numbers, [](double x) { return std::isfinite(x); }))
+    fail(ErrorKind::input, "a camera with a number that is infinite or NaN");
+  pinhole_ = numbers;
+  camera_json_.clear();
+}
+
+void Session::camera_json(const char* text) {
+  pinhole_.clear();
+  camera_json_ = text ? text : "";
+}
+
+const Session::Given& Session::depth() const {
+  const Planes& planes = has_position() ? position_ : planes_[RawPlane::depth];
+  if (planes.empty()) fail(ErrorKind::usage, "there is no plane depth, and no position");
+  if (has_position() && !planes_[RawPlane::depth].empty())
+    fail(ErrorKind::usage, "there are depth and position: both say how far away surfaces are");
+  return planes.front();
+}
+
+/// Planes stand where the program has files, so that the table's conditions hold for them.
+Settings Session::settings() const {
+  depth();
+  RunOptions options;
+  InputSettings& input = options.settings.input;
+  options.settings.output.output = "memory";
+  (has_position() ? input.position : input.depth) = "plane";
+  input.normal = planes_[RawPlane::normal].empty() ? "none" : "plane";
+  const auto name = [](const Planes& planes, std::string& path) { path = planes.empty() ? "" : "plane"; };
+  name(planes_[RawPlane::material_ao], input.material_ao);
+  name(planes_[RawPlane::matte], input.matte);
+  name(planes_[RawPlane::occluders], input.occluders);
+  name(ignored_, input.ignore);
+  name(planes_[RawPlane::albedo], input.albedo);
+  for (std::size_t i = 0; i < planes_[RawPlane::behind].size(); i++) input.behind[i] = "plane";
+  const auto table = option_table(options);
+  std::vector<Said> all;
+  for (const auto& preset : presets_)
+    std::ranges::copy(
+        said_by_text(preset, std::ranges::find(preset_texts(), preset, &std::pair<std::string, std::string>::first)->second,
+                     table),
+        std::back_inserter(all));
+  std::ranges::copy(said_, std::back_inserter(all));
+  read_said(options, all);
+  check_settings(options.settings);
+  return options.settings;
+}
+
+Camera Session::camera_by(const Settings& settings, const Window& window, int frame) const {
+  const std::string name = "alcove_camera";
+  if (!camera_json_.empty()) return camera_of(camera_json_, name, window, frame);
+  if (pinhole_.empty() && !names_a_camera(settings.input))
+    fail(ErrorKind::usage,
+         "there is no camera: give one by alcove_camera() or alcove_camera_json(), or set fov (degrees), focal with "
+         "aperture (mm), or ortho-width (scene units)");
+  if (pinhole_.empty()) return camera_for(settings.input, window, 1, frame);
+  const auto& p = pinhole_;
+  std::string text = fmt::format(R"({{"resolution": [{}, {}], "fx": {}, "fy": {}, "cx": {}, "cy": {})", window.width,
+                                 window.height, p[0], p[1], p[2], p[3]);
+  if (p.size() > 4) {
+    const auto row = [&](int i) { return fmt::format("[{}]", fmt::join(p.begin() + i, p.begin() + i + 4, ", ")); };
+    text += fmt::format(R"(, "world_to_camera": [{}, {}, {}, {}])", row(4), row(8), row(12), row(16));
+  }
+  return camera_of(text + "}", name, window, frame);
+}
+
+void Session::read_normals(Reading& reading, const Settings& settings) const {
+  const Planes& normal = planes_[RawPlane::normal];
+  if (normal.empty()) return;
+  reading.normal_space =
+      decided(settings.input.normal_space, reading.camera.normal_space,
+              reading.camera.view_from_world ? NormalSpace::automatic : NormalSpace::view);
+  if (reading.normal_space == NormalSpace::automatic)
+    fail(ErrorKind::usage, "normals: set normal-space to world or view, since planes do not tell");
+  if (reading.normal_space == NormalSpace::world && !reading.camera.view_from_world)
+    fail(ErrorKind::usage, "normals in world space need a camera with world_to_camera");
+  reading.flip_normal = settings.input.flip_normal;
+  reading.normal_encoding =
+      decided(settings.input.normal_encoding, reading.camera.normal_encoding, NormalEncoding::signed_float);
+  const bool is_packed = reading.normal_encoding == NormalEncoding::octahedral ||
+                         reading.normal_encoding == NormalEncoding::spheremap;
+  reading.normal_unorm =
+      reading.normal_encoding == NormalEncoding::unorm || (is_packed && is_unorm(normal.front().values));
+}
+
+Reading Session::reading_by(const Settings& settings, int frame) const {
+  const Given& first = depth();
+  const InputSettings& input = settings.input;
+  Reading reading;
+  reading.data = reading.display = {0, 0, first.width, first.height};
+  reading.camera = camera_by(settings, reading.data, frame);
+  reading.depth_kind =
+      has_position() ? DepthKind::position : decided(input.depth_kind, reading.camera.depth_kind, DepthKind::planar);
+  reading.depth_range = input.depth_range;
+  if (!reading.depth_range.near) reading.depth_range.near = reading.camera.near;
+  if (!reading.depth_range.far) reading.depth_range.far = reading.camera.far;
+  reading.depth_range.reversed |= reading.camera.reversed_z;
+  reading.position_space = decided(input.position_space, PositionSpace::automatic,
+                                   reading.camera.view_from_world ? PositionSpace::automatic : PositionSpace::view);
+  if (has_position() && reading.position_space == PositionSpace::automatic)
+    fail(ErrorKind::usage, "position: set position-space to world or view, since planes do not tell");
+  reading.depth_scale = input.depth_scale;
+  reading.sky = input.sky;
+  reading.depth_is_half = first.is_half;
+  const bool is_of_range = reading.depth_kind == DepthKind::device || reading.depth_kind == DepthKind::normalized ||
+                           reading.depth_kind == DepthKind::log;
+  if (is_of_range) reading.depth_step = step_of(first.values);
+  read_normals(reading, settings);
+  const auto& kinds = input.behind_kinds;
+  for (const auto& plane : planes_[RawPlane::behind]) {
+    const std::size_t number = reading.behind.size();
+    const BehindKind kind = kinds.empty() ? BehindKind::surfaces : kinds[kinds.size() > 1 ? number : 0];
+    reading.behind.push_back({.kind = kind, .is_half = plane.is_half});
+  }
+  reading.matte.outside = input.matte_outside;
+  reading.occluders.ignores = !ignored_.empty();
+  return reading;
+}
+
+void Session::open_device(const DeviceSettings& settings) {
+  const std::string choice = fmt::format("{} {} {} {}", settings.device, settings.require_gpu, settings.validate,
+                                         settings.no_pipeline_cache);
+  if (device_ && choice == device_choice_) return;
+  results_.clear();
+  gpu_.reset();
+  device_.reset();
+  device_ = std::make_unique<gpu::Device>(gpu::DeviceOptions{.choice = settings.device,
+                                                             .require_gpu = settings.require_gpu,
+                                                             .validate = settings.validate,
+                                                             .pipeline_cache = !settings.no_pipeline_cache});
+  gpu_ = std::make_unique<gpu::Recorder>(*device_);
+  device_choice_ = choice;
+  device_name_ = device_->info().name;
+}
+
+void Session::run(int frame) {
+  results_.clear();
+  Settings all = settings();
+  const Reading reading = reading_by(all, frame);
+  if (all.estimator.radius_auto) {
+    all.estimator.radius = proposed_radius(reading.camera, median_depth(reading, depth().values));
+    if (!all.estimator.radius) all.estimator.radius = 1;  // there is no surface, and no AO to compute
+  }
+  if (all.output.aov_space == NormalSpace::world && !reading.camera.view_from_world)
+    fail(ErrorKind::usage, "--aov-space world needs a camera with world_to_camera");
+  if (all.output.multi_bounce && planes_[RawPlane::albedo].empty() && !all.input.albedo_value)
+    fail(ErrorKind::usage, "--multi-bounce needs the plane albedo, or a number for --albedo");
+  open_device(all.device);
+  try {
+    compute(all, reading, frame);
+  } catch (const gpu::DeviceLost&) {
+    gpu_.reset();
+    device_.reset();
+    throw;
+  } catch (...) {
+    gpu_->abandon();
+    throw;
+  }
+}
+
+void Session::compute(const Settings& settings, Reading reading, int frame) {
+  HostPlanes planes;
+  std::vector<float> behind;  // all of them, one behind the other
+  for (const auto& row : kRawPlanes) {
+    const Planes& given = row.plane == RawPlane::occluders && !ignored_.empty() ? ignored_
+                          : row.plane == RawPlane::depth && has_position()      ? position_
+                                                                                : planes_[row.plane];
+    for (const auto& plane : given) {
+      if (plane.width != reading.data.width || plane.height != reading.data.height)
+        fail(ErrorKind::input, "{} has {} x {} pixels, and the depth {} x {}", std::string(row.name).substr(4),
+             plane.width, plane.height, reading.data.width, reading.data.height);
+      planes[row.plane] = plane.values;
+      if (row.plane == RawPlane::behind) behind.insert(behind.end(), plane.values.begin(), plane.values.end());
+    }
+  }
+  planes[RawPlane::behind] = behind;
+  FrameInputs inputs = upload(*gpu_, reading, planes, frame);
+  inputs.albedo_value = settings.input.albedo_value.value_or(0);
+  if (in_world(reading.camera, settings.output)) inputs.aov_from_view = transposed(*reading.camera.view_from_world);
+  const FrameOutputs outputs = run_chain(*gpu_, inputs, settings.estimator, settings.output);
+  gpu_->run();
+  radius_ = settings.estimator.radius;
+  note_results(outputs, settings, reading.data.width, reading.data.height);
+  if (settings.device.validate && device_->validation_messages() > 0)
+    fail(ErrorKind::device, "the validation layer has {} messages", device_->validation_messages());
+}
+
+void Session::note_results(const FrameOutputs& outputs, const Settings& settings, int width, int height) {
+  width_ = width;
+  height_ = height;
+  counts_ = outputs.counts->as<FrameCounts>()[0];
+  compute_ms_ = 0;
+  for (const auto& pass : gpu_->passes()) compute_ms_ += pass.ms;
+  const std::size_t pixels = std::size_t(width) * std::size_t(height);
+  for (const auto& aov : aovs_of(settings.output)) {
+    const gpu::Buffer* planes = outputs.*aov.planes;
+    // The one plane of AO stands for all its channels.
+    const std::size_t there = planes->as<const float>().size() / pixels;
+    results_.push_back({aov.name, std::max(there, channels_of(aov, there).size()), planes});
+  }
+}
+
+std::size_t Session::components(const std::string& aov) const {
+  const auto result = std::ranges::find(results_, aov, &Result::name);
+  return result == results_.end() ? 0 : result->components;
+}
+
+void Session::get(const std::string& aov, void* data, const alcove_layout* layout) const {
+  const auto result = std::ranges::find(results_, aov, &Result::name);
+  if (result == results_.end())
+    fail(ErrorKind::usage, "{}: {}", aov,
+         results_.empty() ? "nothing was computed; alcove_run() does" : "the option aov did not name it");
+  if (!data || !layout) fail(ErrorKind::usage, "{}: there is no place for it", aov);
+  check_layout(aov, *layout);
+  if (layout->width != width_ || layout->height != height_ || std::size_t(layout->components) != result->components)
+    fail(ErrorKind::usage, "{}: it has {} x {} pixels of {} components, and the place for it {} x {} of {}", aov, width_,
+         height_, result->components, layout->width, layout->height, layout->components);
+  const auto there = result->planes->as<const float>();
+  std::vector<float> repeated;
+  const std::size_t wanted = result->components * std::size_t(width_) * std::size_t(height_);
+  while (there.size() < wanted && repeated.size() < wanted) repeated.insert(repeated.end(), there.begin(), there.end());
+  planes_to(repeated.empty() ? there : repeated, data, *layout);
+}
+
+double Session::number(const std::string& name) const {
+  if (results_.empty()) return NAN;
+  if (name == "compute-ms") return compute_ms_;
+  if (name == "sky-pixels") return counts_.sky;
+  if (name == "repaired-depth") return counts_.repaired_depth;
+  if (name == "repaired-normals") return counts_.repaired_normals;
+  return name == "radius" ? radius_.value_or(NAN) : NAN;
+}
+
+}  // namespace alcove

@@ -1,0 +1,226 @@
+# Arrays through the library give the bits of the program's own files; what is wrong is an exception; and what the library shows and loads.
+# Takes the program, the library, the project's folder, a frame and its camera.
+# SPDX-License-Identifier: BSD-3-Clause
+import json
+import os
+import pathlib
+import re
+import struct
+import subprocess
+import sys
+import tempfile
+import threading
+import unittest
+
+import numpy
+
+PROGRAM, LIBRARY, PROJECT, FRAME, CAMERA = (os.path.abspath(word) for word in sys.argv[1:6])
+sys.dont_write_bytecode = True
+sys.path.insert(0, os.path.join(PROJECT, "hosts/python"))
+os.environ["ALCOVE"] = PROGRAM
+
+import alcove  # noqa: E402
+
+TYPES = {1: numpy.dtype("<f2"), 2: numpy.dtype("<f4")}
+
+
+def write_exr(path, planes):
+    """Planes by their channels' names, as an EXR without compression."""
+    height, width = next(iter(planes.values())).shape
+    names = sorted(planes)
+    channels = b"".join(name.encode() + b"\0" + struct.pack("<iiii", 1 if planes[name].dtype == numpy.float16 else 2, 0, 1, 1) for name in names)
+    window = struct.pack("<4i", 0, 0, width - 1, height - 1)
+    head = b"\x76\x2f\x31\x01\x02\0\0\0"
+    for name, kind, value in (("channels", "chlist", channels + b"\0"), ("compression", "compression", b"\0"), ("dataWindow", "box2i", window),
+                              ("displayWindow", "box2i", window), ("lineOrder", "lineOrder", b"\0"), ("pixelAspectRatio", "float", struct.pack("<f", 1)),
+                              ("screenWindowCenter", "v2f", struct.pack("<2f", 0, 0)), ("screenWindowWidth", "float", struct.pack("<f", 1))):
+        head += name.encode() + b"\0" + kind.encode() + b"\0" + struct.pack("<i", len(value)) + value
+    head += b"\0"
+    lines = []
+    for y in range(height):
+        data = b"".join(planes[name][y].tobytes() for name in names)
+        lines.append(struct.pack("<ii", y, len(data)) + data)
+    offsets, at = [], len(head) + 8 * height
+    for line in lines:
+        offsets.append(at)
+        at += len(line)
+    pathlib.Path(path).write_bytes(head + struct.pack(f"<{height}Q", *offsets) + b"".join(lines))
+
+
+def read_exr(path):
+    """The planes of an EXR without compression, by their channels' names."""
+    data = pathlib.Path(path).read_bytes()
+    fields, at = {}, 8
+    while data[at]:
+        words = []
+        for _ in range(2):
+            end = data.index(b"\0", at)
+            words.append(data[at:end].decode())
+            at = end + 1
+        size = struct.unpack_from("<i", data, at)[0]
+        fields[words[0]] = data[at + 4:at + 4 + size]
+        at += 4 + size
+    left, top, right, bottom = struct.unpack("<4i", fields["dataWindow"])
+    width, height = right - left + 1, bottom - top + 1
+    channels = [(name.decode(), TYPES[kind]) for name, kind in
+                ((match.group(1), struct.unpack("<i", match.group(2))[0]) for match in re.finditer(rb"([^\0]+)\0(....)....\x01\0\0\0\x01\0\0\0", fields["channels"], re.S))]
+    planes = {name: numpy.empty((height, width), kind) for name, kind in channels}
+    for offset in struct.unpack_from(f"<{height}Q", data, at + 1):
+        y = struct.unpack_from("<i", data, offset)[0] - top
+        place = offset + 8
+        for name, kind in channels:
+            planes[name][y] = numpy.frombuffer(data, kind, width, place)
+            place += kind.itemsize * width
+    return planes
+
+
+class Arrays(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.kept = tempfile.TemporaryDirectory(prefix="alcove-arrays-")
+        cls.folder = pathlib.Path(cls.kept.name)
+        # The shipped frame as the program reads it.
+        planes = cls.program(FRAME, "--camera", CAMERA, "--aov", "depth,normal", "--aov-space", "world")
+        cls.depth = planes["Z"]
+        cls.normal = numpy.stack([planes["normal." + axis] for axis in "XYZ"], axis=-1)
+        cls.frame = cls.folder / "shot.0007.exr"
+        write_exr(cls.frame, {"Z": cls.depth, **{"N." + axis: cls.normal[:, :, i] for i, axis in enumerate("XYZ")}})
+        with open(CAMERA, encoding="utf-8") as file:
+            cls.camera = {**json.load(file), "depth": "planar", "normal_space": "world"}
+        cls.camera_file = cls.folder / "camera.json"
+        cls.camera_file.write_text(json.dumps(cls.camera), encoding="utf-8")
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.kept.cleanup()
+
+    @classmethod
+    def program(cls, *words):
+        made = cls.folder / "made.exr"
+        done = subprocess.run([PROGRAM, "run", *map(str, words), "-o", str(made), "--type", "float", "--compression", "none", "-q"],
+                              capture_output=True, text=True, check=False)
+        assert done.returncode == 0, done.stderr
+        return read_exr(made)
+
+    def same(self, array, plane):
+        self.assertEqual((array.dtype, array.shape), (numpy.float32, plane.shape))
+        numpy.testing.assert_array_equal(array.view(numpy.uint32), numpy.ascontiguousarray(plane).view(numpy.uint32))
+
+    def test_ao_has_the_bits_of_the_program(self):
+        theirs = self.program(self.frame, "--camera", self.camera_file, "--radius", "0.35")["Y"]
+        ours = alcove.ao(self.depth, self.normal, camera=self.camera, radius=0.35)
+        self.same(ours, theirs)
+        self.assertLess(ours.min(), 0.5)
+        self.same(alcove.ao(self.depth, self.normal, camera=str(self.camera_file), radius=0.35), theirs)
+
+    def test_depth_alone_and_a_field_of_view_are_enough(self):
+        flat = self.folder / "flat.exr"
+        write_exr(flat, {"Z": self.depth})
+        theirs = self.program(flat, "--fov", "65", "--radius", "0.35")["Y"]
+        self.same(alcove.ao(self.depth, radius=0.35, fov=65), theirs)
+
+    def test_arrays_may_lie_anyhow(self):
+        wanted = alcove.ao(self.depth, self.normal, camera=self.camera, radius=0.35)
+        together = numpy.zeros((*self.depth.shape, 7), numpy.float32)
+        together[:, :, 2:5], together[:, :, 6] = self.normal, self.depth
+        flipped = numpy.flipud(together).copy()[::-1]
+        for depth, normal in ((together[:, :, 6], together[:, :, 2:5]), (flipped[:, :, 6], flipped[:, :, 2:5]),
+                              (self.depth.astype(numpy.float64), self.normal.astype(">f4")), (self.depth[:, :, None], numpy.asfortranarray(self.normal)),
+                              (self.depth.tolist(), self.normal)):
+            self.same(alcove.ao(depth, normal, camera=self.camera, radius=0.35), wanted)
+
+    def test_half_floats_are_known_as_such(self):
+        half = self.folder / "half.exr"
+        write_exr(half, {"Z": self.depth.astype(numpy.float16), **{"N." + axis: self.normal[:, :, i] for i, axis in enumerate("XYZ")}})
+        theirs = self.program(half, "--camera", self.camera_file, "--radius", "0.35")["Y"]
+        self.same(alcove.ao(self.depth.astype(numpy.float16), self.normal, camera=self.camera, radius=0.35), theirs)
+
+    def test_many_results_have_the_bits_of_the_program(self):
+        names = ["ao", "bent-normal", "ao-scales", "confidence", "specular-occlusion", "normal", "depth"]
+        theirs = self.program(self.frame, "--camera", self.camera_file, "--radius", "0.1,0.35", "--preset", "production", "--slices", "3", "--aov", ",".join(names))
+        made = alcove.compute(self.depth, self.normal, camera=self.camera, radius=[0.1, 0.35], preset="production", slices=3, aov=names)
+        for name, channels in (("ao", ["Y"]), ("bent-normal", ["bent.X", "bent.Y", "bent.Z"]), ("ao-scales", ["scale1.Y", "scale2.Y"]), ("confidence", ["confidence.Y"]),
+                               ("specular-occlusion", ["specular.Y"]), ("normal", ["normal.X", "normal.Y", "normal.Z"]), ("depth", ["Z"])):
+            planes = [theirs[channel] for channel in channels]
+            self.same(made[name], planes[0] if len(planes) == 1 else numpy.stack(planes, axis=-1))
+        self.assertGreater(made["stats"]["compute_ms"], 0)
+        self.assertTrue(made["stats"]["device"])
+
+    def test_what_lies_behind_counts(self):
+        behind = self.folder / "behind.exr"
+        deeper = self.depth * numpy.float32(1.25)
+        write_exr(behind, {"Z": deeper})
+        theirs = self.program(self.frame, "--camera", self.camera_file, "--radius", "0.35", "--behind", behind, "--behind-kind", "backs")["Y"]
+        self.same(alcove.ao(self.depth, self.normal, camera=self.camera, radius=0.35, behind=deeper, behind_kind="backs"), theirs)
+        self.assertTrue((theirs != alcove.ao(self.depth, self.normal, camera=self.camera, radius=0.35)).any())
+
+    def test_positions_and_animated_noise(self):
+        height, width = self.depth.shape
+        y, x = numpy.mgrid[0:height, 0:width] + 0.5
+        view = numpy.stack([(x - self.camera["cx"]) / self.camera["fx"] * self.depth, (self.camera["cy"] - y) / self.camera["fy"] * self.depth,
+                            -self.depth], axis=-1)
+        matrix = numpy.array(self.camera["world_to_camera"])
+        world = ((view - matrix[:3, 3]) @ matrix[:3, :3]).astype(numpy.float32)
+        ours = alcove.ao(None, self.normal, camera=self.camera, radius=0.35, position=world, position_space="world")
+        by_depth = alcove.ao(self.depth, self.normal, camera=self.camera, radius=0.35)
+        self.assertLess(numpy.sqrt(numpy.mean((ours - by_depth)**2)), 2e-3)
+        theirs = self.program(self.folder / "shot.####.exr", "--frames", "7", "--camera", self.camera_file, "--radius", "0.35", "--noise", "animated")["Y"]
+        self.same(alcove.ao(self.depth, self.normal, camera=self.camera, radius=0.35, noise="animated", frame=7), theirs)
+        self.assertTrue((alcove.ao(self.depth, self.normal, camera=self.camera, radius=0.35, noise="animated", frame=8) != theirs).any())
+
+    def test_nothing_stays_of_a_call_before(self):
+        wanted = alcove.ao(self.depth, radius=0.35, fov=65)
+        alcove.compute(self.depth, self.normal, camera=self.camera, radius=0.2, preset="draft", slices=4, material_ao=numpy.full_like(self.depth, 0.5),
+                       behind=[self.depth * 2], aov=["ao", "depth"])
+        self.same(alcove.ao(self.depth, radius=0.35, fov=65), wanted)
+        with self.assertRaises(alcove.UsageError):
+            alcove.ao(self.depth, self.normal, camera=self.camera, radius=0.2, matte=self.depth, steps="many")
+        self.same(alcove.ao(self.depth, radius=0.35, fov=65), wanted)
+
+    def test_what_is_wrong_is_an_exception(self):
+        good = {"radius": 0.35, "fov": 65}
+        for kind, sentence, arguments in (
+                (alcove.UsageError, "--radius", {"fov": 65}), (alcove.UsageError, "no camera", {"radius": 0.35}),
+                (alcove.UsageError, "did you mean --slices", {**good, "slizes": 3}), (alcove.UsageError, "out of range", {**good, "slices": 100}),
+                (alcove.UsageError, "is of files", {**good, "beauty": "b.exr"}), (alcove.UsageError, "there is no preset", {**good, "preset": "nothing"}),
+                (alcove.UsageError, "there is no AOV", {**good, "aov": "oa"}), (alcove.InputError, "camera.json", {"radius": 1, "camera": "/nowhere/camera.json"}),
+                (alcove.InputError, "fx", {"radius": 1, "camera": {"fy": 1}}), (alcove.UsageError, "normal", {**good, "normal": self.depth}),
+                (alcove.InputError, "has 4 x 4 pixels", {**good, "matte": numpy.ones((4, 4))}), (alcove.UsageError, "complex", {**good, "matte": self.depth + 1j}),
+                (alcove.DeviceError, "no-such", {**good, "device": "no-such"})):
+            with self.subTest(sentence=sentence), self.assertRaisesRegex(kind, sentence):
+                alcove.compute(self.depth, **arguments)
+        with self.assertRaisesRegex(alcove.UsageError, "no depth"):
+            alcove.compute(None, **good)
+        with self.assertRaisesRegex(alcove.UsageError, r"\(3,\)"):
+            alcove.ao([1, 2, 3], **good)
+
+    def test_threads_have_devices_of_their_own(self):
+        wanted = alcove.ao(self.depth, radius=0.35, fov=65)
+        found = []
+        threads = [threading.Thread(target=lambda: found.append(alcove.ao(self.depth, radius=0.35, fov=65))) for _ in range(3)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        self.assertEqual(len(found), 3)
+        for array in found:
+            self.same(array, wanted)
+
+    def test_a_library_that_is_not_there_is_told(self):
+        code = "import alcove, numpy; alcove.ao(numpy.ones((4, 4)), radius=1, fov=60)"
+        done = subprocess.run([sys.executable, "-B", "-c", code], capture_output=True, text=True, check=False,
+                              env={**os.environ, "ALCOVE_LIBRARY": "/nowhere/libalcove.so", "PYTHONPATH": os.path.join(PROJECT, "hosts/python")})
+        self.assertRegex(done.stderr, "DeviceError.*/nowhere/libalcove.so.*ALCOVE_LIBRARY")
+
+    def test_the_library_shows_its_header_and_loads_no_file_formats(self):
+        shown = subprocess.run(["nm", "-D", "--defined-only", LIBRARY], capture_output=True, text=True, check=True).stdout
+        names = {line.split()[2].split("@")[0] for line in shown.splitlines()} - {"ALCOVE_0"}
+        header = (pathlib.Path(PROJECT) / "api/alcove/alcove.h").read_text(encoding="utf-8")
+        self.assertEqual(names, set(re.findall(r"^ALCOVE_API .*?\b(alcove_\w+)\(", header, re.M)))
+        needed = subprocess.run(["readelf", "-d", LIBRARY], capture_output=True, text=True, check=True).stdout
+        self.assertIn("[libvulkan.so.1]", needed)
+        self.assertIn("[libalcove.so.0]", needed)
+        self.assertNotRegex(needed.lower(), "openexr|imath|opencolorio|openimageio|png")
+
+
+unittest.main(argv=sys.argv[:1])
