@@ -1,0 +1,7 @@
+# Puts Alcove into Nuke's menu. Who has a menu.py adds these lines to it.
+# SPDX-License-Identifier: BSD-3-Clause
+import nuke
+
+import alcove_nuke
+
+nuke.menu("Nuke").addMenu("Alcove").addCommand("Ambient Occlusion...", alcove_nuke.compute)
