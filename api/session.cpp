@@ -48,8 +48,8 @@ struct Components {
   int least, most;
 };
 constexpr std::pair<const char*, Components> kPlanes[] = {
-    {"depth", {1, 1}},       {"position", {3, 3}}, {"normal", {2, 3}},    {"behind", {1, 1}}, {"material-ao", {1, 1}},
-    {"matte", {1, 1}},       {"occluders", {1, 1}}, {"ignore", {1, 1}},   {"albedo", {3, 3}},
+    {"depth", {1, 1}}, {"position", {3, 3}},  {"normal", {2, 3}}, {"behind", {1, 1}}, {"material-ao", {1, 1}},
+    {"matte", {1, 1}}, {"occluders", {1, 1}}, {"ignore", {1, 1}}, {"albedo", {3, 3}},
 };
 
 Components components_of(const std::string& name) {
@@ -64,12 +64,35 @@ Components components_of(const std::string& name) {
 }  // namespace
 
 bool is_for_library(const OptionRow& row) {
-  static const Words kOthers{"--aov",          "--aov-space",  "--ao-channels",  "--multi-bounce", "--hidden",
-                             "--separation",   "--behind-kind", "--device",      "--require-gpu",  "--validate",
-                             "--no-pipeline-cache", "--albedo", "--matte-outside", "--depth-kind", "--near",
-                             "--far",          "--reversed-z", "--device-range", "--log-constant", "--depth-scale",
-                             "--sky",          "--normal-space", "--normal-encoding", "--flip-normal",
-                             "--position-space", "--fov",      "--focal",        "--aperture",     "--ortho-width"};
+  static const Words kOthers{"--aov",
+                             "--aov-space",
+                             "--ao-channels",
+                             "--multi-bounce",
+                             "--hidden",
+                             "--separation",
+                             "--behind-kind",
+                             "--device",
+                             "--require-gpu",
+                             "--validate",
+                             "--no-pipeline-cache",
+                             "--albedo",
+                             "--matte-outside",
+                             "--depth-kind",
+                             "--near",
+                             "--far",
+                             "--reversed-z",
+                             "--device-range",
+                             "--log-constant",
+                             "--depth-scale",
+                             "--sky",
+                             "--normal-space",
+                             "--normal-encoding",
+                             "--flip-normal",
+                             "--position-space",
+                             "--fov",
+                             "--focal",
+                             "--aperture",
+                             "--ortho-width"};
   if (row.group == "Estimator") return row.name != "--preset";
   return std::ranges::find(kOthers, row.long_name()) != kOthers.end();
 }
@@ -160,7 +183,8 @@ Settings Session::settings() const {
   std::vector<Said> all;
   for (const auto& preset : presets_)
     std::ranges::copy(
-        said_by_text(preset, std::ranges::find(preset_texts(), preset, &std::pair<std::string, std::string>::first)->second,
+        said_by_text(preset,
+                     std::ranges::find(preset_texts(), preset, &std::pair<std::string, std::string>::first)->second,
                      table),
         std::back_inserter(all));
   std::ranges::copy(said_, std::back_inserter(all));
@@ -190,9 +214,8 @@ Camera Session::camera_by(const Settings& settings, const Window& window, int fr
 void Session::read_normals(Reading& reading, const Settings& settings) const {
   const Planes& normal = planes_[RawPlane::normal];
   if (normal.empty()) return;
-  reading.normal_space =
-      decided(settings.input.normal_space, reading.camera.normal_space,
-              reading.camera.view_from_world ? NormalSpace::automatic : NormalSpace::view);
+  reading.normal_space = decided(settings.input.normal_space, reading.camera.normal_space,
+                                 reading.camera.view_from_world ? NormalSpace::automatic : NormalSpace::view);
   if (reading.normal_space == NormalSpace::automatic)
     fail(ErrorKind::usage, "normals: set normal-space to world or view, since planes do not tell");
   if (reading.normal_space == NormalSpace::world && !reading.camera.view_from_world)
@@ -200,8 +223,8 @@ void Session::read_normals(Reading& reading, const Settings& settings) const {
   reading.flip_normal = settings.input.flip_normal;
   reading.normal_encoding =
       decided(settings.input.normal_encoding, reading.camera.normal_encoding, NormalEncoding::signed_float);
-  const bool is_packed = reading.normal_encoding == NormalEncoding::octahedral ||
-                         reading.normal_encoding == NormalEncoding::spheremap;
+  const bool is_packed =
+      reading.normal_encoding == NormalEncoding::octahedral || reading.normal_encoding == NormalEncoding::spheremap;
   reading.normal_unorm =
       reading.normal_encoding == NormalEncoding::unorm || (is_packed && is_unorm(normal.front().values));
 }
@@ -241,8 +264,8 @@ Reading Session::reading_by(const Settings& settings, int frame) const {
 }
 
 void Session::open_device(const DeviceSettings& settings) {
-  const std::string choice = fmt::format("{} {} {} {}", settings.device, settings.require_gpu, settings.validate,
-                                         settings.no_pipeline_cache);
+  const std::string choice =
+      fmt::format("{} {} {} {}", settings.device, settings.require_gpu, settings.validate, settings.no_pipeline_cache);
   if (device_ && choice == device_choice_) return;
   results_.clear();
   gpu_.reset();
@@ -336,8 +359,8 @@ void Session::get(const std::string& aov, void* data, const alcove_layout* layou
   if (!data || !layout) fail(ErrorKind::usage, "{}: there is no place for it", aov);
   check_layout(aov, *layout);
   if (layout->width != width_ || layout->height != height_ || std::size_t(layout->components) != result->components)
-    fail(ErrorKind::usage, "{}: it has {} x {} pixels of {} components, and the place for it {} x {} of {}", aov, width_,
-         height_, result->components, layout->width, layout->height, layout->components);
+    fail(ErrorKind::usage, "{}: it has {} x {} pixels of {} components, and the place for it {} x {} of {}", aov,
+         width_, height_, result->components, layout->width, layout->height, layout->components);
   const auto there = result->planes->as<const float>();
   std::vector<float> repeated;
   const std::size_t wanted = result->components * std::size_t(width_) * std::size_t(height_);

@@ -22,5 +22,5 @@ while read -r file; do
     text=$(formatted "$file")
     printf '%s\n' "$text" | cmp -s - "$file" || printf '%s\n' "$text" >"$file"
   fi
-done < <(git ls-files 'core/*.cpp' 'core/*.h' 'cli/*.cpp' 'cli/*.h' 'kernels/*.h' 'kernels/*.comp' 'kernels/*.glsl' 'tests/*.cpp' 'tests/*.h')
+done < <(git ls-files 'core/*.cpp' 'core/*.h' 'api/*.cpp' 'api/*.h' 'cli/*.cpp' 'cli/*.h' 'kernels/*.h' 'kernels/*.comp' 'kernels/*.glsl' 'tests/*.cpp' 'tests/*.h')
 exit "$changed"

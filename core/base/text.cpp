@@ -5,10 +5,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
-#include <limits>
 #include <array>
 #include <cctype>
+#include <charconv>
+#include <limits>
 #include <numeric>
 
 namespace alcove {
@@ -174,7 +174,8 @@ std::optional<double> number_of(std::string_view text) {
   if (error != std::errc::result_out_of_range) return value;
   // It leaves the value as it was, be it too large or too near to 0.
   const std::size_t exponent = text.find_first_of("eE");
-  const bool is_small = exponent != text.npos ? text[exponent + 1] == '-' : text.find_first_of("123456789") > text.find('.');
+  const bool is_small =
+      exponent != text.npos ? text[exponent + 1] == '-' : text.find_first_of("123456789") > text.find('.');
   const double size = is_small ? 0 : std::numeric_limits<double>::infinity();
   return text.starts_with('-') ? -size : size;
 }

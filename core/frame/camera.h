@@ -47,8 +47,8 @@ struct NoCamera : Error {
   const std::string why;
 };
 
-/// A perspective camera whose optical axis is in the middle. A pixel that is `pixel_aspect` times as wide as high covers
-/// that much more in x.
+/// A perspective camera whose optical axis is in the middle. A pixel that is `pixel_aspect` times as wide as high
+/// covers that much more in x.
 Camera centred(const Window& display, double fx, double pixel_aspect);
 
 /// Reads a camera JSON file, whose keys docs/inputs.md lists; if the file lists `frames`, the one of that number, and

@@ -1,4 +1,4 @@
-// The C library gives the chain's bits however planes lie, takes and refuses what its header says, and keeps handles apart.
+// The C library gives the chain's bits however planes lie, does what its header says, and keeps handles apart.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -35,9 +35,9 @@ alcove_layout packed(int width, int height, int components = 1) {
 }
 
 #define EXPECT_OK(handle, call) EXPECT_EQ(call, ALCOVE_OK) << alcove_error((handle).get())
-#define EXPECT_REFUSED(handle, call, code, sentence) \
-  do {                                               \
-    EXPECT_EQ(call, code);                           \
+#define EXPECT_REFUSED(handle, call, code, sentence)                \
+  do {                                                              \
+    EXPECT_EQ(call, code);                                          \
     EXPECT_THAT(alcove_error((handle).get()), HasSubstr(sentence)); \
   } while (false)
 
@@ -157,9 +157,9 @@ TEST_F(Library, rounds_to_the_nearest_half_float_to_even) {
   const Handle handle(alcove_new());
   EXPECT_OK(handle, alcove_set(handle.get(), "aov", "depth"));
   EXPECT_OK(handle, alcove_set(handle.get(), "fov", "60"));
-  const std::vector<std::pair<float, std::uint16_t>> cases{{1 + 0x1p-11F, 0x3c00},   {1 + 0x3p-11F, 0x3c02}, {1 + 0x1.8p-11F, 0x3c01},
-                                                           {2 - 0x1p-12F, 0x4000},   {0x1p-25F, 0},          {0x1.8p-24F, 2},
-                                                           {0x1p-14F - 0x1p-26F, 0x400}, {70000, 0x7c00}};
+  const std::vector<std::pair<float, std::uint16_t>> cases{
+      {1 + 0x1p-11F, 0x3c00}, {1 + 0x3p-11F, 0x3c02}, {1 + 0x1.8p-11F, 0x3c01},     {2 - 0x1p-12F, 0x4000},
+      {0x1p-25F, 0},          {0x1.8p-24F, 2},        {0x1p-14F - 0x1p-26F, 0x400}, {70000, 0x7c00}};
   std::vector<float> depth;
   for (const auto& [value, half] : cases) depth.push_back(value);
   std::vector<std::uint16_t> back(depth.size());
@@ -312,7 +312,8 @@ TEST_F(Library, refuses_what_makes_no_sense) {
   EXPECT_REFUSED(handle, alcove_plane(handle.get(), nullptr, values.data(), &one), ALCOVE_USAGE, "null plane");
   EXPECT_REFUSED(handle, alcove_plane(handle.get(), "depth", values.data(), nullptr), ALCOVE_USAGE, "layout");
   EXPECT_REFUSED(handle, alcove_plane(handle.get(), "depth", values.data(), &three), ALCOVE_USAGE, "3 components");
-  for (const alcove_layout& wrong : {packed(0, 4), packed(8, -1), packed(8, 4, 0), alcove_layout{8, 4, 1, alcove_type(7), 0, 0, 0}})
+  for (const alcove_layout& wrong :
+       {packed(0, 4), packed(8, -1), packed(8, 4, 0), alcove_layout{8, 4, 1, alcove_type(7), 0, 0, 0}})
     EXPECT_REFUSED(handle, alcove_plane(handle.get(), "depth", values.data(), &wrong), ALCOVE_USAGE, "a plane of");
   EXPECT_OK(handle, alcove_plane(handle.get(), "depth", values.data(), &one));
   EXPECT_REFUSED(handle, alcove_run(handle.get(), 0), ALCOVE_USAGE, "radius");
@@ -323,7 +324,8 @@ TEST_F(Library, refuses_what_makes_no_sense) {
   EXPECT_REFUSED(handle, alcove_run(handle.get(), 0), ALCOVE_USAGE, "--far");
   EXPECT_OK(handle, alcove_set(handle.get(), "depth-kind", "planar"));
   EXPECT_OK(handle, alcove_plane(handle.get(), "material-ao", values.data(), &other));
-  EXPECT_REFUSED(handle, alcove_run(handle.get(), 0), ALCOVE_INPUT, "material ao has 4 x 8 pixels, and the depth 8 x 4");
+  EXPECT_REFUSED(handle, alcove_run(handle.get(), 0), ALCOVE_INPUT,
+                 "material ao has 4 x 8 pixels, and the depth 8 x 4");
   EXPECT_OK(handle, alcove_plane(handle.get(), "material-ao", nullptr, nullptr));
   EXPECT_OK(handle, alcove_set(handle.get(), "device", "nothing of the kind"));
   EXPECT_REFUSED(handle, alcove_run(handle.get(), 0), ALCOVE_DEVICE, "nothing of the kind");
@@ -357,17 +359,81 @@ TEST_F(Library, repairs_and_counts_what_is_no_depth) {
 
 TEST_F(Library, takes_or_refuses_every_option_of_the_table) {
   // Of files, frames, reports: whoever adds an option decides whether it is one of these.
-  const std::set<std::string> of_files{
-      "--preset", "--depth", "--normal", "--position", "--beauty", "--material-ao", "--matte", "--occluders", "--ignore",
-      "--objects", "--object-channel", "--depth-channel", "--normal-channels", "--position-channels", "--beauty-channels",
-      "--ambient", "--material-ao-channel", "--albedo-channels", "--matte-channel", "--matte-object", "--layer", "--view",
-      "--supersampling", "--roi", "--source", "--strict", "--camera", "--chan-rotation", "--behind", "--behind-channel",
-      "--deep", "--deep-opacity", "--other-views", "--around", "--motion", "--motion-channels", "--motion-kind", "--frames",
-      "--output-offset", "--chunk", "--missing", "--keep-going", "--warnings-as-errors", "--resume", "--overwrite",
-      "--dry-run", "--output", "--ao-name", "--filter", "--filter-width", "--composite", "--fog-density", "--gain", "--tint",
-      "--mix", "--composite-layers", "--composite-compression", "--append-ao", "--preview", "--debug", "--type",
-      "--compression", "--no-mkdir", "--ocio", "--display", "--view-transform", "--preview-style", "--memory", "--threads",
-      "--stats", "--progress", "--log-json", "--verbose", "--quiet", "--print-config"};
+  const std::set<std::string> of_files{"--preset",
+                                       "--depth",
+                                       "--normal",
+                                       "--position",
+                                       "--beauty",
+                                       "--material-ao",
+                                       "--matte",
+                                       "--occluders",
+                                       "--ignore",
+                                       "--objects",
+                                       "--object-channel",
+                                       "--depth-channel",
+                                       "--normal-channels",
+                                       "--position-channels",
+                                       "--beauty-channels",
+                                       "--ambient",
+                                       "--material-ao-channel",
+                                       "--albedo-channels",
+                                       "--matte-channel",
+                                       "--matte-object",
+                                       "--layer",
+                                       "--view",
+                                       "--supersampling",
+                                       "--roi",
+                                       "--source",
+                                       "--strict",
+                                       "--camera",
+                                       "--chan-rotation",
+                                       "--behind",
+                                       "--behind-channel",
+                                       "--deep",
+                                       "--deep-opacity",
+                                       "--other-views",
+                                       "--around",
+                                       "--motion",
+                                       "--motion-channels",
+                                       "--motion-kind",
+                                       "--frames",
+                                       "--output-offset",
+                                       "--chunk",
+                                       "--missing",
+                                       "--keep-going",
+                                       "--warnings-as-errors",
+                                       "--resume",
+                                       "--overwrite",
+                                       "--dry-run",
+                                       "--output",
+                                       "--ao-name",
+                                       "--filter",
+                                       "--filter-width",
+                                       "--composite",
+                                       "--fog-density",
+                                       "--gain",
+                                       "--tint",
+                                       "--mix",
+                                       "--composite-layers",
+                                       "--composite-compression",
+                                       "--append-ao",
+                                       "--preview",
+                                       "--debug",
+                                       "--type",
+                                       "--compression",
+                                       "--no-mkdir",
+                                       "--ocio",
+                                       "--display",
+                                       "--view-transform",
+                                       "--preview-style",
+                                       "--memory",
+                                       "--threads",
+                                       "--stats",
+                                       "--progress",
+                                       "--log-json",
+                                       "--verbose",
+                                       "--quiet",
+                                       "--print-config"};
   RunOptions options;
   std::set<std::string> refused;
   for (const auto& row : option_table(options)) {

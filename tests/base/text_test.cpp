@@ -5,6 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
@@ -134,6 +136,17 @@ TEST(Text, at_most_so_many_names_are_suggested) {
 TEST(Text, a_suggestion_is_a_question) {
   EXPECT_EQ(suggestion("radis", Names{"radius"}), " (did you mean radius?)");
   EXPECT_EQ(suggestion("radis", Names{"radius", "radios"}), " (did you mean radius or radios?)");
+}
+
+TEST(Numbers, are_read_whole_and_with_a_point) {
+  const std::vector<std::pair<const char*, double>> known{
+      {"0.5", 0.5},   {"-3", -3},   {"+2", 2},     {".25", 0.25},     {"4.", 4},
+      {"1e-3", 1e-3}, {"2E2", 200}, {"1e-999", 0}, {"inf", INFINITY}, {"-1e999", -INFINITY}};
+  for (const auto& [text, value] : known) EXPECT_EQ(number_of(text), value) << text;
+  EXPECT_EQ(number_of(std::string(400, '9')), INFINITY);
+  EXPECT_EQ(number_of("0." + std::string(400, '0') + "1"), 0);
+  for (const char* text : {"", "x", "1x", "0,5", "1 2", "+-1", "--1", "1e", "."})
+    EXPECT_EQ(number_of(text), std::nullopt) << text;
 }
 
 }  // namespace
