@@ -30,9 +30,9 @@ void keep_error(alcove_session& handle, const char* text) noexcept {
 template <class Call>
 alcove_code answer(alcove_session* handle, const Call& call) noexcept {
   if (!handle) return ALCOVE_USAGE;
-  handle->error.clear();
   try {
     call(handle->session);
+    handle->error.clear();
     return ALCOVE_OK;
   } catch (const alcove::Error& error) {
     keep_error(*handle, error.what());
@@ -104,6 +104,8 @@ double alcove_number(const alcove_session* handle, const char* name) {
 }
 
 const char* alcove_device(const alcove_session* handle) { return handle ? handle->session.device().c_str() : ""; }
+
+const char* alcove_notes(const alcove_session* handle) { return handle ? handle->session.notes().c_str() : ""; }
 
 const char* alcove_error(const alcove_session* handle) { return handle ? handle->error.c_str() : "a null handle"; }
 

@@ -2,10 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "api/layout.h"
 
+#include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <utility>
 
 #include "core/base/error.h"
 
@@ -14,7 +17,7 @@ namespace {
 
 constexpr int kMostSide = 1 << 24, kMostComponents = 64;
 
-std::size_t bytes_of(alcove_type type) { return type == ALCOVE_HALF ? 2 : 4; }
+std::size_t bytes_of(int type) { return type == ALCOVE_HALF ? 2 : 4; }
 
 float float_of(std::uint16_t half) {
   const int exponent = half >> 10 & 31;
@@ -65,8 +68,21 @@ void check_layout(const std::string& name, const alcove_layout& layout) {
   if (layout.components < 1 || layout.components > kMostComponents)
     fail(ErrorKind::usage, "{}: a plane of {} components", name, layout.components);
   if (layout.type != ALCOVE_FLOAT && layout.type != ALCOVE_HALF)
-    fail(ErrorKind::usage, "{}: a plane of type {}, which is neither ALCOVE_FLOAT nor ALCOVE_HALF", name,
-         int(layout.type));
+    fail(ErrorKind::usage, "{}: a plane of type {}, which is neither ALCOVE_FLOAT nor ALCOVE_HALF", name, layout.type);
+  // From the shortest stride on, each must reach beyond all that lies within it.
+  const Strides strides = strides_of(layout);
+  std::array<std::pair<std::int64_t, int>, 3> steps{
+      std::pair<std::int64_t, int>{std::abs(strides.component), layout.components},
+      {std::abs(strides.pixel), layout.width},
+      {std::abs(strides.row), layout.height}};
+  std::ranges::sort(steps);
+  auto extent = std::int64_t(bytes_of(layout.type));
+  for (const auto& [stride, count] : steps) {
+    if (count > 1 && stride < extent)
+      fail(ErrorKind::usage, "{}: a stride of {} bytes over values of {} bytes: strides are in bytes, 0 is packed",
+           name, stride, extent);
+    extent += stride * (count - 1);
+  }
 }
 
 std::vector<float> planes_from(const void* data, const alcove_layout& layout) {

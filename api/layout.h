@@ -11,7 +11,7 @@
 namespace alcove {
 
 /// Fails with ErrorKind::usage, calling the plane by its name, on a layout that is none: no pixels, no components, an
-/// unknown type, or packed components of which a stride says otherwise.
+/// unknown type, or strides by which values share bytes.
 void check_layout(const std::string& name, const alcove_layout& layout);
 
 /// Copies the caller's values. The layout was checked.

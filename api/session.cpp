@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "api/checks.h"
 #include "api/layout.h"
 #include "core/base/error.h"
 #include "core/base/text.h"
@@ -28,6 +29,7 @@ const OptionRow& row_of(const std::vector<OptionRow>& table, const std::string& 
     if (is_for_library(row)) names.push_back(row.long_name());
   const auto row = std::ranges::find(table, option, &OptionRow::long_name);
   if (row == table.end()) fail(ErrorKind::usage, "there is no option {}{}", option, suggestion(option, names));
+  if (option == "--preset") fail(ErrorKind::usage, "--preset is no option here: alcove_preset() takes presets");
   if (!is_for_library(*row))
     fail(ErrorKind::usage, "{} is of files: the library takes planes, and alcove run takes files", option);
   return *row;
@@ -137,9 +139,10 @@ void Session::plane(const std::string& name, const void* data, const alcove_layo
   if (layout->components < least || layout->components > most)
     fail(ErrorKind::usage, "{}: {} components, where {} belong", name, layout->components,
          least == most ? fmt::format("{}", least) : fmt::format("{} or {}", least, most));
-  if (name != "behind") planes.clear();
   if (planes.size() == kMostBehind) fail(ErrorKind::usage, "behind: more than {} planes", kMostBehind);
-  planes.push_back({layout->width, layout->height, layout->type == ALCOVE_HALF, planes_from(data, *layout)});
+  Given given{layout->width, layout->height, layout->type == ALCOVE_HALF, planes_from(data, *layout)};
+  if (name != "behind") planes.clear();
+  planes.push_back(std::move(given));
 }
 
 void Session::camera(const std::array<double, 4>& projection, const double* world_to_camera) {
@@ -148,12 +151,14 @@ void Session::camera(const std::array<double, 4>& projection, const double* worl
   if (!std::ranges::all_of(numbers, [](double x) { return std::isfinite(x); }))
     fail(ErrorKind::input, "a camera with a number that is infinite or NaN");
   pinhole_ = numbers;
-  camera_json_.clear();
+  camera_json_.reset();
 }
 
 void Session::camera_json(const char* text) {
+  std::optional<std::string> given;
+  if (text) given = text;
   pinhole_.clear();
-  camera_json_ = text ? text : "";
+  camera_json_ = std::move(given);
 }
 
 const Session::Given& Session::depth() const {
@@ -171,8 +176,8 @@ Settings Session::settings() const {
   InputSettings& input = options.settings.input;
   options.settings.output.output = "memory";
   (has_position() ? input.position : input.depth) = "plane";
-  input.normal = planes_[RawPlane::normal].empty() ? "none" : "plane";
   const auto name = [](const Planes& planes, std::string& path) { path = planes.empty() ? "" : "plane"; };
+  name(planes_[RawPlane::normal], input.normal);
   name(planes_[RawPlane::material_ao], input.material_ao);
   name(planes_[RawPlane::matte], input.matte);
   name(planes_[RawPlane::occluders], input.occluders);
@@ -194,12 +199,16 @@ Settings Session::settings() const {
 }
 
 Camera Session::camera_by(const Settings& settings, const Window& window, int frame) const {
-  const std::string name = "alcove_camera";
-  if (!camera_json_.empty()) return camera_of(camera_json_, name, window, frame);
+  const std::string name = "camera";
+  const bool is_given = camera_json_ || !pinhole_.empty();
+  if (is_given && names_a_camera(settings.input))
+    fail(ErrorKind::usage,
+         "there is a camera, and --fov, --focal or --ortho-width gives another: give only one of them");
+  if (camera_json_) return camera_of(*camera_json_, name, window, frame);
   if (pinhole_.empty() && !names_a_camera(settings.input))
     fail(ErrorKind::usage,
-         "there is no camera: give one by alcove_camera() or alcove_camera_json(), or set fov (degrees), focal with "
-         "aperture (mm), or ortho-width (scene units)");
+         "there is no camera: give one, or set --fov (degrees), --focal with --aperture (mm), or --ortho-width (scene "
+         "units)");
   if (pinhole_.empty()) return camera_for(settings.input, window, 1, frame);
   const auto& p = pinhole_;
   std::string text = fmt::format(R"({{"resolution": [{}, {}], "fx": {}, "fy": {}, "cx": {}, "cy": {})", window.width,
@@ -217,9 +226,9 @@ void Session::read_normals(Reading& reading, const Settings& settings) const {
   reading.normal_space = decided(settings.input.normal_space, reading.camera.normal_space,
                                  reading.camera.view_from_world ? NormalSpace::automatic : NormalSpace::view);
   if (reading.normal_space == NormalSpace::automatic)
-    fail(ErrorKind::usage, "normals: set normal-space to world or view, since planes do not tell");
+    fail(ErrorKind::usage, "normal: set --normal-space to world or view, since planes do not tell");
   if (reading.normal_space == NormalSpace::world && !reading.camera.view_from_world)
-    fail(ErrorKind::usage, "normals in world space need a camera with world_to_camera");
+    fail(ErrorKind::usage, "normal: --normal-space world needs a camera with world_to_camera");
   reading.flip_normal = settings.input.flip_normal;
   reading.normal_encoding =
       decided(settings.input.normal_encoding, reading.camera.normal_encoding, NormalEncoding::signed_float);
@@ -237,6 +246,8 @@ Reading Session::reading_by(const Settings& settings, int frame) const {
   reading.camera = camera_by(settings, reading.data, frame);
   reading.depth_kind =
       has_position() ? DepthKind::position : decided(input.depth_kind, reading.camera.depth_kind, DepthKind::planar);
+  if (const auto unused = unused_range_options(input.depth_range, reading.depth_kind); !unused.empty())
+    refuse_range_options(has_position() ? "position" : "depth", unused, reading.depth_kind);
   reading.depth_range = input.depth_range;
   if (!reading.depth_range.near) reading.depth_range.near = reading.camera.near;
   if (!reading.depth_range.far) reading.depth_range.far = reading.camera.far;
@@ -244,7 +255,7 @@ Reading Session::reading_by(const Settings& settings, int frame) const {
   reading.position_space = decided(input.position_space, PositionSpace::automatic,
                                    reading.camera.view_from_world ? PositionSpace::automatic : PositionSpace::view);
   if (has_position() && reading.position_space == PositionSpace::automatic)
-    fail(ErrorKind::usage, "position: set position-space to world or view, since planes do not tell");
+    fail(ErrorKind::usage, "position: set --position-space to world or view, since planes do not tell");
   reading.depth_scale = input.depth_scale;
   reading.sky = input.sky;
   reading.depth_is_half = first.is_half;
@@ -263,13 +274,18 @@ Reading Session::reading_by(const Settings& settings, int frame) const {
   return reading;
 }
 
+void Session::close_device() {
+  device_choice_.clear();
+  device_name_.clear();
+  gpu_.reset();
+  device_.reset();
+}
+
 void Session::open_device(const DeviceSettings& settings) {
   const std::string choice =
       fmt::format("{} {} {} {}", settings.device, settings.require_gpu, settings.validate, settings.no_pipeline_cache);
   if (device_ && choice == device_choice_) return;
-  results_.clear();
-  gpu_.reset();
-  device_.reset();
+  close_device();
   device_ = std::make_unique<gpu::Device>(gpu::DeviceOptions{.choice = settings.device,
                                                              .require_gpu = settings.require_gpu,
                                                              .validate = settings.validate,
@@ -281,6 +297,7 @@ void Session::open_device(const DeviceSettings& settings) {
 
 void Session::run(int frame) {
   results_.clear();
+  notes_.clear();
   Settings all = settings();
   const Reading reading = reading_by(all, frame);
   if (all.estimator.radius_auto) {
@@ -295,8 +312,7 @@ void Session::run(int frame) {
   try {
     compute(all, reading, frame);
   } catch (const gpu::DeviceLost&) {
-    gpu_.reset();
-    device_.reset();
+    close_device();
     throw;
   } catch (...) {
     gpu_->abandon();
@@ -320,15 +336,18 @@ void Session::compute(const Settings& settings, Reading reading, int frame) {
     }
   }
   planes[RawPlane::behind] = behind;
+  const Notes notes = check_planes(reading, planes, settings.estimator);
   FrameInputs inputs = upload(*gpu_, reading, planes, frame);
   inputs.albedo_value = settings.input.albedo_value.value_or(0);
   if (in_world(reading.camera, settings.output)) inputs.aov_from_view = transposed(*reading.camera.view_from_world);
   const FrameOutputs outputs = run_chain(*gpu_, inputs, settings.estimator, settings.output);
+  const int messages = device_->validation_messages();
   gpu_->run();
+  if (settings.device.validate && device_->validation_messages() > messages)
+    fail(ErrorKind::device, "the validation layer has {} messages", device_->validation_messages() - messages);
   radius_ = settings.estimator.radius;
   note_results(outputs, settings, reading.data.width, reading.data.height);
-  if (settings.device.validate && device_->validation_messages() > 0)
-    fail(ErrorKind::device, "the validation layer has {} messages", device_->validation_messages());
+  for (const auto& note : notes) notes_ += (notes_.empty() ? "" : "\n") + note.text;
 }
 
 void Session::note_results(const FrameOutputs& outputs, const Settings& settings, int width, int height) {
@@ -342,17 +361,17 @@ void Session::note_results(const FrameOutputs& outputs, const Settings& settings
     const gpu::Buffer* planes = outputs.*aov.planes;
     // The one plane of AO stands for all its channels.
     const std::size_t there = planes->as<const float>().size() / pixels;
-    results_.push_back({aov.name, std::max(there, channels_of(aov, there).size()), planes});
+    results_.push_back({lower_case(aov.name), std::max(there, channels_of(aov, there).size()), planes});
   }
 }
 
 std::size_t Session::components(const std::string& aov) const {
-  const auto result = std::ranges::find(results_, aov, &Result::name);
+  const auto result = std::ranges::find(results_, lower_case(aov), &Result::name);
   return result == results_.end() ? 0 : result->components;
 }
 
 void Session::get(const std::string& aov, void* data, const alcove_layout* layout) const {
-  const auto result = std::ranges::find(results_, aov, &Result::name);
+  const auto result = std::ranges::find(results_, lower_case(aov), &Result::name);
   if (result == results_.end())
     fail(ErrorKind::usage, "{}: {}", aov,
          results_.empty() ? "nothing was computed; alcove_run() does" : "the option aov did not name it");

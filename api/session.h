@@ -31,6 +31,7 @@ class Session {
   void get(const std::string& aov, void* data, const alcove_layout* layout) const;
   double number(const std::string& name) const;
   const std::string& device() const { return device_name_; }
+  const std::string& notes() const { return notes_; }
 
  private:
   /// A plane of the caller's.
@@ -48,13 +49,14 @@ class Session {
   Reading reading_by(const Settings& settings, int frame) const;
   Camera camera_by(const Settings& settings, const Window& window, int frame) const;
   void read_normals(Reading& reading, const Settings& settings) const;
+  void close_device();
   void open_device(const DeviceSettings& settings);
   void compute(const Settings& settings, Reading reading, int frame);
   void note_results(const FrameOutputs& outputs, const Settings& settings, int width, int height);
 
   std::vector<Said> said_;            // of the command line's kind, each option once
   std::vector<std::string> presets_;  // names
-  std::string camera_json_;           // "": none
+  std::optional<std::string> camera_json_;
   // fx, fy, cx, cy, and behind them world_to_camera where it was given; none where there is no camera of numbers
   std::vector<double> pinhole_;
   RawPlaneArray<Planes> planes_;
@@ -75,6 +77,7 @@ class Session {
   int width_ = 0, height_ = 0;  // px
   FrameCounts counts_{};
   double compute_ms_ = 0;
+  std::string notes_;  // sentences, one a line
   std::optional<double> radius_;
 };
 

@@ -14,7 +14,7 @@ tests=({text,new_file,memory_limit}_test
        {file,file_names,open_image,bad_input,capture_formats,color,hostile,layouts,sequence}_test
        {camera,chan,resection,header_camera,gbuffer,parts,evidence,inputs,readings,sources}_test
        {refusals,region,matte,compare,inspect,options}_test
-       {gpu,property,confidence,library}_test)
+       {gpu,property,confidence,library,library_refusals}_test)
 if [ "${1:-}" = all ]; then
   readers=(core/*/*.cpp cli/*.cpp)
   tests=(all)

@@ -135,6 +135,26 @@ double planar_depth(const DepthMap& map, const std::array<double, 3>& raw, doubl
   return map.along_ray ? z / ray_length : z;
 }
 
+std::vector<std::string> unused_range_options(const DepthRange& said, DepthKind kind) {
+  const bool is_device = kind == DepthKind::device, is_log = kind == DepthKind::log,
+             is_normalized = kind == DepthKind::normalized;
+  const bool is_between_planes = is_device || is_normalized || is_log;
+  std::vector<std::string> unused;
+  if (said.near && !is_device && !is_normalized) unused.emplace_back("--near");
+  if (said.far && !is_between_planes) unused.emplace_back("--far");
+  if (said.reversed && !is_between_planes) unused.emplace_back("--reversed-z");
+  if (said.device != DeviceRange::zero_to_one && !is_device) unused.emplace_back("--device-range");
+  if (said.log_constant != DepthRange{}.log_constant && !is_log) unused.emplace_back("--log-constant");
+  return unused;
+}
+
+void refuse_range_options(const std::string& depth, std::span<const std::string> options, DepthKind kind) {
+  const bool is_one = options.size() == 1;
+  fail(ErrorKind::usage,
+       "{}: {} {} no effect, since the depth is read as {}: leave {} out, or say with --depth-kind what it is", depth,
+       fmt::join(options, ", "), is_one ? "has" : "have", name_of(kind), is_one ? "it" : "them");
+}
+
 bool is_all_sky(const DepthMap& map, std::span<const float> raw) {
   if (map.form == kDepthPosition) return std::ranges::all_of(raw, [](float x) { return x == 0; });
   const auto below = float(map.sky_below);

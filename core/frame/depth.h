@@ -6,6 +6,8 @@
 #include <array>
 #include <limits>
 #include <span>
+#include <string>
+#include <vector>
 
 #include "core/base/settings.h"
 #include "core/frame/camera.h"
@@ -39,6 +41,11 @@ struct DepthPrecision {
 /// perspective that is not there.
 DepthMap depth_map(DepthKind kind, const DepthRange& range, PositionSpace space, const Camera& camera, double scale,
                    double sky);
+
+/// The options of a range that depth of this kind has not.
+std::vector<std::string> unused_range_options(const DepthRange& said, DepthKind kind);
+/// Fails with ErrorKind::usage, since these options have no effect on the depth of that name.
+[[noreturn]] void refuse_range_options(const std::string& depth, std::span<const std::string> options, DepthKind kind);
 
 /// Whether every raw value plainly says that there is no surface: none is one, or has to be repaired to be none. Of
 /// positions: x, y and z are 0.

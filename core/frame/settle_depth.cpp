@@ -63,24 +63,10 @@ class DepthSettlement : private Settlement {
 
   /// Fails with what the user said of a range that depth of this kind has not. Presets serve frames of every kind.
   void refuse_unused_range() const {
-    const DepthRange& said = settings_.depth_range;
-    const DepthKind kind = source_.depth_kind;
-    const bool is_device = kind == DepthKind::device, is_log = kind == DepthKind::log,
-               is_normalized = kind == DepthKind::normalized;
-    const bool is_between_planes = is_device || is_normalized || is_log;
-    std::vector<std::string> unused;
-    if (said.near && !is_device && !is_normalized) unused.push_back("--near");
-    if (said.far && !is_between_planes) unused.push_back("--far");
-    if (said.reversed && !is_between_planes) unused.push_back("--reversed-z");
-    if (said.device != DeviceRange::zero_to_one && !is_device) unused.push_back("--device-range");
-    if (said.log_constant != DepthRange{}.log_constant && !is_log) unused.push_back("--log-constant");
+    auto unused = unused_range_options(settings_.depth_range, source_.depth_kind);
     const auto& left_out = settings_.from_presets;
     std::erase_if(unused, [&](const auto& option) { return std::ranges::find(left_out, option) != left_out.end(); });
-    if (unused.empty()) return;
-    fail(ErrorKind::usage,
-         "{}: {} {} no effect, since the depth is read as {}: leave {} out, or say with --depth-kind what it is",
-         depth_path(), fmt::join(unused, ", "), unused.size() == 1 ? "has" : "have", name_of(kind),
-         unused.size() == 1 ? "it" : "them");
+    if (!unused.empty()) refuse_range_options(depth_path(), unused, source_.depth_kind);
   }
 
   std::string straight(const DepthScore& score) const {

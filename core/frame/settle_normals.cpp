@@ -18,10 +18,6 @@ constexpr double kNoBetter = 0.95;
 /// Degrees. If the best quarter of the normals is farther off than this, normals and depth are of different cameras or
 /// planes.
 constexpr double kLargestAngle = 2;
-/// If fewer of the normals agree with depth, they are not of this depth or not of this camera. Chance gives some 5 %.
-/// Of 12 frames of rendered scenes and games that were read rightly the least was 87 %; by 30 wrongly turned cameras it
-/// was 37 % at most, and 25 % but for one.
-constexpr double kRefuted = 0.1;
 /// Another camera is the right one if so many times as many normals are close to those of depth by it, and so large a
 /// share more.
 constexpr double kSharper = 1.2, kLeastSharper = 0.1;

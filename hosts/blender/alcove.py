@@ -176,7 +176,7 @@ class Process:
     """The running program; threads read what it says, so that Blender never waits for it."""
 
     def __init__(self, command):
-        self.running = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        self.running = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, errors="replace")
         self.percent = 0
         self.said = []
         self.threads = [threading.Thread(target=self.follow), threading.Thread(target=self.listen)]
@@ -204,6 +204,7 @@ class Process:
         if code != 0:
             errors = [line for line in self.said if "error" in line] or self.said or ["it said nothing"]
             raise Failure("Alcove: %s (exit code %d)" % (errors[-1], code))
+        return [line for line in self.said if "warning: " in line]
 
     def stop(self):
         self.running.terminate()
@@ -301,7 +302,8 @@ class ALCOVE_OT_compute(bpy.types.Operator):
         self.process = Process(command_for(self.scene, self.folder, self.frames))
 
     def load(self):
-        self.process.finish()
+        for warning in self.process.finish():
+            self.report({"WARNING"}, warning)
         load_result(self.scene, self.folder, self.frames)
         self.report({"INFO"}, "Alcove: %d frame%s in %s" % (len(self.frames), "s"[:len(self.frames) > 1], self.folder))
 

@@ -176,15 +176,15 @@ def command_for(read, source, settings):
 
 
 def run_program(command, task):
-    """Runs the program to its end, and tells the task how far it is; False where the user has cancelled, which ends it. Fails
-    with what the program says."""
+    """Runs the program to its end, tells the task how far it is, and gives the program's warnings; None where the user has
+    cancelled, which ends it. Fails with what the program says."""
     percents, said = [0], []
 
     def follow(stream):
         percents.extend(int(number) for line in stream for number in re.findall(r"(\d+)\s*%", line))
 
     pipe, nothing = subprocess.PIPE, subprocess.DEVNULL
-    with subprocess.Popen(command, stdin=nothing, stdout=pipe, stderr=pipe, text=True) as running:
+    with subprocess.Popen(command, stdin=nothing, stdout=pipe, stderr=pipe, text=True, errors="replace") as running:
         listeners = [threading.Thread(target=follow, args=(running.stdout,)),
                      threading.Thread(target=said.extend, args=(running.stderr,))]
         for listener in listeners:
@@ -203,13 +203,13 @@ def run_program(command, task):
         for listener in listeners:
             listener.join()
     if is_cancelled:
-        return False
+        return None
+    lines = [line.strip() for line in said if line.strip()]
     if running.returncode != 0:
-        lines = [line.strip() for line in said if line.strip()]
         errors = [line for line in lines if "error" in line] or lines or ["it said nothing"]
         raise ValueError("%s (exit code %d)" % (errors[-1], running.returncode))
     task.setProgress(100)
-    return True
+    return [line for line in lines if "warning: " in line]
 
 
 # ---- the nodes ----
@@ -219,6 +219,8 @@ def load_result(read, output, first, last):
     """A Read node of the AO to the right of the source; one that is there is loaded again."""
     for node in nuke.allNodes():
         if node.Class() == "Read" and node["file"].value() == output:
+            node["first"].setValue(min(first, node["first"].value()))
+            node["last"].setValue(max(last, node["last"].value()))
             node["reload"].execute()
             return
     node = nuke.nodes.Read(file=output, first=first, last=last, raw=True)
@@ -232,8 +234,11 @@ def complain(failure):
 def work(command, read, output, first, last):
     """In a thread: whatever touches nodes or windows goes to the main one."""
     try:
-        if run_program(command, nuke.ProgressTask("Alcove")):
+        warnings = run_program(command, nuke.ProgressTask("Alcove"))
+        if warnings is not None:
             nuke.executeInMainThread(load_result, args=(read, output, first, last))
+        if warnings:
+            nuke.executeInMainThread(complain, args=("\n".join(warnings),))
     except (ValueError, OSError) as failure:
         nuke.executeInMainThread(complain, args=(failure,))
 

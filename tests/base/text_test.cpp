@@ -145,6 +145,10 @@ TEST(Numbers, are_read_whole_and_with_a_point) {
   for (const auto& [text, value] : known) EXPECT_EQ(number_of(text), value) << text;
   EXPECT_EQ(number_of(std::string(400, '9')), INFINITY);
   EXPECT_EQ(number_of("0." + std::string(400, '0') + "1"), 0);
+  EXPECT_EQ(number_of("1" + std::string(400, '0') + "e-50"), INFINITY);
+  EXPECT_EQ(number_of("-0." + std::string(400, '0') + "1e+50"), 0);
+  EXPECT_EQ(number_of("1e99999999999"), INFINITY);
+  EXPECT_EQ(number_of("1e-99999999999"), 0);
   for (const char* text : {"", "x", "1x", "0,5", "1 2", "+-1", "--1", "1e", "."})
     EXPECT_EQ(number_of(text), std::nullopt) << text;
 }

@@ -35,6 +35,9 @@ class Knob:
         value = self.held(frame) if callable(self.held) else self.held
         return value[index] if isinstance(value, (list, tuple)) else value
 
+    def setValue(self, value):
+        self.held = value
+
     def execute(self):
         self.pressed += 1
 
@@ -316,6 +319,10 @@ class Script(camera_facts.CameraFacts, unittest.TestCase):
         # A second run loads it again, and adds no node.
         self.compute(source, self.nuke.nodes[1], Frames="4")
         self.assertEqual((self.reads(), result["reload"].pressed), ([result], 1))
+        self.assertEqual((result["first"].value(), result["last"].value()), (3, 5))
+        result["last"].setValue(3)
+        self.compute(source, self.nuke.nodes[1], Frames="4")
+        self.assertEqual((result["first"].value(), result["last"].value()), (3, 4))
 
     def test_a_still_has_the_number_that_the_read_node_gives_it(self):
         still = self.folder / "shot.exr"
@@ -341,6 +348,12 @@ class Script(camera_facts.CameraFacts, unittest.TestCase):
         self.assertLess(len(list((self.folder / "ao").glob("*.exr"))), 12)
         self.assertEqual(self.unfinished(), [])
         self.assertLess(self.nuke.tasks[0].progress[-1], 100)
+
+    def test_warnings_reach_the_user_beside_the_result(self):
+        self.compute(read_node(self.shot([1]), 1, 1), self.frame_camera(), **{"Radius (0 = auto)": "100"})
+        [message] = self.nuke.messages
+        self.assertIn("radius-beyond-picture", message)
+        self.assertEqual(len(self.reads()), 1)
 
     def test_errors_reach_the_user(self):
         self.compute(read_node(str(self.folder / "missing.exr"), 1, 1), self.frame_camera())

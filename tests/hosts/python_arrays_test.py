@@ -2,6 +2,7 @@
 # Takes the program, the library, the project's folder, a frame and its camera.
 # SPDX-License-Identifier: BSD-3-Clause
 import json
+import multiprocessing
 import os
 import pathlib
 import re
@@ -11,6 +12,7 @@ import sys
 import tempfile
 import threading
 import unittest
+import warnings
 
 import numpy
 
@@ -128,12 +130,18 @@ class Arrays(unittest.TestCase):
                               (self.depth.astype(numpy.float64), self.normal.astype(">f4")), (self.depth[:, :, None], numpy.asfortranarray(self.normal)),
                               (self.depth.tolist(), self.normal)):
             self.same(alcove.ao(depth, normal, camera=self.camera, radius=0.35), wanted)
+        wanted = alcove.ao(self.depth, self.normal, camera=self.camera, radius=0.35, material_ao=numpy.full_like(self.depth, 0.5))
+        for half in (numpy.broadcast_to(numpy.float32(0.5), self.depth.shape), numpy.broadcast_to(numpy.full((1, self.depth.shape[1]), 0.5), self.depth.shape)):
+            self.same(alcove.ao(self.depth, self.normal, camera=self.camera, radius=0.35, material_ao=half), wanted)
+        self.same(alcove.ao(self.depth, self.normal, camera=self.camera, radius=0.35, ignore=numpy.zeros(self.depth.shape, bool)),
+                  alcove.ao(self.depth, self.normal, camera=self.camera, radius=0.35))
 
     def test_half_floats_are_known_as_such(self):
         half = self.folder / "half.exr"
         write_exr(half, {"Z": self.depth.astype(numpy.float16), **{"N." + axis: self.normal[:, :, i] for i, axis in enumerate("XYZ")}})
         theirs = self.program(half, "--camera", self.camera_file, "--radius", "0.35")["Y"]
-        self.same(alcove.ao(self.depth.astype(numpy.float16), self.normal, camera=self.camera, radius=0.35), theirs)
+        for kind in (numpy.float16, ">f2"):
+            self.same(alcove.ao(self.depth.astype(kind), self.normal, camera=self.camera, radius=0.35), theirs)
 
     def test_many_results_have_the_bits_of_the_program(self):
         names = ["ao", "bent-normal", "ao-scales", "confidence", "specular-occlusion", "normal", "depth"]
@@ -180,31 +188,63 @@ class Arrays(unittest.TestCase):
     def test_what_is_wrong_is_an_exception(self):
         good = {"radius": 0.35, "fov": 65}
         for kind, sentence, arguments in (
-                (alcove.UsageError, "--radius", {"fov": 65}), (alcove.UsageError, "no camera", {"radius": 0.35}),
-                (alcove.UsageError, "did you mean --slices", {**good, "slizes": 3}), (alcove.UsageError, "out of range", {**good, "slices": 100}),
+                (alcove.UsageError, "with radius how far", {"fov": 65}), (alcove.UsageError, "no camera.* fov ", {"radius": 0.35}),
+                (alcove.UsageError, r"no option slizes \(did you mean slices", {**good, "slizes": 3}), (alcove.UsageError, "out of range", {**good, "slices": 100}),
                 (alcove.UsageError, "is of files", {**good, "beauty": "b.exr"}), (alcove.UsageError, "there is no preset", {**good, "preset": "nothing"}),
                 (alcove.UsageError, "there is no AOV", {**good, "aov": "oa"}), (alcove.InputError, "camera.json", {"radius": 1, "camera": "/nowhere/camera.json"}),
-                (alcove.InputError, "fx", {"radius": 1, "camera": {"fy": 1}}), (alcove.UsageError, "normal", {**good, "normal": self.depth}),
+                (alcove.InputError, "fx", {"radius": 1, "camera": {"fy": 1}}), (alcove.UsageError, r"normal.*\(H, W, 3\)", {**good, "normal": self.depth}),
+                (alcove.UsageError, "normal.*uint8", {**good, "normal": self.normal.astype(numpy.uint8)}), (alcove.UsageError, "masked", {**good, "matte": numpy.ma.array(self.depth)}),
+                (alcove.UsageError, "whole number", {**good, "frame": "7"}), (alcove.UsageError, "too large", {**good, "frame": 2**40}), (alcove.UsageError, "zero byte", {**good, "device": "a\0b"}),
+                (alcove.UsageError, "only one of them", {**good, "camera": self.camera}), (alcove.InputError, "normal.*normal_space world", {"radius": 0.35, "camera": self.camera, "normal": self.normal, "normal_space": "view"}),
                 (alcove.InputError, "has 4 x 4 pixels", {**good, "matte": numpy.ones((4, 4))}), (alcove.UsageError, "complex", {**good, "matte": self.depth + 1j}),
                 (alcove.DeviceError, "no-such", {**good, "device": "no-such"})):
             with self.subTest(sentence=sentence), self.assertRaisesRegex(kind, sentence):
                 alcove.compute(self.depth, **arguments)
         with self.assertRaisesRegex(alcove.UsageError, "no depth"):
             alcove.compute(None, **good)
+        with self.assertRaisesRegex(alcove.InputError, "give -depth"):
+            alcove.ao(-self.depth[:, :], sky=1e8, **good)
+        with self.assertRaisesRegex(alcove.UsageError, "compute"):
+            alcove.ao(self.depth, aov="depth", **good)
+        with self.assertRaisesRegex(alcove.UsageError, "dict"):
+            alcove.run(FRAME, output=self.folder / "none.exr", camera=self.camera, radius=1)
         with self.assertRaisesRegex(alcove.UsageError, r"\(3,\)"):
             alcove.ao([1, 2, 3], **good)
 
     def test_threads_have_devices_of_their_own(self):
-        wanted = alcove.ao(self.depth, radius=0.35, fov=65)
-        found = []
-        threads = [threading.Thread(target=lambda: found.append(alcove.ao(self.depth, radius=0.35, fov=65))) for _ in range(3)]
+        found = {}
+
+        def work(radius):
+            found[radius] = alcove.ao(self.depth, radius=radius, fov=65)
+
+        threads = [threading.Thread(target=work, args=(radius,)) for radius in (0.2, 0.35, 0.6)]
         for thread in threads:
             thread.start()
         for thread in threads:
             thread.join()
-        self.assertEqual(len(found), 3)
-        for array in found:
-            self.same(array, wanted)
+        self.assertEqual(sorted(found), [0.2, 0.35, 0.6])
+        for radius, array in found.items():
+            self.same(array, alcove.ao(self.depth, radius=radius, fov=65))
+
+    def test_a_forked_process_has_a_device_of_its_own(self):
+        alcove.ao(self.depth, radius=0.35, fov=65)
+        child = multiprocessing.get_context("fork").Process(target=self.in_child)
+        child.start()
+        child.join(60)
+        if child.exitcode is None:
+            child.kill()
+        self.assertEqual(child.exitcode, 0)
+
+    def in_child(self):
+        alcove.ao(self.depth, radius=0.2, fov=65)
+
+    def test_what_may_be_wrong_is_a_warning(self):
+        with self.assertWarnsRegex(UserWarning, "radius"):
+            made = alcove.compute(self.depth, radius=100, fov=65)
+        self.assertEqual(len(made["stats"]["notes"]), 1)
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            self.assertEqual(alcove.compute(self.depth, radius=0.35, fov=65)["stats"]["notes"], [])
 
     def test_a_library_that_is_not_there_is_told(self):
         code = "import alcove, numpy; alcove.ao(numpy.ones((4, 4)), radius=1, fov=60)"

@@ -89,7 +89,9 @@ _ERRORS = {kind.code: kind for kind in (FramesFailed, UsageError, InputError, Ou
 
 def program() -> str:
     """The path of the program: that of the variable ALCOVE, else the one on the path. Fails with DeviceError."""
-    found = shutil.which(os.environ.get("ALCOVE", "alcove"))
+    # Where the package is installed as a part of Alcove, the program may lie in the same prefix.
+    beside = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../../../../bin/alcove")
+    found = shutil.which(os.environ.get("ALCOVE", "alcove")) or ("ALCOVE" not in os.environ and shutil.which(beside))
     if not found:
         raise DeviceError("the program alcove is not on the path: install it, or name it in the variable ALCOVE")
     return found
@@ -113,7 +115,7 @@ def _words(options: Dict[str, Any]) -> List[str]:
 
 
 def _text(value: Any) -> str:
-    return repr(value) if isinstance(value, float) else os.fspath(value) if isinstance(value, os.PathLike) else str(value)
+    return repr(float(value)) if isinstance(value, float) else os.fspath(value) if isinstance(value, os.PathLike) else str(value)
 
 
 def _message(code: int, said: str) -> str:
@@ -144,6 +146,8 @@ def run(input: Optional[str] = None, *, output: str, progress: Optional[Callable
     of it stops the program, which leaves nothing partial, and goes on to the caller.
     options: those of `alcove run`. Fails with a kind of Error by the program's exit code.
     """
+    if isinstance(options.get("camera"), dict):
+        raise UsageError("camera: a dict is for arrays; run() takes the path of a camera file")
     if "log_json" in options:
         raise UsageError("log_json is what progress is told by: give that")
     words = [program(), "run", *([] if input is None else [os.fspath(input)]), "--output", os.fspath(output),
@@ -187,10 +191,12 @@ def version() -> str:
     return _output_of("--version").split()[1]
 
 
-def ao(depth: "numpy.ndarray", normal: Optional["numpy.ndarray"] = None, *, camera: Any = None, radius: Any = None,
+def ao(depth: Optional["numpy.ndarray"] = None, normal: Optional["numpy.ndarray"] = None, *, camera: Any = None, radius: Any = None,
        **options: Any) -> "numpy.ndarray":
     """The ambient occlusion of a frame in arrays: (H, W), float32, visibility from 0 to 1, 1 = open. As compute(), with this
     one result."""
+    if "aov" in options:
+        raise UsageError("aov: ao() gives the AO alone; compute() gives others")
     return compute(depth, normal, camera=camera, radius=radius, aov="ao", **options)["ao"]
 
 
@@ -203,16 +209,17 @@ def compute(depth: Optional["numpy.ndarray"] = None, normal: Optional["numpy.nda
     depth: (H, W), planar and positive in scene units, upper left pixel first; other kinds by depth_kind. 0, infinite and
         NaN are sky. float16 and float32 are taken as they lie, whatever their strides; all else becomes float32.
     normal: (H, W, 3), or (H, W, 2) by normal_encoding; None: reconstructed from depth. Where the camera has a place,
-        normal_space must be "world" or "view", or stand in the camera.
-    camera: a camera file's fields as a dict, or its path, of which `frame` picks the entry; or fov=DEGREES (horizontal),
+        normal_space must be "world" or "view", or stand in the camera. normal_encoding is "signed" unless it is said.
+    camera: a camera file's fields as a dict (without resolution: that of the arrays), or its path, of which `frame` picks the entry; or fov=DEGREES (horizontal),
         focal=MM and aperture=MM, or ortho_width=UNITS instead.
     frame: the frame's number, by which noise="animated" changes.
     position: (H, W, 3) instead of depth. behind: an array of depth behind the first surface, or a list of them.
-    material_ao, matte, occluders, ignore: (H, W). albedo: (H, W, 3), or one number.
+    material_ao, matte, occluders, ignore: (H, W), numbers or bool. albedo: (H, W, 3), or one number.
     options: those of `alcove run` that are not about files: radius (required; "auto" proposes one), preset, slices, ...
 
-    Fails with UsageError, InputError or DeviceError. Other threads go on meanwhile; each thread has a device of its own, which
-    is opened by its first call and stays open.
+    Fails with UsageError, InputError or DeviceError, also where the pixels speak against depth, normals or camera; what only
+    may be wrong is a warning. Other threads go on meanwhile; each thread has a device of its own, which
+    is opened by its first call and stays open. After a fork the child opens its own.
     """
     from . import _arrays  # numpy and the library are loaded on first use
     return _arrays.compute(depth, normal, camera, aov, frame, options)

@@ -4,8 +4,11 @@
 
 import ctypes
 import json
+import operator
 import os
+import re
 import threading
+import warnings
 from typing import Any, Dict, List, Optional
 
 import numpy
@@ -55,7 +58,7 @@ def _load() -> ctypes.CDLL:
             ("preset", ctypes.c_int, [handle, text]), ("plane", ctypes.c_int, [handle, text, ctypes.c_void_p, layout]),
             ("camera_json", ctypes.c_int, [handle, text]), ("run", ctypes.c_int, [handle, ctypes.c_int]),
             ("components", ctypes.c_int, [handle, text]), ("get", ctypes.c_int, [handle, text, ctypes.c_void_p, layout]),
-            ("number", ctypes.c_double, [handle, text]), ("device", text, [handle]), ("error", text, [handle])):
+            ("number", ctypes.c_double, [handle, text]), ("notes", text, [handle]), ("device", text, [handle]), ("error", text, [handle])):
         function = getattr(library, "alcove_" + name)
         function.restype, function.argtypes = result, arguments
     return library
@@ -63,20 +66,26 @@ def _load() -> ctypes.CDLL:
 
 def _as_plane(name: str, values: Any) -> numpy.ndarray:
     """(H, W, C) of half floats or floats of this machine's byte order, not copied where they are that."""
+    if isinstance(values, numpy.ma.MaskedArray):
+        raise UsageError(f"{name}: a masked array; fill it first, depth with 0 where there is nothing")
     array = numpy.asarray(values)
+    shape = "(H, W, 3)" if name in ("normal", "position", "albedo") else "(H, W)"
+    if array.ndim not in (2, 3) or 0 in array.shape or array.ndim == 2 and shape != "(H, W)" or array.ndim == 3 and array.shape[2] > 3:
+        raise UsageError(f"{name}: an array of {numpy.shape(values)}, where {shape} belongs")
     if array.ndim == 2:
         array = array[:, :, None]
-    if array.ndim != 3 or 0 in array.shape:
-        raise UsageError(f"{name}: an array of {array.shape}, where (H, W) or (H, W, C) belongs")
-    if array.dtype.kind not in "fiu":
-        raise UsageError(f"{name}: an array of {array.dtype}, where numbers belong")
-    return array.astype(numpy.float16 if array.dtype == numpy.float16 else numpy.float32, copy=False)
+    if array.dtype.kind not in "fiub" or array.dtype.kind in "iub" and name == "normal":
+        raise UsageError(f"{name}: an array of {array.dtype}, where {'floats belong' if name == 'normal' else 'numbers belong'}")
+    is_half = array.dtype.kind == "f" and array.dtype.itemsize == 2
+    array = array.astype(numpy.float16 if is_half else numpy.float32, copy=False)
+    # One value that stands for many has a stride of 0, which the library takes for none.
+    has_shared = any(stride == 0 and count > 1 for stride, count in zip(array.strides, array.shape))
+    return numpy.ascontiguousarray(array) if has_shared else array
 
 
 def _layout_of(array: numpy.ndarray) -> _Layout:
     height, width, components = array.shape
     rows, pixels, planes = array.strides
-    # Of one row, pixel or component no stride is needed; numpy's may be 0, which means packed.
     return _Layout(width, height, components, 1 if array.dtype == numpy.float16 else 0, pixels, rows, planes)
 
 
@@ -98,7 +107,7 @@ class _Session:
     def check(self, code: int) -> None:
         if code != 0:
             kind = _ERRORS.get(code) if code > 1 else None
-            raise (kind or Error)(self.library.alcove_error(self.handle).decode("utf-8", "replace"))
+            raise (kind or Error)(_in_keywords(self.library.alcove_error(self.handle)))
 
     def clear(self) -> None:
         for name in self.set_options:
@@ -110,15 +119,19 @@ class _Session:
         self.set_options, self.set_planes = [], []
 
     def set(self, name: str, value: Any) -> None:
-        if value is None:
+        if value is None or value is False:
             return
-        if isinstance(value, bool):
-            words = "true" if value else "false"
+        if isinstance(value, numpy.ndarray):
+            value = value.tolist()
+        if value is True:
+            words = "true"
         elif isinstance(value, (list, tuple)):
             words = ",".join(_text(part) for part in value)
         else:
             words = _text(value.item() if isinstance(value, numpy.generic) else value)
         option = name.rstrip("_").replace("_", "-").encode()
+        if "\0" in words:
+            raise UsageError(f"{name}: a text with a zero byte")
         self.check(self.library.alcove_set(self.handle, option, words.encode()))
         self.set_options.append(option)
 
@@ -135,7 +148,21 @@ class _Session:
         return array[:, :, 0] if components == 1 else array
 
 
+def _in_keywords(text: bytes) -> str:
+    """A sentence of the library's, with options as Python names them."""
+    return re.sub(r"--([a-z][a-z-]*)", lambda match: match.group(1).replace("-", "_"), text.decode("utf-8", "replace"))
+
+
 _of_thread = threading.local()
+_before_fork: List[Any] = []  # sessions whose devices are the parent's: they are neither used nor freed
+
+
+def _forget() -> None:
+    _before_fork.append(_of_thread.__dict__.pop("session", None))
+
+
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_forget)
 
 
 def _session() -> _Session:
@@ -158,6 +185,12 @@ def _camera_text(camera: Any, width: int, height: int) -> Optional[bytes]:
 
 
 def compute(depth: Any, normal: Any, camera: Any, aov: Any, frame: int, options: Dict[str, Any]) -> Dict[str, Any]:
+    try:
+        frame = operator.index(frame)
+    except TypeError as error:
+        raise UsageError(f"frame: {frame!r} is no whole number") from error
+    if abs(frame) >= 2**31:
+        raise UsageError(f"frame: {frame} is too large a number")
     names = [word.strip() for word in (aov.split(",") if isinstance(aov, str) else aov)]
     session = _session()
     session.clear()
@@ -185,5 +218,8 @@ def compute(depth: Any, normal: Any, camera: Any, aov: Any, frame: int, options:
     session.check(session.library.alcove_run(session.handle, frame))
     made: Dict[str, Any] = {name: session.result(name, height, width) for name in names}
     made["stats"] = {name.replace("-", "_"): session.library.alcove_number(session.handle, name.encode()) for name in _STATS}
+    made["stats"]["notes"] = _in_keywords(session.library.alcove_notes(session.handle)).splitlines()
+    for note in made["stats"]["notes"]:
+        warnings.warn(f"alcove: {note}", stacklevel=4)
     made["stats"]["device"] = session.library.alcove_device(session.handle).decode("utf-8", "replace")
     return made
