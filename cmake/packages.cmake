@@ -78,6 +78,8 @@ if(DPKG_DEB)
     " -- ${CPACK_PACKAGE_CONTACT}  ${date}\n")
   execute_process(COMMAND gzip -9nc ${debian}/changelog OUTPUT_FILE ${debian}/changelog.gz COMMAND_ERROR_IS_FATAL ANY)
   install(FILES ${debian}/changelog.gz DESTINATION share/doc/alcove EXCLUDE_FROM_ALL)
+  file(WRITE ${debian}/triggers "activate-noawait ldconfig\n")
+  set(CPACK_DEBIAN_LIBRARY_PACKAGE_CONTROL_EXTRA ${debian}/triggers)
   # Those that need another one have its folder of documents.
   file(CREATE_LINK alcove ${debian}/alcove-pictures SYMBOLIC)
   install(FILES ${debian}/alcove-pictures DESTINATION share/doc COMPONENT pictures EXCLUDE_FROM_ALL)
