@@ -33,7 +33,6 @@
 #include <deque>
 #include <filesystem>
 #include <limits>
-#include <set>
 
 #include "core/base/error.h"
 #include "core/base/file.h"
@@ -41,6 +40,7 @@
 #include "core/formats/deep_exr.h"
 #include "core/formats/exr_attributes.h"
 #include "core/formats/exr_header.h"
+#include "core/formats/exr_zip.h"
 #include "core/formats/image_io.h"
 
 namespace alcove {
@@ -49,12 +49,6 @@ namespace {
 
 constexpr std::size_t kLongestText = std::size_t(1) << 16;  // of an attribute that is looked at
 constexpr std::size_t kMostPixels = std::size_t(1) << 28;   // in host memory: one gigabyte per channel
-
-SampleType type_of(Imf::PixelType type) {
-  return type == Imf::HALF    ? SampleType::half_float
-         : type == Imf::FLOAT ? SampleType::single_float
-                              : SampleType::integer;
-}
 
 /// How many rows are compressed together, as the specification of OpenEXR's file layout has it.
 int rows_together(const Imf::Header& header) {
@@ -122,7 +116,7 @@ ExrPart describe(const Imf::Header& header) {
   if (Imf::hasMultiView(header)) part.multi_view = Imf::multiView(header);
   for (auto channel = header.channels().begin(); channel != header.channels().end(); ++channel) {
     const auto& c = channel.channel();
-    part.channels.push_back({channel.name(), type_of(c.type), c.xSampling != 1 || c.ySampling != 1});
+    part.channels.push_back({channel.name(), sample_type_of(c.type), c.xSampling != 1 || c.ySampling != 1});
   }
   return part;
 }
@@ -194,6 +188,7 @@ struct ExrFile::Impl {
   double pixel_aspect = 1;
   std::uint64_t group = 0;                 // bytes of the rows that are decoded together; 0 where there is no file
   std::uint64_t codec_bytes = 0;           // that reading takes
+  int threads = 0;                         // that may read it
   std::unique_ptr<PictureReader> picture;  // where there is no file
   Image image;                             // where there is no picture either
   std::unique_ptr<DeepReader> deep;        // where deep parts are taken
@@ -205,9 +200,24 @@ struct ExrFile::Impl {
   void limit_codec() {
     for (const auto& part : parts)
       if (!part.deep) group = std::max(group, group_bytes(part));
-    const int threads = threads_for(group, alcove::codec_bytes);
+    threads = threads_for(group, alcove::codec_bytes);
     if (threads < Imf::globalThreadCount()) file = std::make_unique<Imf::MultiPartInputFile>(path.c_str(), threads);
     codec_bytes = bytes_of_codec(group, threads);
+  }
+
+  /// Reads rows of channels of one part.
+  void read_rows(int part, std::span<const ExrRead> reads, int first, int rows) {
+    Imf::InputPart input(*file, part);
+    if (is_zip_rows(input.header(), reads)) return read_zip_rows(input, reads, first, rows, threads);
+    Window band = parts[std::size_t(part)].data;
+    band.y += first;
+    band.height = rows;
+    const std::size_t row_bytes = sizeof(float) * std::size_t(band.width);
+    Imf::FrameBuffer frame_buffer;
+    for (const auto& read : reads)
+      frame_buffer.insert(read.channel, Imf::Slice::Make(Imf::FLOAT, read.to, box_of(band), sizeof(float), row_bytes));
+    input.setFrameBuffer(frame_buffer);
+    input.readPixels(band.y, band.y + band.height - 1);
   }
 
   /// Reads those of the channels that samples make.
@@ -370,23 +380,12 @@ void ExrFile::read(std::span<const ExrRead> reads, int first, int rows) {
     return;
   }
   impl_->read_deep(reads, first, rows);
-  std::set<int> parts;
+  std::map<int, std::vector<ExrRead>> parts;
   for (const auto& read : reads)
-    if (!impl_->parts[std::size_t(read.part)].deep) parts.insert(read.part);
-  for (const int part : parts) {
-    Window data = impl_->parts[std::size_t(part)].data;
-    data.y += first;
-    data.height = rows;
-    const std::size_t row_bytes = sizeof(float) * std::size_t(data.width);
-    Imf::FrameBuffer frame_buffer;
-    for (const auto& read : reads)
-      if (read.part == part)
-        frame_buffer.insert(read.channel,
-                            Imf::Slice::Make(Imf::FLOAT, read.to, box_of(data), sizeof(float), row_bytes));
+    if (!impl_->parts[std::size_t(read.part)].deep) parts[read.part].push_back(read);
+  for (const auto& [part, of_part] : parts) {
     try {
-      Imf::InputPart input(*impl_->file, part);
-      input.setFrameBuffer(frame_buffer);
-      input.readPixels(data.y, data.y + data.height - 1);
+      impl_->read_rows(part, of_part, first, rows);
     } catch (const std::exception& error) {
       fail(ErrorKind::input, "{}: the pixels of part {} cannot be read ({}), the file is damaged or incomplete: {}",
            impl_->path, part, impl_->option, one_line(error));

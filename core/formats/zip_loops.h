@@ -1,0 +1,29 @@
+// The loops over the bytes of ZIP chunks of EXR files: in plain C++, and with the processor's vector instructions.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace alcove {
+
+/// The document "File Layout" of OpenEXR says how bytes are packed: those at even places come before those at odd ones,
+/// and each is stored as its difference from the one before it, plus 128.
+struct ZipLoops {
+  /// Makes bytes of differences. `before` is the byte before the first. Gives the last byte, and `before` where there
+  /// is none.
+  std::uint8_t (*sum_up)(std::uint8_t* differences, std::size_t count, std::uint8_t before);
+  /// Gives the same byte, and leaves the differences as they are.
+  std::uint8_t (*sum_of)(const std::uint8_t* differences, std::size_t count, std::uint8_t before);
+  /// Writes 2 * count bytes: the first of `even`, the first of `odd`, the second of `even` ...
+  void (*interleave)(const std::uint8_t* even, const std::uint8_t* odd, std::size_t count, std::uint8_t* to);
+  /// Makes floats of half floats, of which each has the lower byte first. A NaN keeps its bits.
+  void (*widen)(const std::uint8_t* halves, std::size_t count, float* to);
+};
+
+/// What every processor runs.
+const ZipLoops& plain_zip_loops();
+/// The fastest that this processor runs; they give the same bits.
+const ZipLoops& fast_zip_loops();
+
+}  // namespace alcove
