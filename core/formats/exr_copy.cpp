@@ -143,7 +143,7 @@ struct ExrCopy::Impl {
     for (auto at = header.channels().begin(); at != header.channels().end(); ++at) {
       if (replaced.contains(at.name())) continue;
       const Imf::Channel& channel = at.channel();
-      const std::size_t bytes = channel.type == Imf::HALF ? sizeof(half) : sizeof(float);
+      const std::size_t bytes = channel.type == Imf::HALF ? sizeof(std::uint16_t) : sizeof(float);
       std::vector<char>& samples = passed[{part, at.name()}];
       samples.resize(bytes * rows_of_original.pixels());
       // Whether rows are read or written, the slice begins at the same sample.
@@ -187,7 +187,7 @@ void ExrCopy::write(std::span<const std::span<const float>> planes) {
   Window band = impl_->settings.window;
   band.y += impl_->rows;
   band.height = int(planes[0].size() / std::size_t(band.width));
-  std::deque<std::vector<half>> halves;
+  std::deque<std::vector<std::uint16_t>> halves;
   std::vector<Imf::Slice> slices;
   for (std::size_t i = 0; i < planes.size(); i++)
     slices.push_back(slice_of(band, impl_->settings.planes[i].type, planes[i], halves));

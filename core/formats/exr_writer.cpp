@@ -8,13 +8,13 @@
 #include <ImfStringAttribute.h>
 
 #include <algorithm>
-#include <cmath>
 #include <deque>
 #include <set>
 
 #include "core/base/error.h"
 #include "core/formats/exr.h"
 #include "core/formats/exr_stream.h"
+#include "core/formats/sample_loops.h"
 
 namespace alcove {
 
@@ -63,13 +63,17 @@ Imf::Compression compression_of(const std::string& name) {
 
 Imf::PixelType pixel_type_of(SampleType type) { return type == SampleType::half_float ? Imf::HALF : Imf::FLOAT; }
 
+std::vector<std::uint16_t> halves_of(std::span<const float> floats) {
+  std::vector<std::uint16_t> halves(floats.size());
+  fast_sample_loops().narrow(floats.data(), floats.size(), halves.data());
+  return halves;
+}
+
 Imf::Slice slice_of(const Window& rows, SampleType type, std::span<const float> pixels,
-                    std::deque<std::vector<half>>& halves) {
+                    std::deque<std::vector<std::uint16_t>>& halves) {
   const bool is_half = type == SampleType::half_float;
-  const std::size_t bytes = is_half ? sizeof(half) : sizeof(float);
-  if (is_half)
-    std::ranges::transform(pixels, std::back_inserter(halves.emplace_back()),
-                           [](float x) { return half(std::abs(x) > HALF_MAX ? std::copysign(HALF_MAX, x) : x); });
+  const std::size_t bytes = is_half ? sizeof(std::uint16_t) : sizeof(float);
+  if (is_half) halves.push_back(halves_of(pixels));
   const void* values = is_half ? static_cast<const void*>(halves.back().data()) : pixels.data();
   return Imf::Slice::Make(pixel_type_of(type), values, box_of(rows), bytes, bytes * std::size_t(rows.width));
 }
@@ -121,7 +125,7 @@ void ExrWriter::write(std::span<const std::span<const float>> planes) {
   Window band = impl_->output.data;
   band.y += impl_->rows;
   band.height = int(planes[0].size() / std::size_t(band.width));
-  std::deque<std::vector<half>> halves;
+  std::deque<std::vector<std::uint16_t>> halves;
   Imf::FrameBuffer frame_buffer;
   for (std::size_t i = 0; i < planes.size(); i++) {
     const ExrPlane& plane = impl_->output.planes[i];

@@ -26,7 +26,7 @@ void round_integers(float* values, std::size_t count) {
 
 }  // namespace
 
-ZipUnpacker::ZipUnpacker(const ZipLoops& loops)
+ZipUnpacker::ZipUnpacker(const SampleLoops& loops)
     : loops_(loops), inflater_(libdeflate_alloc_decompressor(), libdeflate_free_decompressor) {
   if (!inflater_) throw std::bad_alloc();
 }

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "core/formats/zip_loops.h"
+#include "core/formats/sample_loops.h"
 
 struct libdeflate_decompressor;
 
@@ -34,7 +34,7 @@ struct ZipChannel {
 /// Unpacks chunks one after the other; each thread has one of its own.
 class ZipUnpacker {
  public:
-  explicit ZipUnpacker(const ZipLoops& loops = fast_zip_loops());
+  explicit ZipUnpacker(const SampleLoops& loops = fast_sample_loops());
   ~ZipUnpacker();
 
   /// Writes the wanted rows of the channels, which stand in the order of their offsets, as floats; integers are
@@ -47,7 +47,7 @@ class ZipUnpacker {
   void read_stored(std::span<const std::uint8_t> bytes, const ZipRows& rows, std::span<const ZipChannel> channels);
   void read_split(const ZipRows& rows, std::span<const ZipChannel> channels);
 
-  const ZipLoops& loops_;
+  const SampleLoops& loops_;
   const std::unique_ptr<libdeflate_decompressor, void (*)(libdeflate_decompressor*)> inflater_;
   std::unique_ptr<std::uint8_t[]> split_;
   std::size_t room_ = 0;  // of it, bytes

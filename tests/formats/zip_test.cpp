@@ -5,8 +5,10 @@
 #include <ImfOutputFile.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <half.h>
 
 #include <bit>
+#include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
@@ -17,7 +19,7 @@
 
 #include "core/base/error.h"
 #include "core/formats/exr.h"
-#include "core/formats/zip_loops.h"
+#include "core/formats/sample_loops.h"
 #include "tests/support/openexr_planes.h"
 #include "tests/support/program.h"
 
@@ -42,8 +44,8 @@ bool has_same_bits(const std::vector<float>& a, const std::vector<float>& b) {
 
 // The loops.
 
-TEST(ZipLoops, make_bytes_of_differences) {
-  for (const auto* loops : {&plain_zip_loops(), &fast_zip_loops()}) {
+TEST(SampleLoops, make_bytes_of_differences) {
+  for (const auto* loops : {&plain_sample_loops(), &fast_sample_loops()}) {
     Bytes bytes{130, 129, 127, 128, 0};
     EXPECT_EQ(loops->sum_of(bytes.data(), bytes.size(), 128), 2);
     EXPECT_EQ(loops->sum_up(bytes.data(), bytes.size(), 128), 2);
@@ -51,8 +53,8 @@ TEST(ZipLoops, make_bytes_of_differences) {
   }
 }
 
-TEST(ZipLoops, put_bytes_at_even_and_odd_places) {
-  for (const auto* loops : {&plain_zip_loops(), &fast_zip_loops()}) {
+TEST(SampleLoops, put_bytes_at_even_and_odd_places) {
+  for (const auto* loops : {&plain_sample_loops(), &fast_sample_loops()}) {
     const Bytes even{1, 3, 5}, odd{2, 4, 6};
     Bytes to(6);
     loops->interleave(even.data(), odd.data(), 3, to.data());
@@ -60,8 +62,8 @@ TEST(ZipLoops, put_bytes_at_even_and_odd_places) {
   }
 }
 
-TEST(ZipLoops, fast_ones_give_the_bits_of_the_plain_ones_at_any_length_and_place) {
-  const ZipLoops &plain = plain_zip_loops(), &fast = fast_zip_loops();
+TEST(SampleLoops, fast_ones_give_the_bits_of_the_plain_ones_at_any_length_and_place) {
+  const SampleLoops &plain = plain_sample_loops(), &fast = fast_sample_loops();
   for (std::size_t place = 0; place < 17; place++)
     for (std::size_t count = 0; count < 100; count++) {
       const Bytes bytes = random_bytes(place + count), others = random_bytes(place + count);
@@ -79,13 +81,13 @@ TEST(ZipLoops, fast_ones_give_the_bits_of_the_plain_ones_at_any_length_and_place
     }
 }
 
-TEST(ZipLoops, every_half_becomes_the_float_that_openexr_makes_of_it) {
+TEST(SampleLoops, every_half_becomes_the_float_that_openexr_makes_of_it) {
   std::vector<std::uint16_t> halves(1 << 16);
   for (std::size_t i = 0; i < halves.size(); i++) halves[i] = std::uint16_t(i);
   for (int order = 0; order < 3; order++) {
     std::vector<float> expected;
     for (const std::uint16_t half : halves) expected.push_back(from_half(half));
-    for (const auto* loops : {&plain_zip_loops(), &fast_zip_loops()})
+    for (const auto* loops : {&plain_sample_loops(), &fast_sample_loops()})
       for (const std::size_t less : {0u, 3u}) {
         std::vector<float> floats(halves.size());
         loops->widen(reinterpret_cast<const std::uint8_t*>(halves.data()), halves.size() - less, floats.data());
@@ -95,6 +97,26 @@ TEST(ZipLoops, every_half_becomes_the_float_that_openexr_makes_of_it) {
       }
     std::ranges::shuffle(halves, random_numbers);
   }
+}
+
+TEST(SampleLoops, floats_become_the_halves_that_openexr_makes_of_them_and_none_becomes_infinite) {
+  std::vector<float> floats{INFINITY, -INFINITY, 65504, 65505, 65520, -65519, 1e30f, -1e30f, 1e-30f, -0.0f};
+  for (std::uint32_t i = 0; i < 1 << 16; i++)  // every half, what lies halfway to the next, and beside both
+    for (const int beside : {-1, 0, 1})
+      for (const std::uint32_t halfway : {0u, 1u << 12}) {
+        const auto bits = std::bit_cast<std::uint32_t>(from_half(std::uint16_t(i)));
+        floats.push_back(std::bit_cast<float>(bits + halfway + std::uint32_t(beside)));
+      }
+  for (int i = 0; i < 1 << 16; i++) floats.push_back(std::bit_cast<float>(std::uint32_t(random_numbers())));
+  for (const auto* loops : {&plain_sample_loops(), &fast_sample_loops()})
+    for (const std::size_t less : {0u, 5u}) {
+      std::vector<std::uint16_t> halves(floats.size());
+      loops->narrow(floats.data(), floats.size() - less, halves.data());
+      for (std::size_t i = 0; i < floats.size() - less; i++) {
+        const float within = std::abs(floats[i]) > HALF_MAX ? std::copysign(float(HALF_MAX), floats[i]) : floats[i];
+        ASSERT_EQ(halves[i], half(within).bits()) << floats[i];
+      }
+    }
 }
 
 // Files.

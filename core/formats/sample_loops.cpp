@@ -1,8 +1,9 @@
 // Plain loops, and those for x86: SSSE3, which nearly all of these processors have, and AVX2 with F16C.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/formats/zip_loops.h"
+#include "core/formats/sample_loops.h"
 
 #include <bit>
+#include <cmath>
 
 #ifdef __x86_64__
 #include <immintrin.h>
@@ -46,7 +47,25 @@ void widen(const std::uint8_t* halves, std::size_t count, float* to) {
     to[i] = widened(std::uint32_t(halves[2 * i]) | std::uint32_t(halves[2 * i + 1]) << 8);
 }
 
-constexpr ZipLoops kPlain{sum_up, sum_of, interleave, widen};
+std::uint16_t narrowed(float value) {
+  constexpr std::uint32_t kInfinity = 0x7f800000, kLargestHalf = 0x477fe000, kLeastNormalHalf = 0x38800000;
+  const auto bits = std::bit_cast<std::uint32_t>(value);
+  const std::uint32_t sign = bits >> 16 & 0x8000, size = bits & 0x7fffffff;
+  if (size > kInfinity) {
+    const std::uint32_t fraction = size >> 13 & 0x3ff;
+    return std::uint16_t(sign | 0x7c00 | fraction | (fraction == 0));
+  }
+  if (size > kLargestHalf) return std::uint16_t(sign | 0x7bff);
+  if (size < kLeastNormalHalf) return std::uint16_t(sign | std::uint32_t(std::nearbyint(std::abs(value) * 0x1p24f)));
+  constexpr std::uint32_t kBias = (127 - 15) << 23, kAlmostHalfStep = 0xfff;
+  return std::uint16_t(sign | (size - kBias + kAlmostHalfStep + (size >> 13 & 1)) >> 13);
+}
+
+void narrow(const float* floats, std::size_t count, std::uint16_t* to) {
+  for (std::size_t i = 0; i < count; i++) to[i] = narrowed(floats[i]);
+}
+
+constexpr SampleLoops kPlain{sum_up, sum_of, interleave, widen, narrow};
 
 #ifdef __x86_64__
 
@@ -105,25 +124,43 @@ __attribute__((target("avx2,f16c"))) void widen_f16c(const std::uint8_t* halves,
   widen(halves + 2 * i, count - i, to + i);
 }
 
-ZipLoops loops_of_processor() {
-  ZipLoops loops{sum_up, sum_of_sse2, interleave_sse2, widen};
+__attribute__((target("avx2,f16c"))) void narrow_f16c(const float* floats, std::size_t count, std::uint16_t* to) {
+  const __m256 largest = _mm256_set1_ps(65504), least = _mm256_set1_ps(-65504);
+  std::size_t i = 0;
+  for (; i + 8 <= count; i += 8) {
+    const __m256 eight = _mm256_loadu_ps(floats + i);
+    if (_mm256_movemask_ps(_mm256_cmp_ps(eight, eight, _CMP_UNORD_Q)) != 0) {
+      narrow(floats + i, 8, to + i);
+      continue;
+    }
+    const __m256 within = _mm256_max_ps(_mm256_min_ps(eight, largest), least);
+    _mm_storeu_si128(reinterpret_cast<__m128i*>(to + i), _mm256_cvtps_ph(within, _MM_FROUND_TO_NEAREST_INT));
+  }
+  narrow(floats + i, count - i, to + i);
+}
+
+SampleLoops loops_of_processor() {
+  SampleLoops loops{sum_up, sum_of_sse2, interleave_sse2, widen, narrow};
   if (__builtin_cpu_supports("ssse3")) loops.sum_up = sum_up_ssse3;
-  if (__builtin_cpu_supports("avx2")) loops.widen = widen_f16c;  // no processor has it without F16C
+  if (__builtin_cpu_supports("avx2")) {  // no processor has it without F16C
+    loops.widen = widen_f16c;
+    loops.narrow = narrow_f16c;
+  }
   return loops;
 }
 
 #else
 
-ZipLoops loops_of_processor() { return kPlain; }
+SampleLoops loops_of_processor() { return kPlain; }
 
 #endif
 
 }  // namespace
 
-const ZipLoops& plain_zip_loops() { return kPlain; }
+const SampleLoops& plain_sample_loops() { return kPlain; }
 
-const ZipLoops& fast_zip_loops() {
-  static const ZipLoops loops = loops_of_processor();
+const SampleLoops& fast_sample_loops() {
+  static const SampleLoops loops = loops_of_processor();
   return loops;
 }
 
