@@ -1,4 +1,4 @@
-// Writes EXR files through OpenEXR, into a stream that keeps what fails.
+// Writes EXR files into a stream that keeps what fails: ZIP by ourselves, all else through OpenEXR.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
@@ -14,6 +14,7 @@
 #include "core/base/error.h"
 #include "core/formats/exr.h"
 #include "core/formats/exr_stream.h"
+#include "core/formats/exr_zip_writer.h"
 #include "core/formats/sample_loops.h"
 
 namespace alcove {
@@ -102,12 +103,29 @@ struct ExrWriter::Impl {
   std::string path;
   ExrOutput output;  // without pixels
   FileStream stream;
-  std::unique_ptr<Imf::OutputFile> file;
-  int rows = 0;  // that are written
+  std::unique_ptr<ZipWriter> zip;
+  std::unique_ptr<Imf::OutputFile> file;  // where it is not ZIP
+  int rows = 0;                           // that are written
 
   Impl(const std::string& path_, const ExrOutput& output_) : path(path_), output(output_), stream(path_) {}
 
-  void begin() { file = std::make_unique<Imf::OutputFile>(stream, header_of(output)); }
+  void begin() {
+    if (output.compression == "zip" || output.compression == "zips")
+      zip = std::make_unique<ZipWriter>(stream, header_of(output));
+    else
+      file = std::make_unique<Imf::OutputFile>(stream, header_of(output));
+  }
+
+  void write_zip(std::span<const std::span<const float>> planes) {
+    std::vector<std::string> channels;
+    for (const auto& plane : output.planes) channels.push_back(plane.channel);
+    run([&] { zip->write(channels, planes); });
+  }
+
+  void end() {
+    if (zip) zip->finish();
+    file.reset();
+  }
 
   template <class Function>
   void run(Function&& function) {
@@ -122,6 +140,7 @@ ExrWriter::~ExrWriter() = default;
 ExrWriter::ExrWriter(ExrWriter&&) noexcept = default;
 
 void ExrWriter::write(std::span<const std::span<const float>> planes) {
+  if (impl_->zip) return impl_->write_zip(planes);
   Window band = impl_->output.data;
   band.y += impl_->rows;
   band.height = int(planes[0].size() / std::size_t(band.width));
@@ -139,15 +158,13 @@ void ExrWriter::write(std::span<const std::span<const float>> planes) {
 }
 
 void ExrWriter::finish(const std::map<std::string, std::string>& late) {
-  impl_->run([&] { impl_->file.reset(); });
+  impl_->run([&] { impl_->end(); });
   if (late.empty()) return impl_->stream.commit();
   for (const auto& [name, value] : late) impl_->output.own_attributes[name] = value;
   Impl with_late(impl_->path, impl_->output);
   with_late.run([&] {
     Imf::InputFile rows(impl_->stream.temporary().c_str());
-    with_late.begin();
-    with_late.file->copyPixels(rows);
-    with_late.file.reset();
+    Imf::OutputFile(with_late.stream, header_of(with_late.output)).copyPixels(rows);
   });
   with_late.stream.commit();
 }

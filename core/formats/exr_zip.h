@@ -11,6 +11,12 @@
 
 namespace alcove {
 
+/// The bytes of a row of all channels of a part whose channels are not subsampled.
+std::size_t zip_row_bytes(const Imf::Header& header);
+
+/// How many rows ZIP or ZIPS puts together.
+int rows_of_zip_chunk(const Imf::Header& header);
+
 /// Whether read_zip_rows() reads these channels of such a part. All else is for OpenEXR.
 bool is_zip_rows(const Imf::Header& header, std::span<const ExrRead> reads);
 

@@ -31,6 +31,18 @@ void interleave(const std::uint8_t* even, const std::uint8_t* odd, std::size_t c
   }
 }
 
+void split(const std::uint8_t* from, std::size_t count, std::uint8_t* even, std::uint8_t* odd) {
+  for (std::size_t i = 0; i < count; i++) {
+    even[i] = from[2 * i];
+    odd[i] = from[2 * i + 1];
+  }
+}
+
+/// From the end on, so that the byte before is still there.
+void subtract(std::uint8_t* bytes, std::size_t count) {
+  for (std::size_t i = count; i-- > 1;) bytes[i] = std::uint8_t(bytes[i] - bytes[i - 1] + kMiddle);
+}
+
 float widened(std::uint32_t half) {
   constexpr std::uint32_t kHalfExponent = 31, kFloatExponent = 255, kBias = 127 - 15;
   const std::uint32_t sign = (half & 0x8000) << 16, exponent = half >> 10 & kHalfExponent, fraction = half & 0x3ff;
@@ -65,7 +77,7 @@ void narrow(const float* floats, std::size_t count, std::uint16_t* to) {
   for (std::size_t i = 0; i < count; i++) to[i] = narrowed(floats[i]);
 }
 
-constexpr SampleLoops kPlain{sum_up, sum_of, interleave, widen, narrow};
+constexpr SampleLoops kPlain{sum_up, sum_of, interleave, split, subtract, widen, narrow};
 
 #ifdef __x86_64__
 
@@ -110,6 +122,26 @@ void interleave_sse2(const std::uint8_t* even, const std::uint8_t* odd, std::siz
   interleave(even + i, odd + i, count - i, to + 2 * i);
 }
 
+void split_sse2(const std::uint8_t* from, std::size_t count, std::uint8_t* even, std::uint8_t* odd) {
+  const __m128i lower = _mm_set1_epi16(0xff);
+  std::size_t i = 0;
+  for (; i + 16 <= count; i += 16) {
+    const __m128i first = load(from + 2 * i), second = load(from + 2 * i + 16);
+    store(even + i, _mm_packus_epi16(_mm_and_si128(first, lower), _mm_and_si128(second, lower)));
+    store(odd + i, _mm_packus_epi16(_mm_srli_epi16(first, 8), _mm_srli_epi16(second, 8)));
+  }
+  split(from + 2 * i, count - i, even + i, odd + i);
+}
+
+void subtract_sse2(std::uint8_t* bytes, std::size_t count) {
+  const __m128i middle = _mm_set1_epi8(char(kMiddle));
+  for (; count > 16; count -= 16) {
+    std::uint8_t* const at = bytes + count - 16;
+    store(at, _mm_add_epi8(_mm_sub_epi8(load(at), load(at - 1)), middle));
+  }
+  subtract(bytes, count);
+}
+
 /// The instruction makes signalling NaNs quiet, so whoever meets a NaN takes the plain loop.
 __attribute__((target("avx2,f16c"))) void widen_f16c(const std::uint8_t* halves, std::size_t count, float* to) {
   const __m128i no_sign = _mm_set1_epi16(0x7fff), infinity = _mm_set1_epi16(0x7c00);
@@ -140,7 +172,7 @@ __attribute__((target("avx2,f16c"))) void narrow_f16c(const float* floats, std::
 }
 
 SampleLoops loops_of_processor() {
-  SampleLoops loops{sum_up, sum_of_sse2, interleave_sse2, widen, narrow};
+  SampleLoops loops{sum_up, sum_of_sse2, interleave_sse2, split_sse2, subtract_sse2, widen, narrow};
   if (__builtin_cpu_supports("ssse3")) loops.sum_up = sum_up_ssse3;
   if (__builtin_cpu_supports("avx2")) {  // no processor has it without F16C
     loops.widen = widen_f16c;

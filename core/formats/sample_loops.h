@@ -7,8 +7,8 @@
 
 namespace alcove {
 
-/// The document "File Layout" of OpenEXR says how bytes of ZIP chunks are packed: those at even places come before those
-/// at odd ones, and each is stored as its difference from the one before it, plus 128.
+/// The document "File Layout" of OpenEXR says how bytes of ZIP chunks are packed: those at even places stand before
+/// those at odd ones, and each is stored as its difference from the one before it, plus 128.
 struct SampleLoops {
   /// Makes bytes of differences. `before` is the byte before the first. Gives the last byte, and `before` where there
   /// is none.
@@ -17,6 +17,10 @@ struct SampleLoops {
   std::uint8_t (*sum_of)(const std::uint8_t* differences, std::size_t count, std::uint8_t before);
   /// Writes 2 * count bytes: the first of `even`, the first of `odd`, the second of `even` ...
   void (*interleave)(const std::uint8_t* even, const std::uint8_t* odd, std::size_t count, std::uint8_t* to);
+  /// The other way: reads 2 * count bytes, and writes them apart.
+  void (*split)(const std::uint8_t* from, std::size_t count, std::uint8_t* even, std::uint8_t* odd);
+  /// Makes differences of bytes; the first byte stays.
+  void (*subtract)(std::uint8_t* bytes, std::size_t count);
   /// Makes floats of half floats, of which each has the lower byte first. A NaN keeps its bits.
   void (*widen)(const std::uint8_t* halves, std::size_t count, float* to);
   /// Makes half floats of floats, rounded to the nearest; what is beyond their range becomes the largest, not infinity.

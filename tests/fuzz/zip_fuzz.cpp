@@ -31,11 +31,12 @@ void compare(ExrFile& file, int part, const std::string& path) {
     if (!channel.subsampled) names.push_back(channel.name);
   const auto planes = rows_of(file, part, names, 0, data.height);
   if (!planes) return;
-  // libdeflate takes some streams that zlib refuses.
-  const auto truth = test::openexr_planes(path, part);
   const int first = data.height / 3, rows = data.height - first;
   const auto lower = rows_of(file, part, names, first, rows);
-  fuzz::require(lower.has_value(), "rows of a part that can be read can be read");
+  // Who reads from the first row on does not need the table of chunks, which may be wrong.
+  if (!lower) return;
+  // libdeflate takes some streams that zlib refuses.
+  const auto truth = test::openexr_planes(path, part);
   const std::size_t before = std::size_t(data.width) * std::size_t(first);
   const auto is_same = [](const float* a, const std::vector<float>& b) {
     return std::memcmp(a, b.data(), b.size() * sizeof(float)) == 0;
