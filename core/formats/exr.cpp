@@ -21,6 +21,7 @@
 #include <ImfOutputFile.h>
 #include <ImfPartType.h>
 #include <ImfStandardAttributes.h>
+#include <ImfStdIO.h>
 #include <ImfStringAttribute.h>
 #include <ImfTestFile.h>
 #include <ImfThreading.h>
@@ -32,6 +33,7 @@
 #include <cmath>
 #include <deque>
 #include <filesystem>
+#include <fstream>
 #include <limits>
 
 #include "core/base/error.h"
@@ -182,6 +184,8 @@ std::optional<std::pair<std::size_t, bool>> place_of_deep(const std::string& cha
 
 struct ExrFile::Impl {
   std::string path, option;
+  std::ifstream bytes;  // it is opened once
+  std::unique_ptr<Imf::StdIFStream> stream;
   std::unique_ptr<Imf::MultiPartInputFile> file;
   std::vector<ExrPart> parts;
   Window display;
@@ -196,12 +200,18 @@ struct ExrFile::Impl {
   std::uint64_t deep_bytes = 0;            // that reading them takes
   std::uint64_t header_bytes = 0;          // of the file
 
-  /// Opens the file again where all threads would work on more bytes than they may.
+  void open(int threads_of_codec) {
+    stream->clear();
+    stream->seekg(0);
+    file = std::make_unique<Imf::MultiPartInputFile>(*stream, threads_of_codec);
+  }
+
+  /// Reads the header again where all threads would work on more bytes than they may.
   void limit_codec() {
     for (const auto& part : parts)
       if (!part.deep) group = std::max(group, group_bytes(part));
     threads = threads_for(group, alcove::codec_bytes);
-    if (threads < Imf::globalThreadCount()) file = std::make_unique<Imf::MultiPartInputFile>(path.c_str(), threads);
+    if (threads < Imf::globalThreadCount()) open(threads);
     codec_bytes = bytes_of_codec(group, threads);
   }
 
@@ -250,9 +260,11 @@ ExrFile::ExrFile(const std::string& path, const char* option) : impl_(std::make_
   if (!std::filesystem::is_regular_file(path))
     fail(ErrorKind::input, "{}: is no regular file; {} takes an EXR file", path, option);
   try {
-    if (!Imf::isOpenExrFile(path.c_str())) fail(ErrorKind::input, "{}: not an OpenEXR file ({})", path, option);
-    impl_->header_bytes = require_sane_header(path, option);
-    impl_->file = std::make_unique<Imf::MultiPartInputFile>(path.c_str());
+    impl_->bytes.open(path, std::ios::binary);
+    impl_->stream = std::make_unique<Imf::StdIFStream>(impl_->bytes, path.c_str());
+    if (!Imf::isOpenExrFile(*impl_->stream)) fail(ErrorKind::input, "{}: not an OpenEXR file ({})", path, option);
+    impl_->header_bytes = require_sane_header(impl_->bytes, path, option);
+    impl_->open(Imf::globalThreadCount());
     for (int part = 0; part < impl_->file->parts(); part++) {
       const auto& header = impl_->file->header(part);
       impl_->parts.push_back(describe(header));
@@ -355,6 +367,8 @@ DeepCounts ExrFile::deep_counts() const { return impl_->deep ? impl_->deep->coun
 
 void ExrFile::close() {
   impl_->file.reset();
+  impl_->stream.reset();
+  impl_->bytes.close();
   impl_->picture.reset();
   impl_->deep.reset();
 }
