@@ -4,6 +4,7 @@
 
 #include <ImfChannelList.h>
 #include <ImfPartType.h>
+#include <ImfStdIO.h>
 
 #include <algorithm>
 #include <atomic>
@@ -42,8 +43,11 @@ ZipWriter::ZipWriter(Imf::OStream& stream, const Imf::Header& header) : stream_(
   row_bytes_ = zip_row_bytes(header_);
   const auto most = std::numeric_limits<int>::max();
   chunks_ = std::vector<Chunk>(std::size_t(std::max(1, kChunksOfThread * exr_threads_for(most, most))));
-  writeMagicNumberAndVersionField(stream_, header_);
-  header_.writeTo(stream_);
+  Imf::StdOSStream head;  // one write instead of hundreds
+  writeMagicNumberAndVersionField(head, header_);
+  header_.writeTo(head);
+  const std::string bytes = head.str();
+  stream_.write(bytes.data(), int(bytes.size()));
   table_ = stream_.tellp();
   const std::vector<std::uint64_t> nowhere((height_ + chunk_rows_ - 1) / chunk_rows_);
   stream_.write(reinterpret_cast<const char*>(nowhere.data()), int(nowhere.size() * sizeof(std::uint64_t)));
