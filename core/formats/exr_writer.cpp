@@ -117,9 +117,13 @@ struct ExrWriter::Impl {
   }
 
   void write_zip(std::span<const std::span<const float>> planes) {
-    std::vector<std::string> channels;
-    for (const auto& plane : output.planes) channels.push_back(plane.channel);
-    run([&] { zip->write(channels, planes); });
+    std::vector<ZipWriter::Source> sources;
+    const auto& channels = zip->header().channels();
+    for (auto at = channels.begin(); at != channels.end(); ++at) {
+      const auto plane = std::ranges::find(output.planes, std::string_view(at.name()), &ExrPlane::channel);
+      sources.push_back({planes[std::size_t(plane - output.planes.begin())].data(), true});
+    }
+    run([&] { zip->write(sources, planes[0].size() / std::size_t(output.data.width)); });
   }
 
   void end() {

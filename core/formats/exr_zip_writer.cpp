@@ -34,6 +34,8 @@ void write_word(Imf::OStream& stream, std::int32_t word) {
 
 }  // namespace
 
+bool is_for_zip_writer(const Imf::Header& header) { return is_zip_rows(header, {}); }
+
 ZipWriter::ZipWriter(Imf::OStream& stream, const Imf::Header& header) : stream_(stream), header_(of_lines(header)) {
   header_.sanityCheck();
   const Window data = window_of(header_.dataWindow());
@@ -57,13 +59,7 @@ std::size_t ZipWriter::rows_of(std::size_t chunk) const {
   return std::min(chunk_rows_, height_ - std::min(height_, chunk * chunk_rows_));
 }
 
-void ZipWriter::write(std::span<const std::string> channels, std::span<const std::span<const float>> planes) {
-  std::vector<Source> sources;
-  for (auto at = header_.channels().begin(); at != header_.channels().end(); ++at) {
-    const auto plane = std::size_t(std::ranges::find(channels, std::string_view(at.name())) - channels.begin());
-    sources.push_back({at.channel().type == Imf::HALF, planes[plane].data()});
-  }
-  const std::size_t rows = planes[0].size() / width_;
+void ZipWriter::write(std::span<const Source> sources, std::size_t rows) {
   if (rows > height_ - offsets_.size() * chunk_rows_ - chunks_[0].rows)
     throw std::logic_error("there are more rows than pixels");
   for (std::size_t row = 0; row < rows;) {
@@ -92,16 +88,19 @@ void ZipWriter::write(std::span<const std::string> channels, std::span<const std
 void ZipWriter::add_rows(Chunk& chunk, std::span<const Source> sources, std::size_t first, std::size_t rows) const {
   chunk.bytes.resize((chunk.rows + rows) * row_bytes_);
   std::uint8_t* to = chunk.bytes.data() + chunk.rows * row_bytes_;
-  for (std::size_t row = first; row < first + rows; row++)
-    for (const auto& source : sources) {
-      const float* const from = source.from + row * width_;
-      const std::size_t bytes = width_ * (source.is_half ? sizeof(std::uint16_t) : sizeof(float));
-      if (source.is_half)
-        fast_sample_loops().narrow(from, width_, reinterpret_cast<std::uint16_t*>(to));
+  for (std::size_t row = first; row < first + rows; row++) {
+    auto source = sources.begin();
+    for (auto at = header_.channels().begin(); at != header_.channels().end(); ++at, ++source) {
+      const bool is_half = at.channel().type == Imf::HALF, narrows = is_half && source->is_float;
+      const std::size_t bytes = width_ * (is_half ? sizeof(std::uint16_t) : sizeof(float));
+      const auto* from = static_cast<const std::byte*>(source->samples) + row * (narrows ? 2 : 1) * bytes;
+      if (narrows)
+        fast_sample_loops().narrow(reinterpret_cast<const float*>(from), width_, reinterpret_cast<std::uint16_t*>(to));
       else
         std::memcpy(to, from, bytes);
       to += bytes;
     }
+  }
   chunk.rows += rows;
 }
 

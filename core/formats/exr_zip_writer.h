@@ -8,22 +8,31 @@
 
 #include <cstdint>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "core/formats/zip_chunk.h"
 
 namespace alcove {
 
+/// Whether ZipWriter writes such a part: of ZIP or ZIPS, and without subsampled channels.
+bool is_for_zip_writer(const Imf::Header& header);
+
 /// A file of one part, from top to bottom. Its bytes are the same on any number of threads, and whatever rows it gets
 /// at once.
 class ZipWriter : private Imf::GenericOutputFile {
  public:
-  /// Begins the file. The header's channels are half floats or floats, its compression is ZIP or ZIPS.
+  /// Samples of a channel, row by row: as the file has them, or floats that become half floats there.
+  struct Source {
+    const void* samples;
+    bool is_float;  // though the channel may be of half floats
+  };
+
+  /// Begins the file. The header is one for it.
   ZipWriter(Imf::OStream& stream, const Imf::Header& header);
 
-  /// Writes the next rows, whole ones, of the planes that these channels are made of.
-  void write(std::span<const std::string> channels, std::span<const std::span<const float>> planes);
+  const Imf::Header& header() const { return header_; }
+  /// Writes the next rows. There is a source for each channel of the header, in its order.
+  void write(std::span<const Source> sources, std::size_t rows);
   /// Says where the chunks are, once all rows are written.
   void finish();
 
@@ -35,12 +44,6 @@ class ZipWriter : private Imf::GenericOutputFile {
     ZipPacker packer;
     std::span<const std::uint8_t> stored;
   };
-  /// A channel of the header, and its rows.
-  struct Source {
-    bool is_half;
-    const float* from;
-  };
-
   std::size_t rows_of(std::size_t chunk) const;
   void add_rows(Chunk& chunk, std::span<const Source> sources, std::size_t first, std::size_t rows) const;
   void write_chunks(std::span<Chunk> chunks);
