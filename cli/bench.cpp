@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/bench/bench.h"
 #include "core/bench/bench_batch.h"
+#include "core/bench/bench_host.h"
 #include "core/bench/stability.h"
 
 #include <algorithm>
@@ -22,7 +23,7 @@ struct BenchArguments {
   std::string suite, data, json, csv, report, limits, yardstick;
   gpu::DeviceOptions device;
   int repeats = 0, reference_slices = -1, batch = 0;
-  bool quiet = false, stability = false;
+  bool quiet = false, stability = false, host = false;
 };
 
 std::vector<OptionRow> rows_of(BenchArguments& a) {
@@ -41,6 +42,8 @@ std::vector<OptionRow> rows_of(BenchArguments& a) {
       "--batch", a.batch, "FRAMES", between(1, 100000),
       "instead: time a run of so many frames against its files alone and its kernels alone, for the first candidate");
   batch->alone = "240";
+  options.flag("--host", a.host,
+               "instead: time the steps of each frame, from its files to its output, for the first candidate");
   options.flag("--stability", a.stability,
                "instead: measure where each estimator's numbers fail, along depth, radius, field of view, tilt, bits "
                "and world offset; no suite");
@@ -71,20 +74,22 @@ void check_purpose(const BenchArguments& a) {
   if (a.stability)
     refuse("--stability", {{"SUITE", !a.suite.empty()},
                            {"--batch", a.batch > 0},
+                           {"--host", a.host},
                            {"--data", !a.data.empty()},
                            {"--csv", !a.csv.empty()},
                            {"--limits", !a.limits.empty()},
                            {"--yardstick", !a.yardstick.empty()},
                            {"--repeats", has_repeats},
                            {"--reference-slices", has_slices}});
-  else if (a.batch > 0)
-    refuse("--batch", {{"--json", !a.json.empty()},
-                       {"--csv", !a.csv.empty()},
-                       {"--report", !a.report.empty()},
-                       {"--limits", !a.limits.empty()},
-                       {"--yardstick", !a.yardstick.empty()},
-                       {"--repeats", has_repeats},
-                       {"--reference-slices", has_slices}});
+  else if (a.batch > 0 || a.host)
+    refuse(a.host ? "--host" : "--batch", {{"--batch", a.host && a.batch > 0},
+                                           {"--json", !a.json.empty()},
+                                           {"--csv", !a.csv.empty()},
+                                           {"--report", !a.report.empty()},
+                                           {"--limits", !a.limits.empty()},
+                                           {"--yardstick", !a.yardstick.empty()},
+                                           {"--repeats", has_repeats && !a.host},
+                                           {"--reference-slices", has_slices}});
 }
 
 Command bench_for(BenchArguments& a) {
@@ -144,14 +149,31 @@ std::vector<BenchCandidate> candidates_of(const Suite& suite, const std::string&
   return candidates;
 }
 
+/// The settings of the first candidate for a frame, as a run takes them.
+Settings run_settings_of(const Suite& suite, const SuiteFrame& frame, const BenchArguments& a) {
+  Settings settings = settings_of(suite.candidates.front(), frame, a.suite);
+  if (!settings.estimator.radius) settings.estimator.radius = frame.radius;
+  settings.device.device = a.device.choice;
+  settings.device.require_gpu = a.device.require_gpu;
+  return settings;
+}
+
+/// The steps of every frame.
+void time_hosts(const Suite& suite, const BenchArguments& a) {
+  for (const auto& frame : suite.frames) {
+    const auto steps = time_host(run_settings_of(suite, frame, a), suite.repeats);
+    double ms = 0;
+    for (const auto& step : steps) ms += step.ms;
+    fmt::print("{}: {:.1f} ms\n{:<10} {:>10} {:>12}\n", frame.name, ms, "step", "ms", "bytes");
+    for (const auto& step : steps) fmt::print("{:<10} {:>10.2f} {:>12}\n", step.name, step.ms, step.bytes);
+    (void)std::fflush(stdout);
+  }
+}
+
 /// Runs of the first candidate, on every frame.
 void time_batches(const Suite& suite, const BenchArguments& a) {
   for (const auto& frame : suite.frames) {
-    Settings settings = settings_of(suite.candidates.front(), frame, a.suite);
-    if (!settings.estimator.radius) settings.estimator.radius = frame.radius;
-    settings.device.device = a.device.choice;
-    settings.device.require_gpu = a.device.require_gpu;
-    const BatchTimes times = time_batch(settings, a.batch);
+    const BatchTimes times = time_batch(run_settings_of(suite, frame, a), a.batch);
     fmt::print(
         "{}: {} frames, {} at once: {:.2f} s; files alone {:.2f} s, kernels alone {:.2f} s: {:.2f} of their sum\n",
         frame.name, times.frames, times.at_once, times.run_s, times.files_s, times.compute_s,
@@ -200,8 +222,8 @@ int bench_command(const std::vector<std::string>& arguments) {
   Suite suite = read_suite(a.suite, a.data);
   if (a.repeats) suite.repeats = a.repeats;
   if (a.reference_slices >= 0) suite.reference_slices = a.reference_slices;
-  if (a.batch) {
-    time_batches(suite, a);
+  if (a.host || a.batch) {
+    a.host ? time_hosts(suite, a) : time_batches(suite, a);
     return 0;
   }
   std::vector<std::string> inputs{a.suite, a.limits};

@@ -3,49 +3,15 @@
 #include "core/bench/bench_batch.h"
 
 #include <atomic>
-#include <cstdio>
-#include <cstdlib>
-#include <filesystem>
 #include <thread>
 
-#include "core/base/error.h"
-#include "core/base/system.h"
+#include "core/bench/scratch_folder.h"
 #include "core/run/batch.h"
 #include "core/run/frame_files.h"
 #include "core/run/pipeline.h"
 
 namespace alcove {
 namespace {
-
-namespace fs = std::filesystem;
-
-/// The folder where files are kept for a while: std::filesystem::temp_directory_path() would not say which place it
-/// cannot use.
-fs::path folder_of_scratch() {
-  const char* variable = std::getenv("TMPDIR");
-  return variable && *variable ? variable : P_tmpdir;
-}
-
-/// A folder that is deleted with all that is in it.
-class ScratchFolder {
- public:
-  // make_unique_folder() draws the six letters.
-  ScratchFolder() : path_((folder_of_scratch() / ("alcove-bench-" + std::string(6, 'X'))).string()) {
-    if (const auto why = make_unique_folder(path_))
-      fail(ErrorKind::output, "{}: no folder for the frames can be made: {}; the variable TMPDIR names another place",
-           path_, why.message());
-  }
-  ~ScratchFolder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  ScratchFolder(const ScratchFolder&) = delete;
-  std::string file(int frame) const { return fmt::format("{}/ao.{:04}.exr", path_, frame); }
-  std::string pattern() const { return path_ + "/ao.%04d.exr"; }
-
- private:
-  std::string path_;
-};
 
 /// Returns the seconds that so many threads take to call the function with 0 to count - 1.
 template <class Function>

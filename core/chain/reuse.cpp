@@ -107,6 +107,13 @@ LastFrame::Hashes LastFrame::hashes_of(const FrameInputs& frame, const Estimator
   return hashes;
 }
 
+bool LastFrame::is_worth_comparing(const FrameInputs& frame) const {
+  constexpr double kBytesPerMs = 4e6;  // that are hashed; half of what was measured
+  double bytes = 0;
+  for (const auto* plane : frame.planes.entries) bytes += plane ? double(plane->bytes()) : 0;
+  return ms_ == 0 || ms_ > bytes / kBytesPerMs;
+}
+
 bool LastFrame::is_same(gpu::Recorder& gpu, FrameInputs& frame, const EstimatorSettings& settings) {
   Hashes now = hashes_of(frame, settings);
   const bool had = outputs_.has_value();

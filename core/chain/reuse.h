@@ -20,6 +20,10 @@ class LastFrame {
   /// of its pixels are as they were, frame.changes says which. Call it once the planes are read, and keep() once the
   /// frame is computed; until then nothing is remembered.
   bool is_same(gpu::Recorder& gpu, FrameInputs& frame, const EstimatorSettings& settings);
+  /// Whether frames take longer to compute than to compare, by what was said of the last; where nothing was, they may.
+  bool is_worth_comparing(const FrameInputs& frame) const;
+  /// Says how long the device took for a frame of which all was computed; 0: it has no clock.
+  void took(double ms) { ms_ = ms; }
   void keep(const FrameOutputs& outputs) { outputs_ = outputs; }
   void forget() { outputs_.reset(); }
 
@@ -35,6 +39,7 @@ class LastFrame {
   static Hashes hashes_of(const FrameInputs& frame, const EstimatorSettings& settings);
 
   Hashes last_;
+  double ms_ = 0;  // of a whole frame; 0: nobody knows
   std::optional<FrameOutputs> outputs_;
 };
 

@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "core/formats/sample_loops.h"
+
 namespace alcove {
 namespace {
 
@@ -39,13 +41,10 @@ bool expand_runs(std::span<const std::uint8_t> packed, std::span<std::uint8_t> t
 
 /// Sums differences up, and puts the second half's bytes between those of the first.
 void put_together(std::span<std::uint8_t> split, std::span<std::uint8_t> to) {
-  constexpr unsigned kMiddle = 128;
-  for (std::size_t i = 1; i < split.size(); i++) split[i] = std::uint8_t(split[i - 1] + split[i] - kMiddle);
+  const SampleLoops& loops = fast_sample_loops();
   const std::size_t half = (split.size() + 1) / 2;
-  for (std::size_t i = 0; i < split.size() / 2; i++) {
-    to[2 * i] = split[i];
-    to[2 * i + 1] = split[half + i];
-  }
+  loops.sum_up(split.data() + 1, split.size() - 1, split[0]);
+  loops.interleave(split.data(), split.data() + half, split.size() / 2, to.data());
   if (split.size() % 2) to.back() = split[half - 1];
 }
 

@@ -21,6 +21,7 @@
 #include <ImfOutputFile.h>
 #include <ImfPartType.h>
 #include <ImfStandardAttributes.h>
+#include <ImfStdIO.h>
 #include <ImfStringAttribute.h>
 #include <ImfTestFile.h>
 #include <ImfThreading.h>
@@ -32,8 +33,8 @@
 #include <cmath>
 #include <deque>
 #include <filesystem>
+#include <fstream>
 #include <limits>
-#include <set>
 
 #include "core/base/error.h"
 #include "core/base/file.h"
@@ -41,6 +42,7 @@
 #include "core/formats/deep_exr.h"
 #include "core/formats/exr_attributes.h"
 #include "core/formats/exr_header.h"
+#include "core/formats/exr_zip.h"
 #include "core/formats/image_io.h"
 
 namespace alcove {
@@ -49,12 +51,6 @@ namespace {
 
 constexpr std::size_t kLongestText = std::size_t(1) << 16;  // of an attribute that is looked at
 constexpr std::size_t kMostPixels = std::size_t(1) << 28;   // in host memory: one gigabyte per channel
-
-SampleType type_of(Imf::PixelType type) {
-  return type == Imf::HALF    ? SampleType::half_float
-         : type == Imf::FLOAT ? SampleType::single_float
-                              : SampleType::integer;
-}
 
 /// How many rows are compressed together, as the specification of OpenEXR's file layout has it.
 int rows_together(const Imf::Header& header) {
@@ -122,7 +118,7 @@ ExrPart describe(const Imf::Header& header) {
   if (Imf::hasMultiView(header)) part.multi_view = Imf::multiView(header);
   for (auto channel = header.channels().begin(); channel != header.channels().end(); ++channel) {
     const auto& c = channel.channel();
-    part.channels.push_back({channel.name(), type_of(c.type), c.xSampling != 1 || c.ySampling != 1});
+    part.channels.push_back({channel.name(), sample_type_of(c.type), c.xSampling != 1 || c.ySampling != 1});
   }
   return part;
 }
@@ -188,12 +184,15 @@ std::optional<std::pair<std::size_t, bool>> place_of_deep(const std::string& cha
 
 struct ExrFile::Impl {
   std::string path, option;
+  std::ifstream bytes;  // it is opened once
+  std::unique_ptr<Imf::StdIFStream> stream;
   std::unique_ptr<Imf::MultiPartInputFile> file;
   std::vector<ExrPart> parts;
   Window display;
   double pixel_aspect = 1;
   std::uint64_t group = 0;                 // bytes of the rows that are decoded together; 0 where there is no file
   std::uint64_t codec_bytes = 0;           // that reading takes
+  int threads = 0;                         // that may read it
   std::unique_ptr<PictureReader> picture;  // where there is no file
   Image image;                             // where there is no picture either
   std::unique_ptr<DeepReader> deep;        // where deep parts are taken
@@ -201,13 +200,34 @@ struct ExrFile::Impl {
   std::uint64_t deep_bytes = 0;            // that reading them takes
   std::uint64_t header_bytes = 0;          // of the file
 
-  /// Opens the file again where all threads would work on more bytes than they may.
+  void open(int threads_of_codec) {
+    stream->clear();
+    stream->seekg(0);
+    file = std::make_unique<Imf::MultiPartInputFile>(*stream, threads_of_codec);
+  }
+
+  /// Reads the header again where all threads would work on more bytes than they may.
   void limit_codec() {
     for (const auto& part : parts)
       if (!part.deep) group = std::max(group, group_bytes(part));
-    const int threads = threads_for(group, alcove::codec_bytes);
-    if (threads < Imf::globalThreadCount()) file = std::make_unique<Imf::MultiPartInputFile>(path.c_str(), threads);
+    threads = threads_for(group, alcove::codec_bytes);
+    if (threads < Imf::globalThreadCount()) open(threads);
     codec_bytes = bytes_of_codec(group, threads);
+  }
+
+  /// Reads rows of channels of one part.
+  void read_rows(int part, std::span<const ExrRead> reads, int first, int rows) {
+    Imf::InputPart input(*file, part);
+    if (is_zip_rows(input.header(), reads)) return read_zip_rows(input, reads, first, rows, threads);
+    Window band = parts[std::size_t(part)].data;
+    band.y += first;
+    band.height = rows;
+    const std::size_t row_bytes = sizeof(float) * std::size_t(band.width);
+    Imf::FrameBuffer frame_buffer;
+    for (const auto& read : reads)
+      frame_buffer.insert(read.channel, Imf::Slice::Make(Imf::FLOAT, read.to, box_of(band), sizeof(float), row_bytes));
+    input.setFrameBuffer(frame_buffer);
+    input.readPixels(band.y, band.y + band.height - 1);
   }
 
   /// Reads those of the channels that samples make.
@@ -240,9 +260,11 @@ ExrFile::ExrFile(const std::string& path, const char* option) : impl_(std::make_
   if (!std::filesystem::is_regular_file(path))
     fail(ErrorKind::input, "{}: is no regular file; {} takes an EXR file", path, option);
   try {
-    if (!Imf::isOpenExrFile(path.c_str())) fail(ErrorKind::input, "{}: not an OpenEXR file ({})", path, option);
-    impl_->header_bytes = require_sane_header(path, option);
-    impl_->file = std::make_unique<Imf::MultiPartInputFile>(path.c_str());
+    impl_->bytes.open(path, std::ios::binary);
+    impl_->stream = std::make_unique<Imf::StdIFStream>(impl_->bytes, path.c_str());
+    if (!Imf::isOpenExrFile(*impl_->stream)) fail(ErrorKind::input, "{}: not an OpenEXR file ({})", path, option);
+    impl_->header_bytes = require_sane_header(impl_->bytes, path, option);
+    impl_->open(Imf::globalThreadCount());
     for (int part = 0; part < impl_->file->parts(); part++) {
       const auto& header = impl_->file->header(part);
       impl_->parts.push_back(describe(header));
@@ -345,6 +367,8 @@ DeepCounts ExrFile::deep_counts() const { return impl_->deep ? impl_->deep->coun
 
 void ExrFile::close() {
   impl_->file.reset();
+  impl_->stream.reset();
+  impl_->bytes.close();
   impl_->picture.reset();
   impl_->deep.reset();
 }
@@ -370,23 +394,12 @@ void ExrFile::read(std::span<const ExrRead> reads, int first, int rows) {
     return;
   }
   impl_->read_deep(reads, first, rows);
-  std::set<int> parts;
+  std::map<int, std::vector<ExrRead>> parts;
   for (const auto& read : reads)
-    if (!impl_->parts[std::size_t(read.part)].deep) parts.insert(read.part);
-  for (const int part : parts) {
-    Window data = impl_->parts[std::size_t(part)].data;
-    data.y += first;
-    data.height = rows;
-    const std::size_t row_bytes = sizeof(float) * std::size_t(data.width);
-    Imf::FrameBuffer frame_buffer;
-    for (const auto& read : reads)
-      if (read.part == part)
-        frame_buffer.insert(read.channel,
-                            Imf::Slice::Make(Imf::FLOAT, read.to, box_of(data), sizeof(float), row_bytes));
+    if (!impl_->parts[std::size_t(read.part)].deep) parts[read.part].push_back(read);
+  for (const auto& [part, of_part] : parts) {
     try {
-      Imf::InputPart input(*impl_->file, part);
-      input.setFrameBuffer(frame_buffer);
-      input.readPixels(data.y, data.y + data.height - 1);
+      impl_->read_rows(part, of_part, first, rows);
     } catch (const std::exception& error) {
       fail(ErrorKind::input, "{}: the pixels of part {} cannot be read ({}), the file is damaged or incomplete: {}",
            impl_->path, part, impl_->option, one_line(error));

@@ -162,6 +162,9 @@ Image read_exr_image(const std::string& path, const std::vector<std::string>& ch
 /// short shows it in no other way. Gives nothing if the file is cut, is no EXR, or has no such attribute.
 std::optional<std::string> attribute_of_whole_exr(const std::string& path, const std::string& name);
 
+/// The half floats that are written for floats: rounded to the nearest; those beyond their range become the largest.
+std::vector<std::uint16_t> halves_of(std::span<const float> floats);
+
 /// Gives the value of a half float's bits.
 float from_half(std::uint16_t bits);
 

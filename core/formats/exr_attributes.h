@@ -4,6 +4,7 @@
 
 #include <ImathBox.h>
 #include <ImfHeader.h>
+#include <ImfPixelType.h>
 
 #include <exception>
 #include <string>
@@ -23,6 +24,12 @@ inline Window window_of(const Imath::Box2i& box) {
 
 inline Imath::Box2i box_of(const Window& window) {
   return {{window.x, window.y}, {window.x + window.width - 1, window.y + window.height - 1}};
+}
+
+inline SampleType sample_type_of(Imf::PixelType type) {
+  return type == Imf::HALF    ? SampleType::half_float
+         : type == Imf::FLOAT ? SampleType::single_float
+                              : SampleType::integer;
 }
 
 /// Gives OpenEXR's description of an error on one line.

@@ -23,6 +23,7 @@
 
 #include "core/base/text.h"
 #include "core/formats/exr_stream.h"
+#include "core/formats/exr_zip_writer.h"
 
 namespace alcove {
 namespace {
@@ -65,7 +66,8 @@ struct ExrCopy::Impl {
   ExrCopySettings settings;
   FileStream stream;
   std::unique_ptr<Imf::MultiPartInputFile> original;
-  std::unique_ptr<Imf::MultiPartOutputFile> file;
+  std::unique_ptr<ZipWriter> zip;                                   // where the only part is such lines
+  std::unique_ptr<Imf::MultiPartOutputFile> file;                   // where it is not
   std::vector<bool> by_rows;                                        // of each part; else by chunks
   std::map<std::pair<int, std::string>, std::vector<char>> passed;  // rows of channels that pass through
   int rows = 0;                                                     // that are written
@@ -125,10 +127,23 @@ struct ExrCopy::Impl {
     return header;
   }
 
-  void begin() {
+  /// Whether ZipWriter writes the only part. OpenEXR refuses what would become integers.
+  bool is_for_zip(const Imf::Header& header) const {
+    const auto is_integer = [&](const CopiedPlane& plane) {
+      return header.channels()[plane.channel.c_str()].type == Imf::UINT;
+    };
+    return is_for_zip_writer(header) && settings.window == window_of(original->header(0).dataWindow()) &&
+           std::ranges::none_of(settings.planes, is_integer);
+  }
+
+  /// `copies_chunks`: they come from a file that is whole already.
+  void begin(bool copies_chunks = false) {
     std::vector<Imf::Header> headers;
     for (int part = 0; part < original->parts(); part++) headers.push_back(header_of(part));
-    file = std::make_unique<Imf::MultiPartOutputFile>(stream, headers.data(), int(headers.size()));
+    if (!copies_chunks && headers.size() == 1 && by_rows[0] && is_for_zip(headers[0]))
+      zip = std::make_unique<ZipWriter>(stream, headers[0]);
+    else
+      file = std::make_unique<Imf::MultiPartOutputFile>(stream, headers.data(), int(headers.size()));
   }
 
   /// Reads rows of all channels of a part that pass through, and adds them to what is written of it.
@@ -143,7 +158,7 @@ struct ExrCopy::Impl {
     for (auto at = header.channels().begin(); at != header.channels().end(); ++at) {
       if (replaced.contains(at.name())) continue;
       const Imf::Channel& channel = at.channel();
-      const std::size_t bytes = channel.type == Imf::HALF ? sizeof(half) : sizeof(float);
+      const std::size_t bytes = channel.type == Imf::HALF ? sizeof(std::uint16_t) : sizeof(float);
       std::vector<char>& samples = passed[{part, at.name()}];
       samples.resize(bytes * rows_of_original.pixels());
       // Whether rows are read or written, the slice begins at the same sample.
@@ -158,6 +173,22 @@ struct ExrCopy::Impl {
       input.setFrameBuffer(from);
       input.readPixels(band.y, band.y + band.height - 1);
     });
+  }
+
+  /// Writes rows, of which the planes begin with the first.
+  void write_zip(const Window& band, std::span<const std::span<const float>> planes) {
+    Imf::FrameBuffer ignored;
+    read_rows(0, band, ignored);
+    std::vector<ZipWriter::Source> sources;
+    const auto& channels = zip->header().channels();
+    for (auto at = channels.begin(); at != channels.end(); ++at) {
+      const auto plane = std::ranges::find(settings.planes, std::string_view(at.name()), &CopiedPlane::channel);
+      if (plane != settings.planes.end())
+        sources.push_back({planes[std::size_t(plane - settings.planes.begin())].data(), true});
+      else
+        sources.push_back({passed.at({0, at.name()}).data(), false});
+    }
+    zip->write(sources, std::size_t(band.height));
   }
 
   /// Writes rows of every part that is copied by rows; `planes` has a slice for each plane.
@@ -187,13 +218,15 @@ void ExrCopy::write(std::span<const std::span<const float>> planes) {
   Window band = impl_->settings.window;
   band.y += impl_->rows;
   band.height = int(planes[0].size() / std::size_t(band.width));
-  std::deque<std::vector<half>> halves;
+  std::deque<std::vector<std::uint16_t>> halves;
   std::vector<Imf::Slice> slices;
-  for (std::size_t i = 0; i < planes.size(); i++)
+  for (std::size_t i = 0; !impl_->zip && i < planes.size(); i++)
     slices.push_back(slice_of(band, impl_->settings.planes[i].type, planes[i], halves));
   for (int done = 0; done < band.height; done += int(kRowsOfOriginal)) {
     const Window part{band.x, band.y + done, band.width, std::min(int(kRowsOfOriginal), band.height - done)};
-    impl_->run([&] { impl_->write_rows(part, slices); });
+    std::vector<std::span<const float>> rows;
+    for (const auto& plane : planes) rows.push_back(plane.subspan(std::size_t(done) * std::size_t(band.width)));
+    impl_->run([&] { impl_->zip ? impl_->write_zip(part, rows) : impl_->write_rows(part, slices); });
   }
   impl_->rows += band.height;
 }
@@ -202,6 +235,7 @@ void ExrCopy::finish(const std::map<std::string, std::string>& late) {
   impl_->run([&] {
     for (int part = 0; part < impl_->original->parts(); part++)
       if (!impl_->by_rows[std::size_t(part)]) copy_chunks(*impl_->original, *impl_->file, part);
+    if (impl_->zip) impl_->zip->finish();
     impl_->file.reset();
   });
   if (late.empty()) return impl_->stream.commit();
@@ -209,7 +243,7 @@ void ExrCopy::finish(const std::map<std::string, std::string>& late) {
   Impl with_late(impl_->path, impl_->settings);
   with_late.open();
   with_late.run([&] {
-    with_late.begin();
+    with_late.begin(true);
     Imf::MultiPartInputFile whole(impl_->stream.temporary().c_str());
     for (int part = 0; part < whole.parts(); part++) copy_chunks(whole, *with_late.file, part);
     with_late.file.reset();

@@ -6,7 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
+#include <istream>
 #include <optional>
 
 #include "core/base/error.h"
@@ -25,7 +25,7 @@ constexpr std::uint64_t kPixelsPerByte = 65536;
 constexpr std::uint64_t kMostBytes = 32 << 20;
 
 struct Reader {
-  std::ifstream file;
+  std::istream& file;
   std::uint64_t size = 0;
 
   std::uint64_t left() { return size - std::uint64_t(file.tellg()); }
@@ -59,9 +59,9 @@ struct Claim {
 /// A header being walked through.
 class Walk {
  public:
-  Walk(const std::string& path, const char* option) : path_(path), option_(option) {
+  Walk(std::istream& file, const std::string& path, const char* option) : path_(path), option_(option), reader_{file} {
     std::error_code error;
-    reader_ = {std::ifstream(path, std::ios::binary), std::filesystem::file_size(path, error)};
+    reader_.size = std::filesystem::file_size(path, error);
     const auto magic = reader_.word();
     const auto version = reader_.word();
     if (error || !magic || !version) refuse("the file ends in it");
@@ -142,6 +142,8 @@ class Walk {
 
 }  // namespace
 
-std::uint64_t require_sane_header(const std::string& path, const char* option) { return Walk(path, option).check(); }
+std::uint64_t require_sane_header(std::istream& file, const std::string& path, const char* option) {
+  return Walk(file, path, option).check();
+}
 
 }  // namespace alcove

@@ -7,8 +7,8 @@
 #include <ImfFrameBuffer.h>
 #include <ImfIO.h>
 #include <ImfPixelType.h>
-#include <half.h>
 
+#include <cstdint>
 #include <deque>
 #include <optional>
 #include <span>
@@ -72,6 +72,6 @@ Imf::PixelType pixel_type_of(SampleType type);
 /// Rows of a plane as OpenEXR takes them; `halves` keeps those that are converted. Values are rounded to the nearest
 /// half; beyond half's range they become its largest value, not infinity.
 Imf::Slice slice_of(const Window& rows, SampleType type, std::span<const float> pixels,
-                    std::deque<std::vector<half>>& halves);
+                    std::deque<std::vector<std::uint16_t>>& halves);
 
 }  // namespace alcove

@@ -1,4 +1,4 @@
-// Writes EXR files through OpenEXR, into a stream that keeps what fails.
+// Writes EXR files into a stream that keeps what fails: ZIP by ourselves, all else through OpenEXR.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
@@ -8,13 +8,14 @@
 #include <ImfStringAttribute.h>
 
 #include <algorithm>
-#include <cmath>
 #include <deque>
 #include <set>
 
 #include "core/base/error.h"
 #include "core/formats/exr.h"
 #include "core/formats/exr_stream.h"
+#include "core/formats/exr_zip_writer.h"
+#include "core/formats/sample_loops.h"
 
 namespace alcove {
 
@@ -63,13 +64,17 @@ Imf::Compression compression_of(const std::string& name) {
 
 Imf::PixelType pixel_type_of(SampleType type) { return type == SampleType::half_float ? Imf::HALF : Imf::FLOAT; }
 
+std::vector<std::uint16_t> halves_of(std::span<const float> floats) {
+  std::vector<std::uint16_t> halves(floats.size());
+  fast_sample_loops().narrow(floats.data(), floats.size(), halves.data());
+  return halves;
+}
+
 Imf::Slice slice_of(const Window& rows, SampleType type, std::span<const float> pixels,
-                    std::deque<std::vector<half>>& halves) {
+                    std::deque<std::vector<std::uint16_t>>& halves) {
   const bool is_half = type == SampleType::half_float;
-  const std::size_t bytes = is_half ? sizeof(half) : sizeof(float);
-  if (is_half)
-    std::ranges::transform(pixels, std::back_inserter(halves.emplace_back()),
-                           [](float x) { return half(std::abs(x) > HALF_MAX ? std::copysign(HALF_MAX, x) : x); });
+  const std::size_t bytes = is_half ? sizeof(std::uint16_t) : sizeof(float);
+  if (is_half) halves.push_back(halves_of(pixels));
   const void* values = is_half ? static_cast<const void*>(halves.back().data()) : pixels.data();
   return Imf::Slice::Make(pixel_type_of(type), values, box_of(rows), bytes, bytes * std::size_t(rows.width));
 }
@@ -98,12 +103,33 @@ struct ExrWriter::Impl {
   std::string path;
   ExrOutput output;  // without pixels
   FileStream stream;
-  std::unique_ptr<Imf::OutputFile> file;
-  int rows = 0;  // that are written
+  std::unique_ptr<ZipWriter> zip;
+  std::unique_ptr<Imf::OutputFile> file;  // where it is not ZIP
+  int rows = 0;                           // that are written
 
   Impl(const std::string& path_, const ExrOutput& output_) : path(path_), output(output_), stream(path_) {}
 
-  void begin() { file = std::make_unique<Imf::OutputFile>(stream, header_of(output)); }
+  void begin() {
+    if (output.compression == "zip" || output.compression == "zips")
+      zip = std::make_unique<ZipWriter>(stream, header_of(output));
+    else
+      file = std::make_unique<Imf::OutputFile>(stream, header_of(output));
+  }
+
+  void write_zip(std::span<const std::span<const float>> planes) {
+    std::vector<ZipWriter::Source> sources;
+    const auto& channels = zip->header().channels();
+    for (auto at = channels.begin(); at != channels.end(); ++at) {
+      const auto plane = std::ranges::find(output.planes, std::string_view(at.name()), &ExrPlane::channel);
+      sources.push_back({planes[std::size_t(plane - output.planes.begin())].data(), true});
+    }
+    run([&] { zip->write(sources, planes[0].size() / std::size_t(output.data.width)); });
+  }
+
+  void end() {
+    if (zip) zip->finish();
+    file.reset();
+  }
 
   template <class Function>
   void run(Function&& function) {
@@ -118,10 +144,11 @@ ExrWriter::~ExrWriter() = default;
 ExrWriter::ExrWriter(ExrWriter&&) noexcept = default;
 
 void ExrWriter::write(std::span<const std::span<const float>> planes) {
+  if (impl_->zip) return impl_->write_zip(planes);
   Window band = impl_->output.data;
   band.y += impl_->rows;
   band.height = int(planes[0].size() / std::size_t(band.width));
-  std::deque<std::vector<half>> halves;
+  std::deque<std::vector<std::uint16_t>> halves;
   Imf::FrameBuffer frame_buffer;
   for (std::size_t i = 0; i < planes.size(); i++) {
     const ExrPlane& plane = impl_->output.planes[i];
@@ -135,15 +162,13 @@ void ExrWriter::write(std::span<const std::span<const float>> planes) {
 }
 
 void ExrWriter::finish(const std::map<std::string, std::string>& late) {
-  impl_->run([&] { impl_->file.reset(); });
+  impl_->run([&] { impl_->end(); });
   if (late.empty()) return impl_->stream.commit();
   for (const auto& [name, value] : late) impl_->output.own_attributes[name] = value;
   Impl with_late(impl_->path, impl_->output);
   with_late.run([&] {
     Imf::InputFile rows(impl_->stream.temporary().c_str());
-    with_late.begin();
-    with_late.file->copyPixels(rows);
-    with_late.file.reset();
+    Imf::OutputFile(with_late.stream, header_of(with_late.output)).copyPixels(rows);
   });
   with_late.stream.commit();
 }

@@ -245,8 +245,7 @@ const Window& written_of(const FrameSource& source) { return source.region ? *so
 
 Window written_picture(const FrameSource& source) { return picture_of(source, written_of(source)); }
 
-FrameInputs load_frame(gpu::Recorder& gpu, FrameSource& source, const Settings& all, int frame, FrameRows* rows) {
-  const InputSettings& settings = all.input;
+RawPlaneArray<gpu::Buffer*> read_frame(gpu::Recorder& gpu, FrameSource& source, FrameRows* rows) {
   RawPlaneArray<gpu::Buffer*> planes;
   std::vector<PlaneRead> reads;
   for (const auto& row : kRawPlanes) {
@@ -264,6 +263,12 @@ FrameInputs load_frame(gpu::Recorder& gpu, FrameSource& source, const Settings& 
   }
   for (const auto& row : kRawPlanes)
     if (planes[row.plane]) fill_missing(source, row.plane, planes[row.plane]->as<float>());
+  return planes;
+}
+
+FrameInputs settled_inputs(FrameSource& source, const RawPlaneArray<gpu::Buffer*>& planes, const Settings& all,
+                           int frame) {
+  const InputSettings& settings = all.input;
   const auto values_of = [&](RawPlane plane) {
     return planes[plane] ? planes[plane]->as<float>() : std::span<float>();
   };
@@ -274,6 +279,10 @@ FrameInputs load_frame(gpu::Recorder& gpu, FrameSource& source, const Settings& 
   inputs.albedo_value = settings.albedo_value.value_or(0);
   if (in_world(source.camera, all.output)) inputs.aov_from_view = transposed(*source.camera.view_from_world);
   return inputs;
+}
+
+FrameInputs load_frame(gpu::Recorder& gpu, FrameSource& source, const Settings& all, int frame, FrameRows* rows) {
+  return settled_inputs(source, read_frame(gpu, source, rows), all, frame);
 }
 
 std::vector<std::span<const float>> result_planes(const FrameOutputs& outputs, const Window& computed,

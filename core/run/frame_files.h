@@ -37,8 +37,15 @@ Window written_picture(const FrameSource& source);
 /// The part of a frame's memory that its decoded rows may take before they go to a file.
 constexpr std::uint64_t kRowsPart = 4;
 
-/// Reads the planes within source.data into upload buffers, and says what they mean. Settles what is open. They are
-/// taken from `rows`, or where there are none from the files.
+/// Reads the planes within source.data into upload buffers. They are taken from `rows`, or where there are none from
+/// the files.
+RawPlaneArray<gpu::Buffer*> read_frame(gpu::Recorder& gpu, FrameSource& source, FrameRows* rows = nullptr);
+
+/// Settles what is open about a frame whose planes are read, and says what they mean.
+FrameInputs settled_inputs(FrameSource& source, const RawPlaneArray<gpu::Buffer*>& planes, const Settings& settings,
+                           int frame);
+
+/// Does both.
 FrameInputs load_frame(gpu::Recorder& gpu, FrameSource& source, const Settings& settings, int frame,
                        FrameRows* rows = nullptr);
 

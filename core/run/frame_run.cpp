@@ -27,6 +27,12 @@ std::uint64_t channels_in(const FrameSource& source) {
   return channels;
 }
 
+double milliseconds_of(std::span<const gpu::PassTime> passes) {
+  double ms = 0;
+  for (const auto& pass : passes) ms += pass.ms;
+  return ms;
+}
+
 /// The run ends before this frame does.
 struct Dropped {};
 
@@ -142,6 +148,7 @@ class FrameRun {
     const Stopwatch reading;
     FrameInputs inputs = load_frame(gpu_, source, settings_, frame_, rows);
     inputs.others = others_.seen;
+    reuses = reuses && last_.is_worth_comparing(inputs);
     const bool is_same = reuses && last_.is_same(gpu_, inputs, settings_.estimator);
     if (!reuses) last_.forget();
     tally_.add_inputs(source, inputs, written_of(source));
@@ -154,6 +161,7 @@ class FrameRun {
     if (!is_same) {
       gpu_.run([&](double done) { watch_(part_, parts_, done); });
       tally_.add_passes(gpu_.passes());
+      if (!inputs.changes) last_.took(milliseconds_of(gpu_.passes()));
     }
     if (reuses) last_.keep(outputs);
     tally_.add_outputs(outputs, source.data, is_same);
@@ -169,7 +177,8 @@ class FrameRun {
   }
 
   void run_whole(FrameSource& source, FrameRows* rows) {
-    const bool reuses = run_.plan.frames().size() > 1 && !settings_.estimator.no_skip;
+    const bool reuses =
+        run_.plan.frames().size() > 1 && !settings_.estimator.no_skip && settings_.estimator.noise == Noise::fixed;
     const FrameOutputs outputs = compute(source, rows, reuses);
     finish_tally(source);
     const Stopwatch writing;

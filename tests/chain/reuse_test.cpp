@@ -194,6 +194,16 @@ TEST(Reuse, looks_as_far_as_the_ends_of_hidden_surfaces_are_followed) {
   }
 }
 
+TEST(Reuse, is_looked_for_where_a_frame_takes_longer_to_compute_than_to_compare) {
+  Lane lane(device());
+  const FrameInputs inputs = upload(lane.gpu, furnished_room(96, 64).frame);
+  EXPECT_TRUE(lane.last.is_worth_comparing(inputs)) << "nobody knows";
+  lane.last.took(1000);
+  EXPECT_TRUE(lane.last.is_worth_comparing(inputs));
+  lane.last.took(1e-4);
+  EXPECT_FALSE(lane.last.is_worth_comparing(inputs));
+}
+
 TEST(Reuse, is_of_what_was_computed_in_the_same_way) {
   const HostFrame room = furnished_room(96, 64).frame;
   EstimatorSettings settings = plain_settings();

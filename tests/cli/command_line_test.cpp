@@ -146,6 +146,8 @@ TEST_F(CommandLine, complaints_are_sentences_of_ours) {
       {{"bench", "a.toml", "--repeats", "1.5"}, "--repeats: 1.5 is no whole number"},
       {{"bench", "a.toml", "--json"}, "--json needs a value: FILE.json"},
       {{"bench", "a.toml", "--batch", "--limits", "l.toml"}, "--limits does not apply with --batch"},
+      {{"bench", "a.toml", "--host", "--csv", "a.csv"}, "--csv does not apply with --host"},
+      {{"bench", "a.toml", "--host", "--batch", "2"}, "--batch does not apply with --host"},
       {{"bench", "a.toml", "--batch", "2", "--repeats", "3"}, "--repeats does not apply with --batch"},
       {{"bench", "a.toml", "--stability"}, "SUITE does not apply with --stability"},
       {{"bench", "--stability", "--limits", "l.toml"}, "--limits does not apply with --stability"},

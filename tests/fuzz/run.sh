@@ -34,13 +34,14 @@ runs_of() {
     toml) echo 80000 ;;
     preset) echo 1500 ;;
     inspect) echo 2500 ;;
+    zip) echo 9000 ;;
   esac
 }
 
 # Leaks are not looked for: OpenEXR has some where it refuses a header, and to look after each of these takes longer than all else.
 fuzz() {
   local target=$1 seeds=tests/fuzz/seeds/$1 corpus=build-fuzz/corpus/$1 at_fixed_addresses=() length=(-seed=0 -max_total_time="$seconds")
-  [ "$target" != inspect ] || seeds=tests/fuzz/seeds/exr
+  [[ ! $target =~ ^(inspect|zip)$ ]] || seeds=tests/fuzz/seeds/exr
   if [ "$seconds" = 0 ]; then
     corpus=build-fuzz/seeded/$1
     rm -rf "$corpus"

@@ -90,6 +90,7 @@ TEST(Layers, only_one_file_includes_each_library) {
                     }),
             Names{});
   EXPECT_EQ(matches(product(), R"(#include [<"]zlib)", unless("core/formats/deep_chunk.cpp")), Names{});
+  EXPECT_EQ(matches(product(), R"(#include [<"]libdeflate)", unless("core/formats/zip_chunk.cpp")), Names{});
   EXPECT_EQ(matches(product(), R"(#include [<"]OpenImageIO)", unless("core/formats/image_io.cpp")), Names{});
   EXPECT_EQ(matches(product(), R"(#include [<"]OpenColorIO)", unless("core/formats/color.cpp")), Names{});
   EXPECT_EQ(matches(product(), R"(#include [<"]png\.h)", unless("core/formats/png.cpp")), Names{});

@@ -296,6 +296,16 @@ TEST_F(Batch, bench_times_a_run_against_its_parts) {
                                             "kernels alone [0-9.]+ s: [0-9.]+ of their sum"));
 }
 
+TEST(BenchHost, tells_every_step_of_a_frame_from_its_files_to_its_output) {
+  const Finished finished =
+      run_program({"bench", ALCOVE_SOURCE_DIR "/examples/bench/suite.toml", "--host", "--repeats", "1"});
+  EXPECT_EQ(finished.code, 0) << finished;
+  std::string steps = "monkeys: [0-9.]+ ms\nstep +ms +bytes\n";
+  for (const char* step : {"open", "read", "settle", "hash", "upload", "compute", "download", "convert", "write"})
+    steps += std::string(step) + " +[0-9]+\\.[0-9]+ +[1-9][0-9]*\n";
+  EXPECT_THAT(finished.out, testing::ContainsRegex(steps)) << finished;
+}
+
 TEST_F(Batch, senseless_options_are_refused) {
   write_frames(1, 1);
   for (const std::vector<std::string>& arguments : {std::vector<std::string>{"--chunk", "0/2"},

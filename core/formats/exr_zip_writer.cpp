@@ -1,0 +1,123 @@
+// Rows go into chunks, some of which are packed at once and then written in their order.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/formats/exr_zip_writer.h"
+
+#include <ImfChannelList.h>
+#include <ImfPartType.h>
+#include <ImfStdIO.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cstring>
+#include <limits>
+#include <stdexcept>
+
+#include "core/formats/exr_attributes.h"
+#include "core/formats/exr_threads.h"
+#include "core/formats/exr_zip.h"
+
+namespace alcove {
+namespace {
+
+/// As OpenEXR has it for its own, so that no thread waits for the slowest.
+constexpr int kChunksOfThread = 2;
+
+/// A type that the input's header brought along is that of another file.
+Imf::Header of_lines(Imf::Header header) {
+  if (header.hasType()) header.setType(Imf::SCANLINEIMAGE);
+  return header;
+}
+
+void write_word(Imf::OStream& stream, std::int32_t word) {
+  stream.write(reinterpret_cast<const char*>(&word), sizeof(word));
+}
+
+}  // namespace
+
+bool is_for_zip_writer(const Imf::Header& header) { return is_zip_rows(header, {}); }
+
+ZipWriter::ZipWriter(Imf::OStream& stream, const Imf::Header& header) : stream_(stream), header_(of_lines(header)) {
+  header_.sanityCheck();
+  const Window data = window_of(header_.dataWindow());
+  width_ = std::size_t(data.width);
+  height_ = std::size_t(data.height);
+  chunk_rows_ = std::size_t(rows_of_zip_chunk(header_));
+  row_bytes_ = zip_row_bytes(header_);
+  const auto most = std::numeric_limits<int>::max();
+  chunks_ = std::vector<Chunk>(std::size_t(std::max(1, kChunksOfThread * exr_threads_for(most, most))));
+  Imf::StdOSStream head;  // one write instead of hundreds
+  writeMagicNumberAndVersionField(head, header_);
+  header_.writeTo(head);
+  const std::string bytes = head.str();
+  stream_.write(bytes.data(), int(bytes.size()));
+  table_ = stream_.tellp();
+  const std::vector<std::uint64_t> nowhere((height_ + chunk_rows_ - 1) / chunk_rows_);
+  stream_.write(reinterpret_cast<const char*>(nowhere.data()), int(nowhere.size() * sizeof(std::uint64_t)));
+}
+
+std::size_t ZipWriter::rows_of(std::size_t chunk) const {
+  return std::min(chunk_rows_, height_ - std::min(height_, chunk * chunk_rows_));
+}
+
+void ZipWriter::write(std::span<const Source> sources, std::size_t rows) {
+  if (rows > height_ - offsets_.size() * chunk_rows_ - chunks_[0].rows)
+    throw std::logic_error("there are more rows than pixels");
+  for (std::size_t row = 0; row < rows;) {
+    std::size_t count = 0;  // chunks that are full
+    std::vector<std::size_t> firsts, taken;
+    for (; count < chunks_.size() && row < rows; count++) {
+      const std::size_t has = chunks_[count].rows, wants = rows_of(offsets_.size() + count) - has;
+      firsts.push_back(row);
+      taken.push_back(std::min(wants, rows - row));
+      row += taken.back();
+      if (taken.back() < wants) break;
+    }
+    std::atomic<std::size_t> next = 0;
+    on_exr_threads(exr_threads_for(int(taken.size()), std::numeric_limits<int>::max()), [&] {
+      for (std::size_t i = next++; i < taken.size(); i = next++) {
+        add_rows(chunks_[i], sources, firsts[i], taken[i]);
+        if (i < count) chunks_[i].stored = chunks_[i].packer.pack(chunks_[i].bytes);
+      }
+    });
+    write_chunks(std::span(chunks_).first(count));
+    // What is not full yet is the first of the next.
+    if (count > 0 && count < chunks_.size()) std::swap(chunks_[0], chunks_[count]);
+  }
+}
+
+void ZipWriter::add_rows(Chunk& chunk, std::span<const Source> sources, std::size_t first, std::size_t rows) const {
+  chunk.bytes.resize((chunk.rows + rows) * row_bytes_);
+  std::uint8_t* to = chunk.bytes.data() + chunk.rows * row_bytes_;
+  for (std::size_t row = first; row < first + rows; row++) {
+    auto source = sources.begin();
+    for (auto at = header_.channels().begin(); at != header_.channels().end(); ++at, ++source) {
+      const bool is_half = at.channel().type == Imf::HALF, narrows = is_half && source->is_float;
+      const std::size_t bytes = width_ * (is_half ? sizeof(std::uint16_t) : sizeof(float));
+      const auto* from = static_cast<const std::byte*>(source->samples) + row * (narrows ? 2 : 1) * bytes;
+      if (narrows)
+        fast_sample_loops().narrow(reinterpret_cast<const float*>(from), width_, reinterpret_cast<std::uint16_t*>(to));
+      else
+        std::memcpy(to, from, bytes);
+      to += bytes;
+    }
+  }
+  chunk.rows += rows;
+}
+
+void ZipWriter::write_chunks(std::span<Chunk> chunks) {
+  for (auto& chunk : chunks) {
+    const int top = header_.dataWindow().min.y + int(offsets_.size() * chunk_rows_);
+    offsets_.push_back(stream_.tellp());
+    write_word(stream_, top);
+    write_word(stream_, std::int32_t(chunk.stored.size()));
+    stream_.write(reinterpret_cast<const char*>(chunk.stored.data()), int(chunk.stored.size()));
+    chunk.rows = 0;
+  }
+}
+
+void ZipWriter::finish() {
+  stream_.seekp(table_);
+  stream_.write(reinterpret_cast<const char*>(offsets_.data()), int(offsets_.size() * sizeof(std::uint64_t)));
+}
+
+}  // namespace alcove

@@ -1,0 +1,59 @@
+// Writes scan lines that ZIP or ZIPS compresses, by ourselves: OpenEXR's part is the header.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <ImfGenericOutputFile.h>
+#include <ImfHeader.h>
+#include <ImfIO.h>
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/formats/zip_chunk.h"
+
+namespace alcove {
+
+/// Whether ZipWriter writes such a part: of ZIP or ZIPS, and without subsampled channels.
+bool is_for_zip_writer(const Imf::Header& header);
+
+/// A file of one part, from top to bottom. Its bytes are the same on any number of threads, and whatever rows it gets
+/// at once.
+class ZipWriter : private Imf::GenericOutputFile {
+ public:
+  /// Samples of a channel, row by row: as the file has them, or floats that become half floats there.
+  struct Source {
+    const void* samples;
+    bool is_float;  // though the channel may be of half floats
+  };
+
+  /// Begins the file. The header is one for it.
+  ZipWriter(Imf::OStream& stream, const Imf::Header& header);
+
+  const Imf::Header& header() const { return header_; }
+  /// Writes the next rows. There is a source for each channel of the header, in its order.
+  void write(std::span<const Source> sources, std::size_t rows);
+  /// Says where the chunks are, once all rows are written.
+  void finish();
+
+ private:
+  /// A chunk on its way from planes into the file.
+  struct Chunk {
+    std::size_t rows = 0;             // that it has got
+    std::vector<std::uint8_t> bytes;  // of these
+    ZipPacker packer;
+    std::span<const std::uint8_t> stored;
+  };
+  std::size_t rows_of(std::size_t chunk) const;
+  void add_rows(Chunk& chunk, std::span<const Source> sources, std::size_t first, std::size_t rows) const;
+  void write_chunks(std::span<Chunk> chunks);
+
+  Imf::OStream& stream_;
+  const Imf::Header header_;
+  std::size_t width_, height_, chunk_rows_, row_bytes_ = 0;
+  std::uint64_t table_ = 0;             // where it stands in the file
+  std::vector<std::uint64_t> offsets_;  // of the chunks that are written
+  std::vector<Chunk> chunks_;           // that are packed at once; the first may have got some rows already
+};
+
+}  // namespace alcove

@@ -1,0 +1,125 @@
+// Inflates with libdeflate, and puts together the bytes of the channels that are wanted; deflates with it.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/formats/zip_chunk.h"
+
+#include <libdeflate.h>
+
+#include <bit>
+#include <cstring>
+#include <new>
+
+#include "core/formats/exr.h"
+
+namespace alcove {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "samples are copied as they are stored");
+
+// OpenEXR's own level. Levels 1 and 9 take 0.7 and 7 times as long for AO, and make files 3 % larger and 5 % smaller.
+constexpr int kLevel = 4;
+
+std::size_t bytes_of(SampleType type) { return type == SampleType::half_float ? 2 : 4; }
+
+std::uint8_t* bytes_at(float* to) { return reinterpret_cast<std::uint8_t*>(to); }
+
+/// Makes floats of the integers that stand in their places.
+void round_integers(float* values, std::size_t count) {
+  for (std::size_t i = 0; i < count; i++) values[i] = float(std::bit_cast<std::uint32_t>(values[i]));
+}
+
+}  // namespace
+
+ZipUnpacker::ZipUnpacker(const SampleLoops& loops)
+    : loops_(loops), inflater_(libdeflate_alloc_decompressor(), libdeflate_free_decompressor) {
+  if (!inflater_) throw std::bad_alloc();
+}
+
+ZipUnpacker::~ZipUnpacker() = default;
+
+bool ZipUnpacker::unpack(std::span<const std::uint8_t> packed, const ZipRows& rows,
+                         std::span<const ZipChannel> channels) {
+  const std::size_t bytes = rows.row_bytes * rows.rows;
+  // What packing would make no shorter is stored as it is.
+  if (packed.size() >= bytes) {
+    read_stored(packed, rows, channels);
+    return true;
+  }
+  if (!inflate(packed, bytes)) return false;
+  sum_up(rows, channels);
+  read_split(rows, channels);
+  return true;
+}
+
+/// It succeeds where there are exactly as many bytes, and their checksum is right.
+bool ZipUnpacker::inflate(std::span<const std::uint8_t> packed, std::size_t bytes) {
+  if (room_ < bytes) {
+    split_ = std::make_unique_for_overwrite<std::uint8_t[]>(bytes);
+    room_ = bytes;
+  }
+  return libdeflate_zlib_decompress(inflater_.get(), packed.data(), packed.size(), split_.get(), bytes, nullptr) ==
+         LIBDEFLATE_SUCCESS;
+}
+
+/// Of what lies between the wanted bytes nothing but the sum is needed.
+void ZipUnpacker::sum_up(const ZipRows& rows, std::span<const ZipChannel> channels) {
+  constexpr std::uint8_t kBeforeFirst = 128;  // so that the first byte is itself
+  const std::size_t half = rows.row_bytes * rows.rows / 2;
+  std::size_t at = 0;
+  std::uint8_t last = kBeforeFirst;
+  for (const std::size_t begin : {std::size_t(0), half})
+    for (std::size_t row = rows.first; row < rows.first + rows.count; row++)
+      for (const auto& channel : channels) {
+        const std::size_t from = begin + (row * rows.row_bytes + channel.offset) / 2;
+        const std::size_t count = rows.width * bytes_of(channel.type) / 2;
+        last = loops_.sum_of(split_.get() + at, from - at, last);
+        last = loops_.sum_up(split_.get() + from, count, last);
+        at = from + count;
+      }
+}
+
+void ZipUnpacker::read_split(const ZipRows& rows, std::span<const ZipChannel> channels) {
+  const std::size_t half = rows.row_bytes * rows.rows / 2;
+  row_.resize(2 * rows.width);
+  for (const auto& channel : channels)
+    for (std::size_t row = 0; row < rows.count; row++) {
+      const std::uint8_t* even = split_.get() + ((rows.first + row) * rows.row_bytes + channel.offset) / 2;
+      float* const to = channel.to + row * rows.width;
+      const bool is_half = channel.type == SampleType::half_float;
+      loops_.interleave(even, even + half, rows.width * bytes_of(channel.type) / 2,
+                        is_half ? row_.data() : bytes_at(to));
+      if (is_half) loops_.widen(row_.data(), rows.width, to);
+      if (channel.type == SampleType::integer) round_integers(to, rows.width);
+    }
+}
+
+void ZipUnpacker::read_stored(std::span<const std::uint8_t> bytes, const ZipRows& rows,
+                              std::span<const ZipChannel> channels) {
+  for (const auto& channel : channels)
+    for (std::size_t row = 0; row < rows.count; row++) {
+      const std::uint8_t* from = bytes.data() + (rows.first + row) * rows.row_bytes + channel.offset;
+      float* const to = channel.to + row * rows.width;
+      if (channel.type == SampleType::half_float)
+        loops_.widen(from, rows.width, to);
+      else
+        std::memcpy(to, from, rows.width * sizeof(float));
+      if (channel.type == SampleType::integer) round_integers(to, rows.width);
+    }
+}
+
+ZipPacker::ZipPacker() : deflater_(libdeflate_alloc_compressor(kLevel), libdeflate_free_compressor) {
+  if (!deflater_) throw std::bad_alloc();
+}
+
+std::span<const std::uint8_t> ZipPacker::pack(std::span<const std::uint8_t> rows) {
+  const SampleLoops& loops = fast_sample_loops();
+  split_.resize(rows.size());
+  packed_.resize(rows.size());
+  loops.split(rows.data(), rows.size() / 2, split_.data(), split_.data() + rows.size() / 2);
+  loops.subtract(split_.data(), split_.size());
+  // It gives 0 where there is not that much room.
+  const std::size_t bytes =
+      libdeflate_zlib_compress(deflater_.get(), split_.data(), split_.size(), packed_.data(), rows.size() - 1);
+  return bytes > 0 ? std::span<const std::uint8_t>(packed_).first(bytes) : rows;
+}
+
+}  // namespace alcove

@@ -1,0 +1,143 @@
+// What our own writer of ZIP and ZIPS writes, OpenEXR reads, and its header is the one that OpenEXR would write.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <ImfInputFile.h>
+#include <ImfOutputFile.h>
+#include <ImfStringAttribute.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <list>
+#include <random>
+
+#include "core/base/error.h"
+#include "core/formats/exr.h"
+#include "core/formats/sample_loops.h"
+#include "tests/support/openexr_planes.h"
+#include "tests/support/program.h"
+
+namespace alcove {
+namespace {
+
+using namespace test;
+
+std::mt19937 random_numbers(1);
+
+/// A ramp, or what nothing packs.
+std::vector<float> plane_of(const Window& data, bool is_noise) {
+  std::vector<float> values(data.pixels());
+  std::uniform_real_distribution<float> number(-70000, 70000);
+  for (std::size_t i = 0; i < values.size(); i++)
+    values[i] = is_noise ? number(random_numbers) : float(i % std::size_t(data.width)) / 64;
+  return values;
+}
+
+float as_half(float value) {
+  std::uint16_t half = 0;
+  plain_sample_loops().narrow(&value, 1, &half);
+  return from_half(half);
+}
+
+class ZipWriting : public testing::Test {
+ protected:
+  ~ZipWriting() override { set_exr_threads(0); }
+
+  ExrOutput output_of(const Window& data, const char* compression) {
+    ExrOutput output;
+    output.data = output.display = data;
+    output.compression = compression;
+    const SampleType half = SampleType::half_float, single = SampleType::single_float;
+    for (const auto& [name, type] : {std::pair("Z", single), {"AO.Y", half}, {"b", half}})
+      output.planes.push_back({name, type, planes_.emplace_back(plane_of(data, *name == 'b'))});
+    return output;
+  }
+
+  void expect_pixels(const ExrOutput& output) const {
+    const auto planes = openexr_planes(path, 0);
+    ASSERT_TRUE(planes);
+    ASSERT_EQ(planes->size(), output.planes.size());
+    for (const auto& plane : output.planes) {
+      std::vector<float> expected(plane.pixels.begin(), plane.pixels.end());
+      if (plane.type == SampleType::half_float) std::ranges::transform(expected, expected.begin(), as_half);
+      EXPECT_EQ(planes->at(plane.channel), expected) << plane.channel;
+    }
+  }
+
+  TemporaryFolder folder;
+  const std::string path = folder / "a.exr", other = folder / "b.exr";
+  std::list<std::vector<float>> planes_;
+};
+
+TEST_F(ZipWriting, openexr_reads_the_pixels_that_were_written) {
+  for (const Window& data : {Window{0, 0, 1, 1}, {-5, 3, 1, 40}, {7, -9, 33, 15}, {0, 0, 64, 16}, {0, 0, 31, 17}})
+    for (const char* compression : {"zip", "zips"}) {
+      const ExrOutput output = output_of(data, compression);
+      write_exr(path, output);
+      SCOPED_TRACE(to_string(data) + " " + compression);
+      EXPECT_TRUE(is_of_zip_lines(path, 0));
+      expect_pixels(output);
+    }
+}
+
+TEST_F(ZipWriting, writes_the_same_bytes_on_any_threads_and_by_any_rows) {
+  const Window data{-3, 10, 50, 203};
+  for (const char* compression : {"zip", "zips"}) {
+    const ExrOutput output = output_of(data, compression);
+    write_exr(other, output);
+    const std::string bytes = read_bytes(other);
+    for (const int threads : {0, 1, 2, 5})
+      for (const int step : {1, 7, 16, 17, 64, 203}) {
+        set_exr_threads(threads);
+        ExrWriter writer(path, output);
+        for (int row = 0; row < data.height; row += step) {
+          const auto count = std::size_t(std::min(step, data.height - row)) * std::size_t(data.width);
+          std::vector<std::span<const float>> rows;
+          for (const auto& plane : output.planes)
+            rows.push_back(plane.pixels.subspan(std::size_t(row) * std::size_t(data.width), count));
+          writer.write(rows);
+        }
+        writer.finish();
+        EXPECT_TRUE(read_bytes(path) == bytes) << compression << ", " << threads << " threads, " << step << " rows";
+      }
+    expect_pixels(output);
+  }
+}
+
+TEST_F(ZipWriting, writes_the_header_that_openexr_writes) {
+  for (const std::size_t length : {3, 31, 32, 200}) {
+    ExrOutput output = output_of({0, 0, 20, 20}, "zip");
+    output.display = {-4, -4, 40, 40};
+    output.pixel_aspect = 1.5;
+    output.own_attributes = {{"alcove/" + std::string(length, 'n'), "value"}};
+    write_exr(path, output);
+    Imf::InputFile ours(path.c_str());
+    { const Imf::OutputFile theirs(other.c_str(), ours.header()); }
+    const std::string bytes = read_bytes(path), expected = read_bytes(other);
+    const std::size_t table = 2 * sizeof(std::uint64_t);  // of two chunks
+    ASSERT_GT(expected.size(), table);
+    const std::size_t header = expected.size() - table;
+    EXPECT_TRUE(bytes.substr(0, header) == expected.substr(0, header)) << length << " letters";
+  }
+}
+
+TEST_F(ZipWriting, carries_attributes_that_come_late_and_leaves_the_chunks) {
+  const ExrOutput output = output_of({0, 0, 20, 40}, "zip");
+  std::vector<std::span<const float>> planes;
+  for (const auto& plane : output.planes) planes.push_back(plane.pixels);
+  ExrWriter writer(path, output);
+  writer.write(planes);
+  writer.finish({{"alcove/notes", "late"}});
+  EXPECT_EQ(attribute_of_whole_exr(path, "alcove/notes"), "late");
+  expect_pixels(output);
+}
+
+TEST_F(ZipWriting, a_file_whose_rows_are_too_many_is_refused) {
+  const ExrOutput output = output_of({0, 0, 20, 20}, "zip");
+  ExrWriter writer(path, output);
+  const std::vector<float> rows(20 * 21);
+  EXPECT_THROW(writer.write(std::vector<std::span<const float>>(3, rows)), Error);
+}
+
+}  // namespace
+}  // namespace alcove
