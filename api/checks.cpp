@@ -56,8 +56,8 @@ void check_normals(const Reading& reading, const HostPlanes& planes, const View&
   if (has_vectors && reading.normal_unorm && lengths.unit_share > kUnit && lengths.unorm_unit_share < kFew)
     fail(ErrorKind::input, "normal: n is of unit length on {:.0f} %, and 2 n - 1 is not: set --normal-encoding signed",
          100 * lengths.unit_share);
-  const auto scores = score_normals({normal, reading.normal_encoding, reading.normal_unorm, depth, map},
-                                    reading.camera, view);
+  const auto scores =
+      score_normals({normal, reading.normal_encoding, reading.normal_unorm, depth, map}, reading.camera, view);
   const auto chosen = std::ranges::find_if(scores, [&](const NormalScore& score) {
     return score.space == reading.normal_space && to_string(score.flips) == to_string(reading.flip_normal);
   });

@@ -171,10 +171,12 @@ double Device::submission_ms() const {
 }
 
 const Kernel& Device::kernel(const std::string& stem, const std::vector<std::uint32_t>& specialization) {
-  const std::lock_guard lock(mutex_);
-  auto& slot = kernels_[{stem, specialization}];
-  if (!slot) slot = std::make_unique<Kernel>(*this, stem, specialization);
-  return *slot;
+  Slot& slot = [&]() -> Slot& {
+    const std::lock_guard lock(mutex_);
+    return kernels_[{stem, specialization}];
+  }();
+  std::call_once(slot.made, [&] { slot.kernel = std::make_unique<Kernel>(*this, stem, specialization); });
+  return *slot.kernel;
 }
 
 Memory Device::allocate(VkDeviceSize bytes, std::uint32_t type) {

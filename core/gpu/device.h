@@ -23,6 +23,9 @@ namespace alcove::gpu {
 class Device;
 class Kernel;
 
+/// A kernel's stem, and its specialization constants (ids 0, 1, 2 ...).
+using KernelName = std::pair<std::string, std::vector<std::uint32_t>>;
+
 /// Owns one Vulkan handle that a device (or instance) destroys; moves, never copies.
 template <class Owner, class T, void (*destroy)(Owner, T, const VkAllocationCallbacks*)>
 class Handle {
@@ -73,7 +76,8 @@ class Device {
   /// How long a submission may take; infinite on a CPU, which drives no display, unless the options say otherwise.
   double submission_ms() const;
 
-  /// The kernel of that stem, compiled on first use for these specialization constants (ids 0, 1, 2 ...).
+  /// The kernel of that stem, compiled on first use for these specialization constants (ids 0, 1, 2 ...). Threads that
+  /// ask for one that is being compiled wait for it, and others do not.
   const Kernel& kernel(const std::string& stem, const std::vector<std::uint32_t>& specialization);
 
   /// Allocates so many bytes of memory of that type; gives null when too little is left. Fails with OutOfMemory when
@@ -116,7 +120,11 @@ class Device {
   DeviceHandle<VkPipelineCache, vkDestroyPipelineCache> pipeline_cache_;
   std::size_t loaded_cache_bytes_ = 0;
   std::mutex mutex_;  // of the queue and the kernels
-  std::map<std::pair<std::string, std::vector<std::uint32_t>>, std::unique_ptr<Kernel>> kernels_;
+  struct Slot {
+    std::once_flag made;
+    std::unique_ptr<Kernel> kernel;
+  };
+  std::map<KernelName, Slot> kernels_;
 };
 
 }  // namespace alcove::gpu

@@ -57,7 +57,7 @@ double work_of(const PassTime& pass) {
 
 }  // namespace
 
-Recorder::Recorder(Device& device) : device_(device) {
+Recorder::Recorder(Device& device, Mode mode) : device_(device), mode_(mode) {
   VkCommandPoolCreateInfo pool_info{};
   pool_info.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO;
   pool_info.queueFamilyIndex = device.queue_family();
@@ -224,6 +224,10 @@ double Recorder::slices_of(std::optional<double> ms, double groups, bool is_list
 void Recorder::dispatch_bytes(const std::string& stem, std::span<const std::byte> params,
                               std::span<const Binding> bindings, Extent extent,
                               const std::vector<std::uint32_t>& specialization) {
+  if (mode_ == Mode::rehearse) {
+    rehearsed_.emplace_back(stem, specialization);
+    return;
+  }
   begin();
   const Kernel& kernel = device_.kernel(stem, specialization);
   std::set<std::uint32_t> slots;

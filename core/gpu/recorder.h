@@ -51,7 +51,11 @@ concept KernelParams = std::is_trivially_copyable_v<T> && sizeof(T) <= 128;
 /// workgroups of one slice.
 class Recorder {
  public:
-  explicit Recorder(Device& device);
+  enum class Mode {
+    run,
+    rehearse,  // kernels are neither made nor recorded: rehearsed() tells their names
+  };
+  explicit Recorder(Device& device, Mode mode = Mode::run);
 
   /// The buffer of that name. It is made, or made again, unless the one that there is suits; what was recorded before
   /// keeps the one that it had. The reference is valid until the next call with another size.
@@ -88,6 +92,9 @@ class Recorder {
 
   /// Each pass of the last run, in order; its time is 0 on a device without timestamps.
   const std::vector<PassTime>& passes() const { return passes_; }
+
+  /// The kernels that were dispatched in a rehearsal, in order.
+  const std::vector<KernelName>& rehearsed() const { return rehearsed_; }
 
   /// Of all its buffers, their staging twins included.
   std::size_t bytes() const;
@@ -132,6 +139,8 @@ class Recorder {
   void learn();
 
   Device& device_;
+  const Mode mode_;
+  std::vector<KernelName> rehearsed_;
   DeviceHandle<VkCommandPool, vkDestroyCommandPool> pool_;
   std::vector<Submission> submissions_;
   std::size_t used_ = 0;  // submissions that this recording has begun

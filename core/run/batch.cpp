@@ -17,6 +17,7 @@
 #include "core/base/version.h"
 #include "core/chain/aov.h"
 #include "core/chain/chain.h"
+#include "core/chain/warm_up.h"
 #include "core/formats/color.h"
 #include "core/options/check.h"
 #include "core/run/digest.h"
@@ -29,6 +30,8 @@
 
 namespace alcove {
 namespace {
+
+constexpr int kWarmingThreads = 4;  // more would wait for the largest kernel
 
 namespace fs = std::filesystem;
 
@@ -232,6 +235,8 @@ class Batch {
     set_exr_memory(of_host.host_bytes / kCodecPart / std::uint64_t(cpu_lanes));
     share_cores(threads, cpu_lanes, d.threads > 0);
     Lanes lanes({d.device, d.require_gpu, d.validate, !d.no_pipeline_cache}, cpu_lanes);
+
+    const WarmUp warm_up(lanes.device(), settings_.estimator, settings_.output, std::min(threads, kWarmingThreads));
 
     const gpu::DeviceInfo& device = lanes.device().info();
     const bool is_cpu = device.type == gpu::DeviceType::cpu;

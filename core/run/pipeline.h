@@ -19,7 +19,7 @@ class Lanes {
  public:
   Lanes(const gpu::DeviceOptions& options, int count);
 
-  const gpu::Device& device() const { return *devices_.front(); }
+  gpu::Device& device() { return *devices_.front(); }
   int count() const;
   int validation_messages() const;
 

@@ -1,0 +1,52 @@
+// Rehearses a frame of a few pixels, which tells the kernels that are needed, and makes them.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/chain/warm_up.h"
+
+#include <algorithm>
+
+#include "core/chain/chain.h"
+#include "core/chain/compute.h"
+#include "core/gpu/kernel.h"
+
+namespace alcove {
+namespace {
+
+/// The kernels that a frame of these settings runs, each once, those with the most code first.
+std::vector<gpu::KernelName> kernels_of(gpu::Device& device, EstimatorSettings settings, const Wanted& wanted) {
+  constexpr int kSide = 32;  // px
+  HostFrame frame;
+  frame.data = frame.display = {0, 0, kSide, kSide};
+  frame.camera = centred(frame.display, kSide, 1);
+  frame.depth.assign(frame.data.pixels(), 1);
+  frame.normal.assign(3 * frame.data.pixels(), 1);
+  if (!settings.radius) settings.radius = 1;
+  gpu::Recorder rehearsal(device, gpu::Recorder::Mode::rehearse);
+  run_chain(rehearsal, upload(rehearsal, frame), settings, wanted);
+  std::vector<gpu::KernelName> names = rehearsal.rehearsed();
+  std::ranges::sort(names);
+  names.erase(std::ranges::unique(names).begin(), names.end());
+  std::ranges::stable_sort(names, std::ranges::greater{}, [](const auto& name) { return gpu::kernel_code(name.first).size(); });
+  return names;
+}
+
+}  // namespace
+
+WarmUp::WarmUp(gpu::Device& device, const EstimatorSettings& settings, const Wanted& wanted, int threads) try
+    : names_(kernels_of(device, settings, wanted)) {
+  for (int i = 0; i < threads; i++)
+    threads_.emplace_back([this, &device] {
+      try {
+        while (true) {
+          const std::size_t place = next_++;
+          if (place >= names_.size()) return;
+          device.kernel(names_[place].first, names_[place].second);
+        }
+      } catch (...) {
+        // Whoever needs the kernel fails as this thread did.
+      }
+    });
+} catch (...) {
+  // So does whoever needs what could not be rehearsed.
+}
+
+}  // namespace alcove

@@ -1,0 +1,27 @@
+// Makes the pipelines of a run before its first frame is there: half of a small frame's time is the driver's making them.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <atomic>
+#include <thread>
+#include <vector>
+
+#include "core/chain/aov.h"
+#include "core/gpu/device.h"
+
+namespace alcove {
+
+/// Threads that make pipelines, each once, the largest first, while others read the first frame. What a frame needs
+/// beside them, by its own layout, is made when it comes. It waits for its threads when it goes; nothing of it fails.
+class WarmUp {
+ public:
+  /// The device must outlive it.
+  WarmUp(gpu::Device& device, const EstimatorSettings& settings, const Wanted& wanted, int threads);
+
+ private:
+  std::vector<gpu::KernelName> names_;
+  std::atomic<std::size_t> next_ = 0;
+  std::vector<std::jthread> threads_;  // they go first
+};
+
+}  // namespace alcove
