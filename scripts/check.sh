@@ -9,7 +9,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-readers=(core/formats/{exr_header,exr_threads,exr_zip,exr_zip_writer,zip_chunk,sample_loops,dds,image_io,open_image,png,sequence}.cpp core/frame/{header_camera,camera,cryptomatte}.cpp core/base/{file,text}.cpp)
+readers=(core/formats/{exr_header,exr_zip,exr_zip_writer,zip_chunk,sample_loops,dds,image_io,open_image,png,sequence}.cpp core/frame/{header_camera,camera,cryptomatte}.cpp core/base/{file,text}.cpp)
 tests=({text,new_file,memory_limit}_test
        {file,file_names,open_image,bad_input,capture_formats,color,hostile,layouts,sequence,zip,zip_writer}_test
        {camera,chan,resection,header_camera,gbuffer,parts,evidence,inputs,readings,sources}_test

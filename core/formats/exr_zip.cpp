@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/base/text.h"
+#include "core/base/error.h"
 #include "core/formats/exr_attributes.h"
 #include "core/formats/exr_threads.h"
 #include "core/formats/zip_chunk.h"
