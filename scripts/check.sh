@@ -79,8 +79,8 @@ ctest --test-dir "$sanitized" --output-on-failure -j "$(nproc)" -R "^(${selected
 step "threads"
 # What drivers and codecs do among themselves is not watched: they are built without it, and their locks are not all seen.
 export TSAN_OPTIONS=ignore_noninstrumented_modules=1
-build build-tsan -DALCOVE_SANITIZE=thread -- batch_test faults_test
-ctest --test-dir build-tsan --output-on-failure -R '^(batch_test|faults_test)$'
+build build-tsan -DALCOVE_SANITIZE=thread -- batch_test faults_test zip_test zip_writer_test
+ctest --test-dir build-tsan --output-on-failure -R '^(batch_test|faults_test|zip_test|zip_writer_test)$'
 
 if has_clang clang-tidy; then
   step "clang-tidy"
