@@ -9,7 +9,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-readers=(core/formats/{exr_header,exr_threads,exr_zip,exr_zip_writer,zip_chunk,sample_loops,dds,image_io,open_image,png,sequence}.cpp core/frame/{header_camera,camera,cryptomatte}.cpp core/base/{file,text}.cpp)
+readers=(core/formats/{exr_header,exr_zip,exr_zip_writer,zip_chunk,sample_loops,dds,image_io,open_image,png,sequence}.cpp core/frame/{header_camera,camera,cryptomatte}.cpp core/base/{file,text}.cpp)
 tests=({text,new_file,memory_limit}_test
        {file,file_names,open_image,bad_input,capture_formats,color,hostile,layouts,sequence,zip,zip_writer}_test
        {camera,chan,resection,header_camera,gbuffer,parts,evidence,inputs,readings,sources}_test
@@ -79,8 +79,8 @@ ctest --test-dir "$sanitized" --output-on-failure -j "$(nproc)" -R "^(${selected
 step "threads"
 # What drivers and codecs do among themselves is not watched: they are built without it, and their locks are not all seen.
 export TSAN_OPTIONS=ignore_noninstrumented_modules=1
-build build-tsan -DALCOVE_SANITIZE=thread -- batch_test faults_test
-ctest --test-dir build-tsan --output-on-failure -R '^(batch_test|faults_test)$'
+build build-tsan -DALCOVE_SANITIZE=thread -- batch_test faults_test zip_test zip_writer_test
+ctest --test-dir build-tsan --output-on-failure -R '^(batch_test|faults_test|zip_test|zip_writer_test)$'
 
 if has_clang clang-tidy; then
   step "clang-tidy"

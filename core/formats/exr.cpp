@@ -218,7 +218,13 @@ struct ExrFile::Impl {
   /// Reads rows of channels of one part.
   void read_rows(int part, std::span<const ExrRead> reads, int first, int rows) {
     Imf::InputPart input(*file, part);
-    if (is_zip_rows(input.header(), reads)) return read_zip_rows(input, reads, first, rows, threads);
+    const auto& channels = input.header().channels();
+    const auto is_there = [&](const ExrRead& read) { return channels.findChannel(read.channel) != nullptr; };
+    if (is_zip_rows(input.header()) && std::ranges::all_of(reads, is_there)) {
+      std::vector<ZipRead> of_part;
+      for (const auto& read : reads) of_part.push_back({read.channel, read.to});
+      return read_zip_rows(input, of_part, first, rows, threads);
+    }
     Window band = parts[std::size_t(part)].data;
     band.y += first;
     band.height = rows;

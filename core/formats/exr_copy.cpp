@@ -14,6 +14,7 @@
 #include <ImfOutputPart.h>
 #include <ImfPartType.h>
 #include <ImfStringAttribute.h>
+#include <ImfThreading.h>
 #include <ImfTiledInputPart.h>
 #include <ImfTiledOutputPart.h>
 
@@ -23,6 +24,7 @@
 
 #include "core/base/text.h"
 #include "core/formats/exr_stream.h"
+#include "core/formats/exr_zip.h"
 #include "core/formats/exr_zip_writer.h"
 
 namespace alcove {
@@ -155,6 +157,7 @@ struct ExrCopy::Impl {
     const Window whole = window_of(header.dataWindow());
     const Window rows_of_original{whole.x, band.y, whole.width, band.height};
     Imf::FrameBuffer from;
+    std::vector<ZipRead> reads;
     for (auto at = header.channels().begin(); at != header.channels().end(); ++at) {
       if (replaced.contains(at.name())) continue;
       const Imf::Channel& channel = at.channel();
@@ -165,11 +168,14 @@ struct ExrCopy::Impl {
       const auto slice = Imf::Slice::Make(channel.type, samples.data(), box_of(rows_of_original), bytes, 0,
                                           channel.xSampling, channel.ySampling);
       from.insert(at.name(), slice);
+      reads.push_back({at.name(), samples.data(), false});
       to.insert(at.name(), slice);
     }
     if (from.begin() == from.end()) return;
     read([&] {
       Imf::InputPart input(*original, part);
+      if (is_zip_rows(header))
+        return read_zip_rows(input, reads, band.y - whole.y, band.height, Imf::globalThreadCount());
       input.setFrameBuffer(from);
       input.readPixels(band.y, band.y + band.height - 1);
     });

@@ -11,37 +11,43 @@
 namespace alcove {
 namespace {
 
-/// Keeps the first exception of several threads.
-class FirstError {
+/// What several threads do together, and the first exception among theirs. All hand over under a mutex of ours, since
+/// the thread sanitizer does not see that of the pool.
+class Shared {
  public:
-  void keep(std::exception_ptr error) {
+  explicit Shared(const std::function<void()>& function) : function_(function) { const std::lock_guard lock(mutex_); }
+
+  void work() {
+    { const std::lock_guard lock(mutex_); }
+    std::exception_ptr error;
+    try {
+      function_();
+    } catch (...) {
+      error = std::current_exception();
+    }
     const std::lock_guard lock(mutex_);
-    if (!error_) error_ = std::move(error);
+    if (!error_) error_ = error;
   }
-  void rethrow() const {
+
+  /// Call it once all have worked.
+  void end() {
+    const std::lock_guard lock(mutex_);
     if (error_) std::rethrow_exception(error_);
   }
 
  private:
+  const std::function<void()>& function_;
   std::mutex mutex_;
   std::exception_ptr error_;
 };
 
-class FunctionTask : public IlmThread::Task {
+class SharedTask : public IlmThread::Task {
  public:
-  FunctionTask(IlmThread::TaskGroup* group, const std::function<void()>& function, FirstError& error)
-      : Task(group), function_(function), error_(error) {}
-  void execute() override {
-    try {
-      function_();
-    } catch (...) {
-      error_.keep(std::current_exception());
-    }
-  }
+  SharedTask(IlmThread::TaskGroup* group, Shared& shared) : Task(group), shared_(shared) {}
+  void execute() override { shared_.work(); }
 
  private:
-  const std::function<void()>& function_;
-  FirstError& error_;
+  Shared& shared_;
 };
 
 }  // namespace
@@ -53,12 +59,12 @@ int exr_threads_for(int pieces, int most) {
 
 void on_exr_threads(int threads, const std::function<void()>& function) {
   if (threads == 0) return function();
-  FirstError error;
+  Shared shared(function);
   {
     IlmThread::TaskGroup group;  // whose end waits for its tasks
-    for (int i = 0; i < threads; i++) IlmThread::ThreadPool::addGlobalTask(new FunctionTask(&group, function, error));
+    for (int i = 0; i < threads; i++) IlmThread::ThreadPool::addGlobalTask(new SharedTask(&group, shared));
   }
-  error.rethrow();
+  shared.end();
 }
 
 }  // namespace alcove

@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/base/text.h"
+#include "core/base/error.h"
 #include "core/formats/exr_attributes.h"
 #include "core/formats/exr_threads.h"
 #include "core/formats/zip_chunk.h"
@@ -27,7 +27,7 @@ std::size_t bytes_of(const Imf::Channel& channel) { return channel.type == Imf::
 /// Rows of a part being read.
 class ZipReading {
  public:
-  ZipReading(const Imf::InputPart& part, std::span<const ExrRead> reads, int first, int rows)
+  ZipReading(const Imf::InputPart& part, std::span<const ZipRead> reads, int first, int rows)
       : part_(part),
         data_(window_of(part.header().dataWindow())),
         row_bytes_(zip_row_bytes(part.header())),
@@ -39,7 +39,9 @@ class ZipReading {
     const auto& channels = part.header().channels();
     for (auto at = channels.begin(); at != channels.end(); ++at) {
       for (const auto& read : reads)
-        if (read.channel == at.name()) channels_.push_back({sample_type_of(at.channel().type), offset, read.to});
+        if (read.channel == at.name())
+          channels_.push_back(
+              {sample_type_of(at.channel().type), offset, static_cast<std::byte*>(read.to), read.as_floats});
       offset += bytes_of(at.channel()) * std::size_t(data_.width);
     }
   }
@@ -75,7 +77,9 @@ class ZipReading {
     const int bottom = std::min(chunk.top + chunk_rows_, data_.height);
     const int from = std::max(chunk.top, first_), to = std::min(bottom, end_);
     std::vector<ZipChannel> channels = channels_;
-    for (auto& channel : channels) channel.to += std::size_t(from - first_) * std::size_t(data_.width);
+    for (auto& channel : channels)
+      channel.to += std::size_t(from - first_) * std::size_t(data_.width) *
+                    (channel.as_floats ? sizeof(float) : bytes_of(channel.type));
     const ZipRows rows{std::size_t(data_.width), row_bytes_, std::size_t(bottom - chunk.top),
                        std::size_t(from - chunk.top), std::size_t(to - from)};
     if (!unpacker.unpack(chunk.packed, rows, channels))
@@ -101,7 +105,7 @@ std::size_t zip_row_bytes(const Imf::Header& header) {
 
 int rows_of_zip_chunk(const Imf::Header& header) { return header.compression() == Imf::ZIPS_COMPRESSION ? 1 : 16; }
 
-bool is_zip_rows(const Imf::Header& header, std::span<const ExrRead> reads) {
+bool is_zip_rows(const Imf::Header& header) {
   const bool is_zip = header.compression() == Imf::ZIP_COMPRESSION || header.compression() == Imf::ZIPS_COMPRESSION;
   if (!is_zip || header.hasTileDescription()) return false;
   if (header.hasType() && header.type() != Imf::SCANLINEIMAGE) return false;
@@ -109,12 +113,10 @@ bool is_zip_rows(const Imf::Header& header, std::span<const ExrRead> reads) {
     if (at.channel().xSampling != 1 || at.channel().ySampling != 1) return false;
   // OpenEXR counts the bytes of a chunk in an int.
   constexpr std::size_t kMost = std::numeric_limits<int>::max();
-  if (zip_row_bytes(header) > kMost / std::size_t(rows_of_zip_chunk(header))) return false;
-  return std::ranges::all_of(
-      reads, [&](const ExrRead& read) { return header.channels().findChannel(read.channel) != nullptr; });
+  return zip_row_bytes(header) <= kMost / std::size_t(rows_of_zip_chunk(header));
 }
 
-void read_zip_rows(const Imf::InputPart& part, std::span<const ExrRead> reads, int first, int rows, int most_threads) {
+void read_zip_rows(const Imf::InputPart& part, std::span<const ZipRead> reads, int first, int rows, int most_threads) {
   ZipReading reading(part, reads, first, rows);
   on_exr_threads(exr_threads_for(reading.chunks(), most_threads), [&] { reading.read(); });
 }

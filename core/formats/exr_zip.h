@@ -6,8 +6,7 @@
 #include <ImfInputPart.h>
 
 #include <span>
-
-#include "core/formats/exr.h"
+#include <string>
 
 namespace alcove {
 
@@ -17,11 +16,19 @@ std::size_t zip_row_bytes(const Imf::Header& header);
 /// How many rows ZIP or ZIPS puts together.
 int rows_of_zip_chunk(const Imf::Header& header);
 
-/// Whether read_zip_rows() reads these channels of such a part. All else is for OpenEXR.
-bool is_zip_rows(const Imf::Header& header, std::span<const ExrRead> reads);
+/// A channel to read: as floats, or as it is stored.
+struct ZipRead {
+  std::string channel;
+  void* to;
+  bool as_floats = true;
+};
+
+/// Whether read_zip_rows() reads such a part, and OpenEXR need not.
+bool is_zip_rows(const Imf::Header& header);
 
 /// Reads `rows` rows of the part's data window, from the `first` one on, on as many of OpenEXR's threads as are
-/// allowed, or on the caller's where that is none. Fails with a std::exception where chunks are missing or damaged.
-void read_zip_rows(const Imf::InputPart& part, std::span<const ExrRead> reads, int first, int rows, int most_threads);
+/// allowed, or on the caller's where that is none. The part has these channels. Fails with a std::exception where
+/// chunks are missing or damaged.
+void read_zip_rows(const Imf::InputPart& part, std::span<const ZipRead> reads, int first, int rows, int most_threads);
 
 }  // namespace alcove

@@ -34,7 +34,7 @@ void write_word(Imf::OStream& stream, std::int32_t word) {
 
 }  // namespace
 
-bool is_for_zip_writer(const Imf::Header& header) { return is_zip_rows(header, {}); }
+bool is_for_zip_writer(const Imf::Header& header) { return is_zip_rows(header); }
 
 ZipWriter::ZipWriter(Imf::OStream& stream, const Imf::Header& header) : stream_(stream), header_(of_lines(header)) {
   header_.sanityCheck();

@@ -29,8 +29,12 @@ struct ZipRows {
 struct ZipChannel {
   SampleType type;
   std::size_t offset;  // bytes from a row's beginning, even
-  float* to;           // where the wanted rows go, one behind the other
+  std::byte* to;       // where the wanted rows go, one behind the other
+  bool as_floats;      // half floats are widened and integers rounded; else samples stay as they are stored
 };
+
+/// The bytes of a sample in the file.
+std::size_t bytes_of(SampleType type);
 
 /// Unpacks chunks one after the other; each thread has one of its own.
 class ZipUnpacker {
@@ -38,8 +42,8 @@ class ZipUnpacker {
   explicit ZipUnpacker(const SampleLoops& loops = fast_sample_loops());
   ~ZipUnpacker();
 
-  /// Writes the wanted rows of the channels, which stand in the order of their offsets, as floats; integers are
-  /// rounded. Returns false where the chunk is damaged: then the rows hold anything.
+  /// Writes the wanted rows of the channels, which stand in the order of their offsets. Returns false where the chunk
+  /// is damaged: then the rows hold anything.
   bool unpack(std::span<const std::uint8_t> packed, const ZipRows& rows, std::span<const ZipChannel> channels);
 
  private:
@@ -47,6 +51,7 @@ class ZipUnpacker {
   void sum_up(const ZipRows& rows, std::span<const ZipChannel> channels);
   void read_stored(std::span<const std::uint8_t> bytes, const ZipRows& rows, std::span<const ZipChannel> channels);
   void read_split(const ZipRows& rows, std::span<const ZipChannel> channels);
+  void write_row(const ZipChannel& channel, const std::uint8_t* from, std::size_t width, std::byte* to) const;
 
   const SampleLoops& loops_;
   const std::unique_ptr<libdeflate_decompressor, void (*)(libdeflate_decompressor*)> inflater_;
