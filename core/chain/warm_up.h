@@ -1,4 +1,4 @@
-// Makes the pipelines of a run before its first frame is there: half of a small frame's time is the driver's making them.
+// Makes the pipelines of a run before its first frame is there: that is half of a small frame's time.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
