@@ -57,6 +57,7 @@ ExrOutput output_like(const FrameSource& source, const ChannelRef& like, const W
     std::string& hidden_from = output.own_attributes[kHiddenAttribute];
     hidden_from += (hidden_from.empty() ? "" : "; ") + provenance.others;
   }
+  if (!provenance.estimates.empty()) output.own_attributes[kAccumulatedAttribute] = provenance.estimates;
   if (!provenance.notes.empty()) output.own_attributes[kNotesAttribute] = provenance.notes;
   return output;
 }
@@ -250,7 +251,18 @@ const Window& written_of(const FrameSource& source) { return source.region ? *so
 
 Window written_picture(const FrameSource& source) { return picture_of(source, written_of(source)); }
 
-FrameInputs load_frame(gpu::Recorder& gpu, FrameSource& source, const Settings& all, int frame, FrameRows* rows) {
+ReadPlanes kept_planes(const FrameInputs& inputs) {
+  ReadPlanes planes;
+  for (const auto& row : kRawPlanes)
+    if (const gpu::Buffer* plane = inputs[row.plane]) {
+      const auto values = plane->as<const float>();
+      planes[row.plane].assign(values.begin(), values.end());
+    }
+  return planes;
+}
+
+FrameInputs load_frame(gpu::Recorder& gpu, FrameSource& source, const Settings& all, int frame, FrameRows* rows,
+                       const ReadPlanes* known) {
   const InputSettings& settings = all.input;
   RawPlaneArray<gpu::Buffer*> planes;
   std::vector<PlaneRead> reads;
@@ -261,7 +273,13 @@ FrameInputs load_frame(gpu::Recorder& gpu, FrameSource& source, const Settings& 
     planes[row.plane] = &gpu.buffer(row.name, bytes, gpu::Use::upload);
     reads.push_back({&channels, planes[row.plane]->as<float>().data()});
   }
-  if (rows) {
+  const auto is_known = [&](const auto& row) {
+    return !planes[row.plane] || (*known)[row.plane].size() == planes[row.plane]->template as<float>().size();
+  };
+  if (known && source.data == source.file_data && std::ranges::all_of(kRawPlanes, is_known)) {
+    for (const auto& row : kRawPlanes)
+      if (planes[row.plane]) std::ranges::copy((*known)[row.plane], planes[row.plane]->as<float>().begin());
+  } else if (rows) {
     rows->need(source.data.y, source.data.y + source.data.height);
     for (const auto& read : reads) rows->copy(*read.channels, source.data, read.to);
   } else {
