@@ -59,6 +59,8 @@ struct InputSettings {
   // frames to each side, 0 to 32, whose static surfaces count where they are hidden in this one
   int around = 0;
   bool around_all = false;  // instead: all frames of the shot
+  // to each side, 0 to 16, with whose estimates the AO of a frame is a mean
+  int accumulate = 0;
   // motion vectors, which tell what moves: a file, two channels, and what they point to
   std::string motion, motion_channels;
   MotionKind motion_kind = MotionKind::automatic;

@@ -13,7 +13,8 @@ namespace {
 
 bool is_of_visibility(const DebugView* view) {
   return view->source == DebugSource::raw_ao || view->source == DebugSource::denoised_ao ||
-         view->source == DebugSource::completed || view->source == DebugSource::tiles;
+         view->source == DebugSource::completed || view->source == DebugSource::tiles ||
+         view->source == DebugSource::count;
 }
 
 }  // namespace
@@ -84,7 +85,7 @@ bool Wanted::is_only_visibility() const {
   const auto is_ao = [](const Aov& aov) {
     return aov.planes == &FrameOutputs::ao || aov.planes == &FrameOutputs::scales;
   };
-  return visibility && std::ranges::all_of(aovs, is_ao) && !multi_bounce && debug_views.empty();
+  return visibility && !only_own && std::ranges::all_of(aovs, is_ao) && !multi_bounce && debug_views.empty();
 }
 
 bool in_world(const Camera& camera, const OutputSettings& settings) {

@@ -51,6 +51,7 @@ struct Wanted {
   bool visibility = false;       // AO, or what is made from it
   bool open_directions = false;  // what is made from them, of an estimator that finds them
   bool completed = false;        // what completed surfaces took of the visibility
+  bool only_own = false;         // the estimate alone, for other frames
   bool multi_bounce = false;
   PixelFilter filter;
   CompositeLook look;

@@ -13,7 +13,10 @@ gpu::Buffer* completion(gpu::Recorder& gpu, const GBuffer& gbuffer, const Estima
   const gpu::Extent tiles{groups_of(view.size.x, uint(kTile)), groups_of(view.size.y, uint(kTile))};
   gpu::Buffer& sums = gpu.buffer("completion", sizeof(vec2) * tiles.x * tiles.y, gpu::Use::device);
   gpu.dispatch("completion",
-               CompletionParams{view, gbuffer.grid.origin, sites.spacing, planes_in(*estimate.ao, view) - 1},
+               CompletionParams{view,
+                                {gbuffer.grid.origin.x + sites.shift.x, gbuffer.grid.origin.y + sites.shift.y},
+                                sites.spacing,
+                                planes_in(*estimate.ao, view) - 1},
                {{kCompletionDepth, *gbuffer.depth},
                 {kCompletionAo, *estimate.ao},
                 {kCompletionCompleted, *estimate.completed},

@@ -17,6 +17,7 @@ struct DebugStages {
   const gpu::Buffer* denoised_ao = nullptr;
   const gpu::Buffer* completed = nullptr;  // of the pixels of raw_ao; null: not asked for
   const gpu::Buffer* sectors = nullptr;    // of the tiles
+  const gpu::Buffer* count = nullptr;      // of the frame's pixels: of how many frames' estimates each is the mean
 };
 DebugPlane debug(gpu::Recorder& gpu, const DebugView& view, const GBuffer& gbuffer, const DebugStages& stages,
                  const FrameInputs& frame);

@@ -38,6 +38,8 @@ constexpr std::array kViews{
         kDebugTile, DebugSource::tiles, DebugScale::fixed, 0, 1, false},
     DebugView{"hidden", "hidden: surfaces behind the first; half a one more where any of them closes a solid",
               kDebugHidden, DebugSource::hidden, DebugScale::fixed, 0, 3.5f, false},
+    DebugView{"count", "count: frames whose estimates the AO is the mean of (logarithmic)", kDebugValue,
+              DebugSource::count, DebugScale::fixed_logarithmic, 1, 33, false},
     DebugView{"edges", "edges: a neighbour's distance from the tangent plane, part of the depth (logarithmic)",
               kDebugEdge, DebugSource::none, DebugScale::fixed_logarithmic, 1e-4f, 1, false},
 };

@@ -13,7 +13,18 @@ namespace alcove {
 
 enum class DebugScale { fixed, fixed_logarithmic, percentile, percentile_logarithmic };
 /// What kernels/debug.comp takes beside the G-buffer.
-enum class DebugSource { none, raw_depth, raw_ao, denoised_ao, normals_from_depth, completed, sites, tiles, hidden };
+enum class DebugSource {
+  none,
+  raw_depth,
+  raw_ao,
+  denoised_ao,
+  normals_from_depth,
+  completed,
+  sites,
+  tiles,
+  hidden,
+  count
+};
 
 /// A row of the table.
 struct DebugView {

@@ -77,6 +77,10 @@ void upload(gpu::Recorder& gpu, const FrameInputs& frame) {
   for (const auto& other : frame.others)
     for (const auto* plane : {other.depth, other.normal, other.moving})
       if (plane) gpu.upload(*plane);
+  for (const auto* plane : {frame.estimates.depth, frame.estimates.values})
+    if (plane) gpu.upload(*plane);
+  for (const auto& group : frame.estimates.groups)
+    for (const auto* part : {group.planes, group.frames}) gpu.upload(*part);
 }
 
 }  // namespace alcove

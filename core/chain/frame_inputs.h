@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/chain/other_views.h"
+#include "core/chain/seen_estimates.h"
 #include "core/frame/raw_plane.h"
 #include "core/frame/reading.h"
 #include "core/gpu/recorder.h"
@@ -43,6 +44,8 @@ struct FrameInputs {
   std::vector<LayerTerms> behind;       // of each plane of RawPlane::behind
   bool behind_lists_all = false;        // see list_all()
   std::vector<OtherView> others;        // in any order: what they see behind the first surface counts as hidden
+  EstimateSet estimates;                // of which its AO is the mean
+  int turn = 0;                         // of its sites, see site_rule_of()
   int supersampling = 1;                // px of the frame for each of its picture, in x and in y
   Margin margin{};                      // where others show what lies around the frame; see margin.h
   MatteReading matte;                   // how its planes are read

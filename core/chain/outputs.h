@@ -3,8 +3,10 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
+#include "core/chain/own_estimate.h"
 #include "kernels/shared.h"
 
 namespace alcove {
@@ -47,6 +49,8 @@ struct FrameOutputs {
   gpu::Buffer* specular_occlusion = nullptr;  // a plane, in [0, 1], 1 = open
   gpu::Buffer* color_ao = nullptr;            // planes r, g, b: the visibility with multi-bounce
   gpu::Buffer* composite = nullptr;           // the beauty's planes
+  gpu::Buffer* count = nullptr;    // a plane and more: of how many frames' estimates it is the mean; null: its own
+  std::optional<OwnEstimate> own;  // with wanted.only_own: then nothing else is made of it
   std::vector<DebugPlane> debug;
 };
 

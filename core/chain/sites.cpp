@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/chain/sites.h"
 
+#include <array>
 #include <bit>
 
 #include "core/base/estimator_facts.h"
@@ -20,6 +21,26 @@ std::size_t tiles_in(const View& view) {
 
 std::size_t rows_bytes(const View& view) { return tiles_in(view) * kTile * sizeof(uint); }
 
+/// The shifts of a lattice of one pixel of 4 x 4: those that follow each other lie far apart.
+constexpr std::array<ivec2, 16> kShifts{{{0, 0},
+                                         {2, 2},
+                                         {2, 0},
+                                         {0, 2},
+                                         {1, 1},
+                                         {3, 3},
+                                         {3, 1},
+                                         {1, 3},
+                                         {1, 0},
+                                         {3, 2},
+                                         {3, 0},
+                                         {1, 2},
+                                         {0, 1},
+                                         {2, 3},
+                                         {2, 1},
+                                         {0, 3}}};
+
+ivec2 moved_by(const ivec2& origin, const ivec2& shift) { return {origin.x + shift.x, origin.y + shift.y}; }
+
 /// See links.h.
 const gpu::Buffer& flat_links(gpu::Recorder& gpu, const View& view, const std::string& prefix) {
   return gpu.buffer(prefix + "flat links", rows_bytes(view), gpu::Use::device);
@@ -27,7 +48,9 @@ const gpu::Buffer& flat_links(gpu::Recorder& gpu, const View& view, const std::s
 
 }  // namespace
 
-SiteRule site_rule_of(const EstimatorSettings& settings) { return {spacing_of(settings), is_adaptive(settings)}; }
+SiteRule site_rule_of(const EstimatorSettings& settings, int turn) {
+  return {spacing_of(settings), is_adaptive(settings), kShifts[std::size_t(turn) % kShifts.size()]};
+}
 
 Sites sites(gpu::Recorder& gpu, const GBuffer& gbuffer, const SiteRule& rule, const std::string& prefix) {
   if (rule.spacing == 1) return {};
@@ -40,17 +63,17 @@ Sites sites(gpu::Recorder& gpu, const GBuffer& gbuffer, const SiteRule& rule, co
     gpu::Buffer& more = gpu.buffer(prefix + (is_odd ? "more sites" : "sites"), rows_bytes(view), gpu::Use::device);
     // On the denser lattices a path may lead over round surfaces.
     const gpu::Buffer& links = spacing >= 4 ? flat_links(gpu, view, prefix) : *rows;
-    gpu.dispatch("sites", SitesParams{view.size, gbuffer.grid.origin, spacing},
+    gpu.dispatch("sites", SitesParams{view.size, moved_by(gbuffer.grid.origin, rule.shift), spacing},
                  {{kSitesRows, *rows}, {kSitesLinks, links}, {kSitesResult, more}}, strips);
     rows = &more;
   }
-  return {rows, rule.spacing};
+  return {rows, rule.spacing, rule.shift};
 }
 
 const gpu::Buffer& links(gpu::Recorder& gpu, const GBuffer& gbuffer, const SiteRule& rule, const std::string& prefix) {
   const View& view = gbuffer.view;
   gpu::Buffer& rows = gpu.buffer(prefix + "sites", rows_bytes(view), gpu::Use::device);
-  gpu.dispatch("links", LinksParams{view, gbuffer.grid.origin},
+  gpu.dispatch("links", LinksParams{view, moved_by(gbuffer.grid.origin, rule.shift)},
                {{kLinksDepth, *gbuffer.depth},
                 {kLinksNormal, *gbuffer.normal},
                 {kLinksRows, rows},
@@ -67,7 +90,7 @@ void list_sites(gpu::Recorder& gpu, const GBuffer& gbuffer, const Sites& sites, 
   list.sites = &gpu.buffer("listed sites", tiles_in(view) * kTile * kTile * sizeof(uint), gpu::Use::device);
   list.site_counts = &gpu.buffer(prefix + "site counts", sizeof(SiteCounts), gpu::Use::device);
   gpu.clear(*list.site_counts);
-  gpu.dispatch("list_sites", ListSitesParams{view.size, gbuffer.grid.origin},
+  gpu.dispatch("list_sites", ListSitesParams{view.size, moved_by(gbuffer.grid.origin, sites.shift)},
                {{kListSitesRows, *sites.rows},
                 {kListSitesTiles, *list.tiles},
                 {kListSitesTileCounts, *list.counts},

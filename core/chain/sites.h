@@ -13,14 +13,17 @@ namespace alcove {
 struct Sites {
   const gpu::Buffer* rows = nullptr;  // 8 words per tile, see lattice.glsl; null: every pixel has an estimate
   int spacing = 1;                    // one pixel of so many is a site at least
+  ivec2 shift{};                      // px of their lattice to the left and up
 };
 
 /// Where the sites lie.
 struct SiteRule {
   int spacing;       // one pixel of so many is a site at least: 1, 2, 4, 8 or 16
   bool is_adaptive;  // more where a surface is too small or too bent for its neighbours' sites
+  ivec2 shift{};     // px of the lattice to the left and up
 };
-SiteRule site_rule_of(const EstimatorSettings& settings);
+/// `turn`: of frames whose sites are taken together each has its own, from 0 on, and with it another shift.
+SiteRule site_rule_of(const EstimatorSettings& settings, int turn = 0);
 
 /// Chooses the sites, from the G-buffer alone.
 /// `prefix` stands before the names of its buffers where there is another estimate.

@@ -25,7 +25,8 @@ std::vector<gpu::KernelName> kernels_of(gpu::Device& device, EstimatorSettings s
   std::vector<gpu::KernelName> names = rehearsal.rehearsed();
   std::ranges::sort(names);
   names.erase(std::ranges::unique(names).begin(), names.end());
-  std::ranges::stable_sort(names, std::ranges::greater{}, [](const auto& name) { return gpu::kernel_code(name.first).size(); });
+  const auto words = [](const gpu::KernelName& name) { return gpu::kernel_code(name.first).size(); };
+  std::ranges::stable_sort(names, std::ranges::greater{}, words);
   return names;
 }
 

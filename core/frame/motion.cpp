@@ -138,8 +138,8 @@ std::optional<MotionReading> best_motion_reading(const MotionPlanes& planes, con
   return best && best->share >= kLeastShare ? best : std::nullopt;
 }
 
-std::vector<std::uint8_t> moving_by(const MotionPlanes& planes, const MotionReading& reading,
-                                    const MotionFrame& frame) {
+std::vector<std::uint8_t> moving_by(const MotionPlanes& planes, const MotionReading& reading, const MotionFrame& frame,
+                                    int around) {
   const MotionPlanes::Pair& pair = planes.pairs[reading.pair];
   const FromThere& there = frame_of(frame, reading.kind).value();
   const int width = frame.view.size.x, height = frame.view.size.y;
@@ -150,8 +150,8 @@ std::vector<std::uint8_t> moving_by(const MotionPlanes& planes, const MotionRead
     if (expected && is_still(*expected, reading.scale[0] * double(pair.x[i]), reading.scale[1] * double(pair.y[i])))
       continue;
     const int x = int(i % std::size_t(width)), y = int(i / std::size_t(width));
-    for (int v = std::max(y - 1, 0); v <= std::min(y + 1, height - 1); v++)
-      for (int u = std::max(x - 1, 0); u <= std::min(x + 1, width - 1); u++)
+    for (int v = std::max(y - around, 0); v <= std::min(y + around, height - 1); v++)
+      for (int u = std::max(x - around, 0); u <= std::min(x + around, width - 1); u++)
         moving[std::size_t(v) * std::size_t(width) + std::size_t(u)] = 1;
   }
   return moving;

@@ -51,7 +51,9 @@ struct MotionReading {
 /// then the vectors are of other frames or of another unit. `kind` may say to which frame they lead.
 std::optional<MotionReading> best_motion_reading(const MotionPlanes& planes, const MotionFrame& frame, MotionKind kind);
 
-/// Gives 1 for each pixel whose surface moves by its vector, or that lies beside such a one; else 0. Sky stands still.
-std::vector<std::uint8_t> moving_by(const MotionPlanes& planes, const MotionReading& reading, const MotionFrame& frame);
+/// Gives 1 for each pixel whose surface moves by its vector, or that lies up to `around` pixels beside such a one; else
+/// 0. Sky stands still.
+std::vector<std::uint8_t> moving_by(const MotionPlanes& planes, const MotionReading& reading, const MotionFrame& frame,
+                                    int around = 1);
 
 }  // namespace alcove

@@ -31,8 +31,8 @@ constexpr std::size_t kShownValue = 300;       // of what changes along a sequen
 
 std::string percent(double share) { return fmt::format("{:.1f} %", 100 * share); }
 
-/// Lines that a terminal may show.
-class Lines {
+/// TextLines that a terminal may show.
+class TextLines {
  public:
   template <class... Args>
   void add(fmt::format_string<Args...> format, Args&&... args) {
@@ -44,7 +44,7 @@ class Lines {
   std::string text_;
 };
 
-void add(Lines& lines, const InspectedPart& part) {
+void add(TextLines& lines, const InspectedPart& part) {
   const ExrPart& header = part.header;
   lines.add("  part{}{}: data window {}", header.name.empty() ? "" : " " + header.name,
             header.view.empty() ? "" : ", view " + header.view, to_string(header.data));
@@ -52,7 +52,7 @@ void add(Lines& lines, const InspectedPart& part) {
   for (const auto& [name, value] : part.attributes) lines.add("    {} = {}", name, value.substr(0, kShownCharacters));
 }
 
-void add(Lines& lines, const InspectedFile& file) {
+void add(TextLines& lines, const InspectedFile& file) {
   lines.add("{}: display window {}, pixel aspect {:.4g}", file.path, to_string(file.display), file.pixel_aspect);
   for (const auto& part : file.parts) add(lines, part);
   for (const auto& matte : file.cryptomattes) {
@@ -64,16 +64,16 @@ void add(Lines& lines, const InspectedFile& file) {
   }
 }
 
-void add(Lines& lines, const InspectedSource& source) {
+void add(TextLines& lines, const InspectedSource& source) {
   lines.add("source: {}{}", source.name, source.by.empty() ? "" : " (" + source.by + ")");
 }
 
-void add(Lines& lines, const InspectedAov& aov) {
+void add(TextLines& lines, const InspectedAov& aov) {
   lines.add("{}: {} ({})", aov.name, fmt::join(aov.channels, ", "),
             aov.is_chosen ? "named by an option" : "a usual name");
 }
 
-void add(Lines& lines, const InspectedCamera& inspected) {
+void add(TextLines& lines, const InspectedCamera& inspected) {
   const Camera& camera = inspected.camera;
   const double degrees = 2 * std::atan(0.5 * camera.width / camera.fx) * 180 / std::numbers::pi;
   lines.add("camera: {} by {}, {}, {} world_to_camera", camera.orthographic ? "orthographic" : "perspective",
@@ -83,7 +83,7 @@ void add(Lines& lines, const InspectedCamera& inspected) {
             camera.view_from_world ? "with" : "without");
 }
 
-void add(Lines& lines, const InspectedDepth& depth) {
+void add(TextLines& lines, const InspectedDepth& depth) {
   const ValueStatistics& values = depth.values;
   lines.add("depth: {}, values {:.6g} to {:.6g}; {} NaN, {} infinite, {} negative, {} of 0, {} of 1", depth.kind,
             values.least, values.most, values.nan, values.infinite, values.negative, values.zero, values.one);
@@ -96,7 +96,7 @@ void add(Lines& lines, const InspectedDepth& depth) {
               percent(score.straight));
 }
 
-void add(Lines& lines, const InspectedNormals& normals) {
+void add(TextLines& lines, const InspectedNormals& normals) {
   const std::string lengths = normals.mean_length ? fmt::format(", mean length {:.4f}, of unit length on {}",
                                                                 *normals.mean_length, percent(*normals.unit_share))
                                                   : "";
@@ -110,7 +110,7 @@ void add(Lines& lines, const InspectedNormals& normals) {
   }
 }
 
-void add(Lines& lines, const InspectedDeep& deep) {
+void add(TextLines& lines, const InspectedDeep& deep) {
   lines.add("deep: {} part {}: {}, {}, {}; {:.2f} samples per pixel, {} at most; {} hidden behind opaque ones",
             deep.file, fmt::join(deep.parts, ", "), deep.layout.is_tiled ? "tiles" : "lines", deep.layout.compression,
             deep.layout.state, deep.samples_per_pixel(), deep.counts.most, percent(deep.hidden_share()));
@@ -120,7 +120,7 @@ void add(Lines& lines, const InspectedDeep& deep) {
   if (deep.shows_nothing_hidden()) lines.add("  holds no surface behind an opaque one: elements rendered in one go");
 }
 
-void add(Lines& lines, const SequenceCamera& camera, bool is_orthographic) {
+void add(TextLines& lines, const SequenceCamera& camera, bool is_orthographic) {
   const char* unit = is_orthographic ? "scene units" : "degrees";
   const bool is_constant = camera.widest - camera.narrowest < 1e-6 * camera.widest;
   std::string text = is_constant ? fmt::format("{:.2f} {} wide in all frames", camera.widest, unit)
@@ -135,7 +135,7 @@ void add(Lines& lines, const SequenceCamera& camera, bool is_orthographic) {
   lines.add("  camera: {}", text);
 }
 
-void add(Lines& lines, const SequenceDepth& depth) {
+void add(TextLines& lines, const SequenceDepth& depth) {
   if (depth.median)
     lines.add("  depth of frame {}: distances {:.6g} to {:.6g}, median {:.6g}; sky {}", depth.frame, *depth.nearest,
               *depth.farthest, *depth.median, percent(depth.sky_share));
@@ -143,7 +143,7 @@ void add(Lines& lines, const SequenceDepth& depth) {
     lines.add("  depth of frame {}: all is sky", depth.frame);
 }
 
-void add(Lines& lines, const InspectedSequence& sequence, bool is_orthographic) {
+void add(TextLines& lines, const InspectedSequence& sequence, bool is_orthographic) {
   lines.add("sequence: {} frames, {}; shown is frame {}", sequence.frames.size(), frames_text(sequence.frames),
             sequence.shown);
   if (!sequence.absent.empty()) lines.add("  missing frames: {}", frames_text(sequence.absent));
@@ -159,7 +159,7 @@ void add(Lines& lines, const InspectedSequence& sequence, bool is_orthographic) 
 }  // namespace
 
 std::string inspection_text(const Inspection& inspection) {
-  Lines lines;
+  TextLines lines;
   for (const auto& file : inspection.files) add(lines, file);
   if (inspection.source) add(lines, *inspection.source);
   for (const auto& aov : inspection.aovs) add(lines, aov);

@@ -45,6 +45,29 @@ void check_completion(const Settings& settings) {
        e.estimator == Estimator::hbao ? "hbao" : "crytek");
 }
 
+/// Whether a view shows how one frame is estimated.
+bool is_of_estimate(DebugSource source) {
+  return source == DebugSource::tiles || source == DebugSource::completed || source == DebugSource::sites ||
+         source == DebugSource::raw_ao || source == DebugSource::denoised_ao;
+}
+
+/// A mean of many frames has no tiles, sites or guesses of one.
+void check_accumulation(const Settings& settings) {
+  if (settings.input.accumulate == 0) {
+    for (const auto* view : debug_views_of(settings.output))
+      if (view->source == DebugSource::count)
+        fail(ErrorKind::usage, "--debug count: a frame is its own estimate; --accumulate takes those of others");
+    return;
+  }
+  for (const auto* view : debug_views_of(settings.output))
+    if (is_of_estimate(view->source))
+      fail(
+          ErrorKind::usage,
+          "--debug {}: it shows the estimate of one frame, and with --accumulate the AO is the mean of many: leave one "
+          "of them out",
+          view->name);
+}
+
 /// What shows hidden surfaces needs some that are kept.
 void check_hidden(const Settings& settings) {
   const auto views = debug_views_of(settings.output);
@@ -93,6 +116,7 @@ void check_settings(const Settings& settings) {
   check_tolerance(settings);
   check_search(settings);
   check_completion(settings);
+  check_accumulation(settings);
   check_hidden(settings);
   check_scales(settings);
   check_numbers(settings.estimator);

@@ -256,6 +256,36 @@ void add_shape_rows(std::vector<OptionRow>& rows, EstimatorSettings& s) {
       .harmless = {"0"};
 }
 
+/// Of frames to each side: more are too far away to show the same.
+constexpr int kMostAccumulated = 16;
+
+bool read_accumulate(const std::string& text, int& frames) {
+  if (lower_case(text) == "all")
+    fail(ErrorKind::usage,
+         "--accumulate all: a mean of the whole shot would make every frame wait for all others, and far ones show "
+         "little "
+         "of it: give a number of frames to each side, up to {}",
+         kMostAccumulated);
+  const auto number = whole_number_of(text);
+  if (!number || *number < 0 || *number > kMostAccumulated) return false;
+  frames = *number;
+  return true;
+}
+
+void add_time_rows(std::vector<OptionRow>& rows, InputSettings& s) {
+  OptionGroup(rows, "Estimator", Effect::pixels)
+      .own(
+          {"--accumulate", "NUMBER", "frames to each side", fmt::format("0 to {}", kMostAccumulated),
+           "of a sequence: the AO is the mean of the estimates of so many frames before and behind, of what stands "
+           "still "
+           "with all around it; needs the camera of each, and animates the noise"},
+          [&s] { return fmt::format("{}", s.accumulate); },
+          [&s](const std::string& text) { return read_accumulate(text, s.accumulate); },
+          fmt::format("is no whole number from 0 to {}", kMostAccumulated))
+      .contradicts({"--tolerance"}, "an estimate by its error is as exact as was asked for by itself")
+      .harmless = {"0"};
+}
+
 }  // namespace
 
 void add_estimator_rows(std::vector<OptionRow>& rows, RunOptions& options) {
@@ -273,6 +303,7 @@ void add_estimator_rows(std::vector<OptionRow>& rows, RunOptions& options) {
   add_filter_rows(rows, settings);
   add_denoise_rows(rows, settings);
   add_shape_rows(rows, settings);
+  add_time_rows(rows, options.settings.input);
 }
 
 }  // namespace alcove

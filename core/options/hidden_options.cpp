@@ -92,8 +92,12 @@ Condition with_hidden_sources() {
 /// Estimators that know where what lies behind a surface begins and ends.
 Condition to_estimators_of_layers() { return to_estimators({Estimator::gtao, Estimator::bitmask}); }
 
-Condition with_around() {
-  return with_option("--around", [](const Settings& all) { return all.input.around > 0 || all.input.around_all; });
+Condition with_other_frames() {
+  return {"with --around or --accumulate", [](const Settings& all) {
+            const InputSettings& input = all.input;
+            const bool takes_frames = input.around > 0 || input.around_all || input.accumulate > 0;
+            return takes_frames ? "" : "there is neither";
+          }};
 }
 
 void add_behind_rows(OptionGroup& files, OptionGroup& pixels, InputSettings& s) {
@@ -149,16 +153,16 @@ void add_view_rows(OptionGroup& files, OptionGroup& pixels, InputSettings& s) {
   files
       .text("--motion", s.motion, "FILE",
             "an EXR of motion vectors, in pixels, which tell what moves; else other frames tell")
-      .applies(with_around());
+      .applies(with_other_frames());
   pixels
       .text("--motion-channels", s.motion_channels, "LAYER|X,Y",
             "the layer of the motion vectors, or their channels; else found by their usual names")
-      .applies(with_around());
+      .applies(with_other_frames());
   pixels
       .choice("--motion-kind", s.motion_kind,
               "where the vectors point: to the place in the previous frame or in the next one; auto: as most pixels "
               "move by the cameras")
-      .applies(with_around())
+      .applies(with_other_frames())
       .harmless = {"auto"};
 }
 

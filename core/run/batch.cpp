@@ -192,15 +192,12 @@ class Batch {
       const OutputSettings& output = settings_.output;
       transform.emplace(output.ocio, output.display, output.view_transform);
     }
-    RunContext run{plan_,
-                   identities_,
-                   settled ? &*settled : nullptr,
-                   transform ? &*transform : nullptr,
-                   nullptr,
-                   {report_.options, ""},
-                   watch_.stop};
+    RunContext run{plan_,   identities_, settled ? &*settled : nullptr, transform ? &*transform : nullptr,
+                   nullptr, nullptr,     {report_.options, ""},         watch_.stop};
     std::optional<SharedFrames> shot;
+    std::optional<SharedEstimates> estimates;
     if (takes_others(settings_.input)) run.shot = &shot.emplace(plan_, run.settled, frames);
+    if (settings_.input.accumulate > 0) run.estimates = &estimates.emplace(plan_, run.settled, run.shot, frames);
 
     run_on_device(run, frames);
     if (!lost_ || report_.stop) return;  // a frame that failed beside the loss has ended the run

@@ -71,6 +71,12 @@ std::string plan_text(const Settings& given) {
                      "what it takes itself",
                      most_others(plan, source, first.input), plan.shot().size(),
                      bytes_of_shot(plan, source, first.input, 1) >> 20));
+  if (first.input.accumulate > 0)
+    line("accumulate",
+         fmt::format("up to {} of the {} frames of the shot: {} MiB of estimates for each at once, beside "
+                     "what it takes itself",
+                     std::min(plan.shot().size(), std::size_t(plan.turns())), plan.shot().size(),
+                     bytes_of_estimates(plan, source, first, 1) >> 20));
   const auto wanted = frames_to_compute(plan, settings);
   if (wanted.size() < plan.frames().size())
     line("kept", fmt::format("{}: whole, by an earlier run", plan.frames().size() - wanted.size()));

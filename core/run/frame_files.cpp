@@ -52,6 +52,7 @@ ExrOutput output_like(const FrameSource& source, const ChannelRef& like, const W
     std::string& hidden_from = output.own_attributes[kHiddenAttribute];
     hidden_from += (hidden_from.empty() ? "" : "; ") + provenance.others;
   }
+  if (!provenance.estimates.empty()) output.own_attributes[kAccumulatedAttribute] = provenance.estimates;
   if (!provenance.notes.empty()) output.own_attributes[kNotesAttribute] = provenance.notes;
   return output;
 }
@@ -245,7 +246,18 @@ const Window& written_of(const FrameSource& source) { return source.region ? *so
 
 Window written_picture(const FrameSource& source) { return picture_of(source, written_of(source)); }
 
-RawPlaneArray<gpu::Buffer*> read_frame(gpu::Recorder& gpu, FrameSource& source, FrameRows* rows) {
+ReadPlanes kept_planes(const FrameInputs& inputs) {
+  ReadPlanes planes;
+  for (const auto& row : kRawPlanes)
+    if (const gpu::Buffer* plane = inputs[row.plane]) {
+      const auto values = plane->as<const float>();
+      planes[row.plane].assign(values.begin(), values.end());
+    }
+  return planes;
+}
+
+RawPlaneArray<gpu::Buffer*> read_frame(gpu::Recorder& gpu, FrameSource& source, FrameRows* rows,
+                                       const ReadPlanes* known) {
   RawPlaneArray<gpu::Buffer*> planes;
   std::vector<PlaneRead> reads;
   for (const auto& row : kRawPlanes) {
@@ -255,7 +267,13 @@ RawPlaneArray<gpu::Buffer*> read_frame(gpu::Recorder& gpu, FrameSource& source, 
     planes[row.plane] = &gpu.buffer(row.name, bytes, gpu::Use::upload);
     reads.push_back({&channels, planes[row.plane]->as<float>().data()});
   }
-  if (rows) {
+  const auto is_known = [&](const auto& row) {
+    return !planes[row.plane] || (*known)[row.plane].size() == planes[row.plane]->template as<float>().size();
+  };
+  if (known && source.data == source.file_data && std::ranges::all_of(kRawPlanes, is_known)) {
+    for (const auto& row : kRawPlanes)
+      if (planes[row.plane]) std::ranges::copy((*known)[row.plane], planes[row.plane]->as<float>().begin());
+  } else if (rows) {
     rows->need(source.data.y, source.data.y + source.data.height);
     for (const auto& read : reads) rows->copy(*read.channels, source.data, read.to);
   } else {
@@ -281,8 +299,9 @@ FrameInputs settled_inputs(FrameSource& source, const RawPlaneArray<gpu::Buffer*
   return inputs;
 }
 
-FrameInputs load_frame(gpu::Recorder& gpu, FrameSource& source, const Settings& all, int frame, FrameRows* rows) {
-  return settled_inputs(source, read_frame(gpu, source, rows), all, frame);
+FrameInputs load_frame(gpu::Recorder& gpu, FrameSource& source, const Settings& all, int frame, FrameRows* rows,
+                       const ReadPlanes* known) {
+  return settled_inputs(source, read_frame(gpu, source, rows, known), all, frame);
 }
 
 std::vector<std::span<const float>> result_planes(const FrameOutputs& outputs, const Window& computed,

@@ -37,9 +37,14 @@ Window written_picture(const FrameSource& source);
 /// The part of a frame's memory that its decoded rows may take before they go to a file.
 constexpr std::uint64_t kRowsPart = 4;
 
+/// Planes of a whole frame as they were read, in host memory; empty: those were not.
+using ReadPlanes = RawPlaneArray<std::vector<float>>;
+ReadPlanes kept_planes(const FrameInputs& inputs);
+
 /// Reads the planes within source.data into upload buffers. They are taken from `rows`, or where there are none from
-/// the files.
-RawPlaneArray<gpu::Buffer*> read_frame(gpu::Recorder& gpu, FrameSource& source, FrameRows* rows = nullptr);
+/// the files; all of a whole frame that are in `known` from there.
+RawPlaneArray<gpu::Buffer*> read_frame(gpu::Recorder& gpu, FrameSource& source, FrameRows* rows = nullptr,
+                                       const ReadPlanes* known = nullptr);
 
 /// Settles what is open about a frame whose planes are read, and says what they mean.
 FrameInputs settled_inputs(FrameSource& source, const RawPlaneArray<gpu::Buffer*>& planes, const Settings& settings,
@@ -47,13 +52,14 @@ FrameInputs settled_inputs(FrameSource& source, const RawPlaneArray<gpu::Buffer*
 
 /// Does both.
 FrameInputs load_frame(gpu::Recorder& gpu, FrameSource& source, const Settings& settings, int frame,
-                       FrameRows* rows = nullptr);
+                       FrameRows* rows = nullptr, const ReadPlanes* known = nullptr);
 
 /// The attribute that holds the warnings of an output's frame; an output without warnings has none.
 inline constexpr const char* kNotesAttribute = "alcove/notes";
 
 /// The attribute that tells what frames and views a frame has taken surfaces from.
 inline constexpr const char* kHiddenAttribute = "alcove/hidden";
+inline constexpr const char* kAccumulatedAttribute = "alcove/accumulated";
 
 /// What the header of an output says of its making.
 struct Provenance {
@@ -61,6 +67,7 @@ struct Provenance {
   std::string inputs = {};      // see identity_of_inputs()
   std::string notes = {};       // see header_text()
   std::string others = {};      // see text_of(); empty: it takes none
+  std::string estimates = {};   // the same, of those that the AO is a mean of
 };
 
 /// The text that tells in a picture what it was made with: whoever finds it there need not make the picture again.

@@ -10,6 +10,8 @@
 #include "core/base/error.h"
 #include "core/base/estimator_facts.h"
 #include "core/base/file.h"
+#include "core/chain/aov.h"
+#include "core/chain/debug_view.h"
 #include "core/frame/settle_rows.h"
 #include "core/run/batch.h"
 #include "core/run/digest.h"
@@ -41,6 +43,7 @@ class FrameRun {
   FrameRun(Lane& lane, const RunContext& run, const Room& room, int frame, const PartWatch& watch, FrameReport& report)
       : gpu_(lane.gpu),
         last_(lane.last),
+        slots_(lane.estimates),
         run_(run),
         room_(room),
         frame_(frame),
@@ -128,16 +131,34 @@ class FrameRun {
     return source.region || pixel * source.file_data.pixels() <= most ? most : 0;
   }
 
+  /// Whether the frame's own pass looks at what others see: not where all that it takes of them is in its estimate.
+  bool needs_others() const {
+    const auto& wanted = settings_.output;
+    const auto views = debug_views_of(wanted);
+    const bool shows_hidden = std::ranges::find(views, DebugSource::hidden, &DebugView::source) != views.end();
+    return !run_.estimates || shows_hidden || wants(wanted, &FrameOutputs::hidden) ||
+           wants(wanted, &FrameOutputs::confidence);
+  }
+
   /// Finds what others see, once for all parts of the frame.
   void take_others(const FrameSource& source) {
-    if (!run_.shot) return;
+    if (!run_.shot && !run_.estimates) return;
     const Stopwatch reading;
     PreparedOthers took;
-    others_ = run_.shot->others_of(gpu_, source, frame_, took);
+    if (run_.estimates) estimates_ = run_.estimates->around({gpu_, room_}, frame_, took);
+    if (run_.shot && needs_others()) others_ = run_.shot->others_of(gpu_, source, frame_, took);
     tally_.add_others(took);
+    if (run_.estimates) take_own_estimate();
     if (!others_.frames.empty() || !others_.missing.empty()) report_.frames_around = others_.frames;
     report_.read_ms += reading.ms();
     go_on();
+  }
+
+  /// What the frame's own estimate was made of and has found counts as the frame's.
+  void take_own_estimate() {
+    const EstimatedFrame& own = estimates_.own(frame_);
+    if (others_.seen.empty()) others_ = own.others;
+    tally_.add_estimate(own.report, others_);
   }
 
   /// Reads and computes source.data, from the rows where there are any. reuses: what is as in the frame before is not
@@ -146,8 +167,10 @@ class FrameRun {
     tally_.begin(source.data);
     watch_(++part_, parts_, 0);
     const Stopwatch reading;
-    FrameInputs inputs = load_frame(gpu_, source, settings_, frame_, rows);
+    FrameInputs inputs = load_frame(gpu_, source, settings_, frame_, rows, estimates_.read.get());
     inputs.others = others_.seen;
+    inputs.estimates = slots_.filled(gpu_, run_.plan, estimates_, frame_, room_.buffer_bytes);
+    inputs.estimates.corner = {source.data.x - source.file_data.x, source.data.y - source.file_data.y};
     reuses = reuses && last_.is_worth_comparing(inputs);
     const bool is_same = reuses && last_.is_same(gpu_, inputs, settings_.estimator);
     if (!reuses) last_.forget();
@@ -172,13 +195,18 @@ class FrameRun {
   /// By what is noted so far.
   Provenance provenance() const {
     const bool has_own_camera = settings_.input.camera != run_.plan.at(run_.plan.frames().front()).input.camera;
-    return {has_own_camera ? options_digest(settings_) : run_.provenance.options, run_.provenance.device,
-            run_.identities.of(frame_), header_text(report_.notes), text_of(others_)};
+    return {has_own_camera ? options_digest(settings_) : run_.provenance.options,
+            run_.provenance.device,
+            run_.identities.of(frame_),
+            header_text(report_.notes),
+            text_of(others_),
+            text_of(estimates_)};
   }
 
   void run_whole(FrameSource& source, FrameRows* rows) {
+    const EstimatorSettings& estimator = settings_.estimator;
     const bool reuses =
-        run_.plan.frames().size() > 1 && !settings_.estimator.no_skip && settings_.estimator.noise == Noise::fixed;
+        run_.plan.frames().size() > 1 && !estimator.no_skip && estimator.noise == Noise::fixed && !run_.estimates;
     const FrameOutputs outputs = compute(source, rows, reuses);
     finish_tally(source);
     const Stopwatch writing;
@@ -294,6 +322,7 @@ class FrameRun {
 
   gpu::Recorder& gpu_;
   LastFrame& last_;
+  EstimateSlots& slots_;
   const RunContext& run_;
   const Room& room_;
   int frame_;
@@ -301,7 +330,8 @@ class FrameRun {
   int part_ = 0, parts_ = 1;
   std::string why_in_parts_;
   Settings settings_;
-  Others others_;  // that the frame takes
+  Others others_;             // that the frame takes
+  TakenEstimates estimates_;  // the same
   FrameReport& report_;
   FrameTally tally_;
 };

@@ -11,6 +11,7 @@
 #include "core/run/plan.h"
 #include "core/run/resume.h"
 #include "core/run/run_report.h"
+#include "core/run/shared_estimates.h"
 #include "core/run/shot.h"
 #include "core/run/tiles.h"
 
@@ -23,6 +24,7 @@ struct RunContext {
   const FrameSource* settled = nullptr;         // all frames are read as this one; null: each by itself
   const DisplayTransform* transform = nullptr;  // for the preview of a composite
   SharedFrames* shot = nullptr;                 // where frames take what others see
+  SharedEstimates* estimates = nullptr;         // where a frame is the mean of many
   Provenance provenance;                        // of settings whose camera file is the same for all frames
   std::function<bool()> stop = {};              // asked between steps: true drops the frame
 };
@@ -33,6 +35,7 @@ struct Lane {
 
   gpu::Recorder gpu;
   LastFrame last;
+  EstimateSlots estimates;
 };
 
 /// Told which part of how many of a frame is computed, and which share of that part is done, 0 to 1.

@@ -33,6 +33,16 @@ void FrameTally::add_others(const PreparedOthers& took) {
   before_ = report_.passes.size();
 }
 
+void FrameTally::add_estimate(const FrameReport& estimate, const Others& others) {
+  report_.tiles = estimate.tiles;
+  report_.estimates = estimate.estimates;
+  report_.occlusion = estimate.occlusion;
+  if (!others.seen.empty()) return;  // the frame itself counts them
+  report_.hidden = estimate.hidden;
+  report_.moved = estimate.moved;
+  report_.unconfirmed = estimate.unconfirmed;
+}
+
 void FrameTally::add_passes(std::span<const gpu::PassTime> passes) {
   for (std::size_t i = 0; i < passes.size(); i++) {
     if (before_ + i >= report_.passes.size()) report_.passes.push_back({passes[i].name});
@@ -75,6 +85,9 @@ void FrameTally::add_outputs(const FrameOutputs& outputs, const Window& computed
       occlusion.whole += tile.y;
     }
   }
+  if (outputs.count)
+    for (const float count : outputs.count->as<const float>().first(computed.pixels()))
+      report_.accumulated += double(count);
   if (outputs.view_counts) {
     const ViewCounts views = outputs.view_counts->as<ViewCounts>()[0];
     report_.moved += views.moved;

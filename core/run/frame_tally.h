@@ -24,6 +24,8 @@ class FrameTally {
   void add_inputs(const FrameSource& source, const FrameInputs& inputs, const Window& written);
   /// What preparing others took comes before the passes of the frame.
   void add_others(const PreparedOthers& took);
+  /// What the frame's own estimate found, where it is a mean of many; `others`: that the frame itself takes beside it.
+  void add_estimate(const FrameReport& estimate, const Others& others);
   void add_passes(std::span<const gpu::PassTime> passes);
   /// is_same: all results were kept from the frame before.
   void add_outputs(const FrameOutputs& outputs, const Window& computed, bool is_same);

@@ -168,6 +168,7 @@ class Pipeline {
 
   void finish(std::size_t place, const Room& room, FrameReport&& report) {
     if (run_.shot) run_.shot->done(report.frame);
+    if (run_.estimates) run_.estimates->done(report.frame);
     const Lock lock(mutex_);
     in_flight_--;
     // Later frames begin with what this one has learned.

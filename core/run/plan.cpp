@@ -203,13 +203,14 @@ void FramePlan::find_inputs(const std::vector<int>& chunk) {
 }
 
 void FramePlan::find_shot() {
-  if (around_of(settings_.input) == 0) return;
+  const char* const option = shot_option(settings_.input);
+  if (!option) return;
   const auto input = std::ranges::find_if(patterns_, [](const Pattern& pattern) { return !pattern.path.is_output; });
   if (input == patterns_.end())
     fail(ErrorKind::usage,
-         "{}: --around takes other frames of a sequence, and this names one file: give a pattern such as {}, with "
-         "--frames for this frame alone, or leave --around out",
-         main_input(settings_.input), pattern_for(main_input(settings_.input)));
+         "{}: {} takes other frames of a sequence, and this names one file: give a pattern such as {}, with "
+         "--frames for this frame alone, or leave {} out",
+         main_input(settings_.input), option, pattern_for(main_input(settings_.input)), option);
   shot_ = frames_on_disk(input->name, input->path.option);
   const std::vector<int> holes = holes_in(shot_);
   shot_.insert(shot_.end(), holes.begin(), holes.end());
@@ -230,21 +231,44 @@ FramesAround FramePlan::around(int frame, int count) const {
 }
 
 std::vector<int> FramePlan::nearest(int frame, int count) const {
-  const auto size = std::ptrdiff_t(shot_.size()), reach = std::min<std::ptrdiff_t>(count, size);
-  const auto place = std::ranges::lower_bound(shot_, frame) - shot_.begin();
-  const auto first = std::clamp<std::ptrdiff_t>(place - reach, 0, std::max<std::ptrdiff_t>(0, size - 2 * reach - 1));
+  const auto [first, last] = nearest_places(frame, count);
   std::vector<int> found;
-  std::copy_if(shot_.begin() + first, shot_.begin() + std::min(size, first + 2 * reach + 1), std::back_inserter(found),
+  std::copy_if(shot_.begin() + first, shot_.begin() + last, std::back_inserter(found),
                [&](int other) { return other != frame && !absent_.contains(other); });
   return found;
 }
+
+std::ptrdiff_t FramePlan::place_of(int frame) const { return std::ranges::lower_bound(shot_, frame) - shot_.begin(); }
+
+FramePlan::Span FramePlan::nearest_places(int frame, int count) const {
+  const auto size = std::ptrdiff_t(shot_.size()), reach = std::min<std::ptrdiff_t>(count, size);
+  const auto first =
+      std::clamp<std::ptrdiff_t>(place_of(frame) - reach, 0, std::max<std::ptrdiff_t>(0, size - 2 * reach - 1));
+  return {first, std::min(size, first + 2 * reach + 1)};
+}
+
+FramesAround FramePlan::accumulated(int frame) const {
+  FramesAround found;
+  if (settings_.input.accumulate == 0) return found;
+  const auto [first, last] = nearest_places(frame, settings_.input.accumulate);
+  std::for_each(shot_.begin() + first, shot_.begin() + last,
+                [&](int other) { (absent_.contains(other) ? found.missing : found.there).push_back(other); });
+  return found;
+}
+
+bool FramePlan::is_accumulated(int other, int frame) const {
+  const auto [first, last] = nearest_places(frame, settings_.input.accumulate);
+  return place_of(other) >= first && place_of(other) < last;
+}
+
+int FramePlan::turn_of(int frame) const { return int(place_of(frame) % turns()); }
 
 std::vector<int> FramePlan::missing_around() const {
   std::set<int> missing;
   for (const int frame : frames_) {
     if (absent_.empty()) break;
-    const auto& of_frame = around(frame, around_of(settings_.input)).missing;
-    missing.insert(of_frame.begin(), of_frame.end());
+    for (const auto& window : {around(frame, around_of(settings_.input)), accumulated(frame)})
+      missing.insert(window.missing.begin(), window.missing.end());
   }
   return {missing.begin(), missing.end()};
 }
@@ -256,9 +280,14 @@ void FramePlan::refuse_missing_around() const {
   const auto path = std::ranges::find_if(patterns_, [&](const Pattern& pattern) {
     return !pattern.path.is_output && !exists(pattern.name.path(absent.front()));
   });
-  fail(ErrorKind::input, "{}: --around needs {} of the shot that {} missing: {}; --missing skip does without",
-       path->name.path(absent.front()), absent.size() == 1 ? "a frame" : "frames", absent.size() == 1 ? "is" : "are",
-       frames_text(absent));
+  fail(ErrorKind::input, "{}: {} needs {} of the shot that {} missing: {}; --missing skip does without",
+       path->name.path(absent.front()), shot_option(settings_.input), absent.size() == 1 ? "a frame" : "frames",
+       absent.size() == 1 ? "is" : "are", frames_text(absent));
+}
+
+const char* shot_option(const InputSettings& settings) {
+  if (around_of(settings) > 0) return "--around";
+  return settings.accumulate > 0 ? "--accumulate" : nullptr;
 }
 
 int around_of(const InputSettings& settings) { return settings.around_all ? kWholeShot : settings.around; }

@@ -36,6 +36,8 @@ struct FramesAround {
 constexpr int kWholeShot = std::numeric_limits<int>::max();
 /// The number of frames to each side that settings ask for.
 int around_of(const InputSettings& settings);
+/// The option by which frames take something from others of the shot; null: they do not.
+const char* shot_option(const InputSettings& settings);
 
 /// A run's frames and the names of their files.
 class FramePlan {
@@ -64,6 +66,14 @@ class FramePlan {
   FramesAround around(int frame, int count) const;
   /// As many frames as lie so far to each side of one within the shot; near its ends more of the other side.
   std::vector<int> nearest(int frame, int count) const;
+  /// Of so many frames to each side, that one included and near the shot's ends more of the other side, all that the
+  /// settings have a frame's AO be the mean of; none without --accumulate.
+  FramesAround accumulated(int frame) const;
+  /// Whether `other` lies so near a frame.
+  bool is_accumulated(int other, int frame) const;
+  /// How many frames make a mean at most; and the number of a frame among as many, which differ for all of a mean.
+  int turns() const { return 2 * settings_.input.accumulate + 1; }
+  int turn_of(int frame) const;
   /// Those that lie around frames to compute and have no file; none but where the settings say to skip them.
   std::vector<int> missing_around() const;
   /// All of the shot.
@@ -72,6 +82,12 @@ class FramePlan {
   Settings at(int frame) const;
 
  private:
+  struct Span {
+    std::ptrdiff_t first, last;  // of the shot; last is beyond it
+  };
+  Span nearest_places(int frame, int count) const;
+  std::ptrdiff_t place_of(int frame) const;
+
   struct Pattern {
     NamedPath path;
     FramePattern name;

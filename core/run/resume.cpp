@@ -69,9 +69,8 @@ std::string InputIdentities::own(int frame) {
 
 std::string InputIdentities::of(int frame) {
   const Settings settings = plan_.at(frame);
-  const int count = around_of(settings.input);
   std::string text = own(frame);
-  if (count == 0) return text;
+  if (!shot_option(settings.input)) return text;
   for (const int other : frames_seen_for(plan_, frame)) {
     text += fmt::format("\n{} {}", other - frame, own(other));
     if (const std::string camera = plan_.at(other).input.camera; camera != settings.input.camera)

@@ -61,6 +61,7 @@ Json json_of(const FrameReport& frame) {
     json["moved"] = frame.moved;
     json["unconfirmed"] = frame.unconfirmed;
   }
+  if (frame.accumulated > 0) json["frames_per_pixel"] = frame.accumulated / double(frame.pixels);
   if (frame.error_pixels > 0) json["error_estimate"] = std::sqrt(frame.error_squares / frame.error_pixels);
   if (frame.occlusion) json["completed"] = frame.occlusion->completed_share();
   if (frame.error) json["error"] = frame.error->what();

@@ -68,6 +68,7 @@ struct FrameReport {
   // Depth samples, averaged over all pixels: those that were taken where pixels share estimates, else what the settings
   // ask for at surfaces.
   double samples_per_pixel = 0;
+  double accumulated = 0;            // the sum over its pixels of how many frames' estimates each is the mean of
   std::uint64_t pixels_at_once = 0;  // the most that were computed at once
   Notes notes;                       // what the user should know, also what was noted of the whole sequence
   std::optional<Error> error;        // why it failed

@@ -52,16 +52,6 @@ void leave_out_hidden(FrameSource& source) {
   if (!has_deep_depth(source)) source.deep.reset();
 }
 
-/// Fails where nobody knows where a frame's camera stands.
-void require_place(const FrameSource& source, int frame, const char* option) {
-  if (!source.camera.view_from_world)
-    fail(
-        ErrorKind::input,
-        "{}: {} needs to know where the camera of frame {} stands, and it has no world_to_camera: give a --camera file "
-        "with it",
-        source.depth_path(), option, frame);
-}
-
 /// The views of a file beside the one that is looked at.
 std::vector<std::string> other_views_of(const FrameSource& source, const std::string& chosen) {
   std::vector<std::string> views = views_of(source.files[source[RawPlane::depth][0].file]);
@@ -105,13 +95,37 @@ OtherView filled(gpu::Recorder& gpu, const SeenFrame& seen, const Movement& movi
   return view;
 }
 
+/// Those that change what one takes of what is hidden.
+std::vector<int> seen_around(const FramePlan& plan, int frame) {
+  const int count = around_of(plan.at(frame).input);
+  const std::vector<int> around = plan.around(frame, count).there;
+  if (count == kWholeShot) return around;
+  std::set<int> seen(around.begin(), around.end());
+  for (const int other : around)
+    for (const int judge : judges_of(plan, other)) seen.insert(judge);
+  seen.erase(frame);
+  return {seen.begin(), seen.end()};
+}
+
 bool is_same_place(const Camera& a, const Camera& b) {
   return a.view_from_world == b.view_from_world && a.view_from_world_offset == b.view_from_world_offset;
 }
 
 }  // namespace
 
-bool takes_others(const InputSettings& settings) { return around_of(settings) > 0 || settings.other_views; }
+void require_place(const FrameSource& source, int frame, const char* option) {
+  if (!source.camera.view_from_world)
+    fail(
+        ErrorKind::input,
+        "{}: {} needs to know where the camera of frame {} stands, and it has no world_to_camera: give a --camera file "
+        "with it",
+        source.depth_path(), option, frame);
+}
+
+bool takes_others(const InputSettings& settings) {
+  const bool asks_vectors = settings.accumulate > 0 && !settings.motion.empty();
+  return around_of(settings) > 0 || settings.other_views || asks_vectors;
+}
 
 std::string text_of(const Others& others) {
   std::vector<std::string> parts;
@@ -141,7 +155,9 @@ void SharedFrames::done(int frame) {
   left_.erase(frame);
   const std::vector<int>& shot = plan_.shot();
   const auto place_of = [&](int number) { return std::ranges::lower_bound(shot, number) - shot.begin(); };
-  const std::int64_t reach = with_judges(around_of(plan_.at(frame).input));
+  // A frame that is computed may take what others take.
+  const InputSettings input = plan_.at(frame).input;
+  const std::int64_t reach = std::int64_t(with_judges(around_of(input))) + 2 * std::int64_t(input.accumulate);
   std::erase_if(entries_, [&](const auto& entry) {
     const std::int64_t place = place_of(entry.first);
     const auto first = std::ranges::find_if(left_, [&](int number) { return place_of(number) >= place - reach; });
@@ -204,7 +220,7 @@ SharedFrames::Moving SharedFrames::moving(gpu::Recorder& gpu, int frame, Prepare
   const std::lock_guard lock(entry->judging);
   if (entry->moving) return entry->moving;
   const Seen here = seen(gpu, frame, took);
-  const auto vectors = plan_.at(frame).input.motion.empty() ? std::nullopt : by_vectors(gpu, frame, took);
+  const auto vectors = moving_by_vectors(gpu, frame, took, 1);
   std::vector<Seen> witnesses;
   for (const int other : judges_of(plan_, frame)) witnesses.push_back(seen(gpu, other, took));
   std::vector<std::uint32_t> moving = judged(gpu, *here, witnesses, took);
@@ -232,8 +248,10 @@ std::vector<std::uint32_t> SharedFrames::judged(gpu::Recorder& gpu, const SeenFr
   return {values.begin(), values.end()};
 }
 
-std::optional<std::vector<std::uint8_t>> SharedFrames::by_vectors(gpu::Recorder& gpu, int frame, PreparedOthers& took) {
+std::optional<std::vector<std::uint8_t>> SharedFrames::moving_by_vectors(gpu::Recorder& gpu, int frame,
+                                                                         PreparedOthers& took, int around) {
   const InputSettings input = plan_.at(frame).input;
+  if (input.motion.empty()) return std::nullopt;
   const Seen here = seen(gpu, frame, took);
   MotionFrame motion{here->depth, here->view, {}, {}};
   for (const int other : plan_.around(frame, 1).there) {
@@ -244,7 +262,7 @@ std::optional<std::vector<std::uint8_t>> SharedFrames::by_vectors(gpu::Recorder&
   }
   const MotionPlanes planes = read_motion(input, here->data);
   if (const auto reading = best_motion_reading(planes, motion, input.motion_kind))
-    return moving_by(planes, *reading, motion);
+    return moving_by(planes, *reading, motion, around);
   // At the ends of the shot the frame that the vectors lead to may not be there.
   const bool has_both = motion.previous && motion.next;
   const bool has_own = input.motion_kind == MotionKind::previous ? motion.previous.has_value()
@@ -265,7 +283,7 @@ std::vector<SharedFrames::Judged> SharedFrames::frames_around(gpu::Recorder& gpu
   others.frames = around.there;
   others.missing = around.missing;
   require_place(target, frame, "--around");
-  prepare_free_ones(gpu, frames_seen_for(plan_, frame), took);
+  prepare_free_ones(gpu, seen_around(plan_, frame), took);
   std::vector<Judged> found;
   for (const int other : around.there) {
     found.push_back({seen(gpu, other, took), moving(gpu, other, took)});
@@ -316,12 +334,18 @@ std::vector<int> judges_of(const FramePlan& plan, int frame) {
 int most_judges(int count) { return count == kWholeShot ? count : 2 * judges_to_each_side(count); }
 
 std::vector<int> frames_seen_for(const FramePlan& plan, int frame) {
-  const int count = around_of(plan.at(frame).input);
-  const std::vector<int> around = plan.around(frame, count).there;
-  if (count == kWholeShot) return around;
-  std::set<int> seen(around.begin(), around.end());
-  for (const int other : around)
-    for (const int judge : judges_of(plan, other)) seen.insert(judge);
+  std::vector<int> first = plan.accumulated(frame).there;
+  if (first.empty()) return seen_around(plan, frame);
+  const InputSettings input = plan.at(frame).input;
+  std::set<int> seen(first.begin(), first.end());
+  for (const int estimated : first) {
+    const std::vector<int> around = seen_around(plan, estimated);
+    seen.insert(around.begin(), around.end());
+    // Vectors are proved by the frames beside theirs.
+    if (input.motion.empty()) continue;
+    const std::vector<int> beside = plan.around(estimated, 1).there;
+    seen.insert(beside.begin(), beside.end());
+  }
   seen.erase(frame);
   return {seen.begin(), seen.end()};
 }

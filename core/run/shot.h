@@ -51,7 +51,10 @@ struct PreparedOthers {
   std::vector<gpu::PassTime> passes = {};
 };
 
-/// Whether frames take anything from other frames or views.
+/// Fails with ErrorKind::input where nobody knows where a frame's camera stands.
+void require_place(const FrameSource& source, int frame, const char* option);
+
+/// Whether frames look at other frames or views for more than their estimates.
 bool takes_others(const InputSettings& settings);
 
 /// Frames that are prepared, each once, and kept for as long as any frame that is to be computed needs them. What one
@@ -65,6 +68,12 @@ class SharedFrames {
   /// Gives what a frame takes from others, in upload buffers of the recorder, which is free before and after. Fails
   /// with ErrorKind::input, naming the file, where one of them cannot be read or its camera says not where it stands.
   Others others_of(gpu::Recorder& gpu, const FrameSource& target, int frame, PreparedOthers& took);
+
+  /// What of a frame moves by its motion vectors: 1 for each pixel that does, and up to `around` pixels beside it, else
+  /// 0. None where the settings name no vectors, and at an end of the shot where they lead out of it. Fails as
+  /// others_of() does, and where no reading of the vectors is right.
+  std::optional<std::vector<std::uint8_t>> moving_by_vectors(gpu::Recorder& gpu, int frame, PreparedOthers& took,
+                                                             int around = 0);
 
   /// No one will ask for what this frame takes.
   void done(int frame);
@@ -94,7 +103,6 @@ class SharedFrames {
   Seen seen(gpu::Recorder& gpu, int frame, PreparedOthers& took);
   /// The entry's preparing is locked.
   Seen seen_in(Entry& entry, gpu::Recorder& gpu, int frame, PreparedOthers& took) const;
-  std::optional<std::vector<std::uint8_t>> by_vectors(gpu::Recorder& gpu, int frame, PreparedOthers& took);
   /// What moves as the witnesses tell, or cannot stand for its surface.
   static std::vector<std::uint32_t> judged(gpu::Recorder& gpu, const SeenFrame& seen, std::span<const Seen> witnesses,
                                            PreparedOthers& took);

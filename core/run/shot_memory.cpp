@@ -6,13 +6,30 @@
 
 #include "core/base/error.h"
 #include "core/base/memory_limit.h"
+#include "core/chain/aov.h"
 #include "core/run/shot.h"
+#include "kernels/moved.h"
 
 namespace alcove {
 namespace {
 
 constexpr std::size_t kPlanesOfSeen = 3;    // depth, normals, what moves
 constexpr std::size_t kPlanesPrepared = 5;  // that passes make of it: depth, normals, flags, what moves, surfels
+
+/// Planes of values of an estimate: see EstimateSet.
+std::size_t values_of(const Settings& settings) {
+  const std::size_t further = settings.estimator.further_radii.size();
+  return 1 + (further > 0 ? 1 + further : 0) + (needs_bent(settings.estimator, settings.output) ? 3 : 0);
+}
+
+/// The buffers in which a frame takes the mean of many, and those of what it takes.
+std::uint64_t bytes_of_mean(const FramePlan& plan, const FrameSource& frame, const Settings& settings) {
+  if (settings.input.accumulate == 0) return 0;
+  const std::size_t values = values_of(settings);
+  const std::size_t taken = std::min(plan.shot().size(), std::size_t(plan.turns())) * (2 + values / 2);
+  const std::size_t own = 1 + values, sums = 1 + 2 * values;
+  return sizeof(float) * (frame.file_data.pixels() * (taken + own + sums) + kMovedCells);
+}
 
 /// What one frame at a time takes with all around it.
 std::uint64_t bytes_of_one(const FramePlan& plan, const FrameSource& frame, const Settings& settings) {
@@ -36,6 +53,7 @@ std::size_t most_others(const FramePlan& plan, const FrameSource& frame, const I
 
 FrameMemory memory_with_others(const FramePlan& plan, const FrameSource& frame, const Settings& settings) {
   FrameMemory memory = memory_of(frame, settings);
+  memory.fixed_on_device = bytes_of_mean(plan, frame, settings);
   const std::size_t others = most_others(plan, frame, settings.input);
   if (others == 0) return memory;
   // What tells what moves in one of them takes those around it.
@@ -43,7 +61,7 @@ FrameMemory memory_with_others(const FramePlan& plan, const FrameSource& frame, 
   const std::size_t judges = count == 0 ? 0 : std::min(plan.shot().size(), std::size_t(most_judges(count)));
   const std::size_t buffers = kPlanesOfSeen * std::max(others, judges + 1);
   const std::size_t prepared = frame[RawPlane::depth].size() + frame[RawPlane::normal].size() + kPlanesPrepared;
-  memory.fixed_on_device = sizeof(float) * frame.file_data.pixels() * (buffers + prepared);
+  memory.fixed_on_device += sizeof(float) * frame.file_data.pixels() * (buffers + prepared);
   return memory;
 }
 
@@ -54,10 +72,17 @@ std::uint64_t bytes_of_shot(const FramePlan& plan, const FrameSource& frame, con
   return kPlanesOfSeen * sizeof(float) * frame.file_data.pixels() * std::min<std::uint64_t>(plan.shot().size(), window);
 }
 
+std::uint64_t bytes_of_estimates(const FramePlan& plan, const FrameSource& frame, const Settings& settings, int lanes) {
+  if (settings.input.accumulate == 0) return 0;
+  const std::uint64_t planes = 2 + values_of(settings), window = std::uint64_t(plan.turns()) + std::uint64_t(lanes);
+  return planes * sizeof(float) * frame.file_data.pixels() * std::min<std::uint64_t>(plan.shot().size(), window);
+}
+
 RunMemory beside_shot(const RunMemory& memory, const FramePlan& plan, const FrameSource& frame,
                       const Settings& settings, int lanes) {
   RunMemory left = memory;
-  const std::uint64_t bytes = std::min(memory.host_bytes, bytes_of_shot(plan, frame, settings.input, lanes));
+  const std::uint64_t bytes = std::min(memory.host_bytes, bytes_of_shot(plan, frame, settings.input, lanes) +
+                                                              bytes_of_estimates(plan, frame, settings, lanes));
   left.host_bytes -= bytes;
   left.program_bytes += bytes;
   return left;

@@ -18,6 +18,9 @@ FrameMemory memory_with_others(const FramePlan& plan, const FrameSource& frame, 
 /// What the prepared frames take that so many lanes keep, bytes of host memory.
 std::uint64_t bytes_of_shot(const FramePlan& plan, const FrameSource& frame, const InputSettings& settings, int lanes);
 
+/// What the estimates take that so many lanes keep for the means of many frames, bytes of host memory.
+std::uint64_t bytes_of_estimates(const FramePlan& plan, const FrameSource& frame, const Settings& settings, int lanes);
+
 /// What is left for the frames themselves.
 RunMemory beside_shot(const RunMemory& memory, const FramePlan& plan, const FrameSource& frame,
                       const Settings& settings, int lanes);

@@ -208,7 +208,7 @@ std::string chain_source() {
   for (const auto& [file, type, name] :
        {std::array{"sites", "Sites", "sites"}, std::array{"estimate", "Estimate", "estimate"},
         std::array{"hidden", "GBuffer", "layers"}, std::array{"warp", "GBuffer", "warp"},
-        std::array{"warp", "void", "surfels"}}) {
+        std::array{"warp", "void", "surfels"}, std::array{"accumulate", "Accumulation", "accumulate"}}) {
     const std::string source = read_bytes(std::string(ALCOVE_SOURCE_DIR "/core/chain/") + file + ".cpp");
     std::smatch choice;
     const std::regex body(std::string("\\n") + type + " " + name + R"(\([^]*?\n\})");

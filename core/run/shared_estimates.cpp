@@ -1,0 +1,168 @@
+// Estimates frames for those around them, and lets them go.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/run/shared_estimates.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+
+#include "core/run/estimate_run.h"
+
+namespace alcove {
+
+const EstimatedFrame& TakenEstimates::own(int frame) const {
+  return **std::ranges::find_if(of, [&](const auto& estimated) { return estimated->frame == frame; });
+}
+
+std::string text_of(const TakenEstimates& taken) {
+  if (taken.of.empty()) return "";
+  std::vector<int> frames;
+  for (const auto& estimated : taken.of) frames.push_back(estimated->frame);
+  std::ranges::sort(frames);
+  const std::string missing = taken.missing.empty() ? "" : "; missing " + frames_text(taken.missing);
+  return "frames " + frames_text(frames) + missing;
+}
+
+SharedEstimates::SharedEstimates(const FramePlan& plan, const FrameSource* settled, SharedFrames* shot,
+                                 std::span<const int> frames)
+    : plan_(plan), settled_(settled), shot_(shot), left_(frames.begin(), frames.end()) {}
+
+std::shared_ptr<SharedEstimates::Entry> SharedEstimates::entry_of(int frame) {
+  const std::lock_guard lock(mutex_);
+  auto& entry = entries_[frame];
+  if (!entry) entry = std::make_shared<Entry>();
+  return entry;
+}
+
+std::size_t SharedEstimates::kept() const {
+  const std::lock_guard lock(mutex_);
+  return entries_.size();
+}
+
+void SharedEstimates::done(int frame) {
+  const std::lock_guard lock(mutex_);
+  left_.erase(frame);
+  std::erase_if(entries_, [&](const auto& entry) {
+    return std::ranges::none_of(left_, [&](int left) { return plan_.is_accumulated(entry.first, left); });
+  });
+}
+
+SharedEstimates::Estimated SharedEstimates::estimated_in(Entry& entry, const EstimateRoom& where, int frame,
+                                                         PreparedOthers& took) {
+  if (entry.estimated) return entry.estimated;
+  ReadPlanes read;
+  entry.estimated =
+      std::make_shared<const EstimatedFrame>(estimate_frame(where, plan_, settled_, shot_, frame, took, read));
+  const std::lock_guard lock(mutex_);
+  if (left_.contains(frame)) entry.read = std::make_shared<const ReadPlanes>(std::move(read));
+  return entry.estimated;
+}
+
+TakenEstimates SharedEstimates::around(const EstimateRoom& where, int frame, PreparedOthers& took) {
+  const FramesAround window = plan_.accumulated(frame);
+  TakenEstimates taken;
+  taken.missing = window.missing;
+  // Those first that no other lane is at, so that lanes which need the same ones share the work.
+  for (const int other : window.there) {
+    const auto entry = entry_of(other);
+    const std::unique_lock lock(entry->estimating, std::try_to_lock);
+    if (lock) estimated_in(*entry, where, other, took);
+  }
+  for (const int other : window.there) {
+    const auto entry = entry_of(other);
+    const std::lock_guard lock(entry->estimating);
+    taken.of.push_back(estimated_in(*entry, where, other, took));
+    if (other == frame) taken.read = std::move(entry->read);
+  }
+  return taken;
+}
+
+namespace {
+
+std::size_t planes_in(const EstimatedFrame& frame) { return frame.values.size() / frame.depth.size(); }
+
+/// See TakenFrame.
+std::size_t words_of(const EstimatedFrame& frame) { return frame.depth.size() * (2 + planes_in(frame) / 2); }
+
+/// Of a value in [0, 1].
+std::uint32_t half_word(float value) { return std::uint32_t(std::clamp(value, 0.0f, 1.0f) * 65535.0f + 0.5f); }
+
+/// A coordinate of a packed normal with 8 bits instead of 16.
+std::uint32_t shorter(std::uint32_t bits) {
+  return std::uint32_t(std::clamp((int(std::int16_t(bits)) + 128) >> 8, -127, 127)) & 0xffu;
+}
+
+std::uint32_t taken_normal(std::uint32_t packed) {
+  constexpr std::uint32_t kNoNormal = 0x80008000;  // see normal.glsl
+  return packed == kNoNormal ? kNoTakenNormal : shorter(packed & 0xffffu) | shorter(packed >> 16) << 8;
+}
+
+TakenFrame seen_as(const EstimatedFrame& other, const EstimatedFrame& own, std::size_t first) {
+  const ViewMap map = view_from_view(other.camera, own.camera);
+  const auto row = [&](std::size_t i) { return vec3{float(map[i][0]), float(map[i][1]), float(map[i][2])}; };
+  const vec3 &a = other.depth_precision, &b = own.depth_precision;
+  return {other.view,
+          row(0),
+          row(1),
+          row(2),
+          {float(map[0][3]), float(map[1][3]), float(map[2][3])},
+          {a.x + b.x, a.y + b.y, a.z + b.z},
+          uint(first)};
+}
+
+void put(const EstimatedFrame& frame, std::span<std::uint32_t> words) {
+  const std::size_t pixels = frame.depth.size(), planes = planes_in(frame);
+  std::ranges::transform(frame.depth, words.begin(), [](float z) { return std::bit_cast<std::uint32_t>(z); });
+  const auto value = [&](std::size_t plane, std::size_t i) {
+    return plane < planes ? half_word(frame.values[plane * pixels + i]) : 0u;
+  };
+  for (std::size_t i = 0; i < pixels; i++) words[pixels + i] = taken_normal(frame.normal[i]) | value(0, i) << 16;
+  for (std::size_t plane = 1; plane < planes; plane += 2)
+    for (std::size_t i = 0; i < pixels; i++)
+      words[(2 + plane / 2) * pixels + i] = value(plane, i) | value(plane + 1, i) << 16;
+}
+
+gpu::Buffer& uploaded(gpu::Recorder& gpu, const char* name, const std::vector<float>& values) {
+  gpu::Buffer& buffer = gpu.buffer(name, values.size() * sizeof(float), gpu::Use::upload);
+  std::ranges::copy(values, buffer.as<float>().begin());
+  return buffer;
+}
+
+}  // namespace
+
+EstimateSet EstimateSlots::filled(gpu::Recorder& gpu, const FramePlan& plan, const TakenEstimates& taken, int frame,
+                                  std::uint64_t most_bytes) {
+  EstimateSet result;
+  if (taken.of.empty()) return result;
+  const EstimatedFrame& own = taken.own(frame);
+  result.depth = &uploaded(gpu, "own depth", own.depth);
+  result.values = &uploaded(gpu, "own values", own.values);
+  result.view = own.view;
+  std::size_t stride = 0;
+  for (const auto& estimated : taken.of) stride = std::max(stride, words_of(*estimated));
+  const std::size_t slots = std::size_t(plan.turns()), bytes = stride * sizeof(std::uint32_t);
+  const std::size_t together = std::clamp<std::size_t>(most_bytes / bytes, 1, std::min<std::size_t>(slots, kMostTaken));
+  groups_.resize((slots + together - 1) / together);
+  for (std::size_t i = 0; i < groups_.size(); i++) {
+    Group& group = groups_[i];
+    gpu::Buffer& planes = gpu.buffer(fmt::format("estimates {}", i), together * bytes, gpu::Use::upload);
+    gpu::Buffer& table =
+        gpu.buffer(fmt::format("estimated frames {}", i), together * sizeof(TakenFrame), gpu::Use::upload);
+    if (group.buffer != planes.host().data() || group.held.size() != together) group.held.assign(together, nullptr);
+    group.buffer = planes.host().data();
+    uint count = 0;
+    for (const auto& estimated : taken.of) {
+      const std::size_t slot = std::size_t(plan.turn_of(estimated->frame));
+      if (slot / together != i || estimated->frame == frame) continue;
+      const std::size_t first = slot % together * stride;
+      if (group.held[slot % together] != estimated) put(*estimated, planes.as<std::uint32_t>().subspan(first, stride));
+      group.held[slot % together] = estimated;
+      table.as<TakenFrame>()[count++] = seen_as(*estimated, own, first);
+    }
+    if (count > 0) result.groups.push_back({&planes, &table, count});
+  }
+  return result;
+}
+
+}  // namespace alcove

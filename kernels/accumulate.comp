@@ -1,0 +1,111 @@
+// Takes the mean of what many frames estimate, each where it sees the same point.
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// In: depth and normals of a frame and of others, what each estimates, and where something moves between them.
+// Out: sums over the frames, and their mean.
+//
+// True AO of what stands still does not change with the camera. So what another frame estimates counts where it shows
+// the same point: each lies in the plane of the other, as exactly as the depth is and half a pixel's slope, and their
+// normals agree; and where nothing within the radius of it moves from the one frame to the other. What a frame cannot
+// tell of a point is left out, so that nothing has to be clamped, and no result is made from an earlier one. All count
+// the same: weights by distance, by the angle or by how sure an estimate is were no nearer to ray tracing.
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
+#include "accumulate.h"
+#include "reprojection.h"
+#include "view.glsl"
+#include "normal.glsl"
+#include "reprojection.glsl"
+#include "cells.glsl"
+
+layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
+layout(constant_id = kAccumulateStageId) const uint kStage = kAccumulateBegins;
+layout(constant_id = kAccumulatePlanesId) const int kPlanes = 1;
+layout(constant_id = kAccumulateFramesId) const int kFrames = 0;
+layout(scalar, push_constant) uniform Push { AccumulateParams params; };
+layout(scalar, binding = kAccumulateDepth) readonly buffer Depth { float depth[]; };
+layout(scalar, binding = kAccumulateNormal) readonly buffer Normal { uint normal[]; };
+layout(scalar, binding = kAccumulateValues) readonly buffer Values { float values[]; };
+layout(scalar, binding = kAccumulateOthers) readonly buffer Others { uint others[]; };
+layout(scalar, binding = kAccumulateFrames) readonly buffer Frames { TakenFrame frames[]; };
+layout(scalar, binding = kAccumulateNear) readonly buffer Near { uint near[]; };
+layout(scalar, binding = kAccumulateSums) buffer Sums { float sums[]; };
+layout(scalar, binding = kAccumulateAo) writeonly buffer Ao { float ao[]; };
+layout(scalar, binding = kAccumulateScales) writeonly buffer Scales { float scales[]; };
+layout(scalar, binding = kAccumulateBent) writeonly buffer Bent { float bent[]; };
+
+/// Normals of one point differ by rounding and by how files filter them: as the cosine between them.
+const float kLeastAgreement = 0.9;
+
+/// How far the same surface may lie off a plane, in widths of a pixel: what half of one changes on a slope.
+const float kHalfPixel = 0.5;
+
+int pixels_of(ivec2 size) { return size.x * size.y; }
+
+/// The pixel of another frame that shows the point at this place in the frame's view space, with this normal; -1: none
+/// does. second: the word of its second plane.
+int index_in(TakenFrame other, vec3 here, vec3 n, out uint second) {
+  const View to = other.view;
+  const vec3 position = vec3(dot(other.row_x, here), dot(other.row_y, here), dot(other.row_z, here)) + other.offset;
+  const vec3 facing = vec3(dot(other.row_x, n), dot(other.row_y, n), dot(other.row_z, n));
+  const ivec2 place = pixel_of(to, position), nearest = clamp(place, ivec2(0), to.size - 1);
+  const int index = index_of(to, nearest);
+  const float z = abs(uintBitsToFloat(others[other.first + uint(index)]));
+  const vec3 beside = position_of(to, vec2(nearest) + 0.5, min(z, 1e15)) - position;
+  second = others[other.first + uint(index + pixels_of(to.size))];
+  const vec3 seen = normalize(octahedral_direction(unpackSnorm4x8(second).xy));
+  const float tolerance =
+      kPrecisions * error_at(other.depth_precision, min(z, 1e15)) + kHalfPixel * pixel_width(to, min(z, 1e15));
+  const bool is_same = -position.z > 0.0 && place == nearest && z < kSkyDepth && (second & 0xffffu) != kNoTakenNormal &&
+                       abs(dot(beside, facing)) <= tolerance && abs(dot(beside, seen)) <= tolerance &&
+                       dot(facing, seen) >= kLeastAgreement;
+  return is_same ? index : -1;
+}
+
+/// Adds what the frames of the buffer estimate of a pixel's point.
+void accumulate(ivec2 pixel) {
+  const ivec2 in_frame = pixel + params.corner;
+  const int index = pixel.y * params.size.x + pixel.x, plane = pixels_of(params.size);
+  const int whole = index_of(params.view, in_frame);
+  const bool begins = (kStage & kAccumulateBegins) != 0u, ends = (kStage & kAccumulateEnds) != 0u;
+  float count = 1.0, blocked[kPlanes];
+  if (!begins) count = sums[index];
+  for (int k = 0; k < kPlanes; k++)
+    blocked[k] = begins ? 1.0 - values[whole + k * pixels_of(params.view.size)] : sums[index + (k + 1) * plane];
+  const float z = depth[index];
+  const uint word = normal[index];
+  const bool is_surface = z < kSkyDepth && word != kNoNormal;
+  const vec3 here = position_of(params.view, vec2(in_frame) + 0.5, min(z, 1e15)), n = unpack_normal(word);
+  const uint moves = near[place_of_cell(cell_of(here, params.radius))];
+  [[unroll]] for (int i = 0; i < kFrames; i++) {
+    const bool moved = (moves >> (params.place + uint(i)) & 1u) != 0u;
+    const TakenFrame other = frames[i];
+    uint words[(kPlanes + 2) / 2];
+    const int at = index_in(other, here, n, words[0]), there = pixels_of(other.view.size);
+    const bool is_taken = is_surface && !moved && at >= 0;
+    for (int k = 1; k < (kPlanes + 2) / 2; k++) words[k] = others[other.first + uint(max(at, 0) + (k + 1) * there)];
+    count += is_taken ? 1.0 : 0.0;
+    for (int k = 0; k < kPlanes; k++) {
+      const vec2 halves = unpackUnorm2x16(words[(k + 1) / 2]);
+      blocked[k] += is_taken ? 1.0 - (k % 2 == 0 ? halves.y : halves.x) : 0.0;
+    }
+  }
+  sums[index] = count;
+  for (int k = 0; k < kPlanes; k++) {
+    const float value = 1.0 - blocked[k] / count;
+    if (!ends)
+      sums[index + (k + 1) * plane] = blocked[k];
+    else if (k == 0)
+      ao[index] = value;
+    else if (k <= params.scales)
+      scales[index + (k - 1) * plane] = value;
+    else
+      bent[index + (k - 1 - params.scales) * plane] = value;
+  }
+}
+
+void main() {
+  const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  if (all(lessThan(pixel, params.size))) accumulate(pixel);
+}

@@ -1,0 +1,129 @@
+// Finds where surfaces of one frame are not in another one, although it would see them: they have moved meanwhile.
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// In: planar depth of a frame, and of others.
+// Out: the cells of space within the radius of boxes, one for each tile of 8 x 8 pixels: around what of the frame any
+// other sees through, around what of another it sees through itself, and around what moves by its motion vectors.
+//
+// A surface that stands still may be hidden in another frame, but that frame never sees through it: see still.comp.
+// Here one pixel in error makes a whole surrounding lose its mean. So the other frame must see three pixels' widths
+// farther, and the pixel must have neighbours that are of its surface: others, thinner than a pixel or seen at a
+// grazing angle, come and go in pictures of what stands still. A few pixels of each tile are looked at.
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
+#include "moved.h"
+#include "reprojection.h"
+#include "view.glsl"
+#include "tiles.glsl"
+#include "reprojection.glsl"
+#include "cells.glsl"
+
+layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
+layout(constant_id = kMovedFramesId) const int kFrames = 1;
+layout(scalar, push_constant) uniform Push { MovedParams params; };
+layout(scalar, binding = kMovedOwn) readonly buffer Own { float own[]; };
+layout(scalar, binding = kMovedOthers) readonly buffer Others { float others[]; };
+layout(scalar, binding = kMovedFrames) readonly buffer Frames { TakenFrame frames[]; };
+layout(scalar, binding = kMovedNear) buffer Near { uint near[]; };
+
+const float kFarther = 3.0;  // pixels' widths that what is seen through a surface is behind it
+const float kAlike = 8.0;    // pixels' worth of slope that neighbours of one surface differ by at most
+
+/// Where something moves, scene units, in the view space of the frame; low above high: nowhere.
+struct Box {
+  vec3 low, high;
+};
+const Box kNowhere = Box(vec3(kSkyDepth), vec3(-kSkyDepth));
+
+/// Pixels of a tile that are looked at, one in each pair of columns and of rows.
+const int kLooked = 4;
+
+/// Cells along an axis that are marked at most: boxes of a tile are small but where a tile shows an edge.
+const int kMostCells = 64;
+
+/// How a depth is looked up: of the frame itself, or of another one.
+float depth_at(bool of_own, uint first, int index) { return of_own ? own[index] : others[first + uint(index)]; }
+
+/// Whether a frame sees nothing but what is farther, in the 3 x 3 pixels about a place.
+bool is_seen_through(bool by_own, uint first, View view, ivec2 place, float beyond) {
+  bool through = abs(depth_at(by_own, first, index_of(view, place))) > beyond;
+  for (bool once = through; once; once = false)
+    for (int k = 0; k < 9; k++)
+      through = abs(depth_at(by_own, first, index_of(view, place + ivec2(k % 3, k / 3) - 1))) > beyond && through;
+  return through;
+}
+
+/// Whether a pixel has neighbours of its surface along both axes, one each at least.
+bool is_wide(bool of_own, uint first, View view, ivec2 pixel, float z) {
+  const float most = kAlike * pixel_width(view, z);
+  bool alike[4];
+  for (int k = 0; k < 4; k++) {
+    const ivec2 at = clamp(pixel + ivec2(k == 0   ? 1
+                                         : k == 1 ? -1
+                                                  : 0,
+                                         k == 2   ? 1
+                                         : k == 3 ? -1
+                                                  : 0),
+                           ivec2(0), view.size - 1);
+    alike[k] = at != pixel && abs(abs(depth_at(of_own, first, index_of(view, at))) - z) < most;
+  }
+  return (alike[0] || alike[1]) && (alike[2] || alike[3]);
+}
+
+/// What of a tile of one frame the other has not: from the frame itself to another one, or the other way round.
+Box moved_of(ivec2 tile, bool from_own, TakenFrame other) {
+  View from = other.view, to = params.view;
+  if (from_own) from = params.view;
+  if (from_own) to = other.view;
+  Box box = kNowhere;
+  if (any(greaterThanEqual(tile, tiles_of(from.size)))) return box;
+  [[dont_unroll]] for (int k = 0; k < kLooked; k++) {
+    const ivec2 pixel = tile * kTile + ivec2(kTile / kLooked * k + 1, (kTile / 2 + 1) * k + 1 & kTile - 1);
+    const int index = index_of(from, min(pixel, from.size - 1));
+    const float z = depth_at(from_own, other.first, index), ahead = abs(z);
+    const vec3 here = position_of(from, vec2(pixel) + 0.5, min(ahead, 1e15));
+    const vec3 back = here - other.offset;
+    const vec3 there = from_own
+                           ? vec3(dot(other.row_x, here), dot(other.row_y, here), dot(other.row_z, here)) + other.offset
+                           : other.row_x * back.x + other.row_y * back.y + other.row_z * back.z;
+    const ivec2 place = pixel_of(to, there);
+    const bool is_surface = inside(from, pixel) && ahead < kSkyDepth;
+    const bool is_looked_at = -there.z > 0.0 && all(greaterThan(place, ivec2(0))) && all(lessThan(place, to.size - 1));
+    const float beyond =
+        kPrecisions * error_at(other.depth_precision, -there.z) + kFarther * pixel_width(to, -there.z) - there.z;
+    bool moved = is_surface && is_looked_at &&
+                 is_seen_through(!from_own, other.first, to, clamp(place, ivec2(1), to.size - 2), beyond);
+    for (bool once = moved; once; once = false) moved = is_wide(from_own, other.first, from, pixel, ahead);
+    moved = moved || is_surface && z < 0.0;
+    const vec3 at = from_own ? here : there;
+    box.low = moved ? min(box.low, at) : box.low;
+    box.high = moved ? max(box.high, at) : box.high;
+  }
+  return box;
+}
+
+/// Marks the cells within the radius of a box for some frames.
+void mark(Box box, uint frames) {
+  const ivec3 first = cell_of(box.low - params.radius, params.radius);
+  const ivec3 last = min(cell_of(box.high + params.radius, params.radius), first + kMostCells);
+  for (int z = first.z; z <= last.z; z++)
+    for (int y = first.y; y <= last.y; y++)
+      for (int x = first.x; x <= last.x; x++) {
+        const vec3 low = vec3(x, y, z) * (kMovedCell * params.radius), high = low + kMovedCell * params.radius;
+        const vec3 apart = max(max(low - box.high, box.low - high), vec3(0));
+        if (dot(apart, apart) < params.radius * params.radius) atomicOr(near[place_of_cell(ivec3(x, y, z))], frames);
+      }
+}
+
+void main() {
+  const ivec2 tile = ivec2(gl_GlobalInvocationID.xy);
+  Box here = kNowhere;
+  [[unroll]] for (int i = 0; i < kFrames; i++) {
+    const Box of_own = moved_of(tile, true, frames[i]), there = moved_of(tile, false, frames[i]);
+    here.low = min(here.low, of_own.low);
+    here.high = max(here.high, of_own.high);
+    if (there.low.x <= there.high.x) mark(there, 1u << (params.place + uint(i)));
+  }
+  if (here.low.x <= here.high.x) mark(here, ~0u);
+}

@@ -1,0 +1,43 @@
+// Parameters and bindings of moved.comp, and the frames of which accumulate.comp takes the mean.
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef ALCOVE_MOVED_H
+#define ALCOVE_MOVED_H
+#include "shared.h"
+ALCOVE_BEGIN
+
+/// A frame, and where its planes of words begin. The first one holds planar depths as floats, kSkyDepth for sky, and
+/// below 0, of the same size, where motion vectors tell that the surface moves. The second one holds normals in its
+/// lower half, 8 bits for each coordinate of normal.glsl and kNoTakenNormal for none, and in its upper half the first
+/// of the values, which lie in [0, 1]. The others hold two values each.
+struct TakenFrame {
+  View view;
+  vec3 row_x, row_y, row_z;  // view space of the frame that takes its estimate -> its own: rows of the linear part
+  vec3 offset;               // and what is added, scene units
+  vec3 depth_precision;      // scene units: depths z of both may be off by x + y z + z z^2 together
+  uint first;                // word of the buffer
+};
+
+ALCOVE_CONSTANT uint kNoTakenNormal = 0x8080;
+ALCOVE_CONSTANT uint kMostTaken = 9;  // frames of a buffer: kernels are made for each number of them
+
+ALCOVE_CONSTANT uint kMovedOwn = 0;     // in: one float per pixel of the frame: depth as of a TakenFrame
+ALCOVE_CONSTANT uint kMovedOthers = 1;  // in: planes of other frames, as words
+ALCOVE_CONSTANT uint kMovedFrames = 2;  // in: their TakenFrame each
+// in and out: kMovedCells words, zeros at first: for the cells of space that share it a bit for each other frame, by
+// its place, from which to this one something moves within the radius of what is in the cell
+ALCOVE_CONSTANT uint kMovedNear = 3;
+
+ALCOVE_CONSTANT uint kMovedFramesId = 0;  // specialization: in the buffer, 1 to kMostTaken
+
+ALCOVE_CONSTANT uint kMovedCells = 1 << 20;  // so many that few cells share a word
+ALCOVE_NUMBER kMovedCell = 1.0 / 3.0;        // radii: the side of a cell, in the view space of the frame
+
+struct MovedParams {
+  View view;     // of the frame that takes the mean
+  float radius;  // scene units: what moves within it may change an estimate
+  uint place;    // of the first frame of the buffer among all others
+};
+ALCOVE_PARAMS(MovedParams)
+
+ALCOVE_END
+#endif

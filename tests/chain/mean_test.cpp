@@ -1,0 +1,119 @@
+// The mean of two frames, made by hand: which of the other one's pixels count.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <bit>
+
+#include "core/chain/accumulate.h"
+#include "tests/support/device.h"
+
+namespace alcove {
+namespace {
+
+using namespace test;
+
+constexpr int kSide = 24;
+constexpr std::size_t kPixels = std::size_t(kSide) * kSide;
+constexpr View kView{{kSide, kSide}, {kSide / 2.0f, kSide / 2.0f}, {0.01f, -0.01f}, 0};
+constexpr float kOwn = 0.25f, kOther = 0.75f;
+constexpr double kRadius = 0.2;  // scene units: 5 px at the depth of the frame
+
+/// Planes of a frame that faces a plane.
+struct Facing {
+  std::vector<float> depth = std::vector<float>(kPixels, 4.0f);
+  std::vector<std::uint32_t> normal = std::vector<std::uint32_t>(kPixels, 0);  // (0, 0, 1)
+};
+
+std::size_t at(int x, int y) { return std::size_t(y * kSide + x); }
+
+class Means : public testing::Test {
+ protected:
+  Means() : gpu_(device()) {}
+
+  /// The mean at each pixel, of a frame and another one of the same camera.
+  std::vector<float> mean(const Facing& own, const Facing& other) {
+    const auto filled = [&]<class T>(const char* name, const std::vector<T>& values) -> gpu::Buffer& {
+      gpu::Buffer& buffer = gpu_.buffer(name, values.size() * sizeof(T), gpu::Use::upload);
+      std::ranges::copy(values, buffer.as<T>().begin());
+      gpu_.upload(buffer);
+      return buffer;
+    };
+    std::vector<std::uint32_t> words;
+    for (const float z : other.depth) words.push_back(std::bit_cast<std::uint32_t>(z));
+    for (const std::uint32_t n : other.normal) words.push_back((n & 0xffffu) | std::uint32_t(kOther * 65535) << 16);
+    const std::vector<TakenFrame> frames{{kView, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, 0}, {1e-5f, 0, 0}, 0}};
+    EstimateSet estimates;
+    estimates.depth = &filled("own depth", own.depth);
+    estimates.values = &filled("own values", std::vector<float>(kPixels, kOwn));
+    estimates.view = kView;
+    estimates.groups = {{&filled("words", words), &filled("frames", frames), 1}};
+    std::vector<float> depth = own.depth;
+    std::ranges::transform(depth, depth.begin(), [](float z) { return std::abs(z); });
+    GBuffer gbuffer;
+    gbuffer.view = kView;
+    gbuffer.depth = &filled("depth", depth);
+    gbuffer.normal = &filled("normal", own.normal);
+    EstimatorSettings settings;
+    settings.radius = kRadius;
+    const Accumulation result = accumulate(gpu_, gbuffer, estimates, settings, 0, false);
+    gpu_.download(*result.visibility.ao);
+    gpu_.run();
+    const auto ao = result.visibility.ao->as<const float>();
+    return {ao.begin(), ao.end()};
+  }
+
+ private:
+  gpu::Recorder gpu_;
+};
+
+constexpr float kMean = (kOwn + kOther) / 2;
+
+TEST_F(Means, are_of_all_that_see_the_same_point) {
+  for (const float value : mean({}, {})) EXPECT_NEAR(value, kMean, 1e-4);
+}
+
+TEST_F(Means, leave_out_what_hides_the_point) {
+  Facing nearer;
+  std::ranges::fill(nearer.depth, 3.0f);
+  // The frame sees through all of it, so all of it has moved; but far from the point.
+  for (const float value : mean({}, nearer)) EXPECT_EQ(value, kOwn);
+}
+
+TEST_F(Means, leave_out_a_point_off_the_plane_by_a_pixel) {
+  Facing farther;
+  std::ranges::fill(farther.depth, 4.03f);  // less than counts as seen through, more than half a pixel
+  for (const float value : mean({}, farther)) EXPECT_EQ(value, kOwn);
+}
+
+TEST_F(Means, leave_out_other_normals) {
+  Facing turned;
+  std::ranges::fill(turned.normal, 0x00000040u);  // half way to the side
+  for (const float value : mean({}, turned)) EXPECT_EQ(value, kOwn);
+}
+
+TEST_F(Means, leave_out_all_within_the_radius_of_what_moves_and_nothing_far) {
+  Facing moving;
+  for (int y = 0; y < 8; y++)
+    for (int x = 0; x < 8; x++) moving.depth[at(x, y)] = -4.0f;  // by its vectors
+  const auto near_own = mean(moving, {}), near_other = mean({}, moving);
+  for (const auto& values : {near_own, near_other}) {
+    EXPECT_EQ(values[at(4, 4)], kOwn);
+    EXPECT_EQ(values[at(10, 4)], kOwn) << "3 px beside it";
+    EXPECT_NEAR(values[at(20, 20)], kMean, 1e-4);
+  }
+}
+
+TEST_F(Means, find_what_has_gone) {
+  Facing there;
+  for (int y = 0; y < 8; y++)
+    for (int x = 0; x < 8; x++) there.depth[at(x, y)] = 3.85f;
+  for (const auto& values : {mean({}, there), mean(there, {})}) {
+    EXPECT_EQ(values[at(4, 4)], kOwn);
+    EXPECT_EQ(values[at(9, 4)], kOwn) << "2 px beside it";
+    EXPECT_NEAR(values[at(20, 20)], kMean, 1e-4);
+  }
+}
+
+}  // namespace
+}  // namespace alcove

@@ -1,0 +1,302 @@
+// Runs with --accumulate: what a mean of many frames gains, what it leaves alone, and that nothing changes its bits.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gmock/gmock.h>
+
+#include "cli/options.h"
+#include "core/formats/exr.h"
+#include "core/run/batch.h"
+#include "core/run/plan.h"
+#include "tests/support/difference.h"
+#include "tests/support/walked_shot.h"
+
+namespace alcove {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace test;
+using nlohmann::json;
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+using Options = std::vector<std::string>;
+
+constexpr int kFrames = 9;
+constexpr Window kWindow{0, 0, 96, 54};
+
+/// Every pixel has an estimate, of as much noise as there may be.
+const Options kNoisy{"--stride", "1", "--denoise", "none", "--slices", "1", "--steps", "8", "--type", "float"};
+/// As much as makes no noise.
+const Options kSmooth{"--stride", "1", "--denoise", "none", "--slices", "32", "--steps", "32", "--type", "float"};
+
+Options joined(Options options, const Options& more) {
+  options.insert(options.end(), more.begin(), more.end());
+  return options;
+}
+
+class Accumulated : public WalkedShot {
+ protected:
+  using Frames = std::vector<std::vector<float>>;
+
+  /// The AO of all frames, the first one first.
+  Frames ao_of(const Options& options, int frames = kFrames) const {
+    remove_outputs();
+    const Finished finished = run(options);
+    EXPECT_EQ(finished.code, 0) << finished;
+    Frames ao;
+    for (int frame = 1; finished.code == 0 && frame <= frames; frame++)
+      ao.push_back(read_exr_image(output(frame)).pixels);
+    return ao;
+  }
+
+  json stats_of(const Options& options) const {
+    const Finished finished = run(joined(options, {"--stats", folder / "stats.json"}));
+    EXPECT_EQ(finished.code, 0) << finished;
+    return json::parse(read_bytes(folder / "stats.json"))["frames"];
+  }
+
+  std::string header(int frame) const {
+    return attribute_of_whole_exr(output(frame), "alcove/accumulated").value_or("");
+  }
+
+  /// A camera that stands still, before a board that jumps to the right.
+  void write_still_shot(double step) const {
+    write_bytes(camera, wall_camera(kWindow).dump());
+    for (int frame = 1; frame <= kFrames; frame++) {
+      FrameFile file = wall_frame(kWindow, kWindow);
+      const double left = -2.5 + step * frame;
+      put_board(file, 0, {left, left + 0.8, 0.95, 5});
+      file.write(input(frame));
+    }
+  }
+};
+
+double rmse_of(const std::vector<std::vector<float>>& frames, const std::vector<std::vector<float>>& truth) {
+  double sum = 0;
+  for (std::size_t i = 0; i < frames.size(); i++) sum += difference(frames[i], truth[i]).rmse;
+  return sum / double(frames.size());
+}
+
+TEST_F(Accumulated, of_no_frames_has_the_bits_of_one) {
+  write_shot(3);
+  ASSERT_EQ(run({}).code, 0);
+  const auto before = outputs();
+  expect_same_outputs(before, {{"--accumulate", "0"}});
+}
+
+TEST_F(Accumulated, noise_falls_with_the_root_of_the_count) {
+  write_still_shot(0);
+  const Frames truth = ao_of(kSmooth), alone = ao_of(joined(kNoisy, {"--noise", "animated"}));
+  for (const int count : {1, 4}) {
+    const Frames mean = ao_of(joined(kNoisy, {"--accumulate", std::to_string(count)}));
+    EXPECT_LT(rmse_of(mean, truth), 1.2 * rmse_of(alone, truth) / std::sqrt(2 * count + 1)) << count;
+  }
+}
+
+TEST_F(Accumulated, what_stands_still_does_not_change) {
+  write_still_shot(0);
+  const Frames mean = ao_of(joined(kNoisy, {"--accumulate", "2"}));
+  for (int frame = 1; frame < kFrames; frame++)
+    EXPECT_LT(difference(mean[std::size_t(frame)], mean[0]).max, 1e-5) << frame;
+}
+
+TEST_F(Accumulated, a_moving_camera_gains_as_much) {
+  write_shot(kFrames, kWindow);
+  const Frames truth = ao_of(kSmooth), alone = ao_of(joined(kNoisy, {"--noise", "animated"}));
+  EXPECT_LT(rmse_of(ao_of(joined(kNoisy, {"--accumulate", "4"})), truth), 0.6 * rmse_of(alone, truth));
+}
+
+TEST_F(Accumulated, what_moves_leaves_no_trail) {
+  write_still_shot(0.35);
+  // With so little noise all that differs from the single frame by more is a trail.
+  const Frames truth = ao_of(kSmooth);
+  const Frames mean = ao_of(joined(kSmooth, {"--accumulate", "4"}));
+  for (std::size_t frame = 0; frame < truth.size(); frame++)
+    EXPECT_LT(difference(mean[frame], truth[frame]).max, 0.05) << frame + 1;
+  const json frames = stats_of(joined(kSmooth, {"--accumulate", "4"}));
+  EXPECT_GT(frames[4]["frames_per_pixel"], 3) << "what is far from the board counts all the same";
+}
+
+TEST_F(Accumulated, threads_chunks_and_order_change_no_bit) {
+  write_shot(kFrames);
+  for (const Options& options : {Options{"--accumulate", "2"}, Options{"--accumulate", "1", "--around", "1"},
+                                 Options{"--accumulate", "1", "--preset", "reference", "--aov", "ao,bent-normal"}}) {
+    remove_outputs();
+    ASSERT_EQ(run(joined(options, {"--threads", "1"})).code, 0);
+    const auto before = outputs();
+    EXPECT_EQ(before.size(), kFrames);
+    expect_same_outputs(before, {joined(options, {"--threads", "3", "--frames", "9-1"})});
+    expect_same_outputs(before, {joined(options, {"--chunk", "2/2", "--threads", "1"}),
+                                 joined(options, {"--chunk", "1/2", "--threads", "2"})});
+  }
+}
+
+TEST_F(Accumulated, tiles_have_the_bits_of_the_whole) {
+  write_shot(3, {0, 0, 512, 288});
+  const auto run_with = [&](std::uint64_t bytes) {
+    const Options arguments{in + "/f.%04d.exr",
+                            "-o",
+                            out + "/ao.%04d.exr",
+                            "--camera",
+                            camera,
+                            "--radius",
+                            "0.3",
+                            "--frames",
+                            "2",
+                            "--accumulate",
+                            "1",
+                            "--aov",
+                            "ao,bent-normal",
+                            "--type",
+                            "float",
+                            "--stats",
+                            folder / "stats.json"};
+    RunOptions options;
+    EXPECT_TRUE(parse_run_options(arguments, options));
+    if (bytes) options.settings.device.memory = 1;
+    if (bytes) options.settings.device.least_memory = bytes;
+    const RunReport report = run_frames(options.settings);
+    EXPECT_EQ(report.done, 1) << (report.stop ? report.stop->what() : "");
+    return std::pair(report.frames.empty() ? 0 : report.frames[0].parts,
+                     report.done ? read_exr_image(output(2), {"Y"}).pixels : std::vector<float>());
+  };
+  const auto [one, whole] = run_with(0);
+  const auto [many, tiled] = run_with(48 << 20);
+  EXPECT_EQ(one, 1);
+  EXPECT_GT(many, 1);
+  EXPECT_TRUE(whole == tiled) << difference(tiled, whole).rmse;
+}
+
+TEST_F(Accumulated, nothing_is_taken_from_beyond_a_cut) {
+  constexpr int kCut = 3;
+  write_shot(kCut);
+  const Options options{"--accumulate", "1", "--type", "float"};
+  const Frames before = ao_of(options, kCut);
+  json cameras = json::parse(read_bytes(camera));
+  for (int frame = kCut + 1; frame <= 2 * kCut; frame++) {
+    json matrix = cameras["world_to_camera"];
+    matrix[0][3] = -100.0;
+    cameras["frames"].push_back({{"frame", frame}, {"world_to_camera", matrix}});
+    wall_frame().write(input(frame));
+  }
+  write_bytes(camera, cameras.dump());
+  const Frames mean = ao_of(options, 2 * kCut);
+  // The last frame before the cut has one neighbour less, and nothing of the other side.
+  const json frames = stats_of(options);
+  EXPECT_GT(frames[1]["frames_per_pixel"], 2.2);
+  EXPECT_LT(frames[2]["frames_per_pixel"], 2.01);
+  EXPECT_TRUE(mean[1] == before[1]);
+}
+
+TEST_F(Accumulated, frames_of_another_focal_length_count_where_they_see_the_same) {
+  write_shot(2);
+  FrameFile file = wall_frame();
+  // Half the picture's angle: the lower middle of it at twice the size. The camera stands where it stood in frame 2.
+  const FrameFile wide = with_board(2, {0, 0, 128, 72});
+  for (auto& [name, plane] : file.planes)
+    for (int y = 0; y < 36; y++)
+      for (int x = 0; x < 64; x++)
+        plane[std::size_t(y * 64 + x)] = wide.planes.at(name)[std::size_t((y + 36) * 128 + x + 32)];
+  file.write(input(3));
+  const json cameras = json::parse(read_bytes(camera));
+  for (int frame = 1; frame <= 3; frame++) {
+    json one = wall_camera();
+    one["world_to_camera"] = cameras["frames"][std::size_t(std::min(frame, 2) - 1)]["world_to_camera"];
+    if (frame == 3) one["fx"] = one["fy"] = 120, one["cy"] = 0;
+    write_bytes(folder / fmt::format("camera.{}.json", frame), one.dump());
+  }
+  const Options own{"--camera", folder / "camera.%d.json", "--frames", "3"};
+  const json frames = stats_of(joined(joined(kNoisy, own), {"--accumulate", "1"}));
+  EXPECT_GT(frames[0]["frames_per_pixel"], 2);
+  const auto of_third = [&](const Options& options) {
+    EXPECT_EQ(run(joined(options, own)).code, 0);
+    return read_exr_image(output(3)).pixels;
+  };
+  const auto truth = of_third(kSmooth), alone = of_third(kNoisy),
+             mean = of_third(joined(kNoisy, {"--accumulate", "1"}));
+  EXPECT_LT(difference(mean, truth).rmse, 0.9 * difference(alone, truth).rmse);
+}
+
+TEST_F(Accumulated, headers_name_the_frames) {
+  write_shot(6);
+  ASSERT_EQ(run({"--accumulate", "1"}).code, 0);
+  EXPECT_EQ(header(1), "frames 1-3") << "near its ends more of the other side";
+  EXPECT_EQ(header(4), "frames 3-5");
+  ASSERT_EQ(run({}).code, 0);
+  EXPECT_EQ(header(4), "");
+}
+
+TEST_F(Accumulated, missing_frames_are_an_error_or_left_out) {
+  write_shot(6);
+  fs::remove(input(4));
+  const Finished refused = run({"--accumulate", "2", "--frames", "3"});
+  EXPECT_EQ(refused.code, 3);
+  EXPECT_THAT(refused.err, AllOf(HasSubstr("f.0004.exr"), HasSubstr("--accumulate"), HasSubstr("--missing skip")));
+  ASSERT_EQ(run({"--accumulate", "1", "--missing", "skip"}).code, 0);
+  EXPECT_EQ(header(3), "frames 2-3; missing 4");
+}
+
+TEST_F(Accumulated, each_frame_is_estimated_once) {
+  write_shot(kFrames);
+  const json frames = stats_of({"--accumulate", "2", "--threads", "1"});
+  int estimated = 0;
+  for (const auto& frame : frames)
+    for (const auto& pass : frame["passes"]) estimated += pass["name"] == "others horizon";
+  // A frame's report has one line for all that were estimated for it.
+  EXPECT_EQ(estimated, kFrames - 4) << "the first frame takes five, and near the end there is nothing new";
+}
+
+TEST_F(Accumulated, works_with_all_that_is_made_of_an_estimate) {
+  write_shot(3);
+  for (const Options& options :
+       {Options{"--aov", "ao,bent-normal,specular-occlusion"}, Options{"--radius", "1,0.3", "--aov", "ao,ao-scales"},
+        Options{"--resolution", "half"}, Options{"--estimator", "hbao"}, Options{"--around", "1", "--aov", "ao,hidden"},
+        Options{"--motion", in + "/f.%04d.exr", "--motion-channels", "ViewLayer.Normal.X,ViewLayer.Normal.Y"}}) {
+    const Finished finished = run(joined(options, {"--accumulate", "1"}));
+    if (options.front() == "--motion")
+      EXPECT_THAT(finished.err, HasSubstr("motion vectors")) << "normals are no motion vectors";
+    else
+      EXPECT_EQ(finished.code, 0) << finished;
+  }
+}
+
+TEST_F(Accumulated, refusals_say_what_to_do) {
+  write_shot(3);
+  const auto refused = [&](const Options& options, int code) {
+    const Finished finished = run(options);
+    EXPECT_EQ(finished.code, code) << finished;
+    return finished.err;
+  };
+  EXPECT_THAT(refused({"--accumulate", "all"}, 2), HasSubstr("number of frames to each side"));
+  EXPECT_THAT(refused({"--accumulate", "17"}, 2), HasSubstr("16"));
+  EXPECT_THAT(refused({"--accumulate", "1", "--search", "exact", "--tolerance", "0.01"}, 2), HasSubstr("--tolerance"));
+  EXPECT_THAT(refused({"--accumulate", "1", "--debug", "raw-ao"}, 2), HasSubstr("mean of many"));
+  EXPECT_THAT(refused({"--debug", "count"}, 2), HasSubstr("--accumulate"));
+  json cameras = json::parse(read_bytes(camera));
+  cameras.erase("world_to_camera");
+  for (auto& frame : cameras["frames"]) frame.erase("world_to_camera");
+  write_bytes(camera, cameras.dump());
+  EXPECT_THAT(refused({"--accumulate", "1", "--normal", "none"}, 3), HasSubstr("world_to_camera"));
+}
+
+TEST_F(Accumulated, views_show_how_many_frames_count) {
+  write_shot(3);
+  ASSERT_EQ(run({"--accumulate", "1", "--debug", "count", "--frames", "2"}).code, 0);
+  EXPECT_TRUE(fs::exists(out + "/ao.0002.count.png"));
+}
+
+TEST_F(Accumulated, means_have_as_many_frames_wherever_they_lie) {
+  write_shot(6);
+  Settings settings;
+  settings.input.input = in + "/f.####.exr";
+  settings.input.accumulate = 1;
+  const FramePlan plan(settings);
+  EXPECT_THAT(plan.accumulated(1).there, ElementsAre(1, 2, 3));
+  EXPECT_THAT(plan.accumulated(4).there, ElementsAre(3, 4, 5));
+  EXPECT_THAT(plan.accumulated(6).there, ElementsAre(4, 5, 6));
+  EXPECT_EQ(plan.turn_of(2), plan.turn_of(5));
+  EXPECT_NE(plan.turn_of(2), plan.turn_of(3));
+}
+
+}  // namespace
+}  // namespace alcove
