@@ -95,7 +95,7 @@ bool is_for_library(const OptionRow& row) {
                              "--focal",
                              "--aperture",
                              "--ortho-width"};
-  if (row.group == "Estimator") return row.name != "--preset";
+  if (row.group == "Estimator") return row.name != "--preset" && row.name != "--accumulate";
   return std::ranges::find(kOthers, row.long_name()) != kOthers.end();
 }
 

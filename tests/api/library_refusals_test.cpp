@@ -167,7 +167,8 @@ TEST_F(Library, repairs_and_counts_what_is_no_depth) {
 
 TEST_F(Library, takes_or_refuses_every_option_of_the_table) {
   // Of files, frames, reports: whoever adds an option decides whether it is one of these.
-  const std::set<std::string> of_files{"--depth",
+  const std::set<std::string> of_files{"--accumulate",
+                                       "--depth",
                                        "--normal",
                                        "--position",
                                        "--beauty",

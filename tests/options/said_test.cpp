@@ -175,7 +175,8 @@ const std::map<std::string, Words>& contradicting_values() {
       {"--no-skip", {"true"}},     {"--quiet", {"true"}},
       {"--verbose", {"true"}},     {"--progress", {"plain"}},
       {"--occluders", {"Hero"}},   {"--ignore", {"Set*"}},
-      {"--around", {"2"}},         {"--other-views", {"true"}},
+      {"--around", {"2"}},         {"--accumulate", {"2"}},
+      {"--other-views", {"true"}},
   };
   return values;
 }
