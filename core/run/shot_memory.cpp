@@ -74,8 +74,15 @@ std::uint64_t bytes_of_shot(const FramePlan& plan, const FrameSource& frame, con
 
 std::uint64_t bytes_of_estimates(const FramePlan& plan, const FrameSource& frame, const Settings& settings, int lanes) {
   if (settings.input.accumulate == 0) return 0;
-  const std::uint64_t planes = 2 + values_of(settings), window = std::uint64_t(plan.turns()) + std::uint64_t(lanes);
-  return planes * sizeof(float) * frame.file_data.pixels() * std::min<std::uint64_t>(plan.shot().size(), window);
+  const auto frames = [&](int count) {
+    return std::min<std::uint64_t>(plan.shot().size(), std::uint64_t(count) + std::uint64_t(lanes));
+  };
+  // What was read is kept for those that are to be computed.
+  std::uint64_t read = 0;
+  for (const auto& plane : frame.planes.entries) read += plane.size();
+  const std::uint64_t planes =
+      (2 + values_of(settings)) * frames(plan.turns()) + read * frames(settings.input.accumulate);
+  return sizeof(float) * frame.file_data.pixels() * planes;
 }
 
 RunMemory beside_shot(const RunMemory& memory, const FramePlan& plan, const FrameSource& frame,
