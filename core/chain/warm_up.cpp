@@ -32,22 +32,21 @@ std::vector<gpu::KernelName> kernels_of(gpu::Device& device, EstimatorSettings s
 
 }  // namespace
 
-WarmUp::WarmUp(gpu::Device& device, const EstimatorSettings& settings, const Wanted& wanted, int threads) try
-    : names_(kernels_of(device, settings, wanted)) {
-  for (int i = 0; i < threads; i++)
-    threads_.emplace_back([this, &device] {
-      try {
-        while (true) {
-          const std::size_t place = next_++;
-          if (place >= names_.size()) return;
-          device.kernel(names_[place].first, names_[place].second);
-        }
-      } catch (...) {
-        // Whoever needs the kernel fails as this thread did.
-      }
-    });
-} catch (...) {
-  // So does whoever needs what could not be rehearsed.
+WarmUp::WarmUp(gpu::Device& device, const EstimatorSettings& settings, const Wanted& wanted, int threads) {
+  const auto make = [this, &device] {
+    try {
+      for (std::size_t place = next_++; place < names_.size(); place = next_++)
+        device.kernel(names_[place].first, names_[place].second);
+    } catch (...) {
+      // Whoever needs the kernel fails as this thread did.
+    }
+  };
+  try {
+    names_ = kernels_of(device, settings, wanted);
+    for (int i = 0; i < threads; i++) threads_.emplace_back(make);
+  } catch (...) {
+    // So does whoever needs what could not be rehearsed; and where there are no threads, frames make their kernels.
+  }
 }
 
 }  // namespace alcove

@@ -17,6 +17,12 @@ class WarmUp {
  public:
   /// The device must outlive it.
   WarmUp(gpu::Device& device, const EstimatorSettings& settings, const Wanted& wanted, int threads);
+  ~WarmUp() { next_ = names_.size(); }  // what nobody has begun by then is not made
+  WarmUp(const WarmUp&) = delete;
+  WarmUp& operator=(const WarmUp&) = delete;
+
+  /// The kernels that are made.
+  const std::vector<gpu::KernelName>& names() const { return names_; }
 
  private:
   std::vector<gpu::KernelName> names_;

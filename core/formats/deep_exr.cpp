@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/formats/deep_exr.h"
 
-#include <IlmThreadPool.h>
-
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -19,6 +17,7 @@
 #include "core/base/memory_limit.h"
 #include "core/formats/deep_chunk.h"
 #include "core/formats/exr.h"
+#include "core/formats/exr_threads.h"
 
 namespace alcove {
 namespace {
@@ -100,27 +99,12 @@ class Crew {
       : count_(count), work_(std::move(work)) {}
 
   void run(std::size_t workers) {
-    if (workers <= 1) {
-      help(0);
-    } else {
-      IlmThread::TaskGroup group;
-      for (std::size_t worker = 0; worker < workers; worker++)
-        IlmThread::ThreadPool::addGlobalTask(new Help(&group, *this, worker));
-    }
+    std::atomic<std::size_t> worker = 0;
+    on_exr_threads(workers <= 1 ? 0 : int(workers), [&] { help(worker++); });
     if (failure_) std::rethrow_exception(failure_);
   }
 
  private:
-  class Help : public IlmThread::Task {
-   public:
-    Help(IlmThread::TaskGroup* group, Crew& crew, std::size_t worker) : Task(group), crew_(crew), worker_(worker) {}
-    void execute() override { crew_.help(worker_); }
-
-   private:
-    Crew& crew_;
-    std::size_t worker_;
-  };
-
   void help(std::size_t worker) {
     for (std::size_t number = next_++; number < count_; number = next_++) try {
         work_(number, worker);
@@ -300,7 +284,7 @@ void DeepReader::Impl::share_out(std::uint64_t most_bytes) {
         "{}: its largest deep lines or tiles take {} MiB to read, and {} MiB are there for that: let the run take more "
         "by --memory, or write smaller ones ({})",
         path, worker_bytes / kMebibyte + 1, most_bytes / kMebibyte, option);
-  const int threads = IlmThread::ThreadPool::globalThreadPool().numThreads();
+  const int threads = exr_threads();
   workers = std::clamp<std::uint64_t>(most_bytes / std::max<std::uint64_t>(1, worker_bytes), 1,
                                       std::uint64_t(std::max(1, threads)));
 }

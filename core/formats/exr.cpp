@@ -401,8 +401,16 @@ void ExrFile::read(std::span<const ExrRead> reads, int first, int rows) {
   }
   impl_->read_deep(reads, first, rows);
   std::map<int, std::vector<ExrRead>> parts;
-  for (const auto& read : reads)
-    if (!impl_->parts[std::size_t(read.part)].deep) parts[read.part].push_back(read);
+  std::vector<std::pair<ExrRead, const float*>> again;  // of channels that are wanted more than once
+  for (const auto& read : reads) {
+    if (impl_->parts[std::size_t(read.part)].deep) continue;
+    auto& of_part = parts[read.part];
+    const auto known = std::ranges::find(of_part, read.channel, &ExrRead::channel);
+    if (known == of_part.end())
+      of_part.push_back(read);
+    else
+      again.emplace_back(read, known->to);
+  }
   for (const auto& [part, of_part] : parts) {
     try {
       impl_->read_rows(part, of_part, first, rows);
@@ -411,6 +419,8 @@ void ExrFile::read(std::span<const ExrRead> reads, int first, int rows) {
            impl_->path, part, impl_->option, one_line(error));
     }
   }
+  for (const auto& [read, from] : again)
+    std::copy_n(from, std::size_t(rows) * std::size_t(impl_->parts[std::size_t(read.part)].data.width), read.to);
 }
 
 float from_half(std::uint16_t bits) {

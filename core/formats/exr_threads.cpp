@@ -52,8 +52,10 @@ class SharedTask : public IlmThread::Task {
 
 }  // namespace
 
+int exr_threads() { return IlmThread::ThreadPool::globalThreadPool().numThreads(); }
+
 int exr_threads_for(int pieces, int most) {
-  const int threads = std::min({pieces, most, IlmThread::ThreadPool::globalThreadPool().numThreads()});
+  const int threads = std::min({pieces, most, exr_threads()});
   return threads > 1 ? threads : 0;
 }
 

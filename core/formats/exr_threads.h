@@ -6,6 +6,9 @@
 
 namespace alcove {
 
+/// How many threads OpenEXR has; 0: none but the caller's.
+int exr_threads();
+
 /// How many threads there are for so many pieces of work of which `most` may go on at once; 0: only the caller's.
 int exr_threads_for(int pieces, int most);
 

@@ -6,6 +6,7 @@
 #include <ImfPartType.h>
 
 #include <algorithm>
+#include <exception>
 #include <limits>
 #include <memory>
 #include <mutex>
@@ -48,11 +49,21 @@ class ZipReading {
 
   int chunks() const { return (end_ + chunk_rows_ - 1) / chunk_rows_ - first_ / chunk_rows_; }
 
-  /// Reads chunks until none is left. Several threads may do so together.
+  /// Reads chunks until none is left, or one fails. Several threads may do so together.
   void read() {
     ZipUnpacker unpacker;
-    const auto packed = std::make_unique_for_overwrite<std::uint8_t[]>(row_bytes_ * std::size_t(chunk_rows_));
-    while (const auto chunk = next(packed.get())) unpack(*chunk, unpacker);
+    const auto packed = std::make_unique_for_overwrite<std::uint8_t[]>(chunk_bytes());
+    while (const auto chunk = next(packed.get())) try {
+        unpack(*chunk, unpacker);
+      } catch (...) {
+        const std::lock_guard lock(mutex_);
+        fail_with(chunk->top / chunk_rows_);
+      }
+  }
+
+  /// Throws what the first chunk of those that failed has thrown. Call it once all have read.
+  void end() const {
+    if (failure_) std::rethrow_exception(failure_);
   }
 
  private:
@@ -61,16 +72,30 @@ class ZipReading {
     std::span<const std::uint8_t> packed;
   };
 
-  /// Takes the next chunk from the file. Chunks are taken in their order, so that OpenEXR need not look for them, and
-  /// so that a damaged file ends the same on any number of threads. What fails ends all of them.
+  std::size_t chunk_bytes() const { return row_bytes_ * std::size_t(chunk_rows_); }
+
+  /// Keeps the exception that is on its way, and lets nobody take another chunk. Who calls it holds the mutex.
+  void fail_with(int chunk) {
+    next_ = std::numeric_limits<int>::max();
+    if (chunk >= failed_) return;
+    failed_ = chunk;
+    failure_ = std::current_exception();
+  }
+
+  /// Takes the next chunk from the file. Chunks are taken in their order, so that OpenEXR need not look for them; all
+  /// before one that fails are done, so that a damaged file ends the same on any number of threads.
   std::optional<Chunk> next(std::uint8_t* to) {
     const std::lock_guard lock(mutex_);
     if (std::int64_t(next_) * chunk_rows_ >= end_) return std::nullopt;
-    const int top = std::exchange(next_, std::numeric_limits<int>::max()) * chunk_rows_;
-    int bytes = 0;
-    part_.rawPixelDataToBuffer(data_.y + top, reinterpret_cast<char*>(to), bytes);
-    next_ = top / chunk_rows_ + 1;
-    return Chunk{top, {to, std::size_t(bytes)}};
+    const int number = next_++;
+    try {
+      int bytes = int(chunk_bytes());  // OpenEXR 3.3 looks at it
+      part_.rawPixelDataToBuffer(data_.y + number * chunk_rows_, reinterpret_cast<char*>(to), bytes);
+      return Chunk{number * chunk_rows_, {to, std::size_t(bytes)}};
+    } catch (...) {
+      fail_with(number);
+      return std::nullopt;
+    }
   }
 
   void unpack(const Chunk& chunk, ZipUnpacker& unpacker) const {
@@ -93,6 +118,8 @@ class ZipReading {
   std::vector<ZipChannel> channels_;
   std::mutex mutex_;  // of the file, and of
   int next_;          // chunk
+  int failed_ = std::numeric_limits<int>::max();
+  std::exception_ptr failure_;
 };
 
 }  // namespace
@@ -119,6 +146,7 @@ bool is_zip_rows(const Imf::Header& header) {
 void read_zip_rows(const Imf::InputPart& part, std::span<const ZipRead> reads, int first, int rows, int most_threads) {
   ZipReading reading(part, reads, first, rows);
   on_exr_threads(exr_threads_for(reading.chunks(), most_threads), [&] { reading.read(); });
+  reading.end();
 }
 
 }  // namespace alcove

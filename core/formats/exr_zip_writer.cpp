@@ -43,6 +43,7 @@ ZipWriter::ZipWriter(Imf::OStream& stream, const Imf::Header& header) : stream_(
   height_ = std::size_t(data.height);
   chunk_rows_ = std::size_t(rows_of_zip_chunk(header_));
   row_bytes_ = zip_row_bytes(header_);
+  if (!is_zip_rows(header_)) throw std::logic_error("this part is for OpenEXR");
   const auto most = std::numeric_limits<int>::max();
   chunks_ = std::vector<Chunk>(std::size_t(std::max(1, kChunksOfThread * exr_threads_for(most, most))));
   Imf::StdOSStream head;  // one write instead of hundreds
@@ -60,7 +61,7 @@ std::size_t ZipWriter::rows_of(std::size_t chunk) const {
 }
 
 void ZipWriter::write(std::span<const Source> sources, std::size_t rows) {
-  if (rows > height_ - offsets_.size() * chunk_rows_ - chunks_[0].rows)
+  if (rows > height_ - std::min(height_, offsets_.size() * chunk_rows_) - chunks_[0].rows)
     throw std::logic_error("there are more rows than pixels");
   for (std::size_t row = 0; row < rows;) {
     std::size_t count = 0;  // chunks that are full
@@ -116,6 +117,7 @@ void ZipWriter::write_chunks(std::span<Chunk> chunks) {
 }
 
 void ZipWriter::finish() {
+  if (offsets_.size() * chunk_rows_ < height_) throw std::logic_error("there are fewer rows than pixels");
   stream_.seekp(table_);
   stream_.write(reinterpret_cast<const char*>(offsets_.data()), int(offsets_.size() * sizeof(std::uint64_t)));
 }

@@ -174,7 +174,7 @@ __attribute__((target("avx2,f16c"))) void narrow_f16c(const float* floats, std::
 SampleLoops loops_of_processor() {
   SampleLoops loops{sum_up, sum_of_sse2, interleave_sse2, split_sse2, subtract_sse2, widen, narrow};
   if (__builtin_cpu_supports("ssse3")) loops.sum_up = sum_up_ssse3;
-  if (__builtin_cpu_supports("avx2")) {  // no processor has it without F16C
+  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("f16c")) {
     loops.widen = widen_f16c;
     loops.narrow = narrow_f16c;
   }

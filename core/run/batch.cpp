@@ -233,7 +233,9 @@ class Batch {
     share_cores(threads, cpu_lanes, d.threads > 0);
     Lanes lanes({d.device, d.require_gpu, d.validate, !d.no_pipeline_cache}, cpu_lanes);
 
-    const WarmUp warm_up(lanes.device(), settings_.estimator, settings_.output, std::min(threads, kWarmingThreads));
+    // One core alone has nothing to do beside.
+    WarmUp warm_up(lanes.device(), settings_.estimator, settings_.output,
+                   threads > 1 ? std::min(threads, kWarmingThreads) : 0);
 
     const gpu::DeviceInfo& device = lanes.device().info();
     const bool is_cpu = device.type == gpu::DeviceType::cpu;

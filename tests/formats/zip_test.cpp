@@ -317,6 +317,49 @@ TEST_F(Zip, reads_the_bits_of_openexr_from_every_file_of_the_folders_that_are_na
       if (entry.path().extension() == ".exr") expect_file(entry.path());
 }
 
+TEST_F(Zip, gives_a_channel_as_often_as_it_is_asked_for) {
+  for (const auto compression : kCompressions) {
+    write(path, {{0, 0}, {16, 35}}, compression, Content::smooth);
+    ExrFile file(path, "INPUT");
+    const auto once = read_rows(file, 0, {"Normal.X", "Depth.Z"}, 3, 20);
+    std::vector<std::vector<float>> planes(4, std::vector<float>(17 * 20, -1));
+    file.read(std::vector<ExrRead>{{0, "Normal.X", planes[0].data()},
+                                   {0, "Depth.Z", planes[1].data()},
+                                   {0, "Normal.X", planes[2].data()},
+                                   {0, "Normal.X", planes[3].data()}},
+              3, 20);
+    for (const std::size_t i : {0, 2, 3}) EXPECT_EQ(planes[i], once.at("Normal.X")) << i << ", " << int(compression);
+    EXPECT_EQ(planes[1], once.at("Depth.Z")) << int(compression);
+  }
+}
+
+TEST_F(Zip, tells_the_first_damage_whatever_the_number_of_threads) {
+  write(path, {{0, 0}, {99, 16 * 20 - 1}}, Imf::ZIP_COMPRESSION, Content::smooth);
+  std::string damaged = read_bytes(path);
+  std::uint64_t table[20] = {};
+  std::uint64_t first = 0;
+  // The offsets stand before the first chunk, which is where the first of them says.
+  for (std::size_t at = 0; at + sizeof table < damaged.size(); at++) {
+    std::memcpy(table, &damaged[at], sizeof table);
+    first = at + sizeof table;
+    if (table[0] == first) break;
+  }
+  ASSERT_EQ(table[0], first);
+  damaged[table[11] - 1] ^= 1;  // the checksum of the tenth
+  damaged[table[11]] ^= 1;      // the line of the next
+  write_bytes(path, damaged);
+  for (int i = 0; i < 20; i++) {
+    set_exr_threads(i % 4);
+    ExrFile file(path, "INPUT");
+    try {
+      read_rows(file, 0, {"A", "Depth.Z"}, 0, 16 * 20);
+      ADD_FAILURE() << "it was read";
+    } catch (const Error& error) {
+      EXPECT_THAT(error.what(), testing::HasSubstr("the rows from 160 on cannot be inflated"));
+    }
+  }
+}
+
 TEST_F(Zip, refuses_a_chunk_of_more_or_fewer_rows_than_the_window_has) {
   write(path, {{0, 0}, {6, 36}}, Imf::ZIP_COMPRESSION, Content::smooth);
   const std::string whole = read_bytes(path);

@@ -137,6 +137,19 @@ TEST_F(ZipWriting, a_file_whose_rows_are_too_many_is_refused) {
   ExrWriter writer(path, output);
   const std::vector<float> rows(20 * 21);
   EXPECT_THROW(writer.write(std::vector<std::span<const float>>(3, rows)), Error);
+  ExrWriter full(path, output);
+  full.write(std::vector<std::span<const float>>(3, std::span(rows).first(20 * 20)));
+  EXPECT_THROW(full.write(std::vector<std::span<const float>>(3, std::span(rows).first(20))), Error);
+}
+
+TEST_F(ZipWriting, a_file_whose_rows_are_too_few_is_not_finished) {
+  const std::vector<float> rows(20 * 19);
+  {
+    ExrWriter writer(path, output_of({0, 0, 20, 20}, "zip"));
+    writer.write(std::vector<std::span<const float>>(3, rows));
+    EXPECT_THROW(writer.finish(), Error);
+  }
+  EXPECT_FALSE(std::filesystem::exists(path));
 }
 
 }  // namespace

@@ -1,0 +1,52 @@
+// What is made before the first frame is what frames need.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/chain/warm_up.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "core/chain/compute.h"
+#include "core/options/presets.h"
+#include "tests/support/device.h"
+#include "tests/support/scenes.h"
+
+namespace alcove {
+namespace {
+
+using namespace test;
+
+/// The settings of one of ours.
+EstimatorSettings settings_of(const std::string& preset) {
+  RunOptions options;
+  const auto table = option_table(options);
+  for (const auto& [name, text] : preset_texts())
+    if (name == preset) read_said(options, said_by_text(name, text, table));
+  options.settings.estimator.radius = 0.5;
+  return options.settings.estimator;
+}
+
+TEST(WarmUp, makes_every_kernel_that_a_frame_runs_and_each_once) {
+  Scene scene;
+  scene.primitives = {parallelogram({-2, -1, -6}, {4, 0, 0}, {0, 0, 4}),
+                      parallelogram({-2, -1, -6}, {0, 3, 0}, {4, 0, 0})};
+  const HostFrame frame = render(scene, Shot::perspective({0, 0, 0}, {0, 0, -1}, 60, 96, 64)).frame;
+  for (const char* preset : {"draft", "standard", "production", "reference"}) {
+    const EstimatorSettings settings = settings_of(preset);
+    const WarmUp warm_up(device(), settings, {}, 0);
+    std::set<std::string> made;
+    for (const auto& name : warm_up.names()) made.insert(name.first);
+    EXPECT_EQ(std::set(warm_up.names().begin(), warm_up.names().end()).size(), warm_up.names().size()) << preset;
+    EXPECT_EQ(compute_ao(recorder(), frame, settings).ao.size(), frame.data.pixels());
+    for (const auto& pass : recorder().passes()) EXPECT_TRUE(made.contains(pass.name)) << preset << ": " << pass.name;
+  }
+}
+
+TEST(WarmUp, begins_with_what_has_the_most_code) {
+  const WarmUp warm_up(device(), settings_of("standard"), {}, 0);
+  ASSERT_FALSE(warm_up.names().empty());
+  EXPECT_EQ(warm_up.names().front().first, "horizon");
+}
+
+}  // namespace
+}  // namespace alcove
