@@ -63,6 +63,15 @@ int index_in(TakenFrame other, vec3 here, vec3 n, out uint second) {
   return is_same ? index : -1;
 }
 
+/// The first of the planes of the mean open direction, which are the last three where there are any.
+const int kBent = kPlanes > 3 ? kPlanes - 3 : 0;
+
+/// A direction of another frame's view space in this one's, both as 0.5 + 0.5 b.
+vec3 turned_here(TakenFrame other, vec3 encoded) {
+  const vec3 b = 2.0 * encoded - 1.0;
+  return 0.5 + 0.5 * (b.x * other.row_x + b.y * other.row_y + b.z * other.row_z);
+}
+
 /// Adds what the frames of the buffer estimate of a pixel's point.
 void accumulate(ivec2 pixel) {
   const ivec2 in_frame = pixel + params.corner;
@@ -86,10 +95,18 @@ void accumulate(ivec2 pixel) {
     const bool is_taken = is_surface && !moved && at >= 0;
     for (int k = 1; k < (kPlanes + 2) / 2; k++) words[k] = others[other.first + uint(max(at, 0) + (k + 1) * there)];
     count += is_taken ? 1.0 : 0.0;
+    float theirs[kPlanes + 2];
     for (int k = 0; k < kPlanes; k++) {
       const vec2 halves = unpackUnorm2x16(words[(k + 1) / 2]);
-      blocked[k] += is_taken ? 1.0 - (k % 2 == 0 ? halves.y : halves.x) : 0.0;
+      theirs[k] = k % 2 == 0 ? halves.y : halves.x;
     }
+    if (params.scales + 1 < kPlanes) {
+      const vec3 turned = turned_here(other, vec3(theirs[kBent], theirs[kBent + 1], theirs[kBent + 2]));
+      theirs[kBent] = turned.x;
+      theirs[kBent + 1] = turned.y;
+      theirs[kBent + 2] = turned.z;
+    }
+    for (int k = 0; k < kPlanes; k++) blocked[k] += is_taken ? 1.0 - theirs[k] : 0.0;
   }
   sums[index] = count;
   for (int k = 0; k < kPlanes; k++) {

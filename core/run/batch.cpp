@@ -197,7 +197,8 @@ class Batch {
     std::optional<SharedFrames> shot;
     std::optional<SharedEstimates> estimates;
     if (takes_others(settings_.input)) run.shot = &shot.emplace(plan_, run.settled, frames);
-    if (settings_.input.accumulate > 0) run.estimates = &estimates.emplace(plan_, run.settled, run.shot, frames);
+    if (settings_.input.accumulate > 0 && needs_ao(settings_.output))
+      run.estimates = &estimates.emplace(plan_, run.settled, run.shot, frames);
 
     run_on_device(run, frames);
     if (!lost_ || report_.stop) return;  // a frame that failed beside the loss has ended the run
@@ -241,7 +242,7 @@ class Batch {
     const bool is_cpu = device.type == gpu::DeviceType::cpu;
     RunMemory memory = memory_for_frames(d, device);
     if (run.settled) require_room_for_others(memory, plan_, *run.settled, settings_);
-    if (run.settled) require_buffers_for_others(device.buffer_bytes, *run.settled, settings_.input);
+    if (run.settled) require_buffers_for_others(device.buffer_bytes, *run.settled, settings_);
     if (!is_cpu) lanes.set_count(lanes_for(run, frames.size(), memory, threads + kSpareLanes));
     report_.device = run.provenance.device = device.name;
     report_.on_cpu_by_default = is_cpu && lower_case(d.device) == "auto";

@@ -59,6 +59,7 @@ class EstimateRun {
         source_(open_frame(settings_, frame)),
         tally_(result_.report) {
     wanted_.only_own = true;
+    wanted_.visibility = true;
   }
 
   EstimatedFrame run(SharedFrames* shot, PreparedOthers& took, ReadPlanes& read) {
@@ -89,6 +90,7 @@ class EstimateRun {
 
  private:
   void compute(const Window& part, FrameRows* rows, PreparedOthers& took) {
+    if (where_.go_on) where_.go_on();
     FrameInputs inputs = load_frame(where_.gpu, source_, settings_, plan_.turn_of(frame_), rows);
     inputs.others = others_.seen;
     if (!rows) read_ = kept_planes(inputs);

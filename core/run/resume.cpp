@@ -71,6 +71,7 @@ std::string InputIdentities::of(int frame) {
   const Settings settings = plan_.at(frame);
   std::string text = own(frame);
   if (!shot_option(settings.input)) return text;
+  if (settings.input.accumulate > 0) text += fmt::format("\nturn {}", plan_.turn_of(frame));
   for (const int other : frames_seen_for(plan_, frame)) {
     text += fmt::format("\n{} {}", other - frame, own(other));
     if (const std::string camera = plan_.at(other).input.camera; camera != settings.input.camera)

@@ -149,8 +149,11 @@ EstimateSet EstimateSlots::filled(gpu::Recorder& gpu, const FramePlan& plan, con
     gpu::Buffer& planes = gpu.buffer(fmt::format("estimates {}", i), together * bytes, gpu::Use::upload);
     gpu::Buffer& table =
         gpu.buffer(fmt::format("estimated frames {}", i), together * sizeof(TakenFrame), gpu::Use::upload);
-    if (group.buffer != planes.host().data() || group.held.size() != together) group.held.assign(together, nullptr);
+    const bool is_as_before =
+        group.buffer == planes.host().data() && group.stride == stride && group.held.size() == together;
+    if (!is_as_before) group.held.assign(together, nullptr);
     group.buffer = planes.host().data();
+    group.stride = stride;
     uint count = 0;
     for (const auto& estimated : taken.of) {
       const std::size_t slot = std::size_t(plan.turn_of(estimated->frame));

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -49,6 +50,7 @@ std::string text_of(const TakenEstimates& taken);
 struct EstimateRoom {
   gpu::Recorder& gpu;
   const Room& room;
+  std::function<void()> go_on = {};  // called before each part of an estimate; may throw, which ends it
 };
 
 /// Frames that are estimated, each once, and kept for as long as any frame that is to be computed needs them. What one
@@ -100,6 +102,7 @@ class EstimateSlots {
   using Estimated = std::shared_ptr<const EstimatedFrame>;
   struct Group {
     const std::byte* buffer = nullptr;  // where it was
+    std::size_t stride = 0;             // words of a slot
     std::vector<Estimated> held;        // by slot
   };
   std::vector<Group> groups_;

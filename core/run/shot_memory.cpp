@@ -43,6 +43,34 @@ std::uint64_t bytes_without_frame(const FramePlan& plan, const FrameSource& fram
   return bytes_of_shot(plan, frame, settings.input, 1) + memory.fixed_on_device + memory.fixed_bytes;
 }
 
+/// Fails as require_room_for_others() does, with the estimates that one frame is the mean of.
+void require_room_for_estimates(const RunMemory& memory, const FramePlan& plan, const FrameSource& frame,
+                                const Settings& settings) {
+  if (settings.input.accumulate == 0) return;
+  const std::uint64_t bytes = bytes_without_frame(plan, frame, settings) + bytes_of_estimates(plan, frame, settings, 1);
+  if (bytes <= memory.host_bytes) return;
+  const std::uint64_t enough =
+      memory.program_bytes + bytes_of_one(plan, frame, settings) + bytes_of_estimates(plan, frame, settings, 1);
+  fail(memory.is_chosen ? ErrorKind::usage : ErrorKind::device,
+       "{}: {} leaves {} MiB for frames, too few for the estimates that each is the mean of: give a smaller "
+       "--accumulate than {}, or --memory {}M",
+       frame.depth_path(), memory.is_chosen ? "--memory" : "half of the free memory", memory.host_bytes / kMebibyte,
+       settings.input.accumulate, enough / kMebibyte + 1);
+}
+
+/// Fails as require_buffers_for_others() does, with the estimates that frames take of each other.
+void require_buffers_for_estimates(std::uint64_t most_bytes, const FrameSource& frame, const Settings& settings) {
+  if (settings.input.accumulate == 0) return;
+  const std::size_t values = values_of(settings), planes = std::max(values, 2 + values / 2);
+  const std::uint64_t bytes = sizeof(float) * planes * frame.file_data.pixels();
+  if (bytes <= most_bytes) return;
+  fail(ErrorKind::device,
+       "{}: --accumulate takes the estimates of frames whole, in a buffer of {} MiB, where the device has {} MiB at "
+       "most: leave it out, {}or use another --device",
+       frame.depth_path(), bytes / kMebibyte, most_bytes / kMebibyte,
+       values > 1 ? "ask for one --radius and no directions, " : "");
+}
+
 }  // namespace
 
 std::size_t most_others(const FramePlan& plan, const FrameSource& frame, const InputSettings& settings) {
@@ -97,6 +125,7 @@ RunMemory beside_shot(const RunMemory& memory, const FramePlan& plan, const Fram
 
 void require_room_for_others(const RunMemory& memory, const FramePlan& plan, const FrameSource& frame,
                              const Settings& settings) {
+  require_room_for_estimates(memory, plan, frame, settings);
   if (around_of(settings.input) == 0 || bytes_without_frame(plan, frame, settings) <= memory.host_bytes) return;
   Settings fewer = settings;
   fewer.input.around = int(std::min<std::size_t>(plan.shot().size(), std::size_t(around_of(settings.input))));
@@ -108,8 +137,10 @@ void require_room_for_others(const RunMemory& memory, const FramePlan& plan, con
        fewer.input.around, (memory.program_bytes + bytes_of_one(plan, frame, settings)) / kMebibyte + 1);
 }
 
-void require_buffers_for_others(std::uint64_t most_bytes, const FrameSource& frame, const InputSettings& settings) {
-  if (!takes_others(settings)) return;
+void require_buffers_for_others(std::uint64_t most_bytes, const FrameSource& frame, const Settings& all) {
+  require_buffers_for_estimates(most_bytes, frame, all);
+  const InputSettings& settings = all.input;
+  if (around_of(settings) == 0 && !settings.other_views) return;
   const auto bytes_of = [&](RawPlane plane) { return sizeof(float) * frame[plane].size() * frame.file_data.pixels(); };
   const std::uint64_t of_depth = bytes_of(RawPlane::depth), of_normals = bytes_of(RawPlane::normal);
   if (std::max(of_depth, of_normals) <= most_bytes) return;

@@ -32,6 +32,6 @@ void require_room_for_others(const RunMemory& memory, const FramePlan& plan, con
 
 /// Fails with ErrorKind::device where frames that others take from have planes that no buffer of `most_bytes` holds:
 /// they are prepared whole, and only frames that are computed are cut into tiles.
-void require_buffers_for_others(std::uint64_t most_bytes, const FrameSource& frame, const InputSettings& settings);
+void require_buffers_for_others(std::uint64_t most_bytes, const FrameSource& frame, const Settings& settings);
 
 }  // namespace alcove

@@ -1,0 +1,102 @@
+// --accumulate where frames differ from each other: turned cameras, other windows, outputs without AO, and a shot that grows.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gmock/gmock.h>
+
+#include "core/formats/exr.h"
+#include "tests/support/difference.h"
+#include "tests/support/walked_shot.h"
+
+namespace alcove {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace test;
+using nlohmann::json;
+using testing::HasSubstr;
+
+using Options = std::vector<std::string>;
+
+class AccumulatedShots : public WalkedShot {
+ protected:
+  std::vector<float> planes(int frame) const { return read_exr_image(output(frame)).pixels; }
+};
+
+TEST_F(AccumulatedShots, directions_of_a_turned_camera_are_turned_back) {
+  // The second frame is the first upside down, as a camera sees it that is rolled by half a turn.
+  constexpr Window kSquare{0, 0, 64, 64};
+  FrameFile file = wall_frame(kSquare, kSquare);
+  put_board(file, 0, {-1.2, 0.4, 0.5, 5.5});
+  json cameras = wall_camera(kSquare);
+  json rolled = cameras["world_to_camera"];
+  for (const int row : {0, 1})
+    for (auto& x : rolled[std::size_t(row)]) x = -x.get<double>();
+  cameras["frames"] = {{{"frame", 1}, {"world_to_camera", cameras["world_to_camera"]}},
+                       {{"frame", 2}, {"world_to_camera", rolled}}};
+  write_bytes(camera, cameras.dump());
+  file.write(input(1));
+  for (auto& [name, plane] : file.planes) std::ranges::reverse(plane);
+  file.write(input(2));
+
+  const Options smooth{"--stride", "1",     "--denoise", "none",   "--slices", "32",         "--steps",
+                       "32",       "--aov", "bent-normal", "--type", "float",  "--complete", "none"};
+  for (const char* space : {"world", "view"}) {
+    Options alone = smooth, mean = smooth;
+    alone.insert(alone.end(), {"--aov-space", space});
+    mean.insert(mean.end(), {"--aov-space", space, "--accumulate", "1"});
+    ASSERT_EQ(run(alone).code, 0);
+    const auto truth = planes(1);
+    ASSERT_EQ(run(mean).code, 0);
+    const auto found = planes(1);
+    EXPECT_NE(found, truth) << "nothing of the other frame counts";
+    EXPECT_LT(difference(found, truth).rmse, 0.01) << space;
+  }
+}
+
+TEST_F(AccumulatedShots, frames_of_other_windows_have_the_bits_that_they_have_alone) {
+  constexpr int kFrames = 8;
+  write_shot(kFrames, {0, 0, 64, 40});
+  for (const int frame : {3, 4, 5}) {
+    // A part of the frame, of another size and another place.
+    const FrameFile whole = with_board(frame, {0, 0, 64, 40});
+    FrameFile part = wall_frame({0, 0, 48, 30}, {0, 0, 48, 30});
+    part.data = {8, 4, 48, 30};
+    part.display = {0, 0, 64, 40};
+    for (auto& [name, plane] : part.planes)
+      for (int y = 0; y < 30; y++)
+        for (int x = 0; x < 48; x++)
+          plane[std::size_t(y * 48 + x)] = whole.planes.at(name)[std::size_t((y + 4) * 64 + x + 8)];
+    part.write(input(frame));
+  }
+  const Options options{"--accumulate", "1", "--threads", "1", "--type", "float"};
+  ASSERT_EQ(run(options).code, 0);
+  std::vector<std::vector<float>> together;
+  for (int frame = 1; frame <= kFrames; frame++) together.push_back(planes(frame));
+  for (int frame = 1; frame <= kFrames; frame++) {
+    Options one = options;
+    one.insert(one.end(), {"--frames", std::to_string(frame)});
+    ASSERT_EQ(run(one).code, 0);
+    EXPECT_TRUE(planes(frame) == together[std::size_t(frame - 1)]) << frame;
+  }
+}
+
+TEST_F(AccumulatedShots, outputs_without_ao_take_no_estimates) {
+  write_shot(3);
+  EXPECT_EQ(run({"--accumulate", "1", "--aov", "normal"}).code, 0);
+  EXPECT_EQ(run({"--accumulate", "1", "--aov", "depth", "--debug", "count", "--frames", "2"}).code, 0);
+  EXPECT_TRUE(fs::exists(out + "/ao.0002.count.png"));
+}
+
+TEST_F(AccumulatedShots, a_shot_that_grows_at_its_beginning_is_computed_again) {
+  write_shot(8);
+  const std::string first = read_bytes(input(1));
+  fs::remove(input(1));
+  const Options options{"--accumulate", "1"};
+  ASSERT_EQ(run(options).code, 0);
+  write_bytes(input(1), first);
+  ASSERT_EQ(run({"--accumulate", "1", "--resume"}).code, 0);
+  const auto resumed = outputs();
+  expect_same_outputs(resumed, {options});
+}
+
+}  // namespace
+}  // namespace alcove
