@@ -24,7 +24,7 @@ std::vector<gpu::KernelName> kernels_of(gpu::Device& device, EstimatorSettings s
   run_chain(rehearsal, upload(rehearsal, frame), settings, wanted);
   std::vector<gpu::KernelName> names = rehearsal.rehearsed();
   std::ranges::sort(names);
-  names.erase(std::ranges::unique(names).begin(), names.end());
+  names.erase(std::unique(names.begin(), names.end()), names.end());
   const auto words = [](const gpu::KernelName& name) { return gpu::kernel_code(name.first).size(); };
   std::ranges::stable_sort(names, std::ranges::greater{}, words);
   return names;

@@ -37,8 +37,8 @@ TEST_F(AccumulatedShots, directions_of_a_turned_camera_are_turned_back) {
   for (auto& [name, plane] : file.planes) std::ranges::reverse(plane);
   file.write(input(2));
 
-  const Options smooth{"--stride", "1",     "--denoise", "none",   "--slices", "32",         "--steps",
-                       "32",       "--aov", "bent-normal", "--type", "float",  "--complete", "none"};
+  const Options smooth{"--stride", "1",     "--denoise",   "none",   "--slices", "32",         "--steps",
+                       "32",       "--aov", "bent-normal", "--type", "float",    "--complete", "none"};
   for (const char* space : {"world", "view"}) {
     Options alone = smooth, mean = smooth;
     alone.insert(alone.end(), {"--aov-space", space});

@@ -411,7 +411,7 @@ TEST_F(Shots, need_buffers_for_whole_frames) {
   const std::uint64_t plane = sizeof(float) * kWallWindow.pixels();
   const auto refusal = [&](std::uint64_t most_bytes) -> std::string {
     try {
-      require_buffers_for_others(most_bytes, source, settings.input);
+      require_buffers_for_others(most_bytes, source, settings);
     } catch (const Error& error) {
       EXPECT_EQ(error.kind(), ErrorKind::device);
       return error.what();
@@ -423,6 +423,12 @@ TEST_F(Shots, need_buffers_for_whole_frames) {
   EXPECT_THAT(refusal(plane - 1), AllOf(HasSubstr("--around"), HasSubstr("--device"), Not(HasSubstr("--normal"))));
   settings.input.around = 0;
   EXPECT_EQ(refusal(1), "") << "a frame alone is cut into tiles";
+  settings.input.accumulate = 1;
+  EXPECT_EQ(refusal(2 * plane), "");
+  EXPECT_THAT(refusal(2 * plane - 1), AllOf(HasSubstr("--accumulate"), HasSubstr("--device")));
+  settings.estimator.further_radii = {2, 3};
+  EXPECT_THAT(refusal(2 * plane), AllOf(HasSubstr("--accumulate"), HasSubstr("one --radius")));
+  settings.input.accumulate = 0;
 }
 
 TEST_F(Shots, dry_runs_tell_what_the_window_takes) {
