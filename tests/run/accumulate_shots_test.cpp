@@ -1,4 +1,4 @@
-// --accumulate where frames differ from each other: turned cameras, other windows, outputs without AO, and a shot that grows.
+// --accumulate where frames differ: turned cameras, other windows, outputs without AO, and a shot that grows.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gmock/gmock.h>
 
