@@ -181,6 +181,22 @@ TEST_F(Accumulated, small_things_that_move_leave_no_trail) {
       expect_no_trail({width, height, top}, {});
 }
 
+TEST_F(Accumulated, what_lifts_slowly_off_a_wall_takes_its_shadow_along) {
+  constexpr Window kBoardOnWall{36, 8, 24, 24}, kAround{28, 0, 40, 40};
+  write_bytes(camera, wall_camera(kWindow).dump());
+  for (int frame = 1; frame <= kFrames; frame++) {
+    FrameFile file = wall_frame(kWindow, kWindow);
+    for (int y = kBoardOnWall.y; y < kBoardOnWall.y + kBoardOnWall.height; y++)
+      for (int x = kBoardOnWall.x; x < kBoardOnWall.x + kBoardOnWall.width; x++)
+        file.planes.at("ViewLayer.Depth.Z")[std::size_t(y * kWindow.width + x)] = float(6 - 0.02 * (frame - 1));
+    file.write(input(frame));
+  }
+  const Options options = joined(kSmooth, {"--radius", "0.5"});
+  const Frames alone = ao_of(options), mean = ao_of(joined(options, {"--accumulate", "4"}));
+  for (std::size_t frame = 0; frame < alone.size(); frame++)
+    EXPECT_LT(rmse_within(kAround, mean[frame], alone[frame]), 0.01) << frame + 1;
+}
+
 TEST_F(Accumulated, vectors_tell_of_what_is_as_thin_as_a_pixel) {
   for (const int top : {8, 11, 13})
     for (const auto& [width, height] : {std::pair(1, 12), {2, 12}, {12, 1}, {2, 2}})
