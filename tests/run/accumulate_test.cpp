@@ -112,7 +112,7 @@ class Accumulated : public WalkedShot {
   void expect_no_trail(const Mover& mover, const Options& more) const {
     constexpr int kMiddle = 5;
     write_mover(mover);
-    const Options options = joined(kSmooth, {"--radius", "0.5", "--frames", std::to_string(kMiddle)});
+    const Options options = joined(kSmooth, {"--radius", "0.3", "--frames", std::to_string(kMiddle)});
     const auto middle_of = [&](const Options& with) {
       const Finished finished = run(joined(options, with));
       EXPECT_EQ(finished.code, 0) << finished;
