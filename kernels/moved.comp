@@ -56,8 +56,8 @@ ivec2 of_square(ivec2 pixel, int half_side, int k) {
   return pixel + ivec2(k % side, k / side) - half_side;
 }
 
-/// Whether a frame sees nothing but what is farther, in the square of pixels about a place. Corners are looked at first,
-/// since on any slope one of them is nearer.
+/// Whether a frame sees nothing but what is farther, in the square of pixels about a place. Corners are looked at
+/// first, since on any slope one of them is nearer.
 bool is_seen_through(bool by_own, uint first, View view, ivec2 place, int half_side, float beyond) {
   bool through = abs(depth_at(by_own, first, index_of(view, place))) > beyond;
   for (int k = 0; through && k < 4; k++) {
