@@ -48,7 +48,9 @@ DebugPlane debug(gpu::Recorder& gpu, const DebugView& view, const GBuffer& gbuff
       if (gbuffer.hidden) values = gbuffer.hidden;
       hidden = gbuffer.surfaces - 1;
       break;
-    case DebugSource::count: values = stages.count; break;
+    case DebugSource::count:
+      if (stages.count) values = stages.count;
+      break;
     case DebugSource::tiles:
       shown = &stages.gbuffer;
       values = stages.sectors;

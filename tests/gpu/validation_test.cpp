@@ -72,12 +72,38 @@ std::set<std::string> kernels_of_views(gpu::Recorder& gpu, const EstimatorSettin
   return names;
 }
 
+/// The same of a room whose AO is the mean of its own estimate and of another frame's, from beside it.
+std::set<std::string> kernels_of_means(gpu::Recorder& gpu, const EstimatorSettings& settings) {
+  const HostFrame frame = furnished_room(70, 45).frame;
+  const std::size_t pixels = frame.data.pixels();
+  FrameInputs inputs = upload(gpu, frame);
+  const auto filled = [&](const char* name, std::size_t words) {
+    gpu::Buffer& buffer = gpu.buffer(name, words * sizeof(float), gpu::Use::upload);
+    std::ranges::fill(buffer.as<float>(), 0.5f);
+    std::ranges::copy(frame.depth, buffer.as<float>().begin());
+    return &buffer;
+  };
+  gpu::Buffer& table = gpu.buffer("estimated frames", sizeof(TakenFrame), gpu::Use::upload);
+  table.as<TakenFrame>()[0] = {inputs.view, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0.1f, 0, 0}, {1e-4f, 1e-5f, 0}, 0};
+  inputs.estimates = {filled("own depth", pixels),
+                      filled("own values", pixels),
+                      inputs.view,
+                      {{filled("estimates", 2 * pixels), &table, 1}},
+                      {}};
+  run_chain(gpu, inputs, settings);
+  gpu.run();
+  std::set<std::string> names;
+  for (const auto& pass : gpu.passes()) names.insert(pass.name);
+  return names;
+}
+
 std::set<std::string> kernels_of_all_settings(gpu::Recorder& gpu) {
   EstimatorSettings settings;
   settings.radius = 0.4;
   settings.slices = 3, settings.steps = 16, settings.samples = 64;
   std::set<std::string> names = kernels_of(gpu, settings, {}, false);
   names.merge(kernels_of_views(gpu, settings));
+  names.merge(kernels_of_means(gpu, settings));
   const auto add = [&](const OutputSettings& output) { names.merge(kernels_of(gpu, settings, output)); };
 
   OutputSettings everything;
