@@ -234,16 +234,16 @@ class Batch {
     share_cores(threads, cpu_lanes, d.threads > 0);
     Lanes lanes({d.device, d.require_gpu, d.validate, !d.no_pipeline_cache}, cpu_lanes);
 
-    // One core alone has nothing to do beside.
-    WarmUp warm_up(lanes.device(), settings_.estimator, settings_.output,
-                   threads > 1 ? std::min(threads, kWarmingThreads) : 0);
-
     const gpu::DeviceInfo& device = lanes.device().info();
     const bool is_cpu = device.type == gpu::DeviceType::cpu;
     RunMemory memory = memory_for_frames(d, device);
     if (run.settled) require_room_for_others(memory, plan_, *run.settled, settings_);
     if (run.settled) require_buffers_for_others(device.buffer_bytes, *run.settled, settings_);
     if (!is_cpu) lanes.set_count(lanes_for(run, frames.size(), memory, threads + kSpareLanes));
+    // Where frames run side by side no core is free for it.
+    std::optional<WarmUp> warm_up;
+    if (lanes.count() == 1 && threads > 1)
+      warm_up.emplace(lanes.device(), settings_.estimator, settings_.output, std::min(threads, kWarmingThreads));
     report_.device = run.provenance.device = device.name;
     report_.on_cpu_by_default = is_cpu && lower_case(d.device) == "auto";
     report_.at_once = lanes.count();
