@@ -67,6 +67,10 @@ void check_layout(const std::string& name, const alcove_layout& layout) {
     fail(ErrorKind::usage, "{}: a plane of {} x {} pixels", name, layout.width, layout.height);
   if (layout.components < 1 || layout.components > kMostComponents)
     fail(ErrorKind::usage, "{}: a plane of {} components", name, layout.components);
+  constexpr std::int64_t kMostValues = std::int64_t(1) << 32;  // more than a buffer of any device holds
+  if (std::int64_t(layout.width) * layout.height > kMostValues / layout.components)
+    fail(ErrorKind::usage, "{}: a plane of {} x {} x {} values, more than any device takes", name, layout.width,
+         layout.height, layout.components);
   if (layout.type != ALCOVE_FLOAT && layout.type != ALCOVE_HALF)
     fail(ErrorKind::usage, "{}: a plane of type {}, which is neither ALCOVE_FLOAT nor ALCOVE_HALF", name, layout.type);
   // From the shortest stride on, each must reach beyond all that lies within it.

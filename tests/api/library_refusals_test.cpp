@@ -141,7 +141,8 @@ TEST_F(Library, lets_only_one_thing_say_the_camera_and_the_depth) {
   EXPECT_REFUSED(handle, alcove_run(handle.get(), 0), ALCOVE_INPUT, "not a JSON object");
   // A call that fails leaves what was given before.
   const alcove_layout huge{1 << 24, 1 << 24, 1, ALCOVE_FLOAT, 0, 0, 0};
-  EXPECT_REFUSED(handle, alcove_plane(handle.get(), "depth", frame().depth.data(), &huge), ALCOVE_DEVICE, "memory");
+  EXPECT_REFUSED(handle, alcove_plane(handle.get(), "depth", frame().depth.data(), &huge), ALCOVE_USAGE,
+                 "more than any device takes");
   const std::string text = read_bytes(ALCOVE_SOURCE_DIR "/examples/interior.camera.json");
   EXPECT_OK(handle, alcove_camera_json(handle.get(), text.c_str()));
   EXPECT_EQ(ao_of(handle), truth());
