@@ -10,8 +10,8 @@
 
 namespace alcove {
 
-/// Fails with ErrorKind::usage, calling the plane by its name, on a layout that is none: no pixels or too many, no components, an
-/// unknown type, or strides by which values share bytes.
+/// Fails with ErrorKind::usage, calling the plane by its name, on a layout that is none: no pixels or too many, no
+/// components, an unknown type, or strides by which values share bytes.
 void check_layout(const std::string& name, const alcove_layout& layout);
 
 /// Copies the caller's values. The layout was checked.
