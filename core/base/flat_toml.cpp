@@ -20,7 +20,34 @@ std::string typed(const std::string& key, const toml::node& node) {
 
 }  // namespace
 
+void require_ascii_keys(const std::string& text) {
+  const std::size_t first = text.starts_with("\xef\xbb\xbf") ? 3 : 0;  // a mark of the byte order
+  std::string within;  // what ends the string or the comment that it is in
+  int line = 1;
+  for (std::size_t i = first; i < text.size(); i++) {
+    const char c = text[i];
+    line += c == '\n';
+    if (within.empty() && (unsigned char)c >= 0x80)
+      fail(ErrorKind::usage, "line {}: letters beyond ASCII stand in quotes only", line);
+    if (within.empty() && (c == '"' || c == '\'')) {
+      const bool is_long = text.compare(i, 3, std::string(3, c)) == 0;
+      within = std::string(is_long ? 3 : 1, c);
+      i += within.size() - 1;
+    } else if (within.empty() && c == '#') {
+      within = "\n";
+    } else if (!within.empty() && c == '\\' && within[0] == '"') {
+      i++;
+    } else if (!within.empty() && text.compare(i, within.size(), within) == 0) {
+      i += within.size() - 1;
+      within.clear();
+    } else if (within.size() == 1 && c == '\n') {
+      within.clear();
+    }
+  }
+}
+
 std::vector<FlatEntry> parse_flat_toml(const std::string& text) {
+  require_ascii_keys(text);
   toml::table root;
   try {
     root = toml::parse(text);

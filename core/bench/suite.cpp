@@ -13,6 +13,7 @@
 
 #include "core/base/error.h"
 #include "core/base/file.h"
+#include "core/base/flat_toml.h"
 #include "core/base/text.h"
 
 namespace alcove {
@@ -143,8 +144,14 @@ void require_unique_names(const std::string& path, const List& list, const char*
 }
 
 toml::table parse(const std::string& path, const char* what, const char* option) {
+  const std::string text = read_text(path, what, option);
   try {
-    return toml::parse(read_text(path, what, option), path);
+    require_ascii_keys(text);
+  } catch (const Error& error) {
+    fail(ErrorKind::input, "{}: {}", path, error.what());
+  }
+  try {
+    return toml::parse(text, path);
   } catch (const toml::parse_error& error) {
     fail(ErrorKind::input, "{}: line {}: {}", path, error.source().begin.line, error.description());
   }

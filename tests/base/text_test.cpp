@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/base/text.h"
 
+#include "core/base/error.h"
+#include "core/base/flat_toml.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -151,6 +154,16 @@ TEST(Numbers, are_read_whole_and_with_a_point) {
   EXPECT_EQ(number_of("1e-99999999999"), 0);
   for (const char* text : {"", "x", "1x", "0,5", "1 2", "+-1", "--1", "1e", "."})
     EXPECT_EQ(number_of(text), std::nullopt) << text;
+}
+
+TEST(Toml, has_letters_beyond_ascii_in_quotes_and_comments_only) {
+  for (const char* text : {"a = \"\xc3\xbc \\\" \xc3\xbc\" # \xc3\xbc", "a = '\xc3\xbc'", "# it's \xc3\xbc\na = 1",
+                           "a = \"\"\"\n\xc3\xbc \"\n\"\"\"",
+                           "\xef\xbb\xbf"
+                           "a = 1"})
+    EXPECT_EQ(parse_flat_toml(text).size(), 1) << text;
+  for (const char* text : {"gr\xc3\xb6 = 1", "a = 1\xc3\xbc", "a = '' \xc2\xa0", "a = \"x\" \xe2\x80\x80"})
+    EXPECT_THROW(parse_flat_toml(text), Error) << text;
 }
 
 }  // namespace
