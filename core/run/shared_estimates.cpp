@@ -35,11 +35,6 @@ std::shared_ptr<SharedEstimates::Entry> SharedEstimates::entry_of(int frame) {
   return entry;
 }
 
-std::size_t SharedEstimates::kept() const {
-  const std::lock_guard lock(mutex_);
-  return entries_.size();
-}
-
 void SharedEstimates::done(int frame) {
   const std::lock_guard lock(mutex_);
   left_.erase(frame);

@@ -68,9 +68,6 @@ class SharedEstimates {
   /// No one will ask for what this frame takes.
   void done(int frame);
 
-  /// Frames that are kept now.
-  std::size_t kept() const;
-
  private:
   using Estimated = std::shared_ptr<const EstimatedFrame>;
   struct Entry {
@@ -86,7 +83,7 @@ class SharedEstimates {
   const FramePlan& plan_;
   const FrameSource* settled_;
   SharedFrames* shot_;
-  mutable std::mutex mutex_;  // of all below
+  std::mutex mutex_;  // of all below
   std::map<int, std::shared_ptr<Entry>> entries_;
   std::set<int> left_;  // to be computed
 };
