@@ -72,8 +72,9 @@ vec3 turned_here(TakenFrame other, vec3 encoded) {
   return 0.5 + 0.5 * (b.x * other.row_x + b.y * other.row_y + b.z * other.row_z);
 }
 
-/// Adds what the frames of the buffer estimate of a pixel's point.
-void accumulate(ivec2 pixel) {
+void main() {
+  // All is loaded before the condition: see shared.h.
+  const ivec2 invoked = ivec2(gl_GlobalInvocationID.xy), pixel = min(invoked, params.size - 1);
   const ivec2 in_frame = pixel + params.corner;
   const int index = pixel.y * params.size.x + pixel.x, plane = pixels_of(params.size);
   const int whole = index_of(params.view, in_frame);
@@ -108,6 +109,7 @@ void accumulate(ivec2 pixel) {
     }
     for (int k = 0; k < kPlanes; k++) blocked[k] += is_taken ? 1.0 - theirs[k] : 0.0;
   }
+  if (any(greaterThanEqual(invoked, params.size))) return;
   sums[index] = count;
   for (int k = 0; k < kPlanes; k++) {
     const float value = 1.0 - blocked[k] / count;
@@ -120,9 +122,4 @@ void accumulate(ivec2 pixel) {
     else
       bent[index + (k - 1 - params.scales) * plane] = value;
   }
-}
-
-void main() {
-  const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-  if (all(lessThan(pixel, params.size))) accumulate(pixel);
 }

@@ -1,7 +1,7 @@
 // Finds where surfaces of one frame are not in another one, although it would see them: they have moved meanwhile.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// In: planar depth of a frame, and of others.
+// In: planar depth of a frame, and of others; and which pixels may be seen past.
 // Out: the cells of space within the radius of boxes, one for each tile of 8 x 8 pixels: around what of the frame any
 // other sees through, around what of another it sees through itself, and around what moves by its motion vectors.
 //
@@ -9,7 +9,7 @@
 // Here one pixel in error makes a whole surrounding lose its mean. So the other frame must see three pixels' widths
 // farther, and the pixel must have neighbours that are of its surface: others, thinner than a pixel or seen at a
 // grazing angle, come and go in pictures of what stands still. Half a width is enough where all of a patch tells so:
-// shadows change most where something lifts off what it lies on. One pixel of each two by two is looked at.
+// shadows change most where something lifts off what it lies on. Only suspects are looked at: see suspects.comp.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
@@ -18,18 +18,19 @@
 #include "view.glsl"
 #include "tiles.glsl"
 #include "reprojection.glsl"
+#include "sight.glsl"
 #include "cells.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
-layout(constant_id = kMovedFramesId) const int kFrames = 1;
+layout(constant_id = kMovedVectorsId) const int kVectors = 0;
 layout(scalar, push_constant) uniform Push { MovedParams params; };
 layout(scalar, binding = kMovedOwn) readonly buffer Own { float own[]; };
 layout(scalar, binding = kMovedOthers) readonly buffer Others { float others[]; };
 layout(scalar, binding = kMovedFrames) readonly buffer Frames { TakenFrame frames[]; };
 layout(scalar, binding = kMovedNear) buffer Near { uint near[]; };
+layout(scalar, binding = kMovedSuspects) readonly buffer Bits { uint suspects[]; };
 
 const float kFarther = 3.0;  // pixels' widths that what is seen through a surface is behind it
-const float kLifted = 0.5;   // the same where all pixels of a patch about it, here and there, tell so
 const int kPatch = 2;        // px from the patch's middle to its border
 const float kAlike = 8.0;    // pixels' worth of slope that neighbours of one surface differ by at most
 
@@ -38,11 +39,6 @@ struct Box {
   vec3 low, high;
 };
 const Box kNowhere = Box(vec3(kSkyDepth), vec3(-kSkyDepth));
-
-/// Pixels of a tile that are looked at for what is seen through them: one of each two in every second row, moved by one
-/// from one such row to the next, so that each square of two by two pixels has one.
-const int kLooked = 16;
-ivec2 looked_at(ivec2 tile, int k) { return tile * kTile + ivec2(k % 4 * 2 + (k / 4 & 1), k / 4 * 2); }
 
 /// Cells along an axis that are marked at most: boxes of a tile are small but where a tile shows an edge.
 const int kMostCells = 64;
@@ -95,16 +91,6 @@ bool is_patch(bool of_own, uint first, View view, ivec2 pixel, float z) {
   return alike;
 }
 
-/// A position of another frame in the frame's view space.
-vec3 position_here(TakenFrame other, vec3 position) {
-  const vec3 back = position - other.offset;
-  return other.row_x * back.x + other.row_y * back.y + other.row_z * back.z;
-}
-
-vec3 position_there(TakenFrame other, vec3 here) {
-  return vec3(dot(other.row_x, here), dot(other.row_y, here), dot(other.row_z, here)) + other.offset;
-}
-
 void widen(inout Box box, vec3 position) {
   box.low = min(box.low, position);
   box.high = max(box.high, position);
@@ -112,34 +98,47 @@ void widen(inout Box box, vec3 position) {
 
 Box both(Box a, Box b) { return Box(min(a.low, b.low), max(a.high, b.high)); }
 
-/// What of a tile of one frame the other has not: from the frame itself to another one, or the other way round.
-Box unseen_of(ivec2 tile, bool from_own, TakenFrame other) {
+/// Words of suspects of all squares of a tile.
+struct Found {
+  uint words[kSquares * kSquares];
+};
+
+Found suspects_of(ivec2 tile) {
+  Found found;
+  [[unroll]] for (int k = 0; k < kSquares * kSquares; k++) {
+    const ivec2 square = tile * kSquares + ivec2(k % kSquares, k / kSquares);
+    found.words[k] = suspects[square.y * params.squares.x + square.x];
+  }
+  return found;
+}
+
+/// The squares of a tile that have this bit.
+uint squares_with(Found found, int bit) {
+  uint squares = 0u;
+  [[unroll]] for (int k = 0; k < kSquares * kSquares; k++) squares |= (found.words[k] >> bit & 1u) << k;
+  return squares;
+}
+
+/// What of a tile of one frame the other has not: from the frame itself to another one, or the other way round, where
+/// it is looked at in these squares.
+Box unseen_of(ivec2 tile, uint squares, bool from_own, TakenFrame other) {
   View from = other.view, to = params.view;
   if (from_own) from = params.view;
   if (from_own) to = other.view;
   Box box = kNowhere;
-  if (any(greaterThanEqual(tile, tiles_of(from.size)))) return box;
-  [[dont_unroll]] for (int k = 0; k < kLooked; k++) {
-    const ivec2 pixel = looked_at(tile, k);
-    const float z = abs(depth_at(from_own, other.first, index_of(from, min(pixel, from.size - 1))));
-    const vec3 here = position_of(from, vec2(pixel) + 0.5, min(z, 1e15));
+  for (uint left = squares; left != 0u; left &= left - 1u) {
+    const int k = findLSB(left);
+    const ivec2 pixel = looked_at(tile * kSquares + ivec2(k % kSquares, k / kSquares));
+    const float z = abs(depth_at(from_own, other.first, index_of(from, pixel)));
+    const vec3 here = position_of(from, vec2(pixel) + 0.5, z);
     const vec3 there = from_own ? position_there(other, here) : position_here(other, here);
-    const ivec2 place = pixel_of(to, there);
-    const bool is_surface = inside(from, pixel) && z < kSkyDepth;
-    const bool is_looked_at = -there.z > 0.0 && all(greaterThan(place, ivec2(0))) && all(lessThan(place, to.size - 1));
-    const float width = pixel_width(to, -there.z);
-    const float same = kPrecisions * error_at(other.depth_precision, -there.z) - there.z;
-    const ivec2 at = clamp(place, ivec2(1), to.size - 2);
-    bool moved = false, lifted = false;
-    for (bool once = is_surface && is_looked_at &&
-                     abs(depth_at(!from_own, other.first, index_of(to, at))) > same + kLifted * width;
-         once; once = false) {
-      moved = is_seen_through(!from_own, other.first, to, at, 1, same + kFarther * width);
-      for (bool wide = moved; wide; wide = false) moved = is_wide(from_own, other.first, from, pixel, z);
-      lifted = !moved && is_seen_through(!from_own, other.first, to, at, kPatch, same + kLifted * width);
-      for (bool wide = lifted; wide; wide = false) moved = is_patch(from_own, other.first, from, pixel, z);
-    }
-    for (bool once = moved; once; once = false) widen(box, from_own ? here : there);
+    const Sight sight = sight_of(to, there, other.depth_precision);
+    bool moved = is_seen_through(!from_own, other.first, to, sight.at, 1, sight.same + kFarther * sight.width);
+    for (bool wide = moved; wide; wide = false) moved = is_wide(from_own, other.first, from, pixel, z);
+    bool lifted =
+        !moved && is_seen_through(!from_own, other.first, to, sight.at, kPatch, sight.same + kLifted * sight.width);
+    for (bool wide = lifted; wide; wide = false) moved = is_patch(from_own, other.first, from, pixel, z);
+    for (bool found = moved; found; found = false) widen(box, from_own ? here : there);
   }
   return box;
 }
@@ -182,13 +181,17 @@ void mark(Box box, uint frames) {
 }
 
 void main() {
-  const ivec2 tile = ivec2(gl_GlobalInvocationID.xy);
-  Box here = moving_of(tile, true, frames[0]);
-  [[unroll]] for (int i = 0; i < kFrames; i++) {
-    const Box of_own = unseen_of(tile, true, frames[i]);
-    const Box there = both(unseen_of(tile, false, frames[i]), moving_of(tile, false, frames[i]));
-    here = both(here, of_own);
-    if (there.low.x <= there.high.x) mark(there, 1u << (params.place + uint(i)));
-  }
+  // Each row of workgroups is for one frame, and its terms are loaded outside of conditions: so lavapipe loads them
+  // once for all invocations.
+  const int rows = params.rows * int(kGroupY), i = int(gl_WorkGroupID.y) / params.rows;
+  const TakenFrame other = frames[i];
+  const ivec2 tile = ivec2(gl_GlobalInvocationID.xy) - ivec2(0, i * rows);
+  if (any(greaterThanEqual(tile * kSquares, params.squares))) return;
+  const Found found = suspects_of(tile);
+  Box here = unseen_of(tile, squares_with(found, i), true, other);
+  Box there = unseen_of(tile, squares_with(found, i + int(kMostTaken)), false, other);
+  if (kVectors != 0 && i == 0) here = both(here, moving_of(tile, true, other));
+  if (kVectors != 0) there = both(there, moving_of(tile, false, other));
+  if (there.low.x <= there.high.x) mark(there, 1u << (params.place + uint(i)));
   if (here.low.x <= here.high.x) mark(here, ~0u);
 }

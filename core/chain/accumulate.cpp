@@ -34,15 +34,27 @@ const gpu::Buffer& or_else(const gpu::Buffer* buffer, const gpu::Buffer& other) 
 const gpu::Buffer& moved(gpu::Recorder& gpu, const EstimateSet& estimates, float radius) {
   const gpu::Buffer& near = gpu.buffer("moved near", kMovedCells * sizeof(uint), gpu::Use::device);
   gpu.clear(near);
-  uint place = 0;
+  const gpu::Extent tiles = most_tiles(estimates), squares{tiles.x * uint(kSquares), tiles.y * uint(kSquares)};
+  const gpu::Buffer& suspects =
+      gpu.buffer("suspects", std::size_t(squares.x) * squares.y * sizeof(uint), gpu::Use::device);
+  const uint rows = groups_of(int(tiles.y), kGroupY);
+  MovedParams params{estimates.view, radius, 0, {int(squares.x), int(squares.y)}, int(rows)};
   for (const auto& group : estimates.groups) {
-    gpu.dispatch("moved", MovedParams{estimates.view, radius, place},
+    gpu.dispatch("suspects", SuspectsParams{estimates.view, params.squares},
+                 {{kSuspectsOwn, *estimates.depth},
+                  {kSuspectsNormal, *estimates.normal},
+                  {kSuspectsOthers, *group.planes},
+                  {kSuspectsFrames, *group.frames},
+                  {kSuspectsBits, suspects}},
+                 squares, {group.count});
+    gpu.dispatch("moved", params,
                  {{kMovedOwn, *estimates.depth},
                   {kMovedOthers, *group.planes},
                   {kMovedFrames, *group.frames},
+                  {kMovedSuspects, suspects},
                   {kMovedNear, near}},
-                 most_tiles(estimates), {group.count});
-    place += group.count;
+                 {tiles.x, rows * kGroupY * group.count}, {estimates.has_moving});
+    params.place += group.count;
   }
   return near;
 }

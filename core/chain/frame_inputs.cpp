@@ -77,7 +77,7 @@ void upload(gpu::Recorder& gpu, const FrameInputs& frame) {
   for (const auto& other : frame.others)
     for (const auto* plane : {other.depth, other.normal, other.moving})
       if (plane) gpu.upload(*plane);
-  for (const auto* plane : {frame.estimates.depth, frame.estimates.values})
+  for (const auto* plane : {frame.estimates.depth, frame.estimates.normal, frame.estimates.values})
     if (plane) gpu.upload(*plane);
   for (const auto& group : frame.estimates.groups)
     for (const auto* part : {group.planes, group.frames}) gpu.upload(*part);

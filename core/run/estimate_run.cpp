@@ -79,8 +79,11 @@ class EstimateRun {
     for (const auto* planes : {&values_, &scales_, &bent_})
       result_.values.insert(result_.values.end(), planes->begin(), planes->end());
     const auto moving = shot ? shot->moving_by_vectors(where_.gpu, frame_, took) : std::nullopt;
-    for (std::size_t i = 0; moving && i < moving->size(); i++)
-      if ((*moving)[i]) result_.depth[i] = -result_.depth[i];
+    for (std::size_t i = 0; moving && i < moving->size(); i++) {
+      if (!(*moving)[i]) continue;
+      result_.depth[i] = -result_.depth[i];
+      result_.has_moving = true;
+    }
     result_.camera = source_.camera;
     result_.others = std::move(others_);
     result_.others.seen.clear();

@@ -118,9 +118,10 @@ void put(const EstimatedFrame& frame, std::span<std::uint32_t> words) {
       words[(2 + plane / 2) * pixels + i] = value(plane, i) | value(plane + 1, i) << 16;
 }
 
-gpu::Buffer& uploaded(gpu::Recorder& gpu, const char* name, const std::vector<float>& values) {
-  gpu::Buffer& buffer = gpu.buffer(name, values.size() * sizeof(float), gpu::Use::upload);
-  std::ranges::copy(values, buffer.as<float>().begin());
+template <class T>
+gpu::Buffer& uploaded(gpu::Recorder& gpu, const char* name, const std::vector<T>& values) {
+  gpu::Buffer& buffer = gpu.buffer(name, values.size() * sizeof(T), gpu::Use::upload);
+  std::ranges::copy(values, buffer.as<T>().begin());
   return buffer;
 }
 
@@ -132,8 +133,10 @@ EstimateSet EstimateSlots::filled(gpu::Recorder& gpu, const FramePlan& plan, con
   if (taken.of.empty()) return result;
   const EstimatedFrame& own = taken.own(frame);
   result.depth = &uploaded(gpu, "own depth", own.depth);
+  result.normal = &uploaded(gpu, "own normal", own.normal);
   result.values = &uploaded(gpu, "own values", own.values);
   result.view = own.view;
+  result.has_moving = std::ranges::any_of(taken.of, [](const auto& estimated) { return estimated->has_moving; });
   std::size_t stride = 0;
   for (const auto& estimated : taken.of) stride = std::max(stride, words_of(*estimated));
   const std::size_t slots = std::size_t(plan.turns()), bytes = stride * sizeof(std::uint32_t);

@@ -27,6 +27,7 @@ struct EstimatedFrame {
   View view{};
   vec3 depth_precision{};             // of planar depth: see DepthPrecision
   std::vector<float> depth;           // see TakenFrame
+  bool has_moving = false;            // some depth is below 0
   std::vector<std::uint32_t> normal;  // the same
   std::vector<float> values;          // planes: see EstimateSet
   FrameReport report;                 // what its estimate took and found

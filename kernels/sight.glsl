@@ -1,0 +1,32 @@
+// Where another frame looks for a surface of one. Pure: no bindings. After moved.h and reprojection.glsl.
+// SPDX-License-Identifier: BSD-3-Clause
+
+const float kLifted = 0.5;  // pixels' widths that what is seen through a surface is behind it at least
+
+/// Pixels of a tile that are looked at for what is seen through them: one of each two in every second row, moved by one
+/// from one such row to the next, so that each square of two by two pixels has one.
+ivec2 looked_at(ivec2 square) { return square * 2 + ivec2(square.y & 1, 0); }
+
+// From another frame's view space to the frame's, and back.
+vec3 direction_here(TakenFrame other, vec3 v) { return other.row_x * v.x + other.row_y * v.y + other.row_z * v.z; }
+vec3 position_here(TakenFrame other, vec3 p) { return direction_here(other, p - other.offset); }
+vec3 direction_there(TakenFrame other, vec3 v) {
+  return vec3(dot(other.row_x, v), dot(other.row_y, v), dot(other.row_z, v));
+}
+vec3 position_there(TakenFrame other, vec3 p) { return direction_there(other, p) + other.offset; }
+
+/// What a view that sees a position should have there.
+struct Sight {
+  ivec2 at;      // its pixel, px
+  bool is_seen;  // before the eye, and not at the picture's border
+  float same;    // scene units: planar depth up to which what it has is the same surface
+  float width;   // scene units: of a pixel there
+};
+
+/// error: that of both depths, see TakenFrame.
+Sight sight_of(View view, vec3 position, vec3 error) {
+  const ivec2 place = pixel_of(view, position);
+  const bool is_seen = -position.z > 0.0 && all(greaterThan(place, ivec2(0))) && all(lessThan(place, view.size - 1));
+  const float same = kPrecisions * error_at(error, -position.z) - position.z;
+  return Sight(clamp(place, ivec2(0), view.size - 1), is_seen, same, pixel_width(view, -position.z));
+}
