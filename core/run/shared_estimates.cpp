@@ -35,12 +35,25 @@ std::shared_ptr<SharedEstimates::Entry> SharedEstimates::entry_of(int frame) {
   return entry;
 }
 
+void SharedEstimates::begin(int frame) {
+  const std::lock_guard lock(mutex_);
+  begun_.insert(frame);
+}
+
 void SharedEstimates::done(int frame) {
   const std::lock_guard lock(mutex_);
-  left_.erase(frame);
+  std::erase(left_, frame);
+  begun_.erase(frame);
+  const auto next = std::ranges::find_if(left_, [&](int left) { return !begun_.contains(left); });
   std::erase_if(entries_, [&](const auto& entry) {
-    return std::ranges::none_of(left_, [&](int left) { return plan_.is_accumulated(entry.first, left); });
+    const auto takes = [&](int left) { return plan_.is_accumulated(entry.first, left); };
+    return std::ranges::none_of(begun_, takes) && (next == left_.end() || !takes(*next));
   });
+}
+
+std::size_t SharedEstimates::kept() const {
+  const std::lock_guard lock(mutex_);
+  return entries_.size();
 }
 
 SharedEstimates::Estimated SharedEstimates::estimated_in(Entry& entry, const EstimateRoom& where, int frame,
@@ -50,12 +63,13 @@ SharedEstimates::Estimated SharedEstimates::estimated_in(Entry& entry, const Est
   entry.estimated =
       std::make_shared<const EstimatedFrame>(estimate_frame(where, plan_, settled_, shot_, frame, took, read));
   const std::lock_guard lock(mutex_);
-  if (left_.contains(frame)) entry.read = std::make_shared<const ReadPlanes>(std::move(read));
+  if (std::ranges::find(left_, frame) != left_.end()) entry.read = std::make_shared<const ReadPlanes>(std::move(read));
   return entry.estimated;
 }
 
 TakenEstimates SharedEstimates::around(const EstimateRoom& where, int frame, PreparedOthers& took) {
   const FramesAround window = plan_.accumulated(frame);
+  begin(frame);
   TakenEstimates taken;
   taken.missing = window.missing;
   // Those first that no other lane is at, so that lanes which need the same ones share the work.
@@ -146,7 +160,7 @@ EstimateSet EstimateSlots::filled(gpu::Recorder& gpu, const FramePlan& plan, con
         gpu.buffer(fmt::format("estimated frames {}", i), together * sizeof(TakenFrame), gpu::Use::upload);
     const bool is_as_before =
         group.buffer == planes.host().data() && group.stride == stride && group.held.size() == together;
-    if (!is_as_before) group.held.assign(together, nullptr);
+    if (!is_as_before) group.held.assign(together, {});
     group.buffer = planes.host().data();
     group.stride = stride;
     uint count = 0;
@@ -154,7 +168,8 @@ EstimateSet EstimateSlots::filled(gpu::Recorder& gpu, const FramePlan& plan, con
       const std::size_t slot = std::size_t(plan.turn_of(estimated->frame));
       if (slot / together != i || estimated->frame == frame) continue;
       const std::size_t first = slot % together * stride;
-      if (group.held[slot % together] != estimated) put(*estimated, planes.as<std::uint32_t>().subspan(first, stride));
+      if (group.held[slot % together].lock() != estimated)
+        put(*estimated, planes.as<std::uint32_t>().subspan(first, stride));
       group.held[slot % together] = estimated;
       table.as<TakenFrame>()[count++] = seen_as(*estimated, own, first);
     }

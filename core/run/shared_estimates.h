@@ -53,12 +53,14 @@ struct EstimateRoom {
   std::function<void()> go_on = {};  // called before each part of an estimate; may throw, which ends it
 };
 
-/// Frames that are estimated, each once, and kept for as long as any frame that is to be computed needs them. What one
-/// takes is the same whatever lane asks, and in whatever order.
+/// Frames that are estimated, and kept for as long as a frame takes them that is being computed, or the next one: each
+/// is estimated once where frames that lie beside each other are computed after each other. In any other order memory
+/// is bounded all the same, and what comes late is estimated again. What a frame takes is the same whatever lane asks,
+/// and in whatever order.
 class SharedEstimates {
  public:
-  /// `frames` are those that are to be computed; each must be told of by done(). All are read as `settled` is; null:
-  /// each by itself. `shot`: what they see of each other; null: nothing.
+  /// `frames` are those that are to be computed, in their order; each must be told of by done(). All are read as
+  /// `settled` is; null: each by itself. `shot`: what they see of each other; null: nothing.
   SharedEstimates(const FramePlan& plan, const FrameSource* settled, SharedFrames* shot, std::span<const int> frames);
 
   /// Gives the estimates around a frame. Fails with ErrorKind::input, naming the file, where one of them cannot be read
@@ -68,6 +70,9 @@ class SharedEstimates {
   /// No one will ask for what this frame takes.
   void done(int frame);
 
+  /// Frames that are kept now.
+  std::size_t kept() const;
+
  private:
   using Estimated = std::shared_ptr<const EstimatedFrame>;
   struct Entry {
@@ -76,6 +81,7 @@ class SharedEstimates {
     std::shared_ptr<const ReadPlanes> read;  // for the frame itself, until it is done
   };
 
+  void begin(int frame);
   std::shared_ptr<Entry> entry_of(int frame);
   /// The entry's mutex is locked.
   Estimated estimated_in(Entry& entry, const EstimateRoom& where, int frame, PreparedOthers& took);
@@ -83,9 +89,10 @@ class SharedEstimates {
   const FramePlan& plan_;
   const FrameSource* settled_;
   SharedFrames* shot_;
-  std::mutex mutex_;  // of all below
+  mutable std::mutex mutex_;  // of all below
   std::map<int, std::shared_ptr<Entry>> entries_;
-  std::set<int> left_;  // to be computed
+  std::vector<int> left_;  // to be computed, in their order
+  std::set<int> begun_;    // of them
 };
 
 /// The upload buffers of a lane that frames' estimates are put into. What is there for one frame is there for the next.
@@ -96,7 +103,7 @@ class EstimateSlots {
                      std::uint64_t most_bytes);
 
  private:
-  using Estimated = std::shared_ptr<const EstimatedFrame>;
+  using Estimated = std::weak_ptr<const EstimatedFrame>;  // tells whether it is the same one, and keeps none
   struct Group {
     const std::byte* buffer = nullptr;  // where it was
     std::size_t stride = 0;             // words of a slot

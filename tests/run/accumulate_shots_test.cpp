@@ -3,6 +3,11 @@
 #include <gmock/gmock.h>
 
 #include "core/formats/exr.h"
+#include "core/run/frame_files.h"
+#include "core/run/plan.h"
+#include "core/run/shared_estimates.h"
+#include "core/run/shot_memory.h"
+#include "tests/support/device.h"
 #include "tests/support/difference.h"
 #include "tests/support/walked_shot.h"
 
@@ -84,6 +89,54 @@ TEST_F(AccumulatedShots, outputs_without_ao_take_no_estimates) {
   EXPECT_EQ(run({"--accumulate", "1", "--aov", "normal"}).code, 0);
   EXPECT_EQ(run({"--accumulate", "1", "--aov", "depth", "--debug", "count", "--frames", "2"}).code, 0);
   EXPECT_TRUE(fs::exists(out + "/ao.0002.count.png"));
+}
+
+TEST_F(AccumulatedShots, no_more_estimates_are_kept_than_are_counted_whatever_the_order) {
+  constexpr int kLong = 20;
+  write_shot(kLong, {0, 0, 16, 9});
+  Settings settings;
+  settings.input.input = in + "/f.####.exr";
+  settings.input.camera = camera;
+  settings.input.accumulate = 1;
+  settings.estimator.radius = 1;
+  settings.output.output = out + "/ao.####.exr";
+  const FramePlan plan(settings);
+  const FrameSource source = open_frame(plan.at(4), 4);
+  // Depth, normal and AO of an estimate, and what was read: depth and three of a normal.
+  const std::uint64_t bytes = (3 + 4) * sizeof(float) * source.file_data.pixels();
+  const Room room{.bytes = 1 << 30, .buffer_bytes = 1 << 30};
+  std::vector<std::weak_ptr<const EstimatedFrame>> all;
+  const auto most_kept = [&](std::span<const int> frames, std::size_t lanes) {
+    SharedEstimates estimates(plan, nullptr, nullptr, frames);
+    gpu::Recorder gpu(device());
+    EstimateSlots slots;
+    std::size_t most = 0;
+    for (std::size_t i = 0; i < frames.size(); i++) {
+      PreparedOthers took;
+      const TakenEstimates taken = estimates.around({gpu, room}, frames[i], took);
+      EXPECT_EQ(taken.of.size(), 3u);
+      slots.filled(gpu, plan, taken, frames[i], room.buffer_bytes);
+      all.insert(all.end(), taken.of.begin(), taken.of.end());
+      most = std::max(most, estimates.kept());
+      if (i + 1 >= lanes) estimates.done(frames[i + 1 - lanes]);
+    }
+    for (const int frame : frames) estimates.done(frame);
+    EXPECT_TRUE(std::ranges::all_of(all, [](const auto& one) { return one.expired(); })) << "somebody else keeps them";
+    return most;
+  };
+  std::vector<int> along, back, in_turns, to_and_fro;
+  for (int frame = 1; frame <= kLong; frame++) along.push_back(frame);
+  back.assign(along.rbegin(), along.rend());
+  for (const int first : {1, 2})
+    for (int frame = first; frame <= kLong; frame += 2) in_turns.push_back(frame);
+  for (int frame = 1; frame <= kLong / 2; frame++) to_and_fro.insert(to_and_fro.end(), {frame, kLong + 1 - frame});
+  for (const auto& [frames, expected] :
+       {std::pair(along, std::pair(4u, 5u)), {back, {4u, 5u}}, {in_turns, {6u, 8u}}, {to_and_fro, {6u, 7u}}})
+    for (const int lanes : {1, 2}) {
+      const std::uint64_t counted = bytes_of_estimates(plan, source, settings, frames, lanes);
+      EXPECT_EQ(counted, bytes * (lanes == 1 ? expected.first : expected.second)) << testing::PrintToString(frames);
+      EXPECT_LE(most_kept(frames, std::size_t(lanes)) * bytes, counted) << testing::PrintToString(frames) << lanes;
+    }
 }
 
 TEST_F(AccumulatedShots, a_shot_that_grows_at_its_beginning_is_computed_again) {

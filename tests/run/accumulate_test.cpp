@@ -212,6 +212,7 @@ TEST_F(Accumulated, threads_chunks_and_order_change_no_bit) {
     const auto before = outputs();
     EXPECT_EQ(before.size(), kFrames);
     expect_same_outputs(before, {joined(options, {"--threads", "3", "--frames", "9-1"})});
+    expect_same_outputs(before, {joined(options, {"--threads", "2", "--frames", "1-9x2,2-8x2"})});
     expect_same_outputs(before, {joined(options, {"--chunk", "2/2", "--threads", "1"}),
                                  joined(options, {"--chunk", "1/2", "--threads", "2"})});
   }
