@@ -91,7 +91,7 @@ class EstimateRun {
 
  private:
   void compute(const Window& part, FrameRows* rows, PreparedOthers& took) {
-    if (where_.go_on) where_.go_on();
+    if (where_.begin) where_.begin(source_.data);
     FrameInputs inputs = load_frame(where_.gpu, source_, settings_, plan_.turn_of(frame_), rows);
     inputs.others = others_.seen;
     if (!rows) read_ = kept_planes(inputs);

@@ -145,7 +145,12 @@ class FrameRun {
     if (!run_.shot && !run_.estimates) return;
     const Stopwatch reading;
     PreparedOthers took;
-    if (run_.estimates) estimates_ = run_.estimates->around({gpu_, room_, [this] { go_on(); }}, frame_, took);
+    // Where the device has no memory for a part of an estimate, smaller ones are computed as of the frame itself.
+    const auto begin = [this](const Window& computed) {
+      go_on();
+      tally_.begin(computed);
+    };
+    if (run_.estimates) estimates_ = run_.estimates->around({gpu_, room_, begin}, frame_, took);
     if (run_.shot && needs_others()) others_ = run_.shot->others_of(gpu_, source, frame_, took);
     tally_.add_others(took);
     if (run_.estimates) take_own_estimate();

@@ -50,7 +50,8 @@ std::string text_of(const TakenEstimates& taken);
 struct EstimateRoom {
   gpu::Recorder& gpu;
   const Room& room;
-  std::function<void()> go_on = {};  // called before each part of an estimate; may throw, which ends it
+  // Told which window of an estimate is computed, before each; may throw, which ends it.
+  std::function<void(const Window&)> begin = {};
 };
 
 /// Frames that are estimated, and kept for as long as a frame takes them that is being computed, or the next one: each
