@@ -1,8 +1,11 @@
-// --accumulate where frames differ: turned cameras, other windows, outputs without AO, and a shot that grows.
+// --accumulate where frames differ: turned cameras, other windows, damaged files, outputs without AO, and a shot that
+// grows; how many estimates are kept; and runs that stop.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gmock/gmock.h>
 
+#include "cli/options.h"
 #include "core/formats/exr.h"
+#include "core/run/batch.h"
 #include "core/run/frame_files.h"
 #include "core/run/plan.h"
 #include "core/run/shared_estimates.h"
@@ -17,6 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 using namespace test;
 using nlohmann::json;
+using testing::ContainsRegex;
 using testing::HasSubstr;
 
 using Options = std::vector<std::string>;
@@ -137,6 +141,37 @@ TEST_F(AccumulatedShots, no_more_estimates_are_kept_than_are_counted_whatever_th
       EXPECT_EQ(counted, bytes * (lanes == 1 ? expected.first : expected.second)) << testing::PrintToString(frames);
       EXPECT_LE(most_kept(frames, std::size_t(lanes)) * bytes, counted) << testing::PrintToString(frames) << lanes;
     }
+}
+
+TEST_F(AccumulatedShots, a_damaged_frame_fails_all_that_take_it_by_name) {
+  write_shot(11);
+  fs::resize_file(input(6), fs::file_size(input(6)) - 10);
+  // What moves in a frame around is told by two more.
+  for (const auto& [option, first, last] : {std::tuple("--accumulate", 5, 7), {"--around", 3, 9}}) {
+    const Finished finished = run({option, "1", "--keep-going"});
+    EXPECT_EQ(finished.code, 1) << finished;
+    EXPECT_THAT(lines_of(finished.err).back(),
+                HasSubstr(fmt::format("{} failed ({}-{})", last - first + 1, first, last)));
+    for (int frame = first; frame <= last; frame++)
+      EXPECT_THAT(finished.err, ContainsRegex(fmt::format("error: frame {}: .*f.0006.exr", frame)));
+  }
+}
+
+TEST_F(AccumulatedShots, a_run_that_stops_ends_among_the_estimates_of_its_first_frame) {
+  constexpr int kFrames = 9, kStop = 8;
+  write_shot(kFrames);
+  RunOptions options;
+  ASSERT_TRUE(parse_run_options({in + "/f.%04d.exr", "-o", out + "/ao.%04d.exr", "--camera", camera, "--radius", "1",
+                                 "--accumulate", "4", "--threads", "1"},
+                                options));
+  int asked = 0;
+  RunWatch watch;
+  watch.stop = [&] { return ++asked >= kStop; };
+  const RunReport report = run_frames(options.settings, watch);
+  EXPECT_EQ(report.done, 0);
+  EXPECT_EQ(report.dropped, kFrames);
+  EXPECT_LE(asked, kStop + 1) << "once more, before the next frame";
+  EXPECT_TRUE(outputs().empty());
 }
 
 TEST_F(AccumulatedShots, a_shot_that_grows_at_its_beginning_is_computed_again) {
