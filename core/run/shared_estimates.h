@@ -99,7 +99,8 @@ class SharedEstimates {
 /// The upload buffers of a lane that frames' estimates are put into. What is there for one frame is there for the next.
 class EstimateSlots {
  public:
-  /// Gives the estimates as the frame takes them; none where there are none. No buffer is larger than `most_bytes`.
+  /// Gives the estimates as the frame takes them, for any number of parts of it; none where there are none. No buffer
+  /// is larger than `most_bytes`.
   EstimateSet filled(gpu::Recorder& gpu, const FramePlan& plan, const TakenEstimates& taken, int frame,
                      std::uint64_t most_bytes);
 
