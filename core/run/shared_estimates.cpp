@@ -26,7 +26,7 @@ std::string text_of(const TakenEstimates& taken) {
 
 SharedEstimates::SharedEstimates(const FramePlan& plan, const FrameSource* settled, SharedFrames* shot,
                                  std::span<const int> frames)
-    : plan_(plan), settled_(settled), shot_(shot), left_(frames.begin(), frames.end()) {}
+    : plan_(plan), settled_(settled), shot_(shot), in_work_(frames) {}
 
 std::shared_ptr<SharedEstimates::Entry> SharedEstimates::entry_of(int frame) {
   const std::lock_guard lock(mutex_);
@@ -37,17 +37,15 @@ std::shared_ptr<SharedEstimates::Entry> SharedEstimates::entry_of(int frame) {
 
 void SharedEstimates::begin(int frame) {
   const std::lock_guard lock(mutex_);
-  begun_.insert(frame);
+  in_work_.begin(frame);
 }
 
 void SharedEstimates::done(int frame) {
   const std::lock_guard lock(mutex_);
-  std::erase(left_, frame);
-  begun_.erase(frame);
-  const auto next = std::ranges::find_if(left_, [&](int left) { return !begun_.contains(left); });
+  in_work_.done(frame);
+  const std::vector<int> takers = in_work_.now_and_next();
   std::erase_if(entries_, [&](const auto& entry) {
-    const auto takes = [&](int left) { return plan_.is_accumulated(entry.first, left); };
-    return std::ranges::none_of(begun_, takes) && (next == left_.end() || !takes(*next));
+    return std::ranges::none_of(takers, [&](int taker) { return plan_.is_accumulated(entry.first, taker); });
   });
 }
 
@@ -63,13 +61,12 @@ SharedEstimates::Estimated SharedEstimates::estimated_in(Entry& entry, const Est
   entry.estimated =
       std::make_shared<const EstimatedFrame>(estimate_frame(where, plan_, settled_, shot_, frame, took, read));
   const std::lock_guard lock(mutex_);
-  if (std::ranges::find(left_, frame) != left_.end()) entry.read = std::make_shared<const ReadPlanes>(std::move(read));
+  if (in_work_.is_left(frame)) entry.read = std::make_shared<const ReadPlanes>(std::move(read));
   return entry.estimated;
 }
 
 TakenEstimates SharedEstimates::around(const EstimateRoom& where, int frame, PreparedOthers& took) {
   const FramesAround window = plan_.accumulated(frame);
-  begin(frame);
   TakenEstimates taken;
   taken.missing = window.missing;
   // Those first that no other lane is at, so that lanes which need the same ones share the work.

@@ -6,13 +6,13 @@
 #include <map>
 #include <memory>
 #include <mutex>
-#include <set>
 #include <span>
 #include <vector>
 
 #include "core/chain/seen_estimates.h"
 #include "core/frame/gbuffer.h"
 #include "core/run/frame_files.h"
+#include "core/run/frames_in_work.h"
 #include "core/run/plan.h"
 #include "core/run/run_report.h"
 #include "core/run/shot.h"
@@ -60,14 +60,16 @@ struct EstimateRoom {
 /// and in whatever order.
 class SharedEstimates {
  public:
-  /// `frames` are those that are to be computed, in their order; each must be told of by done(). All are read as
-  /// `settled` is; null: each by itself. `shot`: what they see of each other; null: nothing.
+  /// `frames` are those that are to be computed, in their order; each must be told of by begin() and done(). All are
+  /// read as `settled` is; null: each by itself. `shot`: what they see of each other; null: nothing.
   SharedEstimates(const FramePlan& plan, const FrameSource* settled, SharedFrames* shot, std::span<const int> frames);
 
   /// Gives the estimates around a frame. Fails with ErrorKind::input, naming the file, where one of them cannot be read
   /// or its camera says not where it stands.
   TakenEstimates around(const EstimateRoom& where, int frame, PreparedOthers& took);
 
+  /// From here on what this frame takes is kept.
+  void begin(int frame);
   /// No one will ask for what this frame takes.
   void done(int frame);
 
@@ -82,7 +84,6 @@ class SharedEstimates {
     std::shared_ptr<const ReadPlanes> read;  // for the frame itself, until it is done
   };
 
-  void begin(int frame);
   std::shared_ptr<Entry> entry_of(int frame);
   /// The entry's mutex is locked.
   Estimated estimated_in(Entry& entry, const EstimateRoom& where, int frame, PreparedOthers& took);
@@ -92,8 +93,7 @@ class SharedEstimates {
   SharedFrames* shot_;
   mutable std::mutex mutex_;  // of all below
   std::map<int, std::shared_ptr<Entry>> entries_;
-  std::vector<int> left_;  // to be computed, in their order
-  std::set<int> begun_;    // of them
+  FramesInWork in_work_;
 };
 
 /// The upload buffers of a lane that frames' estimates are put into. What is there for one frame is there for the next.

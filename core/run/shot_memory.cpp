@@ -97,20 +97,21 @@ FrameMemory memory_with_others(const FramePlan& plan, const FrameSource& frame, 
   FrameMemory memory = memory_of(frame, settings);
   memory.fixed_on_device = bytes_of_mean(plan, frame, settings);
   const std::size_t others = most_others(plan, frame, settings.input);
-  if (others == 0) return memory;
+  if (!takes_others(settings.input)) return memory;
   // What tells what moves in one of them takes those around it.
   const int count = around_of(settings.input);
   const std::size_t judges = count == 0 ? 0 : std::min(plan.shot().size(), std::size_t(most_judges(count)));
-  const std::size_t buffers = kPlanesOfSeen * std::max(others, judges + 1);
+  const std::size_t buffers = others == 0 ? 0 : kPlanesOfSeen * std::max(others, judges + 1);
   const std::size_t prepared = frame[RawPlane::depth].size() + frame[RawPlane::normal].size() + kPlanesPrepared;
   memory.fixed_on_device += sizeof(float) * frame.file_data.pixels() * (buffers + prepared);
   return memory;
 }
 
 std::uint64_t bytes_of_shot(const FramePlan& plan, const FrameSource& frame, const InputSettings& settings, int lanes) {
-  const int count = around_of(settings);
-  if (count == 0) return 0;
-  const std::uint64_t window = std::uint64_t(lanes) * (2 * std::uint64_t(with_judges(count)) + 1);
+  if (!takes_frames(settings)) return 0;
+  const std::uint64_t around = 2 * std::uint64_t(with_judges(around_of(settings))) + 1;
+  // All frames of a mean look at others, and near the ends of the shot they all lie on one side.
+  const std::uint64_t window = std::uint64_t(lanes) * around + 4 * std::uint64_t(settings.accumulate);
   return kPlanesOfSeen * sizeof(float) * frame.file_data.pixels() * std::min<std::uint64_t>(plan.shot().size(), window);
 }
 

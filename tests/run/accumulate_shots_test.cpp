@@ -117,6 +117,7 @@ TEST_F(AccumulatedShots, no_more_estimates_are_kept_than_are_counted_whatever_th
     std::size_t most = 0;
     for (std::size_t i = 0; i < frames.size(); i++) {
       PreparedOthers took;
+      estimates.begin(frames[i]);
       const TakenEstimates taken = estimates.around({gpu, room}, frames[i], took);
       EXPECT_EQ(taken.of.size(), 3u);
       slots.filled(gpu, plan, taken, frames[i], room.buffer_bytes);
@@ -141,6 +142,40 @@ TEST_F(AccumulatedShots, no_more_estimates_are_kept_than_are_counted_whatever_th
       EXPECT_EQ(counted, bytes * (lanes == 1 ? expected.first : expected.second)) << testing::PrintToString(frames);
       EXPECT_LE(most_kept(frames, std::size_t(lanes)) * bytes, counted) << testing::PrintToString(frames) << lanes;
     }
+}
+
+TEST_F(AccumulatedShots, no_more_of_what_estimates_see_is_kept_than_is_counted) {
+  constexpr int kLong = 24;
+  write_shot(kLong, {0, 0, 16, 9});
+  Settings settings;
+  settings.input.input = in + "/f.####.exr";
+  settings.input.camera = camera;
+  settings.input.accumulate = 2;
+  settings.estimator.radius = 1;
+  settings.output.output = out + "/ao.####.exr";
+  const auto counted = [&] {
+    const FramePlan plan(settings);
+    return bytes_of_shot(plan, open_frame(plan.at(4), 4), settings.input, 1) / (3 * sizeof(float) * 16 * 9);
+  };
+  EXPECT_EQ(counted(), 0u);
+  settings.input.motion = in + "/f.####.exr";
+  EXPECT_GE(counted(), 2u * 3 + 1) << "vectors are proved by the frames beside those of a mean";
+  settings.input.motion.clear();
+  settings.input.around = 1;
+  const FramePlan plan(settings);
+  SharedFrames shot(plan, nullptr, plan.frames());
+  SharedEstimates estimates(plan, nullptr, &shot, plan.frames());
+  gpu::Recorder gpu(device());
+  const Room room{.bytes = 1 << 30, .buffer_bytes = 1 << 30};
+  for (const int frame : plan.frames()) {
+    PreparedOthers took;
+    shot.begin(frame);
+    estimates.begin(frame);
+    estimates.around({gpu, room}, frame, took);
+    EXPECT_LE(shot.kept(), counted()) << frame;
+    shot.done(frame);
+    estimates.done(frame);
+  }
 }
 
 TEST_F(AccumulatedShots, a_damaged_frame_fails_all_that_take_it_by_name) {
