@@ -240,6 +240,7 @@ void add_shape_rows(std::vector<OptionRow>& rows, EstimatorSettings& s) {
               "fixed: every frame has the same pattern of sample noise, so that what stands still does not flicker; "
               "animated: each frame has its own")
       .applies(or_confidence(to_steps()))
+      .contradicts({"--accumulate"}, "a mean of many frames gains nothing where all have the same noise", {"fixed"})
       .harmless = {"fixed"};
   pixels.number("--seed", s.seed, "", between(0, 4294967295.0), "shifts the sample noise")
       .applies(or_confidence(to_steps()))

@@ -77,14 +77,20 @@ OptionRow& OptionRow::applies(const Condition& condition) {
   return *this;
 }
 
-OptionRow& OptionRow::contradicts(const Words& options, const std::string& why) {
-  contradictions.push_back({options, why});
+OptionRow& OptionRow::contradicts(const Words& options, const std::string& why, const Words& values) {
+  contradictions.push_back({options, why, values});
   return *this;
 }
 
 bool OptionRow::asks() const {
   const Words present = words();
   return !present.empty() && std::ranges::find(harmless, present.front()) == harmless.end();
+}
+
+bool OptionRow::asks(const Contradiction& contradiction) const {
+  const Words present = words();
+  const Words& values = contradiction.values;
+  return values.empty() ? asks() : !present.empty() && std::ranges::find(values, present.front()) != values.end();
 }
 
 std::string OptionRow::objection(const Settings& settings, bool looks_at_outputs) const {
@@ -110,7 +116,8 @@ std::string OptionRow::whole_sentence() const {
   }
   if (!usually.empty()) text += fmt::format("; applies {} only, or {}", linked(usually, "and"), otherwise);
   if (!always.empty()) text += fmt::format("; applies {} only", linked(always, "and"));
-  for (const auto& [options, why] : contradictions) text += fmt::format("; not with {}", linked(options, "or"));
+  for (const auto& [options, why, values] : contradictions)
+    text += fmt::format("; not {}with {}", values.empty() ? "" : linked(values, "or") + " ", linked(options, "or"));
   return text;
 }
 

@@ -28,8 +28,9 @@ using Words = std::vector<std::string>;
 
 /// Other options that say something else of the same thing.
 struct Contradiction {
-  Words options;    // long names
-  std::string why;  // "both give the camera"
+  Words options;      // long names
+  std::string why;    // "both give the camera"
+  Words values = {};  // of the row that do, be they harmless to others; empty: all that ask for something
 };
 
 /// A row of the table. Only OptionGroup makes them, so that none is without its effect.
@@ -57,9 +58,11 @@ struct OptionRow {
   Words harmless = {};
 
   OptionRow& applies(const Condition& condition);
-  OptionRow& contradicts(const Words& options, const std::string& why);
+  OptionRow& contradicts(const Words& options, const std::string& why, const Words& values = {});
   /// Whether the present value asks for something.
   bool asks() const;
+  /// Whether it is one of a contradiction's.
+  bool asks(const Contradiction& contradiction) const;
   /// Tells why the present value has no effect, "" where it has one. `looks_at_outputs`: also by what is written.
   std::string objection(const Settings& settings, bool looks_at_outputs = true) const;
 

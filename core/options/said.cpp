@@ -17,21 +17,27 @@ const OptionRow& row_of(const std::vector<OptionRow>& table, const std::string& 
   return *row;
 }
 
-/// Why two options contradict each other, by the row of either; "" where they do not.
-std::string quarrel(const OptionRow& a, const OptionRow& b) {
-  const auto named = [](const OptionRow& row, const std::string& other) -> std::string {
-    for (const auto& [options, why] : row.contradictions)
-      if (std::ranges::find(options, other) != options.end()) return why;
-    return "";
+/// What a row has against another option, whatever their values; null: nothing.
+const Contradiction* rival(const OptionRow& row, const OptionRow& other) {
+  const auto names = [&](const Contradiction& one) {
+    return std::ranges::find(one.options, other.long_name()) != one.options.end();
   };
-  const std::string why = named(a, b.long_name());
-  return why.empty() ? named(b, a.long_name()) : why;
+  const auto found = std::ranges::find_if(row.contradictions, names);
+  return found == row.contradictions.end() ? nullptr : &*found;
 }
 
-[[noreturn]] void refuse_pair(const OptionRow& a, const OptionRow& b, const std::string& preset) {
+/// Why two options contradict each other by their present values, by the row of either; "" where they do not.
+std::string quarrel(const OptionRow& a, const OptionRow& b) {
+  for (const auto& [row, other] : {std::pair(&a, &b), std::pair(&b, &a)})
+    if (const Contradiction* found = rival(*row, *other); found && row->asks(*found) && other->asks())
+      return found->why;
+  return "";
+}
+
+[[noreturn]] void refuse_pair(const std::string& a, const std::string& b, const std::string& why,
+                              const std::string& preset) {
   const std::string place = preset.empty() ? "" : preset + " (--preset): ";
-  fail(ErrorKind::usage, "{}{} and {} contradict each other: {}; give only one of them", place, a.long_name(),
-       b.long_name(), quarrel(a, b));
+  fail(ErrorKind::usage, "{}{} and {} contradict each other: {}; give only one of them", place, a, b, why);
 }
 
 /// Reads a value, and names its preset in what is wrong with it.
@@ -44,12 +50,13 @@ void read_one(const std::vector<OptionRow>& table, const Said& one) {
   }
 }
 
-/// Whether the value asks for something; fails where it is none.
-bool asks(const RunOptions& initial, const Said& one) {
+/// The same of what is said of two options. Fails where that is no value.
+std::string quarrel(const RunOptions& initial, const Said& a, const Said& b) {
   RunOptions trial = initial;
   const auto table = option_table(trial);
-  read_one(table, one);
-  return row_of(table, one.option).asks();
+  read_one(table, a);
+  read_one(table, b);
+  return quarrel(row_of(table, a.option), row_of(table, b.option));
 }
 
 /// Leaves of options that contradict each other the one that was said last.
@@ -58,13 +65,12 @@ std::vector<Said> without_contradictions(const RunOptions& initial, const std::v
   const auto table = option_table(unused);
   std::vector<Said> kept;
   for (const auto& one : said) {
-    const OptionRow& row = row_of(table, one.option);
-    const bool one_asks = asks(initial, one);
     const auto contradicts = [&](const Said& earlier) {
-      const OptionRow& other = row_of(table, earlier.option);
-      if (!one_asks || quarrel(row, other).empty() || !asks(initial, earlier)) return false;
-      if (earlier.preset == one.preset) refuse_pair(other, row, one.preset);
-      return true;
+      const OptionRow &row = row_of(table, one.option), &other = row_of(table, earlier.option);
+      if (!rival(row, other) && !rival(other, row)) return false;
+      const std::string why = quarrel(initial, earlier, one);
+      if (!why.empty() && earlier.preset == one.preset) refuse_pair(earlier.option, one.option, why, one.preset);
+      return !why.empty();
     };
     std::erase_if(kept, contradicts);
     kept.push_back(one);
@@ -127,7 +133,8 @@ void require_applicable(const Settings& settings) {
     const OptionRow& row = table[i];
     if (!row.asks() || row.words() == usual[i].words()) continue;
     for (const auto* other : set)
-      if (!quarrel(*other, row).empty()) refuse_pair(*other, row, "");
+      if (const std::string why = quarrel(*other, row); !why.empty())
+        refuse_pair(other->long_name(), row.long_name(), why, "");
     if (const std::string objection = row.objection(settings); !objection.empty())
       fail(ErrorKind::usage, "{}", objection);
     set.push_back(&row);

@@ -211,13 +211,13 @@ class Batch {
           Error(ErrorKind::device, fmt::format("{}, and so was a fresh one: {}", loss.what(), lost_->what()));
   }
 
-  /// The number of frames that are computed at once, of so many that are left.
-  int lanes_for(const RunContext& run, std::size_t frames, const RunMemory& memory, int most) const {
-    if (!run.settled || frames < 2) return 1;
+  /// The number of frames that are computed at once, of those that are left.
+  int lanes_for(const RunContext& run, std::span<const int> frames, const RunMemory& memory, int most) const {
+    if (!run.settled || frames.size() < 2) return 1;
     const FrameMemory frame = memory_with_others(plan_, *run.settled, settings_);
-    int lanes = int(std::min(std::uint64_t(frames), std::uint64_t(most)));
+    int lanes = int(std::min(frames.size(), std::size_t(most)));
     const auto has_room = [&] {
-      const RunMemory left = beside_shot(memory, plan_, *run.settled, settings_, lanes);
+      const RunMemory left = beside_shot(memory, plan_, *run.settled, settings_, frames, lanes);
       return frames_in(left, frame, run.settled->file_data) >= std::uint64_t(lanes);
     };
     while (lanes > 1 && !has_room()) lanes--;
@@ -229,7 +229,7 @@ class Batch {
     // A CPU device reads its number of threads when it is made, and so before anybody knows whether it is one.
     const int threads = thread_count(d);
     const RunMemory of_host = memory_of_host(d);
-    const int cpu_lanes = lanes_for(run, frames.size(), of_host, threads);
+    const int cpu_lanes = lanes_for(run, frames, of_host, threads);
     set_exr_memory(of_host.host_bytes / kCodecPart / std::uint64_t(cpu_lanes));
     share_cores(threads, cpu_lanes, d.threads > 0);
     Lanes lanes({d.device, d.require_gpu, d.validate, !d.no_pipeline_cache}, cpu_lanes);
@@ -237,9 +237,9 @@ class Batch {
     const gpu::DeviceInfo& device = lanes.device().info();
     const bool is_cpu = device.type == gpu::DeviceType::cpu;
     RunMemory memory = memory_for_frames(d, device);
-    if (run.settled) require_room_for_others(memory, plan_, *run.settled, settings_);
+    if (run.settled) require_room_for_others(memory, plan_, *run.settled, settings_, frames);
     if (run.settled) require_buffers_for_others(device.buffer_bytes, *run.settled, settings_);
-    if (!is_cpu) lanes.set_count(lanes_for(run, frames.size(), memory, threads + kSpareLanes));
+    if (!is_cpu) lanes.set_count(lanes_for(run, frames, memory, threads + kSpareLanes));
     // Where frames run side by side no core is free for it.
     std::optional<WarmUp> warm_up;
     if (lanes.count() == 1 && threads > 1)
@@ -247,7 +247,7 @@ class Batch {
     report_.device = run.provenance.device = device.name;
     report_.on_cpu_by_default = is_cpu && lower_case(d.device) == "auto";
     report_.at_once = lanes.count();
-    if (run.settled) memory = beside_shot(memory, plan_, *run.settled, settings_, lanes.count());
+    if (run.settled) memory = beside_shot(memory, plan_, *run.settled, settings_, frames, lanes.count());
 
     run_pipeline(lanes, run, room_of_lane(memory, lanes.count(), device), frames,
                  {[this](const FrameReport& frame) { return ends(frame); },

@@ -58,8 +58,9 @@ std::string plan_text(const Settings& given) {
                    source.camera.fx, source.camera.fy, source.camera.orthographic ? "per scene unit" : "focal length"));
   const FrameMemory frame = memory_with_others(plan, source, first);
   const std::uint64_t bytes = frame.on_host(source.file_data);
-  require_room_for_others(memory_of_host(first.device), plan, source, first);
-  const RunMemory run = beside_shot(memory_of_host(first.device), plan, source, first, 1);
+  const auto wanted = frames_to_compute(plan, settings);
+  require_room_for_others(memory_of_host(first.device), plan, source, first, wanted);
+  const RunMemory run = beside_shot(memory_of_host(first.device), plan, source, first, wanted, 1);
   const std::uint64_t memory = run.host_bytes;
   line("size", to_string(written_picture(source)));
   const std::string at_once =
@@ -76,8 +77,7 @@ std::string plan_text(const Settings& given) {
          fmt::format("up to {} of the {} frames of the shot: {} MiB of estimates for each at once, beside "
                      "what it takes itself",
                      std::min(plan.shot().size(), std::size_t(plan.turns())), plan.shot().size(),
-                     bytes_of_estimates(plan, source, first, 1) >> 20));
-  const auto wanted = frames_to_compute(plan, settings);
+                     bytes_of_estimates(plan, source, first, wanted, 1) >> 20));
   if (wanted.size() < plan.frames().size())
     line("kept", fmt::format("{}: whole, by an earlier run", plan.frames().size() - wanted.size()));
   line("time", time_text({plan, settings, wanted}));

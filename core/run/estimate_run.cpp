@@ -76,7 +76,8 @@ class EstimateRun {
       compute_tiles(limits, took);
     }
     result_.view = view_of(source_.camera, source_.file_data, source_.display);
-    for (const auto* planes : {&values_, &scales_, &bent_})
+    result_.values = std::move(values_);
+    for (const auto* planes : {&scales_, &bent_})
       result_.values.insert(result_.values.end(), planes->begin(), planes->end());
     const auto moving = shot ? shot->moving_by_vectors(where_.gpu, frame_, took) : std::nullopt;
     for (std::size_t i = 0; moving && i < moving->size(); i++) {
@@ -93,7 +94,7 @@ class EstimateRun {
 
  private:
   void compute(const Window& part, FrameRows* rows, PreparedOthers& took) {
-    if (where_.go_on) where_.go_on();
+    if (where_.begin) where_.begin(source_.data);
     FrameInputs inputs = load_frame(where_.gpu, source_, settings_, plan_.turn_of(frame_), rows);
     inputs.others = others_.seen;
     if (!rows) read_ = kept_planes(inputs);

@@ -145,20 +145,26 @@ class FrameRun {
     if (!run_.shot && !run_.estimates) return;
     const Stopwatch reading;
     PreparedOthers took;
-    if (run_.estimates) estimates_ = run_.estimates->around({gpu_, room_, [this] { go_on(); }}, frame_, took);
+    // Where the device has no memory for a part of an estimate, smaller ones are computed as of the frame itself.
+    const auto begin = [this](const Window& computed) {
+      go_on();
+      tally_.begin(computed);
+    };
+    if (run_.estimates) estimates_ = run_.estimates->around({gpu_, room_, begin}, frame_, took);
     if (run_.shot && needs_others()) others_ = run_.shot->others_of(gpu_, source, frame_, took);
     tally_.add_others(took);
-    if (run_.estimates) take_own_estimate();
+    if (run_.estimates) take_estimates();
     if (!others_.frames.empty() || !others_.missing.empty()) report_.frames_around = others_.frames;
     report_.read_ms += reading.ms();
     go_on();
   }
 
   /// What the frame's own estimate was made of and has found counts as the frame's.
-  void take_own_estimate() {
+  void take_estimates() {
     const EstimatedFrame& own = estimates_.own(frame_);
     if (others_.seen.empty()) others_ = own.others;
     tally_.add_estimate(own.report, others_);
+    in_slots_ = slots_.filled(gpu_, run_.plan, estimates_, frame_, room_.buffer_bytes);
   }
 
   /// Reads and computes source.data, from the rows where there are any. reuses: what is as in the frame before is not
@@ -169,7 +175,7 @@ class FrameRun {
     const Stopwatch reading;
     FrameInputs inputs = load_frame(gpu_, source, settings_, frame_, rows, estimates_.read.get());
     inputs.others = others_.seen;
-    inputs.estimates = slots_.filled(gpu_, run_.plan, estimates_, frame_, room_.buffer_bytes);
+    inputs.estimates = in_slots_;
     inputs.estimates.corner = {source.data.x - source.file_data.x, source.data.y - source.file_data.y};
     reuses = reuses && last_.is_worth_comparing(inputs);
     const bool is_same = reuses && last_.is_same(gpu_, inputs, settings_.estimator);
@@ -332,6 +338,7 @@ class FrameRun {
   Settings settings_;
   Others others_;             // that the frame takes
   TakenEstimates estimates_;  // the same
+  EstimateSet in_slots_;      // these for all parts of the frame
   FrameReport& report_;
   FrameTally tally_;
 };

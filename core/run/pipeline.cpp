@@ -79,6 +79,8 @@ class Pipeline {
     if (ended_ || begun_ == frames_.size() || (run_.stop && run_.stop())) return {};
     in_flight_++;
     const int frame = frames_[begun_];
+    if (run_.shot) run_.shot->begin(frame);
+    if (run_.estimates) run_.estimates->begin(frame);
     working_on_[frame] = {Stopwatch(), main_input(run_.plan.at(frame).input)};
     return Attempt{begun_++, room_, most_in_flight_};
   }

@@ -26,7 +26,7 @@ std::string text_of(const TakenEstimates& taken) {
 
 SharedEstimates::SharedEstimates(const FramePlan& plan, const FrameSource* settled, SharedFrames* shot,
                                  std::span<const int> frames)
-    : plan_(plan), settled_(settled), shot_(shot), left_(frames.begin(), frames.end()) {}
+    : plan_(plan), settled_(settled), shot_(shot), in_work_(frames) {}
 
 std::shared_ptr<SharedEstimates::Entry> SharedEstimates::entry_of(int frame) {
   const std::lock_guard lock(mutex_);
@@ -35,12 +35,23 @@ std::shared_ptr<SharedEstimates::Entry> SharedEstimates::entry_of(int frame) {
   return entry;
 }
 
+void SharedEstimates::begin(int frame) {
+  const std::lock_guard lock(mutex_);
+  in_work_.begin(frame);
+}
+
 void SharedEstimates::done(int frame) {
   const std::lock_guard lock(mutex_);
-  left_.erase(frame);
+  in_work_.done(frame);
+  const std::vector<int> takers = in_work_.now_and_next();
   std::erase_if(entries_, [&](const auto& entry) {
-    return std::ranges::none_of(left_, [&](int left) { return plan_.is_accumulated(entry.first, left); });
+    return std::ranges::none_of(takers, [&](int taker) { return plan_.is_accumulated(entry.first, taker); });
   });
+}
+
+std::size_t SharedEstimates::kept() const {
+  const std::lock_guard lock(mutex_);
+  return entries_.size();
 }
 
 SharedEstimates::Estimated SharedEstimates::estimated_in(Entry& entry, const EstimateRoom& where, int frame,
@@ -50,7 +61,7 @@ SharedEstimates::Estimated SharedEstimates::estimated_in(Entry& entry, const Est
   entry.estimated =
       std::make_shared<const EstimatedFrame>(estimate_frame(where, plan_, settled_, shot_, frame, took, read));
   const std::lock_guard lock(mutex_);
-  if (left_.contains(frame)) entry.read = std::make_shared<const ReadPlanes>(std::move(read));
+  if (in_work_.is_left(frame)) entry.read = std::make_shared<const ReadPlanes>(std::move(read));
   return entry.estimated;
 }
 
@@ -149,7 +160,7 @@ EstimateSet EstimateSlots::filled(gpu::Recorder& gpu, const FramePlan& plan, con
         gpu.buffer(fmt::format("estimated frames {}", i), together * sizeof(TakenFrame), gpu::Use::upload);
     const bool is_as_before =
         group.buffer == planes.host().data() && group.stride == stride && group.held.size() == together;
-    if (!is_as_before) group.held.assign(together, nullptr);
+    if (!is_as_before) group.held.assign(together, {});
     group.buffer = planes.host().data();
     group.stride = stride;
     uint count = 0;
@@ -157,7 +168,8 @@ EstimateSet EstimateSlots::filled(gpu::Recorder& gpu, const FramePlan& plan, con
       const std::size_t slot = std::size_t(plan.turn_of(estimated->frame));
       if (slot / together != i || estimated->frame == frame) continue;
       const std::size_t first = slot % together * stride;
-      if (group.held[slot % together] != estimated) put(*estimated, planes.as<std::uint32_t>().subspan(first, stride));
+      if (group.held[slot % together].lock() != estimated)
+        put(*estimated, planes.as<std::uint32_t>().subspan(first, stride));
       group.held[slot % together] = estimated;
       table.as<TakenFrame>()[count++] = seen_as(*estimated, own, first);
     }

@@ -6,13 +6,13 @@
 #include <map>
 #include <memory>
 #include <mutex>
-#include <set>
 #include <span>
 #include <vector>
 
 #include "core/chain/seen_estimates.h"
 #include "core/frame/gbuffer.h"
 #include "core/run/frame_files.h"
+#include "core/run/frames_in_work.h"
 #include "core/run/plan.h"
 #include "core/run/run_report.h"
 #include "core/run/shot.h"
@@ -51,23 +51,31 @@ std::string text_of(const TakenEstimates& taken);
 struct EstimateRoom {
   gpu::Recorder& gpu;
   const Room& room;
-  std::function<void()> go_on = {};  // called before each part of an estimate; may throw, which ends it
+  // Told which window of an estimate is computed, before each; may throw, which ends it.
+  std::function<void(const Window&)> begin = {};
 };
 
-/// Frames that are estimated, each once, and kept for as long as any frame that is to be computed needs them. What one
-/// takes is the same whatever lane asks, and in whatever order.
+/// Frames that are estimated, and kept for as long as a frame takes them that is being computed, or the next one: each
+/// is estimated once where frames that lie beside each other are computed after each other. In any other order memory
+/// is bounded all the same, and what comes late is estimated again. What a frame takes is the same whatever lane asks,
+/// and in whatever order.
 class SharedEstimates {
  public:
-  /// `frames` are those that are to be computed; each must be told of by done(). All are read as `settled` is; null:
-  /// each by itself. `shot`: what they see of each other; null: nothing.
+  /// `frames` are those that are to be computed, in their order; each must be told of by begin() and done(). All are
+  /// read as `settled` is; null: each by itself. `shot`: what they see of each other; null: nothing.
   SharedEstimates(const FramePlan& plan, const FrameSource* settled, SharedFrames* shot, std::span<const int> frames);
 
   /// Gives the estimates around a frame. Fails with ErrorKind::input, naming the file, where one of them cannot be read
   /// or its camera says not where it stands.
   TakenEstimates around(const EstimateRoom& where, int frame, PreparedOthers& took);
 
+  /// From here on what this frame takes is kept.
+  void begin(int frame);
   /// No one will ask for what this frame takes.
   void done(int frame);
+
+  /// Frames that are kept now.
+  std::size_t kept() const;
 
  private:
   using Estimated = std::shared_ptr<const EstimatedFrame>;
@@ -84,20 +92,21 @@ class SharedEstimates {
   const FramePlan& plan_;
   const FrameSource* settled_;
   SharedFrames* shot_;
-  std::mutex mutex_;  // of all below
+  mutable std::mutex mutex_;  // of all below
   std::map<int, std::shared_ptr<Entry>> entries_;
-  std::set<int> left_;  // to be computed
+  FramesInWork in_work_;
 };
 
 /// The upload buffers of a lane that frames' estimates are put into. What is there for one frame is there for the next.
 class EstimateSlots {
  public:
-  /// Gives the estimates as the frame takes them; none where there are none. No buffer is larger than `most_bytes`.
+  /// Gives the estimates as the frame takes them, for any number of parts of it; none where there are none. No buffer
+  /// is larger than `most_bytes`.
   EstimateSet filled(gpu::Recorder& gpu, const FramePlan& plan, const TakenEstimates& taken, int frame,
                      std::uint64_t most_bytes);
 
  private:
-  using Estimated = std::shared_ptr<const EstimatedFrame>;
+  using Estimated = std::weak_ptr<const EstimatedFrame>;  // tells whether it is the same one, and keeps none
   struct Group {
     const std::byte* buffer = nullptr;  // where it was
     std::size_t stride = 0;             // words of a slot

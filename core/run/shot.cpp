@@ -5,6 +5,8 @@
 #include <xxhash.h>
 
 #include <algorithm>
+#include <cstdlib>
+#include <set>
 #include <string_view>
 
 #include "core/base/error.h"
@@ -122,10 +124,12 @@ void require_place(const FrameSource& source, int frame, const char* option) {
         source.depth_path(), option, frame);
 }
 
-bool takes_others(const InputSettings& settings) {
+bool takes_frames(const InputSettings& settings) {
   const bool asks_vectors = settings.accumulate > 0 && !settings.motion.empty();
-  return around_of(settings) > 0 || settings.other_views || asks_vectors;
+  return around_of(settings) > 0 || asks_vectors;
 }
+
+bool takes_others(const InputSettings& settings) { return takes_frames(settings) || settings.other_views; }
 
 std::string text_of(const Others& others) {
   std::vector<std::string> parts;
@@ -136,7 +140,7 @@ std::string text_of(const Others& others) {
 }
 
 SharedFrames::SharedFrames(const FramePlan& plan, const FrameSource* settled, std::span<const int> frames)
-    : plan_(plan), settled_(settled), left_(frames.begin(), frames.end()) {}
+    : plan_(plan), settled_(settled), in_work_(frames) {}
 
 std::shared_ptr<SharedFrames::Entry> SharedFrames::entry_of(int frame) {
   const std::lock_guard lock(mutex_);
@@ -150,18 +154,23 @@ std::size_t SharedFrames::kept() const {
   return entries_.size();
 }
 
+void SharedFrames::begin(int frame) {
+  const std::lock_guard lock(mutex_);
+  in_work_.begin(frame);
+}
+
 void SharedFrames::done(int frame) {
   const std::lock_guard lock(mutex_);
-  left_.erase(frame);
+  in_work_.done(frame);
   const std::vector<int>& shot = plan_.shot();
   const auto place_of = [&](int number) { return std::ranges::lower_bound(shot, number) - shot.begin(); };
   // A frame that is computed may take what others take.
   const InputSettings input = plan_.at(frame).input;
   const std::int64_t reach = std::int64_t(with_judges(around_of(input))) + 2 * std::int64_t(input.accumulate);
+  const std::vector<int> takers = in_work_.now_and_next();
   std::erase_if(entries_, [&](const auto& entry) {
-    const std::int64_t place = place_of(entry.first);
-    const auto first = std::ranges::find_if(left_, [&](int number) { return place_of(number) >= place - reach; });
-    return first == left_.end() || place_of(*first) > place + reach;
+    return std::ranges::none_of(takers,
+                                [&](int taker) { return std::abs(place_of(taker) - place_of(entry.first)) <= reach; });
   });
 }
 

@@ -6,7 +6,6 @@
 #include <memory>
 #include <mutex>
 #include <optional>
-#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -14,6 +13,7 @@
 #include "core/chain/other_views.h"
 #include "core/frame/gbuffer.h"
 #include "core/gpu/recorder.h"
+#include "core/run/frames_in_work.h"
 #include "core/run/plan.h"
 
 namespace alcove {
@@ -54,15 +54,16 @@ struct PreparedOthers {
 /// Fails with ErrorKind::input where nobody knows where a frame's camera stands.
 void require_place(const FrameSource& source, int frame, const char* option);
 
-/// Whether frames look at other frames or views for more than their estimates.
+/// Whether frames look at others of the shot for more than their estimates; and whether they look at these or at views.
+bool takes_frames(const InputSettings& settings);
 bool takes_others(const InputSettings& settings);
 
-/// Frames that are prepared, each once, and kept for as long as any frame that is to be computed needs them. What one
-/// takes from others is the same whatever lane asks, and in whatever order.
+/// Frames that are prepared, and kept for as long as a frame needs them that is being computed, or the next one: see
+/// SharedEstimates. What one takes from others is the same whatever lane asks, and in whatever order.
 class SharedFrames {
  public:
-  /// `frames` are those that are to be computed; each must be told of by done(). All are read as `settled` is; null:
-  /// each by itself.
+  /// `frames` are those that are to be computed, in their order; each must be told of by begin() and done(). All are
+  /// read as `settled` is; null: each by itself.
   SharedFrames(const FramePlan& plan, const FrameSource* settled, std::span<const int> frames);
 
   /// Gives what a frame takes from others, in upload buffers of the recorder, which is free before and after. Fails
@@ -75,6 +76,8 @@ class SharedFrames {
   std::optional<std::vector<std::uint8_t>> moving_by_vectors(gpu::Recorder& gpu, int frame, PreparedOthers& took,
                                                              int around = 0);
 
+  /// From here on what this frame takes is kept.
+  void begin(int frame);
   /// No one will ask for what this frame takes.
   void done(int frame);
 
@@ -115,7 +118,7 @@ class SharedFrames {
   const FrameSource* settled_;
   mutable std::mutex mutex_;  // of all below
   std::map<int, std::shared_ptr<Entry>> entries_;
-  std::set<int> left_;  // to be computed
+  FramesInWork in_work_;
 };
 
 /// The frames that tell what moves in one, of which frames take what stands still.

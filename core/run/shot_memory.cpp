@@ -3,6 +3,7 @@
 #include "core/run/shot_memory.h"
 
 #include <algorithm>
+#include <unordered_map>
 
 #include "core/base/error.h"
 #include "core/base/memory_limit.h"
@@ -20,6 +21,20 @@ constexpr std::size_t kPlanesPrepared = 5;  // that passes make of it: depth, no
 std::size_t values_of(const Settings& settings) {
   const std::size_t further = settings.estimator.further_radii.size();
   return 1 + (further > 0 ? 1 + further : 0) + (needs_bent(settings.estimator, settings.output) ? 3 : 0);
+}
+
+/// The most estimates that so many lanes keep at once: those that the frames take which they compute, and the next one.
+std::uint64_t most_estimates(const FramePlan& plan, std::span<const int> frames, std::size_t lanes) {
+  std::unordered_map<int, int> takers;
+  std::size_t most = 0;
+  for (std::size_t i = 0; i < frames.size(); i++) {
+    for (const int taken : plan.accumulated(frames[i]).there) takers[taken]++;
+    most = std::max(most, takers.size());
+    if (i < lanes) continue;
+    for (const int taken : plan.accumulated(frames[i - lanes]).there)
+      if (--takers[taken] == 0) takers.erase(taken);
+  }
+  return most;
 }
 
 /// The buffers in which a frame takes the mean of many, and those of what it takes.
@@ -45,12 +60,11 @@ std::uint64_t bytes_without_frame(const FramePlan& plan, const FrameSource& fram
 
 /// Fails as require_room_for_others() does, with the estimates that one frame is the mean of.
 void require_room_for_estimates(const RunMemory& memory, const FramePlan& plan, const FrameSource& frame,
-                                const Settings& settings) {
+                                const Settings& settings, std::span<const int> frames) {
   if (settings.input.accumulate == 0) return;
-  const std::uint64_t bytes = bytes_without_frame(plan, frame, settings) + bytes_of_estimates(plan, frame, settings, 1);
-  if (bytes <= memory.host_bytes) return;
-  const std::uint64_t enough =
-      memory.program_bytes + bytes_of_one(plan, frame, settings) + bytes_of_estimates(plan, frame, settings, 1);
+  const std::uint64_t of_estimates = bytes_of_estimates(plan, frame, settings, frames, 1);
+  if (bytes_without_frame(plan, frame, settings) + of_estimates <= memory.host_bytes) return;
+  const std::uint64_t enough = memory.program_bytes + bytes_of_one(plan, frame, settings) + of_estimates;
   fail(memory.is_chosen ? ErrorKind::usage : ErrorKind::device,
        "{}: {} leaves {} MiB for frames, too few for the estimates that each is the mean of: give a smaller "
        "--accumulate than {}, or --memory {}M",
@@ -83,49 +97,47 @@ FrameMemory memory_with_others(const FramePlan& plan, const FrameSource& frame, 
   FrameMemory memory = memory_of(frame, settings);
   memory.fixed_on_device = bytes_of_mean(plan, frame, settings);
   const std::size_t others = most_others(plan, frame, settings.input);
-  if (others == 0) return memory;
+  if (!takes_others(settings.input)) return memory;
   // What tells what moves in one of them takes those around it.
   const int count = around_of(settings.input);
   const std::size_t judges = count == 0 ? 0 : std::min(plan.shot().size(), std::size_t(most_judges(count)));
-  const std::size_t buffers = kPlanesOfSeen * std::max(others, judges + 1);
+  const std::size_t buffers = others == 0 ? 0 : kPlanesOfSeen * std::max(others, judges + 1);
   const std::size_t prepared = frame[RawPlane::depth].size() + frame[RawPlane::normal].size() + kPlanesPrepared;
   memory.fixed_on_device += sizeof(float) * frame.file_data.pixels() * (buffers + prepared);
   return memory;
 }
 
 std::uint64_t bytes_of_shot(const FramePlan& plan, const FrameSource& frame, const InputSettings& settings, int lanes) {
-  const int count = around_of(settings);
-  if (count == 0) return 0;
-  const std::uint64_t window = std::uint64_t(lanes) * (2 * std::uint64_t(with_judges(count)) + 1);
+  if (!takes_frames(settings)) return 0;
+  const std::uint64_t around = 2 * std::uint64_t(with_judges(around_of(settings))) + 1;
+  // All frames of a mean look at others, and near the ends of the shot they all lie on one side.
+  const std::uint64_t window = std::uint64_t(lanes) * around + 4 * std::uint64_t(settings.accumulate);
   return kPlanesOfSeen * sizeof(float) * frame.file_data.pixels() * std::min<std::uint64_t>(plan.shot().size(), window);
 }
 
-std::uint64_t bytes_of_estimates(const FramePlan& plan, const FrameSource& frame, const Settings& settings, int lanes) {
+std::uint64_t bytes_of_estimates(const FramePlan& plan, const FrameSource& frame, const Settings& settings,
+                                 std::span<const int> frames, int lanes) {
   if (settings.input.accumulate == 0) return 0;
-  const auto frames = [&](int count) {
-    return std::min<std::uint64_t>(plan.shot().size(), std::uint64_t(count) + std::uint64_t(lanes));
-  };
-  // What was read is kept for those that are to be computed.
+  // What was read of one is kept with its estimate until it is computed itself, as at first none of them is.
   std::uint64_t read = 0;
   for (const auto& plane : frame.planes.entries) read += plane.size();
-  const std::uint64_t planes =
-      (2 + values_of(settings)) * frames(plan.turns()) + read * frames(settings.input.accumulate);
-  return sizeof(float) * frame.file_data.pixels() * planes;
+  return sizeof(float) * frame.file_data.pixels() * (2 + values_of(settings) + read) *
+         most_estimates(plan, frames, std::size_t(lanes));
 }
 
 RunMemory beside_shot(const RunMemory& memory, const FramePlan& plan, const FrameSource& frame,
-                      const Settings& settings, int lanes) {
+                      const Settings& settings, std::span<const int> frames, int lanes) {
   RunMemory left = memory;
   const std::uint64_t bytes = std::min(memory.host_bytes, bytes_of_shot(plan, frame, settings.input, lanes) +
-                                                              bytes_of_estimates(plan, frame, settings, lanes));
+                                                              bytes_of_estimates(plan, frame, settings, frames, lanes));
   left.host_bytes -= bytes;
   left.program_bytes += bytes;
   return left;
 }
 
 void require_room_for_others(const RunMemory& memory, const FramePlan& plan, const FrameSource& frame,
-                             const Settings& settings) {
-  require_room_for_estimates(memory, plan, frame, settings);
+                             const Settings& settings, std::span<const int> frames) {
+  require_room_for_estimates(memory, plan, frame, settings, frames);
   if (around_of(settings.input) == 0 || bytes_without_frame(plan, frame, settings) <= memory.host_bytes) return;
   Settings fewer = settings;
   fewer.input.around = int(std::min<std::size_t>(plan.shot().size(), std::size_t(around_of(settings.input))));

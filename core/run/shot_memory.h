@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 #include "core/run/memory_plan.h"
 #include "core/run/plan.h"
@@ -18,17 +19,19 @@ FrameMemory memory_with_others(const FramePlan& plan, const FrameSource& frame, 
 /// What the prepared frames take that so many lanes keep, bytes of host memory.
 std::uint64_t bytes_of_shot(const FramePlan& plan, const FrameSource& frame, const InputSettings& settings, int lanes);
 
-/// What the estimates take that so many lanes keep for the means of many frames, bytes of host memory.
-std::uint64_t bytes_of_estimates(const FramePlan& plan, const FrameSource& frame, const Settings& settings, int lanes);
+/// What the estimates take that so many lanes keep for the means of these frames, which are computed in this order:
+/// bytes of host memory.
+std::uint64_t bytes_of_estimates(const FramePlan& plan, const FrameSource& frame, const Settings& settings,
+                                 std::span<const int> frames, int lanes);
 
 /// What is left for the frames themselves.
 RunMemory beside_shot(const RunMemory& memory, const FramePlan& plan, const FrameSource& frame,
-                      const Settings& settings, int lanes);
+                      const Settings& settings, std::span<const int> frames, int lanes);
 
 /// Fails with ErrorKind::usage where --memory has no room for the frames around one, naming how many it has room for,
 /// and what would be enough; with ErrorKind::device where nobody has said --memory.
 void require_room_for_others(const RunMemory& memory, const FramePlan& plan, const FrameSource& frame,
-                             const Settings& settings);
+                             const Settings& settings, std::span<const int> frames);
 
 /// Fails with ErrorKind::device where frames that others take from have planes that no buffer of `most_bytes` holds:
 /// they are prepared whole, and only frames that are computed are cut into tiles.

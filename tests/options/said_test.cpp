@@ -176,7 +176,7 @@ const std::map<std::string, Words>& contradicting_values() {
       {"--verbose", {"true"}},     {"--progress", {"plain"}},
       {"--occluders", {"Hero"}},   {"--ignore", {"Set*"}},
       {"--around", {"2"}},         {"--accumulate", {"2"}},
-      {"--other-views", {"true"}},
+      {"--other-views", {"true"}}, {"--noise", {"fixed"}},
   };
   return values;
 }
@@ -312,6 +312,15 @@ TEST_F(Said, options_that_contradict_each_other_are_refused_in_both_orders) {
     EXPECT_THAT(refusal(joined(typed(one), typed(other))),
                 AllOf(HasSubstr(one), HasSubstr(other), HasSubstr("contradict each other"), HasSubstr("only one")));
   });
+}
+
+TEST_F(Said, a_pair_contradicts_each_other_by_the_values_that_do) {
+  EXPECT_EQ(refusal({"--noise", "animated", "--accumulate", "4"}), "") << "they say the same";
+  EXPECT_EQ(refusal({"--noise", "fixed", "--accumulate", "0"}), "");
+  EXPECT_EQ(refusal({"--accumulate", "4"}), "") << "nobody has said that the noise is fixed, as it usually is";
+  EXPECT_EQ(refusal({"--noise", "fixed", "--estimator", "crytek"}), "") << "it has none";
+  EXPECT_THAT(refusal({"--noise", "fixed", "--accumulate", "4"}),
+              HasSubstr("--noise and --accumulate contradict each other"));
 }
 
 TEST_F(Said, what_is_typed_beats_what_contradicts_it_in_a_preset) {

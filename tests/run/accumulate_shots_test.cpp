@@ -1,8 +1,16 @@
-// --accumulate where frames differ: turned cameras, other windows, outputs without AO, and a shot that grows.
+// --accumulate where frames differ: turned cameras, other windows, damaged files, outputs without AO, and a shot that
+// grows; how many estimates are kept; and runs that stop.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gmock/gmock.h>
 
+#include "cli/options.h"
 #include "core/formats/exr.h"
+#include "core/run/batch.h"
+#include "core/run/frame_files.h"
+#include "core/run/plan.h"
+#include "core/run/shared_estimates.h"
+#include "core/run/shot_memory.h"
+#include "tests/support/device.h"
 #include "tests/support/difference.h"
 #include "tests/support/walked_shot.h"
 
@@ -12,6 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 using namespace test;
 using nlohmann::json;
+using testing::ContainsRegex;
 using testing::HasSubstr;
 
 using Options = std::vector<std::string>;
@@ -84,6 +93,120 @@ TEST_F(AccumulatedShots, outputs_without_ao_take_no_estimates) {
   EXPECT_EQ(run({"--accumulate", "1", "--aov", "normal"}).code, 0);
   EXPECT_EQ(run({"--accumulate", "1", "--aov", "depth", "--debug", "count", "--frames", "2"}).code, 0);
   EXPECT_TRUE(fs::exists(out + "/ao.0002.count.png"));
+}
+
+TEST_F(AccumulatedShots, no_more_estimates_are_kept_than_are_counted_whatever_the_order) {
+  constexpr int kLong = 20;
+  write_shot(kLong, {0, 0, 16, 9});
+  Settings settings;
+  settings.input.input = in + "/f.####.exr";
+  settings.input.camera = camera;
+  settings.input.accumulate = 1;
+  settings.estimator.radius = 1;
+  settings.output.output = out + "/ao.####.exr";
+  const FramePlan plan(settings);
+  const FrameSource source = open_frame(plan.at(4), 4);
+  // Depth, normal and AO of an estimate, and what was read: depth and three of a normal.
+  const std::uint64_t bytes = (3 + 4) * sizeof(float) * source.file_data.pixels();
+  const Room room{.bytes = 1 << 30, .buffer_bytes = 1 << 30};
+  std::vector<std::weak_ptr<const EstimatedFrame>> all;
+  const auto most_kept = [&](std::span<const int> frames, std::size_t lanes) {
+    SharedEstimates estimates(plan, nullptr, nullptr, frames);
+    gpu::Recorder gpu(device());
+    EstimateSlots slots;
+    std::size_t most = 0;
+    for (std::size_t i = 0; i < frames.size(); i++) {
+      PreparedOthers took;
+      estimates.begin(frames[i]);
+      const TakenEstimates taken = estimates.around({gpu, room}, frames[i], took);
+      EXPECT_EQ(taken.of.size(), 3u);
+      slots.filled(gpu, plan, taken, frames[i], room.buffer_bytes);
+      all.insert(all.end(), taken.of.begin(), taken.of.end());
+      most = std::max(most, estimates.kept());
+      if (i + 1 >= lanes) estimates.done(frames[i + 1 - lanes]);
+    }
+    for (const int frame : frames) estimates.done(frame);
+    EXPECT_TRUE(std::ranges::all_of(all, [](const auto& one) { return one.expired(); })) << "somebody else keeps them";
+    return most;
+  };
+  std::vector<int> along, back, in_turns, to_and_fro;
+  for (int frame = 1; frame <= kLong; frame++) along.push_back(frame);
+  back.assign(along.rbegin(), along.rend());
+  for (const int first : {1, 2})
+    for (int frame = first; frame <= kLong; frame += 2) in_turns.push_back(frame);
+  for (int frame = 1; frame <= kLong / 2; frame++) to_and_fro.insert(to_and_fro.end(), {frame, kLong + 1 - frame});
+  for (const auto& [frames, expected] :
+       {std::pair(along, std::pair(4u, 5u)), {back, {4u, 5u}}, {in_turns, {6u, 8u}}, {to_and_fro, {6u, 7u}}})
+    for (const int lanes : {1, 2}) {
+      const std::uint64_t counted = bytes_of_estimates(plan, source, settings, frames, lanes);
+      EXPECT_EQ(counted, bytes * (lanes == 1 ? expected.first : expected.second)) << testing::PrintToString(frames);
+      EXPECT_LE(most_kept(frames, std::size_t(lanes)) * bytes, counted) << testing::PrintToString(frames) << lanes;
+    }
+}
+
+TEST_F(AccumulatedShots, no_more_of_what_estimates_see_is_kept_than_is_counted) {
+  constexpr int kLong = 24;
+  write_shot(kLong, {0, 0, 16, 9});
+  Settings settings;
+  settings.input.input = in + "/f.####.exr";
+  settings.input.camera = camera;
+  settings.input.accumulate = 2;
+  settings.estimator.radius = 1;
+  settings.output.output = out + "/ao.####.exr";
+  const auto counted = [&] {
+    const FramePlan plan(settings);
+    return bytes_of_shot(plan, open_frame(plan.at(4), 4), settings.input, 1) / (3 * sizeof(float) * 16 * 9);
+  };
+  EXPECT_EQ(counted(), 0u);
+  settings.input.motion = in + "/f.####.exr";
+  EXPECT_GE(counted(), 2u * 3 + 1) << "vectors are proved by the frames beside those of a mean";
+  settings.input.motion.clear();
+  settings.input.around = 1;
+  const FramePlan plan(settings);
+  SharedFrames shot(plan, nullptr, plan.frames());
+  SharedEstimates estimates(plan, nullptr, &shot, plan.frames());
+  gpu::Recorder gpu(device());
+  const Room room{.bytes = 1 << 30, .buffer_bytes = 1 << 30};
+  for (const int frame : plan.frames()) {
+    PreparedOthers took;
+    shot.begin(frame);
+    estimates.begin(frame);
+    estimates.around({gpu, room}, frame, took);
+    EXPECT_LE(shot.kept(), counted()) << frame;
+    shot.done(frame);
+    estimates.done(frame);
+  }
+}
+
+TEST_F(AccumulatedShots, a_damaged_frame_fails_all_that_take_it_by_name) {
+  write_shot(11);
+  fs::resize_file(input(6), fs::file_size(input(6)) - 10);
+  // What moves in a frame around is told by two more.
+  for (const auto& [option, first, last] : {std::tuple("--accumulate", 5, 7), {"--around", 3, 9}}) {
+    const Finished finished = run({option, "1", "--keep-going"});
+    EXPECT_EQ(finished.code, 1) << finished;
+    EXPECT_THAT(lines_of(finished.err).back(),
+                HasSubstr(fmt::format("{} failed ({}-{})", last - first + 1, first, last)));
+    for (int frame = first; frame <= last; frame++)
+      EXPECT_THAT(finished.err, ContainsRegex(fmt::format("error: frame {}: .*f.0006.exr", frame)));
+  }
+}
+
+TEST_F(AccumulatedShots, a_run_that_stops_ends_among_the_estimates_of_its_first_frame) {
+  constexpr int kFrames = 9, kStop = 8;
+  write_shot(kFrames);
+  RunOptions options;
+  ASSERT_TRUE(parse_run_options({in + "/f.%04d.exr", "-o", out + "/ao.%04d.exr", "--camera", camera, "--radius", "1",
+                                 "--accumulate", "4", "--threads", "1"},
+                                options));
+  int asked = 0;
+  RunWatch watch;
+  watch.stop = [&] { return ++asked >= kStop; };
+  const RunReport report = run_frames(options.settings, watch);
+  EXPECT_EQ(report.done, 0);
+  EXPECT_EQ(report.dropped, kFrames);
+  EXPECT_LE(asked, kStop + 1) << "once more, before the next frame";
+  EXPECT_TRUE(outputs().empty());
 }
 
 TEST_F(AccumulatedShots, a_shot_that_grows_at_its_beginning_is_computed_again) {

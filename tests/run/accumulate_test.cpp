@@ -212,6 +212,7 @@ TEST_F(Accumulated, threads_chunks_and_order_change_no_bit) {
     const auto before = outputs();
     EXPECT_EQ(before.size(), kFrames);
     expect_same_outputs(before, {joined(options, {"--threads", "3", "--frames", "9-1"})});
+    expect_same_outputs(before, {joined(options, {"--threads", "2", "--frames", "1-9x2,2-8x2"})});
     expect_same_outputs(before, {joined(options, {"--chunk", "2/2", "--threads", "1"}),
                                  joined(options, {"--chunk", "1/2", "--threads", "2"})});
   }
@@ -251,6 +252,62 @@ TEST_F(Accumulated, tiles_have_the_bits_of_the_whole) {
   EXPECT_EQ(one, 1);
   EXPECT_GT(many, 1);
   EXPECT_TRUE(whole == tiled) << difference(tiled, whole).rmse;
+}
+
+TEST_F(Accumulated, a_region_has_the_bits_of_the_whole) {
+  // Where floor and wall meet, so far from all borders that less than the whole frame is computed.
+  constexpr Window kWhole{0, 0, 512, 288}, kRegion{300, 214, 41, 17};
+  write_shot(3, kWhole);
+  const Options options{"--accumulate", "1", "--radius", "0.3", "--frames", "2", "--type", "float"};
+  ASSERT_EQ(run(options).code, 0);
+  const Image whole = read_exr_image(output(2), {"Y"});
+  const Finished finished = run(joined(options, {"--roi", "300,214,41,17"}));
+  ASSERT_EQ(finished.code, 0) << finished;
+  const Image region = read_exr_image(output(2), {"Y"});
+  ASSERT_EQ(region.data, kRegion);
+  EXPECT_LT(*std::ranges::min_element(region.pixels), 0.9f) << "or else there is nothing to compare";
+  for (int y = 0; y < kRegion.height; y++)
+    for (int x = 0; x < kRegion.width; x++) {
+      const auto place = std::size_t((kRegion.y + y) * kWhole.width + kRegion.x + x);
+      ASSERT_EQ(region.pixels[std::size_t(y * kRegion.width + x)], whole.pixels[place]) << x << " " << y;
+    }
+}
+
+TEST_F(Accumulated, samples_of_a_pixel_are_filtered_behind_the_mean) {
+  write_shot(3, {0, 0, 128, 72});
+  const Options options{"--accumulate", "1", "--frames", "2", "--type", "float"};
+  ASSERT_EQ(run(options).code, 0);
+  const Image full = read_exr_image(output(2));
+  const Finished finished = run(joined(options, {"--supersampling", "2", "--filter", "box"}));
+  ASSERT_EQ(finished.code, 0) << finished;
+  const Image small = read_exr_image(output(2));
+  ASSERT_EQ(small.data, (Window{0, 0, 64, 36}));
+  for (std::size_t i = 0; i < small.pixels.size(); i++) {
+    const std::size_t at = i / 64 * 2 * 128 + i % 64 * 2;
+    const float mean = (full.pixels[at] + full.pixels[at + 1] + full.pixels[at + 128] + full.pixels[at + 129]) / 4;
+    ASSERT_NEAR(small.pixels[i], mean, 1e-6) << i;
+  }
+}
+
+TEST_F(Accumulated, what_does_not_count_blocks_in_no_frame_of_a_mean) {
+  constexpr int kShort = 5;
+  write_shot(kShort, kWindow);
+  const std::string board = folder / "board.%04d.exr", everything = folder / "everything.exr";
+  for (int frame = 1; frame <= kShort; frame++) {
+    std::vector<float> is_board;
+    for (const float z : with_board(frame, kWindow).planes.at("ViewLayer.Depth.Z"))
+      is_board.push_back(z == kBoard.depth ? 1.0f : 0.0f);
+    FrameFile{kWindow, kWindow, 1, {{"Y", is_board}}, {}, {}}.write(folder / fmt::format("board.{:04}.exr", frame));
+  }
+  FrameFile{kWindow, kWindow, 1, {{"Y", std::vector<float>(kWindow.pixels(), 1)}}, {}, {}}.write(everything);
+  for (const auto& plane : ao_of({"--accumulate", "2", "--ignore", everything}, kShort))
+    EXPECT_THAT(plane, testing::Each(1.0f));
+  const Options ignored{"--ignore", board};
+  const Frames with = ao_of(kSmooth, kShort), truth = ao_of(joined(kSmooth, ignored), kShort);
+  EXPECT_GT(rmse_of(with, truth), 0.02) << "the board blocks";
+  const Frames alone = ao_of(joined(joined(kNoisy, ignored), {"--noise", "animated"}), kShort);
+  const Frames mean = ao_of(joined(joined(kNoisy, ignored), {"--accumulate", "2"}), kShort);
+  EXPECT_LT(rmse_of(mean, truth), 0.7 * rmse_of(alone, truth));
 }
 
 TEST_F(Accumulated, nothing_is_taken_from_beyond_a_cut) {

@@ -89,6 +89,23 @@ TEST_F(DeviceMemory, that_runs_out_halves_the_frames_at_once_and_then_the_tiles)
   EXPECT_TRUE(outputs() == whole);
 }
 
+TEST_F(DeviceMemory, that_runs_out_for_an_estimate_halves_its_parts) {
+  const std::vector<std::string> options{
+      "run", in + "/f.%04d.exr", "-o",  out + "/ao.%04d.exr", "--camera", camera, "--radius", "0.1", "--frames",
+      "2",   "--stats",          stats, "--accumulate",       "1"};
+  ASSERT_EQ(run_program(options).code, 0);
+  const auto whole = outputs();
+  remove_outputs();
+  // One of them is the driver's own. The frame fails at once, and once more when it is alone and without the buffers of
+  // the first time.
+  const Finished finished =
+      run_program(options, {.environment = {{"ALCOVE_FIRST", "3"}}, .preload = ALCOVE_POOR_DEVICE});
+  ASSERT_EQ(finished.code, 0) << finished;
+  EXPECT_THAT(of_stats()["frames"].dump(), HasSubstr("had no memory for 57600 pixels at once; now at most 28800"));
+  EXPECT_GT(of_stats()["frames"][0]["parts"], 1);
+  EXPECT_TRUE(outputs() == whole);
+}
+
 TEST_F(DeviceMemory, that_six_frames_miss_side_by_side_halves_their_number_once) {
   const Finished finished = run_with(1024 * kMiB, 1024 * kMiB, {}, {{"ALCOVE_TOGETHER", "6"}});
   ASSERT_EQ(finished.code, 0) << finished;

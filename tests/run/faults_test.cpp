@@ -89,6 +89,17 @@ TEST_F(Faults, signals_end_the_run_and_leave_whole_files_only) {
   }
 }
 
+TEST_F(Faults, a_signal_ends_a_run_whose_frames_are_means_of_many) {
+  write_frames(1, 60);
+  ASSERT_EQ(run({"--accumulate", "2"}).code, 0);
+  const auto whole = outputs();
+  remove_outputs();
+  const Finished finished = run({"--accumulate", "2"}, signalled(out, 3, SIGINT));
+  EXPECT_EQ(finished.code, 130) << finished;
+  EXPECT_LT(outputs().size(), 60);
+  for (const auto& [name, bytes] : outputs()) EXPECT_TRUE(whole.contains(name) && whole.at(name) == bytes) << name;
+}
+
 TEST_F(Faults, a_run_that_nohup_started_outlives_its_terminal) {
   write_frames(1, 60);
   Surroundings surroundings = signalled(out, 3, SIGHUP);

@@ -1,8 +1,9 @@
 // Preloaded before the Vulkan loader: a poor device.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// It lacks what ALCOVE_LACKS says. Its allocation of the number ALCOVE_ALLOCATION finds no memory. Its first
-// ALCOVE_TOGETHER allocations wait until each of so many threads has asked for one, and find none together.
+// It lacks what ALCOVE_LACKS says. Its allocation of the number ALCOVE_ALLOCATION finds no memory, and neither do its
+// first ALCOVE_FIRST. Its first ALCOVE_TOGETHER allocations wait until each of so many threads has asked for one, and
+// find none together.
 // With ALCOVE_HEAP it is a discrete GPU with so many bytes of its own memory, which the host cannot map;
 // ALCOVE_HEAP_SAYS is what it says to have where that is another number, and ALCOVE_HEAP_USED is what it says that
 // other programs have taken.
@@ -169,7 +170,8 @@ VkResult vkAllocateMemory(VkDevice device, const VkMemoryAllocateInfo* info, con
     while (allocations < together) std::this_thread::yield();
     return VK_ERROR_OUT_OF_DEVICE_MEMORY;
   }
-  if (lacks("memory") || (first && number == std::atoi(first))) return VK_ERROR_OUT_OF_DEVICE_MEMORY;
+  const bool is_of_first = number <= int(number_in("ALCOVE_FIRST"));
+  if (lacks("memory") || is_of_first || (first && number == std::atoi(first))) return VK_ERROR_OUT_OF_DEVICE_MEMORY;
   if (!number_in("ALCOVE_HEAP")) return NEXT(vkAllocateMemory)(device, info, callbacks, memory);
   const bool is_own = info->memoryTypeIndex == kOwnMemory;
   if (is_own && !heap.take(info->allocationSize)) return VK_ERROR_OUT_OF_DEVICE_MEMORY;
