@@ -33,6 +33,7 @@ const gpu::Buffer& or_else(const gpu::Buffer* buffer, const gpu::Buffer& other) 
 
 const gpu::Buffer& moved(gpu::Recorder& gpu, const EstimateSet& estimates, float radius) {
   const gpu::Buffer& near = gpu.buffer("moved near", kMovedCells * sizeof(uint), gpu::Use::device);
+  if (estimates.is_further_part) return near;
   gpu.clear(near);
   const gpu::Extent tiles = most_tiles(estimates), squares{tiles.x * uint(kSquares), tiles.y * uint(kSquares)};
   const gpu::Buffer& suspects =

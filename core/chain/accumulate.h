@@ -13,7 +13,8 @@ struct Accumulation {
   gpu::Buffer* count = nullptr;  // a plane: how many frames' estimates a pixel is the mean of; and the sums
 };
 
-/// Finds near which cells of space things have moved between a frame and others: see moved.h. radius: scene units.
+/// Finds near which cells of space things have moved between a frame and others, once for all parts of it: see moved.h.
+/// radius: scene units.
 const gpu::Buffer& moved(gpu::Recorder& gpu, const EstimateSet& estimates, float radius);
 
 /// Takes the mean of the estimates, each where it sees what the G-buffer shows and nothing within the largest radius of

@@ -28,6 +28,7 @@ struct EstimateSet {
   bool has_moving = false;        // some frame has pixels that move by motion vectors
   std::vector<SeenGroup> groups;  // of the others
   ivec2 corner{};                 // px from the whole frame's corner to that of the part that is computed
+  bool is_further_part = false;   // of the frame of the part before, by the same recorder: what has moved is known
 };
 
 }  // namespace alcove

@@ -191,6 +191,7 @@ class FrameRun {
       gpu_.run([&](double done) { watch_(part_, parts_, done); });
       tally_.add_passes(gpu_.passes());
       if (!inputs.changes) last_.took(milliseconds_of(gpu_.passes()));
+      if (outputs.count) in_slots_.is_further_part = true;
     }
     if (reuses) last_.keep(outputs);
     tally_.add_outputs(outputs, source.data, is_same);

@@ -42,8 +42,9 @@ std::uint64_t bytes_of_mean(const FramePlan& plan, const FrameSource& frame, con
   if (settings.input.accumulate == 0) return 0;
   const std::size_t values = values_of(settings);
   const std::size_t taken = std::min(plan.shot().size(), std::size_t(plan.turns())) * (2 + values / 2);
-  const std::size_t own = 1 + values, sums = 1 + 2 * values;
-  return sizeof(float) * (frame.file_data.pixels() * (taken + own + sums) + kMovedCells);
+  // Suspects are a word for four pixels.
+  const std::size_t own = 2 + values, sums = 1 + 2 * values, suspects = 1;
+  return sizeof(float) * (frame.file_data.pixels() * (taken + own + sums + suspects) + kMovedCells);
 }
 
 /// What one frame at a time takes with all around it.

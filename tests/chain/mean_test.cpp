@@ -45,9 +45,12 @@ class Means : public testing::Test {
     const std::vector<TakenFrame> frames{{kView, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, 0}, {1e-5f, 0, 0}, 0}};
     EstimateSet estimates;
     estimates.depth = &filled("own depth", own.depth);
+    estimates.normal = &filled("own normal", own.normal);
     estimates.values = &filled("own values", std::vector<float>(kPixels, kOwn));
     estimates.view = kView;
     estimates.groups = {{&filled("words", words), &filled("frames", frames), 1}};
+    const auto is_moving = [](float z) { return z < 0; };
+    estimates.has_moving = std::ranges::any_of(own.depth, is_moving) || std::ranges::any_of(other.depth, is_moving);
     std::vector<float> depth = own.depth;
     std::ranges::transform(depth, depth.begin(), [](float z) { return std::abs(z); });
     GBuffer gbuffer;

@@ -85,11 +85,12 @@ std::set<std::string> kernels_of_means(gpu::Recorder& gpu, const EstimatorSettin
   };
   gpu::Buffer& table = gpu.buffer("estimated frames", sizeof(TakenFrame), gpu::Use::upload);
   table.as<TakenFrame>()[0] = {inputs.view, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0.1f, 0, 0}, {1e-4f, 1e-5f, 0}, 0};
-  inputs.estimates = {filled("own depth", pixels),
-                      filled("own values", pixels),
-                      inputs.view,
-                      {{filled("estimates", 2 * pixels), &table, 1}},
-                      {}};
+  EstimateSet& estimates = inputs.estimates;
+  estimates.depth = filled("own depth", pixels);
+  estimates.normal = filled("own normal", pixels);
+  estimates.values = filled("own values", pixels);
+  estimates.view = inputs.view;
+  estimates.groups = {{filled("estimates", 2 * pixels), &table, 1}};
   run_chain(gpu, inputs, settings);
   gpu.run();
   std::set<std::string> names;

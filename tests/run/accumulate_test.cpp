@@ -22,7 +22,7 @@ using testing::HasSubstr;
 using Options = std::vector<std::string>;
 
 constexpr int kFrames = 9;
-constexpr Window kWindow{0, 0, 96, 54};
+constexpr Window kWindow{0, 0, 96, 54}, kLarge{0, 0, 512, 288};
 
 /// Every pixel has an estimate, of as much noise as there may be.
 const Options kNoisy{"--stride", "1", "--denoise", "none", "--slices", "1", "--steps", "8", "--type", "float"};
@@ -126,6 +126,42 @@ class Accumulated : public WalkedShot {
           << mover.width << " x " << mover.height << " px at " << left_of(frame) << " " << mover.top;
     }
   }
+
+  /// Expects that the second of three large frames has the bits in tiles that it has as a whole.
+  void expect_tiles_as_the_whole(const std::string& aovs, std::uint64_t mebibytes) const {
+    const auto run_with = [&](std::uint64_t bytes) {
+      const Options arguments{in + "/f.%04d.exr",
+                              "-o",
+                              out + "/ao.%04d.exr",
+                              "--camera",
+                              camera,
+                              "--radius",
+                              "0.3",
+                              "--frames",
+                              "2",
+                              "--accumulate",
+                              "1",
+                              "--aov",
+                              aovs,
+                              "--type",
+                              "float",
+                              "--stats",
+                              folder / "stats.json"};
+      RunOptions options;
+      EXPECT_TRUE(parse_run_options(arguments, options));
+      if (bytes) options.settings.device.memory = 1;
+      if (bytes) options.settings.device.least_memory = bytes;
+      const RunReport report = run_frames(options.settings);
+      EXPECT_EQ(report.done, 1) << (report.stop ? report.stop->what() : "");
+      return std::pair(report.frames.empty() ? 0 : report.frames[0].parts,
+                       report.done ? read_exr_image(output(2), {"Y"}).pixels : std::vector<float>());
+    };
+    const auto [one, whole] = run_with(0);
+    const auto [many, tiled] = run_with(mebibytes << 20);
+    EXPECT_EQ(one, 1);
+    EXPECT_GT(many, 1);
+    EXPECT_TRUE(whole == tiled) << difference(tiled, whole).rmse;
+  }
 };
 
 double rmse_of(const std::vector<std::vector<float>>& frames, const std::vector<std::vector<float>>& truth) {
@@ -219,45 +255,27 @@ TEST_F(Accumulated, threads_chunks_and_order_change_no_bit) {
 }
 
 TEST_F(Accumulated, tiles_have_the_bits_of_the_whole) {
-  write_shot(3, {0, 0, 512, 288});
-  const auto run_with = [&](std::uint64_t bytes) {
-    const Options arguments{in + "/f.%04d.exr",
-                            "-o",
-                            out + "/ao.%04d.exr",
-                            "--camera",
-                            camera,
-                            "--radius",
-                            "0.3",
-                            "--frames",
-                            "2",
-                            "--accumulate",
-                            "1",
-                            "--aov",
-                            "ao,bent-normal",
-                            "--type",
-                            "float",
-                            "--stats",
-                            folder / "stats.json"};
-    RunOptions options;
-    EXPECT_TRUE(parse_run_options(arguments, options));
-    if (bytes) options.settings.device.memory = 1;
-    if (bytes) options.settings.device.least_memory = bytes;
-    const RunReport report = run_frames(options.settings);
-    EXPECT_EQ(report.done, 1) << (report.stop ? report.stop->what() : "");
-    return std::pair(report.frames.empty() ? 0 : report.frames[0].parts,
-                     report.done ? read_exr_image(output(2), {"Y"}).pixels : std::vector<float>());
-  };
-  const auto [one, whole] = run_with(0);
-  const auto [many, tiled] = run_with(48 << 20);
-  EXPECT_EQ(one, 1);
-  EXPECT_GT(many, 1);
-  EXPECT_TRUE(whole == tiled) << difference(tiled, whole).rmse;
+  write_shot(3, kLarge);
+  expect_tiles_as_the_whole("ao,bent-normal", 48);
+}
+
+TEST_F(Accumulated, tiles_know_what_moves_after_those_of_sky) {
+  constexpr Window kTall{0, 0, 512, 400};
+  write_bytes(camera, wall_camera(kTall).dump());
+  for (int frame = 1; frame <= 3; frame++) {
+    FrameFile file = wall_frame(kTall, kTall);
+    put_board(file, 0, {0.3 * frame - 0.5, 0.3 * frame, 0.9, 5});
+    const auto begin = file.planes.at("ViewLayer.Depth.Z").begin();
+    std::fill(begin, begin + 190 * kTall.width, 1e10f);
+    file.write(input(frame));
+  }
+  expect_tiles_as_the_whole("ao", 36);
 }
 
 TEST_F(Accumulated, a_region_has_the_bits_of_the_whole) {
   // Where floor and wall meet, so far from all borders that less than the whole frame is computed.
-  constexpr Window kWhole{0, 0, 512, 288}, kRegion{300, 214, 41, 17};
-  write_shot(3, kWhole);
+  constexpr Window kRegion{300, 214, 41, 17};
+  write_shot(3, kLarge);
   const Options options{"--accumulate", "1", "--radius", "0.3", "--frames", "2", "--type", "float"};
   ASSERT_EQ(run(options).code, 0);
   const Image whole = read_exr_image(output(2), {"Y"});
@@ -268,7 +286,7 @@ TEST_F(Accumulated, a_region_has_the_bits_of_the_whole) {
   EXPECT_LT(*std::ranges::min_element(region.pixels), 0.9f) << "or else there is nothing to compare";
   for (int y = 0; y < kRegion.height; y++)
     for (int x = 0; x < kRegion.width; x++) {
-      const auto place = std::size_t((kRegion.y + y) * kWhole.width + kRegion.x + x);
+      const auto place = std::size_t((kRegion.y + y) * kLarge.width + kRegion.x + x);
       ASSERT_EQ(region.pixels[std::size_t(y * kRegion.width + x)], whole.pixels[place]) << x << " " << y;
     }
 }
