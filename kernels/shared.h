@@ -37,8 +37,8 @@ struct ivec2 {
 #extension GL_EXT_scalar_block_layout : require
 // One idiom of the kernels: for (bool once = c; once; once = false) is an `if` that jumps. Lavapipe goes through the
 // body of an `if` in any case, with its lanes switched off, but leaves a loop that no lane goes on with. It stands
-// before what is long and seldom needed. What is the same for all invocations is loaded outside of conditions and loops:
-// there lavapipe loads it once, else for one lane after the other.
+// before what is long and seldom needed. What is the same for all invocations is loaded outside of conditions and
+// loops: there lavapipe loads it once, else for one lane after the other.
 #define ALCOVE_BEGIN
 #define ALCOVE_END
 #define ALCOVE_CONSTANT const

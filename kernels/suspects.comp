@@ -9,7 +9,7 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
-#include "moved.h"
+#include "suspects.h"
 #include "reprojection.h"
 #include "view.glsl"
 #include "normal.glsl"

@@ -1,4 +1,4 @@
-// Host side of moved.comp and accumulate.comp.
+// Host side of suspects.comp, moved.comp and accumulate.comp.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/chain/accumulate.h"
 
@@ -7,6 +7,7 @@
 #include "core/base/estimator_facts.h"
 #include "core/chain/pass_common.h"
 #include "kernels/accumulate.h"
+#include "kernels/suspects.h"
 
 namespace alcove {
 namespace {
@@ -15,15 +16,20 @@ gpu::Extent tiles_of(const View& view) {
   return {groups_of(view.size.x, uint(kTile)), groups_of(view.size.y, uint(kTile))};
 }
 
-/// The tiles of the largest of all frames.
-gpu::Extent most_tiles(const EstimateSet& estimates) {
+/// The tiles of the largest of all frames of a group, and of the frame.
+gpu::Extent most_tiles(const EstimateSet& estimates, const SeenGroup& group) {
   gpu::Extent most = tiles_of(estimates.view);
-  for (const auto& group : estimates.groups)
-    for (const auto& frame : group.frames->as<const TakenFrame>().first(group.count)) {
-      const gpu::Extent of_frame = tiles_of(frame.view);
-      most = {std::max(most.x, of_frame.x), std::max(most.y, of_frame.y)};
-    }
+  for (const auto& frame : group.frames->as<const TakenFrame>().first(group.count)) {
+    const gpu::Extent of_frame = tiles_of(frame.view);
+    most = {std::max(most.x, of_frame.x), std::max(most.y, of_frame.y)};
+  }
   return most;
+}
+
+/// Its squares of two by two pixels.
+ivec2 most_squares(const EstimateSet& estimates, const SeenGroup& group) {
+  const gpu::Extent tiles = most_tiles(estimates, group);
+  return {int(tiles.x) * kSquares, int(tiles.y) * kSquares};
 }
 
 /// As the kernel takes what there is none of.
@@ -31,33 +37,31 @@ const gpu::Buffer& or_else(const gpu::Buffer* buffer, const gpu::Buffer& other) 
 
 }  // namespace
 
-const gpu::Buffer& moved(gpu::Recorder& gpu, const EstimateSet& estimates, float radius) {
-  const gpu::Buffer& near = gpu.buffer("moved near", kMovedCells * sizeof(uint), gpu::Use::device);
-  if (estimates.is_further_part) return near;
-  gpu.clear(near);
-  const gpu::Extent tiles = most_tiles(estimates), squares{tiles.x * uint(kSquares), tiles.y * uint(kSquares)};
-  const gpu::Buffer& suspects =
-      gpu.buffer("suspects", std::size_t(squares.x) * squares.y * sizeof(uint), gpu::Use::device);
+const gpu::Buffer& suspects(gpu::Recorder& gpu, const EstimateSet& estimates, const SeenGroup& group) {
+  const ivec2 squares = most_squares(estimates, group);
+  const gpu::Extent extent{uint(squares.x), uint(squares.y)};
+  const gpu::Buffer& bits = gpu.buffer("suspects", std::size_t(extent.x) * extent.y * sizeof(uint), gpu::Use::device);
+  gpu.dispatch("suspects", SuspectsParams{estimates.view, squares},
+               {{kSuspectsOwn, *estimates.depth},
+                {kSuspectsNormal, *estimates.normal},
+                {kSuspectsOthers, *group.planes},
+                {kSuspectsFrames, *group.frames},
+                {kSuspectsBits, bits}},
+               extent, {group.count});
+  return bits;
+}
+
+void moved(gpu::Recorder& gpu, const EstimateSet& estimates, const SeenGroup& group, const gpu::Buffer& suspects,
+           float radius, uint place, const gpu::Buffer& near) {
+  const gpu::Extent tiles = most_tiles(estimates, group);
   const uint rows = groups_of(int(tiles.y), kGroupY);
-  MovedParams params{estimates.view, radius, 0, {int(squares.x), int(squares.y)}, int(rows)};
-  for (const auto& group : estimates.groups) {
-    gpu.dispatch("suspects", SuspectsParams{estimates.view, params.squares},
-                 {{kSuspectsOwn, *estimates.depth},
-                  {kSuspectsNormal, *estimates.normal},
-                  {kSuspectsOthers, *group.planes},
-                  {kSuspectsFrames, *group.frames},
-                  {kSuspectsBits, suspects}},
-                 squares, {group.count});
-    gpu.dispatch("moved", params,
-                 {{kMovedOwn, *estimates.depth},
-                  {kMovedOthers, *group.planes},
-                  {kMovedFrames, *group.frames},
-                  {kMovedSuspects, suspects},
-                  {kMovedNear, near}},
-                 {tiles.x, rows * kGroupY * group.count}, {estimates.has_moving});
-    params.place += group.count;
-  }
-  return near;
+  gpu.dispatch("moved", MovedParams{estimates.view, radius, place, most_squares(estimates, group), int(rows)},
+               {{kMovedOwn, *estimates.depth},
+                {kMovedOthers, *group.planes},
+                {kMovedFrames, *group.frames},
+                {kMovedSuspects, suspects},
+                {kMovedNear, near}},
+               {tiles.x, rows * kGroupY * group.count}, {estimates.has_moving});
 }
 
 Accumulation accumulate(gpu::Recorder& gpu, const GBuffer& gbuffer, const EstimateSet& estimates,
@@ -66,7 +70,16 @@ Accumulation accumulate(gpu::Recorder& gpu, const GBuffer& gbuffer, const Estima
   const auto buffer = [&](const std::string& name, std::size_t bytes) -> gpu::Buffer& {
     return gpu.buffer(name, bytes, gpu::Use::device);
   };
-  const gpu::Buffer& near = moved(gpu, estimates, radius);
+  const gpu::Buffer& near = buffer("moved near", kMovedCells * sizeof(uint));
+  if (!estimates.is_further_part) {
+    gpu.clear(near);
+    uint place = 0;
+    for (const SeenGroup& group : estimates.groups) {
+      const gpu::Buffer& found = suspects(gpu, estimates, group);
+      moved(gpu, estimates, group, found, radius, place, near);
+      place += group.count;
+    }
+  }
   const std::size_t plane = plane_bytes(gbuffer.view), values = 1 + scales + (with_bent ? 3 : 0);
   gpu::Buffer& sums = buffer("accumulated sums", (1 + values) * plane);
   Visibility mean{&buffer("accumulated", plane)};

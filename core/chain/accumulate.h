@@ -13,9 +13,14 @@ struct Accumulation {
   gpu::Buffer* count = nullptr;  // a plane: how many frames' estimates a pixel is the mean of; and the sums
 };
 
-/// Finds near which cells of space things have moved between a frame and others, once for all parts of it: see moved.h.
-/// radius: scene units.
-const gpu::Buffer& moved(gpu::Recorder& gpu, const EstimateSet& estimates, float radius);
+/// Finds the pixels that frames of the group may see past, or the frame past theirs: see suspects.h. The words of one
+/// group at a time.
+const gpu::Buffer& suspects(gpu::Recorder& gpu, const EstimateSet& estimates, const SeenGroup& group);
+
+/// Marks the cells of space near which things have moved between the frame and those of the group: see moved.h. radius:
+/// scene units; place: of the group's first frame among all others.
+void moved(gpu::Recorder& gpu, const EstimateSet& estimates, const SeenGroup& group, const gpu::Buffer& suspects,
+           float radius, uint place, const gpu::Buffer& near);
 
 /// Takes the mean of the estimates, each where it sees what the G-buffer shows and nothing within the largest radius of
 /// it has moved. They have planes of so many radii beside the visibility, and open directions where `with_bent`.

@@ -18,9 +18,9 @@ struct SeenGroup {
 
 /// The estimates that a frame takes the mean of.
 struct EstimateSet {
-  // Its own, over all of it, in upload buffers: planar depth as of a TakenFrame, normals as of a GBuffer, and values: the
-  // visibility, then that of each radius where it is asked for, then the mean open direction where that is. Null: it is
-  // its own estimate.
+  // Its own, over all of it, in upload buffers: planar depth as of a TakenFrame, normals as of a GBuffer, and values:
+  // the visibility, then that of each radius where it is asked for, then the mean open direction where that is. Null:
+  // it is its own estimate.
   const gpu::Buffer* depth = nullptr;
   const gpu::Buffer* normal = nullptr;
   const gpu::Buffer* values = nullptr;
