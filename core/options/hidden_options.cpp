@@ -100,6 +100,10 @@ Condition with_other_frames() {
           }};
 }
 
+Condition with_motion() {
+  return {"with --motion", [](const Settings& all) { return all.input.motion.empty() ? "there is none" : ""; }};
+}
+
 void add_behind_rows(OptionGroup& files, OptionGroup& pixels, InputSettings& s) {
   files
       .add(
@@ -157,12 +161,12 @@ void add_view_rows(OptionGroup& files, OptionGroup& pixels, InputSettings& s) {
   pixels
       .text("--motion-channels", s.motion_channels, "LAYER|X,Y",
             "the layer of the motion vectors, or their channels; else found by their usual names")
-      .applies(with_other_frames());
+      .applies(with_motion());
   pixels
       .choice("--motion-kind", s.motion_kind,
               "where the vectors point: to the place in the previous frame or in the next one; auto: as most pixels "
               "move by the cameras")
-      .applies(with_other_frames())
+      .applies(with_motion())
       .harmless = {"auto"};
 }
 

@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "core/base/text.h"
+#include "core/options/said.h"
 
 namespace alcove {
 namespace {
@@ -176,7 +177,9 @@ std::string preset_text(const std::vector<OptionRow>& rows) {
   std::string text;
   for (const auto& row : rows) {
     Words words = row.words();
-    if (!row.is_key || words.empty()) continue;
+    // What contradicts another option nobody has said: it is how that one usually is.
+    const auto contradicts = [&](const OptionRow& other) { return !quarrel(row, other).empty(); };
+    if (!row.is_key || words.empty() || (!row.asks() && std::ranges::any_of(rows, contradicts))) continue;
     for (auto& word : words) word = toml_of(word);
     const std::string list = fmt::format("{}", fmt::join(words, ", "));
     text += fmt::format("{}={}\n", row.long_name().substr(2), words.size() > 1 ? "[" + list + "]" : list);

@@ -26,14 +26,6 @@ const Contradiction* rival(const OptionRow& row, const OptionRow& other) {
   return found == row.contradictions.end() ? nullptr : &*found;
 }
 
-/// Why two options contradict each other by their present values, by the row of either; "" where they do not.
-std::string quarrel(const OptionRow& a, const OptionRow& b) {
-  for (const auto& [row, other] : {std::pair(&a, &b), std::pair(&b, &a)})
-    if (const Contradiction* found = rival(*row, *other); found && row->asks(*found) && other->asks())
-      return found->why;
-  return "";
-}
-
 [[noreturn]] void refuse_pair(const std::string& a, const std::string& b, const std::string& why,
                               const std::string& preset) {
   const std::string place = preset.empty() ? "" : preset + " (--preset): ";
@@ -109,6 +101,13 @@ std::vector<Said>::const_iterator inapplicable(const RunOptions& initial, const 
 }
 
 }  // namespace
+
+std::string quarrel(const OptionRow& a, const OptionRow& b) {
+  for (const auto& [row, other] : {std::pair(&a, &b), std::pair(&b, &a)})
+    if (const Contradiction* found = rival(*row, *other); found && row->asks(*found) && other->asks())
+      return found->why;
+  return "";
+}
 
 void read_said(RunOptions& options, std::vector<Said> said, Reader reader) {
   said = without_contradictions(options, said);

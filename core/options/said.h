@@ -27,6 +27,9 @@ enum class Reader { run, inspect };
 /// on contradictions of one preset or of the command line.
 void read_said(RunOptions& options, std::vector<Said> said, Reader reader = Reader::run);
 
+/// Why two options contradict each other by their present values, by the row of either; "" where they do not.
+std::string quarrel(const OptionRow& a, const OptionRow& b);
+
 /// Fails with ErrorKind::usage where settings ask for what does not apply, or contradict each other, by the table.
 void require_applicable(const Settings& settings);
 

@@ -32,8 +32,8 @@ Notes notes_on_missing_around(const FramePlan& plan) {
   const std::vector<int> missing = plan.missing_around();
   if (missing.empty()) return {};
   return {{NoteCode::sequence_hole,
-           fmt::format("{} of the shot {} missing: {}; those around do without, and their headers say so (--around, "
-                       "--missing skip)",
+           fmt::format("{} of the shot {} missing: {}; those around do without, and their headers say so "
+                       "(--missing skip)",
                        missing.size() == 1 ? "a frame" : "frames", missing.size() == 1 ? "is" : "are",
                        frames_text(missing))}};
 }

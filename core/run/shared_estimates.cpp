@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <bit>
 
+#include "core/run/cut.h"
 #include "core/run/estimate_run.h"
 
 namespace alcove {
@@ -81,6 +82,8 @@ TakenEstimates SharedEstimates::around(const EstimateRoom& where, int frame, Pre
     taken.of.push_back(estimated_in(*entry, where, other, took));
     if (other == frame) taken.read = std::move(entry->read);
   }
+  const EstimatedFrame& own = taken.own(frame);
+  std::erase_if(taken.of, [&](const auto& other) { return other->frame != frame && is_cut_between(own, *other); });
   return taken;
 }
 

@@ -40,6 +40,16 @@ void expect_usage_error(const std::vector<std::string>& arguments, const std::ve
   for (const auto& word : words) EXPECT_THAT(finished.err, HasSubstr(word)) << testing::PrintToString(arguments);
 }
 
+TEST_F(CommandLine, a_configuration_says_what_it_was_made_from) {
+  for (const std::vector<std::string>& options :
+       {std::vector<std::string>{"--accumulate", "4", "--radius", "0.5"}, {"--preset", "reference", "--radius", "2"}}) {
+    const std::string printed = config(options);
+    const std::string preset = folder / "printed.toml";
+    write_bytes(preset, printed);
+    EXPECT_EQ(config({"--preset", preset}), printed) << testing::PrintToString(options);
+  }
+}
+
 TEST_F(CommandLine, no_arguments_give_the_help_and_code_2) {
   const Finished finished = run_program({});
   EXPECT_EQ(finished.code, 2);

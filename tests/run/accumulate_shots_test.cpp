@@ -88,6 +88,33 @@ TEST_F(AccumulatedShots, frames_of_other_windows_have_the_bits_that_they_have_al
   }
 }
 
+TEST_F(AccumulatedShots, sets_at_the_same_place_do_not_move_each_other) {
+  constexpr int kCut = 3;
+  write_shot(2 * kCut);
+  const Options options{"--accumulate", "2", "--radius", "1.5", "--type", "float"};
+  const auto stats = [&](const Options& more) {
+    Options all = options;
+    all.insert(all.end(), more.begin(), more.end());
+    all.insert(all.end(), {"--stats", folder / "stats.json"});
+    const Finished finished = run(all);
+    EXPECT_EQ(finished.code, 0) << finished;
+    return json::parse(read_bytes(folder / "stats.json"))["frames"];
+  };
+  ASSERT_GT(stats({"--frames", "3"})[0]["frames_per_pixel"], 3) << "without a cut";
+  // A set with the same floor, but another wall, and without the board.
+  for (int frame = kCut + 1; frame <= 2 * kCut; frame++) {
+    FrameFile file = wall_frame();
+    put_board(file, kStep * frame, {-20, 20, 20, 5});
+    file.write(input(frame));
+  }
+  const json frames = stats({});
+  for (int frame = 1; frame <= 2 * kCut; frame++) {
+    const auto of = attribute_of_whole_exr(output(frame), "alcove/accumulated");
+    EXPECT_EQ(of, frame <= kCut ? "frames 1-3" : "frames 4-6") << frame;
+    EXPECT_GT(frames[std::size_t(frame - 1)]["frames_per_pixel"], 2) << frame;
+  }
+}
+
 TEST_F(AccumulatedShots, outputs_without_ao_take_no_estimates) {
   write_shot(3);
   EXPECT_EQ(run({"--accumulate", "1", "--aov", "normal"}).code, 0);
