@@ -5,7 +5,7 @@
 // Out: for one pixel of each two by two, of the frame itself and of the others, which of them may see past it.
 //
 // Most surfaces are where another frame looks for them; what moved.comp asks of the rest takes long. What it finds is
-// always among the suspects but where a normal is wrong by more than what it sees past is farther.
+// among the suspects unless what is seen past the surface happens to lie on its plane.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
@@ -33,16 +33,18 @@ float depth_at(bool of_own, TakenFrame other, ivec2 pixel) {
 vec3 position_in(View view, ivec2 pixel, float z) { return position_of(view, vec2(pixel) + 0.5, min(z, 1e15)); }
 
 /// Whether a frame may see past a surface at a position in its view space: what it has there is farther than the
-/// position, and than the surface's plane, which tells better where that is at a grazing angle.
+/// position, and not on the surface's plane, which at a grazing angle is far off within a pixel.
 bool is_past(bool by_own, TakenFrame other, vec3 position, vec3 normal) {
   View view = other.view;
   if (by_own) view = params.view;
   const Sight sight = sight_of(view, position, other.depth_precision);
   const float z = depth_at(by_own, other, sight.at), lift = kLifted * sight.width;
-  const vec3 before = position_in(view, sight.at, z - (sight.same + position.z) - lift);
+  const float tolerance = sight.same + position.z + lift;
+  const float before = dot(normal, position_in(view, sight.at, z - tolerance) - position);
+  const float behind = dot(normal, position_in(view, sight.at, z + tolerance) - position);
   const bool is_plane_seen = dot(normal, view.orthographic != 0 ? vec3(0, 0, 1) : -position) > 0.0;
-  const bool is_behind = !is_plane_seen || dot(normal, before - position) < 0.0;
-  return sight.is_seen && z > sight.same + lift && is_behind;
+  const bool is_on_plane = is_plane_seen && before >= 0.0 && behind <= 0.0;
+  return sight.is_seen && z > sight.same + lift && !is_on_plane;
 }
 
 void main() {

@@ -44,9 +44,14 @@ void FrameTally::add_estimate(const FrameReport& estimate, const Others& others)
 }
 
 void FrameTally::add_passes(std::span<const gpu::PassTime> passes) {
-  for (std::size_t i = 0; i < passes.size(); i++) {
-    if (before_ + i >= report_.passes.size()) report_.passes.push_back({passes[i].name});
-    add(passes[i], report_.passes[before_ + i]);
+  // Parts of a frame run the same passes, but that some leave out what the first one has found for all.
+  std::size_t next = before_;
+  for (const auto& pass : passes) {
+    const auto begin = report_.passes.begin() + std::ptrdiff_t(next);
+    auto found = std::find_if(begin, report_.passes.end(), [&](const auto& sum) { return sum.name == pass.name; });
+    if (found == report_.passes.end()) found = report_.passes.insert(begin, {pass.name});
+    add(pass, *found);
+    next = std::size_t(found - report_.passes.begin()) + 1;
   }
 }
 

@@ -111,8 +111,10 @@ FrameMemory memory_with_others(const FramePlan& plan, const FrameSource& frame, 
 std::uint64_t bytes_of_shot(const FramePlan& plan, const FrameSource& frame, const InputSettings& settings, int lanes) {
   if (!takes_frames(settings)) return 0;
   const std::uint64_t around = 2 * std::uint64_t(with_judges(around_of(settings))) + 1;
-  // All frames of a mean look at others, and near the ends of the shot they all lie on one side.
-  const std::uint64_t window = std::uint64_t(lanes) * around + 4 * std::uint64_t(settings.accumulate);
+  // All frames of a mean look at others, and near the ends of the shot they all lie on one side. Frames that are
+  // computed at once may lie far from each other.
+  const std::uint64_t means = 2 * std::uint64_t(settings.accumulate);
+  const std::uint64_t window = std::uint64_t(lanes) * (around + means) + means;
   return kPlanesOfSeen * sizeof(float) * frame.file_data.pixels() * std::min<std::uint64_t>(plan.shot().size(), window);
 }
 

@@ -147,10 +147,21 @@ Settings with_scratch(Settings settings) {
   return settings;
 }
 
+/// The frames that the run estimates: more than it computes where these are means of many.
+std::size_t estimated_in(const TimedRun& run) {
+  if (run.settings.input.accumulate == 0) return run.frames.size();
+  std::set<int> estimated;
+  for (const int frame : run.frames) {
+    const auto there = run.plan.accumulated(frame).there;
+    estimated.insert(there.begin(), there.end());
+  }
+  return estimated.size();
+}
+
 std::string estimate(const TimedRun& run) {
   // A sequence more often begins or ends with nothing than it has nothing in its middle.
   const int frame = run.frames[run.frames.size() / 2];
-  const auto frames = double(run.frames.size());
+  const std::size_t estimated = estimated_in(run);
   const Settings settings = with_scratch(run.plan.at(frame));
   FrameSource source = open_frame(settings, frame);
   const DeviceSettings& d = settings.device;
@@ -187,9 +198,14 @@ std::string estimate(const TimedRun& run) {
   const std::string for_others = others.prepared == 0 ? ""
                                                       : fmt::format(" and {} for the {} frames that they take from",
                                                                     duration_text(others.ms / 1000), others.prepared);
+  const std::string for_means =
+      run.settings.input.accumulate == 0
+          ? ""
+          : fmt::format(", {} estimated for {}, without what the means take,", estimated, run.frames.size());
   return fmt::format(
-      "about {}: {} per frame{} on {}, by computing {} of {}", duration_text((each * frames + others.ms) / 1000),
-      duration_text(each / 1000), for_others, device.info().name,
+      "about {}: {} per frame{}{} on {}, by computing {} of {}",
+      duration_text((each * double(estimated) + others.ms) / 1000), duration_text(each / 1000), for_others, for_means,
+      device.info().name,
       last.pixels >= 0.99 * pixels ? "all" : fmt::format("{}x{} pixels", source.data.width, source.data.height),
       std::filesystem::path(source.depth_path()).filename().string());
 }

@@ -31,8 +31,8 @@ class Means : public testing::Test {
  protected:
   Means() : gpu_(device()) {}
 
-  /// The mean at each pixel, of a frame and another one of the same camera.
-  std::vector<float> mean(const Facing& own, const Facing& other) {
+  /// The mean at each pixel, of a frame and another one of the same camera, or of one that stands so far to the left.
+  std::vector<float> mean(const Facing& own, const Facing& other, float shift = 0) {
     const auto filled = [&]<class T>(const char* name, const std::vector<T>& values) -> gpu::Buffer& {
       gpu::Buffer& buffer = gpu_.buffer(name, values.size() * sizeof(T), gpu::Use::upload);
       std::ranges::copy(values, buffer.as<T>().begin());
@@ -42,7 +42,7 @@ class Means : public testing::Test {
     std::vector<std::uint32_t> words;
     for (const float z : other.depth) words.push_back(std::bit_cast<std::uint32_t>(z));
     for (const std::uint32_t n : other.normal) words.push_back((n & 0xffffu) | std::uint32_t(kOther * 65535) << 16);
-    const std::vector<TakenFrame> frames{{kView, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, 0}, {1e-5f, 0, 0}, 0}};
+    const std::vector<TakenFrame> frames{{kView, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {shift, 0, 0}, {1e-5f, 0, 0}, 0}};
     EstimateSet estimates;
     estimates.depth = &filled("own depth", own.depth);
     estimates.normal = &filled("own normal", own.normal);
@@ -116,6 +116,22 @@ TEST_F(Means, find_what_has_gone) {
     EXPECT_EQ(values[at(9, 4)], kOwn) << "2 px beside it";
     EXPECT_NEAR(values[at(20, 20)], kMean, 1e-4);
   }
+}
+
+TEST_F(Means, find_what_has_gone_whose_plane_is_nearly_edge_on) {
+  // Half a pixel beside its point the plane is as far as what is behind it, and a little more.
+  Facing there;
+  for (int y = 8; y < 16; y++)
+    for (int x = 8; x < 16; x++) {
+      there.depth[at(x, y)] = 3.85f;
+      there.normal[at(x, y)] = 0x000079e7u;  // (20, 0, 1), turned to the side
+    }
+  const float shift = 0.45f * 0.01f * 3.85f;
+  for (const float to : {-shift, shift})
+    for (const auto& values : {mean(there, {}, to), mean({}, there, to)}) {
+      EXPECT_EQ(values[at(17, 12)], kOwn) << "2 px beside it";
+      EXPECT_NEAR(values[at(2, 2)], kMean, 1e-4);
+    }
 }
 
 }  // namespace

@@ -90,6 +90,7 @@ std::set<std::string> kernels_of_means(gpu::Recorder& gpu, const EstimatorSettin
   estimates.normal = filled("own normal", pixels);
   estimates.values = filled("own values", pixels);
   estimates.view = inputs.view;
+  estimates.has_moving = true;
   estimates.groups = {{filled("estimates", 2 * pixels), &table, 1}};
   run_chain(gpu, inputs, settings);
   gpu.run();
