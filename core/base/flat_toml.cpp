@@ -4,6 +4,8 @@
 
 #include <toml++/toml.h>
 
+#include <string_view>
+
 #include "core/base/error.h"
 
 namespace alcove {
@@ -23,6 +25,7 @@ std::string typed(const std::string& key, const toml::node& node) {
 void require_ascii_keys(const std::string& text) {
   const std::size_t first = text.starts_with("\xef\xbb\xbf") ? 3 : 0;  // a mark of the byte order
   std::string within;  // what ends the string or the comment that it is in
+  char before = '\n';  // the last character that is no blank
   int line = 1;
   for (std::size_t i = first; i < text.size(); i++) {
     const char c = text[i];
@@ -30,6 +33,9 @@ void require_ascii_keys(const std::string& text) {
     if (within.empty() && (unsigned char)c >= 0x80)
       fail(ErrorKind::usage, "line {}: letters beyond ASCII stand in quotes only", line);
     if (within.empty() && (c == '"' || c == '\'')) {
+      // Within a word toml++ takes it for a letter of that, and what follows for more of them.
+      if (std::string_view("\n=[,{.").find(before) == std::string_view::npos)
+        fail(ErrorKind::usage, "line {}: a quote stands within a word", line);
       const bool is_long = text.compare(i, 3, std::string(3, c)) == 0;
       within = std::string(is_long ? 3 : 1, c);
       i += within.size() - 1;
@@ -39,10 +45,13 @@ void require_ascii_keys(const std::string& text) {
       i++;
     } else if (!within.empty() && text.compare(i, within.size(), within) == 0) {
       i += within.size() - 1;
+      // A long string may end with two quotes of its own.
+      for (int k = 0; within.size() == 3 && k < 2 && i + 1 < text.size() && text[i + 1] == within[0]; k++) i++;
       within.clear();
     } else if (within.size() == 1 && c == '\n') {
       within.clear();
     }
+    if (c != ' ' && c != '\t' && c != '\r') before = c;
   }
 }
 

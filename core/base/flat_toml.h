@@ -14,7 +14,7 @@ struct FlatEntry {
 };
 
 /// Fails with ErrorKind::usage, naming the line, where letters beyond ASCII stand outside of quotes and comments. TOML
-/// has none there, and toml++ 3 does undefined things with some of them.
+/// has none there, and toml++ 3 does undefined things with some of them. Nor does a quote stand within a word.
 void require_ascii_keys(const std::string& text);
 
 /// Gives the entries in the order of the file's keys. Fails with ErrorKind::usage on text that is no TOML and on
