@@ -17,6 +17,7 @@
 #include "view.glsl"
 #include "normal.glsl"
 #include "reprojection.glsl"
+#include "sight.glsl"
 #include "cells.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
@@ -47,8 +48,7 @@ int pixels_of(ivec2 size) { return size.x * size.y; }
 /// does. second: the word of its second plane.
 int index_in(TakenFrame other, vec3 here, vec3 n, out uint second) {
   const View to = other.view;
-  const vec3 position = vec3(dot(other.row_x, here), dot(other.row_y, here), dot(other.row_z, here)) + other.offset;
-  const vec3 facing = vec3(dot(other.row_x, n), dot(other.row_y, n), dot(other.row_z, n));
+  const vec3 position = position_there(other, here), facing = direction_there(other, n);
   const ivec2 place = pixel_of(to, position), nearest = clamp(place, ivec2(0), to.size - 1);
   const int index = index_of(to, nearest);
   const float z = abs(uintBitsToFloat(others[other.first + uint(index)]));
@@ -68,8 +68,7 @@ const int kBent = kPlanes > 3 ? kPlanes - 3 : 0;
 
 /// A direction of another frame's view space in this one's, both as 0.5 + 0.5 b.
 vec3 turned_here(TakenFrame other, vec3 encoded) {
-  const vec3 b = 2.0 * encoded - 1.0;
-  return 0.5 + 0.5 * (b.x * other.row_x + b.y * other.row_y + b.z * other.row_z);
+  return 0.5 + 0.5 * direction_here(other, 2.0 * encoded - 1.0);
 }
 
 void main() {
