@@ -67,9 +67,7 @@ int index_in(TakenFrame other, vec3 here, vec3 n, out uint second) {
 const int kBent = kPlanes > 3 ? kPlanes - 3 : 0;
 
 /// A direction of another frame's view space in this one's, both as 0.5 + 0.5 b.
-vec3 turned_here(TakenFrame other, vec3 encoded) {
-  return 0.5 + 0.5 * direction_here(other, 2.0 * encoded - 1.0);
-}
+vec3 turned_here(TakenFrame other, vec3 encoded) { return 0.5 + 0.5 * direction_here(other, 2.0 * encoded - 1.0); }
 
 void main() {
   // All is loaded before the condition: see shared.h.

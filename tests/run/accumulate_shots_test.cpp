@@ -125,12 +125,8 @@ TEST_F(AccumulatedShots, outputs_without_ao_take_no_estimates) {
 TEST_F(AccumulatedShots, no_more_estimates_are_kept_than_are_counted_whatever_the_order) {
   constexpr int kLong = 20;
   write_shot(kLong, {0, 0, 16, 9});
-  Settings settings;
-  settings.input.input = in + "/f.####.exr";
-  settings.input.camera = camera;
+  Settings settings = settings_of_shot();
   settings.input.accumulate = 1;
-  settings.estimator.radius = 1;
-  settings.output.output = out + "/ao.####.exr";
   const FramePlan plan(settings);
   const FrameSource source = open_frame(plan.at(4), 4);
   // Depth, normal and AO of an estimate, and what was read: depth and three of a normal.
@@ -174,12 +170,8 @@ TEST_F(AccumulatedShots, no_more_estimates_are_kept_than_are_counted_whatever_th
 TEST_F(AccumulatedShots, no_more_of_what_estimates_see_is_kept_than_is_counted) {
   constexpr int kLong = 24;
   write_shot(kLong, {0, 0, 16, 9});
-  Settings settings;
-  settings.input.input = in + "/f.####.exr";
-  settings.input.camera = camera;
+  Settings settings = settings_of_shot();
   settings.input.accumulate = 2;
-  settings.estimator.radius = 1;
-  settings.output.output = out + "/ao.####.exr";
   const auto counted = [&] {
     const FramePlan plan(settings);
     return bytes_of_shot(plan, open_frame(plan.at(4), 4), settings.input, 1) / (3 * sizeof(float) * 16 * 9);

@@ -126,42 +126,6 @@ class Accumulated : public WalkedShot {
           << mover.width << " x " << mover.height << " px at " << left_of(frame) << " " << mover.top;
     }
   }
-
-  /// Expects that the second of three large frames has the bits in tiles that it has as a whole.
-  void expect_tiles_as_the_whole(const std::string& aovs, std::uint64_t mebibytes) const {
-    const auto run_with = [&](std::uint64_t bytes) {
-      const Options arguments{in + "/f.%04d.exr",
-                              "-o",
-                              out + "/ao.%04d.exr",
-                              "--camera",
-                              camera,
-                              "--radius",
-                              "0.3",
-                              "--frames",
-                              "2",
-                              "--accumulate",
-                              "1",
-                              "--aov",
-                              aovs,
-                              "--type",
-                              "float",
-                              "--stats",
-                              folder / "stats.json"};
-      RunOptions options;
-      EXPECT_TRUE(parse_run_options(arguments, options));
-      if (bytes) options.settings.device.memory = 1;
-      if (bytes) options.settings.device.least_memory = bytes;
-      const RunReport report = run_frames(options.settings);
-      EXPECT_EQ(report.done, 1) << (report.stop ? report.stop->what() : "");
-      return std::pair(report.frames.empty() ? 0 : report.frames[0].parts,
-                       report.done ? read_exr_image(output(2), {"Y"}).pixels : std::vector<float>());
-    };
-    const auto [one, whole] = run_with(0);
-    const auto [many, tiled] = run_with(mebibytes << 20);
-    EXPECT_EQ(one, 1);
-    EXPECT_GT(many, 1);
-    EXPECT_TRUE(whole == tiled) << difference(tiled, whole).rmse;
-  }
 };
 
 double rmse_of(const std::vector<std::vector<float>>& frames, const std::vector<std::vector<float>>& truth) {
@@ -256,7 +220,7 @@ TEST_F(Accumulated, threads_chunks_and_order_change_no_bit) {
 
 TEST_F(Accumulated, tiles_have_the_bits_of_the_whole) {
   write_shot(3, kLarge);
-  expect_tiles_as_the_whole("ao,bent-normal", 48);
+  expect_tiles_as_the_whole({"--accumulate", "1", "--aov", "ao,bent-normal"}, 48);
 }
 
 TEST_F(Accumulated, tiles_know_what_moves_after_those_of_sky) {
@@ -269,7 +233,7 @@ TEST_F(Accumulated, tiles_know_what_moves_after_those_of_sky) {
     std::fill(begin, begin + 190 * kTall.width, 1e10f);
     file.write(input(frame));
   }
-  expect_tiles_as_the_whole("ao", 36);
+  expect_tiles_as_the_whole({"--accumulate", "1"}, 36);
 }
 
 TEST_F(Accumulated, a_region_has_the_bits_of_the_whole) {

@@ -77,27 +77,8 @@ TEST_F(Around, files_that_know_what_is_hidden_leave_others_nothing_to_add) {
 }
 
 TEST_F(Around, tiles_have_the_bits_of_the_whole) {
-  const Window large{0, 0, 512, 288};
-  write_shot(3, large);
-  const auto run_with = [&](std::uint64_t bytes) {
-    const Options arguments{
-        in + "/f.%04d.exr",   "-o", out + "/ao.%04d.exr", "--camera", camera,   "--radius", "0.3",
-        "--around",           "1",  "--frames",           "2",        "--type", "float",    "--stats",
-        folder / "stats.json"};
-    RunOptions options;
-    EXPECT_TRUE(parse_run_options(arguments, options));
-    if (bytes) options.settings.device.memory = 1;
-    if (bytes) options.settings.device.least_memory = bytes;
-    const RunReport report = run_frames(options.settings);
-    EXPECT_EQ(report.done, 1) << (report.stop ? report.stop->what() : "");
-    return report.done == 1 ? std::pair(report.frames[0].parts, read_exr_image(output(2)).pixels)
-                            : std::pair(0, std::vector<float>());
-  };
-  const auto [one, whole] = run_with(0);
-  const auto [many, tiled] = run_with(40 << 20);
-  EXPECT_EQ(one, 1);
-  EXPECT_GT(many, 1);
-  EXPECT_TRUE(whole == tiled) << difference(tiled, whole).rmse;
+  write_shot(3, {0, 0, 512, 288});
+  expect_tiles_as_the_whole({"--around", "1"}, 40);
 }
 
 }  // namespace

@@ -199,12 +199,8 @@ TEST_F(Shots, keep_no_more_frames_than_their_windows) {
     fs::copy_file(input(kFrames), input(frame));
   }
   write_bytes(camera, cameras.dump());
-  Settings settings;
-  settings.input.input = in + "/f.####.exr";
-  settings.input.camera = camera;
+  Settings settings = settings_of_shot();
   settings.input.around = 2;
-  settings.estimator.radius = 1;
-  settings.output.output = out + "/ao.####.exr";
   for (const char* order : {"1-16", "16-1", "1-16x3,2-16x3,3-16x3"}) {
     settings.frames.frames = order;
     const FramePlan plan(settings);

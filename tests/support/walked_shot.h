@@ -6,6 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "cli/options.h"
+#include "core/formats/exr.h"
+#include "core/run/batch.h"
+#include "tests/support/difference.h"
 #include "tests/support/sequence_folder.h"
 
 namespace alcove::test {
@@ -51,6 +55,49 @@ class WalkedShot : public SequenceFolder {
       with_board(frame, window).write(input(frame));
     }
     write_bytes(camera, cameras.dump());
+  }
+
+  /// Of a run on the shot with a radius of 1.
+  Settings settings_of_shot() const {
+    Settings settings;
+    settings.input.input = in + "/f.####.exr";
+    settings.input.camera = camera;
+    settings.estimator.radius = 1;
+    settings.output.output = out + "/ao.####.exr";
+    return settings;
+  }
+
+  /// Expects that the second frame has the bits in tiles, within so much memory, that it has as a whole.
+  void expect_tiles_as_the_whole(const std::vector<std::string>& more, std::uint64_t mebibytes) const {
+    const auto run_with = [&](std::uint64_t bytes) {
+      std::vector<std::string> arguments{in + "/f.%04d.exr",
+                                         "-o",
+                                         out + "/ao.%04d.exr",
+                                         "--camera",
+                                         camera,
+                                         "--radius",
+                                         "0.3",
+                                         "--frames",
+                                         "2",
+                                         "--type",
+                                         "float",
+                                         "--stats",
+                                         folder / "stats.json"};
+      arguments.insert(arguments.end(), more.begin(), more.end());
+      RunOptions options;
+      EXPECT_TRUE(parse_run_options(arguments, options));
+      if (bytes) options.settings.device.memory = 1;
+      if (bytes) options.settings.device.least_memory = bytes;
+      const RunReport report = run_frames(options.settings);
+      EXPECT_EQ(report.done, 1) << (report.stop ? report.stop->what() : "");
+      return report.done == 1 ? std::pair(report.frames[0].parts, read_exr_image(output(2), {"Y"}).pixels)
+                              : std::pair(0, std::vector<float>());
+    };
+    const auto [one, whole] = run_with(0);
+    const auto [many, tiled] = run_with(mebibytes << 20);
+    EXPECT_EQ(one, 1);
+    EXPECT_GT(many, 1);
+    EXPECT_TRUE(whole == tiled) << difference(tiled, whole).rmse;
   }
 };
 
