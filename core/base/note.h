@@ -12,16 +12,21 @@ namespace alcove {
 enum class NoteCode {
   // how the frame is read
   unusual_reading,
+  assumed_reading,
   said_otherwise,
   near_plane,
   negative_depth,
   depth_below_1,
+  finite_sky,
+  beyond_planes,
   default_view,
   normals_disagree,
   principal_point,
   field_of_view,
   // what harms AO
   half_depth,
+  overflown_depth,
+  jittered_depth,
   antialiased_depth,
   shortened_normals,
   averaged_normals,

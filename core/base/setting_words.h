@@ -56,6 +56,8 @@ struct DepthRange {
   double log_constant = 1;  // C of z = ((1 + C far)^d - 1) / C, 1 / the file's units, > 0
   // planar, ray and inverse depth: the values are below 0; view positions: their z is not as the camera's
   bool negative = false;
+  // normalized depth: the values were not cut off at the near plane, or at the far plane, and go on beyond it
+  bool goes_before_near = false, goes_beyond_far = false;
 };
 
 /// Axes of the normals that point the other way.

@@ -54,7 +54,7 @@ void set_device(DepthMap& map, const DepthRange& range, bool orthographic, doubl
   map.slope = (at_near - at_far) / (near_value - far_value);
 }
 
-void set_normalized(DepthMap& map, const DepthRange& range, double scale) {
+void set_normalized(DepthMap& map, const DepthRange& range, double scale, double sky) {
   const double n = range.near.value_or(0);
   const double f = far_of(DepthKind::normalized, range, false);
   if (!(n < f))
@@ -63,6 +63,8 @@ void set_normalized(DepthMap& map, const DepthRange& range, double scale) {
   count_between(map, near_value, 1 - near_value, near_value);
   map.base = n * scale;
   map.slope = (f - n) * scale * (1 - 2 * near_value);
+  if (range.reversed ? range.goes_beyond_far : range.goes_before_near) map.sky_below = -kInfinity;
+  if (range.reversed ? range.goes_before_near : range.goes_beyond_far) map.sky_above = sky;
 }
 
 void set_log(DepthMap& map, const DepthRange& range, double scale) {
@@ -110,7 +112,7 @@ DepthMap depth_map(DepthKind kind, const DepthRange& range, PositionSpace space,
       }
       break;
     case DepthKind::device: set_device(map, range, camera.orthographic, scale); break;
-    case DepthKind::normalized: set_normalized(map, range, scale); break;
+    case DepthKind::normalized: set_normalized(map, range, scale, sky); break;
     case DepthKind::log: set_log(map, range, scale); break;
     case DepthKind::position: set_position(map, space, range.negative, camera, scale); break;
   }

@@ -65,11 +65,6 @@ Vector3 decoded_normal(std::span<const float> raw, std::size_t pixels, std::size
 /// Relative second difference of three evenly spaced values.
 double bend(double before, double here, double after) { return std::abs(before + after - 2 * here) / std::abs(here); }
 
-/// Whether three values lie on one line, but for their rounding.
-bool is_straight(double before, double here, double after, double rounding) {
-  return std::abs(before + after - 2 * here) < 1e-4 * std::abs(after - before) + rounding * std::abs(here);
-}
-
 double quantile(std::vector<double>& values, double share) {
   const auto at = values.begin() + std::ptrdiff_t(share * double(values.size()));
   std::nth_element(values.begin(), at, values.end());
@@ -113,33 +108,6 @@ void count_normal(NormalStatistics& s, const Vector3& n, std::size_t components)
     s.most = std::max(s.most, n[c]);
   }
 }
-
-/// Depths of three pixels in a row, `reach` apart, and the lengths of their rays.
-struct Triple {
-  std::array<double, 3> value{}, length{};
-  bool is_surface = true;
-
-  Triple(std::span<const float> raw, const View& view, double sky, int x, int y, int dx, int dy) {
-    for (std::size_t k = 0; k < 3; k++) {
-      const int side = int(k) - 1;
-      value[k] = std::abs(raw[index_of(view, x + side * dx, y + side * dy)]);
-      length[k] = ray_length(view, x + side * dx, y + side * dy);
-      is_surface = is_surface && value[k] > 0 && value[k] < sky;
-    }
-  }
-  bool is_smooth() const {
-    constexpr double kSmooth = 0.02;  // bend of values that are one surface
-    return bend(1 / value[0], 1 / value[1], 1 / value[2]) < kSmooth;
-  }
-  /// Tells for planar, ray and inverse depth in turn whether a plane would have these values.
-  std::array<bool, 3> straight(const View& view, double rounding) const {
-    const bool value_is = is_straight(value[0], value[1], value[2], rounding);
-    const bool inverse_is = is_straight(1 / value[0], 1 / value[1], 1 / value[2], rounding);
-    if (view.orthographic) return {value_is, false, inverse_is};
-    return {inverse_is, is_straight(length[0] / value[0], length[1] / value[1], length[2] / value[2], rounding),
-            value_is};
-  }
-};
 
 /// World space, where the camera knows it, and view space, with all flips.
 std::vector<NormalScore> readings_of_normals(const Camera& camera) {
@@ -291,32 +259,6 @@ std::optional<double> reprojection_error(std::span<const float> position, Positi
       errors.push_back(pixels_beside(view, x, y, p));
     }
   return errors.empty() ? std::nullopt : std::optional(quantile(errors, 0.5));
-}
-
-std::vector<DepthScore> score_depth(std::span<const float> raw, const View& view, double sky, double rounding) {
-  // Over this many pixels the difference between distance to the eye and to its plane bends 1/z by (reach / focal)^2,
-  // far above rounding.
-  const int reach = std::max(3, std::max(view.size.x, view.size.y) / 48);
-  const int stride = sparseness(view);
-  std::vector<DepthScore> scores{{DepthKind::planar}, {DepthKind::ray}, {DepthKind::inverse}};
-  std::size_t count = 0;
-  const auto look = [&](int x, int y, int dx, int dy) {
-    const Triple triple(raw, view, sky, x, y, dx, dy);
-    if (!triple.is_surface || !triple.is_smooth()) return;
-    count++;
-    const auto straight = triple.straight(view, rounding);
-    if (straight[0] + straight[1] + straight[2] != 1) return;  // curved, or too even to tell
-    for (std::size_t k = 0; k < scores.size(); k++) scores[k].straight += straight[k];
-  };
-  for (int y = reach; y + reach < view.size.y; y += stride)
-    for (int x = reach; x + reach < view.size.x; x += stride) {
-      look(x, y, reach, 0);
-      look(x, y, 0, reach);
-    }
-  if (count < kLeastSamples) return {};
-  for (auto& score : scores) score.straight /= double(count);
-  std::ranges::stable_sort(scores, std::greater(), &DepthScore::straight);
-  return scores;
 }
 
 std::vector<NormalScore> score_normals(const NormalPlanes& planes, const Camera& camera, const View& view) {

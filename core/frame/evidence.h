@@ -48,22 +48,6 @@ std::vector<float> planar_depths(std::span<const float> raw, const DepthMap& map
 std::optional<double> reprojection_error(std::span<const float> position, PositionSpace space, bool mirrored,
                                          const Camera& camera, const View& view);
 
-// Rounding of the second difference of three values, relative to one of them.
-constexpr double kFloatRounding = 3e-7, kHalfRounding = 2e-3;
-
-/// A way to read depth and how well the frame's flat surfaces agree with it.
-struct DepthScore {
-  DepthKind kind;
-  // The share of the smooth places where by this kind alone 1/z (orthographic: z) is affine over the image, as it is on
-  // every plane.
-  double straight = 0;
-};
-/// Scores planar, ray and inverse depth, the best first. Inverse stands for all that is affine in 1/z, as device depth
-/// is. In an orthographic view planar stands for ray and device depth too, and inverse for itself. Gives nothing where
-/// too little of the frame is smooth. `rounding` is that of the values, relative to them.
-std::vector<DepthScore> score_depth(std::span<const float> raw, const View& view, double sky,
-                                    double rounding = kFloatRounding);
-
 /// A way to read normals and how well the frame agrees with it.
 struct NormalScore {
   NormalSpace space;

@@ -12,7 +12,7 @@ namespace {
 /// The largest finite half float.
 constexpr double kLargestHalf = 65504;
 
-/// Raw depth at or beyond it is sky.
+/// Raw depth at or beyond it is sky. Values that passed through half floats end where those end.
 double sky_of(DepthKind kind, bool is_half, double sky) {
   const bool is_distance = kind == DepthKind::planar || kind == DepthKind::ray;
   return is_distance && is_half ? std::min(sky, kLargestHalf) : sky;
@@ -38,7 +38,7 @@ void read_like(Reading& reading, const Meaning& settled) {
 
 DepthMap depth_map_of(const Reading& reading) {
   return depth_map(reading.depth_kind, reading.depth_range, reading.position_space, reading.camera, reading.depth_scale,
-                   sky_of(reading.depth_kind, reading.depth_is_half, reading.sky));
+                   std::min(reading.found_sky, sky_of(reading.depth_kind, reading.depth_is_half, reading.sky)));
 }
 
 DepthMap behind_map_of(const Reading& reading, const BehindPlane& plane) {
@@ -57,9 +57,11 @@ DepthPrecision hidden_precision_of(const Reading& reading) {
   return depth_precision_of(coarsest);
 }
 
+bool has_coarse_depth(const Reading& reading) { return reading.depth_is_half || reading.depth_is_coarse; }
+
 DepthPrecision depth_precision_of(const Reading& reading) {
-  return depth_precision(depth_map_of(reading), reading.depth_is_half ? kHalfPrecision : kFloatPrecision,
-                         reading.depth_step);
+  const double of_type = reading.depth_is_half ? kHalfPrecision : kFloatPrecision;
+  return depth_precision(depth_map_of(reading), std::max(of_type, reading.depth_rounding), reading.depth_step);
 }
 
 }  // namespace alcove

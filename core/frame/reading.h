@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -18,9 +19,13 @@ namespace alcove {
 struct Meaning {
   DepthKind depth_kind = DepthKind::planar;  // not automatic
   DepthRange depth_range;
-  double depth_step = 0;                                          // see step_of()
-  PositionSpace position_space = PositionSpace::view;             // not automatic; world needs camera.view_from_world
-  NormalSpace normal_space = NormalSpace::view;                   // not automatic; world needs camera.view_from_world
+  // How the depth values were rounded: to multiples of a step, 0: to none; and to this part of themselves, where that is
+  // more than their sample type does. See core/frame/flatness.h, and step_of().
+  double depth_step = 0, depth_rounding = 0;
+  bool depth_is_coarse = false;                                // either is more than a 2^14th of the median value
+  double found_sky = std::numeric_limits<double>::infinity();  // raw depth at or beyond it is sky, as the pixels show
+  PositionSpace position_space = PositionSpace::view;          // not automatic; world needs camera.view_from_world
+  NormalSpace normal_space = NormalSpace::view;                // not automatic; world needs camera.view_from_world
   NormalEncoding normal_encoding = NormalEncoding::signed_float;  // not automatic
   bool normal_unorm = false;                                      // the values are 0.5 + 0.5 n, of any encoding
   NormalFlips flip_normal;
@@ -97,6 +102,9 @@ DepthMap behind_map_of(const Reading& reading, const BehindPlane& plane);
 
 /// How far any depth may be from its surface's, of the first surface and of those behind it.
 DepthPrecision hidden_precision_of(const Reading& reading);
+
+/// Whether depth values are too coarse for the normals of depth to be exact.
+bool has_coarse_depth(const Reading& reading);
 
 /// How far the planar depth that the map gives may be from the surface's.
 DepthPrecision depth_precision_of(const Reading& reading);

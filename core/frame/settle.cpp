@@ -10,6 +10,7 @@
 #include "core/frame/deep.h"
 #include "core/frame/evidence.h"
 #include "core/frame/findings.h"
+#include "core/frame/flatness.h"
 #include "core/frame/radius.h"
 #include "core/frame/sampling.h"
 #include "core/frame/settlement.h"
@@ -33,21 +34,65 @@ void refuse_8_bits(const FrameSource& source, std::span<const float> depth) {
          source.depth_path(), source[RawPlane::depth][0].channel);
 }
 
-/// Half floats step by a 1024th of the power of two below the value.
-void note_half(FrameSource& source, std::span<const float> depth) {
-  if (depth_rounding(source) != kHalfRounding) return;
-  std::vector<float> values;
-  for (std::size_t i = 0; i < source.data.pixels(); i += kSparse)
-    if (std::isfinite(depth[i]) && depth[i] != 0 && std::abs(depth[i]) < 65504) values.push_back(std::abs(depth[i]));
-  if (values.empty()) return;
-  const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  const double step = std::exp2(std::floor(std::log2(*middle)) - 10);
+/// Takes down how the values were rounded. It changes how they are judged, and how near occluders may be.
+void measure_grain(FrameSource& source, const Grain& grain) {
+  constexpr double kLargestHalf = 65504;
+  source.depth_is_coarse = grain.is_coarse;
+  if (grain.is_half) source.found_sky = kLargestHalf;
+  if (!grain.is_coarse) return;
+  if (grain.is_fixed)
+    source.depth_step = grain.step;
+  else
+    source.depth_rounding =
+        grain.is_half ? kHalfPrecision : 0.5 * std::exp2(std::ceil(std::log2(grain.step / grain.median)));
+}
+
+/// Notes values that are coarser than floats: half floats step by a 1024th of the power of two below the value.
+void note_grain(FrameSource& source, const Grain& grain) {
+  if (!has_coarse_depth(source) || grain.median == 0) return;
+  const bool has_half_type = source.depth_is_half;
+  const double step = grain.is_coarse ? grain.step : std::exp2(std::floor(std::log2(grain.median)) - 10);
   source.suspicious.push_back(
       {NoteCode::half_depth,
-       fmt::format("{} is stored as half float: at its median {:.4g} it changes in steps of {:.2g}, which AO shows as "
-                   "bands; write it as float",
-                   source[RawPlane::depth][0].channel, *middle, step)});
+       fmt::format("{} {}: at its median {:.4g} it changes in steps of {:.2g}, which AO shows as bands; {}",
+                   source[RawPlane::depth][0].channel,
+                   has_half_type   ? "is stored as half float"
+                   : grain.is_half ? "holds the values of half floats"
+                                   : "was rounded",
+                   grain.median, step,
+                   has_half_type ? "write it as float" : "write it as float, without rounding it before")});
+}
+
+/// Notes half floats whose sky may be surfaces: those beyond the largest number became infinite.
+void note_overflow(FrameSource& source, std::span<const float> depth) {
+  constexpr float kLargestHalf = 65504, kNear = 0.9f * kLargestHalf;
+  const bool has_distances = source.depth_kind == DepthKind::planar || source.depth_kind == DepthKind::ray;
+  if (!has_distances || !has_coarse_depth(source)) return;
+  std::size_t beyond = 0, near = 0;
+  for (const float d : depth) {
+    beyond += std::abs(d) >= kLargestHalf;
+    near += std::abs(d) >= kNear && std::abs(d) < kLargestHalf;
+  }
+  if (!beyond || !near) return;
+  source.suspicious.push_back(
+      {NoteCode::overflown_depth,
+       fmt::format(
+           "{:.0f} % of {} is infinite or 65504, the largest half float, and surfaces reach up to it: what lies "
+           "beyond counts as sky; write depth as float, or in larger units",
+           100 * double(beyond) / double(depth.size()), source[RawPlane::depth][0].channel)});
+}
+
+/// Notes depth that was sampled at random places within the pixels, or averaged over few of them.
+void note_jitter(FrameSource& source, std::span<const float> depth, const Grain& grain) {
+  const View view = view_of(source.camera, source.data, source.display);
+  const auto jitter = jitter_of(depth, depth_map_of(source), view, grain);
+  if (!jitter) return;
+  source.suspicious.push_back(
+      {NoteCode::jittered_depth,
+       fmt::format("flat surfaces are not flat: their depth is off by {:.2f} of its step from pixel to pixel, as if it "
+                   "was sampled at random places within the pixels; AO takes that for relief; render depth at the "
+                   "pixels' centres, without a filter",
+                   *jitter)});
 }
 
 }  // namespace
@@ -55,14 +100,18 @@ void note_half(FrameSource& source, std::span<const float> depth) {
 void settle(FrameSource& source, const InputSettings& settings, std::span<const float> depth,
             std::span<const float> normal) {
   refuse_8_bits(source, depth);
+  const Grain grain = source[RawPlane::depth].size() == 1 ? grain_of(depth, settings.sky) : Grain{};
+  measure_grain(source, grain);
   settle_depth(source, settings, depth, normal);
   settle_deep(source, depth);
   if (source[RawPlane::normal].empty())
     note_centre(source);
   else
     settle_normals(source, settings, depth, normal);
-  note_half(source, depth);
-  source.depth_step = has_step(source.depth_kind) ? step_of(depth) : 0;
+  note_grain(source, grain);
+  note_overflow(source, depth);
+  note_jitter(source, depth, grain);
+  if (has_step(source.depth_kind)) source.depth_step = std::max(source.depth_step, step_of(depth));
   source.median_depth = median_depth(source, depth);
   std::ranges::move(findings(source, depth, normal), std::back_inserter(source.suspicious));
   source.settled = true;
@@ -71,8 +120,6 @@ void settle(FrameSource& source, const InputSettings& settings, std::span<const 
 bool has_step(DepthKind kind) {
   return kind == DepthKind::device || kind == DepthKind::normalized || kind == DepthKind::log;
 }
-
-double depth_rounding(const Reading& reading) { return reading.depth_is_half ? kHalfRounding : kFloatRounding; }
 
 bool settle_like(FrameSource& source, const FrameSource& settled) {
   for (const RawPlane plane : {RawPlane::depth, RawPlane::normal})

@@ -24,7 +24,4 @@ bool settle_like(FrameSource& source, const FrameSource& settled);
 /// Whether depth of this kind may be stored as integers: see step_of().
 bool has_step(DepthKind kind);
 
-/// How coarsely the depth is stored: see score_depth().
-double depth_rounding(const Reading& reading);
-
 }  // namespace alcove

@@ -6,6 +6,7 @@
 
 #include "core/base/error.h"
 #include "core/frame/evidence.h"
+#include "core/frame/flatness.h"
 #include "core/frame/sampling.h"
 #include "core/frame/settle.h"
 #include "core/frame/settlement.h"
@@ -19,8 +20,27 @@ constexpr double kLeastStraight = 0.02;
 constexpr double kSurelyStraight = 0.1;
 /// If this part of the pixels is exactly 1, that is a background.
 constexpr double kPlateau = 0.001;
+/// What a range of 0 to 1 may exceed 1 by because it was computed.
+constexpr double kRounded = 1e-3;
+/// If a smaller part of the values lies on the other side of 0, or none of them is so far from it as rounding may
+/// bring them, these are errors.
+constexpr double kFewErrors = 0.005;
+/// The normals decide between distances and 1/z if so many times as many agree with one of them.
+constexpr double kClearNormals = 1.5;
 /// Pixels. If the median is farther off than this, positions are not what they are taken for.
 constexpr double kLargestError = 2;
+
+/// The values on one side of a limit.
+struct Side {
+  std::size_t count = 0;
+  float first = 0;
+  bool varies = false;  // one value alone stands for something that is no surface
+
+  void add(float value) {
+    if (!count++) first = value;
+    varies |= value != first;
+  }
+};
 
 class DepthSettlement : private Settlement {
  public:
@@ -31,6 +51,12 @@ class DepthSettlement : private Settlement {
     for (std::size_t i = 0; i < depth.size(); i += kSparse)
       if (depth[i] > 0 && depth[i] < settings.sky) surfaces.push_back(depth[i]);
     surfaces_ = statistics_of(surfaces);
+    for (std::size_t i = 0; i < depth.size(); i += kSparse) {
+      if (!std::isfinite(depth[i]) || std::abs(depth[i]) >= settings.sky) continue;
+      if (depth[i] < 0) below_0_.add(depth[i]);
+      if (depth[i] > 0) above_0_.add(depth[i]);
+      if (depth[i] > 1) above_1_.add(depth[i]);
+    }
   }
 
   void run() {
@@ -53,12 +79,113 @@ class DepthSettlement : private Settlement {
     else
       doubt_kind();
     compare_planes();
-    const bool signed_kind = source_.depth_kind == DepthKind::planar || source_.depth_kind == DepthKind::ray ||
-                             source_.depth_kind == DepthKind::inverse;
-    if (!signed_kind || values_.positive || !values_.negative || values_.least == values_.most) return;
+    settle_sign();
+    settle_ends();
+    find_sky();
+  }
+
+  bool is_distance() const { return source_.depth_kind == DepthKind::planar || source_.depth_kind == DepthKind::ray; }
+
+  /// Distances below 0 are those of cameras that look along -z. One value above 0 beside them is their sky.
+  void settle_sign() {
+    if (!is_distance() && source_.depth_kind != DepthKind::inverse) return;
+    if (!below_0_.varies || above_0_.varies) return;
     source_.depth_range.negative = true;
-    source_.notes.push_back(
-        {NoteCode::negative_depth, "all depth values are negative: their distance from 0 is the depth"});
+    note(NoteCode::negative_depth,
+         above_0_.count
+             ? fmt::format("depth is negative, and its distance from 0 is taken; {} is the sky", above_0_.first)
+             : "all depth values are negative: their distance from 0 is the depth");
+  }
+
+  /// Fails with values on both sides of 0, which are no distances.
+  void refuse_signs() const {
+    const std::size_t fewer = std::min(below_0_.count, above_0_.count), all = below_0_.count + above_0_.count;
+    const bool is_error =
+        double(fewer) <= kFewErrors * double(all) ||
+        std::min(-values_.least, surfaces_.most) <= kRounded * std::max(-values_.least, surfaces_.most);
+    if (!below_0_.varies || !above_0_.varies || is_error) return;
+    fail(ErrorKind::input,
+         "{}: depth goes from {:.3g} to {:.3g}, {:.0f} % of it below 0, so these are no distances: where it is "
+         "normalized and goes on beyond its planes, as V-Ray writes it without clamp, give --depth-kind normalized "
+         "--near N --far F, the distances of 0 and of 1; where what is below 0 is no surface, --depth-kind planar",
+         depth_path(), values_.least, surfaces_.most, 100 * double(below_0_.count) / double(all));
+  }
+
+  /// Looks at what lies at the ends of a range or beyond them: normalized depth may go on, and the sky is at the far
+  /// end.
+  void settle_ends() {
+    auto& range = source_.depth_range;
+    if (source_.depth_kind == DepthKind::normalized) {
+      range.goes_before_near = range.reversed ? above_1_.varies : below_0_.varies;
+      range.goes_beyond_far = range.reversed ? below_0_.varies : above_1_.varies;
+      if (range.goes_before_near || range.goes_beyond_far)
+        note(NoteCode::beyond_planes,
+             fmt::format("depth goes from {:.3g} to {:.3g}: it was not cut off at its planes, and is read beyond them",
+                         values_.least, surfaces_.most));
+    }
+    if (source_.depth_kind == DepthKind::device) settle_direction();
+  }
+
+  /// Nothing is seen at exactly the near plane, so that many pixels there are sky of a depth that runs the other way.
+  void settle_direction() {
+    auto& range = source_.depth_range;
+    const float low = range.device == DeviceRange::zero_to_one ? 0 : -1, near = range.reversed ? 1 : low,
+                far = range.reversed ? low : 1;
+    const auto at_near = std::size_t(std::ranges::count(depth_, near));
+    if (double(at_near) < kPlateau * double(depth_.size()) || std::ranges::find(depth_, far) != depth_.end()) return;
+    const std::string what = fmt::format(
+        "{:.0f} % of the pixels have exactly {}, the near plane's value{}, and none has {}",
+        100 * double(at_near) / double(depth_.size()), near, range.reversed ? " of reversed depth" : "", far);
+    const bool is_by_rules = !settings_.depth_range.reversed && !source_.camera.reversed_z && range.reversed;
+    if (!is_by_rules) {
+      note(NoteCode::said_otherwise,
+           fmt::format("{}: that looks like the sky of depth that is {}reversed: {} --reversed-z", what,
+                       range.reversed ? "not " : "", range.reversed ? "leave out" : "give"));
+      return;
+    }
+    range.reversed = false;
+    guess("depth's direction", "not reversed", what, "--reversed-z", true);
+  }
+
+  /// Takes one distance far behind all others for the sky where the normals show it, and else points it out.
+  void find_sky() {
+    constexpr std::size_t kSampled = 1 << 16;
+    constexpr double kLeastShare = 0.002;  // of the pixels
+    constexpr double kFar = 2;             // times as far as all others
+    constexpr double kAll = 0.98;          // of the pixels of the sky have no normal, and of the others have one
+    if (!is_distance() || settings_.sky != InputSettings{}.sky) return;
+    const double limit = depth_map_of(source_).sky_depth / source_.depth_scale;
+    const std::size_t step = depth_.size() / kSampled + 1;
+    float most = 0, next = 0;
+    for (std::size_t i = 0; i < depth_.size(); i += step) {
+      const float d = std::abs(depth_[i]);
+      if (!(d < limit) || d == most) continue;
+      next = std::max(next, std::min(d, most));
+      most = std::max(most, d);
+    }
+    if (!(most > kFar * next) || next == 0) return;
+    std::size_t count = 0, all = 0, bare = 0, others_bare = 0;
+    const bool has_normals = source_[RawPlane::normal].size() == 3;
+    for (std::size_t i = 0; i < depth_.size(); i += step) {
+      const bool is_sky = std::abs(depth_[i]) == most;
+      const bool is_surface = !is_sky && std::abs(depth_[i]) > 0 && std::abs(depth_[i]) < limit;
+      bool is_bare = has_normals;
+      for (std::size_t c = 0; is_bare && c < 3; c++) is_bare = normal_[c * depth_.size() + i] == 0;
+      all++, count += is_sky, bare += is_sky && is_bare, others_bare += is_surface && is_bare;
+    }
+    const double share = double(count) / double(all);
+    if (share < kLeastShare) return;
+    const bool is_shown =
+        has_normals && double(bare) >= kAll * double(count) && double(others_bare) <= (1 - kAll) * double(all - count);
+    if (is_shown) source_.found_sky = most;
+    note(NoteCode::finite_sky,
+         is_shown
+             ? fmt::format("the depth {:.6g} of {:.1f} % of the pixels, which have no normals, is taken for the sky "
+                           "(--sky {:.6g} says it)",
+                           most, 100 * share, most)
+             : fmt::format("{:.1f} % of the pixels have exactly the depth {:.6g}, and all others end at {:.4g}: "
+                           "where that is the sky, give --sky {:.6g}",
+                           100 * share, most, next, most));
   }
 
   /// Fails with what the user said of a range that depth of this kind has not. Presets serve frames of every kind.
@@ -82,59 +209,92 @@ class DepthSettlement : private Settlement {
     guess("depth kind", name_of(source_.depth_kind), by + why, "--depth-kind", false);
   }
 
+  /// Decides the kind that nobody says: by flat surfaces, else by normals, else by the program, else by what is usual.
   void settle_kind() {
     const DepthKind usual = source_.usual_depth_kind;
     const bool between_planes = usual == DepthKind::device || usual == DepthKind::normalized || usual == DepthKind::log;
     if (between_planes && values_.least >= 0 && values_.most <= 1) return take_usual("all in 0 to 1");
     if (between_planes) source_.usual_depth_kind = source_.depth_kind = DepthKind::planar;
-    const auto scores = score_depth(depth_, view_, settings_.sky, depth_rounding(source_));
-    if (usual == DepthKind::inverse) return settle_inverse_or_passed_on(scores);
+    refuse_signs();
+    const auto scores = score_depth(depth_, view_, settings_.sky);
     const bool tells = !scores.empty() && scores[0].straight >= kLeastStraight;
     if (!tells) source_.has_evidence = false;
-    refuse_fractions(scores);
-    if (scores.empty()) return take_usual("too little of the frame is smooth to tell");
+    if (tells || usual != DepthKind::inverse) refuse_fractions(scores);
+    if (tells) return take_flattest(scores);
+    const std::string why = scores.empty() ? "too little of the frame is smooth to tell"
+                                           : "the frame has no flat surfaces that tell: " + text_of(scores);
+    if (take_by_normals(why)) return;
+    if (usual == DepthKind::inverse) return assume_passed_on(why);
+    take_usual(why);
+    if (source_.rules_by.empty() || source_.rules->depth_kind == DepthKind::automatic) note_assumption(why);
+  }
+
+  /// Takes the kind by which most surfaces are flat.
+  void take_flattest(const std::vector<DepthScore>& scores) {
     const auto& expected = *std::ranges::find(scores, source_.usual_depth_kind, &DepthScore::kind);
     const std::string why = text_of(scores);
     const DepthScore &best = scores[0], &second = scores[1];
-    if (!tells) return take_usual("the frame has no flat surfaces that tell: " + why);
+    if (source_.usual_depth_kind == DepthKind::inverse) return take_passed_on(best.kind, why);
     if (expected.straight >= kAsGood * best.straight) return take_usual(why);
     if (best.straight < kClear * second.straight)
       fail(ErrorKind::input, "{}: the depth may be {} or {} ({}): say which with --depth-kind {} or --depth-kind {}",
            depth_path(), name_of(best.kind), name_of(second.kind), why, name_of(best.kind), name_of(second.kind));
     source_.depth_kind = best.kind;
-    if (best.kind == DepthKind::inverse && values_.least >= 0 && values_.most <= 1) return settle_device(why);
-    guess("depth kind", name_of(best.kind), why, "--depth-kind", true);
+    if (best.kind == DepthKind::inverse && values_.least >= 0 && is_fraction()) return settle_device(why);
+    // A plane's distances are affine in the picture without perspective.
+    const bool may_be_orthographic = best.kind == DepthKind::inverse && (settings_.fov || settings_.focal);
+    guess("depth kind", name_of(best.kind),
+          why + (may_be_orthographic ? "; so they are as distances of an orthographic camera, which --ortho-width says"
+                                     : ""),
+          "--depth-kind", true);
   }
 
-  std::string text_of(const std::vector<DepthScore>& scores) const {
-    return fmt::format("{}, {}, {}", straight(scores[0]), straight(scores[1]), straight(scores[2]));
-  }
-
-  /// Settles the depth of a program that writes 1/z itself and passes on what other programs wrote. Neither is unusual.
-  void settle_inverse_or_passed_on(const std::vector<DepthScore>& scores) {
-    const auto take = [&](DepthKind kind, const std::string& why) {
-      source_.depth_kind = kind;
-      guess("depth kind", name_of(kind),
-            fmt::format("{} ({}) writes 1/z, and passes on what others wrote; {}", source_.rules->name,
-                        source_.rules_by, why),
-            "--depth-kind", false);
-    };
-    if (!scores.empty() && scores[0].straight >= kLeastStraight) {
-      refuse_fractions(scores);
-      return take(scores[0].kind, text_of(scores));
-    }
-    source_.has_evidence = false;
+  /// Takes distances or 1/z, by which clearly more of the normals agree with depth. False: neither.
+  bool take_by_normals(const std::string& but) {
     const double inverse = agreement_as(DepthKind::inverse), planar = agreement_as(DepthKind::planar);
+    const double most = std::max(inverse, planar), least = std::min(inverse, planar);
+    if (most < kLeastAgreement || most < kClearNormals * least) return false;
     const std::string why =
-        fmt::format("{:.0f} % of the normals agree with 1/z, {:.0f} % with z", 100 * inverse, 100 * planar);
-    if (std::max(inverse, planar) >= kLeastAgreement)
-      return take(inverse > planar ? DepthKind::inverse : DepthKind::planar, why);
+        fmt::format("{:.0f} % of the normals agree with 1/z, {:.0f} % with z; {}", 100 * inverse, 100 * planar, but);
+    const DepthKind usual = source_.usual_depth_kind, kind = inverse > planar          ? DepthKind::inverse
+                                                             : usual == DepthKind::ray ? usual
+                                                                                       : DepthKind::planar;
+    if (usual == DepthKind::inverse) {
+      take_passed_on(kind, why);
+    } else {
+      source_.depth_kind = kind;
+      guess("depth kind", name_of(kind), why, "--depth-kind", kind != usual);
+    }
+    return true;
+  }
+
+  /// Takes depth of a program that writes 1/z itself and passes on what other programs wrote. Neither is unusual.
+  void take_passed_on(DepthKind kind, const std::string& why) {
+    source_.depth_kind = kind;
+    guess("depth kind", name_of(kind),
+          fmt::format("{} ({}) writes 1/z, and passes on what others wrote; {}", source_.rules->name, source_.rules_by,
+                      why),
+          "--depth-kind", false);
+  }
+
+  void assume_passed_on(const std::string& why) {
     if (is_fraction())
       fail(ErrorKind::input,
            "{}: {}, and neither flat surfaces nor normals tell whether it is 1/z, as {} writes it: give --depth-kind "
            "inverse; where it is normalized, {}",
            depth_path(), text_of_range(), source_.rules->name, normalized_line(false));
-    take(DepthKind::planar, "the frame does not tell, and it holds more than 1");
+    take_passed_on(DepthKind::planar, why + ", and it holds more than 1");
+    note_assumption(why);
+  }
+
+  /// Says of a kind that it is a guess.
+  void note_assumption(const std::string& why) {
+    note(NoteCode::assumed_reading,
+         fmt::format("depth is read as {}, the usual kind: {} (--depth-kind)", name_of(source_.depth_kind), why));
+  }
+
+  std::string text_of(const std::vector<DepthScore>& scores) const {
+    return fmt::format("{}, {}, {}", straight(scores[0]), straight(scores[1]), straight(scores[2]));
   }
 
   /// The share of the normals that agree with the depth if it is of that kind, in their best space; 0 without normals.
@@ -150,7 +310,7 @@ class DepthSettlement : private Settlement {
   }
 
   /// Whether all surfaces lie within 0 to 1, whatever stands for the sky.
-  bool is_fraction() const { return surfaces_.positive && surfaces_.most <= 1; }
+  bool is_fraction() const { return surfaces_.positive && surfaces_.most <= 1 + kRounded; }
 
   std::string text_of_range() const {
     return fmt::format("all depth lies within 0 to 1 ({:.3g} to {:.3g})", surfaces_.least, surfaces_.most);
@@ -160,8 +320,7 @@ class DepthSettlement : private Settlement {
   double straightness_from_1() const {
     std::vector<float> turned(depth_.begin(), depth_.end());
     for (float& d : turned) d = d > 0 && d < 1 ? 1 - d : 0;
-    const double rounding = 3 * depth_rounding(source_) / std::max(1 - surfaces_.most, 0.01);
-    return straightness(score_depth(turned, view_, settings_.sky, rounding), DepthKind::planar);
+    return straightness(score_depth(turned, view_, settings_.sky), DepthKind::planar);
   }
 
   /// The options that read normalized depth, and what their number is.
@@ -261,8 +420,7 @@ class DepthSettlement : private Settlement {
 
   /// Notes distances that look like a part of a range. They are read as distances all the same.
   void doubt_fractions(const std::vector<DepthScore>& scores) {
-    const bool is_distance = source_.depth_kind == DepthKind::planar || source_.depth_kind == DepthKind::ray;
-    if (!is_distance || !is_fraction()) return;
+    if (!is_distance() || !is_fraction()) return;
     const double straight = scores.empty() ? 0 : scores[0].straight, from_1 = straightness_from_1();
     if (from_1 >= kLeastStraight && from_1 > kClear * straight)
       note(NoteCode::said_otherwise,
@@ -285,7 +443,7 @@ class DepthSettlement : private Settlement {
     const DepthKind said = source_.depth_kind != DepthKind::device ? source_.depth_kind
                            : source_.camera.orthographic           ? DepthKind::planar
                                                                    : DepthKind::inverse;
-    const auto scores = score_depth(depth_, view_, settings_.sky, depth_rounding(source_));
+    const auto scores = score_depth(depth_, view_, settings_.sky);
     doubt_fractions(scores);
     if (scores.empty() || scores[0].straight < (linear ? kSurelyStraight : kLeastStraight)) return;
     if (kClear * straightness(linear ? scores_as_said() : scores, linear ? DepthKind::planar : said) >
@@ -300,8 +458,7 @@ class DepthSettlement : private Settlement {
 
   /// The scores of the distances that the depth gives if it is read as is said.
   std::vector<DepthScore> scores_as_said() const {
-    return score_depth(planar_depths(depth_, depth_map_of(source_), view_), view_, settings_.sky,
-                       2 * depth_rounding(source_));
+    return score_depth(planar_depths(depth_, depth_map_of(source_), view_), view_, settings_.sky);
   }
 
   double straightness(const std::vector<DepthScore>& scores, DepthKind kind) const {
@@ -370,8 +527,9 @@ class DepthSettlement : private Settlement {
             "--position-space", false);
   }
 
-  ValueStatistics values_;    // of all pixels
-  ValueStatistics surfaces_;  // above 0 and before the sky: of distances, all that are surfaces
+  Side below_0_, above_0_, above_1_;  // finite, and nearer than the sky
+  ValueStatistics values_;            // of all pixels
+  ValueStatistics surfaces_;          // above 0 and before the sky: of distances, all that are surfaces
 };
 
 }  // namespace

@@ -195,7 +195,7 @@ class NormalSettlement : private Settlement {
     else if (chosen->agreement < kLeastAgreement)
       note(NoteCode::normals_disagree, fmt::format("only {:.0f} % of the normals agree with depth, read as {}: {}",
                                                    100 * scores[0].agreement, text_of(scores[0]), kCheck));
-    else if (!doubt_width(*chosen) && !agrees(*chosen) && depth_rounding(source_) == kFloatRounding)
+    else if (!doubt_width(*chosen) && !agrees(*chosen) && !has_coarse_depth(source_))
       note(NoteCode::normals_disagree,
            fmt::format("even the best quarter of the normals is up to {:.1f} degrees off those of depth: {}",
                        chosen->angle, kCheck));
@@ -215,8 +215,8 @@ class NormalSettlement : private Settlement {
                                          normal_path(), text_of(chosen));
     if (best.agreement >= kLeastAgreement && best.agreement > kClear * chosen.agreement)
       fail(ErrorKind::input, "{}: as {} ({}); {}", read, text_of(best), kSpaceOptions, kWithout);
-    // Half floats turn the normals of depth themselves by so much.
-    if (chosen.agreement < kRefuted && depth_rounding(source_) == kFloatRounding)
+    // Coarse depth turns the normals of depth themselves by so much.
+    if (chosen.agreement < kRefuted && !has_coarse_depth(source_))
       fail(ErrorKind::input, "{}, nor in any other space: {}; {}", read, kCheck, kWithout);
   }
 

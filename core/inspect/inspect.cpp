@@ -62,8 +62,7 @@ void add_planar(InspectedDepth& depth, std::span<const float> raw, const std::ve
   }
   depth.scores.emplace();
   if (source.depth_kind != DepthKind::position)
-    depth.scores =
-        score_depth(raw, view_of(source.camera, source.data, source.display), settings.sky, depth_rounding(source));
+    depth.scores = score_depth(raw, view_of(source.camera, source.data, source.display), settings.sky);
 }
 
 InspectedNormals normals_of(std::span<const float> normal, std::span<const float> raw, const FrameSource& source) {

@@ -13,6 +13,7 @@
 #include "core/formats/exr.h"
 #include "core/frame/cryptomatte.h"
 #include "core/frame/evidence.h"
+#include "core/frame/flatness.h"
 #include "core/frame/gbuffer.h"
 #include "core/inspect/deep_samples.h"
 

@@ -1,0 +1,279 @@
+// Least-squares fits over blocks of pixels, and common divisors of values.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/frame/flatness.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "core/base/error.h"
+
+namespace alcove {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// Blocks. Their sides are parts of the picture's longer side: a small one finds more flat places, and a large one sees
+// further below the rounding of the values.
+constexpr std::array kSidesPerPicture = {24, 12, 48};  // tried in this order until one tells
+constexpr int kLeastSide = 9;                          // px
+constexpr std::size_t kAcross = 9;                     // samples of a block in x and in y
+constexpr std::size_t kSamples = kAcross * kAcross;
+constexpr std::size_t kLeastBlocks = 12;  // fewer smooth ones tell nothing
+
+// What counts as flat. Second-degree terms are amplitudes at the block's edge, relative to the block's mean.
+constexpr double kSmooth = 0.005;        // largest residual of one surface
+constexpr double kNoise = 0.6;           // of the residual: an amplitude that noise may feign
+constexpr double kStep = 0.3;            // of the step: the same for rounded values
+constexpr double kFloatRounding = 3e-7;  // the same for exact values
+constexpr double kClearly = 2;           // another kind is refuted from so many times that amplitude on
+constexpr double kTells = 0.1;           // a share that needs no other size of blocks
+
+/// The polynomials of second degree over a block, orthonormal over its samples: 1, x, y and three of second degree.
+constexpr std::size_t kTerms = 6;
+struct Basis {
+  std::array<int, kAcross> at{};  // px from the block's corner
+  std::array<std::array<double, kSamples>, kTerms> terms{};
+
+  explicit Basis(int side) {
+    const double half = 0.5 * (side - 1);
+    for (std::size_t i = 0; i < kAcross; i++) at[i] = int(std::lround(double(i) * (side - 1) / (kAcross - 1)));
+    for (std::size_t i = 0; i < kSamples; i++) {
+      const double x = (at[i % kAcross] - half) / half, y = (at[i / kAcross] - half) / half;
+      const std::array powers{1.0, x, y, x * x, x * y, y * y};
+      for (std::size_t k = 0; k < kTerms; k++) terms[k][i] = powers[k];
+    }
+    for (std::size_t k = 0; k < kTerms; k++) {  // Gram-Schmidt
+      for (std::size_t j = 0; j < k; j++) {
+        double along = 0;
+        for (std::size_t i = 0; i < kSamples; i++) along += terms[k][i] * terms[j][i];
+        for (std::size_t i = 0; i < kSamples; i++) terms[k][i] -= along * terms[j][i];
+      }
+      double squared = 0;
+      for (double t : terms[k]) squared += t * t;
+      for (double& t : terms[k]) t /= std::sqrt(squared);
+    }
+  }
+};
+
+using Samples = std::array<double, kSamples>;
+
+/// What a fit finds, relative to the block's mean: amplitudes of the line and of the second-degree terms at the block's
+/// edge, and the root mean square of what is left.
+struct Fit {
+  double slope = 0, bend = 0, residual = 0;
+};
+// From the root mean squares of x and of x^2 over nine samples from -1 to 1 to their amplitudes.
+constexpr double kLineEdge = 1.549, kSquareEdge = 2.735;
+
+Fit fit(const Samples& values, const Basis& basis) {
+  std::array<double, kTerms> c{};
+  for (std::size_t k = 0; k < kTerms; k++)
+    for (std::size_t i = 0; i < kSamples; i++) c[k] += values[i] * basis.terms[k][i];
+  // The residual is formed sample by sample: differences of sums of squares would lose it in their rounding.
+  double rest = 0;
+  for (std::size_t i = 0; i < kSamples; i++) {
+    double r = values[i];
+    for (std::size_t k = 0; k < kTerms; k++) r -= c[k] * basis.terms[k][i];
+    rest += r * r;
+  }
+  const double mean = std::abs(c[0]) / std::sqrt(double(kSamples));
+  const double scale = 1 / (mean * std::sqrt(double(kSamples)));
+  return {kLineEdge * std::hypot(c[1], c[2]) * scale, kSquareEdge * std::hypot(c[3], c[4], c[5]) * scale,
+          std::sqrt(rest / double(kSamples - kTerms)) / mean};
+}
+
+/// The largest number of which all the differences are multiples, within the rounding of floats near `value`; 0 where
+/// that rounding hides it.
+double common_step(std::span<const double> sorted, double value) {
+  const double rounding = value * 0x1p-22;
+  double divisor = 0;
+  for (std::size_t i = 1; i < sorted.size(); i++) {
+    double a = sorted[i] - sorted[i - 1], b = divisor;
+    while (b > 4 * rounding) {
+      // What is left of a multiple may lie a little below it.
+      const double rest = a - b * std::round(a / b);
+      a = b;
+      b = std::abs(rest);
+    }
+    divisor = a;
+  }
+  return divisor > 32 * rounding ? divisor : 0;
+}
+
+/// The step of values of about this size, relative to them.
+double relative_step(const Grain& grain, double value) {
+  if (grain.step == 0) return 0;
+  return grain.is_fixed ? grain.step / value : std::max(grain.is_half ? 0x1p-10 : 0, grain.step / grain.median);
+}
+
+/// The length of a pixel's ray at unit depth.
+double ray_length(const View& view, int x, int y) {
+  const double u = (x + 0.5 - view.center.x) * view.tangent_per_pixel.x;
+  const double v = (y + 0.5 - view.center.y) * view.tangent_per_pixel.y;
+  return view.orthographic ? 1 : std::sqrt(1 + u * u + v * v);
+}
+
+/// Calls `visit` with the samples of every block that holds nothing but surfaces, and with the lengths of their rays.
+/// `value_of` gives the value of a pixel by its number and its ray, infinite where there is no surface.
+template <class ValueOf, class Visit>
+void for_each_block(const View& view, int side, int step, const Basis& basis, const ValueOf& value_of,
+                    const Visit& visit) {
+  Samples values, lengths;
+  const auto take = [&](int left, int top) {
+    for (std::size_t i = 0; i < kSamples; i++) {
+      const int x = left + basis.at[i % kAcross], y = top + basis.at[i / kAcross];
+      lengths[i] = ray_length(view, x, y);
+      values[i] = value_of(std::size_t(y) * std::size_t(view.size.x) + std::size_t(x), lengths[i]);
+      if (!std::isfinite(values[i])) return false;
+    }
+    return true;
+  };
+  for (int y = 0; y + side <= view.size.y; y += step)
+    for (int x = 0; x + side <= view.size.x; x += step)
+      if (take(x, y)) visit(values, lengths);
+}
+
+int side_of(const View& view, int per_picture) {
+  const int side = std::max(view.size.x, view.size.y) / per_picture | 1;
+  return std::min(std::max(side, kLeastSide), std::min(view.size.x, view.size.y));
+}
+
+Samples quotients(const Samples& over, const Samples& under) {
+  Samples q;
+  for (std::size_t i = 0; i < kSamples; i++) q[i] = over[i] / under[i];
+  return q;
+}
+
+/// The kinds by which a block is flat, of planar, ray and inverse; whether it is smooth at all.
+struct Flat {
+  bool is_smooth = false;
+  std::array<bool, 3> by{};
+};
+
+Flat flat_by(const Samples& values, const Samples& lengths, bool is_orthographic, const Basis& basis,
+             const Grain& grain) {
+  Samples ones;
+  ones.fill(1);
+  const Fit value = fit(values, basis), inverse = fit(quotients(ones, values), basis);
+  std::array fits{inverse, is_orthographic ? inverse : fit(quotients(lengths, values), basis), value};
+  if (is_orthographic) std::swap(fits[0], fits[2]);
+  const double residual = std::ranges::min(fits, {}, &Fit::residual).residual;
+  Flat flat{residual < kSmooth, {}};
+  if (!flat.is_smooth) return flat;
+  const double step = relative_step(grain, values[kSamples / 2]);
+  const double noise = kNoise * residual + kStep * step + kFloatRounding;
+  for (std::size_t k = 0; k < 3; k++) {
+    if (is_orthographic && k == 1) continue;
+    bool is_alone = fits[k].bend < noise;
+    for (std::size_t other = 0; other < 3; other++)
+      is_alone &= other == k || (is_orthographic && other == 1) || fits[other].bend > kClearly * noise;
+    flat.by[k] = is_alone;
+  }
+  return flat;
+}
+
+/// Scores by blocks of one size; nothing where too few of them are smooth.
+std::vector<DepthScore> scores_by(std::span<const float> raw, const View& view, double sky, int side,
+                                  const Grain& grain) {
+  std::vector<DepthScore> scores{{DepthKind::planar}, {DepthKind::ray}, {DepthKind::inverse}};
+  if (side < kLeastSide) return {};
+  const Basis basis(side);
+  std::size_t count = 0;
+  // Large blocks overlap by more, so that there are enough of them.
+  const int step = std::max(1, std::min(side / 2, std::max(view.size.x, view.size.y) / 48));
+  const auto value_of = [&](std::size_t i, double) {
+    const double value = std::abs(double(raw[i]));
+    return value > 0 && value < sky ? value : kInfinity;
+  };
+  for_each_block(view, side, step, basis, value_of, [&](const Samples& values, const Samples& lengths) {
+    const Flat flat = flat_by(values, lengths, view.orthographic != 0, basis, grain);
+    count += flat.is_smooth;
+    for (std::size_t k = 0; k < 3; k++) scores[k].straight += flat.by[k];
+  });
+  if (count < kLeastBlocks) return {};
+  for (auto& score : scores) score.straight /= double(count);
+  std::ranges::stable_sort(scores, std::greater(), &DepthScore::straight);
+  return scores;
+}
+
+}  // namespace
+
+Grain grain_of(std::span<const float> raw, double sky) {
+  constexpr std::size_t kSampled = 1 << 15;  // values
+  constexpr std::size_t kAbout = 32;         // neighbours whose differences are looked at
+  constexpr double kCoarse = 0x1p-14;        // of the value: finer steps do no harm
+  std::vector<double> values;
+  for (std::size_t i = 0, step = raw.size() / kSampled + 1; i < raw.size(); i += step)
+    if (const double v = std::abs(double(raw[i])); v > 0 && v < sky && std::isfinite(v)) values.push_back(v);
+  if (values.empty()) return {};
+  std::ranges::sort(values);
+  Grain grain{values[values.size() / 2]};
+  values.erase(std::unique(values.begin(), values.end()), values.end());
+  if (values.size() < 2 * kAbout) return grain;
+  struct Place {
+    double value, step;
+  };
+  const auto place_at = [&](double part) {
+    const std::size_t first = std::size_t(part * double(values.size() - kAbout));
+    const double value = values[first + kAbout / 2];
+    return Place{value, common_step(std::span(values).subspan(first, kAbout), value)};
+  };
+  const std::array places{place_at(0.1), place_at(0.5), place_at(0.9)};
+  grain.step = places[1].step;
+  if (grain.step == 0) return grain;
+  grain.is_coarse = grain.step >= kCoarse * grain.median;
+  grain.is_half = std::ranges::all_of(places, [](const Place& p) {
+    return p.step >= 0.99 * 0x1p-11 * p.value && p.step <= 1.01 * 0x1p-10 * p.value;
+  });
+  const auto is_same = [&](const Place& p) { return std::abs(p.step / grain.step - 1) < 0.01; };
+  grain.is_fixed = !grain.is_half && std::ranges::all_of(places, is_same);
+  return grain;
+}
+
+std::vector<DepthScore> score_depth(std::span<const float> raw, const View& view, double sky) {
+  const Grain grain = grain_of(raw, sky);
+  std::vector<DepthScore> best;
+  for (const int per_picture : kSidesPerPicture) {
+    auto scores = scores_by(raw, view, sky, side_of(view, per_picture), grain);
+    if (!scores.empty() && (best.empty() || scores[0].straight > best[0].straight)) best = std::move(scores);
+    if (!best.empty() && best[0].straight >= kTells) break;
+  }
+  return best;
+}
+
+std::optional<double> jitter_of(std::span<const float> raw, const DepthMap& map, const View& view,
+                                const Grain& grain) {
+  constexpr double kSmoothNoise = 0.03;    // largest residual, which noise of steep surfaces reaches
+  constexpr double kLeastSlope = 1e-4;     // of 1/z from pixel to pixel, relative
+  constexpr double kLeast = 0.05;          // less hardly shows
+  constexpr double kMost = 0.4;            // more is relief
+  constexpr double kSame = 1.3;            // surfaces of all slopes have the same noise, within this factor
+  constexpr std::size_t kLeastCount = 40;  // blocks
+  const int side = side_of(view, 48);
+  if (side < kLeastSide) return std::nullopt;
+  const Basis basis(side);
+  const double per_pixel = 1 / (0.5 * (side - 1));
+  std::vector<double> noises;
+  Samples ones;
+  ones.fill(1);
+  const std::size_t plane = std::size_t(view.size.x) * std::size_t(view.size.y);
+  const auto depth_of = [&](std::size_t i, double length) {
+    std::array<double, 3> values{raw[i], 0, 0};
+    if (raw.size() == 3 * plane) values = {raw[i], raw[i + plane], raw[i + 2 * plane]};
+    return planar_depth(map, values, length);
+  };
+  for_each_block(view, side, side / 2, basis, depth_of, [&](const Samples& values, const Samples&) {
+    const Fit f = fit(quotients(ones, values), basis);
+    const double slope = f.slope * per_pixel, step = relative_step(grain, values[kSamples / 2]);
+    if (f.residual < kSmoothNoise && slope > kLeastSlope && slope > 4 * step)
+      noises.push_back(f.residual < step ? 0 : f.residual / slope);
+  });
+  if (noises.size() < kLeastCount) return std::nullopt;
+  std::ranges::sort(noises);
+  const double few = noises[noises.size() / 20], some = noises[3 * noises.size() / 20];
+  return few >= kLeast && few <= kMost && some < kSame * few ? std::optional(some) : std::nullopt;
+}
+
+}  // namespace alcove
