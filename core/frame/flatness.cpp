@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "core/base/error.h"
 
@@ -24,6 +25,7 @@ constexpr std::size_t kLeastBlocks = 12;  // fewer smooth ones tell nothing
 
 // What counts as flat. Second-degree terms are amplitudes at the block's edge, relative to the block's mean.
 constexpr double kSmooth = 0.005;        // largest residual of one surface
+constexpr double kEdge = 0.05;           // a residual that no reading makes smooth
 constexpr double kNoise = 0.6;           // of the residual: an amplitude that noise may feign
 constexpr double kStep = 0.3;            // of the step: the same for rounded values
 constexpr double kFloatRounding = 3e-7;  // the same for exact values
@@ -68,38 +70,47 @@ struct Fit {
 constexpr double kLineEdge = 1.549, kSquareEdge = 2.735;
 
 Fit fit(const Samples& values, const Basis& basis) {
-  std::array<double, kTerms> c{};
-  for (std::size_t k = 0; k < kTerms; k++)
-    for (std::size_t i = 0; i < kSamples; i++) c[k] += values[i] * basis.terms[k][i];
-  // The residual is formed sample by sample: differences of sums of squares would lose it in their rounding.
-  double rest = 0;
+  double mean = 0;
+  for (double value : values) mean += value;
+  mean /= double(kSamples);
+  // Without the mean, the residual is a difference of sums of squares that are exact enough for it.
+  Samples rest;
+  double squares = 0;
   for (std::size_t i = 0; i < kSamples; i++) {
-    double r = values[i];
-    for (std::size_t k = 0; k < kTerms; k++) r -= c[k] * basis.terms[k][i];
-    rest += r * r;
+    rest[i] = values[i] / mean - 1;
+    squares += rest[i] * rest[i];
   }
-  const double mean = std::abs(c[0]) / std::sqrt(double(kSamples));
-  const double scale = 1 / (mean * std::sqrt(double(kSamples)));
+  std::array<double, kTerms> c{};
+  for (std::size_t k = 1; k < kTerms; k++) {
+    for (std::size_t i = 0; i < kSamples; i++) c[k] += rest[i] * basis.terms[k][i];
+    squares -= c[k] * c[k];
+  }
+  const double scale = 1 / std::sqrt(double(kSamples));
   return {kLineEdge * std::hypot(c[1], c[2]) * scale, kSquareEdge * std::hypot(c[3], c[4], c[5]) * scale,
-          std::sqrt(rest / double(kSamples - kTerms)) / mean};
+          std::sqrt(std::max(squares, 0.0) / double(kSamples - kTerms))};
 }
 
-/// The largest number of which all the differences are multiples, within the rounding of floats near `value`; 0 where
-/// that rounding hides it.
+/// The largest number of which all differences between neighbours are multiples, by Euclid's algorithm within the
+/// rounding of floats near `value`; 0 where that rounding hides it.
 double common_step(std::span<const double> sorted, double value) {
   const double rounding = value * 0x1p-22;
-  double divisor = 0;
-  for (std::size_t i = 1; i < sorted.size(); i++) {
-    double a = sorted[i] - sorted[i - 1], b = divisor;
-    while (b > 4 * rounding) {
-      // What is left of a multiple may lie a little below it.
-      const double rest = a - b * std::round(a / b);
-      a = b;
-      b = std::abs(rest);
+  std::vector<double> gaps;
+  for (std::size_t i = 1; i < sorted.size(); i++) gaps.push_back(sorted[i] - sorted[i - 1]);
+  std::ranges::sort(gaps);
+  double divisor = gaps.front();
+  for (double gap : gaps)
+    while (divisor > 16 * rounding) {
+      const double times = std::round(gap / divisor), rest = std::abs(gap - times * divisor);
+      // The divisor's own error counts so many times. Where that is much of it, the gap is too large to tell.
+      const double error = 2 * (times + 1) * rounding;
+      if (error > 0.25 * divisor) break;
+      if (rest <= error) {
+        divisor = gap / times;  // the larger the gap, the better it tells
+        break;
+      }
+      gap = std::exchange(divisor, rest);
     }
-    divisor = a;
-  }
-  return divisor > 32 * rounding ? divisor : 0;
+  return divisor > 16 * rounding ? divisor : 0;
 }
 
 /// The step of values of about this size, relative to them.
@@ -156,7 +167,9 @@ Flat flat_by(const Samples& values, const Samples& lengths, bool is_orthographic
              const Grain& grain) {
   Samples ones;
   ones.fill(1);
-  const Fit value = fit(values, basis), inverse = fit(quotients(ones, values), basis);
+  const Fit value = fit(values, basis);
+  if (value.residual > kEdge) return {};
+  const Fit inverse = fit(quotients(ones, values), basis);
   std::array fits{inverse, is_orthographic ? inverse : fit(quotients(lengths, values), basis), value};
   if (is_orthographic) std::swap(fits[0], fits[2]);
   const double residual = std::ranges::min(fits, {}, &Fit::residual).residual;
@@ -224,16 +237,19 @@ Grain grain_of(std::span<const float> raw, double sky) {
   grain.step = places[1].step;
   if (grain.step == 0) return grain;
   grain.is_coarse = grain.step >= kCoarse * grain.median;
-  grain.is_half = std::ranges::all_of(places, [](const Place& p) {
-    return p.step >= 0.99 * 0x1p-11 * p.value && p.step <= 1.01 * 0x1p-10 * p.value;
-  });
   const auto is_same = [&](const Place& p) { return std::abs(p.step / grain.step - 1) < 0.01; };
-  grain.is_fixed = !grain.is_half && std::ranges::all_of(places, is_same);
+  // At the border of two powers of two the smaller step stands beside the larger value.
+  const auto is_of_half = [](const Place& p) {
+    return p.step >= 0.99 * 0x1p-12 * p.value && p.step <= 1.01 * 0x1p-10 * p.value;
+  };
+  const bool are_same = std::ranges::all_of(places, is_same), is_wide = places[2].value > 2.1 * places[0].value;
+  const bool is_power = std::abs(std::log2(grain.step) - std::round(std::log2(grain.step))) < 0.01;
+  grain.is_half = std::ranges::all_of(places, is_of_half) && !(are_same && (is_wide || !is_power));
+  grain.is_fixed = are_same && !grain.is_half;
   return grain;
 }
 
-std::vector<DepthScore> score_depth(std::span<const float> raw, const View& view, double sky) {
-  const Grain grain = grain_of(raw, sky);
+std::vector<DepthScore> score_depth(std::span<const float> raw, const View& view, double sky, const Grain& grain) {
   std::vector<DepthScore> best;
   for (const int per_picture : kSidesPerPicture) {
     auto scores = scores_by(raw, view, sky, side_of(view, per_picture), grain);
@@ -243,8 +259,7 @@ std::vector<DepthScore> score_depth(std::span<const float> raw, const View& view
   return best;
 }
 
-std::optional<double> jitter_of(std::span<const float> raw, const DepthMap& map, const View& view,
-                                const Grain& grain) {
+std::optional<double> jitter_of(std::span<const float> raw, const DepthMap& map, const View& view, const Grain& grain) {
   constexpr double kSmoothNoise = 0.03;    // largest residual, which noise of steep surfaces reaches
   constexpr double kLeastSlope = 1e-4;     // of 1/z from pixel to pixel, relative
   constexpr double kLeast = 0.05;          // less hardly shows
@@ -264,7 +279,7 @@ std::optional<double> jitter_of(std::span<const float> raw, const DepthMap& map,
     if (raw.size() == 3 * plane) values = {raw[i], raw[i + plane], raw[i + 2 * plane]};
     return planar_depth(map, values, length);
   };
-  for_each_block(view, side, side / 2, basis, depth_of, [&](const Samples& values, const Samples&) {
+  for_each_block(view, side, side, basis, depth_of, [&](const Samples& values, const Samples&) {
     const Fit f = fit(quotients(ones, values), basis);
     const double slope = f.slope * per_pixel, step = relative_step(grain, values[kSamples / 2]);
     if (f.residual < kSmoothNoise && slope > kLeastSlope && slope > 4 * step)

@@ -12,6 +12,7 @@
 #include "core/base/settings.h"
 #include "core/formats/exr.h"
 #include "core/frame/channels.h"
+#include "core/frame/flatness.h"
 #include "core/frame/input_rules.h"
 #include "core/frame/raw_plane.h"
 #include "core/frame/reading.h"
@@ -41,11 +42,13 @@ struct FrameSource : Reading {
   std::vector<int> deep_parts;      // of that file
   bool deep_depth_is_half = false;  // samples are the depth, and were rounded to half floats
   RawPlaneArray<std::vector<ChannelRef>> planes;
-  Window file_data;              // what the files hold
-  std::optional<Window> region;  // what is to be written of it; none: all of data
-  std::uint64_t rows_read = 0;   // that were decoded, each as often as it was
-  bool settled = false;          // see core/frame/settle.h
-  bool has_evidence = true;      // false: its pixels did not show what was left open
+  Window file_data;                      // what the files hold
+  std::optional<Window> region;          // what is to be written of it; none: all of data
+  std::uint64_t rows_read = 0;           // that were decoded, each as often as it was
+  bool settled = false;                  // see core/frame/settle.h
+  bool has_evidence = true;              // false: its pixels did not show what was left open
+  Grain grain;                           // of the depth's values
+  std::vector<DepthScore> depth_scores;  // of depth that is no position
   // of the surfaces, scene units; none until the frame is settled, and where all is sky
   std::optional<double> median_depth;
   const InputRules* rules = nullptr;  // of the program that wrote the frame

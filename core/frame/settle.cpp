@@ -100,7 +100,8 @@ void note_jitter(FrameSource& source, std::span<const float> depth, const Grain&
 void settle(FrameSource& source, const InputSettings& settings, std::span<const float> depth,
             std::span<const float> normal) {
   refuse_8_bits(source, depth);
-  const Grain grain = source[RawPlane::depth].size() == 1 ? grain_of(depth, settings.sky) : Grain{};
+  if (source[RawPlane::depth].size() == 1) source.grain = grain_of(depth, settings.sky);
+  const Grain& grain = source.grain;
   measure_grain(source, grain);
   settle_depth(source, settings, depth, normal);
   settle_deep(source, depth);

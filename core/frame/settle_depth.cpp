@@ -74,6 +74,7 @@ class DepthSettlement : private Settlement {
 
  private:
   void settle_plane() {
+    source_.depth_scores = score_depth(depth_, view_, settings_.sky, source_.grain);
     if (source_.depth_kind_open)
       settle_kind();
     else
@@ -104,11 +105,13 @@ class DepthSettlement : private Settlement {
         double(fewer) <= kFewErrors * double(all) ||
         std::min(-values_.least, surfaces_.most) <= kRounded * std::max(-values_.least, surfaces_.most);
     if (!below_0_.varies || !above_0_.varies || is_error) return;
-    fail(ErrorKind::input,
-         "{}: depth goes from {:.3g} to {:.3g}, {:.0f} % of it below 0, so these are no distances: where it is "
-         "normalized and goes on beyond its planes, as V-Ray writes it without clamp, give --depth-kind normalized "
-         "--near N --far F, the distances of 0 and of 1; where what is below 0 is no surface, --depth-kind planar",
-         depth_path(), values_.least, surfaces_.most, 100 * double(below_0_.count) / double(all));
+    fail(
+        ErrorKind::input,
+        "{}: depth goes from {:.3g} to {:.3g}, {:.0f} % of it below 0, so these are no distances: where it is "
+        "normalized and goes on beyond its planes, as V-Ray writes it without clamp, give --depth-kind normalized "
+        "--near N --far F, the distances of 0 and of 1 (with --reversed-z, of 1 and of 0); where what is below 0 is no "
+        "surface, --depth-kind planar",
+        depth_path(), values_.least, surfaces_.most, 100 * double(below_0_.count) / double(all));
   }
 
   /// Looks at what lies at the ends of a range or beyond them: normalized depth may go on, and the sky is at the far
@@ -216,7 +219,7 @@ class DepthSettlement : private Settlement {
     if (between_planes && values_.least >= 0 && values_.most <= 1) return take_usual("all in 0 to 1");
     if (between_planes) source_.usual_depth_kind = source_.depth_kind = DepthKind::planar;
     refuse_signs();
-    const auto scores = score_depth(depth_, view_, settings_.sky);
+    const auto& scores = source_.depth_scores;
     const bool tells = !scores.empty() && scores[0].straight >= kLeastStraight;
     if (!tells) source_.has_evidence = false;
     if (tells || usual != DepthKind::inverse) refuse_fractions(scores);
@@ -320,7 +323,7 @@ class DepthSettlement : private Settlement {
   double straightness_from_1() const {
     std::vector<float> turned(depth_.begin(), depth_.end());
     for (float& d : turned) d = d > 0 && d < 1 ? 1 - d : 0;
-    return straightness(score_depth(turned, view_, settings_.sky), DepthKind::planar);
+    return straightness(score_depth(turned, view_, settings_.sky, source_.grain), DepthKind::planar);
   }
 
   /// The options that read normalized depth, and what their number is.
@@ -443,7 +446,7 @@ class DepthSettlement : private Settlement {
     const DepthKind said = source_.depth_kind != DepthKind::device ? source_.depth_kind
                            : source_.camera.orthographic           ? DepthKind::planar
                                                                    : DepthKind::inverse;
-    const auto scores = score_depth(depth_, view_, settings_.sky);
+    const auto& scores = source_.depth_scores;
     doubt_fractions(scores);
     if (scores.empty() || scores[0].straight < (linear ? kSurelyStraight : kLeastStraight)) return;
     if (kClear * straightness(linear ? scores_as_said() : scores, linear ? DepthKind::planar : said) >
@@ -458,7 +461,8 @@ class DepthSettlement : private Settlement {
 
   /// The scores of the distances that the depth gives if it is read as is said.
   std::vector<DepthScore> scores_as_said() const {
-    return score_depth(planar_depths(depth_, depth_map_of(source_), view_), view_, settings_.sky);
+    const auto planar = planar_depths(depth_, depth_map_of(source_), view_);
+    return score_depth(planar, view_, settings_.sky, grain_of(planar, settings_.sky));
   }
 
   double straightness(const std::vector<DepthScore>& scores, DepthKind kind) const {

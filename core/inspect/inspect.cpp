@@ -49,8 +49,7 @@ InspectedCamera camera_of(const FrameSource& source, const InputSettings& settin
 }
 
 /// Adds what is known once the frame is settled: distances, sky, and the scores of the other readings.
-void add_planar(InspectedDepth& depth, std::span<const float> raw, const std::vector<float>& planar,
-                const FrameSource& source, const InputSettings& settings) {
+void add_planar(InspectedDepth& depth, const std::vector<float>& planar, const FrameSource& source) {
   std::vector<float> surfaces;
   std::ranges::copy_if(planar, std::back_inserter(surfaces), [](float z) { return !std::isinf(z); });
   depth.sky_share = 1 - double(surfaces.size()) / double(planar.size());
@@ -60,9 +59,7 @@ void add_planar(InspectedDepth& depth, std::span<const float> raw, const std::ve
     depth.median = surfaces[surfaces.size() / 2];
     depth.farthest = surfaces.back();
   }
-  depth.scores.emplace();
-  if (source.depth_kind != DepthKind::position)
-    depth.scores = score_depth(raw, view_of(source.camera, source.data, source.display), settings.sky);
+  depth.scores = source.depth_scores;
 }
 
 InspectedNormals normals_of(std::span<const float> normal, std::span<const float> raw, const FrameSource& source) {
@@ -201,7 +198,7 @@ struct Inspector {
 
   void describe() {
     const View view = view_of(source.camera, source.data, source.display);
-    add_planar(*found.depth, depth, planar_depths(depth, depth_map_of(source), view), source, reading);
+    add_planar(*found.depth, planar_depths(depth, depth_map_of(source), view), source);
     look_at_normals();
   }
 

@@ -10,7 +10,7 @@
 #include <regex>
 
 #include "core/formats/exr.h"
-#include "support/program.h"
+#include "tests/support/program.h"
 
 namespace alcove::test {
 namespace {
@@ -64,7 +64,8 @@ class Strangers : public testing::TestWithParam<std::size_t> {
     double squares = 0;
     for (std::size_t i = 0; i < ao.size(); i++) squares += std::pow(ao[i] - truth[i], 2);
     const double rmse = std::sqrt(squares / double(ao.size()));
-    return rmse <= expect["rmse"].get<double>() ? "" : fmt::format("RMSE {:.4f} above {}; ", rmse, expect["rmse"].dump());
+    return rmse <= expect["rmse"].get<double>() ? ""
+                                                : fmt::format("RMSE {:.4f} above {}; ", rmse, expect["rmse"].dump());
   }
 
   /// Lists what does not hold; "" where all does.
@@ -105,8 +106,8 @@ TEST_P(Strangers, AreReadRightOrToldWhatIsWrong) {
   const Json& row = all_cases()[GetParam()];
   const auto arguments = row["args"].get<Arguments>();
   const bool is_inspect = row["expect"].contains("inspect");
-  EXPECT_EQ(failures(arguments, row["expect"]), "")
-      << row["what"].get<std::string>() << "\n" << called(is_inspect ? "inspect" : "run", arguments).finished;
+  EXPECT_EQ(failures(arguments, row["expect"]), "") << row["what"].get<std::string>() << "\n"
+                                                    << called(is_inspect ? "inspect" : "run", arguments).finished;
 }
 
 INSTANTIATE_TEST_SUITE_P(Pack, Strangers, testing::Range(std::size_t(0), all_cases().size()), [](const auto& info) {
