@@ -50,17 +50,30 @@ void note_half(FrameSource& source, std::span<const float> depth) {
                    source[RawPlane::depth][0].channel, *middle, step)});
 }
 
-}  // namespace
-
-void settle(FrameSource& source, const InputSettings& settings, std::span<const float> depth,
-            std::span<const float> normal) {
-  refuse_8_bits(source, depth);
+/// What depth and normals are, by the camera as it is.
+void settle_meaning(FrameSource& source, const InputSettings& settings, std::span<const float> depth,
+                    std::span<const float> normal) {
   settle_depth(source, settings, depth, normal);
   settle_deep(source, depth);
   if (source[RawPlane::normal].empty())
     note_centre(source);
   else
     settle_normals(source, settings, depth, normal);
+}
+
+}  // namespace
+
+void settle(FrameSource& source, const InputSettings& settings, std::span<const float> depth,
+            std::span<const float> normal) {
+  refuse_8_bits(source, depth);
+  const std::string refutation = settle_camera(source, settings);
+  try {
+    settle_meaning(source, settings, depth, normal);
+  } catch (const Error& error) {
+    // By a wrong lens anything may look wrong.
+    if (refutation.empty()) throw;
+    fail(error.kind(), "{}; {}", error.what(), refutation);
+  }
   note_half(source, depth);
   source.depth_step = has_step(source.depth_kind) ? step_of(depth) : 0;
   source.median_depth = median_depth(source, depth);

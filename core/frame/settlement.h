@@ -42,6 +42,10 @@ class Settlement {
   View view_;
 };
 
+/// Holds the camera against the positions that the depth's file may have beside it. Notes a lens that they refute by
+/// pixels, and gives the note's text; "" where they do not. Refuses panoramas.
+std::string settle_camera(FrameSource& source, const InputSettings& settings);
+
 /// Settles kind and sign of the depth, or the space of positions.
 void settle_depth(FrameSource& source, const InputSettings& settings, std::span<const float> depth,
                   std::span<const float> normal);
