@@ -23,6 +23,7 @@ enum class NoteCode {
   normals_disagree,
   principal_point,
   field_of_view,
+  camera_scaled,
   // what harms AO
   half_depth,
   overflown_depth,

@@ -87,7 +87,8 @@ bool is_same_camera(const Camera& a, const Camera& b) {
 void note_other_camera(FrameSource& source, const ChannelRef& ref) {
   const auto camera_of = [&](const ChannelRef& channel) {
     const ExrFile& file = file_of(source, channel);
-    return header_camera(file.attribute_texts(channel.part), source.display, source.file_data, source.pixel_aspect);
+    return header_camera(file.attribute_texts(channel.part), source.display, source.file_data, source.pixel_aspect,
+                         source.layer_of(channel));
   };
   const auto theirs = camera_of(ref), ours = camera_of(source[RawPlane::depth][0]);
   if (theirs && ours && !is_same_camera(theirs->camera, ours->camera))
@@ -101,7 +102,7 @@ void note_other_camera(FrameSource& source, const ChannelRef& ref) {
 ChannelRef find_channel(FrameSource& source, ChannelSearch& search, std::size_t file, const std::string& chosen) {
   const ChannelRef& depth = source[RawPlane::depth][0];
   const bool is_alone = file != depth.file;
-  auto found = search.find_by_rules(file, behind_names(), chosen, source.rules->depth).first;
+  auto found = search.find_by_rules(file, behind_names(), chosen, source.rules->depth).channels;
   if (found.empty()) found = search.require(file, behind_names(), chosen, is_alone, "Z");
   if (found[0] == depth)
     fail(ErrorKind::input,

@@ -94,7 +94,12 @@ Json object_of(const std::string& text, const std::string& path) {
     return true;
   };
   Json top = Json::parse(text, bounded, false);
-  if (!top.is_object()) fail(ErrorKind::input, "{}: not a JSON object; --camera takes a camera file", path);
+  if (!top.is_object())
+    fail(
+        ErrorKind::input,
+        "{}: not a JSON object: --camera takes a camera file in JSON, as docs/inputs.md describes it, or a .chan file, "
+        "which Nuke, Maya, Houdini and Blender export from a camera",
+        path);
   return top;
 }
 
@@ -268,6 +273,7 @@ Camera fitted(Camera camera, const Window& display, const std::string& path) {
          "{}: the camera is for {}x{} pixels, and the frame's display window is {}x{}: give a --camera that fits", path,
          camera.width, camera.height, display.width, display.height);
   const double scale = double(display.width) / camera.width;
+  camera.scaled_from = {camera.width, camera.height};
   camera.width = display.width;
   camera.height = display.height;
   for (double* x : {&camera.fx, &camera.fy, &camera.cx, &camera.cy}) *x *= scale;

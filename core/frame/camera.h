@@ -17,9 +17,10 @@ namespace alcove {
 /// Projection onto the display window: view space is right-handed, x right, y up, the camera looks along -z.
 /// A point is seen at (cx + fx x / -z, cy - fy y / -z), or (cx + fx x, cy - fy y) when orthographic.
 struct Camera {
-  int width = 0, height = 0;  // px of the display window it was made for, > 0
-  double fx = 0, fy = 0;      // px (perspective) or px per scene unit (orthographic), > 0
-  double cx = 0, cy = 0;      // px from the display window's upper left corner
+  int width = 0, height = 0;         // px of the display window it was made for, > 0
+  std::array<int, 2> scaled_from{};  // px of the resolution that its file is for, where that is another one
+  double fx = 0, fy = 0;             // px (perspective) or px per scene unit (orthographic), > 0
+  double cx = 0, cy = 0;             // px from the display window's upper left corner
   bool orthographic = false;
   // A rotation, which mirrors where the world is left-handed; none if the source does not tell.
   std::optional<Matrix3> view_from_world;
@@ -35,6 +36,7 @@ struct Camera {
   DepthKind depth_kind = DepthKind::automatic;  // what its source says of the frame's depth
   NormalSpace normal_space = NormalSpace::automatic;
   NormalEncoding normal_encoding = NormalEncoding::automatic;
+  std::optional<Vector3> chan_angles;  // of a .chan file about x, y and z, radians, which --chan-rotation puts in order
 };
 
 /// The options that give a camera.

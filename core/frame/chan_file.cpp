@@ -64,6 +64,15 @@ Matrix3 turn_about(std::size_t axis, double angle) {
 
 }  // namespace
 
+Matrix3 view_by_angles(const Vector3& angles, const std::string& rotation) {
+  Matrix3 turned{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+  for (const char axis : rotation) {
+    const auto place = std::size_t(axis - 'x');
+    turned = product(turn_about(place, angles[place]), turned);
+  }
+  return transposed(turned);
+}
+
 bool is_chan_file(const std::string& path) { return lower_case(path).ends_with(".chan"); }
 
 Camera read_chan(const std::string& path, int frame, const std::string& rotation, const Window& display,
@@ -76,13 +85,9 @@ Camera read_chan(const std::string& path, int frame, const std::string& rotation
   const double fov = numbers[kWithoutView];
   if (!(fov > 0 && fov < 180))
     fail(ErrorKind::input, "{}: the vertical field of view of frame {} is {} degrees (--camera)", path, frame, fov);
-  Matrix3 turned{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-  for (const char axis : rotation) {
-    const auto place = std::size_t(axis - 'x');
-    turned = product(turn_about(place, radians(numbers[4 + place])), turned);
-  }
   Camera camera = centred(display, 0.5 * display.height / std::tan(0.5 * radians(fov)) / pixel_aspect, pixel_aspect);
-  camera.view_from_world = transposed(turned);
+  camera.chan_angles = {radians(numbers[4]), radians(numbers[5]), radians(numbers[6])};
+  camera.view_from_world = view_by_angles(*camera.chan_angles, rotation);
   camera.view_from_world_offset = scaled(times(*camera.view_from_world, {numbers[1], numbers[2], numbers[3]}), -1);
   return camera;
 }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <string>
 
 #include "core/frame/camera.h"
@@ -17,6 +18,12 @@ bool is_chan_file(const std::string& path);
 /// the display window. Fails with ErrorKind::input, naming file, frame and what is wrong.
 Camera read_chan(const std::string& path, int frame, const std::string& rotation, const Window& display,
                  double pixel_aspect);
+
+/// The rotation from the world to a camera's space, of angles about x, y and z in radians.
+Matrix3 view_by_angles(const Vector3& angles, const std::string& rotation);
+
+/// The orders in which a camera may be turned about the axes.
+inline constexpr std::array kChanRotations{"xyz", "xzy", "yxz", "yzx", "zxy", "zyx"};
 
 /// Fails with ErrorKind::input where the file has no line of this frame.
 void require_in_chan(const std::string& path, int frame);

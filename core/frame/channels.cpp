@@ -10,6 +10,7 @@
 #include "core/base/error.h"
 #include "core/base/text.h"
 #include "core/formats/open_image.h"
+#include "core/frame/name_pattern.h"
 
 namespace alcove {
 
@@ -292,10 +293,55 @@ std::vector<ChannelRef> find_chosen(const ExrFile& file, const std::vector<Named
   return refs_of(found, file);
 }
 
-/// Finds the first of the candidates that is there, in the order of the rules. Its name is a layer, or else a channel.
+/// The layers that fit a pattern and hold the AOV, in lower case.
+std::vector<std::string> fitting_layers(const ExrFile& file, const std::vector<NamedChannel>& channels,
+                                        const AovNames& names, const std::string& pattern) {
+  std::set<std::string> layers;
+  for (const auto& channel : channels)
+    for (const auto& spelling : channel.spellings) {
+      const std::string layer = spelling.substr(0, std::min(spelling.rfind('.'), spelling.size()));
+      if (fits_pattern(layer, pattern)) layers.insert(layer);
+    }
+  std::erase_if(layers,
+                [&](const auto& layer) { return find_in_layer(file, channels, names, layer, names.in_layer).empty(); });
+  return {layers.begin(), layers.end()};
+}
+
+/// Keeps the layer whose end, for which the last * of the pattern stands, another layer ends in too. The longest end
+/// counts.
+void keep_beside(std::vector<std::string>& layers, const std::string& pattern, const std::string& beside) {
+  const std::size_t star = pattern.rfind('*');
+  const std::string stem = pattern.substr(pattern.rfind('*', star - 1) + 1, star - 1 - pattern.rfind('*', star - 1));
+  const auto end_of = [&](const std::string& layer) { return layer.substr(layer.rfind(stem) + stem.size()); };
+  std::erase_if(layers, [&](const auto& layer) { return !lower_case(beside).ends_with(end_of(layer)); });
+  if (layers.size() > 1)
+    layers = {*std::ranges::max_element(layers, {}, [&](const auto& l) { return end_of(l).size(); })};
+}
+
+/// Finds the AOV in the layer that fits a pattern.
+std::vector<ChannelRef> find_fitting(const ExrFile& file, const std::vector<NamedChannel>& channels,
+                                     const AovNames& names, const std::string& pattern, const std::string& beside) {
+  auto layers = fitting_layers(file, channels, names, pattern);
+  if (layers.size() > 1 && !beside.empty()) keep_beside(layers, pattern, beside);
+  if (layers.empty()) return {};
+  if (layers.size() == 1) return find_in_layer(file, channels, names, layers.front(), names.in_layer);
+  std::vector<std::string> found;
+  for (const auto& layer : layers)
+    found.push_back(find_in_layer(file, channels, names, layer, names.in_layer).front().channel);
+  fail(ErrorKind::input, "{}: several cameras or passes hold a {}: {}; say which with {}", file.path(), names.what,
+       list_of(found), names.channel_option);
+}
+
+/// Finds the first of the candidates that is there, in the order of the rules. Its name is a layer, a pattern of layers,
+/// or else a channel.
 FoundByRules find_candidate(const ExrFile& file, const std::vector<NamedChannel>& channels, const AovNames& names,
-                            const std::vector<AovCandidate>& candidates) {
+                            const std::vector<AovCandidate>& candidates, const std::string& beside) {
   for (const auto& candidate : candidates) {
+    if (candidate.name.find('*') != std::string::npos) {
+      if (auto found = find_fitting(file, channels, names, candidate.name, beside); !found.empty())
+        return {std::move(found), &candidate};
+      continue;
+    }
     auto found = find_in_layer(file, channels, names, candidate.name, names.in_layer);
     const std::size_t dot = candidate.name.rfind('.');
     if (found.empty() && names.in_layer.front().size() == 1)
@@ -337,8 +383,9 @@ std::vector<ChannelRef> ChannelSearch::find(std::size_t file, const AovNames& na
 }
 
 FoundByRules ChannelSearch::find_by_rules(std::size_t file, const AovNames& names, const std::string& chosen,
-                                          const std::vector<AovCandidate>& candidates) const {
-  return chosen.empty() ? find_candidate(files_[file], channels_[file], names, candidates) : FoundByRules{};
+                                          const std::vector<AovCandidate>& candidates,
+                                          const std::string& beside) const {
+  return chosen.empty() ? find_candidate(files_[file], channels_[file], names, candidates, beside) : FoundByRules{};
 }
 
 std::vector<ChannelRef> ChannelSearch::require(std::size_t file, const AovNames& names, const std::string& chosen,

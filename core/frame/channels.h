@@ -59,7 +59,10 @@ struct NamedChannel {
 };
 
 /// Channels that the rules of a program name, and the candidate among them that was there; null if none was.
-using FoundByRules = std::pair<std::vector<ChannelRef>, const AovCandidate*>;
+struct FoundByRules {
+  std::vector<ChannelRef> channels;
+  const AovCandidate* candidate = nullptr;
+};
 
 /// Opens files once each, and searches their channels. Every failure is ErrorKind::input and names file and option.
 class ChannelSearch {
@@ -74,9 +77,11 @@ class ChannelSearch {
   /// `own_file` says that the file holds nothing else. Fails if two layers hold the AOV.
   std::vector<ChannelRef> find(std::size_t file, const AovNames& names, const std::string& chosen, bool own_file) const;
 
-  /// Finds the AOV as the rules name it; gives nothing if the user chose, or if none of the candidates is there.
+  /// Finds the AOV as the rules name it; gives nothing if the user chose, or if none of the candidates is there. Of
+  /// several layers that fit one pattern, as of several cameras, it is the one that ends as `beside` does. Fails if that
+  /// leaves several.
   FoundByRules find_by_rules(std::size_t file, const AovNames& names, const std::string& chosen,
-                             const std::vector<AovCandidate>& candidates) const;
+                             const std::vector<AovCandidate>& candidates, const std::string& beside = "") const;
 
   /// Does the same as find(), but fails if there is nothing. `hint` is the name that near misses are measured by.
   std::vector<ChannelRef> require(std::size_t file, const AovNames& names, const std::string& chosen, bool own_file,

@@ -91,7 +91,7 @@ std::vector<ChannelRef> find_deep_depth(FrameSource& source, ChannelSearch& sear
            source.files[depth_file].path(), settings.deep);
   } else {
     if (settings.deep.empty() || !settings.depth.empty() || !search.find(depth_file, kDepthNames, "", false).empty() ||
-        search.find_by_rules(depth_file, kDepthNames, "", source.rules->depth).second)
+        search.find_by_rules(depth_file, kDepthNames, "", source.rules->depth).candidate)
       return {};
     choose(source, search.open(settings.deep, "--deep"), settings);
   }

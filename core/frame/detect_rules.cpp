@@ -38,10 +38,10 @@ DetectedRules detect_rules(const ExrFile& file) {
   const auto marks = marks_of(file);
   for (const bool last : {false, true})
     for (const auto& rules : all_input_rules())
-      for (const auto& pattern : rules.detect)
+      for (const auto& pattern : last ? rules.detect_last : rules.detect)
         if (const auto mark = std::ranges::find_if(
                 marks, [wanted = lower_case(pattern)](const auto& m) { return fits_pattern(m, wanted); });
-            rules.last == last && mark != marks.end())
+            mark != marks.end())
           return {&rules, *mark};
   return {&input_rules("generic"), ""};
 }

@@ -8,6 +8,7 @@
 #include <limits>
 #include <numbers>
 
+#include "core/frame/flatness.h"
 #include "kernels/prepare.h"
 
 namespace alcove {
@@ -28,11 +29,6 @@ std::size_t index_of(const View& view, int x, int y) {
 Vector3 tangent_at(const View& view, int x, int y) {
   return {(x + 0.5 - view.center.x) * view.tangent_per_pixel.x, (y + 0.5 - view.center.y) * view.tangent_per_pixel.y,
           -1};
-}
-
-double ray_length(const View& view, int x, int y) {
-  const Vector3 t = tangent_at(view, x, y);
-  return view.orthographic ? 1 : std::sqrt(dot(t, t));
 }
 
 Vector3 position_at(const View& view, int x, int y, double z) {

@@ -119,13 +119,6 @@ double relative_step(const Grain& grain, double value) {
   return grain.is_fixed ? grain.step / value : std::max(grain.is_half ? 0x1p-10 : 0, grain.step / grain.median);
 }
 
-/// The length of a pixel's ray at unit depth.
-double ray_length(const View& view, int x, int y) {
-  const double u = (x + 0.5 - view.center.x) * view.tangent_per_pixel.x;
-  const double v = (y + 0.5 - view.center.y) * view.tangent_per_pixel.y;
-  return view.orthographic ? 1 : std::sqrt(1 + u * u + v * v);
-}
-
 /// Calls `visit` with the samples of every block that holds nothing but surfaces, and with the lengths of their rays.
 /// `value_of` gives the value of a pixel by its number and its ray, infinite where there is no surface.
 template <class ValueOf, class Visit>
@@ -212,6 +205,12 @@ std::vector<DepthScore> scores_by(std::span<const float> raw, const View& view, 
 }
 
 }  // namespace
+
+double ray_length(const View& view, int x, int y) {
+  const double u = (x + 0.5 - view.center.x) * view.tangent_per_pixel.x;
+  const double v = (y + 0.5 - view.center.y) * view.tangent_per_pixel.y;
+  return view.orthographic ? 1 : std::sqrt(1 + u * u + v * v);
+}
 
 Grain grain_of(std::span<const float> raw, double sky) {
   constexpr std::size_t kSampled = 1 << 15;  // values

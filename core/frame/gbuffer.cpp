@@ -18,6 +18,7 @@
 #include "core/frame/header_camera.h"
 #include "core/frame/input_files.h"
 #include "core/frame/matte.h"
+#include "core/frame/panorama.h"
 #include "core/frame/plane_windows.h"
 #include "core/frame/position_pass.h"
 
@@ -81,10 +82,9 @@ void find_albedo(FrameSource& source, ChannelSearch& search, const std::string& 
 }
 
 /// The rules that the settings name, or those of the file.
-void find_rules(FrameSource& source, std::size_t file, const InputSettings& settings) {
+void find_rules(FrameSource& source, const ExrFile& file, const InputSettings& settings) {
   const bool detects = settings.source.empty() || settings.source == "auto";
-  const DetectedRules found =
-      detects ? detect_rules(source.files[file]) : DetectedRules{&input_rules(settings.source), "--source"};
+  const DetectedRules found = detects ? detect_rules(file) : DetectedRules{&input_rules(settings.source), "--source"};
   source.rules = found.rules;
   source.rules_by = found.by;
   source.rules_said = !detects;
@@ -118,8 +118,9 @@ std::vector<ChannelRef> find_depth(FrameSource& source, const ChannelSearch& sea
 std::vector<ChannelRef> find_normal(FrameSource& source, const ChannelSearch& search, std::size_t file,
                                     const InputSettings& settings) {
   if (source.rules->normal_space != NormalSpace::automatic) source.usual_normal_space = source.rules->normal_space;
+  const std::string depth_layer = source.layer_of(source[RawPlane::depth].front());
   if (auto [found, candidate] =
-          search.find_by_rules(file, kNormalNames, settings.normal_channels, source.rules->normal);
+          search.find_by_rules(file, kNormalNames, settings.normal_channels, source.rules->normal, depth_layer);
       candidate) {
     if (candidate->space != NormalSpace::automatic) source.usual_normal_space = candidate->space;
     return found;
@@ -134,30 +135,53 @@ std::vector<ChannelRef> find_normal(FrameSource& source, const ChannelSearch& se
   return search.find(file, two, "", false);
 }
 
-/// Notes a camera file whose pixels have another shape than the file of the frame says: no pixel shows which is right.
+/// Notes a camera, by a file or by the header, whose pixels have another shape than the file of the frame says: no pixel
+/// shows which is right. Who crops a picture may keep the header of the whole.
 void note_pixel_aspect(FrameSource& source, const std::string& camera) {
   constexpr double kSame = 0.01;  // focal lengths are rounded
   const double aspect = source.camera.fy / source.camera.fx;
   if (std::abs(aspect / source.pixel_aspect - 1) < kSame) return;
   source.notes.push_back({NoteCode::said_otherwise,
                           fmt::format("by fx {:.6g} and fy {:.6g} of {} a pixel is {:.4g} times as wide as high, and "
-                                      "by the pixelAspectRatio of the frame {:.4g} times: is one of them wrong?",
+                                      "by the pixelAspectRatio of the frame {:.4g} times: is one of them wrong? Where "
+                                      "the picture was cropped, give the camera of what is left of it (--camera)",
                                       source.camera.fx, source.camera.fy, camera, aspect, source.pixel_aspect)});
+}
+
+/// Notes a camera file for another resolution of the same shape, which is a proxy's as well as a crop's.
+void note_scaled_camera(FrameSource& source, const std::string& camera) {
+  const auto [width, height] = source.camera.scaled_from;
+  if (width == 0) return;
+  source.notes.push_back(
+      {NoteCode::camera_scaled,
+       fmt::format("the camera of {} is for {}x{} pixels and was scaled to the frame's {}x{}, as of a proxy: a cropped "
+                   "picture needs the camera of what is left of it (--camera)",
+                   camera, width, height, source.camera.width, source.camera.height)});
 }
 
 /// What the positions say of the camera that saw them: it, or why they tell none. Nothing where there are no positions
 /// that fit the depth.
-std::optional<std::variant<Resection, std::string>> camera_by_positions(const ChannelSearch& search,
+std::optional<std::variant<Resection, std::string>> camera_by_positions(const std::vector<ChannelRef>& positions,
                                                                         std::vector<ExrFile>& files,
-                                                                        const std::vector<ChannelRef>& depth,
                                                                         const InputSettings& settings) {
-  const auto positions = find_positions(search, depth, settings);
   if (positions.empty()) return std::nullopt;
   ExrFile& file = files[positions.front().file];
-  const auto window_of = [&](const ChannelRef& channel) { return file.parts()[std::size_t(channel.part)].data; };
-  const auto has_window = [&](const ChannelRef& channel) { return window_of(channel) == window_of(depth.front()); };
-  if (!std::ranges::all_of(positions, has_window)) return std::nullopt;
-  return resection_of(points_of(file, positions, settings.sky), file.display());
+  const auto points = points_of(file, positions, settings.sky, kManyBands);
+  auto found = resection_of(points, file.display());
+  if (std::holds_alternative<std::string>(found))
+    if (const std::string panorama = panorama_of(points, file.display()); !panorama.empty())
+      refuse_panorama(file.path(), panorama + " by its positions");
+  return found;
+}
+
+/// The positions of a frame that has a camera. Where two layers hold some, none of them is needed.
+std::vector<ChannelRef> positions_beside(const ChannelSearch& search, const FrameSource& source,
+                                         const InputSettings& settings) {
+  try {
+    return find_positions(search, source, settings);
+  } catch (const Error&) {
+    return {};
+  }
 }
 
 /// The settings' camera, or else the header's, or else that of the positions. Options that give no more than a
@@ -166,15 +190,19 @@ void find_camera(FrameSource& source, const ChannelSearch& search, const InputSe
   const ChannelRef& depth = source[RawPlane::depth].front();
   const ExrFile& file = source.files[depth.file];
   const auto attributes = file.attribute_texts(depth.part);
+  const std::string layer = source.layer_of(depth);
   require_no_panorama(attributes, file.path());
   if (!names_a_camera(settings))
-    if (auto found = header_camera(attributes, source.display, source.file_data, source.pixel_aspect)) {
+    if (auto found = header_camera(attributes, source.display, source.file_data, source.pixel_aspect, layer)) {
       source.camera = found->camera;
       source.camera_from = "the header's " + found->from;
+      source.positions = positions_beside(search, source, settings);
+      note_pixel_aspect(source, source.camera_from);
       return;
     }
-  if (!names_a_camera(settings))
-    if (const auto found = camera_by_positions(search, source.files, source[RawPlane::depth], settings)) {
+  if (!names_a_camera(settings)) {
+    source.positions = find_positions(search, source, settings);
+    if (const auto found = camera_by_positions(source.positions, source.files, settings)) {
       if (const auto* why = std::get_if<std::string>(&*found))
         throw NoCamera(file.path(), "its positions tell none, since " + *why);
       source.camera = std::get<Resection>(*found).camera;
@@ -183,14 +211,20 @@ void find_camera(FrameSource& source, const ChannelSearch& search, const InputSe
         throw NoCamera(file.path(),
                        "its positions do not tell how far away an orthographic camera stands, and --around "
                        "needs that");
-      source.camera_from = "its positions";
+      source.camera_from = kByPositions;
       return;
     }
+  }
+  if (!names_a_camera(settings))
+    if (const std::string why = why_no_header_camera(attributes, layer); !why.empty()) throw NoCamera(file.path(), why);
   const auto views = views_of(file);
   const std::string view = settings.view.empty() && !views.empty() ? views.front() : settings.view;
+  source.positions = positions_beside(search, source, settings);
   source.camera = camera_for(settings, source.display, source.pixel_aspect, frame, view);
-  if (!settings.camera.empty()) note_pixel_aspect(source, settings.camera);
-  if (settings.camera.empty()) place_by_header(source.camera, attributes, source.display);
+  if (settings.camera.empty())
+    return place_by_header(source.camera, attributes, source.display, source.pixel_aspect, layer);
+  note_pixel_aspect(source, settings.camera);
+  note_scaled_camera(source, settings.camera);
 }
 
 /// What of the meaning of depth and normals is said, and by whom; the rest is open.
@@ -242,6 +276,11 @@ void note_unused_input(FrameSource& source, const InputSettings& settings) {
 
 }  // namespace
 
+std::string FrameSource::layer_of(const ChannelRef& ref) const {
+  const std::size_t dot = ref.channel.rfind('.');
+  return dot == ref.channel.npos ? part_of(ref).name : ref.channel.substr(0, dot);
+}
+
 void require_same_window(const FrameSource& source, const std::vector<ChannelRef>& channels, const char* what,
                          const char* option) {
   for (const auto& channel : channels) {
@@ -270,7 +309,7 @@ FrameSource find_frame(const InputSettings& settings, bool with_beauty, int fram
   std::size_t depth_file = by_position && !settings.position.empty()
                                ? search.open(settings.position, "--position")
                                : search.open(depth_path, depth_path == settings.deep ? "--deep" : "--depth");
-  find_rules(source, depth_file, settings);
+  find_rules(source, source.files[depth_file], settings);
   if (!by_position) source[RawPlane::depth] = find_deep_depth(source, search, depth_file, settings);
   if (source[RawPlane::depth].empty())
     source[RawPlane::depth] = find_depth(source, search, depth_file, settings, by_position);
@@ -323,10 +362,17 @@ bool may_tell_camera(const InputSettings& settings) {
                                                                  : settings.input,
                                         "INPUT");
   const ExrFile& file = files[place];
-  for (std::size_t part = 0; part < file.parts().size(); part++)
-    if (header_camera(file.attribute_texts(int(part)), file.display(), file.parts()[part].data, file.pixel_aspect()))
+  for (std::size_t part = 0; part < file.parts().size(); part++) {
+    const auto attributes = file.attribute_texts(int(part));
+    if (header_camera(attributes, file.display(), file.parts()[part].data, file.pixel_aspect(), "") ||
+        !why_no_header_camera(attributes, "").empty())
       return true;
-  return !search.find(place, kPositionNames, settings.position_channels, !settings.position.empty()).empty();
+  }
+  FrameSource source;
+  find_rules(source, file, settings);
+  return !search.find_by_rules(place, kPositionNames, settings.position_channels, source.rules->position)
+              .channels.empty() ||
+         !search.find(place, kPositionNames, settings.position_channels, !settings.position.empty()).empty();
 }
 
 void read_planes(FrameSource& source, const std::vector<PlaneRead>& reads) {

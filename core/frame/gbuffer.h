@@ -24,6 +24,9 @@ struct Guess {
   std::string what, chosen, why, option;  // option: the one that says it
 };
 
+/// FrameSource::camera_from where the pass of positions gave it.
+inline constexpr const char* kByPositions = "its positions";
+
 /// Where everything is that a frame needs, and how it is read; nothing but headers has been read. `data` may be a part
 /// of what the files hold, then no more is read.
 struct FrameSource : Reading {
@@ -36,12 +39,15 @@ struct FrameSource : Reading {
   const std::string& depth_path() const { return files[planes[RawPlane::depth][0].file].path(); }
   /// The part of a file that a channel lies in.
   const ExrPart& part_of(const ChannelRef& ref) const { return files[ref.file].parts()[std::size_t(ref.part)]; }
+  /// The name of a channel without its last part, which a part's name stands for; "" where it has no layer.
+  std::string layer_of(const ChannelRef& ref) const;
 
   std::vector<ExrFile> files;
   std::optional<std::size_t> deep;  // of them, whose samples are the depth, or give planes behind it
   std::vector<int> deep_parts;      // of that file
   bool deep_depth_is_half = false;  // samples are the depth, and were rounded to half floats
   RawPlaneArray<std::vector<ChannelRef>> planes;
+  std::vector<ChannelRef> positions;     // that may tell the camera, over the depth's pixels; none where there are none
   Window file_data;                      // what the files hold
   std::optional<Window> region;          // what is to be written of it; none: all of data
   std::uint64_t rows_read = 0;           // that were decoded, each as often as it was
@@ -84,8 +90,8 @@ constexpr const char* kWorldWithoutMatrix =
     "its normals are in world space, and the camera has no world_to_camera: give a --camera file with it, or --normal "
     "none, which reconstructs them from depth";
 
-/// Whether the header of the frame's depth or position file has a camera, or the file has positions, which may tell
-/// one. Fails as opening it does.
+/// Whether the header of the frame's depth or position file has a camera, or why it has none is known, or the file has
+/// positions, which may tell one. Fails as opening it does.
 bool may_tell_camera(const InputSettings& settings);
 
 /// A plane, or several one behind the other, and where it goes.

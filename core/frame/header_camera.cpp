@@ -7,9 +7,13 @@
 #include <cmath>
 #include <cstdlib>
 #include <numbers>
+#include <set>
+#include <sstream>
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/base/text.h"
+#include "core/frame/panorama.h"
 
 namespace alcove {
 namespace {
@@ -65,6 +69,7 @@ struct Placement {
   Matrix3 rotation;
   Vector3 offset;
   bool row_vectors;  // as it was stored
+  double scale = 1;  // of the stored matrix, divided out
 };
 
 enum class To { camera, world };
@@ -93,9 +98,10 @@ std::optional<Placement> placement(const std::vector<double>& m, To to) {
     for (std::size_t b = 0; b < 3; b++)
       if (!(squared > 0) || !(std::abs(dot(p.rotation[a], p.rotation[b]) / squared - (a == b)) < kTolerance))
         return std::nullopt;
+  p.scale = std::sqrt(squared);
   for (std::size_t row = 0; row < 3; row++) {
-    for (double& x : p.rotation[row]) x /= std::sqrt(squared);
-    if (to == To::camera) p.offset[row] /= std::sqrt(squared);
+    for (double& x : p.rotation[row]) x /= p.scale;
+    if (to == To::camera) p.offset[row] /= p.scale;
   }
   return p;
 }
@@ -145,14 +151,14 @@ std::optional<Pose> vray_pose(const Attributes& a) {
 }
 
 /// Angles of a left-handed world with z up, x forward and y right: yaw turns x to y, pitch raises, roll lowers the
-/// right side.
-std::optional<Pose> unreal_pose(const Attributes& a) {
-  const auto x = a.number("unreal/camera/curPos/x");
-  const auto y = a.number("unreal/camera/curPos/y");
-  const auto z = a.number("unreal/camera/curPos/z");
-  const auto yaw = a.number("unreal/camera/curRot/yaw");
-  const auto pitch = a.number("unreal/camera/curRot/pitch");
-  const auto roll = a.number("unreal/camera/curRot/roll");
+/// right side. `prefix` stands before the numbers' names.
+std::optional<Pose> unreal_pose_at(const Attributes& a, const std::string& prefix) {
+  const auto x = a.number(prefix + "/curPos/x");
+  const auto y = a.number(prefix + "/curPos/y");
+  const auto z = a.number(prefix + "/curPos/z");
+  const auto yaw = a.number(prefix + "/curRot/yaw");
+  const auto pitch = a.number(prefix + "/curRot/pitch");
+  const auto roll = a.number(prefix + "/curRot/roll");
   if (!x || !y || !z || !yaw || !pitch || !roll) return std::nullopt;
   const double cos_yaw = std::cos(*yaw * kRadian), sin_yaw = std::sin(*yaw * kRadian);
   const double cos_pitch = std::cos(*pitch * kRadian), sin_pitch = std::sin(*pitch * kRadian);
@@ -168,6 +174,89 @@ std::optional<Pose> unreal_pose(const Attributes& a) {
   }
   for (std::size_t row = 0; row < 3; row++) view.offset[row] = -dot(view.rotation[row], {*x, *y, *z});
   return Pose{view, false, "unreal/camera"};
+}
+
+constexpr const char* kUnrealMain = "unreal/camera";  // the camera of a job that has no more than one
+
+/// The lens of one pass and one camera: unreal/camera/PASS/fov, unreal/camera/PASS_CAMERA/fov, unreal/CAMERA/PASS/fov.
+struct UnrealLens {
+  std::string path;                // without /fov
+  double fov;                      // degrees
+  std::vector<std::string> parts;  // of the path behind unreal/, in lower case
+
+  /// Whether a part is this camera's name, or ends in it behind a pass; of "": any camera's.
+  bool is_of_camera(const std::string& name) const {
+    if (name.empty()) return parts.front() != "camera" || parts.back().find('_') != std::string::npos;
+    return std::ranges::any_of(parts, [&](const auto& part) { return part == name || part.ends_with("_" + name); });
+  }
+  /// The camera's name, for one of any camera.
+  std::string camera_name() const {
+    return parts.front() != "camera" ? parts.front() : parts.back().substr(parts.back().find('_') + 1);
+  }
+  /// Whether a part, without its camera, begins the name of a layer.
+  bool is_of_pass(const std::string& layer, const std::string& camera) const {
+    return std::ranges::any_of(parts, [&](std::string part) {
+      if (!camera.empty() && part.ends_with("_" + camera)) part.resize(part.size() - camera.size() - 1);
+      return !part.empty() && layer.starts_with(part);
+    });
+  }
+};
+
+UnrealLens unreal_lens(const std::string& path, double fov) {
+  UnrealLens lens{path, fov, {}};
+  std::istringstream parts(lower_case(path.substr(path.find('/') + 1)));
+  for (std::string part; std::getline(parts, part, '/');) lens.parts.push_back(part);
+  return lens;
+}
+
+bool differ(const std::vector<UnrealLens>& lenses) {
+  const auto [least, most] = std::ranges::minmax(lenses, {}, &UnrealLens::fov);
+  return most.fov - least.fov > 1e-3;
+}
+
+/// The lenses of a header, and of them those that may be the depth's: of its camera, by the end of its layer's name, and
+/// of its pass, by the name's beginning. They are one lens unless they differ.
+struct UnrealLenses {
+  std::vector<UnrealLens> all, of_depth;
+};
+
+UnrealLenses unreal_lenses(const Attributes& a, const std::string& depth_layer) {
+  UnrealLenses lenses;
+  for (const auto& [name, text] : a.texts)
+    if (name.starts_with("unreal/") && name.ends_with("/fov") && name != "unreal/camera/fov")
+      if (const auto fov = a.positive(name, kWidest))
+        lenses.all.push_back(unreal_lens(name.substr(0, name.size() - 4), *fov));
+  if (const auto fov = a.positive("unreal/camera/fov", kWidest); fov && lenses.all.empty())
+    lenses.all.push_back(unreal_lens(kUnrealMain, *fov));
+  const auto those = [](const std::vector<UnrealLens>& from, const auto& is_meant) {
+    std::vector<UnrealLens> found;
+    std::ranges::copy_if(from, std::back_inserter(found), is_meant);
+    return found;
+  };
+  const std::string layer = lower_case(depth_layer), mark = "worlddepth_";
+  const std::size_t at = layer.rfind(mark);
+  const std::string camera = at == layer.npos ? "" : layer.substr(at + mark.size());
+  lenses.of_depth = lenses.all;
+  if (!camera.empty()) {
+    lenses.of_depth = those(lenses.all, [&](const auto& lens) { return lens.is_of_camera(camera); });
+    if (lenses.of_depth.empty())
+      lenses.of_depth = those(lenses.all, [](const auto& lens) { return !lens.is_of_camera(""); });
+  }
+  if (auto of_pass = those(lenses.of_depth, [&](const auto& lens) { return lens.is_of_pass(layer, camera); });
+      !of_pass.empty())
+    lenses.of_depth = std::move(of_pass);
+  return lenses;
+}
+
+/// The place beside the depth's lens, or that of the only camera: several cannot all stand there.
+std::optional<Pose> unreal_pose(const Attributes& a, const std::string& depth_layer) {
+  const auto [all, of_depth] = unreal_lenses(a, depth_layer);
+  if (!of_depth.empty())
+    if (const auto pose = unreal_pose_at(a, of_depth.front().path)) return pose;
+  std::set<std::string> cameras;
+  for (const auto& lens : all)
+    if (lens.is_of_camera("")) cameras.insert(lens.camera_name());
+  return cameras.size() > 1 ? std::nullopt : unreal_pose_at(a, kUnrealMain);
 }
 
 double focal_px(double width, double fov_degrees) { return 0.5 * width / std::tan(0.5 * fov_degrees * kRadian); }
@@ -218,14 +307,42 @@ std::optional<Camera> projected(const Placement& view, const std::vector<double>
   return camera;
 }
 
-std::optional<HeaderCamera> by_matrices(const Attributes& a, const Window& display) {
+/// Whether a matrix that should project only moves, turns and scales, as Karma's worldToNDC does, which is its
+/// worldToCamera. A projection that keeps shapes would be orthographic, of another scale, and of a picture as wide as
+/// high.
+bool is_no_projection(const Placement& view, const std::vector<double>& values, const Window& display,
+                      double pixel_aspect) {
+  constexpr double kSame = 1e-3, kSameShape = 0.01;
+  const auto moved = placement(values, To::camera);
+  if (!moved) return false;
+  return std::abs(moved->scale / view.scale - 1) < kSame ||
+         !(std::abs(display.width * pixel_aspect / display.height - 1) < kSameShape);
+}
+
+std::optional<HeaderCamera> by_matrices(const Attributes& a, const Window& display, double pixel_aspect) {
   const auto view = placement(a.numbers("worldToCamera", 16), To::camera);
   if (!view) return std::nullopt;
-  auto camera = projected(*view, a.numbers("worldToNDC", 16), display);
-  if (!camera) return std::nullopt;
-  camera->near = a.positive("arnold/camera/near_clip");
-  camera->far = a.positive("arnold/camera/far_clip", kFarthest);
-  return HeaderCamera{*camera, "worldToCamera, worldToNDC"};
+  for (const std::string name : {"worldToNDC", "worldToScreen"}) {
+    const auto values = a.numbers(name, 16);
+    if (is_no_projection(*view, values, display, pixel_aspect)) continue;
+    auto camera = projected(*view, values, display);
+    if (!camera) continue;
+    camera->near = a.positive("arnold/camera/near_clip");
+    camera->far = a.positive("arnold/camera/far_clip", kFarthest);
+    return HeaderCamera{*camera, "worldToCamera, " + name};
+  }
+  return std::nullopt;
+}
+
+/// Arnold's plain numbers, which stand beside its matrices. The field of view is the horizontal one.
+std::optional<HeaderCamera> by_arnold(const Attributes& a, const Window& display, double pixel_aspect) {
+  const auto fov = a.positive("CameraFov", kWidest);
+  const auto focal = a.positive("CameraFocalLength"), aperture = a.positive("CameraFilmApertureHorizontal");
+  if (!fov && !(focal && aperture)) return std::nullopt;
+  const double focal_length = fov ? focal_px(display.width, *fov) : display.width * *focal / *aperture;
+  Camera camera = centred(display, focal_length, pixel_aspect);
+  if (const auto pose = standard_pose(a)) place(camera, *pose);
+  return HeaderCamera{camera, fov ? "CameraFov" : "CameraFocalLength, CameraFilmApertureHorizontal"};
 }
 
 std::optional<HeaderCamera> by_redshift(const Attributes& a, const Window& display, double pixel_aspect) {
@@ -239,13 +356,13 @@ std::optional<HeaderCamera> by_redshift(const Attributes& a, const Window& displ
 }
 
 std::optional<HeaderCamera> by_unreal(const Attributes& a, const Window& display, const Window& data,
-                                      double pixel_aspect) {
-  std::optional<double> fov = a.positive("unreal/camera/FinalImage/fov", kWidest);
-  if (!fov) fov = a.positive("unreal/camera/fov", kWidest);
-  if (!fov) return std::nullopt;
-  Camera camera = centred(display, focal_px(std::max(data.width, display.width), *fov), pixel_aspect);
-  if (const auto pose = unreal_pose(a)) place(camera, *pose);
-  return HeaderCamera{camera, "unreal/camera"};
+                                      double pixel_aspect, const std::string& depth_layer) {
+  const auto lenses = unreal_lenses(a, depth_layer).of_depth;
+  if (lenses.empty() || differ(lenses)) return std::nullopt;
+  const double width = std::max(data.width, display.width);
+  Camera camera = centred(display, focal_px(width, lenses.front().fov), pixel_aspect);
+  if (const auto pose = unreal_pose(a, depth_layer)) place(camera, *pose);
+  return HeaderCamera{camera, lenses.front().path};
 }
 
 std::optional<HeaderCamera> by_vray(const Attributes& a, const Window& display, double pixel_aspect) {
@@ -281,11 +398,12 @@ std::optional<HeaderCamera> by_standard(const Attributes& a, const Window& displ
 }  // namespace
 
 std::optional<HeaderCamera> header_camera(const AttributeTexts& attributes, const Window& display, const Window& data,
-                                          double pixel_aspect) {
+                                          double pixel_aspect, const std::string& depth_layer) {
   const Attributes a(attributes);
-  auto found = by_matrices(a, display);
+  auto found = by_matrices(a, display, pixel_aspect);
+  if (!found) found = by_arnold(a, display, pixel_aspect);
   if (!found) found = by_redshift(a, display, pixel_aspect);
-  if (!found) found = by_unreal(a, display, data, pixel_aspect);
+  if (!found) found = by_unreal(a, display, data, pixel_aspect, depth_layer);
   if (!found) found = by_vray(a, display, pixel_aspect);
   if (!found) found = by_standard(a, display, pixel_aspect);
   // A comparison with NaN is false.
@@ -294,18 +412,33 @@ std::optional<HeaderCamera> header_camera(const AttributeTexts& attributes, cons
                                                                                                        : std::nullopt;
 }
 
-void place_by_header(Camera& camera, const AttributeTexts& attributes, const Window& display) {
+std::string why_no_header_camera(const AttributeTexts& attributes, const std::string& depth_layer) {
+  const Attributes a(attributes);
+  if (const auto [lenses, of_depth] = unreal_lenses(a, depth_layer); !lenses.empty()) {
+    std::vector<std::string> named;
+    for (const auto& lens : lenses) named.push_back(fmt::format("{}/fov of {:.5g} degrees", lens.path, lens.fov));
+    return fmt::format("its header has the lenses {}, and nothing tells which is that of the depth {}", list_of(named),
+                       depth_layer);
+  }
+  if (placement(a.numbers("worldToCamera", 16), To::camera) && placement(a.numbers("worldToNDC", 16), To::camera))
+    return "the worldToNDC of its header is no projection: like worldToCamera it tells where the camera stands, and "
+           "nothing about the lens";
+  return "";
+}
+
+void place_by_header(Camera& camera, const AttributeTexts& attributes, const Window& display, double pixel_aspect,
+                     const std::string& depth_layer) {
   const Attributes a(attributes);
   // With its projection, the matrix tells by itself which way the camera looks.
-  if (const auto whole = by_matrices(a, display)) {
+  if (const auto whole = by_matrices(a, display, pixel_aspect)) {
     camera.view_from_world = whole->camera.view_from_world;
     camera.view_from_world_offset = whole->camera.view_from_world_offset;
     camera.left_handed = whole->camera.left_handed;
     camera.placement_from = "worldToCamera";
     return;
   }
-  for (const auto& pose_of : {redshift_pose, unreal_pose, vray_pose, standard_pose})
-    if (const auto pose = pose_of(a)) {
+  for (const auto& pose : {redshift_pose(a), unreal_pose(a, depth_layer), vray_pose(a), standard_pose(a)})
+    if (pose) {
       place(camera, *pose);
       camera.placement_from = pose->from;
       return;
@@ -316,11 +449,8 @@ void require_no_panorama(const AttributeTexts& attributes, const std::string& pa
   const Attributes a(attributes);
   // V-Ray's: 1 to 6 are spherical, cylindrical, box, fish eye and warped
   const auto projection = a.number("cameraProjection");
-  if (a.texts.contains("envmap") || (projection && *projection >= 1 && *projection <= 6))
-    fail(ErrorKind::input,
-         "{}: a panorama ({}): its pixels have no plane of projection, which depth and AO here refer to; render it "
-         "with a perspective camera",
-         path, a.texts.contains("envmap") ? "envmap" : "cameraProjection");
+  if (a.texts.contains("envmap")) refuse_panorama(path, "envmap");
+  if (projection && *projection >= 1 && *projection <= 6) refuse_panorama(path, "cameraProjection");
 }
 
 }  // namespace alcove

@@ -63,8 +63,8 @@ InputRules parse_input_rules(const std::string& name, const std::string& text) {
       known(word == name ? std::optional(0) : std::nullopt);
     else if (key == "detect")
       rules.detect = values;
-    else if (key == "last")
-      rules.last = word == "true";
+    else if (key == "detect-last")
+      rules.detect_last = values;
     else if (key == "depth-channel")
       rules.depth = candidates_of(values);
     else if (key == "normal-channels")

@@ -2,9 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Keys: `detect`, patterns with * of header attributes ("arnold/*", "Software=Blender 3*") or of channels
-// ("channel:ViewLayer.*"), any of which tells the program; `last`, true where other programs' files bear its marks too,
-// so that theirs tell first; `depth-channel`, `normal-channels`, `position-channels`, layers or channels with the
-// likeliest first, each with its own kind or space behind a colon where it has one ("Nn:view"); and `depth-kind`,
+// ("channel:ViewLayer.*"), any of which tells the program; `detect-last`, those that other programs' files bear too, so
+// that theirs tell first; `depth-channel`, `normal-channels`, `position-channels`, layers, patterns of layers, or
+// channels with the likeliest first, each with its own kind or space behind a colon where it has one ("Nn:view"); and
+// `depth-kind`,
 // `near`, `far`, `reversed-z`, `normal-space` and `normal-encoding`, which mean what the options of these names mean;
 // and `normal-averaged`, true where normals are always averaged over the pixel, so that it is no fault of the file.
 // The pixels decide what the rules leave open.
@@ -30,8 +31,7 @@ struct AovCandidate {
 
 struct InputRules {
   std::string name;  // the file's, without .toml
-  std::vector<std::string> detect;
-  bool last = false;  // told only where nothing else is
+  std::vector<std::string> detect, detect_last;
   std::vector<AovCandidate> depth, normal, position;
   DepthKind depth_kind = DepthKind::automatic;
   DepthRange depth_range;  // near, far and reversed only

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/frame/chan_file.h"
 
 namespace alcove {
 namespace {
@@ -38,7 +39,7 @@ std::vector<Hypothesis> turned_worlds(const Camera& camera, const View& view) {
   constexpr Matrix3 kYUp{{{1, 0, 0}, {0, 0, -1}, {0, 1, 0}}};
   const Matrix3 given = *camera.view_from_world, inverse = transposed(given);
   std::vector<Hypothesis> turned;
-  const auto add = [&](const char* what, const Matrix3& matrix) {
+  const auto add = [&](const std::string& what, const Matrix3& matrix) {
     turned.push_back({what, camera, view});
     turned.back().camera.view_from_world = matrix;
   };
@@ -53,6 +54,10 @@ std::vector<Hypothesis> turned_worlds(const Camera& camera, const View& view) {
     add("its world_to_camera looks like that of a world with another axis up than the normals have (y, or z): give it "
         "for the world of the normals",
         product(given, up));
+  if (camera.chan_angles)
+    for (const char* rotation : kChanRotations)
+      add(fmt::format("its angles fit in another order: give --chan-rotation {}", rotation),
+          view_by_angles(*camera.chan_angles, rotation));
   return turned;
 }
 

@@ -12,7 +12,7 @@
 namespace alcove {
 namespace {
 
-constexpr int kBands = 48, kColumns = 48;
+constexpr int kColumns = 48;
 constexpr int kRows = 8;  // of a place
 
 /// A surface bends less from pixel to pixel, as part of the step; more where a filter has put two together.
@@ -73,13 +73,18 @@ double rounding_at(const Band& band, int x, int y, double relative) {
 
 }  // namespace
 
-std::vector<ChannelRef> find_positions(const ChannelSearch& search, const std::vector<ChannelRef>& depth,
+std::vector<ChannelRef> find_positions(const ChannelSearch& search, const FrameSource& source,
                                        const InputSettings& settings) {
+  const auto& depth = source[RawPlane::depth];
   if (depth.size() == 3) return depth;
-  return search.find(depth.front().file, kPositionNames, settings.position_channels, false);
+  const std::size_t file = depth.front().file;
+  auto found = search.find_by_rules(file, kPositionNames, settings.position_channels, source.rules->position).channels;
+  if (found.empty()) found = search.find(file, kPositionNames, settings.position_channels, false);
+  const auto fits = [&](const ChannelRef& ref) { return source.part_of(ref).data == source.file_data; };
+  return std::ranges::all_of(found, fits) ? found : std::vector<ChannelRef>{};
 }
 
-std::vector<SeenPoint> points_of(ExrFile& file, const std::vector<ChannelRef>& positions, double sky) {
+std::vector<SeenPoint> points_of(ExrFile& file, const std::vector<ChannelRef>& positions, double sky, int bands) {
   const ExrPart& part = file.parts()[std::size_t(positions.front().part)];
   const Window& data = part.data;
   const auto is_half = [&](const ChannelRef& ref) {
@@ -89,7 +94,7 @@ std::vector<SeenPoint> points_of(ExrFile& file, const std::vector<ChannelRef>& p
   const double relative = std::ranges::any_of(positions, is_half) ? 0x1p-11 : 0x1p-24;
   const int together = std::max(part.rows_together, 1);
   const int rows = (kRows + together - 1) / together * together;
-  const int step = std::max(rows, data.height / kBands / together * together);
+  const int step = std::max(rows, data.height / bands / together * together);
   const Window& display = file.display();
   std::mt19937 random(1);  // the same frame has the same points
   std::vector<SeenPoint> points;

@@ -4,19 +4,23 @@
 
 #include <vector>
 
-#include "core/frame/channels.h"
+#include "core/frame/gbuffer.h"
 #include "core/frame/resection.h"
 
 namespace alcove {
 
 /// The three channels of a frame's positions: those of its depth where they are positions, else those that stand beside
-/// it in its file, by the option or by their usual names. None where there are none.
-std::vector<ChannelRef> find_positions(const ChannelSearch& search, const std::vector<ChannelRef>& depth,
+/// it in its file, by the option, as the rules name them, or by their usual names. None where there are none, or only
+/// such of another window.
+std::vector<ChannelRef> find_positions(const ChannelSearch& search, const FrameSource& source,
                                        const InputSettings& settings);
 
-/// Some two thousand points, well spread over the picture: of each place the pixel whose surroundings are smoothest, so
-/// that neither edges nor filters matter. Sky has none: 0, not finite, beyond `sky`, or the same in all pixels about.
-/// Reads every part of the file's rows once, and no more of them than it needs.
-std::vector<SeenPoint> points_of(ExrFile& file, const std::vector<ChannelRef>& positions, double sky);
+/// How many bands of rows are read of positions: to solve a camera, and to see whether one fits.
+inline constexpr int kManyBands = 48, kFewBands = 6;
+
+/// Up to 48 points in each band of rows, well spread over the picture: of each place the pixel whose surroundings are
+/// smoothest, so that neither edges nor filters matter. Sky has none: 0, not finite, beyond `sky`, or the same in all
+/// pixels about. Reads every part of the file's rows once, and no more of them than it needs.
+std::vector<SeenPoint> points_of(ExrFile& file, const std::vector<ChannelRef>& positions, double sky, int bands);
 
 }  // namespace alcove

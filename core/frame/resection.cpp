@@ -11,48 +11,10 @@
 #include <random>
 #include <vector>
 
+#include "core/frame/linear_fit.h"
+
 namespace alcove {
 namespace {
-
-/// A symmetric matrix of N x N.
-template <std::size_t N>
-using Square = std::array<std::array<double, N>, N>;
-
-/// Eigenvalues, and eigenvectors as columns, by Jacobi's rotations; in no order.
-template <std::size_t N>
-std::pair<std::array<double, N>, Square<N>> eigen_of(Square<N> a) {
-  constexpr int kSweeps = 30;
-  Square<N> v{};
-  for (std::size_t i = 0; i < N; i++) v[i][i] = 1;
-  for (int sweep = 0; sweep < kSweeps; sweep++) {
-    double beside = 0;
-    for (std::size_t p = 0; p < N; p++)
-      for (std::size_t q = p + 1; q < N; q++) {
-        beside += std::abs(a[p][q]);
-        if (a[p][q] == 0) continue;
-        const double theta = (a[q][q] - a[p][p]) / (2 * a[p][q]);
-        const double t = (theta >= 0 ? 1 : -1) / (std::abs(theta) + std::sqrt(theta * theta + 1));
-        const double c = 1 / std::sqrt(t * t + 1), s = t * c;
-        for (std::size_t k = 0; k < N; k++) {
-          const double kp = a[k][p], kq = a[k][q];
-          a[k][p] = c * kp - s * kq;
-          a[k][q] = s * kp + c * kq;
-        }
-        for (std::size_t k = 0; k < N; k++) {
-          const double pk = a[p][k], qk = a[q][k];
-          a[p][k] = c * pk - s * qk;
-          a[q][k] = s * pk + c * qk;
-          const double vp = v[k][p], vq = v[k][q];
-          v[k][p] = c * vp - s * vq;
-          v[k][q] = s * vp + c * vq;
-        }
-      }
-    if (beside < 1e-300) break;
-  }
-  std::array<double, N> values{};
-  for (std::size_t i = 0; i < N; i++) values[i] = a[i][i];
-  return {values, v};
-}
 
 /// Inverse of a symmetric positive matrix of the first n rows and columns; none where it is singular.
 template <std::size_t N>
@@ -102,12 +64,6 @@ double distance_of(const Pinhole& camera, const SeenPoint& seen) {
   const auto [x, y] = error_of(camera, view, seen);
   const double distance = std::hypot(x, y);
   return std::isnan(distance) ? std::numeric_limits<double>::infinity() : distance;
-}
-
-double median_of(std::vector<double> values) {
-  const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
 }
 
 double median_distance(const Pinhole& camera, std::span<const SeenPoint> points) {
@@ -391,27 +347,6 @@ double focal_error(const Pinhole& camera, std::span<const SeenPoint> points) {
   return std::max(median_distance(camera, points), kLittle) * std::sqrt(variance) / camera.fx;
 }
 
-/// The points moved and scaled to be about 1 in size, and the way back.
-struct Normalized {
-  std::vector<SeenPoint> points;
-  Vector3 middle{};
-  double size = 1;
-};
-
-Normalized normalized(std::span<const SeenPoint> points) {
-  Normalized result{{points.begin(), points.end()}, {}, 1};
-  for (std::size_t k = 0; k < 3; k++) {
-    std::vector<double> values;
-    for (const auto& seen : points) values.push_back(seen.position[k]);
-    result.middle[k] = median_of(std::move(values));
-  }
-  std::vector<double> distances;
-  for (const auto& seen : points) distances.push_back(length(difference(seen.position, result.middle)));
-  if (const double median = median_of(std::move(distances)); median > 0) result.size = median;
-  for (auto& seen : result.points) seen.position = scaled(difference(seen.position, result.middle), 1 / result.size);
-  return result;
-}
-
 /// The solved camera in scene units, as Camera has it.
 Resection result_of(Pinhole solved, const Normalized& from, const Window& display) {
   Resection result;
@@ -481,7 +416,7 @@ std::variant<Resection, std::string> resection_of(std::span<const SeenPoint> poi
   if (!best || best->within < kNearlyAll)
     return fmt::format(
         "{:.0f} % of them lie within {} px of their pixels by the camera that fits best, {:.2g} px in the "
-        "median: they are filtered, or no positions",
+        "median: no camera fits them, so they are filtered, or no positions, or those of a panorama",
         best ? 100 * best->within : 0, kSeenWithin, best ? best->median : std::numeric_limits<double>::infinity());
   if (!(best->focal_error <= kLargestFocalError))
     return std::string("they lie in one plane, or nearly so, which many cameras see alike");

@@ -95,23 +95,35 @@ void note_jitter(FrameSource& source, std::span<const float> depth, const Grain&
                    *jitter)});
 }
 
-}  // namespace
-
-void settle(FrameSource& source, const InputSettings& settings, std::span<const float> depth,
-            std::span<const float> normal) {
-  refuse_8_bits(source, depth);
-  if (source[RawPlane::depth].size() == 1) source.grain = grain_of(depth, settings.sky);
-  const Grain& grain = source.grain;
-  measure_grain(source, grain);
+/// What depth and normals are, by the camera as it is.
+void settle_meaning(FrameSource& source, const InputSettings& settings, std::span<const float> depth,
+                    std::span<const float> normal) {
   settle_depth(source, settings, depth, normal);
   settle_deep(source, depth);
   if (source[RawPlane::normal].empty())
     note_centre(source);
   else
     settle_normals(source, settings, depth, normal);
-  note_grain(source, grain);
+}
+
+}  // namespace
+
+void settle(FrameSource& source, const InputSettings& settings, std::span<const float> depth,
+            std::span<const float> normal) {
+  refuse_8_bits(source, depth);
+  if (source[RawPlane::depth].size() == 1) source.grain = grain_of(depth, settings.sky);
+  measure_grain(source, source.grain);
+  const std::string refutation = settle_camera(source, settings);
+  try {
+    settle_meaning(source, settings, depth, normal);
+  } catch (const Error& error) {
+    // By a wrong lens anything may look wrong.
+    if (refutation.empty()) throw;
+    fail(error.kind(), "{}; {}", error.what(), refutation);
+  }
+  note_grain(source, source.grain);
   note_overflow(source, depth);
-  note_jitter(source, depth, grain);
+  note_jitter(source, depth, source.grain);
   if (has_step(source.depth_kind)) source.depth_step = std::max(source.depth_step, step_of(depth));
   source.median_depth = median_depth(source, depth);
   std::ranges::move(findings(source, depth, normal), std::back_inserter(source.suspicious));

@@ -212,7 +212,8 @@ class DepthSettlement : private Settlement {
     guess("depth kind", name_of(source_.depth_kind), by + why, "--depth-kind", false);
   }
 
-  /// Decides the kind that nobody says: by flat surfaces, else by normals, else by the program, else by what is usual.
+  /// Decides the kind that nobody says: by flat surfaces, else by positions, else by normals, else by the program, else
+  /// by what is usual.
   void settle_kind() {
     const DepthKind usual = source_.usual_depth_kind;
     const bool between_planes = usual == DepthKind::device || usual == DepthKind::normalized || usual == DepthKind::log;
@@ -226,7 +227,7 @@ class DepthSettlement : private Settlement {
     if (tells) return take_flattest(scores);
     const std::string why = scores.empty() ? "too little of the frame is smooth to tell"
                                            : "the frame has no flat surfaces that tell: " + text_of(scores);
-    if (take_by_normals(why)) return;
+    if (take_by_positions(why) || take_by_normals(why)) return;
     if (usual == DepthKind::inverse) return assume_passed_on(why);
     take_usual(why);
     if (source_.rules_by.empty() || source_.rules->depth_kind == DepthKind::automatic) note_assumption(why);
@@ -250,6 +251,16 @@ class DepthSettlement : private Settlement {
           why + (may_be_orthographic ? "; so they are as distances of an orthographic camera, which --ortho-width says"
                                      : ""),
           "--depth-kind", true);
+  }
+
+  /// Takes the kind by which the depth is that of the positions beside it. False: none.
+  bool take_by_positions(const std::string& but) {
+    const auto kind = kind_by_positions(source_, settings_, depth_);
+    if (!kind) return false;
+    source_.depth_kind = *kind;
+    guess("depth kind", name_of(*kind), "so it is that of the positions; " + but, "--depth-kind",
+          *kind != source_.usual_depth_kind && source_.usual_depth_kind != DepthKind::inverse);
+    return true;
   }
 
   /// Takes distances or 1/z, by which clearly more of the normals agree with depth. False: neither.

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 
@@ -41,6 +42,15 @@ class Settlement {
   std::span<const float> depth_, normal_;
   View view_;
 };
+
+/// Holds the camera against the positions that the depth's file may have beside it. Notes a lens that they refute by
+/// pixels, and gives the note's text; "" where they do not. Refuses panoramas.
+std::string settle_camera(FrameSource& source, const InputSettings& settings);
+
+/// The kind by which the depth is that of the positions beside it: planar, ray or inverse. None where there are no
+/// positions, or where more than one kind fits.
+std::optional<DepthKind> kind_by_positions(FrameSource& source, const InputSettings& settings,
+                                           std::span<const float> depth);
 
 /// Settles kind and sign of the depth, or the space of positions.
 void settle_depth(FrameSource& source, const InputSettings& settings, std::span<const float> depth,

@@ -246,6 +246,18 @@ TEST_F(CameraFiles, ortho_width_spans_the_display_window) {
   EXPECT_TRUE(camera.orthographic);
 }
 
+TEST_F(CameraFiles, what_is_taken_is_told_where_a_file_is_of_another_kind) {
+  for (const char* text : {"Camera2 {\n focal 50\n}\n", "Kaydara FBX Binary", "#usda 1.0", "[1, 2]"}) {
+    write_bytes(file, text);
+    try {
+      read_camera(file, 0);
+      ADD_FAILURE() << "accepted";
+    } catch (const Error& error) {
+      EXPECT_THAT(error.what(), testing::AllOf(HasSubstr(file), HasSubstr(".chan"), HasSubstr("docs/inputs.md")));
+    }
+  }
+}
+
 TEST_F(CameraFiles, a_proxy_shares_the_camera_of_the_full_size) {
   json fields = wall_camera();
   fields["cx"] = 30;

@@ -229,6 +229,32 @@ TEST_F(Doubts, pixels_of_another_shape_than_the_files_are_warned_of) {
   EXPECT_THAT(said(), IsEmpty()) << "numbers are rounded";
 }
 
+TEST_F(Doubts, a_camera_that_was_scaled_is_noted_since_crops_look_like_proxies) {
+  const Camera& c = shot().camera;
+  write_depth([](double z) { return z; }, 1e12f);
+  give({{"resolution", {320, 240}}, {"fx", 2 * c.fx}, {"fy", 2 * c.fy}, {"cx", 160}, {"cy", 120}});
+  ASSERT_EQ(settled().notes.size(), 1);
+  EXPECT_EQ(settled().notes[0].code, NoteCode::camera_scaled);
+  EXPECT_THAT(settled().notes[0].text, AllOf(HasSubstr(settings.camera), HasSubstr("320x240"), HasSubstr("160x120")));
+}
+
+TEST_F(Doubts, an_order_of_rotation_that_fits_is_named) {
+  write_frame();
+  const double degrees = 180 / std::numbers::pi;
+  const Vec3 right = shot().right, up = shot().up, back = shot().back;
+  // Turned about x, then y, then z, the camera's axes are the columns of Rz Ry Rx.
+  const Vector3 angles{std::atan2(up.z, back.z), -std::asin(right.z), std::atan2(right.y, right.x)};
+  settings.camera = folder / "camera.chan";
+  const double view = 2 * std::atan(60 / shot().camera.fy) * degrees;
+  const Vec3 eye = shot().eye;
+  write_bytes(settings.camera, fmt::format("0 {} {} {} {} {} {} {}\n", eye.x, eye.y, eye.z, degrees * angles[0],
+                                           degrees * angles[1], degrees * angles[2], view));
+  settings.chan_rotation = "zxy";
+  EXPECT_THAT(said(), refused_with("--chan-rotation xyz"));
+  settings.chan_rotation = "xyz";
+  EXPECT_THAT(said(), IsEmpty());
+}
+
 TEST_F(Doubts, a_view_that_no_file_names_is_warned_of) {
   give();
   write_depth([](double z) { return z; }, 1e12f);

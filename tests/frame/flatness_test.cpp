@@ -62,12 +62,13 @@ struct Storage {
   const char* name;
   std::function<double(double)> stored;
 };
-const std::vector<Storage> kStorages{{"exact", [](double v) { return v; }},
-                                     {"half", half},
-                                     {"half times a scale", [](double v) { return 0.37 * half(v); }},
-                                     {"thousandths", [](double v) { return std::round(v * 1000) / 1000; }},
-                                     {"whole thousandths", [](double v) { return std::round(v * 1000); }},
-                                     {"16 bits of 20", [](double v) { return std::round(v / 20 * 65535) * 20 / 65535; }}};
+const std::vector<Storage> kStorages{
+    {"exact", [](double v) { return v; }},
+    {"half", half},
+    {"half times a scale", [](double v) { return 0.37 * half(v); }},
+    {"thousandths", [](double v) { return std::round(v * 1000) / 1000; }},
+    {"whole thousandths", [](double v) { return std::round(v * 1000); }},
+    {"16 bits of 20", [](double v) { return std::round(v / 20 * 65535) * 20 / 65535; }}};
 
 TEST(Flatness, tells_the_kind_however_coarse_the_values_are) {
   const std::vector<std::pair<DepthKind, ValueAt>> kinds{
@@ -76,8 +77,7 @@ TEST(Flatness, tells_the_kind_however_coarse_the_values_are) {
       {DepthKind::inverse, [](double x, double y) { return 1 / room(x, y); }}};
   for (const auto& [kind, value] : kinds)
     for (const auto& storage : kStorages) {
-      const auto scores =
-          scores_of(plane_of([&](double x, double y) { return storage.stored(value(x, y)); }));
+      const auto scores = scores_of(plane_of([&](double x, double y) { return storage.stored(value(x, y)); }));
       ASSERT_FALSE(scores.empty()) << storage.name;
       EXPECT_EQ(scores[0].kind, kind) << storage.name << " " << scores[0].straight;
       EXPECT_GT(scores[0].straight, 0.05) << storage.name;
@@ -143,7 +143,8 @@ TEST(Jitter, is_that_of_random_places_within_pixels) {
   EXPECT_NEAR(jitter(mean_of(4)).value_or(0), 0.145, 0.02);
   for (const auto& storage : kStorages)
     EXPECT_FALSE(jitter([&](double x, double y) { return storage.stored(room(x, y)); })) << storage.name;
-  EXPECT_FALSE(jitter([&](double x, double y) { return room(x, y) + 0.002 * within(random); })) << "relief of one height";
+  EXPECT_FALSE(jitter([&](double x, double y) { return room(x, y) + 0.002 * within(random); }))
+      << "relief of one height";
 }
 
 }  // namespace

@@ -6,9 +6,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
+#include <numbers>
 #include <random>
 
 #include "core/formats/exr.h"
+#include "core/frame/panorama.h"
 #include "core/inspect/camera_file.h"
 #include "tests/support/command_line.h"
 #include "tests/support/difference.h"
@@ -17,7 +20,9 @@ namespace alcove {
 namespace {
 
 using namespace test;
+using testing::AllOf;
 using testing::HasSubstr;
+using testing::Not;
 
 const Window kPicture{0, 0, 320, 180};
 
@@ -234,6 +239,47 @@ class PositionPass : public CommandLine {
   }
 };
 
+/// Points that rays of a panorama see from a place in the world, turned in any way.
+std::vector<SeenPoint> points_along(const std::function<Vector3(double x, double y)>& ray, const Window& picture) {
+  const Matrix3 world_from_view = transposed(turned(0.7, -0.4, 1.9));
+  std::vector<SeenPoint> points;
+  for (int y = 2; y < picture.height; y += 6)
+    for (int x = 2; x < picture.width; x += 6) {
+      const double distance = 4 + 3 * std::sin(0.31 * x + 0.7 * y);
+      const Vector3 direction = ray(x + 0.5 - 0.5 * picture.width, 0.5 * picture.height - y - 0.5);
+      const Vector3 there = times(world_from_view, scaled(direction, distance));
+      points.push_back({{there[0] + 5, there[1] - 2, there[2] + 30}, x + 0.5, y + 0.5});
+    }
+  return points;
+}
+
+TEST(Panoramas, are_known_by_the_points_that_they_see) {
+  const auto sphere = [](double longitude, double latitude) {
+    return Vector3{std::sin(longitude) * std::cos(latitude), std::sin(latitude),
+                   -std::cos(longitude) * std::cos(latitude)};
+  };
+  const double pi = std::numbers::pi;
+  const auto whole =
+      points_along([&](double x, double y) { return sphere(x * pi / 90, y * pi / 90); }, {0, 0, 180, 90});
+  EXPECT_EQ(panorama_of(whole, {0, 0, 180, 90}), "equirectangular, 360 degrees wide");
+  const auto half = points_along([&](double x, double y) { return sphere(x * pi / 90, y * pi / 90); }, {0, 0, 90, 90});
+  EXPECT_EQ(panorama_of(half, {0, 0, 90, 90}), "equirectangular, 180 degrees wide");
+  const auto cylinder = points_along(
+      [&](double x, double y) {
+        return Vector3{std::sin(x * pi / 90), y * pi / 90, -std::cos(x * pi / 90)};
+      },
+      {0, 0, 180, 60});
+  EXPECT_EQ(panorama_of(cylinder, {0, 0, 180, 60}), "cylindrical, 360 degrees wide");
+  const auto fish_eye = points_along(
+      [&](double x, double y) {
+        const double radius = std::hypot(x, y), angle = radius * pi / 90;
+        return Vector3{x / radius * std::sin(angle), y / radius * std::sin(angle), -std::cos(angle)};
+      },
+      {0, 0, 90, 90});
+  EXPECT_EQ(panorama_of(fish_eye, {0, 0, 90, 90}), "fish eye");
+  EXPECT_EQ(panorama_of(seen_by(made_camera()), kPicture), "");
+}
+
 TEST_F(PositionPass, gives_the_camera_that_nobody_said) {
   write_positions("ViewLayer.Position");
   const Plane by_file = ao_of({"--camera", camera});
@@ -271,6 +317,24 @@ TEST_F(PositionPass, of_a_sequence_is_written_with_its_frames) {
   ASSERT_EQ(inspected.code, 0) << inspected;
   expect_same(read_camera(written, 9), read_camera(camera, 0), 1e-5);
   EXPECT_THROW(read_camera(written, 8), Error);
+}
+
+TEST_F(PositionPass, refutes_a_lens_by_pixels) {
+  write_positions("ViewLayer.Position");
+  const Camera right = read_camera(camera, 0);
+  const double degrees = 2 * std::atan(32 / right.fx) * 180 / std::numbers::pi;
+  const auto warned = [&](const std::vector<std::string>& options) {
+    std::vector<std::string> arguments{"run", frame, "-o", ao, "--radius", "1", "--normal", "none"};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    return run_program(arguments).err;
+  };
+  const auto refutes = HasSubstr("px from the pixels that hold them");
+  EXPECT_THAT(warned({"--fov", fmt::format("{}", degrees)}), Not(refutes));
+  EXPECT_THAT(warned({"--fov", fmt::format("{}", degrees + 0.2)}), Not(refutes)) << "it is rounded";
+  EXPECT_THAT(warned({"--fov", "90"}),
+              AllOf(HasSubstr("by --fov 90"), refutes, HasSubstr(fmt::format("--fov {:.5g}", degrees))));
+  EXPECT_THAT(warned({"--ortho-width", "5"}), AllOf(HasSubstr("by --ortho-width"), refutes));
+  EXPECT_THAT(warned({"--camera", camera}), Not(refutes));
 }
 
 TEST_F(PositionPass, that_is_none_is_told) {

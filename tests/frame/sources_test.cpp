@@ -74,6 +74,62 @@ TEST_F(Sources, karma_and_mantra_by_matrices) {
   expect_same("karma");
 }
 
+TEST_F(Sources, karma_by_what_houdini_leaves_behind_other_programs_marks) {
+  depth("Pz", planar, 0);
+  vectors("hitN", "XYZ", world_normal);
+  give_camera();
+  header.insert("renderTime_s", Imf::StringAttribute("0:12.30"));
+  expect_same("karma");
+  header.insert("Software", Imf::StringAttribute("Houdini 19.5 mantra"));
+  planes.erase("hitN.X");
+  vectors("N", "XYZ", world_normal);
+  expect_same("mantra");
+}
+
+TEST_F(Sources, arnold_of_3ds_max) {
+  depth("Z", planar, 1e12f);
+  vectors("N", "XYZ", world_normal);
+  header.insert("arnold/version", Imf::StringAttribute("Arnold 7.1.3.0"));
+  header.insert("CameraFov", Imf::FloatAttribute(float(kFov)));
+  header.insert("worldToCamera", matrix(world_to_camera(-1), true));
+  header.insert("worldToScreen", matrix(world_to_ndc(false), true));
+  expect_same("arnold");
+  EXPECT_EQ(find_frame(settings, false, 0).camera_from, "the header's worldToCamera, worldToScreen");
+}
+
+TEST_F(Sources, mitsuba_with_aovs_of_any_name) {
+  depth("dd.y", ray, 0);
+  vectors("nn", "XYZ", world_normal);
+  give_camera();
+  header.insert("generatedBy", Imf::StringAttribute("Mitsuba version 2.2.1"));
+  expect_same("mitsuba");
+  header.erase("generatedBy");
+  expect_same("mitsuba");
+  planes.clear();
+  depth("depth.T", ray, 0);
+  vectors("sh_normal", "XYZ", world_normal);
+  expect_same("mitsuba");
+}
+
+TEST_F(Sources, moge_by_name) {
+  depth("Y", planar, INFINITY);
+  write(folder / "depth.exr");
+  settings.depth = folder / "depth.exr";
+  planes.clear();
+  vectors("normal", "RGB", [](const test::Hit& hit) {
+    const Vec3 n = view_normal(hit);
+    return Vec3{n.x, -n.y, -n.z};  // y down, z forward
+  });
+  settings.normal = settings.input;
+  settings.input.clear();
+  write(settings.normal);
+  settings.source = "moge";
+  settings.fov = kFov;
+  const FrameSource source = settled();
+  EXPECT_EQ(source.depth_kind, DepthKind::planar);
+  EXPECT_LE(difference(ao_of(read_host_frame(settings, 0), 1), ao_of(rendering().frame, 1)).max, 1e-3);
+}
+
 TEST_F(Sources, octane_with_distances_along_the_ray) {
   depth("Z-Depth.R", ray, 1e10f);
   vectors("Shading normal", "RGB", world_normal);
@@ -129,6 +185,21 @@ TEST_F(Sources, unreal_in_its_left_handed_world_and_half_depth) {
   for (const auto& [name, value] : numbers) header.insert(name, Imf::StringAttribute(fmt::format("{}", value)));
   expect_same("unreal", 0.03, 100);  // half floats step by 0.25 cm here, and AO shows it
   EXPECT_THAT(texts_of(settled().suspicious), testing::ElementsAre(HasSubstr("half float")));
+}
+
+TEST_F(Sources, unreal_with_several_cameras_needs_to_be_told_which) {
+  const std::string pass = "FinalImageMovieRenderQueue_";
+  depth(pass + "WorldDepth_Near.R", planar, 65504, 100);
+  depth(pass + "WorldDepth_Far.R", planar, 65504, 1000);
+  vectors(pass + "WorldNormal_Near", "RGB", world_normal);
+  vectors(pass + "WorldNormal_Far", "RGB", world_normal);
+  give_camera();
+  expect_refused(ErrorKind::input, {pass + "WorldDepth_Near.R", pass + "WorldDepth_Far.R", "--depth-channel"});
+  settings.depth_channel = pass + "WorldDepth_Near.R";
+  write(settings.input);
+  const FrameSource source = find_frame(settings, false, 0);
+  EXPECT_EQ(source.rules->name, "unreal");
+  EXPECT_EQ(source[RawPlane::normal].at(0).channel, pass + "WorldNormal_Near.R");
 }
 
 TEST_F(Sources, nuke_with_inverse_depth) {
@@ -291,8 +362,9 @@ TEST_F(Sources, a_matrix_for_another_depth_range_is_noted) {
 }
 
 TEST(InputRules, all_names_are_there_and_unknown_ones_name_the_nearest) {
-  for (const char* name : {"arnold", "vray", "renderman", "cycles", "blender5", "redshift", "karma", "mantra", "octane",
-                           "corona", "3delight", "unreal", "unity", "nuke", "pbrt", "renderdoc", "reshade", "generic"})
+  for (const char* name : {"arnold", "vray",    "renderman", "cycles",    "blender5", "redshift", "karma",
+                           "mantra", "octane",  "corona",    "3delight",  "unreal",   "unity",    "nuke",
+                           "pbrt",   "mitsuba", "moge",      "renderdoc", "reshade",  "generic"})
     EXPECT_EQ(input_rules(name).name, name);
   try {
     input_rules("arnlod");

@@ -40,7 +40,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       file.attributes(int(part));
       const auto texts = file.attribute_texts(int(part));
       fuzz::accepts([&] { require_no_panorama(texts, input.path()); });
-      if (const auto found = header_camera(texts, file.display(), file.parts()[part].data, file.pixel_aspect())) {
+      const std::string layer = "FinalImageMovieRenderQueue_WorldDepth_A";
+      why_no_header_camera(texts, layer);
+      if (const auto found =
+              header_camera(texts, file.display(), file.parts()[part].data, file.pixel_aspect(), layer)) {
         fuzz::require(found->camera.fx > 0 && found->camera.fy > 0, "a camera has a field of view");
         for (const double x : {found->camera.cx, found->camera.cy})
           fuzz::require(std::isfinite(float(x)), "a camera has a centre");
