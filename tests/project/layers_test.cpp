@@ -356,7 +356,7 @@ TEST(Form, lines_have_at_most_120_columns) {
 
 TEST(Form, files_are_short) {
   for (const auto& file : all_sources())
-    EXPECT_LT(file.lines.size(), file.name.ends_with(".h") ? 200 : 500) << file.name;
+    EXPECT_LT(file.lines.size(), file.name.ends_with(".h") ? 300 : 800) << file.name;
 }
 
 TEST(Form, no_history_and_nothing_unfinished_is_left_in_comments) {
