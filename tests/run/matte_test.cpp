@@ -212,6 +212,21 @@ TEST_F(Crypto, objects_are_found_by_names_and_patterns_in_all_ranks) {
   EXPECT_GT(difference(of_ball, of_both).max, 0.05) << "or else there is nothing to tell apart";
 }
 
+TEST_F(Crypto, ranks_beyond_the_sixteenth_are_not_read_and_that_is_said) {
+  const auto said_with = [&](int ranks) {
+    for (int pair = 2; pair < (ranks + 1) / 2; pair++)
+      for (const char* channel : {"R", "G", "B", "A"})
+        file.planes[fmt::format("Crypto{:02}.{}", pair, channel)].assign(kWindow.pixels(), 0);
+    file.write(frame);
+    const Finished finished = run({"--matte-object", "Ball"});
+    EXPECT_EQ(finished.code, 0) << finished;
+    return finished.err;
+  };
+  file.planes["Crypto01.B"] = file.planes["Crypto01.A"] = Plane(kWindow.pixels(), 0);
+  EXPECT_THAT(said_with(16), testing::Not(HasSubstr("unread-ranks")));
+  EXPECT_THAT(said_with(18), AllOf(HasSubstr("18 ranks"), HasSubstr("--matte-object"), HasSubstr("[unread-ranks]")));
+}
+
 TEST_F(Crypto, manifests_may_lie_beside_the_file_or_be_missing) {
   const Plane of_both = expected(both);
   file.attributes.erase("cryptomatte/abc1234/manifest");
