@@ -239,6 +239,27 @@ TEST_F(Crypto, manifests_may_lie_beside_the_file_or_be_missing) {
   expect_error(file, 3, {"--matte-object", "Ball*"}, {"names.json is no manifest"});
 }
 
+TEST_F(Crypto, resume_redoes_what_another_manifest_beside_the_file_decided) {
+  file.attributes.erase("cryptomatte/abc1234/manifest");
+  file.attributes["cryptomatte/abc1234/manif_file"] = "names.json";
+  write_bytes(folder / "names.json", manifest);
+  file.write(frame);
+  const auto says = [&](const std::string& words) {
+    const Finished finished = run({"--matte-object", "Ball*", "--resume"});
+    EXPECT_EQ(finished.code, 0) << finished;
+    EXPECT_THAT(finished.err, HasSubstr(words));
+  };
+  says(" -> ");
+  says("whole, kept");
+  const auto before = std::filesystem::last_write_time(ao);
+  write_bytes(folder / "names.json", fmt::format(R"({{"Ball":"{:08x}"}})", cryptomatte_id("Ball")));
+  std::filesystem::last_write_time(folder / "names.json", before - std::chrono::hours(1));
+  says(" -> ");
+  std::filesystem::last_write_time(folder / "names.json",
+                                   std::filesystem::last_write_time(ao) + std::chrono::seconds(1));
+  says(" -> ");
+}
+
 TEST_F(Crypto, mistakes_are_named) {
   expect_error(file, 3, {"--matte-object", "Bal"}, {frame, "Crypto", "did you mean Ball", "--matte-object"});
   expect_error(file, 3, {"--matte-channel", "Crypto"}, {frame, "--matte-object"});
