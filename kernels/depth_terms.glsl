@@ -1,8 +1,8 @@
 // Raw depth -> planar depth. Pure: no bindings.
 // SPDX-License-Identifier: BSD-3-Clause
 
-/// e^x - 1. Near 0, where the 1 would take the digits away, by the first terms of its series: off by less than a float's
-/// precision.
+/// e^x - 1. Near 0, where the 1 would take the digits away, by the first terms of its series, which are as precise as
+/// floats.
 float exp_minus_1(float x) {
   if (abs(x) > 0.5) return exp(x) - 1.0;
   float sum = 1.0;

@@ -1,4 +1,5 @@
-// The debug views: a picture each, that says its scale, whole or not at all, and right where what it must show is known.
+// The debug views: a picture each that says its scale, whole or not at all, and right where what it must show is
+// known.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 #include <gmock/gmock.h>
