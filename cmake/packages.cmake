@@ -38,10 +38,9 @@ It computes with Vulkan: on a GPU, or on the CPU with mesa-vulkan-drivers.")
 set(CPACK_DEBIAN_ENABLE_COMPONENT_DEPENDS ON)
 set(CPACK_COMPONENT_PICTURES_DEPENDS alcove)
 set(CPACK_DEBIAN_PICTURES_PACKAGE_NAME alcove-pictures)
-set(CPACK_DEBIAN_PICTURES_PACKAGE_DEPENDS fonts-dejavu-core)
 set(CPACK_DEBIAN_PICTURES_DESCRIPTION "TIFF, PNG and other pictures for Alcove
 With this module, Alcove reads depth, normals and beauties from TIFF, PNG and
-what else OpenImageIO reads, and draws charts and debug views.")
+what else OpenImageIO reads.")
 set(CPACK_DEBIAN_PICTURES_PACKAGE_SOURCE alcove)
 
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME libalcove0)

@@ -21,9 +21,8 @@
 #include "cells.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
-layout(constant_id = kAccumulateStageId) const uint kStage = kAccumulateBegins;
 layout(constant_id = kAccumulatePlanesId) const int kPlanes = 1;
-layout(constant_id = kAccumulateFramesId) const int kFrames = 0;
+layout(constant_id = kAccumulateListedId) const int kListed = 0;
 layout(scalar, push_constant) uniform Push { AccumulateParams params; };
 layout(scalar, binding = kAccumulateDepth) readonly buffer Depth { float depth[]; };
 layout(scalar, binding = kAccumulateNormal) readonly buffer Normal { uint normal[]; };
@@ -75,7 +74,7 @@ void main() {
   const ivec2 in_frame = pixel + params.corner;
   const int index = pixel.y * params.size.x + pixel.x, plane = pixels_of(params.size);
   const int whole = index_of(params.view, in_frame);
-  const bool begins = (kStage & kAccumulateBegins) != 0u, ends = (kStage & kAccumulateEnds) != 0u;
+  const bool begins = (params.stage & kAccumulateBegins) != 0u, ends = (params.stage & kAccumulateEnds) != 0u;
   float count = 1.0, blocked[kPlanes];
   if (!begins) count = sums[index];
   for (int k = 0; k < kPlanes; k++)
@@ -85,12 +84,12 @@ void main() {
   const bool is_surface = z < kSkyDepth && word != kNoNormal;
   const vec3 here = position_of(params.view, vec2(in_frame) + 0.5, min(z, 1e15)), n = unpack_normal(word);
   const uint moves = near[place_of_cell(cell_of(here, params.radius))];
-  [[unroll]] for (int i = 0; i < kFrames; i++) {
+  [[unroll]] for (int i = 0; i < kListed; i++) {
     const bool moved = (moves >> (params.place + uint(i)) & 1u) != 0u;
     const TakenFrame other = frames[i];
     uint words[(kPlanes + 2) / 2];
     const int at = index_in(other, here, n, words[0]), there = pixels_of(other.view.size);
-    const bool is_taken = is_surface && !moved && at >= 0;
+    const bool is_taken = is_surface && !moved && at >= 0 && uint(i) < params.frames;
     for (int k = 1; k < (kPlanes + 2) / 2; k++) words[k] = others[other.first + uint(max(at, 0) + (k + 1) * there)];
     count += is_taken ? 1.0 : 0.0;
     float theirs[kPlanes + 2];

@@ -19,9 +19,8 @@ ALCOVE_CONSTANT uint kAccumulateAo = 7;      // the first one
 ALCOVE_CONSTANT uint kAccumulateScales = 8;  // those of radii, which follow it
 ALCOVE_CONSTANT uint kAccumulateBent = 9;    // those of the mean open direction, which are the last ones
 
-ALCOVE_CONSTANT uint kAccumulateStageId = 0;   // specialization: bits of kAccumulate* below
-ALCOVE_CONSTANT uint kAccumulatePlanesId = 1;  // specialization: of values
-ALCOVE_CONSTANT uint kAccumulateFramesId = 2;  // specialization: in the buffer, 0 to kMostTaken
+ALCOVE_CONSTANT uint kAccumulatePlanesId = 0;  // specialization: of values
+ALCOVE_CONSTANT uint kAccumulateListedId = 1;  // specialization: frames that the buffer lists, 0 to kMostTaken
 
 ALCOVE_CONSTANT uint kAccumulateBegins = 1;  // the sums begin, with the frame's own estimate
 ALCOVE_CONSTANT uint kAccumulateEnds = 2;    // the mean is made of them
@@ -33,6 +32,8 @@ struct AccumulateParams {
   float radius;  // scene units: what moves within it may change an estimate
   uint place;    // of the first frame of the buffer among all others
   int scales;    // of the values, those of radii
+  uint frames;   // of these that count: the first ones
+  uint stage;    // bits of kAccumulateBegins and kAccumulateEnds
 };
 ALCOVE_PARAMS(AccumulateParams)
 

@@ -40,7 +40,7 @@ struct Box {
 };
 const Box kNowhere = Box(vec3(kSkyDepth), vec3(-kSkyDepth));
 
-/// Cells along an axis that are marked at most: boxes of a tile are small but where a tile shows an edge.
+/// Cells along an axis that are marked at most for one box: boxes of a tile are small but where a tile shows an edge.
 const int kMostCells = 64;
 
 /// How a depth is looked up: of the frame itself, or of another one.
@@ -91,12 +91,37 @@ bool is_patch(bool of_own, uint first, View view, ivec2 pixel, float z) {
   return alike;
 }
 
-void widen(inout Box box, vec3 position) {
-  box.low = min(box.low, position);
-  box.high = max(box.high, position);
+Box both(Box a, Box b) { return Box(min(a.low, b.low), max(a.high, b.high)); }
+
+/// Whether no more cells than that lie within the radius of a box.
+bool is_small(Box box) {
+  const ivec3 first = cell_of(box.low - params.radius, params.radius),
+              last = cell_of(box.high + params.radius, params.radius);
+  return all(lessThanEqual(last - first, ivec3(kMostCells)));
 }
 
-Box both(Box a, Box b) { return Box(min(a.low, b.low), max(a.high, b.high)); }
+/// Marks the cells within the radius of a small box for some frames. One of a single place is small, unless cells are
+/// finer than floats.
+void mark(Box box, uint frames) {
+  const ivec3 first = cell_of(box.low - params.radius, params.radius);
+  const ivec3 last = min(cell_of(box.high + params.radius, params.radius), first + kMostCells);
+  for (int z = first.z; z <= last.z; z++)
+    for (int y = first.y; y <= last.y; y++)
+      for (int x = first.x; x <= last.x; x++) {
+        const vec3 low = vec3(x, y, z) * (kMovedCell * params.radius), high = low + kMovedCell * params.radius;
+        const vec3 apart = max(max(low - box.high, box.low - high), vec3(0));
+        if (dot(apart, apart) < params.radius * params.radius) atomicOr(near[place_of_cell(ivec3(x, y, z))], frames);
+      }
+}
+
+/// Adds what moves to a box. What would make it too large, such as the far one of two things that a tile shows, begins
+/// another one, and the first one is marked at once.
+void add(inout Box box, Box more, uint frames) {
+  const Box wider = both(box, more);
+  const bool fits = is_small(wider);
+  for (bool once = !fits; once; once = false) mark(box, frames);
+  box = fits ? wider : more;
+}
 
 /// Words of suspects of all squares of a tile.
 struct Found {
@@ -120,8 +145,8 @@ uint squares_with(Found found, int bit) {
 }
 
 /// What of a tile of one frame the other has not: from the frame itself to another one, or the other way round, where
-/// it is looked at in these squares.
-Box unseen_of(ivec2 tile, uint squares, bool from_own, TakenFrame other) {
+/// it is looked at in these squares. Gives the last box, which is still to be marked for these frames.
+Box unseen_of(ivec2 tile, uint squares, bool from_own, TakenFrame other, uint frames) {
   View from = other.view, to = params.view;
   if (from_own) from = params.view;
   if (from_own) to = other.view;
@@ -138,18 +163,18 @@ Box unseen_of(ivec2 tile, uint squares, bool from_own, TakenFrame other) {
     bool lifted =
         !moved && is_seen_through(!from_own, other.first, to, sight.at, kPatch, sight.same + kLifted * sight.width);
     for (bool wide = lifted; wide; wide = false) moved = is_patch(from_own, other.first, from, pixel, z);
-    for (bool found = moved; found; found = false) widen(box, from_own ? here : there);
+    const vec3 place = from_own ? here : there;
+    for (bool found = moved; found; found = false) add(box, Box(place, place), frames);
   }
   return box;
 }
 
 /// What of a tile moves by motion vectors: of the frame itself, or of another one. All pixels are looked at, since
-/// vectors also tell of what is as thin as one.
-Box moving_of(ivec2 tile, bool of_own, TakenFrame other) {
+/// vectors also tell of what is as thin as one. Adds it to a box.
+void add_moving(inout Box box, ivec2 tile, bool of_own, TakenFrame other, uint frames) {
   View view = other.view;
   if (of_own) view = params.view;
-  Box box = kNowhere;
-  if (any(greaterThanEqual(tile, tiles_of(view.size)))) return box;
+  if (any(greaterThanEqual(tile, tiles_of(view.size)))) return;
   float least = 0.0;
   [[dont_unroll]] for (int y = 0; y < kTile; y++) {
     const int row = index_of(view, ivec2(0, min(tile.y * kTile + y, view.size.y - 1)));
@@ -162,22 +187,9 @@ Box moving_of(ivec2 tile, bool of_own, TakenFrame other) {
     const ivec2 pixel = min(pixel_of_tile(tile, uint(k)), view.size - 1);
     const float z = depth_at(of_own, other.first, index_of(view, pixel));
     const vec3 position = position_of(view, vec2(pixel) + 0.5, -z);
-    for (bool once = z < 0.0; once; once = false) widen(box, of_own ? position : position_here(other, position));
+    const vec3 place = of_own ? position : position_here(other, position);
+    for (bool once = z < 0.0; once; once = false) add(box, Box(place, place), frames);
   }
-  return box;
-}
-
-/// Marks the cells within the radius of a box for some frames.
-void mark(Box box, uint frames) {
-  const ivec3 first = cell_of(box.low - params.radius, params.radius);
-  const ivec3 last = min(cell_of(box.high + params.radius, params.radius), first + kMostCells);
-  for (int z = first.z; z <= last.z; z++)
-    for (int y = first.y; y <= last.y; y++)
-      for (int x = first.x; x <= last.x; x++) {
-        const vec3 low = vec3(x, y, z) * (kMovedCell * params.radius), high = low + kMovedCell * params.radius;
-        const vec3 apart = max(max(low - box.high, box.low - high), vec3(0));
-        if (dot(apart, apart) < params.radius * params.radius) atomicOr(near[place_of_cell(ivec3(x, y, z))], frames);
-      }
 }
 
 void main() {
@@ -188,10 +200,11 @@ void main() {
   const ivec2 tile = ivec2(gl_GlobalInvocationID.xy) - ivec2(0, i * rows);
   if (any(greaterThanEqual(tile * kSquares, params.squares))) return;
   const Found found = suspects_of(tile);
-  Box here = unseen_of(tile, squares_with(found, i), true, other);
-  Box there = unseen_of(tile, squares_with(found, i + int(kMostTaken)), false, other);
-  if (kVectors != 0 && i == 0) here = both(here, moving_of(tile, true, other));
-  if (kVectors != 0) there = both(there, moving_of(tile, false, other));
-  if (there.low.x <= there.high.x) mark(there, 1u << (params.place + uint(i)));
-  if (here.low.x <= here.high.x) mark(here, ~0u);
+  const uint of_other = 1u << (params.place + uint(i)), of_all = ~0u;
+  Box here = unseen_of(tile, squares_with(found, i), true, other, of_all);
+  Box there = unseen_of(tile, squares_with(found, i + int(kMostTaken)), false, other, of_other);
+  if (kVectors != 0 && i == 0) add_moving(here, tile, true, other, of_all);
+  if (kVectors != 0) add_moving(there, tile, false, other, of_other);
+  if (there.low.x <= there.high.x) mark(there, of_other);
+  if (here.low.x <= here.high.x) mark(here, of_all);
 }

@@ -18,7 +18,7 @@ struct TakenFrame {
 };
 
 ALCOVE_CONSTANT uint kNoTakenNormal = 0x8080;
-ALCOVE_CONSTANT uint kMostTaken = 9;  // frames of a buffer: kernels are made for each number of them
+ALCOVE_CONSTANT uint kMostTaken = 9;  // frames of a buffer
 
 ALCOVE_CONSTANT int kSquares = kTile / 2;  // of 2 x 2 pixels, a side of a tile: one pixel of each is looked at
 

@@ -17,7 +17,7 @@
 #include "sight.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
-layout(constant_id = kSuspectsFramesId) const int kFrames = 1;
+layout(constant_id = kSuspectsListedId) const int kListed = 1;
 layout(scalar, push_constant) uniform Push { SuspectsParams params; };
 layout(scalar, binding = kSuspectsOwn) readonly buffer Own { float own[]; };
 layout(scalar, binding = kSuspectsNormal) readonly buffer Normal { uint normal[]; };
@@ -56,7 +56,7 @@ void main() {
   const vec3 n = word == kNoNormal ? vec3(0) : octahedral_direction(unpackSnorm2x16(word));
   const bool is_own = inside(params.view, pixel) && z < kSkyDepth;
   uint found = 0u;
-  [[unroll]] for (int i = 0; i < kFrames; i++) {
+  [[unroll]] for (int i = 0; i < kListed; i++) {
     const TakenFrame other = frames[i];
     const ivec2 in_other = min(pixel, other.view.size - 1);
     const float z_there = depth_at(false, other, in_other);

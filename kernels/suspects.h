@@ -13,7 +13,7 @@ ALCOVE_CONSTANT uint kSuspectsFrames = 3;  // in: their TakenFrame each
 // frame may see past what that one has in its own picture there
 ALCOVE_CONSTANT uint kSuspectsBits = 4;
 
-ALCOVE_CONSTANT uint kSuspectsFramesId = 0;  // specialization: in the buffer, 1 to kMostTaken
+ALCOVE_CONSTANT uint kSuspectsListedId = 0;  // specialization: frames that the buffer lists, 1 to kMostTaken
 
 struct SuspectsParams {
   View view;      // of the frame that takes the mean

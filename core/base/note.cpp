@@ -54,6 +54,7 @@ constexpr std::array kTable = {
     NoteFacts{NoteCode::repaired_beauty, "repaired-beauty", true, "pixels had no usable beauty", InHeader::meaning},
     NoteFacts{NoteCode::no_normals, "no-normals", false, "normals were reconstructed from depth"},
     NoteFacts{NoteCode::unused_input, "unused-input", true, "no channel of INPUT is used, and there are no normals"},
+    NoteFacts{NoteCode::unread_ranks, "unread-ranks", false, "a Cryptomatte has more ranks than are read"},
     NoteFacts{NoteCode::no_indirect_light, "no-indirect-light", true, "the composite dims direct light too"},
     NoteFacts{NoteCode::device_memory, "device-memory", false, "the device had too little memory at first"},
     NoteFacts{NoteCode::in_parts, "in-parts", false, "the frame was too large to compute at once", InHeader::nothing},

@@ -50,6 +50,7 @@ enum class NoteCode {
   repaired_beauty,
   no_normals,
   unused_input,
+  unread_ranks,
   no_indirect_light,
   // how it was computed
   device_memory,

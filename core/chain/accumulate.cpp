@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/chain/accumulate.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "core/base/estimator_facts.h"
@@ -47,7 +49,7 @@ const gpu::Buffer& suspects(gpu::Recorder& gpu, const EstimateSet& estimates, co
                 {kSuspectsOthers, *group.planes},
                 {kSuspectsFrames, *group.frames},
                 {kSuspectsBits, bits}},
-               extent, {group.count});
+               extent, {group.listed});
   return bits;
 }
 
@@ -83,15 +85,16 @@ Accumulation accumulate(gpu::Recorder& gpu, const GBuffer& gbuffer, const Estima
   const std::size_t plane = plane_bytes(gbuffer.view), values = 1 + scales + (with_bent ? 3 : 0);
   gpu::Buffer& sums = buffer("accumulated sums", (1 + values) * plane);
   Visibility mean{&buffer("accumulated", plane)};
-  if (scales > 0) mean.scales = &buffer(std::string(kScalesPrefix) + "accumulated", scales * plane);
-  if (with_bent) mean.bent = &buffer(std::string(kBentPrefix) + "accumulated", 3 * plane);
+  if (scales > 0) mean.scales = &buffer(fmt::format("{}accumulated", kScalesPrefix), scales * plane);
+  if (with_bent) mean.bent = &buffer(fmt::format("{}accumulated", kBentPrefix), 3 * plane);
 
-  AccumulateParams params{estimates.view, gbuffer.view.size, estimates.corner, radius, 0, int(scales)};
+  AccumulateParams params{estimates.view, gbuffer.view.size, estimates.corner, radius, 0, int(scales), 0, 0};
   const std::vector<SeenGroup> none(1);
   const auto& groups = estimates.groups.empty() ? none : estimates.groups;
   for (std::size_t i = 0; i < groups.size(); i++) {
     const SeenGroup& group = groups[i];
-    const uint stage = (i == 0 ? kAccumulateBegins : 0) | (i + 1 == groups.size() ? kAccumulateEnds : 0);
+    params.frames = group.count;
+    params.stage = (i == 0 ? kAccumulateBegins : 0) | (i + 1 == groups.size() ? kAccumulateEnds : 0);
     gpu.dispatch("accumulate", params,
                  {{kAccumulateDepth, *gbuffer.depth},
                   {kAccumulateNormal, *gbuffer.normal},
@@ -103,7 +106,7 @@ Accumulation accumulate(gpu::Recorder& gpu, const GBuffer& gbuffer, const Estima
                   {kAccumulateAo, *mean.ao},
                   {kAccumulateScales, or_else(mean.scales, *mean.ao)},
                   {kAccumulateBent, or_else(mean.bent, *mean.ao)}},
-                 extent_of(gbuffer.view), {stage, uint(values), group.count});
+                 extent_of(gbuffer.view), {uint(values), group.listed});
     params.place += group.count;
   }
   return {mean, &sums};

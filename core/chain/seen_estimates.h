@@ -14,6 +14,9 @@ struct SeenGroup {
   const gpu::Buffer* planes = nullptr;  // of all of them, as words
   const gpu::Buffer* frames = nullptr;  // TakenFrame each
   uint count = 0;
+  // Entries of the table. Kernels are made for their number, so that it is the same where fewer frames count, at cuts
+  // and beside missing ones: those beyond `count` repeat the first one and count nowhere.
+  uint listed = 0;
 };
 
 /// The estimates that a frame takes the mean of.

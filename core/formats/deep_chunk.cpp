@@ -89,4 +89,18 @@ bool counts_of_table(std::span<const std::uint8_t> table, std::size_t width, std
   return true;
 }
 
+bool lines_of_counts(std::span<const std::uint32_t> counts, std::size_t width, std::uint64_t sample_bytes,
+                     std::uint64_t bytes, std::vector<std::size_t>& lines) {
+  // Samples are counted down from what there is room for: a sum of bytes that a file has chosen could wrap.
+  std::uint64_t left = bytes / sample_bytes;
+  lines.clear();
+  for (std::size_t i = 0; i < counts.size(); i++) {
+    if (i % width == 0) lines.push_back(bytes - left * sample_bytes);
+    if (counts[i] > left) return false;
+    left -= counts[i];
+  }
+  lines.push_back(bytes);
+  return left == 0 && bytes % sample_bytes == 0;
+}
+
 }  // namespace alcove

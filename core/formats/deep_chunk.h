@@ -24,4 +24,9 @@ bool unpack_deep(DeepCompression compression, std::span<const std::uint8_t> pack
 /// where a number is below 0.
 bool counts_of_table(std::span<const std::uint8_t> table, std::size_t width, std::vector<std::uint32_t>& counts);
 
+/// Where the samples of each line begin, and where the last line's end, in bytes of a chunk's samples. A sample takes
+/// `sample_bytes`. Returns false where the counts are not those of exactly `bytes`.
+bool lines_of_counts(std::span<const std::uint32_t> counts, std::size_t width, std::uint64_t sample_bytes,
+                     std::uint64_t bytes, std::vector<std::size_t>& lines);
+
 }  // namespace alcove

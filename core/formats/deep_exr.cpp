@@ -307,14 +307,7 @@ void DeepReader::Impl::unpack(const Part& part, int column, int row, Unpacked& t
                         unpack_deep(part.compression, to.table, table, to.scratch);
   if (!is_table || !counts_of_table(table, width, to.counts))
     refuse(part, fmt::format("the counts of chunk {}, {} are damaged", column, row));
-  std::uint64_t bytes = 0;
-  to.lines.clear();
-  for (std::size_t i = 0; i < to.counts.size(); i++) {
-    if (i % width == 0) to.lines.push_back(bytes);
-    bytes += std::uint64_t(to.counts[i]) * part.sample_bytes;
-  }
-  to.lines.push_back(bytes);
-  if (bytes != chunk.unpacked_size)
+  if (!lines_of_counts(to.counts, width, part.sample_bytes, chunk.unpacked_size, to.lines))
     refuse(part, fmt::format("the counts of chunk {}, {} are not those of its samples", column, row));
   if (!unpack_deep(part.compression, to.packed, data, to.scratch))
     refuse(part, fmt::format("the samples of chunk {}, {} are damaged", column, row));

@@ -23,7 +23,9 @@ class PartOfFile {
   }
 
  private:
-  bool lies_within(const exr_chunk_info_t& chunk) const { return chunk.data_offset + chunk.packed_size <= size_; }
+  bool lies_within(const exr_chunk_info_t& chunk) const {
+    return chunk.packed_size <= size_ && chunk.data_offset <= size_ - chunk.packed_size;
+  }
 
   bool has_rows() const {
     exr_attr_box2i_t data;

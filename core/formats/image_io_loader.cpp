@@ -15,13 +15,13 @@ const ImageIoModule* load(std::string& why) {
 }
 
 /// `path` is the picture that needs it.
-const ImageIoModule& module(const std::string& path, ErrorKind kind) {
+const ImageIoModule& module(const std::string& path) {
   static const ImageIoModule* loaded = [&] {
     std::string why;
     const ImageIoModule* found = load(why);
     if (!found)
-      fail(kind,
-           "{}: to read a picture that is no EXR, and to draw debug views, Alcove needs {}, of the package "
+      fail(ErrorKind::input,
+           "{}: to read a picture that is no EXR, Alcove needs {}, of the package "
            "alcove-pictures, which is built where OpenImageIO is installed (libopenimageio-dev): {}",
            path, kImageIoFile, why);
     return found;
@@ -37,11 +37,7 @@ std::string why_no_image_io() {
 }
 
 std::unique_ptr<PictureReader> open_picture(const std::string& path, const char* option) {
-  return module(path, ErrorKind::input).open_picture(path, option);
-}
-
-std::vector<char> encode_chart(const std::string& name, const Chart& chart) {
-  return module(name, ErrorKind::output).encode_chart(name, chart);
+  return module(path).open_picture(path, option);
 }
 
 }  // namespace alcove

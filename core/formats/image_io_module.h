@@ -7,16 +7,14 @@
 
 #include <memory>
 #include <string>
-#include <vector>
 
 #include "core/formats/image_io.h"
 
 namespace alcove {
 
-/// The functions of core/formats/image_io.h that need OpenImageIO.
+/// The function of core/formats/image_io.h that needs OpenImageIO.
 struct ImageIoModule {
   std::unique_ptr<PictureReader> (*open_picture)(const std::string& path, const char* option);
-  std::vector<char> (*encode_chart)(const std::string& name, const Chart& chart);
 };
 
 inline constexpr const char* kImageIoFile = "libalcove_image_io.so";

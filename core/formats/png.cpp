@@ -13,6 +13,7 @@
 #include <fstream>
 #include <memory>
 #include <string_view>
+#include <utility>
 
 #include "core/base/error.h"
 #include "core/base/file.h"
@@ -20,8 +21,8 @@
 namespace alcove {
 namespace {
 
-constexpr const char* kMadeBy = "alcove";  // the keyword of the text
-constexpr std::size_t kTextWithin = 4096;  // bytes: the text stands before the pixels
+constexpr const char *kMadeBy = "alcove", *kShows = "Description";  // keywords of texts
+constexpr std::size_t kTextWithin = 4096;                           // bytes: texts stand before the pixels
 
 constexpr std::size_t kErrorBytes = 256;  // of a message of libpng's, which are shorter
 
@@ -74,12 +75,13 @@ struct Writer {
 };
 
 /// Nothing here has a destructor, since an error jumps out of the calls below to the setjmp.
-bool write_all(png_structp png, png_infop info, int width, int height, int channels, png_bytepp rows, png_textp text) {
+bool write_all(png_structp png, png_infop info, int width, int height, int channels, png_bytepp rows,
+               std::span<png_text> texts) {
   if (setjmp(png_jmpbuf(png))) return false;
   png_set_IHDR(png, info, png_uint_32(width), png_uint_32(height), 8,
                channels == 1 ? PNG_COLOR_TYPE_GRAY : PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
                PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
-  if (text) png_set_text(png, info, text, 1);
+  if (!texts.empty()) png_set_text(png, info, texts.data(), int(texts.size()));
   png_write_info(png, info);
   png_write_image(png, rows);
   png_write_end(png, nullptr);
@@ -89,7 +91,7 @@ bool write_all(png_structp png, png_infop info, int width, int height, int chann
 }  // namespace
 
 std::vector<char> encode_png(const std::string& name, int width, int height, int channels,
-                             std::span<const float> pixels, const std::string& made_by) {
+                             std::span<const float> pixels, const std::string& made_by, const std::string& shows) {
   std::vector<png_byte> bytes(pixels.size());
   std::ranges::transform(pixels, bytes.begin(),
                          [](float x) { return png_byte(std::lround(255 * std::clamp(x, 0.0f, 1.0f))); });
@@ -97,13 +99,17 @@ std::vector<char> encode_png(const std::string& name, int width, int height, int
   for (int y = 0; y < height; y++)
     rows.push_back(bytes.data() + std::size_t(y) * std::size_t(width) * std::size_t(channels));
 
-  std::string value = made_by;
-  std::string keyword = kMadeBy;
-  png_text text{};
-  text.compression = PNG_TEXT_COMPRESSION_NONE;
-  text.key = keyword.data();
-  text.text = value.data();
-  text.text_length = value.size();
+  // libpng takes texts that it might change.
+  std::array<std::pair<std::string, std::string>, 2> said{{{kMadeBy, made_by}, {kShows, shows}}};
+  std::vector<png_text> texts;
+  for (auto& [keyword, value] : said) {
+    if (value.empty()) continue;
+    png_text& text = texts.emplace_back();
+    text.compression = PNG_TEXT_COMPRESSION_NONE;
+    text.key = keyword.data();
+    text.text = value.data();
+    text.text_length = value.size();
+  }
 
   Sink sink;
   Writer writer;
@@ -111,14 +117,14 @@ std::vector<char> encode_png(const std::string& name, int width, int height, int
   writer.info = writer.png ? png_create_info_struct(writer.png) : nullptr;
   if (!writer.info) fail(ErrorKind::output, "{}: could not be encoded as PNG: libpng does not start", name);
   png_set_write_fn(writer.png, &sink, append, nullptr);
-  if (!write_all(writer.png, writer.info, width, height, channels, rows.data(), made_by.empty() ? nullptr : &text))
+  if (!write_all(writer.png, writer.info, width, height, channels, rows.data(), texts))
     fail(ErrorKind::output, "{}: could not be encoded as PNG: {}", name, reason_of(sink));
   return std::move(sink.bytes);
 }
 
 void write_png(const std::string& path, int width, int height, int channels, std::span<const float> pixels,
-               const std::string& made_by) {
-  write_whole(path, encode_png(path, width, height, channels, pixels, made_by));
+               const std::string& made_by, const std::string& shows) {
+  write_whole(path, encode_png(path, width, height, channels, pixels, made_by, shows));
 }
 
 bool is_whole_png(const std::string& path, const std::string& made_by) {

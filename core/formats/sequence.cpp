@@ -115,7 +115,8 @@ std::optional<int> frame_of(const FramePattern& name, const std::string& text) {
   const char* begin = text.data() + name.before.size();
   const char* end = text.data() + text.size() - name.after.size();
   const auto [stop, error] = std::from_chars(begin, end, frame);
-  if (error != std::errc() || stop != end || name.path(frame) != text) return std::nullopt;
+  if (error != std::errc() || stop != end || std::abs(long(frame)) > kFrameLimit || name.path(frame) != text)
+    return std::nullopt;
   return frame;
 }
 

@@ -47,10 +47,10 @@ void read_manifest(const ExrFile& file, const std::map<std::string, std::string>
   matte.manifest = manifest_of(value("manifest"));
   if (!matte.manifest.empty() || beside.empty()) return;
   // It must lie beside the file: what a header says opens nothing elsewhere.
-  const fs::path path = fs::path(file.path()).parent_path() / fs::path(beside).filename();
+  matte.manifest_file = (fs::path(file.path()).parent_path() / fs::path(beside).filename()).string();
   try {
-    matte.manifest = manifest_of(read_text(path.string(), "Cryptomatte manifest", "--matte"));
-    if (matte.manifest.empty()) matte.lacking = path.string() + " is no manifest";
+    matte.manifest = manifest_of(read_text(matte.manifest_file, "Cryptomatte manifest", "--matte"));
+    if (matte.manifest.empty()) matte.lacking = matte.manifest_file + " is no manifest";
   } catch (const Error& error) {
     matte.lacking = error.what();
   }

@@ -18,7 +18,8 @@ struct Cryptomatte {
   int part = 0;      // of the file
   // the names of objects with their identifiers, the bits of a float; empty: the file has none
   std::map<std::string, std::uint32_t> manifest = {};
-  std::string lacking = {};  // why there is no manifest, where there ought to be one
+  std::string manifest_file = {};  // beside the file, where the header has no manifest but names that
+  std::string lacking = {};        // why there is no manifest, where there ought to be one
   struct Rank {
     std::string object, coverage;  // channels
   };

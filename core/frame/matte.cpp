@@ -89,7 +89,13 @@ void take(FrameSource& source, std::size_t file, const Cryptomatte& matte, const
     std::ranges::copy(objects_of(path, matte, word, meant.option), std::back_inserter(reading.objects));
   for (const auto& [object, coverage] : matte.ranks)
     for (const auto& channel : {object, coverage}) channels.push_back({file, matte.part, channel});
-  if (channels.size() > kMostMattePlanes) channels.resize(kMostMattePlanes);
+  if (channels.size() <= kMostMattePlanes) return;
+  channels.resize(kMostMattePlanes);
+  add_new(source.notes,
+          {{NoteCode::unread_ranks,
+            fmt::format("Cryptomatte {} has {} ranks, of which the first {} are read: objects that cover little of a "
+                        "pixel are left out ({})",
+                        matte.name, matte.ranks.size(), kMostMattePlanes / 2, meant.option)}});
 }
 
 bool has_layer(const std::vector<Cryptomatte>& mattes, const std::string& layer) {

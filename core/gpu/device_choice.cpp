@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cstring>
+#include <memory>
+#include <type_traits>
 
 #include "core/base/error.h"
 #include "core/base/text.h"
@@ -202,11 +204,11 @@ std::vector<PhysicalDevice> physical_devices(VkInstance instance) {
 }
 
 std::vector<DeviceInfo> list_devices() {
-  const VkInstance instance = make_instance(false);
+  const auto destroy = [](VkInstance instance) { vkDestroyInstance(instance, nullptr); };
+  const std::unique_ptr<std::remove_pointer_t<VkInstance>, decltype(destroy)> instance(make_instance(false));
   if (!instance) return {};
   std::vector<DeviceInfo> infos;
-  for (auto& device : physical_devices(instance)) infos.push_back(std::move(device.info));
-  vkDestroyInstance(instance, nullptr);
+  for (auto& device : physical_devices(instance.get())) infos.push_back(std::move(device.info));
   return infos;
 }
 
@@ -250,10 +252,9 @@ std::optional<QueueFamily> compute_family(VkPhysicalDevice device) {
 
 bool has_extension(VkPhysicalDevice device, const char* name) {
   std::uint32_t count = 0;
-  check(vkEnumerateDeviceExtensionProperties(device, nullptr, &count, nullptr), "vkEnumerateDeviceExtensionProperties");
+  if (vkEnumerateDeviceExtensionProperties(device, nullptr, &count, nullptr) != VK_SUCCESS) return false;
   std::vector<VkExtensionProperties> extensions(count);
-  check(vkEnumerateDeviceExtensionProperties(device, nullptr, &count, extensions.data()),
-        "vkEnumerateDeviceExtensionProperties");
+  if (vkEnumerateDeviceExtensionProperties(device, nullptr, &count, extensions.data()) != VK_SUCCESS) return false;
   return is_among(extensions, name);
 }
 

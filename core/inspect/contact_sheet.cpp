@@ -10,7 +10,6 @@
 #include "core/base/file.h"
 #include "core/chain/chain.h"
 #include "core/chain/compute.h"
-#include "core/formats/image_io.h"
 #include "core/formats/output_name.h"
 #include "core/formats/png.h"
 #include "core/frame/evidence.h"

@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/formats/image_io.h"
 #include "core/formats/png.h"
 #include "core/measure/report_template.h"
 

@@ -146,7 +146,11 @@ class Batch {
     if (report_.on_cpu_by_default && report_.done)
       note({{NoteCode::no_gpu, fmt::format("no GPU found; computed on {}", report_.device)}});
     report_.wall_s = wall.ms() / 1000;
-    if (!settings_.output.stats.empty()) write_whole(settings_.output.stats, stats_json(report_));
+    if (!settings_.output.stats.empty()) {
+      // Another chunk's run, refused meanwhile, may have taken the folder for its own and away.
+      make_folders(reports_of(settings_.output), settings_.output);
+      write_whole(settings_.output.stats, stats_json(report_));
+    }
     return std::move(report_);
   }
 

@@ -64,7 +64,7 @@ inline constexpr const char* kAccumulatedAttribute = "alcove/accumulated";
 /// What the header of an output says of its making.
 struct Provenance {
   std::string options, device;  // the digest of the settings, and the device's name
-  std::string inputs = {};      // see identity_of_inputs()
+  std::string inputs = {};      // see InputIdentities
   std::string notes = {};       // see header_text()
   std::string others = {};      // see text_of(); empty: it takes none
   std::string estimates = {};   // the same, of those that the AO is a mean of

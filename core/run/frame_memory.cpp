@@ -203,7 +203,9 @@ FrameMemory memory_of(const FrameSource& source, const Settings& settings) {
   }
   // planes as shown, once more interleaved; two pictures, and both beside each other
   const std::size_t of_preview = settings.output.preview_style == "split" ? 18 : 6;
-  const std::size_t pictures = settings.output.preview.empty() ? 0 : of_preview;
+  // a number, its colour, that in bytes, and encoded
+  const std::size_t of_view = settings.output.debug.empty() ? 0 : 6;
+  const std::size_t pictures = std::max(of_view, settings.output.preview.empty() ? 0 : of_preview);
   FrameMemory memory;
   memory.planes = sizeof(float) * (read + frame_planes(source, settings, estimated));
   memory.estimate = sizeof(float) * estimate_planes(source, settings, estimated);

@@ -3,13 +3,12 @@
 #include "core/run/pictures.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
-#include "core/base/file.h"
 #include "core/base/windows.h"
 #include "core/chain/debug_view.h"
-#include "core/formats/image_io.h"
 #include "core/formats/png.h"
 #include "core/run/composite_window.h"
 
@@ -52,16 +51,36 @@ std::vector<float> places_of(const DebugView& view, std::span<const float> value
   return places;
 }
 
-/// Writes the picture of one view. `values` holds one number per pixel, kSkyDepth for sky.
+/// A colour that brightens evenly from violet by green to yellow, display values: a polynomial of the sixth degree
+/// through "viridis" of Smith and van der Walt, off by at most .03.
+std::array<float, 3> color_at(float place) {
+  constexpr std::array<std::array<float, 3>, 7> kPowers{{{0.277727f, 0.005407f, 0.334100f},
+                                                         {0.105093f, 1.404614f, 1.384590f},
+                                                         {-0.330862f, 0.214848f, 0.095095f},
+                                                         {-4.634230f, -5.799101f, -19.332441f},
+                                                         {6.228270f, 14.179933f, 56.690553f},
+                                                         {4.776385f, -13.745145f, -65.353033f},
+                                                         {-5.435456f, 4.645853f, 26.312435f}}};
+  std::array<float, 3> color{};
+  for (std::size_t c = 0; c < 3; c++)
+    for (std::size_t power = kPowers.size(); power-- > 0;) color[c] = color[c] * place + kPowers[power][c];
+  return color;
+}
+
+/// Writes the picture of one view, a pixel for each number. `values` holds one number per pixel, kSkyDepth for sky.
 void write_debug_view(const std::string& path, const DebugView& view, int width, int height,
                       std::span<const float> values, const std::string& made_by) {
   const auto [low, high] = range_of(view, values);
   const bool is_open = view.scale == DebugScale::percentile || view.scale == DebugScale::percentile_logarithmic;
   const auto text = [&](const char* beyond, float x) { return fmt::format("{}{:.4g}", is_open ? beyond : "", x); };
-  const Chart chart{width,      height,           places_of(view, values, low, high),
-                    view.title, text("<= ", low), text(">= ", high),
-                    made_by,    view.is_grey};
-  write_whole(path, encode_chart(path, chart));
+  std::vector<float> pixels;
+  pixels.reserve(3 * values.size());
+  for (const float place : places_of(view, values, low, high)) {
+    const auto color = std::isnan(place) ? kSkyColor : view.is_grey ? std::array{place, place, place} : color_at(place);
+    pixels.insert(pixels.end(), color.begin(), color.end());
+  }
+  write_png(path, width, height, 3, pixels, made_by,
+            fmt::format("{}. Darkest: {}, brightest: {}.", view.title, text("<= ", low), text(">= ", high)));
 }
 
 /// The display window of `planes` planes over a data window, interleaved; black where there are no pixels.

@@ -169,8 +169,9 @@ class Pipeline {
   }
 
   void finish(std::size_t place, const Room& room, FrameReport&& report) {
-    if (run_.shot) run_.shot->done(report.frame);
-    if (run_.estimates) run_.estimates->done(report.frame);
+    // What a frame takes is kept where a second device computes it again.
+    if (run_.shot && !report.device_lost) run_.shot->done(report.frame);
+    if (run_.estimates && !report.device_lost) run_.estimates->done(report.frame);
     const Lock lock(mutex_);
     in_flight_--;
     // Later frames begin with what this one has learned.
@@ -290,10 +291,18 @@ Lanes::Place Lanes::take() {
 
 void Lanes::with(const std::function<bool(Lane&)>& function) {
   Place place = take();
-  if (!place.lane) place.lane = std::make_unique<Lane>(*place.device);
-  if (!function(*place.lane)) place.lane.reset();
-  const std::lock_guard lock(mutex_);
-  free_.push_back(std::move(place));
+  const auto give_back = [&](bool keeps_lane) {
+    if (!keeps_lane) place.lane.reset();
+    const std::lock_guard lock(mutex_);
+    free_.push_back(std::move(place));
+  };
+  try {
+    if (!place.lane) place.lane = std::make_unique<Lane>(*place.device);
+    give_back(function(*place.lane));
+  } catch (...) {
+    give_back(false);
+    throw;
+  }
 }
 
 void run_pipeline(Lanes& lanes, const RunContext& run, Room room, std::span<const int> frames,

@@ -11,10 +11,12 @@
 #include <optional>
 #include <vector>
 
+#include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/formats/exr.h"
-#include "core/formats/image_io.h"
 #include "core/formats/png.h"
+#include "core/frame/cryptomatte.h"
+#include "core/frame/input_files.h"
 #include "core/frame/raw_plane.h"
 #include "core/run/digest.h"
 #include "core/run/frame_files.h"
@@ -26,10 +28,23 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Adds the files of manifests that lie beside a file with Cryptomattes. One that cannot be read has none.
+void add_manifests(std::vector<std::string>& files, const std::string& path) {
+  try {
+    for (const auto& matte : cryptomattes_of(ExrFile(path, "INPUT")))
+      if (!matte.manifest_file.empty()) files.push_back(matte.manifest_file);
+  } catch (const Error&) {
+  }
+}
+
 std::vector<std::string> inputs_of(const Settings& frame) {
+  const InputSettings& input = frame.input;
   std::vector<std::string> files;
-  if (!frame.input.motion.empty()) files.push_back(frame.input.motion);
-  for (const auto& file : plane_file_options()) files.push_back(file.of(frame.input));
+  if (!input.motion.empty()) files.push_back(input.motion);
+  for (const auto& file : plane_file_options()) files.push_back(file.of(input));
+  if (!input.matte_object.empty()) add_manifests(files, input.matte.empty() ? main_input(input) : input.matte);
+  if (!input.occluder_objects.empty() || !input.ignored_objects.empty())
+    add_manifests(files, input.objects.empty() ? main_input(input) : input.objects);
   return files;
 }
 
@@ -44,11 +59,13 @@ std::optional<fs::file_time_type> time_of(const std::string& path) {
 
 }  // namespace
 
-std::string identity_of_inputs(const Settings& frame) {
+InputIdentities::Known InputIdentities::look_at(const Settings& frame) {
   std::string text;
+  Known known;
   for (const auto& path : inputs_of(frame)) {
     text += '\n';
     if (path.empty()) continue;
+    known.newest = std::max(known.newest, time_of(path).value_or(known.newest));
     std::ifstream file(path, std::ios::binary | std::ios::ate);
     const std::streamoff size = file ? std::streamoff(file.tellg()) : 0;
     std::string bytes(std::size_t(std::min(size, 2 * kLooked)), '\0');
@@ -57,33 +74,42 @@ std::string identity_of_inputs(const Settings& frame) {
     file.seekg(size - tail).read(bytes.data() + head, tail);
     text += fmt::format("{} {:016x}", size, XXH3_64bits(bytes.data(), bytes.size()));
   }
-  return fmt::format("{:016x}", XXH3_64bits(text.data(), text.size()));
+  known.identity = fmt::format("{:016x}", XXH3_64bits(text.data(), text.size()));
+  return known;
 }
 
-std::string InputIdentities::own(int frame) {
+InputIdentities::Known InputIdentities::own(int frame) {
   const std::lock_guard lock(mutex_);
   const auto [known, is_new] = known_.try_emplace(frame);
-  if (is_new) known->second = identity_of_inputs(plan_.at(frame));
+  if (is_new) known->second = look_at(plan_.at(frame));
   return known->second;
+}
+
+fs::file_time_type InputIdentities::newest(int frame) {
+  fs::file_time_type newest = own(frame).newest;
+  if (!shot_option(plan_.at(frame).input)) return newest;
+  for (const int other : frames_seen_for(plan_, frame)) newest = std::max(newest, own(other).newest);
+  return newest;
 }
 
 std::string InputIdentities::of(int frame) {
   const Settings settings = plan_.at(frame);
-  std::string text = own(frame);
+  std::string text = own(frame).identity;
   if (!shot_option(settings.input)) return text;
   if (settings.input.accumulate > 0) text += fmt::format("\nturn {}", plan_.turn_of(frame));
   for (const int other : frames_seen_for(plan_, frame)) {
-    text += fmt::format("\n{} {}", other - frame, own(other));
+    text += fmt::format("\n{} {}", other - frame, own(other).identity);
     if (const std::string camera = plan_.at(other).input.camera; camera != settings.input.camera)
       text += read_text(camera, "camera", "--camera");
   }
   return fmt::format("{:016x}", XXH3_64bits(text.data(), text.size()));
 }
 
-bool has_whole_outputs(const Settings& frame, const std::string& options_digest, const std::string& inputs) {
-  fs::file_time_type newest_input = fs::file_time_type::min();
-  for (const auto& input : inputs_of(frame))
-    if (!input.empty()) newest_input = std::max(newest_input, time_of(input).value_or(newest_input));
+/// Whether all outputs of a frame are there and whole, made with the options of this digest from inputs of this
+/// identity, and no older than the newest of them. `frame` names the files of one frame. Reads headers and the table of
+/// chunks; never fails.
+static bool has_whole_outputs(const Settings& frame, const std::string& options_digest, const std::string& inputs,
+                              fs::file_time_type newest_input) {
   return std::ranges::all_of(outputs_of(frame.output), [&](const OutputFile& output) {
     const auto time = time_of(output.path);
     if (!time || *time < newest_input) return false;
@@ -104,7 +130,8 @@ std::vector<int> frames_to_compute(const FramePlan& plan, const Settings& settin
   std::ranges::copy_if(plan.frames(), std::back_inserter(wanted), [&](int frame) {
     const Settings of_frame = plan.at(frame);
     const bool has_own_camera = of_frame.input.camera != first.input.camera;
-    return !has_whole_outputs(of_frame, has_own_camera ? options_digest(of_frame) : digest, identities.of(frame));
+    return !has_whole_outputs(of_frame, has_own_camera ? options_digest(of_frame) : digest, identities.of(frame),
+                              identities.newest(frame));
   });
   return wanted;
 }

@@ -176,7 +176,13 @@ EstimateSet EstimateSlots::filled(gpu::Recorder& gpu, const FramePlan& plan, con
       group.held[slot % together] = estimated;
       table.as<TakenFrame>()[count++] = seen_as(*estimated, own, first);
     }
-    if (count > 0) result.groups.push_back({&planes, &table, count});
+    if (count == 0) continue;
+    // All but the frame itself, where nothing is cut away or missing.
+    const std::size_t room = std::min(together, slots - i * together);
+    const uint listed = std::max(count, uint(room) - 1);
+    const auto frames = table.as<TakenFrame>();
+    std::fill(frames.begin() + count, frames.begin() + listed, frames.front());
+    result.groups.push_back({&planes, &table, count, listed});
   }
   return result;
 }

@@ -175,12 +175,12 @@ void SharedFrames::done(int frame) {
 }
 
 SharedFrames::Seen SharedFrames::prepare(gpu::Recorder& gpu, const InputSettings& input, const FrameSource* like,
-                                         int frame, PreparedOthers& took) const {
+                                         int frame, const char* option, PreparedOthers& took) const {
   Settings settings;
   settings.input = input;
   FrameSource source = find_frame(input, false, frame);
   leave_out_hidden(source);
-  require_place(source, frame, input.other_views ? "--other-views" : "--around");
+  require_place(source, frame, option);
   if (like) settle_like(source, *like);
   const FrameInputs inputs = load_frame(gpu, source, settings, frame);
   upload(gpu, inputs);
@@ -211,8 +211,9 @@ SharedFrames::Seen SharedFrames::seen(gpu::Recorder& gpu, int frame, PreparedOth
 }
 
 SharedFrames::Seen SharedFrames::seen_in(Entry& entry, gpu::Recorder& gpu, int frame, PreparedOthers& took) const {
-  if (!entry.seen) entry.seen = prepare(gpu, of_first_surface(plan_.at(frame).input, settled_), settled_, frame, took);
-  return entry.seen;
+  if (entry.seen) return entry.seen;
+  const InputSettings input = of_first_surface(plan_.at(frame).input, settled_);
+  return entry.seen = prepare(gpu, input, settled_, frame, shot_option(input), took);
 }
 
 /// Prepares those that no other lane is at, so that lanes which need the same ones share the work.
@@ -315,7 +316,7 @@ std::vector<SharedFrames::Judged> SharedFrames::other_views(gpu::Recorder& gpu, 
   std::vector<Judged> found;
   for (const auto& view : others.views) {
     input.view = view;
-    const Seen other = prepare(gpu, input, settled_, frame, took);
+    const Seen other = prepare(gpu, input, settled_, frame, "--other-views", took);
     if (is_same_place(other->camera, target.camera))
       fail(ErrorKind::input,
            "{}: its views have one camera, and --other-views needs that of each: give a --camera file with \"views\"",

@@ -111,8 +111,9 @@ class SharedFrames {
                                            PreparedOthers& took);
   Moving moving(gpu::Recorder& gpu, int frame, PreparedOthers& took);
   void prepare_free_ones(gpu::Recorder& gpu, std::span<const int> frames, PreparedOthers& took);
+  /// `option`: by which it is taken.
   Seen prepare(gpu::Recorder& gpu, const InputSettings& settings, const FrameSource* like, int frame,
-               PreparedOthers& took) const;
+               const char* option, PreparedOthers& took) const;
 
   const FramePlan& plan_;
   const FrameSource* settled_;

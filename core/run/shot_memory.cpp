@@ -47,6 +47,13 @@ std::uint64_t bytes_of_mean(const FramePlan& plan, const FrameSource& frame, con
   return sizeof(float) * (frame.file_data.pixels() * (taken + own + sums + suspects) + kMovedCells);
 }
 
+/// What it takes to read the motion vectors of a frame, and to mark what moves: up to two pairs of planes.
+std::uint64_t bytes_of_motion(const FrameSource& frame, const InputSettings& settings) {
+  if (settings.motion.empty() || !takes_frames(settings)) return 0;
+  const std::size_t planes = settings.motion_channels.find(',') == std::string::npos ? 4 : 2;
+  return frame.file_data.pixels() * (planes * sizeof(float) + sizeof(std::uint8_t));
+}
+
 /// What one frame at a time takes with all around it.
 std::uint64_t bytes_of_one(const FramePlan& plan, const FrameSource& frame, const Settings& settings) {
   return bytes_of_shot(plan, frame, settings.input, 1) +
@@ -97,6 +104,7 @@ std::size_t most_others(const FramePlan& plan, const FrameSource& frame, const I
 FrameMemory memory_with_others(const FramePlan& plan, const FrameSource& frame, const Settings& settings) {
   FrameMemory memory = memory_of(frame, settings);
   memory.fixed_on_device = bytes_of_mean(plan, frame, settings);
+  memory.fixed_bytes += bytes_of_motion(frame, settings.input);
   const std::size_t others = most_others(plan, frame, settings.input);
   if (!takes_others(settings.input)) return memory;
   // What tells what moves in one of them takes those around it.

@@ -80,6 +80,19 @@ TEST_F(Aovs, depth_is_planar_in_scene_units_and_sky_is_1e30) {
     ASSERT_EQ(result.plane("Z")[i], i == 5 ? 1e30f : 0.5f * source.plane("ViewLayer.Depth.Z")[i]) << i;
 }
 
+TEST_F(Aovs, depth_near_the_eye_keeps_the_digits_that_a_logarithmic_depth_has) {
+  constexpr double kFar = 1000, kSmall = 1e-4;
+  auto& depth = input.planes["ViewLayer.Depth.Z"];
+  std::vector<double> expected;
+  for (float& z : depth) {
+    z = float(std::log1p(kSmall * double(z)) / std::log1p(kFar));
+    expected.push_back(std::expm1(double(z) * std::log1p(kFar)));
+  }
+  input.write(frame);
+  const Image result = good({"--aov", "depth", "--depth-kind", "log", "--far", "1000", "--log-constant", "1"});
+  for (std::size_t i = 0; i < expected.size(); i++) ASSERT_NEAR(result.plane("Z")[i] / expected[i], 1, 1e-6) << i;
+}
+
 TEST_F(Aovs, a_depth_that_was_written_is_read_again) {
   good({"--aov", "depth,normal,ao", "--type", "float"});
   const std::string written = folder / "written.0042.exr", again = folder / "again.exr";  // the number keeps the noise

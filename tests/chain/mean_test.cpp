@@ -1,9 +1,11 @@
 // The mean of two frames, made by hand: which of the other one's pixels count.
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <bit>
+#include <set>
 
 #include "core/chain/accumulate.h"
 #include "tests/support/device.h"
@@ -48,7 +50,7 @@ class Means : public testing::Test {
     estimates.normal = &filled("own normal", own.normal);
     estimates.values = &filled("own values", std::vector<float>(kPixels, kOwn));
     estimates.view = kView;
-    estimates.groups = {{&filled("words", words), &filled("frames", frames), 1}};
+    estimates.groups = {{&filled("words", words), &filled("frames", frames), 1, 1}};
     const auto is_moving = [](float z) { return z < 0; };
     estimates.has_moving = std::ranges::any_of(own.depth, is_moving) || std::ranges::any_of(other.depth, is_moving);
     std::vector<float> depth = own.depth;
@@ -71,6 +73,17 @@ class Means : public testing::Test {
 };
 
 constexpr float kMean = (kOwn + kOther) / 2;
+
+/// What moves in one tile: a near thing on something near, and beside it a far one, many radii behind it.
+Facing near_and_far(float near, float far) {
+  Facing facing;
+  for (int y = 0; y < kSide; y++)
+    for (int x = 0; x < kSide; x++) {
+      const bool is_far = x >= 4 && x < 8, moves = x < 8 && y < 8;
+      facing.depth[at(x, y)] = is_far ? (moves ? far : 9.0f) : (moves ? near : 1.0f);
+    }
+  return facing;
+}
 
 TEST_F(Means, are_of_all_that_see_the_same_point) {
   for (const float value : mean({}, {})) EXPECT_NEAR(value, kMean, 1e-4);
@@ -107,6 +120,16 @@ TEST_F(Means, leave_out_all_within_the_radius_of_what_moves_and_nothing_far) {
   }
 }
 
+TEST_F(Means, leave_out_what_is_near_each_of_two_things_of_a_tile_that_lie_far_apart) {
+  const Facing still = near_and_far(1, 9), by_vectors = near_and_far(-1, -9), gone = near_and_far(0.9f, 8);
+  for (const auto& values : {mean(by_vectors, still), mean(still, by_vectors)})
+    EXPECT_EQ(values[at(6, 9)], kOwn) << "beside the far one";
+  for (const auto& values : {mean(by_vectors, still), mean(still, by_vectors), mean(gone, still), mean(still, gone)}) {
+    EXPECT_EQ(values[at(10, 4)], kOwn) << "beside the near one";
+    EXPECT_NEAR(values[at(6, 20)], kMean, 1e-4) << "beside neither";
+  }
+}
+
 TEST_F(Means, find_what_has_gone) {
   Facing there;
   for (int y = 0; y < 8; y++)
@@ -132,6 +155,35 @@ TEST_F(Means, find_what_has_gone_whose_plane_is_nearly_edge_on) {
       EXPECT_EQ(values[at(17, 12)], kOwn) << "2 px beside it";
       EXPECT_NEAR(values[at(2, 2)], kMean, 1e-4);
     }
+}
+
+TEST(Mean, of_fewer_frames_than_are_listed_runs_the_same_kernels) {
+  const auto kernels_for = [](const std::vector<uint>& groups) {
+    gpu::Recorder gpu(device(), gpu::Recorder::Mode::rehearse);
+    EstimateSet estimates;
+    const auto made = [&](const std::string& name, std::size_t bytes) {
+      return &gpu.buffer(name, bytes, gpu::Use::upload);
+    };
+    gpu::Buffer* own = made("own", 4 * kPixels);
+    estimates.depth = estimates.normal = estimates.values = own;
+    estimates.view = kView;
+    for (const uint count : groups) {
+      gpu::Buffer* frames = made(fmt::format("frames {}", estimates.groups.size()), kMostTaken * sizeof(TakenFrame));
+      std::ranges::fill(frames->as<TakenFrame>(), TakenFrame{kView, {}, {}, {}, {}, {}, 0});
+      estimates.groups.push_back({own, frames, count, kMostTaken});
+    }
+    GBuffer gbuffer;
+    gbuffer.view = kView;
+    gbuffer.depth = gbuffer.normal = own;
+    EstimatorSettings settings;
+    settings.radius = kRadius;
+    accumulate(gpu, gbuffer, estimates, settings, 0, false);
+    const auto& names = gpu.rehearsed();
+    return std::set<gpu::KernelName>(names.begin(), names.end());
+  };
+  const auto of_all = kernels_for({kMostTaken});
+  for (const std::vector<uint>& groups : {std::vector<uint>{1}, {2}, {8}, {9, 1}, {9, 9, 9, 5}})
+    EXPECT_EQ(kernels_for(groups), of_all) << testing::PrintToString(groups);
 }
 
 }  // namespace

@@ -9,7 +9,6 @@
 #include <random>
 
 #include "core/base/error.h"
-#include "core/formats/deep_chunk.h"
 #include "core/formats/exr.h"
 #include "tests/support/deep_file.h"
 #include "tests/support/program.h"
@@ -455,27 +454,14 @@ TEST_F(DeepFile, sizes_that_the_file_cannot_hold_are_refused_before_anything_is_
     if (offset == at + 8 * 9) chunk = std::size_t(offset);
   }
   ASSERT_GT(chunk, 0);
+  EXPECT_EQ(attribute_of_whole_exr(path, "name"), "deep");
   for (const std::uint64_t size : {std::uint64_t(1) << 28, std::uint64_t(1) << 31, std::uint64_t(1) << 40,
                                    std::uint64_t(1) << 62, ~std::uint64_t(0), std::uint64_t(100000)})
     for (std::size_t which = 0; which < 3; which++) {
       write_bytes(path, with_size(bytes, chunk, which, size));
       EXPECT_NE(refusal(), "") << which << " " << size;
+      if (which != 2) EXPECT_FALSE(attribute_of_whole_exr(path, "name")) << "it ends before " << size;
     }
-}
-
-TEST(DeepChunk, nothing_unpacks_to_more_than_it_can) {
-  EXPECT_EQ(longest_unpacked(DeepCompression::none, 100), 100);
-  EXPECT_LT(longest_unpacked(DeepCompression::rle, 100), 6500);
-  EXPECT_LT(longest_unpacked(DeepCompression::zip, 100), 104000);
-  std::vector<std::uint8_t> to(8), scratch;
-  const std::vector<std::uint8_t> runs{0x7f, 0}, cut{0x85}, few{3, 128};
-  EXPECT_FALSE(unpack_deep(DeepCompression::rle, runs, to, scratch)) << "128 bytes";
-  EXPECT_FALSE(unpack_deep(DeepCompression::rle, cut, to, scratch)) << "123 bytes that are not there";
-  EXPECT_FALSE(unpack_deep(DeepCompression::rle, few, to, scratch)) << "4 bytes";
-  std::vector<std::uint32_t> counts;
-  const std::vector<std::uint8_t> falling{2, 0, 0, 0, 1, 0, 0, 0}, negative{0, 0, 0, 0x80};
-  EXPECT_FALSE(counts_of_table(falling, 2, counts));
-  EXPECT_FALSE(counts_of_table(negative, 1, counts));
 }
 
 }  // namespace

@@ -9,7 +9,6 @@
 
 #include "core/base/error.h"
 #include "core/formats/exr.h"
-#include "core/formats/image_io.h"
 #include "core/formats/png.h"
 #include "core/formats/sequence.h"
 #include "core/frame/camera.h"

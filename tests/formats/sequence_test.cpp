@@ -129,6 +129,8 @@ class OnDisk : public testing::Test {
 TEST_F(OnDisk, frames_are_found_in_rising_order) {
   touch({"a.0010.exr", "a.0002.exr", "a.12345.exr", "a.-003.exr"});
   EXPECT_THAT(frames("a.%04d.exr"), ElementsAre(-3, 2, 10, 12345));
+  touch({"a.2147483647.exr", "a.-2147483648.exr", "a.1000000001.exr"});
+  EXPECT_THAT(frames("a.%04d.exr"), ElementsAre(-3, 2, 10, 12345)) << "as --frames takes none so large";
 }
 
 TEST_F(OnDisk, other_names_are_passed_by) {

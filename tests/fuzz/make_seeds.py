@@ -174,7 +174,24 @@ def deep(compression=0, size=0):
     return start + offsets + b"".join(bodies)
 
 
+def counting_tile(first, channels=512):
+    """One tile, a pixel wide, whose counts take 2^64 bytes, which is 0 of 64 bits: first as many of one sample, then the most that a count may be."""
+    height, most, channels = 2 ** 22 + 2 ** 17, 2 ** 31 - 1, [("Z%04d" % i if i else "Z", 2) for i in range(channels)]
+    counts, left = [1] * first, 2 ** 64 // (4 * len(channels)) - first
+    counts += [most] * (left // most) + [left % most]
+    table = struct.pack("<%di" % height, *counts, *[0] * (height - len(counts)))
+    split = table[0::2] + table[1::2]
+    packed = zlib.compress(bytes([split[0]]) + bytes((b - a + 128) % 256 for a, b in zip(split, split[1:])), 9)
+    body = struct.pack("<4i", 0, 0, 0, 0) + struct.pack("<QQQ", len(packed), 0, 0) + packed
+    extra = (text("type", "deeptile") + attribute("version", "int", struct.pack("<i", 1)) + text("name", "deep") +
+             attribute("tiles", "tiledesc", struct.pack("<IIB", 1, height, 0)) + attribute("chunkCount", "int", struct.pack("<i", 1)))
+    start = struct.pack("<ii", 20000630, 2 | 0x800) + header(channels, 2, (0, 0, 0, height - 1), extra)
+    return start + struct.pack("<Q", len(start) + 8) + body
+
+
 def deep_seeds():
+    write("deep", "counts-beyond-the-end.exr", counting_tile(100000))
+    write("deep", "counts-of-all-memory.exr", counting_tile(0))
     for name, data in {"lines": deep(), "zips": deep(2), "tiles": deep(0, 2), "zipped-tiles": deep(2, 4)}.items():
         write("deep", name + ".exr", data)
 

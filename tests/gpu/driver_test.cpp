@@ -11,6 +11,7 @@
 #include "core/chain/chain.h"
 #include "core/chain/compute.h"
 #include "core/gpu/pipeline_cache.h"
+#include "core/run/pipeline.h"
 #include "tests/support/command_line.h"
 #include "tests/support/device.h"
 #include "tests/support/fake_driver.h"
@@ -398,8 +399,8 @@ TEST_F(Runs, in_memory_of_the_devices_own_give_the_bits_of_shared_memory_in_tile
   add_beauty(large);
   large.write(frame);
   write_bytes(camera, wall_camera(display).dump());
-  const Surroundings own_memory{.environment = {{"ALCOVE_FAKE_MEMORY", "1"}}, .preload = ALCOVE_FAKE_DRIVER};
-  const auto outputs = [&](std::vector<std::string> more, const Surroundings& surroundings) {
+  const test::Surroundings own_memory{.environment = {{"ALCOVE_FAKE_MEMORY", "1"}}, .preload = ALCOVE_FAKE_DRIVER};
+  const auto outputs = [&](std::vector<std::string> more, const test::Surroundings& surroundings) {
     more.insert(more.end(), {"--radius", "0.1", "--type", "float", "--composite", folder / "c.exr", "--aov",
                              "ao,normal,depth,confidence"});
     std::vector<std::string> arguments{"run", frame, "-o", ao, "--camera", camera, "--device", "cpu"};
@@ -411,6 +412,24 @@ TEST_F(Runs, in_memory_of_the_devices_own_give_the_bits_of_shared_memory_in_tile
   const std::string shared = outputs({}, {});
   EXPECT_TRUE(outputs({}, own_memory) == shared);
   EXPECT_TRUE(outputs({"--memory", "200M"}, own_memory) == shared);
+}
+
+TEST_F(Driver, that_cannot_list_extensions_has_none_and_leaves_no_instance) {
+  fake.lists_no_extensions = true;
+  const auto devices = gpu::list_devices();
+  ASSERT_THAT(devices, testing::Not(IsEmpty()));
+  EXPECT_THAT(devices[0].unusable, HasSubstr("VK_KHR_push_descriptor"));
+  EXPECT_EQ(fake.live_instances, 0);
+}
+
+TEST_F(Driver, is_not_asked_for_another_device_when_what_runs_on_a_lane_fails) {
+  const gpu::DeviceOptions of_lanes = options();
+  const int before = fake.live_instances;
+  Lanes lanes(of_lanes, 1);
+  const auto fails = [&] { lanes.with([](Lane&) -> bool { throw Error(ErrorKind::device, "no memory"); }); };
+  EXPECT_THROW(fails(), Error);
+  lanes.with([](Lane&) { return true; });
+  EXPECT_EQ(fake.live_instances, before + 1);
 }
 
 }  // namespace

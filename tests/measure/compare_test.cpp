@@ -10,7 +10,6 @@
 #include <nlohmann/json.hpp>
 #include <regex>
 
-#include "core/formats/image_io.h"
 #include "core/formats/png.h"
 #include "tests/support/compare_command.h"
 #include "tests/support/formula_images.h"

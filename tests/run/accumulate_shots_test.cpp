@@ -167,6 +167,27 @@ TEST_F(AccumulatedShots, no_more_estimates_are_kept_than_are_counted_whatever_th
     }
 }
 
+TEST_F(AccumulatedShots, where_fewer_frames_count_as_many_are_listed) {
+  write_shot(5, {0, 0, 16, 9});
+  Settings settings = settings_of_shot();
+  settings.input.accumulate = 2;
+  const FramePlan plan(settings);
+  SharedEstimates estimates(plan, nullptr, nullptr, plan.frames());
+  gpu::Recorder gpu(device());
+  const Room room{.bytes = 1 << 30, .buffer_bytes = 1 << 30};
+  PreparedOthers took;
+  EstimateSlots slots;
+  TakenEstimates taken = estimates.around({gpu, room}, 3, took);
+  for (const uint count : {4u, 3u, 1u}) {
+    const auto is_other = [](const auto& estimated) { return estimated->frame != 3; };
+    while (taken.of.size() > count + 1) taken.of.erase(std::ranges::find_if(taken.of, is_other));
+    const EstimateSet set = slots.filled(gpu, plan, taken, 3, room.buffer_bytes);
+    ASSERT_EQ(set.groups.size(), 1u);
+    EXPECT_EQ(set.groups[0].count, count);
+    EXPECT_EQ(set.groups[0].listed, 4u);
+  }
+}
+
 TEST_F(AccumulatedShots, no_more_of_what_estimates_see_is_kept_than_is_counted) {
   constexpr int kLong = 24;
   write_shot(kLong, {0, 0, 16, 9});
@@ -238,6 +259,30 @@ TEST_F(AccumulatedShots, a_shot_that_grows_at_its_beginning_is_computed_again) {
   ASSERT_EQ(run({"--accumulate", "1", "--resume"}).code, 0);
   const auto resumed = outputs();
   expect_same_outputs(resumed, {options});
+}
+
+TEST_F(AccumulatedShots, resume_redoes_all_that_take_a_frame_that_was_written_again) {
+  write_shot(6);
+  const Options options{"--accumulate", "1", "--resume"};
+  ASSERT_EQ(run(options).code, 0);
+  EXPECT_THAT(run(options).err, HasSubstr("6 kept"));
+  // As large as it was, and the same at both ends: the time alone tells it.
+  fs::last_write_time(input(1), fs::last_write_time(output(6)) + std::chrono::seconds(1));
+  const Finished finished = run(options);
+  for (const int frame : {1, 2}) EXPECT_THAT(finished.err, HasSubstr(input(frame) + " -> ")) << frame;
+  EXPECT_THAT(finished.err, HasSubstr(output(6) + ": whole, kept")) << "which does not take it";
+}
+
+TEST_F(AccumulatedShots, a_folder_of_stats_that_another_run_has_taken_away_is_made_again) {
+  write_shot(2);
+  RunOptions options;
+  ASSERT_TRUE(parse_run_options({in + "/f.%04d.exr", "-o", out + "/ao.%04d.exr", "--camera", camera, "--radius", "1",
+                                 "--stats", folder / "new/stats.json"},
+                                options));
+  RunWatch watch;
+  watch.frame = [&](const FrameReport&) { fs::remove(folder / "new"); };
+  EXPECT_EQ(run_frames(options.settings, watch).done, 2);
+  EXPECT_TRUE(fs::exists(folder / "new/stats.json"));
 }
 
 }  // namespace

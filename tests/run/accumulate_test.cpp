@@ -18,6 +18,7 @@ using nlohmann::json;
 using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::Not;
 
 using Options = std::vector<std::string>;
 
@@ -402,6 +403,25 @@ TEST_F(Accumulated, refusals_say_what_to_do) {
   for (auto& frame : cameras["frames"]) frame.erase("world_to_camera");
   write_bytes(camera, cameras.dump());
   EXPECT_THAT(refused({"--accumulate", "1", "--normal", "none"}, 3), HasSubstr("world_to_camera"));
+}
+
+TEST_F(Accumulated, a_frame_beside_it_that_lacks_its_place_is_refused_by_the_option_that_takes_it) {
+  write_shot(3);
+  json lacking = wall_camera();
+  for (const int frame : {1, 2, 3}) {
+    if (frame == 2) lacking.erase("world_to_camera");
+    write_bytes(folder / fmt::format("camera.{}.json", frame), (frame == 2 ? lacking : wall_camera()).dump());
+  }
+  const Options options{"--camera",  folder / "camera.%d.json",
+                        "--motion",  in + "/f.%04d.exr",
+                        "--normal",  "none",
+                        "--frames",  "1",
+                        "--threads", "1"};
+  const Finished of_mean = run(joined(options, {"--accumulate", "1"})),
+                 of_around = run(joined(options, {"--around", "1"}));
+  EXPECT_EQ(of_mean.code, 3) << of_mean;
+  EXPECT_THAT(of_mean.err, AllOf(HasSubstr("f.0002.exr"), HasSubstr("--accumulate needs"), Not(HasSubstr("--around"))));
+  EXPECT_THAT(of_around.err, HasSubstr("--around needs"));
 }
 
 TEST_F(Accumulated, views_show_how_many_frames_count) {

@@ -255,5 +255,18 @@ TEST_F(Faults, a_lost_device_is_replaced_once) {
   EXPECT_THAT(always.err, AllOf(HasSubstr("the device was lost"), HasSubstr("fresh one")));
 }
 
+TEST_F(Faults, what_frames_share_is_kept_when_a_device_is_lost) {
+  write_frames(1, 8);
+  const auto rows_read_by = [&](const Surroundings& surroundings) {
+    const Finished finished =
+        run({"--accumulate", "2", "--frames", "1,8", "--threads", "1", "--stats", folder / "stats.json"}, surroundings);
+    EXPECT_EQ(finished.code, 0) << finished;
+    return nlohmann::json::parse(read_bytes(folder / "stats.json"))["frames"][0]["rows_read"].get<int>();
+  };
+  const int once = rows_read_by({});
+  const int again = rows_read_by({.environment = {{"ALCOVE_LOSSES", "1"}}, .preload = ALCOVE_LOST_DEVICE});
+  EXPECT_LT(again, once) << "two of its five frames were estimated before";
+}
+
 }  // namespace
 }  // namespace alcove

@@ -212,6 +212,21 @@ TEST_F(Crypto, objects_are_found_by_names_and_patterns_in_all_ranks) {
   EXPECT_GT(difference(of_ball, of_both).max, 0.05) << "or else there is nothing to tell apart";
 }
 
+TEST_F(Crypto, ranks_beyond_the_sixteenth_are_not_read_and_that_is_said) {
+  const auto said_with = [&](int ranks) {
+    for (int pair = 2; pair < (ranks + 1) / 2; pair++)
+      for (const char* channel : {"R", "G", "B", "A"})
+        file.planes[fmt::format("Crypto{:02}.{}", pair, channel)].assign(kWindow.pixels(), 0);
+    file.write(frame);
+    const Finished finished = run({"--matte-object", "Ball"});
+    EXPECT_EQ(finished.code, 0) << finished;
+    return finished.err;
+  };
+  file.planes["Crypto01.B"] = file.planes["Crypto01.A"] = Plane(kWindow.pixels(), 0);
+  EXPECT_THAT(said_with(16), testing::Not(HasSubstr("unread-ranks")));
+  EXPECT_THAT(said_with(18), AllOf(HasSubstr("18 ranks"), HasSubstr("--matte-object"), HasSubstr("[unread-ranks]")));
+}
+
 TEST_F(Crypto, manifests_may_lie_beside_the_file_or_be_missing) {
   const Plane of_both = expected(both);
   file.attributes.erase("cryptomatte/abc1234/manifest");
@@ -222,6 +237,27 @@ TEST_F(Crypto, manifests_may_lie_beside_the_file_or_be_missing) {
   EXPECT_LE(difference(ao_of(file, {"--matte-object", "Ball*"}), of_both).max, 1e-6) << "only beside the file";
   write_bytes(folder / "names.json", "[1, 2");
   expect_error(file, 3, {"--matte-object", "Ball*"}, {"names.json is no manifest"});
+}
+
+TEST_F(Crypto, resume_redoes_what_another_manifest_beside_the_file_decided) {
+  file.attributes.erase("cryptomatte/abc1234/manifest");
+  file.attributes["cryptomatte/abc1234/manif_file"] = "names.json";
+  write_bytes(folder / "names.json", manifest);
+  file.write(frame);
+  const auto says = [&](const std::string& words) {
+    const Finished finished = run({"--matte-object", "Ball*", "--resume"});
+    EXPECT_EQ(finished.code, 0) << finished;
+    EXPECT_THAT(finished.err, HasSubstr(words));
+  };
+  says(" -> ");
+  says("whole, kept");
+  const auto before = std::filesystem::last_write_time(ao);
+  write_bytes(folder / "names.json", fmt::format(R"({{"Ball":"{:08x}"}})", cryptomatte_id("Ball")));
+  std::filesystem::last_write_time(folder / "names.json", before - std::chrono::hours(1));
+  says(" -> ");
+  std::filesystem::last_write_time(folder / "names.json",
+                                   std::filesystem::last_write_time(ao) + std::chrono::seconds(1));
+  says(" -> ");
 }
 
 TEST_F(Crypto, mistakes_are_named) {

@@ -402,6 +402,24 @@ TEST_F(Shots, take_more_memory_the_more_frames_lie_around) {
   EXPECT_EQ(shot_before, kFrames * 12 * kWallWindow.pixels()) << "there are no more";
 }
 
+TEST_F(Shots, take_memory_for_motion_vectors) {
+  const auto bytes_with = [&](const std::string& motion, const std::string& channels, int around, int accumulate) {
+    Settings settings = settings_of_shot();
+    settings.input.motion = motion;
+    settings.input.motion_channels = channels;
+    settings.input.around = around;
+    settings.input.accumulate = accumulate;
+    const FramePlan plan(settings);
+    return memory_with_others(plan, open_frame(plan.at(4), 4), settings).fixed_bytes;
+  };
+  const std::string motion = in + "/f.####.exr";
+  for (const auto& [around, accumulate] : {std::pair(1, 0), {0, 1}}) {
+    const std::uint64_t without = bytes_with("", "", around, accumulate);
+    EXPECT_GE(bytes_with(motion, "", around, accumulate) - without, 16 * kWallWindow.pixels()) << "two pairs";
+    EXPECT_GE(bytes_with(motion, "Vector.X,Vector.Y", around, accumulate) - without, 8 * kWallWindow.pixels());
+  }
+}
+
 TEST_F(Shots, need_buffers_for_whole_frames) {
   Settings settings;
   settings.input.input = in + "/f.####.exr";

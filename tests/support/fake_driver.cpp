@@ -53,11 +53,19 @@ VkResult vkCreateInstance(const VkInstanceCreateInfo* info, const VkAllocationCa
   fake().instance_flags = info->flags;
   fake().instance_extensions.assign(info->ppEnabledExtensionNames,
                                     info->ppEnabledExtensionNames + info->enabledExtensionCount);
-  return NEXT(vkCreateInstance)(info, callbacks, instance);
+  const VkResult result = NEXT(vkCreateInstance)(info, callbacks, instance);
+  fake().live_instances += result == VK_SUCCESS;
+  return result;
+}
+
+void vkDestroyInstance(VkInstance instance, const VkAllocationCallbacks* callbacks) {
+  fake().live_instances--;
+  NEXT(vkDestroyInstance)(instance, callbacks);
 }
 
 VkResult vkEnumerateDeviceExtensionProperties(VkPhysicalDevice device, const char* layer, uint32_t* count,
                                               VkExtensionProperties* extensions) {
+  if (fake().lists_no_extensions) return VK_ERROR_OUT_OF_HOST_MEMORY;
   const uint32_t room = *count;
   const VkResult result = NEXT(vkEnumerateDeviceExtensionProperties)(device, layer, count, extensions);
   if (!fake().is_portable || result != VK_SUCCESS) return result;
