@@ -393,6 +393,7 @@ double Session::number(const std::string& name) const {
   if (name == "sky-pixels") return counts_.sky;
   if (name == "repaired-depth") return counts_.repaired_depth;
   if (name == "repaired-normals") return counts_.repaired_normals;
+  if (name == "turned-normals") return counts_.turned_normals;
   return name == "radius" ? radius_.value_or(NAN) : NAN;
 }
 

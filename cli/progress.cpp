@@ -71,8 +71,7 @@ void Progress::begin(const RunReport& report, int frames) {
 
 void Progress::say(const std::string& file, const Note& note) {
   if (options_.quiet) return;
-  const std::string place = file.empty() ? "" : file + ": ";
-  say(printable(fmt::format("alcove: {}: {}{} [{}]", level_of(note), place, note.text, facts_of(note.code).name)));
+  say(printable(fmt::format("alcove: {}: {}", level_of(note), line_of(note, file))));
 }
 
 void Progress::note(const RunReport& report) {

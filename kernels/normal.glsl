@@ -26,6 +26,15 @@ vec3 unpack_normal(uint word) { return normalize(octahedral_direction(unpackSnor
 /// lose their weight to rounding.
 const float kLeastFacing = 1e-3;
 
+/// A normal is the opposite of its surface's if its cosines to the eye and to the normal by depth add up to less than
+/// this. Shading normals that lean away at grazing angles stay above it, as they are near the normal by depth. Where
+/// depth gives none, the eye stands in for it, and leaning by 15 degrees is enough.
+const float kOpposite = -0.5;
+
+/// Whether a normal belongs to the other side of the surface that is seen, as on mirrored things and on the backs of
+/// cards. `surface` is the unit normal by depth, and faces the eye.
+bool is_opposite(vec3 n, vec3 eye, vec3 surface) { return dot(n, eye) + dot(n, surface) < kOpposite; }
+
 /// A visible surface faces the eye: a shading normal that leans away is bent back just far enough.
 vec3 facing(vec3 n, vec3 eye) {
   const float cosine = dot(n, eye);

@@ -162,6 +162,7 @@ struct FrameCounts {
   uint sky;                // pixels
   uint repaired_depth;     // pixels whose depth was NaN or negative: treated as sky
   uint repaired_normals;   // pixels whose normal was not finite or zero: reconstructed from depth
+  uint turned_normals;     // pixels whose normal was the opposite of the surface's: turned round
   uint repaired_material;  // pixels whose material AO was NaN or infinite: 1 instead
   uint repaired_beauty;    // pixels of the composite where a colour or alpha was NaN or infinite: 0 instead
 };

@@ -97,7 +97,8 @@ ALCOVE_API int alcove_components(const alcove_session* handle, const char* aov);
 // Copies a result of the last run, which must have that size and so many components.
 ALCOVE_API alcove_code alcove_get(alcove_session* handle, const char* aov, void* data, const alcove_layout* layout);
 // Tells a number of the last run: compute-ms (of the device, 0 where it does not tell), sky-pixels, repaired-depth and
-// repaired-normals (pixels that made no sense), radius. NaN: there is none of that name.
+// repaired-normals (pixels that made no sense), turned-normals (pixels whose normals faced away from the eye), radius.
+// NaN: there is none of that name.
 ALCOVE_API double alcove_number(const alcove_session* handle, const char* name);
 // Tells what may be wrong although the last run went well, a sentence a line: normals of which few agree with
 // the depth, a radius that the depth's precision cannot carry, or that is larger than the picture. "": nothing.

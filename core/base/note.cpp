@@ -14,6 +14,7 @@ constexpr std::array kTable = {
               "the pixels decided for another reading than the usual one"},
     NoteFacts{NoteCode::assumed_reading, "assumed-reading", false,
               "neither the pixels nor the program show how the frame is read, so the usual reading is taken"},
+    NoteFacts{NoteCode::proven_reading, "proven-reading", false, "the pixels prove another reading than the usual one"},
     NoteFacts{NoteCode::said_otherwise, "said-otherwise", true, "the pixels speak against what an option or file says"},
     NoteFacts{NoteCode::near_plane, "near-plane", true, "two sources give different near planes"},
     NoteFacts{NoteCode::negative_depth, "negative-depth", false, "all depth is below 0 and is read as a distance"},
@@ -35,6 +36,9 @@ constexpr std::array kTable = {
     NoteFacts{NoteCode::shortened_normals, "shortened-normals", true, "normals were averaged over pixels"},
     NoteFacts{NoteCode::averaged_normals, "averaged-normals", false,
               "normals were averaged over pixels, as the program always does"},
+    NoteFacts{NoteCode::scaled_normals, "scaled-normals", false,
+              "normals have another length than 1, and their direction counts"},
+    NoteFacts{NoteCode::cut_normals, "cut-normals", true, "normals lost their components below 0"},
     NoteFacts{NoteCode::lossy_compression, "lossy-compression", true, "a codec has damaged data"},
     NoteFacts{NoteCode::damaged_file, "damaged-file", true, "a part of a file cannot be read"},
     NoteFacts{NoteCode::windows_differ, "windows-differ", false, "parts, data and display windows differ"},
@@ -49,6 +53,8 @@ constexpr std::array kTable = {
               InHeader::meaning},
     NoteFacts{NoteCode::repaired_depth, "repaired-depth", true, "pixels had no usable depth", InHeader::meaning},
     NoteFacts{NoteCode::repaired_normals, "repaired-normals", true, "pixels had no usable normal", InHeader::meaning},
+    NoteFacts{NoteCode::turned_normals, "turned-normals", false,
+              "normals that faced away from the eye were turned round", InHeader::meaning},
     NoteFacts{NoteCode::repaired_material_ao, "repaired-material-ao", true, "pixels had no usable material AO",
               InHeader::meaning},
     NoteFacts{NoteCode::repaired_beauty, "repaired-beauty", true, "pixels had no usable beauty", InHeader::meaning},
@@ -79,6 +85,12 @@ std::span<const NoteFacts> note_table() { return kTable; }
 const NoteFacts& facts_of(NoteCode code) { return kTable[std::size_t(code)]; }
 
 const char* level_of(const Note& note) { return facts_of(note.code).is_warning ? "warning" : "note"; }
+
+std::string line_of(const Note& note, const std::string& frame) {
+  std::string line = note.file.empty() ? frame : note.file;
+  if (!line.empty()) line += ": ";
+  return line.append(note.text).append(" [").append(facts_of(note.code).name).append("]");
+}
 
 void add_new(Notes& notes, const Notes& more) {
   for (const auto& note : more)

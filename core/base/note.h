@@ -13,6 +13,7 @@ enum class NoteCode {
   // how the frame is read
   unusual_reading,
   assumed_reading,
+  proven_reading,
   said_otherwise,
   near_plane,
   negative_depth,
@@ -31,6 +32,8 @@ enum class NoteCode {
   antialiased_depth,
   shortened_normals,
   averaged_normals,
+  scaled_normals,
+  cut_normals,
   lossy_compression,
   damaged_file,
   windows_differ,
@@ -46,6 +49,7 @@ enum class NoteCode {
   // what was repaired or replaced
   repaired_depth,
   repaired_normals,
+  turned_normals,
   repaired_material_ao,
   repaired_beauty,
   no_normals,
@@ -85,6 +89,7 @@ const NoteFacts& facts_of(NoteCode code);
 struct Note {
   NoteCode code;
   std::string text;  // a sentence without a full stop; it may hold text of files, so printable() is for who shows it
+  std::string file = {};  // that it is about; empty: the frame's
 
   bool operator==(const Note&) const = default;
 };
@@ -93,6 +98,9 @@ using Notes = std::vector<Note>;
 
 /// "warning" or "note".
 const char* level_of(const Note& note);
+
+/// "FILE: TEXT [CODE]", without the file where neither the note nor the caller names one; `frame` is the frame's file.
+std::string line_of(const Note& note, const std::string& frame);
 
 /// Adds those of `more` that are not there yet.
 void add_new(Notes& notes, const Notes& more);

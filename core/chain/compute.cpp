@@ -59,7 +59,8 @@ HostResult compute_ao(gpu::Recorder& gpu, const HostFrame& frame, const Estimato
   const auto ao = outputs.ao->as<float>();
   const auto& counts = outputs.counts->as<FrameCounts>()[0];
   const std::uint32_t estimates = outputs.sites ? outputs.sites->as<SiteCounts>()[0].listed : 0;
-  return {{ao.begin(), ao.end()}, counts.sky, estimates, counts.repaired_depth, counts.repaired_normals};
+  return {{ao.begin(), ao.end()},  counts.sky,           estimates, counts.repaired_depth,
+          counts.repaired_normals, counts.turned_normals};
 }
 
 }  // namespace alcove

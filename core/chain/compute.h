@@ -27,6 +27,7 @@ struct HostResult {
   std::uint32_t estimates = 0;  // pixels with one of their own; where each has, 0
   std::uint32_t repaired_depth = 0;
   std::uint32_t repaired_normals = 0;
+  std::uint32_t turned_normals = 0;
 };
 
 /// Runs prepare, the estimator and the shaping. settings.radius must be set. Fails with ErrorKind::device.

@@ -14,6 +14,7 @@
 namespace alcove {
 namespace {
 
+constexpr double kRadians = std::numbers::pi / 180;  // of a degree
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kAgreementDegrees = 20;    // to the normal that depth gives; depth's own steps turn it by less
 constexpr double kCloseDegrees = 3;         // to it; less than a wrong camera turns most of the normals
@@ -88,13 +89,14 @@ void count_value(ValueStatistics& s, float x) {
 constexpr double kUnitTolerance = 0.05;  // of a length that is taken for 1
 
 /// Counts a normal as it stands in the file, unless it is zero or not finite. Components beyond `components` are 0.
-void count_normal(NormalStatistics& s, const Vector3& n, std::size_t components) {
+void count_normal(NormalStatistics& s, std::vector<double>& lengths, const Vector3& n, std::size_t components) {
   Vector3 unorm{};
   for (std::size_t c = 0; c < components; c++) unorm[c] = 2 * n[c] - 1;
   const double length = std::sqrt(dot(n, n));
   const double unorm_length = std::sqrt(dot(unorm, unorm));
   if (!(length > 0) || std::isinf(length)) return;
   s.count++;
+  lengths.push_back(length);
   s.mean_length += length;
   s.unorm_mean_length += unorm_length;
   s.unit_share += std::abs(length - 1) < kUnitTolerance;
@@ -149,40 +151,90 @@ double pixels_beside(const View& view, int x, int y, const Vector3& p) {
   return std::hypot((p[0] / scale - t[0]) / view.tangent_per_pixel.x, (p[1] / scale - t[1]) / view.tangent_per_pixel.y);
 }
 
-/// Fills in how well the frame agrees with each of the readings. Gives false where too little of it is smooth.
-bool score(std::vector<NormalScore>& scores, const NormalPlanes& planes, const Camera& camera, const View& view) {
-  std::vector<Matrix3> rotations;
-  for (const auto& score : scores) rotations.push_back(view_from_normal(camera, score.space, score.flips));
+const double kAgreeing = std::cos(kAgreementDegrees * kRadians);
+const double kClose = std::cos(kCloseDegrees * kRadians);
 
+/// Calls `visit` with each place of a smooth surface that is looked at and the unit normal of the file there, in its
+/// own space. Gives how many there are.
+template <class Visit>
+std::size_t for_each_normal(const NormalPlanes& planes, const View& view, const Visit& visit) {
   const std::size_t plane = std::size_t(view.size.x) * std::size_t(view.size.y);
   const int stride = sparseness(view);
-  const double agreeing = std::cos(kAgreementDegrees * std::numbers::pi / 180);
-  const double close = std::cos(kCloseDegrees * std::numbers::pi / 180);
   std::size_t count = 0;
-  std::vector<std::vector<double>> cosines(scores.size());
   for (int y = 1; y + 1 < view.size.y; y += stride)
     for (int x = 1; x + 1 < view.size.x; x += stride) {
-      const auto surface = surface_at(planes.raw, planes.map, view, x, y);
+      auto surface = surface_at(planes.raw, planes.map, view, x, y);
       if (!surface) continue;
       const Vector3 vector = decoded_normal(planes.normal, plane, index_of(view, x, y), planes.encoding, planes.unorm);
-      const double lengths = std::sqrt(dot(vector, vector) * dot(surface->normal, surface->normal));
-      if (!(lengths > 0) || std::isinf(lengths)) continue;
+      const double size = length(vector), by_depth = length(surface->normal);
+      if (!(size * by_depth > 0) || std::isinf(size * by_depth)) continue;
       count++;
-      for (std::size_t k = 0; k < scores.size(); k++) {
-        const Vector3 n = times(rotations[k], vector);
-        scores[k].facing += dot(n, surface->eye) > 0;
-        cosines[k].push_back(std::min(1.0, dot(n, surface->normal) / lengths));
-        scores[k].agreement += cosines[k].back() > agreeing;
-        scores[k].close += cosines[k].back() > close;
-      }
+      surface->normal = scaled(surface->normal, 1 / by_depth);
+      visit(*surface, scaled(vector, 1 / size));
     }
-  if (count < kLeastSamples) return false;
-  for (std::size_t k = 0; k < scores.size(); k++) {
-    scores[k].facing /= double(count);
-    scores[k].agreement /= double(count);
-    scores[k].close /= double(count);
-    scores[k].angle = std::acos(std::max(-1.0, quantile(cosines[k], 0.75))) * 180 / std::numbers::pi;
+  return count;
+}
+
+/// What one reading of the normals adds up to.
+class NormalSum {
+ public:
+  explicit NormalSum(NormalScore& score, const Camera& camera)
+      : score_(score), rotation_(view_from_normal(camera, score.space, score.flips)) {}
+
+  void add(const SurfacePlace& surface, const Vector3& vector) {
+    Vector3 n = times(rotation_, vector);
+    double cosine = std::min(1.0, dot(n, surface.normal));
+    score_.facing += dot(n, surface.eye) > 0;
+    score_.agreement += cosine > kAgreeing;
+    if (cosine < -kAgreeing) {
+      score_.opposite++;
+      cosine = std::min(1.0, -cosine);
+      n = scaled(n, -1);
+    }
+    score_.close += cosine > kClose;
+    cosines_.push_back(cosine);
+    if (cosine > kAgreeing) add_turn(surface.normal, n);
   }
+  void finish() {
+    const auto count = double(cosines_.size());
+    for (double* share : {&score_.facing, &score_.agreement, &score_.opposite, &score_.close}) *share /= count;
+    score_.angle = std::acos(std::max(-1.0, quantile(cosines_, 0.75))) / kRadians;
+    // What turns about the surfaces' own normals does not show.
+    constexpr double kUnseen = 1e-4;
+    for (std::size_t i = 0; i < 3; i++) across_[i][i] += kUnseen * count;
+    const double whole = determinant(across_);
+    for (std::size_t i = 0; i < 3; i++) {
+      Matrix3 replaced = across_;  // symmetrical: its rows are its columns
+      replaced[i] = moved_;
+      score_.turn[i] = determinant(replaced) / whole;
+    }
+  }
+
+ private:
+  /// A small turn moves a unit vector g by turn x g, so that g x n is the part of the turn that is across g.
+  void add_turn(const Vector3& g, const Vector3& n) {
+    const Vector3 moved = cross(g, n);
+    for (std::size_t i = 0; i < 3; i++) {
+      moved_[i] += moved[i];
+      for (std::size_t j = 0; j < 3; j++) across_[i][j] += double(i == j) - g[i] * g[j];
+    }
+  }
+
+  NormalScore& score_;
+  Matrix3 rotation_, across_{};
+  Vector3 moved_{};
+  std::vector<double> cosines_;
+};
+
+/// Fills in how well the frame agrees with each of the readings. Gives false where too little of it is smooth.
+bool score(std::vector<NormalScore>& scores, const NormalPlanes& planes, const Camera& camera, const View& view) {
+  std::vector<NormalSum> sums;
+  for (auto& score : scores) sums.emplace_back(score, camera);
+  const std::size_t count = for_each_normal(planes, view, [&](const SurfacePlace& surface, const Vector3& n) {
+    for (auto& sum : sums) sum.add(surface, n);
+  });
+  if (count < kLeastSamples) return false;
+  for (auto& sum : sums) sum.finish();
   return true;
 }
 
@@ -200,6 +252,7 @@ ValueStatistics statistics_of(std::span<const float> values, std::size_t step) {
 NormalStatistics normal_statistics(std::span<const float> normal, std::span<const float> raw, const DepthMap& map,
                                    std::size_t step) {
   NormalStatistics s;
+  std::vector<double> lengths;
   s.least = kInfinity;
   s.most = -kInfinity;
   const std::size_t plane = map.form == kDepthPosition ? raw.size() / 3 : raw.size();
@@ -208,10 +261,14 @@ NormalStatistics normal_statistics(std::span<const float> normal, std::span<cons
     if (std::isinf(planar_depth(map, value_at(raw, plane, i), 1))) continue;
     Vector3 n{};
     for (std::size_t c = 0; c < components; c++) n[c] = normal[c * plane + i];
-    count_normal(s, n, components);
+    count_normal(s, lengths, n, components);
   }
   if (!s.count) return {};
-  for (double* share : {&s.mean_length, &s.unorm_mean_length, &s.unit_share, &s.unorm_unit_share})
+  s.usual_length = quantile(lengths, 0.5);
+  const double tolerance = kUnitTolerance * s.usual_length;
+  s.usual_share =
+      double(std::ranges::count_if(lengths, [&](double l) { return std::abs(l - s.usual_length) < tolerance; }));
+  for (double* share : {&s.mean_length, &s.unorm_mean_length, &s.unit_share, &s.unorm_unit_share, &s.usual_share})
     *share /= double(s.count);
   return s;
 }
@@ -263,6 +320,29 @@ std::vector<NormalScore> score_normals(const NormalPlanes& planes, const Camera&
   std::ranges::stable_sort(scores, std::greater(), &NormalScore::agreement);
   return scores;
 }
+
+std::optional<CutScore> score_cut(NormalSpace space, const NormalPlanes& planes, const Camera& camera,
+                                  const View& view) {
+  constexpr double kBelow = -0.25;  // a component that noise of the depth does not make
+  const Matrix3 normal_from_view = transposed(view_from_normal(camera, space, {}));
+  CutScore cut;
+  std::size_t needed = 0;
+  const std::size_t count = for_each_normal(planes, view, [&](const SurfacePlace& surface, const Vector3& n) {
+    const Vector3 whole = times(normal_from_view, surface.normal);
+    if (std::ranges::min(whole) > kBelow) return;
+    needed++;
+    Vector3 absolute, clamped;
+    for (std::size_t c = 0; c < 3; c++) absolute[c] = std::abs(whole[c]), clamped[c] = std::max(whole[c], 0.0);
+    cut.absolute += dot(n, absolute) > kAgreeing;
+    cut.clamped += dot(n, clamped) > kAgreeing * length(clamped);
+  });
+  if (count < kLeastSamples) return std::nullopt;
+  cut.needed = double(needed) / double(count);
+  for (double* share : {&cut.absolute, &cut.clamped}) *share /= std::max(1.0, double(needed));
+  return cut;
+}
+
+double NormalScore::turn_degrees() const { return length(turn) / kRadians; }
 
 std::optional<NormalScore> score_normals_as(NormalSpace space, const NormalFlips& flips, const NormalPlanes& planes,
                                             const Camera& camera, const View& view) {

@@ -31,6 +31,8 @@ struct NormalStatistics {
   double unorm_mean_length = 0;  // the same of 2 n - 1
   double unit_share = 0;         // the share whose length is 1 within 5 %
   double unorm_unit_share = 0;   // the same of 2 n - 1
+  double usual_length = 0;       // the median
+  double usual_share = 0;        // the share whose length is that within 5 %
 };
 /// Counts every `step`-th pixel that is no sky. `normal` has two planes or three; `raw` is the depth as in the file.
 NormalStatistics normal_statistics(std::span<const float> normal, std::span<const float> raw, const DepthMap& map,
@@ -54,8 +56,14 @@ struct NormalScore {
   NormalFlips flips;
   double facing = 0;     // share that faces the camera, as all that is visible does
   double agreement = 0;  // share within 20 degrees of the normal that depth gives
-  double close = 0;      // share within 3 degrees of it, which only the right camera gives
-  double angle = 0;      // degrees to it, of the best quarter at most
+  double opposite = 0;   // share within 20 degrees of its opposite, which prepare.comp turns round
+  double close = 0;      // share within 3 degrees of either, which only the right camera gives
+  double angle = 0;      // degrees to either, of the best quarter at most
+  Vector3 turn{};        // radians about an axis of view space, by which those within 20 degrees are turned as a whole
+
+  /// The share of normals that are right once those of the other side are turned round.
+  double explained() const { return agreement + opposite; }
+  double turn_degrees() const;
 };
 /// Normals as they stand in a file, how they are encoded, and the depth that they are held against.
 struct NormalPlanes {
@@ -68,6 +76,16 @@ struct NormalPlanes {
 /// Scores world space, where the camera knows it, and view space, each with all flips, the best agreement first. Gives
 /// nothing where too little of the frame is smooth.
 std::vector<NormalScore> score_normals(const NormalPlanes& planes, const Camera& camera, const View& view);
+/// How the frame agrees with normals that lost their components below 0, going by depth in the normals' own space.
+struct CutScore {
+  double needed = 0;    // share of the normals with a component clearly below 0
+  double absolute = 0;  // of those, the share within 20 degrees of the normal without signs
+  double clamped = 0;   // and of the normal with 0 in place of components below it
+};
+/// Gives nothing where too little of the frame is smooth.
+std::optional<CutScore> score_cut(NormalSpace space, const NormalPlanes& planes, const Camera& camera,
+                                  const View& view);
+
 /// Scores one of these readings, so that another camera than the frame's can be tried.
 std::optional<NormalScore> score_normals_as(NormalSpace space, const NormalFlips& flips, const NormalPlanes& planes,
                                             const Camera& camera, const View& view);

@@ -22,6 +22,7 @@ constexpr double kBetween = 0.1;  // part of a step within which a value belongs
 constexpr int kLeastEdges = 100;
 constexpr double kMostBlended = 0.3;            // of the edges; thin things give some by themselves
 constexpr double kMostShortened = 0.02;         // of the normals
+constexpr double kMostOfOtherLength = 0.1;      // of normals that were all scaled alike; edges are shorter
 constexpr std::size_t kEdgePixels = 1 << 18;    // of whole rows: enough for edges, and no cost beside reading
 constexpr std::size_t kNormalPixels = 1 << 16;  // enough for shares to a percent
 
@@ -63,17 +64,25 @@ Notes averaged_depth(const FrameSource& source, std::span<const float> depth) {
 /// Normals that were averaged over the pixels, by some of them. It is no warning where the program does so always, for
 /// nobody can have it do otherwise.
 Notes averaged_normals(const FrameSource& source, std::span<const float> depth, std::span<const float> normal) {
-  if (!has_lengths(source)) return {};
+  // Normals that lost components are short for that reason.
+  if (!has_lengths(source) || std::ranges::count(source.notes, NoteCode::cut_normals, &Note::code) > 0) return {};
   std::size_t step = source.data.pixels() / kNormalPixels + 1;
   while (std::gcd(step, std::size_t(source.data.width)) > 1) step++;  // so that no column is favoured
   const NormalStatistics s = normal_statistics(normal, depth, depth_map_of(source), step);
   const double unit = source.normal_unorm ? s.unorm_unit_share : s.unit_share;
   if (!s.count || unit >= 1 - kMostShortened) return {};
+  if (!source.normal_unorm && s.usual_share > 1 - kMostOfOtherLength)
+    return {{NoteCode::scaled_normals,
+             fmt::format("the normals' length is {:.3g} on {:.0f} %: they were scaled, and AO takes their direction "
+                         "alone",
+                         s.usual_length, 100 * s.usual_share),
+             source.normal_file()}};
   const bool is_usual = source.rules->normal_averaged;
   return {{is_usual ? NoteCode::averaged_normals : NoteCode::shortened_normals,
            fmt::format("{:.0f} % of the normals are not of unit length: they were averaged over the pixel, at edges "
                        "over several surfaces{}",
-                       100 * (1 - unit), is_usual ? ", as " + source.rules->name + " always does" : "")}};
+                       100 * (1 - unit), is_usual ? ", as " + source.rules->name + " always does" : ""),
+           source.normal_file()}};
 }
 
 /// What DWA has quantized, and where files end too early.

@@ -37,6 +37,11 @@ struct FrameSource : Reading {
   const std::vector<ChannelRef>& operator[](RawPlane plane) const { return planes[plane]; }
   /// The file of the depth or the positions, after which the frame is called in messages.
   const std::string& depth_path() const { return files[planes[RawPlane::depth][0].file].path(); }
+  /// The file of the normals for notes on them: "" where it is the frame's own, or where there are none.
+  std::string normal_file() const {
+    const auto& normal = planes[RawPlane::normal];
+    return normal.empty() || normal[0].file == planes[RawPlane::depth][0].file ? "" : files[normal[0].file].path();
+  }
   /// The part of a file that a channel lies in.
   const ExrPart& part_of(const ChannelRef& ref) const { return files[ref.file].parts()[std::size_t(ref.part)]; }
   /// The name of a channel without its last part, which a part's name stands for; "" where it has no layer.

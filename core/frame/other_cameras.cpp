@@ -72,6 +72,23 @@ std::vector<Hypothesis> turned_pictures(const Camera& camera, const View& view) 
           {"its columns seem to run from the right to the left: mirror the picture", camera, mirrored}};
 }
 
+/// The rotation by which a turn, in radians about an axis, is undone.
+Matrix3 turned_back(const Vector3& turn) {
+  const double angle = length(turn);
+  if (angle == 0) return {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+  const Vector3 axis = scaled(turn, -1 / angle);
+  const double s = std::sin(angle), c = std::cos(angle);
+  Matrix3 rotation;
+  for (std::size_t column = 0; column < 3; column++) {
+    Vector3 unit{};
+    unit[column] = 1;
+    const Vector3 across = cross(axis, unit);
+    for (std::size_t row = 0; row < 3; row++)
+      rotation[row][column] = c * unit[row] + s * across[row] + (1 - c) * axis[row] * axis[column];
+  }
+  return rotation;
+}
+
 bool is_off(double centre, int size) { return std::abs(2 * centre - size) > 2 * kOffCentre * size; }
 
 }  // namespace
@@ -83,6 +100,22 @@ std::optional<OtherCamera> best_turned_camera(const NormalPlanes& planes, const 
   std::vector<Hypothesis> hypotheses = turned_pictures(camera, view);
   if (as.space == NormalSpace::world) std::ranges::move(turned_worlds(camera, view), std::back_inserter(hypotheses));
   return best_of(hypotheses, planes, as);
+}
+
+std::optional<OtherCamera> slightly_turned_camera(const NormalPlanes& planes, const NormalScore& as,
+                                                  const Camera& camera, const View& view) {
+  NormalScore turned = as;
+  turned.space = NormalSpace::world;
+  Camera other = camera;
+  other.view_from_world = view_from_normal(camera, NormalSpace::view, {});
+  // The turn is that of small ones: a second step leaves less than a hundredth of it.
+  for (int step = 0; step < 2; step++) {
+    other.view_from_world = product(turned_back(turned.turn), *other.view_from_world);
+    const auto score = score_normals_as(NormalSpace::world, as.flips, planes, other, view);
+    if (!score) return std::nullopt;
+    turned = *score;
+  }
+  return OtherCamera{fmt::format("a camera that is turned by about {:.0f} degrees", as.turn_degrees()), turned};
 }
 
 std::optional<OtherCamera> best_other_point(const NormalPlanes& planes, const NormalScore& as, const Camera& camera,

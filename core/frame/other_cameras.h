@@ -21,6 +21,11 @@ struct OtherCamera {
 std::optional<OtherCamera> best_turned_camera(const NormalPlanes& planes, const NormalScore& as, const Camera& camera,
                                               const View& view);
 
+/// Gives the camera that is turned by a small angle within a world, whose normals then look like those of view space.
+/// `as` is how they agree in view space. None where too little of the frame is smooth.
+std::optional<OtherCamera> slightly_turned_camera(const NormalPlanes& planes, const NormalScore& as,
+                                                  const Camera& camera, const View& view);
+
 /// Gives the best of the cameras with the principal point on the other side of the picture's centre, by x, by y or by
 /// both, or in the centre.
 std::optional<OtherCamera> best_other_point(const NormalPlanes& planes, const NormalScore& as, const Camera& camera,

@@ -3,7 +3,9 @@
 #include <algorithm>
 
 #include "core/base/error.h"
+#include "core/frame/altered_normals.h"
 #include "core/frame/evidence.h"
+#include "core/frame/findings.h"
 #include "core/frame/other_cameras.h"
 #include "core/frame/sampling.h"
 #include "core/frame/settle.h"
@@ -25,12 +27,25 @@ constexpr double kSharper = 1.2, kLeastSharper = 0.1;
 constexpr double kLeastClose = 0.3;
 /// From so many on the field of view is not doubted. With half or twice the right one it was 41 % at most.
 constexpr double kSurelyClose = 0.5;
-/// If this part of the normals has unit length, they are vectors.
-constexpr double kUnit = 0.9;
+/// If this part of the normals has unit length, and less than the other part by another encoding, they are vectors.
+constexpr double kUnit = 0.9, kNotUnit = 0.5;
+/// A reading explains the normals as well as the best one if, with those of the other side turned round, it explains
+/// this part of as many.
+constexpr double kAsMany = 0.98;
+/// Degrees. If all normals are turned by more than this against those of depth, they are of another space or another
+/// camera. Bumps do not turn them as a whole; half depth does so by up to a degree.
+constexpr double kLeastTurn = 1, kLeastTurnOfHalf = 3;
+/// The same where nothing but the turn speaks for another space.
+constexpr double kClearTurn = 2;
+/// Normals are cut if none is below this, if by depth this part of them should be, and if this part of those is as depth
+/// and the cut make them.
+constexpr double kBelowZero = -1.0 / 256, kLeastNeeded = 0.02, kLeastCut = 0.8;
 
 class NormalSettlement : private Settlement {
  public:
-  using Settlement::Settlement;
+  NormalSettlement(FrameSource& source, const InputSettings& settings, std::span<const float> depth,
+                   std::span<const float> normal)
+      : Settlement(source, settings, depth, normal, RawPlane::normal) {}
 
   void run() {
     settle_encoding();
@@ -49,13 +64,14 @@ class NormalSettlement : private Settlement {
   }
 
   static bool agrees(const NormalScore& score) {
-    return score.agreement >= kLeastAgreement && score.angle <= kLargestAngle;
+    return score.explained() >= kLeastAgreement && score.angle <= kLargestAngle;
   }
 
   void settle_encoding() {
     const bool is_open = source_.normal_encoding_open;
     const NormalStatistics n = normal_statistics(normal_, depth_, depth_map_of(source_), kSparse);
     if (!is_open) doubt_encoding(n);
+    has_negative_ = n.least < kBelowZero;
     const bool in_unit_range = n.count && n.least >= 0 && n.most <= 1;
     const NormalEncoding said = source_.normal_encoding;
     std::string why = source_[RawPlane::normal].size() == 2
@@ -72,11 +88,62 @@ class NormalSettlement : private Settlement {
         why = fmt::format("all in 0 to 1, and 2 n - 1 is of unit length on {:.0f} %", 100 * n.unorm_unit_share);
       source_.normal_unorm = is_unorm || said == NormalEncoding::unorm;
     }
-    const bool tells = source_[RawPlane::normal].size() == 3 && std::max(n.unit_share, n.unorm_unit_share) > kUnit;
+    if (has_lengths(source_)) refuse_altered(n);
+    const double unit = source_.normal_unorm ? n.unorm_unit_share : n.unit_share;
+    const double otherwise = source_.normal_unorm ? n.unit_share : n.unorm_unit_share;
+    const bool tells = has_lengths(source_) && std::max(unit, otherwise) > kUnit;
     const bool differs = !tells && compare_encodings(in_unit_range, why);
-    if (is_open)
-      guess("normal encoding", name_of(source_.normal_encoding, source_.normal_unorm), why, "--normal-encoding",
-            differs || source_.normal_unorm);
+    if (!is_open) return;
+    const std::string name = name_of(source_.normal_encoding, source_.normal_unorm);
+    if (tells && unit > kUnit && otherwise < kNotUnit)
+      prove("normal encoding", name, why, "--normal-encoding", source_.normal_unorm);
+    else
+      guess("normal encoding", name, why, "--normal-encoding", differs || source_.normal_unorm);
+  }
+
+  /// Refuses vectors whose lengths show that they went through what is made for colours.
+  void refuse_altered(const NormalStatistics& n) const {
+    if (std::max(n.unit_share, n.unorm_unit_share) > kNotUnit || n.usual_share > kUnit) return;
+    if (const auto what = alteration_of(normal_, depth_, depth_map_of(source_)))
+      fail(ErrorKind::input, "{}: its normals ({}) are of unit length on {:.0f} % only: they look like {}; {}",
+           normal_path(), channels(), 100 * n.unit_share, *what, kWithout);
+  }
+
+  /// Takes normals without any component below 0 where by depth there should be some: what was lost is not in the file.
+  /// Returns whether they are such.
+  bool settle_cut(const std::vector<NormalScore>& scores) {
+    if (has_negative_ || !has_lengths(source_) || source_.normal_unorm || source_.camera_is_assumed) return false;
+    const NormalScore* as = nullptr;
+    CutScore best;
+    for (const auto& score : scores) {
+      if (to_string(score.flips) != "none" || (!source_.normal_space_open && score.space != source_.normal_space))
+        continue;
+      const auto cut = score_cut(score.space, planes(), source_.camera, view_);
+      if (!cut || cut->needed < kLeastNeeded || std::max(cut->absolute, cut->clamped) < kLeastCut) continue;
+      if (as && std::max(cut->absolute, cut->clamped) <= std::max(best.absolute, best.clamped)) continue;
+      best = *cut;
+      as = &score;
+    }
+    if (!as) return false;
+    const std::string why = fmt::format(
+        "no component of the normals ({}) is below 0, and by depth {:.0f} % of them need one: {}; save them signed or "
+        "as 0.5 + 0.5 n",
+        channels(), 100 * best.needed,
+        best.absolute > best.clamped ? "their absolute values were saved" : "values below 0 were cut off");
+    if (as->explained() < kLeastAgreement) fail(ErrorKind::input, "{}: {}; {}", normal_path(), why, kWithout);
+    if (source_.normal_space_open) {
+      source_.normal_space = as->space;
+      guess("normal space", name_of(as->space), text_of(*as), "--normal-space", false);
+    }
+    note(NoteCode::cut_normals, why + "; " + kWithout);
+    return true;
+  }
+
+  /// As "N.X, N.Y, N.Z".
+  std::string channels() const {
+    std::string names;
+    for (const auto& channel : source_[RawPlane::normal]) names += (names.empty() ? "" : ", ") + channel.channel;
+    return names;
   }
 
   /// If the normals do not agree with depth, and do so much better in another encoding, that one is chosen where nobody
@@ -98,7 +165,7 @@ class NormalSettlement : private Settlement {
         name_of(best->first, in_unit_range), best->second, name_of(source_.normal_encoding, source_.normal_unorm),
         scores[0].angle, 100 * scores[0].agreement);
     if (!source_.normal_encoding_open) {
-      source_.notes.push_back({NoteCode::said_otherwise, why + ": is --normal-encoding right?"});
+      note(NoteCode::said_otherwise, why + ": is --normal-encoding right?");
       return false;
     }
     source_.normal_encoding = best->first;
@@ -108,21 +175,18 @@ class NormalSettlement : private Settlement {
 
   /// Notes where the lengths of the normals speak against the encoding that is said.
   void doubt_encoding(const NormalStatistics& n) {
-    constexpr double kFew = 0.5;  // of the normals
     if (source_[RawPlane::normal].size() != 3) return;
-    const bool is_signed = n.unit_share > kUnit && n.unorm_unit_share < kFew;
-    const bool is_unorm = n.unorm_unit_share > kUnit && n.unit_share < kFew;
+    const bool is_signed = n.unit_share > kUnit && n.unorm_unit_share < kNotUnit;
+    const bool is_unorm = n.unorm_unit_share > kUnit && n.unit_share < kNotUnit;
     if (is_signed && source_.normal_encoding != NormalEncoding::signed_float)
-      source_.notes.push_back(
-          {NoteCode::said_otherwise,
+      note(NoteCode::said_otherwise,
            fmt::format("the normals are signed vectors by their lengths (of 1 on {:.0f} %), and --normal-encoding or "
                        "the camera file says otherwise",
-                       100 * n.unit_share)});
+                       100 * n.unit_share));
     if (is_unorm && source_.normal_encoding == NormalEncoding::signed_float)
-      source_.notes.push_back(
-          {NoteCode::said_otherwise,
+      note(NoteCode::said_otherwise,
            fmt::format("2 n - 1 of the normals is of unit length on {:.0f} %: are they unorm (--normal-encoding)?",
-                       100 * n.unorm_unit_share)});
+                       100 * n.unorm_unit_share));
   }
 
   NormalPlanes planes() const {
@@ -131,35 +195,114 @@ class NormalSettlement : private Settlement {
 
   void settle_space() {
     const bool has_world = source_.camera.view_from_world.has_value();
-    const bool usually_view = source_.usual_normal_space == NormalSpace::view;
     const auto all_scores = score_normals(planes(), source_.camera, view_);
+    if (settle_cut(all_scores)) return;
     if (!source_.normal_space_open) return doubt_normals(all_scores);
     const std::string given = to_string(settings_.flip_normal);
     auto scores = all_scores;
     if (given != "none") std::erase_if(scores, [&](const auto& s) { return to_string(s.flips) != given; });
-    const auto usual = std::ranges::find_if(
-        scores, [&](const auto& s) { return s.space == source_.usual_normal_space && to_string(s.flips) == given; });
-    const bool tells = !scores.empty() && scores[0].agreement >= kLeastAgreement;
-    if (!tells) source_.has_evidence = false;
-    if ((has_world || usually_view) && (!tells || usual->agreement >= kNoBetter * scores[0].agreement)) {
+    // The usual reading, and that of view space where the camera knows no world.
+    const bool has_usual = has_world || source_.usual_normal_space == NormalSpace::view;
+    const NormalScore* plain =
+        reading_of(scores, has_usual ? source_.usual_normal_space : NormalSpace::view, settings_.flip_normal);
+    const bool tells = plain && std::max(scores[0].agreement, plain->explained()) >= kLeastAgreement;
+    if (!tells) {
+      source_.has_evidence = false;
+      if (!has_usual) refuse_without_matrix(scores);
       source_.normal_space = source_.usual_normal_space;
-      guess("normal space", name_of(source_.normal_space), tells ? text_of(*usual) : "the frame does not tell",
-            "--normal-space", false);
+      guess("normal space", name_of(source_.normal_space), "the frame does not tell", "--normal-space", false);
       return doubt_normals(all_scores);
     }
-    if (!tells) refuse_without_matrix(scores);
+    const bool is_plain = explains(*plain, scores[0]);
     // By a camera along an axis of the world, normals in view space look like those of a turned world.
-    if (usual != scores.end()) refuse_turned_camera(*usual, kSharper * scores[0].close);
-    const auto other = std::ranges::find_if(scores, [&](const auto& s) { return s.space != scores[0].space; });
-    if (other != scores.end() && other->agreement >= kAsGood * scores[0].agreement)
-      fail(ErrorKind::input,
-           "{}: its normals may be in {} or in {} space ({}; {}): say which with --normal-space, and --flip-normal",
-           normal_path(), name_of(scores[0].space), name_of(other->space), text_of(scores[0]), text_of(*other));
-    source_.normal_space = scores[0].space;
-    source_.flip_normal = scores[0].flips;
-    guess("normal space", name_of(source_.normal_space), text_of(scores[0]), "--normal-space with --flip-normal",
-          source_.normal_space != source_.usual_normal_space || has_world || to_string(scores[0].flips) != "none");
+    if (!is_plain && has_usual) refuse_turned_camera(*plain, kSharper * scores[0].close);
+    const NormalScore& best = is_plain ? *plain : scores[0];
+    const NormalScore* straighter = straighter_than(best, scores);
+    if (!straighter && !is_plain) refuse_ambiguous(best, scores);
+    if (!has_world && !source_.camera_is_assumed) refuse_turned_world(best);
+    take(straighter ? *straighter : best, straighter ? turn_of(*straighter, best) : text_of(best), has_world);
     doubt_normals(all_scores);
+  }
+
+  /// Takes a reading, and says so where it is not the usual one, or where no matrix would turn normals of the world.
+  void take(const NormalScore& score, const std::string& why, bool has_world) {
+    source_.normal_space = score.space;
+    source_.flip_normal = score.flips;
+    const bool is_flipped = to_string(score.flips) != to_string(settings_.flip_normal);
+    const bool is_proven = score.close > kUnit && depth_rounding(source_) == kFloatRounding;
+    guess("normal space", name_of(score.space), why,
+          is_flipped || !has_world ? "--normal-space with --flip-normal" : "--normal-space",
+          score.space != source_.usual_normal_space || is_flipped, is_proven);
+  }
+
+  /// Refuses a reading where one in the other space does about as well.
+  void refuse_ambiguous(const NormalScore& best, const std::vector<NormalScore>& scores) const {
+    const auto other = std::ranges::find_if(scores, [&](const auto& s) { return s.space != best.space; });
+    if (other == scores.end() || other->agreement < kAsGood * best.agreement || is_straighter(best, *other)) return;
+    fail(ErrorKind::input,
+         "{}: its normals may be in {} or in {} space ({}; {}): say which with --normal-space, and --flip-normal",
+         normal_path(), name_of(best.space), name_of(other->space), text_of(best), text_of(*other));
+  }
+
+  /// Refuses normals that are read in view space where they look like those of a world that nothing turns.
+  void refuse_turned_world(const NormalScore& score) const {
+    if (source_.usual_normal_space == NormalSpace::view) return;
+    if (const auto turned = turned_world(score))
+      fail(ErrorKind::input, "{}: {}: give a --camera file with world_to_camera; {}", normal_path(), *turned, kWithout);
+  }
+
+  static const NormalScore* reading_of(const std::vector<NormalScore>& scores, NormalSpace space,
+                                       const NormalFlips& flips) {
+    const auto found = std::ranges::find_if(
+        scores, [&](const auto& s) { return s.space == space && to_string(s.flips) == to_string(flips); });
+    return found == scores.end() ? nullptr : &*found;
+  }
+
+  /// Whether a reading does as well as the best one, if need be with the normals of the other side turned round: they
+  /// are a fault of some objects, and flips are one of all.
+  static bool explains(const NormalScore& score, const NormalScore& best) {
+    return score.agreement >= kNoBetter * best.agreement || kAsMany * score.explained() > best.agreement;
+  }
+
+  /// Whether one reading has nothing of a turn that the normals as a whole have by the other, as those of a camera that
+  /// is turned by little have in the wrong space.
+  bool is_straighter(const NormalScore& score, const NormalScore& other) const {
+    const double least = depth_rounding(source_) == kFloatRounding ? kLeastTurn : kLeastTurnOfHalf;
+    return other.turn_degrees() > least && kClear * score.turn_degrees() < other.turn_degrees() &&
+           score.explained() >= kNoBetter * other.explained();
+  }
+
+  /// The same reading in the other space, where it is straighter.
+  const NormalScore* straighter_than(const NormalScore& score, const std::vector<NormalScore>& scores) const {
+    const auto other = score.space == NormalSpace::world ? NormalSpace::view : NormalSpace::world;
+    const NormalScore* reading = reading_of(scores, other, score.flips);
+    return reading && is_straighter(*reading, score) ? reading : nullptr;
+  }
+
+  static std::string turn_of(const NormalScore& chosen, const NormalScore& other) {
+    return fmt::format(
+        "as those of {} space the normals as a whole are turned by {:.1f} degrees against depth, as {} "
+        "by {:.1f}",
+        name_of(other.space), other.turn_degrees(), name_of(chosen.space), chosen.turn_degrees());
+  }
+
+  /// Where no matrix places the camera, tells whether normals that are read in view space are those of a world in which
+  /// it is turned by little.
+  std::optional<std::string> turned_world(const NormalScore& score) const {
+    const double least = depth_rounding(source_) == kFloatRounding ? kClearTurn : kLeastTurnOfHalf;
+    if (source_.camera.view_from_world || score.space != NormalSpace::view || score.turn_degrees() < least)
+      return std::nullopt;
+    const auto turned = slightly_turned_camera(planes(), score, source_.camera, view_);
+    if (!turned) return std::nullopt;
+    const NormalScore& then = turned->score;
+    if (then.close <= kSharper * score.close && (score.angle <= kLargestAngle || kClear * then.angle >= score.angle))
+      return std::nullopt;
+    const auto width = best_other_width(planes(), score, source_.camera, view_);
+    if (width && width->score.close >= then.close) return std::nullopt;
+    return fmt::format(
+        "its normals look like those of world space by {}: {:.0f} % of them agree with depth to 3 degrees then, {:.0f} "
+        "% in view space",
+        turned->what, 100 * then.close, 100 * score.close);
   }
 
   /// Refuses normals that are not those of view space where no matrix turns those of the world.
@@ -175,26 +318,31 @@ class NormalSettlement : private Settlement {
   static const char* name_of(NormalSpace space) { return space == NormalSpace::world ? "world" : "view"; }
   static const char* name_of(DepthKind kind) { return alcove::name_of(kind); }
   static std::string text_of(const NormalScore& s) {
-    return fmt::format("{} with flips {}: {:.0f} % agree with depth, {:.0f} % face the camera", name_of(s.space),
-                       to_string(s.flips), 100 * s.agreement, 100 * s.facing);
+    return fmt::format("{} with flips {}: {:.0f} % agree with depth, {:.0f} % face the camera{}", name_of(s.space),
+                       to_string(s.flips), 100 * s.agreement, 100 * s.facing,
+                       s.opposite < 0.005 ? "" : fmt::format(", {:.0f} % are opposite to depth", 100 * s.opposite));
   }
 
   /// Notes where depth speaks against the normals as they are read, and refuses what it refutes.
   void doubt_normals(const std::vector<NormalScore>& scores) {
     if (source_.camera_is_assumed) return;
-    const auto chosen = std::ranges::find_if(scores, [&](const auto& s) {
-      return s.space == source_.normal_space && to_string(s.flips) == to_string(source_.flip_normal);
-    });
-    if (chosen == scores.end()) return;
+    const NormalScore* chosen = reading_of(scores, source_.normal_space, source_.flip_normal);
+    if (!chosen) return;
+    const NormalScore* straighter = straighter_than(*chosen, scores);
+    if (straighter)
+      return note(NoteCode::normals_disagree,
+                  fmt::format("normals are read as {}; better fits {}: {} ({})", text_of(*chosen), text_of(*straighter),
+                              turn_of(*straighter, *chosen), kSpaceOptions));
     doubt_centre(*chosen);
-    if (chosen->agreement < kLeastAgreement) refuse_normals(*chosen, scores[0]);
-    const bool another = scores[0].agreement >= kLeastAgreement && chosen->agreement < kNoBetter * scores[0].agreement;
-    if (another)
+    if (chosen->explained() < kLeastAgreement) refuse_normals(*chosen, scores[0]);
+    if (scores[0].agreement >= kLeastAgreement && !explains(*chosen, scores[0]))
       note(NoteCode::normals_disagree, fmt::format("normals are read as {}; better fits {} ({})", text_of(*chosen),
                                                    text_of(scores[0]), kSpaceOptions));
-    else if (chosen->agreement < kLeastAgreement)
+    else if (chosen->explained() < kLeastAgreement)
       note(NoteCode::normals_disagree, fmt::format("only {:.0f} % of the normals agree with depth, read as {}: {}",
                                                    100 * scores[0].agreement, text_of(scores[0]), kCheck));
+    else if (const auto turned = turned_world(*chosen))
+      note(NoteCode::normals_disagree, fmt::format("{} ({})", *turned, kSpaceOptions));
     else if (!doubt_width(*chosen) && !agrees(*chosen) && !has_coarse_depth(source_))
       note(NoteCode::normals_disagree,
            fmt::format("even the best quarter of the normals is up to {:.1f} degrees off those of depth: {}",
@@ -216,7 +364,7 @@ class NormalSettlement : private Settlement {
     if (best.agreement >= kLeastAgreement && best.agreement > kClear * chosen.agreement)
       fail(ErrorKind::input, "{}: as {} ({}); {}", read, text_of(best), kSpaceOptions, kWithout);
     // Coarse depth turns the normals of depth themselves by so much.
-    if (chosen.agreement < kRefuted && !has_coarse_depth(source_))
+    if (chosen.explained() < kRefuted && !has_coarse_depth(source_))
       fail(ErrorKind::input, "{}, nor in any other space: {}; {}", read, kCheck, kWithout);
   }
 
@@ -274,6 +422,8 @@ class NormalSettlement : private Settlement {
       "check --normal-space, --normal-encoding, --depth-kind with --near, --far and --reversed-z, and --camera or "
       "--fov: "
       "it may also be the camera of another frame";
+
+  bool has_negative_ = false;  // of the normals' components as they stand in the file, any
 };
 
 }  // namespace

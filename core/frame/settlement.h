@@ -25,22 +25,33 @@ inline constexpr double kRefuted = 0.1;
 /// A frame that is being settled, by planes of depth and normals as they were read.
 class Settlement {
  public:
+  /// `about` is the plane whose file is named by what is said.
   Settlement(FrameSource& source, const InputSettings& settings, std::span<const float> depth,
-             std::span<const float> normal);
+             std::span<const float> normal, RawPlane about = RawPlane::depth);
 
  protected:
   const std::string& depth_path() const { return source_.depth_path(); }
   const std::string& normal_path() const { return source_.files[source_[RawPlane::normal][0].file].path(); }
 
-  /// Takes down what was chosen; `unusual` guesses are noted too. Fails with ErrorKind::input under --strict.
+  /// Takes down what was chosen; `unusual` guesses are noted too, with a warning unless nothing speaks against them.
+  /// Fails with ErrorKind::input under --strict.
   void guess(const std::string& what, const std::string& chosen, const std::string& why, const std::string& option,
+             bool unusual, bool proven = false);
+  /// The same of what the pixels prove, which is no guess.
+  void prove(const std::string& what, const std::string& chosen, const std::string& why, const std::string& option,
              bool unusual);
-  void note(NoteCode code, std::string text) { source_.notes.push_back({code, std::move(text)}); }
+  void note(NoteCode code, std::string text);
 
   FrameSource& source_;
   const InputSettings& settings_;
   std::span<const float> depth_, normal_;
   View view_;
+
+ private:
+  void take_down(const std::string& what, const std::string& chosen, const std::string& why, const std::string& option,
+                 bool unusual, bool proven);
+
+  const RawPlane about_;
 };
 
 /// Holds the camera against the positions that the depth's file may have beside it. Notes a lens that they refute by

@@ -106,8 +106,9 @@ Json to_json(const InspectedDepth& depth) {
 
 Json to_json(const NormalScore& score) {
   return {{"space", name_of(score.space)}, {"flips", to_string(score.flips)},
-          {"agreement", score.agreement},  {"close", score.close},
-          {"angle", score.angle},          {"facing", score.facing}};
+          {"agreement", score.agreement},  {"opposite", score.opposite},
+          {"close", score.close},          {"angle", score.angle},
+          {"turn", score.turn_degrees()},  {"facing", score.facing}};
 }
 
 Json to_json(const InspectedNormals& normals) {

@@ -104,9 +104,10 @@ void add(TextLines& lines, const InspectedNormals& normals) {
             lengths);
   for (std::size_t i = 0; i < std::min(normals.scores.size(), kShownScores); i++) {
     const NormalScore& score = normals.scores[i];
-    lines.add("  as {} with flips {}: {} agree with depth, a quarter within {:.1f} degrees, {} face the camera",
+    lines.add("  as {} with flips {}: {} agree with depth, a quarter within {:.1f} degrees, {} face the camera{}",
               name_of(score.space), to_string(score.flips), percent(score.agreement), score.angle,
-              percent(score.facing));
+              percent(score.facing),
+              score.opposite > 0 ? fmt::format(", {} are opposite to depth", percent(score.opposite)) : "");
   }
 }
 

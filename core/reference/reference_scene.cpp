@@ -63,6 +63,23 @@ std::pair<double, double> ReferenceScene::image_of(Vector position) const {
   return {center_x_ + camera_.fx * position.x / z, center_y_ - camera_.fy * position.y / z};
 }
 
+Vector ReferenceScene::normal_by_depth(int x, int y, Vector eye) const {
+  const Vector here = position(x, y, depth(x, y));
+  const auto tangent = [&](int dx, int dy) {
+    Vector nearer;
+    for (const int side : {-1, 1}) {
+      const int i = x + side * dx, j = y + side * dy;
+      const double z = inside(i, j) ? depth(i, j) : 0;
+      if (z == 0) continue;
+      const Vector way = side * (position(i, j, z) - here);
+      if (length(nearer) == 0 || length(way) < length(nearer)) nearer = way;
+    }
+    return nearer;
+  };
+  const Vector n = cross(tangent(0, 1), tangent(1, 0));
+  return length(n) > 0 ? normalized(dot(n, eye) < 0 ? -1 * n : n) : eye;
+}
+
 Vector ReferenceScene::normal(int x, int y, Vector eye) const {
   const std::size_t plane = frame_.data.pixels();
   const std::size_t i = index(x, y);
@@ -73,7 +90,9 @@ Vector ReferenceScene::normal(int x, int y, Vector eye) const {
          m[2][0] * n.x + m[2][1] * n.y + m[2][2] * n.z};
   }
   n = length(n) > 0 ? normalized(n) : eye;
-  constexpr double kLeastFacing = 1e-3;
+  // As prepare.comp does, with the thresholds of normal.glsl.
+  constexpr double kOpposite = -0.5, kLeastFacing = 1e-3;
+  if (dot(n, eye) < 0 && dot(n, eye) + dot(n, normal_by_depth(x, y, eye)) < kOpposite) n = -1 * n;
   return dot(n, eye) < kLeastFacing ? normalized(n + (kLeastFacing - dot(n, eye)) * eye) : n;
 }
 

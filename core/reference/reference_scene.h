@@ -58,10 +58,13 @@ class ReferenceScene {
   Vector toward_eye(Vector position) const;
   /// Where a position is seen, px from the data window's upper left corner.
   std::pair<double, double> image_of(Vector position) const;
-  /// The unit shading normal, bent to face the eye where it leans away.
+  /// The unit shading normal, turned round where it belongs to the other side of the surface, and bent to face the eye
+  /// where it leans away.
   Vector normal(int x, int y, Vector eye) const;
 
  private:
+  /// By the nearer neighbours, facing the eye; the way to the eye where they give none.
+  Vector normal_by_depth(int x, int y, Vector eye) const;
   std::size_t index(int x, int y) const { return std::size_t(y) * std::size_t(width()) + std::size_t(x); }
 
   const HostFrame& frame_;

@@ -41,7 +41,7 @@ std::string plan_text(const Settings& given) {
        plan.frames().empty() ? "none" : fmt::format("{}: {}", plan.frames().size(), frames_text(plan.frames())));
   if (!plan.missing().empty())
     line("missing", fmt::format("{}: {}, left out", plan.missing().size(), frames_text(plan.missing())));
-  for (const auto& note : notes) line(level_of(note), fmt::format("{} [{}]", note.text, facts_of(note.code).name));
+  for (const auto& note : notes) line(level_of(note), line_of(note, ""));
   if (plan.frames().empty()) return text;
   Settings first = plan.at(plan.frames().front()), last = plan.at(plan.frames().back());
   require_endings(first.output);

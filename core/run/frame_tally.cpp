@@ -67,6 +67,7 @@ void FrameTally::add_outputs(const FrameOutputs& outputs, const Window& computed
   counts_.sky += counts.sky;
   counts_.repaired_depth += counts.repaired_depth;
   counts_.repaired_normals += counts.repaired_normals;
+  counts_.turned_normals += counts.turned_normals;
   counts_.repaired_material += counts.repaired_material;
   counts_.repaired_beauty += counts.repaired_beauty;
   report_.pixels += computed.pixels();
@@ -130,7 +131,7 @@ void FrameTally::finish(const FrameSource& source, const Settings& settings) {
     // An estimator that completes nothing, and sky, are no reason to leave the share out: it is 0.
     if (!settings.output.stats.empty() && !report_.occlusion) report_.occlusion.emplace();
   }
-  note_repairs();
+  note_repairs(source);
 }
 
 double FrameTally::estimates_of(const EstimatorSettings& settings) const {
@@ -139,7 +140,7 @@ double FrameTally::estimates_of(const EstimatorSettings& settings) const {
   return double(report_.pixels - report_.sky_pixels) / (factor * factor);
 }
 
-void FrameTally::note_repairs() {
+void FrameTally::note_repairs(const FrameSource& source) {
   auto& notes = report_.notes;
   if (counts_.repaired_depth)
     notes.push_back(
@@ -148,7 +149,15 @@ void FrameTally::note_repairs() {
   if (counts_.repaired_normals)
     notes.push_back(
         {NoteCode::repaired_normals,
-         fmt::format("{} pixels had no usable normal; it was reconstructed from depth", counts_.repaired_normals)});
+         fmt::format("{} pixels had no usable normal; it was reconstructed from depth", counts_.repaired_normals),
+         source.normal_file()});
+  if (counts_.turned_normals)
+    notes.push_back(
+        {NoteCode::turned_normals,
+         fmt::format("the normals of {} pixels faced away from the eye, as on mirrored things and the backs of cards; "
+                     "they were turned round",
+                     counts_.turned_normals),
+         source.normal_file()});
   if (counts_.repaired_material)
     notes.push_back(
         {NoteCode::repaired_material_ao,

@@ -308,9 +308,8 @@ void refuse_warnings(const Notes& notes, const Settings& settings, const std::st
   const Notes warnings = warnings_of(notes);
   if (warnings.empty() || !fails_on_warnings(settings)) return;
   std::string text;
-  for (const auto& note : warnings)
-    text += fmt::format("{}{} [{}]", text.empty() ? "" : "; ", note.text, facts_of(note.code).name);
-  fail(ErrorKind::input, "{}: {}: an error by {}", file, text,
+  for (const auto& note : warnings) text += (text.empty() ? "" : "; ") + line_of(note, text.empty() ? file : "");
+  fail(ErrorKind::input, "{}: an error by {}", text,
        settings.frames.warnings_as_errors ? "--warnings-as-errors" : "--strict");
 }
 

@@ -16,6 +16,7 @@
 #include "core/chain/compute.h"
 #include "tests/support/device.h"
 #include "tests/support/difference.h"
+#include "tests/support/furnished.h"
 #include "tests/support/scenes.h"
 #include "tests/support/single_pass.h"
 
@@ -348,6 +349,45 @@ TEST(Normals, that_are_no_direction_are_reconstructed_and_counted) {
       EXPECT_EQ(result.repaired_normals, count) << bad;
     }
   }
+}
+
+TEST(Normals, of_the_other_side_are_turned_round) {
+  const Rendering rendering = test::furnished();
+  const auto right = run(rendering.frame, settings_of(1, 3, 6));
+  EXPECT_EQ(right.turned_normals, 0u);
+  const std::size_t pixels = rendering.frame.data.pixels();
+  for (const int thing : {0, 1, 2}) {  // the floor, the wall, the ball
+    HostFrame frame = rendering.frame;
+    std::uint32_t count = 0;
+    for (std::size_t i = 0; i < pixels; i++) {
+      if (rendering.hits[i].primitive != thing) continue;
+      for (std::size_t axis = 0; axis < 3; axis++) frame.normal[i + axis * pixels] *= -1;
+      count++;
+    }
+    const auto turned = run(frame, settings_of(1, 3, 6));
+    EXPECT_EQ(turned.turned_normals, count) << thing;
+    EXPECT_TRUE(same_bits(turned.ao, right.ao)) << thing;
+  }
+}
+
+TEST(Normals, that_lean_beyond_the_horizon_are_not_turned) {
+  const Scene scene{{Plane{.point = {0, 0, -1}, .normal = {0, 0, 1}}}};
+  const Rendering rendering = test::render(scene, Shot::perspective({}, unit(Vec3{1, 0, -0.1}), 60, 80, 60));
+  HostFrame frame = rendering.frame;
+  const std::size_t pixels = frame.data.pixels();
+  std::size_t away = 0;
+  for (std::size_t i = 0; i < pixels; i++) {
+    if (rendering.hits[i].primitive < 0) continue;
+    const Vec3 p = rendering.hits[i].position;
+    const Vec3 n = unit(Vec3{0.6 * std::sin(7 * p.x), 0.6 * std::cos(5 * p.y), 1});
+    const Vec3 v = rendering.shot.view_from_world(n);
+    const float view[] = {float(v.x), float(v.y), float(v.z)};
+    for (std::size_t axis = 0; axis < 3; axis++) frame.normal[i + axis * pixels] = view[axis];
+    away += dot(n, p) > 0;
+  }
+  ASSERT_GT(away, pixels / 20) << "they lean away by up to 31 degrees";
+  ASSERT_EQ(frame.normal_space, NormalSpace::view);
+  EXPECT_EQ(run(frame, settings_of(1, 3, 6)).turned_normals, 0u);
 }
 
 TEST(Normals, with_one_bad_component_are_reconstructed) {

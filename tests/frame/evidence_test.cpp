@@ -165,8 +165,6 @@ TEST_F(Evidence, strict_turns_a_guess_into_an_error) {
   settings.strict = true;
   expect_refused({"--strict", "--depth-kind", "planar"});
   settings.depth_kind = DepthKind::planar;
-  expect_refused({"--strict", "--normal-encoding", "signed"});
-  settings.normal_encoding = NormalEncoding::signed_float;
   expect_refused({"--strict", "--normal-space", "world"});
   settings.normal_space = NormalSpace::world;
   EXPECT_NO_THROW(settled());

@@ -1,0 +1,262 @@
+// Normals of the other side, of nearly the same space, without their signs, and with other lengths are told apart.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "core/base/error.h"
+#include "core/frame/evidence.h"
+#include "tests/support/furnished.h"
+#include "tests/support/program.h"
+#include "tests/support/settled.h"
+#include "tests/support/wall_frame.h"
+
+namespace alcove {
+namespace {
+
+using namespace test;
+using nlohmann::json;
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+
+/// A rendering as a file of Z and N, with a camera that is turned by some degrees within a world of the test's own.
+class NormalFiles : public testing::Test {
+ protected:
+  NormalFiles() {
+    settings.input = folder / "frame.exr";
+    settings.depth_kind = DepthKind::planar;
+    place(turned({0.3, 1, 0.2}, 50));
+  }
+
+  /// The rotation about an axis of view space, as rows.
+  static std::array<Vec3, 3> turned(Vec3 axis, double degrees) {
+    axis = unit(axis);
+    const double s = std::sin(degrees * std::numbers::pi / 180), c = std::cos(degrees * std::numbers::pi / 180);
+    const auto row = [&](Vec3 e) { return c * e + s * cross(e, axis) + ((1 - c) * dot(axis, e)) * axis; };
+    return {row({1, 0, 0}), row({0, 1, 0}), row({0, 0, 1})};
+  }
+
+  /// Gives a camera file of which these are the rows that give view space of the world.
+  void place(const std::array<Vec3, 3>& rows) {
+    view_from_world = rows;
+    const Camera& c = rendering.shot.camera;
+    json camera = {{"resolution", {c.width, c.height}}, {"fx", c.fx}, {"fy", c.fy}, {"cx", c.cx}, {"cy", c.cy}};
+    for (const Vec3& row : rows) camera["world_to_camera"].push_back({row.x, row.y, row.z, 0});
+    camera["world_to_camera"].push_back({0, 0, 0, 1});
+    settings.camera = folder / "camera.json";
+    write_bytes(settings.camera, camera.dump());
+  }
+  Vec3 world(Vec3 view) const {
+    return view.x * view_from_world[0] + view.y * view_from_world[1] + view.z * view_from_world[2];
+  }
+
+  using Saved = std::function<Vec3(Vec3 view, const test::Hit& hit)>;
+
+  /// Writes normals as `saved` makes them from those of view space.
+  void write(const Saved& saved) {
+    const Shot& shot = rendering.shot;
+    FrameFile file{shot.data, shot.display, 1, {}, {}, {}};
+    for (const auto& hit : rendering.hits) {
+      const bool is_sky = hit.primitive < 0;
+      const Vec3 n = is_sky ? Vec3{} : saved(shot.view_from_world(hit.normal), hit);
+      file.planes["Z"].push_back(is_sky ? 1e10f : float(hit.distance));
+      file.planes["N.X"].push_back(float(n.x));
+      file.planes["N.Y"].push_back(float(n.y));
+      file.planes["N.Z"].push_back(float(n.z));
+    }
+    file.halves = halves;
+    file.write(settings.input);
+  }
+
+  FrameSource settled() const { return test::settled(settings); }
+
+  Notes noted() const {
+    FrameSource source = settled();
+    Notes notes = source.notes;
+    add_new(notes, source.suspicious);
+    return notes;
+  }
+  static std::vector<NoteCode> codes_of(const Notes& notes) {
+    std::vector<NoteCode> codes;
+    for (const auto& note : notes) codes.push_back(note.code);
+    return codes;
+  }
+  std::string refusal() const {
+    try {
+      return "accepted as " + testing::PrintToString(texts_of(settled().notes));
+    } catch (const Error& error) {
+      return error.what();
+    }
+  }
+  void leave_camera_out() {
+    const Camera& c = rendering.shot.camera;
+    settings.camera.clear();
+    settings.fov = 2 * std::atan(0.5 * c.width / c.fx) * 180 / std::numbers::pi;
+  }
+
+  Rendering rendering = furnished();
+  std::array<Vec3, 3> view_from_world{};
+  std::set<std::string> halves;
+  TemporaryFolder folder;
+  InputSettings settings;
+};
+
+constexpr int kFloor = 0, kWall = 1, kBall = 2;  // primitives of the rendering
+
+// Normals of the other side.
+
+TEST_F(NormalFiles, of_the_other_side_of_some_things_leave_the_reading_as_it_is) {
+  for (const std::set<int>& things : std::vector<std::set<int>>{{kFloor}, {kWall}, {kBall}, {kFloor, kBall}})
+    for (const bool in_view : {false, true}) {
+      write([&](Vec3 n, const test::Hit& hit) {
+        const Vec3 faced = things.contains(hit.primitive) ? -n : n;
+        return in_view ? faced : world(faced);
+      });
+      const FrameSource source = settled();
+      EXPECT_EQ(source.normal_space, in_view ? NormalSpace::view : NormalSpace::world);
+      EXPECT_EQ(to_string(source.flip_normal), "none") << *things.begin() << in_view;
+      for (const auto& note : source.notes) EXPECT_THAT(note.text, Not(HasSubstr("--flip-normal y"))) << note.text;
+    }
+}
+
+TEST_F(NormalFiles, that_are_all_flipped_are_still_found) {
+  for (const NormalFlips flips : {NormalFlips{false, true, false}, {true, false, false}, {true, true, true}}) {
+    write([&](Vec3 n, const test::Hit& hit) {
+      const Vec3 w = world(hit.primitive == kWall ? -n : n);  // the wall beside is mirrored too
+      return Vec3{flips.x ? -w.x : w.x, flips.y ? -w.y : w.y, flips.z ? -w.z : w.z};
+    });
+    EXPECT_EQ(to_string(settled().flip_normal), to_string(flips));
+  }
+}
+
+// Spaces that are turned by little against each other.
+
+TEST_F(NormalFiles, are_of_the_space_that_fits_however_little_the_camera_is_turned) {
+  struct Case {
+    Vec3 axis;
+    double degrees;
+  };
+  for (const auto& [axis, degrees] : {Case{{1, 0, 0}, 1.5}, {{0, 1, 0}, 3}, {{0, 0, 1}, 5}, {{1, 1, 0}, -8}, {{1, 0, 0}, -12},
+                                      {{0.2, 1, 0.4}, 16}, {{1, -1, 1}, 19}}) {
+    place(turned(axis, degrees));
+    for (const bool as_halves : {false, true})
+      for (const double bumps : {0.0, 0.1}) {
+        halves = as_halves ? std::set<std::string>{"N.X", "N.Y", "N.Z"} : std::set<std::string>{};
+        const auto bumpy = [&](Vec3 n, const test::Hit& hit) {
+          const Vec3 p = 40 * hit.position;
+          return unit(n + bumps * Vec3{std::sin(p.x + p.y), std::cos(p.y - p.z), std::sin(p.z + p.x)});
+        };
+        const auto what = testing::Message() << degrees << " degrees, halves " << as_halves << ", bumps " << bumps;
+        write(bumpy);
+        EXPECT_EQ(settled().normal_space, NormalSpace::view) << what;
+        EXPECT_THAT(codes_of(settled().notes), Not(testing::Contains(NoteCode::field_of_view))) << what;
+        write([&](Vec3 n, const test::Hit& hit) { return world(bumpy(n, hit)); });
+        EXPECT_EQ(settled().normal_space, NormalSpace::world) << what;
+        EXPECT_THAT(settled().notes, testing::Each(testing::Field(&Note::code, NoteCode::normals_disagree))) << what;
+      }
+  }
+}
+
+TEST_F(NormalFiles, of_a_camera_that_is_not_turned_are_read_as_usual_and_nothing_is_said) {
+  place(turned({1, 0, 0}, 0));
+  write([](Vec3 n, const test::Hit&) { return n; });
+  EXPECT_EQ(settled().normal_space, NormalSpace::world);
+  EXPECT_THAT(settled().notes, IsEmpty());
+}
+
+TEST_F(NormalFiles, in_the_wrong_space_by_an_option_are_not_blamed_on_the_lens) {
+  place(turned({1, 0, 0}, -9));
+  write([](Vec3 n, const test::Hit&) { return n; });
+  settings.normal_space = NormalSpace::world;
+  const Notes notes = settled().notes;
+  EXPECT_THAT(codes_of(notes), ElementsAre(NoteCode::normals_disagree));
+  EXPECT_THAT(notes.at(0).text, AllOf(HasSubstr("view"), HasSubstr("turned by 9.0 degrees")));
+}
+
+TEST_F(NormalFiles, of_the_world_without_a_matrix_are_refused_as_such) {
+  for (const double degrees : {5.0, 12.0, 18.0}) {
+    place(turned({1, 0.3, 0}, degrees));
+    leave_camera_out();
+    write([&](Vec3 n, const test::Hit&) { return world(n); });
+    EXPECT_THAT(refusal(), AllOf(HasSubstr("world space"), HasSubstr("--camera"), HasSubstr("--normal none")))
+        << degrees;
+    write([](Vec3 n, const test::Hit&) { return n; });
+    EXPECT_EQ(settled().normal_space, NormalSpace::view) << degrees;
+  }
+}
+
+// Components that were lost, and lengths.
+
+TEST_F(NormalFiles, without_signs_are_told_from_those_that_need_none) {
+  const auto absolute = [](Vec3 n) { return Vec3{std::abs(n.x), std::abs(n.y), std::abs(n.z)}; };
+  const auto clamped = [](Vec3 n) { return Vec3{std::max(n.x, 0.0), std::max(n.y, 0.0), std::max(n.z, 0.0)}; };
+  settings.normal_space = NormalSpace::view;
+  write([&](Vec3 n, const test::Hit&) { return absolute(n); });
+  EXPECT_THAT(refusal(), AllOf(HasSubstr("absolute values were saved"), HasSubstr("N.X, N.Y, N.Z")));
+  write([&](Vec3 n, const test::Hit&) { return clamped(n); });
+  EXPECT_THAT(refusal(), AllOf(HasSubstr("values below 0 were cut off"), Not(HasSubstr("averaged"))));
+  // A world in which all that is seen faces up its axes.
+  settings.normal_space = NormalSpace::automatic;
+  const Shot& shot = rendering.shot;
+  place({Vec3{shot.right.x, shot.right.y, shot.right.z}, Vec3{shot.up.x, shot.up.y, shot.up.z},
+         Vec3{shot.back.x, shot.back.y, shot.back.z}});
+  for (auto& hit : rendering.hits)
+    if (hit.primitive == kBall) hit.primitive = -1;
+  write([&](Vec3 n, const test::Hit&) { return world(n); });
+  EXPECT_THAT(noted(), IsEmpty());
+}
+
+TEST_F(NormalFiles, that_were_scaled_are_right_and_are_not_called_averaged) {
+  for (const double factor : {0.5, 3.0}) {
+    write([&](Vec3 n, const test::Hit&) { return factor * world(n); });
+    EXPECT_THAT(codes_of(noted()), ElementsAre(NoteCode::scaled_normals)) << factor;
+    EXPECT_THAT(warnings_of(noted()), IsEmpty());
+  }
+}
+
+TEST_F(NormalFiles, that_went_through_a_curve_for_colours_are_refused_with_the_cause) {
+  const auto linear = [](double v) { return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4); };
+  write([&](Vec3 n, const test::Hit&) {
+    const Vec3 w = world(n);
+    return Vec3{linear(0.5 + 0.5 * w.x), linear(0.5 + 0.5 * w.y), linear(0.5 + 0.5 * w.z)};
+  });
+  EXPECT_THAT(refusal(), AllOf(HasSubstr("0.5 + 0.5 n that was converted from sRGB to linear"),
+                               HasSubstr("N.X, N.Y, N.Z"), HasSubstr("--normal none")));
+}
+
+TEST_F(NormalFiles, between_0_and_1_are_proven_by_their_lengths) {
+  write([&](Vec3 n, const test::Hit&) {
+    const Vec3 w = world(n);
+    return Vec3{0.5 + 0.5 * w.x, 0.5 + 0.5 * w.y, 0.5 + 0.5 * w.z};
+  });
+  settings.normal_space = NormalSpace::world;
+  for (const bool strict : {false, true}) {
+    settings.strict = strict;
+    EXPECT_TRUE(settled().normal_unorm);
+    EXPECT_THAT(codes_of(noted()), ElementsAre(NoteCode::proven_reading));
+    EXPECT_THAT(warnings_of(noted()), IsEmpty());
+  }
+}
+
+TEST_F(NormalFiles, are_named_where_they_are_files_of_their_own) {
+  write([&](Vec3 n, const test::Hit&) { return 0.5 * world(n) + Vec3{0.5, 0.5, 0.5}; });
+  settings.depth = settings.input;
+  settings.normal = folder / "normals.exr";
+  write_bytes(settings.normal, read_bytes(settings.input));
+  settings.input.clear();
+  ASSERT_EQ(noted().size(), 1);
+  EXPECT_EQ(noted()[0].file, settings.normal);
+  EXPECT_THAT(line_of(noted()[0], settings.depth), testing::StartsWith(settings.normal + ": normal encoding"));
+  settings.strict = true;
+  EXPECT_THAT(refusal(), testing::StartsWith(settings.normal + ": --strict, and nothing says the normal space"));
+}
+
+}  // namespace
+}  // namespace alcove
