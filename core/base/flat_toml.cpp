@@ -40,7 +40,7 @@ void require_ascii_keys(const std::string& text) {
       within = std::string(is_long ? 3 : 1, c);
       i += within.size() - 1;
     } else if (within.empty() && c == '#') {
-      within = "\n";
+      within.assign(1, '\n');
     } else if (!within.empty() && c == '\\' && within[0] == '"') {
       i++;
     } else if (!within.empty() && text.compare(i, within.size(), within) == 0) {

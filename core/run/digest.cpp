@@ -8,6 +8,7 @@
 #include <algorithm>
 
 #include "core/base/file.h"
+#include "core/base/text.h"
 #include "core/base/version.h"
 #include "core/formats/color.h"
 #include "core/frame/input_files.h"
