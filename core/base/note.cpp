@@ -17,6 +17,7 @@ constexpr std::array kTable = {
     NoteFacts{NoteCode::negative_depth, "negative-depth", false, "all depth is below 0 and is read as a distance"},
     NoteFacts{NoteCode::depth_below_1, "depth-below-1", true, "all depth lies within 0 to 1 and may be normalized"},
     NoteFacts{NoteCode::default_view, "default-view", false, "a stereo file's default view is taken"},
+    NoteFacts{NoteCode::several_objects, "several-objects", false, "a pattern stands for several objects"},
     NoteFacts{NoteCode::normals_disagree, "normals-disagree", true, "the normals do not agree with the depth"},
     NoteFacts{NoteCode::principal_point, "principal-point", false,
               "no pixel shows whether the picture's centre is right"},

@@ -17,6 +17,7 @@ enum class NoteCode {
   negative_depth,
   depth_below_1,
   default_view,
+  several_objects,
   normals_disagree,
   principal_point,
   field_of_view,

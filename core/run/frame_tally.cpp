@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "core/base/estimator_facts.h"
+#include "core/base/windows.h"
 #include "core/frame/deep.h"
 #include "kernels/layers.h"
 #include "kernels/warp.h"
@@ -130,7 +131,7 @@ void FrameTally::finish(const FrameSource& source, const Settings& settings) {
     // An estimator that completes nothing, and sky, are no reason to leave the share out: it is 0.
     if (!settings.output.stats.empty() && !report_.occlusion) report_.occlusion.emplace();
   }
-  note_repairs();
+  note_repairs(source);
 }
 
 double FrameTally::estimates_of(const EstimatorSettings& settings) const {
@@ -139,7 +140,17 @@ double FrameTally::estimates_of(const EstimatorSettings& settings) const {
   return double(report_.pixels - report_.sky_pixels) / (factor * factor);
 }
 
-void FrameTally::note_repairs() {
+/// Says that pixels may have no normal because the file has none there.
+static std::string window_of_normals(const FrameSource& source) {
+  if (source[RawPlane::normal].empty()) return "";
+  const Window& data = source.part_of(source[RawPlane::normal][0]).data;
+  if (common_part(data, source.file_data) == source.file_data) return "";
+  return fmt::format(": the normals of {} cover {} only, and the depth {}",
+                     source.files[source[RawPlane::normal][0].file].path(), to_string(data),
+                     to_string(source.file_data));
+}
+
+void FrameTally::note_repairs(const FrameSource& source) {
   auto& notes = report_.notes;
   if (counts_.repaired_depth)
     notes.push_back(
@@ -147,8 +158,8 @@ void FrameTally::note_repairs() {
          fmt::format("{} pixels had a depth that is NaN or negative; they count as sky", counts_.repaired_depth)});
   if (counts_.repaired_normals)
     notes.push_back(
-        {NoteCode::repaired_normals,
-         fmt::format("{} pixels had no usable normal; it was reconstructed from depth", counts_.repaired_normals)});
+        {NoteCode::repaired_normals, fmt::format("{} pixels had no usable normal; it was reconstructed from depth{}",
+                                                 counts_.repaired_normals, window_of_normals(source))});
   if (counts_.repaired_material)
     notes.push_back(
         {NoteCode::repaired_material_ao,

@@ -40,7 +40,7 @@ class FrameTally {
  private:
   /// How many pixels have had an estimate; where each has its own, how many surfaces ask for one.
   double estimates_of(const EstimatorSettings& settings) const;
-  void note_repairs();
+  void note_repairs(const FrameSource& source);
   void add(const gpu::PassTime& pass, gpu::PassTime& sum);
 
   FrameReport& report_;
