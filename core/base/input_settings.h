@@ -53,7 +53,7 @@ struct InputSettings {
   // their depth channels, full names, and what they hold: none, one for all, or one for each
   std::vector<std::string> behind_channels;
   std::vector<BehindKind> behind_kinds;
-  std::string deep;           // a deep EXR file of the frame
+  FileList deep;              // deep EXR files of the frame, whose samples count together
   double deep_opacity = 0.5;  // of a sample, from which it is a surface, 0 to 1
   bool other_views = false;   // of a stereo file: what its other views see counts too
   // frames to each side, 0 to 32, whose static surfaces count where they are hidden in this one

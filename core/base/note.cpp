@@ -22,6 +22,7 @@ constexpr std::array kTable = {
     NoteFacts{NoteCode::finite_sky, "finite-sky", false, "one distance far behind all others may be the sky"},
     NoteFacts{NoteCode::beyond_planes, "beyond-planes", false, "normalized depth goes on beyond its planes"},
     NoteFacts{NoteCode::default_view, "default-view", false, "a stereo file's default view is taken"},
+    NoteFacts{NoteCode::several_objects, "several-objects", false, "a pattern stands for several objects"},
     NoteFacts{NoteCode::normals_disagree, "normals-disagree", true, "the normals do not agree with the depth"},
     NoteFacts{NoteCode::principal_point, "principal-point", false,
               "no pixel shows whether the picture's centre is right"},

@@ -21,6 +21,7 @@ enum class NoteCode {
   finite_sky,
   beyond_planes,
   default_view,
+  several_objects,
   normals_disagree,
   principal_point,
   field_of_view,

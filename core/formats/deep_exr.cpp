@@ -15,6 +15,7 @@
 
 #include "core/base/error.h"
 #include "core/base/memory_limit.h"
+#include "core/base/windows.h"
 #include "core/formats/deep_chunk.h"
 #include "core/formats/exr.h"
 #include "core/formats/exr_threads.h"
@@ -46,6 +47,7 @@ struct Chunk {
 struct Part : DeepStored {
   explicit Part(const DeepStored& stored) : DeepStored(stored) {}
 
+  std::uint64_t file_bytes = 0;
   std::vector<Chunk> chunks;        // row by row
   std::vector<TakenChannel> taken;  // that are read
   std::size_t sample_bytes = 0;     // of all channels
@@ -81,14 +83,21 @@ bool read_at(std::ifstream& file, std::uint64_t offset, std::span<std::uint8_t> 
          file.read(reinterpret_cast<char*>(to.data()), std::streamsize(to.size()));
 }
 
-/// What a thread works on: one chunk of each part at a time.
+/// A chunk that a thread works on.
 struct Unpacked {
-  std::ifstream file;
   std::vector<std::uint8_t> packed, table, data, scratch;
   std::vector<std::uint32_t> counts;  // of each pixel
   std::vector<std::size_t> lines;     // where the samples of each line begin, bytes
   std::vector<DeepSample> samples;    // of one line
   std::size_t next = 0;               // of them
+};
+
+/// The chunks of a part that show a line of a cell.
+struct Loaded {
+  std::ifstream file;
+  std::vector<Unpacked> chunks;  // side by side
+  int row = -1, first = -1;      // of the part's chunks: where they lie; -1: there are none yet
+  Window shown;                  // the pixels of the line that the part has
 };
 
 /// Calls a function for all numbers below `count`, on several threads of OpenEXR's pool. The exception of the lowest
@@ -129,35 +138,34 @@ class Crew {
 }  // namespace
 
 struct DeepReader::Impl {
-  std::string path;
   const char* option;
+  Window data;
   DeepRules rules;
-  std::uint64_t file_bytes = 0;
   std::vector<Part> parts;
+  // What is made at once: a chunk where all parts have the same, else as many lines as are in the largest one.
+  Window cell;
   std::size_t workers = 1;
   std::uint64_t worker_bytes = 0;  // that one takes for the largest chunks of all parts
   DeepCounts counts;
   std::vector<bool> counted;  // lines that were read before
 
-  Impl(const std::string& path_, const char* option_, const DeepRules& rules_)
-      : path(path_), option(option_), rules(rules_) {
-    std::error_code error;
-    file_bytes = std::filesystem::file_size(path, error);
-    if (error) file_bytes = 0;
-  }
+  Impl(const char* option_, const Window& data_, const DeepRules& rules_)
+      : option(option_), data(data_), rules(rules_) {}
 
   [[noreturn]] void refuse(const Part& part, const std::string& why) const {
     fail(ErrorKind::input, "{}: the deep samples of part {} cannot be read ({}), the file is damaged or incomplete: {}",
-         path, part.part, option, why);
+         part.path, part.part, option, why);
   }
+  int across() const { return int((std::int64_t(data.width) + cell.width - 1) / cell.width); }
 
   void add_part(const DeepStored& stored);
   void find_channels(Part& part) const;
-  void require_alike(const Part& part) const;
   void find_chunks(Part& part) const;
   Chunk chunk_at(const Part& part, std::ifstream& file, std::uint64_t offset, int column, int row) const;
+  void choose_cell();
   void share_out(std::uint64_t most_bytes);
-  void unpack(const Part& part, int column, int row, Unpacked& to) const;
+  void unpack(const Part& part, int column, int row, std::ifstream& file, Unpacked& to) const;
+  void load(const Part& part, const Window& line, Loaded& to) const;
   void take_line(const Part& part, std::size_t line, Unpacked& chunk) const;
 };
 
@@ -170,7 +178,9 @@ void DeepReader::Impl::add_part(const DeepStored& stored) {
   part.tile_width = std::min(part.tile_width, part.data.width);
   part.tile_height = std::min(part.tile_height, part.data.height);
   find_channels(part);
-  require_alike(part);
+  std::error_code error;
+  part.file_bytes = std::filesystem::file_size(part.path, error);
+  if (error) part.file_bytes = 0;
   find_chunks(part);
   parts.push_back(std::move(part));
 }
@@ -196,26 +206,16 @@ void DeepReader::Impl::find_channels(Part& part) const {
     fail(ErrorKind::input,
          "{}: the base layer of deep part {} has no Z, so its samples lie nowhere; write it with Z, or name another "
          "part with --layer ({})",
-         path, part.part, option);
-}
-
-void DeepReader::Impl::require_alike(const Part& part) const {
-  if (parts.empty()) return;
-  const Part& first = parts.front();
-  if (part.data != first.data || part.tile_width != first.tile_width || part.tile_height != first.tile_height)
-    fail(ErrorKind::input,
-         "{}: the deep parts {} and {} have other windows or tiles, so their samples are not put together; choose one "
-         "with --layer ({})",
-         path, first.part, part.part, option);
+         part.path, part.part, option);
 }
 
 /// Reads where the chunks lie. Their number is what the file has room for.
 void DeepReader::Impl::find_chunks(Part& part) const {
   constexpr std::uint64_t kOffset = 8;  // bytes
   const std::uint64_t count = std::uint64_t(part.across()) * std::uint64_t(part.down());
-  if (part.offsets > file_bytes || count > (file_bytes - part.offsets) / kOffset)
+  if (part.offsets > part.file_bytes || count > (part.file_bytes - part.offsets) / kOffset)
     refuse(part, "it has more chunks than the file has room for");
-  std::ifstream file(path, std::ios::binary);
+  std::ifstream file(part.path, std::ios::binary);
   std::vector<std::uint8_t> offsets(kOffset * count);
   if (!read_at(file, part.offsets, offsets)) refuse(part, "it ends in the table of its chunks");
   part.chunks.reserve(count);
@@ -230,7 +230,7 @@ Chunk DeepReader::Impl::chunk_at(const Part& part, std::ifstream& file, std::uin
   std::array<std::uint8_t, 44> head{};  // the longest: part, place of a tile, three sizes
   const std::size_t place = part.names_part ? 4 : 0, sizes = place + (part.is_tiled ? 16 : 4), length = sizes + 24;
   const auto is_within = [&](std::uint64_t from, std::uint64_t size) {
-    return size <= file_bytes && from <= file_bytes - size;
+    return size <= part.file_bytes && from <= part.file_bytes - size;
   };
   if (offset == 0 || !is_within(offset, length) || !read_at(file, offset, std::span(head).first(length)))
     refuse(part, fmt::format("chunk {}, {} is not there", column, row));
@@ -265,6 +265,16 @@ static std::uint64_t bytes_of_sample(const Part& part, bool is_alone) {
   return sizeof(DeepSample) + together + volumes + kGrowth * kSurface;
 }
 
+void DeepReader::Impl::choose_cell() {
+  const Part& first = parts.front();
+  const bool are_alike = std::ranges::all_of(parts, [&](const Part& part) {
+    return part.data == data && part.tile_width == first.tile_width && part.tile_height == first.tile_height;
+  });
+  const int lines = std::ranges::max(parts, {}, &Part::tile_height).tile_height;
+  cell = are_alike ? Window{0, 0, first.tile_width, first.tile_height}
+                   : Window{0, 0, data.width, std::min(lines, data.height)};
+}
+
 /// Takes as many threads as may work on the largest chunks.
 void DeepReader::Impl::share_out(std::uint64_t most_bytes) {
   for (const Part& part : parts) {
@@ -276,27 +286,28 @@ void DeepReader::Impl::share_out(std::uint64_t most_bytes) {
     }
     const std::uint64_t tables =
         2 * sizeof(std::uint32_t) * std::uint64_t(part.tile_width) * std::uint64_t(part.tile_height);
-    worker_bytes += kCopies * (largest + tables) + samples * bytes_of_sample(part, parts.size() == 1);
+    const auto together = std::uint64_t(cell.width == part.tile_width ? 1 : part.across());
+    worker_bytes += together * (kCopies * (largest + tables) + samples * bytes_of_sample(part, parts.size() == 1));
   }
   if (worker_bytes > most_bytes)
     fail(
         ErrorKind::input,
         "{}: its largest deep lines or tiles take {} MiB to read, and {} MiB are there for that: let the run take more "
         "by --memory, or write smaller ones ({})",
-        path, worker_bytes / kMebibyte + 1, most_bytes / kMebibyte, option);
+        parts.front().path, worker_bytes / kMebibyte + 1, most_bytes / kMebibyte, option);
   const int threads = exr_threads();
   workers = std::clamp<std::uint64_t>(most_bytes / std::max<std::uint64_t>(1, worker_bytes), 1,
                                       std::uint64_t(std::max(1, threads)));
 }
 
-void DeepReader::Impl::unpack(const Part& part, int column, int row, Unpacked& to) const {
+void DeepReader::Impl::unpack(const Part& part, int column, int row, std::ifstream& file, Unpacked& to) const {
   const Chunk& chunk = part.chunks[std::size_t(row) * std::size_t(part.across()) + std::size_t(column)];
   const std::size_t width = part.chunk_width(column),
                     table_bytes = sizeof(std::uint32_t) * width * part.chunk_height(row);
   to.table.resize(chunk.table_size);
   to.packed.resize(chunk.packed_size);
-  if (!to.file.is_open()) to.file.open(path, std::ios::binary);
-  if (!read_at(to.file, chunk.table, to.table) || !read_at(to.file, chunk.table + chunk.table_size, to.packed))
+  if (!file.is_open()) file.open(part.path, std::ios::binary);
+  if (!read_at(file, chunk.table, to.table) || !read_at(file, chunk.table + chunk.table_size, to.packed))
     refuse(part, fmt::format("chunk {}, {} is not whole", column, row));
   const bool may_be_whole = part.whole_table <= longest_unpacked(part.compression, chunk.table_size);
   const std::size_t whole_bytes = may_be_whole ? part.whole_table : 0;
@@ -335,24 +346,51 @@ void DeepReader::Impl::take_line(const Part& part, std::size_t line, Unpacked& c
     for (auto& sample : chunk.samples) sample.back = sample.front;
 }
 
-/// The samples of the next pixel of a line, of all parts.
-static std::span<DeepSample> next_pixel(std::vector<Unpacked>& chunks, std::size_t pixel,
+/// Unpacks the chunks that show a line of a cell, unless they are there, and takes the line's samples.
+void DeepReader::Impl::load(const Part& part, const Window& line, Loaded& to) const {
+  to.shown = common_part(part.data, line);
+  if (to.shown.pixels() == 0) return;
+  const int row = (line.y - part.data.y) / part.tile_height, first = (to.shown.x - part.data.x) / part.tile_width;
+  const int last = (to.shown.x + to.shown.width - 1 - part.data.x) / part.tile_width;
+  const auto count = std::size_t(last - first + 1);
+  if (to.row != row || to.first != first || to.chunks.size() != count) {
+    to.chunks.resize(count);
+    for (int column = first; column <= last; column++)
+      unpack(part, column, row, to.file, to.chunks[std::size_t(column - first)]);
+    to.row = row;
+    to.first = first;
+  }
+  for (auto& chunk : to.chunks) take_line(part, std::size_t(line.y - part.data.y - row * part.tile_height), chunk);
+}
+
+/// The samples of the next pixel of a part's line, if it shows that pixel.
+static std::span<DeepSample> next_pixel(const Part& part, Loaded& loaded, int x, int y) {
+  if (x < loaded.shown.x || x >= loaded.shown.x + loaded.shown.width) return {};
+  const int across = x - part.data.x, column = across / part.tile_width;
+  const std::size_t width = part.chunk_width(column);
+  Unpacked& chunk = loaded.chunks[std::size_t(column - loaded.first)];
+  const std::size_t line = std::size_t(y - part.data.y) % std::size_t(part.tile_height);
+  const std::size_t pixel = line * width + std::size_t(across - column * part.tile_width);
+  const std::span samples = std::span(chunk.samples).subspan(chunk.next, chunk.counts[pixel]);
+  chunk.next += samples.size();
+  return samples;
+}
+
+/// The same of all parts.
+static std::span<DeepSample> next_pixel(const std::vector<Part>& parts, std::vector<Loaded>& loaded, int x, int y,
                                         std::vector<DeepSample>& together) {
-  const auto next = [&](Unpacked& chunk) {
-    const std::span samples = std::span(chunk.samples).subspan(chunk.next, chunk.counts[pixel]);
-    chunk.next += samples.size();
-    return samples;
-  };
-  if (chunks.size() == 1) return next(chunks[0]);
+  if (parts.size() == 1) return next_pixel(parts[0], loaded[0], x, y);
   together.clear();
-  for (auto& chunk : chunks) std::ranges::copy(next(chunk), std::back_inserter(together));
+  for (std::size_t i = 0; i < parts.size(); i++)
+    std::ranges::copy(next_pixel(parts[i], loaded[i], x, y), std::back_inserter(together));
   return together;
 }
 
-DeepReader::DeepReader(const std::string& path, const char* option, const std::vector<DeepStored>& parts,
+DeepReader::DeepReader(const char* option, const Window& data, const std::vector<DeepStored>& parts,
                        const DeepRules& rules, std::uint64_t most_bytes)
-    : impl_(std::make_unique<Impl>(path, option, rules)) {
+    : impl_(std::make_unique<Impl>(option, data, rules)) {
   for (const auto& part : parts) impl_->add_part(part);
+  impl_->choose_cell();
   impl_->share_out(most_bytes);
 }
 
@@ -363,33 +401,32 @@ std::uint64_t DeepReader::bytes() const { return impl_->worker_bytes * impl_->wo
 void DeepReader::read(std::span<const DeepRead> reads, int first, int rows) {
   if (rows <= 0) return;
   const auto& parts = impl_->parts;
-  const Part& grid = parts.front();
-  const int top = first / grid.tile_height, bottom = (first + rows - 1) / grid.tile_height + 1;
-  const std::size_t across = std::size_t(grid.across()), cells = across * std::size_t(bottom - top);
+  const Window &data = impl_->data, &cell_size = impl_->cell;
+  const int top = first / cell_size.height, bottom = (first + rows - 1) / cell_size.height + 1;
+  const std::size_t across = std::size_t(impl_->across()), cells = across * std::size_t(bottom - top);
   const std::size_t workers = std::min(impl_->workers, cells);
-  std::vector<std::vector<Unpacked>> chunks(workers);
-  for (auto& mine : chunks) mine.resize(parts.size());
+  std::vector<std::vector<Loaded>> loaded(workers);
+  for (auto& mine : loaded) mine = std::vector<Loaded>(parts.size());
   std::vector<DeepCounts> counts(workers);
-  impl_->counted.resize(std::size_t(grid.data.height));
+  impl_->counted.resize(std::size_t(data.height));
 
   const auto read_cell = [&](std::size_t cell, std::size_t worker) {
-    const int column = int(cell % across), row = top + int(cell / across);
-    auto& mine = chunks[worker];
-    for (std::size_t i = 0; i < parts.size(); i++) impl_->unpack(parts[i], column, row, mine[i]);
-    const int left = column * grid.tile_width, upper = row * grid.tile_height;
-    const std::size_t width = grid.chunk_width(column);
-    const int height = int(grid.chunk_height(row));
+    const int left = int(cell % across) * cell_size.width, upper = (top + int(cell / across)) * cell_size.height;
+    auto& mine = loaded[worker];
+    const int width = std::min(cell_size.width, data.width - left);
     DeepPixel deep(impl_->rules);
     std::vector<DeepSample> together;
-    for (int y = std::max(0, first - upper); y < std::min(height, first + rows - upper); y++) {
-      for (std::size_t i = 0; i < parts.size(); i++) impl_->take_line(parts[i], std::size_t(y), mine[i]);
+    for (int y = std::max(first, upper); y < std::min({upper + cell_size.height, first + rows, data.height}); y++) {
+      const Window line{data.x + left, data.y + y, width, 1};
+      for (std::size_t i = 0; i < parts.size(); i++) impl_->load(parts[i], line, mine[i]);
       DeepCounts again;
-      DeepCounts& of_line = impl_->counted[std::size_t(upper + y)] ? again : counts[worker];
-      const std::size_t at = std::size_t(upper + y - first) * std::size_t(grid.data.width) + std::size_t(left);
-      for (std::size_t x = 0; x < width; x++) {
-        const auto samples = next_pixel(mine, std::size_t(y) * width + x, together);
+      DeepCounts& of_line = impl_->counted[std::size_t(y)] ? again : counts[worker];
+      const std::size_t at = std::size_t(y - first) * std::size_t(data.width) + std::size_t(left);
+      for (int x = 0; x < width; x++) {
+        const auto samples = next_pixel(parts, mine, line.x + x, line.y, together);
         const DeepSurfaces surfaces = deep.surfaces(samples, of_line);
-        for (const auto& read : reads) read.to[at + x] = (read.back ? surfaces.back : surfaces.front)[read.surface];
+        for (const auto& read : reads)
+          read.to[at + std::size_t(x)] = (read.back ? surfaces.back : surfaces.front)[read.surface];
       }
     }
   };

@@ -27,6 +27,7 @@ struct DeepStored {
     std::string name;
     bool is_half, is_integer;
   };
+  std::string path;
   int part;
   Window data;
   int tile_width, tile_height;  // px; of lines: those of a chunk
@@ -37,18 +38,18 @@ struct DeepStored {
   bool names_part;                // each chunk begins with the number of its part
 };
 
-/// Reads deep scan lines and deep tiles of one level, or level 0 of several. Every failure is ErrorKind::input and
-/// names the file. Chunks are checked against the file before anything is made by their sizes.
+/// Reads deep scan lines and deep tiles of one level, or level 0 of several, of one file or of several. Every failure is
+/// ErrorKind::input and names the file. Chunks are checked against their file before anything is made by their sizes.
 class DeepReader {
  public:
-  /// Takes the samples of several parts together, which must have one data window and the same lines or tiles. Fails
-  /// where a part's base layer has no Z, where the parts do not fit each other, and where a chunk's sizes cannot be
-  /// right. `most_bytes` is what threads may work on together; fails where the largest chunk takes more.
-  DeepReader(const std::string& path, const char* option, const std::vector<DeepStored>& parts, const DeepRules& rules,
+  /// Takes the samples of all parts together: `data` are the pixels that are read, of which a part need not have all.
+  /// Fails where a part's base layer has no Z, and where a chunk's sizes cannot be right. `most_bytes` is what threads
+  /// may work on together; fails where the largest chunks take more.
+  DeepReader(const char* option, const Window& data, const std::vector<DeepStored>& parts, const DeepRules& rules,
              std::uint64_t most_bytes);
   ~DeepReader();
 
-  /// Reads `rows` rows of the parts' data window, from the `first` one on.
+  /// Reads `rows` rows of the pixels, from the `first` one on.
   void read(std::span<const DeepRead> reads, int first, int rows);
 
   /// What was met in all that was read so far, each row once.

@@ -150,7 +150,8 @@ std::string text_of(const Imf::Attribute& attribute) {
 /// A deep part without its place in the file.
 DeepStored stored_deep(const Imf::Header& header, int part) {
   const ExrPart described = describe(header);
-  DeepStored stored{.part = part,
+  DeepStored stored{.path = {},
+                    .part = part,
                     .data = described.data,
                     .tile_width = described.data.width,
                     .tile_height = described.rows_together,
@@ -234,6 +235,21 @@ struct ExrFile::Impl {
       frame_buffer.insert(read.channel, Imf::Slice::Make(Imf::FLOAT, read.to, box_of(band), sizeof(float), row_bytes));
     input.setFrameBuffer(frame_buffer);
     input.readPixels(band.y, band.y + band.height - 1);
+  }
+
+  /// Adds the deep parts with their places.
+  void add_stored_deep(const std::vector<int>& wanted, std::vector<DeepStored>& stored) const {
+    std::uint64_t offsets = header_bytes;
+    for (int part = 0; part < file->parts(); part++) {
+      const auto& header = file->header(part);
+      if (std::ranges::find(wanted, part) != wanted.end()) {
+        stored.push_back(stored_deep(header, part));
+        stored.back().path = path;
+        stored.back().offsets = offsets;
+        stored.back().names_part = Imf::isMultiPart(file->version());
+      }
+      if (header.hasChunkCount()) offsets += sizeof(std::uint64_t) * std::uint64_t(std::max(0, header.chunkCount()));
+    }
   }
 
   /// Reads those of the channels that samples make.
@@ -353,19 +369,17 @@ std::string deep_channel(std::size_t surface, bool back) {
 }
 
 void ExrFile::take_deep(const std::vector<int>& parts, const DeepRules& rules) {
+  take_deep(parts, rules, impl_->parts[std::size_t(parts.front())].data);
+}
+
+void ExrFile::take_deep(const std::vector<int>& parts, const DeepRules& rules, const Window& data,
+                        std::span<const DeepElement> others) {
   std::vector<DeepStored> stored;
-  std::uint64_t offsets = impl_->header_bytes;
-  for (int part = 0; part < impl_->file->parts(); part++) {
-    const auto& header = impl_->file->header(part);
-    if (std::ranges::find(parts, part) != parts.end()) {
-      stored.push_back(stored_deep(header, part));
-      stored.back().offsets = offsets;
-      stored.back().names_part = Imf::isMultiPart(impl_->file->version());
-    }
-    if (header.hasChunkCount()) offsets += sizeof(std::uint64_t) * std::uint64_t(std::max(0, header.chunkCount()));
-  }
-  impl_->deep = std::make_unique<DeepReader>(impl_->path, impl_->option.c_str(), stored, rules, codec_bytes);
+  impl_->add_stored_deep(parts, stored);
+  for (const auto& other : others) other.file->impl_->add_stored_deep(other.parts, stored);
+  impl_->deep = std::make_unique<DeepReader>(impl_->option.c_str(), data, stored, rules, codec_bytes);
   impl_->deep_part = parts.front();
+  impl_->parts[std::size_t(parts.front())].data = data;
   impl_->deep_bytes = impl_->deep->bytes();
 }
 

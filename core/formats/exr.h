@@ -57,6 +57,14 @@ struct ExrRead {
   float* to;
 };
 
+class ExrFile;
+
+/// Deep parts of another file, whose samples count together with those of one.
+struct DeepElement {
+  const ExrFile* file;
+  std::vector<int> parts;
+};
+
 /// An EXR file whose header has been read. Every failure is ErrorKind::input and names the file.
 class ExrFile {
  public:
@@ -89,9 +97,12 @@ class ExrFile {
   /// Gives back what reading takes. From then on only parts, windows and that number are there.
   void close();
 
-  /// The samples of these deep parts, all together, make the channels deep_channel() of the first of them from now on.
-  /// Fails where a part has no Z, where the parts differ in windows or tiles, and where chunks claim more than the
-  /// file can hold.
+  /// The samples of these deep parts, and of those of other files, all together, make the channels deep_channel() of the
+  /// first of them from now on, over these pixels, which become the data window of that part. A part need not have all
+  /// of them. Fails where a part has no Z, and where chunks claim more than their file can hold.
+  void take_deep(const std::vector<int>& parts, const DeepRules& rules, const Window& data,
+                 std::span<const DeepElement> others = {});
+  /// The same over the window of the first part.
   void take_deep(const std::vector<int>& parts, const DeepRules& rules);
   /// What was met in the deep samples that were read so far.
   DeepCounts deep_counts() const;

@@ -11,6 +11,8 @@
 #include "core/base/error.h"
 #include "core/base/text.h"
 #include "core/frame/header_camera.h"
+#include "core/frame/plane_windows.h"
+#include "core/frame/views.h"
 
 namespace alcove {
 namespace {
@@ -33,28 +35,17 @@ T said_of(const std::vector<T>& all, std::size_t file, T otherwise) {
   return all.size() == 1 ? all.front() : all[file];
 }
 
-/// The view that a file is read by; "" where it has none.
-std::string view_in(const ExrFile& file, const InputSettings& settings) {
-  const auto views = views_of(file);
-  if (views.empty()) return "";
-  return lower_case(settings.view.empty() ? views.front() : settings.view);
-}
-
 /// The pixels of a plane are those of the depth.
-void require_same_pixels(const FrameSource& source, const ChannelRef& ref, const InputSettings& settings) {
+void require_same_pixels(const FrameSource& source, const ChannelRef& ref) {
   const ChannelRef& depth = source[RawPlane::depth][0];
   const ExrFile &file = file_of(source, ref), &own = file_of(source, depth);
-  const auto require_same = [&](const char* what, const Window& theirs, const Window& ours) {
-    if (theirs != ours)
-      fail(ErrorKind::input,
-           "{}: its {} window is {}, and that of the depth in {} is {}: both must show the same "
-           "pixels (--behind)",
-           file.path(), what, to_string(theirs), own.path(), to_string(ours));
-  };
-  require_same("data", source.part_of(ref).data, source.file_data);
-  require_same("display", file.display(), source.display);
-  const std::string theirs = view_in(file, settings), ours = view_in(own, settings);
-  if (!theirs.empty() && !ours.empty() && theirs != ours)
+  if (file.display() != source.display)
+    fail(ErrorKind::input,
+         "{}: its display window is {}, and that of the depth in {} is {}: both must show the same pixels (--behind)",
+         file.path(), to_string(file.display()), own.path(), to_string(source.display));
+  require_same_picture(source, {ref}, "depth", "--behind");
+  const std::string theirs = view_in(file, source.view), ours = view_in(own, source.view);
+  if (!theirs.empty() && !ours.empty() && !same_name(theirs, ours))
     fail(ErrorKind::input,
          "{}: its view is {}, and that of the depth in {} is {}: give the same of both (--behind, "
          "--view)",
@@ -135,7 +126,7 @@ void find_behind(FrameSource& source, ChannelSearch& search, const InputSettings
     const std::size_t file = search.open(path, "--behind");
     const ChannelRef ref =
         find_channel(source, search, file, said_of<std::string>(settings.behind_channels, number, ""));
-    require_same_pixels(source, ref, settings);
+    require_same_pixels(source, ref);
     if (ref.file != source[RawPlane::depth][0].file) note_other_camera(source, ref);
     const BehindKind kind = said_of(settings.behind_kinds, number, BehindKind::surfaces);
     source[RawPlane::behind].push_back(ref);

@@ -89,11 +89,10 @@ Notes BehindSample::notes(const FrameSource& source) const {
     else
       add_new(notes, notes_of(source, plane));
   if (source.deep && !planes_.empty() && new_surfaces == 0)
-    notes.push_back(
-        {NoteCode::nothing_hidden,
-         fmt::format("{} holds no surface behind the first one: its elements were rendered in one go; merge "
-                     "elements that were rendered apart, or give peels to --behind",
-                     source.files[*source.deep].path())});
+    notes.push_back({NoteCode::nothing_hidden,
+                     fmt::format("{} holds no surface behind the first one: its elements were rendered in one go; give "
+                                 "--deep all elements that were rendered apart, or give peels to --behind",
+                                 source.files[*source.deep].path())});
   return notes;
 }
 

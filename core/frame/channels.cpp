@@ -11,6 +11,7 @@
 #include "core/base/text.h"
 #include "core/formats/open_image.h"
 #include "core/frame/name_pattern.h"
+#include "core/frame/views.h"
 
 namespace alcove {
 
@@ -19,9 +20,9 @@ const AovNames kDepthNames{
     .channel_option = "--depth-channel",
     .layers = {"depth", "z", "zdepth", "vrayzdepth", "z-depth", "__depth", "cgeometry_zdepth",
                "finalimagemovierenderqueue_worlddepth"},
-    .in_layer = {{"z"}, {"depth"}, {"r"}, {"red"}, {"y"}},
+    .in_layer = {{"z"}, {"depth"}, {"r"}, {"red"}, {"y"}, {"v"}},
     .bare = {{"z"}, {"depth"}, {"zdepth"}, {"pz"}},
-    .alone = {{"r"}, {"red"}, {"y"}},
+    .alone = {{"r"}, {"red"}, {"y"}, {"v"}},
 };
 
 const AovNames kNormalNames{
@@ -84,9 +85,9 @@ const AovNames kMaterialNames{
     .what = "material AO",
     .channel_option = "--material-ao-channel",
     .layers = {"ao", "occlusion", "ambient occlusion", "materialao"},
-    .in_layer = {{"y"}, {"r"}, {"ao"}},
+    .in_layer = {{"y"}, {"r"}, {"ao"}, {"v"}},
     .bare = {{"ao"}, {"occlusion"}},
-    .alone = {{"y"}, {"r"}},
+    .alone = {{"y"}, {"r"}, {"v"}},
 };
 
 const AovNames kAlbedoNames{
@@ -102,18 +103,18 @@ const AovNames kMatteNames{
     .what = "matte",
     .channel_option = "--matte-channel",
     .layers = {"matte", "mask"},
-    .in_layer = {{"y"}, {"a"}, {"r"}},
+    .in_layer = {{"y"}, {"a"}, {"r"}, {"v"}},
     .bare = {{"matte"}, {"mask"}},
-    .alone = {{"y"}, {"a"}, {"alpha"}, {"r"}},
+    .alone = {{"y"}, {"a"}, {"alpha"}, {"r"}, {"v"}},
 };
 
 const AovNames kObjectNames{
     .what = "numbers of objects",
     .channel_option = "--object-channel",
     .layers = {"indexob", "object index", "objectid", "object_id", "vrayobjectid", "id"},
-    .in_layer = {{"x"}, {"y"}, {"r"}},
+    .in_layer = {{"x"}, {"y"}, {"r"}, {"v"}},
     .bare = {{"objectid"}, {"object_id"}, {"id"}},
-    .alone = {{"y"}, {"x"}, {"r"}},
+    .alone = {{"y"}, {"x"}, {"r"}, {"v"}},
 };
 
 namespace {
@@ -125,51 +126,25 @@ std::optional<std::string> within_layer(const std::string& name, const std::stri
   return lower_case(name).substr(layer.size() + 1);
 }
 
-/// Gives the name without its view, which stands before the last name part ("depth.right.Z", "right.R"); nothing if it
-/// is of another view. Channels that name no view belong to the first.
-std::optional<std::string> within_view(const std::string& name, const std::vector<std::string>& views,
-                                       const std::string& view) {
-  if (views.empty()) return name;
-  const std::size_t last = name.rfind('.'),
-                    before = last == name.npos || last == 0 ? name.npos : name.rfind('.', last - 1);
-  const std::size_t begin = before == name.npos ? 0 : before + 1;
-  const std::string named = last == name.npos ? "" : name.substr(begin, last - begin);
-  if (std::ranges::find(views, named) == views.end())
-    return lower_case(view) == lower_case(views.front()) ? std::optional(name) : std::nullopt;
-  if (lower_case(named) != lower_case(view)) return std::nullopt;
-  return name.substr(0, begin) + name.substr(last + 1);
+/// A name with that of a part before it, where the name does not repeat it.
+std::string within_part(const std::string& part, const std::string& name) {
+  return part.empty() || name.starts_with(part + ".") ? name : part + "." + name;
 }
 
-/// Lists the channels of the chosen view and layer; without a layer, all of the view.
-std::vector<NamedChannel> channels_of(const ExrFile& file, std::size_t index, const std::string& layer,
-                                      const std::string& chosen_view) {
-  const auto views = views_of(file);
-  const std::string view = chosen_view.empty() && !views.empty() ? views.front() : chosen_view;
-  std::vector<NamedChannel> channels;
-  for (std::size_t part = 0; part < file.parts().size(); part++) {
-    const auto& p = file.parts()[part];
-    if (p.deep) continue;  // its channels are no planes
-    if (!p.view.empty() && !view.empty() && lower_case(p.view) != lower_case(view)) continue;
-    // "depth.left" of view "left" is the layer "depth".
-    const std::string part_name = !p.view.empty() && p.name.ends_with("." + p.view)
-                                      ? p.name.substr(0, p.name.size() - p.view.size() - 1)
-                                      : p.name;
-    for (const auto& channel : p.channels) {
-      const auto plain = within_view(channel.name, p.multi_view, view);
-      if (!plain) continue;
-      const bool alone = file.parts().size() == 1 || part_name.empty() || channel.name.starts_with(part_name + ".");
-      NamedChannel named{{index, int(part), channel.name},
-                         alone ? channel.name : part_name + "." + channel.name,
-                         {},
-                         channel.subsampled};
-      for (const auto& name : plain != channel.name ? std::vector{*plain} : std::vector{named.full, channel.name})
-        if (const auto spelling = within_layer(name, layer);
-            spelling && (named.spellings.empty() || named.spellings.back() != *spelling))
-          named.spellings.push_back(*spelling);
-      if (!named.spellings.empty()) channels.push_back(std::move(named));
-    }
-  }
-  return channels;
+/// Gives the view of the channels that the settings name, or whose layer they name; the default one where that is among
+/// them, and nothing where there are none.
+std::string named_view(const ExrFile& file, const InputSettings& settings) {
+  std::set<std::string> views;
+  for (const std::string& named : {settings.depth_channel, split(settings.position_channels).front(), settings.layer})
+    for (const auto& part : file.parts())
+      for (const auto& channel : part.channels)
+        for (const auto& name : {channel.name, within_part(part.name, channel.name)}) {
+          if (named.empty() || !(lower_case(name) + ".").starts_with(lower_case(named) + ".")) continue;
+          views.insert(view_of(part, name));
+        }
+  const std::string first = view_in(file, "");
+  const auto is_first = [&](const std::string& view) { return view.empty() || same_name(view, first); };
+  return views.empty() || std::ranges::any_of(views, is_first) ? "" : *views.begin();
 }
 
 std::vector<std::string> full_names(const std::vector<NamedChannel>& channels) {
@@ -179,9 +154,9 @@ std::vector<std::string> full_names(const std::vector<NamedChannel>& channels) {
 }
 
 /// Lists once each everything that stands before a dot in a full name: "ViewLayer", "ViewLayer.Depth" ...
-std::vector<std::string> layers_of(const ExrFile& file) {
+std::vector<std::string> layers_of(const ExrFile& file, const std::string& view) {
   std::set<std::string> layers;
-  for (const auto& channel : channels_of(file, 0, "", ""))
+  for (const auto& channel : channels_in(file, 0, "", view))
     for (std::size_t dot = channel.full.find('.'); dot != channel.full.npos; dot = channel.full.find('.', dot + 1))
       layers.insert(channel.full.substr(0, dot));
   return {layers.begin(), layers.end()};
@@ -257,38 +232,77 @@ std::vector<ChannelRef> find_usual(const ExrFile& file, const std::vector<NamedC
   return found.empty() && is_single ? refs_of({&channels[0]}, file) : found;
 }
 
+/// Finds the channel by its full name, or else as its part or its view has it.
 const NamedChannel* find_named(const std::vector<NamedChannel>& channels, const std::string& name) {
   const std::string lower = lower_case(name);
-  for (const auto& channel : channels)
-    if (lower_case(channel.full) == lower || lower_case(channel.ref.channel) == lower) return &channel;
-  return nullptr;
+  const auto find = [&](auto&& has_name) {
+    const auto found = std::ranges::find_if(channels, has_name);
+    return found == channels.end() ? nullptr : &*found;
+  };
+  const auto* found = find([&](const NamedChannel& channel) { return lower_case(channel.full) == lower; });
+  if (!found) found = find([&](const NamedChannel& channel) { return lower_case(channel.ref.channel) == lower; });
+  if (!found)
+    found = find([&](const NamedChannel& channel) {
+      return std::ranges::find(channel.spellings, lower) != channel.spellings.end();
+    });
+  return found;
 }
 
 /// Components of a layer that the user named: what they are is no question then, only their order.
 const Components kOtherComponents{{"0", "1", "2"}, {"u", "v", "w"}, {"nx", "ny", "nz"}, {"px", "py", "pz"}};
 
+/// What a layer that the user names may hold.
+Components sets_of(const AovNames& names) {
+  Components sets = names.in_layer;
+  sets.insert(sets.end(), kOtherComponents.begin(), kOtherComponents.end());
+  if (names.may_be_two) sets.insert(sets.end(), {{"x", "y"}, {"r", "g"}, {"red", "green"}});
+  return sets;
+}
+
+/// Lists what may be given to the AOV's option, so that no message proposes what would be refused: channels, or of
+/// several components the layers that hold them.
+std::vector<std::string> takes(const std::vector<NamedChannel>& channels, const AovNames& names) {
+  std::vector<std::string> taken;
+  const auto add = [&](const std::string& name) {
+    if (name.find(',') == name.npos && std::ranges::find(taken, name) == taken.end()) taken.push_back(name);
+  };
+  const bool is_single = names.in_layer.front().size() == 1;
+  const Components sets = sets_of(names);
+  for (const auto& channel : channels) {
+    const std::string layer = channel.full.substr(0, std::min(channel.full.rfind('.'), channel.full.size()));
+    const auto holds = [&](const auto& components) {
+      return places_of(channels, lower_case(layer), components).size() == 1;
+    };
+    if (channel.subsampled) continue;
+    if (is_single)
+      add(channel.full);
+    else if (layer != channel.full && std::ranges::any_of(sets, holds))
+      add(layer);
+  }
+  return taken;
+}
+
 /// Finds the channels that the user named: each by its full name, or all by their layer.
 std::vector<ChannelRef> find_chosen(const ExrFile& file, const std::vector<NamedChannel>& channels,
-                                    const AovNames& names, const std::string& chosen) {
+                                    const AovNames& names, const std::string& chosen, const std::string& within) {
   auto wanted = split(chosen);
   const std::size_t count = names.in_layer.front().size();
-  if (wanted.size() == 1 && count > 1) {
-    Components sets = names.in_layer;
-    sets.insert(sets.end(), kOtherComponents.begin(), kOtherComponents.end());
-    if (names.may_be_two) sets.insert(sets.end(), {{"x", "y"}, {"r", "g"}, {"red", "green"}});
-    if (auto found = find_in_layer(file, channels, names, lower_case(chosen), sets); !found.empty()) return found;
-  }
+  if (count == 1)
+    if (const auto* whole = find_named(channels, chosen)) return refs_of({whole}, file);
+  if (wanted.size() == 1 && count > 1)
+    if (auto found = find_in_layer(file, channels, names, lower_case(chosen), sets_of(names)); !found.empty())
+      return found;
   if (wanted.size() != count && !(names.may_have_alpha && wanted.size() == count + 1) &&
       !(names.may_be_two && wanted.size() == 2))
-    fail(ErrorKind::input, "{}: no layer {} for {}{}; there is {}; {} takes a layer or {} channel names with commas",
-         file.path(), chosen, names.channel_option, suggestion(chosen, full_names(channels)),
+    fail(ErrorKind::input, "{}: no layer {}{} for {}{}; there is {}; {} takes a layer or {} channel names with commas",
+         file.path(), chosen, within, names.channel_option, suggestion(chosen, takes(channels, names)),
          list_of(full_names(channels)), names.channel_option, count);
   std::vector<const NamedChannel*> found;
   for (const auto& name : wanted) {
     found.push_back(find_named(channels, name));
     if (!found.back())
-      fail(ErrorKind::input, "{}: no channel {} for {}{}; there is {}", file.path(), name, names.channel_option,
-           suggestion(name, full_names(channels)), list_of(full_names(channels)));
+      fail(ErrorKind::input, "{}: no channel {}{} for {}{}; there is {}", file.path(), name, within,
+           names.channel_option, suggestion(name, full_names(channels)), list_of(full_names(channels)));
   }
   return refs_of(found, file);
 }
@@ -354,12 +368,30 @@ FoundByRules find_candidate(const ExrFile& file, const std::vector<NamedChannel>
 
 }  // namespace
 
-std::vector<std::string> views_of(const ExrFile& file) {
-  std::vector<std::string> views;
-  for (const auto& part : file.parts())
-    for (const auto& view : part.multi_view.empty() ? std::vector{part.view} : part.multi_view)
-      if (!view.empty() && std::ranges::find(views, view) == views.end()) views.push_back(view);
-  return views;
+std::vector<NamedChannel> channels_in(const ExrFile& file, std::size_t index, const std::string& layer,
+                                      const std::string& view) {
+  std::vector<NamedChannel> channels;
+  for (std::size_t i = 0; i < file.parts().size(); i++) {
+    const ExrPart& part = file.parts()[i];
+    if (part.deep) continue;  // its channels are no planes
+    for (const auto& channel : part.channels) {
+      const auto plain = name_in_view(part, channel.name, view);
+      if (!plain) continue;
+      const bool is_alone = file.parts().size() == 1;
+      NamedChannel named{{index, int(i), channel.name},
+                         is_alone ? channel.name : within_part(layer_of(part), channel.name),
+                         {},
+                         channel.subsampled};
+      // The user may write the view too, as the file does.
+      for (const auto& name : {is_alone ? *plain : within_part(layer_of(part), *plain), *plain,
+                               is_alone ? channel.name : within_part(part.name, *plain), channel.name})
+        if (const auto spelling = within_layer(name, layer);
+            spelling && std::ranges::find(named.spellings, *spelling) == named.spellings.end())
+          named.spellings.push_back(*spelling);
+      if (!named.spellings.empty()) channels.push_back(std::move(named));
+    }
+  }
+  return channels;
 }
 
 std::size_t ChannelSearch::open(const std::string& path, const char* option) {
@@ -368,18 +400,20 @@ std::size_t ChannelSearch::open(const std::string& path, const char* option) {
   if (known != files_.end()) return std::size_t(known - files_.begin());
   files_.push_back(open_image(path, path == settings_.input ? "INPUT" : option, Formats::of_frames));
   const auto views = views_of(files_.back());
-  const auto same = [&](const std::string& view) { return lower_case(view) == lower_case(settings_.view); };
+  const auto same = [&](const std::string& view) { return same_name(view, settings_.view); };
   if (!settings_.view.empty() && !views.empty() && std::ranges::none_of(views, same))
     fail(ErrorKind::input, "{}: there is no view {}{} for --view; there is {}", path, settings_.view,
          suggestion(settings_.view, views), list_of(views));
-  channels_.push_back(channels_of(files_.back(), files_.size() - 1, settings_.layer, settings_.view));
+  // The first file with views says which one the frame is of where no option does.
+  if (view_.empty()) view_ = view_in(files_.back(), named_view(files_.back(), settings_));
+  channels_.push_back(channels_in(files_.back(), files_.size() - 1, settings_.layer, view_in(files_.back(), view_)));
   return files_.size() - 1;
 }
 
 std::vector<ChannelRef> ChannelSearch::find(std::size_t file, const AovNames& names, const std::string& chosen,
                                             bool own_file) const {
   return chosen.empty() ? find_usual(files_[file], channels_[file], names, own_file)
-                        : find_chosen(files_[file], channels_[file], names, chosen);
+                        : find_chosen(files_[file], channels_[file], names, chosen, where(file));
 }
 
 FoundByRules ChannelSearch::find_by_rules(std::size_t file, const AovNames& names, const std::string& chosen,
@@ -393,9 +427,11 @@ std::vector<ChannelRef> ChannelSearch::require(std::size_t file, const AovNames&
   auto found = find(file, names, chosen, own_file);
   if (!found.empty()) return found;
   if (channels_[file].empty() && !settings_.layer.empty()) {
-    const auto layers = layers_of(files_[file]);
-    fail(ErrorKind::input, "{}: there is no layer {}{} for --layer; there is {}", files_[file].path(), settings_.layer,
-         suggestion(settings_.layer, layers), list_of(layers));
+    const std::string view = view_in(files_[file], view_);
+    const auto layers = layers_of(files_[file], view);
+    fail(ErrorKind::input, "{}: there is no layer {}{} for --layer{}; there is {}", files_[file].path(),
+         settings_.layer, view.empty() ? "" : " of the view " + view, suggestion(settings_.layer, layers),
+         list_of(layers));
   }
   const bool is_deep =
       std::ranges::any_of(files_[file].parts(), [](const ExrPart& part) { return part.deep.has_value(); });
@@ -403,25 +439,38 @@ std::vector<ChannelRef> ChannelSearch::require(std::size_t file, const AovNames&
     fail(ErrorKind::input,
          "{}: it holds deep data only, which has no single value per pixel: no {} ({}); --deep takes it",
          files_[file].path(), names.what, names.channel_option);
-  const auto all = full_names(channels_[file]);
-  const std::string within = settings_.layer.empty() ? "" : fmt::format(" in layer {}", settings_.layer);
   fail(ErrorKind::input, "{}: no {} channel found{}{}; there is {}; name it with {}", files_[file].path(), names.what,
-       within, suggestion(hint, all), list_of(all), names.channel_option);
+       where(file), suggestion(hint, takes(channels_[file], names)), list_of(full_names(channels_[file])),
+       names.channel_option);
+}
+
+std::string ChannelSearch::where(std::size_t file) const {
+  const std::string view = view_in(files_[file], view_);
+  return (settings_.layer.empty() ? "" : " in layer " + settings_.layer) + (view.empty() ? "" : " of the view " + view);
+}
+
+const NamedChannel* ChannelSearch::find_beside(const ChannelRef& ref, const std::string& component) const {
+  const std::size_t dot = ref.channel.rfind('.');
+  const std::string wanted = lower_case(dot == std::string::npos ? "" : ref.channel.substr(0, dot + 1)) + component;
+  for (const auto& channel : channels_[ref.file])
+    if (channel.ref.part == ref.part && lower_case(channel.ref.channel) == wanted) return &channel;
+  return nullptr;
+}
+
+std::optional<ChannelRef> ChannelSearch::beside(const ChannelRef& ref, const std::string& component) const {
+  const NamedChannel* found = find_beside(ref, component);
+  return found && !found->subsampled ? std::optional(found->ref) : std::nullopt;
+}
+
+bool ChannelSearch::has(const ChannelRef& ref, const std::string& component) const {
+  return find_beside(ref, component) != nullptr;
 }
 
 std::vector<ChannelRef> ChannelSearch::with_alpha(std::vector<ChannelRef> beauty) const {
   if (beauty.size() != 3) return beauty;
-  const std::string& red = beauty[0].channel;
-  const std::size_t dot = red.rfind('.');
-  const std::string prefix = dot == red.npos ? "" : red.substr(0, dot + 1);
-  for (const auto& channel : channels_[beauty[0].file]) {
-    if (channel.ref.part != beauty[0].part || channel.subsampled) continue;
-    const std::string& name = channel.ref.channel;
-    if (lower_case(name) == lower_case(prefix + "a") || lower_case(name) == lower_case(prefix + "alpha")) {
-      beauty.push_back(channel.ref);
-      break;
-    }
-  }
+  auto alpha = beside(beauty[0], "a");
+  if (!alpha) alpha = beside(beauty[0], "alpha");
+  if (alpha) beauty.push_back(*alpha);
   return beauty;
 }
 

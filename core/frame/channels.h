@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -53,7 +54,8 @@ extern const AovNames kObjectNames;
 struct NamedChannel {
   ChannelRef ref;
   std::string full;
-  // These are in lower case and without the chosen layer: the full name, and the name within the part if it differs.
+  // These are in lower case and without the chosen layer: the full name, and the name within the part if it differs,
+  // without the view and with it.
   std::vector<std::string> spellings;
   bool subsampled;
 };
@@ -68,10 +70,15 @@ struct FoundByRules {
 class ChannelSearch {
  public:
   /// The opened files are appended to `files`, which must outlive the search.
-  ChannelSearch(const InputSettings& settings, std::vector<ExrFile>& files) : settings_(settings), files_(files) {}
+  ChannelSearch(const InputSettings& settings, std::vector<ExrFile>& files)
+      : settings_(settings), files_(files), view_(settings.view) {}
 
   /// Gives the file's place in the list, and opens it if it is new. Fails if the file lacks the chosen view.
   std::size_t open(const std::string& path, const char* option);
+
+  /// The view that files are read by where they have it: the settings' one; or else that of the channels that the
+  /// settings name in the first file with views, which is its default one where they name none.
+  const std::string& view() const { return view_; }
 
   /// Finds the AOV by the names that the user chose, or else by its usual names; gives nothing if there is none.
   /// `own_file` says that the file holds nothing else. Fails if two layers hold the AOV.
@@ -87,16 +94,27 @@ class ChannelSearch {
   std::vector<ChannelRef> require(std::size_t file, const AovNames& names, const std::string& chosen, bool own_file,
                                   const char* hint) const;
 
+  /// Gives the channel of the same part and layer that has this last word, in lower case; nothing if it is subsampled.
+  std::optional<ChannelRef> beside(const ChannelRef& ref, const std::string& component) const;
+  /// Whether there is such a channel, be it subsampled.
+  bool has(const ChannelRef& ref, const std::string& component) const;
+
   /// Adds the alpha channel of the same layer to the r, g, b of a beauty, if there is one.
   std::vector<ChannelRef> with_alpha(std::vector<ChannelRef> beauty) const;
 
  private:
+  const NamedChannel* find_beside(const ChannelRef& ref, const std::string& component) const;
+  /// The layer and the view that a message on a file is about.
+  std::string where(std::size_t file) const;
+
   const InputSettings& settings_;
   std::vector<ExrFile>& files_;
+  std::string view_;
   std::vector<std::vector<NamedChannel>> channels_;  // one list per file
 };
 
-/// Gives the views of a stereo file, the default first; any other file has none.
-std::vector<std::string> views_of(const ExrFile& file);
+/// Lists the channels of a view and a layer; without a layer, all of the view. `index` is the file's place.
+std::vector<NamedChannel> channels_in(const ExrFile& file, std::size_t index, const std::string& layer,
+                                      const std::string& view);
 
 }  // namespace alcove

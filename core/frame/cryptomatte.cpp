@@ -12,6 +12,7 @@
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/base/text.h"
+#include "core/frame/views.h"
 
 namespace alcove {
 namespace {
@@ -71,10 +72,11 @@ std::optional<std::pair<int, int>> place_of(const std::string& channel, const st
   return std::nullopt;
 }
 
-std::vector<Cryptomatte::Rank> ranks_of(const ExrPart& part, const std::string& layer) {
+std::vector<Cryptomatte::Rank> ranks_of(const ExrPart& part, const std::string& layer, const std::string& view) {
   std::map<std::pair<int, int>, std::string> places;
   for (const auto& channel : part.channels)
-    if (const auto place = place_of(channel.name, layer)) places.emplace(*place, channel.name);
+    if (const auto name = name_in_view(part, channel.name, view))
+      if (const auto place = place_of(*name, layer)) places.emplace(*place, channel.name);
   std::vector<Cryptomatte::Rank> ranks;
   for (const auto& [place, object] : places) {
     const auto coverage = places.find({place.first, place.second + 1});
@@ -103,14 +105,15 @@ std::uint32_t cryptomatte_id(const std::string& name) {
   return exponent == 0 || exponent == 255 ? hash ^ 1U << 23 : hash;
 }
 
-std::vector<Cryptomatte> cryptomattes_of(const ExrFile& file) {
+std::vector<Cryptomatte> cryptomattes_of(const ExrFile& file, const std::string& view) {
+  const std::string in_file = view_in(file, view);
   std::vector<Cryptomatte> found;
   for (std::size_t i = 0; i < file.parts().size(); i++) {
     const auto header = file.whole_texts(int(i), kPrefix);
     for (const auto& [key, text] : header) {
       if (!key.ends_with("/name")) continue;
       Cryptomatte matte{text, int(i)};
-      matte.ranks = ranks_of(file.parts()[i], matte.name);
+      matte.ranks = ranks_of(file.parts()[i], matte.name, in_file);
       if (matte.ranks.empty()) continue;
       read_manifest(file, header, key.substr(0, key.size() - std::string("name").size()), matte);
       found.push_back(std::move(matte));

@@ -26,9 +26,9 @@ struct Cryptomatte {
   std::vector<Rank> ranks = {};  // the one that covers most first
 };
 
-/// All Cryptomattes of a file, with their manifests, of which one may be a file beside it; those without channels are
-/// left out. Never fails: a header or a manifest that makes no sense is none.
-std::vector<Cryptomatte> cryptomattes_of(const ExrFile& file);
+/// All Cryptomattes of a view of a file, with their manifests, of which one may be a file beside it; those without
+/// channels are left out. Never fails: a header or a manifest that makes no sense is none.
+std::vector<Cryptomatte> cryptomattes_of(const ExrFile& file, const std::string& view);
 
 /// The identifier of a name: MurmurHash3 (32 bits, Appleby) of its UTF-8, changed where it is no normal number.
 std::uint32_t cryptomatte_id(const std::string& name);

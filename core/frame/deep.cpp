@@ -5,9 +5,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 
 #include "core/base/error.h"
 #include "core/base/text.h"
+#include "core/base/windows.h"
+#include "core/frame/input_files.h"
+#include "core/frame/views.h"
 
 namespace alcove {
 namespace {
@@ -31,10 +36,70 @@ bool is_half(const ExrFile& file, const std::vector<int>& parts) {
   });
 }
 
-/// Takes a file's samples for the frame.
-void choose(FrameSource& source, std::size_t file, const InputSettings& settings) {
+/// Takes a file's samples for the frame, and those of all other files of --deep.
+void choose(FrameSource& source, ChannelSearch& search, std::size_t file, const InputSettings& settings) {
   source.deep = file;
-  source.deep_parts = deep_parts_of(source.files[file], settings);
+  source.deep_parts = deep_parts_of(source.files[file], settings.layer, source.view);
+  source.deep_elements.clear();
+  for (const auto& path : settings.deep) {
+    if (path.empty() || path == source.files[file].path()) continue;
+    const std::size_t other = search.open(path, "--deep");
+    source.deep_elements.emplace_back(other, deep_parts_of(source.files[other], settings.layer, source.view));
+  }
+}
+
+const std::string& first_of(const FileList& files) {
+  return *std::ranges::find_if(files, [](const std::string& file) { return !file.empty(); });
+}
+
+/// Fails where a file has no samples of the view.
+void require_samples(const FrameSource& source, std::size_t file, const std::vector<int>& parts) {
+  if (parts.empty())
+    fail(ErrorKind::input, "{}: it holds no deep data{}; --behind takes flat depth (--deep)", source.files[file].path(),
+         source.view.empty() ? "" : fmt::format(" of the view {}", source.view));
+}
+
+/// Calls a function for all files of samples and their parts, the first one first.
+template <class Visit>
+void for_each_deep(const FrameSource& source, const Visit& visit) {
+  visit(*source.deep, source.deep_parts);
+  for (const auto& [file, parts] : source.deep_elements) visit(file, parts);
+}
+
+/// The pixels that some of the samples' parts have. A renderer may have cut each element to its own.
+Window window_of_samples(const FrameSource& source) {
+  std::uint64_t pixels = 0;
+  std::int64_t left = std::numeric_limits<std::int64_t>::max(), top = left, right = -left, bottom = -left;
+  for_each_deep(source, [&](std::size_t file, const std::vector<int>& parts) {
+    for (const int part : parts) {
+      const Window& data = source.files[file].parts()[std::size_t(part)].data;
+      pixels += data.pixels();
+      left = std::min<std::int64_t>(left, data.x);
+      top = std::min<std::int64_t>(top, data.y);
+      right = std::max(right, std::int64_t(data.x) + data.width);
+      bottom = std::max(bottom, std::int64_t(data.y) + data.height);
+    }
+  });
+  // Files that hold little must not make a picture that no memory holds.
+  constexpr std::int64_t kMost = std::numeric_limits<int>::max();
+  constexpr std::uint64_t kMostTimes = 4;
+  const bool fits = right - left <= kMost && bottom - top <= kMost;
+  const std::uint64_t most =
+      std::max<std::uint64_t>(source.files[*source.deep].display().pixels(), kMostTimes * pixels);
+  if (!fits || std::uint64_t(right - left) * std::uint64_t(bottom - top) > most)
+    fail(ErrorKind::input, "{}: its deep parts and those beside them are too far apart for one picture (--deep)",
+         source.files[*source.deep].path());
+  return {int(left), int(top), int(right - left), int(bottom - top)};
+}
+
+bool any_deep(const FrameSource& source, bool (*holds)(const ExrFile&, const std::vector<int>&)) {
+  bool any = false;
+  for_each_deep(source, [&](std::size_t file, const auto& parts) { any = any || holds(source.files[file], parts); });
+  return any;
+}
+
+bool has_backs(const ExrFile& file, const std::vector<int>& parts) {
+  return std::ranges::any_of(parts, [&](int part) { return has_channel(file.parts()[std::size_t(part)], "ZBack"); });
 }
 
 /// Whether samples go on behind the first surface: those of a renderer end there, however much is hidden. Rows all over
@@ -64,15 +129,14 @@ struct DeepReading {
 
 }  // namespace
 
-std::vector<int> deep_parts_of(const ExrFile& file, const InputSettings& settings) {
-  const auto views = views_of(file);
-  const std::string view = lower_case(settings.view.empty() && !views.empty() ? views.front() : settings.view);
+std::vector<int> deep_parts_of(const ExrFile& file, const std::string& layer, const std::string& view) {
+  const std::string in_file = view_in(file, view);
   std::vector<int> of_view, of_layer;
   for (std::size_t i = 0; i < file.parts().size(); i++) {
     const ExrPart& part = file.parts()[i];
-    if (!part.deep || (!part.view.empty() && lower_case(part.view) != view)) continue;
+    if (!part.deep || (!part.view.empty() && !same_name(part.view, in_file))) continue;
     of_view.push_back(int(i));
-    if (!settings.layer.empty() && lower_case(part.name) == lower_case(settings.layer)) of_layer.push_back(int(i));
+    if (!layer.empty() && (same_name(part.name, layer) || same_name(layer_of(part), layer))) of_layer.push_back(int(i));
   }
   return of_layer.empty() ? of_view : of_layer;
 }
@@ -85,49 +149,50 @@ std::vector<ChannelRef> find_deep_depth(FrameSource& source, ChannelSearch& sear
                                         const InputSettings& settings) {
   if (!settings.depth_channel.empty()) return {};
   if (is_all_deep(source.files[depth_file])) {
-    choose(source, depth_file, settings);
-    if (!settings.deep.empty() && settings.deep != source.files[depth_file].path())
-      fail(ErrorKind::input, "{}: it is deep, and so is {}: give one of them, or a flat depth (--deep)",
-           source.files[depth_file].path(), settings.deep);
+    choose(source, search, depth_file, settings);
   } else {
-    if (settings.deep.empty() || !settings.depth.empty() || !search.find(depth_file, kDepthNames, "", false).empty() ||
+    if (!has_deep(settings) || !settings.depth.empty() || !search.find(depth_file, kDepthNames, "", false).empty() ||
         search.find_by_rules(depth_file, kDepthNames, "", source.rules->depth).candidate)
       return {};
-    choose(source, search.open(settings.deep, "--deep"), settings);
+    choose(source, search, search.open(first_of(settings.deep), "--deep"), settings);
   }
   if (source.deep_parts.empty()) {
     source.deep.reset();
     return {};
   }
-  source.deep_depth_is_half = is_half(source.files[*source.deep], source.deep_parts);
+  source.deep_data = window_of_samples(source);
+  source.deep_depth_is_half = any_deep(source, is_half);
   return {{*source.deep, source.deep_parts.front(), deep_channel(0, false)}};
 }
 
 void find_deep(FrameSource& source, ChannelSearch& search, const InputSettings& settings) {
   const bool is_depth = source.deep.has_value();
-  if (!is_depth && settings.deep.empty()) return;
-  if (!is_depth) choose(source, search.open(settings.deep, "--deep"), settings);
+  if (!is_depth && !has_deep(settings)) return;
+  if (!is_depth) choose(source, search, search.open(first_of(settings.deep), "--deep"), settings);
+  if (!is_depth) source.deep_data = source.file_data;
+  for_each_deep(source, [&](std::size_t place, const std::vector<int>& parts) {
+    require_samples(source, place, parts);
+    const ExrFile& file = source.files[place];
+    if (file.display() != source.display)
+      fail(ErrorKind::input,
+           "{}: its deep samples are of a picture of {}, and the depth of {} is of {}: both must cover the same pixels "
+           "(--deep)",
+           file.path(), to_string(file.display()), source.depth_path(), to_string(source.display));
+  });
+  if (common_part(window_of_samples(source), source.file_data).pixels() == 0)
+    fail(ErrorKind::input, "{}: its deep samples are {}, and the depth of {} is {}: they share no pixel (--deep)",
+         source.files[*source.deep].path(), to_string(window_of_samples(source)), source.depth_path(),
+         to_string(source.file_data));
   const ExrFile& file = source.files[*source.deep];
-  if (source.deep_parts.empty())
-    fail(ErrorKind::input, "{}: it holds no deep data{}; --behind takes flat depth (--deep)", file.path(),
-         settings.view.empty() ? "" : fmt::format(" of the view {}", settings.view));
   const int first = source.deep_parts.front();
-  const Window& data = file.parts()[std::size_t(first)].data;
-  if (data != source.file_data || file.display() != source.display)
-    fail(ErrorKind::input,
-         "{}: its deep samples are {} of {}, and the depth of {} is {} of {}: both must cover the same pixels (--deep)",
-         file.path(), to_string(data), to_string(file.display()), source.depth_path(), to_string(source.file_data),
-         to_string(source.display));
-  const bool half = is_half(file, source.deep_parts);
-  const bool has_backs = std::ranges::any_of(
-      source.deep_parts, [&](int part) { return has_channel(file.parts()[std::size_t(part)], "ZBack"); });
+  const bool half = any_deep(source, is_half), backs = any_deep(source, has_backs);
   const auto add = [&](std::size_t surface, bool back) {
     source[RawPlane::behind].push_back({*source.deep, first, deep_channel(surface, back)});
     source.behind.push_back(
         {.kind = back ? BehindKind::backs : BehindKind::surfaces, .is_half = half, .is_whole = false});
   };
   for (std::size_t surface = is_depth ? 1 : 0; surface < kMostDeepSurfaces; surface++) add(surface, false);
-  for (std::size_t surface = 0; has_backs && surface < kMostDeepSurfaces; surface++) add(surface, true);
+  for (std::size_t surface = 0; backs && surface < kMostDeepSurfaces; surface++) add(surface, true);
   if (source[RawPlane::behind].size() > kMostBehindPlanes)
     fail(ErrorKind::input, "{}: with --behind these are {} planes of depth, and a frame takes {}: leave some out",
          file.path(), source[RawPlane::behind].size(), kMostBehindPlanes);
@@ -146,7 +211,14 @@ DeepRules deep_rules(const FrameSource& source, const ExrFile& file, const std::
 void take_deep(FrameSource& source, const InputSettings& settings) {
   if (!source.deep) return;
   ExrFile& file = source.files[*source.deep];
-  file.take_deep(source.deep_parts, deep_rules(source, file, source.deep_parts, settings));
+  std::vector<DeepElement> others;
+  for (const auto& [other, parts] : source.deep_elements) others.push_back({&source.files[other], parts});
+  DeepRules rules = deep_rules(source, file, source.deep_parts, settings);
+  for (const auto& other : others) {
+    const DeepRules theirs = deep_rules(source, *other.file, other.parts, settings);
+    rules.separation[1] = std::max(rules.separation[1], theirs.separation[1]);
+  }
+  file.take_deep(source.deep_parts, rules, source.deep_data, others);
 }
 
 bool is_deep_plane(const FrameSource& source, std::size_t plane) {
@@ -212,8 +284,8 @@ void settle_deep(FrameSource& source, std::span<const float> depth) {
     fail(
         ErrorKind::input,
         "{}: the first surfaces of its deep samples are the depth of {} on {:.2g} % of the pixels only, be they planar "
-        "or along the ray: give --deep the samples of the same frame and camera, and other elements, flat, to "
-        "--behind; --depth-kind and --depth-scale say how the depth is read",
+        "or along the ray: give --deep the samples of the same frame and camera, of all its elements, and flat depth "
+        "of others to --behind; --depth-kind and --depth-scale say how the depth is read",
         file.path(), source.depth_path(), 100.0 * double(best->same) / double(compared));
   const bool is_own = best->kind == source.depth_kind && best->scale == source.depth_scale;
   source.deep_kind = is_own ? DepthKind::automatic : best->kind;

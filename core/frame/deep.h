@@ -11,7 +11,7 @@ namespace alcove {
 
 /// The deep parts that --layer and --view choose, whose samples count together: of a part's name, or else all of the
 /// view; empty where the file has none.
-std::vector<int> deep_parts_of(const ExrFile& file, const InputSettings& settings);
+std::vector<int> deep_parts_of(const ExrFile& file, const std::string& layer, const std::string& view);
 
 /// Whether all parts of a file are deep.
 bool is_all_deep(const ExrFile& file);

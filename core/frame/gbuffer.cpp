@@ -14,6 +14,7 @@
 #include "core/formats/open_image.h"
 #include "core/frame/ambient.h"
 #include "core/frame/behind.h"
+#include "core/frame/colours.h"
 #include "core/frame/deep.h"
 #include "core/frame/header_camera.h"
 #include "core/frame/input_files.h"
@@ -21,6 +22,7 @@
 #include "core/frame/panorama.h"
 #include "core/frame/plane_windows.h"
 #include "core/frame/position_pass.h"
+#include "core/frame/views.h"
 
 namespace alcove {
 namespace {
@@ -111,7 +113,9 @@ std::vector<ChannelRef> find_depth(FrameSource& source, const ChannelSearch& sea
   if (settings.depth_kind == DepthKind::automatic && settings.depth_channel.empty() &&
       search.find(file, kDepthNames, "", !settings.depth.empty()).empty())
     if (auto position = search.find(file, kPositionNames, "", false); !position.empty()) return position;
-  return search.require(file, kDepthNames, settings.depth_channel, !settings.depth.empty(), "Depth.Z");
+  auto depth = search.require(file, kDepthNames, settings.depth_channel, !settings.depth.empty(), "Depth.Z");
+  if (settings.depth_channel.empty()) doubt_depth_of_three(source, search, depth.front());
+  return depth;
 }
 
 /// The normals, none where there are none; and what the rules say of their space.
@@ -217,10 +221,8 @@ void find_camera(FrameSource& source, const ChannelSearch& search, const InputSe
   }
   if (!names_a_camera(settings))
     if (const std::string why = why_no_header_camera(attributes, layer); !why.empty()) throw NoCamera(file.path(), why);
-  const auto views = views_of(file);
-  const std::string view = settings.view.empty() && !views.empty() ? views.front() : settings.view;
   source.positions = positions_beside(search, source, settings);
-  source.camera = camera_for(settings, source.display, source.pixel_aspect, frame, view);
+  source.camera = camera_for(settings, source.display, source.pixel_aspect, frame, source.view);
   if (settings.camera.empty())
     return place_by_header(source.camera, attributes, source.display, source.pixel_aspect, layer);
   note_pixel_aspect(source, settings.camera);
@@ -281,16 +283,6 @@ std::string FrameSource::layer_of(const ChannelRef& ref) const {
   return dot == ref.channel.npos ? part_of(ref).name : ref.channel.substr(0, dot);
 }
 
-void require_same_window(const FrameSource& source, const std::vector<ChannelRef>& channels, const char* what,
-                         const char* option) {
-  for (const auto& channel : channels) {
-    const Window& data = source.part_of(channel).data;
-    if (data != source.data)
-      fail(ErrorKind::input, "{}: the {} channel {} is {}, and the depth is {}: both must cover the same pixels ({})",
-           source.files[channel.file].path(), what, channel.channel, to_string(data), to_string(source.data), option);
-  }
-}
-
 FrameSource find_frame(const InputSettings& settings, bool with_beauty, int frame, bool with_albedo) {
   FrameSource source;
   ChannelSearch search(settings, source.files);
@@ -304,17 +296,20 @@ FrameSource find_frame(const InputSettings& settings, bool with_beauty, int fram
                                    : settings.input.empty() ? depth_path
                                                             : settings.input;
 
+  const auto is_deep_path = [&](const std::string& path) { return std::ranges::count(settings.deep, path) > 0; };
   const bool wants_position = !settings.position.empty() || !settings.position_channels.empty();
   const bool by_position = wants_position || settings.depth_kind == DepthKind::position;
   std::size_t depth_file = by_position && !settings.position.empty()
                                ? search.open(settings.position, "--position")
-                               : search.open(depth_path, depth_path == settings.deep ? "--deep" : "--depth");
+                               : search.open(depth_path, is_deep_path(depth_path) ? "--deep" : "--depth");
+  source.view = search.view();
   find_rules(source, source.files[depth_file], settings);
   if (!by_position) source[RawPlane::depth] = find_deep_depth(source, search, depth_file, settings);
   if (source[RawPlane::depth].empty())
     source[RawPlane::depth] = find_depth(source, search, depth_file, settings, by_position);
   depth_file = source[RawPlane::depth][0].file;
-  source.data = source.file_data = source.part_of(source[RawPlane::depth][0]).data;
+  const ExrPart& depth_part = source.part_of(source[RawPlane::depth][0]);
+  source.data = source.file_data = depth_part.deep ? source.deep_data : depth_part.data;
   source.display = source.files[depth_file].display();
   source.pixel_aspect = source.files[depth_file].pixel_aspect();
   source.supersampling = supersampling_of(source, settings);
@@ -325,7 +320,7 @@ FrameSource find_frame(const InputSettings& settings, bool with_beauty, int fram
   source.normals_left_out = !wants_normals(settings);
   if (!source.normals_left_out) {
     source[RawPlane::normal] = find_normal(source, search, search.open(normal_path, "--normal"), settings);
-    require_same_window(source, source[RawPlane::normal], "normal", "--normal");
+    require_same_picture(source, source[RawPlane::normal], "normal", "--normal");
   }
   if (with_beauty) find_beauty(source, search, search.open(beauty_path, "--beauty"), settings);
   if (with_albedo) find_albedo(source, search, beauty_path, settings);
@@ -340,7 +335,7 @@ FrameSource find_frame(const InputSettings& settings, bool with_beauty, int fram
   const auto views = views_of(source.files[depth_file]);
   if (settings.view.empty() && views.size() > 1)
     source.notes.push_back(
-        {NoteCode::default_view, fmt::format("of the views {} this is {} (--view)", list_of(views), views.front())});
+        {NoteCode::default_view, fmt::format("of the views {} this is {} (--view)", list_of(views), source.view)});
   const auto has_views = [](const ExrFile& file) { return !views_of(file).empty(); };
   if (!settings.view.empty() && std::ranges::none_of(source.files, has_views))
     source.notes.push_back({NoteCode::said_otherwise,

@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/base/note.h"
@@ -50,9 +51,12 @@ struct FrameSource : Reading {
   std::vector<ExrFile> files;
   std::optional<std::size_t> deep;  // of them, whose samples are the depth, or give planes behind it
   std::vector<int> deep_parts;      // of that file
+  // of other files and their parts, whose samples count together with those
+  std::vector<std::pair<std::size_t, std::vector<int>>> deep_elements;
+  Window deep_data;                 // over which samples are read
   bool deep_depth_is_half = false;  // samples are the depth, and were rounded to half floats
   RawPlaneArray<std::vector<ChannelRef>> planes;
-  std::vector<ChannelRef> positions;     // that may tell the camera, over the depth's pixels; none where there are none
+  std::vector<ChannelRef> positions;     // that may tell the camera; none where there are none
   Window file_data;                      // what the files hold
   std::optional<Window> region;          // what is to be written of it; none: all of data
   std::uint64_t rows_read = 0;           // that were decoded, each as often as it was
@@ -70,6 +74,7 @@ struct FrameSource : Reading {
   // Nobody says it, so the pixels decide.
   bool depth_kind_open = false, normal_space_open = false, normal_encoding_open = false;
   bool normals_left_out = false;  // the settings say so
+  std::string view;               // that is read, of files with views
   std::string camera_from;        // what of the frame gave it; empty: the settings did
   // Nobody gave a camera, and this one only stands in for it, so that the pixels cannot speak against it.
   bool camera_is_assumed = false;
@@ -84,11 +89,6 @@ struct FrameSource : Reading {
 /// Fails with ErrorKind::input, listing what there is and naming the option that decides, when a channel is not found,
 /// is found twice, is subsampled, or has another size than the depth; with NoCamera where nothing gives one.
 FrameSource find_frame(const InputSettings& settings, bool with_beauty, int frame, bool with_albedo = false);
-
-/// Fails with ErrorKind::input where channels, what they hold and the option that names them, have another window than
-/// the depth.
-void require_same_window(const FrameSource& source, const std::vector<ChannelRef>& channels, const char* what,
-                         const char* option);
 
 /// What to do about normals in world space where the camera has no world_to_camera.
 constexpr const char* kWorldWithoutMatrix =

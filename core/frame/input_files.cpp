@@ -13,7 +13,7 @@ namespace alcove {
 const std::string& main_input(const InputSettings& settings) {
   if (!settings.input.empty()) return settings.input;
   if (!settings.depth.empty()) return settings.depth;
-  return settings.position.empty() ? settings.deep : settings.position;
+  return settings.position.empty() ? settings.deep.front() : settings.position;
 }
 
 bool wants_normals(const InputSettings& settings) { return lower_case(settings.normal) != "none"; }
@@ -35,8 +35,10 @@ bool chooses_occluders(const InputSettings& settings) {
          !settings.ignored_objects.empty();
 }
 
+bool has_deep(const InputSettings& settings) { return settings.deep != FileList{}; }
+
 bool has_hidden_sources(const InputSettings& settings) {
-  const bool has_files = settings.behind != FileList{} || !settings.deep.empty();
+  const bool has_files = settings.behind != FileList{} || has_deep(settings);
   return has_files || settings.around > 0 || settings.around_all || settings.other_views;
 }
 

@@ -24,6 +24,9 @@ bool names_picture(const std::string& text);
 /// Whether some surfaces are no occluders.
 bool chooses_occluders(const InputSettings& settings);
 
+/// Whether --deep names a file.
+bool has_deep(const InputSettings& settings);
+
 /// Whether anything is named that may show more than the first surface of each pixel.
 bool has_hidden_sources(const InputSettings& settings);
 

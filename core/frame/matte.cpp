@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <bit>
+#include <optional>
+#include <span>
 
 #include "core/base/error.h"
 #include "core/base/text.h"
@@ -39,43 +41,123 @@ std::vector<std::uint32_t> numbers_of(const std::string& path, const Objects& me
   return numbers;
 }
 
-bool is_pattern(const std::string& word) { return word.find_first_of("*?") != word.npos; }
+constexpr std::size_t kShownObjects = 8;
+constexpr const char* kEscapes = "a backslash before a comma, a blank, * or ? takes it as a part of the name";
 
-/// The objects of a Cryptomatte that a name or a pattern means.
-std::vector<std::uint32_t> objects_of(const std::string& path, const Cryptomatte& matte, const std::string& word,
-                                      const char* option) {
-  std::vector<std::uint32_t> objects;
-  std::vector<std::string> names;
-  for (const auto& [name, id] : matte.manifest) {
-    names.push_back(name);
-    if (fits_pattern(name, word)) objects.push_back(id);
+/// Objects' names as a message shows them: blanks at their ends can be seen, and commas are told from those between them.
+std::vector<std::string> shown(const std::vector<std::string>& names) {
+  std::vector<std::string> quoted;
+  for (const auto& name : names) {
+    const bool is_clear = name.find(',') == name.npos && !name.starts_with(' ') && !name.ends_with(' ');
+    quoted.push_back(is_clear ? name : "'" + name + "'");
   }
-  if (!objects.empty()) return objects;
-  if (matte.manifest.empty() && !is_pattern(word)) return {cryptomatte_id(word)};
-  if (matte.manifest.empty())
-    fail(ErrorKind::input, "{}: {} {}: Cryptomatte {} has no manifest{}, so that only whole names are known", path,
-         option, word, matte.name, matte.lacking.empty() ? "" : " (" + matte.lacking + ")");
-  fail(ErrorKind::input, "{}: {} {}: Cryptomatte {} has no such object{}; it has {}", path, option, word, matte.name,
-       suggestion(word, names), list_of(names));
+  return quoted;
 }
 
-/// The Cryptomatte of that layer; without a layer the only one, or the only one that knows the objects.
+/// What is before the next comma that belongs to no name, and behind it.
+std::vector<std::string> parts_of(const std::string& words) {
+  std::vector<std::string> parts(1);
+  for (std::size_t i = 0; i < words.size(); i++) {
+    if (words[i] == ',') {
+      parts.emplace_back();
+      continue;
+    }
+    if (is_escape(words, i)) parts.back() += words[i++];
+    parts.back() += words[i];
+  }
+  return parts;
+}
+
+/// Takes blanks from both ends, but those behind a backslash.
+std::string trimmed(const std::string& text) {
+  const std::size_t first = std::min(text.find_first_not_of(' '), text.size());
+  std::size_t end = text.size();
+  while (end > first && text[end - 1] == ' ' && !(end >= first + 2 && is_escape(text, end - 2))) end--;
+  return text.substr(first, end - first);
+}
+
+/// What a user's list means in one Cryptomatte.
+struct Meaning {
+  /// A word of the list, and the names that it stands for: none, itself, or those that fit it as a pattern.
+  struct Word {
+    std::string text;
+    std::vector<std::string> names;
+    bool is_exact;
+  };
+  std::vector<Word> words;
+
+  bool has_exact() const { return std::ranges::any_of(words, &Word::is_exact); }
+  bool has_any() const {
+    return std::ranges::any_of(words, [](const Word& word) { return !word.names.empty(); });
+  }
+};
+
+/// The object whose name is that text as it stands, or without its outer blanks, or without its backslashes.
+std::optional<std::string> exact_name(const Cryptomatte& matte, const std::string& text) {
+  for (const auto& name : {text, trimmed(text), unescaped(trimmed(text))})
+    if (matte.manifest.contains(name)) return name;
+  return std::nullopt;
+}
+
+/// Finds the longest runs of the list that are a name, since names may have commas; all else is words between commas,
+/// which may be patterns. So a name that is given exactly is that object.
+Meaning meaning_of(const Cryptomatte& matte, const std::string& list) {
+  Meaning meaning;
+  const auto parts = parts_of(list);
+  for (std::size_t i = 0; i < parts.size();) {
+    const auto name_to = [&](std::size_t end) {
+      return exact_name(matte, fmt::format("{}", fmt::join(std::span(parts).subspan(i, end - i), ",")));
+    };
+    std::size_t end = parts.size();
+    auto name = name_to(end);
+    while (!name && --end > i) name = name_to(end);
+    if (name) {
+      meaning.words.push_back({*name, {*name}, true});
+      i = end;
+      continue;
+    }
+    Meaning::Word word{trimmed(parts[i++]), {}, false};
+    for (const auto& [known, id] : matte.manifest)
+      if (fits_pattern(known, word.text)) word.names.push_back(known);
+    meaning.words.push_back(std::move(word));
+  }
+  return meaning;
+}
+
+/// The objects that a word means, each name's identifier. Without a manifest a whole name is known by its hash.
+std::vector<std::uint32_t> objects_of(const std::string& path, const Cryptomatte& matte, const Meaning::Word& word,
+                                      const char* option) {
+  std::vector<std::uint32_t> objects;
+  for (const auto& name : word.names) objects.push_back(matte.manifest.at(name));
+  if (!objects.empty()) return objects;
+  if (matte.manifest.empty() && !is_pattern(word.text)) return {cryptomatte_id(unescaped(word.text))};
+  if (matte.manifest.empty())
+    fail(ErrorKind::input, "{}: {} {}: Cryptomatte {} has no manifest{}, so that only whole names are known; {}", path,
+         option, word.text, matte.name, matte.lacking.empty() ? "" : " (" + matte.lacking + ")", kEscapes);
+  std::vector<std::string> names;
+  for (const auto& [name, id] : matte.manifest) names.push_back(name);
+  const auto near = shown(nearest_names(word.text, names));
+  fail(ErrorKind::input, "{}: {} {}: Cryptomatte {} has no such object{}; it has {}; {}", path, option, word.text,
+       matte.name, near.empty() ? "" : fmt::format(" (did you mean {}?)", linked(near, "or")), list_of(shown(names)),
+       kEscapes);
+}
+
+/// The Cryptomatte of that layer; without a layer the only one, or the only one that knows the objects: by their names,
+/// or else by patterns.
 const Cryptomatte& chosen(const std::vector<Cryptomatte>& mattes, const std::string& path, const Objects& meant) {
   std::vector<std::string> names;
-  std::vector<const Cryptomatte*> fitting;
+  std::vector<const Cryptomatte*> exact, fitting;
   for (const auto& matte : mattes) {
     names.push_back(matte.name);
-    const auto is_known = [&](const std::string& word) {
-      return std::ranges::any_of(matte.manifest, [&](const auto& entry) { return fits_pattern(entry.first, word); });
-    };
-    const auto words = split(meant.words);
-    const bool fits = meant.channel.empty() ? std::ranges::any_of(words, is_known) : matte.name == meant.channel;
-    if (fits) fitting.push_back(&matte);
+    const Meaning meaning = meaning_of(matte, meant.words);
+    if (meant.channel.empty() ? meaning.has_any() : matte.name == meant.channel) fitting.push_back(&matte);
+    if (meant.channel.empty() && meaning.has_exact()) exact.push_back(&matte);
   }
+  if (!exact.empty()) fitting = exact;
   if (fitting.size() == 1 || mattes.size() == 1) return fitting.empty() ? mattes.front() : *fitting.front();
   if (fitting.empty())
-    fail(ErrorKind::input, "{}: {} {}: none of the Cryptomattes {} has it", path, meant.option, meant.words,
-         list_of(names));
+    fail(ErrorKind::input, "{}: {} {}: none of the Cryptomattes {} has it; {}", path, meant.option, meant.words,
+         list_of(names), kEscapes);
   fail(ErrorKind::input, "{}: {} {}: several of the Cryptomattes {} have it: say which with {}", path, meant.option,
        meant.words, list_of(names), meant.channel_names.channel_option);
 }
@@ -85,8 +167,13 @@ void take(FrameSource& source, std::size_t file, const Cryptomatte& matte, const
           std::vector<ChannelRef>& channels) {
   const std::string& path = source.files[file].path();
   reading.kind = MatteKind::ranked;
-  for (const auto& word : split(meant.words))
+  for (const auto& word : meaning_of(matte, meant.words).words) {
     std::ranges::copy(objects_of(path, matte, word, meant.option), std::back_inserter(reading.objects));
+    if (word.names.size() > 1)
+      source.notes.push_back({NoteCode::several_objects,
+                              fmt::format("{} {} stands for {} objects of {}: {}", meant.option, word.text,
+                                          word.names.size(), matte.name, list_of(shown(word.names), kShownObjects))});
+  }
   for (const auto& [object, coverage] : matte.ranks)
     for (const auto& channel : {object, coverage}) channels.push_back({file, matte.part, channel});
   if (channels.size() <= kMostMattePlanes) return;
@@ -106,10 +193,14 @@ bool has_layer(const std::vector<Cryptomatte>& mattes, const std::string& layer)
 /// where the settings name it or all objects are numbers.
 void find_objects(FrameSource& source, ChannelSearch& search, std::size_t file, const Objects& meant, bool own_file) {
   const std::string& path = source.files[file].path();
-  const auto mattes = cryptomattes_of(source.files[file]);
+  const auto mattes = cryptomattes_of(source.files[file], source.view);
   const bool are_numbers =
       std::ranges::all_of(split(meant.words), [](const auto& word) { return number_in(word).has_value(); });
-  const bool by_number = meant.channel.empty() ? are_numbers : !has_layer(mattes, meant.channel);
+  const auto are_names = [&] {
+    return std::ranges::any_of(mattes, [&](const auto& matte) { return meaning_of(matte, meant.words).has_exact(); }) &&
+           search.find(file, meant.channel_names, "", own_file).empty();
+  };
+  const bool by_number = meant.channel.empty() ? are_numbers && !are_names() : !has_layer(mattes, meant.channel);
   auto& channels = source[RawPlane::occluders];
   if (by_number) {
     channels = search.require(file, meant.channel_names, meant.channel, own_file, "IndexOB.X");
@@ -136,7 +227,7 @@ void find_matte(FrameSource& source, ChannelSearch& search, const InputSettings&
   const Objects meant{objects, "--matte-object", settings.matte_channel, kMatteNames};
   // A manifest may be long, and a file of coverage alone needs none.
   const bool may_be_ranked = !objects.empty() || !settings.matte_channel.empty();
-  const auto mattes = may_be_ranked ? cryptomattes_of(source.files[file]) : std::vector<Cryptomatte>();
+  const auto mattes = may_be_ranked ? cryptomattes_of(source.files[file], source.view) : std::vector<Cryptomatte>();
   const bool is_layer = has_layer(mattes, settings.matte_channel);
   if (is_layer && objects.empty())
     fail(ErrorKind::input, "{}: --matte-channel {} is a Cryptomatte: name its objects with --matte-object", path,

@@ -28,10 +28,18 @@ Window shown_by(const FrameSource& source, const ChannelRef& channel) {
   return enlarged(source.part_of(channel).data, source.display, scale_of(source, channel));
 }
 
-/// Decodes channels of one file and one window, which is not that of the destination, band by band.
+/// What a channel has where its file has no pixels.
+float outside_of(const FrameSource& source, const ChannelRef& channel) {
+  for (const RawPlane plane : {RawPlane::normal, RawPlane::behind})
+    if (std::ranges::find(source[plane], channel) != source[plane].end())
+      return std::numeric_limits<float>::quiet_NaN();
+  return 0;
+}
+
+/// Decodes channels of one file and one window, which is not that of the destination, band by band. What the
+/// destination has elsewhere stays.
 void read_from_other(ExrFile& file, const Window& from, int rows_together, const std::vector<ExrRead>& reads,
                      const Window& to, const Window& display, int scale) {
-  for (const auto& read : reads) std::fill_n(read.to, to.pixels(), 0.0f);
   const Window part = common_part(from, covering(to, display, scale));
   if (part.pixels() == 0) return;
   const std::uint64_t row_bytes = sizeof(float) * std::uint64_t(from.width) * reads.size();
@@ -86,6 +94,25 @@ int supersampling_of(const FrameSource& source, const ChannelRef& beauty, const 
   return factor;
 }
 
+void require_same_picture(const FrameSource& source, const std::vector<ChannelRef>& channels, const char* what,
+                          const char* option) {
+  for (const auto& channel : channels) {
+    const ExrFile& file = source.files[channel.file];
+    const Window& data = source.part_of(channel).data;
+    if (data == source.file_data) continue;
+    if (file.display() != source.display)
+      fail(
+          ErrorKind::input,
+          "{}: the {} channel {} is {} of a picture of {}, and the depth is {} of {}: both must cover the same pixels, "
+          "or have the same display window ({})",
+          file.path(), what, channel.channel, to_string(data), to_string(file.display()), to_string(source.file_data),
+          to_string(source.display), option);
+    if (common_part(data, source.file_data).pixels() == 0)
+      fail(ErrorKind::input, "{}: the {} channel {} is {}, and the depth is {}: they share no pixel ({})", file.path(),
+           what, channel.channel, to_string(data), to_string(source.file_data), option);
+  }
+}
+
 void require_common_window(FrameSource& source, const std::vector<ChannelRef>& channels, const char* what,
                            const char* option, const char* without) {
   for (const auto& channel : channels) {
@@ -124,11 +151,13 @@ void read_rows(FrameSource& source, std::span<const ChannelRead> reads, int top,
     std::vector<ExrRead> of_file;
     for (const auto* read : group) of_file.push_back({read->channel.part, read->channel.channel, read->to});
     const int scale = scale_of(source, group[0]->channel);
-    if (scale == 1 && part.data == own)
+    if (scale == 1 && part.data == own) {
       file.read(of_file, top - own.y, rows);
-    else
-      read_from_other(file, part.data, part.rows_together, of_file, {own.x, top, own.width, rows}, source.display,
-                      scale);
+      continue;
+    }
+    const Window wanted{own.x, top, own.width, rows};
+    for (const auto* read : group) std::fill_n(read->to, wanted.pixels(), outside_of(source, read->channel));
+    read_from_other(file, part.data, part.rows_together, of_file, wanted, source.display, scale);
   }
 }
 

@@ -15,6 +15,12 @@ int supersampling_of(const FrameSource& source, const ChannelRef& beauty, const 
 /// The same without a beauty: 1 with auto.
 int supersampling_of(const FrameSource& source, const InputSettings& settings);
 
+/// Fails with ErrorKind::input where channels, what they hold and the option that names them, have another data window
+/// than the depth and no pixel in common with it, or another display window, which alone shows which pixels belong
+/// together. A renderer may have cut each plane to its own pixels that are not 0.
+void require_same_picture(const FrameSource& source, const std::vector<ChannelRef>& channels, const char* what,
+                          const char* option);
+
 /// Fails with ErrorKind::input where channels, what they hold and the option that names them, share no pixel with the
 /// depth, or have another data window than it and a display window that is neither its own nor the picture's, since
 /// nothing then tells which pixels belong together. Notes another data window; `without` says what holds where one of
@@ -28,8 +34,9 @@ struct ChannelRead {
   float* to;
 };
 
-/// Reads rows of source.file_data, from `top` on. Every part of every file is decoded once. Channels have 0 where their
-/// files have no pixels, and those of the smaller picture their value in all pixels of a block.
+/// Reads rows of source.file_data, from `top` on. Every part of every file is decoded once. Where their files have no
+/// pixels, normals and what lies behind are NaN, which is none in any encoding, and all else is 0. Channels of the
+/// smaller picture have their value in all pixels of a block.
 void read_rows(FrameSource& source, std::span<const ChannelRead> reads, int top, int rows);
 
 /// Puts what changes nothing into the pixels of a plane over source.data that its files do not have: AO 1 of materials,

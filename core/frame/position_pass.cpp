@@ -80,7 +80,9 @@ std::vector<ChannelRef> find_positions(const ChannelSearch& search, const FrameS
   const std::size_t file = depth.front().file;
   auto found = search.find_by_rules(file, kPositionNames, settings.position_channels, source.rules->position).channels;
   if (found.empty()) found = search.find(file, kPositionNames, settings.position_channels, false);
-  const auto fits = [&](const ChannelRef& ref) { return source.part_of(ref).data == source.file_data; };
+  const auto fits = [&](const ChannelRef& ref) {
+    return source.part_of(ref).data == source.part_of(found.front()).data;
+  };
   return std::ranges::all_of(found, fits) ? found : std::vector<ChannelRef>{};
 }
 

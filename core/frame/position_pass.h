@@ -10,8 +10,8 @@
 namespace alcove {
 
 /// The three channels of a frame's positions: those of its depth where they are positions, else those that stand beside
-/// it in its file, by the option, as the rules name them, or by their usual names. None where there are none, or only
-/// such of another window.
+/// it in its file, by the option, as the rules name them, or by their usual names. None where there are none, or
+/// their windows differ. They may have another window than the depth.
 std::vector<ChannelRef> find_positions(const ChannelSearch& search, const FrameSource& source,
                                        const InputSettings& settings);
 

@@ -71,7 +71,7 @@ inline constexpr std::array kRawPlanes{
                   .most = kMostBehindPlanes,
                   .content = PlaneContent::geometry,
                   .file = {"--behind", nullptr, &InputSettings::behind},
-                  .other_file = {"--deep", &InputSettings::deep}},
+                  .other_file = {"--deep", nullptr, &InputSettings::deep}},
     RawPlaneFacts{.plane = RawPlane::beauty,
                   .name = "raw beauty",
                   .least = 3,

@@ -229,7 +229,7 @@ class NormalSettlement : private Settlement {
     source_.normal_space = score.space;
     source_.flip_normal = score.flips;
     const bool is_flipped = to_string(score.flips) != to_string(settings_.flip_normal);
-    const bool is_proven = score.close > kUnit && depth_rounding(source_) == kFloatRounding;
+    const bool is_proven = score.close > kUnit && !has_coarse_depth(source_);
     guess("normal space", name_of(score.space), why,
           is_flipped || !has_world ? "--normal-space with --flip-normal" : "--normal-space",
           score.space != source_.usual_normal_space || is_flipped, is_proven);
@@ -267,7 +267,7 @@ class NormalSettlement : private Settlement {
   /// Whether one reading has nothing of a turn that the normals as a whole have by the other, as those of a camera that
   /// is turned by little have in the wrong space.
   bool is_straighter(const NormalScore& score, const NormalScore& other) const {
-    const double least = depth_rounding(source_) == kFloatRounding ? kLeastTurn : kLeastTurnOfHalf;
+    const double least = !has_coarse_depth(source_) ? kLeastTurn : kLeastTurnOfHalf;
     return other.turn_degrees() > least && kClear * score.turn_degrees() < other.turn_degrees() &&
            score.explained() >= kNoBetter * other.explained();
   }
@@ -289,7 +289,7 @@ class NormalSettlement : private Settlement {
   /// Where no matrix places the camera, tells whether normals that are read in view space are those of a world in which
   /// it is turned by little.
   std::optional<std::string> turned_world(const NormalScore& score) const {
-    const double least = depth_rounding(source_) == kFloatRounding ? kClearTurn : kLeastTurnOfHalf;
+    const double least = !has_coarse_depth(source_) ? kClearTurn : kLeastTurnOfHalf;
     if (source_.camera.view_from_world || score.space != NormalSpace::view || score.turn_degrees() < least)
       return std::nullopt;
     const auto turned = slightly_turned_camera(planes(), score, source_.camera, view_);

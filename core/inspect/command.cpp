@@ -7,6 +7,7 @@
 #include "core/base/text.h"
 #include "core/frame/chan_file.h"
 #include "core/frame/evidence.h"
+#include "core/frame/input_files.h"
 #include "core/frame/radius.h"
 #include "core/inspect/inspection.h"
 
@@ -52,8 +53,8 @@ void add_behind(Command& command, const InputSettings& settings) {
     for (const auto& [word, meaning] : names_of<BehindKind>())
       if (meaning == kind) kinds.push_back(word);
   command.add("--behind-kind", fmt::format("{}", fmt::join(kinds, ",")));
-  command.add("--deep", settings.deep);
-  if (!settings.deep.empty() && settings.deep_opacity != InputSettings().deep_opacity)
+  for (const auto& file : settings.deep) command.add("--deep", file);
+  if (has_deep(settings) && settings.deep_opacity != InputSettings().deep_opacity)
     command.add("--deep-opacity", std::optional(settings.deep_opacity));
 }
 

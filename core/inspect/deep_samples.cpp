@@ -11,7 +11,10 @@ namespace {
 
 /// How the depth of a file's samples is read.
 std::string depth_of(const FrameSource& source, const ExrFile& file) {
-  if (!source.deep || source.files[*source.deep].path() != file.path() || !source.settled) return "";
+  const auto is_it = [&](std::size_t other) { return source.files[other].path() == file.path(); };
+  const auto is_element = [&](const auto& element) { return is_it(element.first); };
+  const bool is_taken = source.deep && (is_it(*source.deep) || std::ranges::any_of(source.deep_elements, is_element));
+  if (!is_taken || !source.settled) return "";
   const ChannelRef& own = source[RawPlane::depth][0];
   if (source.part_of(own).deep) return "the depth of the frame";
   const DepthKind kind = source.deep_kind == DepthKind::automatic ? source.depth_kind : source.deep_kind;
@@ -22,10 +25,10 @@ std::string depth_of(const FrameSource& source, const ExrFile& file) {
 
 std::optional<InspectedDeep> deep_samples(const FrameSource& source, const ExrFile& file,
                                           const InputSettings& settings) {
-  const std::vector<int> parts = deep_parts_of(file, settings);
+  const std::vector<int> parts = deep_parts_of(file, settings.layer, source.view);
   if (parts.empty()) return std::nullopt;
-  const ExrPart& first = file.parts()[std::size_t(parts.front())];
   ExrFile samples(file.path(), "INPUT");
+  const ExrPart& first = samples.parts()[std::size_t(parts.front())];
   samples.take_deep(parts, deep_rules(source, file, parts, settings));
   const std::size_t band = std::size_t(first.data.width) * std::size_t(first.rows_together);
   std::vector<float> surfaces(2 * kMostDeepSurfaces * band, kNoDeepSurface);

@@ -10,6 +10,7 @@
 
 #include "core/base/option_words.h"
 #include "core/base/text.h"
+#include "core/frame/views.h"
 
 namespace alcove {
 namespace {
@@ -36,22 +37,25 @@ std::string word_of(BehindKind kind) {
 
 }  // namespace
 
-std::vector<HiddenGuess> hidden_guesses(const FrameSource& source) {
+std::vector<HiddenGuess> hidden_guesses(const FrameSource& source, const InputSettings& settings) {
   std::vector<HiddenGuess> guesses;
-  for (std::size_t file = 0; file < source.files.size(); file++)
-    for (std::size_t part = 0; part < source.files[file].parts().size(); part++) {
-      const ExrPart& header = source.files[file].parts()[part];
-      if (header.deep) continue;  // its channels are no planes
-      for (const auto& channel : header.channels) {
-        const bool is_whole = header.name.empty() || channel.name.starts_with(header.name + ".");
-        const std::string full = is_whole ? channel.name : header.name + "." + channel.name;
-        const auto kind = kind_by(lower_case(full));
-        const bool fits = kind && !channel.subsampled && header.data == source.file_data;
-        if (fits && !is_read(source, {file, int(part), channel.name}))
-          guesses.push_back({source.files[file].path(), full, *kind});
-      }
+  for (std::size_t file = 0; file < source.files.size(); file++) {
+    const ExrFile& of = source.files[file];
+    const std::string view = view_in(of, source.view);
+    const bool is_of_view = view.empty() || source.view.empty() || same_name(view, source.view);
+    if (!is_of_view || of.display() != source.display) continue;
+    for (const auto& channel : channels_in(of, file, settings.layer, view)) {
+      std::optional<BehindKind> kind;
+      for (const auto& name : channel.spellings)
+        if (!kind) kind = kind_by(name);
+      const bool fits = kind && !channel.subsampled && source.part_of(channel.ref).data == source.file_data &&
+                        channel.full.find(',') == channel.full.npos;
+      if (fits && !is_read(source, channel.ref)) guesses.push_back({of.path(), channel.full, *kind});
     }
-  if (guesses.size() > kMostBehind) guesses.resize(kMostBehind);
+  }
+  const std::size_t room =
+      kMostBehind - std::size_t(std::ranges::count_if(settings.behind, [](const auto& path) { return !path.empty(); }));
+  if (guesses.size() > room) guesses.resize(room);
   return guesses;
 }
 

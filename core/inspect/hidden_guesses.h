@@ -12,8 +12,9 @@
 
 namespace alcove {
 
-/// Those among the channels of the frame's files that nothing is read from yet, by their names.
-std::vector<HiddenGuess> hidden_guesses(const FrameSource& source);
+/// Those among the channels of the frame's files that nothing is read from yet, by their names: of the frame's view and
+/// the settings' layer, since a run finds no others.
+std::vector<HiddenGuess> hidden_guesses(const FrameSource& source, const InputSettings& settings);
 
 /// The options by which a run would take all of them; "" where there are none.
 std::string options_for(const std::vector<HiddenGuess>& guesses);

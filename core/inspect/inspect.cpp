@@ -19,7 +19,7 @@ namespace {
 std::vector<InspectedFile> files_of(const FrameSource& source) {
   std::vector<InspectedFile> files;
   for (const auto& file : source.files) {
-    files.push_back({file.path(), file.display(), file.pixel_aspect(), {}, cryptomattes_of(file)});
+    files.push_back({file.path(), file.display(), file.pixel_aspect(), {}, cryptomattes_of(file, source.view)});
     for (std::size_t part = 0; part < file.parts().size(); part++)
       files.back().parts.push_back({file.parts()[part], file.attribute_texts(int(part))});
   }
@@ -117,13 +117,13 @@ struct Inspector {
       without.behind = {};
       without.behind_channels.clear();
       without.behind_kinds.clear();
-      without.deep.clear();
+      without.deep = {};
       if (!has_hidden_sources(reading) || main_input(without).empty()) throw;
       source = find_frame(without, false, frame);
       found.refused.push_back(error.what());
       reading = without;
       add_files(settings.behind);
-      add_files(std::span(&settings.deep, 1));
+      add_files(settings.deep);
     }
   }
 
@@ -147,7 +147,7 @@ struct Inspector {
     for (std::size_t i = 0; i < source[RawPlane::behind].size(); i++)
       add_aov(found, fmt::format("behind{}", i + 1), source, {source[RawPlane::behind][i]},
               !settings.behind_channels.empty());
-    found.hidden = hidden_guesses(source);
+    found.hidden = hidden_guesses(source, reading);
     found.hidden_options = options_for(found.hidden);
     if (source[RawPlane::normal].empty() && wants_normals(settings))
       found.missing.push_back(
@@ -244,7 +244,9 @@ struct Inspector {
   void look_at_deep() {
     for (const auto& file : source.files) try {
         if (auto deep = deep_samples(source, file, settings)) found.deep.push_back(std::move(*deep));
-        if (!found.deep.empty() && found.deep.back().file == file.path()) leave_out_empty(found.deep.back());
+        // Those of several files together show more than each does.
+        if (!found.deep.empty() && found.deep.back().file == file.path() && source.deep_elements.empty())
+          leave_out_empty(found.deep.back());
       } catch (const Error& error) {
         found.suspicious.push_back({NoteCode::damaged_file, error.what()});
       }
@@ -300,8 +302,10 @@ Inspection inspect_frame(const InputSettings& settings, int frame, const Command
   const bool has_camera = search.lacking.empty();
   Inspector inspector{settings,   run,   has_camera ? settings : with_some_camera(settings),
                       has_camera, frame, std::move(search.found)};
-  if (!has_camera) inspector.found.missing.push_back(search.lacking);
   const bool is_found = inspector.find();
+  // A channel that is missing comes first: without it no camera helps.
+  auto& missing = inspector.found.missing;
+  if (!has_camera) missing.insert(is_found ? missing.begin() : missing.end(), search.lacking);
   const bool is_read = is_found && inspector.read();
   if (is_read) inspector.look();
   if (is_found) inspector.look_at_deep();

@@ -16,9 +16,9 @@ namespace {
 constexpr int kMostAround = 32;  // frames to each side: more than any surface stays near
 constexpr int kMostKept = 3;     // surfaces behind the first
 
-void read_behind(const Words& words, FileList& files) {
+void read_files(const char* option, const Words& words, FileList& files) {
   if (words.size() > files.size())
-    fail(ErrorKind::usage, "--behind: there are {} files; a run takes at most {}", words.size(), files.size());
+    fail(ErrorKind::usage, "{}: there are {} files; a run takes at most {}", option, words.size(), files.size());
   files = {};
   std::ranges::copy(words, files.begin());
 }
@@ -110,7 +110,7 @@ void add_behind_rows(OptionGroup& files, OptionGroup& pixels, InputSettings& s) 
           {"--behind", "FILE", "", "up to 8 times",
            "the depth of surfaces behind the first, in any order: a peel, back faces, another element of the shot; may "
            "be INPUT, with a channel of its own"},
-          [&s] { return words_of(s.behind); }, [&s](const Words& words) { read_behind(words, s.behind); })
+          [&s] { return words_of(s.behind); }, [&s](const Words& words) { read_files("--behind", words, s.behind); })
       .applies(to_estimators_of_layers())
       .repeats = true;
   const auto with_behind =
@@ -136,9 +136,16 @@ void add_behind_rows(OptionGroup& files, OptionGroup& pixels, InputSettings& s) 
 }
 
 void add_deep_rows(OptionGroup& files, OptionGroup& pixels, InputSettings& s) {
-  files.text("--deep", s.deep, "FILE", "a deep EXR of the frame, for what its samples show behind the first surface");
+  files
+      .add(
+          {"--deep", "FILE", "", "up to 8 times",
+           "a deep EXR of the frame, for what its samples show behind the first surface; the samples of several, and "
+           "of "
+           "a deep INPUT, count together, as of elements that were rendered apart"},
+          [&s] { return words_of(s.deep); }, [&s](const Words& words) { read_files("--deep", words, s.deep); })
+      .repeats = true;
   pixels.number("--deep-opacity", s.deep_opacity, "", between(0, 1), "of a deep sample, from which it is a surface")
-      .applies(with_option("--deep", [](const Settings& all) { return !all.input.deep.empty(); }));
+      .applies(with_option("--deep", [](const Settings& all) { return has_deep(all.input); }));
 }
 
 void add_view_rows(OptionGroup& files, OptionGroup& pixels, InputSettings& s) {

@@ -193,9 +193,11 @@ void add_channel_rows(std::vector<OptionRow>& rows, InputSettings& s) {
                 }});
   pixels.text("--matte-channel", s.matte_channel, "NAME",
               "the matte's channel, of --matte or else of INPUT; or the layer of a Cryptomatte");
-  pixels.text("--matte-object", s.matte_object, "NAME[,NAME...]",
-              "the matte is what these objects of a Cryptomatte cover, by names, in which * and ? stand for others; or "
-              "by the numbers of the matte's channel");
+  pixels.text(
+      "--matte-object", s.matte_object, "NAME[,NAME...]",
+      "the matte is what these objects of a Cryptomatte cover, by names, in which * and ? stand for others where "
+      "no object has exactly that name, and a backslash takes a comma, a blank, * or ? as it is; or by the "
+      "numbers of the matte's channel");
   pixels.number("--matte-outside", s.matte_outside, "", between(0, 1), "the AO where the matte is 0")
       .applies(with_matte());
   pixels.text("--layer", s.layer, "NAME", "look only at this layer or part");

@@ -40,17 +40,32 @@ Notes notes_on_missing_around(const FramePlan& plan) {
 
 constexpr double kSomeFov = 50;  // degrees, as inspect takes it for a frame without a camera
 
+/// The settings of a frame with a camera that stands in for the missing one.
+InputSettings with_some_fov(InputSettings settings) {
+  settings.fov = kSomeFov;
+  if (settings.normal_space == NormalSpace::automatic) settings.normal_space = NormalSpace::view;
+  return settings;
+}
+
+/// Why the channels of the first frame are not found, whatever its camera; nothing where they are.
+std::optional<Error> unfound_in(const FramePlan& plan) {
+  if (plan.evidence().empty()) return std::nullopt;
+  try {
+    find_frame(with_some_fov(plan.at(plan.evidence().front()).input), false, plan.evidence().front());
+  } catch (const Error& error) {
+    return error;
+  }
+  return std::nullopt;
+}
+
 /// The radius that is proposed for the first frame that shows a surface, and why others could not be looked at.
 std::optional<double> radius_for(const FramePlan& plan, bool has_camera, std::optional<Error>& error) {
   for (const int frame : plan.evidence()) {
     try {
-      Settings settings = plan.at(frame);
-      if (!has_camera) settings.input.fov = kSomeFov;
-      if (!has_camera && settings.input.normal_space == NormalSpace::automatic)
-        settings.input.normal_space = NormalSpace::view;
-      FrameSource source = find_frame(settings.input, false, frame);
+      const InputSettings given = plan.at(frame).input, settings = has_camera ? given : with_some_fov(given);
+      FrameSource source = find_frame(settings, false, frame);
       source.camera_is_assumed = !has_camera;
-      settle_by_rows(source, settings.input);
+      settle_by_rows(source, settings);
       if (const auto radius = proposed_radius(source.camera, source.median_depth)) return radius;
     } catch (const Error& failure) {
       if (!error) error = failure;
@@ -152,6 +167,7 @@ Lacking lacking_in(const Settings& settings) {
     notes_on_number(plan, settings);  // or the command that is proposed would be refused
     if (!needs_frame) return lacking;
     lacking.camera = !has_camera(plan);
+    if (lacking.camera) lacking.unfound = unfound_in(plan);
     if (lacking.radius) lacking.proposed_radius = radius_for(plan, !lacking.camera, lacking.unreadable);
   } catch (const Error& error) {
     // A name that no command could have comes first, since it would be a part of the one that is proposed.
@@ -168,9 +184,10 @@ std::string text_of(const Lacking& lacking) {
   if (lacking.output) things.emplace_back("-o FILE.exr, the AO");
   if (lacking.camera) things.push_back(fmt::format("a camera: {}", kCameraOptions));
   if (lacking.radius) things.emplace_back("--radius NUMBER, how far occluders reach in scene units, or --radius auto");
-  std::string text = fmt::format("missing: {}", fmt::join(things, "; "));
-  if (lacking.unreadable) text += fmt::format("; and the frame cannot be looked at: {}", lacking.unreadable->what());
-  return text;
+  const std::string text = fmt::format("missing: {}", fmt::join(things, "; "));
+  if (lacking.unfound) return fmt::format("{}; {}", lacking.unfound->what(), text);
+  return lacking.unreadable ? fmt::format("{}; and the frame cannot be looked at: {}", text, lacking.unreadable->what())
+                            : text;
 }
 
 }  // namespace alcove

@@ -33,6 +33,7 @@ Settings with_proposed_radius(const Settings& settings, Notes& notes);
 struct Lacking {
   bool input = false, output = false, camera = false, radius = false;
   std::optional<double> proposed_radius;  // where there is no radius, and the first frame can be read
+  std::optional<Error> unfound;           // why its channels are not found, where there is no camera
   std::optional<Error> unreadable;        // why the first frame cannot be looked at
 
   bool any() const { return input || output || camera || radius; }

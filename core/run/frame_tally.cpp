@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "core/base/estimator_facts.h"
+#include "core/base/windows.h"
 #include "core/frame/deep.h"
 #include "kernels/layers.h"
 #include "kernels/warp.h"
@@ -140,6 +141,16 @@ double FrameTally::estimates_of(const EstimatorSettings& settings) const {
   return double(report_.pixels - report_.sky_pixels) / (factor * factor);
 }
 
+/// Says that pixels may have no normal because the file has none there.
+static std::string window_of_normals(const FrameSource& source) {
+  if (source[RawPlane::normal].empty()) return "";
+  const Window& data = source.part_of(source[RawPlane::normal][0]).data;
+  if (common_part(data, source.file_data) == source.file_data) return "";
+  return fmt::format(": the normals of {} cover {} only, and the depth {}",
+                     source.files[source[RawPlane::normal][0].file].path(), to_string(data),
+                     to_string(source.file_data));
+}
+
 void FrameTally::note_repairs(const FrameSource& source) {
   auto& notes = report_.notes;
   if (counts_.repaired_depth)
@@ -147,10 +158,10 @@ void FrameTally::note_repairs(const FrameSource& source) {
         {NoteCode::repaired_depth,
          fmt::format("{} pixels had a depth that is NaN or negative; they count as sky", counts_.repaired_depth)});
   if (counts_.repaired_normals)
-    notes.push_back(
-        {NoteCode::repaired_normals,
-         fmt::format("{} pixels had no usable normal; it was reconstructed from depth", counts_.repaired_normals),
-         source.normal_file()});
+    notes.push_back({NoteCode::repaired_normals,
+                     fmt::format("{} pixels had no usable normal; it was reconstructed from depth{}",
+                                 counts_.repaired_normals, window_of_normals(source)),
+                     source.normal_file()});
   if (counts_.turned_normals)
     notes.push_back(
         {NoteCode::turned_normals,

@@ -28,10 +28,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Adds the files of manifests that lie beside a file with Cryptomattes. One that cannot be read has none.
-void add_manifests(std::vector<std::string>& files, const std::string& path) {
+/// Adds the files of manifests that lie beside a file with Cryptomattes of a view. One that cannot be read has none.
+void add_manifests(std::vector<std::string>& files, const std::string& path, const std::string& view) {
   try {
-    for (const auto& matte : cryptomattes_of(ExrFile(path, "INPUT")))
+    for (const auto& matte : cryptomattes_of(ExrFile(path, "INPUT"), view))
       if (!matte.manifest_file.empty()) files.push_back(matte.manifest_file);
   } catch (const Error&) {
   }
@@ -42,9 +42,9 @@ std::vector<std::string> inputs_of(const Settings& frame) {
   std::vector<std::string> files;
   if (!input.motion.empty()) files.push_back(input.motion);
   for (const auto& file : plane_file_options()) files.push_back(file.of(input));
-  if (!input.matte_object.empty()) add_manifests(files, input.matte.empty() ? main_input(input) : input.matte);
+  if (!input.matte_object.empty()) add_manifests(files, input.matte.empty() ? main_input(input) : input.matte, input.view);
   if (!input.occluder_objects.empty() || !input.ignored_objects.empty())
-    add_manifests(files, input.objects.empty() ? main_input(input) : input.objects);
+    add_manifests(files, input.objects.empty() ? main_input(input) : input.objects, input.view);
   return files;
 }
 

@@ -15,6 +15,7 @@
 #include "core/chain/warp.h"
 #include "core/frame/motion.h"
 #include "core/frame/settle.h"
+#include "core/frame/views.h"
 #include "core/run/frame_files.h"
 #include "kernels/reprojection.h"
 
@@ -37,7 +38,7 @@ InputSettings of_first_surface(InputSettings input, const FrameSource* settled) 
   input.behind = {};
   input.behind_channels.clear();
   input.behind_kinds.clear();
-  if (settled && !has_deep_depth(*settled)) input.deep.clear();
+  if (settled && !has_deep_depth(*settled)) input.deep = {};
   input.material_ao.clear();
   input.material_ao_channel.clear();
   for (std::string* matte : {&input.matte, &input.matte_channel, &input.matte_object, &input.occluders,
@@ -55,12 +56,11 @@ void leave_out_hidden(FrameSource& source) {
 }
 
 /// The views of a file beside the one that is looked at.
-std::vector<std::string> other_views_of(const FrameSource& source, const std::string& chosen) {
+std::vector<std::string> other_views_of(const FrameSource& source) {
   std::vector<std::string> views = views_of(source.files[source[RawPlane::depth][0].file]);
   if (views.size() < 2)
     fail(ErrorKind::input, "{}: it has no other view for --other-views: leave that out", source.depth_path());
-  const std::string own = lower_case(chosen.empty() ? views.front() : chosen);
-  std::erase_if(views, [&](const std::string& view) { return lower_case(view) == own; });
+  std::erase_if(views, [&](const std::string& view) { return same_name(view, source.view); });
   return views;
 }
 
@@ -311,7 +311,7 @@ std::vector<SharedFrames::Judged> SharedFrames::frames_around(gpu::Recorder& gpu
 std::vector<SharedFrames::Judged> SharedFrames::other_views(gpu::Recorder& gpu, const FrameSource& target, int frame,
                                                             Others& others, PreparedOthers& took) const {
   InputSettings input = of_first_surface(plan_.at(frame).input, settled_);
-  others.views = other_views_of(target, input.view);
+  others.views = other_views_of(target);
   require_place(target, frame, "--other-views");
   std::vector<Judged> found;
   for (const auto& view : others.views) {

@@ -8,6 +8,7 @@
 #include "core/base/error.h"
 #include "core/base/memory_limit.h"
 #include "core/chain/aov.h"
+#include "core/frame/views.h"
 #include "core/run/shot.h"
 #include "kernels/moved.h"
 

@@ -386,12 +386,7 @@ TEST_F(DeepFile, is_refused_where_a_flat_one_is_meant) {
   }
 }
 
-TEST_F(DeepFile, parts_that_do_not_fit_are_refused) {
-  DeepFilePart one = some_part(), other = some_part();
-  other.name = "other";
-  other.is_tiled = true;
-  write_deep(path, {one, other});
-  EXPECT_THAT(refusal({0, 1}), HasSubstr("--layer"));
+TEST_F(DeepFile, a_part_without_depth_is_refused) {
   DeepFilePart without = some_part();
   without.channels = {"A", "B", "layer.Z", "layer.ZBack"};
   write_deep(path, {without});

@@ -143,8 +143,13 @@ TEST_F(NormalFiles, are_of_the_space_that_fits_however_little_the_camera_is_turn
     Vec3 axis;
     double degrees;
   };
-  for (const auto& [axis, degrees] : {Case{{1, 0, 0}, 1.5}, {{0, 1, 0}, 3}, {{0, 0, 1}, 5}, {{1, 1, 0}, -8}, {{1, 0, 0}, -12},
-                                      {{0.2, 1, 0.4}, 16}, {{1, -1, 1}, 19}}) {
+  for (const auto& [axis, degrees] : {Case{{1, 0, 0}, 1.5},
+                                      {{0, 1, 0}, 3},
+                                      {{0, 0, 1}, 5},
+                                      {{1, 1, 0}, -8},
+                                      {{1, 0, 0}, -12},
+                                      {{0.2, 1, 0.4}, 16},
+                                      {{1, -1, 1}, 19}}) {
     place(turned(axis, degrees));
     for (const bool as_halves : {false, true})
       for (const double bumps : {0.0, 0.1}) {

@@ -98,9 +98,16 @@ TEST_F(GBuffer, depth_alone_is_enough) {
   EXPECT_THAT(normal(), IsEmpty()) << "the R, G, B of a depth file are no normal";
 }
 
-TEST_F(GBuffer, normals_must_cover_the_same_pixels_and_a_beauty_need_not) {
-  write(std::vector<Part>{{"depth", {"Z"}}, {"N", {"X", "Y", "Z"}, kWidth + 1}});
-  expect_error({"frame.exr", "3x2", "4x2", "--normal"});
+TEST_F(GBuffer, normals_and_a_beauty_need_not_cover_the_same_pixels) {
+  for (const int width : {kWidth - 1, kWidth + 1}) {
+    write(std::vector<Part>{{"depth", {"Z"}}, {"N", {"X", "Y", "Z"}, width}});
+    FrameSource source = find();
+    EXPECT_THAT(source.notes, IsEmpty()) << "only surfaces without normals are worth a note";
+    std::vector<float> n(3 * kPixels);
+    read_planes(source, {{&source[RawPlane::normal], n.data()}});
+    for (std::size_t i = 0; i < n.size(); i++)
+      EXPECT_TRUE(int(i % kWidth) < width ? n[i] == value_of(1, i / kPixels) : std::isnan(n[i])) << i;
+  }
   write(std::vector<Part>{{"depth", {"Z"}}, {"rgba", {"R", "G", "B"}, kWidth + 1}});
   EXPECT_THAT(texts_of(find(true).notes), testing::Contains(testing::HasSubstr("the beauty is 4x2")));
   EXPECT_THAT(find(false).notes, IsEmpty()) << "nobody asked for the beauty";

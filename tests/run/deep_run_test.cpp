@@ -144,6 +144,48 @@ TEST_F(DeepRun, samples_alone_are_a_frame) {
   }
 }
 
+TEST_F(DeepRun, elements_of_several_files_give_the_bits_of_all_samples_in_one) {
+  EXPECT_EQ(run_on({deep}).code, 0);
+  const std::vector<float> expected = pixels_of(ao);
+  // Each pixel's samples are dealt out in turn; the second file has lost its rows above and below, and its columns, in
+  // which the first one has all samples; it has other lines together.
+  const DeepFilePart all = samples();
+  DeepFilePart one = all, other = all;
+  other.data = {5, 9, 40, 20};
+  other.compression = Imf::RLE_COMPRESSION;
+  other.pixels.clear();
+  for (std::size_t i = 0; i < all.pixels.size(); i++) {
+    const int x = int(i) % kWallWindow.width - other.data.x, y = int(i) / kWallWindow.width - other.data.y;
+    if (x < 0 || x >= other.data.width || y < 0 || y >= other.data.height) continue;
+    one.pixels[i].clear();
+    other.pixels.emplace_back();
+    for (std::size_t s = 0; s < all.pixels[i].size(); s++)
+      (s % 2 ? one.pixels[i] : other.pixels.back()).push_back(all.pixels[i][s]);
+  }
+  const std::string a = folder / "a.exr", b = folder / "b.exr";
+  for (const bool is_tiled : {false, true}) {
+    other.is_tiled = is_tiled;
+    other.tile = 7;
+    write_deep(a, {one}, kWallWindow);
+    write_deep(b, {other}, kWallWindow);
+    for (const Options& inputs : {Options{a, "--deep", b}, {b, "--deep", a}, {"--deep", a, "--deep", b}}) {
+      const Finished finished = run_on(inputs);
+      EXPECT_EQ(finished.code, 0) << finished;
+      EXPECT_TRUE(pixels_of(ao) == expected) << testing::PrintToString(inputs) << is_tiled;
+    }
+    EXPECT_TRUE(result({"--deep", a, "--deep", b}) == result({"--deep", deep})) << "beside a flat depth";
+  }
+}
+
+TEST_F(DeepRun, an_element_that_is_not_of_the_picture_is_refused) {
+  DeepFilePart small = samples();
+  small.data = {0, 0, 64, 20};
+  small.pixels.resize(64 * 20);
+  write_deep(folder / "small.exr", {small}, small.data);
+  expect_refused(run_on({deep, "--deep", folder / "small.exr"}), {"small.exr", "same pixels", "--deep"});
+  expect_refused(run_on({deep, "--deep", folder / "flat.exr"}), {"flat.exr", "no deep data", "--deep"});
+}
+
 TEST_F(DeepRun, samples_are_the_depth_of_the_frames_around_too) {
   FrameFile normals = wall_frame();
   std::erase_if(normals.planes, [](const auto& plane) { return plane.first.find("Depth") != std::string::npos; });
@@ -253,7 +295,7 @@ TEST_F(DeepRun, mistakes_are_refused_in_one_line) {
   DeepFilePart small = samples();
   small.data.height = 20;
   small.pixels.resize(64 * 20);
-  write_deep(folder / "small.exr", {small}, kWallWindow);
+  write_deep(folder / "small.exr", {small}, small.data);
   expect_refused(run({"--deep", folder / "small.exr"}), {"small.exr", "same pixels", "--deep"});
 
   DeepFilePart without = samples();
@@ -289,7 +331,7 @@ TEST_F(DeepRun, inspect_looks_at_a_frame_without_samples_that_are_refused) {
   DeepFilePart small = samples();
   small.data.height = 20;
   small.pixels.resize(64 * 20);
-  write_deep(folder / "small.exr", {small}, kWallWindow);
+  write_deep(folder / "small.exr", {small}, small.data);
   const Finished finished =
       run_program({"inspect", "--json", frame, "--deep", folder / "small.exr", "--camera", camera});
   ASSERT_EQ(finished.code, 0) << finished;

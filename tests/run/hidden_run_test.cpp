@@ -222,10 +222,10 @@ TEST_F(HiddenRun, a_thickness_is_added_to_the_first_surface) {
 
 TEST_F(HiddenRun, what_is_not_of_the_same_pixels_is_refused_with_both_files) {
   FrameFile small;
-  small.data = {0, 0, 32, 36};
+  small.data = small.display = {0, 0, 32, 36};
   small.planes["Z"] = std::vector<float>(small.data.pixels(), 9);
   small.write(folder / "small.exr");
-  expect_refused(behind({"small.exr"}), {folder / "small.exr", "data window", "32x36", frame, "64x36", "--behind"});
+  expect_refused(behind({"small.exr"}), {folder / "small.exr", "display window", "32x36", frame, "64x36", "--behind"});
   FrameFile overscan;
   overscan.display = {2, 0, 60, 36};
   overscan.planes["Z"] = std::vector<float>(overscan.data.pixels(), 9);

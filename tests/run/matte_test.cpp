@@ -227,6 +227,44 @@ TEST_F(Crypto, ranks_beyond_the_sixteenth_are_not_read_and_that_is_said) {
   EXPECT_THAT(said_with(18), AllOf(HasSubstr("18 ranks"), HasSubstr("--matte-object"), HasSubstr("[unread-ranks]")));
 }
 
+TEST_F(Crypto, a_name_that_is_given_exactly_is_that_object) {
+  const Plane of_ball = expected(ball), of_both = expected(both);
+  // What the file calls its three objects; the list that is given; whether it is the ball, or both balls.
+  struct Case {
+    const char *ball, *second, *list;
+    bool is_both;
+    const char* note = nullptr;
+  };
+  for (const Case& c :
+       std::vector<Case>{{"a_*_b", "a_n_b", "a_*_b", false},
+                         {"a_?_b", "a_n_b", "a_?_b", false},
+                         {"a_*_b", "a_n_b", "a_\\*_b", false},
+                         {"a_*_b", "a_n_b", "a_*", true, "a_* stands for 2 objects of Crypto: a_*_b, a_n_b"},
+                         {"a, b", "c", "a, b", false},
+                         {"a, b", "c", "a\\, b", false},
+                         {"a, b", "c", "c,a, b", true},
+                         {"a, b", "c", "a, b , c", true},
+                         {"a,b", "a", "a,b", false},
+                         {"ball ", "ball", "ball ", false},
+                         {"ball ", " c", "ball\\ , c", true},
+                         {"a\\b", "c", "a\\b", false},
+                         {"7", "8", "7", false}}) {
+    nlohmann::json named{{c.ball, fmt::format("{:08x}", cryptomatte_id("Ball"))},
+                         {c.second, fmt::format("{:08x}", cryptomatte_id("Ball.2"))},
+                         {"Floor", fmt::format("{:08x}", cryptomatte_id("Floor"))}};
+    file.attributes["cryptomatte/abc1234/manifest"] = named.dump();
+    EXPECT_LE(difference(ao_of(file, {"--matte-object", c.list}), c.is_both ? of_both : of_ball).max, 1e-6) << c.list;
+    const std::string said = run({"--matte-object", c.list}).err;
+    if (c.note)
+      EXPECT_THAT(said, HasSubstr(c.note));
+    else
+      EXPECT_THAT(said, testing::Not(HasSubstr("stands for")));
+  }
+  expect_error(file, 3, {"--matte-object", "nobody"}, {"backslash", "no such object"});
+  file.attributes["cryptomatte/abc1234/manifest"] = R"({"ball ":"00000001"})";
+  expect_error(file, 3, {"--matte-object", "balls"}, {"did you mean 'ball '?"});
+}
+
 TEST_F(Crypto, manifests_may_lie_beside_the_file_or_be_missing) {
   const Plane of_both = expected(both);
   file.attributes.erase("cryptomatte/abc1234/manifest");

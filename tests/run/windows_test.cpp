@@ -13,7 +13,9 @@ namespace alcove {
 namespace {
 
 using namespace test;
+using testing::AllOf;
 using testing::HasSubstr;
+using testing::Not;
 using Options = std::vector<std::string>;
 using Plane = std::vector<float>;
 
@@ -137,6 +139,31 @@ TEST_F(Windows, what_nothing_tells_how_to_match_is_refused) {
   const Finished apart = composite_with({"--roi", "50,30,10,5"});
   EXPECT_EQ(apart.code, 2) << apart;
   EXPECT_THAT(apart.err, HasSubstr("--roi"));
+}
+
+TEST_F(Windows, normals_may_be_cut_to_the_surfaces) {
+  constexpr int kSkyRows = 9;
+  FrameFile whole = wall_frame();
+  for (auto& [name, plane] : whole.planes)
+    std::fill_n(plane.begin(), kSkyRows * kDisplay.width, name.ends_with("Depth.Z") ? 1e10F : 0.0F);
+  whole.write(frame);
+  const Finished expected = run({"--type", "float"});
+  ASSERT_EQ(expected.code, 0) << expected;
+  const Plane ao_of_whole = read_exr_image(ao).pixels;
+  const auto with_normals_of = [&](const Window& data) {
+    FrameFile normals{data, kDisplay, 1, {}, {}, {}};
+    for (const auto& [name, plane] : whole.planes)
+      if (name.find("Normal") != name.npos) normals.planes[name] = cropped(plane, kDisplay, data);
+    normals.write(other);
+    return run({"--type", "float", "--normal", other});
+  };
+  const Finished cut = with_normals_of({0, kSkyRows, kDisplay.width, kDisplay.height - kSkyRows});
+  EXPECT_EQ(cut.code, 0) << cut;
+  EXPECT_EQ(read_exr_image(ao).pixels, ao_of_whole);
+  EXPECT_THAT(cut.err, Not(HasSubstr("usable normal"))) << "the sky needs none";
+  const Finished more = with_normals_of({0, kSkyRows + 4, kDisplay.width, kDisplay.height - kSkyRows - 4});
+  EXPECT_EQ(more.code, 0) << more;
+  EXPECT_THAT(more.err, AllOf(HasSubstr("256 pixels had no usable normal"), HasSubstr("other.exr")));
 }
 
 TEST_F(Windows, materials_without_pixels_are_open_and_mattes_without_pixels_take_nothing) {
