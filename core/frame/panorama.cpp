@@ -108,8 +108,7 @@ std::vector<double> angles_of(const Map& map, const std::vector<Ray>& rays) {
 double share_seen(const Panorama& panorama, std::span<const SeenPoint> points, const Window& display) {
   std::vector<Ray> rays;
   for (const auto& seen : points)
-    rays.push_back(
-        {panorama.ray(seen.x - 0.5 * display.width, 0.5 * display.height - seen.y, display), &seen});
+    rays.push_back({panorama.ray(seen.x - 0.5 * display.width, 0.5 * display.height - seen.y, display), &seen});
   const double pixel = kPi / std::max(display.width, display.height);
   std::vector<double> angles = angles_of(map_of(rays), rays);
   // Again without the points that are farthest off, as those of edges are.
@@ -132,10 +131,11 @@ std::string panorama_of(std::span<const SeenPoint> points, const Window& display
 }
 
 void refuse_panorama(const std::string& path, const std::string& by) {
-  fail(ErrorKind::input,
-       "{}: a panorama ({}): its pixels have no plane of projection, which depth and AO here refer to; render it with a "
-       "perspective camera",
-       path, by);
+  fail(
+      ErrorKind::input,
+      "{}: a panorama ({}): its pixels have no plane of projection, which depth and AO here refer to; render it with a "
+      "perspective camera",
+      path, by);
 }
 
 }  // namespace alcove

@@ -187,6 +187,7 @@ class NormalSettlement : private Settlement {
     });
     if (chosen == scores.end()) return;
     doubt_centre(*chosen);
+    if (doubt_rotation(*chosen)) return;
     if (chosen->agreement < kLeastAgreement) refuse_normals(*chosen, scores[0]);
     const bool another = scores[0].agreement >= kLeastAgreement && chosen->agreement < kNoBetter * scores[0].agreement;
     if (another)
@@ -248,6 +249,16 @@ class NormalSettlement : private Settlement {
     note_centre(source_);
   }
 
+  /// Notes where the angles of a .chan file fit better in another order. Returns whether they do.
+  bool doubt_rotation(const NormalScore& chosen) {
+    const auto other = best_other_rotation(planes(), chosen, source_.camera, view_);
+    if (!other || !is_sharper(other->score, chosen) || chosen.agreement < kLeastAgreement) return false;
+    note(NoteCode::normals_disagree,
+         fmt::format("by the camera{} {:.0f} % of the normals agree with depth to 3 degrees; {}, then {:.0f} % do",
+                     from(), 100 * chosen.close, other->what, 100 * other->score.close));
+    return true;
+  }
+
   /// Notes where another field of view fits better, as it also may where the depth is read wrongly. Returns whether it
   /// does.
   bool doubt_width(const NormalScore& chosen) {
@@ -271,8 +282,8 @@ class NormalSettlement : private Settlement {
   static constexpr const char* kWithout = "--normal none reconstructs them from depth";
 
   static constexpr const char* kCheck =
-      "check --normal-space, --normal-encoding, --depth-kind with --near, --far and --reversed-z, and --camera or "
-      "--fov: "
+      "check --normal-space, --normal-encoding, --depth-kind with --near, --far and --reversed-z, and --camera, "
+      "--chan-rotation or --fov: "
       "it may also be the camera of another frame";
 };
 
