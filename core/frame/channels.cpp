@@ -346,8 +346,8 @@ std::vector<ChannelRef> find_fitting(const ExrFile& file, const std::vector<Name
        list_of(found), names.channel_option);
 }
 
-/// Finds the first of the candidates that is there, in the order of the rules. Its name is a layer, a pattern of layers,
-/// or else a channel.
+/// Finds the first of the candidates that is there, in the order of the rules. Its name is a layer, a pattern of
+/// layers, or else a channel.
 FoundByRules find_candidate(const ExrFile& file, const std::vector<NamedChannel>& channels, const AovNames& names,
                             const std::vector<AovCandidate>& candidates, const std::string& beside) {
   for (const auto& candidate : candidates) {

@@ -85,8 +85,8 @@ class ChannelSearch {
   std::vector<ChannelRef> find(std::size_t file, const AovNames& names, const std::string& chosen, bool own_file) const;
 
   /// Finds the AOV as the rules name it; gives nothing if the user chose, or if none of the candidates is there. Of
-  /// several layers that fit one pattern, as of several cameras, it is the one that ends as `beside` does. Fails if that
-  /// leaves several.
+  /// several layers that fit one pattern, as of several cameras, it is the one that ends as `beside` does. Fails if
+  /// that leaves several.
   FoundByRules find_by_rules(std::size_t file, const AovNames& names, const std::string& chosen,
                              const std::vector<AovCandidate>& candidates, const std::string& beside = "") const;
 

@@ -139,8 +139,8 @@ std::vector<ChannelRef> find_normal(FrameSource& source, const ChannelSearch& se
   return search.find(file, two, "", false);
 }
 
-/// Notes a camera, by a file or by the header, whose pixels have another shape than the file of the frame says: no pixel
-/// shows which is right. Who crops a picture may keep the header of the whole.
+/// Notes a camera, by a file or by the header, whose pixels have another shape than the file of the frame says: no
+/// pixel shows which is right. Who crops a picture may keep the header of the whole.
 void note_pixel_aspect(FrameSource& source, const std::string& camera) {
   constexpr double kSame = 0.01;  // focal lengths are rounded
   const double aspect = source.camera.fy / source.camera.fx;
@@ -165,14 +165,14 @@ void note_scaled_camera(FrameSource& source, const std::string& camera) {
 
 /// What the positions say of the camera that saw them: it, or why they tell none. Nothing where there are no positions
 /// that fit the depth.
-std::optional<std::variant<Resection, std::string>> camera_by_positions(const std::vector<ChannelRef>& positions,
+std::optional<std::variant<Resection, NoResection>> camera_by_positions(const std::vector<ChannelRef>& positions,
                                                                         std::vector<ExrFile>& files,
                                                                         const InputSettings& settings) {
   if (positions.empty()) return std::nullopt;
   ExrFile& file = files[positions.front().file];
   const auto points = points_of(file, positions, settings.sky, kManyBands);
   auto found = resection_of(points, file.display());
-  if (std::holds_alternative<std::string>(found))
+  if (std::holds_alternative<NoResection>(found))
     if (const std::string panorama = panorama_of(points, file.display()); !panorama.empty())
       refuse_panorama(file.path(), panorama + " by its positions");
   return found;
@@ -207,8 +207,8 @@ void find_camera(FrameSource& source, const ChannelSearch& search, const InputSe
   if (!names_a_camera(settings)) {
     source.positions = find_positions(search, source, settings);
     if (const auto found = camera_by_positions(source.positions, source.files, settings)) {
-      if (const auto* why = std::get_if<std::string>(&*found))
-        throw NoCamera(file.path(), "its positions tell none, since " + *why);
+      if (const auto* none = std::get_if<NoResection>(&*found))
+        throw NoCamera(file.path(), "its positions tell none, since " + none->why);
       source.camera = std::get<Resection>(*found).camera;
       const bool looks_around = settings.around > 0 || settings.around_all;
       if (source.camera.orthographic && looks_around && source[RawPlane::depth].size() == 1)

@@ -214,8 +214,8 @@ bool differ(const std::vector<UnrealLens>& lenses) {
   return most.fov - least.fov > 1e-3;
 }
 
-/// The lenses of a header, and of them those that may be the depth's: of its camera, by the end of its layer's name, and
-/// of its pass, by the name's beginning. They are one lens unless they differ.
+/// The lenses of a header, and of them those that may be the depth's: of its camera, by the end of its layer's name,
+/// and of its pass, by the name's beginning. They are one lens unless they differ.
 struct UnrealLenses {
   std::vector<UnrealLens> all, of_depth;
 };

@@ -32,6 +32,17 @@ std::optional<OtherCamera> best_of(const std::vector<Hypothesis>& hypotheses, co
   return best;
 }
 
+/// The same camera with the angles of its .chan file in another order.
+std::vector<Hypothesis> other_rotations(const Camera& camera, const View& view) {
+  std::vector<Hypothesis> turned;
+  for (const char* rotation : kChanRotations) {
+    if (!camera.chan_angles) break;
+    turned.push_back({fmt::format("its angles fit in another order: give --chan-rotation {}", rotation), camera, view});
+    turned.back().camera.view_from_world = view_by_angles(*camera.chan_angles, rotation);
+  }
+  return turned;
+}
+
 /// The same camera with its matrix replaced.
 std::vector<Hypothesis> turned_worlds(const Camera& camera, const View& view) {
   if (!camera.view_from_world) return {};
@@ -54,10 +65,7 @@ std::vector<Hypothesis> turned_worlds(const Camera& camera, const View& view) {
     add("its world_to_camera looks like that of a world with another axis up than the normals have (y, or z): give it "
         "for the world of the normals",
         product(given, up));
-  if (camera.chan_angles)
-    for (const char* rotation : kChanRotations)
-      add(fmt::format("its angles fit in another order: give --chan-rotation {}", rotation),
-          view_by_angles(*camera.chan_angles, rotation));
+  std::ranges::move(other_rotations(camera, view), std::back_inserter(turned));
   return turned;
 }
 
@@ -116,6 +124,12 @@ std::optional<OtherCamera> slightly_turned_camera(const NormalPlanes& planes, co
     turned = *score;
   }
   return OtherCamera{fmt::format("a camera that is turned by about {:.0f} degrees", as.turn_degrees()), turned};
+}
+
+std::optional<OtherCamera> best_other_rotation(const NormalPlanes& planes, const NormalScore& as, const Camera& camera,
+                                               const View& view) {
+  if (as.space != NormalSpace::world) return std::nullopt;
+  return best_of(other_rotations(camera, view), planes, as);
 }
 
 std::optional<OtherCamera> best_other_point(const NormalPlanes& planes, const NormalScore& as, const Camera& camera,

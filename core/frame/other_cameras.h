@@ -16,8 +16,8 @@ struct OtherCamera {
 };
 
 /// Gives the best of the usual mistakes by which a camera turns the world or the picture: the inverse of its matrix,
-/// axes of another convention, another axis up, a picture that is upside down. None where too little of the frame is
-/// smooth. `as` is the reading of the normals that is tried.
+/// axes of another convention, another axis up, angles in another order, a picture that is upside down. None where too
+/// little of the frame is smooth. `as` is the reading of the normals that is tried.
 std::optional<OtherCamera> best_turned_camera(const NormalPlanes& planes, const NormalScore& as, const Camera& camera,
                                               const View& view);
 
@@ -25,6 +25,11 @@ std::optional<OtherCamera> best_turned_camera(const NormalPlanes& planes, const 
 /// `as` is how they agree in view space. None where too little of the frame is smooth.
 std::optional<OtherCamera> slightly_turned_camera(const NormalPlanes& planes, const NormalScore& as,
                                                   const Camera& camera, const View& view);
+
+/// Gives the best of the orders in which the angles of a .chan file may turn the camera; none for other cameras, and
+/// for normals in view space.
+std::optional<OtherCamera> best_other_rotation(const NormalPlanes& planes, const NormalScore& as, const Camera& camera,
+                                               const View& view);
 
 /// Gives the best of the cameras with the principal point on the other side of the picture's centre, by x, by y or by
 /// both, or in the centre.

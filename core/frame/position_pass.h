@@ -16,7 +16,7 @@ std::vector<ChannelRef> find_positions(const ChannelSearch& search, const FrameS
                                        const InputSettings& settings);
 
 /// How many bands of rows are read of positions: to solve a camera, and to see whether one fits.
-inline constexpr int kManyBands = 48, kFewBands = 6;
+inline constexpr int kManyBands = 48, kFewBands = 4;
 
 /// Up to 48 points in each band of rows, well spread over the picture: of each place the pixel whose surroundings are
 /// smoothest, so that neither edges nor filters matter. Sky has none: 0, not finite, beyond `sky`, or the same in all

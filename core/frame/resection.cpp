@@ -402,8 +402,9 @@ Resection result_of(Pinhole solved, const Normalized& from, const Window& displa
 
 }  // namespace
 
-std::variant<Resection, std::string> resection_of(std::span<const SeenPoint> points, const Window& display) {
-  if (points.size() < kLeastPoints) return fmt::format("only {} of them are on smooth surfaces", points.size());
+std::variant<Resection, NoResection> resection_of(std::span<const SeenPoint> points, const Window& display) {
+  if (points.size() < kLeastPoints)
+    return NoResection{fmt::format("only {} of them are on smooth surfaces", points.size())};
   constexpr double kLargestFocalError = 1e-3;
   const Normalized from = normalized(points);
   // Perspective views see all that orthographic ones do, from very far.
@@ -413,13 +414,15 @@ std::variant<Resection, std::string> resection_of(std::span<const SeenPoint> poi
                                              kAlike * cost_of(*deep, from.points) + kExact * double(points.size()));
   const auto& camera = is_flat ? flat : deep;
   const auto best = camera ? std::optional(result_of(*camera, from, display)) : std::nullopt;
+  const double median = best ? best->median : std::numeric_limits<double>::infinity();
   if (!best || best->within < kNearlyAll)
-    return fmt::format(
-        "{:.0f} % of them lie within {} px of their pixels by the camera that fits best, {:.2g} px in the "
-        "median: no camera fits them, so they are filtered, or no positions, or those of a panorama",
-        best ? 100 * best->within : 0, kSeenWithin, best ? best->median : std::numeric_limits<double>::infinity());
+    return NoResection{
+        fmt::format("{:.0f} % of them lie within {} px of their pixels by the camera that fits best, {:.2g} px in the "
+                    "median: no camera fits them, so they are filtered, or no positions, or those of a panorama",
+                    best ? 100 * best->within : 0, kSeenWithin, median),
+        median};
   if (!(best->focal_error <= kLargestFocalError))
-    return std::string("they lie in one plane, or nearly so, which many cameras see alike");
+    return NoResection{"they lie in one plane, or nearly so, which many cameras see alike"};
   return *best;
 }
 

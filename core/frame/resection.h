@@ -28,6 +28,12 @@ struct Resection {
   bool is_camera_space() const { return !camera.view_from_world; }
 };
 
+/// Why no camera is found.
+struct NoResection {
+  std::string why;
+  double median = 0;  // px from point to pixel by the camera that fits best; 0 where that is not the reason
+};
+
 /// A camera is found where nearly all points lie so near to their pixels, px, beyond their rounding.
 constexpr double kSeenWithin = 0.1;
 /// The share of all points that is nearly all.
@@ -42,6 +48,6 @@ constexpr std::size_t kLeastPoints = 60;
 /// The first guess is the direct linear transform (Abdel-Aziz and Karara, 1971; normalized as by Hartley, In Defense of
 /// the Eight-Point Algorithm, 1997) of the sample of points that leaves the fewest others beside their pixels (Torr and
 /// Zisserman, MLESAC, 2000); it is refined by least squares over all points that fit, with a camera without skew.
-std::variant<Resection, std::string> resection_of(std::span<const SeenPoint> points, const Window& display);
+std::variant<Resection, NoResection> resection_of(std::span<const SeenPoint> points, const Window& display);
 
 }  // namespace alcove

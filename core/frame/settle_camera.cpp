@@ -20,24 +20,25 @@ namespace {
 constexpr double kCounted = 0.9;
 /// px, and part of the picture's width: a lens that is off by less is one that was rounded.
 constexpr double kLeastBeside = 1, kLeastPart = 1e-3;
+/// px. Where half of the points are farther off by the camera that fits best, they are of no camera; filtered ones are
+/// nearer.
+constexpr double kNoCamera = 2;
 
-/// How far the lens puts points from where the camera of the positions sees them, px, of most of them at most.
-double beside(const Camera& lens, const Camera& seen, std::span<const SeenPoint> points) {
+/// How far a lens puts points from the pixels that hold them, px, of most of them at most and beyond their rounding.
+/// The camera that stands where they are seen from places them.
+double beside(const Camera& lens, const Camera& standing, std::span<const SeenPoint> points) {
   std::vector<double> distances;
   for (const auto& point : points) {
     Vector3 view = point.position;
-    if (seen.view_from_world) {
-      view = times(*seen.view_from_world, point.position);
-      for (std::size_t k = 0; k < 3; k++) view[k] += seen.view_from_world_offset[k];
-    } else if (seen.left_handed) {
+    if (standing.view_from_world) {
+      view = times(*standing.view_from_world, point.position);
+      for (std::size_t k = 0; k < 3; k++) view[k] += standing.view_from_world_offset[k];
+    } else if (standing.left_handed) {
       view[2] = -view[2];
     }
-    const auto place = [&](const Camera& camera) {
-      const double over = camera.orthographic ? 1 : -1 / view[2];
-      return std::array{camera.cx + camera.fx * view[0] * over, camera.cy - camera.fy * view[1] * over};
-    };
-    const auto a = place(lens), b = place(seen);
-    distances.push_back(std::hypot(a[0] - b[0], a[1] - b[1]));
+    const double over = lens.orthographic ? 1 : -1 / view[2];
+    const double x = lens.cx + lens.fx * view[0] * over, y = lens.cy - lens.fy * view[1] * over;
+    distances.push_back(std::hypot(x - point.x, y - point.y) - point.rounding);
   }
   const auto last = distances.begin() + std::ptrdiff_t(kCounted * double(distances.size() - 1));
   std::ranges::nth_element(distances, last);
@@ -55,7 +56,7 @@ bool is_centred(const Camera& camera, double pixel_aspect) {
 std::string text_of(const Camera& camera, double pixel_aspect) {
   const double width = camera.width / camera.fx;
   if (!is_centred(camera, pixel_aspect))
-    return fmt::format("{} camera with fx {:.6g}, fy {:.6g}, cx {:.6g}, cy {:.6g} (--camera)",
+    return fmt::format("{} camera with fx {:.6g}, fy {:.6g}, cx {:.2f}, cy {:.2f} (--camera)",
                        camera.orthographic ? "an orthographic" : "a", camera.fx, camera.fy, camera.cx, camera.cy);
   if (camera.orthographic) return fmt::format("an orthographic camera (--ortho-width {:.6g})", width);
   const double degrees = 2 * std::atan(0.5 * width) * 180 / std::numbers::pi;
@@ -92,21 +93,29 @@ std::string settle_camera(FrameSource& source, const InputSettings& settings) {
   if (source.positions.empty() || source.camera_is_assumed || source.camera_from == kByPositions) return "";
   ExrFile& file = source.files[source.positions.front().file];
   const auto points = points_of(file, source.positions, settings.sky, kFewBands);
+  const double limit = std::max(kLeastBeside, kLeastPart * source.display.width);
+  if (points.empty() || beside(source.camera, source.camera, points) <= limit) return "";
   const auto found = resection_of(points, source.display);
-  const auto* by_positions = std::get_if<Resection>(&found);
-  if (!by_positions) {
+  const auto* seen = std::get_if<Resection>(&found);
+  const std::string& held = file.path();
+  std::string text;
+  if (!seen) {
     if (const std::string panorama = panorama_of(points, source.display); !panorama.empty())
       refuse_panorama(file.path(), panorama + " by its positions");
-    return "";
+    const auto& none = std::get<NoResection>(found);
+    if (none.median <= kNoCamera || !source.camera_from.empty()) return "";
+    text = fmt::format(
+        "no camera fits the positions of {}: by the best of all half of them lie {:.3g} px and more from the pixels "
+        "that "
+        "hold them, so they are of a panorama, or no positions (--position-channels); {} is taken",
+        held, none.median, name_of_lens(source, settings));
+  } else {
+    const double px = beside(source.camera, seen->camera, points);
+    if (px <= limit) return "";
+    text = fmt::format("by {} most positions of {} lie up to {:.3g} px from the pixels that hold them; they show {}{}",
+                       name_of_lens(source, settings), held, px, text_of(seen->camera, source.pixel_aspect),
+                       source.camera_from.empty() ? ": give that, or leave the option out" : "");
   }
-  const Camera& seen = by_positions->camera;
-  const double px = beside(source.camera, seen, points);
-  if (px <= std::max(kLeastBeside, kLeastPart * source.display.width)) return "";
-  const bool is_option = source.camera_from.empty();
-  const std::string text =
-      fmt::format("by {} the positions of {} lie up to {:.3g} px from the pixels that hold them; they show {}{}",
-                  name_of_lens(source, settings), file.path(), px, text_of(seen, source.pixel_aspect),
-                  is_option ? ", which is taken if the option is left out" : "");
   source.notes.push_back({NoteCode::field_of_view, text});
   return text;
 }

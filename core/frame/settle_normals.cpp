@@ -334,6 +334,7 @@ class NormalSettlement : private Settlement {
                   fmt::format("normals are read as {}; better fits {}: {} ({})", text_of(*chosen), text_of(*straighter),
                               turn_of(*straighter, *chosen), kSpaceOptions));
     doubt_centre(*chosen);
+    if (doubt_rotation(*chosen)) return;
     if (chosen->explained() < kLeastAgreement) refuse_normals(*chosen, scores[0]);
     if (scores[0].agreement >= kLeastAgreement && !explains(*chosen, scores[0]))
       note(NoteCode::normals_disagree, fmt::format("normals are read as {}; better fits {} ({})", text_of(*chosen),
@@ -396,6 +397,16 @@ class NormalSettlement : private Settlement {
     note_centre(source_);
   }
 
+  /// Notes where the angles of a .chan file fit better in another order. Returns whether they do.
+  bool doubt_rotation(const NormalScore& chosen) {
+    const auto other = best_other_rotation(planes(), chosen, source_.camera, view_);
+    if (!other || !is_sharper(other->score, chosen) || chosen.agreement < kLeastAgreement) return false;
+    note(NoteCode::normals_disagree,
+         fmt::format("by the camera{} {:.0f} % of the normals agree with depth to 3 degrees; {}, then {:.0f} % do",
+                     from(), 100 * chosen.close, other->what, 100 * other->score.close));
+    return true;
+  }
+
   /// Notes where another field of view fits better, as it also may where the depth is read wrongly. Returns whether it
   /// does.
   bool doubt_width(const NormalScore& chosen) {
@@ -419,8 +430,8 @@ class NormalSettlement : private Settlement {
   static constexpr const char* kWithout = "--normal none reconstructs them from depth";
 
   static constexpr const char* kCheck =
-      "check --normal-space, --normal-encoding, --depth-kind with --near, --far and --reversed-z, and --camera or "
-      "--fov: "
+      "check --normal-space, --normal-encoding, --depth-kind with --near, --far and --reversed-z, and --camera, "
+      "--chan-rotation or --fov: "
       "it may also be the camera of another frame";
 
   bool has_negative_ = false;  // of the normals' components as they stand in the file, any

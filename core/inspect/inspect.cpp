@@ -54,10 +54,12 @@ void add_planar(InspectedDepth& depth, const std::vector<float>& planar, const F
   std::ranges::copy_if(planar, std::back_inserter(surfaces), [](float z) { return !std::isinf(z); });
   depth.sky_share = 1 - double(surfaces.size()) / double(planar.size());
   if (!surfaces.empty()) {
-    std::ranges::sort(surfaces);
-    depth.nearest = surfaces.front();
-    depth.median = surfaces[surfaces.size() / 2];
-    depth.farthest = surfaces.back();
+    const auto [nearest, farthest] = std::ranges::minmax(surfaces);
+    const auto middle = surfaces.begin() + std::ptrdiff_t(surfaces.size() / 2);
+    std::ranges::nth_element(surfaces, middle);
+    depth.nearest = nearest;
+    depth.median = *middle;
+    depth.farthest = farthest;
   }
   depth.scores = source.depth_scores;
 }

@@ -64,14 +64,14 @@ std::vector<SeenPoint> seen_by(const Camera& camera, double far = 12) {
 
 Resection found(const std::vector<SeenPoint>& points) {
   const auto result = resection_of(points, kPicture);
-  EXPECT_TRUE(std::holds_alternative<Resection>(result)) << std::get<std::string>(result);
+  EXPECT_TRUE(std::holds_alternative<Resection>(result)) << std::get<NoResection>(result).why;
   return std::holds_alternative<Resection>(result) ? std::get<Resection>(result) : Resection{};
 }
 
 std::string reason(const std::vector<SeenPoint>& points) {
   const auto result = resection_of(points, kPicture);
-  EXPECT_TRUE(std::holds_alternative<std::string>(result));
-  return std::holds_alternative<std::string>(result) ? std::get<std::string>(result) : "";
+  EXPECT_TRUE(std::holds_alternative<NoResection>(result));
+  return std::holds_alternative<NoResection>(result) ? std::get<NoResection>(result).why : "";
 }
 
 void expect_same(const Camera& camera, const Camera& expected, double within) {
@@ -335,6 +335,24 @@ TEST_F(PositionPass, refutes_a_lens_by_pixels) {
               AllOf(HasSubstr("by --fov 90"), refutes, HasSubstr(fmt::format("--fov {:.5g}", degrees))));
   EXPECT_THAT(warned({"--ortho-width", "5"}), AllOf(HasSubstr("by --ortho-width"), refutes));
   EXPECT_THAT(warned({"--camera", camera}), Not(refutes));
+}
+
+TEST_F(PositionPass, that_no_camera_fits_is_told_beside_a_lens) {
+  write_positions("ViewLayer.Position");
+  FrameFile file = wall_frame();
+  for (const char* c : {"X", "Y", "Z"})
+    for (int y = 0; y < 36; y++)
+      for (int x = 0; x < 64; x++) {
+        // Smooth, and seen along the rays of no lens.
+        const double longitude = 0.07 * x, latitude = 0.05 * (y - 18), distance = 3 + 0.1 * std::sin(0.3 * x + 0.2 * y);
+        file.planes[std::string("ViewLayer.Position.") + c].push_back(
+            float(distance * (*c == 'X'   ? std::sin(longitude) * std::cos(latitude)
+                              : *c == 'Y' ? std::sin(latitude)
+                                          : std::cos(longitude) * std::cos(latitude))));
+      }
+  file.write(frame);
+  const std::vector<std::string> run{"run", frame, "-o", ao, "--radius", "1", "--normal", "none", "--fov", "50"};
+  EXPECT_THAT(run_program(run).err, AllOf(HasSubstr("no camera fits"), HasSubstr("--fov 50 is taken")));
 }
 
 TEST_F(PositionPass, that_is_none_is_told) {
