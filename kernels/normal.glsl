@@ -35,7 +35,7 @@ const float kOpposite = -0.5;
 /// cards. `surface` is the unit normal by depth, and faces the eye.
 bool is_opposite(vec3 n, vec3 eye, vec3 surface) { return dot(n, eye) + dot(n, surface) < kOpposite; }
 
-/// A visible surface faces the eye: a shading normal that leans away is bent back just far enough.
+/// A shading normal that leans away is bent back just far enough.
 vec3 facing(vec3 n, vec3 eye) {
   const float cosine = dot(n, eye);
   return cosine < kLeastFacing ? normalize(n + (kLeastFacing - cosine) * eye) : n;

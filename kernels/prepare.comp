@@ -1,6 +1,5 @@
 // Makes the G-buffer that every later kernel relies on: z > 0 planar or marked sky; unit view-space normals that face
-// the eye, where those of the other side are turned round, those that lean away are bent back, and those that are
-// unusable are marked for `reconstruct`; nothing that is not finite.
+// the eye, where those that are unusable or clearly face away are left to `reconstruct`; nothing that is not finite.
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // In: raw depth of any kind or positions, raw normals of any encoding in world or view space.
@@ -54,41 +53,6 @@ vec3 decoded_normal(int index) {
   }
 }
 
-/// The way to the nearer of the two surfaces beside the pixel along an axis; zero where there is none.
-vec3 tangent_along(ivec2 pixel, ivec2 axis, vec3 position) {
-  vec3 tangent = vec3(0);
-  float least = 1e30;
-  for (int side = -1; side <= 1; side += 2) {
-    const ivec2 beside = pixel + side * axis;
-    if (!inside(params.view, beside)) continue;
-    const float z = depth_at(beside);
-    const vec3 way = float(side) * (position_of(params.view, vec2(beside) + 0.5, z) - position);
-    const float squared = dot(way, way);
-    if (z < kSkyDepth && squared < least) {
-      tangent = way;
-      least = squared;
-    }
-  }
-  return tangent;
-}
-
-/// The unit normal by the depths around the pixel, facing the eye; where they give none, the way to the eye.
-vec3 normal_by_depth(ivec2 pixel, vec3 position, vec3 eye) {
-  const vec3 n = cross(tangent_along(pixel, ivec2(0, 1), position), tangent_along(pixel, ivec2(1, 0), position));
-  const float size = length(n);
-  if (!is_finite(size) || !(size > 0.0)) return eye;
-  return dot(n, eye) < 0.0 ? -n / size : n / size;
-}
-
-void turn_round(ivec2 pixel, int index, float z, vec3 n) {
-  const vec3 position = position_of(params.view, vec2(pixel) + 0.5, z);
-  const vec3 eye = toward_eye(params.view, position);
-  if (is_opposite(n, eye, normal_by_depth(pixel, position, eye))) {
-    normal[index] = pack_normal(facing(-n, eye));
-    atomicAdd(counts.turned_normals, 1u);
-  }
-}
-
 void main() {
   const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   if (!inside(params.view, pixel)) return;
@@ -111,11 +75,10 @@ void main() {
   }
   const float size = length(n);
   const bool usable = is_finite(size) && size > kLeastLength;
-  if (!usable) {
-    missing.z = 1u;  // every invocation that writes it writes the same
-    if (kNormalForm != kNormalNone) atomicAdd(counts.repaired_normals, 1u);
-  }
   const vec3 eye = toward_eye(params.view, position_of(params.view, vec2(pixel) + 0.5, z));
-  normal[index] = usable ? pack_normal(facing(n / size, eye)) : kNoNormal;
-  for (bool once = usable && dot(n, eye) < 0.0; once; once = false) turn_round(pixel, index, z, n / size);
+  n /= size;
+  const bool is_away = dot(n, eye) < -kLeastFacing;  // rounding does not make it face the eye
+  if (!usable || is_away) missing.z = 1u;            // every invocation that writes it writes the same
+  if (!usable && kNormalForm != kNormalNone) atomicAdd(counts.repaired_normals, 1u);
+  normal[index] = !usable ? kNoNormal : pack_normal(is_away ? n : facing(n, eye));
 }

@@ -1,8 +1,11 @@
-// Makes normals from depth, where the frame has none that is usable.
+// Makes normals from depth where the frame has none that is usable, and has those that face away face the eye.
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // In: planar depth; normals, marked where they are missing.
-// Out: those normals. The kernel runs where `prepare` has marked any.
+// Out: those normals. The kernel runs where `prepare` has found any that are missing or face away.
+//
+// What is seen faces the eye. A normal that is the opposite of its surface's, by depth, is turned round: so are those
+// of mirrored things and of the backs of cards. A shading normal that leans beyond the horizon is bent back to it.
 //
 // A pixel without a usable normal gets the normal of its own plane. 1/z is affine over a plane's image, so on each axis
 // the side whose two neighbours predict this pixel's 1/z best is on the same plane, and its position difference is a
@@ -19,6 +22,7 @@ layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 layout(scalar, push_constant) uniform Push { ReconstructParams params; };
 layout(scalar, binding = kReconstructDepth) readonly buffer Depth { float depth[]; };
 layout(scalar, binding = kReconstructNormal) buffer Normal { uint normal[]; };
+layout(scalar, binding = kReconstructCounts) buffer Counts { FrameCounts counts; };
 
 /// How much a large change of 1/z counts against a side, beside its bend.
 const float kNearness = 0.1;
@@ -87,8 +91,17 @@ void main() {
   const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   if (!inside(params.view, pixel)) return;
   const int index = index_of(params.view, pixel);
-  if (normal[index] != kNoNormal) return;
-  const vec3 position = position_of(params.view, vec2(pixel) + 0.5, depth[index]);
+  const uint word = normal[index];
+  const float z = depth[index];
+  const vec3 position = position_of(params.view, vec2(pixel) + 0.5, z);
   const vec3 eye = toward_eye(params.view, position);
-  normal[index] = pack_normal(facing(normal_from_depth(pixel, position, eye), eye));
+  vec3 n = unpack_normal(word);
+  const bool is_missing = word == kNoNormal;
+  for (bool once = z < kSkyDepth && (is_missing || dot(n, eye) < 0.0); once; once = false) {
+    const vec3 by_depth = normal_from_depth(pixel, position, eye);
+    const bool is_turned = !is_missing && is_opposite(n, eye, by_depth);
+    n = is_missing ? by_depth : is_turned ? -n : n;
+    if (is_turned) atomicAdd(counts.turned_normals, 1u);
+    normal[index] = pack_normal(facing(n, eye));
+  }
 }

@@ -6,7 +6,8 @@
 ALCOVE_BEGIN
 
 ALCOVE_CONSTANT uint kReconstructDepth = 0;   // in: one float per pixel, from prepare
-ALCOVE_CONSTANT uint kReconstructNormal = 1;  // in and out: one uint per pixel, see normal.glsl: kNoNormal is replaced
+ALCOVE_CONSTANT uint kReconstructNormal = 1;  // in and out: one uint per pixel, see normal.glsl: all face the eye
+ALCOVE_CONSTANT uint kReconstructCounts = 2;  // in and out: FrameCounts
 
 struct ReconstructParams {
   View view;

@@ -69,7 +69,9 @@ GBuffer prepare(gpu::Recorder& gpu, const FrameInputs& frame, const std::string&
 
 GBuffer reconstruct(gpu::Recorder& gpu, const GBuffer& gbuffer) {
   gpu.dispatch("reconstruct", ReconstructParams{gbuffer.view},
-               {{kReconstructDepth, *gbuffer.depth}, {kReconstructNormal, *gbuffer.normal}},
+               {{kReconstructDepth, *gbuffer.depth},
+                {kReconstructNormal, *gbuffer.normal},
+                {kReconstructCounts, *gbuffer.counts}},
                gpu::Extent(*gbuffer.missing));
   return gbuffer;
 }

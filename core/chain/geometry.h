@@ -64,7 +64,7 @@ struct Matte {
 /// G-buffer already.
 GBuffer prepare(gpu::Recorder& gpu, const FrameInputs& frame, const std::string& prefix = "");
 
-/// Puts normals where prepare found none, and returns the same G-buffer.
+/// Puts normals where prepare found none, has all face the eye, and returns the same G-buffer.
 GBuffer reconstruct(gpu::Recorder& gpu, const GBuffer& gbuffer);
 
 /// Makes the G-buffer of the blocks of a grid, or returns the same one where each block is a pixel. `prefix`: as above.

@@ -96,7 +96,8 @@ Notes damage(FrameSource& source) {
         found.push_back(
             {NoteCode::lossy_compression,
              fmt::format("{} is compressed by DWA, which is lossy for a channel of that name; write data with zip",
-                         channel.channel)});
+                         channel.channel),
+             plane == RawPlane::normal ? source.normal_file() : ""});
     }
   for (std::size_t file = 0; file < source.files.size(); file++)
     std::ranges::move(cut_parts(source.files[file], needed[file]), std::back_inserter(found));

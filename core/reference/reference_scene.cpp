@@ -63,21 +63,47 @@ std::pair<double, double> ReferenceScene::image_of(Vector position) const {
   return {center_x_ + camera_.fx * position.x / z, center_y_ - camera_.fy * position.y / z};
 }
 
-Vector ReferenceScene::normal_by_depth(int x, int y, Vector eye) const {
-  const Vector here = position(x, y, depth(x, y));
-  const auto tangent = [&](int dx, int dy) {
-    Vector nearer;
-    for (const int side : {-1, 1}) {
-      const int i = x + side * dx, j = y + side * dy;
-      const double z = inside(i, j) ? depth(i, j) : 0;
-      if (z == 0) continue;
-      const Vector way = side * (position(i, j, z) - here);
-      if (length(nearer) == 0 || length(way) < length(nearer)) nearer = way;
+double ReferenceScene::affine_depth(int x, int y) const {
+  const double z = inside(x, y) ? depth(x, y) : 0;
+  return z == 0 ? -1 : orthographic() ? z : 1 / z;
+}
+
+Vector ReferenceScene::tangent_along(int x, int y, int dx, int dy) const {
+  // As reconstruct.comp has it, with its constants.
+  constexpr double kNearness = 0.1, kSameSurface = 4, kRounding = 1e-6, kOneSurface = 0.01, kNone = 1e30;
+  const double here = affine_depth(x, y);
+  const Vector at = position(x, y, depth(x, y));
+  Vector tangent, other;
+  double least = kNone, step = 0, other_step = kNone;
+  for (const int side : {-1, 1}) {
+    const int i = x + side * dx, j = y + side * dy;
+    const double one = affine_depth(i, j), two = affine_depth(i + side * dx, j + side * dy);
+    if (one <= 0) continue;
+    const double change = side * (one - here);
+    const double error = (two > 0 ? std::abs(2 * one - two - here) : std::abs(change)) + kNearness * std::abs(change);
+    const Vector along = side * (position(i, j, depth(i, j)) - at);
+    if (error < least) {
+      other = tangent;
+      other_step = least < kNone ? step : kNone;
+      tangent = along;
+      step = change;
+      least = error;
+    } else {
+      other = along;
+      other_step = change;
     }
-    return nearer;
-  };
-  const Vector n = cross(tangent(0, 1), tangent(1, 0));
-  return length(n) > 0 ? normalized(dot(n, eye) < 0 ? -1 * n : n) : eye;
+  }
+  const bool is_same = std::abs(step - other_step) <= kSameSurface * least + kRounding * here &&
+                       std::max(std::abs(step), std::abs(other_step)) < kOneSurface * here;
+  return is_same ? tangent + other : tangent;
+}
+
+Vector ReferenceScene::normal_from_depth(int x, int y, Vector eye) const {
+  const Vector right = tangent_along(x, y, 1, 0), down = tangent_along(x, y, 0, 1), only = right + down;
+  Vector n = cross(down, right);
+  if (dot(n, n) == 0 && dot(only, only) > 0) n = eye - (dot(eye, only) / dot(only, only)) * only;
+  if (!(dot(n, n) > 0)) return eye;
+  return normalized(dot(n, eye) < 0 ? -1 * n : n);
 }
 
 Vector ReferenceScene::normal(int x, int y, Vector eye) const {
@@ -90,9 +116,9 @@ Vector ReferenceScene::normal(int x, int y, Vector eye) const {
          m[2][0] * n.x + m[2][1] * n.y + m[2][2] * n.z};
   }
   n = length(n) > 0 ? normalized(n) : eye;
-  // As prepare.comp does, with the thresholds of normal.glsl.
+  // As reconstruct.comp does, with the thresholds of normal.glsl.
   constexpr double kOpposite = -0.5, kLeastFacing = 1e-3;
-  if (dot(n, eye) < 0 && dot(n, eye) + dot(n, normal_by_depth(x, y, eye)) < kOpposite) n = -1 * n;
+  if (dot(n, eye) < -kLeastFacing && dot(n, eye) + dot(n, normal_from_depth(x, y, eye)) < kOpposite) n = -1 * n;
   return dot(n, eye) < kLeastFacing ? normalized(n + (kLeastFacing - dot(n, eye)) * eye) : n;
 }
 

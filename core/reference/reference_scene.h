@@ -63,8 +63,11 @@ class ReferenceScene {
   Vector normal(int x, int y, Vector eye) const;
 
  private:
-  /// By the nearer neighbours, facing the eye; the way to the eye where they give none.
-  Vector normal_by_depth(int x, int y, Vector eye) const;
+  /// What is affine over the image of a plane: 1/z, orthographic z; below 0 where there is no surface.
+  double affine_depth(int x, int y) const;
+  /// The change of position along one axis, and the unit normal that faces the eye: see reconstruct.comp.
+  Vector tangent_along(int x, int y, int dx, int dy) const;
+  Vector normal_from_depth(int x, int y, Vector eye) const;
   std::size_t index(int x, int y) const { return std::size_t(y) * std::size_t(width()) + std::size_t(x); }
 
   const HostFrame& frame_;
