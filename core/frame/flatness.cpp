@@ -113,6 +113,16 @@ double common_step(std::span<const double> sorted, double value) {
   return divisor > 16 * rounding ? divisor : 0;
 }
 
+/// How often each of the sorted values is there.
+std::vector<std::size_t> counts_of_equal(std::span<const double> sorted) {
+  std::vector<std::size_t> counts;
+  for (std::size_t i = 0; i < sorted.size(); i++) {
+    if (i == 0 || sorted[i] != sorted[i - 1]) counts.push_back(0);
+    counts.back()++;
+  }
+  return counts;
+}
+
 /// The step of values of about this size, relative to them.
 double relative_step(const Grain& grain, double value) {
   if (grain.step == 0) return 0;
@@ -222,6 +232,7 @@ Grain grain_of(std::span<const float> raw, double sky) {
   if (values.empty()) return {};
   std::ranges::sort(values);
   Grain grain{values[values.size() / 2]};
+  const std::vector<std::size_t> counts = counts_of_equal(values);
   values.erase(std::unique(values.begin(), values.end()), values.end());
   if (values.size() < 2 * kAbout) return grain;
   struct Place {
@@ -229,8 +240,12 @@ Grain grain_of(std::span<const float> raw, double sky) {
   };
   const auto place_at = [&](double part) {
     const std::size_t first = std::size_t(part * double(values.size() - kAbout));
-    const double value = values[first + kAbout / 2];
-    return Place{value, common_step(std::span(values).subspan(first, kAbout), value)};
+    const double value = values[first + kAbout / 2],
+                 step = common_step(std::span(values).subspan(first, kAbout), value);
+    // A plane whose depth changes by as much from row to row has one step too, and each of its values is as frequent.
+    const auto [least, most] = std::ranges::minmax(std::span(counts).subspan(first, kAbout));
+    const bool is_ramp = most - least <= 1 && values[first + kAbout - 1] - values[first] < 1.001 * (kAbout - 1) * step;
+    return Place{value, is_ramp ? 0 : step};
   };
   const std::array places{place_at(0.1), place_at(0.5), place_at(0.9)};
   grain.step = places[1].step;

@@ -52,9 +52,10 @@ Notes DepthSample::notes(double smallest_radius, double largest_radius, int widt
   if (smallest_radius < kLeastPrecisions * precision)
     notes.push_back(
         {NoteCode::radius_below_precision,
-         fmt::format("radius {:.3g} is {:.2g} times the depth's precision of {:.2g} at the median depth {:.3g}: "
+         fmt::format("radius {:.3g} is {:.2g} times the depth's precision of {:.2g} at the median depth {:.3g}{}: "
                      "occluders are lost in its rounding; give a larger --radius{}",
                      smallest_radius, smallest_radius / precision, precision, z,
+                     precision > kFullPrecision * z ? "" : ", to which renderers compute it (floats step by less)",
                      precision > kFullPrecision * z ? ", or write depth with more bits" : "")});
 
   const auto is_below = [&](double depth) { return smallest_radius < pixel_at(depth); };

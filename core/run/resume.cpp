@@ -42,7 +42,8 @@ std::vector<std::string> inputs_of(const Settings& frame) {
   std::vector<std::string> files;
   if (!input.motion.empty()) files.push_back(input.motion);
   for (const auto& file : plane_file_options()) files.push_back(file.of(input));
-  if (!input.matte_object.empty()) add_manifests(files, input.matte.empty() ? main_input(input) : input.matte, input.view);
+  if (!input.matte_object.empty())
+    add_manifests(files, input.matte.empty() ? main_input(input) : input.matte, input.view);
   if (!input.occluder_objects.empty() || !input.ignored_objects.empty())
     add_manifests(files, input.objects.empty() ? main_input(input) : input.objects, input.view);
   return files;

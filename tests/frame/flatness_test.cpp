@@ -122,6 +122,8 @@ TEST(Grain, is_the_step_of_the_values_and_not_of_their_type) {
   EXPECT_NEAR(grain(kStorages[4].stored).step, 1, 1e-3);
   EXPECT_EQ(grain([](double) { return 3.0; }).step, 0) << "one wall tells nothing";
   EXPECT_EQ(grain_of({}, kSky).median, 0);
+  EXPECT_EQ(grain_of(plane_of([](double x, double) { return 6 + x / 256; }), kSky).step, 0)
+      << "a plane with one step from column to column was not rounded";
 }
 
 TEST(Jitter, is_that_of_random_places_within_pixels) {
