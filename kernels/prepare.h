@@ -10,7 +10,8 @@ ALCOVE_CONSTANT uint kPrepareRawDepth = 0;  // in: one float per pixel, as in th
 // in: planes of floats, as many as normal_form needs; not read without normals
 ALCOVE_CONSTANT uint kPrepareRawNormal = 1;
 ALCOVE_CONSTANT uint kPrepareDepth = 2;  // out: one float per pixel, planar z > 0 in scene units, kSkyDepth on sky
-// out: one uint per pixel, see normal.glsl: unit, view space, facing the eye or clearly away; kNoNormal where there is none
+// out: one uint per pixel, see normal.glsl: unit, view space, facing the eye or clearly away; kNoNormal where there is
+// none
 ALCOVE_CONSTANT uint kPrepareNormal = 3;
 ALCOVE_CONSTANT uint kPrepareCounts = 4;   // out: FrameCounts, zeroed before
 ALCOVE_CONSTANT uint kPrepareMissing = 5;  // out: GroupCount of reconstruct: z becomes 1 where it has work

@@ -38,7 +38,7 @@ struct DeepStored {
   bool names_part;                // each chunk begins with the number of its part
 };
 
-/// Reads deep scan lines and deep tiles of one level, or level 0 of several, of one file or of several. Every failure is
+/// Reads deep scan lines and deep tiles of one level, or level 0 of several, of one file or more. Every failure is
 /// ErrorKind::input and names the file. Chunks are checked against their file before anything is made by their sizes.
 class DeepReader {
  public:

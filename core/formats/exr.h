@@ -97,9 +97,9 @@ class ExrFile {
   /// Gives back what reading takes. From then on only parts, windows and that number are there.
   void close();
 
-  /// The samples of these deep parts, and of those of other files, all together, make the channels deep_channel() of the
-  /// first of them from now on, over these pixels, which become the data window of that part. A part need not have all
-  /// of them. Fails where a part has no Z, and where chunks claim more than their file can hold.
+  /// The samples of these deep parts and of those of other files, all together, make the channels deep_channel() of
+  /// the first of them from now on, over these pixels, which become the data window of that part. A part need not have
+  /// all of them. Fails where a part has no Z, and where chunks claim more than their file can hold.
   void take_deep(const std::vector<int>& parts, const DeepRules& rules, const Window& data,
                  std::span<const DeepElement> others = {});
   /// The same over the window of the first part.

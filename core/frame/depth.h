@@ -37,8 +37,8 @@ struct DepthPrecision {
 /// planar z = d; ray: |position| = d; inverse z = 1/d; normalized z = n + d (f - n); log z = ((1 + C f)^d - 1) / C;
 /// device 1/z = 1/n - d (1/n - 1/f), of an orthographic camera z = n + d (f - n); position z = -(view z). `reversed`
 /// puts 1 - d for d, a device range of -1 to 1 (d + 1) / 2. Of device, normalized and log depth only what is strictly
-/// between 0 and 1 is a surface, but for normalized depth that goes on beyond its planes. Fails with ErrorKind::usage where the kind needs a plane, a world matrix or a
-/// perspective that is not there.
+/// between 0 and 1 is a surface, but for normalized depth that goes on beyond its planes. Fails with
+/// ErrorKind::usage where the kind needs a plane, a world matrix or a perspective that is not there.
 DepthMap depth_map(DepthKind kind, const DepthRange& range, PositionSpace space, const Camera& camera, double scale,
                    double sky);
 

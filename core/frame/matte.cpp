@@ -44,7 +44,7 @@ std::vector<std::uint32_t> numbers_of(const std::string& path, const Objects& me
 constexpr std::size_t kShownObjects = 8;
 constexpr const char* kEscapes = "a backslash before a comma, a blank, * or ? takes it as a part of the name";
 
-/// Objects' names as a message shows them: blanks at their ends can be seen, and commas are told from those between them.
+/// Objects' names as a message shows them: blanks at their ends are seen, and commas are told from those between them.
 std::vector<std::string> shown(const std::vector<std::string>& names) {
   std::vector<std::string> quoted;
   for (const auto& name : names) {

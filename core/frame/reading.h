@@ -19,8 +19,8 @@ namespace alcove {
 struct Meaning {
   DepthKind depth_kind = DepthKind::planar;  // not automatic
   DepthRange depth_range;
-  // How the depth values were rounded: to multiples of a step, 0: to none; and to this part of themselves, where that is
-  // more than their sample type does. See core/frame/flatness.h, and step_of().
+  // How the depth values were rounded: to multiples of a step, 0: to none; and to this part of themselves, where that
+  // is more than their sample type does. See core/frame/flatness.h, and step_of().
   double depth_step = 0, depth_rounding = 0;
   bool depth_is_coarse = false;                                // either is more than a 2^14th of the median value
   double found_sky = std::numeric_limits<double>::infinity();  // raw depth at or beyond it is sky, as the pixels show

@@ -37,8 +37,8 @@ constexpr double kAsMany = 0.98;
 constexpr double kLeastTurn = 1, kLeastTurnOfHalf = 3;
 /// The same where nothing but the turn speaks for another space.
 constexpr double kClearTurn = 2;
-/// Normals are cut if none is below this, if by depth this part of them should be, and if this part of those is as depth
-/// and the cut make them.
+/// Normals are cut if none is below this, if by depth this part of them should be, and if this part of those is as
+/// depth and the cut make them.
 constexpr double kBelowZero = -1.0 / 256, kLeastNeeded = 0.02, kLeastCut = 0.8;
 
 class NormalSettlement : private Settlement {
@@ -335,7 +335,7 @@ class NormalSettlement : private Settlement {
                               turn_of(*straighter, *chosen), kSpaceOptions));
     doubt_centre(*chosen);
     if (doubt_rotation(*chosen)) return;
-    if (chosen->explained() < kLeastAgreement) refuse_normals(*chosen, scores[0]);
+    if (chosen->explained() < kLeastAgreement || chosen->agreement < kRefuted) refuse_normals(*chosen, scores[0]);
     if (scores[0].agreement >= kLeastAgreement && !explains(*chosen, scores[0]))
       note(NoteCode::normals_disagree, fmt::format("normals are read as {}; better fits {} ({})", text_of(*chosen),
                                                    text_of(scores[0]), kSpaceOptions));

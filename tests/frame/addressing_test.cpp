@@ -167,7 +167,7 @@ TEST_F(GBuffer, names_that_a_message_proposes_are_taken) {
     }
     return std::string();
   };
-  for (const Names& channels : {Names{"Detph.Z"}, {"Depths.V", "Mist.V"}, {"R", "my.Depth_Z"}}) {
+  for (const Names& channels : {Names{"Detph.Z"}, {"Depths.V", "Mist.V"}, {"R", "Deth.Y"}}) {
     settings.depth_channel = "";
     write(channels);
     settings.depth_channel = proposed();
