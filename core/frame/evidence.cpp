@@ -186,12 +186,12 @@ class NormalSum {
     double cosine = std::min(1.0, dot(n, surface.normal));
     score_.facing += dot(n, surface.eye) > 0;
     score_.agreement += cosine > kAgreeing;
+    score_.close += cosine > kClose;
     if (cosine < -kAgreeing) {
       score_.opposite++;
       cosine = std::min(1.0, -cosine);
       n = scaled(n, -1);
     }
-    score_.close += cosine > kClose;
     cosines_.push_back(cosine);
     if (cosine > kAgreeing) add_turn(surface.normal, n);
   }

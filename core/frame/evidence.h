@@ -57,7 +57,7 @@ struct NormalScore {
   double facing = 0;     // share that faces the camera, as all that is visible does
   double agreement = 0;  // share within 20 degrees of the normal that depth gives
   double opposite = 0;   // share within 20 degrees of its opposite, which prepare.comp turns round
-  double close = 0;      // share within 3 degrees of either, which only the right camera gives
+  double close = 0;      // share within 3 degrees of it, which only the right camera gives
   double angle = 0;      // degrees to either, of the best quarter at most
   Vector3 turn{};        // radians about an axis of view space, by which those within 20 degrees are turned as a whole
 

@@ -30,8 +30,8 @@ constexpr double kSurelyClose = 0.5;
 /// If this part of the normals has unit length, and less than the other part by another encoding, they are vectors.
 constexpr double kUnit = 0.9, kNotUnit = 0.5;
 /// A reading explains the normals as well as the best one if, with those of the other side turned round, it explains
-/// this part of as many.
-constexpr double kAsMany = 0.98;
+/// this part of as many, and this part of those need not be turned.
+constexpr double kAsMany = 0.98, kLeastOwn = 0.2;
 /// Degrees. If all normals are turned by more than this against those of depth, they are of another space or another
 /// camera. Bumps do not turn them as a whole; half depth does so by up to a degree.
 constexpr double kLeastTurn = 1, kLeastTurnOfHalf = 3;
@@ -103,7 +103,7 @@ class NormalSettlement : private Settlement {
 
   /// Refuses vectors whose lengths show that they went through what is made for colours.
   void refuse_altered(const NormalStatistics& n) const {
-    if (std::max(n.unit_share, n.unorm_unit_share) > kNotUnit || n.usual_share > kUnit) return;
+    if (std::max(n.unit_share, n.unorm_unit_share) > kUnit || n.usual_share > kUnit) return;
     if (const auto what = alteration_of(normal_, depth_, depth_map_of(source_)))
       fail(ErrorKind::input, "{}: its normals ({}) are of unit length on {:.0f} % only: they look like {}; {}",
            normal_path(), channels(), 100 * n.unit_share, *what, kWithout);
@@ -205,7 +205,7 @@ class NormalSettlement : private Settlement {
     const bool has_usual = has_world || source_.usual_normal_space == NormalSpace::view;
     const NormalScore* plain =
         reading_of(scores, has_usual ? source_.usual_normal_space : NormalSpace::view, settings_.flip_normal);
-    const bool tells = plain && std::max(scores[0].agreement, plain->explained()) >= kLeastAgreement;
+    const bool tells = plain && best_of(scores).explained() >= kLeastAgreement;
     if (!tells) {
       source_.has_evidence = false;
       if (!has_usual) refuse_without_matrix(scores);
@@ -213,10 +213,10 @@ class NormalSettlement : private Settlement {
       guess("normal space", name_of(source_.normal_space), "the frame does not tell", "--normal-space", false);
       return doubt_normals(all_scores);
     }
-    const bool is_plain = explains(*plain, scores[0]);
+    const bool is_plain = explains(*plain, scores);
     // By a camera along an axis of the world, normals in view space look like those of a turned world.
     if (!is_plain && has_usual) refuse_turned_camera(*plain, kSharper * scores[0].close);
-    const NormalScore& best = is_plain ? *plain : scores[0];
+    const NormalScore& best = is_plain ? *plain : best_of(scores);
     const NormalScore* straighter = straighter_than(best, scores);
     if (!straighter && !is_plain) refuse_ambiguous(best, scores);
     if (!has_world && !source_.camera_is_assumed) refuse_turned_world(best);
@@ -238,7 +238,7 @@ class NormalSettlement : private Settlement {
   /// Refuses a reading where one in the other space does about as well.
   void refuse_ambiguous(const NormalScore& best, const std::vector<NormalScore>& scores) const {
     const auto other = std::ranges::find_if(scores, [&](const auto& s) { return s.space != best.space; });
-    if (other == scores.end() || other->agreement < kAsGood * best.agreement || is_straighter(best, *other)) return;
+    if (other == scores.end() || other->agreement < kAsGood * best.explained() || is_straighter(best, *other)) return;
     fail(ErrorKind::input,
          "{}: its normals may be in {} or in {} space ({}; {}): say which with --normal-space, and --flip-normal",
          normal_path(), name_of(best.space), name_of(other->space), text_of(best), text_of(*other));
@@ -258,10 +258,26 @@ class NormalSettlement : private Settlement {
     return found == scores.end() ? nullptr : &*found;
   }
 
-  /// Whether a reading does as well as the best one, if need be with the normals of the other side turned round: they
-  /// are a fault of some objects, and flips are one of all.
-  static bool explains(const NormalScore& score, const NormalScore& best) {
-    return score.agreement >= kNoBetter * best.agreement || kAsMany * score.explained() > best.agreement;
+  /// Whether a reading does as well as any, if need be with the normals of the other side turned round: they are a fault
+  /// of some objects, and flips are one of all.
+  static bool explains(const NormalScore& score, const std::vector<NormalScore>& scores) {
+    const double most = std::ranges::max_element(scores, {}, &NormalScore::explained)->explained();
+    return score.agreement >= kNoBetter * scores[0].agreement ||
+           (score.explained() >= kAsMany * most && score.agreement >= kLeastOwn * score.explained());
+  }
+
+  /// The best reading: of those that explain as many normals as any, one without flips, else the one by which most face
+  /// as depth does.
+  static const NormalScore& best_of(const std::vector<NormalScore>& scores) {
+    const double most = std::ranges::max_element(scores, {}, &NormalScore::explained)->explained();
+    const auto does = [&](const NormalScore& s) {
+      return s.explained() >= kAsMany * most && s.agreement >= kLeastOwn * s.explained();
+    };
+    const auto plain =
+        std::ranges::find_if(scores, [&](const auto& s) { return does(s) && to_string(s.flips) == "none"; });
+    if (plain != scores.end()) return *plain;
+    const auto any = std::ranges::find_if(scores, does);
+    return any != scores.end() ? *any : scores[0];
   }
 
   /// Whether one reading has nothing of a turn that the normals as a whole have by the other, as those of a camera that
@@ -336,7 +352,7 @@ class NormalSettlement : private Settlement {
     doubt_centre(*chosen);
     if (doubt_rotation(*chosen)) return;
     if (chosen->explained() < kLeastAgreement || chosen->agreement < kRefuted) refuse_normals(*chosen, scores[0]);
-    if (scores[0].agreement >= kLeastAgreement && !explains(*chosen, scores[0]))
+    if (scores[0].agreement >= kLeastAgreement && !explains(*chosen, scores))
       note(NoteCode::normals_disagree, fmt::format("normals are read as {}; better fits {} ({})", text_of(*chosen),
                                                    text_of(scores[0]), kSpaceOptions));
     else if (chosen->explained() < kLeastAgreement)

@@ -368,7 +368,7 @@ TEST(Normals, of_the_other_side_are_turned_round) {
     // A pixel between two edges has no neighbour of its own surface that would show how it lies.
     EXPECT_GE(turned.turned_normals, count - count / 1000) << thing;
     EXPECT_LE(turned.turned_normals, count) << thing;
-    EXPECT_LE(difference(turned.ao, right.ao).rmse, 2e-3) << thing;
+    EXPECT_LE(difference(turned.ao, right.ao).rmse, 5e-3) << thing;
   }
 }
 
