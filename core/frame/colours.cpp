@@ -13,10 +13,10 @@
 namespace alcove {
 namespace {
 
-constexpr int kRows = 24;             // of the picture that are looked at
+constexpr int kColourRows = 24;       // of the picture that are looked at
 constexpr double kGrey = 0.02;        // relative difference of R, G and B that lossy compression makes of grey
 constexpr double kColoured = 0.005;   // share of the pixels from which a picture is no grey one
-constexpr double kUnit = 0.05;        // of a length that is taken for 1
+constexpr double kUnitLength = 0.05;  // of a length that is taken for 1
 constexpr double kAreNormals = 0.95;  // share of unit vectors
 
 /// A channel and the two that make a colour or a vector of it.
@@ -33,7 +33,7 @@ std::string last_word(const std::string& channel) { return lower_case(channel.su
 /// The values of some rows.
 std::array<std::vector<float>, 3> sample_of(FrameSource& source, const Three& three) {
   const Window& data = source.part_of(three[0]).data;
-  const int rows = std::min(kRows, data.height);
+  const int rows = std::min(kColourRows, data.height);
   const auto width = std::size_t(data.width);
   std::array<std::vector<float>, 3> planes;
   for (auto& plane : planes) plane.resize(std::size_t(rows) * width);
@@ -69,7 +69,7 @@ bool are_normals(const std::array<std::vector<float>, 3>& planes) {
   for (std::size_t i = 0; i < planes[0].size(); i++) {
     const double length = std::hypot(planes[0][i], planes[1][i], planes[2][i]);
     vectors += length > 0;
-    units += std::abs(length - 1) < kUnit;
+    units += std::abs(length - 1) < kUnitLength;
   }
   return vectors > 0 && double(units) > kAreNormals * double(vectors);
 }
