@@ -33,6 +33,8 @@ constexpr std::array kTable = {
     NoteFacts{NoteCode::overflown_depth, "overflown-depth", true,
               "surfaces beyond the largest half float became infinite, and count as sky"},
     NoteFacts{NoteCode::jittered_depth, "jittered-depth", true, "depth was sampled beside the pixels' centres"},
+    NoteFacts{NoteCode::letterbox_bars, "letterbox-bars", true,
+              "rows or columns along two opposite borders are empty, and count as sky"},
     NoteFacts{NoteCode::antialiased_depth, "antialiased-depth", true, "depth was averaged over edges"},
     NoteFacts{NoteCode::shortened_normals, "shortened-normals", true, "normals were averaged over pixels"},
     NoteFacts{NoteCode::averaged_normals, "averaged-normals", false,

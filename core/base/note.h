@@ -30,6 +30,7 @@ enum class NoteCode {
   half_depth,
   overflown_depth,
   jittered_depth,
+  letterbox_bars,
   antialiased_depth,
   shortened_normals,
   averaged_normals,

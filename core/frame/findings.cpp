@@ -61,6 +61,47 @@ Notes averaged_depth(const FrameSource& source, std::span<const float> depth) {
                        100 * blended)}};
 }
 
+/// How many rows, or columns, along a border have no surface and one value. None where the next one is not mostly of
+/// surfaces, as below a sky that ends at no straight line.
+int empty_rows(const FrameSource& source, std::span<const float> depth, const DepthMap& map, bool columns, bool last) {
+  constexpr double kLeastSurfaces = 0.5;
+  const int width = source.data.width, height = source.data.height;
+  const int rows = columns ? width : height, across = columns ? height : width;
+  const auto value = [&](int row, int i) {
+    const int at = last ? rows - 1 - row : row;
+    return depth[columns ? std::size_t(i) * std::size_t(width) + std::size_t(at)
+                         : std::size_t(at) * std::size_t(width) + std::size_t(i)];
+  };
+  for (int row = 0; row < rows; row++) {
+    int surfaces = 0;
+    bool is_one = true;
+    for (int i = 0; i < across; i++) {
+      surfaces += std::isfinite(planar_depth(map, {value(row, i), 0, 0}, 1));
+      is_one = is_one && !(value(row, i) != value(row, 0) && !std::isnan(value(row, i)));
+    }
+    if (surfaces == 0 && is_one) continue;
+    return surfaces >= kLeastSurfaces * across ? row : 0;
+  }
+  return 0;
+}
+
+/// Bars above and below a picture, or on both its sides, that are as wide: a sky is on one side alone.
+Notes letterbox(const FrameSource& source, std::span<const float> depth) {
+  if (source.data != source.file_data || source[RawPlane::depth].size() != 1) return {};
+  const DepthMap map = depth_map_of(source);
+  for (const bool columns : {false, true}) {
+    const int first = empty_rows(source, depth, map, columns, false);
+    const int last = first > 0 ? empty_rows(source, depth, map, columns, true) : 0;
+    if (last == 0 || std::abs(first - last) > 1) continue;
+    return {{NoteCode::letterbox_bars,
+             fmt::format("the first {} and the last {} {} are empty: they look like bars beside the picture, and count "
+                         "as sky, so that AO next to them is too light; crop the file to the data window of what is "
+                         "left, and keep its display window",
+                         first, last, columns ? "columns" : "rows")}};
+  }
+  return {};
+}
+
 /// Normals that were averaged over the pixels, by some of them. It is no warning where the program does so always, for
 /// nobody can have it do otherwise.
 Notes averaged_normals(const FrameSource& source, std::span<const float> depth, std::span<const float> normal) {
@@ -150,8 +191,8 @@ double blended_edges(std::span<const float> planar, int width) {
 
 Notes findings(FrameSource& source, std::span<const float> depth, std::span<const float> normal) {
   Notes found;
-  for (Notes some :
-       {averaged_depth(source, depth), averaged_normals(source, depth, normal), damage(source), windows(source)})
+  for (Notes some : {averaged_depth(source, depth), averaged_normals(source, depth, normal), letterbox(source, depth),
+                     damage(source), windows(source)})
     std::ranges::move(some, std::back_inserter(found));
   return found;
 }

@@ -255,6 +255,29 @@ TEST_F(Doubts, an_order_of_rotation_that_fits_is_named) {
   EXPECT_THAT(said(), IsEmpty());
 }
 
+TEST_F(Doubts, bars_on_two_opposite_sides_are_warned_of_and_a_sky_is_not) {
+  give();
+  settings.depth_kind = DepthKind::planar;
+  // Rows and columns that are empty: above, below, on the left, on the right.
+  struct Case {
+    int top, bottom, left, right;
+    bool are_bars;
+  };
+  for (const Case& c : std::vector<Case>{
+           {9, 9, 0, 0, true}, {0, 0, 7, 8, true}, {0, 0, 0, 0, false}, {40, 0, 0, 0, false}, {9, 20, 0, 0, false}}) {
+    planes.clear();
+    for (int y = 0; y < 120; y++)
+      for (int x = 0; x < 160; x++) {
+        const bool is_empty = x < c.left || x >= 160 - c.right || y < c.top || y >= 120 - c.bottom;
+        planes["Z"].push_back(is_empty ? 0 : 1 / (0.1f + 0.0005f * float(x) + 0.0003f * float(y)));
+      }
+    write(settings.input);
+    const Notes found = settled().suspicious;
+    const auto bars = std::ranges::find(found, NoteCode::letterbox_bars, &Note::code);
+    EXPECT_EQ(bars != found.end(), c.are_bars) << c.top << " " << c.bottom << " " << c.left << " " << c.right;
+  }
+}
+
 TEST_F(Doubts, a_view_that_no_file_names_is_warned_of) {
   give();
   write_depth([](double z) { return z; }, 1e12f);
