@@ -98,19 +98,22 @@ double common_step(std::span<const double> sorted, double value) {
   for (std::size_t i = 1; i < sorted.size(); i++) gaps.push_back(sorted[i] - sorted[i - 1]);
   std::ranges::sort(gaps);
   double divisor = gaps.front();
+  std::size_t told = 0;
   for (double gap : gaps)
     while (divisor > 16 * rounding) {
       const double times = std::round(gap / divisor), rest = std::abs(gap - times * divisor);
-      // The divisor's own error counts so many times. Where that is much of it, the gap is too large to tell.
+      // The divisor's own error counts so many times. Where that is much of it, anything may be a multiple.
       const double error = 2 * (times + 1) * rounding;
-      if (error > 0.25 * divisor) break;
+      if (error > 0.05 * divisor) break;
       if (rest <= error) {
         divisor = gap / times;  // the larger the gap, the better it tells
+        told++;
         break;
       }
       gap = std::exchange(divisor, rest);
+      told = 0;
     }
-  return divisor > 16 * rounding ? divisor : 0;
+  return divisor > 16 * rounding && 2 * told >= gaps.size() ? divisor : 0;
 }
 
 /// How often each of the sorted values is there.

@@ -258,8 +258,8 @@ class NormalSettlement : private Settlement {
     return found == scores.end() ? nullptr : &*found;
   }
 
-  /// Whether a reading does as well as any, if need be with the normals of the other side turned round: they are a fault
-  /// of some objects, and flips are one of all.
+  /// Whether a reading does as well as any, if need be with the normals of the other side turned round: they are a
+  /// fault of some objects, and flips are one of all.
   static bool explains(const NormalScore& score, const std::vector<NormalScore>& scores) {
     const double most = std::ranges::max_element(scores, {}, &NormalScore::explained)->explained();
     return score.agreement >= kNoBetter * scores[0].agreement ||

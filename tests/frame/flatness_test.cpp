@@ -124,6 +124,8 @@ TEST(Grain, is_the_step_of_the_values_and_not_of_their_type) {
   EXPECT_EQ(grain_of({}, kSky).median, 0);
   EXPECT_EQ(grain_of(plane_of([](double x, double) { return 6 + x / 256; }), kSky).step, 0)
       << "a plane with one step from column to column was not rounded";
+  EXPECT_EQ(grain_of(plane_of([](double, double y) { return y < 60 ? 6 : 300 / (y - 10); }), kSky).step, 0)
+      << "nor was a floor whose rows are few distances";
 }
 
 TEST(Jitter, is_that_of_random_places_within_pixels) {
