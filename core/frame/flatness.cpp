@@ -93,27 +93,27 @@ Fit fit(const Samples& values, const Basis& basis) {
 /// The largest number of which all differences between neighbours are multiples, by Euclid's algorithm within the
 /// rounding of floats near `value`; 0 where that rounding hides it.
 double common_step(std::span<const double> sorted, double value) {
+  constexpr double kEnough = 20;  // bits: chance makes one sequence of differences in a million look so
   const double rounding = value * 0x1p-22;
   std::vector<double> gaps;
   for (std::size_t i = 1; i < sorted.size(); i++) gaps.push_back(sorted[i] - sorted[i - 1]);
   std::ranges::sort(gaps);
-  double divisor = gaps.front();
-  std::size_t told = 0;
+  double divisor = gaps.front(), bits = 0;
   for (double gap : gaps)
     while (divisor > 16 * rounding) {
       const double times = std::round(gap / divisor), rest = std::abs(gap - times * divisor);
       // The divisor's own error counts so many times. Where that is much of it, anything may be a multiple.
-      const double error = 2 * (times + 1) * rounding;
-      if (error > 0.05 * divisor) break;
+      const double error = 2 * (times + 1) * rounding, by_chance = 2 * error / divisor;
+      if (by_chance > 0.5) break;
       if (rest <= error) {
         divisor = gap / times;  // the larger the gap, the better it tells
-        told++;
+        bits -= std::log2(by_chance);
         break;
       }
       gap = std::exchange(divisor, rest);
-      told = 0;
+      bits = 0;
     }
-  return divisor > 16 * rounding && 2 * told >= gaps.size() ? divisor : 0;
+  return divisor > 16 * rounding && bits > kEnough ? divisor : 0;
 }
 
 /// How often each of the sorted values is there.

@@ -179,7 +179,7 @@ TemporaryFolder::~TemporaryFolder() {
 std::vector<std::string> names_in(const std::string& folder) {
   std::vector<std::string> names;
   for (const auto& entry : fs::recursive_directory_iterator(folder))
-    names.push_back(fs::relative(entry.path(), folder).string());
+    names.push_back(entry.path().lexically_relative(folder).string());  // which may be gone by now
   std::ranges::sort(names);
   return names;
 }
