@@ -15,6 +15,7 @@ namespace {
 
 constexpr int kColourRows = 24;       // of the picture that are looked at
 constexpr double kGrey = 0.02;        // relative difference of R, G and B that lossy compression makes of grey
+constexpr double kDark = 0.01;        // of the median, below which noise is no colour
 constexpr double kColoured = 0.005;   // share of the pixels from which a picture is no grey one
 constexpr double kUnitLength = 0.05;  // of a length that is taken for 1
 constexpr double kAreNormals = 0.95;  // share of unit vectors
@@ -53,13 +54,19 @@ bool varies(const std::vector<float>& plane) {
 /// Whether the second and the third channel are there for more than to be equal to the first.
 bool are_colours(const std::array<std::vector<float>, 3>& planes) {
   if (!varies(planes[1]) && !varies(planes[2])) return false;
+  std::vector<float> sizes;
+  for (const float value : planes[0])
+    if (std::isfinite(value) && value != 0) sizes.push_back(std::abs(value));
+  const auto middle = sizes.begin() + std::ptrdiff_t(sizes.size() / 2);
+  if (!sizes.empty()) std::ranges::nth_element(sizes, middle);
+  const double dark = sizes.empty() ? 0 : kDark * double(*middle);
   std::size_t pixels = 0, coloured = 0;
   for (std::size_t i = 0; i < planes[0].size(); i++) {
     const std::array<double, 3> c{planes[0][i], planes[1][i], planes[2][i]};
     if (!std::ranges::all_of(c, [](double value) { return std::isfinite(value); })) continue;
     const auto [least, most] = std::ranges::minmax(c);
     pixels++;
-    coloured += most - least > kGrey * std::max(std::abs(least), std::abs(most));
+    coloured += most - least > kGrey * std::max({std::abs(least), std::abs(most), dark});
   }
   return double(coloured) > kColoured * double(pixels);
 }

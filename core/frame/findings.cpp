@@ -61,9 +61,14 @@ Notes averaged_depth(const FrameSource& source, std::span<const float> depth) {
                        100 * blended)}};
 }
 
-/// How many rows, or columns, along a border have no surface and one value. None where the next one is not mostly of
-/// surfaces, as below a sky that ends at no straight line.
-int empty_rows(const FrameSource& source, std::span<const float> depth, const DepthMap& map, bool columns, bool last) {
+/// The rows, or columns, along a border that have no surface.
+struct BorderRows {
+  int empty = 0;        // how many have none, and one value
+  bool is_bar = false;  // the next one is mostly of surfaces, unlike that below a sky
+};
+
+BorderRows border_rows(const FrameSource& source, std::span<const float> depth, const DepthMap& map, bool columns,
+                       bool last) {
   constexpr double kLeastSurfaces = 0.5;
   const int width = source.data.width, height = source.data.height;
   const int rows = columns ? width : height, across = columns ? height : width;
@@ -80,24 +85,28 @@ int empty_rows(const FrameSource& source, std::span<const float> depth, const De
       is_one = is_one && !(value(row, i) != value(row, 0) && !std::isnan(value(row, i)));
     }
     if (surfaces == 0 && is_one) continue;
-    return surfaces >= kLeastSurfaces * across ? row : 0;
+    return {row, surfaces >= kLeastSurfaces * across};
   }
-  return 0;
+  return {rows, false};
 }
 
-/// Bars above and below a picture, or on both its sides, that are as wide: a sky is on one side alone.
+/// Bars above and below a picture, or on both its sides, that are as wide: a sky is on one side alone. Between them the
+/// picture reaches both other borders; a thing before an empty background does not.
 Notes letterbox(const FrameSource& source, std::span<const float> depth) {
   if (source.data != source.file_data || source[RawPlane::depth].size() != 1) return {};
   const DepthMap map = depth_map_of(source);
   for (const bool columns : {false, true}) {
-    const int first = empty_rows(source, depth, map, columns, false);
-    const int last = first > 0 ? empty_rows(source, depth, map, columns, true) : 0;
-    if (last == 0 || std::abs(first - last) > 1) continue;
+    const auto border = [&](bool of_columns, bool is_last) {
+      return border_rows(source, depth, map, of_columns, is_last);
+    };
+    const BorderRows first = border(columns, false), last = border(columns, true);
+    if (!first.is_bar || !last.is_bar || first.empty == 0 || std::abs(first.empty - last.empty) > 1) continue;
+    if (border(!columns, false).empty > 0 || border(!columns, true).empty > 0) continue;
     return {{NoteCode::letterbox_bars,
-             fmt::format("the first {} and the last {} {} are empty: they look like bars beside the picture, and count "
+             fmt::format("the first {} and the last {} {} are empty: they look like bars around the picture, and count "
                          "as sky, so that AO next to them is too light; crop the file to the data window of what is "
                          "left, and keep its display window",
-                         first, last, columns ? "columns" : "rows")}};
+                         first.empty, last.empty, columns ? "columns" : "rows")}};
   }
   return {};
 }

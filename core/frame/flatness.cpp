@@ -253,6 +253,7 @@ Grain grain_of(std::span<const float> raw, double sky) {
   const std::array places{place_at(0.1), place_at(0.5), place_at(0.9)};
   grain.step = places[1].step;
   if (grain.step == 0) return grain;
+  grain.median = places[1].value;
   grain.is_coarse = grain.step >= kCoarse * grain.median;
   const auto is_same = [&](const Place& p) { return std::abs(p.step / grain.step - 1) < 0.01; };
   // At the border of two powers of two the smaller step stands beside the larger value.

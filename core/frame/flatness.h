@@ -14,7 +14,7 @@ namespace alcove {
 
 /// How coarsely values are stored, whatever their sample type.
 struct Grain {
-  double median = 0;  // of the values' distances from 0
+  double median = 0;  // of the values' distances from 0; where there is a step, each of them counts once
   double step = 0;    // from one value to the next at the median; 0: as fine as floats are, or too few values to tell
   bool is_coarse = false;  // the step is more than a 2^14th of the median
   bool is_fixed = false;   // the step is the same for small and large values

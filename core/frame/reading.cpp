@@ -9,13 +9,11 @@
 namespace alcove {
 namespace {
 
-/// The largest finite half float.
-constexpr double kLargestHalf = 65504;
-
-/// Raw depth at or beyond it is sky. Values that passed through half floats end where those end.
-double sky_of(DepthKind kind, bool is_half, double sky) {
-  const bool is_distance = kind == DepthKind::planar || kind == DepthKind::ray;
-  return is_distance && is_half ? std::min(sky, kLargestHalf) : sky;
+/// Raw depth at or beyond it is sky. Values that passed through half floats end where those end. `found`: the sky that
+/// the pixels show, of distances.
+double sky_of(DepthKind kind, bool is_half, double sky, double found = std::numeric_limits<double>::infinity()) {
+  if (kind != DepthKind::planar && kind != DepthKind::ray) return sky;
+  return std::min({sky, found, is_half ? kLargestHalf : sky});
 }
 
 }  // namespace
@@ -38,7 +36,7 @@ void read_like(Reading& reading, const Meaning& settled) {
 
 DepthMap depth_map_of(const Reading& reading) {
   return depth_map(reading.depth_kind, reading.depth_range, reading.position_space, reading.camera, reading.depth_scale,
-                   std::min(reading.found_sky, sky_of(reading.depth_kind, reading.depth_is_half, reading.sky)));
+                   sky_of(reading.depth_kind, reading.depth_is_half, reading.sky, reading.found_sky));
 }
 
 DepthMap behind_map_of(const Reading& reading, const BehindPlane& plane) {

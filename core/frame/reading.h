@@ -91,6 +91,9 @@ Window picture_of(const Reading& reading, const Window& part);
 /// has them.
 void read_like(Reading& reading, const Meaning& settled);
 
+/// The largest finite half float.
+constexpr double kLargestHalf = 65504;
+
 /// The map to planar depth. Half floats end at 65504, which stands for all that is beyond: distances of that size are
 /// sky. Fails as depth_map() does.
 DepthMap depth_map_of(const Reading& reading);

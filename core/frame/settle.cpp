@@ -35,10 +35,10 @@ void refuse_8_bits(const FrameSource& source, std::span<const float> depth) {
 }
 
 /// Takes down how the values were rounded. It changes how they are judged, and how near occluders may be.
-void measure_grain(FrameSource& source, const Grain& grain) {
-  constexpr double kLargestHalf = 65504;
+void measure_grain(FrameSource& source, const Grain& grain, std::span<const float> depth) {
   source.depth_is_coarse = grain.is_coarse;
-  if (grain.is_half) source.found_sky = kLargestHalf;
+  const auto is_beyond = [&](float d) { return std::abs(d) > kLargestHalf && std::abs(d) < source.sky; };
+  if (grain.is_half && std::ranges::none_of(depth, is_beyond)) source.found_sky = kLargestHalf;
   if (!grain.is_coarse) return;
   if (grain.is_fixed)
     source.depth_step = grain.step;
@@ -65,9 +65,9 @@ void note_grain(FrameSource& source, const Grain& grain) {
 
 /// Notes half floats whose sky may be surfaces: those beyond the largest number became infinite.
 void note_overflow(FrameSource& source, std::span<const float> depth) {
-  constexpr float kLargestHalf = 65504, kNear = 0.9f * kLargestHalf;
+  constexpr float kNear = 0.9f * float(kLargestHalf);
   const bool has_distances = source.depth_kind == DepthKind::planar || source.depth_kind == DepthKind::ray;
-  if (!has_distances || !has_coarse_depth(source)) return;
+  if (!has_distances || !(source.depth_is_half || source.found_sky == kLargestHalf)) return;
   std::size_t beyond = 0, near = 0;
   for (const float d : depth) {
     beyond += std::abs(d) >= kLargestHalf;
@@ -112,7 +112,7 @@ void settle(FrameSource& source, const InputSettings& settings, std::span<const 
             std::span<const float> normal) {
   refuse_8_bits(source, depth);
   if (source[RawPlane::depth].size() == 1) source.grain = grain_of(depth, settings.sky);
-  measure_grain(source, source.grain);
+  measure_grain(source, source.grain, depth);
   const std::string refutation = settle_camera(source, settings);
   try {
     settle_meaning(source, settings, depth, normal);

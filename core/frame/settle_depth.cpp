@@ -27,36 +27,50 @@ constexpr double kRounded = 1e-3;
 constexpr double kFewErrors = 0.005;
 /// The normals decide between distances and 1/z if so many times as many agree with one of them.
 constexpr double kClearNormals = 1.5;
+/// All pixels of a picture are looked at if it has fewer than these.
+constexpr std::size_t kFewPixels = 100'000;
 /// Pixels. If the median is farther off than this, positions are not what they are taken for.
 constexpr double kLargestError = 2;
 
-/// The values on one side of a limit.
+/// The values on one side of a limit. One value alone stands for something that is no surface.
 struct Side {
-  std::size_t count = 0;
-  float first = 0;
-  bool varies = false;  // one value alone stands for something that is no surface
+  std::size_t count = 0, others = 0;  // others: all but the most frequent value
+  float usual = 0;                    // the most frequent value
 
-  void add(float value) {
-    if (!count++) first = value;
-    varies |= value != first;
-  }
+  bool varies() const { return others > 0; }
+  /// Edges blend one value with others.
+  bool is_mostly_one() const { return 10 * others <= count; }
 };
+
+/// Sorts the values.
+Side side_of(std::vector<float>& values) {
+  Side side{values.size(), values.size()};
+  std::ranges::sort(values);
+  for (auto first = values.begin(); first != values.end();) {
+    const auto next = std::upper_bound(first, values.end(), *first);
+    const std::size_t others = values.size() - std::size_t(next - first);
+    if (others < side.others) side.others = others, side.usual = *first;
+    first = next;
+  }
+  return side;
+}
 
 class DepthSettlement : private Settlement {
  public:
   DepthSettlement(FrameSource& source, const InputSettings& settings, std::span<const float> depth,
                   std::span<const float> normal)
-      : Settlement(source, settings, depth, normal), values_(statistics_of(depth, kSparse)) {
-    std::vector<float> surfaces;
-    for (std::size_t i = 0; i < depth.size(); i += kSparse)
-      if (depth[i] > 0 && depth[i] < settings.sky) surfaces.push_back(depth[i]);
-    surfaces_ = statistics_of(surfaces);
-    for (std::size_t i = 0; i < depth.size(); i += kSparse) {
-      if (!std::isfinite(depth[i]) || std::abs(depth[i]) >= settings.sky) continue;
-      if (depth[i] < 0) below_0_.add(depth[i]);
-      if (depth[i] > 0) above_0_.add(depth[i]);
-      if (depth[i] > 1) above_1_.add(depth[i]);
-    }
+      : Settlement(source, settings, depth, normal),
+        step_(depth.size() < kFewPixels ? 1 : kSparse),
+        values_(statistics_of(depth, step_)) {
+    std::vector<float> below_0, above_0;
+    for (std::size_t i = 0; i < depth.size(); i += step_)
+      if (std::isfinite(depth[i]) && depth[i] != 0 && std::abs(depth[i]) < settings.sky)
+        (depth[i] < 0 ? below_0 : above_0).push_back(depth[i]);
+    surfaces_ = statistics_of(above_0);
+    below_0_ = side_of(below_0);
+    above_0_ = side_of(above_0);
+    above_0.erase(above_0.begin(), std::ranges::upper_bound(above_0, 1.0f));
+    above_1_ = side_of(above_0);
   }
 
   void run() {
@@ -64,7 +78,7 @@ class DepthSettlement : private Settlement {
       return std::isfinite(depth_[i]) && depth_[i] != 0 && std::abs(depth_[i]) < settings_.sky;
     };
     source_.has_evidence = false;
-    for (std::size_t i = 0; i < depth_.size() && !source_.has_evidence; i += kSparse) source_.has_evidence = is_near(i);
+    for (std::size_t i = 0; i < depth_.size() && !source_.has_evidence; i += step_) source_.has_evidence = is_near(i);
     if (source_.depth_kind == DepthKind::position)
       settle_position();
     else
@@ -90,11 +104,12 @@ class DepthSettlement : private Settlement {
   /// Distances below 0 are those of cameras that look along -z. One value above 0 beside them is their sky.
   void settle_sign() {
     if (!is_distance() && source_.depth_kind != DepthKind::inverse) return;
-    if (!below_0_.varies || above_0_.varies) return;
+    const bool are_errors = double(below_0_.count) <= kFewErrors * double(below_0_.count + above_0_.count);
+    if (!below_0_.varies() || are_errors || !above_0_.is_mostly_one()) return;
     source_.depth_range.negative = true;
     note(NoteCode::negative_depth,
          above_0_.count
-             ? fmt::format("depth is negative, and its distance from 0 is taken; {} is the sky", above_0_.first)
+             ? fmt::format("depth is negative, and its distance from 0 is taken; {} is the sky", above_0_.usual)
              : "all depth values are negative: their distance from 0 is the depth");
   }
 
@@ -104,7 +119,7 @@ class DepthSettlement : private Settlement {
     const bool is_error =
         double(fewer) <= kFewErrors * double(all) ||
         std::min(-values_.least, surfaces_.most) <= kRounded * std::max(-values_.least, surfaces_.most);
-    if (!below_0_.varies || !above_0_.varies || is_error) return;
+    if (!below_0_.varies() || above_0_.is_mostly_one() || is_error) return;
     fail(
         ErrorKind::input,
         "{}: depth goes from {:.3g} to {:.3g}, {:.0f} % of it below 0, so these are no distances: where it is "
@@ -119,14 +134,29 @@ class DepthSettlement : private Settlement {
   void settle_ends() {
     auto& range = source_.depth_range;
     if (source_.depth_kind == DepthKind::normalized) {
-      range.goes_before_near = range.reversed ? above_1_.varies : below_0_.varies;
-      range.goes_beyond_far = range.reversed ? below_0_.varies : above_1_.varies;
-      if (range.goes_before_near || range.goes_beyond_far)
+      const bool below = goes_on(below_0_, values_.zero, 0), above = goes_on(above_1_, values_.one, 1);
+      range.goes_before_near = range.reversed ? above : below;
+      range.goes_beyond_far = range.reversed ? below : above;
+      if (below || above)
         note(NoteCode::beyond_planes,
              fmt::format("depth goes from {:.3g} to {:.3g}: it was not cut off at its planes, and is read beyond them",
                          values_.least, surfaces_.most));
     }
     if (source_.depth_kind == DepthKind::device) settle_direction();
+  }
+
+  /// Whether normalized depth goes on beyond an end of its range. If many pixels are exactly at the end, it was cut off
+  /// there: what lies beyond is what a filter made of the edges of these, and counts as they do.
+  bool goes_on(const Side& beyond, std::uint64_t at_end, int end) {
+    if (!beyond.varies()) return false;
+    if (double(at_end) < kPlateau * double(values_.pixels)) return true;
+    if (double(beyond.count) > kFewErrors * double(values_.pixels))
+      note(NoteCode::beyond_planes,
+           fmt::format("{:.2g} % of the depth lies beyond {}, and {:.2g} % is exactly {}: what lies beyond counts as "
+                       "that, the sky",
+                       100 * double(beyond.count) / double(values_.pixels), end,
+                       100 * double(at_end) / double(values_.pixels), end));
+    return false;
   }
 
   /// Nothing is seen at exactly the near plane, so that many pixels there are sky of a depth that runs the other way.
@@ -156,28 +186,27 @@ class DepthSettlement : private Settlement {
     constexpr double kLeastShare = 0.002;  // of the pixels
     constexpr double kFar = 2;             // times as far as all others
     constexpr double kAll = 0.98;          // of the pixels of the sky have no normal, and of the others have one
+    constexpr double kBlended = 0.1;       // for each pixel of the sky; edges lie in between
     if (!is_distance() || settings_.sky != InputSettings{}.sky) return;
     const double limit = depth_map_of(source_).sky_depth / source_.depth_scale;
     const std::size_t step = depth_.size() / kSampled + 1;
     float most = 0, next = 0;
-    for (std::size_t i = 0; i < depth_.size(); i += step) {
-      const float d = std::abs(depth_[i]);
-      if (!(d < limit) || d == most) continue;
-      next = std::max(next, std::min(d, most));
-      most = std::max(most, d);
-    }
-    if (!(most > kFar * next) || next == 0) return;
-    std::size_t count = 0, all = 0, bare = 0, others_bare = 0;
+    for (std::size_t i = 0; i < depth_.size(); i += step)
+      if (const float d = std::abs(depth_[i]); d < limit) most = std::max(most, d);
+    std::size_t count = 0, all = 0, bare = 0, others_bare = 0, blended = 0;
     const bool has_normals = source_[RawPlane::normal].size() == 3;
     for (std::size_t i = 0; i < depth_.size(); i += step) {
-      const bool is_sky = std::abs(depth_[i]) == most;
-      const bool is_surface = !is_sky && std::abs(depth_[i]) > 0 && std::abs(depth_[i]) < limit;
-      bool is_bare = has_normals;
-      for (std::size_t c = 0; is_bare && c < 3; c++) is_bare = normal_[c * depth_.size() + i] == 0;
+      const float d = std::abs(depth_[i]);
+      const bool is_sky = d == most, is_surface = !is_sky && d > 0 && d < limit;
+      if (is_surface && kFar * d >= most)
+        blended++;
+      else if (is_surface)
+        next = std::max(next, d);
+      const bool is_bare = has_normals && has_no_normal(i);
       all++, count += is_sky, bare += is_sky && is_bare, others_bare += is_surface && is_bare;
     }
     const double share = double(count) / double(all);
-    if (share < kLeastShare) return;
+    if (next == 0 || share < kLeastShare || double(blended) > kBlended * double(count)) return;
     const bool is_shown =
         has_normals && double(bare) >= kAll * double(count) && double(others_bare) <= (1 - kAll) * double(all - count);
     if (is_shown) source_.found_sky = most;
@@ -191,6 +220,18 @@ class DepthSettlement : private Settlement {
                            100 * share, most, next, most));
   }
 
+  /// Whether a pixel's normal is NaN, or 0 as a vector or as a colour.
+  bool has_no_normal(std::size_t pixel) const {
+    constexpr float kGrey = 0.5f, kRoundedGrey = 0.003f;  // 8 bits have no 0.5
+    const auto all = [&](const auto& holds) {
+      for (std::size_t c = 0; c < 3; c++)
+        if (!holds(normal_[c * depth_.size() + pixel])) return false;
+      return true;
+    };
+    return all([](float n) { return n == 0; }) || all([](float n) { return std::isnan(n); }) ||
+           all([](float n) { return std::abs(n - kGrey) < kRoundedGrey; });
+  }
+
   /// Fails with what the user said of a range that depth of this kind has not. Presets serve frames of every kind.
   void refuse_unused_range() const {
     auto unused = unused_range_options(settings_.depth_range, source_.depth_kind);
@@ -200,7 +241,8 @@ class DepthSettlement : private Settlement {
   }
 
   std::string straight(const DepthScore& score) const {
-    return fmt::format("as {} alone flat surfaces are flat on {:.0f} %", name_of(score.kind), 100 * score.straight);
+    return fmt::format("only {} depth makes {:.0f} % of the smooth places flat", name_of(score.kind),
+                       100 * score.straight);
   }
 
   /// Reads the depth as the program that wrote the frame, or most programs, write it. It is no guess where the user
@@ -230,7 +272,7 @@ class DepthSettlement : private Settlement {
     if (take_by_positions(why) || take_by_normals(why)) return;
     if (usual == DepthKind::inverse) return assume_passed_on(why);
     take_usual(why);
-    if (source_.rules_by.empty() || source_.rules->depth_kind == DepthKind::automatic) note_assumption(why);
+    if (!source_.rules_said || source_.rules->depth_kind == DepthKind::automatic) note_assumption(why);
   }
 
   /// Takes the kind by which most surfaces are flat.
@@ -248,8 +290,9 @@ class DepthSettlement : private Settlement {
     // A plane's distances are affine in the picture without perspective.
     const bool may_be_orthographic = best.kind == DepthKind::inverse && (settings_.fov || settings_.focal);
     guess("depth kind", name_of(best.kind),
-          why + (may_be_orthographic ? "; so they are as distances of an orthographic camera, which --ortho-width says"
-                                     : ""),
+          why + (may_be_orthographic
+                     ? "; distances of an orthographic camera would look the same: give --ortho-width for one"
+                     : ""),
           "--depth-kind", true);
   }
 
@@ -304,17 +347,23 @@ class DepthSettlement : private Settlement {
   /// Says of a kind that it is a guess.
   void note_assumption(const std::string& why) {
     note(NoteCode::assumed_reading,
-         fmt::format("depth is read as {}, the usual kind: {} (--depth-kind)", name_of(source_.depth_kind), why));
+         fmt::format("depth is read as {}, {}: {} (--depth-kind)", name_of(source_.depth_kind),
+                     source_.rules_by.empty() || source_.rules->depth_kind == DepthKind::automatic
+                         ? "the usual kind"
+                         : "as " + source_.rules->name + " writes it",
+                     why));
   }
 
   std::string text_of(const std::vector<DepthScore>& scores) const {
-    return fmt::format("{}, {}, {}", straight(scores[0]), straight(scores[1]), straight(scores[2]));
+    return fmt::format("as {} alone {:.0f} % of the smooth places are flat, as {} {:.0f} %, as {} {:.0f} %",
+                       name_of(scores[0].kind), 100 * scores[0].straight, name_of(scores[1].kind),
+                       100 * scores[1].straight, name_of(scores[2].kind), 100 * scores[2].straight);
   }
 
   /// The share of the normals that agree with the depth if it is of that kind, in their best space; 0 without normals.
   double agreement_as(DepthKind kind) const {
     if (source_[RawPlane::normal].size() != 3) return 0;
-    const NormalStatistics n = normal_statistics(normal_, depth_, depth_map_of(source_), kSparse);
+    const NormalStatistics n = normal_statistics(normal_, depth_, depth_map_of(source_), step_);
     Reading reading = source_;
     reading.depth_kind = kind;
     const auto scores = score_normals(
@@ -385,7 +434,7 @@ class DepthSettlement : private Settlement {
     if (!source_.camera.near) return;
     const double near = 0.99 * *source_.camera.near / source_.depth_scale;
     std::size_t count = 0, nearer = 0;
-    for (std::size_t i = 0; i < depth_.size(); i += kSparse)
+    for (std::size_t i = 0; i < depth_.size(); i += step_)
       if (depth_[i] > 0 && depth_[i] < settings_.sky) count++, nearer += depth_[i] < near;
     if (double(nearer) <= kMostNearer * double(count)) return;
     fail(
@@ -542,6 +591,7 @@ class DepthSettlement : private Settlement {
             "--position-space", false);
   }
 
+  const std::size_t step_;            // from one pixel that is looked at to the next
   Side below_0_, above_0_, above_1_;  // finite, and nearer than the sky
   ValueStatistics values_;            // of all pixels
   ValueStatistics surfaces_;          // above 0 and before the sky: of distances, all that are surfaces

@@ -71,6 +71,7 @@ class NormalSettlement : private Settlement {
     const bool is_open = source_.normal_encoding_open;
     const NormalStatistics n = normal_statistics(normal_, depth_, depth_map_of(source_), kSparse);
     if (!is_open) doubt_encoding(n);
+    has_any_ = n.count > 0;
     has_negative_ = n.least < kBelowZero;
     const bool in_unit_range = n.count && n.least >= 0 && n.most <= 1;
     const NormalEncoding said = source_.normal_encoding;
@@ -196,7 +197,8 @@ class NormalSettlement : private Settlement {
   void settle_space() {
     const bool has_world = source_.camera.view_from_world.has_value();
     const auto all_scores = score_normals(planes(), source_.camera, view_);
-    if (settle_cut(all_scores)) return;
+    if (!has_any_ && source_.normal_space_open) source_.normal_space = NormalSpace::view;
+    if (!has_any_ || settle_cut(all_scores)) return;
     if (!source_.normal_space_open) return doubt_normals(all_scores);
     const std::string given = to_string(settings_.flip_normal);
     auto scores = all_scores;
@@ -349,6 +351,7 @@ class NormalSettlement : private Settlement {
       return note(NoteCode::normals_disagree,
                   fmt::format("normals are read as {}; better fits {}: {} ({})", text_of(*chosen), text_of(*straighter),
                               turn_of(*straighter, *chosen), kSpaceOptions));
+    note_other_cause(*chosen, scores);
     doubt_centre(*chosen);
     if (doubt_rotation(*chosen)) return;
     if (chosen->explained() < kLeastAgreement || chosen->agreement < kRefuted) refuse_normals(*chosen, scores[0]);
@@ -357,13 +360,25 @@ class NormalSettlement : private Settlement {
                                                    text_of(scores[0]), kSpaceOptions));
     else if (chosen->explained() < kLeastAgreement)
       note(NoteCode::normals_disagree, fmt::format("only {:.0f} % of the normals agree with depth, read as {}: {}",
-                                                   100 * scores[0].agreement, text_of(scores[0]), kCheck));
+                                                   100 * chosen->agreement, text_of(*chosen), kCheck));
     else if (const auto turned = turned_world(*chosen))
       note(NoteCode::normals_disagree, fmt::format("{} ({})", *turned, kSpaceOptions));
     else if (!doubt_width(*chosen) && !agrees(*chosen) && !has_coarse_depth(source_))
       note(NoteCode::normals_disagree,
            fmt::format("even the best quarter of the normals is up to {:.1f} degrees off those of depth: {}",
                        chosen->angle, kCheck));
+  }
+
+  /// Notes that normals which are turned round may be those of a flipped axis: depth fits both ways alike.
+  void note_other_cause(const NormalScore& chosen, const std::vector<NormalScore>& scores) {
+    const auto other = std::ranges::find_if(
+        scores, [&](const auto& s) { return s.space == chosen.space && s.agreement >= kAsMany * chosen.explained(); });
+    if (other == scores.end() || chosen.agreement >= kAsMany * other->agreement) return;
+    note(
+        NoteCode::turned_normals,
+        fmt::format("{:.0f} % of the normals are opposite to depth and are turned round, as for mirrored things; where "
+                    "an axis of all normals is flipped, as DirectX has it, give --flip-normal {}",
+                    100 * chosen.opposite, to_string(other->flips)));
   }
 
   /// Whether one camera fits so much better than another that it is no chance.
@@ -450,6 +465,7 @@ class NormalSettlement : private Settlement {
       "--chan-rotation or --fov: "
       "it may also be the camera of another frame";
 
+  bool has_any_ = true;        // a normal that is no sky's
   bool has_negative_ = false;  // of the normals' components as they stand in the file, any
 };
 

@@ -92,8 +92,7 @@ void add(TextLines& lines, const InspectedDepth& depth) {
               percent(*depth.sky_share));
   if (!depth.scores) return;
   for (const auto& score : *depth.scores)
-    lines.add("  as {} alone flat surfaces are flat on {} of the smooth pixels", name_of(score.kind),
-              percent(score.straight));
+    lines.add("  as {} alone {} of the smooth places are flat", name_of(score.kind), percent(score.straight));
 }
 
 void add(TextLines& lines, const InspectedNormals& normals) {

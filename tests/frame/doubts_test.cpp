@@ -56,6 +56,58 @@ class Doubts : public Sources {
   auto refused_with(const std::string& words) const { return testing::ElementsAre("refused", HasSubstr(words)); }
 };
 
+// Where the sky begins.
+
+TEST_F(Doubts, values_of_half_floats_times_a_scale_do_not_end_where_half_floats_end) {
+  give();
+  const auto half = [](double z) { return std::ldexp(std::round(std::ldexp(z, 8)), -8); };  // of 4 to 8
+  write_depth([&](double z) { return 20000 * half(z); }, 1e12f);
+  EXPECT_TRUE(std::isinf(settled().found_sky)) << "surfaces reach beyond 65504";
+  write_depth([&](double z) { return half(z); }, 65504);
+  EXPECT_EQ(settled().found_sky, 65504);
+  settings.depth_kind = DepthKind::inverse;
+  write_depth([&](double z) { return half(z); }, 0);
+  EXPECT_GT(depth_map_of(settled()).sky_depth, 1e8) << "1/z of half floats reaches any distance";
+}
+
+TEST_F(Doubts, what_a_filter_put_beyond_the_end_of_a_range_is_its_sky) {
+  give();
+  settings.depth_kind = DepthKind::normalized;
+  settings.depth_range.near = 0;
+  settings.depth_range.far = 100;
+  write_depth([](double z) { return z / 100; }, 1);
+  auto& plane = planes["Z"];
+  int count = 0;
+  for (float& d : plane)
+    if (d == 1 && count++ % 10 == 0) d += 1e-3f * float(count % 7 + 1);
+  ASSERT_GT(count, 500);
+  write(settings.input);
+  EXPECT_FALSE(settled().depth_range.goes_beyond_far);
+  EXPECT_THAT(said(), testing::ElementsAre(HasSubstr("what lies beyond counts as that, the sky")));
+}
+
+TEST_F(Doubts, a_sky_above_negative_distances_may_be_blended_with_them) {
+  give();
+  write_depth([](double z) { return -z; }, 1000);
+  auto& plane = planes["Z"];
+  int count = 0;
+  for (float& d : plane)
+    if (d == 1000 && count++ % 20 == 0) d = 300 + float(count % 13);
+  ASSERT_GT(count, 500);
+  write(settings.input);
+  EXPECT_TRUE(settled().depth_range.negative) << testing::PrintToString(said());
+}
+
+TEST_F(Doubts, a_distance_far_behind_all_others_is_pointed_out_though_edges_are_blended) {
+  give();
+  settings.depth_kind = DepthKind::planar;
+  write_depth([](double z) { return z; }, 1e6f);
+  const auto blended = std::ranges::find(planes["Z"], 1e6f);
+  *blended = 7e5f;
+  write(settings.input);
+  EXPECT_THAT(said(), Contains(HasSubstr("--sky 1e+06")));
+}
+
 // Depth within 0 to 1.
 
 TEST_F(Doubts, depth_that_falls_from_1_is_refused_with_the_line_that_reads_it) {
@@ -118,7 +170,9 @@ TEST_F(Doubts, straight_distances_below_1_are_taken_and_noted) {
   write_depth([](double z) { return z / 100; }, 1e12f);
   EXPECT_THAT(said(), IsEmpty()) << "it writes distances";
   write_depth([](double z) { return std::sqrt(z / 100); }, 1e12f);
-  EXPECT_THAT(said(), testing::ElementsAre(HasSubstr("--depth-kind normalized --near 0 --far F"))) << "its Normalize";
+  EXPECT_THAT(said(), testing::ElementsAre(HasSubstr("--depth-kind normalized --near 0 --far F"),
+                                           HasSubstr("read as planar, as cycles writes it")))
+      << "its Normalize";
 }
 
 TEST_F(Doubts, straight_depth_before_the_near_plane_is_refused) {
@@ -262,9 +316,14 @@ TEST_F(Doubts, bars_on_two_opposite_sides_are_warned_of_and_a_sky_is_not) {
   struct Case {
     int top, bottom, left, right;
     bool are_bars;
-  };
-  for (const Case& c : std::vector<Case>{
-           {9, 9, 0, 0, true}, {0, 0, 7, 8, true}, {0, 0, 0, 0, false}, {40, 0, 0, 0, false}, {9, 20, 0, 0, false}}) {
+  };  // the last two are things before an empty background
+  for (const Case& c : std::vector<Case>{{9, 9, 0, 0, true},
+                                         {0, 0, 7, 8, true},
+                                         {0, 0, 0, 0, false},
+                                         {40, 0, 0, 0, false},
+                                         {9, 20, 0, 0, false},
+                                         {30, 30, 50, 50, false},
+                                         {30, 0, 50, 50, false}}) {
     planes.clear();
     for (int y = 0; y < 120; y++)
       for (int x = 0; x < 160; x++) {

@@ -121,6 +121,11 @@ TEST(Grain, is_the_step_of_the_values_and_not_of_their_type) {
   EXPECT_NEAR(grain(kStorages[3].stored).step, 0.001, 1e-6);
   EXPECT_NEAR(grain(kStorages[4].stored).step, 1, 1e-3);
   EXPECT_EQ(grain([](double) { return 3.0; }).step, 0) << "one wall tells nothing";
+  int pixel = 0;
+  const Grain below_sky = grain_of(
+      plane_of([&](double x, double y) { return pixel++ % 5 < 3 ? 65504.0 : kStorages[3].stored(room(x, y)); }), kSky);
+  EXPECT_TRUE(below_sky.is_coarse) << "beside a finite sky on most pixels";
+  EXPECT_LT(below_sky.median, 100);
   EXPECT_EQ(grain_of({}, kSky).median, 0);
   EXPECT_EQ(grain_of(plane_of([](double x, double) { return 6 + x / 256; }), kSky).step, 0)
       << "a plane with one step from column to column was not rounded";

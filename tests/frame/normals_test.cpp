@@ -124,8 +124,18 @@ TEST_F(NormalFiles, of_the_other_side_of_some_things_leave_the_reading_as_it_is)
       EXPECT_EQ(source.normal_space, in_view ? NormalSpace::view : NormalSpace::world)
           << what << testing::PrintToString(texts_of(source.notes));
       EXPECT_EQ(to_string(source.flip_normal), "none") << what;
-      for (const auto& note : source.notes) EXPECT_THAT(note.text, Not(HasSubstr("--flip-normal y"))) << note.text;
+      EXPECT_THAT(codes_of(source.notes), Not(testing::Contains(NoteCode::normals_disagree))) << what;
     }
+}
+
+TEST_F(NormalFiles, that_may_be_flipped_or_mirrored_are_turned_round_and_both_causes_are_said) {
+  place(turned({1, 0, 0}, 0));
+  write([&](Vec3 n, const test::Hit& hit) {
+    const Vec3 w = world(n);
+    return hit.primitive == kBall ? Vec3{} : Vec3{w.x, -w.y, w.z};
+  });
+  EXPECT_EQ(to_string(settled().flip_normal), "none");
+  EXPECT_THAT(texts_of(settled().notes), testing::Contains(HasSubstr("give --flip-normal y")));
 }
 
 TEST_F(NormalFiles, that_are_all_flipped_are_still_found) {

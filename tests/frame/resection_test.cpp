@@ -326,7 +326,9 @@ TEST_F(PositionPass, refutes_a_lens_by_pixels) {
   const auto warned = [&](const std::vector<std::string>& options) {
     std::vector<std::string> arguments{"run", frame, "-o", ao, "--radius", "1", "--normal", "none"};
     arguments.insert(arguments.end(), options.begin(), options.end());
-    return run_program(arguments).err;
+    const Finished finished = run_program(arguments);
+    EXPECT_EQ(finished.code, 0) << finished;
+    return finished.err;
   };
   const auto refutes = HasSubstr("px from the pixels that hold them");
   EXPECT_THAT(warned({"--fov", fmt::format("{}", degrees)}), Not(refutes));
