@@ -1,8 +1,6 @@
 // `alcove bench SUITE.toml`: run time against error, as a table, JSON, CSV and a page.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/bench/bench.h"
-#include "core/bench/bench_batch.h"
-#include "core/bench/bench_host.h"
 #include "core/bench/stability.h"
 
 #include <algorithm>
@@ -22,8 +20,8 @@ namespace {
 struct BenchArguments {
   std::string suite, data, json, csv, report, limits, yardstick;
   gpu::DeviceOptions device;
-  int repeats = 0, reference_slices = -1, batch = 0;
-  bool quiet = false, stability = false, host = false;
+  int repeats = 0, reference_slices = -1;
+  bool quiet = false, stability = false;
 };
 
 std::vector<OptionRow> rows_of(BenchArguments& a) {
@@ -35,15 +33,8 @@ std::vector<OptionRow> rows_of(BenchArguments& a) {
     OptionRow& row = options.number(name, value, "", range, sentence);
     row.value = what;
     row.default_text.clear();
-    return &row;
   };
   options.text("--data", a.data, "FOLDER", "the folder of the suite's frames; else the suite's own");
-  OptionRow* batch = count(
-      "--batch", a.batch, "FRAMES", between(1, 100000),
-      "instead: time a run of so many frames against its files alone and its kernels alone, for the first candidate");
-  batch->alone = "240";
-  options.flag("--host", a.host,
-               "instead: time the steps of each frame, from its files to its output, for the first candidate");
   options.flag("--stability", a.stability,
                "instead: measure where each estimator's numbers fail, along depth, radius, field of view, tilt, bits "
                "and world offset; no suite");
@@ -64,32 +55,18 @@ std::vector<OptionRow> rows_of(BenchArguments& a) {
   return rows;
 }
 
-/// Refuses what --batch and --stability, which measure something else, would leave undone.
+/// Refuses what --stability, which measures something else, would leave undone.
 void check_purpose(const BenchArguments& a) {
-  const auto refuse = [](const char* purpose, std::initializer_list<std::pair<const char*, bool>> options) {
-    for (const auto& [option, is_given] : options)
-      if (is_given) fail(ErrorKind::usage, "{} does not apply with {}; give only one of them", option, purpose);
-  };
-  const bool has_repeats = a.repeats > 0, has_slices = a.reference_slices >= 0;
-  if (a.stability)
-    refuse("--stability", {{"SUITE", !a.suite.empty()},
-                           {"--batch", a.batch > 0},
-                           {"--host", a.host},
-                           {"--data", !a.data.empty()},
-                           {"--csv", !a.csv.empty()},
-                           {"--limits", !a.limits.empty()},
-                           {"--yardstick", !a.yardstick.empty()},
-                           {"--repeats", has_repeats},
-                           {"--reference-slices", has_slices}});
-  else if (a.batch > 0 || a.host)
-    refuse(a.host ? "--host" : "--batch", {{"--batch", a.host && a.batch > 0},
-                                           {"--json", !a.json.empty()},
-                                           {"--csv", !a.csv.empty()},
-                                           {"--report", !a.report.empty()},
-                                           {"--limits", !a.limits.empty()},
-                                           {"--yardstick", !a.yardstick.empty()},
-                                           {"--repeats", has_repeats && !a.host},
-                                           {"--reference-slices", has_slices}});
+  if (!a.stability) return;
+  const std::initializer_list<std::pair<const char*, bool>> others{{"SUITE", !a.suite.empty()},
+                                                                   {"--data", !a.data.empty()},
+                                                                   {"--csv", !a.csv.empty()},
+                                                                   {"--limits", !a.limits.empty()},
+                                                                   {"--yardstick", !a.yardstick.empty()},
+                                                                   {"--repeats", a.repeats > 0},
+                                                                   {"--reference-slices", a.reference_slices >= 0}};
+  for (const auto& [option, is_given] : others)
+    if (is_given) fail(ErrorKind::usage, "{} does not apply with --stability; give only one of them", option);
 }
 
 Command bench_for(BenchArguments& a) {
@@ -149,39 +126,6 @@ std::vector<BenchCandidate> candidates_of(const Suite& suite, const std::string&
   return candidates;
 }
 
-/// The settings of the first candidate for a frame, as a run takes them.
-Settings run_settings_of(const Suite& suite, const SuiteFrame& frame, const BenchArguments& a) {
-  Settings settings = settings_of(suite.candidates.front(), frame, a.suite);
-  if (!settings.estimator.radius) settings.estimator.radius = frame.radius;
-  settings.device.device = a.device.choice;
-  settings.device.require_gpu = a.device.require_gpu;
-  return settings;
-}
-
-/// The steps of every frame.
-void time_hosts(const Suite& suite, const BenchArguments& a) {
-  for (const auto& frame : suite.frames) {
-    const auto steps = time_host(run_settings_of(suite, frame, a), suite.repeats);
-    double ms = 0;
-    for (const auto& step : steps) ms += step.ms;
-    fmt::print("{}: {:.1f} ms\n{:<10} {:>10} {:>12}\n", frame.name, ms, "step", "ms", "bytes");
-    for (const auto& step : steps) fmt::print("{:<10} {:>10.2f} {:>12}\n", step.name, step.ms, step.bytes);
-    (void)std::fflush(stdout);
-  }
-}
-
-/// Runs of the first candidate, on every frame.
-void time_batches(const Suite& suite, const BenchArguments& a) {
-  for (const auto& frame : suite.frames) {
-    const BatchTimes times = time_batch(run_settings_of(suite, frame, a), a.batch);
-    fmt::print(
-        "{}: {} frames, {} at once: {:.2f} s; files alone {:.2f} s, kernels alone {:.2f} s: {:.2f} of their sum\n",
-        frame.name, times.frames, times.at_once, times.run_s, times.files_s, times.compute_s,
-        times.run_s / (times.files_s + times.compute_s));
-    (void)std::fflush(stdout);
-  }
-}
-
 void print_table(const BenchReport& report) {
   fmt::print("{:<14} {:<24} {:>9} {:>7} {:>8} {:>8} {:>8} {:>8} {:>9} {:>9}\n", "frame", "candidate", "ms", "yards",
              "rmse", "bias", "p99", "grain", "estimator", "geometry");
@@ -222,10 +166,6 @@ int bench_command(const std::vector<std::string>& arguments) {
   Suite suite = read_suite(a.suite, a.data);
   if (a.repeats) suite.repeats = a.repeats;
   if (a.reference_slices >= 0) suite.reference_slices = a.reference_slices;
-  if (a.host || a.batch) {
-    a.host ? time_hosts(suite, a) : time_batches(suite, a);
-    return 0;
-  }
   std::vector<std::string> inputs{a.suite, a.limits};
   for (const auto& frame : suite.frames) {
     inputs.insert(inputs.end(), {frame.input, frame.camera, frame.reference});

@@ -181,10 +181,4 @@ std::vector<int> frames_on_disk(const FramePattern& pattern, const char* option)
   return frames;
 }
 
-std::vector<std::string> expand(const FramePattern& pattern, std::span<const int> frames) {
-  std::vector<std::string> paths;
-  for (const int frame : frames) paths.push_back(pattern.path(frame));
-  return paths;
-}
-
 }  // namespace alcove

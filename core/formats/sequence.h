@@ -37,7 +37,4 @@ std::string frames_text(std::vector<int> frames);
 /// or holds no such file, with ErrorKind::usage when the token is in the folder's name; `option` is for the message.
 std::vector<int> frames_on_disk(const FramePattern& pattern, const char* option);
 
-/// Gives the pattern's paths. Opens no file.
-std::vector<std::string> expand(const FramePattern& pattern, std::span<const int> frames);
-
 }  // namespace alcove

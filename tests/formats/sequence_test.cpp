@@ -63,9 +63,9 @@ TEST(FramePattern, two_tokens_are_an_error) {
               AllOf(HasSubstr("%04d and ####"), HasSubstr("two places")));
 }
 
-TEST(FramePattern, expands_in_the_order_of_the_frames) {
-  EXPECT_THAT(expand(*frame_pattern("a.##.exr"), std::vector{3, -1, 100}),
-              ElementsAre("a.03.exr", "a.-1.exr", "a.100.exr"));
+TEST(FramePattern, pads_numbers) {
+  for (const auto& [frame, path] : {std::pair(3, "a.03.exr"), {-1, "a.-1.exr"}, {100, "a.100.exr"}})
+    EXPECT_EQ(frame_pattern("a.##.exr")->path(frame), path);
 }
 
 TEST(ParseFrames, numbers_ranges_and_steps) {

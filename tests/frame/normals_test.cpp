@@ -129,13 +129,16 @@ TEST_F(NormalFiles, of_the_other_side_of_some_things_leave_the_reading_as_it_is)
 }
 
 TEST_F(NormalFiles, that_may_be_flipped_or_mirrored_are_turned_round_and_both_causes_are_said) {
-  place(turned({1, 0, 0}, 0));
-  write([&](Vec3 n, const test::Hit& hit) {
-    const Vec3 w = world(n);
-    return hit.primitive == kBall ? Vec3{} : Vec3{w.x, -w.y, w.z};
+  const Shot& shot = rendering.shot;
+  const Vec3 x = shot.view_from_world({1, 0, 0}), y = shot.view_from_world({0, 1, 0}),
+             z = shot.view_from_world({0, 0, 1});
+  place({Vec3{x.x, y.x, z.x}, {x.y, y.y, z.y}, {x.z, y.z, z.z}});
+  // The wall faces along x, and the floor across it.
+  write([](Vec3, const test::Hit& hit) {
+    return hit.primitive == kBall ? Vec3{} : Vec3{-hit.normal.x, hit.normal.y, hit.normal.z};
   });
   EXPECT_EQ(to_string(settled().flip_normal), "none");
-  EXPECT_THAT(texts_of(settled().notes), testing::Contains(HasSubstr("give --flip-normal y")));
+  EXPECT_THAT(texts_of(settled().notes), testing::Contains(HasSubstr("give --flip-normal x")));
 }
 
 TEST_F(NormalFiles, that_are_all_flipped_are_still_found) {

@@ -286,26 +286,6 @@ TEST_F(Batch, memory_does_not_grow_with_the_frames) {
   EXPECT_LT(peak("1-200"), peak("1-20") + 6);
 }
 
-TEST_F(Batch, bench_times_a_run_against_its_parts) {
-  const Finished finished = run_program({"bench", ALCOVE_SOURCE_DIR "/examples/bench/suite.toml", "--batch", "2"});
-  EXPECT_EQ(finished.code, 0) << finished;
-  const auto lines = lines_of(finished.out);
-  ASSERT_GE(lines.size(), 2);
-  for (const auto& line : lines)
-    EXPECT_THAT(line, testing::MatchesRegex("[a-z]+: 2 frames, [0-9]+ at once: [0-9.]+ s; files alone [0-9.]+ s, "
-                                            "kernels alone [0-9.]+ s: [0-9.]+ of their sum"));
-}
-
-TEST(BenchHost, tells_every_step_of_a_frame_from_its_files_to_its_output) {
-  const Finished finished =
-      run_program({"bench", ALCOVE_SOURCE_DIR "/examples/bench/suite.toml", "--host", "--repeats", "1"});
-  EXPECT_EQ(finished.code, 0) << finished;
-  std::string steps = "monkeys: [0-9.]+ ms\nstep +ms +bytes\n";
-  for (const char* step : {"open", "read", "settle", "hash", "upload", "compute", "download", "convert", "write"})
-    steps += std::string(step) + " +[0-9]+\\.[0-9]+ +[1-9][0-9]*\n";
-  EXPECT_THAT(finished.out, testing::ContainsRegex(steps)) << finished;
-}
-
 TEST_F(Batch, senseless_options_are_refused) {
   write_frames(1, 1);
   for (const std::vector<std::string>& arguments : {std::vector<std::string>{"--chunk", "0/2"},
