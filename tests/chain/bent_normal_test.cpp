@@ -245,7 +245,7 @@ TEST(BentNormals, are_those_of_the_cpu_reference) {
       settings.thickness_length = 0.15;
       settings.falloff = falloff;
       ReferenceSettings reference = reference_settings_of(settings);
-      for (std::size_t i = 11; i < room.hits.size(); i += 37)
+      for (std::size_t i = 11; i < room.hits.size(); i += 109)
         if (room.hits[i].primitive >= 0) reference.pixels.push_back(i);
       const auto expected = vectors_in(reference_bent(room.frame, reference));
       const auto expected_ao = reference_ao(room.frame, reference);

@@ -89,8 +89,8 @@ double by_rays(const Scene& scene, const Hit& hit, double radius) {
 const Polygon kPlate = parallelogram({2.3, -0.6, 2.1}, {0, 1.2, 0}, {-0.14, 0, 0.14});
 
 std::vector<Shot> shots_of_corner() {
-  return {Shot::perspective({4, 0, 4}, {0.5, 0, 0.5}, 50, 240, 180),
-          Shot::orthographic({4, 0, 4}, {0.5, 0, 0.5}, 5, 240, 180)};
+  return {Shot::perspective({4, 0, 4}, {0.5, 0, 0.5}, 50, 160, 120),
+          Shot::orthographic({4, 0, 4}, {0.5, 0, 0.5}, 5, 160, 120)};
 }
 
 TEST(ExactHidden, a_wall_blocks_where_a_plate_hides_it) {
@@ -176,7 +176,7 @@ TEST(ExactHidden, outlines_give_what_every_pixel_gives) {
     Rendering rendering = furnished(orthographic);
     add_solid_peels(rendering, kFurniture, 3, kSolidFurniture);
     for (const Completion complete : {Completion::none, Completion::border, Completion::all}) {
-      if (!tried(orthographic + int(complete), 2)) continue;
+      if (!tried(orthographic + int(complete), 3)) continue;
       const std::vector<float> marched = run(rendering.frame, settings_of(0.6, complete, SliceSearch::every_pixel));
       const Difference d = difference(run(rendering.frame, settings_of(0.6, complete)), marched);
       EXPECT_LE(d.rmse, complete == Completion::all ? 0.006 : 0.003)
@@ -224,7 +224,7 @@ TEST(ExactHidden, copies_of_the_first_depth_change_no_bit) {
 
 TEST(ExactHidden, surfaces_beyond_the_radius_change_no_bit) {
   for (const bool orthographic : {false, true}) {
-    const HostFrame frame = furnished(orthographic).frame;
+    const HostFrame frame = furnished(orthographic, 96, 72).frame;
     std::vector<float> far;
     for (const float z : frame.depth) far.push_back(z < kSky ? 60 + z : kSky);
     expect_no_change(frame, far, orthographic ? "orthographic" : "perspective");

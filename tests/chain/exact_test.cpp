@@ -68,7 +68,7 @@ TEST(Exact, outlines_give_what_every_pixel_gives) {
     for (const double radius : {0.3, 1.0, 100.0}) {
       for (const auto thickness : {ThicknessKind::automatic, ThicknessKind::infinite, ThicknessKind::constant}) {
         for (const auto complete : {Completion::none, Completion::border, Completion::all}) {
-          if (!tried(orthographic + (radius == 1) + int(thickness) + int(complete), 2)) continue;
+          if (!tried(orthographic + (radius == 1) + int(thickness) + int(complete), 4)) continue;
           EstimatorSettings exact = settings_of(radius), march = settings_of(radius, SliceSearch::every_pixel);
           exact.thickness = march.thickness = thickness;
           exact.thickness_length = march.thickness_length = 0.2;

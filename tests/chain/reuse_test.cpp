@@ -92,7 +92,7 @@ TEST(Reuse, of_parts_and_of_whole_frames_changes_no_bit) {
   const char* seed = std::getenv("ALCOVE_TEST_SEED");
   RandomScenes random(seed ? unsigned(std::atoi(seed)) : 61121);
   std::uint64_t kept = 0, same = 0;
-  const int count = long_tests() ? 120 : cases_of(60);
+  const int count = long_tests() ? 120 : cases_of(30);
   Lane lane(device());
   for (int i = 0; i < count && !HasFailure(); i++) {
     lane.last.forget();
