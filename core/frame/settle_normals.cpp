@@ -71,7 +71,7 @@ class NormalSettlement : private Settlement {
     const bool is_open = source_.normal_encoding_open;
     const NormalStatistics n = normal_statistics(normal_, depth_, depth_map_of(source_), kSparse);
     if (!is_open) doubt_encoding(n);
-    has_any_ = n.count > 0;
+    has_any_ = n.count > 0 || normal_statistics(normal_, depth_, depth_map_of(source_)).count > 0;
     has_negative_ = n.least < kBelowZero;
     const bool in_unit_range = n.count && n.least >= 0 && n.most <= 1;
     const NormalEncoding said = source_.normal_encoding;
@@ -196,15 +196,19 @@ class NormalSettlement : private Settlement {
 
   void settle_space() {
     const bool has_world = source_.camera.view_from_world.has_value();
+    // The usual reading, and that of view space where the camera knows no world.
+    const bool has_usual = has_world || source_.usual_normal_space == NormalSpace::view;
+    if (!has_any_) {
+      source_.has_evidence = false;
+      if (source_.normal_space_open) source_.normal_space = has_usual ? source_.usual_normal_space : NormalSpace::view;
+      return;
+    }
     const auto all_scores = score_normals(planes(), source_.camera, view_);
-    if (!has_any_ && source_.normal_space_open) source_.normal_space = NormalSpace::view;
-    if (!has_any_ || settle_cut(all_scores)) return;
+    if (settle_cut(all_scores)) return;
     if (!source_.normal_space_open) return doubt_normals(all_scores);
     const std::string given = to_string(settings_.flip_normal);
     auto scores = all_scores;
     if (given != "none") std::erase_if(scores, [&](const auto& s) { return to_string(s.flips) != given; });
-    // The usual reading, and that of view space where the camera knows no world.
-    const bool has_usual = has_world || source_.usual_normal_space == NormalSpace::view;
     const NormalScore* plain =
         reading_of(scores, has_usual ? source_.usual_normal_space : NormalSpace::view, settings_.flip_normal);
     const bool tells = plain && best_of(scores).explained() >= kLeastAgreement;
@@ -263,18 +267,17 @@ class NormalSettlement : private Settlement {
   /// Whether a reading does as well as any, if need be with the normals of the other side turned round: they are a
   /// fault of some objects, and flips are one of all.
   static bool explains(const NormalScore& score, const std::vector<NormalScore>& scores) {
+    return score.agreement >= kNoBetter * scores[0].agreement || explains_most(score, scores);
+  }
+  static bool explains_most(const NormalScore& score, const std::vector<NormalScore>& scores) {
     const double most = std::ranges::max_element(scores, {}, &NormalScore::explained)->explained();
-    return score.agreement >= kNoBetter * scores[0].agreement ||
-           (score.explained() >= kAsMany * most && score.agreement >= kLeastOwn * score.explained());
+    return score.explained() >= kAsMany * most && score.agreement >= kLeastOwn * score.explained();
   }
 
   /// The best reading: of those that explain as many normals as any, one without flips, else the one by which most face
   /// as depth does.
   static const NormalScore& best_of(const std::vector<NormalScore>& scores) {
-    const double most = std::ranges::max_element(scores, {}, &NormalScore::explained)->explained();
-    const auto does = [&](const NormalScore& s) {
-      return s.explained() >= kAsMany * most && s.agreement >= kLeastOwn * s.explained();
-    };
+    const auto does = [&](const NormalScore& s) { return explains_most(s, scores); };
     const auto plain =
         std::ranges::find_if(scores, [&](const auto& s) { return does(s) && to_string(s.flips) == "none"; });
     if (plain != scores.end()) return *plain;

@@ -128,6 +128,14 @@ TEST_F(NormalFiles, of_the_other_side_of_some_things_leave_the_reading_as_it_is)
     }
 }
 
+TEST_F(NormalFiles, that_are_all_zero_decide_nothing) {
+  write([](Vec3, const test::Hit&) { return Vec3{}; });
+  EXPECT_EQ(settled().normal_space, NormalSpace::world) << "the usual one";
+  EXPECT_FALSE(settled().has_evidence) << "so that a sequence is read as a later frame";
+  leave_camera_out();
+  EXPECT_EQ(settled().normal_space, NormalSpace::view) << "without a matrix";
+}
+
 TEST_F(NormalFiles, that_may_be_flipped_or_mirrored_are_turned_round_and_both_causes_are_said) {
   const Shot& shot = rendering.shot;
   const Vec3 x = shot.view_from_world({1, 0, 0}), y = shot.view_from_world({0, 1, 0}),
