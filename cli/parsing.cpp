@@ -24,7 +24,6 @@ CLI::Option* add_option(CLI::App& app, const OptionRow& row) {
   if (row.is_flag()) return app.add_flag(row.name)->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
   CLI::Option* option = app.add_option(row.name);
   if (row.repeats) option->take_all()->allow_extra_args(false);
-  if (!row.alone.empty()) option->expected(0, 1)->default_str(row.alone);
   return option->required(row.is_required);
 }
 

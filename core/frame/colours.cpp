@@ -9,6 +9,7 @@
 
 #include "core/base/error.h"
 #include "core/base/text.h"
+#include "core/frame/linear_fit.h"
 
 namespace alcove {
 namespace {
@@ -54,12 +55,10 @@ bool varies(const std::vector<float>& plane) {
 /// Whether the second and the third channel are there for more than to be equal to the first.
 bool are_colours(const std::array<std::vector<float>, 3>& planes) {
   if (!varies(planes[1]) && !varies(planes[2])) return false;
-  std::vector<float> sizes;
+  std::vector<double> sizes;
   for (const float value : planes[0])
     if (std::isfinite(value) && value != 0) sizes.push_back(std::abs(value));
-  const auto middle = sizes.begin() + std::ptrdiff_t(sizes.size() / 2);
-  if (!sizes.empty()) std::ranges::nth_element(sizes, middle);
-  const double dark = sizes.empty() ? 0 : kDark * double(*middle);
+  const double dark = sizes.empty() ? 0 : kDark * median_of(std::move(sizes));
   std::size_t pixels = 0, coloured = 0;
   for (std::size_t i = 0; i < planes[0].size(); i++) {
     const std::array<double, 3> c{planes[0][i], planes[1][i], planes[2][i]};

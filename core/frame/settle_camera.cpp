@@ -79,12 +79,9 @@ double planar_of(const SeenPoint& point, const Camera& camera) {
 
 /// How little numbers differ from their median, relative to it: the median of that.
 double spread(std::vector<double> numbers) {
-  const auto middle = numbers.begin() + std::ptrdiff_t(numbers.size() / 2);
-  std::ranges::nth_element(numbers, middle);
-  const double median = *middle;
+  const double median = median_of(numbers);
   for (double& number : numbers) number = std::abs(number / median - 1);
-  std::ranges::nth_element(numbers, middle);
-  return *middle;
+  return median_of(std::move(numbers));
 }
 
 }  // namespace

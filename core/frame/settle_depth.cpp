@@ -241,8 +241,7 @@ class DepthSettlement : private Settlement {
   }
 
   std::string straight(const DepthScore& score) const {
-    return fmt::format("only {} depth makes {:.0f} % of the smooth places flat", name_of(score.kind),
-                       100 * score.straight);
+    return fmt::format("as {} alone {:.0f} % of the smooth places are flat", name_of(score.kind), 100 * score.straight);
   }
 
   /// Reads the depth as the program that wrote the frame, or most programs, write it. It is no guess where the user
@@ -355,8 +354,7 @@ class DepthSettlement : private Settlement {
   }
 
   std::string text_of(const std::vector<DepthScore>& scores) const {
-    return fmt::format("as {} alone {:.0f} % of the smooth places are flat, as {} {:.0f} %, as {} {:.0f} %",
-                       name_of(scores[0].kind), 100 * scores[0].straight, name_of(scores[1].kind),
+    return fmt::format("{}, as {} {:.0f} %, as {} {:.0f} %", straight(scores[0]), name_of(scores[1].kind),
                        100 * scores[1].straight, name_of(scores[2].kind), 100 * scores[2].straight);
   }
 

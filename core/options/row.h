@@ -50,7 +50,6 @@ struct OptionRow {
   bool is_required = false;  // of arguments without a name
   bool is_key = true;        // whether presets may hold it
   bool is_common = false;    // among the few that --help shows; --help-all shows all
-  std::string alone = {};    // its value where it is given without one; "": it must have one
   // Where it has an effect: all of them hold. What is typed and has none is refused; of a preset it is left out.
   std::vector<Condition> conditions = {};
   std::vector<Contradiction> contradictions = {};  // of a pair one row is enough
