@@ -1,13 +1,23 @@
 #!/usr/bin/env bash
 # Sets up, builds and runs every test, in the forms that run with each change: tests/long.sh has the long ones, docs/testing.md says which.
-#   tests/run.sh [--device NAME]      on another Vulkan device
+#   tests/run.sh --hosts              also those in a browser, Blender and Slurm, and against stubs of other programs
+#   tests/run.sh --device NAME        on another Vulkan device
 # ALCOVE_STRICT=ON makes warnings in our code errors, as continuous integration does.
 # SPDX-License-Identifier: BSD-3-Clause
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-if [ "${1:-}" = --device ]; then
-  export ALCOVE_TEST_DEVICE=${2:?--device NAME}
-fi
+left_out='long|hosts'
+while [ $# -gt 0 ]; do
+  case $1 in
+    --hosts) left_out=long ;;
+    --device)
+      export ALCOVE_TEST_DEVICE=${2:?--device NAME}
+      shift
+      ;;
+    *) echo "$0: $1 is neither --hosts nor --device NAME" >&2; exit 2 ;;
+  esac
+  shift
+done
 scripts/setup.sh
-ctest --test-dir build -LE long --output-on-failure -j "$(nproc)"
+ctest --test-dir build -LE "$left_out" --output-on-failure -j "$(nproc)"

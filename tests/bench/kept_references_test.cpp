@@ -4,7 +4,7 @@
 //
 // With every change some pixels of each are computed anew, with ALCOVE_TEST_LONG all. After a change of the reference
 // or of what the presets ask of it, write them with
-//   build/tests/kept_references_test --gtest_also_run_disabled_tests --gtest_filter='*writes_them'
+//   build/tests/bench_tests --gtest_also_run_disabled_tests --gtest_filter='*writes_them'
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

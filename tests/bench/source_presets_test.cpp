@@ -4,7 +4,7 @@
 //
 // The goldens are reference_estimate() of a preset's settings on a part of a rendered frame, one channel a preset; a
 // test computes some of their pixels anew. After a change of a preset or a definition, write them with
-//   build/tests/source_presets_test --gtest_also_run_disabled_tests --gtest_filter='*writes_the_goldens'
+//   build/tests/bench_tests --gtest_also_run_disabled_tests --gtest_filter='*writes_the_goldens'
 #include <gtest/gtest.h>
 
 #include <cmath>

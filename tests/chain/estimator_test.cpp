@@ -365,7 +365,7 @@ TEST(Crytek, bias_is_a_depth_in_scene_units) {  // what is nearer to the eye tha
 
 // On the command line.
 
-TEST(CommandLine, tells_how_many_samples_each_estimator_takes) {
+TEST(EstimatorOptions, tells_how_many_samples_each_estimator_takes) {
   const test::TemporaryFolder folder;
   const std::string frame = ALCOVE_SOURCE_DIR "/examples/bench/machine.";
   using Options = std::vector<std::string>;
@@ -387,7 +387,7 @@ TEST(CommandLine, tells_how_many_samples_each_estimator_takes) {
   }
 }
 
-TEST(CommandLine, refuses_a_sine_of_one_and_more_as_a_bias) {
+TEST(EstimatorOptions, refuses_a_sine_of_one_and_more_as_a_bias) {
   const test::TemporaryFolder folder;
   const std::string frame = ALCOVE_SOURCE_DIR "/examples/bench/machine.";
   const test::Finished finished =

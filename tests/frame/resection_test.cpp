@@ -374,7 +374,7 @@ TEST_F(PositionPass, that_is_none_is_told) {
   EXPECT_THAT(inspected.out, HasSubstr("its positions tell none"));
 }
 
-TEST(CameraFiles, are_read_as_they_were_written) {
+TEST(ResectedCameras, are_read_as_they_were_written) {
   const TemporaryFolder folder;
   const std::string path = folder / "camera.json";
   Camera camera = made_camera();
