@@ -19,19 +19,17 @@
 namespace alcove {
 namespace {
 
-/// The option as it stands in the table, with its two dashes.
-std::string long_name(const std::string& option) { return option.starts_with("--") ? option : "--" + option; }
-
-/// The row of an option that the library takes.
+/// The row of a setting that the library takes, with or without two dashes.
 const OptionRow& row_of(const std::vector<OptionRow>& table, const std::string& option) {
-  std::vector<std::string> names;
+  const std::string key = option.starts_with("--") ? option.substr(2) : option;
+  std::vector<std::string> keys;
   for (const auto& row : table)
-    if (is_for_library(row)) names.push_back(row.long_name());
-  const auto row = std::ranges::find(table, option, &OptionRow::long_name);
-  if (row == table.end()) fail(ErrorKind::usage, "there is no option {}{}", option, suggestion(option, names));
-  if (option == "--preset") fail(ErrorKind::usage, "--preset is no option here: alcove_preset() takes presets");
+    if (is_for_library(row)) keys.push_back(row.key());
+  const auto row = std::ranges::find(table, key, &OptionRow::key);
+  if (row == table.end()) fail(ErrorKind::usage, "there is no option {}{}", key, suggestion(key, keys));
+  if (key == "preset") fail(ErrorKind::usage, "preset is no option here: alcove_preset() takes presets");
   if (!is_for_library(*row))
-    fail(ErrorKind::usage, "{} is of files: the library takes planes, and alcove run takes files", option);
+    fail(ErrorKind::usage, "{} is of files: the library takes planes, and alcove run takes files", key);
   return *row;
 }
 
@@ -66,47 +64,23 @@ Components components_of(const std::string& name) {
 }  // namespace
 
 bool is_for_library(const OptionRow& row) {
-  static const Words kOthers{"--aov",
-                             "--aov-space",
-                             "--ao-channels",
-                             "--multi-bounce",
-                             "--hidden",
-                             "--separation",
-                             "--behind-kind",
-                             "--device",
-                             "--require-gpu",
-                             "--validate",
-                             "--no-pipeline-cache",
-                             "--albedo",
-                             "--matte-outside",
-                             "--depth-kind",
-                             "--near",
-                             "--far",
-                             "--reversed-z",
-                             "--device-range",
-                             "--log-constant",
-                             "--depth-scale",
-                             "--sky",
-                             "--normal-space",
-                             "--normal-encoding",
-                             "--flip-normal",
-                             "--position-space",
-                             "--fov",
-                             "--focal",
-                             "--aperture",
-                             "--ortho-width"};
-  if (row.group == "Estimator") return row.name != "--preset" && row.name != "--accumulate";
-  return std::ranges::find(kOthers, row.long_name()) != kOthers.end();
+  static const Words kOthers{"aov", "aov-space", "ao-channels", "multi-bounce", "hidden", "separation",
+                             "behind-kind", "device", "require-gpu", "validate", "no-pipeline-cache", "albedo",
+                             "matte-outside", "depth-kind", "near", "far", "reversed-z", "device-range",
+                             "log-constant", "depth-scale", "sky", "normal-space", "normal-encoding", "flip-normal",
+                             "position-space", "fov", "focal", "aperture", "ortho-width"};
+  if (row.group == "Estimator") return row.key() != "preset" && row.key() != "set" && row.key() != "accumulate";
+  return std::ranges::find(kOthers, row.key()) != kOthers.end();
 }
 
 void Session::set(const std::string& option, const char* value) {
-  const std::string name = long_name(option);
   RunOptions trial;
   const auto table = option_table(trial);
-  const OptionRow& row = row_of(table, name);
+  const OptionRow& row = row_of(table, option);
+  const std::string name = row.long_name();
   if (value) row.read({value});
-  if (value && name == "--albedo" && !trial.settings.input.albedo_value)
-    fail(ErrorKind::usage, "--albedo: {} is no number from 0 to 1; colours are the plane albedo", said(value));
+  if (value && row.key() == "albedo" && !trial.settings.input.albedo_value)
+    fail(ErrorKind::usage, "{}: {} is no number from 0 to 1; colours are the plane albedo", name, said(value));
   std::erase_if(said_, [&](const Said& one) { return one.option == name; });
   if (value) said_.push_back({name, {value}});
 }

@@ -85,8 +85,7 @@ std::string text_of(const OptionRow& row) {
   std::vector<std::string> facts;
   if (const std::string range = range_text(row); !range.empty()) facts.push_back(range);
   if (!row.default_text.empty()) facts.push_back("default: " + row.default_text);
-  const std::string sentence = row.whole_sentence();
-  return upper(sentence[0]) + sentence.substr(1) +
+  return upper(row.sentence[0]) + row.sentence.substr(1) +
          (facts.empty() ? "." : fmt::format(" ({}).", fmt::join(facts, "; ")));
 }
 

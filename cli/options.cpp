@@ -5,21 +5,52 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 
 #include "cli/commands.h"
 #include "cli/parsing.h"
 #include "core/base/error.h"
+#include "core/base/text.h"
 
 namespace alcove {
 namespace {
 
+/// What --set says, setting by setting; of one that repeats each is one more.
+std::vector<Said> said_by_sets(const Words& sets, const std::vector<OptionRow>& table) {
+  std::vector<Said> said;
+  for (const auto& set : sets) {
+    const std::size_t equals = set.find('=');
+    if (equals == set.npos || equals == 0)
+      fail(ErrorKind::usage, "--set: {} is not KEY=VALUE, such as denoise=none", alcove::said(set));
+    const OptionRow& row = row_of_key(table, lower_case(set.substr(0, equals)));
+    const std::string value = set.substr(equals + 1);
+    const auto earlier = std::ranges::find(said, row.long_name(), &Said::option);
+    if (earlier == said.end())
+      said.push_back({row.long_name(), {value}});
+    else if (row.repeats)
+      earlier->words.push_back(value);
+    else
+      fail(ErrorKind::usage, "{} is given more than once", row.long_name());
+  }
+  return said;
+}
+
+/// The words that were typed for an option; none: it was not.
+Words words_for(const std::vector<Typed>& typed, const char* option) {
+  const auto found = std::ranges::find_if(typed, [&](const Typed& one) { return one.row->name == option; });
+  return found == typed.end() ? Words{} : found->words;
+}
+
 /// What presets and then the command line say; what is in no table (INPUT, and --json of inspect) is read at once.
 std::vector<Said> all_said(const std::vector<Typed>& typed, const std::vector<OptionRow>& table) {
   std::vector<Said> said;
-  const auto presets = std::ranges::find_if(typed, [](const Typed& one) { return one.row->name == "--preset"; });
-  if (presets != typed.end())
-    for (const auto& preset : presets_of(presets->words))
-      std::ranges::copy(said_by_preset(preset, table), std::back_inserter(said));
+  for (const auto& preset : presets_of(words_for(typed, "--preset")))
+    std::ranges::copy(said_by_preset(preset, table), std::back_inserter(said));
+  for (auto& set : said_by_sets(words_for(typed, "--set"), table)) {
+    const bool is_typed = std::ranges::any_of(typed, [&](const Typed& one) { return one.row->long_name() == set.option; });
+    if (is_typed) fail(ErrorKind::usage, "{} is given more than once", set.option);
+    said.push_back(std::move(set));
+  }
   for (const auto& [row, words] : typed) {
     if (std::ranges::find(table, row->name, &OptionRow::name) != table.end())
       said.push_back({row->long_name(), words});
@@ -55,15 +86,14 @@ Command run_with(RunOptions& options, const std::vector<OptionRow>& table) {
       .text("INPUT", options.settings.input.input, "",
             "an EXR file with depth and normals, or a pattern such as frame.%04d.exr")
       .is_key = false;
-  command.rows.insert(command.rows.end(), table.begin(), table.end());
+  std::ranges::copy_if(table, std::back_inserter(command.rows), std::not_fn(&OptionRow::is_only_key));
   return command;
 }
 
 /// Whether inspect looks at an option of run.
 bool is_inspected(const OptionRow& row) {
-  static const Words kOthers{"--frames", "--preset", "--radius", "--device", "--preview"};
-  return row.group == "Input" || row.group == "Hidden surfaces" ||
-         std::ranges::find(kOthers, row.name) != kOthers.end();
+  static const Words kOthers{"--frames", "--preset", "--set", "--radius", "--device", "--preview"};
+  return row.is_of_inputs() || std::ranges::find(kOthers, row.name) != kOthers.end();
 }
 
 Command inspect_with(InspectOptions& options, const std::vector<OptionRow>& table) {
@@ -80,9 +110,28 @@ Command inspect_with(InspectOptions& options, const std::vector<OptionRow>& tabl
   return command;
 }
 
+/// Refuses a key that is typed as an option, and says what to type.
+void refuse_keys(const std::vector<std::string>& arguments, const std::vector<OptionRow>& table) {
+  for (std::size_t i = 0; i < arguments.size(); i++) {
+    const std::string& argument = arguments[i];
+    const std::size_t equals = std::min(argument.find('='), argument.size());
+    const auto row = std::ranges::find_if(table, [&](const OptionRow& one) {
+      return one.is_only_key() && argument.substr(0, equals) == "--" + one.name;
+    });
+    if (row == table.end()) continue;
+    const bool has_next = i + 1 < arguments.size() && !arguments[i + 1].starts_with("--");
+    const std::string value = equals < argument.size() ? argument.substr(equals + 1)
+                              : row->is_flag()         ? "true"
+                              : has_next               ? arguments[i + 1]
+                                                       : "VALUE";
+    fail(ErrorKind::usage, "--{} is a setting: write --set {}", row->name, for_shell(row->name + "=" + value));
+  }
+}
+
 /// Reads what the command line says; false where it asks for what is only printed.
 bool read_arguments(const Command& command, const std::vector<std::string>& arguments,
                     const std::vector<OptionRow>& table, RunOptions& options, Reader reader) {
+  refuse_keys(arguments, table);
   const auto typed = find_typed(command, arguments);
   if (!typed) return false;
   try {
@@ -91,7 +140,7 @@ bool read_arguments(const Command& command, const std::vector<std::string>& argu
     if (error.kind() != ErrorKind::usage) throw;
     fail(ErrorKind::usage, "{}{}", error.what(), see_help(command.name));
   }
-  if (options.print_config) fmt::print("{}", preset_text(table));
+  if (options.print_config) fmt::print("{}", preset_text(table, options.settings));
   return !options.print_config;
 }
 

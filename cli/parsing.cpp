@@ -42,7 +42,7 @@ struct Parser {
     for (const auto& row : command.rows) {
       CLI::Option* option = options.emplace_back(add_option(app, row));
       const std::string range = range_text(row);
-      option->description(row.whole_sentence() + (range.empty() ? "" : " (" + range + ")"));
+      option->description(row.sentence + (range.empty() ? "" : " (" + range + ")"));
       if (!row.group.empty()) option->group(row.group);
       if (!shows_all && !row.is_common && row.name.starts_with('-')) option->group("");
       if (!row.is_flag()) option->type_name(row.value);

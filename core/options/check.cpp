@@ -112,7 +112,7 @@ void check_settings(const Settings& settings) {
     fail(ErrorKind::usage, "no input: name an EXR file, or one with --depth or --position");
   if (!settings.estimator.radius && !settings.estimator.radius_auto && needs_ao(settings.output))
     fail(ErrorKind::usage, "no radius: say with --radius how far occluders reach, in scene units");
-  require_applicable(settings);
+  require_effects(settings);
   check_tolerance(settings);
   check_search(settings);
   check_completion(settings);

@@ -8,6 +8,7 @@
 #include "core/base/error.h"
 #include "core/base/text.h"
 #include "core/options/options.h"
+#include "core/options/reasons.h"
 
 namespace alcove {
 namespace {
@@ -56,205 +57,213 @@ void read_kernel(const std::string& text, std::vector<double>& kernel) {
   for (const auto& word : split(text)) {
     const auto weight = number_of(word);
     if (!weight || !(*weight >= 0) || std::isinf(*weight))
-      fail(ErrorKind::usage, "--denoise-kernel: {} is no weight of 0 or more", said(word));
+      fail(ErrorKind::usage, "--set denoise-kernel: {} is no weight of 0 or more", said(word));
     weights.push_back(*weight);
   }
   if (weights.size() < 2 || weights.size() > 9)
-    fail(ErrorKind::usage, "--denoise-kernel: {} has {} weights, not 2 to 9", text, weights.size());
-  if (weights.front() == 0) fail(ErrorKind::usage, "--denoise-kernel: {} has no weight at the centre", text);
+    fail(ErrorKind::usage, "--set denoise-kernel: {} has {} weights, not 2 to 9", text, weights.size());
+  if (weights.front() == 0) fail(ErrorKind::usage, "--set denoise-kernel: {} has no weight at the centre", text);
   kernel = weights;
 }
 
-/// The option is of estimators that search slices and fade hits by their distance.
-void fades_hits(OptionRow& row) {
-  row.applies(or_confidence(to_estimators({Estimator::gtao, Estimator::bitmask, Estimator::hbao})))
-      .applies(or_confidence(to_steps()));
+/// An estimate by steps along slices, which fades hits by their distance.
+std::string unless_fading(const Settings& all) {
+  return asks_for_confidence(all) ? "" : first_of({unless_slices(all), if_exact(all)});
 }
+
+std::string if_exact_alone(const Settings& all) { return asks_for_confidence(all) ? "" : if_exact(all); }
+std::string if_by_error_alone(const Settings& all) { return asks_for_confidence(all) ? "" : if_by_error(all); }
+std::string unless_slices_anywhere(const Settings& all) { return asks_for_confidence(all) ? "" : unless_slices(all); }
 
 void add_radius_rows(std::vector<OptionRow>& rows, EstimatorSettings& s) {
   OptionGroup pixels(rows, "Estimator", Effect::pixels);
-  pixels.choice("--estimator", s.estimator,
-                "gtao: horizons; bitmask: what is blocked between front and back of every occluder; hbao: horizons, "
-                "not cosine weighted; crytek: samples in the hemisphere");
+  pixels.choice("--estimator", s.estimator, "gtao, bitmask: horizons, or sectors; hbao, crytek: as older renderers");
   const Range reach = above_to(0, 1e18);
   OptionRow& radius = pixels.add(
       {"--radius", "auto|NUMBER[,NUMBER...]", "scene units", reach.text,
-       "how far occluders reach; must be given, here or in a preset; auto: what inspect proposes, one number for all "
-       "frames. Of several the AO is the mean, see ao-scales"},
+       "how far occluders reach; auto: what inspect proposes; of several the AO is the mean"},
       [&s] { return words_of_radii(s); }, [&s, reach](const Words& words) { read_radii(words, reach, s); });
   radius.repeats = radius.is_common = true;
-  OptionRow& falloff = pixels.choice("--falloff", s.falloff,
-                                     "how a hit's weight fades towards the radius; none: all within it block fully");
-  fades_hits(falloff);
-  falloff.harmless = {"none"};
-  OptionRow& start = pixels.number("--falloff-start", s.falloff_start, "of the radius", below_and_at_least(0, 1),
-                                   "where the falloff begins");
-  fades_hits(start);
-  start.applies(with_falloff()).harmless = {"0"};
+  pixels.choice("--falloff", s.falloff, "how a hit's weight fades towards the radius").why_without_effect =
+      [](const Settings& all) { return all.estimator.falloff == Falloff::none ? "" : unless_fading(all); };
   pixels
-      .number("--falloff-end", s.falloff_end, "of the radius", above_to(0, 1),
+      .number("falloff-start", s.falloff_start, "of the radius", below_and_at_least(0, 1), "where the falloff begins")
+      .why_without_effect = [](const Settings& all) -> std::string {
+    if (all.estimator.falloff_start == 0) return "";
+    return first_of({unless_fading(all), all.estimator.falloff == Falloff::none ? "--falloff is none" : ""});
+  };
+  pixels
+      .number("falloff-end", s.falloff_end, "of the radius", above_to(0, 1),
               "where the falloff ends: nothing beyond blocks")
-      .applies(or_confidence(to_estimators({Estimator::gtao, Estimator::bitmask, Estimator::hbao})))
-      .harmless = {"1"};
+      .why_without_effect = [](const Settings& all) {
+    return all.estimator.falloff_end == 1 ? "" : unless_slices_anywhere(all);
+  };
 }
 
 void add_search_rows(std::vector<OptionRow>& rows, EstimatorSettings& s) {
   OptionGroup pixels(rows, "Estimator", Effect::pixels);
-  const Condition of_slices = to_estimators({Estimator::gtao, Estimator::bitmask, Estimator::hbao});
-  const Condition of_ranges = to_estimators({Estimator::gtao, Estimator::bitmask});
-  const Condition of_crytek = to_estimators({Estimator::crytek});
-  pixels.number("--slices", s.slices, "per pixel", between(1, 64), "directions that are searched")
-      .applies(or_confidence(of_slices))
-      .applies(or_confidence(without_tolerance()));
+  const auto unless_crytek = [](const Settings& all) { return unless_estimator(all, {Estimator::crytek}); };
+  pixels.number("--slices", s.slices, "per pixel", between(1, 64), "directions that are searched").why_without_effect =
+      [](const Settings& all) { return first_of({unless_slices_anywhere(all), if_by_error_alone(all)}); };
   pixels.number("--steps", s.steps, "per side", between(1, 4096), "samples to each side of a slice")
-      .applies(or_confidence(of_slices))
-      .applies(or_confidence(to_steps()));
+      .why_without_effect = [](const Settings& all) {
+    return first_of({unless_slices_anywhere(all), if_exact_alone(all)});
+  };
   pixels
       .choice("--search", s.search,
-              "the search along a slice; steps: as many samples as --steps; exact: all pixels, by the outlines of "
-              "surfaces; every-pixel: the same one by one, slowly")
-      .applies(as_search({SliceSearch::exact, SliceSearch::every_pixel}, to_estimators({Estimator::gtao})))
-      .applies(as_search({SliceSearch::steps}, without_tolerance()));
+              "along a slice; steps: so many samples; exact: all pixels, by outlines; every-pixel: one by one")
+      .why_without_effect = [](const Settings& all) {
+    return all.estimator.search == SliceSearch::steps ? if_by_error(all) : unless_estimator(all, {Estimator::gtao});
+  };
+  pixels.number("--tolerance", s.tolerance, "", between(0, 1), "RMS error of an exact search; 0: as --slices gives")
+      .why_without_effect = [](const Settings& all) -> std::string {
+    if (all.estimator.tolerance == 0) return "";
+    return first_of({unless_estimator(all, {Estimator::gtao}),
+                     if_given(all.estimator.resolution != Resolution::full, "--resolution",
+                              "the error is that of every pixel at --resolution full"),
+                     if_given(all.input.accumulate > 0, "--accumulate", "each says how exact the AO gets")});
+  };
+  pixels.number("--samples", s.samples, "per pixel", between(4, 64), "samples in the hemisphere").why_without_effect =
+      unless_crytek;
+  pixels.number("bias", s.bias, "", between(0, 1e18),
+                "sine of an elevation that blocks nothing, below 1; crytek: scene units of depth");
+  pixels.choice("elevation", s.elevation, "of a horizon, above the plane across the view ray or above the surface")
+      .why_without_effect = [](const Settings& all) { return unless_estimator(all, {Estimator::hbao}); };
+  pixels.choice("sample-kernel", s.sample_kernel, "clustered: more samples near the receiver; uniform: even in volume")
+      .why_without_effect = unless_crytek;
   pixels
-      .number("--tolerance", s.tolerance, "", between(0, 1),
-              "RMS error of the AO by its search: as many directions of an exact search, tile by tile, as that "
-              "takes, without a denoiser; 0: as many as --slices")
-      .applies(to_estimators({Estimator::gtao}))
-      .contradicts({"--resolution"}, "the error is that of every pixel, at --resolution full")
-      .harmless = {"0"};
-  pixels.number("--samples", s.samples, "per pixel", between(4, 64), "samples in the hemisphere").applies(of_crytek);
-  pixels.number("--bias", s.bias, "", between(0, 1e18),
-                "keeps a surface from blocking itself; crytek: scene units of depth; others: sine of the elevation "
-                "above the surface, below 1");
+      .choice("range-check", s.range_check,
+              "how a hit's weight goes by its depth; docs/settings.md has the formulas")
+      .why_without_effect = unless_crytek;
   pixels
-      .choice("--elevation", s.elevation,
-              "view: the horizon's less the surface's, above the plane across the view ray; surface: the horizon's "
-              "above the surface")
-      .applies(to_estimators({Estimator::hbao}));
+      .own(
+          {"--thickness", "auto|infinite|NUMBER", "scene units", "",
+           "how far occluders go on behind what is seen of them; auto: as far as they are wide"},
+          [&s] { return text_of_thickness(s); }, [&s](const std::string& text) { return read_thickness(text, s); },
+          "is neither auto nor infinite nor a length above 0")
+      .why_without_effect = [](const Settings& all) {
+    return all.estimator.thickness == ThicknessKind::automatic ? "" : unless_ranges(all);
+  };
   pixels
-      .choice("--sample-kernel", s.sample_kernel, "clustered: more samples near the receiver; uniform: even in volume")
-      .applies(of_crytek);
-  pixels
-      .choice("--range-check", s.range_check,
-              "by the depth dz between receiver and hit; none: every hit counts fully; ratio: smoothstep(0, 1, radius "
-              "/ dz); smoothstep: 1 - smoothstep(0, radius, dz)")
-      .applies(of_crytek);
-  OptionRow& thickness = pixels.own(
-      {"--thickness", "auto|infinite|NUMBER", "scene units", "",
-       "how far an occluder goes on behind what is seen of it; auto: as deep as it is wide; in an exact search with "
-       "--complete all half as deep, since less is left for thickness to stand for"},
-      [&s] { return text_of_thickness(s); }, [&s](const std::string& text) { return read_thickness(text, s); },
-      "is neither auto nor infinite nor a length above 0");
-  thickness.applies(of_ranges).harmless = {"auto"};
-  pixels
-      .choice("--complete", s.complete,
-              "where surfaces go on straight although the frame does not show it; none: nowhere; border: beyond the "
-              "picture's border; all: also behind what is nearer")
-      .applies(of_ranges)
-      .harmless = {"none"};
+      .choice("complete", s.complete,
+              "where surfaces go on straight although unseen: nowhere, beyond the border, or behind nearer ones too")
+      .why_without_effect = [](const Settings& all) {
+    return all.estimator.complete == Completion::none ? "" : unless_ranges(all);
+  };
 }
 
 void add_filter_rows(std::vector<OptionRow>& rows, EstimatorSettings& s) {
   OptionGroup pixels(rows, "Estimator", Effect::pixels);
+  pixels.choice("--resolution", s.resolution, "of the estimate, by the nearest surface of 2 x 2 or 4 x 4 pixels")
+      .why_without_effect = [](const Settings& all) {
+    return all.estimator.resolution == Resolution::full
+               ? ""
+               : if_given(all.estimator.tolerance > 0, "--tolerance", "the error is that of every pixel");
+  };
   pixels
-      .choice("--resolution", s.resolution,
-              "of the estimate; a half or a quarter takes the nearest surface of every 2 x 2 or 4 x 4 pixels")
-      .harmless = {"full"};
+      .choice("density", s.density,
+              "uniform: an estimate for every so many pixels; adaptive: more where a surface shows few pixels")
+      .why_without_effect = [](const Settings& all) {
+    return first_of({asks_for_confidence(all) ? "" : unless_ranges(all), if_exact_alone(all),
+                     unless_shared_estimates(all)});
+  };
   pixels
-      .choice("--density", s.density,
-              "where pixels have an estimate of their own; uniform: one of --stride, evenly, so that surfaces of few "
-              "pixels may get none; adaptive: one of --stride at least, and more where a surface shows few pixels")
-      .applies(or_confidence(to_estimators({Estimator::gtao, Estimator::bitmask})))
-      .applies(or_confidence(to_steps()))
-      .applies(with_shared_estimates());
-  OptionRow& stride = pixels.own(
-      {"--stride", "auto|1|2|4|8|16", "", "",
-       "estimate one pixel of so many, and let the bilateral denoiser give the others theirs; auto: 1, but at full "
-       "resolution with the bilateral denoiser 16 with --density adaptive, or 2 from 5 slices on, and 4 with 1 or 2 "
-       "slices for gtao with --density uniform"},
-      [&s] { return s.stride == 0 ? std::string("auto") : fmt::format("{}", s.stride); },
-      [&s](const std::string& text) {
-        const std::vector<std::string> strides = {"1", "2", "4", "8", "16"};
-        const bool is_auto = lower_case(text) == "auto";
-        const auto found = std::ranges::find(strides, text);
-        if (!is_auto && found == strides.end()) return false;
-        s.stride = is_auto ? 0 : 1 << (found - strides.begin());
-        return true;
-      },
-      "is none of auto, 1, 2, 4, 8, 16");
-  stride.applies(or_confidence(to_steps())).applies(with_denoise({Denoise::bilateral})).harmless = {"auto", "1"};
+      .own(
+          {"stride", "auto|1|2|4|8|16", "", "", "pixels to an estimate; the denoiser gives the others theirs"},
+          [&s] { return s.stride == 0 ? std::string("auto") : fmt::format("{}", s.stride); },
+          [&s](const std::string& text) {
+            const std::vector<std::string> strides = {"1", "2", "4", "8", "16"};
+            const bool is_auto = lower_case(text) == "auto";
+            const auto found = std::ranges::find(strides, text);
+            if (!is_auto && found == strides.end()) return false;
+            s.stride = is_auto ? 0 : 1 << (found - strides.begin());
+            return true;
+          },
+          "is none of auto, 1, 2, 4, 8, 16")
+      .why_without_effect = [](const Settings& all) {
+    return all.estimator.stride <= 1 ? ""
+                                     : first_of({if_exact_alone(all), unless_denoised(all, {Denoise::bilateral})});
+  };
 }
 
 void add_denoise_rows(std::vector<OptionRow>& rows, EstimatorSettings& s) {
   OptionGroup pixels(rows, "Estimator", Effect::pixels);
-  const Condition denoises = or_confidence(without_tolerance());
+  const auto unless_bilateral = [](const Settings& all) {
+    return first_of({unless_denoised(all, {Denoise::bilateral}), if_by_error_alone(all)});
+  };
+  pixels.choice("--denoise", s.denoise, "smooths each surface; bilateral: by distance and plane; box: evenly, 4 x 4")
+      .why_without_effect = [](const Settings& all) {
+    return all.estimator.denoise == Denoise::none ? "" : if_by_error_alone(all);
+  };
   pixels
-      .choice("--denoise", s.denoise,
-              "smooths each surface: bilateral: by a Gaussian or --denoise-kernel, and where pixels share estimates by "
-              "a line fitted to those in reach; box: by an even 4 x 4")
-      .applies(denoises)
-      .harmless = {"none"};
-  OptionRow& radius = pixels.own(
-      {"--denoise-radius", "auto|NUMBER", "pixels of the estimate", "1 to 8",
-       "how far the bilateral denoiser reaches to each side; auto: 8 where pixels share estimates, 4 where each has "
-       "its "
-       "own"},
-      [&s] { return s.denoise_radius == 0 ? std::string("auto") : fmt::format("{}", s.denoise_radius); },
-      [&s](const std::string& text) {
-        const bool is_digit = text.size() == 1 && text >= "1" && text <= "8";
-        if (lower_case(text) != "auto" && !is_digit) return false;
-        s.denoise_radius = is_digit ? text.front() - '0' : 0;
-        return true;
-      },
-      "is neither auto nor a whole number from 1 to 8");
-  radius.applies(with_denoise({Denoise::bilateral})).applies(denoises).harmless = {"auto"};
-  OptionRow& kernel = pixels.add(
-      {"--denoise-kernel", "W0,W1,...", "", "2 to 9 weights",
-       "from the centre outwards, of any sum; they set the denoiser's radius"},
-      [&s] { return s.denoise_kernel.empty() ? Words{} : Words{fmt::format("{}", fmt::join(s.denoise_kernel, ","))}; },
-      [&s](const Words& words) { read_kernel(words.front(), s.denoise_kernel); });
-  kernel.applies(with_denoise({Denoise::bilateral}))
-      .applies(denoises)
-      .contradicts({"--denoise-radius"}, "as many weights as there are make the radius");
+      .own(
+          {"denoise-radius", "auto|NUMBER", "pixels of the estimate", "1 to 8",
+           "how far the bilateral denoiser reaches to each side"},
+          [&s] { return s.denoise_radius == 0 ? std::string("auto") : fmt::format("{}", s.denoise_radius); },
+          [&s](const std::string& text) {
+            const bool is_digit = text.size() == 1 && text >= "1" && text <= "8";
+            if (lower_case(text) != "auto" && !is_digit) return false;
+            s.denoise_radius = is_digit ? text.front() - '0' : 0;
+            return true;
+          },
+          "is neither auto nor a whole number from 1 to 8")
+      .why_without_effect = [unless_bilateral](const Settings& all) {
+    if (all.estimator.denoise_radius == 0) return std::string();
+    return first_of({unless_bilateral(all), if_given(!all.estimator.denoise_kernel.empty(), "--set denoise-kernel",
+                                                     "as many weights as it has make the radius")});
+  };
   pixels
-      .number("--denoise-depth-sigma", s.denoise_depth_sigma, "of the depth", between(0, 100),
-              "pixels that far apart weigh 1/e: exp(-|dz| / (SIGMA z)), z the nearer; 0: weighs by the distance from "
-              "each other's plane")
-      .applies(with_denoise({Denoise::bilateral, Denoise::box}))
-      .applies(denoises)
-      .harmless = {"0"};
+      .add(
+          {"denoise-kernel", "W0,W1,...", "", "2 to 9 weights",
+           "from the centre outwards, of any sum; they set the denoiser's radius"},
+          [&s] {
+            return s.denoise_kernel.empty() ? Words{} : Words{fmt::format("{}", fmt::join(s.denoise_kernel, ","))};
+          },
+          [&s](const Words& words) { read_kernel(words.front(), s.denoise_kernel); })
+      .why_without_effect = [unless_bilateral](const Settings& all) {
+    return first_of({unless_bilateral(all), if_given(all.estimator.denoise_radius > 0, "--set denoise-radius",
+                                                     "as many weights as there are make the radius")});
+  };
+  pixels
+      .number("denoise-depth-sigma", s.denoise_depth_sigma, "of the depth", between(0, 100),
+              "depths that far apart weigh 1/e; 0: weighs by the distance from each other's plane")
+      .why_without_effect = [](const Settings& all) -> std::string {
+    if (all.estimator.denoise_depth_sigma == 0) return "";
+    return first_of({unless_denoised(all, {Denoise::bilateral, Denoise::box}), if_by_error_alone(all)});
+  };
 }
 
 void add_shape_rows(std::vector<OptionRow>& rows, EstimatorSettings& s) {
   OptionGroup pixels(rows, "Estimator", Effect::pixels);
   pixels.number("--intensity", s.intensity, "", between(0, 100), "factor on the occlusion");
-  pixels.number("--power", s.power, "", above_to(0, 100), "exponent of the visibility");
-  pixels.number("--fade-start", s.fade_start, "scene units", between(0, 1e30), "depth where the AO begins to fade to 1")
-      .applies(with_option("--fade-end", [](const Settings& all) { return all.estimator.fade_end.has_value(); }));
-  pixels.number("--fade-end", s.fade_end, "scene units", above_to(0, 1e30), "depth from which the AO is 1")
-      .applies(with_option("--fade-start", [](const Settings& all) { return all.estimator.fade_start.has_value(); }));
-  pixels.number("--roughness", s.roughness, "", between(0, 1), "of all surfaces")
-      .applies(with_aovs({"specular-occlusion"}));
-  pixels
-      .choice("--noise", s.noise,
-              "fixed: every frame has the same pattern of sample noise, so that what stands still does not flicker; "
-              "animated: each frame has its own")
-      .applies(or_confidence(to_steps()))
-      .contradicts({"--accumulate"}, "a mean of many frames gains nothing where all have the same noise", {"fixed"})
-      .harmless = {"fixed"};
-  pixels.number("--seed", s.seed, "", between(0, 4294967295.0), "shifts the sample noise")
-      .applies(or_confidence(to_steps()))
-      .harmless = {"0"};
+  pixels.number("power", s.power, "", above_to(0, 100), "exponent of the visibility");
+  pixels.number("fade-start", s.fade_start, "scene units", between(0, 1e30), "depth where the AO begins to fade to 1")
+      .why_without_effect = [](const Settings& all) {
+    return unless_given(all.estimator.fade_end.has_value(), "--set fade-end");
+  };
+  pixels.number("fade-end", s.fade_end, "scene units", above_to(0, 1e30), "depth from which the AO is 1")
+      .why_without_effect = [](const Settings& all) {
+    return unless_given(all.estimator.fade_start.has_value(), "--set fade-start");
+  };
+  pixels.number("--roughness", s.roughness, "", between(0, 1), "of all surfaces").why_without_effect =
+      [](const Settings& all) { return unless_aov(all, {"specular-occlusion"}); };
+  pixels.choice("--noise", s.noise, "fixed: every frame has the same pattern of samples; animated: each its own")
+      .why_without_effect = [](const Settings& all) {
+    const bool is_fixed = all.estimator.noise == Noise::fixed;
+    return is_fixed ? if_given(all.input.accumulate > 0, "--accumulate", "it animates the noise") : if_exact_alone(all);
+  };
+  pixels.number("--seed", s.seed, "", between(0, 4294967295.0), "shifts the pattern of samples").why_without_effect =
+      [](const Settings& all) { return all.estimator.seed == 0 ? "" : if_exact_alone(all); };
   OptionGroup(rows, "Estimator", Effect::none)
-      .flag("--no-skip", s.no_skip, "estimate sky too, and tiles that are proved to be open; slower, the same bits");
+      .flag("--no-skip", s.no_skip, "estimate sky and what is known to be open too; slower, the same bits");
   pixels
-      .number("--skip-tolerance", s.skip_tolerance, "", between(0, 0.1),
-              "also leave out, as open, tiles whose AO, before --intensity and --power, is proved to be at least 1 "
-              "less this, whatever the noise of few samples; 0: the same bits as --no-skip")
-      .applies(to_estimators({Estimator::gtao, Estimator::bitmask}))
-      .applies(to_steps())
-      .contradicts({"--no-skip"}, "one leaves out more, the other nothing")
-      .harmless = {"0"};
+      .number("skip-tolerance", s.skip_tolerance, "", between(0, 0.1),
+              "tiles may be left out whose AO is proved to be at least 1 less this")
+      .why_without_effect = [](const Settings& all) -> std::string {
+    if (all.estimator.skip_tolerance == 0) return "";
+    return first_of({unless_ranges(all), if_exact(all),
+                     if_given(all.estimator.no_skip, "--no-skip", "one leaves out more, the other nothing")});
+  };
 }
 
 /// Of frames to each side: more are too far away to show the same.
@@ -277,14 +286,14 @@ void add_time_rows(std::vector<OptionRow>& rows, InputSettings& s) {
   OptionGroup(rows, "Estimator", Effect::pixels)
       .own(
           {"--accumulate", "NUMBER", "frames to each side", fmt::format("0 to {}", kMostAccumulated),
-           "of a sequence: the AO is the mean of the estimates of so many frames before and behind, of what stands "
-           "still "
-           "with all around it; needs the camera of each, and animates the noise"},
+           "the AO is the mean over these frames, of what stands still; needs each camera"},
           [&s] { return fmt::format("{}", s.accumulate); },
           [&s](const std::string& text) { return read_accumulate(text, s.accumulate); },
           fmt::format("is no whole number from 0 to {}", kMostAccumulated))
-      .contradicts({"--tolerance"}, "an estimate by its error is as exact as was asked for by itself")
-      .harmless = {"0"};
+      .why_without_effect = [](const Settings& all) {
+    const bool is_by_error = all.input.accumulate > 0 && all.estimator.tolerance > 0;
+    return if_given(is_by_error, "--tolerance", "an estimate by its error is as exact as was asked for");
+  };
 }
 
 }  // namespace
@@ -294,10 +303,16 @@ void add_estimator_rows(std::vector<OptionRow>& rows, RunOptions& options) {
       OptionGroup(rows, "Estimator", Effect::none)
           .add(
               {"--preset", "NAME|FILE[,...]", "", "",
-               "settings from presets; later ones win, and options win over presets"},
+               "settings from presets; later ones win"},
               [&options] { return options.presets; }, [&options](const Words& words) { options.presets = words; });
   preset.repeats = preset.is_common = true;
   preset.is_key = false;
+  OptionRow& set = OptionGroup(rows, "Estimator", Effect::none)
+                       .add(
+                           {"--set", "KEY=VALUE", "", "", "any setting; docs/options.md lists the keys"},
+                           [&options] { return options.set; }, [&options](const Words& words) { options.set = words; });
+  set.repeats = set.is_common = true;
+  set.is_key = false;
   EstimatorSettings& settings = options.settings.estimator;
   add_radius_rows(rows, settings);
   add_search_rows(rows, settings);

@@ -9,6 +9,7 @@
 #include "core/base/text.h"
 #include "core/frame/input_files.h"
 #include "core/options/options.h"
+#include "core/options/reasons.h"
 
 namespace alcove {
 namespace {
@@ -75,106 +76,90 @@ bool read_separation(const std::string& text, std::optional<double>& separation)
   return true;
 }
 
-/// What a list is of that stands once for all files or once for each.
-Condition for_each_file(std::size_t (*count)(const InputSettings&)) {
-  return {"once, or as often as --behind", [count](const Settings& all) {
-            const std::size_t files = words_of(all.input.behind).size(), given = count(all.input);
-            if (given <= 1 || given == files) return std::string();
-            return fmt::format("there are {} for {} {}", given, files, files == 1 ? "file" : "files");
-          }};
+/// A list stands once for all files of --behind, or once for each.
+std::string unless_for_each_file(const InputSettings& input, std::size_t given) {
+  const std::size_t files = words_of(input.behind).size();
+  if (files == 0) return "there is no --behind";
+  return given <= 1 || given == files ? "" : fmt::format("there are {} for {} of --behind", given, files);
 }
 
-Condition with_hidden_sources() {
-  return {"with --behind, --deep, --around or --other-views",
-          [](const Settings& all) { return has_hidden_sources(all.input) ? "" : "there is none of them"; }};
+std::string unless_hidden_sources(const Settings& all) {
+  return unless_given(has_hidden_sources(all.input), "--behind, --deep, --around or --set other-views");
 }
 
-/// Estimators that know where what lies behind a surface begins and ends.
-Condition to_estimators_of_layers() { return to_estimators({Estimator::gtao, Estimator::bitmask}); }
-
-Condition with_other_frames() {
-  return {"with --around or --accumulate", [](const Settings& all) {
-            const InputSettings& input = all.input;
-            const bool takes_frames = input.around > 0 || input.around_all || input.accumulate > 0;
-            return takes_frames ? "" : "there is neither";
-          }};
+/// Which occluders an object is behind is not told by other frames and views.
+std::string if_occluders_are_chosen(const InputSettings& input) {
+  const char* const why = "what others show behind an object may be the object itself";
+  return first_of({if_given(!(input.occluders + input.occluder_objects).empty(), "--set occluders", why),
+                   if_given(!(input.ignore + input.ignored_objects).empty(), "--set ignore", why)});
 }
 
-Condition with_motion() {
-  return {"with --motion", [](const Settings& all) { return all.input.motion.empty() ? "there is none" : ""; }};
-}
+std::string unless_motion(const Settings& all) { return unless_given(!all.input.motion.empty(), "--motion"); }
 
 void add_behind_rows(OptionGroup& files, OptionGroup& pixels, InputSettings& s) {
-  files
-      .add(
-          {"--behind", "FILE", "", "up to 8 times",
-           "the depth of surfaces behind the first, in any order: a peel, back faces, another element of the shot; may "
-           "be INPUT, with a channel of its own"},
-          [&s] { return words_of(s.behind); }, [&s](const Words& words) { read_files("--behind", words, s.behind); })
-      .applies(to_estimators_of_layers())
-      .repeats = true;
-  const auto with_behind =
-      with_option("--behind", [](const Settings& all) { return !words_of(all.input.behind).empty(); });
-  pixels
-      .add(
-          {"--behind-channel", "NAME", "", "", "the depth channel of --behind; else found by its usual names"},
-          [&s] { return s.behind_channels; }, [&s](const Words& words) { s.behind_channels = split_all(words); })
-      .applies(with_behind)
-      .applies(for_each_file([](const InputSettings& input) { return input.behind_channels.size(); }))
-      .repeats = true;
+  OptionRow& behind = files.add(
+      {"--behind", "FILE", "", "up to 8 times", "depth behind the first surface: peels, back faces, other elements"},
+      [&s] { return words_of(s.behind); }, [&s](const Words& words) { read_files("--behind", words, s.behind); });
+  behind.repeats = true;
+  behind.why_without_effect = unless_ranges;
+  OptionRow& channels = pixels.add(
+      {"behind-channel", "NAME[,NAME...]", "", "", "the depth channel of --behind, once or for each"},
+      [&s] { return s.behind_channels; }, [&s](const Words& words) { s.behind_channels = split_all(words); });
+  channels.repeats = true;
+  channels.why_without_effect = [](const Settings& all) {
+    return unless_for_each_file(all.input, all.input.behind_channels.size());
+  };
   OptionRow& kinds = pixels.add(
-      {"--behind-kind", "surfaces|fronts|backs|thickness", "", "",
-       "what --behind holds: surfaces of all faces; fronts: only those seen from outside, as culled peels and other "
-       "elements have them; backs: those seen from inside, where what is before them ends; thickness: how deep what is "
-       "seen goes on"},
+      {"--behind-kind", "surfaces|fronts|backs|thickness[,...]", "", "",
+       "of --behind, once or for each; backs: back faces; thickness: how deep things go on"},
       [&s] { return words_of(s.behind_kinds); }, [&s](const Words& words) { read_kinds(words, s.behind_kinds); });
-  kinds.applies(with_behind).applies(for_each_file([](const InputSettings& input) {
-    return input.behind_kinds.size();
-  }));
   kinds.repeats = true;
   kinds.default_text = "surfaces";
+  kinds.why_without_effect = [](const Settings& all) {
+    return unless_for_each_file(all.input, all.input.behind_kinds.size());
+  };
 }
 
 void add_deep_rows(OptionGroup& files, OptionGroup& pixels, InputSettings& s) {
   files
       .add(
-          {"--deep", "FILE", "", "up to 8 times",
-           "a deep EXR of the frame, for what its samples show behind the first surface; the samples of several, and "
-           "of "
-           "a deep INPUT, count together, as of elements that were rendered apart"},
+          {"--deep", "FILE", "", "up to 8 times", "a deep EXR, for what its samples show behind the first surface"},
           [&s] { return words_of(s.deep); }, [&s](const Words& words) { read_files("--deep", words, s.deep); })
       .repeats = true;
-  pixels.number("--deep-opacity", s.deep_opacity, "", between(0, 1), "of a deep sample, from which it is a surface")
-      .applies(with_option("--deep", [](const Settings& all) { return has_deep(all.input); }));
+  pixels.number("deep-opacity", s.deep_opacity, "", between(0, 1), "of a deep sample, from which it is a surface")
+      .why_without_effect = [](const Settings& all) { return unless_given(has_deep(all.input), "--deep"); };
 }
 
 void add_view_rows(OptionGroup& files, OptionGroup& pixels, InputSettings& s) {
-  pixels.flag("--other-views", s.other_views, "of a stereo file: what its other views see of the same instant")
-      .applies(to_estimators_of_layers());
+  pixels.flag("other-views", s.other_views, "of a stereo file: what its other views see of the same instant")
+      .why_without_effect = [](const Settings& all) {
+    return first_of({unless_ranges(all), if_occluders_are_chosen(all.input)});
+  };
   pixels
       .own(
           {"--around", "NUMBER|all", "frames to each side", fmt::format("0 to {}", kMostAround),
-           "of a sequence: what other frames see of what stands still; needs the camera of each; all: of the whole "
-           "shot"},
+           "what other frames see of what stands still; needs the camera of each"},
           [&s] { return s.around_all ? std::string("all") : fmt::format("{}", s.around); },
           [&s](const std::string& text) { return read_around(text, s); },
           fmt::format("is neither all nor a whole number from 0 to {}", kMostAround))
-      .applies(to_estimators_of_layers())
-      .harmless = {"0"};
-  files
-      .text("--motion", s.motion, "FILE",
-            "an EXR of motion vectors, in pixels, which tell what moves; else other frames tell")
-      .applies(with_other_frames());
+      .why_without_effect = [](const Settings& all) -> std::string {
+    if (all.input.around == 0 && !all.input.around_all) return "";
+    return first_of({unless_ranges(all), if_occluders_are_chosen(all.input)});
+  };
+  files.text("--motion", s.motion, "FILE", "an EXR of motion vectors, in pixels, which tell what moves")
+      .why_without_effect = [](const Settings& all) {
+    const InputSettings& input = all.input;
+    const bool takes_frames = input.around > 0 || input.around_all || input.accumulate > 0;
+    return unless_given(takes_frames, "--around and no --accumulate");
+  };
+  pixels.text("motion-channels", s.motion_channels, "LAYER|X,Y", "of the motion vectors; else by their usual names")
+      .why_without_effect = unless_motion;
   pixels
-      .text("--motion-channels", s.motion_channels, "LAYER|X,Y",
-            "the layer of the motion vectors, or their channels; else found by their usual names")
-      .applies(with_motion());
-  pixels
-      .choice("--motion-kind", s.motion_kind,
-              "where the vectors point: to the place in the previous frame or in the next one; auto: as most pixels "
-              "move by the cameras")
-      .applies(with_motion())
-      .harmless = {"auto"};
+      .choice("motion-kind", s.motion_kind,
+              "where vectors point: into the previous frame or the next; auto: as most pixels move by the cameras")
+      .why_without_effect = [](const Settings& all) {
+    return all.input.motion_kind == MotionKind::automatic ? "" : unless_motion(all);
+  };
 }
 
 }  // namespace
@@ -187,21 +172,23 @@ void add_hidden_rows(std::vector<OptionRow>& rows, Settings& settings) {
   add_deep_rows(files, pixels, input);
   add_view_rows(files, pixels, input);
   pixels
-      .number("--hidden", estimator.hidden, "surfaces of a pixel", between(0, kMostKept),
+      .number("hidden", estimator.hidden, "surfaces of a pixel", between(0, kMostKept),
               "kept behind the first, the nearest ones; 0: none")
-      .applies(with_hidden_sources())
-      .harmless = {"0"};
+      .why_without_effect = [](const Settings& all) {
+    return all.estimator.hidden == 0 ? "" : unless_hidden_sources(all);
+  };
   pixels
       .own(
-          {"--separation", "auto|NUMBER", "scene units", "0 or more",
-           "surfaces closer to each other are one; auto: by the depth's precision and the slope that a pixel may have"},
+          {"separation", "auto|NUMBER", "scene units", "0 or more",
+           "surfaces closer to each other are one; auto: by the depth's precision and slope"},
           [&estimator] {
             return estimator.separation ? fmt::format("{}", *estimator.separation) : std::string("auto");
           },
           [&estimator](const std::string& text) { return read_separation(text, estimator.separation); },
           "is neither auto nor a length of 0 or more")
-      .applies(with_hidden_sources())
-      .harmless = {"auto"};
+      .why_without_effect = [](const Settings& all) {
+    return all.estimator.separation ? unless_hidden_sources(all) : "";
+  };
 }
 
 }  // namespace alcove

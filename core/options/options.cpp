@@ -6,8 +6,9 @@
 
 #include <algorithm>
 
+#include "core/base/error.h"
 #include "core/base/text.h"
-#include "core/options/said.h"
+#include "core/options/reasons.h"
 
 namespace alcove {
 namespace {
@@ -59,56 +60,55 @@ void add_frame_rows(std::vector<OptionRow>& rows, RunOptions& options) {
   OptionGroup frames(rows, "Frames", Effect::none);
   frames.text("--frames", s.frames, "LIST", "such as 1001-1100x2,1200; else those of INPUT on the disk").is_common =
       true;
-  frames.number("--output-offset", s.output_offset, "frames", between(-1e9, 1e9),
+  frames.number("output-offset", s.output_offset, "frames", between(-1e9, 1e9),
                 "from the numbers of the inputs to those of the outputs");
   frames.own(
       {"--chunk", "I/N", "", "I from 1 to N", "compute only this part of the frames"},
       [&s] { return s.chunks > 1 ? fmt::format("{}/{}", s.chunk, s.chunks) : std::string(); },
       [&s](const std::string& text) { return read_chunk(text, s); }, "is not I/N, with I from 1 to N");
-  frames.choice("--missing", s.missing, "what a frame without its input is: an error before any work, or left out");
-  frames.flag("--keep-going", s.keep_going, "a frame that fails does not end the run; the exit code is then 1");
-  frames.flag("--warnings-as-errors", s.warnings_as_errors,
-              "a frame with a warning fails before anything of it is written; --strict does so too");
-  frames
-      .flag("--resume", s.resume,
-            "compute only frames whose outputs are missing, broken, older than their inputs or made with options that "
-            "give other pixels")
-      .is_common = true;
-  frames.flag("--overwrite", s.overwrite,
-              "compute all frames and replace their outputs, whatever --resume says; without --resume that is so "
-              "anyway");
-  frames.flag("--dry-run", options.dry_run, "print frames, files, memory and about how long it takes, and stop")
-      .is_key = false;
+  frames.choice("missing", s.missing, "what a frame without its input is: an error before any work, or left out");
+  frames.flag("--keep-going", s.keep_going, "a frame that fails does not end the run");
+  frames.flag("warnings-as-errors", s.warnings_as_errors, "a frame with a warning fails, and nothing of it is written");
+  frames.flag("--resume", s.resume, "compute only frames whose outputs are missing, broken or out of date").is_common =
+      true;
+  frames.flag("overwrite", s.overwrite, "compute all frames, whatever --resume says");
+  frames.flag("--dry-run", options.dry_run, "print frames, files and memory, and stop").is_key = false;
 }
 
 void add_device_rows(std::vector<OptionRow>& rows, DeviceSettings& s) {
   OptionGroup device(rows, "Device", Effect::none);
   device.text("--device", s.device, "auto|cpu|INDEX|NAME|UUID", "where to compute; auto: the first GPU, else the CPU");
-  device.flag("--require-gpu", s.require_gpu, "computing on the CPU is an error");
+  device.flag("require-gpu", s.require_gpu, "computing on the CPU is an error");
   device.flag("--validate", s.validate, "load the Vulkan validation layer; any message is an error");
-  device.flag("--no-pipeline-cache", s.no_pipeline_cache, "keep no compiled kernels in the XDG cache folder");
+  device.flag("no-pipeline-cache", s.no_pipeline_cache, "keep no compiled kernels in the XDG cache folder");
   device.own(
-      {"--memory", "SIZE", "bytes, or with K, M, G", "",
-       "of the whole process; larger frames are computed in tiles; else half of what is free"},
+      {"--memory", "SIZE", "bytes, or with K, M, G", "", "of the whole process; else half of what is free"},
       [&s] { return text_of_memory(s.memory); }, [&s](const std::string& text) { return read_memory(text, s.memory); },
       "is no size such as 512M or 4G");
-  device.number("--threads", s.threads, "", between(0, 1024),
-                "threads of the CPU device and of the codecs; 0: one per core");
+  device.number("--threads", s.threads, "", between(0, 1024), "of the CPU device and of codecs; 0: one per core");
 }
 
 void add_report_rows(std::vector<OptionRow>& rows, RunOptions& options) {
+  ProgressOptions& progress = options.progress;
   OptionGroup reports(rows, "Reports", Effect::none);
   reports.text("--stats", options.settings.output.stats, "FILE.json", "times of every pass, counts and totals");
+  const auto if_quiet = [&progress](const Settings&) {
+    return if_given(progress.quiet, "--quiet", "one asks for lines, the other for none");
+  };
   reports
-      .word("--progress", options.progress.kind, {"auto", "bar", "plain", "percent", "openjd", "none"},
-            "plain: one line per frame; percent, openjd: on standard output, as farms read it; auto: a bar on a "
-            "terminal, else plain")
-      .harmless = {"auto", "none", "percent", "openjd"};
-  reports.text("--log-json", options.settings.output.log_json, "FILE|-",
-               "one JSON object per line for the beginning, every frame and the end");
-  reports.flag("-v,--verbose", options.progress.verbose, "say more: the time of every pass");
-  reports.flag("-q,--quiet", options.progress.quiet, "say nothing but errors")
-      .contradicts({"--verbose", "--progress"}, "one asks for lines, the other for none");
+      .word("--progress", progress.kind, {"auto", "bar", "plain", "percent", "openjd", "none"},
+            "plain: one line per frame; percent, openjd: on standard output, as farms read it")
+      .why_without_effect = [&progress, if_quiet](const Settings& all) {
+    return progress.kind == "bar" || progress.kind == "plain" ? if_quiet(all) : "";
+  };
+  reports.text("--log-json", options.settings.output.log_json, "FILE|-", "one JSON object per line for every event");
+  reports.flag("-v,--verbose", progress.verbose, "say more: the time of every pass").why_without_effect = if_quiet;
+  reports.flag("-q,--quiet", progress.quiet, "say nothing but errors").why_without_effect =
+      [&progress](const Settings&) {
+        const char* const why = "one asks for lines, the other for none";
+        const bool shows = progress.kind == "bar" || progress.kind == "plain";
+        return first_of({if_given(progress.verbose, "--verbose", why), if_given(shows, "--progress", why)});
+      };
   reports.flag("--print-config", options.print_config, "print the settings as a preset and stop").is_key = false;
 }
 
@@ -154,35 +154,49 @@ std::vector<OptionRow> option_table(RunOptions& options) {
   return rows;
 }
 
+const OptionRow& row_of_key(const std::vector<OptionRow>& table, const std::string& key) {
+  const auto row = std::ranges::find(table, key, &OptionRow::key);
+  if (row == table.end()) {
+    std::vector<std::string> keys;
+    for (const auto& known : table)
+      if (known.is_key) keys.push_back(known.key());
+    fail(ErrorKind::usage, "there is no setting {}{}", key, suggestion(key, keys));
+  }
+  if (!row->is_key) fail(ErrorKind::usage, "{} is an option of the command line only", key);
+  return *row;
+}
+
 std::string range_text(const OptionRow& row) {
   return row.unit + (row.unit.empty() || row.range.empty() ? "" : ", ") + row.range;
 }
 
 std::string option_table_markdown() {
   RunOptions options;
+  const auto rows = option_table(options);
   std::string text;
-  std::string group;
-  for (const auto& row : option_table(options)) {
-    if (row.group != group)
-      text +=
-          fmt::format("{}| {} | unit, range | default | |\n|---|---|---|---|\n", group.empty() ? "" : "\n", row.group);
-    group = row.group;
-    text += fmt::format("| `{}`{} | {} | {} | {} |\n", row.name, row.value.empty() ? "" : " " + cell(row.value),
-                        cell(range_text(row)), row.default_text, cell(row.whole_sentence()));
+  for (const bool shows_keys : {false, true}) {
+    text += shows_keys ? "\n## Other settings\n\nOf presets, and of `--set KEY=VALUE`.\n" : "";
+    std::string group;
+    for (const auto& row : rows) {
+      if (row.is_only_key() != shows_keys) continue;
+      if (row.group != group) text += fmt::format("\n| {} | unit, range | default | |\n|---|---|---|---|\n", row.group);
+      group = row.group;
+      const std::string value = row.value.empty() && shows_keys ? "true" : row.value;
+      text += fmt::format("| `{}`{} | {} | {} | {} |\n", row.name, value.empty() ? "" : " " + cell(value),
+                          cell(range_text(row)), row.default_text, cell(row.sentence));
+    }
   }
-  return text;
+  return text.substr(1);
 }
 
-std::string preset_text(const std::vector<OptionRow>& rows) {
+std::string preset_text(const std::vector<OptionRow>& rows, const Settings& settings) {
   std::string text;
   for (const auto& row : rows) {
     Words words = row.words();
-    // What contradicts another option nobody has said: it is how that one usually is.
-    const auto contradicts = [&](const OptionRow& other) { return !quarrel(row, other).empty(); };
-    if (!row.is_key || words.empty() || (!row.asks() && std::ranges::any_of(rows, contradicts))) continue;
+    if (!row.is_key || words.empty() || !row.objection(settings).empty()) continue;
     for (auto& word : words) word = toml_of(word);
     const std::string list = fmt::format("{}", fmt::join(words, ", "));
-    text += fmt::format("{}={}\n", row.long_name().substr(2), words.size() > 1 ? "[" + list + "]" : list);
+    text += fmt::format("{}={}\n", row.key(), words.size() > 1 ? "[" + list + "]" : list);
   }
   return text;
 }

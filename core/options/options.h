@@ -21,6 +21,7 @@ struct ProgressOptions {
 struct RunOptions {
   Settings settings;
   Words presets;
+  Words set;  // KEY=VALUE, as typed
   bool print_config = false;
   bool dry_run = false;
   ProgressOptions progress;
@@ -29,14 +30,17 @@ struct RunOptions {
 /// Gives the table, bound to `options`, whose present values are the defaults. `options` must outlive it.
 std::vector<OptionRow> option_table(RunOptions& options);
 
+/// Gives the row of a key of presets. Fails with ErrorKind::usage, naming the nearest, where there is none.
+const OptionRow& row_of_key(const std::vector<OptionRow>& table, const std::string& key);
+
 /// Gives unit and range of a number, as help shows them; "" where there is neither.
 std::string range_text(const OptionRow& row);
 
 /// Gives the table as docs/options.md shows it.
 std::string option_table_markdown();
 
-/// Gives the present values as a preset in TOML, one line per option that is set.
-std::string preset_text(const std::vector<OptionRow>& rows);
+/// Gives the present values as a preset in TOML, one line per setting that has an effect.
+std::string preset_text(const std::vector<OptionRow>& rows, const Settings& settings);
 
 // The groups of the table, each in its own file.
 void add_input_rows(std::vector<OptionRow>& rows, InputSettings& settings);

@@ -20,21 +20,13 @@ std::vector<FlatEntry> settings_in(const std::string& text) {
   return entries;
 }
 
-/// The long name of the option that a key stands for.
-std::string row_of(const FlatEntry& entry, const std::vector<OptionRow>& table) {
-  const std::string option = "--" + entry.key;
-  const auto row = std::ranges::find(table, option, &OptionRow::long_name);
-  if (row == table.end()) {
-    std::vector<std::string> names;
-    for (const auto& known : table)
-      if (known.is_key) names.push_back(known.long_name());
-    fail(ErrorKind::usage, "{} is no option{}", entry.key, suggestion(option, names));
-  }
-  if (!row->is_key) fail(ErrorKind::usage, "{} is an option of the command line only", entry.key);
-  if (entry.values.empty()) fail(ErrorKind::usage, "{}: the list is empty", option);
-  if (entry.values.size() > 1 && !row->repeats)
-    fail(ErrorKind::usage, "{} takes one value, and the list has {}", option, entry.values.size());
-  return option;
+/// The row that an entry is for.
+const OptionRow& row_of(const FlatEntry& entry, const std::vector<OptionRow>& table) {
+  const OptionRow& row = row_of_key(table, entry.key);
+  if (entry.values.empty()) fail(ErrorKind::usage, "{}: the list is empty", entry.key);
+  if (entry.values.size() > 1 && !row.repeats)
+    fail(ErrorKind::usage, "{} takes one value, and the list has {}", entry.key, entry.values.size());
+  return row;
 }
 
 }  // namespace
@@ -43,7 +35,7 @@ std::vector<Said> said_by_text(const std::string& preset, const std::string& tex
                                const std::vector<OptionRow>& table) {
   std::vector<Said> said;
   try {
-    for (const auto& entry : settings_in(text)) said.push_back({row_of(entry, table), entry.values, preset});
+    for (const auto& entry : settings_in(text)) said.push_back({row_of(entry, table).long_name(), entry.values, preset});
   } catch (const Error& error) {
     fail(error.kind(), "{} (--preset): {}", preset, error.what());
   }

@@ -16,8 +16,13 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// The last part: "--output" of "-o,--output".
-std::string long_name_of(const std::string& name) { return name.substr(name.find_last_of(',') + 1); }
+/// Arguments by place have names in capitals, and options begin with a dash.
+bool is_key_name(const std::string& name) { return name.front() >= 'a' && name.front() <= 'z'; }
+
+/// The name in messages: "--output" of "-o,--output", "--set filter-width" of a key.
+std::string typed_name(const std::string& name) {
+  return is_key_name(name) ? "--set " + name : name.substr(name.find_last_of(',') + 1);
+}
 
 template <class T>
 void take_number(const std::string& name, const Range& range, const std::string& text, T& value) {
@@ -72,54 +77,17 @@ std::optional<int> whole_number_of(const std::string& text) {
   return fits ? std::optional(int(*value)) : std::nullopt;
 }
 
-OptionRow& OptionRow::applies(const Condition& condition) {
-  conditions.push_back(condition);
-  return *this;
+std::string OptionRow::objection(const Settings& settings) const {
+  if (words().empty()) return "";
+  const std::string why = why_without_effect(settings);
+  return why.empty() ? "" : fmt::format("{} has no effect: {}", long_name(), why);
 }
 
-OptionRow& OptionRow::contradicts(const Words& options, const std::string& why, const Words& values) {
-  contradictions.push_back({options, why, values});
-  return *this;
-}
+bool OptionRow::is_only_key() const { return is_key_name(name); }
 
-bool OptionRow::asks() const {
-  const Words present = words();
-  return !present.empty() && std::ranges::find(harmless, present.front()) == harmless.end();
-}
+std::string OptionRow::long_name() const { return typed_name(name); }
 
-bool OptionRow::asks(const Contradiction& contradiction) const {
-  const Words present = words();
-  const Words& values = contradiction.values;
-  return values.empty() ? asks() : !present.empty() && std::ranges::find(values, present.front()) != values.end();
-}
-
-std::string OptionRow::objection(const Settings& settings, bool looks_at_outputs) const {
-  if (!asks()) return "";
-  for (const auto& condition : conditions) {
-    if (condition.of_outputs && !looks_at_outputs) continue;
-    if (const std::string instead = condition.instead(settings); !instead.empty())
-      return fmt::format("{}: applies {} only{}{}, and {}", long_name(), condition.words,
-                         condition.otherwise.empty() ? "" : ", or ", condition.otherwise, instead);
-  }
-  return "";
-}
-
-std::string OptionRow::long_name() const { return long_name_of(name); }
-
-std::string OptionRow::whole_sentence() const {
-  std::string text = sentence;
-  Words always, usually;
-  std::string otherwise;
-  for (const auto& condition : conditions) {
-    (condition.otherwise.empty() ? always : usually).push_back(condition.words);
-    if (!condition.otherwise.empty()) otherwise = condition.otherwise;
-  }
-  if (!usually.empty()) text += fmt::format("; applies {} only, or {}", linked(usually, "and"), otherwise);
-  if (!always.empty()) text += fmt::format("; applies {} only", linked(always, "and"));
-  for (const auto& [options, why, values] : contradictions)
-    text += fmt::format("; not {}with {}", values.empty() ? "" : linked(values, "or") + " ", linked(options, "or"));
-  return text;
-}
+std::string OptionRow::key() const { return is_only_key() ? name : name.substr(name.find("--") + 2); }
 
 OptionRow& OptionGroup::add(const Shown& shown, std::function<Words()> words, std::function<void(const Words&)> read) {
   const Words present = words();
@@ -140,7 +108,7 @@ OptionRow& OptionGroup::own(const Shown& shown, const std::function<std::string(
                             const std::function<bool(const std::string&)>& take, const std::string& complaint) {
   return add(
       shown, [say] { return words_of(say()); },
-      [name = long_name_of(shown.name), take, complaint](const Words& words) {
+      [name = typed_name(shown.name), take, complaint](const Words& words) {
         const std::string& text = words.front();
         if (!take(text)) fail(ErrorKind::usage, "{}: {} {}", name, said(text), complaint);
       });
@@ -156,7 +124,7 @@ OptionRow& OptionGroup::text(const std::string& name, std::string& value, const 
 OptionRow& OptionGroup::flag(const std::string& name, bool& value, const std::string& sentence) {
   OptionRow& row = add(
       {name, "", "", "", sentence}, [&value] { return words_of(value ? "true" : ""); },
-      [name = long_name_of(name), &value](const Words& words) { value = read_switch(name, words.front()); });
+      [name = typed_name(name), &value](const Words& words) { value = read_switch(name, words.front()); });
   row.default_text.clear();
   return row;
 }
@@ -166,7 +134,7 @@ OptionRow& OptionGroup::choice_row(const std::string& name, const Words& words, 
                                    const std::function<void(const std::string&)>& take) {
   return add(
       {name, fmt::format("{}", fmt::join(words, "|")), "", "", sentence}, [say] { return words_of(say()); },
-      [name, words, take](const Words& given) {
+      [name = typed_name(name), words, take](const Words& given) {
         const std::string word = lower_case(given.front());
         if (std::ranges::find(words, word) == words.end())
           fail(ErrorKind::usage, "{}: {} is none of {}{}", name, said(given.front()), list_of(words),
@@ -186,7 +154,7 @@ OptionRow& OptionGroup::number_row(const std::string& name, T& value, const char
                                    const std::string& sentence) {
   return add(
       {name, "NUMBER", unit, range.text, sentence}, [&value] { return Words{fmt::format("{}", value)}; },
-      [name, range, &value](const Words& words) { take_number(name, range, words.front(), value); });
+      [name = typed_name(name), range, &value](const Words& words) { take_number(name, range, words.front(), value); });
 }
 
 OptionRow& OptionGroup::number(const std::string& name, double& value, const char* unit, const Range& range,
@@ -209,7 +177,7 @@ OptionRow& OptionGroup::number(const std::string& name, std::optional<double>& v
   return add(
       {name, "NUMBER", unit, range.text, sentence},
       [&value] { return value ? Words{fmt::format("{}", *value)} : Words{}; },
-      [name, range, &value](const Words& words) { value = number_in(range, name, words.front()); });
+      [name = typed_name(name), range, &value](const Words& words) { value = number_in(range, name, words.front()); });
 }
 
 }  // namespace alcove

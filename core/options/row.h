@@ -1,4 +1,4 @@
-// A row of the table of options: what stands in help and docs/options.md, and how its value is read and said.
+// A row of the table of settings: what stands in help and docs/options.md, and how its value is read and said.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/base/option_words.h"
-#include "core/options/conditions.h"
+#include "core/base/settings.h"
 
 namespace alcove {
 
@@ -26,16 +26,11 @@ enum class Effect {
 
 using Words = std::vector<std::string>;
 
-/// Other options that say something else of the same thing.
-struct Contradiction {
-  Words options;      // long names
-  std::string why;    // "both give the camera"
-  Words values = {};  // of the row that do, be they harmless to others; empty: all that ask for something
-};
-
 /// A row of the table. Only OptionGroup makes them, so that none is without its effect.
 struct OptionRow {
-  std::string group, name;   // name: as typed, "--radius" or "-o,--output"
+  std::string group;
+  // As typed, "--radius" or "-o,--output"; "filter-width" of a key, which is no option but set by --set and presets.
+  std::string name;
   std::string value;         // what stands behind it in help: FILE, NUMBER, the words to choose from; "" for a flag
   std::string unit, range;   // of a number; "" where there is none
   std::string sentence;      // ends without a full stop
@@ -50,26 +45,21 @@ struct OptionRow {
   bool is_required = false;  // of arguments without a name
   bool is_key = true;        // whether presets may hold it
   bool is_common = false;    // among the few that --help shows; --help-all shows all
-  // Where it has an effect: all of them hold. What is typed and has none is refused; of a preset it is left out.
-  std::vector<Condition> conditions = {};
-  std::vector<Contradiction> contradictions = {};  // of a pair one row is enough
-  // Values, as words() gives them, that ask for nothing: they apply anywhere and contradict nothing.
-  Words harmless = {};
+  // Tells why the present value has no effect beside the other settings, in a sentence; "" where it has one, or asks
+  // for nothing. What is typed and has none is refused; of a preset it is left out.
+  std::function<std::string(const Settings&)> why_without_effect = [](const Settings&) { return std::string(); };
 
-  OptionRow& applies(const Condition& condition);
-  OptionRow& contradicts(const Words& options, const std::string& why, const Words& values = {});
-  /// Whether the present value asks for something.
-  bool asks() const;
-  /// Whether it is one of a contradiction's.
-  bool asks(const Contradiction& contradiction) const;
-  /// Tells why the present value has no effect, "" where it has one. `looks_at_outputs`: also by what is written.
-  std::string objection(const Settings& settings, bool looks_at_outputs = true) const;
+  /// The same, of what was set at all.
+  std::string objection(const Settings& settings) const;
+  /// Whether it is set by --set and presets alone.
+  bool is_only_key() const;
+  bool is_of_inputs() const { return group == "Input" || group == "Hidden surfaces"; }
 
-  bool is_flag() const { return value.empty() && name.starts_with('-'); }
-  /// "--output" of "-o,--output".
+  bool is_flag() const { return value.empty() && (name.starts_with('-') || is_only_key()); }
+  /// What is typed: "--output" of "-o,--output", "--set filter-width" of a key.
   std::string long_name() const;
-  /// The sentence, and behind it where the option applies and what it contradicts.
-  std::string whole_sentence() const;
+  /// The key in presets and of --set: "output".
+  std::string key() const;
 };
 
 /// A number's allowed range, as text and as a check.

@@ -18,19 +18,15 @@ struct Said {
   bool is_typed() const { return preset.empty(); }
 };
 
-/// For whom options are read. `alcove inspect` writes no outputs: there, none of its options can lack one.
+/// For whom options are read. `alcove inspect` looks at inputs alone: only their settings must have an effect.
 enum class Reader { run, inspect };
 
-/// Reads into `options` what was said, presets in their order and then the command line; later wins. Of options that
-/// contradict each other what is typed beats presets, and a later preset beats an earlier one. What does not apply is
-/// left out of presets. Fails with ErrorKind::usage on a value that is none, on what does not apply but was typed, and
-/// on contradictions of one preset or of the command line.
+/// Reads into `options` what was said, presets in their order and then the command line; later wins. What has no effect
+/// beside the rest is left out of presets, the earliest first. Fails with ErrorKind::usage on a value that is none, and
+/// on what is typed and has no effect.
 void read_said(RunOptions& options, std::vector<Said> said, Reader reader = Reader::run);
 
-/// Why two options contradict each other by their present values, by the row of either; "" where they do not.
-std::string quarrel(const OptionRow& a, const OptionRow& b);
-
-/// Fails with ErrorKind::usage where settings ask for what does not apply, or contradict each other, by the table.
-void require_applicable(const Settings& settings);
+/// Fails with ErrorKind::usage where a setting that is not the usual one has no effect.
+void require_effects(const Settings& settings);
 
 }  // namespace alcove

@@ -34,7 +34,7 @@ Words telling_words(const OptionRow& row, const OutputSettings& output) {
     case Effect::pixels_or_input: return words.empty() || number_of(words.front()) ? words : Words{"given"};
     case Effect::pixels_or_picture: return words.empty() || !names_picture(words.front()) ? words : Words{"given"};
     case Effect::content:
-      return words.empty() ? Words{} : Words{read_text(words.front(), row.long_name().c_str() + 2, row.name.c_str())};
+      return words.empty() ? Words{} : Words{read_text(words.front(), row.key().c_str(), row.long_name().c_str())};
     case Effect::display: return shows_composite(output) ? Words{display_text(output.ocio)} : Words{};
   }
   return {};
@@ -58,7 +58,7 @@ std::string options_digest(const Settings& settings) {
   std::string text = kVersion;
   for (const auto& row : option_table(options))
     for (const auto& word : telling_words(row, settings.output))
-      text += fmt::format("\n{} {} {}", row.name, word.size(), word);
+      text += fmt::format("\n{} {} {}", row.key(), word.size(), word);
   return fmt::format("{:016x}", XXH3_64bits(text.data(), text.size()));
 }
 
