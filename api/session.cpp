@@ -64,11 +64,35 @@ Components components_of(const std::string& name) {
 }  // namespace
 
 bool is_for_library(const OptionRow& row) {
-  static const Words kOthers{"aov", "aov-space", "ao-channels", "multi-bounce", "hidden", "separation",
-                             "behind-kind", "device", "require-gpu", "validate", "no-pipeline-cache", "albedo",
-                             "matte-outside", "depth-kind", "near", "far", "reversed-z", "device-range",
-                             "log-constant", "depth-scale", "sky", "normal-space", "normal-encoding", "flip-normal",
-                             "position-space", "fov", "focal", "aperture", "ortho-width"};
+  static const Words kOthers{"aov",
+                             "aov-space",
+                             "ao-channels",
+                             "multi-bounce",
+                             "hidden",
+                             "separation",
+                             "behind-kind",
+                             "device",
+                             "require-gpu",
+                             "validate",
+                             "no-pipeline-cache",
+                             "albedo",
+                             "matte-outside",
+                             "depth-kind",
+                             "near",
+                             "far",
+                             "reversed-z",
+                             "device-range",
+                             "log-constant",
+                             "depth-scale",
+                             "sky",
+                             "normal-space",
+                             "normal-encoding",
+                             "flip-normal",
+                             "position-space",
+                             "fov",
+                             "focal",
+                             "aperture",
+                             "ortho-width"};
   if (row.group == "Estimator") return row.key() != "preset" && row.key() != "set" && row.key() != "accumulate";
   return std::ranges::find(kOthers, row.key()) != kOthers.end();
 }
@@ -229,7 +253,7 @@ Reading Session::reading_by(const Settings& settings, int frame) const {
   reading.position_space = decided(input.position_space, PositionSpace::automatic,
                                    reading.camera.view_from_world ? PositionSpace::automatic : PositionSpace::view);
   if (has_position() && reading.position_space == PositionSpace::automatic)
-    fail(ErrorKind::usage, "position: set --position-space to world or view, since planes do not tell");
+    fail(ErrorKind::usage, "position: set position-space to world or view, since planes do not tell");
   reading.depth_scale = input.depth_scale;
   reading.sky = input.sky;
   reading.depth_is_half = first.is_half;
@@ -279,9 +303,9 @@ void Session::run(int frame) {
     if (!all.estimator.radius) all.estimator.radius = 1;  // there is no surface, and no AO to compute
   }
   if (all.output.aov_space == NormalSpace::world && !reading.camera.view_from_world)
-    fail(ErrorKind::usage, "--aov-space world needs a camera with world_to_camera");
+    fail(ErrorKind::usage, "aov-space world needs a camera with world_to_camera");
   if (all.output.multi_bounce && planes_[RawPlane::albedo].empty() && !all.input.albedo_value)
-    fail(ErrorKind::usage, "--multi-bounce needs the plane albedo, or a number for --albedo");
+    fail(ErrorKind::usage, "multi-bounce needs the plane albedo, or a number for albedo");
   open_device(all.device);
   try {
     compute(all, reading, frame);

@@ -47,7 +47,8 @@ std::vector<Said> all_said(const std::vector<Typed>& typed, const std::vector<Op
   for (const auto& preset : presets_of(words_for(typed, "--preset")))
     std::ranges::copy(said_by_preset(preset, table), std::back_inserter(said));
   for (auto& set : said_by_sets(words_for(typed, "--set"), table)) {
-    const bool is_typed = std::ranges::any_of(typed, [&](const Typed& one) { return one.row->long_name() == set.option; });
+    const bool is_typed =
+        std::ranges::any_of(typed, [&](const Typed& one) { return one.row->long_name() == set.option; });
     if (is_typed) fail(ErrorKind::usage, "{} is given more than once", set.option);
     said.push_back(std::move(set));
   }
@@ -93,7 +94,8 @@ Command run_with(RunOptions& options, const std::vector<OptionRow>& table) {
 /// Whether inspect looks at an option of run.
 bool is_inspected(const OptionRow& row) {
   static const Words kOthers{"--frames", "--preset", "--set", "--radius", "--device", "--preview"};
-  return row.is_of_inputs() || std::ranges::find(kOthers, row.name) != kOthers.end();
+  return row.group == "Input" || row.group == "Hidden surfaces" ||
+         std::ranges::find(kOthers, row.name) != kOthers.end();
 }
 
 Command inspect_with(InspectOptions& options, const std::vector<OptionRow>& table) {

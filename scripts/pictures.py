@@ -71,7 +71,7 @@ class Scene:
     def run(self, *options):
         """A run in production quality, where the options say no other, into ao.exr."""
         frame, camera = (self.frames / f"{self.name}.{end}" for end in ("gbuffer.exr", "camera.json"))
-        command = [self.program, "run", frame, "--camera", camera, "-o", self.scratch / "ao.exr", "--overwrite", "-q"]
+        command = [self.program, "run", frame, "--camera", camera, "-o", self.scratch / "ao.exr", "--set", "overwrite=true", "-q"]
         command += [] if "--preset" in options else ["--preset", "production"]
         command += [] if "--radius" in options else ["--radius", self.radius]
         subprocess.run([str(word) for word in [*command, *options]], check=True)
@@ -84,7 +84,7 @@ class Scene:
 
     def shown(self, ao, channel):
         """AO as it is, through the same transform as all pictures: a beauty that no AO is put into."""
-        return self.composite(ao, "--beauty-channels", ",".join([channel] * 3), "--intensity", "0", "--preset", "draft")
+        return self.composite(ao, "--set", "beauty-channels=" + ",".join([channel] * 3), "--intensity", "0", "--preset", "draft")
 
     def ao(self, *options):
         self.run(*options)

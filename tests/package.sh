@@ -62,7 +62,7 @@ mkdir "$folder/elsewhere"
 # Of the environment only where compiled kernels lie, and what sanitizers are told.
 alone() { (cd "$folder/elsewhere" && env -i XDG_CACHE_HOME="${XDG_CACHE_HOME:-$folder/cache}" ASAN_OPTIONS="${ASAN_OPTIONS:-}" "$folder/moved/bin/alcove" "$@"); }
 alone run "$examples/interior.gbuffer.exr" --camera "$examples/interior.camera.json" --beauty "$examples/interior.beauty.exr" --radius 0.35 --preset draft \
-  -o ao.exr --composite composite.exr --preview ao.png --debug view-z
+  -o ao.exr --composite composite.exr --preview ao.png --set debug=view-z
 for file in ao.exr composite.exr ao.png ao.view-z.png; do
   [ -s "$folder/elsewhere/$file" ] || fail "the installed program wrote no $file"
 done

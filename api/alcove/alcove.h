@@ -69,14 +69,14 @@ ALCOVE_API alcove_code alcove_preset(alcove_session* handle, const char* name);
 
 // Gives a plane, which is copied. All of a frame have one size. Null data: there is none any more. Names:
 //   depth        1 component, of --depth-kind, planar by default
-//   position     3, instead of a depth; of --position-space, which must be said where the camera has a place
+//   position     3, instead of a depth; of position-space, which must be said where the camera has a place
 //   normal       3, or 2 by --normal-encoding, signed by default; of --normal-space, which must be said unless the
 //                camera has no place or says it; without normals they are reconstructed from depth
 //   behind       1, depth behind the first surface, of --behind-kind; each call adds one, at most 8
 //   material-ao  1, multiplied in
 //   matte        1, 0 to 1: where AO is wanted
 //   occluders    1, 0 to 1: only these block;  ignore: these do not
-//   albedo       3, for --multi-bounce with --ao-channels rgb
+//   albedo       3, for multi-bounce with ao-channels rgb
 ALCOVE_API alcove_code alcove_plane(alcove_session* handle, const char* name, const void* data,
                                     const alcove_layout* layout);
 

@@ -60,7 +60,7 @@ std::vector<const DebugView*> debug_views_of(const OutputSettings& settings) {
   for (const auto& name : split(settings.debug)) {
     const auto found = std::ranges::find(kViews, name, &DebugView::name);
     if (found == kViews.end())
-      fail(ErrorKind::usage, "--debug: there is no view \"{}\"{}; there is {}", name,
+      fail(ErrorKind::usage, "--set debug: there is no view \"{}\"{}; there is {}", name,
            suggestion(name, debug_view_names()), list_of(debug_view_names()));
     if (std::ranges::find(views, &*found) == views.end()) views.push_back(&*found);
   }

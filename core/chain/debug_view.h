@@ -1,4 +1,4 @@
-// Pictures that explain themselves: ONE table of what --debug shows, and of the scales that its numbers have.
+// Pictures that explain themselves: ONE table of what --set debug shows, and of the scales that its numbers have.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -28,7 +28,7 @@ enum class DebugSource {
 
 /// A row of the table.
 struct DebugView {
-  const char* name;   // as --debug takes it
+  const char* name;   // as --set debug takes it
   const char* title;  // what the picture shows, and its unit
   uint kind;          // of kernels/debug.h
   DebugSource source;

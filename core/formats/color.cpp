@@ -18,7 +18,7 @@ namespace {
 
 namespace OCIO = OCIO_NAMESPACE;
 
-/// Used when neither --ocio nor the OCIO variable names a configuration.
+/// Used when neither --set ocio nor the OCIO variable names a configuration.
 constexpr const char* kBuiltinConfig = R"(ocio_profile_version: 2
 name: alcove-builtin
 roles:
@@ -49,7 +49,7 @@ OCIO::ConstConfigRcPtr open_config(const std::string& path) {
     std::istringstream text(kBuiltinConfig);
     return OCIO::Config::CreateFromStream(text);
   }
-  require_readable(file, "OpenColorIO configuration", path.empty() ? "the OCIO variable" : "--ocio");
+  require_readable(file, "OpenColorIO configuration", path.empty() ? "the OCIO variable" : "--set ocio");
   return OCIO::Config::CreateFromFile(file.c_str());
 }
 
@@ -60,7 +60,7 @@ std::string known_name(const std::string& config, const char* option, const std:
     if (lower_case(known) == lower_case(name)) return known;
   const std::string file = display_config_file(config);
   fail(ErrorKind::input, "{}: {} {}: the configuration has no such name{}; it has {}",
-       file.empty() ? "the built-in OpenColorIO configuration (--ocio names another)" : file, option, name,
+       file.empty() ? "the built-in OpenColorIO configuration (--set ocio names another)" : file, option, name,
        suggestion(name, names), list_of(names));
 }
 
@@ -68,7 +68,7 @@ std::string known_display(const OCIO::Config& opened, const std::string& config,
   if (name.empty()) return opened.getDefaultDisplay();
   std::vector<std::string> names;
   for (int i = 0; i < opened.getNumDisplays(); i++) names.emplace_back(opened.getDisplay(i));
-  return known_name(config, "--display", name, names);
+  return known_name(config, "--set display", name, names);
 }
 
 std::string known_view(const OCIO::Config& opened, const std::string& config, const std::string& display,
@@ -76,7 +76,7 @@ std::string known_view(const OCIO::Config& opened, const std::string& config, co
   if (name.empty()) return opened.getDefaultView(display.c_str());
   std::vector<std::string> names;
   for (int i = 0; i < opened.getNumViews(display.c_str()); i++) names.emplace_back(opened.getView(display.c_str(), i));
-  return known_name(config, "--view-transform", name, names);
+  return known_name(config, "--set view-transform", name, names);
 }
 
 }  // namespace
@@ -105,7 +105,7 @@ DisplayTransform::DisplayTransform(const std::string& config, const std::string&
   } catch (const OCIO::Exception& error) {
     std::string text = error.what();
     std::ranges::replace(text, '\n', ' ');
-    fail(ErrorKind::input, "{}: OpenColorIO {} cannot use this configuration for the preview (--ocio): {}",
+    fail(ErrorKind::input, "{}: OpenColorIO {} cannot use this configuration for the preview (--set ocio): {}",
          config.empty() ? "OCIO" : config, OCIO::GetVersion(), text);
   }
 }

@@ -39,8 +39,8 @@ constexpr std::array kBlenderPasses{Pass{"diffdir", "DiffCol"},
 
 [[noreturn]] void refuse(const std::string& text, const char* why) {
   fail(ErrorKind::usage,
-       "--ambient {}: {}: it takes LIGHT, LIGHT*LAYER, LIGHT*NUMBER or LIGHT*LAYER*NUMBER, several with commas", text,
-       why);
+       "--set ambient={}: {}: it takes LIGHT, LIGHT*LAYER, LIGHT*NUMBER or LIGHT*LAYER*NUMBER, several with commas",
+       text, why);
 }
 
 TypedLight typed_light(const std::string& text) {
@@ -108,7 +108,7 @@ void find_usual(FrameSource& source, const ChannelSearch& search, std::size_t fi
 void find_ambient(FrameSource& source, const ChannelSearch& search, std::size_t file, const InputSettings& settings) {
   const auto lights = settings.ambient.empty() ? std::vector<std::string>() : split(settings.ambient);
   if (lights.size() > kMostAmbientLights)
-    fail(ErrorKind::usage, "--ambient: it takes at most {} lights, and there are {}", kMostAmbientLights,
+    fail(ErrorKind::usage, "--set ambient: it takes at most {} lights, and there are {}", kMostAmbientLights,
          lights.size());
   for (const auto& light : lights) add_typed(source, search, file, light);
   if (lights.empty()) find_usual(source, search, file);

@@ -1,4 +1,4 @@
-// The parts of a beauty that AO may dim: finds the planes of --ambient, or those that are usual.
+// The parts of a beauty that AO may dim: finds the planes of --set ambient, or those that are usual.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 

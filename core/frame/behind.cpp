@@ -20,7 +20,7 @@ namespace {
 const AovNames& behind_names() {
   static const AovNames names = [] {
     AovNames depth = kDepthNames;
-    depth.channel_option = "--behind-channel";
+    depth.channel_option = "--set behind-channel";
     return depth;
   }();
   return names;
@@ -97,7 +97,7 @@ ChannelRef find_channel(FrameSource& source, ChannelSearch& search, std::size_t 
   if (found.empty()) found = search.require(file, behind_names(), chosen, is_alone, "Z");
   if (found[0] == depth)
     fail(ErrorKind::input,
-         "{}: {} is the depth of the frame itself: name what lies behind it with --behind-channel, "
+         "{}: {} is the depth of the frame itself: name what lies behind it with --set behind-channel, "
          "or another file with --behind",
          source.files[file].path(), found[0].channel);
   return found[0];

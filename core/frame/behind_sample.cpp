@@ -104,7 +104,7 @@ Notes BehindSample::notes_of(const FrameSource& source, std::size_t number) cons
   if (said.kind == BehindKind::thickness && plane.negative > 0)
     fail(ErrorKind::input,
          "{} is below 0 on {:.2g} % of the pixels, and a thickness is how far a solid goes on behind its front: name "
-         "another channel with --behind-channel, or say with --behind-kind what it is",
+         "another channel with --set behind-channel, or say with --behind-kind what it is",
          name, percent(plane.negative, pixels));
   if (plane.surfaces == 0)
     return {{NoteCode::empty_layer, fmt::format("{} shows no surface where the depth has one (--behind)", name)}};
@@ -122,7 +122,7 @@ Notes BehindSample::notes_of(const FrameSource& source, std::size_t number) cons
       plane.otherwise > kFarMoreOtherwise * plane.as_read)
     fail(ErrorKind::input,
          "{} is the frame's own depth on {:.0f} % of the pixels if it is {}, and is read as {} like the depth of {}: "
-         "write both alike, or name another channel with --behind-channel; --depth-kind says how both are read",
+         "write both alike, or name another channel with --set behind-channel; --depth-kind says how both are read",
          name, percent(plane.otherwise, plane.oblique), along_ray ? "planar" : "along the ray",
          along_ray ? "along the ray" : "planar", source.depth_path());
   if (double(plane.before) >= kRefused * double(plane.surfaces)) {
@@ -133,7 +133,7 @@ Notes BehindSample::notes_of(const FrameSource& source, std::size_t number) cons
         ErrorKind::input,
         "{} lies before the first surface on {:.0f} % of the pixels, at {:.3g} times its depth: it is of another frame "
         "or camera than the depth of {}, or has another scale or kind; give another file with --behind, name another "
-        "channel with --behind-channel, or say with --depth-kind and --depth-scale how both are read",
+        "channel with --set behind-channel, or say with --depth-kind and --depth-scale how both are read",
         name, percent(plane.before, plane.surfaces), *middle, source.depth_path());
   }
   Notes notes;
@@ -145,12 +145,12 @@ Notes BehindSample::notes_of(const FrameSource& source, std::size_t number) cons
   if (plane.same == plane.surfaces)
     notes.push_back({NoteCode::nothing_hidden,
                      fmt::format("{} is the first surface wherever it has one, and shows nothing new: name the channel "
-                                 "of what lies behind with --behind-channel, or give another file with --behind",
+                                 "of what lies behind with --set behind-channel, or give another file with --behind",
                                  name)});
   else if (plane.known == plane.surfaces)
     notes.push_back({NoteCode::nothing_hidden,
                      fmt::format("{} shows nothing new: what is given before it has all of its surfaces; name another "
-                                 "channel with --behind-channel, give another file, or leave it out (--behind)",
+                                 "channel with --set behind-channel, give another file, or leave it out (--behind)",
                                  name)});
   return notes;
 }

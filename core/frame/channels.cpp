@@ -46,7 +46,7 @@ const AovNames kPositionNames{
 
 const AovNames kBeautyNames{
     .what = "beauty",
-    .channel_option = "--beauty-channels",
+    .channel_option = "--set beauty-channels",
     .layers = {"combined", "rgba", "beauty"},
     .in_layer = {{"r", "g", "b"}, {"red", "green", "blue"}},
     .bare = {{"r", "g", "b"}, {"red", "green", "blue"}},
@@ -65,7 +65,7 @@ const AovNames kIndirectNames{
 
 const AovNames kLightNames{
     .what = "light",
-    .channel_option = "--ambient",
+    .channel_option = "--set ambient",
     .layers = {},
     .in_layer = {{"r", "g", "b"}, {"red", "green", "blue"}},
     .bare = {},
@@ -83,7 +83,7 @@ const AovNames kDiffuseColorNames{
 
 const AovNames kMaterialNames{
     .what = "material AO",
-    .channel_option = "--material-ao-channel",
+    .channel_option = "--set material-ao-channel",
     .layers = {"ao", "occlusion", "ambient occlusion", "materialao"},
     .in_layer = {{"y"}, {"r"}, {"ao"}, {"v"}},
     .bare = {{"ao"}, {"occlusion"}},
@@ -92,7 +92,7 @@ const AovNames kMaterialNames{
 
 const AovNames kAlbedoNames{
     .what = "diffuse colour",
-    .channel_option = "--albedo-channels",
+    .channel_option = "--set albedo-channels",
     .layers = {"diffcol", "diffuse color", "albedo", "diffuse_albedo"},
     .in_layer = {{"r", "g", "b"}, {"red", "green", "blue"}},
     .bare = {},
@@ -101,7 +101,7 @@ const AovNames kAlbedoNames{
 
 const AovNames kMatteNames{
     .what = "matte",
-    .channel_option = "--matte-channel",
+    .channel_option = "--set matte-channel",
     .layers = {"matte", "mask"},
     .in_layer = {{"y"}, {"a"}, {"r"}, {"v"}},
     .bare = {{"matte"}, {"mask"}},
@@ -110,7 +110,7 @@ const AovNames kMatteNames{
 
 const AovNames kObjectNames{
     .what = "numbers of objects",
-    .channel_option = "--object-channel",
+    .channel_option = "--set object-channel",
     .layers = {"indexob", "object index", "objectid", "object_id", "vrayobjectid", "id"},
     .in_layer = {{"x"}, {"y"}, {"r"}, {"v"}},
     .bare = {{"objectid"}, {"object_id"}, {"id"}},

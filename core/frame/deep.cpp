@@ -277,7 +277,7 @@ void settle_deep(FrameSource& source, std::span<const float> depth) {
   }
   if (found == 0)
     source.notes.push_back(
-        {NoteCode::empty_layer, fmt::format("{}: no deep sample is a surface by --deep-opacity", file.path())});
+        {NoteCode::empty_layer, fmt::format("{}: no deep sample is a surface by --set deep-opacity", file.path())});
   if (compared < kLeastPixels) return;
   const auto best = std::ranges::max_element(readings, {}, &DeepReading::same);
   if (double(best->same) < kLeastSame * double(compared))

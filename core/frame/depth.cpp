@@ -84,7 +84,8 @@ void set_position(DepthMap& map, PositionSpace space, bool negative, const Camer
   }
   if (!camera.view_from_world)
     fail(ErrorKind::usage,
-         "world positions need a camera with world_to_camera: give a --camera file with it, or --position-space view");
+         "world positions need a camera with world_to_camera: give a --camera file with it, or --set "
+         "position-space=view");
   for (std::size_t i = 0; i < 3; i++) map.axis[i] = -scale * (*camera.view_from_world)[2][i];
   map.base = -camera.view_from_world_offset[2];
   const auto& offset = camera.view_from_world_offset;
@@ -145,8 +146,8 @@ std::vector<std::string> unused_range_options(const DepthRange& said, DepthKind 
   if (said.near && !is_device && !is_normalized) unused.emplace_back("--near");
   if (said.far && !is_between_planes) unused.emplace_back("--far");
   if (said.reversed && !is_between_planes) unused.emplace_back("--reversed-z");
-  if (said.device != DeviceRange::zero_to_one && !is_device) unused.emplace_back("--device-range");
-  if (said.log_constant != DepthRange{}.log_constant && !is_log) unused.emplace_back("--log-constant");
+  if (said.device != DeviceRange::zero_to_one && !is_device) unused.emplace_back("--set device-range");
+  if (said.log_constant != DepthRange{}.log_constant && !is_log) unused.emplace_back("--set log-constant");
   return unused;
 }
 

@@ -43,7 +43,7 @@ void find_beauty(FrameSource& source, const ChannelSearch& search, std::size_t f
         {NoteCode::windows_differ,
          fmt::format(
              "the depth is of {} times the beauty's size: what is written is filtered to that of the beauty, {} "
-             "(--supersampling, --filter)",
+             "(--set supersampling, --set filter)",
              source.supersampling, to_string(picture_of(source, source.display)))});
   for (const auto* aov : {&source[RawPlane::beauty], &source[RawPlane::indirect], &source[RawPlane::diffuse_color]})
     require_common_window(source, *aov, "beauty", "--beauty",
@@ -62,24 +62,25 @@ void find_beauty(FrameSource& source, const ChannelSearch& search, std::size_t f
 void find_material(FrameSource& source, ChannelSearch& search, const InputSettings& settings) {
   if (settings.material_ao.empty() && settings.material_ao_channel.empty()) return;
   const std::size_t file =
-      search.open(settings.material_ao.empty() ? settings.input : settings.material_ao, "--material-ao");
+      search.open(settings.material_ao.empty() ? settings.input : settings.material_ao, "--set material-ao");
   source[RawPlane::material_ao] =
       search.require(file, kMaterialNames, settings.material_ao_channel, !settings.material_ao.empty(), "AO");
-  require_common_window(source, source[RawPlane::material_ao], "material AO", "--material-ao",
+  require_common_window(source, source[RawPlane::material_ao], "material AO", "--set material-ao",
                         "where it has no pixels it counts as 1");
 }
 
 /// The colour that light takes at the surfaces.
 void find_albedo(FrameSource& source, ChannelSearch& search, const std::string& beauty_path,
                  const InputSettings& settings) {
-  const std::size_t file = search.open(settings.albedo.empty() ? beauty_path : settings.albedo, "--albedo");
+  const std::size_t file = search.open(settings.albedo.empty() ? beauty_path : settings.albedo, "--set albedo");
   source[RawPlane::albedo] = search.find(file, kAlbedoNames, settings.albedo_channels, !settings.albedo.empty());
   if (source[RawPlane::albedo].empty())
     fail(ErrorKind::input,
-         "{}: no diffuse colour found for --multi-bounce: name its channels with --albedo-channels, or give --albedo a "
+         "{}: no diffuse colour found for --set multi-bounce: name its channels with --set albedo-channels, or give "
+         "--set albedo a "
          "file or a number",
          source.files[file].path());
-  require_common_window(source, source[RawPlane::albedo], "diffuse colour", "--albedo",
+  require_common_window(source, source[RawPlane::albedo], "diffuse colour", "--set albedo",
                         "where it has no pixels it counts as black");
 }
 

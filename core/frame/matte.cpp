@@ -210,8 +210,8 @@ void find_objects(FrameSource& source, ChannelSearch& search, std::size_t file, 
   }
   if (mattes.empty())
     fail(ErrorKind::input,
-         "{}: {} {}: the file has no Cryptomatte: give one with --objects, a file of coverage instead of names, or "
-         "numbers of a channel (--object-channel)",
+         "{}: {} {}: the file has no Cryptomatte: give one with --set objects, a file of coverage instead of names, or "
+         "numbers of a channel (--set object-channel)",
          path, meant.option, meant.words);
   take(source, file, chosen(mattes, path, meant), meant, source.occluders, channels);
 }
@@ -230,12 +230,13 @@ void find_matte(FrameSource& source, ChannelSearch& search, const InputSettings&
   const auto mattes = may_be_ranked ? cryptomattes_of(source.files[file], source.view) : std::vector<Cryptomatte>();
   const bool is_layer = has_layer(mattes, settings.matte_channel);
   if (is_layer && objects.empty())
-    fail(ErrorKind::input, "{}: --matte-channel {} is a Cryptomatte: name its objects with --matte-object", path,
+    fail(ErrorKind::input, "{}: --set matte-channel={} is a Cryptomatte: name its objects with --matte-object", path,
          settings.matte_channel);
   if (!objects.empty() && !is_layer && settings.matte_channel.empty() && mattes.empty())
-    fail(ErrorKind::input,
-         "{}: --matte-object {}: the file has no Cryptomatte; of a channel of numbers, name it with --matte-channel",
-         path, objects);
+    fail(
+        ErrorKind::input,
+        "{}: --matte-object {}: the file has no Cryptomatte; of a channel of numbers, name it with --set matte-channel",
+        path, objects);
   if (is_layer || (!objects.empty() && settings.matte_channel.empty())) {
     take(source, file, chosen(mattes, path, meant), meant, source.matte, source[RawPlane::matte]);
   } else {
@@ -252,7 +253,7 @@ void find_matte(FrameSource& source, ChannelSearch& search, const InputSettings&
 void find_occluders(FrameSource& source, ChannelSearch& search, const InputSettings& settings) {
   if (!chooses_occluders(settings)) return;
   source.occluders.ignores = !settings.ignore.empty() || !settings.ignored_objects.empty();
-  const char* option = source.occluders.ignores ? "--ignore" : "--occluders";
+  const char* option = source.occluders.ignores ? "--set ignore" : "--set occluders";
   const std::string& coverage = source.occluders.ignores ? settings.ignore : settings.occluders;
   if (!coverage.empty()) {
     const std::size_t file = search.open(coverage, option);
@@ -260,7 +261,7 @@ void find_occluders(FrameSource& source, ChannelSearch& search, const InputSetti
   } else {
     const std::string& words = source.occluders.ignores ? settings.ignored_objects : settings.occluder_objects;
     const bool own_file = !settings.objects.empty();
-    const std::size_t file = search.open(own_file ? settings.objects : main_input(settings), "--objects");
+    const std::size_t file = search.open(own_file ? settings.objects : main_input(settings), "--set objects");
     find_objects(source, search, file, {words, option, settings.object_channel, kObjectNames}, own_file);
   }
   require_common_window(

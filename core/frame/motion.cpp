@@ -21,7 +21,7 @@ constexpr double kLeastShare = 0.05;
 
 const AovNames kMotionNames{
     .what = "motion vectors",
-    .channel_option = "--motion-channels",
+    .channel_option = "--set motion-channels",
     .layers = {"vector", "motion", "motionvector", "motionvectors", "motion_vector", "motion_vectors", "velocity", "mv",
                "motion2d"},
     .in_layer = {{"x", "y"}, {"r", "g"}, {"u", "v"}, {"red", "green"}},

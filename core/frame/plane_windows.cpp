@@ -59,7 +59,7 @@ void read_from_other(ExrFile& file, const Window& from, int rows_together, const
 std::string way_out(const FrameSource& source, const Window& display) {
   if (display.width > source.display.width)
     return "compute from a depth of that size, if need be with --resolution half, or render both at the same size";
-  return "render both at the same size, or the depth at 2, 3 or 4 times that of the picture, with --supersampling";
+  return "render both at the same size, or the depth at 2, 3 or 4 times that of the picture, with --set supersampling";
 }
 
 /// Whether the depth's display window is that of a picture, with so many pixels for each.
@@ -74,8 +74,8 @@ int supersampling_of(const FrameSource& source, const InputSettings& settings) {
   if (settings.supersampling == "auto") return 1;
   const int factor = std::stoi(settings.supersampling);
   if (source.display.width % factor != 0 || source.display.height % factor != 0)
-    fail(ErrorKind::input, "{}: the display window is {}, which --supersampling {} cannot divide", source.depth_path(),
-         to_string(source.display), factor);
+    fail(ErrorKind::input, "{}: the display window is {}, which --set supersampling={} cannot divide",
+         source.depth_path(), to_string(source.display), factor);
   return factor;
 }
 
@@ -88,8 +88,9 @@ int supersampling_of(const FrameSource& source, const ChannelRef& beauty, const 
   }
   const int factor = supersampling_of(source, settings);
   if (!is_times(source.display, file.display(), factor))
-    fail(ErrorKind::input, "{}: the beauty is of a picture of {}, and --supersampling {} of the depth, {}, makes {}",
-         file.path(), to_string(file.display()), factor, to_string(source.display),
+    fail(ErrorKind::input,
+         "{}: the beauty is of a picture of {}, and --set supersampling={} of the depth, {}, makes {}", file.path(),
+         to_string(file.display()), factor, to_string(source.display),
          to_string(reduced(source.display, source.display, factor)));
   return factor;
 }

@@ -95,13 +95,13 @@ inline constexpr std::array kRawPlanes{
                   .least = 1,
                   .most = 1,
                   .content = PlaneContent::color,
-                  .file = {"--material-ao", &InputSettings::material_ao}},
+                  .file = {"--set material-ao", &InputSettings::material_ao}},
     RawPlaneFacts{.plane = RawPlane::albedo,
                   .name = "raw albedo",
                   .least = 3,
                   .most = 3,
                   .content = PlaneContent::color,
-                  .file = {"--albedo", &InputSettings::albedo}},
+                  .file = {"--set albedo", &InputSettings::albedo}},
     RawPlaneFacts{.plane = RawPlane::matte,
                   .name = "raw matte",
                   .least = 1,
@@ -113,9 +113,9 @@ inline constexpr std::array kRawPlanes{
                   .least = 1,
                   .most = kMostMattePlanes,
                   .content = PlaneContent::geometry,
-                  .file = {"--occluders", &InputSettings::occluders},
-                  .other_file = {"--ignore", &InputSettings::ignore},
-                  .third_file = {"--objects", &InputSettings::objects}},
+                  .file = {"--set occluders", &InputSettings::occluders},
+                  .other_file = {"--set ignore", &InputSettings::ignore},
+                  .third_file = {"--set objects", &InputSettings::objects}},
 };
 
 /// One entry for each plane.

@@ -449,7 +449,7 @@ class DepthSettlement : private Settlement {
     fail(ErrorKind::input,
          "{}: the depth may be normalized or planar (all in 0 to 1, {:.1f} % of exactly 1): say --depth-kind "
          "normalized with --near and --far (or log, with "
-         "--far and --log-constant), or --depth-kind planar",
+         "--far and --set log-constant), or --depth-kind planar",
          depth_path(), 100 * double(values_.one) / double(values_.pixels));
   }
 
@@ -475,7 +475,7 @@ class DepthSettlement : private Settlement {
         {NoteCode::near_plane,
          fmt::format("the near plane is {:.4g}, but the camera file's projection, read with z = depth, has it at "
                      "{:.4g}: so read, distances would be {:.3g} "
-                     "times as large; trust the one that was measured (--near, --device-range)",
+                     "times as large; trust the one that was measured (--near, --set device-range)",
                      *near, *by_matrix, *by_matrix / *near)});
   }
 
@@ -536,13 +536,13 @@ class DepthSettlement : private Settlement {
     if (source_.depth_range.device == DeviceRange::zero_to_one && below > 0)
       source_.notes.push_back(
           {NoteCode::said_otherwise,
-           fmt::format("{} pixels have a depth of -1 to 0 and count as sky: is it that of --device-range=-1..1?",
+           fmt::format("{} pixels have a depth of -1 to 0 and count as sky: is it that of --set device-range=-1..1?",
                        below)});
     if (source_.depth_range.device == DeviceRange::minus_one_to_one && values_.least >= 0)
       source_.notes.push_back(
           {NoteCode::said_otherwise,
            "no depth is below 0, so the nearest surface is beyond twice the near plane, or the depth is not that of "
-           "--device-range=-1..1"});
+           "--set device-range=-1..1"});
   }
 
   /// Inverse depth and that of a z-buffer are both affine in 1/z. A near plane that somebody knows tells them apart.
@@ -579,14 +579,15 @@ class DepthSettlement : private Settlement {
     if (!(*best->error <= kLargestError))
       fail(
           ErrorKind::input,
-          "{}: its positions lie {} from the pixels that hold them: check --position-space and --camera", depth_path(),
+          "{}: its positions lie {} from the pixels that hold them: check --set position-space and --camera",
+          depth_path(),
           *best->error < 1e6 ? fmt::format("{:.1f} pixels (median)", *best->error) : "on the other side of the camera");
     source_.position_space = best->space;
     source_.depth_range.negative = best->forward;
     if (settings_.position_space == PositionSpace::automatic)
       guess("position space", best->space == PositionSpace::world ? "world" : "view",
             fmt::format("positions lie {:.3f} pixels (median) from the pixels that hold them", *best->error),
-            "--position-space", false);
+            "--set position-space", false);
   }
 
   const std::size_t step_;            // from one pixel that is looked at to the next

@@ -235,7 +235,7 @@ PhysicalDevice choose_device(const std::vector<PhysicalDevice>& devices, const D
     fail(ErrorKind::device, "no usable Vulkan device matches --device \"{}\"; this machine has {}", options.choice,
          list_of(devices));
   if (options.require_gpu && best->info.type == DeviceType::cpu)
-    fail(ErrorKind::device, "--require-gpu: no GPU for --device {}; this machine has {}", options.choice,
+    fail(ErrorKind::device, "a GPU is required, and there is none for --device {}; this machine has {}", options.choice,
          list_of(devices));
   return *best;
 }

@@ -21,14 +21,17 @@ class Command {
 
   void add(const std::string& word) { text_ += " " + word; }
   void add(const char* option, const std::string& value) {
-    if (!value.empty()) text_ += fmt::format(" {} {}", option, for_shell(value));
+    if (!value.empty()) text_ += fmt::format(" {}{}{}", option, link(option), for_shell(value));
   }
   void add(const char* option, const std::optional<double>& value) {
-    if (value) text_ += fmt::format(" {} {}", option, *value);
+    if (value) text_ += fmt::format(" {}{}{}", option, link(option), *value);
   }
   const std::string& text() const { return text_; }
 
  private:
+  /// What stands between an option, or a key of --set, and its value.
+  static char link(std::string_view option) { return option.starts_with("--set ") ? '=' : ' '; }
+
   std::string text_;
 };
 
@@ -47,7 +50,7 @@ void add_files(Command& command, const FrameSource& source, const InputSettings&
 
 void add_behind(Command& command, const InputSettings& settings) {
   for (const auto& file : settings.behind) command.add("--behind", file);
-  command.add("--behind-channel", fmt::format("{}", fmt::join(settings.behind_channels, ",")));
+  command.add("--set behind-channel", fmt::format("{}", fmt::join(settings.behind_channels, ",")));
   std::vector<std::string> kinds;
   for (const BehindKind kind : settings.behind_kinds)
     for (const auto& [word, meaning] : names_of<BehindKind>())
@@ -55,7 +58,7 @@ void add_behind(Command& command, const InputSettings& settings) {
   command.add("--behind-kind", fmt::format("{}", fmt::join(kinds, ",")));
   for (const auto& file : settings.deep) command.add("--deep", file);
   if (has_deep(settings) && settings.deep_opacity != InputSettings().deep_opacity)
-    command.add("--deep-opacity", std::optional(settings.deep_opacity));
+    command.add("--set deep-opacity", std::optional(settings.deep_opacity));
 }
 
 void add_depth(Command& command, const FrameSource& source, const InputSettings& settings) {
@@ -68,13 +71,14 @@ void add_depth(Command& command, const FrameSource& source, const InputSettings&
     if (source.depth_range.reversed) command.add("--reversed-z");
   }
   if (source.depth_kind == DepthKind::position)
-    command.add("--position-space", std::string(source.position_space == PositionSpace::world ? "world" : "view"));
+    command.add("--set position-space", std::string(source.position_space == PositionSpace::world ? "world" : "view"));
   const InputSettings defaults;
   const bool is_device = source.depth_kind == DepthKind::device;
-  if (is_device && settings.depth_range.device == DeviceRange::minus_one_to_one) command.add("--device-range=-1..1");
+  if (is_device && settings.depth_range.device == DeviceRange::minus_one_to_one)
+    command.add("--set device-range=-1..1");
   const bool is_log = source.depth_kind == DepthKind::log;
   if (is_log && settings.depth_range.log_constant != defaults.depth_range.log_constant)
-    command.add("--log-constant", std::optional(settings.depth_range.log_constant));
+    command.add("--set log-constant", std::optional(settings.depth_range.log_constant));
   if (settings.depth_scale != defaults.depth_scale) command.add("--depth-scale", std::optional(settings.depth_scale));
   if (settings.sky != defaults.sky) command.add("--sky", std::optional(settings.sky));
 }

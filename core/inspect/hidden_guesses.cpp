@@ -67,7 +67,7 @@ std::string options_for(const std::vector<HiddenGuess>& guesses) {
     kinds += (kinds.empty() ? "" : ",") + word_of(guess.kind);
   }
   if (guesses.empty()) return "";
-  return fmt::format("{} --behind-channel {} --behind-kind {}", files.substr(1), for_shell(channels), kinds);
+  return fmt::format("{} --set behind-channel={} --behind-kind {}", files.substr(1), for_shell(channels), kinds);
 }
 
 }  // namespace alcove

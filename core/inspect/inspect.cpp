@@ -264,7 +264,7 @@ struct Inspector {
       add_aov(found, "indirect", beauty, beauty[RawPlane::indirect], false);
       add_aov(found, "diffuse_color", beauty, beauty[RawPlane::diffuse_color], false);
     } catch (const Error&) {
-      found.missing.push_back("beauty: only --composite needs one; --beauty or --beauty-channels names it");
+      found.missing.push_back("beauty: only --composite needs one; --beauty or --set beauty-channels names it");
     }
   }
 };

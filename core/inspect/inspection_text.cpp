@@ -59,7 +59,7 @@ void add(TextLines& lines, const InspectedFile& file) {
     std::vector<std::string> names;
     for (const auto& [name, id] : matte.manifest) names.push_back(name);
     const std::string lacking = matte.lacking.empty() ? "no manifest" : matte.lacking;
-    lines.add("  Cryptomatte {}, for --matte-object, --occluders and --ignore: {}", matte.name,
+    lines.add("  Cryptomatte {}, for --matte-object, --set occluders and --set ignore: {}", matte.name,
               names.empty() ? lacking : list_of(names));
   }
 }

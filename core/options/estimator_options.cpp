@@ -86,8 +86,7 @@ void add_radius_rows(std::vector<OptionRow>& rows, EstimatorSettings& s) {
   radius.repeats = radius.is_common = true;
   pixels.choice("--falloff", s.falloff, "how a hit's weight fades towards the radius").why_without_effect =
       [](const Settings& all) { return all.estimator.falloff == Falloff::none ? "" : unless_fading(all); };
-  pixels
-      .number("falloff-start", s.falloff_start, "of the radius", below_and_at_least(0, 1), "where the falloff begins")
+  pixels.number("falloff-start", s.falloff_start, "of the radius", below_and_at_least(0, 1), "where the falloff begins")
       .why_without_effect = [](const Settings& all) -> std::string {
     if (all.estimator.falloff_start == 0) return "";
     return first_of({unless_fading(all), all.estimator.falloff == Falloff::none ? "--falloff is none" : ""});
@@ -104,7 +103,9 @@ void add_search_rows(std::vector<OptionRow>& rows, EstimatorSettings& s) {
   OptionGroup pixels(rows, "Estimator", Effect::pixels);
   const auto unless_crytek = [](const Settings& all) { return unless_estimator(all, {Estimator::crytek}); };
   pixels.number("--slices", s.slices, "per pixel", between(1, 64), "directions that are searched").why_without_effect =
-      [](const Settings& all) { return first_of({unless_slices_anywhere(all), if_by_error_alone(all)}); };
+      [](const Settings& all) {
+        return first_of({unless_slices_anywhere(all), if_by_error_alone(all)});
+      };
   pixels.number("--steps", s.steps, "per side", between(1, 4096), "samples to each side of a slice")
       .why_without_effect = [](const Settings& all) {
     return first_of({unless_slices_anywhere(all), if_exact_alone(all)});
@@ -131,9 +132,7 @@ void add_search_rows(std::vector<OptionRow>& rows, EstimatorSettings& s) {
       .why_without_effect = [](const Settings& all) { return unless_estimator(all, {Estimator::hbao}); };
   pixels.choice("sample-kernel", s.sample_kernel, "clustered: more samples near the receiver; uniform: even in volume")
       .why_without_effect = unless_crytek;
-  pixels
-      .choice("range-check", s.range_check,
-              "how a hit's weight goes by its depth; docs/settings.md has the formulas")
+  pixels.choice("range-check", s.range_check, "how a hit's weight goes by its depth; docs/settings.md has the formulas")
       .why_without_effect = unless_crytek;
   pixels
       .own(
@@ -164,8 +163,8 @@ void add_filter_rows(std::vector<OptionRow>& rows, EstimatorSettings& s) {
       .choice("density", s.density,
               "uniform: an estimate for every so many pixels; adaptive: more where a surface shows few pixels")
       .why_without_effect = [](const Settings& all) {
-    return first_of({asks_for_confidence(all) ? "" : unless_ranges(all), if_exact_alone(all),
-                     unless_shared_estimates(all)});
+    return first_of(
+        {asks_for_confidence(all) ? "" : unless_ranges(all), if_exact_alone(all), unless_shared_estimates(all)});
   };
   pixels
       .own(
@@ -181,8 +180,7 @@ void add_filter_rows(std::vector<OptionRow>& rows, EstimatorSettings& s) {
           },
           "is none of auto, 1, 2, 4, 8, 16")
       .why_without_effect = [](const Settings& all) {
-    return all.estimator.stride <= 1 ? ""
-                                     : first_of({if_exact_alone(all), unless_denoised(all, {Denoise::bilateral})});
+    return all.estimator.stride <= 1 ? "" : first_of({if_exact_alone(all), unless_denoised(all, {Denoise::bilateral})});
   };
 }
 
@@ -302,8 +300,7 @@ void add_estimator_rows(std::vector<OptionRow>& rows, RunOptions& options) {
   OptionRow& preset =
       OptionGroup(rows, "Estimator", Effect::none)
           .add(
-              {"--preset", "NAME|FILE[,...]", "", "",
-               "settings from presets; later ones win"},
+              {"--preset", "NAME|FILE[,...]", "", "", "settings from presets; later ones win"},
               [&options] { return options.presets; }, [&options](const Words& words) { options.presets = words; });
   preset.repeats = preset.is_common = true;
   preset.is_key = false;

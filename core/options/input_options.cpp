@@ -149,7 +149,8 @@ void add_file_rows(std::vector<OptionRow>& rows, InputSettings& s) {
   add_occluder_rows(rows, s);
   OptionGroup(rows, "Input", Effect::pixels_or_input)
       .own(
-          {"albedo", "FILE|NUMBER", "", "0 to 1", "the diffuse colour, of all surfaces or in an EXR; else the beauty's"},
+          {"albedo", "FILE|NUMBER", "", "0 to 1",
+           "the diffuse colour, of all surfaces or in an EXR; else the beauty's"},
           [&s] { return s.albedo_value ? fmt::format("{}", *s.albedo_value) : s.albedo; },
           [&s](const std::string& text) { return read_albedo(text, s); }, "is neither a file nor a number from 0 to 1")
       .why_without_effect = unless_multi_bounce;
@@ -209,7 +210,8 @@ void add_depth_rows(std::vector<OptionRow>& rows, InputSettings& s) {
     return unless_depth(all, {DepthKind::device, DepthKind::normalized, DepthKind::log});
   };
   pixels
-      .choice("--depth-kind", s.depth_kind, "planar: along the axis; ray: to the eye; inverse: 1/planar; auto: by facts")
+      .choice("--depth-kind", s.depth_kind,
+              "planar: along the axis; ray: to the eye; inverse: 1/planar; auto: by facts")
       .why_without_effect = [](const Settings& all) -> std::string {
     const InputSettings& input = all.input;
     if (input.depth_kind == DepthKind::automatic || input.depth_kind == DepthKind::position) return "";
@@ -264,11 +266,11 @@ void add_direction_rows(std::vector<OptionRow>& rows, InputSettings& s) {
 std::string if_other_camera(const InputSettings& input, const std::string& own) {
   const char* const why = "each of them says what the camera sees";
   const bool has_lens = input.focal || input.aperture;
-  return first_of({if_given(own != "--camera" && !input.camera.empty(), "--camera", why),
-                   if_given(own != "--fov" && input.fov, "--fov", why),
-                   if_given(own != "--focal" && own != "--aperture" && has_lens,
-                            input.focal ? "--focal" : "--aperture", why),
-                   if_given(own != "--ortho-width" && input.ortho_width, "--ortho-width", why)});
+  return first_of(
+      {if_given(own != "--camera" && !input.camera.empty(), "--camera", why),
+       if_given(own != "--fov" && input.fov, "--fov", why),
+       if_given(own != "--focal" && own != "--aperture" && has_lens, input.focal ? "--focal" : "--aperture", why),
+       if_given(own != "--ortho-width" && input.ortho_width, "--ortho-width", why)});
 }
 
 void add_camera_rows(std::vector<OptionRow>& rows, InputSettings& s) {
@@ -289,13 +291,13 @@ void add_camera_rows(std::vector<OptionRow>& rows, InputSettings& s) {
   fov.is_common = true;
   fov.why_without_effect = [](const Settings& all) { return if_other_camera(all.input, "--fov"); };
   pixels.number("--focal", s.focal, "mm", above(0), "focal length").why_without_effect = [](const Settings& all) {
-    return first_of({unless_given(all.input.aperture.has_value(), "--aperture"), if_other_camera(all.input, "--focal")});
+    return first_of(
+        {unless_given(all.input.aperture.has_value(), "--aperture"), if_other_camera(all.input, "--focal")});
   };
-  pixels.number("--aperture", s.aperture, "mm", above(0), "width of the film back").why_without_effect =
-      [](const Settings& all) {
-        return first_of(
-            {unless_given(all.input.focal.has_value(), "--focal"), if_other_camera(all.input, "--aperture")});
-      };
+  pixels.number("--aperture", s.aperture, "mm", above(0), "width of the film back")
+      .why_without_effect = [](const Settings& all) {
+    return first_of({unless_given(all.input.focal.has_value(), "--focal"), if_other_camera(all.input, "--aperture")});
+  };
   pixels.number("--ortho-width", s.ortho_width, "scene units", above(0), "width of an orthographic view")
       .why_without_effect = [](const Settings& all) { return if_other_camera(all.input, "--ortho-width"); };
 }

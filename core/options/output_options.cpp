@@ -45,9 +45,9 @@ void add_composite_rows(std::vector<OptionRow>& rows, OutputSettings& s) {
   pixels
       .number("fog-density", s.look.fog_density, "1 / scene units", between(0, 1e30),
               "of exponential fog in the beauty, which hides the AO behind it")
-      .why_without_effect = unless_composite;
+      .why_without_effect = [](const Settings& all) { return all.output.look.fog_density == 0 ? "" : unless_composite(all); };
   pixels.number("gain", s.look.gain, "", between(0, 100), "factor on the occlusion in the composite")
-      .why_without_effect = unless_composite;
+      .why_without_effect = [](const Settings& all) { return all.output.look.gain == 1 ? "" : unless_composite(all); };
   pixels
       .own(
           {"tint", "R,G,B", "", "0 to 1", "what occlusion makes of white light in the composite"},
@@ -56,18 +56,18 @@ void add_composite_rows(std::vector<OptionRow>& rows, OutputSettings& s) {
             return tint == std::array<double, 3>{} ? "" : fmt::format("{}", fmt::join(tint, ","));
           },
           [&s](const std::string& text) { return read_tint(text, s.look.tint); }, "is not three numbers from 0 to 1")
-      .why_without_effect = unless_composite;
+      .why_without_effect = [](const Settings& all) { return all.output.look.tint == std::array<double, 3>{} ? "" : unless_composite(all); };
   pixels.number("mix", s.look.mix, "", between(0, 1), "of the composite and the beauty; 0: the beauty")
-      .why_without_effect = unless_composite;
+      .why_without_effect = [](const Settings& all) { return all.output.look.mix == 1 ? "" : unless_composite(all); };
   pixels
       .word("composite-layers", s.composite_layers, {"all", "rgba"},
             "all: every channel, part and attribute of the beauty's file; rgba: R, G, B, A alone")
-      .why_without_effect = unless_composite;
+      .why_without_effect = [](const Settings& all) { return all.output.composite_layers == "all" ? "" : unless_composite(all); };
   pixels
       .word("composite-compression", s.composite_compression,
             {"keep", "none", "rle", "zips", "zip", "piz", "dwaa", "dwab"},
             "of the beauty's part in the composite; keep: the file's, or zip where that loses bits again")
-      .why_without_effect = unless_composite;
+      .why_without_effect = [](const Settings& all) { return all.output.composite_compression == "keep" ? "" : unless_composite(all); };
   pixels.text("append-ao", s.append_ao, "LAYER[.CHANNEL]", "the AO as one more channel of the composite: AO is AO.Y")
       .why_without_effect = unless_composite;
 }
@@ -106,16 +106,16 @@ void add_output_rows(std::vector<OptionRow>& rows, OutputSettings& s) {
   files.text("-o,--output", s.output, "FILE.exr", "the AO, 1 = open, and what else --aov names").is_common = true;
   word_list(pixels, "--aov", s.aovs, fmt::format("what OUTPUT holds: {}", fmt::join(aov_names(), ", "))).is_common =
       true;
-  pixels.choice("ao-channels", s.ao_channels, "mono: Y; rgb: R, G, B").why_without_effect =
-      [](const Settings& all) { return all.output.ao_channels == AoChannels::mono ? "" : unless_aov(all, {"ao"}); };
+  pixels.choice("ao-channels", s.ao_channels, "mono: Y; rgb: R, G, B").why_without_effect = [](const Settings& all) {
+    return all.output.ao_channels == AoChannels::mono ? "" : unless_aov(all, {"ao"});
+  };
   pixels.text("ao-name", s.ao_name, "NAME", "of the AO's channel instead of Y; with rgb of its layer: NAME.R ...")
       .why_without_effect = [](const Settings& all) { return unless_aov(all, {"ao"}); };
   pixels.choice("filter", s.filter.kind, "how pixels of depth make one that is written; blackman-harris: as Blender")
       .why_without_effect = [](const Settings& all) {
     return all.output.filter.kind == PixelFilterKind::blackman_harris ? "" : unless_supersampled(all);
   };
-  pixels
-      .number("filter-width", s.filter.width, "px of what is written", between(1, 16), "from one end to the other")
+  pixels.number("filter-width", s.filter.width, "px of what is written", between(1, 16), "from one end to the other")
       .why_without_effect = unless_supersampled;
   pixels.choice("aov-space", s.aov_space, "of the normals in OUTPUT; auto: world where the camera tells it, else view")
       .why_without_effect = [](const Settings& all) {

@@ -35,7 +35,8 @@ std::vector<Said> said_by_text(const std::string& preset, const std::string& tex
                                const std::vector<OptionRow>& table) {
   std::vector<Said> said;
   try {
-    for (const auto& entry : settings_in(text)) said.push_back({row_of(entry, table).long_name(), entry.values, preset});
+    for (const auto& entry : settings_in(text))
+      said.push_back({row_of(entry, table).long_name(), entry.values, preset});
   } catch (const Error& error) {
     fail(error.kind(), "{} (--preset): {}", preset, error.what());
   }

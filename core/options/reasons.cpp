@@ -95,8 +95,7 @@ std::string unless_denoised(const Settings& settings, std::initializer_list<Deno
 }
 
 std::string unless_shared_estimates(const Settings& settings) {
-  EstimatorSettings estimator =
-      asks_for_confidence(settings) ? bracket_of(settings.estimator) : settings.estimator;
+  EstimatorSettings estimator = asks_for_confidence(settings) ? bracket_of(settings.estimator) : settings.estimator;
   for (const Density density : {Density::uniform, Density::adaptive}) {
     estimator.density = density;
     if (spacing_of(estimator) > 1) return "";

@@ -78,7 +78,7 @@ std::optional<int> whole_number_of(const std::string& text) {
 }
 
 std::string OptionRow::objection(const Settings& settings) const {
-  if (words().empty()) return "";
+  if (!why_without_effect || words().empty()) return "";
   const std::string why = why_without_effect(settings);
   return why.empty() ? "" : fmt::format("{} has no effect: {}", long_name(), why);
 }

@@ -46,14 +46,13 @@ struct OptionRow {
   bool is_key = true;        // whether presets may hold it
   bool is_common = false;    // among the few that --help shows; --help-all shows all
   // Tells why the present value has no effect beside the other settings, in a sentence; "" where it has one, or asks
-  // for nothing. What is typed and has none is refused; of a preset it is left out.
-  std::function<std::string(const Settings&)> why_without_effect = [](const Settings&) { return std::string(); };
+  // for nothing. What is typed and has none is refused; of a preset it is left out. Null: it always has one.
+  std::function<std::string(const Settings&)> why_without_effect;
 
   /// The same, of what was set at all.
   std::string objection(const Settings& settings) const;
   /// Whether it is set by --set and presets alone.
   bool is_only_key() const;
-  bool is_of_inputs() const { return group == "Input" || group == "Hidden surfaces"; }
 
   bool is_flag() const { return value.empty() && (name.starts_with('-') || is_only_key()); }
   /// What is typed: "--output" of "-o,--output", "--set filter-width" of a key.

@@ -2,9 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/options/said.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "core/base/error.h"
+#include "core/chain/aov.h"
 
 namespace alcove {
 namespace {
@@ -43,15 +46,23 @@ Words only_in_presets(const std::vector<Said>& said) {
   return options;
 }
 
+/// The settings of a run that writes all that there is.
+Settings with_all_outputs(Settings settings) {
+  settings.output.composite = settings.output.preview = "all";
+  settings.output.multi_bounce = true;
+  settings.output.aovs = fmt::format("{}", fmt::join(aov_names(), ","));
+  return settings;
+}
+
 /// Finds what has no effect in the settings that all of it makes, among what is typed or among the rest.
 std::vector<Said>::const_iterator without_effect(const RunOptions& initial, const std::vector<Said>& said, bool typed,
                                                  Reader reader, std::string& objection) {
   RunOptions options = options_of(initial, said);
   const auto table = option_table(options);
+  const Settings judged = reader == Reader::run ? options.settings : with_all_outputs(options.settings);
   return std::ranges::find_if(said, [&](const Said& one) {
-    const OptionRow& row = row_of(table, one.option);
-    if (one.is_typed() != typed || (reader == Reader::inspect && !row.is_of_inputs())) return false;
-    objection = row.objection(options.settings);
+    if (one.is_typed() != typed) return false;
+    objection = row_of(table, one.option).objection(judged);
     return !objection.empty();
   });
 }

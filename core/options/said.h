@@ -18,7 +18,7 @@ struct Said {
   bool is_typed() const { return preset.empty(); }
 };
 
-/// For whom options are read. `alcove inspect` looks at inputs alone: only their settings must have an effect.
+/// For whom options are read. `alcove inspect` writes no outputs: there, no setting lacks one.
 enum class Reader { run, inspect };
 
 /// Reads into `options` what was said, presets in their order and then the command line; later wins. What has no effect

@@ -21,7 +21,7 @@ namespace {
 std::string display_text(const std::string& ocio) {
   const std::string file = display_config_file(ocio);
   if (file.empty()) return "";
-  return read_text(file, "OpenColorIO configuration", ocio.empty() ? "the OCIO variable" : "--ocio");
+  return read_text(file, "OpenColorIO configuration", ocio.empty() ? "the OCIO variable" : "--set ocio");
 }
 
 /// What of an option's value tells results apart; none: nothing does.

@@ -21,8 +21,8 @@ std::string file_name(const std::string& path) { return std::filesystem::path(pa
 Notes notes_on_holes(const FramePlan& plan, const Settings& settings) {
   if (plan.holes().empty() || settings.frames.missing == Missing::skip) return {};
   return {{NoteCode::sequence_hole,
-           fmt::format("{} between the frames on the disk: {} missing; --frames says which frames there are, --missing "
-                       "skip that some may be missing",
+           fmt::format("{} between the frames on the disk: {} missing; --frames says which frames there are, --set "
+                       "missing=skip that some may be missing",
                        plan.holes().size() == 1 ? "there is a hole" : "there are holes",
                        frames_text(plan.holes()) + (plan.holes().size() == 1 ? " is" : " are"))}};
 }
@@ -33,7 +33,7 @@ Notes notes_on_missing_around(const FramePlan& plan) {
   if (missing.empty()) return {};
   return {{NoteCode::sequence_hole,
            fmt::format("{} of the shot {} missing: {}; those around do without, and their headers say so "
-                       "(--missing skip)",
+                       "(--set missing=skip)",
                        missing.size() == 1 ? "a frame" : "frames", missing.size() == 1 ? "is" : "are",
                        frames_text(missing))}};
 }

@@ -147,11 +147,12 @@ void require_place_for_ao(const FrameSource& source, const OutputSettings& setti
   const ChannelRef& beauty = source[RawPlane::beauty][0];
   const auto& there = source.part_of(beauty).channels;
   if (keeps_layers(source, settings) && std::ranges::find(there, channel, &ExrChannel::name) != there.end())
-    fail(ErrorKind::input, "{}: it has a channel {} already: give --append-ao another name",
+    fail(ErrorKind::input, "{}: it has a channel {} already: give --set append-ao another name",
          source.files[beauty.file].path(), channel);
   if (settings.composite_compression.starts_with("dwa") && is_lossy_in_dwa(channel))
     fail(ErrorKind::usage,
-         "--append-ao {}: --composite-compression {} is lossy for channels that end in R, G, B or Y: name it {}.ao",
+         "--set append-ao={}: --set composite-compression={} is lossy for channels that end in R, G, B or Y: name it "
+         "{}.ao",
          settings.append_ao, settings.composite_compression, channel.substr(0, channel.rfind('.')));
 }
 
@@ -167,7 +168,7 @@ void require_picture(const FrameSource& source, std::span<const float> beauty) {
   const ChannelRef& red = source[RawPlane::beauty][0];
   fail(ErrorKind::input,
        "{}: the beauty {} has one colour in all pixels{}: give the picture with --beauty, or name it with "
-       "--beauty-channels",
+       "--set beauty-channels",
        source.files[red.file].path(), red.channel,
        colors[0] == 0 ? ", black, as renderers write a layer that they did not render" : "");
 }
@@ -178,7 +179,8 @@ void require_use_of_deep(const FrameSource& source, const EstimatorSettings& set
   const bool has_use = searches_slices(settings) || settings.hidden == 0 || !source.deep;
   if (has_use || source.part_of(source[RawPlane::depth][0]).deep) return;
   fail(ErrorKind::usage,
-       "{}: beside a flat depth --deep applies to --estimator gtao or bitmask only: give one of these, or --hidden 0, "
+       "{}: beside a flat depth --deep applies to --estimator gtao or bitmask only: give one of these, or --set "
+       "hidden=0, "
        "or leave --deep out",
        source.files[*source.deep].path());
 }
@@ -187,23 +189,23 @@ void require_use_of_deep(const FrameSource& source, const EstimatorSettings& set
 void require_for_outputs(const FrameSource& source, const OutputSettings& settings) {
   const std::string& file = source.depth_path();
   if (settings.aov_space == NormalSpace::world && !source.camera.view_from_world)
-    fail(ErrorKind::input, "{}: --aov-space world needs a camera with world_to_camera: give a --camera file with it",
-         file);
+    fail(ErrorKind::input,
+         "{}: --set aov-space=world needs a camera with world_to_camera: give a --camera file with it", file);
   if (settings.multi_bounce && !source[RawPlane::beauty].empty() && source[RawPlane::indirect].empty())
     fail(ErrorKind::input,
-         "{}: --multi-bounce is for indirect light, and the frame has no indirect diffuse part for the --composite "
+         "{}: --set multi-bounce is for indirect light, and the frame has no indirect diffuse part for the --composite "
          "(--beauty)",
          file);
   require_place_for_ao(source, settings);
   for (const auto* view : debug_views_of(settings)) {
     if (view->source == DebugSource::raw_depth && source[RawPlane::depth].size() > 1)
       fail(ErrorKind::input,
-           "{}: --debug {} shows a depth, and the frame has positions: name one with --depth-channel, or see "
+           "{}: --set debug={} shows a depth, and the frame has positions: name one with --depth-channel, or see "
            "linear-depth",
            file, view->name);
     if (view->source == DebugSource::normals_from_depth && source[RawPlane::normal].empty())
       fail(ErrorKind::input,
-           "{}: --debug {} compares the frame's normals with those from depth, and there are none (--normal, "
+           "{}: --set debug={} compares the frame's normals with those from depth, and there are none (--normal, "
            "--normal-channels)",
            file, view->name);
   }

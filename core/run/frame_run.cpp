@@ -294,7 +294,7 @@ class FrameRun {
   void refuse_pictures(const WindowLimits& limits, const Window& computed) const {
     if (settings_.output.preview.empty() && settings_.output.debug.empty()) return;
     limits.refuse(fmt::format("{}: a frame this large is computed in tiles, and {} needs it whole: leave it out",
-                              report_.input, settings_.output.preview.empty() ? "--debug" : "--preview"),
+                              report_.input, settings_.output.preview.empty() ? "--set debug" : "--preview"),
                   computed);
   }
 

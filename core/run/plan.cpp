@@ -197,7 +197,7 @@ void FramePlan::find_inputs(const std::vector<int>& chunk) {
                     absent.size(), chunk.size(), frames_text(absent), pattern.name.path(absent.front()));
   }
   if (!complaint.empty() && settings_.frames.missing == Missing::error)
-    fail(ErrorKind::input, "{}; --missing skip leaves them out, --frames says which to compute", complaint);
+    fail(ErrorKind::input, "{}; --set missing=skip leaves them out, --frames says which to compute", complaint);
   for (const int frame : chunk) (has_inputs(frame) ? frames_ : missing_).push_back(frame);
   if (!chunk.empty() && frames_.empty()) fail(ErrorKind::input, "{}; there is nothing to compute", complaint);
 }
@@ -280,7 +280,7 @@ void FramePlan::refuse_missing_around() const {
   const auto path = std::ranges::find_if(patterns_, [&](const Pattern& pattern) {
     return !pattern.path.is_output && !exists(pattern.name.path(absent.front()));
   });
-  fail(ErrorKind::input, "{}: {} needs {} of the shot that {} missing: {}; --missing skip does without",
+  fail(ErrorKind::input, "{}: {} needs {} of the shot that {} missing: {}; --set missing=skip does without",
        path->name.path(absent.front()), shot_option(settings_.input), absent.size() == 1 ? "a frame" : "frames",
        absent.size() == 1 ? "is" : "are", frames_text(absent));
 }
@@ -310,13 +310,13 @@ void refuse_warnings(const Notes& notes, const Settings& settings, const std::st
   std::string text;
   for (const auto& note : warnings) text += (text.empty() ? "" : "; ") + line_of(note, text.empty() ? file : "");
   fail(ErrorKind::input, "{}: an error by {}", text,
-       settings.frames.warnings_as_errors ? "--warnings-as-errors" : "--strict");
+       settings.frames.warnings_as_errors ? "--set warnings-as-errors" : "--strict");
 }
 
 std::vector<OutputFile> outputs_of(const OutputSettings& output) {
   std::vector<OutputFile> files{
       {"--output", output.output}, {"--composite", output.composite}, {"--preview", output.preview}};
-  for (const auto* view : debug_views_of(output)) files.push_back({"--debug", debug_path(output, *view)});
+  for (const auto* view : debug_views_of(output)) files.push_back({"--set debug", debug_path(output, *view)});
   std::erase_if(files, [](const OutputFile& file) { return file.path.empty(); });
   return files;
 }

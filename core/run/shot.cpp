@@ -59,7 +59,7 @@ void leave_out_hidden(FrameSource& source) {
 std::vector<std::string> other_views_of(const FrameSource& source) {
   std::vector<std::string> views = views_of(source.files[source[RawPlane::depth][0].file]);
   if (views.size() < 2)
-    fail(ErrorKind::input, "{}: it has no other view for --other-views: leave that out", source.depth_path());
+    fail(ErrorKind::input, "{}: it has no other view for --set other-views: leave that out", source.depth_path());
   std::erase_if(views, [&](const std::string& view) { return same_name(view, source.view); });
   return views;
 }
@@ -282,7 +282,7 @@ std::optional<std::vector<std::uint8_t>> SharedFrames::moving_by_vectors(gpu::Re
   fail(ErrorKind::input,
        "{}: by no reading of its motion vectors does anything stand still as the cameras of frame {} and those beside "
        "it "
-       "say: give other --motion-channels or another --motion-kind, or leave out --motion",
+       "say: give other --set motion-channels or another --set motion-kind, or leave out --motion",
        planes.path, frame);
 }
 
@@ -312,14 +312,15 @@ std::vector<SharedFrames::Judged> SharedFrames::other_views(gpu::Recorder& gpu, 
                                                             Others& others, PreparedOthers& took) const {
   InputSettings input = of_first_surface(plan_.at(frame).input, settled_);
   others.views = other_views_of(target);
-  require_place(target, frame, "--other-views");
+  require_place(target, frame, "--set other-views");
   std::vector<Judged> found;
   for (const auto& view : others.views) {
     input.view = view;
-    const Seen other = prepare(gpu, input, settled_, frame, "--other-views", took);
+    const Seen other = prepare(gpu, input, settled_, frame, "--set other-views", took);
     if (is_same_place(other->camera, target.camera))
       fail(ErrorKind::input,
-           "{}: its views have one camera, and --other-views needs that of each: give a --camera file with \"views\"",
+           "{}: its views have one camera, and --set other-views needs that of each: give a --camera file with "
+           "\"views\"",
            target.depth_path());
     found.push_back({other, movement(judged(gpu, *other, {}, took))});
   }

@@ -168,7 +168,7 @@ void require_buffers_for_others(std::uint64_t most_bytes, const FrameSource& fra
   const auto bytes_of = [&](RawPlane plane) { return sizeof(float) * frame[plane].size() * frame.file_data.pixels(); };
   const std::uint64_t of_depth = bytes_of(RawPlane::depth), of_normals = bytes_of(RawPlane::normal);
   if (std::max(of_depth, of_normals) <= most_bytes) return;
-  const char* const option = settings.other_views ? "--other-views" : "--around";
+  const char* const option = settings.other_views ? "--set other-views" : "--around";
   fail(ErrorKind::device,
        "{}: {} takes frames whole, and {} take a buffer of {} MiB, where the device has {} MiB at most: {}leave {} "
        "out, or use another --device",

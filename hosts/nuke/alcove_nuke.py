@@ -165,7 +165,7 @@ def command_for(read, source, settings):
     frames = numbers_of(settings["frames"])
     command = [program(), "run", source, "-o", output, "--radius", "auto" if radius in ("", "0") else radius,
                "--preset", settings["preset"], "--frames", re.sub(r"[,\s]+", ",", settings["frames"]),
-               "--ao-channels", "rgb", "--progress", "percent"]
+               "--set", "ao-channels=rgb", "--progress", "percent"]
     if settings["camera"] != OF_THE_FILE:
         require_frames_of_the_file(read)
         os.makedirs(os.path.dirname(output) or ".", exist_ok=True)

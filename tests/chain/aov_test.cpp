@@ -89,7 +89,7 @@ TEST_F(Aovs, depth_near_the_eye_keeps_the_digits_that_a_logarithmic_depth_has) {
     expected.push_back(std::expm1(double(z) * std::log1p(kFar)));
   }
   input.write(frame);
-  const Image result = good({"--aov", "depth", "--depth-kind", "log", "--far", "1000", "--log-constant", "1"});
+  const Image result = good({"--aov", "depth", "--depth-kind", "log", "--far", "1000", "--set", "log-constant=1"});
   for (std::size_t i = 0; i < expected.size(); i++) ASSERT_NEAR(result.plane("Z")[i] / expected[i], 1, 1e-6) << i;
 }
 
@@ -112,7 +112,7 @@ TEST_F(Aovs, normals_are_in_world_space_where_the_camera_has_it_else_in_view_spa
   input.write(frame);
   const Image source = read_exr_image(frame);
   for (const char* space : {"auto", "world", "view"}) {
-    const Image result = good({"--aov", "normal", "--aov-space", space});
+    const Image result = good({"--aov", "normal", "--set", std::string("aov-space=") + space});
     EXPECT_EQ(text_in(read_header(ao), "alcove/normal_space"), std::string(space) == "view" ? "view" : "world");
     for (std::size_t i = 0; i < source.data.pixels(); i++) {  // view space: x right, y up (world z), z back (world -y)
       const float up = is_floor(source, i) ? 1 : 0, back = 1 - up;
@@ -128,7 +128,7 @@ TEST_F(Aovs, normals_are_in_world_space_where_the_camera_has_it_else_in_view_spa
   input.write(frame);
   good({"--aov", "normal", "--normal-space", "view"});
   EXPECT_EQ(text_in(read_header(ao), "alcove/normal_space"), "view");
-  EXPECT_EQ(run({"--aov", "normal", "--normal-space", "view", "--aov-space", "world"}).code, 3);
+  EXPECT_EQ(run({"--aov", "normal", "--normal-space", "view", "--set", "aov-space=world"}).code, 3);
 }
 
 TEST_F(Aovs, normals_of_the_sky_are_0) {
@@ -153,9 +153,10 @@ TEST_F(Aovs, only_what_was_asked_for_is_computed) {
 }
 
 TEST_F(Aovs, a_region_holds_what_the_whole_holds_there) {
-  const std::vector<std::string> all{
-      "--aov", "ao,normal,bent-normal,depth,specular-occlusion", "--ao-channels", "rgb", "--multi-bounce", "--albedo",
-      "0.7"};
+  const std::vector<std::string> all{"--aov", "ao,normal,bent-normal,depth,specular-occlusion",
+                                     "--set", "ao-channels=rgb",
+                                     "--set", "multi-bounce=true",
+                                     "--set", "albedo=0.7"};
   const Image whole = good(all);
   auto region = all;
   region.insert(region.end(), {"--roi", "20,10,9,20"});
@@ -200,7 +201,7 @@ TEST_F(Aovs, specular_occlusion_follows_the_roughness) {
 // Colour.
 
 TEST_F(Aovs, rgb_without_multi_bounce_is_the_ao_three_times) {
-  const Image mono = good({}), rgb = good({"--ao-channels", "rgb"});
+  const Image mono = good({}), rgb = good({"--set", "ao-channels=rgb"});
   EXPECT_THAT(channels(), ElementsAre(HeaderChannel{"B", 1}, HeaderChannel{"G", 1}, HeaderChannel{"R", 1}));
   for (const char* name : {"R", "G", "B"}) EXPECT_TRUE(std::ranges::equal(rgb.plane(name), mono.plane("Y"))) << name;
 }
@@ -221,34 +222,41 @@ TEST_F(Aovs, multi_bounce_takes_the_albedo_from_a_number_a_file_or_the_frame) {
   colors.write(other);
   const auto expect_albedo = [&](const std::vector<std::string>& more,
                                  const std::function<double(const std::string&, std::size_t)>& albedo) {
-    std::vector<std::string> arguments{"--ao-channels", "rgb", "--multi-bounce", "--type", "float"};
+    std::vector<std::string> arguments{"--set", "ao-channels=rgb", "--set", "multi-bounce=true", "--type", "float"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     const Image rgb = good(arguments);
     for (const std::string c : {"R", "G", "B"})
       for (std::size_t i = 0; i < mono.data.pixels(); i++)
         ASSERT_NEAR(rgb.plane(c)[i], bounced(mono.plane("Y")[i], albedo(c, i)), 1e-5) << c << i;
   };
-  expect_albedo({"--albedo", "0.8"}, [](const std::string&, std::size_t) { return 0.8; });
-  expect_albedo({"--albedo", other}, [&](const std::string& c, std::size_t i) { return colors.planes[c][i]; });
+  expect_albedo({"--set", "albedo=0.8"}, [](const std::string&, std::size_t) { return 0.8; });
+  expect_albedo({"--set", std::string("albedo=") + other},
+                [&](const std::string& c, std::size_t i) { return colors.planes[c][i]; });
   expect_albedo({}, [&](const std::string& c, std::size_t i) { return input.planes["ViewLayer.DiffCol." + c][i]; });
   expect_albedo({"--beauty", frame},
                 [&](const std::string& c, std::size_t i) { return input.planes["ViewLayer.DiffCol." + c][i]; });
-  expect_albedo({"--albedo-channels", "ViewLayer.DiffInd"},
+  expect_albedo({"--set", "albedo-channels=ViewLayer.DiffInd"},
                 [&](const std::string& c, std::size_t i) { return input.planes["ViewLayer.DiffInd." + c][i]; });
 }
 
 TEST_F(Aovs, multi_bounce_says_what_it_lacks) {
-  expect_refused(2, {"--multi-bounce", "--ao-channels rgb", "--composite"}, {"--multi-bounce"});
-  expect_refused(2, {"--albedo", "--multi-bounce"}, {"--albedo", "0.5"});
-  expect_refused(2, {"--albedo", "1.5"}, {"--albedo", "1.5", "--multi-bounce", "--ao-channels", "rgb"});
-  expect_refused(3, {"wall.0042.exr", "--multi-bounce", "--albedo"}, {"--multi-bounce", "--ao-channels", "rgb"});
-  expect_refused(3, {"missing.exr", "--albedo"},
-                 {"--multi-bounce", "--ao-channels", "rgb", "--albedo", folder / "missing.exr"});
-  expect_refused(2, {"overwrite an input"}, {"--multi-bounce", "--ao-channels", "rgb", "--albedo", ao});
+  expect_refused(2, {"--set", "multi-bounce=true", "--set ao-channels=rgb", "--composite"},
+                 {"--set", "multi-bounce=true"});
+  expect_refused(2, {"--set albedo", "--set multi-bounce"}, {"--set", "albedo=0.5"});
+  expect_refused(2, {"--set", "albedo=1.5"},
+                 {"--set", "albedo=1.5", "--set", "multi-bounce=true", "--set", "ao-channels=rgb"});
+  expect_refused(3, {"wall.0042.exr", "--set", "multi-bounce=true", "--set albedo"},
+                 {"--set", "multi-bounce=true", "--set", "ao-channels=rgb"});
+  expect_refused(3, {"missing.exr", "--set albedo"},
+                 {"--set", "multi-bounce=true", "--set", "ao-channels=rgb", "--set",
+                  std::string("albedo=") + folder / "missing.exr"});
+  expect_refused(2, {"overwrite an input"},
+                 {"--set", "multi-bounce=true", "--set", "ao-channels=rgb", "--set", std::string("albedo=") + ao});
   add_beauty(input);
   for (const char* c : {"R", "G", "B"}) input.planes.erase("ViewLayer.DiffInd." + std::string(c));
   input.write(frame);
-  expect_refused(3, {"--multi-bounce", "indirect"}, {"--multi-bounce", "--albedo", "0.5", "--composite", composite});
+  expect_refused(3, {"--set", "multi-bounce=true", "indirect"},
+                 {"--set", "multi-bounce=true", "--set", "albedo=0.5", "--composite", composite});
 }
 
 TEST_F(Aovs, composite_dims_each_colour_of_the_indirect_light_by_its_own_ao_and_less_through_fog) {
@@ -257,8 +265,8 @@ TEST_F(Aovs, composite_dims_each_colour_of_the_indirect_light_by_its_own_ao_and_
   const Image source = read_exr_image(frame);
   const auto in = [&](const std::string& name, std::size_t i) { return double(source.plane("ViewLayer." + name)[i]); };
   for (const double density : {0.0, 0.3}) {
-    const Image plain = good({"--type", "float", "--multi-bounce", "--composite", composite, "--fog-density",
-                              std::to_string(density), "--composite-layers", "rgba"});
+    const Image plain = good({"--type", "float", "--set", "multi-bounce=true", "--composite", composite, "--set",
+                              std::string("fog-density=") + std::to_string(density), "--set", "composite-layers=rgba"});
     const Image result = read_exr_image(composite);
     const std::string how = text_in(read_header(composite), "alcove/composite");
     EXPECT_THAT(how, HasSubstr("multi-bounce"));
@@ -275,7 +283,7 @@ TEST_F(Aovs, composite_dims_each_colour_of_the_indirect_light_by_its_own_ao_and_
       }
     }
   }
-  expect_refused(2, {"--fog-density", "--composite"}, {"--fog-density", "0.1"});
+  expect_refused(2, {"--set fog-density", "--composite"}, {"--set", "fog-density=0.1"});
 }
 
 // Material AO and fade.
@@ -288,16 +296,16 @@ TEST_F(Aovs, material_ao_is_multiplied_in_from_a_file_or_a_channel) {
   file.write(other);
   input.planes["ViewLayer.Baked.occ"] = material;
   input.write(frame);
-  for (const auto& how : {std::vector<std::string>{"--material-ao", other},
-                          {"--material-ao", other, "--material-ao-channel", "R"},
-                          {"--material-ao-channel", "ViewLayer.Baked.occ"}}) {
+  for (const auto& how : {std::vector<std::string>{"--set", std::string("material-ao=") + other},
+                          {"--set", std::string("material-ao=") + other, "--set", "material-ao-channel=R"},
+                          {"--set", "material-ao-channel=ViewLayer.Baked.occ"}}) {
     std::vector<std::string> arguments{"--type", "float"};
     arguments.insert(arguments.end(), how.begin(), how.end());
     const Image result = good(arguments);
     for (std::size_t i = 0; i < material.size(); i++)
       ASSERT_EQ(result.plane("Y")[i], plain.plane("Y")[i] * material[i]) << i << testing::PrintToString(how);
   }
-  const Image rounded = good({"--material-ao", other});
+  const Image rounded = good({"--set", std::string("material-ao=") + other});
   for (std::size_t i = 0; i < material.size(); i++)
     ASSERT_NEAR(rounded.plane("Y")[i], plain.plane("Y")[i] * material[i], 0x1p-12) << i;
 }
@@ -308,26 +316,28 @@ TEST_F(Aovs, a_channel_may_serve_two_purposes) {
   auto near = wall_camera();
   write_bytes(camera, near.dump());
   const Image plain = good({"--type", "float"}),
-              result = good({"--type", "float", "--material-ao-channel", "ViewLayer.Depth.Z"});
+              result = good({"--type", "float", "--set", "material-ao-channel=ViewLayer.Depth.Z"});
   for (std::size_t i = 0; i < plain.data.pixels(); i++)
     ASSERT_EQ(result.plane("Y")[i], plain.plane("Y")[i] * input.planes["ViewLayer.Depth.Z"][i]) << i;
 }
 
 TEST_F(Aovs, material_ao_that_does_not_fit_is_refused) {
-  expect_refused(3, {"missing.exr", "--material-ao"}, {"--material-ao", folder / "missing.exr"});
-  expect_refused(3, {"wall.0042.exr", "--material-ao-channel"}, {"--material-ao", frame});
-  expect_refused(3, {"nothing.here", "--material-ao-channel"}, {"--material-ao-channel", "nothing.here"});
-  expect_refused(2, {"overwrite an input"}, {"--material-ao", ao});
+  expect_refused(3, {"missing.exr", "--set material-ao"},
+                 {"--set", std::string("material-ao=") + folder / "missing.exr"});
+  expect_refused(3, {"wall.0042.exr", "--set material-ao-channel"}, {"--set", std::string("material-ao=") + frame});
+  expect_refused(3, {"nothing.here", "--set material-ao-channel"}, {"--set", "material-ao-channel=nothing.here"});
+  expect_refused(2, {"overwrite an input"}, {"--set", std::string("material-ao=") + ao});
   FrameFile small{{0, 0, 8, 8}, {0, 0, 8, 8}, 1, {{"Y", std::vector<float>(64, 1)}}, {}, {}};
   small.write(other);
-  expect_refused(3, {"other.exr", "--material-ao", "8x8", "64x36"}, {"--material-ao", other});
+  expect_refused(3, {"other.exr", "--set material-ao", "8x8", "64x36"}, {"--set", std::string("material-ao=") + other});
 }
 
 TEST_F(Aovs, fade_needs_both_ends_in_order) {
-  expect_refused(2, {"--fade-start", "--fade-end"}, {"--fade-start", "1"});
-  expect_refused(2, {"--fade-start", "--fade-end"}, {"--fade-end", "1"});
-  expect_refused(2, {"--fade-end 2", "--fade-start 2"}, {"--fade-start", "2", "--fade-end", "2"});
-  const Image source = read_exr_image(frame), plain = good({}), result = good({"--fade-start", "4", "--fade-end", "5"});
+  expect_refused(2, {"--set fade-start", "--set fade-end"}, {"--set", "fade-start=1"});
+  expect_refused(2, {"--set fade-start", "--set fade-end"}, {"--set", "fade-end=1"});
+  expect_refused(2, {"--set fade-end=2", "--set fade-start=2"}, {"--set", "fade-start=2", "--set", "fade-end=2"});
+  const Image source = read_exr_image(frame), plain = good({}),
+              result = good({"--set", "fade-start=4", "--set", "fade-end=5"});
   int changed = 0;
   for (std::size_t i = 0; i < source.data.pixels(); i++) {
     const float z = source.plane("ViewLayer.Depth.Z")[i];
@@ -347,18 +357,18 @@ TEST(Digest, changes_with_every_setting_of_what_comes_out) {
   };
   const std::pair<const char*, std::function<void(Settings&)>> changes[] = {
       {"--aov", [](Settings& s) { s.output.aovs = "ao,depth"; }},
-      {"--ao-channels", [](Settings& s) { s.output.ao_channels = AoChannels::rgb; }},
-      {"--aov-space", [](Settings& s) { s.output.aov_space = NormalSpace::view; }},
-      {"--multi-bounce", [](Settings& s) { s.output.multi_bounce = true; }},
-      {"--fog-density", [](Settings& s) { s.output.look.fog_density = 0.1; }},
-      {"--fade-start", [](Settings& s) { s.estimator.fade_start = 0; }},
-      {"--fade-end", [](Settings& s) { s.estimator.fade_end = 1; }},
+      {"--set ao-channels", [](Settings& s) { s.output.ao_channels = AoChannels::rgb; }},
+      {"--set aov-space", [](Settings& s) { s.output.aov_space = NormalSpace::view; }},
+      {"--set multi-bounce", [](Settings& s) { s.output.multi_bounce = true; }},
+      {"--set fog-density", [](Settings& s) { s.output.look.fog_density = 0.1; }},
+      {"--set fade-start", [](Settings& s) { s.estimator.fade_start = 0; }},
+      {"--set fade-end", [](Settings& s) { s.estimator.fade_end = 1; }},
       {"--roughness", [](Settings& s) { s.estimator.roughness = 0.1; }},
-      {"--albedo", [](Settings& s) { s.input.albedo = "a.exr"; }},
-      {"--albedo 0", [](Settings& s) { s.input.albedo_value = 0; }},
-      {"--albedo-channels", [](Settings& s) { s.input.albedo_channels = "a"; }},
-      {"--material-ao", [](Settings& s) { s.input.material_ao = "a.exr"; }},
-      {"--material-ao-channel", [](Settings& s) { s.input.material_ao_channel = "a"; }},
+      {"--set albedo", [](Settings& s) { s.input.albedo = "a.exr"; }},
+      {"--set albedo 0", [](Settings& s) { s.input.albedo_value = 0; }},
+      {"--set albedo-channels", [](Settings& s) { s.input.albedo_channels = "a"; }},
+      {"--set material-ao", [](Settings& s) { s.input.material_ao = "a.exr"; }},
+      {"--set material-ao-channel", [](Settings& s) { s.input.material_ao_channel = "a"; }},
   };
   const std::string plain = digest([](Settings&) {});
   for (const auto& [option, change] : changes) EXPECT_NE(digest(change), plain) << option;

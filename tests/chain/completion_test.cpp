@@ -360,10 +360,10 @@ class CompletionStats : public CommandLine {
 
 TEST_F(CompletionStats, are_there_wherever_ao_is_and_0_where_nothing_is_completed) {
   for (const std::vector<std::string>& settings :
-       {std::vector<std::string>{"--complete", "none"}, {"--estimator", "hbao"}, {"--estimator", "crytek"}})
+       {std::vector<std::string>{"--set", "complete=none"}, {"--estimator", "hbao"}, {"--estimator", "crytek"}})
     EXPECT_EQ(stats_of(settings).at("completed"), 0) << testing::PrintToString(settings);
   for (const std::vector<std::string>& settings :
-       {std::vector<std::string>{}, {"--complete", "border"}, {"--resolution", "half"}, {"--search", "exact"}}) {
+       {std::vector<std::string>{}, {"--set", "complete=border"}, {"--resolution", "half"}, {"--search", "exact"}}) {
     const json share = stats_of(settings).at("completed");
     EXPECT_TRUE(share.is_number() && share >= 0 && share <= 1) << share << testing::PrintToString(settings);
   }
@@ -389,18 +389,18 @@ TEST_F(CompletionStats, are_in_no_log_that_nobody_made_them_for) {
 TEST_F(CompletionStats, and_views_change_no_bit_of_the_ao) {
   ASSERT_EQ(run({}).code, 0);
   const std::string before = read_bytes(ao);
-  stats_of({"--debug", "completed"});
+  stats_of({"--set", "debug=completed"});
   EXPECT_TRUE(read_bytes(ao) == before);
 }
 
 TEST_F(CompletionStats, of_a_view_without_any_are_refused) {
   const std::pair<std::vector<std::string>, std::vector<std::string>> cases[] = {
-      {{"--complete", "none"}, {"--debug completed", "--complete none", "border"}},
-      {{"--estimator", "hbao"}, {"--debug completed", "--estimator hbao", "gtao and bitmask"}},
-      {{"--estimator", "crytek"}, {"--debug completed", "--estimator crytek", "gtao and bitmask"}},
+      {{"--set", "complete=none"}, {"--set debug=completed", "--set complete=none", "border"}},
+      {{"--estimator", "hbao"}, {"--set debug=completed", "--estimator hbao", "gtao and bitmask"}},
+      {{"--estimator", "crytek"}, {"--set debug=completed", "--estimator crytek", "gtao and bitmask"}},
   };
   for (auto [settings, words] : cases) {
-    settings.insert(settings.end(), {"--debug", "completed"});
+    settings.insert(settings.end(), {"--set", "debug=completed"});
     const Finished finished = run(settings);
     EXPECT_EQ(finished.code, 2) << finished;
     for (const auto& word : words) EXPECT_THAT(finished.err, HasSubstr(word));

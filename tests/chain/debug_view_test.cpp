@@ -44,7 +44,7 @@ std::string all_names() { return fmt::format("{}", fmt::join(names_of_one_frame(
 class DebugViews : public CommandLine {
  protected:
   Image view(const std::string& name, std::vector<std::string> more = {}) {
-    more.insert(more.end(), {"--debug", name});
+    more.insert(more.end(), {"--set", std::string("debug=") + name});
     const Finished finished = run(more);
     EXPECT_EQ(finished.code, 0) << finished;
     return written(name);
@@ -61,7 +61,7 @@ class DebugViews : public CommandLine {
     FrameFile layer;
     layer.planes["Z"] = std::vector<float>(layer.data.pixels(), 9);
     layer.write(folder / "layer.exr");
-    return {"--debug", all_names(), "--behind", folder / "layer.exr"};
+    return {"--set", std::string("debug=") + all_names(), "--behind", folder / "layer.exr"};
   }
 
   void expect_refused(int code, const std::vector<std::string>& words, const std::vector<std::string>& more) {
@@ -104,7 +104,7 @@ TEST_F(DebugViews, sky_has_a_colour_that_no_number_has) {
 }
 
 TEST_F(DebugViews, raw_ao_is_grey_as_the_ao_is_before_shaping) {
-  const Image picture = view("raw-ao", {"--power", "3", "--stride", "1"});
+  const Image picture = view("raw-ao", {"--set", "power=3", "--set", "stride=1"});
   ASSERT_EQ(run({"--type", "float", "--denoise", "none"}).code, 0);
   const Image plain = read_exr_image(ao);
   for (int y = 0; y < 36; y++)
@@ -168,7 +168,7 @@ TEST_F(DebugViews, view_normal_z_shows_the_wall_facing_and_the_floor_across) {
 }
 
 TEST_F(DebugViews, without_ao_only_its_own_passes_run) {
-  ASSERT_EQ(run({"--aov", "depth", "--debug", "edges", "--stats", folder / "stats.json"}).code, 0);
+  ASSERT_EQ(run({"--aov", "depth", "--set", "debug=edges", "--stats", folder / "stats.json"}).code, 0);
   const auto stats = nlohmann::json::parse(read_bytes(folder / "stats.json"));
   std::vector<std::string> names;
   for (const auto& pass : stats.at("frames")[0].at("passes")) names.push_back(pass.at("name"));
@@ -176,20 +176,21 @@ TEST_F(DebugViews, without_ao_only_its_own_passes_run) {
 }
 
 TEST_F(DebugViews, what_cannot_be_shown_or_written_is_refused_before_any_work) {
-  expect_refused(2, {"--debug", "did you mean edges?", "raw-depth, linear-depth"}, {"--debug", "edgse"});
-  expect_refused(2, {"--debug", "raw-depth"}, {"--debug", "raw-depth,"});
-  expect_refused(2, {"--debug", "--preview", "same file"}, {"--debug", "edges", "--preview", folder / "ao.edges.png"});
+  expect_refused(2, {"--set debug", "did you mean edges?", "raw-depth, linear-depth"}, {"--set", "debug=edgse"});
+  expect_refused(2, {"--set", "debug=raw-depth"}, {"--set", "debug=raw-depth,"});
+  expect_refused(2, {"--set debug", "--preview", "same file"},
+                 {"--set", "debug=edges", "--preview", folder / "ao.edges.png"});
   FrameFile input = wall_frame();
   std::erase_if(input.planes, [](const auto& plane) { return plane.first.find("Normal") != plane.first.npos; });
   input.write(frame);
-  expect_refused(3, {"wall.0042.exr", "--debug reconstruction", "--normal"}, {"--debug", "reconstruction"});
+  expect_refused(3, {"wall.0042.exr", "--set debug=reconstruction", "--normal"}, {"--set", "debug=reconstruction"});
   for (const char* c : {"X", "Y", "Z"})
     input.planes["ViewLayer.Position." + std::string(c)] = input.planes["ViewLayer.Depth.Z"];
   input.write(frame);
-  expect_refused(3, {"wall.0042.exr", "--debug raw-depth", "--depth-channel"},
-                 {"--debug", "raw-depth", "--position-channels", "ViewLayer.Position", "--depth-kind", "position"});
+  expect_refused(3, {"wall.0042.exr", "--set debug=raw-depth", "--depth-channel"},
+                 {"--set", "debug=raw-depth", "--position-channels", "ViewLayer.Position", "--depth-kind", "position"});
   std::filesystem::create_directory(folder / "ao.edges.png");
-  expect_refused(4, {"ao.edges.png", "--debug"}, {"--debug", "edges"});
+  expect_refused(4, {"ao.edges.png", "--set debug"}, {"--set", "debug=edges"});
 }
 
 }  // namespace

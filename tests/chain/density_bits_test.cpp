@@ -252,8 +252,9 @@ RunReport run_with(const std::vector<std::string>& arguments, std::uint64_t byte
 }
 
 TEST_F(DensityOfFiles, in_tiles_is_that_of_the_whole) {
-  std::vector<std::string> arguments{input(1), "-o",     output(1), "--camera",    camera,    "--radius",
-                                     "0.1",    "--type", "float",   "--overwrite", "--stats", folder / "stats.json"};
+  std::vector<std::string> arguments{
+      input(1), "-o",    output(1), "--camera",       camera,    "--radius",           "0.1",
+      "--type", "float", "--set",   "overwrite=true", "--stats", folder / "stats.json"};
   if (const char* device = std::getenv("ALCOVE_TEST_DEVICE"); device && *device)
     arguments.insert(arguments.end(), {"--device", device});
   ASSERT_EQ(run_with(arguments, 0).done, 1);

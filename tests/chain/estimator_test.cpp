@@ -392,9 +392,9 @@ TEST(EstimatorOptions, refuses_a_sine_of_one_and_more_as_a_bias) {
   const std::string frame = ALCOVE_SOURCE_DIR "/examples/bench/machine.";
   const test::Finished finished =
       test::run_program({"run", frame + "gbuffer.exr", "--camera", frame + "camera.json", "--radius", "1",
-                         "--estimator", "hbao", "--bias", "1", "-o", folder / "ao.exr"});
+                         "--estimator", "hbao", "--set", "bias=1", "-o", folder / "ao.exr"});
   EXPECT_EQ(finished.code, 2) << finished;
-  EXPECT_NE(finished.err.find("--bias"), std::string::npos) << finished;
+  EXPECT_NE(finished.err.find("--set bias"), std::string::npos) << finished;
 }
 
 // Both, whatever the variant.

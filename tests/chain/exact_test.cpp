@@ -413,7 +413,7 @@ TEST_F(CommandLine, a_surface_goes_on_into_a_region_from_far_beyond_its_reach) {
   ASSERT_EQ(run_program(arguments).code, 0);
   const Image whole = read_exr_image(ao);
   const std::vector<float> part = cropped(whole.pixels, whole.data, region);
-  arguments.insert(arguments.end(), {"--complete", "border"});
+  arguments.insert(arguments.end(), {"--set", "complete=border"});
   ASSERT_EQ(run_program(arguments).code, 0);
   EXPECT_FALSE(same_bits(read_exr_image(ao).pixels, whole.pixels));
   arguments.back() = "all";
@@ -424,7 +424,7 @@ TEST_F(CommandLine, a_surface_goes_on_into_a_region_from_far_beyond_its_reach) {
 
 TEST_F(CommandLine, an_exact_search_refuses_what_it_cannot_do) {
   const std::pair<std::vector<std::string>, const char*> cases[] = {{{"--falloff", "linear"}, "--falloff"},
-                                                                    {{"--stride", "4"}, "--stride"}};
+                                                                    {{"--set", "stride=4"}, "--set stride"}};
   for (const auto& [more, named] : cases) {
     std::vector<std::string> options{"--search", "exact"};
     options.insert(options.end(), more.begin(), more.end());

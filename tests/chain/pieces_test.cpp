@@ -401,9 +401,9 @@ TEST_F(PiecesOfFiles, of_a_region_are_those_of_the_whole_where_normals_come_from
   barred.write(frame);
   write_bytes(camera, wall_camera(display).dump());
   for (const char* estimator : {"gtao", "bitmask"}) {
-    std::vector<std::string> arguments{"run",         frame,     "-o",         ao,         "--camera",
-                                       camera,        "--type",  "float",      "--radius", "0.6",
-                                       "--estimator", estimator, "--complete", "none"};
+    std::vector<std::string> arguments{"run",    frame,          "-o",       ao,    "--camera",    camera,
+                                       "--type", "float",        "--radius", "0.6", "--estimator", estimator,
+                                       "--set",  "complete=none"};
     ASSERT_EQ(run_program(arguments).code, 0);
     const Image none = read_exr_image(ao);
     arguments.back() = "all";

@@ -321,7 +321,7 @@ TEST_F(ReuseOfFrames, equal_frames_are_computed_once_a_thread) {
     EXPECT_EQ(frames[i]["tiles"]["total"], frames[0]["tiles"]["total"]);
   }
   const auto reused = outputs();
-  ASSERT_EQ(run({"--threads", "1", "--no-skip", "--overwrite", "--stats", path}).code, 0);
+  ASSERT_EQ(run({"--threads", "1", "--no-skip", "--set", "overwrite=true", "--stats", path}).code, 0);
   const json computed = stats(path);
   for (const auto& frame : computed["frames"]) EXPECT_FALSE(frame["passes"].empty());
   EXPECT_EQ(reused.size(), 6);
@@ -374,7 +374,7 @@ TEST_F(ReuseOfFrames, other_light_over_the_same_surfaces_is_composed_anew) {
               testing::ElementsAre(testing::Gt(0), testing::Gt(0), 0, testing::Gt(0), testing::Gt(0), testing::Gt(0)));
   const auto reused = outputs();
   std::vector<std::string> without = options;
-  without.insert(without.end(), {"--no-skip", "--overwrite"});
+  without.insert(without.end(), {"--no-skip", "--set", "overwrite=true"});
   ASSERT_EQ(run(without).code, 0);
   ASSERT_EQ(reused.size(), 12);
   for (const auto& [name, bytes] : outputs()) EXPECT_TRUE(reused.at(name) == bytes) << name;
@@ -392,8 +392,8 @@ TEST_F(ReuseOfFrames, a_camera_that_turns_turns_the_directions) {
   write_bytes(camera, cameras.dump());
   for (const std::string space : {"world", "view"}) {
     if (space == "view") write_with_view_normals(1, 4);
-    const std::vector<std::string> options{
-        "--aov", "ao,normal,bent-normal", "--normal-space", space, "--threads", "1", "--overwrite"};
+    const std::vector<std::string> options{"--aov", "ao,normal,bent-normal", "--normal-space", space, "--threads", "1",
+                                           "--set", "overwrite=true"};
     ASSERT_EQ(run(options).code, 0);
     const auto reused = outputs();
     std::vector<std::string> without = options;

@@ -249,7 +249,7 @@ TEST_F(ScaleFiles, count_in_digest_and_statistics) {
   EXPECT_NE(digest({1, 2}), digest({12}));
   EXPECT_EQ(digest({1, 2}), digest({2, 1}));
   const std::string stats = folder / "stats.json";
-  good({"--radius", "1", "--radius", "2", "--slices", "2", "--steps", "5", "--stride", "1", "--stats", stats});
+  good({"--radius", "1", "--radius", "2", "--slices", "2", "--steps", "5", "--set", "stride=1", "--stats", stats});
   EXPECT_NEAR(nlohmann::json::parse(read_bytes(stats)).at("frames")[0].at("samples_per_pixel").get<double>(),
               2 * 2 * 2 * 5, 1e-9);
 }

@@ -110,14 +110,14 @@ TEST_F(Options, refuse_what_hidden_surfaces_cannot_be) {
   EXPECT_THAT(refusal("--behind-kind", {"fronts,back"}), HasSubstr("--behind-kind: back is none of"));
   EXPECT_THAT(refusal("--around", {"33"}), HasSubstr("neither all nor a whole number from 0 to 32"));
   for (const char* length : {"-1", "inf", "nan", "near"})
-    EXPECT_THAT(refusal("--separation", {length}), HasSubstr("neither auto nor a length")) << length;
-  EXPECT_THAT(refusal("--hidden", {"4"}), HasSubstr("out of range: 0 to 3"));
+    EXPECT_THAT(refusal("--set separation", {length}), HasSubstr("neither auto nor a length")) << length;
+  EXPECT_THAT(refusal("--set hidden", {"4"}), HasSubstr("out of range: 0 to 3"));
   read("--around", {"ALL"});
   EXPECT_TRUE(options.settings.input.around_all);
   read("--around", {"4"});
   EXPECT_FALSE(options.settings.input.around_all);
-  read("--separation", {"0.5"});
-  read("--separation", {"auto"});
+  read("--set separation", {"0.5"});
+  read("--set separation", {"auto"});
   EXPECT_FALSE(options.settings.estimator.separation);
 }
 
@@ -162,10 +162,10 @@ TEST_F(Options, that_change_no_pixels_are_these_and_not_in_the_digest) {
     names.push_back(row.long_name());
   });
   EXPECT_THAT(names,
-              ElementsAre("--strict", "--frames", "--output-offset", "--chunk", "--missing", "--keep-going",
-                          "--warnings-as-errors", "--resume", "--overwrite", "--dry-run", "--preset", "--no-skip",
-                          "--output", "--composite", "--preview", "--debug", "--compression", "--no-mkdir", "--device",
-                          "--require-gpu", "--validate", "--no-pipeline-cache", "--memory", "--threads", "--stats",
+              ElementsAre("--strict", "--frames", "--set output-offset", "--chunk", "--set missing", "--keep-going",
+                          "--set warnings-as-errors", "--resume", "--set overwrite", "--dry-run", "--preset", "--set", "--no-skip",
+                          "--output", "--composite", "--preview", "--set debug", "--set compression", "--set no-mkdir", "--device",
+                          "--set require-gpu", "--validate", "--set no-pipeline-cache", "--memory", "--threads", "--stats",
                           "--progress", "--log-json", "--verbose", "--quiet", "--print-config"))
       << "whoever adds to this list says that the pixels come out the same";
 }
@@ -330,15 +330,15 @@ class Previews : public CommandLine {
 };
 
 TEST_F(Previews, are_made_again_for_another_configuration_of_the_display) {
-  const Words by_half{shown[0], shown[1], "--ocio", half};
-  const Words by_quarter{shown[0], shown[1], "--ocio", quarter};
+  const Words by_half{shown[0], shown[1], "--set", "ocio=" + half};
+  const Words by_quarter{shown[0], shown[1], "--set", "ocio=" + quarter};
   const std::string halved = preview_of(by_half);
   EXPECT_EQ(preview_of(by_half), halved);
   EXPECT_TRUE(is_kept);
   const std::string quartered = preview_of(by_quarter);
-  EXPECT_NE(quartered, halved) << "--ocio";
+  EXPECT_NE(quartered, halved) << "another configuration";
   EXPECT_EQ(preview_of(shown, quarter), quartered);
-  EXPECT_TRUE(is_kept) << "the variable OCIO says what --ocio said";
+  EXPECT_TRUE(is_kept) << "the variable OCIO says what ocio said";
   EXPECT_NE(preview_of(shown, half), quartered) << "the variable OCIO";
   EXPECT_NE(preview_of(shown), halved) << "the built-in configuration";
   write_bytes(half, display_config("0.25"));

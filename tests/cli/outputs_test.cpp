@@ -65,12 +65,12 @@ TEST_F(CommandLine, ao_is_open_above_and_dark_in_the_corner_whatever_the_data_wi
 }
 
 TEST_F(CommandLine, type_and_compression_are_as_asked) {
-  ASSERT_EQ(run({"--type", "float", "--compression", "none"}).code, 0);
+  ASSERT_EQ(run({"--type", "float", "--set", "compression=none"}).code, 0);
   ExrHeader header = read_header(ao);
   EXPECT_THAT(channels_in(header), ElementsAre(HeaderChannel{"Y", 2}));
   EXPECT_EQ(header["compression"].bytes, std::string(1, 0));
   const Image exact = read_exr_image(ao);
-  ASSERT_EQ(run({"--compression", "piz"}).code, 0);
+  ASSERT_EQ(run({"--set", "compression=piz"}).code, 0);
   EXPECT_EQ(read_header(ao)["compression"].bytes, std::string(1, 4));
   const Image rounded = read_exr_image(ao);
   for (std::size_t i = 0; i < exact.pixels.size(); i++) ASSERT_NEAR(rounded.pixels[i], exact.pixels[i], 0x1p-12) << i;
@@ -105,8 +105,8 @@ class Composites : public CommandLine {
   Composite compute(const FrameFile& input, std::vector<std::string> more = {}) {
     input.write(frame);
     const std::string composite = folder / "composite.exr";
-    more.insert(more.end(),
-                {"--composite-layers", "rgba", "--composite", composite, "--type", "float", "--compression", "none"});
+    more.insert(more.end(), {"--set", "composite-layers=rgba", "--composite", composite, "--type", "float", "--set",
+                             "compression=none"});
     const Finished finished = run(more);
     EXPECT_EQ(finished.code, 0) << finished;
     return {read_exr_image(frame), read_exr_image(ao), read_exr_image(composite)};
@@ -178,7 +178,7 @@ TEST_F(Composites, beauty_of_its_own_file_keeps_that_files_attributes) {
   beauty.write(folder / "beauty.exr");
   const std::string composite = folder / "composite.exr";
   const Finished finished =
-      run({"--beauty", folder / "beauty.exr", "--composite", composite, "--composite-layers", "rgba"});
+      run({"--beauty", folder / "beauty.exr", "--composite", composite, "--set", "composite-layers=rgba"});
   ASSERT_EQ(finished.code, 0) << finished;
   EXPECT_EQ(text_in(read_header(composite), "grade"), "none");
   EXPECT_EQ(text_in(read_header(ao), "grade"), "(none)");
@@ -236,8 +236,8 @@ TEST_F(CommandLine, stats_have_the_documented_fields_and_add_up) {
   FrameFile input = wall_frame();
   for (std::size_t i = 0; i < 64; i++) input.planes["ViewLayer.Depth.Z"][i] = 1e10f;  // one line of 36 is sky
   input.write(frame);
-  ASSERT_EQ(run({"--stats", stats_file, "--slices", "2", "--steps", "5", "--stride", "2", "--density", "uniform",
-                 "--power", "1.5"})
+  ASSERT_EQ(run({"--stats", stats_file, "--slices", "2", "--steps", "5", "--set", "stride=2", "--set",
+                 "density=uniform", "--set", "power=1.5"})
                 .code,
             0);
   const json stats = json::parse(read_bytes(stats_file)), one = stats.at("frames").at(0), totals = stats.at("totals");

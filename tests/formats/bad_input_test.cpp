@@ -151,8 +151,8 @@ TEST_F(BadInput, an_unusable_colour_configuration_is_found_before_anything_is_wr
   input.write(frame);
   write_bytes(folder / "text.ocio", "no configuration");
   for (const char* name : {"missing.ocio", "text.ocio"})
-    expect_bad_input(frame, {name, "--ocio"},
-                     {"--composite", composite, "--preview", preview, "--ocio", folder / name});
+    expect_bad_input(frame, {name, "--set ocio"},
+                     {"--composite", composite, "--preview", preview, "--set", std::string("ocio=") + folder / name});
 }
 
 // The camera.
@@ -238,13 +238,14 @@ TEST_F(BadInput, an_output_where_no_file_can_be) {
   const std::string missing = out + "/missing/ao.exr", below_file = ao_out + "/ao.exr";
   for (const std::string& path :
        {missing, below_file, out + "/folder.exr", std::string("/dev/full"), std::string("/dev/null"), out + "/"}) {
-    expect_refused(4, {path, "--output"}, {frame, "-o", path, "--camera", camera, "--radius", "1", "--no-mkdir"});
+    expect_refused(4, {path, "--output"},
+                   {frame, "-o", path, "--camera", camera, "--radius", "1", "--set", "no-mkdir=true"});
     if (path != missing)
       expect_refused(4, {path, "--output"}, {frame, "-o", path, "--camera", camera, "--radius", "1"});
   }
   for (const auto& [option, name] : std::map<std::string, std::string>{
            {"--composite", "/missing/c.exr"}, {"--preview", "/missing/p.png"}, {"--stats", "/missing/s.json"}})
-    expect_refused(4, {out + name, option}, good(frame, {option, out + name, "--no-mkdir"}));
+    expect_refused(4, {out + name, option}, good(frame, {option, out + name, "--set", "no-mkdir=true"}));
   expect_refused(4, {folder / "loop/ao.exr", "--output"},
                  {frame, "-o", folder / "loop/ao.exr", "--stats", folder / "loop/stats.json", "--camera", camera,
                   "--radius", "1"});
@@ -293,7 +294,7 @@ TEST_F(BadInput, a_full_disk) {
     EXPECT_EQ(names_in(disk).size(), fs::exists(disk + "/ballast") ? 5 : 4) << testing::PrintToString(names_in(disk));
     EXPECT_TRUE(read_bytes(disk + name) == kBefore) << name;
   };
-  expect_full("/ao.exr", {"-o", disk + "/ao.exr", "--type", "float", "--compression", "none"});
+  expect_full("/ao.exr", {"-o", disk + "/ao.exr", "--type", "float", "--set", "compression=none"});
   expect_full("/composite.exr", {"-o", folder / "ao.exr", "--composite", disk + "/composite.exr"});
   write_bytes(disk + "/ballast", std::string(44 << 10, 'x'));  // four files take a page each, so one page is left
   expect_full("/preview.png", {"-o", folder / "ao.exr", "--preview", disk + "/preview.png"});
@@ -319,7 +320,8 @@ TEST_F(BadInput, no_vulkan_driver) {
 
 TEST_F(BadInput, a_device_that_is_not_there) {
   const std::string listed = json::parse(run_program({"devices", "--json"}).out)[0]["name"];
-  expect_refused(5, {"--require-gpu", "--device cpu"}, good(frame, {"--device", "cpu", "--require-gpu"}));
+  expect_refused(5, {"--set", "require-gpu=true", "--device cpu"},
+                 good(frame, {"--device", "cpu", "--set", "require-gpu=true"}));
   for (const char* device : {"nosuch", "99", ""})
     expect_refused(5, {"--device", device, listed}, good(frame, {"--device", device}));
 }

@@ -212,7 +212,7 @@ TEST_F(Doubts, options_that_the_kind_of_depth_takes_not_are_refused_and_named) {
   settings.depth_range.device = DeviceRange::minus_one_to_one;
   settings.depth_range.log_constant = 0.5;
   write_depth([](double z) { return z; }, 1e12f);
-  const std::string all = "--near, --far, --reversed-z, --device-range, --log-constant";
+  const std::string all = "--near, --far, --reversed-z, --set device-range, --set log-constant";
   expect_refused(ErrorKind::usage, {settings.input, all, "planar", "--depth-kind"});
   settings.depth_range = {};
   settings.depth_range.near = 0.1;

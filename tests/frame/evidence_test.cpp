@@ -132,7 +132,7 @@ TEST_F(Evidence, positions_that_are_not_on_their_pixels_are_refused) {
   file.write(settings.input);
   EXPECT_EQ(settled().position_space, PositionSpace::world);
   settings.position_space = PositionSpace::view;
-  expect_refused({"frame.exr", "pixels", "--position-space", "--camera"});
+  expect_refused({"frame.exr", "pixels", "--set position-space", "--camera"});
 }
 
 TEST_F(Evidence, finds_the_space_and_the_flips_of_normals) {

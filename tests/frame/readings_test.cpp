@@ -195,13 +195,13 @@ TEST_F(Readings, between_wrong_planes_are_noted) {
   EXPECT_THAT(said(), testing::Contains(HasSubstr("--far"))) << "of device depth";
   say(device);
   settings.depth_range.device = DeviceRange::minus_one_to_one;
-  EXPECT_THAT(said(), testing::Contains(HasSubstr("--device-range"))) << "0..1 as -1..1";
+  EXPECT_THAT(said(), testing::Contains(HasSubstr("--set device-range"))) << "0..1 as -1..1";
   const Written gl{DepthKind::device, false,
                    [](double z, double) { return 2 * (1 / 2.9 - 1 / z) / (1 / 2.9 - 1 / kFar) - 1; }, 1};
   write(gl);
   say(gl);
   settings.depth_range.near = 2.9;
-  EXPECT_THAT(said(), testing::Contains(HasSubstr("--device-range"))) << "-1..1 as 0..1";
+  EXPECT_THAT(said(), testing::Contains(HasSubstr("--set device-range"))) << "-1..1 as 0..1";
   settings.depth_range.device = DeviceRange::minus_one_to_one;
   EXPECT_THAT(said(), testing::IsEmpty());
   write(all_depths()[5]);

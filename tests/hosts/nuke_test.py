@@ -311,7 +311,7 @@ class Script(camera_facts.CameraFacts, unittest.TestCase):
         # It is what the command line gives with the frame's own camera file.
         theirs = self.folder / "theirs.exr"
         subprocess.run([PROGRAM, "run", FRAME, "-o", theirs, "--camera", CAMERA, "--radius", "0.35", "--preset", "draft", "-q",
-                        "--ao-channels", "rgb", *QUICK.split()], check=True)
+                        "--set", "ao-channels=rgb", *QUICK.split()], check=True)
         for frame in (3, 5):
             measured = json.loads(subprocess.run([PROGRAM, "compare", self.folder / ("ao/shot.%04d.exr" % frame), theirs, "--json"],
                                                  capture_output=True, check=True).stdout)
@@ -397,7 +397,7 @@ class Script(camera_facts.CameraFacts, unittest.TestCase):
         words = self.command(read_node("a.####.exr", 1, 9), frames="1-5x2, 9", options="--normal none --beauty 'a b.exr'")
         cameras = str(self.folder / "ao/a.camera.json")
         self.assertEqual(words, [PROGRAM, "run", "a.####.exr", "-o", str(self.folder / "ao/a_%04d.exr"), "--radius", "auto", "--preset", "standard",
-                                 "--frames", "1-5x2,9", "--ao-channels", "rgb", "--progress", "percent", "--camera", cameras,
+                                 "--frames", "1-5x2,9", "--set", "ao-channels=rgb", "--progress", "percent", "--camera", cameras,
                                  "--normal", "none", "--beauty", "a b.exr"])
         self.assertEqual([entry["frame"] for entry in self.entries(cameras)], [1, 3, 5, 9])
         self.assertNotIn("--camera", self.command(read_node("a.####.exr", 1, 9), camera="file"))

@@ -82,7 +82,7 @@ class Arrays(unittest.TestCase):
         cls.kept = tempfile.TemporaryDirectory(prefix="alcove-arrays-")
         cls.folder = pathlib.Path(cls.kept.name)
         # The shipped frame as the program reads it.
-        planes = cls.program(FRAME, "--camera", CAMERA, "--aov", "depth,normal", "--aov-space", "world")
+        planes = cls.program(FRAME, "--camera", CAMERA, "--aov", "depth,normal", "--set", "aov-space=world")
         cls.depth = planes["Z"]
         cls.normal = numpy.stack([planes["normal." + axis] for axis in "XYZ"], axis=-1)
         cls.frame = cls.folder / "shot.0007.exr"
@@ -99,7 +99,7 @@ class Arrays(unittest.TestCase):
     @classmethod
     def program(cls, *words):
         made = cls.folder / "made.exr"
-        done = subprocess.run([PROGRAM, "run", *map(str, words), "-o", str(made), "--type", "float", "--compression", "none", "-q"],
+        done = subprocess.run([PROGRAM, "run", *map(str, words), "-o", str(made), "--type", "float", "--set", "compression=none", "-q"],
                               capture_output=True, text=True, check=False)
         assert done.returncode == 0, done.stderr
         return read_exr(made)

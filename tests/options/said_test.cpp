@@ -1,4 +1,4 @@
-// What presets and the command line say to settings: options that do not apply, and options that contradict each other.
+// What presets and the command line say to settings: what has no effect, alone or beside another one.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/options/said.h"
 
@@ -22,26 +22,29 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 
 /// Words to be typed; a first one is the option that the case is about.
-struct ConditionCase {
-  std::vector<Words> refused;  // for each condition of the row one that breaks it
+struct Case {
+  std::vector<Words> refused;  // for each reason of the row one that it holds for
   Words taken;
 };
 
-/// A case for every row of the table that has a condition.
-const std::map<std::string, ConditionCase>& condition_cases() {
+/// A case for every setting that may have no effect, but for those of pairs().
+const std::map<std::string, Case>& cases_without_effect() {
   static const Words exact{"--search", "exact"}, by_error{"--tolerance", "0.1"}, crytek{"--estimator", "crytek"};
   static const auto with = [](Words words, const Words& more) {
     words.insert(words.end(), more.begin(), more.end());
     return words;
   };
-  static const std::map<std::string, ConditionCase> cases{
+  static const std::map<std::string, Case> cases{
       {"--beauty", {{{"--beauty", "b.exr"}}, {"--beauty", "b.exr", "--composite", "c.exr"}}},
-      {"--albedo", {{{"--albedo", "0.5"}}, {"--albedo", "0.5", "--multi-bounce", "--ao-channels", "rgb"}}},
-      {"--beauty-channels", {{{"--beauty-channels", "b"}}, {"--beauty-channels", "b", "--composite", "c.exr"}}},
-      {"--albedo-channels",
-       {{{"--albedo-channels", "d"},
-         {"--albedo-channels", "d", "--albedo", "0.5", "--multi-bounce", "--ao-channels", "rgb"}},
-        {"--albedo-channels", "d", "--multi-bounce", "--ao-channels", "rgb"}}},
+      {"--set albedo",
+       {{{"--set", "albedo=0.5"}}, {"--set", "albedo=0.5", "--set", "multi-bounce=true", "--set", "ao-channels=rgb"}}},
+      {"--set beauty-channels",
+       {{{"--set", "beauty-channels=b"}}, {"--set", "beauty-channels=b", "--composite", "c.exr"}}},
+      {"--set albedo-channels",
+       {{{"--set", "albedo-channels=d"},
+         {"--set", "albedo-channels=d", "--set", "albedo=0.5", "--set", "multi-bounce=true", "--set",
+          "ao-channels=rgb"}},
+        {"--set", "albedo-channels=d", "--set", "multi-bounce=true", "--set", "ao-channels=rgb"}}},
       {"--depth-kind",
        {{{"--depth-kind", "planar", "--position", "p.exr"}}, {"--depth-kind", "position", "--position", "p.exr"}}},
       {"--depth-channel", {{{"--depth-channel", "Z", "--depth-kind", "position"}}, {"--depth-channel", "Z"}}},
@@ -50,12 +53,14 @@ const std::map<std::string, ConditionCase>& condition_cases() {
         {"--near", "1", "--source", "octane", "--camera", "says.json"}}},
       {"--far", {{{"--far", "9", "--position-channels", "P"}}, {"--far", "9"}}},
       {"--reversed-z", {{{"--reversed-z", "--depth-kind", "ray"}}, {"--reversed-z", "--depth-kind", "log"}}},
-      {"--device-range",
-       {{{"--device-range", "-1..1", "--depth-kind", "log"}}, {"--device-range", "-1..1", "--depth-kind", "device"}}},
-      {"--log-constant",
-       {{{"--log-constant", "2", "--depth-kind", "device"}}, {"--log-constant", "2", "--depth-kind", "auto"}}},
-      {"--position-space",
-       {{{"--position-space", "view", "--depth-kind", "planar"}}, {"--position-space", "view", "--position", "p.exr"}}},
+      {"--set device-range",
+       {{{"--set", "device-range=-1..1", "--depth-kind", "log"}},
+        {"--set", "device-range=-1..1", "--depth-kind", "device"}}},
+      {"--set log-constant",
+       {{{"--set", "log-constant=2", "--depth-kind", "device"}}, {"--set", "log-constant=2", "--depth-kind", "auto"}}},
+      {"--set position-space",
+       {{{"--set", "position-space=view", "--depth-kind", "planar"}},
+        {"--set", "position-space=view", "--position", "p.exr"}}},
       {"--focal", {{{"--focal", "35"}}, {"--focal", "35", "--aperture", "36"}}},
       {"--normal-channels", {{{"--normal-channels", "N", "--normal", "none"}}, {"--normal-channels", "N"}}},
       {"--normal-space", {{{"--normal-space", "view", "--normal", "none"}}, {"--normal-space", "view"}}},
@@ -63,34 +68,39 @@ const std::map<std::string, ConditionCase>& condition_cases() {
       {"--flip-normal", {{{"--flip-normal", "y", "--normal", "none"}}, {"--flip-normal", "y", "--normal", "n.exr"}}},
       {"--aperture", {{{"--aperture", "36"}}, {"--aperture", "36", "--focal", "35"}}},
       {"--behind", {{with({"--behind", "a.exr"}, crytek)}, {"--behind", "a.exr"}}},
-      {"--other-views", {{with({"--other-views"}, crytek)}, {"--other-views"}}},
+      {"--set other-views", {{with({"--set", "other-views=true"}, crytek)}, {"--set", "other-views=true"}}},
       {"--around", {{with({"--around", "2"}, crytek)}, {"--around", "2"}}},
-      {"--behind-channel",
-       {{{"--behind-channel", "Z"}, {"--behind-channel", "A,B", "--behind", "a.exr"}},
-        {"--behind-channel", "A,B", "--behind", "a.exr", "--behind", "b.exr"}}},
+      {"--set behind-channel",
+       {{{"--set", "behind-channel=Z"}, {"--set", "behind-channel=A,B", "--behind", "a.exr"}},
+        {"--set", "behind-channel=A,B", "--behind", "a.exr", "--behind", "b.exr"}}},
       {"--behind-kind",
        {{{"--behind-kind", "backs"},
          {"--behind-kind", "backs,fronts", "--behind", "a.exr", "--behind", "b.exr", "--behind", "c.exr"}},
         {"--behind-kind", "backs", "--behind", "a.exr", "--behind", "b.exr"}}},
-      {"--deep-opacity", {{{"--deep-opacity", "0.2"}}, {"--deep-opacity", "0.2", "--deep", "d.exr"}}},
+      {"--set deep-opacity", {{{"--set", "deep-opacity=0.2"}}, {"--set", "deep-opacity=0.2", "--deep", "d.exr"}}},
       {"--matte-outside", {{{"--matte-outside", "0.5"}}, {"--matte-outside", "0.5", "--matte-object", "Hero"}}},
-      {"--objects", {{{"--objects", "o.exr", "--ignore", "a.exr"}}, {"--objects", "o.exr", "--ignore", "Hero"}}},
-      {"--object-channel", {{{"--object-channel", "Id"}}, {"--object-channel", "Id", "--occluders", "3"}}},
+      {"--set objects",
+       {{{"--set", "objects=o.exr", "--set", "ignore=a.exr"}}, {"--set", "objects=o.exr", "--set", "ignore=Hero"}}},
+      {"--set object-channel",
+       {{{"--set", "object-channel=Id"}}, {"--set", "object-channel=Id", "--set", "occluders=3"}}},
       {"--motion",
        {{{"--motion", "m.exr"}, {"--motion", "m.exr", "--around", "0"}}, {"--motion", "m.exr", "--around", "2"}}},
-      {"--motion-channels",
-       {{{"--motion-channels", "U,V", "--around", "all"}},
-        {"--motion-channels", "U,V", "--motion", "v.exr", "--around", "all"}}},
-      {"--motion-kind",
-       {{{"--motion-kind", "next", "--around", "2"}}, {"--motion-kind", "next", "--motion", "v.exr", "--around", "2"}}},
-      {"--hidden", {{{"--hidden", "1"}}, {"--hidden", "1", "--other-views"}}},
-      {"--separation", {{{"--separation", "0.1"}}, {"--separation", "0.1", "--deep", "d.exr"}}},
+      {"--set motion-channels",
+       {{{"--set", "motion-channels=U,V", "--around", "all"}},
+        {"--set", "motion-channels=U,V", "--motion", "v.exr", "--around", "all"}}},
+      {"--set motion-kind",
+       {{{"--set", "motion-kind=next", "--around", "2"}},
+        {"--set", "motion-kind=next", "--motion", "v.exr", "--around", "2"}}},
+      {"--set hidden", {{{"--set", "hidden=1"}}, {"--set", "hidden=1", "--set", "other-views=true"}}},
+      {"--set separation", {{{"--set", "separation=0.1"}}, {"--set", "separation=0.1", "--deep", "d.exr"}}},
       {"--falloff",
        {{with({"--falloff", "linear"}, crytek), with({"--falloff", "linear"}, exact)}, {"--falloff", "linear"}}},
-      {"--falloff-start",
-       {{with({"--falloff-start", "0.2"}, crytek), with({"--falloff-start", "0.2"}, exact), {"--falloff-start", "0.2"}},
-        {"--falloff-start", "0.2", "--falloff", "smooth"}}},
-      {"--falloff-end", {{with({"--falloff-end", "0.5"}, crytek)}, with({"--falloff-end", "0.5"}, exact)}},
+      {"--set falloff-start",
+       {{with({"--set", "falloff-start=0.2"}, crytek),
+         with({"--set", "falloff-start=0.2"}, exact),
+         {"--set", "falloff-start=0.2"}},
+        {"--set", "falloff-start=0.2", "--falloff", "smooth"}}},
+      {"--set falloff-end", {{with({"--set", "falloff-end=0.5"}, crytek)}, with({"--set", "falloff-end=0.5"}, exact)}},
       {"--slices",
        {{with({"--slices", "3"}, crytek), with({"--slices", "3"}, by_error)}, with({"--slices", "3"}, exact)}},
       {"--steps",
@@ -99,89 +109,106 @@ const std::map<std::string, ConditionCase>& condition_cases() {
        {{with({"--search", "exact"}, crytek), with({"--search", "steps"}, by_error)}, {"--search", "every-pixel"}}},
       {"--tolerance", {{{"--tolerance", "0.1", "--estimator", "bitmask"}}, {"--tolerance", "0.1"}}},
       {"--samples", {{{"--samples", "8"}}, with({"--samples", "8"}, crytek)}},
-      {"--elevation", {{with({"--elevation", "surface"}, crytek)}, {"--elevation", "surface", "--estimator", "hbao"}}},
-      {"--sample-kernel", {{{"--sample-kernel", "uniform"}}, with({"--sample-kernel", "uniform"}, crytek)}},
-      {"--range-check", {{{"--range-check", "none"}}, with({"--range-check", "none"}, crytek)}},
+      {"--set elevation",
+       {{with({"--set", "elevation=surface"}, crytek)}, {"--set", "elevation=surface", "--estimator", "hbao"}}},
+      {"--set sample-kernel", {{{"--set", "sample-kernel=uniform"}}, with({"--set", "sample-kernel=uniform"}, crytek)}},
+      {"--set range-check", {{{"--set", "range-check=none"}}, with({"--set", "range-check=none"}, crytek)}},
       {"--thickness", {{with({"--thickness", "1"}, crytek)}, {"--thickness", "1", "--estimator", "bitmask"}}},
-      {"--complete", {{{"--complete", "border", "--estimator", "hbao"}}, {"--complete", "border"}}},
-      {"--density",
-       {{with({"--density", "uniform"}, crytek),
-         with({"--density", "uniform"}, exact),
-         {"--density", "uniform", "--denoise", "none"}},
-        {"--density", "uniform", "--stride", "4"}}},
-      {"--stride",
-       {{with({"--stride", "4"}, exact), {"--stride", "4", "--denoise", "box"}},
-        {"--stride", "4", "--denoise", "bilateral"}}},
+      {"--set complete", {{{"--set", "complete=border", "--estimator", "hbao"}}, {"--set", "complete=border"}}},
+      {"--set density",
+       {{with({"--set", "density=uniform"}, crytek),
+         with({"--set", "density=uniform"}, exact),
+         {"--set", "density=uniform", "--denoise", "none"}},
+        {"--set", "density=uniform", "--set", "stride=4"}}},
+      {"--set stride",
+       {{with({"--set", "stride=4"}, exact), {"--set", "stride=4", "--denoise", "box"}},
+        {"--set", "stride=4", "--denoise", "bilateral"}}},
       {"--denoise", {{with({"--denoise", "box"}, by_error)}, with({"--denoise", "bilateral"}, exact)}},
-      {"--denoise-radius",
-       {{{"--denoise-radius", "3", "--denoise", "box"}, with({"--denoise-radius", "3"}, by_error)},
-        {"--denoise-radius", "3"}}},
-      {"--denoise-kernel",
-       {{{"--denoise-kernel", "1,0.5", "--denoise", "none"}, with({"--denoise-kernel", "1,0.5"}, by_error)},
-        {"--denoise-kernel", "1,0.5"}}},
-      {"--denoise-depth-sigma",
-       {{{"--denoise-depth-sigma", "0.1", "--denoise", "none"}, with({"--denoise-depth-sigma", "0.1"}, by_error)},
-        {"--denoise-depth-sigma", "0.1", "--denoise", "box"}}},
-      {"--fade-start", {{{"--fade-start", "1"}}, {"--fade-start", "1", "--fade-end", "2"}}},
-      {"--fade-end", {{{"--fade-end", "2"}}, {"--fade-end", "2", "--fade-start", "1"}}},
+      {"--set denoise-radius",
+       {{{"--set", "denoise-radius=3", "--denoise", "box"}, with({"--set", "denoise-radius=3"}, by_error)},
+        {"--set", "denoise-radius=3"}}},
+      {"--set denoise-kernel",
+       {{{"--set", "denoise-kernel=1,0.5", "--denoise", "none"}, with({"--set", "denoise-kernel=1,0.5"}, by_error)},
+        {"--set", "denoise-kernel=1,0.5"}}},
+      {"--set denoise-depth-sigma",
+       {{{"--set", "denoise-depth-sigma=0.1", "--denoise", "none"},
+         with({"--set", "denoise-depth-sigma=0.1"}, by_error)},
+        {"--set", "denoise-depth-sigma=0.1", "--denoise", "box"}}},
+      {"--set fade-start", {{{"--set", "fade-start=1"}}, {"--set", "fade-start=1", "--set", "fade-end=2"}}},
+      {"--set fade-end", {{{"--set", "fade-end=2"}}, {"--set", "fade-end=2", "--set", "fade-start=1"}}},
       {"--roughness", {{{"--roughness", "0.2"}}, {"--roughness", "0.2", "--aov", "ao,specular-occlusion"}}},
       {"--noise", {{with({"--noise", "animated"}, exact)}, with({"--noise", "animated"}, crytek)}},
       {"--seed", {{with({"--seed", "1"}, exact)}, {"--seed", "1"}}},
-      {"--skip-tolerance",
-       {{with({"--skip-tolerance", "0.01"}, crytek), with({"--skip-tolerance", "0.01"}, exact)},
-        {"--skip-tolerance", "0.01"}}},
-      {"--ao-channels", {{{"--ao-channels", "rgb", "--aov", "depth"}}, {"--ao-channels", "rgb"}}},
-      {"--aov-space", {{{"--aov-space", "view"}}, {"--aov-space", "view", "--aov", "ao,normal"}}},
-      {"--multi-bounce", {{{"--multi-bounce"}}, {"--multi-bounce", "--composite", "c.exr"}}},
-      {"--ambient", {{{"--ambient", "GI"}}, {"--ambient", "GI", "--composite", "c.exr"}}},
-      {"--display",
-       {{{"--display", "sRGB"}, {"--display", "sRGB", "--preview", "p.png"}},
-        {"--display", "sRGB", "--preview", "p.png", "--composite", "c.exr"}}},
-      {"--view-transform",
-       {{{"--view-transform", "Raw"}}, {"--view-transform", "Raw", "--preview", "p.png", "--composite", "c.exr"}}},
-      {"--preview-style",
-       {{{"--preview-style", "split"}}, {"--preview-style", "split", "--preview", "p.png", "--composite", "c.exr"}}},
-      {"--gain", {{{"--gain", "2"}}, {"--gain", "2", "--composite", "c.exr"}}},
-      {"--tint", {{{"--tint", "0.1,0,0"}}, {"--tint", "0.1,0,0", "--composite", "c.exr"}}},
-      {"--mix", {{{"--mix", "0.5"}}, {"--mix", "0.5", "--composite", "c.exr"}}},
-      {"--composite-layers",
-       {{{"--composite-layers", "rgba"}}, {"--composite-layers", "rgba", "--composite", "c.exr"}}},
-      {"--composite-compression",
-       {{{"--composite-compression", "dwaa"}}, {"--composite-compression", "dwaa", "--composite", "c.exr"}}},
-      {"--append-ao", {{{"--append-ao", "AO"}}, {"--append-ao", "AO", "--composite", "c.exr"}}},
+      {"--set skip-tolerance",
+       {{with({"--set", "skip-tolerance=0.01"}, crytek), with({"--set", "skip-tolerance=0.01"}, exact)},
+        {"--set", "skip-tolerance=0.01"}}},
+      {"--set ao-channels", {{{"--set", "ao-channels=rgb", "--aov", "depth"}}, {"--set", "ao-channels=rgb"}}},
+      {"--set aov-space", {{{"--set", "aov-space=view"}}, {"--set", "aov-space=view", "--aov", "ao,normal"}}},
+      {"--set multi-bounce",
+       {{{"--set", "multi-bounce=true"}}, {"--set", "multi-bounce=true", "--composite", "c.exr"}}},
+      {"--set ambient", {{{"--set", "ambient=GI"}}, {"--set", "ambient=GI", "--composite", "c.exr"}}},
+      {"--set display",
+       {{{"--set", "display=sRGB"}, {"--set", "display=sRGB", "--preview", "p.png"}},
+        {"--set", "display=sRGB", "--preview", "p.png", "--composite", "c.exr"}}},
+      {"--set view-transform",
+       {{{"--set", "view-transform=Raw"}},
+        {"--set", "view-transform=Raw", "--preview", "p.png", "--composite", "c.exr"}}},
+      {"--set preview-style",
+       {{{"--set", "preview-style=split"}},
+        {"--set", "preview-style=split", "--preview", "p.png", "--composite", "c.exr"}}},
+      {"--set gain", {{{"--set", "gain=2"}}, {"--set", "gain=2", "--composite", "c.exr"}}},
+      {"--set tint", {{{"--set", "tint=0.1,0,0"}}, {"--set", "tint=0.1,0,0", "--composite", "c.exr"}}},
+      {"--set mix", {{{"--set", "mix=0.5"}}, {"--set", "mix=0.5", "--composite", "c.exr"}}},
+      {"--set composite-layers",
+       {{{"--set", "composite-layers=rgba"}}, {"--set", "composite-layers=rgba", "--composite", "c.exr"}}},
+      {"--set composite-compression",
+       {{{"--set", "composite-compression=dwaa"}}, {"--set", "composite-compression=dwaa", "--composite", "c.exr"}}},
+      {"--set append-ao", {{{"--set", "append-ao=AO"}}, {"--set", "append-ao=AO", "--composite", "c.exr"}}},
       {"--chan-rotation",
        {{{"--chan-rotation", "xyz"}, {"--chan-rotation", "xyz", "--camera", "c.json"}},
         {"--chan-rotation", "xyz", "--camera", "c.chan"}}},
-      {"--ao-name", {{{"--ao-name", "AO", "--aov", "depth"}}, {"--ao-name", "AO"}}},
-      {"--filter",
-       {{{"--filter", "box"}, {"--filter", "box", "--supersampling", "1", "--composite", "c.exr"}},
-        {"--filter", "box", "--supersampling", "2"}}},
-      {"--filter-width", {{{"--filter-width", "2"}}, {"--filter-width", "2", "--composite", "c.exr"}}},
-      {"--fog-density", {{{"--fog-density", "1"}}, {"--fog-density", "1", "--composite", "c.exr"}}},
-      {"--ocio",
-       {{{"--ocio", "a.ocio"}, {"--ocio", "a.ocio", "--preview", "p.png"}},
-        {"--ocio", "a.ocio", "--preview", "p.png", "--composite", "c.exr"}}},
+      {"--set ao-name", {{{"--set", "ao-name=AO", "--aov", "depth"}}, {"--set", "ao-name=AO"}}},
+      {"--set filter",
+       {{{"--set", "filter=box"}, {"--set", "filter=box", "--set", "supersampling=1", "--composite", "c.exr"}},
+        {"--set", "filter=box", "--set", "supersampling=2"}}},
+      {"--set filter-width", {{{"--set", "filter-width=2"}}, {"--set", "filter-width=2", "--composite", "c.exr"}}},
+      {"--set fog-density", {{{"--set", "fog-density=1"}}, {"--set", "fog-density=1", "--composite", "c.exr"}}},
+      {"--set ocio",
+       {{{"--set", "ocio=a.ocio"}, {"--set", "ocio=a.ocio", "--preview", "p.png"}},
+        {"--set", "ocio=a.ocio", "--preview", "p.png", "--composite", "c.exr"}}},
   };
   return cases;
 }
 
-/// A value of each option that is half of a contradiction.
-const std::map<std::string, Words>& contradicting_values() {
-  static const std::map<std::string, Words> values{
-      {"--depth", {"d.exr"}},      {"--position", {"p.exr"}},
-      {"--depth-channel", {"Z"}},  {"--position-channels", {"P"}},
-      {"--camera", {"c.json"}},    {"--fov", {"60"}},
-      {"--focal", {"35"}},         {"--aperture", {"36"}},
-      {"--ortho-width", {"2"}},    {"--tolerance", {"0.1"}},
-      {"--resolution", {"half"}},  {"--denoise-kernel", {"1,0.5"}},
-      {"--denoise-radius", {"3"}}, {"--skip-tolerance", {"0.01"}},
-      {"--no-skip", {"true"}},     {"--quiet", {"true"}},
-      {"--verbose", {"true"}},     {"--progress", {"plain"}},
-      {"--occluders", {"Hero"}},   {"--ignore", {"Set*"}},
-      {"--around", {"2"}},         {"--accumulate", {"2"}},
-      {"--other-views", {"true"}}, {"--noise", {"fixed"}},
-  };
-  return values;
+/// A setting as key and value.
+struct Value {
+  std::string key, value;
+};
+
+/// Settings that say something else of the same thing, so that neither has an effect beside the other.
+const std::vector<std::pair<Value, Value>>& pairs() {
+  static const Value camera{"camera", "c.json"}, fov{"fov", "60"}, ortho{"ortho-width", "2"};
+  static const Value position{"position", "p.exr"}, depth_channel{"depth-channel", "Z"};
+  static const Value occluders{"occluders", "Hero"}, ignore{"ignore", "Set*"}, around{"around", "2"};
+  static const Value views{"other-views", "true"}, tolerance{"tolerance", "0.1"}, quiet{"quiet", "true"};
+  static const std::vector<std::pair<Value, Value>> all{{{"depth", "d.exr"}, position},
+                                                        {depth_channel, position},
+                                                        {depth_channel, {"position-channels", "P"}},
+                                                        {camera, fov},
+                                                        {camera, ortho},
+                                                        {fov, ortho},
+                                                        {tolerance, {"resolution", "half"}},
+                                                        {tolerance, {"accumulate", "2"}},
+                                                        {{"denoise-kernel", "1,0.5"}, {"denoise-radius", "3"}},
+                                                        {{"skip-tolerance", "0.01"}, {"no-skip", "true"}},
+                                                        {quiet, {"verbose", "true"}},
+                                                        {quiet, {"progress", "plain"}},
+                                                        {occluders, ignore},
+                                                        {occluders, around},
+                                                        {occluders, views},
+                                                        {ignore, around},
+                                                        {ignore, views}};
+  return all;
 }
 
 class Said : public testing::Test {
@@ -209,10 +236,10 @@ class Said : public testing::Test {
     }
   }
 
-  /// A preset of options and their values.
-  Words preset(const std::string& name, const std::vector<std::pair<std::string, Words>>& said) const {
+  /// A preset of settings.
+  Words preset(const std::string& name, const std::vector<Value>& said) const {
     std::string text;
-    for (const auto& [option, words] : said) text += fmt::format("{} = \"{}\"\n", option.substr(2), words.front());
+    for (const auto& [key, value] : said) text += fmt::format("{} = \"{}\"\n", key, value);
     test::write_bytes(folder / name, text);
     return {"--preset", folder / name};
   }
@@ -222,141 +249,116 @@ class Said : public testing::Test {
     return words;
   }
 
-  /// The words that the option has in the end.
-  static Words value_of(const std::string& option, RunOptions options) {
-    const auto table = option_table(options);
-    return std::ranges::find(table, option, &OptionRow::long_name)->words();
+  /// The words that the setting has in the end.
+  static Words value_of(const std::string& key, RunOptions options) {
+    return row_of_key(option_table(options), key).words();
   }
 
-  static Words usual_value_of(const std::string& option) { return value_of(option, {}); }
+  static Words usual_value_of(const std::string& key) { return value_of(key, {}); }
 
-  /// Calls it with both options of every pair of the table that contradicts itself, and in both orders.
-  template <class Call>
-  static void for_each_contradiction(const Call& call) {
-    RunOptions options;
-    int pairs = 0;
-    for (const auto& row : option_table(options))
-      for (const auto& contradiction : row.contradictions)
-        for (const auto& other : contradiction.options) {
-          call(row.long_name(), other);
-          call(other, row.long_name());
-          pairs++;
-        }
-    EXPECT_GT(pairs, 10);
-  }
-
-  static Words typed(const std::string& option) {
-    return {fmt::format("{}={}", option, contradicting_values().at(option).front())};
-  }
+  static Words typed(const Value& one) { return {"--set", one.key + "=" + one.value}; }
 
   const test::TemporaryFolder folder;
 };
 
-TEST_F(Said, options_with_a_condition_are_those_of_the_cases) {
+TEST_F(Said, settings_that_may_have_no_effect_are_those_of_the_cases) {
   RunOptions options;
-  std::set<std::string> with_condition, with_case;
+  std::set<std::string> with_reason, with_case;
   for (const auto& row : option_table(options))
-    if (!row.conditions.empty()) with_condition.insert(row.long_name());
-  for (const auto& [option, cases] : condition_cases()) with_case.insert(option);
-  EXPECT_EQ(with_condition, with_case) << "whoever adds a condition says when it is broken and when it holds";
+    if (row.why_without_effect) with_reason.insert(row.long_name());
+  for (const auto& [option, cases] : cases_without_effect()) with_case.insert(option);
+  for (const auto& [one, other] : pairs())
+    for (const auto& value : {one, other}) {
+      const auto table = option_table(options);
+      with_case.insert(row_of_key(table, value.key).long_name());
+    }
+  EXPECT_EQ(with_reason, with_case) << "whoever says why a setting may have no effect shows both here";
 }
 
-TEST_F(Said, options_that_do_not_apply_are_refused_for_every_condition_and_else_taken) {
-  RunOptions options;
-  for (const auto& row : option_table(options)) {
-    if (row.conditions.empty()) continue;
-    const auto& [refused, taken] = condition_cases().at(row.long_name());
-    std::string all;
-    for (const auto& words : refused) {
-      const std::string text = refusal(words);
-      EXPECT_THAT(text,
-                  AllOf(testing::StartsWith(row.long_name() + ": applies "), HasSubstr(" only"), HasSubstr(", and ")))
-          << testing::PrintToString(words);
-      all += text;
-    }
-    for (const auto& condition : row.conditions) EXPECT_THAT(all, HasSubstr(condition.words)) << row.name;
-    EXPECT_EQ(refusal(taken), "") << testing::PrintToString(taken);
+TEST_F(Said, what_is_typed_and_has_no_effect_is_refused_and_else_taken) {
+  for (const auto& [option, cases] : cases_without_effect()) {
+    for (const auto& words : cases.refused)
+      EXPECT_THAT(refusal(words), testing::StartsWith(option + " has no effect: ")) << testing::PrintToString(words);
+    EXPECT_EQ(refusal(cases.taken), "") << testing::PrintToString(cases.taken);
   }
 }
 
-TEST_F(Said, a_refusal_says_to_what_the_option_applies_and_what_is_so_instead) {
+TEST_F(Said, a_refusal_says_what_the_setting_is_for_and_what_is_in_its_way) {
   EXPECT_THAT(refusal({"--samples", "8"}),
-              HasSubstr("--samples: applies to --estimator crytek only, and the estimator is gtao"));
-  EXPECT_THAT(refusal({"--preset", "reference", "--steps", "8"}), HasSubstr("and the search is exact"));
-  const std::pair<Words, const char*> cases[] = {
-      {{"--depth-kind", "ray"}, "the depth is said to be ray (--depth-kind)"},
-      {{"--source", "octane"}, "the depth is said to be ray (--source octane)"},
-      {{"--position", "p.exr"}, "the depth is said to be position (--position)"},
-      {{"--position-channels", "P"}, "the depth is said to be position (--position-channels)"}};
+              HasSubstr("--samples has no effect: it is for --estimator crytek, and here that is gtao"));
+  EXPECT_THAT(refusal({"--preset", "reference", "--steps", "8"}), HasSubstr("the search is exact"));
+  const std::pair<Words, const char*> cases[] = {{{"--depth-kind", "ray"}, "--depth-kind says ray"},
+                                                 {{"--source", "octane"}, "--source octane says ray"},
+                                                 {{"--position", "p.exr"}, "--position says position"},
+                                                 {{"--position-channels", "P"}, "--position-channels says position"}};
   for (const auto& [words, said] : cases) EXPECT_THAT(refusal(joined({"--near", "1"}, words)), HasSubstr(said));
 }
 
-TEST_F(Said, options_that_do_not_apply_are_left_out_of_presets) {
-  for (const auto& [option, cases] : condition_cases())
+TEST_F(Said, what_has_no_effect_is_left_out_of_presets) {
+  for (const auto& [option, cases] : cases_without_effect())
     for (const auto& refused : cases.refused) {
-      const bool is_flag = refused.size() < 2 || refused[1].starts_with("--");
-      const Words value = is_flag ? Words{"true"} : Words{refused[1]};
+      const bool is_set = refused[0] == "--set";
+      const bool is_flag = !is_set && (refused.size() < 2 || refused[1].starts_with("--"));
+      const std::size_t equals = is_set ? refused[1].find('=') : 0;
+      const Value value{is_set ? refused[1].substr(0, equals) : refused[0].substr(2),
+                        is_set    ? refused[1].substr(equals + 1)
+                        : is_flag ? "true"
+                                  : refused[1]};
       const Words others(refused.begin() + (is_flag ? 1 : 2), refused.end());
-      const Words all = joined(preset("some.toml", {{option, value}}), others);
+      const Words all = joined(preset("some.toml", {value}), others);
       ASSERT_EQ(refusal(all), "") << testing::PrintToString(refused);
-      EXPECT_EQ(value_of(option, read(all)), usual_value_of(option)) << testing::PrintToString(refused);
+      EXPECT_EQ(value_of(value.key, read(all)), usual_value_of(value.key)) << testing::PrintToString(refused);
     }
 }
 
 TEST_F(Said, what_a_preset_says_without_effect_stays_where_another_one_gives_it_one) {
-  const Words samples = preset("samples.toml", {{"--samples", {"8"}}});
+  const Words samples = preset("samples.toml", {{"samples", "8"}});
   EXPECT_EQ(read(joined(samples, {"--estimator", "crytek"})).settings.estimator.samples, 8);
-  const Words crytek = preset("crytek.toml", {{"--estimator", {"crytek"}}});
+  const Words crytek = preset("crytek.toml", {{"estimator", "crytek"}});
   EXPECT_EQ(read(joined(samples, crytek)).settings.estimator.samples, 8);
 }
 
-TEST_F(Said, options_that_contradict_each_other_are_refused_in_both_orders) {
-  for_each_contradiction([](const std::string& one, const std::string& other) {
-    EXPECT_THAT(refusal(joined(typed(one), typed(other))),
-                AllOf(HasSubstr(one), HasSubstr(other), HasSubstr("contradict each other"), HasSubstr("only one")));
-  });
+TEST_F(Said, of_a_pair_only_one_may_be_typed) {
+  RunOptions options;
+  const auto table = option_table(options);
+  for (const auto& [one, other] : pairs())
+    for (const auto& words : {joined(typed(one), typed(other)), joined(typed(other), typed(one))})
+      EXPECT_THAT(refusal(words),
+                  AllOf(HasSubstr(row_of_key(table, one.key).long_name()),
+                        HasSubstr(row_of_key(table, other.key).long_name()), HasSubstr("only one of them")));
 }
 
-TEST_F(Said, a_pair_contradicts_each_other_by_the_values_that_do) {
+TEST_F(Said, noise_that_is_fixed_is_none_of_a_mean) {
   EXPECT_EQ(refusal({"--noise", "animated", "--accumulate", "4"}), "") << "they say the same";
   EXPECT_EQ(refusal({"--noise", "fixed", "--accumulate", "0"}), "");
   EXPECT_EQ(refusal({"--accumulate", "4"}), "") << "nobody has said that the noise is fixed, as it usually is";
   EXPECT_EQ(refusal({"--noise", "fixed", "--estimator", "crytek"}), "") << "it has none";
   EXPECT_THAT(refusal({"--noise", "fixed", "--accumulate", "4"}),
-              HasSubstr("--noise and --accumulate contradict each other"));
+              HasSubstr("--noise has no effect: --accumulate is given, and it animates the noise"));
 }
 
-TEST_F(Said, what_is_typed_beats_what_contradicts_it_in_a_preset) {
-  for_each_contradiction([&](const std::string& one, const std::string& other) {
-    const Words all = joined(preset("one.toml", {{one, contradicting_values().at(one)}}), typed(other));
-    // Half of a pair that belongs together is refused for that, and not for the preset.
-    if (other == "--focal" || other == "--aperture") return;
-    ASSERT_EQ(refusal(all), "") << one << " of a preset, " << other;
-    EXPECT_EQ(value_of(one, read(all)), usual_value_of(one)) << other;
-  });
-}
-
-TEST_F(Said, of_two_presets_that_contradict_each_other_the_later_wins_and_one_may_not_contradict_itself) {
-  for_each_contradiction([&](const std::string& one, const std::string& other) {
-    const std::pair<std::string, Words> first{one, contradicting_values().at(one)};
-    const std::pair<std::string, Words> second{other, contradicting_values().at(other)};
-    const RunOptions options = read(joined(preset("first.toml", {first}), preset("second.toml", {second})));
-    EXPECT_EQ(value_of(one, options), usual_value_of(one)) << other;
-    EXPECT_THAT(refusal(preset("both.toml", {first, second})),
-                AllOf(HasSubstr("both.toml"), HasSubstr(one), HasSubstr(other)));
-  });
+TEST_F(Said, of_a_pair_what_is_typed_beats_a_preset_and_a_later_preset_an_earlier_one) {
+  for (const auto& pair : pairs())
+    for (const auto& [first, second] : {pair, std::pair(pair.second, pair.first)}) {
+      const Words one = preset("first.toml", {first});
+      for (const auto& words : {joined(one, typed(second)), joined(one, preset("second.toml", {second}))}) {
+        ASSERT_EQ(refusal(words), "") << first.key << " of a preset, " << second.key;
+        EXPECT_EQ(value_of(first.key, read(words)), usual_value_of(first.key)) << second.key;
+        EXPECT_NE(value_of(second.key, read(words)), usual_value_of(second.key)) << first.key;
+      }
+    }
 }
 
 TEST_F(Said, values_that_ask_for_nothing_are_taken_anywhere) {
   for (const Words& words : std::vector<Words>{{"--tolerance", "0", "--estimator", "hbao", "--resolution", "half"},
-                                               {"--skip-tolerance", "0.0", "--no-skip"},
-                                               {"--complete", "none", "--estimator", "crytek"},
-                                               {"--fog-density", "0"},
-                                               {"--hidden", "0", "--separation", "auto", "--around", "0"},
-                                               {"--stride", "1", "--search", "exact"},
+                                               {"--set", "skip-tolerance=0.0", "--no-skip"},
+                                               {"--set", "complete=none", "--estimator", "crytek"},
+                                               {"--set", "fog-density=0"},
+                                               {"--set", "hidden=0", "--set", "separation=auto", "--around", "0"},
+                                               {"--set", "stride=1", "--search", "exact"},
                                                {"--search", "steps", "--estimator", "crytek"},
                                                {"--search", "steps", "--tolerance", "0"},
-                                               {"--multi-bounce=false"},
+                                               {"--set", "multi-bounce=false"},
                                                {"--depth-kind", "auto", "--position", "p.exr"}})
     EXPECT_EQ(refusal(words), "") << testing::PrintToString(words);
 }
@@ -364,61 +366,73 @@ TEST_F(Said, values_that_ask_for_nothing_are_taken_anywhere) {
 TEST_F(Said, confidence_takes_what_its_own_estimates_take) {
   const Words with{"--aov", "ao,confidence", "--estimator", "crytek"};
   for (const Words& words :
-       std::vector<Words>{{"--slices", "3"}, {"--steps", "3"}, {"--falloff", "linear"}, {"--falloff-end", "0.5"}})
+       std::vector<Words>{{"--slices", "3"}, {"--steps", "3"}, {"--falloff", "linear"}, {"--set", "falloff-end=0.5"}})
     EXPECT_EQ(refusal(joined(words, with)), "") << testing::PrintToString(words);
   EXPECT_EQ(refusal({"--tolerance", "0.1", "--aov", "ao,confidence", "--denoise", "box", "--seed", "1"}), "");
   for (const Words& exact : std::vector<Words>{{"--search", "exact"}, {"--tolerance", "0.1"}})
-    EXPECT_EQ(refusal(joined({"--stride", "4", "--aov", "ao,confidence"}, exact)), "") << exact.front();
+    EXPECT_EQ(refusal(joined({"--set", "stride=4", "--aov", "ao,confidence"}, exact)), "") << exact.front();
 }
 
 // Where one density lets every pixel have its own estimate and the other does not, the choice is all the more one.
 TEST_F(Said, a_density_is_taken_where_the_other_one_would_share_estimates) {
   for (const Words& words : std::vector<Words>{{"--slices", "3"}, {"--slices", "8"}, {"--estimator", "bitmask"}}) {
-    const Words uniform = joined(words, {"--density", "uniform"});
+    const Words uniform = joined(words, {"--set", "density=uniform"});
     EXPECT_EQ(refusal(uniform), "") << testing::PrintToString(words);
-    const Words by_preset = joined(words, preset("density.toml", {{"--density", {"uniform"}}}));
+    const Words by_preset = joined(words, preset("density.toml", {{"density", "uniform"}}));
     EXPECT_EQ(read(by_preset).settings.estimator.density, Density::uniform) << testing::PrintToString(words);
   }
-  EXPECT_THAT(refusal({"--density", "uniform", "--resolution", "half"}), HasSubstr("every pixel has its own"));
+  EXPECT_THAT(refusal({"--set", "density=uniform", "--resolution", "half"}), HasSubstr("every pixel has its own"));
 }
 
 // A frame without depth is read by its positions, whatever depth its program writes into others.
 TEST_F(Said, the_space_of_positions_may_be_said_of_every_source) {
   for (const char* source : {"arnold", "corona", "pbrt"})
-    EXPECT_EQ(refusal({"--source", source, "--position-space", "view"}), "") << source;
+    EXPECT_EQ(refusal({"--source", source, "--set", "position-space=view"}), "") << source;
 }
 
 // Whether it applies shows only with the frame: then what a preset says is left out, and what is typed is refused.
 TEST_F(Said, options_that_only_presets_say_are_known_as_such) {
-  const Words far = preset("far.toml", {{"--far", {"100"}}, {"--near", {"1"}}});
+  const Words far = preset("far.toml", {{"far", "100"}, {"near", "1"}});
   EXPECT_THAT(read(far).settings.input.from_presets, testing::UnorderedElementsAre("--near", "--far"));
   EXPECT_THAT(read(joined(far, {"--far", "9"})).settings.input.from_presets, ElementsAre("--near"));
 }
 
-// What --aov confidence does not make good is told apart from what it does.
-TEST_F(Said, help_says_which_of_the_conditions_confidence_makes_good) {
+TEST_F(Said, settings_are_set_by_key_and_value) {
+  EXPECT_EQ(read({"--set", "stride=4", "--set", "Radius=0.5"}).settings.estimator.stride, 4);
+  EXPECT_EQ(read({"--set", "radius=0.5"}).settings.estimator.radius, 0.5) << "of options too";
+  EXPECT_THAT(refusal({"--set", "stride"}), HasSubstr("--set: stride is not KEY=VALUE"));
+  EXPECT_THAT(refusal({"--set", "strid=4"}), HasSubstr("there is no setting strid (did you mean stride"));
+  EXPECT_THAT(refusal({"--set", "stride=3"}), HasSubstr("--set stride: 3 is none of"));
+  EXPECT_THAT(refusal({"--set", "dry-run=true"}), HasSubstr("dry-run is an option of the command line only"));
+  for (const Words& twice :
+       std::vector<Words>{{"--set", "stride=4", "--set", "stride=2"}, {"--slices", "4", "--set", "slices=2"}})
+    EXPECT_THAT(refusal(twice), HasSubstr("is given more than once")) << testing::PrintToString(twice);
+}
+
+TEST_F(Said, a_key_that_is_typed_as_an_option_says_what_to_type) {
   RunOptions options;
-  const auto table = option_table(options);
-  const auto sentence = [&](const char* option) {
-    return std::ranges::find(table, option, &OptionRow::long_name)->whole_sentence();
-  };
-  EXPECT_THAT(sentence("--falloff-start"),
-              testing::EndsWith("; applies to --estimator gtao, bitmask or hbao and to --search steps only, or with "
-                                "--aov confidence; applies with a --falloff only"));
-  EXPECT_THAT(sentence("--samples"), testing::EndsWith("hemisphere; applies to --estimator crytek only"));
-  EXPECT_THAT(refusal({"--falloff-start", "0.2", "--aov", "ao,confidence"}), HasSubstr("the falloff is none"));
+  int keys = 0;
+  for (const auto& row : option_table(options)) {
+    if (!row.is_only_key()) continue;
+    const std::string value = row.is_flag() ? "true" : "1";
+    const std::string said = fmt::format("--{} is a setting: write --set {}={}", row.name, row.name, value);
+    EXPECT_THAT(refusal({"--" + row.name, "1"}), HasSubstr(said));
+    EXPECT_THAT(refusal({"--" + row.name + "=1"}), HasSubstr(fmt::format("write --set {}=1", row.name)));
+    keys++;
+  }
+  EXPECT_GT(keys, 50);
 }
 
 TEST_F(Said, what_farms_pass_always_is_taken_for_a_single_frame) {
-  EXPECT_EQ(refusal({"--resume", "--overwrite", "--keep-going", "--missing", "skip", "--chunk", "1/1", "--frames", "1",
-                     "--threads", "4", "--memory", "4G", "--progress", "openjd"}),
+  EXPECT_EQ(refusal({"--resume", "--set", "overwrite=true", "--keep-going", "--set", "missing=skip", "--chunk", "1/1",
+                     "--frames", "1", "--threads", "4", "--memory", "4G", "--progress", "openjd"}),
             "");
 }
 
 TEST_F(Said, inspect_goes_by_the_same_rules_but_writes_no_outputs) {
-  EXPECT_EQ(refusal({"--beauty", "b.exr", "--albedo", "0.5"}, Reader::inspect), "");
-  EXPECT_THAT(refusal({"--near", "1", "--depth-kind", "planar"}, Reader::inspect), HasSubstr("--near: applies"));
-  EXPECT_THAT(refusal({"--fov", "60", "--camera", "c.json"}, Reader::inspect), HasSubstr("contradict"));
+  EXPECT_EQ(refusal({"--beauty", "b.exr", "--set", "albedo=0.5"}, Reader::inspect), "");
+  EXPECT_THAT(refusal({"--near", "1", "--depth-kind", "planar"}, Reader::inspect), HasSubstr("--near has no effect"));
+  EXPECT_THAT(refusal({"--fov", "60", "--camera", "c.json"}, Reader::inspect), HasSubstr("only one of them"));
 }
 
 TEST_F(Said, settings_that_nobody_typed_are_held_to_the_same_table) {
@@ -433,14 +447,14 @@ TEST_F(Said, settings_that_nobody_typed_are_held_to_the_same_table) {
     return std::string();
   };
   EXPECT_EQ(refused([](Settings&) {}), "");
-  EXPECT_THAT(refused([](Settings& s) { s.estimator.samples = 8; }), HasSubstr("--samples: applies"));
+  EXPECT_THAT(refused([](Settings& s) { s.estimator.samples = 8; }), HasSubstr("--samples has no effect"));
   EXPECT_THAT(refused([](Settings& s) { s.input.fov = 60, s.input.camera = "c.json"; }),
               AllOf(HasSubstr("--camera"), HasSubstr("--fov")));
 }
 
 TEST_F(Said, words_are_taken_in_any_case) {
   RunOptions options = read({"--estimator", "HBAO", "--depth-kind", "Planar", "--aov", "AO,Depth", "--flip-normal",
-                             "XY", "--stride", "AUTO", "--preset", "Draft", "--compression", "ZIPS"});
+                             "XY", "--set", "stride=AUTO", "--preset", "Draft", "--set", "compression=ZIPS"});
   EXPECT_EQ(options.settings.estimator.estimator, Estimator::hbao);
   EXPECT_EQ(options.settings.output.aovs, "ao,depth");
   EXPECT_TRUE(options.settings.input.flip_normal.y);
@@ -452,13 +466,13 @@ TEST_F(Said, words_are_taken_in_any_case) {
 TEST_F(Said, lists_with_commas_are_what_repeated_options_are) {
   const auto radii = [](const Words& words) {
     const EstimatorSettings estimator = read(words).settings.estimator;
-    Words all = value_of("--radius", read(words));
+    Words all = value_of("radius", read(words));
     EXPECT_EQ(all.size(), 1 + estimator.further_radii.size());
     return all;
   };
   EXPECT_THAT(radii({"--radius", "0.1,0.5"}), ElementsAre("0.1", "0.5"));
   EXPECT_THAT(radii({"--radius", "0.1, 0.5", "--radius", "2"}), ElementsAre("0.1", "0.5", "2"));
-  EXPECT_THAT(radii(preset("radii.toml", {{"--radius", {"0.1,0.5"}}})), ElementsAre("0.1", "0.5"));
+  EXPECT_THAT(radii(preset("radii.toml", {{"radius", "0.1,0.5"}})), ElementsAre("0.1", "0.5"));
   EXPECT_THAT(refusal({"--radius", "0.1,,0.5"}), HasSubstr("--radius: \"\" is not a number"));
   EXPECT_EQ(read({"--preset", "draft,production"}).settings.estimator.slices, 5);
   EXPECT_EQ(read({"--preset", "production,draft"}).settings.estimator.steps, 8);
@@ -466,9 +480,10 @@ TEST_F(Said, lists_with_commas_are_what_repeated_options_are) {
   const InputSettings input = read(joined(behind, {"--behind-kind", "backs,Fronts"})).settings.input;
   EXPECT_THAT(input.behind, ElementsAre("a,b.exr", "c.exr", "", "", "", "", "", "")) << "a comma of a file's name";
   EXPECT_THAT(input.behind_kinds, ElementsAre(BehindKind::backs, BehindKind::fronts));
-  EXPECT_THAT(read(joined(behind, {"--behind-channel", "A", "--behind-channel", "B"})).settings.input.behind_channels,
-              ElementsAre("A", "B"));
-  const Words commas = preset("a,b.toml", {{"--slices", {"7"}}});
+  EXPECT_THAT(
+      read(joined(behind, {"--set", "behind-channel=A", "--set", "behind-channel=B"})).settings.input.behind_channels,
+      ElementsAre("A", "B"));
+  const Words commas = preset("a,b.toml", {{"slices", "7"}});
   EXPECT_EQ(read(commas).settings.estimator.slices, 7) << "a file with a comma in its name";
 }
 

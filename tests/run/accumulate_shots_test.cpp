@@ -46,12 +46,12 @@ TEST_F(AccumulatedShots, directions_of_a_turned_camera_are_turned_back) {
   for (auto& [name, plane] : file.planes) std::ranges::reverse(plane);
   file.write(input(2));
 
-  const Options smooth{"--stride", "1",     "--denoise",   "none",   "--slices", "32",         "--steps",
-                       "32",       "--aov", "bent-normal", "--type", "float",    "--complete", "none"};
+  const Options smooth{"--set", "stride=1", "--denoise",   "none",   "--slices", "32",    "--steps",
+                       "32",    "--aov",    "bent-normal", "--type", "float",    "--set", "complete=none"};
   for (const char* space : {"world", "view"}) {
     Options alone = smooth, mean = smooth;
-    alone.insert(alone.end(), {"--aov-space", space});
-    mean.insert(mean.end(), {"--aov-space", space, "--accumulate", "1"});
+    alone.insert(alone.end(), {"--set", std::string("aov-space=") + space});
+    mean.insert(mean.end(), {"--set", std::string("aov-space=") + space, "--accumulate", "1"});
     ASSERT_EQ(run(alone).code, 0);
     const auto truth = planes(1);
     ASSERT_EQ(run(mean).code, 0);
@@ -118,7 +118,7 @@ TEST_F(AccumulatedShots, sets_at_the_same_place_do_not_move_each_other) {
 TEST_F(AccumulatedShots, outputs_without_ao_take_no_estimates) {
   write_shot(3);
   EXPECT_EQ(run({"--accumulate", "1", "--aov", "normal"}).code, 0);
-  EXPECT_EQ(run({"--accumulate", "1", "--aov", "depth", "--debug", "count", "--frames", "2"}).code, 0);
+  EXPECT_EQ(run({"--accumulate", "1", "--aov", "depth", "--set", "debug=count", "--frames", "2"}).code, 0);
   EXPECT_TRUE(fs::exists(out + "/ao.0002.count.png"));
 }
 

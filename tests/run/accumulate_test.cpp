@@ -27,9 +27,9 @@ constexpr int kFrames = 9;
 constexpr Window kWindow{0, 0, 96, 54}, kLarge{0, 0, 512, 288};
 
 /// Every pixel has an estimate, of as much noise as there may be.
-const Options kNoisy{"--stride", "1", "--denoise", "none", "--slices", "1", "--steps", "8", "--type", "float"};
+const Options kNoisy{"--set", "stride=1", "--denoise", "none", "--slices", "1", "--steps", "8", "--type", "float"};
 /// As much as makes no noise.
-const Options kSmooth{"--stride", "1", "--denoise", "none", "--slices", "32", "--steps", "32", "--type", "float"};
+const Options kSmooth{"--set", "stride=1", "--denoise", "none", "--slices", "32", "--steps", "32", "--type", "float"};
 
 Options joined(Options options, const Options& more) {
   options.insert(options.end(), more.begin(), more.end());
@@ -267,7 +267,7 @@ TEST_F(Accumulated, samples_of_a_pixel_are_filtered_behind_the_mean) {
   const Options options{"--accumulate", "1", "--frames", "2", "--type", "float"};
   ASSERT_EQ(run(options).code, 0);
   const Image full = read_exr_image(output(2));
-  const Finished finished = run(joined(options, {"--supersampling", "2", "--filter", "box"}));
+  const Finished finished = run(joined(options, {"--set", "supersampling=2", "--set", "filter=box"}));
   ASSERT_EQ(finished.code, 0) << finished;
   const Image small = read_exr_image(output(2));
   ASSERT_EQ(small.data, (Window{0, 0, 64, 36}));
@@ -289,9 +289,9 @@ TEST_F(Accumulated, what_does_not_count_blocks_in_no_frame_of_a_mean) {
     FrameFile{kWindow, kWindow, 1, {{"Y", is_board}}, {}, {}}.write(folder / fmt::format("board.{:04}.exr", frame));
   }
   FrameFile{kWindow, kWindow, 1, {{"Y", std::vector<float>(kWindow.pixels(), 1)}}, {}, {}}.write(everything);
-  for (const auto& plane : ao_of({"--accumulate", "2", "--ignore", everything}, kShort))
+  for (const auto& plane : ao_of({"--accumulate", "2", "--set", std::string("ignore=") + everything}, kShort))
     EXPECT_THAT(plane, testing::Each(1.0f));
-  const Options ignored{"--ignore", board};
+  const Options ignored{"--set", std::string("ignore=") + board};
   const Frames with = ao_of(kSmooth, kShort), truth = ao_of(joined(kSmooth, ignored), kShort);
   EXPECT_GT(rmse_of(with, truth), 0.02) << "the board blocks";
   const Frames alone = ao_of(joined(joined(kNoisy, ignored), {"--noise", "animated"}), kShort);
@@ -363,8 +363,8 @@ TEST_F(Accumulated, missing_frames_are_an_error_or_left_out) {
   fs::remove(input(4));
   const Finished refused = run({"--accumulate", "2", "--frames", "3"});
   EXPECT_EQ(refused.code, 3);
-  EXPECT_THAT(refused.err, AllOf(HasSubstr("f.0004.exr"), HasSubstr("--accumulate"), HasSubstr("--missing skip")));
-  ASSERT_EQ(run({"--accumulate", "1", "--missing", "skip"}).code, 0);
+  EXPECT_THAT(refused.err, AllOf(HasSubstr("f.0004.exr"), HasSubstr("--accumulate"), HasSubstr("--set missing=skip")));
+  ASSERT_EQ(run({"--accumulate", "1", "--set", "missing=skip"}).code, 0);
   EXPECT_EQ(header(3), "frames 2-3; missing 4");
 }
 
@@ -383,7 +383,7 @@ TEST_F(Accumulated, works_with_all_that_is_made_of_an_estimate) {
   for (const Options& options :
        {Options{"--aov", "ao,bent-normal,specular-occlusion"}, Options{"--radius", "1,0.3", "--aov", "ao,ao-scales"},
         Options{"--resolution", "half"}, Options{"--estimator", "hbao"}, Options{"--around", "1", "--aov", "ao,hidden"},
-        Options{"--motion", in + "/f.%04d.exr", "--motion-channels", "ViewLayer.Normal.X,ViewLayer.Normal.Y"}}) {
+        Options{"--motion", in + "/f.%04d.exr", "--set", "motion-channels=ViewLayer.Normal.X,ViewLayer.Normal.Y"}}) {
     const Finished finished = run(joined(options, {"--accumulate", "1"}));
     if (options.front() == "--motion")
       EXPECT_THAT(finished.err, HasSubstr("motion vectors")) << "normals are no motion vectors";
@@ -402,8 +402,8 @@ TEST_F(Accumulated, refusals_say_what_to_do) {
   EXPECT_THAT(refused({"--accumulate", "all"}, 2), HasSubstr("number of frames to each side"));
   EXPECT_THAT(refused({"--accumulate", "17"}, 2), HasSubstr("16"));
   EXPECT_THAT(refused({"--accumulate", "1", "--search", "exact", "--tolerance", "0.01"}, 2), HasSubstr("--tolerance"));
-  EXPECT_THAT(refused({"--accumulate", "1", "--debug", "raw-ao"}, 2), HasSubstr("mean of many"));
-  EXPECT_THAT(refused({"--debug", "count"}, 2), HasSubstr("--accumulate"));
+  EXPECT_THAT(refused({"--accumulate", "1", "--set", "debug=raw-ao"}, 2), HasSubstr("mean of many"));
+  EXPECT_THAT(refused({"--set", "debug=count"}, 2), HasSubstr("--accumulate"));
   json cameras = json::parse(read_bytes(camera));
   cameras.erase("world_to_camera");
   for (auto& frame : cameras["frames"]) frame.erase("world_to_camera");
@@ -432,7 +432,7 @@ TEST_F(Accumulated, a_frame_beside_it_that_lacks_its_place_is_refused_by_the_opt
 
 TEST_F(Accumulated, views_show_how_many_frames_count) {
   write_shot(3);
-  ASSERT_EQ(run({"--accumulate", "1", "--debug", "count", "--frames", "2"}).code, 0);
+  ASSERT_EQ(run({"--accumulate", "1", "--set", "debug=count", "--frames", "2"}).code, 0);
   EXPECT_TRUE(fs::exists(out + "/ao.0002.count.png"));
 }
 

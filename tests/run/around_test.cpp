@@ -72,7 +72,7 @@ TEST_F(Around, frames_without_normals_are_as_right_as_alone) {
 TEST_F(Around, files_that_know_what_is_hidden_leave_others_nothing_to_add) {
   write_shot(kFrames);
   write_peels();
-  const Options all = joined(peels, {"--complete", "none"});
+  const Options all = joined(peels, {"--set", "complete=none"});
   EXPECT_LT(difference(ao_of(3, joined(all, {"--around", "2"})), ao_of(3, all)).rmse, 0.01);
 }
 

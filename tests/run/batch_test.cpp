@@ -74,8 +74,8 @@ TEST_F(Batch, every_file_has_a_pattern_of_its_own) {
   for (const char* frame : {"-02", "-01", "000"}) depth.write(in + "/d" + frame + ".exr");
   for (const char* frame : {"-2", "-1", "0"}) normal.write(in + "/n." + frame + ".exr");
   const Finished finished =
-      run_program({"run", "--depth", in + "/d@@@.exr", "--normal", in + "/n.$F.exr", "-o", out + "/<f4>.exr",
-                   "--output-offset", "100", "--camera", camera, "--radius", "1", "--frames", "-2-0"});
+      run_program({"run", "--depth", in + "/d@@@.exr", "--normal", in + "/n.$F.exr", "-o", out + "/<f4>.exr", "--set",
+                   "output-offset=100", "--camera", camera, "--radius", "1", "--frames", "-2-0"});
   EXPECT_EQ(finished.code, 0) << finished;
   EXPECT_THAT(names_in(out), ElementsAre("0098.exr", "0099.exr", "0100.exr"));
 }
@@ -111,13 +111,13 @@ TEST_F(Batch, missing_frames_are_listed_before_any_work) {
   const Finished finished = run({"--frames", "1-8"});
   EXPECT_EQ(finished.code, 3);
   EXPECT_THAT(finished.err, AllOf(HasSubstr("3 of 8 frames are missing: 3, 5-6"), HasSubstr("f.0003.exr"),
-                                  HasSubstr("--missing skip")));
+                                  HasSubstr("--set missing=skip")));
   EXPECT_THAT(names_in(out), IsEmpty());
-  const Finished skipped = run({"--frames", "1-8", "--missing", "skip"});
+  const Finished skipped = run({"--frames", "1-8", "--set", "missing=skip"});
   EXPECT_EQ(skipped.code, 0) << skipped;
   EXPECT_THAT(skipped.err, HasSubstr("3 missing (3, 5-6)"));
   EXPECT_THAT(names_in(out), ElementsAre("ao.0001.exr", "ao.0002.exr", "ao.0004.exr", "ao.0007.exr", "ao.0008.exr"));
-  EXPECT_EQ(run({"--frames", "3,5", "--missing", "skip"}).code, 3) << "nothing is left";
+  EXPECT_EQ(run({"--frames", "3,5", "--set", "missing=skip"}).code, 3) << "nothing is left";
 }
 
 TEST_F(Batch, no_frame_at_all_is_an_error) {
@@ -132,7 +132,7 @@ TEST_F(Batch, files_that_frames_would_share_are_refused) {
       run_program({"run", in + "/f.%04d.exr", "-o", out + "/ao.exr", "--camera", camera, "--radius", "1"});
   EXPECT_EQ(one.code, 2) << one;
   EXPECT_THAT(one.err, AllOf(HasSubstr("ao.exr"), HasSubstr("all 3 frames"), HasSubstr("%04d")));
-  const Finished over = run_program({"run", in + "/f.%04d.exr", "-o", in + "/f.%04d.exr", "--output-offset", "2",
+  const Finished over = run_program({"run", in + "/f.%04d.exr", "-o", in + "/f.%04d.exr", "--set", "output-offset=2",
                                      "--camera", camera, "--radius", "1"});
   EXPECT_EQ(over.code, 2) << over;
   EXPECT_THAT(over.err, AllOf(HasSubstr("f.0003.exr"), HasSubstr("overwrite an input")));
@@ -196,7 +196,7 @@ TEST_F(Batch, sky_at_the_beginning_decides_nothing_however_long_it_is) {
   const Finished finished = run();
   ASSERT_EQ(finished.code, 0) << finished;
   EXPECT_EQ(pixels(read_bytes(output(12))), pixels(alone)) << finished;
-  ASSERT_EQ(run({"--frames", "1-100", "--missing", "skip"}).code, 0);
+  ASSERT_EQ(run({"--frames", "1-100", "--set", "missing=skip"}).code, 0);
   EXPECT_EQ(pixels(read_bytes(output(12))), pixels(alone)) << "of a sequence of which most frames are missing";
 }
 
@@ -270,7 +270,7 @@ TEST_F(Batch, the_log_has_an_object_a_line) {
   EXPECT_EQ(totals["frames"], 3);
   EXPECT_EQ(totals["at_once"], 2);
   EXPECT_THAT(run({"--log-json", "-", "--progress", "none"}).out, StartsWith("{\"event\":\"begin\""));
-  EXPECT_EQ(run({"--log-json", folder / "none/log", "--no-mkdir"}).code, 4);
+  EXPECT_EQ(run({"--log-json", folder / "none/log", "--set", "no-mkdir=true"}).code, 4);
 }
 
 TEST_F(Batch, memory_does_not_grow_with_the_frames) {
@@ -295,7 +295,7 @@ TEST_F(Batch, senseless_options_are_refused) {
                                                     {"--frames", "1-x"},
                                                     {"--memory", "4X"},
                                                     {"--memory", "-1G"},
-                                                    {"--missing", "hold"},
+                                                    {"--set", "missing=hold"},
                                                     {"--progress", "loud"}})
     EXPECT_EQ(run(arguments).code, 2) << testing::PrintToString(arguments);
 }

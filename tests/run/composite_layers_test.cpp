@@ -209,7 +209,7 @@ class CompositeLayers : public CommandLine {
   }
 
   std::vector<PartContent> composited(const Options& more = {}) const {
-    Options options{"--beauty", beauty, "--composite", composite, "--type", "float", "--overwrite"};
+    Options options{"--beauty", beauty, "--composite", composite, "--type", "float", "--set", "overwrite=true"};
     options.insert(options.end(), more.begin(), more.end());
     const Finished finished = run(options);
     EXPECT_EQ(finished.code, 0) << finished;
@@ -258,7 +258,7 @@ TEST_F(CompositeLayers, of_one_part_keep_every_bit_beside_the_beauty) {
 
 TEST_F(CompositeLayers, hold_what_the_composite_of_rgba_alone_holds) {
   write({header("", "", beauty_channels())});
-  const auto all = composited(), alone = composited({"--composite-layers", "rgba"});
+  const auto all = composited(), alone = composited({"--set", "composite-layers=rgba"});
   ASSERT_EQ(alone.size(), 1);
   EXPECT_EQ(alone[0].channels.size(), 4);
   for (const char* c : {"R", "G", "B", "A"})
@@ -291,21 +291,21 @@ TEST_F(CompositeLayers, of_tiles_or_lossy_parts_become_lossless_scan_lines) {
   const auto before = content_of(beauty), after = composited();
   expect_kept(before, after, 0, "Combined.");
   EXPECT_EQ(after[0].compression, Imf::ZIP_COMPRESSION);
-  EXPECT_EQ(composited({"--composite-compression", "dwab"})[0].compression, Imf::DWAB_COMPRESSION);
+  EXPECT_EQ(composited({"--set", "composite-compression=dwab"})[0].compression, Imf::DWAB_COMPRESSION);
 }
 
 TEST_F(CompositeLayers, may_take_the_ao_too) {
   write({header("", "", beauty_channels())});
-  const auto before = content_of(beauty), after = composited({"--append-ao", "AO"});
+  const auto before = content_of(beauty), after = composited({"--set", "append-ao=AO"});
   expect_kept(before, after, 0, "Combined.");
   EXPECT_EQ(after[0].channels.size(), before[0].channels.size() + 1);
   const Image appended = read_exr_image(composite, {"AO.Y"}), alone = read_exr_image(ao);
   EXPECT_EQ(appended.pixels, alone.pixels);
-  EXPECT_TRUE(composited({"--append-ao", "Light.occlusion"})[0].channels.contains("Light.occlusion"));
-  EXPECT_TRUE(composited({"--append-ao", "AO", "--composite-layers", "rgba"})[0].channels.contains("AO.Y"));
-  composited({"--ao-name", "shadow.Y"});
+  EXPECT_TRUE(composited({"--set", "append-ao=Light.occlusion"})[0].channels.contains("Light.occlusion"));
+  EXPECT_TRUE(composited({"--set", "append-ao=AO", "--set", "composite-layers=rgba"})[0].channels.contains("AO.Y"));
+  composited({"--set", "ao-name=shadow.Y"});
   EXPECT_EQ(read_exr_image(ao).names, Options{"shadow.Y"});
-  composited({"--ao-name", "shadow", "--ao-channels", "rgb"});
+  composited({"--set", "ao-name=shadow", "--set", "ao-channels=rgb"});
   EXPECT_THAT(read_exr_image(ao).names, testing::UnorderedElementsAre("shadow.R", "shadow.G", "shadow.B"));
 }
 
@@ -346,8 +346,8 @@ TEST_F(CompositeLayers, of_frames_that_are_done_are_left_by_resume_and_others_ar
   };
   ASSERT_EQ(run(options).code, 0);
   EXPECT_FALSE(with({})) << "it is done";
-  EXPECT_TRUE(with({"--append-ao", "AO"}));
-  EXPECT_TRUE(with({"--gain", "2"}));
+  EXPECT_TRUE(with({"--set", "append-ao=AO"}));
+  EXPECT_TRUE(with({"--set", "gain=2"}));
   EXPECT_TRUE(with({})) << "what is there is another one";
   const auto whole = std::filesystem::file_size(composite);
   for (const double part : {0.999, 0.9, 0.5}) {
@@ -380,14 +380,16 @@ TEST_F(CompositeLayers, mistakes_are_named_in_one_line) {
     EXPECT_FALSE(std::filesystem::exists(composite));
   };
   write({header("", "", beauty_channels())});
-  expect_error(3, {"--append-ao", "Combined.R"}, {beauty, "Combined.R", "--append-ao"});
-  expect_error(2, {"--append-ao", "AO", "--composite-compression", "dwaa"}, {"--append-ao AO", "dwaa", "AO.ao"});
-  expect_error(2, {"--composite-layers", "some"}, {"--composite-layers", "all"});
-  expect_error(3, {"--ambient", "Combinet"}, {beauty, "Combinet", "--ambient"});
+  expect_error(3, {"--set", "append-ao=Combined.R"}, {beauty, "Combined.R", "--set append-ao"});
+  expect_error(2, {"--set", "append-ao=AO", "--set", "composite-compression=dwaa"},
+               {"--set append-ao=AO", "dwaa", "AO.ao"});
+  expect_error(2, {"--set", "composite-layers=some"}, {"--set", "composite-layers=all"});
+  expect_error(3, {"--set", "ambient=Combinet"}, {beauty, "Combinet", "--set ambient"});
   for (const char* text :
        {"Combined*2", "Combined*-1", "Combined**1", "*1", "Combined*a*b", "Combined*1*1", "Combined,"})
-    expect_error(2, {"--ambient", text}, {"--ambient", "LIGHT*NUMBER"});
-  for (const char* text : {"1,1", "1,1,2", "a,b,c", "0.5"}) expect_error(2, {"--tint", text}, {"--tint", text});
+    expect_error(2, {"--set", std::string("ambient=") + text}, {"--set ambient", "LIGHT*NUMBER"});
+  for (const char* text : {"1,1", "1,1,2", "a,b,c", "0.5"})
+    expect_error(2, {"--set", std::string("tint=") + text}, {"--set tint", text});
   // The file is cut within its pixels.
   std::filesystem::resize_file(beauty, std::filesystem::file_size(beauty) * 3 / 4);
   expect_error(3, {}, {beauty});
@@ -427,7 +429,8 @@ class Lights : public CompositeLayers {
   double error(const Options& more, const std::function<double(std::size_t, const char*)>& ambient, double gain = 1,
                double mix = 1, const std::array<double, 3>& tint = {}) const {
     file.write(frame);
-    Options options{"--composite", composite, "--composite-layers", "rgba", "--type", "float", "--overwrite"};
+    Options options{"--composite", composite, "--set", "composite-layers=rgba",
+                    "--type",      "float",   "--set", "overwrite=true"};
     options.insert(options.end(), more.begin(), more.end());
     const Finished finished = run(options);
     EXPECT_EQ(finished.code, 0) << finished;
@@ -459,26 +462,29 @@ TEST_F(Lights, are_dimmed_by_their_weights_and_take_the_colours_that_belong_to_t
   const auto diffuse = [&](std::size_t i, const char* c) { return at("DiffInd", c, i) * at("DiffCol", c, i); };
   const auto gloss = [&](std::size_t i, const char* c) { return at("GlossInd", c, i) * at("GlossCol", c, i); };
   EXPECT_LT(error({}, diffuse), 1e-5) << "as ever";
-  EXPECT_LT(error({"--ambient", "DiffInd"}, diffuse), 1e-5);
-  EXPECT_LT(error({"--ambient", "DiffInd,GlossInd*0.25"},
+  EXPECT_LT(error({"--set", "ambient=DiffInd"}, diffuse), 1e-5);
+  EXPECT_LT(error({"--set", "ambient=DiffInd,GlossInd*0.25"},
                   [&](std::size_t i, const char* c) { return diffuse(i, c) + 0.25 * gloss(i, c); }),
             1e-5);
-  EXPECT_LT(error({"--ambient", "GI*DiffCol*0.5,key_light"},
+  EXPECT_LT(error({"--set", "ambient=GI*DiffCol*0.5,key_light"},
                   [&](std::size_t i, const char* c) {
                     return 0.5 * at("GI", c, i) * at("DiffCol", c, i) + at("key_light", c, i);
                   }),
             1e-5);
-  EXPECT_LT(error({"--ambient", "ViewLayer.GI"}, [&](std::size_t i, const char* c) { return at("GI", c, i); }), 1e-5);
-  EXPECT_LT(error({"--ambient", "Combined"}, [&](std::size_t i, const char* c) { return at("Combined", c, i); }), 1e-5);
+  EXPECT_LT(error({"--set", "ambient=ViewLayer.GI"}, [&](std::size_t i, const char* c) { return at("GI", c, i); }),
+            1e-5);
+  EXPECT_LT(error({"--set", "ambient=Combined"}, [&](std::size_t i, const char* c) { return at("Combined", c, i); }),
+            1e-5);
 }
 
 TEST_F(Lights, are_dimmed_by_gain_tint_and_mix) {
   const auto diffuse = [&](std::size_t i, const char* c) { return at("DiffInd", c, i) * at("DiffCol", c, i); };
-  EXPECT_LT(error({"--gain", "2.5"}, diffuse, 2.5), 1e-5);
-  EXPECT_LT(error({"--mix", "0.4"}, diffuse, 1, 0.4), 1e-5);
-  EXPECT_LT(error({"--tint", "0.2,0.1,0"}, diffuse, 1, 1, {0.2, 0.1, 0}), 1e-5);
-  EXPECT_LT(error({"--tint", "0.2,0.1,0", "--gain", "3", "--mix", "0.7"}, diffuse, 3, 0.7, {0.2, 0.1, 0}), 1e-5);
-  EXPECT_GT(error({"--gain", "2.5"}, diffuse, 1), 0.01) << "or else nothing is told apart";
+  EXPECT_LT(error({"--set", "gain=2.5"}, diffuse, 2.5), 1e-5);
+  EXPECT_LT(error({"--set", "mix=0.4"}, diffuse, 1, 0.4), 1e-5);
+  EXPECT_LT(error({"--set", "tint=0.2,0.1,0"}, diffuse, 1, 1, {0.2, 0.1, 0}), 1e-5);
+  EXPECT_LT(error({"--set", "tint=0.2,0.1,0", "--set", "gain=3", "--set", "mix=0.7"}, diffuse, 3, 0.7, {0.2, 0.1, 0}),
+            1e-5);
+  EXPECT_GT(error({"--set", "gain=2.5"}, diffuse, 1), 0.01) << "or else nothing is told apart";
 }
 
 }  // namespace

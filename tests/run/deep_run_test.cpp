@@ -311,9 +311,9 @@ TEST_F(DeepRun, mistakes_are_refused_in_one_line) {
 TEST_F(DeepRun, estimators_that_know_no_layers_take_samples_as_the_depth_alone) {
   for (const char* estimator : {"hbao", "crytek"}) {
     const Options with{"--deep", deep, "--estimator", estimator};
-    expect_refused(run(with), {"deep.exr", "--estimator gtao or bitmask", "--deep", "--hidden 0"}, 2);
+    expect_refused(run(with), {"deep.exr", "--estimator gtao or bitmask", "--deep", "--set hidden=0"}, 2);
     Options without_hidden = with;
-    without_hidden.insert(without_hidden.end(), {"--hidden", "0"});
+    without_hidden.insert(without_hidden.end(), {"--set", "hidden=0"});
     EXPECT_TRUE(result(without_hidden) == result({"--estimator", estimator}));
     EXPECT_EQ(run_on({deep, "--estimator", estimator}).code, 0);
   }

@@ -182,7 +182,7 @@ TEST_F(Faults, resume_redoes_what_is_missing_stale_or_broken) {
   fs::last_write_time(input(5), fs::last_write_time(output(1)));
   EXPECT_THAT(run({"--resume", "--radius", "2"}).err, HasSubstr("8 frames done"));
   EXPECT_THAT(run({"--resume", "--radius", "2"}).err, HasSubstr("8 kept"));
-  EXPECT_THAT(run({"--resume", "--overwrite", "--radius", "2"}).err, HasSubstr("8 frames done"));
+  EXPECT_THAT(run({"--resume", "--set", "overwrite=true", "--radius", "2"}).err, HasSubstr("8 frames done"));
 }
 
 TEST_F(Faults, resume_redoes_what_has_another_input_of_any_age) {

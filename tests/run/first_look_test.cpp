@@ -41,10 +41,11 @@ TEST_F(Holes, of_a_pattern_without_a_list_are_a_warning) {
   EXPECT_EQ(text_in(read_header(output(1)), "alcove/notes"), "(none)") << "it says nothing about this frame";
   EXPECT_THAT(run({"--dry-run"}).out, HasSubstr("3, 5-6"));
   EXPECT_THAT(run({"--frames", "1-2,4,7"}).err, Not(HasSubstr("sequence-hole")));
-  EXPECT_THAT(run({"--missing", "skip"}).err, AllOf(Not(HasSubstr("sequence-hole")), HasSubstr("3 missing (3, 5-6)")));
+  EXPECT_THAT(run({"--set", "missing=skip"}).err,
+              AllOf(Not(HasSubstr("sequence-hole")), HasSubstr("3 missing (3, 5-6)")));
   EXPECT_THAT(run({"--chunk", "2/2"}).err, HasSubstr("3, 5-6")) << "the same in every chunk";
   remove_outputs();
-  EXPECT_EQ(run({"--warnings-as-errors"}).code, 3);
+  EXPECT_EQ(run({"--set", "warnings-as-errors=true"}).code, 3);
   EXPECT_THAT(names_in(out), IsEmpty());
 }
 
@@ -61,7 +62,7 @@ TEST_F(Holes, stand_in_order_with_other_frames_that_are_left_out) {
   keep({1, 2, 4, 5});
   for (const int frame : {1, 2, 4}) fs::copy_file(input(frame), fmt::format("{}/n.{:04}.exr", in, frame));
   const std::string stats = folder / "stats.json";
-  EXPECT_EQ(run({"--missing", "skip", "--normal", in + "/n.%04d.exr", "--stats", stats}).code, 0);
+  EXPECT_EQ(run({"--set", "missing=skip", "--normal", in + "/n.%04d.exr", "--stats", stats}).code, 0);
   EXPECT_EQ(json::parse(read_bytes(stats))["totals"]["missing"], (json{3, 5}));
 }
 

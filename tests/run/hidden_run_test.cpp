@@ -139,7 +139,7 @@ TEST_F(HiddenRun, a_copy_of_the_first_surface_and_one_beyond_the_radius_change_n
 
 TEST_F(HiddenRun, nothing_is_kept_where_nothing_is_asked_for) {
   const auto plain = result({"--type", "float"});
-  EXPECT_TRUE(result(behind({"plate.exr", "wall.exr"}, {"--hidden", "0"})) == plain);
+  EXPECT_TRUE(result(behind({"plate.exr", "wall.exr"}, {"--set", "hidden=0"})) == plain);
   EXPECT_EQ(text_in(read_header(ao), "alcove/hidden"), "(none)");
 }
 
@@ -160,7 +160,7 @@ TEST_F(HiddenRun, counts_what_is_kept_and_what_is_dropped) {
   EXPECT_EQ(all["hidden"]["surfaces"], pixels + 2 * plate);
   EXPECT_EQ(all["hidden"]["dropped"], 0);
   Options two = layers;
-  two.insert(two.end(), {"--hidden", "1"});
+  two.insert(two.end(), {"--set", "hidden=1"});
   const json one = stats_of(two);
   EXPECT_EQ(one["hidden"]["surfaces"], pixels);
   EXPECT_EQ(one["hidden"]["dropped"], 2 * plate);
@@ -168,7 +168,7 @@ TEST_F(HiddenRun, counts_what_is_kept_and_what_is_dropped) {
 }
 
 TEST_F(HiddenRun, draws_how_many_there_are) {
-  EXPECT_EQ(run(behind({"plate.exr", "wall.exr"}, {"--debug", "hidden"})).code, 0);
+  EXPECT_EQ(run(behind({"plate.exr", "wall.exr"}, {"--set", "debug=hidden"})).code, 0);
   EXPECT_TRUE(std::filesystem::exists(folder / "ao.hidden.png"));
 }
 
@@ -195,11 +195,11 @@ TEST_F(HiddenRun, takes_another_channel_of_input) {
   both.planes["ViewLayer.Depth.Z"] = first;
   both.planes["layer2.Z"] = std::vector<float>(kWallWindow.pixels(), 9);
   both.write(frame);
-  const Options options{"--behind", frame, "--behind-channel", "layer2.Z", "--aov", "hidden", "--hidden", "1"};
+  const Options options{"--behind", frame, "--set", "behind-channel=layer2.Z", "--aov", "hidden", "--set", "hidden=1"};
   EXPECT_EQ(result(options).at("hidden1.Z")[5], 9);
   expect_refused({"--behind", frame},
-                 {frame, "ViewLayer.Depth.Z is the depth of the frame itself", "--behind-channel"});
-  expect_refused({"--behind", frame, "--behind-channel", "layer3.Z"}, {frame, "layer3.Z", "--behind-channel"});
+                 {frame, "ViewLayer.Depth.Z is the depth of the frame itself", "--set behind-channel"});
+  expect_refused({"--behind", frame, "--set", "behind-channel=layer3.Z"}, {frame, "layer3.Z", "--set behind-channel"});
 }
 
 TEST_F(HiddenRun, a_thickness_is_added_to_the_first_surface) {
@@ -207,7 +207,7 @@ TEST_F(HiddenRun, a_thickness_is_added_to_the_first_surface) {
   for (std::size_t i = 0; i < thickness.size(); i++)
     if (is_plate(i)) thickness[i] = 0.25f;
   write_layer("thickness.exr", thickness);
-  const Options aov{"--aov", "hidden", "--hidden", "1"};
+  const Options aov{"--aov", "hidden", "--set", "hidden=1"};
   Options with_kind = aov;
   with_kind.insert(with_kind.end(), {"--behind-kind", "thickness"});
   const auto by_thickness = result(behind({"thickness.exr"}, with_kind));
@@ -217,7 +217,7 @@ TEST_F(HiddenRun, a_thickness_is_added_to_the_first_surface) {
   write_layer("thickness.exr", thickness);
   with_kind.back() = "thickness";
   expect_refused(behind({"thickness.exr"}, with_kind),
-                 {folder / "thickness.exr", "Z is below 0", "--behind-channel", "--behind-kind"});
+                 {folder / "thickness.exr", "Z is below 0", "--set behind-channel", "--behind-kind"});
 }
 
 TEST_F(HiddenRun, what_is_not_of_the_same_pixels_is_refused_with_both_files) {
@@ -256,8 +256,7 @@ TEST_F(HiddenRun, another_scale_or_kind_of_depth_is_refused) {
   for (std::size_t i = 0; i < z.size(); i++) z[i] = 0.01f * first[i] * (1 + 0.001f * float(i % 7));
   write_layer("metres.exr", z);
   expect_refused(behind({"plate.exr", "metres.exr"}),
-                 {folder / "metres.exr", "before the first surface on 100 %", "0.01 times", "--behind-channel",
-                  "--depth-kind", "--depth-scale", frame});
+                 {folder / "metres.exr", "before the first surface on 100 %", "0.01 times", "--set behind-channel", "--depth-kind", "--depth-scale", frame});
   for (std::size_t i = 0; i < z.size(); i++) {
     const double x = (double(i % 64) + 0.5 - 32) / 60, y = (double(i / 64) + 0.5 - 18) / 60;
     z[i] = float(first[i] * std::sqrt(1 + x * x + y * y));
@@ -268,8 +267,9 @@ TEST_F(HiddenRun, another_scale_or_kind_of_depth_is_refused) {
 }
 
 TEST_F(HiddenRun, layers_without_use_are_noted) {
-  EXPECT_THAT(run(behind({"copy.exr"})).err, AllOf(HasSubstr("[nothing-hidden]"), HasSubstr(folder / "copy.exr"),
-                                                   HasSubstr("--behind-channel"), HasSubstr("or give another file")));
+  EXPECT_THAT(run(behind({"copy.exr"})).err,
+              AllOf(HasSubstr("[nothing-hidden]"), HasSubstr(folder / "copy.exr"), HasSubstr("--set behind-channel"),
+                    HasSubstr("or give another file")));
   write_layer("empty.exr", std::vector<float>(kWallWindow.pixels(), NAN));
   EXPECT_THAT(run(behind({"empty.exr"})).err, HasSubstr("[empty-layer]"));
   std::vector<float> shifted = first;
@@ -299,8 +299,8 @@ TEST_F(HiddenRun, a_layer_before_most_of_the_first_surface_is_refused) {
   std::vector<float> other = first;
   for (std::size_t i = 0; i < other.size(); i++) other[i] = i % 5 < 3 ? 0.8f * first[i] : 7;
   write_layer("other.exr", other);
-  expect_refused(behind({"other.exr"}),
-                 {folder / "other.exr", "before the first surface on 60 %", "--behind", "--behind-channel", frame});
+  expect_refused(behind({"other.exr"}), {folder / "other.exr", "before the first surface on 60 %", "--behind", "--set",
+                                         std::string("behind-channel=") + frame});
 }
 
 TEST_F(HiddenRun, a_depth_that_is_said_to_be_a_thickness_is_noted) {
@@ -313,8 +313,9 @@ TEST_F(HiddenRun, a_depth_that_is_said_to_be_a_thickness_is_noted) {
 
 TEST_F(HiddenRun, outputs_of_what_is_hidden_need_something_that_is) {
   expect_refused({"--aov", "hidden"}, {"--aov hidden", "--behind", "--around"}, 2);
-  expect_refused({"--debug", "hidden"}, {"--debug hidden", "--behind"}, 2);
-  expect_refused(behind({"plate.exr"}, {"--aov", "hidden", "--hidden", "0"}), {"--aov hidden", "--hidden 0"}, 2);
+  expect_refused({"--set", "debug=hidden"}, {"--set debug=hidden", "--behind"}, 2);
+  expect_refused(behind({"plate.exr"}, {"--aov", "hidden", "--set", "hidden=0"}), {"--aov hidden", "--set hidden=0"},
+                 2);
 }
 
 TEST_F(HiddenRun, a_dry_run_names_the_files_and_their_memory) {
@@ -351,7 +352,7 @@ TEST_F(HiddenRun, layers_of_a_sequence_go_with_its_frames) {
   }
   const Finished finished =
       run_program({"run", folder / "f.%d.exr", "-o", folder / "out.%d.exr", "--camera", camera, "--radius", "1",
-                   "--behind", folder / "peel.%d.exr", "--aov", "ao,hidden", "--hidden", "1"});
+                   "--behind", folder / "peel.%d.exr", "--aov", "ao,hidden", "--set", "hidden=1"});
   ASSERT_EQ(finished.code, 0) << finished;
   for (int number = 1; number <= 2; number++)
     EXPECT_EQ(read_exr_image(folder / fmt::format("out.{}.exr", number), {"hidden1.Z"}).pixels[7], float(8 + number));
@@ -374,11 +375,11 @@ TEST_F(HiddenRun, inspect_proposes_channels_that_may_be_hidden_and_reads_none_of
   for (const auto& guess : found["hidden"]) channels.push_back(guess["channel"]);
   EXPECT_THAT(channels, testing::UnorderedElementsAre("Layer2.Z", "zback", "Peel3.Z", "depth_back"));
   EXPECT_THAT(found["hidden_options"].get<std::string>(),
-              AllOf(HasSubstr("--behind " + frame), HasSubstr("--behind-channel"), HasSubstr("backs")));
+              AllOf(HasSubstr("--behind " + frame), HasSubstr("--set behind-channel"), HasSubstr("backs")));
   EXPECT_THAT(found["command"].get<std::string>(), Not(HasSubstr("--behind")));
   EXPECT_THAT(run_program({"inspect", frame, "--camera", camera}).out,
-              AllOf(HasSubstr("perhaps hidden surfaces: Layer2.Z"), HasSubstr("--behind-channel")));
-  const Finished proposed = run({"--behind", frame, "--behind-channel", "Layer2.Z", "--aov", "hidden"});
+              AllOf(HasSubstr("perhaps hidden surfaces: Layer2.Z"), HasSubstr("--set behind-channel")));
+  const Finished proposed = run({"--behind", frame, "--set", "behind-channel=Layer2.Z", "--aov", "hidden"});
   EXPECT_EQ(proposed.code, 0) << proposed;
 }
 

@@ -76,8 +76,8 @@ TEST_F(Matte, within_it_the_ao_is_that_of_the_whole_frame_and_elsewhere_what_is_
                                                      {"--preset", "production"},
                                                      {"--preset", "draft", "--resolution", "half"},
                                                      {"--resolution", "quarter", "--denoise", "box"},
-                                                     {"--stride", "1", "--slices", "4"},
-                                                     {"--density", "uniform", "--stride", "4"},
+                                                     {"--set", "stride=1", "--slices", "4"},
+                                                     {"--set", "density=uniform", "--set", "stride=4"},
                                                      {"--estimator", "bitmask"},
                                                      {"--estimator", "hbao"},
                                                      {"--estimator", "crytek"},
@@ -87,7 +87,7 @@ TEST_F(Matte, within_it_the_ao_is_that_of_the_whole_frame_and_elsewhere_what_is_
     const Plane whole = ao_of(file, options);
     const auto before = tiles();
     Options with_matte = options;
-    with_matte.insert(with_matte.end(), {"--matte-channel", "Matte.Y", "--matte-outside", "0.25"});
+    with_matte.insert(with_matte.end(), {"--set", "matte-channel=Matte.Y", "--matte-outside", "0.25"});
     const Plane ao = ao_of(file, with_matte);
     std::size_t occluded = 0;
     for (std::size_t i = 0; i < ao.size(); i++) {
@@ -104,12 +104,12 @@ TEST_F(Matte, within_it_the_ao_is_that_of_the_whole_frame_and_elsewhere_what_is_
 }
 
 TEST_F(Matte, of_zeros_everything_is_outside_and_nothing_is_computed) {
-  const Plane ao = ao_of(with("Matte.Y", Plane(kWindow.pixels(), 0)), {"--matte-channel", "Matte.Y"});
+  const Plane ao = ao_of(with("Matte.Y", Plane(kWindow.pixels(), 0)), {"--set", "matte-channel=Matte.Y"});
   EXPECT_THAT(ao, testing::Each(1.0F));
   EXPECT_EQ(tiles()["computed"], 0);
   Plane none(kWindow.pixels(), std::numeric_limits<float>::quiet_NaN());
   none[0] = -1;
-  EXPECT_THAT(ao_of(with("Matte.Y", none), {"--matte-channel", "Matte.Y"}), testing::Each(1.0F)) << "no number";
+  EXPECT_THAT(ao_of(with("Matte.Y", none), {"--set", "matte-channel=Matte.Y"}), testing::Each(1.0F)) << "no number";
 }
 
 TEST_F(Matte, a_file_of_its_own_needs_no_channel) {
@@ -117,9 +117,9 @@ TEST_F(Matte, a_file_of_its_own_needs_no_channel) {
   FrameFile own{kWindow, kWindow, 1, {{"A", matte}, {"R", Plane(matte.size(), 1)}}, {}, {}};
   own.write(folder / "matte.exr");
   const FrameFile file = with("Matte.Y", matte);
-  const Plane expected = ao_of(file, {"--matte-channel", "Matte.Y"});
+  const Plane expected = ao_of(file, {"--set", "matte-channel=Matte.Y"});
   EXPECT_EQ(ao_of(file, {"--matte", folder / "matte.exr"}), expected);
-  EXPECT_NE(ao_of(file, {"--matte", folder / "matte.exr", "--matte-channel", "R"}), expected);
+  EXPECT_NE(ao_of(file, {"--matte", folder / "matte.exr", "--set", "matte-channel=R"}), expected);
 }
 
 TEST_F(Matte, of_numbers_is_what_the_objects_cover) {
@@ -132,9 +132,9 @@ TEST_F(Matte, of_numbers_is_what_the_objects_cover) {
   }
   FrameFile file = with("IndexOB.X", numbers);
   file.planes["Matte.Y"] = covered;
-  const Plane expected = ao_of(file, {"--matte-channel", "Matte.Y"});
-  EXPECT_EQ(ao_of(file, {"--matte-channel", "IndexOB.X", "--matte-object", "3,12"}), expected);
-  EXPECT_NE(ao_of(file, {"--matte-channel", "IndexOB.X", "--matte-object", "3"}), expected);
+  const Plane expected = ao_of(file, {"--set", "matte-channel=Matte.Y"});
+  EXPECT_EQ(ao_of(file, {"--set", "matte-channel=IndexOB.X", "--matte-object", "3,12"}), expected);
+  EXPECT_NE(ao_of(file, {"--set", "matte-channel=IndexOB.X", "--matte-object", "3"}), expected);
 }
 
 // Identifiers that Blender 3.4 wrote into a manifest, and published ones of MurmurHash3; of the last two the exponents
@@ -192,7 +192,7 @@ class Crypto : public Matte {
   Plane expected(const Plane& matte) const {
     FrameFile plain = wall_frame(kWindow, kWindow);
     plain.planes["Matte.Y"] = matte;
-    return ao_of(plain, {"--matte-channel", "Matte.Y"});
+    return ao_of(plain, {"--set", "matte-channel=Matte.Y"});
   }
 
   const Plane ball = disc(150, 100, 30);
@@ -208,7 +208,7 @@ TEST_F(Crypto, objects_are_found_by_names_and_patterns_in_all_ranks) {
   EXPECT_EQ(difference(ao_of(file, {"--matte-object", "Ball"}), of_ball).max, 0);
   for (const char* objects : {"Ball,Ball.2", "Ball*", "Ball?2,Ball"})
     EXPECT_LE(difference(ao_of(file, {"--matte-object", objects}), of_both).max, 1e-6) << objects;
-  EXPECT_EQ(difference(ao_of(file, {"--matte-object", "Ball", "--matte-channel", "Crypto"}), of_ball).max, 0);
+  EXPECT_EQ(difference(ao_of(file, {"--matte-object", "Ball", "--set", "matte-channel=Crypto"}), of_ball).max, 0);
   EXPECT_GT(difference(of_ball, of_both).max, 0.05) << "or else there is nothing to tell apart";
 }
 
@@ -300,14 +300,16 @@ TEST_F(Crypto, resume_redoes_what_another_manifest_beside_the_file_decided) {
 
 TEST_F(Crypto, mistakes_are_named) {
   expect_error(file, 3, {"--matte-object", "Bal"}, {frame, "Crypto", "did you mean Ball", "--matte-object"});
-  expect_error(file, 3, {"--matte-channel", "Crypto"}, {frame, "--matte-object"});
+  expect_error(file, 3, {"--set", "matte-channel=Crypto"}, {frame, "--matte-object"});
   expect_error(wall_frame(kWindow, kWindow), 3, {"--matte-object", "Ball"},
-               {frame, "no Cryptomatte", "--matte-channel"});
-  expect_error(with("IndexOB.X", ball), 3, {"--matte-channel", "IndexOB.X", "--matte-object", "Ball"},
+               {frame, "no Cryptomatte", "--set matte-channel"});
+  expect_error(with("IndexOB.X", ball), 3, {"--set", "matte-channel=IndexOB.X", "--matte-object", "Ball"},
                {frame, "IndexOB.X", "numbers"});
-  expect_error(wall_frame(kWindow, kWindow), 3, {"--matte-channel", "Matte.Y"}, {frame, "Matte.Y", "--matte-channel"});
+  expect_error(wall_frame(kWindow, kWindow), 3, {"--set", "matte-channel=Matte.Y"},
+               {frame, "Matte.Y", "--set matte-channel"});
   expect_error(wall_frame(kWindow, kWindow), 2, {"--matte-outside", "0.5"}, {"--matte-outside", "--matte"});
-  expect_error(with("Matte.Y", ball), 2, {"--matte-channel", "Matte.Y", "--matte-outside", "2"}, {"--matte-outside"});
+  expect_error(with("Matte.Y", ball), 2, {"--set", "matte-channel=Matte.Y", "--matte-outside", "2"},
+               {"--matte-outside"});
   FrameFile small{{0, 0, 10, 10}, {0, 0, 10, 10}, 1, {{"A", Plane(100, 1)}}, {}, {}};
   small.write(folder / "small.exr");
   expect_error(file, 3, {"--matte", folder / "small.exr"}, {"small.exr", "--matte", "10x10"});
@@ -315,7 +317,7 @@ TEST_F(Crypto, mistakes_are_named) {
   for (const char* channel : {"00.R", "00.G"}) file.planes[std::string("Material") + channel] = ball;
   file.attributes["cryptomatte/0000000/name"] = "Material";
   file.attributes["cryptomatte/0000000/manifest"] = manifest;
-  expect_error(file, 3, {"--matte-object", "Ball"}, {"Crypto", "Material", "--matte-channel"});
+  expect_error(file, 3, {"--matte-object", "Ball"}, {"Crypto", "Material", "--set matte-channel"});
 }
 
 TEST_F(Crypto, damaged_headers_are_no_cryptomattes) {
@@ -328,8 +330,8 @@ TEST_F(Crypto, damaged_headers_are_no_cryptomattes) {
 
 TEST_F(Matte, a_region_of_the_frame_has_the_values_of_the_whole) {
   const FrameFile file = with("Matte.Y", disc(150, 100, 30));
-  const Plane whole = ao_of(file, {"--matte-channel", "Matte.Y"});
-  const Plane part = ao_of(file, {"--matte-channel", "Matte.Y", "--roi", "100,60,70,50"});
+  const Plane whole = ao_of(file, {"--set", "matte-channel=Matte.Y"});
+  const Plane part = ao_of(file, {"--set", "matte-channel=Matte.Y", "--roi", "100,60,70,50"});
   EXPECT_LE(difference(part, cropped(whole, kWindow, {100, 60, 70, 50})).max, 1e-6);
 }
 
@@ -339,7 +341,8 @@ TEST_F(Matte, composites_keep_every_bit_outside_of_it) {
   add_beauty(file);
   file.write(frame);
   const std::string composite = folder / "composite.exr";
-  ASSERT_EQ(run({"--matte-channel", "Matte.Y", "--composite", composite, "--composite-layers", "rgba"}).code, 0);
+  ASSERT_EQ(run({"--set", "matte-channel=Matte.Y", "--composite", composite, "--set", "composite-layers=rgba"}).code,
+            0);
   const Image result = read_exr_image(composite);
   const Plane& red = file.planes["ViewLayer.Combined.R"];
   ASSERT_EQ(red.size(), matte.size()) << "the beauty of add_beauty() has other names";
@@ -359,12 +362,12 @@ TEST_F(Matte, one_that_moves_along_a_sequence_gives_each_frame_its_own) {
   std::vector<Plane> alone;
   for (int i = 0; i < 3; i++) {
     const FrameFile file = with("Matte.Y", disc(90 + 60 * i, 100, 30));
-    alone.push_back(ao_of(file, {"--matte-channel", "Matte.Y"}));
+    alone.push_back(ao_of(file, {"--set", "matte-channel=Matte.Y"}));
     file.write(fmt::format("{}/shot.{:04}.exr", folder.path(), i + 1));
   }
   const Finished finished =
       run_program({"run", folder / "shot.####.exr", "-o", folder / "out.####.exr", "--camera", camera, "--radius", "1",
-                   "--type", "float", "--threads", "1", "--matte-channel", "Matte.Y"});
+                   "--type", "float", "--threads", "1", "--set", "matte-channel=Matte.Y"});
   ASSERT_EQ(finished.code, 0) << finished;
   for (int i = 0; i < 3; i++)
     EXPECT_EQ(read_exr_image(fmt::format("{}/out.{:04}.exr", folder.path(), i + 1)).pixels, alone[std::size_t(i)]) << i;

@@ -149,7 +149,7 @@ TEST_F(Notes, tell_of_frames_whose_making_harms_ao) {
         << finished;
     EXPECT_THAT(text_in(read_header(ao), "alcove/notes"), HasSubstr(std::string(code) + ": "));
     fs::remove(ao);
-    const Finished refused = run({"--warnings-as-errors"});
+    const Finished refused = run({"--set", "warnings-as-errors=true"});
     EXPECT_EQ(refused.code, 3) << refused;
     EXPECT_FALSE(fs::exists(ao)) << code;
   }
@@ -167,7 +167,7 @@ TEST_F(Notes, of_an_input_that_alcove_has_made_are_not_those_of_the_output) {
 TEST_F(Notes, that_are_warnings_fail_where_they_count_as_errors) {
   write_bytes(ao, "what was there");
   for (const FrameFile& file : {half_frame(), frame_with_repairs(1)})
-    for (const char* option : {"--warnings-as-errors", "--strict"}) {
+    for (const char* option : {"--set", "warnings-as-errors=true", "--strict"}) {
       file.write(frame);
       const Finished finished =
           run({option, "--depth-kind", "planar", "--normal-space", "world", "--normal-encoding", "signed"});
@@ -178,7 +178,7 @@ TEST_F(Notes, that_are_warnings_fail_where_they_count_as_errors) {
       EXPECT_THAT(names_in(folder.path()), ElementsAre("ao.exr", "camera.json", "wall.0042.exr"));
     }
   frame_without_normals().write(frame);
-  EXPECT_EQ(run({"--warnings-as-errors"}).code, 0) << "a note is no warning";
+  EXPECT_EQ(run({"--set", "warnings-as-errors=true"}).code, 0) << "a note is no warning";
 }
 
 TEST_F(SequenceNotes, are_said_once_and_recorded_for_every_frame) {
@@ -218,13 +218,13 @@ TEST_F(SequenceNotes, that_are_warnings_fail_only_their_frames) {
   for (const int frame : {1, 2, 3}) frame_with_repairs(frame == 2).write(input(frame));
   ASSERT_EQ(run().code, 0);
   ASSERT_EQ(run({"--resume"}).code, 0);
-  const Finished going = run({"--resume", "--warnings-as-errors", "--keep-going"});
+  const Finished going = run({"--resume", "--set", "warnings-as-errors=true", "--keep-going"});
   EXPECT_EQ(going.code, 1) << going;
   EXPECT_THAT(going.err, AllOf(HasSubstr("2 kept"), HasSubstr("1 failed (2)"))) << "no bad output looks good";
   remove_outputs();
-  EXPECT_EQ(run({"--warnings-as-errors", "--keep-going"}).code, 1);
+  EXPECT_EQ(run({"--set", "warnings-as-errors=true", "--keep-going"}).code, 1);
   EXPECT_THAT(names_in(out), ElementsAre("ao.0001.exr", "ao.0003.exr"));
-  EXPECT_EQ(run({"--warnings-as-errors"}).code, 3);
+  EXPECT_EQ(run({"--set", "warnings-as-errors=true"}).code, 3);
 }
 
 TEST(NoteTable, is_that_of_the_page) {

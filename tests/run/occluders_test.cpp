@@ -65,7 +65,7 @@ class Occluders : public CommandLine {
 
   Plane ao_of(const FrameFile& of, const Options& more) const {
     of.write(frame);
-    const Finished finished = run(joined({"--type", "float", "--overwrite"}, more));
+    const Finished finished = run(joined({"--type", "float", "--set", "overwrite=true"}, more));
     EXPECT_EQ(finished.code, 0) << finished << testing::PrintToString(more);
     return finished.code ? Plane(kWindow.pixels(), -1) : read_exr_image(ao).pixels;
   }
@@ -92,14 +92,15 @@ class Occluders : public CommandLine {
   FrameFile file = empty;
   Plane is_board;
   const std::string board = folder / "board.exr";
-  const Options behind{"--behind", frame, "--behind-channel", "Behind.Z"};
+  const Options behind{"--behind", frame, "--set", "behind-channel=Behind.Z"};
 };
 
 TEST_F(Occluders, a_choice_that_ignores_everything_leaves_all_open) {
   set_matte(Plane(kWindow.pixels(), 1));
   for (const Options& search : kSearches) {
     EXPECT_LT(std::ranges::min(ao_of(search)), 0.7F) << "or else there is nothing to leave out";
-    EXPECT_THAT(ao_of(joined(search, {"--ignore", board})), Each(1.0F)) << testing::PrintToString(search);
+    EXPECT_THAT(ao_of(joined(search, {"--set", std::string("ignore=") + board})), Each(1.0F))
+        << testing::PrintToString(search);
   }
 }
 
@@ -107,7 +108,8 @@ TEST_F(Occluders, what_is_ignored_is_as_if_it_were_not_there_where_it_is_known_w
   for (const Options& search : kSearches) {
     const bool takes_hidden = search.empty() || (search[1] != "hbao" && search[1] != "crytek");
     const Plane with = ao_of(search), without = ao_of(empty, search);
-    const Plane ignored = ao_of(joined(joined(search, takes_hidden ? behind : Options()), {"--ignore", board}));
+    const Plane ignored =
+        ao_of(joined(joined(search, takes_hidden ? behind : Options()), {"--set", std::string("ignore=") + board}));
     const Difference blocked = beside_board(with, without, 24), left = beside_board(ignored, without, 24);
     EXPECT_GT(blocked.rmse, 0.0008) << "or else there is nothing to leave out" << testing::PrintToString(search);
     EXPECT_LT(left.rmse, 0.25 * blocked.rmse) << testing::PrintToString(search);
@@ -121,17 +123,17 @@ TEST_F(Occluders, what_is_ignored_still_receives) {
   ASSERT_EQ(is_board[foot], 1);
   const float before = ao_of({})[foot];
   EXPECT_LT(before, 0.8F);
-  EXPECT_NEAR(ao_of({"--ignore", board})[foot], before, 0.03);
-  EXPECT_EQ(ao_of({"--occluders", board})[foot], 1) << "a flat board does not block itself";
+  EXPECT_NEAR(ao_of({"--set", std::string("ignore=") + board})[foot], before, 0.03);
+  EXPECT_EQ(ao_of({"--set", std::string("occluders=") + board})[foot], 1) << "a flat board does not block itself";
 }
 
 TEST_F(Occluders, those_that_count_are_the_others_of_those_that_are_ignored) {
   Plane rest = is_board;
   for (float& x : rest) x = 1 - x;
   for (const Options& search : {Options(), Options{"--search", "exact"}}) {
-    const Plane ignored = ao_of(joined(joined(search, behind), {"--ignore", board}));
+    const Plane ignored = ao_of(joined(joined(search, behind), {"--set", std::string("ignore=") + board}));
     set_matte(rest);
-    EXPECT_EQ(ao_of(joined(joined(search, behind), {"--occluders", board})), ignored);
+    EXPECT_EQ(ao_of(joined(joined(search, behind), {"--set", std::string("occluders=") + board})), ignored);
     set_matte(is_board);
   }
 }
@@ -146,7 +148,7 @@ TEST_F(Occluders, of_a_filtered_matte_are_told_by_depth) {
         for (int i = -1; i <= 1; i++) sum += is_board[std::size_t((y + j) * kWindow.width + x + i)];
       soft[std::size_t(y * kWindow.width + x)] = sum / 9;
     }
-  const Options ignoring = joined(behind, {"--ignore", board});
+  const Options ignoring = joined(behind, {"--set", std::string("ignore=") + board});
   const Plane hard = ao_of(ignoring);
   set_matte(soft);
   EXPECT_EQ(ao_of(ignoring), hard);
@@ -159,7 +161,8 @@ TEST_F(Occluders, of_a_filtered_matte_are_told_by_depth) {
 TEST_F(Occluders, with_nothing_known_behind_them_leave_it_open_and_confidence_says_so) {
   const auto with_confidence = [&](const Options& more) {
     file.write(frame);
-    const Finished finished = run(joined({"--type", "float", "--aov", "ao,confidence", "--ignore", board}, more));
+    const Finished finished =
+        run(joined({"--type", "float", "--aov", "ao,confidence", "--set", std::string("ignore=") + board}, more));
     EXPECT_EQ(finished.code, 0) << finished;
     return read_exr_image(ao);
   };
@@ -182,9 +185,13 @@ TEST_F(Occluders, take_their_backs_with_them) {
   Plane back = file.planes["Behind.Z"];
   for (float& z : back) z = z < 1e9F ? kBoard + 0.3F : 1e10F;
   file.planes["Back.Z"] = back;
-  const Options backs{"--behind", frame, "--behind-channel", "Behind.Z", "--behind-kind", "fronts",
-                      "--behind", frame, "--behind-channel", "Back.Z",   "--behind-kind", "backs",
-                      "--ignore", board};
+  const Options backs{"--behind",      frame,
+                      "--set",         "behind-channel=Behind.Z",
+                      "--behind-kind", "fronts",
+                      "--behind",      frame,
+                      "--set",         "behind-channel=Back.Z",
+                      "--behind-kind", "backs",
+                      "--set",         std::string("ignore=") + board};
   const Plane without = ao_of(empty, {});
   EXPECT_LT(beside_board(ao_of(backs), without, 24).max, 0.02);
   Options as_fronts = backs;
@@ -201,35 +208,41 @@ TEST_F(Occluders, are_named_by_numbers_or_as_in_a_cryptomatte) {
   file.attributes["cryptomatte/abc1234/name"] = "Crypto";
   file.attributes["cryptomatte/abc1234/manifest"] =
       fmt::format(R"({{"Board":"{:08x}","Wall":"{:08x}"}})", cryptomatte_id("Board"), cryptomatte_id("Wall"));
-  const Plane expected = ao_of({"--ignore", board});
+  const Plane expected = ao_of({"--set", std::string("ignore=") + board});
   EXPECT_NE(ao_of({}), expected);
-  for (const Options& by : std::vector<Options>{{"--ignore", "4"},
-                                                {"--occluders", "1"},
-                                                {"--ignore", "Board"},
-                                                {"--occluders", "W*"},
-                                                {"--occluders", "Wall", "--object-channel", "Crypto"},
-                                                {"--ignore", "4,9", "--object-channel", "ViewLayer.IndexOB.X"}})
+  for (const Options& by : std::vector<Options>{{"--set", "ignore=4"},
+                                                {"--set", "occluders=1"},
+                                                {"--set", "ignore=Board"},
+                                                {"--set", "occluders=W*"},
+                                                {"--set", "occluders=Wall", "--set", "object-channel=Crypto"},
+                                                {"--set", "ignore=4,9", "--set", "object-channel=ViewLayer.IndexOB.X"}})
     EXPECT_EQ(ao_of(by), expected) << testing::PrintToString(by);
   const std::string named = folder / "named.exr";
   file.write(named);
-  EXPECT_EQ(ao_of(empty, {"--ignore", "Board", "--objects", named}), ao_of(empty, {"--ignore", board}));
+  EXPECT_EQ(ao_of(empty, {"--set", "ignore=Board", "--set", std::string("objects=") + named}),
+            ao_of(empty, {"--set", std::string("ignore=") + board}));
 
-  expect_error(file, 3, {"--ignore", "Bord"}, {frame, "--ignore Bord", "did you mean Board"});
-  expect_error(file, 3, {"--ignore", "Board", "--object-channel", "ViewLayer.IndexOB.X"},
-               {frame, "--ignore Board", "IndexOB.X", "--object-channel"});
-  expect_error(empty, 3, {"--occluders", "Board"}, {frame, "--occluders Board", "no Cryptomatte", "--objects"});
-  expect_error(empty, 3, {"--ignore", "4"}, {frame, "numbers of objects", "--object-channel"});
-  expect_error(file, 3, {"--ignore", folder / "none.exr"}, {"none.exr", "--ignore"});
-  expect_error(file, 2, {"--ignore", "4", "--occluders", "1"}, {"--ignore", "--occluders"});
-  expect_error(file, 2, {"--ignore", "4", "--other-views"}, {"--ignore", "--other-views"});
-  expect_error(file, 2, {"--objects", named}, {"--objects", "--ignore"});
+  expect_error(file, 3, {"--set", "ignore=Bord"}, {frame, "--set ignore=Bord", "did you mean Board"});
+  expect_error(file, 3, {"--set", "ignore=Board", "--set", "object-channel=ViewLayer.IndexOB.X"},
+               {frame, "--set ignore=Board", "IndexOB.X", "--set object-channel"});
+  expect_error(empty, 3, {"--set", "occluders=Board"},
+               {frame, "--set occluders=Board", "no Cryptomatte", "--set objects"});
+  expect_error(empty, 3, {"--set", "ignore=4"}, {frame, "numbers of objects", "--set object-channel"});
+  expect_error(file, 3, {"--set", std::string("ignore=") + folder / "none.exr"}, {"none.exr", "--set ignore"});
+  expect_error(file, 2, {"--set", "ignore=4", "--set", "occluders=1"},
+               {"--set ignore", "--set occluders"});
+  expect_error(file, 2, {"--set", "ignore=4", "--set", "other-views=true"},
+               {"--set ignore", "--set other-views"});
+  expect_error(file, 2, {"--set", std::string("objects=") + named},
+               {"--set objects", "--set ignore"});
   FrameFile{{0, 0, 10, 10}, {0, 0, 10, 10}, 1, {{"Y", Plane(100, 1)}}, {}, {}}.write(folder / "small.exr");
-  expect_error(file, 3, {"--ignore", folder / "small.exr"}, {"small.exr", "--ignore", "10x10"});
+  expect_error(file, 3, {"--set", std::string("ignore=") + folder / "small.exr"},
+               {"small.exr", "--set ignore", "10x10"});
 }
 
 TEST_F(Occluders, of_a_region_are_those_of_the_whole_frame) {
   for (const Options& search : {Options(), Options{"--resolution", "half"}, Options{"--search", "exact"}}) {
-    const Options ignoring = joined(joined(search, behind), {"--ignore", board});
+    const Options ignoring = joined(joined(search, behind), {"--set", std::string("ignore=") + board});
     const Plane whole = ao_of(ignoring);
     const Plane part = ao_of(joined(ignoring, {"--roi", "170,90,60,50"}));
     EXPECT_EQ(part, cropped(whole, kWindow, {170, 90, 60, 50})) << testing::PrintToString(search);
@@ -243,14 +256,14 @@ TEST_F(Occluders, that_change_along_a_sequence_are_each_frame_s_own) {
   const std::vector<Plane> mattes{is_board, none, is_board, is_board};
   for (std::size_t i = 0; i < mattes.size(); i++) {
     set_matte(mattes[i]);
-    alone.push_back(ao_of({"--ignore", board}));
+    alone.push_back(ao_of({"--set", std::string("ignore=") + board}));
     file.write(fmt::format("{}/shot.{:04}.exr", folder.path(), i + 1));
     std::filesystem::copy_file(board, fmt::format("{}/matte.{:04}.exr", folder.path(), i + 1));
   }
   EXPECT_NE(alone[0], alone[1]);
   const Finished finished =
       run_program({"run", folder / "shot.####.exr", "-o", folder / "out.####.exr", "--camera", camera, "--radius", "1",
-                   "--type", "float", "--threads", "1", "--ignore", folder / "matte.####.exr"});
+                   "--type", "float", "--threads", "1", "--set", std::string("ignore=") + folder / "matte.####.exr"});
   ASSERT_EQ(finished.code, 0) << finished;
   for (std::size_t i = 0; i < mattes.size(); i++)
     EXPECT_EQ(read_exr_image(fmt::format("{}/out.{:04}.exr", folder.path(), i + 1)).pixels, alone[i]) << i;

@@ -64,8 +64,8 @@ TEST_F(OutputNames, without_an_ending_or_of_files_in_the_making_are_as_good) {
 TEST_F(OutputNames, have_their_folders_made) {
   const std::string made = folder / "a/b";
   const std::vector<std::string> everywhere{"--preview",  folder / "p/p.png",   "--stats", folder / "s/t/s.json",
-                                            "--log-json", folder / "l/l.jsonl", "--debug", "edges"};
-  const Finished refused = to(made + "/ao.exr", {"--no-mkdir"});
+                                            "--log-json", folder / "l/l.jsonl", "--set",   "debug=edges"};
+  const Finished refused = to(made + "/ao.exr", {"--set", "no-mkdir=true"});
   EXPECT_EQ(refused.code, 4) << refused;
   EXPECT_THAT(refused.err, HasSubstr(made));
   EXPECT_FALSE(fs::exists(folder / "a"));

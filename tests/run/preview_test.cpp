@@ -63,7 +63,7 @@ colorspaces:
   }
 
   Picture shown(const Options& more) const {
-    Options options{"--composite", folder / "composite.exr", "--preview", png, "--overwrite"};
+    Options options{"--composite", folder / "composite.exr", "--preview", png, "--set", "overwrite=true"};
     options.insert(options.end(), more.begin(), more.end());
     const Finished finished = run(options);
     EXPECT_EQ(finished.code, 0) << finished;
@@ -74,11 +74,11 @@ colorspaces:
 };
 
 TEST_F(Preview, of_the_composite_may_be_of_the_ao_or_have_the_beauty_beside_it) {
-  const Picture composite = shown({}), beauty = shown({"--mix", "0"}), ao = shown({"--preview-style", "ao"});
-  EXPECT_EQ(shown({"--preview-style", "composite"}).planes, composite.planes);
+  const Picture composite = shown({}), beauty = shown({"--set", "mix=0"}), ao = shown({"--set", "preview-style=ao"});
+  EXPECT_EQ(shown({"--set", "preview-style=composite"}).planes, composite.planes);
   EXPECT_EQ(ao.planes.size(), 1);
   EXPECT_NE(beauty.planes, composite.planes);
-  const Picture split = shown({"--preview-style", "split"});
+  const Picture split = shown({"--set", "preview-style=split"});
   const int width = kWallWindow.width;
   ASSERT_EQ(split.window.width, 2 * width + 4);
   ASSERT_EQ(split.window.height, kWallWindow.height);
@@ -88,18 +88,18 @@ TEST_F(Preview, of_the_composite_may_be_of_the_ao_or_have_the_beauty_beside_it) 
 }
 
 TEST_F(Preview, goes_through_the_display_and_the_view_that_are_named) {
-  const Options with_config{"--ocio", config};
+  const Options with_config{"--set", std::string("ocio=") + config};
   const auto named = [&](const Options& more) {
     Options options = with_config;
     options.insert(options.end(), more.begin(), more.end());
     return shown(options).planes;
   };
-  const auto plain = named({}), dark = named({"--view-transform", "Darker"});
+  const auto plain = named({}), dark = named({"--set", "view-transform=Darker"});
   EXPECT_NE(plain, dark);
-  EXPECT_EQ(named({"--display", "Screen", "--view-transform", "darker"}), dark) << "in any case of letters";
-  EXPECT_EQ(named({"--display", "projector"}), dark);
-  EXPECT_EQ(named({"--display", "projector", "--view-transform", "plain"}), dark);
-  EXPECT_EQ(named({"--display", "screen"}), plain);
+  EXPECT_EQ(named({"--set", "display=Screen", "--set", "view-transform=darker"}), dark) << "in any case of letters";
+  EXPECT_EQ(named({"--set", "display=projector"}), dark);
+  EXPECT_EQ(named({"--set", "display=projector", "--set", "view-transform=plain"}), dark);
+  EXPECT_EQ(named({"--set", "display=screen"}), plain);
   for (std::size_t i = 0; i < plain[0].size(); i++)
     if (plain[0][i] < 0.99F) ASSERT_NEAR(dark[0][i], plain[0][i] / 2, 0.005) << i;
 }
@@ -113,11 +113,11 @@ TEST_F(Preview, names_the_displays_and_views_that_there_are) {
     EXPECT_EQ(lines_of(finished.err).size(), 1) << finished;
     for (const auto& word : words) EXPECT_THAT(finished.err, HasSubstr(word));
   };
-  expect_error({"--ocio", config, "--display", "scren"},
-               {config, "--display scren", "did you mean screen", "projector"});
-  expect_error({"--ocio", config, "--display", "projector", "--view-transform", "Darker"},
-               {config, "--view-transform Darker", "it has plain"});
-  expect_error({"--display", "P3"}, {"built-in", "--display P3", "sRGB", "--ocio"});
+  expect_error({"--set", std::string("ocio=") + config, "--set", "display=scren"},
+               {config, "--set display scren", "did you mean screen", "projector"});
+  expect_error({"--set", std::string("ocio=") + config, "--set", "display=projector", "--set", "view-transform=Darker"},
+               {config, "--set view-transform=Darker", "it has plain"});
+  expect_error({"--set", "display=P3"}, {"built-in", "--set display=P3", "sRGB", "--set ocio"});
 }
 
 // The pictures of a sequence that is resumed are made again where another style or view is asked for.
@@ -132,11 +132,11 @@ TEST_F(Preview, of_another_look_is_made_again_by_resume) {
   };
   EXPECT_TRUE(resumed({}));
   EXPECT_FALSE(resumed({}));
-  EXPECT_TRUE(resumed({"--preview-style", "split"}));
-  EXPECT_FALSE(resumed({"--preview-style", "split"}));
-  EXPECT_TRUE(resumed({"--ocio", config}));
-  EXPECT_TRUE(resumed({"--ocio", config, "--view-transform", "Darker"}));
-  EXPECT_TRUE(resumed({"--ocio", config, "--display", "projector"}));
+  EXPECT_TRUE(resumed({"--set", "preview-style=split"}));
+  EXPECT_FALSE(resumed({"--set", "preview-style=split"}));
+  EXPECT_TRUE(resumed({"--set", std::string("ocio=") + config}));
+  EXPECT_TRUE(resumed({"--set", std::string("ocio=") + config, "--set", "view-transform=Darker"}));
+  EXPECT_TRUE(resumed({"--set", std::string("ocio=") + config, "--set", "display=projector"}));
 }
 
 }  // namespace

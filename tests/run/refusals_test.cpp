@@ -142,34 +142,36 @@ TEST_F(Refusals, settings_that_contradict_each_other_name_what_mends_them) {
       {{"--tolerance", "0.1", "--estimator", "hbao"}, {"--tolerance", "--estimator gtao"}},
       {{"--tolerance", "0.1", "--resolution", "half"}, {"--tolerance", "--resolution full"}},
       {{"--aov", "ao,error"}, {"--aov error", "--tolerance"}},
-      {{"--skip-tolerance", "0.01", "--estimator", "hbao"},
-       {"--skip-tolerance", "--estimator gtao or bitmask", "hbao"}},
-      {{"--skip-tolerance", "0.01", "--search", "exact"}, {"--skip-tolerance", "--search steps"}},
-      {{"--skip-tolerance", "0.01", "--no-skip"}, {"--skip-tolerance", "--no-skip"}},
-      {{"--search", "exact", "--debug", "tiles"}, {"--debug tiles", "--search steps"}},
-      {{"--falloff", "linear", "--falloff-start", "0.5", "--falloff-end", "0.4"},
-       {"--falloff-end 0.4", "--falloff-start 0.5"}},
-      {{"--stride", "4", "--denoise", "none"}, {"--stride", "--denoise bilateral", "denoiser is none"}},
-      {{"--bias", "1"}, {"--bias 1", "below 1"}},
+      {{"--set", "skip-tolerance=0.01", "--estimator", "hbao"},
+       {"--set skip-tolerance", "--estimator gtao or bitmask", "hbao"}},
+      {{"--set", "skip-tolerance=0.01", "--search", "exact"},
+       {"--set skip-tolerance", "--search exact"}},
+      {{"--set", "skip-tolerance=0.01", "--no-skip"}, {"--set skip-tolerance", "--no-skip"}},
+      {{"--search", "exact", "--set", "debug=tiles"}, {"--set debug=tiles", "--search steps"}},
+      {{"--falloff", "linear", "--set", "falloff-start=0.5", "--set", "falloff-end=0.4"},
+       {"--set falloff-end=0.4", "--set falloff-start=0.5"}},
+      {{"--set", "stride=4", "--denoise", "none"},
+       {"--set stride", "--denoise bilateral", "that is none"}},
+      {{"--set", "bias=1"}, {"--set bias=1", "below 1"}},
       {{"--aov", "bent-normal", "--estimator", "crytek"}, {"--aov bent-normal", "--estimator crytek", "gtao"}},
       {{"--radius", "1"}, {"--radius 1 is there twice"}},
       {{"--radius", "2", "--radius", "3", "--radius", "4", "--radius", "5", "--radius", "6", "--radius", "7",
         "--radius", "8", "--radius", "9"},
        {"--radius", "at most 8"}},
-      {{"--fade-start", "1"}, {"--fade-start: ", "--fade-end"}},
-      {{"--fade-start", "2", "--fade-end", "2"}, {"--fade-end 2", "--fade-start 2"}},
-      {{"--albedo", "0.5"}, {"--albedo", "--multi-bounce"}},
-      {{"--multi-bounce"}, {"--multi-bounce", "--ao-channels rgb", "--composite"}},
-      {{"--fog-density", "1"}, {"--fog-density", "--composite"}},
-      {{"--depth", frame, "--position", frame}, {"--depth and --position"}},
-      {{"--debug", "raw-dpth"}, {"--debug", "did you mean raw-depth"}},
+      {{"--set", "fade-start=1"}, {"--set fade-start has no effect", "--set fade-end"}},
+      {{"--set", "fade-start=2", "--set", "fade-end=2"}, {"--set fade-end=2", "--set fade-start=2"}},
+      {{"--set", "albedo=0.5"}, {"--set albedo", "--set multi-bounce"}},
+      {{"--set", "multi-bounce=true"}, {"--set multi-bounce", "--set ao-channels=rgb", "--composite"}},
+      {{"--set", "fog-density=1"}, {"--set fog-density", "--composite"}},
+      {{"--depth", frame, "--position", frame}, {"--depth", "--position is given", "only one of them"}},
+      {{"--set", "debug=raw-dpth"}, {"--set debug", "did you mean raw-depth"}},
       {{"--aov", "bent"}, {"--aov", "bent", "did you mean"}},
       {{"--thickness", "-1"}, {"--thickness", "-1 is neither auto nor infinite"}},
       {{"--thickness", "inf"}, {"--thickness", "inf is neither"}},
-      {{"--albedo", "2", "--multi-bounce"}, {"--albedo", "0 to 1"}},
-      {{"--denoise-kernel", "1"}, {"--denoise-kernel", "not 2 to 9"}},
-      {{"--denoise-kernel", "0,1"}, {"--denoise-kernel", "no weight at the centre"}},
-      {{"--denoise-kernel", "1,x"}, {"--denoise-kernel", "x is no weight"}},
+      {{"--set", "albedo=2", "--set", "multi-bounce=true"}, {"--set albedo", "0 to 1"}},
+      {{"--set", "denoise-kernel=1"}, {"--set denoise-kernel", "not 2 to 9"}},
+      {{"--set", "denoise-kernel=0,1"}, {"--set denoise-kernel", "no weight at the centre"}},
+      {{"--set", "denoise-kernel=1,x"}, {"--set denoise-kernel", "x is no weight"}},
       {{"--roi", "0,0,8"}, {"--roi", "X,Y,WIDTH,HEIGHT"}},
       {{"--roi", "100,0,8,8"}, {frame, "--roi", "data window"}},
       {{"--slcies=2"}, {"there is no option --slcies (did you mean --slices"}},
@@ -198,12 +200,13 @@ TEST_F(Refusals, outputs_that_the_frame_has_nothing_for_name_what_gives_it) {
     words.push_back(folder / input);
     expect_refused(code, words, more);
   };
-  refused(3, "plain.exr", {"--fov", "60", "--debug", "reconstruction"}, {"--debug reconstruction", "--normal"});
-  refused(3, "plain.exr", {"--fov", "60", "--aov", "normal", "--aov-space", "world"},
-          {"--aov-space world", "world_to_camera", "--camera"});
-  refused(3, "positions.exr", {"--fov", "60", "--debug", "raw-depth"}, {"--debug raw-depth", "--depth-channel"});
-  refused(2, "positions.exr", {"--fov", "60", "--position-space", "world"},
-          {"world_to_camera", "--camera", "--position-space view"});
+  refused(3, "plain.exr", {"--fov", "60", "--set", "debug=reconstruction"}, {"--set debug=reconstruction", "--normal"});
+  refused(3, "plain.exr", {"--fov", "60", "--aov", "normal", "--set", "aov-space=world"},
+          {"--set aov-space=world", "world_to_camera", "--camera"});
+  refused(3, "positions.exr", {"--fov", "60", "--set", "debug=raw-depth"},
+          {"--set debug=raw-depth", "--depth-channel"});
+  refused(2, "positions.exr", {"--fov", "60", "--set", "position-space=world"},
+          {"world_to_camera", "--camera", "--set position-space=view"});
   for (const std::string kind : {"device", "log"})
     refused(2, "plain.exr", {"--fov", "60", "--depth-kind", kind}, {kind, kind == "log" ? "--far" : "--near"});
   refused(2, "plain.exr", {"--fov", "60", "--depth-kind", "device", "--near", "2", "--far", "1"},
@@ -320,7 +323,7 @@ TEST_F(Suites, candidates_whose_options_make_no_sense_are_refused_by_name) {
       {"help = true", {"alcove run"}},
       {"tolerance = 0.1\nestimator = \"hbao\"", {"--tolerance", "gtao"}},
       {"radius = \"auto\"", {"--radius auto", "of its truth"}},
-      {"stride = \"4\"\ndenoise = \"none\"", {"--stride", "--denoise bilateral"}}};
+      {"stride = \"4\"\ndenoise = \"none\"", {"--set stride", "--denoise bilateral"}}};
   for (const auto& [text, words] : cases) {
     std::vector<std::string> all{"suite.toml", "candidate odd"};
     all.insert(all.end(), words.begin(), words.end());
@@ -400,7 +403,7 @@ TEST_F(Refusals, a_broken_module_of_pictures_is_named_where_one_is_read_and_not_
   EXPECT_FALSE(fs::exists(ao));
   EXPECT_EQ(run({}, broken).code, 0) << "an EXR needs no module";
   EXPECT_EQ(run({"--preview", folder / "p.png"}, broken).code, 0) << "nor does a PNG that is written";
-  EXPECT_EQ(run({"--debug", "linear-depth"}, broken).code, 0);
+  EXPECT_EQ(run({"--set", "debug=linear-depth"}, broken).code, 0);
 }
 
 // Devices.

@@ -26,8 +26,8 @@ TEST_F(CommandLine, a_region_is_that_part_of_the_whole) {
                                  {"--radius", "0.5"},
                                  {"--radius", "1", "--resolution", "half"},
                                  {"--radius", "0.5", "--denoise", "bilateral"},
-                                 {"--radius", "0.5", "--stride", "4", "--density", "uniform"},
-                                 {"--radius", "0.5", "--stride", "1"},
+                                 {"--radius", "0.5", "--set", "stride=4", "--set", "density=uniform"},
+                                 {"--radius", "0.5", "--set", "stride=1"},
                                  {"--radius", "2", "--resolution", "quarter", "--denoise", "box"}}) {
     Options arguments{"run", frame, "-o", ao, "--camera", camera, "--type", "float"};
     arguments.insert(arguments.end(), options.begin(), options.end());
@@ -59,14 +59,10 @@ TEST_F(CommandLine, a_region_by_error_computes_the_tiles_that_decide) {
   const std::string interior = ALCOVE_SOURCE_DIR "/examples/interior";
   const std::string stats = folder / "stats.json";
   const auto pixels = [&](const std::vector<std::string>& search) {
-    std::vector<std::string> arguments{"run",        interior + ".gbuffer.exr",
-                                       "-o",         ao,
-                                       "--camera",   interior + ".camera.json",
-                                       "--type",     "float",
-                                       "--roi",      "480,270,20,16",
-                                       "--radius",   "0.02",
-                                       "--complete", "none",
-                                       "--stats",    stats};
+    std::vector<std::string> arguments{"run",      interior + ".gbuffer.exr", "-o",       ao,
+                                       "--camera", interior + ".camera.json", "--type",   "float",
+                                       "--roi",    "480,270,20,16",           "--radius", "0.02",
+                                       "--set",    "complete=none",           "--stats",  stats};
     arguments.insert(arguments.end(), search.begin(), search.end());
     const Finished finished = run_program(arguments);
     EXPECT_EQ(finished.code, 0) << finished;

@@ -136,13 +136,13 @@ TEST_F(Shots, missing_frames_are_an_error_or_left_out) {
   fs::remove(input(4));
   const Finished refused = run({"--around", "2", "--frames", "2"});
   EXPECT_EQ(refused.code, 3);
-  EXPECT_THAT(refused.err, AllOf(HasSubstr("f.0004.exr"), HasSubstr("--around"), HasSubstr("--missing skip")));
-  const Finished skipped = run({"--around", "2", "--missing", "skip", "--aov", "depth,hidden"});
+  EXPECT_THAT(refused.err, AllOf(HasSubstr("f.0004.exr"), HasSubstr("--around"), HasSubstr("--set missing=skip")));
+  const Finished skipped = run({"--around", "2", "--set", "missing=skip", "--aov", "depth,hidden"});
   ASSERT_EQ(skipped.code, 0) << skipped;
   EXPECT_EQ(lines_of(skipped.err).front(),
             "alcove: warning: " + in +
                 "/f.%04d.exr: a frame of the shot is missing: 4; those around do without, and their headers say so "
-                "(--missing skip) [sequence-hole]");
+                "(--set missing=skip) [sequence-hole]");
   EXPECT_EQ(header(3), "frames 1-2, 5; missing 4");
   EXPECT_EQ(header(1), "frames 2-3");
 }
@@ -276,7 +276,7 @@ TEST_F(Shots, take_what_motion_vectors_prove_to_stand_still) {
   const auto by_vectors = numbers({"--motion", in + "/f.%04d.exr"});
   EXPECT_EQ(by_vectors, std::pair(moved + 4 * kMoving, 0)) << "vectors confirm what no other frame sees";
   // This camera's steps are all the same, so that the way back is the way on. The last frame's vectors lead nowhere.
-  const auto of_next = numbers({"--motion", in + "/f.%04d.exr", "--motion-kind", "next"});
+  const auto of_next = numbers({"--motion", in + "/f.%04d.exr", "--set", "motion-kind=next"});
   EXPECT_EQ(of_next, std::pair(moved + 3 * kMoving, unconfirmed));
 }
 
@@ -317,7 +317,8 @@ TEST_F(Shots, refuse_motion_vectors_that_no_camera_agrees_with) {
   }
   const Finished finished = run({"--around", "2", "--motion", in + "/f.%04d.exr"});
   EXPECT_EQ(finished.code, 3) << finished;
-  EXPECT_THAT(finished.err, AllOf(HasSubstr("f.000"), HasSubstr("--motion-channels"), HasSubstr("--motion-kind")));
+  EXPECT_THAT(finished.err,
+              AllOf(HasSubstr("f.000"), HasSubstr("--set motion-channels"), HasSubstr("--set motion-kind")));
 }
 
 /// A file of two views, each a part.
@@ -350,7 +351,7 @@ TEST_F(Shots, other_views_are_those_of_the_same_instant) {
     return run_program(more);
   };
   json cameras = wall_camera();
-  const Finished same = run_stereo(cameras, {"--other-views"});
+  const Finished same = run_stereo(cameras, {"--set", "other-views=true"});
   EXPECT_EQ(same.code, 3) << same;
   EXPECT_THAT(same.err, AllOf(HasSubstr("stereo.exr"), HasSubstr("--camera"), HasSubstr("views")));
   for (int frame = 1; frame <= 2; frame++) {
@@ -358,7 +359,8 @@ TEST_F(Shots, other_views_are_those_of_the_same_instant) {
     matrix[0][3] = -kStep * frame;
     cameras["views"][frame == 1 ? "left" : "right"]["world_to_camera"] = matrix;
   }
-  const Finished finished = run_stereo(cameras, {"--other-views", "--aov", "ao,depth,hidden", "--type", "float"});
+  const Finished finished =
+      run_stereo(cameras, {"--set", "other-views=true", "--aov", "ao,depth,hidden", "--type", "float"});
   EXPECT_EQ(finished.code, 0) << finished;
   EXPECT_EQ(header(1), "views right");
   const std::vector<float> behind = hidden(1), ao = read_exr_image(output(1), {"Y"}).pixels;
@@ -372,11 +374,11 @@ TEST_F(Shots, other_views_are_those_of_the_same_instant) {
   EXPECT_GT(found, 20) << "a step to the side shows a column or two of the wall behind the board";
   EXPECT_EQ(run_stereo(cameras, {"--aov", "ao", "--type", "float"}).code, 0);
   EXPECT_NE(read_exr_image(output(1), {"Y"}).pixels, ao);
-  EXPECT_EQ(run_stereo(cameras, {"--other-views", "--view", "right", "--aov", "depth,hidden"}).code, 0);
+  EXPECT_EQ(run_stereo(cameras, {"--set", "other-views=true", "--view", "right", "--aov", "depth,hidden"}).code, 0);
   EXPECT_EQ(header(1), "views left");
-  const Finished alone = run({"--other-views", "--frames", "1"});
+  const Finished alone = run({"--set", "other-views=true", "--frames", "1"});
   EXPECT_EQ(alone.code, 3) << alone;
-  EXPECT_THAT(alone.err, AllOf(HasSubstr("f.0001.exr"), HasSubstr("--other-views")));
+  EXPECT_THAT(alone.err, AllOf(HasSubstr("f.0001.exr"), HasSubstr("--set", "other-views=true")));
 }
 
 TEST_F(Shots, take_more_memory_the_more_frames_lie_around) {

@@ -122,15 +122,15 @@ struct FilterCase {
 TEST_F(Supersampling, filters_as_the_formulas_say) {
   for (const FilterCase& c : {FilterCase{2, "blackman-harris", 3, {}},
                               {3, "blackman-harris", 3, {}},
-                              {2, "box", 1, {"--filter", "box"}},
-                              {4, "gaussian", 2, {"--filter", "gaussian"}},
-                              {2, "gaussian", 3.5, {"--filter", "gaussian", "--filter-width", "3.5"}},
-                              {3, "box", 2, {"--filter", "box", "--filter-width", "2"}}}) {
+                              {2, "box", 1, {"--set", "filter=box"}},
+                              {4, "gaussian", 2, {"--set", "filter=gaussian"}},
+                              {2, "gaussian", 3.5, {"--set", "filter=gaussian", "--set", "filter-width=3.5"}},
+                              {3, "box", 2, {"--set", "filter=box", "--set", "filter-width=2"}}}) {
     SCOPED_TRACE(std::to_string(c.factor) + " " + c.filter);
     const Window display = times(kSmall, c.factor);
     write_frame(display, display);
     const Image full = computed({});
-    Options options{"--supersampling", std::to_string(c.factor)};
+    Options options{"--set", std::string("supersampling=") + std::to_string(c.factor)};
     options.insert(options.end(), c.options.begin(), c.options.end());
     const Image small = computed(options);
     EXPECT_EQ(small.data, kSmall);
@@ -154,7 +154,7 @@ TEST_F(Supersampling, a_picture_has_the_pixels_whose_middle_the_depth_has) {
         Windows{{12, 7, 61, 31}, {6, 3, 30, 16}}}) {
     write_frame(depth, times(kSmall, 2));
     const Image full = computed({});
-    const Image small = computed({"--supersampling", "2"});
+    const Image small = computed({"--set", "supersampling=2"});
     EXPECT_EQ(small.data, picture);
     EXPECT_EQ(small.display, kSmall);
     EXPECT_LT(largest_difference(small.pixels, filtered(full.pixels, depth, picture, 2, "blackman-harris", 3)), 1e-6);
@@ -165,12 +165,12 @@ TEST_F(Supersampling, a_smaller_beauty_asks_for_it_and_takes_the_filtered_ao) {
   for (const int factor : {2, 3, 4}) {
     const Window display = times(kSmall, factor);
     write_frame(display, display);
-    const Image filtered_ao = computed({"--supersampling", std::to_string(factor)});
+    const Image filtered_ao = computed({"--set", std::string("supersampling=") + std::to_string(factor)});
     for (const Window& window : {kSmall, Window{-3, 2, 40, 50}}) {
       write_beauty(window, kSmall);
       const Finished noted = run({"--beauty", beauty, "--composite", composite});
-      EXPECT_THAT(noted.err, HasSubstr("--supersampling")) << "nobody has asked for it";
-      const Image with = computed({"--beauty", beauty, "--composite", composite, "--append-ao", "AO"});
+      EXPECT_THAT(noted.err, HasSubstr("--set supersampling")) << "nobody has asked for it";
+      const Image with = computed({"--beauty", beauty, "--composite", composite, "--set", "append-ao=AO"});
       EXPECT_EQ(with.pixels, filtered_ao.pixels);
       const Image result = read_exr_image(composite);
       EXPECT_EQ(result.data, window);
@@ -195,8 +195,8 @@ TEST_F(Supersampling, a_region_counts_in_pixels_of_the_picture_and_has_the_bits_
   write_frame(display, display);
   write_beauty(kSmall, kSmall);
   // A filter that reaches farther than all else.
-  Options options{"--beauty",       beauty, "--composite", composite, "--filter", "box",
-                  "--filter-width", "16",   "--denoise",   "none",    "--radius", "0.1"};
+  Options options{"--beauty",        beauty,      "--composite", composite,  "--set", "filter=box", "--set",
+                  "filter-width=16", "--denoise", "none",        "--radius", "0.1"};
   const Image whole = computed(options);
   const Image whole_composite = read_exr_image(composite);
   options.insert(options.end(), {"--roi", "11,7,30,20"});
@@ -206,7 +206,7 @@ TEST_F(Supersampling, a_region_counts_in_pixels_of_the_picture_and_has_the_bits_
   const Image part_composite = read_exr_image(composite);
   EXPECT_EQ(part_composite.data, region);
   EXPECT_EQ(part_composite.pixels, cropped(whole_composite.pixels, kSmall, region));
-  const Finished outside = run({"--supersampling", "3", "--roi", "40,7,30,20"});
+  const Finished outside = run({"--set", "supersampling=3", "--roi", "40,7,30,20"});
   EXPECT_EQ(outside.code, 2) << outside;
   EXPECT_THAT(outside.err, AllOf(HasSubstr("30x20 at (40, 7)"), HasSubstr(to_string(kSmall))));
 }
@@ -214,12 +214,12 @@ TEST_F(Supersampling, a_region_counts_in_pixels_of_the_picture_and_has_the_bits_
 TEST_F(Supersampling, amounts_and_directions_are_filtered_and_depth_is_that_of_the_middle) {
   const Window display = times(kSmall, 2);
   write_frame(display, display);
-  const Options aovs{"--aov",       "ao,normal,bent-normal,depth,confidence,specular-occlusion,ao-scales",
-                     "--radius",    "0.4",
-                     "--aov-space", "view"};
+  const Options aovs{"--aov",    "ao,normal,bent-normal,depth,confidence,specular-occlusion,ao-scales",
+                     "--radius", "0.4",
+                     "--set",    "aov-space=view"};
   const Image full = computed(aovs);
   Options options = aovs;
-  options.insert(options.end(), {"--supersampling", "2"});
+  options.insert(options.end(), {"--set", "supersampling=2"});
   const Image small = computed(options);
   ASSERT_EQ(small.names, full.names);
   for (const std::string& name : full.names) {
@@ -235,10 +235,10 @@ TEST_F(Supersampling, amounts_and_directions_are_filtered_and_depth_is_that_of_t
 TEST_F(Supersampling, multi_bounce_is_that_of_each_sample) {
   const Window display = times(kSmall, 2);
   write_frame(display, display);
-  const Options colored{"--ao-channels", "rgb", "--multi-bounce", "--albedo", "0.8"};
+  const Options colored{"--set", "ao-channels=rgb", "--set", "multi-bounce=true", "--set", "albedo=0.8"};
   const Image full = computed(colored);
   Options options = colored;
-  options.insert(options.end(), {"--supersampling", "2"});
+  options.insert(options.end(), {"--set", "supersampling=2"});
   const Image small = computed(options);
   for (const std::string name : {"R", "G", "B"}) {
     const auto plane = full.plane(name);
@@ -259,9 +259,9 @@ TEST_F(Supersampling, a_matte_of_the_pictures_size_counts_for_its_blocks) {
     for (int x = 0; x < kSmall.width; x++) small.planes["Y"].push_back(is_in(x, y));
   large.write(large_matte);
   small.write(small_matte);
-  const Image by_large = computed({"--supersampling", "2", "--matte", large_matte});
-  EXPECT_EQ(computed({"--supersampling", "2", "--matte", small_matte}).pixels, by_large.pixels);
-  EXPECT_NE(computed({"--supersampling", "2"}).pixels, by_large.pixels);
+  const Image by_large = computed({"--set", "supersampling=2", "--matte", large_matte});
+  EXPECT_EQ(computed({"--set", "supersampling=2", "--matte", small_matte}).pixels, by_large.pixels);
+  EXPECT_NE(computed({"--set", "supersampling=2"}).pixels, by_large.pixels);
 }
 
 TEST_F(Supersampling, a_preview_is_as_large_as_the_picture) {
@@ -270,12 +270,13 @@ TEST_F(Supersampling, a_preview_is_as_large_as_the_picture) {
   write_frame(display, display);
   write_beauty(kSmall, kSmall);
   for (const char* style : {"ao", "composite"}) {
-    computed({"--beauty", beauty, "--composite", composite, "--preview", preview, "--preview-style", style});
+    computed({"--beauty", beauty, "--composite", composite, "--preview", preview, "--set",
+              std::string("preview-style=") + style});
     ExrFile shown = open_image(preview, "the test", Formats::all);
     EXPECT_EQ(shown.parts()[0].data, kSmall);
   }
   // Two bytes of a PNG may differ by rounding.
-  const Image small = computed({"--supersampling", "2", "--preview", preview});
+  const Image small = computed({"--set", "supersampling=2", "--preview", preview});
   const Finished compared = run_program({"compare", preview, ao, "--max-rmse", "0.003"});
   EXPECT_EQ(compared.code, 0) << compared;
 }
@@ -289,7 +290,7 @@ TEST_F(Supersampling, sky_counts_as_open) {
   file.write(frame);
   write_bytes(camera, wall_camera(display).dump());
   const Image full = computed({});
-  const Image small = computed({"--supersampling", "2"});
+  const Image small = computed({"--set", "supersampling=2"});
   EXPECT_EQ(small.pixels[63], 1);
   EXPECT_LT(largest_difference(small.pixels, filtered(full.pixels, display, kSmall, 2, "blackman-harris", 3)), 1e-6);
 }
@@ -298,14 +299,14 @@ TEST_F(Supersampling, sizes_that_do_not_fit_are_refused) {
   const Window display = times(kSmall, 2);
   write_frame(display, display);
   write_beauty(display, display);
-  expect_error({"--supersampling", "2", "--beauty", beauty, "--composite", composite},
-               {"beauty.exr", "128x72", "--supersampling 2", "64x36"});
+  expect_error({"--set", "supersampling=2", "--beauty", beauty, "--composite", composite},
+               {"beauty.exr", "128x72", "--set supersampling=2", "64x36"});
   write_beauty({0, 0, 42, 24}, {0, 0, 42, 24});
-  expect_error({"--beauty", beauty, "--composite", composite}, {"beauty.exr", "--supersampling"});
+  expect_error({"--beauty", beauty, "--composite", composite}, {"beauty.exr", "--set supersampling"});
   write_beauty({0, 0, 256, 144}, {0, 0, 256, 144});
   expect_error({"--beauty", beauty, "--composite", composite}, {"beauty.exr", "--resolution half"});
   write_frame(kSmall, {0, 0, 64, 37});
-  expect_error({"--supersampling", "2"}, {"wall.0042.exr", "64x37", "--supersampling 2"});
+  expect_error({"--set", "supersampling=2"}, {"wall.0042.exr", "64x37", "--set supersampling=2"});
 }
 
 TEST_F(Supersampling, of_one_keeps_every_pixel) {
@@ -313,10 +314,10 @@ TEST_F(Supersampling, of_one_keeps_every_pixel) {
   write_frame(display, display);
   const Image full = computed({});
   EXPECT_EQ(full.data, display);
-  EXPECT_EQ(computed({"--supersampling", "1"}).pixels, full.pixels);
+  EXPECT_EQ(computed({"--set", "supersampling=1"}).pixels, full.pixels);
   write_beauty(kSmall, kSmall);
-  expect_error({"--supersampling", "1", "--beauty", beauty, "--composite", composite},
-               {"beauty.exr", "--supersampling"});
+  expect_error({"--set", "supersampling=1", "--beauty", beauty, "--composite", composite},
+               {"beauty.exr", "--set supersampling"});
 }
 
 }  // namespace

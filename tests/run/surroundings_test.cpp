@@ -67,7 +67,7 @@ TEST_F(SurroundingsTest, the_validation_layer_has_nothing_to_say) {
   FrameFile input = wall_frame();
   add_beauty(input);
   input.write(frame);
-  const Finished finished = run({"--validate", "--composite", folder / "composite.exr", "--power", "2"});
+  const Finished finished = run({"--validate", "--composite", folder / "composite.exr", "--set", "power=2"});
   if (finished.err.find("is not installed") != std::string::npos) GTEST_SKIP() << finished;
   EXPECT_EQ(finished.code, 0) << finished;
   EXPECT_THAT(finished.err, Not(HasSubstr("vulkan validation")));
@@ -182,7 +182,7 @@ TEST_F(SurroundingsTest, an_output_that_is_a_symbolic_link_is_replaced_and_not_f
     write_bytes(link + ".named", "before");
     fs::create_symlink(link + ".named", link);
   }
-  result({"--debug", "edges", "--preview", preview, "--stats", stats, "--log-json", log});
+  result({"--set", "debug=edges", "--preview", preview, "--stats", stats, "--log-json", log});
   for (const std::string& file : {ao, folder / "ao.edges.png", preview, stats, log}) {
     EXPECT_TRUE(!fs::is_symlink(file) && fs::file_size(file) > 100) << file;
     EXPECT_EQ(read_bytes(file + ".named"), "before") << file;

@@ -104,11 +104,11 @@ TEST_F(Tiles, give_the_bits_of_the_whole) {
         {"--radius", "0.2", "--estimator", "hbao", "--denoise", "box"},
         {"--radius", "0.2", "--estimator", "crytek", "--denoise", "none"},
         {"--radius", "0.2", "--resolution", "half"},
-        {"--radius", "0.2", "--resolution", "quarter", "--denoise-radius", "5"},
-        {"--radius", "0.2", "--stride", "4"},
-        {"--radius", "0.2", "--stride", "8", "--density", "uniform"},
-        {"--radius", "0.2", "--stride", "1"},
-        {"--radius", "0.2", "--supersampling", "2", "--filter-width", "5", "--roi", "3,5,225,125"},
+        {"--radius", "0.2", "--resolution", "quarter", "--set", "denoise-radius=5"},
+        {"--radius", "0.2", "--set", "stride=4"},
+        {"--radius", "0.2", "--set", "stride=8", "--set", "density=uniform"},
+        {"--radius", "0.2", "--set", "stride=1"},
+        {"--radius", "0.2", "--set", "supersampling=2", "--set", "filter-width=5", "--roi", "3,5,225,125"},
         {"--radius", "0.2", "--roi", "3,5,450,250", "--falloff", "smooth"}}) {
     expect_same(options);
   }
@@ -123,8 +123,8 @@ TEST_F(Tiles, give_the_bits_of_the_whole_with_a_beauty_of_another_window) {
     }
     beauty.write(folder / "beauty.exr");
     // All of its layers would take more than the little memory.
-    expect_same({"--radius", "0.2", "--beauty", folder / "beauty.exr", "--composite", folder / "composite.exr",
-                 "--composite-layers", "rgba"});
+    expect_same({"--radius", "0.2", "--beauty", folder / "beauty.exr", "--composite", folder / "composite.exr", "--set",
+                 "composite-layers=rgba"});
   }
 }
 
@@ -156,7 +156,7 @@ TEST_F(Tiles, give_the_bits_of_the_whole_where_tiles_of_pixels_decide_for_others
   shot = ALCOVE_SOURCE_DIR "/examples/interior.gbuffer.exr";
   shot_camera = ALCOVE_SOURCE_DIR "/examples/interior.camera.json";
   little_memory = 4 * kLittleMemory;
-  expect_same({"--radius", "0.02", "--tolerance", "0.05", "--complete", "none", "--aov", "ao,error"});
+  expect_same({"--radius", "0.02", "--tolerance", "0.05", "--set", "complete=none", "--aov", "ao,error"});
 }
 
 TEST_F(Tiles, give_the_warnings_of_the_whole) {
@@ -241,8 +241,8 @@ TEST_F(Tiles, that_are_refused_leave_no_folder) {
   repaired.planes.at("ViewLayer.Normal.X")[140000] = NAN;
   repaired.write(frame);
   const std::string inner = folder / "new/inner";
-  const Options options{"--radius",           "0.05", "--warnings-as-errors", "--composite", inner + "/c.exr",
-                        "--composite-layers", "rgba"};
+  const Options options{"--radius",    "0.05",           "--set", "warnings-as-errors=true",
+                        "--composite", inner + "/c.exr", "--set", "composite-layers=rgba"};
   const RunReport report = run_here(options, 2 * little_memory);
   ASSERT_TRUE(report.stop);
   EXPECT_THAT(report.stop->what(), HasSubstr("repaired-normals")) << "or else no tile was begun";

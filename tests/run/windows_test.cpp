@@ -177,11 +177,12 @@ TEST_F(Windows, materials_without_pixels_are_open_and_mattes_without_pixels_take
   for (std::size_t i = 0; i < open.size(); i++) ASSERT_EQ(with_matte[i], in_crop[i] == 1 ? open[i] : 0.25f) << i;
 
   write_plane(other, "id.Y", kCrop, Plane(kCrop.pixels(), 0));
-  EXPECT_EQ(ao_with({"--matte", other, "--matte-channel", "id.Y", "--matte-object", "0", "--matte-outside", "0.25"}),
-            with_matte);
+  EXPECT_EQ(
+      ao_with({"--matte", other, "--set", "matte-channel=id.Y", "--matte-object", "0", "--matte-outside", "0.25"}),
+      with_matte);
 
   write_plane(other, "AO", kCrop, halves);
-  const Plane with_material = ao_with({"--material-ao", other});
+  const Plane with_material = ao_with({"--set", std::string("material-ao=") + other});
   for (std::size_t i = 0; i < open.size(); i++)
     ASSERT_EQ(with_material[i], in_crop[i] == 1 ? 0.5f * open[i] : open[i]) << i;
 }

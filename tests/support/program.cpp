@@ -90,7 +90,7 @@ std::vector<std::string> on_test_device(std::vector<std::string> arguments) {
   const char* device = std::getenv("ALCOVE_TEST_DEVICE");
   const bool computes = !arguments.empty() && (arguments[0] == "run" || arguments[0] == "bench");
   const auto names_one = [](const std::string& word) {
-    return word.starts_with("--device") || word == "--require-gpu";
+    return word.starts_with("--device") || word == "--set", "require-gpu=true";
   };
   if (device && *device && computes && std::ranges::none_of(arguments, names_one))
     arguments.insert(arguments.begin() + 1, {"--device", device});

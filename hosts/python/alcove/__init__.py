@@ -36,6 +36,7 @@ __all__ = ["Error", "FramesFailed", "UsageError", "InputError", "OutputError", "
 
 # Each value of such an option stands by itself: file names may hold commas.
 _REPEATED = ("behind", "behind_channel")
+_ONLY_OPTIONS = ("preset", "dry-run", "print-config", "write-camera")  # no preset holds them
 
 
 class Error(Exception):
@@ -97,15 +98,17 @@ def program() -> str:
     return found
 
 
-def _words(options: Dict[str, Any]) -> List[str]:
-    """Options as the command line has them. A value is never taken for an option."""
+def _words(options: Dict[str, Any], of_frames: bool = True) -> List[str]:
+    """Options as the command line has them. A value is never taken for an option. `of_frames`: of run and inspect, where all but a few are settings."""
     words = []
     for name, value in options.items():
-        option = "--" + name.rstrip("_").replace("_", "-")
+        key = name.rstrip("_").replace("_", "-")
+        is_setting = of_frames and key not in _ONLY_OPTIONS
+        option = "--set=" + key if is_setting else "--" + key
         if value is None or value is False:
             continue
         if value is True:
-            words.append(option)
+            words.append(option + "=true" if is_setting else option)
         elif isinstance(value, (list, tuple)):
             values = [_text(part) for part in value]
             words += [f"{option}={part}" for part in (values if name in _REPEATED else [",".join(values)])]
@@ -183,7 +186,7 @@ def inspect(input: Optional[str] = None, **options: Any) -> Dict[str, Any]:
 def compare(result: str, reference: str, **options: Any) -> Dict[str, Any]:
     """The measures of `alcove compare --json`: rmse, ssim and others. A limit that is exceeded, such as max_rmse=0.01, fails
     with ComparisonError; all else as in run()."""
-    return json.loads(_output_of("compare", os.fspath(result), os.fspath(reference), "--json", *_words(options)))
+    return json.loads(_output_of("compare", os.fspath(result), os.fspath(reference), "--json", *_words(options, of_frames=False)))
 
 
 def version() -> str:
