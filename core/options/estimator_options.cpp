@@ -246,15 +246,7 @@ void add_shape_rows(std::vector<OptionRow>& rows, EstimatorSettings& s) {
       .applies(or_confidence(to_steps()))
       .harmless = {"0"};
   OptionGroup(rows, "Estimator", Effect::none)
-      .flag("--no-skip", s.no_skip, "estimate sky too, and tiles that are proved to be open; slower, the same bits");
-  pixels
-      .number("--skip-tolerance", s.skip_tolerance, "", between(0, 0.1),
-              "also leave out, as open, tiles whose AO, before --intensity and --power, is proved to be at least 1 "
-              "less this, whatever the noise of few samples; 0: the same bits as --no-skip")
-      .applies(to_estimators({Estimator::gtao, Estimator::bitmask}))
-      .applies(to_steps())
-      .contradicts({"--no-skip"}, "one leaves out more, the other nothing")
-      .harmless = {"0"};
+      .flag("--no-skip", s.no_skip, "estimate sky too, and what is as in the frame before; slower, the same bits");
 }
 
 /// Of frames to each side: more are too far away to show the same.

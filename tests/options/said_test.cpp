@@ -127,9 +127,6 @@ const std::map<std::string, ConditionCase>& condition_cases() {
       {"--roughness", {{{"--roughness", "0.2"}}, {"--roughness", "0.2", "--aov", "ao,specular-occlusion"}}},
       {"--noise", {{with({"--noise", "animated"}, exact)}, with({"--noise", "animated"}, crytek)}},
       {"--seed", {{with({"--seed", "1"}, exact)}, {"--seed", "1"}}},
-      {"--skip-tolerance",
-       {{with({"--skip-tolerance", "0.01"}, crytek), with({"--skip-tolerance", "0.01"}, exact)},
-        {"--skip-tolerance", "0.01"}}},
       {"--ao-channels", {{{"--ao-channels", "rgb", "--aov", "depth"}}, {"--ao-channels", "rgb"}}},
       {"--aov-space", {{{"--aov-space", "view"}}, {"--aov-space", "view", "--aov", "ao,normal"}}},
       {"--multi-bounce", {{{"--multi-bounce"}}, {"--multi-bounce", "--composite", "c.exr"}}},
@@ -174,8 +171,7 @@ const std::map<std::string, Words>& contradicting_values() {
       {"--focal", {"35"}},         {"--aperture", {"36"}},
       {"--ortho-width", {"2"}},    {"--tolerance", {"0.1"}},
       {"--resolution", {"half"}},  {"--denoise-kernel", {"1,0.5"}},
-      {"--denoise-radius", {"3"}}, {"--skip-tolerance", {"0.01"}},
-      {"--no-skip", {"true"}},     {"--quiet", {"true"}},
+      {"--denoise-radius", {"3"}}, {"--quiet", {"true"}},
       {"--verbose", {"true"}},     {"--progress", {"plain"}},
       {"--occluders", {"Hero"}},   {"--ignore", {"Set*"}},
       {"--around", {"2"}},         {"--accumulate", {"2"}},
@@ -349,7 +345,6 @@ TEST_F(Said, of_two_presets_that_contradict_each_other_the_later_wins_and_one_ma
 
 TEST_F(Said, values_that_ask_for_nothing_are_taken_anywhere) {
   for (const Words& words : std::vector<Words>{{"--tolerance", "0", "--estimator", "hbao", "--resolution", "half"},
-                                               {"--skip-tolerance", "0.0", "--no-skip"},
                                                {"--complete", "none", "--estimator", "crytek"},
                                                {"--fog-density", "0"},
                                                {"--hidden", "0", "--separation", "auto", "--around", "0"},
