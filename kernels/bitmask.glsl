@@ -82,17 +82,15 @@ void complete_beyond(inout Found found, Receiver r, Side side, Reach reach, Draw
 }
 
 /// Searches a side where one surface is known at a pixel.
-void search_runs(inout Found found, Receiver r, Side side, Reach reach, Draw draw, uint range, int count) {
+void search_runs(inout Found found, Receiver r, Side side, Reach reach, Draw draw, int count) {
   const float jitter = draw.jitter, shift = draw.shift;
   const float whole = whole_arc(side), endless = 1e30;
   Sample last = receiver_sample(r);
   float last_cot = side.plane_cot;
   bool own = true, last_blocks = true;
   vec2 start = vec2(0);
-  const float last_step = float(last_of_range(range)) + 0.5;
-  int k = first_sample(range, int(kSteps), count, side.reach, jitter, step_exponent(int(kSteps), side.reach));
-  Interruptions interrupted = Interruptions(k & ~(kWordBits - 1), 0u, 0u);
-  for (; k < count && last.offset <= last_step; k++) {
+  Interruptions interrupted = Interruptions(0, 0u, 0u);
+  for (int k = 0; k < count; k++) {
     const float offset = step_offset(k, int(kSteps), count, side.reach, jitter);
     const vec2 beside = round(side.direction_px * offset);
     const ivec2 hit = r.pixel + ivec2(beside);
@@ -121,7 +119,7 @@ void search_runs(inout Found found, Receiver r, Side side, Reach reach, Draw dra
       interrupted = Interruptions(k + 1, 0u, 0u);
     }
   }
-  if (kBehindOthers) complete_behind(found, r, side, reach, draw, count, interrupted, k);
+  if (kBehindOthers) complete_behind(found, r, side, reach, draw, count, interrupted, count);
 }
 
 /// A surface of the last sample, and what is known of its run.
@@ -136,16 +134,15 @@ struct Slot {
 float cot_of(float slope) { return slope / max(1.0 - abs(slope), kLeastAcross); }
 
 /// The same where several are: a sample of each goes on from the surface that it is linked to.
-void search_layers(inout Found found, Receiver r, Side side, Reach reach, Draw draw, uint range, int count) {
-  const float whole = whole_arc(side), endless = 1e30, last_step = float(last_of_range(range)) + 0.5;
+void search_layers(inout Found found, Receiver r, Side side, Reach reach, Draw draw, int count) {
+  const float whole = whole_arc(side), endless = 1e30;
   const int plane = params.view.size.x * params.view.size.y;
   Sample last = receiver_sample(r);
   Slot slots[kMostSurfaces];
   for (int j = 0; j < kSurfaces; j++)
     slots[j] = Slot(j == 0 ? r.z : kNoLastSurface, vec2(0), true, true, vec2(side.plane_cot));
-  int k = first_sample(range, int(kSteps), count, side.reach, draw.jitter, step_exponent(int(kSteps), side.reach));
-  Interruptions interrupted = Interruptions(k & ~(kWordBits - 1), 0u, 0u);
-  for (; k < count && last.offset <= last_step; k++) {
+  Interruptions interrupted = Interruptions(0, 0u, 0u);
+  for (int k = 0; k < count; k++) {
     const float offset = step_offset(k, int(kSteps), count, side.reach, draw.jitter), gap = offset - last.offset;
     const Surfaces here = surfaces_at(r, side, reach, offset, plane);
     float last_z[kMostSurfaces];
@@ -189,21 +186,21 @@ void search_layers(inout Found found, Receiver r, Side side, Reach reach, Draw d
       interrupted = Interruptions(k + 1, 0u, 0u);
     }
   }
-  if (kBehindOthers) complete_behind(found, r, side, reach, draw, count, interrupted, k);
+  if (kBehindOthers) complete_behind(found, r, side, reach, draw, count, interrupted, count);
 }
 
 /// The blocked part of a side's arc integral and, with bent normals, of bent_to(); and what of the arc completed
 /// surfaces block.
-vec4 search(Receiver r, Side side, Reach reach, Draw draw, uint range) {
+vec4 search(Receiver r, Side side, Reach reach, Draw draw) {
   const float shift = draw.shift;
-  const int count = range != 0u ? min(int(kSteps), int(side.reach)) : 0;
+  const int count = min(int(kSteps), int(side.reach));
   const float whole = whole_arc(side);
   Found found = Found(0u, 0.0, 0.0, vec2(0));
   if (kSurfaces > 1)
-    search_layers(found, r, side, reach, draw, range, count);
+    search_layers(found, r, side, reach, draw, count);
   else
-    search_runs(found, r, side, reach, draw, range, count);
-  for (bool once = kBeyondBorder && side.is_cut && range != 0u && side.reach >= 1.0; once; once = false)
+    search_runs(found, r, side, reach, draw, count);
+  for (bool once = kBeyondBorder && side.is_cut && side.reach >= 1.0; once; once = false)
     complete_beyond(found, r, side, reach, draw);
   if (kBent && kFalloff == kFalloffNone) found.bent = bent_of_sectors(side, found.bits, shift);
   const float sector = whole / float(kSectors);

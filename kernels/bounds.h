@@ -6,13 +6,14 @@
 ALCOVE_BEGIN
 
 ALCOVE_CONSTANT uint kBoundsDepth = 0;   // in: one float per pixel, from prepare
-ALCOVE_CONSTANT uint kBoundsNormal = 1;  // in: one uint per pixel, from prepare
-ALCOVE_CONSTANT uint kBoundsTiles = 2;   // out: one TileBounds per tile, rows of tiles from the upper left corner
-ALCOVE_CONSTANT uint kBoundsHidden = 3;  // in: planes of hidden surfaces, see GBuffer; none if there are none
+ALCOVE_CONSTANT uint kBoundsHidden = 1;  // in: planes of hidden surfaces, see GBuffer
+// out: nearest and farthest depth per block of tiles, rows of blocks from the upper left corner; nothing hidden:
+// kSkyDepth, 0
+ALCOVE_CONSTANT uint kBoundsBlocks = 2;
 
 struct BoundsParams {
-  View view;
-  uint hidden;  // planes of it
+  ivec2 size;   // px, of the image
+  uint hidden;  // planes of hidden surfaces
 };
 ALCOVE_PARAMS(BoundsParams)
 

@@ -1,4 +1,4 @@
-// What stands clear of a receiver's tangent plane: one rule, for every estimator and for the proof that nothing does.
+// What stands clear of a receiver's tangent plane: one rule for every estimator.
 // Pure: no bindings.
 // SPDX-License-Identifier: BSD-3-Clause
 //

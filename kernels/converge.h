@@ -11,7 +11,7 @@ ALCOVE_CONSTANT uint kConvergeWhole = 2;    // in: one float per pixel, sum of w
 // in and out: one float per pixel, visibility by half of the directions, then by all; the plane of the parameters
 ALCOVE_CONSTANT uint kConvergeAo = 3;
 ALCOVE_CONSTANT uint kConvergeJudged = 4;  // out: one JudgedTile per tile
-ALCOVE_CONSTANT uint kConvergeList = 5;    // in: one ListedTile per tile that had more directions, from refine
+ALCOVE_CONSTANT uint kConvergeList = 5;    // in: one uint per tile that had more directions, from refine
 ALCOVE_CONSTANT uint kConvergeCounts = 6;  // in: TileCounts, from refine
 
 /// How well a tile is known.

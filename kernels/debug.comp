@@ -104,8 +104,7 @@ void main() {
   if (params.kind == kDebugViewZ) value = -z;
   if (params.kind == kDebugNormalZ) value = n.z;
   if (params.kind == kDebugTile)
-    value = float(bitCount(values[(pixel.y / kTile) * tiles_of(params.view.size).x + pixel.x / kTile] & kEverySector)) /
-            float(kSectorsOfTurn);
+    value = values[(pixel.y / kTile) * tiles_of(params.view.size).x + pixel.x / kTile] == kTileListed ? 1.0 : 0.0;
   if (params.kind == kDebugHidden) value = hidden_at(index);
   if (params.kind == kDebugEdge) value = edge(pixel, z, n);
   if (params.kind == kDebugNormalAngle) {

@@ -7,7 +7,7 @@ ALCOVE_BEGIN
 
 ALCOVE_CONSTANT uint kDebugDepth = 0;   // in: one float per pixel, planar depth, kSkyDepth for sky
 ALCOVE_CONSTANT uint kDebugNormal = 1;  // in: one uint per pixel, unit vector in view space, see normal.glsl
-// in: one float per pixel (kDebugValue) or a second set of normals (kDebugNormalAngle), or the sectors of tiles
+// in: one float per pixel (kDebugValue) or a second set of normals (kDebugNormalAngle), or the kinds of tiles
 // (kDebugTile), or what is hidden (kDebugHidden); not read by others
 ALCOVE_CONSTANT uint kDebugValues = 2;
 ALCOVE_CONSTANT uint kDebugResult = 3;  // out: one float per pixel

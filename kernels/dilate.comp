@@ -1,4 +1,4 @@
-// Lists where a filter has work: within its reach of an estimate that is not proved to be 1.
+// Lists where a filter has work: within its reach of a tile that is not open.
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // In: tiles by what classify found.

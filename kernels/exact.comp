@@ -50,7 +50,7 @@ layout(scalar, binding = kExactMark) readonly buffer Mark { uint mark[]; };
 layout(scalar, binding = kExactNeighbor) readonly buffer Neighbor { uint neighbor[]; };
 layout(scalar, binding = kExactWhole) buffer Whole { float whole_arcs[]; };
 layout(scalar, binding = kExactAo) buffer Ao { float ao[]; };
-layout(scalar, binding = kExactList) readonly buffer List { ListedTile list[]; };
+layout(scalar, binding = kExactList) readonly buffer List { uint list[]; };
 layout(scalar, binding = kExactCounts) readonly buffer Counts { TileCounts counts; };
 layout(scalar, binding = kExactGoesOn) readonly buffer GoesOn { uint goes_on[]; };
 layout(scalar, binding = kExactBehind) readonly buffer Behind { uint behind[]; };
@@ -396,7 +396,7 @@ void main() {
     const ListedPlace place = listed_place(gl_WorkGroupID.xy, gl_LocalInvocationIndex);
     if (place.tile >= counts.listed) return;
     const ivec2 origin = lines.steep != 0 ? lines.origin.yx : lines.origin;
-    const ivec2 listed = pixel_of_anchored_tile(unpack_tile(list[place.tile].place), place.pixel, origin);
+    const ivec2 listed = pixel_of_anchored_tile(unpack_tile(list[place.tile]), place.pixel, origin);
     if (!inside(view, listed)) return;
     at = lines.steep != 0 ? listed.yx : listed;
   }

@@ -38,7 +38,7 @@ layout(scalar, binding = kHbaoDepth) readonly buffer Depth { float depth[]; };
 layout(scalar, binding = kHbaoOccluders) readonly buffer Occluders { float occluder_depth[]; };
 layout(scalar, binding = kHbaoNormal) readonly buffer Normal { uint normal[]; };
 layout(scalar, binding = kHbaoAo) writeonly buffer Ao { float ao[]; };
-layout(scalar, binding = kHbaoList) readonly buffer List { ListedTile list[]; };
+layout(scalar, binding = kHbaoList) readonly buffer List { uint list[]; };
 layout(scalar, binding = kHbaoSites) readonly buffer Sites { uint sites[]; };
 layout(scalar, binding = kHbaoSiteCounts) readonly buffer SiteCountsBuffer { SiteCounts site_counts; };
 layout(scalar, binding = kHbaoCounts) readonly buffer Counts { TileCounts counts; };
@@ -52,22 +52,20 @@ struct Direction {
   float least_height;     // of a sample: see clearance.glsl
 };
 
-/// The occlusion in one direction: sin h - sin t, attenuated. `range`: the steps at which something may stand above the
-/// tangent plane.
-float occlusion(Direction side, ivec2 pixel, vec3 position, float jitter, uint range) {
-  const int steps = int(kSteps), count = range != 0u ? min(steps, int(side.reach)) : 0;
-  const float last_step = float(last_of_range(range)) + 0.5;
+/// The occlusion in one direction: sin h - sin t, attenuated.
+float occlusion(Direction side, ivec2 pixel, vec3 position, float jitter) {
+  const int steps = int(kSteps), count = min(steps, int(side.reach));
   const float weight = length(side.normal);
   // The sine that samples must exceed: that of the tangent (sin t of the paper), raised by the bias, or that of the
   // bias alone.
   const vec2 across = vec2(side.normal.y, -side.normal.x) / weight;  // the tangent, as its own cosine and sine
   float horizon = params.from_surface != 0 ? params.bias
                                            : across.y * sqrt(1.0 - params.bias * params.bias) + across.x * params.bias;
-  float sum = 0.0, step_px = 0.0;
-  for (int k = first_sample(range, steps, count, side.reach, jitter, 2.0); k < count && step_px <= last_step; k++) {
+  float sum = 0.0;
+  for (int k = 0; k < count; k++) {
     const float x = (float(k) + jitter) / float(steps);
     // Dense near the receiver, and never two samples in one pixel.
-    step_px = count < steps ? float(k + 1) : max(float(k + 1), x * x * side.reach);
+    const float step_px = count < steps ? float(k + 1) : max(float(k + 1), x * x * side.reach);
     const ivec2 hit = pixel + ivec2(round(side.direction_px * step_px));
     const float z = occluder_depth[index_of(params.view, hit)];
     if (z >= kSkyDepth) continue;
@@ -140,8 +138,7 @@ void main() {
       bool is_cut;
       side.reach = reach_of_side(params.view, pixel, side.direction_px, pixels, eye.z, float(sign) * t.z, sin_reach,
                                  params.radius, is_cut);
-      blocked += share * occlusion(side, pixel, position, fract(noise.y + kGolden * float(2u * s + uint(sign > 0))),
-                                   list[here.tile].ranges[sector_of(side.direction_px)]);
+      blocked += share * occlusion(side, pixel, position, fract(noise.y + kGolden * float(2u * s + uint(sign > 0))));
     }
   }
   ao[ao_index] = clamp(1.0 - blocked / whole, 0.0, 1.0);

@@ -12,7 +12,7 @@
 //   unknown.
 // - The samples of a side form runs of one surface. What goes on from the receiver, or from any place below its tangent
 //   plane, is its own surface: it blocks all below its horizon. A sample that is not above that plane says nothing
-//   else, so it may be left out where `classify` knows of it.
+//   else.
 // - Every other run blocks from its front to its back, which lies as much further along the eye's ray as the run is
 //   wide ("width as thickness": a blade of grass is as thin as it is narrow, a column as thick as it is broad), or as
 //   the user says. Nothing beyond the radius blocks. What the own surface blocks is an interval, exact; what all other
@@ -48,7 +48,7 @@ layout(scalar, binding = kSlicesDepth) readonly buffer Depth { float depth[]; };
 layout(scalar, binding = kSlicesOccluders) readonly buffer Occluders { float occluder_depth[]; };
 layout(scalar, binding = kSlicesNormal) readonly buffer Normal { uint normal[]; };
 layout(scalar, binding = kSlicesAo) writeonly buffer Ao { float ao[]; };
-layout(scalar, binding = kSlicesList) readonly buffer List { ListedTile list[]; };
+layout(scalar, binding = kSlicesList) readonly buffer List { uint list[]; };
 layout(scalar, binding = kSlicesSites) readonly buffer Sites { uint sites[]; };
 layout(scalar, binding = kSlicesSiteCounts) readonly buffer SiteCountsBuffer { SiteCounts site_counts; };
 layout(scalar, binding = kSlicesCounts) readonly buffer Counts { TileCounts counts; };
@@ -63,5 +63,5 @@ const int kSurfaces = 1;
 
 void main() {
   const ListedPixel here = listed_pixel(gl_WorkGroupID.xy, gl_LocalInvocationIndex);
-  if (both(here.exists, is_mine(list[here.tile].place))) estimate(here.pixel, here.tile);
+  if (both(here.exists, is_mine(list[here.tile]))) estimate(here.pixel);
 }

@@ -174,15 +174,13 @@ void add_layers(inout Found found, inout Solids last, Receiver r, Side side, Rea
 
 /// Searches a side where occluders are solid as far as the sphere of the radius: they block one interval. Solids whose
 /// backs are known have their own.
-void search_endless(inout Found found, Receiver r, Side side, Reach reach, Draw draw, uint range, int count) {
-  const float last_step = float(last_of_range(range)) + 0.5;
+void search_endless(inout Found found, Receiver r, Side side, Reach reach, Draw draw, int count) {
   const int plane = params.view.size.x * params.view.size.y;
   Sample last = receiver_sample(r);
   Solids solids;
   for (int i = 0; i < kSurfaces; i++) solids.z[i] = kNoLastSurface;
   for (int i = 0; i < kSurfaces; i++) solids.slopes[i] = vec2(-1, 1);
-  for (int k = first_sample(range, int(kSteps), count, side.reach, draw.jitter, step_exponent(int(kSteps), side.reach));
-       k < count && last.offset <= last_step; k++) {
+  for (int k = 0; k < count; k++) {
     const float offset = step_offset(k, int(kSteps), count, side.reach, draw.jitter);
     Sample s;
     bool has_back = false;
@@ -211,14 +209,12 @@ void search_endless(inout Found found, Receiver r, Side side, Reach reach, Draw 
 }
 
 /// The same where occluders are as thick as they are wide, or as the user says: the receiver's own surface, and runs.
-void search_runs(inout Found found, Receiver r, Side side, Reach reach, Draw draw, uint range, int count) {
-  const float last_step = float(last_of_range(range)) + 0.5;
+void search_runs(inout Found found, Receiver r, Side side, Reach reach, Draw draw, int count) {
   bool own = true;
   Sample last = receiver_sample(r);
   Run run = Run(vec2(0), vec2(0), 0.0, 1.0, -1.0, 1.0);
-  int k = first_sample(range, int(kSteps), count, side.reach, draw.jitter, step_exponent(int(kSteps), side.reach));
-  Interruptions interrupted = Interruptions(k & ~(kWordBits - 1), 0u, 0u);
-  for (; k < count && last.offset <= last_step; k++) {
+  Interruptions interrupted = Interruptions(0, 0u, 0u);
+  for (int k = 0; k < count; k++) {
     const Sample s = sample_at(r, side, reach, step_offset(k, int(kSteps), count, side.reach, draw.jitter));
     const float gap = s.offset - last.offset;
     const bool connected = same_surface(r, reach, s.z, last.z, gap);
@@ -249,7 +245,7 @@ void search_runs(inout Found found, Receiver r, Side side, Reach reach, Draw dra
     }
   }
   if (kHard) found.blocked.sectors |= sectors_of(r, reach, run, true, last.z, 1.0, draw.shift);
-  if (kBehindOthers) complete_behind(found, r, side, reach, draw, count, interrupted, k);
+  if (kBehindOthers) complete_behind(found, r, side, reach, draw, count, interrupted, count);
 }
 
 /// A run is so much of its width thick where it is known what lies behind it within reach: its width stands in for what
@@ -300,17 +296,15 @@ uint sectors_of_ending(Receiver r, Reach reach, Slot slots[kMostSurfaces], uint 
 }
 
 /// search_runs() where a pixel has several surfaces: as many runs at a time.
-void search_layers(inout Found found, Receiver r, Side side, Reach reach, Draw draw, uint range, int count) {
-  const float last_step = float(last_of_range(range)) + 0.5;
+void search_layers(inout Found found, Receiver r, Side side, Reach reach, Draw draw, int count) {
   const int plane = params.view.size.x * params.view.size.y;
   Sample last = receiver_sample(r);
   const Run nothing = Run(vec2(0), vec2(0), 0.0, 1.0, -1.0, 1.0);
   Slot slots[kMostSurfaces];
   for (int i = 0; i < kSurfaces; i++)
     slots[i] = Slot(i == 0 ? r.z : kNoLastSurface, 0.0, kSlotAbove | kSlotWithin | kSlotOwn, nothing);
-  int k = first_sample(range, int(kSteps), count, side.reach, draw.jitter, step_exponent(int(kSteps), side.reach));
-  Interruptions interrupted = Interruptions(k & ~(kWordBits - 1), 0u, 0u);
-  for (; k < count && last.offset <= last_step; k++) {
+  Interruptions interrupted = Interruptions(0, 0u, 0u);
+  for (int k = 0; k < count; k++) {
     const float offset = step_offset(k, int(kSteps), count, side.reach, draw.jitter), gap = offset - last.offset;
     const Surfaces here = surfaces_at(r, side, reach, offset, plane);
     float last_z[kMostSurfaces];
@@ -373,22 +367,21 @@ void search_layers(inout Found found, Receiver r, Side side, Reach reach, Draw d
     }
   }
   if (kHard) found.blocked.sectors |= sectors_of_ending(r, reach, slots, (1u << kSurfaces) - 1u, 1.0, draw.shift);
-  if (kBehindOthers) complete_behind(found, r, side, reach, draw, count, interrupted, k);
+  if (kBehindOthers) complete_behind(found, r, side, reach, draw, count, interrupted, count);
 }
 
-/// The blocked part of a side's integrals, and what of its arc completed surfaces block. range: the steps at which
-/// something may stand above the tangent plane.
-vec4 search(Receiver r, Side side, Reach reach, Draw draw, uint range) {
-  const int count = range != 0u ? min(int(kSteps), int(side.reach)) : 0;
+/// The blocked part of a side's integrals, and what of its arc completed surfaces block.
+vec4 search(Receiver r, Side side, Reach reach, Draw draw) {
+  const int count = min(int(kSteps), int(side.reach));
   const Blocked nothing = Blocked(-1.0, kThickness == kThicknessEndless ? 1.0 : -1.0, 0u);
   Found found = Found(nothing, nothing, vec3(0), vec3(0), 0.0);
   if (kThickness == kThicknessEndless)
-    search_endless(found, r, side, reach, draw, range, count);
+    search_endless(found, r, side, reach, draw, count);
   else if (kSurfaces > 1)
-    search_layers(found, r, side, reach, draw, range, count);
+    search_layers(found, r, side, reach, draw, count);
   else
-    search_runs(found, r, side, reach, draw, range, count);
-  for (bool once = kBeyondBorder && side.is_cut && range != 0u && side.reach >= 1.0; once; once = false)
+    search_runs(found, r, side, reach, draw, count);
+  for (bool once = kBeyondBorder && side.is_cut && side.reach >= 1.0; once; once = false)
     complete_beyond(found, r, side, reach, draw);
   if (!kHard) return vec4(found.sum, found.completed_sum);
   const Blocked all =

@@ -28,7 +28,7 @@ layout(scalar, binding = kSlicesDepth) readonly buffer Depth { float depth[]; };
 layout(scalar, binding = kSlicesOccluders) readonly buffer Occluders { float occluder_depth[]; };
 layout(scalar, binding = kSlicesNormal) readonly buffer Normal { uint normal[]; };
 layout(scalar, binding = kSlicesAo) writeonly buffer Ao { float ao[]; };
-layout(scalar, binding = kSlicesList) readonly buffer List { ListedTile list[]; };
+layout(scalar, binding = kSlicesList) readonly buffer List { uint list[]; };
 layout(scalar, binding = kSlicesSites) readonly buffer Sites { uint sites[]; };
 layout(scalar, binding = kSlicesSiteCounts) readonly buffer SiteCountsBuffer { SiteCounts site_counts; };
 layout(scalar, binding = kSlicesCounts) readonly buffer Counts { TileCounts counts; };
@@ -42,5 +42,5 @@ const int kSurfaces = 1 + int(kSolid / kHiddenSurface);
 
 void main() {
   const ListedPixel here = listed_pixel(gl_WorkGroupID.xy, gl_LocalInvocationIndex);
-  if (both(here.exists, is_mine(list[here.tile].place))) estimate(here.pixel, here.tile);
+  if (both(here.exists, is_mine(list[here.tile]))) estimate(here.pixel);
 }

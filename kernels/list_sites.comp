@@ -12,7 +12,7 @@
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 layout(scalar, push_constant) uniform Push { ListSitesParams params; };
 layout(scalar, binding = kListSitesRows) readonly buffer Rows { uint rows[]; };
-layout(scalar, binding = kListSitesTiles) readonly buffer Tiles { ListedTile tiles[]; };
+layout(scalar, binding = kListSitesTiles) readonly buffer Tiles { uint tiles[]; };
 layout(scalar, binding = kListSitesTileCounts) readonly buffer TileCountsBuffer { TileCounts tile_counts; };
 layout(scalar, binding = kListSitesList) writeonly buffer List { uint list[]; };
 layout(scalar, binding = kListSitesCounts) buffer Counts { SiteCounts counts; };
@@ -27,7 +27,7 @@ void main() {
   const uint number =
       (gl_WorkGroupID.y * kListedRow + gl_WorkGroupID.x) * (kGroupX * kGroupY) + gl_LocalInvocationIndex;
   const bool is_listed = number < tile_counts.listed;
-  const ivec2 tile = is_listed ? unpack_tile(tiles[number].place) : ivec2(0);
+  const ivec2 tile = is_listed ? unpack_tile(tiles[number]) : ivec2(0);
   const int words = words_of_tile(tile, tiles_of(params.size));
   uint site[2] = uint[2](0u, 0u), within[kLattices];
   for (uint k = 0u; k < kLattices; k++) within[k] = 0u;

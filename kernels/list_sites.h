@@ -6,7 +6,7 @@
 ALCOVE_BEGIN
 
 ALCOVE_CONSTANT uint kListSitesRows = 0;        // in: 8 words per tile, see lattice.glsl
-ALCOVE_CONSTANT uint kListSitesTiles = 1;       // in: one ListedTile per listed tile
+ALCOVE_CONSTANT uint kListSitesTiles = 1;       // in: one uint per listed tile
 ALCOVE_CONSTANT uint kListSitesTileCounts = 2;  // in: TileCounts
 ALCOVE_CONSTANT uint kListSitesList =
     3;  // out: one uint per site of a listed tile, see pack_site; in no order of tiles

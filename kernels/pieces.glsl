@@ -7,7 +7,7 @@
 // A piece ends where it would be seen, and where it leaves the sphere of the radius.
 //
 // Only what stands above the receiver's tangent plane goes on behind something. There, a deeper point of a ray never
-// stands higher above that plane than what is seen on the ray, measured by depth, so classify.comp's proofs hold.
+// stands higher above that plane than what is seen on the ray, measured by depth.
 //
 // The kernel has declared its buffers `occluder_depth` and `normal`, and how many steps a side takes, kSteps.
 

@@ -20,6 +20,6 @@ ListedPixel listed_pixel(uvec2 group, uint invocation) {
     if (exists) place = unpack_site(sites[at]);
   }
   if (!exists) return ListedPixel(false, 0u, ivec2(0));
-  const ivec2 pixel = pixel_of_tile(unpack_tile(list[place.tile].place), place.pixel);
+  const ivec2 pixel = pixel_of_tile(unpack_tile(list[place.tile]), place.pixel);
   return ListedPixel(inside(params.view, pixel), place.tile, pixel);
 }

@@ -20,11 +20,11 @@ layout(constant_id = kRefineBentId) const uint kBent = 0;
 layout(scalar, push_constant) uniform Push { RefineParams params; };
 layout(scalar, binding = kRefineDepth) readonly buffer Depth { float depth[]; };
 layout(scalar, binding = kRefineJudged) readonly buffer Judged { JudgedTile judged[]; };
-layout(scalar, binding = kRefineList) readonly buffer List { ListedTile list[]; };
+layout(scalar, binding = kRefineList) readonly buffer List { uint list[]; };
 layout(scalar, binding = kRefineCounts) readonly buffer Counts { TileCounts counts; };
 layout(scalar, binding = kRefineError) buffer Error { float error[]; };
 layout(scalar, binding = kRefineSquares) writeonly buffer Squares { vec2 squares[]; };
-layout(scalar, binding = kRefineNextList) writeonly buffer NextList { ListedTile next[]; };
+layout(scalar, binding = kRefineNextList) writeonly buffer NextList { uint next[]; };
 layout(scalar, binding = kRefineNextCounts) buffer NextCounts { TileCounts next_counts; };
 layout(scalar, binding = kRefineNextLines) buffer NextLines { GroupCount next_lines; };
 layout(scalar, binding = kRefineWhole) readonly buffer Whole { float whole[]; };
@@ -56,7 +56,7 @@ bool errs_here(ivec2 tile, ivec2 count) {
 /// Lists a tile for more directions.
 void needs_more(ivec2 tile) {
   const uint at = atomicAdd(next_counts.listed, 1u);
-  next[at].place = pack_tile(tile);
+  next[at] = pack_tile(tile);
   const uvec2 groups = dispatch_of_tiles(at + 1u, kTilePixels);
   atomicMax(next_counts.groups.x, groups.x);
   atomicMax(next_counts.groups.y, groups.y);
@@ -97,7 +97,7 @@ void main() {
   const uint i = invocation_of_tile(count, gl_GlobalInvocationID.xy);
   const bool begins = params.directions == 0u;
   if (i >= (begins ? uint(count.x * count.y) : counts.listed)) return;
-  const ivec2 tile = begins ? ivec2(i % uint(count.x), i / uint(count.x)) : unpack_tile(list[i].place);
+  const ivec2 tile = begins ? ivec2(i % uint(count.x), i / uint(count.x)) : unpack_tile(list[i]);
   const int at = tile.y * count.x + tile.x;
   if (begins && judged[at].receivers == 0.0) atomicAdd(next_counts.sky, 1u);
   const bool decides = params.decides != 0u;

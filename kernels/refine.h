@@ -7,13 +7,13 @@ ALCOVE_BEGIN
 
 ALCOVE_CONSTANT uint kRefineDepth = 0;   // in: one float per pixel, from prepare
 ALCOVE_CONSTANT uint kRefineJudged = 1;  // in: one JudgedTile per tile, from converge
-ALCOVE_CONSTANT uint kRefineList = 2;    // in: one ListedTile per tile that had more directions
+ALCOVE_CONSTANT uint kRefineList = 2;    // in: one uint per tile that had more directions
 ALCOVE_CONSTANT uint kRefineCounts = 3;  // in: TileCounts
 // in and out: one float per pixel, the estimated error of its tile; of several radii the mean of theirs
 ALCOVE_CONSTANT uint kRefineError = 4;
 // out: one vec2 per tile, sum of the squared errors of its receivers, and their number
 ALCOVE_CONSTANT uint kRefineSquares = 5;
-ALCOVE_CONSTANT uint kRefineNextList = 6;    // out: one ListedTile per tile that needs more still
+ALCOVE_CONSTANT uint kRefineNextList = 6;    // out: one uint per tile that needs more still
 ALCOVE_CONSTANT uint kRefineNextCounts = 7;  // in and out: TileCounts, zeros
 // in and out: GroupCount of profile, whose z is 0; it becomes 1 where any tile needs more
 ALCOVE_CONSTANT uint kRefineNextLines = 8;

@@ -85,54 +85,19 @@ struct GroupCount {
   uint x, y, z;
 };
 
-ALCOVE_CONSTANT int kTile = 8;             // px a side of the tiles by which work is skipped
-ALCOVE_CONSTANT int kTileGroup = 4;        // tiles a side of the groups by which they are searched
-ALCOVE_CONSTANT uint kTilePlanes = 10;     // of TileBounds
-ALCOVE_CONSTANT uint kSectorsOfTurn = 16;  // of directions on the image: see tiles.glsl
+ALCOVE_CONSTANT int kTile = 8;       // px a side of the tiles by which work is skipped
+ALCOVE_CONSTANT int kTileBlock = 2;  // tiles a side of the blocks that are judged together
 
-/// Bounds of the surfaces seen in a tile, from the eye's side. They are told by their nearness: 1 / z, or -z
-/// orthographic, in which planes are affine in the pixel.
-struct TileBounds {
-  vec2 gradient;  // nearness per pixel, from corner to corner of the tile
-  // nearness at the tile's centre of planes that no surface is before: with the tile's own gradient, with those of its
-  // neighbours (tiles.glsl), and level
-  float plane[kTilePlanes];
-  float farthest;         // least nearness; above the level plane where the tile is all sky
-  float last;             // the same, of hidden surfaces too
-  float hidden;           // the same, largest: of surfaces, and of the fronts of solids that they close; none: -kFar
-  uint mixed;             // 1: its surfaces leave the plane with its own gradient, so that another one may be lower
-  uint normal;            // of its receivers, packed; kNoNormal: they have none in common
-  float turned;           // length of the largest difference between a receiver's normal and it
-  float lowest, highest;  // of -dot(normal, position) over the receivers
-};
-
-/// The same for a group of tiles, less tightly.
-struct GroupBounds {
-  vec2 gradient;       // nearness per pixel
-  float plane, level;  // nearness at the group's centre of planes that no surface is before: with that gradient, level
-  float last, hidden;  // as of a tile
-};
-
-/// A tile that is to be estimated.
-struct ListedTile {
-  uint place;  // column + (row << 16), in tiles, and kTileLayered
-  // for each sector of directions on the image the steps at which something may stand above, first + (last << 16); 0:
-  // nothing blocks
-  uint ranges[kSectorsOfTurn];
-};
-
-/// Of a ListedTile: hidden surfaces may count. Without it nothing is hidden so near that an estimator looks at it.
+/// Of a listed tile: hidden surfaces may count. Without it nothing is hidden so near that an estimator looks at it.
 ALCOVE_CONSTANT uint kTileLayered = 0x80000000u;
 
 /// How many tiles are listed, and why the others are not.
 struct TileCounts {
   GroupCount groups;  // that hold the listed ones
   uint listed;
-  uint sky;
-  uint open;       // proved to be
-  uint tolerated;  // of them, those that are so only within the tolerance
-  uint kept;       // as the frame before has them
-  uint layered;    // of the listed ones, those with kTileLayered
+  uint sky;      // or not needed
+  uint kept;     // as the frame before has them
+  uint layered;  // of the listed ones, those with kTileLayered
 };
 
 // How far from a pixel others decide whether it is a site, in px: 3 for each of the four passes of sites.comp, and the
@@ -153,9 +118,10 @@ struct RunCounts {
   uint listed;
 };
 
-/// What classify says of a tile: a bit for every sector of directions in which something may block, or one of these:
-ALCOVE_CONSTANT uint kTileOpen = 0;        // its visibility is 1: nothing blocks, or it is sky
-ALCOVE_CONSTANT uint kTileKept = 1 << 16;  // its visibility is as in the frame before, and so are its depth and normals
+// What classify says of a tile.
+ALCOVE_CONSTANT uint kTileOpen = 0;    // its visibility is 1: it is sky, or not needed
+ALCOVE_CONSTANT uint kTileListed = 1;  // it is to be estimated
+ALCOVE_CONSTANT uint kTileKept = 2;    // its visibility is as in the frame before, and so are its depth and normals
 
 /// What the kernels count over a frame.
 struct FrameCounts {

@@ -11,8 +11,8 @@ void write_bent(int index, int plane, vec3 b) {
   for (int c = 0; c < 3; c++) bent[index + c * plane] = stored_bent(b)[c];
 }
 
-/// Writes the visibility of a pixel of a listed tile and, where it is asked for, its mean open direction.
-void estimate(ivec2 pixel, uint tile) {
+/// Writes the visibility of a pixel and, where it is asked for, its mean open direction.
+void estimate(ivec2 pixel) {
   const View view = params.view;
   const int index = index_of(view, pixel);
   const int plane = view.size.x * view.size.y;
@@ -37,8 +37,7 @@ void estimate(ivec2 pixel, uint tile) {
     whole += slice.share * slice.weight * (slice.cos_gamma + slice.gamma * slice.sin_gamma);
     for (int sign = -1; sign <= 1; sign += 2) {
       const Side side = side_of(view, r, slice, float(sign), reach);
-      const uint range = list[tile].ranges[sector_of(side.direction_px)];
-      const vec4 arcs = slice.share * slice.weight * search(r, side, reach, draw_of(noise, s, uint(sign > 0)), range);
+      const vec4 arcs = slice.share * slice.weight * search(r, side, reach, draw_of(noise, s, uint(sign > 0)));
       blocked += arcs.x;
       if (kTellsCompleted) completed_arcs += arcs.w;
       if (kBent) bent_blocked += arcs.y * float(sign) * slice.t + arcs.z * r.eye;

@@ -11,7 +11,7 @@ ALCOVE_CONSTANT uint kSlicesNormal = 1;  // in: one uint per pixel, from prepare
 ALCOVE_CONSTANT uint kSlicesAo = 2;
 // out: planes x, y, z of the mean open direction b in view space as 0.5 + 0.5 b; only with kWithBent
 ALCOVE_CONSTANT uint kSlicesBent = 3;
-ALCOVE_CONSTANT uint kSlicesList = 4;        // in: one ListedTile per tile, from classify: what to estimate
+ALCOVE_CONSTANT uint kSlicesList = 4;        // in: one uint per listed tile, from classify
 ALCOVE_CONSTANT uint kSlicesCounts = 5;      // in: TileCounts
 ALCOVE_CONSTANT uint kSlicesSites = 7;       // in: one uint per site, from list_sites; only if sparse
 ALCOVE_CONSTANT uint kSlicesSiteCounts = 8;  // in: SiteCounts; only if sparse

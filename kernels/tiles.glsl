@@ -1,4 +1,4 @@
-// Tiles of pixels by which work is skipped, and directions on the image. Pure: no bindings.
+// Tiles of pixels by which work is skipped. Pure: no bindings.
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// The workgroups in x and y of a dispatch of so many.
@@ -6,11 +6,9 @@ uvec2 dispatch_of(uint groups) { return uvec2(min(groups, kListedRow), (groups +
 
 ivec2 tiles_of(ivec2 size) { return (size + kTile - 1) / kTile; }
 
-ivec2 groups_of_tiles(ivec2 size) { return (tiles_of(size) + kTileGroup - 1) / kTileGroup; }
+ivec2 blocks_of(ivec2 size) { return (tiles_of(size) + kTileBlock - 1) / kTileBlock; }
 
-/// The step from a tile to the k-th of its 8 neighbours.
-ivec2 neighbor_step(int k) { return k < 3 ? ivec2(k - 1, -1) : k < 6 ? ivec2(k - 4, 1) : ivec2(k * 2 - 13, 0); }
-
+/// Packs a listed tile: column + (row << 16), in tiles, and kTileLayered or not.
 uint pack_tile(ivec2 tile) { return uint(tile.x) | uint(tile.y) << 16; }
 ivec2 unpack_tile(uint place) { return ivec2(place & 0xffffu, (place & ~kTileLayered) >> 16); }
 
@@ -66,55 +64,3 @@ vec3 stored_bent(vec3 bent) { return 0.5 + 0.5 * bent; }
 
 /// The mean open direction of an open hemisphere, whichever slices are drawn.
 vec3 open_bent(vec3 normal) { return 2.0 / 3.0 * normal; }
-
-/// Sixteen sectors of directions on the image, by a number that grows with the angle as that does: 0 to 4 for a whole
-/// turn.
-const uint kEverySector = 0xffffu;
-
-float turn_of(vec2 direction) {
-  const float y = direction.y / (abs(direction.x) + abs(direction.y));
-  return direction.x >= 0.0 ? (y >= 0.0 ? y : 4.0 + y) : 2.0 - y;
-}
-
-uint sector_of(vec2 direction) { return uint(turn_of(direction) * float(kSectorsOfTurn / 4u)) & (kSectorsOfTurn - 1u); }
-
-/// Packs a range of a ListedTile: its first and last step. A step is a pixel along the longer axis; a sample lies up to
-/// half of one beside its offset.
-uint pack_range(uint first, uint last) { return min(first, 0xffffu) | min(last, 0xffffu) << 16; }
-uint first_of_range(uint range) { return range & 0xffffu; }
-uint last_of_range(uint range) { return range >> 16; }
-const uint kWholeRange = 0xffff0000u;
-
-/// first_sample() begins so many samples early, for rounding. pow() is right within 2e-6 of itself (by the
-/// precisions that Vulkan demands of exp2 and log2), which is less than this up to sample 5,000. Beyond, the half pixel
-/// holds by which a range begins before what stands above.
-const float kRoundingSamples = 0.01;
-
-/// The sample with which a search may begin: one of those before the first step of the range, which stand above
-/// nothing. The offsets of samples are k + 1, or where there are as many as wanted, so many pixels or ((k + jitter) /
-/// steps)^exponent times the reach, if that is more.
-int first_sample(uint range, int steps, int count, float reach, float jitter, float exponent) {
-  const float before = float(first_of_range(range)) - 1.0, share = max(before, 0.0) / reach;
-  const float k =
-      float(steps) * (exponent == 2.0 ? sqrt(share) : pow(share, 1.0 / exponent)) - jitter - kRoundingSamples;
-  return max(int(floor(count < steps ? before - 1.0 : min(before - 1.0, k))), 0);
-}
-
-/// The sectors in which a rectangle of offsets is seen; all of them where it holds the origin.
-uint sectors_of_offsets(vec2 least, vec2 most) {
-  if (all(lessThanEqual(least, vec2(0))) && all(greaterThanEqual(most, vec2(0)))) return kEverySector;
-  const float middle = turn_of(0.5 * (least + most));
-  float first = 0.0, last = 0.0;
-  for (int corner = 0; corner < 4; corner++) {
-    const float turn =
-        turn_of(vec2((corner & 1) != 0 ? most.x : least.x, (corner & 2) != 0 ? most.y : least.y)) - middle;
-    const float wrapped = turn - 4.0 * round(0.25 * turn);
-    first = min(first, wrapped);
-    last = max(last, wrapped);
-  }
-  const float sectors = float(kSectorsOfTurn / 4u);
-  const int begin = int(floor((middle + first) * sectors));
-  const int end = int(floor((middle + last) * sectors));
-  const uint seen = ((2u << uint(end - begin)) - 1u) << (uint(begin) & (kSectorsOfTurn - 1u));
-  return (seen | seen >> kSectorsOfTurn) & kEverySector;
-}

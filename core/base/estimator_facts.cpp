@@ -7,25 +7,11 @@
 namespace alcove {
 namespace {
 
-/// Samples per pixel from which on a proof that tiles are open costs less than it saves: it costs as much as 6 of them,
-/// and most frames are open in a tenth.
-constexpr double kWorthProving = 48;
-
 /// From so many slices on an estimate is meant to be better than what fewer pixels can tell.
 constexpr int kManySlices = 5;
 
-/// The part of the pixels that an adaptive density adds in most frames.
-constexpr double kAdded = 0.06;
-
 double samples_of_a_radius(const EstimatorSettings& settings) {
   return settings.estimator == Estimator::crytek ? settings.samples : 2 * settings.slices * settings.steps;
-}
-
-/// Of one radius, on average over the pixels of a surface.
-double expected_samples(const EstimatorSettings& settings) {
-  const double factor = double(settings.resolution);
-  const double density = 1.0 / spacing_of(settings) + (is_adaptive(settings) ? kAdded : 0);
-  return samples_of_a_radius(settings) / (factor * factor) * density;
 }
 
 }  // namespace
@@ -79,11 +65,6 @@ int denoise_reach_of(const EstimatorSettings& settings) {
   const int radius = kernel.empty() ? denoise_radius_of(settings) : int(kernel.size()) - 1;
   if (spacing_of(settings) == 1) return radius;
   return std::max(radius, is_adaptive(settings) ? 3 : 8);
-}
-
-bool proves(const EstimatorSettings& settings) {
-  return !settings.no_skip && !searches_exactly(settings) &&
-         (settings.skip_tolerance > 0 || expected_samples(settings) >= kWorthProving);
 }
 
 double samples_per_estimate(const EstimatorSettings& settings) {

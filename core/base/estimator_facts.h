@@ -42,9 +42,6 @@ int denoise_radius_of(const EstimatorSettings& settings);
 /// in which small surfaces may have none: these stay open.
 int denoise_reach_of(const EstimatorSettings& settings);
 
-/// Whether tiles are proved to be open. If not, only sky is left out.
-bool proves(const EstimatorSettings& settings);
-
 /// The depth samples that the settings ask for at a pixel with an estimate; 0 for an exact search.
 double samples_per_estimate(const EstimatorSettings& settings);
 

@@ -78,9 +78,7 @@ struct EstimatorSettings {
   // fixed: what stands still does not flicker, and may be used again; animated: for a mean over frames, which takes its
   // noise away
   Noise noise = Noise::fixed;
-  bool no_skip = false;  // estimate sky too, and what is proved to be open; the result is the same
-  // of gtao and bitmask, 0 to 0.1: also leave out, as open, what is proved to have a visibility of at least 1 less this
-  double skip_tolerance = 0;
+  bool no_skip = false;  // estimate sky too, and what is as in the frame before; the result is the same
 };
 
 /// Where to compute.

@@ -82,7 +82,7 @@ FrameOutputs run_chain(gpu::Recorder& gpu, const FrameInputs& frame, const Estim
       const Visibility smooth = chosen.rows ? interpolate(gpu, work, noisy, chosen, denoiser, runs)
                                             : denoise(gpu, work, noisy, denoiser, runs);
       whole = cut(gpu, frame, upsample(gpu, wide, work, smooth, runs));
-      stages = {work, noisy.ao, chosen, smooth.ao, estimated.completed, estimated.listed.sectors};
+      stages = {work, noisy.ao, chosen, smooth.ao, estimated.completed, estimated.listed.kinds};
       out.tiles = estimated.listed.counts;
       out.sites = estimated.listed.site_counts;
       out.squares = estimated.squares;

@@ -27,8 +27,7 @@ gpu::Buffer& confidence(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameI
   const Skipping skipping = skipping_of(bracket, frame, gbuffer.grid);
   const Denoiser denoiser = denoiser_of(bracket);
   const Sites chosen = sites(gpu, gbuffer, site_rule_of(bracket), "bracket ");
-  const Bounds surfaces = bounds(gpu, gbuffer, skipping);
-  coarsen(gpu, gbuffer, surfaces);
+  const gpu::Buffer* hidden = bounds(gpu, gbuffer, skipping);
   const GBuffer least = occluders(gpu, gbuffer, frame), most = occluders(gpu, gbuffer, frame, Unknown::blocked);
   const auto visibility = [&](const GBuffer& counted, float thickness, Completion complete,
                               const std::string& prefix) -> const gpu::Buffer& {
@@ -36,7 +35,7 @@ gpu::Buffer& confidence(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameI
     reach.thickness = thickness;
     reach.complete = complete;
     Estimate out{&gpu.buffer(prefix + "ao", plane_bytes(gbuffer.view), gpu::Use::device)};
-    out.listed = classify(gpu, gbuffer, surfaces, skipping, reach.radius, chosen, out, 0, prefix);
+    out.listed = classify(gpu, gbuffer, hidden, skipping, reach.radius, chosen, out, 0, prefix);
     list_sites(gpu, gbuffer, chosen, out.listed, prefix);
     horizon(gpu, counted, reach, sampling, out, 0);
     horizon_layers(gpu, counted, reach, sampling, out, 0);

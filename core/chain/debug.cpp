@@ -53,7 +53,7 @@ DebugPlane debug(gpu::Recorder& gpu, const DebugView& view, const GBuffer& gbuff
       break;
     case DebugSource::tiles:
       shown = &stages.gbuffer;
-      values = stages.sectors;
+      values = stages.kinds;
       break;
   }
   gpu::Buffer& result = gpu.buffer(std::string("debug ") + view.name, plane_bytes(shown->view), gpu::Use::device);

@@ -16,7 +16,7 @@ struct DebugStages {
   Sites sites{};  // the pixels that raw_ao is of
   const gpu::Buffer* denoised_ao = nullptr;
   const gpu::Buffer* completed = nullptr;  // of the pixels of raw_ao; null: not asked for
-  const gpu::Buffer* sectors = nullptr;    // of the tiles
+  const gpu::Buffer* kinds = nullptr;      // of the tiles
   const gpu::Buffer* count = nullptr;      // of the frame's pixels: of how many frames' estimates each is the mean
 };
 DebugPlane debug(gpu::Recorder& gpu, const DebugView& view, const GBuffer& gbuffer, const DebugStages& stages,

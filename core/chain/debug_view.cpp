@@ -32,10 +32,8 @@ constexpr std::array kViews{
     DebugView{"density",
               "density: share of the pixels with an estimate of their own, in squares of 4 x 4 (logarithmic)",
               kDebugDensity, DebugSource::sites, DebugScale::fixed_logarithmic, 1.0f / 16, 1, false},
-    DebugView{
-        "tiles",
-        "tiles: share of the directions in which something may block; 0 is proved open, or as in the frame before",
-        kDebugTile, DebugSource::tiles, DebugScale::fixed, 0, 1, false},
+    DebugView{"tiles", "tiles: 1 is estimated, 0 as in the frame before or not needed", kDebugTile, DebugSource::tiles,
+              DebugScale::fixed, 0, 1, false},
     DebugView{"hidden", "hidden: surfaces behind the first; half a one more where any of them closes a solid",
               kDebugHidden, DebugSource::hidden, DebugScale::fixed, 0, 3.5f, false},
     DebugView{"count", "count: frames whose estimates the AO is the mean of (logarithmic)", kDebugValue,

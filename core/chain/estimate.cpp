@@ -13,7 +13,6 @@
 #include "kernels/bitmask.h"
 #include "kernels/bounds.h"
 #include "kernels/classify.h"
-#include "kernels/coarsen.h"
 #include "kernels/crytek.h"
 #include "kernels/hbao.h"
 #include "kernels/horizon.h"
@@ -80,9 +79,9 @@ gpu::Extent tile_extent(const View& view) {
   return {groups_of(view.size.x, uint(kTile)), groups_of(view.size.y, uint(kTile))};
 }
 
-/// Groups of tiles in x and y.
-gpu::Extent group_extent(const View& view) {
-  return {groups_of(view.size.x, uint(kTile * kTileGroup)), groups_of(view.size.y, uint(kTile * kTileGroup))};
+/// Blocks of tiles in x and y.
+gpu::Extent block_extent(const View& view) {
+  return {groups_of(view.size.x, uint(kTile * kTileBlock)), groups_of(view.size.y, uint(kTile * kTileBlock))};
 }
 
 /// The parameters of an estimator that searches slices.
@@ -130,7 +129,7 @@ gpu::Extent estimate_extent(const TileList& list) {
 }
 
 gpu::Extent list_extent(const TileList& list) {
-  const auto most = uint(list.tiles->bytes() / sizeof(ListedTile));
+  const auto most = uint(list.tiles->bytes() / sizeof(uint));
   return {*list.counts, std::min(most, kListedRow), groups_of(most, kListedRow)};
 }
 
@@ -159,12 +158,7 @@ int site_reach_of(const EstimatorSettings& settings) {
 }
 
 Skipping skipping_of(const EstimatorSettings& settings, const FrameInputs& frame, const BlockGrid& grid) {
-  return {!settings.no_skip,
-          proves(settings),
-          searches_slices(settings),
-          settings.skip_tolerance,
-          settings.no_skip ? nullptr : frame.changes,
-          completes_anywhere(settings),
+  return {!settings.no_skip, settings.no_skip ? nullptr : frame.changes,
           without_margin(frame, grid, filter_reach_of(settings))};
 }
 
@@ -184,8 +178,7 @@ Estimate estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const Sites& sites
   // Tiles that are as in the frame before keep what it found in them.
   if (completed && (is_exact || !skipping.changes)) gpu.clear(*completed);
 
-  const Bounds surfaces = bounds(gpu, gbuffer, skipping);
-  coarsen(gpu, gbuffer, surfaces);
+  const gpu::Buffer* hidden = is_exact ? nullptr : bounds(gpu, gbuffer, skipping);
   for (uint plane = 0; plane < radii.size(); plane++) {
     const Reach reach = reach_of(settings, radii[plane]);
     const bool is_largest = plane + 1 == radii.size();
@@ -194,7 +187,7 @@ Estimate estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const Sites& sites
     result.bent = out.bent;
     result.completed = out.completed;
     if (!is_exact) {
-      out.listed = classify(gpu, gbuffer, surfaces, skipping, reach.radius, sites, out, plane);
+      out.listed = classify(gpu, gbuffer, hidden, skipping, reach.radius, sites, out, plane);
       list_sites(gpu, gbuffer, sites, out.listed);
     }
     result.listed = out.listed;
@@ -231,46 +224,31 @@ Estimate estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const Sites& sites
   return result;
 }
 
-Bounds bounds(gpu::Recorder& gpu, const GBuffer& gbuffer, const Skipping& skipping) {
-  if (!skipping.proves) return {};
-  const gpu::Extent tiles = tile_extent(gbuffer.view);
-  const gpu::Extent groups = group_extent(gbuffer.view);
-  const Bounds result{&gpu.buffer("bounds", sizeof(TileBounds) * tiles.x * tiles.y, gpu::Use::device),
-                      &gpu.buffer("group bounds", sizeof(GroupBounds) * groups.x * groups.y, gpu::Use::device)};
-  gpu.dispatch("bounds", BoundsParams{gbuffer.view, gbuffer.surfaces - 1},
-               {{kBoundsDepth, *gbuffer.depth},
-                {kBoundsNormal, *gbuffer.normal},
-                {kBoundsHidden, gbuffer.hidden ? *gbuffer.hidden : *gbuffer.depth},
-                {kBoundsTiles, *result.tiles}},
-               tiles);
-  return result;
+const gpu::Buffer* bounds(gpu::Recorder& gpu, const GBuffer& gbuffer, const Skipping& skipping) {
+  if (!skipping.skips_sky || !gbuffer.hidden) return nullptr;
+  const gpu::Extent blocks = block_extent(gbuffer.view);
+  gpu::Buffer& result = gpu.buffer("bounds", sizeof(vec2) * blocks.x * blocks.y, gpu::Use::device);
+  gpu.dispatch("bounds", BoundsParams{gbuffer.view.size, gbuffer.surfaces - 1},
+               {{kBoundsDepth, *gbuffer.depth}, {kBoundsHidden, *gbuffer.hidden}, {kBoundsBlocks, result}}, blocks);
+  return &result;
 }
 
-void coarsen(gpu::Recorder& gpu, const GBuffer& gbuffer, const Bounds& bounds) {
-  if (!bounds.tiles) return;
-  gpu.dispatch("coarsen", CoarsenParams{gbuffer.view.size},
-               {{kCoarsenTiles, *bounds.tiles}, {kCoarsenGroups, *bounds.groups}}, group_extent(gbuffer.view));
-}
-
-TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const Bounds& bounds, const Skipping& skipping,
+TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer* bounds, const Skipping& skipping,
                   float radius, const Sites& sites, const Estimate& out, uint plane, const std::string& prefix) {
   const gpu::Extent tiles = tile_extent(gbuffer.view);
+  const gpu::Extent blocks = block_extent(gbuffer.view);
   TileList list;
-  list.tiles = &gpu.buffer("tiles", sizeof(ListedTile) * tiles.x * tiles.y, gpu::Use::device);
+  list.tiles = &gpu.buffer("tiles", sizeof(uint) * tiles.x * tiles.y, gpu::Use::device);
   list.counts = &gpu.buffer(prefix + "tile counts", sizeof(TileCounts), gpu::Use::device);
-  list.sectors = &gpu.buffer(prefix + "tile sectors", sizeof(uint) * tiles.x * tiles.y, gpu::Use::device);
+  list.kinds = &gpu.buffer(prefix + "tile kinds", sizeof(uint) * tiles.x * tiles.y, gpu::Use::device);
   const bool selects = skipping.skips_sky && gbuffer.needed;
-  list.skips_surfaces = skipping.proves || skipping.changes || selects;
+  list.skips_surfaces = skipping.changes || selects;
   gpu.clear(*list.counts);
-  const uint mode = (skipping.skips_sky ? kClassifySkips : 0) | (skipping.proves ? kClassifyProves : 0) |
-                    (skipping.is_ranged ? kClassifyRanged : 0) | (out.bent ? kClassifyWithBent : 0) |
-                    (skipping.changes ? kClassifyReuses : 0) | (skipping.tolerance > 0 ? kClassifyTolerates : 0) |
-                    (out.completed ? kClassifyWithCompleted : 0) | (skipping.completes ? kClassifyCompletes : 0) |
-                    (gbuffer.surfaces > 1 ? kClassifyLayered : 0) | (selects ? kClassifySelects : 0);
+  const uint mode = (skipping.skips_sky ? kClassifySkips : 0) | (out.bent ? kClassifyWithBent : 0) |
+                    (out.completed ? kClassifyWithCompleted : 0) | (skipping.changes ? kClassifyReuses : 0) |
+                    (selects ? kClassifySelects : 0) | (gbuffer.surfaces > 1 ? kClassifyLayered : 0);
   const ClassifyParams params{gbuffer.view,
                               radius,
-                              float(std::sqrt(skipping.tolerance)),
-                              gbuffer.depth_precision,
                               plane,
                               gbuffer.grid.frame_size,
                               gbuffer.grid.overhang,
@@ -279,8 +257,7 @@ TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const Bounds& boun
                               skipping.needed.from,
                               skipping.needed.to};
   gpu.dispatch("classify", params,
-               {{kClassifyBounds, bounds.tiles ? *bounds.tiles : *list.tiles},
-                {kClassifyGroups, bounds.groups ? *bounds.groups : *list.tiles},
+               {{kClassifyBounds, bounds ? *bounds : *list.tiles},
                 {kClassifyChanges, skipping.changes ? *skipping.changes : *list.tiles},
                 {kClassifyNeeded, selects ? *gbuffer.needed : *list.tiles},
                 {kClassifyDepth, *gbuffer.depth},
@@ -288,12 +265,11 @@ TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const Bounds& boun
                 {kClassifyRows, sites.rows ? *sites.rows : *list.tiles},
                 {kClassifyList, *list.tiles},
                 {kClassifyCounts, *list.counts},
-                {kClassifySectors, *list.sectors},
+                {kClassifyKinds, *list.kinds},
                 {kClassifyAo, *out.ao},
                 {kClassifyBent, out.bent ? *out.bent : *out.ao},
                 {kClassifyCompleted, out.completed ? *out.completed : *out.ao}},
-               {groups_of(int(tiles.x), 2 * kGroupY) * kGroupX, groups_of(int(tiles.y), 2) * kGroupY},
-               {sites.rows ? 1u : 0u, mode});
+               {groups_of(int(blocks.x), kGroupY) * kGroupX, blocks.y * kGroupY}, {sites.rows ? 1u : 0u, mode});
   return list;
 }
 

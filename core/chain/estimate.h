@@ -14,9 +14,9 @@ namespace alcove {
 
 /// Tiles of a G-buffer that an estimator has something to do for.
 struct TileList {
-  gpu::Buffer* tiles = nullptr;        // ListedTile each
+  gpu::Buffer* tiles = nullptr;        // one uint each, see pack_tile
   gpu::Buffer* counts = nullptr;       // one TileCounts
-  gpu::Buffer* sectors = nullptr;      // of all tiles, from classify
+  gpu::Buffer* kinds = nullptr;        // of all tiles, from classify
   gpu::Buffer* lines = nullptr;        // GroupCount of profile, from refine
   gpu::Buffer* sites = nullptr;        // that lie in them, from list_sites; null: all of their pixels
   gpu::Buffer* site_counts = nullptr;  // one SiteCounts; null as the sites
@@ -82,29 +82,19 @@ int site_reach_of(const EstimatorSettings& settings);
 /// What may be left out.
 struct Skipping {
   bool skips_sky;
-  bool proves;                 // tiles that nothing can block are left out too
-  bool is_ranged;              // the estimator takes the range of steps in which something may block
-  double tolerance;            // tiles whose visibility is at least 1 less this are left out as open, too
   const gpu::Buffer* changes;  // against the frame before; null: it gives nothing
-  bool completes = false;      // surfaces go on beyond what is seen of them
   ImagePart needed = {};       // the image without what of a margin nobody needs
 };
 Skipping skipping_of(const EstimatorSettings& settings, const FrameInputs& frame, const BlockGrid& grid);
 
-/// What surfaces tiles show.
-struct Bounds {
-  gpu::Buffer* tiles = nullptr;   // TileBounds for each tile; null: nothing is proved
-  gpu::Buffer* groups = nullptr;  // GroupBounds for each group of tiles
-};
-/// The bounds of the tiles, where tiles are to be proved.
-Bounds bounds(gpu::Recorder& gpu, const GBuffer& gbuffer, const Skipping& skipping);
-/// Bounds the groups of tiles, where the tiles have bounds.
-void coarsen(gpu::Recorder& gpu, const GBuffer& gbuffer, const Bounds& bounds);
+/// Bounds what is hidden, by which `classify` tells the tiles where it may count; null where nothing is hidden, or
+/// nothing is left out.
+const gpu::Buffer* bounds(gpu::Recorder& gpu, const GBuffer& gbuffer, const Skipping& skipping);
 
 /// Lists the tiles that an estimator must compute for one radius. Into a plane of `out` it writes the visibility of the
 /// sites of those that are left out, and into out.completed 0 for them. `prefix` stands before the names of its buffers
 /// where there is another estimate.
-TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const Bounds& bounds, const Skipping& skipping,
+TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer* bounds, const Skipping& skipping,
                   float radius, const Sites& sites, const Estimate& out, uint plane, const std::string& prefix = "");
 
 void horizon(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, const Sampling& sampling,

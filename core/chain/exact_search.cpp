@@ -84,7 +84,7 @@ TileList next_list(gpu::Recorder& gpu, const GBuffer& gbuffer, int directions) {
   const ivec2 size = gbuffer.view.size;
   const std::string name = "refine " + std::to_string(directions) + " ";
   TileList next;
-  next.tiles = &gpu.buffer(name + "tiles", sizeof(ListedTile) * tiles_of(gbuffer).count(), gpu::Use::device);
+  next.tiles = &gpu.buffer(name + "tiles", sizeof(uint) * tiles_of(gbuffer).count(), gpu::Use::device);
   next.counts = &gpu.buffer(name + "counts", sizeof(TileCounts), gpu::Use::device);
   next.lines = &gpu.buffer(name + "lines", sizeof(GroupCount), gpu::Use::device);
   gpu.clear(*next.counts);

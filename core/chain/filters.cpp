@@ -123,7 +123,7 @@ FilterRuns dilate(gpu::Recorder& gpu, const GBuffer& gbuffer, const TileList& ti
     gpu.clear(*out.counts);
     gpu.dispatch("dilate",
                  DilateParams{gbuffer.view.size, runs, lines, in_column, grid.frame_size, grid.overhang, grid.factor},
-                 {{kDilateTiles, *tiles.sectors},
+                 {{kDilateTiles, *tiles.kinds},
                   {kDilateColumns, columns},
                   {kDilateList, *out.runs},
                   {kDilateCounts, *out.counts},

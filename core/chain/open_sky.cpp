@@ -25,7 +25,7 @@ FrameOutputs open_sky(gpu::Recorder& gpu, const FrameInputs& frame, const Estima
   out.ao = &gpu.buffer("open sky", bytes, gpu::Use::upload);
   out.scales = &gpu.buffer("open sky scales", radii_of(settings).size() * bytes, gpu::Use::upload);
   out.counts->as<FrameCounts>()[0] = {uint(pixels_of(frame.view)), 0, 0, 0, 0, 0};
-  out.tiles->as<TileCounts>()[0] = {{}, 0, groups_of(size.x, uint(kTile)) * groups_of(size.y, uint(kTile)), 0, 0, 0, 0};
+  out.tiles->as<TileCounts>()[0] = {{}, 0, groups_of(size.x, uint(kTile)) * groups_of(size.y, uint(kTile)), 0, 0};
   for (const auto* planes : {out.ao, out.scales}) std::ranges::fill(planes->as<float>(), 1.0f);
   return out;
 }

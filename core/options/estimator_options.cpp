@@ -253,15 +253,7 @@ void add_shape_rows(std::vector<OptionRow>& rows, EstimatorSettings& s) {
   pixels.number("--seed", s.seed, "", between(0, 4294967295.0), "shifts the pattern of samples").why_without_effect =
       [](const Settings& all) { return all.estimator.seed == 0 ? "" : if_exact_alone(all); };
   OptionGroup(rows, "Estimator", Effect::none)
-      .flag("--no-skip", s.no_skip, "estimate sky and what is known to be open too; slower, the same bits");
-  pixels
-      .number("skip-tolerance", s.skip_tolerance, "", between(0, 0.1),
-              "tiles may be left out whose AO is proved to be at least 1 less this")
-      .why_without_effect = [](const Settings& all) -> std::string {
-    if (all.estimator.skip_tolerance == 0) return "";
-    return first_of({unless_ranges(all), if_exact(all),
-                     if_given(all.estimator.no_skip, "--no-skip", "one leaves out more, the other nothing")});
-  };
+      .flag("--no-skip", s.no_skip, "estimate sky too, and what is as in the frame before; slower, the same bits");
 }
 
 /// Of frames to each side: more are too far away to show the same.

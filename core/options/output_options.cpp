@@ -45,7 +45,9 @@ void add_composite_rows(std::vector<OptionRow>& rows, OutputSettings& s) {
   pixels
       .number("fog-density", s.look.fog_density, "1 / scene units", between(0, 1e30),
               "of exponential fog in the beauty, which hides the AO behind it")
-      .why_without_effect = [](const Settings& all) { return all.output.look.fog_density == 0 ? "" : unless_composite(all); };
+      .why_without_effect = [](const Settings& all) {
+    return all.output.look.fog_density == 0 ? "" : unless_composite(all);
+  };
   pixels.number("gain", s.look.gain, "", between(0, 100), "factor on the occlusion in the composite")
       .why_without_effect = [](const Settings& all) { return all.output.look.gain == 1 ? "" : unless_composite(all); };
   pixels
@@ -56,18 +58,24 @@ void add_composite_rows(std::vector<OptionRow>& rows, OutputSettings& s) {
             return tint == std::array<double, 3>{} ? "" : fmt::format("{}", fmt::join(tint, ","));
           },
           [&s](const std::string& text) { return read_tint(text, s.look.tint); }, "is not three numbers from 0 to 1")
-      .why_without_effect = [](const Settings& all) { return all.output.look.tint == std::array<double, 3>{} ? "" : unless_composite(all); };
+      .why_without_effect = [](const Settings& all) {
+    return all.output.look.tint == std::array<double, 3>{} ? "" : unless_composite(all);
+  };
   pixels.number("mix", s.look.mix, "", between(0, 1), "of the composite and the beauty; 0: the beauty")
       .why_without_effect = [](const Settings& all) { return all.output.look.mix == 1 ? "" : unless_composite(all); };
   pixels
       .word("composite-layers", s.composite_layers, {"all", "rgba"},
             "all: every channel, part and attribute of the beauty's file; rgba: R, G, B, A alone")
-      .why_without_effect = [](const Settings& all) { return all.output.composite_layers == "all" ? "" : unless_composite(all); };
+      .why_without_effect = [](const Settings& all) {
+    return all.output.composite_layers == "all" ? "" : unless_composite(all);
+  };
   pixels
       .word("composite-compression", s.composite_compression,
             {"keep", "none", "rle", "zips", "zip", "piz", "dwaa", "dwab"},
             "of the beauty's part in the composite; keep: the file's, or zip where that loses bits again")
-      .why_without_effect = [](const Settings& all) { return all.output.composite_compression == "keep" ? "" : unless_composite(all); };
+      .why_without_effect = [](const Settings& all) {
+    return all.output.composite_compression == "keep" ? "" : unless_composite(all);
+  };
   pixels.text("append-ao", s.append_ao, "LAYER[.CHANNEL]", "the AO as one more channel of the composite: AO is AO.Y")
       .why_without_effect = unless_composite;
 }

@@ -11,7 +11,6 @@
 #include "core/chain/margin.h"
 #include "core/formats/exr_copy.h"
 #include "core/run/composite_window.h"
-#include "kernels/bounds.h"
 #include "kernels/classify.h"
 #include "kernels/profile.h"
 #include "kernels/refine.h"
@@ -20,7 +19,7 @@ namespace alcove {
 namespace {
 
 constexpr std::size_t kEndPlanes = 2;  // along rows and columns
-// Words per tile of 8 x 8: sectors, bounds of groups, runs of the filters, and how the frame before differs.
+// Words per tile of 8 x 8: kinds, bounds of what is hidden, runs of the filters, and how the frame before differs.
 constexpr std::size_t kTileLists = 8;
 constexpr std::size_t kCompletionSums = 2;  // words per tile
 // Words per tile where pixels share estimates: twice the words of its rows, those of flat links, and its sites.
@@ -154,10 +153,9 @@ std::uint64_t tile_bytes(const Settings& settings) {
   const bool has_bracket = wants(o, &FrameOutputs::confidence);
   const int shares = (spacing_of(e) > 1 ? 1 : 0) + (has_bracket && spacing_of(bracket_of(e)) > 1 ? 1 : 0);
   const bool sums_completed = Wanted(o).completed && completes_anywhere(e);
-  return sizeof(TileBounds) +
-         (kTileLists + (sums_completed ? kCompletionSums : 0) + std::size_t(shares) * kSiteLists) * sizeof(uint) +
+  return (kTileLists + (sums_completed ? kCompletionSums : 0) + std::size_t(shares) * kSiteLists) * sizeof(uint) +
          (e.tolerance > 0 ? sizeof(JudgedTile) + sizeof(vec2) : 0) +
-         (e.tolerance > 0 ? kRefineLists : 1) * sizeof(ListedTile);
+         (e.tolerance > 0 ? kRefineLists : 1) * sizeof(uint);
 }
 
 }  // namespace

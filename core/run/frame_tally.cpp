@@ -103,8 +103,6 @@ void FrameTally::add_outputs(const FrameOutputs& outputs, const Window& computed
   if (outputs.tiles) {
     const auto tiles = outputs.tiles->as<TileCounts>()[0];
     report_.tiles.sky += tiles.sky;
-    report_.tiles.proved += tiles.open;
-    report_.tiles.tolerated += tiles.tolerated;
     report_.tiles.kept += tiles.kept + (is_same ? tiles.listed : 0);
     report_.tiles.computed += is_same ? 0 : tiles.listed;
   }

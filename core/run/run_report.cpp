@@ -41,10 +41,9 @@ Json json_of(const FrameReport& frame) {
       {"rows_read", frame.rows_read},
       {"parts", frame.parts},
       {"tiles",
-       {{"total", frame.tiles.sky + frame.tiles.proved + frame.tiles.kept + frame.tiles.computed},
+       {{"total", frame.tiles.sky + frame.tiles.kept + frame.tiles.computed},
         {"sky", frame.tiles.sky},
-        {"proved", frame.tiles.proved},
-        {"tolerated", frame.tiles.tolerated},
+        {"proved", 0},  // stays for readers of version 1
         {"kept", frame.tiles.kept},
         {"computed", frame.tiles.computed}}},
       {"samples_per_pixel", frame.samples_per_pixel},

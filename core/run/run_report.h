@@ -52,11 +52,9 @@ struct FrameReport {
   int parts = 1;  // the frame was computed in so many; what they share is counted in each
   /// Numbers of tiles of 8 x 8 pixels.
   struct Tiles {
-    std::uint64_t sky = 0;        // nothing but sky
-    std::uint64_t proved = 0;     // proved to be open
-    std::uint64_t tolerated = 0;  // of those proved, by the tolerance alone
-    std::uint64_t kept = 0;       // the same as in the frame before
-    std::uint64_t computed = 0;   // estimated
+    std::uint64_t sky = 0;       // nothing but sky
+    std::uint64_t kept = 0;      // the same as in the frame before
+    std::uint64_t computed = 0;  // estimated
   } tiles;
   // The sum of squared errors of an estimate with a tolerance, and the pixels that it is over.
   double error_squares = 0, error_pixels = 0;

@@ -145,11 +145,10 @@ TEST_F(Aovs, only_what_was_asked_for_is_computed) {
   good({"--aov", "normal", "--stats", stats});
   EXPECT_THAT(passes(), ElementsAre("prepare", "reconstruct", "directions"));
   good({"--aov", "specular-occlusion", "--denoise", "none", "--stats", stats});
-  EXPECT_THAT(passes(), ElementsAre("prepare", "reconstruct", "bounds", "coarsen", "classify", "horizon", "completion",
-                                    "bent_normal", "specular_occlusion"));
+  EXPECT_THAT(passes(), ElementsAre("prepare", "reconstruct", "classify", "horizon", "completion", "bent_normal",
+                                    "specular_occlusion"));
   good({"--denoise", "none", "--stats", stats});
-  EXPECT_THAT(passes(),
-              ElementsAre("prepare", "reconstruct", "bounds", "coarsen", "classify", "horizon", "completion"));
+  EXPECT_THAT(passes(), ElementsAre("prepare", "reconstruct", "classify", "horizon", "completion"));
 }
 
 TEST_F(Aovs, a_region_holds_what_the_whole_holds_there) {

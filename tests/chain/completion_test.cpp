@@ -176,31 +176,25 @@ TEST_F(Planes, are_shown_in_grey_from_0_to_1_and_sky_apart) {
 
 TEST_F(Planes, are_0_in_tiles_that_are_left_out_and_else_as_they_were) {
   const float radius = 0.05f;
-  const Skipping skipping{.skips_sky = true,
-                          .proves = true,
-                          .is_ranged = true,
-                          .tolerance = 0,
-                          .changes = nullptr,
-                          .needed = {{0, 0}, gbuffer.view.size}};
+  // What nobody needs is left out too.
+  const Skipping skipping{.skips_sky = true, .changes = nullptr, .needed = {{20, 12}, gbuffer.view.size}};
   for (const int spacing : {1, 4, 16}) {
-    const Bounds surfaces = bounds(recorder(), gbuffer, skipping);
-    coarsen(recorder(), gbuffer, surfaces);
     Estimate out;
     out.ao = &plane("ao of a test", std::vector<float>(frame.data.pixels(), kBefore));
     out.completed = &plane("completed of a test", std::vector<float>(frame.data.pixels(), kBefore));
-    const TileList list = classify(recorder(), gbuffer, surfaces, skipping, radius, sites_of(spacing), out, 0);
-    recorder().download(*list.sectors);
+    const TileList list = classify(recorder(), gbuffer, nullptr, skipping, radius, sites_of(spacing), out, 0);
+    recorder().download(*list.kinds);
     recorder().download(*out.ao);
     const std::vector<float> completed = finished(*out.completed);
     const auto ao = out.ao->as<const float>();
-    const auto sectors = list.sectors->as<const uint>();
+    const auto kinds = list.kinds->as<const uint>();
     int open = 0;  // of surfaces
     for (int y = 0; y < height(); y++)
       for (int x = 0; x < width(); x++) {
         const std::size_t tile = std::size_t(y / kTile * ((width() + kTile - 1) / kTile) + x / kTile);
         // Where not every pixel is a receiver, none of the sky is.
         const bool is_written = is_receiver(x, y, spacing) && (spacing == 1 || !is_sky(x, y));
-        const bool is_open = sectors[tile] == kTileOpen && is_written;
+        const bool is_open = kinds[tile] == kTileOpen && is_written;
         ASSERT_EQ(completed[index(x, y)], is_open ? 0 : kBefore) << x << " " << y << " spacing " << spacing;
         ASSERT_EQ(ao[index(x, y)], is_open ? 1 : kBefore) << x << " " << y << " spacing " << spacing;
         open += is_open && !is_sky(x, y);

@@ -77,8 +77,8 @@ TEST(Density, of_a_crop_is_that_of_the_whole) {
 }
 
 TEST(Density, skips_without_a_bit_of_difference) {
-  const HostFrame frame = hairy_room(180, 140);
-  std::uint32_t opened = 0;
+  HostFrame frame = hairy_room(180, 140);
+  std::fill_n(frame.depth.begin(), 45 * 180 + 77, kSky);
   for (const int spacing : {16, 4})
     for (const Completion complete : {Completion::none, Completion::border, Completion::all})
       for (const double radius : {0.02, 0.1})
@@ -86,23 +86,19 @@ TEST(Density, skips_without_a_bit_of_difference) {
           EstimatorSettings settings = adaptive(radius, spacing);
           settings.estimator = estimator;
           settings.complete = complete;
-          settings.slices = 16;
-          settings.steps = 32;
           settings.denoise_radius = 8;
           // Sites that were left out by mistake would hold what was there before.
           const std::size_t bytes = frame.depth.size() * sizeof(float);
           std::ranges::fill(recorder().buffer("ao", bytes, gpu::Use::device).as<float>(), 0.5f);
           const FrameOutputs outputs = run_chain(recorder(), upload(recorder(), frame), settings);
           recorder().run();
-          const auto open = outputs.tiles->as<TileCounts>()[0].open;
+          EXPECT_GT(outputs.tiles->as<TileCounts>()[0].sky, 100u);
           const auto skipped = outputs.ao->as<float>();
           const std::vector<float> ao(skipped.begin(), skipped.end());
-          opened += open;
           settings.no_skip = true;
           EXPECT_TRUE(same_bits(ao_of(frame, settings), ao))
               << "spacing " << spacing << " completes " << int(complete) << " radius " << radius;
         }
-  EXPECT_GT(opened, 200u) << "or else nothing is skipped";
 }
 
 TEST(Density, gives_the_same_bits_again) {

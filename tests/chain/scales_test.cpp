@@ -167,8 +167,8 @@ TEST(Scales, share_all_passes_but_the_search) {
   EstimatorSettings dense = settings_of({0.1, 0.6});
   dense.stride = 1;
   EXPECT_THAT(run(frame, dense, "ao,ao-scales").passes,
-              ElementsAre("prepare", "reconstruct", "bounds", "coarsen", "classify", "horizon", "classify", "horizon",
-                          "combine", "denoise", "denoise", "denoise", "denoise"));
+              ElementsAre("prepare", "reconstruct", "classify", "horizon", "classify", "horizon", "combine", "denoise",
+                          "denoise", "denoise", "denoise"));
 }
 
 TEST(Scales, of_one_radius_are_the_ao) {

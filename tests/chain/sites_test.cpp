@@ -193,8 +193,8 @@ TEST(Sites, lie_all_along_a_line_that_is_a_pixel_wide) {
 }
 
 /// Where a listed site lies.
-std::pair<int, int> place_of(uint site, const std::vector<ListedTile>& tiles) {
-  const uint place = tiles[site / 64].place, pixel = site % 64;
+std::pair<int, int> place_of(uint site, const std::vector<uint>& tiles) {
+  const uint place = tiles[site / 64], pixel = site % 64;
   return {int(place & 0xffffu) * 8 + int(pixel % 8), int(place >> 16) * 8 + int(pixel / 8)};
 }
 
@@ -225,12 +225,12 @@ TEST(ListedSites, are_those_of_the_listed_tiles_each_once_and_are_counted_by_lat
       const uint listed_tiles = made.listed.counts->as<TileCounts>()[0].listed;
       ASSERT_GT(listed_tiles, 64u) << "more than one workgroup lists";
       ASSERT_GT(made.listed.counts->as<TileCounts>()[0].sky, 10u);
-      const auto all_tiles = made.listed.tiles->as<ListedTile>();
-      const std::vector<ListedTile> tiles(all_tiles.begin(), all_tiles.begin() + listed_tiles);
+      const auto all_tiles = made.listed.tiles->as<uint>();
+      const std::vector<uint> tiles(all_tiles.begin(), all_tiles.begin() + listed_tiles);
 
       std::set<std::pair<int, int>> expected, listed;
       std::array<uint, kLattices> of_lattice{};
-      for (const ListedTile& tile : tiles)
+      for (const uint tile : tiles)
         for (uint pixel = 0; pixel < 64; pixel++) {
           const auto at = place_of(pixel, {tile});
           if (!picture.has(at.first, at.second) || !picture.at(at.first, at.second).is_site) continue;

@@ -270,7 +270,7 @@ struct TiledFloor {
     std::vector<ivec2> tiles;
     const uint count = list.counts->as<TileCounts>()[0].listed;
     for (uint i = 0; i < count; i++) {
-      const uint place = list.tiles->as<ListedTile>()[i].place;
+      const uint place = list.tiles->as<uint>()[i];
       tiles.push_back({int(place & 0xffff), int(place >> 16)});
     }
     EXPECT_EQ(list.lines->as<GroupCount>()[0].z, count > 0 ? 1u : 0u);

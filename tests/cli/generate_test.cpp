@@ -111,7 +111,7 @@ TEST_F(Generated, man_pages_show_groups_ranges_and_defaults) {
                           HasSubstr("\\fB\\-o\\fR, \\fB\\-\\-output\\fR \\fI")));
   EXPECT_THAT(replaced(page, "\n", " "), HasSubstr("(degrees, above 0 and below 180)."));
   EXPECT_THAT(generated({"man"}), AllOf(HasSubstr(".SH EXIT STATUS"), HasSubstr("\\fBalcove\\-doctor\\fR(1)")));
-  EXPECT_THAT(generated({"man", "inspect"}), AllOf(HasSubstr("\\-\\-json"), Not(HasSubstr("\\-\\-skip\\-tolerance"))));
+  EXPECT_THAT(generated({"man", "inspect"}), AllOf(HasSubstr("\\-\\-json"), Not(HasSubstr("\\-\\-no\\-skip"))));
 }
 
 TEST_F(Generated, man_finds_nothing_to_warn_of) {

@@ -373,7 +373,7 @@ TEST(Recorder, times_every_pass_by_its_stem) {
     EXPECT_GE(pass.ms, 0);
     EXPECT_LT(pass.ms, 60000);
   }
-  EXPECT_THAT(names, ElementsAre("prepare", "reconstruct", "bounds", "coarsen", "classify", "horizon", "shape"));
+  EXPECT_THAT(names, ElementsAre("prepare", "reconstruct", "classify", "horizon", "shape"));
 }
 
 TEST(Device, is_found_by_index_name_and_uuid) {

@@ -139,9 +139,6 @@ const std::map<std::string, Case>& cases_without_effect() {
       {"--roughness", {{{"--roughness", "0.2"}}, {"--roughness", "0.2", "--aov", "ao,specular-occlusion"}}},
       {"--noise", {{with({"--noise", "animated"}, exact)}, with({"--noise", "animated"}, crytek)}},
       {"--seed", {{with({"--seed", "1"}, exact)}, {"--seed", "1"}}},
-      {"--set skip-tolerance",
-       {{with({"--set", "skip-tolerance=0.01"}, crytek), with({"--set", "skip-tolerance=0.01"}, exact)},
-        {"--set", "skip-tolerance=0.01"}}},
       {"--set ao-channels", {{{"--set", "ao-channels=rgb", "--aov", "depth"}}, {"--set", "ao-channels=rgb"}}},
       {"--set aov-space", {{{"--set", "aov-space=view"}}, {"--set", "aov-space=view", "--aov", "ao,normal"}}},
       {"--set multi-bounce",
@@ -200,7 +197,6 @@ const std::vector<std::pair<Value, Value>>& pairs() {
                                                         {tolerance, {"resolution", "half"}},
                                                         {tolerance, {"accumulate", "2"}},
                                                         {{"denoise-kernel", "1,0.5"}, {"denoise-radius", "3"}},
-                                                        {{"skip-tolerance", "0.01"}, {"no-skip", "true"}},
                                                         {quiet, {"verbose", "true"}},
                                                         {quiet, {"progress", "plain"}},
                                                         {occluders, ignore},
@@ -351,7 +347,6 @@ TEST_F(Said, of_a_pair_what_is_typed_beats_a_preset_and_a_later_preset_an_earlie
 
 TEST_F(Said, values_that_ask_for_nothing_are_taken_anywhere) {
   for (const Words& words : std::vector<Words>{{"--tolerance", "0", "--estimator", "hbao", "--resolution", "half"},
-                                               {"--set", "skip-tolerance=0.0", "--no-skip"},
                                                {"--set", "complete=none", "--estimator", "crytek"},
                                                {"--set", "fog-density=0"},
                                                {"--set", "hidden=0", "--set", "separation=auto", "--around", "0"},

@@ -256,7 +256,8 @@ TEST_F(HiddenRun, another_scale_or_kind_of_depth_is_refused) {
   for (std::size_t i = 0; i < z.size(); i++) z[i] = 0.01f * first[i] * (1 + 0.001f * float(i % 7));
   write_layer("metres.exr", z);
   expect_refused(behind({"plate.exr", "metres.exr"}),
-                 {folder / "metres.exr", "before the first surface on 100 %", "0.01 times", "--set behind-channel", "--depth-kind", "--depth-scale", frame});
+                 {folder / "metres.exr", "before the first surface on 100 %", "0.01 times", "--set behind-channel",
+                  "--depth-kind", "--depth-scale", frame});
   for (std::size_t i = 0; i < z.size(); i++) {
     const double x = (double(i % 64) + 0.5 - 32) / 60, y = (double(i / 64) + 0.5 - 18) / 60;
     z[i] = float(first[i] * std::sqrt(1 + x * x + y * y));

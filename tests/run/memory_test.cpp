@@ -82,7 +82,6 @@ TEST_F(Memory, is_expected_of_every_estimator_search_and_resolution) {
             Settings settings = all;
             settings.estimator.estimator = estimator;
             settings.estimator.resolution = resolution;
-            settings.estimator.steps = 64;  // for which proofs are worth their price
             settings.estimator.denoise = denoise;
             settings.estimator.further_radii = further;
             settings.output.aovs = aovs;

@@ -229,12 +229,9 @@ TEST_F(Occluders, are_named_by_numbers_or_as_in_a_cryptomatte) {
                {frame, "--set occluders=Board", "no Cryptomatte", "--set objects"});
   expect_error(empty, 3, {"--set", "ignore=4"}, {frame, "numbers of objects", "--set object-channel"});
   expect_error(file, 3, {"--set", std::string("ignore=") + folder / "none.exr"}, {"none.exr", "--set ignore"});
-  expect_error(file, 2, {"--set", "ignore=4", "--set", "occluders=1"},
-               {"--set ignore", "--set occluders"});
-  expect_error(file, 2, {"--set", "ignore=4", "--set", "other-views=true"},
-               {"--set ignore", "--set other-views"});
-  expect_error(file, 2, {"--set", std::string("objects=") + named},
-               {"--set objects", "--set ignore"});
+  expect_error(file, 2, {"--set", "ignore=4", "--set", "occluders=1"}, {"--set ignore", "--set occluders"});
+  expect_error(file, 2, {"--set", "ignore=4", "--set", "other-views=true"}, {"--set ignore", "--set other-views"});
+  expect_error(file, 2, {"--set", std::string("objects=") + named}, {"--set objects", "--set ignore"});
   FrameFile{{0, 0, 10, 10}, {0, 0, 10, 10}, 1, {{"Y", Plane(100, 1)}}, {}, {}}.write(folder / "small.exr");
   expect_error(file, 3, {"--set", std::string("ignore=") + folder / "small.exr"},
                {"small.exr", "--set ignore", "10x10"});

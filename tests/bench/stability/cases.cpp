@@ -196,7 +196,7 @@ std::vector<Variant> estimators() {
   EstimatorSettings plain = plain_settings();
   plain.slices = 3;
   plain.steps = 8;
-  plain.samples = 64;  // so many that tiles are proved to be open
+  plain.samples = 64;
   std::vector<Variant> all;
   const auto add = [&](const char* name, Estimator estimator, ThicknessKind thickness, SliceSearch search) {
     EstimatorSettings settings = plain;
