@@ -30,7 +30,7 @@ void check_search(const Settings& settings) {
   if (!searches_exactly(e)) return;
   for (const auto* view : debug_views_of(settings.output))
     if (view->source == DebugSource::tiles)
-      fail(ErrorKind::usage, "--debug tiles: an exact search leaves out none; --search steps does");
+      fail(ErrorKind::usage, "--set debug=tiles: an exact search leaves out none; --search steps does");
 }
 
 /// A view of what is completed needs something that is.
@@ -40,8 +40,9 @@ void check_completion(const Settings& settings) {
   const bool is_shown = std::ranges::find(views, DebugSource::completed, &DebugView::source) != views.end();
   if (!is_shown || completes_anywhere(e)) return;
   if (e.complete == Completion::none)
-    fail(ErrorKind::usage, "--debug completed: with --complete none nothing is; border and all complete surfaces");
-  fail(ErrorKind::usage, "--debug completed: --estimator {} completes no surfaces; gtao and bitmask do",
+    fail(ErrorKind::usage,
+         "--set debug=completed: with --set complete=none nothing is; border and all complete surfaces");
+  fail(ErrorKind::usage, "--set debug=completed: --estimator {} completes no surfaces; gtao and bitmask do",
        e.estimator == Estimator::hbao ? "hbao" : "crytek");
 }
 
@@ -56,27 +57,29 @@ void check_accumulation(const Settings& settings) {
   if (settings.input.accumulate == 0) {
     for (const auto* view : debug_views_of(settings.output))
       if (view->source == DebugSource::count)
-        fail(ErrorKind::usage, "--debug count: a frame is its own estimate; --accumulate takes those of others");
+        fail(ErrorKind::usage, "--set debug=count: a frame is its own estimate; --accumulate takes those of others");
     return;
   }
   for (const auto* view : debug_views_of(settings.output))
     if (is_of_estimate(view->source))
-      fail(
-          ErrorKind::usage,
-          "--debug {}: it shows the estimate of one frame, and with --accumulate the AO is the mean of many: leave one "
-          "of them out",
-          view->name);
+      fail(ErrorKind::usage,
+           "--set debug={}: it shows the estimate of one frame, and with --accumulate the AO is the mean of many: "
+           "leave one "
+           "of them out",
+           view->name);
 }
 
 /// What shows hidden surfaces needs some that are kept.
 void check_hidden(const Settings& settings) {
   const auto views = debug_views_of(settings.output);
   const bool is_drawn = std::ranges::find(views, DebugSource::hidden, &DebugView::source) != views.end();
-  const char* const option = wants(settings.output, &FrameOutputs::hidden) ? "--aov" : is_drawn ? "--debug" : nullptr;
+  const char* const option = wants(settings.output, &FrameOutputs::hidden) ? "--aov "
+                             : is_drawn                                    ? "--set debug="
+                                                                           : nullptr;
   if (!option) return;
-  if (settings.estimator.hidden == 0) fail(ErrorKind::usage, "{} hidden: with --hidden 0 nothing is kept", option);
+  if (settings.estimator.hidden == 0) fail(ErrorKind::usage, "{}hidden: with --set hidden=0 nothing is kept", option);
   if (!has_hidden_sources(settings.input))
-    fail(ErrorKind::usage, "{} hidden: nothing says what is hidden: --behind, --deep, --around and --other-views do",
+    fail(ErrorKind::usage, "{}hidden: nothing says what is hidden: --behind, --deep, --around and --set other-views do",
          option);
 }
 
@@ -97,11 +100,12 @@ void check_scales(const Settings& settings) {
 /// Numbers that have an order, or a range of their own beside others.
 void check_numbers(const EstimatorSettings& e) {
   if (e.fade_start && e.fade_end && *e.fade_end <= *e.fade_start)
-    fail(ErrorKind::usage, "--fade-end {} is not beyond --fade-start {}", *e.fade_end, *e.fade_start);
+    fail(ErrorKind::usage, "--set fade-end={} is not beyond --set fade-start={}", *e.fade_end, *e.fade_start);
   if (e.estimator != Estimator::crytek && e.bias >= 1)
-    fail(ErrorKind::usage, "--bias {}: of every estimator but crytek it is the sine of an elevation, below 1", e.bias);
+    fail(ErrorKind::usage, "--set bias={}: of every estimator but crytek it is the sine of an elevation, below 1",
+         e.bias);
   if (e.falloff_end <= e.falloff_start)
-    fail(ErrorKind::usage, "--falloff-end {} is not above --falloff-start {}", e.falloff_end, e.falloff_start);
+    fail(ErrorKind::usage, "--set falloff-end={} is not above --set falloff-start={}", e.falloff_end, e.falloff_start);
 }
 
 }  // namespace

@@ -15,7 +15,7 @@
 namespace alcove {
 namespace {
 
-/// Reads --albedo: a number is the albedo of all surfaces, anything else is a file.
+/// Reads albedo: a number is the albedo of all surfaces, anything else is a file.
 bool read_albedo(const std::string& text, InputSettings& settings) {
   const auto value = number_of(text);
   if (value && !(*value >= 0 && *value <= 1)) return false;

@@ -26,7 +26,7 @@ std::string unless_shown_composite(const Settings& all) {
   return first_of({unless_given(!all.output.preview.empty(), "--preview"), unless_composite(all)});
 }
 
-/// Reads --tint: three numbers from 0 to 1.
+/// Reads tint: three numbers from 0 to 1.
 bool read_tint(const std::string& text, std::array<double, 3>& tint) {
   const auto words = split(text);
   std::array<double, 3> values{};

@@ -47,7 +47,7 @@ struct OptionRow {
   bool is_common = false;    // among the few that --help shows; --help-all shows all
   // Tells why the present value has no effect beside the other settings, in a sentence; "" where it has one, or asks
   // for nothing. What is typed and has none is refused; of a preset it is left out. Null: it always has one.
-  std::function<std::string(const Settings&)> why_without_effect;
+  std::function<std::string(const Settings&)> why_without_effect = nullptr;
 
   /// The same, of what was set at all.
   std::string objection(const Settings& settings) const;

@@ -261,7 +261,7 @@ TEST_F(Options, run_into_each_other_in_no_digest) {
 TEST_F(Options, as_a_preset_are_what_they_are) {
   const auto preset_of = [&](const std::string& text) {
     options.settings.input.camera = text;
-    return preset_text(option_table(options));
+    return preset_text(option_table(options), options.settings);
   };
   for (const std::string text :
        {"a b", "a \"b\"", "it's", "c:\\d", "'\"\\\t\x7f'", "\n", "007", "1001", "inf", "true", "ü#"}) {
