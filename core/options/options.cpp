@@ -77,7 +77,7 @@ void add_frame_rows(std::vector<OptionRow>& rows, RunOptions& options) {
   frames.flag("--overwrite", s.overwrite,
               "compute all frames and replace their outputs, whatever --resume says; without --resume that is so "
               "anyway");
-  frames.flag("--dry-run", options.dry_run, "print frames, files, memory and about how long it takes, and stop")
+  frames.flag("--dry-run", options.dry_run, "print frames, files and memory, and stop")
       .is_key = false;
 }
 

@@ -15,7 +15,6 @@
 #include "core/run/plan.h"
 #include "core/run/resume.h"
 #include "core/run/shot_memory.h"
-#include "core/run/time_estimate.h"
 
 namespace alcove {
 namespace {
@@ -80,7 +79,6 @@ std::string plan_text(const Settings& given) {
                      bytes_of_estimates(plan, source, first, wanted, 1) >> 20));
   if (wanted.size() < plan.frames().size())
     line("kept", fmt::format("{}: whole, by an earlier run", plan.frames().size() - wanted.size()));
-  line("time", time_text({plan, settings, wanted}));
   return text;
 }
 

@@ -326,8 +326,7 @@ FrameWriter::FrameWriter(FrameSource& source, const Settings& all, const Provena
   const ExrOutput aovs = aov_file(source, all.estimator, settings, provenance);
   files_.emplace_back(ExrWriter(settings.output, aovs));
   planes_.push_back(aovs.planes.size());
-  // A part of a frame that is only timed may share no pixel with the beauty.
-  if (settings.composite.empty() || composite_window(source).pixels() == 0) return;
+  if (settings.composite.empty()) return;
   const ExrOutput composite = composite_file(source, all, provenance);
   if (keeps_layers(source, settings))
     files_.emplace_back(ExrCopy(settings.composite, composite_copy(source, composite)));

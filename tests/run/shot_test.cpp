@@ -453,10 +453,7 @@ TEST_F(Shots, dry_runs_tell_what_the_window_takes) {
   const Finished finished = run({"--around", "2", "--dry-run"});
   EXPECT_EQ(finished.code, 0) << finished;
   EXPECT_THAT(finished.out, AllOf(HasSubstr("around "), HasSubstr("4 of the 7 frames")));
-  EXPECT_THAT(finished.out, HasSubstr(" for the 7 frames that they take from on "));
-  EXPECT_THAT(run({"--around", "1", "--frames", "1", "--dry-run"}).out, HasSubstr(" for the 5 frames that"))
-      << "2, and 1 and 3 to 5, which tell what moves in it";
-  EXPECT_THAT(run({"--dry-run"}).out, Not(HasSubstr("take from")));
+  EXPECT_THAT(run({"--dry-run"}).out, Not(HasSubstr("around ")));
 }
 
 }  // namespace
