@@ -77,8 +77,7 @@ void add_frame_rows(std::vector<OptionRow>& rows, RunOptions& options) {
   frames.flag("--overwrite", s.overwrite,
               "compute all frames and replace their outputs, whatever --resume says; without --resume that is so "
               "anyway");
-  frames.flag("--dry-run", options.dry_run, "print frames, files and memory, and stop")
-      .is_key = false;
+  frames.flag("--dry-run", options.dry_run, "print frames, files and memory, and stop").is_key = false;
 }
 
 void add_device_rows(std::vector<OptionRow>& rows, DeviceSettings& s) {
