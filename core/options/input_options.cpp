@@ -207,7 +207,7 @@ void add_channel_rows(std::vector<OptionRow>& rows, InputSettings& s) {
   };
   pixels.own(
       {"--roi", "X,Y,WIDTH,HEIGHT", "px of the display window", "",
-       "compute and write only this region; its surroundings are read as far as occluders reach"},
+       "compute and write only this region; its surroundings are computed as far as occluders reach"},
       say_roi, [&s](const std::string& text) { return read_roi(text, s.roi); },
       "is not X,Y,WIDTH,HEIGHT in whole pixels");
   pixels.word(

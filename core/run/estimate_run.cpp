@@ -6,11 +6,9 @@
 #include <span>
 
 #include "core/base/estimator_facts.h"
-#include "core/base/file.h"
 #include "core/chain/chain.h"
 #include "core/chain/estimate.h"
 #include "core/frame/settle.h"
-#include "core/frame/settle_rows.h"
 #include "core/run/frame_files.h"
 #include "core/run/frame_tally.h"
 #include "core/run/shot_memory.h"
@@ -69,12 +67,11 @@ class EstimateRun {
     result_.frame = frame_;
     const WindowLimits limits{memory_with_others(plan_, source_, settings_), where_.room,
                               longest_side(settings_.estimator)};
-    if (limits.allow(source_.data)) {
-      compute(source_.file_data, nullptr, took);
-      read = std::move(read_);
-    } else {
-      compute_tiles(limits, took);
-    }
+    if (limits.allow(source_.data))
+      compute(source_.file_data, took);
+    else
+      compute_tiles(limits.in_parts(source_), took);
+    read = std::move(read_);
     result_.view = view_of(source_.camera, source_.file_data, source_.display);
     result_.values = std::move(values_);
     for (const auto* planes : {&scales_, &bent_})
@@ -93,11 +90,11 @@ class EstimateRun {
   }
 
  private:
-  void compute(const Window& part, FrameRows* rows, PreparedOthers& took) {
+  void compute(const Window& part, PreparedOthers& took) {
     if (where_.begin) where_.begin(source_.data);
-    FrameInputs inputs = load_frame(where_.gpu, source_, settings_, plan_.turn_of(frame_), rows);
+    FrameInputs inputs = load_frame(where_.gpu, source_, settings_, plan_.turn_of(frame_), &read_);
     inputs.others = others_.seen;
-    if (!rows) read_ = kept_planes(inputs);
+    if (part == source_.file_data) read_ = kept_planes(inputs);
     inputs.turn = plan_.turn_of(frame_);
     const FrameOutputs outputs = run_chain(where_.gpu, inputs, settings_.estimator, wanted_);
     where_.gpu.run();
@@ -114,16 +111,15 @@ class EstimateRun {
   }
 
   void compute_tiles(const WindowLimits& limits, PreparedOthers& took) {
-    FrameRows rows(source_, limits.room.bytes / kRowsPart, existing_folder_of(settings_.output.output));
-    const Window whole = source_.file_data;
+    read_ = read_whole(source_);
     if (!source_.settled)
-      settle_by_part(source_, settings_.input, rows, whole, evidence_within(source_, limits.room.bytes));
-    Surroundings surroundings(source_, settings_, rows);
-    rows.leave_memory();
-    for (const auto& row : tiles_of(whole, surroundings, limits, source_))
+      settle_by_planes(source_, settings_.input, read_[RawPlane::depth], read_[RawPlane::normal],
+                       limits.room.bytes - limits.kept);
+    Surroundings surroundings(source_, settings_, read_[RawPlane::depth]);
+    for (const auto& row : tiles_of(source_.file_data, surroundings, limits, source_))
       for (const auto& tile : row) {
         source_.data = surroundings.around(tile);
-        compute(tile, &rows, took);
+        compute(tile, took);
       }
   }
 

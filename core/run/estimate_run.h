@@ -7,7 +7,7 @@
 namespace alcove {
 
 /// Estimates a frame of the plan. `settled`: another one that it is read as, or null; `shot`: what frames see of each
-/// other, or null. `read`: gets what was read of a frame that is estimated whole. Fails as computing the frame does.
+/// other, or null. `read`: gets what was read of the frame. Fails as computing the frame does.
 EstimatedFrame estimate_frame(const EstimateRoom& where, const FramePlan& plan, const FrameSource* settled,
                               SharedFrames* shot, int frame, PreparedOthers& took, ReadPlanes& read);
 

@@ -226,4 +226,10 @@ FrameMemory memory_of(const FrameSource& source, const Settings& settings) {
   return memory;
 }
 
+std::uint64_t raw_bytes_of(const FrameSource& source) {
+  std::uint64_t channels = 0;
+  for (const auto& plane : source.planes.entries) channels += plane.size();
+  return sizeof(float) * channels * source.file_data.pixels();
+}
+
 }  // namespace alcove

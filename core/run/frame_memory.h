@@ -41,4 +41,7 @@ struct FrameMemory {
 };
 FrameMemory memory_of(const FrameSource& source, const Settings& settings);
 
+/// The bytes of all planes of a frame, as they are read.
+std::uint64_t raw_bytes_of(const FrameSource& source);
+
 }  // namespace alcove

@@ -131,9 +131,7 @@ std::uint64_t bytes_of_estimates(const FramePlan& plan, const FrameSource& frame
                                  std::span<const int> frames, int lanes) {
   if (settings.input.accumulate == 0) return 0;
   // What was read of one is kept with its estimate until it is computed itself, as at first none of them is.
-  std::uint64_t read = 0;
-  for (const auto& plane : frame.planes.entries) read += plane.size();
-  return sizeof(float) * frame.file_data.pixels() * (2 + values_of(settings) + read) *
+  return (sizeof(float) * frame.file_data.pixels() * (2 + values_of(settings)) + raw_bytes_of(frame)) *
          most_estimates(plan, frames, std::size_t(lanes));
 }
 

@@ -141,8 +141,18 @@ std::uint64_t WindowLimits::with_larger_codecs(std::uint64_t bytes) const {
   return bytes;
 }
 
+WindowLimits WindowLimits::in_parts(const FrameSource& source) const {
+  WindowLimits limits = *this;
+  limits.kept = raw_bytes_of(source);
+  if (limits.kept < room.bytes) return limits;
+  const Window least{source.file_data.x, source.file_data.y, kLeastColumns, kLeastRows};
+  refuse(fmt::format("{}: its pixels take {} MiB as they are read: use a smaller frame", source.depth_path(),
+                     mebibytes_above(limits.kept)),
+         limits.kept + memory.on_host(least));
+}
+
 bool WindowLimits::allow(const Window& computed, std::uint64_t beside) const {
-  return memory.on_host(computed) + beside <= room.bytes && memory.on_device(computed) <= room.device_bytes &&
+  return memory.on_host(computed) + kept + beside <= room.bytes && memory.on_device(computed) <= room.device_bytes &&
          memory.in_buffer(computed) <= room.buffer_bytes && computed.pixels() <= room.pixels &&
          std::max(computed.width, computed.height) <= longest_side;
 }
@@ -150,9 +160,9 @@ bool WindowLimits::allow(const Window& computed, std::uint64_t beside) const {
 std::string WindowLimits::why_not(const Window& computed) const {
   if (std::max(computed.width, computed.height) > longest_side)
     return fmt::format("lines of an exact search have at most {} pixels", longest_side);
-  if (memory.on_host(computed) > room.bytes)
+  if (memory.on_host(computed) + kept > room.bytes)
     return fmt::format("{} leaves {} MiB for it, and at once it takes {} MiB",
-                       room.is_chosen ? "--memory" : "half of the free memory", room.bytes / kMebibyte,
+                       room.is_chosen ? "--memory" : "half of the free memory", (room.bytes - kept) / kMebibyte,
                        mebibytes_above(memory.on_host(computed)));
   if (memory.in_buffer(computed) > room.buffer_bytes)
     return fmt::format("the device takes buffers of {} MiB at most", room.buffer_bytes / kMebibyte);
@@ -160,7 +170,7 @@ std::string WindowLimits::why_not(const Window& computed) const {
 }
 
 void WindowLimits::refuse(const std::string& what, const Window& computed) const {
-  if (memory.on_host(computed) > room.bytes) refuse(what, memory.on_host(computed));
+  if (memory.on_host(computed) + kept > room.bytes) refuse(what, memory.on_host(computed) + kept);
   if (std::max(computed.width, computed.height) > longest_side)
     fail(ErrorKind::device, "{}, or give --search steps, since lines of an exact search have at most {} pixels", what,
          longest_side);
@@ -174,24 +184,20 @@ void WindowLimits::refuse(const std::string& what, std::uint64_t least) const {
        mebibytes_above(room.program_bytes + least), mebibytes_above(room.program_bytes));
 }
 
-std::optional<TileRows> tiles_within(const Window& whole, Surroundings& surroundings, const WindowLimits& limits) {
-  return Cutter(surroundings, limits).cut(whole);
-}
-
 TileRows tiles_of(const Window& whole, Surroundings& surroundings, const WindowLimits& limits,
                   const FrameSource& source) {
-  if (auto rows = tiles_within(whole, surroundings, limits)) return *std::move(rows);
+  if (auto rows = Cutter(surroundings, limits).cut(whole)) return *std::move(rows);
   const std::string what = fmt::format(
       "{}: within --radius a tile of the frame depends on too many pixels to compute at once: use a smaller --radius",
       source.depth_path());
   WindowLimits larger = limits;
   const auto allows = [&](std::uint64_t bytes) {
     larger.room.bytes = bytes;
-    return tiles_within(whole, surroundings, larger).has_value();
+    return Cutter(surroundings, larger).cut(whole).has_value();
   };
   // More memory than all of the window takes at once is of no use.
   std::uint64_t little = limits.room.bytes;
-  std::uint64_t enough = limits.memory.on_host(surroundings.around(whole)) + row_bytes(limits, whole);
+  std::uint64_t enough = limits.memory.on_host(surroundings.around(whole)) + limits.kept + row_bytes(limits, whole);
   if (!allows(enough))
     limits.refuse(what, surroundings.around({whole.x, whole.y, std::min(whole.width, kLeastColumns), 1}));
   while (enough - little > kMebibyte) {

@@ -219,8 +219,8 @@ TEST_F(Tiles, what_is_named_is_enough_for_codecs_that_take_more_of_more_memory) 
   expect_enough_is_named({"--radius", "50", "--threads", "4"}, 1 << 20);
 }
 
-TEST_F(Tiles, what_is_named_is_enough_where_rows_could_stay_in_memory) {
-  // More memory than four times the rows, which then stay there, and less than the whole frame takes.
+TEST_F(Tiles, what_is_named_is_enough_beside_the_planes_of_the_frame) {
+  // Less than the planes alone take, which stay in memory beside any tile.
   expect_enough_is_named({"--radius", "0.4", "--slices", "1", "--steps", "2", "--aov",
                           "ao,bent-normal,normal,depth,specular-occlusion,confidence"},
                          1 << 20);
