@@ -145,10 +145,11 @@ WindowLimits WindowLimits::in_parts(const FrameSource& source) const {
   WindowLimits limits = *this;
   limits.kept = raw_bytes_of(source);
   if (limits.kept < room.bytes) return limits;
-  const Window least{source.file_data.x, source.file_data.y, kLeastColumns, kLeastRows};
+  // That is enough to compute all of the frame at once; what its tiles take, only its depth tells.
+  const std::uint64_t enough = memory.on_host(source.file_data) + (source.region ? limits.kept : 0);
   refuse(fmt::format("{}: its pixels take {} MiB as they are read: use a smaller frame", source.depth_path(),
                      mebibytes_above(limits.kept)),
-         limits.kept + memory.on_host(least));
+         enough);
 }
 
 bool WindowLimits::allow(const Window& computed, std::uint64_t beside) const {

@@ -41,7 +41,7 @@ struct WindowLimits {
   std::uint64_t kept = 0;                              // bytes of host memory that are taken whatever is computed
 
   /// The limits of a frame's parts, whose planes stay in host memory as they were read. Fails as refuse() does where
-  /// that has no room for them.
+  /// that has no room for them, and names what the whole frame takes.
   WindowLimits in_parts(const FrameSource& source) const;
 
   /// `beside`: bytes of host memory that are taken meanwhile.
