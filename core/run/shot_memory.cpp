@@ -58,7 +58,7 @@ std::uint64_t bytes_of_motion(const FrameSource& frame, const InputSettings& set
 /// What one frame at a time takes with all around it.
 std::uint64_t bytes_of_one(const FramePlan& plan, const FrameSource& frame, const Settings& settings) {
   return bytes_of_shot(plan, frame, settings.input, 1) +
-         memory_with_others(plan, frame, settings).on_host(frame.file_data);
+         memory_with_others(plan, frame, settings).of(frame.file_data).host;
 }
 
 /// What it takes at least, in the smallest of tiles.

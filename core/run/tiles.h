@@ -25,10 +25,6 @@ struct Room {
   bool is_chosen = false;
 };
 
-/// The longest side of a window, in pixels, for the passes of these settings: the marks of an exact search hold the
-/// step along a line in 16 bits.
-int longest_side(const EstimatorSettings& settings);
-
 /// Fails with ErrorKind::input where a frame reaches so far that an exact search could not number its lines, however
 /// the frame is cut.
 void require_numbered_lines(const FrameSource& source, const EstimatorSettings& settings);

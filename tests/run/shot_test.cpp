@@ -390,7 +390,7 @@ TEST_F(Shots, take_more_memory_the_more_frames_lie_around) {
     settings.input.around = around;
     const FramePlan plan(settings);
     const FrameSource source = open_frame(plan.at(4), 4);
-    const std::uint64_t of_frame = memory_with_others(plan, source, settings).on_host(source.file_data);
+    const std::uint64_t of_frame = memory_with_others(plan, source, settings).of(source.file_data).host;
     const std::uint64_t of_shot = bytes_of_shot(plan, source, settings.input, 1);
     if (around != 2) {
       EXPECT_GT(of_frame, frame_before) << around;
