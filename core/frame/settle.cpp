@@ -108,8 +108,8 @@ void settle_meaning(FrameSource& source, const InputSettings& settings, std::spa
     settle_normals(source, settings, depth, normal);
 }
 
-/// As many rows from the middle of source.data as have room in so many bytes, twice: as they are read, and what is made of
-/// them.
+/// As many rows from the middle of source.data as have room in so many bytes, twice: as they are read, and what is made
+/// of them.
 Window middle_rows(const FrameSource& source, std::uint64_t most_bytes) {
   constexpr std::uint64_t kLeastPixels = 1 << 18;  // fewer tell too little
   const Window& data = source.data;

@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <new>
+#include <optional>
 #include <string_view>
 #include <utility>
 
 #include "core/base/error.h"
 #include "core/base/estimator_facts.h"
+#include "core/base/windows.h"
 #include "core/chain/aov.h"
 #include "core/chain/debug_view.h"
 #include "core/frame/settle.h"
@@ -100,7 +102,7 @@ class FrameRun {
   /// Computes what depends on a part of the frame, or the frame in tiles: all of them from planes that are read once.
   void run_parts(FrameSource& source, const WindowLimits& limits) {
     const Stopwatch reading;
-    if (!read_ || !are_of(*read_, source)) read_ = std::make_shared<const ReadPlanes>(read_whole(source));
+    if (!read_ || !are_of(*read_, source)) read_ = read_whole(source);
     const auto& depth = (*read_)[RawPlane::depth];
     if (!source.settled)
       settle_by_planes(source, settings_.input, depth, (*read_)[RawPlane::normal], limits.room.bytes - limits.kept);
@@ -117,13 +119,13 @@ class FrameRun {
     const auto& wanted = settings_.output;
     const auto views = debug_views_of(wanted);
     const bool shows_hidden = std::ranges::find(views, DebugSource::hidden, &DebugView::source) != views.end();
-    return !run_.estimates || shows_hidden || wants(wanted, &FrameOutputs::hidden) ||
+    return !run_.takes_means || shows_hidden || wants(wanted, &FrameOutputs::hidden) ||
            wants(wanted, &FrameOutputs::confidence);
   }
 
   /// Finds what others see, once for all parts of the frame.
   void take_others(const FrameSource& source) {
-    if (!run_.shot && !run_.estimates) return;
+    if (!run_.shot) return;
     const Stopwatch reading;
     PreparedOthers took;
     // Where the device has no memory for a part of an estimate, smaller ones are computed as of the frame itself.
@@ -131,10 +133,10 @@ class FrameRun {
       go_on();
       tally_.begin(computed);
     };
-    if (run_.estimates) estimates_ = run_.estimates->around({gpu_, room_, begin}, frame_, took);
-    if (run_.shot && needs_others()) others_ = run_.shot->others_of(gpu_, source, frame_, took);
+    if (run_.takes_means) estimates_ = run_.shot->estimates_of({gpu_, room_, begin}, frame_, took);
+    if (needs_others()) others_ = run_.shot->others_of(gpu_, source, frame_, took);
     tally_.add_others(took);
-    if (run_.estimates) take_estimates();
+    if (run_.takes_means) take_estimates();
     if (!others_.frames.empty() || !others_.missing.empty()) report_.frames_around = others_.frames;
     report_.read_ms += reading.ms();
     go_on();
@@ -146,7 +148,7 @@ class FrameRun {
     if (others_.seen.empty()) others_ = own.others;
     tally_.add_estimate(own.report, others_);
     in_slots_ = slots_.filled(gpu_, run_.plan, estimates_, frame_, room_.buffer_bytes);
-    read_ = estimates_.read;
+    read_ = std::move(estimates_.read);
   }
 
   /// Reads and computes source.data. reuses: what is as in the frame before is not computed again.
@@ -154,7 +156,7 @@ class FrameRun {
     tally_.begin(source.data);
     watch_(++part_, parts_, 0);
     const Stopwatch reading;
-    FrameInputs inputs = load_frame(gpu_, source, settings_, frame_, read_.get());
+    FrameInputs inputs = load_frame(gpu_, source, settings_, frame_, read_ ? &*read_ : nullptr);
     inputs.others = others_.seen;
     inputs.estimates = in_slots_;
     inputs.estimates.corner = {source.data.x - source.file_data.x, source.data.y - source.file_data.y};
@@ -194,7 +196,7 @@ class FrameRun {
   void run_whole(FrameSource& source) {
     const EstimatorSettings& estimator = settings_.estimator;
     const bool reuses =
-        run_.plan.frames().size() > 1 && !estimator.no_skip && estimator.noise == Noise::fixed && !run_.estimates;
+        run_.plan.frames().size() > 1 && !estimator.no_skip && estimator.noise == Noise::fixed && !run_.takes_means;
     const FrameOutputs outputs = compute(source, reuses);
     finish_tally(source);
     const Stopwatch writing;
@@ -271,30 +273,18 @@ class FrameRun {
   /// The planes of the results over one row of tiles.
   std::vector<std::vector<float>> compute_row(FrameSource& source, Surroundings& surroundings,
                                               const std::vector<Window>& row) {
+    const Window whole{row.front().x, row.front().y, row.back().x + row.back().width - row.front().x,
+                       row.front().height};
     std::vector<std::vector<float>> planes;
     for (const auto& tile : row) {
       source.data = surroundings.around(tile);
       const FrameOutputs outputs = compute(source, false);
-      add_tile(result_planes(outputs, source.data, settings_.output), source.data, tile, row, planes);
+      const auto results = result_planes(outputs, source.data, settings_.output);
+      planes.resize(results.size());
+      for (std::size_t i = 0; i < results.size(); i++) put_in(results[i], source.data, tile, whole, planes[i]);
       report_.parts++;
     }
     return planes;
-  }
-
-  /// Puts a tile of every result into the row that it is a part of.
-  static void add_tile(const std::vector<std::span<const float>>& results, const Window& computed, const Window& tile,
-                       const std::vector<Window>& row, std::vector<std::vector<float>>& planes) {
-    const std::size_t width = std::size_t(row.back().x + row.back().width - row.front().x);
-    planes.resize(results.size());
-    for (std::size_t i = 0; i < results.size(); i++) {
-      planes[i].resize(width * std::size_t(tile.height));
-      for (int y = 0; y < tile.height; y++)
-        std::ranges::copy(
-            results[i].subspan(
-                std::size_t(tile.y + y - computed.y) * std::size_t(computed.width) + std::size_t(tile.x - computed.x),
-                std::size_t(tile.width)),
-            planes[i].begin() + std::ptrdiff_t(std::size_t(y) * width + std::size_t(tile.x - row.front().x)));
-    }
   }
 
   gpu::Recorder& gpu_;
@@ -307,10 +297,10 @@ class FrameRun {
   int part_ = 0, parts_ = 1;
   std::string why_in_parts_;
   Settings settings_;
-  Others others_;                           // that the frame takes
-  TakenEstimates estimates_;                // the same
-  std::shared_ptr<const ReadPlanes> read_;  // of the whole frame, for its parts; null: parts come from the files
-  EstimateSet in_slots_;                    // these for all parts of the frame
+  Others others_;                   // that the frame takes
+  TakenEstimates estimates_;        // the same
+  std::optional<ReadPlanes> read_;  // of the whole frame, for its parts; null: parts come from the files
+  EstimateSet in_slots_;            // these for all parts of the frame
   FrameReport& report_;
   FrameTally tally_;
 };

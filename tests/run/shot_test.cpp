@@ -204,18 +204,18 @@ TEST_F(Shots, keep_no_more_frames_than_their_windows) {
   for (const char* order : {"1-16", "16-1", "1-16x3,2-16x3,3-16x3"}) {
     settings.frames.frames = order;
     const FramePlan plan(settings);
-    SharedFrames shared(plan, nullptr, plan.frames());
+    Shot shared(plan, nullptr, plan.frames());
     gpu::Recorder gpu(device());
     for (const int frame : plan.frames()) {
       PreparedOthers took;
       FrameSource target = open_frame(plan.at(frame), frame);
       shared.begin(frame);
       shared.others_of(gpu, target, frame, took);
-      EXPECT_LE(shared.kept(), std::size_t(2 * with_judges(2) + 1)) << order << " " << frame;
-      EXPECT_GE(shared.kept(), 5u) << order << " " << frame;
+      EXPECT_LE(shared.seen_count(), std::size_t(2 * with_judges(2) + 1)) << order << " " << frame;
+      EXPECT_GE(shared.seen_count(), 5u) << order << " " << frame;
       shared.done(frame);
     }
-    EXPECT_EQ(shared.kept(), 0u);
+    EXPECT_EQ(shared.seen_count(), 0u);
   }
 }
 
