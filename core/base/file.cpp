@@ -32,6 +32,13 @@ bool is_unfinished(std::string_view name) {
          all_of(name.substr(dash + 1), "0123456789abcdef");
 }
 
+/// A hidden name in a folder that nobody else has, for a file in the making: remove_unfinished() knows it.
+std::string unfinished_name(const std::string& folder) {
+  return (fs::path(folder) /
+          fmt::format("{}{}-{:08x}{}", kUnfinishedPrefix, process_id(), std::random_device()(), kUnfinishedSuffix))
+      .string();
+}
+
 }  // namespace
 
 void require_readable(const std::string& path, const char* what, const char* option) {
@@ -115,12 +122,6 @@ void require_no_input(const std::string& path, const char* option, std::span<con
       fail(ErrorKind::usage, "{}: {} would overwrite an input", path, option);
 }
 
-std::string unfinished_name(const std::string& folder) {
-  return (fs::path(folder) /
-          fmt::format("{}{}-{:08x}{}", kUnfinishedPrefix, process_id(), std::random_device()(), kUnfinishedSuffix))
-      .string();
-}
-
 NewFile::NewFile(const std::string& path) : target_(path) {
   // Whoever cleans up may take the file in the moment before it is locked.
   do {
@@ -177,13 +178,6 @@ int remove_unfinished(const std::string& folder) {
 std::string folder_of(const std::string& path) {
   const fs::path folder = fs::path(path).parent_path();
   return folder.empty() ? "." : folder.string();
-}
-
-std::string existing_folder_of(const std::string& path) {
-  std::string folder = folder_of(path);
-  std::error_code error;
-  while (folder != "." && folder != "/" && !fs::is_directory(folder, error)) folder = folder_of(folder);
-  return folder;
 }
 
 }  // namespace alcove

@@ -37,9 +37,6 @@ bool same_file(const std::string& a, const std::string& b);
 /// Fails with ErrorKind::usage where `path`, which is to be written, is one of the inputs. Empty names are none.
 void require_no_input(const std::string& path, const char* option, std::span<const std::string> inputs);
 
-/// A hidden name in a folder that nobody else has, for a file in the making: remove_unfinished() knows it.
-std::string unfinished_name(const std::string& folder);
-
 /// A file in the making. It has a hidden name beside `path` that does not end as images do, so that folder watchers
 /// pass it by, and a lock for as long as its process lives. Unless it is committed nothing of it is left, and what was
 /// at `path` is as it was. All failures are ErrorKind::output.
@@ -78,7 +75,4 @@ int remove_unfinished(const std::string& folder);
 
 /// The folder that a file lies in.
 std::string folder_of(const std::string& path);
-/// The same, or where it is not there yet the folder that it will be made in.
-std::string existing_folder_of(const std::string& path);
-
 }  // namespace alcove

@@ -231,33 +231,4 @@ void LockedFile::close() {
   if (descriptor_ >= 0) ::close(std::exchange(descriptor_, -1));
 }
 
-ScratchFile::~ScratchFile() {
-  if (descriptor_ >= 0) ::close(descriptor_);
-}
-
-std::error_code ScratchFile::make(const std::string& folder, const std::string& path) {
-  descriptor_ = ::open(folder.c_str(), O_RDWR | O_TMPFILE | O_CLOEXEC, 0600);
-  if (descriptor_ >= 0) return {};
-  descriptor_ = ::open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
-  if (descriptor_ < 0) return last_error();
-  ::unlink(path.c_str());
-  return {};
-}
-
-std::error_code ScratchFile::write_at(std::uint64_t offset, std::span<const char> bytes) {
-  return write_bytes_at(descriptor_, offset, bytes);
-}
-
-std::error_code ScratchFile::read_at(std::uint64_t offset, std::span<char> bytes) const {
-  while (!bytes.empty()) {
-    const ssize_t read = ::pread(descriptor_, bytes.data(), bytes.size(), off_t(offset));
-    if (read < 0 && errno == EINTR) continue;
-    if (read < 0) return last_error();
-    if (read == 0) return std::make_error_code(std::errc::io_error);
-    bytes = bytes.subspan(std::size_t(read));
-    offset += std::uint64_t(read);
-  }
-  return {};
-}
-
 }  // namespace alcove

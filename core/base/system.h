@@ -102,23 +102,4 @@ class LockedFile {
   bool is_locked_ = false;
 };
 
-/// A file without a name, for what memory has no room for: it is gone once it is closed, however its process ends.
-class ScratchFile {
- public:
-  ScratchFile() = default;
-  ScratchFile(const ScratchFile&) = delete;
-  ScratchFile& operator=(const ScratchFile&) = delete;
-  ~ScratchFile();
-
-  /// File systems of networks know no files without names: there it has the name `path`, which nobody else has, for a
-  /// moment.
-  std::error_code make(const std::string& folder, const std::string& path);
-  bool is_open() const { return descriptor_ >= 0; }
-  std::error_code write_at(std::uint64_t offset, std::span<const char> bytes);
-  std::error_code read_at(std::uint64_t offset, std::span<char> bytes) const;
-
- private:
-  int descriptor_ = -1;
-};
-
 }  // namespace alcove

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -14,6 +15,21 @@ Window common_part(const Window& a, const Window& b);
 
 /// Copies the pixels that both windows have from one plane into the other.
 void copy_common(const float* from, const Window& from_window, float* to, const Window& to_window);
+
+/// Copies a part of planes over `from` into planes over `whole`, which gets room for all of them.
+template <class T>
+void put_in(std::span<const T> planes, const Window& from, const Window& part, const Window& whole,
+            std::vector<T>& all) {
+  const std::size_t count = planes.size() / from.pixels(), width = std::size_t(part.width);
+  all.resize(count * whole.pixels());
+  for (std::size_t k = 0; k < count; k++)
+    for (int y = part.y; y < part.y + part.height; y++) {
+      const auto place = [&](const Window& of) {
+        return k * of.pixels() + std::size_t(y - of.y) * std::size_t(of.width) + std::size_t(part.x - of.x);
+      };
+      std::copy_n(planes.begin() + std::ptrdiff_t(place(from)), width, all.begin() + std::ptrdiff_t(place(whole)));
+    }
+}
 
 // Below, each pixel of a smaller picture is a block of `factor` x `factor` pixels of a larger one, counted from the
 // upper left corner of the larger one's display window. That of the smaller one's is as much nearer to 0, rounded down.

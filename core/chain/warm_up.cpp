@@ -12,7 +12,7 @@ namespace alcove {
 namespace {
 
 /// The kernels that a frame of these settings runs, each once, those with the most code first.
-std::vector<gpu::KernelName> kernels_of(gpu::Device& device, EstimatorSettings settings, const Wanted& wanted) {
+std::vector<gpu::KernelName> kernels_of(EstimatorSettings settings, const Wanted& wanted) {
   constexpr int kSide = 32;  // px
   HostFrame frame;
   frame.data = frame.display = {0, 0, kSide, kSide};
@@ -20,7 +20,7 @@ std::vector<gpu::KernelName> kernels_of(gpu::Device& device, EstimatorSettings s
   frame.depth.assign(frame.data.pixels(), 1);
   frame.normal.assign(3 * frame.data.pixels(), 1);
   if (!settings.radius) settings.radius = 1;
-  gpu::Recorder rehearsal(device, gpu::Recorder::Mode::rehearse);
+  gpu::Recorder rehearsal;
   run_chain(rehearsal, upload(rehearsal, frame), settings, wanted);
   std::vector<gpu::KernelName> names = rehearsal.rehearsed();
   std::ranges::sort(names);
@@ -42,7 +42,7 @@ WarmUp::WarmUp(gpu::Device& device, const EstimatorSettings& settings, const Wan
     }
   };
   try {
-    names_ = kernels_of(device, settings, wanted);
+    names_ = kernels_of(settings, wanted);
     for (int i = 0; i < threads; i++) threads_.emplace_back(make);
   } catch (...) {
     // So does whoever needs what could not be rehearsed; and where there are no threads, frames make their kernels.

@@ -105,8 +105,7 @@ struct PlaneRead {
   float* to;
 };
 
-/// Reads all planes within source.data, which is as wide as the files. Every part of every file is decoded once; for
-/// windows see core/frame/frame_rows.h.
+/// Reads planes within source.data, which is as wide as the files. Every part of every file is decoded once.
 void read_planes(FrameSource& source, const std::vector<PlaneRead>& reads);
 
 }  // namespace alcove

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <utility>
+#include <vector>
 
 #include "core/base/error.h"
 #include "core/frame/deep.h"
@@ -106,6 +108,18 @@ void settle_meaning(FrameSource& source, const InputSettings& settings, std::spa
     settle_normals(source, settings, depth, normal);
 }
 
+/// As many rows from the middle of source.data as have room in so many bytes, twice: as they are read, and what is made
+/// of them.
+Window middle_rows(const FrameSource& source, std::uint64_t most_bytes) {
+  constexpr std::uint64_t kLeastPixels = 1 << 18;  // fewer tell too little
+  const Window& data = source.data;
+  const std::uint64_t planes = source[RawPlane::depth].size() + source[RawPlane::normal].size();
+  const std::uint64_t pixels =
+      std::clamp<std::uint64_t>(most_bytes / (2 * sizeof(float) * planes), kLeastPixels, kEvidencePixels);
+  const int rows = int(std::clamp<std::uint64_t>(pixels / std::uint64_t(data.width), 1, std::uint64_t(data.height)));
+  return {data.x, data.y + (data.height - rows) / 2, data.width, rows};
+}
+
 }  // namespace
 
 void settle(FrameSource& source, const InputSettings& settings, std::span<const float> depth,
@@ -128,6 +142,29 @@ void settle(FrameSource& source, const InputSettings& settings, std::span<const 
   source.median_depth = median_depth(source, depth);
   std::ranges::move(findings(source, depth, normal), std::back_inserter(source.suspicious));
   source.settled = true;
+}
+
+void settle_by_planes(FrameSource& source, const InputSettings& settings, std::span<const float> depth,
+                      std::span<const float> normal, std::uint64_t most_bytes) {
+  const Window data = source.data;
+  if (data.pixels() <= kEvidencePixels && depth.size_bytes() + normal.size_bytes() <= most_bytes)
+    return settle(source, settings, depth, normal);
+  source.data = middle_rows(source, most_bytes);
+  settle(source, settings, cropped(depth, data, source.data), cropped(normal, data, source.data));
+  source.data = data;
+}
+
+void settle_by_rows(FrameSource& source, const InputSettings& settings, std::uint64_t most_bytes) {
+  const Window window = middle_rows(source, most_bytes);
+  if (std::size_t(window.width) > kEvidencePixels)
+    fail(ErrorKind::device, "{}: rows of {} pixels are more than Alcove takes on any --device", source.depth_path(),
+         window.width);
+  std::vector<float> depth(source[RawPlane::depth].size() * window.pixels()),
+      normal(source[RawPlane::normal].size() * window.pixels());
+  const Window data = std::exchange(source.data, window);
+  read_planes(source, {{&source[RawPlane::depth], depth.data()}, {&source[RawPlane::normal], normal.data()}});
+  settle(source, settings, depth, normal);
+  source.data = data;
 }
 
 bool has_step(DepthKind kind) {

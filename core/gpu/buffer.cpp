@@ -14,6 +14,9 @@ constexpr std::byte kUnwritten{0xff};  // four of them are a NaN
 /// A buffer of less than this is kept for any smaller size: it costs less than another allocation.
 constexpr std::size_t kSmallBytes = 1 << 20;
 
+/// The host writes a few numbers into buffers while a frame is recorded, and pixels only before.
+constexpr std::size_t kRehearsedBytes = 1 << 16;
+
 double mebibytes(std::size_t bytes) { return double(bytes) / (1 << 20); }
 
 }  // namespace
@@ -29,6 +32,11 @@ Buffer::Buffer(Device& device, std::size_t bytes, Use use)
     place_between_guards(device);
   else
     place(device);
+}
+
+Buffer::Buffer(std::size_t bytes, Use use)
+    : bytes_(bytes), capacity_(bytes), guard_(0), use_(use), rehearsed_(bytes <= kRehearsedBytes ? bytes : 0) {
+  host_ = rehearsed_;
 }
 
 void Buffer::place(Device& device) {

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "core/gpu/device.h"
 #include "core/gpu/memory_choice.h"
@@ -19,6 +20,8 @@ class Buffer {
  public:
   /// Fails with ErrorKind::device when the device cannot bind or hold that many bytes. bytes > 0.
   Buffer(Device& device, std::size_t bytes, Use use);
+  /// A buffer of a rehearsal, with no memory but the host's, and with that only where it is too small to hold pixels.
+  Buffer(std::size_t bytes, Use use);
 
   std::size_t bytes() const { return bytes_; }
   /// The bytes that it has room for.
@@ -63,6 +66,7 @@ class Buffer {
 
   std::size_t bytes_, capacity_, guard_;
   Use use_;
+  std::vector<std::byte> rehearsed_;
   Allocation device_side_;
   mutable Allocation staging_side_;
   mutable std::span<std::byte> host_;  // of the whole capacity

@@ -57,7 +57,7 @@ double work_of(const PassTime& pass) {
 
 }  // namespace
 
-Recorder::Recorder(Device& device, Mode mode) : device_(device), mode_(mode) {
+Recorder::Recorder(Device& device) : device_(&device) {
   VkCommandPoolCreateInfo pool_info{};
   pool_info.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO;
   pool_info.queueFamilyIndex = device.queue_family();
@@ -72,20 +72,20 @@ Recorder::Submission Recorder::make_submission() {
   query_info.queryType = VK_QUERY_TYPE_TIMESTAMP;
   query_info.queryCount = 2 * kMostDispatches;
   VkQueryPool queries = VK_NULL_HANDLE;
-  check(vkCreateQueryPool(device_.handle(), &query_info, nullptr, &queries), "vkCreateQueryPool");
-  Submission submission{VK_NULL_HANDLE, {device_.handle(), queries}, {}};
+  check(vkCreateQueryPool(device_->handle(), &query_info, nullptr, &queries), "vkCreateQueryPool");
+  Submission submission{VK_NULL_HANDLE, {device_->handle(), queries}, {}};
 
   VkFenceCreateInfo fence_info{};
   fence_info.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO;
   VkFence done = VK_NULL_HANDLE;
-  check(vkCreateFence(device_.handle(), &fence_info, nullptr, &done), "vkCreateFence");
-  submission.done = {device_.handle(), done};
+  check(vkCreateFence(device_->handle(), &fence_info, nullptr, &done), "vkCreateFence");
+  submission.done = {device_->handle(), done};
 
   VkCommandBufferAllocateInfo buffer_info{};
   buffer_info.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO;
   buffer_info.commandPool = pool_;
   buffer_info.commandBufferCount = 1;
-  check(vkAllocateCommandBuffers(device_.handle(), &buffer_info, &submission.commands), "vkAllocateCommandBuffers");
+  check(vkAllocateCommandBuffers(device_->handle(), &buffer_info, &submission.commands), "vkAllocateCommandBuffers");
   return submission;
 }
 
@@ -100,11 +100,11 @@ Buffer& Recorder::buffer(std::string_view name, std::size_t bytes, Use use) {
       recording = recordings_;
       return pooled;
     }
-    if (recording_) replaced_.emplace_back(name, std::move(pooled));
+    if (recording_ || !device_) replaced_.emplace_back(name, std::move(pooled));
     buffers_.erase(found);
   }
   try {
-    PooledBuffer made{Buffer(device_, bytes, use), recordings_};
+    PooledBuffer made{device_ ? Buffer(*device_, bytes, use) : Buffer(bytes, use), recordings_};
     return buffers_.emplace(std::string(name), std::move(made)).first->second.buffer;
   } catch (const OutOfMemory&) {
     is_short_ = true;
@@ -115,12 +115,20 @@ Buffer& Recorder::buffer(std::string_view name, std::size_t bytes, Use use) {
 std::size_t Recorder::bytes() const {
   std::size_t sum = 0;
   for (const auto& [name, pooled] : buffers_) sum += pooled.buffer.capacity() * (pooled.buffer.staging() ? 2 : 1);
+  for (const auto& [name, buffer] : replaced_) sum += buffer.capacity() * (buffer.staging() ? 2 : 1);
   return sum;
+}
+
+std::size_t Recorder::largest_bytes() const {
+  std::size_t most = 0;
+  for (const auto& [name, pooled] : buffers_) most = std::max(most, pooled.buffer.bytes());
+  for (const auto& [name, buffer] : replaced_) most = std::max(most, buffer.bytes());
+  return most;
 }
 
 void Recorder::begin() {
   if (recording_) return;
-  check(vkResetCommandPool(device_.handle(), pool_, 0), "vkResetCommandPool");
+  check(vkResetCommandPool(device_->handle(), pool_, 0), "vkResetCommandPool");
   used_ = 0;
   touched_.clear();
   recorded_.clear();
@@ -137,7 +145,7 @@ void Recorder::next_submission() {
   info.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
   info.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
   check(vkBeginCommandBuffer(next.commands, &info), "vkBeginCommandBuffer");
-  if (device_.has_timestamps()) vkCmdResetQueryPool(next.commands, next.queries, 0, 2 * kMostDispatches);
+  if (device_->has_timestamps()) vkCmdResetQueryPool(next.commands, next.queries, 0, 2 * kMostDispatches);
   used_++;
 }
 
@@ -146,7 +154,7 @@ void Recorder::end_submission() { check(vkEndCommandBuffer(commands()), "vkEndCo
 void Recorder::make_room_for(double ms) {
   const Submission& now = submissions_[used_ - 1];
   const bool is_full = now.timed.size() == kMostDispatches;
-  const bool is_too_long = !now.timed.empty() && now.ms + ms > device_.submission_ms();
+  const bool is_too_long = !now.timed.empty() && now.ms + ms > device_->submission_ms();
   if (is_full || is_too_long) {
     end_submission();
     next_submission();
@@ -174,6 +182,7 @@ void Recorder::wait_for(VkBuffer buffer) {
 }
 
 void Recorder::clear(const Buffer& buffer) {
+  if (!device_) return;
   begin();
   wait_for(buffer.handle());
   vkCmdFillBuffer(commands(), buffer.handle(), buffer.bound().offset, buffer.bytes(), 0);
@@ -182,6 +191,7 @@ void Recorder::clear(const Buffer& buffer) {
 void Recorder::write_bytes(const Buffer& buffer, std::span<const std::byte> value) {
   if (value.size() > buffer.bytes())
     fail(ErrorKind::device, "a value of {} bytes is written to a buffer of {}", value.size(), buffer.bytes());
+  if (!device_) return;
   begin();
   wait_for(buffer.handle());
   vkCmdUpdateBuffer(commands(), buffer.handle(), buffer.bound().offset, value.size(), value.data());
@@ -197,7 +207,8 @@ void Recorder::upload(const Buffer& buffer) {
 }
 
 void Recorder::download(const Buffer& buffer) {
-  buffer.make_staging(device_);
+  if (!device_) return;
+  buffer.make_staging(*device_);
   if (!buffer.staging()) return;
   begin();
   wait_for(buffer.handle());
@@ -215,7 +226,7 @@ std::optional<double> Recorder::measured_ms(const RecordedPass& pass) const {
 
 /// The number of slices that a pass of so many workgroups needs for each slice to be short.
 double Recorder::slices_of(std::optional<double> ms, double groups, bool is_list) const {
-  const double most_ms = device_.submission_ms();
+  const double most_ms = device_->submission_ms();
   if (std::isinf(most_ms)) return 1;
   if (!ms) return groups / kUnmeasuredGroups;
   return *ms <= most_ms ? 1 : *ms / most_ms * (is_list ? kListSlices : 1);
@@ -224,12 +235,12 @@ double Recorder::slices_of(std::optional<double> ms, double groups, bool is_list
 void Recorder::dispatch_bytes(const std::string& stem, std::span<const std::byte> params,
                               std::span<const Binding> bindings, Extent extent,
                               const std::vector<std::uint32_t>& specialization) {
-  if (mode_ == Mode::rehearse) {
+  if (!device_) {
     rehearsed_.emplace_back(stem, specialization);
     return;
   }
   begin();
-  const Kernel& kernel = device_.kernel(stem, specialization);
+  const Kernel& kernel = device_->kernel(stem, specialization);
   std::set<std::uint32_t> slots;
   for (const auto& binding : bindings) slots.insert(binding.slot);
   kernel.require(params.size(), slots);
@@ -242,7 +253,7 @@ void Recorder::dispatch_bytes(const std::string& stem, std::span<const std::byte
   const std::optional<double> ms = measured_ms(recorded_.back());
   const double slices = slices_of(ms, double(x) * y, extent.group_count);
   // As much as any submission may take, so that the pass gets one of its own.
-  const double unmeasured_ms = device_.submission_ms();
+  const double unmeasured_ms = device_->submission_ms();
   if (extent.group_count && (slices <= 1 || x == 0)) {
     make_room_for(ms.value_or(unmeasured_ms));
     record_slice(kernel, params, bindings, [&](VkCommandBuffer commands) {
@@ -285,13 +296,13 @@ void Recorder::record_slice(const Kernel& kernel, std::span<const std::byte> par
   Submission& submission = submissions_[used_ - 1];
   const auto query = std::uint32_t(2 * submission.timed.size());
   const auto stamp = [&](std::uint32_t number) {
-    if (!device_.has_timestamps()) return;
+    if (!device_->has_timestamps()) return;
     vkCmdWriteTimestamp(submission.commands, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, submission.queries, number);
   };
   stamp(query);
   vkCmdBindPipeline(submission.commands, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.pipeline());
-  device_.push_descriptors(submission.commands, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.layout(), 0,
-                           std::uint32_t(writes.size()), writes.data());
+  device_->push_descriptors(submission.commands, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.layout(), 0,
+                            std::uint32_t(writes.size()), writes.data());
   vkCmdPushConstants(submission.commands, kernel.layout(), VK_SHADER_STAGE_COMPUTE_BIT, 0, std::uint32_t(params.size()),
                      params.data());
   dispatch(submission.commands);
@@ -305,7 +316,7 @@ void Recorder::wait(const std::function<void(double)>& watch) const {
   for (std::size_t i = 0; i < used_; i++) all += submissions_[i].timed.size();
   for (std::size_t i = 0; i < used_; i++) {
     const VkFence fence = submissions_[i].done;
-    check(vkWaitForFences(device_.handle(), 1, &fence, VK_TRUE, UINT64_MAX), "vkWaitForFences");
+    check(vkWaitForFences(device_->handle(), 1, &fence, VK_TRUE, UINT64_MAX), "vkWaitForFences");
     done += submissions_[i].timed.size();
     if (watch && all > 0) watch(double(done) / double(all));
   }
@@ -323,12 +334,12 @@ void Recorder::run(const std::function<void(double)>& watch) {
     submissions.push_back(submissions_[i].commands);
     fences.push_back(submissions_[i].done);
   }
-  check(vkResetFences(device_.handle(), std::uint32_t(fences.size()), fences.data()), "vkResetFences");
-  device_.submit(submissions, fences);
+  check(vkResetFences(device_->handle(), std::uint32_t(fences.size()), fences.data()), "vkResetFences");
+  device_->submit(submissions, fences);
   wait(watch);
   check_guards();
   replaced_.clear();
-  if (device_.has_timestamps()) read_times();
+  if (device_->has_timestamps()) read_times();
   learn();
   passes_.clear();
   for (auto& pass : recorded_) passes_.push_back(std::move(pass.time));
@@ -355,19 +366,19 @@ void Recorder::read_times() {
     const auto& [commands, queries, fence, timed, ms] = submissions_[i];
     if (timed.empty()) continue;
     std::vector<std::uint64_t> ticks(2 * timed.size());
-    check(vkGetQueryPoolResults(device_.handle(), queries, 0, std::uint32_t(ticks.size()), ticks.size() * 8,
+    check(vkGetQueryPoolResults(device_->handle(), queries, 0, std::uint32_t(ticks.size()), ticks.size() * 8,
                                 ticks.data(), 8, VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT),
           "vkGetQueryPoolResults");
     for (std::size_t slice = 0; slice < timed.size(); slice++) {
-      const std::uint64_t elapsed = (ticks[2 * slice + 1] - ticks[2 * slice]) & device_.timestamp_mask();
-      recorded_[timed[slice]].time.ms += double(elapsed) * device_.nanoseconds_per_tick() * 1e-6;
+      const std::uint64_t elapsed = (ticks[2 * slice + 1] - ticks[2 * slice]) & device_->timestamp_mask();
+      recorded_[timed[slice]].time.ms += double(elapsed) * device_->nanoseconds_per_tick() * 1e-6;
     }
   }
 }
 
 /// Without timestamps nothing is learned, and every pass stays a submission of its own.
 void Recorder::learn() {
-  if (!device_.has_timestamps()) return;
+  if (!device_->has_timestamps()) return;
   for (const auto& [time, kernel] : recorded_) {
     double& most = ms_per_byte_[kernel];
     most = std::max(most, time.ms / work_of(time));

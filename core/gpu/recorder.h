@@ -51,11 +51,10 @@ concept KernelParams = std::is_trivially_copyable_v<T> && sizeof(T) <= 128;
 /// workgroups of one slice.
 class Recorder {
  public:
-  enum class Mode {
-    run,
-    rehearse,  // kernels are neither made nor recorded: rehearsed() tells their names
-  };
-  explicit Recorder(Device& device, Mode mode = Mode::run);
+  explicit Recorder(Device& device);
+  /// A rehearsal, which needs no device and cannot run. rehearsed() tells the kernels that a frame takes, and bytes() and
+  /// largest_bytes() the buffers.
+  Recorder() = default;
 
   /// The buffer of that name. It is made, or made again, unless the one that there is suits; what was recorded before
   /// keeps the one that it had. The reference is valid until the next call with another size.
@@ -98,6 +97,8 @@ class Recorder {
 
   /// Of all its buffers, their staging twins included.
   std::size_t bytes() const;
+  /// Of the largest buffer.
+  std::size_t largest_bytes() const;
 
  private:
   struct PooledBuffer {
@@ -138,8 +139,7 @@ class Recorder {
   void read_times();
   void learn();
 
-  Device& device_;
-  const Mode mode_;
+  Device* device_ = nullptr;  // null: this is a rehearsal
   std::vector<KernelName> rehearsed_;
   DeviceHandle<VkCommandPool, vkDestroyCommandPool> pool_;
   std::vector<Submission> submissions_;

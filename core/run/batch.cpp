@@ -196,13 +196,17 @@ class Batch {
       const OutputSettings& output = settings_.output;
       transform.emplace(output.ocio, output.display, output.view_transform);
     }
-    RunContext run{plan_,   identities_, settled ? &*settled : nullptr, transform ? &*transform : nullptr,
-                   nullptr, nullptr,     {report_.options, ""},         watch_.stop};
-    std::optional<SharedFrames> shot;
-    std::optional<SharedEstimates> estimates;
-    if (takes_others(settings_.input)) run.shot = &shot.emplace(plan_, run.settled, frames);
-    if (settings_.input.accumulate > 0 && needs_ao(settings_.output))
-      run.estimates = &estimates.emplace(plan_, run.settled, run.shot, frames);
+    std::optional<Shot> shot;
+    const bool takes_means = settings_.input.accumulate > 0 && needs_ao(settings_.output);
+    if (takes_means || takes_others(settings_.input)) shot.emplace(plan_, settled ? &*settled : nullptr, frames);
+    RunContext run{plan_,
+                   identities_,
+                   settled ? &*settled : nullptr,
+                   transform ? &*transform : nullptr,
+                   shot ? &*shot : nullptr,
+                   takes_means,
+                   {report_.options, ""},
+                   watch_.stop};
 
     run_on_device(run, frames);
     if (!lost_ || report_.stop) return;  // a frame that failed beside the loss has ended the run

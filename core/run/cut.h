@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "core/run/shared_estimates.h"
+#include "core/run/shot.h"
 
 namespace alcove {
 

@@ -15,7 +15,6 @@
 #include "core/run/plan.h"
 #include "core/run/resume.h"
 #include "core/run/shot_memory.h"
-#include "core/run/time_estimate.h"
 
 namespace alcove {
 namespace {
@@ -57,7 +56,7 @@ std::string plan_text(const Settings& given) {
        fmt::format("{}, {:.6g} x {:.6g} px {}", source.camera.orthographic ? "orthographic" : "perspective",
                    source.camera.fx, source.camera.fy, source.camera.orthographic ? "per scene unit" : "focal length"));
   const FrameMemory frame = memory_with_others(plan, source, first);
-  const std::uint64_t bytes = frame.on_host(source.file_data);
+  const std::uint64_t bytes = frame.of(source.file_data).host;
   const auto wanted = frames_to_compute(plan, settings);
   require_room_for_others(memory_of_host(first.device), plan, source, first, wanted);
   const RunMemory run = beside_shot(memory_of_host(first.device), plan, source, first, wanted, 1);
@@ -80,7 +79,6 @@ std::string plan_text(const Settings& given) {
                      bytes_of_estimates(plan, source, first, wanted, 1) >> 20));
   if (wanted.size() < plan.frames().size())
     line("kept", fmt::format("{}: whole, by an earlier run", plan.frames().size() - wanted.size()));
-  line("time", time_text({plan, settings, wanted}));
   return text;
 }
 

@@ -8,8 +8,8 @@
 
 namespace alcove {
 
-/// The frames, files, size, memory and time of a run. Reads and computes a part of the first frame, and writes nothing.
-/// Fails as the run would on settings and names.
+/// The frames, files, size and memory of a run, by headers, and by pixels where the radius is to be proposed. Computes
+/// and writes nothing. Fails as the run would on settings and names.
 std::string plan_text(const Settings& settings);
 
 }  // namespace alcove

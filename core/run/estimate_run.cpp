@@ -1,20 +1,21 @@
-// The steps of an estimate, and the samples of it that other frames take.
+// Estimates frames for those around them: each is read and estimated, whole or in tiles, but neither filtered nor
+// written.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/run/estimate_run.h"
+#include <fmt/format.h>
 
 #include <algorithm>
-#include <span>
+#include <utility>
 
 #include "core/base/estimator_facts.h"
-#include "core/base/file.h"
+#include "core/base/text.h"
+#include "core/base/windows.h"
 #include "core/chain/chain.h"
 #include "core/chain/estimate.h"
 #include "core/frame/settle.h"
-#include "core/frame/settle_rows.h"
-#include "core/run/frame_files.h"
+#include "core/run/cut.h"
 #include "core/run/frame_tally.h"
+#include "core/run/shot.h"
 #include "core/run/shot_memory.h"
-#include "core/run/tiles.h"
 
 namespace alcove {
 namespace {
@@ -32,125 +33,139 @@ Settings of_estimate(Settings settings) {
   return settings;
 }
 
-/// Copies planes over a window into those of the whole frame, in which it lies, within a part of it.
-template <class T>
-void put_in(std::span<const T> planes, const Window& window, const Window& part, const Window& whole,
-            std::vector<T>& all) {
-  const std::size_t count = planes.size() / window.pixels(), width = std::size_t(part.width);
-  all.resize(count * whole.pixels());
-  for (std::size_t k = 0; k < count; k++)
-    for (int y = part.y; y < part.y + part.height; y++) {
-      const auto place = [&](const Window& of) {
-        return k * of.pixels() + std::size_t(y - of.y) * std::size_t(of.width) + std::size_t(part.x - of.x);
-      };
-      std::ranges::copy(planes.subspan(place(window), width), all.begin() + std::ptrdiff_t(place(whole)));
-    }
-}
-
-/// One frame on its way.
+/// Estimates one frame for others, whole or in tiles.
 class EstimateRun {
  public:
-  EstimateRun(const EstimateRoom& where, const FramePlan& plan, const FrameSource* settled, int frame)
+  EstimateRun(const EstimateRoom& where, const FramePlan& plan, const Settings& settings, FrameSource& source,
+              const Others& others, PreparedOthers& took, EstimatedFrame& result)
       : where_(where),
-        plan_(plan),
-        settled_(settled),
-        frame_(frame),
-        settings_(of_estimate(plan.at(frame))),
-        source_(open_frame(settings_, frame)),
-        tally_(result_.report) {
+        turn_(plan.turn_of(result.frame)),
+        settings_(settings),
+        source_(source),
+        others_(others),
+        took_(took),
+        result_(result),
+        tally_(result.report) {
     wanted_.only_own = true;
     wanted_.visibility = true;
   }
 
-  EstimatedFrame run(SharedFrames* shot, PreparedOthers& took, ReadPlanes& read) {
-    if (settled_) settle_like(source_, *settled_);
-    require_place(source_, frame_, "--accumulate");
-    if (shot) others_ = shot->others_of(where_.gpu, source_, frame_, took);
-    result_.frame = frame_;
-    const WindowLimits limits{memory_with_others(plan_, source_, settings_), where_.room,
-                              longest_side(settings_.estimator)};
-    if (limits.allow(source_.data)) {
-      compute(source_.file_data, nullptr, took);
-      read = std::move(read_);
-    } else {
-      compute_tiles(limits, took);
-    }
-    result_.view = view_of(source_.camera, source_.file_data, source_.display);
-    result_.values = std::move(values_);
+  /// Gives what was read.
+  ReadPlanes run(const WindowLimits& limits) {
+    if (limits.allow(source_.data))
+      compute(source_.file_data);
+    else
+      compute_tiles(limits.in_parts(source_));
     for (const auto* planes : {&scales_, &bent_})
       result_.values.insert(result_.values.end(), planes->begin(), planes->end());
-    const auto moving = shot ? shot->moving_by_vectors(where_.gpu, frame_, took) : std::nullopt;
-    for (std::size_t i = 0; moving && i < moving->size(); i++) {
-      if (!(*moving)[i]) continue;
-      result_.depth[i] = -result_.depth[i];
-      result_.has_moving = true;
-    }
-    result_.camera = source_.camera;
-    result_.others = std::move(others_);
-    result_.others.seen.clear();
-    took.rows_read += source_.rows_read;
-    return std::move(result_);
+    return std::move(read_);
   }
 
  private:
-  void compute(const Window& part, FrameRows* rows, PreparedOthers& took) {
-    if (where_.begin) where_.begin(source_.data);
-    FrameInputs inputs = load_frame(where_.gpu, source_, settings_, plan_.turn_of(frame_), rows);
-    inputs.others = others_.seen;
-    if (!rows) read_ = kept_planes(inputs);
-    inputs.turn = plan_.turn_of(frame_);
-    const FrameOutputs outputs = run_chain(where_.gpu, inputs, settings_.estimator, wanted_);
-    where_.gpu.run();
-    const auto& passes = where_.gpu.passes();
-    took.passes.insert(took.passes.end(), passes.begin(), passes.end());
-    tally_.add_outputs(outputs, source_.data, false);
-    const OwnEstimate& own = outputs.own.value();
-    result_.depth_precision = own.gbuffer.depth_precision;
-    put(*own.gbuffer.depth, part, result_.depth);
-    put(*own.gbuffer.normal, part, result_.normal);
-    put(*own.visibility.ao, part, values_);
-    if (own.visibility.scales) put(*own.visibility.scales, part, scales_);
-    if (own.visibility.bent) put(*own.visibility.bent, part, bent_);
-  }
-
-  void compute_tiles(const WindowLimits& limits, PreparedOthers& took) {
-    FrameRows rows(source_, limits.room.bytes / kRowsPart, existing_folder_of(settings_.output.output));
-    const Window whole = source_.file_data;
+  void compute_tiles(const WindowLimits& limits) {
+    read_ = read_whole(source_);
     if (!source_.settled)
-      settle_by_part(source_, settings_.input, rows, whole, evidence_within(source_, limits.room.bytes));
-    Surroundings surroundings(source_, settings_, rows);
-    rows.leave_memory();
-    for (const auto& row : tiles_of(whole, surroundings, limits, source_))
+      settle_by_planes(source_, settings_.input, read_[RawPlane::depth], read_[RawPlane::normal],
+                       limits.room.bytes - limits.kept);
+    Surroundings surroundings(source_, settings_, read_[RawPlane::depth]);
+    for (const auto& row : tiles_of(source_.file_data, surroundings, limits, source_))
       for (const auto& tile : row) {
         source_.data = surroundings.around(tile);
-        compute(tile, &rows, took);
+        compute(tile);
       }
   }
 
+  void compute(const Window& part) {
+    if (where_.begin) where_.begin(source_.data);
+    FrameInputs inputs = load_frame(where_.gpu, source_, settings_, turn_, &read_);
+    inputs.others = others_.seen;
+    inputs.turn = turn_;
+    if (part == source_.file_data) read_ = kept_planes(inputs);
+    const FrameOutputs outputs = run_chain(where_.gpu, inputs, settings_.estimator, wanted_);
+    where_.gpu.run();
+    const auto& passes = where_.gpu.passes();
+    took_.passes.insert(took_.passes.end(), passes.begin(), passes.end());
+    tally_.add_outputs(outputs, source_.data, false);
+    const OwnEstimate& own = outputs.own.value();
+    result_.depth_precision = own.gbuffer.depth_precision;
+    put(own.gbuffer.depth, part, result_.depth);
+    put(own.gbuffer.normal, part, result_.normal);
+    put(own.visibility.ao, part, result_.values);
+    put(own.visibility.scales, part, scales_);
+    put(own.visibility.bent, part, bent_);
+  }
+
+  /// Copies a part of the planes that were computed into those of the whole frame.
   template <class T>
-  void put(const gpu::Buffer& planes, const Window& part, std::vector<T>& all) const {
-    put_in(planes.as<const T>(), source_.data, part, source_.file_data, all);
+  void put(const gpu::Buffer* planes, const Window& part, std::vector<T>& all) const {
+    if (planes) put_in(planes->as<const T>(), source_.data, part, source_.file_data, all);
   }
 
   const EstimateRoom& where_;
-  const FramePlan& plan_;
-  const FrameSource* settled_;
-  int frame_;
-  Settings settings_;
-  FrameSource source_;
-  Others others_;
-  EstimatedFrame result_;
+  const int turn_;
+  const Settings& settings_;
+  FrameSource& source_;
+  const Others& others_;
+  PreparedOthers& took_;
+  EstimatedFrame& result_;
   FrameTally tally_;
   Wanted wanted_{settings_.output};
   ReadPlanes read_;
-  std::vector<float> values_, scales_, bent_;  // over the whole frame
+  std::vector<float> scales_, bent_;  // over the whole frame
 };
 
 }  // namespace
 
-EstimatedFrame estimate_frame(const EstimateRoom& where, const FramePlan& plan, const FrameSource* settled,
-                              SharedFrames* shot, int frame, PreparedOthers& took, ReadPlanes& read) {
-  return EstimateRun(where, plan, settled, frame).run(shot, took, read);
+const EstimatedFrame& TakenEstimates::own(int frame) const {
+  return **std::ranges::find_if(of, [&](const auto& estimated) { return estimated->frame == frame; });
+}
+
+std::string text_of(const TakenEstimates& taken) {
+  if (taken.of.empty()) return "";
+  std::vector<int> frames;
+  for (const auto& estimated : taken.of) frames.push_back(estimated->frame);
+  std::ranges::sort(frames);
+  const std::string missing = taken.missing.empty() ? "" : "; missing " + frames_text(taken.missing);
+  return "frames " + frames_text(frames) + missing;
+}
+
+TakenEstimates Shot::estimates_of(const EstimateRoom& where, int frame, PreparedOthers& took) {
+  const FramesAround window = plan_.accumulated(frame);
+  TakenEstimates taken{
+      {}, estimated_.of(window.there, [&](int other) { return estimate(where, other, took); }), window.missing};
+  {
+    const std::lock_guard lock(mutex_);
+    if (auto read = read_.extract(frame)) taken.read = std::move(read.mapped());
+  }
+  const EstimatedFrame& own = taken.own(frame);
+  std::erase_if(taken.of, [&](const auto& other) { return other->frame != frame && is_cut_between(own, *other); });
+  return taken;
+}
+
+EstimatedFrame Shot::estimate(const EstimateRoom& where, int frame, PreparedOthers& took) {
+  const Settings settings = of_estimate(plan_.at(frame));
+  FrameSource source = open_frame(settings, frame);
+  if (settled_) settle_like(source, *settled_);
+  require_place(source, frame, "--accumulate");
+  EstimatedFrame result;
+  result.frame = frame;
+  result.others = others_of(where.gpu, source, frame, took);
+  ReadPlanes read =
+      EstimateRun(where, plan_, settings, source, result.others, took, result)
+          .run({memory_with_others(plan_, source, settings), where.room, longest_side(settings.estimator)});
+  result.others.seen.clear();
+  result.camera = source.camera;
+  result.view = view_of(source.camera, source.file_data, source.display);
+  const auto moving = moving_by_vectors(where.gpu, frame, took, 0);
+  for (std::size_t i = 0; moving && i < moving->size(); i++) {
+    if (!(*moving)[i]) continue;
+    result.depth[i] = -result.depth[i];
+    result.has_moving = true;
+  }
+  took.rows_read += source.rows_read;
+  const std::lock_guard lock(mutex_);
+  if (std::ranges::find(left_, frame) != left_.end()) read_.insert_or_assign(frame, std::move(read));
+  return result;
 }
 
 }  // namespace alcove

@@ -9,7 +9,7 @@
 #include "core/chain/aov.h"
 #include "core/formats/frame_number.h"
 #include "core/frame/radius.h"
-#include "core/frame/settle_rows.h"
+#include "core/frame/settle.h"
 #include "core/run/frame_files.h"
 
 namespace alcove {
@@ -91,7 +91,7 @@ std::optional<FrameSource> settle_first(const FramePlan& plan, std::uint64_t mos
     try {
       const Settings settings = plan.at(frame);
       FrameSource source = open_frame(settings, frame);
-      settle_within(source, settings, most_bytes);
+      settle_by_rows(source, settings.input, most_bytes);
       if (!best || source.has_evidence) best = std::move(source);
       if (best->has_evidence) break;
     } catch (const Error&) {

@@ -16,7 +16,7 @@
 #include "core/chain/margin.h"
 #include "core/frame/behind.h"
 #include "core/frame/plane_windows.h"
-#include "core/frame/settle_rows.h"
+#include "core/frame/settle.h"
 #include "core/run/pictures.h"
 
 namespace alcove {
@@ -230,20 +230,6 @@ FrameSource open_frame(const Settings& settings, int frame) {
   return source;
 }
 
-void settle_within(FrameSource& source, const Settings& settings, std::uint64_t most_bytes) {
-  const std::size_t most_pixels = evidence_within(source, most_bytes);
-  if (!source.region) return settle_by_rows(source, settings.input, most_pixels);
-  FrameRows rows(source, most_bytes / kRowsPart, existing_folder_of(settings.output.output));
-  settle_by_part(source, settings.input, rows, *source.region, most_pixels);
-}
-
-std::size_t evidence_within(const FrameSource& source, std::uint64_t most_bytes) {
-  constexpr std::uint64_t kLeastPixels = 1 << 18;  // fewer tell too little
-  const std::uint64_t planes = source[RawPlane::depth].size() + source[RawPlane::normal].size();
-  // What judges them makes planes of their own.
-  return std::clamp(most_bytes / (2 * sizeof(float) * planes), kLeastPixels, std::uint64_t(kEvidencePixels));
-}
-
 const Window& written_of(const FrameSource& source) { return source.region ? *source.region : source.file_data; }
 
 Window written_picture(const FrameSource& source) { return picture_of(source, written_of(source)); }
@@ -258,29 +244,39 @@ ReadPlanes kept_planes(const FrameInputs& inputs) {
   return planes;
 }
 
-RawPlaneArray<gpu::Buffer*> read_frame(gpu::Recorder& gpu, FrameSource& source, FrameRows* rows,
-                                       const ReadPlanes* known) {
+ReadPlanes read_whole(FrameSource& source) {
+  ReadPlanes planes;
+  std::vector<PlaneRead> reads;
+  for (const auto& row : kRawPlanes) {
+    planes[row.plane].resize(source[row.plane].size() * source.file_data.pixels());
+    reads.push_back({&source[row.plane], planes[row.plane].data()});
+  }
+  read_planes(source, reads);
+  return planes;
+}
+
+bool are_of(const ReadPlanes& planes, const FrameSource& source) {
+  return std::ranges::all_of(kRawPlanes, [&](const auto& row) {
+    return source[row.plane].empty() ||
+           planes[row.plane].size() == source[row.plane].size() * source.file_data.pixels();
+  });
+}
+
+RawPlaneArray<gpu::Buffer*> read_frame(gpu::Recorder& gpu, FrameSource& source, const ReadPlanes* known) {
   RawPlaneArray<gpu::Buffer*> planes;
   std::vector<PlaneRead> reads;
+  const bool is_known = known && are_of(*known, source);
+  const std::size_t pixels = source.data.pixels(), of_file = source.file_data.pixels();
   for (const auto& row : kRawPlanes) {
     const auto& channels = source[row.plane];
     if (channels.empty()) continue;
-    const std::size_t bytes = channels.size() * source.data.pixels() * sizeof(float);
-    planes[row.plane] = &gpu.buffer(row.name, bytes, gpu::Use::upload);
-    reads.push_back({&channels, planes[row.plane]->as<float>().data()});
+    planes[row.plane] = &gpu.buffer(row.name, channels.size() * pixels * sizeof(float), gpu::Use::upload);
+    float* const to = planes[row.plane]->as<float>().data();
+    if (!is_known) reads.push_back({&channels, to});
+    for (std::size_t c = 0; is_known && c < channels.size(); c++)
+      copy_common((*known)[row.plane].data() + c * of_file, source.file_data, to + c * pixels, source.data);
   }
-  const auto is_known = [&](const auto& row) {
-    return !planes[row.plane] || (*known)[row.plane].size() == planes[row.plane]->template as<float>().size();
-  };
-  if (known && source.data == source.file_data && std::ranges::all_of(kRawPlanes, is_known)) {
-    for (const auto& row : kRawPlanes)
-      if (planes[row.plane]) std::ranges::copy((*known)[row.plane], planes[row.plane]->as<float>().begin());
-  } else if (rows) {
-    rows->need(source.data.y, source.data.y + source.data.height);
-    for (const auto& read : reads) rows->copy(*read.channels, source.data, read.to);
-  } else {
-    read_planes(source, reads);
-  }
+  if (!is_known) read_planes(source, reads);
   for (const auto& row : kRawPlanes)
     if (planes[row.plane]) fill_missing(source, row.plane, planes[row.plane]->as<float>());
   return planes;
@@ -301,9 +297,9 @@ FrameInputs settled_inputs(FrameSource& source, const RawPlaneArray<gpu::Buffer*
   return inputs;
 }
 
-FrameInputs load_frame(gpu::Recorder& gpu, FrameSource& source, const Settings& all, int frame, FrameRows* rows,
+FrameInputs load_frame(gpu::Recorder& gpu, FrameSource& source, const Settings& all, int frame,
                        const ReadPlanes* known) {
-  return settled_inputs(source, read_frame(gpu, source, rows, known), all, frame);
+  return settled_inputs(source, read_frame(gpu, source, known), all, frame);
 }
 
 std::vector<std::span<const float>> result_planes(const FrameOutputs& outputs, const Window& computed,
@@ -328,8 +324,7 @@ FrameWriter::FrameWriter(FrameSource& source, const Settings& all, const Provena
   const ExrOutput aovs = aov_file(source, all.estimator, settings, provenance);
   files_.emplace_back(ExrWriter(settings.output, aovs));
   planes_.push_back(aovs.planes.size());
-  // A part of a frame that is only timed may share no pixel with the beauty.
-  if (settings.composite.empty() || composite_window(source).pixels() == 0) return;
+  if (settings.composite.empty()) return;
   const ExrOutput composite = composite_file(source, all, provenance);
   if (keeps_layers(source, settings))
     files_.emplace_back(ExrCopy(settings.composite, composite_copy(source, composite)));

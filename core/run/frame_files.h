@@ -22,29 +22,21 @@ namespace alcove {
 /// within it, or the estimator cannot use its --deep.
 FrameSource open_frame(const Settings& settings, int frame);
 
-/// Settles a frame that is not computed now: by all of it, by as many rows from its middle as so many bytes have room
-/// for, or by those of its region. Fails as settle() does.
-void settle_within(FrameSource& source, const Settings& settings, std::uint64_t most_bytes);
-
-/// The most pixels that a frame may be settled by where there are so many bytes for it.
-std::size_t evidence_within(const FrameSource& source, std::uint64_t most_bytes);
-
 /// What is written of a frame: its region, or all of it.
 const Window& written_of(const FrameSource& source);
 /// The window of the files that it is written to: as many pixels fewer as the frame is supersampled.
 Window written_picture(const FrameSource& source);
 
-/// The part of a frame's memory that its decoded rows may take before they go to a file.
-constexpr std::uint64_t kRowsPart = 4;
-
 /// Planes of a whole frame as they were read, in host memory; empty: those were not.
 using ReadPlanes = RawPlaneArray<std::vector<float>>;
 ReadPlanes kept_planes(const FrameInputs& inputs);
+ReadPlanes read_whole(FrameSource& source);
+/// Whether they are all that the frame needs.
+bool are_of(const ReadPlanes& planes, const FrameSource& source);
 
-/// Reads the planes within source.data into upload buffers. They are taken from `rows`, or where there are none from
-/// the files; all of a whole frame that are in `known` from there.
-RawPlaneArray<gpu::Buffer*> read_frame(gpu::Recorder& gpu, FrameSource& source, FrameRows* rows = nullptr,
-                                       const ReadPlanes* known = nullptr);
+/// Puts the planes within source.data into upload buffers: from those of the whole frame that are known, where these
+/// are all, or else from the files.
+RawPlaneArray<gpu::Buffer*> read_frame(gpu::Recorder& gpu, FrameSource& source, const ReadPlanes* known = nullptr);
 
 /// Settles what is open about a frame whose planes are read, and says what they mean.
 FrameInputs settled_inputs(FrameSource& source, const RawPlaneArray<gpu::Buffer*>& planes, const Settings& settings,
@@ -52,7 +44,7 @@ FrameInputs settled_inputs(FrameSource& source, const RawPlaneArray<gpu::Buffer*
 
 /// Does both.
 FrameInputs load_frame(gpu::Recorder& gpu, FrameSource& source, const Settings& settings, int frame,
-                       FrameRows* rows = nullptr, const ReadPlanes* known = nullptr);
+                       const ReadPlanes* known = nullptr);
 
 /// The attribute that holds the warnings of an output's frame; an output without warnings has none.
 inline constexpr const char* kNotesAttribute = "alcove/notes";

@@ -4,15 +4,16 @@
 
 #include <algorithm>
 #include <new>
+#include <optional>
 #include <string_view>
 #include <utility>
 
 #include "core/base/error.h"
 #include "core/base/estimator_facts.h"
-#include "core/base/file.h"
+#include "core/base/windows.h"
 #include "core/chain/aov.h"
 #include "core/chain/debug_view.h"
-#include "core/frame/settle_rows.h"
+#include "core/frame/settle.h"
 #include "core/run/batch.h"
 #include "core/run/digest.h"
 #include "core/run/frame_tally.h"
@@ -22,12 +23,6 @@
 
 namespace alcove {
 namespace {
-
-std::uint64_t channels_in(const FrameSource& source) {
-  std::uint64_t channels = 0;
-  for (const auto& plane : source.planes.entries) channels += plane.size();
-  return channels;
-}
 
 double milliseconds_of(std::span<const gpu::PassTime> passes) {
   double ms = 0;
@@ -66,9 +61,9 @@ class FrameRun {
     require_room_for_preview(source, limits);
     take_others(source);
     if (!source.region && limits.allow(source.data))
-      run_whole(source, nullptr);
+      run_whole(source);
     else
-      run_by_rows(source, limits);
+      run_parts(source, limits.in_parts(source));
     if (report_.parts > 1) note_parts(source);
     report_.total_ms = total.ms();
   }
@@ -104,31 +99,19 @@ class FrameRun {
     refuse_warnings(report_.notes, settings_, report_.input);
   }
 
-  /// Computes what depends on a part of the frame, or the frame in tiles: each of its rows is decoded once.
-  void run_by_rows(FrameSource& source, const WindowLimits& limits) {
+  /// Computes what depends on a part of the frame, or the frame in tiles: all of them from planes that are read once.
+  void run_parts(FrameSource& source, const WindowLimits& limits) {
     const Stopwatch reading;
-    const Window& whole = written_of(source);
-    FrameRows rows(source, bytes_of_rows(source, limits), existing_folder_of(settings_.output.output));
+    if (!read_ || !are_of(*read_, source)) read_ = read_whole(source);
+    const auto& depth = (*read_)[RawPlane::depth];
     if (!source.settled)
-      settle_by_part(source, settings_.input, rows, whole, evidence_within(source, limits.room.bytes));
-    Surroundings surroundings(source, settings_, rows);
-    const Window computed = surroundings.around(whole);
-    const bool is_whole = limits.allow(computed);
-    // All of it, for what is decoded later would not be counted.
-    if (is_whole) rows.need(computed.y, computed.y + computed.height);
+      settle_by_planes(source, settings_.input, depth, (*read_)[RawPlane::normal], limits.room.bytes - limits.kept);
+    Surroundings surroundings(source, settings_, depth);
+    const Window computed = surroundings.around(written_of(source));
     report_.read_ms += reading.ms();
-    if (!is_whole) return run_tiles(source, limits, surroundings, rows);
-    if (!limits.allow(computed, rows.bytes_in_memory())) rows.leave_memory();
+    if (!limits.allow(computed)) return run_tiles(source, limits, surroundings);
     source.data = computed;
-    run_whole(source, &rows);
-  }
-
-  /// How many bytes of decoded rows may stay in memory. Those of a frame in tiles stay there all or none: they are all
-  /// needed until the last tile, and tiles have the rest.
-  std::uint64_t bytes_of_rows(const FrameSource& source, const WindowLimits& limits) const {
-    const std::uint64_t most = limits.room.bytes / kRowsPart;
-    const std::uint64_t pixel = sizeof(float) * channels_in(source);
-    return source.region || pixel * source.file_data.pixels() <= most ? most : 0;
+    run_whole(source);
   }
 
   /// Whether the frame's own pass looks at what others see: not where all that it takes of them is in its estimate.
@@ -136,13 +119,13 @@ class FrameRun {
     const auto& wanted = settings_.output;
     const auto views = debug_views_of(wanted);
     const bool shows_hidden = std::ranges::find(views, DebugSource::hidden, &DebugView::source) != views.end();
-    return !run_.estimates || shows_hidden || wants(wanted, &FrameOutputs::hidden) ||
+    return !run_.takes_means || shows_hidden || wants(wanted, &FrameOutputs::hidden) ||
            wants(wanted, &FrameOutputs::confidence);
   }
 
   /// Finds what others see, once for all parts of the frame.
   void take_others(const FrameSource& source) {
-    if (!run_.shot && !run_.estimates) return;
+    if (!run_.shot) return;
     const Stopwatch reading;
     PreparedOthers took;
     // Where the device has no memory for a part of an estimate, smaller ones are computed as of the frame itself.
@@ -150,10 +133,10 @@ class FrameRun {
       go_on();
       tally_.begin(computed);
     };
-    if (run_.estimates) estimates_ = run_.estimates->around({gpu_, room_, begin}, frame_, took);
-    if (run_.shot && needs_others()) others_ = run_.shot->others_of(gpu_, source, frame_, took);
+    if (run_.takes_means) estimates_ = run_.shot->estimates_of({gpu_, room_, begin}, frame_, took);
+    if (needs_others()) others_ = run_.shot->others_of(gpu_, source, frame_, took);
     tally_.add_others(took);
-    if (run_.estimates) take_estimates();
+    if (run_.takes_means) take_estimates();
     if (!others_.frames.empty() || !others_.missing.empty()) report_.frames_around = others_.frames;
     report_.read_ms += reading.ms();
     go_on();
@@ -165,15 +148,15 @@ class FrameRun {
     if (others_.seen.empty()) others_ = own.others;
     tally_.add_estimate(own.report, others_);
     in_slots_ = slots_.filled(gpu_, run_.plan, estimates_, frame_, room_.buffer_bytes);
+    read_ = std::move(estimates_.read);
   }
 
-  /// Reads and computes source.data, from the rows where there are any. reuses: what is as in the frame before is not
-  /// computed again.
-  FrameOutputs compute(FrameSource& source, FrameRows* rows, bool reuses) {
+  /// Reads and computes source.data. reuses: what is as in the frame before is not computed again.
+  FrameOutputs compute(FrameSource& source, bool reuses) {
     tally_.begin(source.data);
     watch_(++part_, parts_, 0);
     const Stopwatch reading;
-    FrameInputs inputs = load_frame(gpu_, source, settings_, frame_, rows, estimates_.read.get());
+    FrameInputs inputs = load_frame(gpu_, source, settings_, frame_, read_ ? &*read_ : nullptr);
     inputs.others = others_.seen;
     inputs.estimates = in_slots_;
     inputs.estimates.corner = {source.data.x - source.file_data.x, source.data.y - source.file_data.y};
@@ -210,11 +193,11 @@ class FrameRun {
             text_of(estimates_)};
   }
 
-  void run_whole(FrameSource& source, FrameRows* rows) {
+  void run_whole(FrameSource& source) {
     const EstimatorSettings& estimator = settings_.estimator;
     const bool reuses =
-        run_.plan.frames().size() > 1 && !estimator.no_skip && estimator.noise == Noise::fixed && !run_.estimates;
-    const FrameOutputs outputs = compute(source, rows, reuses);
+        run_.plan.frames().size() > 1 && !estimator.no_skip && estimator.noise == Noise::fixed && !run_.takes_means;
+    const FrameOutputs outputs = compute(source, reuses);
     finish_tally(source);
     const Stopwatch writing;
     std::vector<std::vector<float>> regions;
@@ -235,24 +218,13 @@ class FrameRun {
     refuse_warnings(report_.notes, settings_, report_.input);
   }
 
-  /// Rows in memory leave less of it to tiles: where that is too little, they leave it.
-  TileRows cut(const FrameSource& source, const WindowLimits& limits, Surroundings& surroundings, FrameRows& rows) {
-    const Window &whole = written_of(source), computed = surroundings.around(whole);
-    rows.need(computed.y, computed.y + computed.height);
-    WindowLimits beside_rows = limits;
-    beside_rows.room.bytes -= std::min(limits.room.bytes, rows.bytes_in_memory());
-    if (auto tiles = tiles_within(whole, surroundings, beside_rows)) return *std::move(tiles);
-    rows.leave_memory();
-    return tiles_of(whole, surroundings, limits, source);
-  }
-
-  void run_tiles(FrameSource& source, const WindowLimits& limits, Surroundings& surroundings, FrameRows& rows) {
+  void run_tiles(FrameSource& source, const WindowLimits& limits, Surroundings& surroundings) {
     const Window computed = surroundings.around(written_of(source));
     why_in_parts_ = limits.why_not(computed);
     refuse_pictures(limits, computed);
     refuse_by_notes(source);
     const Stopwatch cutting;
-    const auto tiles = cut(source, limits, surroundings, rows);
+    const auto tiles = tiles_of(written_of(source), surroundings, limits, source);
     report_.read_ms += cutting.ms();
     make_folders(outputs_of(settings_.output), settings_.output);
     FrameWriter writer(source, settings_, provenance());
@@ -260,7 +232,7 @@ class FrameRun {
     parts_ = 0;
     for (const auto& row : tiles) parts_ += int(row.size());
     for (const auto& row : tiles) {
-      const auto planes = compute_row(source, surroundings, rows, row);
+      const auto planes = compute_row(source, surroundings, row);
       const Stopwatch writing;
       writer.write(std::vector<std::span<const float>>(planes.begin(), planes.end()));
       report_.write_ms += writing.ms();
@@ -299,32 +271,20 @@ class FrameRun {
   }
 
   /// The planes of the results over one row of tiles.
-  std::vector<std::vector<float>> compute_row(FrameSource& source, Surroundings& surroundings, FrameRows& rows,
+  std::vector<std::vector<float>> compute_row(FrameSource& source, Surroundings& surroundings,
                                               const std::vector<Window>& row) {
+    const Window whole{row.front().x, row.front().y, row.back().x + row.back().width - row.front().x,
+                       row.front().height};
     std::vector<std::vector<float>> planes;
     for (const auto& tile : row) {
       source.data = surroundings.around(tile);
-      const FrameOutputs outputs = compute(source, &rows, false);
-      add_tile(result_planes(outputs, source.data, settings_.output), source.data, tile, row, planes);
+      const FrameOutputs outputs = compute(source, false);
+      const auto results = result_planes(outputs, source.data, settings_.output);
+      planes.resize(results.size());
+      for (std::size_t i = 0; i < results.size(); i++) put_in(results[i], source.data, tile, whole, planes[i]);
       report_.parts++;
     }
     return planes;
-  }
-
-  /// Puts a tile of every result into the row that it is a part of.
-  static void add_tile(const std::vector<std::span<const float>>& results, const Window& computed, const Window& tile,
-                       const std::vector<Window>& row, std::vector<std::vector<float>>& planes) {
-    const std::size_t width = std::size_t(row.back().x + row.back().width - row.front().x);
-    planes.resize(results.size());
-    for (std::size_t i = 0; i < results.size(); i++) {
-      planes[i].resize(width * std::size_t(tile.height));
-      for (int y = 0; y < tile.height; y++)
-        std::ranges::copy(
-            results[i].subspan(
-                std::size_t(tile.y + y - computed.y) * std::size_t(computed.width) + std::size_t(tile.x - computed.x),
-                std::size_t(tile.width)),
-            planes[i].begin() + std::ptrdiff_t(std::size_t(y) * width + std::size_t(tile.x - row.front().x)));
-    }
   }
 
   gpu::Recorder& gpu_;
@@ -337,9 +297,10 @@ class FrameRun {
   int part_ = 0, parts_ = 1;
   std::string why_in_parts_;
   Settings settings_;
-  Others others_;             // that the frame takes
-  TakenEstimates estimates_;  // the same
-  EstimateSet in_slots_;      // these for all parts of the frame
+  Others others_;                   // that the frame takes
+  TakenEstimates estimates_;        // the same
+  std::optional<ReadPlanes> read_;  // of the whole frame, for its parts; null: parts come from the files
+  EstimateSet in_slots_;            // these for all parts of the frame
   FrameReport& report_;
   FrameTally tally_;
 };

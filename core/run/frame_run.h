@@ -7,11 +7,11 @@
 #include "core/base/stopwatch.h"
 #include "core/chain/reuse.h"
 #include "core/formats/color.h"
+#include "core/run/estimate_slots.h"
 #include "core/run/frame_files.h"
 #include "core/run/plan.h"
 #include "core/run/resume.h"
 #include "core/run/run_report.h"
-#include "core/run/shared_estimates.h"
 #include "core/run/shot.h"
 #include "core/run/tiles.h"
 
@@ -23,8 +23,8 @@ struct RunContext {
   InputIdentities& identities;                  // of the plan
   const FrameSource* settled = nullptr;         // all frames are read as this one; null: each by itself
   const DisplayTransform* transform = nullptr;  // for the preview of a composite
-  SharedFrames* shot = nullptr;                 // where frames take what others see
-  SharedEstimates* estimates = nullptr;         // where a frame is the mean of many
+  Shot* shot = nullptr;                         // where frames take anything from others
+  bool takes_means = false;                     // a frame is the mean of many estimates
   Provenance provenance;                        // of settings whose camera file is the same for all frames
   std::function<bool()> stop = {};              // asked between steps: true drops the frame
 };

@@ -51,9 +51,10 @@ RunMemory memory_for_frames(const DeviceSettings& settings, const gpu::DeviceInf
 }
 
 std::uint64_t frames_in(const RunMemory& memory, const FrameMemory& frame, const Window& computed) {
-  const std::uint64_t of_lane = frame.on_host(computed) + memory.lane_bytes;
+  const FrameMemory::Bytes bytes = frame.of(computed);
+  const std::uint64_t of_lane = bytes.host + memory.lane_bytes;
   const std::uint64_t on_host = (memory.host_bytes + memory.lane_bytes) / of_lane;
-  const std::uint64_t on_device = memory.device_bytes / frame.on_device(computed);
+  const std::uint64_t on_device = memory.device_bytes / bytes.device;
   return std::max<std::uint64_t>(1, std::min(on_host, on_device));
 }
 

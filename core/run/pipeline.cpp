@@ -80,7 +80,6 @@ class Pipeline {
     in_flight_++;
     const int frame = frames_[begun_];
     if (run_.shot) run_.shot->begin(frame);
-    if (run_.estimates) run_.estimates->begin(frame);
     working_on_[frame] = {Stopwatch(), main_input(run_.plan.at(frame).input)};
     return Attempt{begun_++, room_, most_in_flight_};
   }
@@ -171,7 +170,6 @@ class Pipeline {
   void finish(std::size_t place, const Room& room, FrameReport&& report) {
     // What a frame takes is kept where a second device computes it again.
     if (run_.shot && !report.device_lost) run_.shot->done(report.frame);
-    if (run_.estimates && !report.device_lost) run_.estimates->done(report.frame);
     const Lock lock(mutex_);
     in_flight_--;
     // Later frames begin with what this one has learned.

@@ -94,9 +94,9 @@ Window region_of(const FrameSource& source, const Region& roi) {
   return region;
 }
 
-Surroundings::Surroundings(const FrameSource& source, const Settings& settings, FrameRows& rows)
+Surroundings::Surroundings(const FrameSource& source, const Settings& settings, std::span<const float> depth)
     : source_(source),
-      rows_(rows),
+      depth_(depth),
       file_data_(source.file_data),
       columns_((file_data_.width + kBlockWidth - 1) / kBlockWidth),
       blocks_(std::size_t(file_data_.height + kBlockHeight - 1) / kBlockHeight),
@@ -117,9 +117,7 @@ Window Surroundings::window_of(int block_row, int column) const {
 std::vector<float> Surroundings::nearest_depths(int block_row) {
   Window window = window_of(block_row, 0);
   window.width = file_data_.width;
-  rows_.need(window.y, window.y + window.height);
-  std::vector<float> depth(source_[RawPlane::depth].size() * window.pixels());
-  rows_.copy(source_[RawPlane::depth], window, depth.data());
+  const std::vector<float> depth = cropped(depth_, file_data_, window);
   const auto planar = planar_depths(depth, depth_map_of(source_), view_of(source_.camera, window, source_.display));
   std::vector<float> nearest(std::size_t(columns_), kSkyDepth);
   for (std::size_t i = 0; i < planar.size(); i++) {
@@ -154,7 +152,6 @@ const std::vector<Surroundings::Block>& Surroundings::blocks_of(int block_row) {
 
 Window Surroundings::within(Reach Block::*reach, const Window& window) {
   const int end_x = window.x + window.width, end_y = window.y + window.height;
-  rows_.need(window.y, end_y);  // all at once, for many threads
   int left = window.x, top = window.y, right = end_x, bottom = end_y;
   for (int row = (window.y - file_data_.y) / kBlockHeight; row <= (end_y - 1 - file_data_.y) / kBlockHeight; row++) {
     const std::vector<Block>& blocks = blocks_of(row);

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "core/base/settings.h"
-#include "core/frame/frame_rows.h"
+#include "core/frame/gbuffer.h"
 
 namespace alcove {
 
@@ -15,13 +15,12 @@ Window region_of(const FrameSource& source, const Region& roi);
 /// and the filters of the settings.
 class Surroundings {
  public:
-  /// Of a settled frame. Nothing is read yet.
-  Surroundings(const FrameSource& source, const Settings& settings, FrameRows& rows);
+  /// Of a settled frame, by its depth as it was read, which must stay.
+  Surroundings(const FrameSource& source, const Settings& settings, std::span<const float> depth);
 
   /// The window whose depths decide how far the surroundings of a part reach: the part with what filters need.
   Window direct(const Window& part) const;
-  /// The window to compute for the results in a part to be, to the bit, what they are in the whole frame. Reads the
-  /// rows whose depths decide it.
+  /// The window to compute for the results in a part to be, to the bit, what they are in the whole frame.
   Window around(const Window& part);
 
  private:
@@ -29,7 +28,7 @@ class Surroundings {
   struct Reach {
     int x = 0, y = 0;
   };
-  /// What is known of a block once its depths have been read.
+  /// What is known of a block once its depths have been looked at.
   struct Block {
     Reach occluders;  // within the radius
     Reach runs;       // within the widest run of an exact search
@@ -44,7 +43,7 @@ class Surroundings {
   Window within(Reach Block::*reach, const Window& window);
 
   const FrameSource& source_;
-  FrameRows& rows_;
+  std::span<const float> depth_;  // over file_data_, components one behind the other
   const Window file_data_;
   const int columns_;                       // blocks across the frame
   std::vector<std::vector<Block>> blocks_;  // row by row; empty: not known yet

@@ -69,9 +69,9 @@ std::uint64_t hash_of(const std::vector<T>& values, std::uint64_t seed = 0) {
   return XXH3_64bits_withSeed(values.data(), values.size() * sizeof(T), seed);
 }
 
-std::shared_ptr<const Movement> movement(std::vector<std::uint32_t> flags) {
+Movement movement(std::vector<std::uint32_t> flags) {
   const std::uint64_t hash = hash_of(flags);
-  return std::make_shared<const Movement>(Movement{std::move(flags), hash});
+  return {std::move(flags), hash};
 }
 
 /// Puts what was seen into upload buffers, the `place`-th of the frame that is computed.
@@ -95,6 +95,25 @@ OtherView filled(gpu::Recorder& gpu, const SeenFrame& seen, const Movement& movi
   view.moving = plane("moving", moving.flags);
   view.content = XXH3_64bits_withSeed(&moving.hash, sizeof(moving.hash), seen.hash);
   return view;
+}
+
+/// What moves as the witnesses tell, or cannot stand for its surface.
+std::vector<std::uint32_t> judged(gpu::Recorder& gpu, const SeenFrame& seen,
+                                  const std::vector<std::shared_ptr<const SeenFrame>>& witnesses,
+                                  PreparedOthers& took) {
+  FrameInputs inputs;
+  for (const auto& witness : witnesses)
+    inputs.others.push_back(filled(gpu, *witness, {}, seen.camera, inputs.others.size()));
+  const std::vector<OtherView> by = inputs.others;
+  const OtherView view = inputs.others.emplace_back(filled(gpu, seen, {}, seen.camera, by.size()));
+  upload(gpu, inputs);
+  const gpu::Buffer& moving = gpu.buffer("other moves", seen.depth.size() * sizeof(std::uint32_t), gpu::Use::device);
+  surfels(gpu, view, by, moving);
+  gpu.download(moving);
+  gpu.run();
+  took.passes.insert(took.passes.end(), gpu.passes().begin(), gpu.passes().end());
+  const auto values = moving.as<const std::uint32_t>();
+  return {values.begin(), values.end()};
 }
 
 /// Those that change what one takes of what is hidden.
@@ -139,49 +158,46 @@ std::string text_of(const Others& others) {
   return fmt::format("{}", fmt::join(parts, "; "));
 }
 
-SharedFrames::SharedFrames(const FramePlan& plan, const FrameSource* settled, std::span<const int> frames)
-    : plan_(plan), settled_(settled), in_work_(frames) {}
+Shot::Shot(const FramePlan& plan, const FrameSource* settled, std::span<const int> frames)
+    : plan_(plan), settled_(settled), left_(frames.begin(), frames.end()) {}
 
-std::shared_ptr<SharedFrames::Entry> SharedFrames::entry_of(int frame) {
+void Shot::begin(int frame) {
   const std::lock_guard lock(mutex_);
-  auto& entry = entries_[frame];
-  if (!entry) entry = std::make_shared<Entry>();
-  return entry;
+  begun_.insert(frame);
 }
 
-std::size_t SharedFrames::kept() const {
+void Shot::done(int frame) {
   const std::lock_guard lock(mutex_);
-  return entries_.size();
-}
-
-void SharedFrames::begin(int frame) {
-  const std::lock_guard lock(mutex_);
-  in_work_.begin(frame);
-}
-
-void SharedFrames::done(int frame) {
-  const std::lock_guard lock(mutex_);
-  in_work_.done(frame);
+  std::erase(left_, frame);
+  begun_.erase(frame);
+  // Those that take something now, and the next one.
+  std::vector<int> takers(begun_.begin(), begun_.end());
+  const auto next = std::ranges::find_if(left_, [&](int other) { return !begun_.contains(other); });
+  if (next != left_.end()) takers.push_back(*next);
   const std::vector<int>& shot = plan_.shot();
   const auto place_of = [&](int number) { return std::ranges::lower_bound(shot, number) - shot.begin(); };
-  // A frame that is computed may take what others take.
   const InputSettings input = plan_.at(frame).input;
   const std::int64_t reach = std::int64_t(with_judges(around_of(input))) + 2 * std::int64_t(input.accumulate);
-  const std::vector<int> takers = in_work_.now_and_next();
-  std::erase_if(entries_, [&](const auto& entry) {
-    return std::ranges::none_of(takers,
-                                [&](int taker) { return std::abs(place_of(taker) - place_of(entry.first)) <= reach; });
-  });
+  const auto is_seen = [&](int other) {
+    return std::ranges::any_of(takers, [&](int taker) { return std::abs(place_of(taker) - place_of(other)) <= reach; });
+  };
+  const auto is_taken = [&](int other) {
+    return std::ranges::any_of(takers, [&](int taker) { return plan_.is_accumulated(other, taker); });
+  };
+  seen_.keep(is_seen);
+  moving_.keep(is_seen);
+  estimated_.keep(is_taken);
+  std::erase_if(read_, [&](const auto& read) { return !is_taken(read.first); });
 }
 
-SharedFrames::Seen SharedFrames::prepare(gpu::Recorder& gpu, const InputSettings& input, const FrameSource* like,
-                                         int frame, const char* option, PreparedOthers& took) const {
+SeenFrame Shot::prepare(gpu::Recorder& gpu, const InputSettings& input, int frame, const char* option,
+                        PreparedOthers& took) const {
   Settings settings;
   settings.input = input;
   FrameSource source = find_frame(input, false, frame);
   leave_out_hidden(source);
   require_place(source, frame, option);
-  if (like) settle_like(source, *like);
+  if (settled_) settle_like(source, *settled_);
   const FrameInputs inputs = load_frame(gpu, source, settings, frame);
   upload(gpu, inputs);
   const GBuffer gbuffer = reconstruct(gpu, alcove::prepare(gpu, inputs, "other "));
@@ -190,82 +206,45 @@ SharedFrames::Seen SharedFrames::prepare(gpu::Recorder& gpu, const InputSettings
   gpu.run();
   took.rows_read += source.rows_read;
   took.passes.insert(took.passes.end(), gpu.passes().begin(), gpu.passes().end());
-  auto seen = std::make_shared<SeenFrame>();
-  seen->camera = source.camera;
-  seen->data = source.data;
-  seen->display = source.display;
-  seen->view = gbuffer.view;
-  seen->depth_precision = gbuffer.depth_precision;
   const auto depth = gbuffer.depth->as<const float>();
   const auto normal = gbuffer.normal->as<const std::uint32_t>();
-  seen->depth.assign(depth.begin(), depth.end());
-  seen->normal.assign(normal.begin(), normal.end());
-  seen->hash = hash_of(seen->normal, hash_of(seen->depth));
+  SeenFrame seen{source.camera,
+                 source.data,
+                 source.display,
+                 gbuffer.view,
+                 gbuffer.depth_precision,
+                 {depth.begin(), depth.end()},
+                 {normal.begin(), normal.end()}};
+  seen.hash = hash_of(seen.normal, hash_of(seen.depth));
   return seen;
 }
 
-SharedFrames::Seen SharedFrames::seen(gpu::Recorder& gpu, int frame, PreparedOthers& took) {
-  const auto entry = entry_of(frame);
-  const std::lock_guard lock(entry->preparing);
-  return seen_in(*entry, gpu, frame, took);
+std::vector<Shot::Seen> Shot::seen(gpu::Recorder& gpu, const std::vector<int>& frames, PreparedOthers& took) {
+  return seen_.of(frames, [&](int frame) {
+    const InputSettings input = of_first_surface(plan_.at(frame).input, settled_);
+    return prepare(gpu, input, frame, shot_option(input), took);
+  });
 }
 
-SharedFrames::Seen SharedFrames::seen_in(Entry& entry, gpu::Recorder& gpu, int frame, PreparedOthers& took) const {
-  if (entry.seen) return entry.seen;
-  const InputSettings input = of_first_surface(plan_.at(frame).input, settled_);
-  return entry.seen = prepare(gpu, input, settled_, frame, shot_option(input), took);
-}
-
-/// Prepares those that no other lane is at, so that lanes which need the same ones share the work.
-void SharedFrames::prepare_free_ones(gpu::Recorder& gpu, std::span<const int> frames, PreparedOthers& took) {
-  for (const int frame : frames) {
-    const auto entry = entry_of(frame);
-    const std::unique_lock lock(entry->preparing, std::try_to_lock);
-    if (lock) seen_in(*entry, gpu, frame, took);
-  }
-}
-
-SharedFrames::Moving SharedFrames::moving(gpu::Recorder& gpu, int frame, PreparedOthers& took) {
-  const auto entry = entry_of(frame);
-  const std::lock_guard lock(entry->judging);
-  if (entry->moving) return entry->moving;
-  const Seen here = seen(gpu, frame, took);
+Movement Shot::movement_of(gpu::Recorder& gpu, int frame, PreparedOthers& took) {
+  const Seen here = seen(gpu, {frame}, took)[0];
   const auto vectors = moving_by_vectors(gpu, frame, took, 1);
-  std::vector<Seen> witnesses;
-  for (const int other : judges_of(plan_, frame)) witnesses.push_back(seen(gpu, other, took));
-  std::vector<std::uint32_t> moving = judged(gpu, *here, witnesses, took);
+  std::vector<std::uint32_t> moving = judged(gpu, *here, seen(gpu, judges_of(plan_, frame), took), took);
   // Vectors tell of one step: what another frame sees through has moved later or before. Who else has seen it does not
   // matter then.
   for (std::size_t i = 0; vectors && i < moving.size(); i++)
     if (moving[i] == 0 || moving[i] == kFlagUnconfirmed) moving[i] = (*vectors)[i] != 0 ? kFlagMoves : 0;
-  return entry->moving = movement(std::move(moving));
+  return movement(std::move(moving));
 }
 
-std::vector<std::uint32_t> SharedFrames::judged(gpu::Recorder& gpu, const SeenFrame& seen,
-                                                std::span<const Seen> witnesses, PreparedOthers& took) {
-  FrameInputs inputs;
-  for (const auto& witness : witnesses)
-    inputs.others.push_back(filled(gpu, *witness, {}, seen.camera, inputs.others.size()));
-  const std::vector<OtherView> by = inputs.others;
-  const OtherView view = inputs.others.emplace_back(filled(gpu, seen, {}, seen.camera, by.size()));
-  upload(gpu, inputs);
-  const gpu::Buffer& moving = gpu.buffer("other moves", seen.depth.size() * sizeof(std::uint32_t), gpu::Use::device);
-  surfels(gpu, view, by, moving);
-  gpu.download(moving);
-  gpu.run();
-  took.passes.insert(took.passes.end(), gpu.passes().begin(), gpu.passes().end());
-  const auto values = moving.as<const std::uint32_t>();
-  return {values.begin(), values.end()};
-}
-
-std::optional<std::vector<std::uint8_t>> SharedFrames::moving_by_vectors(gpu::Recorder& gpu, int frame,
-                                                                         PreparedOthers& took, int around) {
+std::optional<std::vector<std::uint8_t>> Shot::moving_by_vectors(gpu::Recorder& gpu, int frame, PreparedOthers& took,
+                                                                 int around) {
   const InputSettings input = plan_.at(frame).input;
   if (input.motion.empty()) return std::nullopt;
-  const Seen here = seen(gpu, frame, took);
+  const Seen here = seen(gpu, {frame}, took)[0];
   MotionFrame motion{here->depth, here->view, {}, {}};
   for (const int other : plan_.around(frame, 1).there) {
-    const Seen beside = seen(gpu, other, took);
+    const Seen beside = seen(gpu, {other}, took)[0];
     std::optional<FromThere>& there = other < frame ? motion.previous : motion.next;
     there.emplace(
         FromThere{view_from_view(beside->camera, here->camera), view_of(beside->camera, here->data, here->display)});
@@ -286,48 +265,50 @@ std::optional<std::vector<std::uint8_t>> SharedFrames::moving_by_vectors(gpu::Re
        planes.path, frame);
 }
 
-std::vector<SharedFrames::Judged> SharedFrames::frames_around(gpu::Recorder& gpu, const FrameSource& target, int frame,
-                                                              Others& others, PreparedOthers& took) {
+std::vector<Shot::Judged> Shot::frames_around(gpu::Recorder& gpu, const FrameSource& target, int frame, Others& others,
+                                              PreparedOthers& took) {
   const int count = around_of(plan_.at(frame).input);
   const FramesAround around = plan_.around(frame, count);
   others.frames = around.there;
   others.missing = around.missing;
   require_place(target, frame, "--around");
-  prepare_free_ones(gpu, seen_around(plan_, frame), took);
+  seen(gpu, seen_around(plan_, frame), took);
+  const std::vector<Seen> frames = seen(gpu, around.there, took);
+  const auto moving = moving_.of(around.there, [&](int other) { return movement_of(gpu, other, took); });
   std::vector<Judged> found;
-  for (const int other : around.there) {
-    found.push_back({seen(gpu, other, took), moving(gpu, other, took)});
+  for (std::size_t i = 0; i < frames.size(); i++) {
+    found.push_back({frames[i], moving[i]});
     const auto projection = [](const Camera& camera) { return camera.orthographic ? "orthographic" : "perspective"; };
     const char *here = projection(target.camera), *there = projection(found.back().seen->camera);
     if (std::string_view(here) != there)
       fail(
           ErrorKind::input,
           "{}: frame {} is {}, and frame {} is {}: --around takes frames of one projection: give another --camera file",
-          target.depth_path(), frame, here, other, there);
+          target.depth_path(), frame, here, around.there[i], there);
   }
   return found;
 }
 
-std::vector<SharedFrames::Judged> SharedFrames::other_views(gpu::Recorder& gpu, const FrameSource& target, int frame,
-                                                            Others& others, PreparedOthers& took) const {
+std::vector<Shot::Judged> Shot::other_views(gpu::Recorder& gpu, const FrameSource& target, int frame, Others& others,
+                                            PreparedOthers& took) const {
   InputSettings input = of_first_surface(plan_.at(frame).input, settled_);
   others.views = other_views_of(target);
   require_place(target, frame, "--set other-views");
   std::vector<Judged> found;
   for (const auto& view : others.views) {
     input.view = view;
-    const Seen other = prepare(gpu, input, settled_, frame, "--set other-views", took);
+    const auto other = std::make_shared<const SeenFrame>(prepare(gpu, input, frame, "--set other-views", took));
     if (is_same_place(other->camera, target.camera))
       fail(ErrorKind::input,
            "{}: its views have one camera, and --set other-views needs that of each: give a --camera file with "
            "\"views\"",
            target.depth_path());
-    found.push_back({other, movement(judged(gpu, *other, {}, took))});
+    found.push_back({other, std::make_shared<const Movement>(movement(judged(gpu, *other, {}, took)))});
   }
   return found;
 }
 
-Others SharedFrames::others_of(gpu::Recorder& gpu, const FrameSource& target, int frame, PreparedOthers& took) {
+Others Shot::others_of(gpu::Recorder& gpu, const FrameSource& target, int frame, PreparedOthers& took) {
   const InputSettings input = plan_.at(frame).input;
   Others others;
   std::vector<Judged> found;

@@ -1,20 +1,25 @@
-// What the frames of a shot see of each other: every frame is read and prepared once for all that it lies around.
+// What the frames of a shot see and estimate of each other: every frame is prepared and estimated once for all that
+// take it.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "core/chain/other_views.h"
-#include "core/frame/gbuffer.h"
 #include "core/gpu/recorder.h"
-#include "core/run/frames_in_work.h"
+#include "core/run/frame_files.h"
+#include "core/run/made_once.h"
 #include "core/run/plan.h"
+#include "core/run/run_report.h"
+#include "core/run/tiles.h"
 
 namespace alcove {
 
@@ -29,7 +34,7 @@ struct SeenFrame {
   std::uint64_t hash = 0;             // of both planes
 };
 
-/// What of a frame counts in no other one.
+/// Pixels of a frame that other frames must not use, since they move.
 struct Movement {
   std::vector<std::uint32_t> flags;  // of each pixel, see OtherView::moving
   std::uint64_t hash = 0;            // of them
@@ -45,10 +50,45 @@ struct Others {
 /// Names them, for a header; empty where it takes none: "frames 3-5, 7; missing 6; views right".
 std::string text_of(const Others& others);
 
-/// What it took to prepare others.
+/// What one frame has estimated, in host memory: planes over all of it.
+struct EstimatedFrame {
+  int frame = 0;
+  Camera camera;
+  View view{};
+  vec3 depth_precision{};             // of planar depth: see DepthPrecision
+  std::vector<float> depth;           // see TakenFrame
+  bool has_moving = false;            // some depth is below 0
+  std::vector<std::uint32_t> normal;  // the same
+  std::vector<float> values;          // planes: see EstimateSet
+  FrameReport report;                 // what its estimate took and found
+  Others others;                      // the names of those that it takes what is hidden from
+};
+
+/// The estimates that a frame is the mean of, its own among them.
+struct TakenEstimates {
+  std::optional<ReadPlanes> read;  // of the frame itself; none: nobody kept them
+  std::vector<std::shared_ptr<const EstimatedFrame>> of;
+  std::vector<int> missing;  // frames that are not there
+
+  /// The estimate of the frame itself.
+  const EstimatedFrame& own(int frame) const;
+};
+
+/// Names them, for a header; empty where there are none: "frames 3-7; missing 6".
+std::string text_of(const TakenEstimates& taken);
+
+/// Passes run and rows read for other frames.
 struct PreparedOthers {
   std::uint64_t rows_read = 0;
   std::vector<gpu::PassTime> passes = {};
+};
+
+/// Where a frame is estimated.
+struct EstimateRoom {
+  gpu::Recorder& gpu;
+  const Room& room;
+  // Told which window of an estimate is computed, before each; may throw, which ends it.
+  std::function<void(const Window&)> begin = {};
 };
 
 /// Fails with ErrorKind::input where nobody knows where a frame's camera stands.
@@ -58,68 +98,64 @@ void require_place(const FrameSource& source, int frame, const char* option);
 bool takes_frames(const InputSettings& settings);
 bool takes_others(const InputSettings& settings);
 
-/// Frames that are prepared, and kept for as long as a frame needs them that is being computed, or the next one: see
-/// SharedEstimates. What one takes from others is the same whatever lane asks, and in whatever order.
-class SharedFrames {
+/// Frames that are prepared and estimated, and kept for as long as a frame takes them that is being computed, or the
+/// next one: each is made once where frames that lie beside each other are computed after each other. In any other
+/// order memory is bounded all the same, and what comes late is made again. What one frame takes from others is the
+/// same whatever lane asks, and in whatever order.
+class Shot {
  public:
   /// `frames` are those that are to be computed, in their order; each must be told of by begin() and done(). All are
   /// read as `settled` is; null: each by itself.
-  SharedFrames(const FramePlan& plan, const FrameSource* settled, std::span<const int> frames);
+  Shot(const FramePlan& plan, const FrameSource* settled, std::span<const int> frames);
 
   /// Gives what a frame takes from others, in upload buffers of the recorder, which is free before and after. Fails
   /// with ErrorKind::input, naming the file, where one of them cannot be read or its camera says not where it stands.
   Others others_of(gpu::Recorder& gpu, const FrameSource& target, int frame, PreparedOthers& took);
 
-  /// What of a frame moves by its motion vectors: 1 for each pixel that does, and up to `around` pixels beside it, else
-  /// 0. None where the settings name no vectors, and at an end of the shot where they lead out of it. Fails as
-  /// others_of() does, and where no reading of the vectors is right.
-  std::optional<std::vector<std::uint8_t>> moving_by_vectors(gpu::Recorder& gpu, int frame, PreparedOthers& took,
-                                                             int around = 0);
+  /// Gives the estimates around a frame. Fails as others_of() does.
+  TakenEstimates estimates_of(const EstimateRoom& where, int frame, PreparedOthers& took);
 
   /// From here on what this frame takes is kept.
   void begin(int frame);
   /// No one will ask for what this frame takes.
   void done(int frame);
 
-  /// Frames that are kept now.
-  std::size_t kept() const;
+  /// Frames whose first surface is kept now, and those whose estimate is.
+  std::size_t seen_count() const { return seen_.count(); }
+  std::size_t estimated_count() const { return estimated_.count(); }
 
  private:
-  struct Entry {
-    std::mutex preparing, judging;  // judging is locked first
-    std::shared_ptr<const SeenFrame> seen;
-    std::shared_ptr<const Movement> moving;
-  };
-  using Seen = std::shared_ptr<const SeenFrame>;
-
-  std::shared_ptr<Entry> entry_of(int frame);
-  using Moving = std::shared_ptr<const Movement>;
+  using Seen = MadeOnce<SeenFrame>::Value;
   struct Judged {
     Seen seen;
-    Moving moving;
+    MadeOnce<Movement>::Value moving;
   };
 
   std::vector<Judged> frames_around(gpu::Recorder& gpu, const FrameSource& target, int frame, Others& others,
                                     PreparedOthers& took);
   std::vector<Judged> other_views(gpu::Recorder& gpu, const FrameSource& target, int frame, Others& others,
                                   PreparedOthers& took) const;
-  Seen seen(gpu::Recorder& gpu, int frame, PreparedOthers& took);
-  /// The entry's preparing is locked.
-  Seen seen_in(Entry& entry, gpu::Recorder& gpu, int frame, PreparedOthers& took) const;
-  /// What moves as the witnesses tell, or cannot stand for its surface.
-  static std::vector<std::uint32_t> judged(gpu::Recorder& gpu, const SeenFrame& seen, std::span<const Seen> witnesses,
-                                           PreparedOthers& took);
-  Moving moving(gpu::Recorder& gpu, int frame, PreparedOthers& took);
-  void prepare_free_ones(gpu::Recorder& gpu, std::span<const int> frames, PreparedOthers& took);
+  std::vector<Seen> seen(gpu::Recorder& gpu, const std::vector<int>& frames, PreparedOthers& took);
+  Movement movement_of(gpu::Recorder& gpu, int frame, PreparedOthers& took);
+  /// What of a frame moves by its motion vectors: 1 for each pixel that does, and up to `around` pixels beside it, else
+  /// 0. None where the settings name no vectors, and at an end of the shot where they lead out of it. Fails where no
+  /// reading of the vectors is right.
+  std::optional<std::vector<std::uint8_t>> moving_by_vectors(gpu::Recorder& gpu, int frame, PreparedOthers& took,
+                                                             int around);
   /// `option`: by which it is taken.
-  Seen prepare(gpu::Recorder& gpu, const InputSettings& settings, const FrameSource* like, int frame,
-               const char* option, PreparedOthers& took) const;
+  SeenFrame prepare(gpu::Recorder& gpu, const InputSettings& settings, int frame, const char* option,
+                    PreparedOthers& took) const;
+  EstimatedFrame estimate(const EstimateRoom& where, int frame, PreparedOthers& took);
 
   const FramePlan& plan_;
   const FrameSource* settled_;
-  mutable std::mutex mutex_;  // of all below
-  std::map<int, std::shared_ptr<Entry>> entries_;
-  FramesInWork in_work_;
+  MadeOnce<SeenFrame> seen_;
+  MadeOnce<Movement> moving_;
+  MadeOnce<EstimatedFrame> estimated_;
+  std::mutex mutex_;                // of all below
+  std::vector<int> left_;           // frames that are not done, in their order
+  std::set<int> begun_;             // of them
+  std::map<int, ReadPlanes> read_;  // of frames that are estimated, until they are computed themselves
 };
 
 /// The frames that tell what moves in one, of which frames take what stands still.

@@ -55,30 +55,12 @@ std::uint64_t bytes_of_motion(const FrameSource& frame, const InputSettings& set
   return frame.file_data.pixels() * (planes * sizeof(float) + sizeof(std::uint8_t));
 }
 
-/// What one frame at a time takes with all around it.
-std::uint64_t bytes_of_one(const FramePlan& plan, const FrameSource& frame, const Settings& settings) {
-  return bytes_of_shot(plan, frame, settings.input, 1) +
-         memory_with_others(plan, frame, settings).on_host(frame.file_data);
-}
-
-/// What it takes at least, in the smallest of tiles.
-std::uint64_t bytes_without_frame(const FramePlan& plan, const FrameSource& frame, const Settings& settings) {
+/// What one frame at a time takes with all around it: as a whole, or at least, in the smallest of tiles.
+std::uint64_t bytes_of_one(const FramePlan& plan, const FrameSource& frame, const Settings& settings,
+                           std::span<const int> frames, bool is_whole) {
   const FrameMemory memory = memory_with_others(plan, frame, settings);
-  return bytes_of_shot(plan, frame, settings.input, 1) + memory.fixed_on_device + memory.fixed_bytes;
-}
-
-/// Fails as require_room_for_others() does, with the estimates that one frame is the mean of.
-void require_room_for_estimates(const RunMemory& memory, const FramePlan& plan, const FrameSource& frame,
-                                const Settings& settings, std::span<const int> frames) {
-  if (settings.input.accumulate == 0) return;
-  const std::uint64_t of_estimates = bytes_of_estimates(plan, frame, settings, frames, 1);
-  if (bytes_without_frame(plan, frame, settings) + of_estimates <= memory.host_bytes) return;
-  const std::uint64_t enough = memory.program_bytes + bytes_of_one(plan, frame, settings) + of_estimates;
-  fail(memory.is_chosen ? ErrorKind::usage : ErrorKind::device,
-       "{}: {} leaves {} MiB for frames, too few for the estimates that each is the mean of: give a smaller "
-       "--accumulate than {}, or --memory {}M",
-       frame.depth_path(), memory.is_chosen ? "--memory" : "half of the free memory", memory.host_bytes / kMebibyte,
-       settings.input.accumulate, enough / kMebibyte + 1);
+  return bytes_of_shot(plan, frame, settings.input, 1) + bytes_of_estimates(plan, frame, settings, frames, 1) +
+         (is_whole ? memory.of(frame.file_data).host : memory.fixed_on_device + memory.fixed_bytes);
 }
 
 /// Fails as require_buffers_for_others() does, with the estimates that frames take of each other.
@@ -131,9 +113,7 @@ std::uint64_t bytes_of_estimates(const FramePlan& plan, const FrameSource& frame
                                  std::span<const int> frames, int lanes) {
   if (settings.input.accumulate == 0) return 0;
   // What was read of one is kept with its estimate until it is computed itself, as at first none of them is.
-  std::uint64_t read = 0;
-  for (const auto& plane : frame.planes.entries) read += plane.size();
-  return sizeof(float) * frame.file_data.pixels() * (2 + values_of(settings) + read) *
+  return (sizeof(float) * frame.file_data.pixels() * (2 + values_of(settings)) + raw_bytes_of(frame)) *
          most_estimates(plan, frames, std::size_t(lanes));
 }
 
@@ -149,16 +129,20 @@ RunMemory beside_shot(const RunMemory& memory, const FramePlan& plan, const Fram
 
 void require_room_for_others(const RunMemory& memory, const FramePlan& plan, const FrameSource& frame,
                              const Settings& settings, std::span<const int> frames) {
-  require_room_for_estimates(memory, plan, frame, settings, frames);
-  if (around_of(settings.input) == 0 || bytes_without_frame(plan, frame, settings) <= memory.host_bytes) return;
+  const InputSettings& input = settings.input;
+  if (around_of(input) == 0 && input.accumulate == 0) return;
+  if (bytes_of_one(plan, frame, settings, frames, false) <= memory.host_bytes) return;
   Settings fewer = settings;
-  fewer.input.around = int(std::min<std::size_t>(plan.shot().size(), std::size_t(around_of(settings.input))));
+  fewer.input.around = int(std::min<std::size_t>(plan.shot().size(), std::size_t(around_of(input))));
   fewer.input.around_all = false;
-  while (fewer.input.around > 0 && bytes_of_one(plan, frame, fewer) > memory.host_bytes) fewer.input.around--;
+  while (fewer.input.around > 0 && bytes_of_one(plan, frame, fewer, frames, true) > memory.host_bytes)
+    fewer.input.around--;
+  const std::string mend = input.accumulate > 0 ? fmt::format("a smaller --accumulate than {}", input.accumulate)
+                                                : fmt::format("--around {}", fewer.input.around);
   fail(memory.is_chosen ? ErrorKind::usage : ErrorKind::device,
-       "{}: {} leaves {} MiB for frames, too few for those around each: give --around {}, or --memory {}M",
-       frame.depth_path(), memory.is_chosen ? "--memory" : "half of the free memory", memory.host_bytes / kMebibyte,
-       fewer.input.around, (memory.program_bytes + bytes_of_one(plan, frame, settings)) / kMebibyte + 1);
+       "{}: {} leaves {} MiB for frames, too few for those around each: give {}, or --memory {}M", frame.depth_path(),
+       memory.is_chosen ? "--memory" : "half of the free memory", memory.host_bytes / kMebibyte, mend,
+       (memory.program_bytes + bytes_of_one(plan, frame, settings, frames, true)) / kMebibyte + 1);
 }
 
 void require_buffers_for_others(std::uint64_t most_bytes, const FrameSource& frame, const Settings& all) {

@@ -3,8 +3,9 @@
 #include "core/run/tiles.h"
 
 #include <algorithm>
-#include <cmath>
+#include <iterator>
 #include <limits>
+#include <utility>
 
 #include "core/base/error.h"
 #include "core/base/estimator_facts.h"
@@ -16,7 +17,6 @@ namespace {
 
 constexpr int kLeastRows = 16;     // px of a tile: most files compress so many rows together
 constexpr int kLeastColumns = 64;  // px of a tile
-constexpr int kMostRows = 32;      // of tiles, unless they have to be lower
 
 std::uint64_t mebibytes_above(std::uint64_t bytes) { return (bytes + kMebibyte - 1) / kMebibyte; }
 
@@ -25,8 +25,19 @@ std::uint64_t row_bytes(const WindowLimits& limits, const Window& row) {
   return 2 * limits.memory.written * row.pixels();
 }
 
-/// Chooses, of all ways to cut a window into rows and each row into columns, the one in which the fewest pixels are
-/// computed: by the best way to cut what lies below a row, from the bottom up.
+int most_columns(const Window& row) { return std::max(1, row.width / kLeastColumns); }
+
+/// So many tiles, whose widths differ by a pixel at most.
+std::vector<Window> columns_of(const Window& row, int count) {
+  std::vector<Window> tiles;
+  for (int i = 0; i < count; i++) {
+    const int left = int(std::int64_t(row.width) * i / count), right = int(std::int64_t(row.width) * (i + 1) / count);
+    tiles.push_back({row.x + left, row.y, right - left, row.height});
+  }
+  return tiles;
+}
+
+/// Cuts a window into columns, or into halves that are cut in turn, whichever computes fewer pixels.
 class Cutter {
   static constexpr std::uint64_t kNoWay = std::numeric_limits<std::uint64_t>::max();
   struct Cut {
@@ -37,87 +48,51 @@ class Cutter {
  public:
   Cutter(Surroundings& surroundings, const WindowLimits& limits) : surroundings_(surroundings), limits_(limits) {}
 
-  /// Nothing where some of the window cannot be cut into tiles that are small enough. Where the borders cost much, it
-  /// is worth the time to look at more places.
-  std::optional<TileRows> cut(const Window& whole) {
-    Cut best;
-    for (int step = std::max(1, whole.height / kMostRows / kLeastRows) * kLeastRows; step >= kLeastRows;
-         step = step / 2 / kLeastRows * kLeastRows) {
-      if (Cut cut = cut_at(whole, step); cut.pixels < best.pixels) best = std::move(cut);
-      if (best.pixels < kMuch * whole.pixels()) break;
-    }
-    if (best.rows.empty()) return {};
-    return std::move(best.rows);
+  /// No way where one of the smallest tiles is still too large.
+  Cut cut(const Window& window) {
+    Cut best = in_columns(window);
+    if (window.height <= kLeastRows || (best.pixels != kNoWay && best.rows[0].size() == 1)) return best;
+    const int upper = (window.height / kLeastRows + 1) / 2 * kLeastRows;
+    Cut halves = cut({window.x, window.y, window.width, upper});
+    if (halves.pixels >= best.pixels) return best;
+    Cut lower = cut({window.x, window.y + upper, window.width, window.height - upper});
+    if (lower.pixels >= best.pixels - halves.pixels) return best;
+    halves.pixels += lower.pixels;
+    std::ranges::move(lower.rows, std::back_inserter(halves.rows));
+    return halves;
   }
 
  private:
-  /// Rows from one of the places at which may be cut down to the bottom.
-  struct Way {
-    std::uint64_t pixels = kNoWay;  // that are computed
-    std::size_t next = 0;           // the place where the second row begins
-    std::vector<Window> first;      // the tiles of the first row
-  };
-  static constexpr std::uint64_t kMuch = 2;  // pixels computed for one of the results
-
-  /// Cuts at multiples of `step` rows.
-  Cut cut_at(const Window& whole, int step) {
-    const auto places = std::size_t((whole.height + step - 1) / step);
-    std::vector<Way> ways(places + 1);
-    ways[places].pixels = 0;
-    for (std::size_t from = places; from-- > 0;)
-      for (std::size_t to = from + 1; to <= places; to++) {
-        const int top = int(from) * step, bottom = std::min(int(to) * step, whole.height);
-        Way way = best_row({whole.x, whole.y + top, whole.width, bottom - top});
-        if (way.pixels == kNoWay) break;
-        if (ways[to].pixels == kNoWay || way.pixels + ways[to].pixels >= ways[from].pixels) continue;
-        ways[from] = {way.pixels + ways[to].pixels, to, std::move(way.first)};
-      }
-    Cut cut{{}, ways[0].pixels};
-    for (std::size_t at = 0; at < places && cut.pixels != kNoWay; at = ways[at].next)
-      cut.rows.push_back(std::move(ways[at].first));
-    return cut;
-  }
-
-  /// One row. Of the numbers of columns that are allowed the least few are tried: more make more borders.
-  Way best_row(const Window& row) {
-    Way best;
-    int tries = 0;
-    for (const int columns : {1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64}) {
-      if ((columns > 1 && row.width / columns < kLeastColumns) || tries > 2) break;
-      Way way = cut_row(row, columns);
-      tries += way.pixels != kNoWay || tries > 0 ? 1 : 0;
-      if (way.pixels < best.pixels) best = std::move(way);
+  /// As few columns as are allowed, for each more makes a border; no way where even the narrowest are not.
+  Cut in_columns(const Window& row) {
+    const int most = most_columns(row);
+    for (int count = 1;; count = std::min(most, count + (count + 1) / 2)) {
+      Cut cut{{columns_of(row, count)}, 0};
+      const auto is_allowed = [&](const Window& tile) {
+        const Window computed = surroundings_.around(tile);
+        cut.pixels += computed.pixels();
+        return limits_.allow(computed, row_bytes(limits_, row));
+      };
+      if (std::ranges::all_of(cut.rows[0], is_allowed)) return cut;
+      if (count == most) return {};
     }
-    return best;
-  }
-
-  /// No way where one of the tiles is too large beside the rows that are written.
-  Way cut_row(const Window& row, int columns) {
-    Way way;
-    std::uint64_t computed = 0;
-    for (int i = 0; i < columns; i++) {
-      const int left = int(std::int64_t(row.width) * i / columns);
-      const int right = int(std::int64_t(row.width) * (i + 1) / columns);
-      way.first.push_back({row.x + left, row.y, right - left, row.height});
-      const Window window = surroundings_.around(way.first.back());
-      if (!limits_.allow(window, row_bytes(limits_, row))) return {};
-      computed += window.pixels();
-    }
-    way.pixels = computed;
-    return way;
   }
 
   Surroundings& surroundings_;
   const WindowLimits& limits_;
 };
 
-}  // namespace
-
-int longest_side(const EstimatorSettings& settings) {
-  if (!searches_exactly(settings)) return std::numeric_limits<int>::max();
-  // kNoVertex stands for none.
-  return int(kNoVertex) * int(settings.resolution);
+/// What has to be computed for that one of the smallest tiles that needs the most around it.
+Window largest_least(const Window& whole, Surroundings& surroundings) {
+  Window largest{};
+  for (int y = 0; y < whole.height; y += kLeastRows)
+    for (const auto& tile :
+         columns_of({whole.x, whole.y + y, whole.width, std::min(kLeastRows, whole.height - y)}, most_columns(whole)))
+      if (const Window window = surroundings.around(tile); window.pixels() > largest.pixels()) largest = window;
+  return largest;
 }
+
+}  // namespace
 
 void require_numbered_lines(const FrameSource& source, const EstimatorSettings& settings) {
   if (!searches_exactly(settings)) return;
@@ -141,26 +116,40 @@ std::uint64_t WindowLimits::with_larger_codecs(std::uint64_t bytes) const {
   return bytes;
 }
 
+WindowLimits WindowLimits::in_parts(const FrameSource& source) const {
+  WindowLimits limits = *this;
+  limits.kept = raw_bytes_of(source);
+  if (limits.kept < room.bytes) return limits;
+  // That is enough to compute all of the frame at once; what its tiles take, only its depth tells.
+  const std::uint64_t enough = memory.of(source.file_data).host + (source.region ? limits.kept : 0);
+  refuse(fmt::format("{}: its pixels take {} MiB as they are read: use a smaller frame", source.depth_path(),
+                     mebibytes_above(limits.kept)),
+         enough);
+}
+
 bool WindowLimits::allow(const Window& computed, std::uint64_t beside) const {
-  return memory.on_host(computed) + beside <= room.bytes && memory.on_device(computed) <= room.device_bytes &&
-         memory.in_buffer(computed) <= room.buffer_bytes && computed.pixels() <= room.pixels &&
-         std::max(computed.width, computed.height) <= longest_side;
+  if (computed.pixels() > room.pixels || std::max(computed.width, computed.height) > longest_side) return false;
+  const FrameMemory::Bytes bytes = memory.of(computed);
+  return bytes.host + kept + beside <= room.bytes && bytes.device <= room.device_bytes &&
+         bytes.buffer <= room.buffer_bytes;
 }
 
 std::string WindowLimits::why_not(const Window& computed) const {
   if (std::max(computed.width, computed.height) > longest_side)
     return fmt::format("lines of an exact search have at most {} pixels", longest_side);
-  if (memory.on_host(computed) > room.bytes)
+  const FrameMemory::Bytes bytes = memory.of(computed);
+  if (bytes.host + kept > room.bytes)
     return fmt::format("{} leaves {} MiB for it, and at once it takes {} MiB",
-                       room.is_chosen ? "--memory" : "half of the free memory", room.bytes / kMebibyte,
-                       mebibytes_above(memory.on_host(computed)));
-  if (memory.in_buffer(computed) > room.buffer_bytes)
+                       room.is_chosen ? "--memory" : "half of the free memory", (room.bytes - kept) / kMebibyte,
+                       mebibytes_above(bytes.host));
+  if (bytes.buffer > room.buffer_bytes)
     return fmt::format("the device takes buffers of {} MiB at most", room.buffer_bytes / kMebibyte);
   return "the device has too little memory for it at once";
 }
 
 void WindowLimits::refuse(const std::string& what, const Window& computed) const {
-  if (memory.on_host(computed) > room.bytes) refuse(what, memory.on_host(computed));
+  const std::uint64_t bytes = memory.of(computed).host + kept;
+  if (bytes > room.bytes) refuse(what, bytes);
   if (std::max(computed.width, computed.height) > longest_side)
     fail(ErrorKind::device, "{}, or give --search steps, since lines of an exact search have at most {} pixels", what,
          longest_side);
@@ -174,31 +163,19 @@ void WindowLimits::refuse(const std::string& what, std::uint64_t least) const {
        mebibytes_above(room.program_bytes + least), mebibytes_above(room.program_bytes));
 }
 
-std::optional<TileRows> tiles_within(const Window& whole, Surroundings& surroundings, const WindowLimits& limits) {
-  return Cutter(surroundings, limits).cut(whole);
-}
-
 TileRows tiles_of(const Window& whole, Surroundings& surroundings, const WindowLimits& limits,
                   const FrameSource& source) {
-  if (auto rows = tiles_within(whole, surroundings, limits)) return *std::move(rows);
+  if (auto cut = Cutter(surroundings, limits).cut(whole); !cut.rows.empty()) return std::move(cut.rows);
   const std::string what = fmt::format(
       "{}: within --radius a tile of the frame depends on too many pixels to compute at once: use a smaller --radius",
       source.depth_path());
-  WindowLimits larger = limits;
-  const auto allows = [&](std::uint64_t bytes) {
-    larger.room.bytes = bytes;
-    return tiles_within(whole, surroundings, larger).has_value();
-  };
-  // More memory than all of the window takes at once is of no use.
-  std::uint64_t little = limits.room.bytes;
-  std::uint64_t enough = limits.memory.on_host(surroundings.around(whole)) + row_bytes(limits, whole);
-  if (!allows(enough))
-    limits.refuse(what, surroundings.around({whole.x, whole.y, std::min(whole.width, kLeastColumns), 1}));
-  while (enough - little > kMebibyte) {
-    const std::uint64_t middle = little + (enough - little) / 2;
-    (allows(middle) ? enough : little) = middle;
-  }
-  limits.refuse(what, enough);
+  const Window largest = largest_least(whole, surroundings);
+  const Window row{whole.x, whole.y, whole.width, std::min(whole.height, kLeastRows)};
+  const std::uint64_t of_tiles = limits.memory.of(largest).host + limits.kept + row_bytes(limits, row);
+  if (of_tiles <= limits.room.bytes) limits.refuse(what, largest);
+  // All of it at once may take less than such tiles.
+  const std::uint64_t at_once = limits.memory.of(surroundings.around(whole)).host + (source.region ? limits.kept : 0);
+  limits.refuse(what, std::min(of_tiles, at_once));
 }
 
 }  // namespace alcove

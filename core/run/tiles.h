@@ -4,7 +4,6 @@
 
 #include <cstdint>
 #include <limits>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,10 +25,6 @@ struct Room {
   bool is_chosen = false;
 };
 
-/// The longest side of a window, in pixels, for the passes of these settings: the marks of an exact search hold the
-/// step along a line in 16 bits.
-int longest_side(const EstimatorSettings& settings);
-
 /// Fails with ErrorKind::input where a frame reaches so far that an exact search could not number its lines, however
 /// the frame is cut.
 void require_numbered_lines(const FrameSource& source, const EstimatorSettings& settings);
@@ -39,6 +34,11 @@ struct WindowLimits {
   FrameMemory memory;
   Room room;
   int longest_side = std::numeric_limits<int>::max();  // px
+  std::uint64_t kept = 0;                              // bytes of host memory that are taken whatever is computed
+
+  /// The limits of a frame's parts, whose planes stay in host memory as they were read. Fails as refuse() does where
+  /// that has no room for them, and names what the whole frame takes.
+  WindowLimits in_parts(const FrameSource& source) const;
 
   /// `beside`: bytes of host memory that are taken meanwhile.
   bool allow(const Window& computed, std::uint64_t beside = 0) const;
@@ -59,11 +59,8 @@ struct WindowLimits {
 using TileRows = std::vector<std::vector<Window>>;
 
 /// Cuts the window of all results into rows of tiles, from the top, and each row into tiles, from the left, so that
-/// each tile is allowed with its surroundings, and few pixels are computed twice. Nothing where the radius reaches so
-/// far that no tile is small enough.
-std::optional<TileRows> tiles_within(const Window& whole, Surroundings& surroundings, const WindowLimits& limits);
-
-/// The same, which fails as WindowLimits::refuse() does where no tile is small enough.
+/// each tile is allowed with its surroundings, and few pixels are computed twice. Fails as WindowLimits::refuse() does
+/// where the radius reaches so far that no tile is small enough.
 TileRows tiles_of(const Window& whole, Surroundings& surroundings, const WindowLimits& limits,
                   const FrameSource& source);
 

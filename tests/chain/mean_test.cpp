@@ -159,7 +159,7 @@ TEST_F(Means, find_what_has_gone_whose_plane_is_nearly_edge_on) {
 
 TEST(Mean, of_fewer_frames_than_are_listed_runs_the_same_kernels) {
   const auto kernels_for = [](const std::vector<uint>& groups) {
-    gpu::Recorder gpu(device(), gpu::Recorder::Mode::rehearse);
+    gpu::Recorder gpu;
     EstimateSet estimates;
     const auto made = [&](const std::string& name, std::size_t bytes) {
       return &gpu.buffer(name, bytes, gpu::Use::upload);

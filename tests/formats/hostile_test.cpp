@@ -12,7 +12,7 @@
 #include "core/formats/png.h"
 #include "core/formats/sequence.h"
 #include "core/frame/camera.h"
-#include "core/frame/settle_rows.h"
+#include "core/frame/settle.h"
 #include "tests/support/command_line.h"
 
 namespace alcove {

@@ -6,9 +6,9 @@
 #include "cli/options.h"
 #include "core/formats/exr.h"
 #include "core/run/batch.h"
+#include "core/run/estimate_slots.h"
 #include "core/run/frame_files.h"
 #include "core/run/plan.h"
-#include "core/run/shared_estimates.h"
 #include "core/run/shot_memory.h"
 #include "tests/support/device.h"
 #include "tests/support/difference.h"
@@ -134,21 +134,21 @@ TEST_F(AccumulatedShots, no_more_estimates_are_kept_than_are_counted_whatever_th
   const Room room{.bytes = 1 << 30, .buffer_bytes = 1 << 30};
   std::vector<std::weak_ptr<const EstimatedFrame>> all;
   const auto most_kept = [&](std::span<const int> frames, std::size_t lanes) {
-    SharedEstimates estimates(plan, nullptr, nullptr, frames);
+    Shot shot(plan, nullptr, frames);
     gpu::Recorder gpu(device());
     EstimateSlots slots;
     std::size_t most = 0;
     for (std::size_t i = 0; i < frames.size(); i++) {
       PreparedOthers took;
-      estimates.begin(frames[i]);
-      const TakenEstimates taken = estimates.around({gpu, room}, frames[i], took);
+      shot.begin(frames[i]);
+      const TakenEstimates taken = shot.estimates_of({gpu, room}, frames[i], took);
       EXPECT_EQ(taken.of.size(), 3u);
       slots.filled(gpu, plan, taken, frames[i], room.buffer_bytes);
       all.insert(all.end(), taken.of.begin(), taken.of.end());
-      most = std::max(most, estimates.kept());
-      if (i + 1 >= lanes) estimates.done(frames[i + 1 - lanes]);
+      most = std::max(most, shot.estimated_count());
+      if (i + 1 >= lanes) shot.done(frames[i + 1 - lanes]);
     }
-    for (const int frame : frames) estimates.done(frame);
+    for (const int frame : frames) shot.done(frame);
     EXPECT_TRUE(std::ranges::all_of(all, [](const auto& one) { return one.expired(); })) << "somebody else keeps them";
     return most;
   };
@@ -172,12 +172,12 @@ TEST_F(AccumulatedShots, where_fewer_frames_count_as_many_are_listed) {
   Settings settings = settings_of_shot();
   settings.input.accumulate = 2;
   const FramePlan plan(settings);
-  SharedEstimates estimates(plan, nullptr, nullptr, plan.frames());
+  Shot shot(plan, nullptr, plan.frames());
   gpu::Recorder gpu(device());
   const Room room{.bytes = 1 << 30, .buffer_bytes = 1 << 30};
   PreparedOthers took;
   EstimateSlots slots;
-  TakenEstimates taken = estimates.around({gpu, room}, 3, took);
+  TakenEstimates taken = shot.estimates_of({gpu, room}, 3, took);
   for (const uint count : {4u, 3u, 1u}) {
     const auto is_other = [](const auto& estimated) { return estimated->frame != 3; };
     while (taken.of.size() > count + 1) taken.of.erase(std::ranges::find_if(taken.of, is_other));
@@ -203,18 +203,15 @@ TEST_F(AccumulatedShots, no_more_of_what_estimates_see_is_kept_than_is_counted) 
   settings.input.motion.clear();
   settings.input.around = 1;
   const FramePlan plan(settings);
-  SharedFrames shot(plan, nullptr, plan.frames());
-  SharedEstimates estimates(plan, nullptr, &shot, plan.frames());
+  Shot shot(plan, nullptr, plan.frames());
   gpu::Recorder gpu(device());
   const Room room{.bytes = 1 << 30, .buffer_bytes = 1 << 30};
   for (const int frame : plan.frames()) {
     PreparedOthers took;
     shot.begin(frame);
-    estimates.begin(frame);
-    estimates.around({gpu, room}, frame, took);
-    EXPECT_LE(shot.kept(), counted()) << frame;
+    shot.estimates_of({gpu, room}, frame, took);
+    EXPECT_LE(shot.seen_count(), counted()) << frame;
     shot.done(frame);
-    estimates.done(frame);
   }
 }
 

@@ -240,7 +240,7 @@ TEST_F(Accumulated, tiles_know_what_moves_after_those_of_sky) {
     std::fill(begin, begin + 190 * kTall.width, 1e10f);
     file.write(input(frame));
   }
-  expect_tiles_as_the_whole({"--accumulate", "1"}, 36);
+  expect_tiles_as_the_whole({"--accumulate", "1"}, 42);
 }
 
 TEST_F(Accumulated, a_region_has_the_bits_of_the_whole) {

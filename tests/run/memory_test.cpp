@@ -42,7 +42,7 @@ class Memory : public testing::Test {
     run_chain(gpu, inputs, settings.estimator, settings.output);
     gpu.run();
     return {double(gpu.bytes() - of_others) / double(window.pixels()),
-            double(expected.on_device(window)) / double(window.pixels())};
+            double(expected.of(window).device) / double(window.pixels())};
   }
 
   /// A camera a step to the right that sees a wall where this frame shows none.
@@ -65,7 +65,7 @@ class Memory : public testing::Test {
   void expect_enough(const Settings& settings, const std::string& what) const {
     const Bytes bytes = bytes_of(settings);
     EXPECT_LE(bytes.taken, bytes.expected) << what;
-    EXPECT_GE(bytes.taken, 0.5 * bytes.expected) << what << ": so much is never used";
+    EXPECT_GE(bytes.taken, 0.9 * bytes.expected) << what << ": so much is never used";
   }
 
   const Window window{0, 0, 320, 180};
@@ -74,36 +74,26 @@ class Memory : public testing::Test {
 };
 
 TEST_F(Memory, is_expected_of_every_estimator_search_and_resolution) {
-  for (const Estimator estimator : {Estimator::gtao, Estimator::crytek})
+  const std::vector<std::pair<const char*, std::function<void(EstimatorSettings&)>>> estimators{
+      {"steps", [](auto&) {}},
+      {"volume", [](auto& e) { e.estimator = Estimator::crytek; }},
+      {"exact", [](auto& e) { e.search = SliceSearch::exact; }},
+      {"by error", [](auto& e) { e.search = SliceSearch::exact, e.tolerance = 0.03; }}};
+  for (const auto& [name, change] : estimators)
     for (const Resolution resolution : {Resolution::full, Resolution::half, Resolution::quarter})
-      for (const Denoise denoise : {Denoise::none, Denoise::bilateral})
-        for (const char* aovs : {"ao", "ao,ao-scales", "ao,confidence,normal,depth,specular-occlusion"})
-          for (const std::vector<double>& further : {std::vector<double>{}, {0.5, 2}}) {
-            Settings settings = all;
-            settings.estimator.estimator = estimator;
-            settings.estimator.resolution = resolution;
-            settings.estimator.denoise = denoise;
-            settings.estimator.further_radii = further;
-            settings.output.aovs = aovs;
-            expect_enough(settings, fmt::format("estimator {} resolution {} denoise {} {} radii {}", int(estimator),
-                                                int(resolution), int(denoise), aovs, 1 + further.size()));
-          }
-}
-
-TEST_F(Memory, is_expected_of_exact_searches) {
-  for (const SliceSearch search : {SliceSearch::steps, SliceSearch::exact, SliceSearch::every_pixel})
-    for (const double tolerance : {0.0, 0.03})
-      for (const Denoise denoise : {Denoise::none, Denoise::bilateral})
-        for (const char* aovs : {"ao", "ao,error", "ao,ao-scales", "ao,bent-normal"}) {
-          if (tolerance == 0 && std::string(aovs) == "ao,error") continue;
-          Settings settings = all;
-          settings.estimator.search = search;
-          settings.estimator.tolerance = tolerance;
-          settings.estimator.denoise = denoise;
-          settings.output.aovs = aovs;
-          expect_enough(settings, fmt::format("search {} tolerance {} denoise {} {}", int(search), tolerance,
-                                              int(denoise), aovs));
-        }
+      for (const char* aovs :
+           {"ao", "ao,ao-scales", "ao,bent-normal", "ao,confidence,normal,depth,specular-occlusion"}) {
+        Settings settings = all;
+        change(settings.estimator);
+        settings.estimator.resolution = resolution;
+        settings.output.aovs = aovs;
+        expect_enough(settings, fmt::format("{}, resolution {}, {}", name, int(resolution), aovs));
+        settings.estimator.denoise = Denoise::none;
+        settings.estimator.further_radii = {0.5, 2};
+        if (settings.estimator.tolerance == 0)
+          expect_enough(settings,
+                        fmt::format("{}, resolution {}, {}, 3 radii, no filter", name, int(resolution), aovs));
+      }
 }
 
 TEST_F(Memory, is_expected_of_every_output) {
@@ -197,9 +187,9 @@ TEST_F(Memory, of_the_largest_buffer_is_that_of_all_hidden_surfaces_with_the_mar
   settings.input.around = 1;
   const FrameMemory steps = memory_of(open_frame(settings, 0), settings);
   const std::uint64_t plane = sizeof(float) * std::uint64_t(320 + 2 * 40) * std::uint64_t(180 + 2 * 40);
-  EXPECT_GE(steps.in_buffer(window), 3 * plane);
+  EXPECT_GE(steps.of(window).buffer, 3 * plane);
   settings.estimator.search = SliceSearch::exact;
-  EXPECT_GE(memory_of(open_frame(settings, 0), settings).in_buffer(window), 5 * plane);
+  EXPECT_GE(memory_of(open_frame(settings, 0), settings).of(window).buffer, 5 * plane);
 }
 
 TEST_F(Memory, is_expected_of_what_completed_surfaces_take) {

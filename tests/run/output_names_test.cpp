@@ -117,30 +117,17 @@ TEST_F(InputNames, that_are_globs_are_answered_with_the_pattern) {
             0);
 }
 
-TEST_F(InputNames, of_a_dry_run_come_with_the_time_it_takes) {
+TEST_F(InputNames, of_a_dry_run_come_without_a_device) {
   write_frames(1, 4);
   const auto before = names_in(folder.path());
-  const Finished finished = run({"--dry-run"});
+  const Finished finished = run({"--dry-run", "--device", "99"});
   EXPECT_EQ(finished.code, 0) << finished;
-  EXPECT_THAT(lines_of(finished.out),
-              Contains(MatchesRegex("time +about [0-9.]+ s: [0-9.]+ s per frame on .*, by computing all of "
-                                    "f.0003.exr")))
-      << "the first frames of a sequence are often empty";
+  EXPECT_THAT(lines_of(finished.out), Contains(MatchesRegex("frames +4: .*")));
   EXPECT_EQ(names_in(folder.path()), before);
-  const Finished without = run({"--dry-run", "--device", "99"});
-  EXPECT_EQ(without.code, 0) << without;
-  EXPECT_THAT(lines_of(without.out), Contains(MatchesRegex("time +unknown: .*--device.*")));
-  const Finished nowhere = run({"--dry-run"}, {.environment = {{"TMPDIR", "/none"}}});
-  EXPECT_EQ(nowhere.code, 0) << nowhere;
-  EXPECT_THAT(lines_of(nowhere.out), Contains(MatchesRegex("time +unknown: no temporary folder.*")));
-  fs::create_directory(folder / "scratch");
-  EXPECT_EQ(run({"--dry-run"}, {.environment = {{"TMPDIR", folder / "scratch"}}}).code, 0);
-  EXPECT_THAT(names_in(folder / "scratch"), testing::IsEmpty());
 
   ASSERT_EQ(run().code, 0);
   fs::remove(output(2));
   EXPECT_THAT(lines_of(run({"--dry-run", "--resume"}).out), Contains(MatchesRegex("kept +3: .*")));
-  EXPECT_THAT(lines_of(run({"--dry-run", "--resume", "--frames", "3"}).out), Contains(MatchesRegex("time +none: .*")));
 }
 
 }  // namespace

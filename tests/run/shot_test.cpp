@@ -204,18 +204,18 @@ TEST_F(Shots, keep_no_more_frames_than_their_windows) {
   for (const char* order : {"1-16", "16-1", "1-16x3,2-16x3,3-16x3"}) {
     settings.frames.frames = order;
     const FramePlan plan(settings);
-    SharedFrames shared(plan, nullptr, plan.frames());
+    Shot shared(plan, nullptr, plan.frames());
     gpu::Recorder gpu(device());
     for (const int frame : plan.frames()) {
       PreparedOthers took;
       FrameSource target = open_frame(plan.at(frame), frame);
       shared.begin(frame);
       shared.others_of(gpu, target, frame, took);
-      EXPECT_LE(shared.kept(), std::size_t(2 * with_judges(2) + 1)) << order << " " << frame;
-      EXPECT_GE(shared.kept(), 5u) << order << " " << frame;
+      EXPECT_LE(shared.seen_count(), std::size_t(2 * with_judges(2) + 1)) << order << " " << frame;
+      EXPECT_GE(shared.seen_count(), 5u) << order << " " << frame;
       shared.done(frame);
     }
-    EXPECT_EQ(shared.kept(), 0u);
+    EXPECT_EQ(shared.seen_count(), 0u);
   }
 }
 
@@ -392,7 +392,7 @@ TEST_F(Shots, take_more_memory_the_more_frames_lie_around) {
     settings.input.around = around;
     const FramePlan plan(settings);
     const FrameSource source = open_frame(plan.at(4), 4);
-    const std::uint64_t of_frame = memory_with_others(plan, source, settings).on_host(source.file_data);
+    const std::uint64_t of_frame = memory_with_others(plan, source, settings).of(source.file_data).host;
     const std::uint64_t of_shot = bytes_of_shot(plan, source, settings.input, 1);
     if (around != 2) {
       EXPECT_GT(of_frame, frame_before) << around;
@@ -455,10 +455,7 @@ TEST_F(Shots, dry_runs_tell_what_the_window_takes) {
   const Finished finished = run({"--around", "2", "--dry-run"});
   EXPECT_EQ(finished.code, 0) << finished;
   EXPECT_THAT(finished.out, AllOf(HasSubstr("around "), HasSubstr("4 of the 7 frames")));
-  EXPECT_THAT(finished.out, HasSubstr(" for the 7 frames that they take from on "));
-  EXPECT_THAT(run({"--around", "1", "--frames", "1", "--dry-run"}).out, HasSubstr(" for the 5 frames that"))
-      << "2, and 1 and 3 to 5, which tell what moves in it";
-  EXPECT_THAT(run({"--dry-run"}).out, Not(HasSubstr("take from")));
+  EXPECT_THAT(run({"--dry-run"}).out, Not(HasSubstr("around ")));
 }
 
 }  // namespace

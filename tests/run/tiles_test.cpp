@@ -22,7 +22,7 @@ using testing::HasSubstr;
 using Options = std::vector<std::string>;
 
 /// Bytes for frames: too few for any frame of this test as a whole.
-constexpr std::uint64_t kLittleMemory = 4 << 20;
+constexpr std::uint64_t kLittleMemory = 6 << 20;
 
 class Tiles : public CommandLine {
  protected:
@@ -63,7 +63,7 @@ class Tiles : public CommandLine {
   std::pair<std::string, int> computed(const Options& more, bool in_tiles) const {
     RunReport report = run_here(more, in_tiles ? little_memory : 0);
     // What reaches far takes more: then the tiles are the smallest that there are.
-    for (std::uint64_t bytes = little_memory; in_tiles && report.done != 1 && bytes < 4 * little_memory;
+    for (std::uint64_t bytes = little_memory; in_tiles && report.done != 1 && bytes < 6 * little_memory;
          bytes += bytes / 4)
       report = run_here(more, bytes);
     EXPECT_EQ(report.done, 1) << (report.stop ? report.stop->what() : "");
@@ -185,7 +185,7 @@ std::uint64_t memory_named_in(const std::string& text) {
 
 TEST_F(Tiles, too_little_memory_is_refused_with_the_least_that_is_enough) {
   const Options options{"--radius", "0.2"};
-  const RunReport refused = run_here(options, 1 << 18);
+  const RunReport refused = run_here(options, 3 << 20);
   ASSERT_TRUE(refused.stop);
   EXPECT_EQ(refused.stop->kind(), ErrorKind::usage) << refused.stop->what();
   const std::uint64_t named = memory_named_in(refused.stop->what());
@@ -219,8 +219,8 @@ TEST_F(Tiles, what_is_named_is_enough_for_codecs_that_take_more_of_more_memory) 
   expect_enough_is_named({"--radius", "50", "--threads", "4"}, 1 << 20);
 }
 
-TEST_F(Tiles, what_is_named_is_enough_where_rows_could_stay_in_memory) {
-  // More memory than four times the rows, which then stay there, and less than the whole frame takes.
+TEST_F(Tiles, what_is_named_is_enough_beside_the_planes_of_the_frame) {
+  // Less than the planes alone take, which stay in memory beside any tile.
   expect_enough_is_named({"--radius", "0.4", "--slices", "1", "--steps", "2", "--aov",
                           "ao,bent-normal,normal,depth,specular-occlusion,confidence"},
                          1 << 20);

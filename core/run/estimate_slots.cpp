@@ -1,92 +1,13 @@
-// Estimates frames for those around them, and lets them go.
+// Packs estimates as kernels take them.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/run/shared_estimates.h"
+#include "core/run/estimate_slots.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <bit>
 
-#include "core/run/cut.h"
-#include "core/run/estimate_run.h"
-
 namespace alcove {
-
-const EstimatedFrame& TakenEstimates::own(int frame) const {
-  return **std::ranges::find_if(of, [&](const auto& estimated) { return estimated->frame == frame; });
-}
-
-std::string text_of(const TakenEstimates& taken) {
-  if (taken.of.empty()) return "";
-  std::vector<int> frames;
-  for (const auto& estimated : taken.of) frames.push_back(estimated->frame);
-  std::ranges::sort(frames);
-  const std::string missing = taken.missing.empty() ? "" : "; missing " + frames_text(taken.missing);
-  return "frames " + frames_text(frames) + missing;
-}
-
-SharedEstimates::SharedEstimates(const FramePlan& plan, const FrameSource* settled, SharedFrames* shot,
-                                 std::span<const int> frames)
-    : plan_(plan), settled_(settled), shot_(shot), in_work_(frames) {}
-
-std::shared_ptr<SharedEstimates::Entry> SharedEstimates::entry_of(int frame) {
-  const std::lock_guard lock(mutex_);
-  auto& entry = entries_[frame];
-  if (!entry) entry = std::make_shared<Entry>();
-  return entry;
-}
-
-void SharedEstimates::begin(int frame) {
-  const std::lock_guard lock(mutex_);
-  in_work_.begin(frame);
-}
-
-void SharedEstimates::done(int frame) {
-  const std::lock_guard lock(mutex_);
-  in_work_.done(frame);
-  const std::vector<int> takers = in_work_.now_and_next();
-  std::erase_if(entries_, [&](const auto& entry) {
-    return std::ranges::none_of(takers, [&](int taker) { return plan_.is_accumulated(entry.first, taker); });
-  });
-}
-
-std::size_t SharedEstimates::kept() const {
-  const std::lock_guard lock(mutex_);
-  return entries_.size();
-}
-
-SharedEstimates::Estimated SharedEstimates::estimated_in(Entry& entry, const EstimateRoom& where, int frame,
-                                                         PreparedOthers& took) {
-  if (entry.estimated) return entry.estimated;
-  ReadPlanes read;
-  entry.estimated =
-      std::make_shared<const EstimatedFrame>(estimate_frame(where, plan_, settled_, shot_, frame, took, read));
-  const std::lock_guard lock(mutex_);
-  if (in_work_.is_left(frame)) entry.read = std::make_shared<const ReadPlanes>(std::move(read));
-  return entry.estimated;
-}
-
-TakenEstimates SharedEstimates::around(const EstimateRoom& where, int frame, PreparedOthers& took) {
-  const FramesAround window = plan_.accumulated(frame);
-  TakenEstimates taken;
-  taken.missing = window.missing;
-  // Those first that no other lane is at, so that lanes which need the same ones share the work.
-  for (const int other : window.there) {
-    const auto entry = entry_of(other);
-    const std::unique_lock lock(entry->estimating, std::try_to_lock);
-    if (lock) estimated_in(*entry, where, other, took);
-  }
-  for (const int other : window.there) {
-    const auto entry = entry_of(other);
-    const std::lock_guard lock(entry->estimating);
-    taken.of.push_back(estimated_in(*entry, where, other, took));
-    if (other == frame) taken.read = std::move(entry->read);
-  }
-  const EstimatedFrame& own = taken.own(frame);
-  std::erase_if(taken.of, [&](const auto& other) { return other->frame != frame && is_cut_between(own, *other); });
-  return taken;
-}
-
 namespace {
 
 std::size_t planes_in(const EstimatedFrame& frame) { return frame.values.size() / frame.depth.size(); }
