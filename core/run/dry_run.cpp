@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/base/text.h"
+#include "core/frame/settle.h"
 #include "core/options/check.h"
 #include "core/run/first_look.h"
 #include "core/run/frame_files.h"
@@ -48,6 +49,8 @@ std::string plan_text(const Settings& given) {
     if (!path.of(first).empty()) line(path.option, span_text(path.of(first), path.of(last)));
 
   FrameSource source = open_frame(first, plan.frames().front());
+  // Frames of a sequence are read as one of them that shows enough.
+  if (!plan.is_sequence()) settle_by_rows(source, first.input, memory_of_host(first.device).host_bytes);
   std::vector<std::string> channels;
   for (const auto& plane : source.planes.entries)
     for (const auto& channel : plane) channels.push_back(channel.channel);

@@ -8,8 +8,8 @@
 
 namespace alcove {
 
-/// The frames, files, size and memory of a run, by headers, and by pixels where the radius is to be proposed. Computes
-/// and writes nothing. Fails as the run would on settings and names.
+/// The frames, files, size and memory of a run. Computes and writes nothing. Fails as the run would on settings, names,
+/// and a single frame that cannot be read as it is.
 std::string plan_text(const Settings& settings);
 
 }  // namespace alcove
