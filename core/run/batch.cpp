@@ -196,7 +196,7 @@ class Batch {
       const OutputSettings& output = settings_.output;
       transform.emplace(output.ocio, output.display, output.view_transform);
     }
-    std::optional<Shot> shot;
+    std::optional<SharedFrames> shot;
     const bool takes_means = settings_.input.accumulate > 0 && needs_ao(settings_.output);
     if (takes_means || takes_others(settings_.input)) shot.emplace(plan_, settled ? &*settled : nullptr, frames);
     RunContext run{plan_,

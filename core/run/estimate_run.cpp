@@ -129,7 +129,7 @@ std::string text_of(const TakenEstimates& taken) {
   return "frames " + frames_text(frames) + missing;
 }
 
-TakenEstimates Shot::estimates_of(const EstimateRoom& where, int frame, PreparedOthers& took) {
+TakenEstimates SharedFrames::estimates_of(const EstimateRoom& where, int frame, PreparedOthers& took) {
   const FramesAround window = plan_.accumulated(frame);
   TakenEstimates taken{
       {}, estimated_.of(window.there, [&](int other) { return estimate(where, other, took); }), window.missing};
@@ -142,7 +142,7 @@ TakenEstimates Shot::estimates_of(const EstimateRoom& where, int frame, Prepared
   return taken;
 }
 
-EstimatedFrame Shot::estimate(const EstimateRoom& where, int frame, PreparedOthers& took) {
+EstimatedFrame SharedFrames::estimate(const EstimateRoom& where, int frame, PreparedOthers& took) {
   const Settings settings = of_estimate(plan_.at(frame));
   FrameSource source = open_frame(settings, frame);
   if (settled_) settle_like(source, *settled_);

@@ -23,7 +23,7 @@ struct RunContext {
   InputIdentities& identities;                  // of the plan
   const FrameSource* settled = nullptr;         // all frames are read as this one; null: each by itself
   const DisplayTransform* transform = nullptr;  // for the preview of a composite
-  Shot* shot = nullptr;                         // where frames take anything from others
+  SharedFrames* shot = nullptr;                 // where frames take anything from others
   bool takes_means = false;                     // a frame is the mean of many estimates
   Provenance provenance;                        // of settings whose camera file is the same for all frames
   std::function<bool()> stop = {};              // asked between steps: true drops the frame

@@ -158,15 +158,15 @@ std::string text_of(const Others& others) {
   return fmt::format("{}", fmt::join(parts, "; "));
 }
 
-Shot::Shot(const FramePlan& plan, const FrameSource* settled, std::span<const int> frames)
+SharedFrames::SharedFrames(const FramePlan& plan, const FrameSource* settled, std::span<const int> frames)
     : plan_(plan), settled_(settled), left_(frames.begin(), frames.end()) {}
 
-void Shot::begin(int frame) {
+void SharedFrames::begin(int frame) {
   const std::lock_guard lock(mutex_);
   begun_.insert(frame);
 }
 
-void Shot::done(int frame) {
+void SharedFrames::done(int frame) {
   const std::lock_guard lock(mutex_);
   std::erase(left_, frame);
   begun_.erase(frame);
@@ -190,8 +190,8 @@ void Shot::done(int frame) {
   std::erase_if(read_, [&](const auto& read) { return !is_taken(read.first); });
 }
 
-SeenFrame Shot::prepare(gpu::Recorder& gpu, const InputSettings& input, int frame, const char* option,
-                        PreparedOthers& took) const {
+SeenFrame SharedFrames::prepare(gpu::Recorder& gpu, const InputSettings& input, int frame, const char* option,
+                                PreparedOthers& took) const {
   Settings settings;
   settings.input = input;
   FrameSource source = find_frame(input, false, frame);
@@ -219,14 +219,15 @@ SeenFrame Shot::prepare(gpu::Recorder& gpu, const InputSettings& input, int fram
   return seen;
 }
 
-std::vector<Shot::Seen> Shot::seen(gpu::Recorder& gpu, const std::vector<int>& frames, PreparedOthers& took) {
+std::vector<SharedFrames::Seen> SharedFrames::seen(gpu::Recorder& gpu, const std::vector<int>& frames,
+                                                   PreparedOthers& took) {
   return seen_.of(frames, [&](int frame) {
     const InputSettings input = of_first_surface(plan_.at(frame).input, settled_);
     return prepare(gpu, input, frame, shot_option(input), took);
   });
 }
 
-Movement Shot::movement_of(gpu::Recorder& gpu, int frame, PreparedOthers& took) {
+Movement SharedFrames::movement_of(gpu::Recorder& gpu, int frame, PreparedOthers& took) {
   const Seen here = seen(gpu, {frame}, took)[0];
   const auto vectors = moving_by_vectors(gpu, frame, took, 1);
   std::vector<std::uint32_t> moving = judged(gpu, *here, seen(gpu, judges_of(plan_, frame), took), took);
@@ -237,8 +238,8 @@ Movement Shot::movement_of(gpu::Recorder& gpu, int frame, PreparedOthers& took) 
   return movement(std::move(moving));
 }
 
-std::optional<std::vector<std::uint8_t>> Shot::moving_by_vectors(gpu::Recorder& gpu, int frame, PreparedOthers& took,
-                                                                 int around) {
+std::optional<std::vector<std::uint8_t>> SharedFrames::moving_by_vectors(gpu::Recorder& gpu, int frame,
+                                                                         PreparedOthers& took, int around) {
   const InputSettings input = plan_.at(frame).input;
   if (input.motion.empty()) return std::nullopt;
   const Seen here = seen(gpu, {frame}, took)[0];
@@ -265,8 +266,8 @@ std::optional<std::vector<std::uint8_t>> Shot::moving_by_vectors(gpu::Recorder& 
        planes.path, frame);
 }
 
-std::vector<Shot::Judged> Shot::frames_around(gpu::Recorder& gpu, const FrameSource& target, int frame, Others& others,
-                                              PreparedOthers& took) {
+std::vector<SharedFrames::Judged> SharedFrames::frames_around(gpu::Recorder& gpu, const FrameSource& target, int frame,
+                                                              Others& others, PreparedOthers& took) {
   const int count = around_of(plan_.at(frame).input);
   const FramesAround around = plan_.around(frame, count);
   others.frames = around.there;
@@ -289,8 +290,8 @@ std::vector<Shot::Judged> Shot::frames_around(gpu::Recorder& gpu, const FrameSou
   return found;
 }
 
-std::vector<Shot::Judged> Shot::other_views(gpu::Recorder& gpu, const FrameSource& target, int frame, Others& others,
-                                            PreparedOthers& took) const {
+std::vector<SharedFrames::Judged> SharedFrames::other_views(gpu::Recorder& gpu, const FrameSource& target, int frame,
+                                                            Others& others, PreparedOthers& took) const {
   InputSettings input = of_first_surface(plan_.at(frame).input, settled_);
   others.views = other_views_of(target);
   require_place(target, frame, "--set other-views");
@@ -308,7 +309,7 @@ std::vector<Shot::Judged> Shot::other_views(gpu::Recorder& gpu, const FrameSourc
   return found;
 }
 
-Others Shot::others_of(gpu::Recorder& gpu, const FrameSource& target, int frame, PreparedOthers& took) {
+Others SharedFrames::others_of(gpu::Recorder& gpu, const FrameSource& target, int frame, PreparedOthers& took) {
   const InputSettings input = plan_.at(frame).input;
   Others others;
   std::vector<Judged> found;

@@ -102,11 +102,11 @@ bool takes_others(const InputSettings& settings);
 /// next one: each is made once where frames that lie beside each other are computed after each other. In any other
 /// order memory is bounded all the same, and what comes late is made again. What one frame takes from others is the
 /// same whatever lane asks, and in whatever order.
-class Shot {
+class SharedFrames {
  public:
   /// `frames` are those that are to be computed, in their order; each must be told of by begin() and done(). All are
   /// read as `settled` is; null: each by itself.
-  Shot(const FramePlan& plan, const FrameSource* settled, std::span<const int> frames);
+  SharedFrames(const FramePlan& plan, const FrameSource* settled, std::span<const int> frames);
 
   /// Gives what a frame takes from others, in upload buffers of the recorder, which is free before and after. Fails
   /// with ErrorKind::input, naming the file, where one of them cannot be read or its camera says not where it stands.

@@ -134,7 +134,7 @@ TEST_F(AccumulatedShots, no_more_estimates_are_kept_than_are_counted_whatever_th
   const Room room{.bytes = 1 << 30, .buffer_bytes = 1 << 30};
   std::vector<std::weak_ptr<const EstimatedFrame>> all;
   const auto most_kept = [&](std::span<const int> frames, std::size_t lanes) {
-    Shot shot(plan, nullptr, frames);
+    SharedFrames shot(plan, nullptr, frames);
     gpu::Recorder gpu(device());
     EstimateSlots slots;
     std::size_t most = 0;
@@ -172,7 +172,7 @@ TEST_F(AccumulatedShots, where_fewer_frames_count_as_many_are_listed) {
   Settings settings = settings_of_shot();
   settings.input.accumulate = 2;
   const FramePlan plan(settings);
-  Shot shot(plan, nullptr, plan.frames());
+  SharedFrames shot(plan, nullptr, plan.frames());
   gpu::Recorder gpu(device());
   const Room room{.bytes = 1 << 30, .buffer_bytes = 1 << 30};
   PreparedOthers took;
@@ -203,7 +203,7 @@ TEST_F(AccumulatedShots, no_more_of_what_estimates_see_is_kept_than_is_counted) 
   settings.input.motion.clear();
   settings.input.around = 1;
   const FramePlan plan(settings);
-  Shot shot(plan, nullptr, plan.frames());
+  SharedFrames shot(plan, nullptr, plan.frames());
   gpu::Recorder gpu(device());
   const Room room{.bytes = 1 << 30, .buffer_bytes = 1 << 30};
   for (const int frame : plan.frames()) {

@@ -204,7 +204,7 @@ TEST_F(Shots, keep_no_more_frames_than_their_windows) {
   for (const char* order : {"1-16", "16-1", "1-16x3,2-16x3,3-16x3"}) {
     settings.frames.frames = order;
     const FramePlan plan(settings);
-    Shot shared(plan, nullptr, plan.frames());
+    SharedFrames shared(plan, nullptr, plan.frames());
     gpu::Recorder gpu(device());
     for (const int frame : plan.frames()) {
       PreparedOthers took;
