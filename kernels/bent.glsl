@@ -15,18 +15,3 @@ vec2 bent_to(float cosine, float sine, float cos_gamma, float sin_gamma) {
   const float toward = cos_gamma * below * (1.0f + cosine + cosine * cosine) + sin_gamma * cubed;
   return vec2(across / 3.0f, toward / 3.0f);
 }
-
-/// The angle up to which a side's arc integral, down to the tangent plane at `whole` = gamma + pi/2, comes to this
-/// share; error below 0.002 rad from 1/64 to 63/64.
-float angle_of_share(float share, float whole, float cos_gamma, float sin_gamma) {
-  const float end = cos_gamma + whole * sin_gamma;
-  float theta = whole * acos(1.0f - 2.0f * share) / 3.14159265f;  // exact where gamma is 0
-  for (int i = 0; i < 3; i++) {                                   // Newton's method
-    const float sine = sin(theta);
-    const float cosine = cos(theta);
-    const float slope = 2.0f * sine * (cos_gamma * cosine + sin_gamma * sine);
-    const float excess = cos_gamma * sine * sine + sin_gamma * (theta - sine * cosine) - share * end;
-    theta = clamp(theta - excess / max(slope, 1e-3f), 0.0f, whole);
-  }
-  return theta;
-}

@@ -1,5 +1,5 @@
-// Sorts the tiles by what an estimator has to do for them: nothing for sky, nothing where all is as in the frame before,
-// and else whether it has to look at hidden surfaces.
+// Sorts the tiles by what an estimator has to do for them: nothing for sky, nor where all is as in the frame before.
+// Elsewhere it may have to look at hidden surfaces, or not.
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // In: depth, bounds of what is hidden, changes against the frame before, needed tiles.

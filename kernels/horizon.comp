@@ -17,6 +17,8 @@
 //   wide ("width as thickness": a blade of grass is as thin as it is narrow, a column as thick as it is broad), or as
 //   the user says. Nothing beyond the radius blocks. What the own surface blocks is an interval, exact; what all other
 //   runs block is counted in 24 sectors (sectors.glsl).
+// - With kInSectors, which is `--estimator bitmask`, what the own surface blocks is counted in these sectors too, as by
+//   the mask of Therrien et al., "Screen Space Indirect Lighting with Visibility Bitmask", 2023.
 // - A run that something nearer interrupts goes on behind it, as far as it would not be seen, and one that the image's
 //   border cuts goes on beyond it (pieces.glsl).
 // - Falloff weighs each arc by the distance of the sample that first blocks it ("incremental arcs"), which is exact for
@@ -43,23 +45,67 @@ layout(constant_id = kHorizonStepsId) const uint kSteps = 6;
 layout(constant_id = kHorizonModeId) const uint kMode = kFalloffNone;
 layout(constant_id = kHorizonSolidId) const uint kSolid = kThicknessWidth;
 layout(constant_id = kHorizonSparseId) const uint kSparse = 0;
-layout(scalar, push_constant) uniform Push { SlicesParams params; };
-layout(scalar, binding = kSlicesDepth) readonly buffer Depth { float depth[]; };
-layout(scalar, binding = kSlicesOccluders) readonly buffer Occluders { float occluder_depth[]; };
-layout(scalar, binding = kSlicesNormal) readonly buffer Normal { uint normal[]; };
-layout(scalar, binding = kSlicesAo) writeonly buffer Ao { float ao[]; };
-layout(scalar, binding = kSlicesList) readonly buffer List { uint list[]; };
-layout(scalar, binding = kSlicesSites) readonly buffer Sites { uint sites[]; };
-layout(scalar, binding = kSlicesSiteCounts) readonly buffer SiteCountsBuffer { SiteCounts site_counts; };
-layout(scalar, binding = kSlicesCounts) readonly buffer Counts { TileCounts counts; };
-layout(scalar, binding = kSlicesBent) writeonly buffer Bent { float bent[]; };
-layout(scalar, binding = kSlicesCompleted) writeonly buffer Completed { float completed[]; };
-layout(scalar, binding = kSlicesHidden) readonly buffer Hidden { float hidden[]; };
+layout(scalar, push_constant) uniform Push { HorizonParams params; };
+layout(scalar, binding = kHorizonDepth) readonly buffer Depth { float depth[]; };
+layout(scalar, binding = kHorizonOccluders) readonly buffer Occluders { float occluder_depth[]; };
+layout(scalar, binding = kHorizonNormal) readonly buffer Normal { uint normal[]; };
+layout(scalar, binding = kHorizonAo) writeonly buffer Ao { float ao[]; };
+layout(scalar, binding = kHorizonList) readonly buffer List { uint list[]; };
+layout(scalar, binding = kHorizonSites) readonly buffer Sites { uint sites[]; };
+layout(scalar, binding = kHorizonSiteCounts) readonly buffer SiteCountsBuffer { SiteCounts site_counts; };
+layout(scalar, binding = kHorizonCounts) readonly buffer Counts { TileCounts counts; };
+layout(scalar, binding = kHorizonBent) writeonly buffer Bent { float bent[]; };
+layout(scalar, binding = kHorizonCompleted) writeonly buffer Completed { float completed[]; };
+layout(scalar, binding = kHorizonHidden) readonly buffer Hidden { float hidden[]; };
 
-// That of this kernel; `hidden` is not looked at.
-const int kSurfaces = 1;
+// How many surfaces a pixel has at most: 1, or for horizon_layers as kSolid says. CMakeLists.txt makes two kernels of
+// this file, since drivers take long over code that is left out by a specialization constant alone.
+const int kSurfaces = ALCOVE_SURFACES;
 
 #include "horizon.glsl"
+#include "receivers.glsl"
+
+void write_bent(int index, int plane, vec3 b) {
+  for (int c = 0; c < 3; c++) bent[index + c * plane] = stored_bent(b)[c];
+}
+
+/// Writes the visibility of a pixel and, where it is asked for, its mean open direction.
+void estimate(ivec2 pixel) {
+  const View view = params.view;
+  const int index = index_of(view, pixel);
+  const int plane = view.size.x * view.size.y;
+  const int ao_index = index + int(params.plane) * plane;
+  const float z = depth[index];
+  if (z >= kSkyDepth) {
+    ao[ao_index] = 1.0;
+    if (kTellsCompleted) completed[index] = 0.0;
+    if (kBent) write_bent(index, plane, vec3(0));
+    return;
+  }
+  const Receiver r = receiver_at(view, pixel, z, unpack_normal(normal[index]), params.radius, params.depth_precision);
+  const Reach reach = reach_of(view, params.radius, params.falloff_start, params.thickness, params.bias);
+  const vec2 noise = pixel_noise(pixel + params.noise_origin, params.noise_shift);
+  float blocked = 0.0;
+  float whole = 0.0;
+  float completed_arcs = 0.0;
+  vec3 bent_blocked = vec3(0);
+  for (uint s = 0u; s < kSlices; s++) {
+    const Slice slice = slice_at(view, r, s, kSlices, noise.x);
+    if (slice.weight < kLeastWeight) continue;
+    whole += slice.share * slice.weight * (slice.cos_gamma + slice.gamma * slice.sin_gamma);
+    for (int sign = -1; sign <= 1; sign += 2) {
+      const Side side = side_of(view, r, slice, float(sign), reach);
+      const vec4 arcs = slice.share * slice.weight * search(r, side, reach, draw_of(noise, s, uint(sign > 0)));
+      blocked += arcs.x;
+      if (kTellsCompleted) completed_arcs += arcs.w;
+      if (kBent) bent_blocked += arcs.y * float(sign) * slice.t + arcs.z * r.eye;
+    }
+  }
+  const float visibility = whole > 0.0 ? clamp(1.0 - blocked / whole, 0.0, 1.0) : 1.0;
+  ao[ao_index] = visibility;
+  if (kTellsCompleted) completed[index] = whole > 0.0 ? clamp(completed_arcs / whole, 0.0, 1.0 - visibility) : 0.0;
+  if (kBent) write_bent(index, plane, open_bent(r.normal) - (whole > 0.0 ? bent_blocked / whole : vec3(0)));
+}
 
 void main() {
   const ListedPixel here = listed_pixel(gl_WorkGroupID.xy, gl_LocalInvocationIndex);

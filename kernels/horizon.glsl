@@ -1,8 +1,7 @@
-// The search of a side of a slice by horizon.comp and horizon_layers.comp: runs of samples, and what they block.
+// The search of a side of a slice by horizon.comp: runs of samples, and what they block.
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The kernel has declared its buffers, constants and parameters, and how many surfaces a pixel has at most, kSurfaces.
-// It is one of two kernels since drivers take long over code that is left out by a specialization constant alone.
 
 const uint kFalloff = kMode & ~(kWithBent | kWithCompleted);
 const bool kBent = (kMode & kWithBent) != 0u;
@@ -10,6 +9,7 @@ const bool kTellsCompleted = (kMode & kWithCompleted) != 0u;
 const uint kThickness = kSolid & 3u;
 const bool kBeyondBorder = (kSolid & kCompletesBorder) != 0u;
 const bool kBehindOthers = (kSolid & kCompletesHidden) != 0u;
+const bool kAllInSectors = (kSolid & kInSectors) != 0u;
 
 /// A run is wider than the distance of its outer samples by a pixel and, on average, by this part of the gaps to the
 /// samples before and behind it.
@@ -20,11 +20,6 @@ const float kGapShare = 0.5;
 const float kSameSurface = 1.44;
 
 #include "pieces.glsl"
-
-Sample surface_at(Receiver r, Side side, Reach reach, float offset, vec2 beside, float z) {
-  return sample_of(r, side, reach, offset, beside, z);
-}
-
 #include "surfaces.glsl"
 
 /// A run of samples that is not the receiver's own surface. Angles go by slope_of(); where far > near nothing of it
@@ -55,13 +50,19 @@ vec3 arcs_of(Side side, uint sectors) { return vec3(arc_of(side, sectors), kBent
 /// These integrals over what is blocked.
 vec3 blocked_arcs(Side side, Blocked blocked, float shift) {
   const float plane = slope_of(side.ahead), far = max(blocked.far, plane);
-  const vec3 own = blocked.near > far ? arcs_to(side, place_at(far)) - arcs_to(side, place_at(blocked.near)) : vec3(0);
-  if (kThickness == kThicknessEndless && kSurfaces == 1) return own;
-  if (kThickness == kThicknessEndless) {
+  const bool is_exact = !kAllInSectors && blocked.near > far;
+  const vec3 own = is_exact ? arcs_to(side, place_at(far)) - arcs_to(side, place_at(blocked.near)) : vec3(0);
+  if (kThickness == kThicknessEndless && kSurfaces == 1 && !kAllInSectors) return own;
+  uint others;
+  if (kAllInSectors) {
+    const uint joined = sectors_below(blocked.near, shift) & ~sectors_below(blocked.far, shift);
+    others = (blocked.sectors | joined) & ~sectors_below(plane, shift);
+  } else if (kThickness == kThicknessEndless) {
     const uint joined = sectors_below(max(blocked.near, plane), shift) & ~sectors_below(far, shift);
-    return own + arcs_of(side, blocked.sectors & ~(joined | sectors_below(plane, shift)));
+    others = blocked.sectors & ~(joined | sectors_below(plane, shift));
+  } else {
+    others = blocked.sectors & ~sectors_below(max(blocked.near, plane), shift);
   }
-  const uint others = blocked.sectors & ~sectors_below(max(blocked.near, plane), shift);
   return own + arcs_of(side, others);
 }
 
@@ -398,7 +399,3 @@ Draw draw_of(vec2 noise, uint slice, uint side) {
   const float jitter = fract(noise.y + kGolden * float(2u * slice + side));
   return Draw(jitter, fract(11.0 * jitter));
 }
-
-#include "slices.glsl"
-
-#include "receivers.glsl"

@@ -235,40 +235,10 @@ bool same_surface(Receiver r, Reach reach, float z, float last_z, float gap) {
 /// The arc integral of a whole side, down to the tangent plane (Jimenez et al., 2016, equation 7, one side of it).
 float whole_arc(Side side) { return 0.5 * (side.cos_gamma + (side.gamma + kHalfPi) * side.sin_gamma); }
 
-/// The blocked part of a side's arc integral between its view ray and the angle of this cotangent.
-float arc_to(Side side, float cot) {
-  return 0.5 * ((side.cos_gamma - cot * side.sin_gamma) / (1.0 + cot * cot) + angle_of(cot, 1.0) * side.sin_gamma);
-}
-
-/// The same for the angle of a place.
+/// The blocked part of a side's arc integral between its view ray and the angle of a place.
 float arc_to(Side side, vec2 place) {
   return 0.5 * (place.x * (place.x * side.cos_gamma - place.y * side.sin_gamma) / dot(place, place) +
                 angle_of(place.y, place.x) * side.sin_gamma);
-}
-
-const uint kSectors = 32u;  // of a side, of equal measure of its arc integral
-
-/// The sectors between V and the angle of a cotangent, V's as the lowest bit. A boundary falls at floor(F + shift):
-/// unbiased where shifts are even in [0, 1).
-uint sectors_to(Side side, float whole, float cot, float shift) {
-  const int n = int(clamp(arc_to(side, max(cot, side.plane_cot)) / whole, 0.0, 1.0) * float(kSectors) + shift);
-  return n >= int(kSectors) ? 0xffffffffu : (1u << uint(n)) - 1u;
-}
-
-/// bent_to() over sectors. As boundaries fall at floor(F + shift), a sector that begins at share F stands on average
-/// for what begins at F + 1/2 - shift.
-vec2 bent_of_sectors(Side side, uint sectors, float shift) {
-  const float whole = side.gamma + kHalfPi;
-  vec2 sum = sectors >> (kSectors - 1u) != 0u ? bent_to(-side.sin_gamma, side.cos_gamma, side.cos_gamma, side.sin_gamma)
-                                              : vec2(0);
-  for (uint changes = (sectors ^ (sectors << 1)) & ~1u; changes != 0u; changes &= changes - 1u) {
-    const int k = findLSB(changes);
-    const float theta =
-        angle_of_share((float(k) + 0.5 - shift) / float(kSectors), whole, side.cos_gamma, side.sin_gamma);
-    const vec2 bent = bent_to(cos(theta), sin(theta), side.cos_gamma, side.sin_gamma);
-    sum += (sectors >> uint(k) & 1u) != 0u ? -bent : bent;
-  }
-  return sum;
 }
 
 /// The direction of the eye's own ray at a place.

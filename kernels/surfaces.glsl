@@ -5,8 +5,8 @@
 // back of a column, then the first again. One that closes a solid is the exact back of the one before it, and by itself
 // as thin as a sheet.
 //
-// The kernel has declared its buffers `occluder_depth` and `hidden`, how many surfaces a pixel has at most, kSurfaces,
-// and how it makes a sample of a surface, surface_at(). To be included after pieces.glsl.
+// The kernel has declared its buffers `occluder_depth` and `hidden`, and how many surfaces a pixel has at most,
+// kSurfaces. To be included after pieces.glsl.
 
 #include "layers.h"
 
@@ -34,7 +34,7 @@ Surfaces surfaces_at(Receiver r, Side side, Reach reach, float offset, int plane
   bool closes[kMostSurfaces];
   for (int i = 0; i < kSurfaces; i++) {
     const float z = i == 0 ? occluder_depth[index] : hidden[index + (i - 1) * plane];
-    const Sample s = surface_at(r, side, reach, offset, beside, abs(z));
+    const Sample s = sample_of(r, side, reach, offset, beside, abs(z));
     const bool is_near = s.distance_sq < kFarEnd * kFarEnd * reach.radius_sq;
     found.at[i] = s;
     found.exists[i] = i == 0 ? true : both(s.z < kSkyDepth, is_near);

@@ -38,7 +38,6 @@ gpu::Buffer& confidence(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameI
     out.listed = classify(gpu, gbuffer, hidden, skipping, reach.radius, chosen, out, 0, prefix);
     list_sites(gpu, gbuffer, chosen, out.listed, prefix);
     horizon(gpu, counted, reach, sampling, out, 0);
-    horizon_layers(gpu, counted, reach, sampling, out, 0);
     return chosen.rows ? interpolate(gpu, gbuffer, *out.ao, chosen, denoiser, prefix)
                        : denoise(gpu, gbuffer, *out.ao, denoiser, prefix);
   };

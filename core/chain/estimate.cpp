@@ -4,13 +4,11 @@
 
 #include <cmath>
 #include <limits>
-#include <optional>
 #include <vector>
 
 #include "core/base/estimator_facts.h"
 #include "core/chain/pass_common.h"
 #include "core/chain/sites.h"
-#include "kernels/bitmask.h"
 #include "kernels/bounds.h"
 #include "kernels/classify.h"
 #include "kernels/crytek.h"
@@ -55,15 +53,6 @@ vec2 noise_shift(int frame, std::uint32_t seed) {
   return {shift(kR2X, kRootX), shift(kR2Y, kRootY)};
 }
 
-std::vector<uint> slice_constants(const Reach& reach, const Sampling& sampling, const Estimate& out,
-                                  std::optional<uint> behind = {}) {
-  std::vector<uint> constants{uint(sampling.slices), uint(sampling.steps),
-                              uint(reach.falloff) | (out.bent ? kWithBent : 0) | (out.completed ? kWithCompleted : 0),
-                              out.listed.sites ? 1u : 0u};
-  if (behind) constants.push_back(*behind);
-  return constants;
-}
-
 /// What is completed, as kernels take it.
 uint completion_of(const Reach& reach) {
   switch (reach.complete) {
@@ -84,42 +73,6 @@ gpu::Extent block_extent(const View& view) {
   return {groups_of(view.size.x, uint(kTile * kTileBlock)), groups_of(view.size.y, uint(kTile * kTileBlock))};
 }
 
-/// The parameters of an estimator that searches slices.
-SlicesParams slice_parameters(const GBuffer& gbuffer, const Reach& reach, const Sampling& sampling, uint plane) {
-  SlicesParams params{};
-  params.view = gbuffer.view;
-  params.radius = reach.radius;
-  params.falloff_start = reach.falloff_start;
-  params.noise_origin = gbuffer.grid.origin;
-  params.noise_shift = sampling.noise_shift;
-  params.thickness = reach.thickness;
-  params.bias = reach.bias;
-  params.plane = plane;
-  params.depth_precision = gbuffer.depth_precision;
-  return params;
-}
-
-/// The buffers of such an estimator.
-std::vector<gpu::Binding> slice_buffers(const GBuffer& gbuffer, const Estimate& out) {
-  return {{kSlicesDepth, *gbuffer.depth},
-          {kSlicesNormal, *gbuffer.normal},
-          {kSlicesAo, *out.ao},
-          {kSlicesBent, out.bent ? *out.bent : *out.ao},
-          {kSlicesList, *out.listed.tiles},
-          {kSlicesCounts, *out.listed.counts},
-          {kSlicesSites, out.listed.sites ? *out.listed.sites : *out.listed.tiles},
-          {kSlicesSiteCounts, out.listed.sites ? *out.listed.site_counts : *out.listed.counts},
-          {kSlicesCompleted, out.completed ? *out.completed : *out.ao},
-          {kSlicesOccluders, occluder_depth_of(gbuffer)}};
-}
-
-/// The same with the hidden surfaces.
-std::vector<gpu::Binding> layered_slice_buffers(const GBuffer& gbuffer, const Estimate& out) {
-  std::vector<gpu::Binding> buffers = slice_buffers(gbuffer, out);
-  buffers.push_back({kSlicesHidden, *occluder_hidden_of(gbuffer)});
-  return buffers;
-}
-
 }  // namespace
 
 gpu::Extent estimate_extent(const TileList& list) {
@@ -136,9 +89,13 @@ gpu::Extent list_extent(const TileList& list) {
 Reach reach_of(const EstimatorSettings& settings, double radius) {
   // Crytek's samples fill the sphere of the radius whatever the falloff.
   const double end = settings.estimator == Estimator::crytek ? 1 : settings.falloff_end;
-  return {float(radius * end),  float(radius * settings.falloff_start),
-          settings.falloff,     thickness_of(settings),
-          float(settings.bias), settings.complete};
+  return {float(radius * end),
+          float(radius * settings.falloff_start),
+          settings.falloff,
+          thickness_of(settings),
+          float(settings.bias),
+          settings.complete,
+          settings.estimator == Estimator::bitmask};
 }
 
 bool completes_behind(const Reach& reach) { return reach.complete == Completion::all && !std::isinf(reach.thickness); }
@@ -193,10 +150,8 @@ Estimate estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const Sites& sites
     result.listed = out.listed;
     switch (settings.estimator) {
       case Estimator::gtao:
-        if (!is_exact) {
-          horizon(gpu, gbuffer, reach, sampling, out, plane);
-          horizon_layers(gpu, gbuffer, reach, sampling, out, plane);
-        }
+      case Estimator::bitmask:
+        if (!is_exact) horizon(gpu, gbuffer, reach, sampling, out, plane);
         for (int i = 0; is_exact && settings.tolerance == 0 && i < directions.count; i++) {
           Profile lines = profile(gpu, gbuffer, directions, i, reach);
           complete(gpu, gbuffer, lines, reach);
@@ -210,10 +165,6 @@ Estimate estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const Sites& sites
             refine(gpu, gbuffer, search, result, count);
           }
         }
-        break;
-      case Estimator::bitmask:
-        bitmask(gpu, gbuffer, reach, sampling, out, plane);
-        bitmask_layers(gpu, gbuffer, reach, sampling, out, plane);
         break;
       case Estimator::hbao: hbao(gpu, gbuffer, reach, sampling, settings.elevation, out, plane); break;
       case Estimator::crytek: crytek(gpu, gbuffer, reach, sampling, volume, out, plane); break;
@@ -275,33 +226,35 @@ TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer*
 
 void horizon(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, const Sampling& sampling,
              const Estimate& out, uint plane) {
-  const uint behind = thickness_rule_of(reach.thickness) | completion_of(reach);
-  gpu.dispatch("horizon", slice_parameters(gbuffer, reach, sampling, plane), slice_buffers(gbuffer, out),
-               estimate_extent(out.listed), slice_constants(reach, sampling, out, behind));
-}
-
-void horizon_layers(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, const Sampling& sampling,
-                    const Estimate& out, uint plane) {
+  HorizonParams params{};
+  params.view = gbuffer.view;
+  params.radius = reach.radius;
+  params.falloff_start = reach.falloff_start;
+  params.noise_origin = gbuffer.grid.origin;
+  params.noise_shift = sampling.noise_shift;
+  params.thickness = reach.thickness;
+  params.bias = reach.bias;
+  params.plane = plane;
+  params.depth_precision = gbuffer.depth_precision;
+  std::vector<gpu::Binding> buffers{
+      {kHorizonDepth, *gbuffer.depth},
+      {kHorizonNormal, *gbuffer.normal},
+      {kHorizonAo, *out.ao},
+      {kHorizonBent, out.bent ? *out.bent : *out.ao},
+      {kHorizonList, *out.listed.tiles},
+      {kHorizonCounts, *out.listed.counts},
+      {kHorizonSites, out.listed.sites ? *out.listed.sites : *out.listed.tiles},
+      {kHorizonSiteCounts, out.listed.sites ? *out.listed.site_counts : *out.listed.counts},
+      {kHorizonCompleted, out.completed ? *out.completed : *out.ao},
+      {kHorizonOccluders, occluder_depth_of(gbuffer)}};
+  const uint mode = uint(reach.falloff) | (out.bent ? kWithBent : 0) | (out.completed ? kWithCompleted : 0);
+  const uint solid = thickness_rule_of(reach.thickness) | completion_of(reach) | (reach.in_sectors ? kInSectors : 0);
+  std::vector<uint> constants{uint(sampling.slices), uint(sampling.steps), mode, out.listed.sites ? 1u : 0u, solid};
+  gpu.dispatch("horizon", params, buffers, estimate_extent(out.listed), constants);
   if (gbuffer.surfaces == 1) return;
-  const uint behind =
-      thickness_rule_of(reach.thickness) | completion_of(reach) | kHiddenSurface * (gbuffer.surfaces - 1);
-  gpu.dispatch("horizon_layers", slice_parameters(gbuffer, reach, sampling, plane), layered_slice_buffers(gbuffer, out),
-               estimate_extent(out.listed), slice_constants(reach, sampling, out, behind));
-}
-
-void bitmask(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, const Sampling& sampling,
-             const Estimate& out, uint plane) {
-  const uint behind = completion_of(reach);
-  gpu.dispatch("bitmask", slice_parameters(gbuffer, reach, sampling, plane), slice_buffers(gbuffer, out),
-               estimate_extent(out.listed), slice_constants(reach, sampling, out, behind));
-}
-
-void bitmask_layers(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, const Sampling& sampling,
-                    const Estimate& out, uint plane) {
-  if (gbuffer.surfaces == 1) return;
-  const uint behind = completion_of(reach) | kHiddenSurface * (gbuffer.surfaces - 1);
-  gpu.dispatch("bitmask_layers", slice_parameters(gbuffer, reach, sampling, plane), layered_slice_buffers(gbuffer, out),
-               estimate_extent(out.listed), slice_constants(reach, sampling, out, behind));
+  buffers.push_back({kHorizonHidden, *occluder_hidden_of(gbuffer)});
+  constants.back() = solid | kHiddenSurface * (gbuffer.surfaces - 1);
+  gpu.dispatch("horizon_layers", params, buffers, estimate_extent(out.listed), constants);
 }
 
 void hbao(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, const Sampling& sampling, Elevation elevation,
@@ -325,7 +278,8 @@ void hbao(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, const 
                 {kHbaoCounts, *out.listed.counts},
                 {kHbaoSites, out.listed.sites ? *out.listed.sites : *out.listed.tiles},
                 {kHbaoSiteCounts, out.listed.sites ? *out.listed.site_counts : *out.listed.counts}},
-               estimate_extent(out.listed), slice_constants(reach, sampling, out));
+               estimate_extent(out.listed),
+               {uint(sampling.slices), uint(sampling.steps), uint(reach.falloff), out.listed.sites ? 1u : 0u});
 }
 
 void crytek(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, const Sampling& sampling,

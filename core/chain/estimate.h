@@ -53,6 +53,7 @@ struct Reach {
   float thickness;      // scene units that an occluder goes on behind what is seen of it; 0: as deep as wide
   float bias;           // the least height that blocks: see EstimatorSettings::bias
   Completion complete;  // where surfaces go on unseen: see EstimatorSettings::complete
+  bool in_sectors;      // of bitmask: all that blocks is counted in sectors, no horizon is exact
 };
 Reach reach_of(const EstimatorSettings& settings, double radius);
 /// Whether surfaces go on behind what is nearer. What endless occluders hide is blocked anyway.
@@ -97,15 +98,9 @@ const gpu::Buffer* bounds(gpu::Recorder& gpu, const GBuffer& gbuffer, const Skip
 TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer* bounds, const Skipping& skipping,
                   float radius, const Sites& sites, const Estimate& out, uint plane, const std::string& prefix = "");
 
+/// gtao and bitmask. Tiles that have hidden surfaces within reach are searched by horizon_layers.
 void horizon(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, const Sampling& sampling,
              const Estimate& out, uint plane);
-void bitmask(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, const Sampling& sampling,
-             const Estimate& out, uint plane);
-/// The tiles that have hidden surfaces within reach, which those two leave out; nothing where nothing is hidden.
-void horizon_layers(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, const Sampling& sampling,
-                    const Estimate& out, uint plane);
-void bitmask_layers(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, const Sampling& sampling,
-                    const Estimate& out, uint plane);
 void hbao(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, const Sampling& sampling, Elevation elevation,
           const Estimate& out, uint plane);
 void crytek(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, const Sampling& sampling,

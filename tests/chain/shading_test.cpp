@@ -325,23 +325,6 @@ TEST(BentNormal, of_a_side_is_its_integral) {
   }
 }
 
-TEST(BentNormal, share_of_a_side_gives_the_angle_back) {
-  for (double gamma = -1.5; gamma <= 1.5; gamma += 0.125) {
-    const double whole = gamma + kPi / 2, end = std::cos(gamma) + whole * std::sin(gamma);
-    const auto arc = [&](double theta) {
-      return std::cos(gamma) * std::sin(theta) * std::sin(theta) +
-             std::sin(gamma) * (theta - std::sin(theta) * std::cos(theta));
-    };
-    for (int k = 1; k < 64; k++) {
-      double low = 0, high = whole;  // by bisection
-      for (int i = 0; i < 50; i++) (arc(0.5 * (low + high)) < k / 64.0 * end ? low : high) = 0.5 * (low + high);
-      ASSERT_NEAR(glsl::angle_of_share(k / 64.0f, float(whole), float(std::cos(gamma)), float(std::sin(gamma))), low,
-                  2e-3)
-          << gamma << " " << k;
-    }
-  }
-}
-
 /// The mean over slices about the view ray z of a receiver; `side` gives the open angle of a side, from its azimuth and
 /// its whole angle.
 Vec3 mean_open_direction(Vec3 normal, const std::function<double(double azimuth, double whole)>& side) {

@@ -34,7 +34,7 @@ std::string error_of(Work work) {
 
 TEST(Reflection, reads_parameter_sizes_that_the_host_sends) {
   EXPECT_EQ(gpu::reflect(gpu::kernel_code("prepare")).parameter_bytes, sizeof(PrepareParams));
-  EXPECT_EQ(gpu::reflect(gpu::kernel_code("horizon")).parameter_bytes, sizeof(SlicesParams));
+  EXPECT_EQ(gpu::reflect(gpu::kernel_code("horizon")).parameter_bytes, sizeof(HorizonParams));
   EXPECT_EQ(gpu::reflect(gpu::kernel_code("shape")).parameter_bytes, sizeof(ShapeParams));
   EXPECT_EQ(gpu::reflect(gpu::kernel_code("composite")).parameter_bytes, sizeof(CompositeParams));
 }
@@ -42,9 +42,9 @@ TEST(Reflection, reads_parameter_sizes_that_the_host_sends) {
 TEST(Reflection, reads_bindings_groups_and_constants) {
   const auto horizon = gpu::reflect(gpu::kernel_code("horizon"));
   EXPECT_THAT(horizon.bindings,
-              ElementsAre(kSlicesDepth, kSlicesNormal, kSlicesAo, kSlicesBent, kSlicesList, kSlicesCounts,
-                          kSlicesCompleted, kSlicesSites, kSlicesSiteCounts, kSlicesOccluders));
-  EXPECT_TRUE(gpu::reflect(gpu::kernel_code("horizon_layers")).bindings.contains(kSlicesHidden));
+              ElementsAre(kHorizonDepth, kHorizonNormal, kHorizonAo, kHorizonBent, kHorizonList, kHorizonCounts,
+                          kHorizonCompleted, kHorizonSites, kHorizonSiteCounts, kHorizonOccluders));
+  EXPECT_TRUE(gpu::reflect(gpu::kernel_code("horizon_layers")).bindings.contains(kHorizonHidden));
   EXPECT_THAT(horizon.group, ElementsAre(kGroupX, kGroupY, 1u));
   EXPECT_THAT(horizon.constant_ids,
               ElementsAre(kHorizonSlicesId, kHorizonStepsId, kHorizonModeId, kHorizonSparseId, kHorizonSolidId));

@@ -172,8 +172,8 @@ TEST(Grid, estimators_write_their_own_plane_and_all_of_it) {
         } else {
           out.listed = classify(gpu, gbuffer, nullptr, skipping, reach.radius, Sites{}, out, 1);
           switch (settings.estimator) {
-            case Estimator::gtao: horizon(gpu, gbuffer, reach, sampling, out, 1); break;
-            case Estimator::bitmask: bitmask(gpu, gbuffer, reach, sampling, out, 1); break;
+            case Estimator::gtao:
+            case Estimator::bitmask: horizon(gpu, gbuffer, reach, sampling, out, 1); break;
             case Estimator::hbao: hbao(gpu, gbuffer, reach, sampling, settings.elevation, out, 1); break;
             case Estimator::crytek:
               crytek(gpu, gbuffer, reach, sampling, {settings.samples, settings.sample_kernel, settings.range_check},
