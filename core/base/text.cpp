@@ -209,4 +209,8 @@ std::string for_shell(const std::string& word) {
   return text + "'";
 }
 
+std::string typed(std::string_view option, std::string_view value) {
+  return fmt::format("{}{}{}", option, option.starts_with("--set ") ? '=' : ' ', value);
+}
+
 }  // namespace alcove

@@ -39,6 +39,9 @@ std::string printable(std::string_view text);
 /// A word as a shell takes it: quoted where it must be.
 std::string for_shell(const std::string& word);
 
+/// An option with its value as they are typed: "--view left"; of a key "--set stride=4".
+std::string typed(std::string_view option, std::string_view value);
+
 /// Reads a text that is a number and nothing else, in whatever language the process speaks: decimals have a point. The
 /// number may be infinite or NaN, and is infinite where it is too large.
 std::optional<double> number_of(std::string_view text);

@@ -59,8 +59,8 @@ std::string known_name(const std::string& config, const char* option, const std:
   for (const auto& known : names)
     if (lower_case(known) == lower_case(name)) return known;
   const std::string file = display_config_file(config);
-  fail(ErrorKind::input, "{}: {} {}: the configuration has no such name{}; it has {}",
-       file.empty() ? "the built-in OpenColorIO configuration (--set ocio names another)" : file, option, name,
+  fail(ErrorKind::input, "{}: {}: the configuration has no such name{}; it has {}",
+       file.empty() ? "the built-in OpenColorIO configuration (--set ocio names another)" : file, typed(option, name),
        suggestion(name, names), list_of(names));
 }
 

@@ -34,8 +34,8 @@ std::vector<std::uint32_t> numbers_of(const std::string& path, const Objects& me
   for (const auto& word : split(meant.words)) {
     const auto number = number_in(word);
     if (!number)
-      fail(ErrorKind::input, "{}: {} {}: channel {} holds numbers, and is no layer of a Cryptomatte ({})", path,
-           meant.option, word, meant.channel, meant.channel_names.channel_option);
+      fail(ErrorKind::input, "{}: {}: channel {} holds numbers, and is no layer of a Cryptomatte ({})", path,
+           typed(meant.option, word), meant.channel, meant.channel_names.channel_option);
     numbers.push_back(std::bit_cast<std::uint32_t>(*number));
   }
   return numbers;
@@ -132,12 +132,12 @@ std::vector<std::uint32_t> objects_of(const std::string& path, const Cryptomatte
   if (!objects.empty()) return objects;
   if (matte.manifest.empty() && !is_pattern(word.text)) return {cryptomatte_id(unescaped(word.text))};
   if (matte.manifest.empty())
-    fail(ErrorKind::input, "{}: {} {}: Cryptomatte {} has no manifest{}, so that only whole names are known; {}", path,
-         option, word.text, matte.name, matte.lacking.empty() ? "" : " (" + matte.lacking + ")", kEscapes);
+    fail(ErrorKind::input, "{}: {}: Cryptomatte {} has no manifest{}, so that only whole names are known; {}", path,
+         typed(option, word.text), matte.name, matte.lacking.empty() ? "" : " (" + matte.lacking + ")", kEscapes);
   std::vector<std::string> names;
   for (const auto& [name, id] : matte.manifest) names.push_back(name);
   const auto near = shown(nearest_names(word.text, names));
-  fail(ErrorKind::input, "{}: {} {}: Cryptomatte {} has no such object{}; it has {}; {}", path, option, word.text,
+  fail(ErrorKind::input, "{}: {}: Cryptomatte {} has no such object{}; it has {}; {}", path, typed(option, word.text),
        matte.name, near.empty() ? "" : fmt::format(" (did you mean {}?)", linked(near, "or")), list_of(shown(names)),
        kEscapes);
 }
@@ -156,10 +156,10 @@ const Cryptomatte& chosen(const std::vector<Cryptomatte>& mattes, const std::str
   if (!exact.empty()) fitting = exact;
   if (fitting.size() == 1 || mattes.size() == 1) return fitting.empty() ? mattes.front() : *fitting.front();
   if (fitting.empty())
-    fail(ErrorKind::input, "{}: {} {}: none of the Cryptomattes {} has it; {}", path, meant.option, meant.words,
+    fail(ErrorKind::input, "{}: {}: none of the Cryptomattes {} has it; {}", path, typed(meant.option, meant.words),
          list_of(names), kEscapes);
-  fail(ErrorKind::input, "{}: {} {}: several of the Cryptomattes {} have it: say which with {}", path, meant.option,
-       meant.words, list_of(names), meant.channel_names.channel_option);
+  fail(ErrorKind::input, "{}: {}: several of the Cryptomattes {} have it: say which with {}", path,
+       typed(meant.option, meant.words), list_of(names), meant.channel_names.channel_option);
 }
 
 /// Takes the ranks and the objects of a Cryptomatte.
@@ -171,7 +171,7 @@ void take(FrameSource& source, std::size_t file, const Cryptomatte& matte, const
     std::ranges::copy(objects_of(path, matte, word, meant.option), std::back_inserter(reading.objects));
     if (word.names.size() > 1)
       source.notes.push_back({NoteCode::several_objects,
-                              fmt::format("{} {} stands for {} objects of {}: {}", meant.option, word.text,
+                              fmt::format("{} stands for {} objects of {}: {}", typed(meant.option, word.text),
                                           word.names.size(), matte.name, list_of(shown(word.names), kShownObjects))});
   }
   for (const auto& [object, coverage] : matte.ranks)
@@ -210,9 +210,9 @@ void find_objects(FrameSource& source, ChannelSearch& search, std::size_t file, 
   }
   if (mattes.empty())
     fail(ErrorKind::input,
-         "{}: {} {}: the file has no Cryptomatte: give one with --set objects, a file of coverage instead of names, or "
+         "{}: {}: the file has no Cryptomatte: give one with --set objects, a file of coverage instead of names, or "
          "numbers of a channel (--set object-channel)",
-         path, meant.option, meant.words);
+         path, typed(meant.option, meant.words));
   take(source, file, chosen(mattes, path, meant), meant, source.occluders, channels);
 }
 

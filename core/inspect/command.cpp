@@ -21,17 +21,14 @@ class Command {
 
   void add(const std::string& word) { text_ += " " + word; }
   void add(const char* option, const std::string& value) {
-    if (!value.empty()) text_ += fmt::format(" {}{}{}", option, link(option), for_shell(value));
+    if (!value.empty()) text_ += " " + typed(option, for_shell(value));
   }
   void add(const char* option, const std::optional<double>& value) {
-    if (value) text_ += fmt::format(" {}{}{}", option, link(option), *value);
+    if (value) text_ += " " + typed(option, fmt::format("{}", *value));
   }
   const std::string& text() const { return text_; }
 
  private:
-  /// What stands between an option, or a key of --set, and its value.
-  static char link(std::string_view option) { return option.starts_with("--set ") ? '=' : ' '; }
-
   std::string text_;
 };
 

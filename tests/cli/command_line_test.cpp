@@ -75,7 +75,7 @@ TEST_F(CommandLine, help_and_version_give_code_0) {
 
 TEST_F(CommandLine, help_all_of_run_prints_every_default) {
   const std::string help = run_program({"run", "--help-all"}).out;
-  for (const char* text : {"=auto", "=1000000000", "=none", "=half", "=zip",
+  for (const char* text : {"=auto", "=1000000000", "=none", "=half",
                            "--slices NUMBER=", "--steps NUMBER=", "--seed NUMBER=0", "--threads NUMBER=0"})
     EXPECT_THAT(help, HasSubstr(text));
 }

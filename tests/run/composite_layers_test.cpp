@@ -383,7 +383,7 @@ TEST_F(CompositeLayers, mistakes_are_named_in_one_line) {
   expect_error(3, {"--set", "append-ao=Combined.R"}, {beauty, "Combined.R", "--set append-ao"});
   expect_error(2, {"--set", "append-ao=AO", "--set", "composite-compression=dwaa"},
                {"--set append-ao=AO", "dwaa", "AO.ao"});
-  expect_error(2, {"--set", "composite-layers=some"}, {"--set", "composite-layers=all"});
+  expect_error(2, {"--set", "composite-layers=some"}, {"--set composite-layers", "all"});
   expect_error(3, {"--set", "ambient=Combinet"}, {beauty, "Combinet", "--set ambient"});
   for (const char* text :
        {"Combined*2", "Combined*-1", "Combined**1", "*1", "Combined*a*b", "Combined*1*1", "Combined,"})

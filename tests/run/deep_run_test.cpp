@@ -285,7 +285,7 @@ TEST_F(DeepRun, impossible_opacities_are_noted) {
 TEST_F(DeepRun, mistakes_are_refused_in_one_line) {
   expect_refused(run({"--deep", folder / "flat.exr"}), {"flat.exr", "no deep data", "--behind", "--deep"});
   expect_refused(run({"--normal", deep}), {"deep.exr", "deep data", "--normal"});
-  expect_refused(run({"--behind", deep}), {"deep.exr", "deep data", "--behind"});
+  expect_refused(run({"--behind", deep}), {"deep.exr", "deep data", "behind-channel"});
   expect_refused(run_program({"compare", deep, folder / "flat.exr"}), {"deep.exr", "deep data"});
 
   DeepFilePart other = samples(std::vector<float>(first.size(), 3.7F));

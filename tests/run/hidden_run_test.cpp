@@ -300,8 +300,8 @@ TEST_F(HiddenRun, a_layer_before_most_of_the_first_surface_is_refused) {
   std::vector<float> other = first;
   for (std::size_t i = 0; i < other.size(); i++) other[i] = i % 5 < 3 ? 0.8f * first[i] : 7;
   write_layer("other.exr", other);
-  expect_refused(behind({"other.exr"}), {folder / "other.exr", "before the first surface on 60 %", "--behind", "--set",
-                                         std::string("behind-channel=") + frame});
+  expect_refused(behind({"other.exr"}),
+                 {folder / "other.exr", "before the first surface on 60 %", "--behind", "--set behind-channel", frame});
 }
 
 TEST_F(HiddenRun, a_depth_that_is_said_to_be_a_thickness_is_noted) {
