@@ -87,7 +87,7 @@ bool parse(const std::vector<std::string>& arguments, BenchArguments& a) {
 
 /// Whether the candidate names a radius of its own, as "--radius=0.5".
 bool names_radius(const SuiteCandidate& candidate) {
-  return std::ranges::any_of(candidate.arguments, [](const auto& word) { return word.starts_with("--radius="); });
+  return std::ranges::any_of(candidate.arguments, [](const auto& word) { return word.starts_with("--set=radius="); });
 }
 
 /// The candidate's settings for a frame: its options go the way that alcove run's go.

@@ -90,11 +90,16 @@ SuiteFrame frame_of(const Table& table, const fs::path& folder) {
           table.values.contains("reference") ? (folder / table.text("reference")).string() : ""};
 }
 
+/// A setting as alcove run takes it.
+std::string argument(const std::string& key, const std::string& value) {
+  return key == "preset" ? "--preset=" + value : fmt::format("--set={}={}", key, value);
+}
+
 SuiteCandidate candidate_of(const Table& table) {
   SuiteCandidate candidate{table.text("name"), {}};
   for (const auto& [key, value] : table.values)
     if (key.str() != "name") {
-      candidate.arguments.push_back(fmt::format("--{}={}", key.str(), argument_of(table, key.str(), value)));
+      candidate.arguments.push_back(argument(std::string(key.str()), argument_of(table, key.str(), value)));
     }
   return candidate;
 }
@@ -114,7 +119,7 @@ std::vector<SuiteCandidate> candidates_of_sweep(const Table& table) {
       for (const auto& choice : choices) {
         longer.push_back(candidate);
         longer.back().name += fmt::format("{}{} {}", candidate.name.empty() ? "" : ", ", key.str(), choice);
-        longer.back().arguments.push_back(fmt::format("--{}={}", key.str(), choice));
+        longer.back().arguments.push_back(argument(std::string(key.str()), choice));
       }
     candidates = std::move(longer);
   }

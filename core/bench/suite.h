@@ -17,7 +17,7 @@ struct SuiteFrame {
 
 struct SuiteCandidate {
   std::string name;
-  std::vector<std::string> arguments;  // as for alcove run: "--preset=draft", "--slices=2" ...
+  std::vector<std::string> arguments;  // as for alcove run: "--preset=draft", "--set=slices=2" ...
 };
 
 struct Suite {

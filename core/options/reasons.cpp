@@ -78,8 +78,8 @@ std::string unless_ranges(const Settings& settings) {
 std::string if_exact(const Settings& settings) {
   const EstimatorSettings& estimator = settings.estimator;
   if (!searches_exactly(estimator)) return "";
-  if (estimator.tolerance > 0) return "with --tolerance the search is exact, and looks at all pixels";
-  return fmt::format("--search {} looks at all pixels", word_of(estimator.search));
+  if (estimator.tolerance > 0) return "it is for --search steps, and with --tolerance the search is exact";
+  return fmt::format("it is for --search steps, and here that is {}", word_of(estimator.search));
 }
 
 std::string if_by_error(const Settings& settings) {

@@ -37,7 +37,7 @@ TEST_F(Library, refuses_what_makes_no_sense) {
   const std::vector<float> values(64, 1);
   const alcove_layout one = packed(8, 4), other = packed(4, 8), three = packed(4, 4, 3);
   EXPECT_REFUSED(handle, alcove_run(handle.get(), 0), ALCOVE_USAGE, "no plane depth");
-  EXPECT_REFUSED(handle, alcove_set(handle.get(), "radios", "1"), ALCOVE_USAGE, "did you mean --radius");
+  EXPECT_REFUSED(handle, alcove_set(handle.get(), "radios", "1"), ALCOVE_USAGE, "did you mean radius");
   EXPECT_REFUSED(handle, alcove_set(handle.get(), "radius", "-1"), ALCOVE_USAGE, "--radius");
   EXPECT_REFUSED(handle, alcove_set(handle.get(), "albedo", "file.exr"), ALCOVE_USAGE, "the plane albedo");
   EXPECT_REFUSED(handle, alcove_set(handle.get(), nullptr, "1"), ALCOVE_USAGE, "null option");

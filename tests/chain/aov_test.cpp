@@ -239,12 +239,11 @@ TEST_F(Aovs, multi_bounce_takes_the_albedo_from_a_number_a_file_or_the_frame) {
 }
 
 TEST_F(Aovs, multi_bounce_says_what_it_lacks) {
-  expect_refused(2, {"--set", "multi-bounce=true", "--set ao-channels=rgb", "--composite"},
-                 {"--set", "multi-bounce=true"});
+  expect_refused(2, {"--set multi-bounce", "--set ao-channels=rgb", "--composite"}, {"--set", "multi-bounce=true"});
   expect_refused(2, {"--set albedo", "--set multi-bounce"}, {"--set", "albedo=0.5"});
-  expect_refused(2, {"--set", "albedo=1.5"},
+  expect_refused(2, {"--set albedo", "1.5"},
                  {"--set", "albedo=1.5", "--set", "multi-bounce=true", "--set", "ao-channels=rgb"});
-  expect_refused(3, {"wall.0042.exr", "--set", "multi-bounce=true", "--set albedo"},
+  expect_refused(3, {"wall.0042.exr", "--set multi-bounce", "--set albedo"},
                  {"--set", "multi-bounce=true", "--set", "ao-channels=rgb"});
   expect_refused(3, {"missing.exr", "--set albedo"},
                  {"--set", "multi-bounce=true", "--set", "ao-channels=rgb", "--set",
@@ -254,7 +253,7 @@ TEST_F(Aovs, multi_bounce_says_what_it_lacks) {
   add_beauty(input);
   for (const char* c : {"R", "G", "B"}) input.planes.erase("ViewLayer.DiffInd." + std::string(c));
   input.write(frame);
-  expect_refused(3, {"--set", "multi-bounce=true", "indirect"},
+  expect_refused(3, {"--set multi-bounce", "indirect"},
                  {"--set", "multi-bounce=true", "--set", "albedo=0.5", "--composite", composite});
 }
 

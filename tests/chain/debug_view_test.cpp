@@ -177,7 +177,7 @@ TEST_F(DebugViews, without_ao_only_its_own_passes_run) {
 
 TEST_F(DebugViews, what_cannot_be_shown_or_written_is_refused_before_any_work) {
   expect_refused(2, {"--set debug", "did you mean edges?", "raw-depth, linear-depth"}, {"--set", "debug=edgse"});
-  expect_refused(2, {"--set", "debug=raw-depth"}, {"--set", "debug=raw-depth,"});
+  expect_refused(2, {"--set debug", "raw-depth"}, {"--set", "debug=raw-depth,"});
   expect_refused(2, {"--set debug", "--preview", "same file"},
                  {"--set", "debug=edges", "--preview", folder / "ao.edges.png"});
   FrameFile input = wall_frame();

@@ -416,7 +416,7 @@ TEST_F(CommandLine, a_surface_goes_on_into_a_region_from_far_beyond_its_reach) {
   arguments.insert(arguments.end(), {"--set", "complete=border"});
   ASSERT_EQ(run_program(arguments).code, 0);
   EXPECT_FALSE(same_bits(read_exr_image(ao).pixels, whole.pixels));
-  arguments.back() = "all";
+  arguments.back() = "complete=all";
   arguments.insert(arguments.end(), {"--roi", "440,60,30,30"});
   ASSERT_EQ(run_program(arguments).code, 0);
   EXPECT_TRUE(same_bits(read_exr_image(ao).pixels, part));

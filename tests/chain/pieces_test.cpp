@@ -406,7 +406,7 @@ TEST_F(PiecesOfFiles, of_a_region_are_those_of_the_whole_where_normals_come_from
                                        "--set",  "complete=none"};
     ASSERT_EQ(run_program(arguments).code, 0);
     const Image none = read_exr_image(ao);
-    arguments.back() = "all";
+    arguments.back() = "complete=all";
     ASSERT_EQ(run_program(arguments).code, 0);
     const Image whole = read_exr_image(ao);
     EXPECT_FALSE(same_bits(cropped(none.pixels, none.data, region), cropped(whole.pixels, whole.data, region)));

@@ -101,7 +101,7 @@ TEST_F(BadInput, a_frame_larger_than_any_device_takes) {
   bytes.replace(window + 8, 4, std::string("\xff\xff\xff\x0f", 4));  // its right border
   bytes.resize(200000);                                              // of fewer bytes nobody would believe it
   write_bytes(folder / "wide.exr", bytes);
-  expect_refused(5, {"wide.exr", "--device"}, good(folder / "wide.exr"));
+  expect_refused(5, {"wide.exr", "--memory"}, good(folder / "wide.exr"));
 }
 
 TEST_F(BadInput, no_depth_channel_lists_what_there_is_and_the_nearest) {
@@ -136,7 +136,7 @@ TEST_F(BadInput, normals_of_another_size) {
 }
 
 TEST_F(BadInput, beauty_missing_or_of_another_size) {
-  expect_bad_input(frame, {"wall.0042.exr", "--beauty"}, {"--composite", composite});
+  expect_bad_input(frame, {"wall.0042.exr", "--set beauty-channels"}, {"--composite", composite});
   FrameFile beauty = wall_frame({0, 0, 40, 20}, {0, 0, 40, 20});
   add_beauty(beauty);
   beauty.write(folder / "small.exr");
@@ -320,7 +320,7 @@ TEST_F(BadInput, no_vulkan_driver) {
 
 TEST_F(BadInput, a_device_that_is_not_there) {
   const std::string listed = json::parse(run_program({"devices", "--json"}).out)[0]["name"];
-  expect_refused(5, {"--set", "require-gpu=true", "--device cpu"},
+  expect_refused(5, {"a GPU is required", "--device cpu"},
                  good(frame, {"--device", "cpu", "--set", "require-gpu=true"}));
   for (const char* device : {"nosuch", "99", ""})
     expect_refused(5, {"--device", device, listed}, good(frame, {"--device", device}));

@@ -73,7 +73,7 @@ class Package(unittest.TestCase):
             alcove.run(self.folder / "missing.exr", output=self.ao, camera=CAMERA, radius=0.5)
         self.assertEqual((caught.exception.code, caught.exception.events[-1]["failed"]), (3, 1))
         self.assertNotIn("alcove: error", str(caught.exception))
-        with self.assertRaisesRegex(alcove.UsageError, "--radios.*--radius"):
+        with self.assertRaisesRegex(alcove.UsageError, "radios.*radius"):
             alcove.run(FRAME, output=self.ao, camera=CAMERA, radios=0.5)
         with self.assertRaisesRegex(alcove.UsageError, "--radius"):
             alcove.run(FRAME, output=self.ao, camera=CAMERA)

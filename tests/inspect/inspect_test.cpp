@@ -100,7 +100,7 @@ TEST_F(Inspect, the_command_it_gives_runs_and_guesses_nothing) {
 }
 
 TEST_F(Inspect, the_command_it_gives_has_no_option_that_does_not_apply) {
-  EXPECT_THAT(inspected({"--camera", camera, "--set device-range=-1..1", "--set", "log-constant=2"})["command"],
+  EXPECT_THAT(inspected({"--camera", camera, "--set", "device-range=-1..1", "--set", "log-constant=2"})["command"],
               testing::Not(testing::AnyOf(HasSubstr("--set device-range"), HasSubstr("--set log-constant"))))
       << "of planar depth";
   FrameFile file = wall_frame();

@@ -228,12 +228,12 @@ TEST_F(Refusals, presets_of_the_wrong_types_are_named_with_line_and_key) {
       {"[steps]\na = 1\n", {"line 1", "steps must be"}},
       {"steps = 1.5\n", {"--steps", "1.5"}},
       {"steps = true\n", {"--steps", "true is not a number"}},
-      {"steps = [1, 2]\n", {"--steps takes one value, and the list has 2"}},
-      {"steps = []\n", {"--steps: the list is empty"}},
+      {"steps = [1, 2]\n", {"steps takes one value, and the list has 2"}},
+      {"steps = []\n", {"steps: the list is empty"}},
       {"keep-going = \"perhaps\"\n", {"--keep-going", "perhaps"}},
       {"steps = \n", {"line 1"}},
       {"denoise = \"boxx\"\n", {"--denoise", "boxx", "did you mean box"}},
-      {"slcies = 2\n", {"slcies is no option", "did you mean --slices"}},
+      {"slcies = 2\n", {"there is no setting slcies", "did you mean slices"}},
       {"dry-run = true\n", {"dry-run is an option of the command line only"}},
       {"preset = \"standard\"\n", {"preset is an option of the command line only"}},
   };
@@ -311,7 +311,7 @@ TEST_F(Suites, of_the_wrong_types_are_refused_by_file_table_and_key) {
 
 TEST_F(Suites, candidates_whose_options_make_no_sense_are_refused_by_name) {
   const std::pair<const char*, std::vector<std::string>> cases[] = {
-      {"slcies = 2", {"--slcies", "did you mean --slices"}},
+      {"slcies = 2", {"slcies", "did you mean slices"}},
       {"slices = 65", {"--slices", "65"}},
       {"preset = \"drat\"", {"drat", "did you mean draft"}},
       {"help = true", {"alcove run"}},
