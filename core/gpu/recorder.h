@@ -52,8 +52,8 @@ concept KernelParams = std::is_trivially_copyable_v<T> && sizeof(T) <= 128;
 class Recorder {
  public:
   explicit Recorder(Device& device);
-  /// A rehearsal, which needs no device and cannot run. rehearsed() tells the kernels that a frame takes, and bytes() and
-  /// largest_bytes() the buffers.
+  /// A rehearsal, which needs no device and cannot run. rehearsed() tells the kernels that a frame takes, bytes() and
+  /// largest_bytes() its buffers.
   Recorder() = default;
 
   /// The buffer of that name. It is made, or made again, unless the one that there is suits; what was recorded before
