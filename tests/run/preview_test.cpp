@@ -114,7 +114,7 @@ TEST_F(Preview, names_the_displays_and_views_that_there_are) {
     for (const auto& word : words) EXPECT_THAT(finished.err, HasSubstr(word));
   };
   expect_error({"--set", std::string("ocio=") + config, "--set", "display=scren"},
-               {config, "--set display scren", "did you mean screen", "projector"});
+               {config, "--set display=scren", "did you mean screen", "projector"});
   expect_error({"--set", std::string("ocio=") + config, "--set", "display=projector", "--set", "view-transform=Darker"},
                {config, "--set view-transform=Darker", "it has plain"});
   expect_error({"--set", "display=P3"}, {"built-in", "--set display=P3", "sRGB", "--set ocio"});

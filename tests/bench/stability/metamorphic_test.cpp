@@ -219,9 +219,10 @@ TEST(Metamorphic, an_orthographic_eye_may_be_anywhere_on_its_ray) {
 }
 
 // Of every thickness: a larger sphere holds more occluders, and more of what is behind their fronts. Where a surface
-// leaves the sphere between two samples is interpolated, so a pixel may be off by a little, and of bitmask by a sector of one of 16 slices more. Not of Crytek, whose
-// samples move as the radius grows. Nor of what goes on beyond the border: that must rise by a part of the radius and
-// begin within a multiple of it, so a larger one may leave it out.
+// leaves the sphere between two samples is interpolated, so a pixel may be off by a little, and of bitmask by a
+// sector of one of 16 slices more. Not of Crytek, whose samples move as the radius grows. Nor of what goes on beyond
+// the border: that must rise by a part of the radius and begin within a multiple of it, so a larger one may leave it
+// out.
 TEST(Metamorphic, a_larger_radius_only_darkens) {
   const HostFrame frame = room(55, 1, 0, 48, 36).frame;
   auto all = solid_estimators();
