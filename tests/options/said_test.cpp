@@ -282,7 +282,8 @@ TEST_F(Said, what_is_typed_and_has_no_effect_is_refused_and_else_taken) {
 TEST_F(Said, a_refusal_says_what_the_setting_is_for_and_what_is_in_its_way) {
   EXPECT_THAT(refusal({"--samples", "8"}),
               HasSubstr("--samples has no effect: it is for --estimator crytek, and here that is gtao"));
-  EXPECT_THAT(refusal({"--preset", "reference", "--steps", "8"}), HasSubstr("it is for --search steps, and here that is exact"));
+  EXPECT_THAT(refusal({"--preset", "reference", "--steps", "8"}),
+              HasSubstr("it is for --search steps, and here that is exact"));
   const std::pair<Words, const char*> cases[] = {{{"--depth-kind", "ray"}, "--depth-kind says ray"},
                                                  {{"--source", "octane"}, "--source octane says ray"},
                                                  {{"--position", "p.exr"}, "--position says position"},
