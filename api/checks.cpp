@@ -24,7 +24,7 @@ void check_depth(const Reading& reading, std::span<const float> depth, const Vie
     if (error && *error > kFarOff)
       fail(ErrorKind::input,
            "position: half of the positions are more than {:.3g} px from their pixels, or behind the camera, which "
-           "looks along -z: check position-space and the camera",
+           "looks along -z: check --set position-space and the camera",
            *error);
     return;
   }

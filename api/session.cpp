@@ -253,7 +253,7 @@ Reading Session::reading_by(const Settings& settings, int frame) const {
   reading.position_space = decided(input.position_space, PositionSpace::automatic,
                                    reading.camera.view_from_world ? PositionSpace::automatic : PositionSpace::view);
   if (has_position() && reading.position_space == PositionSpace::automatic)
-    fail(ErrorKind::usage, "position: set position-space to world or view, since planes do not tell");
+    fail(ErrorKind::usage, "position: set --set position-space to world or view, since planes do not tell");
   reading.depth_scale = input.depth_scale;
   reading.sky = input.sky;
   reading.depth_is_half = first.is_half;
@@ -303,9 +303,9 @@ void Session::run(int frame) {
     if (!all.estimator.radius) all.estimator.radius = 1;  // there is no surface, and no AO to compute
   }
   if (all.output.aov_space == NormalSpace::world && !reading.camera.view_from_world)
-    fail(ErrorKind::usage, "aov-space world needs a camera with world_to_camera");
+    fail(ErrorKind::usage, "--set aov-space=world needs a camera with world_to_camera");
   if (all.output.multi_bounce && planes_[RawPlane::albedo].empty() && !all.input.albedo_value)
-    fail(ErrorKind::usage, "multi-bounce needs the plane albedo, or a number for albedo");
+    fail(ErrorKind::usage, "--set multi-bounce needs the plane albedo, or a number for --set albedo");
   open_device(all.device);
   try {
     compute(all, reading, frame);

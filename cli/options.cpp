@@ -19,11 +19,12 @@ namespace {
 std::vector<Said> said_by_sets(const Words& sets, const std::vector<OptionRow>& table) {
   std::vector<Said> said;
   for (const auto& set : sets) {
-    const std::size_t equals = set.find('=');
-    if (equals == set.npos || equals == 0)
-      fail(ErrorKind::usage, "--set: {} is not KEY=VALUE, such as denoise=none", alcove::said(set));
+    const std::size_t equals = std::min(set.find('='), set.size());
+    if (equals == 0) fail(ErrorKind::usage, "--set: {} is not KEY=VALUE, such as denoise=none", alcove::said(set));
     const OptionRow& row = row_of_key(table, lower_case(set.substr(0, equals)));
-    const std::string value = set.substr(equals + 1);
+    if (equals == set.size() && !row.is_flag())
+      fail(ErrorKind::usage, "--set: {} is not KEY=VALUE: {} takes {}", set, row.key(), row.value);
+    const std::string value = equals == set.size() ? "true" : set.substr(equals + 1);
     const auto earlier = std::ranges::find(said, row.long_name(), &Said::option);
     if (earlier == said.end())
       said.push_back({row.long_name(), {value}});

@@ -23,6 +23,9 @@ if [ "$parts" = all ]; then
   readers=(core/*/*.cpp cli/*.cpp)
   tests=()
 fi
+for part in $parts; do
+  [[ " addresses threads tidy fuzzing coverage " = *" $part "* ]] || { echo "$0: there is no part $part" >&2; exit 2; }
+done
 does() { [[ " $parts " = *" $1 "* ]]; }
 
 names_of() {  # a regular expression for the names of tests ROOM/NAME

@@ -128,7 +128,9 @@ void add_search_rows(std::vector<OptionRow>& rows, EstimatorSettings& s) {
       unless_crytek;
   pixels.number("bias", s.bias, "", between(0, 1e18),
                 "sine of an elevation that blocks nothing, below 1; crytek: scene units of depth");
-  pixels.choice("elevation", s.elevation, "of a horizon, above the plane across the view ray or above the surface")
+  pixels
+      .choice("elevation", s.elevation,
+              "of a horizon; view: above the plane across the view ray; surface: above the surface")
       .why_without_effect = [](const Settings& all) { return unless_estimator(all, {Estimator::hbao}); };
   pixels.choice("sample-kernel", s.sample_kernel, "clustered: more samples near the receiver; uniform: even in volume")
       .why_without_effect = unless_crytek;
@@ -145,7 +147,7 @@ void add_search_rows(std::vector<OptionRow>& rows, EstimatorSettings& s) {
   };
   pixels
       .choice("complete", s.complete,
-              "where surfaces go on straight although unseen: nowhere, beyond the border, or behind nearer ones too")
+              "where surfaces go on unseen; border: beyond the picture; all: behind nearer ones too")
       .why_without_effect = [](const Settings& all) {
     return all.estimator.complete == Completion::none ? "" : unless_ranges(all);
   };
@@ -298,7 +300,7 @@ void add_estimator_rows(std::vector<OptionRow>& rows, RunOptions& options) {
   preset.is_key = false;
   OptionRow& set = OptionGroup(rows, "Estimator", Effect::none)
                        .add(
-                           {"--set", "KEY=VALUE", "", "", "any setting; docs/options.md lists the keys"},
+                           {"--set", "KEY=VALUE", "", "", "any setting; alcove run --help-markdown lists the keys"},
                            [&options] { return options.set; }, [&options](const Words& words) { options.set = words; });
   set.repeats = set.is_common = true;
   set.is_key = false;

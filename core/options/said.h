@@ -22,8 +22,8 @@ struct Said {
 enum class Reader { run, inspect };
 
 /// Reads into `options` what was said, presets in their order and then the command line; later wins. What has no effect
-/// beside the rest is left out of presets, the earliest first. Fails with ErrorKind::usage on a value that is none, and
-/// on what is typed and has no effect.
+/// beside the rest is left out of presets, the earliest first. Fails with ErrorKind::usage on a value that is none, on
+/// what is typed and has no effect, and on settings of one preset that take each other's effect.
 void read_said(RunOptions& options, std::vector<Said> said, Reader reader = Reader::run);
 
 /// Fails with ErrorKind::usage where a setting that is not the usual one has no effect.

@@ -346,6 +346,26 @@ TEST_F(Said, of_a_pair_what_is_typed_beats_a_preset_and_a_later_preset_an_earlie
     }
 }
 
+TEST_F(Said, a_lens_is_said_in_one_way) {
+  const Words lens{"--focal", "35", "--aperture", "36"};
+  EXPECT_EQ(refusal(lens), "");
+  for (const Words& other : std::vector<Words>{{"--camera", "c.json"}, {"--fov", "60"}, {"--ortho-width", "2"}})
+    EXPECT_THAT(refusal(joined(lens, other)), AllOf(HasSubstr(other[0]), HasSubstr("only one of them"))) << other[0];
+}
+
+TEST_F(Said, a_preset_may_not_contradict_itself) {
+  for (const auto& [one, other] : pairs())
+    EXPECT_THAT(refusal(preset("both.toml", {one, other})),
+                AllOf(HasSubstr("both.toml"), HasSubstr(one.key), HasSubstr(other.key), HasSubstr("only one of them")));
+}
+
+TEST_F(Said, what_had_no_effect_beside_something_that_is_left_out_itself_is_taken) {
+  const Words tolerance = preset("tolerance.toml", {{"tolerance", "0.05"}});
+  const RunOptions options = read(joined({"--preset", "production"}, joined(tolerance, {"--resolution", "half"})));
+  EXPECT_EQ(options.settings.estimator.tolerance, 0);
+  EXPECT_EQ(options.settings.estimator.slices, read({"--preset", "production"}).settings.estimator.slices);
+}
+
 TEST_F(Said, values_that_ask_for_nothing_are_taken_anywhere) {
   for (const Words& words : std::vector<Words>{{"--tolerance", "0", "--estimator", "hbao", "--resolution", "half"},
                                                {"--set", "complete=none", "--estimator", "crytek"},
@@ -396,7 +416,8 @@ TEST_F(Said, options_that_only_presets_say_are_known_as_such) {
 TEST_F(Said, settings_are_set_by_key_and_value) {
   EXPECT_EQ(read({"--set", "stride=4", "--set", "Radius=0.5"}).settings.estimator.stride, 4);
   EXPECT_EQ(read({"--set", "radius=0.5"}).settings.estimator.radius, 0.5) << "of options too";
-  EXPECT_THAT(refusal({"--set", "stride"}), HasSubstr("--set: stride is not KEY=VALUE"));
+  EXPECT_TRUE(read({"--set", "warnings-as-errors"}).settings.frames.warnings_as_errors) << "as git -c takes it";
+  EXPECT_THAT(refusal({"--set", "stride"}), HasSubstr("--set: stride is not KEY=VALUE: stride takes auto|1|2|4|8|16"));
   EXPECT_THAT(refusal({"--set", "strid=4"}), HasSubstr("there is no setting strid (did you mean stride"));
   EXPECT_THAT(refusal({"--set", "stride=3"}), HasSubstr("--set stride: 3 is none of"));
   EXPECT_THAT(refusal({"--set", "dry-run=true"}), HasSubstr("dry-run is an option of the command line only"));
@@ -429,6 +450,9 @@ TEST_F(Said, inspect_goes_by_the_same_rules_but_writes_no_outputs) {
   EXPECT_EQ(refusal({"--beauty", "b.exr", "--set", "albedo=0.5"}, Reader::inspect), "");
   EXPECT_THAT(refusal({"--near", "1", "--depth-kind", "planar"}, Reader::inspect), HasSubstr("--near has no effect"));
   EXPECT_THAT(refusal({"--fov", "60", "--camera", "c.json"}, Reader::inspect), HasSubstr("only one of them"));
+  EXPECT_THAT(refusal({"--slices", "4", "--estimator", "crytek"}, Reader::inspect),
+              HasSubstr("--slices has no effect"));
+  EXPECT_EQ(refusal({"--roughness", "0.5", "--set", "preview-style=split"}, Reader::inspect), "");
 }
 
 TEST_F(Said, settings_that_nobody_typed_are_held_to_the_same_table) {
