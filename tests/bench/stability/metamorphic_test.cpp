@@ -219,10 +219,10 @@ TEST(Metamorphic, an_orthographic_eye_may_be_anywhere_on_its_ray) {
 }
 
 // Of every thickness: a larger sphere holds more occluders, and more of what is behind their fronts. Where a surface
-// leaves the sphere between two samples is interpolated, so a pixel may be off by a little, and of bitmask by a
-// sector of one of 16 slices more. Not of Crytek, whose samples move as the radius grows. Nor of what goes on beyond
-// the border: that must rise by a part of the radius and begin within a multiple of it, so a larger one may leave it
-// out.
+// leaves the sphere between two samples is interpolated, so a pixel may be off by a little. Not of Crytek, whose
+// samples move as the radius grows. Nor of what goes on beyond the border: that must rise by a part of the radius and
+// begin within a multiple of it, so a larger one may leave it out. The worst that was measured of bitmask with endless
+// occluders is 3.4e-4, from the sector that the tangent plane cuts.
 TEST(Metamorphic, a_larger_radius_only_darkens) {
   const HostFrame frame = room(55, 1, 0, 48, 36).frame;
   auto all = solid_estimators();
@@ -231,8 +231,8 @@ TEST(Metamorphic, a_larger_radius_only_darkens) {
     if (variant.settings.estimator == Estimator::crytek) continue;
     std::vector<float> smaller(frame.data.pixels(), 1.0f);
     const float slack = searches_exactly(variant.settings)                       ? 0.01f
-                        : variant.settings.estimator == Estimator::bitmask       ? 0.008f
                         : variant.settings.thickness == ThicknessKind::automatic ? 0.006f
+                        : variant.settings.estimator == Estimator::bitmask       ? 5e-4f
                                                                                  : 1e-6f;
     for (const double radius : {1e-9, 0.01, 0.1, 0.3, 1.0, 3.0, 10.0, 1e9}) {
       EstimatorSettings settings = converged(variant.settings, radius);
