@@ -23,13 +23,19 @@ std::string word_of(T value) {
   return "";
 }
 
+/// Such as "gtao or bitmask".
+template <class T>
+std::string words_of(std::initializer_list<T> values) {
+  std::vector<std::string> words;
+  for (const T value : values) words.push_back(word_of(value));
+  return linked(words, "or");
+}
+
 /// "" where the value is one of them.
 template <class T>
 std::string unless_one_of(std::initializer_list<T> values, T value, const char* option) {
   if (std::ranges::find(values, value) != values.end()) return "";
-  std::vector<std::string> words;
-  for (const T one : values) words.push_back(word_of(one));
-  return fmt::format("it is for {} {}, and here that is {}", option, linked(words, "or"), word_of(value));
+  return fmt::format("it is for {} {}, and here that is {}", option, words_of(values), word_of(value));
 }
 
 /// Whether the run asks for an AOV. Names that there are not are refused where AOVs are made.
@@ -109,9 +115,7 @@ std::string unless_depth(const Settings& settings, std::initializer_list<DepthKi
   const DepthKind kind = said_kind(input);
   // Where a frame has no depth its positions are read, whatever depth the program writes elsewhere.
   if (kind == DepthKind::automatic || holds(kind) || (is_by_source(input) && holds(DepthKind::position))) return "";
-  std::vector<std::string> words;
-  for (const DepthKind one : kinds) words.push_back(word_of(one));
-  return fmt::format("it is for {} depth, and {} says {}", linked(words, "or"), who_says_kind(input), word_of(kind));
+  return fmt::format("it is for {} depth, and {} says {}", words_of(kinds), who_says_kind(input), word_of(kind));
 }
 
 std::string unless_aov(const Settings& settings, std::initializer_list<const char*> names) {

@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <optional>
 #include <set>
 
 #include "core/base/error.h"
@@ -58,85 +57,79 @@ Settings with_all_outputs(Settings settings) {
   return settings;
 }
 
-bool is_objection(const std::string& text) { return !text.empty(); }
-
-/// The presets that say something.
-std::set<std::string> presets_in(const std::vector<Said>& said) {
-  std::set<std::string> presets;
-  for (const auto& one : said)
-    if (!one.is_typed()) presets.insert(one.preset);
-  return presets;
-}
-
-/// Why each of them has no effect in the settings that all of it makes, "" where it has one.
-std::vector<std::string> objections_to(const RunOptions& initial, const std::vector<Said>& said, Reader reader) {
-  RunOptions options = options_of(initial, said);
+/// Why each has no effect in the settings that those make of which `counts` says so; "" where it has one, or does not
+/// count.
+std::vector<std::string> objections_to(const RunOptions& initial, const std::vector<Said>& said,
+                                       const std::vector<bool>& counts, Reader reader) {
+  std::vector<Said> counted;
+  for (std::size_t i = 0; i < said.size(); i++)
+    if (counts[i]) counted.push_back(said[i]);
+  RunOptions options = options_of(initial, counted);
   const auto table = option_table(options);
   const Settings judged = reader == Reader::run ? options.settings : with_all_outputs(options.settings);
-  std::vector<std::string> objections;
-  for (const auto& one : said) objections.push_back(row_of(table, one.option).objection(judged));
+  std::vector<std::string> objections(said.size());
+  for (std::size_t i = 0; i < said.size(); i++)
+    if (counts[i]) objections[i] = row_of(table, said[i].option).objection(judged);
   return objections;
 }
 
-/// The place of the first that has no effect, among what is typed or among the rest; none: all have one.
-std::optional<std::size_t> without_effect(const std::vector<Said>& said, const std::vector<std::string>& objections,
-                                          bool typed) {
-  for (std::size_t i = 0; i < said.size(); i++)
-    if (said[i].is_typed() == typed && !objections[i].empty()) return i;
-  return std::nullopt;
-}
-
 /// Fails where two settings of a preset have an effect each, but none beside the other.
-void refuse_contradictions(const RunOptions& initial, const std::vector<Said>& said, Reader reader) {
-  const auto objections = objections_to(initial, said, reader);
-  for (std::size_t i = 0; i < said.size(); i++)
-    for (std::size_t j = 0; j < i; j++) {
+void refuse_contradictions(const RunOptions& initial, const std::vector<Said>& said, const std::string& preset,
+                           Reader reader) {
+  std::vector<bool> own;
+  for (const auto& one : said) own.push_back(one.preset == preset);
+  const auto objections = objections_to(initial, said, own, reader);
+  const auto with_only = [&](std::size_t i, std::size_t j) {
+    std::vector<bool> counts(said.size());
+    counts[i] = counts[j] = true;
+    return objections_to(initial, said, counts, reader);
+  };
+  for (std::size_t j = 0; j < said.size(); j++)
+    for (std::size_t i = 0; i < j; i++) {
       if (objections[i].empty() || objections[j].empty()) continue;
-      const auto pair = objections_to(initial, {said[j], said[i]}, reader);
-      const bool are_both_idle = !pair[0].empty() && !pair[1].empty();
-      if (are_both_idle && objections_to(initial, {said[i]}, reader)[0].empty() &&
-          objections_to(initial, {said[j]}, reader)[0].empty())
-        fail(ErrorKind::usage, "{} (--preset): {}", said[i].preset, pair[0]);
+      const auto beside = with_only(i, j);
+      const bool have_none = !beside[i].empty() && !beside[j].empty();
+      if (have_none && with_only(i, i)[i].empty() && with_only(j, j)[j].empty())
+        fail(ErrorKind::usage, "{} (--preset): {}", preset, beside[i]);
     }
 }
 
 /// Leaves out of presets what has no effect, one after the other: what is left out may be what another one had no
 /// effect beside, so that those get a second chance.
-std::vector<Said> with_effects(const RunOptions& initial, const std::vector<Said>& said, Reader reader) {
-  std::vector<bool> is_kept(said.size(), true);
-  const auto kept = [&] {
-    std::vector<Said> list;
-    for (std::size_t i = 0; i < said.size(); i++)
-      if (is_kept[i]) list.push_back(said[i]);
-    return list;
-  };
-  const auto place_of = [&](std::size_t nth) {
-    std::size_t place = 0;
-    while (!is_kept[place] || nth-- > 0) place++;
-    return place;
-  };
-  while (const auto idle = without_effect(kept(), objections_to(initial, kept(), reader), false))
-    is_kept[place_of(*idle)] = false;
-  for (std::size_t i = 0; i < said.size(); i++) {
-    if (is_kept[i]) continue;
-    const std::size_t before = std::ranges::count_if(objections_to(initial, kept(), reader), is_objection);
-    is_kept[i] = true;
-    is_kept[i] = std::size_t(std::ranges::count_if(objections_to(initial, kept(), reader), is_objection)) <= before;
+std::vector<bool> with_effects(const RunOptions& initial, const std::vector<Said>& said, Reader reader) {
+  std::vector<bool> counts(said.size(), true);
+  while (true) {
+    const auto objections = objections_to(initial, said, counts, reader);
+    std::size_t idle = 0;
+    while (idle < said.size() && (said[idle].is_typed() || objections[idle].empty())) idle++;
+    if (idle == said.size()) break;
+    counts[idle] = false;
   }
-  return kept();
+  const auto objection_count = [&] {
+    const auto objections = objections_to(initial, said, counts, reader);
+    return said.size() - std::size_t(std::ranges::count(objections, ""));
+  };
+  for (std::size_t i = 0; i < said.size(); i++) {
+    if (counts[i]) continue;
+    const std::size_t before = objection_count();
+    counts[i] = true;
+    counts[i] = objection_count() <= before;
+  }
+  return counts;
 }
-
 }  // namespace
 
 void read_said(RunOptions& options, std::vector<Said> said, Reader reader) {
-  for (const auto& preset : presets_in(said)) {
-    std::vector<Said> own;
-    std::ranges::copy_if(said, std::back_inserter(own), [&](const Said& one) { return one.preset == preset; });
-    refuse_contradictions(options, own, reader);
-  }
-  said = with_effects(options, said, reader);
-  const auto objections = objections_to(options, said, reader);
-  if (const auto idle = without_effect(said, objections, true)) fail(ErrorKind::usage, "{}", objections[*idle]);
+  std::set<std::string> presets;
+  for (const auto& one : said)
+    if (!one.is_typed()) presets.insert(one.preset);
+  for (const auto& preset : presets) refuse_contradictions(options, said, preset, reader);
+  const std::vector<bool> counts = with_effects(options, said, reader);
+  const auto objections = objections_to(options, said, counts, reader);
+  for (std::size_t i = 0; i < said.size(); i++)
+    if (said[i].is_typed() && !objections[i].empty()) fail(ErrorKind::usage, "{}", objections[i]);
+  std::size_t place = 0;
+  std::erase_if(said, [&](const Said&) { return !counts[place++]; });
   options = options_of(options, said);
   options.settings.input.from_presets = only_in_presets(said);
 }
