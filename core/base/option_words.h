@@ -151,4 +151,12 @@ inline const std::map<std::string, Missing>& names_of() {
   return names;
 }
 
+/// The word that stands for the value.
+template <class T>
+std::string word_of(T value) {
+  for (const auto& [word, meaning] : names_of<T>())
+    if (meaning == value) return word;
+  return "";
+}
+
 }  // namespace alcove

@@ -49,9 +49,7 @@ void add_behind(Command& command, const InputSettings& settings) {
   for (const auto& file : settings.behind) command.add("--behind", file);
   command.add("--set behind-channel", fmt::format("{}", fmt::join(settings.behind_channels, ",")));
   std::vector<std::string> kinds;
-  for (const BehindKind kind : settings.behind_kinds)
-    for (const auto& [word, meaning] : names_of<BehindKind>())
-      if (meaning == kind) kinds.push_back(word);
+  for (const BehindKind kind : settings.behind_kinds) kinds.push_back(word_of(kind));
   command.add("--behind-kind", fmt::format("{}", fmt::join(kinds, ",")));
   for (const auto& file : settings.deep) command.add("--deep", file);
   if (has_deep(settings) && settings.deep_opacity != InputSettings().deep_opacity)

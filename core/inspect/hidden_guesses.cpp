@@ -29,12 +29,6 @@ bool is_read(const FrameSource& source, const ChannelRef& ref) {
   return std::ranges::any_of(source.planes.entries, has);
 }
 
-std::string word_of(BehindKind kind) {
-  for (const auto& [word, meaning] : names_of<BehindKind>())
-    if (meaning == kind) return word;
-  return "";
-}
-
 }  // namespace
 
 std::vector<HiddenGuess> hidden_guesses(const FrameSource& source, const InputSettings& settings) {

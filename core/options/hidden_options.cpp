@@ -53,9 +53,7 @@ void read_kinds(const Words& words, std::vector<BehindKind>& kinds) {
 
 Words words_of(const std::vector<BehindKind>& kinds) {
   Words words;
-  for (const BehindKind kind : kinds)
-    for (const auto& [word, meaning] : names_of<BehindKind>())
-      if (meaning == kind) words.push_back(word);
+  for (const BehindKind kind : kinds) words.push_back(word_of(kind));
   return words;
 }
 

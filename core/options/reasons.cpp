@@ -16,13 +16,6 @@
 namespace alcove {
 namespace {
 
-template <class T>
-std::string word_of(T value) {
-  for (const auto& [word, meaning] : names_of<T>())
-    if (meaning == value) return word;
-  return "";
-}
-
 /// Such as "gtao or bitmask".
 template <class T>
 std::string words_of(std::initializer_list<T> values) {

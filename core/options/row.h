@@ -135,11 +135,7 @@ OptionRow& OptionGroup::choice(const std::string& name, T& value, const std::str
   const auto& names = names_of<T>();
   Words words;
   for (const auto& [word, meaning] : names) words.push_back(word);
-  const auto say = [&value, &names] {
-    for (const auto& [word, meaning] : names)
-      if (meaning == value) return word;
-    return std::string();
-  };
+  const auto say = [&value] { return word_of(value); };
   return choice_row(name, words, sentence, say, [&value, &names](const std::string& word) { value = names.at(word); });
 }
 
