@@ -351,6 +351,11 @@ TEST_F(Said, a_lens_is_said_in_one_way) {
   EXPECT_EQ(refusal(lens), "");
   for (const Words& other : std::vector<Words>{{"--camera", "c.json"}, {"--fov", "60"}, {"--ortho-width", "2"}})
     EXPECT_THAT(refusal(joined(lens, other)), AllOf(HasSubstr(other[0]), HasSubstr("only one of them"))) << other[0];
+  for (const Value& other : std::vector<Value>{{"camera", "c.json"}, {"fov", "60"}, {"ortho-width", "2"}}) {
+    const Words words = joined(preset("other.toml", {other}), lens);
+    ASSERT_EQ(refusal(words), "") << other.key << " of a preset";
+    EXPECT_EQ(value_of(other.key, read(words)), usual_value_of(other.key));
+  }
 }
 
 TEST_F(Said, a_preset_may_not_contradict_itself) {
