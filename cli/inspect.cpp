@@ -1,5 +1,5 @@
-// `alcove inspect INPUT [--json] [--preview FILE.png] [--write-camera FILE.json] [input options of run]`: what a frame
-// holds and how it would be read.
+// `alcove inspect INPUT [--json] [-v] [--preview FILE.png] [--write-camera FILE.json] [input options of run]`: what a
+// frame holds and how it would be read.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 
@@ -75,7 +75,7 @@ int inspect_command(const std::vector<std::string>& arguments) {
   const int frame = frame_number_of(path);
   const Inspection inspection = plan.is_sequence() ? inspect_sequence(names_of(plan, options.settings))
                                                    : inspect_one(plan, options.settings, frame);
-  fmt::print("{}", asked.json ? inspection_json(inspection) : inspection_text(inspection));
+  fmt::print("{}", asked.json ? inspection_json(inspection) : inspection_text(inspection, options.progress.verbose));
   if (inspection.unreadable) throw *inspection.unreadable;
   if (!asked.write_camera.empty()) write_cameras(asked.write_camera, plan, input, frame, inspection);
   if (options.settings.output.preview.empty()) return 0;

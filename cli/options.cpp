@@ -103,7 +103,12 @@ Command inspect_with(InspectOptions& options, const std::vector<OptionRow>& tabl
   Command command = run_with(options.run, table);
   command.name = "alcove inspect";
   command.description = kInspect;
-  for (auto& row : command.rows) row.is_common = is_inspected(row);
+  for (auto& row : command.rows) {
+    row.is_common = is_inspected(row);
+    if (row.long_name() != "--verbose") continue;
+    row.is_common = true;
+    row.sentence = "also print attributes, statistics and the score of each reading";
+  }
   OptionGroup reports(command.rows, "Reports", Effect::none);
   reports.flag("--json", options.json, "print JSON").is_common = true;
   reports

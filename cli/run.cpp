@@ -25,10 +25,10 @@ std::string usual_output(const std::string& input) {
   return "ao." + input.substr(token, input.size() - token - pattern->after.size()) + ".exr";
 }
 
-/// Fails with all that is missing, and with the command that has it.
-void require_all(const Settings& settings, const std::vector<std::string>& arguments) {
+/// Prints a line for each thing that is missing, and the command that has all of it. Returns whether nothing is.
+bool has_all(const Settings& settings, const std::vector<std::string>& arguments) {
   const Lacking lacking = lacking_in(settings);
-  if (!lacking.any()) return;
+  if (!lacking.any()) return true;
   std::string command = "alcove run";
   if (lacking.input) command += " frame.exr";
   for (const auto& argument : arguments) command += " " + for_shell(argument);
@@ -36,7 +36,10 @@ void require_all(const Settings& settings, const std::vector<std::string>& argum
   if (lacking.camera) command += " --camera CAMERA.json";
   if (lacking.radius)
     command += " --radius " + (lacking.proposed_radius ? fmt::format("{}", *lacking.proposed_radius) : "auto");
-  fail(ErrorKind::usage, "{}; such as: {}", text_of(lacking), command);
+  print_error("alcove: error: missing:\n");
+  for (const auto& sentence : sentences_on(lacking)) print_error("  {}\n", printable(sentence));
+  print_error("such as:\n{}\n", printable(command));
+  return false;
 }
 
 }  // namespace
@@ -44,7 +47,7 @@ void require_all(const Settings& settings, const std::vector<std::string>& argum
 int run_command(const std::vector<std::string>& arguments) {
   RunOptions options;
   if (!parse_run_options(arguments, options)) return 0;
-  require_all(options.settings, arguments);
+  if (!has_all(options.settings, arguments)) return int(ErrorKind::usage);
   if (options.dry_run) {
     fmt::print("{}", plan_text(options.settings));
     return 0;

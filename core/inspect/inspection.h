@@ -126,8 +126,9 @@ struct Inspection {
   std::optional<Error> unreadable;  // The headers are whole and the pixels are not: the rest is what the headers tell.
 };
 
-/// Lines for people, without any character that a terminal would obey.
-std::string inspection_text(const Inspection& inspection);
+/// Lines for people, without any character that a terminal would obey: the reading first, the command last. With
+/// `has_evidence` also attributes, statistics and the scores of every reading.
+std::string inspection_text(const Inspection& inspection, bool has_evidence);
 
 /// JSON with the fields that docs/inputs.md lists.
 std::string inspection_json(const Inspection& inspection);

@@ -44,17 +44,47 @@ class TextLines {
   std::string text_;
 };
 
-void add(TextLines& lines, const InspectedPart& part) {
+/// A layer's channels of one type, on one line.
+struct LayerLine {
+  std::string layer, channels;
+  SampleType type;
+};
+
+std::vector<LayerLine> layers_of(const ExrPart& header) {
+  std::vector<LayerLine> layers;
+  for (const auto& channel : header.channels) {
+    const std::size_t dot = channel.name.rfind('.');
+    const std::string layer = dot == channel.name.npos ? "" : channel.name.substr(0, dot);
+    const std::string name = dot == channel.name.npos ? channel.name : channel.name.substr(dot + 1);
+    if (!layers.empty() && layers.back().layer == layer && layers.back().type == channel.type)
+      layers.back().channels += " " + name;
+    else
+      layers.push_back({layer, name, channel.type});
+  }
+  return layers;
+}
+
+std::size_t longest(const std::vector<LayerLine>& layers, std::string LayerLine::*text) {
+  std::size_t most = 0;
+  for (const auto& layer : layers) most = std::max(most, (layer.*text).size());
+  return most;
+}
+
+void add(TextLines& lines, const InspectedPart& part, bool has_evidence) {
   const ExrPart& header = part.header;
   lines.add("  part{}{}: data window {}", header.name.empty() ? "" : " " + header.name,
             header.view.empty() ? "" : ", view " + header.view, to_string(header.data));
-  for (const auto& channel : header.channels) lines.add("    {} ({})", channel.name, name_of(channel.type));
+  const auto layers = layers_of(header);
+  const std::size_t width = longest(layers, &LayerLine::layer), names = longest(layers, &LayerLine::channels);
+  for (const auto& [layer, channels, type] : layers)
+    lines.add("    {:{}}{}{:{}}  {}", layer, width, width > 0 ? "  " : "", channels, names, name_of(type));
+  if (!has_evidence) return;
   for (const auto& [name, value] : part.attributes) lines.add("    {} = {}", name, value.substr(0, kShownCharacters));
 }
 
-void add(TextLines& lines, const InspectedFile& file) {
+void add(TextLines& lines, const InspectedFile& file, bool has_evidence) {
   lines.add("{}: display window {}, pixel aspect {:.4g}", file.path, to_string(file.display), file.pixel_aspect);
-  for (const auto& part : file.parts) add(lines, part);
+  for (const auto& part : file.parts) add(lines, part, has_evidence);
   for (const auto& matte : file.cryptomattes) {
     std::vector<std::string> names;
     for (const auto& [name, id] : matte.manifest) names.push_back(name);
@@ -62,15 +92,6 @@ void add(TextLines& lines, const InspectedFile& file) {
     lines.add("  Cryptomatte {}, for --matte-object, --set occluders and --set ignore: {}", matte.name,
               names.empty() ? lacking : list_of(names));
   }
-}
-
-void add(TextLines& lines, const InspectedSource& source) {
-  lines.add("source: {}{}", source.name, source.by.empty() ? "" : " (" + source.by + ")");
-}
-
-void add(TextLines& lines, const InspectedAov& aov) {
-  lines.add("{}: {} ({})", aov.name, fmt::join(aov.channels, ", "),
-            aov.is_chosen ? "named by an option" : "a usual name");
 }
 
 void add(TextLines& lines, const InspectedCamera& inspected) {
@@ -83,24 +104,44 @@ void add(TextLines& lines, const InspectedCamera& inspected) {
             camera.view_from_world ? "with" : "without");
 }
 
-void add(TextLines& lines, const InspectedDepth& depth) {
-  const ValueStatistics& values = depth.values;
-  lines.add("depth: {}, values {:.6g} to {:.6g}; {} NaN, {} infinite, {} negative, {} of 0, {} of 1", depth.kind,
-            values.least, values.most, values.nan, values.infinite, values.negative, values.zero, values.one);
+void add(TextLines& lines, const InspectedAov& aov) {
+  lines.add("{}: {}{}", aov.name, fmt::join(aov.channels, ", "), aov.is_chosen ? ", named by an option" : "");
+}
+
+/// The channels of an AOV; "" where there is none.
+std::string channels_of(const Inspection& inspection, std::initializer_list<std::string_view> names) {
+  for (const auto& aov : inspection.aovs)
+    if (std::ranges::find(names, aov.name) != names.end())
+      return fmt::format(", {}{}", fmt::join(aov.channels, ", "), aov.is_chosen ? ", named by an option" : "");
+  return "";
+}
+
+void add(TextLines& lines, const InspectedDepth& depth, const std::string& channels) {
   if (depth.median)
-    lines.add("  distances {:.6g} to {:.6g}, median {:.6g}; sky {}", *depth.nearest, *depth.farthest, *depth.median,
-              percent(*depth.sky_share));
+    lines.add("depth: {}{}, distances {:.4g} to {:.4g}, median {:.4g}; sky {}", depth.kind, channels, *depth.nearest,
+              *depth.farthest, *depth.median, percent(*depth.sky_share));
+  else
+    lines.add("depth: {}{}, values {:.6g} to {:.6g}", depth.kind, channels, depth.values.least, depth.values.most);
+}
+
+void add_evidence(TextLines& lines, const InspectedDepth& depth) {
+  const ValueStatistics& values = depth.values;
+  lines.add("depth values {:.6g} to {:.6g}; {} NaN, {} infinite, {} negative, {} of 0, {} of 1", values.least,
+            values.most, values.nan, values.infinite, values.negative, values.zero, values.one);
   if (!depth.scores) return;
   for (const auto& score : *depth.scores)
     lines.add("  as {} alone {} of the smooth places are flat", name_of(score.kind), percent(score.straight));
 }
 
-void add(TextLines& lines, const InspectedNormals& normals) {
-  const std::string lengths = normals.mean_length ? fmt::format(", mean length {:.4f}, of unit length on {}",
-                                                                *normals.mean_length, percent(*normals.unit_share))
-                                                  : "";
+void add(TextLines& lines, const InspectedNormals& normals, const std::string& channels) {
   lines.add("normals: {} space, {}, flips {}{}", name_of(normals.space), normals.encoding, to_string(normals.flips),
-            lengths);
+            channels);
+}
+
+void add_evidence(TextLines& lines, const InspectedNormals& normals) {
+  if (normals.mean_length)
+    lines.add("normals of mean length {:.4f}, of unit length on {}", *normals.mean_length,
+              percent(*normals.unit_share));
   for (std::size_t i = 0; i < std::min(normals.scores.size(), kShownScores); i++) {
     const NormalScore& score = normals.scores[i];
     lines.add("  as {} with flips {}: {} agree with depth, a quarter within {:.1f} degrees, {} face the camera{}",
@@ -158,17 +199,26 @@ void add(TextLines& lines, const InspectedSequence& sequence, bool is_orthograph
 
 }  // namespace
 
-std::string inspection_text(const Inspection& inspection) {
+std::string inspection_text(const Inspection& inspection, bool has_evidence) {
   TextLines lines;
-  for (const auto& file : inspection.files) add(lines, file);
-  if (inspection.source) add(lines, *inspection.source);
-  for (const auto& aov : inspection.aovs) add(lines, aov);
+  const std::string depth = channels_of(inspection, {"depth", "position"}),
+                    normal = channels_of(inspection, {"normal"});
+  if (const auto& source = inspection.source)
+    lines.add("source: {}{}", source->name, source->by.empty() ? "" : " (" + source->by + ")");
+  if (inspection.depth) add(lines, *inspection.depth, depth);
+  if (inspection.normals) add(lines, *inspection.normals, normal);
   if (inspection.camera) add(lines, *inspection.camera);
-  const bool is_orthographic = inspection.camera && inspection.camera->camera.orthographic;
-  if (inspection.depth) add(lines, *inspection.depth);
-  if (inspection.normals) add(lines, *inspection.normals);
+  for (const auto& aov : inspection.aovs) {
+    const bool is_said = (inspection.depth && (aov.name == "depth" || aov.name == "position")) ||
+                         (inspection.normals && aov.name == "normal");
+    if (!is_said) add(lines, aov);
+  }
   for (const auto& deep : inspection.deep) add(lines, deep);
+  const bool is_orthographic = inspection.camera && inspection.camera->camera.orthographic;
   if (inspection.sequence) add(lines, *inspection.sequence, is_orthographic);
+  for (const auto& file : inspection.files) add(lines, file, has_evidence);
+  if (has_evidence && inspection.depth) add_evidence(lines, *inspection.depth);
+  if (has_evidence && inspection.normals) add_evidence(lines, *inspection.normals);
   for (const auto& guess : inspection.guesses)
     lines.add("guess: {} {}, since {} ({})", guess.what, guess.chosen, guess.why, guess.option);
   for (const auto& guess : inspection.hidden)

@@ -177,17 +177,17 @@ Lacking lacking_in(const Settings& settings) {
   return lacking;
 }
 
-std::string text_of(const Lacking& lacking) {
-  std::vector<std::string> things;
+std::vector<std::string> sentences_on(const Lacking& lacking) {
+  std::vector<std::string> sentences;
   if (lacking.input)
-    things.emplace_back("INPUT, an EXR file with depth and normals, or --depth FILE, or --position FILE");
-  if (lacking.output) things.emplace_back("-o FILE.exr, the AO");
-  if (lacking.camera) things.push_back(fmt::format("a camera: {}", kCameraOptions));
-  if (lacking.radius) things.emplace_back("--radius NUMBER, how far occluders reach in scene units, or --radius auto");
-  const std::string text = fmt::format("missing: {}", fmt::join(things, "; "));
-  if (lacking.unfound) return fmt::format("{}; {}", lacking.unfound->what(), text);
-  return lacking.unreadable ? fmt::format("{}; and the frame cannot be looked at: {}", text, lacking.unreadable->what())
-                            : text;
+    sentences.emplace_back("INPUT, an EXR with depth and normals, or --depth FILE, or --position FILE");
+  if (lacking.output) sentences.emplace_back("-o FILE.exr, the AO");
+  if (lacking.camera) sentences.push_back(fmt::format("a camera: {}", kCameraOptions));
+  if (lacking.unfound) sentences.emplace_back(lacking.unfound->what());
+  if (lacking.radius)
+    sentences.emplace_back("--radius NUMBER, how far occluders reach in scene units, or --radius auto");
+  if (lacking.unreadable) sentences.push_back(fmt::format("a frame to look at: {}", lacking.unreadable->what()));
+  return sentences;
 }
 
 }  // namespace alcove

@@ -43,7 +43,7 @@ struct Lacking {
 /// make no sense.
 Lacking lacking_in(const Settings& settings);
 
-/// One sentence that lists all of it, with the options that give it.
-std::string text_of(const Lacking& lacking);
+/// One sentence for each thing, with the options that give it.
+std::vector<std::string> sentences_on(const Lacking& lacking);
 
 }  // namespace alcove

@@ -96,7 +96,7 @@ TEST_F(Hostile, inspect_prints_names_of_headers_as_text_that_no_terminal_obeys) 
   file.rename("ViewLayer.Depth.Z", std::string(kScript) + "\x1b[2J.Z");
   file.attributes = {{"Software", "\x1b]0;title\x07\r\n`touch x`"}};
   file.write(frame);
-  const Finished text = run_program({"inspect", frame, "--camera", camera}),
+  const Finished text = run_program({"inspect", frame, "--camera", camera, "-v"}),
                  quoted = run_program({"inspect", frame, "--camera", camera, "--json"});
   EXPECT_EQ(text.code, 0) << text;
   EXPECT_THAT(text.out,

@@ -33,7 +33,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   fuzz::accepts([&] {
     const Inspection inspection = inspect_frame(settings, 1);
     fuzz::require(nlohmann::json::accept(inspection_json(inspection)), "the JSON is JSON");
-    const bool commands = std::ranges::any_of(inspection_text(inspection),
+    const bool commands = std::ranges::any_of(inspection_text(inspection, true),
                                               [](unsigned char c) { return (c < 0x20 && c != '\n') || c == 0x7f; });
     fuzz::require(!commands, "a terminal shows text only");
   });

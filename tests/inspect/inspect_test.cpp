@@ -140,12 +140,24 @@ TEST_F(Inspect, what_run_would_refuse_is_part_of_the_answer) {
   EXPECT_EQ(all["depth"]["kind"], "device");
 }
 
-TEST_F(Inspect, text_and_json_say_the_same) {
+TEST_F(Inspect, the_text_begins_with_the_reading_and_ends_with_the_command) {
+  FrameFile file = wall_frame();
+  file.attributes["Camera"] = "Camera.001";
+  file.write(frame);
   const json all = inspected({"--camera", camera});
-  const std::string text = inspect({"--camera", camera}).out;
-  EXPECT_THAT(text, HasSubstr(all["command"].get<std::string>()));
-  EXPECT_THAT(text, HasSubstr("depth: planar"));
-  EXPECT_THAT(text, HasSubstr("normals: world space, signed"));
+  const auto lines = lines_of(inspect({"--camera", camera}).out);
+  EXPECT_THAT(lines[0], testing::StartsWith("source: cycles"));
+  EXPECT_THAT(lines[1], testing::StartsWith("depth: planar, ViewLayer.Depth.Z, distances 3.429 to 6, median 6; sky 0.0 %"));
+  EXPECT_THAT(lines[2], testing::StartsWith("normals: world space, signed"));
+  EXPECT_THAT(lines[3], testing::StartsWith("camera: perspective by --camera"));
+  EXPECT_EQ(lines.back(), all["command"].get<std::string>());
+  const auto is_layer = [](const std::string& line) { return line == "    ViewLayer.Normal  X Y Z  float"; };
+  EXPECT_EQ(std::ranges::count_if(lines, is_layer), 1) << "one line for a layer";
+  const std::string text = inspect({"--camera", camera}).out, evidence = inspect({"--camera", camera, "-v"}).out;
+  for (const char* words : {"Camera = Camera.001", "as planar alone", "0 NaN", "as world with flips none"}) {
+    EXPECT_THAT(evidence, HasSubstr(words));
+    EXPECT_THAT(text, testing::Not(HasSubstr(words)));
+  }
 }
 
 TEST_F(Inspect, says_which_program_wrote_the_frame) {
@@ -354,7 +366,8 @@ TEST_F(Inspect, lengths_are_of_vectors_only) {
   const json all = inspected({"--camera", camera, "--normal-encoding", "spheremap"})["normals"];
   EXPECT_EQ(all["encoding"], "spheremap");
   EXPECT_EQ(all["mean_length"], nullptr);
-  EXPECT_EQ(inspect({"--camera", camera, "--normal-encoding", "spheremap"}).out.find("mean length"), std::string::npos);
+  EXPECT_EQ(inspect({"--camera", camera, "--normal-encoding", "spheremap", "-v"}).out.find("mean length"),
+            std::string::npos);
 }
 
 TEST_F(Inspect, what_a_terminal_would_obey_is_not_printed) {
@@ -362,7 +375,7 @@ TEST_F(Inspect, what_a_terminal_would_obey_is_not_printed) {
   file.planes["\x1b[31mred"] = file.planes["ViewLayer.Depth.Z"];
   file.attributes["Camera"] = "a\x1b[2Jb\nc";
   file.write(frame);
-  const Finished finished = inspect({"--camera", camera});
+  const Finished finished = inspect({"--camera", camera, "-v"});
   EXPECT_EQ(finished.out.find('\x1b'), std::string::npos);
   EXPECT_THAT(finished.out, HasSubstr("a?[2Jb?c"));
   const Finished refused = inspect({"--camera", camera, "--depth-channel", "none"});

@@ -220,16 +220,17 @@ TEST_F(Missing, is_all_listed_at_once_with_the_command_that_would_do) {
   const Finished all = run_program({"run", frame});
   EXPECT_EQ(all.code, 2);
   EXPECT_THAT(all.err, AllOf(HasSubstr("-o FILE.exr"), HasSubstr("--camera FILE.json"), HasSubstr("--fov"),
-                             HasSubstr("--radius NUMBER"), HasSubstr("such as: alcove run " + frame + " -o ao.exr")));
-  EXPECT_EQ(lines_of(all.err).size(), 1) << all;
+                             HasSubstr("--radius NUMBER"), HasSubstr("such as:\nalcove run " + frame + " -o ao.exr")));
+  EXPECT_EQ(lines_of(all.err).size(), 6) << all << "one for each thing, and the command alone on the last";
   EXPECT_EQ(run_program({"run", frame, "--dry-run"}).code, 2);
 
   // The command works as it is proposed, with the radius that inspect proposes.
   const Finished some = run_program({"run", frame, "--camera", camera, "--type", "float"});
   EXPECT_EQ(some.code, 2);
   EXPECT_THAT(some.err, Not(HasSubstr("a camera: ")));
-  const std::string such_as = "such as: alcove ", proposed = lines_of(some.err)[0];
-  std::istringstream words(proposed.substr(proposed.find(such_as) + such_as.size()));
+  const std::string program = "alcove ", proposed = lines_of(some.err).back();
+  ASSERT_THAT(proposed, testing::StartsWith(program));
+  std::istringstream words(proposed.substr(program.size()));
   const std::vector<std::string> arguments{std::istream_iterator<std::string>(words), {}};
   EXPECT_THAT(arguments, testing::IsSupersetOf({"--type", "float", "--camera", "-o", "ao.exr", "--radius"}));
   EXPECT_EQ(run_program(arguments, {.folder = folder.path()}).code, 0);
