@@ -15,7 +15,7 @@ install(DIRECTORY presets DESTINATION share/alcove FILES_MATCHING PATTERN *.toml
 # The documents, in the folders that their links name, and the frame of the first steps.
 set(documents share/doc/alcove)
 install(FILES README.md CHANGELOG.md DESTINATION ${documents})
-install(DIRECTORY docs DESTINATION ${documents} FILES_MATCHING PATTERN *.md PATTERN *.png PATTERN *.json)
+install(DIRECTORY docs DESTINATION ${documents} FILES_MATCHING PATTERN *.md PATTERN *.png PATTERN *.svg PATTERN *.json)
 install(FILES examples/interior.gbuffer.exr examples/interior.beauty.exr examples/interior.camera.json DESTINATION ${documents}/examples)
 install(DIRECTORY examples/farm DESTINATION ${documents}/examples USE_SOURCE_PERMISSIONS)
 

@@ -6,7 +6,7 @@
 // times the first one's frequency and l times the second one's, less whole ones. The fractions are chosen so that on
 // every lattice of lattice.glsl the harmonics that weigh most are waves so short that the filters take them away. The
 // weights were measured: on plain surfaces of rendered scenes seven tenths of the variance is the first harmonic of the
-// slices' direction, and hardly any is the steps'. See docs/performance.md.
+// slices' direction, and hardly any is the steps'. See docs/lab.md.
 
 const float kGolden = 0.61803398874989485;  // (sqrt(5) - 1) / 2
 

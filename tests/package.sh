@@ -44,7 +44,7 @@ wanted() {
   find presets -name '*.toml' -printf 'share/alcove/%p\n'
   printf 'share/doc/alcove/%s\n' README.md CHANGELOG.md copyright examples/interior.{gbuffer.exr,beauty.exr,camera.json} \
     examples/farm/{README.md,alcove.openjd.json,slurm.sh}
-  find docs -name '*.md' -o -name '*.png' -o -name '*.json' | sed 's,^,share/doc/alcove/,'
+  find docs -name '*.md' -o -name '*.png' -o -name '*.svg' -o -name '*.json' | sed 's,^,share/doc/alcove/,'
 }
 expect_files() {  # what it is, then file names on two inputs: wanted, and there
   diff <(LC_ALL=C sort "$2") <(LC_ALL=C sort "$3") >"$folder/difference" || fail "$1: < is missing, > is too much

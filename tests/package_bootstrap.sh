@@ -65,7 +65,7 @@ inside apt-get purge -y -qq --autoremove alcove >/dev/null 2>&1
 inside apt-get install -y -qq -d "$alcove" >"$root/log" 2>&1 || fail "apt-get install -d: $(cat "$root/log")"
 first_picture() {
   install "$alcove"
-  as_user "cp -r $examples/* . && alcove run interior.gbuffer.exr --camera interior.camera.json --radius 0.35 -o ao.exr --preview ao.png" \
+  as_user "cp -r $examples . && alcove run examples/interior.gbuffer.exr --camera examples/interior.camera.json --radius 0.35 -o ao.exr --preview ao.png" \
     >"$root/log" 2>&1 || fail "the first picture: $(cat "$root/log")"
 }
 taken=$(seconds first_picture)
@@ -80,7 +80,7 @@ while read -r line; do
   commands=$((commands + 1))
 done < <(grep -h '^    alcove ' README.md | grep -v -e '####' -e '%0')
 [ "$commands" -ge 3 ] || fail "README.md has $commands commands that can be run"
-as_user 'alcove run interior.gbuffer.exr --camera interior.camera.json --radius 0.35 --preset draft -o draft.exr --set debug=view-z &&
+as_user 'alcove run examples/interior.gbuffer.exr --camera examples/interior.camera.json --radius 0.35 --preset draft -o draft.exr --set debug=view-z &&
   alcove compare draft.exr ao.exr --report report.html && alcove doctor' >"$root/log" 2>&1 || fail "draft, compare and doctor: $(cat "$root/log")"
 step "$commands commands of README.md, a page of compare and doctor, without alcove-pictures"
 

@@ -52,8 +52,7 @@ class Documents : public Sources {
     write(folder / "frame.exr");
     give_camera();
     fs::copy_file(folder / "camera.json", folder / "shot.json");
-    for (const char* file : {"interior.gbuffer.exr", "interior.beauty.exr", "interior.camera.json"})
-      fs::create_symlink(kProject + "examples/" + file, folder / file);
+    fs::create_directory_symlink(kProject + "examples", folder / "examples");
     write_hidden(z);
     write_capture(z);
     planes.clear();
