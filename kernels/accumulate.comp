@@ -21,19 +21,21 @@
 #include "cells.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
-layout(constant_id = kAccumulatePlanesId) const int kPlanes = 1;
-layout(constant_id = kAccumulateListedId) const int kListed = 0;
+layout(constant_id = 0) const int kPlanes = 1;  // of values
+layout(constant_id = 1) const int kListed = 0;  // frames that the buffer lists, 0 to kMostTaken
 layout(scalar, push_constant) uniform Push { AccumulateParams params; };
-layout(scalar, binding = kAccumulateDepth) readonly buffer Depth { float depth[]; };
-layout(scalar, binding = kAccumulateNormal) readonly buffer Normal { uint normal[]; };
-layout(scalar, binding = kAccumulateValues) readonly buffer Values { float values[]; };
-layout(scalar, binding = kAccumulateOthers) readonly buffer Others { uint others[]; };
-layout(scalar, binding = kAccumulateFrames) readonly buffer Frames { TakenFrame frames[]; };
-layout(scalar, binding = kAccumulateNear) readonly buffer Near { uint near[]; };
-layout(scalar, binding = kAccumulateSums) buffer Sums { float sums[]; };
-layout(scalar, binding = kAccumulateAo) writeonly buffer Ao { float ao[]; };
-layout(scalar, binding = kAccumulateScales) writeonly buffer Scales { float scales[]; };
-layout(scalar, binding = kAccumulateBent) writeonly buffer Bent { float bent[]; };
+readonly buffer Depth { float depth[]; };    // one float per pixel of the part, planar depth
+readonly buffer Normal { uint normal[]; };   // one uint per pixel of the part, see normal.glsl
+readonly buffer Values { float values[]; };  // planes of floats in [0, 1] over all of the frame: its own estimate
+readonly buffer Others { uint others[]; };   // planes of other frames, as words
+readonly buffer Frames { TakenFrame frames[]; };
+readonly buffer Near { uint near[]; };  // words of cells, from moved
+// planes of floats: how many estimates there are, and for each plane of values the sum of what they are less than 1;
+// not read where they begin
+buffer Sums { float sums[]; };
+writeonly buffer Ao { float ao[]; };          // where the sums end: the first plane of values
+writeonly buffer Scales { float scales[]; };  // those of radii, which follow it
+writeonly buffer Bent { float bent[]; };      // those of the mean open direction, which are the last ones
 
 /// Normals of one point differ by rounding and by how files filter them: as the cosine between them.
 const float kLeastAgreement = 0.9;

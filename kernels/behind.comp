@@ -5,18 +5,18 @@
 // Out: planar depth > 0, below 0 of a surface that closes the solid before it; kSkyDepth where there is none.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#include "behind.h"
+#include "hidden.h"
 #include "finite.glsl"
 #include "view.glsl"
 #include "depth_terms.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
-layout(constant_id = kBehindFormId) const uint kForm = kDepthLinear;
-layout(constant_id = kBehindKindId) const uint kKind = kBehindSurfaces;
+layout(constant_id = 0) const uint kForm = kDepthLinear;     // one of kDepth*
+layout(constant_id = 1) const uint kKind = kBehindSurfaces;  // one of kBehind*
 layout(scalar, push_constant) uniform Push { BehindParams params; };
-layout(scalar, binding = kBehindRaw) readonly buffer Raw { float raw[]; };
-layout(scalar, binding = kBehindDepth) readonly buffer Depth { float depth[]; };
-layout(scalar, binding = kBehindFound) writeonly buffer Found { float found[]; };
+readonly buffer Raw { float raw[]; };       // planes of floats, as in the files
+readonly buffer Depth { float depth[]; };   // one float per pixel, planar depth of the first surface, from prepare
+writeonly buffer Found { float found[]; };  // planes of floats, as layers takes them
 
 void main() {
   const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);

@@ -8,14 +8,14 @@
 // lifted onto the plane.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#include "bent_normal.h"
+#include "shading.h"
 #include "normal.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 layout(scalar, push_constant) uniform Push { BentNormalParams params; };
-layout(scalar, binding = kBentNormalNormal) readonly buffer Normal { uint normal[]; };
-layout(scalar, binding = kBentNormalBent) readonly buffer Bent { float bent[]; };
-layout(scalar, binding = kBentNormalResult) writeonly buffer Result { uint result[]; };
+readonly buffer Normal { uint normal[]; };   // one uint per pixel, from prepare
+readonly buffer Bent { float bent[]; };      // planes x, y, z of the mean open direction b as 0.5 + 0.5 b
+writeonly buffer Result { uint result[]; };  // one uint per pixel, as the normal
 
 /// Means as short as this are half the normal: a thousandth of what an open surface has.
 const float kLeastLength = 2.0 / 3.0 * 1e-3;

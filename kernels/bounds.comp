@@ -7,14 +7,16 @@
 // A surface that closes a solid says something from the front of that on.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#include "bounds.h"
+#include "estimate.h"
 #include "tiles.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 layout(scalar, push_constant) uniform Push { BoundsParams params; };
-layout(scalar, binding = kBoundsDepth) readonly buffer Depth { float depth[]; };
-layout(scalar, binding = kBoundsHidden) readonly buffer Hidden { float hidden[]; };
-layout(scalar, binding = kBoundsBlocks) writeonly buffer Blocks { vec2 blocks[]; };
+readonly buffer Depth { float depth[]; };    // one float per pixel, from prepare
+readonly buffer Hidden { float hidden[]; };  // planes of hidden surfaces, see GBuffer
+// nearest and farthest depth per block of tiles, rows of blocks from the upper left corner; nothing hidden:
+// kSkyDepth, 0
+writeonly buffer Blocks { vec2 blocks[]; };
 
 void main() {
   const ivec2 size = params.size, block = ivec2(gl_GlobalInvocationID.xy), count = blocks_of(size);

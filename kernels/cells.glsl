@@ -1,4 +1,4 @@
-// Cells of a frame's view space, in a table that some of them share. Pure: no bindings. After moved.h.
+// Cells of a frame's view space, in a table that some of them share. Pure: no bindings. After accumulate.h.
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Teschner et al., "Optimized Spatial Hashing for Collision Detection of Deformable Objects", 2003.

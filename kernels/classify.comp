@@ -12,7 +12,7 @@
 // Where another frame's estimates still lie and nothing within reach is other than it was, they stay.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#include "classify.h"
+#include "estimate.h"
 #include "view.glsl"
 #include "normal.glsl"
 #include "clearance.glsl"
@@ -20,26 +20,31 @@
 #include "tiles.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
-layout(constant_id = kClassifySparseId) const uint kSparse = 0;
-layout(constant_id = kClassifyModeId) const uint kMode = kClassifySkips;
+layout(constant_id = 0) const uint kSparse = 0;             // 1: only sites have an estimate
+layout(constant_id = 1) const uint kMode = kClassifySkips;  // bits of kClassify*
 const bool kSkips = (kMode & kClassifySkips) != 0u;
 const bool kReuses = (kMode & kClassifyReuses) != 0u;
 const bool kSelects = (kMode & kClassifySelects) != 0u;
 const bool kLayered = (kMode & kClassifyLayered) != 0u;
 const bool kTellsLayered = kSkips && kLayered;
 layout(scalar, push_constant) uniform Push { ClassifyParams params; };
-layout(scalar, binding = kClassifyBounds) readonly buffer Bounds { vec2 bounds[]; };
-layout(scalar, binding = kClassifyChanges) readonly buffer Changes { uint changes[]; };
-layout(scalar, binding = kClassifyDepth) readonly buffer Depth { float depth[]; };
-layout(scalar, binding = kClassifyNormal) readonly buffer Normal { uint normal[]; };
-layout(scalar, binding = kClassifyList) writeonly buffer List { uint list[]; };
-layout(scalar, binding = kClassifyCounts) buffer Counts { TileCounts counts; };
-layout(scalar, binding = kClassifyAo) writeonly buffer Ao { float ao[]; };
-layout(scalar, binding = kClassifyBent) writeonly buffer Bent { float bent[]; };
-layout(scalar, binding = kClassifyCompleted) writeonly buffer Completed { float completed[]; };
-layout(scalar, binding = kClassifyNeeded) readonly buffer Needed { uint wanted[]; };
-layout(scalar, binding = kClassifyRows) readonly buffer Rows { uint rows[]; };
-layout(scalar, binding = kClassifyKinds) writeonly buffer Kinds { uint kinds[]; };
+readonly buffer Bounds { vec2 bounds[]; };  // from bounds; only with kClassifyLayered and kClassifySkips
+// one uint per corner of blocks, (columns + 1) x (rows + 1): how many blocks above and left of it have changed
+readonly buffer Changes { uint changes[]; };
+readonly buffer Depth { float depth[]; };   // one float per pixel, from prepare
+readonly buffer Normal { uint normal[]; };  // one uint per pixel, from prepare
+writeonly buffer List { uint list[]; };     // one uint per tile, as many as are counted, in no order: see pack_tile
+buffer Counts { TileCounts counts; };       // zeros before
+// one float per pixel, 1 at receivers of tiles that are not listed; in the plane that the parameters name
+writeonly buffer Ao { float ao[]; };
+// planes x, y, z as estimators write them, for the same; only with kClassifyWithBent
+writeonly buffer Bent { float bent[]; };
+// one float per pixel, 0 at receivers of tiles that are not listed; only with kClassifyWithCompleted
+writeonly buffer Completed { float completed[]; };
+// one uint per tile, from needed: not 0 where estimates are needed; only with kClassifySelects
+readonly buffer Needed { uint wanted[]; };
+readonly buffer Rows { uint rows[]; };     // 8 words per tile, see lattice.glsl; only if sparse
+writeonly buffer Kinds { uint kinds[]; };  // one uint per tile: kTileOpen, kTileListed or kTileKept
 
 /// Where a sphere reaches nearer to the eye than this part of its box's depth, all of the image counts. Down to
 /// it, the difference of depth and reach is off by 200 * 2^-24 of itself at most, and so is what is divided by it: on

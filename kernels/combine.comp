@@ -9,12 +9,12 @@
 // the occlusion with the hard radius r (superposition), which for steps is a mean.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#include "combine.h"
+#include "filters.h"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 layout(scalar, push_constant) uniform Push { CombineParams params; };
-layout(scalar, binding = kCombineScales) readonly buffer Scales { float scales[]; };
-layout(scalar, binding = kCombineAo) writeonly buffer Ao { float ao[]; };
+readonly buffer Scales { float scales[]; };  // planes of visibility in [0, 1], one per radius
+writeonly buffer Ao { float ao[]; };         // one float per pixel, visibility in [0, 1]
 
 void main() {
   const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy), size = params.size;

@@ -20,22 +20,28 @@
 //   to so many, behind the last of others that have as many; else behind the first of others.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#include "complete.h"
+#include "exact_search.h"
 #include "view.glsl"
 #include "normal.glsl"
 #include "lines.glsl"
 
 layout(local_size_x = kCompleteGroup) in;
-layout(constant_id = kCompleteSurfacesId) const uint kSurfaces = 1;
-layout(constant_id = kCompleteWholeId) const uint kWhole = 0;
+// of a pixel. Of several, the profile is a plane among others, and `behind` is of that one alone of which surfaces
+// go on behind what is nearer.
+layout(constant_id = 0) const uint kSurfaces = 1;
+// 1: the frame tells all surfaces of a pixel, but for those behind as many as it may have
+layout(constant_id = 1) const uint kWhole = 0;
 layout(scalar, push_constant) uniform Push { CompleteParams params; };
-layout(scalar, binding = kCompleteVertex) buffer Vertex { float vertex[]; };
-layout(scalar, binding = kCompleteNormal) readonly buffer Normal { uint normal[]; };
-layout(scalar, binding = kCompleteMark) readonly buffer Mark { uint mark[]; };
-layout(scalar, binding = kCompleteGoesOn) writeonly buffer GoesOn { uint goes_on[]; };
-layout(scalar, binding = kCompleteBehind) buffer Behind { uint behind[]; };
-layout(scalar, binding = kCompleteDepth) readonly buffer Depth { float depth[]; };
-layout(scalar, binding = kCompleteHidden) readonly buffer Hidden { float hidden[]; };
+buffer Vertex { float vertex[]; };  // from profile; a vertex from which its surface goes on has its depth negated
+readonly buffer Normal { uint normal[]; };  // one uint per pixel, from prepare
+readonly buffer Mark { uint mark[]; };      // from profile
+// one uint for each vertex with a negative depth: up to where its surface goes on (pack_goes_on())
+writeonly buffer GoesOn { uint goes_on[]; };
+// one uint per vertex: the columns of the nearest vertices before (low half) and after it (high half) whose surface
+// goes on behind it; kNoVertex: none
+buffer Behind { uint behind[]; };
+readonly buffer Depth { float depth[]; };    // as profile's; only with several surfaces
+readonly buffer Hidden { float hidden[]; };  // planes of floats, see GBuffer::hidden; only with several surfaces
 
 /// A surface goes on until it is so many times as deep as at its last vertex.
 const float kLeastDepths = 1.0 / 64.0;

@@ -14,10 +14,11 @@
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 layout(scalar, push_constant) uniform Push { CompletionParams params; };
-layout(scalar, binding = kCompletionDepth) readonly buffer Depth { float depth[]; };
-layout(scalar, binding = kCompletionAo) readonly buffer Ao { float ao[]; };
-layout(scalar, binding = kCompletionCompleted) readonly buffer Completed { float completed[]; };
-layout(scalar, binding = kCompletionSums) writeonly buffer Sums { vec2 sums[]; };
+readonly buffer Depth { float depth[]; };          // one float per pixel, planar depth, kSkyDepth for sky
+readonly buffer Ao { float ao[]; };                // one float per pixel, visibility; the plane of the parameters
+readonly buffer Completed { float completed[]; };  // one float per pixel, visibility that completed surfaces took
+// one vec2 per tile, sums over its receivers of the visibility that is taken by completed surfaces, and by all
+writeonly buffer Sums { vec2 sums[]; };
 
 void main() {
   const View view = params.view;

@@ -12,20 +12,21 @@
 // (Beer and Lambert's law): the fog before a surface is not in its corners.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#include "composite.h"
+#include "shading.h"
 #include "finite.glsl"
 #include "view.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 layout(scalar, push_constant) uniform Push { CompositeParams params; };
-layout(scalar, binding = kCompositeAo) readonly buffer Ao { float ao[]; };
-layout(scalar, binding = kCompositeBeauty) readonly buffer Beauty { float beauty[]; };
-layout(scalar, binding = kCompositeLight) readonly buffer Light { float light[]; };
-layout(scalar, binding = kCompositeColor) readonly buffer Color { float light_color[]; };
-layout(scalar, binding = kCompositeLights) readonly buffer Lights { AmbientLight lights[]; };
-layout(scalar, binding = kCompositeResult) writeonly buffer Result { float result[]; };
-layout(scalar, binding = kCompositeDepth) readonly buffer Depth { float depth[]; };
-layout(scalar, binding = kCompositeCounts) buffer Counts { FrameCounts counts; };
+readonly buffer Ao { float ao[]; };          // one float per pixel, visibility; with has_color planes R, G, B
+readonly buffer Beauty { float beauty[]; };  // planes R, G, B and, with alpha, A; premultiplied scene-linear colour
+readonly buffer Light { float light[]; };    // planes R, G, B of every ambient light; not read without
+// planes R, G, B of the colours that multiply some of them; not read without
+readonly buffer Color { float light_color[]; };
+readonly buffer Lights { AmbientLight lights[]; };  // one for each; not read without
+writeonly buffer Result { float result[]; };        // the beauty's planes, alpha too
+readonly buffer Depth { float depth[]; };  // one float per pixel, planar depth, kSkyDepth for sky; not read without fog
+buffer Counts { FrameCounts counts; };
 
 bool broken = false;  // this pixel had a value that is NaN or infinite
 

@@ -23,12 +23,13 @@
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 layout(scalar, push_constant) uniform Push { ConfidenceParams params; };
-layout(scalar, binding = kConfidenceDepth) readonly buffer Depth { float depth[]; };
-layout(scalar, binding = kConfidenceNormal) readonly buffer Normal { uint normal[]; };
-layout(scalar, binding = kConfidenceThin) readonly buffer Thin { float thin[]; };
-layout(scalar, binding = kConfidenceSolid) readonly buffer Solid { float solid[]; };
-layout(scalar, binding = kConfidenceCompleted) readonly buffer Completed { float completed[]; };
-layout(scalar, binding = kConfidenceResult) writeonly buffer Result { float result[]; };
+readonly buffer Depth { float depth[]; };   // one float per pixel, from prepare
+readonly buffer Normal { uint normal[]; };  // one uint per pixel, from prepare
+readonly buffer Thin { float thin[]; };     // one float per pixel, visibility where occluders are thin
+readonly buffer Solid { float solid[]; };   // one float per pixel, visibility where they are endless
+// one float per pixel, visibility where they are thin, and surfaces are completed as the settings say
+readonly buffer Completed { float completed[]; };
+writeonly buffer Result { float result[]; };  // one float per pixel, 0 to 1; 1 for sky
 
 const int kDirections = 16;
 const float kTwoPi = 6.28318530717958648;

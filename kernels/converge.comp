@@ -11,19 +11,20 @@
 // the root of its mean square over a tile of 8 x 8 pixels is taken.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#include "converge.h"
+#include "exact_search.h"
 #include "view.glsl"
 #include "tiles.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 layout(scalar, push_constant) uniform Push { ConvergeParams params; };
-layout(scalar, binding = kConvergeDepth) readonly buffer Depth { float depth[]; };
-layout(scalar, binding = kConvergeBlocked) readonly buffer Blocked { float blocked[]; };
-layout(scalar, binding = kConvergeWhole) readonly buffer Whole { float whole[]; };
-layout(scalar, binding = kConvergeAo) buffer Ao { float ao[]; };
-layout(scalar, binding = kConvergeJudged) writeonly buffer Judged { JudgedTile judged[]; };
-layout(scalar, binding = kConvergeList) readonly buffer List { uint list[]; };
-layout(scalar, binding = kConvergeCounts) readonly buffer Counts { TileCounts counts; };
+readonly buffer Depth { float depth[]; };      // one float per pixel, from prepare
+readonly buffer Blocked { float blocked[]; };  // one float per pixel, sum of blocked arcs, from exact
+readonly buffer Whole { float whole[]; };      // one float per pixel, sum of whole arcs, from exact
+// one float per pixel, visibility by half of the directions, then by all; the plane of the parameters
+buffer Ao { float ao[]; };
+writeonly buffer Judged { JudgedTile judged[]; };  // one per tile
+readonly buffer List { uint list[]; };             // one uint per tile that had more directions, from refine
+readonly buffer Counts { TileCounts counts; };     // from refine
 
 /// Of the difference between both estimates, the error of the better one: measured on rendered frames, 0.60 to 0.75.
 const float kErrorShare = 0.75;

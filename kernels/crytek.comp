@@ -17,7 +17,7 @@
 //   of those that do.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#include "crytek.h"
+#include "estimate.h"
 #include "view.glsl"
 #include "normal.glsl"
 #include "noise.glsl"
@@ -25,17 +25,19 @@
 #include "clearance.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
-layout(constant_id = kCrytekSamplesId) const uint kSamples = 16;
-layout(constant_id = kCrytekSparseId) const uint kSparse = 0;
+layout(constant_id = 0) const uint kSamples = 16;  // samples per pixel
+layout(constant_id = 1) const uint kSparse = 0;    // 1: only the sites of the list are estimated
 layout(scalar, push_constant) uniform Push { CrytekParams params; };
-layout(scalar, binding = kCrytekDepth) readonly buffer Depth { float depth[]; };
-layout(scalar, binding = kCrytekOccluders) readonly buffer Occluders { float occluder_depth[]; };
-layout(scalar, binding = kCrytekNormal) readonly buffer Normal { uint normal[]; };
-layout(scalar, binding = kCrytekAo) writeonly buffer Ao { float ao[]; };
-layout(scalar, binding = kCrytekList) readonly buffer List { uint list[]; };
-layout(scalar, binding = kCrytekSites) readonly buffer Sites { uint sites[]; };
-layout(scalar, binding = kCrytekSiteCounts) readonly buffer SiteCountsBuffer { SiteCounts site_counts; };
-layout(scalar, binding = kCrytekCounts) readonly buffer Counts { TileCounts counts; };
+readonly buffer Depth { float depth[]; };  // one float per pixel, from prepare
+// one float per pixel, depth of the first surfaces that may block
+readonly buffer Occluders { float occluder_depth[]; };
+readonly buffer Normal { uint normal[]; };  // one uint per pixel, from prepare
+// one float per pixel, visibility in [0, 1], 1 = open; the plane of the parameters
+writeonly buffer Ao { float ao[]; };
+readonly buffer List { uint list[]; };                         // one uint per listed tile, from classify
+readonly buffer Sites { uint sites[]; };                       // one uint per site, from list_sites; only if sparse
+readonly buffer SiteCountsBuffer { SiteCounts site_counts; };  // only if sparse
+readonly buffer Counts { TileCounts counts; };
 
 /// How far a pixel's ray must turn towards the tangent plane to meet it at a place worth the name.
 const float kLeastSlope = 1e-4;

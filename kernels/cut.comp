@@ -5,12 +5,12 @@
 // Out: those of the frame.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#include "cut.h"
+#include "margin.h"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 layout(scalar, push_constant) uniform Push { CutParams params; };
-layout(scalar, binding = kCutWide) readonly buffer Wide { uint wide[]; };
-layout(scalar, binding = kCutResult) writeonly buffer Result { uint result[]; };
+readonly buffer Wide { uint wide[]; };       // planes of words of the frame with its margin
+writeonly buffer Result { uint result[]; };  // planes of words of the frame
 
 void main() {
   const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);

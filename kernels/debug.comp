@@ -17,11 +17,13 @@
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 layout(scalar, push_constant) uniform Push { DebugParams params; };
-layout(scalar, binding = kDebugDepth) readonly buffer Depth { float depth[]; };
-layout(scalar, binding = kDebugNormal) readonly buffer Normal { uint normal[]; };
-layout(scalar, binding = kDebugValues) readonly buffer Values { uint values[]; };
-layout(scalar, binding = kDebugRows) readonly buffer Rows { uint rows[]; };
-layout(scalar, binding = kDebugResult) writeonly buffer Result { float result[]; };
+readonly buffer Depth { float depth[]; };   // one float per pixel, planar depth, kSkyDepth for sky
+readonly buffer Normal { uint normal[]; };  // one uint per pixel, unit vector in view space, see normal.glsl
+// one float per pixel (kDebugValue) or a second set of normals (kDebugNormalAngle), or the kinds of tiles
+// (kDebugTile), or what is hidden (kDebugHidden); not read by others
+readonly buffer Values { uint values[]; };
+readonly buffer Rows { uint rows[]; };        // 8 words per tile, see lattice.glsl; only if sparse
+writeonly buffer Result { float result[]; };  // one float per pixel
 
 /// How far the farthest of the four neighbours lies off the tangent plane, as part of the pixel's depth; 1 at the sky.
 float edge(ivec2 pixel, float z, vec3 n) {

@@ -1,17 +1,9 @@
-// Parameters and bindings of debug.comp.
+// Parameters of the kernel that core/chain/debug.cpp runs.
 // SPDX-License-Identifier: BSD-3-Clause
 #ifndef ALCOVE_DEBUG_H
 #define ALCOVE_DEBUG_H
 #include "shared.h"
 ALCOVE_BEGIN
-
-ALCOVE_CONSTANT uint kDebugDepth = 0;   // in: one float per pixel, planar depth, kSkyDepth for sky
-ALCOVE_CONSTANT uint kDebugNormal = 1;  // in: one uint per pixel, unit vector in view space, see normal.glsl
-// in: one float per pixel (kDebugValue) or a second set of normals (kDebugNormalAngle), or the kinds of tiles
-// (kDebugTile), or what is hidden (kDebugHidden); not read by others
-ALCOVE_CONSTANT uint kDebugValues = 2;
-ALCOVE_CONSTANT uint kDebugResult = 3;  // out: one float per pixel
-ALCOVE_CONSTANT uint kDebugRows = 4;    // in: 8 words per tile, see lattice.glsl; only if sparse
 
 ALCOVE_CONSTANT uint kDebugValue = 0;        // the values as they are
 ALCOVE_CONSTANT uint kDebugPlanarDepth = 1;  // scene units
@@ -31,7 +23,6 @@ struct DebugParams {
   ivec2 origin;  // px from the display window's corner to the image's
   uint hidden;   // of kDebugHidden: planes of surfaces behind the first
 };
-ALCOVE_PARAMS(DebugParams)
 
 ALCOVE_END
 #endif

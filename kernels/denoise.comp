@@ -11,23 +11,23 @@
 // neighbours share what they load.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#include "denoise.h"
+#include "filters.h"
 #include "view.glsl"
 #include "normal.glsl"
 #include "tiles.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
-layout(constant_id = kDenoiseRadiusId) const int kRadius = 3;
-layout(constant_id = kDenoiseByDepthId) const uint kByDepth = 0;
-layout(constant_id = kDenoiseListedId) const uint kListed = 0;
-layout(constant_id = kDenoisePlanesId) const int kPlanes = 1;
+layout(constant_id = 0) const int kRadius = 3;    // pixels to each side, 1 to kDenoiseMostRadius
+layout(constant_id = 1) const uint kByDepth = 0;  // 1: weighs by depth_sigma instead of by plane distance
+layout(constant_id = 2) const uint kListed = 0;   // 1: only the runs of the list, not all
+layout(constant_id = 3) const int kPlanes = 1;    // how many planes; they share their weights
 layout(scalar, push_constant) uniform Push { DenoiseParams params; };
-layout(scalar, binding = kDenoiseAo) readonly buffer Ao { float ao[]; };
-layout(scalar, binding = kDenoiseDepth) readonly buffer Depth { float depth[]; };
-layout(scalar, binding = kDenoiseNormal) readonly buffer Normal { uint normal[]; };
-layout(scalar, binding = kDenoiseResult) writeonly buffer Result { float result[]; };
-layout(scalar, binding = kDenoiseList) readonly buffer List { uint list[]; };
-layout(scalar, binding = kDenoiseCounts) readonly buffer Counts { RunCounts counts; };
+readonly buffer Ao { float ao[]; };           // planes of floats in [0, 1], visibility or the like; each by itself
+readonly buffer Depth { float depth[]; };     // one float per pixel, of the G-buffer of that visibility
+readonly buffer Normal { uint normal[]; };    // one uint per pixel, of the same; not read with a depth sigma
+writeonly buffer Result { float result[]; };  // as many planes, in [0, 1]
+readonly buffer List { uint list[]; };        // one uint per run, from dilate; only if listed
+readonly buffer Counts { RunCounts counts; };
 
 #include "likeness.glsl"
 

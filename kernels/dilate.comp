@@ -13,19 +13,20 @@
 // blocks.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#include "dilate.h"
-#include "denoise.h"
+#include "filters.h"
 #include "tiles.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
-layout(constant_id = kDilateRadiusId) const int kRadius = 4;
-layout(constant_id = kDilateModeId) const uint kMode = kDilateAlongColumns;
+layout(constant_id = 0) const int kRadius = 4;                   // the denoiser's, px; 0: there is none
+layout(constant_id = 1) const uint kMode = kDilateAlongColumns;  // one of kDilate*
 layout(scalar, push_constant) uniform Push { DilateParams params; };
-layout(scalar, binding = kDilateTiles) readonly buffer Tiles { uint tiles[]; };
-layout(scalar, binding = kDilateColumns) buffer Columns { uint columns[]; };
-layout(scalar, binding = kDilateList) writeonly buffer List { uint list[]; };
-layout(scalar, binding = kDilateCounts) buffer Counts { RunCounts counts; };
-layout(scalar, binding = kDilateResult) writeonly buffer Result { float result[]; };
+readonly buffer Tiles { uint tiles[]; };  // one uint per tile, from classify
+// one uint per run along columns, line by line: 1 if it is listed; written along columns, read along rows
+buffer Columns { uint columns[]; };
+writeonly buffer List { uint list[]; };  // one uint per run or group that is listed, see pack_run
+buffer Counts { RunCounts counts; };     // zeros before
+// one float per pixel of the filter's result, where it is neither computed nor kept: 1; not along rows
+writeonly buffer Result { float result[]; };
 
 /// How many runs the workgroup lists, and where in the list they begin.
 shared uint listed_here, begin;

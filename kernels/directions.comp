@@ -6,14 +6,14 @@
 // Out: planes.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#include "directions.h"
+#include "shading.h"
 #include "normal.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 layout(scalar, push_constant) uniform Push { DirectionsParams params; };
-layout(scalar, binding = kDirectionsDepth) readonly buffer Depth { float depth[]; };
-layout(scalar, binding = kDirectionsPacked) readonly buffer Packed { uint packed_direction[]; };
-layout(scalar, binding = kDirectionsPlanes) writeonly buffer Planes { float planes[]; };
+readonly buffer Depth { float depth[]; };             // one float per pixel, planar depth, kSkyDepth for sky
+readonly buffer Packed { uint packed_direction[]; };  // one uint per pixel, unit vector in view space, see normal.glsl
+writeonly buffer Planes { float planes[]; };          // planes x, y, z
 
 void main() {
   const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);

@@ -11,19 +11,19 @@
 // hides stays as far behind its surface.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#include "downsample.h"
+#include "geometry.h"
 #include "view.glsl"
 #include "normal.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
-layout(constant_id = kDownsampleFactorId) const int kFactor = 2;
+layout(constant_id = 0) const int kFactor = 2;  // pixels of a block in x and in y
 layout(scalar, push_constant) uniform Push { DownsampleParams params; };
-layout(scalar, binding = kDownsampleDepth) readonly buffer Depth { float depth[]; };
-layout(scalar, binding = kDownsampleNormal) readonly buffer Normal { uint normal[]; };
-layout(scalar, binding = kDownsampleLowDepth) writeonly buffer LowDepth { float low_depth[]; };
-layout(scalar, binding = kDownsampleLowNormal) writeonly buffer LowNormal { uint low_normal[]; };
-layout(scalar, binding = kDownsampleHidden) readonly buffer Hidden { float hidden[]; };
-layout(scalar, binding = kDownsampleLowHidden) writeonly buffer LowHidden { float low_hidden[]; };
+readonly buffer Depth { float depth[]; };            // one float per pixel, from prepare
+readonly buffer Normal { uint normal[]; };           // one uint per pixel, from prepare
+writeonly buffer LowDepth { float low_depth[]; };    // one float per block, kSkyDepth where all of it is sky
+writeonly buffer LowNormal { uint low_normal[]; };   // one uint per block
+readonly buffer Hidden { float hidden[]; };          // planes of hidden surfaces, see GBuffer; none if there are none
+writeonly buffer LowHidden { float low_hidden[]; };  // as many of the blocks
 
 /// The depth at which the ray of image point `to` meets the plane with normal n through image point `from` at depth z;
 /// beyond all where it does not.

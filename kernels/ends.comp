@@ -10,15 +10,15 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
-#include "ends.h"
+#include "hidden.h"
 #include "ends.glsl"
 
 layout(local_size_x = kEndsGroup) in;
-layout(constant_id = kEndsKeptId) const uint kKept = kMostHidden;
+layout(constant_id = 0) const uint kKept = kMostHidden;  // planes of `hidden`, 1 to kMostHidden
 layout(scalar, push_constant) uniform Push { EndsParams params; };
-layout(scalar, binding = kEndsDepth) readonly buffer Depth { float depth[]; };
-layout(scalar, binding = kEndsHidden) readonly buffer Hidden { float hidden[]; };
-layout(scalar, binding = kEndsResult) buffer Result { uint result[]; };
+readonly buffer Depth { float depth[]; };    // one float per pixel, planar depth of the first surface, from prepare
+readonly buffer Hidden { float hidden[]; };  // planes of floats, from layers
+buffer Result { uint result[]; };            // two planes of uints, along rows and along columns, see pack_ends
 
 const uint kMost = kMostHidden + 1u;
 /// As slice.glsl has it.

@@ -23,7 +23,7 @@
 // - The result is 1 - (sum of blocked arcs) / (sum of whole arcs).
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#include "exact.h"
+#include "exact_search.h"
 #include "view.glsl"
 #include "normal.glsl"
 #include "arcs.glsl"
@@ -37,26 +37,33 @@
 #include "strokes.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
-layout(constant_id = kExactListedId) const uint kListed = 0;
-layout(constant_id = kExactCompletesId) const uint kCompletes = 0;
-layout(constant_id = kExactBentId) const uint kBentId = 0;
-layout(constant_id = kExactSlotsId) const uint kSlots = 1;
-layout(constant_id = kExactUnseenId) const uint kUnseen = 0;
+// 1: the pixels of listed tiles take the slice, and no sum is ever completed; see stride, first, is_last
+layout(constant_id = 0) const uint kListed = 0;
+// 1: surfaces go on as complete has found; 2: and what they block is told apart
+layout(constant_id = 1) const uint kCompletes = 0;
+layout(constant_id = 2) const uint kBentId = 0;  // 1: bent normals too
+layout(constant_id = 3) const uint kSlots = 1;   // of the profile, 1 to 1 + kMostHidden
+// 1: behind the slots' planes is one of the first surfaces, which go on unseen where no slot goes on
+layout(constant_id = 4) const uint kUnseen = 0;
 layout(scalar, push_constant) uniform Push { ExactParams params; };
-layout(scalar, binding = kExactDepth) readonly buffer Depth { float depth[]; };
-layout(scalar, binding = kExactNormal) readonly buffer Normal { uint normal[]; };
-layout(scalar, binding = kExactVertex) readonly buffer Vertex { float vertex[]; };
-layout(scalar, binding = kExactMark) readonly buffer Mark { uint mark[]; };
-layout(scalar, binding = kExactNeighbor) readonly buffer Neighbor { uint neighbor[]; };
-layout(scalar, binding = kExactWhole) buffer Whole { float whole_arcs[]; };
-layout(scalar, binding = kExactAo) buffer Ao { float ao[]; };
-layout(scalar, binding = kExactList) readonly buffer List { uint list[]; };
-layout(scalar, binding = kExactCounts) readonly buffer Counts { TileCounts counts; };
-layout(scalar, binding = kExactGoesOn) readonly buffer GoesOn { uint goes_on[]; };
-layout(scalar, binding = kExactBehind) readonly buffer Behind { uint behind[]; };
-layout(scalar, binding = kExactCompleted) buffer Completed { float completed[]; };
-layout(scalar, binding = kExactBent) buffer Bent { float bent[]; };
-layout(scalar, binding = kExactOwn) readonly buffer Own { uint own[]; };
+readonly buffer Depth { float depth[]; };       // one float per pixel, from prepare
+readonly buffer Normal { uint normal[]; };      // one uint per pixel, from prepare
+readonly buffer Vertex { float vertex[]; };     // from profile
+readonly buffer Mark { uint mark[]; };          // from profile
+readonly buffer Neighbor { uint neighbor[]; };  // from profile
+buffer Whole { float whole_arcs[]; };           // one float per pixel, sum of whole arcs
+// one float per pixel, sum of blocked arcs; after the last slice visibility in [0, 1], 1 = open
+buffer Ao { float ao[]; };
+readonly buffer List { uint list[]; };          // one uint per tile, from converge; only with kListed
+readonly buffer Counts { TileCounts counts; };  // only with kListed
+readonly buffer GoesOn { uint goes_on[]; };     // from complete; only with kCompletes
+readonly buffer Behind { uint behind[]; };      // from complete; only with kCompletes
+// one float per pixel, visibility that completed surfaces took; only where kCompletes is 2
+buffer Completed { float completed[]; };
+// planes x, y, z of the sum of the bent_to() of what is blocked, in view space; after the last slice the mean open
+// direction b as 0.5 + 0.5 b. Only with kBentId.
+buffer Bent { float bent[]; };
+readonly buffer Own { uint own[]; };  // from profile; only with several kSlots
 
 const bool kBent = kBentId != 0u;
 

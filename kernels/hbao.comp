@@ -17,7 +17,7 @@
 //   itself, which is the cosine of its angle to the normal. The two are equal where the surface faces the eye.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#include "hbao.h"
+#include "estimate.h"
 #include "view.glsl"
 #include "normal.glsl"
 #include "noise.glsl"
@@ -29,19 +29,21 @@
 #include "slice.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
-layout(constant_id = kHbaoSlicesId) const uint kSlices = 3;
-layout(constant_id = kHbaoStepsId) const uint kSteps = 6;
-layout(constant_id = kHbaoFalloffId) const uint kFalloff = kFalloffNone;
-layout(constant_id = kHbaoSparseId) const uint kSparse = 0;
+layout(constant_id = 0) const uint kSlices = 3;              // lines through a pixel, each searched to both sides
+layout(constant_id = 1) const uint kSteps = 6;               // steps to each side
+layout(constant_id = 2) const uint kFalloff = kFalloffNone;  // one of kFalloff* of falloff.glsl, the attenuation W
+layout(constant_id = 3) const uint kSparse = 0;              // 1: only the sites of the list are estimated
 layout(scalar, push_constant) uniform Push { HbaoParams params; };
-layout(scalar, binding = kHbaoDepth) readonly buffer Depth { float depth[]; };
-layout(scalar, binding = kHbaoOccluders) readonly buffer Occluders { float occluder_depth[]; };
-layout(scalar, binding = kHbaoNormal) readonly buffer Normal { uint normal[]; };
-layout(scalar, binding = kHbaoAo) writeonly buffer Ao { float ao[]; };
-layout(scalar, binding = kHbaoList) readonly buffer List { uint list[]; };
-layout(scalar, binding = kHbaoSites) readonly buffer Sites { uint sites[]; };
-layout(scalar, binding = kHbaoSiteCounts) readonly buffer SiteCountsBuffer { SiteCounts site_counts; };
-layout(scalar, binding = kHbaoCounts) readonly buffer Counts { TileCounts counts; };
+readonly buffer Depth { float depth[]; };  // one float per pixel, from prepare
+// one float per pixel, depth of the first surfaces that may block
+readonly buffer Occluders { float occluder_depth[]; };
+readonly buffer Normal { uint normal[]; };  // one uint per pixel, from prepare
+// one float per pixel, visibility in [0, 1], 1 = open; the plane of the parameters
+writeonly buffer Ao { float ao[]; };
+readonly buffer List { uint list[]; };                         // one uint per listed tile, from classify
+readonly buffer Sites { uint sites[]; };                       // one uint per site, from list_sites; only if sparse
+readonly buffer SiteCountsBuffer { SiteCounts site_counts; };  // only if sparse
+readonly buffer Counts { TileCounts counts; };
 
 /// One direction on the image and the half-plane of view space that is seen along it.
 struct Direction {

@@ -5,13 +5,13 @@
 // Out: for each surface planar depth > 0, kSkyDepth where there is none; and 1 where it closes a solid, else 0.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#include "hidden_planes.h"
+#include "hidden.h"
 #include "view.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 layout(scalar, push_constant) uniform Push { HiddenPlanesParams params; };
-layout(scalar, binding = kHiddenPlanesIn) readonly buffer Hidden { float hidden[]; };
-layout(scalar, binding = kHiddenPlanesOut) writeonly buffer Planes { float planes[]; };
+readonly buffer Hidden { float hidden[]; };   // planes of floats, see GBuffer::hidden; not read where there are none
+writeonly buffer Planes { float planes[]; };  // for each surface a plane of depth and one that says what it is
 
 void main() {
   const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);

@@ -27,7 +27,7 @@
 //   plane.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#include "horizon.h"
+#include "estimate.h"
 #include "view.glsl"
 #include "normal.glsl"
 #include "arcs.glsl"
@@ -40,23 +40,29 @@
 #include "sectors.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
-layout(constant_id = kHorizonSlicesId) const uint kSlices = 3;
-layout(constant_id = kHorizonStepsId) const uint kSteps = 6;
-layout(constant_id = kHorizonModeId) const uint kMode = kFalloffNone;
-layout(constant_id = kHorizonSolidId) const uint kSolid = kThicknessWidth;
-layout(constant_id = kHorizonSparseId) const uint kSparse = 0;
+layout(constant_id = 0) const uint kSlices = 3;           // slices per pixel
+layout(constant_id = 1) const uint kSteps = 6;            // steps to each side of a slice
+layout(constant_id = 2) const uint kMode = kFalloffNone;  // one of kFalloff* of falloff.glsl, and kWith* or not
+// one of kThickness*, of what is not connected to the receiver, kCompletes* and kInSectors or not, and
+// kHiddenSurface times as many surfaces as a pixel may have behind the first
+layout(constant_id = 4) const uint kSolid = kThicknessWidth;
+layout(constant_id = 3) const uint kSparse = 0;  // 1: only the sites of the list are estimated
 layout(scalar, push_constant) uniform Push { HorizonParams params; };
-layout(scalar, binding = kHorizonDepth) readonly buffer Depth { float depth[]; };
-layout(scalar, binding = kHorizonOccluders) readonly buffer Occluders { float occluder_depth[]; };
-layout(scalar, binding = kHorizonNormal) readonly buffer Normal { uint normal[]; };
-layout(scalar, binding = kHorizonAo) writeonly buffer Ao { float ao[]; };
-layout(scalar, binding = kHorizonList) readonly buffer List { uint list[]; };
-layout(scalar, binding = kHorizonSites) readonly buffer Sites { uint sites[]; };
-layout(scalar, binding = kHorizonSiteCounts) readonly buffer SiteCountsBuffer { SiteCounts site_counts; };
-layout(scalar, binding = kHorizonCounts) readonly buffer Counts { TileCounts counts; };
-layout(scalar, binding = kHorizonBent) writeonly buffer Bent { float bent[]; };
-layout(scalar, binding = kHorizonCompleted) writeonly buffer Completed { float completed[]; };
-layout(scalar, binding = kHorizonHidden) readonly buffer Hidden { float hidden[]; };
+readonly buffer Depth { float depth[]; };  // one float per pixel, from prepare
+// one float per pixel, depth of the first surfaces that may block
+readonly buffer Occluders { float occluder_depth[]; };
+readonly buffer Normal { uint normal[]; };  // one uint per pixel, from prepare
+// one float per pixel, visibility in [0, 1], 1 = open; the plane of the parameters
+writeonly buffer Ao { float ao[]; };
+readonly buffer List { uint list[]; };                         // one uint per listed tile, from classify
+readonly buffer Sites { uint sites[]; };                       // one uint per site, from list_sites; only if sparse
+readonly buffer SiteCountsBuffer { SiteCounts site_counts; };  // only if sparse
+readonly buffer Counts { TileCounts counts; };
+// planes x, y, z of the mean open direction b in view space as 0.5 + 0.5 b; only with kWithBent
+writeonly buffer Bent { float bent[]; };
+// one float per pixel, the visibility that completed surfaces took; only with kWithCompleted
+writeonly buffer Completed { float completed[]; };
+readonly buffer Hidden { float hidden[]; };  // planes of hidden surfaces that may block, see GBuffer; with layers only
 
 // How many surfaces a pixel has at most: 1, or for horizon_layers as kSolid says. CMakeLists.txt makes two kernels of
 // this file, since drivers take long over code that is left out by a specialization constant alone.

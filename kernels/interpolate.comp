@@ -15,27 +15,29 @@
 // its lanes has any: so those beside each other take rows that lie 4 apart, on which a wide lattice has as many.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#include "interpolate.h"
+#include "filters.h"
 #include "view.glsl"
 #include "normal.glsl"
 #include "lattice.glsl"
 #include "tiles.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
-layout(constant_id = kInterpolateRadiusId) const int kRadius = 8;
-layout(constant_id = kInterpolateModeId) const uint kMode = 0;
-layout(constant_id = kInterpolatePlanesId) const int kPlanes = 1;
+layout(constant_id = 0) const int kRadius = 8;  // pixels to each side, 1 to kDenoiseMostRadius
+layout(constant_id = 1) const uint kMode = 0;   // bits of kInterpolate*
+layout(constant_id = 2) const int kPlanes = 1;  // how many planes; they share their weights
 const bool kColumns = (kMode & kInterpolateColumns) != 0u;
 const uint kByDepth = kMode & kInterpolateByDepth;
 layout(scalar, push_constant) uniform Push { InterpolateParams params; };
-layout(scalar, binding = kInterpolateAo) readonly buffer Ao { uint ao[]; };
-layout(scalar, binding = kInterpolateDepth) readonly buffer Depth { float depth[]; };
-layout(scalar, binding = kInterpolateNormal) readonly buffer Normal { uint normal[]; };
-layout(scalar, binding = kInterpolateResult) writeonly buffer Result { uint result[]; };
-layout(scalar, binding = kInterpolateList) readonly buffer List { uint list[]; };
-layout(scalar, binding = kInterpolateCounts) readonly buffer Counts { RunCounts counts; };
-layout(scalar, binding = kInterpolateRuns) buffer Runs { uint runs[]; };
-layout(scalar, binding = kInterpolateSites) readonly buffer Sites { uint rows[]; };
+// planes of floats in [0, 1], visibility or the like, at sites; of columns: what rows have made, see pack_blocked
+readonly buffer Ao { uint ao[]; };
+readonly buffer Depth { float depth[]; };    // one float per pixel, of the G-buffer of that visibility
+readonly buffer Normal { uint normal[]; };   // one uint per pixel, of the same; not read with a depth sigma
+writeonly buffer Result { uint result[]; };  // as many planes of all pixels, in [0, 1]; of rows: see pack_blocked
+readonly buffer List { uint list[]; };       // one uint per run, from dilate; only if listed
+readonly buffer Counts { RunCounts counts; };
+// a word for each run of a row and 32 rows, with a bit for each that is written; zeros before the rows
+buffer Runs { uint runs[]; };
+readonly buffer Sites { uint rows[]; };  // 8 words per tile, see lattice.glsl; not read along columns
 
 #include "likeness.glsl"
 

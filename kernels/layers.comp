@@ -8,19 +8,22 @@
 // were found changes no bit.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#include "layers.h"
+#include "hidden.h"
 #include "view.glsl"
 #include "keys.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
-layout(constant_id = kLayersKeptId) const uint kKept = kMostHidden;
+layout(constant_id = 0) const uint kKept = kMostHidden;  // planes of `hidden`, 1 to kMostHidden
 layout(scalar, push_constant) uniform Push { LayersParams params; };
-layout(scalar, binding = kLayersFound) readonly buffer Found { float found[]; };
-layout(scalar, binding = kLayersDepth) readonly buffer Depth { float depth[]; };
-layout(scalar, binding = kLayersHidden) writeonly buffer Hidden { float hidden[]; };
-layout(scalar, binding = kLayersOpen) writeonly buffer Open { uint open[]; };
-layout(scalar, binding = kLayersCounts) buffer Counts { LayerCounts counts; };
-layout(scalar, binding = kLayersWarped) readonly buffer Warped { uint warped[]; };
+// planes of floats: planar depth > 0 of surfaces in any order, below 0 of those that close the solid before them;
+// kSkyDepth where there is none
+readonly buffer Found { float found[]; };
+readonly buffer Depth { float depth[]; };     // one float per pixel, planar depth of the first surface, from prepare
+writeonly buffer Hidden { float hidden[]; };  // planes of floats, see GBuffer::hidden
+// one uint per pixel: bit k is set if the surface k of `hidden` is of unknown kind, and may close a solid
+writeonly buffer Open { uint open[]; };
+buffer Counts { LayerCounts counts; };      // zeroed before
+readonly buffer Warped { uint warped[]; };  // planes of keys of surfaces that other views show, see keys.glsl
 
 /// Surfaces are one if they are no farther apart than so many times what a depth may be off.
 const float kPrecisions = 4.0;

@@ -9,20 +9,22 @@
 // invocation computes a tile, row by row, so that each pixel is read once.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#include "links.h"
+#include "sites.h"
 #include "view.glsl"
 #include "normal.glsl"
 #include "lattice.glsl"
 #include "tiles.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
-layout(constant_id = kLinksSpacingId) const int kSpacing = 8;
-layout(constant_id = kLinksAdaptiveId) const uint kAdaptive = 1;
+layout(constant_id = 0) const int kSpacing = 8;  // of the lattice whose surfaces are sites, 1 to 16
+// 1: says what is one surface; 0: that nothing is, for sites that do not depend on it
+layout(constant_id = 1) const uint kAdaptive = 1;
 layout(scalar, push_constant) uniform Push { LinksParams params; };
-layout(scalar, binding = kLinksDepth) readonly buffer Depth { float depth[]; };
-layout(scalar, binding = kLinksNormal) readonly buffer Normal { uint normal[]; };
-layout(scalar, binding = kLinksRows) writeonly buffer Rows { uint rows[]; };
-layout(scalar, binding = kLinksFlat) writeonly buffer Flat { uint flat_rows[]; };
+readonly buffer Depth { float depth[]; };   // one float per pixel, from prepare
+readonly buffer Normal { uint normal[]; };  // one uint per pixel, from prepare
+writeonly buffer Rows { uint rows[]; };     // 8 words per tile, see lattice.glsl
+// the same, of which two bytes are written: linked without a bend; only if adaptive
+writeonly buffer Flat { uint flat_rows[]; };
 
 /// Neighbours are one surface if neither lies further from the other's plane than this many pixels are wide there. The
 /// filters give such a neighbour 0.9 of its weight.

@@ -5,17 +5,17 @@
 // Out: the sites, those of a tile one after the other, and how many there are.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#include "list_sites.h"
+#include "sites.h"
 #include "lattice.glsl"
 #include "tiles.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 layout(scalar, push_constant) uniform Push { ListSitesParams params; };
-layout(scalar, binding = kListSitesRows) readonly buffer Rows { uint rows[]; };
-layout(scalar, binding = kListSitesTiles) readonly buffer Tiles { uint tiles[]; };
-layout(scalar, binding = kListSitesTileCounts) readonly buffer TileCountsBuffer { TileCounts tile_counts; };
-layout(scalar, binding = kListSitesList) writeonly buffer List { uint list[]; };
-layout(scalar, binding = kListSitesCounts) buffer Counts { SiteCounts counts; };
+readonly buffer Rows { uint rows[]; };    // 8 words per tile, see lattice.glsl
+readonly buffer Tiles { uint tiles[]; };  // one uint per listed tile
+readonly buffer TileCountsBuffer { TileCounts tile_counts; };
+writeonly buffer List { uint list[]; };  // one uint per site of a listed tile, see pack_site; in no order of tiles
+buffer Counts { SiteCounts counts; };    // zeros before
 
 /// How many sites the workgroup lists, where in the list they begin, and how many there are of each lattice.
 shared uint listed_here, begin, of_lattice[kLattices];

@@ -9,12 +9,12 @@
 #include "finite.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
-layout(constant_id = kMatteFormId) const uint kForm = kMatteCoverage;
-layout(constant_id = kMatteRanksId) const uint kRanks = 1;
+layout(constant_id = 0) const uint kForm = kMatteCoverage;  // one of kMatte*
+layout(constant_id = 1) const uint kRanks = 1;              // pairs of planes; of other forms 1
 layout(scalar, push_constant) uniform Push { MatteParams params; };
-layout(scalar, binding = kMatteRaw) readonly buffer Raw { float raw[]; };
-layout(scalar, binding = kMatteObjects) readonly buffer Objects { uint objects[]; };
-layout(scalar, binding = kMatteResult) writeonly buffer Result { float result[]; };
+readonly buffer Raw { float raw[]; };         // planes of floats, as in the file
+readonly buffer Objects { uint objects[]; };  // one uint per object that is meant, the bits of its float; rising
+writeonly buffer Result { float result[]; };  // one float per pixel, 0 to 1
 
 /// Whether an object is among those that are meant.
 bool is_meant(uint object) {

@@ -13,7 +13,7 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
-#include "moved.h"
+#include "accumulate.h"
 #include "reprojection.h"
 #include "view.glsl"
 #include "tiles.glsl"
@@ -22,13 +22,15 @@
 #include "cells.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
-layout(constant_id = kMovedVectorsId) const int kVectors = 0;
+layout(constant_id = 0) const int kVectors = 0;  // 1: some frame has depths below 0
 layout(scalar, push_constant) uniform Push { MovedParams params; };
-layout(scalar, binding = kMovedOwn) readonly buffer Own { float own[]; };
-layout(scalar, binding = kMovedOthers) readonly buffer Others { float others[]; };
-layout(scalar, binding = kMovedFrames) readonly buffer Frames { TakenFrame frames[]; };
-layout(scalar, binding = kMovedNear) buffer Near { uint near[]; };
-layout(scalar, binding = kMovedSuspects) readonly buffer Bits { uint suspects[]; };
+readonly buffer Own { float own[]; };        // one float per pixel of the frame: depth as of a TakenFrame
+readonly buffer Others { float others[]; };  // planes of other frames, as words
+readonly buffer Frames { TakenFrame frames[]; };
+// kMovedCells words, zeros at first: for the cells of space that share it a bit for each other frame, by its place,
+// from which to this one something moves within the radius of what is in the cell
+buffer Near { uint near[]; };
+readonly buffer Suspects { uint suspects[]; };  // words, from suspects
 
 const float kFarther = 3.0;  // pixels' widths that what is seen through a surface is behind it
 const int kPatch = 2;        // px from the patch's middle to its border

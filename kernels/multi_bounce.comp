@@ -10,13 +10,13 @@
 // visibility. At visibility 1 the cubic misses by up to 0.0004: what is open stays 1.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#include "multi_bounce.h"
+#include "shading.h"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 layout(scalar, push_constant) uniform Push { MultiBounceParams params; };
-layout(scalar, binding = kMultiBounceAo) readonly buffer Ao { float ao[]; };
-layout(scalar, binding = kMultiBounceAlbedo) readonly buffer Albedo { float albedo[]; };
-layout(scalar, binding = kMultiBounceResult) writeonly buffer Result { float result[]; };
+readonly buffer Ao { float ao[]; };           // one float per pixel, visibility in [0, 1]
+readonly buffer Albedo { float albedo[]; };   // planes r, g, b of the diffuse colour, linear; not read without
+writeonly buffer Result { float result[]; };  // planes r, g, b, visibility in [0, 1]
 
 void main() {
   const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);

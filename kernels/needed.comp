@@ -6,13 +6,13 @@
 // frame's, and which may be larger than the frame.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#include "needed.h"
+#include "matte.h"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
-layout(constant_id = kNeededFactorId) const int kFactor = 1;
+layout(constant_id = 0) const int kFactor = 1;  // px of a block in x and in y
 layout(scalar, push_constant) uniform Push { NeededParams params; };
-layout(scalar, binding = kNeededMatte) readonly buffer Matte { float matte[]; };
-layout(scalar, binding = kNeededTiles) buffer Tiles { uint tiles[]; };
+readonly buffer Matte { float matte[]; };  // one float per pixel of the frame, from matte
+buffer Tiles { uint tiles[]; };            // one uint per tile of the image, zeros before
 
 /// Whether the matte takes something of a block.
 bool takes_block(ivec2 block) {

@@ -10,19 +10,19 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "occluders.h"
-#include "layers.h"
+#include "hidden.h"
 #include "view.glsl"
 #include "normal.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
-layout(constant_id = kOccludersHiddenId) const uint kHidden = 0;
+layout(constant_id = 0) const uint kHidden = 0;  // planes of hidden surfaces, 0 to kMostHidden
 layout(scalar, push_constant) uniform Push { OccludersParams params; };
-layout(scalar, binding = kOccludersDepth) readonly buffer Depth { float depth[]; };
-layout(scalar, binding = kOccludersNormal) readonly buffer Normal { uint normal[]; };
-layout(scalar, binding = kOccludersMatte) readonly buffer Matte { float matte[]; };
-layout(scalar, binding = kOccludersHidden) readonly buffer Hidden { float hidden[]; };
-layout(scalar, binding = kOccludersResult) writeonly buffer Result { float result[]; };
-layout(scalar, binding = kOccludersBehind) writeonly buffer Behind { float behind[]; };
+readonly buffer Depth { float depth[]; };     // one float per pixel, from prepare
+readonly buffer Normal { uint normal[]; };    // one uint per pixel, from prepare
+readonly buffer Matte { float matte[]; };     // one float per pixel, from matte
+readonly buffer Hidden { float hidden[]; };   // planes of hidden surfaces, see GBuffer; only where there are any
+writeonly buffer Result { float result[]; };  // one float per pixel, the first surface's depth if it may block
+writeonly buffer Behind { float behind[]; };  // as the planes of hidden surfaces
 
 /// A pixel is one object's alone where so much of it is, or so much not: coverage is summed in steps of a sample.
 const float kAlone = 0.98;

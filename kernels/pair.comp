@@ -8,17 +8,17 @@
 // than kMostThickness times as thick as it is wide. docs/hidden.md says what that is worth.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#include "pair.h"
+#include "hidden.h"
 #include "view.glsl"
 #include "ends.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
-layout(constant_id = kPairKeptId) const uint kKept = kMostHidden;
+layout(constant_id = 0) const uint kKept = kMostHidden;  // planes of `hidden`, 1 to kMostHidden
 layout(scalar, push_constant) uniform Push { PairParams params; };
-layout(scalar, binding = kPairDepth) readonly buffer Depth { float depth[]; };
-layout(scalar, binding = kPairHidden) buffer Hidden { float hidden[]; };
-layout(scalar, binding = kPairOpen) readonly buffer Open { uint open[]; };
-layout(scalar, binding = kPairEnds) readonly buffer Ends { uint ends[]; };
+readonly buffer Depth { float depth[]; };  // one float per pixel, planar depth of the first surface, from prepare
+buffer Hidden { float hidden[]; };         // planes of floats, from layers; see GBuffer::hidden
+readonly buffer Open { uint open[]; };     // one uint per pixel, from layers
+readonly buffer Ends { uint ends[]; };     // two planes of uints, from ends
 
 /// Without it grass that stands before other grass becomes solid.
 const float kMostThickness = 2.0;

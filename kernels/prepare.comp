@@ -9,22 +9,27 @@
 // normal.glsl.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#include "prepare.h"
+#include "geometry.h"
 #include "finite.glsl"
 #include "view.glsl"
 #include "depth_terms.glsl"
 #include "normal.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
-layout(constant_id = kPrepareDepthFormId) const uint kDepthForm = kDepthLinear;
-layout(constant_id = kPrepareNormalFormId) const uint kNormalForm = kNormalVector;
+// The forms are specialization constants: a kernel with all of them takes twice as long on lavapipe, which computes
+// both sides of a choice.
+layout(constant_id = 0) const uint kDepthForm = kDepthLinear;    // one of kDepth*
+layout(constant_id = 1) const uint kNormalForm = kNormalVector;  // one of kNormal*
 layout(scalar, push_constant) uniform Push { PrepareParams params; };
-layout(scalar, binding = kPrepareRawDepth) readonly buffer RawDepth { float raw_depth[]; };
-layout(scalar, binding = kPrepareRawNormal) readonly buffer RawNormal { float raw_normal[]; };
-layout(scalar, binding = kPrepareDepth) writeonly buffer Depth { float depth[]; };
-layout(scalar, binding = kPrepareNormal) writeonly buffer Normal { uint normal[]; };
-layout(scalar, binding = kPrepareCounts) buffer Counts { FrameCounts counts; };
-layout(scalar, binding = kPrepareMissing) writeonly buffer Missing { GroupCount missing; };
+readonly buffer RawDepth { float raw_depth[]; };  // one float per pixel, as in the file; of positions three planes
+// planes of floats, as many as normal_form needs; not read without normals
+readonly buffer RawNormal { float raw_normal[]; };
+writeonly buffer Depth { float depth[]; };  // one float per pixel, planar z > 0 in scene units, kSkyDepth on sky
+// one uint per pixel, see normal.glsl: unit, view space, facing the eye or clearly away; kNoNormal where there is
+// none
+writeonly buffer Normal { uint normal[]; };
+buffer Counts { FrameCounts counts; };             // zeroed before
+writeonly buffer Missing { GroupCount missing; };  // of reconstruct: z becomes 1 where it has work
 
 /// Normals shorter than this are no direction at all (a background of zeros).
 const float kLeastLength = 1e-6;

@@ -25,7 +25,7 @@
 //   behind others.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#include "profile.h"
+#include "exact_search.h"
 #include "view.glsl"
 #include "arcs.glsl"
 #include "bent.glsl"
@@ -34,16 +34,22 @@
 #include "lines.glsl"
 
 layout(local_size_x = kProfileGroup) in;
-layout(constant_id = kProfileEveryPixelId) const uint kEveryPixel = 0;
-layout(constant_id = kProfileSurfacesId) const uint kSurfaces = 1;
-layout(constant_id = kProfileSlotsId) const uint kSlots = 1;
+layout(constant_id = 0) const uint kEveryPixel = 0;  // 1: every pixel is a vertex
+layout(constant_id = 1) const uint kSurfaces = 1;    // of a pixel, 1 to 1 + kMostHidden
+layout(constant_id = 2) const uint kSlots = 1;       // as many as surfaces; or 1 for the first surface of each pixel
 layout(scalar, push_constant) uniform Push { ProfileParams params; };
-layout(scalar, binding = kProfileDepth) readonly buffer Depth { float depth[]; };
-layout(scalar, binding = kProfileVertex) writeonly buffer Vertex { float vertex[]; };
-layout(scalar, binding = kProfileMark) buffer Mark { uint mark[]; };
-layout(scalar, binding = kProfileNeighbor) writeonly buffer Neighbor { uint neighbor[]; };
-layout(scalar, binding = kProfileHidden) readonly buffer Hidden { float hidden[]; };
-layout(scalar, binding = kProfileOwn) writeonly buffer Own { uint own[]; };
+readonly buffer Depth { float depth[]; };  // one float per pixel, depth of the first surfaces that may block
+// What comes out has a plane of the image's size for each slot.
+writeonly buffer Vertex { float vertex[]; };  // one float per vertex, its planar depth
+// one uint per vertex: its step in the high half, its run's thickness (pack_width()) and kVertex* in the low; 0 for
+// a line that shows no surface
+buffer Mark { uint mark[]; };
+// one uint per step: the columns of the vertices before (low half) and after it; kNoVertex: none
+writeonly buffer Neighbor { uint neighbor[]; };
+readonly buffer Hidden { float hidden[]; };  // planes of floats, see GBuffer::hidden; only with several surfaces
+// one uint per step, the slot of its first surface, as many as there are slots if that may not block; only with
+// several slots
+writeonly buffer Own { uint own[]; };
 
 /// Three pixels across a line whose values change by amounts that differ by less than this part are one surface however
 /// steep it is, as a floor seen aslant.

@@ -13,16 +13,16 @@
 // error is of second order.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#include "reconstruct.h"
+#include "geometry.h"
 #include "finite.glsl"
 #include "view.glsl"
 #include "normal.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 layout(scalar, push_constant) uniform Push { ReconstructParams params; };
-layout(scalar, binding = kReconstructDepth) readonly buffer Depth { float depth[]; };
-layout(scalar, binding = kReconstructNormal) buffer Normal { uint normal[]; };
-layout(scalar, binding = kReconstructCounts) buffer Counts { FrameCounts counts; };
+readonly buffer Depth { float depth[]; };  // one float per pixel, from prepare
+buffer Normal { uint normal[]; };          // one uint per pixel, see normal.glsl: all face the eye
+buffer Counts { FrameCounts counts; };
 
 /// How much a large change of 1/z counts against a side, beside its bend.
 const float kNearness = 0.1;

@@ -12,9 +12,9 @@
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 layout(scalar, push_constant) uniform Push { ReduceParams params; };
-layout(scalar, binding = kReducePlanes) readonly buffer Planes { float planes[]; };
-layout(scalar, binding = kReduceWeights) readonly buffer Weights { float weights[]; };
-layout(scalar, binding = kReduceResult) writeonly buffer Result { float result[]; };
+readonly buffer Planes { float planes[]; };    // planes of floats
+readonly buffer Weights { float weights[]; };  // of each row or column of pixels, from params.first of the block on
+writeonly buffer Result { float result[]; };   // the same planes, all pixels of a block having its value
 
 int place(int plane, ivec2 pixel) { return (plane * params.size.y + pixel.y) * params.size.x + pixel.x; }
 

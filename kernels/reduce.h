@@ -1,13 +1,9 @@
-// Parameters and bindings of reduce.comp.
+// Parameters of the kernel that core/chain/reduce.cpp runs.
 // SPDX-License-Identifier: BSD-3-Clause
 #ifndef ALCOVE_REDUCE_H
 #define ALCOVE_REDUCE_H
 #include "shared.h"
 ALCOVE_BEGIN
-
-ALCOVE_CONSTANT uint kReducePlanes = 0;   // in: planes of floats
-ALCOVE_CONSTANT uint kReduceWeights = 1;  // in: of each row or column of pixels, from params.first of the block on
-ALCOVE_CONSTANT uint kReduceResult = 2;   // out: the same planes, all pixels of a block having its value
 
 struct ReduceParams {
   ivec2 size;    // px
@@ -17,7 +13,6 @@ struct ReduceParams {
   int count;     // weights, of which those of the block's own pixels are not all 0
   uint planes;
 };
-ALCOVE_PARAMS(ReduceParams)
 
 ALCOVE_END
 #endif

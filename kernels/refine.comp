@@ -10,26 +10,32 @@
 // seldom as small as a tile, and where one tile goes on and the next does not, both know what lies at their border.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#include "refine.h"
+#include "exact_search.h"
 #include "view.glsl"
 #include "tiles.glsl"
 #include "normal.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
-layout(constant_id = kRefineBentId) const uint kBent = 0;
+layout(constant_id = 0) const uint kBent = 0;  // 1: bent normals too
 layout(scalar, push_constant) uniform Push { RefineParams params; };
-layout(scalar, binding = kRefineDepth) readonly buffer Depth { float depth[]; };
-layout(scalar, binding = kRefineJudged) readonly buffer Judged { JudgedTile judged[]; };
-layout(scalar, binding = kRefineList) readonly buffer List { uint list[]; };
-layout(scalar, binding = kRefineCounts) readonly buffer Counts { TileCounts counts; };
-layout(scalar, binding = kRefineError) buffer Error { float error[]; };
-layout(scalar, binding = kRefineSquares) writeonly buffer Squares { vec2 squares[]; };
-layout(scalar, binding = kRefineNextList) writeonly buffer NextList { uint next[]; };
-layout(scalar, binding = kRefineNextCounts) buffer NextCounts { TileCounts next_counts; };
-layout(scalar, binding = kRefineNextLines) buffer NextLines { GroupCount next_lines; };
-layout(scalar, binding = kRefineWhole) readonly buffer Whole { float whole[]; };
-layout(scalar, binding = kRefineNormal) readonly buffer Normal { uint normal[]; };
-layout(scalar, binding = kRefineBent) buffer Bent { float bent[]; };
+readonly buffer Depth { float depth[]; };         // one float per pixel, from prepare
+readonly buffer Judged { JudgedTile judged[]; };  // one per tile, from converge
+readonly buffer List { uint list[]; };            // one uint per tile that had more directions
+readonly buffer Counts { TileCounts counts; };
+// one float per pixel, the estimated error of its tile; of several radii the mean of theirs
+buffer Error { float error[]; };
+// one vec2 per tile, sum of the squared errors of its receivers, and their number
+writeonly buffer Squares { vec2 squares[]; };
+writeonly buffer NextList { uint next[]; };     // one uint per tile that needs more still
+buffer NextCounts { TileCounts next_counts; };  // zeros before
+// of profile: z is 0, and becomes 1 where any tile needs more
+buffer NextLines { GroupCount next_lines; };
+// one float per pixel, sum of whole arcs, from exact; only with kBent
+readonly buffer Whole { float whole[]; };
+readonly buffer Normal { uint normal[]; };  // one uint per pixel, from prepare; only with kBent
+// planes x, y, z of the sums of what is blocked, from exact; where a tile needs no more directions, the mean
+// open direction, as exact has it. Only with kBent.
+buffer Bent { float bent[]; };
 
 /// The first directions that decide, and the factor on the error that they say. On six rendered scenes at tolerances of
 /// 0.003, 0.01 and 0.03, 354 tiles erred by more than four times the tolerance by their own difference alone, 6 with

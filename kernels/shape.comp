@@ -9,18 +9,20 @@
 // alone: what a material's own AO holds is as true far away as nearby.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#include "shape.h"
+#include "shading.h"
 #include "finite.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
-layout(constant_id = kShapeModeId) const uint kMode = 0;
+// What is asked for is a specialization constant: lavapipe computes both sides of a choice, and powers are slow.
+layout(constant_id = 0) const uint kMode = 0;  // bits of kShape*
 layout(scalar, push_constant) uniform Push { ShapeParams params; };
-layout(scalar, binding = kShapeAo) readonly buffer Ao { float ao[]; };
-layout(scalar, binding = kShapeDepth) readonly buffer Depth { float depth[]; };
-layout(scalar, binding = kShapeMaterial) readonly buffer Material { float material[]; };
-layout(scalar, binding = kShapeMatte) readonly buffer Matte { float matte[]; };
-layout(scalar, binding = kShapeShaped) writeonly buffer Shaped { float shaped[]; };
-layout(scalar, binding = kShapeCounts) buffer Counts { FrameCounts counts; };
+readonly buffer Ao { float ao[]; };  // planes of visibility in [0, 1]
+// one float per pixel, planar depth, kSkyDepth for sky; not read without fade and material
+readonly buffer Depth { float depth[]; };
+readonly buffer Material { float material[]; };  // one float per pixel, visibility; not read without
+readonly buffer Matte { float matte[]; };        // one float per pixel, from matte; not read without
+writeonly buffer Shaped { float shaped[]; };     // as many planes, in [0, 1]
+buffer Counts { FrameCounts counts; };
 
 bool shapes_by(uint what) { return (kMode & what) != 0u; }
 

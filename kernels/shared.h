@@ -1,15 +1,14 @@
-// Types and checks that mean the same in C++ and in GLSL, so that a kernel's parameters are written once.
+// Types that mean the same in C++ and in GLSL, so that a kernel's parameters are written once.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A header beside a kernel declares its parameters, bindings and group size with these names; the kernel and its host
-// function in core/chain both include it. Layout is scalar: every member is aligned to 4 bytes, in C++ as in GLSL.
+// STEM.h beside it declares with these names the parameters of the kernels that core/chain/STEM.cpp runs; the kernels
+// and their host functions both include it. Layout is scalar: every member is aligned to 4 bytes, in C++ as in GLSL.
 #ifndef ALCOVE_SHARED_H
 #define ALCOVE_SHARED_H
 
 #ifdef __cplusplus
 
 #include <cstdint>
-#include <type_traits>
 
 namespace alcove {
 using uint = std::uint32_t;
@@ -29,12 +28,12 @@ struct ivec2 {
 #define ALCOVE_CONSTANT inline constexpr
 /// A constant with all its digits: double in C++, float in GLSL.
 #define ALCOVE_NUMBER inline constexpr double
-/// Push constants: at most the 128 bytes that every Vulkan device takes.
-#define ALCOVE_PARAMS(T) static_assert(sizeof(T) <= 128 && alignof(T) == 4 && std::is_trivially_copyable_v<T>);
 
 #else
 
 #extension GL_EXT_scalar_block_layout : require
+// The compiler numbers bindings: the host finds a buffer by the name of its block. See core/gpu/recorder.h.
+layout(scalar) buffer;
 // One idiom of the kernels: for (bool once = c; once; once = false) is an `if` that jumps. Lavapipe goes through the
 // body of an `if` in any case, with its lanes switched off, but leaves a loop that no lane goes on with. It stands
 // before what is long and seldom needed. What is the same for all invocations is loaded outside of conditions and
@@ -43,7 +42,6 @@ struct ivec2 {
 #define ALCOVE_END
 #define ALCOVE_CONSTANT const
 #define ALCOVE_NUMBER const float
-#define ALCOVE_PARAMS(T)
 
 #endif
 

@@ -1,4 +1,4 @@
-// Where another frame looks for a surface of one. Pure: no bindings. After moved.h and reprojection.glsl.
+// Where another frame looks for a surface of one. Pure: no bindings. After accumulate.h and reprojection.glsl.
 // SPDX-License-Identifier: BSD-3-Clause
 
 const float kLifted = 0.5;  // pixels' widths that what is seen through a surface is behind it at least

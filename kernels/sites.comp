@@ -19,9 +19,10 @@
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 layout(scalar, push_constant) uniform Push { SitesParams params; };
-layout(scalar, binding = kSitesRows) readonly buffer Rows { uint rows[]; };
-layout(scalar, binding = kSitesLinks) readonly buffer Links { uint linked_rows[]; };
-layout(scalar, binding = kSitesResult) writeonly buffer Result { uint result[]; };
+readonly buffer Rows { uint rows[]; };  // 8 words per tile, see lattice.glsl
+// links over which a path may lead, as `rows` or without a bend, from links
+readonly buffer Links { uint linked_rows[]; };
+writeonly buffer Result { uint result[]; };  // as `rows`, with more sites
 
 const int kReach = 3;                   // px
 const int kCount = kTile + 2 * kReach;  // rows that are looked at

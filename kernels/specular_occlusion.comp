@@ -12,7 +12,7 @@
 // unoccluded surface has 1 at every view angle.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#include "specular_occlusion.h"
+#include "shading.h"
 #include "view.glsl"
 #include "normal.glsl"
 #include "arcs.glsl"
@@ -20,11 +20,11 @@
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 layout(scalar, push_constant) uniform Push { SpecularOcclusionParams params; };
-layout(scalar, binding = kSpecularOcclusionDepth) readonly buffer Depth { float depth[]; };
-layout(scalar, binding = kSpecularOcclusionNormal) readonly buffer Normal { uint normal[]; };
-layout(scalar, binding = kSpecularOcclusionBent) readonly buffer Bent { uint bent[]; };
-layout(scalar, binding = kSpecularOcclusionAo) readonly buffer Ao { float ao[]; };
-layout(scalar, binding = kSpecularOcclusionResult) writeonly buffer Result { float result[]; };
+readonly buffer Depth { float depth[]; };     // one float per pixel, planar depth, kSkyDepth for sky
+readonly buffer Normal { uint normal[]; };    // one uint per pixel, unit vector in view space, see normal.glsl
+readonly buffer Bent { uint bent[]; };        // one uint per pixel, as the normal: the mean open direction
+readonly buffer Ao { float ao[]; };           // one float per pixel, visibility in [0, 1]
+writeonly buffer Result { float result[]; };  // one float per pixel in [0, 1]
 
 /// Smoother surfaces count as this rough, a lobe of 6 degrees: areas of narrower cones are lost in rounding.
 const float kLeastRoughness = 0.05;

@@ -9,17 +9,18 @@
 // where each shows something farther.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#include "still.h"
+#include "warp.h"
 #include "view.glsl"
 #include "normal.glsl"
 #include "reprojection.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 layout(scalar, push_constant) uniform Push { StillParams params; };
-layout(scalar, binding = kStillDepth) readonly buffer Depth { float depth[]; };
-layout(scalar, binding = kStillNormal) readonly buffer Normal { uint normal[]; };
-layout(scalar, binding = kStillWitnessDepth) readonly buffer WitnessDepth { float witness_depth[]; };
-layout(scalar, binding = kStillFlags) buffer Flags { uint flags[]; };
+readonly buffer Depth { float depth[]; };                 // one float per pixel of `from`, planar depth
+readonly buffer Normal { uint normal[]; };                // one uint per pixel of `from`, see normal.glsl
+readonly buffer WitnessDepth { float witness_depth[]; };  // one float per pixel of `to`, planar depth
+// one uint per pixel of `from`: kFlagConfirmed and kFlagSeenThrough, zeroed before the first view
+buffer Flags { uint flags[]; };
 
 void main() {
   const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);

@@ -8,7 +8,7 @@
 // The kernel has declared its buffers `occluder_depth` and `hidden`, and how many surfaces a pixel has at most,
 // kSurfaces. To be included after pieces.glsl.
 
-#include "layers.h"
+#include "hidden.h"
 
 /// Arrays have as many elements; those from kSurfaces on are never used.
 const int kMostSurfaces = int(kMostHidden) + 1;

@@ -8,18 +8,18 @@
 // the left or right, or none above or below, may hang in mid-air: files with smooth edges have such pixels.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#include "surfels.h"
+#include "warp.h"
 #include "view.glsl"
 #include "normal.glsl"
 #include "reprojection.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
-layout(constant_id = kSurfelsConfirmedId) const uint kConfirmed = 1;
+layout(constant_id = 0) const uint kConfirmed = 1;  // 0 or 1: what no other view confirms is not used
 layout(scalar, push_constant) uniform Push { SurfelsParams params; };
-layout(scalar, binding = kSurfelsDepth) readonly buffer Depth { float depth[]; };
-layout(scalar, binding = kSurfelsNormal) readonly buffer Normal { uint normal[]; };
-layout(scalar, binding = kSurfelsFlags) readonly buffer Flags { uint flags[]; };
-layout(scalar, binding = kSurfelsUse) writeonly buffer Use { uint use[]; };
+readonly buffer Depth { float depth[]; };   // one float per pixel, planar depth
+readonly buffer Normal { uint normal[]; };  // one uint per pixel, see normal.glsl
+readonly buffer Flags { uint flags[]; };    // one uint per pixel, from `still`
+writeonly buffer Use { uint use[]; };       // one uint per pixel, 0 or one of kFlagMoves, kFlagUnconfirmed, kFlagUnfit
 
 /// Surfaces that are turned away further are too uncertain, as the cosine to the eye.
 const float kLeastCosine = 0.05;

@@ -9,7 +9,7 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
-#include "suspects.h"
+#include "accumulate.h"
 #include "reprojection.h"
 #include "view.glsl"
 #include "normal.glsl"
@@ -17,13 +17,15 @@
 #include "sight.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
-layout(constant_id = kSuspectsListedId) const int kListed = 1;
+layout(constant_id = 0) const int kListed = 1;  // frames that the buffer lists, 1 to kMostTaken
 layout(scalar, push_constant) uniform Push { SuspectsParams params; };
-layout(scalar, binding = kSuspectsOwn) readonly buffer Own { float own[]; };
-layout(scalar, binding = kSuspectsNormal) readonly buffer Normal { uint normal[]; };
-layout(scalar, binding = kSuspectsOthers) readonly buffer Others { float others[]; };
-layout(scalar, binding = kSuspectsFrames) readonly buffer Frames { TakenFrame frames[]; };
-layout(scalar, binding = kSuspectsBits) writeonly buffer Bits { uint bits[]; };
+readonly buffer Own { float own[]; };        // one float per pixel of the frame: depth as of a TakenFrame
+readonly buffer Normal { uint normal[]; };   // one uint per pixel of the frame, see normal.glsl
+readonly buffer Others { float others[]; };  // planes of other frames, as words
+readonly buffer Frames { TakenFrame frames[]; };
+// a word per square: bit i: the i-th frame may see past what the frame itself has there; bit kMostTaken + i: the
+// frame may see past what that one has in its own picture there
+writeonly buffer Bits { uint bits[]; };
 
 /// How a depth is looked up: of the frame itself, or of another one.
 float depth_at(bool of_own, TakenFrame other, ivec2 pixel) {

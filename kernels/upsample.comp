@@ -10,24 +10,25 @@
 // four centres.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#include "upsample.h"
+#include "filters.h"
 #include "view.glsl"
 #include "normal.glsl"
 #include "tiles.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
-layout(constant_id = kUpsampleFactorId) const int kFactor = 2;
-layout(constant_id = kUpsamplePlanesId) const int kPlanes = 1;
-layout(constant_id = kUpsampleListedId) const uint kListed = 0;
+layout(constant_id = 0) const int kFactor = 2;   // pixels of a block in x and in y
+layout(constant_id = 1) const int kPlanes = 1;   // how many planes; they share their weights
+layout(constant_id = 2) const uint kListed = 0;  // 1: only workgroups of the list; 0: all
 layout(scalar, push_constant) uniform Push { UpsampleParams params; };
-layout(scalar, binding = kUpsampleDepth) readonly buffer Depth { float depth[]; };
-layout(scalar, binding = kUpsampleNormal) readonly buffer Normal { uint normal[]; };
-layout(scalar, binding = kUpsampleLowDepth) readonly buffer LowDepth { float low_depth[]; };
-layout(scalar, binding = kUpsampleLowNormal) readonly buffer LowNormal { uint low_normal[]; };
-layout(scalar, binding = kUpsampleLowAo) readonly buffer LowAo { float low_ao[]; };
-layout(scalar, binding = kUpsampleAo) writeonly buffer Ao { float ao[]; };
-layout(scalar, binding = kUpsampleList) readonly buffer List { uint list[]; };
-layout(scalar, binding = kUpsampleCounts) readonly buffer Counts { RunCounts counts; };
+readonly buffer Depth { float depth[]; };          // one float per pixel, from prepare
+readonly buffer Normal { uint normal[]; };         // one uint per pixel, from prepare
+readonly buffer LowDepth { float low_depth[]; };   // one float per block, from downsample
+readonly buffer LowNormal { uint low_normal[]; };  // one uint per block, from downsample
+// planes of floats in [0, 1] a block, visibility or the like; each by itself
+readonly buffer LowAo { float low_ao[]; };
+writeonly buffer Ao { float ao[]; };    // as many planes, in [0, 1]
+readonly buffer List { uint list[]; };  // one uint per workgroup, from dilate; only with kListed
+readonly buffer Counts { RunCounts counts; };
 
 /// A block has no part in a pixel if its centre lies further from the pixel's tangent plane than this many pixels are
 /// wide there.

@@ -17,12 +17,12 @@
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 layout(scalar, push_constant) uniform Push { WarpParams params; };
-layout(scalar, binding = kWarpDepth) readonly buffer Depth { float depth[]; };
-layout(scalar, binding = kWarpNormal) readonly buffer Normal { uint normal[]; };
-layout(scalar, binding = kWarpUse) readonly buffer Use { uint use[]; };
-layout(scalar, binding = kWarpFirst) readonly buffer First { float first[]; };
-layout(scalar, binding = kWarpFound) buffer Found { uint found[]; };
-layout(scalar, binding = kWarpCounts) buffer Counts { ViewCounts counts; };
+readonly buffer Depth { float depth[]; };   // one float per pixel of `from`, planar depth
+readonly buffer Normal { uint normal[]; };  // one uint per pixel of `from`, see normal.glsl
+readonly buffer Use { uint use[]; };        // one uint per pixel of `from`, 0 where it is used, see surfels.comp
+readonly buffer First { float first[]; };   // one float per pixel of `to`, planar depth of the first surface
+buffer Found { uint found[]; };             // planes of keys of `to`, zeroed before: see key_of() of keys.glsl
+buffer Counts { ViewCounts counts; };       // zeroed before
 
 /// Half a piece's side, in pixels of its own view.
 const float kHalfSide = 0.6;

@@ -8,19 +8,19 @@
 // border's completion begins at the margin's border then.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#include "widen.h"
+#include "margin.h"
 #include "view.glsl"
 #include "normal.glsl"
 #include "keys.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
-layout(constant_id = kWidenStageId) const uint kStage = kWidenEmpty;
+layout(constant_id = 0) const uint kStage = kWidenEmpty;  // one of kWiden* below
 layout(scalar, push_constant) uniform Push { WidenParams params; };
-layout(scalar, binding = kWidenDepth) readonly buffer Depth { float depth[]; };
-layout(scalar, binding = kWidenNormal) readonly buffer Normal { uint normal[]; };
-layout(scalar, binding = kWidenFound) readonly buffer Found { uint found[]; };
-layout(scalar, binding = kWidenWideDepth) buffer WideDepth { float wide_depth[]; };
-layout(scalar, binding = kWidenWideNormal) writeonly buffer WideNormal { uint wide_normal[]; };
+readonly buffer Depth { float depth[]; };             // one float per pixel of `view`, planar depth
+readonly buffer Normal { uint normal[]; };            // one uint per pixel of `view`, see normal.glsl
+readonly buffer Found { uint found[]; };              // one key per pixel of `wide`, from the first round of `warp`
+buffer WideDepth { float wide_depth[]; };             // one float per pixel of `wide`
+writeonly buffer WideNormal { uint wide_normal[]; };  // one uint per pixel of `wide`
 
 /// A surface goes on no nearer to the eye and no farther from it than so many times its depth.
 const float kMostChange = 2.0;

@@ -9,7 +9,6 @@
 #include "core/base/estimator_facts.h"
 #include "core/chain/pass_common.h"
 #include "kernels/accumulate.h"
-#include "kernels/suspects.h"
 
 namespace alcove {
 namespace {
@@ -34,9 +33,6 @@ ivec2 most_squares(const EstimateSet& estimates, const SeenGroup& group) {
   return {int(tiles.x) * kSquares, int(tiles.y) * kSquares};
 }
 
-/// As the kernel takes what there is none of.
-const gpu::Buffer& or_else(const gpu::Buffer* buffer, const gpu::Buffer& other) { return buffer ? *buffer : other; }
-
 }  // namespace
 
 const gpu::Buffer& suspects(gpu::Recorder& gpu, const EstimateSet& estimates, const SeenGroup& group) {
@@ -44,11 +40,11 @@ const gpu::Buffer& suspects(gpu::Recorder& gpu, const EstimateSet& estimates, co
   const gpu::Extent extent{uint(squares.x), uint(squares.y)};
   const gpu::Buffer& bits = gpu.buffer("suspects", std::size_t(extent.x) * extent.y * sizeof(uint), gpu::Use::device);
   gpu.dispatch("suspects", SuspectsParams{estimates.view, squares},
-               {{kSuspectsOwn, *estimates.depth},
-                {kSuspectsNormal, *estimates.normal},
-                {kSuspectsOthers, *group.planes},
-                {kSuspectsFrames, *group.frames},
-                {kSuspectsBits, bits}},
+               {{"Own", estimates.depth},
+                {"Normal", estimates.normal},
+                {"Others", group.planes},
+                {"Frames", group.frames},
+                {"Bits", bits}},
                extent, {group.listed});
   return bits;
 }
@@ -58,11 +54,11 @@ void moved(gpu::Recorder& gpu, const EstimateSet& estimates, const SeenGroup& gr
   const gpu::Extent tiles = most_tiles(estimates, group);
   const uint rows = groups_of(int(tiles.y), kGroupY);
   gpu.dispatch("moved", MovedParams{estimates.view, radius, place, most_squares(estimates, group), int(rows)},
-               {{kMovedOwn, *estimates.depth},
-                {kMovedOthers, *group.planes},
-                {kMovedFrames, *group.frames},
-                {kMovedSuspects, suspects},
-                {kMovedNear, near}},
+               {{"Own", estimates.depth},
+                {"Others", group.planes},
+                {"Frames", group.frames},
+                {"Suspects", suspects},
+                {"Near", near}},
                {tiles.x, rows * kGroupY * group.count}, {estimates.has_moving});
 }
 
@@ -96,16 +92,16 @@ Accumulation accumulate(gpu::Recorder& gpu, const GBuffer& gbuffer, const Estima
     params.frames = group.count;
     params.stage = (i == 0 ? kAccumulateBegins : 0) | (i + 1 == groups.size() ? kAccumulateEnds : 0);
     gpu.dispatch("accumulate", params,
-                 {{kAccumulateDepth, *gbuffer.depth},
-                  {kAccumulateNormal, *gbuffer.normal},
-                  {kAccumulateValues, *estimates.values},
-                  {kAccumulateOthers, or_else(group.planes, *estimates.depth)},
-                  {kAccumulateFrames, or_else(group.frames, *estimates.depth)},
-                  {kAccumulateNear, near},
-                  {kAccumulateSums, sums},
-                  {kAccumulateAo, *mean.ao},
-                  {kAccumulateScales, or_else(mean.scales, *mean.ao)},
-                  {kAccumulateBent, or_else(mean.bent, *mean.ao)}},
+                 {{"Depth", gbuffer.depth},
+                  {"Normal", gbuffer.normal},
+                  {"Values", estimates.values},
+                  {"Others", group.planes},
+                  {"Frames", group.frames},
+                  {"Near", near},
+                  {"Sums", sums},
+                  {"Ao", mean.ao},
+                  {"Scales", mean.scales},
+                  {"Bent", mean.bent}},
                  extent_of(gbuffer.view), {uint(values), group.listed});
     params.place += group.count;
   }

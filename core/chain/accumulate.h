@@ -13,12 +13,12 @@ struct Accumulation {
   gpu::Buffer* count = nullptr;  // a plane: how many frames' estimates a pixel is the mean of; and the sums
 };
 
-/// Finds the pixels that frames of the group may see past, or the frame past theirs: see suspects.h. The words of one
-/// group at a time.
+/// Finds the pixels that frames of the group may see past, or the frame past theirs: see suspects.comp. The words are
+/// those of one group at a time.
 const gpu::Buffer& suspects(gpu::Recorder& gpu, const EstimateSet& estimates, const SeenGroup& group);
 
-/// Marks the cells of space near which things have moved between the frame and those of the group: see moved.h. radius:
-/// scene units; place: of the group's first frame among all others.
+/// Marks the cells of space near which things have moved between the frame and those of the group: see moved.comp.
+/// radius: scene units; place: of the group's first frame among all others.
 void moved(gpu::Recorder& gpu, const EstimateSet& estimates, const SeenGroup& group, const gpu::Buffer& suspects,
            float radius, uint place, const gpu::Buffer& near);
 

@@ -17,10 +17,7 @@ gpu::Buffer* completion(gpu::Recorder& gpu, const GBuffer& gbuffer, const Estima
                                 {gbuffer.grid.origin.x + sites.shift.x, gbuffer.grid.origin.y + sites.shift.y},
                                 sites.spacing,
                                 planes_in(*estimate.ao, view) - 1},
-               {{kCompletionDepth, *gbuffer.depth},
-                {kCompletionAo, *estimate.ao},
-                {kCompletionCompleted, *estimate.completed},
-                {kCompletionSums, sums}},
+               {{"Depth", gbuffer.depth}, {"Ao", estimate.ao}, {"Completed", estimate.completed}, {"Sums", sums}},
                tiles);
   return &sums;
 }

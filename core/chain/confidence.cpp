@@ -50,12 +50,12 @@ gpu::Buffer& confidence(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameI
       completes_anywhere(settings) ? visibility(least, float(kThin * radius), bracket.complete, "completed ") : thin;
   gpu::Buffer& result = gpu.buffer("confidence", plane_bytes(gbuffer.view), gpu::Use::device);
   gpu.dispatch("confidence", ConfidenceParams{gbuffer.view, float(radius), gbuffer.depth_precision},
-               {{kConfidenceDepth, *gbuffer.depth},
-                {kConfidenceNormal, *gbuffer.normal},
-                {kConfidenceThin, thin},
-                {kConfidenceSolid, solid},
-                {kConfidenceCompleted, completed},
-                {kConfidenceResult, result}},
+               {{"Depth", gbuffer.depth},
+                {"Normal", gbuffer.normal},
+                {"Thin", thin},
+                {"Solid", solid},
+                {"Completed", completed},
+                {"Result", result}},
                extent_of(gbuffer.view));
   return result;
 }

@@ -58,11 +58,11 @@ DebugPlane debug(gpu::Recorder& gpu, const DebugView& view, const GBuffer& gbuff
   }
   gpu::Buffer& result = gpu.buffer(std::string("debug ") + view.name, plane_bytes(shown->view), gpu::Use::device);
   gpu.dispatch("debug", DebugParams{shown->view, view.kind, sites.rows ? 1u : 0u, shown->grid.origin, hidden},
-               {{kDebugDepth, *shown->depth},
-                {kDebugNormal, *shown->normal},
-                {kDebugValues, *values},
-                {kDebugResult, result},
-                {kDebugRows, sites.rows ? *sites.rows : *values}},
+               {{"Depth", shown->depth},
+                {"Normal", shown->normal},
+                {"Values", values},
+                {"Result", result},
+                {"Rows", sites.rows}},
                extent_of(shown->view));
   return {&view, shown->view.size, &result};
 }

@@ -9,12 +9,8 @@
 #include "core/base/estimator_facts.h"
 #include "core/chain/pass_common.h"
 #include "core/chain/sites.h"
-#include "kernels/bounds.h"
-#include "kernels/classify.h"
-#include "kernels/crytek.h"
-#include "kernels/hbao.h"
-#include "kernels/horizon.h"
-#include "kernels/refine.h"
+#include "kernels/estimate.h"
+#include "kernels/exact_search.h"
 
 namespace alcove {
 namespace {
@@ -71,6 +67,14 @@ gpu::Extent tile_extent(const View& view) {
 /// Blocks of tiles in x and y.
 gpu::Extent block_extent(const View& view) {
   return {groups_of(view.size.x, uint(kTile * kTileBlock)), groups_of(view.size.y, uint(kTile * kTileBlock))};
+}
+
+/// The buffers that all estimators take, but for those of the exact search.
+std::vector<gpu::Binding> buffers_of(const GBuffer& gbuffer, const Estimate& out) {
+  return {{"Depth", gbuffer.depth},    {"Occluders", occluder_depth_of(gbuffer)},
+          {"Normal", gbuffer.normal},  {"Ao", out.ao},
+          {"List", out.listed.tiles},  {"Counts", out.listed.counts},
+          {"Sites", out.listed.sites}, {"SiteCountsBuffer", out.listed.site_counts}};
 }
 
 }  // namespace
@@ -180,7 +184,7 @@ const gpu::Buffer* bounds(gpu::Recorder& gpu, const GBuffer& gbuffer, const Skip
   const gpu::Extent blocks = block_extent(gbuffer.view);
   gpu::Buffer& result = gpu.buffer("bounds", sizeof(vec2) * blocks.x * blocks.y, gpu::Use::device);
   gpu.dispatch("bounds", BoundsParams{gbuffer.view.size, gbuffer.surfaces - 1},
-               {{kBoundsDepth, *gbuffer.depth}, {kBoundsHidden, *gbuffer.hidden}, {kBoundsBlocks, result}}, blocks);
+               {{"Depth", gbuffer.depth}, {"Hidden", gbuffer.hidden}, {"Blocks", result}}, blocks);
   return &result;
 }
 
@@ -208,18 +212,18 @@ TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer*
                               skipping.needed.from,
                               skipping.needed.to};
   gpu.dispatch("classify", params,
-               {{kClassifyBounds, bounds ? *bounds : *list.tiles},
-                {kClassifyChanges, skipping.changes ? *skipping.changes : *list.tiles},
-                {kClassifyNeeded, selects ? *gbuffer.needed : *list.tiles},
-                {kClassifyDepth, *gbuffer.depth},
-                {kClassifyNormal, *gbuffer.normal},
-                {kClassifyRows, sites.rows ? *sites.rows : *list.tiles},
-                {kClassifyList, *list.tiles},
-                {kClassifyCounts, *list.counts},
-                {kClassifyKinds, *list.kinds},
-                {kClassifyAo, *out.ao},
-                {kClassifyBent, out.bent ? *out.bent : *out.ao},
-                {kClassifyCompleted, out.completed ? *out.completed : *out.ao}},
+               {{"Bounds", bounds},
+                {"Changes", skipping.changes},
+                {"Needed", gbuffer.needed},
+                {"Depth", gbuffer.depth},
+                {"Normal", gbuffer.normal},
+                {"Rows", sites.rows},
+                {"List", list.tiles},
+                {"Counts", list.counts},
+                {"Kinds", list.kinds},
+                {"Ao", out.ao},
+                {"Bent", out.bent},
+                {"Completed", out.completed}},
                {groups_of(int(blocks.x), kGroupY) * kGroupX, blocks.y * kGroupY}, {sites.rows ? 1u : 0u, mode});
   return list;
 }
@@ -236,23 +240,14 @@ void horizon(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, con
   params.bias = reach.bias;
   params.plane = plane;
   params.depth_precision = gbuffer.depth_precision;
-  std::vector<gpu::Binding> buffers{
-      {kHorizonDepth, *gbuffer.depth},
-      {kHorizonNormal, *gbuffer.normal},
-      {kHorizonAo, *out.ao},
-      {kHorizonBent, out.bent ? *out.bent : *out.ao},
-      {kHorizonList, *out.listed.tiles},
-      {kHorizonCounts, *out.listed.counts},
-      {kHorizonSites, out.listed.sites ? *out.listed.sites : *out.listed.tiles},
-      {kHorizonSiteCounts, out.listed.sites ? *out.listed.site_counts : *out.listed.counts},
-      {kHorizonCompleted, out.completed ? *out.completed : *out.ao},
-      {kHorizonOccluders, occluder_depth_of(gbuffer)}};
+  std::vector<gpu::Binding> buffers = buffers_of(gbuffer, out);
+  buffers.insert(buffers.end(), {{"Bent", out.bent}, {"Completed", out.completed}});
   const uint mode = uint(reach.falloff) | (out.bent ? kWithBent : 0) | (out.completed ? kWithCompleted : 0);
   const uint solid = thickness_rule_of(reach.thickness) | completion_of(reach) | (reach.in_sectors ? kInSectors : 0);
   std::vector<uint> constants{uint(sampling.slices), uint(sampling.steps), mode, out.listed.sites ? 1u : 0u, solid};
   gpu.dispatch("horizon", params, buffers, estimate_extent(out.listed), constants);
   if (gbuffer.surfaces == 1) return;
-  buffers.push_back({kHorizonHidden, *occluder_hidden_of(gbuffer)});
+  buffers.push_back({"Hidden", occluder_hidden_of(gbuffer)});
   constants.back() = solid | kHiddenSurface * (gbuffer.surfaces - 1);
   gpu.dispatch("horizon_layers", params, buffers, estimate_extent(out.listed), constants);
 }
@@ -269,16 +264,7 @@ void hbao(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, const 
   params.noise_shift = sampling.noise_shift;
   params.plane = plane;
   params.depth_precision = gbuffer.depth_precision;
-  gpu.dispatch("hbao", params,
-               {{kHbaoDepth, *gbuffer.depth},
-                {kHbaoOccluders, occluder_depth_of(gbuffer)},
-                {kHbaoNormal, *gbuffer.normal},
-                {kHbaoAo, *out.ao},
-                {kHbaoList, *out.listed.tiles},
-                {kHbaoCounts, *out.listed.counts},
-                {kHbaoSites, out.listed.sites ? *out.listed.sites : *out.listed.tiles},
-                {kHbaoSiteCounts, out.listed.sites ? *out.listed.site_counts : *out.listed.counts}},
-               estimate_extent(out.listed),
+  gpu.dispatch("hbao", params, buffers_of(gbuffer, out), estimate_extent(out.listed),
                {uint(sampling.slices), uint(sampling.steps), uint(reach.falloff), out.listed.sites ? 1u : 0u});
 }
 
@@ -294,16 +280,8 @@ void crytek(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, cons
   params.noise_shift = sampling.noise_shift;
   params.plane = plane;
   params.depth_precision = gbuffer.depth_precision;
-  gpu.dispatch("crytek", params,
-               {{kCrytekDepth, *gbuffer.depth},
-                {kCrytekOccluders, occluder_depth_of(gbuffer)},
-                {kCrytekNormal, *gbuffer.normal},
-                {kCrytekAo, *out.ao},
-                {kCrytekList, *out.listed.tiles},
-                {kCrytekCounts, *out.listed.counts},
-                {kCrytekSites, out.listed.sites ? *out.listed.sites : *out.listed.tiles},
-                {kCrytekSiteCounts, out.listed.sites ? *out.listed.site_counts : *out.listed.counts}},
-               estimate_extent(out.listed), {uint(samples.count), out.listed.sites ? 1u : 0u});
+  gpu.dispatch("crytek", params, buffers_of(gbuffer, out), estimate_extent(out.listed),
+               {uint(samples.count), out.listed.sites ? 1u : 0u});
 }
 
 }  // namespace alcove

@@ -8,7 +8,7 @@
 #include "core/base/settings.h"
 #include "core/chain/geometry.h"
 #include "core/chain/sites.h"
-#include "kernels/profile.h"
+#include "kernels/exact_search.h"
 
 namespace alcove {
 
@@ -31,9 +31,9 @@ gpu::Extent estimate_extent(const TileList& list);
 /// What an estimator gives for the sites of a G-buffer.
 struct Estimate {
   gpu::Buffer* ao = nullptr;       // a plane of visibility for each radius, from the smallest on
-  gpu::Buffer* bent = nullptr;     // planes x, y, z, of the largest radius: see horizon.h; null: not asked for
+  gpu::Buffer* bent = nullptr;     // planes x, y, z, of the largest radius: see horizon.comp; null: not asked for
   TileList listed{};               // of the largest radius
-  gpu::Buffer* error = nullptr;    // with a tolerance, of the mean over the radii: see refine.h
+  gpu::Buffer* error = nullptr;    // with a tolerance, of the mean over the radii: see refine.comp
   gpu::Buffer* squares = nullptr;  // the same
   // A plane of the visibility that completed surfaces took, of the largest radius, before any filter: 0 to what is
   // blocked, 0 at sky. Null: not asked for.
@@ -77,7 +77,7 @@ struct VolumeSamples {
 /// How far estimates count beyond their own pixels, in px of the frame: the denoiser by pixels of the estimate, and
 /// upsampling by two of them. So does the choice of how many directions a tile takes.
 int filter_reach_of(const EstimatorSettings& settings);
-/// How far depths count for where estimates are made, in px of the frame: see sites.h.
+/// How far depths count for where estimates are made, in px of the frame: see sites.comp.
 int site_reach_of(const EstimatorSettings& settings);
 
 /// What may be left out.
@@ -114,7 +114,7 @@ struct SearchDirections {
 };
 SearchDirections search_directions(const EstimatorSettings& settings);
 
-/// The depth along all lines of one direction over the image, as straight strokes: see profile.h and complete.h.
+/// The depth along all lines of one direction over the image, as straight strokes: see profile.comp and complete.comp.
 struct Profile {
   int direction;
   Lines lines;

@@ -7,11 +7,7 @@
 
 #include "core/chain/estimate.h"
 #include "core/chain/pass_common.h"
-#include "kernels/complete.h"
-#include "kernels/converge.h"
-#include "kernels/exact.h"
-#include "kernels/profile.h"
-#include "kernels/refine.h"
+#include "kernels/exact_search.h"
 
 namespace alcove {
 namespace {
@@ -112,12 +108,12 @@ void draw_profile(gpu::Recorder& gpu, const GBuffer& gbuffer, const SearchDirect
   // With several slots a thickness of 0 is one that is not known, for which exact takes the given one.
   if (gbuffer.hidden && reach.thickness != 0) params.depth_per_width = params.more_pixels = params.least_at_border = 0;
   gpu.dispatch("profile", params,
-               {{kProfileDepth, occluder_depth_of(gbuffer)},
-                {kProfileVertex, *profile.vertex},
-                {kProfileMark, *profile.mark},
-                {kProfileNeighbor, *profile.neighbor},
-                {kProfileHidden, gbuffer.hidden ? *occluder_hidden_of(gbuffer) : *gbuffer.depth},
-                {kProfileOwn, profile.own ? *profile.own : *profile.neighbor}},
+               {{"Depth", occluder_depth_of(gbuffer)},
+                {"Vertex", profile.vertex},
+                {"Mark", profile.mark},
+                {"Neighbor", profile.neighbor},
+                {"Hidden", occluder_hidden_of(gbuffer)},
+                {"Own", profile.own}},
                groups ? gpu::Extent(*groups) : gpu::Extent(profile.count),
                {directions.every_pixel ? 1u : 0u, profile.slots, slot > 0 ? 1 : profile.slots});
 }
@@ -157,13 +153,13 @@ void converge(gpu::Recorder& gpu, const GBuffer& gbuffer, const Convergence& sea
   const Tiles tiles = tiles_of(gbuffer);
   const TileList& listed = search.sums.listed;
   gpu.dispatch("converge", params,
-               {{kConvergeDepth, *gbuffer.depth},
-                {kConvergeBlocked, *search.sums.ao},
-                {kConvergeWhole, whole_arcs(gpu, gbuffer)},
-                {kConvergeAo, *result.ao},
-                {kConvergeJudged, judged},
-                {kConvergeList, listed.tiles ? *listed.tiles : judged},
-                {kConvergeCounts, listed.counts ? *listed.counts : judged}},
+               {{"Depth", gbuffer.depth},
+                {"Blocked", search.sums.ao},
+                {"Whole", whole_arcs(gpu, gbuffer)},
+                {"Ao", result.ao},
+                {"Judged", judged},
+                {"List", listed.tiles},
+                {"Counts", listed.counts}},
                {tiles.columns, tiles.rows});
 }
 
@@ -183,18 +179,18 @@ void refine(gpu::Recorder& gpu, const GBuffer& gbuffer, Convergence& search, Est
   params.share = 1.0f / float(search.planes);
   const gpu::Buffer* bent = search.sums.bent;
   gpu.dispatch("refine", params,
-               {{kRefineDepth, *gbuffer.depth},
-                {kRefineJudged, judged_tiles(gpu, gbuffer)},
-                {kRefineList, listed.tiles ? *listed.tiles : *next.tiles},
-                {kRefineCounts, listed.counts ? *listed.counts : *next.counts},
-                {kRefineError, *result.error},
-                {kRefineSquares, *result.squares},
-                {kRefineNextList, *next.tiles},
-                {kRefineNextCounts, *next.counts},
-                {kRefineNextLines, *next.lines},
-                {kRefineWhole, whole_arcs(gpu, gbuffer)},
-                {kRefineNormal, *gbuffer.normal},
-                {kRefineBent, bent ? *bent : *result.ao}},
+               {{"Depth", gbuffer.depth},
+                {"Judged", judged_tiles(gpu, gbuffer)},
+                {"List", listed.tiles},
+                {"Counts", listed.counts},
+                {"Error", result.error},
+                {"Squares", result.squares},
+                {"NextList", next.tiles},
+                {"NextCounts", next.counts},
+                {"NextLines", next.lines},
+                {"Whole", whole_arcs(gpu, gbuffer)},
+                {"Normal", gbuffer.normal},
+                {"Bent", bent}},
                {tiles.columns, tiles.rows}, {bent ? 1u : 0u});
   search.sums.listed = next;
   if (directions == 0) result.listed = next;
@@ -238,13 +234,13 @@ void complete(gpu::Recorder& gpu, const GBuffer& gbuffer, Profile& profile, cons
     const CompleteParams params{gbuffer.view, profile.lines,    profile.first, profile.count,
                                 reach.radius, behind ? 1u : 0u, slot};
     gpu.dispatch("complete", params,
-                 {{kCompleteNormal, *gbuffer.normal},
-                  {kCompleteVertex, *profile.vertex},
-                  {kCompleteMark, *profile.mark},
-                  {kCompleteGoesOn, *profile.goes_on},
-                  {kCompleteBehind, *profile.behind},
-                  {kCompleteDepth, occluder_depth_of(gbuffer)},
-                  {kCompleteHidden, gbuffer.hidden ? *occluder_hidden_of(gbuffer) : *gbuffer.depth}},
+                 {{"Normal", gbuffer.normal},
+                  {"Vertex", profile.vertex},
+                  {"Mark", profile.mark},
+                  {"GoesOn", profile.goes_on},
+                  {"Behind", profile.behind},
+                  {"Depth", occluder_depth_of(gbuffer)},
+                  {"Hidden", occluder_hidden_of(gbuffer)}},
                  groups ? gpu::Extent(*groups) : gpu::Extent(profile.count),
                  {profile.slots, gbuffer.hides_no_more ? 1u : 0u});
   }
@@ -279,20 +275,20 @@ void exact(gpu::Recorder& gpu, const GBuffer& gbuffer, const Profile& profile, c
   uint completing = profile.goes_on ? 1 : 0;
   if (profile.goes_on && out.completed) completing = 2;
   gpu.dispatch("exact", params,
-               {{kExactDepth, *gbuffer.depth},
-                {kExactNormal, *gbuffer.normal},
-                {kExactVertex, *profile.vertex},
-                {kExactMark, *profile.mark},
-                {kExactNeighbor, *profile.neighbor},
-                {kExactWhole, whole_arcs(gpu, gbuffer)},
-                {kExactAo, *out.ao},
-                {kExactList, is_listed ? *out.listed.tiles : *out.ao},
-                {kExactCounts, is_listed ? *out.listed.counts : *out.ao},
-                {kExactGoesOn, profile.goes_on ? *profile.goes_on : *profile.vertex},
-                {kExactBehind, profile.behind ? *profile.behind : *profile.mark},
-                {kExactCompleted, out.completed ? *out.completed : *out.ao},
-                {kExactBent, out.bent ? *out.bent : *out.ao},
-                {kExactOwn, profile.own ? *profile.own : *profile.neighbor}},
+               {{"Depth", gbuffer.depth},
+                {"Normal", gbuffer.normal},
+                {"Vertex", profile.vertex},
+                {"Mark", profile.mark},
+                {"Neighbor", profile.neighbor},
+                {"Whole", whole_arcs(gpu, gbuffer)},
+                {"Ao", out.ao},
+                {"List", out.listed.tiles},
+                {"Counts", out.listed.counts},
+                {"GoesOn", profile.goes_on},
+                {"Behind", profile.behind},
+                {"Completed", out.completed},
+                {"Bent", out.bent},
+                {"Own", profile.own}},
                is_listed ? list_extent(out.listed) : pixels,
                {is_listed ? 1u : 0u, completing, out.bent ? 1u : 0u, profile.slots, profile.has_unseen ? 1u : 0u});
 }

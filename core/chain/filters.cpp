@@ -8,11 +8,7 @@
 
 #include "core/base/estimator_facts.h"
 #include "core/chain/pass_common.h"
-#include "kernels/combine.h"
-#include "kernels/denoise.h"
-#include "kernels/dilate.h"
-#include "kernels/interpolate.h"
-#include "kernels/upsample.h"
+#include "kernels/filters.h"
 
 namespace alcove {
 namespace {
@@ -92,7 +88,7 @@ Visibility combine(gpu::Recorder& gpu, const GBuffer& gbuffer, const Estimate& e
   const uint radii = planes_in(*estimate.ao, gbuffer.view);
   if (radii == 1) return {estimate.ao, nullptr, estimate.bent};
   gpu::Buffer& mean = gpu.buffer("combined", plane_bytes(gbuffer.view), gpu::Use::device);
-  gpu.dispatch("combine", CombineParams{gbuffer.view.size, radii}, {{kCombineScales, *estimate.ao}, {kCombineAo, mean}},
+  gpu.dispatch("combine", CombineParams{gbuffer.view.size, radii}, {{"Scales", estimate.ao}, {"Ao", mean}},
                extent_of(gbuffer.view));
   return {&mean, keeps_scales ? estimate.ao : nullptr, estimate.bent};
 }
@@ -121,14 +117,10 @@ FilterRuns dilate(gpu::Recorder& gpu, const GBuffer& gbuffer, const TileList& ti
     const RunList out{&gpu.buffer(name, sizeof(uint) * std::size_t(runs * lines), gpu::Use::device),
                       &gpu.buffer(name + " counts", sizeof(RunCounts), gpu::Use::device)};
     gpu.clear(*out.counts);
-    gpu.dispatch("dilate",
-                 DilateParams{gbuffer.view.size, runs, lines, in_column, grid.frame_size, grid.overhang, grid.factor},
-                 {{kDilateTiles, *tiles.kinds},
-                  {kDilateColumns, columns},
-                  {kDilateList, *out.runs},
-                  {kDilateCounts, *out.counts},
-                  {kDilateResult, result}},
-                 {uint(runs), uint(lines)}, {uint(radius), mode});
+    gpu.dispatch(
+        "dilate", DilateParams{gbuffer.view.size, runs, lines, in_column, grid.frame_size, grid.overhang, grid.factor},
+        {{"Tiles", tiles.kinds}, {"Columns", columns}, {"List", out.runs}, {"Counts", out.counts}, {"Result", result}},
+        {uint(runs), uint(lines)}, {uint(radius), mode});
     return out;
   };
   FilterRuns listed;
@@ -155,12 +147,12 @@ gpu::Buffer& denoise(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer& pl
   const auto along = [&](ivec2 axis, const RunList& listed, const gpu::Buffer& from, const gpu::Buffer& to) {
     params.axis = axis;
     gpu.dispatch("denoise", params,
-                 {{kDenoiseAo, from},
-                  {kDenoiseDepth, *gbuffer.depth},
-                  {kDenoiseNormal, *gbuffer.normal},
-                  {kDenoiseResult, to},
-                  {kDenoiseList, listed.runs ? *listed.runs : from},
-                  {kDenoiseCounts, listed.counts ? *listed.counts : from}},
+                 {{"Ao", from},
+                  {"Depth", gbuffer.depth},
+                  {"Normal", gbuffer.normal},
+                  {"Result", to},
+                  {"List", listed.runs},
+                  {"Counts", listed.counts}},
                  runs_extent(gbuffer, axis, listed),
                  {radius, denoiser.depth_sigma > 0 ? 1u : 0u, listed.runs ? 1u : 0u, planes_in(planes, gbuffer.view)});
   };
@@ -187,14 +179,14 @@ gpu::Buffer& interpolate(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer
   const auto along = [&](ivec2 axis, const RunList& listed, const gpu::Buffer& from, const gpu::Buffer& to) {
     params.axis = axis;
     gpu.dispatch("interpolate", params,
-                 {{kInterpolateAo, from},
-                  {kInterpolateDepth, *gbuffer.depth},
-                  {kInterpolateNormal, *gbuffer.normal},
-                  {kInterpolateResult, to},
-                  {kInterpolateList, listed.runs ? *listed.runs : from},
-                  {kInterpolateCounts, listed.counts ? *listed.counts : from},
-                  {kInterpolateRuns, written},
-                  {kInterpolateSites, *sites.rows}},
+                 {{"Ao", from},
+                  {"Depth", gbuffer.depth},
+                  {"Normal", gbuffer.normal},
+                  {"Result", to},
+                  {"List", listed.runs},
+                  {"Counts", listed.counts},
+                  {"Runs", written},
+                  {"Sites", sites.rows}},
                  runs_extent(gbuffer, axis, listed),
                  {radius, mode | (axis.y ? kInterpolateColumns : 0) | (listed.runs ? kInterpolateListed : 0),
                   planes_in(planes, gbuffer.view)});
@@ -243,14 +235,14 @@ gpu::Buffer& upsample(gpu::Recorder& gpu, const GBuffer& gbuffer, const GBuffer&
   const RunList& listed = runs.blocks;
   const gpu::Extent every_block(uint(grid.size.x + 1), uint(grid.size.y + 1));
   gpu.dispatch("upsample", UpsampleParams{gbuffer.view, grid.size, grid.overhang},
-               {{kUpsampleDepth, *gbuffer.depth},
-                {kUpsampleNormal, *gbuffer.normal},
-                {kUpsampleLowDepth, *low.depth},
-                {kUpsampleLowNormal, *low.normal},
-                {kUpsampleLowAo, low_planes},
-                {kUpsampleAo, planes},
-                {kUpsampleList, listed.runs ? *listed.runs : low_planes},
-                {kUpsampleCounts, listed.counts ? *listed.counts : low_planes}},
+               {{"Depth", gbuffer.depth},
+                {"Normal", gbuffer.normal},
+                {"LowDepth", low.depth},
+                {"LowNormal", low.normal},
+                {"LowAo", low_planes},
+                {"Ao", planes},
+                {"List", listed.runs},
+                {"Counts", listed.counts}},
                listed.counts ? gpu::Extent(*listed.counts) : every_block,
                {uint(grid.factor), count, listed.runs ? 1u : 0u});
   return planes;

@@ -9,7 +9,7 @@
 #include "core/frame/raw_plane.h"
 #include "core/frame/reading.h"
 #include "core/gpu/recorder.h"
-#include "kernels/prepare.h"
+#include "kernels/geometry.h"
 
 namespace alcove {
 
@@ -40,7 +40,7 @@ struct FrameInputs {
   DepthPrecision depth_precision{};     // of the planar depth that it gives
   DepthPrecision hidden_precision{};    // of the least precise of it and of what lies behind
   PrepareParams prepare{};              // the meaning of depth and normals, as prepare.comp takes it
-  uint normal_form = kNormalNone;       // of kernels/prepare.h
+  uint normal_form = kNormalNone;       // of kernels/geometry.h
   std::vector<LayerTerms> behind;       // of each plane of RawPlane::behind
   bool behind_lists_all = false;        // see list_all()
   std::vector<OtherView> others;        // in any order: what they see behind the first surface counts as hidden
@@ -54,7 +54,7 @@ struct FrameInputs {
   double albedo_value = 0;              // for multi-bounce where there are no planes of it
   Matrix3 aov_from_view{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};  // rotation to the space of the directions that are written
   bool is_sky = false;  // no pixel shows a surface, and none had to be repaired for that
-  // how the blocks differ from the frame before, whose estimate the buffers still hold: see classify.h; null: the
+  // how the blocks differ from the frame before, whose estimate the buffers still hold: see classify.comp; null: the
   // buffers hold none
   const gpu::Buffer* changes = nullptr;
 };

@@ -5,8 +5,7 @@
 #include <algorithm>
 
 #include "core/chain/pass_common.h"
-#include "kernels/downsample.h"
-#include "kernels/reconstruct.h"
+#include "kernels/geometry.h"
 
 namespace alcove {
 
@@ -57,21 +56,19 @@ GBuffer prepare(gpu::Recorder& gpu, const FrameInputs& frame, const std::string&
   gpu.write(*gbuffer.missing,
             GroupCount{groups_of(frame.view.size.x, kGroupX), groups_of(frame.view.size.y, kGroupY), 0});
   gpu.dispatch("prepare", frame.prepare,
-               {{kPrepareRawDepth, raw_depth},
-                {kPrepareRawNormal, raw_normal ? *raw_normal : raw_depth},
-                {kPrepareDepth, *gbuffer.depth},
-                {kPrepareNormal, *gbuffer.normal},
-                {kPrepareCounts, *gbuffer.counts},
-                {kPrepareMissing, *gbuffer.missing}},
+               {{"RawDepth", raw_depth},
+                {"RawNormal", raw_normal},
+                {"Depth", gbuffer.depth},
+                {"Normal", gbuffer.normal},
+                {"Counts", gbuffer.counts},
+                {"Missing", gbuffer.missing}},
                extent_of(frame.view), {frame.depth_map.form, raw_normal ? frame.normal_form : kNormalNone});
   return gbuffer;
 }
 
 GBuffer reconstruct(gpu::Recorder& gpu, const GBuffer& gbuffer) {
   gpu.dispatch("reconstruct", ReconstructParams{gbuffer.view},
-               {{kReconstructDepth, *gbuffer.depth},
-                {kReconstructNormal, *gbuffer.normal},
-                {kReconstructCounts, *gbuffer.counts}},
+               {{"Depth", gbuffer.depth}, {"Normal", gbuffer.normal}, {"Counts", gbuffer.counts}},
                gpu::Extent(*gbuffer.missing));
   return gbuffer;
 }
@@ -91,12 +88,12 @@ GBuffer downsample(gpu::Recorder& gpu, const GBuffer& gbuffer, const BlockGrid& 
   low.depth = &gpu.buffer(prefix + "low depth", plane_bytes(low.view), gpu::Use::device);
   low.normal = &gpu.buffer(prefix + "low normal", plane_bytes(low.view), gpu::Use::device);
   gpu.dispatch("downsample", DownsampleParams{gbuffer.view, grid.size, grid.overhang, hidden},
-               {{kDownsampleDepth, *gbuffer.depth},
-                {kDownsampleNormal, *gbuffer.normal},
-                {kDownsampleLowDepth, *low.depth},
-                {kDownsampleLowNormal, *low.normal},
-                {kDownsampleHidden, gbuffer.hidden ? *gbuffer.hidden : *gbuffer.depth},
-                {kDownsampleLowHidden, low.hidden ? *low.hidden : *low.depth}},
+               {{"Depth", gbuffer.depth},
+                {"Normal", gbuffer.normal},
+                {"LowDepth", low.depth},
+                {"LowNormal", low.normal},
+                {"Hidden", gbuffer.hidden},
+                {"LowHidden", low.hidden}},
                extent_of(low.view), {uint(grid.factor)});
   if (!gbuffer.occluder_depth) return low;
   GBuffer blocking = gbuffer;

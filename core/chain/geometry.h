@@ -39,9 +39,9 @@ struct GBuffer {
   gpu::Buffer* hidden = nullptr;
   uint surfaces = 1;                    // of a pixel at most: 1 more than `hidden` has planes
   bool hides_no_more = false;           // a pixel with fewer hides no surface that is not told
-  gpu::Buffer* layer_counts = nullptr;  // one LayerCounts of layers.h; null as `hidden`
-  gpu::Buffer* warped = nullptr;        // what other views show behind the first surface: see warp.h; null: nothing
-  gpu::Buffer* view_counts = nullptr;   // one ViewCounts of warp.h; null as `warped`
+  gpu::Buffer* layer_counts = nullptr;  // one LayerCounts; null as `hidden`
+  gpu::Buffer* warped = nullptr;        // what other views show behind the first surface: see warp.comp; null: nothing
+  gpu::Buffer* view_counts = nullptr;   // one ViewCounts; null as `warped`
   // As `depth` and `hidden`, without what is no occluder: see occluders.comp; null: all are, see occluder_depth_of().
   gpu::Buffer* occluder_depth = nullptr;
   gpu::Buffer* occluder_hidden = nullptr;

@@ -5,11 +5,7 @@
 #include <algorithm>
 
 #include "core/chain/pass_common.h"
-#include "kernels/behind.h"
-#include "kernels/ends.h"
-#include "kernels/hidden_planes.h"
-#include "kernels/layers.h"
-#include "kernels/pair.h"
+#include "kernels/hidden.h"
 
 namespace alcove {
 namespace {
@@ -39,8 +35,8 @@ gpu::Buffer& behind(gpu::Recorder& gpu, const GBuffer& prepared, const FrameInpu
   for (uint plane = 0; plane < frame.behind.size(); plane++) {
     const LayerTerms& terms = frame.behind[plane];
     gpu.dispatch("behind", BehindParams{frame.view, terms.depth, plane},
-                 {{kBehindRaw, *frame[RawPlane::behind]}, {kBehindDepth, *prepared.depth}, {kBehindFound, found}},
-                 extent_of(frame.view), {terms.form, kind_of(terms.kind)});
+                 {{"Raw", frame[RawPlane::behind]}, {"Depth", prepared.depth}, {"Found", found}}, extent_of(frame.view),
+                 {terms.form, kind_of(terms.kind)});
   }
   return found;
 }
@@ -50,7 +46,7 @@ gpu::Buffer& ends(gpu::Recorder& gpu, const GBuffer& layered) {
   for (const uint along_columns : {0u, 1u}) {
     const ivec2 size = layered.view.size;
     gpu.dispatch("ends", EndsParams{layered.view, along_columns},
-                 {{kEndsDepth, *layered.depth}, {kEndsHidden, *layered.hidden}, {kEndsResult, result}},
+                 {{"Depth", layered.depth}, {"Hidden", layered.hidden}, {"Result", result}},
                  {uint(along_columns ? size.x : size.y)}, {layered.surfaces - 1});
   }
   return result;
@@ -58,7 +54,7 @@ gpu::Buffer& ends(gpu::Recorder& gpu, const GBuffer& layered) {
 
 void pair(gpu::Recorder& gpu, const GBuffer& layered, const gpu::Buffer& open, const gpu::Buffer& ends) {
   gpu.dispatch("pair", PairParams{layered.view},
-               {{kPairDepth, *layered.depth}, {kPairHidden, *layered.hidden}, {kPairOpen, open}, {kPairEnds, ends}},
+               {{"Depth", layered.depth}, {"Hidden", layered.hidden}, {"Open", open}, {"Ends", ends}},
                extent_of(layered.view), {layered.surfaces - 1});
 }
 
@@ -86,12 +82,12 @@ GBuffer layers(gpu::Recorder& gpu, const GBuffer& prepared, const FrameInputs& f
                             to_vec3(frame.hidden_precision.at),
                             float(layering.separation)};
   gpu.dispatch("layers", params,
-               {{kLayersFound, found ? *found : *warped},
-                {kLayersDepth, *prepared.depth},
-                {kLayersHidden, *gbuffer.hidden},
-                {kLayersCounts, *gbuffer.layer_counts},
-                {kLayersWarped, warped ? *warped : *found},
-                {kLayersOpen, open}},
+               {{"Found", found},
+                {"Depth", prepared.depth},
+                {"Hidden", gbuffer.hidden},
+                {"Counts", gbuffer.layer_counts},
+                {"Warped", warped},
+                {"Open", open}},
                extent_of(prepared.view), {kept});
   if (params.open_planes == 0) return gbuffer;
   const gpu::Buffer& ended = ends(gpu, gbuffer);
@@ -103,8 +99,7 @@ gpu::Buffer& hidden_planes(gpu::Recorder& gpu, const GBuffer& gbuffer, const Lay
   const auto kept = uint(layering.kept);
   gpu::Buffer& planes = gpu.buffer("hidden planes", 2 * kept * plane_bytes(gbuffer.view), gpu::Use::device);
   gpu.dispatch("hidden_planes", HiddenPlanesParams{gbuffer.view, gbuffer.surfaces - 1, kept},
-               {{kHiddenPlanesIn, gbuffer.hidden ? *gbuffer.hidden : *gbuffer.depth}, {kHiddenPlanesOut, planes}},
-               extent_of(gbuffer.view));
+               {{"Hidden", gbuffer.hidden}, {"Planes", planes}}, extent_of(gbuffer.view));
   return planes;
 }
 

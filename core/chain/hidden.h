@@ -21,7 +21,7 @@ gpu::Buffer& behind(gpu::Recorder& gpu, const GBuffer& prepared, const FrameInpu
 /// has none, or none is to be kept.
 GBuffer layers(gpu::Recorder& gpu, const GBuffer& prepared, const FrameInputs& frame, const Layering& layering);
 
-/// Says where surfaces end along rows and columns: see ends.h.
+/// Says where surfaces end along rows and columns: see ends.comp.
 gpu::Buffer& ends(gpu::Recorder& gpu, const GBuffer& layered);
 
 /// Finds which of the surfaces of unknown kind, the bits of `open`, close a solid, and marks them as GBuffer::hidden

@@ -3,8 +3,7 @@
 #include "core/chain/margin.h"
 
 #include "core/chain/pass_common.h"
-#include "kernels/cut.h"
-#include "kernels/widen.h"
+#include "kernels/margin.h"
 
 namespace alcove {
 namespace {
@@ -21,11 +20,11 @@ bool has_margin(const FrameInputs& frame) {
 void run_widen(gpu::Recorder& gpu, const GBuffer& prepared, const GBuffer& wide, const FrameInputs& frame,
                const gpu::Buffer& found, uint stage) {
   gpu.dispatch("widen", WidenParams{prepared.view, wide.view, frame.margin.before},
-               {{kWidenDepth, *prepared.depth},
-                {kWidenNormal, *prepared.normal},
-                {kWidenFound, found},
-                {kWidenWideDepth, *wide.depth},
-                {kWidenWideNormal, *wide.normal}},
+               {{"Depth", prepared.depth},
+                {"Normal", prepared.normal},
+                {"Found", found},
+                {"WideDepth", wide.depth},
+                {"WideNormal", wide.normal}},
                extent_of(wide.view), {stage});
 }
 
@@ -79,7 +78,7 @@ gpu::Buffer* cut(gpu::Recorder& gpu, const FrameInputs& frame, gpu::Buffer* plan
   const uint count = planes_in(*planes, wide);
   gpu::Buffer& result = gpu.buffer("cut " + name, count * plane_bytes(frame.view), gpu::Use::device);
   gpu.dispatch("cut", CutParams{frame.view.size, wide.size, frame.margin.before, count},
-               {{kCutWide, *planes}, {kCutResult, result}}, extent_of(frame.view));
+               {{"Wide", planes}, {"Result", result}}, extent_of(frame.view));
   return &result;
 }
 

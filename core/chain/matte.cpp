@@ -6,7 +6,6 @@
 
 #include "core/chain/pass_common.h"
 #include "kernels/matte.h"
-#include "kernels/needed.h"
 
 namespace alcove {
 namespace {
@@ -36,7 +35,7 @@ Matte matte(gpu::Recorder& gpu, const FrameInputs& frame, RawPlane which) {
   gpu::Buffer& result = gpu.buffer(prefix + "matte", plane_bytes(frame.view), gpu::Use::device);
   const bool is_ranked = reading.kind == MatteKind::ranked;
   gpu.dispatch("matte", MatteParams{frame.view.size, uint(wanted.size())},
-               {{kMatteRaw, *raw}, {kMatteObjects, objects}, {kMatteResult, result}}, extent_of(frame.view),
+               {{"Raw", raw}, {"Objects", objects}, {"Result", result}}, extent_of(frame.view),
                {form_of(reading.kind), is_ranked ? planes_in(*raw, frame.view) / 2 : 1});
   return {&result, reading.outside};
 }
@@ -56,7 +55,7 @@ GBuffer needed(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& wi
                             {whole.x - before.x - after.x, whole.y - before.y - after.y},
                             {-grid.overhang.x - before.x, -grid.overhang.y - before.y},
                             (reach + grid.factor - 1) / grid.factor},
-               {{kNeededMatte, *matte.plane}, {kNeededTiles, *result.needed}}, tiles, {uint(grid.factor)});
+               {{"Matte", matte.plane}, {"Tiles", result.needed}}, tiles, {uint(grid.factor)});
   return result;
 }
 

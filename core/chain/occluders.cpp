@@ -22,12 +22,12 @@ GBuffer occluders(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs&
   const OccludersParams params{view, frame.occluders.ignores ? 1u : 0u, keeps ? 1u : 0u,
                                gbuffer.hides_no_more ? 1u : 0u};
   gpu.dispatch("occluders", params,
-               {{kOccludersDepth, *gbuffer.depth},
-                {kOccludersNormal, *gbuffer.normal},
-                {kOccludersMatte, *counted},
-                {kOccludersHidden, hidden > 0 ? *gbuffer.hidden : *gbuffer.depth},
-                {kOccludersResult, *result.occluder_depth},
-                {kOccludersBehind, hidden > 0 ? *result.occluder_hidden : *result.occluder_depth}},
+               {{"Depth", gbuffer.depth},
+                {"Normal", gbuffer.normal},
+                {"Matte", counted},
+                {"Hidden", gbuffer.hidden},
+                {"Result", result.occluder_depth},
+                {"Behind", result.occluder_hidden}},
                extent_of(view), {hidden});
   return result;
 }

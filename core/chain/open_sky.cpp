@@ -7,7 +7,7 @@
 #include "core/base/estimator_facts.h"
 #include "core/chain/geometry.h"
 #include "core/chain/pass_common.h"
-#include "kernels/classify.h"
+#include "kernels/estimate.h"
 
 namespace alcove {
 

@@ -26,8 +26,8 @@ struct DebugPlane {
 /// Null: not asked for.
 struct FrameOutputs {
   gpu::Buffer* counts = nullptr;        // one FrameCounts
-  gpu::Buffer* layer_counts = nullptr;  // one LayerCounts of layers.h, where anything is known of what is hidden
-  gpu::Buffer* view_counts = nullptr;   // one ViewCounts of warp.h, where others see what is hidden here
+  gpu::Buffer* layer_counts = nullptr;  // one LayerCounts, where anything is known of what is hidden
+  gpu::Buffer* view_counts = nullptr;   // one ViewCounts, where others see what is hidden here
   gpu::Buffer* tiles = nullptr;         // one TileCounts, where there is an estimate
   gpu::Buffer* sites = nullptr;         // one SiteCounts, of the largest radius, where pixels share estimates
   gpu::Buffer* squares = nullptr;       // with a tolerance, vec2 per tile: sum of its squares, and receivers

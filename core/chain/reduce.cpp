@@ -77,8 +77,7 @@ FrameOutputs reduce(gpu::Recorder& gpu, const FrameInputs& frame, const PixelFil
     if (!(out.*planes)) continue;
     gpu::Buffer& result = gpu.buffer(name, (out.*planes)->bytes(), gpu::Use::device);
     params.planes = planes_in(result, frame.view);
-    gpu.dispatch("reduce", params,
-                 {{kReducePlanes, *(out.*planes)}, {kReduceWeights, weights}, {kReduceResult, result}},
+    gpu.dispatch("reduce", params, {{"Planes", out.*planes}, {"Weights", weights}, {"Result", result}},
                  {groups_of(params.size.x + params.offset.x, uint(factor)),
                   groups_of(params.size.y + params.offset.y, uint(factor))});
     reduced.*planes = &result;

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "core/chain/pass_common.h"
-#include "kernels/classify.h"
+#include "kernels/estimate.h"
 
 namespace alcove {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/gpu/recorder.h"
-#include "kernels/moved.h"
+#include "kernels/accumulate.h"
 
 namespace alcove {
 

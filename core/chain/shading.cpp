@@ -5,12 +5,7 @@
 #include <algorithm>
 
 #include "core/chain/pass_common.h"
-#include "kernels/bent_normal.h"
-#include "kernels/composite.h"
-#include "kernels/directions.h"
-#include "kernels/multi_bounce.h"
-#include "kernels/shape.h"
-#include "kernels/specular_occlusion.h"
+#include "kernels/shading.h"
 
 namespace alcove {
 
@@ -33,12 +28,12 @@ gpu::Buffer& shape(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer& plan
                     (shaping.fade_end ? kShapeByFade : 0) | (material_ao ? kShapeByMaterial : 0) |
                     (matte.plane ? kShapeByMatte : 0) | (material_ao && prefix.empty() ? kShapeCountsRepaired : 0);
   gpu.dispatch("shape", params,
-               {{kShapeAo, planes},
-                {kShapeShaped, shaped},
-                {kShapeDepth, *gbuffer.depth},
-                {kShapeMaterial, material_ao ? *material_ao : planes},
-                {kShapeMatte, matte.plane ? *matte.plane : planes},
-                {kShapeCounts, *gbuffer.counts}},
+               {{"Ao", planes},
+                {"Shaped", shaped},
+                {"Depth", gbuffer.depth},
+                {"Material", material_ao},
+                {"Matte", matte.plane},
+                {"Counts", gbuffer.counts}},
                extent_of(gbuffer.view), {mode});
   return shaped;
 }
@@ -58,8 +53,7 @@ gpu::Buffer& bent_normal(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::
   if (!bent) return *gbuffer.normal;
   gpu::Buffer& result = gpu.buffer("bent normal", plane_bytes(gbuffer.view), gpu::Use::device);
   gpu.dispatch("bent_normal", BentNormalParams{gbuffer.view.size},
-               {{kBentNormalNormal, *gbuffer.normal}, {kBentNormalBent, *bent}, {kBentNormalResult, result}},
-               extent_of(gbuffer.view));
+               {{"Normal", gbuffer.normal}, {"Bent", bent}, {"Result", result}}, extent_of(gbuffer.view));
   return result;
 }
 
@@ -68,8 +62,7 @@ gpu::Buffer& directions(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::B
   gpu::Buffer& planes = gpu.buffer(name, 3 * plane_bytes(gbuffer.view), gpu::Use::device);
   const DirectionsParams params{gbuffer.view.size, to_vec3(aov_from_view[0]), to_vec3(aov_from_view[1]),
                                 to_vec3(aov_from_view[2])};
-  gpu.dispatch("directions", params,
-               {{kDirectionsDepth, *gbuffer.depth}, {kDirectionsPacked, packed}, {kDirectionsPlanes, planes}},
+  gpu.dispatch("directions", params, {{"Depth", gbuffer.depth}, {"Packed", packed}, {"Planes", planes}},
                extent_of(gbuffer.view));
   return planes;
 }
@@ -78,11 +71,7 @@ gpu::Buffer& specular_occlusion(gpu::Recorder& gpu, const GBuffer& gbuffer, cons
                                 const gpu::Buffer& ao, double roughness) {
   gpu::Buffer& result = gpu.buffer("specular occlusion", plane_bytes(gbuffer.view), gpu::Use::device);
   gpu.dispatch("specular_occlusion", SpecularOcclusionParams{gbuffer.view, float(roughness)},
-               {{kSpecularOcclusionDepth, *gbuffer.depth},
-                {kSpecularOcclusionNormal, *gbuffer.normal},
-                {kSpecularOcclusionBent, open},
-                {kSpecularOcclusionAo, ao},
-                {kSpecularOcclusionResult, result}},
+               {{"Depth", gbuffer.depth}, {"Normal", gbuffer.normal}, {"Bent", open}, {"Ao", ao}, {"Result", result}},
                extent_of(gbuffer.view));
   return result;
 }
@@ -91,8 +80,7 @@ gpu::Buffer& multi_bounce(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu:
   const gpu::Buffer* albedo = frame[RawPlane::albedo];
   gpu::Buffer& result = gpu.buffer("color ao", 3 * plane_bytes(gbuffer.view), gpu::Use::device);
   gpu.dispatch("multi_bounce", MultiBounceParams{gbuffer.view.size, albedo ? 1u : 0u, float(frame.albedo_value)},
-               {{kMultiBounceAo, ao}, {kMultiBounceAlbedo, albedo ? *albedo : ao}, {kMultiBounceResult, result}},
-               extent_of(gbuffer.view));
+               {{"Ao", ao}, {"Albedo", albedo}, {"Result", result}}, extent_of(gbuffer.view));
   return result;
 }
 
@@ -118,14 +106,14 @@ gpu::Buffer& composite(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Bu
   params.mix = float(look.mix);
   params.tint = to_vec3(look.tint);
   gpu.dispatch("composite", params,
-               {{kCompositeAo, ao},
-                {kCompositeBeauty, beauty},
-                {kCompositeLight, light ? *light : beauty},
-                {kCompositeColor, color ? *color : beauty},
-                {kCompositeLights, lights},
-                {kCompositeResult, result},
-                {kCompositeCounts, *gbuffer.counts},
-                {kCompositeDepth, *gbuffer.depth}},
+               {{"Ao", ao},
+                {"Beauty", beauty},
+                {"Light", light},
+                {"Color", color},
+                {"Lights", lights},
+                {"Result", result},
+                {"Counts", gbuffer.counts},
+                {"Depth", gbuffer.depth}},
                extent_of(frame.view));
   return result;
 }

@@ -8,8 +8,6 @@
 #include "core/base/estimator_facts.h"
 #include "core/chain/estimate.h"
 #include "core/chain/pass_common.h"
-#include "kernels/links.h"
-#include "kernels/list_sites.h"
 #include "kernels/sites.h"
 
 namespace alcove {
@@ -41,7 +39,7 @@ constexpr std::array<ivec2, 16> kShifts{{{0, 0},
 
 ivec2 moved_by(const ivec2& origin, const ivec2& shift) { return {origin.x + shift.x, origin.y + shift.y}; }
 
-/// See links.h.
+/// See links.comp.
 const gpu::Buffer& flat_links(gpu::Recorder& gpu, const View& view, const std::string& prefix) {
   return gpu.buffer(prefix + "flat links", rows_bytes(view), gpu::Use::device);
 }
@@ -64,7 +62,7 @@ Sites sites(gpu::Recorder& gpu, const GBuffer& gbuffer, const SiteRule& rule, co
     // On the denser lattices a path may lead over round surfaces.
     const gpu::Buffer& links = spacing >= 4 ? flat_links(gpu, view, prefix) : *rows;
     gpu.dispatch("sites", SitesParams{view.size, moved_by(gbuffer.grid.origin, rule.shift), spacing},
-                 {{kSitesRows, *rows}, {kSitesLinks, links}, {kSitesResult, more}}, strips);
+                 {{"Rows", rows}, {"Links", links}, {"Result", more}}, strips);
     rows = &more;
   }
   return {rows, rule.spacing, rule.shift};
@@ -74,10 +72,10 @@ const gpu::Buffer& links(gpu::Recorder& gpu, const GBuffer& gbuffer, const SiteR
   const View& view = gbuffer.view;
   gpu::Buffer& rows = gpu.buffer(prefix + "sites", rows_bytes(view), gpu::Use::device);
   gpu.dispatch("links", LinksParams{view, moved_by(gbuffer.grid.origin, rule.shift)},
-               {{kLinksDepth, *gbuffer.depth},
-                {kLinksNormal, *gbuffer.normal},
-                {kLinksRows, rows},
-                {kLinksFlat, rule.is_adaptive ? flat_links(gpu, view, prefix) : rows}},
+               {{"Depth", gbuffer.depth},
+                {"Normal", gbuffer.normal},
+                {"Rows", rows},
+                {"Flat", rule.is_adaptive ? &flat_links(gpu, view, prefix) : nullptr}},
                {groups_of(view.size.x, uint(kTile)), groups_of(view.size.y, uint(kTile))},
                {uint(rule.spacing), rule.is_adaptive ? 1u : 0u});
   return rows;
@@ -91,11 +89,11 @@ void list_sites(gpu::Recorder& gpu, const GBuffer& gbuffer, const Sites& sites, 
   list.site_counts = &gpu.buffer(prefix + "site counts", sizeof(SiteCounts), gpu::Use::device);
   gpu.clear(*list.site_counts);
   gpu.dispatch("list_sites", ListSitesParams{view.size, moved_by(gbuffer.grid.origin, sites.shift)},
-               {{kListSitesRows, *sites.rows},
-                {kListSitesTiles, *list.tiles},
-                {kListSitesTileCounts, *list.counts},
-                {kListSitesList, *list.sites},
-                {kListSitesCounts, *list.site_counts}},
+               {{"Rows", sites.rows},
+                {"Tiles", list.tiles},
+                {"TileCountsBuffer", list.counts},
+                {"List", list.sites},
+                {"Counts", list.site_counts}},
                list_extent(list));
 }
 

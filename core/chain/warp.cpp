@@ -6,8 +6,6 @@
 
 #include "core/chain/margin.h"
 #include "core/chain/pass_common.h"
-#include "kernels/still.h"
-#include "kernels/surfels.h"
 #include "kernels/warp.h"
 
 namespace alcove {
@@ -47,10 +45,7 @@ OtherView turned_back(const OtherView& view, const OtherView& from) {
 void still(gpu::Recorder& gpu, const OtherView& view, const OtherView& witness, const gpu::Buffer& flags) {
   const StillParams params{reprojection(turned_back(view, witness), witness.view, witness.depth_precision, -1)};
   gpu.dispatch("still", params,
-               {{kStillDepth, *view.depth},
-                {kStillNormal, *view.normal},
-                {kStillWitnessDepth, *witness.depth},
-                {kStillFlags, flags}},
+               {{"Depth", view.depth}, {"Normal", view.normal}, {"WitnessDepth", witness.depth}, {"Flags", flags}},
                extent_of(view.view));
 }
 
@@ -59,10 +54,9 @@ void surfels(gpu::Recorder& gpu, const OtherView& view, std::span<const OtherVie
   const gpu::Buffer& flags = gpu.buffer("still flags", plane_bytes(view.view), gpu::Use::device);
   gpu.clear(flags);
   for (const auto& witness : witnesses) still(gpu, view, witness, flags);
-  gpu.dispatch(
-      "surfels", SurfelsParams{view.view, view.depth_precision},
-      {{kSurfelsDepth, *view.depth}, {kSurfelsNormal, *view.normal}, {kSurfelsFlags, flags}, {kSurfelsUse, moving}},
-      extent_of(view.view), {witnesses.empty() ? 0u : 1u});
+  gpu.dispatch("surfels", SurfelsParams{view.view, view.depth_precision},
+               {{"Depth", view.depth}, {"Normal", view.normal}, {"Flags", flags}, {"Use", moving}},
+               extent_of(view.view), {witnesses.empty() ? 0u : 1u});
 }
 
 GBuffer warp(gpu::Recorder& gpu, const GBuffer& prepared, const FrameInputs& frame, const Layering& layering) {
@@ -83,12 +77,12 @@ GBuffer warp(gpu::Recorder& gpu, const GBuffer& prepared, const FrameInputs& fra
       }
       const WarpParams params{reprojection(other, wide.view, wide.depth_precision, layering.separation), round};
       gpu.dispatch("warp", params,
-                   {{kWarpDepth, *other.depth},
-                    {kWarpNormal, *other.normal},
-                    {kWarpUse, *use},
-                    {kWarpFirst, *wide.depth},
-                    {kWarpFound, *wide.warped},
-                    {kWarpCounts, *wide.view_counts}},
+                   {{"Depth", other.depth},
+                    {"Normal", other.normal},
+                    {"Use", use},
+                    {"First", wide.depth},
+                    {"Found", wide.warped},
+                    {"Counts", wide.view_counts}},
                    extent_of(other.view));
     }
   }

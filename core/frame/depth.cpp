@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "core/base/error.h"
-#include "kernels/prepare.h"
+#include "kernels/geometry.h"
 
 namespace alcove {
 namespace {

@@ -14,7 +14,7 @@
 
 namespace alcove {
 
-/// Raw value -> planar depth in scene units. The forms are those of kernels/prepare.h.
+/// Raw value -> planar depth in scene units. The forms are those of kernels/geometry.h.
 struct DepthMap {
   uint form = 0;
   bool along_ray = false;  // the form gives the distance to the eye

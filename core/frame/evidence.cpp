@@ -9,7 +9,7 @@
 #include <numbers>
 
 #include "core/frame/flatness.h"
-#include "kernels/prepare.h"
+#include "kernels/geometry.h"
 
 namespace alcove {
 namespace {

@@ -12,7 +12,7 @@ namespace alcove {
 struct HostFrame : Reading {
   // of depth_kind, positions: planes x, y, z; sky: at or beyond `sky`, or 0, infinite, NaN
   std::vector<float> depth;
-  // planes x, y, z (or two, see kernels/prepare.h) in normal_space; empty: reconstructed from depth
+  // planes x, y, z (or two, see kernels/geometry.h) in normal_space; empty: reconstructed from depth
   std::vector<float> normal;
   // planes of depth behind the first surface, in any order, as Reading::behind says; empty: none is known
   std::vector<float> behind_depth;

@@ -1,18 +1,10 @@
-// Pipeline creation, and the check that host and kernel agree.
+// Pipeline creation.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/gpu/kernel.h"
 
 #include "core/base/error.h"
 
 namespace alcove::gpu {
-namespace {
-
-template <class T>
-std::string join_numbers(const T& numbers) {
-  return fmt::format("{{{}}}", fmt::join(numbers, ", "));
-}
-
-}  // namespace
 
 Kernel::Kernel(Device& device, const std::string& stem, const std::vector<std::uint32_t>& specialization)
     : stem_(stem) {
@@ -21,8 +13,8 @@ Kernel::Kernel(Device& device, const std::string& stem, const std::vector<std::u
   reflection_ = reflect(code);
   if (reflection_.constant_ids.size() != specialization.size() ||
       (!specialization.empty() && *reflection_.constant_ids.rbegin() != specialization.size() - 1))
-    fail(ErrorKind::device, "kernel {} has specialization constants {}, and {} are given", stem,
-         join_numbers(reflection_.constant_ids), specialization.size());
+    fail(ErrorKind::device, "kernel {} has specialization constants {{{}}}, and {} are given", stem,
+         fmt::join(reflection_.constant_ids, ", "), specialization.size());
   create_layouts(device);
   if (device.preserves_nan())
     create_pipeline(device, with_preserved_nan(code), specialization);
@@ -32,8 +24,8 @@ Kernel::Kernel(Device& device, const std::string& stem, const std::vector<std::u
 
 void Kernel::create_layouts(Device& device) {
   std::vector<VkDescriptorSetLayoutBinding> bindings;
-  for (const auto binding : reflection_.bindings)
-    bindings.push_back({binding, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, VK_SHADER_STAGE_COMPUTE_BIT, nullptr});
+  for (const auto& block : reflection_.blocks)
+    bindings.push_back({block.binding, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, VK_SHADER_STAGE_COMPUTE_BIT, nullptr});
   VkDescriptorSetLayoutCreateInfo set_info{};
   set_info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
   set_info.flags = VK_DESCRIPTOR_SET_LAYOUT_CREATE_PUSH_DESCRIPTOR_BIT_KHR;
@@ -82,15 +74,6 @@ void Kernel::create_pipeline(Device& device, std::span<const std::uint32_t> code
   check(vkCreateComputePipelines(device.handle(), device.pipeline_cache(), 1, &info, nullptr, &pipeline),
         "vkCreateComputePipelines");
   pipeline_ = {device.handle(), pipeline};
-}
-
-void Kernel::require(std::size_t parameter_bytes, const std::set<std::uint32_t>& bindings) const {
-  if (parameter_bytes != reflection_.parameter_bytes)
-    fail(ErrorKind::device, "kernel {} takes {} bytes of parameters, and the host sends {}", stem_,
-         reflection_.parameter_bytes, parameter_bytes);
-  if (bindings != reflection_.bindings)
-    fail(ErrorKind::device, "kernel {} has the bindings {}, and the host binds {}", stem_,
-         join_numbers(reflection_.bindings), join_numbers(bindings));
 }
 
 }  // namespace alcove::gpu

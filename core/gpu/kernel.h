@@ -1,9 +1,8 @@
-// A compute pipeline made from embedded SPIR-V, whose bindings and parameter size are read from the code itself.
+// A compute pipeline made from embedded SPIR-V, whose buffers and parameter size are read from the code itself.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <cstdint>
-#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -21,9 +20,6 @@ class Kernel {
  public:
   /// Fails with ErrorKind::device when there is no such kernel, or its specialization constants are not 0 .. n-1.
   Kernel(Device& device, const std::string& stem, const std::vector<std::uint32_t>& specialization);
-
-  /// Fails with ErrorKind::device, naming kernel and binding, unless host and kernel agree.
-  void require(std::size_t parameter_bytes, const std::set<std::uint32_t>& bindings) const;
 
   const std::string& stem() const { return stem_; }
   const Reflection& reflection() const { return reflection_; }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "core/base/error.h"
 
@@ -41,11 +42,32 @@ Cut cut_into(double slices, std::uint32_t x, std::uint32_t y) {
   return {x, y, std::uint32_t(std::ceil(x / slices_per_row)), std::uint32_t(rows)};
 }
 
-PassTime pass_of(const Kernel& kernel, std::span<const Binding> bindings) {
+/// The buffers for the kernel's blocks, in their order; `absent` for those that the host has none for.
+std::vector<const Buffer*> buffers_of(const Kernel& kernel, std::span<const Binding> bindings, const Buffer& absent) {
+  const auto& blocks = kernel.reflection().blocks;
+  std::vector<const Buffer*> buffers;
+  for (const auto& block : blocks) {
+    const auto binding = std::ranges::find(bindings, block.name, &Binding::block);
+    if (binding != bindings.end()) buffers.push_back(binding->buffer ? binding->buffer : &absent);
+  }
+  if (buffers.size() != blocks.size() || buffers.size() != bindings.size()) {
+    const auto names = [](const auto& list, auto name) {
+      std::set<std::string_view> sorted;
+      for (const auto& one : list) sorted.insert(one.*name);
+      return fmt::format("{}", fmt::join(sorted, ", "));
+    };
+    fail(ErrorKind::device, "kernel {} has the blocks {}, and the host binds {}", kernel.stem(),
+         names(blocks, &Block::name), names(bindings, &Binding::block));
+  }
+  return buffers;
+}
+
+PassTime pass_of(const Kernel& kernel, std::span<const Buffer* const> buffers) {
   PassTime pass{kernel.stem()};
-  for (const auto& binding : bindings) {
-    if (kernel.reflection().read.contains(binding.slot)) pass.bytes_read += binding.buffer.bytes();
-    if (kernel.reflection().written.contains(binding.slot)) pass.bytes_written += binding.buffer.bytes();
+  for (std::size_t i = 0; i < buffers.size(); i++) {
+    const Block& block = kernel.reflection().blocks[i];
+    if (block.is_read) pass.bytes_read += buffers[i]->bytes();
+    if (block.is_written) pass.bytes_written += buffers[i]->bytes();
   }
   return pass;
 }
@@ -235,16 +257,18 @@ double Recorder::slices_of(std::optional<double> ms, double groups, bool is_list
 void Recorder::dispatch_bytes(const std::string& stem, std::span<const std::byte> params,
                               std::span<const Binding> bindings, Extent extent,
                               const std::vector<std::uint32_t>& specialization) {
+  const Buffer& absent = buffer("absent", sizeof(std::uint32_t), Use::device);
   if (!device_) {
     rehearsed_.emplace_back(stem, specialization);
     return;
   }
   begin();
   const Kernel& kernel = device_->kernel(stem, specialization);
-  std::set<std::uint32_t> slots;
-  for (const auto& binding : bindings) slots.insert(binding.slot);
-  kernel.require(params.size(), slots);
-  recorded_.push_back({pass_of(kernel, bindings), &kernel});
+  if (params.size() != kernel.reflection().parameter_bytes)
+    fail(ErrorKind::device, "kernel {} takes {} bytes of parameters, and the host sends {}", stem,
+         kernel.reflection().parameter_bytes, params.size());
+  const auto buffers = buffers_of(kernel, bindings, absent);
+  recorded_.push_back({pass_of(kernel, buffers), &kernel});
 
   const auto& group = kernel.reflection().group;
   const auto groups = [](std::uint32_t count, std::uint32_t size) { return (count + size - 1) / size; };
@@ -256,7 +280,7 @@ void Recorder::dispatch_bytes(const std::string& stem, std::span<const std::byte
   const double unmeasured_ms = device_->submission_ms();
   if (extent.group_count && (slices <= 1 || x == 0)) {
     make_room_for(ms.value_or(unmeasured_ms));
-    record_slice(kernel, params, bindings, [&](VkCommandBuffer commands) {
+    record_slice(kernel, params, buffers, [&](VkCommandBuffer commands) {
       const VkDescriptorBufferInfo count = extent.group_count->bound();
       vkCmdDispatchIndirect(commands, count.buffer, count.offset);
       touched_.push_back(count.buffer);
@@ -268,7 +292,7 @@ void Recorder::dispatch_bytes(const std::string& stem, std::span<const std::byte
   for (std::uint32_t row = 0; row < cut.y; row += cut.slice_y)
     for (std::uint32_t column = 0; column < cut.x; column += cut.slice_x) {
       make_room_for(slice_ms);
-      record_slice(kernel, params, bindings, [&](VkCommandBuffer commands) {
+      record_slice(kernel, params, buffers, [&](VkCommandBuffer commands) {
         vkCmdDispatchBase(commands, column, row, 0, std::min(cut.slice_x, cut.x - column),
                           std::min(cut.slice_y, cut.y - row), 1);
       });
@@ -276,22 +300,22 @@ void Recorder::dispatch_bytes(const std::string& stem, std::span<const std::byte
 }
 
 template <class Dispatch>
-void Recorder::record_slice(const Kernel& kernel, std::span<const std::byte> params, std::span<const Binding> bindings,
-                            const Dispatch& dispatch) {
+void Recorder::record_slice(const Kernel& kernel, std::span<const std::byte> params,
+                            std::span<const Buffer* const> buffers, const Dispatch& dispatch) {
   if (!touched_.empty()) barrier();
   std::vector<VkDescriptorBufferInfo> infos;
   std::vector<VkWriteDescriptorSet> writes;
-  infos.reserve(bindings.size());
-  for (const auto& binding : bindings) {
-    infos.push_back(binding.buffer.bound());
+  infos.reserve(buffers.size());
+  for (std::size_t i = 0; i < buffers.size(); i++) {
+    infos.push_back(buffers[i]->bound());
     VkWriteDescriptorSet write{};
     write.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
-    write.dstBinding = binding.slot;
+    write.dstBinding = kernel.reflection().blocks[i].binding;
     write.descriptorCount = 1;
     write.descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
     write.pBufferInfo = &infos.back();
     writes.push_back(write);
-    touched_.push_back(binding.buffer.handle());
+    touched_.push_back(buffers[i]->handle());
   }
   Submission& submission = submissions_[used_ - 1];
   const auto query = std::uint32_t(2 * submission.timed.size());

@@ -2,13 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <concepts>
 #include <functional>
 #include <map>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -18,9 +18,14 @@
 
 namespace alcove::gpu {
 
+/// The buffer for a block that the kernel declares, by the block's name in GLSL. Null: as it is specialized, the kernel
+/// does not touch the block. Vulkan needs a buffer all the same, and the recorder gives it one of a few bytes.
 struct Binding {
-  std::uint32_t slot;
-  const Buffer& buffer;
+  Binding(std::string_view name, const Buffer* bound) : block(name), buffer(bound) {}
+  Binding(std::string_view name, const Buffer& bound) : block(name), buffer(&bound) {}
+
+  std::string_view block;
+  const Buffer* buffer;
 };
 
 /// The number of invocations, or of workgroups, of a pass.
@@ -39,8 +44,9 @@ struct Extent {
   const Buffer* group_count = nullptr;
 };
 
+/// Push constants in scalar layout, as GLSL has them: at most the 128 bytes that every Vulkan device takes.
 template <class T>
-concept KernelParams = std::is_trivially_copyable_v<T> && sizeof(T) <= 128;
+concept KernelParams = std::is_trivially_copyable_v<T> && alignof(T) == 4 && sizeof(T) <= 128;
 
 /// One frame in flight. Use: buffer() and fill, then dispatch() ..., then run(), then read. Buffers live as long as the
 /// recorder.
@@ -74,8 +80,9 @@ class Recorder {
   /// Copies what kernels wrote to where host() shows it after run(); nothing to do for mapped buffers.
   void download(const Buffer& buffer);
 
-  /// Runs the kernel of that stem over the extent, after all that was recorded before. Fails unless parameters and
-  /// bindings are the kernel's.
+  /// Runs the kernel of that stem over the extent, after all that was recorded before. Fails unless the parameters have
+  /// the kernel's size, and the bindings name each of its blocks once and nothing else. A block that one of two kernels
+  /// of the same source does not use is none of its blocks: `horizon` has no Hidden, `horizon_layers` has.
   template <KernelParams Params>
   void dispatch(const std::string& stem, const Params& params, const std::vector<Binding>& bindings, Extent extent,
                 const std::vector<std::uint32_t>& specialization = {}) {
@@ -130,7 +137,7 @@ class Recorder {
   void dispatch_bytes(const std::string& stem, std::span<const std::byte> params, std::span<const Binding> bindings,
                       Extent extent, const std::vector<std::uint32_t>& specialization);
   template <class Dispatch>
-  void record_slice(const Kernel& kernel, std::span<const std::byte> params, std::span<const Binding> bindings,
+  void record_slice(const Kernel& kernel, std::span<const std::byte> params, std::span<const Buffer* const> buffers,
                     const Dispatch& dispatch);
   std::optional<double> measured_ms(const RecordedPass& pass) const;
   double slices_of(std::optional<double> ms, double groups, bool is_list) const;

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <map>
+#include <string_view>
 
 #include "core/base/error.h"
 
@@ -29,6 +30,7 @@ std::size_t words_at(std::span<const std::uint32_t> code, std::size_t at) {
 
 /// The parts of a SPIR-V module that `reflect` needs, by result id.
 struct Module {
+  std::map<std::uint32_t, std::string> names;
   std::map<std::uint32_t, std::uint32_t> binding, set;
   std::map<std::uint32_t, std::map<std::uint32_t, std::uint32_t>> member_offsets;
   std::map<std::uint32_t, std::uint32_t> array_stride, constants;
@@ -68,6 +70,11 @@ void read_decoration(Module& module, Reflection& reflection, std::span<const std
   if (words[2] == spv::DecorationSpecId) reflection.constant_ids.insert(words[3]);
 }
 
+std::string name_of(std::span<const std::uint32_t> words) {
+  const std::string_view text(reinterpret_cast<const char*>(words.data() + 2), 4 * (words.size() - 2));
+  return std::string(text.substr(0, text.find('\0')));
+}
+
 void read_variable(Module& module, std::span<const std::uint32_t> words) {
   if (words[3] == spv::StorageClassPushConstant) module.push_constant_type = module.types.at(words[1])[2];
   if (words[3] == spv::StorageClassStorageBuffer) module.block_of[words[2]] = module.types.at(words[1])[2];
@@ -76,6 +83,7 @@ void read_variable(Module& module, std::span<const std::uint32_t> words) {
 void read_instruction(Module& module, Reflection& reflection, std::span<const std::uint32_t> words) {
   const auto opcode = words[0] & spv::OpCodeMask;
   switch (opcode) {
+    case spv::OpName: module.names[words[1]] = name_of(words); break;
     case spv::OpDecorate: read_decoration(module, reflection, words); break;
     case spv::OpMemberDecorate:
       if (words[3] == spv::DecorationOffset) module.member_offsets[words[1]][words[2]] = words[4];
@@ -116,10 +124,10 @@ Reflection reflect(std::span<const std::uint32_t> code) {
     read_instruction(module, reflection, code.subspan(at, words_at(code, at)));
   for (const auto& [id, binding] : module.binding) {
     if (module.set[id] != 0) fail(ErrorKind::device, "a kernel binds outside descriptor set 0");
-    reflection.bindings.insert(binding);
-    const auto block = module.block_of[id];
-    if (!module.not_readable.contains(id) && !module.not_readable.contains(block)) reflection.read.insert(binding);
-    if (!module.not_writable.contains(id) && !module.not_writable.contains(block)) reflection.written.insert(binding);
+    const auto type = module.block_of[id];
+    const bool is_read = !module.not_readable.contains(id) && !module.not_readable.contains(type);
+    const bool is_written = !module.not_writable.contains(id) && !module.not_writable.contains(type);
+    reflection.blocks.push_back({module.names[type], binding, is_read, is_written});
   }
   if (module.push_constant_type) reflection.parameter_bytes = module.size_of(module.push_constant_type);
   return reflection;

@@ -5,17 +5,24 @@
 #include <cstdint>
 #include <set>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace alcove::gpu {
 
+/// A storage buffer of a kernel, in descriptor set 0.
+struct Block {
+  std::string name;  // in GLSL
+  std::uint32_t binding;
+  bool is_read, is_written;  // it is not writeonly, and not readonly
+};
+
 /// What a kernel's SPIR-V says of itself.
 struct Reflection {
-  std::set<std::uint32_t> bindings;       // storage buffers of descriptor set 0
-  std::set<std::uint32_t> read, written;  // those of them that are not writeonly, and not readonly
-  std::uint32_t parameter_bytes = 0;      // of the push constant block
-  std::uint32_t group[3] = {1, 1, 1};     // invocations of a workgroup
-  std::set<std::uint32_t> constant_ids;   // specialization constants
+  std::vector<Block> blocks;
+  std::uint32_t parameter_bytes = 0;     // of the push constant block
+  std::uint32_t group[3] = {1, 1, 1};    // invocations of a workgroup
+  std::set<std::uint32_t> constant_ids;  // specialization constants
 };
 /// Fails with ErrorKind::device on code that is no SPIR-V of the kind our kernels compile to.
 Reflection reflect(std::span<const std::uint32_t> code);

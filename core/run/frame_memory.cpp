@@ -11,8 +11,8 @@
 #include "core/chain/margin.h"
 #include "core/formats/exr_copy.h"
 #include "core/run/composite_window.h"
-#include "kernels/classify.h"
-#include "kernels/profile.h"
+#include "kernels/estimate.h"
+#include "kernels/exact_search.h"
 
 namespace alcove {
 namespace {

@@ -8,7 +8,7 @@
 #include "core/base/estimator_facts.h"
 #include "core/base/windows.h"
 #include "core/frame/deep.h"
-#include "kernels/layers.h"
+#include "kernels/hidden.h"
 #include "kernels/warp.h"
 
 namespace alcove {

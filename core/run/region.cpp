@@ -13,9 +13,9 @@
 #include "core/chain/reduce.h"
 #include "core/frame/evidence.h"
 #include "core/frame/settle.h"
-#include "kernels/ends.h"
+#include "kernels/exact_search.h"
+#include "kernels/hidden.h"
 #include "kernels/occluders.h"
-#include "kernels/profile.h"
 
 namespace alcove {
 namespace {

@@ -10,7 +10,7 @@
 #include "core/chain/aov.h"
 #include "core/frame/views.h"
 #include "core/run/shot.h"
-#include "kernels/moved.h"
+#include "kernels/accumulate.h"
 
 namespace alcove {
 namespace {

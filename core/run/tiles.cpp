@@ -10,7 +10,7 @@
 #include "core/base/error.h"
 #include "core/base/estimator_facts.h"
 #include "core/base/memory_limit.h"
-#include "kernels/profile.h"
+#include "kernels/exact_search.h"
 
 namespace alcove {
 namespace {

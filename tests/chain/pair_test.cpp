@@ -11,7 +11,7 @@
 #include "core/chain/compute.h"
 #include "core/chain/hidden.h"
 #include "core/reference/reference_layers.h"
-#include "kernels/ends.h"
+#include "kernels/hidden.h"
 #include "tests/support/device.h"
 #include "tests/support/peels.h"
 #include "tests/support/scenes.h"

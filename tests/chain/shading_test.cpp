@@ -14,7 +14,7 @@
 
 #include "core/chain/compute.h"
 #include "core/chain/shading.h"
-#include "kernels/prepare.h"
+#include "kernels/geometry.h"
 #include "tests/support/device.h"
 #include "tests/support/scenes.h"
 

@@ -6,20 +6,22 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <set>
 
 #include "core/base/error.h"
 #include "core/chain/compute.h"
-#include "kernels/composite.h"
-#include "kernels/horizon.h"
-#include "kernels/prepare.h"
-#include "kernels/shape.h"
+#include "kernels/estimate.h"
+#include "kernels/geometry.h"
+#include "kernels/shading.h"
 #include "tests/support/device.h"
 
 namespace alcove {
 namespace {
 
+using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::UnorderedElementsAre;
 
 /// The text of the Error that `work` throws, or "" when it throws none.
 template <class Work>
@@ -39,15 +41,28 @@ TEST(Reflection, reads_parameter_sizes_that_the_host_sends) {
   EXPECT_EQ(gpu::reflect(gpu::kernel_code("composite")).parameter_bytes, sizeof(CompositeParams));
 }
 
-TEST(Reflection, reads_bindings_groups_and_constants) {
+std::vector<std::string> block_names(std::span<const std::uint32_t> code) {
+  std::vector<std::string> names;
+  for (const auto& block : gpu::reflect(code).blocks) names.push_back(block.name);
+  return names;
+}
+
+TEST(Reflection, reads_blocks_groups_and_constants) {
   const auto horizon = gpu::reflect(gpu::kernel_code("horizon"));
-  EXPECT_THAT(horizon.bindings,
-              ElementsAre(kHorizonDepth, kHorizonNormal, kHorizonAo, kHorizonBent, kHorizonList, kHorizonCounts,
-                          kHorizonCompleted, kHorizonSites, kHorizonSiteCounts, kHorizonOccluders));
-  EXPECT_TRUE(gpu::reflect(gpu::kernel_code("horizon_layers")).bindings.contains(kHorizonHidden));
+  EXPECT_THAT(block_names(gpu::kernel_code("horizon")),
+              UnorderedElementsAre("Depth", "Normal", "Ao", "Bent", "List", "Counts", "Completed", "Sites",
+                                   "SiteCountsBuffer", "Occluders"));
+  EXPECT_THAT(block_names(gpu::kernel_code("horizon_layers")), Contains("Hidden"));
   EXPECT_THAT(horizon.group, ElementsAre(kGroupX, kGroupY, 1u));
-  EXPECT_THAT(horizon.constant_ids,
-              ElementsAre(kHorizonSlicesId, kHorizonStepsId, kHorizonModeId, kHorizonSparseId, kHorizonSolidId));
+  EXPECT_THAT(horizon.constant_ids, ElementsAre(0, 1, 2, 3, 4));
+}
+
+TEST(Reflection, tells_blocks_that_are_read_from_blocks_that_are_written) {
+  const std::set<std::string> read{"Bounds", "Changes", "Depth", "Normal", "Needed", "Rows"};
+  for (const auto& block : gpu::reflect(gpu::kernel_code("classify")).blocks) {
+    EXPECT_EQ(block.is_written, !read.contains(block.name)) << block.name;
+    EXPECT_EQ(block.is_read, !block.is_written || block.name == "Counts") << block.name;
+  }
 }
 
 TEST(Reflection, refuses_what_is_no_spirv) {
@@ -61,7 +76,7 @@ TEST(Reflection, is_the_same_of_code_that_keeps_nan) {
   const auto code = gpu::kernel_code("horizon");
   const auto edited = gpu::with_preserved_nan(code);
   EXPECT_EQ(edited.size(), code.size() + 6);
-  EXPECT_EQ(gpu::reflect(edited).bindings, gpu::reflect(code).bindings);
+  EXPECT_EQ(block_names(edited), block_names(code));
   EXPECT_EQ(gpu::reflect(edited).parameter_bytes, gpu::reflect(code).parameter_bytes);
   EXPECT_THAT(error_of([&] { gpu::with_preserved_nan(code.first(5)); }), HasSubstr("no entry point"));
 }
@@ -71,7 +86,7 @@ TEST(Kernel, refuses_parameters_of_another_size) {
   auto& buffer = gpu.buffer("test", 256, gpu::Use::device);
   const PrepareParams wrong{};
   EXPECT_THAT(error_of([&] {
-                gpu.dispatch("shape", wrong, {{kShapeAo, buffer}, {kShapeShaped, buffer}}, {8, 8}, {0});
+                gpu.dispatch("shape", wrong, {{"Ao", buffer}, {"Shaped", buffer}}, {8, 8}, {0});
               }),
               HasSubstr("kernel shape takes"));
 }
@@ -80,10 +95,19 @@ TEST(Kernel, refuses_bindings_that_are_not_its_own) {
   auto& gpu = test::recorder();
   auto& buffer = gpu.buffer("test", 256, gpu::Use::device);
   const ShapeParams params{};
-  EXPECT_THAT(error_of([&] {
-                gpu.dispatch("shape", params, {{kShapeAo, buffer}}, {8, 8}, {0});
-              }),
-              HasSubstr("kernel shape has the bindings"));
+  EXPECT_THAT(
+      error_of([&] {
+        gpu.dispatch("shape", params, {{"Ao", buffer}}, {8, 8}, {0});
+      }),
+      HasSubstr("kernel shape has the blocks Ao, Counts, Depth, Material, Matte, Shaped, and the host binds Ao"));
+  std::vector<gpu::Binding> bindings{{"Ao", buffer},        {"Shaped", buffer}, {"Depth", nullptr},
+                                     {"Material", nullptr}, {"Matte", nullptr}, {"Counts", nullptr}};
+  for (const char* further : {"Nosuch", "Ao"}) {
+    bindings.emplace_back(further, buffer);
+    EXPECT_THAT(error_of([&] { gpu.dispatch("shape", params, bindings, {8, 8}, {0}); }), HasSubstr("the host binds"));
+    bindings.pop_back();
+  }
+  gpu.abandon();
 }
 
 TEST(Kernel, refuses_missing_constants_and_unknown_stems) {
@@ -216,19 +240,18 @@ const gpu::Buffer& record_copy_of_64(std::size_t from, std::size_t to) {
   auto& gpu = test::recorder();
   auto &source = gpu.buffer("source", from * sizeof(float), gpu::Use::upload),
        &copy = gpu.buffer("copy", to * sizeof(float), gpu::Use::device);
-  auto& unread = gpu.buffer("unread", 256, gpu::Use::device);
   std::ranges::fill(source.as<float>(), 0.5f);
   gpu.upload(source);
   ShapeParams params{};
   params.size = {64, 1};
   params.intensity = params.power = params.planes = 1;
   gpu.dispatch("shape", params,
-               {{kShapeAo, source},
-                {kShapeShaped, copy},
-                {kShapeDepth, unread},
-                {kShapeMaterial, unread},
-                {kShapeMatte, unread},
-                {kShapeCounts, unread}},
+               {{"Ao", source},
+                {"Shaped", copy},
+                {"Depth", nullptr},
+                {"Material", nullptr},
+                {"Matte", nullptr},
+                {"Counts", nullptr}},
                {64, 1}, {0});
   gpu.download(copy);
   return copy;
@@ -296,17 +319,16 @@ HostFrame small_frame() {
 
 /// Records that `target` gets the one value of `source`.
 void record_copy_of_1(gpu::Recorder& gpu, const gpu::Buffer& source, const gpu::Buffer& target) {
-  auto& unread = gpu.buffer("unread", 256, gpu::Use::device);
   ShapeParams params{};
   params.size = {1, 1};
   params.intensity = params.power = params.planes = 1;
   gpu.dispatch("shape", params,
-               {{kShapeAo, source},
-                {kShapeShaped, target},
-                {kShapeDepth, unread},
-                {kShapeMaterial, unread},
-                {kShapeMatte, unread},
-                {kShapeCounts, unread}},
+               {{"Ao", source},
+                {"Shaped", target},
+                {"Depth", nullptr},
+                {"Material", nullptr},
+                {"Matte", nullptr},
+                {"Counts", nullptr}},
                {1, 1}, {0});
 }
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/chain/warp.h"
-#include "kernels/layers.h"
+#include "kernels/hidden.h"
 #include "kernels/warp.h"
 #include "tests/support/device.h"
 #include "tests/support/scenes.h"
