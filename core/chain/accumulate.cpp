@@ -27,7 +27,7 @@ gpu::Extent most_tiles(const EstimateSet& estimates, const SeenGroup& group) {
   return most;
 }
 
-/// Its squares of two by two pixels.
+/// The squares of 2 x 2 pixels in the largest of these frames.
 ivec2 most_squares(const EstimateSet& estimates, const SeenGroup& group) {
   const gpu::Extent tiles = most_tiles(estimates, group);
   return {int(tiles.x) * kSquares, int(tiles.y) * kSquares};
@@ -38,7 +38,7 @@ ivec2 most_squares(const EstimateSet& estimates, const SeenGroup& group) {
 const gpu::Buffer& suspects(gpu::Recorder& gpu, const EstimateSet& estimates, const SeenGroup& group) {
   const ivec2 squares = most_squares(estimates, group);
   const gpu::Extent extent{uint(squares.x), uint(squares.y)};
-  const gpu::Buffer& bits = gpu.buffer("suspects", std::size_t(extent.x) * extent.y * sizeof(uint), gpu::Use::device);
+  const gpu::Buffer& bits = gpu.buffer("suspects", std::size_t(extent.x) * extent.y * sizeof(uint));
   gpu.dispatch("suspects", SuspectsParams{estimates.view, squares},
                {{"Own", estimates.depth},
                 {"Normal", estimates.normal},
@@ -65,10 +65,7 @@ void moved(gpu::Recorder& gpu, const EstimateSet& estimates, const SeenGroup& gr
 Accumulation accumulate(gpu::Recorder& gpu, const GBuffer& gbuffer, const EstimateSet& estimates,
                         const EstimatorSettings& settings, std::size_t scales, bool with_bent) {
   const float radius = reach_of(settings, radii_of(settings).back()).radius;
-  const auto buffer = [&](const std::string& name, std::size_t bytes) -> gpu::Buffer& {
-    return gpu.buffer(name, bytes, gpu::Use::device);
-  };
-  const gpu::Buffer& near = buffer("moved near", kMovedCells * sizeof(uint));
+  const gpu::Buffer& near = gpu.buffer("moved near", kMovedCells * sizeof(uint));
   if (!estimates.is_further_part) {
     gpu.clear(near);
     uint place = 0;
@@ -79,10 +76,10 @@ Accumulation accumulate(gpu::Recorder& gpu, const GBuffer& gbuffer, const Estima
     }
   }
   const std::size_t plane = plane_bytes(gbuffer.view), values = 1 + scales + (with_bent ? 3 : 0);
-  gpu::Buffer& sums = buffer("accumulated sums", (1 + values) * plane);
-  Visibility mean{&buffer("accumulated", plane)};
-  if (scales > 0) mean.scales = &buffer(fmt::format("{}accumulated", kScalesPrefix), scales * plane);
-  if (with_bent) mean.bent = &buffer(fmt::format("{}accumulated", kBentPrefix), 3 * plane);
+  gpu::Buffer& sums = gpu.buffer("accumulated sums", (1 + values) * plane);
+  Visibility mean{&gpu.buffer("accumulated", plane)};
+  if (scales > 0) mean.scales = &gpu.buffer(fmt::format("{}accumulated", kScalesPrefix), scales * plane);
+  if (with_bent) mean.bent = &gpu.buffer(fmt::format("{}accumulated", kBentPrefix), 3 * plane);
 
   AccumulateParams params{estimates.view, gbuffer.view.size, estimates.corner, radius, 0, int(scales), 0, 0};
   const std::vector<SeenGroup> none(1);

@@ -11,7 +11,7 @@ gpu::Buffer* completion(gpu::Recorder& gpu, const GBuffer& gbuffer, const Estima
   if (!estimate.completed) return nullptr;
   const View& view = gbuffer.view;
   const gpu::Extent tiles{groups_of(view.size.x, uint(kTile)), groups_of(view.size.y, uint(kTile))};
-  gpu::Buffer& sums = gpu.buffer("completion", sizeof(vec2) * tiles.x * tiles.y, gpu::Use::device);
+  gpu::Buffer& sums = gpu.buffer("completion", sizeof(vec2) * tiles.x * tiles.y);
   gpu.dispatch("completion",
                CompletionParams{view,
                                 {gbuffer.grid.origin.x + sites.shift.x, gbuffer.grid.origin.y + sites.shift.y},

@@ -34,7 +34,7 @@ gpu::Buffer& confidence(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameI
     Reach reach = reach_of(bracket, radius);
     reach.thickness = thickness;
     reach.complete = complete;
-    Estimate out{&gpu.buffer(prefix + "ao", plane_bytes(gbuffer.view), gpu::Use::device)};
+    Estimate out{&gpu.buffer(prefix + "ao", plane_bytes(gbuffer.view))};
     out.listed = classify(gpu, gbuffer, hidden, skipping, reach.radius, chosen, out, 0, prefix);
     list_sites(gpu, gbuffer, chosen, out.listed, prefix);
     horizon(gpu, counted, reach, sampling, out, 0);
@@ -48,7 +48,7 @@ gpu::Buffer& confidence(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameI
   // What is nearer than the sphere is no occluder, but may hide surfaces within it.
   const gpu::Buffer& completed =
       completes_anywhere(settings) ? visibility(least, float(kThin * radius), bracket.complete, "completed ") : thin;
-  gpu::Buffer& result = gpu.buffer("confidence", plane_bytes(gbuffer.view), gpu::Use::device);
+  gpu::Buffer& result = gpu.buffer("confidence", plane_bytes(gbuffer.view));
   gpu.dispatch("confidence", ConfidenceParams{gbuffer.view, float(radius), gbuffer.depth_precision},
                {{"Depth", gbuffer.depth},
                 {"Normal", gbuffer.normal},

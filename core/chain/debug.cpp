@@ -56,7 +56,7 @@ DebugPlane debug(gpu::Recorder& gpu, const DebugView& view, const GBuffer& gbuff
       values = stages.kinds;
       break;
   }
-  gpu::Buffer& result = gpu.buffer(std::string("debug ") + view.name, plane_bytes(shown->view), gpu::Use::device);
+  gpu::Buffer& result = gpu.buffer(std::string("debug ") + view.name, plane_bytes(shown->view));
   gpu.dispatch("debug", DebugParams{shown->view, view.kind, sites.rows ? 1u : 0u, shown->grid.origin, hidden},
                {{"Depth", shown->depth},
                 {"Normal", shown->normal},

@@ -132,10 +132,9 @@ Estimate estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const Sites& sites
   const VolumeSamples volume{settings.samples, settings.sample_kernel, settings.range_check};
   const bool is_exact = searches_exactly(settings);
   Estimate result;
-  result.ao = &gpu.buffer("ao", radii.size() * plane_bytes(gbuffer.view), gpu::Use::device);
-  gpu::Buffer* bent = with_bent ? &gpu.buffer("bent", 3 * plane_bytes(gbuffer.view), gpu::Use::device) : nullptr;
-  gpu::Buffer* completed =
-      with_completed ? &gpu.buffer("completed", plane_bytes(gbuffer.view), gpu::Use::device) : nullptr;
+  result.ao = &gpu.buffer("ao", radii.size() * plane_bytes(gbuffer.view));
+  gpu::Buffer* bent = with_bent ? &gpu.buffer("bent", 3 * plane_bytes(gbuffer.view)) : nullptr;
+  gpu::Buffer* completed = with_completed ? &gpu.buffer("completed", plane_bytes(gbuffer.view)) : nullptr;
   // Tiles that are as in the frame before keep what it found in them.
   if (completed && (is_exact || !skipping.changes)) gpu.clear(*completed);
 
@@ -182,7 +181,7 @@ Estimate estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const Sites& sites
 const gpu::Buffer* bounds(gpu::Recorder& gpu, const GBuffer& gbuffer, const Skipping& skipping) {
   if (!skipping.skips_sky || !gbuffer.hidden) return nullptr;
   const gpu::Extent blocks = block_extent(gbuffer.view);
-  gpu::Buffer& result = gpu.buffer("bounds", sizeof(vec2) * blocks.x * blocks.y, gpu::Use::device);
+  gpu::Buffer& result = gpu.buffer("bounds", sizeof(vec2) * blocks.x * blocks.y);
   gpu.dispatch("bounds", BoundsParams{gbuffer.view.size, gbuffer.surfaces - 1},
                {{"Depth", gbuffer.depth}, {"Hidden", gbuffer.hidden}, {"Blocks", result}}, blocks);
   return &result;
@@ -193,9 +192,9 @@ TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer*
   const gpu::Extent tiles = tile_extent(gbuffer.view);
   const gpu::Extent blocks = block_extent(gbuffer.view);
   TileList list;
-  list.tiles = &gpu.buffer("tiles", sizeof(uint) * tiles.x * tiles.y, gpu::Use::device);
-  list.counts = &gpu.buffer(prefix + "tile counts", sizeof(TileCounts), gpu::Use::device);
-  list.kinds = &gpu.buffer(prefix + "tile kinds", sizeof(uint) * tiles.x * tiles.y, gpu::Use::device);
+  list.tiles = &gpu.buffer("tiles", sizeof(uint) * tiles.x * tiles.y);
+  list.counts = &gpu.buffer(prefix + "tile counts", sizeof(TileCounts));
+  list.kinds = &gpu.buffer(prefix + "tile kinds", sizeof(uint) * tiles.x * tiles.y);
   const bool selects = skipping.skips_sky && gbuffer.needed;
   list.skips_surfaces = skipping.changes || selects;
   gpu.clear(*list.counts);

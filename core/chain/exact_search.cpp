@@ -55,7 +55,7 @@ Lines lines_of(const View& view, ivec2 origin, int direction, int directions) {
 
 /// One float per pixel: the sum of the whole arcs over the directions so far.
 gpu::Buffer& whole_arcs(gpu::Recorder& gpu, const GBuffer& gbuffer) {
-  return gpu.buffer("whole arcs", plane_bytes(gbuffer.view), gpu::Use::device);
+  return gpu.buffer("whole arcs", plane_bytes(gbuffer.view));
 }
 
 /// The tiles of a frame, as an estimate by its error counts them.
@@ -72,7 +72,7 @@ Tiles tiles_of(const GBuffer& gbuffer) {
 
 /// One JudgedTile per tile.
 gpu::Buffer& judged_tiles(gpu::Recorder& gpu, const GBuffer& gbuffer) {
-  return gpu.buffer("judged tiles", sizeof(JudgedTile) * tiles_of(gbuffer).count(), gpu::Use::device);
+  return gpu.buffer("judged tiles", sizeof(JudgedTile) * tiles_of(gbuffer).count());
 }
 
 /// The empty list of the tiles that take more than so many directions.
@@ -80,9 +80,9 @@ TileList next_list(gpu::Recorder& gpu, const GBuffer& gbuffer, int directions) {
   const ivec2 size = gbuffer.view.size;
   const std::string name = "refine " + std::to_string(directions) + " ";
   TileList next;
-  next.tiles = &gpu.buffer(name + "tiles", sizeof(uint) * tiles_of(gbuffer).count(), gpu::Use::device);
-  next.counts = &gpu.buffer(name + "counts", sizeof(TileCounts), gpu::Use::device);
-  next.lines = &gpu.buffer(name + "lines", sizeof(GroupCount), gpu::Use::device);
+  next.tiles = &gpu.buffer(name + "tiles", sizeof(uint) * tiles_of(gbuffer).count());
+  next.counts = &gpu.buffer(name + "counts", sizeof(TileCounts));
+  next.lines = &gpu.buffer(name + "lines", sizeof(GroupCount));
   gpu.clear(*next.counts);
   gpu.write(*next.lines, GroupCount{groups_of(2 * (size.x + size.y), kProfileGroup), 1, 0});
   return next;
@@ -128,7 +128,7 @@ SearchDirections search_directions(const EstimatorSettings& settings) {
 Convergence convergence(gpu::Recorder& gpu, const GBuffer& gbuffer, const EstimatorSettings& settings,
                         const Estimate& result, uint plane, uint planes) {
   Convergence search{settings.tolerance, settings.search == SliceSearch::every_pixel, plane, planes, {}};
-  search.sums.ao = &gpu.buffer("blocked arcs", plane_bytes(gbuffer.view), gpu::Use::device);
+  search.sums.ao = &gpu.buffer("blocked arcs", plane_bytes(gbuffer.view));
   search.sums.bent = result.bent;
   search.sums.completed = result.completed;
   return search;
@@ -166,8 +166,8 @@ void converge(gpu::Recorder& gpu, const GBuffer& gbuffer, const Convergence& sea
 void refine(gpu::Recorder& gpu, const GBuffer& gbuffer, Convergence& search, Estimate& result, int directions) {
   const Tiles tiles = tiles_of(gbuffer);
   const TileList listed = search.sums.listed, next = next_list(gpu, gbuffer, directions);
-  result.error = &gpu.buffer("error", plane_bytes(gbuffer.view), gpu::Use::device);
-  result.squares = &gpu.buffer("error squares", sizeof(vec2) * tiles.count(), gpu::Use::device);
+  result.error = &gpu.buffer("error", plane_bytes(gbuffer.view));
+  result.squares = &gpu.buffer("error squares", sizeof(vec2) * tiles.count());
   RefineParams params{};
   params.view = gbuffer.view;
   params.origin = gbuffer.grid.origin;
@@ -203,10 +203,10 @@ Profile profile(gpu::Recorder& gpu, const GBuffer& gbuffer, const SearchDirectio
   result.slots = gbuffer.surfaces;
   result.has_unseen = gbuffer.hidden && completes_behind(reach);
   const std::size_t bytes = planes_of(result) * plane_bytes(gbuffer.view);
-  result.vertex = &gpu.buffer("profile vertex", bytes, gpu::Use::device);
-  result.mark = &gpu.buffer("profile mark", bytes, gpu::Use::device);
-  result.neighbor = &gpu.buffer("profile neighbor", bytes, gpu::Use::device);
-  if (gbuffer.hidden) result.own = &gpu.buffer("profile own", plane_bytes(gbuffer.view), gpu::Use::device);
+  result.vertex = &gpu.buffer("profile vertex", bytes);
+  result.mark = &gpu.buffer("profile mark", bytes);
+  result.neighbor = &gpu.buffer("profile neighbor", bytes);
+  if (gbuffer.hidden) result.own = &gpu.buffer("profile own", plane_bytes(gbuffer.view));
   const ivec2 size = gbuffer.view.size;
   const int along = lines.steep ? size.y : size.x;
   const int across = lines.steep ? size.x : size.y;
@@ -226,8 +226,8 @@ void complete(gpu::Recorder& gpu, const GBuffer& gbuffer, Profile& profile, cons
               const gpu::Buffer* groups) {
   if (reach.complete == Completion::none) return;
   const std::size_t bytes = plane_bytes(gbuffer.view);
-  profile.goes_on = &gpu.buffer("profile goes on", planes_of(profile) * bytes, gpu::Use::device);
-  profile.behind = &gpu.buffer("profile behind", bytes, gpu::Use::device);
+  profile.goes_on = &gpu.buffer("profile goes on", planes_of(profile) * bytes);
+  profile.behind = &gpu.buffer("profile behind", bytes);
   for (uint slot = 0; slot < planes_of(profile); slot++) {
     // Of several slots, each goes on beyond the border, and only the last plane's surfaces behind others.
     const bool behind = completes_behind(reach) && (profile.slots == 1 || slot == profile.slots);

@@ -54,11 +54,11 @@ std::vector<double> weights_of(const EstimatorSettings& settings) {
 }
 
 gpu::Buffer& denoised(gpu::Recorder& gpu, const std::string& prefix, std::size_t bytes) {
-  return gpu.buffer(prefix + "denoised", bytes, gpu::Use::device);
+  return gpu.buffer(prefix + "denoised", bytes);
 }
 
 gpu::Buffer& upsampled(gpu::Recorder& gpu, const std::string& prefix, std::size_t bytes) {
-  return gpu.buffer(prefix + "upsampled", bytes, gpu::Use::device);
+  return gpu.buffer(prefix + "upsampled", bytes);
 }
 
 /// The parameters of the filter, without the axis.
@@ -87,7 +87,7 @@ gpu::Extent runs_extent(const GBuffer& gbuffer, ivec2 axis, const RunList& liste
 Visibility combine(gpu::Recorder& gpu, const GBuffer& gbuffer, const Estimate& estimate, bool keeps_scales) {
   const uint radii = planes_in(*estimate.ao, gbuffer.view);
   if (radii == 1) return {estimate.ao, nullptr, estimate.bent};
-  gpu::Buffer& mean = gpu.buffer("combined", plane_bytes(gbuffer.view), gpu::Use::device);
+  gpu::Buffer& mean = gpu.buffer("combined", plane_bytes(gbuffer.view));
   gpu.dispatch("combine", CombineParams{gbuffer.view.size, radii}, {{"Scales", estimate.ao}, {"Ao", mean}},
                extent_of(gbuffer.view));
   return {&mean, keeps_scales ? estimate.ao : nullptr, estimate.bent};
@@ -112,10 +112,10 @@ FilterRuns dilate(gpu::Recorder& gpu, const GBuffer& gbuffer, const TileList& ti
   const int in_column = groups(height, kDenoiseRun);
   const int in_row = groups(width, kDenoiseRun);
   const gpu::Buffer& columns =
-      gpu.buffer("runs along columns", sizeof(uint) * std::size_t(in_column * groups(width, kTile)), gpu::Use::device);
+      gpu.buffer("runs along columns", sizeof(uint) * std::size_t(in_column * groups(width, kTile)));
   const auto list = [&](const std::string& name, int runs, int lines, uint mode, const gpu::Buffer& result) {
-    const RunList out{&gpu.buffer(name, sizeof(uint) * std::size_t(runs * lines), gpu::Use::device),
-                      &gpu.buffer(name + " counts", sizeof(RunCounts), gpu::Use::device)};
+    const RunList out{&gpu.buffer(name, sizeof(uint) * std::size_t(runs * lines)),
+                      &gpu.buffer(name + " counts", sizeof(RunCounts))};
     gpu.clear(*out.counts);
     gpu.dispatch(
         "dilate", DilateParams{gbuffer.view.size, runs, lines, in_column, grid.frame_size, grid.overhang, grid.factor},
@@ -142,7 +142,7 @@ gpu::Buffer& denoise(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer& pl
   if (denoiser.weights.empty()) return planes;
   const auto radius = uint(denoiser.weights.size() - 1);
   DenoiseParams params = filter_params<DenoiseParams>(gbuffer, denoiser);
-  gpu::Buffer& rows = gpu.buffer(prefix + "denoised rows", planes.bytes(), gpu::Use::device);
+  gpu::Buffer& rows = gpu.buffer(prefix + "denoised rows", planes.bytes());
   gpu::Buffer& result = denoised(gpu, prefix, planes.bytes());
   const auto along = [&](ivec2 axis, const RunList& listed, const gpu::Buffer& from, const gpu::Buffer& to) {
     params.axis = axis;
@@ -167,14 +167,13 @@ gpu::Buffer& interpolate(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer
   InterpolateParams params = filter_params<InterpolateParams>(gbuffer, denoiser);
   const gpu::Buffer& written =
       gpu.buffer(prefix + "written rows",
-                 sizeof(uint) * groups_of(gbuffer.view.size.x, uint(kDenoiseRun)) * groups_of(gbuffer.view.size.y, 32),
-                 gpu::Use::device);
+                 sizeof(uint) * groups_of(gbuffer.view.size.x, uint(kDenoiseRun)) * groups_of(gbuffer.view.size.y, 32));
   gpu.clear(written);
   params.narrowness = float(denoiser.narrowness);
   params.missing = prefix == kBentPrefix ? 0.5f : 1.0f;
   const uint mode =
       (denoiser.depth_sigma > 0 ? kInterpolateByDepth : 0) | (denoiser.narrowness > 0 ? 0 : kInterpolateLooksUp);
-  gpu::Buffer& rows = gpu.buffer(prefix + "denoised rows", planes.bytes(), gpu::Use::device);
+  gpu::Buffer& rows = gpu.buffer(prefix + "denoised rows", planes.bytes());
   gpu::Buffer& result = denoised(gpu, prefix, planes.bytes());
   const auto along = [&](ivec2 axis, const RunList& listed, const gpu::Buffer& from, const gpu::Buffer& to) {
     params.axis = axis;

@@ -48,10 +48,10 @@ GBuffer prepare(gpu::Recorder& gpu, const FrameInputs& frame, const std::string&
   gbuffer.view = frame.view;
   gbuffer.grid = block_grid(frame, 1);
   gbuffer.depth_precision = to_vec3(frame.depth_precision.at);
-  gbuffer.depth = &gpu.buffer(prefix + "depth", plane_bytes(frame.view), gpu::Use::device);
-  gbuffer.normal = &gpu.buffer(prefix + "normal", plane_bytes(frame.view), gpu::Use::device);
-  gbuffer.counts = &gpu.buffer(prefix + "counts", sizeof(FrameCounts), gpu::Use::device);
-  gbuffer.missing = &gpu.buffer(prefix + "missing", sizeof(GroupCount), gpu::Use::device);
+  gbuffer.depth = &gpu.buffer(prefix + "depth", plane_bytes(frame.view));
+  gbuffer.normal = &gpu.buffer(prefix + "normal", plane_bytes(frame.view));
+  gbuffer.counts = &gpu.buffer(prefix + "counts", sizeof(FrameCounts));
+  gbuffer.missing = &gpu.buffer(prefix + "missing", sizeof(GroupCount));
   gpu.clear(*gbuffer.counts);
   gpu.write(*gbuffer.missing,
             GroupCount{groups_of(frame.view.size.x, kGroupX), groups_of(frame.view.size.y, kGroupY), 0});
@@ -84,9 +84,9 @@ GBuffer downsample(gpu::Recorder& gpu, const GBuffer& gbuffer, const BlockGrid& 
   low.view.tangent_per_pixel = {gbuffer.view.tangent_per_pixel.x * factor, gbuffer.view.tangent_per_pixel.y * factor};
   low.occluder_depth = low.occluder_hidden = nullptr;
   const uint hidden = gbuffer.surfaces - 1;
-  if (gbuffer.hidden) low.hidden = &gpu.buffer(prefix + "low hidden", hidden * plane_bytes(low.view), gpu::Use::device);
-  low.depth = &gpu.buffer(prefix + "low depth", plane_bytes(low.view), gpu::Use::device);
-  low.normal = &gpu.buffer(prefix + "low normal", plane_bytes(low.view), gpu::Use::device);
+  if (gbuffer.hidden) low.hidden = &gpu.buffer(prefix + "low hidden", hidden * plane_bytes(low.view));
+  low.depth = &gpu.buffer(prefix + "low depth", plane_bytes(low.view));
+  low.normal = &gpu.buffer(prefix + "low normal", plane_bytes(low.view));
   gpu.dispatch("downsample", DownsampleParams{gbuffer.view, grid.size, grid.overhang, hidden},
                {{"Depth", gbuffer.depth},
                 {"Normal", gbuffer.normal},

@@ -31,7 +31,7 @@ uint open_planes(const FrameInputs& frame) {
 }  // namespace
 
 gpu::Buffer& behind(gpu::Recorder& gpu, const GBuffer& prepared, const FrameInputs& frame) {
-  gpu::Buffer& found = gpu.buffer("found behind", frame.behind.size() * plane_bytes(frame.view), gpu::Use::device);
+  gpu::Buffer& found = gpu.buffer("found behind", frame.behind.size() * plane_bytes(frame.view));
   for (uint plane = 0; plane < frame.behind.size(); plane++) {
     const LayerTerms& terms = frame.behind[plane];
     gpu.dispatch("behind", BehindParams{frame.view, terms.depth, plane},
@@ -42,7 +42,7 @@ gpu::Buffer& behind(gpu::Recorder& gpu, const GBuffer& prepared, const FrameInpu
 }
 
 gpu::Buffer& ends(gpu::Recorder& gpu, const GBuffer& layered) {
-  gpu::Buffer& result = gpu.buffer("surface ends", 2 * plane_bytes(layered.view), gpu::Use::device);
+  gpu::Buffer& result = gpu.buffer("surface ends", 2 * plane_bytes(layered.view));
   for (const uint along_columns : {0u, 1u}) {
     const ivec2 size = layered.view.size;
     gpu.dispatch("ends", EndsParams{layered.view, along_columns},
@@ -70,11 +70,11 @@ GBuffer layers(gpu::Recorder& gpu, const GBuffer& prepared, const FrameInputs& f
   const uint warped_planes = warped ? planes_in(*warped, prepared.view) : 0;
   const uint kept = std::min(uint(layering.kept), planes + warped_planes);
   gbuffer.surfaces = 1 + kept;
-  gbuffer.hidden = &gpu.buffer("hidden", kept * plane_bytes(prepared.view), gpu::Use::device);
+  gbuffer.hidden = &gpu.buffer("hidden", kept * plane_bytes(prepared.view));
   gbuffer.hides_no_more = !warped && frame.behind_lists_all;
-  gbuffer.layer_counts = &gpu.buffer("layer counts", sizeof(LayerCounts), gpu::Use::device);
+  gbuffer.layer_counts = &gpu.buffer("layer counts", sizeof(LayerCounts));
   gpu.clear(*gbuffer.layer_counts);
-  const gpu::Buffer& open = gpu.buffer("open surfaces", plane_bytes(prepared.view), gpu::Use::device);
+  const gpu::Buffer& open = gpu.buffer("open surfaces", plane_bytes(prepared.view));
   const LayersParams params{prepared.view,
                             planes,
                             open_planes(frame),
@@ -97,7 +97,7 @@ GBuffer layers(gpu::Recorder& gpu, const GBuffer& prepared, const FrameInputs& f
 
 gpu::Buffer& hidden_planes(gpu::Recorder& gpu, const GBuffer& gbuffer, const Layering& layering) {
   const auto kept = uint(layering.kept);
-  gpu::Buffer& planes = gpu.buffer("hidden planes", 2 * kept * plane_bytes(gbuffer.view), gpu::Use::device);
+  gpu::Buffer& planes = gpu.buffer("hidden planes", 2 * kept * plane_bytes(gbuffer.view));
   gpu.dispatch("hidden_planes", HiddenPlanesParams{gbuffer.view, gbuffer.surfaces - 1, kept},
                {{"Hidden", gbuffer.hidden}, {"Planes", planes}}, extent_of(gbuffer.view));
   return planes;

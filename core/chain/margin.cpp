@@ -57,9 +57,9 @@ GBuffer widen(gpu::Recorder& gpu, const GBuffer& prepared, const FrameInputs& fr
   GBuffer wide = prepared;
   wide.view = inputs.view;
   wide.grid = block_grid(inputs, 1);
-  wide.depth = &gpu.buffer("wide depth", plane_bytes(wide.view), gpu::Use::device);
-  wide.normal = &gpu.buffer("wide normal", plane_bytes(wide.view), gpu::Use::device);
-  wide.missing = &gpu.buffer("wide missing", sizeof(GroupCount), gpu::Use::device);
+  wide.depth = &gpu.buffer("wide depth", plane_bytes(wide.view));
+  wide.normal = &gpu.buffer("wide normal", plane_bytes(wide.view));
+  wide.missing = &gpu.buffer("wide missing", sizeof(GroupCount));
   gpu.write(*wide.missing, GroupCount{groups_of(wide.view.size.x, kGroupX), groups_of(wide.view.size.y, kGroupY), 1});
   run_widen(gpu, prepared, wide, frame, *prepared.depth, kWidenEmpty);
   return wide;
@@ -76,7 +76,7 @@ gpu::Buffer* cut(gpu::Recorder& gpu, const FrameInputs& frame, gpu::Buffer* plan
   if (!planes || !has_margin(frame)) return planes;
   const View wide = with_margin(frame).view;
   const uint count = planes_in(*planes, wide);
-  gpu::Buffer& result = gpu.buffer("cut " + name, count * plane_bytes(frame.view), gpu::Use::device);
+  gpu::Buffer& result = gpu.buffer("cut " + name, count * plane_bytes(frame.view));
   gpu.dispatch("cut", CutParams{frame.view.size, wide.size, frame.margin.before, count},
                {{"Wide", planes}, {"Result", result}}, extent_of(frame.view));
   return &result;

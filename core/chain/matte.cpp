@@ -32,7 +32,7 @@ Matte matte(gpu::Recorder& gpu, const FrameInputs& frame, RawPlane which) {
       gpu.buffer(prefix + "matte objects", std::max<std::size_t>(1, wanted.size()) * sizeof(uint), gpu::Use::upload);
   std::ranges::partial_sort_copy(wanted, objects.as<uint>());
   gpu.upload(objects);
-  gpu::Buffer& result = gpu.buffer(prefix + "matte", plane_bytes(frame.view), gpu::Use::device);
+  gpu::Buffer& result = gpu.buffer(prefix + "matte", plane_bytes(frame.view));
   const bool is_ranked = reading.kind == MatteKind::ranked;
   gpu.dispatch("matte", MatteParams{frame.view.size, uint(wanted.size())},
                {{"Raw", raw}, {"Objects", objects}, {"Result", result}}, extent_of(frame.view),
@@ -46,7 +46,7 @@ GBuffer needed(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& wi
   const BlockGrid& grid = gbuffer.grid;
   const gpu::Extent tiles{groups_of(view.size.x, uint(kTile)), groups_of(view.size.y, uint(kTile))};
   GBuffer result = gbuffer;
-  result.needed = &gpu.buffer("needed", sizeof(uint) * tiles.x * tiles.y, gpu::Use::device);
+  result.needed = &gpu.buffer("needed", sizeof(uint) * tiles.x * tiles.y);
   gpu.clear(*result.needed);
   const auto& [before, after] = wide.margin;
   const ivec2 whole = wide.view.size;

@@ -16,9 +16,8 @@ GBuffer occluders(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs&
   const std::string prefix = keeps ? "bracket " : "";
   const uint hidden = gbuffer.surfaces - 1;
   GBuffer result = gbuffer;
-  result.occluder_depth = &gpu.buffer(prefix + "occluder depth", plane_bytes(view), gpu::Use::device);
-  if (hidden > 0)
-    result.occluder_hidden = &gpu.buffer(prefix + "occluder hidden", hidden * plane_bytes(view), gpu::Use::device);
+  result.occluder_depth = &gpu.buffer(prefix + "occluder depth", plane_bytes(view));
+  if (hidden > 0) result.occluder_hidden = &gpu.buffer(prefix + "occluder hidden", hidden * plane_bytes(view));
   const OccludersParams params{view, frame.occluders.ignores ? 1u : 0u, keeps ? 1u : 0u,
                                gbuffer.hides_no_more ? 1u : 0u};
   gpu.dispatch("occluders", params,

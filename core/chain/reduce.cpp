@@ -75,7 +75,7 @@ FrameOutputs reduce(gpu::Recorder& gpu, const FrameInputs& frame, const PixelFil
   FrameOutputs reduced = out;
   for (const auto& [planes, name] : kFiltered) {
     if (!(out.*planes)) continue;
-    gpu::Buffer& result = gpu.buffer(name, (out.*planes)->bytes(), gpu::Use::device);
+    gpu::Buffer& result = gpu.buffer(name, (out.*planes)->bytes());
     params.planes = planes_in(result, frame.view);
     gpu.dispatch("reduce", params, {{"Planes", out.*planes}, {"Weights", weights}, {"Result", result}},
                  {groups_of(params.size.x + params.offset.x, uint(factor)),

@@ -15,7 +15,7 @@ Shaping shaping_of(const EstimatorSettings& settings) {
 
 gpu::Buffer& shape(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer& planes, const Shaping& shaping,
                    const gpu::Buffer* material_ao, const Matte& matte, const std::string& prefix) {
-  gpu::Buffer& shaped = gpu.buffer(prefix + "shaped", planes.bytes(), gpu::Use::device);
+  gpu::Buffer& shaped = gpu.buffer(prefix + "shaped", planes.bytes());
   ShapeParams params{};
   params.size = gbuffer.view.size;
   params.intensity = float(shaping.intensity);
@@ -51,7 +51,7 @@ Visibility shape(gpu::Recorder& gpu, const GBuffer& gbuffer, const Visibility& v
 
 gpu::Buffer& bent_normal(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer* bent) {
   if (!bent) return *gbuffer.normal;
-  gpu::Buffer& result = gpu.buffer("bent normal", plane_bytes(gbuffer.view), gpu::Use::device);
+  gpu::Buffer& result = gpu.buffer("bent normal", plane_bytes(gbuffer.view));
   gpu.dispatch("bent_normal", BentNormalParams{gbuffer.view.size},
                {{"Normal", gbuffer.normal}, {"Bent", bent}, {"Result", result}}, extent_of(gbuffer.view));
   return result;
@@ -59,7 +59,7 @@ gpu::Buffer& bent_normal(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::
 
 gpu::Buffer& directions(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& packed, const std::string& name,
                         const Matrix3& aov_from_view) {
-  gpu::Buffer& planes = gpu.buffer(name, 3 * plane_bytes(gbuffer.view), gpu::Use::device);
+  gpu::Buffer& planes = gpu.buffer(name, 3 * plane_bytes(gbuffer.view));
   const DirectionsParams params{gbuffer.view.size, to_vec3(aov_from_view[0]), to_vec3(aov_from_view[1]),
                                 to_vec3(aov_from_view[2])};
   gpu.dispatch("directions", params, {{"Depth", gbuffer.depth}, {"Packed", packed}, {"Planes", planes}},
@@ -69,7 +69,7 @@ gpu::Buffer& directions(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::B
 
 gpu::Buffer& specular_occlusion(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& open,
                                 const gpu::Buffer& ao, double roughness) {
-  gpu::Buffer& result = gpu.buffer("specular occlusion", plane_bytes(gbuffer.view), gpu::Use::device);
+  gpu::Buffer& result = gpu.buffer("specular occlusion", plane_bytes(gbuffer.view));
   gpu.dispatch("specular_occlusion", SpecularOcclusionParams{gbuffer.view, float(roughness)},
                {{"Depth", gbuffer.depth}, {"Normal", gbuffer.normal}, {"Bent", open}, {"Ao", ao}, {"Result", result}},
                extent_of(gbuffer.view));
@@ -78,7 +78,7 @@ gpu::Buffer& specular_occlusion(gpu::Recorder& gpu, const GBuffer& gbuffer, cons
 
 gpu::Buffer& multi_bounce(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& ao, const FrameInputs& frame) {
   const gpu::Buffer* albedo = frame[RawPlane::albedo];
-  gpu::Buffer& result = gpu.buffer("color ao", 3 * plane_bytes(gbuffer.view), gpu::Use::device);
+  gpu::Buffer& result = gpu.buffer("color ao", 3 * plane_bytes(gbuffer.view));
   gpu.dispatch("multi_bounce", MultiBounceParams{gbuffer.view.size, albedo ? 1u : 0u, float(frame.albedo_value)},
                {{"Ao", ao}, {"Albedo", albedo}, {"Result", result}}, extent_of(gbuffer.view));
   return result;
@@ -89,7 +89,7 @@ gpu::Buffer& composite(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Bu
   const gpu::Buffer& beauty = *frame[RawPlane::beauty];
   const gpu::Buffer* light = frame[RawPlane::indirect];
   const gpu::Buffer* color = frame[RawPlane::diffuse_color];
-  gpu::Buffer& result = gpu.buffer("composite", beauty.bytes(), gpu::Use::device);
+  gpu::Buffer& result = gpu.buffer("composite", beauty.bytes());
   gpu::Buffer& lights = gpu.buffer(
       "ambient lights", std::max<std::size_t>(1, frame.ambient.size()) * sizeof(AmbientLight), gpu::Use::upload);
   std::ranges::transform(frame.ambient, lights.as<AmbientLight>().begin(), [](const AmbientReading& reading) {

@@ -41,7 +41,7 @@ ivec2 moved_by(const ivec2& origin, const ivec2& shift) { return {origin.x + shi
 
 /// See links.comp.
 const gpu::Buffer& flat_links(gpu::Recorder& gpu, const View& view, const std::string& prefix) {
-  return gpu.buffer(prefix + "flat links", rows_bytes(view), gpu::Use::device);
+  return gpu.buffer(prefix + "flat links", rows_bytes(view));
 }
 
 }  // namespace
@@ -58,7 +58,7 @@ Sites sites(gpu::Recorder& gpu, const GBuffer& gbuffer, const SiteRule& rule, co
   for (int spacing = rule.spacing / 2; rule.is_adaptive && spacing > 0; spacing /= 2) {
     // Each pass reads what the one before it wrote.
     const bool is_odd = std::countr_zero(unsigned(rule.spacing / spacing)) % 2 == 1;
-    gpu::Buffer& more = gpu.buffer(prefix + (is_odd ? "more sites" : "sites"), rows_bytes(view), gpu::Use::device);
+    gpu::Buffer& more = gpu.buffer(prefix + (is_odd ? "more sites" : "sites"), rows_bytes(view));
     // On the denser lattices a path may lead over round surfaces.
     const gpu::Buffer& links = spacing >= 4 ? flat_links(gpu, view, prefix) : *rows;
     gpu.dispatch("sites", SitesParams{view.size, moved_by(gbuffer.grid.origin, rule.shift), spacing},
@@ -70,7 +70,7 @@ Sites sites(gpu::Recorder& gpu, const GBuffer& gbuffer, const SiteRule& rule, co
 
 const gpu::Buffer& links(gpu::Recorder& gpu, const GBuffer& gbuffer, const SiteRule& rule, const std::string& prefix) {
   const View& view = gbuffer.view;
-  gpu::Buffer& rows = gpu.buffer(prefix + "sites", rows_bytes(view), gpu::Use::device);
+  gpu::Buffer& rows = gpu.buffer(prefix + "sites", rows_bytes(view));
   gpu.dispatch("links", LinksParams{view, moved_by(gbuffer.grid.origin, rule.shift)},
                {{"Depth", gbuffer.depth},
                 {"Normal", gbuffer.normal},
@@ -85,8 +85,8 @@ void list_sites(gpu::Recorder& gpu, const GBuffer& gbuffer, const Sites& sites, 
                 const std::string& prefix) {
   if (!sites.rows) return;
   const View& view = gbuffer.view;
-  list.sites = &gpu.buffer("listed sites", tiles_in(view) * kTile * kTile * sizeof(uint), gpu::Use::device);
-  list.site_counts = &gpu.buffer(prefix + "site counts", sizeof(SiteCounts), gpu::Use::device);
+  list.sites = &gpu.buffer("listed sites", tiles_in(view) * kTile * kTile * sizeof(uint));
+  list.site_counts = &gpu.buffer(prefix + "site counts", sizeof(SiteCounts));
   gpu.clear(*list.site_counts);
   gpu.dispatch("list_sites", ListSitesParams{view.size, moved_by(gbuffer.grid.origin, sites.shift)},
                {{"Rows", sites.rows},

@@ -51,7 +51,7 @@ void still(gpu::Recorder& gpu, const OtherView& view, const OtherView& witness, 
 
 void surfels(gpu::Recorder& gpu, const OtherView& view, std::span<const OtherView> witnesses,
              const gpu::Buffer& moving) {
-  const gpu::Buffer& flags = gpu.buffer("still flags", plane_bytes(view.view), gpu::Use::device);
+  const gpu::Buffer& flags = gpu.buffer("still flags", plane_bytes(view.view));
   gpu.clear(flags);
   for (const auto& witness : witnesses) still(gpu, view, witness, flags);
   gpu.dispatch("surfels", SurfelsParams{view.view, view.depth_precision},
@@ -64,15 +64,15 @@ GBuffer warp(gpu::Recorder& gpu, const GBuffer& prepared, const FrameInputs& fra
   // A margin needs the nearest ones even where nothing hidden is to be kept.
   const uint rounds = std::max(uint(layering.kept), wide.depth == prepared.depth ? 0u : 1u);
   if (frame.others.empty() || rounds == 0) return prepared;
-  wide.warped = &gpu.buffer("found by others", rounds * plane_bytes(wide.view), gpu::Use::device);
-  wide.view_counts = &gpu.buffer("view counts", sizeof(ViewCounts), gpu::Use::device);
+  wide.warped = &gpu.buffer("found by others", rounds * plane_bytes(wide.view));
+  wide.view_counts = &gpu.buffer("view counts", sizeof(ViewCounts));
   gpu.clear(*wide.warped);
   gpu.clear(*wide.view_counts);
   for (uint round = 0; round < rounds; round++) {
     for (const auto& other : frame.others) {
       const gpu::Buffer* use = other.moving;
       if (!use) {
-        use = &gpu.buffer("surfels", plane_bytes(other.view), gpu::Use::device);
+        use = &gpu.buffer("surfels", plane_bytes(other.view));
         surfels(gpu, other, {}, *use);
       }
       const WarpParams params{reprojection(other, wide.view, wide.depth_precision, layering.separation), round};

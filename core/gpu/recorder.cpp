@@ -257,7 +257,7 @@ double Recorder::slices_of(std::optional<double> ms, double groups, bool is_list
 void Recorder::dispatch_bytes(const std::string& stem, std::span<const std::byte> params,
                               std::span<const Binding> bindings, Extent extent,
                               const std::vector<std::uint32_t>& specialization) {
-  const Buffer& absent = buffer("absent", sizeof(std::uint32_t), Use::device);
+  const Buffer& absent = buffer("absent", sizeof(std::uint32_t));
   if (!device_) {
     rehearsed_.emplace_back(stem, specialization);
     return;

@@ -64,7 +64,7 @@ class Recorder {
 
   /// The buffer of that name. It is made, or made again, unless the one that there is suits; what was recorded before
   /// keeps the one that it had. The reference is valid until the next call with another size.
-  Buffer& buffer(std::string_view name, std::size_t bytes, Use use);
+  Buffer& buffer(std::string_view name, std::size_t bytes, Use use = Use::device);
 
   /// Fills a buffer with zeros, in the order of what is recorded.
   void clear(const Buffer& buffer);

@@ -107,7 +107,7 @@ std::vector<std::uint32_t> judged(gpu::Recorder& gpu, const SeenFrame& seen,
   const std::vector<OtherView> by = inputs.others;
   const OtherView view = inputs.others.emplace_back(filled(gpu, seen, {}, seen.camera, by.size()));
   upload(gpu, inputs);
-  const gpu::Buffer& moving = gpu.buffer("other moves", seen.depth.size() * sizeof(std::uint32_t), gpu::Use::device);
+  const gpu::Buffer& moving = gpu.buffer("other moves", seen.depth.size() * sizeof(std::uint32_t));
   surfels(gpu, view, by, moving);
   gpu.download(moving);
   gpu.run();
