@@ -90,7 +90,8 @@ struct Rendering {
   std::vector<Hit> hits;
 
   const Hit& at(int x, int y) const { return hits[std::size_t(y) * std::size_t(shot.data.width) + std::size_t(x)]; }
-  /// How many primitives (the sky is one) show within so many pixels, diagonals included: 2 at an edge, 3 at a vertex.
+  /// How many primitives (the sky is one) show within so many pixels, diagonals included: 2 at an edge, 3 at a vertex,
+  /// which are the most that it counts.
   int primitives_within(int reach_px, int x, int y) const;
   /// The largest distance in the world to what the four neighbours show, as far as there are.
   double footprint(int x, int y) const;
