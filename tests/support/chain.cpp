@@ -31,7 +31,8 @@ EstimatorSettings shared_directions(double radius) {
 
 std::string name_of(const EstimatorSettings& s) {
   return fmt::format(
-      "estimator {}, radius {}, {} x {} or {}, search {}, tolerance {}, complete {}, thickness {}, falloff {}, elevation "
+      "estimator {}, radius {}, {} x {} or {}, search {}, tolerance {}, complete {}, thickness {}, falloff {}, "
+      "elevation "
       "{}, kernel {}, range check {}, denoise {} by {}, stride {}, density {}, resolution 1/{}",
       int(s.estimator), s.radius.value_or(0), s.slices, s.steps, s.samples, int(s.search), s.tolerance, int(s.complete),
       int(s.thickness), int(s.falloff), int(s.elevation), int(s.sample_kernel), int(s.range_check), int(s.denoise),
@@ -70,6 +71,13 @@ Planes planes_of(const HostFrame& frame, const EstimatorSettings& settings, cons
   return planes;
 }
 
+HostFrame rendered_frame(const std::string& scene) {
+  InputSettings input;
+  input.input = ALCOVE_SOURCE_DIR "/examples/bench/" + scene + ".gbuffer.exr";
+  input.camera = ALCOVE_SOURCE_DIR "/examples/bench/" + scene + ".camera.json";
+  return read_host_frame(input, 0);
+}
+
 HostFrame crop_of(const HostFrame& whole, const Window& window) {
   HostFrame crop = whole;
   crop.data = window;
@@ -99,7 +107,8 @@ Errors errors_of(const Rendering& rendering, const std::vector<float>& ao, const
   for (std::size_t i = 0; i < ao.size(); i++) {
     const int x = int(i) % rendering.shot.data.width, y = int(i) / rendering.shot.data.width;
     const Hit& hit = rendering.hits[i];
-    if (hit.primitive < 0 || rendering.primitives_within(clear_px, x, y) > 1 || rendering.primitives_within(2, x, y) > 2)
+    if (hit.primitive < 0 || rendering.primitives_within(clear_px, x, y) > 1 ||
+        rendering.primitives_within(2, x, y) > 2)
       continue;
     const double expected = truth(hit), error = ao[i] - expected;
     if (std::isnan(expected)) continue;

@@ -49,6 +49,9 @@ struct Planes {
 Planes planes_of(const HostFrame& frame, const EstimatorSettings& settings, const std::string& aovs,
                  bool completed = false);
 
+/// One of the small rendered frames: examples/bench/SCENE.
+HostFrame rendered_frame(const std::string& scene);
+
 /// The part of a frame in that window of its own pixels.
 HostFrame crop_of(const HostFrame& whole, const Window& window);
 

@@ -75,6 +75,11 @@ Shot aimed(Vec3 eye, Vec3 target, int width, int height, double pixels_per_unit)
 
 Polygon parallelogram(Vec3 corner, Vec3 a, Vec3 b) { return {{corner, corner + a, corner + a + b, corner + b}}; }
 
+std::vector<Polygon> parallelepiped(Vec3 corner, Vec3 a, Vec3 b, Vec3 c) {
+  return {parallelogram(corner, a, b),     parallelogram(corner, b, c),     parallelogram(corner, c, a),
+          parallelogram(corner + c, a, b), parallelogram(corner + a, b, c), parallelogram(corner + b, c, a)};
+}
+
 Hit Scene::hit(const Ray& ray) const {
   Hit nearest;
   for (std::size_t i = 0; i < primitives.size(); i++) {

@@ -41,6 +41,8 @@ struct Polygon {
 };
 /// The parallelogram of that corner and those two sides.
 Polygon parallelogram(Vec3 corner, Vec3 a, Vec3 b);
+/// The six sides of the parallelepiped of that corner and those three edges.
+std::vector<Polygon> parallelepiped(Vec3 corner, Vec3 a, Vec3 b, Vec3 c);
 
 /// The part of a sphere within a polar half-angle of an axis, seen from either side; without more, all of it.
 struct Sphere {
@@ -58,6 +60,7 @@ struct Hit {
 
 struct Scene {
   std::vector<std::variant<Plane, Polygon, Sphere>> primitives;
+  void add(const std::vector<Polygon>& sides) { primitives.insert(primitives.end(), sides.begin(), sides.end()); }
   /// The nearest surface before the origin.
   Hit hit(const Ray& ray) const;
 };
