@@ -1,35 +1,15 @@
 // What shares of estimates look like: no pattern on plain surfaces, and thin things stay what they are.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <random>
-
-#include "cli/options.h"
-#include "core/chain/compute.h"
 #include "core/measure/metrics.h"
-#include "tests/support/device.h"
-#include "tests/support/scenes.h"
+#include "tests/support/chain.h"
+#include "tests/support/preset.h"
 
 namespace alcove {
 namespace {
 
 using namespace test;
-
-std::vector<float> ao_of(const HostFrame& frame, const EstimatorSettings& settings) {
-  return compute_ao(recorder(), frame, settings).ao;
-}
-
-/// The settings of a preset, for a radius.
-EstimatorSettings preset(const std::string& name, double radius) {
-  ::setenv("ALCOVE_PRESETS", ALCOVE_SOURCE_DIR "/presets", 1);
-  RunOptions options;
-  EXPECT_TRUE(
-      parse_run_options({"in.exr", "-o", "out.exr", "--preset", name, "--radius", std::to_string(radius)}, options));
-  return options.settings.estimator;
-}
 
 /// The same estimator with so many samples at every pixel that none has any noise.
 EstimatorSettings dense(EstimatorSettings settings) {
@@ -70,13 +50,6 @@ void put_cylinder(Rendering& rendering, Vec3 foot, double radius, double height)
   }
 }
 
-void add_box(Scene& scene, Vec3 corner, Vec3 size) {
-  const Vec3 x{size.x, 0, 0}, y{0, size.y, 0}, z{0, 0, size.z};
-  for (const Polygon& side : {parallelogram(corner, x, z), parallelogram(corner, y, z), parallelogram(corner + x, y, z),
-                              parallelogram(corner + y, x, z), parallelogram(corner + z, x, y)})
-    scene.primitives.push_back(side);
-}
-
 /// How far the truth of a pixel may be from the mean of the 15 x 15 about it.
 constexpr double kSmooth = 0.003;
 
@@ -99,9 +72,9 @@ void leave_out_edges_of_shadows(Picture& picture) {
 std::vector<Picture> plain_pictures() {
   const Plane floor{{0, 0, 0}, {0, 0, 1}}, wall{{0, 2, 0}, {0, -1, 0}};
   Scene box{{wall}};
-  add_box(box, {-0.3, 1.2, -0.4}, {0.7, 0.8, 0.8});
+  box.add(parallelepiped({-0.3, 1.2, -0.4}, {0.7, 0, 0}, {0, 0.8, 0}, {0, 0, 0.8}));
   Scene aslant{{floor}};
-  add_box(aslant, {-0.6, 1.5, 0}, {0.8, 0.5, 0.6});
+  aslant.add(parallelepiped({-0.6, 1.5, 0}, {0.8, 0, 0}, {0, 0.5, 0}, {0, 0, 0.6}));
   Rendering cylinder = render({{floor, wall}}, Shot::perspective({0.2, -2.2, 1.6}, {0, 0.8, 0.3}, 55, 168, 126));
   put_cylinder(cylinder, {0.1, 0.9, 0}, 0.45, 1.2);
   std::vector<Picture> pictures{
@@ -213,58 +186,6 @@ TEST(Joints, stay_lines) {
     }
     EXPECT_LT(broken, 0.1) << "or else any sites would do";
   }
-}
-
-// Hair.
-
-/// Curves one to three pixels wide before a wall, by chance.
-HostFrame hair(int width, int height) {
-  HostFrame frame =
-      render({{Plane{{0, 6, 0}, {0, -1, 0}}}}, Shot::perspective({0, 0, 0}, {0, 6, 0}, 40, width, height)).frame;
-  const std::size_t pixels = frame.depth.size();
-  std::mt19937 random(12);
-  const auto number = [&](double least, double most) {
-    return least + (most - least) * double(random()) / double(std::mt19937::max());
-  };
-  for (int strand = 0; strand < 400; strand++) {
-    const double x0 = number(0, width), x1 = x0 + number(-40, 40), x2 = x1 + number(-40, 40);
-    const double y0 = number(-20, height * 0.5), y1 = y0 + number(10, 50), y2 = y1 + number(10, 50);
-    const double z0 = number(4.6, 5.6), z1 = z0 + number(-0.3, 0.3), half_width = number(0.5, 1.5);
-    for (double t = 0; t <= 1; t += 0.004) {
-      const double a = (1 - t) * (1 - t), b = 2 * t * (1 - t), c = t * t;
-      const double x = a * x0 + b * x1 + c * x2, y = a * y0 + b * y1 + c * y2, z = z0 + t * (z1 - z0);
-      for (int u = int(std::ceil(x - half_width - 0.5)); u + 0.5 < x + half_width; u++) {
-        const int v = int(std::floor(y));
-        if (u < 0 || v < 0 || u >= width || v >= height) continue;
-        const std::size_t at = std::size_t(v * width + u);
-        if (z >= frame.depth[at]) continue;
-        const double across = std::clamp((u + 0.5 - x) / half_width, -0.95, 0.95);
-        frame.depth[at] = float(z);
-        frame.normal[at] = float(across);
-        frame.normal[at + pixels] = 0;
-        frame.normal[at + 2 * pixels] = float(std::sqrt(1 - across * across));
-      }
-    }
-  }
-  return frame;
-}
-
-double rmse_of(const std::vector<float>& ao, const std::vector<float>& truth) { return compare_planes(ao, truth).rmse; }
-
-// The most that `standard` may be off the truth in a scene of hair.
-constexpr double kMostOnHair = 0.105;
-
-// Of one estimate in four, evenly spread, the error is 0.137.
-TEST(Hair, is_estimated_where_it_is_thin) {
-  const HostFrame frame = hair(200, 150);
-  EstimatorSettings settings = preset("standard", 0.5);
-  const std::vector<float> truth = ao_of(frame, dense(settings));
-  const double adaptive = rmse_of(ao_of(frame, settings), truth);
-  settings.density = Density::uniform;
-  settings.stride = 16;
-  const double uniform = rmse_of(ao_of(frame, settings), truth);
-  EXPECT_LT(adaptive, kMostOnHair);
-  EXPECT_LT(adaptive, 0.6 * uniform) << "uniform: " << uniform;
 }
 
 }  // namespace

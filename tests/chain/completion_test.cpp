@@ -1,11 +1,7 @@
 // What completed surfaces take of the visibility: who asks for it, its sums, its picture, and what is said of it.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "core/base/estimator_facts.h"
@@ -13,9 +9,8 @@
 #include "core/chain/debug.h"
 #include "core/chain/reuse.h"
 #include "core/run/frame_tally.h"
+#include "tests/support/chain.h"
 #include "tests/support/command_line.h"
-#include "tests/support/device.h"
-#include "tests/support/single_pass.h"
 #include "tests/support/sites_of.h"
 
 namespace alcove {
@@ -25,7 +20,6 @@ using namespace test;
 using nlohmann::json;
 using testing::HasSubstr;
 
-constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 constexpr float kBefore = 0.5f;  // what stands in a plane before a pass that must leave it
 
 TEST(Completion, behind_others_is_of_occluders_with_an_end) {
@@ -48,9 +42,9 @@ TEST(Completion, behind_others_is_of_occluders_with_an_end) {
 }
 
 /// A frame with sky on the device, at an odd place of its display window, and planes that a test fills by hand.
-class Planes : public testing::Test {
+class CompletedPlanes : public testing::Test {
  protected:
-  Planes() {
+  CompletedPlanes() {
     frame.data.x = frame.display.x + 3;
     frame.data.y = frame.display.y + 5;
     frame.camera.cx += 3;
@@ -82,7 +76,7 @@ class Planes : public testing::Test {
 
   /// A plane that is NaN wherever the pass has no business.
   std::vector<float> receivers_only(int spacing, int factor) const {
-    std::vector<float> values(frame.data.pixels(), kNaN);
+    std::vector<float> values(frame.data.pixels(), kNan);
     for (int y = 0; y < height(); y++)
       for (int x = 0; x < width(); x++)
         if (is_receiver(x, y, spacing) && !is_sky(x, y)) values[index(x, y)] = value(x, y, factor);
@@ -107,8 +101,7 @@ class Planes : public testing::Test {
   static std::vector<float> finished(const gpu::Buffer& result) {
     recorder().download(result);
     recorder().run();
-    const auto values = result.as<const float>();
-    return {values.begin(), values.end()};
+    return values_of(&result);
   }
 
   HostFrame frame = furnished_room(161, 123).frame;
@@ -116,10 +109,10 @@ class Planes : public testing::Test {
   GBuffer gbuffer;
 };
 
-TEST_F(Planes, are_added_up_tile_by_tile_over_the_receivers_of_surfaces) {
+TEST_F(CompletedPlanes, are_added_up_tile_by_tile_over_the_receivers_of_surfaces) {
   for (const int spacing : {1, 2, 4, 8, 16})
     for (const std::size_t radii : {1, 3}) {
-      std::vector<float> ao(frame.data.pixels() * (radii - 1), kNaN);
+      std::vector<float> ao(frame.data.pixels() * (radii - 1), kNan);
       const std::vector<float> largest = receivers_only(spacing, 5);
       ao.insert(ao.end(), largest.begin(), largest.end());
       Estimate estimate;
@@ -146,13 +139,13 @@ TEST_F(Planes, are_added_up_tile_by_tile_over_the_receivers_of_surfaces) {
     }
 }
 
-TEST_F(Planes, are_not_added_up_where_nobody_asked) {
+TEST_F(CompletedPlanes, are_not_added_up_where_nobody_asked) {
   Estimate estimate;
   estimate.ao = &plane("ao of a test", receivers_only(1, 5));
   EXPECT_EQ(completion(recorder(), gbuffer, estimate, {}), nullptr);
 }
 
-TEST_F(Planes, are_shown_in_grey_from_0_to_1_and_sky_apart) {
+TEST_F(CompletedPlanes, are_shown_in_grey_from_0_to_1_and_sky_apart) {
   OutputSettings settings;
   settings.debug = "completed";
   const DebugView& view = *debug_views_of(settings).at(0);
@@ -174,7 +167,7 @@ TEST_F(Planes, are_shown_in_grey_from_0_to_1_and_sky_apart) {
   }
 }
 
-TEST_F(Planes, are_0_in_tiles_that_are_left_out_and_else_as_they_were) {
+TEST_F(CompletedPlanes, are_0_in_tiles_that_are_left_out_and_else_as_they_were) {
   const float radius = 0.05f;
   // What nobody needs is left out too.
   const Skipping skipping{.skips_sky = true, .changes = nullptr, .needed = {{20, 12}, gbuffer.view.size}};
@@ -209,8 +202,6 @@ std::vector<EstimatorSettings> searches() {
   EstimatorSettings plain = plain_settings();
   plain.radius = 0.6;
   plain.thickness = ThicknessKind::automatic;
-  plain.denoise = Denoise::none;
-  plain.stride = 1;
   std::vector<EstimatorSettings> all(6, plain);
   all[1].estimator = Estimator::bitmask;
   all[2].search = SliceSearch::exact;
@@ -265,23 +256,20 @@ TEST(Completion, is_made_only_where_something_is_completed_and_somebody_asks) {
     EXPECT_EQ(outputs.completed != nullptr, outputs.completion != nullptr);
     return outputs.completed != nullptr;
   };
+  OutputSettings shown, hidden;  // a view of it needs the estimate
+  shown.aovs = hidden.aovs = "depth";
+  shown.debug = "completed";
+  hidden.debug = "raw-ao";
+  EXPECT_TRUE(is_made(searches().front(), shown));
+  EXPECT_FALSE(is_made(searches().front(), hidden));
   for (EstimatorSettings settings : searches()) {
     EXPECT_TRUE(is_made(settings, with_stats()));
     EXPECT_FALSE(is_made(settings, {}));
     settings.complete = Completion::none;
     EXPECT_FALSE(is_made(settings, with_stats()));
   }
-  OutputSettings shown;
-  shown.debug = "completed";
-  shown.aovs = "depth";
-  EXPECT_TRUE(is_made(searches().front(), shown)) << "a view of it needs the estimate";
-  shown.debug = "raw-ao";
-  EXPECT_FALSE(is_made(searches().front(), shown));
-  for (const Estimator estimator : {Estimator::hbao, Estimator::crytek}) {
-    EstimatorSettings settings = searches().front();
-    settings.estimator = estimator;
-    EXPECT_FALSE(is_made(settings, with_stats()));
-  }
+  for (const Estimator estimator : {Estimator::hbao, Estimator::crytek})
+    EXPECT_FALSE(is_made(sampled(estimator, 0.6, 3, 6), with_stats()));
 }
 
 TEST(Completion, stays_in_tiles_that_are_as_in_the_frame_before) {
@@ -372,32 +360,22 @@ TEST_F(CompletionStats, of_sky_are_0) {
   EXPECT_EQ(stats_of({"--no-skip"}).at("completed"), 0);
 }
 
-TEST_F(CompletionStats, are_in_no_log_that_nobody_made_them_for) {
+TEST_F(CompletionStats, and_views_change_no_bit_of_the_ao_and_are_in_no_log_that_nobody_made_them_for) {
   const std::string log = folder / "log";
   ASSERT_EQ(run({"--log-json", log}).code, 0);
   EXPECT_THAT(read_bytes(log), testing::Not(HasSubstr("\"completed\"")));
-  stats_of({"--log-json", log});
-  EXPECT_THAT(read_bytes(log), HasSubstr("\"completed\""));
-}
-
-TEST_F(CompletionStats, and_views_change_no_bit_of_the_ao) {
-  ASSERT_EQ(run({}).code, 0);
   const std::string before = read_bytes(ao);
-  stats_of({"--set", "debug=completed"});
+  stats_of({"--log-json", log, "--set", "debug=completed"});
+  EXPECT_THAT(read_bytes(log), HasSubstr("\"completed\""));
   EXPECT_TRUE(read_bytes(ao) == before);
 }
 
 TEST_F(CompletionStats, of_a_view_without_any_are_refused) {
-  const std::pair<std::vector<std::string>, std::vector<std::string>> cases[] = {
-      {{"--set", "complete=none"}, {"--set debug=completed", "--set complete=none", "border"}},
-      {{"--estimator", "hbao"}, {"--set debug=completed", "--estimator hbao", "gtao and bitmask"}},
-      {{"--estimator", "crytek"}, {"--set debug=completed", "--estimator crytek", "gtao and bitmask"}},
-  };
-  for (auto [settings, words] : cases) {
-    settings.insert(settings.end(), {"--set", "debug=completed"});
-    const Finished finished = run(settings);
+  for (const auto& [option, value, words] :
+       {std::tuple{"--set", "complete=none", "border"}, {"--estimator", "hbao", "gtao and bitmask"}}) {
+    const Finished finished = run({option, value, "--set", "debug=completed"});
     EXPECT_EQ(finished.code, 2) << finished;
-    for (const auto& word : words) EXPECT_THAT(finished.err, HasSubstr(word));
+    for (const std::string word : {"--set debug=completed", value, words}) EXPECT_THAT(finished.err, HasSubstr(word));
   }
 }
 

@@ -1,36 +1,17 @@
 // The confidence AOV: it is low where the AO is a guess.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
 #include <numeric>
 
-#include "core/chain/chain.h"
-#include "core/chain/compute.h"
 #include "core/formats/exr.h"
-#include "tests/support/device.h"
-#include "tests/support/difference.h"
-#include "tests/support/scenes.h"
-#include "tests/support/single_pass.h"
+#include "tests/support/chain.h"
 
 namespace alcove {
 namespace {
 
 using namespace test;
 
-struct Outcome {
-  std::vector<float> ao, confidence;
-};
-
-Outcome run(const HostFrame& frame, EstimatorSettings settings) {
-  OutputSettings output;
-  output.aovs = "ao,confidence";
-  const FrameOutputs outputs = run_chain(recorder(), upload(recorder(), frame), settings, output);
-  recorder().run();
-  const auto ao = outputs.ao->as<float>(), confidence = outputs.confidence->as<float>();
-  return {{ao.begin(), ao.end()}, {confidence.begin(), confidence.end()}};
+Planes run(const HostFrame& frame, const EstimatorSettings& settings) {
+  return planes_of(frame, settings, "ao,confidence");
 }
 
 EstimatorSettings settings_of(double radius) {
@@ -41,16 +22,13 @@ EstimatorSettings settings_of(double radius) {
 
 // What hides a surface may be nearer than the sphere: then it is no occluder itself, however thick.
 TEST(Confidence, is_low_where_completed_surfaces_decide) {
-  InputSettings input;
-  input.input = ALCOVE_SOURCE_DIR "/examples/bench/colonnade.gbuffer.exr";
-  input.camera = ALCOVE_SOURCE_DIR "/examples/bench/colonnade.camera.json";
-  const HostFrame frame = read_host_frame(input, 0);
+  const HostFrame frame = rendered_frame("colonnade");
   EstimatorSettings settings = settings_of(0.75);
   settings.slices = 4;
   settings.stride = 1;
-  const Outcome all = run(frame, settings);
+  const Planes all = run(frame, settings);
   settings.complete = Completion::none;
-  const Outcome none = run(frame, settings);
+  const Planes none = run(frame, settings);
   int decided = 0;
   int trusted = 0;
   for (std::size_t i = 0; i < all.ao.size(); i++) {
@@ -63,20 +41,16 @@ TEST(Confidence, is_low_where_completed_surfaces_decide) {
 }
 
 TEST(Confidence, the_confident_half_errs_less_than_half_as_much_as_the_rest) {
-  const std::string folder = ALCOVE_SOURCE_DIR "/examples/bench/";
-  struct Scene {
-    const char* name;
-    double radius;
-  };
-  for (const auto& [name, radius] :
-       {Scene{"monkeys", 0.5}, {"colonnade", 0.75}, {"machine", 0.006}, {"interior", 0.35}, {"terrain", 100}}) {
-    InputSettings input;
-    input.input = folder + name + ".gbuffer.exr";
-    input.camera = folder + name + ".camera.json";
-    const HostFrame frame = read_host_frame(input, 0);
-    const Outcome outcome = run(frame, settings_of(radius));
-    const std::vector<float> a = read_exr_image(folder + name + ".ao.a.exr").pixels,
-                             b = read_exr_image(folder + name + ".ao.b.exr").pixels;
+  for (const auto& [name, radius] : {std::pair<std::string, double>{"monkeys", 0.5},
+                                     {"colonnade", 0.75},
+                                     {"machine", 0.006},
+                                     {"interior", 0.35},
+                                     {"terrain", 100}}) {
+    const HostFrame frame = rendered_frame(name);
+    const Planes outcome = run(frame, settings_of(radius));
+    const std::string base = ALCOVE_SOURCE_DIR "/examples/bench/" + name;
+    const std::vector<float> a = read_exr_image(base + ".ao.a.exr").pixels,
+                             b = read_exr_image(base + ".ao.b.exr").pixels;
     std::vector<float> truth(a.size());
     std::ranges::transform(a, b, truth.begin(), [](float x, float y) { return (x + y) / 2; });
     std::vector<std::size_t> pixels;
@@ -104,7 +78,7 @@ TEST(Confidence, falls_where_the_back_of_a_thing_decides) {
   const Scene scene{
       {parallelogram({-20, -20, 0}, {40, 0, 0}, {0, 40, 0}), parallelogram({-0.5, 0, 0.4}, {1, 0, 0}, {0, 0, 0.5})}};
   const Rendering slab = render(scene, Shot::perspective({0, -4, 2}, {0, 0, 0.2}, 40, 96, 72));
-  const Outcome outcome = run(slab.frame, settings_of(1));
+  const Planes outcome = run(slab.frame, settings_of(1));
   double floor = 0, floors = 0, below = 0, belows = 0;
   for (int y = 0; y < 72; y++)
     for (int x = 0; x < 96; x++) {
@@ -139,8 +113,8 @@ TEST(Confidence, does_not_change_the_ao_and_is_there_for_every_estimator) {
   for (const auto estimator : {Estimator::gtao, Estimator::bitmask, Estimator::hbao, Estimator::crytek}) {
     EstimatorSettings settings = settings_of(0.5);
     settings.estimator = estimator;
-    const Outcome outcome = run(room.frame, settings);
-    EXPECT_TRUE(same_bits(outcome.ao, compute_ao(recorder(), room.frame, settings).ao));
+    const Planes outcome = run(room.frame, settings);
+    EXPECT_TRUE(same_bits(outcome.ao, ao_of(room.frame, settings)));
     for (const float value : outcome.confidence) ASSERT_TRUE(value >= 0 && value <= 1);
   }
 }

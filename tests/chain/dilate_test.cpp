@@ -1,30 +1,20 @@
 // What the filters leave out because of what tiles hold: the result has the bits of the whole.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <limits>
 #include <random>
 
 #include "core/base/estimator_facts.h"
-#include "core/chain/compute.h"
 #include "core/chain/filters.h"
 #include "core/chain/sites.h"
-#include "tests/support/device.h"
-#include "tests/support/difference.h"
-#include "tests/support/random_scenes.h"
+#include "tests/support/chain.h"
 
 namespace alcove {
 namespace {
 
 using namespace test;
 
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-
 /// A floor, on which any two neighbours mix.
 HostFrame floor_of(int width, int height) {
-  return render(Scene{{Plane{{0, 0, 0}, {0, 0, 1}}}}, Shot::perspective({0, -3, 3}, {0, 0, 0}, 30, width, height))
-      .frame;
+  return render({{kFloor}}, Shot::perspective({0, -3, 3}, {0, 0, 0}, 30, width, height)).frame;
 }
 
 /// The denoiser, or upsampling from the settings' resolution.
@@ -80,8 +70,7 @@ std::vector<float> run(const Filter& filter, const std::vector<float>& before, b
   const gpu::Buffer& result = *filtered(ao, runs);
   gpu.download(result);
   gpu.run();
-  const auto values = result.as<float>();
-  return {values.begin(), values.end()};
+  return values_of(&result);
 }
 
 EstimatorSettings filtering(int radius, int stride, Density density = Density::uniform) {

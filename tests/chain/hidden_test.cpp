@@ -1,18 +1,8 @@
 // The sampled estimators with surfaces behind the first: what these must change, and what they must not.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <fmt/format.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-
-#include "core/chain/chain.h"
-#include "core/chain/compute.h"
-#include "tests/support/device.h"
-#include "tests/support/difference.h"
+#include "tests/support/chain.h"
 #include "tests/support/hidden_truth.h"
 #include "tests/support/random_scenes.h"
-#include "tests/support/single_pass.h"
 
 namespace alcove {
 namespace {
@@ -21,26 +11,23 @@ using namespace test;
 
 constexpr Estimator kLayered[] = {Estimator::gtao, Estimator::bitmask};
 
-/// AO and bent normals.
-std::vector<float> run(const HostFrame& frame, const EstimatorSettings& settings) {
-  OutputSettings output;
-  output.aovs = "ao,bent-normal";
-  const FrameOutputs outputs = run_chain(recorder(), upload(recorder(), frame), settings, output);
-  recorder().run();
+/// AO and bent normals, and how many tiles were searched, with hidden surfaces and without.
+struct Outcome {
   std::vector<float> values;
-  for (const auto* planes : {outputs.ao, outputs.bent_normal})
-    values.insert(values.end(), planes->as<float>().begin(), planes->as<float>().end());
-  return values;
+  TileCounts tiles;
+};
+Outcome outcome_of(const HostFrame& frame, const EstimatorSettings& settings) {
+  Planes planes = planes_of(frame, settings, "ao,bent-normal");
+  planes.ao.insert(planes.ao.end(), planes.bent.begin(), planes.bent.end());
+  return {planes.ao, planes.tiles};
+}
+std::vector<float> run(const HostFrame& frame, const EstimatorSettings& settings) {
+  return outcome_of(frame, settings).values;
 }
 
 EstimatorSettings settings_of(Estimator estimator, double radius) {
-  EstimatorSettings settings = plain_settings();
-  settings.estimator = estimator;
-  settings.radius = radius;
+  EstimatorSettings settings = sampled(estimator, radius, 3, 12);
   settings.thickness = ThicknessKind::automatic;
-  settings.complete = Completion::all;
-  settings.slices = 3;
-  settings.steps = 12;
   return settings;
 }
 
@@ -48,21 +35,6 @@ HostFrame with_plane(HostFrame frame, const std::vector<float>& depth, BehindKin
   frame.behind.push_back({.kind = kind});
   frame.behind_depth.insert(frame.behind_depth.end(), depth.begin(), depth.end());
   return frame;
-}
-
-/// What every kind of occluder and falloff must hold of.
-template <class Check>
-void with_all_kinds(double radius, const Check& check) {
-  for (const Estimator estimator : kLayered)
-    for (const auto thickness : {ThicknessKind::automatic, ThicknessKind::constant, ThicknessKind::infinite})
-      for (const auto falloff : {Falloff::none, Falloff::smooth}) {
-        EstimatorSettings settings = settings_of(estimator, radius);
-        settings.thickness = thickness;
-        settings.thickness_length = radius / 4;
-        settings.falloff = falloff;
-        check(settings,
-              fmt::format("estimator {}, thickness {}, falloff {}", int(estimator), int(thickness), int(falloff)));
-      }
 }
 
 TEST(Hidden, a_copy_of_the_first_depth_and_a_surface_beyond_the_radius_change_no_bit) {
@@ -75,9 +47,15 @@ TEST(Hidden, a_copy_of_the_first_depth_and_a_surface_beyond_the_radius_change_no
   // Of surfaces of unknown kind a far one could be the back of the first.
   for (int i = 0; i < 3; i++)
     layered = i == 1 ? with_plane(layered, far, BehindKind::fronts) : with_plane(layered, room.depth);
-  with_all_kinds(radius, [&](const EstimatorSettings& settings, const std::string& what) {
-    EXPECT_TRUE(same_bits(run(room, settings), run(layered, settings))) << what;
-  });
+  for (const Estimator estimator : kLayered)
+    for (const auto thickness : {ThicknessKind::automatic, ThicknessKind::constant, ThicknessKind::infinite})
+      for (const auto falloff : {Falloff::none, Falloff::smooth}) {
+        EstimatorSettings settings = settings_of(estimator, radius);
+        settings.thickness = thickness;
+        settings.thickness_length = radius / 4;
+        settings.falloff = falloff;
+        EXPECT_TRUE(same_bits(run(room, settings), run(layered, settings))) << name_of(settings);
+      }
 }
 
 /// A ball before a ball, over a floor and before a wall, with all that they hide.
@@ -87,24 +65,9 @@ struct Balls {
   Rendering rendering = render(scene, Shot::perspective({0.1, -3.2, 1.1}, {0, 0.2, 0.3}, 38, 121, 91));
 };
 
-TEST(Hidden, the_order_of_planes_changes_no_bit) {
-  Balls balls;
-  add_peels(balls.rendering, balls.scene, 3);
-  const HostFrame& frame = balls.rendering.frame;
-  HostFrame turned = frame;
-  const std::size_t pixels = frame.data.pixels(), planes = frame.behind.size();
-  for (std::size_t i = 0; i < planes; i++) {
-    turned.behind[i] = frame.behind[planes - 1 - i];
-    std::copy_n(frame.behind_depth.begin() + std::ptrdiff_t((planes - 1 - i) * pixels), pixels,
-                turned.behind_depth.begin() + std::ptrdiff_t(i * pixels));
-  }
-  for (const Estimator estimator : kLayered)
-    EXPECT_TRUE(same_bits(run(frame, settings_of(estimator, 0.6)), run(turned, settings_of(estimator, 0.6))));
-}
-
 /// RMS error against ray tracing, at receivers whose sphere is seen whole.
 double error_of(const Rendering& rendering, const Scene& scene, const EstimatorSettings& settings) {
-  const std::vector<float> ao = compute_ao(recorder(), rendering.frame, settings).ao;
+  const std::vector<float> ao = ao_of(rendering.frame, settings);
   const double radius = *settings.radius;
   double sum = 0;
   std::size_t count = 0;
@@ -126,9 +89,9 @@ EstimatorSettings dense(Estimator estimator, double radius) {
 
 TEST(Hidden, balls_block_from_their_fronts_to_their_backs) {
   Balls balls;
+  Balls peeled;
+  add_peels(peeled.rendering, peeled.scene, 3);
   for (const Estimator estimator : kLayered) {
-    Balls peeled;
-    add_peels(peeled.rendering, peeled.scene, 3);
     const EstimatorSettings settings = dense(estimator, 0.6);
     const double before = error_of(balls.rendering, balls.scene, settings);
     const double after = error_of(peeled.rendering, peeled.scene, settings);
@@ -176,14 +139,6 @@ TEST(Hidden, what_is_left_out_has_the_bits_of_what_is_computed) {
   }
 }
 
-/// Tiles that are searched with hidden surfaces, and all that are searched.
-std::pair<uint, uint> searched(const HostFrame& frame, const EstimatorSettings& settings) {
-  const FrameOutputs outputs = run_chain(recorder(), upload(recorder(), frame), settings, OutputSettings{});
-  recorder().run();
-  const auto tiles = outputs.tiles->as<TileCounts>()[0];
-  return {tiles.layered, tiles.listed};
-}
-
 /// With something hidden in some columns of the image.
 HostFrame with_hidden_part(HostFrame frame, int first_x, int last_x, float behind, BehindKind kind) {
   std::vector<float> depth(frame.depth.size(), kSky);
@@ -211,12 +166,11 @@ TEST(Hidden, tiles_far_from_what_is_hidden_have_the_bits_of_a_search_for_it) {
     EstimatorSettings settings = settings_of(kLayered[i % 6 / 3], radius);
     settings.falloff = i % 4 != 3 ? Falloff::none : Falloff::smooth;
     settings.stride = i % 2 == 0 ? 4 : 1;
-    const auto [hidden, all] = searched(frame, settings);
-    layered += hidden;
-    listed += all;
-    const std::vector<float> skipped = run(frame, settings);
+    const Outcome skipped = outcome_of(frame, settings);
+    layered += skipped.tiles.layered;
+    listed += skipped.tiles.listed;
     settings.no_skip = true;
-    EXPECT_TRUE(same_bits(skipped, run(frame, settings))) << "scene " << i;
+    EXPECT_TRUE(same_bits(skipped.values, run(frame, settings))) << "scene " << i;
   }
   EXPECT_GT(layered, 0u);
   EXPECT_LT(layered, listed);
@@ -225,10 +179,10 @@ TEST(Hidden, tiles_far_from_what_is_hidden_have_the_bits_of_a_search_for_it) {
 TEST(Hidden, a_tenth_of_the_picture_leaves_the_rest_to_the_plain_search) {
   const HostFrame room = furnished_room(321, 121).frame;
   const HostFrame part = with_hidden_part(room, 0, 32, 0.05f, BehindKind::fronts);
-  const auto [layered, listed] = searched(part, settings_of(Estimator::gtao, 0.1));
-  EXPECT_GT(layered, 0u);
-  EXPECT_LT(layered, listed / 3) << "of " << listed;
-  EXPECT_EQ(searched(room, settings_of(Estimator::gtao, 0.1)).first, 0u);
+  const TileCounts tiles = outcome_of(part, settings_of(Estimator::gtao, 0.1)).tiles;
+  EXPECT_GT(tiles.layered, 0u);
+  EXPECT_LT(tiles.layered, tiles.listed / 3) << "of " << tiles.listed;
+  EXPECT_EQ(outcome_of(room, settings_of(Estimator::gtao, 0.1)).tiles.layered, 0u);
 }
 
 TEST(Hidden, smaller_images_keep_what_their_pixels_hide) {

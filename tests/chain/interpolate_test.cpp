@@ -1,16 +1,11 @@
 // The filter that gives all pixels theirs from the sites: against its formulas written out slowly, and what it keeps.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gtest/gtest.h>
-
-#include <array>
-#include <bit>
-#include <limits>
+#include <random>
 
 #include "core/base/estimator_facts.h"
 #include "core/chain/filters.h"
-#include "tests/support/difference.h"
+#include "tests/support/chain.h"
 #include "tests/support/random_scenes.h"
-#include "tests/support/single_pass.h"
 #include "tests/support/site_frames.h"
 #include "tests/support/site_picture.h"
 
@@ -18,8 +13,6 @@ namespace alcove {
 namespace {
 
 using namespace test;
-
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 EstimatorSettings filter(int spacing, int radius, Density density = Density::adaptive) {
   EstimatorSettings settings;
@@ -56,10 +49,19 @@ std::vector<EstimatorSettings> all_filters() {
           by_depth(8, 1e-3)};
 }
 
-std::string name_of(const EstimatorSettings& s) {
-  return "spacing " + std::to_string(s.stride) + (is_adaptive(s) ? " adaptive" : " uniform") + " radius " +
-         std::to_string(s.denoise_radius) + " weights " + std::to_string(s.denoise_kernel.size()) + " depth sigma " +
-         std::to_string(s.denoise_depth_sigma);
+/// All lattices, adaptive and uniform, with filters of all reaches and by any weights.
+std::vector<EstimatorSettings> every_reach() {
+  std::vector<EstimatorSettings> all;
+  for (const Density density : {Density::adaptive, Density::uniform})
+    for (const int spacing : {2, 4, 8, 16}) {
+      for (int radius = 0; radius <= 8; radius++) all.push_back(filter(spacing, radius, density));
+      for (const std::vector<double>& weights :
+           {std::vector<double>{1, 0}, {1, 1}, {5, 0, 0, 1}, {1, 1, 1, 1, 1, 1, 1, 1, 1}}) {
+        all.push_back(by_kernel(spacing, weights));
+        all.back().density = density;
+      }
+    }
+  return all;
 }
 
 /// A frame's G-buffer with its sites.
@@ -204,21 +206,36 @@ TEST(Interpolate, is_what_its_formulas_say) {
   EXPECT_GT(mixed / double(pixels), 0.1) << "or else it does nothing";
 }
 
-TEST(Interpolate, keeps_what_is_constant) {
-  const Rendering room = furnished_room(101, 75);
-  for (const EstimatorSettings& settings : all_filters()) {
-    const Sparse sparse(room.frame, settings);
-    for (const float constant : {0.0f, 0.3f, 0.7317f, 1.0f}) {
-      const std::vector<float> result = sparse.interpolated(std::vector<float>(101 * 75, constant), settings);
-      for (std::size_t i = 0; i < result.size(); i++) {
-        if (room.hits[i].primitive < 0)
-          ASSERT_EQ(result[i], 1.0f) << name_of(settings);
-        else if (constant == 1)
-          ASSERT_EQ(result[i], 1.0f) << name_of(settings);
-        else
-          ASSERT_NEAR(result[i], constant, 1e-4) << name_of(settings) << " at " << i % 101 << " " << i / 101;
-      }
-    }
+/// Expects that a constant stays one, so that no pixel is left without a share of a site, on whatever surface.
+void expect_constant(const HostFrame& frame, const EstimatorSettings& settings, float constant,
+                     double tolerance = 0.5 / 65535 + 1e-6) {  // half of what rows round to, of what is blocked
+  const Sparse sparse(frame, settings);
+  const std::vector<float> result = sparse.interpolated(std::vector<float>(frame.depth.size(), constant), settings);
+  int wrong = 0;
+  for (std::size_t i = 0; i < result.size(); i++) {
+    const bool is_open = frame.depth[i] >= frame.sky || constant == 1;
+    wrong += !(std::abs(result[i] - (is_open ? 1 : constant)) <= (is_open ? 0 : tolerance));
+  }
+  EXPECT_EQ(wrong, 0) << "pixels of " << result.size() << ", " << constant << ", " << name_of(settings);
+}
+
+TEST(Interpolate, keeps_what_is_constant_and_leaves_the_sky_open) {
+  const HostFrame room = furnished_room(93, 71).frame;
+  for (const EstimatorSettings& settings : every_reach()) expect_constant(room, settings, 0.37f);
+  for (const EstimatorSettings& settings : all_filters())
+    for (const float constant : {0.0f, 0.3f, 0.7317f, 1.0f}) expect_constant(room, settings, constant, 1e-4);
+}
+
+// Thin and small things too; and what the border cuts off a surface can be a single pixel, with nothing but sky beside.
+TEST(Interpolate, leaves_no_pixel_of_any_scene_without_a_site) {
+  RandomScenes scenes(18);
+  for (int i = 0; i < 150; i++) {
+    SCOPED_TRACE("scene " + std::to_string(i));
+    expect_constant(scenes.next(), filter(2 << i % 4, 0), 0.37f);
+  }
+  for (const auto& [what, rendering] : slanted_planes({85}, {0, 37, 77, 111, 200, 301}, {60, 110})) {
+    SCOPED_TRACE(what);
+    for (const int spacing : {2, 4, 8, 16}) expect_constant(rendering.frame, filter(spacing, 0), 0.37f);
   }
 }
 
@@ -245,7 +262,8 @@ TEST(Interpolate, keeps_a_ramp_up_to_an_edge) {
   for (const bool orthographic : {false, true})
     for (const Vec3& normal : {Vec3{-1, 0, 0}, unit({-1, 0.4, -0.3})})
       for (const int column : {41, 42, 43, 44})
-        for (const EstimatorSettings& settings : {filter(16, 8), filter(8, 8), filter(16, 8, Density::uniform)}) {
+        for (const EstimatorSettings& settings : {filter(16, 8), filter(8, 8), filter(4, 8), filter(2, 8),
+                                                  filter(16, 8, Density::uniform), filter(8, 8, Density::uniform)}) {
           const Sparse sparse(edge_at(column, normal, orthographic), settings);
           for (const auto& [slope_x, slope_y] : {std::pair{kSlope, 0.0}, {0.0, kSlope}, {0.006, 0.004}})
             for (const float behind : {0.0f, 1.0f}) {
@@ -284,32 +302,43 @@ TEST(Interpolate, reads_no_pixel_that_is_no_site) {
   }
 }
 
-TEST(Interpolate, gives_each_of_several_planes_what_it_gives_one) {
-  const Rendering room = furnished_room(61, 45);
-  const std::size_t pixels = 61 * 45;
-  for (const EstimatorSettings& settings : all_filters()) {
-    const Sparse sparse(room.frame, settings);
-    const std::vector<float> planes = noise(3 * pixels, 9);
-    const std::vector<float> together = sparse.interpolated(planes, settings);
-    for (std::size_t plane = 0; plane < 3; plane++) {
-      const auto begin = planes.begin() + std::ptrdiff_t(plane * pixels);
-      const std::vector<float> alone = sparse.interpolated({begin, begin + std::ptrdiff_t(pixels)}, settings);
-      for (std::size_t i = 0; i < pixels; i++)
-        ASSERT_NEAR(together[plane * pixels + i], alone[i], 1e-6) << name_of(settings) << " plane " << plane;
+// The chain with estimates at some pixels.
+
+std::vector<EstimatorSettings> sparse_searches(double radius) {
+  std::vector<EstimatorSettings> all;
+  for (const Density density : {Density::adaptive, Density::uniform})
+    for (const int spacing : {2, 4, 8, 16}) {
+      all.push_back(filter(spacing, 0, density));
+      all.back().radius = radius;
+      all.back().slices = 2;
+      all.back().steps = 12;
+      EXPECT_EQ(spacing_of(all.back()), spacing);
+      EXPECT_EQ(is_adaptive(all.back()), density == Density::adaptive);
     }
+  return all;
+}
+
+TEST(Sparse, every_pixel_of_a_plane_is_open_at_any_size_and_filter) {
+  for (const auto& [width, height] : {std::pair{1, 1}, {3, 2}, {2, 7}, {13, 1}, {31, 17}, {64, 40}}) {
+    const HostFrame floor = render({{kFloor}}, Shot::perspective({0, -3, 2}, {0, 0, 0}, 50, width, height)).frame;
+    for (EstimatorSettings settings : sparse_searches(1))
+      for (const int radius : {0, 1, 2, 3, 8}) {
+        settings.denoise_radius = radius;
+        expect_open(floor, settings, 0);
+      }
   }
 }
 
-TEST(Interpolate, takes_any_size_and_any_bits) {
-  for (const auto& [width, height] : {std::pair{1, 1}, {3, 5}, {13, 29}, {1, 40}, {40, 1}, {33, 8}, {129, 65}})
-    for (const EstimatorSettings& settings : all_filters()) {
-      const HostFrame wall = wall_at(5, 2, width, height, unit({-1, 0.2, 0.3}), false);
-      for (const HostFrame& host : {random_bits(width, height, 3), wall}) {
-        const Sparse sparse(host, settings);
-        for (const float ao : sparse.interpolated(noise(host.data.pixels(), 2), settings))
-          ASSERT_TRUE(ao >= 0 && ao <= 1) << ao << " " << name_of(settings) << " " << width << " x " << height;
-      }
-    }
+// Nothing is left without an estimate, be it alone on its surface or beside the sky.
+TEST(Sparse, is_as_near_to_the_dense_estimate_as_noise_allows) {
+  const HostFrame room = furnished_room(192, 144).frame;
+  EstimatorSettings many = filter(1, 1);
+  many.radius = 0.5;
+  many.slices = 16;
+  const std::vector<float> truth = ao_of(room, many);
+  EXPECT_GT(difference(truth, [](std::size_t) { return 1.0; }).rmse, 0.1) << "or else there is nothing to find";
+  for (const EstimatorSettings& settings : sparse_searches(0.5))
+    EXPECT_LT(difference(ao_of(room, settings), truth).rmse, 0.04) << name_of(settings);
 }
 
 }  // namespace

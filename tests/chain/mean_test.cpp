@@ -89,23 +89,13 @@ TEST_F(Means, are_of_all_that_see_the_same_point) {
   for (const float value : mean({}, {})) EXPECT_NEAR(value, kMean, 1e-4);
 }
 
-TEST_F(Means, leave_out_what_hides_the_point) {
-  Facing nearer;
-  std::ranges::fill(nearer.depth, 3.0f);
-  // The frame sees through all of it, so all of it has moved; but far from the point.
-  for (const float value : mean({}, nearer)) EXPECT_EQ(value, kOwn);
-}
-
-TEST_F(Means, leave_out_a_point_off_the_plane_by_a_pixel) {
-  Facing farther;
-  std::ranges::fill(farther.depth, 4.03f);  // less than counts as seen through, more than half a pixel
-  for (const float value : mean({}, farther)) EXPECT_EQ(value, kOwn);
-}
-
-TEST_F(Means, leave_out_other_normals) {
-  Facing turned;
+TEST_F(Means, leave_out_what_hides_the_point_lies_off_its_plane_or_is_turned) {
+  Facing nearer, farther, turned;
+  std::ranges::fill(nearer.depth, 3.0f);  // the frame sees through all of it, so all has moved; but far from the point
+  std::ranges::fill(farther.depth, 4.03f);        // less than counts as seen through, more than half a pixel
   std::ranges::fill(turned.normal, 0x00000040u);  // half way to the side
-  for (const float value : mean({}, turned)) EXPECT_EQ(value, kOwn);
+  for (const Facing& other : {nearer, farther, turned})
+    for (const float value : mean({}, other)) EXPECT_EQ(value, kOwn);
 }
 
 TEST_F(Means, leave_out_all_within_the_radius_of_what_moves_and_nothing_far) {

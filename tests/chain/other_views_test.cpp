@@ -1,19 +1,14 @@
 // What other frames and views show behind the first surface lies where it is in the world, and stands still.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <algorithm>
 #include <array>
-#include <cmath>
 #include <random>
 
-#include "core/chain/chain.h"
 #include "core/chain/margin.h"
 #include "kernels/reprojection.h"
-#include "tests/support/difference.h"
+#include "tests/support/chain.h"
 #include "tests/support/seen_views.h"
-#include "tests/support/single_pass.h"
 
 namespace alcove {
 namespace {
@@ -179,33 +174,26 @@ TEST(OtherViews, their_order_changes_no_bit) {
   EXPECT_EQ(hidden_of(shot[2], others).planes, hidden.planes);
 }
 
-TEST(OtherViews, a_part_of_the_frame_has_the_bits_of_the_whole) {
+TEST(OtherViews, parts_of_the_frame_have_the_bits_of_the_whole_and_share_what_is_counted) {
   const std::vector<Rendering> shot = MovingBox::renderings();
   const std::vector<OtherView> others = others_of(shot, 2, true);
   const Hidden whole = hidden_of(shot[2], others);
-  Shot part = shot[2].shot;
-  part.data = {31, 7, 40, 45};
-  const Rendering cut = render(MovingBox::at(2), part);
-  EXPECT_EQ(hidden_of(cut, others).planes, cropped(whole.planes, shot[2].shot.data, part.data));
-  EXPECT_GT(surfaces(hidden_of(cut, others)), 100);
-}
-
-TEST(OtherViews, parts_of_the_frame_share_what_is_counted) {
-  const std::vector<Rendering> shot = MovingBox::renderings();
-  const std::vector<OtherView> others = others_of(shot, 2, true);
-  const ViewCounts whole = hidden_of(shot[2], others).counts;
   ViewCounts sum{};
-  for (const int left : {0, kWidth / 2}) {
+  for (const Window& window :
+       {Window{31, 7, 40, 45}, {0, 0, kWidth / 2, kHeight}, {kWidth / 2, 0, kWidth / 2, kHeight}}) {
     Shot part = shot[2].shot;
-    part.data = {left, 0, kWidth / 2, kHeight};
-    const ViewCounts counts = hidden_of(render(MovingBox::at(2), part), others).counts;
-    sum.moved += counts.moved;
-    sum.unconfirmed += counts.unconfirmed;
+    part.data = window;
+    const Hidden hidden = hidden_of(render(MovingBox::at(2), part), others);
+    EXPECT_EQ(hidden.planes, cropped(whole.planes, shot[2].shot.data, window));
+    EXPECT_GT(surfaces(hidden), 100);
+    if (window.height < kHeight) continue;
+    sum.moved += hidden.counts.moved;
+    sum.unconfirmed += hidden.counts.unconfirmed;
   }
-  EXPECT_GT(whole.moved, 200u);
-  EXPECT_GE(sum.moved, whole.moved);
-  EXPECT_LE(sum.moved, whole.moved + whole.moved / 8) << "what lies on the border is of both";
-  EXPECT_LE(sum.unconfirmed, whole.unconfirmed + whole.unconfirmed / 8 + 8);
+  EXPECT_GT(whole.counts.moved, 200u);
+  EXPECT_GE(sum.moved, whole.counts.moved);
+  EXPECT_LE(sum.moved, whole.counts.moved + whole.counts.moved / 8) << "what lies on the border is of both";
+  EXPECT_LE(sum.unconfirmed, whole.counts.unconfirmed + whole.counts.unconfirmed / 8 + 8);
 }
 
 TEST(OtherViews, surfaces_of_files_and_of_views_are_one_list) {
@@ -231,10 +219,8 @@ struct Part {
 
   Rendering whole = furnished_room(kWidth, kHeight), part = whole;
   Part() {
-    const Window window{kAround.x, kAround.y, kWidth - 2 * kAround.x, kHeight - 2 * kAround.y};
-    part.frame.depth = cropped(whole.frame.depth, whole.shot.data, window);
-    part.frame.normal = cropped(whole.frame.normal, whole.shot.data, window);
-    part.shot.data = part.frame.data = window;
+    part.shot.data = {kAround.x, kAround.y, kWidth - 2 * kAround.x, kHeight - 2 * kAround.y};
+    part.frame = crop_of(whole.frame, part.shot.data);
   }
 
   std::vector<float> ao_with(const Margin& margin, const EstimatorSettings& settings, uint* tiles = nullptr) const {
@@ -245,8 +231,7 @@ struct Part {
     const FrameOutputs outputs = run_chain(recorder(), inputs, settings);
     recorder().run();
     if (tiles) *tiles = outputs.tiles->as<TileCounts>()[0].listed;
-    const auto ao = outputs.ao->as<float>();
-    return {ao.begin(), ao.end()};
+    return values_of(outputs.ao);
   }
 };
 
@@ -256,7 +241,7 @@ TEST(OtherViews, what_they_show_around_the_picture_blocks_at_its_border) {
   settings.radius = 1;
   settings.slices = 16;
   const std::vector<float> truth =
-      cropped(compute_ao(recorder(), room.whole.frame, settings).ao, room.whole.shot.data, room.part.shot.data);
+      cropped(ao_of(room.whole.frame, settings), room.whole.shot.data, room.part.shot.data);
   const double without = difference(room.ao_with({}, settings), truth).rmse;
   const double with = difference(room.ao_with({Part::kAround, Part::kAround}, settings), truth).rmse;
   const double half = difference(room.ao_with({{12, 8}, {12, 8}}, settings), truth).rmse;
@@ -321,8 +306,7 @@ TEST(OtherViews, normals_at_the_border_are_those_without_a_margin) {
     inputs.margin = margin;
     const FrameOutputs outputs = run_chain(recorder(), inputs, settings, output);
     recorder().run();
-    const auto normal = outputs.normal->as<float>();
-    return std::vector<float>(normal.begin(), normal.end());
+    return values_of(outputs.normal);
   };
   EXPECT_EQ(normals_with({{8, 8}, {8, 8}}), normals_with({}));
 }

@@ -32,13 +32,6 @@ Polygon plate(double y, double half_width, double half_height, double x = 0) {
   return parallelogram({x - half_width, y, -half_height}, {2 * half_width, 0, 0}, {0, 0, 2 * half_height});
 }
 
-/// The six sides of a closed box.
-std::vector<Polygon> box(Vec3 low, Vec3 size) {
-  const Vec3 x{size.x, 0, 0}, y{0, size.y, 0}, z{0, 0, size.z};
-  return {parallelogram(low, x, y),     parallelogram(low, y, z),     parallelogram(low, z, x),
-          parallelogram(low + z, x, y), parallelogram(low + x, y, z), parallelogram(low + y, z, x)};
-}
-
 /// The planes of GBuffer::hidden.
 std::vector<float> hidden_of(const HostFrame& frame, int kept = 3) {
   gpu::Recorder& gpu = recorder();
@@ -66,7 +59,7 @@ double closing(const std::vector<float>& hidden, std::size_t plane = 0) {
 TEST(Pair, a_sphere_and_a_box_are_solid) {
   EXPECT_GE(closing(hidden_of(peeled({{ball({0, 0, 0}, 1)}}, kShot, 2))), 0.98);
   Scene boxes;
-  for (const Polygon& side : box({-0.7, -0.7, -0.5}, {1.2, 1.1, 0.9})) boxes.primitives.push_back(side);
+  boxes.add(parallelepiped({-0.7, -0.7, -0.5}, {1.2, 0, 0}, {0, 1.1, 0}, {0, 0, 0.9}));
   EXPECT_GE(closing(hidden_of(peeled(boxes, kShot, 2))), 0.95);
   boxes.primitives.push_back(Plane{{0, 3, 0}, {0, -1, 0}});
   const std::vector<float> before_wall = hidden_of(peeled(boxes, kShot, 3));

@@ -1,15 +1,8 @@
 // Normals reconstructed from depth are nearer to the truth than cross products of neighbours, on curved surfaces and at
 // edges.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <numbers>
-
-#include "core/chain/chain.h"
-#include "core/chain/compute.h"
-#include "tests/support/device.h"
-#include "tests/support/scenes.h"
+#include "tests/support/bent.h"
+#include "tests/support/chain.h"
 
 namespace alcove {
 namespace {
@@ -29,7 +22,7 @@ Angles angles_of(const Rendering& rendering, const Normal& normal) {
     for (int x = 1; x + 1 < rendering.shot.data.width; x++) {
       if (rendering.at(x, y).primitive < 0) continue;
       const double cosine = dot(normal(x, y), rendering.shot.view_from_world(rendering.at(x, y).normal));
-      const double angle = std::acos(std::min(1.0, std::abs(cosine))) * 180 / std::numbers::pi;
+      const double angle = std::acos(std::min(1.0, std::abs(cosine))) / kRadian;
       angles.mean += angle, angles.above_10 += angle > 10, count++;
     }
   angles.mean /= count, angles.above_10 /= count;
@@ -39,16 +32,8 @@ Angles angles_of(const Rendering& rendering, const Normal& normal) {
 Angles reconstructed(const Rendering& rendering) {
   HostFrame frame = rendering.frame;
   frame.normal.clear();
-  OutputSettings output;
-  output.aovs = "normal";
-  const FrameOutputs outputs = run_chain(recorder(), upload(recorder(), frame), plain_settings(), output);
-  recorder().run();
-  const auto n = outputs.normal->as<float>();
-  const std::size_t plane = frame.data.pixels(), width = std::size_t(frame.data.width);
-  return angles_of(rendering, [&](int x, int y) {
-    const std::size_t i = std::size_t(y) * width + std::size_t(x);
-    return Vec3{n[i], n[i + plane], n[i + 2 * plane]};
-  });
+  const std::vector<Vec3> normals = vectors_in(planes_of(frame, plain_settings(), "normal").normal);
+  return angles_of(rendering, [&](int x, int y) { return normals[std::size_t(y * frame.data.width + x)]; });
 }
 
 /// The cross product of the differences to the right and lower neighbours.
@@ -75,7 +60,7 @@ TEST(Reconstruction, follows_curved_surfaces) {
 }
 
 TEST(Reconstruction, keeps_edges_of_flat_surfaces) {
-  Scene scene{{Plane{.point = {0, 0, 0}, .normal = {0, 0, 1}}}};
+  Scene scene{{kFloor}};
   for (int i = 0; i < 12; i++)
     scene.primitives.push_back(parallelogram({-3 + 0.5 * i, 0, 0}, {0.2, 0.1, 0}, {0, 0.3, 1}));
   for (const bool perspective : {true, false}) {

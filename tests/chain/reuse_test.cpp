@@ -1,23 +1,18 @@
-// What a frame has in common with the one before it is not computed again, and has the bits of what is.
+// What a frame has in common with the one before it is not computed again, and has the bits of what is; so has an
+// adaptive density, of which neighbours decide.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gmock/gmock.h>
 
-#include <algorithm>
 #include <array>
-#include <cstdlib>
-#include <functional>
 #include <nlohmann/json.hpp>
 
 #include "core/base/estimator_facts.h"
-#include "core/chain/compute.h"
 #include "core/formats/exr.h"
 #include "core/run/frame_run.h"
-#include "tests/support/device.h"
-#include "tests/support/difference.h"
-#include "tests/support/long_tests.h"
+#include "tests/support/chain.h"
 #include "tests/support/random_scenes.h"
 #include "tests/support/sequence_folder.h"
-#include "tests/support/single_pass.h"
+#include "tests/support/site_frames.h"
 
 namespace alcove {
 namespace {
@@ -29,8 +24,7 @@ std::vector<float> values_of(const FrameOutputs& outputs) {
   std::vector<float> values;
   for (const auto* planes :
        {outputs.ao, outputs.scales, outputs.bent_normal, outputs.confidence, outputs.specular_occlusion}) {
-    if (!planes) continue;
-    const auto plane = planes->as<float>();
+    const std::vector<float> plane = test::values_of(planes);
     values.insert(values.end(), plane.begin(), plane.end());
   }
   return values;
@@ -72,9 +66,14 @@ std::vector<float> alone(const HostFrame& frame, const EstimatorSettings& settin
   return values_of(outputs);
 }
 
-/// Something is put into a rectangle of a frame, is taken from it, or turns its normals.
+/// Something is put into a rectangle of a frame, is taken from it, or turns its normals: next to the border of a block
+/// of 32 pixels, or anywhere.
 void change(HostFrame& frame, RandomScenes& random) {
-  const int x0 = random.whole(0, frame.data.width - 1), y0 = random.whole(0, frame.data.height - 1);
+  const auto place = [&](int size) {
+    const int near_border = 32 * random.whole(0, size / 32) + random.whole(0, 3);
+    return random.whole(0, 1) ? random.whole(0, size - 1) : std::min(size - 1, near_border);
+  };
+  const int x0 = place(frame.data.width), y0 = place(frame.data.height);
   const int x1 = std::min(frame.data.width, x0 + random.whole(1, 12)),
             y1 = std::min(frame.data.height, y0 + random.whole(1, 12)), kind = random.whole(0, 3);
   for (int y = y0; y < y1; y++)
@@ -135,11 +134,8 @@ TEST(Reuse, looks_as_far_as_a_receiver_reaches) {
   const Scene scene{{parallelogram({-9, -9, 0}, {18, 0, 0}, {0, 18, 0})}};
   const HostFrame floor = render(scene, Shot::perspective({0, 0, 3}, {0.01, 0, 0}, 50, 288, 96)).frame;
   for (const Estimator estimator : {Estimator::gtao, Estimator::crytek}) {
-    EstimatorSettings settings = plain_settings();
-    settings.estimator = estimator;
-    settings.radius = 1;
-    settings.slices = 2;
-    settings.steps = settings.samples = 32;
+    EstimatorSettings settings = sampled(estimator, 1, 2, 32);
+    settings.samples = 32;
     Lane lane(device());
     std::uint64_t kept = 0;
     for (int wall = 4; wall < 284; wall += 24) {
@@ -158,8 +154,7 @@ TEST(Reuse, looks_as_far_as_a_receiver_reaches) {
 /// `goes_on` to its right. Along the whole bar the step closes a solid, or does not, by how they end there.
 HostFrame bar_before_step(bool goes_on) {
   constexpr std::size_t kWidth = 128, kHeight = 64, kEnd = 64;
-  const Scene wall{{Plane{{0, 0, 0}, {0, 0, 1}}}};
-  HostFrame frame = render(wall, Shot::orthographic({0, 0, 5}, {0, 0.001, 0}, 1.28, kWidth, kHeight)).frame;
+  HostFrame frame = render({{kFloor}}, Shot::orthographic({0, 0, 5}, {0, 0.001, 0}, 1.28, kWidth, kHeight)).frame;
   frame.behind.assign(2, {});
   frame.behind_depth.assign(2 * kWidth * kHeight, 0);
   for (std::size_t y = 24; y < 40; y++)
@@ -176,11 +171,8 @@ HostFrame bar_before_step(bool goes_on) {
 TEST(Reuse, looks_as_far_as_the_ends_of_hidden_surfaces_are_followed) {
   const HostFrame solid = bar_before_step(false), open = bar_before_step(true);
   for (const Estimator estimator : {Estimator::gtao, Estimator::bitmask}) {
-    EstimatorSettings settings = plain_settings();
-    settings.estimator = estimator;
-    settings.radius = 0.25;  // 25 px, and the bar's other end is 64 px away from the changed block
-    settings.slices = 4;
-    settings.steps = 16;
+    // 25 px, and the bar's other end is 64 px away from the changed block
+    const EstimatorSettings settings = sampled(estimator, 0.25, 4, 16);
     const std::vector<float> of_solid = alone(solid, settings), of_open = alone(open, settings);
     int far_changes = 0;
     for (std::size_t y = 0; y < 64; y++)
@@ -295,6 +287,58 @@ TEST(Reuse, leaves_most_of_a_frame_in_which_little_moves) {
   EXPECT_GT(next.kept, 2 * listed / 3);
 }
 
+// An adaptive density.
+
+EstimatorSettings adaptive(double radius, int spacing = 16) {
+  EstimatorSettings settings;
+  settings.radius = radius;
+  settings.stride = spacing;
+  return settings;
+}
+
+/// A room with strands a pixel wide before it, so that all lattices have sites.
+HostFrame hairy_room(int width, int height) {
+  HostFrame frame = furnished_room(width, height).frame;
+  add_strands(frame);
+  return frame;
+}
+
+TEST(Density, of_kept_tiles_is_that_of_a_fresh_run) {
+  RandomScenes random(99);
+  std::uint64_t kept = 0;
+  int frames = 0;
+  for (int scene = 0; scene < 7 && !HasFailure(); scene++) {
+    EstimatorSettings settings = adaptive(scene % 2 ? 0.02 : 0.05, 16 >> (scene % 3));
+    settings.estimator = scene == 3 ? Estimator::bitmask : Estimator::gtao;
+    settings.slices = 1;
+    settings.steps = 4;
+    // At a quarter of the resolution the choice of sites reaches farther than a block of changes.
+    const bool is_quarter = scene >= 5;
+    if (is_quarter) settings.resolution = Resolution::quarter;
+    HostFrame frame = is_quarter ? hairy_room(640, 480) : hairy_room(250, 190);
+    Lane lane(device());
+    for (int i = 0; i < (long_tests() ? 25 : 12) && !HasFailure(); i++, frames++) {
+      if (i > 0) change(frame, random);
+      frame.frame = i;
+      const Outcome next = next_of(lane, frame, settings);
+      EXPECT_TRUE(same_bits(next.values, alone(frame, settings))) << "scene " << scene << " frame " << i;
+      kept += next.is_same ? 0 : next.kept;
+    }
+  }
+  EXPECT_GT(kept, std::uint64_t(frames) * 150) << "tiles";
+}
+
+TEST(Density, of_a_still_scene_does_not_flicker) {
+  HostFrame frame = hairy_room(180, 140);
+  frame.frame = 1;
+  const std::vector<float> first = ao_of(frame, adaptive(0.5));
+  frame.frame = 2;
+  EXPECT_TRUE(same_bits(ao_of(frame, adaptive(0.5)), first));
+  EstimatorSettings animated = adaptive(0.5);
+  animated.noise = Noise::animated;
+  EXPECT_FALSE(same_bits(ao_of(frame, animated), first));
+}
+
 class ReuseOfFrames : public SequenceFolder {
  protected:
   void write_with_view_normals(int first, int last) const {
@@ -302,15 +346,27 @@ class ReuseOfFrames : public SequenceFolder {
     turn_normals_to_view(frame);
     for (int i = first; i <= last; i++) frame.write(input(i));
   }
-};
 
-json stats(const std::string& path) { return json::parse(read_bytes(path)); }
+  /// Runs, and expects the same files of a run that computes all of each frame. Returns the frames' statistics.
+  json stats_of(std::vector<std::string> options) const {
+    const std::string path = folder / "stats.json";
+    options.insert(options.end(), {"--threads", "1", "--set", "overwrite=true", "--stats", path});
+    EXPECT_EQ(run(options).code, 0);
+    const json frames = json::parse(read_bytes(path))["frames"];
+    const auto reused = outputs();
+    options.push_back("--no-skip");
+    EXPECT_EQ(run(options).code, 0);
+    EXPECT_FALSE(reused.empty());
+    for (const auto& [name, bytes] : outputs()) EXPECT_TRUE(reused.at(name) == bytes) << name;
+    const json all = json::parse(read_bytes(path))["frames"];
+    for (const auto& frame : all) EXPECT_FALSE(frame["passes"].empty());
+    return frames;
+  }
+};
 
 TEST_F(ReuseOfFrames, equal_frames_are_computed_once_a_thread) {
   write_frames(1, 6);
-  const std::string path = folder / "stats.json";
-  ASSERT_EQ(run({"--threads", "1", "--stats", path}).code, 0);
-  const json frames = stats(path)["frames"];
+  const json frames = stats_of({});
   ASSERT_EQ(frames.size(), 6);
   EXPECT_FALSE(frames[0]["passes"].empty());
   for (std::size_t i = 1; i < 6; i++) {
@@ -320,12 +376,6 @@ TEST_F(ReuseOfFrames, equal_frames_are_computed_once_a_thread) {
     EXPECT_EQ(frames[i]["tiles"]["kept"], frames[0]["tiles"]["computed"]);
     EXPECT_EQ(frames[i]["tiles"]["total"], frames[0]["tiles"]["total"]);
   }
-  const auto reused = outputs();
-  ASSERT_EQ(run({"--threads", "1", "--no-skip", "--set", "overwrite=true", "--stats", path}).code, 0);
-  const json computed = stats(path);
-  for (const auto& frame : computed["frames"]) EXPECT_FALSE(frame["passes"].empty());
-  EXPECT_EQ(reused.size(), 6);
-  EXPECT_TRUE(outputs() == reused);
 }
 
 /// Values that are other in the frame of that number.
@@ -355,16 +405,9 @@ TEST_F(ReuseOfFrames, other_light_over_the_same_surfaces_is_composed_anew) {
     changes[i]();
     frame.write(input(int(i) + 1));
   }
-  const std::string path = folder / "stats.json";
-  const std::vector<std::string> options{"--composite", out + "/comp.%04d.exr",
-                                         "--aov",       "ao,confidence,specular-occlusion,bent-normal",
-                                         "--radius",    "0.3",
-                                         "--threads",   "1",
-                                         "--stats",     path};
-  ASSERT_EQ(run(options).code, 0);
   std::vector<int> kept, passes;
-  const json statistics = stats(path);
-  for (const auto& report : statistics["frames"]) {
+  for (const auto& report : stats_of({"--composite", out + "/comp.%04d.exr", "--radius", "0.3", "--aov",
+                                      "ao,confidence,specular-occlusion,bent-normal"})) {
     kept.push_back(report["tiles"]["kept"].get<int>());
     passes.push_back(int(report["passes"].size()));
   }
@@ -372,12 +415,6 @@ TEST_F(ReuseOfFrames, other_light_over_the_same_surfaces_is_composed_anew) {
   EXPECT_THAT(kept, testing::ElementsAre(0, all, all, all, testing::AllOf(testing::Gt(0), testing::Lt(all)), all));
   EXPECT_THAT(passes,
               testing::ElementsAre(testing::Gt(0), testing::Gt(0), 0, testing::Gt(0), testing::Gt(0), testing::Gt(0)));
-  const auto reused = outputs();
-  std::vector<std::string> without = options;
-  without.insert(without.end(), {"--no-skip", "--set", "overwrite=true"});
-  ASSERT_EQ(run(without).code, 0);
-  ASSERT_EQ(reused.size(), 12);
-  for (const auto& [name, bytes] : outputs()) EXPECT_TRUE(reused.at(name) == bytes) << name;
 }
 
 TEST_F(ReuseOfFrames, a_camera_that_turns_turns_the_directions) {
@@ -392,16 +429,7 @@ TEST_F(ReuseOfFrames, a_camera_that_turns_turns_the_directions) {
   write_bytes(camera, cameras.dump());
   for (const std::string space : {"world", "view"}) {
     if (space == "view") write_with_view_normals(1, 4);
-    const std::vector<std::string> options{"--aov", "ao,normal,bent-normal", "--normal-space", space, "--threads", "1",
-                                           "--set", "overwrite=true"};
-    ASSERT_EQ(run(options).code, 0);
-    const auto reused = outputs();
-    std::vector<std::string> without = options;
-    without.push_back("--no-skip");
-    ASSERT_EQ(run(without).code, 0);
-    ASSERT_EQ(reused.size(), 4);
-    for (const auto& [name, bytes] : outputs())
-      EXPECT_TRUE(reused.at(name) == bytes) << name << ", normals in " << space;
+    stats_of({"--aov", "ao,normal,bent-normal", "--normal-space", space});
     // Normals in world space turn the other way in the view, and are as they were when they are written.
     const std::string told = space == "world" ? "Y" : "normal.X";
     const Image before = read_exr_image(output(2)), after = read_exr_image(output(3));

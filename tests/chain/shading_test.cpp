@@ -1,49 +1,29 @@
-// What is made of the visibility: shaping, multi-bounce, specular occlusion, and the bent normal of a slice; each
-// against its definition.
+// What is made of the visibility: shaping, multi-bounce, specular occlusion; each against its definition.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gtest/gtest.h>
-
-#include <algorithm>
 #include <bit>
-#include <cmath>
-#include <functional>
-#include <limits>
-#include <numbers>
 #include <random>
-#include <vector>
 
-#include "core/chain/compute.h"
 #include "core/chain/shading.h"
 #include "kernels/geometry.h"
-#include "tests/support/device.h"
-#include "tests/support/scenes.h"
+#include "tests/support/chain.h"
 
 namespace alcove {
 namespace {
 
-/// The kernels' own function, compiled as C++.
-namespace glsl {
-using std::acos, std::clamp, std::cos, std::max, std::sin;
-#include "kernels/bent.glsl"
-}  // namespace glsl
-
-using test::Plane, test::Rendering, test::Scene, test::Shot, test::Sphere, test::Vec3;
+using namespace test;
 using Planes = std::vector<float>;
 
-constexpr double kPi = std::numbers::pi;
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN(), kInfinity = std::numeric_limits<float>::infinity();
-
 gpu::Buffer& given(const char* name, const Planes& values) {
-  gpu::Buffer& buffer = test::recorder().buffer(name, values.size() * sizeof(float), gpu::Use::upload);
+  gpu::Buffer& buffer = recorder().buffer(name, values.size() * sizeof(float), gpu::Use::upload);
   std::ranges::copy(values, buffer.as<float>().begin());
-  test::recorder().upload(buffer);
+  recorder().upload(buffer);
   return buffer;
 }
 
 /// What a pass makes of the frame's G-buffer.
 Planes pass(const HostFrame& frame, const std::function<gpu::Buffer&(const GBuffer&, FrameInputs&)>& record,
             FrameCounts* counts = nullptr) {
-  gpu::Recorder& gpu = test::recorder();
+  gpu::Recorder& gpu = recorder();
   FrameInputs inputs = upload(gpu, frame);
   upload(gpu, inputs);
   const GBuffer gbuffer = prepare(gpu, inputs);
@@ -53,14 +33,14 @@ Planes pass(const HostFrame& frame, const std::function<gpu::Buffer&(const GBuff
   gpu.download(*gbuffer.counts);
   gpu.run();
   if (counts) *counts = gbuffer.counts->as<FrameCounts>()[0];
-  return {result.as<float>().begin(), result.as<float>().end()};
+  return values_of(&result);
 }
 
 /// A ball before a tilted floor, and sky: normals and depths of all kinds.
 Rendering ball() {
-  return test::render({{Plane{.point = {0, 0, -1}, .normal = test::unit({-0.2, 0, 1})},
-                        Sphere{.center = {6, 0.3, 0.4}, .radius = 1.6}}},
-                      Shot::perspective({}, {1, 0, 0}, 70, 61, 47));
+  return render(
+      {{Plane{.point = {0, 0, -1}, .normal = unit({-0.2, 0, 1})}, Sphere{.center = {6, 0.3, 0.4}, .radius = 1.6}}},
+      Shot::perspective({}, {1, 0, 0}, 70, 61, 47));
 }
 
 bool is_sky(const HostFrame& frame, std::size_t i) { return !(frame.depth[i] < 1e9f); }
@@ -80,8 +60,7 @@ Planes shaped(const HostFrame& frame, const Planes& ao, const EstimatorSettings&
       frame,
       [&](const GBuffer& gbuffer, FrameInputs& inputs) -> gpu::Buffer& {
         if (material) inputs[RawPlane::material_ao] = &given("test material", *material);
-        return shape(test::recorder(), gbuffer, given("test ao", ao), shaping_of(settings),
-                     inputs[RawPlane::material_ao]);
+        return shape(recorder(), gbuffer, given("test ao", ao), shaping_of(settings), inputs[RawPlane::material_ao]);
       },
       counts);
 }
@@ -148,7 +127,7 @@ Planes bounced(const Planes& ao, double albedo, const Planes* colors = nullptr) 
   return pass(frame, [&](const GBuffer& gbuffer, FrameInputs& inputs) -> gpu::Buffer& {
     inputs.albedo_value = albedo;
     if (colors) inputs[RawPlane::albedo] = &given("test albedo", *colors);
-    return multi_bounce(test::recorder(), gbuffer, given("test ao", ao), inputs);
+    return multi_bounce(recorder(), gbuffer, given("test ao", ao), inputs);
   });
 }
 
@@ -216,7 +195,7 @@ Vec3 normal_at(const HostFrame& frame, std::size_t i) {
 Planes specular(const HostFrame& frame, const Planes& ao, double roughness, const Planes* bent = nullptr) {
   return pass(frame, [&](const GBuffer& gbuffer, FrameInputs&) -> gpu::Buffer& {
     gpu::Buffer& visibility = given("test ao", ao);
-    return specular_occlusion(test::recorder(), gbuffer, bent ? given("test bent", *bent) : *gbuffer.normal, visibility,
+    return specular_occlusion(recorder(), gbuffer, bent ? given("test bent", *bent) : *gbuffer.normal, visibility,
                               roughness);
   });
 }
@@ -224,21 +203,20 @@ Planes specular(const HostFrame& frame, const Planes& ao, double roughness, cons
 /// Towards the eye of a perspective camera, and the mirror image of it.
 Vec3 mirror_at(const Rendering& rendering, std::size_t i) {
   const auto& hit = rendering.hits[i];
-  const Vec3 to_eye = test::unit(rendering.shot.eye - hit.position);
-  return rendering.shot.view_from_world(2 * test::dot(hit.normal, to_eye) * hit.normal - to_eye);
+  const Vec3 to_eye = unit(rendering.shot.eye - hit.position);
+  return rendering.shot.view_from_world(2 * dot(hit.normal, to_eye) * hit.normal - to_eye);
 }
 
 /// Parts of the cone about `axis` that lie in the cone about `other`, by even points of its cap.
 double shared(Vec3 axis, double cos_axis, Vec3 other, double cos_other) {
-  const Vec3 x = test::unit(test::cross(axis, std::abs(axis.z) < 0.9 ? Vec3{0, 0, 1} : Vec3{1, 0, 0})),
-             y = test::cross(axis, x);
+  const Vec3 x = unit(cross(axis, std::abs(axis.z) < 0.9 ? Vec3{0, 0, 1} : Vec3{1, 0, 0})), y = cross(axis, x);
   constexpr int kRings = 300, kTurns = 300;
   int inside = 0;
   for (int r = 0; r < kRings; r++)
     for (int t = 0; t < kTurns; t++) {
       const double c = 1 - (r + 0.5) / kRings * (1 - cos_axis), s = std::sqrt(1 - c * c),
                    turn = 2 * kPi * (t + 0.5 * (r % 2)) / kTurns;
-      inside += test::dot(c * axis + s * (std::cos(turn) * x + std::sin(turn) * y), other) > cos_other;
+      inside += dot(c * axis + s * (std::cos(turn) * x + std::sin(turn) * y), other) > cos_other;
     }
   return double(inside) / (kRings * kTurns);
 }
@@ -263,7 +241,7 @@ TEST(SpecularOcclusion, is_the_part_of_the_lobe_that_the_visible_cone_holds) {
   std::vector<Vec3> bent(ao.size());
   for (std::size_t i = 0; i < ao.size(); i++) {
     bent[i] = is_sky(frame, i) ? Vec3{0, 0, 1}
-                               : test::unit(normal_at(frame, i) + Vec3{spread(random), spread(random), spread(random)});
+                               : unit(normal_at(frame, i) + Vec3{spread(random), spread(random), spread(random)});
     packed[i] = packed_as_float(bent[i]);
   }
   for (const double roughness : {0.15, 0.4, 0.8}) {
@@ -290,7 +268,7 @@ TEST(SpecularOcclusion, of_a_mirror_is_all_or_nothing) {
   int seen = 0, hidden = 0;
   for (std::size_t i = 0; i < ao.size(); i++) {
     if (is_sky(frame, i)) continue;
-    const double cosine = std::clamp(test::dot(mirror_at(rendering, i), normal_at(frame, i)), -1.0, 1.0);
+    const double cosine = std::clamp(dot(mirror_at(rendering, i), normal_at(frame, i)), -1.0, 1.0);
     const double beyond = std::acos(cosine) - std::acos(std::sqrt(1 - ao[i]));
     seen += beyond < -lobe;
     hidden += beyond > lobe;
@@ -298,61 +276,6 @@ TEST(SpecularOcclusion, of_a_mirror_is_all_or_nothing) {
     if (beyond > lobe) ASSERT_EQ(result[i], 0.0f);
   }
   EXPECT_GT(std::min(seen, hidden), 100);
-}
-
-// The bent normal of a slice.
-
-/// The integral over one side of a slice up to an angle, by the kernels' function.
-vec2 bent_to(double theta, double gamma) {
-  return glsl::bent_to(float(std::cos(theta)), float(std::sin(theta)), float(std::cos(gamma)), float(std::sin(gamma)));
-}
-
-TEST(BentNormal, of_a_side_is_its_integral) {
-  for (double gamma = -1.5; gamma <= 1.5; gamma += 0.25) {
-    for (double part = 0; part <= 1; part += 0.125) {
-      const double h = part * (gamma + kPi / 2);
-      double across = 0, toward = 0;
-      constexpr int kSteps = 2000;
-      for (int i = 0; i < kSteps; i++) {
-        const double theta = h * (i + 0.5) / kSteps, weight = std::cos(theta - gamma) * std::sin(theta) * h / kSteps;
-        across += weight * std::sin(theta);
-        toward += weight * std::cos(theta);
-      }
-      const vec2 result = bent_to(h, gamma);
-      ASSERT_NEAR(result.x, across, 2e-6) << gamma << " " << h;
-      ASSERT_NEAR(result.y, toward, 2e-6) << gamma << " " << h;
-    }
-  }
-}
-
-/// The mean over slices about the view ray z of a receiver; `side` gives the open angle of a side, from its azimuth and
-/// its whole angle.
-Vec3 mean_open_direction(Vec3 normal, const std::function<double(double azimuth, double whole)>& side) {
-  constexpr int kSlices = 2000;
-  Vec3 sum;
-  for (int s = 0; s < kSlices; s++) {
-    const double azimuth = kPi * (s + 0.5) / kSlices;
-    const Vec3 t{std::cos(azimuth), std::sin(azimuth), 0};
-    const double n_t = test::dot(normal, t), weight = std::hypot(n_t, normal.z), gamma = std::atan2(n_t, normal.z);
-    const double h1 = side(azimuth, gamma + kPi / 2), h0 = -side(azimuth + kPi, kPi / 2 - gamma);
-    const vec2 towards_t = bent_to(h1, gamma), away = bent_to(-h0, -gamma);
-    sum = sum + (weight / kSlices) * (double(towards_t.x - away.x) * t + Vec3{0, 0, towards_t.y + away.y});
-  }
-  return sum;
-}
-
-TEST(BentNormal, of_an_open_surface_is_two_thirds_of_its_normal) {
-  for (const Vec3 normal : {Vec3{0, 0, 1}, test::unit({0.5, -0.2, 0.6}), test::unit({-0.9, 0.7, 0.2})}) {
-    const Vec3 mean = mean_open_direction(normal, [](double, double whole) { return whole; });
-    EXPECT_NEAR(test::length(mean - (2.0 / 3) * normal), 0, 1e-5);
-  }
-}
-
-TEST(BentNormal, beside_an_endless_wall_leans_away_by_the_arc_tangent_of_2_over_pi) {
-  const Vec3 mean =
-      mean_open_direction({0, 0, 1}, [](double azimuth, double whole) { return std::cos(azimuth) > 0 ? 0 : whole; });
-  EXPECT_NEAR(std::atan2(-mean.x, mean.z), std::atan(2 / kPi), 1e-5);
-  EXPECT_NEAR(mean.y, 0, 1e-5);
 }
 
 }  // namespace

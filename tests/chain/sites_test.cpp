@@ -2,14 +2,13 @@
 // it.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <array>
-#include <optional>
 #include <set>
 
 #include "core/base/estimator_facts.h"
 #include "core/chain/estimate.h"
+#include "core/chain/filters.h"
+#include "tests/support/chain.h"
 #include "tests/support/random_scenes.h"
 #include "tests/support/site_frames.h"
 #include "tests/support/site_picture.h"
@@ -109,31 +108,6 @@ TEST(Sites, are_those_of_the_rule) {
   EXPECT_GT(added, 1000) << "or else nothing is adaptive";
 }
 
-TEST(Sites, nest_and_leave_no_surface_alone) {
-  std::mt19937 random(21);
-  for (int i = 0; i < 25 && !HasFailure(); i++) {
-    const GBuffer gbuffer = prepared(random_picture(random)).gbuffer;
-    const Picture adaptive = chosen(gbuffer, kAdaptive);
-    std::optional<Picture> wider;
-    for (const int spacing : {16, 8, 4, 2}) {
-      const Picture uniform = chosen(gbuffer, {spacing, false});
-      for (int y = 0; y < uniform.height; y++)
-        for (int x = 0; x < uniform.width; x++) {
-          ASSERT_EQ(uniform.at(x, y).is_site, uniform.at(x, y).is_surface && uniform.is_on_lattice(x, y, spacing));
-          if (wider && wider->at(x, y).is_site) ASSERT_TRUE(uniform.at(x, y).is_site) << spacing;
-          if (spacing == 16 && uniform.at(x, y).is_site) ASSERT_TRUE(adaptive.at(x, y).is_site);
-        }
-      wider = uniform;
-    }
-    for (int y = 0; y < adaptive.height; y++)
-      for (int x = 0; x < adaptive.width; x++) {
-        const Pixel& pixel = adaptive.at(x, y);
-        if (!pixel.is_surface) ASSERT_FALSE(pixel.is_site) << "sky at " << x << " " << y;
-        if (pixel.is_surface && !pixel.is_site) ASSERT_GE(adaptive.quadrants_with_sites(x, y, 1), 2) << x << " " << y;
-      }
-  }
-}
-
 /// Whether a pixel of a plain wall lies in a corner of the picture that no site of the widest lattice closes off.
 bool is_in_open_corner(const Picture& picture, int x, int y) {
   const auto has_lattice = [&](int from_x, int to_x, int from_y, int to_y) {
@@ -159,37 +133,6 @@ TEST(Sites, of_a_plain_wall_are_those_of_the_widest_lattice_up_to_the_border) {
                 ASSERT_EQ(picture.at(u, v).is_site, picture.is_on_lattice(u, v, 16))
                     << u << " " << v << " of " << width << " x " << height << " at " << x << " " << y;
         }
-}
-
-/// A line over a wall, a pixel wide, that goes by so many pixels in x and y at each step.
-HostFrame line_on_wall(int x, int y, int step_x, int step_y, int count) {
-  HostFrame frame = wall_at(0, 0, 45, 37, {-1, 0, 0}, false);
-  for (int i = 0; i < count; i++) {
-    const std::size_t at = std::size_t((y + i * step_y) * 45 + x + i * step_x);
-    frame.depth[at] = 4;
-  }
-  return frame;
-}
-
-TEST(Sites, lie_all_along_a_line_that_is_a_pixel_wide) {
-  for (int offset = 0; offset < 8; offset++)
-    for (const auto& [step_x, step_y] : {std::pair{1, 0}, {0, 1}, {1, 1}, {-1, 1}}) {
-      const int first_x = step_x < 0 ? 40 - offset : 4 + offset, first_y = 5 + (step_x == 0 ? 0 : offset % 4);
-      const Picture picture = chosen(line_on_wall(first_x, first_y, step_x, step_y, 24), kAdaptive);
-      int last = -1;
-      for (int i = 0; i < 24; i++) {
-        if (!picture.at(first_x + i * step_x, first_y + i * step_y).is_site) continue;
-        // A straight line is one surface, so sites share; the pixels of a diagonal one touch at their corners only.
-        EXPECT_LE(i - last, step_x * step_y != 0 ? 1 : 4) << "line " << step_x << " " << step_y << " from " << first_x;
-        last = i;
-      }
-      EXPECT_GE(last, 20) << "line " << step_x << " " << step_y << " from " << first_x;
-      // What goes on beside the line is plain again within 4 px.
-      for (int y = 30; y < 37; y++)
-        for (int x = 40; x < 45; x++)
-          if (std::abs(x - first_x) > 4 && first_y + 24 * step_y + 4 < y)
-            EXPECT_EQ(picture.at(x, y).is_site, is_on_lattice(x, y, 16)) << x << " " << y;
-    }
 }
 
 /// Where a listed site lies.
@@ -252,16 +195,90 @@ TEST(ListedSites, are_those_of_the_listed_tiles_each_once_and_are_counted_by_lat
     }
 }
 
+// Tiles and regions are computed with so many pixels around them.
+TEST(Sites, depend_on_nothing_that_is_more_than_13_pixels_away) {
+  RandomScenes scenes(18);
+  int compared = 0, other = 0;
+  for (int i = 0; i < 60; i++) {
+    const HostFrame whole = scenes.next(2);
+    if (whole.normal.empty() || whole.data.width < 60 || whole.data.height < 60) continue;
+    const int left = scenes.whole(0, 20), top = scenes.whole(0, 20);
+    const Window window{left, top, whole.data.width - left - scenes.whole(0, 8), whole.data.height - top - 3};
+    const Picture expected = chosen(whole, kAdaptive), picture = chosen(crop_of(whole, window), kAdaptive);
+    for (int y = 0; y < window.height; y++)
+      for (int x = 0; x < window.width; x++) {
+        const int away = std::min({x, y, window.width - 1 - x, window.height - 1 - y});
+        const bool is_same = picture.at(x, y).is_site == expected.at(x + left, y + top).is_site;
+        if (away >= kSiteReach) ASSERT_TRUE(is_same) << x << " " << y << " of scene " << i;
+        compared += away >= kSiteReach;
+        other += !is_same;
+      }
+  }
+  EXPECT_GT(compared, 10000);
+  EXPECT_GT(other, 0) << "or else no border was near anything";
+}
+
+// Left open, the stride is 16 of few slices and 2 of many where the density is adaptive, and 4 or 1 where it is uniform;
+// where the denoiser does not share, or blocks of pixels have one estimate, it is 1.
 TEST(SiteRule, follows_the_settings) {
-  EstimatorSettings settings;
-  EXPECT_EQ(site_rule_of(settings).spacing, 16);
-  EXPECT_TRUE(site_rule_of(settings).is_adaptive);
-  settings.density = Density::uniform;
-  EXPECT_FALSE(site_rule_of(settings).is_adaptive);
-  settings.density = Density::adaptive;
-  settings.stride = 1;
-  EXPECT_FALSE(site_rule_of(settings).is_adaptive) << "all pixels are sites";
-  EXPECT_EQ(sites(recorder(), GBuffer{}, site_rule_of(settings)).rows, nullptr);
+  struct Row {
+    std::function<void(EstimatorSettings&)> change;
+    int adaptive, uniform;  // the spacing
+  };
+  const Row rows[]{{[](auto& s) { s.slices = 1; }, 16, 4},
+                   {[](auto& s) { s.slices = 2; }, 16, 4},
+                   {[](auto& s) { s.slices = 3; }, 16, 1},
+                   {[](auto& s) { s.slices = 4; }, 16, 1},
+                   {[](auto& s) { s.slices = 5; }, 2, 1},
+                   {[](auto& s) { s.slices = 16; }, 2, 1},
+                   {[](auto& s) { s.slices = 1, s.denoise = Denoise::none; }, 1, 1},
+                   {[](auto& s) { s.slices = 1, s.denoise = Denoise::box; }, 1, 1},
+                   {[](auto& s) { s.slices = 1, s.estimator = Estimator::bitmask; }, 16, 1},
+                   {[](auto& s) { s.slices = 1, s.estimator = Estimator::hbao; }, 1, 1},
+                   {[](auto& s) { s.slices = 1, s.estimator = Estimator::crytek; }, 1, 1},
+                   {[](auto& s) { s.slices = 1, s.resolution = Resolution::half; }, 1, 1},
+                   {[](auto& s) { s.stride = 1; }, 1, 1},
+                   {[](auto& s) { s.stride = 2; }, 2, 2},
+                   {[](auto& s) { s.stride = 4; }, 4, 4},
+                   {[](auto& s) { s.stride = 8; }, 8, 8},
+                   {[](auto& s) { s.stride = 16; }, 16, 16},
+                   {[](auto& s) { s.stride = 8, s.search = SliceSearch::exact; }, 1, 1},
+                   {[](auto& s) { s.stride = 8, s.tolerance = 0.05; }, 1, 1}};
+  for (const Row& row : rows)
+    for (const Density density : {Density::adaptive, Density::uniform}) {
+      EstimatorSettings settings;
+      settings.density = density;
+      row.change(settings);
+      const int spacing = density == Density::adaptive ? row.adaptive : row.uniform;
+      EXPECT_EQ(spacing_of(settings), spacing) << name_of(settings);
+      EXPECT_EQ(is_adaptive(settings), density == Density::adaptive && spacing > 1) << name_of(settings);
+      EXPECT_EQ(site_rule_of(settings).spacing, spacing) << name_of(settings);
+      EXPECT_EQ(site_rule_of(settings).is_adaptive, is_adaptive(settings)) << name_of(settings);
+      if (spacing == 1) EXPECT_EQ(sites(recorder(), GBuffer{}, site_rule_of(settings)).rows, nullptr);
+    }
+  EXPECT_EQ(EstimatorSettings{}.density, Density::adaptive);
+}
+
+TEST(DenoiseRadius, left_open_is_wide_where_pixels_share_estimates) {
+  for (const auto& [radius, stride, density, expected, weights] : {std::tuple{0, 0, Density::adaptive, 8, 9},
+                                                                   {0, 2, Density::adaptive, 8, 9},
+                                                                   {0, 1, Density::adaptive, 4, 5},
+                                                                   {1, 16, Density::adaptive, 1, 4},
+                                                                   {5, 16, Density::adaptive, 5, 6},
+                                                                   {8, 16, Density::adaptive, 8, 9},
+                                                                   {1, 16, Density::uniform, 1, 9},
+                                                                   {5, 16, Density::uniform, 5, 9},
+                                                                   {8, 16, Density::uniform, 8, 9},
+                                                                   {1, 1, Density::adaptive, 1, 2},
+                                                                   {5, 1, Density::adaptive, 5, 6},
+                                                                   {8, 1, Density::adaptive, 8, 9}}) {
+    EstimatorSettings settings;
+    settings.denoise_radius = radius;
+    settings.stride = stride;
+    settings.density = density;
+    EXPECT_EQ(denoise_radius_of(settings), expected) << name_of(settings);
+    EXPECT_EQ(denoiser_of(settings).weights.size(), std::size_t(weights)) << name_of(settings) << ": reaches all sites";
+  }
 }
 
 }  // namespace

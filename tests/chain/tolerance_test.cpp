@@ -2,22 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <algorithm>
 #include <array>
-#include <cmath>
 
-#include "core/chain/chain.h"
-#include "core/chain/compute.h"
 #include "core/chain/estimate.h"
-#include "core/formats/exr.h"
 #include "kernels/estimate.h"
 #include "kernels/exact_search.h"
-#include "tests/support/device.h"
-#include "tests/support/difference.h"
-#include "tests/support/scenes.h"
-#include "tests/support/single_pass.h"
+#include "tests/support/chain.h"
 
 namespace alcove {
 namespace {
@@ -37,20 +28,12 @@ Outcome run(const HostFrame& frame, double radius, double tolerance) {
   output.aovs = "ao,error";
   const FrameOutputs outputs = run_chain(recorder(), upload(recorder(), frame), settings, output);
   recorder().run();
-  const auto ao = outputs.ao->as<float>(), error = outputs.error->as<float>();
   double sum = 0, receivers = 0;
   for (const vec2& tile : outputs.squares->as<const vec2>()) sum += tile.x, receivers += tile.y;
-  return {{ao.begin(), ao.end()}, {error.begin(), error.end()}, std::sqrt(sum / std::max(receivers, 1.0))};
+  return {values_of(outputs.ao), values_of(outputs.error), std::sqrt(sum / std::max(receivers, 1.0))};
 }
 
-std::vector<float> truth_of(const HostFrame& frame, double radius) {
-  EstimatorSettings settings = plain_settings();
-  settings.radius = radius;
-  settings.thickness = ThicknessKind::automatic;
-  settings.search = SliceSearch::exact;
-  settings.slices = 64;
-  return compute_ao(recorder(), frame, settings).ao;
-}
+std::vector<float> truth_of(const HostFrame& frame, double radius) { return ao_of(frame, exact(radius, 64)); }
 
 double rms_error(const HostFrame& frame, const std::vector<float>& a, const std::vector<float>& b) {
   double sum = 0;
@@ -73,28 +56,9 @@ TEST(Tolerance, is_kept_and_the_estimate_says_so) {
     EXPECT_LT(outcome.estimate, error * 3) << "nor too little";
     EXPECT_LT(error, last);
     last = error;
+    for (std::size_t i = 0; i < truth.size(); i++)
+      ASSERT_TRUE(outcome.error[i] >= 0 && (room.hits[i].primitive >= 0 || outcome.error[i] == 0)) << i;
   }
-}
-
-TEST(Tolerance, error_is_largest_where_the_estimate_is_worst) {
-  const Rendering room = furnished_room(173, 131);
-  const std::vector<float> truth = truth_of(room.frame, 0.6);
-  const Outcome outcome = run(room.frame, 0.6, 0.1);
-  double sure = 0, unsure = 0, sures = 0, unsures = 0;
-  for (std::size_t i = 0; i < truth.size(); i++) {
-    if (room.frame.depth[i] >= kSky) {
-      EXPECT_EQ(outcome.error[i], 0.0f);
-      continue;
-    }
-    EXPECT_GE(outcome.error[i], 0.0f);
-    EXPECT_LE(outcome.error[i], 0.1f) << "converged at most 64 directions";
-    const double squared = std::pow(outcome.ao[i] - truth[i], 2);
-    (outcome.error[i] < 0.01 ? sure : unsure) += squared;
-    (outcome.error[i] < 0.01 ? sures : unsures)++;
-  }
-  ASSERT_GT(sures, 1000);
-  ASSERT_GT(unsures, 1000);
-  EXPECT_LT(sure / sures, 0.25 * unsure / unsures);
 }
 
 /// A part of one of the small rendered frames.
@@ -110,25 +74,6 @@ constexpr std::array kParts{RenderedPart{"monkeys", 0.5, {432, 240, kPartWidth, 
                             RenderedPart{"machine", 0.006, {368, 216, kPartWidth, kPartHeight}},
                             RenderedPart{"interior", 0.35, {288, 216, kPartWidth, kPartHeight}},
                             RenderedPart{"terrain", 100, {376, 200, kPartWidth, kPartHeight}}};
-
-HostFrame load(const RenderedPart& part) {
-  const std::string base = ALCOVE_SOURCE_DIR "/examples/bench/" + std::string(part.scene);
-  InputSettings settings;
-  settings.input = base + ".gbuffer.exr";
-  settings.camera = base + ".camera.json";
-  HostFrame frame = read_host_frame(settings, 0);
-  std::vector<float> normal;
-  const std::size_t pixels = frame.data.pixels();
-  for (std::size_t plane = 0; plane * pixels < frame.normal.size(); plane++) {
-    const auto begin = frame.normal.begin() + std::ptrdiff_t(plane * pixels);
-    const auto part_of_plane = cropped({begin, begin + std::ptrdiff_t(pixels)}, frame.data, part.window);
-    normal.insert(normal.end(), part_of_plane.begin(), part_of_plane.end());
-  }
-  frame.depth = cropped(frame.depth, frame.data, part.window);
-  frame.normal = std::move(normal);
-  frame.data = part.window;
-  return frame;
-}
 
 /// The RMS error of every tile of 8 x 8 pixels that has surfaces, and where it begins.
 struct TileError {
@@ -210,7 +155,7 @@ void add(Shown& shown, const RenderedPart& part, const HostFrame& frame, const s
 TEST(Tolerance, no_tile_that_errs_by_much_is_called_good) {
   std::array all{Shown{0.01}, Shown{0.03}};
   for (const auto& part : kParts) {
-    const HostFrame frame = load(part);
+    const HostFrame frame = crop_of(rendered_frame(part.scene), part.window);
     const std::vector<float> truth = truth_of(frame, part.radius);
     for (auto& shown : all) add(shown, part, frame, truth);
   }
@@ -234,8 +179,7 @@ struct TiledFloor {
   Estimate result{};
 
   static HostFrame floor() {
-    const Scene scene{{Plane{{0, 0, 0}, {0, 0, 1}}}};
-    HostFrame frame = render(scene, Shot::perspective({0, -3, 3}, {0, 0, 0}, 30, 58, 45)).frame;
+    HostFrame frame = render({{kFloor}}, Shot::perspective({0, -3, 3}, {0, 0, 0}, 30, 58, 45)).frame;
     frame.data.x += 3, frame.data.y += 5;
     return frame;
   }
@@ -278,7 +222,7 @@ struct TiledFloor {
   }
 };
 
-constexpr ivec2 kNowhere{-1, -1};
+constexpr ivec2 kNoTile{-1, -1};
 
 TEST(Tolerance, a_tile_that_errs_takes_its_eight_neighbours_along) {
   TiledFloor floor;
@@ -286,35 +230,24 @@ TEST(Tolerance, a_tile_that_errs_takes_its_eight_neighbours_along) {
   for (const ivec2 erring : {ivec2{3, 3}, {0, 0}, {7, 0}, {0, 6}, {7, 6}, {4, 0}, {7, 3}, {1, 5}}) {
     SCOPED_TRACE(fmt::format("tile {}, {}", erring.x, erring.y));
     floor.search.sums.listed = {};
-    ASSERT_EQ(floor.listed_after(0, kNowhere).size(), all) << "all begin";
-    ASSERT_EQ(floor.listed_after(2, kNowhere).size(), all) << "nothing to compare with";
+    ASSERT_EQ(floor.listed_after(0, kNoTile).size(), all) << "all begin";
+    ASSERT_EQ(floor.listed_after(2, kNoTile).size(), all) << "nothing to compare with";
     std::vector<int> expected, found;
     for (int y = std::max(erring.y - 1, 0); y <= std::min(erring.y + 1, TiledFloor::kRows - 1); y++)
       for (int x = std::max(erring.x - 1, 0); x <= std::min(erring.x + 1, TiledFloor::kColumns - 1); x++)
         expected.push_back(y * TiledFloor::kColumns + x);
     for (const ivec2 tile : floor.listed_after(8, erring)) found.push_back(tile.y * TiledFloor::kColumns + tile.x);
     EXPECT_THAT(found, testing::UnorderedElementsAreArray(expected));
-    EXPECT_THAT(floor.listed_after(16, kNowhere), testing::IsEmpty()) << "all agree";
+    EXPECT_THAT(floor.listed_after(16, kNoTile), testing::IsEmpty()) << "all agree";
     EXPECT_THAT(floor.listed_after(32, erring), testing::IsEmpty()) << "an empty list begins nothing";
   }
 }
 
-TEST(Tolerance, a_floor_is_open) {
-  const Scene scene{{parallelogram({-20, -20, 0}, {40, 0, 0}, {0, 40, 0})}};
-  const Rendering floor = render(scene, Shot::perspective({0, -3, 2}, {0, 0, 0}, 60, 61, 47));
-  const Outcome outcome = run(floor.frame, 0.5, 0.01);
+TEST(Tolerance, of_a_floor_finds_no_error) {
+  const HostFrame floor = render({{kFloor}}, Shot::perspective({0, -3, 2}, {0, 0, 0}, 60, 61, 47)).frame;
+  const Outcome outcome = run(floor, 0.5, 0.01);
   for (const float value : outcome.ao) ASSERT_NEAR(value, 1, 1e-4);
   EXPECT_LT(outcome.estimate, 1e-4);
-}
-
-TEST(Tolerance, has_the_same_bits_on_every_run) {
-  const Rendering room = furnished_room(101, 77);
-  const Outcome first = run(room.frame, 0.6, 0.02);
-  for (int i = 0; i < 3; i++) {
-    const Outcome again = run(room.frame, 0.6, 0.02);
-    EXPECT_TRUE(same_bits(again.ao, first.ao));
-    EXPECT_TRUE(same_bits(again.error, first.error));
-  }
 }
 
 TEST(Tolerance, radii_are_each_estimated_by_their_error) {
@@ -327,10 +260,7 @@ TEST(Tolerance, radii_are_each_estimated_by_their_error) {
   output.aovs = "ao,ao-scales,error";
   const FrameOutputs outputs = run_chain(recorder(), upload(recorder(), room.frame), settings, output);
   recorder().run();
-  const auto planes = outputs.scales->as<float>();
-  const std::vector<float> scales(planes.begin(), planes.end());
-  const auto error_plane = outputs.error->as<float>();
-  const std::vector<float> error(error_plane.begin(), error_plane.end());
+  const std::vector<float> scales = values_of(outputs.scales), error = values_of(outputs.error);
   double said = 0;
   for (const vec2& tile : outputs.squares->as<const vec2>()) said += tile.x;
   const std::size_t pixels = room.frame.data.pixels();

@@ -7,8 +7,8 @@
 #include <set>
 
 #include "core/chain/compute.h"
-#include "core/options/presets.h"
 #include "tests/support/device.h"
+#include "tests/support/preset.h"
 #include "tests/support/scenes.h"
 
 namespace alcove {
@@ -16,23 +16,13 @@ namespace {
 
 using namespace test;
 
-/// The settings of one of ours.
-EstimatorSettings settings_of(const std::string& preset) {
-  RunOptions options;
-  const auto table = option_table(options);
-  for (const auto& [name, text] : preset_texts())
-    if (name == preset) read_said(options, said_by_text(name, text, table));
-  options.settings.estimator.radius = 0.5;
-  return options.settings.estimator;
-}
-
 TEST(WarmUp, makes_every_kernel_that_a_frame_runs_and_each_once) {
   Scene scene;
   scene.primitives = {parallelogram({-2, -1, -6}, {4, 0, 0}, {0, 0, 4}),
                       parallelogram({-2, -1, -6}, {0, 3, 0}, {4, 0, 0})};
   const HostFrame frame = render(scene, Shot::perspective({0, 0, 0}, {0, 0, -1}, 60, 96, 64)).frame;
   for (const char* preset : {"draft", "standard", "production", "reference"}) {
-    const EstimatorSettings settings = settings_of(preset);
+    const EstimatorSettings settings = test::preset(preset, 0.5);
     const WarmUp warm_up(device(), settings, {}, 0);
     std::set<std::string> made;
     for (const auto& name : warm_up.names()) made.insert(name.first);
@@ -43,7 +33,7 @@ TEST(WarmUp, makes_every_kernel_that_a_frame_runs_and_each_once) {
 }
 
 TEST(WarmUp, begins_with_what_has_the_most_code) {
-  const WarmUp warm_up(device(), settings_of("standard"), {}, 0);
+  const WarmUp warm_up(device(), preset("standard", 0.5), {}, 0);
   ASSERT_FALSE(warm_up.names().empty());
   EXPECT_EQ(warm_up.names().front().first, "horizon");
 }

@@ -184,17 +184,14 @@ TEST_F(Driver, of_a_gpu_is_told_to_keep_nan_in_every_kernel) {
 }
 
 TEST_F(Driver, may_have_a_portable_part_of_vulkan_only) {
+  { const gpu::Device whole(options()); }
+  EXPECT_THAT(fake.device_extensions, testing::Not(Contains("VK_KHR_portability_subset")));
   fake.is_portable = true;
   const gpu::Device device(options());
   EXPECT_TRUE(fake.instance_flags & 1u) << "VK_INSTANCE_CREATE_ENUMERATE_PORTABILITY_BIT_KHR";
   EXPECT_THAT(fake.instance_extensions, Contains("VK_KHR_portability_enumeration"));
   EXPECT_THAT(fake.device_extensions, Contains("VK_KHR_portability_subset"));
   EXPECT_TRUE(fake.is_robust);
-}
-
-TEST_F(Driver, that_has_all_of_vulkan_is_not_asked_for_a_part) {
-  const gpu::Device device(options());
-  EXPECT_THAT(fake.device_extensions, testing::Not(Contains("VK_KHR_portability_subset")));
 }
 
 // Submissions.

@@ -14,6 +14,7 @@
 #include "kernels/geometry.h"
 #include "kernels/shading.h"
 #include "tests/support/device.h"
+#include "tests/support/single_pass.h"
 
 namespace alcove {
 namespace {
@@ -81,36 +82,25 @@ TEST(Reflection, is_the_same_of_code_that_keeps_nan) {
   EXPECT_THAT(error_of([&] { gpu::with_preserved_nan(code.first(5)); }), HasSubstr("no entry point"));
 }
 
-TEST(Kernel, refuses_parameters_of_another_size) {
+TEST(Kernel, refuses_parameters_bindings_and_constants_that_are_not_its_own) {
   auto& gpu = test::recorder();
   auto& buffer = gpu.buffer("test", 256, gpu::Use::device);
-  const PrepareParams wrong{};
-  EXPECT_THAT(error_of([&] {
-                gpu.dispatch("shape", wrong, {{"Ao", buffer}, {"Shaped", buffer}}, {8, 8}, {0});
-              }),
-              HasSubstr("kernel shape takes"));
-}
-
-TEST(Kernel, refuses_bindings_that_are_not_its_own) {
-  auto& gpu = test::recorder();
-  auto& buffer = gpu.buffer("test", 256, gpu::Use::device);
+  const auto dispatch = [&](const auto& params, const std::vector<gpu::Binding>& bindings) {
+    return error_of([&] { gpu.dispatch("shape", params, bindings, {8, 8}, {0}); });
+  };
+  EXPECT_THAT(dispatch(PrepareParams{}, {{"Ao", buffer}, {"Shaped", buffer}}), HasSubstr("kernel shape takes"));
   const ShapeParams params{};
   EXPECT_THAT(
-      error_of([&] {
-        gpu.dispatch("shape", params, {{"Ao", buffer}}, {8, 8}, {0});
-      }),
+      dispatch(params, {{"Ao", buffer}}),
       HasSubstr("kernel shape has the blocks Ao, Counts, Depth, Material, Matte, Shaped, and the host binds Ao"));
   std::vector<gpu::Binding> bindings{{"Ao", buffer},        {"Shaped", buffer}, {"Depth", nullptr},
                                      {"Material", nullptr}, {"Matte", nullptr}, {"Counts", nullptr}};
   for (const char* further : {"Nosuch", "Ao"}) {
     bindings.emplace_back(further, buffer);
-    EXPECT_THAT(error_of([&] { gpu.dispatch("shape", params, bindings, {8, 8}, {0}); }), HasSubstr("the host binds"));
+    EXPECT_THAT(dispatch(params, bindings), HasSubstr("the host binds"));
     bindings.pop_back();
   }
   gpu.abandon();
-}
-
-TEST(Kernel, refuses_missing_constants_and_unknown_stems) {
   EXPECT_THAT(error_of([] { test::device().kernel("horizon", {1}); }), HasSubstr("specialization constants"));
   EXPECT_THAT(error_of([] { test::device().kernel("nosuch", {}); }), HasSubstr("there is no kernel nosuch"));
 }
@@ -228,11 +218,19 @@ TEST(Buffer, that_was_recorded_is_not_taken_for_another_size) {
   gpu.run();
 }
 
-TEST(Buffer, keeps_its_place_in_the_pool_until_its_size_changes) {
-  auto& gpu = test::recorder();
-  const auto* first = gpu.buffer("pooled", 1024, gpu::Use::upload).host().data();
-  EXPECT_EQ(gpu.buffer("pooled", 1024, gpu::Use::upload).host().data(), first);
-  EXPECT_EQ(gpu.buffer("pooled", 2048, gpu::Use::upload).bytes(), 2048u);
+/// Records that `target` gets so many values of `source`.
+void record_copy(gpu::Recorder& gpu, const gpu::Buffer& source, const gpu::Buffer& target, int count) {
+  ShapeParams params{};
+  params.size = {count, 1};
+  params.intensity = params.power = params.planes = 1;
+  gpu.dispatch("shape", params,
+               {{"Ao", source},
+                {"Shaped", target},
+                {"Depth", nullptr},
+                {"Material", nullptr},
+                {"Matte", nullptr},
+                {"Counts", nullptr}},
+               {std::uint32_t(count), 1}, {0});
 }
 
 /// Records a copy of 64 values, 0.5 each, from the buffer "source" of so many to one of so many.
@@ -242,17 +240,7 @@ const gpu::Buffer& record_copy_of_64(std::size_t from, std::size_t to) {
        &copy = gpu.buffer("copy", to * sizeof(float), gpu::Use::device);
   std::ranges::fill(source.as<float>(), 0.5f);
   gpu.upload(source);
-  ShapeParams params{};
-  params.size = {64, 1};
-  params.intensity = params.power = params.planes = 1;
-  gpu.dispatch("shape", params,
-               {{"Ao", source},
-                {"Shaped", copy},
-                {"Depth", nullptr},
-                {"Material", nullptr},
-                {"Matte", nullptr},
-                {"Counts", nullptr}},
-               {64, 1}, {0});
+  record_copy(gpu, source, copy, 64);
   gpu.download(copy);
   return copy;
 }
@@ -301,37 +289,6 @@ TEST(Buffer, that_is_replaced_lives_until_what_was_recorded_has_run) {
   for (const float value : copy.as<const float>()) ASSERT_EQ(value, 0.5f);
 }
 
-/// A step: a floor with a block on it, near enough to be dark.
-HostFrame small_frame() {
-  HostFrame frame;
-  frame.data = frame.display = {0, 0, 33, 21};
-  frame.camera.width = 33;
-  frame.camera.height = 21;
-  frame.camera.fx = frame.camera.fy = 30;
-  frame.camera.cx = 16.5;
-  frame.camera.cy = 10.5;
-  for (int y = 0; y < 21; y++)
-    for (int x = 0; x < 33; x++) frame.depth.push_back(x < 15 ? 2.0f : 1.8f);
-  frame.normal.assign(3 * frame.depth.size(), 0.0f);
-  std::fill(frame.normal.begin() + std::ptrdiff_t(2 * frame.depth.size()), frame.normal.end(), 1.0f);
-  return frame;
-}
-
-/// Records that `target` gets the one value of `source`.
-void record_copy_of_1(gpu::Recorder& gpu, const gpu::Buffer& source, const gpu::Buffer& target) {
-  ShapeParams params{};
-  params.size = {1, 1};
-  params.intensity = params.power = params.planes = 1;
-  gpu.dispatch("shape", params,
-               {{"Ao", source},
-                {"Shaped", target},
-                {"Depth", nullptr},
-                {"Material", nullptr},
-                {"Matte", nullptr},
-                {"Counts", nullptr}},
-               {1, 1}, {0});
-}
-
 TEST(Recorder, writes_small_values_in_the_order_of_what_is_recorded) {
   gpu::Device staged(staged_options());
   for (gpu::Device* device : {&test::device(), &staged}) {
@@ -340,9 +297,9 @@ TEST(Recorder, writes_small_values_in_the_order_of_what_is_recorded) {
     auto& first = gpu.buffer("first", sizeof(float), gpu::Use::device);
     auto& second = gpu.buffer("second", sizeof(float), gpu::Use::device);
     gpu.write(word, 0.25f);
-    record_copy_of_1(gpu, word, first);
+    record_copy(gpu, word, first, 1);
     gpu.write(word, 0.75f);
-    record_copy_of_1(gpu, word, second);
+    record_copy(gpu, word, second, 1);
     for (const auto* result : {&first, &second}) gpu.download(*result);
     gpu.run();
     EXPECT_EQ(first.as<float>()[0], 0.25f);
@@ -361,7 +318,7 @@ TEST(Recorder, downloads_any_buffer_and_clears_in_order) {
     gpu.write(word, 0.25f);
     gpu.clear(word);
     gpu.write(copy, 0.5f);
-    record_copy_of_1(gpu, word, copy);
+    record_copy(gpu, word, copy, 1);
     gpu.clear(word);
     gpu.write(word, 0.75f);
     for (const auto* result : {&word, &copy, &word}) gpu.download(*result);
@@ -375,10 +332,10 @@ TEST(Staging, gives_the_bits_that_mapped_memory_gives) {
   EstimatorSettings settings = test::plain_settings();
   settings.radius = 0.5;
   settings.power = 2;  // one more pass, so that a result is handed on
-  const auto mapped = compute_ao(test::recorder(), small_frame(), settings);
+  const auto mapped = compute_ao(test::recorder(), test::furnished_room(33, 21).frame, settings);
   gpu::Device device(staged_options());
   gpu::Recorder recorder(device);
-  const auto staged = compute_ao(recorder, small_frame(), settings);
+  const auto staged = compute_ao(recorder, test::furnished_room(33, 21).frame, settings);
   EXPECT_EQ(mapped.ao, staged.ao);
   EXPECT_LT(*std::min_element(mapped.ao.begin(), mapped.ao.end()), 0.9f);
   EXPECT_EQ(device.validation_messages(), 0);
@@ -388,7 +345,7 @@ TEST(Recorder, times_every_pass_by_its_stem) {
   EstimatorSettings settings = test::plain_settings();
   settings.radius = 0.5;
   settings.intensity = 1.5;
-  compute_ao(test::recorder(), small_frame(), settings);
+  compute_ao(test::recorder(), test::furnished_room(33, 21).frame, settings);
   std::vector<std::string> names;
   for (const auto& pass : test::recorder().passes()) {
     names.push_back(pass.name);

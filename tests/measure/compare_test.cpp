@@ -1,20 +1,13 @@
 // `alcove compare` as scripts see it: files in, JSON and exit code out.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <regex>
 
 #include "core/formats/png.h"
 #include "tests/support/compare_command.h"
 #include "tests/support/formula_images.h"
-#include "tests/support/program.h"
-#include "tests/support/wall_frame.h"
 
 namespace alcove {
 namespace {
@@ -105,19 +98,6 @@ TEST_F(Compare, flip_of_colours_is_that_of_the_colours_not_of_each_channel) {
   EXPECT_NEAR(two["flip"], 0.323722805 / 2, 1e-6) << "the mean of the layers";
 }
 
-TEST_F(Compare, a_second_reference_takes_the_noise_out) {
-  Plane result, a, b;
-  for (std::size_t i = 0; i < kWindow.pixels(); i++) {
-    result.push_back(0.5f + (i & 1 ? 0.125f : -0.125f));
-    a.push_back(0.5f + (i & 2 ? 0.25f : -0.25f));
-    b.push_back(0.5f + (i & 4 ? 0.5f : -0.5f));
-  }
-  const json j =
-      measured({exr("t.exr", {{"Y", result}}), exr("a.exr", {{"AO", a}}), "--reference-b", exr("b.exr", {{"AO", b}})});
-  EXPECT_DOUBLE_EQ(j["rmse"], 0.125);
-  EXPECT_DOUBLE_EQ(j["psnr"], -20 * std::log10(0.125));
-}
-
 TEST_F(Compare, the_table_tells_the_same) {
   const Finished finished =
       compare({exr("a.exr", {{"Y", with_left(constant(0.5f), 0.75f)}}), exr("b.exr", {{"Y", constant(0.5f)}})});
@@ -128,10 +108,6 @@ TEST_F(Compare, the_table_tells_the_same) {
 
 // Channels and formats.
 
-TEST_F(Compare, single_channels_are_compared_whatever_their_names) {
-  EXPECT_EQ(measured({exr("a.exr", {{"Y", ramp}}), exr("b.exr", {{"AO", ramp}})})["rmse"], 0);
-}
-
 TEST_F(Compare, channels_match_by_name_then_by_its_last_part) {
   const auto a = exr("a.exr", {{"R", ramp}, {"G", box}, {"B", ramp}});
   const std::string layer = "ViewLayer.Combined.";
@@ -141,7 +117,9 @@ TEST_F(Compare, channels_match_by_name_then_by_its_last_part) {
   EXPECT_EQ(j["channels"], json::array({"B", "G", "R"}));
   expect_error(3, {a, exr("c.exr", {{"x.R", ramp}, {"y.R", box}})},
                {"channel R could be compared with several", "--channel"});
-  EXPECT_EQ(measured({a, folder / "c.exr", "--channel", "R=x.R,G=y.R"})["rmse"], 0);
+  const json list = measured({a, folder / "c.exr", "--channel", "R=x.R,G=y.R"});
+  EXPECT_EQ(list["rmse"], 0);
+  EXPECT_EQ(measured({a, folder / "c.exr", "--channel", "R=x.R", "--channel", "G=y.R"}), list);
 }
 
 TEST_F(Compare, ao_is_not_paired_with_a_component_of_a_normal) {
@@ -240,6 +218,32 @@ TEST_F(Compare, other_pixels_are_an_error_that_names_both_windows) {
   expect_error(3, {a, a, "--depth", exr("z.exr", {{"Z", Plane(100, 1)}}, {0, 0, 10, 10})}, {"z.exr"});
 }
 
+TEST_F(Compare, files_of_one_display_window_are_compared_where_all_have_pixels) {
+  const auto write = [&](const std::string& name, const std::string& channel, const Window& data, const auto& value) {
+    FrameFile file{data, {0, 0, 60, 32}, 1, {}, {}, {}};
+    for (int y = data.y; y < data.y + data.height; y++)
+      for (int x = data.x; x < data.x + data.width; x++) file.planes[channel].push_back(value(x, y));
+    file.write(folder / name);
+    return std::string(folder / name);
+  };
+  const auto slope = [](int x, int y) { return float(x + 2 * y) / 256; };
+  const auto raised = [&](int x, int y) { return slope(x, y) + (x >= 20 ? 0.25f : 0); };
+  const auto left = [](int x, int) { return float(x < 20); };
+  const auto a = write("a.exr", "Y", {-4, -4, 50, 40}, slope), b = write("b.exr", "Y", {3, 2, 60, 20}, raised);
+  const json j = measured({a, b});
+  EXPECT_EQ(j["common_window"], json({{"x", 3}, {"y", 2}, {"width", 43}, {"height", 20}}));
+  EXPECT_EQ(j["count"], 43 * 20);
+  EXPECT_EQ(j["max"], 0.25);
+  EXPECT_THAT(compare({a, b}).out, HasSubstr("the files' windows differ: compared 43x20 at (3, 2)"));
+  const auto mask = write("m.exr", "Y", {10, 0, 30, 10}, left);
+  const json masked = measured({a, b, "--mask", mask});
+  EXPECT_EQ(masked["common_window"], json({{"x", 10}, {"y", 2}, {"width", 30}, {"height", 8}}));
+  EXPECT_EQ(masked["count"], 10 * 8);
+  EXPECT_EQ(masked["max"], 0);
+  EXPECT_TRUE(measured({a, a})["common_window"].is_null());
+  expect_error(3, {a, write("far.exr", "Y", {50, 0, 5, 5}, slope)}, {"far.exr", "share no pixel"});
+}
+
 TEST_F(Compare, a_picture_too_small_for_ssim_has_none) {
   const Plane one{0.5f};
   const auto a = exr("a.exr", {{"Y", one}}, {0, 0, 1, 1});
@@ -265,19 +269,26 @@ TEST_F(Compare, a_broken_limit_ends_with_6_and_says_which) {
 
 TEST_F(Compare, mistakes_on_the_command_line_end_with_2) {
   const auto a = exr("a.exr", {{"Y", ramp}});
+  using Words = std::vector<std::string>;
+  for (const auto& [more, words] :
+       {std::pair<Words, Words>{{a}, {a, "takes one RESULT and one REFERENCE"}},
+        {{"--max-rms", "1"}, {"--max-rms", "did you mean --max-rmse"}},
+        {{"--max-rmse", "nan"}, {"--max-rmse", "nan is not a finite number"}},
+        {{"--max-rmse", "-1"}, {"--max-rmse", "0 or more"}},
+        {{"--peak", "0"}, {"--peak", "above 0"}},
+        {{"--frames", "1-3"}, {"a.exr", "%04d"}},
+        {{"--motion", a}, {"--motion"}},
+        {{"--mask-channel", "M"}, {"--mask-channel: applies with --mask only"}},
+        {{"--depth-channel", "Z"}, {"--depth-channel: applies with --depth only"}},
+        {{"--sky", "5"}, {"--sky: applies with --depth only"}},
+        {{"--motion-channels", "X,Y"}, {"--motion-channels: applies with --motion only"}}}) {
+    Words arguments{a, a};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    expect_error(2, arguments, words);
+  }
   expect_error(2, {}, {"RESULT is missing"});
   expect_error(2, {a}, {"REFERENCE is missing"});
-  expect_error(2, {a, a, a}, {a, "takes one RESULT and one REFERENCE"});
-  expect_error(2, {a, a, "--max-rms", "1"}, {"--max-rms", "did you mean --max-rmse"});
-  expect_error(2, {a, a, "--max-rmse", "nan"}, {"--max-rmse", "nan is not a finite number"});
-  expect_error(2, {a, a, "--max-rmse", "-1"}, {"--max-rmse", "0 or more"});
-  expect_error(2, {a, a, "--peak", "0"}, {"--peak", "above 0"});
-  expect_error(2, {a, a, "--frames", "1-3"}, {"a.exr", "%04d"});
-  expect_error(2, {a, a, "--motion", a}, {"--motion"});
   expect_error(2, {folder / "a.%04d.exr", a, "--frames", "1-x"}, {"1-x"});
-  const Finished help = compare({"--help"});
-  EXPECT_EQ(help.code, 0);
-  EXPECT_THAT(help.out, AllOf(HasSubstr("--reference-b"), HasSubstr("--max-flip"), HasSubstr("exit code 6")));
 }
 
 TEST_F(Compare, files_that_cannot_be_read_end_with_3) {
@@ -322,6 +333,7 @@ TEST_F(CompareSequence, tells_every_frame_the_worst_the_mean_and_the_flicker) {
 
 TEST_F(CompareSequence, limits_hold_for_every_frame) {
   EXPECT_EQ(compare({result, reference, "--max-rmse", "0.25"}).code, 0);
+  EXPECT_EQ(measured({result, folder / "truth.0001.exr"})["frames"].size(), 4) << "one reference serves all";
   expect_error(6, {result, reference, "--max-rmse", "0.2"}, {"frame 3: rmse is 0.25, and --max-rmse is 0.2"});
 }
 
@@ -332,10 +344,6 @@ TEST_F(CompareSequence, a_list_chooses_the_frames) {
   EXPECT_EQ(j["rmse"], 0);
   EXPECT_TRUE(measured({result, reference, "--frames", "1-3x2"})["flicker"].is_null())
       << "no two frames follow each other";
-}
-
-TEST_F(CompareSequence, one_reference_serves_all_frames) {
-  EXPECT_EQ(measured({result, folder / "truth.0001.exr"})["frames"].size(), 4);
 }
 
 TEST_F(CompareSequence, missing_frames_are_listed_before_any_work) {
@@ -394,28 +402,15 @@ TEST_F(Compare, sky_that_is_0_in_one_and_1_in_the_other_is_said_with_what_leaves
   EXPECT_TRUE(measured({result, reference, "--depth", depth})["sky_differs"].is_null());
 }
 
-TEST_F(Compare, few_pixels_that_are_0_and_1_are_errors_like_others) {
-  Plane holes = box;
+TEST_F(Compare, sky_that_is_few_pixels_or_little_of_the_error_is_not_told_of) {
+  Plane holes = box, filled = with_left(box, 0.3f), open = constant(0.9f), dark = constant(0.3f);
   holes[0] = 0;
-  Plane filled = with_left(box, 0.3f);
   filled[0] = 1;
-  EXPECT_THAT(compare({exr("a.exr", {{"Y", filled}}), exr("b.exr", {{"Y", holes}})}).err, IsEmpty());
-}
-
-TEST_F(Compare, sky_that_is_little_of_the_error_is_not_told_of) {
-  Plane open = constant(0.9f), dark = constant(0.3f);
   const auto few = std::ptrdiff_t(kWindow.pixels() / 50);
   std::fill_n(open.begin(), few, 1.0f);
   std::fill_n(dark.begin(), few, 0.0f);
-  EXPECT_THAT(compare({exr("a.exr", {{"Y", open}}), exr("b.exr", {{"Y", dark}})}).err, IsEmpty());
-}
-
-TEST_F(Compare, options_of_files_that_are_not_there_are_refused) {
-  const auto a = exr("a.exr", {{"Y", ramp}});
-  expect_error(2, {a, a, "--mask-channel", "M"}, {"--mask-channel: applies with --mask only"});
-  expect_error(2, {a, a, "--depth-channel", "Z"}, {"--depth-channel: applies with --depth only"});
-  expect_error(2, {a, a, "--sky", "5"}, {"--sky: applies with --depth only"});
-  expect_error(2, {a, a, "--motion-channels", "X,Y"}, {"--motion-channels: applies with --motion only"});
+  EXPECT_THAT(compare({exr("a.exr", {{"Y", filled}}), exr("b.exr", {{"Y", holes}})}).err, IsEmpty());
+  EXPECT_THAT(compare({exr("c.exr", {{"Y", open}}), exr("d.exr", {{"Y", dark}})}).err, IsEmpty());
 }
 
 TEST_F(Compare, a_quiet_one_says_by_its_exit_code_alone) {
@@ -432,33 +427,20 @@ TEST_F(Compare, a_quiet_one_says_by_its_exit_code_alone) {
   EXPECT_EQ(measured({a, b, "-q"})["pass"], true) << "what --json asks for is printed";
 }
 
-TEST_F(Compare, channels_are_a_list_or_given_one_by_one) {
-  const auto a = exr("a.exr", {{"R", ramp}, {"G", box}, {"B", ramp}}),
-             b = exr("b.exr", {{"R", ramp}, {"G", box}, {"B", box}});
-  const json list = measured({a, b, "--channel", "R,G"}), single = measured({a, b, "--channel", "R", "--channel", "G"});
-  EXPECT_EQ(list["channels"], json({"R", "G"}));
-  EXPECT_EQ(single, list);
-}
-
 // Documents.
 
-TEST(ComparePage, every_option_and_every_field_is_told) {
-  const std::string page = read_bytes(ALCOVE_SOURCE_DIR "/docs/compare-and-bench.md"),
-                    help = run_program({"compare", "--help"}).out;
+TEST_F(CompareSequence, every_option_and_every_field_is_told) {
+  const std::string page = read_bytes(ALCOVE_SOURCE_DIR "/docs/compare-and-bench.md"), help = compare({"--help"}).out;
   const std::size_t begin = page.find("## alcove compare"), end = page.find("\n## ", begin);
   ASSERT_NE(begin, page.npos);
   const std::string section = page.substr(begin, end - begin);
   const std::regex option("\n  (-h,)?(--[a-z0-9-]+)");
   int count = 0;
-  for (auto match = std::sregex_iterator(help.begin(), help.end(), option); match != std::sregex_iterator();
-       ++match, count++)
+  for (std::sregex_iterator match(help.begin(), help.end(), option), none; match != none; ++match, count++)
     if ((*match)[2] != "--help")
       EXPECT_TRUE(std::regex_search(section, std::regex((*match)[2].str() + "[^a-z-]"))) << (*match)[2];
   EXPECT_GE(count, 20);
-}
-
-TEST_F(CompareSequence, every_field_is_told) {
-  const std::string page = read_bytes(ALCOVE_SOURCE_DIR "/docs/compare-and-bench.md");
+  EXPECT_THAT(help, HasSubstr("exit code 6"));
   for (const json& object :
        {measured({result, reference}), measured({folder / "ao.0001.exr", folder / "truth.0001.exr"})})
     for (const auto& [key, value] : object.items())

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Opens report pages in headless Chromium and uses them as a person would; any console message, request or alert fails.
 
-    report_page_test.py PROGRAM [SCREENSHOT_FOLDER]
+    report_page_test.py PROGRAM
 
 PROGRAM makes a page of JSON (tests/measure/report_page.cpp). Only Python's own library and Debian's chromium-driver are needed.
 """
@@ -204,13 +204,8 @@ class Browser:
         except AssertionError:
             return False
 
-    def emulate(self, width, scheme):
+    def emulate(self, width):
         self.chromium("Emulation.setDeviceMetricsOverride", width=width, height=1000, deviceScaleFactor=1, mobile=False)
-        self.chromium("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": scheme}])
-
-    def screenshot(self, path):
-        shot = self.chromium("Page.captureScreenshot", captureBeyondViewport=True)
-        pathlib.Path(path).write_bytes(base64.b64decode(shot["data"]))
 
 
 # What a person does, and what must then be true.
@@ -375,20 +370,11 @@ def check_pictures(browser, report):
 
 def check_no_overflow(browser):
     for width in (1300, 1280, 480, 360):
-        browser.emulate(width, "light")
+        browser.emulate(width)
         browser.wait(lambda: browser.run("return document.documentElement.scrollWidth") <= width, f"the page is wider than {width} px", seconds=5)
         hidden = browser.run("const box = document.querySelector('.scroll'); return box.scrollWidth - box.clientWidth")
         assert width < 1300 or hidden <= 0, f"{hidden} px of the table's columns are hidden in a window of {width} px"
-    browser.emulate(1280, "light")
-
-
-def take_screenshots(browser, folder, name):
-    os.makedirs(folder, exist_ok=True)
-    for scheme in ("light", "dark"):
-        for width in (1280, 480):
-            browser.emulate(width, scheme)
-            time.sleep(0.2)
-            browser.screenshot(f"{folder}/{name}-{scheme}-{width}.png")
+    browser.emulate(1280)
 
 
 def write_page(program, report, path):
@@ -396,7 +382,7 @@ def write_page(program, report, path):
     return path
 
 
-def main(program, shots=None):
+def main(program):
     with tempfile.TemporaryDirectory() as folder:
         bench = bench_report()
         pages = {"bench": write_page(program, bench, pathlib.Path(folder, "bench.html")),
@@ -423,10 +409,6 @@ def main(program, shots=None):
             browser.click("#table th[data-key=rmse] button")
             check_no_overflow(browser)
             check_quiet(browser, pages["compare"])
-            if shots:
-                for name, page in pages.items():
-                    browser.load(page)
-                    take_screenshots(browser, shots, name)
         finally:
             browser.close()
     print("the report page works")

@@ -59,16 +59,8 @@ HostFrame without_upper_rows(const HostFrame& frame, int rows) {
   HostFrame lower = frame;
   lower.data.y += rows;
   lower.data.height -= rows;
-  const std::size_t first = std::size_t(rows) * std::size_t(frame.data.width);
-  const auto cut = [&](const std::vector<float>& plane, std::size_t planes) {
-    std::vector<float> kept;
-    for (std::size_t i = 0; i < planes; i++)
-      kept.insert(kept.end(), plane.begin() + std::ptrdiff_t(i * frame.data.pixels() + first),
-                  plane.begin() + std::ptrdiff_t((i + 1) * frame.data.pixels()));
-    return kept;
-  };
-  lower.depth = cut(frame.depth, 1);
-  lower.normal = cut(frame.normal, 3);
+  lower.depth = cropped(frame.depth, frame.data, lower.data);
+  lower.normal = cropped(frame.normal, frame.data, lower.data);
   return lower;
 }
 
@@ -90,82 +82,60 @@ void expect_completed(const char* what, const Scene& scene, const Shot& shot, do
   EXPECT_GE(none.mean, gain * bound) << what;
 }
 
-TEST(Completion, a_plate_before_a_wall_hides_nothing_of_it) {
-  const Scene scene{{kFloor, kWall, parallelogram({0.8, -0.5, 0.3}, {0, 1, 0}, {0, 0, 0.8})}};
-  const Chosen floor_behind = [](const Hit& hit) { return hit.primitive == 0 && hit.position.x < 0.7; };
-  expect_completed("perspective", scene, Shot::perspective({5, 0.3, 1.8}, {0.3, 0, 0.6}, 50, 320, 240), 1, floor_behind,
-                   0.002, 30);
-  expect_completed("orthographic", scene, Shot::orthographic({5, 0.3, 1.8}, {0.3, 0, 0.6}, 5, 320, 240), 1,
-                   floor_behind, 0.002, 30);
-}
-
-TEST(Completion, a_column_before_a_wall_hides_nothing_of_it) {
-  const Plane other_wall{.point = {}, .normal = {0, 1, 0}};
+TEST(Completion, what_stands_before_a_surface_hides_nothing_of_it) {
+  const Shot of_plate = Shot::perspective({5, 0.3, 1.8}, {0.3, 0, 0.6}, 50, 320, 240);
+  for (const Shot& shot : {of_plate, Shot::orthographic({5, 0.3, 1.8}, {0.3, 0, 0.6}, 5, 320, 240)})
+    expect_completed(
+        "plate", {{kFloor, kWall, parallelogram({0.8, -0.5, 0.3}, {0, 1, 0}, {0, 0, 0.8})}}, shot, 1,
+        [](const Hit& hit) { return hit.primitive == 0 && hit.position.x < 0.7; }, 0.002, 30);
   // The column is 15 pixels wide, of which each slice misses half a one at either edge.
-  const Scene scene{{other_wall, kWall, parallelogram({0.75, 0.35, -9}, {-0.15, 0.15, 0}, {0, 0, 18})}};
-  const Chosen beside = [](const Hit& hit) { return hit.primitive == 1 && hit.position.y < 0.6; };
-  expect_completed("perspective", scene, Shot::perspective({4, 4, 1}, {0.3, 0.3, 0}, 45, 320, 240), 0.8, beside, 0.005,
-                   20);
-  expect_completed("orthographic", scene, Shot::orthographic({4, 4, 1}, {0.3, 0.3, 0}, 4, 320, 240), 0.8, beside, 0.005,
-                   20);
-}
-
-TEST(Completion, a_sphere_before_a_floor_hides_nothing_of_it) {
+  for (const Shot& shot : {Shot::perspective({4, 4, 1}, {0.3, 0.3, 0}, 45, 320, 240),
+                           Shot::orthographic({4, 4, 1}, {0.3, 0.3, 0}, 4, 320, 240)})
+    expect_completed(
+        "column",
+        {{Plane{.point = {}, .normal = {0, 1, 0}}, kWall,
+          parallelogram({0.75, 0.35, -9}, {-0.15, 0.15, 0}, {0, 0, 18})}},
+        shot, 0.8, [](const Hit& hit) { return hit.primitive == 1 && hit.position.y < 0.6; }, 0.005, 20);
   // Half a sphere, all of which is seen.
   const Sphere half{.center = {0.9, 0, 0.8}, .radius = 0.3, .axis = unit({2.1, 0, 2.7}), .cos_half_angle = 0.15};
-  const Scene scene{{kFloor, kWall, half}};
-  const Chosen low = [](const Hit& hit) { return hit.primitive == 1 && hit.position.z < 0.5; };
-  expect_completed("perspective", scene, Shot::perspective({3, 0, 3.5}, {0.3, 0, 0.3}, 50, 320, 240), 0.8, low, 0.001,
-                   30);
-  expect_completed("orthographic", scene, Shot::orthographic({3, 0, 3.5}, {0.3, 0, 0.3}, 4, 320, 240), 0.8, low, 0.001,
-                   30);
+  for (const Shot& shot : {Shot::perspective({3, 0, 3.5}, {0.3, 0, 0.3}, 50, 320, 240),
+                           Shot::orthographic({3, 0, 3.5}, {0.3, 0, 0.3}, 4, 320, 240)})
+    expect_completed(
+        "sphere", {{kFloor, kWall, half}}, shot, 0.8,
+        [](const Hit& hit) { return hit.primitive == 1 && hit.position.z < 0.5; }, 0.001, 30);
 }
 
-// What is blocked weighs by its distance, for which the segment is cut into parts.
-TEST(Completion, a_falloff_weighs_what_goes_on) {
-  const Scene scene{{kFloor, kWall, parallelogram({0.8, -0.5, 0.45}, {0, 1, 0}, {0, 0, 0.8})}};
-  const Rendering rendering = render(scene, Shot::perspective({5, 0.3, 1.8}, {0.3, 0, 0.6}, 50, 320, 240));
-  ReferenceSettings settings = thin(1, Completion::all);
-  settings.falloff = Falloff::linear;
-  settings.pixels =
-      receivers(rendering, 1, kEvery, [](const Hit& hit) { return hit.primitive == 0 && hit.position.x < 0.7; });
-  std::vector<double> truth;
-  for (const std::size_t i : settings.pixels)
-    truth.push_back(mean_over_rays(scene, rendering.hits[i], kRaysAcross,
-                                   [](const Hit& hit, const Vec3&) { return std::min(1.0, hit.distance); }));
-  const Errors errors = errors_of(reference_ao(rendering.frame, settings), settings.pixels, truth);
-  EXPECT_LE(errors.mean, 0.002);
-  EXPECT_LE(errors.worst, 0.01);
-}
-
-TEST(Completion, bent_normals_lean_away_from_what_goes_on) {
+// What is blocked weighs by its distance, for which the segment is cut into parts; and bent normals lean away from it.
+TEST(Completion, falloffs_and_bent_normals_take_what_goes_on) {
   const Scene scene{{kFloor, kWall, parallelogram({0.8, -0.5, 0.45}, {0, 1, 0}, {0, 0, 0.8})}};
   const Rendering rendering = render(scene, Shot::perspective({5, 0.3, 1.8}, {0.3, 0, 0.6}, 50, 320, 240));
   ReferenceSettings settings = thin(1, Completion::all);
   settings.pixels =
       receivers(rendering, 1, kEvery, [](const Hit& hit) { return hit.primitive == 0 && hit.position.x < 0.7; });
   const std::vector<float> bent = reference_bent(rendering.frame, settings);
+  std::vector<double> truth;
   const std::size_t plane = rendering.frame.data.pixels();
   for (const std::size_t i : settings.pixels) {
     Vec3 open;
-    mean_over_rays(scene, rendering.hits[i], kRaysAcross, [&](const Hit& hit, const Vec3& direction) {
+    truth.push_back(mean_over_rays(scene, rendering.hits[i], kRaysAcross, [&](const Hit& hit, const Vec3& direction) {
       if (hit.distance >= 1) open = open + direction;
-      return 0;
-    });
-    const Vec3 truth = rendering.shot.view_from_world((1.0 / double(kRaysAcross * kRaysAcross)) * open);
-    EXPECT_LE(length(truth - Vec3{bent[i], bent[i + plane], bent[i + 2 * plane]}), 0.01) << i;
+      return std::min(1.0, hit.distance);
+    }));
+    const Vec3 mean = rendering.shot.view_from_world((1.0 / double(kRaysAcross * kRaysAcross)) * open);
+    EXPECT_LE(length(mean - Vec3{bent[i], bent[i + plane], bent[i + 2 * plane]}), 0.01) << i;
   }
+  settings.falloff = Falloff::linear;
+  const Errors errors = errors_of(reference_ao(rendering.frame, settings), settings.pixels, truth);
+  EXPECT_LE(errors.mean, 0.002);
+  EXPECT_LE(errors.worst, 0.01);
 }
 
 // Where the wall is seen it is known, and it is taken to go on no farther than the column hides it. So what is blocked
 // too much, or too little, is no more than the receiver sees of the part of the wall's plane that the column hides: of
 // that without wall, or with it.
 TEST(Completion, a_wall_that_ends_behind_a_column_errs_by_what_the_column_hides_at_most) {
-  const Vec3 eye{5, 0.2, 1.2};
-  const Polygon wall = parallelogram({0, -4, 0}, {0, 4, 0}, {0, 0, 4});
-  const Polygon column = parallelogram({0.8, -0.15, 0.02}, {0, 0.3, 0}, {0, 0, 5});
-  const Scene scene{{kFloor, wall, column}};
-  const Rendering rendering = render(scene, Shot::perspective(eye, {0.3, 0, 0.6}, 50, 320, 240));
+  const EndingWall wall;
+  const Rendering rendering = render(wall.scene, Shot::perspective(wall.eye, {0.3, 0, 0.6}, 50, 320, 240));
   ReferenceSettings settings = thin(1, Completion::all);
   settings.pixels =
       receivers(rendering, 1, kEvery, [](const Hit& hit) { return hit.primitive == 0 && hit.position.x < 0.5; });
@@ -173,22 +143,12 @@ TEST(Completion, a_wall_that_ends_behind_a_column_errs_by_what_the_column_hides_
   const std::vector<float> ao = reference_ao(rendering.frame, settings);
   constexpr double kPixel = 0.015;  // what the size of pixels costs
   double largest = 0;
-  const Scene columns{{column}};
   for (const std::size_t i : settings.pixels) {
-    const Hit& receiver = rendering.hits[i];
-    const double truth = true_ao(scene, receiver, 1, kRaysAcross);
-    double missed = 0;
-    const double added = mean_over_rays(scene, receiver, kRaysAcross, [&](const Hit& hit, const Vec3& direction) {
-      const double to_plane = -receiver.position.x / direction.x;
-      if (!(to_plane > 0 && to_plane < 1)) return 0.0;
-      const Vec3 on_plane = receiver.position + to_plane * direction;
-      if (columns.hit({eye, on_plane - eye}).distance >= 1) return 0.0;
-      missed += hit.primitive == 1 ? 1.0 / (kRaysAcross * kRaysAcross) : 0;
-      return hit.distance >= 1 ? 1.0 : 0.0;
-    });
-    EXPECT_GE(ao[i], truth - added - kPixel) << i << ", not wall " << added;
-    EXPECT_LE(ao[i], truth + missed + kPixel) << i << ", wall " << missed;
-    largest = std::max(largest, added);
+    const auto hidden = wall.hidden_from(rendering.hits[i], 1, kRaysAcross);
+    const double truth = true_ao(wall.scene, rendering.hits[i], 1, kRaysAcross);
+    EXPECT_GE(ao[i], truth - hidden.open - kPixel) << i << ", not wall " << hidden.open;
+    EXPECT_LE(ao[i], truth + hidden.wall + kPixel) << i << ", wall " << hidden.wall;
+    largest = std::max(largest, hidden.open);
   }
   EXPECT_GE(largest, 3 * kPixel);
 }

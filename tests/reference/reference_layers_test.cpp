@@ -56,22 +56,18 @@ void expect_known(const char* what, const Scene& scene, const Shot& shot, double
   EXPECT_GE(first_alone, least_error) << what << ", known " << known;
 }
 
-TEST(Hidden, a_plate_before_a_wall_hides_nothing_of_it) {
-  expect_known("plate", {{kFloor, kWall, parallelogram({0.8, -0.5, 0.3}, {0, 1, 0}, {0, 0, 0.8})}},
+TEST(Hidden, what_is_known_behind_others_has_its_true_ao) {
+  expect_known("a plate before a wall", {{kFloor, kWall, parallelogram({0.8, -0.5, 0.3}, {0, 1, 0}, {0, 0, 0.8})}},
                Shot::perspective({5, 0.3, 1.8}, {0.3, 0, 0.6}, 50, 240, 180), 1, 0.01);
-}
-
-TEST(Hidden, a_sphere_before_a_sphere_is_solid_and_hides_nothing_of_it) {
-  const Scene scene{
-      {kFloor, Sphere{.center = {0.7, 0.1, 0.45}, .radius = 0.35}, Sphere{.center = {-0.3, 0, 0.5}, .radius = 0.4}}};
-  expect_known("spheres", scene, Shot::perspective({5, 0.3, 2.6}, {0.2, 0, 0.3}, 40, 240, 180), 1, 0.01);
-}
-
-TEST(Hidden, a_corridor_knows_its_wall_behind_a_post) {
-  const Plane other_wall{.point = {0, 1.2, 0}, .normal = {0, -1, 0}};
-  const Scene scene{{kFloor, kWall, other_wall, parallelogram({0.9, -0.6, 0.1}, {0, 0.5, 0}, {0, 0, 1.2}),
-                     parallelogram({1.2, 0.3, 0.1}, {0, 0.4, 0}, {0, 0, 1.2})}};
-  expect_known("corridor", scene, Shot::perspective({5, -0.3, 1.8}, {0.3, 0.2, 0.5}, 50, 240, 180), 0.9, 0.01);
+  expect_known(
+      "a sphere before a sphere, which is solid",
+      {{kFloor, Sphere{.center = {0.7, 0.1, 0.45}, .radius = 0.35}, Sphere{.center = {-0.3, 0, 0.5}, .radius = 0.4}}},
+      Shot::perspective({5, 0.3, 2.6}, {0.2, 0, 0.3}, 40, 240, 180), 1, 0.01);
+  expect_known("a corridor behind posts",
+               {{kFloor, kWall, Plane{.point = {0, 1.2, 0}, .normal = {0, -1, 0}},
+                 parallelogram({0.9, -0.6, 0.1}, {0, 0.5, 0}, {0, 0, 1.2}),
+                 parallelogram({1.2, 0.3, 0.1}, {0, 0.4, 0}, {0, 0, 1.2})}},
+               Shot::perspective({5, -0.3, 1.8}, {0.3, 0.2, 0.5}, 50, 240, 180), 0.9, 0.01);
 }
 
 /// Width as thickness, and all that can be completed.

@@ -36,6 +36,31 @@ inline double true_ao(const Scene& scene, const Hit& receiver, double radius, in
                         [&](const Hit& hit, const Vec3&) { return hit.distance < radius ? 0.0 : 1.0; });
 }
 
+/// A wall x = 0 that ends behind a column, and what a receiver sees of the part of the wall's plane that the column
+/// hides from the eye: of that without wall, and with it.
+struct EndingWall {
+  Vec3 eye{5, 0.2, 1.2};
+  Polygon column = parallelogram({0.8, -0.15, 0.02}, {0, 0.3, 0}, {0, 0, 5});
+  Scene scene{{Plane{.point = {}, .normal = {0, 0, 1}}, parallelogram({0, -4, 0}, {0, 4, 0}, {0, 0, 4}), column}};
+
+  struct Share {
+    double open = 0, wall = 0;
+  };
+  Share hidden_from(const Hit& receiver, double radius, int across) const {
+    Share share;
+    const Scene columns{{column}};
+    share.open = mean_over_rays(scene, receiver, across, [&](const Hit& hit, const Vec3& direction) {
+      const double to_plane = -receiver.position.x / direction.x;
+      if (!(to_plane > 0 && to_plane < radius)) return 0.0;
+      const Vec3 on_plane = receiver.position + to_plane * direction;
+      if (columns.hit({eye, on_plane - eye}).distance >= 1) return 0.0;
+      share.wall += hit.primitive == 1 ? 1.0 / (double(across) * across) : 0;
+      return hit.distance >= radius ? 1.0 : 0.0;
+    });
+    return share;
+  }
+};
+
 using Chosen = std::function<bool(const Hit&)>;
 
 /// Pixels of a grid, `every` pixels apart, that show a chosen surface, are not beside an edge, and whose sphere of the

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <numbers>
-#include <set>
 #include <utility>
 
 namespace alcove::test {
@@ -76,6 +75,11 @@ Shot aimed(Vec3 eye, Vec3 target, int width, int height, double pixels_per_unit)
 
 Polygon parallelogram(Vec3 corner, Vec3 a, Vec3 b) { return {{corner, corner + a, corner + a + b, corner + b}}; }
 
+std::vector<Polygon> parallelepiped(Vec3 corner, Vec3 a, Vec3 b, Vec3 c) {
+  return {parallelogram(corner, a, b),     parallelogram(corner, b, c),     parallelogram(corner, c, a),
+          parallelogram(corner + c, a, b), parallelogram(corner + a, b, c), parallelogram(corner + b, c, a)};
+}
+
 Hit Scene::hit(const Ray& ray) const {
   Hit nearest;
   for (std::size_t i = 0; i < primitives.size(); i++) {
@@ -126,11 +130,16 @@ bool Shot::sees_ball(Vec3 center, double radius) const {
 }
 
 int Rendering::primitives_within(int reach_px, int x, int y) const {
-  std::set<int> seen;
+  int seen[2]{at(x, y).primitive, 0};
+  int count = 1;
   for (int v = std::max(y - reach_px, 0); v <= std::min(y + reach_px, shot.data.height - 1); v++)
-    for (int u = std::max(x - reach_px, 0); u <= std::min(x + reach_px, shot.data.width - 1); u++)
-      seen.insert(at(u, v).primitive);
-  return int(seen.size());
+    for (int u = std::max(x - reach_px, 0); u <= std::min(x + reach_px, shot.data.width - 1); u++) {
+      const int primitive = at(u, v).primitive;
+      if (std::find(seen, seen + count, primitive) != seen + count) continue;
+      if (count == 2) return 3;
+      seen[count++] = primitive;
+    }
+  return count;
 }
 
 double Rendering::footprint(int x, int y) const {

@@ -41,6 +41,8 @@ struct Polygon {
 };
 /// The parallelogram of that corner and those two sides.
 Polygon parallelogram(Vec3 corner, Vec3 a, Vec3 b);
+/// The six sides of the parallelepiped of that corner and those three edges.
+std::vector<Polygon> parallelepiped(Vec3 corner, Vec3 a, Vec3 b, Vec3 c);
 
 /// The part of a sphere within a polar half-angle of an axis, seen from either side; without more, all of it.
 struct Sphere {
@@ -58,6 +60,7 @@ struct Hit {
 
 struct Scene {
   std::vector<std::variant<Plane, Polygon, Sphere>> primitives;
+  void add(const std::vector<Polygon>& sides) { primitives.insert(primitives.end(), sides.begin(), sides.end()); }
   /// The nearest surface before the origin.
   Hit hit(const Ray& ray) const;
 };
@@ -90,7 +93,8 @@ struct Rendering {
   std::vector<Hit> hits;
 
   const Hit& at(int x, int y) const { return hits[std::size_t(y) * std::size_t(shot.data.width) + std::size_t(x)]; }
-  /// How many primitives (the sky is one) show within so many pixels, diagonals included: 2 at an edge, 3 at a vertex.
+  /// How many primitives (the sky is one) show within so many pixels, diagonals included: 2 at an edge, 3 at a vertex,
+  /// which are the most that it counts.
   int primitives_within(int reach_px, int x, int y) const;
   /// The largest distance in the world to what the four neighbours show, as far as there are.
   double footprint(int x, int y) const;

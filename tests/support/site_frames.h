@@ -41,6 +41,20 @@ inline HostFrame random_picture(std::mt19937& random) {
   return frame;
 }
 
+/// Puts strands a pixel wide before what a frame shows.
+inline void add_strands(HostFrame& frame) {
+  const int width = frame.data.width, height = frame.data.height;
+  std::mt19937 random(3);
+  for (int strand = 0; strand < 14; strand++) {
+    const double slope = double(random() % 400) / 100 - 2, x0 = random() % unsigned(width);
+    const auto top = int(random() % unsigned(height)), bottom = std::min(height, top + 10 + int(random() % 40));
+    for (int y = top; y < bottom; y++) {
+      const int x = int(std::floor(x0 + slope * (y - top)));
+      if (x >= 0 && x < width) frame.depth[std::size_t(y * width + x)] *= 0.93f;
+    }
+  }
+}
+
 /// A tilted wall that fills the picture, which lies so far from the display window's corner.
 inline HostFrame wall_at(int x, int y, int width, int height, Vec3 normal, bool orthographic) {
   Shot shot = orthographic ? Shot::orthographic({}, {1, 0, 0}, 4, width, height)
