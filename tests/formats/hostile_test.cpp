@@ -7,13 +7,13 @@
 #include <cstring>
 #include <filesystem>
 
-#include "core/base/error.h"
 #include "core/formats/exr.h"
 #include "core/formats/png.h"
 #include "core/formats/sequence.h"
 #include "core/frame/camera.h"
 #include "core/frame/settle.h"
 #include "tests/support/command_line.h"
+#include "tests/support/expect_error.h"
 
 namespace alcove {
 namespace {
@@ -203,12 +203,8 @@ TEST_F(Hostile, no_picture_makes_a_run_take_more_memory_than_its_rows) {
 }
 
 TEST_F(Hostile, a_header_of_more_pixels_than_its_bytes_can_stand_for_is_refused) {
-  try {
-    ExrFile file(claiming(1 << 14, 1 << 14, 3000), "INPUT");
-    FAIL() << "accepted";
-  } catch (const Error& error) {
-    EXPECT_THAT(error.what(), AllOf(HasSubstr("16384 x 16384 pixels"), HasSubstr("3000 bytes")));
-  }
+  expect_error(ErrorKind::input, {"16384 x 16384 pixels", "3000 bytes"},
+               [&] { ExrFile(claiming(1 << 14, 1 << 14, 3000), "INPUT"); });
 }
 
 // Text.
@@ -229,16 +225,13 @@ TEST_F(Hostile, a_frame_of_a_camera_is_the_number_that_is_written) {
   EXPECT_THROW(read_camera(camera, 1), Error);
 }
 
-TEST_F(Hostile, a_frame_number_beyond_all_numbers_is_refused) {
-  for (const char* list : {"-9223372036854775808", "9223372036854775807", "0-9223372036854775807x4611686018427387904",
-                           "1--9223372036854775808"})
-    EXPECT_THROW(parse_frames(list), Error) << list;
-}
-
-TEST_F(Hostile, a_short_list_that_repeats_many_frames_is_refused) {
-  std::string list = "1-999999";
-  for (int i = 0; i < 1000; i++) list += ",1-999999";
-  EXPECT_THROW(parse_frames(list), Error);
+TEST_F(Hostile, frame_numbers_beyond_all_numbers_and_lists_that_repeat_many_are_refused) {
+  std::string many = "1-999999";
+  for (int i = 0; i < 1000; i++) many += ",1-999999";
+  for (const std::string& list :
+       {std::string("-9223372036854775808"), std::string("9223372036854775807"),
+        std::string("0-9223372036854775807x4611686018427387904"), std::string("1--9223372036854775808"), many})
+    EXPECT_THROW(parse_frames(list), Error) << list.substr(0, 60);
 }
 
 TEST_F(Hostile, a_zero_byte_in_a_preset_is_refused) {  // or it would end a file's name early

@@ -5,13 +5,12 @@
 
 #include "core/frame/chan_file.h"
 #include "tests/support/command_line.h"
+#include "tests/support/expect_error.h"
 
 namespace alcove {
 namespace {
 
 using namespace test;
-using testing::AllOf;
-using testing::HasSubstr;
 
 // One camera, written by Blender 3.4.1 with both orders of rotation, and its matrix by Blender.
 const char* const kXyz =
@@ -26,15 +25,9 @@ const Vector3 kOffset{-0.11923131346702576, -0.6816926598548889, -7.375370025634
 
 class Chan : public CommandLine {
  protected:
-  std::string message(const std::string& text, int frame) const {
+  void expect_refused(const std::string& text, int frame, const std::vector<std::string>& words) const {
     write_bytes(path, text);
-    try {
-      read_chan(path, frame, "zxy", kWallWindow, 1);
-    } catch (const Error& error) {
-      EXPECT_EQ(error.kind(), ErrorKind::input);
-      return error.what();
-    }
-    return "";
+    expect_error(ErrorKind::input, words, [&] { read_chan(path, frame, "zxy", kWallWindow, 1); });
   }
 
   const std::string path = folder / "camera.chan";
@@ -77,12 +70,12 @@ TEST_F(Chan, gives_frames_of_a_run_their_cameras) {
 }
 
 TEST_F(Chan, is_refused_where_it_makes_no_sense) {
-  EXPECT_THAT(message(kXyz, 2), AllOf(HasSubstr(path), HasSubstr("no frame 2"), HasSubstr("--camera")));
-  EXPECT_THAT(message("1 2 3\n", 1), AllOf(HasSubstr("line 1"), HasSubstr("3 numbers")));
-  EXPECT_THAT(message("1 2 3 4 5 six 7 8\n", 1), AllOf(HasSubstr("line 1"), HasSubstr("six")));
-  EXPECT_THAT(message("1 2 3 4 5 6 nan 8\n", 1), HasSubstr("nan"));
-  EXPECT_THAT(message("1 2 3 4 5 6 7\n", 1), AllOf(HasSubstr("frame 1"), HasSubstr("no field of view")));
-  EXPECT_THAT(message("1 2 3 4 5 6 7 180\n", 1), AllOf(HasSubstr("frame 1"), HasSubstr("180 degrees")));
+  expect_refused(kXyz, 2, {path, "no frame 2", "--camera"});
+  expect_refused("1 2 3\n", 1, {"line 1", "3 numbers"});
+  expect_refused("1 2 3 4 5 six 7 8\n", 1, {"line 1", "six"});
+  expect_refused("1 2 3 4 5 6 nan 8\n", 1, {"nan"});
+  expect_refused("1 2 3 4 5 6 7\n", 1, {"frame 1", "no field of view"});
+  expect_refused("1 2 3 4 5 6 7 180\n", 1, {"frame 1", "180 degrees"});
 }
 
 }  // namespace

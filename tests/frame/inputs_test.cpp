@@ -20,7 +20,6 @@
 #include "tests/support/device.h"
 #include "tests/support/difference.h"
 #include "tests/support/furnished.h"
-#include "tests/support/settled.h"
 
 namespace alcove {
 namespace {
@@ -40,31 +39,45 @@ EstimatorSettings settings_of(double radius) {
   return settings;
 }
 
-std::vector<float> ao_of(const HostFrame& frame, double radius, ThicknessKind thickness = ThicknessKind::infinite) {
+EstimatorSettings with(double radius, ThicknessKind thickness) {
   EstimatorSettings settings = settings_of(radius);
   settings.thickness = thickness;
-  return compute_ao(recorder(), frame, settings).ao;
+  return settings;
 }
 
-/// With no radius that samples could fall in or out of by rounding, and occluders that have no width, every pixel
-/// agrees; else all but single samples do.
-void expect_same_ao(const HostFrame& frame, const HostFrame& planar, const std::string& what) {
-  const auto compared = [&](double radius, ThicknessKind thickness) {
-    return difference(ao_of(frame, radius, thickness), ao_of(planar, radius, thickness));
-  };
-  const Difference whole = compared(1e3, ThicknessKind::infinite);
-  EXPECT_LE(whole.max, 1e-4) << what << ", " << place(whole, frame);
-  for (const double radius : {1e3, 0.6}) {
-    const Difference near = compared(radius, ThicknessKind::automatic);
-    EXPECT_LE(near.rmse, 1e-4) << what << ", radius " << radius << ", " << place(near, frame);
-  }
+std::vector<float> ao_of(const HostFrame& frame, double radius, ThicknessKind thickness = ThicknessKind::infinite) {
+  return compute_ao(recorder(), frame, with(radius, thickness)).ao;
 }
+
+/// The AO of a scene by planar depth. With no radius that samples could fall in or out of by rounding, and occluders
+/// that have no width, every pixel of another storage agrees; else all but single samples do.
+struct Planar {
+  explicit Planar(const HostFrame& frame)
+      : whole(ao_of(frame, 1e3)),
+        far(ao_of(frame, 1e3, ThicknessKind::automatic)),
+        near(ao_of(frame, 0.6, ThicknessKind::automatic)),
+        sky_pixels(compute_ao(recorder(), frame, settings_of(0.6)).sky_pixels) {}
+
+  void expect_same(const HostFrame& frame, const std::string& what) const {
+    SCOPED_TRACE(what);
+    const Difference all = difference(ao_of(frame, 1e3), whole);
+    EXPECT_LE(all.max, 1e-4) << place(all, frame);
+    const HostResult result = compute_ao(recorder(), frame, with(0.6, ThicknessKind::automatic));
+    EXPECT_LE(difference(result.ao, near).rmse, 1e-4);
+    EXPECT_LE(difference(ao_of(frame, 1e3, ThicknessKind::automatic), far).rmse, 1e-4);
+    EXPECT_EQ(result.sky_pixels, sky_pixels);
+  }
+
+  std::vector<float> whole, far, near;
+  std::uint64_t sky_pixels;
+};
 
 // Depth.
 
 TEST(Depth, of_every_z_buffer_is_the_same_scene) {
   for (const bool inside : {false, true}) {
     const Rendering rendering = furnished(inside);
+    const Planar planar(rendering.frame);
     // as near as the scene allows: standard z is coarse beyond some hundred times that
     const double near = inside ? 0.1 : 1;
     for (const double far : {kFar, double(kInfinite)})
@@ -75,10 +88,8 @@ TEST(Depth, of_every_z_buffer_is_the_same_scene) {
               rendering, DepthKind::device,
               [&](const test::Hit& hit) { return device_depth(hit.distance, far, reversed, device, near); }, sky);
           frame.depth_range = between_planes(far, reversed, device, near);
-          expect_same_ao(frame, rendering.frame,
-                         fmt::format("inside {} far {} reversed {} range {}", inside, far, reversed, int(device)));
-          EXPECT_EQ(compute_ao(recorder(), frame, settings_of(1)).sky_pixels,
-                    compute_ao(recorder(), rendering.frame, settings_of(1)).sky_pixels);
+          planar.expect_same(frame,
+                             fmt::format("inside {} far {} reversed {} range {}", inside, far, reversed, int(device)));
         }
   }
 }
@@ -86,11 +97,12 @@ TEST(Depth, of_every_z_buffer_is_the_same_scene) {
 TEST(Depth, by_distance_by_inverse_or_between_planes_is_the_same_scene) {
   for (const bool inside : {false, true}) {
     const Rendering rendering = furnished(inside);
+    const Planar planar(rendering.frame);
     const auto check = [&](const char* what, DepthKind kind, float sky, const DepthRange& range,
                            const std::function<double(const test::Hit&)>& value) {
       HostFrame frame = with_depth(rendering, kind, value, sky);
       frame.depth_range = range;
-      expect_same_ao(frame, rendering.frame, what);
+      planar.expect_same(frame, what);
     };
     DepthRange negative, log = between_planes(kFar, false), log_reversed = between_planes(kFar, true);
     negative.negative = true;
@@ -124,7 +136,7 @@ TEST(Depth, of_an_orthographic_z_buffer_is_linear) {
         },
         reversed ? 0.0f : 1.0f);
     frame.depth_range = between_planes(kFar, reversed);
-    expect_same_ao(frame, rendering.frame, reversed ? "reversed" : "standard");
+    Planar(rendering.frame).expect_same(frame, reversed ? "reversed" : "standard");
   }
 }
 
@@ -150,7 +162,7 @@ TEST(Depth, by_position_in_world_or_view_space_is_the_same_scene) {
         frame.depth[i + pixels] = float(p.y);
         frame.depth[i + 2 * pixels] = float(p.z);
       }
-      expect_same_ao(frame, rendering.frame, world ? "world" : "view");
+      Planar(rendering.frame).expect_same(frame, world ? "world" : "view");
       const View view = view_of(frame.camera, frame.data, frame.display);
       EXPECT_LT(reprojection_error(frame.depth, frame.position_space, false, frame.camera, view).value(), 1e-3);
       EXPECT_GT(
@@ -163,20 +175,22 @@ TEST(Depth, by_position_in_world_or_view_space_is_the_same_scene) {
 
 TEST(Depth, of_every_sentinel_is_sky) {
   const Rendering rendering = furnished();
-  const std::vector<float> expected = ao_of(rendering.frame, 0.6, ThicknessKind::automatic);
+  const Planar planar(rendering.frame);
   const auto check = [&](DepthKind kind, const DepthRange& range, const std::vector<float>& sentinels,
                          const std::function<double(const test::Hit&)>& value) {
     for (const float sentinel : sentinels) {
       HostFrame frame = with_depth(rendering, kind, value, sentinel);
       frame.depth_range = range;
-      const HostResult result = compute_ao(recorder(), frame, settings_of(0.6));
-      EXPECT_LE(difference(result.ao, expected).rmse, 1e-4) << name_of(kind) << " " << sentinel;
-      EXPECT_EQ(result.sky_pixels, compute_ao(recorder(), rendering.frame, settings_of(0.6)).sky_pixels)
+      const HostResult result = compute_ao(recorder(), frame, with(0.6, ThicknessKind::automatic));
+      EXPECT_LE(difference(result.ao, planar.near).rmse, kind == DepthKind::planar ? 0 : 1e-4)
           << name_of(kind) << " " << sentinel;
+      EXPECT_EQ(result.sky_pixels, planar.sky_pixels) << name_of(kind) << " " << sentinel;
     }
   };
   const auto distance = [](const test::Hit& hit) { return hit.distance; };
-  check(DepthKind::planar, {}, {0, 1e9f, 1e10f, 1e30f, 1e38f, kInfinite, -kInfinite, kNan, -1}, distance);
+  constexpr float kLargest = std::numeric_limits<float>::max();
+  check(DepthKind::planar, {},
+        {0, -0.0f, 1e9f, 1e10f, 1e30f, 1e38f, kLargest, -kLargest, kInfinite, -kInfinite, kNan, -1}, distance);
   check(DepthKind::ray, {}, {0, 1e10f, kInfinite, kNan, -1},
         [&](const test::Hit& hit) { return length(hit.position - rendering.shot.eye); });
   check(DepthKind::inverse, {}, {0, 1e-10f, -1, kNan, -kInfinite, kInfinite},
@@ -236,14 +250,15 @@ Vec3 spheremap(Vec3 n) {
 
 TEST(Normals, of_every_encoding_are_the_same) {
   const Rendering rendering = furnished();
+  const std::vector<float> expected = ao_of(rendering.frame, 1e3);
   const auto check = [&](const char* what, HostFrame frame) {
-    EXPECT_LE(difference(ao_of(frame, 1e3), ao_of(rendering.frame, 1e3)).max, 2e-4) << what;
-    const HostResult result = compute_ao(recorder(), frame, settings_of(1));
+    const HostResult result = compute_ao(recorder(), frame, with(1e3, ThicknessKind::infinite));
+    EXPECT_LE(difference(result.ao, expected).max, 2e-4) << what;
     EXPECT_EQ(result.repaired_normals, 0u) << what;
     frame.normal = decoded_normals(frame.normal, frame.data.pixels(), frame.normal_encoding, frame.normal_unorm);
     frame.normal_encoding = NormalEncoding::signed_float;
     frame.normal_unorm = false;
-    EXPECT_LE(difference(ao_of(frame, 1e3), ao_of(rendering.frame, 1e3)).max, 2e-4) << what << " decoded on the host";
+    EXPECT_LE(difference(ao_of(frame, 1e3), expected).max, 2e-4) << what << " decoded on the host";
   };
   const auto same = [](Vec3 n) { return n; };
   check("unorm", with_normals(rendering, 3, NormalEncoding::signed_float, true, same));
@@ -256,7 +271,7 @@ TEST(Normals, of_every_encoding_are_the_same) {
       check("octahedral", with_normals(rendering, planes, NormalEncoding::octahedral, unorm, octahedral));
   HostFrame sphere = with_normals(rendering, 2, NormalEncoding::spheremap, true, spheremap);
   sphere.flip_normal.z = true;
-  EXPECT_LE(difference(ao_of(sphere, 1e3), ao_of(rendering.frame, 1e3)).max, 2e-3) << "spheremap is steep at its rim";
+  EXPECT_LE(difference(ao_of(sphere, 1e3), expected).max, 2e-3) << "spheremap is steep at its rim";
 }
 
 TEST(Normals, flips_undo_flips) {
@@ -273,22 +288,6 @@ TEST(Normals, flips_undo_flips) {
 }
 
 // The command line.
-
-TEST_F(CommandLine, a_z_buffer_between_planes_is_read) {
-  ASSERT_EQ(run({"--type", "float"}).code, 0);
-  const auto planar = read_exr_image(ao).pixels;
-  FrameFile file = wall_frame();
-  for (float& z : file.planes["ViewLayer.Depth.Z"])
-    z = float(device_depth(z, kInfinite, true, DeviceRange::zero_to_one));
-  file.write(frame);
-  const Finished finished =
-      run({"--type", "float", "--depth-kind", "device", "--near", "0.1", "--far", "inf", "--reversed-z"});
-  ASSERT_EQ(finished.code, 0) << finished;
-  EXPECT_LE(difference(read_exr_image(ao).pixels, planar).rmse, 1e-4);
-  const Finished without = run({"--depth-kind", "device"});
-  EXPECT_EQ(without.code, 2);
-  EXPECT_THAT(without.err, HasSubstr("--near"));
-}
 
 TEST_F(CommandLine, the_digest_changes_with_every_setting_of_the_input) {
   const auto digest = [](const auto& change) {

@@ -1,25 +1,17 @@
 // Normals of the other side, of nearly the same space, without their signs, and with other lengths are told apart.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <functional>
-#include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "core/base/error.h"
 #include "core/frame/evidence.h"
 #include "tests/support/furnished.h"
-#include "tests/support/program.h"
-#include "tests/support/settled.h"
-#include "tests/support/wall_frame.h"
+#include "tests/support/settled_file.h"
 
 namespace alcove {
 namespace {
 
 using namespace test;
-using nlohmann::json;
 using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -27,10 +19,9 @@ using testing::IsEmpty;
 using testing::Not;
 
 /// A rendering as a file of Z and N, with a camera that is turned by some degrees within a world of the test's own.
-class NormalFiles : public testing::Test {
+class NormalFiles : public SettledFile {
  protected:
   NormalFiles() {
-    settings.input = folder / "frame.exr";
     settings.depth_kind = DepthKind::planar;
     place(turned({0.3, 1, 0.2}, 50));
   }
@@ -46,12 +37,10 @@ class NormalFiles : public testing::Test {
   /// Gives a camera file of which these are the rows that give view space of the world.
   void place(const std::array<Vec3, 3>& rows) {
     view_from_world = rows;
-    const Camera& c = rendering.shot.camera;
-    json camera = {{"resolution", {c.width, c.height}}, {"fx", c.fx}, {"fy", c.fy}, {"cx", c.cx}, {"cy", c.cy}};
-    for (const Vec3& row : rows) camera["world_to_camera"].push_back({row.x, row.y, row.z, 0});
-    camera["world_to_camera"].push_back({0, 0, 0, 1});
-    settings.camera = folder / "camera.json";
-    write_bytes(settings.camera, camera.dump());
+    Shot shot = rendering.shot;
+    shot.eye = {};
+    shot.right = rows[0], shot.up = rows[1], shot.back = rows[2];
+    give(camera_of(shot));
   }
   Vec3 world(Vec3 view) const {
     return view.x * view_from_world[0] + view.y * view_from_world[1] + view.z * view_from_world[2];
@@ -61,21 +50,12 @@ class NormalFiles : public testing::Test {
 
   /// Writes normals as `saved` makes them from those of view space.
   void write(const Saved& saved) {
-    const Shot& shot = rendering.shot;
-    FrameFile file{shot.data, shot.display, 1, {}, {}, {}};
-    for (const auto& hit : rendering.hits) {
-      const bool is_sky = hit.primitive < 0;
-      const Vec3 n = is_sky ? Vec3{} : saved(shot.view_from_world(hit.normal), hit);
-      file.planes["Z"].push_back(is_sky ? 1e10f : float(hit.distance));
-      file.planes["N.X"].push_back(float(n.x));
-      file.planes["N.Y"].push_back(float(n.y));
-      file.planes["N.Z"].push_back(float(n.z));
-    }
+    FrameFile file = file_of(rendering, 1e10f, planar, [&](const test::Hit& hit) {
+      return saved(rendering.shot.view_from_world(hit.normal), hit);
+    });
     file.halves = halves;
     file.write(settings.input);
   }
-
-  FrameSource settled() const { return test::settled(settings); }
 
   Notes noted() const {
     FrameSource source = settled();
@@ -88,13 +68,6 @@ class NormalFiles : public testing::Test {
     for (const auto& note : notes) codes.push_back(note.code);
     return codes;
   }
-  std::string refusal() const {
-    try {
-      return "accepted as " + testing::PrintToString(texts_of(settled().notes));
-    } catch (const Error& error) {
-      return error.what();
-    }
-  }
   void leave_camera_out() {
     const Camera& c = rendering.shot.camera;
     settings.camera.clear();
@@ -104,8 +77,6 @@ class NormalFiles : public testing::Test {
   Rendering rendering = furnished();
   std::array<Vec3, 3> view_from_world{};
   std::set<std::string> halves;
-  TemporaryFolder folder;
-  InputSettings settings;
 };
 
 constexpr int kFloor = 0, kWall = 1, kBall = 2;  // primitives of the rendering
@@ -183,11 +154,13 @@ TEST_F(NormalFiles, are_of_the_space_that_fits_however_little_the_camera_is_turn
         };
         const auto what = testing::Message() << degrees << " degrees, halves " << as_halves << ", bumps " << bumps;
         write(bumpy);
-        EXPECT_EQ(settled().normal_space, NormalSpace::view) << what;
-        EXPECT_THAT(codes_of(settled().notes), Not(testing::Contains(NoteCode::field_of_view))) << what;
+        FrameSource source = settled();
+        EXPECT_EQ(source.normal_space, NormalSpace::view) << what;
+        EXPECT_THAT(codes_of(source.notes), Not(testing::Contains(NoteCode::field_of_view))) << what;
         write([&](Vec3 n, const test::Hit& hit) { return world(bumpy(n, hit)); });
-        EXPECT_EQ(settled().normal_space, NormalSpace::world) << what;
-        EXPECT_THAT(settled().notes, testing::Each(testing::Field(&Note::code, NoteCode::normals_disagree))) << what;
+        source = settled();
+        EXPECT_EQ(source.normal_space, NormalSpace::world) << what;
+        EXPECT_THAT(source.notes, testing::Each(testing::Field(&Note::code, NoteCode::normals_disagree))) << what;
       }
   }
 }
@@ -213,8 +186,8 @@ TEST_F(NormalFiles, of_the_world_without_a_matrix_are_refused_as_such) {
     place(turned({1, 0.3, 0}, degrees));
     leave_camera_out();
     write([&](Vec3 n, const test::Hit&) { return world(n); });
-    EXPECT_THAT(refusal(), AllOf(HasSubstr("world space"), HasSubstr("--camera"), HasSubstr("--normal none")))
-        << degrees;
+    SCOPED_TRACE(degrees);
+    expect(Reply::refused, {"world space", "--camera", "--normal none"});
     write([](Vec3 n, const test::Hit&) { return n; });
     EXPECT_EQ(settled().normal_space, NormalSpace::view) << degrees;
   }
@@ -227,9 +200,10 @@ TEST_F(NormalFiles, without_signs_are_told_from_those_that_need_none) {
   const auto clamped = [](Vec3 n) { return Vec3{std::max(n.x, 0.0), std::max(n.y, 0.0), std::max(n.z, 0.0)}; };
   settings.normal_space = NormalSpace::view;
   write([&](Vec3 n, const test::Hit&) { return absolute(n); });
-  EXPECT_THAT(refusal(), AllOf(HasSubstr("absolute values were saved"), HasSubstr("N.X, N.Y, N.Z")));
+  expect(Reply::refused, {"absolute values were saved", "N.X, N.Y, N.Z"});
   write([&](Vec3 n, const test::Hit&) { return clamped(n); });
-  EXPECT_THAT(refusal(), AllOf(HasSubstr("values below 0 were cut off"), Not(HasSubstr("averaged"))));
+  expect(Reply::refused, {"values below 0 were cut off"});
+  EXPECT_THAT(said(), testing::Each(Not(HasSubstr("averaged"))));
   // A world in which all that is seen faces up its axes.
   settings.normal_space = NormalSpace::automatic;
   const Shot& shot = rendering.shot;
@@ -241,10 +215,18 @@ TEST_F(NormalFiles, without_signs_are_told_from_those_that_need_none) {
   EXPECT_THAT(noted(), IsEmpty());
 }
 
-TEST_F(NormalFiles, that_were_scaled_are_right_and_are_not_called_averaged) {
+TEST_F(NormalFiles, that_were_scaled_or_moved_to_0_to_1_are_right_and_are_not_called_averaged) {
   for (const double factor : {0.5, 3.0}) {
     write([&](Vec3 n, const test::Hit&) { return factor * world(n); });
     EXPECT_THAT(codes_of(noted()), ElementsAre(NoteCode::scaled_normals)) << factor;
+    EXPECT_THAT(warnings_of(noted()), IsEmpty());
+  }
+  write([&](Vec3 n, const test::Hit&) { return 0.5 * world(n) + Vec3{0.5, 0.5, 0.5}; });
+  settings.normal_space = NormalSpace::world;
+  for (const bool strict : {false, true}) {
+    settings.strict = strict;
+    EXPECT_TRUE(settled().normal_unorm) << "proven by their lengths";
+    EXPECT_THAT(codes_of(noted()), ElementsAre(NoteCode::proven_reading));
     EXPECT_THAT(warnings_of(noted()), IsEmpty());
   }
 }
@@ -255,22 +237,7 @@ TEST_F(NormalFiles, that_went_through_a_curve_for_colours_are_refused_with_the_c
     const Vec3 w = world(n);
     return Vec3{linear(0.5 + 0.5 * w.x), linear(0.5 + 0.5 * w.y), linear(0.5 + 0.5 * w.z)};
   });
-  EXPECT_THAT(refusal(), AllOf(HasSubstr("0.5 + 0.5 n that was converted from sRGB to linear"),
-                               HasSubstr("N.X, N.Y, N.Z"), HasSubstr("--normal none")));
-}
-
-TEST_F(NormalFiles, between_0_and_1_are_proven_by_their_lengths) {
-  write([&](Vec3 n, const test::Hit&) {
-    const Vec3 w = world(n);
-    return Vec3{0.5 + 0.5 * w.x, 0.5 + 0.5 * w.y, 0.5 + 0.5 * w.z};
-  });
-  settings.normal_space = NormalSpace::world;
-  for (const bool strict : {false, true}) {
-    settings.strict = strict;
-    EXPECT_TRUE(settled().normal_unorm);
-    EXPECT_THAT(codes_of(noted()), ElementsAre(NoteCode::proven_reading));
-    EXPECT_THAT(warnings_of(noted()), IsEmpty());
-  }
+  expect(Reply::refused, {"0.5 + 0.5 n that was converted from sRGB to linear", "N.X, N.Y, N.Z", "--normal none"});
 }
 
 TEST_F(NormalFiles, are_named_where_they_are_files_of_their_own) {
@@ -283,7 +250,7 @@ TEST_F(NormalFiles, are_named_where_they_are_files_of_their_own) {
   EXPECT_EQ(noted()[0].file, settings.normal);
   EXPECT_THAT(line_of(noted()[0], settings.depth), testing::StartsWith(settings.normal + ": normal encoding"));
   settings.strict = true;
-  EXPECT_THAT(refusal(), testing::StartsWith(settings.normal + ": --strict, and nothing says the normal space"));
+  expect(Reply::refused, {settings.normal + ": --strict, and nothing says the normal space"});
 }
 
 }  // namespace

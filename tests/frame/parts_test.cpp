@@ -1,9 +1,8 @@
 // Files and parts: where the planes of a frame are stored, and which storage is refused.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <ImfDeepFrameBuffer.h>
-#include <ImfDeepScanLineOutputFile.h>
 #include <ImfOutputFile.h>
 
+#include "tests/support/deep_file.h"
 #include "tests/support/part_files.h"
 
 namespace alcove {
@@ -12,44 +11,6 @@ namespace {
 using namespace test;
 using testing::ElementsAre;
 using testing::IsEmpty;
-
-// Files and parts.
-
-TEST_F(GBuffer, part_names_are_layers) {
-  write(std::vector<Part>{
-      {"rgba", {"A", "B", "G", "R"}}, {"depth", {"Z"}}, {"N", {"X", "Y", "Z"}}, {"albedo", {"B", "G", "R"}}});
-  const FrameSource source = find(true);
-  EXPECT_THAT(names_of(source[RawPlane::depth]), ElementsAre("1:Z"));
-  EXPECT_THAT(names_of(source[RawPlane::normal]), ElementsAre("2:X", "2:Y", "2:Z"));
-  EXPECT_THAT(names_of(source[RawPlane::beauty]), ElementsAre("R", "G", "B", "A"));
-}
-
-TEST_F(GBuffer, parts_may_repeat_their_name_in_the_channels) {
-  write(std::vector<Part>{
-      {"ViewLayer.Combined", {"ViewLayer.Combined.R", "ViewLayer.Combined.G", "ViewLayer.Combined.B"}},
-      {"ViewLayer.Depth", {"ViewLayer.Depth.Z"}},
-      {"ViewLayer.Normal", {"ViewLayer.Normal.X", "ViewLayer.Normal.Y", "ViewLayer.Normal.Z"}}});
-  EXPECT_THAT(depth(), ElementsAre("1:ViewLayer.Depth.Z"));
-  EXPECT_THAT(normal(), ElementsAre("2:ViewLayer.Normal.X", "2:ViewLayer.Normal.Y", "2:ViewLayer.Normal.Z"));
-  EXPECT_THAT(names_of(find(true)[RawPlane::beauty]),
-              ElementsAre("ViewLayer.Combined.R", "ViewLayer.Combined.G", "ViewLayer.Combined.B"));
-  settings.layer = "ViewLayer";
-  EXPECT_THAT(depth(), ElementsAre("1:ViewLayer.Depth.Z"));
-}
-
-TEST_F(GBuffer, the_name_of_the_only_part_is_no_layer) {
-  for (const char* name : {"rgba", "rgba.main", "Layer"}) {
-    write(std::vector<Part>{{name, {"R", "G", "B", "Z", "N.X", "N.Y", "N.Z"}}});
-    EXPECT_THAT(names_of(find(true)[RawPlane::depth]), ElementsAre("Z")) << name;
-    EXPECT_THAT(normal(), ElementsAre("N.X", "N.Y", "N.Z")) << name;
-  }
-}
-
-TEST_F(GBuffer, a_part_with_any_name_may_hold_everything) {
-  write(std::vector<Part>{{"main", {"R", "G", "B", "Z", "N.X", "N.Y", "N.Z"}}, {"extra", {"R", "G", "B"}}});
-  EXPECT_THAT(depth(), ElementsAre("Z"));
-  EXPECT_THAT(normal(), ElementsAre("N.X", "N.Y", "N.Z"));
-}
 
 TEST_F(GBuffer, planes_of_several_parts_are_read_each_from_its_own) {
   write(std::vector<Part>{{"rgba", {"B", "G", "R"}}, {"depth", {"Z"}}, {"N", {"X", "Y", "Z"}}});
@@ -113,8 +74,6 @@ TEST_F(GBuffer, normals_and_a_beauty_need_not_cover_the_same_pixels) {
   EXPECT_THAT(find(false).notes, IsEmpty()) << "nobody asked for the beauty";
 }
 
-// Storage.
-
 TEST_F(GBuffer, a_subsampled_channel_is_refused) {
   Imf::Header header(4, 2);
   header.channels().insert("Z", Imf::Channel(Imf::FLOAT, 2, 2));
@@ -128,23 +87,10 @@ TEST_F(GBuffer, a_subsampled_channel_is_refused) {
 }
 
 TEST_F(GBuffer, deep_data_gives_its_first_surface) {
-  Imf::Header header(2, 1);
-  header.setType(Imf::DEEPSCANLINE);
-  header.compression() = Imf::ZIPS_COMPRESSION;
-  header.channels().insert("Z", Imf::Channel(Imf::FLOAT));
-  {
-    Imf::DeepScanLineOutputFile file(settings.input.c_str(), header);
-    unsigned int counts[] = {0, 0};
-    float* samples[] = {nullptr, nullptr};
-    Imf::DeepFrameBuffer pixels;
-    pixels.insertSampleCountSlice(Imf::Slice(Imf::UINT, reinterpret_cast<char*>(counts), sizeof(unsigned int), 0));
-    pixels.insert("Z", Imf::DeepSlice(Imf::FLOAT, reinterpret_cast<char*>(samples), sizeof(float*), 0, sizeof(float)));
-    file.setFrameBuffer(pixels);
-    file.writePixels(1);
-  }
-  const FrameSource source = find_frame(settings, false, 0);
-  ASSERT_EQ(source[RawPlane::depth].size(), 1);
-  EXPECT_EQ(source[RawPlane::depth][0].channel, "deep1.Z");
+  DeepFilePart deep;
+  deep.pixels.assign(6, {{1, 2}});
+  write_deep(settings.input, {deep});
+  EXPECT_THAT(depth(), ElementsAre("deep1.Z"));
 }
 
 }  // namespace

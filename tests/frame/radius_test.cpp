@@ -6,9 +6,7 @@
 
 #include <limits>
 
-#include "tests/support/program.h"
-#include "tests/support/settled.h"
-#include "tests/support/wall_frame.h"
+#include "tests/support/settled_file.h"
 
 namespace alcove {
 namespace {

@@ -228,14 +228,23 @@ class PositionPass : public CommandLine {
     file.write(frame);
   }
 
+  Finished run_by(std::vector<std::string> options) const {
+    options.insert(options.begin(), {"run", frame, "-o", ao, "--type", "float", "--radius", "1"});
+    return run_program(options);
+  }
   Plane ao_of(const std::vector<std::string>& options) const {
-    std::vector<std::string> arguments{"run", frame, "-o", ao, "--type", "float", "--radius", "1"};
-    arguments.insert(arguments.end(), options.begin(), options.end());
-    const Finished finished = run_program(arguments);
+    const Finished finished = run_by(options);
     EXPECT_EQ(finished.code, 0) << finished;
-    Plane pixels = read_exr_image(ao).pixels;
-    EXPECT_EQ(pixels.size(), kWallWindow.pixels());
-    return pixels;
+    return read_exr_image(ao).pixels;
+  }
+  /// Other positions, component by component.
+  void write_instead(const std::function<double(int component, int x, int y)>& position) const {
+    FrameFile file = wall_frame();
+    for (int c = 0; c < 3; c++)
+      for (int y = 0; y < 36; y++)
+        for (int x = 0; x < 64; x++)
+          file.planes[std::string("ViewLayer.Position.") + "XYZ"[c]].push_back(float(position(c, x, y)));
+    file.write(frame);
   }
 };
 
@@ -280,33 +289,23 @@ TEST(Panoramas, are_known_by_the_points_that_they_see) {
   EXPECT_EQ(panorama_of(seen_by(made_camera()), kPicture), "");
 }
 
-TEST_F(PositionPass, gives_the_camera_that_nobody_said) {
+TEST_F(PositionPass, gives_the_camera_that_nobody_said_and_its_file) {
   write_positions("ViewLayer.Position");
-  const Plane by_file = ao_of({"--camera", camera});
-  EXPECT_LT(difference(ao_of({}), by_file).max, 0.002);
+  const Plane by_file = ao_of({"--camera", camera}), by_positions = ao_of({});
+  EXPECT_EQ(by_file.size(), kWallWindow.pixels());
+  EXPECT_LT(difference(by_positions, by_file).max, 0.002);
   EXPECT_LT(difference(ao_of({"--depth-kind", "position"}), by_file).max, 0.002);
-  const Finished inspected = run_program({"inspect", frame});
-  EXPECT_THAT(inspected.out, HasSubstr("by its positions"));
-  EXPECT_THAT(inspected.out, testing::Not(HasSubstr("missing: camera")));
-}
-
-TEST_F(PositionPass, is_found_by_the_option) {
-  write_positions("strange");
-  const Finished without = run_program({"run", frame, "-o", ao, "--radius", "1"});
-  EXPECT_EQ(without.code, 2) << without;
-  EXPECT_THAT(without.err, HasSubstr("--camera"));
-  const Plane by_file = ao_of({"--camera", camera});
-  EXPECT_LT(difference(ao_of({"--position-channels", "strange"}), by_file).max, 0.002);
-}
-
-TEST_F(PositionPass, is_written_as_a_camera_file) {
-  write_positions("ViewLayer.Position");
   const std::string written = folder / "written.json";
   const Finished inspected = run_program({"inspect", frame, "--write-camera", written});
   ASSERT_EQ(inspected.code, 0) << inspected;
-  const Camera expected = read_camera(camera, 0), given = read_camera(written, 0);
-  expect_same(given, expected, 1e-5);
-  EXPECT_EQ(ao_of({"--camera", written}), ao_of({}));
+  EXPECT_THAT(inspected.out, AllOf(HasSubstr("by its positions"), Not(HasSubstr("missing: camera"))));
+  expect_same(read_camera(written, 0), read_camera(camera, 0), 1e-5);
+  EXPECT_EQ(ao_of({"--camera", written}), by_positions);
+  write_positions("strange");
+  const Finished without = run_by({});
+  EXPECT_EQ(without.code, 2) << without;
+  EXPECT_THAT(without.err, HasSubstr("--camera"));
+  EXPECT_LT(difference(ao_of({"--position-channels", "strange"}), by_file).max, 0.002);
 }
 
 TEST_F(PositionPass, of_a_sequence_is_written_with_its_frames) {
@@ -323,10 +322,9 @@ TEST_F(PositionPass, refutes_a_lens_by_pixels) {
   write_positions("ViewLayer.Position");
   const Camera right = read_camera(camera, 0);
   const double degrees = 2 * std::atan(32 / right.fx) * 180 / std::numbers::pi;
-  const auto warned = [&](const std::vector<std::string>& options) {
-    std::vector<std::string> arguments{"run", frame, "-o", ao, "--radius", "1", "--normal", "none"};
-    arguments.insert(arguments.end(), options.begin(), options.end());
-    const Finished finished = run_program(arguments);
+  const auto warned = [&](std::vector<std::string> options) {
+    options.insert(options.end(), {"--normal", "none"});
+    const Finished finished = run_by(options);
     EXPECT_EQ(finished.code, 0) << finished;
     return finished.err;
   };
@@ -340,35 +338,21 @@ TEST_F(PositionPass, refutes_a_lens_by_pixels) {
 }
 
 TEST_F(PositionPass, that_no_camera_fits_is_told_beside_a_lens) {
-  write_positions("ViewLayer.Position");
-  FrameFile file = wall_frame();
-  for (const char* c : {"X", "Y", "Z"})
-    for (int y = 0; y < 36; y++)
-      for (int x = 0; x < 64; x++) {
-        // Smooth, and seen along the rays of no lens.
-        const double longitude = 0.07 * x, latitude = 0.05 * (y - 18), distance = 3 + 0.1 * std::sin(0.3 * x + 0.2 * y);
-        file.planes[std::string("ViewLayer.Position.") + c].push_back(
-            float(distance * (*c == 'X'   ? std::sin(longitude) * std::cos(latitude)
-                              : *c == 'Y' ? std::sin(latitude)
-                                          : std::cos(longitude) * std::cos(latitude))));
-      }
-  file.write(frame);
-  const std::vector<std::string> run{"run", frame, "-o", ao, "--radius", "1", "--normal", "none", "--fov", "50"};
-  EXPECT_THAT(run_program(run).err, AllOf(HasSubstr("no camera fits"), HasSubstr("--fov 50 is taken")));
+  write_instead([](int c, int x, int y) {  // smooth, and seen along the rays of no lens
+    const double longitude = 0.07 * x, latitude = 0.05 * (y - 18), distance = 3 + 0.1 * std::sin(0.3 * x + 0.2 * y);
+    return distance * Vector3{std::sin(longitude) * std::cos(latitude), std::sin(latitude),
+                              std::cos(longitude) * std::cos(latitude)}[std::size_t(c)];
+  });
+  EXPECT_THAT(run_by({"--normal", "none", "--fov", "50"}).err,
+              AllOf(HasSubstr("no camera fits"), HasSubstr("--fov 50 is taken")));
 }
 
 TEST_F(PositionPass, that_is_none_is_told) {
-  write_positions("ViewLayer.Position");
-  FrameFile file = wall_frame();
   std::mt19937 random(5);
-  for (const char* c : {"X", "Y", "Z"})
-    for (std::size_t i = 0; i < file.data.pixels(); i++)
-      file.planes[std::string("ViewLayer.Position.") + c].push_back(float(random() % 1000));
-  file.write(frame);
-  const Finished finished = run_program({"run", frame, "-o", ao, "--radius", "1"});
+  write_instead([&](int, int, int) { return random() % 1000; });
+  const Finished finished = run_by({});
   EXPECT_EQ(finished.code, 2) << finished;
-  EXPECT_THAT(finished.err,
-              testing::AllOf(HasSubstr(frame), HasSubstr("its positions tell none"), HasSubstr("--camera")));
+  EXPECT_THAT(finished.err, AllOf(HasSubstr(frame), HasSubstr("its positions tell none"), HasSubstr("--camera")));
   const Finished inspected = run_program({"inspect", frame});
   EXPECT_EQ(inspected.code, 0);
   EXPECT_THAT(inspected.out, HasSubstr("its positions tell none"));

@@ -93,9 +93,7 @@ class DeepFileWriter {
     const std::size_t width = std::size_t(part.data.width),
                       first = std::size_t(part.data.x) + std::size_t(part.data.y) * width;
     std::vector<std::uint32_t> counts;
-    // Of each channel, a pointer to the samples of each pixel.
     std::vector<std::vector<std::vector<float>>> values(part.channels.size());
-    std::vector<std::vector<float*>> pointers(part.channels.size());
     for (const auto& pixel : part.pixels) {
       counts.push_back(std::uint32_t(pixel.size()));
       for (std::size_t c = 0; c < part.channels.size(); c++) {
@@ -107,7 +105,7 @@ class DeepFileWriter {
     buffer.insertSampleCountSlice(Imf::Slice(Imf::UINT, reinterpret_cast<char*>(counts.data() - std::ptrdiff_t(first)),
                                              sizeof(std::uint32_t), sizeof(std::uint32_t) * width));
     std::vector<std::vector<std::vector<half>>> halves(part.channels.size());
-    std::vector<std::vector<void*>> at(part.channels.size());
+    std::vector<std::vector<void*>> at(part.channels.size());  // of each channel, the samples of each pixel
     for (std::size_t c = 0; c < part.channels.size(); c++) {
       const Imf::PixelType type = type_of(part, part.channels[c]);
       for (auto& pixel : values[c]) {

@@ -12,33 +12,27 @@
 #include <ImfOutputFile.h>
 #include <ImfStringAttribute.h>
 #include <ImfVecAttribute.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <cmath>
-#include <functional>
 #include <numbers>
 
-#include "core/base/error.h"
 #include "core/chain/compute.h"
 #include "core/frame/input_rules.h"
-#include "core/frame/settle.h"
 #include "tests/support/device.h"
 #include "tests/support/difference.h"
-#include "tests/support/program.h"
-#include "tests/support/scenes.h"
-#include "tests/support/settled.h"
+#include "tests/support/settled_file.h"
 
 namespace alcove::test {
 
 constexpr double kFov = 60, kFar = 50;
 
 /// A floor, two walls and a ball under sky.
+inline Scene scene() {
+  return {{parallelogram({0, -3, 0}, {4, 0, 0}, {0, 6, 0}), parallelogram({0, -3, 0}, {0, 6, 0}, {0, 0, 1.5}),
+           parallelogram({0, 2, 0}, {4, 0, 0}, {0, 0, 1.5}), Sphere{.center = {1.2, 0.4, 0.5}, .radius = 0.5}}};
+}
 inline const Rendering& rendering() {
-  static const Rendering made = render(
-      Scene{{parallelogram({0, -3, 0}, {4, 0, 0}, {0, 6, 0}), parallelogram({0, -3, 0}, {0, 6, 0}, {0, 0, 1.5}),
-             parallelogram({0, 2, 0}, {4, 0, 0}, {0, 0, 1.5}), Sphere{.center = {1.2, 0.4, 0.5}, .radius = 0.5}}},
-      Shot::perspective({4.5, -1.5, 2.4}, {1, 0, 0.6}, kFov, 160, 120));
+  static const Rendering made = render(scene(), Shot::perspective({4.5, -1.5, 2.4}, {1, 0, 0.6}, kFov, 160, 120));
   return made;
 }
 
@@ -46,7 +40,6 @@ inline const Shot& shot() { return rendering().shot; }
 inline Vec3 mirrored(Vec3 v) { return {v.x, -v.y, v.z}; }
 inline Vec3 in_view(Vec3 world) { return shot().view_from_world(world); }
 inline Vec3 forward_z(Vec3 view) { return {view.x, view.y, -view.z}; }
-inline double planar(const Hit& hit) { return hit.distance; }
 inline double ray(const Hit& hit) { return length(hit.position - shot().eye); }
 
 using Rows = std::array<std::array<double, 4>, 4>;  // for column vectors
@@ -96,23 +89,19 @@ inline void add_matrices(Imf::Header& header, bool from_zero, bool row_vectors =
 }
 
 /// A frame as a program writes it: planes by name, attributes, and how it must be read.
-class Sources : public testing::Test {
+class Sources : public SettledFile {
  protected:
-  Sources() : header(160, 120) { settings.input = folder / "frame.exr"; }
-
   void depth(const std::string& channel, double (*value)(const Hit&), float sky, double scale = 1) {
-    auto& plane = planes[channel];
-    for (const auto& hit : rendering().hits) plane.push_back(hit.primitive < 0 ? sky : float(scale * value(hit)));
+    planes[channel] = file_of(rendering(), sky, [&](const Hit& hit) { return scale * value(hit); }).planes.at("Z");
   }
 
   void vectors(const std::string& layer, const char* components, const std::function<Vec3(const Hit&)>& value,
                float offset = 0, float scale = 1) {
-    for (const auto& hit : rendering().hits) {
-      const Vec3 v = hit.primitive < 0 ? Vec3{} : value(hit);
-      const double xyz[] = {v.x, v.y, v.z};
-      for (int c = 0; c < 3; c++)
-        planes[layer + "." + components[c]].push_back(hit.primitive < 0 ? 0 : float(offset + scale * xyz[c]));
-    }
+    const Vec3 offsets{offset, offset, offset};
+    const FrameFile file =
+        file_of(rendering(), 0, planar, [&](const Hit& hit) { return offsets + scale * value(hit); });
+    for (std::size_t c = 0; c < 3; c++)
+      planes[layer + "." + components[c]] = file.planes.at(std::string("N.") + "XYZ"[c]);
   }
 
   static Vec3 world_normal(const Hit& hit) { return hit.normal; }
@@ -136,17 +125,7 @@ class Sources : public testing::Test {
   }
 
   /// The camera file of the scene, for programs that write none.
-  void give_camera() {
-    const Rows rows = world_to_camera(1);
-    const Camera& c = shot().camera;
-    std::string text = fmt::format(
-        R"({{"resolution": [160, 120], "fx": {}, "fy": {}, "cx": 80, "cy": 60, "world_to_camera": [)", c.fx, c.fy);
-    for (std::size_t i = 0; i < 4; i++) text += fmt::format("{}[{}]", i ? ", " : "", fmt::join(rows[i], ", "));
-    settings.camera = folder / "camera.json";
-    write_bytes(settings.camera, text + "]}");
-  }
-
-  FrameSource settled() const { return test::settled(settings); }
+  void give_camera() { give(camera_of(shot())); }
 
   static std::vector<float> ao_of(const HostFrame& frame, double scale) {
     EstimatorSettings estimator = plain_settings();
@@ -164,21 +143,12 @@ class Sources : public testing::Test {
     EXPECT_LE(tolerance > 1e-3 ? d.rmse : d.max, tolerance) << place(d, rendering().frame);
   }
 
-  void expect_refused(ErrorKind kind, const std::vector<std::string>& words) {
+  void expect_refused(Reply reply, const std::vector<std::string>& words) {
     write(settings.input);
-    try {
-      settled();
-      read_host_frame(settings, 0);
-      ADD_FAILURE() << "accepted";
-    } catch (const Error& error) {
-      EXPECT_EQ(error.kind(), kind);
-      for (const auto& word : words) EXPECT_THAT(error.what(), testing::HasSubstr(word));
-    }
+    expect(reply, words);
   }
 
-  TemporaryFolder folder;
-  InputSettings settings;
-  Imf::Header header;
+  Imf::Header header{160, 120};
   std::map<std::string, std::vector<float>> planes;
 };
 

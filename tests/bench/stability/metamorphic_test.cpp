@@ -1,13 +1,11 @@
-// What is the same scene has the same AO, for every estimator: other units, mirrors, crops, marks of sky, kinds of
-// depth, projections; and what is more blocked is darker.
+// What is the same scene has the same AO, for every estimator: other units, mirrors, crops, projections; and what is
+// more blocked is darker. Kinds of depth and marks of sky: tests/frame/inputs_test.cpp.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <iterator>
-#include <limits>
 #include <numbers>
 
 #include "core/base/estimator_facts.h"
@@ -111,84 +109,6 @@ TEST(Metamorphic, ao_of_a_crop_is_the_crop_of_ao) {
       EXPECT_EQ(of_part[i], of_whole[i]) << variant.name << " pixel " << i;
     }
     EXPECT_GT(compared, 300);
-  }
-}
-
-TEST(Metamorphic, any_mark_of_sky_is_sky) {
-  const HostFrame frame = room(55, 1, 0, 40, 30).frame;
-  constexpr float kLargest = std::numeric_limits<float>::max(), kInfinity = std::numeric_limits<float>::infinity(),
-                  kNan = std::numeric_limits<float>::quiet_NaN();
-  for (const auto& variant : variants()) {
-    const EstimatorSettings settings = with_radius(variant.settings, kRadius);
-    const std::vector<float> expected = run(frame, settings);
-    for (const float mark :
-         {0.0f, -0.0f, 65504.0f, 1e9f, 1e10f, 1e30f, kLargest, kInfinity, -kInfinity, kNan, -1.0f, -kLargest}) {
-      HostFrame marked = frame;
-      if (mark == 65504) marked.sky = 65504;  // where half floats end
-      std::ranges::replace(marked.depth, kSky, mark);
-      EXPECT_TRUE(same_bits(run(marked, settings), expected)) << variant.name << " " << mark;
-    }
-  }
-}
-
-/// The frame's depth said in another way.
-HostFrame said(const Rendering& rendering, DepthKind kind, const DepthRange& range = {},
-               PositionSpace space = PositionSpace::view) {
-  HostFrame frame = rendering.frame;
-  const Shot& shot = rendering.shot;
-  frame.depth_kind = kind;
-  frame.depth_range = range;
-  frame.position_space = space;
-  const auto row = [](Vec3 v) { return std::array{v.x, v.y, v.z}; };
-  const Vec3 eye = shot.view_from_world(shot.eye);
-  frame.camera.view_from_world = Matrix3{row(shot.right), row(shot.up), row(shot.back)};
-  frame.camera.view_from_world_offset = {-eye.x, -eye.y, -eye.z};
-  const std::size_t pixels = frame.data.pixels();
-  if (kind == DepthKind::position) frame.depth.assign(3 * pixels, 0);
-  for (std::size_t i = 0; i < pixels; i++) {
-    const Hit& hit = rendering.hits[i];
-    if (kind == DepthKind::position && hit.primitive < 0) continue;
-    const double z = hit.distance, near = range.near.value_or(0), far = range.far.value_or(0);
-    const Vec3 at = space == PositionSpace::world ? hit.position : shot.view_from_world(hit.position - shot.eye);
-    double value = 0;
-    switch (kind) {
-      case DepthKind::ray: value = hit.primitive < 0 ? kSky : length(hit.position - shot.eye); break;
-      case DepthKind::inverse: value = 1 / z; break;
-      case DepthKind::device: value = (1 / near - 1 / z) / (1 / near - 1 / far); break;
-      case DepthKind::normalized: value = (z - near) / (far - near); break;
-      case DepthKind::log: value = std::log1p(z) / std::log1p(far); break;
-      default: value = at.x, frame.depth[i + pixels] = float(at.y), frame.depth[i + 2 * pixels] = float(at.z);
-    }
-    if (near > 0) value = range.reversed ? 1 - std::min(value, 1.0) : std::min(value, 1.0);
-    frame.depth[i] = float(range.device == DeviceRange::minus_one_to_one ? 2 * value - 1 : value);
-  }
-  return frame;
-}
-
-// What differs is rounding, of depth to a few 1e-7; it may move a sample across the sphere of the radius.
-TEST(Metamorphic, every_kind_of_depth_says_the_same) {
-  const Rendering rendering = room(55, 1, 0, 48, 36);
-  constexpr double kNear = 0.5, kFar = 50, kEndless = std::numeric_limits<double>::infinity();
-  std::vector<HostFrame> frames{said(rendering, DepthKind::ray), said(rendering, DepthKind::inverse),
-                                said(rendering, DepthKind::position),
-                                said(rendering, DepthKind::position, {}, PositionSpace::world)};
-  for (const bool reversed : {false, true}) {
-    for (const DepthKind kind : {DepthKind::device, DepthKind::normalized, DepthKind::log})
-      frames.push_back(said(rendering, kind, {.near = kNear, .far = kFar, .reversed = reversed}));
-    for (const double far : {kFar, kEndless})
-      frames.push_back(
-          said(rendering, DepthKind::device,
-               {.near = kNear, .far = far, .reversed = reversed, .device = DeviceRange::minus_one_to_one}));
-    frames.push_back(said(rendering, DepthKind::device, {.near = kNear, .far = kEndless, .reversed = reversed}));
-  }
-  for (const auto& variant : estimators()) {
-    const EstimatorSettings settings = with_radius(variant.settings, kRadius);
-    const std::vector<float> planar = run(rendering.frame, settings);
-    for (std::size_t i = 0; i < frames.size(); i++) {
-      const Difference d = difference(run(frames[i], settings), planar);
-      EXPECT_LE(d.rmse, 5e-3) << variant.name << " frame " << i << " kind " << int(frames[i].depth_kind);
-      EXPECT_LE(std::abs(d.bias), 5e-4) << variant.name << " frame " << i << " kind " << int(frames[i].depth_kind);
-    }
   }
 }
 
