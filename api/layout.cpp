@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
-#include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <cstring>
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/base/half.h"
 
 namespace alcove {
 namespace {
@@ -18,25 +18,6 @@ namespace {
 constexpr int kMostSide = 1 << 24, kMostComponents = 64;
 
 std::size_t bytes_of(int type) { return type == ALCOVE_HALF ? 2 : 4; }
-
-float float_of(std::uint16_t half) {
-  const int exponent = half >> 10 & 31;
-  const float fraction = float(half & 1023), sign = half >> 15 ? -1.0F : 1.0F;
-  if (exponent == 31) return fraction > 0 ? std::nanf("") : sign * INFINITY;
-  return exponent ? sign * std::ldexp(1024 + fraction, exponent - 25) : sign * std::ldexp(fraction, -24);
-}
-
-std::uint16_t half_of(float value) {
-  const auto sign = std::uint16_t(std::signbit(value) ? 0x8000 : 0);
-  const float size = std::abs(value);
-  if (std::isnan(value)) return std::uint16_t(sign | 0x7e00);
-  if (size >= 65520) return std::uint16_t(sign | 0x7c00);
-  if (size < 0x1p-14F) return std::uint16_t(sign | std::uint16_t(std::nearbyint(size * 0x1p24F)));
-  // To the nearest of ten bits of fraction, to even; a fraction that becomes too large goes over into the exponent.
-  const auto bits = std::bit_cast<std::uint32_t>(size);
-  const std::uint32_t rounded = bits + 0xfff + (bits >> 13 & 1);
-  return std::uint16_t(sign | ((rounded - (112U << 23)) >> 13));
-}
 
 struct Strides {
   std::ptrdiff_t pixel, row, component;
@@ -103,7 +84,7 @@ std::vector<float> planes_from(const void* data, const alcove_layout& layout) {
                for (std::size_t x = 0; x < width; x++, from += stride) {
                  std::uint16_t half = 0;
                  std::memcpy(&half, from, sizeof half);
-                 to[x] = float_of(half);
+                 to[x] = from_half(half);
                }
              }
            });
@@ -120,7 +101,7 @@ void planes_to(std::span<const float> planes, void* data, const alcove_layout& l
       for (std::size_t x = 0; x < width; x++, to += stride) std::memcpy(to, from + x, sizeof(float));
     } else {
       for (std::size_t x = 0; x < width; x++, to += stride) {
-        const std::uint16_t half = half_of(from[x]);
+        const std::uint16_t half = to_half(from[x]);
         std::memcpy(to, &half, sizeof half);
       }
     }

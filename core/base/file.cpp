@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <random>
-#include <string_view>
+#include <regex>
 
 #include "core/base/error.h"
 
@@ -16,27 +16,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kUnfinishedPrefix = ".alcove-";
-constexpr const char* kUnfinishedSuffix = ".tmp";
-
 /// Whether a name is one that NewFile gives: a process, eight digits.
-bool is_unfinished(std::string_view name) {
-  if (!name.starts_with(kUnfinishedPrefix) || !name.ends_with(kUnfinishedSuffix)) return false;
-  name.remove_prefix(std::string_view(kUnfinishedPrefix).size());
-  name.remove_suffix(std::string_view(kUnfinishedSuffix).size());
-  const std::size_t dash = name.find('-');
-  const auto all_of = [](std::string_view text, const char* digits) {
-    return !text.empty() && text.find_first_not_of(digits) == text.npos;
-  };
-  return dash != name.npos && all_of(name.substr(0, dash), "0123456789") && name.size() - dash == 9 &&
-         all_of(name.substr(dash + 1), "0123456789abcdef");
+bool is_unfinished(const std::string& name) {
+  static const std::regex kName(R"(\.alcove-[0-9]+-[0-9a-f]{8}\.tmp)");
+  return std::regex_match(name, kName);
 }
 
 /// A hidden name in a folder that nobody else has, for a file in the making: remove_unfinished() knows it.
 std::string unfinished_name(const std::string& folder) {
-  return (fs::path(folder) /
-          fmt::format("{}{}-{:08x}{}", kUnfinishedPrefix, process_id(), std::random_device()(), kUnfinishedSuffix))
-      .string();
+  return (fs::path(folder) / fmt::format(".alcove-{}-{:08x}.tmp", process_id(), std::random_device()())).string();
 }
 
 }  // namespace

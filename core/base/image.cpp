@@ -6,6 +6,7 @@
 
 #include "core/base/error.h"
 #include "core/base/text.h"
+#include "core/base/windows.h"
 
 namespace alcove {
 
@@ -15,13 +16,7 @@ std::string to_string(const Window& window) {
 
 std::vector<float> cropped(std::span<const float> planes, const Window& from, const Window& to) {
   std::vector<float> part;
-  part.reserve(planes.size() / from.pixels() * to.pixels());
-  for (std::size_t plane = 0; plane < planes.size(); plane += from.pixels())
-    for (int y = to.y; y < to.y + to.height; y++) {
-      const auto row = planes.begin() + std::ptrdiff_t(plane + std::size_t(y - from.y) * std::size_t(from.width) +
-                                                       std::size_t(to.x - from.x));
-      part.insert(part.end(), row, row + to.width);
-    }
+  put_in(planes, from, to, to, part);
   return part;
 }
 

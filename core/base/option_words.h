@@ -2,159 +2,99 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <map>
 #include <string>
+#include <utility>
 
 #include "core/base/settings.h"
 
 namespace alcove {
 
 template <class T>
-const std::map<std::string, T>& names_of();
+using Word = std::pair<const char*, T>;
+
+/// The words of an enumeration, in the order of the alphabet.
+template <class T>
+inline constexpr int kWordsOf = 0;
 template <>
-inline const std::map<std::string, DepthKind>& names_of() {
-  static const std::map<std::string, DepthKind> names = {
-      {"auto", DepthKind::automatic},  {"planar", DepthKind::planar},    {"ray", DepthKind::ray},
-      {"inverse", DepthKind::inverse}, {"device", DepthKind::device},    {"normalized", DepthKind::normalized},
-      {"log", DepthKind::log},         {"position", DepthKind::position}};
-  return names;
-}
+inline constexpr Word<DepthKind> kWordsOf<DepthKind>[] = {
+    {"auto", DepthKind::automatic},        {"device", DepthKind::device},
+    {"inverse", DepthKind::inverse},       {"log", DepthKind::log},
+    {"normalized", DepthKind::normalized}, {"planar", DepthKind::planar},
+    {"position", DepthKind::position},     {"ray", DepthKind::ray}};
 template <>
-inline const std::map<std::string, BehindKind>& names_of() {
-  static const std::map<std::string, BehindKind> names = {{"surfaces", BehindKind::surfaces},
-                                                          {"fronts", BehindKind::fronts},
-                                                          {"backs", BehindKind::backs},
-                                                          {"thickness", BehindKind::thickness}};
-  return names;
-}
+inline constexpr Word<BehindKind> kWordsOf<BehindKind>[] = {{"backs", BehindKind::backs},
+                                                            {"fronts", BehindKind::fronts},
+                                                            {"surfaces", BehindKind::surfaces},
+                                                            {"thickness", BehindKind::thickness}};
 template <>
-inline const std::map<std::string, MotionKind>& names_of() {
-  static const std::map<std::string, MotionKind> names = {
-      {"auto", MotionKind::automatic}, {"previous", MotionKind::previous}, {"next", MotionKind::next}};
-  return names;
-}
+inline constexpr Word<MotionKind> kWordsOf<MotionKind>[] = {
+    {"auto", MotionKind::automatic}, {"next", MotionKind::next}, {"previous", MotionKind::previous}};
 template <>
-inline const std::map<std::string, DeviceRange>& names_of() {
-  static const std::map<std::string, DeviceRange> names = {{"0..1", DeviceRange::zero_to_one},
-                                                           {"-1..1", DeviceRange::minus_one_to_one}};
-  return names;
-}
+inline constexpr Word<DeviceRange> kWordsOf<DeviceRange>[] = {{"-1..1", DeviceRange::minus_one_to_one},
+                                                              {"0..1", DeviceRange::zero_to_one}};
 template <>
-inline const std::map<std::string, PositionSpace>& names_of() {
-  static const std::map<std::string, PositionSpace> names = {
-      {"auto", PositionSpace::automatic}, {"world", PositionSpace::world}, {"view", PositionSpace::view}};
-  return names;
-}
+inline constexpr Word<PositionSpace> kWordsOf<PositionSpace>[] = {
+    {"auto", PositionSpace::automatic}, {"view", PositionSpace::view}, {"world", PositionSpace::world}};
 template <>
-inline const std::map<std::string, NormalEncoding>& names_of() {
-  static const std::map<std::string, NormalEncoding> names = {{"auto", NormalEncoding::automatic},
-                                                              {"signed", NormalEncoding::signed_float},
-                                                              {"unorm", NormalEncoding::unorm},
-                                                              {"octahedral", NormalEncoding::octahedral},
-                                                              {"spheremap", NormalEncoding::spheremap}};
-  return names;
-}
+inline constexpr Word<NormalEncoding> kWordsOf<NormalEncoding>[] = {{"auto", NormalEncoding::automatic},
+                                                                    {"octahedral", NormalEncoding::octahedral},
+                                                                    {"signed", NormalEncoding::signed_float},
+                                                                    {"spheremap", NormalEncoding::spheremap},
+                                                                    {"unorm", NormalEncoding::unorm}};
 template <>
-inline const std::map<std::string, NormalSpace>& names_of() {
-  static const std::map<std::string, NormalSpace> names = {
-      {"auto", NormalSpace::automatic}, {"world", NormalSpace::world}, {"view", NormalSpace::view}};
-  return names;
-}
+inline constexpr Word<NormalSpace> kWordsOf<NormalSpace>[] = {
+    {"auto", NormalSpace::automatic}, {"view", NormalSpace::view}, {"world", NormalSpace::world}};
 template <>
-inline const std::map<std::string, Falloff>& names_of() {
-  static const std::map<std::string, Falloff> names = {{"none", Falloff::none},
-                                                       {"linear", Falloff::linear},
-                                                       {"quadratic", Falloff::quadratic},
-                                                       {"smooth", Falloff::smooth}};
-  return names;
-}
+inline constexpr Word<Falloff> kWordsOf<Falloff>[] = {{"linear", Falloff::linear},
+                                                      {"none", Falloff::none},
+                                                      {"quadratic", Falloff::quadratic},
+                                                      {"smooth", Falloff::smooth}};
 template <>
-inline const std::map<std::string, Estimator>& names_of() {
-  static const std::map<std::string, Estimator> names = {{"gtao", Estimator::gtao},
-                                                         {"bitmask", Estimator::bitmask},
-                                                         {"hbao", Estimator::hbao},
-                                                         {"crytek", Estimator::crytek}};
-  return names;
-}
+inline constexpr Word<Estimator> kWordsOf<Estimator>[] = {{"bitmask", Estimator::bitmask},
+                                                          {"crytek", Estimator::crytek},
+                                                          {"gtao", Estimator::gtao},
+                                                          {"hbao", Estimator::hbao}};
 template <>
-inline const std::map<std::string, SliceSearch>& names_of() {
-  static const std::map<std::string, SliceSearch> names = {
-      {"steps", SliceSearch::steps}, {"exact", SliceSearch::exact}, {"every-pixel", SliceSearch::every_pixel}};
-  return names;
-}
+inline constexpr Word<SliceSearch> kWordsOf<SliceSearch>[] = {
+    {"every-pixel", SliceSearch::every_pixel}, {"exact", SliceSearch::exact}, {"steps", SliceSearch::steps}};
 template <>
-inline const std::map<std::string, Elevation>& names_of() {
-  static const std::map<std::string, Elevation> names = {{"view", Elevation::view}, {"surface", Elevation::surface}};
-  return names;
-}
+inline constexpr Word<Elevation> kWordsOf<Elevation>[] = {{"surface", Elevation::surface}, {"view", Elevation::view}};
 template <>
-inline const std::map<std::string, SampleKernel>& names_of() {
-  static const std::map<std::string, SampleKernel> names = {{"clustered", SampleKernel::clustered},
-                                                            {"uniform", SampleKernel::uniform}};
-  return names;
-}
+inline constexpr Word<SampleKernel> kWordsOf<SampleKernel>[] = {{"clustered", SampleKernel::clustered},
+                                                                {"uniform", SampleKernel::uniform}};
 template <>
-inline const std::map<std::string, RangeCheck>& names_of() {
-  static const std::map<std::string, RangeCheck> names = {
-      {"none", RangeCheck::none}, {"ratio", RangeCheck::ratio}, {"smoothstep", RangeCheck::smoothstep}};
-  return names;
-}
+inline constexpr Word<RangeCheck> kWordsOf<RangeCheck>[] = {
+    {"none", RangeCheck::none}, {"ratio", RangeCheck::ratio}, {"smoothstep", RangeCheck::smoothstep}};
 template <>
-inline const std::map<std::string, Completion>& names_of() {
-  static const std::map<std::string, Completion> names = {
-      {"none", Completion::none}, {"border", Completion::border}, {"all", Completion::all}};
-  return names;
-}
+inline constexpr Word<Completion> kWordsOf<Completion>[] = {
+    {"all", Completion::all}, {"border", Completion::border}, {"none", Completion::none}};
 template <>
-inline const std::map<std::string, Density>& names_of() {
-  static const std::map<std::string, Density> names = {{"uniform", Density::uniform}, {"adaptive", Density::adaptive}};
-  return names;
-}
+inline constexpr Word<Density> kWordsOf<Density>[] = {{"adaptive", Density::adaptive}, {"uniform", Density::uniform}};
 template <>
-inline const std::map<std::string, Resolution>& names_of() {
-  static const std::map<std::string, Resolution> names = {
-      {"full", Resolution::full}, {"half", Resolution::half}, {"quarter", Resolution::quarter}};
-  return names;
-}
+inline constexpr Word<Resolution> kWordsOf<Resolution>[] = {
+    {"full", Resolution::full}, {"half", Resolution::half}, {"quarter", Resolution::quarter}};
 template <>
-inline const std::map<std::string, Denoise>& names_of() {
-  static const std::map<std::string, Denoise> names = {
-      {"none", Denoise::none}, {"bilateral", Denoise::bilateral}, {"box", Denoise::box}};
-  return names;
-}
+inline constexpr Word<Denoise> kWordsOf<Denoise>[] = {
+    {"bilateral", Denoise::bilateral}, {"box", Denoise::box}, {"none", Denoise::none}};
 template <>
-inline const std::map<std::string, Noise>& names_of() {
-  static const std::map<std::string, Noise> names{{"fixed", Noise::fixed}, {"animated", Noise::animated}};
-  return names;
-}
+inline constexpr Word<Noise> kWordsOf<Noise>[] = {{"animated", Noise::animated}, {"fixed", Noise::fixed}};
 template <>
-inline const std::map<std::string, PixelFilterKind>& names_of() {
-  static const std::map<std::string, PixelFilterKind> names = {{"box", PixelFilterKind::box},
-                                                               {"gaussian", PixelFilterKind::gaussian},
-                                                               {"blackman-harris", PixelFilterKind::blackman_harris}};
-  return names;
-}
+inline constexpr Word<PixelFilterKind> kWordsOf<PixelFilterKind>[] = {
+    {"blackman-harris", PixelFilterKind::blackman_harris},
+    {"box", PixelFilterKind::box},
+    {"gaussian", PixelFilterKind::gaussian}};
 template <>
-inline const std::map<std::string, AoChannels>& names_of() {
-  static const std::map<std::string, AoChannels> names = {{"mono", AoChannels::mono}, {"rgb", AoChannels::rgb}};
-  return names;
-}
+inline constexpr Word<AoChannels> kWordsOf<AoChannels>[] = {{"mono", AoChannels::mono}, {"rgb", AoChannels::rgb}};
 template <>
-inline const std::map<std::string, OutputType>& names_of() {
-  static const std::map<std::string, OutputType> names = {{"half", OutputType::half_float},
-                                                          {"float", OutputType::single_float}};
-  return names;
-}
+inline constexpr Word<OutputType> kWordsOf<OutputType>[] = {{"float", OutputType::single_float},
+                                                            {"half", OutputType::half_float}};
 template <>
-inline const std::map<std::string, Missing>& names_of() {
-  static const std::map<std::string, Missing> names = {{"error", Missing::error}, {"skip", Missing::skip}};
-  return names;
-}
+inline constexpr Word<Missing> kWordsOf<Missing>[] = {{"error", Missing::error}, {"skip", Missing::skip}};
 
 /// The word that stands for the value.
 template <class T>
 std::string word_of(T value) {
-  for (const auto& [word, meaning] : names_of<T>())
+  for (const auto& [word, meaning] : kWordsOf<T>)
     if (meaning == value) return word;
   return "";
 }

@@ -3,22 +3,13 @@
 #include "core/bench/kept_reference.h"
 
 #include "core/base/error.h"
+#include "core/base/option_words.h"
 #include "core/formats/exr.h"
 
 namespace alcove {
 namespace {
 
 constexpr const char* kAttribute = "alcove/reference";
-
-const char* name_of(Falloff falloff) {
-  switch (falloff) {
-    case Falloff::none: return "none";
-    case Falloff::linear: return "linear";
-    case Falloff::quadratic: return "quadratic";
-    case Falloff::smooth: return "smooth";
-  }
-  return "";
-}
 
 const char* name_of(ThicknessRule rule) {
   switch (rule) {
@@ -29,22 +20,13 @@ const char* name_of(ThicknessRule rule) {
   return "";
 }
 
-const char* name_of(Completion completion) {
-  switch (completion) {
-    case Completion::none: return "none";
-    case Completion::border: return "border";
-    case Completion::all: return "all";
-  }
-  return "";
-}
-
 }  // namespace
 
 std::string text_of(const ReferenceSettings& settings) {
   return fmt::format(
       "radius {} falloff {} from {} slices {} thickness {} length {} share {} pixels {} complete {} bias {}",
-      settings.radius, name_of(settings.falloff), settings.falloff_start, settings.slices, name_of(settings.thickness),
-      settings.thickness_length, settings.width_share, settings.width_pixels, name_of(settings.complete),
+      settings.radius, word_of(settings.falloff), settings.falloff_start, settings.slices, name_of(settings.thickness),
+      settings.thickness_length, settings.width_share, settings.width_pixels, word_of(settings.complete),
       settings.bias);
 }
 
@@ -58,16 +40,6 @@ std::vector<float> read_kept_reference(const std::string& path, const ReferenceS
          to_string(data));
   if (*made_with != text_of(settings)) return {};
   return std::move(image.pixels);
-}
-
-void write_kept_reference(const std::string& path, const ReferenceSettings& settings, const HostFrame& frame,
-                          const std::vector<float>& ao) {
-  ExrOutput output;
-  output.data = frame.data;
-  output.display = frame.display;
-  output.own_attributes[kAttribute] = text_of(settings);
-  output.planes.push_back({"Y", SampleType::half_float, ao});
-  write_exr(path, output);
 }
 
 }  // namespace alcove

@@ -18,8 +18,4 @@ std::string text_of(const ReferenceSettings& settings);
 /// ErrorKind::input, naming the file, where it holds no reference, or one of another data window.
 std::vector<float> read_kept_reference(const std::string& path, const ReferenceSettings& settings, const Window& data);
 
-/// Writes the reference of a frame, rounded to half floats. Fails with ErrorKind::output.
-void write_kept_reference(const std::string& path, const ReferenceSettings& settings, const HostFrame& frame,
-                          const std::vector<float>& ao);
-
 }  // namespace alcove

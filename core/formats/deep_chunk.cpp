@@ -41,10 +41,9 @@ bool expand_runs(std::span<const std::uint8_t> packed, std::span<std::uint8_t> t
 
 /// Sums differences up, and puts the second half's bytes between those of the first.
 void put_together(std::span<std::uint8_t> split, std::span<std::uint8_t> to) {
-  const SampleLoops& loops = fast_sample_loops();
   const std::size_t half = (split.size() + 1) / 2;
-  loops.sum_up(split.data() + 1, split.size() - 1, split[0]);
-  loops.interleave(split.data(), split.data() + half, split.size() / 2, to.data());
+  sum_up(split.data() + 1, split.size() - 1, split[0]);
+  interleave(split.data(), split.data() + half, split.size() / 2, to.data());
   if (split.size() % 2) to.back() = split[half - 1];
 }
 
@@ -78,9 +77,7 @@ bool counts_of_table(std::span<const std::uint8_t> table, std::size_t width, std
   counts.resize(table.size() / sizeof(std::uint32_t));
   std::uint32_t sum = 0;
   for (std::size_t i = 0; i < counts.size(); i++) {
-    const std::uint8_t* b = table.data() + i * sizeof(std::uint32_t);
-    const std::uint32_t until =
-        std::uint32_t(b[0]) | std::uint32_t(b[1]) << 8 | std::uint32_t(b[2]) << 16 | std::uint32_t(b[3]) << 24;
+    const auto until = number_at<std::uint32_t>(table.data() + i * sizeof(std::uint32_t));
     if (i % width == 0) sum = 0;
     if (until < sum || until > std::uint32_t(std::numeric_limits<std::int32_t>::max())) return false;
     counts[i] = until - sum;

@@ -3,22 +3,17 @@
 #include "core/formats/exr.h"
 
 #include <ImathBox.h>
-#include <ImfArray.h>
 #include <ImfChannelList.h>
-#include <ImfCompressionAttribute.h>
-#include <ImfDeepImageStateAttribute.h>
 #include <ImfDoubleAttribute.h>
 #include <ImfFloatAttribute.h>
 #include <ImfFloatVectorAttribute.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
 #include <ImfIO.h>
-#include <ImfInputFile.h>
 #include <ImfInputPart.h>
 #include <ImfIntAttribute.h>
 #include <ImfMatrixAttribute.h>
 #include <ImfMultiPartInputFile.h>
-#include <ImfOutputFile.h>
 #include <ImfPartType.h>
 #include <ImfStandardAttributes.h>
 #include <ImfStdIO.h>
@@ -30,8 +25,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cmath>
-#include <deque>
 #include <filesystem>
 #include <fstream>
 #include <limits>
@@ -39,9 +32,8 @@
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/base/text.h"
-#include "core/formats/deep_exr.h"
-#include "core/formats/exr_attributes.h"
-#include "core/formats/exr_header.h"
+#include "core/formats/exr_deep.h"
+#include "core/formats/exr_shared.h"
 #include "core/formats/exr_zip.h"
 #include "core/formats/image_io.h"
 
@@ -147,32 +139,6 @@ std::string text_of(const Imf::Attribute& attribute) {
   return std::string("(") + attribute.typeName() + ")";
 }
 
-/// A deep part without its place in the file.
-DeepStored stored_deep(const Imf::Header& header, int part) {
-  const ExrPart described = describe(header);
-  DeepStored stored{.path = {},
-                    .part = part,
-                    .data = described.data,
-                    .tile_width = described.data.width,
-                    .tile_height = described.rows_together,
-                    .is_tiled = described.deep->is_tiled,
-                    .compression = header.compression() == Imf::NO_COMPRESSION    ? DeepCompression::none
-                                   : header.compression() == Imf::RLE_COMPRESSION ? DeepCompression::rle
-                                                                                  : DeepCompression::zip,
-                    .channels = {},
-                    .offsets = 0,
-                    .names_part = false};
-  if (stored.is_tiled) {
-    constexpr unsigned kMost = std::numeric_limits<int>::max();
-    stored.tile_width = int(std::min(header.tileDescription().xSize, kMost));
-    stored.tile_height = int(std::min(header.tileDescription().ySize, kMost));
-  }
-  for (const auto& channel : described.channels)
-    stored.channels.push_back(
-        {channel.name, channel.type == SampleType::half_float, channel.type == SampleType::integer});
-  return stored;
-}
-
 /// The surface of a channel that samples make, and whether it is its end.
 std::optional<std::pair<std::size_t, bool>> place_of_deep(const std::string& channel) {
   for (std::size_t surface = 0; surface < kMostDeepSurfaces; surface++)
@@ -195,7 +161,6 @@ struct ExrFile::Impl {
   std::uint64_t codec_bytes = 0;           // that reading takes
   int threads = 0;                         // that may read it
   std::unique_ptr<PictureReader> picture;  // where there is no file
-  Image image;                             // where there is no picture either
   std::unique_ptr<DeepReader> deep;        // where deep parts are taken
   int deep_part = -1;                      // the first of them
   std::uint64_t deep_bytes = 0;            // that reading them takes
@@ -242,12 +207,8 @@ struct ExrFile::Impl {
     std::uint64_t offsets = header_bytes;
     for (int part = 0; part < file->parts(); part++) {
       const auto& header = file->header(part);
-      if (std::ranges::find(wanted, part) != wanted.end()) {
-        stored.push_back(stored_deep(header, part));
-        stored.back().path = path;
-        stored.back().offsets = offsets;
-        stored.back().names_part = Imf::isMultiPart(file->version());
-      }
+      if (std::ranges::find(wanted, part) != wanted.end())
+        stored.push_back({path, part, header, offsets, Imf::isMultiPart(file->version())});
       if (header.hasChunkCount()) offsets += sizeof(std::uint64_t) * std::uint64_t(std::max(0, header.chunkCount()));
     }
   }
@@ -308,11 +269,6 @@ ExrFile::ExrFile(const std::string& path, const char* option, std::unique_ptr<Pi
   impl_->picture = std::move(picture);
 }
 
-ExrFile::ExrFile(const std::string& path, const char* option, Image image)
-    : impl_(std::make_unique<Impl>(path, option, image.data, image.display, image.names)) {
-  impl_->image = std::move(image);
-}
-
 void require_host_room(const std::string& path, const Window& data) {
   if (data.pixels() > kMostPixels)
     fail(ErrorKind::input, "{}: {} are more pixels than are read as a whole; use a smaller frame", path,
@@ -358,9 +314,7 @@ std::map<std::string, std::string> ExrFile::whole_texts(int part, const std::str
   return texts;
 }
 
-std::uint64_t ExrFile::bytes_beside_pixels() const {
-  return impl_->image.pixels.size() * sizeof(float) + impl_->codec_bytes + impl_->deep_bytes;
-}
+std::uint64_t ExrFile::bytes_beside_pixels() const { return impl_->codec_bytes + impl_->deep_bytes; }
 
 std::uint64_t ExrFile::codec_group() const { return impl_->group; }
 
@@ -406,13 +360,6 @@ void ExrFile::read(std::span<const ExrRead> reads, int first, int rows) {
       channels.push_back({std::size_t(std::ranges::find(names, read.channel) - names.begin()), read.to});
     return impl_->picture->read(first, rows, channels);
   }
-  if (!impl_->file) {
-    const std::size_t width = std::size_t(impl_->image.data.width);
-    for (const auto& read : reads)
-      std::ranges::copy(impl_->image.plane(read.channel).subspan(std::size_t(first) * width, std::size_t(rows) * width),
-                        read.to);
-    return;
-  }
   impl_->read_deep(reads, first, rows);
   std::map<int, std::vector<ExrRead>> parts;
   std::vector<std::pair<ExrRead, const float*>> again;  // of channels that are wanted more than once
@@ -435,12 +382,6 @@ void ExrFile::read(std::span<const ExrRead> reads, int first, int rows) {
   }
   for (const auto& [read, from] : again)
     std::copy_n(from, std::size_t(rows) * std::size_t(impl_->parts[std::size_t(read.part)].data.width), read.to);
-}
-
-float from_half(std::uint16_t bits) {
-  half value;
-  value.setBits(bits);
-  return value;
 }
 
 void set_exr_threads(int threads) { Imf::setGlobalThreadCount(threads); }

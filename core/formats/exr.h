@@ -1,4 +1,4 @@
-// OpenEXR files in and out: headers, chosen channels in one pass, whole files.
+// OpenEXR files in and out: headers, chosen channels in one pass, whole files. Other pictures are read like them.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -71,9 +71,8 @@ class ExrFile {
   /// Fails on a missing file, a folder, a file that is no EXR, a part without channels, and headers that ask for more
   /// than their file can hold.
   explicit ExrFile(const std::string& path, const char* option);
-  /// Pictures of other formats, to be read like an EXR of one part: the first has been opened, the second read whole.
+  /// A picture of another format, to be read like an EXR of one part.
   ExrFile(const std::string& path, const char* option, std::unique_ptr<PictureReader> picture);
-  ExrFile(const std::string& path, const char* option, Image image);
   ~ExrFile();
   ExrFile(ExrFile&&) noexcept;
 
@@ -89,8 +88,7 @@ class ExrFile {
   /// Gives the attributes that are texts and whose names begin so, whole, whatever they describe.
   std::map<std::string, std::string> whole_texts(int part, const std::string& prefix) const;
 
-  /// The most that the file takes in memory while it is open and while it is read, in bytes: what codecs work on, and a
-  /// picture that was read whole.
+  /// The most that codecs work on while the file is read, in bytes.
   std::uint64_t bytes_beside_pixels() const;
   /// The bytes of the rows that are decoded together; 0 where no EXR file is read.
   std::uint64_t codec_group() const;
@@ -116,6 +114,20 @@ class ExrFile {
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
+
+/// The formats that a reader of a file can use.
+enum class Formats {
+  of_frames,  // those that hold depth and normals without loss: the ones that frame_formats() lists
+  all,        // also what else OpenImageIO reads, such as JPEG
+};
+
+/// Opens a picture of every format that is read; its first bytes tell the format, whatever its name ends in. `option`
+/// says where the user named the file. Fails with ErrorKind::input, naming the file's format and those that are read,
+/// if it is none of these; also if it is missing or damaged.
+ExrFile open_image(const std::string& path, const char* option, Formats formats);
+
+/// "OpenEXR, DDS, PNG, TIFF, TGA, BMP or Radiance HDR"
+const char* frame_formats();
 
 /// The name of a plane of depth that samples make: of the fronts of all pixels' first surfaces, of the second ones ...;
 /// or of where the bodies behind these fronts end. `surface` is below kMostDeepSurfaces.
@@ -172,12 +184,6 @@ Image read_exr_image(const std::string& path, const std::vector<std::string>& ch
 /// Gives a text attribute of the first part of a file that is whole, with every chunk within it; a file that was cut
 /// short shows it in no other way. Gives nothing if the file is cut, is no EXR, or has no such attribute.
 std::optional<std::string> attribute_of_whole_exr(const std::string& path, const std::string& name);
-
-/// The half floats that are written for floats: rounded to the nearest; those beyond their range become the largest.
-std::vector<std::uint16_t> halves_of(std::span<const float> floats);
-
-/// Gives the value of a half float's bits.
-float from_half(std::uint16_t bits);
 
 /// Sets how many threads the codecs may use in the whole process. 0: none beside the caller's.
 void set_exr_threads(int threads);

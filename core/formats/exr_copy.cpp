@@ -25,7 +25,6 @@
 #include "core/base/text.h"
 #include "core/formats/exr_stream.h"
 #include "core/formats/exr_zip.h"
-#include "core/formats/exr_zip_writer.h"
 
 namespace alcove {
 namespace {
@@ -134,7 +133,7 @@ struct ExrCopy::Impl {
     const auto is_integer = [&](const CopiedPlane& plane) {
       return header.channels()[plane.channel.c_str()].type == Imf::UINT;
     };
-    return is_for_zip_writer(header) && settings.window == window_of(original->header(0).dataWindow()) &&
+    return is_zip_rows(header) && settings.window == window_of(original->header(0).dataWindow()) &&
            std::ranges::none_of(settings.planes, is_integer);
   }
 
@@ -161,7 +160,7 @@ struct ExrCopy::Impl {
     for (auto at = header.channels().begin(); at != header.channels().end(); ++at) {
       if (replaced.contains(at.name())) continue;
       const Imf::Channel& channel = at.channel();
-      const std::size_t bytes = channel.type == Imf::HALF ? sizeof(std::uint16_t) : sizeof(float);
+      const std::size_t bytes = bytes_of(channel.type);
       std::vector<char>& samples = passed[{part, at.name()}];
       samples.resize(bytes * rows_of_original.pixels());
       // Whether rows are read or written, the slice begins at the same sample.

@@ -1,8 +1,6 @@
 // The header as bytes: name, type, size and value of each attribute; an empty name ends a part.
 // The source is OpenEXR's document "File Layout".
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/formats/exr_header.h"
-
 #include <array>
 #include <cstdint>
 #include <filesystem>
@@ -10,6 +8,7 @@
 #include <optional>
 
 #include "core/base/error.h"
+#include "core/formats/exr_shared.h"
 
 namespace alcove {
 namespace {

@@ -17,7 +17,7 @@
 
 #include "core/base/error.h"
 #include "core/base/file.h"
-#include "core/formats/exr_attributes.h"
+#include "core/formats/exr_shared.h"
 
 namespace alcove {
 

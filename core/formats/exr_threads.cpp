@@ -1,50 +1,60 @@
 // OpenEXR's own pool: what it has no thread for waits there, beside its own work.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/formats/exr_threads.h"
-
 #include <IlmThreadPool.h>
 
 #include <algorithm>
 #include <exception>
 #include <mutex>
 
+#include "core/formats/exr_shared.h"
+
 namespace alcove {
 namespace {
 
-/// What several threads do together, and the first exception among theirs. All hand over under a mutex of ours, since
-/// the thread sanitizer does not see that of the pool.
+/// Pieces that several threads share. All hand over under a mutex of ours, since the thread sanitizer does not see that
+/// of the pool.
 class Shared {
  public:
-  explicit Shared(const std::function<void()>& function) : function_(function) { const std::lock_guard lock(mutex_); }
+  Shared(std::size_t pieces, const std::function<void(std::size_t, std::size_t)>& work)
+      : pieces_(pieces), work_(work) {}
 
-  void work() {
-    { const std::lock_guard lock(mutex_); }
-    std::exception_ptr error;
-    try {
-      function_();
-    } catch (...) {
-      error = std::current_exception();
+  void help() {
+    std::unique_lock lock(mutex_);
+    const std::size_t worker = workers_++;
+    while (next_ < pieces_) {
+      const std::size_t piece = next_++;
+      lock.unlock();
+      std::exception_ptr failure;
+      try {
+        work_(piece, worker);
+      } catch (...) {
+        failure = std::current_exception();
+      }
+      lock.lock();
+      if (!failure) continue;
+      next_ = pieces_;
+      if (!failure_ || piece < failed_) failure_ = failure, failed_ = piece;
     }
-    const std::lock_guard lock(mutex_);
-    if (!error_) error_ = error;
   }
 
-  /// Call it once all have worked.
+  /// Call it once all have helped.
   void end() {
     const std::lock_guard lock(mutex_);
-    if (error_) std::rethrow_exception(error_);
+    if (failure_) std::rethrow_exception(failure_);
   }
 
  private:
-  const std::function<void()>& function_;
+  const std::size_t pieces_;
+  const std::function<void(std::size_t, std::size_t)>& work_;
   std::mutex mutex_;
-  std::exception_ptr error_;
+  std::size_t workers_ = 0, next_ = 0, failed_ = 0;
+  std::exception_ptr failure_;
 };
 
 class SharedTask : public IlmThread::Task {
  public:
   SharedTask(IlmThread::TaskGroup* group, Shared& shared) : Task(group), shared_(shared) {}
-  void execute() override { shared_.work(); }
+  void execute() override { shared_.help(); }
 
  private:
   Shared& shared_;
@@ -52,19 +62,19 @@ class SharedTask : public IlmThread::Task {
 
 }  // namespace
 
-int exr_threads() { return IlmThread::ThreadPool::globalThreadPool().numThreads(); }
-
-int exr_threads_for(int pieces, int most) {
-  const int threads = std::min({pieces, most, exr_threads()});
-  return threads > 1 ? threads : 0;
+std::size_t exr_workers(std::size_t pieces, std::size_t most) {
+  const int threads = IlmThread::ThreadPool::globalThreadPool().numThreads();
+  return std::max<std::size_t>(1, std::min({pieces, most, std::size_t(std::max(0, threads))}));
 }
 
-void on_exr_threads(int threads, const std::function<void()>& function) {
-  if (threads == 0) return function();
-  Shared shared(function);
-  {
+void on_exr_threads(std::size_t pieces, std::size_t workers,
+                    const std::function<void(std::size_t, std::size_t)>& work) {
+  Shared shared(pieces, work);
+  if (workers <= 1) {
+    shared.help();
+  } else {
     IlmThread::TaskGroup group;  // whose end waits for its tasks
-    for (int i = 0; i < threads; i++) IlmThread::ThreadPool::addGlobalTask(new SharedTask(&group, shared));
+    for (std::size_t i = 0; i < workers; i++) IlmThread::ThreadPool::addGlobalTask(new SharedTask(&group, shared));
   }
   shared.end();
 }

@@ -14,7 +14,7 @@
 #include "core/base/error.h"
 #include "core/formats/exr.h"
 #include "core/formats/exr_stream.h"
-#include "core/formats/exr_zip_writer.h"
+#include "core/formats/exr_zip.h"
 #include "core/formats/sample_loops.h"
 
 namespace alcove {
@@ -64,17 +64,11 @@ Imf::Compression compression_of(const std::string& name) {
 
 Imf::PixelType pixel_type_of(SampleType type) { return type == SampleType::half_float ? Imf::HALF : Imf::FLOAT; }
 
-std::vector<std::uint16_t> halves_of(std::span<const float> floats) {
-  std::vector<std::uint16_t> halves(floats.size());
-  fast_sample_loops().narrow(floats.data(), floats.size(), halves.data());
-  return halves;
-}
-
 Imf::Slice slice_of(const Window& rows, SampleType type, std::span<const float> pixels,
                     std::deque<std::vector<std::uint16_t>>& halves) {
   const bool is_half = type == SampleType::half_float;
   const std::size_t bytes = is_half ? sizeof(std::uint16_t) : sizeof(float);
-  if (is_half) halves.push_back(halves_of(pixels));
+  if (is_half) narrow(pixels.data(), pixels.size(), halves.emplace_back(pixels.size()).data());
   const void* values = is_half ? static_cast<const void*>(halves.back().data()) : pixels.data();
   return Imf::Slice::Make(pixel_type_of(type), values, box_of(rows), bytes, bytes * std::size_t(rows.width));
 }

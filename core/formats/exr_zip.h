@@ -1,16 +1,25 @@
-// Scan lines that ZIP or ZIPS has compressed, read by ourselves: OpenEXR finds and checks the chunks.
+// Scan lines of ZIP or ZIPS, read and written by ourselves: OpenEXR finds and checks the chunks, and has the header.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <ImfGenericOutputFile.h>
 #include <ImfHeader.h>
+#include <ImfIO.h>
 #include <ImfInputPart.h>
 
+#include <cstdint>
 #include <span>
 #include <string>
+#include <vector>
+
+#include "core/formats/zip_chunk.h"
 
 namespace alcove {
 
-/// The bytes of a row of all channels of a part whose channels are not subsampled.
+/// Whether a part is read and written here, and OpenEXR need not: of ZIP or ZIPS, and without subsampled channels.
+bool is_zip_rows(const Imf::Header& header);
+
+/// The bytes of a row of all channels of such a part.
 std::size_t zip_row_bytes(const Imf::Header& header);
 
 /// How many rows ZIP or ZIPS puts together.
@@ -23,12 +32,48 @@ struct ZipRead {
   bool as_floats = true;
 };
 
-/// Whether read_zip_rows() reads such a part, and OpenEXR need not.
-bool is_zip_rows(const Imf::Header& header);
-
 /// Reads `rows` rows of the part's data window, from the `first` one on, on as many of OpenEXR's threads as are
 /// allowed, or on the caller's where that is none. The part has these channels. Fails with a std::exception where
 /// chunks are missing or damaged.
 void read_zip_rows(const Imf::InputPart& part, std::span<const ZipRead> reads, int first, int rows, int most_threads);
+
+/// A file of one part, from top to bottom. Its bytes are the same on any number of threads, and whatever rows it gets
+/// at once.
+class ZipWriter : private Imf::GenericOutputFile {
+ public:
+  /// Samples of a channel, row by row: as the file has them, or floats that become half floats there.
+  struct Source {
+    const void* samples;
+    bool is_float;  // though the channel may be of half floats
+  };
+
+  /// Begins the file. The header is one for it.
+  ZipWriter(Imf::OStream& stream, const Imf::Header& header);
+
+  const Imf::Header& header() const { return header_; }
+  /// Writes the next rows. There is a source for each channel of the header, in its order.
+  void write(std::span<const Source> sources, std::size_t rows);
+  /// Says where the chunks are, once all rows are written.
+  void finish();
+
+ private:
+  /// A chunk on its way from planes into the file.
+  struct Chunk {
+    std::size_t rows = 0;             // that it has got
+    std::vector<std::uint8_t> bytes;  // of these
+    ZipPacker packer;
+    std::span<const std::uint8_t> stored;
+  };
+  std::size_t rows_of(std::size_t chunk) const;
+  void add_rows(Chunk& chunk, std::span<const Source> sources, std::size_t first, std::size_t rows) const;
+  void write_chunks(std::span<Chunk> chunks);
+
+  Imf::OStream& stream_;
+  const Imf::Header header_;
+  std::size_t width_, height_, chunk_rows_, row_bytes_ = 0;
+  std::uint64_t table_ = 0;             // where it stands in the file
+  std::vector<std::uint64_t> offsets_;  // of the chunks that are written
+  std::vector<Chunk> chunks_;           // that are packed at once; the first may have got some rows already
+};
 
 }  // namespace alcove

@@ -1,26 +1,25 @@
 // Rows go into chunks, some of which are packed at once and then written in their order.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/formats/exr_zip_writer.h"
-
 #include <ImfChannelList.h>
 #include <ImfPartType.h>
 #include <ImfStdIO.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cstring>
 #include <limits>
 #include <stdexcept>
 
-#include "core/formats/exr_attributes.h"
-#include "core/formats/exr_threads.h"
+#include "core/formats/exr_shared.h"
 #include "core/formats/exr_zip.h"
+#include "core/formats/sample_loops.h"
 
 namespace alcove {
 namespace {
 
 /// As OpenEXR has it for its own, so that no thread waits for the slowest.
-constexpr int kChunksOfThread = 2;
+constexpr std::size_t kChunksOfThread = 2;
+
+constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
 
 /// A type that the input's header brought along is that of another file.
 Imf::Header of_lines(Imf::Header header) {
@@ -34,8 +33,6 @@ void write_word(Imf::OStream& stream, std::int32_t word) {
 
 }  // namespace
 
-bool is_for_zip_writer(const Imf::Header& header) { return is_zip_rows(header); }
-
 ZipWriter::ZipWriter(Imf::OStream& stream, const Imf::Header& header) : stream_(stream), header_(of_lines(header)) {
   header_.sanityCheck();
   const Window data = window_of(header_.dataWindow());
@@ -44,8 +41,8 @@ ZipWriter::ZipWriter(Imf::OStream& stream, const Imf::Header& header) : stream_(
   chunk_rows_ = std::size_t(rows_of_zip_chunk(header_));
   row_bytes_ = zip_row_bytes(header_);
   if (!is_zip_rows(header_)) throw std::logic_error("this part is for OpenEXR");
-  const auto most = std::numeric_limits<int>::max();
-  chunks_ = std::vector<Chunk>(std::size_t(std::max(1, kChunksOfThread * exr_threads_for(most, most))));
+  const std::size_t workers = exr_workers(kAll, kAll);
+  chunks_ = std::vector<Chunk>(workers > 1 ? kChunksOfThread * workers : 1);
   Imf::StdOSStream head;  // one write instead of hundreds
   writeMagicNumberAndVersionField(head, header_);
   header_.writeTo(head);
@@ -73,12 +70,9 @@ void ZipWriter::write(std::span<const Source> sources, std::size_t rows) {
       row += taken.back();
       if (taken.back() < wants) break;
     }
-    std::atomic<std::size_t> next = 0;
-    on_exr_threads(exr_threads_for(int(taken.size()), std::numeric_limits<int>::max()), [&] {
-      for (std::size_t i = next++; i < taken.size(); i = next++) {
-        add_rows(chunks_[i], sources, firsts[i], taken[i]);
-        if (i < count) chunks_[i].stored = chunks_[i].packer.pack(chunks_[i].bytes);
-      }
+    on_exr_threads(taken.size(), exr_workers(taken.size(), kAll), [&](std::size_t i, std::size_t) {
+      add_rows(chunks_[i], sources, firsts[i], taken[i]);
+      if (i < count) chunks_[i].stored = chunks_[i].packer.pack(chunks_[i].bytes);
     });
     write_chunks(std::span(chunks_).first(count));
     // What is not full yet is the first of the next.
@@ -93,10 +87,10 @@ void ZipWriter::add_rows(Chunk& chunk, std::span<const Source> sources, std::siz
     auto source = sources.begin();
     for (auto at = header_.channels().begin(); at != header_.channels().end(); ++at, ++source) {
       const bool is_half = at.channel().type == Imf::HALF, narrows = is_half && source->is_float;
-      const std::size_t bytes = width_ * (is_half ? sizeof(std::uint16_t) : sizeof(float));
+      const std::size_t bytes = width_ * bytes_of(at.channel().type);
       const auto* from = static_cast<const std::byte*>(source->samples) + row * (narrows ? 2 : 1) * bytes;
       if (narrows)
-        fast_sample_loops().narrow(reinterpret_cast<const float*>(from), width_, reinterpret_cast<std::uint16_t*>(to));
+        narrow(reinterpret_cast<const float*>(from), width_, reinterpret_cast<std::uint16_t*>(to));
       else
         std::memcpy(to, from, bytes);
       to += bytes;

@@ -1,6 +1,6 @@
 // Takes names apart at dots, underscores, hyphens and spaces.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/formats/frame_number.h"
+#include "core/formats/sequence.h"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
-// OpenImageIO, wrapped: the only file that includes it. A module of its own; core/formats/image_io_module.h says why.
+// OpenImageIO, wrapped: the only file that includes it. A module of its own; core/formats/image_io.h says why.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/formats/image_io_module.h"
+#include "core/formats/image_io.h"
 
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>

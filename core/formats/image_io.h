@@ -1,4 +1,4 @@
-// Pictures of other formats in, through OpenImageIO.
+// Pictures of other formats in: DDS by ourselves, and all else through OpenImageIO.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -33,8 +33,25 @@ class PictureReader {
 /// Why pictures of other formats than EXR and DDS cannot be read; empty where they can.
 std::string why_no_image_io();
 
+/// Opens a DDS texture as RenderDoc saves it, and reads its first image. Its format must be one of R32_FLOAT,
+/// D32_FLOAT, R16_UNORM, D16_UNORM, R16_FLOAT, R24_UNORM_X8 / D24_UNORM_S8, R32G32_FLOAT, R16G16_FLOAT, R16G16_UNORM,
+/// R8G8B8A8_UNORM, R10G10B10A2_UNORM, R16G16B16A16 (float and unorm) or R32G32B32A32_FLOAT. The channels are called R,
+/// G, B, A as far as there are any; unorm values go from 0 to 1. Fails with ErrorKind::input on other formats, on
+/// headers that make no sense, and on files that are too short.
+std::unique_ptr<PictureReader> open_dds(const std::string& path, const char* option);
+
 /// Opens a picture of any format that OpenImageIO reads. Fails with ErrorKind::input, also if a header claims more
 /// pixels than its file can hold; `option` is for the message.
 std::unique_ptr<PictureReader> open_picture(const std::string& path, const char* option);
+
+/// The interface between the program and core/formats/image_io.cpp, a module that is loaded on first use: OpenImageIO
+/// brings some 200 shared libraries along (video, GIS, computer vision). To load them costs a fifth of a second, more
+/// than all the rest of a small frame, and a job with EXRs only needs none of them.
+struct ImageIoModule {
+  std::unique_ptr<PictureReader> (*open_picture)(const std::string& path, const char* option);
+};
+
+inline constexpr const char* kImageIoFile = "libalcove_image_io.so";
+inline constexpr const char* kImageIoSymbol = "alcove_image_io_module";  // an ImageIoModule
 
 }  // namespace alcove

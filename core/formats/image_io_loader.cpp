@@ -3,7 +3,6 @@
 #include "core/base/error.h"
 #include "core/base/system.h"
 #include "core/formats/image_io.h"
-#include "core/formats/image_io_module.h"
 
 namespace alcove {
 namespace {

@@ -1,7 +1,5 @@
 // The table of signatures, and the reader for each format.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/formats/open_image.h"
-
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -10,7 +8,7 @@
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/base/text.h"
-#include "core/formats/dds.h"
+#include "core/formats/exr.h"
 #include "core/formats/image_io.h"
 
 namespace alcove {
@@ -100,7 +98,7 @@ ExrFile open_image(const std::string& path, const char* option, Formats formats)
   if (formats == Formats::of_frames && format->reader == Reader::other)
     refuse(path, option, fmt::format("is {} file", format->format));
   if (format && format->reader == Reader::exr) return ExrFile(path, option);
-  if (format && format->reader == Reader::dds) return {path, option, read_dds(path, option)};
+  if (format && format->reader == Reader::dds) return {path, option, open_dds(path, option)};
   return {path, option, open_picture(path, option)};
 }
 

@@ -1,6 +1,6 @@
 // Looks at the endings of names.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/formats/output_name.h"
+#include "core/formats/sequence.h"
 
 #include <algorithm>
 #include <array>

@@ -7,7 +7,6 @@
 
 #include "core/base/error.h"
 #include "core/base/text.h"
-#include "core/formats/open_image.h"
 
 namespace alcove {
 namespace {

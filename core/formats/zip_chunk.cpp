@@ -4,39 +4,42 @@
 
 #include <libdeflate.h>
 
-#include <bit>
 #include <cstring>
 #include <new>
 
 #include "core/formats/exr.h"
+#include "core/formats/sample_loops.h"
 
 namespace alcove {
 namespace {
-
-static_assert(std::endian::native == std::endian::little, "samples are copied as they are stored");
 
 // OpenEXR's own level. Levels 1 and 9 take 0.7 and 7 times as long for AO, and make files 3 % larger and 5 % smaller.
 constexpr int kLevel = 4;
 
 /// Makes floats of integers.
 void round_integers(const std::uint8_t* from, std::size_t count, float* to) {
-  for (std::size_t i = 0; i < count; i++) {
-    std::uint32_t value;
-    std::memcpy(&value, from + i * sizeof(value), sizeof(value));
-    to[i] = float(value);
-  }
+  for (std::size_t i = 0; i < count; i++) to[i] = float(number_at<std::uint32_t>(from + i * sizeof(float)));
 }
 
 std::size_t bytes_in_memory(const ZipChannel& channel) {
   return channel.as_floats ? sizeof(float) : bytes_of(channel.type);
 }
 
+/// `from`: samples as the file has them.
+void write_row(const ZipChannel& channel, const std::uint8_t* from, std::size_t width, std::byte* to) {
+  if (channel.as_floats && channel.type == SampleType::half_float)
+    widen(from, width, reinterpret_cast<float*>(to));
+  else if (channel.as_floats && channel.type == SampleType::integer)
+    round_integers(from, width, reinterpret_cast<float*>(to));
+  else
+    std::memcpy(to, from, width * bytes_of(channel.type));
+}
+
 }  // namespace
 
 std::size_t bytes_of(SampleType type) { return type == SampleType::half_float ? 2 : 4; }
 
-ZipUnpacker::ZipUnpacker(const SampleLoops& loops)
-    : loops_(loops), inflater_(libdeflate_alloc_decompressor(), libdeflate_free_decompressor) {
+ZipUnpacker::ZipUnpacker() : inflater_(libdeflate_alloc_decompressor(), libdeflate_free_decompressor) {
   if (!inflater_) throw std::bad_alloc();
 }
 
@@ -77,8 +80,8 @@ void ZipUnpacker::sum_up(const ZipRows& rows, std::span<const ZipChannel> channe
       for (const auto& channel : channels) {
         const std::size_t from = begin + (row * rows.row_bytes + channel.offset) / 2;
         const std::size_t count = rows.width * bytes_of(channel.type) / 2;
-        last = loops_.sum_of(split_.get() + at, from - at, last);
-        last = loops_.sum_up(split_.get() + from, count, last);
+        last = sum_of(split_.get() + at, from - at, last);
+        last = alcove::sum_up(split_.get() + from, count, last);
         at = from + count;
       }
 }
@@ -92,7 +95,7 @@ void ZipUnpacker::read_split(const ZipRows& rows, std::span<const ZipChannel> ch
       std::byte* const to = channel.to + row * rows.width * bytes_in_memory(channel);
       const bool changes = channel.as_floats && channel.type != SampleType::single_float;
       std::uint8_t* const together = changes ? row_.data() : reinterpret_cast<std::uint8_t*>(to);
-      loops_.interleave(even, even + half, rows.width * bytes_of(channel.type) / 2, together);
+      interleave(even, even + half, rows.width * bytes_of(channel.type) / 2, together);
       if (changes) write_row(channel, together, rows.width, to);
     }
 }
@@ -105,27 +108,14 @@ void ZipUnpacker::read_stored(std::span<const std::uint8_t> bytes, const ZipRows
                 channel.to + row * rows.width * bytes_in_memory(channel));
 }
 
-/// `from`: samples as the file has them.
-void ZipUnpacker::write_row(const ZipChannel& channel, const std::uint8_t* from, std::size_t width,
-                            std::byte* to) const {
-  if (channel.as_floats && channel.type == SampleType::half_float)
-    loops_.widen(from, width, reinterpret_cast<float*>(to));
-  else if (channel.as_floats && channel.type == SampleType::integer)
-    round_integers(from, width, reinterpret_cast<float*>(to));
-  else
-    std::memcpy(to, from, width * bytes_of(channel.type));
-}
-
 ZipPacker::ZipPacker() : deflater_(libdeflate_alloc_compressor(kLevel), libdeflate_free_compressor) {
   if (!deflater_) throw std::bad_alloc();
 }
 
 std::span<const std::uint8_t> ZipPacker::pack(std::span<const std::uint8_t> rows) {
-  const SampleLoops& loops = fast_sample_loops();
   split_.resize(rows.size());
   packed_.resize(rows.size());
-  loops.split(rows.data(), rows.size() / 2, split_.data(), split_.data() + rows.size() / 2);
-  loops.subtract(split_.data(), split_.size());
+  split_to_differences(rows.data(), rows.size() / 2, split_.data());
   // It gives 0 where there is not that much room.
   const std::size_t bytes =
       libdeflate_zlib_compress(deflater_.get(), split_.data(), split_.size(), packed_.data(), rows.size() - 1);

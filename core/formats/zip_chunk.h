@@ -8,8 +8,6 @@
 #include <span>
 #include <vector>
 
-#include "core/formats/sample_loops.h"
-
 struct libdeflate_compressor;
 struct libdeflate_decompressor;
 
@@ -39,7 +37,7 @@ std::size_t bytes_of(SampleType type);
 /// Unpacks chunks one after the other; each thread has one of its own.
 class ZipUnpacker {
  public:
-  explicit ZipUnpacker(const SampleLoops& loops = fast_sample_loops());
+  ZipUnpacker();
   ~ZipUnpacker();
 
   /// Writes the wanted rows of the channels, which stand in the order of their offsets. Returns false where the chunk
@@ -51,9 +49,7 @@ class ZipUnpacker {
   void sum_up(const ZipRows& rows, std::span<const ZipChannel> channels);
   void read_stored(std::span<const std::uint8_t> bytes, const ZipRows& rows, std::span<const ZipChannel> channels);
   void read_split(const ZipRows& rows, std::span<const ZipChannel> channels);
-  void write_row(const ZipChannel& channel, const std::uint8_t* from, std::size_t width, std::byte* to) const;
 
-  const SampleLoops& loops_;
   const std::unique_ptr<libdeflate_decompressor, void (*)(libdeflate_decompressor*)> inflater_;
   std::unique_ptr<std::uint8_t[]> split_;
   std::size_t room_ = 0;  // of it, bytes

@@ -9,6 +9,7 @@
 #include <filesystem>
 
 #include "core/base/error.h"
+#include "core/base/option_words.h"
 #include "core/base/text.h"
 #include "core/frame/header_camera.h"
 #include "core/frame/plane_windows.h"
@@ -105,16 +106,6 @@ ChannelRef find_channel(FrameSource& source, ChannelSearch& search, std::size_t 
 
 std::string base_name(const FrameSource& source, const ChannelRef& ref) {
   return std::filesystem::path(file_of(source, ref).path()).filename().string();
-}
-
-const char* word_of(BehindKind kind) {
-  switch (kind) {
-    case BehindKind::surfaces: break;
-    case BehindKind::fronts: return "fronts";
-    case BehindKind::backs: return "backs";
-    case BehindKind::thickness: return "thickness";
-  }
-  return "surfaces";
 }
 
 }  // namespace

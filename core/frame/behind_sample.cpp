@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "core/base/error.h"
+#include "core/base/ranks.h"
 #include "core/frame/behind.h"
 #include "core/frame/deep.h"
 #include "core/frame/sampling.h"
@@ -125,17 +126,13 @@ Notes BehindSample::notes_of(const FrameSource& source, std::size_t number) cons
          "write both alike, or name another channel with --set behind-channel; --depth-kind says how both are read",
          name, percent(plane.otherwise, plane.oblique), along_ray ? "planar" : "along the ray",
          along_ray ? "along the ray" : "planar", source.depth_path());
-  if (double(plane.before) >= kRefused * double(plane.surfaces)) {
-    std::vector<float> parts = plane.parts;
-    const auto middle = parts.begin() + std::ptrdiff_t(parts.size() / 2);
-    std::ranges::nth_element(parts, middle);
+  if (double(plane.before) >= kRefused * double(plane.surfaces))
     fail(
         ErrorKind::input,
         "{} lies before the first surface on {:.0f} % of the pixels, at {:.3g} times its depth: it is of another frame "
         "or camera than the depth of {}, or has another scale or kind; give another file with --behind, name another "
         "channel with --set behind-channel, or say with --depth-kind and --depth-scale how both are read",
-        name, percent(plane.before, plane.surfaces), *middle, source.depth_path());
-  }
+        name, percent(plane.before, plane.surfaces), median_of(plane.parts), source.depth_path());
   Notes notes;
   if (double(plane.before) > kNoted * double(plane.surfaces))
     notes.push_back({NoteCode::before_first,

@@ -9,7 +9,7 @@
 
 #include "core/base/error.h"
 #include "core/base/text.h"
-#include "core/formats/open_image.h"
+#include "core/formats/exr.h"
 #include "core/frame/name_pattern.h"
 #include "core/frame/views.h"
 

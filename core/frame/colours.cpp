@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "core/base/error.h"
+#include "core/base/ranks.h"
 #include "core/base/text.h"
 #include "core/frame/linear_fit.h"
 

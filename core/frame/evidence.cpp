@@ -8,6 +8,7 @@
 #include <limits>
 #include <numbers>
 
+#include "core/base/ranks.h"
 #include "core/frame/flatness.h"
 #include "kernels/geometry.h"
 
@@ -41,32 +42,8 @@ Vector3 value_at(std::span<const float> raw, std::size_t plane, std::size_t i) {
   return raw.size() == 3 * plane ? Vector3{raw[i], raw[i + plane], raw[i + 2 * plane]} : Vector3{raw[i], 0, 0};
 }
 
-Vector3 decoded_normal(std::span<const float> raw, std::size_t pixels, std::size_t i, NormalEncoding encoding,
-                       bool unorm) {
-  Vector3 n{};
-  for (std::size_t c = 0; c * pixels < raw.size(); c++)
-    n[c] = unorm ? 2 * raw[c * pixels + i] - 1.0 : raw[c * pixels + i];
-  const double squared = n[0] * n[0] + n[1] * n[1];
-  if (encoding == NormalEncoding::octahedral) {
-    n[2] = 1 - std::abs(n[0]) - std::abs(n[1]);
-    if (n[2] < 0) n = {std::copysign(1 - std::abs(n[1]), n[0]), std::copysign(1 - std::abs(n[0]), n[1]), n[2]};
-  } else if (encoding == NormalEncoding::spheremap) {
-    const double across = 2 * std::sqrt(std::max(1 - squared, 0.0));
-    n = squared <= 1 ? Vector3{across * n[0], across * n[1], 2 * squared - 1} : Vector3{};
-  } else if (raw.size() < 3 * pixels) {
-    n[2] = std::sqrt(std::max(1 - squared, 0.0));
-  }
-  return n;
-}
-
 /// Relative second difference of three evenly spaced values.
 double bend(double before, double here, double after) { return std::abs(before + after - 2 * here) / std::abs(here); }
-
-double quantile(std::vector<double>& values, double share) {
-  const auto at = values.begin() + std::ptrdiff_t(share * double(values.size()));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
-}
 
 void count_value(ValueStatistics& s, float x) {
   s.pixels++;
@@ -198,7 +175,8 @@ class NormalSum {
   void finish() {
     const auto count = double(cosines_.size());
     for (double* share : {&score_.facing, &score_.agreement, &score_.opposite, &score_.close}) *share /= count;
-    score_.angle = std::acos(std::max(-1.0, quantile(cosines_, 0.75))) / kRadians;
+    score_.angle =
+        std::acos(std::max(-1.0, value_at_rank(cosines_, std::size_t(0.75 * double(cosines_.size()))))) / kRadians;
     // What turns about the surfaces' own normals does not show.
     constexpr double kUnseen = 1e-4;
     for (std::size_t i = 0; i < 3; i++) across_[i][i] += kUnseen * count;
@@ -240,6 +218,24 @@ bool score(std::vector<NormalScore>& scores, const NormalPlanes& planes, const C
 
 }  // namespace
 
+Vector3 decoded_normal(std::span<const float> raw, std::size_t pixels, std::size_t i, NormalEncoding encoding,
+                       bool unorm) {
+  Vector3 n{};
+  for (std::size_t c = 0; c * pixels < raw.size(); c++)
+    n[c] = unorm ? 2 * raw[c * pixels + i] - 1.0 : raw[c * pixels + i];
+  const double squared = n[0] * n[0] + n[1] * n[1];
+  if (encoding == NormalEncoding::octahedral) {
+    n[2] = 1 - std::abs(n[0]) - std::abs(n[1]);
+    if (n[2] < 0) n = {std::copysign(1 - std::abs(n[1]), n[0]), std::copysign(1 - std::abs(n[0]), n[1]), n[2]};
+  } else if (encoding == NormalEncoding::spheremap) {
+    const double across = 2 * std::sqrt(std::max(1 - squared, 0.0));
+    n = squared <= 1 ? Vector3{across * n[0], across * n[1], 2 * squared - 1} : Vector3{};
+  } else if (raw.size() < 3 * pixels) {
+    n[2] = std::sqrt(std::max(1 - squared, 0.0));
+  }
+  return n;
+}
+
 ValueStatistics statistics_of(std::span<const float> values, std::size_t step) {
   ValueStatistics s;
   s.least = kInfinity;
@@ -264,7 +260,7 @@ NormalStatistics normal_statistics(std::span<const float> normal, std::span<cons
     count_normal(s, lengths, n, components);
   }
   if (!s.count) return {};
-  s.usual_length = quantile(lengths, 0.5);
+  s.usual_length = value_at_rank(lengths, lengths.size() / 2);
   const double tolerance = kUnitTolerance * s.usual_length;
   s.usual_share =
       double(std::ranges::count_if(lengths, [&](double l) { return std::abs(l - s.usual_length) < tolerance; }));
@@ -281,16 +277,6 @@ std::vector<float> planar_depths(std::span<const float> raw, const DepthMap& map
     for (int x = 0; x < view.size.x; x++)
       planar.push_back(float(planar_depth(map, value_at(raw, plane, index_of(view, x, y)), ray_length(view, x, y))));
   return planar;
-}
-
-std::vector<float> decoded_normals(std::span<const float> raw, std::size_t pixels, NormalEncoding encoding,
-                                   bool unorm) {
-  std::vector<float> decoded(3 * pixels);
-  for (std::size_t i = 0; i < pixels; i++) {
-    const Vector3 n = decoded_normal(raw, pixels, i, encoding, unorm);
-    for (std::size_t c = 0; c < 3; c++) decoded[c * pixels + i] = float(n[c]);
-  }
-  return decoded;
 }
 
 std::optional<double> reprojection_error(std::span<const float> position, PositionSpace space, bool mirrored,
@@ -311,7 +297,7 @@ std::optional<double> reprojection_error(std::span<const float> position, Positi
       }
       errors.push_back(pixels_beside(view, x, y, p));
     }
-  return errors.empty() ? std::nullopt : std::optional(quantile(errors, 0.5));
+  return errors.empty() ? std::nullopt : std::optional(median_of(std::move(errors)));
 }
 
 std::vector<NormalScore> score_normals(const NormalPlanes& planes, const Camera& camera, const View& view) {

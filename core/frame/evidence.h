@@ -38,8 +38,9 @@ struct NormalStatistics {
 NormalStatistics normal_statistics(std::span<const float> normal, std::span<const float> raw, const DepthMap& map,
                                    std::size_t step = 1);
 
-/// Decodes the file's values into planes x, y, z of normals of any length, as prepare.comp does.
-std::vector<float> decoded_normals(std::span<const float> raw, std::size_t pixels, NormalEncoding encoding, bool unorm);
+/// Decodes the file's values of pixel `i` into a normal of any length, as prepare.comp does.
+Vector3 decoded_normal(std::span<const float> raw, std::size_t pixels, std::size_t i, NormalEncoding encoding,
+                       bool unorm);
 
 /// Gives the planar depth of each pixel, in scene units; infinite on sky. Of `row_step` rows only the first is taken.
 std::vector<float> planar_depths(std::span<const float> raw, const DepthMap& map, const View& view, int row_step = 1);

@@ -11,7 +11,7 @@
 
 #include "core/base/error.h"
 #include "core/base/text.h"
-#include "core/formats/open_image.h"
+#include "core/formats/exr.h"
 #include "core/frame/ambient.h"
 #include "core/frame/behind.h"
 #include "core/frame/colours.h"

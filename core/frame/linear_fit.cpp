@@ -1,16 +1,11 @@
-// Medians, and points of the size of 1.
+// Points of the size of 1.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/frame/linear_fit.h"
+#include "core/base/ranks.h"
 
 #include <algorithm>
 
 namespace alcove {
-
-double median_of(std::vector<double> values) {
-  const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
 
 Normalized normalized(std::span<const SeenPoint> points) {
   Normalized result{{points.begin(), points.end()}, {}, 1};

@@ -1,4 +1,4 @@
-// What fits of points to pictures share: eigenvectors of sums, medians, and points of a size at which sums are exact.
+// What fits of points to pictures share: eigenvectors of sums, and points of a size at which sums are exact.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -61,8 +61,5 @@ struct Normalized {
 };
 
 Normalized normalized(std::span<const SeenPoint> points);
-
-/// The middle one, of any number but none.
-double median_of(std::vector<double> values);
 
 }  // namespace alcove

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/base/ranks.h"
 #include "core/frame/linear_fit.h"
 
 namespace alcove {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/base/ranks.h"
 #include "core/base/text.h"
 #include "core/frame/depth.h"
 
@@ -38,9 +39,7 @@ std::optional<double> median_depth(const Reading& reading, std::span<const float
     if (std::isfinite(z)) depths.push_back(z);
   }
   if (depths.empty()) return std::nullopt;
-  const auto middle = depths.begin() + std::ptrdiff_t(depths.size() / 2);
-  std::ranges::nth_element(depths, middle);
-  return *middle;
+  return median_of(std::move(depths));
 }
 
 std::optional<double> proposed_radius(const Camera& camera, std::optional<double> median_depth) {

@@ -11,6 +11,7 @@
 #include <random>
 #include <vector>
 
+#include "core/base/ranks.h"
 #include "core/frame/linear_fit.h"
 
 namespace alcove {

@@ -24,8 +24,6 @@ struct Resection {
   double within = 0;       // share of the points that lie within kSeenWithin of their pixels
   double median = 0;       // px from point to pixel
   double focal_error = 0;  // standard deviation of fx, relative to it
-
-  bool is_camera_space() const { return !camera.view_from_world; }
 };
 
 /// Why no camera is found.

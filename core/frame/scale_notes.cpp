@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/ranks.h"
 #include "core/frame/sampling.h"
 
 namespace alcove {
@@ -44,9 +45,7 @@ Notes DepthSample::notes(double smallest_radius, double largest_radius, int widt
   if (depths_.empty()) return notes;
   std::vector<double> depths;
   for (const auto& [pixel, depth] : depths_) depths.push_back(depth);
-  const auto middle = depths.begin() + std::ptrdiff_t(depths.size() / 2);
-  std::ranges::nth_element(depths, middle);
-  const double z = *middle;
+  const double z = median_of(depths);
 
   const double precision = precision_.at_depth(z);
   if (smallest_radius < kLeastPrecisions * precision)

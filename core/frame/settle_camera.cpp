@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/base/ranks.h"
 #include "core/frame/flatness.h"
 #include "core/frame/linear_fit.h"
 #include "core/frame/panorama.h"
@@ -40,9 +41,7 @@ double beside(const Camera& lens, const Camera& standing, std::span<const SeenPo
     const double x = lens.cx + lens.fx * view[0] * over, y = lens.cy - lens.fy * view[1] * over;
     distances.push_back(std::hypot(x - point.x, y - point.y) - point.rounding);
   }
-  const auto last = distances.begin() + std::ptrdiff_t(kCounted * double(distances.size() - 1));
-  std::ranges::nth_element(distances, last);
-  return *last;
+  return value_at_rank(distances, std::size_t(kCounted * double(distances.size() - 1)));
 }
 
 bool is_centred(const Camera& camera, double pixel_aspect) {

@@ -8,10 +8,11 @@
 #include <vector>
 
 #include "core/base/file.h"
+#include "core/base/ranks.h"
 #include "core/chain/chain.h"
 #include "core/chain/compute.h"
-#include "core/formats/output_name.h"
 #include "core/formats/png.h"
+#include "core/formats/sequence.h"
 #include "core/frame/evidence.h"
 #include "core/frame/input_files.h"
 
@@ -25,8 +26,9 @@ std::array<double, 3> percentiles(std::span<const float> depth) {
   std::vector<float> surfaces;
   std::ranges::copy_if(depth, std::back_inserter(surfaces), [](float z) { return z < kMostSky; });
   if (surfaces.empty()) return {1, 1, 1};
-  std::ranges::sort(surfaces);
-  const auto at = [&](double part) { return double(surfaces[std::size_t(part * double(surfaces.size() - 1))]); };
+  const auto at = [&](double part) {
+    return double(value_at_rank(surfaces, std::size_t(part * double(surfaces.size() - 1))));
+  };
   return {at(0.01), at(0.5), at(0.99)};
 }
 

@@ -6,7 +6,8 @@
 #include <cmath>
 
 #include "core/base/error.h"
-#include "core/formats/open_image.h"
+#include "core/base/ranks.h"
+#include "core/formats/exr.h"
 #include "core/frame/findings.h"
 #include "core/frame/input_files.h"
 #include "core/frame/settle.h"
@@ -55,11 +56,9 @@ void add_planar(InspectedDepth& depth, const std::vector<float>& planar, const F
   depth.sky_share = 1 - double(surfaces.size()) / double(planar.size());
   if (!surfaces.empty()) {
     const auto [nearest, farthest] = std::ranges::minmax(surfaces);
-    const auto middle = surfaces.begin() + std::ptrdiff_t(surfaces.size() / 2);
-    std::ranges::nth_element(surfaces, middle);
     depth.nearest = nearest;
-    depth.median = *middle;
     depth.farthest = farthest;
+    depth.median = median_of(std::move(surfaces));
   }
   depth.scores = source.depth_scores;
 }

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "core/base/error.h"
+#include "core/base/ranks.h"
 #include "core/frame/input_files.h"
 #include "core/frame/settle.h"
 #include "core/inspect/inspect.h"
@@ -207,11 +208,9 @@ class SequenceInspector {
     std::erase_if(planar, [](float z) { return std::isinf(z); });
     SequenceDepth depth{frame, 1 - double(planar.size()) / double(pixels), {}, {}, {}};
     if (planar.empty()) return depth;
-    const auto middle = planar.begin() + std::ptrdiff_t(planar.size() / 2);
-    std::ranges::nth_element(planar, middle);
-    depth.median = *middle;
     depth.nearest = *std::ranges::min_element(planar);
     depth.farthest = *std::ranges::max_element(planar);
+    depth.median = median_of(std::move(planar));
     return depth;
   }
 

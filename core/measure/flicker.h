@@ -21,7 +21,7 @@ struct ErrorFrame {
 
 /// The root mean square of error(here) - error(previous frame, same surface): 0 for an error that stays where it is on
 /// a surface, and for any movement that the reference makes too. With two references it is free of their noise, as
-/// unbiased_rmse() is.
+/// that of compare_planes() is.
 ///
 /// With motion, the same surface is at the pixel that is nearest to the motion's place. That pixel is taken as it is,
 /// since interpolation would hide noise. A pixel is left out where it or its earlier place does not count or is

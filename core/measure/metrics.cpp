@@ -160,10 +160,6 @@ PlaneErrors compare_planes(Values result, Values reference, Mask mask, Values re
   return total;
 }
 
-double unbiased_rmse(Values result, Values reference_a, Values reference_b, Mask mask) {
-  return compare_planes(result, reference_a, mask, reference_b).rmse;
-}
-
 double psnr(double rmse, double peak) { return 20 * std::log10(peak / rmse); }
 
 std::vector<float> Comparable::mean_reference() const {

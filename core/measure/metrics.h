@@ -30,13 +30,9 @@ struct PlaneErrors {
 };
 
 /// Measures the errors. Fails with ErrorKind::input if no value is left to compare. With a `reference_b`, whose noise
-/// is independent of the reference's, the reference is the mean of the two and rmse is free of their noise: see
-/// unbiased_rmse().
+/// is independent of the reference's, the reference is the mean of the two and rmse is free of their noise: it is
+/// sqrt(max(0, mean((t - a)(t - b)))), with means of 0 of the noise in a and in b.
 PlaneErrors compare_planes(Values result, Values reference, Mask mask = {}, Values reference_b = {});
-
-/// sqrt(max(0, mean((t - a)(t - b)))): with independent noise in a and b of mean 0, the RMSE of t against what both
-/// estimate.
-double unbiased_rmse(Values result, Values reference_a, Values reference_b, Mask mask = {});
 
 /// 20 log10(peak / rmse), in dB; infinite for an rmse of 0.
 double psnr(double rmse, double peak = 1);

@@ -38,13 +38,13 @@ Words split_all(const Words& words) {
 }
 
 void read_kinds(const Words& words, std::vector<BehindKind>& kinds) {
-  const auto& names = names_of<BehindKind>();
+  constexpr auto& kKinds = kWordsOf<BehindKind>;
   Words known;
-  for (const auto& [word, kind] : names) known.push_back(word);
+  for (const auto& [word, kind] : kKinds) known.push_back(word);
   std::vector<BehindKind> read;
   for (const auto& text : split_all(words)) {
-    const auto kind = names.find(lower_case(text));
-    if (kind == names.end())
+    const auto* kind = std::ranges::find(kKinds, lower_case(text), &Word<BehindKind>::first);
+    if (kind == std::end(kKinds))
       fail(ErrorKind::usage, "--behind-kind: {} is none of {}{}", said(text), list_of(known), suggestion(text, known));
     read.push_back(kind->second);
   }

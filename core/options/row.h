@@ -132,11 +132,13 @@ class OptionGroup {
 
 template <class T>
 OptionRow& OptionGroup::choice(const std::string& name, T& value, const std::string& sentence) {
-  const auto& names = names_of<T>();
   Words words;
-  for (const auto& [word, meaning] : names) words.push_back(word);
+  for (const auto& [word, meaning] : kWordsOf<T>) words.push_back(word);
   const auto say = [&value] { return word_of(value); };
-  return choice_row(name, words, sentence, say, [&value, &names](const std::string& word) { value = names.at(word); });
+  return choice_row(name, words, sentence, say, [&value](const std::string& text) {
+    for (const auto& [word, meaning] : kWordsOf<T>)
+      if (word == text) value = meaning;
+  });
 }
 
 }  // namespace alcove

@@ -7,7 +7,7 @@
 #include <filesystem>
 
 #include "core/chain/aov.h"
-#include "core/formats/frame_number.h"
+#include "core/formats/sequence.h"
 #include "core/frame/radius.h"
 #include "core/frame/settle.h"
 #include "core/run/frame_files.h"

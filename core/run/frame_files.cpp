@@ -26,9 +26,7 @@ namespace fs = std::filesystem;
 
 /// By its word, and its width in px of the picture.
 std::string text_of(const PixelFilter& filter) {
-  const auto is_kind = [&](const auto& name) { return name.second == filter.kind; };
-  const auto name = std::ranges::find_if(names_of<PixelFilterKind>(), is_kind);
-  return fmt::format("{} {}", name->first, filter.width.value_or(usual_width(filter.kind)));
+  return fmt::format("{} {}", word_of(filter.kind), filter.width.value_or(usual_width(filter.kind)));
 }
 
 ExrOutput output_like(const FrameSource& source, const ChannelRef& like, const Window& data,

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/base/ranks.h"
 #include "core/base/windows.h"
 #include "core/chain/debug_view.h"
 #include "core/formats/png.h"
@@ -19,20 +20,14 @@ namespace {
 /// room.
 constexpr double kEnds = 0.03;
 
-/// The number below which this part of the values lies. Puts the values into another order.
-float percentile(std::vector<float>& values, double part) {
-  const auto at = values.begin() + std::ptrdiff_t(part * double(values.size() - 1));
-  std::ranges::nth_element(values, at);
-  return *at;
-}
-
 /// The values at the two ends of the scale.
 std::pair<float, float> range_of(const DebugView& view, std::span<const float> values) {
   if (view.scale == DebugScale::fixed || view.scale == DebugScale::fixed_logarithmic) return {view.low, view.high};
   std::vector<float> surfaces;
   std::ranges::copy_if(values, std::back_inserter(surfaces), [](float x) { return x < kSkyDepth; });
   if (surfaces.empty()) return {0, 1};
-  return {percentile(surfaces, kEnds), percentile(surfaces, 1 - kEnds)};
+  const auto at = [&](double part) { return value_at_rank(surfaces, std::size_t(part * double(surfaces.size() - 1))); };
+  return {at(kEnds), at(1 - kEnds)};
 }
 
 /// Where each number stands on the scale, 0 to 1; sky is NaN.

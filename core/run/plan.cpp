@@ -12,8 +12,7 @@
 #include "core/base/file.h"
 #include "core/base/text.h"
 #include "core/chain/debug_view.h"
-#include "core/formats/frame_number.h"
-#include "core/formats/output_name.h"
+#include "core/formats/sequence.h"
 
 namespace alcove {
 namespace {

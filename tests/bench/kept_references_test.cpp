@@ -55,6 +55,17 @@ ReferenceSettings reference_of(const SuiteCandidate& candidate, const SuiteFrame
   return settings;
 }
 
+/// Rounded to half floats.
+void write_kept_reference(const std::string& path, const ReferenceSettings& settings, const HostFrame& frame,
+                          const std::vector<float>& ao) {
+  ExrOutput output;
+  output.data = frame.data;
+  output.display = frame.display;
+  output.own_attributes["alcove/reference"] = text_of(settings);
+  output.planes.push_back({"Y", SampleType::half_float, ao});
+  write_exr(path, output);
+}
+
 TEST(KeptReferences, are_what_the_reference_computes) {
   const Suite all = suite();
   for (const auto& frame : all.frames) {

@@ -7,9 +7,7 @@
 #include <cstring>
 #include <filesystem>
 
-#include "core/formats/dds.h"
 #include "core/formats/exr.h"
-#include "core/formats/open_image.h"
 #include "core/frame/findings.h"
 #include "core/frame/gbuffer.h"
 #include "tests/support/command_line.h"
@@ -28,11 +26,11 @@ class Dds : public testing::Test {
  protected:
   Image read(std::uint32_t format, const std::string& pixels, std::uint32_t width = 2, std::uint32_t height = 1) const {
     write_bytes(path, dds(width, height, format, pixels));
-    return read_dds(path, "--depth");
+    return read_dds(path);
   }
   void expect_refused(const std::string& bytes, const char* word) const {
     write_bytes(path, bytes);
-    expect_error(ErrorKind::input, {word, "texture.dds", "--depth"}, [&] { read_dds(path, "--depth"); });
+    expect_error(ErrorKind::input, {word, "texture.dds", "--depth"}, [&] { read_dds(path); });
   }
   TemporaryFolder folder;
   const std::string path = folder / "texture.dds";
@@ -63,7 +61,7 @@ TEST_F(Dds, of_the_older_header_is_read) {
   const std::uint32_t letters = 114;  // D3DFMT_R32F
   std::memcpy(&bytes[84], &letters, 4);
   write_bytes(path, bytes + bytes_of<float>({4, 5}));
-  EXPECT_THAT(read_dds(path, "--depth").pixels, testing::ElementsAre(4, 5));
+  EXPECT_THAT(read_dds(path).pixels, testing::ElementsAre(4, 5));
 }
 
 TEST_F(Dds, that_makes_no_sense_is_refused) {

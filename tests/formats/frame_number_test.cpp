@@ -1,6 +1,6 @@
 // Frame numbers in the names that people give to files.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/formats/frame_number.h"
+#include "core/formats/sequence.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -18,6 +18,7 @@
 #include <random>
 #include <sstream>
 
+#include "core/base/half.h"
 #include "core/formats/exr.h"
 #include "core/formats/sample_loops.h"
 #include "tests/support/expect_error.h"
@@ -46,53 +47,37 @@ bool has_same_bits(const std::vector<float>& a, const std::vector<float>& b) {
 // The loops.
 
 TEST(SampleLoops, make_bytes_of_differences) {
-  for (const auto* loops : {&plain_sample_loops(), &fast_sample_loops()}) {
-    Bytes bytes{130, 129, 127, 128, 0};
-    EXPECT_EQ(loops->sum_of(bytes.data(), bytes.size(), 128), 2);
-    EXPECT_EQ(loops->sum_up(bytes.data(), bytes.size(), 128), 2);
-    EXPECT_EQ(bytes, (Bytes{130, 131, 130, 130, 2}));
-  }
+  Bytes bytes{130, 129, 127, 128, 0};
+  EXPECT_EQ(sum_of(bytes.data(), bytes.size(), 128), 2);
+  EXPECT_EQ(sum_up(bytes.data(), bytes.size(), 128), 2);
+  EXPECT_EQ(bytes, (Bytes{130, 131, 130, 130, 2}));
 }
 
 TEST(SampleLoops, put_bytes_at_even_and_odd_places) {
-  for (const auto* loops : {&plain_sample_loops(), &fast_sample_loops()}) {
-    const Bytes even{1, 3, 5}, odd{2, 4, 6};
-    Bytes to(6);
-    loops->interleave(even.data(), odd.data(), 3, to.data());
-    EXPECT_EQ(to, (Bytes{1, 2, 3, 4, 5, 6}));
-  }
+  const Bytes even{1, 3, 5}, odd{2, 4, 6};
+  Bytes to(6);
+  interleave(even.data(), odd.data(), 3, to.data());
+  EXPECT_EQ(to, (Bytes{1, 2, 3, 4, 5, 6}));
 }
 
-TEST(SampleLoops, fast_ones_give_the_bits_of_the_plain_ones_at_any_length_and_place) {
-  const SampleLoops &plain = plain_sample_loops(), &fast = fast_sample_loops();
+TEST(SampleLoops, undo_each_other_at_any_length_and_place) {
   for (std::size_t place = 0; place < 17; place++)
     for (std::size_t count = 0; count < 100; count++) {
-      const Bytes bytes = random_bytes(place + count), others = random_bytes(place + count);
-      Bytes a = bytes, b = bytes;
+      const Bytes bytes = random_bytes(place + 2 * count);
+      Bytes split(place + 2 * count), together(place + 2 * count);
+      split_to_differences(bytes.data() + place, count, split.data() + place);
+      for (std::size_t i = 1; i < count; i++)
+        ASSERT_EQ(split[place + i], std::uint8_t(bytes[place + 2 * i] - bytes[place + 2 * i - 2] + 128)) << count;
       const auto before = std::uint8_t(random_numbers());
-      const auto last = plain.sum_up(a.data() + place, count, before);
-      ASSERT_EQ(fast.sum_up(b.data() + place, count, before), last) << count;
-      ASSERT_EQ(a, b) << count;
-      ASSERT_EQ(fast.sum_of(bytes.data() + place, count, before), last) << count;
-      ASSERT_EQ(plain.sum_of(bytes.data() + place, count, before), last) << count;
-      a = b = bytes;
-      plain.subtract(a.data() + place, count);
-      fast.subtract(b.data() + place, count);
-      ASSERT_EQ(a, b) << count;
-      fast.sum_up(b.data() + place, count, 128);
-      ASSERT_EQ(b, bytes) << count;
-      a = b = random_bytes(2 * (place + count));
-      plain.interleave(bytes.data() + place, others.data() + place, count, a.data() + place);
-      fast.interleave(bytes.data() + place, others.data() + place, count, b.data() + place);
-      ASSERT_EQ(a, b) << count;
-      for (const auto* loops : {&plain, &fast}) {
-        Bytes even = bytes, odd = others;
-        std::fill(even.begin() + std::ptrdiff_t(place), even.end(), std::uint8_t(0));
-        std::fill(odd.begin() + std::ptrdiff_t(place), odd.end(), std::uint8_t(0));
-        loops->split(a.data() + place, count, even.data() + place, odd.data() + place);
-        ASSERT_EQ(even, bytes) << count;
-        ASSERT_EQ(odd, others) << count;
-      }
+      std::uint8_t last = before;
+      for (std::size_t i = place; i < split.size(); i++) last = std::uint8_t(last + split[i] - 128);
+      ASSERT_EQ(sum_of(split.data() + place, 2 * count, before), last) << count;
+      ASSERT_EQ(sum_up(split.data() + place, 2 * count, before), last) << count;
+      std::ranges::transform(split, split.begin(), [&](std::uint8_t b) { return std::uint8_t(b - before + 128); });
+      interleave(split.data() + place, split.data() + place + count, count, together.data() + place);
+      ASSERT_TRUE(
+          std::equal(bytes.begin() + std::ptrdiff_t(place), bytes.end(), together.begin() + std::ptrdiff_t(place)))
+          << count;
     }
 }
 
@@ -101,15 +86,19 @@ TEST(SampleLoops, every_half_becomes_the_float_that_openexr_makes_of_it) {
   for (std::size_t i = 0; i < halves.size(); i++) halves[i] = std::uint16_t(i);
   for (int order = 0; order < 3; order++) {
     std::vector<float> expected;
-    for (const std::uint16_t half : halves) expected.push_back(from_half(half));
-    for (const auto* loops : {&plain_sample_loops(), &fast_sample_loops()})
-      for (const std::size_t less : {0u, 3u}) {
-        std::vector<float> floats(halves.size());
-        loops->widen(reinterpret_cast<const std::uint8_t*>(halves.data()), halves.size() - less, floats.data());
-        for (std::size_t i = 0; i < halves.size() - less; i++)
-          ASSERT_EQ(std::bit_cast<std::uint32_t>(floats[i]), std::bit_cast<std::uint32_t>(expected[i])) << halves[i];
-        for (std::size_t i = halves.size() - less; i < halves.size(); i++) ASSERT_EQ(floats[i], 0);
-      }
+    for (const std::uint16_t bits : halves) {
+      half value;
+      value.setBits(bits);
+      expected.push_back(value);
+      ASSERT_EQ(std::bit_cast<std::uint32_t>(from_half(bits)), std::bit_cast<std::uint32_t>(expected.back())) << bits;
+    }
+    for (const std::size_t less : {0u, 3u}) {
+      std::vector<float> floats(halves.size());
+      widen(reinterpret_cast<const std::uint8_t*>(halves.data()), halves.size() - less, floats.data());
+      for (std::size_t i = 0; i < halves.size() - less; i++)
+        ASSERT_EQ(std::bit_cast<std::uint32_t>(floats[i]), std::bit_cast<std::uint32_t>(expected[i])) << halves[i];
+      for (std::size_t i = halves.size() - less; i < halves.size(); i++) ASSERT_EQ(floats[i], 0);
+    }
     std::ranges::shuffle(halves, random_numbers);
   }
 }
@@ -123,15 +112,14 @@ TEST(SampleLoops, floats_become_the_halves_that_openexr_makes_of_them_and_none_b
         floats.push_back(std::bit_cast<float>(bits + halfway + std::uint32_t(beside)));
       }
   for (int i = 0; i < 1 << 16; i++) floats.push_back(std::bit_cast<float>(std::uint32_t(random_numbers())));
-  for (const auto* loops : {&plain_sample_loops(), &fast_sample_loops()})
-    for (const std::size_t less : {0u, 5u}) {
-      std::vector<std::uint16_t> halves(floats.size());
-      loops->narrow(floats.data(), floats.size() - less, halves.data());
-      for (std::size_t i = 0; i < floats.size() - less; i++) {
-        const float within = std::abs(floats[i]) > HALF_MAX ? std::copysign(float(HALF_MAX), floats[i]) : floats[i];
-        ASSERT_EQ(halves[i], half(within).bits()) << floats[i];
-      }
+  for (const std::size_t less : {0u, 5u}) {
+    std::vector<std::uint16_t> halves(floats.size());
+    narrow(floats.data(), floats.size() - less, halves.data());
+    for (std::size_t i = 0; i < floats.size() - less; i++) {
+      const float within = std::abs(floats[i]) > HALF_MAX ? std::copysign(float(HALF_MAX), floats[i]) : floats[i];
+      ASSERT_EQ(halves[i], half(within).bits()) << floats[i];
     }
+  }
 }
 
 // Files.

@@ -13,6 +13,7 @@
 #include <random>
 
 #include "core/base/error.h"
+#include "core/base/half.h"
 #include "core/formats/exr.h"
 #include "core/formats/sample_loops.h"
 #include "tests/support/openexr_planes.h"
@@ -36,7 +37,7 @@ std::vector<float> plane_of(const Window& data, bool is_noise) {
 
 float as_half(float value) {
   std::uint16_t half = 0;
-  plain_sample_loops().narrow(&value, 1, &half);
+  narrow(&value, 1, &half);
   return from_half(half);
 }
 

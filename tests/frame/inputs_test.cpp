@@ -255,7 +255,12 @@ TEST(Normals, of_every_encoding_are_the_same) {
     const HostResult result = compute_ao(recorder(), frame, with(1e3, ThicknessKind::infinite));
     EXPECT_LE(difference(result.ao, expected).max, 2e-4) << what;
     EXPECT_EQ(result.repaired_normals, 0u) << what;
-    frame.normal = decoded_normals(frame.normal, frame.data.pixels(), frame.normal_encoding, frame.normal_unorm);
+    const std::size_t pixels = frame.data.pixels();
+    std::vector<float> decoded(3 * pixels);
+    for (std::size_t i = 0; i < decoded.size(); i++)
+      decoded[i] = float(
+          decoded_normal(frame.normal, pixels, i % pixels, frame.normal_encoding, frame.normal_unorm)[i / pixels]);
+    frame.normal = decoded;
     frame.normal_encoding = NormalEncoding::signed_float;
     frame.normal_unorm = false;
     EXPECT_LE(difference(ao_of(frame, 1e3), expected).max, 2e-4) << what << " decoded on the host";

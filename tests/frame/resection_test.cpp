@@ -93,7 +93,7 @@ TEST(Resections, find_the_camera_of_perspective_views) {
   Camera camera = made_camera();
   const Resection plain = found(seen_by(camera));
   expect_same(plain.camera, camera, 1e-9);
-  EXPECT_FALSE(plain.is_camera_space());
+  EXPECT_TRUE(plain.camera.view_from_world);
   EXPECT_EQ(plain.within, 1);
   for (std::size_t k = 0; k < 3; k++)
     EXPECT_NEAR(plain.camera.view_from_world_offset[k], camera.view_from_world_offset[k], 1e-8);
@@ -138,7 +138,7 @@ TEST(Resections, tell_positions_in_the_cameras_space) {
     auto points = seen_by(camera);
     for (const bool looks_along_z : {false, true}) {
       const Resection result = found(points);
-      EXPECT_TRUE(result.is_camera_space());
+      EXPECT_FALSE(result.camera.view_from_world);
       EXPECT_FALSE(result.camera.view_from_world);
       EXPECT_EQ(result.camera.left_handed, looks_along_z);
       EXPECT_NEAR(result.camera.fx, camera.fx, 1e-6);

@@ -1,14 +1,14 @@
 // DDS textures: header and pixels.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/formats/dds.h"
 #include "tests/fuzz/fuzz.h"
+#include "tests/support/dds_file.h"
 
 using namespace alcove;
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const fuzz::InputFile input(data, size);
   fuzz::accepts([&] {
-    const Image image = read_dds(input.path(), "--depth");
+    const Image image = test::read_dds(input.path());
     fuzz::require(size >= 4, "what is read has a header");
     fuzz::require(image.data.pixels() > 0 && !image.names.empty() && image.names.size() <= 4,
                   "a texture has pixels and up to four channels");

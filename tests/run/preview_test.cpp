@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "core/formats/open_image.h"
+#include "core/formats/exr.h"
 #include "tests/support/command_line.h"
 
 namespace alcove {

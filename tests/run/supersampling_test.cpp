@@ -10,7 +10,6 @@
 #include <numbers>
 
 #include "core/formats/exr.h"
-#include "core/formats/open_image.h"
 #include "tests/support/command_line.h"
 #include "tests/support/exr_header.h"
 

@@ -1,4 +1,4 @@
-// Writes DDS files of any format and pixels.
+// Writes DDS files of any format and pixels, and reads them.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -6,6 +6,8 @@
 #include <cstring>
 #include <string>
 #include <vector>
+
+#include "core/formats/image_io.h"
 
 namespace alcove::test {
 
@@ -27,6 +29,15 @@ inline std::string dds(std::uint32_t width, std::uint32_t height, std::uint32_t 
   header[33] = 3;
   header[35] = 1;
   return words(header) + pixels;
+}
+
+inline Image read_dds(const std::string& path) {
+  const auto picture = open_dds(path, "--depth");
+  Image image(picture->data, picture->display, picture->names);
+  std::vector<PictureReader::Channel> channels;
+  for (std::size_t i = 0; i < image.names.size(); i++) channels.push_back({i, image.plane(i).data()});
+  picture->read(0, image.data.height, channels);
+  return image;
 }
 
 template <class T>

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <ImfHeader.h>
+
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -9,7 +11,6 @@
 #include <vector>
 
 #include "core/base/image.h"
-#include "core/formats/deep_chunk.h"
 #include "core/formats/deep_surfaces.h"
 
 namespace alcove {
@@ -21,21 +22,13 @@ struct DeepRead {
   float* to;
 };
 
-/// A deep part, as the headers of its file describe it.
+/// A deep part of a file.
 struct DeepStored {
-  struct Channel {
-    std::string name;
-    bool is_half, is_integer;
-  };
   std::string path;
   int part;
-  Window data;
-  int tile_width, tile_height;  // px; of lines: those of a chunk
-  bool is_tiled;
-  DeepCompression compression;
-  std::vector<Channel> channels;  // in the order of their names
-  std::uint64_t offsets;          // where the table of its chunks' places begins in the file
-  bool names_part;                // each chunk begins with the number of its part
+  Imf::Header header;
+  std::uint64_t offsets;  // where the table of its chunks' places begins in the file
+  bool names_part;        // each chunk begins with the number of its part
 };
 
 /// Reads deep scan lines and deep tiles of one level, or level 0 of several, of one file or more. Every failure is

@@ -1,24 +1,24 @@
 // Chunks of deep data: where they lie, threads that unpack them, and the surfaces of their pixels.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/formats/deep_exr.h"
+#include "core/formats/exr_deep.h"
+
+#include <ImfChannelList.h>
+#include <ImfPartType.h>
 
 #include <algorithm>
 #include <array>
-#include <atomic>
-#include <bit>
-#include <exception>
 #include <filesystem>
 #include <fstream>
-#include <functional>
 #include <iterator>
-#include <mutex>
+#include <limits>
 
 #include "core/base/error.h"
+#include "core/base/half.h"
 #include "core/base/memory_limit.h"
 #include "core/base/windows.h"
 #include "core/formats/deep_chunk.h"
-#include "core/formats/exr.h"
-#include "core/formats/exr_threads.h"
+#include "core/formats/exr_shared.h"
+#include "core/formats/sample_loops.h"
 
 namespace alcove {
 namespace {
@@ -32,11 +32,9 @@ enum class Role { none, front, back, alpha };
 /// A channel that is read, and its place: chunks hold each line channel by channel.
 struct TakenChannel {
   Role role;
-  DeepStored::Channel stored;
+  Imf::PixelType type;
   std::size_t offset;  // bytes of the channels before it, of a sample
 };
-
-std::size_t bytes_of(const DeepStored::Channel& channel) { return channel.is_half ? 2 : 4; }
 
 /// Where a chunk's table of counts and its samples lie; sizes in bytes.
 struct Chunk {
@@ -47,6 +45,12 @@ struct Chunk {
 struct Part : DeepStored {
   explicit Part(const DeepStored& stored) : DeepStored(stored) {}
 
+  Window data = window_of(header.dataWindow());
+  bool is_tiled = header.type() == Imf::DEEPTILE;
+  int tile_width = data.width, tile_height = 1;  // px; of lines: those of a chunk
+  DeepCompression compression = header.compression() == Imf::NO_COMPRESSION    ? DeepCompression::none
+                                : header.compression() == Imf::RLE_COMPRESSION ? DeepCompression::rle
+                                                                               : DeepCompression::zip;
   std::uint64_t file_bytes = 0;
   std::vector<Chunk> chunks;        // row by row
   std::vector<TakenChannel> taken;  // that are read
@@ -66,15 +70,9 @@ struct Part : DeepStored {
   }
 };
 
-std::uint32_t word_at(const std::uint8_t* at) {
-  return std::uint32_t(at[0]) | std::uint32_t(at[1]) << 8 | std::uint32_t(at[2]) << 16 | std::uint32_t(at[3]) << 24;
-}
-
-std::uint64_t long_at(const std::uint8_t* at) { return word_at(at) | std::uint64_t(word_at(at + 4)) << 32; }
-
-float value_at(const std::uint8_t* at, const DeepStored::Channel& channel) {
-  if (channel.is_half) return from_half(std::uint16_t(at[0] | at[1] << 8));
-  return channel.is_integer ? float(word_at(at)) : std::bit_cast<float>(word_at(at));
+float value_at(const std::uint8_t* at, Imf::PixelType type) {
+  if (type == Imf::HALF) return from_half(number_at<std::uint16_t>(at));
+  return type == Imf::FLOAT ? number_at<float>(at) : float(number_at<std::uint32_t>(at));
 }
 
 bool read_at(std::ifstream& file, std::uint64_t offset, std::span<std::uint8_t> to) {
@@ -98,41 +96,6 @@ struct Loaded {
   std::vector<Unpacked> chunks;  // side by side
   int row = -1, first = -1;      // of the part's chunks: where they lie; -1: there are none yet
   Window shown;                  // the pixels of the line that the part has
-};
-
-/// Calls a function for all numbers below `count`, on several threads of OpenEXR's pool. The exception of the lowest
-/// number that failed is thrown again.
-class Crew {
- public:
-  Crew(std::size_t count, std::function<void(std::size_t number, std::size_t worker)> work)
-      : count_(count), work_(std::move(work)) {}
-
-  void run(std::size_t workers) {
-    std::atomic<std::size_t> worker = 0;
-    on_exr_threads(workers <= 1 ? 0 : int(workers), [&] { help(worker++); });
-    if (failure_) std::rethrow_exception(failure_);
-  }
-
- private:
-  void help(std::size_t worker) {
-    for (std::size_t number = next_++; number < count_; number = next_++) try {
-        work_(number, worker);
-      } catch (...) {
-        const std::lock_guard lock(mutex_);
-        if (number < failed_) {
-          failed_ = number;
-          failure_ = std::current_exception();
-        }
-        next_ = count_;
-      }
-  }
-
-  std::size_t count_;
-  std::function<void(std::size_t, std::size_t)> work_;
-  std::atomic<std::size_t> next_ = 0;
-  std::mutex mutex_;
-  std::size_t failed_ = std::size_t(-1);
-  std::exception_ptr failure_;
 };
 
 }  // namespace
@@ -171,6 +134,11 @@ struct DeepReader::Impl {
 
 void DeepReader::Impl::add_part(const DeepStored& stored) {
   Part part(stored);
+  if (part.is_tiled) {
+    constexpr unsigned kMost = std::numeric_limits<int>::max();
+    part.tile_width = int(std::min(part.header.tileDescription().xSize, kMost));
+    part.tile_height = int(std::min(part.header.tileDescription().ySize, kMost));
+  }
   if (part.tile_width <= 0 || part.tile_height <= 0) refuse(part, "its tiles are empty");
   const std::uint64_t pixels = std::uint64_t(part.tile_width) * std::uint64_t(part.tile_height);
   part.whole_table = pixels < kMostChunk / sizeof(std::uint32_t) ? sizeof(std::uint32_t) * pixels : 0;
@@ -186,21 +154,20 @@ void DeepReader::Impl::add_part(const DeepStored& stored) {
 }
 
 void DeepReader::Impl::find_channels(Part& part) const {
-  const auto has = [&](const char* name) {
-    return std::ranges::find(part.channels, name, &DeepStored::Channel::name) != part.channels.end();
-  };
+  const Imf::ChannelList& channels = part.header.channels();
+  const auto has = [&](const char* name) { return channels.findChannel(name) != nullptr; };
   const auto role_of = [&](const std::string& name) {
     if (name == "Z") return Role::front;
     if (name == "ZBack") return Role::back;
     const bool is_alpha = has("A") ? name == "A" : name == "AR" || name == "AG" || name == "AB";
     return is_alpha ? Role::alpha : Role::none;
   };
-  for (const auto& channel : part.channels) {
-    const Role role = role_of(channel.name);
-    if (role != Role::none) part.taken.push_back({role, channel, part.sample_bytes});
+  for (auto at = channels.begin(); at != channels.end(); ++at) {
+    const Role role = role_of(at.name());
+    if (role != Role::none) part.taken.push_back({role, at.channel().type, part.sample_bytes});
     part.has_back |= role == Role::back;
     part.alphas += role == Role::alpha;
-    part.sample_bytes += bytes_of(channel);
+    part.sample_bytes += bytes_of(at.channel().type);
   }
   if (!has("Z"))
     fail(ErrorKind::input,
@@ -221,7 +188,8 @@ void DeepReader::Impl::find_chunks(Part& part) const {
   part.chunks.reserve(count);
   for (int row = 0; row < part.down(); row++)
     for (int column = 0; column < part.across(); column++)
-      part.chunks.push_back(chunk_at(part, file, long_at(offsets.data() + kOffset * part.chunks.size()), column, row));
+      part.chunks.push_back(
+          chunk_at(part, file, number_at<std::uint64_t>(offsets.data() + kOffset * part.chunks.size()), column, row));
 }
 
 /// Where a chunk lies. Its sizes are none that the file, or what packs it, could not hold.
@@ -235,7 +203,7 @@ Chunk DeepReader::Impl::chunk_at(const Part& part, std::ifstream& file, std::uin
   if (offset == 0 || !is_within(offset, length) || !read_at(file, offset, std::span(head).first(length)))
     refuse(part, fmt::format("chunk {}, {} is not there", column, row));
   const auto says = [&](std::size_t at, std::int64_t number) {
-    return std::int64_t(std::int32_t(word_at(head.data() + at))) == number;
+    return std::int64_t(number_at<std::int32_t>(head.data() + at)) == number;
   };
   const bool is_right =
       (!part.names_part || says(0, part.part)) &&
@@ -243,8 +211,9 @@ Chunk DeepReader::Impl::chunk_at(const Part& part, std::ifstream& file, std::uin
                      : says(place, std::int64_t(part.data.y) + std::int64_t(row) * part.tile_height));
   if (!is_right) refuse(part, fmt::format("at the place of chunk {}, {} is something else", column, row));
 
-  const Chunk chunk{offset + length, long_at(head.data() + sizes), long_at(head.data() + sizes + 8),
-                    long_at(head.data() + sizes + 16)};
+  const Chunk chunk{offset + length, number_at<std::uint64_t>(head.data() + sizes),
+                    number_at<std::uint64_t>(head.data() + sizes + 8),
+                    number_at<std::uint64_t>(head.data() + sizes + 16)};
   const std::uint64_t table = sizeof(std::uint32_t) * part.chunk_width(column) * part.chunk_height(row);
   if (!is_within(chunk.table, chunk.table_size) || !is_within(chunk.table + chunk.table_size, chunk.packed_size) ||
       chunk.table_size > std::max(table, part.whole_table) || chunk.packed_size > chunk.unpacked_size ||
@@ -295,9 +264,7 @@ void DeepReader::Impl::share_out(std::uint64_t most_bytes) {
         "{}: its largest deep lines or tiles take {} MiB to read, and {} MiB are there for that: let the run take more "
         "by --memory, or write smaller ones ({})",
         parts.front().path, worker_bytes / kMebibyte + 1, most_bytes / kMebibyte, option);
-  const int threads = exr_threads();
-  workers = std::clamp<std::uint64_t>(most_bytes / std::max<std::uint64_t>(1, worker_bytes), 1,
-                                      std::uint64_t(std::max(1, threads)));
+  workers = exr_workers(most_bytes / std::max<std::uint64_t>(1, worker_bytes), std::numeric_limits<std::size_t>::max());
 }
 
 void DeepReader::Impl::unpack(const Part& part, int column, int row, std::ifstream& file, Unpacked& to) const {
@@ -333,8 +300,8 @@ void DeepReader::Impl::take_line(const Part& part, std::size_t line, Unpacked& c
     const std::uint8_t* at = chunk.data.data() + chunk.lines[line] + channel.offset * count;
     const auto each = [&](auto&& take) {
       for (auto& sample : chunk.samples) {
-        take(sample, value_at(at, channel.stored));
-        at += bytes_of(channel.stored);
+        take(sample, value_at(at, channel.type));
+        at += bytes_of(channel.type);
       }
     };
     const float part_of_alpha = 1.0F / float(std::max<std::size_t>(1, part.alphas));
@@ -430,7 +397,7 @@ void DeepReader::read(std::span<const DeepRead> reads, int first, int rows) {
       }
     }
   };
-  Crew(cells, read_cell).run(workers);
+  on_exr_threads(cells, workers, read_cell);
   for (const auto& part : counts) impl_->counts.add(part);
   std::fill_n(impl_->counted.begin() + first, rows, true);
 }

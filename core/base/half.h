@@ -1,0 +1,18 @@
+// Half floats as bits, by Imath.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#define IMATH_HALF_NO_LOOKUP_TABLE  // which would be in Imath's library, and that is not loaded with libalcove
+#include <half.h>
+
+#include <cstdint>
+
+namespace alcove {
+
+/// Gives the value of a half float's bits.
+inline float from_half(std::uint16_t bits) { return imath_half_to_float(bits); }
+
+/// Rounds to the nearest half float. Beyond their range it is infinite.
+inline std::uint16_t to_half(float value) { return imath_float_to_half(value); }
+
+}  // namespace alcove
