@@ -6,6 +6,7 @@
 
 #include "core/chain/compute.h"
 #include "core/formats/exr.h"
+#include "core/frame/gbuffer.h"
 #include "tests/support/device.h"
 
 namespace alcove {

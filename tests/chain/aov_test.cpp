@@ -7,7 +7,7 @@
 #include <functional>
 
 #include "core/formats/exr.h"
-#include "core/run/digest.h"
+#include "core/run/resume.h"
 #include "tests/support/command_line.h"
 #include "tests/support/exr_header.h"
 

@@ -12,7 +12,7 @@
 #include "core/chain/completion.h"
 #include "core/chain/debug.h"
 #include "core/chain/reuse.h"
-#include "core/run/frame_tally.h"
+#include "core/run/frame_run.h"
 #include "tests/support/command_line.h"
 #include "tests/support/device.h"
 #include "tests/support/single_pass.h"

@@ -10,6 +10,7 @@
 #include "core/chain/chain.h"
 #include "core/chain/compute.h"
 #include "core/formats/exr.h"
+#include "core/frame/gbuffer.h"
 #include "tests/support/device.h"
 #include "tests/support/difference.h"
 #include "tests/support/scenes.h"

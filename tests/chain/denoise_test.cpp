@@ -8,7 +8,8 @@
 
 #include "core/chain/compute.h"
 #include "core/formats/exr.h"
-#include "core/run/digest.h"
+#include "core/frame/gbuffer.h"
+#include "core/run/resume.h"
 #include "tests/support/device.h"
 #include "tests/support/difference.h"
 #include "tests/support/single_pass.h"

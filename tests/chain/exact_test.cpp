@@ -13,7 +13,7 @@
 #include "core/chain/compute.h"
 #include "core/formats/exr.h"
 #include "core/reference/reference.h"
-#include "core/run/digest.h"
+#include "core/run/resume.h"
 #include "tests/support/command_line.h"
 #include "tests/support/device.h"
 #include "tests/support/difference.h"

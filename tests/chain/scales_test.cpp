@@ -10,7 +10,7 @@
 #include "core/chain/chain.h"
 #include "core/chain/compute.h"
 #include "core/formats/exr.h"
-#include "core/run/digest.h"
+#include "core/run/resume.h"
 #include "tests/support/command_line.h"
 #include "tests/support/device.h"
 #include "tests/support/difference.h"

@@ -12,6 +12,7 @@
 #include "core/chain/compute.h"
 #include "core/chain/estimate.h"
 #include "core/formats/exr.h"
+#include "core/frame/gbuffer.h"
 #include "kernels/classify.h"
 #include "kernels/profile.h"
 #include "tests/support/device.h"

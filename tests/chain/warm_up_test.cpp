@@ -7,7 +7,7 @@
 #include <set>
 
 #include "core/chain/compute.h"
-#include "core/options/presets.h"
+#include "core/options/options.h"
 #include "tests/support/device.h"
 #include "tests/support/scenes.h"
 

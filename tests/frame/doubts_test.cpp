@@ -3,7 +3,7 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
-#include "core/frame/findings.h"
+#include "core/frame/settle.h"
 #include "tests/support/source_frame.h"
 #include "tests/support/wall_frame.h"
 

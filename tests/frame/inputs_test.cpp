@@ -11,11 +11,12 @@
 #include <limits>
 
 #include "core/base/error.h"
+#include "core/base/option_words.h"
 #include "core/chain/compute.h"
 #include "core/formats/exr.h"
 #include "core/frame/evidence.h"
 #include "core/frame/settle.h"
-#include "core/run/digest.h"
+#include "core/run/resume.h"
 #include "tests/support/command_line.h"
 #include "tests/support/device.h"
 #include "tests/support/difference.h"
@@ -170,9 +171,9 @@ TEST(Depth, of_every_sentinel_is_sky) {
       HostFrame frame = with_depth(rendering, kind, value, sentinel);
       frame.depth_range = range;
       const HostResult result = compute_ao(recorder(), frame, settings_of(0.6));
-      EXPECT_LE(difference(result.ao, expected).rmse, 1e-4) << name_of(kind) << " " << sentinel;
+      EXPECT_LE(difference(result.ao, expected).rmse, 1e-4) << word_of(kind) << " " << sentinel;
       EXPECT_EQ(result.sky_pixels, compute_ao(recorder(), rendering.frame, settings_of(0.6)).sky_pixels)
-          << name_of(kind) << " " << sentinel;
+          << word_of(kind) << " " << sentinel;
     }
   };
   const auto distance = [](const test::Hit& hit) { return hit.distance; };
