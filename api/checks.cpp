@@ -1,15 +1,16 @@
 // Asks the pixels, as for frames from files; nothing is guessed here, since whoever has planes knows what they are.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "api/checks.h"
+#include "api/session.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "core/base/error.h"
 #include "core/base/estimator_facts.h"
+#include "core/base/option_words.h"
 #include "core/frame/evidence.h"
-#include "core/frame/scale_notes.h"
-#include "core/frame/settlement.h"
+#include "core/frame/radius.h"
+#include "core/frame/settle.h"
 
 namespace alcove {
 namespace {
@@ -28,22 +29,20 @@ void check_depth(const Reading& reading, std::span<const float> depth, const Vie
            *error);
     return;
   }
-  const bool is_distance = reading.depth_kind == DepthKind::planar || reading.depth_kind == DepthKind::ray;
   const auto is_surface = [&](float z) { return z > 0 && z < reading.sky; };
   const auto is_negative = [](float z) { return std::isfinite(z) && z < 0; };
-  if (is_distance && std::ranges::none_of(depth, is_surface) && std::ranges::any_of(depth, is_negative))
+  if (is_distance(reading.depth_kind) && std::ranges::none_of(depth, is_surface) &&
+      std::ranges::any_of(depth, is_negative))
     fail(ErrorKind::input, "depth: all surfaces have negative values: distances are positive, so give -depth");
 }
 
-const char* name_of(NormalSpace space) { return space == NormalSpace::world ? "world" : "view"; }
-
 std::string text_of(const NormalScore& score) {
   const std::string flips = to_string(score.flips);
-  return fmt::format("--normal-space {}{} ({:.0f} % agree)", name_of(score.space),
+  return fmt::format("--normal-space {}{} ({:.0f} % agree)", word_of(score.space),
                      flips == "none" ? "" : " with --flip-normal " + flips, 100 * score.agreement);
 }
 
-void check_normals(const Reading& reading, const HostPlanes& planes, const View& view, Notes& notes) {
+void check_normals(const Reading& reading, const HostPlanes& planes, Notes& notes) {
   const auto normal = planes[RawPlane::normal], depth = planes[RawPlane::depth];
   const DepthMap map = depth_map_of(reading);
   const bool has_vectors = normal.size() == 3 * reading.data.pixels() &&
@@ -56,14 +55,11 @@ void check_normals(const Reading& reading, const HostPlanes& planes, const View&
   if (has_vectors && reading.normal_unorm && lengths.unit_share > kUnit && lengths.unorm_unit_share < kFew)
     fail(ErrorKind::input, "normal: n is of unit length on {:.0f} %, and 2 n - 1 is not: set --normal-encoding signed",
          100 * lengths.unit_share);
-  const auto scores =
-      score_normals({normal, reading.normal_encoding, reading.normal_unorm, depth, map}, reading.camera, view);
-  const auto chosen = std::ranges::find_if(scores, [&](const NormalScore& score) {
-    return score.space == reading.normal_space && to_string(score.flips) == to_string(reading.flip_normal);
-  });
-  if (chosen == scores.end() || chosen->agreement >= kLeastAgreement) return;
+  const auto scores = score_normals({reading, normal, depth});
+  const NormalScore* chosen = score_of(scores, reading.normal_space, reading.flip_normal);
+  if (!chosen || chosen->agreement >= kLeastAgreement) return;
   const std::string said =
-      fmt::format("normal: {:.0f} % agree with depth, in {} space", 100 * chosen->agreement, name_of(chosen->space));
+      fmt::format("normal: {:.0f} % agree with depth, in {} space", 100 * chosen->agreement, word_of(chosen->space));
   if (scores[0].agreement >= kLeastAgreement && scores[0].agreement > kClear * chosen->agreement)
     fail(ErrorKind::input, "{}; better fits {}", said, text_of(scores[0]));
   const std::string check = "check --normal-space, --normal-encoding and the camera";
@@ -79,7 +75,7 @@ Notes check_planes(const Reading& reading, const HostPlanes& planes, const Estim
   const auto depth = planes[RawPlane::depth];
   check_depth(reading, depth, view);
   Notes notes;
-  if (!planes[RawPlane::normal].empty()) check_normals(reading, planes, view, notes);
+  if (!planes[RawPlane::normal].empty()) check_normals(reading, planes, notes);
   if (settings.radius) {
     DepthSample sample;
     sample.add(view, depth_map_of(reading), depth_precision_of(reading), depth);

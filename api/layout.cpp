@@ -1,6 +1,6 @@
 // Walks over strides, and converts half floats.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "api/layout.h"
+#include "api/session.h"
 
 #include <algorithm>
 #include <array>
@@ -75,17 +75,13 @@ std::vector<float> planes_from(const void* data, const alcove_layout& layout) {
   std::vector<float> planes(width * std::size_t(layout.height) * std::size_t(layout.components));
   for_rows(static_cast<const std::byte*>(data), layout,
            [&](std::size_t place, const std::byte* from, std::ptrdiff_t stride) {
-             float* to = &planes[place];
-             if (layout.type == ALCOVE_FLOAT && stride == sizeof(float)) {
-               std::memcpy(to, from, width * sizeof(float));
-             } else if (layout.type == ALCOVE_FLOAT) {
-               for (std::size_t x = 0; x < width; x++, from += stride) std::memcpy(to + x, from, sizeof(float));
-             } else {
-               for (std::size_t x = 0; x < width; x++, from += stride) {
-                 std::uint16_t half = 0;
-                 std::memcpy(&half, from, sizeof half);
-                 to[x] = from_half(half);
-               }
+             for (float& value : std::span(planes).subspan(place, width)) {
+               std::uint16_t half = 0;
+               if (layout.type == ALCOVE_FLOAT)
+                 std::memcpy(&value, from, sizeof value);
+               else
+                 std::memcpy(&half, from, sizeof half), value = from_half(half);
+               from += stride;
              }
            });
   return planes;
@@ -94,16 +90,13 @@ std::vector<float> planes_from(const void* data, const alcove_layout& layout) {
 void planes_to(std::span<const float> planes, void* data, const alcove_layout& layout) {
   const auto width = std::size_t(layout.width);
   for_rows(static_cast<std::byte*>(data), layout, [&](std::size_t place, std::byte* to, std::ptrdiff_t stride) {
-    const float* from = &planes[place];
-    if (layout.type == ALCOVE_FLOAT && stride == sizeof(float)) {
-      std::memcpy(to, from, width * sizeof(float));
-    } else if (layout.type == ALCOVE_FLOAT) {
-      for (std::size_t x = 0; x < width; x++, to += stride) std::memcpy(to, from + x, sizeof(float));
-    } else {
-      for (std::size_t x = 0; x < width; x++, to += stride) {
-        const std::uint16_t half = to_half(from[x]);
+    for (const float value : planes.subspan(place, width)) {
+      const std::uint16_t half = layout.type == ALCOVE_FLOAT ? std::uint16_t(0) : to_half(value);
+      if (layout.type == ALCOVE_FLOAT)
+        std::memcpy(to, &value, sizeof value);
+      else
         std::memcpy(to, &half, sizeof half);
-      }
+      to += stride;
     }
   });
 }

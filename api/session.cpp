@@ -7,14 +7,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "api/checks.h"
-#include "api/layout.h"
 #include "core/base/error.h"
 #include "core/base/text.h"
-#include "core/chain/compute.h"
 #include "core/frame/radius.h"
-#include "core/options/check.h"
-#include "core/options/presets.h"
 
 namespace alcove {
 namespace {
@@ -24,11 +19,11 @@ const OptionRow& row_of(const std::vector<OptionRow>& table, const std::string& 
   const std::string key = option.starts_with("--") ? option.substr(2) : option;
   std::vector<std::string> keys;
   for (const auto& row : table)
-    if (is_for_library(row)) keys.push_back(row.key());
+    if (row.in_library) keys.push_back(row.key());
   const auto row = std::ranges::find(table, key, &OptionRow::key);
   if (row == table.end()) fail(ErrorKind::usage, "there is no option {}{}", key, suggestion(key, keys));
   if (key == "preset") fail(ErrorKind::usage, "preset is no option here: alcove_preset() takes presets");
-  if (!is_for_library(*row))
+  if (!row->in_library)
     fail(ErrorKind::usage, "{} is of files: the library takes planes, and alcove run takes files", key);
   return *row;
 }
@@ -43,59 +38,35 @@ T decided(T said, T by_camera, T otherwise) {
   return said != T::automatic ? said : by_camera != T::automatic ? by_camera : otherwise;
 }
 
-/// The components that a plane of that name may have.
-struct Components {
-  int least, most;
+/// A plane that a caller may give.
+struct PlaneFacts {
+  const char* name;
+  int least, most;  // components
+  RawPlane plane;
+  std::string InputSettings::*file;  // that the program has in its place; null: one of a list
 };
-constexpr std::pair<const char*, Components> kPlanes[] = {
-    {"depth", {1, 1}}, {"position", {3, 3}},  {"normal", {2, 3}}, {"behind", {1, 1}}, {"material-ao", {1, 1}},
-    {"matte", {1, 1}}, {"occluders", {1, 1}}, {"ignore", {1, 1}}, {"albedo", {3, 3}},
+constexpr PlaneFacts kPlanes[] = {
+    {"depth", 1, 1, RawPlane::depth, &InputSettings::depth},
+    {"position", 3, 3, RawPlane::depth, &InputSettings::position},
+    {"normal", 2, 3, RawPlane::normal, &InputSettings::normal},
+    {"behind", 1, 1, RawPlane::behind, nullptr},
+    {"material-ao", 1, 1, RawPlane::material_ao, &InputSettings::material_ao},
+    {"matte", 1, 1, RawPlane::matte, &InputSettings::matte},
+    {"occluders", 1, 1, RawPlane::occluders, &InputSettings::occluders},
+    {"ignore", 1, 1, RawPlane::occluders, &InputSettings::ignore},
+    {"albedo", 3, 3, RawPlane::albedo, &InputSettings::albedo},
 };
 
-Components components_of(const std::string& name) {
+const PlaneFacts& facts_of_plane(const std::string& name) {
   std::vector<std::string> names;
-  for (const auto& [known, components] : kPlanes) {
-    if (name == known) return components;
-    names.emplace_back(known);
+  for (const auto& facts : kPlanes) {
+    if (name == facts.name) return facts;
+    names.emplace_back(facts.name);
   }
   fail(ErrorKind::usage, "there is no plane {}{}; there is {}", name, suggestion(name, names), list_of(names));
 }
 
 }  // namespace
-
-bool is_for_library(const OptionRow& row) {
-  static const Words kOthers{"aov",
-                             "aov-space",
-                             "ao-channels",
-                             "multi-bounce",
-                             "hidden",
-                             "separation",
-                             "behind-kind",
-                             "device",
-                             "require-gpu",
-                             "validate",
-                             "no-pipeline-cache",
-                             "albedo",
-                             "matte-outside",
-                             "depth-kind",
-                             "near",
-                             "far",
-                             "reversed-z",
-                             "device-range",
-                             "log-constant",
-                             "depth-scale",
-                             "sky",
-                             "normal-space",
-                             "normal-encoding",
-                             "flip-normal",
-                             "position-space",
-                             "fov",
-                             "focal",
-                             "aperture",
-                             "ortho-width"};
-  if (row.group == "Estimator") return row.key() != "preset" && row.key() != "set" && row.key() != "accumulate";
-  return std::ranges::find(kOthers, row.key()) != kOthers.end();
-}
 
 void Session::set(const std::string& option, const char* value) {
   RunOptions trial;
@@ -112,35 +83,32 @@ void Session::set(const std::string& option, const char* value) {
 void Session::preset(const char* name) {
   if (!name) return presets_.clear();
   std::vector<std::string> names;
-  for (const auto& [known, text] : preset_texts()) names.push_back(known);
-  const auto known = std::ranges::find(names, lower_case(name), lower_case);
-  if (known == names.end())
-    fail(ErrorKind::usage, "there is no preset {}{}; there is {}", name, suggestion(name, names), list_of(names));
-  presets_.push_back(*known);
-}
-
-Session::Planes& Session::planes_named(const std::string& name) {
-  if (name == "position") return position_;
-  if (name == "ignore") return ignored_;
-  if (name == "material-ao") return planes_[RawPlane::material_ao];
-  for (const auto& row : kRawPlanes)
-    if (std::string(row.name) == "raw " + name) return planes_[row.plane];
-  fail(ErrorKind::usage, "there is no plane {}", name);
+  for (const auto& [known, text] : preset_texts()) {
+    if (lower_case(known) == lower_case(name)) return presets_.push_back({known, text});
+    names.push_back(known);
+  }
+  fail(ErrorKind::usage, "there is no preset {}{}; there is {}", name, suggestion(name, names), list_of(names));
 }
 
 void Session::plane(const std::string& name, const void* data, const alcove_layout* layout) {
-  const auto [least, most] = components_of(name);
-  Planes& planes = planes_named(name);
+  const PlaneFacts& facts = facts_of_plane(name);
+  Planes& planes = planes_[name];
   if (!data) return planes.clear();
   if (!layout) fail(ErrorKind::usage, "{}: a plane without a layout", name);
   check_layout(name, *layout);
-  if (layout->components < least || layout->components > most)
+  if (layout->components < facts.least || layout->components > facts.most)
     fail(ErrorKind::usage, "{}: {} components, where {} belong", name, layout->components,
-         least == most ? fmt::format("{}", least) : fmt::format("{} or {}", least, most));
+         facts.least == facts.most ? fmt::format("{}", facts.least) : fmt::format("{} or {}", facts.least, facts.most));
   if (planes.size() == kMostBehind) fail(ErrorKind::usage, "behind: more than {} planes", kMostBehind);
   Given given{layout->width, layout->height, layout->type == ALCOVE_HALF, planes_from(data, *layout)};
   if (name != "behind") planes.clear();
   planes.push_back(std::move(given));
+}
+
+const Session::Planes& Session::given(const std::string& name) const {
+  static const Planes kNone;
+  const auto planes = planes_.find(name);
+  return planes == planes_.end() ? kNone : planes->second;
 }
 
 void Session::camera(const std::array<double, 4>& projection, const double* world_to_camera) {
@@ -160,9 +128,9 @@ void Session::camera_json(const char* text) {
 }
 
 const Session::Given& Session::depth() const {
-  const Planes& planes = has_position() ? position_ : planes_[RawPlane::depth];
+  const Planes& planes = given(has_position() ? "position" : "depth");
   if (planes.empty()) fail(ErrorKind::usage, "there is no plane depth, and no position");
-  if (has_position() && !planes_[RawPlane::depth].empty())
+  if (has_position() && !given("depth").empty())
     fail(ErrorKind::usage, "there are depth and position: both say how far away surfaces are");
   return planes.front();
 }
@@ -173,23 +141,12 @@ Settings Session::settings() const {
   RunOptions options;
   InputSettings& input = options.settings.input;
   options.settings.output.output = "memory";
-  (has_position() ? input.position : input.depth) = "plane";
-  const auto name = [](const Planes& planes, std::string& path) { path = planes.empty() ? "" : "plane"; };
-  name(planes_[RawPlane::normal], input.normal);
-  name(planes_[RawPlane::material_ao], input.material_ao);
-  name(planes_[RawPlane::matte], input.matte);
-  name(planes_[RawPlane::occluders], input.occluders);
-  name(ignored_, input.ignore);
-  name(planes_[RawPlane::albedo], input.albedo);
-  for (std::size_t i = 0; i < planes_[RawPlane::behind].size(); i++) input.behind[i] = "plane";
+  for (const auto& facts : kPlanes)
+    if (facts.file && !given(facts.name).empty()) input.*facts.file = "plane";
+  for (std::size_t i = 0; i < given("behind").size(); i++) input.behind[i] = "plane";
   const auto table = option_table(options);
   std::vector<Said> all;
-  for (const auto& preset : presets_)
-    std::ranges::copy(
-        said_by_text(preset,
-                     std::ranges::find(preset_texts(), preset, &std::pair<std::string, std::string>::first)->second,
-                     table),
-        std::back_inserter(all));
+  for (const auto& [name, text] : presets_) std::ranges::copy(said_by_text(name, text, table), std::back_inserter(all));
   std::ranges::copy(said_, std::back_inserter(all));
   read_said(options, all);
   check_settings(options.settings);
@@ -219,7 +176,7 @@ Camera Session::camera_by(const Settings& settings, const Window& window, int fr
 }
 
 void Session::read_normals(Reading& reading, const Settings& settings) const {
-  const Planes& normal = planes_[RawPlane::normal];
+  const Planes& normal = given("normal");
   if (normal.empty()) return;
   reading.normal_space = decided(settings.input.normal_space, reading.camera.normal_space,
                                  reading.camera.view_from_world ? NormalSpace::automatic : NormalSpace::view);
@@ -257,18 +214,16 @@ Reading Session::reading_by(const Settings& settings, int frame) const {
   reading.depth_scale = input.depth_scale;
   reading.sky = input.sky;
   reading.depth_is_half = first.is_half;
-  const bool is_of_range = reading.depth_kind == DepthKind::device || reading.depth_kind == DepthKind::normalized ||
-                           reading.depth_kind == DepthKind::log;
-  if (is_of_range) reading.depth_step = step_of(first.values);
+  if (is_between_planes(reading.depth_kind)) reading.depth_step = step_of(first.values);
   read_normals(reading, settings);
   const auto& kinds = input.behind_kinds;
-  for (const auto& plane : planes_[RawPlane::behind]) {
+  for (const auto& plane : given("behind")) {
     const std::size_t number = reading.behind.size();
     const BehindKind kind = kinds.empty() ? BehindKind::surfaces : kinds[kinds.size() > 1 ? number : 0];
     reading.behind.push_back({.kind = kind, .is_half = plane.is_half});
   }
   reading.matte.outside = input.matte_outside;
-  reading.occluders.ignores = !ignored_.empty();
+  reading.occluders.ignores = !given("ignore").empty();
   return reading;
 }
 
@@ -304,7 +259,7 @@ void Session::run(int frame) {
   }
   if (all.output.aov_space == NormalSpace::world && !reading.camera.view_from_world)
     fail(ErrorKind::usage, "--set aov-space=world needs a camera with world_to_camera");
-  if (all.output.multi_bounce && planes_[RawPlane::albedo].empty() && !all.input.albedo_value)
+  if (all.output.multi_bounce && given("albedo").empty() && !all.input.albedo_value)
     fail(ErrorKind::usage, "--set multi-bounce needs the plane albedo, or a number for --set albedo");
   open_device(all.device);
   try {
@@ -321,18 +276,15 @@ void Session::run(int frame) {
 void Session::compute(const Settings& settings, Reading reading, int frame) {
   HostPlanes planes;
   std::vector<float> behind;  // all of them, one behind the other
-  for (const auto& row : kRawPlanes) {
-    const Planes& given = row.plane == RawPlane::occluders && !ignored_.empty() ? ignored_
-                          : row.plane == RawPlane::depth && has_position()      ? position_
-                                                                                : planes_[row.plane];
-    for (const auto& plane : given) {
+  for (const auto& facts : kPlanes)
+    for (const auto& plane : given(facts.name)) {
       if (plane.width != reading.data.width || plane.height != reading.data.height)
-        fail(ErrorKind::input, "{} has {} x {} pixels, and the depth {} x {}", std::string(row.name).substr(4),
-             plane.width, plane.height, reading.data.width, reading.data.height);
-      planes[row.plane] = plane.values;
-      if (row.plane == RawPlane::behind) behind.insert(behind.end(), plane.values.begin(), plane.values.end());
+        fail(ErrorKind::input, "{} has {} x {} pixels, and the depth {} x {}",
+             std::string(kRawPlanes[std::size_t(facts.plane)].name).substr(4), plane.width, plane.height,
+             reading.data.width, reading.data.height);
+      planes[facts.plane] = plane.values;
+      if (facts.plane == RawPlane::behind) behind.insert(behind.end(), plane.values.begin(), plane.values.end());
     }
-  }
   planes[RawPlane::behind] = behind;
   const Notes notes = check_planes(reading, planes, settings.estimator);
   FrameInputs inputs = upload(*gpu_, reading, planes, frame);

@@ -3,20 +3,43 @@
 #pragma once
 
 #include <array>
+#include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "api/alcove/alcove.h"
+#include "core/base/note.h"
+#include "core/base/settings.h"
 #include "core/chain/aov.h"
 #include "core/chain/chain.h"
+#include "core/chain/compute.h"
 #include "core/frame/raw_plane.h"
 #include "core/frame/reading.h"
 #include "core/gpu/recorder.h"
-#include "core/options/said.h"
+#include "core/options/options.h"
 
 namespace alcove {
+
+// Planes of the caller's, however they lie, and ours, one component behind the other.
+
+/// Fails with ErrorKind::usage, calling the plane by its name, on a layout that is none: no pixels or too many, no
+/// components, an unknown type, or strides by which values share bytes.
+void check_layout(const std::string& name, const alcove_layout& layout);
+
+/// Copies the caller's values. The layout was checked.
+std::vector<float> planes_from(const void* data, const alcove_layout& layout);
+
+/// Copies as many planes as the layout has components into the caller's memory; half floats are rounded to the nearest,
+/// to even.
+void planes_to(std::span<const float> planes, void* data, const alcove_layout& layout);
+
+/// Looks at a part of the pixels. Fails with ErrorKind::input where every depth is negative, where positions do not lie
+/// on the rays of their pixels, and where the normals, as they are read, are not those of the depth; gives sentences
+/// where they may not be, and where the radii do not suit the frame. Some pixels decide nothing.
+Notes check_planes(const Reading& reading, const HostPlanes& planes, const EstimatorSettings& settings);
 
 /// Everything as api/alcove/alcove.h says; what is wrong is an Error.
 class Session {
@@ -41,9 +64,9 @@ class Session {
     std::vector<float> values;
   };
   using Planes = std::vector<Given>;  // none, or one; of behind up to eight
-  Planes& planes_named(const std::string& name);
+  const Planes& given(const std::string& name) const;
   const Given& depth() const;
-  bool has_position() const { return !position_.empty(); }
+  bool has_position() const { return !given("position").empty(); }
 
   Settings settings() const;
   Reading reading_by(const Settings& settings, int frame) const;
@@ -54,13 +77,12 @@ class Session {
   void compute(const Settings& settings, Reading reading, int frame);
   void note_results(const FrameOutputs& outputs, const Settings& settings, int width, int height);
 
-  std::vector<Said> said_;            // of the command line's kind, each option once
-  std::vector<std::string> presets_;  // names
+  std::vector<Said> said_;                                    // of the command line's kind, each option once
+  std::vector<std::pair<std::string, std::string>> presets_;  // names and texts
   std::optional<std::string> camera_json_;
   // fx, fy, cx, cy, and behind them world_to_camera where it was given; none where there is no camera of numbers
   std::vector<double> pinhole_;
-  RawPlaneArray<Planes> planes_;
-  Planes position_, ignored_;
+  std::map<std::string, Planes> planes_;  // by the caller's name
 
   std::string device_choice_;  // by what the device was opened
   std::unique_ptr<gpu::Device> device_;
@@ -80,8 +102,5 @@ class Session {
   std::string notes_;  // sentences, one a line
   std::optional<double> radius_;
 };
-
-/// Whether the library takes an option: not those that name files, frames or reports, or say how files are written.
-bool is_for_library(const OptionRow& row);
 
 }  // namespace alcove

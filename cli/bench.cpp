@@ -8,11 +8,10 @@
 #include "cli/commands.h"
 #include "cli/options.h"
 #include "cli/parsing.h"
-#include "cli/print.h"
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/gpu/device.h"
-#include "core/options/check.h"
+#include "core/options/options.h"
 
 namespace alcove {
 namespace {

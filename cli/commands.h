@@ -1,13 +1,33 @@
-// The subcommands: what each is for, what it takes, and what it does.
+// The subcommands: what each is for, what it takes, and what it does; and messages to the standard error.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <fmt/format.h>
+#include <cstdio>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "cli/parsing.h"
+#include "core/gpu/device_info.h"
 
 namespace alcove {
+
+/// Ignores what becomes of the message, since a log on a full disk should end no run.
+template <class... Args>
+void print_error(fmt::format_string<Args...> format, Args&&... args) {
+  (void)std::fputs(fmt::format(format, std::forward<Args>(args)...).c_str(), stderr);
+}
+
+/// The name with the version; how it was built; with which libraries: a line each.
+std::string version_text();
+
+/// One line without its end.
+std::string text_of(const gpu::DeviceInfo& device);
+
+/// The fields of docs/json.md.
+nlohmann::ordered_json json_of(const gpu::DeviceInfo& device);
 
 struct Subcommand {
   std::string name, sentence;

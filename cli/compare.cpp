@@ -11,7 +11,6 @@
 
 #include "cli/commands.h"
 #include "cli/parsing.h"
-#include "cli/print.h"
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/base/text.h"

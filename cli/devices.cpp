@@ -5,7 +5,6 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/commands.h"
-#include "cli/device_text.h"
 #include "cli/parsing.h"
 #include "core/base/error.h"
 #include "core/base/json_text.h"

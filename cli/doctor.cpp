@@ -9,9 +9,7 @@
 
 #include "cli/build_facts.h"
 #include "cli/commands.h"
-#include "cli/device_text.h"
 #include "cli/options.h"
-#include "cli/version_text.h"
 #include "core/base/error.h"
 #include "core/base/json_text.h"
 #include "core/base/memory_limit.h"

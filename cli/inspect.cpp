@@ -10,11 +10,8 @@
 #include "cli/options.h"
 #include "core/base/error.h"
 #include "core/base/file.h"
-#include "core/frame/input_files.h"
-#include "core/inspect/camera_file.h"
-#include "core/inspect/contact_sheet.h"
+#include "core/frame/raw_plane.h"
 #include "core/inspect/inspect.h"
-#include "core/inspect/inspect_sequence.h"
 #include "core/run/first_look.h"
 #include "core/run/plan.h"
 

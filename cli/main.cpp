@@ -10,9 +10,7 @@
 
 #include "cli/commands.h"
 #include "cli/generate.h"
-#include "cli/input_words.h"
-#include "cli/print.h"
-#include "cli/version_text.h"
+#include "cli/parsing.h"
 #include "core/base/error.h"
 #include "core/base/text.h"
 #include "core/base/version.h"

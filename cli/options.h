@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "core/options/options.h"
-#include "core/options/said.h"
 
 namespace alcove {
 

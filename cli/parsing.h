@@ -49,4 +49,7 @@ bool has_common_rows(const Command& command);
 /// Behind a message: where the options of the command stand.
 std::string see_help(const std::string& command);
 
+/// Whether a word names an input: a file that is there, a name that ends as pictures do, or a pattern of such names.
+bool names_input(const std::string& word);
+
 }  // namespace alcove

@@ -10,7 +10,7 @@
 #include <set>
 #include <utility>
 
-#include "cli/print.h"
+#include "cli/commands.h"
 #include "core/base/error.h"
 #include "core/base/system.h"
 #include "core/base/text.h"

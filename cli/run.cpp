@@ -4,14 +4,12 @@
 
 #include "cli/commands.h"
 #include "cli/options.h"
-#include "cli/print.h"
 #include "cli/progress.h"
 #include "core/base/system.h"
 #include "core/base/text.h"
 #include "core/formats/sequence.h"
-#include "core/frame/input_files.h"
+#include "core/frame/raw_plane.h"
 #include "core/run/batch.h"
-#include "core/run/dry_run.h"
 #include "core/run/first_look.h"
 
 namespace alcove {

@@ -27,5 +27,5 @@ file(WRITE "${OUTPUT}.html" "${page}")
 file(READ "${OUTPUT}.html" hex HEX)
 string(REGEX REPLACE "(..)" "'\\\\x\\1'," bytes "${hex}")
 file(WRITE "${OUTPUT}"
-  "// Generated from report/ by cmake/embed_report.cmake.\n#include \"core/measure/report_template.h\"\n\nnamespace alcove {\nnamespace {\nconstexpr char k_page[] = {${bytes}};\n}  // namespace\n\n"
+  "// Generated from report/ by cmake/embed_report.cmake.\n#include \"core/measure/report.h\"\n\nnamespace alcove {\nnamespace {\nconstexpr char k_page[] = {${bytes}};\n}  // namespace\n\n"
   "std::string_view report_template() { return {k_page, sizeof k_page}; }\n\n}  // namespace alcove\n")

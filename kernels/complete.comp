@@ -14,7 +14,7 @@
 // - No stroke is longer than so many radii that a part of the frame need be read around no farther than what its
 //   receivers see; nearly all that matters is shorter.
 // - The image's border hides all that is beyond it, so there a surface goes on as far as that. Where the image is a
-//   part of the frame, no result lies within the radius of a border that is not the frame's: see core/run/region.h.
+//   part of the frame, no result lies within the radius of a border that is not the frame's: see core/run/tiles.h.
 // - Where hidden surfaces are known, those of each slot go on beyond the border. Behind what is nearer goes on
 //   the first surface of a pixel, if it is not known to go on there: where the frame tells all surfaces of a pixel up
 //   to so many, behind the last of others that have as many; else behind the first of others.
@@ -55,7 +55,7 @@ const float kLeastFacingToGoOn = -0.02;
 const int kStepsAtBorder = 3;
 const int kLeastStepsAtBorder = 2;
 
-/// Of a stroke, in radii: as core/run/region.cpp reads around a part. With 2 colonnade, whose walls go on far behind
+/// Of a stroke, in radii: as core/run/tiles.cpp reads around a part. With 2 colonnade, whose walls go on far behind
 /// its columns, has an RMSE of .0639 instead of .0627, with 4 .0617.
 const float kLongest = 3.0;
 

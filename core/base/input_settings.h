@@ -33,7 +33,7 @@ struct InputSettings {
   std::string depth_channel;                    // a channel's full name; empty: found by its usual names
   // three names with commas, or a layer; empty: found. Normals may have two
   std::string normal_channels, beauty_channels, position_channels;
-  // the light that AO may dim, see core/frame/ambient.h; empty: found
+  // the light that AO may dim, see core/frame/gbuffer.cpp; empty: found
   std::string ambient;
   // the materials' own AO: a file, empty: the input, where a channel is named; its full name, empty: found
   std::string material_ao, material_ao_channel;

@@ -10,8 +10,10 @@
 #include "core/base/settings.h"
 #include "core/bench/suite.h"
 #include "core/gpu/pass_time.h"
+#include "core/reference/reference.h"
 
 namespace alcove {
+
 namespace gpu {
 class Device;
 }
@@ -79,5 +81,13 @@ std::string bench_page(const BenchReport& report);
 /// What is above its limit, a sentence each. A limit for a row that was not measured is an Error of kind usage, one for
 /// the grain of a frame where no pixel is plain of kind input.
 std::vector<std::string> broken_limits(const BenchReport& report, const std::vector<Limit>& limits);
+
+/// Everything that a reference of a frame depends on besides the frame; a kept reference has it as the attribute
+/// `alcove/reference`.
+std::string text_of(const ReferenceSettings& settings);
+
+/// The reference that the file holds, if it was made with these settings; empty if it was made with others. Fails with
+/// ErrorKind::input, naming the file, where it holds no reference, or one of another data window.
+std::vector<float> read_kept_reference(const std::string& path, const ReferenceSettings& settings, const Window& data);
 
 }  // namespace alcove

@@ -5,13 +5,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <numbers>
 
 #include "core/base/estimator_facts.h"
 #include "core/chain/compute.h"
-#include "core/frame/scale_notes.h"
+#include "core/frame/radius.h"
 #include "core/reference/reference.h"
 #include "core/reference/reference_estimators.h"
 #include "core/reference/reference_scene.h"

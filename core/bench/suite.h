@@ -12,7 +12,7 @@ struct SuiteFrame {
   std::string input, camera;       // files, below the data folder
   double radius = 0;               // scene units, of the truth, > 0
   std::vector<std::string> truth;  // one ray-traced AO image, or two with independent noise
-  std::string reference = {};      // a kept CPU reference, see kept_reference.h; empty: it is computed
+  std::string reference = {};      // a kept CPU reference, see bench.h; empty: it is computed
 };
 
 struct SuiteCandidate {
@@ -32,7 +32,7 @@ struct Suite {
 ///
 ///   title = "..."                     repeats = 5                  reference-slices = 16
 ///   [[frame]]      name = "monkeys"   input = "m.exr"   camera = "m.json"   radius = 0.5   truth = ["a.exr", "b.exr"]
-///                  reference = "r.exr"                                         # optional: see kept_reference.h
+///                  reference = "r.exr"                                         # optional: see bench.h
 ///   [[candidate]]  name = "draft"     preset = "draft"  power = 1.2             # any long option of alcove run
 ///   [[sweep]]      slices = [1, 2, 4] steps = [4, 8]    preset = "draft"        # a candidate for every combination
 ///

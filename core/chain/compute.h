@@ -8,7 +8,7 @@
 
 #include "core/base/settings.h"
 #include "core/chain/frame_inputs.h"
-#include "core/frame/host_frame.h"
+#include "core/frame/reading.h"
 
 namespace alcove {
 

@@ -1,4 +1,4 @@
-// The table of debug views, and the names of their pictures; core/run/pictures.cpp draws them.
+// The table of debug views, and the names of their pictures; core/run/frame_files.cpp draws them.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/chain/debug_view.h"
 

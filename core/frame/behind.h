@@ -1,5 +1,5 @@
-// The planes of depth behind the first surface that --behind names: where they lie, how they are read, and whether
-// their pixels can be what they are said to be.
+// What lies behind the first surface: the planes that --behind names, the samples of deep files, and whether their
+// pixels can be what they are said to be.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -11,6 +11,42 @@
 #include "core/frame/gbuffer.h"
 
 namespace alcove {
+
+// Deep samples: the frame's depth, or surfaces behind it.
+
+/// The deep parts that --layer and --view choose, whose samples count together: of a part's name, or else all of the
+/// view; empty where the file has none.
+std::vector<int> deep_parts_of(const ExrFile& file, const std::string& layer, const std::string& view);
+
+/// The frame's depth where deep samples are it: the file at `depth_file` holds nothing else, or there is --deep and
+/// that file has no flat depth. Else nothing.
+std::vector<ChannelRef> find_deep_depth(FrameSource& source, ChannelSearch& search, std::size_t depth_file,
+                                        const InputSettings& settings);
+
+/// Adds the planes behind the first surface that samples give, once the depth is found. Fails with ErrorKind::input
+/// where the file of --deep is flat, or has another window than the depth.
+void find_deep(FrameSource& source, ChannelSearch& search, const InputSettings& settings);
+
+/// Which samples of these parts are surfaces, for a frame whose camera is known.
+DeepRules deep_rules(const FrameSource& source, const ExrFile& file, const std::vector<int>& parts,
+                     const InputSettings& settings);
+
+/// Opens the samples, once the camera is found, for it says how far apart two surfaces are in a pixel. Fails as
+/// ExrFile::take_deep() does.
+void take_deep(FrameSource& source, const InputSettings& settings);
+
+/// Settles whether samples beside a flat depth are planar or along the ray, and their scale: their first surfaces are
+/// those of the depth, which is as read, over source.data. Fails with ErrorKind::input where they are not. Tells too
+/// whether they list what is hidden.
+void settle_deep(FrameSource& source, std::span<const float> depth);
+
+/// Reads the planes of samples as the frame's meaning says.
+void read_deep_like_meaning(FrameSource& source);
+
+/// What was repaired in the samples that were read.
+Notes deep_notes(const FrameSource& source);
+
+// Planes of --behind.
 
 /// Finds the channels of --behind, once the depth of the frame and the rules of its program are found. A file may be
 /// one that the frame has already. Fails with ErrorKind::input, naming both files and the option that mends it, where a

@@ -1,4 +1,4 @@
-// Camera JSON, cameras from numbers, and the kernels' view of either.
+// Camera JSON, .chan files, cameras from numbers, and the kernels' view of each.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/frame/camera.h"
 
@@ -6,13 +6,99 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <sstream>
+#include <vector>
 
-#include "core/base/error.h"
 #include "core/base/file.h"
+#include "core/base/option_words.h"
 #include "core/base/text.h"
-#include "core/frame/chan_file.h"
 
 namespace alcove {
+
+// .chan files: lines of numbers.
+
+namespace {
+
+constexpr std::size_t kWithoutView = 7, kWithView = 8;  // numbers of a line
+
+double radians(double degrees) { return degrees * std::numbers::pi / 180; }
+
+/// The numbers of a line; what is no number is told by its text.
+std::vector<double> numbers_in(const std::string& path, const std::string& line, int number) {
+  std::vector<double> numbers;
+  std::istringstream words(line);
+  for (std::string word; words >> word;) {
+    const auto value = number_of(word);
+    if (!value || !std::isfinite(*value))
+      fail(ErrorKind::input, "{}: line {} has \"{}\" where a number belongs (--camera)", path, number, word);
+    numbers.push_back(*value);
+  }
+  return numbers;
+}
+
+/// The line of a frame. Of several with one number it is the first.
+std::vector<double> line_of(const std::string& path, int frame) {
+  std::istringstream lines(read_text(path, "camera", "--camera"));
+  std::vector<double> found;
+  int number = 0;
+  for (std::string line; std::getline(lines, line);) {
+    number++;
+    const auto numbers = numbers_in(path, line.substr(0, line.find('#')), number);
+    if (numbers.empty()) continue;
+    if (numbers.size() < kWithoutView || numbers.size() > kWithView)
+      fail(ErrorKind::input,
+           "{}: line {} has {} numbers, and a camera's has 8: frame, x, y, z, three angles and the vertical field of "
+           "view (--camera)",
+           path, number, numbers.size());
+    if (found.empty() && numbers[0] == frame) found = numbers;
+  }
+  if (found.empty()) fail(ErrorKind::input, "{}: it has no frame {} (--camera)", path, frame);
+  return found;
+}
+
+/// The turn by an angle about an axis, 0 to 2.
+Matrix3 turn_about(std::size_t axis, double angle) {
+  const std::size_t next = (axis + 1) % 3, last = (axis + 2) % 3;
+  Matrix3 m{};
+  m[axis][axis] = 1;
+  m[next][next] = m[last][last] = std::cos(angle);
+  m[last][next] = std::sin(angle);
+  m[next][last] = -m[last][next];
+  return m;
+}
+
+}  // namespace
+
+Matrix3 view_by_angles(const Vector3& angles, const std::string& rotation) {
+  Matrix3 turned{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+  for (const char axis : rotation) {
+    const auto place = std::size_t(axis - 'x');
+    turned = product(turn_about(place, angles[place]), turned);
+  }
+  return transposed(turned);
+}
+
+bool is_chan_file(const std::string& path) { return lower_case(path).ends_with(".chan"); }
+
+Camera read_chan(const std::string& path, int frame, const std::string& rotation, const Window& display,
+                 double pixel_aspect) {
+  const auto numbers = line_of(path, frame);
+  if (numbers.size() < kWithView)
+    fail(ErrorKind::input,
+         "{}: frame {} has no field of view: write the file from a camera, or give a --camera file of another kind",
+         path, frame);
+  const double fov = numbers[kWithoutView];
+  if (!(fov > 0 && fov < 180))
+    fail(ErrorKind::input, "{}: the vertical field of view of frame {} is {} degrees (--camera)", path, frame, fov);
+  Camera camera = centred(display, 0.5 * display.height / std::tan(0.5 * radians(fov)) / pixel_aspect, pixel_aspect);
+  camera.chan_angles = {radians(numbers[4]), radians(numbers[5]), radians(numbers[6])};
+  camera.view_from_world = view_by_angles(*camera.chan_angles, rotation);
+  camera.view_from_world_offset = scaled(times(*camera.view_from_world, {numbers[1], numbers[2], numbers[3]}), -1);
+  return camera;
+}
+
+// Camera files in JSON, and options.
+
 namespace {
 
 using Json = nlohmann::json;
@@ -105,8 +191,6 @@ Json object_of(const std::string& text, const std::string& path) {
 
 Json object_in(const std::string& path) { return object_of(read_text(path, "camera", "--camera"), path); }
 
-bool starts_with(const std::string& text, const char* start) { return text.rfind(start, 0) == 0; }
-
 /// Gives the entry of `frames` with that number, or an empty object where the file has no `frames`.
 Json frame_entry(const CameraFile& file, int frame) {
   if (!file.top.contains("frames")) return Json::object();
@@ -136,8 +220,8 @@ Json view_entry(const CameraFile& file, const Json& within, const std::string& v
 /// Whether the file says that its camera space is left-handed, looking along +z.
 bool left_handed(const CameraFile& file) {
   const std::string text = file.text("camera_space");
-  if (text.empty() || starts_with(text, "right-handed")) return false;
-  if (starts_with(text, "left-handed")) return true;
+  if (text.empty() || text.starts_with("right-handed")) return false;
+  if (text.starts_with("left-handed")) return true;
   file.refuse(
       "camera_space",
       fmt::format("must begin with right-handed (looks along -z) or left-handed (looks along +z), not \"{}\"", text));
@@ -189,7 +273,7 @@ void read_view_from_world(const CameraFile& file, Camera& camera) {
 std::optional<double> clip_plane(const CameraFile& file, const char* field) {
   const Json* value = file.find(field);
   if (!value || value->is_null()) return std::nullopt;
-  if (value->is_string() && starts_with(file.text(field), "inf")) return std::numeric_limits<double>::infinity();
+  if (value->is_string() && file.text(field).starts_with("inf")) return std::numeric_limits<double>::infinity();
   return file.positive(field);
 }
 
@@ -222,16 +306,19 @@ bool truth(const CameraFile& file, const char* field) {
   return value && value->get<bool>();
 }
 
+/// The meaning of a text that begins with a word of an option; automatic where it begins with none.
+template <class T>
+T meaning_of(const std::string& text) {
+  for (const auto& [word, meaning] : names_of<T>())
+    if (meaning != T::automatic && text.starts_with(word)) return meaning;
+  return T::automatic;
+}
+
 DepthKind depth_kind(const CameraFile& file) {
   const char* field = file.find("depth_kind") ? "depth_kind" : "depth";
   const std::string text = file.text(field);
-  if (text.empty()) return DepthKind::automatic;
-  if (starts_with(text, "planar")) return DepthKind::planar;
-  if (starts_with(text, "ray")) return DepthKind::ray;
-  if (starts_with(text, "inverse")) return DepthKind::inverse;
-  if (starts_with(text, "device")) return DepthKind::device;
-  if (starts_with(text, "normalized")) return DepthKind::normalized;
-  if (starts_with(text, "log")) return DepthKind::log;
+  const DepthKind kind = meaning_of<DepthKind>(text);
+  if (text.empty() || (kind != DepthKind::automatic && kind != DepthKind::position)) return kind;
   file.refuse(field, fmt::format("must begin with planar, ray, inverse, device, normalized or log, not \"{}\"", text));
 }
 
@@ -245,11 +332,8 @@ NormalSpace normal_space(const CameraFile& file) {
 
 NormalEncoding normal_encoding(const CameraFile& file) {
   const std::string text = file.text("normal_encoding");
-  if (text.empty()) return NormalEncoding::automatic;
-  if (starts_with(text, "signed")) return NormalEncoding::signed_float;
-  if (starts_with(text, "unorm")) return NormalEncoding::unorm;
-  if (starts_with(text, "octahedral")) return NormalEncoding::octahedral;
-  if (starts_with(text, "spheremap")) return NormalEncoding::spheremap;
+  const NormalEncoding encoding = meaning_of<NormalEncoding>(text);
+  if (text.empty() || encoding != NormalEncoding::automatic) return encoding;
   file.refuse("normal_encoding",
               fmt::format("must begin with signed, unorm, octahedral or spheremap, not \"{}\"", text));
 }
@@ -320,7 +404,7 @@ Camera camera_of(const std::string& text, const std::string& name, const Window&
 bool lists_frames(const std::string& path) { return is_chan_file(path) || object_in(path).contains("frames"); }
 
 void require_listed(const std::string& path, int frame) {
-  if (is_chan_file(path)) return require_in_chan(path, frame);
+  if (is_chan_file(path)) return void(line_of(path, frame));
   frame_entry({path, object_in(path), Json::object(), Json::object(), Json::object()}, frame);
 }
 
@@ -398,6 +482,24 @@ View view_of(const Camera& camera, const Window& data, const Window& display) {
   view.tangent_per_pixel = {float(1 / camera.fx), float(-1 / camera.fy)};
   view.orthographic = camera.orthographic ? 1 : 0;
   return view;
+}
+
+SeenAt seen_from(const View& other, const ViewMap& map, const View& view, double x, double y, double depth) {
+  const double scale = view.orthographic ? 1 : depth;
+  const std::array<double, 3> here{(x - double(view.center.x)) * double(view.tangent_per_pixel.x) * scale,
+                                   (y - double(view.center.y)) * double(view.tangent_per_pixel.y) * scale, -depth};
+  std::array<double, 3> there{};
+  for (std::size_t i = 0; i < 3; i++)
+    there[i] = map[i][0] * here[0] + map[i][1] * here[1] + map[i][2] * here[2] + map[i][3];
+  const double distance = other.orthographic ? 1 : -there[2];
+  return {double(other.center.x) + there[0] / distance / double(other.tangent_per_pixel.x),
+          double(other.center.y) + there[1] / distance / double(other.tangent_per_pixel.y), -there[2]};
+}
+
+double ray_length(const View& view, int x, int y) {
+  const double u = (x + 0.5 - view.center.x) * view.tangent_per_pixel.x;
+  const double v = (y + 0.5 - view.center.y) * view.tangent_per_pixel.y;
+  return view.orthographic ? 1 : std::sqrt(1 + u * u + v * v);
 }
 
 }  // namespace alcove

@@ -1,4 +1,4 @@
-// One projection model: pixel <-> view ray, from a camera JSON file or from numbers.
+// One projection model: pixel <-> view ray, from a camera JSON file, a .chan file, or numbers.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -88,5 +88,32 @@ ViewMap view_from_view(const Camera& to, const Camera& from);
 
 /// Gives the projection as kernels take it, for pixels counted from the data window's upper left corner.
 View view_of(const Camera& camera, const Window& data, const Window& display);
+
+/// Where a point at a place of one view, px, and at a planar depth is in another one: px, and its planar depth there.
+struct SeenAt {
+  double x, y, depth;
+};
+SeenAt seen_from(const View& other, const ViewMap& other_from_view, const View& view, double x, double y, double depth);
+
+/// The length of a pixel's ray at unit depth; 1 where it is orthographic.
+double ray_length(const View& view, int x, int y);
+
+// .chan files, which Nuke, Maya, Houdini and Blender write.
+
+/// Whether a file is one by its name.
+bool is_chan_file(const std::string& path);
+
+/// Reads a .chan file: a line for each frame, of its number, the place x y z, the angles x y z in degrees and the
+/// vertical field of view in degrees. `rotation`: the axes in the order in which
+/// the angles turn the camera, such as zxy (Nuke's). The camera looks along -z, with y up; its projection is centred on
+/// the display window. Fails with ErrorKind::input, naming file, frame and what is wrong.
+Camera read_chan(const std::string& path, int frame, const std::string& rotation, const Window& display,
+                 double pixel_aspect);
+
+/// The rotation from the world to a camera's space, of angles about x, y and z in radians.
+Matrix3 view_by_angles(const Vector3& angles, const std::string& rotation);
+
+/// The orders in which a camera may be turned about the axes.
+inline constexpr std::array kChanRotations{"xyz", "xzy", "yxz", "yzx", "zxy", "zyx"};
 
 }  // namespace alcove

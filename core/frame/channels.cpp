@@ -1,19 +1,179 @@
-// The search for channels: tables of usual names, the layers and views of a file, and the places that spell an AOV.
+// The search for channels: patterns, views, tables of usual names, and the places that spell an AOV.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/frame/channels.h"
 
 #include <algorithm>
+#include <charconv>
 #include <map>
-#include <optional>
 #include <set>
 
 #include "core/base/error.h"
 #include "core/base/text.h"
 #include "core/formats/exr.h"
-#include "core/frame/name_pattern.h"
-#include "core/frame/views.h"
 
 namespace alcove {
+
+// Patterns: after the last star, a name is tried from each place on.
+
+bool is_escape(std::string_view text, std::size_t at) {
+  return text[at] == '\\' && at + 1 < text.size() && std::string_view("*?, \\").find(text[at + 1]) != text.npos;
+}
+
+bool is_pattern(std::string_view text) {
+  for (std::size_t i = 0; i < text.size(); i++) {
+    if (is_escape(text, i))
+      i++;
+    else if (text[i] == '*' || text[i] == '?')
+      return true;
+  }
+  return false;
+}
+
+std::string unescaped(std::string_view text) {
+  std::string name;
+  for (std::size_t i = 0; i < text.size(); i++) name += is_escape(text, i) ? text[++i] : text[i];
+  return name;
+}
+
+bool fits_pattern(std::string_view name, std::string_view pattern) {
+  std::size_t at = 0, star = pattern.npos, retry = 0, p = 0;
+  while (at < name.size()) {
+    const bool escapes = p < pattern.size() && is_escape(pattern, p);
+    const char wanted = p < pattern.size() ? pattern[p + std::size_t(escapes)] : 0;
+    if (p < pattern.size() && ((!escapes && wanted == '?') || (wanted == name[at] && (escapes || wanted != '*')))) {
+      p += 1 + std::size_t(escapes);
+      at++;
+    } else if (p < pattern.size() && !escapes && wanted == '*') {
+      star = p++;
+      retry = at;
+    } else if (star != pattern.npos) {
+      p = star + 1;
+      at = ++retry;
+    } else {
+      return false;
+    }
+  }
+  return pattern.find_first_not_of('*', p) == pattern.npos;
+}
+
+std::optional<float> number_in(const std::string& text) {
+  float number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  return error == std::errc() && end == text.data() + text.size() ? std::optional(number) : std::nullopt;
+}
+
+// Views.
+
+namespace {
+
+/// A view's name among the words of a channel's name.
+struct ViewWord {
+  std::size_t begin, end;  // the dot behind it is at the end
+};
+
+/// Finds the view that a name holds: before the last word, by the convention of OpenEXR ("depth.right.Z"), or as the
+/// first word, as Nuke has it ("right.depth.Z"). Gives nothing where neither is one of the views.
+std::optional<ViewWord> view_word(const std::string& name, const std::vector<std::string>& views) {
+  const std::size_t last = name.rfind('.');
+  if (last == name.npos) return std::nullopt;
+  const std::size_t before = last == 0 ? name.npos : name.rfind('.', last - 1);
+  const ViewWord second_last{before == name.npos ? 0 : before + 1, last}, first{0, name.find('.')};
+  for (const ViewWord& word : {second_last, first}) {
+    const std::string text = name.substr(word.begin, word.end - word.begin);
+    if (!text.empty() && std::ranges::any_of(views, [&](const auto& view) { return same_name(view, text); }))
+      return word;
+  }
+  return std::nullopt;
+}
+
+std::string without(const std::string& name, const ViewWord& word) {
+  return name.substr(0, word.begin) + name.substr(word.end + 1);
+}
+
+}  // namespace
+
+bool same_name(std::string_view a, std::string_view b) { return lower_case(a) == lower_case(b); }
+
+std::vector<std::string> views_of(const ExrFile& file) {
+  std::vector<std::string> views;
+  for (const auto& part : file.parts())
+    for (const auto& view : part.multi_view.empty() ? std::vector{part.view} : part.multi_view)
+      if (!view.empty() && std::ranges::none_of(views, [&](const auto& known) { return same_name(known, view); }))
+        views.push_back(view);
+  return views;
+}
+
+std::string view_in(const ExrFile& file, const std::string& wanted) {
+  const auto views = views_of(file);
+  const auto found = std::ranges::find_if(views, [&](const auto& view) { return same_name(view, wanted); });
+  return found != views.end() ? *found : views.empty() ? "" : views.front();
+}
+
+std::string view_of(const ExrPart& part, const std::string& channel) {
+  if (part.multi_view.empty()) return part.view;
+  const auto word = view_word(channel, part.multi_view);
+  return word ? channel.substr(word->begin, word->end - word->begin) : part.multi_view.front();
+}
+
+std::optional<std::string> name_in_view(const ExrPart& part, const std::string& channel, const std::string& view) {
+  const std::string own = view_of(part, channel);
+  const bool is_shared = part.multi_view.empty() && (own.empty() || view.empty());
+  if (!is_shared && !same_name(own, view)) return std::nullopt;
+  const auto word = view_word(channel, part.multi_view.empty() ? std::vector{part.view} : part.multi_view);
+  return word ? without(channel, *word) : channel;
+}
+
+std::string layer_of(const ExrPart& part) {
+  const auto word = view_word(part.name + ".", {part.view});
+  if (!word) return part.name;
+  const std::string rest = without(part.name + ".", *word);
+  return rest.empty() ? rest : rest.substr(0, rest.size() - 1);
+}
+
+// The rules that fit the header of a file.
+
+namespace {
+
+/// Lists what identifies a file, in lower case: attributes as "name" and "name=value", channels as "channel:name". Nuke
+/// puts prefixes before others' attributes.
+std::vector<std::string> marks_of(const ExrFile& file) {
+  constexpr std::size_t kLongest = 200;  // characters of a mark that count
+  std::vector<std::string> marks;
+  for (std::size_t p = 0; p < file.parts().size(); p++) {
+    for (const auto& [name, value] : file.attribute_texts(int(p))) {
+      std::string plain = name.substr(0, kLongest);
+      if (plain.starts_with("nuke/exr/")) plain.erase(0, 9);
+      if (plain.starts_with("exr/")) plain.erase(0, 4);
+      marks.push_back(lower_case(plain));
+      marks.push_back(lower_case(plain + "=" + value.substr(0, kLongest)));
+    }
+    for (const auto& channel : file.parts()[p].channels) {
+      marks.push_back("channel:" + lower_case(channel.name.substr(0, kLongest)));
+      if (!file.parts()[p].name.empty())
+        marks.push_back("channel:" + lower_case((file.parts()[p].name + "." + channel.name).substr(0, kLongest)));
+    }
+  }
+  return marks;
+}
+
+}  // namespace
+
+DetectedRules detect_rules(const ExrFile& file) {
+  const auto marks = marks_of(file);
+  for (const bool last : {false, true})
+    for (const auto& rules : all_input_rules())
+      for (const auto& pattern : last ? rules.detect_last : rules.detect)
+        if (const auto mark = std::ranges::find_if(
+                marks, [wanted = lower_case(pattern)](const auto& m) { return fits_pattern(m, wanted); });
+            mark != marks.end())
+          return {&rules, *mark};
+  return {&input_rules("generic"), ""};
+}
+
+// Usual names.
+
+static const Components kColours{{"r", "g", "b"}, {"red", "green", "blue"}};
+static const Components kVectors{{"x", "y", "z"}, {"r", "g", "b"}, {"red", "green", "blue"}};
 
 const AovNames kDepthNames{
     .what = "depth",
@@ -29,7 +189,7 @@ const AovNames kNormalNames{
     .what = "normal",
     .channel_option = "--normal-channels",
     .layers = {"normal", "n", "nn", "normals", "ns", "__nworld", "cgeometry_normalsshading"},
-    .in_layer = {{"x", "y", "z"}, {"r", "g", "b"}, {"red", "green", "blue"}},
+    .in_layer = kVectors,
     .bare = {{"nx", "ny", "nz"}},
     .alone = {{"x", "y", "z"}, {"r", "g", "b"}, {"red", "green", "blue"}, {"x", "y"}, {"r", "g"}, {"red", "green"}},
     .may_be_two = true,
@@ -39,18 +199,17 @@ const AovNames kPositionNames{
     .what = "position",
     .channel_option = "--position-channels",
     .layers = {"position", "p", "pworld", "__pworld", "worldposition", "cgeometry_worldposition"},
-    .in_layer = {{"x", "y", "z"}, {"r", "g", "b"}, {"red", "green", "blue"}},
+    .in_layer = kVectors,
     .bare = {{"px", "py", "pz"}},
-    .alone = {{"x", "y", "z"}, {"r", "g", "b"}, {"red", "green", "blue"}},
+    .alone = kVectors,
 };
 
 const AovNames kBeautyNames{
     .what = "beauty",
     .channel_option = "--set beauty-channels",
     .layers = {"combined", "rgba", "beauty"},
-    .in_layer = {{"r", "g", "b"}, {"red", "green", "blue"}},
-    .bare = {{"r", "g", "b"}, {"red", "green", "blue"}},
-    .alone = {},
+    .in_layer = kColours,
+    .bare = kColours,
     .may_have_alpha = true,
 };
 
@@ -58,27 +217,20 @@ const AovNames kIndirectNames{
     .what = "indirect diffuse",
     .channel_option = "--layer",
     .layers = {"diffind", "diffuse indirect", "diffuse_indirect", "indirectdiffuse", "gi"},
-    .in_layer = {{"r", "g", "b"}, {"red", "green", "blue"}},
-    .bare = {},
-    .alone = {},
+    .in_layer = kColours,
 };
 
 const AovNames kLightNames{
     .what = "light",
     .channel_option = "--set ambient",
-    .layers = {},
-    .in_layer = {{"r", "g", "b"}, {"red", "green", "blue"}},
-    .bare = {},
-    .alone = {},
+    .in_layer = kColours,
 };
 
 const AovNames kDiffuseColorNames{
     .what = "diffuse colour",
     .channel_option = "--layer",
     .layers = {"diffcol", "diffuse color"},
-    .in_layer = {{"r", "g", "b"}, {"red", "green", "blue"}},
-    .bare = {},
-    .alone = {},
+    .in_layer = kColours,
 };
 
 const AovNames kMaterialNames{
@@ -94,9 +246,8 @@ const AovNames kAlbedoNames{
     .what = "diffuse colour",
     .channel_option = "--set albedo-channels",
     .layers = {"diffcol", "diffuse color", "albedo", "diffuse_albedo"},
-    .in_layer = {{"r", "g", "b"}, {"red", "green", "blue"}},
-    .bare = {},
-    .alone = {{"r", "g", "b"}, {"red", "green", "blue"}},
+    .in_layer = kColours,
+    .alone = kColours,
 };
 
 const AovNames kMatteNames{

@@ -1,10 +1,12 @@
-// Finds channels in files by the names that renderers use, or by those that the user chose.
+// Finds channels in files by the names that renderers use, or by those that the user chose; patterns of names, and
+// views.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -13,6 +15,47 @@
 #include "core/frame/input_rules.h"
 
 namespace alcove {
+
+/// Whether a whole name fits a pattern, in which * stands for any characters and ? for one, and what stands behind a
+/// backslash, one of these, for itself. Case counts.
+bool fits_pattern(std::string_view name, std::string_view pattern);
+
+/// Whether a pattern may stand for several names.
+bool is_pattern(std::string_view text);
+
+/// Whether the character at that place is a backslash that takes the next one as it is: * ? , a blank or a backslash.
+bool is_escape(std::string_view text, std::size_t at);
+
+/// The name that a text without patterns stands for.
+std::string unescaped(std::string_view text);
+
+/// A text that is a number and nothing else.
+std::optional<float> number_in(const std::string& text);
+
+// The views of stereo files: as parts, and as words of channels' names.
+
+/// Whether two names are one: case does not count.
+bool same_name(std::string_view a, std::string_view b);
+
+/// Gives the views of a stereo file, the default first; any other file has none.
+std::vector<std::string> views_of(const ExrFile& file);
+
+/// The view that a file is read by: the wanted one if the file has it, else its default one; "" where it has no views.
+std::string view_in(const ExrFile& file, const std::string& wanted);
+
+/// The view of a channel. `multiView` lists views that stand before the last word of names ("depth.right.Z"), or are
+/// the first word, as Nuke writes them ("right.depth.Z"); without such a word a channel is of the first of them. Else
+/// the view is that of the part, "" where it has none.
+std::string view_of(const ExrPart& part, const std::string& channel);
+
+/// Gives a channel's name without its view; nothing if it is of another view. Channels of parts without views belong to
+/// all.
+std::optional<std::string> name_in_view(const ExrPart& part, const std::string& channel, const std::string& view);
+
+/// The name of a part without its view: "depth.left" and "left.depth" of the view "left" are the layer "depth".
+std::string layer_of(const ExrPart& part);
+
+// Channels.
 
 /// One channel of one of the frame's files.
 struct ChannelRef {
@@ -29,10 +72,10 @@ using Components = std::vector<std::vector<std::string>>;
 struct AovNames {
   const char* what;
   const char* channel_option;
-  std::vector<std::string> layers;
-  Components in_layer;  // These are looked for below one of the layers.
-  Components bare;      // These name the AOV by themselves in any file.
-  Components alone;     // These name it by themselves in a file that was given for this AOV only.
+  std::vector<std::string> layers = {};
+  Components in_layer;    // These are looked for below one of the layers.
+  Components bare = {};   // These name the AOV by themselves in any file.
+  Components alone = {};  // These name it by themselves in a file that was given for this AOV only.
   bool may_have_alpha = false;
   bool may_be_two = false;  // The user may name two channels instead of three.
 };

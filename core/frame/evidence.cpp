@@ -134,7 +134,8 @@ const double kClose = std::cos(kCloseDegrees * kRadians);
 /// Calls `visit` with each place of a smooth surface that is looked at and the unit normal of the file there, in its
 /// own space. Gives how many there are.
 template <class Visit>
-std::size_t for_each_normal(const NormalPlanes& planes, const View& view, const Visit& visit) {
+std::size_t for_each_normal(const NormalPlanes& planes, const Visit& visit) {
+  const View& view = planes.view;
   const std::size_t plane = std::size_t(view.size.x) * std::size_t(view.size.y);
   const int stride = sparseness(view);
   std::size_t count = 0;
@@ -205,10 +206,10 @@ class NormalSum {
 };
 
 /// Fills in how well the frame agrees with each of the readings. Gives false where too little of it is smooth.
-bool score(std::vector<NormalScore>& scores, const NormalPlanes& planes, const Camera& camera, const View& view) {
+bool score(std::vector<NormalScore>& scores, const NormalPlanes& planes) {
   std::vector<NormalSum> sums;
-  for (auto& score : scores) sums.emplace_back(score, camera);
-  const std::size_t count = for_each_normal(planes, view, [&](const SurfacePlace& surface, const Vector3& n) {
+  for (auto& score : scores) sums.emplace_back(score, planes.camera);
+  const std::size_t count = for_each_normal(planes, [&](const SurfacePlace& surface, const Vector3& n) {
     for (auto& sum : sums) sum.add(surface, n);
   });
   if (count < kLeastSamples) return false;
@@ -300,20 +301,34 @@ std::optional<double> reprojection_error(std::span<const float> position, Positi
   return errors.empty() ? std::nullopt : std::optional(median_of(std::move(errors)));
 }
 
-std::vector<NormalScore> score_normals(const NormalPlanes& planes, const Camera& camera, const View& view) {
-  std::vector<NormalScore> scores = readings_of_normals(camera);
-  if (!score(scores, planes, camera, view)) return {};
+NormalPlanes::NormalPlanes(const Reading& reading, std::span<const float> of_file, std::span<const float> depth)
+    : normal(of_file),
+      raw(depth),
+      encoding(reading.normal_encoding),
+      unorm(reading.normal_unorm),
+      map(depth_map_of(reading)),
+      camera(reading.camera),
+      view(view_of(reading.camera, reading.data, reading.display)) {}
+
+std::vector<NormalScore> score_normals(const NormalPlanes& planes) {
+  std::vector<NormalScore> scores = readings_of_normals(planes.camera);
+  if (!score(scores, planes)) return {};
   std::ranges::stable_sort(scores, std::greater(), &NormalScore::agreement);
   return scores;
 }
 
-std::optional<CutScore> score_cut(NormalSpace space, const NormalPlanes& planes, const Camera& camera,
-                                  const View& view) {
+const NormalScore* score_of(const std::vector<NormalScore>& scores, NormalSpace space, const NormalFlips& flips) {
+  const auto found = std::ranges::find_if(
+      scores, [&](const auto& s) { return s.space == space && to_string(s.flips) == to_string(flips); });
+  return found == scores.end() ? nullptr : &*found;
+}
+
+std::optional<CutScore> score_cut(NormalSpace space, const NormalPlanes& planes) {
   constexpr double kBelow = -0.25;  // a component that noise of the depth does not make
-  const Matrix3 normal_from_view = transposed(view_from_normal(camera, space, {}));
+  const Matrix3 normal_from_view = transposed(view_from_normal(planes.camera, space, {}));
   CutScore cut;
   std::size_t needed = 0;
-  const std::size_t count = for_each_normal(planes, view, [&](const SurfacePlace& surface, const Vector3& n) {
+  const std::size_t count = for_each_normal(planes, [&](const SurfacePlace& surface, const Vector3& n) {
     const Vector3 whole = times(normal_from_view, surface.normal);
     if (std::ranges::min(whole) > kBelow) return;
     needed++;
@@ -330,10 +345,9 @@ std::optional<CutScore> score_cut(NormalSpace space, const NormalPlanes& planes,
 
 double NormalScore::turn_degrees() const { return length(turn) / kRadians; }
 
-std::optional<NormalScore> score_normals_as(NormalSpace space, const NormalFlips& flips, const NormalPlanes& planes,
-                                            const Camera& camera, const View& view) {
+std::optional<NormalScore> score_normals_as(NormalSpace space, const NormalFlips& flips, const NormalPlanes& planes) {
   std::vector<NormalScore> scores{{space, flips}};
-  if (!score(scores, planes, camera, view)) return std::nullopt;
+  if (!score(scores, planes)) return std::nullopt;
   return scores[0];
 }
 

@@ -11,7 +11,7 @@
 
 #include "core/base/settings.h"
 #include "core/frame/camera.h"
-#include "core/frame/depth.h"
+#include "core/frame/reading.h"
 
 namespace alcove {
 
@@ -66,17 +66,22 @@ struct NormalScore {
   double explained() const { return agreement + opposite; }
   double turn_degrees() const;
 };
-/// Normals as they stand in a file, how they are encoded, and the depth that they are held against.
+/// Normals as they stand in a file, the depth that they are held against, and how both are read.
 struct NormalPlanes {
-  std::span<const float> normal;
+  NormalPlanes(const Reading& reading, std::span<const float> normal, std::span<const float> raw);
+
+  std::span<const float> normal, raw;  // as in the file
   NormalEncoding encoding;
   bool unorm;
-  std::span<const float> raw;  // as in the file
   DepthMap map;
+  Camera camera;
+  View view;
 };
 /// Scores world space, where the camera knows it, and view space, each with all flips, the best agreement first. Gives
 /// nothing where too little of the frame is smooth.
-std::vector<NormalScore> score_normals(const NormalPlanes& planes, const Camera& camera, const View& view);
+std::vector<NormalScore> score_normals(const NormalPlanes& planes);
+/// The score of one of them; null where there is none.
+const NormalScore* score_of(const std::vector<NormalScore>& scores, NormalSpace space, const NormalFlips& flips);
 /// How the frame agrees with normals that lost their components below 0, going by depth in the normals' own space.
 struct CutScore {
   double needed = 0;    // share of the normals with a component clearly below 0
@@ -84,12 +89,10 @@ struct CutScore {
   double clamped = 0;   // and of the normal with 0 in place of components below it
 };
 /// Gives nothing where too little of the frame is smooth.
-std::optional<CutScore> score_cut(NormalSpace space, const NormalPlanes& planes, const Camera& camera,
-                                  const View& view);
+std::optional<CutScore> score_cut(NormalSpace space, const NormalPlanes& planes);
 
 /// Scores one of these readings, so that another camera than the frame's can be tried.
-std::optional<NormalScore> score_normals_as(NormalSpace space, const NormalFlips& flips, const NormalPlanes& planes,
-                                            const Camera& camera, const View& view);
+std::optional<NormalScore> score_normals_as(NormalSpace space, const NormalFlips& flips, const NormalPlanes& planes);
 
 /// Gives the axes, as "xz", or "none".
 std::string to_string(const NormalFlips& flips);

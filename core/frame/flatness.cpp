@@ -219,12 +219,6 @@ std::vector<DepthScore> scores_by(std::span<const float> raw, const View& view, 
 
 }  // namespace
 
-double ray_length(const View& view, int x, int y) {
-  const double u = (x + 0.5 - view.center.x) * view.tangent_per_pixel.x;
-  const double v = (y + 0.5 - view.center.y) * view.tangent_per_pixel.y;
-  return view.orthographic ? 1 : std::sqrt(1 + u * u + v * v);
-}
-
 Grain grain_of(std::span<const float> raw, double sky) {
   constexpr std::size_t kSampled = 1 << 15;  // values
   constexpr std::size_t kAbout = 32;         // neighbours whose differences are looked at

@@ -8,7 +8,7 @@
 
 #include "core/base/settings.h"
 #include "core/frame/camera.h"
-#include "core/frame/depth.h"
+#include "core/frame/reading.h"
 
 namespace alcove {
 
@@ -23,9 +23,6 @@ struct Grain {
 /// Finds the common divisor of the differences between neighbouring values, at three places of their distribution.
 /// Values of some 17 bits or fewer have a step; `sky`: values at or beyond it count for none.
 Grain grain_of(std::span<const float> raw, double sky);
-
-/// The length of a pixel's ray at unit depth; 1 where it is orthographic.
-double ray_length(const View& view, int x, int y);
 
 /// A way to read depth and how well the frame's flat surfaces agree with it.
 struct DepthScore {

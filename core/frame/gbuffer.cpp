@@ -2,36 +2,246 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/frame/gbuffer.h"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
-#include <optional>
 #include <set>
 
 #include "core/base/error.h"
 #include "core/base/text.h"
 #include "core/formats/exr.h"
-#include "core/frame/ambient.h"
 #include "core/frame/behind.h"
-#include "core/frame/colours.h"
-#include "core/frame/deep.h"
 #include "core/frame/header_camera.h"
-#include "core/frame/input_files.h"
+#include "core/frame/linear_fit.h"
 #include "core/frame/matte.h"
 #include "core/frame/panorama.h"
-#include "core/frame/plane_windows.h"
 #include "core/frame/position_pass.h"
-#include "core/frame/views.h"
 
 namespace alcove {
+
 namespace {
 
-bool has_half_channel(const FrameSource& source, const ChannelRef& ref) {
-  const auto& channels = source.part_of(ref).channels;
-  const auto channel = std::ranges::find(channels, ref.channel, &ExrChannel::name);
-  return channel != channels.end() && channel->type == SampleType::half_float;
+// The parts of a beauty that AO may dim: a list of layers, colours and weights.
+
+/// One of the lights, as it was typed.
+struct TypedLight {
+  std::string light, color;  // color: empty: nothing is said
+  double weight = 1;
+};
+
+/// Blender's passes of light without colour, and the colour that belongs to them.
+struct Pass {
+  const char *light, *color;
+};
+constexpr std::array kBlenderPasses{Pass{"diffdir", "DiffCol"},
+                                    Pass{"diffind", "DiffCol"},
+                                    Pass{"glossdir", "GlossCol"},
+                                    Pass{"glossind", "GlossCol"},
+                                    Pass{"transdir", "TransCol"},
+                                    Pass{"transind", "TransCol"},
+                                    Pass{"diffuse direct", "Diffuse Color"},
+                                    Pass{"diffuse indirect", "Diffuse Color"},
+                                    Pass{"glossy direct", "Glossy Color"},
+                                    Pass{"glossy indirect", "Glossy Color"},
+                                    Pass{"transmission direct", "Transmission Color"},
+                                    Pass{"transmission indirect", "Transmission Color"}};
+
+[[noreturn]] void refuse(const std::string& text, const char* why) {
+  fail(ErrorKind::usage,
+       "--set ambient={}: {}: it takes LIGHT, LIGHT*LAYER, LIGHT*NUMBER or LIGHT*LAYER*NUMBER, several with commas",
+       text, why);
 }
+
+TypedLight typed_light(const std::string& text) {
+  TypedLight typed;
+  std::size_t from = 0;
+  bool has_weight = false;
+  for (std::size_t to = 0; to != text.npos; from = to + 1) {
+    to = text.find('*', from);
+    const std::string word = text.substr(from, to == text.npos ? to : to - from);
+    if (word.empty()) refuse(text, "a name is missing");
+    const auto weight = from > 0 ? number_in(word) : std::optional<float>();
+    if (has_weight) refuse(text, "nothing follows the number");
+    if (weight && !(*weight >= 0 && *weight <= 1)) refuse(text, "a weight is from 0 to 1");
+    if (!weight && from > 0 && !typed.color.empty()) refuse(text, "two layers multiply the light");
+    if (weight)
+      typed.weight = double(*weight);
+    else
+      (from == 0 ? typed.light : typed.color) = word;
+    has_weight = weight.has_value();
+  }
+  return typed;
+}
+
+/// The last part of the layer that a channel lies in, in lower case: "ViewLayer.DiffInd.R" gives "diffind".
+std::string layer_of(const std::string& channel) {
+  const std::string lower = lower_case(channel.substr(0, channel.rfind('.')));
+  return lower.substr(lower.rfind('.') + 1);
+}
+
+/// The layer of the colour that a light is without; empty: it holds its colour.
+std::string color_of(const ChannelRef& light) {
+  for (const auto& pass : kBlenderPasses)
+    if (layer_of(light.channel) == pass.light) return pass.color;
+  return "";
+}
+
+void append(std::vector<ChannelRef>& planes, const std::vector<ChannelRef>& more) {
+  planes.insert(planes.end(), more.begin(), more.end());
+}
+
+void add_typed(FrameSource& source, const ChannelSearch& search, std::size_t file, const std::string& text) {
+  const TypedLight typed = typed_light(text);
+  const auto light = search.find(file, kLightNames, typed.light, false);
+  const std::string color = typed.color.empty() ? color_of(light.front()) : typed.color;
+  auto& colors = source[RawPlane::diffuse_color];
+  source.ambient.push_back({typed.weight, color.empty() ? -1 : int(colors.size() / 3)});
+  append(source[RawPlane::indirect], light);
+  if (!color.empty()) append(colors, search.find(file, kLightNames, color, false));
+}
+
+/// The indirect diffuse light; Blender's only with its colour, without which the part of the beauty is unknown.
+void find_usual(FrameSource& source, const ChannelSearch& search, std::size_t file) {
+  const auto light = search.find(file, kIndirectNames, "", false);
+  if (light.empty()) return;
+  const bool lacks_color = !color_of(light.front()).empty();
+  const auto color = lacks_color ? search.find(file, kDiffuseColorNames, "", false) : std::vector<ChannelRef>();
+  if (lacks_color && color.empty()) return;
+  source[RawPlane::indirect] = light;
+  source[RawPlane::diffuse_color] = color;
+  source.ambient = {{1, lacks_color ? 0 : -1}};
+}
+
+/// Finds the lights in the beauty's file. `settings.ambient` lists them with commas, each LIGHT[*LAYER][*NUMBER]: a
+/// layer, one that multiplies it, and how much of it AO dims, 0 to 1. Without, it is the indirect diffuse light, where
+/// that is found; else there is none.
+///
+/// Blender's light passes are without the surface's colour. It is taken from the pass beside them (DiffInd x DiffCol,
+/// GlossDir x GlossCol) where nothing else is said. Fails with ErrorKind::usage on a text that is no such list, and
+/// with ErrorKind::input where a layer is missing.
+void find_ambient(FrameSource& source, const ChannelSearch& search, std::size_t file, const InputSettings& settings) {
+  const auto lights = settings.ambient.empty() ? std::vector<std::string>() : split(settings.ambient);
+  if (lights.size() > kMostAmbientLights)
+    fail(ErrorKind::usage, "--set ambient: it takes at most {} lights, and there are {}", kMostAmbientLights,
+         lights.size());
+  for (const auto& light : lights) add_typed(source, search, file, light);
+  if (lights.empty()) find_usual(source, search, file);
+}
+
+// A picture of colours, normals or positions, told from depth where the depth channel is one of three.
+
+constexpr int kColourRows = 24;       // of the picture that are looked at
+constexpr double kGrey = 0.02;        // relative difference of R, G and B that lossy compression makes of grey
+constexpr double kDark = 0.01;        // of the median, below which noise is no colour
+constexpr double kColoured = 0.005;   // share of the pixels from which a picture is no grey one
+constexpr double kUnitLength = 0.05;  // of a length that is taken for 1
+constexpr double kAreNormals = 0.95;  // share of unit vectors
+
+/// A channel and the two that make a colour or a vector of it.
+using Three = std::array<ChannelRef, 3>;
+
+std::optional<Three> three_of(const ChannelSearch& search, const ChannelRef& depth, const char* second,
+                              const char* third) {
+  const auto other = search.beside(depth, second), last = search.beside(depth, third);
+  return other && last ? std::optional<Three>({depth, *other, *last}) : std::nullopt;
+}
+
+std::string last_word(const std::string& channel) { return lower_case(channel.substr(channel.rfind('.') + 1)); }
+
+/// The values of some rows.
+std::array<std::vector<float>, 3> sample_of(FrameSource& source, const Three& three) {
+  const Window& data = source.part_of(three[0]).data;
+  const int rows = std::min(kColourRows, data.height);
+  const auto width = std::size_t(data.width);
+  std::array<std::vector<float>, 3> planes;
+  for (auto& plane : planes) plane.resize(std::size_t(rows) * width);
+  for (int i = 0; i < rows; i++) {
+    std::vector<ExrRead> reads;
+    for (std::size_t c = 0; c < 3; c++)
+      reads.push_back({three[c].part, three[c].channel, planes[c].data() + std::size_t(i) * width});
+    source.files[three[0].file].read(reads, int((std::int64_t(2 * i + 1) * data.height) / (2 * rows)), 1);
+  }
+  return planes;
+}
+
+bool varies(const std::vector<float>& plane) {
+  return std::ranges::any_of(plane, [&](float value) { return value != plane.front(); });
+}
+
+/// Whether the second and the third channel are there for more than to be equal to the first.
+bool are_colours(const std::array<std::vector<float>, 3>& planes) {
+  if (!varies(planes[1]) && !varies(planes[2])) return false;
+  std::vector<double> sizes;
+  for (const float value : planes[0])
+    if (std::isfinite(value) && value != 0) sizes.push_back(std::abs(value));
+  const double dark = sizes.empty() ? 0 : kDark * median_of(std::move(sizes));
+  std::size_t pixels = 0, coloured = 0;
+  for (std::size_t i = 0; i < planes[0].size(); i++) {
+    const std::array<double, 3> c{planes[0][i], planes[1][i], planes[2][i]};
+    if (!std::ranges::all_of(c, [](double value) { return std::isfinite(value); })) continue;
+    const auto [least, most] = std::ranges::minmax(c);
+    pixels++;
+    coloured += most - least > kGrey * std::max({std::abs(least), std::abs(most), dark});
+  }
+  return double(coloured) > kColoured * double(pixels);
+}
+
+bool are_normals(const std::array<std::vector<float>, 3>& planes) {
+  std::size_t vectors = 0, units = 0;
+  for (std::size_t i = 0; i < planes[0].size(); i++) {
+    const double length = std::hypot(planes[0][i], planes[1][i], planes[2][i]);
+    vectors += length > 0;
+    units += std::abs(length - 1) < kUnitLength;
+  }
+  return vectors > 0 && double(units) > kAreNormals * double(vectors);
+}
+
+/// Looks at the two channels beside a depth channel that was found by a usual name and not by the user's. R is depth
+/// where R, G and B are a grey picture, or G and B are empty. Fails with ErrorKind::input where they are a picture of
+/// colours; adds a suspicious note where they are one in a layer that is called depth, and where the depth is the Z of
+/// X, Y and Z. Reads a few rows where there are two such channels, and nothing else.
+void doubt_depth_of_three(FrameSource& source, const ChannelSearch& search, const ChannelRef& depth) {
+  const std::string word = last_word(depth.channel), path = source.files[depth.file].path();
+  const std::string layer = depth.channel.substr(0, depth.channel.size() - word.size());
+  if (word == "y" && search.has(depth, "ry") && search.has(depth, "by"))
+    fail(ErrorKind::input,
+         "{}: {}Y with RY and BY is the brightness of a picture of colours, and no depth: give the file of the depth "
+         "with --depth, or name its channel with --depth-channel",
+         path, layer);
+  const bool is_vector = word == "z";
+  auto three = is_vector       ? three_of(search, depth, "x", "y")
+               : word == "red" ? three_of(search, depth, "green", "blue")
+               : word == "r"   ? three_of(search, depth, "g", "b")
+                               : std::nullopt;
+  if (!three) return;
+  const auto planes = sample_of(source, *three);
+  if (is_vector && are_normals(planes))
+    fail(
+        ErrorKind::input,
+        "{}: {}X, Y and Z are vectors of length 1, which are normals and no depth: give the file to --normal, and that "
+        "of the depth to --depth; --depth-channel {} takes Z as depth",
+        path, layer, depth.channel);
+  if (is_vector) {
+    source.suspicious.push_back(
+        {NoteCode::said_otherwise,
+         fmt::format("{} is taken as depth, and stands beside X and Y: where the three are positions, give the file to "
+                     "--position instead; --depth-channel {} says that it is depth",
+                     depth.channel, depth.channel)});
+    return;
+  }
+  if (!are_colours(planes)) return;
+  const std::string text = fmt::format(
+      "R, G and B of {} differ, as in a picture of colours, normals or positions, and not as in one of depth: give "
+      "the file of the depth with --depth, or name its channel with --depth-channel; --position takes positions; "
+      "--depth-channel {} takes this one as depth",
+      layer.empty() ? "the file" : "layer " + layer.substr(0, layer.size() - 1), depth.channel);
+  if (layer.empty()) fail(ErrorKind::input, "{}: {}", path, text);
+  source.suspicious.push_back({NoteCode::said_otherwise, text});
+}
+
+// The frame.
 
 void find_beauty(FrameSource& source, const ChannelSearch& search, std::size_t file, const InputSettings& settings) {
   source[RawPlane::beauty] = search.with_alpha(
@@ -166,12 +376,11 @@ void note_scaled_camera(FrameSource& source, const std::string& camera) {
 
 /// What the positions say of the camera that saw them: it, or why they tell none. Nothing where there are no positions
 /// that fit the depth.
-std::optional<std::variant<Resection, NoResection>> camera_by_positions(const std::vector<ChannelRef>& positions,
-                                                                        std::vector<ExrFile>& files,
+std::optional<std::variant<Resection, NoResection>> camera_by_positions(FrameSource& source,
                                                                         const InputSettings& settings) {
-  if (positions.empty()) return std::nullopt;
-  ExrFile& file = files[positions.front().file];
-  const auto points = points_of(file, positions, settings.sky, kManyBands);
+  if (source.positions.empty()) return std::nullopt;
+  const ExrFile& file = source.files[source.positions.front().file];
+  const auto points = points_of(source, settings.sky, kManyBands);
   auto found = resection_of(points, file.display());
   if (std::holds_alternative<NoResection>(found))
     if (const std::string panorama = panorama_of(points, file.display()); !panorama.empty())
@@ -207,7 +416,7 @@ void find_camera(FrameSource& source, const ChannelSearch& search, const InputSe
     }
   if (!names_a_camera(settings)) {
     source.positions = find_positions(search, source, settings);
-    if (const auto found = camera_by_positions(source.positions, source.files, settings)) {
+    if (const auto found = camera_by_positions(source, settings)) {
       if (const auto* none = std::get_if<NoResection>(&*found))
         throw NoCamera(file.path(), "its positions tell none, since " + none->why);
       source.camera = std::get<Resection>(*found).camera;
@@ -284,19 +493,19 @@ std::string FrameSource::layer_of(const ChannelRef& ref) const {
   return dot == ref.channel.npos ? part_of(ref).name : ref.channel.substr(0, dot);
 }
 
+bool FrameSource::is_half(const ChannelRef& ref) const {
+  const auto& channels = part_of(ref).channels;
+  const auto channel = std::ranges::find(channels, ref.channel, &ExrChannel::name);
+  return channel != channels.end() && channel->type == SampleType::half_float;
+}
+
 FrameSource find_frame(const InputSettings& settings, bool with_beauty, int frame, bool with_albedo) {
   FrameSource source;
   ChannelSearch search(settings, source.files);
-  const std::string& depth_path = !settings.depth.empty()  ? settings.depth
-                                  : settings.input.empty() ? main_input(settings)
-                                                           : settings.input;
-  const std::string& normal_path = !settings.normal.empty() ? settings.normal
-                                   : settings.input.empty() ? depth_path
-                                                            : settings.input;
-  const std::string& beauty_path = !settings.beauty.empty() ? settings.beauty
-                                   : settings.input.empty() ? depth_path
-                                                            : settings.input;
-
+  const std::string& depth_path = settings.depth.empty() ? main_input(settings) : settings.depth;
+  const auto path_of = [&](const std::string& own) -> const std::string& {
+    return !own.empty() ? own : settings.input.empty() ? depth_path : settings.input;
+  };
   const auto is_deep_path = [&](const std::string& path) { return std::ranges::count(settings.deep, path) > 0; };
   const bool wants_position = !settings.position.empty() || !settings.position_channels.empty();
   const bool by_position = wants_position || settings.depth_kind == DepthKind::position;
@@ -314,17 +523,17 @@ FrameSource find_frame(const InputSettings& settings, bool with_beauty, int fram
   source.display = source.files[depth_file].display();
   source.pixel_aspect = source.files[depth_file].pixel_aspect();
   source.supersampling = supersampling_of(source, settings);
-  source.depth_is_half = has_half_channel(source, source[RawPlane::depth][0]) || source.deep_depth_is_half;
+  source.depth_is_half = source.is_half(source[RawPlane::depth][0]) || source.deep_depth_is_half;
   source.depth_scale = settings.depth_scale;
   source.sky = settings.sky;
 
   source.normals_left_out = !wants_normals(settings);
   if (!source.normals_left_out) {
-    source[RawPlane::normal] = find_normal(source, search, search.open(normal_path, "--normal"), settings);
+    source[RawPlane::normal] = find_normal(source, search, search.open(path_of(settings.normal), "--normal"), settings);
     require_same_picture(source, source[RawPlane::normal], "normal", "--normal");
   }
-  if (with_beauty) find_beauty(source, search, search.open(beauty_path, "--beauty"), settings);
-  if (with_albedo) find_albedo(source, search, beauty_path, settings);
+  if (with_beauty) find_beauty(source, search, search.open(path_of(settings.beauty), "--beauty"), settings);
+  if (with_albedo) find_albedo(source, search, path_of(settings.beauty), settings);
   find_material(source, search, settings);
   find_matte(source, search, settings);
   find_occluders(source, search, settings);
@@ -350,13 +559,17 @@ FrameSource find_frame(const InputSettings& settings, bool with_beauty, int fram
   return source;
 }
 
+InputSettings with_some_camera(const InputSettings& settings) {
+  InputSettings with = settings;
+  with.fov = 50;
+  if (with.normal_space == NormalSpace::automatic) with.normal_space = NormalSpace::view;
+  return with;
+}
+
 bool may_tell_camera(const InputSettings& settings) {
   std::vector<ExrFile> files;
   ChannelSearch search(settings, files);
-  const std::size_t place = search.open(!settings.depth.empty()  ? settings.depth
-                                        : settings.input.empty() ? main_input(settings)
-                                                                 : settings.input,
-                                        "INPUT");
+  const std::size_t place = search.open(settings.depth.empty() ? main_input(settings) : settings.depth, "INPUT");
   const ExrFile& file = files[place];
   for (std::size_t part = 0; part < file.parts().size(); part++) {
     const auto attributes = file.attribute_texts(int(part));
@@ -369,25 +582,6 @@ bool may_tell_camera(const InputSettings& settings) {
   return !search.find_by_rules(place, kPositionNames, settings.position_channels, source.rules->position)
               .channels.empty() ||
          !search.find(place, kPositionNames, settings.position_channels, !settings.position.empty()).empty();
-}
-
-void read_planes(FrameSource& source, const std::vector<PlaneRead>& reads) {
-  source.rows_read += std::uint64_t(source.data.height);
-  std::vector<ChannelRead> firsts;
-  // a channel that serves two purposes is decoded to the first place, and copied from there
-  std::map<ChannelRef, float*> first;
-  std::vector<std::pair<float*, float*>> copies;
-  for (const auto& read : reads)
-    for (std::size_t i = 0; i < read.channels->size(); i++) {
-      const auto& channel = (*read.channels)[i];
-      float* to = read.to + i * source.data.pixels();
-      if (const auto [known, is_new] = first.try_emplace(channel, to); is_new)
-        firsts.push_back({channel, to});
-      else
-        copies.emplace_back(known->second, to);
-    }
-  read_rows(source, firsts, source.data.y, source.data.height);
-  for (const auto& [from, to] : copies) std::copy_n(from, source.data.pixels(), to);
 }
 
 }  // namespace alcove

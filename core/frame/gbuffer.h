@@ -45,6 +45,8 @@ struct FrameSource : Reading {
   }
   /// The part of a file that a channel lies in.
   const ExrPart& part_of(const ChannelRef& ref) const { return files[ref.file].parts()[std::size_t(ref.part)]; }
+  /// Whether its samples are half floats.
+  bool is_half(const ChannelRef& ref) const;
   /// The name of a channel without its last part, which a part's name stands for; "" where it has no layer.
   std::string layer_of(const ChannelRef& ref) const;
 
@@ -99,6 +101,9 @@ constexpr const char* kWorldWithoutMatrix =
 /// positions, which may tell one. Fails as opening it does.
 bool may_tell_camera(const InputSettings& settings);
 
+/// The settings with a camera that stands in for one where nothing gives any, so that all else can be looked at.
+InputSettings with_some_camera(const InputSettings& settings);
+
 /// A plane, or several one behind the other, and where it goes.
 struct PlaneRead {
   const std::vector<ChannelRef>* channels;
@@ -107,5 +112,40 @@ struct PlaneRead {
 
 /// Reads planes within source.data, which is as wide as the files. Every part of every file is decoded once.
 void read_planes(FrameSource& source, const std::vector<PlaneRead>& reads);
+
+/// Depth and normals over source.data, as they were read.
+struct RawFrame {
+  std::vector<float> depth, normal;
+};
+RawFrame read_raw_frame(FrameSource& source);
+
+/// Finds, reads and settles the depth and normals that the settings name. Fails as find_frame() and settle() do.
+HostFrame read_host_frame(const InputSettings& settings, int frame);
+
+// Planes whose files have another data window than the depth, or are of a picture that is so many times smaller.
+
+/// How many pixels of the depth, in x and in y, are one of a beauty's: what the option says, or with auto as their
+/// display windows have it, and 1 where they are of no such size. Fails with ErrorKind::input where the depth's window
+/// cannot be divided so, or the beauty's is another.
+int supersampling_of(const FrameSource& source, const ChannelRef& beauty, const InputSettings& settings);
+/// The same without a beauty: 1 with auto.
+int supersampling_of(const FrameSource& source, const InputSettings& settings);
+
+/// Fails with ErrorKind::input where channels, what they hold and the option that names them, have another data window
+/// than the depth and no pixel in common with it, or another display window, which alone shows which pixels belong
+/// together. A renderer may have cut each plane to its own pixels that are not 0.
+void require_same_picture(const FrameSource& source, const std::vector<ChannelRef>& channels, const char* what,
+                          const char* option);
+
+/// Fails with ErrorKind::input where channels, what they hold and the option that names them, share no pixel with the
+/// depth, or have another data window than it and a display window that is neither its own nor the picture's, since
+/// nothing then tells which pixels belong together. Notes another data window; `without` says what holds where one of
+/// them has no pixels.
+void require_common_window(FrameSource& source, const std::vector<ChannelRef>& channels, const char* what,
+                           const char* option, const char* without);
+
+/// Puts what changes nothing into the pixels of a plane over source.data that its files do not have: AO 1 of materials,
+/// no object of a matte. Of all other planes that is the 0 that is there.
+void fill_missing(const FrameSource& source, RawPlane plane, std::span<float> values);
 
 }  // namespace alcove

@@ -6,29 +6,17 @@
 
 #include "core/base/error.h"
 #include "core/base/flat_toml.h"
+#include "core/base/option_words.h"
 #include "core/base/text.h"
-#include "core/frame/depth.h"
 
 namespace alcove {
 namespace {
 
-std::optional<DepthKind> depth_kind_of(const std::string& word) {
-  for (const DepthKind kind : {DepthKind::planar, DepthKind::ray, DepthKind::inverse, DepthKind::device,
-                               DepthKind::normalized, DepthKind::log})
-    if (word == name_of(kind)) return kind;
-  return std::nullopt;
-}
-
-std::optional<NormalSpace> normal_space_of(const std::string& word) {
-  if (word == "world") return NormalSpace::world;
-  return word == "view" ? std::optional(NormalSpace::view) : std::nullopt;
-}
-
-std::optional<NormalEncoding> normal_encoding_of(const std::string& word) {
-  if (word == "signed") return NormalEncoding::signed_float;
-  if (word == "unorm") return NormalEncoding::unorm;
-  if (word == "octahedral") return NormalEncoding::octahedral;
-  return word == "spheremap" ? std::optional(NormalEncoding::spheremap) : std::nullopt;
+/// What a word of an option stands for; none where it is no word of it, or leaves open what it means.
+template <class T>
+std::optional<T> known_meaning(const std::string& word) {
+  const auto found = names_of<T>().find(word);
+  return found == names_of<T>().end() || found->second == T::automatic ? std::nullopt : std::optional(found->second);
 }
 
 std::vector<AovCandidate> candidates_of(const std::vector<std::string>& words) {
@@ -36,8 +24,8 @@ std::vector<AovCandidate> candidates_of(const std::vector<std::string>& words) {
   for (const auto& word : words) {
     const std::size_t colon = word.rfind(':');
     const std::string before = word.substr(0, colon), after = colon == word.npos ? "" : word.substr(colon + 1);
-    const auto kind = depth_kind_of(after);
-    const auto space = normal_space_of(after);
+    const auto kind = known_meaning<DepthKind>(after);
+    const auto space = known_meaning<NormalSpace>(after);
     candidates.push_back({lower_case(kind || space ? before : word), kind.value_or(DepthKind::automatic),
                           space.value_or(NormalSpace::automatic)});
   }
@@ -72,7 +60,7 @@ InputRules parse_input_rules(const std::string& name, const std::string& text) {
     else if (key == "position-channels")
       rules.position = candidates_of(values);
     else if (key == "depth-kind")
-      rules.depth_kind = known(depth_kind_of(word));
+      rules.depth_kind = known(known_meaning<DepthKind>(word));
     else if (key == "near")
       rules.depth_range.near = distance();
     else if (key == "far")
@@ -80,9 +68,9 @@ InputRules parse_input_rules(const std::string& name, const std::string& text) {
     else if (key == "reversed-z")
       rules.depth_range.reversed = word == "true";
     else if (key == "normal-space")
-      rules.normal_space = known(normal_space_of(word));
+      rules.normal_space = known(known_meaning<NormalSpace>(word));
     else if (key == "normal-encoding")
-      rules.normal_encoding = known(normal_encoding_of(word));
+      rules.normal_encoding = known(known_meaning<NormalEncoding>(word));
     else if (key == "normal-averaged")
       rules.normal_averaged = word == "true";
     else

@@ -34,7 +34,7 @@ AovNames second_pair(const std::string& layer) {
   AovNames names = kMotionNames;
   if (!layer.empty()) names.layers = {lower_case(layer)};
   names.in_layer = {{"z", "w"}, {"b", "a"}};
-  names.bare = {};
+  names.bare.clear();
   names.alone = names.in_layer;
   return names;
 }
@@ -44,18 +44,9 @@ using Pixels = std::array<double, 2>;
 /// Where a pixel's surface would be seen if it stood still, less where it is; nothing behind the other camera.
 std::optional<Pixels> by_cameras(const View& view, const FromThere& there, std::size_t pixel, float depth) {
   const double px = double(pixel % std::size_t(view.size.x)) + 0.5, py = double(pixel / std::size_t(view.size.x)) + 0.5;
-  const double spread = view.orthographic ? 1 : depth;
-  const std::array<double, 3> at{(px - double(view.center.x)) * double(view.tangent_per_pixel.x) * spread,
-                                 (py - double(view.center.y)) * double(view.tangent_per_pixel.y) * spread,
-                                 -double(depth)};
-  std::array<double, 3> seen{};
-  for (std::size_t i = 0; i < 3; i++)
-    seen[i] = there.map[i][0] * at[0] + there.map[i][1] * at[1] + there.map[i][2] * at[2] + there.map[i][3];
-  const View& other = there.view;
-  if (!other.orthographic && seen[2] >= 0) return std::nullopt;
-  const double distance = other.orthographic ? 1 : -seen[2];
-  return Pixels{double(other.center.x) + seen[0] / distance / double(other.tangent_per_pixel.x) - px,
-                double(other.center.y) + seen[1] / distance / double(other.tangent_per_pixel.y) - py};
+  const SeenAt seen = seen_from(there.view, there.map, view, px, py, depth);
+  if (!there.view.orthographic && seen.depth <= 0) return std::nullopt;
+  return Pixels{seen.x - px, seen.y - py};
 }
 
 bool is_still(const Pixels& by_cameras, double x, double y) {

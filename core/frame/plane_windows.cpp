@@ -1,6 +1,6 @@
 // Planes whose files have another data window than the depth, or are of a picture that is so many times smaller.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/frame/plane_windows.h"
+#include "core/frame/gbuffer.h"
 
 #include <algorithm>
 #include <limits>
@@ -66,6 +66,38 @@ std::string way_out(const FrameSource& source, const Window& display) {
 bool is_times(const Window& display, const Window& picture, int factor) {
   return display.width == picture.width * factor && display.height == picture.height * factor &&
          reduced(display, display, factor) == picture;
+}
+
+/// A channel and its destination.
+struct ChannelRead {
+  ChannelRef channel;
+  float* to;
+};
+
+/// Reads all of source.data. Every part of every file is decoded once. Where their files have no pixels, normals and
+/// what lies behind are NaN, which is none in any encoding, and all else is 0. Channels of the smaller picture have
+/// their value in all pixels of a block.
+void read_channels(FrameSource& source, std::span<const ChannelRead> reads) {
+  const Window& own = source.file_data;
+  using Place = std::tuple<std::size_t, int, int, int, int>;  // a file, and a window
+  std::map<Place, std::vector<const ChannelRead*>> groups;
+  for (const auto& read : reads) {
+    const Window& data = source.part_of(read.channel).data;
+    groups[{read.channel.file, data.x, data.y, data.width, data.height}].push_back(&read);
+  }
+  for (const auto& [place, group] : groups) {
+    ExrFile& file = source.files[group[0]->channel.file];
+    const ExrPart& part = source.part_of(group[0]->channel);
+    std::vector<ExrRead> of_file;
+    for (const auto* read : group) of_file.push_back({read->channel.part, read->channel.channel, read->to});
+    const int scale = scale_of(source, group[0]->channel);
+    if (scale == 1 && part.data == own) {
+      file.read(of_file, source.data.y - own.y, source.data.height);
+      continue;
+    }
+    for (const auto* read : group) std::fill_n(read->to, source.data.pixels(), outside_of(source, read->channel));
+    read_from_other(file, part.data, part.rows_together, of_file, source.data, source.display, scale);
+  }
 }
 
 }  // namespace
@@ -138,28 +170,31 @@ void require_common_window(FrameSource& source, const std::vector<ChannelRef>& c
   }
 }
 
-void read_rows(FrameSource& source, std::span<const ChannelRead> reads, int top, int rows) {
-  const Window& own = source.file_data;
-  using Place = std::tuple<std::size_t, int, int, int, int>;  // a file, and a window
-  std::map<Place, std::vector<const ChannelRead*>> groups;
-  for (const auto& read : reads) {
-    const Window& data = source.part_of(read.channel).data;
-    groups[{read.channel.file, data.x, data.y, data.width, data.height}].push_back(&read);
-  }
-  for (const auto& [place, group] : groups) {
-    ExrFile& file = source.files[group[0]->channel.file];
-    const ExrPart& part = source.part_of(group[0]->channel);
-    std::vector<ExrRead> of_file;
-    for (const auto* read : group) of_file.push_back({read->channel.part, read->channel.channel, read->to});
-    const int scale = scale_of(source, group[0]->channel);
-    if (scale == 1 && part.data == own) {
-      file.read(of_file, top - own.y, rows);
-      continue;
+void read_planes(FrameSource& source, const std::vector<PlaneRead>& reads) {
+  source.rows_read += std::uint64_t(source.data.height);
+  std::vector<ChannelRead> firsts;
+  // a channel that serves two purposes is decoded to the first place, and copied from there
+  std::map<ChannelRef, float*> first;
+  std::vector<std::pair<float*, float*>> copies;
+  for (const auto& read : reads)
+    for (std::size_t i = 0; i < read.channels->size(); i++) {
+      const auto& channel = (*read.channels)[i];
+      float* to = read.to + i * source.data.pixels();
+      if (const auto [known, is_new] = first.try_emplace(channel, to); is_new)
+        firsts.push_back({channel, to});
+      else
+        copies.emplace_back(known->second, to);
     }
-    const Window wanted{own.x, top, own.width, rows};
-    for (const auto* read : group) std::fill_n(read->to, wanted.pixels(), outside_of(source, read->channel));
-    read_from_other(file, part.data, part.rows_together, of_file, wanted, source.display, scale);
-  }
+  read_channels(source, firsts);
+  for (const auto& [from, to] : copies) std::copy_n(from, source.data.pixels(), to);
+}
+
+RawFrame read_raw_frame(FrameSource& source) {
+  RawFrame raw;
+  raw.depth.resize(source[RawPlane::depth].size() * source.data.pixels());
+  raw.normal.resize(source[RawPlane::normal].size() * source.data.pixels());
+  read_planes(source, {{&source[RawPlane::depth], raw.depth.data()}, {&source[RawPlane::normal], raw.normal.data()}});
+  return raw;
 }
 
 void fill_missing(const FrameSource& source, RawPlane plane, std::span<float> values) {

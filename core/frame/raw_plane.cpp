@@ -1,6 +1,10 @@
-// What follows from the table of planes.
+// What follows from the table of planes, and from the files that settings name.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/frame/raw_plane.h"
+
+#include <algorithm>
+
+#include "core/base/text.h"
 
 namespace alcove {
 
@@ -13,6 +17,45 @@ std::vector<FileOption> plane_file_options() {
       else if (file.list)
         for (std::size_t i = 0; i < kMostBehind; i++) options.push_back({file.option, nullptr, file.list, i});
   return options;
+}
+
+const std::string& main_input(const InputSettings& settings) {
+  if (!settings.input.empty()) return settings.input;
+  if (!settings.depth.empty()) return settings.depth;
+  return settings.position.empty() ? settings.deep.front() : settings.position;
+}
+
+bool wants_normals(const InputSettings& settings) { return lower_case(settings.normal) != "none"; }
+
+bool wants_matte(const InputSettings& settings) {
+  return !settings.matte.empty() || !settings.matte_channel.empty() || !settings.matte_object.empty();
+}
+
+bool names_picture(const std::string& text) {
+  const auto dot = text.rfind('.');
+  if (dot == text.npos || text.find(',') != text.npos) return false;
+  const std::string ending = lower_case(text.substr(dot + 1));
+  return std::ranges::any_of(std::array{"exr", "dds", "png", "tif", "tiff", "tga", "bmp", "hdr"},
+                             [&](const char* known) { return ending == known; });
+}
+
+bool chooses_occluders(const InputSettings& settings) {
+  return !settings.occluders.empty() || !settings.occluder_objects.empty() || !settings.ignore.empty() ||
+         !settings.ignored_objects.empty();
+}
+
+bool has_deep(const InputSettings& settings) { return settings.deep != FileList{}; }
+
+bool has_hidden_sources(const InputSettings& settings) {
+  const bool has_files = settings.behind != FileList{} || has_deep(settings);
+  return has_files || settings.around > 0 || settings.around_all || settings.other_views;
+}
+
+std::vector<std::string> input_files(const InputSettings& settings) {
+  std::vector<std::string> files{settings.camera, settings.motion};
+  for (const auto& file : plane_file_options())
+    if (file.path != &InputSettings::normal || wants_normals(settings)) files.push_back(file.of(settings));
+  return files;
 }
 
 }  // namespace alcove

@@ -1,4 +1,5 @@
-// The planes that a frame's files hold, before any pass: ONE table of what each is, and arrays with one entry for each.
+// The planes that a frame's files hold, before any pass: ONE table of what each is, and arrays with one entry for each;
+// and the files that the settings name.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -34,7 +35,6 @@ struct FileOption {
   FileList InputSettings::*list = nullptr;  // instead of a path
   std::size_t entry = 0;                    // of the list
 
-  bool exists() const { return path || list; }
   std::string& of(InputSettings& settings) const { return path ? settings.*path : (settings.*list)[entry]; }
   const std::string& of(const InputSettings& settings) const { return path ? settings.*path : (settings.*list)[entry]; }
 };
@@ -137,5 +137,31 @@ static_assert(rows_are_in_order());
 
 /// Every option that names a file of planes, INPUT first; one that names several, once for each.
 std::vector<FileOption> plane_file_options();
+
+// Files.
+
+/// The file that a frame is called after: its INPUT, or else its depth, its positions or its deep samples.
+const std::string& main_input(const InputSettings& settings);
+
+/// Whether the frame's normals are read; `--normal none` leaves them out.
+bool wants_normals(const InputSettings& settings);
+
+/// Whether AO is wanted in parts of the frame only.
+bool wants_matte(const InputSettings& settings);
+
+/// Whether a text names a picture by its ending, rather than objects.
+bool names_picture(const std::string& text);
+
+/// Whether some surfaces are no occluders.
+bool chooses_occluders(const InputSettings& settings);
+
+/// Whether --deep names a file.
+bool has_deep(const InputSettings& settings);
+
+/// Whether anything is named that may show more than the first surface of each pixel.
+bool has_hidden_sources(const InputSettings& settings);
+
+/// All files that a frame reads; empty names where it has none.
+std::vector<std::string> input_files(const InputSettings& settings);
 
 }  // namespace alcove

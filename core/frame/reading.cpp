@@ -1,18 +1,222 @@
-// What follows from a reading: which meaning other frames take over, and the map from its values to depth.
+// The coefficients of the map from each kind of depth, and what follows from a reading.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/frame/reading.h"
 
 #include <algorithm>
+#include <cmath>
 
+#include "core/base/error.h"
+#include "core/base/option_words.h"
 #include "core/base/windows.h"
+#include "kernels/geometry.h"
 
 namespace alcove {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+double near_of(DepthKind kind, const DepthRange& range) {
+  if (!range.near) fail(ErrorKind::usage, "{} depth needs the distance of the near plane: give --near", word_of(kind));
+  return *range.near;
+}
+
+double far_of(DepthKind kind, const DepthRange& range, bool may_be_infinite) {
+  if (!range.far)
+    fail(ErrorKind::usage, "{} depth needs the distance of the far plane: give --far{}", word_of(kind),
+         may_be_infinite ? ", --far inf where there is none" : "");
+  if (std::isinf(*range.far) && !may_be_infinite)
+    fail(ErrorKind::usage, "{} depth needs a finite --far", word_of(kind));
+  return *range.far;
+}
+
+/// Counts only values strictly between the near and the far plane's as surfaces. `from` is the one of the two that
+/// depths are counted from.
+void count_between(DepthMap& map, double near_value, double far_value, double from) {
+  map.sky_below = std::min(near_value, far_value);
+  map.sky_above = std::max(near_value, far_value);
+  map.origin = from;
+}
+
+/// Sets the map of a z-buffer. Depth is counted from the far plane, where perspective depth is densest: the difference
+/// is exact there, and 1 minus it would not be.
+void set_device(DepthMap& map, const DepthRange& range, bool orthographic, double scale) {
+  const double n = near_of(DepthKind::device, range);
+  if (!(n > 0) && !orthographic) fail(ErrorKind::usage, "device depth needs a near plane above 0, and --near is {}", n);
+  const double f = far_of(DepthKind::device, range, !orthographic);
+  if (!(n < f))
+    fail(ErrorKind::usage, "the near plane must be nearer than the far plane, --near {} is not below --far {}", n, f);
+  const double low = range.device == DeviceRange::zero_to_one ? 0 : -1;
+  const double near_value = range.reversed ? 1 : low;
+  const double far_value = range.reversed ? low : 1;
+  count_between(map, near_value, far_value, far_value);
+  map.form = orthographic ? kDepthLinear : kDepthReciprocal;
+  const double at_near = orthographic ? n * scale : 1 / (n * scale);
+  const double at_far = orthographic ? f * scale : 1 / (f * scale);
+  map.base = at_far;
+  map.slope = (at_near - at_far) / (near_value - far_value);
+}
+
+void set_normalized(DepthMap& map, const DepthRange& range, double scale, double sky) {
+  const double n = range.near.value_or(0);
+  const double f = far_of(DepthKind::normalized, range, false);
+  if (!(n < f))
+    fail(ErrorKind::usage, "the near plane must be nearer than the far plane, --near {} is not below --far {}", n, f);
+  const double near_value = range.reversed ? 1 : 0;
+  count_between(map, near_value, 1 - near_value, near_value);
+  map.base = n * scale;
+  map.slope = (f - n) * scale * (1 - 2 * near_value);
+  if (range.reversed ? range.goes_beyond_far : range.goes_before_near) map.sky_below = -kInfinity;
+  if (range.reversed ? range.goes_before_near : range.goes_beyond_far) map.sky_above = sky;
+}
+
+void set_log(DepthMap& map, const DepthRange& range, double scale) {
+  const double near_value = range.reversed ? 1 : 0;
+  count_between(map, near_value, 1 - near_value, near_value);
+  map.form = kDepthExponential;
+  map.base = scale / range.log_constant;
+  map.slope = std::log1p(range.log_constant * far_of(DepthKind::log, range, false)) * (1 - 2 * near_value);
+}
+
+void set_position(DepthMap& map, PositionSpace space, bool negative, const Camera& camera, double scale) {
+  map.form = kDepthPosition;
+  map.sky_below = -kInfinity;
+  if (space == PositionSpace::view) {
+    map.axis = {0, 0, negative != camera.left_handed ? scale : -scale};
+    return;
+  }
+  if (!camera.view_from_world)
+    fail(ErrorKind::usage,
+         "world positions need a camera with world_to_camera: give a --camera file with it, or --set "
+         "position-space=view");
+  for (std::size_t i = 0; i < 3; i++) map.axis[i] = -scale * (*camera.view_from_world)[2][i];
+  map.base = -camera.view_from_world_offset[2];
+  const auto& offset = camera.view_from_world_offset;
+  map.eye_distance = std::hypot(offset[0], offset[1], offset[2]);
+}
+
+}  // namespace
+
+DepthMap depth_map(DepthKind kind, const DepthRange& range, PositionSpace space, const Camera& camera, double scale,
+                   double sky) {
+  DepthMap map;
+  map.sky_depth = sky * scale;
+  switch (kind) {
+    case DepthKind::automatic:
+    case DepthKind::planar:
+    case DepthKind::ray:
+    case DepthKind::inverse:
+      map.form = kind == DepthKind::inverse ? kDepthReciprocal : kDepthLinear;
+      map.along_ray = kind == DepthKind::ray && !camera.orthographic;
+      map.slope = (range.negative ? -1 : 1) * (kind == DepthKind::inverse ? 1 / scale : scale);
+      if (kind != DepthKind::inverse) map.sky_above = sky;
+      if (range.negative) {  // what is beyond the sky is told by its distance
+        map.sky_below = -kInfinity;
+        map.sky_above = 0;
+      }
+      break;
+    case DepthKind::device: set_device(map, range, camera.orthographic, scale); break;
+    case DepthKind::normalized: set_normalized(map, range, scale, sky); break;
+    case DepthKind::log: set_log(map, range, scale); break;
+    case DepthKind::position: set_position(map, space, range.negative, camera, scale); break;
+  }
+  return map;
+}
+
+double planar_depth(const DepthMap& map, const std::array<double, 3>& raw, double ray_length) {
+  double z = 0;
+  if (map.form == kDepthPosition) {
+    if (raw[0] == 0 && raw[1] == 0 && raw[2] == 0) return kInfinity;
+    z = map.base + map.axis[0] * raw[0] + map.axis[1] * raw[1] + map.axis[2] * raw[2];
+  } else {
+    if (!(raw[0] > map.sky_below && raw[0] < map.sky_above)) return kInfinity;
+    const double value = map.slope * (raw[0] - map.origin);
+    switch (map.form) {
+      case kDepthReciprocal: z = 1 / (map.base + value); break;
+      case kDepthExponential: z = map.base * std::expm1(value); break;
+      default: z = map.base + value;
+    }
+  }
+  if (!(z > 0 && z < map.sky_depth)) return kInfinity;
+  return map.along_ray ? z / ray_length : z;
+}
+
+bool is_between_planes(DepthKind kind) {
+  return kind == DepthKind::device || kind == DepthKind::normalized || kind == DepthKind::log;
+}
+
+bool is_distance(DepthKind kind) { return kind == DepthKind::planar || kind == DepthKind::ray; }
+
+std::vector<std::string> unused_range_options(const DepthRange& said, DepthKind kind) {
+  const bool is_device = kind == DepthKind::device, is_log = kind == DepthKind::log;
+  std::vector<std::string> unused;
+  if (said.near && (is_log || !is_between_planes(kind))) unused.emplace_back("--near");
+  if (said.far && !is_between_planes(kind)) unused.emplace_back("--far");
+  if (said.reversed && !is_between_planes(kind)) unused.emplace_back("--reversed-z");
+  if (said.device != DeviceRange::zero_to_one && !is_device) unused.emplace_back("--set device-range");
+  if (said.log_constant != DepthRange{}.log_constant && !is_log) unused.emplace_back("--set log-constant");
+  return unused;
+}
+
+void refuse_range_options(const std::string& depth, std::span<const std::string> options, DepthKind kind) {
+  const bool is_one = options.size() == 1;
+  fail(ErrorKind::usage,
+       "{}: {} {} no effect, since the depth is read as {}: leave {} out, or say with --depth-kind what it is", depth,
+       fmt::join(options, ", "), is_one ? "has" : "have", word_of(kind), is_one ? "it" : "them");
+}
+
+bool is_all_sky(const DepthMap& map, std::span<const float> raw) {
+  if (map.form == kDepthPosition) return std::ranges::all_of(raw, [](float x) { return x == 0; });
+  const auto below = float(map.sky_below);
+  const auto above = float(map.sky_above);
+  return std::ranges::all_of(raw, [&](float x) { return x >= above || x == below; });
+}
+
+double step_of(std::span<const float> raw) {
+  constexpr std::size_t kSampled = 4096;
+  constexpr std::size_t kLeastOnLevels = 64;  // fewer may lie on the levels of integers by chance
+  constexpr double kExact = 0.02;             // of a step: how near to a level a float is that can tell
+  const std::size_t sparse = raw.size() / kSampled + 1;
+  for (const int bits : {16, 24}) {
+    const double levels = std::exp2(bits) - 1;
+    std::size_t values = 0;
+    bool is_on_levels = true;
+    for (std::size_t i = 0; i < raw.size() && is_on_levels; i += sparse) {
+      const double level = raw[i] * levels;
+      if (!(raw[i] > 0 && raw[i] < 1) || level * kFloatPrecision > 0.5 * kExact) continue;
+      is_on_levels = std::abs(level - std::round(level)) < kExact;
+      values++;
+    }
+    if (is_on_levels && values >= kLeastOnLevels) return 1 / levels;
+  }
+  return 0;
+}
+
+DepthPrecision depth_precision(const DepthMap& map, double raw_precision, double step) {
+  constexpr double kRenderers = 0x1p-16;  // measured: up to 8e-6; with room for what bounds of tiles lose
+  // A position's coordinates, each known to a part of itself, and their products are added up.
+  const double from_origin = map.form == kDepthPosition ? 2 * map.eye_distance : 0;
+  const double slope = std::abs(map.slope);
+  const double rest =
+      raw_precision * std::max(from_origin, std::abs(map.slope * map.origin - map.base)) + 0.5 * step * slope;
+  DepthPrecision precision;
+  precision.at[1] = std::max(kRenderers, raw_precision);
+  switch (map.form) {
+    case kDepthReciprocal: precision.at[2] = rest; break;
+    case kDepthExponential:
+      precision.at[0] = (raw_precision + 0.5 * step) * map.base * slope;
+      precision.at[1] = std::max(kRenderers, (raw_precision + 0.5 * step) * slope);
+      break;
+    default: precision.at[0] = rest;
+  }
+  return precision;
+}
+
 namespace {
 
 /// Raw depth at or beyond it is sky. Values that passed through half floats end where those end. `found`: the sky that
 /// the pixels show, of distances.
 double sky_of(DepthKind kind, bool is_half, double sky, double found = std::numeric_limits<double>::infinity()) {
-  if (kind != DepthKind::planar && kind != DepthKind::ray) return sky;
+  if (!is_distance(kind)) return sky;
   return std::min({sky, found, is_half ? kLargestHalf : sky});
 }
 

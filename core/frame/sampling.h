@@ -3,7 +3,6 @@
 #pragma once
 
 #include <array>
-#include <cmath>
 #include <span>
 
 #include "core/base/image.h"
@@ -36,12 +35,12 @@ void for_each_sampled(const View& view, std::span<const float> depth, const Wind
     const int column = whole.x + int(i % std::size_t(whole.width)) - window.x,
               row = whole.y + int(i / std::size_t(whole.width)) - window.y;
     if (column < 0 || column >= window.width || row < 0 || row >= window.height) continue;
-    SampledPixel pixel{i / step, std::size_t(row) * std::size_t(window.width) + std::size_t(column), {}, 1};
+    SampledPixel pixel{i / step,
+                       std::size_t(row) * std::size_t(window.width) + std::size_t(column),
+                       {},
+                       ray_length(view, column, row)};
     for (std::size_t axis = 0; axis < 3 && pixel.at + axis * pixels < depth.size(); axis++)
       pixel.values[axis] = depth[pixel.at + axis * pixels];
-    const double x = (double(column) + 0.5 - view.center.x) * view.tangent_per_pixel.x;
-    const double y = (double(row) + 0.5 - view.center.y) * view.tangent_per_pixel.y;
-    if (!view.orthographic) pixel.ray = std::sqrt(1 + x * x + y * y);
     visit(pixel);
   }
 }

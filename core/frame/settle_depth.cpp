@@ -5,11 +5,11 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/base/option_words.h"
 #include "core/frame/evidence.h"
 #include "core/frame/flatness.h"
 #include "core/frame/sampling.h"
 #include "core/frame/settle.h"
-#include "core/frame/settlement.h"
 
 namespace alcove {
 namespace {
@@ -99,11 +99,9 @@ class DepthSettlement : private Settlement {
     find_sky();
   }
 
-  bool is_distance() const { return source_.depth_kind == DepthKind::planar || source_.depth_kind == DepthKind::ray; }
-
   /// Distances below 0 are those of cameras that look along -z. One value above 0 beside them is their sky.
   void settle_sign() {
-    if (!is_distance() && source_.depth_kind != DepthKind::inverse) return;
+    if (!is_distance(source_.depth_kind) && source_.depth_kind != DepthKind::inverse) return;
     const bool are_errors = double(below_0_.count) <= kFewErrors * double(below_0_.count + above_0_.count);
     if (!below_0_.varies() || are_errors || !above_0_.is_mostly_one()) return;
     source_.depth_range.negative = true;
@@ -187,7 +185,7 @@ class DepthSettlement : private Settlement {
     constexpr double kFar = 2;             // times as far as all others
     constexpr double kAll = 0.98;          // of the pixels of the sky have no normal, and of the others have one
     constexpr double kBlended = 0.1;       // for each pixel of the sky; edges lie in between
-    if (!is_distance() || settings_.sky != InputSettings{}.sky) return;
+    if (!is_distance(source_.depth_kind) || settings_.sky != InputSettings{}.sky) return;
     const double limit = depth_map_of(source_).sky_depth / source_.depth_scale;
     const std::size_t step = depth_.size() / kSampled + 1;
     float most = 0, next = 0;
@@ -241,7 +239,7 @@ class DepthSettlement : private Settlement {
   }
 
   std::string straight(const DepthScore& score) const {
-    return fmt::format("as {} alone {:.0f} % of the smooth places are flat", name_of(score.kind), 100 * score.straight);
+    return fmt::format("as {} alone {:.0f} % of the smooth places are flat", word_of(score.kind), 100 * score.straight);
   }
 
   /// Reads the depth as the program that wrote the frame, or most programs, write it. It is no guess where the user
@@ -250,16 +248,15 @@ class DepthSettlement : private Settlement {
     source_.depth_kind = source_.usual_depth_kind;
     const std::string by =
         source_.rules_by.empty() ? "" : fmt::format("{} writes it ({}); ", source_.rules->name, source_.rules_by);
-    guess("depth kind", name_of(source_.depth_kind), by + why, "--depth-kind", false);
+    guess("depth kind", word_of(source_.depth_kind), by + why, "--depth-kind", false);
   }
 
   /// Decides the kind that nobody says: by flat surfaces, else by positions, else by normals, else by the program, else
   /// by what is usual.
   void settle_kind() {
     const DepthKind usual = source_.usual_depth_kind;
-    const bool between_planes = usual == DepthKind::device || usual == DepthKind::normalized || usual == DepthKind::log;
-    if (between_planes && values_.least >= 0 && values_.most <= 1) return take_usual("all in 0 to 1");
-    if (between_planes) source_.usual_depth_kind = source_.depth_kind = DepthKind::planar;
+    if (is_between_planes(usual) && values_.least >= 0 && values_.most <= 1) return take_usual("all in 0 to 1");
+    if (is_between_planes(usual)) source_.usual_depth_kind = source_.depth_kind = DepthKind::planar;
     refuse_signs();
     const auto& scores = source_.depth_scores;
     const bool tells = !scores.empty() && scores[0].straight >= kLeastStraight;
@@ -283,12 +280,12 @@ class DepthSettlement : private Settlement {
     if (expected.straight >= kAsGood * best.straight) return take_usual(why);
     if (best.straight < kClear * second.straight)
       fail(ErrorKind::input, "{}: the depth may be {} or {} ({}): say which with --depth-kind {} or --depth-kind {}",
-           depth_path(), name_of(best.kind), name_of(second.kind), why, name_of(best.kind), name_of(second.kind));
+           depth_path(), word_of(best.kind), word_of(second.kind), why, word_of(best.kind), word_of(second.kind));
     source_.depth_kind = best.kind;
     if (best.kind == DepthKind::inverse && values_.least >= 0 && is_fraction()) return settle_device(why);
     // A plane's distances are affine in the picture without perspective.
     const bool may_be_orthographic = best.kind == DepthKind::inverse && (settings_.fov || settings_.focal);
-    guess("depth kind", name_of(best.kind),
+    guess("depth kind", word_of(best.kind),
           why + (may_be_orthographic
                      ? "; distances of an orthographic camera would look the same: give --ortho-width for one"
                      : ""),
@@ -300,7 +297,7 @@ class DepthSettlement : private Settlement {
     const auto kind = kind_by_positions(source_, settings_, depth_);
     if (!kind) return false;
     source_.depth_kind = *kind;
-    guess("depth kind", name_of(*kind), "so it is that of the positions; " + but, "--depth-kind",
+    guess("depth kind", word_of(*kind), "so it is that of the positions; " + but, "--depth-kind",
           *kind != source_.usual_depth_kind && source_.usual_depth_kind != DepthKind::inverse);
     return true;
   }
@@ -319,7 +316,7 @@ class DepthSettlement : private Settlement {
       take_passed_on(kind, why);
     } else {
       source_.depth_kind = kind;
-      guess("depth kind", name_of(kind), why, "--depth-kind", kind != usual);
+      guess("depth kind", word_of(kind), why, "--depth-kind", kind != usual);
     }
     return true;
   }
@@ -327,7 +324,7 @@ class DepthSettlement : private Settlement {
   /// Takes depth of a program that writes 1/z itself and passes on what other programs wrote. Neither is unusual.
   void take_passed_on(DepthKind kind, const std::string& why) {
     source_.depth_kind = kind;
-    guess("depth kind", name_of(kind),
+    guess("depth kind", word_of(kind),
           fmt::format("{} ({}) writes 1/z, and passes on what others wrote; {}", source_.rules->name, source_.rules_by,
                       why),
           "--depth-kind", false);
@@ -346,7 +343,7 @@ class DepthSettlement : private Settlement {
   /// Says of a kind that it is a guess.
   void note_assumption(const std::string& why) {
     note(NoteCode::assumed_reading,
-         fmt::format("depth is read as {}, {}: {} (--depth-kind)", name_of(source_.depth_kind),
+         fmt::format("depth is read as {}, {}: {} (--depth-kind)", word_of(source_.depth_kind),
                      source_.rules_by.empty() || source_.rules->depth_kind == DepthKind::automatic
                          ? "the usual kind"
                          : "as " + source_.rules->name + " writes it",
@@ -354,8 +351,8 @@ class DepthSettlement : private Settlement {
   }
 
   std::string text_of(const std::vector<DepthScore>& scores) const {
-    return fmt::format("{}, as {} {:.0f} %, as {} {:.0f} %", straight(scores[0]), name_of(scores[1].kind),
-                       100 * scores[1].straight, name_of(scores[2].kind), 100 * scores[2].straight);
+    return fmt::format("{}, as {} {:.0f} %, as {} {:.0f} %", straight(scores[0]), word_of(scores[1].kind),
+                       100 * scores[1].straight, word_of(scores[2].kind), 100 * scores[2].straight);
   }
 
   /// The share of the normals that agree with the depth if it is of that kind, in their best space; 0 without normals.
@@ -364,9 +361,9 @@ class DepthSettlement : private Settlement {
     const NormalStatistics n = normal_statistics(normal_, depth_, depth_map_of(source_), step_);
     Reading reading = source_;
     reading.depth_kind = kind;
-    const auto scores = score_normals(
-        {normal_, NormalEncoding::signed_float, n.unorm_unit_share > n.unit_share, depth_, depth_map_of(reading)},
-        source_.camera, view_);
+    reading.normal_encoding = NormalEncoding::signed_float;
+    reading.normal_unorm = n.unorm_unit_share > n.unit_share;
+    const auto scores = score_normals({reading, normal_, depth_});
     return scores.empty() ? 0 : scores[0].agreement;
   }
 
@@ -419,8 +416,7 @@ class DepthSettlement : private Settlement {
 
   /// It is all that is said where the program is known to write distances: those of a macro scene are below 1.
   void note_fractions() {
-    const DepthKind kind = source_.usual_depth_kind;
-    if (kind != DepthKind::planar && kind != DepthKind::ray) return;
+    if (!is_distance(source_.usual_depth_kind)) return;
     note(NoteCode::depth_below_1,
          fmt::format("{} and is read as distances of less than 1 scene unit; where it is normalized, give {}",
                      text_of_range(), normalized_line(false)));
@@ -481,20 +477,20 @@ class DepthSettlement : private Settlement {
 
   /// Notes distances that look like a part of a range. They are read as distances all the same.
   void doubt_fractions(const std::vector<DepthScore>& scores) {
-    if (!is_distance() || !is_fraction()) return;
+    if (!is_distance(source_.depth_kind) || !is_fraction()) return;
     const double straight = scores.empty() ? 0 : scores[0].straight, from_1 = straightness_from_1();
     if (from_1 >= kLeastStraight && from_1 > kClear * straight)
       note(NoteCode::said_otherwise,
            fmt::format("{}, and flat surfaces are straight on {:.0f} % as 1 - depth, on {:.0f} % as depth: it is read "
                        "as {}, as --depth-kind, --source or the camera file says; where it is normalized, give {}",
-                       text_of_range(), 100 * from_1, 100 * straight, name_of(source_.depth_kind),
+                       text_of_range(), 100 * from_1, 100 * straight, word_of(source_.depth_kind),
                        normalized_line(true)));
     else if (settings_.depth_kind == DepthKind::automatic && source_.rules->depth_kind == DepthKind::automatic)
       note(NoteCode::depth_below_1,
            fmt::format("{} and is read as {}, as the camera file says; where it is normalized, give {}; "
                        "--depth-kind {} says that these are distances",
-                       text_of_range(), name_of(source_.depth_kind), normalized_line(false),
-                       name_of(source_.depth_kind)));
+                       text_of_range(), word_of(source_.depth_kind), normalized_line(false),
+                       word_of(source_.depth_kind)));
   }
 
   /// Notes where the pixels speak against the kind of depth that is said. It is read so all the same.
@@ -513,8 +509,8 @@ class DepthSettlement : private Settlement {
     source_.notes.push_back(
         {NoteCode::said_otherwise,
          fmt::format("depth is read as {}, as --depth-kind, --source or the camera file says, but {}: is it {}?",
-                     name_of(source_.depth_kind), straight(scores[0]),
-                     scores[0].kind == DepthKind::inverse ? "inverse or device" : name_of(scores[0].kind))});
+                     word_of(source_.depth_kind), straight(scores[0]),
+                     scores[0].kind == DepthKind::inverse ? "inverse or device" : word_of(scores[0].kind))});
   }
 
   /// The scores of the distances that the depth gives if it is read as is said.

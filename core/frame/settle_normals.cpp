@@ -1,18 +1,232 @@
-// Scores the ways in which a frame's normals may be read, chooses one, and refuses what depth and camera refute.
+// Scores the ways in which a frame's normals may be read, chooses one, and refuses what depth and camera refute: other
+// cameras and the usual alterations of pictures are tried.
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
 #include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
 
 #include "core/base/error.h"
-#include "core/frame/altered_normals.h"
+#include "core/base/option_words.h"
+#include "core/frame/camera.h"
 #include "core/frame/evidence.h"
-#include "core/frame/findings.h"
-#include "core/frame/other_cameras.h"
 #include "core/frame/sampling.h"
 #include "core/frame/settle.h"
-#include "core/frame/settlement.h"
 
 namespace alcove {
 namespace {
+
+// What was done to normals that have the lengths of no vectors.
+
+/// Of so many normals undoing the alteration must make vectors.
+constexpr double kProven = 0.9;
+
+// The curve of sRGB, which goes on below 0 with the other sign.
+double linear_of(double v) {
+  const double a = std::abs(v);
+  return std::copysign(a <= 0.04045 ? a / 12.92 : std::pow((a + 0.055) / 1.055, 2.4), v);
+}
+double curved_of(double v) {
+  const double a = std::abs(v);
+  return std::copysign(a <= 0.0031308 ? a * 12.92 : 1.055 * std::pow(a, 1 / 2.4) - 0.055, v);
+}
+
+/// Every so many pixels of planes.
+std::vector<float> sparse(std::span<const float> planes, std::size_t pixels) {
+  std::vector<float> some;
+  for (std::size_t plane = 0; plane < planes.size(); plane += pixels)
+    for (std::size_t i = 0; i < pixels; i += kSparse) some.push_back(planes[plane + i]);
+  return some;
+}
+
+/// Gives what was done to signed normals or to 0.5 + 0.5 n if undoing it gives nearly all of them unit length: a
+/// picture's curve, or an exposure. It ends a sentence that begins with "they look like". `normal` has three planes.
+std::optional<std::string> alteration_of(std::span<const float> normal, std::span<const float> raw,
+                                         const DepthMap& map) {
+  const std::size_t pixels = normal.size() / 3;
+  const std::vector<float> some = sparse(normal, pixels), depth = sparse(raw, pixels);
+  const auto with = [&](const auto& undo) {
+    std::vector<float> undone(some.size());
+    for (std::size_t i = 0; i < some.size(); i++) undone[i] = float(undo(some[i]));
+    return normal_statistics(undone, depth, map);
+  };
+  const auto curve = [&](const NormalStatistics& s, const char* way) -> std::optional<std::string> {
+    if (s.unorm_unit_share > kProven) return fmt::format("0.5 + 0.5 n that was converted {}", way);
+    if (s.unit_share > kProven) return fmt::format("vectors that were converted {}", way);
+    return std::nullopt;
+  };
+  if (auto found = curve(with(curved_of), "from sRGB to linear, as colours are")) return found;
+  if (auto found = curve(with(linear_of), "from linear to sRGB, as colours are")) return found;
+  for (const double exposure : {0.25, 0.5, 2.0, 4.0})
+    if (with([&](double v) { return v / exposure; }).unorm_unit_share > kProven)
+      return fmt::format("0.5 + 0.5 n times {}", exposure);
+  return std::nullopt;
+}
+
+// The mistakes that cameras come with, each undone.
+
+/// A camera that was tried: what is wrong with the one that was given if this one is right, and its score.
+struct OtherCamera {
+  std::string what;  // a sentence that says what to do, without a full stop
+  NormalScore score;
+};
+
+/// Of the picture's width or height: a principal point that far from the centre is no rounding.
+constexpr double kOffCentre = 0.02;
+
+struct Hypothesis {
+  std::string what;
+  NormalPlanes planes;
+};
+
+/// The hypothesis that agrees best, where the frame can tell.
+std::optional<OtherCamera> best_of(const std::vector<Hypothesis>& hypotheses, const NormalScore& as) {
+  std::optional<OtherCamera> best;
+  for (const auto& [what, planes] : hypotheses)
+    if (const auto score = score_normals_as(as.space, as.flips, planes))
+      if (!best || score->close > best->score.close) best = OtherCamera{what, *score};
+  return best;
+}
+
+/// The same camera with the angles of its .chan file in another order.
+std::vector<Hypothesis> other_rotations(const NormalPlanes& planes) {
+  std::vector<Hypothesis> turned;
+  for (const char* rotation : kChanRotations) {
+    if (!planes.camera.chan_angles) break;
+    turned.push_back({fmt::format("its angles fit in another order: give --chan-rotation {}", rotation), planes});
+    turned.back().planes.camera.view_from_world = view_by_angles(*planes.camera.chan_angles, rotation);
+  }
+  return turned;
+}
+
+/// The same camera with its matrix replaced.
+std::vector<Hypothesis> turned_worlds(const NormalPlanes& planes) {
+  if (!planes.camera.view_from_world) return {};
+  constexpr Matrix3 kOpenCv{{{1, 0, 0}, {0, -1, 0}, {0, 0, -1}}};
+  constexpr Matrix3 kYUp{{{1, 0, 0}, {0, 0, -1}, {0, 1, 0}}};
+  const Matrix3 given = *planes.camera.view_from_world, inverse = transposed(given);
+  std::vector<Hypothesis> turned;
+  const auto add = [&](const std::string& what, const Matrix3& matrix) {
+    turned.push_back({what, planes});
+    turned.back().planes.camera.view_from_world = matrix;
+  };
+  add("its world_to_camera looks like camera_to_world: give the inverse", inverse);
+  add("its world_to_camera looks like that of a camera with y down that looks along +z, as OpenCV's: negate its second "
+      "and its third row",
+      product(kOpenCv, given));
+  add("its world_to_camera looks like camera_to_world of a camera with y down that looks along +z, as OpenCV's: give "
+      "the inverse, with its second and its third row negated",
+      product(kOpenCv, inverse));
+  for (const Matrix3& up : {kYUp, transposed(kYUp)})
+    add("its world_to_camera looks like that of a world with another axis up than the normals have (y, or z): give it "
+        "for the world of the normals",
+        product(given, up));
+  std::ranges::move(other_rotations(planes), std::back_inserter(turned));
+  return turned;
+}
+
+/// The same camera on a picture whose rows or columns run the other way.
+std::vector<Hypothesis> turned_pictures(const NormalPlanes& planes) {
+  NormalPlanes upside_down = planes, mirrored = planes;
+  upside_down.view.center.y = float(planes.view.size.y) - planes.view.center.y;
+  upside_down.view.tangent_per_pixel.y = -planes.view.tangent_per_pixel.y;
+  mirrored.view.center.x = float(planes.view.size.x) - planes.view.center.x;
+  mirrored.view.tangent_per_pixel.x = -planes.view.tangent_per_pixel.x;
+  return {{"its rows seem to run from the bottom to the top: turn the picture upside down", upside_down},
+          {"its columns seem to run from the right to the left: mirror the picture", mirrored}};
+}
+
+/// The rotation by which a turn, in radians about an axis, is undone.
+Matrix3 turned_back(const Vector3& turn) {
+  const double angle = length(turn);
+  if (angle == 0) return {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+  const Vector3 axis = scaled(turn, -1 / angle);
+  const double s = std::sin(angle), c = std::cos(angle);
+  Matrix3 rotation;
+  for (std::size_t column = 0; column < 3; column++) {
+    Vector3 unit{};
+    unit[column] = 1;
+    const Vector3 across = cross(axis, unit);
+    for (std::size_t row = 0; row < 3; row++)
+      rotation[row][column] = c * unit[row] + s * across[row] + (1 - c) * axis[row] * axis[column];
+  }
+  return rotation;
+}
+
+bool is_off(double centre, int size) { return std::abs(2 * centre - size) > 2 * kOffCentre * size; }
+
+/// Whether the principal point is so far from the picture's centre that it matters on which side.
+bool is_off_centre(const Camera& camera) { return is_off(camera.cx, camera.width) || is_off(camera.cy, camera.height); }
+
+/// Gives the best of the usual mistakes by which a camera turns the world or the picture: the inverse of its matrix,
+/// axes of another convention, another axis up, angles in another order, a picture that is upside down. None where too
+/// little of the frame is smooth. `as` is the reading of the normals that is tried.
+std::optional<OtherCamera> best_turned_camera(const NormalPlanes& planes, const NormalScore& as) {
+  std::vector<Hypothesis> hypotheses = turned_pictures(planes);
+  if (as.space == NormalSpace::world) std::ranges::move(turned_worlds(planes), std::back_inserter(hypotheses));
+  return best_of(hypotheses, as);
+}
+
+/// Gives the camera that is turned by a small angle within a world, whose normals then look like those of view space.
+/// `as` is how they agree in view space. None where too little of the frame is smooth.
+std::optional<OtherCamera> slightly_turned_camera(NormalPlanes planes, const NormalScore& as) {
+  NormalScore turned = as;
+  planes.camera.view_from_world = view_from_normal(planes.camera, NormalSpace::view, {});
+  // The turn is that of small ones: a second step leaves less than a hundredth of it.
+  for (int step = 0; step < 2; step++) {
+    planes.camera.view_from_world = product(turned_back(turned.turn), *planes.camera.view_from_world);
+    const auto score = score_normals_as(NormalSpace::world, as.flips, planes);
+    if (!score) return std::nullopt;
+    turned = *score;
+  }
+  return OtherCamera{fmt::format("a camera that is turned by about {:.0f} degrees", as.turn_degrees()), turned};
+}
+
+/// Gives the best of the orders in which the angles of a .chan file may turn the camera; none for other cameras, and
+/// for normals in view space.
+std::optional<OtherCamera> best_other_rotation(const NormalPlanes& planes, const NormalScore& as) {
+  if (as.space != NormalSpace::world) return std::nullopt;
+  return best_of(other_rotations(planes), as);
+}
+
+/// Gives the best of the cameras with the principal point on the other side of the picture's centre, by x, by y or by
+/// both, or in the centre.
+std::optional<OtherCamera> best_other_point(const NormalPlanes& planes, const NormalScore& as) {
+  const Camera& camera = planes.camera;
+  const double x = camera.width - camera.cx, y = camera.height - camera.cy;
+  const float by_x = float(x - camera.cx), by_y = float(y - camera.cy);
+  const bool x_is_off = is_off(camera.cx, camera.width), y_is_off = is_off(camera.cy, camera.height);
+  std::vector<Hypothesis> hypotheses;
+  const auto add = [&](const std::string& what, float dx, float dy) {
+    auto& center = hypotheses.emplace_back(Hypothesis{what, planes}).planes.view.center;
+    center = {center.x + dx, center.y + dy};
+  };
+  const std::string mirrored = "its principal point looks mirrored: try ";
+  if (x_is_off) add(fmt::format("{}\"cx\": {:.6g}", mirrored, x), by_x, 0);
+  if (y_is_off) add(fmt::format("{}\"cy\": {:.6g}", mirrored, y), 0, by_y);
+  if (x_is_off && y_is_off) add(fmt::format("{}\"cx\": {:.6g}, \"cy\": {:.6g}", mirrored, x, y), by_x, by_y);
+  add(fmt::format("its principal point looks wrong: try \"cx\": {}, \"cy\": {}, the centre", 0.5 * camera.width,
+                  0.5 * camera.height),
+      0.5f * by_x, 0.5f * by_y);
+  return best_of(hypotheses, as);
+}
+
+/// Gives the best of a few wider and narrower fields of view; none for an orthographic camera.
+std::optional<OtherCamera> best_other_width(const NormalPlanes& planes, const NormalScore& as) {
+  const Camera& camera = planes.camera;
+  if (camera.orthographic) return std::nullopt;
+  std::vector<Hypothesis> hypotheses;
+  for (const double factor : {0.5, 0.7, 0.85, 1.2, 1.4, 2.0}) {
+    const double degrees = 2 * std::atan(0.5 * camera.width / camera.fx / factor) * 180 / std::numbers::pi;
+    hypotheses.push_back({fmt::format("a field of view of about {:.0f} degrees", degrees), planes});
+    auto& tangent = hypotheses.back().planes.view.tangent_per_pixel;
+    tangent = {float(tangent.x / factor), float(tangent.y / factor)};
+  }
+  return best_of(hypotheses, as);
+}
+
+// The normals.
 
 /// Where the normals agree with depth less than this part of the best agreement, another reading of them is chosen, or
 /// noted.
@@ -53,14 +267,11 @@ class NormalSettlement : private Settlement {
   }
 
  private:
-  static const char* name_of(NormalEncoding encoding, bool unorm) {
-    if (encoding == NormalEncoding::octahedral) return "octahedral";
-    if (encoding == NormalEncoding::spheremap) return "spheremap";
-    return unorm ? "unorm" : "signed";
-  }
-
   std::vector<NormalScore> scores_of(NormalEncoding encoding, bool unorm) const {
-    return score_normals({normal_, encoding, unorm, depth_, depth_map_of(source_)}, source_.camera, view_);
+    NormalPlanes read = planes();
+    read.encoding = encoding;
+    read.unorm = unorm;
+    return score_normals(read);
   }
 
   static bool agrees(const NormalScore& score) {
@@ -95,9 +306,9 @@ class NormalSettlement : private Settlement {
     const bool tells = has_lengths(source_) && std::max(unit, otherwise) > kUnit;
     const bool differs = !tells && compare_encodings(in_unit_range, why);
     if (!is_open) return;
-    const std::string name = name_of(source_.normal_encoding, source_.normal_unorm);
+    const std::string name = encoding_name(source_.normal_encoding, source_.normal_unorm);
     if (tells && unit > kUnit && otherwise < kNotUnit)
-      prove("normal encoding", name, why, "--normal-encoding", source_.normal_unorm);
+      take_down("normal encoding", name, why, "--normal-encoding", source_.normal_unorm, true);
     else
       guess("normal encoding", name, why, "--normal-encoding", differs || source_.normal_unorm);
   }
@@ -119,7 +330,7 @@ class NormalSettlement : private Settlement {
     for (const auto& score : scores) {
       if (to_string(score.flips) != "none" || (!source_.normal_space_open && score.space != source_.normal_space))
         continue;
-      const auto cut = score_cut(score.space, planes(), source_.camera, view_);
+      const auto cut = score_cut(score.space, planes());
       if (!cut || cut->needed < kLeastNeeded || std::max(cut->absolute, cut->clamped) < kLeastCut) continue;
       if (as && std::max(cut->absolute, cut->clamped) <= std::max(best.absolute, best.clamped)) continue;
       best = *cut;
@@ -134,7 +345,7 @@ class NormalSettlement : private Settlement {
     if (as->explained() < kLeastAgreement) fail(ErrorKind::input, "{}: {}; {}", normal_path(), why, kWithout);
     if (source_.normal_space_open) {
       source_.normal_space = as->space;
-      guess("normal space", name_of(as->space), text_of(*as), "--normal-space", false);
+      guess("normal space", word_of(as->space), text_of(*as), "--normal-space", false);
     }
     note(NoteCode::cut_normals, why + "; " + kWithout);
     return true;
@@ -163,8 +374,8 @@ class NormalSettlement : private Settlement {
     why = fmt::format(
         "as {} the best quarter of the normals agrees with depth within {:.1f} degrees, as {} within {:.1f}, and "
         "{:.0f} % agree at all",
-        name_of(best->first, in_unit_range), best->second, name_of(source_.normal_encoding, source_.normal_unorm),
-        scores[0].angle, 100 * scores[0].agreement);
+        encoding_name(best->first, in_unit_range), best->second,
+        encoding_name(source_.normal_encoding, source_.normal_unorm), scores[0].angle, 100 * scores[0].agreement);
     if (!source_.normal_encoding_open) {
       note(NoteCode::said_otherwise, why + ": is --normal-encoding right?");
       return false;
@@ -190,9 +401,7 @@ class NormalSettlement : private Settlement {
                        100 * n.unorm_unit_share));
   }
 
-  NormalPlanes planes() const {
-    return {normal_, source_.normal_encoding, source_.normal_unorm, depth_, depth_map_of(source_)};
-  }
+  NormalPlanes planes() const { return {source_, normal_, depth_}; }
 
   void settle_space() {
     const bool has_world = source_.camera.view_from_world.has_value();
@@ -203,20 +412,20 @@ class NormalSettlement : private Settlement {
       if (source_.normal_space_open) source_.normal_space = has_usual ? source_.usual_normal_space : NormalSpace::view;
       return;
     }
-    const auto all_scores = score_normals(planes(), source_.camera, view_);
+    const auto all_scores = score_normals(planes());
     if (settle_cut(all_scores)) return;
     if (!source_.normal_space_open) return doubt_normals(all_scores);
     const std::string given = to_string(settings_.flip_normal);
     auto scores = all_scores;
     if (given != "none") std::erase_if(scores, [&](const auto& s) { return to_string(s.flips) != given; });
     const NormalScore* plain =
-        reading_of(scores, has_usual ? source_.usual_normal_space : NormalSpace::view, settings_.flip_normal);
+        score_of(scores, has_usual ? source_.usual_normal_space : NormalSpace::view, settings_.flip_normal);
     const bool tells = plain && best_of(scores).explained() >= kLeastAgreement;
     if (!tells) {
       source_.has_evidence = false;
       if (!has_usual) refuse_without_matrix(scores);
       source_.normal_space = source_.usual_normal_space;
-      guess("normal space", name_of(source_.normal_space), "the frame does not tell", "--normal-space", false);
+      guess("normal space", word_of(source_.normal_space), "the frame does not tell", "--normal-space", false);
       return doubt_normals(all_scores);
     }
     const bool is_plain = explains(*plain, scores);
@@ -236,7 +445,7 @@ class NormalSettlement : private Settlement {
     source_.flip_normal = score.flips;
     const bool is_flipped = to_string(score.flips) != to_string(settings_.flip_normal);
     const bool is_proven = score.close > kUnit && !has_coarse_depth(source_);
-    guess("normal space", name_of(score.space), why,
+    guess("normal space", word_of(score.space), why,
           is_flipped || !has_world ? "--normal-space with --flip-normal" : "--normal-space",
           score.space != source_.usual_normal_space || is_flipped, is_proven);
   }
@@ -247,7 +456,7 @@ class NormalSettlement : private Settlement {
     if (other == scores.end() || other->agreement < kAsGood * best.explained() || is_straighter(best, *other)) return;
     fail(ErrorKind::input,
          "{}: its normals may be in {} or in {} space ({}; {}): say which with --normal-space, and --flip-normal",
-         normal_path(), name_of(best.space), name_of(other->space), text_of(best), text_of(*other));
+         normal_path(), word_of(best.space), word_of(other->space), text_of(best), text_of(*other));
   }
 
   /// Refuses normals that are read in view space where they look like those of a world that nothing turns.
@@ -255,13 +464,6 @@ class NormalSettlement : private Settlement {
     if (source_.usual_normal_space == NormalSpace::view) return;
     if (const auto turned = turned_world(score))
       fail(ErrorKind::input, "{}: {}: give a --camera file with world_to_camera; {}", normal_path(), *turned, kWithout);
-  }
-
-  static const NormalScore* reading_of(const std::vector<NormalScore>& scores, NormalSpace space,
-                                       const NormalFlips& flips) {
-    const auto found = std::ranges::find_if(
-        scores, [&](const auto& s) { return s.space == space && to_string(s.flips) == to_string(flips); });
-    return found == scores.end() ? nullptr : &*found;
   }
 
   /// Whether a reading does as well as any, if need be with the normals of the other side turned round: they are a
@@ -296,7 +498,7 @@ class NormalSettlement : private Settlement {
   /// The same reading in the other space, where it is straighter.
   const NormalScore* straighter_than(const NormalScore& score, const std::vector<NormalScore>& scores) const {
     const auto other = score.space == NormalSpace::world ? NormalSpace::view : NormalSpace::world;
-    const NormalScore* reading = reading_of(scores, other, score.flips);
+    const NormalScore* reading = score_of(scores, other, score.flips);
     return reading && is_straighter(*reading, score) ? reading : nullptr;
   }
 
@@ -304,7 +506,7 @@ class NormalSettlement : private Settlement {
     return fmt::format(
         "as those of {} space the normals as a whole are turned by {:.1f} degrees against depth, as {} "
         "by {:.1f}",
-        name_of(other.space), other.turn_degrees(), name_of(chosen.space), chosen.turn_degrees());
+        word_of(other.space), other.turn_degrees(), word_of(chosen.space), chosen.turn_degrees());
   }
 
   /// Where no matrix places the camera, tells whether normals that are read in view space are those of a world in which
@@ -313,12 +515,12 @@ class NormalSettlement : private Settlement {
     const double least = !has_coarse_depth(source_) ? kClearTurn : kLeastTurnOfHalf;
     if (source_.camera.view_from_world || score.space != NormalSpace::view || score.turn_degrees() < least)
       return std::nullopt;
-    const auto turned = slightly_turned_camera(planes(), score, source_.camera, view_);
+    const auto turned = slightly_turned_camera(planes(), score);
     if (!turned) return std::nullopt;
     const NormalScore& then = turned->score;
     if (then.close <= kSharper * score.close && (score.angle <= kLargestAngle || kClear * then.angle >= score.angle))
       return std::nullopt;
-    const auto width = best_other_width(planes(), score, source_.camera, view_);
+    const auto width = best_other_width(planes(), score);
     if (width && width->score.close >= then.close) return std::nullopt;
     return fmt::format(
         "its normals look like those of world space by {}: {:.0f} % of them agree with depth to 3 degrees then, {:.0f} "
@@ -336,10 +538,8 @@ class NormalSettlement : private Settlement {
         normal_path(), scores.empty() ? 0 : 100 * scores[0].agreement, kCheck, kWithout);
   }
 
-  static const char* name_of(NormalSpace space) { return space == NormalSpace::world ? "world" : "view"; }
-  static const char* name_of(DepthKind kind) { return alcove::name_of(kind); }
   static std::string text_of(const NormalScore& s) {
-    return fmt::format("{} with flips {}: {:.0f} % agree with depth, {:.0f} % face the camera{}", name_of(s.space),
+    return fmt::format("{} with flips {}: {:.0f} % agree with depth, {:.0f} % face the camera{}", word_of(s.space),
                        to_string(s.flips), 100 * s.agreement, 100 * s.facing,
                        s.opposite < 0.005 ? "" : fmt::format(", {:.0f} % are opposite to depth", 100 * s.opposite));
   }
@@ -347,7 +547,7 @@ class NormalSettlement : private Settlement {
   /// Notes where depth speaks against the normals as they are read, and refuses what it refutes.
   void doubt_normals(const std::vector<NormalScore>& scores) {
     if (source_.camera_is_assumed) return;
-    const NormalScore* chosen = reading_of(scores, source_.normal_space, source_.flip_normal);
+    const NormalScore* chosen = score_of(scores, source_.normal_space, source_.flip_normal);
     if (!chosen) return;
     const NormalScore* straighter = straighter_than(*chosen, scores);
     if (straighter)
@@ -406,21 +606,21 @@ class NormalSettlement : private Settlement {
   /// Refuses the camera where the normals agree with depth by one that is turned in a usual way, and by the given one
   /// do not. `sharpest` is the share that another reading of the normals brings close.
   void refuse_turned_camera(const NormalScore& chosen, double sharpest) const {
-    const auto turned = best_turned_camera(planes(), chosen, source_.camera, view_);
+    const auto turned = best_turned_camera(planes(), chosen);
     if (!turned || turned->score.agreement < kLeastAgreement || turned->score.close < sharpest ||
         turned->score.agreement < kClear * chosen.agreement)
       return;
     fail(ErrorKind::input,
          "{}: the camera{} does not fit: by it {:.0f} % of the normals in {} space agree with depth; {}, then {:.0f} % "
          "agree; {}",
-         normal_path(), from(), 100 * chosen.agreement, name_of(chosen.space), turned->what,
+         normal_path(), from(), 100 * chosen.agreement, word_of(chosen.space), turned->what,
          100 * turned->score.agreement, kWithout);
   }
 
   /// Refuses a principal point that fits elsewhere, and says where no pixel can tell.
   void doubt_centre(const NormalScore& chosen) {
     if (!is_off_centre(source_.camera)) return;
-    const auto other = best_other_point(planes(), chosen, source_.camera, view_);
+    const auto other = best_other_point(planes(), chosen);
     if (!other) return;
     if (is_sharper(other->score, chosen))
       fail(ErrorKind::input,
@@ -433,7 +633,7 @@ class NormalSettlement : private Settlement {
 
   /// Notes where the angles of a .chan file fit better in another order. Returns whether they do.
   bool doubt_rotation(const NormalScore& chosen) {
-    const auto other = best_other_rotation(planes(), chosen, source_.camera, view_);
+    const auto other = best_other_rotation(planes(), chosen);
     if (!other || !is_sharper(other->score, chosen) || chosen.agreement < kLeastAgreement) return false;
     note(NoteCode::normals_disagree,
          fmt::format("by the camera{} {:.0f} % of the normals agree with depth to 3 degrees; {}, then {:.0f} % do",
@@ -445,7 +645,7 @@ class NormalSettlement : private Settlement {
   /// does.
   bool doubt_width(const NormalScore& chosen) {
     if (chosen.close >= kSurelyClose) return false;
-    const auto other = best_other_width(planes(), chosen, source_.camera, view_);
+    const auto other = best_other_width(planes(), chosen);
     if (!other || !is_sharper(other->score, chosen)) return false;
     note(NoteCode::field_of_view,
          fmt::format("{} fits the normals better: {:.0f} % of them agree with depth to 3 degrees then, {:.0f} % as it "
@@ -473,6 +673,12 @@ class NormalSettlement : private Settlement {
 };
 
 }  // namespace
+
+const char* encoding_name(NormalEncoding encoding, bool unorm) {
+  if (encoding == NormalEncoding::octahedral) return "octahedral";
+  if (encoding == NormalEncoding::spheremap) return "spheremap";
+  return unorm ? "unorm" : "signed";
+}
 
 void note_centre(FrameSource& source) {
   // What a renderer writes into headers is its own camera.

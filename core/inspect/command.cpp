@@ -1,15 +1,17 @@
-// Options in the order of their groups, quoted for a shell.
+// What a run is told: options in the order of their groups, quoted for a shell; and the camera as JSON.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/inspect/command.h"
+#include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
 #include "core/base/option_words.h"
 #include "core/base/text.h"
-#include "core/frame/chan_file.h"
+#include "core/frame/camera.h"
 #include "core/frame/evidence.h"
-#include "core/frame/input_files.h"
 #include "core/frame/radius.h"
-#include "core/inspect/inspection.h"
+#include "core/frame/raw_plane.h"
+#include "core/frame/settle.h"
+#include "core/inspect/inspect.h"
 
 namespace alcove {
 namespace {
@@ -57,16 +59,13 @@ void add_behind(Command& command, const InputSettings& settings) {
 }
 
 void add_depth(Command& command, const FrameSource& source, const InputSettings& settings) {
-  command.add("--depth-kind", std::string(name_of(source.depth_kind)));
-  const bool has_planes = source.depth_kind == DepthKind::device || source.depth_kind == DepthKind::normalized ||
-                          source.depth_kind == DepthKind::log;
-  if (has_planes) {
+  command.add("--depth-kind", word_of(source.depth_kind));
+  if (is_between_planes(source.depth_kind)) {
     if (source.depth_kind != DepthKind::log) command.add("--near", source.depth_range.near);
     command.add("--far", source.depth_range.far);
     if (source.depth_range.reversed) command.add("--reversed-z");
   }
-  if (source.depth_kind == DepthKind::position)
-    command.add("--set position-space", std::string(source.position_space == PositionSpace::world ? "world" : "view"));
+  if (source.depth_kind == DepthKind::position) command.add("--set position-space", word_of(source.position_space));
   const InputSettings defaults;
   const bool is_device = source.depth_kind == DepthKind::device;
   if (is_device && settings.depth_range.device == DeviceRange::minus_one_to_one)
@@ -81,8 +80,8 @@ void add_depth(Command& command, const FrameSource& source, const InputSettings&
 void add_normals(Command& command, const FrameSource& source, const InputSettings& settings, bool has_camera) {
   if (source[RawPlane::normal].empty()) return;
   if (has_camera || settings.normal_space != NormalSpace::automatic)
-    command.add("--normal-space", std::string(name_of(source.normal_space)));
-  command.add("--normal-encoding", std::string(encoding_name(source)));
+    command.add("--normal-space", word_of(source.normal_space));
+  command.add("--normal-encoding", std::string(encoding_name(source.normal_encoding, source.normal_unorm)));
   if (to_string(source.flip_normal) != "none") command.add("--flip-normal", to_string(source.flip_normal));
 }
 
@@ -97,12 +96,6 @@ void add_camera(Command& command, const InputSettings& settings, bool has_camera
 }
 
 }  // namespace
-
-const char* encoding_name(const FrameSource& source) {
-  if (source.normal_encoding == NormalEncoding::octahedral) return "octahedral";
-  if (source.normal_encoding == NormalEncoding::spheremap) return "spheremap";
-  return source.normal_unorm ? "unorm" : "signed";
-}
 
 std::string command_of(const FrameSource& source, const CommandNames& names, bool has_camera) {
   const InputSettings& settings = names.inputs;
@@ -119,6 +112,53 @@ std::string command_of(const FrameSource& source, const CommandNames& names, boo
   else
     command.add("--radius RADIUS");
   return command.text();
+}
+
+// Camera files.
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json fields_of(const Camera& camera) {
+  Json fields{{"resolution", {camera.width, camera.height}},
+              {"projection", camera.orthographic ? "orthographic" : "perspective"},
+              {"fx", camera.fx},
+              {"fy", camera.fy},
+              {"cx", camera.cx},
+              {"cy", camera.cy}};
+  if (camera.left_handed) fields["camera_space"] = "left-handed";
+  if (camera.view_from_world) {
+    Json& rows = fields["world_to_camera"] = Json::array();
+    for (std::size_t row = 0; row < 3; row++) {
+      const double sign = camera.left_handed && row == 2 ? -1 : 1;  // its own z looks forward
+      Json numbers = Json::array();
+      for (const double x : (*camera.view_from_world)[row]) numbers.push_back(sign * x);
+      numbers.push_back(sign * camera.view_from_world_offset[row]);
+      rows.push_back(std::move(numbers));
+    }
+    rows.push_back({0, 0, 0, 1});
+  }
+  if (camera.near) fields["near"] = *camera.near;
+  if (camera.far) fields["far"] = std::isinf(*camera.far) ? Json("inf") : Json(*camera.far);
+  if (camera.reversed_z) fields["reversed_z"] = true;
+  return fields;
+}
+
+std::string text_of(const Json& json) { return json.dump(1) + "\n"; }
+
+}  // namespace
+
+std::string camera_file(const Camera& camera) { return text_of(fields_of(camera)); }
+
+std::string camera_file(const std::map<int, Camera>& cameras) {
+  Json frames = Json::array();
+  for (const auto& [frame, camera] : cameras) {
+    Json entry{{"frame", frame}};
+    entry.update(fields_of(camera));
+    frames.push_back(std::move(entry));
+  }
+  return text_of({{"frames", std::move(frames)}});
 }
 
 }  // namespace alcove

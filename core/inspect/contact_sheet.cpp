@@ -1,6 +1,6 @@
 // Runs the chain for three AOVs and lays them side by side.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/inspect/contact_sheet.h"
+#include "core/inspect/inspect.h"
 
 #include <algorithm>
 #include <array>
@@ -14,7 +14,7 @@
 #include "core/formats/png.h"
 #include "core/formats/sequence.h"
 #include "core/frame/evidence.h"
-#include "core/frame/input_files.h"
+#include "core/frame/raw_plane.h"
 
 namespace alcove {
 namespace {

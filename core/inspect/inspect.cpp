@@ -2,20 +2,120 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/inspect/inspect.h"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
+#include <regex>
 
-#include "core/base/error.h"
+#include "core/base/option_words.h"
 #include "core/base/ranks.h"
+#include "core/base/text.h"
 #include "core/formats/exr.h"
-#include "core/frame/findings.h"
-#include "core/frame/input_files.h"
+#include "core/frame/behind.h"
+#include "core/frame/channels.h"
+#include "core/frame/raw_plane.h"
 #include "core/frame/settle.h"
-#include "core/inspect/command.h"
-#include "core/inspect/hidden_guesses.h"
 
 namespace alcove {
 namespace {
+
+// Deep samples, counted band by band.
+
+/// How the depth of a file's samples is read.
+std::string depth_of(const FrameSource& source, const ExrFile& file) {
+  const auto is_it = [&](std::size_t other) { return source.files[other].path() == file.path(); };
+  const auto is_element = [&](const auto& element) { return is_it(element.first); };
+  const bool is_taken = source.deep && (is_it(*source.deep) || std::ranges::any_of(source.deep_elements, is_element));
+  if (!is_taken || !source.settled) return "";
+  const ChannelRef& own = source[RawPlane::depth][0];
+  if (source.part_of(own).deep) return "the depth of the frame";
+  const DepthKind kind = source.deep_kind == DepthKind::automatic ? source.depth_kind : source.deep_kind;
+  return kind == DepthKind::ray ? "along the ray" : kind == DepthKind::planar ? "planar" : word_of(kind);
+}
+
+/// Reads all samples of a file of a frame that is settled, or that could not be; nothing where it has no deep parts.
+/// Fails as reading them does.
+std::optional<InspectedDeep> deep_samples(const FrameSource& source, const ExrFile& file,
+                                          const InputSettings& settings) {
+  const std::vector<int> parts = deep_parts_of(file, settings.layer, source.view);
+  if (parts.empty()) return std::nullopt;
+  ExrFile samples(file.path(), "INPUT");
+  const ExrPart& first = samples.parts()[std::size_t(parts.front())];
+  samples.take_deep(parts, deep_rules(source, file, parts, settings));
+  const std::size_t band = std::size_t(first.data.width) * std::size_t(first.rows_together);
+  std::vector<float> surfaces(2 * kMostDeepSurfaces * band, kNoDeepSurface);
+  std::vector<ExrRead> reads;
+  for (const bool back : {false, true})
+    for (std::size_t i = 0; i < kMostDeepSurfaces; i++)
+      reads.push_back({parts.front(), deep_channel(i, back), surfaces.data() + reads.size() * band});
+  const auto is_surface = [](float z) { return z < kNoDeepSurface; };
+  std::vector<bool> has_any(reads.size());
+  for (int y = 0; y < first.data.height; y += first.rows_together) {
+    samples.read(reads, y, std::min(first.rows_together, first.data.height - y));
+    for (std::size_t i = 0; i < reads.size(); i++)
+      has_any[i] = has_any[i] || std::ranges::any_of(std::span(reads[i].to, band), is_surface);
+  }
+  InspectedDeep deep{file.path(), parts, *first.deep, samples.deep_counts(), depth_of(source, file), {}};
+  for (std::size_t i = 0; i < reads.size(); i++)
+    if (has_any[i]) deep.channels.push_back(reads[i].channel);
+  return deep;
+}
+
+// Names that have been seen of back faces and of peels.
+
+/// What a channel of this full name, in lower case, may hold.
+std::optional<BehindKind> kind_by(const std::string& name) {
+  static const std::regex backs(R"((.*\.)?(zback|z\.back|depth_back|backz))");
+  static const std::regex peels(R"((.*\.)?(peel[^.]*|depth[2-9]|layer[2-9])(\.z)?)");
+  if (std::regex_match(name, backs)) return BehindKind::backs;
+  return std::regex_match(name, peels) ? std::optional(BehindKind::surfaces) : std::nullopt;
+}
+
+/// Whether the frame reads the channel already.
+bool is_read(const FrameSource& source, const ChannelRef& ref) {
+  const auto has = [&](const std::vector<ChannelRef>& plane) { return std::ranges::find(plane, ref) != plane.end(); };
+  return std::ranges::any_of(source.planes.entries, has);
+}
+
+}  // namespace
+
+std::vector<HiddenGuess> hidden_guesses(const FrameSource& source, const InputSettings& settings) {
+  std::vector<HiddenGuess> guesses;
+  for (std::size_t file = 0; file < source.files.size(); file++) {
+    const ExrFile& of = source.files[file];
+    const std::string view = view_in(of, source.view);
+    const bool is_of_view = view.empty() || source.view.empty() || same_name(view, source.view);
+    if (!is_of_view || of.display() != source.display) continue;
+    for (const auto& channel : channels_in(of, file, settings.layer, view)) {
+      std::optional<BehindKind> kind;
+      for (const auto& name : channel.spellings)
+        if (!kind) kind = kind_by(name);
+      const bool fits = kind && !channel.subsampled && source.part_of(channel.ref).data == source.file_data &&
+                        channel.full.find(',') == channel.full.npos;
+      if (fits && !is_read(source, channel.ref)) guesses.push_back({of.path(), channel.full, *kind});
+    }
+  }
+  const std::size_t room =
+      kMostBehind - std::size_t(std::ranges::count_if(settings.behind, [](const auto& path) { return !path.empty(); }));
+  if (guesses.size() > room) guesses.resize(room);
+  return guesses;
+}
+
+// A frame.
+
+namespace {
+
+/// The options by which a run would take all of them; "" where there are none.
+std::string options_for(const std::vector<HiddenGuess>& guesses) {
+  std::string files, channels, kinds;
+  for (const auto& guess : guesses) {
+    files += fmt::format(" --behind {}", for_shell(guess.file));
+    channels += (channels.empty() ? "" : ",") + guess.channel;
+    kinds += (kinds.empty() ? "" : ",") + word_of(guess.kind);
+  }
+  if (guesses.empty()) return "";
+  return fmt::format("{} --set behind-channel={} --behind-kind {}", files.substr(1), for_shell(channels), kinds);
+}
 
 std::vector<InspectedFile> files_of(const FrameSource& source) {
   std::vector<InspectedFile> files;
@@ -49,24 +149,10 @@ InspectedCamera camera_of(const FrameSource& source, const InputSettings& settin
   return {camera, options_of_camera(settings) + placed};
 }
 
-/// Adds what is known once the frame is settled: distances, sky, and the scores of the other readings.
-void add_planar(InspectedDepth& depth, const std::vector<float>& planar, const FrameSource& source) {
-  std::vector<float> surfaces;
-  std::ranges::copy_if(planar, std::back_inserter(surfaces), [](float z) { return !std::isinf(z); });
-  depth.sky_share = 1 - double(surfaces.size()) / double(planar.size());
-  if (!surfaces.empty()) {
-    const auto [nearest, farthest] = std::ranges::minmax(surfaces);
-    depth.nearest = nearest;
-    depth.farthest = farthest;
-    depth.median = median_of(std::move(surfaces));
-  }
-  depth.scores = source.depth_scores;
-}
-
-InspectedNormals normals_of(std::span<const float> normal, std::span<const float> raw, const FrameSource& source) {
-  const NormalStatistics s = normal_statistics(normal, raw, depth_map_of(source));
+InspectedNormals normals_of(const RawFrame& raw, const FrameSource& source) {
+  const NormalStatistics s = normal_statistics(raw.normal, raw.depth, depth_map_of(source));
   InspectedNormals normals{.space = source.normal_space,
-                           .encoding = encoding_name(source),
+                           .encoding = encoding_name(source.normal_encoding, source.normal_unorm),
                            .flips = source.flip_normal,
                            .least = s.least,
                            .most = s.most,
@@ -78,11 +164,8 @@ InspectedNormals normals_of(std::span<const float> normal, std::span<const float
     normals.mean_length = source.normal_unorm ? s.unorm_mean_length : s.mean_length;
     normals.unit_share = source.normal_unorm ? s.unorm_unit_share : s.unit_share;
   }
-  normals.scores = score_normals({normal, source.normal_encoding, source.normal_unorm, raw, depth_map_of(source)},
-                                 source.camera, view_of(source.camera, source.data, source.display));
-  for (const auto& score : normals.scores)
-    if (score.space == source.normal_space && to_string(score.flips) == to_string(source.flip_normal))
-      normals.chosen = score;
+  normals.scores = score_normals({source, raw.normal, raw.depth});
+  if (const auto* chosen = score_of(normals.scores, source.normal_space, source.flip_normal)) normals.chosen = *chosen;
   return normals;
 }
 
@@ -95,7 +178,7 @@ struct Inspector {
   int frame;
   std::optional<FrameSource> known;  // the same frame, where it was found already
   FrameSource source = {};
-  std::vector<float> depth = {}, normal = {};
+  RawFrame raw = {};
   Inspection found = {};
 
   /// Adds those that can be opened: why others cannot is told.
@@ -160,32 +243,30 @@ struct Inspector {
   /// Reads depth and normals. Returns false where the pixels cannot be read.
   bool read() {
     require_host_room(source.depth_path(), source.data);
-    depth.resize(source[RawPlane::depth].size() * source.data.pixels());
-    normal.resize(source[RawPlane::normal].size() * source.data.pixels());
     try {
-      read_planes(source, {{&source[RawPlane::depth], depth.data()}, {&source[RawPlane::normal], normal.data()}});
+      raw = read_raw_frame(source);
     } catch (const Error& error) {
       found.suspicious.push_back({NoteCode::damaged_file, error.what()});
       found.unreadable = error;
       return false;
     }
-    found.depth = InspectedDepth{name_of(source.depth_kind), statistics_of(depth), {}, {}, {}, {}, {}};
+    found.depth = InspectedDepth{word_of(source.depth_kind), statistics_of(raw.depth), {}, {}};
     return true;
   }
 
   /// Settles what the pixels decide. A camera that nobody gave has nothing to say.
   void settle_frame() {
     const auto notes = source.notes;
-    settle(source, reading, depth, normal);
-    found.depth->kind = name_of(source.depth_kind);
+    settle(source, reading, raw.depth, raw.normal);
+    found.depth->kind = word_of(source.depth_kind);
     if (has_camera) return;
     source.notes = notes;
     if (settings.normal_space == NormalSpace::automatic) source.normal_space = source.usual_normal_space;
   }
 
   void look_at_normals() {
-    if (normal.empty()) return;
-    found.normals = normals_of(normal, depth, source);
+    if (raw.normal.empty()) return;
+    found.normals = normals_of(raw, source);
     if (has_camera) return;
     found.normals->scores.clear();
     found.normals->chosen.reset();
@@ -198,8 +279,8 @@ struct Inspector {
   }
 
   void describe() {
-    const View view = view_of(source.camera, source.data, source.display);
-    add_planar(*found.depth, planar_depths(depth, depth_map_of(source), view), source);
+    found.depth->distances = distances_of(source, raw.depth);
+    found.depth->scores = source.depth_scores;
     look_at_normals();
   }
 
@@ -270,11 +351,17 @@ struct Inspector {
 
 }  // namespace
 
-InputSettings with_some_camera(const InputSettings& settings) {
-  InputSettings with = settings;
-  with.fov = 50;
-  if (with.normal_space == NormalSpace::automatic) with.normal_space = NormalSpace::view;
-  return with;
+Distances distances_of(const FrameSource& source, std::span<const float> raw) {
+  std::vector<float> planar =
+      planar_depths(raw, depth_map_of(source), view_of(source.camera, source.data, source.display));
+  const std::size_t pixels = planar.size();
+  std::erase_if(planar, [](float z) { return std::isinf(z); });
+  Distances distances{1 - double(planar.size()) / double(pixels), {}, {}, {}};
+  if (planar.empty()) return distances;
+  distances.median = value_at_rank(planar, planar.size() / 2);
+  distances.nearest = *std::ranges::min_element(planar);
+  distances.farthest = *std::ranges::max_element(planar);
+  return distances;
 }
 
 CameraSearch look_for_camera(const InputSettings& settings, int frame) {
@@ -310,9 +397,7 @@ Inspection inspect_frame(const InputSettings& settings, int frame, const Command
   const bool is_read = is_found && inspector.read();
   if (is_read) inspector.look();
   if (is_found) inspector.look_at_deep();
-  if (is_read) {
-    inspector.find_beauty();
-  }
+  if (is_read) inspector.find_beauty();
   inspector.found.files = files_of(inspector.source);
   return inspector.found;
 }

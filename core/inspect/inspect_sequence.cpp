@@ -1,7 +1,5 @@
 // Compares the headers of all frames and the pixels of a few.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/inspect/inspect_sequence.h"
-
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -9,8 +7,8 @@
 #include <set>
 
 #include "core/base/error.h"
-#include "core/base/ranks.h"
-#include "core/frame/input_files.h"
+#include "core/base/option_words.h"
+#include "core/frame/raw_plane.h"
 #include "core/frame/settle.h"
 #include "core/inspect/inspect.h"
 
@@ -61,9 +59,10 @@ Values values_of(const FrameSource& source, bool has_camera) {
 
 /// How a frame would be read by itself.
 std::string reading_of(const FrameSource& source) {
-  std::string text = std::string(name_of(source.depth_kind)) + " depth";
+  std::string text = word_of(source.depth_kind) + " depth";
   if (source[RawPlane::normal].empty()) return text;
-  text += fmt::format(", {} normals, {}", name_of(source.normal_space), encoding_name(source));
+  text += fmt::format(", {} normals, {}", word_of(source.normal_space),
+                      encoding_name(source.normal_encoding, source.normal_unorm));
   if (to_string(source.flip_normal) != "none") text += ", flips " + to_string(source.flip_normal);
   return text;
 }
@@ -188,30 +187,15 @@ class SequenceInspector {
     try {
       FrameSource source = open(frame);
       require_host_room(source.depth_path(), source.data);
-      std::vector<float> depth(source[RawPlane::depth].size() * source.data.pixels()),
-          normal(source[RawPlane::normal].size() * source.data.pixels());
-      read_planes(source, {{&source[RawPlane::depth], depth.data()}, {&source[RawPlane::normal], normal.data()}});
+      const RawFrame raw = read_raw_frame(source);
       const InputSettings settings = names_.of(frame);
-      settle(source, has_camera_ ? settings : with_some_camera(settings), depth, normal);
+      settle(source, has_camera_ ? settings : with_some_camera(settings), raw.depth, raw.normal);
       if (has_camera_ && source.has_evidence) take("reading", reading_of(source), frame);
       for (const auto& note : source.suspicious) suspicious_[facts_of(note.code).meaning].insert(frame);
-      shown_.depth.push_back(distances(source, depth, frame));
+      shown_.depth.push_back({frame, distances_of(source, raw.depth)});
     } catch (const Error& error) {
       refuse(error, frame);
     }
-  }
-
-  static SequenceDepth distances(const FrameSource& source, std::span<const float> raw, int frame) {
-    std::vector<float> planar =
-        planar_depths(raw, depth_map_of(source), view_of(source.camera, source.data, source.display));
-    const std::size_t pixels = planar.size();
-    std::erase_if(planar, [](float z) { return std::isinf(z); });
-    SequenceDepth depth{frame, 1 - double(planar.size()) / double(pixels), {}, {}, {}};
-    if (planar.empty()) return depth;
-    depth.nearest = *std::ranges::min_element(planar);
-    depth.farthest = *std::ranges::max_element(planar);
-    depth.median = median_of(std::move(planar));
-    return depth;
   }
 
   /// Parts what changes from what is the same in all frames.

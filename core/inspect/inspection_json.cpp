@@ -5,8 +5,9 @@
 #include <numbers>
 
 #include "core/base/json_text.h"
+#include "core/base/option_words.h"
 #include "core/formats/sequence.h"
-#include "core/inspect/inspection.h"
+#include "core/inspect/inspect.h"
 
 namespace alcove {
 namespace {
@@ -86,26 +87,30 @@ Json to_json(const InspectedCamera& inspected) {
           {"world_to_camera", camera.view_from_world.has_value()}};
 }
 
+Json to_json(const Distances& distances) {
+  return {{"sky_share", distances.sky_share},
+          {"nearest", number(distances.nearest)},
+          {"median", number(distances.median)},
+          {"farthest", number(distances.farthest)}};
+}
+
 Json to_json(const InspectedDepth& depth) {
   const ValueStatistics& values = depth.values;
   Json json = {
       {"kind", depth.kind},          {"least", values.least},       {"most", values.most}, {"nan", values.nan},
       {"infinite", values.infinite}, {"negative", values.negative}, {"zero", values.zero}, {"one", values.one}};
-  const std::pair<const char*, std::optional<double>> distances[] = {{"sky_share", depth.sky_share},
-                                                                     {"nearest", depth.nearest},
-                                                                     {"median", depth.median},
-                                                                     {"farthest", depth.farthest}};
-  for (const auto& [name, value] : distances)
-    if (value) json[name] = *value;
+  const Json distances = depth.distances ? to_json(*depth.distances) : Json::object();
+  for (const auto& [name, value] : distances.items())
+    if (!value.is_null()) json[name] = value;
   if (!depth.scores) return json;
   json["scores"] = Json::array();
   for (const auto& score : *depth.scores)
-    json["scores"].push_back({{"kind", name_of(score.kind)}, {"straight", score.straight}});
+    json["scores"].push_back({{"kind", word_of(score.kind)}, {"straight", score.straight}});
   return json;
 }
 
 Json to_json(const NormalScore& score) {
-  return {{"space", name_of(score.space)}, {"flips", to_string(score.flips)},
+  return {{"space", word_of(score.space)}, {"flips", to_string(score.flips)},
           {"agreement", score.agreement},  {"opposite", score.opposite},
           {"close", score.close},          {"angle", score.angle},
           {"turn", score.turn_degrees()},  {"facing", score.facing}};
@@ -114,7 +119,7 @@ Json to_json(const NormalScore& score) {
 Json to_json(const InspectedNormals& normals) {
   Json scores = Json::array();
   for (const auto& score : normals.scores) scores.push_back(to_json(score));
-  Json json = {{"space", name_of(normals.space)},
+  Json json = {{"space", word_of(normals.space)},
                {"encoding", normals.encoding},
                {"flips", to_string(normals.flips)},
                {"mean_length", number(normals.mean_length)},
@@ -152,11 +157,9 @@ Json to_json(const SequenceCamera& camera) {
 }
 
 Json to_json(const SequenceDepth& depth) {
-  return {{"frame", depth.frame},
-          {"sky_share", depth.sky_share},
-          {"nearest", number(depth.nearest)},
-          {"median", number(depth.median)},
-          {"farthest", number(depth.farthest)}};
+  Json json = {{"frame", depth.frame}};
+  json.update(to_json(depth.distances));
+  return json;
 }
 
 Json to_json(const HiddenGuess& guess) { return {{"file", guess.file}, {"channel", guess.channel}}; }

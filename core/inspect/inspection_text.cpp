@@ -6,13 +6,12 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/base/option_words.h"
 #include "core/base/text.h"
 #include "core/formats/sequence.h"
-#include "core/inspect/inspection.h"
+#include "core/inspect/inspect.h"
 
 namespace alcove {
-
-const char* name_of(NormalSpace space) { return space == NormalSpace::world ? "world" : "view"; }
 
 const char* name_of(SampleType type) {
   switch (type) {
@@ -30,6 +29,11 @@ constexpr std::size_t kShownCharacters = 100;  // of an attribute
 constexpr std::size_t kShownValue = 300;       // of what changes along a sequence
 
 std::string percent(double share) { return fmt::format("{:.1f} %", 100 * share); }
+
+std::string text_of(const Distances& distances) {
+  return fmt::format("distances {:.4g} to {:.4g}, median {:.4g}; sky {}", *distances.nearest, *distances.farthest,
+                     *distances.median, percent(distances.sky_share));
+}
 
 /// TextLines that a terminal may show.
 class TextLines {
@@ -117,9 +121,8 @@ std::string channels_of(const Inspection& inspection, std::initializer_list<std:
 }
 
 void add(TextLines& lines, const InspectedDepth& depth, const std::string& channels) {
-  if (depth.median)
-    lines.add("depth: {}{}, distances {:.4g} to {:.4g}, median {:.4g}; sky {}", depth.kind, channels, *depth.nearest,
-              *depth.farthest, *depth.median, percent(*depth.sky_share));
+  if (depth.distances && depth.distances->median)
+    lines.add("depth: {}{}, {}", depth.kind, channels, text_of(*depth.distances));
   else
     lines.add("depth: {}{}, values {:.6g} to {:.6g}", depth.kind, channels, depth.values.least, depth.values.most);
 }
@@ -130,11 +133,11 @@ void add_evidence(TextLines& lines, const InspectedDepth& depth) {
             values.most, values.nan, values.infinite, values.negative, values.zero, values.one);
   if (!depth.scores) return;
   for (const auto& score : *depth.scores)
-    lines.add("  as {} alone {} of the smooth places are flat", name_of(score.kind), percent(score.straight));
+    lines.add("  as {} alone {} of the smooth places are flat", word_of(score.kind), percent(score.straight));
 }
 
 void add(TextLines& lines, const InspectedNormals& normals, const std::string& channels) {
-  lines.add("normals: {} space, {}, flips {}{}", name_of(normals.space), normals.encoding, to_string(normals.flips),
+  lines.add("normals: {} space, {}, flips {}{}", word_of(normals.space), normals.encoding, to_string(normals.flips),
             channels);
 }
 
@@ -145,7 +148,7 @@ void add_evidence(TextLines& lines, const InspectedNormals& normals) {
   for (std::size_t i = 0; i < std::min(normals.scores.size(), kShownScores); i++) {
     const NormalScore& score = normals.scores[i];
     lines.add("  as {} with flips {}: {} agree with depth, a quarter within {:.1f} degrees, {} face the camera{}",
-              name_of(score.space), to_string(score.flips), percent(score.agreement), score.angle,
+              word_of(score.space), to_string(score.flips), percent(score.agreement), score.angle,
               percent(score.facing),
               score.opposite > 0 ? fmt::format(", {} are opposite to depth", percent(score.opposite)) : "");
   }
@@ -177,11 +180,7 @@ void add(TextLines& lines, const SequenceCamera& camera, bool is_orthographic) {
 }
 
 void add(TextLines& lines, const SequenceDepth& depth) {
-  if (depth.median)
-    lines.add("  depth of frame {}: distances {:.6g} to {:.6g}, median {:.6g}; sky {}", depth.frame, *depth.nearest,
-              *depth.farthest, *depth.median, percent(depth.sky_share));
-  else
-    lines.add("  depth of frame {}: all is sky", depth.frame);
+  lines.add("  depth of frame {}: {}", depth.frame, depth.distances.median ? text_of(depth.distances) : "all is sky");
 }
 
 void add(TextLines& lines, const InspectedSequence& sequence, bool is_orthographic) {

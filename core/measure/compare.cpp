@@ -3,19 +3,16 @@
 #include "core/measure/compare.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <filesystem>
 #include <functional>
 #include <utility>
 
-#include "core/base/error.h"
 #include "core/base/text.h"
 #include "core/base/windows.h"
 #include "core/formats/picture.h"
 #include "core/formats/sequence.h"
 #include "core/frame/gbuffer.h"
-#include "core/measure/flicker.h"
 #include "core/measure/flip.h"
 #include "core/measure/report.h"
 

@@ -30,8 +30,8 @@ struct PlaneErrors {
 };
 
 /// Measures the errors. Fails with ErrorKind::input if no value is left to compare. With a `reference_b`, whose noise
-/// is independent of the reference's, the reference is the mean of the two and rmse is free of their noise: it is
-/// sqrt(max(0, mean((t - a)(t - b)))), with means of 0 of the noise in a and in b.
+/// is independent of the reference's, the reference is the mean of the two and rmse is free of their noise:
+/// sqrt(max(0, mean((t - a)(t - b)))) is, with noise in a and b of mean 0, the RMSE of t against what both estimate.
 PlaneErrors compare_planes(Values result, Values reference, Mask mask = {}, Values reference_b = {});
 
 /// 20 log10(peak / rmse), in dB; infinite for an rmse of 0.
@@ -124,5 +124,38 @@ std::vector<double> convolve(int width, int height, std::span<const double> plan
 
 /// exp(-x^2 / (2 sigma^2)) for x from -radius to radius, sum 1. Units: pixels, both above 0.
 std::vector<double> gaussian_kernel(double sigma, int radius);
+
+// Flicker: how much the error of a sequence changes from frame to frame.
+
+/// The errors of one frame of a sequence. All planes are of one size, row by row.
+struct ErrorFrame {
+  int width = 0, height = 0;
+  std::vector<float> error;        // result - reference; one or several planes
+  std::vector<float> error_b;      // result - a second, independently noisy reference; empty where there is none
+  std::vector<std::uint8_t> mask;  // one per pixel; 0 where it does not count
+  std::vector<float> depth;        // empty: not known
+  // The place in the previous frame minus the place here, in pixels, y up (as Blender's Vector); empty: nothing moves.
+  std::vector<float> motion_x, motion_y;
+};
+
+/// The root mean square of error(here) - error(previous frame, same surface): 0 for an error that stays where it is on
+/// a surface, and for any movement that the reference makes too. With two references it is free of their noise, as
+/// that of compare_planes() is.
+///
+/// With motion, the same surface is at the pixel that is nearest to the motion's place. That pixel is taken as it is,
+/// since interpolation would hide noise. A pixel is left out where it or its earlier place does not count or is
+/// outside, where the motion is not finite, and where the two depths differ by more than kDepthStep.
+class Flicker {
+ public:
+  /// Adds two consecutive frames, of one size and with the same planes.
+  void add(const ErrorFrame& previous, const ErrorFrame& here);
+  std::size_t count() const { return count_; }
+  /// 0 where nothing was added.
+  double rms() const;
+
+ private:
+  double square_ = 0;
+  std::size_t count_ = 0;
+};
 
 }  // namespace alcove

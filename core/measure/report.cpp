@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "core/formats/png.h"
-#include "core/measure/report_template.h"
 
 namespace alcove {
 namespace {

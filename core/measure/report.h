@@ -4,6 +4,7 @@
 
 #include <span>
 #include <string>
+#include <string_view>
 
 namespace alcove {
 
@@ -49,5 +50,8 @@ std::string grey_picture(int width, int height, std::span<const float> values);
 std::string color_picture(int width, int height, std::span<const float> rgb);
 /// result - reference in colours; grey where the difference is not finite.
 std::string error_picture(int width, int height, std::span<const float> result, std::span<const float> reference);
+
+/// The page with the mark "{{report.json}}" where the JSON goes; cmake/embed_report.cmake checks that it is there.
+std::string_view report_template();
 
 }  // namespace alcove

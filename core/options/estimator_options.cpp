@@ -76,7 +76,7 @@ std::string if_by_error_alone(const Settings& all) { return asks_for_confidence(
 std::string unless_slices_anywhere(const Settings& all) { return asks_for_confidence(all) ? "" : unless_slices(all); }
 
 void add_radius_rows(std::vector<OptionRow>& rows, EstimatorSettings& s) {
-  OptionGroup pixels(rows, "Estimator", Effect::pixels);
+  OptionGroup pixels(rows, "Estimator", Effect::pixels, true);
   pixels.choice("--estimator", s.estimator, "gtao, bitmask: horizons, or sectors; hbao, crytek: as older renderers");
   const Range reach = above_to(0, 1e18);
   OptionRow& radius = pixels.add(
@@ -100,7 +100,7 @@ void add_radius_rows(std::vector<OptionRow>& rows, EstimatorSettings& s) {
 }
 
 void add_search_rows(std::vector<OptionRow>& rows, EstimatorSettings& s) {
-  OptionGroup pixels(rows, "Estimator", Effect::pixels);
+  OptionGroup pixels(rows, "Estimator", Effect::pixels, true);
   const auto unless_crytek = [](const Settings& all) { return unless_estimator(all, {Estimator::crytek}); };
   pixels.number("--slices", s.slices, "per pixel", between(1, 64), "directions that are searched").why_without_effect =
       [](const Settings& all) {
@@ -154,7 +154,7 @@ void add_search_rows(std::vector<OptionRow>& rows, EstimatorSettings& s) {
 }
 
 void add_filter_rows(std::vector<OptionRow>& rows, EstimatorSettings& s) {
-  OptionGroup pixels(rows, "Estimator", Effect::pixels);
+  OptionGroup pixels(rows, "Estimator", Effect::pixels, true);
   pixels.choice("--resolution", s.resolution, "of the estimate, by the nearest surface of 2 x 2 or 4 x 4 pixels")
       .why_without_effect = [](const Settings& all) {
     return all.estimator.resolution == Resolution::full
@@ -187,7 +187,7 @@ void add_filter_rows(std::vector<OptionRow>& rows, EstimatorSettings& s) {
 }
 
 void add_denoise_rows(std::vector<OptionRow>& rows, EstimatorSettings& s) {
-  OptionGroup pixels(rows, "Estimator", Effect::pixels);
+  OptionGroup pixels(rows, "Estimator", Effect::pixels, true);
   const auto unless_bilateral = [](const Settings& all) {
     return first_of({unless_denoised(all, {Denoise::bilateral}), if_by_error_alone(all)});
   };
@@ -234,7 +234,7 @@ void add_denoise_rows(std::vector<OptionRow>& rows, EstimatorSettings& s) {
 }
 
 void add_shape_rows(std::vector<OptionRow>& rows, EstimatorSettings& s) {
-  OptionGroup pixels(rows, "Estimator", Effect::pixels);
+  OptionGroup pixels(rows, "Estimator", Effect::pixels, true);
   pixels.number("--intensity", s.intensity, "", between(0, 100), "factor on the occlusion");
   pixels.number("power", s.power, "", above_to(0, 100), "exponent of the visibility");
   pixels.number("fade-start", s.fade_start, "scene units", between(0, 1e30), "depth where the AO begins to fade to 1")
@@ -254,7 +254,7 @@ void add_shape_rows(std::vector<OptionRow>& rows, EstimatorSettings& s) {
   };
   pixels.number("--seed", s.seed, "", between(0, 4294967295.0), "shifts the pattern of samples").why_without_effect =
       [](const Settings& all) { return all.estimator.seed == 0 ? "" : if_exact_alone(all); };
-  OptionGroup(rows, "Estimator", Effect::none)
+  OptionGroup(rows, "Estimator", Effect::none, true)
       .flag("--no-skip", s.no_skip, "estimate sky too, and what is as in the frame before; slower, the same bits");
 }
 

@@ -7,7 +7,7 @@
 
 #include "core/base/error.h"
 #include "core/base/text.h"
-#include "core/frame/input_files.h"
+#include "core/frame/raw_plane.h"
 #include "core/options/options.h"
 #include "core/options/reasons.h"
 
@@ -111,7 +111,7 @@ void add_behind_rows(OptionGroup& files, OptionGroup& pixels, InputSettings& s) 
       {"--behind-kind", "surfaces|fronts|backs|thickness[,...]", "", "",
        "of --behind, once or for each; backs: back faces; thickness: how deep things go on"},
       [&s] { return words_of(s.behind_kinds); }, [&s](const Words& words) { read_kinds(words, s.behind_kinds); });
-  kinds.repeats = true;
+  kinds.repeats = kinds.in_library = true;
   kinds.default_text = "surfaces";
   kinds.why_without_effect = [](const Settings& all) {
     return unless_for_each_file(all.input, all.input.behind_kinds.size());
@@ -169,14 +169,13 @@ void add_hidden_rows(std::vector<OptionRow>& rows, Settings& settings) {
   add_behind_rows(files, pixels, input);
   add_deep_rows(files, pixels, input);
   add_view_rows(files, pixels, input);
-  pixels
-      .number("hidden", estimator.hidden, "surfaces of a pixel", between(0, kMostKept),
+  OptionGroup kept(rows, "Hidden surfaces", Effect::pixels, true);
+  kept.number("hidden", estimator.hidden, "surfaces of a pixel", between(0, kMostKept),
               "kept behind the first, the nearest ones; 0: none")
       .why_without_effect = [](const Settings& all) {
     return all.estimator.hidden == 0 ? "" : unless_hidden_sources(all);
   };
-  pixels
-      .own(
+  kept.own(
           {"separation", "auto|NUMBER", "scene units", "0 or more",
            "surfaces closer to each other are one; auto: by the depth's precision and slope"},
           [&estimator] {

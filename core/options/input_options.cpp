@@ -6,9 +6,9 @@
 #include <cmath>
 
 #include "core/base/text.h"
-#include "core/frame/chan_file.h"
-#include "core/frame/input_files.h"
+#include "core/frame/camera.h"
 #include "core/frame/input_rules.h"
+#include "core/frame/raw_plane.h"
 #include "core/options/options.h"
 #include "core/options/reasons.h"
 
@@ -147,7 +147,7 @@ void add_file_rows(std::vector<OptionRow>& rows, InputSettings& s) {
   inputs.text("material-ao", s.material_ao, "FILE", "an EXR of the materials' own AO, multiplied in");
   inputs.text("--matte", s.matte, "FILE", "where AO is wanted, as coverage from 0 to 1");
   add_occluder_rows(rows, s);
-  OptionGroup(rows, "Input", Effect::pixels_or_input)
+  OptionGroup(rows, "Input", Effect::pixels_or_input, true)
       .own(
           {"albedo", "FILE|NUMBER", "", "0 to 1",
            "the diffuse colour, of all surfaces or in an EXR; else the beauty's"},
@@ -186,7 +186,8 @@ void add_channel_rows(std::vector<OptionRow>& rows, InputSettings& s) {
   pixels.text("matte-channel", s.matte_channel, "NAME", "of the matte, in its file or INPUT; or a Cryptomatte's layer");
   pixels.text("--matte-object", s.matte_object, "NAME[,NAME...]",
               "the matte is these objects of a Cryptomatte or of numbers; * and ? stand for others");
-  pixels.number("--matte-outside", s.matte_outside, "", between(0, 1), "the AO where the matte is 0")
+  OptionGroup(rows, "Input", Effect::pixels, true)
+      .number("--matte-outside", s.matte_outside, "", between(0, 1), "the AO where the matte is 0")
       .why_without_effect = [](const Settings& all) {
     return unless_given(wants_matte(all.input), "--matte and no --matte-object");
   };
@@ -204,7 +205,7 @@ void add_channel_rows(std::vector<OptionRow>& rows, InputSettings& s) {
 }
 
 void add_depth_rows(std::vector<OptionRow>& rows, InputSettings& s) {
-  OptionGroup pixels(rows, "Input", Effect::pixels);
+  OptionGroup pixels(rows, "Input", Effect::pixels, true);
   DepthRange& range = s.depth_range;
   const auto unless_between_planes = [](const Settings& all) {
     return unless_depth(all, {DepthKind::device, DepthKind::normalized, DepthKind::log});
@@ -240,7 +241,7 @@ void add_depth_rows(std::vector<OptionRow>& rows, InputSettings& s) {
 }
 
 void add_direction_rows(std::vector<OptionRow>& rows, InputSettings& s) {
-  OptionGroup pixels(rows, "Input", Effect::pixels);
+  OptionGroup pixels(rows, "Input", Effect::pixels, true);
   pixels.choice("--normal-space", s.normal_space, "auto: as the camera file says, or what fits the frame")
       .why_without_effect = [](const Settings& all) {
     return all.input.normal_space == NormalSpace::automatic ? "" : if_without_normals(all);
@@ -279,14 +280,14 @@ void add_camera_rows(std::vector<OptionRow>& rows, InputSettings& s) {
                           .text("--camera", s.camera, "FILE.json|.chan", "the camera; see docs/inputs.md");
   camera.is_common = true;
   camera.why_without_effect = [](const Settings& all) { return if_other_camera(all.input, "--camera"); };
-  OptionGroup pixels(rows, "Input", Effect::pixels);
-  pixels
+  OptionGroup(rows, "Input", Effect::pixels)
       .word("--chan-rotation", s.chan_rotation, {"xyz", "xzy", "yxz", "yzx", "zxy", "zyx"},
             "order of the camera's turns in a .chan file; zxy: Nuke's, xyz: Blender's and Maya's")
       .why_without_effect = [](const Settings& all) {
     const bool matters = all.input.chan_rotation != "zxy" && !is_chan_file(all.input.camera);
     return unless_given(!matters, "--camera FILE.chan");
   };
+  OptionGroup pixels(rows, "Input", Effect::pixels, true);
   OptionRow& fov = pixels.number("--fov", s.fov, "degrees", strictly_between(0, 180), "horizontal field of view");
   fov.is_common = true;
   fov.why_without_effect = [](const Settings& all) { return if_other_camera(all.input, "--fov"); };

@@ -76,16 +76,16 @@ void add_frame_rows(std::vector<OptionRow>& rows, RunOptions& options) {
 }
 
 void add_device_rows(std::vector<OptionRow>& rows, DeviceSettings& s) {
-  OptionGroup device(rows, "Device", Effect::none);
+  OptionGroup device(rows, "Device", Effect::none, true), process(rows, "Device", Effect::none);
   device.text("--device", s.device, "auto|cpu|INDEX|NAME|UUID", "where to compute; auto: the first GPU, else the CPU");
   device.flag("require-gpu", s.require_gpu, "computing on the CPU is an error");
   device.flag("--validate", s.validate, "load the Vulkan validation layer; any message is an error");
   device.flag("no-pipeline-cache", s.no_pipeline_cache, "keep no compiled kernels in the XDG cache folder");
-  device.own(
+  process.own(
       {"--memory", "SIZE", "bytes, or with K, M, G", "", "of the whole process; else half of what is free"},
       [&s] { return text_of_memory(s.memory); }, [&s](const std::string& text) { return read_memory(text, s.memory); },
       "is no size such as 512M or 4G");
-  device.number("--threads", s.threads, "", between(0, 1024), "of the CPU device and of codecs; 0: one per core");
+  process.number("--threads", s.threads, "", between(0, 1024), "of the CPU device and of codecs; 0: one per core");
 }
 
 void add_report_rows(std::vector<OptionRow>& rows, RunOptions& options) {

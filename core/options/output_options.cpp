@@ -109,12 +109,12 @@ void add_preview_rows(std::vector<OptionRow>& rows, OutputSettings& s) {
 }  // namespace
 
 void add_output_rows(std::vector<OptionRow>& rows, OutputSettings& s) {
-  OptionGroup pixels(rows, "Output", Effect::pixels);
+  OptionGroup pixels(rows, "Output", Effect::pixels), results(rows, "Output", Effect::pixels, true);
   OptionGroup files(rows, "Output", Effect::none);  // Whether a file is there is looked at when a run is resumed.
   files.text("-o,--output", s.output, "FILE.exr", "the AO, 1 = open, and what else --aov names").is_common = true;
-  word_list(pixels, "--aov", s.aovs, fmt::format("what OUTPUT holds: {}", fmt::join(aov_names(), ", "))).is_common =
+  word_list(results, "--aov", s.aovs, fmt::format("what OUTPUT holds: {}", fmt::join(aov_names(), ", "))).is_common =
       true;
-  pixels.choice("ao-channels", s.ao_channels, "mono: Y; rgb: R, G, B").why_without_effect = [](const Settings& all) {
+  results.choice("ao-channels", s.ao_channels, "mono: Y; rgb: R, G, B").why_without_effect = [](const Settings& all) {
     return all.output.ao_channels == AoChannels::mono ? "" : unless_aov(all, {"ao"});
   };
   pixels.text("ao-name", s.ao_name, "NAME", "of the AO's channel instead of Y; with rgb of its layer: NAME.R ...")
@@ -125,11 +125,11 @@ void add_output_rows(std::vector<OptionRow>& rows, OutputSettings& s) {
   };
   pixels.number("filter-width", s.filter.width, "px of what is written", between(1, 16), "from one end to the other")
       .why_without_effect = unless_supersampled;
-  pixels.choice("aov-space", s.aov_space, "of the normals in OUTPUT; auto: world where the camera tells it, else view")
+  results.choice("aov-space", s.aov_space, "of the normals in OUTPUT; auto: world where the camera tells it, else view")
       .why_without_effect = [](const Settings& all) {
     return all.output.aov_space == NormalSpace::automatic ? "" : unless_aov(all, {"normal", "bent-normal"});
   };
-  pixels
+  results
       .flag("multi-bounce", s.multi_bounce,
             "light between coloured surfaces brightens rgb AO and the composite's indirect light")
       .why_without_effect = [](const Settings& all) {

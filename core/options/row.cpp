@@ -100,7 +100,8 @@ OptionRow& OptionGroup::add(const Shown& shown, std::function<Words()> words, st
                    .default_text = present.empty() ? "" : present.front(),
                    .effect = effect_,
                    .words = std::move(words),
-                   .read = std::move(read)});
+                   .read = std::move(read),
+                   .in_library = in_library_});
   return rows_.back();
 }
 

@@ -45,6 +45,7 @@ struct OptionRow {
   bool is_required = false;  // of arguments without a name
   bool is_key = true;        // whether presets may hold it
   bool is_common = false;    // among the few that --help shows; --help-all shows all
+  bool in_library = false;   // libalcove takes it: not what names files, frames or reports, or how files are written
   // Tells why the present value has no effect beside the other settings, in a sentence; "" where it has one, or asks
   // for nothing. What is typed and has none is refused; of a preset it is left out. Null: it always has one.
   std::function<std::string(const Settings&)> why_without_effect = nullptr;
@@ -88,8 +89,8 @@ std::optional<int> whole_number_of(const std::string& text);
 /// the defaults.
 class OptionGroup {
  public:
-  OptionGroup(std::vector<OptionRow>& rows, std::string group, Effect effect)
-      : rows_(rows), group_(std::move(group)), effect_(effect) {}
+  OptionGroup(std::vector<OptionRow>& rows, std::string group, Effect effect, bool in_library = false)
+      : rows_(rows), group_(std::move(group)), effect_(effect), in_library_(in_library) {}
 
   OptionRow& text(const std::string& name, std::string& value, const char* what, const std::string& sentence);
   OptionRow& flag(const std::string& name, bool& value, const std::string& sentence);
@@ -128,6 +129,7 @@ class OptionGroup {
   std::vector<OptionRow>& rows_;
   const std::string group_;
   const Effect effect_;
+  const bool in_library_;
 };
 
 template <class T>

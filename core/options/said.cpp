@@ -1,16 +1,59 @@
-// Values are read into settings of their own first, by which the table tells what has no effect.
+// Values are read into settings of their own first, by which the table tells what has no effect; then settings that
+// contradict each other are found, and the option that mends each is named.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/options/said.h"
-
 #include <fmt/format.h>
-
 #include <algorithm>
 #include <set>
 
 #include "core/base/error.h"
+#include "core/base/estimator_facts.h"
+#include "core/base/flat_toml.h"
+#include "core/base/text.h"
 #include "core/chain/aov.h"
+#include "core/chain/debug_view.h"
+#include "core/frame/raw_plane.h"
+#include "core/options/options.h"
 
 namespace alcove {
+
+// Keys of presets.
+
+namespace {
+
+/// The settings in the text of a preset. The rules of presets/input are known to the program: such a preset is its
+/// --source and no more.
+std::vector<FlatEntry> settings_in(const std::string& text) {
+  auto entries = parse_flat_toml(text);
+  if (std::ranges::find(entries, "detect", &FlatEntry::key) != entries.end())
+    std::erase_if(entries, [](const auto& entry) { return entry.key != "source"; });
+  return entries;
+}
+
+/// The row that an entry is for.
+const OptionRow& row_of(const FlatEntry& entry, const std::vector<OptionRow>& table) {
+  const OptionRow& row = row_of_key(table, entry.key);
+  if (entry.values.empty()) fail(ErrorKind::usage, "{}: the list is empty", entry.key);
+  if (entry.values.size() > 1 && !row.repeats)
+    fail(ErrorKind::usage, "{} takes one value, and the list has {}", entry.key, entry.values.size());
+  return row;
+}
+
+}  // namespace
+
+std::vector<Said> said_by_text(const std::string& preset, const std::string& text,
+                               const std::vector<OptionRow>& table) {
+  std::vector<Said> said;
+  try {
+    for (const auto& entry : settings_in(text))
+      said.push_back({row_of(entry, table).long_name(), entry.values, preset});
+  } catch (const Error& error) {
+    fail(error.kind(), "{} (--preset): {}", preset, error.what());
+  }
+  return said;
+}
+
+// What was said.
+
 namespace {
 
 const OptionRow& row_of(const std::vector<OptionRow>& table, const std::string& option) {
@@ -134,6 +177,11 @@ void read_said(RunOptions& options, std::vector<Said> said, Reader reader) {
   options.settings.input.from_presets = only_in_presets(said);
 }
 
+// Contradictions.
+
+namespace {
+
+/// Fails with ErrorKind::usage where a setting that is not the usual one has no effect.
 void require_effects(const Settings& settings) {
   RunOptions defaults;
   RunOptions options;
@@ -144,6 +192,120 @@ void require_effects(const Settings& settings) {
     if (table[i].words() != usual[i].words())
       if (const std::string objection = table[i].objection(settings); !objection.empty())
         fail(ErrorKind::usage, "{}", objection);
+}
+
+// Each scale costs a search and a plane of its own.
+constexpr std::size_t kMostRadii = 8;
+
+/// Only an estimate by its error knows that error.
+void check_tolerance(const Settings& settings) {
+  const auto& e = settings.estimator;
+  if (e.tolerance == 0 && wants(settings.output, &FrameOutputs::error))
+    fail(ErrorKind::usage, "--aov error: only an estimate with a --tolerance knows its error");
+}
+
+/// An exact search leaves out no tiles.
+void check_search(const Settings& settings) {
+  const auto& e = settings.estimator;
+  if (!searches_exactly(e)) return;
+  for (const auto* view : debug_views_of(settings.output))
+    if (view->source == DebugSource::tiles)
+      fail(ErrorKind::usage, "--set debug=tiles: an exact search leaves out none; --search steps does");
+}
+
+/// A view of what is completed needs something that is.
+void check_completion(const Settings& settings) {
+  const auto& e = settings.estimator;
+  const auto views = debug_views_of(settings.output);
+  const bool is_shown = std::ranges::find(views, DebugSource::completed, &DebugView::source) != views.end();
+  if (!is_shown || completes_anywhere(e)) return;
+  if (e.complete == Completion::none)
+    fail(ErrorKind::usage,
+         "--set debug=completed: with --set complete=none nothing is; border and all complete surfaces");
+  fail(ErrorKind::usage, "--set debug=completed: --estimator {} completes no surfaces; gtao and bitmask do",
+       e.estimator == Estimator::hbao ? "hbao" : "crytek");
+}
+
+/// Whether a view shows how one frame is estimated.
+bool is_of_estimate(DebugSource source) {
+  return source == DebugSource::tiles || source == DebugSource::completed || source == DebugSource::sites ||
+         source == DebugSource::raw_ao || source == DebugSource::denoised_ao;
+}
+
+/// A mean of many frames has no tiles, sites or guesses of one.
+void check_accumulation(const Settings& settings) {
+  if (settings.input.accumulate == 0) {
+    for (const auto* view : debug_views_of(settings.output))
+      if (view->source == DebugSource::count)
+        fail(ErrorKind::usage, "--set debug=count: a frame is its own estimate; --accumulate takes those of others");
+    return;
+  }
+  for (const auto* view : debug_views_of(settings.output))
+    if (is_of_estimate(view->source))
+      fail(ErrorKind::usage,
+           "--set debug={}: it shows the estimate of one frame, and with --accumulate the AO is the mean of many: "
+           "leave one "
+           "of them out",
+           view->name);
+}
+
+/// What shows hidden surfaces needs some that are kept.
+void check_hidden(const Settings& settings) {
+  const auto views = debug_views_of(settings.output);
+  const bool is_drawn = std::ranges::find(views, DebugSource::hidden, &DebugView::source) != views.end();
+  const char* const option = wants(settings.output, &FrameOutputs::hidden) ? "--aov "
+                             : is_drawn                                    ? "--set debug="
+                                                                           : nullptr;
+  if (!option) return;
+  if (settings.estimator.hidden == 0) fail(ErrorKind::usage, "{}hidden: with --set hidden=0 nothing is kept", option);
+  if (!has_hidden_sources(settings.input))
+    fail(ErrorKind::usage, "{}hidden: nothing says what is hidden: --behind, --deep, --around and --set other-views do",
+         option);
+}
+
+/// Several radii make sense once each; bent normals need an estimator that finds open directions.
+void check_scales(const Settings& settings) {
+  const auto& e = settings.estimator;
+  if (wants(settings.output, &FrameOutputs::bent_normal) && !searches_slices(e))
+    fail(ErrorKind::usage, "--aov bent-normal: --estimator {} finds no open directions; gtao and bitmask do",
+         e.estimator == Estimator::hbao ? "hbao" : "crytek");
+  if (e.further_radii.empty()) return;
+  const auto radii = radii_of(e);
+  if (radii.size() > kMostRadii)
+    fail(ErrorKind::usage, "--radius: there are {} of them; a run takes at most {}", radii.size(), kMostRadii);
+  if (const auto twice = std::ranges::adjacent_find(radii); twice != radii.end())
+    fail(ErrorKind::usage, "--radius {} is there twice: give each scale once", *twice);
+}
+
+/// Numbers that have an order, or a range of their own beside others.
+void check_numbers(const EstimatorSettings& e) {
+  if (e.fade_start && e.fade_end && *e.fade_end <= *e.fade_start)
+    fail(ErrorKind::usage, "--set fade-end={} is not beyond --set fade-start={}", *e.fade_end, *e.fade_start);
+  if (e.estimator != Estimator::crytek && e.bias >= 1)
+    fail(ErrorKind::usage, "--set bias={}: of every estimator but crytek it is the sine of an elevation, below 1",
+         e.bias);
+  if (e.falloff_end <= e.falloff_start)
+    fail(ErrorKind::usage, "--set falloff-end={} is not above --set falloff-start={}", e.falloff_end, e.falloff_start);
+}
+
+}  // namespace
+
+void check_settings(const Settings& settings) {
+  if (settings.output.output.empty()) fail(ErrorKind::usage, "no output: name the AO file with -o FILE.exr");
+  if (main_input(settings.input).empty())
+    fail(ErrorKind::usage, "no input: name an EXR file, or one with --depth or --position");
+  if (!settings.estimator.radius && !settings.estimator.radius_auto && needs_ao(settings.output))
+    fail(ErrorKind::usage, "no radius: say with --radius how far occluders reach, in scene units");
+  require_effects(settings);
+  check_tolerance(settings);
+  check_search(settings);
+  check_completion(settings);
+  check_accumulation(settings);
+  check_hidden(settings);
+  check_scales(settings);
+  check_numbers(settings.estimator);
+  if (settings.frames.chunk > settings.frames.chunks)
+    fail(ErrorKind::usage, "--chunk {}/{}: there is no such chunk", settings.frames.chunk, settings.frames.chunks);
 }
 
 }  // namespace alcove

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/base/settings.h"
-#include "core/frame/host_frame.h"
+#include "core/frame/reading.h"
 
 namespace alcove {
 

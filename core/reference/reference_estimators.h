@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "core/frame/host_frame.h"
+#include "core/frame/reading.h"
 
 namespace alcove {
 

@@ -19,14 +19,12 @@
 #include "core/chain/chain.h"
 #include "core/chain/warm_up.h"
 #include "core/formats/color.h"
-#include "core/options/check.h"
-#include "core/run/digest.h"
+#include "core/options/options.h"
 #include "core/run/first_look.h"
-#include "core/run/frame_tally.h"
-#include "core/run/memory_plan.h"
+#include "core/run/frame_run.h"
+#include "core/run/memory.h"
 #include "core/run/pipeline.h"
 #include "core/run/resume.h"
-#include "core/run/shot_memory.h"
 
 namespace alcove {
 namespace {
@@ -160,12 +158,8 @@ class Batch {
     const std::unordered_set<int> computed(wanted.begin(), wanted.end());
     for (const int frame : plan_.frames()) {
       if (computed.contains(frame)) continue;
-      const Settings settings = plan_.at(frame);
-      FrameReport report;
-      report.frame = frame;
+      FrameReport report = report_of(plan_, frame);
       report.state = FrameState::kept;
-      report.input = main_input(settings.input);
-      report.output = settings.output.output;
       report_.kept++;
       if (watch_.frame) watch_.frame(report);
       keep(std::move(report));

@@ -3,14 +3,19 @@
 #include "core/run/first_look.h"
 
 #include <fmt/format.h>
-
+#include <algorithm>
 #include <filesystem>
+#include <vector>
 
+#include "core/base/text.h"
 #include "core/chain/aov.h"
 #include "core/formats/sequence.h"
 #include "core/frame/radius.h"
 #include "core/frame/settle.h"
+#include "core/options/options.h"
 #include "core/run/frame_files.h"
+#include "core/run/memory.h"
+#include "core/run/resume.h"
 
 namespace alcove {
 namespace {
@@ -38,20 +43,11 @@ Notes notes_on_missing_around(const FramePlan& plan) {
                        frames_text(missing))}};
 }
 
-constexpr double kSomeFov = 50;  // degrees, as inspect takes it for a frame without a camera
-
-/// The settings of a frame with a camera that stands in for the missing one.
-InputSettings with_some_fov(InputSettings settings) {
-  settings.fov = kSomeFov;
-  if (settings.normal_space == NormalSpace::automatic) settings.normal_space = NormalSpace::view;
-  return settings;
-}
-
 /// Why the channels of the first frame are not found, whatever its camera; nothing where they are.
 std::optional<Error> unfound_in(const FramePlan& plan) {
   if (plan.evidence().empty()) return std::nullopt;
   try {
-    find_frame(with_some_fov(plan.at(plan.evidence().front()).input), false, plan.evidence().front());
+    find_frame(with_some_camera(plan.at(plan.evidence().front()).input), false, plan.evidence().front());
   } catch (const Error& error) {
     return error;
   }
@@ -62,7 +58,7 @@ std::optional<Error> unfound_in(const FramePlan& plan) {
 std::optional<double> radius_for(const FramePlan& plan, bool has_camera, std::optional<Error>& error) {
   for (const int frame : plan.evidence()) {
     try {
-      const InputSettings given = plan.at(frame).input, settings = has_camera ? given : with_some_fov(given);
+      const InputSettings given = plan.at(frame).input, settings = has_camera ? given : with_some_camera(given);
       FrameSource source = find_frame(settings, false, frame);
       source.camera_is_assumed = !has_camera;
       settle_by_rows(source, settings);
@@ -188,6 +184,75 @@ std::vector<std::string> sentences_on(const Lacking& lacking) {
     sentences.emplace_back("--radius NUMBER, how far occluders reach in scene units, or --radius auto");
   if (lacking.unreadable) sentences.push_back(fmt::format("a frame to look at: {}", lacking.unreadable->what()));
   return sentences;
+}
+
+// What a run would do, for people.
+
+namespace {
+
+/// "shot.1001.exr" of one frame, "shot.1001.exr to shot.1100.exr" of several.
+std::string span_text(const std::string& first, const std::string& last) {
+  return first == last ? first : first + " to " + last;
+}
+
+}  // namespace
+
+std::string plan_text(const Settings& given) {
+  check_settings(given);
+  Notes notes;
+  const Settings settings = with_proposed_radius(given, notes);
+  const FramePlan plan(settings);
+  add_new(notes, notes_on_names(plan, settings));
+  std::string text;
+  const auto line = [&](const std::string& name, const std::string& value) {
+    text += printable(fmt::format("{:<14}{}", name, value)) + "\n";
+  };
+  line("frames",
+       plan.frames().empty() ? "none" : fmt::format("{}: {}", plan.frames().size(), frames_text(plan.frames())));
+  if (!plan.missing().empty())
+    line("missing", fmt::format("{}: {}, left out", plan.missing().size(), frames_text(plan.missing())));
+  for (const auto& note : notes) line(level_of(note), line_of(note, ""));
+  if (plan.frames().empty()) return text;
+  Settings first = plan.at(plan.frames().front()), last = plan.at(plan.frames().back());
+  require_endings(first.output);
+  for (const auto& path : named_paths())
+    if (!path.of(first).empty()) line(path.option, span_text(path.of(first), path.of(last)));
+
+  FrameSource source = open_frame(first, plan.frames().front());
+  // Frames of a sequence are read as one of them that shows enough.
+  if (!plan.is_sequence()) settle_by_rows(source, first.input, memory_of_host(first.device).host_bytes);
+  std::vector<std::string> channels;
+  for (const auto& plane : source.planes.entries)
+    for (const auto& channel : plane) channels.push_back(channel.channel);
+  line("channels", fmt::format("{}", fmt::join(channels, ", ")));
+  line("camera",
+       fmt::format("{}, {:.6g} x {:.6g} px {}", source.camera.orthographic ? "orthographic" : "perspective",
+                   source.camera.fx, source.camera.fy, source.camera.orthographic ? "per scene unit" : "focal length"));
+  const FrameMemory frame = memory_with_others(plan, source, first);
+  const std::uint64_t bytes = frame.of(source.file_data).host;
+  const auto wanted = frames_to_compute(plan, settings);
+  require_room_for_others(memory_of_host(first.device), plan, source, first, wanted);
+  const RunMemory run = beside_shot(memory_of_host(first.device), plan, source, first, wanted, 1);
+  const std::uint64_t memory = run.host_bytes;
+  line("size", to_string(written_picture(source)));
+  const std::string at_once =
+      bytes > memory ? "in tiles" : fmt::format("up to {} at once", frames_in(run, frame, source.file_data));
+  line("memory", fmt::format("{} MiB per frame, {} MiB for frames: {}", bytes >> 20, memory >> 20, at_once));
+  if (around_of(first.input) > 0)
+    line("around",
+         fmt::format("up to {} of the {} frames of the shot: {} MiB of prepared frames for each at once, beside "
+                     "what it takes itself",
+                     most_others(plan, source, first.input), plan.shot().size(),
+                     bytes_of_shot(plan, source, first.input, 1) >> 20));
+  if (first.input.accumulate > 0)
+    line("accumulate",
+         fmt::format("up to {} of the {} frames of the shot: {} MiB of estimates for each at once, beside "
+                     "what it takes itself",
+                     std::min(plan.shot().size(), std::size_t(plan.turns())), plan.shot().size(),
+                     bytes_of_estimates(plan, source, first, wanted, 1) >> 20));
+  if (wanted.size() < plan.frames().size())
+    line("kept", fmt::format("{}: whole, by an earlier run", plan.frames().size() - wanted.size()));
+  return text;
 }
 
 }  // namespace alcove

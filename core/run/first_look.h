@@ -1,11 +1,13 @@
-// What is looked at before any frame of a run is computed: how its frames are read, what is noted of all of them, and
-// what the command line lacks.
+// What is looked at before any frame of a run is computed: how its frames are read, what is noted of all of them, what
+// the command line lacks, and what the run would do.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "core/base/error.h"
+#include "core/base/settings.h"
 #include "core/frame/gbuffer.h"
 #include "core/run/plan.h"
 
@@ -45,5 +47,9 @@ Lacking lacking_in(const Settings& settings);
 
 /// One sentence for each thing, with the options that give it.
 std::vector<std::string> sentences_on(const Lacking& lacking);
+
+/// The frames, files, size and memory of a run. Computes and writes nothing. Fails as the run would on settings, names,
+/// and a single frame that cannot be read as it is.
+std::string plan_text(const Settings& settings);
 
 }  // namespace alcove

@@ -1,25 +1,277 @@
-// Finding, uploading and writing the planes of a frame.
+// Finding, uploading and writing the planes of a frame; its preview and its debug views.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/run/frame_files.h"
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <filesystem>
+#include <limits>
 
 #include "core/base/error.h"
 #include "core/base/estimator_facts.h"
 #include "core/base/file.h"
 #include "core/base/option_words.h"
+#include "core/base/ranks.h"
 #include "core/base/version.h"
 #include "core/base/windows.h"
 #include "core/chain/aov.h"
+#include "core/chain/debug_view.h"
 #include "core/chain/margin.h"
+#include "core/formats/png.h"
 #include "core/frame/behind.h"
-#include "core/frame/plane_windows.h"
+#include "core/frame/raw_plane.h"
 #include "core/frame/settle.h"
-#include "core/run/pictures.h"
+#include "core/run/tiles.h"
 
 namespace alcove {
+namespace {
+
+// The composite of a beauty whose data window is not the depth's.
+
+/// The most that is put together at once, so that a beauty which is much larger than the depth needs no more memory.
+constexpr std::uint64_t kBytesAtOnce = 1 << 20;
+
+const Window& window_of_beauty(const FrameSource& source) { return source.part_of(source[RawPlane::beauty][0]).data; }
+
+/// Of all planes.
+std::uint64_t row_bytes(const FrameSource& source) {
+  return sizeof(float) * source[RawPlane::beauty].size() * std::uint64_t(window_of_beauty(source).width);
+}
+
+/// The window of a frame's composite: the beauty's, or the part of a region that the beauty has.
+Window composite_window(const FrameSource& source) {
+  const Window& beauty = window_of_beauty(source);
+  return source.region ? common_part(picture_of(source, *source.region), beauty) : beauty;
+}
+
+/// The composite over a part of its window, so many planes: where `from` has pixels those of `planes`, elsewhere the
+/// beauty's, which are read then, and 1 in a plane of AO behind them. Fails as reading a frame does.
+std::vector<std::vector<float>> composite_over(FrameSource& source, std::size_t count, const Window& part,
+                                               const Window& from, std::span<const std::span<const float>> planes) {
+  const auto& beauty = source[RawPlane::beauty];
+  const Window& whole = window_of_beauty(source);
+  const Window rows{whole.x, part.y, whole.width, part.height};
+  const bool is_all_computed = common_part(part, from) == part;
+  std::vector<std::vector<float>> composite(count, std::vector<float>(part.pixels(), 1));
+  for (std::size_t c = 0; c < count; c++) {
+    if (!is_all_computed && c < beauty.size()) {
+      std::vector<float> read(rows.pixels());
+      const ExrRead channel{beauty[c].part, beauty[c].channel, read.data()};
+      source.files[beauty[c].file].read({&channel, 1}, part.y - whole.y, part.height);
+      copy_common(read.data(), rows, composite[c].data(), part);
+    }
+    if (!planes.empty()) copy_common(planes[c].data(), from, composite[c].data(), part);
+  }
+  return composite;
+}
+
+}  // namespace
+
+std::uint64_t composite_bytes(const FrameSource& source) {
+  if (source[RawPlane::beauty].empty() || composite_window(source) == written_picture(source)) return 0;
+  return 2 * std::max(kBytesAtOnce, kRowsOfOutput * row_bytes(source));  // what is read, and what is made of it
+}
+
+CompositeRows::CompositeRows(FrameSource& source, const Window& computed, std::size_t planes, WriteRows write_rows)
+    : source_(source),
+      write_rows_(std::move(write_rows)),
+      computed_(computed),
+      window_(composite_window(source)),
+      planes_(planes),
+      computed_row_(computed.y),
+      row_(window_.y) {}
+
+void CompositeRows::write(std::span<const std::span<const float>> planes) {
+  const int rows = int(planes[0].size() / std::size_t(computed_.width));
+  const Window from{computed_.x, computed_row_, computed_.width, rows};
+  write_until(from.y, {}, {});
+  write_until(from.y + rows, from, planes);
+  computed_row_ += rows;
+}
+
+void CompositeRows::finish() { write_until(window_.y + window_.height, {}, {}); }
+
+void CompositeRows::write_until(int bottom, const Window& from, std::span<const std::span<const float>> planes) {
+  const int step = int(std::clamp<std::uint64_t>(kBytesAtOnce / row_bytes(source_), kRowsOfOutput, 1 << 20));
+  for (const int end = std::min(bottom, window_.y + window_.height); row_ < end;) {
+    const Window part{window_.x, row_, window_.width, std::min(step, end - row_)};
+    const auto composite = composite_over(source_, planes_, part, from, planes);
+    write_rows_(std::vector<std::span<const float>>(composite.begin(), composite.end()));
+    row_ += part.height;
+  }
+}
+
+// Pictures: numbers on a scale of colours, and frames in the display window.
+
+namespace {
+
+/// The part of the surfaces beyond either end of a percentile scale. So much may lie beyond a window without hiding the
+/// room.
+constexpr double kEnds = 0.03;
+
+/// The values at the two ends of the scale.
+std::pair<float, float> range_of(const DebugView& view, std::span<const float> values) {
+  if (view.scale == DebugScale::fixed || view.scale == DebugScale::fixed_logarithmic) return {view.low, view.high};
+  std::vector<float> surfaces;
+  std::ranges::copy_if(values, std::back_inserter(surfaces), [](float x) { return x < kSkyDepth; });
+  if (surfaces.empty()) return {0, 1};
+  const auto at = [&](double part) { return value_at_rank(surfaces, std::size_t(part * double(surfaces.size() - 1))); };
+  return {at(kEnds), at(1 - kEnds)};
+}
+
+/// Where each number stands on the scale, 0 to 1; sky is NaN.
+std::vector<float> places_of(const DebugView& view, std::span<const float> values, float low, float high) {
+  const bool logarithmic =
+      view.scale == DebugScale::fixed_logarithmic || view.scale == DebugScale::percentile_logarithmic;
+  const auto on_scale = [&](float x) {
+    return logarithmic ? std::log(std::max(std::abs(x), std::numeric_limits<float>::min())) : x;
+  };
+  const float from = on_scale(low), range = on_scale(high) - from;
+  std::vector<float> places(values.size());
+  std::ranges::transform(values, places.begin(), [&](float x) {
+    if (x >= kSkyDepth) return std::numeric_limits<float>::quiet_NaN();
+    return range == 0 ? 0.5f : std::clamp((on_scale(x) - from) / range, 0.0f, 1.0f);
+  });
+  return places;
+}
+
+/// A colour that brightens evenly from violet by green to yellow, display values: a polynomial of the sixth degree
+/// through "viridis" of Smith and van der Walt, off by at most .03.
+std::array<float, 3> color_at(float place) {
+  constexpr std::array<std::array<float, 3>, 7> kPowers{{{0.277727f, 0.005407f, 0.334100f},
+                                                         {0.105093f, 1.404614f, 1.384590f},
+                                                         {-0.330862f, 0.214848f, 0.095095f},
+                                                         {-4.634230f, -5.799101f, -19.332441f},
+                                                         {6.228270f, 14.179933f, 56.690553f},
+                                                         {4.776385f, -13.745145f, -65.353033f},
+                                                         {-5.435456f, 4.645853f, 26.312435f}}};
+  std::array<float, 3> color{};
+  for (std::size_t c = 0; c < 3; c++)
+    for (std::size_t power = kPowers.size(); power-- > 0;) color[c] = color[c] * place + kPowers[power][c];
+  return color;
+}
+
+/// Writes the picture of one view, a pixel for each number. `values` holds one number per pixel, kSkyDepth for sky.
+void write_debug_view(const std::string& path, const DebugView& view, int width, int height,
+                      std::span<const float> values, const std::string& made_by) {
+  const auto [low, high] = range_of(view, values);
+  const bool is_open = view.scale == DebugScale::percentile || view.scale == DebugScale::percentile_logarithmic;
+  const auto text = [&](const char* beyond, float x) { return fmt::format("{}{:.4g}", is_open ? beyond : "", x); };
+  std::vector<float> pixels;
+  pixels.reserve(3 * values.size());
+  for (const float place : places_of(view, values, low, high)) {
+    const auto color = std::isnan(place) ? kSkyColor : view.is_grey ? std::array{place, place, place} : color_at(place);
+    pixels.insert(pixels.end(), color.begin(), color.end());
+  }
+  write_png(path, width, height, 3, pixels, made_by,
+            fmt::format("{}. Darkest: {}, brightest: {}.", view.title, text("<= ", low), text(">= ", high)));
+}
+
+/// The display window of `planes` planes over a data window, interleaved; black where there are no pixels.
+std::vector<float> displayed(const Window& display, const Window& data, std::span<const float> pixels, int planes) {
+  std::vector<float> interleaved(display.pixels() * std::size_t(planes));
+  for (int y = std::max(data.y, display.y); y < std::min(data.y + data.height, display.y + display.height); y++)
+    for (int x = std::max(data.x, display.x); x < std::min(data.x + data.width, display.x + display.width); x++)
+      for (int c = 0; c < planes; c++)
+        interleaved[(std::size_t(y - display.y) * std::size_t(display.width) + std::size_t(x - display.x)) *
+                        std::size_t(planes) +
+                    std::size_t(c)] =
+            pixels[std::size_t(c) * data.pixels() + std::size_t(y - data.y) * std::size_t(data.width) +
+                   std::size_t(x - data.x)];
+  return interleaved;
+}
+
+/// A plane over source.data as pixels of the picture.
+std::vector<float> in_picture(const FrameSource& source, std::span<const float> plane) {
+  return middle_pixels(plane, source.data, source.display, source.supersampling);
+}
+
+/// The composite over a window, band by band, since the beauty's rows may be far longer than those of the display.
+/// Where nothing is computed it is the beauty.
+std::vector<float> shown_composite(FrameSource& source, const gpu::Buffer* computed, const Window& shown) {
+  constexpr int kBand = 64;  // rows; files compress no more together, but for a few
+  std::vector<std::vector<float>> planes;
+  const auto values = computed ? computed->as<const float>() : std::span<const float>();
+  for (std::size_t at = 0; at < values.size(); at += source.data.pixels())
+    planes.push_back(in_picture(source, values.subspan(at, source.data.pixels())));
+  const Window from = computed ? picture_of(source, source.data) : Window{};
+  const std::size_t count = source[RawPlane::beauty].size();
+  std::vector<float> pixels(count * shown.pixels());
+  for (int y = shown.y; y < shown.y + shown.height; y += kBand) {
+    const Window band{shown.x, y, shown.width, std::min(kBand, shown.y + shown.height - y)};
+    const auto composite =
+        composite_over(source, count, band, from, std::vector<std::span<const float>>(planes.begin(), planes.end()));
+    for (std::size_t c = 0; c < composite.size(); c++)
+      copy_common(composite[c].data(), band, pixels.data() + c * shown.pixels(), shown);
+  }
+  return pixels;
+}
+
+/// Interleaved display values, over the picture's display window.
+struct Shown {
+  int width, planes;
+  std::vector<float> pixels;
+};
+
+/// AO by itself is data, and shown as it is.
+Shown shown_ao(const FrameSource& source, const gpu::Buffer& ao) {
+  const Window display = picture_of(source, source.display), data = picture_of(source, source.data);
+  const std::vector<float> pixels = in_picture(source, ao.as<float>());
+  const Window written = written_picture(source);
+  return {display.width, 1, displayed(display, written, cropped(pixels, data, written), 1)};
+}
+
+/// A beauty, or a composite, through the view transform.
+Shown shown_colors(FrameSource& source, const gpu::Buffer* computed, const DisplayTransform* transform) {
+  const Window display = picture_of(source, source.display);
+  const Window data = common_part(composite_window(source), display);
+  Shown shown{display.width, 3, displayed(display, data, shown_composite(source, computed, data), 3)};
+  if (transform) transform->apply(shown.pixels);
+  return shown;
+}
+
+/// Both side by side, with a grey line between.
+Shown beside(const Shown& left, const Shown& right) {
+  constexpr int kLine = 4;  // px
+  constexpr float kGrey = 0.5F;
+  Shown both{left.width + kLine + right.width, 3, {}};
+  const auto of_row = [](const Shown& shown, std::size_t row) {
+    const std::size_t values = 3 * std::size_t(shown.width);
+    return std::span(shown.pixels).subspan(row * values, values);
+  };
+  const std::size_t rows = left.pixels.size() / (3 * std::size_t(left.width));
+  for (std::size_t row = 0; row < rows; row++) {
+    std::ranges::copy(of_row(left, row), std::back_inserter(both.pixels));
+    both.pixels.insert(both.pixels.end(), 3 * kLine, kGrey);
+    std::ranges::copy(of_row(right, row), std::back_inserter(both.pixels));
+  }
+  return both;
+}
+
+Shown preview_of(FrameSource& source, const FrameOutputs& outputs, const DisplayTransform* transform,
+                 const std::string& style) {
+  if (!outputs.composite || style == "ao") return shown_ao(source, *outputs.ao);
+  const Shown composite = shown_colors(source, outputs.composite, transform);
+  return style == "split" ? beside(shown_colors(source, nullptr, transform), composite) : composite;
+}
+
+}  // namespace
+
+void write_pictures(FrameSource& source, const FrameOutputs& outputs, const DisplayTransform* transform,
+                    const OutputSettings& settings, const Provenance& provenance) {
+  const std::string text = made_by(provenance.options, provenance.inputs);
+  for (const auto& plane : outputs.debug)
+    write_debug_view(debug_path(settings, *plane.view), *plane.view, plane.size.x, plane.size.y,
+                     plane.values->as<float>(), text);
+  if (settings.preview.empty()) return;
+  const Shown shown = preview_of(source, outputs, transform, settings.preview_style);
+  const int height = int(shown.pixels.size()) / shown.planes / shown.width;
+  write_png(settings.preview, shown.width, height, shown.planes, shown.pixels, text);
+}
+
+// Planes.
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -53,13 +305,6 @@ ExrOutput output_like(const FrameSource& source, const ChannelRef& like, const W
   if (!provenance.estimates.empty()) output.own_attributes[kAccumulatedAttribute] = provenance.estimates;
   if (!provenance.notes.empty()) output.own_attributes[kNotesAttribute] = provenance.notes;
   return output;
-}
-
-SampleType type_of(const FrameSource& source, const ChannelRef& ref) {
-  const auto& channels = source.part_of(ref).channels;
-  const auto found = std::ranges::find(channels, ref.channel, &ExrChannel::name);
-  return found != channels.end() && found->type == SampleType::half_float ? SampleType::half_float
-                                                                          : SampleType::single_float;
 }
 
 /// The AO file, without pixels.
@@ -119,7 +364,10 @@ ExrOutput composite_file(const FrameSource& source, const Settings& all, const P
   output.compression = settings.composite_compression;
   const char* names[] = {"R", "G", "B", "A"};
   for (std::size_t c = 0; c < source[RawPlane::beauty].size(); c++)
-    output.planes.push_back({names[c], type_of(source, source[RawPlane::beauty][c]), {}});
+    output.planes.push_back(
+        {names[c],
+         source.is_half(source[RawPlane::beauty][c]) ? SampleType::half_float : SampleType::single_float,
+         {}});
   if (!settings.append_ao.empty()) output.planes.push_back({appended_channel(settings), type_of(settings), {}});
   return output;
 }
@@ -209,6 +457,14 @@ void require_for_outputs(const FrameSource& source, const OutputSettings& settin
   }
 }
 
+/// Whether planes are all that the frame needs.
+bool are_of(const ReadPlanes& planes, const FrameSource& source) {
+  return std::ranges::all_of(kRawPlanes, [&](const auto& row) {
+    return source[row.plane].empty() ||
+           planes[row.plane].size() == source[row.plane].size() * source.file_data.pixels();
+  });
+}
+
 }  // namespace
 
 FrameSource open_frame(const Settings& settings, int frame) {
@@ -242,25 +498,21 @@ ReadPlanes kept_planes(const FrameInputs& inputs) {
   return planes;
 }
 
-ReadPlanes read_whole(FrameSource& source) {
-  ReadPlanes planes;
-  std::vector<PlaneRead> reads;
-  for (const auto& row : kRawPlanes) {
-    planes[row.plane].resize(source[row.plane].size() * source.file_data.pixels());
-    reads.push_back({&source[row.plane], planes[row.plane].data()});
+void read_for_parts(FrameSource& source, const Settings& settings, ReadPlanes& known, std::uint64_t most_bytes) {
+  if (!are_of(known, source)) {
+    std::vector<PlaneRead> reads;
+    for (const auto& row : kRawPlanes) {
+      known[row.plane].resize(source[row.plane].size() * source.file_data.pixels());
+      reads.push_back({&source[row.plane], known[row.plane].data()});
+    }
+    read_planes(source, reads);
   }
-  read_planes(source, reads);
-  return planes;
+  if (!source.settled)
+    settle_by_planes(source, settings.input, known[RawPlane::depth], known[RawPlane::normal], most_bytes);
 }
 
-bool are_of(const ReadPlanes& planes, const FrameSource& source) {
-  return std::ranges::all_of(kRawPlanes, [&](const auto& row) {
-    return source[row.plane].empty() ||
-           planes[row.plane].size() == source[row.plane].size() * source.file_data.pixels();
-  });
-}
-
-RawPlaneArray<gpu::Buffer*> read_frame(gpu::Recorder& gpu, FrameSource& source, const ReadPlanes* known) {
+FrameInputs load_frame(gpu::Recorder& gpu, FrameSource& source, const Settings& settings, int frame,
+                       const ReadPlanes* known) {
   RawPlaneArray<gpu::Buffer*> planes;
   std::vector<PlaneRead> reads;
   const bool is_known = known && are_of(*known, source);
@@ -275,29 +527,19 @@ RawPlaneArray<gpu::Buffer*> read_frame(gpu::Recorder& gpu, FrameSource& source, 
       copy_common((*known)[row.plane].data() + c * of_file, source.file_data, to + c * pixels, source.data);
   }
   if (!is_known) read_planes(source, reads);
-  for (const auto& row : kRawPlanes)
-    if (planes[row.plane]) fill_missing(source, row.plane, planes[row.plane]->as<float>());
-  return planes;
-}
-
-FrameInputs settled_inputs(FrameSource& source, const RawPlaneArray<gpu::Buffer*>& planes, const Settings& all,
-                           int frame) {
-  const InputSettings& settings = all.input;
   const auto values_of = [&](RawPlane plane) {
     return planes[plane] ? planes[plane]->as<float>() : std::span<float>();
   };
+  for (const auto& row : kRawPlanes)
+    if (planes[row.plane]) fill_missing(source, row.plane, values_of(row.plane));
   if (planes[RawPlane::beauty]) require_picture(source, values_of(RawPlane::beauty));
-  if (!source.settled) settle_by_planes(source, settings, values_of(RawPlane::depth), values_of(RawPlane::normal));
+  if (!source.settled)
+    settle_by_planes(source, settings.input, values_of(RawPlane::depth), values_of(RawPlane::normal));
   FrameInputs inputs = inputs_of(source, planes, frame);
   inputs.margin = margin_of(source.data, source.file_data);
-  inputs.albedo_value = settings.albedo_value.value_or(0);
-  if (in_world(source.camera, all.output)) inputs.aov_from_view = transposed(*source.camera.view_from_world);
+  inputs.albedo_value = settings.input.albedo_value.value_or(0);
+  if (in_world(source.camera, settings.output)) inputs.aov_from_view = transposed(*source.camera.view_from_world);
   return inputs;
-}
-
-FrameInputs load_frame(gpu::Recorder& gpu, FrameSource& source, const Settings& all, int frame,
-                       const ReadPlanes* known) {
-  return settled_inputs(source, read_frame(gpu, source, known), all, frame);
 }
 
 std::vector<std::span<const float>> result_planes(const FrameOutputs& outputs, const Window& computed,
@@ -316,6 +558,10 @@ std::vector<std::span<const float>> result_planes(const FrameOutputs& outputs, c
   return results;
 }
 
+void FrameWriter::write_to(File& file, std::span<const std::span<const float>> rows) {
+  std::visit([&](auto& open) { open.write(rows); }, file);
+}
+
 FrameWriter::FrameWriter(FrameSource& source, const Settings& all, const Provenance& provenance)
     : source_(source), row_(written_of(source).y), notes_(provenance.notes) {
   const OutputSettings& settings = all.output;
@@ -330,7 +576,8 @@ FrameWriter::FrameWriter(FrameSource& source, const Settings& all, const Provena
     files_.emplace_back(ExrWriter(settings.composite, composite));
   planes_.push_back(composite.planes.size());
   if (composite_window(source) != written_picture(source))
-    composite_.emplace(source, written_picture(source), composite.planes.size());
+    composite_.emplace(source, written_picture(source), composite.planes.size(),
+                       [this](std::span<const std::span<const float>> rows) { write_to(files_.back(), rows); });
 }
 
 void FrameWriter::write(std::span<const std::span<const float>> planes) {
@@ -347,13 +594,11 @@ void FrameWriter::write(std::span<const std::span<const float>> planes) {
 
 void FrameWriter::write_pixels(std::span<const std::span<const float>> planes) {
   for (std::size_t i = 0; i < files_.size(); i++) {
-    const auto write = [&](std::span<const std::span<const float>> rows) {
-      std::visit([&](auto& file) { file.write(rows); }, files_[i]);
-    };
+    const auto rows = planes.first(planes_[i]);
     if (i > 0 && composite_)
-      composite_->write(planes.first(planes_[i]), write);
+      composite_->write(rows);
     else
-      write(planes.first(planes_[i]));
+      write_to(files_[i], rows);
     planes = planes.subspan(planes_[i]);
   }
 }
@@ -361,10 +606,7 @@ void FrameWriter::write_pixels(std::span<const std::span<const float>> planes) {
 void FrameWriter::finish(const std::string& notes) {
   std::map<std::string, std::string> late;
   if (notes != notes_) late[kNotesAttribute] = notes;
-  if (composite_)
-    composite_->finish([&](std::span<const std::span<const float>> rows) {
-      std::visit([&](auto& file) { file.write(rows); }, files_.back());
-    });
+  if (composite_) composite_->finish();
   for (auto& file : files_) std::visit([&](auto& open) { open.finish(late); }, file);
 }
 

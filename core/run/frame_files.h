@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -9,11 +11,10 @@
 #include <vector>
 
 #include "core/chain/chain.h"
+#include "core/formats/color.h"
 #include "core/formats/exr.h"
 #include "core/formats/exr_copy.h"
 #include "core/frame/gbuffer.h"
-#include "core/run/composite_window.h"
-#include "core/run/region.h"
 
 namespace alcove {
 
@@ -29,20 +30,13 @@ Window written_picture(const FrameSource& source);
 
 /// Planes of a whole frame as they were read, in host memory; empty: those were not.
 using ReadPlanes = RawPlaneArray<std::vector<float>>;
+/// Those that were read for a frame which is computed at once.
 ReadPlanes kept_planes(const FrameInputs& inputs);
-ReadPlanes read_whole(FrameSource& source);
-/// Whether they are all that the frame needs.
-bool are_of(const ReadPlanes& planes, const FrameSource& source);
+/// Reads all planes where `known` are not all of them, and settles what is open about the frame, in so many bytes.
+void read_for_parts(FrameSource& source, const Settings& settings, ReadPlanes& known, std::uint64_t most_bytes);
 
 /// Puts the planes within source.data into upload buffers: from those of the whole frame that are known, where these
-/// are all, or else from the files.
-RawPlaneArray<gpu::Buffer*> read_frame(gpu::Recorder& gpu, FrameSource& source, const ReadPlanes* known = nullptr);
-
-/// Settles what is open about a frame whose planes are read, and says what they mean.
-FrameInputs settled_inputs(FrameSource& source, const RawPlaneArray<gpu::Buffer*>& planes, const Settings& settings,
-                           int frame);
-
-/// Does both.
+/// are all, or else from the files. Settles what is open about the frame, and says what they mean.
 FrameInputs load_frame(gpu::Recorder& gpu, FrameSource& source, const Settings& settings, int frame,
                        const ReadPlanes* known = nullptr);
 
@@ -70,11 +64,41 @@ std::string made_by(const std::string& options, const std::string& inputs);
 std::vector<std::span<const float>> result_planes(const FrameOutputs& outputs, const Window& computed,
                                                   const OutputSettings& settings);
 
+/// The bytes that putting a composite together takes beside what is computed, where its window is not that of the AO;
+/// else 0.
+std::uint64_t composite_bytes(const FrameSource& source);
+
+/// Writes the next rows of a composite, plane by plane.
+using WriteRows = std::function<void(std::span<const std::span<const float>>)>;
+
+/// Puts the rows of the composite's window into its file while those of another window are computed.
+class CompositeRows {
+ public:
+  /// The source must stay. `computed` is the window of the rows that come, of so many planes.
+  CompositeRows(FrameSource& source, const Window& computed, std::size_t planes, WriteRows write_rows);
+
+  /// The next computed rows, as wide as that window; the beauty's rows above them go first.
+  void write(std::span<const std::span<const float>> planes);
+  /// The beauty's rows below all computed ones.
+  void finish();
+
+ private:
+  void write_until(int bottom, const Window& from, std::span<const std::span<const float>> planes);
+
+  FrameSource& source_;
+  const WriteRows write_rows_;
+  const Window computed_, window_;
+  const std::size_t planes_;
+  int computed_row_, row_;  // the next ones
+};
+
 /// The AO file and the composite, written from top to bottom, each whole or not at all. Fails with ErrorKind::output.
 class FrameWriter {
  public:
   /// The source must stay: where the beauty has another window than what is written of the frame, the rest is read.
   FrameWriter(FrameSource& source, const Settings& settings, const Provenance& provenance);
+  FrameWriter(const FrameWriter&) = delete;
+  FrameWriter& operator=(const FrameWriter&) = delete;
 
   /// The next rows of result_planes(), as wide as what is written of the frame.
   void write(std::span<const std::span<const float>> planes);
@@ -83,15 +107,23 @@ class FrameWriter {
   void finish() { finish(notes_); }
 
  private:
+  using File = std::variant<ExrWriter, ExrCopy>;
+  static void write_to(File& file, std::span<const std::span<const float>> rows);
   /// Gives the files pixels of their own window.
   void write_pixels(std::span<const std::span<const float>> planes);
 
   const FrameSource& source_;
   int row_;                  // of the frame, the next one
   const std::string notes_;  // that the headers have
-  std::vector<std::variant<ExrWriter, ExrCopy>> files_;
+  std::vector<File> files_;
   std::vector<std::size_t> planes_;         // the number of planes of each file
   std::optional<CompositeRows> composite_;  // where it has another window than the AO
 };
+
+/// Writes the preview and the debug views of a frame that was computed at once, over source.data; each picture is
+/// written whole or not at all. `transform` is for the preview of a composite, and may be null. Fails with
+/// ErrorKind::output.
+void write_pictures(FrameSource& source, const FrameOutputs& outputs, const DisplayTransform* transform,
+                    const OutputSettings& settings, const Provenance& provenance);
 
 }  // namespace alcove

@@ -122,10 +122,7 @@ class Pipeline {
         return !report.out_of_memory;
       });
     } catch (const gpu::OutOfMemory& error) {
-      const Settings settings = run_.plan.at(frame);
-      report.frame = frame;
-      report.input = main_input(settings.input);
-      report.output = settings.output.output;
+      report = report_of(run_.plan, frame);
       report.state = FrameState::failed;
       report.error = error;
       report.out_of_memory = true;

@@ -12,7 +12,6 @@
 #include "core/base/note.h"
 #include "core/base/settings.h"
 #include "core/formats/sequence.h"
-#include "core/frame/input_files.h"
 #include "core/frame/raw_plane.h"
 
 namespace alcove {

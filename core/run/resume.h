@@ -1,4 +1,5 @@
-// Finds out whether an earlier run has left a frame whole.
+// Finds out whether an earlier run has left a frame whole; the digest of options, by which it knows whether a file was
+// made with those of this run.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -12,6 +13,13 @@
 #include "core/run/plan.h"
 
 namespace alcove {
+
+/// 16 hexadecimal digits that change with every setting that changes the result, as the table of options says, and with
+/// what the camera file and the configuration of the display say. Fails as reading those files does.
+std::string options_digest(const Settings& settings);
+
+/// Whether the preview is the composite as a display shows it, and not the AO as data.
+bool shows_composite(const OutputSettings& output);
 
 /// The identities of all that the frames of a plan are made from: their own files with the manifests beside them, and
 /// those of the frames around them that they take others from. An identity tells the contents of files from others,

@@ -67,6 +67,8 @@ Json json_of(const FrameReport& frame) {
   return json;
 }
 
+double peak_memory_mib() { return double(peak_memory_bytes()) / (1 << 20); }
+
 }  // namespace
 
 const char* name_of(FrameState state) {
@@ -78,8 +80,6 @@ const char* name_of(FrameState state) {
   }
   return "dropped";
 }
-
-double peak_memory_mib() { return double(peak_memory_bytes()) / (1 << 20); }
 
 std::string stats_json(const RunReport& report) {
   Json frames = Json::array();

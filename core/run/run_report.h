@@ -112,7 +112,4 @@ std::string notes_json(const Notes& notes);
 /// One sentence on the whole run, the same words every time, for those who search logs.
 std::string summary_of(const RunReport& report);
 
-/// The most memory that the process has had, MiB.
-double peak_memory_mib();
-
 }  // namespace alcove

@@ -6,17 +6,15 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <set>
 #include <string_view>
 
 #include "core/base/error.h"
 #include "core/base/text.h"
 #include "core/chain/geometry.h"
 #include "core/chain/warp.h"
+#include "core/frame/channels.h"
 #include "core/frame/motion.h"
 #include "core/frame/settle.h"
-#include "core/frame/views.h"
-#include "core/run/frame_files.h"
 #include "kernels/reprojection.h"
 
 namespace alcove {

@@ -3,6 +3,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <condition_variable>
 #include <functional>
 #include <map>
 #include <memory>
@@ -14,14 +15,76 @@
 #include <vector>
 
 #include "core/chain/other_views.h"
+#include "core/chain/seen_estimates.h"
 #include "core/gpu/recorder.h"
 #include "core/run/frame_files.h"
-#include "core/run/made_once.h"
 #include "core/run/plan.h"
 #include "core/run/run_report.h"
 #include "core/run/tiles.h"
 
 namespace alcove {
+
+/// Values of frames that several frames take: each is made once, by whoever needs it first. Any thread may ask. One
+/// that needs what another one makes makes what nobody is at, and only then waits.
+template <class T>
+class MadeOnce {
+ public:
+  using Value = std::shared_ptr<const T>;
+
+  /// Those of the frames, in their order. Fails as `make` does: the next one that needs the value tries again.
+  std::vector<Value> of(std::span<const int> frames, const std::function<T(int)>& make) {
+    std::vector<Value> values(frames.size());
+    std::unique_lock lock(mutex_);
+    while (true) {
+      bool are_all = true;
+      std::optional<int> free;
+      for (std::size_t i = 0; i < frames.size(); i++) {
+        const auto known = values_.find(frames[i]);
+        if (!values[i] && known != values_.end()) values[i] = known->second;
+        if (!values[i] && known == values_.end() && !free) free = frames[i];
+        are_all = are_all && values[i];
+      }
+      if (are_all) return values;
+      if (free)
+        make_one(*free, make, lock);
+      else
+        changed_.wait(lock);
+    }
+  }
+
+  /// Lets the others go.
+  void keep(const std::function<bool(int)>& is_kept) {
+    const std::lock_guard lock(mutex_);
+    std::erase_if(values_, [&](const auto& value) { return value.second && !is_kept(value.first); });
+  }
+
+  /// The number of those that are kept or in the making.
+  std::size_t count() const {
+    const std::lock_guard lock(mutex_);
+    return values_.size();
+  }
+
+ private:
+  void make_one(int frame, const std::function<T(int)>& make, std::unique_lock<std::mutex>& lock) {
+    values_[frame] = nullptr;
+    lock.unlock();
+    try {
+      auto made = std::make_shared<const T>(make(frame));
+      lock.lock();
+      values_[frame] = std::move(made);
+    } catch (...) {
+      lock.lock();
+      values_.erase(frame);
+      changed_.notify_all();
+      throw;
+    }
+    changed_.notify_all();
+  }
+
+  mutable std::mutex mutex_;  // of all below
+  std::condition_variable changed_;
+  std::map<int, Value> values_;  // null: in the making
+};
 
 /// What one view of a frame sees, in host memory.
 struct SeenFrame {
@@ -66,7 +129,7 @@ struct EstimatedFrame {
 
 /// The estimates that a frame is the mean of, its own among them.
 struct TakenEstimates {
-  std::optional<ReadPlanes> read;  // of the frame itself; none: nobody kept them
+  ReadPlanes read;  // of the frame itself; without planes: nobody kept them
   std::vector<std::shared_ptr<const EstimatedFrame>> of;
   std::vector<int> missing;  // frames that are not there
 
@@ -167,5 +230,23 @@ int most_judges(int count);
 std::vector<int> frames_seen_for(const FramePlan& plan, int frame);
 /// How far from a frame they lie at most, in frames of the shot.
 int with_judges(int count);
+
+/// The upload buffers of a lane that frames' estimates are put into. What is there for one frame is there for the next.
+class EstimateSlots {
+ public:
+  /// Gives the estimates as the frame takes them, for any number of parts of it; none where there are none. No buffer
+  /// is larger than `most_bytes`.
+  EstimateSet filled(gpu::Recorder& gpu, const FramePlan& plan, const TakenEstimates& taken, int frame,
+                     std::uint64_t most_bytes);
+
+ private:
+  using Estimated = std::weak_ptr<const EstimatedFrame>;  // tells whether it is the same one, and keeps none
+  struct Group {
+    const std::byte* buffer = nullptr;  // where it was
+    std::size_t stride = 0;             // words of a slot
+    std::vector<Estimated> held;        // by slot
+  };
+  std::vector<Group> groups_;
+};
 
 }  // namespace alcove

@@ -1,18 +1,187 @@
-// Cuts frames by what their tiles take with their surroundings.
+// Finds the surroundings of a region by the nearest depth in it, and cuts frames by what their tiles take with them.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/run/tiles.h"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
-#include <limits>
 #include <utility>
 
 #include "core/base/error.h"
 #include "core/base/estimator_facts.h"
 #include "core/base/memory_limit.h"
+#include "core/base/windows.h"
+#include "core/chain/aov.h"
+#include "core/chain/estimate.h"
+#include "core/chain/reduce.h"
+#include "core/frame/evidence.h"
+#include "core/frame/settle.h"
+#include "kernels/hidden.h"
+#include "kernels/occluders.h"
 #include "kernels/exact_search.h"
 
 namespace alcove {
+namespace {
+
+// The blocks whose nearest depths tell how far they reach, px. Most files compress so many rows together.
+constexpr int kBlockWidth = 64, kBlockHeight = 16;
+// Windows begin at multiples of so many px, the grid of the coarsest resolution, so that its pixels are the same ones.
+constexpr int kGrid = 4;
+
+/// An angle close to a right one, in radians: beyond it the image of a sphere has no end.
+constexpr double kWidestAngle = 1.57;
+/// More pixels than any frame has.
+constexpr double kEverywhere = 1e9, kFarther = 1e6;
+
+Window grown(const Window& window, int margin_x, int margin_y, const Window& within) {
+  const auto down = [](int x, int origin) { return origin + (x - origin) / kGrid * kGrid; };
+  const int left = down(std::max(window.x - margin_x, within.x), within.x),
+            top = down(std::max(window.y - margin_y, within.y), within.y);
+  const int right = std::min(window.x + window.width + margin_x + kGrid, within.x + within.width);
+  const int bottom = std::min(window.y + window.height + margin_y + kGrid, within.y + within.height);
+  return {left, top, right - left, bottom - top};
+}
+
+/// How far pixels count for what filters make of another one, in px: by their estimates, and by whether they have one.
+int reach_of_filters(const EstimatorSettings& settings) { return filter_reach_of(settings) + site_reach_of(settings); }
+
+/// The same for all that a frame's outputs are made from.
+int filter_reach(const Settings& settings) {
+  const int own = reach_of_filters(settings.estimator);
+  if (!wants(settings.output, &FrameOutputs::confidence)) return own;
+  return std::max(own, reach_of_filters(bracket_of(settings.estimator)));
+}
+
+/// How far lines of an exact search reach beyond the sphere of the radius until they have the vertices of the whole
+/// frame, in px; 0 for other searches.
+int line_reach(const EstimatorSettings& settings) {
+  return searches_exactly(settings) ? int(settings.resolution) * (kProfileRestart + 2) : 0;
+}
+
+/// How far from a surface it is told which one closes its solid, and whether it is an occluder, in px; 0 where nothing
+/// is to be told.
+int pair_reach(const FrameSource& source, const EstimatorSettings& settings) {
+  const bool tells =
+      std::ranges::any_of(source.behind, [](const BehindPlane& plane) { return plane.kind == BehindKind::surfaces; });
+  const int occluders = source[RawPlane::occluders].empty() ? 0 : kOccludersReach;
+  return occluders + (tells && settings.hidden > 0 ? kEndsReach + kEndsBeyond : 0);
+}
+
+/// The width, in radii, from which a run that begins within reach of a receiver is as good as endless. It is more than
+/// the sphere's 2, since exact.comp rounds widths by up to 3 %. Where surfaces are completed, a run is half as thick as
+/// wide, and it may begin so far beyond the reach as a surface goes on, which is 3 radii in complete.comp.
+double widest_run(const EstimatorSettings& settings) { return completes(settings) ? 3 + 4.2 : 2.1; }
+
+/// How many pixels the image of a sphere reaches from the image of its centre, on one axis. Centres are no nearer than
+/// `nearest`, and no farther off axis than `tangent`.
+double sphere_reach(double radius, double nearest, double tangent, double pixels_per_tangent, bool orthographic) {
+  if (orthographic) return radius * pixels_per_tangent;
+  if (radius >= nearest) return kEverywhere;
+  const double edge = std::atan(tangent) + std::asin(radius / nearest);
+  return edge < kWidestAngle ? (std::tan(edge) - tangent) * pixels_per_tangent : kEverywhere;
+}
+
+}  // namespace
+
+Window region_of(const FrameSource& source, const Region& roi) {
+  const Window& data = source.file_data;
+  const Window picture = picture_of(source, source.display);
+  const Window region =
+      enlarged({picture.x + roi.x, picture.y + roi.y, roi.width, roi.height}, source.display, source.supersampling);
+  const bool inside = region.x >= data.x && region.y >= data.y &&
+                      std::int64_t(region.x) + region.width <= std::int64_t(data.x) + data.width &&
+                      std::int64_t(region.y) + region.height <= std::int64_t(data.y) + data.height;
+  if (!inside)
+    fail(ErrorKind::usage, "{}: --roi is {}, and the data window is {}: give a region within it", source.depth_path(),
+         to_string(picture_of(source, region)), to_string(picture_of(source, data)));
+  return region;
+}
+
+Surroundings::Surroundings(const FrameSource& source, const Settings& settings, std::span<const float> depth)
+    : source_(source),
+      depth_(depth),
+      file_data_(source.file_data),
+      columns_((file_data_.width + kBlockWidth - 1) / kBlockWidth),
+      blocks_(std::size_t(file_data_.height + kBlockHeight - 1) / kBlockHeight),
+      view_(view_of(source.camera, source.file_data, source.display)),
+      orthographic_(source.camera.orthographic),
+      radius_(settings.estimator.radius ? radii_of(settings.estimator).back() : 0),
+      filters_(filter_reach(settings) + reduce_reach(settings.output.filter, source.supersampling)),
+      lines_(line_reach(settings.estimator)),
+      pairs_(pair_reach(source, settings.estimator)),
+      widest_run_(widest_run(settings.estimator)) {}
+
+Window Surroundings::window_of(int block_row, int column) const {
+  const int left = column * kBlockWidth, top = block_row * kBlockHeight;
+  return {file_data_.x + left, file_data_.y + top, std::min(kBlockWidth, file_data_.width - left),
+          std::min(kBlockHeight, file_data_.height - top)};
+}
+
+std::vector<float> Surroundings::nearest_depths(int block_row) {
+  Window window = window_of(block_row, 0);
+  window.width = file_data_.width;
+  const std::vector<float> depth = cropped(depth_, file_data_, window);
+  const auto planar = planar_depths(depth, depth_map_of(source_), view_of(source_.camera, window, source_.display));
+  std::vector<float> nearest(std::size_t(columns_), kSkyDepth);
+  for (std::size_t i = 0; i < planar.size(); i++) {
+    float& of_block = nearest[i % std::size_t(window.width) / kBlockWidth];
+    of_block = std::min(of_block, planar[i]);
+  }
+  return nearest;
+}
+
+Surroundings::Reach Surroundings::reach(double distance, double nearest, const Window& block) const {
+  const auto margin = [&](int low, int high, double center, double tangent_per_pixel) {
+    const double tangent = std::max(std::abs(low - center), std::abs(high - center)) * std::abs(tangent_per_pixel);
+    const double pixels = sphere_reach(distance, nearest, tangent, 1 / std::abs(tangent_per_pixel), orthographic_);
+    return int(std::ceil(std::min(pixels, kFarther))) + 2;
+  };
+  const int left = block.x - file_data_.x, top = block.y - file_data_.y;
+  return {margin(left, left + block.width, view_.center.x, view_.tangent_per_pixel.x),
+          margin(top, top + block.height, view_.center.y, view_.tangent_per_pixel.y)};
+}
+
+const std::vector<Surroundings::Block>& Surroundings::blocks_of(int block_row) {
+  std::vector<Block>& blocks = blocks_[std::size_t(block_row)];
+  if (!blocks.empty()) return blocks;
+  const std::vector<float> nearest = nearest_depths(block_row);
+  for (int column = 0; column < columns_; column++) {
+    const Window window = window_of(block_row, column);
+    const double depth = nearest[std::size_t(column)];
+    blocks.push_back({reach(radius_, depth, window), reach(widest_run_ * radius_, depth, window)});
+  }
+  return blocks;
+}
+
+Window Surroundings::within(Reach Block::*reach, const Window& window) {
+  const int end_x = window.x + window.width, end_y = window.y + window.height;
+  int left = window.x, top = window.y, right = end_x, bottom = end_y;
+  for (int row = (window.y - file_data_.y) / kBlockHeight; row <= (end_y - 1 - file_data_.y) / kBlockHeight; row++) {
+    const std::vector<Block>& blocks = blocks_of(row);
+    for (int i = (window.x - file_data_.x) / kBlockWidth; i <= (end_x - 1 - file_data_.x) / kBlockWidth; i++) {
+      const Window block = window_of(row, i);
+      const Reach& far = blocks[std::size_t(i)].*reach;
+      left = std::min(left, std::max(block.x, window.x) - far.x);
+      top = std::min(top, std::max(block.y, window.y) - far.y);
+      right = std::max(right, std::min(block.x + block.width, end_x) + far.x);
+      bottom = std::max(bottom, std::min(block.y + block.height, end_y) + far.y);
+    }
+  }
+  left = std::max(left, file_data_.x), top = std::max(top, file_data_.y);
+  right = std::min(right, file_data_.x + file_data_.width), bottom = std::min(bottom, file_data_.y + file_data_.height);
+  return grown({left, top, right - left, bottom - top}, 0, 0, file_data_);
+}
+
+Window Surroundings::direct(const Window& part) const { return grown(part, filters_, filters_, file_data_); }
+
+Window Surroundings::around(const Window& part) {
+  const Window occluders = within(&Block::occluders, direct(part));
+  const Window lines = lines_ == 0 ? occluders : within(&Block::runs, grown(occluders, lines_, lines_, file_data_));
+  return pairs_ == 0 ? lines : grown(lines, pairs_, pairs_, file_data_);
+}
+
+// Tiles.
+
 namespace {
 
 constexpr int kLeastRows = 16;     // px of a tile: most files compress so many rows together

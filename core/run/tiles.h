@@ -1,4 +1,5 @@
-// How a frame that is too large for memory or device is cut into tiles.
+// Parts of a frame: the surroundings that the AO within them depends on, and how a frame that is too large for memory
+// or device is cut into tiles.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -7,22 +8,59 @@
 #include <string>
 #include <vector>
 
-#include "core/run/frame_memory.h"
-#include "core/run/region.h"
+#include "core/base/settings.h"
+#include "core/frame/gbuffer.h"
+#include "core/run/memory.h"
 
 namespace alcove {
 
-/// What one frame in flight may take.
-struct Room {
-  static constexpr std::uint64_t kEndless = std::numeric_limits<std::uint64_t>::max();
+/// Turns a region of the display window into pixels of the file. Fails with ErrorKind::usage where it is not within the
+/// data window.
+Window region_of(const FrameSource& source, const Region& roi);
 
-  std::uint64_t bytes = 0;                // of host memory
-  std::uint64_t device_bytes = kEndless;  // of the device's own memory
-  std::uint64_t buffer_bytes = 0;         // of one buffer of the device
-  std::uint64_t pixels = kEndless;        // at once: fewer than those for which the device had no memory
-  // For messages: what the process takes without frames, and whether the user has said how much it may take.
-  std::uint64_t program_bytes = 0;
-  bool is_chosen = false;
+/// How far around the parts of a frame its results reach back, by the nearest depth in them: occluders of the radius,
+/// and the filters of the settings.
+class Surroundings {
+ public:
+  /// Of a settled frame, by its depth as it was read, which must stay.
+  Surroundings(const FrameSource& source, const Settings& settings, std::span<const float> depth);
+
+  /// The window to compute for the results in a part to be, to the bit, what they are in the whole frame.
+  Window around(const Window& part);
+
+ private:
+  /// How far what is seen beside a block of pixels may be from it, px.
+  struct Reach {
+    int x = 0, y = 0;
+  };
+  /// What is known of a block once its depths have been looked at.
+  struct Block {
+    Reach occluders;  // within the radius
+    Reach runs;       // within the widest run of an exact search
+  };
+
+  /// One row of blocks.
+  const std::vector<Block>& blocks_of(int block_row);
+  Window window_of(int block_row, int column) const;
+  std::vector<float> nearest_depths(int block_row);
+  /// The window whose depths decide how far the surroundings of a part reach: the part with what filters need.
+  Window direct(const Window& part) const;
+  Reach reach(double distance, double nearest, const Window& block) const;
+  /// The window of everything that may be seen beside what a window shows.
+  Window within(Reach Block::*reach, const Window& window);
+
+  const FrameSource& source_;
+  std::span<const float> depth_;  // over file_data_, components one behind the other
+  const Window file_data_;
+  const int columns_;                       // blocks across the frame
+  std::vector<std::vector<Block>> blocks_;  // row by row; empty: not known yet
+  View view_;
+  bool orthographic_;
+  double radius_;      // scene units
+  int filters_;        // px that filters reach
+  int lines_;          // px that the lines of an exact search need beyond the radius
+  int pairs_;          // px beyond all these within which solids are closed
+  double widest_run_;  // radii, beyond which they need no more of a run
 };
 
 /// Fails with ErrorKind::input where a frame reaches so far that an exact search could not number its lines, however

@@ -16,8 +16,8 @@
 
 #include "cli/options.h"
 #include "core/bench/bench.h"
-#include "core/bench/kept_reference.h"
 #include "core/formats/exr.h"
+#include "core/frame/gbuffer.h"
 #include "tests/support/device.h"
 #include "tests/support/expect_error.h"
 #include "tests/support/long_tests.h"

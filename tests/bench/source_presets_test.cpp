@@ -15,6 +15,7 @@
 #include "cli/options.h"
 #include "core/chain/compute.h"
 #include "core/formats/exr.h"
+#include "core/frame/gbuffer.h"
 #include "core/measure/metrics.h"
 #include "core/reference/reference_estimators.h"
 #include "tests/support/device.h"

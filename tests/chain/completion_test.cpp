@@ -8,7 +8,7 @@
 #include "core/chain/completion.h"
 #include "core/chain/debug.h"
 #include "core/chain/reuse.h"
-#include "core/run/frame_tally.h"
+#include "core/run/frame_run.h"
 #include "tests/support/chain.h"
 #include "tests/support/command_line.h"
 #include "tests/support/sites_of.h"

@@ -4,7 +4,7 @@
 
 #include "core/base/estimator_facts.h"
 #include "core/formats/exr.h"
-#include "core/run/digest.h"
+#include "core/run/resume.h"
 #include "tests/support/chain.h"
 #include "tests/support/command_line.h"
 #include "tests/support/exr_header.h"

@@ -14,7 +14,7 @@
 
 #include "core/base/error.h"
 #include "core/base/flat_toml.h"
-#include "core/run/digest.h"
+#include "core/run/resume.h"
 #include "tests/support/command_line.h"
 #include "tests/support/exr_header.h"
 

@@ -8,7 +8,7 @@
 #include <filesystem>
 
 #include "core/formats/exr.h"
-#include "core/frame/findings.h"
+#include "core/frame/settle.h"
 #include "core/frame/gbuffer.h"
 #include "tests/support/command_line.h"
 #include "tests/support/dds_file.h"

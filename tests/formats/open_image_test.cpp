@@ -4,7 +4,6 @@
 #include <nlohmann/json.hpp>
 
 #include "core/formats/exr.h"
-#include "core/formats/open_image.h"
 #include "tests/support/command_line.h"
 #include "tests/support/dds_file.h"
 #include "tests/support/deep_file.h"

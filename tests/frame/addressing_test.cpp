@@ -5,8 +5,8 @@
 
 #include <regex>
 
-#include "core/frame/cryptomatte.h"
-#include "core/inspect/hidden_guesses.h"
+#include "core/frame/matte.h"
+#include "core/inspect/inspect.h"
 #include "tests/support/part_files.h"
 
 namespace alcove {

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "core/frame/chan_file.h"
+#include "core/frame/camera.h"
 #include "tests/support/command_line.h"
 #include "tests/support/expect_error.h"
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <functional>
 
-#include "core/frame/findings.h"
+#include "core/frame/settle.h"
 #include "tests/support/source_frame.h"
 
 namespace alcove {

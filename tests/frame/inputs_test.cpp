@@ -11,11 +11,12 @@
 #include <limits>
 
 #include "core/base/error.h"
+#include "core/base/option_words.h"
 #include "core/chain/compute.h"
 #include "core/formats/exr.h"
 #include "core/frame/evidence.h"
 #include "core/frame/settle.h"
-#include "core/run/digest.h"
+#include "core/run/resume.h"
 #include "tests/support/command_line.h"
 #include "tests/support/device.h"
 #include "tests/support/difference.h"

@@ -103,10 +103,10 @@ TEST_F(Readings, of_every_kind_of_depth_by_every_other_are_noted) {
       // that is 1/z too, but for a scale and next to nothing
       if (written.kind == DepthKind::inverse && read.reversed) continue;
       if (&written == &read)
-        EXPECT_THAT(said(), testing::IsEmpty()) << name_of(read.kind) << read.reversed;
+        EXPECT_THAT(said(), testing::IsEmpty()) << word_of(read.kind) << read.reversed;
       else
         EXPECT_THAT(said(), testing::Contains(HasSubstr("--depth-kind")))
-            << name_of(written.kind) << written.reversed << " as " << name_of(read.kind) << read.reversed;
+            << word_of(written.kind) << written.reversed << " as " << word_of(read.kind) << read.reversed;
     }
   }
 }
@@ -132,7 +132,7 @@ TEST_F(Readings, of_orthographic_depth_need_no_option_and_doubt_nothing_that_is_
       const Written depth{kind, reversed, linear, reversed ? 0.0f : 1.0f};
       write(depth, as_it_is, false, parallel);
       say(depth);
-      EXPECT_THAT(said(), testing::IsEmpty()) << name_of(kind) << reversed;
+      EXPECT_THAT(said(), testing::IsEmpty()) << word_of(kind) << reversed;
     }
   }
 }

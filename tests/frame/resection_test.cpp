@@ -12,7 +12,7 @@
 
 #include "core/formats/exr.h"
 #include "core/frame/panorama.h"
-#include "core/inspect/camera_file.h"
+#include "core/inspect/inspect.h"
 #include "tests/support/command_line.h"
 #include "tests/support/difference.h"
 

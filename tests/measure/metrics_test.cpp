@@ -11,7 +11,6 @@
 #include <memory>
 
 #include "core/base/error.h"
-#include "core/measure/flicker.h"
 #include "tests/support/formula_images.h"
 #include "tests/support/program.h"
 

@@ -1,6 +1,6 @@
 // What presets and the command line say to settings: what has no effect, alone or beside another one.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/options/said.h"
+#include "core/options/options.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,7 +11,6 @@
 
 #include "cli/options.h"
 #include "core/base/error.h"
-#include "core/options/check.h"
 #include "tests/support/program.h"
 
 namespace alcove {

@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include "core/formats/exr.h"
-#include "core/frame/cryptomatte.h"
-#include "core/frame/name_pattern.h"
+#include "core/frame/channels.h"
+#include "core/frame/matte.h"
 #include "tests/support/command_line.h"
 #include "tests/support/difference.h"
 

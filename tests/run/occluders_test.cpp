@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/formats/exr.h"
-#include "core/frame/cryptomatte.h"
+#include "core/frame/matte.h"
 #include "tests/support/command_line.h"
 #include "tests/support/difference.h"
 

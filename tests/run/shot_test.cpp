@@ -10,9 +10,9 @@
 
 #include "core/formats/exr.h"
 #include "core/run/frame_files.h"
+#include "core/run/memory.h"
 #include "core/run/plan.h"
 #include "core/run/shot.h"
-#include "core/run/shot_memory.h"
 #include "tests/support/device.h"
 #include "tests/support/walked_shot.h"
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/base/settings.h"
-#include "core/frame/host_frame.h"
+#include "core/frame/reading.h"
 #include "tests/support/scenes.h"
 
 namespace alcove::test {

@@ -12,7 +12,8 @@
 
 #include "api/alcove/alcove.h"
 #include "core/chain/compute.h"
-#include "core/frame/host_frame.h"
+#include "core/frame/gbuffer.h"
+#include "core/frame/reading.h"
 #include "tests/support/device.h"
 #include "tests/support/program.h"
 

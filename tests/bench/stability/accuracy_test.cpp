@@ -21,7 +21,7 @@
 
 #include "core/base/estimator_facts.h"
 #include "core/chain/compute.h"
-#include "core/frame/scale_notes.h"
+#include "core/frame/radius.h"
 #include "core/reference/reference.h"
 #include "core/reference/reference_estimators.h"
 #include "tests/bench/stability/cases.h"

@@ -10,7 +10,7 @@
 
 #include "core/bench/stability.h"
 #include "core/chain/compute.h"
-#include "core/frame/scale_notes.h"
+#include "core/frame/radius.h"
 #include "tests/bench/stability/cases.h"
 #include "tests/support/command_line.h"
 #include "tests/support/device.h"

@@ -1,18 +1,192 @@
-// Adds up buffers and prepared frames.
+// Rehearses the chain for its buffers, adds up what is taken beside them, and divides what is free among the frames.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/run/shot_memory.h"
+#include "core/run/memory.h"
 
 #include <algorithm>
 #include <unordered_map>
 
 #include "core/base/error.h"
+#include "core/base/estimator_facts.h"
 #include "core/base/memory_limit.h"
-#include "core/chain/aov.h"
-#include "core/frame/views.h"
+#include "core/base/system.h"
+#include "core/chain/chain.h"
+#include "core/chain/margin.h"
+#include "core/formats/exr_copy.h"
+#include "core/frame/channels.h"
+#include "core/run/frame_files.h"
 #include "core/run/shot.h"
+<<<<<<< HEAD:core/run/shot_memory.cpp
 #include "kernels/accumulate.h"
+=======
+#include "kernels/estimate.h"
+#include "kernels/exact_search.h"
+>>>>>>> work-c:core/run/memory.cpp
 
 namespace alcove {
+namespace {
+
+/// A frame of that window without pixels, which has all that they may ask for.
+FrameInputs rehearsed_inputs(gpu::Recorder& rehearsal, const FrameMemory& memory, const Window& window) {
+  Reading reading = memory.reading;
+  reading.data = window;
+  static_cast<Meaning&>(reading) = {};  // which may not be settled yet, and asks for no buffers
+  for (auto& plane : reading.behind) plane.kind = BehindKind::surfaces;
+  RawPlaneArray<gpu::Buffer*> planes;
+  for (const auto& row : kRawPlanes)
+    if (const std::size_t count = memory.channels[row.plane])
+      planes[row.plane] = &rehearsal.buffer(row.name, sizeof(float) * count * window.pixels(), gpu::Use::upload);
+  FrameInputs inputs = inputs_of(reading, planes, 0);
+  inputs.is_sky = false;
+  inputs.margin = margin_of(window, memory.file_data);
+  const auto blocks = [](int side) { return std::size_t(side / kChangeBlock + 2); };
+  inputs.changes =
+      &rehearsal.buffer("changes", sizeof(uint) * blocks(window.width) * blocks(window.height), gpu::Use::upload);
+  if (!memory.looks_at_others) return inputs;
+  // Planes of others are counted with them: see shot_memory.
+  OtherView other;
+  other.view.size = {1, 1};
+  other.depth = other.normal = other.moving = &rehearsal.buffer("other", sizeof(float), gpu::Use::upload);
+  inputs.others = {other};
+  return inputs;
+}
+
+/// What copying the beauty's file into the composite takes: rows of its channels, and two codecs.
+std::uint64_t copied_bytes(const FrameSource& source, const OutputSettings& settings) {
+  if (source[RawPlane::beauty].empty() || settings.composite_layers != "all") return 0;
+  const ExrPart& part = source.part_of(source[RawPlane::beauty][0]);
+  const std::uint64_t row = sizeof(float) * part.channels.size() * std::uint64_t(part.data.width);
+  return kRowsOfOriginal * row + 2 * exr_codec_bytes(kRowsOfOutput * row);
+}
+
+}  // namespace
+
+int longest_side(const EstimatorSettings& settings) {
+  if (!searches_exactly(settings)) return std::numeric_limits<int>::max();
+  // kNoVertex stands for none.
+  return int(kNoVertex) * int(settings.resolution);
+}
+
+FrameMemory::Bytes FrameMemory::of(const Window& computed) const {
+  // No search numbers longer lines, so that a larger window is never computed at once.
+  Window window = computed;
+  window.width = std::min(window.width, longest_side(estimator));
+  window.height = std::min(window.height, longest_side(estimator));
+  gpu::Recorder rehearsal;
+  run_chain(rehearsal, rehearsed_inputs(rehearsal, *this, window), estimator, wanted);
+  const std::uint64_t device = rehearsal.bytes() + fixed_on_device;
+  return {device, device + computed.pixels() * beside + fixed_bytes, rehearsal.largest_bytes()};
+}
+
+std::uint64_t FrameMemory::codec_bytes(std::uint64_t room) const {
+  std::uint64_t bytes = 0;
+  for (const std::uint64_t group : codec_groups) bytes += exr_codec_bytes(group, room / kCodecPart);
+  return bytes;
+}
+
+FrameMemory memory_of(const FrameSource& source, const Settings& settings) {
+  const bool appends_ao = !source[RawPlane::beauty].empty() && !settings.output.append_ao.empty();
+  std::size_t written = source[RawPlane::beauty].size() + (appends_ao ? 1 : 0);
+  for (const auto& aov : aovs_of(settings.output))
+    written += channels_of(aov, planes_of(aov, settings.estimator)).size();
+  // planes as shown, once more interleaved; two pictures, and both beside each other
+  const std::size_t of_preview = settings.output.preview_style == "split" ? 18 : 6;
+  // a number, its colour, that in bytes, and encoded
+  const std::size_t of_view = settings.output.debug.empty() ? 0 : 6;
+  const std::size_t pictures = std::max(of_view, settings.output.preview.empty() ? 0 : of_preview);
+  FrameMemory memory;
+  memory.reading = source;
+  memory.file_data = source.file_data;
+  for (const auto& row : kRawPlanes) memory.channels[row.plane] = source[row.plane].size();
+  memory.estimator = settings.estimator;
+  memory.estimator.radius = settings.estimator.radius.value_or(1);
+  memory.wanted = settings.output;
+  const InputSettings& input = settings.input;
+  memory.looks_at_others = input.around > 0 || input.around_all || input.other_views;
+  memory.written = sizeof(float) * written;
+  // What is written may be there once more: cropped to a region, or as half.
+  memory.beside = memory.written + sizeof(float) * pictures;
+  memory.codec_groups = {kRowsOfOutput * memory.written * std::uint64_t(source.file_data.width)};
+  memory.fixed_bytes =
+      exr_codec_bytes(memory.codec_groups[0]) + copied_bytes(source, settings.output) + composite_bytes(source);
+  for (const auto& file : source.files) {
+    memory.fixed_bytes += file.bytes_beside_pixels();
+    if (file.codec_group() > 0) memory.codec_groups.push_back(file.codec_group());
+  }
+  return memory;
+}
+
+std::uint64_t raw_bytes_of(const FrameSource& source) {
+  std::uint64_t channels = 0;
+  for (const auto& plane : source.planes.entries) channels += plane.size();
+  return sizeof(float) * channels * source.file_data.pixels();
+}
+
+// What a run may take.
+
+namespace {
+
+// The process with one lane, and without frames: libraries, the driver, kernels and what compiles them. On lavapipe
+// 110 to 165 MiB were measured, the most while the driver's cache is empty. Each further lane on the CPU has a driver
+// of its own, which compiles the kernels again: 58 MiB.
+constexpr std::uint64_t kProgramBytes = 176ull << 20;
+constexpr std::uint64_t kCpuLaneBytes = 64ull << 20;
+/// Command buffers and queues of a further lane on a GPU.
+constexpr std::uint64_t kGpuLaneBytes = 8ull << 20;
+/// What a GPU's driver may come to take of the host's memory after its device was made, for its compiler above all.
+constexpr std::uint64_t kDriverBytes = 96ull << 20;
+
+/// The part of the device's free memory that is planned for. The rest is for what drivers add to each of the some 40
+/// buffers of a frame in flight, and for other programs that start later. Whoever still runs out computes fewer frames
+/// at once, so that this number decides about speed alone.
+constexpr double kPlannedPart = 0.75;
+
+RunMemory memory_with(const DeviceSettings& settings, std::uint64_t program_bytes, std::uint64_t lane_bytes) {
+  RunMemory memory;
+  memory.program_bytes = program_bytes;
+  memory.lane_bytes = lane_bytes;
+  memory.is_chosen = settings.memory > 0;
+  const std::uint64_t allowed = settings.memory ? settings.memory : free_memory() / 2;
+  memory.host_bytes = std::max(settings.least_memory, allowed - std::min(allowed, program_bytes));
+  memory.device_bytes = Room::kEndless;
+  return memory;
+}
+
+}  // namespace
+
+RunMemory memory_of_host(const DeviceSettings& settings) { return memory_with(settings, kProgramBytes, kCpuLaneBytes); }
+
+RunMemory memory_for_frames(const DeviceSettings& settings, const gpu::DeviceInfo& device) {
+  // A CPU device computes in host memory, which is counted already. An integrated GPU's memory is counted as both: its
+  // driver may give away less of it than the host has.
+  if (device.type == gpu::DeviceType::cpu) return memory_of_host(settings);
+  RunMemory memory =
+      memory_with(settings, std::max(kProgramBytes, resident_memory_bytes() + kDriverBytes), kGpuLaneBytes);
+  memory.device_bytes = std::uint64_t(kPlannedPart * double(device.free_bytes));
+  return memory;
+}
+
+std::uint64_t frames_in(const RunMemory& memory, const FrameMemory& frame, const Window& computed) {
+  const FrameMemory::Bytes bytes = frame.of(computed);
+  const std::uint64_t of_lane = bytes.host + memory.lane_bytes;
+  const std::uint64_t on_host = (memory.host_bytes + memory.lane_bytes) / of_lane;
+  const std::uint64_t on_device = memory.device_bytes / bytes.device;
+  return std::max<std::uint64_t>(1, std::min(on_host, on_device));
+}
+
+Room room_of_lane(const RunMemory& memory, int lanes, const gpu::DeviceInfo& device) {
+  const auto count = std::uint64_t(lanes);
+  const std::uint64_t of_lanes = (count - 1) * memory.lane_bytes;
+  Room room;
+  room.bytes = (memory.host_bytes - std::min(memory.host_bytes, of_lanes)) / count;
+  room.device_bytes = memory.device_bytes / count;
+  room.buffer_bytes = device.buffer_bytes;
+  room.program_bytes = memory.program_bytes;
+  room.is_chosen = memory.is_chosen;
+  return room;
+}
+
+// What frames see of each other.
+
 namespace {
 
 constexpr std::size_t kPlanesOfSeen = 3;    // depth, normals, what moves

@@ -1,0 +1,332 @@
+// Estimates frames for those around them, and packs estimates as kernels take them.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <utility>
+
+#include "core/base/estimator_facts.h"
+#include "core/base/text.h"
+#include "core/base/windows.h"
+#include "core/chain/chain.h"
+#include "core/chain/estimate.h"
+#include "core/frame/settle.h"
+#include "core/run/frame_run.h"
+#include "core/run/memory.h"
+#include "core/run/shot.h"
+
+namespace alcove {
+namespace {
+
+// Cuts: where frames agree and where they contradict each other, on a grid of pixels.
+
+constexpr int kGridColumns = 32, kGridRows = 18;  // of the grid
+constexpr double kSameWidths = 3;                 // pixels' widths by which depths of one surface differ at most
+constexpr double kSamePrecisions = 4;             // the same, of what depths may be off: see reprojection.glsl
+
+struct Agreement {
+  int same = 0, past = 0;  // of the grid's pixels
+};
+
+double depth_error_at(const EstimatedFrame& frame, double z) {
+  const vec3& error = frame.depth_precision;
+  return error.x + z * (error.y + z * double(error.z));
+}
+
+double depth_at(const EstimatedFrame& frame, int x, int y) {
+  return std::abs(double(frame.depth[std::size_t(y) * std::size_t(frame.view.size.x) + std::size_t(x)]));
+}
+
+/// Where `to` sees what is at a pixel of `from`: it sees the same in one of three by three pixels, or past it in all.
+void look(const EstimatedFrame& from, const EstimatedFrame& to, const ViewMap& map, int x, int y, Agreement& seen) {
+  const double z = depth_at(from, x, y);
+  if (z >= double(kSkyDepth)) return;
+  const View& b = to.view;
+  const SeenAt there = seen_from(b, map, from.view, x + 0.5, y + 0.5, z);
+  const double distance = there.depth, width = double(b.tangent_per_pixel.x) * (b.orthographic != 0 ? 1 : distance);
+  if (distance <= 0) return;
+  const double column = std::floor(there.x), row = std::floor(there.y);
+  if (!(column >= 1 && row >= 1 && column < b.size.x - 1 && row < b.size.y - 1)) return;
+  const double margin =
+      kSameWidths * width + kSamePrecisions * (depth_error_at(from, z) + depth_error_at(to, distance));
+  bool same = false, past = true;
+  for (int j = int(row) - 1; j <= int(row) + 1; j++)
+    for (int i = int(column) - 1; i <= int(column) + 1; i++) {
+      const double farther = depth_at(to, i, j) - distance;
+      same = same || std::abs(farther) <= margin;
+      past = past && farther > margin;
+    }
+  seen.same += same;
+  seen.past += past;
+}
+
+/// What `to` sees of `from`.
+void look(const EstimatedFrame& from, const EstimatedFrame& to, Agreement& seen) {
+  const ViewMap map = view_from_view(to.camera, from.camera);
+  for (int j = 0; j < kGridRows; j++)
+    for (int i = 0; i < kGridColumns; i++)
+      look(from, to, map, (2 * i + 1) * from.view.size.x / (2 * kGridColumns),
+           (2 * j + 1) * from.view.size.y / (2 * kGridRows), seen);
+}
+
+/// Whether each frame sees past more of what the other one shows than it sees the same: sets that lie at the same place
+/// of the world, before and behind a cut. Frames that see nothing of each other are not told of: neither harms the
+/// other. Looks at a grid of pixels of both.
+bool is_cut_between(const EstimatedFrame& a, const EstimatedFrame& b) {
+  Agreement seen;
+  look(a, b, seen);
+  look(b, a, seen);
+  return seen.past > seen.same;
+}
+
+// Slots.
+
+std::size_t planes_in(const EstimatedFrame& frame) { return frame.values.size() / frame.depth.size(); }
+
+/// See TakenFrame.
+std::size_t words_of(const EstimatedFrame& frame) { return frame.depth.size() * (2 + planes_in(frame) / 2); }
+
+/// Of a value in [0, 1].
+std::uint32_t half_word(float value) { return std::uint32_t(std::clamp(value, 0.0f, 1.0f) * 65535.0f + 0.5f); }
+
+/// A coordinate of a packed normal with 8 bits instead of 16.
+std::uint32_t shorter(std::uint32_t bits) {
+  return std::uint32_t(std::clamp((int(std::int16_t(bits)) + 128) >> 8, -127, 127)) & 0xffu;
+}
+
+std::uint32_t taken_normal(std::uint32_t packed) {
+  constexpr std::uint32_t kNoNormal = 0x80008000;  // see normal.glsl
+  return packed == kNoNormal ? kNoTakenNormal : shorter(packed & 0xffffu) | shorter(packed >> 16) << 8;
+}
+
+TakenFrame seen_as(const EstimatedFrame& other, const EstimatedFrame& own, std::size_t first) {
+  const ViewMap map = view_from_view(other.camera, own.camera);
+  const auto row = [&](std::size_t i) { return vec3{float(map[i][0]), float(map[i][1]), float(map[i][2])}; };
+  const vec3 &a = other.depth_precision, &b = own.depth_precision;
+  return {other.view,
+          row(0),
+          row(1),
+          row(2),
+          {float(map[0][3]), float(map[1][3]), float(map[2][3])},
+          {a.x + b.x, a.y + b.y, a.z + b.z},
+          uint(first)};
+}
+
+void put(const EstimatedFrame& frame, std::span<std::uint32_t> words) {
+  const std::size_t pixels = frame.depth.size(), planes = planes_in(frame);
+  std::ranges::transform(frame.depth, words.begin(), [](float z) { return std::bit_cast<std::uint32_t>(z); });
+  const auto value = [&](std::size_t plane, std::size_t i) {
+    return plane < planes ? half_word(frame.values[plane * pixels + i]) : 0u;
+  };
+  for (std::size_t i = 0; i < pixels; i++) words[pixels + i] = taken_normal(frame.normal[i]) | value(0, i) << 16;
+  for (std::size_t plane = 1; plane < planes; plane += 2)
+    for (std::size_t i = 0; i < pixels; i++)
+      words[(2 + plane / 2) * pixels + i] = value(plane, i) | value(plane + 1, i) << 16;
+}
+
+template <class T>
+gpu::Buffer& uploaded(gpu::Recorder& gpu, const char* name, const std::vector<T>& values) {
+  gpu::Buffer& buffer = gpu.buffer(name, values.size() * sizeof(T), gpu::Use::upload);
+  std::ranges::copy(values, buffer.as<T>().begin());
+  return buffer;
+}
+
+}  // namespace
+
+EstimateSet EstimateSlots::filled(gpu::Recorder& gpu, const FramePlan& plan, const TakenEstimates& taken, int frame,
+                                  std::uint64_t most_bytes) {
+  EstimateSet result;
+  if (taken.of.empty()) return result;
+  const EstimatedFrame& own = taken.own(frame);
+  result.depth = &uploaded(gpu, "own depth", own.depth);
+  result.normal = &uploaded(gpu, "own normal", own.normal);
+  result.values = &uploaded(gpu, "own values", own.values);
+  result.view = own.view;
+  result.has_moving = std::ranges::any_of(taken.of, [](const auto& estimated) { return estimated->has_moving; });
+  std::size_t stride = 0;
+  for (const auto& estimated : taken.of) stride = std::max(stride, words_of(*estimated));
+  const std::size_t slots = std::size_t(plan.turns()), bytes = stride * sizeof(std::uint32_t);
+  const std::size_t together = std::clamp<std::size_t>(most_bytes / bytes, 1, std::min<std::size_t>(slots, kMostTaken));
+  groups_.resize((slots + together - 1) / together);
+  for (std::size_t i = 0; i < groups_.size(); i++) {
+    Group& group = groups_[i];
+    gpu::Buffer& planes = gpu.buffer(fmt::format("estimates {}", i), together * bytes, gpu::Use::upload);
+    gpu::Buffer& table =
+        gpu.buffer(fmt::format("estimated frames {}", i), together * sizeof(TakenFrame), gpu::Use::upload);
+    const bool is_as_before =
+        group.buffer == planes.host().data() && group.stride == stride && group.held.size() == together;
+    if (!is_as_before) group.held.assign(together, {});
+    group.buffer = planes.host().data();
+    group.stride = stride;
+    uint count = 0;
+    for (const auto& estimated : taken.of) {
+      const std::size_t slot = std::size_t(plan.turn_of(estimated->frame));
+      if (slot / together != i || estimated->frame == frame) continue;
+      const std::size_t first = slot % together * stride;
+      if (group.held[slot % together].lock() != estimated)
+        put(*estimated, planes.as<std::uint32_t>().subspan(first, stride));
+      group.held[slot % together] = estimated;
+      table.as<TakenFrame>()[count++] = seen_as(*estimated, own, first);
+    }
+    if (count == 0) continue;
+    // All but the frame itself, where nothing is cut away or missing.
+    const std::size_t room = std::min(together, slots - i * together);
+    const uint listed = std::max(count, uint(room) - 1);
+    const auto frames = table.as<TakenFrame>();
+    std::fill(frames.begin() + count, frames.begin() + listed, frames.front());
+    result.groups.push_back({&planes, &table, count, listed});
+  }
+  return result;
+}
+
+// One frame, whole or in tiles: it is read and estimated, but neither filtered nor written.
+
+namespace {
+
+/// The settings of a frame that hands out its estimate alone: all of it, whatever is wanted of the frame itself.
+Settings of_estimate(Settings settings) {
+  InputSettings& input = settings.input;
+  for (std::string* file :
+       {&input.matte, &input.matte_channel, &input.matte_object, &input.material_ao, &input.material_ao_channel})
+    file->clear();
+  input.roi.reset();
+  settings.output.composite.clear();
+  settings.output.debug.clear();
+  settings.estimator.noise = Noise::animated;
+  return settings;
+}
+
+/// Estimates one frame for others, whole or in tiles.
+class EstimateRun {
+ public:
+  EstimateRun(const EstimateRoom& where, const FramePlan& plan, const Settings& settings, FrameSource& source,
+              const Others& others, PreparedOthers& took, EstimatedFrame& result)
+      : where_(where),
+        turn_(plan.turn_of(result.frame)),
+        settings_(settings),
+        source_(source),
+        others_(others),
+        took_(took),
+        result_(result),
+        tally_(result.report) {
+    wanted_.only_own = true;
+    wanted_.visibility = true;
+  }
+
+  /// Gives what was read.
+  ReadPlanes run(const WindowLimits& limits) {
+    if (limits.allow(source_.data))
+      compute(source_.file_data);
+    else
+      compute_tiles(limits.in_parts(source_));
+    for (const auto* planes : {&scales_, &bent_})
+      result_.values.insert(result_.values.end(), planes->begin(), planes->end());
+    return std::move(read_);
+  }
+
+ private:
+  void compute_tiles(const WindowLimits& limits) {
+    read_for_parts(source_, settings_, read_, limits.room.bytes - limits.kept);
+    Surroundings surroundings(source_, settings_, read_[RawPlane::depth]);
+    for (const auto& row : tiles_of(source_.file_data, surroundings, limits, source_))
+      for (const auto& tile : row) {
+        source_.data = surroundings.around(tile);
+        compute(tile);
+      }
+  }
+
+  void compute(const Window& part) {
+    if (where_.begin) where_.begin(source_.data);
+    FrameInputs inputs = load_frame(where_.gpu, source_, settings_, turn_, &read_);
+    inputs.others = others_.seen;
+    inputs.turn = turn_;
+    if (part == source_.file_data) read_ = kept_planes(inputs);
+    const FrameOutputs outputs = run_chain(where_.gpu, inputs, settings_.estimator, wanted_);
+    where_.gpu.run();
+    const auto& passes = where_.gpu.passes();
+    took_.passes.insert(took_.passes.end(), passes.begin(), passes.end());
+    tally_.add_outputs(outputs, source_.data, false);
+    const OwnEstimate& own = outputs.own.value();
+    result_.depth_precision = own.gbuffer.depth_precision;
+    put(own.gbuffer.depth, part, result_.depth);
+    put(own.gbuffer.normal, part, result_.normal);
+    put(own.visibility.ao, part, result_.values);
+    put(own.visibility.scales, part, scales_);
+    put(own.visibility.bent, part, bent_);
+  }
+
+  /// Copies a part of the planes that were computed into those of the whole frame.
+  template <class T>
+  void put(const gpu::Buffer* planes, const Window& part, std::vector<T>& all) const {
+    if (planes) put_in(planes->as<const T>(), source_.data, part, source_.file_data, all);
+  }
+
+  const EstimateRoom& where_;
+  const int turn_;
+  const Settings& settings_;
+  FrameSource& source_;
+  const Others& others_;
+  PreparedOthers& took_;
+  EstimatedFrame& result_;
+  FrameTally tally_;
+  Wanted wanted_{settings_.output};
+  ReadPlanes read_;
+  std::vector<float> scales_, bent_;  // over the whole frame
+};
+
+}  // namespace
+
+const EstimatedFrame& TakenEstimates::own(int frame) const {
+  return **std::ranges::find_if(of, [&](const auto& estimated) { return estimated->frame == frame; });
+}
+
+std::string text_of(const TakenEstimates& taken) {
+  if (taken.of.empty()) return "";
+  std::vector<int> frames;
+  for (const auto& estimated : taken.of) frames.push_back(estimated->frame);
+  std::ranges::sort(frames);
+  const std::string missing = taken.missing.empty() ? "" : "; missing " + frames_text(taken.missing);
+  return "frames " + frames_text(frames) + missing;
+}
+
+TakenEstimates SharedFrames::estimates_of(const EstimateRoom& where, int frame, PreparedOthers& took) {
+  const FramesAround window = plan_.accumulated(frame);
+  TakenEstimates taken{
+      {}, estimated_.of(window.there, [&](int other) { return estimate(where, other, took); }), window.missing};
+  {
+    const std::lock_guard lock(mutex_);
+    if (auto read = read_.extract(frame)) taken.read = std::move(read.mapped());
+  }
+  const EstimatedFrame& own = taken.own(frame);
+  std::erase_if(taken.of, [&](const auto& other) { return other->frame != frame && is_cut_between(own, *other); });
+  return taken;
+}
+
+EstimatedFrame SharedFrames::estimate(const EstimateRoom& where, int frame, PreparedOthers& took) {
+  const Settings settings = of_estimate(plan_.at(frame));
+  FrameSource source = open_frame(settings, frame);
+  if (settled_) settle_like(source, *settled_);
+  require_place(source, frame, "--accumulate");
+  EstimatedFrame result;
+  result.frame = frame;
+  result.others = others_of(where.gpu, source, frame, took);
+  ReadPlanes read =
+      EstimateRun(where, plan_, settings, source, result.others, took, result)
+          .run({memory_with_others(plan_, source, settings), where.room, longest_side(settings.estimator)});
+  result.others.seen.clear();
+  result.camera = source.camera;
+  result.view = view_of(source.camera, source.file_data, source.display);
+  const auto moving = moving_by_vectors(where.gpu, frame, took, 0);
+  for (std::size_t i = 0; moving && i < moving->size(); i++) {
+    if (!(*moving)[i]) continue;
+    result.depth[i] = -result.depth[i];
+    result.has_moving = true;
+  }
+  took.rows_read += source.rows_read;
+  const std::lock_guard lock(mutex_);
+  if (std::ranges::find(left_, frame) != left_.end()) read_.insert_or_assign(frame, std::move(read));
+  return result;
+}
+
+}  // namespace alcove

@@ -1,0 +1,120 @@
+// How much memory a frame takes, known before its pixels are read; how much the frames of a run may take, and for how
+// many of them at once that is enough.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "core/base/settings.h"
+#include "core/chain/aov.h"
+#include "core/frame/gbuffer.h"
+#include "core/gpu/device.h"
+#include "core/run/plan.h"
+
+namespace alcove {
+
+/// The part of a frame's memory that the codec of one of its files may take.
+constexpr std::uint64_t kCodecPart = 8;
+
+/// The longest side of a window, in pixels, for the passes of these settings: the marks of an exact search hold the
+/// step along a line in 16 bits.
+int longest_side(const EstimatorSettings& settings);
+
+/// What windows of a frame take while they are computed.
+struct FrameMemory {
+  /// Upper bounds, in bytes.
+  struct Bytes {
+    std::uint64_t device;  // of the device's own memory: all buffers
+    std::uint64_t host;    // buffers or their staging twins, and what is read, shown and written
+    std::uint64_t buffer;  // of the largest buffer
+  };
+  /// Rehearses the chain for a window.
+  Bytes of(const Window& computed) const;
+  /// What the codecs of the frame's files take of host memory where so much is left for the frame.
+  std::uint64_t codec_bytes(std::uint64_t room) const;
+
+  Reading reading;
+  Window file_data;
+  RawPlaneArray<std::size_t> channels;
+  EstimatorSettings estimator;
+  Wanted wanted;
+  bool looks_at_others = false;
+
+  std::uint64_t beside = 0;                 // in host memory beside buffers, for each pixel
+  std::uint64_t written = 0;                // of the planes that are written, for each pixel
+  std::vector<std::uint64_t> codec_groups;  // bytes of the rows that each codec takes together
+  std::uint64_t fixed_on_device = 0;        // in buffers, whatever the window
+  std::uint64_t fixed_bytes = 0;  // in host memory whatever the window: codecs, and files that are kept decoded
+};
+FrameMemory memory_of(const FrameSource& source, const Settings& settings);
+
+/// The bytes of all planes of a frame, as they are read.
+std::uint64_t raw_bytes_of(const FrameSource& source);
+
+// What a run may take.
+
+/// What a run may take: as much as the user says, or half of what is free.
+struct RunMemory {
+  std::uint64_t program_bytes = 0;  // of host memory: the process with one lane, and without frames
+  std::uint64_t lane_bytes = 0;     // of host memory: each further lane without its frame
+  std::uint64_t host_bytes = 0;     // what is left for all frames of one lane
+  std::uint64_t device_bytes = 0;   // of buffers in the device's own memory; without a limit where it is the host's
+  bool is_chosen = false;           // the user has said how much
+};
+
+/// As long as the device is not known, it is taken for the CPU, which is what takes the most of the host's memory.
+RunMemory memory_of_host(const DeviceSettings& settings);
+RunMemory memory_for_frames(const DeviceSettings& settings, const gpu::DeviceInfo& device);
+
+/// The number of frames of which this window is computed that the memory has room for, at least 1.
+std::uint64_t frames_in(const RunMemory& memory, const FrameMemory& frame, const Window& computed);
+
+/// What one frame in flight may take.
+struct Room {
+  static constexpr std::uint64_t kEndless = std::numeric_limits<std::uint64_t>::max();
+
+  std::uint64_t bytes = 0;                // of host memory
+  std::uint64_t device_bytes = kEndless;  // of the device's own memory
+  std::uint64_t buffer_bytes = 0;         // of one buffer of the device
+  std::uint64_t pixels = kEndless;        // at once: fewer than those for which the device had no memory
+  // For messages: what the process takes without frames, and whether the user has said how much it may take.
+  std::uint64_t program_bytes = 0;
+  bool is_chosen = false;
+};
+
+/// What each of `lanes` frames in flight may take.
+Room room_of_lane(const RunMemory& memory, int lanes, const gpu::DeviceInfo& device);
+
+// What frames see of each other.
+
+/// The number of others that a frame takes at most.
+std::size_t most_others(const FramePlan& plan, const FrameSource& frame, const InputSettings& settings);
+
+/// What a frame of the plan takes, and what its lane takes for its others.
+FrameMemory memory_with_others(const FramePlan& plan, const FrameSource& frame, const Settings& settings);
+
+/// What the prepared frames take that so many lanes keep, bytes of host memory.
+std::uint64_t bytes_of_shot(const FramePlan& plan, const FrameSource& frame, const InputSettings& settings, int lanes);
+
+/// What the estimates take that so many lanes keep for the means of these frames, which are computed in this order:
+/// bytes of host memory.
+std::uint64_t bytes_of_estimates(const FramePlan& plan, const FrameSource& frame, const Settings& settings,
+                                 std::span<const int> frames, int lanes);
+
+/// What is left for the frames themselves.
+RunMemory beside_shot(const RunMemory& memory, const FramePlan& plan, const FrameSource& frame,
+                      const Settings& settings, std::span<const int> frames, int lanes);
+
+/// Fails with ErrorKind::usage where --memory has no room for the frames around one, naming how many it has room for,
+/// and what would be enough; with ErrorKind::device where nobody has said --memory.
+void require_room_for_others(const RunMemory& memory, const FramePlan& plan, const FrameSource& frame,
+                             const Settings& settings, std::span<const int> frames);
+
+/// Fails with ErrorKind::device where frames that others take from have planes that no buffer of `most_bytes` holds:
+/// they are prepared whole, and only frames that are computed are cut into tiles.
+void require_buffers_for_others(std::uint64_t most_bytes, const FrameSource& frame, const Settings& settings);
+
+}  // namespace alcove
