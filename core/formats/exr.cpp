@@ -27,6 +27,7 @@
 #include <atomic>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <limits>
 
 #include "core/base/error.h"
@@ -382,6 +383,28 @@ void ExrFile::read(std::span<const ExrRead> reads, int first, int rows) {
   }
   for (const auto& [read, from] : again)
     std::copy_n(from, std::size_t(rows) * std::size_t(impl_->parts[std::size_t(read.part)].data.width), read.to);
+}
+
+Image read_exr_image(const std::string& path, const std::vector<std::string>& channels) {
+  ExrFile file(path, "INPUT");
+  const auto has_all = [&](const ExrPart& part) {
+    return !part.deep && std::ranges::all_of(channels, [&](const auto& name) {
+      return std::ranges::find(part.channels, name, &ExrChannel::name) != part.channels.end();
+    });
+  };
+  const auto part = std::ranges::find_if(file.parts(), has_all);
+  if (std::ranges::all_of(file.parts(), [](const ExrPart& each) { return each.deep.has_value(); }))
+    fail(ErrorKind::input, "{}: it holds deep data only, which has no single value per pixel: flatten it first", path);
+  if (part == file.parts().end()) fail(ErrorKind::input, "{}: no part has the channels {}", path, list_of(channels));
+  std::vector<std::string> names = channels;
+  if (names.empty()) std::ranges::transform(part->channels, std::back_inserter(names), &ExrChannel::name);
+  require_host_room(path, part->data);
+  Image image(part->data, file.display(), names);
+  std::vector<ExrRead> reads;
+  for (std::size_t i = 0; i < names.size(); i++)
+    reads.push_back({int(part - file.parts().begin()), names[i], image.plane(i).data()});
+  file.read(reads);
+  return image;
 }
 
 void set_exr_threads(int threads) { Imf::setGlobalThreadCount(threads); }

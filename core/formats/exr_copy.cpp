@@ -23,7 +23,7 @@
 #include <set>
 
 #include "core/base/text.h"
-#include "core/formats/exr_stream.h"
+#include "core/formats/exr_shared.h"
 #include "core/formats/exr_zip.h"
 
 namespace alcove {

@@ -13,7 +13,7 @@
 
 #include "core/base/error.h"
 #include "core/formats/exr.h"
-#include "core/formats/exr_stream.h"
+#include "core/formats/exr_shared.h"
 #include "core/formats/exr_zip.h"
 #include "core/formats/sample_loops.h"
 
@@ -165,6 +165,14 @@ void ExrWriter::finish(const std::map<std::string, std::string>& late) {
     Imf::OutputFile(with_late.stream, header_of(with_late.output)).copyPixels(rows);
   });
   with_late.stream.commit();
+}
+
+void write_exr(const std::string& path, const ExrOutput& output) {
+  ExrWriter writer(path, output);
+  std::vector<std::span<const float>> planes;
+  for (const auto& plane : output.planes) planes.push_back(plane.pixels);
+  writer.write(planes);
+  writer.finish();
 }
 
 }  // namespace alcove

@@ -1,4 +1,4 @@
-// The table of signatures, and the reader for each format.
+// The table of signatures, and the reader for each format. The one of OpenImageIO is loaded on first use.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <filesystem>
@@ -7,6 +7,7 @@
 
 #include "core/base/error.h"
 #include "core/base/file.h"
+#include "core/base/system.h"
 #include "core/base/text.h"
 #include "core/formats/exr.h"
 #include "core/formats/image_io.h"
@@ -79,6 +80,27 @@ const Signature* format_of(const std::string& path, std::ifstream& file, const s
   return has_tga_end(file) || lower_case(path).ends_with(".tga") ? &kTga : nullptr;
 }
 
+/// Null, and why in `why`, where the module cannot be loaded. It is found beside the program or in ../lib/alcove, by
+/// the program's run path.
+const ImageIoModule* load(std::string& why) {
+  return static_cast<const ImageIoModule*>(symbol_of(kImageIoFile, kImageIoSymbol, why));
+}
+
+/// `path` is the picture that needs it.
+const ImageIoModule& module(const std::string& path) {
+  static const ImageIoModule* loaded = [&] {
+    std::string why;
+    const ImageIoModule* found = load(why);
+    if (!found)
+      fail(ErrorKind::input,
+           "{}: to read a picture that is no EXR, Alcove needs {}, of the package "
+           "alcove-pictures, which is built where OpenImageIO is installed (libopenimageio-dev): {}",
+           path, kImageIoFile, why);
+    return found;
+  }();
+  return *loaded;
+}
+
 [[noreturn]] void refuse(const std::string& path, const char* option, const std::string& what) {
   fail(ErrorKind::input, "{}: {}; {} takes an {} file", path, what, option, frame_formats());
 }
@@ -86,6 +108,15 @@ const Signature* format_of(const std::string& path, std::ifstream& file, const s
 }  // namespace
 
 const char* frame_formats() { return "OpenEXR, DDS, PNG, TIFF, TGA, BMP or Radiance HDR"; }
+
+std::string why_no_image_io() {
+  std::string why;
+  return load(why) ? "" : why;
+}
+
+std::unique_ptr<PictureReader> open_picture(const std::string& path, const char* option) {
+  return module(path).open_picture(path, option);
+}
 
 ExrFile open_image(const std::string& path, const char* option, Formats formats) {
   require_readable(path, "picture", option);

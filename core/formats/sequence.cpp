@@ -1,14 +1,16 @@
-// Tokens, ranges and directory listings.
+// Tokens, ranges, directory listings and endings.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/formats/sequence.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <filesystem>
 #include <sstream>
 #include <unordered_set>
 
 #include "core/base/error.h"
+#include "core/base/text.h"
 
 namespace alcove {
 namespace {
@@ -120,6 +122,21 @@ std::optional<int> frame_of(const FramePattern& name, const std::string& text) {
   return frame;
 }
 
+/// Whether an ending, without its dot, says nothing about the format.
+bool is_passed_over(const std::string& ending) {
+  static constexpr std::array kOfUnfinished = {"tmp", "temp", "part", "partial", "new"};
+  return ending.find_first_not_of("-0123456789") == ending.npos ||
+         std::ranges::find(kOfUnfinished, ending) != kOfUnfinished.end();
+}
+
+/// The ending of the name with its dot, in small letters, behind which others may be passed over; "" where there is
+/// none.
+std::string ending_of(const std::string& path) {
+  std::filesystem::path name = std::filesystem::path(path).filename();
+  while (name.has_extension() && is_passed_over(lower_case(name.extension().string().substr(1)))) name = name.stem();
+  return lower_case(name.extension().string());
+}
+
 }  // namespace
 
 std::string FramePattern::path(int frame) const { return fmt::format("{}{:0{}}{}", before, frame, digits, after); }
@@ -179,6 +196,12 @@ std::vector<int> frames_on_disk(const FramePattern& pattern, const char* option)
   if (frames.empty()) fail(ErrorKind::input, "{}: there is no frame such as {}", option, pattern.path(1));
   std::ranges::sort(frames);
   return frames;
+}
+
+void require_ending(const std::string& path, const char* option, const char* ending, const char* format) {
+  const std::string found = ending_of(path);
+  if (found.empty() || found == ending) return;
+  fail(ErrorKind::usage, "{}: {} writes {} and nothing else: let its name end in {}", path, option, format, ending);
 }
 
 }  // namespace alcove
