@@ -101,8 +101,8 @@ void expect_truths(const Pictures& pictures, int parts = 1) {
     if (tried(i, parts)) expect_truth(pictures[std::size_t(i)], fine(pictures[std::size_t(i)].radius));
 }
 
-/// A scene as several cameras see it. Of several scenes, numbered from 0, every second combination with each change: that
-/// is a matter of `number`; without one all.
+/// A scene as several cameras see it: all of them, or, of several scenes that begin at a `number` each, every second
+/// combination with each change.
 Pictures seen(const std::string& what, const Scene& scene, double radius,
               const std::function<double(const Hit&, double)>& truth, const std::vector<Shot>& shots,
               int least_pixels = 1000, std::optional<int> number = {}, double reference_mean = 0.002) {
@@ -305,8 +305,8 @@ Pictures grooves() {
     const auto truth = [=](const Hit& hit, double) {
       // Beside the tips of the end triangles an occluder is narrower than a pixel.
       if (hit.primitive > 1 || std::abs(hit.position.y) > 0.9 * kHalfLength) return kNone;
-      // The sides of an endless groove block up to the angle psi, at which the other side's rim is seen: there Lambert's
-      // sum is (1 - cos psi) / 2, so what is used for the finite groove is right.
+      // The sides of an endless groove block up to the angle psi, at which the other side's rim is seen: there
+      // Lambert's sum is (1 - cos psi) / 2, so what is used for the finite groove is right.
       const Vec3 there{hit.position.x, 0, hit.position.z};
       const double s = length(there), cos_beta = 2 * std::cos(half) * std::cos(half) - 1;
       const double cos_psi = (cos_beta - s) / std::sqrt(1 + s * s - 2 * s * cos_beta);

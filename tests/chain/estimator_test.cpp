@@ -194,7 +194,7 @@ TEST(Hbao, sees_the_uniform_hemisphere_at_every_tilt_of_the_view) {
     Shot shot = leaning(tilt, 6, 300, 120);
     shot.camera.fy = 120 / (2 * kHalf);
     for (const auto& [height, d] : {std::pair{1.0, 1.0}, {2.0, 0.2}})
-      expect_bands("tilt " + std::to_string(tilt), render(block(height), shot), hbao(1e3, 32, 384),
+      expect_bands("tilt " + std::to_string(tilt), render(block(height), shot), hbao(1e3, 32, 256),
                    {{d, 0.05, 0.2,
                      [height = height](const Hit& hit) {
                        const Vec3 at = hit.position;
@@ -292,7 +292,7 @@ TEST(Crytek, clustered_kernel_has_the_lengths_of_its_formula) {
   }
 }
 
-// A floor seen from straight above and a block so high that all of it is dz before the floor: every hit weighs the same.
+// A floor seen from above, and a block so high that all of it is dz before the floor: every hit weighs the same.
 TEST(Crytek, range_checks_weigh_a_hit_by_its_depth) {
   const double radius = 0.5;
   const auto smooth = [](double x) {
@@ -364,8 +364,8 @@ TEST(Crytek, counts_only_samples_before_the_eye_and_on_surfaces_of_the_image) {
   EXPECT_NEAR(border / columns, middle / columns, 0.02);
 }
 
-// Inside of a ball, seen from its middle through a wide angle and from its rim, normals point everywhere; all are alike:
-// the hidden volume is the same. A ball of radius R about a point of the sphere S: below the tangent's cap lies
+// Inside of a ball, seen from its middle through a wide angle and from its rim, normals point everywhere; all are
+// alike: the hidden volume is the same. A ball of radius R about a point of the sphere S: below the tangent's cap lies
 // R / S * 3 / 16 of the half ball's volume.
 TEST(Crytek, has_a_basis_about_every_normal) {
   for (const Vec3 eye : {Vec3{0, 0, 0}, {-1.9, 0, 0}}) {

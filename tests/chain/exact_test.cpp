@@ -50,7 +50,7 @@ HostFrame without_peels(HostFrame frame) {
 /// A quarter of all combinations with each change, and a third of those with peels.
 TEST(Exact, outlines_give_what_every_pixel_gives) {
   for (const bool orthographic : {false, true}) {
-    const HostFrame peeled = peeled_furniture(orthographic).frame, plain = without_peels(peeled);
+    const HostFrame peeled = peeled_furniture(orthographic, 128, 96).frame, plain = without_peels(peeled);
     for (const auto complete : {Completion::none, Completion::border, Completion::all})
       for (const auto thickness : {ThicknessKind::automatic, ThicknessKind::infinite, ThicknessKind::constant})
         for (const double radius : {0.3, 0.6, 1.0, 100.0}) {
@@ -189,7 +189,7 @@ TEST(ExactHidden, what_is_known_is_what_rays_see) {
        Completion::border,
        Completion::all,
        [&](const Hit& hit) {
-         if (std::abs(hit.position.y) > 1 || hit.position.x < -1 || hit.position.x > 2.6 || !is_sample(hit, 3))
+         if (std::abs(hit.position.y) > 1 || hit.position.x < -1 || hit.position.x > 2.6 || !is_sample(hit, 7))
            return kNone;
          return true_ao(balls, hit, 1.2, 40);
        },
@@ -198,7 +198,7 @@ TEST(ExactHidden, what_is_known_is_what_rays_see) {
       {"a corridor behind the post in it",
        corridor,
        {},
-       Shot::perspective({0.75, -3, 2.2}, {0.75, 0.5, 0}, 50, 320, 240),
+       Shot::perspective({0.75, -3, 2.2}, {0.75, 0.5, 0}, 50, 240, 180),
        1,
        Completion::none,
        Completion::none,
@@ -210,7 +210,7 @@ TEST(ExactHidden, what_is_known_is_what_rays_see) {
        1.3},
       {"a furnished room", kFurniture, kSolidFurniture, furniture().shot, 0.6, Completion::all, Completion::all,
        [](const Hit& hit) {
-         return is_sample(hit, 5) && hit.position.x < 3 ? true_ao(kFurniture, hit, 0.6, 40) : kNone;
+         return is_sample(hit, 11) && hit.position.x < 3 ? true_ao(kFurniture, hit, 0.6, 40) : kNone;
        },
        1, 1.25}};
   for (const Known& known : cases) {
@@ -219,7 +219,7 @@ TEST(ExactHidden, what_is_known_is_what_rays_see) {
     const std::vector<float> first = ao_of(rendering.frame, exact(known.radius, known.guessed));
     add_solid_peels(rendering, known.scene, 3, known.solids);
     const Errors errors = errors_of(rendering, ao_of(rendering.frame, exact(known.radius, known.known)), known.truth);
-    EXPECT_GT(errors.pixels.size(), 300u);
+    EXPECT_GT(errors.pixels.size(), 200u);
     EXPECT_LE(errors.mean, known.most);
     double guessed = 0;
     for (std::size_t i = 0; i < errors.pixels.size(); i++)
@@ -282,7 +282,7 @@ TEST(Exact, directions_are_shared_by_all_pixels_of_a_block) {
 
 TEST(ExactHidden, copies_of_the_first_depth_and_surfaces_beyond_the_radius_change_no_bit) {
   for (const bool orthographic : {false, true}) {
-    const HostFrame frame = furniture(orthographic, 96, 72).frame;
+    const HostFrame frame = furniture(orthographic, 64, 48).frame;
     std::vector<float> far;
     for (const float z : frame.depth) far.push_back(z < kSky ? 60 + z : kSky);
     for (const auto& fronts : {frame.depth, far}) {
@@ -404,8 +404,8 @@ TEST(ExactHidden, a_floor_seen_aslant_is_open_above_its_underside) {
 // Crops.
 
 TEST(ExactHidden, crops_have_the_bits_of_the_whole) {
-  const Window part{80, 60, 300, 220}, compared{160, 140, 140, 60};
-  const Rendering whole = peeled_furniture(false, 400, 300);
+  const Window part{48, 36, 180, 132}, compared{96, 84, 84, 36};
+  const Rendering whole = peeled_furniture(false, 240, 180);
   HostFrame crop = crop_of(whole.frame, part);
   crop.behind_depth = cropped(whole.frame.behind_depth, whole.frame.data, part);
   const EstimatorSettings settings = exact(0.05, Completion::none);

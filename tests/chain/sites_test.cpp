@@ -218,8 +218,8 @@ TEST(Sites, depend_on_nothing_that_is_more_than_13_pixels_away) {
   EXPECT_GT(other, 0) << "or else no border was near anything";
 }
 
-// Left open, the stride is 16 of few slices and 2 of many where the density is adaptive, and 4 or 1 where it is uniform;
-// where the denoiser does not share, or blocks of pixels have one estimate, it is 1.
+// Left open, the stride is 16 of few slices and 2 of many where the density is adaptive, and 4 or 1 where it is
+// uniform; where the denoiser does not share, or blocks of pixels have one estimate, it is 1.
 TEST(SiteRule, follows_the_settings) {
   struct Row {
     std::function<void(EstimatorSettings&)> change;

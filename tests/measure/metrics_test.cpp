@@ -6,13 +6,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdio>
 #include <limits>
-#include <memory>
 
 #include "core/base/error.h"
 #include "tests/support/formula_images.h"
-#include "tests/support/program.h"
 
 namespace alcove {
 namespace {
@@ -150,33 +147,6 @@ TEST(Ssim, stored_values_of_scikit_image_0_19_3) {
   EXPECT_NEAR(formula_ssim(formula_plane(1, 3, 2, 256), formula_plane(1, 3, 1, 256)), -0.015912049604, 1e-11);
   EXPECT_NEAR(formula_ssim(ramp_with_box(), ramp_plane(0, 1)), 0.707282647151, 1e-11);
   EXPECT_NEAR(formula_ssim(ramp_with_box(), ramp_plane(0, 1), {}, 2), 0.751035250255, 1e-11);
-}
-
-TEST(Ssim, is_what_scikit_image_says) {
-  if (std::system("/usr/bin/python3 -c 'import skimage.metrics' 2>/dev/null") != 0)
-    GTEST_SKIP() << "scikit-image is not installed";
-  const TemporaryFolder folder;
-  const auto a = formula_plane(3, 5, 7, 1000), b = formula_plane(3, 5, 7, 1100);
-  const auto write = [&](const char* name, const Plane& plane) {
-    write_bytes(folder / name, {reinterpret_cast<const char*>(plane.data()), plane.size() * sizeof(float)});
-  };
-  write("a", a);
-  write("b", b);
-  const std::string script =
-      "import numpy,skimage.metrics as m;a,b=[numpy.fromfile(n,numpy.float32).reshape(40,48).astype(float) for n in "
-      "'ab'];"
-      "print(repr(m.structural_similarity(a,b,gaussian_weights=True,sigma=1.5,use_sample_covariance=False,data_range=1)"
-      "),"
-      "repr(m.peak_signal_noise_ratio(a,b,data_range=1)),*map(repr,numpy.percentile(abs(a-b),[95,99])))";
-  const std::string command = "cd " + folder.path() + " && /usr/bin/python3 -c \"" + script + "\"";
-  const std::unique_ptr<FILE, int (*)(FILE*)> pipe(::popen(command.c_str(), "r"), ::pclose);
-  double similarity = 0, ratio = 0, p95 = 0, p99 = 0;
-  ASSERT_EQ(std::fscanf(pipe.get(), "%lf %lf %lf %lf", &similarity, &ratio, &p95, &p99), 4);
-  const auto errors = compare_planes(a, b);
-  EXPECT_NEAR(formula_ssim(a, b), similarity, 1e-12);
-  EXPECT_NEAR(psnr(errors.rmse), ratio, 1e-10);
-  EXPECT_NEAR(errors.p95, p95, 1e-12);
-  EXPECT_NEAR(errors.p99, p99, 1e-12);
 }
 
 TEST(Ssim, equal_planes_have_1_and_exchanged_planes_the_same) {

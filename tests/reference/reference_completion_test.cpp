@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "core/reference/reference.h"
-#include "tests/support/furnished.h"
 #include "tests/support/hidden_truth.h"
 #include "tests/support/random_scenes.h"
 #include "tests/support/scenes.h"
@@ -235,61 +234,6 @@ TEST(Completion, never_opens_what_was_blocked) {
   }
   EXPECT_GE(border_share, 1);
   EXPECT_GE(all_share, 1.1 * border_share);
-}
-
-// What the reference gave before it completed anything. Not a fact of a scene, but what `none` promises.
-TEST(Completion, none_leaves_every_bit) {
-  const HostFrame frame = furnished(true).frame;
-  const std::vector<float> by_width{0.826432347f,
-                                    1,
-                                    1,
-                                    1,
-                                    0.999978721f,
-                                    1,
-                                    0.859125376f,
-                                    1,
-                                    0.577577412f,
-                                    0.882604301f,
-                                    0.137566283f,
-                                    0.854906023f,
-                                    0.746861517f,
-                                    0.851462662f,
-                                    0.902732551f,
-                                    0.858756721f,
-                                    0.925121248f};
-  const std::vector<float> by_length{0.990392506f,
-                                     1,
-                                     1,
-                                     1,
-                                     0.999998152f,
-                                     1,
-                                     0.93079716f,
-                                     1,
-                                     0.73887217f,
-                                     0.924595594f,
-                                     0.313172549f,
-                                     0.946524143f,
-                                     0.843613207f,
-                                     0.920015514f,
-                                     0.963344336f,
-                                     0.946940243f,
-                                     0.97700417f};
-  ReferenceSettings settings;
-  settings.radius = 1;
-  settings.slices = 5;
-  settings.thickness = ThicknessRule::width;
-  settings.thickness_length = 0.1;
-  for (std::size_t i = 0; i < frame.depth.size(); i += 1193) settings.pixels.push_back(i);
-  const auto given = [&] {
-    const std::vector<float> ao = reference_ao(frame, settings);
-    std::vector<float> some;
-    for (const std::size_t i : settings.pixels) some.push_back(ao[i]);
-    return some;
-  };
-  EXPECT_EQ(given(), by_width);
-  settings.thickness = ThicknessRule::constant;
-  settings.falloff = Falloff::linear;
-  EXPECT_EQ(given(), by_length);
 }
 
 }  // namespace
